@@ -1,0 +1,134 @@
+/** The public contract: what goes in and what comes out. No value is hidden behind `any`. */
+
+/** A pinhole camera; distortion is k1 k2 p1 p2 k3 (OpenCV). Units: pixels. */
+export interface Pinhole {
+  fx: number;
+  fy: number;
+  cx: number;
+  cy: number;
+  distortion?: [number, number, number, number, number];
+}
+
+/** One colour image of the object. */
+export interface ColorImage {
+  width: number;
+  height: number;
+  /** Non-zero where the object is; all pixels without it. */
+  mask?: Uint8Array;
+  /** Without it the view is orthographic. */
+  camera?: Pinhole;
+  /** How integers encode intensity; 8 bit defaults to "srgb", 16 bit is guessed. Floats are linear. */
+  transfer?: "srgb" | "linear";
+  /** RGBA integers, or RGB interleaved linear floats > 0. */
+  data: Uint8Array | Uint8ClampedArray | Uint16Array | Float32Array;
+}
+
+/** One depth map of the same object from another view: `data` or `points`, exactly one of the two. */
+export interface DepthMap {
+  width: number;
+  height: number;
+  mask?: Uint8Array;
+  camera?: Pinhole;
+  /** Metres (or pixels, orthographic) per stored unit; default 1, and 0.001 for a Uint16Array with a camera. */
+  unit?: number;
+  data?: Float32Array | Uint16Array;
+  /** An organised cloud, 3*w*h interleaved, NaN where missing. */
+  points?: Float32Array;
+  /** Unit normals, 3*w*h interleaved; they override our own. */
+  normals?: Float32Array;
+}
+
+/** P_colour = scale * rotation * P_depth + translation; rotation row-major; angles in degrees, R = Rx Ry Rz. */
+export interface Pose {
+  scale: number;
+  rotation: number[];
+  translation: number[];
+  angles: { alpha: number; beta: number; gamma: number };
+}
+
+export interface Options {
+  light?: "estimate" | ArrayLike<number>;
+  start?: "search" | "identity" | Partial<Pose>;
+  scale?: "free" | number;
+  registration?: "joint" | "icp" | "fixed";
+  shading?: "surface" | "pixel";
+  lambda?: { prior?: number; unit?: number; light?: number; refinement?: number };
+  stopDegrees?: number;
+  /** In image pixels. */
+  correspondenceDistance?: number;
+  maxIterations?: number;
+  seed?: number;
+  /** Whether flying pixels and background inside the mask are trimmed; default true. */
+  trim?: boolean;
+}
+
+export type Stage = "search" | "light" | "shading" | "surface" | "registration" | "refinement";
+export type Status = "running" | "converged" | "max-iterations" | "ambiguous" | "lost";
+
+/** One sigma of the pose. */
+export interface Uncertainty {
+  rotationDegrees: number[];
+  translation: (number | null)[];
+  scale: number | null;
+  weakest: string;
+}
+
+export interface StepReport {
+  iteration: number;
+  stage: string;
+  pose: Pose;
+  /** Degrees. */
+  rotationChange: number;
+  energy: { shading: number; prior: number; registration: number; refinement: number; total: number };
+  /** Share of valid depth pixels with a correspondence. */
+  overlap: number;
+  /** Share of those within the robust scale. */
+  inliers: number;
+  /** Robust mean log-colour residual. */
+  residual: number;
+  status: Status;
+  message?: string;
+  rivals?: Pose[];
+  uncertainty?: Uncertainty;
+  /** Wall time of each stage in the last step. */
+  milliseconds: Record<string, number>;
+}
+
+/** A height map to make a sample from: larger is nearer, zero or NaN is background; 64x64 .. 512x512. */
+export interface Relief {
+  width: number;
+  height: number;
+  heights: Float32Array;
+}
+
+/** A made scene with a known answer. */
+export interface SampleRequest {
+  /** "bust", "vase", "ripples", or heights of your own. */
+  surface: string | Relief;
+  /** "colourful", "window" or "overcast" (see `sampleLights`), or 27 numbers. */
+  light: string | ArrayLike<number>;
+  /** Side of both views in pixels, 16 .. 1024. Default 64. */
+  size?: number;
+  /** Height of both views where it differs from `size`. */
+  height?: number;
+  /** The pose to find, degrees. Default beta = 20. */
+  angles?: { alpha?: number; beta?: number; gamma?: number };
+  /** Share of the depth map's valid columns that is kept, centred. Default 1. */
+  overlap?: number;
+  /** Sigma of the Gaussian noise on log S. Default 0. */
+  noise?: number;
+  /** Sigma of the Gaussian noise on depth in pixels. Default 0. */
+  depthNoise?: number;
+  /** Share of the depth pixels lost in holes. Default 0. */
+  holes?: number;
+  seed?: number;
+}
+
+export interface Sample {
+  image: ColorImage;
+  depth: DepthMap;
+  light: Float64Array;
+  pose: Pose;
+  /** The truth to measure against, NaN outside the masks. */
+  truth: { imageNormals: Float32Array; imageDepth: Float32Array; depthNormals: Float32Array; depth: Float32Array };
+}

@@ -1,0 +1,161 @@
+//! What the caller may choose, with its defaults and its limits.
+
+use crate::error::{Error, ErrorKind, Result};
+use crate::light::Light;
+use crate::pose::Similarity;
+
+/// Where the light comes from.
+#[derive(Clone, Debug, PartialEq)]
+pub enum LightSource {
+    /// Fitted to the data under the Gaussian prior of Eq. 2.
+    Estimate,
+    /// Known up to the exposure, which is always estimated.
+    Known(Light),
+}
+
+/// Where the pose starts.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Start {
+    /// Both views coincide.
+    Identity,
+    /// A pose given by the caller; a missing translation aligns the centroids of both masks.
+    Pose {
+        /// The pose to start from.
+        pose: Similarity,
+        /// Whether the caller gave the translation.
+        has_translation: bool,
+    },
+}
+
+/// How the pose is refined in each iteration.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Registration {
+    /// The paper's own stage: ICP, RANSAC on the linear model, similarity.
+    Icp,
+    /// The start is kept.
+    Fixed,
+}
+
+/// How the shape of the colour view is found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shading {
+    /// One normal for each pixel (Eq. 6), then integration.
+    Pixel,
+}
+
+/// Weights of the energy terms. Brightness residuals are differences of natural logarithms; normals have no unit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Weights {
+    /// lambda_2 of Eq. 6: how strongly a normal follows the normal of the other view.
+    pub prior: f64,
+    /// lambda_3 of Eq. 6: how strongly a normal is kept at unit length.
+    pub unit: f64,
+    /// lambda_L of Eq. 2: how strongly the light follows the natural lights.
+    pub light: f64,
+    /// lambda_g2 of Eq. 17: the shape prior of the refinement.
+    pub refinement: f64,
+}
+
+impl Default for Weights {
+    fn default() -> Self {
+        Self { prior: 0.05, unit: 1.0, light: 1e-3, refinement: 0.01 }
+    }
+}
+
+/// Everything the loop can be told. `Options::default()` is a sensible start.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Options {
+    /// Known or estimated light.
+    pub light: LightSource,
+    /// First pose.
+    pub start: Start,
+    /// Scale of the pose: `None` is free, `Some(s)` holds it.
+    pub scale: Option<f64>,
+    /// Pose stage.
+    pub registration: Registration,
+    /// Shape stage.
+    pub shading: Shading,
+    /// Weights of the energy terms.
+    pub weights: Weights,
+    /// The loop converges when the rotation changes by less than this, in degrees.
+    pub stop_degrees: f64,
+    /// Accepted distance of a correspondence in image pixels; `None` follows the data (never under one pixel, the paper's value).
+    pub correspondence_distance: Option<f64>,
+    /// The loop ends after so many iterations.
+    pub max_iterations: u32,
+    /// Seed of everything random.
+    pub seed: u64,
+    /// Whether flying pixels and background inside the mask are trimmed.
+    pub trim: bool,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            light: LightSource::Estimate,
+            start: Start::Identity,
+            scale: None,
+            registration: Registration::Icp,
+            shading: Shading::Pixel,
+            weights: Weights::default(),
+            stop_degrees: 0.01,
+            correspondence_distance: None,
+            max_iterations: 60,
+            seed: 1,
+            trim: true,
+        }
+    }
+}
+
+/// More iterations than anybody waits for; a cap against typing errors.
+const MOST_ITERATIONS: u32 = 100_000;
+
+impl Options {
+    /// Checks every number against its range.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Range`] with the name of the first option out of range.
+    pub fn validate(&self) -> Result<()> {
+        if let LightSource::Known(light) = &self.light {
+            light.validate("options.light")?;
+        }
+        if let Start::Pose { pose, .. } = &self.start {
+            pose.validate("options.start")?;
+        }
+        if let Some(scale) = self.scale {
+            positive("options.scale", scale)?;
+        }
+        not_negative("options.lambda.prior", self.weights.prior)?;
+        not_negative("options.lambda.unit", self.weights.unit)?;
+        not_negative("options.lambda.light", self.weights.light)?;
+        not_negative("options.lambda.refinement", self.weights.refinement)?;
+        positive("options.stopDegrees", self.stop_degrees)?;
+        if let Some(distance) = self.correspondence_distance {
+            positive("options.correspondenceDistance", distance)?;
+        }
+        if self.max_iterations == 0 || self.max_iterations > MOST_ITERATIONS {
+            return Err(Error::new(
+                ErrorKind::Range,
+                "options.maxIterations",
+                format!("must lie between 1 and {MOST_ITERATIONS}"),
+            )
+            .value(f64::from(self.max_iterations)));
+        }
+        Ok(())
+    }
+}
+
+/// Refuses anything but a finite number above zero.
+pub(crate) fn positive(field: &'static str, value: f64) -> Result<()> {
+    if value.is_finite() && value > 0.0 {
+        return Ok(());
+    }
+    Err(Error::new(ErrorKind::Range, field, "must be a finite number above zero").value(value))
+}
+
+fn not_negative(field: &'static str, value: f64) -> Result<()> {
+    if value.is_finite() && value >= 0.0 {
+        return Ok(());
+    }
+    Err(Error::new(ErrorKind::Range, field, "must be a finite number, zero or above").value(value))
+}

@@ -1,0 +1,125 @@
+//! What the loop says after each step.
+
+use crate::pose::Similarity;
+
+/// Stages of one iteration, in the order in which they run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stage {
+    /// Fit of the light, or of the exposure of a known light (Eq. 2).
+    Light,
+    /// Normals of the colour view (Eq. 6 to 9).
+    Shading,
+    /// Heights from these normals.
+    Surface,
+    /// Pose between both surfaces (Eq. 12 to 16).
+    Registration,
+    /// Normals and depth of the depth view (Eq. 17 to 19).
+    Refinement,
+}
+
+impl Stage {
+    /// All stages in order.
+    pub const ALL: [Self; 5] = [Self::Light, Self::Shading, Self::Surface, Self::Registration, Self::Refinement];
+
+    /// Lower-case name, as JavaScript sees it.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Light => "light",
+            Self::Shading => "shading",
+            Self::Surface => "surface",
+            Self::Registration => "registration",
+            Self::Refinement => "refinement",
+        }
+    }
+}
+
+/// Where the loop stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Status {
+    /// More steps will change something.
+    Running,
+    /// The rotation has settled.
+    Converged,
+    /// The cap on iterations was reached first.
+    MaxIterations,
+    /// The data allow other poses as well.
+    Ambiguous,
+    /// The answer cannot be trusted.
+    Lost,
+}
+
+impl Status {
+    /// Lower-case name, as JavaScript sees it.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Running => "running",
+            Self::Converged => "converged",
+            Self::MaxIterations => "max-iterations",
+            Self::Ambiguous => "ambiguous",
+            Self::Lost => "lost",
+        }
+    }
+}
+
+/// The terms of Eq. 1, each a robust mean, so that sizes of images do not matter.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Energy {
+    /// Brightness term l_1 of the colour view (Eq. 8).
+    pub shading: f64,
+    /// Shape prior l_2 of the colour view (Eq. 9).
+    pub prior: f64,
+    /// Distance f of both surfaces (Eq. 12).
+    pub registration: f64,
+    /// Term g of the depth view (Eq. 17).
+    pub refinement: f64,
+}
+
+impl Energy {
+    /// Sum of all terms: the merit by which an iteration is kept or not.
+    #[must_use]
+    pub fn total(&self) -> f64 {
+        self.shading + self.prior + self.registration + self.refinement
+    }
+}
+
+/// Uncertainty of the pose, one sigma.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Uncertainty {
+    /// Rotation about the x, y and z axis of the colour view, degrees.
+    pub rotation_degrees: [f64; 3],
+    /// Translation along x, y, z in units of the colour view; `None` where it is a gauge.
+    pub translation: [Option<f64>; 3],
+    /// Scale; `None` where it is held.
+    pub scale: Option<f64>,
+    /// The weakest direction, in words.
+    pub weakest: String,
+}
+
+/// State of the loop after a step or a stage.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StepReport {
+    /// Completed iterations.
+    pub iteration: u32,
+    /// The stage that ran last.
+    pub stage: Stage,
+    /// Current pose.
+    pub pose: Similarity,
+    /// Change of the rotation in the last iteration, degrees.
+    pub rotation_change: f64,
+    /// Terms of the objective.
+    pub energy: Energy,
+    /// Share of the valid depth pixels that have a correspondence.
+    pub overlap: f64,
+    /// Share of the correspondences within the robust scale.
+    pub inliers: f64,
+    /// Robust mean of the log-colour residual.
+    pub residual: f64,
+    /// Where the loop stands.
+    pub status: Status,
+    /// Why, in words, where there is something to say.
+    pub message: Option<String>,
+    /// One sigma of the pose, where it could be computed.
+    pub uncertainty: Option<Uncertainty>,
+}
