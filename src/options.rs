@@ -1,10 +1,13 @@
 //! What the caller may choose, with its defaults and its limits.
 
+use nalgebra::{Matrix3, Vector3};
+
 use crate::error::{Error, ErrorKind, Result};
 use crate::light::Light;
 use crate::pose::Similarity;
 
 /// Where the light comes from.
+#[expect(clippy::large_enum_variant, reason = "one value for each loop; a box would only complicate it")]
 #[derive(Clone, Debug, PartialEq)]
 pub enum LightSource {
     /// Fitted to the data under the Gaussian prior of Eq. 2.
@@ -14,16 +17,18 @@ pub enum LightSource {
 }
 
 /// Where the pose starts.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Start {
     /// Both views coincide.
     Identity,
-    /// A pose given by the caller; a missing translation aligns the centroids of both masks.
+    /// A pose given by the caller, as far as it is known.
     Pose {
-        /// The pose to start from.
-        pose: Similarity,
-        /// Whether the caller gave the translation.
-        has_translation: bool,
+        /// R.
+        rotation: Matrix3<f64>,
+        /// s; `None`: the ratio of the units of both views.
+        scale: Option<f64>,
+        /// t; `None`: the masks' centres coincide.
+        translation: Option<Vector3<f64>>,
     },
 }
 
@@ -41,6 +46,8 @@ pub enum Registration {
 pub enum Shading {
     /// One normal for each pixel (Eq. 6), then integration.
     Pixel,
+    /// These, then the heights themselves: what poor light does not tell a pixel, the surface knows.
+    Surface,
 }
 
 /// Weights of the energy terms. Brightness residuals are differences of natural logarithms; normals have no unit.
@@ -58,7 +65,8 @@ pub struct Weights {
 
 impl Default for Weights {
     fn default() -> Self {
-        Self { prior: 0.05, unit: 1.0, light: 1e-3, refinement: 0.01 }
+        // light: one part in a million lets colourful lights pass that no landscape has; it is noise^2 / pixels at 64x64.
+        Self { prior: 0.05, unit: 1.0, light: 1e-6, refinement: 0.01 }
     }
 }
 
@@ -119,8 +127,10 @@ impl Options {
         if let LightSource::Known(light) = &self.light {
             light.validate("options.light")?;
         }
-        if let Start::Pose { pose, .. } = &self.start {
-            pose.validate("options.start")?;
+        if let Start::Pose { rotation, scale, translation } = self.start {
+            let scale = scale.unwrap_or(1.0);
+            let translation = translation.unwrap_or_else(Vector3::zeros);
+            Similarity { scale, rotation, translation }.validate("options.start")?;
         }
         if let Some(scale) = self.scale {
             positive("options.scale", scale)?;
@@ -153,7 +163,8 @@ pub(crate) fn positive(field: &'static str, value: f64) -> Result<()> {
     Err(Error::new(ErrorKind::Range, field, "must be a finite number above zero").value(value))
 }
 
-fn not_negative(field: &'static str, value: f64) -> Result<()> {
+/// Refuses anything but a finite number, zero or above.
+pub(crate) fn not_negative(field: &'static str, value: f64) -> Result<()> {
     if value.is_finite() && value >= 0.0 {
         return Ok(());
     }

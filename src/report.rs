@@ -18,6 +18,18 @@ pub enum Stage {
 }
 
 impl Stage {
+    /// The stage after this one; the last is followed by the first of the next iteration.
+    #[must_use]
+    pub const fn next(self) -> Self {
+        match self {
+            Self::Light => Self::Shading,
+            Self::Shading => Self::Surface,
+            Self::Surface => Self::Registration,
+            Self::Registration => Self::Refinement,
+            Self::Refinement => Self::Light,
+        }
+    }
+
     /// All stages in order.
     pub const ALL: [Self; 5] = [Self::Light, Self::Shading, Self::Surface, Self::Registration, Self::Refinement];
 
@@ -122,4 +134,23 @@ pub struct StepReport {
     pub message: Option<String>,
     /// One sigma of the pose, where it could be computed.
     pub uncertainty: Option<Uncertainty>,
+}
+
+impl StepReport {
+    /// The report of iteration zero.
+    pub(crate) fn at(pose: Similarity) -> Self {
+        Self {
+            iteration: 0,
+            stage: Stage::Light,
+            pose,
+            rotation_change: 0.0,
+            energy: Energy::default(),
+            overlap: 0.0,
+            inliers: 0.0,
+            residual: 0.0,
+            status: Status::Running,
+            message: None,
+            uncertainty: None,
+        }
+    }
 }

@@ -110,6 +110,24 @@ impl Camera {
         }
     }
 
+    /// Mean focal length in pixels, `None` for an orthographic camera.
+    #[must_use]
+    pub fn focal_length(&self) -> Option<f64> {
+        match self {
+            Self::Orthographic => None,
+            Self::Pinhole(pinhole) => Some((pinhole.fx * pinhole.fy).sqrt()),
+        }
+    }
+
+    /// The intrinsics, `None` for an orthographic camera.
+    #[must_use]
+    pub const fn pinhole(&self) -> Option<Pinhole> {
+        match self {
+            Self::Orthographic => None,
+            Self::Pinhole(pinhole) => Some(*pinhole),
+        }
+    }
+
     /// Whether the camera is orthographic.
     #[must_use]
     pub const fn is_orthographic(&self) -> bool {

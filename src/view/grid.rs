@@ -1,5 +1,7 @@
 //! Rasters: their size, and fields of vectors over them as structure-of-arrays.
 
+use nalgebra::Vector3;
+
 use crate::error::{Error, ErrorKind, Result};
 
 /// Smallest side of a view: below it neither a normal nor a light is determined.
@@ -45,6 +47,52 @@ impl Size {
     #[must_use]
     pub const fn index(self, column: usize, row: usize) -> usize {
         row * self.width + column
+    }
+
+    /// The pixels left, right, above and below that exist.
+    pub fn neighbours(self, index: usize) -> impl Iterator<Item = usize> {
+        let (column, row) = self.position(index);
+        [
+            (column > 0).then(|| index - 1),
+            (column + 1 < self.width).then(|| index + 1),
+            (row > 0).then(|| index - self.width),
+            (row + 1 < self.height).then(|| index + self.width),
+        ]
+        .into_iter()
+        .flatten()
+    }
+
+    /// Index of the pixel nearest to a continuous position, `None` outside the raster.
+    #[must_use]
+    pub fn nearest(self, column: f32, row: f32) -> Option<usize> {
+        let (column, row) = (column.round(), row.round());
+        let inside = column >= 0.0 && row >= 0.0 && column < self.width as f32 && row < self.height as f32;
+        inside.then(|| self.index(column as usize, row as usize))
+    }
+
+    /// Bilinear value of `field` at a continuous position. NaN neighbours that carry weight make the value NaN.
+    #[must_use]
+    pub fn bilinear(self, field: &[f32], column: f32, row: f32) -> f32 {
+        let inside =
+            column >= 0.0 && row >= 0.0 && column <= (self.width - 1) as f32 && row <= (self.height - 1) as f32;
+        if !inside {
+            return f32::NAN;
+        }
+        let (left, top) = (column.floor() as usize, row.floor() as usize);
+        let (right_share, low_share) = (column - left as f32, row - top as f32);
+        let (right, low) = ((left + 1).min(self.width - 1), (top + 1).min(self.height - 1));
+        let corners = [
+            (left, top, (1.0 - right_share) * (1.0 - low_share)),
+            (right, top, right_share * (1.0 - low_share)),
+            (left, low, (1.0 - right_share) * low_share),
+            (right, low, right_share * low_share),
+        ];
+        // A corner without weight must not spoil the value: NaN times zero is NaN.
+        corners
+            .into_iter()
+            .filter(|&(_, _, weight)| weight > 0.0)
+            .map(|(column, row, weight)| weight * field[self.index(column, row)])
+            .sum()
     }
 
     /// Column and row of the pixel at `index`.
@@ -102,6 +150,17 @@ impl Normals {
     #[must_use]
     pub fn is_valid(&self, index: usize) -> bool {
         !self.z[index].is_nan()
+    }
+
+    /// Mean of the vectors that are there, zero where there is none.
+    #[must_use]
+    pub fn centroid(&self) -> Vector3<f64> {
+        let (mut sum, mut count) = (Vector3::zeros(), 0.0);
+        for index in (0..self.len()).filter(|&index| self.is_valid(index)) {
+            sum += Vector3::from(self.get(index).map(f64::from));
+            count += 1.0;
+        }
+        sum / f64::max(count, 1.0)
     }
 
     /// The vectors interleaved: x, y, z, x, y, z, ...

@@ -1,0 +1,213 @@
+//! The colour image: checked once, turned into log intensities over a mask.
+
+use crate::error::{Error, ErrorKind, Result};
+use crate::view::mask::{self, FEWEST_PIXELS};
+use crate::view::{Camera, Pinhole, Size};
+
+/// How integers encode intensity.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Transfer {
+    /// IEC 61966-2-1.
+    Srgb,
+    /// Proportional to intensity.
+    Linear,
+}
+
+/// Samples as they come from a file or a canvas.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ColourSamples {
+    /// R, G, B, A of each pixel, 8 bit.
+    Rgba8(Vec<u8>),
+    /// R, G, B, A of each pixel, 16 bit.
+    Rgba16(Vec<u16>),
+    /// R, G, B of each pixel, linear and above zero.
+    RgbLinear(Vec<f32>),
+}
+
+/// One colour image of the object, not yet checked.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ColourImage {
+    /// Columns.
+    pub width: usize,
+    /// Rows.
+    pub height: usize,
+    /// Samples, row-major.
+    pub samples: ColourSamples,
+    /// Encoding of integer samples; `None`: sRGB for 8 bit, guessed for 16 bit.
+    pub transfer: Option<Transfer>,
+    /// Non-zero where the object is; `None`: everywhere.
+    pub mask: Option<Vec<u8>>,
+    /// `None`: orthographic.
+    pub camera: Option<Pinhole>,
+}
+
+/// The checked colour view: natural logarithms of linear intensity where they exist.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ColourView {
+    /// Size of the image.
+    pub size: Size,
+    /// How points map to pixels.
+    pub camera: Camera,
+    /// Object pixels with usable colours.
+    pub mask: Vec<bool>,
+    /// log S of R, G, B; NaN off the mask.
+    pub log: [Vec<f32>; 3],
+    /// How integers were decoded; floats are linear.
+    pub transfer: Transfer,
+}
+
+/// Darkest usable 8-bit level: below it one step of the code is more than a quarter of the intensity.
+const DARKEST_LEVEL_8: u8 = 4;
+/// Darkest usable 16-bit level: the same share of an intensity that is 16 times finer than 12 bits.
+const DARKEST_LEVEL_16: u16 = 64;
+
+impl ColourView {
+    /// Checks the image and takes its logarithms. Masked out are black and saturated pixels, and transparent ones.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Size`] for sizes that disagree, [`ErrorKind::Range`] for bad intrinsics,
+    /// [`ErrorKind::Empty`] where fewer than 16 pixels are usable.
+    pub fn new(image: ColourImage) -> Result<Self> {
+        let size = Size::new("image", image.width, image.height)?;
+        if let Some(camera) = &image.camera {
+            camera.validate("image.camera")?;
+        }
+        let object = mask::object("image.mask", size, image.mask.as_deref())?;
+        let (channels, length) = match &image.samples {
+            ColourSamples::Rgba8(data) => (4, data.len()),
+            ColourSamples::Rgba16(data) => (4, data.len()),
+            ColourSamples::RgbLinear(data) => (3, data.len()),
+        };
+        if length != channels * size.len() {
+            return Err(Error::new(
+                ErrorKind::Size,
+                "image.data",
+                format!("{}x{} pixels need {} samples, not {length}", size.width, size.height, channels * size.len()),
+            ));
+        }
+        let transfer = transfer_of(&image);
+        let mut log = [(); 3].map(|()| vec![f32::NAN; size.len()]);
+        let mut usable = vec![false; size.len()];
+        for index in (0..size.len()).filter(|&index| object[index]) {
+            if let Some(linear) = image.samples.linear(index, transfer) {
+                usable[index] = true;
+                for channel in 0..3 {
+                    log[channel][index] = linear[channel].ln();
+                }
+            }
+        }
+        if usable.iter().filter(|&&usable| usable).count() < FEWEST_PIXELS {
+            return Err(Error::new(
+                ErrorKind::Empty,
+                "image.data",
+                format!("fewer than {FEWEST_PIXELS} object pixels are neither black nor saturated"),
+            ));
+        }
+        let camera = image.camera.map_or(Camera::Orthographic, Camera::Pinhole);
+        Ok(Self { size, camera, mask: usable, log, transfer })
+    }
+
+    /// log S of the three channels at a pixel, NaN off the mask.
+    #[must_use]
+    pub fn log_at(&self, index: usize) -> [f32; 3] {
+        [self.log[0][index], self.log[1][index], self.log[2][index]]
+    }
+}
+
+impl ColourSamples {
+    /// Linear intensity of a pixel, `None` where it is black, saturated, transparent or not a number.
+    fn linear(&self, index: usize, transfer: Transfer) -> Option<[f32; 3]> {
+        match self {
+            Self::Rgba8(data) => {
+                let pixel = &data[4 * index..4 * index + 4];
+                let usable =
+                    pixel[3] > 0 && pixel[..3].iter().all(|&level| (DARKEST_LEVEL_8..u8::MAX).contains(&level));
+                usable.then(|| [0, 1, 2].map(|c| decode(f32::from(pixel[c]) / f32::from(u8::MAX), transfer)))
+            }
+            Self::Rgba16(data) => {
+                let pixel = &data[4 * index..4 * index + 4];
+                let usable =
+                    pixel[3] > 0 && pixel[..3].iter().all(|&level| (DARKEST_LEVEL_16..u16::MAX).contains(&level));
+                usable.then(|| [0, 1, 2].map(|c| decode(f32::from(pixel[c]) / f32::from(u16::MAX), transfer)))
+            }
+            Self::RgbLinear(data) => {
+                let pixel = [data[3 * index], data[3 * index + 1], data[3 * index + 2]];
+                pixel.iter().all(|&value| value.is_finite() && value > 0.0).then_some(pixel)
+            }
+        }
+    }
+}
+
+/// Given, else: floats are linear, 8 bit is sRGB, and 16 bit is sRGB exactly where it was widened from 8 bit.
+fn transfer_of(image: &ColourImage) -> Transfer {
+    /// An 8-bit level widened to 16 bit is a multiple of 257.
+    const WIDENED: u16 = 257;
+    match (&image.samples, image.transfer) {
+        (ColourSamples::RgbLinear(_), _) => Transfer::Linear,
+        (_, Some(transfer)) => transfer,
+        (ColourSamples::Rgba8(_), None) => Transfer::Srgb,
+        (ColourSamples::Rgba16(data), None) if data.iter().all(|level| level % WIDENED == 0) => Transfer::Srgb,
+        (ColourSamples::Rgba16(_), None) => Transfer::Linear,
+    }
+}
+
+/// Encoded value in 0 .. 1 to linear intensity (IEC 61966-2-1 for sRGB).
+fn decode(value: f32, transfer: Transfer) -> f32 {
+    match transfer {
+        Transfer::Linear => value,
+        Transfer::Srgb if value <= 0.040_45 => value / 12.92,
+        Transfer::Srgb => ((value + 0.055) / 1.055).powf(2.4),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn image(samples: ColourSamples) -> ColourImage {
+        ColourImage { width: 4, height: 4, samples, transfer: None, mask: None, camera: None }
+    }
+
+    #[test]
+    fn srgb_middle_grey_is_a_fifth_of_white() {
+        let view = ColourView::new(image(ColourSamples::Rgba8([119, 119, 119, 255].repeat(16)))).unwrap();
+        assert!((view.log[0][0].exp() - 0.1845).abs() < 1e-3);
+    }
+
+    #[test]
+    fn sixteen_bit_is_guessed_from_its_levels() {
+        let widened = image(ColourSamples::Rgba16([257 * 100, 257 * 90, 257 * 80, 65535].repeat(16)));
+        assert_eq!(ColourView::new(widened).unwrap().transfer, Transfer::Srgb);
+        let fine = image(ColourSamples::Rgba16([20001, 30002, 10003, 65535].repeat(16)));
+        assert_eq!(ColourView::new(fine).unwrap().transfer, Transfer::Linear);
+    }
+
+    #[test]
+    fn black_and_saturated_pixels_are_masked() {
+        let mut data = [100_u8, 100, 100, 255].repeat(18);
+        data[0] = 0;
+        data[5] = 255;
+        let mut wide = image(ColourSamples::Rgba8(data));
+        (wide.width, wide.height) = (6, 3);
+        assert_eq!(ColourView::new(wide.clone()).unwrap_err().kind(), ErrorKind::Size);
+        let mut data = [100_u8, 100, 100, 255].repeat(24);
+        data[0] = 0;
+        data[5] = 255;
+        wide.samples = ColourSamples::Rgba8(data);
+        wide.height = 4;
+        let view = ColourView::new(wide).unwrap();
+        assert_eq!(view.mask.iter().filter(|&&usable| usable).count(), 22);
+    }
+
+    #[test]
+    fn an_all_black_image_is_refused_by_name() {
+        let error = ColourView::new(image(ColourSamples::Rgba8([0, 0, 0, 255].repeat(16)))).unwrap_err();
+        assert_eq!((error.kind(), error.field()), (ErrorKind::Empty, "image.data"));
+    }
+
+    #[test]
+    fn a_wrong_length_is_refused_by_name() {
+        let error = ColourView::new(image(ColourSamples::RgbLinear(vec![1.0; 47]))).unwrap_err();
+        assert_eq!((error.kind(), error.field()), (ErrorKind::Size, "image.data"));
+    }
+}

@@ -1,0 +1,281 @@
+//! The depth map: checked once, turned into points and normals, its holes told from its background.
+
+use crate::error::{Error, ErrorKind, Result};
+use crate::options::positive;
+use crate::view::mask::{self, FEWEST_PIXELS, components};
+use crate::view::trim;
+use crate::view::{Camera, Normals, Pinhole, Points, Size, normals};
+
+/// Samples as they come from a sensor or a file.
+#[derive(Clone, Debug, PartialEq)]
+pub enum DepthSamples {
+    /// Depth along z in stored units; NaN, infinite, zero and negative values are holes.
+    Float(Vec<f32>),
+    /// Depth along z in stored units; zero is a hole.
+    Integer(Vec<u16>),
+    /// An organised cloud: x, y, z of each pixel in stored units, NaN where missing.
+    Cloud(Vec<f32>),
+}
+
+/// One depth map of the object, not yet checked.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DepthMap {
+    /// Columns.
+    pub width: usize,
+    /// Rows.
+    pub height: usize,
+    /// Samples, row-major.
+    pub samples: DepthSamples,
+    /// Metres (or pixels, orthographic) of a stored unit; `None`: 1, and 0.001 for integers with a camera.
+    pub unit: Option<f64>,
+    /// Non-zero where the object is; `None`: where there is depth, and holes enclosed by it.
+    pub mask: Option<Vec<u8>>,
+    /// `None`: orthographic.
+    pub camera: Option<Pinhole>,
+    /// Unit normals of the caller's, interleaved; they override our own.
+    pub normals: Option<Vec<f32>>,
+}
+
+/// The checked depth view.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DepthView {
+    /// Size of the map.
+    pub size: Size,
+    /// How points map to pixels.
+    pub camera: Camera,
+    /// Object pixels, holes included where they touch a depth.
+    pub mask: Vec<bool>,
+    /// Depth along z in metres or pixels, NaN at holes and off the mask.
+    pub depth: Vec<f32>,
+    /// Points in the depth camera's frame, NaN where there is no depth.
+    pub points: Points,
+    /// Unit normals in the depth camera's frame, NaN where there is none.
+    pub normals: Normals,
+    /// Whether the input was an organised cloud: no ray of a camera runs through its pixels.
+    pub organised: bool,
+    /// Whether the normals are the caller's own.
+    pub normals_given: bool,
+    /// Pixels that [`trim`] took out of the object.
+    pub trimmed: usize,
+}
+
+/// Default metres of a stored integer where a camera is known: millimetres.
+const MILLIMETRE: f64 = 0.001;
+/// Without a mask, an enclosed gap belongs to the object up to this share of its pixels.
+const LARGEST_HOLE: f64 = 0.02;
+
+impl DepthView {
+    /// Checks the depth map, trims it where `trim` is set, and computes points and normals.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Size`] for sizes that disagree, [`ErrorKind::Range`] for bad intrinsics or units,
+    /// [`ErrorKind::Empty`] where fewer than 16 pixels have a depth.
+    pub fn new(map: &DepthMap, trim: bool) -> Result<Self> {
+        let size = Size::new("depth", map.width, map.height)?;
+        if let Some(camera) = &map.camera {
+            camera.validate("depth.camera")?;
+        }
+        let camera = map.camera.map_or(Camera::Orthographic, Camera::Pinhole);
+        let unit = map.unit_or_default()?;
+        let object = mask::object("depth.mask", size, map.mask.as_deref())?;
+        let mut points = map.points(size, camera, unit)?;
+        for index in (0..size.len()).filter(|&index| !object[index]) {
+            points.set(index, [f32::NAN; 3]);
+        }
+        let organised = matches!(map.samples, DepthSamples::Cloud(_));
+        let mut view = Self {
+            size,
+            camera,
+            mask: object,
+            depth: points.z.clone(),
+            normals: Normals::missing(size.len()),
+            points,
+            organised,
+            normals_given: map.normals.is_some(),
+            trimmed: 0,
+        };
+        view.require_depth()?;
+        if trim && !organised {
+            view.trim();
+        }
+        if map.mask.is_none() {
+            view.mask = enclosed(size, &view.depth);
+        }
+        view.drop_islands();
+        view.normals = match &map.normals {
+            Some(given) => given_normals(size, given)?,
+            None if organised => normals::of_cloud(size, &view.points),
+            None => normals::of_depth(size, camera, &view.depth),
+        };
+        view.require_depth()?;
+        Ok(view)
+    }
+
+    fn require_depth(&self) -> Result<()> {
+        if self.depth.iter().filter(|depth| !depth.is_nan()).count() >= FEWEST_PIXELS {
+            return Ok(());
+        }
+        let field = if self.organised { "depth.points" } else { "depth.data" };
+        Err(Error::new(ErrorKind::Empty, field, format!("fewer than {FEWEST_PIXELS} object pixels have a depth")))
+    }
+
+    fn trim(&mut self) {
+        let kept = trim::kept(self.size, &self.depth, self.camera.focal_length());
+        for index in 0..self.size.len() {
+            if !kept[index] && !self.depth[index].is_nan() {
+                self.trimmed += 1;
+                self.mask[index] = false;
+                self.depth[index] = f32::NAN;
+                self.points.set(index, [f32::NAN; 3]);
+            }
+        }
+    }
+
+    /// Takes parts of the mask that hold no depth at all out of it: nothing says where such a hole would lie.
+    fn drop_islands(&mut self) {
+        let (labels, counts) = components(self.size, |index| self.mask[index], |_, _| true);
+        let mut measured = vec![false; counts.len()];
+        for index in (0..self.size.len()).filter(|&index| self.mask[index]) {
+            measured[labels[index]] |= !self.depth[index].is_nan();
+        }
+        for (inside, &label) in self.mask.iter_mut().zip(&labels) {
+            *inside &= label != usize::MAX && measured[label];
+        }
+    }
+
+    /// Number of pixels with a depth.
+    #[must_use]
+    pub fn valid(&self) -> usize {
+        self.depth.iter().filter(|depth| !depth.is_nan()).count()
+    }
+}
+
+impl DepthMap {
+    fn unit_or_default(&self) -> Result<f64> {
+        match self.unit {
+            Some(unit) => positive("depth.unit", unit).map(|()| unit),
+            None if matches!(self.samples, DepthSamples::Integer(_)) && self.camera.is_some() => Ok(MILLIMETRE),
+            None => Ok(1.0),
+        }
+    }
+
+    /// Points in metres or pixels, NaN at holes.
+    fn points(&self, size: Size, camera: Camera, unit: f64) -> Result<Points> {
+        let (field, per_pixel, length) = match &self.samples {
+            DepthSamples::Float(data) => ("depth.data", 1, data.len()),
+            DepthSamples::Integer(data) => ("depth.data", 1, data.len()),
+            DepthSamples::Cloud(data) => ("depth.points", 3, data.len()),
+        };
+        require_length(field, size, per_pixel, length)?;
+        let mut points = Points::missing(size.len());
+        for index in 0..size.len() {
+            let depth = match &self.samples {
+                DepthSamples::Cloud(data) => {
+                    let point = [0, 1, 2].map(|axis| (f64::from(data[3 * index + axis]) * unit) as f32);
+                    if point.iter().all(|value| value.is_finite()) {
+                        points.set(index, point);
+                    }
+                    continue;
+                }
+                DepthSamples::Float(data) => f64::from(data[index]),
+                DepthSamples::Integer(data) => f64::from(data[index]),
+            };
+            if depth.is_finite() && depth > 0.0 {
+                let (column, row) = size.position(index);
+                let point = camera.point(size, [column as f64, row as f64], depth * unit);
+                points.set(index, point.map(|value| value as f32));
+            }
+        }
+        Ok(points)
+    }
+}
+
+fn require_length(field: &'static str, size: Size, per_pixel: usize, length: usize) -> Result<()> {
+    if length == per_pixel * size.len() {
+        return Ok(());
+    }
+    let (width, height, needed) = (size.width, size.height, per_pixel * size.len());
+    Err(Error::new(ErrorKind::Size, field, format!("{width}x{height} pixels need {needed} values, not {length}")))
+}
+
+/// The caller's normals at unit length; what is not finite or has no length is missing.
+fn given_normals(size: Size, given: &[f32]) -> Result<Normals> {
+    require_length("depth.normals", size, 3, given.len())?;
+    let mut normals = Normals::missing(size.len());
+    for (index, normal) in given.chunks_exact(3).enumerate() {
+        let length = normal.iter().map(|value| value * value).sum::<f32>().sqrt();
+        if length.is_finite() && length > 0.0 {
+            normals.set(index, [normal[0] / length, normal[1] / length, normal[2] / length]);
+        }
+    }
+    Ok(normals)
+}
+
+/// Pixels with depth, and the small gaps that they enclose.
+fn enclosed(size: Size, depth: &[f32]) -> Vec<bool> {
+    let valid = depth.iter().filter(|depth| !depth.is_nan()).count();
+    let (labels, counts) = components(size, |index| depth[index].is_nan(), |_, _| true);
+    let mut open = vec![false; counts.len()];
+    for index in 0..size.len() {
+        let (column, row) = size.position(index);
+        let border = column == 0 || row == 0 || column + 1 == size.width || row + 1 == size.height;
+        if border && labels[index] != usize::MAX {
+            open[labels[index]] = true;
+        }
+    }
+    let is_hole = |label: usize| !open[label] && counts[label] as f64 <= LARGEST_HOLE * valid as f64;
+    labels.into_iter().map(|label| label == usize::MAX || is_hole(label)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn map(samples: DepthSamples) -> DepthMap {
+        DepthMap { width: 10, height: 10, samples, unit: None, mask: None, camera: None, normals: None }
+    }
+
+    #[test]
+    fn holes_are_never_values() {
+        let mut depth = vec![5.0_f32; 100];
+        for (index, hole) in [(11, 0.0), (22, f32::NAN), (33, -1.0), (44, f32::INFINITY)] {
+            depth[index] = hole;
+        }
+        let view = DepthView::new(&map(DepthSamples::Float(depth)), true).unwrap();
+        assert_eq!(view.valid(), 96);
+        assert!(view.mask[11] && view.mask[44] && !view.points.is_valid(33));
+    }
+
+    #[test]
+    fn a_part_of_the_mask_without_any_depth_is_no_hole() {
+        let mut depth = vec![5.0_f32; 100];
+        let mut input = map(DepthSamples::Float(Vec::new()));
+        let outside = [1, 10, 11];
+        input.mask = Some((0..100).map(|index| u8::from(!outside.contains(&index))).collect());
+        (depth[0], depth[55]) = (f32::NAN, f32::NAN);
+        input.samples = DepthSamples::Float(depth);
+        let view = DepthView::new(&input, true).unwrap();
+        assert!(!view.mask[0] && view.mask[55]);
+    }
+
+    #[test]
+    fn integers_with_a_camera_are_millimetres() {
+        let mut input = map(DepthSamples::Integer(vec![1500; 100]));
+        input.camera = Some(Pinhole { fx: 10.0, fy: 10.0, cx: 4.5, cy: 4.5, distortion: [0.0; 5] });
+        let view = DepthView::new(&input, true).unwrap();
+        assert!((view.points.z[0] - 1.5).abs() < 1e-6 && (view.points.x[0] + 0.675).abs() < 1e-6);
+    }
+
+    #[test]
+    fn all_nan_is_refused_by_name() {
+        let error = DepthView::new(&map(DepthSamples::Float(vec![f32::NAN; 100])), true).unwrap_err();
+        assert_eq!((error.kind(), error.field()), (ErrorKind::Empty, "depth.data"));
+    }
+
+    #[test]
+    fn a_zero_focal_length_is_refused_by_name() {
+        let mut input = map(DepthSamples::Float(vec![1.0; 100]));
+        input.camera = Some(Pinhole { fx: 0.0, fy: 10.0, cx: 4.5, cy: 4.5, distortion: [0.0; 5] });
+        assert_eq!(DepthView::new(&input, true).unwrap_err().field(), "depth.camera.fx");
+    }
+}
