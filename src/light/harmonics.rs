@@ -44,6 +44,15 @@ impl Light {
         std::array::from_fn(|index| self.0[index / HARMONICS][index % HARMONICS])
     }
 
+    /// The same light at another exposure: log S grows by `offset` everywhere.
+    #[must_use]
+    pub fn exposed(mut self, offset: f64) -> Self {
+        for channel in &mut self.0 {
+            channel[0] += offset / C4;
+        }
+        self
+    }
+
     /// log S of the three channels for one normal.
     #[must_use]
     pub fn shade(&self, normal: [f64; 3]) -> [f64; 3] {
@@ -66,4 +75,106 @@ pub fn basis([x, y, z]: [f64; 3]) -> [f64; HARMONICS] {
         2.0 * C1 * x * z,
         C1 * (x * x - y * y),
     ]
+}
+
+/// One channel of a light as a polynomial of the normal in f32, for loops over pixels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Polynomial {
+    one: f32,
+    linear: [f32; 3],
+    xy: f32,
+    yz: f32,
+    zz: f32,
+    xz: f32,
+    xx_yy: f32,
+}
+
+impl Polynomial {
+    /// The polynomials of R, G, B.
+    #[must_use]
+    pub fn of(light: &Light) -> [Self; 3] {
+        light.0.map(|l| Self {
+            one: (C4 * l[0] - C5 * l[6]) as f32,
+            linear: [2.0 * C2 * l[3], 2.0 * C2 * l[1], 2.0 * C2 * l[2]].map(|value| value as f32),
+            xy: (2.0 * C1 * l[4]) as f32,
+            yz: (2.0 * C1 * l[5]) as f32,
+            zz: (C3 * l[6]) as f32,
+            xz: (2.0 * C1 * l[7]) as f32,
+            xx_yy: (C1 * l[8]) as f32,
+        })
+    }
+
+    /// log S (Eq. 3).
+    #[inline]
+    #[must_use]
+    pub fn shade(&self, [x, y, z]: [f32; 3]) -> f32 {
+        self.one
+            + x * (self.linear[0] + self.xy * y + self.xz * z + self.xx_yy * x)
+            + y * (self.linear[1] + self.yz * z - self.xx_yy * y)
+            + z * (self.linear[2] + self.zz * z)
+    }
+
+    /// d log S / d n.
+    #[inline]
+    #[must_use]
+    pub fn gradient(&self, [x, y, z]: [f32; 3]) -> [f32; 3] {
+        [
+            self.linear[0] + self.xy * y + self.xz * z + 2.0 * self.xx_yy * x,
+            self.linear[1] + self.xy * x + self.yz * z - 2.0 * self.xx_yy * y,
+            self.linear[2] + self.yz * y + self.xz * x + 2.0 * self.zz * z,
+        ]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{Matrix4, Vector4};
+
+    fn light() -> Light {
+        Light([
+            [-1.2, 0.1, -0.9, 0.7, 0.1, 0.2, 0.15, -0.2, -0.1],
+            [-1.1, 0.8, -0.7, -0.3, -0.2, -0.15, -0.1, -0.1, 0.2],
+            [-1.3, -0.6, -0.8, -0.5, 0.15, -0.1, 0.1, 0.25, 0.1],
+        ])
+    }
+
+    #[test]
+    fn the_basis_is_the_quadratic_form_of_eq_5() {
+        let normal = [0.36, -0.48, -0.8];
+        let n = Vector4::new(normal[0], normal[1], normal[2], 1.0);
+        for (l, shade) in light().0.iter().zip(light().shade(normal)) {
+            #[rustfmt::skip]
+            let m = Matrix4::new(
+                C1 * l[8], C1 * l[4], C1 * l[7], C2 * l[3],
+                C1 * l[4], -C1 * l[8], C1 * l[5], C2 * l[1],
+                C1 * l[7], C1 * l[5], C3 * l[6], C2 * l[2],
+                C2 * l[3], C2 * l[1], C2 * l[2], C4 * l[0] - C5 * l[6],
+            );
+            assert!(((n.transpose() * m * n)[0] - shade).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn the_polynomial_is_the_light_and_its_gradient_the_difference_quotient() {
+        let normal = [0.36_f32, -0.48, -0.8];
+        for (polynomial, expected) in Polynomial::of(&light()).iter().zip(light().shade(normal.map(f64::from))) {
+            assert!((f64::from(polynomial.shade(normal)) - expected).abs() < 1e-6);
+            for axis in 0..3 {
+                let (mut up, mut down) = (normal, normal);
+                up[axis] += 0.01;
+                down[axis] -= 0.01;
+                let difference = (polynomial.shade(up) - polynomial.shade(down)) / 0.02;
+                assert!((polynomial.gradient(normal)[axis] - difference).abs() < 2e-5);
+            }
+        }
+    }
+
+    #[test]
+    fn exposure_shifts_the_logarithm_alike_everywhere() {
+        let normal = [0.6, 0.0, -0.8];
+        for (plain, exposed) in light().shade(normal).iter().zip(light().exposed(0.7).shade(normal)) {
+            assert!((exposed - plain - 0.7).abs() < 1e-12);
+        }
+    }
 }

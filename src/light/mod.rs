@@ -1,5 +1,10 @@
 //! The image model and its light (Eq. 2, 3, 5).
 
+mod fit;
 mod harmonics;
+mod natural;
+mod prior;
 
-pub use harmonics::Light;
+pub use fit::{LightFit, LightFitter};
+pub use harmonics::{Light, Polynomial};
+pub use prior::{COEFFICIENTS, CoefficientMatrix, LightPrior};

@@ -1,0 +1,178 @@
+//! The light from normals and colours.
+//!
+//! Given normals, log S is linear in the light: min over L of
+//! mean_i w_i |log S_i - B(n_i) L|^2 + lambda_L h(L), B the nine harmonics of each channel. The weights w are those of
+//! Geman and McClure at a scale that follows the residuals, so that cast shadows and wrong correspondences lose.
+
+use nalgebra::SMatrix;
+
+use crate::error::{Error, ErrorKind, Result};
+use crate::light::Light;
+use crate::light::harmonics::{HARMONICS, basis};
+use crate::light::prior::{CoefficientMatrix, Coefficients, LightPrior};
+use crate::view::{Normals, quantile};
+
+/// Rounds of reweighting; the weights settle in four to six.
+const ROUNDS: usize = 8;
+/// Residuals beyond this multiple of the median one count for less than a quarter.
+const SCALE_OF_MEDIAN: f64 = 3.0;
+/// Smallest robust scale in log units: the noise of a good 8-bit image.
+const SMALLEST_SCALE: f64 = 0.005;
+
+/// A fitted light and how well it explains the colours.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LightFit {
+    /// The light.
+    pub light: Light,
+    /// Median of |log S - predicted| over the pixels, in log units.
+    pub residual: f64,
+}
+
+/// Fits the light again and again; owns the memory of its weights.
+#[derive(Clone, Debug, Default)]
+pub struct LightFitter {
+    pixels: Vec<usize>,
+    weights: Vec<f32>,
+    residuals: Vec<f32>,
+    sorted: Vec<f32>,
+}
+
+impl LightFitter {
+    /// Fits 27 coefficients to the pixels that have a normal and a colour.
+    ///
+    /// `normals` in the colour view's frame and `log` (R, G, B) have the same length; NaN marks what is missing.
+    /// `weight` is lambda_L against the mean squared log residual. Allocates only when there are more pixels than ever.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Degenerate`] where the normals do not determine the light and `weight` is zero.
+    pub fn fit(&mut self, normals: &Normals, log: [&[f32]; 3], prior: &LightPrior, weight: f64) -> Result<LightFit> {
+        self.pixels.clear();
+        self.pixels.extend((0..normals.len()).filter(|&i| normals.is_valid(i) && !log[0][i].is_nan()));
+        self.weights.clear();
+        self.weights.resize(self.pixels.len(), 1.0);
+        let colours = |index: usize| [0, 1, 2].map(|channel: usize| f64::from(log[channel][index]));
+        let normal = |index: usize| normals.get(index).map(f64::from);
+        let mut light = prior.mean();
+        let mut median = 0.0;
+        for _ in 0..ROUNDS {
+            let samples = self.pixels.iter().zip(&self.weights);
+            light = solve(samples.map(|(&i, &w)| (normal(i), colours(i), f64::from(w))), prior, weight)?;
+            if self.pixels.is_empty() {
+                break;
+            }
+            self.residuals.clear();
+            let residual = |&index: &usize| distance(light.shade(normal(index)), colours(index)) as f32;
+            self.residuals.extend(self.pixels.iter().map(residual));
+            self.sorted.clone_from(&self.residuals);
+            median = f64::from(quantile(&mut self.sorted, 0.5));
+            let scale = (SCALE_OF_MEDIAN * median).max(SMALLEST_SCALE) as f32;
+            for (weight, &residual) in self.weights.iter_mut().zip(&self.residuals) {
+                *weight = (1.0 + (residual / scale).powi(2)).powi(-2);
+            }
+        }
+        Ok(LightFit { light, residual: median })
+    }
+}
+
+/// Weighted least squares with the prior: (G + lambda P) L = b + lambda P mu.
+fn solve(samples: impl Iterator<Item = ([f64; 3], [f64; 3], f64)>, prior: &LightPrior, weight: f64) -> Result<Light> {
+    let mut gram = SMatrix::<f64, HARMONICS, HARMONICS>::zeros();
+    let mut right = Coefficients::zeros();
+    let mut total = 0.0;
+    for (normal, colour, sample_weight) in samples {
+        let basis = basis(normal);
+        total += sample_weight;
+        for row in 0..HARMONICS {
+            for column in 0..=row {
+                gram[(row, column)] += sample_weight * basis[row] * basis[column];
+            }
+            for channel in 0..3 {
+                right[channel * HARMONICS + row] += sample_weight * basis[row] * colour[channel];
+            }
+        }
+    }
+    let share = if total > 0.0 { 1.0 / total } else { 0.0 };
+    let mut matrix: CoefficientMatrix = weight * prior.precision();
+    for channel in 0..3 {
+        for row in 0..HARMONICS {
+            for column in 0..HARMONICS {
+                let value = share * gram[(row.max(column), row.min(column))];
+                matrix[(channel * HARMONICS + row, channel * HARMONICS + column)] += value;
+            }
+        }
+    }
+    let target = share * right + weight * (prior.precision() * prior.mean_coefficients());
+    let solution = matrix.cholesky().map(|factor| factor.solve(&target)).filter(|l| l.iter().all(|v| v.is_finite()));
+    let solution =
+        solution.ok_or_else(|| Error::new(ErrorKind::Degenerate, "light", "the normals do not determine the light"))?;
+    Light::from_slice("light", solution.as_slice())
+}
+
+fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Normals over the visible hemisphere, their colours under `light`, and every tenth colour spoilt.
+    fn scene(light: &Light, spoilt: bool) -> (Normals, [Vec<f32>; 3]) {
+        let count = 600;
+        let mut normals = Normals::missing(count);
+        let mut log = [(); 3].map(|()| vec![0.0; count]);
+        for index in 0..count {
+            let z = -0.1 - 0.9 * (index as f64 + 0.5) / count as f64;
+            let (sin, cos) = (2.399_963 * index as f64).sin_cos();
+            let r = (1.0 - z * z).sqrt();
+            let normal = [r * cos, r * sin, z];
+            normals.set(index, normal.map(|v| v as f32));
+            let shade = light.shade(normal);
+            for channel in 0..3 {
+                let spoil = if spoilt && index % 10 == 0 { 1.5 } else { 0.0 };
+                log[channel][index] = (shade[channel] - spoil) as f32;
+            }
+        }
+        (normals, log)
+    }
+
+    #[test]
+    fn an_exact_scene_gives_its_light_back() {
+        let mut truth = LightPrior::natural().mean().exposed(1.7);
+        truth.0[2][4] += 0.2;
+        for spoilt in [false, true] {
+            let (normals, log) = scene(&truth, spoilt);
+            let fit = LightFitter::default()
+                .fit(&normals, [&log[0], &log[1], &log[2]], &LightPrior::natural(), 1e-9)
+                .unwrap();
+            for (found, expected) in fit.light.flat().iter().zip(truth.flat()) {
+                assert!((found - expected).abs() < 2e-4, "{found} {expected}");
+            }
+        }
+    }
+
+    #[test]
+    fn without_pixels_the_prior_speaks_and_without_a_prior_nothing_does() {
+        let none = Normals::missing(4);
+        let log = [0.0_f32; 4];
+        let prior = LightPrior::natural();
+        assert!(LightFitter::default().fit(&none, [&log; 3], &prior, 0.0).is_err());
+    }
+
+    #[test]
+    fn the_exposure_passes_through() {
+        let truth = LightPrior::natural().mean();
+        let (normals, log) = scene(&truth, false);
+        let brighter = [0, 1, 2].map(|c: usize| log[c].iter().map(|v| v + 2.3).collect::<Vec<f32>>());
+        let fit = |log: &[Vec<f32>; 3]| {
+            LightFitter::default()
+                .fit(&normals, [&log[0], &log[1], &log[2]], &LightPrior::natural(), 1e-2)
+                .unwrap()
+                .light
+        };
+        let (plain, bright) = (fit(&log).exposed(2.3), fit(&brighter));
+        for (a, b) in plain.flat().iter().zip(bright.flat()) {
+            assert!((a - b).abs() < 1e-4);
+        }
+    }
+}
