@@ -1,1 +1,24 @@
-//! Built-in surfaces, lights and the renderer that tests, tables and the page share.
+//! Built-in surfaces, lights and the renderer that tests, tables and the page share (handbook section 4).
+//!
+//! [`surface`] and [`Relief`] give heights, [`Scene`] makes a mesh of them, [`Scene::sample`] a pair of views with a
+//! known pose; [`bare_grid`] makes the pair of the paper's own synthetic test.
+
+mod bare_grid;
+mod bust;
+mod flaws;
+pub mod lights;
+mod mesh;
+mod relief;
+mod render;
+mod sample;
+pub mod surfaces;
+
+pub use bare_grid::bare_grid;
+pub use lights::light;
+pub use mesh::Mesh;
+pub use relief::{LARGEST_RELIEF, Relief, SMALLEST_RELIEF};
+pub use render::{View, render};
+pub use sample::{
+    DepthData, LARGEST_VIEW, SMALLEST_VIEW, Sample, SampleDepth, SampleImage, SampleRequest, Scene, Truth,
+};
+pub use surfaces::surface;

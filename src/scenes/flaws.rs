@@ -1,0 +1,97 @@
+//! What a sensor does to a perfect view: noise, holes, a field of view that ends. Everything follows from a seed.
+
+use std::f64::consts::TAU;
+
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
+
+use crate::view::Size;
+
+/// Share of the lost pixels that go in blobs, as dark or shiny spots do; the others go one by one.
+const BLOB_SHARE: f64 = 0.5;
+/// Largest radius of a blob relative to the smaller side of the view.
+const LARGEST_BLOB: f64 = 1.0 / 16.0;
+
+/// A stream of random numbers, the same on every platform.
+pub(super) struct Chance(ChaCha8Rng);
+
+/// Purposes with a stream of their own, so that switching one on does not change the others.
+#[derive(Clone, Copy)]
+pub(super) enum Purpose {
+    Brightness = 1,
+    Depth = 2,
+    Holes = 3,
+}
+
+impl Chance {
+    pub(super) fn new(seed: u64, purpose: Purpose) -> Self {
+        let mut generator = ChaCha8Rng::seed_from_u64(seed);
+        generator.set_stream(purpose as u64);
+        Self(generator)
+    }
+
+    /// Evenly over [0, 1), with 53 bits.
+    fn uniform(&mut self) -> f64 {
+        (self.0.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    /// A whole number below `count`.
+    fn below(&mut self, count: usize) -> usize {
+        // The bias of the product is count / 2^53.
+        (self.uniform() * count as f64) as usize
+    }
+
+    /// Standard normal, by the method of Box and Muller: exact, and it needs no tables.
+    pub(super) fn gaussian(&mut self) -> f64 {
+        // 1 - u lies in (0, 1], where the logarithm is finite.
+        let radius = (-2.0 * (1.0 - self.uniform()).ln()).sqrt();
+        radius * (TAU * self.uniform()).cos()
+    }
+}
+
+/// Keeps the middle round(share * n) of the n columns of `mask` that hold a pixel, at least one; clears the others.
+pub(super) fn keep_columns(mask: &mut [bool], size: Size, share: f64) {
+    let occupied: Vec<usize> =
+        (0..size.width).filter(|&column| (0..size.height).any(|row| mask[size.index(column, row)])).collect();
+    let kept = ((share * occupied.len() as f64).round() as usize).clamp(1, occupied.len().max(1));
+    let first = (occupied.len() - kept.min(occupied.len())) / 2;
+    let kept: Vec<usize> = occupied.into_iter().skip(first).take(kept).collect();
+    for (index, inside) in mask.iter_mut().enumerate() {
+        *inside &= kept.binary_search(&size.position(index).0).is_ok();
+    }
+}
+
+/// Sets round(share * n) of the n values that are not NaN to NaN: half of them in discs, half one by one.
+pub(super) fn punch_holes(values: &mut [f32], size: Size, share: f64, chance: &mut Chance) {
+    let valid: Vec<usize> = (0..values.len()).filter(|&index| !values[index].is_nan()).collect();
+    let mut left = (share * valid.len() as f64).round() as usize;
+    let singles = left - (BLOB_SHARE * left as f64) as usize;
+    let largest = size.width.min(size.height) as f64 * LARGEST_BLOB;
+    while left > singles {
+        let radius = 1.0 + chance.uniform() * (largest - 1.0).max(0.0);
+        let centre = valid[chance.below(valid.len())];
+        for index in disc(size, centre, radius) {
+            if left > singles && !values[index].is_nan() {
+                values[index] = f32::NAN;
+                left -= 1;
+            }
+        }
+    }
+    // A partial shuffle: every draw takes one of those still there.
+    let mut there: Vec<usize> = valid.into_iter().filter(|&index| !values[index].is_nan()).collect();
+    for _ in 0..left {
+        let index = there.swap_remove(chance.below(there.len()));
+        values[index] = f32::NAN;
+    }
+}
+
+/// Pixels within `radius` of the pixel `centre`.
+fn disc(size: Size, centre: usize, radius: f64) -> impl Iterator<Item = usize> {
+    let (column, row) = size.position(centre);
+    let reach = radius as usize;
+    let columns = column.saturating_sub(reach)..(column + reach + 1).min(size.width);
+    let rows = row.saturating_sub(reach)..(row + reach + 1).min(size.height);
+    rows.flat_map(move |y| columns.clone().map(move |x| (x, y)))
+        .filter(move |&(x, y)| (x.abs_diff(column) as f64).hypot(y.abs_diff(row) as f64) <= radius)
+        .map(move |(x, y)| size.index(x, y))
+}

@@ -1,0 +1,168 @@
+//! A mesh seen by a camera: depth and normals by a z-buffer, orthographic or through a pinhole.
+
+use nalgebra::Vector3;
+
+use super::mesh::Mesh;
+use crate::pose::Similarity;
+use crate::view::{Camera, Normals, Size};
+
+/// How far outside a triangle a pixel centre may lie, in barycentric coordinates (no unit): rounding must not open
+/// a crack between two triangles that share an edge. 64-bit rounding at 1024 pixels is 1e-13.
+const EDGE_TOLERANCE: f64 = 1e-9;
+/// A triangle smaller than this is seen edge on, in squared units of the ray plane, relative to its longest edge squared.
+const EDGE_ON: f64 = 1e-12;
+/// Pixels added around the corners of a triangle in search of the pixels it covers: its edges are straight lines only
+/// where the lens does not distort.
+const SEARCH_MARGIN: f64 = 1.0;
+/// A normal whose cosine to the line of sight is smaller does not face the camera: below it 32-bit slopes lose all digits.
+const GRAZING: f64 = 1e-6;
+
+/// What a camera sees of a mesh. All fields are row-major over `size`.
+#[derive(Clone, Debug)]
+pub struct View {
+    /// Columns and rows.
+    pub size: Size,
+    /// The camera it was seen by.
+    pub camera: Camera,
+    /// Depth along z in units of the placed mesh, NaN where nothing is seen.
+    pub depth: Vec<f64>,
+    /// Unit normals that face the camera, NaN where nothing is seen.
+    pub normals: Vec<Vector3<f64>>,
+}
+
+impl View {
+    /// Whether a pixel sees the object.
+    #[must_use]
+    pub fn is_valid(&self, index: usize) -> bool {
+        !self.depth[index].is_nan()
+    }
+
+    /// The point of the surface seen by a pixel, in the camera's frame; NaN where nothing is seen.
+    #[must_use]
+    pub fn point(&self, index: usize) -> Vector3<f64> {
+        let (column, row) = self.size.position(index);
+        self.camera.point(self.size, [column as f64, row as f64], self.depth[index]).into()
+    }
+
+    /// The mask: true where the object is seen.
+    #[must_use]
+    pub fn mask(&self) -> Vec<bool> {
+        (0..self.size.len()).map(|index| self.is_valid(index)).collect()
+    }
+
+    /// The normals in the crate's own layout, rounded to 32 bits.
+    #[must_use]
+    pub fn normals_f32(&self) -> Normals {
+        let component = |axis: usize| self.normals.iter().map(|normal| normal[axis] as f32).collect();
+        Normals { x: component(0), y: component(1), z: component(2) }
+    }
+
+    /// The depth rounded to 32 bits.
+    #[must_use]
+    pub fn depth_f32(&self) -> Vec<f32> {
+        self.depth.iter().map(|&depth| depth as f32).collect()
+    }
+}
+
+/// Renders `mesh`, carried into the camera's frame by `placement`.
+///
+/// Every triangle hides what lies behind it, also where its back is seen. Normals are interpolated linearly over the
+/// surface (perspective-correct) and made unit again; a pixel whose normal faces away from the camera is dropped.
+#[must_use]
+pub fn render(mesh: &Mesh, placement: &Similarity, size: Size, camera: Camera) -> View {
+    let missing = Vector3::repeat(f64::NAN);
+    let mut view = View { size, camera, depth: vec![f64::NAN; size.len()], normals: vec![missing; size.len()] };
+    let rays: Vec<[f64; 2]> = (0..size.len())
+        .map(|index| {
+            let (column, row) = size.position(index);
+            camera.ray(size, [column as f64, row as f64])
+        })
+        .collect();
+    let corners: Vec<Option<Corner>> = mesh
+        .vertices()
+        .iter()
+        .zip(mesh.normals())
+        .map(|(&vertex, normal)| Corner::new(placement.apply(vertex), placement.rotation * normal, &view))
+        .collect();
+    for triangle in mesh.triangles() {
+        // What reaches behind the camera is not seen; scenes are placed in front of it.
+        if let [Some(a), Some(b), Some(c)] = triangle.map(|corner| corners[corner].as_ref()) {
+            draw(&mut view, &rays, [a, b, c]);
+        }
+    }
+    for (index, &[x, y]) in rays.iter().enumerate() {
+        let sight = if camera.is_orthographic() { Vector3::z() } else { Vector3::new(x, y, 1.0).normalize() };
+        let normal = view.normals[index].normalize();
+        let faces = normal.z < -GRAZING && normal.dot(&sight) < -GRAZING;
+        view.normals[index] = if faces { normal } else { missing };
+        view.depth[index] = if faces { view.depth[index] } else { f64::NAN };
+    }
+    view
+}
+
+/// A placed vertex.
+struct Corner {
+    point: Vector3<f64>,
+    normal: Vector3<f64>,
+    /// Column and row.
+    pixel: [f64; 2],
+    /// In the plane of [`Camera::ray`], where straight lines stay straight whatever the lens.
+    ray: [f64; 2],
+    /// Linear over the ray plane after multiplication with it: 1 / z for a pinhole, 1 for parallel rays.
+    weight: f64,
+}
+
+impl Corner {
+    /// `None` behind the camera.
+    fn new(point: Vector3<f64>, normal: Vector3<f64>, view: &View) -> Option<Self> {
+        let pixel = view.camera.project(view.size, point.into())?;
+        let weight = if view.camera.is_orthographic() { 1.0 } else { 1.0 / point.z };
+        Some(Self { point, normal, pixel, ray: [point.x * weight, point.y * weight], weight })
+    }
+}
+
+fn draw(view: &mut View, rays: &[[f64; 2]], corners: [&Corner; 3]) {
+    let [a, b, c] = corners.map(|corner| corner.ray);
+    let area = cross(a, b, c);
+    let longest = square(a, b).max(square(b, c)).max(square(c, a));
+    if area.abs() <= EDGE_ON * longest {
+        return;
+    }
+    let columns = span(corners.map(|corner| corner.pixel[0]), view.size.width);
+    for row in span(corners.map(|corner| corner.pixel[1]), view.size.height) {
+        for column in columns.clone() {
+            let index = view.size.index(column, row);
+            let ray = rays[index];
+            let flat = [cross(ray, b, c) / area, cross(a, ray, c) / area, cross(a, b, ray) / area];
+            if flat.iter().any(|&share| share < -EDGE_TOLERANCE) {
+                continue;
+            }
+            let shares: [f64; 3] = std::array::from_fn(|k| flat[k] * corners[k].weight);
+            let total: f64 = shares.iter().sum();
+            let depth = (0..3).map(|k| shares[k] * corners[k].point.z).sum::<f64>() / total;
+            let hidden = view.depth[index] <= depth;
+            if !hidden {
+                view.depth[index] = depth;
+                view.normals[index] = (0..3).map(|k| shares[k] * corners[k].normal).sum();
+            }
+        }
+    }
+}
+
+/// Twice the signed area of a triangle.
+fn cross(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
+    (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+}
+
+fn square(a: [f64; 2], b: [f64; 2]) -> f64 {
+    (a[0] - b[0]).powi(2) + (a[1] - b[1]).powi(2)
+}
+
+/// Pixels of a side of `length` that a triangle with these coordinates may cover.
+fn span(coordinates: [f64; 3], length: usize) -> std::ops::Range<usize> {
+    let [a, b, c] = coordinates;
+    let first = (a.min(b).min(c) - SEARCH_MARGIN).ceil().max(0.0);
+    let end = (a.max(b).max(c) + SEARCH_MARGIN).floor() + 1.0;
+    // A cast to an integer saturates: what lies left of the view ends at pixel 0 and is empty.
+    first as usize..(end as usize).min(length)
+}

@@ -1,0 +1,121 @@
+//! Procedural surfaces on the 256 grid: they are ours to ship, and their truth is known.
+
+use std::f64::consts::TAU;
+
+use super::bust;
+use super::relief::Relief;
+use crate::error::{Error, ErrorKind, Result};
+
+/// Names of the built-in surfaces.
+pub const NAMES: [&str; 3] = ["bust", "vase", "ripples"];
+
+/// Side of the grid of every built-in surface in samples: that of the protocol (handbook section 4).
+const SIDE: usize = 256;
+
+/// The built-in surface of that name, one of [`NAMES`], as heights on a 256 x 256 grid.
+///
+/// # Errors
+/// [`ErrorKind::Range`] for another name.
+pub fn surface(name: &str) -> Result<Relief> {
+    let height: fn(f64, f64) -> f64 = match name {
+        "bust" => bust::height,
+        "vase" => vase,
+        "ripples" => ripples,
+        _ => {
+            let message = format!("no surface is named {name:?}; there are {NAMES:?}");
+            return Err(Error::new(ErrorKind::Range, "surface", message));
+        }
+    };
+    Ok(Relief::from_function(SIDE, height))
+}
+
+/// (y, radius) of the vase where its radius is largest or smallest, from lip to foot.
+const PROFILE: [[f64; 2]; 5] = [[-108.0, 41.0], [-72.0, 25.0], [10.0, 66.0], [86.0, 24.0], [110.0, 38.0]];
+
+/// A turned vase. Flutes that wind around its belly, a medallion left of the middle and two unlike handles show by how
+/// much it was turned about its axis.
+fn vase(x: f64, y: f64) -> f64 {
+    let radius = profile(y);
+    let shell = round(x / radius, radius);
+    let angle = (x / radius).clamp(-1.0, 1.0).asin();
+    let flutes = 1.6 * (9.0 * angle + 0.06 * y).sin() * window(y, 28.0, 56.0);
+    let collar = 3.0 * bell(y, -50.0, 2.5) + 2.5 * bell(y, -41.0, 2.5) + 3.0 * bell(y, 74.0, 2.5);
+    let [u, v] = [(x + 20.0) / 15.0, (y + 6.0) / 17.0];
+    let medallion = 4.0 * step((1.0 - u.hypot(v)) * 9.0) + 3.0 * bell(u, 0.1, 0.25) * bell(v, -0.1, 0.4);
+    let body = shell + (flutes + collar + medallion) * step((radius - x.abs()) / 3.0);
+    let handles = handle(x, y, [-47.0, -44.0], [25.0, 30.0]).max(handle(x, y, [49.0, -36.0], [29.0, 37.0]));
+    let ends = overhang(y + 103.0, -6.0) + overhang(y - 106.0, 6.0);
+    // The last samples before the rim, where a round body is seen edge on, are cut away.
+    union(0.95 * body - 14.0 * ends, handles, 2.0) - 4.0
+}
+
+fn profile(y: f64) -> f64 {
+    let last = PROFILE.len() - 1;
+    let next = PROFILE.iter().position(|&[knot, _]| y < knot).unwrap_or(last).max(1);
+    let [[y0, r0], [y1, r1]] = [PROFILE[next - 1], PROFILE[next]];
+    let share = ((y - y0) / (y1 - y0)).clamp(0.0, 1.0);
+    r0 + (r1 - r0) * share * share * (3.0 - 2.0 * share)
+}
+
+/// A tube along an ellipse about `centre`.
+fn handle(x: f64, y: f64, centre: [f64; 2], radii: [f64; 2]) -> f64 {
+    let ring = ((x - centre[0]) / radii[0]).hypot((y - centre[1]) / radii[1]) - 1.0;
+    let thickness = 7.5;
+    8.0 + round(ring * radii[0].midpoint(radii[1]) / thickness, 12.0)
+}
+
+/// A shallow dome with an irregular, smooth border that two systems of waves cross.
+fn ripples(x: f64, y: f64) -> f64 {
+    let bearing = y.atan2(x);
+    let border = 104.0 + 5.0 * (3.0 * bearing + 0.6).sin() + 3.0 * (5.0 * bearing).cos();
+    let inside = 1.0 - (x.hypot(y) / border).powi(2);
+    let calm = (2.2 * inside).clamp(0.0, 1.0);
+    let near = (x + 48.0).hypot(y + 30.0);
+    let far = (x - 170.0).hypot(y - 60.0);
+    let waves = 4.2 * (TAU * near / 38.0).cos() * (-near / 120.0).exp() + 2.6 * (TAU * far / 47.0).sin();
+    4.0 + 46.0 * inside + 5.0 * bump(x, y, [38.0, -28.0], [26.0, 18.0]) + waves * calm * calm * (3.0 - 2.0 * calm)
+}
+
+/// Half circle of the given depth over -1 .. 1; outside, it falls away in a straight line.
+pub(super) fn round(offset: f64, depth: f64) -> f64 {
+    dome_of(offset * offset, depth)
+}
+
+/// Front of an ellipsoid about `centre` with `radii` across the view.
+pub(super) fn dome(x: f64, y: f64, centre: [f64; 2], radii: [f64; 2], depth: f64) -> f64 {
+    dome_of(((x - centre[0]) / radii[0]).powi(2) + ((y - centre[1]) / radii[1]).powi(2), depth)
+}
+
+fn dome_of(square: f64, depth: f64) -> f64 {
+    if square < 1.0 { depth * (1.0 - square).sqrt() } else { -2.0 * depth * (square.sqrt() - 1.0) }
+}
+
+/// Gaussian bell of height one.
+pub(super) fn bell(at: f64, centre: f64, sigma: f64) -> f64 {
+    (-0.5 * ((at - centre) / sigma).powi(2)).exp()
+}
+
+/// Product of two bells.
+pub(super) fn bump(x: f64, y: f64, centre: [f64; 2], sigma: [f64; 2]) -> f64 {
+    bell(x, centre[0], sigma[0]) * bell(y, centre[1], sigma[1])
+}
+
+/// Smooth step from 0 to 1 about zero.
+pub(super) fn step(at: f64) -> f64 {
+    1.0 / (1.0 + (-at).exp())
+}
+
+/// One between `centre - half` and `centre + half`, with soft flanks.
+fn window(at: f64, centre: f64, half: f64) -> f64 {
+    step((half - (at - centre).abs()) / 5.0)
+}
+
+/// Zero until `past` has the sign of `reach`, then a fourth power that is one at `reach`: rounds an end off.
+pub(super) fn overhang(past: f64, reach: f64) -> f64 {
+    (past / reach).max(0.0).powi(4)
+}
+
+/// The larger of two heights, with a fillet of about `blend` samples.
+pub(super) fn union(a: f64, b: f64, blend: f64) -> f64 {
+    a.max(b) + blend * (-(a - b).abs() / blend).exp().ln_1p()
+}
