@@ -1,1 +1,22 @@
 //! Shape of both views: normals from shading, heights from normals, refinement of the depth map.
+
+mod components;
+mod cosine;
+mod exposure;
+mod gradients;
+mod heights;
+mod poisson;
+mod refine;
+mod relief;
+mod shading;
+mod slopes;
+mod surface;
+
+pub use exposure::{exposure_step, first_exposure};
+pub use gradients::gradients;
+pub use heights::{HeightProblem, HeightReport, HeightSolver};
+pub use poisson::Termination;
+pub use refine::{RefinementProblem, Refiner};
+pub use relief::{ReliefProblem, ReliefSolver};
+pub use shading::{ShadingProblem, ShadingSolver, ShadingWeights, Terminations};
+pub use surface::{AnchorWeight, Anchors, IntegrationOptions, IntegrationReport, Integrator, Robust};

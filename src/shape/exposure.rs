@@ -1,0 +1,176 @@
+//! The exposure of a known light.
+//!
+//! A light is known only up to the exposure of the camera: log S = c + [n;1]^T M [n;1] with one c for all pixels.
+//! First c comes from the colours alone: the colours of the hemisphere are a sheet in log RGB, and c shifts the image's
+//! colours onto it. Then each solve of the normals improves c by variable projection: the normals follow c, so
+//! that d cost / dc = -2 sum r and d2 cost / dc2 = 2 sum (3 - 1^T J H^-1 J^T 1), H the pixel's own Gauss-Newton matrix.
+//! Under a light of one hue the sheet is a line along c itself and only the prior fixes it.
+
+use nalgebra::{Matrix3, Vector3};
+
+use crate::light::{Light, Polynomial};
+use crate::shape::shading::{Pixel, ShadingProblem, ShadingWeights};
+use crate::view::{Normals, quantile};
+
+/// Pixels and directions of the first look: enough for two digits.
+const LOOK_PIXELS: usize = 400;
+const LOOK_DIRECTIONS: usize = 300;
+/// Step and half width of the first look in log units: a fifth of the step is left for the parabola.
+const LOOK_STEP: f64 = 0.05;
+const LOOK_STEPS: i32 = 60;
+/// Robust scale of the first look in log units.
+const LOOK_SCALE: f64 = 0.1;
+/// Pull towards equal medians, against a cost of at most one: it decides only where the colours do not.
+const LOOK_PULL: f64 = 1e-3;
+/// Longest step in log units: the first look is nearer than that.
+const LONGEST_STEP: f64 = 0.2;
+/// Residual (log units) at which a pixel has lost three quarters of its say about the exposure.
+const STEP_SCALE: f32 = 0.1;
+/// Pull of each pixel towards the first look, in squared log residual: a light of almost one hue leaves the exposure
+/// almost free, and a step must not run away along it.
+const STEP_PULL: f64 = 1e-3;
+
+/// The offset of log S that puts the image's colours onto those of the light.
+///
+/// `log` holds R, G, B with NaN off the mask; an empty image gives zero.
+#[must_use]
+pub fn first_exposure(light: &Light, log: [&[f32]; 3]) -> f64 {
+    let usable: Vec<usize> = (0..log[0].len()).filter(|&index| !log[0][index].is_nan()).collect();
+    if usable.is_empty() {
+        return 0.0;
+    }
+    let stride = usable.len().div_ceil(LOOK_PIXELS);
+    let colours: Vec<[f64; 3]> =
+        usable.iter().step_by(stride).map(|&index| [0, 1, 2].map(|c: usize| f64::from(log[c][index]))).collect();
+    let shades = projected_hemisphere(light);
+    let centre = median_of_means(&colours) - median_of_means(&shades);
+    let cost = |step: f64| {
+        let offset = centre + step * LOOK_STEP;
+        let misfit: f64 = colours.iter().map(|colour| misfit(*colour, offset, &shades)).sum();
+        misfit / colours.len() as f64 + LOOK_PULL * (step * LOOK_STEP).powi(2)
+    };
+    let costs: Vec<f64> = (-LOOK_STEPS..=LOOK_STEPS).map(|step| cost(f64::from(step))).collect();
+    let best = (0..costs.len()).min_by(|&a, &b| costs[a].total_cmp(&costs[b])).unwrap_or(0);
+    let vertex = if best == 0 || best + 1 == costs.len() {
+        0.0
+    } else {
+        let (before, at, after) = (costs[best - 1], costs[best], costs[best + 1]);
+        let curvature = before - 2.0 * at + after;
+        if curvature > 0.0 { 0.5 * (before - after) / curvature } else { 0.0 }
+    };
+    centre + LOOK_STEP * (best as f64 - f64::from(LOOK_STEPS) + vertex)
+}
+
+/// Colours of directions spread over the visible hemisphere as a sphere shows them: evenly over the disc.
+fn projected_hemisphere(light: &Light) -> Vec<[f64; 3]> {
+    let golden = std::f64::consts::PI * (3.0 - 5.0_f64.sqrt());
+    (0..LOOK_DIRECTIONS)
+        .map(|index| {
+            let radius = ((index as f64 + 0.5) / LOOK_DIRECTIONS as f64).sqrt();
+            let (sin, cos) = (golden * index as f64).sin_cos();
+            light.shade([radius * cos, radius * sin, -(1.0 - radius * radius).sqrt()])
+        })
+        .collect()
+}
+
+fn median_of_means(colours: &[[f64; 3]]) -> f64 {
+    let mut means: Vec<f32> = colours.iter().map(|colour| (colour.iter().sum::<f64>() / 3.0) as f32).collect();
+    f64::from(quantile(&mut means, 0.5))
+}
+
+fn misfit(colour: [f64; 3], offset: f64, shades: &[[f64; 3]]) -> f64 {
+    let squared = |shade: &[f64; 3]| (0..3).map(|c| (colour[c] - offset - shade[c]).powi(2)).sum::<f64>();
+    let nearest = shades.iter().map(squared).fold(f64::INFINITY, f64::min) / (LOOK_SCALE * LOOK_SCALE);
+    nearest / (1.0 + nearest)
+}
+
+/// The change of the exposure after a solve of `normals`; `moved` is how far it is from the first look already.
+#[must_use]
+pub fn exposure_step(problem: ShadingProblem<'_>, weights: ShadingWeights, normals: &Normals, moved: f64) -> f64 {
+    let polynomials = Polynomial::of(problem.light);
+    let (mut slope, mut curvature, mut count) = (0.0, 0.0, 0.0);
+    for index in (0..normals.len()).filter(|&index| normals.is_valid(index)) {
+        let pixel = Pixel::new(problem, index, weights, &polynomials);
+        let normal = normals.get(index);
+        let Some(residuals) = pixel.residuals(normal) else { continue };
+        let squared: f32 = residuals.iter().map(|residual| residual * residual).sum();
+        let weight = f64::from((1.0 + squared / (STEP_SCALE * STEP_SCALE)).powi(-2));
+        let (gradient, [xx, xy, xz, yy, yz, zz]) = pixel.linearise(normal);
+        let matrix = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz).map(f64::from);
+        let pull = polynomials
+            .iter()
+            .fold(Vector3::zeros(), |sum, polynomial| sum + Vector3::from(polynomial.gradient(normal)).map(f64::from));
+        let Some(inverse) = matrix.try_inverse() else { continue };
+        // Zero where the normal's own solve has ended at a minimum; at the rim it ends at the border of the visible.
+        let unsettled = pull.dot(&(inverse * Vector3::from(gradient).map(f64::from)));
+        slope += weight * (f64::from(residuals.iter().sum::<f32>()) + unsettled);
+        curvature += weight * (3.0 - (pull.transpose() * inverse * pull)[0]).max(0.0);
+        count += weight;
+    }
+    if count == 0.0 {
+        return 0.0;
+    }
+    ((slope - STEP_PULL * count * moved) / (curvature + STEP_PULL * count)).clamp(-LONGEST_STEP, LONGEST_STEP)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::light::LightPrior;
+    use crate::shape::ShadingSolver;
+
+    fn colours(light: &Light, offset: f64) -> (Normals, [Vec<f32>; 3]) {
+        let count = 400;
+        let mut normals = Normals::missing(count);
+        let mut log = [(); 3].map(|()| vec![0.0; count]);
+        for index in 0..count {
+            let radius = 0.9 * ((index as f64 + 0.5) / count as f64).sqrt();
+            let (sin, cos) = (1.3 * index as f64).sin_cos();
+            let normal = [radius * cos, radius * sin, -(1.0 - radius * radius).sqrt()];
+            normals.set(index, normal.map(|v| v as f32));
+            for (channel, shade) in light.shade(normal).into_iter().enumerate() {
+                log[channel][index] = (shade + offset) as f32;
+            }
+        }
+        (normals, log)
+    }
+
+    #[test]
+    fn the_exposure_of_a_colourful_light_is_found_to_the_last_digits() {
+        let light = Light([
+            [-1.2, 0.1, -0.9, 0.7, 0.1, 0.2, 0.15, -0.2, -0.1],
+            [-1.1, 0.8, -0.7, -0.3, -0.2, -0.15, -0.1, -0.1, 0.2],
+            [-1.3, -0.6, -0.8, -0.5, 0.15, -0.1, 0.1, 0.25, 0.1],
+        ]);
+        let weights = ShadingWeights { prior: 0.0, unit: 1.0, robust: None };
+        for truth in [-2.3, 0.0, 1.9] {
+            let (_, log) = colours(&light, truth);
+            let log = [&log[0][..], &log[1], &log[2]];
+            let first = first_exposure(&light, log);
+            let mut exposure = first;
+            assert!((exposure - truth).abs() < 0.1, "first look {exposure} for {truth}");
+            let prior = Normals::missing(log[0].len());
+            let mut normals = prior.clone();
+            for _ in 0..6 {
+                let exposed = light.exposed(exposure);
+                let problem = ShadingProblem { log, prior: &prior, light: &exposed };
+                ShadingSolver::new().solve(problem, weights, &mut normals);
+                exposure += exposure_step(problem, weights, &normals, exposure - first);
+            }
+            assert!((exposure - truth).abs() < 2e-3, "settled at {exposure} for {truth}");
+        }
+    }
+
+    #[test]
+    fn a_light_of_one_hue_says_nothing_without_a_prior() {
+        let mut light = LightPrior::natural().mean();
+        light.0 = [light.0[0]; 3];
+        let (normals, log) = colours(&light, 0.5);
+        let none = Normals::missing(normals.len());
+        let exposed = light.exposed(0.5);
+        let problem = ShadingProblem { log: [&log[0], &log[1], &log[2]], prior: &none, light: &exposed };
+        let weights = ShadingWeights { prior: 0.0, unit: 1.0, robust: None };
+        let step = exposure_step(problem, weights, &normals, 0.0);
+        assert!(step.abs() < 1e-3, "exact normals leave nothing to change, not {step}");
+    }
+}

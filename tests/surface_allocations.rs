@@ -1,0 +1,55 @@
+//! The second and later integrations of one size allocate nothing.
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use bimodal_stereo::{
+    AnchorWeight, Anchors, Camera, IntegrationOptions, Integrator, Normals, Robust, Size, gradients, normals,
+};
+
+struct Counting;
+
+static ALLOCATIONS: AtomicUsize = AtomicUsize::new(0);
+
+// SAFETY: hands every call on to the system's allocator unchanged.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        ALLOCATIONS.fetch_add(1, Ordering::Relaxed);
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        unsafe { System.dealloc(pointer, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+// One test in this binary: nothing else runs while it counts, and it takes the least of some tries because the test
+// harness has a thread of its own.
+#[test]
+fn later_integrations_allocate_nothing() {
+    let size = Size { width: 61, height: 47 };
+    let mask: Vec<bool> = (0..size.len()).map(|index| index % 61 > 4 && index / 61 > 2).collect();
+    let field = |scale: f32| (0..size.len()).map(|index| (index as f32 * scale).sin()).collect::<Vec<f32>>();
+    let (mut p, mut q, height) = (field(0.01), field(0.03), field(0.002));
+    let options = IntegrationOptions { robust: Robust::Estimated, ..Default::default() };
+    let mut z = vec![0.0; size.len()];
+    let mut surface = Normals::missing(size.len());
+    let mut integrator = Integrator::new(size, &mask).expect("a mask");
+    let least = (0..5)
+        .map(|round| {
+            // Other pixels are unknown and other components arise each time.
+            p[500 + 100 * round..540 + 100 * round].fill(f32::NAN);
+            let before = ALLOCATIONS.load(Ordering::Relaxed);
+            integrator.integrate(&p, &q, None, &options, &mut z).expect("sizes agree");
+            let anchors = Anchors { height: &height, weight: AnchorWeight::Uniform(0.1) };
+            integrator.integrate(&p, &q, Some(anchors), &options, &mut z).expect("sizes agree");
+            normals::of_depth_into(size, Camera::Orthographic, &z, &mut surface);
+            gradients(size, &Camera::Orthographic, &surface, &mask, &mut p, &mut q);
+            ALLOCATIONS.load(Ordering::Relaxed) - before
+        })
+        .min();
+    assert_eq!(least, Some(0));
+}
