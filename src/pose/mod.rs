@@ -1,5 +1,18 @@
 //! The pose between both views (Eq. 12 to 16).
 
+mod angles;
+mod correspondence;
+mod icp;
+mod increment;
+mod neighbours;
+mod ransac;
 mod similarity;
+mod uncertainty;
 
+pub use angles::{Angles, AnglesFit};
+pub use correspondence::{CorrespondenceProblem, Correspondences};
+pub use icp::{Icp, IcpOptions, IcpProblem, IcpReport, IcpTermination, Metric, Pair};
+pub use neighbours::{Neighbour, Neighbours};
+pub use ransac::{RansacOptions, RansacReport, ransac};
 pub use similarity::Similarity;
+pub use uncertainty::Information;

@@ -1,12 +1,22 @@
 //! P_colour = s R P_depth + t.
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, Matrix4, Quaternion, Rotation3, SymmetricEigen, UnitQuaternion, Vector3};
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::options::positive;
 
 /// How far R^T R may be from one: rotations typed with five digits pass, anything else is a mistake.
 const ROTATION_TOLERANCE: f64 = 1e-4;
+
+/// A rotation is undetermined where the second of three singular values is below this share of the first: points on a
+/// line. Rounding in f32 coordinates leaves 1e-7 squared at most, real objects are above 1e-4.
+const RANK_TOLERANCE: f64 = 1e-9;
+
+/// Cap on the rounds of the 4x4 eigenvalue iteration, which ends after about ten.
+const MOST_EIGEN_ROUNDS: usize = 200;
+
+/// Fewest pairs that determine a similarity: three leave no contradiction to see a mistake by.
+pub(crate) const FEWEST_PAIRS: usize = 4;
 
 /// An active, right-handed similarity that carries points of the depth view into the colour view.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -63,4 +73,126 @@ impl Similarity {
         let chord = (self.rotation - other.rotation).norm() / 8.0_f64.sqrt();
         2.0 * chord.min(1.0).asin().to_degrees()
     }
+
+    /// This similarity after `first`: P -> self(first(P)).
+    #[must_use]
+    pub fn after(&self, first: &Self) -> Self {
+        Self {
+            scale: self.scale * first.scale,
+            rotation: self.rotation * first.rotation,
+            translation: self.apply(first.translation),
+        }
+    }
+
+    /// The pose a `share` of the way from this one (0) to `other` (1): constant turning, constant growth, and a straight
+    /// path for `centre`, a point of the depth view. With the centroid there the object does not swing about a far
+    /// origin half-way, as it would were the translations interpolated.
+    #[must_use]
+    pub fn towards(&self, other: &Self, share: f64, centre: Vector3<f64>) -> Self {
+        let turn = quaternion(&(other.rotation * self.rotation.transpose())).powf(share);
+        let rotation = turn.to_rotation_matrix().into_inner() * self.rotation;
+        let scale = self.scale * (other.scale / self.scale).powf(share);
+        let target = self.apply(centre).lerp(&other.apply(centre), share);
+        Self { scale, rotation, translation: target - scale * (rotation * centre) }
+    }
+
+    /// The same pose with its rotation made orthonormal again, after many products.
+    #[must_use]
+    pub fn orthonormal(&self) -> Self {
+        Self { rotation: quaternion(&self.rotation).to_rotation_matrix().into_inner(), ..*self }
+    }
+
+    /// Least squares of sum w |image - s R depth - t|^2 (Eq. 12 with known correspondences) in closed form (Umeyama
+    /// 1991; the rotation by Horn's quaternion, which is never a reflection). `weights` are not negative, `None` means
+    /// one each; `scale` holds s. Units: those of the two views.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Size`] where lengths differ, [`ErrorKind::Range`] where a number is not finite,
+    /// [`ErrorKind::Degenerate`] for fewer than four pairs of positive weight or points on a line.
+    pub fn fit(
+        depth: &[Vector3<f64>],
+        image: &[Vector3<f64>],
+        weights: Option<&[f64]>,
+        scale: Option<f64>,
+    ) -> Result<Self> {
+        if depth.len() != image.len() || weights.is_some_and(|weights| weights.len() != depth.len()) {
+            return Err(Error::new(ErrorKind::Size, "pairs", "must have as many points and weights on either side"));
+        }
+        let weight = |index: usize| weights.map_or(1.0, |weights| weights[index]);
+        let weighted = || depth.iter().zip(image).enumerate().map(|(index, (p, q))| (weight(index), p, q));
+        let (mut count, mut total) = (0, 0.0);
+        let (mut from, mut to) = (Vector3::zeros(), Vector3::zeros());
+        for (w, p, q) in weighted() {
+            count += usize::from(w > 0.0);
+            total += w;
+            from += w * p;
+            to += w * q;
+        }
+        if count < FEWEST_PAIRS {
+            return Err(
+                Error::new(ErrorKind::Degenerate, "pairs", "fewer than four correspondences").value(count as f64)
+            );
+        }
+        from /= total;
+        to /= total;
+        let (mut covariance, mut spread) = (Matrix3::zeros(), 0.0);
+        for (w, p, q) in weighted() {
+            covariance += w * (q - to) * (p - from).transpose();
+            spread += w * (p - from).norm_squared();
+        }
+        let rotation = nearest_rotation(&covariance)?;
+        let scale = scale.unwrap_or_else(|| rotation.dot(&covariance) / spread);
+        positive("pairs", scale)
+            .map_err(|_| Error::new(ErrorKind::Degenerate, "pairs", "no similarity fits").value(scale))?;
+        Ok(Self { scale, rotation, translation: to - scale * (rotation * from) })
+    }
+
+    /// The similarity nearest to the linear model P -> A P + t of Eq. 14: least squares of |s R - A| (Eq. 15).
+    ///
+    /// # Errors
+    /// [`ErrorKind::Degenerate`] where A has rank one or less or no rotation is near it, [`ErrorKind::Range`] where it
+    /// is not finite.
+    pub fn nearest(matrix: &Matrix3<f64>, translation: Vector3<f64>) -> Result<Self> {
+        let rotation = nearest_rotation(matrix)?;
+        let scale = rotation.dot(matrix) / 3.0;
+        positive("theta", scale).map_err(|_| {
+            Error::new(ErrorKind::Degenerate, "theta", "the linear model is no similarity").value(scale)
+        })?;
+        Ok(Self { scale, rotation, translation })
+    }
+}
+
+/// The unit quaternion of a rotation; exact for half turns too.
+fn quaternion(rotation: &Matrix3<f64>) -> UnitQuaternion<f64> {
+    UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(*rotation))
+}
+
+/// The rotation R with the largest trace of R^T M: the eigenvector of Horn's 4x4 matrix (1987) for its largest
+/// eigenvalue. Unlike nalgebra's 3x3 SVD it does not square the condition number, and its determinant is always one.
+fn nearest_rotation(matrix: &Matrix3<f64>) -> Result<Matrix3<f64>> {
+    let size = matrix.norm();
+    if !size.is_finite() {
+        return Err(Error::new(ErrorKind::Range, "pairs", "must be finite"));
+    }
+    let degenerate = || Error::new(ErrorKind::Degenerate, "pairs", "the points do not determine a rotation");
+    if size <= 0.0 {
+        return Err(degenerate());
+    }
+    let m = matrix / size;
+    let trace = m.trace();
+    let skew = Vector3::new(m[(2, 1)] - m[(1, 2)], m[(0, 2)] - m[(2, 0)], m[(1, 0)] - m[(0, 1)]);
+    let mut horn = Matrix4::zeros();
+    horn[(0, 0)] = trace;
+    horn.fixed_view_mut::<3, 1>(1, 0).copy_from(&skew);
+    horn.fixed_view_mut::<1, 3>(0, 1).copy_from(&skew.transpose());
+    horn.fixed_view_mut::<3, 3>(1, 1).copy_from(&(m + m.transpose() - Matrix3::identity() * trace));
+    let eigen = SymmetricEigen::try_new(horn, f64::EPSILON, MOST_EIGEN_ROUNDS).ok_or_else(degenerate)?;
+    let largest = eigen.eigenvalues.imax();
+    let second = (0..4).filter(|&k| k != largest).map(|k| eigen.eigenvalues[k]).fold(f64::MIN, f64::max);
+    // The gap is twice the sum of the second and the signed third singular value: zero for points on a line.
+    if eigen.eigenvalues[largest] - second <= RANK_TOLERANCE {
+        return Err(degenerate());
+    }
+    let q = eigen.eigenvectors.column(largest);
+    Ok(UnitQuaternion::from_quaternion(Quaternion::new(q[0], q[1], q[2], q[3])).to_rotation_matrix().into_inner())
 }

@@ -1,0 +1,139 @@
+//! One Gauss-Newton step of a similarity: seven unknowns around the centre of the matched points.
+//!
+//! The step is P -> c + e^u exp([w]) (P - c) + L v with the rotation w (radians), the translation L v and the growth u
+//! (natural logarithm of the scale). c is the centroid of the points and L their root mean square distance from it, so
+//! that all seven numbers are free of units, of like size, and hardly coupled. Residuals are divided by L as well.
+
+use nalgebra::{Rotation3, SMatrix, SVector, Vector3};
+
+use super::Similarity;
+
+/// Largest turn of one step in radians: beyond it the linear model of a rotation is off by more than 2 %.
+const LARGEST_TURN: f64 = 0.2;
+/// Largest |u| of one step, for the same reason.
+const LARGEST_GROWTH: f64 = 0.1;
+
+/// The unknowns in the order w (3), v (3), u.
+pub(crate) const UNKNOWNS: usize = 7;
+/// A symmetric matrix over the unknowns.
+pub(crate) type Square = SMatrix<f64, UNKNOWNS, UNKNOWNS>;
+/// A row of the Jacobian, or a step.
+pub(crate) type Row = SVector<f64, UNKNOWNS>;
+
+/// Sums of one step.
+pub(crate) struct NormalEquations {
+    centre: Vector3<f64>,
+    length: f64,
+    matrix: Square,
+    gradient: Row,
+    weight: f64,
+}
+
+/// What one step did, free of units.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Increment {
+    pub change: Similarity,
+    /// The largest of the turn in radians, the shift in object sizes and the growth.
+    pub size: f64,
+}
+
+impl NormalEquations {
+    pub fn new(centre: Vector3<f64>, length: f64) -> Self {
+        Self { centre, length, matrix: Square::zeros(), gradient: Row::zeros(), weight: 0.0 }
+    }
+
+    /// How far a point moves along `direction` with each unknown, in units of L.
+    pub fn row(&self, point: &Vector3<f64>, direction: &Vector3<f64>) -> Row {
+        let arm = (point - self.centre) / self.length;
+        let turn = arm.cross(direction);
+        Row::from([turn.x, turn.y, turn.z, direction.x, direction.y, direction.z, arm.dot(direction)])
+    }
+
+    /// A residual `gap` along the unit vector `direction`: what `point` still has to move.
+    pub fn add(&mut self, point: &Vector3<f64>, direction: &Vector3<f64>, gap: f64, weight: f64) {
+        let row = self.row(point, direction);
+        self.matrix.syger(weight, &row, &row, 1.0);
+        self.gradient.axpy(weight * gap / self.length, &row, 1.0);
+        self.weight += weight;
+    }
+
+    /// The step that solves the equations, damped by a share of the total weight on each unknown, and shortened to where
+    /// it is still near linear. `None` where the sums are not finite or empty.
+    pub fn solve(&self, damping: f64, scale_is_held: bool) -> Option<Increment> {
+        let mut matrix = self.matrix;
+        let mut gradient = self.gradient;
+        matrix.fill_upper_triangle_with_lower_triangle();
+        if scale_is_held {
+            matrix.row_mut(UNKNOWNS - 1).fill(0.0);
+            matrix.column_mut(UNKNOWNS - 1).fill(0.0);
+            gradient[UNKNOWNS - 1] = 0.0;
+        }
+        for k in 0..UNKNOWNS {
+            matrix[(k, k)] += damping * self.weight;
+        }
+        let step = matrix.cholesky()?.solve(&gradient);
+        let turn: Vector3<f64> = step.fixed_rows::<3>(0).into();
+        let shift: Vector3<f64> = step.fixed_rows::<3>(3).into();
+        if !step.norm().is_finite() {
+            return None;
+        }
+        let share = (LARGEST_TURN / turn.norm()).min(LARGEST_GROWTH / step[6].abs()).min(1.0);
+        let rotation = Rotation3::new(turn * share).into_inner();
+        let scale = (step[6] * share).exp();
+        let translation = self.centre + shift * (share * self.length) - scale * (rotation * self.centre);
+        let size = turn.norm().max(shift.norm()).max(step[6].abs());
+        Some(Increment { change: Similarity { scale, rotation, translation }, size })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_are_the_derivative_of_the_step() {
+        let equations = NormalEquations::new(Vector3::new(3.0, -2.0, 40.0), 5.0);
+        let (point, direction) = (Vector3::new(5.0, 1.0, 37.0), Vector3::new(0.6, 0.0, -0.8));
+        let row = equations.row(&point, &direction);
+        let small = 1e-6;
+        for k in 0..UNKNOWNS {
+            let mut step = Row::zeros();
+            step[k] = small;
+            let turn: Vector3<f64> = step.fixed_rows::<3>(0).into();
+            let shift: Vector3<f64> = step.fixed_rows::<3>(3).into();
+            let arm = Rotation3::new(turn) * (point - equations.centre) * step[6].exp();
+            let moved = equations.centre + arm + shift * equations.length;
+            let slope = (moved - point).dot(&direction) / (small * equations.length);
+            assert!((slope - row[k]).abs() < 1e-5, "{k}: {slope} {}", row[k]);
+        }
+    }
+
+    #[test]
+    fn exact_gaps_are_closed_in_a_few_steps() {
+        let truth = Similarity {
+            scale: 1.05,
+            rotation: Rotation3::new(Vector3::new(0.1, -0.05, 0.08)).into_inner(),
+            translation: Vector3::new(0.3, -0.2, 0.1),
+        };
+        let points: Vec<_> = (0..20).map(|k| Vector3::new((k % 3) as f64, (k % 5) as f64, (k % 7) as f64)).collect();
+        let centre = points.iter().sum::<Vector3<f64>>() / 20.0;
+        let mut pose = Similarity::identity();
+        for _ in 0..8 {
+            let mut equations = NormalEquations::new(pose.apply(centre), 3.0);
+            for point in &points {
+                for axis in [Vector3::x(), Vector3::y(), Vector3::z()] {
+                    let gap = (truth.apply(*point) - pose.apply(*point)).dot(&axis);
+                    equations.add(&pose.apply(*point), &axis, gap, 1.0);
+                }
+            }
+            pose = equations.solve(0.0, false).expect("points in space").change.after(&pose);
+        }
+        assert!((pose.scale - truth.scale).abs() < 1e-9 && pose.degrees_to(&truth) < 1e-7);
+        assert!((pose.translation - truth.translation).norm() < 1e-8);
+    }
+
+    #[test]
+    fn nothing_determines_no_step() {
+        assert!(NormalEquations::new(Vector3::zeros(), 1.0).solve(1e-3, false).is_none());
+    }
+}

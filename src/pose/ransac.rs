@@ -1,0 +1,290 @@
+//! Consensus of correspondences over the linear model of Eq. 14: P -> A P + t with twelve parameters theta.
+//!
+//! Four pairs determine theta. The sample whose model explains the pairs best (residuals cut off at the threshold) is
+//! improved by least squares on its inliers; A becomes a similarity as in Eq. 15, and the similarity is fitted to its own
+//! inliers until they no longer change.
+//!
+//! The linear model bends and shears, so on nearly flat parts it follows noise where a similarity would not; the pairs
+//! decide which are inliers, the similarity has the last word.
+
+use nalgebra::{Matrix3, SymmetricEigen, Vector3};
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
+
+use super::Similarity;
+use super::similarity::FEWEST_PAIRS;
+use crate::error::{Error, ErrorKind, Result};
+use crate::options::positive;
+
+/// Number of pairs that determine the twelve parameters.
+const SAMPLE: usize = 4;
+/// Sampling ends when a sample without outliers was missed with less than this probability.
+const MISSED: f64 = 1e-3;
+/// A sample is flat, and skipped, where the volume over the product of its three edges is below this. 0.01 amplifies
+/// noise a hundredfold at most.
+const LEAST_VOLUME: f64 = 1e-2;
+/// Points are flat where their variance across is below this share of the one along: a relief of 1 %. Then A has a
+/// column that nothing determines.
+const LEAST_THICKNESS: f64 = 1e-4;
+/// Rounds of least squares and new inliers; two or three change nothing any more.
+const MOST_REFITS: usize = 10;
+/// Cap on the rounds of the 3x3 eigenvalue iteration, which ends after about 5.
+const MOST_EIGEN_ROUNDS: usize = 200;
+
+/// How to sample.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RansacOptions {
+    /// A pair within this distance is an inlier, units of the colour view.
+    pub threshold: f64,
+    /// Scale to hold; `None` is free.
+    pub scale: Option<f64>,
+    /// Cap on the samples.
+    pub most_iterations: u32,
+    /// The same seed gives the same answer.
+    pub seed: u64,
+}
+
+impl Default for RansacOptions {
+    fn default() -> Self {
+        // 1000 samples find one without outliers among 70 % of them with probability 0.9997 (0.3^4 = 0.0081).
+        Self { threshold: 1.0, scale: None, most_iterations: 1000, seed: 1 }
+    }
+}
+
+/// What the consensus is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RansacReport {
+    /// The similarity fitted to its own inliers.
+    pub pose: Similarity,
+    /// A of Eq. 14 on the inliers of the linear model; [`Angles::fit`](super::Angles::fit) reads scale and angles off it.
+    pub matrix: Matrix3<f64>,
+    /// Indices of the pairs that the similarity explains, ascending.
+    pub inliers: Vec<u32>,
+    /// Samples drawn.
+    pub iterations: u32,
+}
+
+/// The linear model of Eq. 14.
+#[derive(Clone, Copy)]
+struct Linear {
+    matrix: Matrix3<f64>,
+    translation: Vector3<f64>,
+}
+
+/// The pose that most of the pairs `depth[i]`, `image[i]` agree on. Units: those of the two views.
+///
+/// # Errors
+/// [`ErrorKind::Size`] where lengths differ, [`ErrorKind::Range`] for points or a threshold that are not valid,
+/// [`ErrorKind::Degenerate`] for fewer than four pairs, points on a plane or line, or where no four pairs agree.
+pub fn ransac(depth: &[Vector3<f64>], image: &[Vector3<f64>], options: &RansacOptions) -> Result<RansacReport> {
+    check(depth, image, options)?;
+    let mut generator = ChaCha8Rng::seed_from_u64(options.seed);
+    let cut = options.threshold * options.threshold;
+    let mut best: Option<(f64, Linear)> = None;
+    let (mut iterations, mut needed) = (0, options.most_iterations.max(1));
+    while iterations < needed {
+        iterations += 1;
+        let sample = draw(&mut generator, depth.len() as u32);
+        let Some(linear) = Linear::through(sample.map(|k| depth[k]), sample.map(|k| image[k])) else { continue };
+        let (mut cost, mut count) = (0.0, 0_u32);
+        for (p, q) in depth.iter().zip(image) {
+            let squared = (q - linear.apply(p)).norm_squared();
+            cost += squared.min(cut);
+            count += u32::from(squared < cut);
+        }
+        if best.as_ref().is_none_or(|(least, _)| cost < *least) {
+            best = Some((cost, linear));
+            let share = f64::from(count) / depth.len() as f64;
+            needed = needed.min(samples_needed(share));
+        }
+    }
+    let (_, linear) = best.ok_or_else(|| degenerate("every sample is flat"))?;
+    let (linear, inliers) = refine_linear(linear, depth, image, cut)?;
+    let (pose, inliers) = refine_similarity(&linear, inliers, depth, image, options)?;
+    Ok(RansacReport { pose, matrix: linear.matrix, inliers, iterations })
+}
+
+impl Linear {
+    /// The model through four pairs, `None` where the depth points are flat.
+    fn through(p: [Vector3<f64>; SAMPLE], q: [Vector3<f64>; SAMPLE]) -> Option<Self> {
+        let from = Matrix3::from_columns(&[p[1] - p[0], p[2] - p[0], p[3] - p[0]]);
+        let edges: f64 = from.column_iter().map(|edge| edge.norm()).product();
+        let volume = from.determinant().abs();
+        // Written so that NaN is flat.
+        if !matches!(volume.partial_cmp(&(LEAST_VOLUME * edges)), Some(std::cmp::Ordering::Greater)) {
+            return None;
+        }
+        let to = Matrix3::from_columns(&[q[1] - q[0], q[2] - q[0], q[3] - q[0]]);
+        let matrix = to * from.try_inverse()?;
+        Some(Self { matrix, translation: q[0] - matrix * p[0] })
+    }
+
+    /// Least squares of Eq. 14 over the pairs with these indices.
+    fn fit(depth: &[Vector3<f64>], image: &[Vector3<f64>], indices: &[u32]) -> Option<Self> {
+        let count = indices.len() as f64;
+        let pairs = || indices.iter().map(|&index| (depth[index as usize], image[index as usize]));
+        let from = pairs().map(|(p, _)| p).sum::<Vector3<f64>>() / count;
+        let to = pairs().map(|(_, q)| q).sum::<Vector3<f64>>() / count;
+        let (mut across, mut within) = (Matrix3::zeros(), Matrix3::zeros());
+        for (p, q) in pairs() {
+            across += (q - to) * (p - from).transpose();
+            within += (p - from) * (p - from).transpose();
+        }
+        if indices.len() < FEWEST_PAIRS || thickness(&within) < LEAST_THICKNESS {
+            return None;
+        }
+        let matrix = across * within.try_inverse()?;
+        Some(Self { matrix, translation: to - matrix * from })
+    }
+
+    fn apply(&self, point: &Vector3<f64>) -> Vector3<f64> {
+        self.matrix * point + self.translation
+    }
+}
+
+/// Least squares on the inliers, new inliers, and so on; a round that loses inliers is the last.
+fn refine_linear(
+    mut linear: Linear,
+    depth: &[Vector3<f64>],
+    image: &[Vector3<f64>],
+    cut: f64,
+) -> Result<(Linear, Vec<u32>)> {
+    let mut inliers = within(depth, image, cut, |point| linear.apply(point));
+    for _ in 0..MOST_REFITS {
+        let Some(refit) = Linear::fit(depth, image, &inliers) else { break };
+        let found = within(depth, image, cut, |point| refit.apply(point));
+        if found.len() < inliers.len() {
+            break;
+        }
+        let settled = found == inliers;
+        (linear, inliers) = (refit, found);
+        if settled {
+            return Ok((linear, inliers));
+        }
+    }
+    if inliers.len() < FEWEST_PAIRS {
+        return Err(degenerate("fewer than four pairs agree").value(inliers.len() as f64));
+    }
+    Ok((linear, inliers))
+}
+
+/// The similarity nearest to A (Eq. 15), fitted to the pairs that it explains.
+fn refine_similarity(
+    linear: &Linear,
+    linear_inliers: Vec<u32>,
+    depth: &[Vector3<f64>],
+    image: &[Vector3<f64>],
+    options: &RansacOptions,
+) -> Result<(Similarity, Vec<u32>)> {
+    let cut = options.threshold * options.threshold;
+    let mut pose = Similarity::nearest(&linear.matrix, linear.translation)?;
+    let mut inliers = linear_inliers;
+    for _ in 0..MOST_REFITS {
+        let select = |points: &[Vector3<f64>]| -> Vec<_> { inliers.iter().map(|&k| points[k as usize]).collect() };
+        pose = Similarity::fit(&select(depth), &select(image), None, options.scale)?;
+        let found = within(depth, image, cut, |point| pose.apply(*point));
+        let settled = found == inliers;
+        inliers = found;
+        if settled {
+            break;
+        }
+    }
+    if inliers.len() < FEWEST_PAIRS {
+        return Err(degenerate("fewer than four pairs agree on a similarity").value(inliers.len() as f64));
+    }
+    Ok((pose, inliers))
+}
+
+/// Indices of the pairs whose squared distance is below `cut`.
+fn within(
+    depth: &[Vector3<f64>],
+    image: &[Vector3<f64>],
+    cut: f64,
+    model: impl Fn(&Vector3<f64>) -> Vector3<f64>,
+) -> Vec<u32> {
+    let near = |&k: &u32| (image[k as usize] - model(&depth[k as usize])).norm_squared() < cut;
+    (0..depth.len() as u32).filter(near).collect()
+}
+
+/// Four different numbers below `count`, which is at least four.
+fn draw(generator: &mut ChaCha8Rng, count: u32) -> [usize; SAMPLE] {
+    let mut sample = [0; SAMPLE];
+    for k in 0..SAMPLE {
+        // One of the numbers not taken yet: a draw among the rest, moved up past those taken.
+        let mut number = generator.next_u32() % (count - k as u32);
+        let mut taken = sample;
+        taken[..k].sort_unstable();
+        for &other in &taken[..k] {
+            number += u32::from(number >= other);
+        }
+        sample[k] = number;
+    }
+    sample.map(|number| number as usize)
+}
+
+/// Samples after which one without outliers was missed with probability [`MISSED`].
+fn samples_needed(share: f64) -> u32 {
+    let good = share.powi(SAMPLE as i32);
+    // ln_1p keeps the sign of zero, so that no inlier at all needs infinitely many samples.
+    let needed = MISSED.ln() / (-good).ln_1p();
+    (needed.ceil() as u32).max(1)
+}
+
+/// Smallest over largest eigenvalue of a covariance.
+fn thickness(covariance: &Matrix3<f64>) -> f64 {
+    match SymmetricEigen::try_new(*covariance, f64::EPSILON, MOST_EIGEN_ROUNDS) {
+        Some(eigen) if eigen.eigenvalues.max() > 0.0 => eigen.eigenvalues.min() / eigen.eigenvalues.max(),
+        _ => 0.0,
+    }
+}
+
+fn check(depth: &[Vector3<f64>], image: &[Vector3<f64>], options: &RansacOptions) -> Result<()> {
+    positive("options.threshold", options.threshold)?;
+    if depth.len() != image.len() || u32::try_from(depth.len()).is_err() {
+        return Err(Error::new(ErrorKind::Size, "pairs", "must have as many points on either side"));
+    }
+    let missing = |point: &Vector3<f64>| !point.iter().all(|value| value.is_finite());
+    if let Some(index) = depth.iter().zip(image).position(|(p, q)| missing(p) || missing(q)) {
+        return Err(Error::new(ErrorKind::Range, "pairs", "must be finite").at(index));
+    }
+    if depth.len() < FEWEST_PAIRS {
+        return Err(degenerate("fewer than four pairs").value(depth.len() as f64));
+    }
+    let centre = depth.iter().sum::<Vector3<f64>>() / depth.len() as f64;
+    let covariance = depth.iter().map(|point| (point - centre) * (point - centre).transpose()).sum();
+    if thickness(&covariance) < LEAST_THICKNESS {
+        return Err(degenerate("the points lie on a plane, a line or a spot"));
+    }
+    Ok(())
+}
+
+fn degenerate(message: &'static str) -> Error {
+    Error::new(ErrorKind::Degenerate, "pairs", message)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn samples_are_four_different_numbers() {
+        let mut generator = ChaCha8Rng::seed_from_u64(3);
+        let mut seen = [0; 5];
+        for _ in 0..2000 {
+            let sample = draw(&mut generator, 5);
+            for (k, &number) in sample.iter().enumerate() {
+                assert!(number < 5 && !sample[..k].contains(&number));
+                seen[number] += 1;
+            }
+        }
+        // Each of five numbers is in four of five samples.
+        assert!(seen.iter().all(|&count: &i32| (count - 1600).abs() < 100), "{seen:?}");
+    }
+
+    #[test]
+    fn more_outliers_need_more_samples() {
+        assert_eq!(samples_needed(1.0), 1);
+        assert_eq!(samples_needed(0.5), 108);
+        assert_eq!(samples_needed(0.0), u32::MAX);
+    }
+}

@@ -1,0 +1,169 @@
+//! How well the matched surfaces determine the pose, and one sigma of each of its numbers.
+//!
+//! The information is that of point-to-plane distances: a point that slides along its surface costs nothing, so a plane,
+//! a sphere or a cylinder leave the directions in which they slide onto themselves without information. It is formed
+//! from the normal of the image on one side and that of the depth view on the other, J_n^T J_m, instead of J_n^T J_n:
+//! errors of two independent normals do not multiply up, where noise squared would pass for shape.
+//!
+//! One sigma covers what the residuals show, waves included; an error that leaves no residual (a surface that is tilted as
+//! a whole, a rival fit elsewhere) is not seen by it.
+
+use nalgebra::{SymmetricEigen, Vector3};
+
+use super::Similarity;
+use super::increment::{Row, Square, UNKNOWNS};
+use crate::report::Uncertainty;
+use crate::view::Camera;
+
+/// Eigenvalues of the information, divided by its weight, below this count as zero. Free of units: the squared cosine
+/// between normals and motion. A face has 5e-3, a bust with a third of its relief 1e-3; smooth surfaces of revolution
+/// stay below 1e-4.
+const LEAST_INFORMATION: f64 = 1e-4;
+/// Sigma of a direction without information, in radians or object sizes: enough to be seen as "unknown".
+const UNKNOWN: f64 = 1e3;
+/// Rotations are never more uncertain than this, degrees.
+const LARGEST_SIGMA: f64 = 180.0;
+/// A second direction is named where it has at least this share of the first one's part.
+const WORTH_NAMING: f64 = 0.6;
+/// Cap on the rounds of the 7x7 eigenvalue iteration, which ends after about 20.
+const MOST_EIGEN_ROUNDS: usize = 500;
+/// Index of the translation along z and of the scale.
+const DEPTH: usize = 5;
+const SCALE: usize = 6;
+
+/// Information of a registration about its seven unknowns: rotation about x, y, z (radians), translation along x, y, z (in
+/// object sizes) and the logarithm of the scale, all in the colour view's frame around the centroid of the points.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Information {
+    /// The 7x7 matrix; the last row and column are zero where the scale is held. Free of units.
+    pub matrix: Square,
+    /// Sum of the weights in it.
+    pub weight: f64,
+    /// Centroid of the matched points in the colour view.
+    pub centre: Vector3<f64>,
+    /// Object size: root mean square distance of the points from the centroid, in units of the colour view.
+    pub length: f64,
+    /// Root mean square disagreement |n - R n_R| of the matched normals.
+    pub normal_noise: f64,
+    /// Number of pairs.
+    pub pairs: usize,
+    /// Share of the pairs that count as independent, 0 .. 1: errors of a surface go in waves, not pixel by pixel.
+    pub independent: f64,
+    /// Whether the scale was held.
+    pub scale_is_held: bool,
+}
+
+impl Information {
+    /// The smallest eigenvalue over the weight: what the worst determined direction has, 0 .. 1/3.
+    #[must_use]
+    pub fn weakest(&self) -> f64 {
+        self.eigen(false).map_or(0.0, |eigen| eigen.eigenvalues.min())
+    }
+
+    /// Whether some direction has no information: the geometry does not determine the pose.
+    #[must_use]
+    pub fn is_degenerate(&self) -> bool {
+        // Written so that NaN is degenerate.
+        !matches!(self.weakest().partial_cmp(&self.floor()), Some(std::cmp::Ordering::Greater))
+    }
+
+    /// One sigma of `pose` for distances with standard deviation `sigma` (units of the colour view). Rotation is capped at
+    /// 180 degrees, which means unknown. The z of the translation is a gauge for an orthographic image: `None`.
+    #[must_use]
+    pub fn uncertainty(&self, sigma: f64, pose: &Similarity, camera: &Camera) -> Uncertainty {
+        let gauge = camera.is_orthographic();
+        let (covariance, weakest) = self.covariance(sigma, gauge);
+        // t is where the origin of the depth view goes; it turns and grows about the centre with everything else.
+        let arm = pose.translation - self.centre;
+        let turned = arm.cross_matrix();
+        let along = |axis: usize| {
+            let mut row = Row::zeros();
+            for k in 0..3 {
+                row[k] = -turned[(axis, k)];
+            }
+            row[3 + axis] = self.length;
+            row[SCALE] = arm[axis];
+            row.dot(&(covariance * row)).sqrt()
+        };
+        let degrees = |axis: usize| covariance[(axis, axis)].sqrt().to_degrees().min(LARGEST_SIGMA);
+        Uncertainty {
+            rotation_degrees: [degrees(0), degrees(1), degrees(2)],
+            translation: [Some(along(0)), Some(along(1)), (!gauge).then(|| along(2))],
+            scale: (!self.scale_is_held).then(|| pose.scale * covariance[(SCALE, SCALE)].sqrt()),
+            weakest,
+        }
+    }
+
+    /// Covariance of the seven unknowns and the weakest direction in words. Held and gauge unknowns have no variance.
+    fn covariance(&self, sigma: f64, gauge: bool) -> (Square, String) {
+        let Some(eigen) = self.eigen(gauge) else {
+            return (Square::identity() * UNKNOWN.powi(2), "unknown".to_owned());
+        };
+        let floor = self.floor();
+        let mut covariance = Square::zeros();
+        for (k, &value) in eigen.eigenvalues.iter().enumerate() {
+            let variance = if value > floor {
+                ((sigma / self.length).powi(2) / (value * self.weight * self.independent)).min(UNKNOWN.powi(2))
+            } else {
+                UNKNOWN.powi(2)
+            };
+            let direction = eigen.eigenvectors.column(k);
+            covariance += variance * direction * direction.transpose();
+        }
+        for k in self.inert(gauge) {
+            covariance.row_mut(k).fill(0.0);
+            covariance.column_mut(k).fill(0.0);
+        }
+        (covariance, in_words(&eigen.eigenvectors.column(eigen.eigenvalues.imin()).into_owned()))
+    }
+
+    /// Eigenvalues over the weight. The gauge is projected out, and unknowns that are no unknowns get the eigenvalue one,
+    /// which no real direction can fall behind: those of the three translations sum to one.
+    fn eigen(&self, gauge: bool) -> Option<SymmetricEigen<f64, nalgebra::Const<UNKNOWNS>>> {
+        let mut matrix = self.matrix / self.weight;
+        if gauge && matrix[(DEPTH, DEPTH)] > 0.0 {
+            let column = matrix.column(DEPTH).into_owned();
+            matrix -= column * column.transpose() / matrix[(DEPTH, DEPTH)];
+        }
+        for k in self.inert(gauge) {
+            matrix.row_mut(k).fill(0.0);
+            matrix.column_mut(k).fill(0.0);
+            matrix[(k, k)] = 1.0;
+        }
+        if !matrix.norm().is_finite() {
+            return None;
+        }
+        SymmetricEigen::try_new(matrix, f64::EPSILON, MOST_EIGEN_ROUNDS)
+    }
+
+    fn inert(&self, gauge: bool) -> impl Iterator<Item = usize> {
+        [(DEPTH, gauge), (SCALE, self.scale_is_held)].into_iter().filter(|&(_, inert)| inert).map(|(k, _)| k)
+    }
+
+    /// What chance leaves of J_n^T J_m where there is no shape: the noise of the normals, averaged over the pairs.
+    fn floor(&self) -> f64 {
+        LEAST_INFORMATION.max(self.normal_noise.powi(2) / (self.pairs.max(1) as f64).sqrt())
+    }
+}
+
+/// The one or two largest parts of a direction.
+fn in_words(direction: &Row) -> String {
+    const NAMES: [&str; UNKNOWNS] = [
+        "rotation about x",
+        "rotation about y",
+        "rotation about z",
+        "translation along x",
+        "translation along y",
+        "translation along z",
+        "scale",
+    ];
+    let first = direction.iamax();
+    let second = (0..UNKNOWNS)
+        .filter(|&k| k != first)
+        .max_by(|&a, &b| direction[a].abs().total_cmp(&direction[b].abs()))
+        .filter(|&k| direction[k].abs() >= WORTH_NAMING * direction[first].abs());
+    match second {
+        None => NAMES[first].to_owned(),
+        Some(second) => format!("{} with {}", NAMES[first], NAMES[second]),
+    }
+}
