@@ -1,0 +1,106 @@
+//! The merit l + f + g (Eq. 1): one number by which an iteration is kept or not.
+//!
+//! Two solutions are compared over the SAME depth points, those that had a correspondence before the iteration: a
+//! pose that loses points outside the image pays for each of them in full, so it can't look good by looking away.
+//! Each term is a mean of Geman-McClure costs in 0 .. 1, so sizes of images do not matter.
+//!
+//! The depth term g asks how well the measured normals, not the refined ones, explain the colours where the pose puts
+//! them: refined normals explain any colour, and would call any pose good.
+
+use nalgebra::Vector3;
+
+use crate::light::Light;
+use crate::pose::Similarity;
+use crate::report::Energy;
+use crate::view::{ColourView, DepthView, Normals, Points};
+
+/// Robust scale of the log-colour residual: a tenth is half a step of a photographer's stop over three channels.
+const COLOUR_SCALE: f64 = 0.1;
+/// Robust scale of the distance of both surfaces in image pixels: the paper's threshold for a correspondence.
+const DISTANCE_SCALE: f64 = 1.0;
+/// Robust scale of the difference of two normals: 12 degrees.
+const NORMAL_SCALE: f64 = 0.2;
+
+/// Residuals within this multiple of their median enter the robust mean.
+pub const SPREADS_OF_MEDIAN: f32 = 3.0;
+
+/// What is compared: a pose with the shape and light that go with it.
+#[derive(Clone, Copy)]
+pub struct Candidate<'a> {
+    /// Pose.
+    pub pose: &'a Similarity,
+    /// Light, exposure included.
+    pub light: &'a Light,
+    /// Normals of the image surface.
+    pub normals: &'a Normals,
+    /// Points of the image surface.
+    pub points: &'a Points,
+    /// Points of the depth view, its own frame.
+    pub depth_points: &'a Points,
+    /// Length of an image pixel at the object, in units of the colour view.
+    pub pixel_length: f64,
+}
+
+/// Squares saturated at one.
+fn robust(value: f64, scale: f64) -> f64 {
+    let squared = (value / scale).powi(2);
+    if squared.is_finite() { squared / (1.0 + squared) } else { 1.0 }
+}
+
+/// The energy of `candidate` over the depth points `fixed`, each term a mean over them or over the image's mask.
+pub fn energy(image: &ColourView, depth: &DepthView, fixed: &[u32], candidate: Candidate<'_>) -> Energy {
+    let (mut prior, mut distance, mut colour) = (0.0, 0.0, 0.0);
+    for &index in fixed {
+        let terms = point_terms(image, depth, index as usize, candidate).unwrap_or([1.0; 3]);
+        prior += terms[0];
+        distance += terms[1];
+        colour += terms[2];
+    }
+    let share = 1.0 / fixed.len().max(1) as f64;
+    Energy {
+        shading: brightness(image, candidate),
+        prior: share * prior,
+        registration: share * distance,
+        refinement: share * colour,
+    }
+}
+
+/// Costs of one depth point: of its normal, its distance, its colour. `None` where the image does not see it.
+fn point_terms(image: &ColourView, depth: &DepthView, index: usize, candidate: Candidate<'_>) -> Option<[f64; 3]> {
+    let point = candidate.pose.apply(Vector3::from(candidate.depth_points.get(index).map(f64::from)));
+    let [column, row] = image.camera.project(image.size, [point.x, point.y, point.z])?;
+    let pixel = image.size.nearest(column as f32, row as f32).filter(|&pixel| image.mask[pixel])?;
+    let normal = candidate.pose.rotation * Vector3::from(depth.normals.get(index).map(f64::from));
+    let image_normal = Vector3::from(candidate.normals.get(pixel).map(f64::from));
+    let image_point = Vector3::from(candidate.points.get(pixel).map(f64::from));
+    let gap = image_normal.dot(&(image_point - point)) / candidate.pixel_length;
+    let shade = candidate.light.shade(normal.into());
+    let colour: f64 = (0..3)
+        .map(|channel| {
+            let log = image.size.bilinear(&image.log[channel], column as f32, row as f32);
+            (f64::from(log) - shade[channel]).powi(2)
+        })
+        .sum();
+    Some([
+        robust((image_normal - normal).norm(), NORMAL_SCALE),
+        robust(gap, DISTANCE_SCALE),
+        robust(colour.sqrt(), COLOUR_SCALE),
+    ])
+}
+
+/// Mean brightness cost of the image's own normals.
+fn brightness(image: &ColourView, candidate: Candidate<'_>) -> f64 {
+    let (mut sum, mut count) = (0.0, 0.0);
+    for index in (0..image.size.len()).filter(|&index| image.mask[index]) {
+        count += 1.0;
+        sum += robust(f64::from(residual(image, index, candidate.light, candidate.normals.get(index))), COLOUR_SCALE);
+    }
+    sum / f64::max(count, 1.0)
+}
+
+/// |log S - predicted| of an image pixel for a normal in the colour view's frame.
+pub fn residual(image: &ColourView, index: usize, light: &Light, normal: [f32; 3]) -> f32 {
+    let shade = light.shade(normal.map(f64::from));
+    let log = image.log_at(index);
+    (0..3).map(|channel| (f64::from(log[channel]) - shade[channel]).powi(2)).sum::<f64>().sqrt() as f32
+}

@@ -1,0 +1,354 @@
+//! The stages of one iteration: each reads the solution so far and writes its own part of it.
+
+use nalgebra::Vector3;
+
+use super::merit::Candidate;
+use super::{Estimator, gauge, merit, worsens};
+use crate::error::Result;
+use crate::options::{LightSource, Registration, Shading};
+use crate::pose::{CorrespondenceProblem, IcpOptions, IcpProblem, RansacOptions, Similarity, ransac};
+use crate::shape::{
+    IntegrationOptions, RefinementProblem, ReliefProblem, Robust, ShadingProblem, ShadingWeights, exposure_step,
+    first_exposure, gradients,
+};
+use crate::view::{normals, quantile};
+
+/// |n - m| at which a prior normal has lost three quarters of its pull: 23 degrees, more than noise, less than a mistake.
+const PRIOR_SCALE: f32 = 0.4;
+/// Median log residual up to which a fitted light counts as explaining the colours: noise and discretisation.
+const EXPLAINED: f64 = 0.07;
+/// Solves of normals and exposure in the first iteration, which starts from a look at the colours alone.
+const FIRST_EXPOSURE_ROUNDS: usize = 4;
+/// ICP pairs points up to this distance at first, image pixels, once there is a pose to start from.
+const FIRST_DISTANCE: f64 = 8.0;
+/// ICP pairs points up to this distance in the end, image pixels: twice the paper's threshold, weighted robustly.
+const FINAL_DISTANCE: f64 = 2.0;
+/// Pairs within this distance agree with a pose, image pixels: the paper's threshold.
+const CONSENSUS_DISTANCE: f64 = 1.0;
+/// Most pairs that are asked for a consensus, evenly spread.
+const MOST_VOTERS: usize = 2000;
+/// A correspondence is accepted within this multiple of the robust spread of the surfaces' distances.
+const SPREADS: f64 = 3.0;
+
+impl Estimator {
+    /// Everything that iteration zero needs: holes guessed, points raised, correspondences by the first pose.
+    pub(super) fn prepare(&mut self) -> Result<()> {
+        let Self { refiner, depth, solution, .. } = self;
+        refiner.fill(depth, &depth.normals, &mut solution.refined_depth)?;
+        solution.raise_depth_points(depth);
+        if let LightSource::Known(light) = self.options.light {
+            let log = &self.image.log;
+            self.first_exposure = first_exposure(&light, [&log[0], &log[1], &log[2]]);
+            self.solution.exposure = self.first_exposure;
+        }
+        self.update_correspondences();
+        self.fit_light()?;
+        self.kept.copy_from(&self.solution);
+        self.measure();
+        Ok(())
+    }
+
+    /// Light from the depth view's normals where the present pose puts them (Eq. 2). A known light is left alone: its
+    /// exposure follows with the normals.
+    pub(super) fn fit_light(&mut self) -> Result<()> {
+        self.carry_normals();
+        if self.options.light == LightSource::Estimate {
+            let log = &self.image.log;
+            let weight = self.options.weights.light;
+            let fit = self.fitter.fit(&self.carried_normals, [&log[0], &log[1], &log[2]], &self.prior, weight)?;
+            self.solution.light = fit.light;
+            self.unexplained = fit.residual;
+        }
+        Ok(())
+    }
+
+    /// Normals of the colour view (Eq. 6 to 9).
+    pub(super) fn shade(&mut self) -> Result<()> {
+        let weights = self.shading_weights(self.options.weights.prior);
+        let known = self.options.light != LightSource::Estimate;
+        let rounds = if known && self.report.iteration == 0 { FIRST_EXPOSURE_ROUNDS } else { 1 };
+        let log = &self.image.log;
+        for _ in 0..rounds {
+            let light = self.solution.exposed_light();
+            let problem =
+                ShadingProblem { log: [&log[0], &log[1], &log[2]], prior: &self.carried_normals, light: &light };
+            self.solver.solve(problem, weights, &mut self.solution.image_normals);
+            if known {
+                let moved = self.solution.exposure - self.first_exposure;
+                self.solution.exposure += exposure_step(problem, weights, &self.solution.image_normals, moved);
+            }
+        }
+        for (index, &inside) in self.image.mask.iter().enumerate() {
+            if !inside {
+                self.solution.image_normals.set(index, [f32::NAN; 3]);
+            }
+        }
+        Ok(())
+    }
+
+    /// Weights of the normals' terms. Colours that even the fitted light leaves unexplained (texture, cast shadows) weigh
+    /// less, which is to say that the prior weighs more.
+    fn shading_weights(&self, prior: f64) -> ShadingWeights {
+        let doubt = (self.unexplained / EXPLAINED).max(1.0).powi(2);
+        ShadingWeights {
+            prior: (prior * doubt) as f32,
+            unit: self.options.weights.unit as f32,
+            robust: Some(PRIOR_SCALE),
+        }
+    }
+
+    /// Heights of the colour view from its normals.
+    pub(super) fn raise_surface(&mut self) -> Result<()> {
+        let image = &self.image;
+        let [p, q] = &mut self.gradient;
+        gradients(image.size, &image.camera, &self.solution.image_normals, &image.mask, p, q);
+        // Pinhole gradients are of log Z: times f they are pixels of height per pixel, too.
+        let focal_length = image.camera.focal_length().unwrap_or(1.0) as f32;
+        p.iter_mut().chain(q.iter_mut()).for_each(|slope| *slope *= focal_length);
+        let options = IntegrationOptions { robust: Robust::Estimated, ..IntegrationOptions::default() };
+        self.integrator.integrate(p, q, None, &options, &mut self.height)?;
+        if self.options.shading == Shading::Surface {
+            self.solve_relief();
+        }
+        let image = &self.image;
+        if image.camera.is_orthographic() {
+            let middle = median_of(&self.height, &mut self.spare).unwrap_or(0.0);
+            for (depth, &height) in self.solution.image_depth.iter_mut().zip(&self.height) {
+                *depth = height - middle;
+            }
+        } else {
+            for (depth, &height) in self.solution.image_depth.iter_mut().zip(&self.height) {
+                *depth = (height / focal_length).exp();
+            }
+            self.match_distance();
+        }
+        self.solution.raise_image_points(&self.image);
+        self.settle_gauge();
+        Ok(())
+    }
+
+    /// Heights and normals of the image surface as a whole, from the integrated one.
+    fn solve_relief(&mut self) {
+        let prior = self.shading_weights(self.options.weights.prior).prior;
+        for (pixel, firmness) in self.firmness.iter_mut().enumerate() {
+            *firmness = if self.carried_normals.is_valid(pixel) { prior } else { 0.0 };
+        }
+        let light = self.solution.exposed_light();
+        let problem = ReliefProblem {
+            image: &self.image,
+            light: &light,
+            slopes: [&self.gradient[0], &self.gradient[1]],
+            firmness: &self.firmness,
+        };
+        self.spare.clone_from(&self.height);
+        self.relief.solve(problem, &self.spare, &mut self.height);
+        let camera = self.image.camera;
+        let focal_length = camera.focal_length().unwrap_or(1.0) as f32;
+        for (spare, &height) in self.spare.iter_mut().zip(&self.height) {
+            *spare = if camera.is_orthographic() { height } else { (height / focal_length).exp() };
+        }
+        normals::of_depth_into(self.image.size, camera, &self.spare, &mut self.solution.image_normals);
+    }
+
+    /// Pose (Eq. 12 to 16), then the correspondences that it gives.
+    pub(super) fn register(&mut self) -> Result<()> {
+        let before = self.pose();
+        self.proposed_change = 0.0;
+        if self.options.registration == Registration::Icp {
+            let found = self.match_surfaces(before)?;
+            self.proposed_change = before.degrees_to(&found);
+            self.solution.pose = if self.trust < 1.0 {
+                before.towards(&found, self.trust, self.solution.depth_points.centroid())
+            } else {
+                found
+            };
+            self.hold_scale();
+        }
+        self.settle_gauge();
+        self.update_correspondences();
+        Ok(())
+    }
+
+    /// ICP, then the consensus of its pairs: of both poses the one with the lower merit over the same pairs.
+    fn match_surfaces(&mut self, start: Similarity) -> Result<Similarity> {
+        let pixel = self.pixel_length();
+        let problem = IcpProblem {
+            depth_points: &self.solution.depth_points,
+            depth_normals: &self.solution.depth_normals,
+            image_points: &self.solution.image_points,
+            image_normals: &self.solution.image_normals,
+            image_size: self.image.size,
+            start,
+        };
+        let scale_is_held = self.options.scale.is_some() && self.image.camera.is_orthographic();
+        let options = IcpOptions {
+            scale_is_held,
+            first_distance: (self.report.iteration > 0).then_some(FIRST_DISTANCE * pixel),
+            final_distance: FINAL_DISTANCE * pixel,
+            ..IcpOptions::default()
+        };
+        let found = self.icp.register(&problem, &options)?;
+        self.report.uncertainty = Some(found.information.uncertainty(found.rms, &found.pose, &self.image.camera));
+        let [depth_points, image_points] = &mut self.paired_points;
+        self.icp.paired_points(&problem, depth_points, image_points, MOST_VOTERS);
+        let consensus = RansacOptions {
+            threshold: CONSENSUS_DISTANCE * pixel,
+            scale: scale_is_held.then_some(start.scale),
+            seed: self.options.seed,
+            ..RansacOptions::default()
+        };
+        // Pairs that agree on nothing leave the pose to ICP.
+        let agreed = ransac(depth_points, image_points, &consensus).map_or(found.pose, |report| report.pose);
+        // The jury is fixed before the poses are compared: the points that the start sees.
+        let jury: Vec<u32> = self.jury().collect();
+        let light = self.solution.exposed_light();
+        let merit = |pose: &Similarity| {
+            let candidate = Candidate { pose, ..self.candidate(&self.solution, &light) };
+            merit::energy(&self.image, &self.depth, &jury, candidate).total()
+        };
+        let better = if merit(&agreed) < merit(&found.pose) { agreed } else { found.pose };
+        self.refused =
+            found.information.is_degenerate() || worsens(merit(&start), merit(&better), start.degrees_to(&better));
+        Ok(if self.refused { start } else { better })
+    }
+
+    /// Normals and depth of the depth view (Eq. 17 to 19).
+    pub(super) fn refine(&mut self) -> Result<()> {
+        let light = self.solution.exposed_light();
+        let problem = RefinementProblem {
+            depth: &self.depth,
+            image: &self.image,
+            light: &light,
+            rotation: &self.solution.pose.rotation,
+            position: self.correspondences.position(),
+            image_normals: &self.solution.image_normals,
+            weights: self.shading_weights(self.options.weights.refinement),
+            colour_error: self.unexplained,
+        };
+        self.refiner.refine(problem, &mut self.solution.depth_normals, &mut self.solution.refined_depth)?;
+        self.solution.raise_depth_points(&self.depth);
+        Ok(())
+    }
+
+    /// Length of an image pixel at the object.
+    pub(super) fn pixel_length(&self) -> f64 {
+        let centre = self.solution.carried_centre();
+        gauge::pixel_length(&self.image, centre.z)
+    }
+
+    /// Projects the depth points, hides what is occluded, and drops what is too far from the image surface.
+    pub(super) fn update_correspondences(&mut self) {
+        let pixel = self.pixel_length();
+        let problem = CorrespondenceProblem {
+            image: &self.image,
+            depth: &self.depth,
+            pose: &self.solution.pose,
+            depth_points: &self.solution.depth_points,
+            depth_normals: &self.solution.depth_normals,
+            image_points: &self.solution.image_points,
+            image_normals: &self.solution.image_normals,
+            distance: self.options.correspondence_distance.map(|distance| distance * pixel),
+            pixel_length: pixel,
+            spreads: SPREADS,
+        };
+        self.correspondences.update(&problem);
+    }
+
+    /// Normals of the depth view at the image pixels: R n_R of Eq. 9.
+    fn carry_normals(&mut self) {
+        let rotation = self.solution.pose.rotation;
+        for (pixel, &index) in self.correspondences.depth_of_pixel().iter().enumerate() {
+            let normal = match usize::try_from(index) {
+                Ok(index) => rotation * Vector3::from(self.solution.depth_normals.get(index).map(f64::from)),
+                Err(_) => Vector3::repeat(f64::NAN),
+            };
+            self.carried_normals.set(pixel, [normal.x as f32, normal.y as f32, normal.z as f32]);
+        }
+    }
+
+    /// Overlap, inliers and residuals of the present correspondences.
+    pub(super) fn measure(&mut self) {
+        let light = self.solution.exposed_light();
+        let rotation = self.solution.pose.rotation;
+        self.spare.clear();
+        for pixel in 0..self.image.size.len() {
+            self.residual[pixel] = f32::NAN;
+            if !self.image.mask[pixel] {
+                continue;
+            }
+            let carried = usize::try_from(self.correspondences.depth_of_pixel()[pixel])
+                .ok()
+                .filter(|&index| self.depth.normals.is_valid(index))
+                .map(|index| rotation * Vector3::from(self.depth.normals.get(index).map(f64::from)));
+            let normal = match carried {
+                Some(normal) => [normal.x as f32, normal.y as f32, normal.z as f32],
+                None => self.solution.image_normals.get(pixel),
+            };
+            self.residual[pixel] = merit::residual(&self.image, pixel, &light, normal);
+            if carried.is_some() {
+                self.spare.push(self.residual[pixel]);
+            }
+        }
+        self.report.overlap = self.correspondences.count() as f64 / self.depth.valid().max(1) as f64;
+        self.report.inliers = self.correspondences.inliers();
+        if !self.spare.is_empty() {
+            let residuals = &mut self.spare;
+            let scale = merit::SPREADS_OF_MEDIAN * quantile(residuals, 0.5);
+            let (sum, count) =
+                residuals.iter().filter(|&&r| r <= scale).fold((0.0, 0.0), |(s, c), &r| (s + f64::from(r), c + 1.0));
+            self.report.residual = sum / f64::max(count, 1.0);
+        }
+    }
+
+    /// Behind a pinhole image the pose keeps its scale and the surface takes the rest.
+    fn hold_scale(&mut self) {
+        let Some(held) = gauge::held_scale(&self.image, &self.options) else { return };
+        let factor = held / self.solution.pose.scale;
+        if self.image.camera.is_orthographic() || factor == 1.0 {
+            return;
+        }
+        self.solution.pose.scale = held;
+        self.solution.pose.translation *= factor;
+        for depth in &mut self.solution.image_depth {
+            *depth *= factor as f32;
+        }
+        self.solution.raise_image_points(&self.image);
+    }
+
+    /// Orthographic gauge: the median depth difference of the overlap is zero.
+    fn settle_gauge(&mut self) {
+        if self.image.camera.is_orthographic()
+            && let Some(difference) = self.median_gap(|image, depth| image - depth)
+        {
+            self.solution.pose.translation.z += difference;
+        }
+    }
+
+    /// Pinhole gauge: the image surface stands as far away as the depth points that fall on it.
+    fn match_distance(&mut self) {
+        let ratio = self.median_gap(|image, depth| depth / image);
+        let Some(ratio) = ratio.filter(|ratio| *ratio > 0.0) else { return };
+        for depth in &mut self.solution.image_depth {
+            *depth *= ratio as f32;
+        }
+    }
+
+    /// Median over the correspondences of a function of the image surface's depth and the depth point's.
+    fn median_gap(&mut self, gap: impl Fn(f64, f64) -> f64) -> Option<f64> {
+        self.spare.clear();
+        for (pixel, &index) in self.correspondences.depth_of_pixel().iter().enumerate() {
+            let Ok(index) = usize::try_from(index) else { continue };
+            let depth = self.solution.image_depth[pixel];
+            if !depth.is_nan() {
+                self.spare.push(gap(f64::from(depth), self.solution.carried(index).z) as f32);
+            }
+        }
+        (!self.spare.is_empty()).then(|| f64::from(quantile(&mut self.spare, 0.5)))
+    }
+}
+
+fn median_of(values: &[f32], spare: &mut Vec<f32>) -> Option<f32> {
+    spare.clear();
+    spare.extend(values.iter().filter(|value| !value.is_nan()));
+    (!spare.is_empty()).then(|| quantile(spare, 0.5))
+}

@@ -1,0 +1,72 @@
+//! After the first iteration the stages that work on every pixel allocate nothing.
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use bimodal_stereo::scenes::{SampleRequest, Scene, surface};
+use bimodal_stereo::{Camera, Estimator, LightSource, Options, Pinhole, Stage, Status};
+
+struct Counting;
+
+static ALLOCATIONS: AtomicUsize = AtomicUsize::new(0);
+
+// SAFETY: hands every call on to the system's allocator unchanged.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        ALLOCATIONS.fetch_add(1, Ordering::Relaxed);
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        unsafe { System.dealloc(pointer, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+/// Iterations that are counted, after the first.
+const COUNTED: u32 = 4;
+
+/// Fewest allocations of each stage over the counted iterations.
+fn fewest(request: &SampleRequest, known: bool) -> [usize; Stage::ALL.len()] {
+    let sample = Scene::new(&surface("bust").expect("a name")).and_then(|scene| scene.sample(request)).expect("a pair");
+    let light = if known { LightSource::Known(sample.light) } else { LightSource::Estimate };
+    // A threshold that is never met keeps the loop running.
+    let options = Options { light, stop_degrees: f64::MIN_POSITIVE, ..Options::default() };
+    let mut estimator = Estimator::new(sample.colour_image(), &sample.depth_map(), options).expect("good input");
+    estimator.step();
+    let mut fewest = [usize::MAX; Stage::ALL.len()];
+    for _ in 0..COUNTED {
+        assert_eq!(estimator.report().status, Status::Running);
+        for (stage, fewest) in Stage::ALL.into_iter().zip(&mut fewest) {
+            let before = ALLOCATIONS.load(Ordering::Relaxed);
+            let report = estimator.step_stage();
+            let count = ALLOCATIONS.load(Ordering::Relaxed) - before;
+            assert_eq!(report.stage, stage);
+            // The refinement ends the iteration: a message is text for people, not memory for pixels.
+            let message = usize::from(stage == Stage::Refinement && report.message.is_some());
+            *fewest = (*fewest).min(count - message);
+        }
+    }
+    fewest
+}
+
+// One test in this binary: nothing else runs while it counts, and it takes the least of some iterations because the
+// test harness has a thread of its own.
+#[test]
+fn later_iterations_allocate_nothing_for_their_pixels() {
+    let camera = Camera::Pinhole(Pinhole { fx: 150.0, fy: 150.0, cx: 31.5, cy: 31.5, distortion: [0.0; 5] });
+    let flawed = SampleRequest { noise: 0.01, depth_noise: 0.2, holes: 0.1, ..SampleRequest::default() };
+    let perspective = SampleRequest { image_camera: camera, depth_camera: camera, ..flawed.clone() };
+    for request in [flawed, perspective] {
+        for known in [true, false] {
+            for (stage, count) in Stage::ALL.into_iter().zip(fewest(&request, known)) {
+                // The registration rebuilds a tree of the image surface.
+                if stage != Stage::Registration {
+                    assert_eq!(count, 0, "{} with light known: {known}", stage.name());
+                }
+            }
+        }
+    }
+}
