@@ -1,5 +1,8 @@
 /** The public contract: what goes in and what comes out. No value is hidden behind `any`. */
 
+/** What `init` takes: where the .wasm is, or the .wasm itself. */
+export type WasmSource = string | URL | Request | Response | BufferSource | WebAssembly.Module;
+
 /** A pinhole camera; distortion is k1 k2 p1 p2 k3 (OpenCV). Units: pixels. */
 export interface Pinhole {
   fx: number;
@@ -131,4 +134,42 @@ export interface Sample {
   pose: Pose;
   /** The truth to measure against, NaN outside the masks. */
   truth: { imageNormals: Float32Array; imageDepth: Float32Array; depthNormals: Float32Array; depth: Float32Array };
+}
+
+export interface RunOptions {
+  /** At most so many steps in this call. */
+  maxIterations?: number;
+  signal?: AbortSignal;
+  onStep?: (report: StepReport) => void;
+}
+
+/** One frame of a rig whose calibration is in question. */
+export interface CalibrationPair {
+  image: ColorImage;
+  depth: DepthMap;
+}
+
+export interface CheckOptions {
+  signal?: AbortSignal;
+  onProgress?: (share: number, message: string) => void;
+}
+
+export interface CheckReport {
+  verdict: "consistent" | "off" | "undecided";
+  reason: string;
+  decidedBy: "shading" | "edges" | "information";
+  estimate: Pose;
+  uncertainty: StepReport["uncertainty"];
+  candidates: Record<
+    string,
+    { verdict: string; offDegrees: number; offMillimetres: number; shading: number; edges: number; information: number }
+  >;
+  sensitivity: { cue: string; axis: string; offsets: number[]; values: number[] }[];
+}
+
+/** A mask read from a file: 255 where the object is, else 0. */
+export interface Mask {
+  width: number;
+  height: number;
+  data: Uint8Array;
 }

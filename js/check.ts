@@ -1,0 +1,195 @@
+/**
+ * Names and types, checked before wasm sees them: a misspelt key or a string for a number would otherwise pass in
+ * silence or fail without a name. Values (ranges, lengths, finiteness) are checked in Rust, once.
+ */
+import { BimodalError } from "./errors.js";
+
+/** Checks one value; `field` is its path in the contract. */
+type Check = (value: unknown, field: string) => void;
+type Shape = Readonly<Record<string, Check>>;
+
+const isObject = (value: unknown): value is object => typeof value === "object" && value !== null;
+
+function kind(value: unknown): string {
+  if (value === null) return "null";
+  if (isObject(value)) return value.constructor?.name ?? "an object";
+  return typeof value;
+}
+
+const wrong = (field: string, expected: string, value: unknown) =>
+  new BimodalError("type", `${field}: must be ${expected}, not ${kind(value)}`, field);
+
+const number: Check = (value, field) => {
+  if (typeof value !== "number") throw wrong(field, "a number", value);
+};
+
+const flag: Check = (value, field) => {
+  if (typeof value !== "boolean") throw wrong(field, "true or false", value);
+};
+
+/** Any list of numbers, typed arrays included. */
+const numbers: Check = (value, field) => {
+  const listed =
+    isObject(value) && "length" in value && typeof value.length === "number" &&
+    Array.from({ ...value, length: value.length }).every((item) => typeof item === "number");
+  if (!listed) throw wrong(field, "a list of numbers", value);
+};
+
+type ArrayType = { readonly name: string; new (length: number): ArrayBufferView };
+
+/** A typed array of one of the given kinds. */
+const array = (...types: readonly ArrayType[]): Check => (value, field) => {
+  if (!types.some((type) => value instanceof type)) {
+    throw wrong(field, types.map((type) => `a ${type.name}`).join(" or "), value);
+  }
+};
+
+/** One of some words. */
+const word = (...words: readonly string[]): Check => (value, field) => {
+  if (typeof value !== "string") throw wrong(field, words.map((w) => `"${w}"`).join(" or "), value);
+  if (!words.includes(value)) {
+    throw new BimodalError("option", `${field}: "${value}" is unknown${hint(value, words)}`, field);
+  }
+};
+
+/** A word, or else something that is no word. */
+const wordOr = (words: readonly string[], other: Check): Check => (value, field) =>
+  (typeof value === "string" ? word(...words) : other)(value, field);
+
+/** Edits that turn one word into the other (Levenshtein). */
+function distance(a: string, b: string): number {
+  let row = Array.from({ length: b.length + 1 }, (_, j) => j);
+  for (let i = 1; i <= a.length; i++) {
+    const next = [i];
+    for (let j = 1; j <= b.length; j++) {
+      const replaced = (row[j - 1] ?? 0) + (a[i - 1] === b[j - 1] ? 0 : 1);
+      next.push(Math.min(replaced, (row[j] ?? 0) + 1, (next[j - 1] ?? 0) + 1));
+    }
+    row = next;
+  }
+  return row[b.length] ?? 0;
+}
+
+/** Beyond three edits a guess confuses more than it helps. */
+const LIKELY_EDITS = 3;
+
+function hint(given: string, known: readonly string[]): string {
+  const ranked = known
+    .map((name) => ({ name, edits: distance(given.toLowerCase(), name.toLowerCase()) }))
+    .sort((a, b) => a.edits - b.edits);
+  const best = ranked[0];
+  if (best && best.edits <= Math.min(LIKELY_EDITS, given.length - 1)) return `; did you mean "${best.name}"?`;
+  return `; known: ${known.join(", ")}`;
+}
+
+/** An object with these keys and no others; `undefined` counts as absent. */
+const object = (shape: Shape, required: readonly string[] = []): Check => (value, field) => {
+  if (!isObject(value) || Array.isArray(value) || ArrayBuffer.isView(value)) throw wrong(field, "an object", value);
+  for (const [key, member] of Object.entries(value)) {
+    const check = Object.hasOwn(shape, key) ? shape[key] : undefined;
+    const path = `${field}.${key}`;
+    if (!check) {
+      throw new BimodalError("option", `${path}: there is no such key${hint(key, Object.keys(shape))}`, path);
+    }
+    if (member !== undefined) check(member, path);
+  }
+  const members = new Map<string, unknown>(Object.entries(value));
+  for (const key of required) {
+    if (members.get(key) === undefined) {
+      throw new BimodalError("missing", `${field}.${key}: is required`, `${field}.${key}`);
+    }
+  }
+};
+
+const camera = object({ fx: number, fy: number, cx: number, cy: number, distortion: numbers }, ["fx", "fy", "cx", "cy"]);
+const angles = object({ alpha: number, beta: number, gamma: number });
+const pose = object({ scale: number, rotation: numbers, translation: numbers, angles });
+const lambda = object({ prior: number, unit: number, light: number, refinement: number });
+
+const image = object(
+  {
+    width: number,
+    height: number,
+    mask: array(Uint8Array),
+    camera,
+    transfer: word("srgb", "linear"),
+    data: array(Uint8Array, Uint8ClampedArray, Uint16Array, Float32Array),
+  },
+  ["width", "height", "data"],
+);
+
+const depth = object(
+  {
+    width: number,
+    height: number,
+    mask: array(Uint8Array),
+    camera,
+    unit: number,
+    data: array(Float32Array, Uint16Array),
+    points: array(Float32Array),
+    normals: array(Float32Array),
+  },
+  ["width", "height"],
+);
+
+const options = object({
+  light: wordOr(["estimate"], numbers),
+  start: wordOr(["search", "identity"], pose),
+  scale: wordOr(["free"], number),
+  registration: word("joint", "icp", "fixed"),
+  shading: word("surface", "pixel"),
+  lambda,
+  stopDegrees: number,
+  correspondenceDistance: number,
+  maxIterations: number,
+  seed: number,
+  trim: flag,
+});
+
+const relief = object({ width: number, height: number, heights: array(Float32Array) }, ["width", "height", "heights"]);
+const sample = object(
+  {
+    surface: (value, field) => {
+      if (typeof value !== "string") relief(value, field);
+    },
+    light: (value, field) => {
+      if (typeof value !== "string") numbers(value, field);
+    },
+    size: number,
+    height: number,
+    angles,
+    overlap: number,
+    noise: number,
+    depthNoise: number,
+    holes: number,
+    seed: number,
+  },
+  ["surface", "light"],
+);
+
+const signal: Check = (value, field) => {
+  if (!(value instanceof AbortSignal)) throw wrong(field, "an AbortSignal", value);
+};
+const callback: Check = (value, field) => {
+  if (typeof value !== "function") throw wrong(field, "a function", value);
+};
+const run = object({ maxIterations: number, signal, onStep: callback });
+
+/** Words of the contract that this version does not offer yet. */
+const LATER: Readonly<Record<string, string>> = { start: "search", registration: "joint", shading: "surface" };
+
+export const unsupported = (field: string, what: string): BimodalError =>
+  new BimodalError("unsupported", `${field}: ${what} is not part of this version yet`, field);
+
+export const checkImage = (value: unknown): void => image(value, "image");
+export const checkDepth = (value: unknown): void => depth(value, "depth");
+export const checkSample = (value: unknown): void => sample(value, "sample");
+export const checkRun = (value: unknown): void => run(value, "run");
+
+export function checkOptions(value: unknown): void {
+  options(value, "options");
+  if (!isObject(value)) return;
+  for (const [key, member] of Object.entries(value)) {
+    if (Object.hasOwn(LATER, key) && LATER[key] === member) throw unsupported(`options.${key}`, `"${member}"`);
+  }
+}

@@ -1,0 +1,163 @@
+import type { Estimator as Raw } from "../target/wasm-bindgen/bimodal_stereo.js";
+import { checkDepth, checkImage, checkOptions, checkRun, unsupported } from "./check.js";
+import { across, bindings } from "./engine.js";
+import { BimodalError, isPanic, translate } from "./errors.js";
+import type { ColorImage, DepthMap, Options, RunOptions, StepReport } from "./types.js";
+
+/** Lets events, timers and drawing happen. A message instead of a timer: timers wait 4 ms, hidden pages 1 s. */
+function breathe(): Promise<void> {
+  return new Promise((resume) => {
+    const { port1, port2 } = new MessageChannel();
+    port1.onmessage = () => {
+      // An open port would keep Node from ending.
+      port1.close();
+      resume();
+    };
+    port2.postMessage(null);
+  });
+}
+
+/**
+ * Shape, light and pose from one colour image and one depth map, one iteration after the other.
+ *
+ * Every array that comes out is a copy of its own. An estimator owns memory that no garbage collector sees in time:
+ * `free()` it, or declare it with `using`.
+ */
+export class Estimator {
+  #raw: Raw | undefined;
+  #broken = false;
+
+  constructor(image: ColorImage, depth: DepthMap, options: Options = {}) {
+    checkImage(image);
+    checkDepth(depth);
+    checkOptions(options);
+    const { Estimator: Binding } = bindings();
+    this.#raw = across(() => new Binding(image, depth, options));
+  }
+
+  /** One iteration of the loop. */
+  step(): StepReport {
+    return this.#call((raw) => raw.step());
+  }
+
+  /** One stage of an iteration; the report says which. */
+  stepStage(): StepReport {
+    return this.#call((raw) => raw.stepStage());
+  }
+
+  /** As many steps as fit into the time, at least one. */
+  stepFor(milliseconds: number): StepReport {
+    if (typeof milliseconds !== "number" || Number.isNaN(milliseconds)) {
+      throw new BimodalError("type", "milliseconds: must be a number", "milliseconds");
+    }
+    const end = performance.now() + milliseconds;
+    let report = this.step();
+    while (report.status === "running" && performance.now() < end) report = this.step();
+    return report;
+  }
+
+  /**
+   * Steps until the loop ends, at most `maxIterations` times, leaving room for events between the steps. When `signal`
+   * aborts, the promise is rejected with its reason and the estimator stays as the last step left it.
+   */
+  async run(options: RunOptions = {}): Promise<StepReport> {
+    checkRun(options);
+    const { maxIterations = Infinity, signal, onStep } = options;
+    signal?.throwIfAborted();
+    let report = this.report;
+    for (let done = 0; report.status === "running" && done < maxIterations; done++) {
+      report = this.step();
+      onStep?.(report);
+      await breathe();
+      signal?.throwIfAborted();
+    }
+    return report;
+  }
+
+  /** Back to the start, with the same views and, if given, other options. */
+  reset(options?: Options): void {
+    if (options !== undefined) checkOptions(options);
+    this.#call((raw) => raw.reset(options));
+  }
+
+  /** Where the loop stands. */
+  get report(): StepReport {
+    return this.#call((raw) => raw.report());
+  }
+
+  /** Normals of the image view, 3*w*h interleaved, NaN outside the mask. */
+  imageNormals(): Float32Array {
+    return this.#call((raw) => raw.imageNormals());
+  }
+
+  /** Depth of the image view, w*h, NaN outside the mask; median zero where the view is orthographic. */
+  imageDepth(): Float32Array {
+    return this.#call((raw) => raw.imageDepth());
+  }
+
+  /** Refined normals of the depth view, 3*w*h interleaved. */
+  depthNormals(): Float32Array {
+    return this.#call((raw) => raw.depthNormals());
+  }
+
+  /** Refined depth of the depth view, w*h. */
+  refinedDepth(): Float32Array {
+    return this.#call((raw) => raw.refinedDepth());
+  }
+
+  /** For each image pixel the index of its depth pixel, or -1. */
+  correspondence(): Int32Array {
+    return this.#call((raw) => raw.correspondence());
+  }
+
+  /** |log S - predicted| for each image pixel, NaN outside the mask. */
+  residual(): Float32Array {
+    return this.#call((raw) => raw.residual());
+  }
+
+  /** The 27 coefficients of the light: R1..9, G1..9, B1..9. */
+  light(): Float64Array {
+    return this.#call((raw) => raw.light());
+  }
+
+  /** Points of one view, 3*n, both views in the colour view's frame. */
+  points(view: "image" | "depth"): Float32Array {
+    if (view !== "image" && view !== "depth") {
+      throw new BimodalError("option", 'view: must be "image" or "depth"', "view");
+    }
+    return this.#call((raw) => raw.points(view));
+  }
+
+  save(): Uint8Array {
+    throw unsupported("save", "saving an estimator");
+  }
+
+  static restore(_state: Uint8Array): Estimator {
+    throw unsupported("restore", "restoring an estimator");
+  }
+
+  /** Gives the memory back. The second call does nothing. */
+  free(): void {
+    const raw = this.#raw;
+    this.#raw = undefined;
+    // A broken one can't be freed: wasm-bindgen still counts it as borrowed by the call that broke off.
+    if (!this.#broken) raw?.free();
+  }
+
+  [Symbol.dispose](): void {
+    this.free();
+  }
+
+  #call<T>(method: (raw: Raw) => T): T {
+    if (this.#raw === undefined) throw new BimodalError("freed", "this estimator has been freed");
+    if (this.#broken) {
+      throw new BimodalError("panic", "this estimator broke off in an earlier call; free it and make another one");
+    }
+    try {
+      return method(this.#raw);
+    } catch (error) {
+      this.#broken = isPanic(error);
+      throw translate(error);
+    }
+  }
+}

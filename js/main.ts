@@ -1,0 +1,6 @@
+/** Everything but `init`, which differs between browsers and Node. */
+export { checkCalibration } from "./calibration.js";
+export { BimodalError } from "./errors.js";
+export { Estimator } from "./estimator.js";
+export { sample, sampleLights, sampleSurfaces } from "./samples.js";
+export type * from "./types.js";

@@ -1,0 +1,65 @@
+/**
+ * NumPy's .npy, the few kinds that images and depth maps come in.
+ *
+ * Written here because npyjs (1.2) checks neither the length against the shape nor the order of axes, fails on data that
+ * are not aligned, and brings a fetch library along.
+ */
+import { BimodalError } from "./errors.js";
+
+/** Raster data with its channels interleaved. */
+export interface Raster<T> {
+  width: number;
+  height: number;
+  channels: number;
+  data: T;
+}
+
+const MAGIC = "\x93NUMPY";
+/** Magic, two bytes of version, two or four of header length. */
+const SHORTEST = 10;
+
+const bad = (message: string) => new BimodalError("file", `file: ${message}`, "file");
+
+export const isNpy = (bytes: Uint8Array): boolean => [...MAGIC].every((letter, i) => bytes[i] === letter.charCodeAt(0));
+
+/** Bytes for each element, and how `count` of them are read from aligned little-endian memory. */
+const KINDS = {
+  "<f4": { size: 4, read: (memory: ArrayBuffer, count: number) => new Float32Array(memory, 0, count) },
+  "<f8": { size: 8, read: (memory: ArrayBuffer, count: number) => new Float32Array(new Float64Array(memory, 0, count)) },
+  "<i4": { size: 4, read: (memory: ArrayBuffer, count: number) => new Float32Array(new Int32Array(memory, 0, count)) },
+  "<u2": { size: 2, read: (memory: ArrayBuffer, count: number) => new Uint16Array(memory, 0, count) },
+  "|u1": { size: 1, read: (memory: ArrayBuffer, count: number) => new Uint8Array(memory, 0, count) },
+  "|b1": { size: 1, read: (memory: ArrayBuffer, count: number) => new Uint8Array(memory, 0, count) },
+} as const;
+
+const isKind = (name: string): name is keyof typeof KINDS => Object.hasOwn(KINDS, name);
+
+/** Reads rows x columns, or rows x columns x channels; 64-bit floats and 32-bit integers become 32-bit floats. */
+export function readNpy(bytes: Uint8Array): Raster<Float32Array | Uint16Array | Uint8Array> {
+  if (bytes.length < SHORTEST) throw bad("this .npy file is cut off in its header");
+  const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
+  const short = view.getUint8(6) === 1;
+  const from = short ? SHORTEST : SHORTEST + 2;
+  const until = from + (short ? view.getUint16(8, true) : bytes.length >= from ? view.getUint32(8, true) : Infinity);
+  if (until > bytes.length) throw bad("this .npy file is cut off in its header");
+  const header = new TextDecoder("latin1").decode(bytes.subarray(from, until));
+
+  const kind = /'descr': '([^']*)'/.exec(header)?.[1] ?? "unknown";
+  if (!isKind(kind)) {
+    throw bad(`a .npy file of type "${kind}" is not read here; save it as float32, float64, uint16, uint8 or int32`);
+  }
+  if (!header.includes("'fortran_order': False")) {
+    throw bad("this .npy file is in column order; save it with numpy.ascontiguousarray");
+  }
+  const shape = /'shape': \(([^)]*)\)/.exec(header)?.[1]?.split(",").filter((part) => part.trim() !== "").map(Number) ?? [];
+  const [height = 0, width = 0, channels = 1] = shape;
+  if (shape.length < 2 || shape.length > 3) {
+    throw bad(`this .npy file has ${shape.length} axes; rows and columns, or rows, columns and channels are needed`);
+  }
+  const count = height * width * channels;
+  const { size, read } = KINDS[kind];
+  const body = bytes.subarray(until);
+  if (body.length < count * size) throw bad(`this .npy file is cut off: ${body.length} of ${count * size} bytes`);
+  // A copy, because typed arrays want aligned memory.
+  return { width, height, channels, data: read(body.slice(0, count * size).buffer, count) };
+}

@@ -1,0 +1,250 @@
+//! From the objects of the JavaScript contract to the native inputs.
+
+use js_sys::{Float32Array, Float64Array, Uint8Array, Uint8ClampedArray, Uint16Array};
+use nalgebra::{Matrix3, Vector3};
+use wasm_bindgen::prelude::wasm_bindgen;
+use wasm_bindgen::{JsCast, JsValue};
+
+use crate::error::{Error, ErrorKind, Result};
+use crate::light::Light;
+use crate::options::{LightSource, Options, Registration, Shading, Start, Weights};
+use crate::pose::Angles;
+use crate::view::{ColourImage, ColourSamples, DepthMap, DepthSamples, Pinhole, Transfer};
+
+#[wasm_bindgen]
+extern "C" {
+    #[wasm_bindgen(typescript_type = "ColorImage")]
+    pub type JsImage;
+    #[wasm_bindgen(method, getter)]
+    fn width(this: &JsImage) -> f64;
+    #[wasm_bindgen(method, getter)]
+    fn height(this: &JsImage) -> f64;
+    #[wasm_bindgen(method, getter)]
+    fn mask(this: &JsImage) -> Option<Uint8Array>;
+    #[wasm_bindgen(method, getter)]
+    fn camera(this: &JsImage) -> Option<JsPinhole>;
+    #[wasm_bindgen(method, getter)]
+    fn transfer(this: &JsImage) -> Option<String>;
+    #[wasm_bindgen(method, getter)]
+    fn data(this: &JsImage) -> JsValue;
+
+    #[wasm_bindgen(typescript_type = "DepthMap")]
+    pub type JsDepth;
+    #[wasm_bindgen(method, getter)]
+    fn width(this: &JsDepth) -> f64;
+    #[wasm_bindgen(method, getter)]
+    fn height(this: &JsDepth) -> f64;
+    #[wasm_bindgen(method, getter)]
+    fn mask(this: &JsDepth) -> Option<Uint8Array>;
+    #[wasm_bindgen(method, getter)]
+    fn camera(this: &JsDepth) -> Option<JsPinhole>;
+    #[wasm_bindgen(method, getter)]
+    fn unit(this: &JsDepth) -> Option<f64>;
+    #[wasm_bindgen(method, getter)]
+    fn data(this: &JsDepth) -> JsValue;
+    #[wasm_bindgen(method, getter)]
+    fn points(this: &JsDepth) -> Option<Float32Array>;
+    #[wasm_bindgen(method, getter)]
+    fn normals(this: &JsDepth) -> Option<Float32Array>;
+
+    pub type JsPinhole;
+    #[wasm_bindgen(method, getter)]
+    fn fx(this: &JsPinhole) -> f64;
+    #[wasm_bindgen(method, getter)]
+    fn fy(this: &JsPinhole) -> f64;
+    #[wasm_bindgen(method, getter)]
+    fn cx(this: &JsPinhole) -> f64;
+    #[wasm_bindgen(method, getter)]
+    fn cy(this: &JsPinhole) -> f64;
+    #[wasm_bindgen(method, getter)]
+    fn distortion(this: &JsPinhole) -> JsValue;
+
+    #[wasm_bindgen(typescript_type = "Options")]
+    pub type JsOptions;
+    #[wasm_bindgen(method, getter)]
+    fn light(this: &JsOptions) -> JsValue;
+    #[wasm_bindgen(method, getter)]
+    fn start(this: &JsOptions) -> JsValue;
+    #[wasm_bindgen(method, getter)]
+    fn scale(this: &JsOptions) -> JsValue;
+    #[wasm_bindgen(method, getter)]
+    fn registration(this: &JsOptions) -> Option<String>;
+    #[wasm_bindgen(method, getter)]
+    fn shading(this: &JsOptions) -> Option<String>;
+    #[wasm_bindgen(method, getter)]
+    fn lambda(this: &JsOptions) -> Option<JsLambda>;
+    #[wasm_bindgen(method, getter, js_name = "stopDegrees")]
+    fn stop_degrees(this: &JsOptions) -> Option<f64>;
+    #[wasm_bindgen(method, getter, js_name = "correspondenceDistance")]
+    fn correspondence_distance(this: &JsOptions) -> Option<f64>;
+    #[wasm_bindgen(method, getter, js_name = "maxIterations")]
+    fn max_iterations(this: &JsOptions) -> Option<f64>;
+    #[wasm_bindgen(method, getter)]
+    fn seed(this: &JsOptions) -> Option<f64>;
+    #[wasm_bindgen(method, getter)]
+    fn trim(this: &JsOptions) -> Option<bool>;
+
+    pub type JsLambda;
+    #[wasm_bindgen(method, getter)]
+    fn prior(this: &JsLambda) -> Option<f64>;
+    #[wasm_bindgen(method, getter)]
+    fn unit(this: &JsLambda) -> Option<f64>;
+    #[wasm_bindgen(method, getter)]
+    fn light(this: &JsLambda) -> Option<f64>;
+    #[wasm_bindgen(method, getter)]
+    fn refinement(this: &JsLambda) -> Option<f64>;
+
+    pub type JsPose;
+    #[wasm_bindgen(method, getter)]
+    fn scale(this: &JsPose) -> Option<f64>;
+    #[wasm_bindgen(method, getter)]
+    fn rotation(this: &JsPose) -> JsValue;
+    #[wasm_bindgen(method, getter)]
+    fn translation(this: &JsPose) -> JsValue;
+    #[wasm_bindgen(method, getter)]
+    fn angles(this: &JsPose) -> Option<JsAngles>;
+
+    pub type JsAngles;
+    #[wasm_bindgen(method, getter)]
+    fn alpha(this: &JsAngles) -> Option<f64>;
+    #[wasm_bindgen(method, getter)]
+    fn beta(this: &JsAngles) -> Option<f64>;
+    #[wasm_bindgen(method, getter)]
+    fn gamma(this: &JsAngles) -> Option<f64>;
+}
+
+/// Largest whole number that a JavaScript number holds exactly.
+const LARGEST_WHOLE: f64 = 9_007_199_254_740_991.0;
+
+/// A count or a seed: JavaScript has one type for all numbers.
+pub fn whole(field: &'static str, value: f64) -> Result<u64> {
+    if value.fract() == 0.0 && (0.0..=LARGEST_WHOLE).contains(&value) {
+        return Ok(value as u64);
+    }
+    Err(Error::new(ErrorKind::Range, field, "must be a whole number, zero or above").value(value))
+}
+
+pub fn side(field: &'static str, value: f64) -> Result<usize> {
+    // wasm32 has 32-bit sizes: a larger number would wrap around into the allowed range.
+    whole(field, value).map(|side| usize::try_from(side).unwrap_or(usize::MAX))
+}
+
+/// Numbers from any list of numbers; `None` where there is none.
+pub fn numbers(value: &JsValue) -> Option<Vec<f64>> {
+    value.is_object().then(|| Float64Array::new(value).to_vec())
+}
+
+fn exactly<const N: usize>(field: &'static str, value: &JsValue) -> Result<Option<[f64; N]>> {
+    let Some(values) = numbers(value) else { return Ok(None) };
+    let length = values.len();
+    let wrong = || Error::new(ErrorKind::Size, field, format!("needs {N} numbers, not {length}"));
+    values.try_into().map(Some).map_err(|_| wrong())
+}
+
+pub fn image(js: &JsImage) -> Result<ColourImage> {
+    let data = js.data();
+    let samples = if let Some(linear) = data.dyn_ref::<Float32Array>() {
+        ColourSamples::RgbLinear(linear.to_vec())
+    } else if let Some(words) = data.dyn_ref::<Uint16Array>() {
+        ColourSamples::Rgba16(words.to_vec())
+    } else if let Some(clamped) = data.dyn_ref::<Uint8ClampedArray>() {
+        ColourSamples::Rgba8(clamped.to_vec())
+    } else {
+        ColourSamples::Rgba8(Uint8Array::new(&data).to_vec())
+    };
+    Ok(ColourImage {
+        width: side("image.width", js.width())?,
+        height: side("image.height", js.height())?,
+        samples,
+        transfer: js.transfer().map(|name| if name == "linear" { Transfer::Linear } else { Transfer::Srgb }),
+        mask: js.mask().map(|mask| mask.to_vec()),
+        camera: js.camera().map(|camera| pinhole("image.camera.distortion", &camera)).transpose()?,
+    })
+}
+
+pub fn depth(js: &JsDepth) -> Result<DepthMap> {
+    let data = js.data();
+    let samples = match (js.points(), data.is_undefined()) {
+        (Some(_), false) => {
+            return Err(Error::new(ErrorKind::Missing, "depth.points", "excludes depth.data: give one of the two"));
+        }
+        (None, true) => return Err(Error::new(ErrorKind::Missing, "depth.data", "or depth.points is required")),
+        (Some(points), true) => DepthSamples::Cloud(points.to_vec()),
+        (None, false) => match data.dyn_ref::<Uint16Array>() {
+            Some(words) => DepthSamples::Integer(words.to_vec()),
+            None => DepthSamples::Float(Float32Array::new(&data).to_vec()),
+        },
+    };
+    Ok(DepthMap {
+        width: side("depth.width", js.width())?,
+        height: side("depth.height", js.height())?,
+        samples,
+        unit: js.unit(),
+        mask: js.mask().map(|mask| mask.to_vec()),
+        camera: js.camera().map(|camera| pinhole("depth.camera.distortion", &camera)).transpose()?,
+        normals: js.normals().map(|normals| normals.to_vec()),
+    })
+}
+
+fn pinhole(distortion: &'static str, js: &JsPinhole) -> Result<Pinhole> {
+    let distortion = exactly(distortion, &js.distortion())?.unwrap_or_default();
+    Ok(Pinhole { fx: js.fx(), fy: js.fy(), cx: js.cx(), cy: js.cy(), distortion })
+}
+
+/// Options of the contract over the native defaults. The facade has refused the words of later versions.
+pub fn options(js: &JsOptions) -> Result<Options> {
+    let default = Options::default();
+    Ok(Options {
+        light: match numbers(&js.light()) {
+            Some(values) => LightSource::Known(Light::from_slice("options.light", &values)?),
+            None => LightSource::Estimate,
+        },
+        start: match js.start().is_object() {
+            true => start(js.start().unchecked_ref())?,
+            false => Start::Identity,
+        },
+        scale: js.scale().as_f64(),
+        registration: match js.registration().as_deref() {
+            Some("fixed") => Registration::Fixed,
+            _ => Registration::Icp,
+        },
+        shading: Shading::Pixel,
+        weights: js.lambda().map_or(default.weights, |lambda| weights(&lambda, default.weights)),
+        stop_degrees: js.stop_degrees().unwrap_or(default.stop_degrees),
+        correspondence_distance: js.correspondence_distance(),
+        max_iterations: match js.max_iterations() {
+            // Beyond 32 bits it is out of range all the more.
+            Some(most) => u32::try_from(whole("options.maxIterations", most)?).unwrap_or(u32::MAX),
+            None => default.max_iterations,
+        },
+        seed: js.seed().map_or(Ok(default.seed), |seed| whole("options.seed", seed))?,
+        trim: js.trim().unwrap_or(default.trim),
+    })
+}
+
+fn weights(js: &JsLambda, default: Weights) -> Weights {
+    Weights {
+        prior: js.prior().unwrap_or(default.prior),
+        unit: js.unit().unwrap_or(default.unit),
+        light: js.light().unwrap_or(default.light),
+        refinement: js.refinement().unwrap_or(default.refinement),
+    }
+}
+
+fn start(js: &JsPose) -> Result<Start> {
+    let rotation = match exactly::<9>("options.start.rotation", &js.rotation())? {
+        Some(rows) => Matrix3::from_row_slice(&rows),
+        None => js.angles().map_or_else(Matrix3::identity, |given| angles(&given).rotation()),
+    };
+    let translation = exactly::<3>("options.start.translation", &js.translation())?.map(Vector3::from);
+    Ok(Start::Pose { rotation, scale: js.scale(), translation })
+}
+
+/// Missing angles are zero.
+pub fn angles(js: &JsAngles) -> Angles {
+    Angles {
+        alpha: js.alpha().unwrap_or_default(),
+        beta: js.beta().unwrap_or_default(),
+        gamma: js.gamma().unwrap_or_default(),
+    }
+}

@@ -1,0 +1,149 @@
+//! Made scenes for JavaScript.
+
+use js_sys::{Float32Array, Float64Array, Object};
+use wasm_bindgen::prelude::wasm_bindgen;
+use wasm_bindgen::{JsCast, JsValue};
+
+use super::error::Thrown;
+use super::input::{JsAngles, angles, numbers, side, whole};
+use super::output::{camera, mask, pose, set};
+use crate::error::Result;
+use crate::light::Light;
+use crate::scenes::{DepthData, Relief, Sample, SampleRequest, Scene, lights, surfaces};
+use crate::view::Size;
+
+#[wasm_bindgen]
+extern "C" {
+    #[wasm_bindgen(typescript_type = "SampleRequest")]
+    pub type JsRequest;
+    #[wasm_bindgen(method, getter)]
+    fn surface(this: &JsRequest) -> JsValue;
+    #[wasm_bindgen(method, getter)]
+    fn light(this: &JsRequest) -> JsValue;
+    #[wasm_bindgen(method, getter)]
+    fn size(this: &JsRequest) -> Option<f64>;
+    #[wasm_bindgen(method, getter)]
+    fn height(this: &JsRequest) -> Option<f64>;
+    #[wasm_bindgen(method, getter)]
+    fn angles(this: &JsRequest) -> Option<JsAngles>;
+    #[wasm_bindgen(method, getter)]
+    fn overlap(this: &JsRequest) -> Option<f64>;
+    #[wasm_bindgen(method, getter)]
+    fn noise(this: &JsRequest) -> Option<f64>;
+    #[wasm_bindgen(method, getter, js_name = "depthNoise")]
+    fn depth_noise(this: &JsRequest) -> Option<f64>;
+    #[wasm_bindgen(method, getter)]
+    fn holes(this: &JsRequest) -> Option<f64>;
+    #[wasm_bindgen(method, getter)]
+    fn seed(this: &JsRequest) -> Option<f64>;
+
+    pub type JsRelief;
+    #[wasm_bindgen(method, getter)]
+    fn width(this: &JsRelief) -> f64;
+    #[wasm_bindgen(method, getter)]
+    fn height(this: &JsRelief) -> f64;
+    #[wasm_bindgen(method, getter)]
+    fn heights(this: &JsRelief) -> Float32Array;
+
+    #[wasm_bindgen(typescript_type = "Sample")]
+    pub type JsSample;
+}
+
+/// Names of the built-in surfaces.
+#[wasm_bindgen(js_name = "sampleSurfaces")]
+#[must_use]
+pub fn sample_surfaces() -> Vec<String> {
+    surfaces::NAMES.map(String::from).to_vec()
+}
+
+/// Names of the built-in lights.
+#[wasm_bindgen(js_name = "sampleLights")]
+#[must_use]
+pub fn sample_lights() -> Vec<String> {
+    lights::NAMES.map(String::from).to_vec()
+}
+
+/// Renders both views of a surface.
+#[wasm_bindgen]
+pub fn sample(request: &JsRequest) -> std::result::Result<JsSample, Thrown> {
+    let made = make(request).map_err(|error| error.below("sample"))?;
+    Ok(plain(&made).unchecked_into())
+}
+
+fn make(js: &JsRequest) -> Result<Sample> {
+    Scene::new(&relief(&js.surface())?)?.sample(&request(js)?)
+}
+
+fn relief(js: &JsValue) -> Result<Relief> {
+    if let Some(name) = js.as_string() {
+        return surfaces::surface(&name);
+    }
+    let given: &JsRelief = js.unchecked_ref();
+    let (width, height) = (side("width", given.width()), side("height", given.height()));
+    width
+        .and_then(|width| Relief::new(width, height?, given.heights().to_vec()))
+        .map_err(|error| error.below("surface"))
+}
+
+fn request(js: &JsRequest) -> Result<SampleRequest> {
+    let default = SampleRequest::default();
+    let width = js.size().map_or(Ok(default.size.width), |size| side("size", size))?;
+    let height = js.height().map_or(Ok(width), |height| side("height", height))?;
+    Ok(SampleRequest {
+        light: match numbers(&js.light()) {
+            Some(values) => Light::from_slice("light", &values)?,
+            None => lights::light(&js.light().as_string().unwrap_or_default())?,
+        },
+        size: Size { width, height },
+        rotation: js.angles().map_or(default.rotation, |given| angles(&given).rotation()),
+        overlap: js.overlap().unwrap_or(default.overlap),
+        noise: js.noise().unwrap_or(default.noise),
+        depth_noise: js.depth_noise().unwrap_or(default.depth_noise),
+        holes: js.holes().unwrap_or(default.holes),
+        seed: js.seed().map_or(Ok(default.seed), |seed| whole("seed", seed))?,
+        ..default
+    })
+}
+
+fn floats(values: &[f32]) -> Float32Array {
+    Float32Array::from(values)
+}
+
+fn plain(sample: &Sample) -> Object {
+    let image = view(sample.image.size, &sample.image.mask, &camera(&sample.image.camera));
+    set(&image, "data", floats(&sample.image.colours));
+
+    let depth = view(sample.depth.size, &sample.depth.mask, &camera(&sample.depth.camera));
+    match &sample.depth.data {
+        DepthData::Map(data) => set(&depth, "data", floats(data)),
+        DepthData::Cloud { points, normals } => {
+            set(&depth, "points", floats(&points.interleaved()));
+            set(&depth, "normals", floats(&normals.interleaved()));
+        }
+    }
+
+    let truth = Object::new();
+    set(&truth, "imageNormals", floats(&sample.truth.image_normals.interleaved()));
+    set(&truth, "imageDepth", floats(&sample.truth.image_depth));
+    set(&truth, "depthNormals", floats(&sample.truth.depth_normals.interleaved()));
+    set(&truth, "depth", floats(&sample.truth.depth));
+
+    let object = Object::new();
+    set(&object, "image", image);
+    set(&object, "depth", depth);
+    set(&object, "light", Float64Array::from(sample.light.flat().as_slice()));
+    set(&object, "pose", pose(&sample.pose));
+    set(&object, "truth", truth);
+    object
+}
+
+fn view(size: Size, inside: &[bool], camera: &JsValue) -> Object {
+    let object = Object::new();
+    set(&object, "width", size.width as f64);
+    set(&object, "height", size.height as f64);
+    set(&object, "mask", mask(inside));
+    if !camera.is_undefined() {
+        set(&object, "camera", camera);
+    }
+    object
+}

@@ -1,0 +1,204 @@
+// The life of an estimator: what comes out, in which shape, and when it ends.
+import assert from "node:assert/strict";
+import { before, describe, test } from "node:test";
+import { Estimator, estimator, init, pair, refused, sample, sampleLights, sampleSurfaces } from "./support.mjs";
+
+const SIDE = 32;
+const PIXELS = SIDE * SIDE;
+const STAGES = ["light", "shading", "surface", "registration", "refinement"];
+
+before(() => init());
+
+const outputs = (made) => ({
+  imageNormals: made.imageNormals(),
+  imageDepth: made.imageDepth(),
+  depthNormals: made.depthNormals(),
+  refinedDepth: made.refinedDepth(),
+  correspondence: made.correspondence(),
+  residual: made.residual(),
+  light: made.light(),
+  image: made.points("image"),
+  depth: made.points("depth"),
+  report: { ...made.report, milliseconds: {} },
+});
+
+test("init may be called again", async () => {
+  await Promise.all([init(), init()]);
+});
+
+test("built-in samples have names and shapes", () => {
+  assert.ok(sampleSurfaces().length >= 3 && sampleLights().length >= 3);
+  for (const surface of sampleSurfaces()) {
+    for (const light of sampleLights()) {
+      const made = sample({ surface, light, size: SIDE, height: 24, angles: { beta: 10 } });
+      assert.deepEqual([made.image.width, made.image.height], [SIDE, 24]);
+      assert.ok(made.image.data instanceof Float32Array && made.image.data.length === 3 * SIDE * 24);
+      assert.ok(made.depth.data instanceof Float32Array && made.depth.data.length === SIDE * 24);
+      assert.equal(made.light.length, 27);
+      assert.ok(Math.abs(made.pose.angles.beta - 10) < 1e-9);
+      assert.equal(made.truth.imageNormals.length, 3 * SIDE * 24);
+    }
+  }
+});
+
+test("getters have the contract's types and lengths", () => {
+  const made = estimator();
+  made.step();
+  const all = outputs(made);
+  for (const [name, type, length] of [
+    ["imageNormals", Float32Array, 3 * PIXELS],
+    ["imageDepth", Float32Array, PIXELS],
+    ["depthNormals", Float32Array, 3 * PIXELS],
+    ["refinedDepth", Float32Array, PIXELS],
+    ["correspondence", Int32Array, PIXELS],
+    ["residual", Float32Array, PIXELS],
+    ["light", Float64Array, 27],
+  ]) {
+    assert.ok(all[name] instanceof type, name);
+    assert.equal(all[name].length, length, name);
+  }
+  for (const view of ["image", "depth"]) {
+    assert.ok(all[view] instanceof Float32Array && all[view].length % 3 === 0 && all[view].length > 0, view);
+    assert.ok(all[view].every(Number.isFinite), view);
+  }
+});
+
+test("outputs are copies", () => {
+  const made = estimator();
+  made.step();
+  const first = made.refinedDepth();
+  const kept = first.slice();
+  made.refinedDepth().fill(0);
+  made.step();
+  assert.deepEqual(first, kept);
+});
+
+test("a report has every member of the contract", () => {
+  const made = estimator();
+  const report = made.step();
+  assert.equal(report.iteration, 1);
+  assert.ok(STAGES.includes(report.stage));
+  assert.equal(report.pose.rotation.length, 9);
+  assert.equal(report.pose.translation.length, 3);
+  for (const value of [report.pose.scale, report.rotationChange, report.overlap, report.inliers, report.residual]) {
+    assert.equal(typeof value, "number");
+  }
+  assert.deepEqual(Object.keys(report.pose.angles).sort(), ["alpha", "beta", "gamma"]);
+  const { total, ...terms } = report.energy;
+  assert.deepEqual(Object.keys(terms).sort(), ["prior", "refinement", "registration", "shading"]);
+  assert.ok(Math.abs(Object.values(terms).reduce((a, b) => a + b) - total) < 1e-9);
+  assert.ok(Object.values(report.milliseconds).every((time) => time >= 0));
+  assert.deepEqual(report, made.report);
+});
+
+test("stages run in the contract's order and make up a step", () => {
+  const made = estimator();
+  const seen = STAGES.map(() => made.stepStage().stage);
+  assert.deepEqual(seen, STAGES);
+  assert.equal(made.report.iteration, 1);
+});
+
+test("the same input gives the same output", async () => {
+  const first = estimator({ maxIterations: 4, seed: 7 });
+  const second = estimator({ maxIterations: 4, seed: 7 });
+  await first.run();
+  await second.run();
+  assert.deepEqual(outputs(first), outputs(second));
+  first.reset();
+  assert.equal(first.report.iteration, 0);
+  await first.run();
+  assert.deepEqual(outputs(first), outputs(second));
+});
+
+test("reset with other options uses them", () => {
+  const made = estimator();
+  made.step();
+  made.reset({ start: { angles: { beta: 5 }, scale: 1 }, registration: "fixed", maxIterations: 2 });
+  assert.equal(made.report.iteration, 0);
+  assert.ok(Math.abs(made.report.pose.angles.beta - 5) < 1e-6);
+  made.step();
+  assert.ok(Math.abs(made.report.pose.angles.beta - 5) < 1e-6);
+});
+
+test("rotation wins over angles", () => {
+  const made = estimator({ start: { rotation: [1, 0, 0, 0, 1, 0, 0, 0, 1], angles: { beta: 40 } } });
+  assert.ok(Math.abs(made.report.pose.angles.beta) < 1e-9);
+});
+
+test("colours may come in every kind of array", () => {
+  const { image, depth, light } = pair();
+  const levels = (most) => Array.from({ length: 4 * PIXELS }, (_, i) =>
+    i % 4 === 3 ? most : Math.round(Math.min(1, image.data[3 * (i >> 2) + (i % 4)] * 0.9) * most));
+  for (const data of [new Uint8Array(levels(255)), new Uint8ClampedArray(levels(255)), new Uint16Array(levels(65535))]) {
+    const made = new Estimator({ ...image, data, transfer: "linear" }, depth, { light });
+    assert.equal(made.step().iteration, 1);
+  }
+  const integers = new Estimator(image, { ...depth, data: new Uint16Array(depth.data.map((z) => z * 100)), unit: 0.01 }, { light });
+  assert.equal(integers.step().iteration, 1);
+});
+
+test("stepFor does at least one step and stops at the end", () => {
+  const made = estimator({ maxIterations: 3 });
+  assert.equal(made.stepFor(0).iteration, 1);
+  assert.notEqual(made.stepFor(60_000).status, "running");
+  assert.ok(made.report.iteration <= 3);
+  refused(() => made.stepFor("soon"), "type", "milliseconds");
+});
+
+describe("run", () => {
+  test("reports each step, leaves room for events and honours maxIterations", async () => {
+    const made = estimator();
+    const seen = [];
+    let events = 0;
+    const ticking = setInterval(() => events++, 0);
+    const last = await made.run({ maxIterations: 2, onStep: (report) => seen.push(report.iteration) });
+    await new Promise((done) => setTimeout(done, 5));
+    clearInterval(ticking);
+    assert.deepEqual(seen, [1, 2]);
+    assert.equal(last.iteration, 2);
+    assert.ok(events > 0);
+  });
+
+  test("ends by itself", async () => {
+    const made = estimator();
+    assert.notEqual((await made.run()).status, "running");
+  });
+
+  test("an abort rejects with its reason and keeps what was reached", async () => {
+    const made = estimator();
+    const reason = new Error("enough");
+    const control = new AbortController();
+    const running = made.run({ signal: control.signal, onStep: () => control.abort(reason) });
+    await assert.rejects(running, (error) => error === reason);
+    assert.equal(made.report.iteration, 1);
+    await assert.rejects(made.run({ signal: AbortSignal.abort() }), { name: "AbortError" });
+    assert.equal(made.report.iteration, 1);
+    assert.equal(made.step().iteration, 2);
+  });
+
+  test("refuses what it does not know", async () => {
+    const made = estimator();
+    await assert.rejects(made.run({ maxIteration: 2 }), { name: "BimodalError", field: "run.maxIteration" });
+    await assert.rejects(made.run({ onStep: 2 }), { name: "BimodalError", field: "run.onStep" });
+  });
+
+  test("freed on the way, it says so", async () => {
+    const made = estimator();
+    await assert.rejects(made.run({ onStep: () => made.free() }), { name: "BimodalError", code: "freed" });
+  });
+});
+
+test("after free nothing works but free", () => {
+  const made = estimator();
+  made.free();
+  made.free();
+  for (const call of [() => made.step(), () => made.report, () => made.light(), () => made.reset(), () => made.points("image")]) {
+    refused(call, "freed", undefined);
+  }
+});
+
+test("Symbol.dispose frees", () => {
+  const made = estimator();
+  made[Symbol.dispose]();
+  refused(() => made.step(), "freed", undefined);
+});

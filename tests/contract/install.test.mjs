@@ -1,0 +1,83 @@
+// What `npm run build` leaves can be installed: into an empty folder, with types, and README's examples are true.
+import assert from "node:assert/strict";
+import { spawnSync } from "node:child_process";
+import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { after, before, test } from "node:test";
+import { fileURLToPath } from "node:url";
+
+const root = fileURLToPath(new URL("../..", import.meta.url));
+const folder = mkdtempSync(join(tmpdir(), "bimodal-stereo-"));
+after(() => rmSync(folder, { recursive: true, force: true }));
+
+function run(program, args, cwd = folder) {
+  const { status, stdout, stderr } = spawnSync(program, args, { cwd, encoding: "utf8" });
+  assert.equal(status, 0, `${program} ${args.join(" ")}\n${stdout}${stderr}`);
+  return stdout;
+}
+
+/** The README's fenced examples of one language. */
+const examples = (language) =>
+  [...readFileSync(join(root, "README.md"), "utf8").matchAll(new RegExp("^```" + language + "\\n([\\s\\S]*?)^```", "gm"))].map((m) => m[1]);
+
+before(() => {
+  writeFileSync(join(folder, "package.json"), JSON.stringify({ name: "empty", private: true, type: "module" }));
+  const [{ filename }] = JSON.parse(run("npm", ["pack", join(root, "pkg"), "--json", "--pack-destination", folder], root));
+  run("npm", ["install", "--offline", "--no-audit", "--no-fund", join(folder, filename)]);
+});
+
+test("the README's example runs in Node", () => {
+  const [example] = examples("ts");
+  assert.ok(example, "README.md has an example in TypeScript");
+  writeFileSync(join(folder, "example.mjs"), example);
+  assert.match(run(process.execPath, ["example.mjs"]), /converged/);
+});
+
+test("the files module loads by itself", () => {
+  const code = 'import { decodeDepth } from "bimodal-stereo/files"; console.log(typeof decodeDepth);';
+  assert.equal(run(process.execPath, ["--input-type=module", "-e", code]).trim(), "function");
+});
+
+test("types resolve for Node and for bundlers, without help from other type packages", () => {
+  mkdirSync(join(folder, "typed"), { recursive: true });
+  writeFileSync(join(folder, "typed/readme.ts"), examples("ts").join("\n"));
+  writeFileSync(
+    join(folder, "typed/contract.ts"),
+    `import init, { BimodalError, Estimator, checkCalibration, sample } from "bimodal-stereo";
+     import type { CheckReport, ColorImage, DepthMap, Options, Pose, StepReport } from "bimodal-stereo";
+     import { decodeColour, decodeDepth, decodeMask } from "bimodal-stereo/files";
+     const image: ColorImage = decodeColour(new Uint8Array());
+     const depth: DepthMap = { ...decodeDepth(new ArrayBuffer(0)), mask: decodeMask(new Uint8Array()).data };
+     const start: Partial<Pose> = { angles: { alpha: 0, beta: 20, gamma: 0 } };
+     const options: Options = { light: new Float64Array(27), start, registration: "icp", lambda: { prior: 0.1 } };
+     export async function all(signal: AbortSignal): Promise<[StepReport, CheckReport]> {
+       await init(new URL("https://example.org/x.wasm"));
+       const estimator = new Estimator(sample({ surface: "bust", light: "window" }).image, depth, options);
+       const correspondence: Int32Array = estimator.correspondence();
+       const light: Float64Array = estimator.light();
+       const cloud: Float32Array = estimator.points("image");
+       estimator.free();
+       console.log(image, light, cloud, correspondence);
+       return [await estimator.run({ maxIterations: 3, signal, onStep: (report) => report.status }), await checkCalibration([], {})];
+     }
+     export const code = (error: BimodalError): string => error.code + (error.field ?? "");
+     // @ts-expect-error a misspelt option is a type error as well
+     export const misspelt: Options = { regstration: "icp" };
+     // @ts-expect-error a report is not any
+     export const wrong = (report: StepReport): string => report.nothing;`,
+  );
+  for (const module of ["nodenext", "bundler"]) {
+    const resolution = module === "bundler" ? ["--module", "esnext", "--moduleResolution", "bundler"] : ["--module", "nodenext"];
+    run(process.execPath, [
+      ...[join(root, "node_modules/typescript/bin/tsc"), "--noEmit", "--strict", "--target", "es2022", "--types", ""],
+      ...["--lib", "es2022,dom,esnext.disposable", ...resolution, "typed/readme.ts", "typed/contract.ts"],
+    ]);
+  }
+});
+
+test("nothing of the workshop is packed", () => {
+  const { files, dependencies } = JSON.parse(readFileSync(join(folder, "node_modules/bimodal-stereo/package.json"), "utf8"));
+  assert.ok(files.includes("*.wasm"));
+  assert.equal(dependencies, undefined);
+});

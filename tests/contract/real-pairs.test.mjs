@@ -1,0 +1,27 @@
+// Real pairs through the built package: the loop ends, says where it stands, and fills the holes.
+import assert from "node:assert/strict";
+import { before, describe, test } from "node:test";
+import * as files from "../../pkg/files.js";
+import { MISSING, PAIRS, hasData, runPair, table } from "../../scripts/real-pairs.mjs";
+import { Estimator, init } from "./support.mjs";
+
+const ENDS = ["converged", "max-iterations", "ambiguous"];
+
+before(() => init());
+
+describe("real pairs", { skip: hasData() ? false : MISSING }, () => {
+  for (const name of ["coffee_mug_1", "vase_rgbd"]) {
+    test(name, async () => {
+      const result = await runPair(Estimator, PAIRS[name](files));
+      console.log(table([[name, result]])[1]);
+      const { report, residualBefore, residualAfter, holes, filled } = result;
+      assert.ok(ENDS.includes(report.status), `${report.status}: ${report.message}`);
+      assert.equal(report.pose.scale, 1, "both cameras are metric");
+      assert.ok([...report.pose.rotation, ...report.pose.translation].every(Number.isFinite));
+      // Texture that no light explains keeps the residual high on these objects: that it falls is no promise.
+      assert.ok(residualBefore > 0 && residualAfter > 0 && residualAfter < Infinity);
+      assert.ok(holes > 0, "there is something to fill");
+      assert.equal(filled, holes);
+    });
+  }
+});
