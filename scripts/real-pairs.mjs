@@ -1,0 +1,96 @@
+// Real pairs from the data beside the project, and how the loop fares on them; shared by `pairs.mjs` and the tests.
+import { existsSync, readFileSync } from "node:fs";
+import { join } from "node:path";
+import { inRoot } from "./shell.mjs";
+
+/** Other people's data, never part of the project. */
+const DATA = inRoot("../shared/data");
+
+/** Kinect v1, the nominal values of the data set's authors. */
+const KINECT = { fx: 525, fy: 525, cx: 319.5, cy: 239.5 };
+const MILLIMETRE = 0.001;
+
+export const hasData = () => existsSync(DATA);
+export const MISSING = `no data in ${DATA}`;
+
+const bytes = (...path) => readFileSync(join(DATA, ...path));
+
+/** Colour of frame 1 and depth of frame 2, which the same camera took a moment later. */
+function consecutive(object, { decodeColour, decodeDepth, decodeMask }) {
+  const frame = (number, kind) => bytes("rgbd_object", `${object}_1_${number}_${kind}`);
+  const camera = (number) => {
+    // The crop's first column and row in the whole frame, counted from 1.
+    const [column, row] = frame(number, "loc.txt").toString().split(",").map(Number);
+    return { ...KINECT, cx: KINECT.cx - (column - 1), cy: KINECT.cy - (row - 1) };
+  };
+  const mask = (number) => decodeMask(frame(number, "maskcrop.png")).data;
+  return {
+    image: { ...decodeColour(frame(1, "crop.png")), mask: mask(1), camera: camera(1) },
+    depth: { ...decodeDepth(frame(2, "depthcrop.png")), mask: mask(2), camera: camera(2), unit: MILLIMETRE },
+  };
+}
+
+/** Colour and depth of one moment: the true pose is the identity. */
+function vase({ decodeColour, decodeDepth, decodeMask }) {
+  const { fx, fy, cx, cy } = JSON.parse(bytes("vase_rgbd", "camera.json").toString());
+  const shared = { mask: decodeMask(bytes("vase_rgbd", "mask.png")).data, camera: { fx, fy, cx, cy } };
+  return {
+    image: { ...decodeColour(bytes("vase_rgbd", "color.png")), ...shared },
+    depth: { ...decodeDepth(bytes("vase_rgbd", "depth_mm.png")), ...shared, unit: MILLIMETRE },
+  };
+}
+
+const OBJECTS = ["coffee_mug_1", "bowl_1", "cap_1", "cereal_box_1"];
+
+/** Names of the pairs and how to read each with the package's decoders. */
+export const PAIRS = {
+  ...Object.fromEntries(OBJECTS.map((object) => [object, (files) => consecutive(object, files)])),
+  vase_rgbd: vase,
+};
+
+/** Degrees of the rotation with this row-major matrix. */
+const degrees = ([a, , , , b, , , , c]) => (Math.acos(Math.min(1, Math.max(-1, (a + b + c - 1) / 2))) * 180) / Math.PI;
+
+/** Runs the loop to its end. Both frames are metric, so that the pose's translation is in metres. */
+export async function runPair(Estimator, { image, depth }, options = {}) {
+  const estimator = new Estimator(image, depth, { light: "estimate", start: "identity", ...options });
+  try {
+    const before = estimator.report;
+    const after = await estimator.run();
+    const refined = estimator.refinedDepth();
+    const holes = [...depth.data.keys()].filter((pixel) => depth.mask[pixel] && depth.data[pixel] === 0);
+    return {
+      report: after,
+      rotation: degrees(after.pose.rotation),
+      shift: 1000 * Math.hypot(...after.pose.translation),
+      residualBefore: before.residual,
+      residualAfter: after.residual,
+      holes: holes.length,
+      filled: holes.filter((pixel) => Number.isFinite(refined[pixel])).length,
+      refined,
+      imageNormals: estimator.imageNormals(),
+      depthNormals: estimator.depthNormals(),
+    };
+  } finally {
+    estimator.free();
+  }
+}
+
+const HEADINGS = ["pair", "status", "iterations", "alpha", "beta", "gamma", "rotation", "shift mm", "residual", "holes filled"];
+
+/** The rows of a text table under its headings. */
+export function table(rows) {
+  const cells = rows.map(([name, { report, rotation, shift, residualBefore, residualAfter, holes, filled }]) => [
+    name,
+    report.status,
+    String(report.iteration),
+    ...Object.values(report.pose.angles).map((angle) => angle.toFixed(2)),
+    rotation.toFixed(2),
+    shift.toFixed(1),
+    `${residualBefore.toFixed(3)} -> ${residualAfter.toFixed(3)}`,
+    `${filled} of ${holes}`,
+  ]);
+  const all = [HEADINGS, ...cells];
+  const widths = HEADINGS.map((_, column) => Math.max(...all.map((row) => row[column].length)));
+  return all.map((row) => row.map((cell, column) => cell.padEnd(widths[column])).join("  ").trimEnd());
+}

@@ -1,0 +1,71 @@
+// Everything that building and testing need, fetched once: toolchain, wasm-bindgen, node_modules.
+import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
+import { Failure, ask, inRoot, must, readIfThere, say, seconds, stamp } from "./shell.mjs";
+
+export const WASM = "wasm32-unknown-unknown";
+export const tool = (name) => inRoot("target/tools/bin", name);
+
+function checkNode() {
+  const [major, minor] = process.versions.node.split(".").map(Number);
+  const enough = major > 22 || (major === 22 && minor >= 12) || (major === 20 && minor >= 19);
+  if (!enough) throw new Failure(`Node 20.19+ or 22.12+ is needed, this is ${process.versions.node}.`);
+}
+
+/** rust-toolchain.toml alone installs nothing where automatic installation is switched off. */
+async function toolchain() {
+  if (ask("rustup", ["--version"]) === undefined) {
+    throw new Failure("Rust is needed: install it from https://rustup.rs, open a new shell and try again.");
+  }
+  const file = readFileSync(inRoot("rust-toolchain.toml"), "utf8");
+  const channel = /^channel = "(.+)"$/m.exec(file)[1];
+  const list = (name) => [...new RegExp(`^${name} = \\[(.+)\\]$`, "m").exec(file)[1].matchAll(/"([^"]+)"/g)].map((m) => m[1]);
+  const [components, targets] = [list("components"), list("targets")];
+
+  const has = (kind) => ask("rustup", [kind, "list", "--installed", "--toolchain", channel])?.split("\n") ?? [];
+  const [hasComponents, hasTargets] = [has("component"), has("target")];
+  // Installed components carry the host in their name, as in clippy-x86_64-unknown-linux-gnu.
+  const complete =
+    components.every((name) => hasComponents.some((installed) => installed === name || installed.startsWith(`${name}-`))) &&
+    targets.every((name) => hasTargets.includes(name));
+  if (complete) return;
+  say(`Rust ${channel} with ${[...components, ...targets].join(", ")}: installing`);
+  await must("rustup", [
+    ...["toolchain", "install", channel, "--profile", "minimal", "--no-self-update"],
+    ...components.flatMap((name) => ["--component", name]),
+    ...targets.flatMap((name) => ["--target", name]),
+  ]);
+}
+
+/** The command-line tool must equal the crate's version, to the last digit. */
+async function wasmBindgen() {
+  const version = /name = "wasm-bindgen"\nversion = "(.+)"/.exec(readFileSync(inRoot("Cargo.lock"), "utf8"))[1];
+  if (ask(tool("wasm-bindgen"), ["--version"]) === `wasm-bindgen ${version}`) return;
+  say(`wasm-bindgen ${version}: compiling its command-line tools (2 to 4 minutes, once)`);
+  // Without --locked: the lock file of some releases names a yanked crate. Hardly optimised: it runs for a second.
+  await must("cargo", ["install", "wasm-bindgen-cli", "--version", `=${version}`, "--root", "target/tools", "--force"], {
+    env: {
+      CARGO_PROFILE_RELEASE_OPT_LEVEL: "1",
+      CARGO_PROFILE_RELEASE_CODEGEN_UNITS: "16",
+      CARGO_PROFILE_RELEASE_LTO: "off",
+    },
+  });
+}
+
+async function nodeModules() {
+  const mark = inRoot("node_modules/.lock-stamp");
+  const wanted = stamp(["package-lock.json"]);
+  if (readIfThere(mark) === wanted) return;
+  say("node_modules: npm ci");
+  await must("npm", ["ci", "--include=dev", "--no-audit", "--no-fund"]);
+  mkdirSync(inRoot("node_modules"), { recursive: true });
+  writeFileSync(mark, wanted);
+}
+
+export async function setup() {
+  const start = performance.now();
+  checkNode();
+  await toolchain();
+  await wasmBindgen();
+  await nodeModules();
+  say(`set up (${seconds(start)})`);
+}

@@ -1,0 +1,37 @@
+// npm start: sets up, builds and serves the page until ctrl-C. PORT names a port, else the first free one from 4173.
+import { build } from "./build.mjs";
+import { setup } from "./setup.mjs";
+import { Failure, inRoot, say, script } from "./shell.mjs";
+
+const FIRST_PORT = 4173;
+
+function wantedPort() {
+  if (!process.env.PORT) return undefined;
+  const port = Number(process.env.PORT);
+  if (Number.isInteger(port) && port > 0 && port < 65536) return port;
+  throw new Failure(`PORT must be a number from 1 to 65535, not "${process.env.PORT}".`);
+}
+
+await script(async () => {
+  const port = wantedPort();
+  await setup();
+  await build();
+  // Imported late: before the set-up there are no node_modules.
+  const { createServer } = await import("vite");
+  const server = await createServer({
+    root: inRoot("www"),
+    // A number address: "localhost" may mean IPv6 alone, which leaves others outside.
+    server: { host: "127.0.0.1", port: port ?? FIRST_PORT, strictPort: port !== undefined },
+  });
+  try {
+    await server.listen();
+  } catch (error) {
+    // Its file watchers would keep the process alive.
+    await server.close();
+    throw new Failure(error.message);
+  }
+  say(`serving the page at ${server.resolvedUrls.local[0]}  (ctrl-C ends it)`);
+  for (const signal of ["SIGINT", "SIGTERM"]) {
+    process.once(signal, () => void server.close().then(() => process.exit(0)));
+  }
+});

@@ -1,0 +1,106 @@
+// npm test: sets up, builds and runs everything. `npm test -- contract page` runs these parts alone.
+import { createServer } from "node:net";
+import { browser } from "./browser.mjs";
+import { build } from "./build.mjs";
+import { WASM, setup } from "./setup.mjs";
+import { Failure, inRoot, matching, say, script, seconds, watch } from "./shell.mjs";
+
+const DENY = ["--", "-D", "warnings"];
+const modules = (path) => inRoot("node_modules", path);
+const cargo = (...args) => () => watch("cargo", args);
+/** The wasm tests; without a variable they run in Node. */
+const wasmIn = (variable) => async () => {
+  const where = variable ? { [variable]: "1", CHROMEDRIVER: (await browser()).chromedriver } : {};
+  return watch("cargo", ["test", "--target", WASM, "--test", "wasm"], { env: where });
+};
+
+/** Every TypeScript project: the facade, the page, its worker, the tests. */
+async function types() {
+  let output = "";
+  let code = 0;
+  for (const project of matching(["js", "www", "tests"], /^tsconfig(\..+)?\.json$/)) {
+    say(`tsc -p ${project}`);
+    const result = await watch(process.execPath, [modules("typescript/bin/tsc"), "-p", project, "--noEmit", "--emitDeclarationOnly", "false"]);
+    code ||= result.code;
+    output += `tsc ${project}: ${result.code === 0 ? "no errors" : "errors"}\n`;
+  }
+  return { code, output };
+}
+
+/** A port that nobody listens on. */
+function freePort() {
+  return new Promise((found) => {
+    const server = createServer().listen(0, "127.0.0.1", () => {
+      const { port } = server.address();
+      server.close(() => found(port));
+    });
+  });
+}
+
+async function page() {
+  const { chromium } = await browser();
+  const env = { CHROMIUM: chromium, PAGE_PORT: String(await freePort()) };
+  return watch(process.execPath, [modules("@playwright/test/cli.js"), "test"], { env });
+}
+
+const contract = () => watch(process.execPath, ["--test", "--test-reporter=spec", ...matching(["tests/contract"], /\.test\.mjs$/)]);
+
+/** What a runner says last; these lines are repeated at the end. */
+const CARGO = /^(test result: .*|error: test failed.*|error: could not compile.*)$/gm;
+const NODE = /^(?:# |ℹ )((?:tests|pass|fail|skipped) .*)$/gm;
+
+const PARTS = [
+  { name: "format", run: cargo("fmt", "--check") },
+  { name: "clippy", run: cargo("clippy", "--all-targets", ...DENY), closing: CARGO },
+  { name: "clippy-wasm", run: cargo("clippy", "--target", WASM, "--all-targets", ...DENY), closing: CARGO },
+  { name: "rust", run: cargo("test"), closing: CARGO },
+  { name: "wasm-node", run: wasmIn(), closing: CARGO },
+  { name: "wasm-browser", run: wasmIn("WASM_BINDGEN_USE_BROWSER"), closing: CARGO },
+  { name: "wasm-worker", run: wasmIn("WASM_BINDGEN_USE_DEDICATED_WORKER"), closing: CARGO },
+  { name: "types", run: types, needsBuild: true, closing: /^tsc .*$/gm },
+  { name: "contract", run: contract, needsBuild: true, closing: NODE },
+  { name: "page", run: page, needsBuild: true, closing: /^ +\d+ (?:passed|failed|skipped|flaky|did not run).*$/gm },
+];
+
+function chosen(names) {
+  const unknown = names.filter((name) => !PARTS.some((part) => part.name === name));
+  if (unknown.length > 0) {
+    throw new Failure(`There is no part "${unknown[0]}"; there are ${PARTS.map((part) => part.name).join(", ")}.`);
+  }
+  return names.length === 0 ? PARTS : PARTS.filter((part) => names.includes(part.name));
+}
+
+/** Runs one part; whatever goes wrong is a failed part, so that the others still get their turn. */
+async function attempt({ name, run, needsBuild, closing }) {
+  console.log(`\n=== ${name} ${"=".repeat(Math.max(0, 70 - name.length))}`);
+  const start = performance.now();
+  let result;
+  try {
+    // Quick where nothing has changed.
+    if (needsBuild) await build();
+    result = await run();
+  } catch (error) {
+    if (!(error instanceof Failure)) throw error;
+    console.error(error.message);
+    result = { code: 1, output: "" };
+  }
+  const lines = closing ? [...result.output.matchAll(closing)].map((match) => (match[1] ?? match[0]).trim()) : [];
+  return { name, passed: result.code === 0, lines, time: seconds(start) };
+}
+
+await script(async () => {
+  const parts = chosen(process.argv.slice(2));
+  const start = performance.now();
+  await setup();
+  const results = [];
+  for (const part of parts) results.push(await attempt(part));
+
+  console.log(`\n=== summary ${"=".repeat(63)}`);
+  for (const { name, passed, lines, time } of results) {
+    console.log(`${passed ? "ok    " : "FAILED"}  ${name.padEnd(13)} ${time.padStart(8)}`);
+    for (const line of lines) console.log(`          ${line}`);
+  }
+  const failed = results.filter((result) => !result.passed).map((result) => result.name);
+  console.log(failed.length === 0 ? `\nAll parts passed in ${seconds(start)}.` : `\nFailed: ${failed.join(", ")} (${seconds(start)}).`);
+  if (failed.length > 0) process.exitCode = 1;
+});
