@@ -1,0 +1,177 @@
+/** The visitor's own files, good and bad. They are made here from a sample, so that the answer is known. */
+
+import { readFile } from "node:fs/promises";
+import { encode } from "fast-png";
+import init, { sample, type Sample } from "../../pkg/index.js";
+import { expect, test, type Lab } from "./lab";
+
+const size = 64;
+let pair: Sample;
+
+test.beforeAll(async () => {
+  await init(await readFile(new URL("../../pkg/bimodal_stereo_bg.wasm", import.meta.url)));
+  pair = sample({ surface: "bust", light: "colourful", size, angles: { beta: 12 } });
+});
+
+interface Upload {
+  name: string;
+  mimeType: string;
+  buffer: Buffer;
+}
+
+/** Linear floats as 16-bit RGB, the brightest just below white. */
+function colourPng(): Upload {
+  const linear = pair.image.data as Float32Array;
+  const brightest = linear.reduce((most, value) => (Number.isFinite(value) ? Math.max(most, value) : most), 0);
+  const data = Uint16Array.from(linear, (value) => (Number.isFinite(value) ? Math.round((60_000 * value) / brightest) : 0));
+  const png = encode({ width: size, height: size, data, depth: 16, channels: 3 });
+  return { name: "colour.png", mimeType: "image/png", buffer: Buffer.from(png) };
+}
+
+function maskPng(mask: Uint8Array | undefined, name: string): Upload {
+  const data = Uint8Array.from({ length: size * size }, (_, i) => (mask === undefined || mask[i] ? 255 : 0));
+  return { name, mimeType: "image/png", buffer: Buffer.from(encode({ width: size, height: size, data, depth: 8, channels: 1 })) };
+}
+
+/** Depth in hundredths of a pixel. */
+function depthPng(): Upload {
+  const data = Uint16Array.from(pair.depth.data ?? [], (value) => (value > 0 ? Math.round(100 * value) : 0));
+  const png = encode({ width: size, height: size, data, depth: 16, channels: 1 });
+  return { name: "depth.png", mimeType: "image/png", buffer: Buffer.from(png) };
+}
+
+function depthNpy(): Upload {
+  const header = `{'descr': '<f4', 'fortran_order': False, 'shape': (${size}, ${size}), }`;
+  const padded = `${header.padEnd(Math.ceil((header.length + 11) / 64) * 64 + 53, " ")}\n`;
+  const lead = Buffer.from([0x93, 0x4e, 0x55, 0x4d, 0x50, 0x59, 1, 0, padded.length & 255, padded.length >> 8]);
+  const data = pair.depth.data as Float32Array;
+  return { name: "depth.npy", mimeType: "application/octet-stream", buffer: Buffer.concat([lead, Buffer.from(padded), Buffer.from(data.buffer, data.byteOffset, data.byteLength)]) };
+}
+
+async function put(lab: Lab, slot: string, file: Upload): Promise<void> {
+  await lab.page.getByLabel(slot, { exact: true }).setInputFiles(file);
+}
+
+async function openFiles(lab: Lab): Promise<void> {
+  await lab.open();
+  await lab.page.getByRole("button", { name: "Own files" }).click();
+  await lab.reaches("waiting");
+}
+
+test("a colour and a depth PNG of 16 bits run to convergence", async ({ lab, page }) => {
+  await openFiles(lab);
+  await page.getByText("Depth camera", { exact: true }).click();
+  await page.getByLabel("Unit", { exact: true }).fill("0.01");
+  await put(lab, "Colour image", colourPng());
+  await put(lab, "Depth map", depthPng());
+  await lab.reaches("ready");
+  await put(lab, "Colour mask", maskPng(pair.image.mask, "mask.png"));
+  await lab.reaches("ready");
+  await page.locator("#fields-method").getByLabel("Light", { exact: true }).filter({ visible: true }).fill([...pair.light].join(" "));
+  await page.keyboard.press("Enter");
+  await expect(page.getByText("guessed: linear")).toBeAttached();
+  await page.getByLabel("Speed").selectOption({ label: "as fast as possible" });
+  await page.getByRole("button", { name: "Play" }).click();
+  await lab.reaches("converged");
+  const beta = page.locator("#pose tbody tr").nth(2).locator("td").first();
+  await expect.poll(async () => Math.abs(Number(await beta.textContent()) - 12)).toBeLessThan(1);
+  await expect(page.locator("#pose-error")).toBeHidden();
+});
+
+test("a .npy depth map gives the same picture as the sample it was made of", async ({ lab }) => {
+  await lab.open("beta=12");
+  const truth = await lab.fingerprint("Given depth");
+  await lab.page.getByRole("button", { name: "Own files" }).click();
+  await put(lab, "Colour image", colourPng());
+  await put(lab, "Depth map", depthNpy());
+  await put(lab, "Depth mask", maskPng(pair.depth.mask, "mask.png"));
+  await lab.reaches("ready");
+  expect(await lab.fingerprint("Given depth")).toBe(truth);
+});
+
+test("bad files are named in words and nothing is lost", async ({ lab, page }) => {
+  await lab.open();
+  const shown = await lab.fingerprint("Given depth");
+  await page.getByRole("button", { name: "Own files" }).click();
+  const whole = colourPng();
+  await put(lab, "Depth map", depthNpy());
+  await put(lab, "Colour image", { ...whole, name: "cut.png", buffer: whole.buffer.subarray(0, whole.buffer.length / 2) });
+  await lab.reaches("error");
+  await expect(page.locator(".slot").first()).toContainText("cut.png: this PNG is damaged or cut off");
+
+  await put(lab, "Colour image", { name: "notes.txt", mimeType: "text/plain", buffer: Buffer.from("a list of things") });
+  await expect(page.locator(".slot").first()).toContainText("notes.txt");
+  await lab.reaches("error");
+
+  await put(lab, "Colour image", whole);
+  await lab.reaches("ready");
+  await put(lab, "Depth map", { name: "depth.npy", mimeType: "application/octet-stream", buffer: Buffer.from("also no array") });
+  await lab.reaches("error");
+  await expect(page.locator(".slot").nth(1)).toContainText("depth.npy");
+
+  // The pair from before is still there and still runs.
+  expect(await lab.fingerprint("Given depth")).not.toBe(0);
+  await page.keyboard.press("s");
+  await expect(lab.iteration).toHaveText("1");
+  await page.getByRole("button", { name: "Sample", exact: true }).click();
+  await lab.reaches("ready");
+  expect(await lab.fingerprint("Given depth")).toBe(shown);
+});
+
+test("a number out of range is refused beside its field", async ({ lab, page }) => {
+  await lab.open();
+  await page.keyboard.press("s");
+  await expect(lab.iteration).toHaveText("1");
+  await page.getByText("Weights", { exact: true }).click();
+  const prior = page.getByLabel("λ shape prior", { exact: true });
+  await prior.fill("-1");
+  await prior.press("Enter");
+  await expect(page.locator(".field", { has: prior })).toContainText("must be a finite number, zero or above");
+  await expect(lab.iteration).toHaveText("1");
+  await page.getByRole("button", { name: "Undo" }).click();
+  await lab.reaches("ready");
+  await expect(page.locator(".field", { has: prior })).not.toContainText("must be");
+});
+
+/** A JPEG as a phone held upright writes it: the sensor's landscape, and a tag that says which way is up. */
+function phonePhoto(jpeg: Buffer): Upload {
+  const exif = Buffer.from("457869660000" + "49492a0008000000" + "0100" + "120103000100000006000000" + "00000000", "hex");
+  const length = Buffer.alloc(2);
+  length.writeUInt16BE(exif.length + 2);
+  const buffer = Buffer.concat([jpeg.subarray(0, 2), Buffer.from([0xff, 0xe1]), length, exif, jpeg.subarray(2)]);
+  return { name: "phone.jpg", mimeType: "image/jpeg", buffer };
+}
+
+test("a phone's photo is turned upright, and a dropped file is taken", async ({ lab, page }) => {
+  await openFiles(lab);
+  const landscape = await page.evaluate(async () => {
+    const canvas = new OffscreenCanvas(80, 48);
+    const context = canvas.getContext("2d");
+    for (let x = 0; context && x < 80; x++) {
+      context.fillStyle = `hsl(${4 * x} 40% 60%)`;
+      context.fillRect(x, 0, 1, 48);
+    }
+    return [...new Uint8Array(await (await canvas.convertToBlob({ type: "image/jpeg" })).arrayBuffer())];
+  });
+  await put(lab, "Depth map", depthNpy());
+  const photo = phonePhoto(Buffer.from(landscape));
+  const carried = await page.evaluateHandle((bytes) => {
+    const transfer = new DataTransfer();
+    transfer.items.add(new File([new Uint8Array(bytes)], "phone.jpg", { type: "image/jpeg" }));
+    return transfer;
+  }, [...photo.buffer]);
+  await page.locator(".drop").first().dispatchEvent("drop", { dataTransfer: carried });
+  await expect(page.locator(".slot").first()).toContainText("phone.jpg");
+  await lab.reaches("ready");
+  await expect(page.locator('canvas[aria-label^="Colour:"]')).toHaveAttribute("width", "48");
+});
+
+test("a picture that is too large is scaled down with its camera, and says so", async ({ lab, page }) => {
+  await openFiles(lab);
+  const [width, height] = [4104, 16];
+  const data = Uint8Array.from({ length: 3 * width * height }, (_, i) => 60 + ((i * 7) % 150));
+  await put(lab, "Depth map", depthNpy());
+  await put(lab, "Colour image", { name: "wide.png", mimeType: "image/png", buffer: Buffer.from(encode({ width, height, data, channels: 3, depth: 8 })) });
+  await expect(page.locator(".slot").first()).toContainText("scaled down by 2");
+  await lab.reaches("ready");
+});

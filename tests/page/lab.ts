@@ -1,0 +1,52 @@
+/** What every test of the page needs: the Lab, opened, with an ear on the console. */
+
+import { test as base, expect, type Locator, type Page } from "@playwright/test";
+
+export { expect };
+
+export class Lab {
+  readonly page: Page;
+  readonly complaints: string[] = [];
+
+  constructor(page: Page) {
+    this.page = page;
+    page.on("pageerror", (error) => this.complaints.push(error.message));
+    page.on("console", (message) => {
+      if (message.type() === "error") this.complaints.push(message.text());
+    });
+  }
+
+  async open(settings = ""): Promise<void> {
+    await this.page.goto(`./${settings ? `#${settings}` : ""}`);
+    await this.reaches("ready");
+  }
+
+  async reaches(state: string): Promise<void> {
+    await expect(this.page.locator("#status")).toHaveAttribute("data-state", state);
+  }
+
+  get iteration(): Locator {
+    return this.page.locator("#iteration");
+  }
+
+  /** A hash of a canvas' pixels: enough to see that something was drawn. */
+  fingerprint(label: string): Promise<number> {
+    return this.page.locator(`canvas[aria-label^="${label}:"]`).evaluate((canvas: HTMLCanvasElement) => {
+      const data = canvas.getContext("2d")?.getImageData(0, 0, canvas.width, canvas.height).data ?? new Uint8ClampedArray();
+      return data.reduce((sum, value) => (sum * 31 + value) % 1_000_003, 7);
+    });
+  }
+
+  async errorDegrees(): Promise<number> {
+    return Number(await this.page.locator("#pose-error").getAttribute("data-degrees"));
+  }
+}
+
+/** Fails on any error in the console, whatever else the test looks at. */
+export const test = base.extend<{ lab: Lab }>({
+  lab: async ({ page }, use) => {
+    const lab = new Lab(page);
+    await use(lab);
+    expect(lab.complaints).toEqual([]);
+  },
+});

@@ -1,0 +1,65 @@
+/** Small and large, dark and light. */
+
+import { expect, test } from "./lab";
+
+for (const width of [390, 1280, 1600]) {
+  test(`nothing sticks out at ${width} px`, async ({ lab, page }) => {
+    await page.setViewportSize({ width, height: 844 });
+    await lab.open();
+    const inner = await page.evaluate(() => document.documentElement.scrollWidth);
+    expect(inner).toBeLessThanOrEqual(width);
+    await expect(page.getByRole("button", { name: "Play" })).toBeInViewport();
+  });
+}
+
+test("on a phone the input is folded and the views can be swiped", async ({ lab, page }) => {
+  await page.setViewportSize({ width: 390, height: 844 });
+  await lab.open();
+  await expect(page.getByLabel("Surface", { exact: true })).toBeHidden();
+  await page.getByText("Input", { exact: true }).click();
+  await expect(page.getByLabel("Surface", { exact: true })).toBeVisible();
+  const swiped = await page.locator("#image-views").evaluate((row) => row.scrollWidth > row.clientWidth);
+  expect(swiped).toBe(true);
+});
+
+test("dark and light follow the system, and the visitor", async ({ lab, page }) => {
+  const lightness = () =>
+    page.evaluate(() => {
+      const numbers = getComputedStyle(document.documentElement).backgroundColor.match(/[\d.]+/g) ?? [];
+      return numbers.slice(0, 3).reduce((sum, value) => sum + Number(value), 0) / 3;
+    });
+  await page.emulateMedia({ colorScheme: "dark" });
+  await lab.open();
+  expect(await lightness()).toBeLessThan(64);
+  await page.emulateMedia({ colorScheme: "light" });
+  expect(await lightness()).toBeGreaterThan(192);
+  await page.getByRole("button", { name: "Switch to dark colours" }).click();
+  expect(await lightness()).toBeLessThan(64);
+  await page.reload();
+  expect(await lightness()).toBeLessThan(64);
+});
+
+test("the first paint needs little, and nothing comes from elsewhere", async ({ lab, page }) => {
+  const elsewhere: string[] = [];
+  const home = new URL(test.info().project.use.baseURL ?? "").host;
+  page.on("request", (request) => {
+    const url = new URL(request.url());
+    if (url.protocol.startsWith("http") && url.host !== home) elsewhere.push(request.url());
+  });
+  // What the document itself asks for, static imports included; chunks that load later are not in it.
+  const html = await (await page.request.get("./")).text();
+  const early = [...html.matchAll(/<(?:script|link rel="modulepreload")[^>]* (?:src|href)="([^"]+\.js)"/g)].map(([, path]) => path ?? "");
+  const { gzipSync } = await import("node:zlib");
+  let bytes = 0;
+  for (const path of early) bytes += gzipSync(await (await page.request.get(path)).body()).length;
+  expect(bytes).toBeGreaterThan(10_000);
+  expect(bytes).toBeLessThan(60_000);
+  await lab.open();
+  expect(elsewhere).toEqual([]);
+});
+
+test("the shortest page runs on the main thread", async ({ lab, page }) => {
+  await page.goto("./shortest.html");
+  await expect(page.locator("output")).toHaveText(/ converged: beta (19|20)\.\d\d \(true: 20\)$/);
+  expect(lab.complaints).toEqual([]);
+});

@@ -1,0 +1,38 @@
+/** The few lines that make building a document in plain TypeScript pleasant. */
+
+type Attributes = Record<string, string | number | boolean | undefined>;
+
+/** An element with attributes and children; `true` sets a bare attribute, `false` and `undefined` leave it out. */
+export function make<K extends keyof HTMLElementTagNameMap>(
+  tag: K,
+  attributes: Attributes = {},
+  ...children: (Node | string)[]
+): HTMLElementTagNameMap[K] {
+  const element = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes)) {
+    if (value === undefined || value === false) continue;
+    element.setAttribute(name, value === true ? "" : String(value));
+  }
+  element.append(...children);
+  return element;
+}
+
+/** The element with this id; the document and the script belong together, so its absence is a mistake of ours. */
+export function byId<T extends HTMLElement>(id: string, type: abstract new () => T): T {
+  const element = document.getElementById(id);
+  if (!(element instanceof type)) throw new Error(`The page has no ${type.name} #${id}.`);
+  return element;
+}
+
+/** A colour token as the browser computes it, for canvases that cannot read custom properties. */
+export function ink(token: string): string {
+  const probe = make("i", { style: `color: var(--${token}); display: none` });
+  document.body.append(probe);
+  const colour = getComputedStyle(probe).color;
+  probe.remove();
+  return colour;
+}
+
+let counter = 0;
+/** An id that nothing else on the page has. */
+export const freshId = (stem: string): string => `${stem}-${++counter}`;

@@ -1,0 +1,121 @@
+/** The page's side of the worker: calls that return promises, and a fresh worker when one has panicked or is too busy. */
+
+import type { Answer, Calls, Fault, Kind } from "./protocol";
+
+/** A refusal or failure of the library, as the page sees it. */
+export class EngineError extends Error {
+  readonly code: string;
+  readonly field: string | undefined;
+  readonly fatal: boolean;
+
+  constructor(fault: Fault) {
+    super(fault.message);
+    this.name = "EngineError";
+    this.code = fault.code;
+    this.field = fault.field;
+    this.fatal = fault.fatal;
+  }
+}
+
+/** How long, in milliseconds, a new wish waits for the answer to an old one before the worker is replaced. */
+const PATIENCE = 400;
+
+interface Pending {
+  resolve(reply: Calls[Kind]["reply"]): void;
+  reject(error: EngineError): void;
+}
+
+export interface EngineHooks {
+  /** Hears how many bytes of the module have arrived. */
+  onLoad(bytes: number): void;
+  /** The worker is gone, and with it the input that it held. */
+  onLost(): void;
+}
+
+export class Engine {
+  #worker: Worker | undefined;
+  /** Before its first answer a worker is still loading; to replace it then would only load everything again. */
+  #loaded = false;
+  #pending = new Map<number, Pending>();
+  #resting: (() => void)[] = [];
+  #next = 0;
+  readonly #hooks: EngineHooks;
+
+  constructor(hooks: EngineHooks) {
+    this.#hooks = hooks;
+  }
+
+  call<K extends Kind>(kind: K, request: Calls[K]["request"]): Promise<Calls[K]["reply"]> {
+    const id = this.#next++;
+    return new Promise((resolve, reject) => {
+      this.#pending.set(id, { resolve, reject });
+      this.#worker ??= this.#spawn();
+      this.#worker.postMessage({ id, kind, ...request });
+    });
+  }
+
+  /** Resolves when nothing is under way any more. What takes too long is broken off, and its caller hears so. */
+  async interrupt(): Promise<void> {
+    if (this.#pending.size === 0) return;
+    const rest = new Promise<void>((resolve) => this.#resting.push(resolve));
+    const impatient = setTimeout(() => {
+      if (this.#loaded) this.#drop({ code: "interrupted", message: "broken off for something newer", fatal: false });
+    }, PATIENCE);
+    await rest;
+    clearTimeout(impatient);
+  }
+
+  #spawn(): Worker {
+    const worker = new Worker(new URL("./worker.ts", import.meta.url), { type: "module" });
+    // What a worker said before its end may arrive after it.
+    worker.onmessage = (event: MessageEvent<Answer>) => {
+      if (worker === this.#worker) this.#hear(event.data);
+    };
+    worker.onerror = (event) => {
+      event.preventDefault();
+      this.#drop(panic(event.message || "The worker could not be loaded."));
+    };
+    return worker;
+  }
+
+  #hear(answer: Answer): void {
+    if (answer.id === null) {
+      this.#hooks.onLoad(answer.loaded);
+      return;
+    }
+    this.#loaded = true;
+    const pending = this.#pending.get(answer.id);
+    this.#pending.delete(answer.id);
+    if (answer.ok) {
+      pending?.resolve(answer.reply);
+    } else {
+      if (answer.fault.fatal) this.#drop(panic(answer.fault.message));
+      pending?.reject(new EngineError(answer.fault));
+    }
+    this.#restIfIdle();
+  }
+
+  #restIfIdle(): void {
+    if (this.#pending.size > 0) return;
+    const resting = this.#resting;
+    this.#resting = [];
+    for (const resolve of resting) resolve();
+  }
+
+  /**
+   * Nothing that a poisoned or busy instance still says can be used, so whoever waits for it hears the same fault. The
+   * next call makes a new worker; making it here would go round in circles where the worker cannot be loaded at all.
+   */
+  #drop(fault: Fault): void {
+    this.#worker?.terminate();
+    this.#worker = undefined;
+    this.#loaded = false;
+    this.#hooks.onLost();
+    const waiting = [...this.#pending.values()];
+    this.#pending.clear();
+    for (const { reject } of waiting) reject(new EngineError(fault));
+    this.#restIfIdle();
+  }
+}
+
+const panic = (message: string): Fault => ({ code: "panic", message, fatal: true });

@@ -1,0 +1,103 @@
+/** What the page and its worker say to each other. Both sides import this file and nothing else of one another. */
+
+import type { Options, Pinhole, Pose, SampleRequest, StepReport } from "../../pkg/index.js";
+
+/** A camera as it was typed in: how many numbers there are the library judges. */
+export type OwnCamera = Omit<Pinhole, "distortion"> & { distortion?: number[] };
+
+/** Files as dropped or picked, with what only their owner knows about them. */
+export interface OwnFiles {
+  colour: File;
+  depth: File;
+  colourMask?: File;
+  depthMask?: File;
+  colourCamera?: OwnCamera;
+  depthCamera?: OwnCamera;
+  /** Metres (or pixels) per stored unit of depth; the library's default without it. */
+  unit?: number;
+  /** Guessed from the bit depth without it. */
+  transfer?: "srgb" | "linear";
+}
+
+export type Source = { kind: "sample"; request: SampleRequest } | { kind: "files"; files: OwnFiles };
+
+/** Options whose light may also be "known": that of the sample, which only the worker holds. */
+export type LabOptions = Omit<Options, "light"> & { light: "known" | "estimate" | number[] };
+
+/**
+ * Numbers of one view as they are drawn: from the pixel at `left`, `top` on, every `stride`-th of the full grid, so that
+ * a frame costs the same for any size of input. Three channels are interleaved.
+ */
+export interface Raster {
+  left: number;
+  top: number;
+  width: number;
+  height: number;
+  stride: number;
+  channels: 1 | 3;
+  data: Float32Array;
+}
+
+/** The colour image, with what is needed to show it: its white level and whether it is already encoded for a screen. */
+export interface Picture extends Raster {
+  white: number;
+  encoded: boolean;
+}
+
+/** Everything that changes with a step. */
+export interface Frame {
+  /** One for each step since the last frame, the newest last. */
+  reports: StepReport[];
+  imageNormals: Raster;
+  imageDepth: Raster;
+  residual: Raster;
+  refinedDepth: Raster;
+  depthNormals: Raster;
+  /** xyz interleaved, both in the colour view's frame. */
+  imagePoints: Float32Array;
+  depthPoints: Float32Array;
+}
+
+/** Everything that changes with the input. */
+export interface Opened {
+  picture: Picture;
+  given: Raster;
+  /** Unit of the image's depth and of the depth view's. */
+  units: { image: "px" | "m"; depth: "px" | "m" };
+  /** What was guessed or changed on the way in, in words, keyed by the field it belongs to. */
+  notes: Record<string, string>;
+  /** The pose to find, where the input is a sample. */
+  truth: Pose | null;
+  frame: Frame;
+}
+
+export interface Catalogue {
+  surfaces: string[];
+  lights: string[];
+}
+
+/** Each request with its reply. */
+export interface Calls {
+  catalogue: { request: Record<never, never>; reply: Catalogue };
+  open: { request: { source: Source; options: LabOptions }; reply: Opened };
+  reset: { request: { options: LabOptions }; reply: Frame };
+  /** Steps until the time is up, at least one; a stage is always a single one. */
+  advance: { request: { by: "step" | "stage"; milliseconds: number }; reply: Frame };
+}
+
+export type Kind = keyof Calls;
+export type Request = { [K in Kind]: { id: number; kind: K } & Calls[K]["request"] }[Kind];
+
+/** An error in a form that survives the way between threads. */
+export interface Fault {
+  code: string;
+  message: string;
+  field?: string;
+  /** After a panic the instance is suspect, and without its module it is none: the worker has to be replaced. */
+  fatal: boolean;
+}
+
+export type Answer =
+  | { id: number; ok: true; reply: Calls[Kind]["reply"] }
+  | { id: number; ok: false; fault: Fault }
+  | { id: null; loaded: number };

@@ -1,0 +1,171 @@
+/** The thread that owns the estimator. It answers one request at a time and sends copies, never views on its memory. */
+
+import init, { BimodalError, Estimator, sample, sampleLights, sampleSurfaces } from "../../pkg/index.js";
+import wasm from "../../pkg/bimodal_stereo_bg.wasm?url";
+import type { ColorImage, DepthMap, Options, StepReport } from "../../pkg/index.js";
+import type { Answer, Calls, Fault, Frame, Kind, OwnFiles, Request, LabOptions, Source } from "./protocol";
+import { cutOfDepth, cutOfImage, givenDepth, picture, raster, thinned, type Cut } from "./rasters";
+
+interface Input {
+  image: ColorImage;
+  depth: DepthMap;
+  light?: ArrayLike<number>;
+}
+
+interface Experiment extends Input {
+  estimator: Estimator;
+  imageCut: Cut;
+  depthCut: Cut;
+}
+
+let experiment: Experiment | undefined;
+let isLoaded = false;
+const ready = load();
+// Whoever waits for it hears of a failure; that nobody waits yet is no failure of its own.
+ready.catch(() => {});
+
+async function load(): Promise<void> {
+  const response = await fetch(wasm);
+  if (!response.ok || !response.body) throw new Error(`status ${response.status}`);
+  let loaded = 0;
+  const counted = response.body.pipeThrough(
+    new TransformStream<Uint8Array, Uint8Array>({
+      transform(chunk, controller) {
+        loaded += chunk.length;
+        post({ id: null, loaded }, []);
+        controller.enqueue(chunk);
+      },
+    }),
+  );
+  await init(new Response(counted, { headers: { "content-type": "application/wasm" } }));
+  isLoaded = true;
+}
+
+function resolve({ light, ...rest }: LabOptions, input: Input): Options {
+  if (light !== "known") return { ...rest, light };
+  return { ...rest, light: input.light ?? "estimate" };
+}
+
+function frame({ estimator, imageCut, depthCut }: Experiment, reports: StepReport[]): Frame {
+  return {
+    reports,
+    imageNormals: raster(estimator.imageNormals(), 3, imageCut),
+    imageDepth: raster(estimator.imageDepth(), 1, imageCut),
+    residual: raster(estimator.residual(), 1, imageCut),
+    refinedDepth: raster(estimator.refinedDepth(), 1, depthCut),
+    depthNormals: raster(estimator.depthNormals(), 3, depthCut),
+    imagePoints: thinned(estimator.points("image")),
+    depthPoints: thinned(estimator.points("depth")),
+  };
+}
+
+/** The new input replaces the old one only when it has been accepted, so a refusal loses nothing. */
+async function open({ source, options }: Calls["open"]["request"]): Promise<Calls["open"]["reply"]> {
+  const opened = source.kind === "sample" ? fromSample(source) : await fromFiles(source.files);
+  const estimator = new Estimator(opened.image, opened.depth, resolve(options, opened));
+  experiment?.estimator.free();
+  const imageCut = cutOfImage(opened.image);
+  const depthCut = cutOfDepth(opened.depth);
+  experiment = { ...opened, estimator, imageCut, depthCut };
+  return {
+    picture: picture(opened.image, imageCut),
+    given: givenDepth(opened.depth, depthCut),
+    units: { image: opened.image.camera ? "m" : "px", depth: opened.depth.camera ? "m" : "px" },
+    notes: opened.notes,
+    truth: opened.truth,
+    frame: frame(experiment, [estimator.report]),
+  };
+}
+
+type Prepared = Input & Pick<Calls["open"]["reply"], "notes" | "truth">;
+
+function fromSample({ request }: Extract<Source, { kind: "sample" }>): Prepared {
+  const { image, depth, light, pose } = sample(request);
+  return { image, depth, light, truth: pose, notes: {} };
+}
+
+/** The decoders are large and only needed here, so they load with the first file. */
+async function fromFiles(files: OwnFiles): Promise<Prepared> {
+  const { readPair } = await import("./pair");
+  return { ...(await readPair(files)), truth: null };
+}
+
+function reset({ options }: Calls["reset"]["request"]): Frame {
+  const current = opened();
+  current.estimator.reset(resolve(options, current));
+  return frame(current, [current.estimator.report]);
+}
+
+function advance({ by, milliseconds }: Calls["advance"]["request"]): Frame {
+  const current = opened();
+  const { estimator } = current;
+  if (by === "stage") return frame(current, [estimator.stepStage()]);
+  const until = performance.now() + milliseconds;
+  const reports: StepReport[] = [];
+  do reports.push(estimator.step());
+  while (performance.now() < until && estimator.report.status === "running");
+  return frame(current, reports);
+}
+
+function opened(): Experiment {
+  if (!experiment) throw new Error("No input is open.");
+  return experiment;
+}
+
+function catalogue(): Calls["catalogue"]["reply"] {
+  return { surfaces: sampleSurfaces(), lights: sampleLights() };
+}
+
+function answer(request: Request): Promise<Calls[Kind]["reply"]> | Calls[Kind]["reply"] {
+  switch (request.kind) {
+    case "catalogue":
+      return catalogue();
+    case "open":
+      return open(request);
+    case "reset":
+      return reset(request);
+    case "advance":
+      return advance(request);
+  }
+}
+
+function fault(error: unknown): Fault {
+  if (error instanceof BimodalError) {
+    const { code, message, field } = error;
+    return { code, message, fatal: code === "panic" || !isLoaded, ...(field === undefined ? {} : { field }) };
+  }
+  const reason = error instanceof Error ? error.message : String(error);
+  const message = isLoaded ? reason : `the numerics could not be loaded (${reason})`;
+  return { code: "internal", message, fatal: error instanceof WebAssembly.RuntimeError || !isLoaded };
+}
+
+/** Every array of a reply is a copy of its own, so all of them may be transferred. */
+function buffers(value: unknown, found = new Set<ArrayBuffer>()): Set<ArrayBuffer> {
+  if (ArrayBuffer.isView(value)) {
+    if (value.buffer instanceof ArrayBuffer) found.add(value.buffer);
+  } else if (typeof value === "object" && value !== null) {
+    for (const inner of Object.values(value)) buffers(inner, found);
+  }
+  return found;
+}
+
+function post(message: Answer, transfer: Transferable[]): void {
+  self.postMessage(message, { transfer });
+}
+
+async function handle(request: Request): Promise<void> {
+  const { id } = request;
+  try {
+    await ready;
+    const reply = await answer(request);
+    post({ id, ok: true, reply }, [...buffers(reply)]);
+  } catch (error) {
+    post({ id, ok: false, fault: fault(error) }, []);
+  }
+}
+
+/** Decoding waits, so requests are queued: none may see another's half-opened input. */
+let last: Promise<void> = Promise.resolve();
+self.onmessage = (event: MessageEvent<Request>) => {
+  last = last.then(() => handle(event.data));
+};

@@ -1,0 +1,21 @@
+/** Single keys for what is done often. They rest while the visitor types or a dialog is open. */
+
+const typing = "input:not([type=checkbox], [type=range], [type=file]), select, textarea, [contenteditable]";
+
+/** Elements that a space or an enter already means something to. */
+const pressable = "button, a, summary, label, input";
+
+export function listenToKeys(actions: Record<string, () => void>): void {
+  document.addEventListener("keydown", (event) => {
+    if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey) return;
+    const target = event.target;
+    if (target instanceof Element && target.closest(typing)) return;
+    if (document.querySelector("dialog[open]")) return;
+    if (event.key === " " && target instanceof Element && target.closest(pressable)) return;
+    const action = actions[event.key];
+    if (!action) return;
+    // Escape also closes what the browser has opened.
+    if (event.key !== "Escape") event.preventDefault();
+    action();
+  });
+}

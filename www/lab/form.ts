@@ -1,0 +1,171 @@
+/** Fields made from the settings' description, each with its label, unit, hint and a place for its error. */
+
+import { freshId, make } from "../dom";
+import { fields, type ChoiceField, type Field, type Group, type ListField, type NumberField, type Origin, type Settings, type Value } from "./settings";
+import type { Store } from "./store";
+
+interface Control {
+  field: Field;
+  row: HTMLElement;
+  note: HTMLElement;
+  remark: HTMLElement;
+  inputs: HTMLElement[];
+  show(value: Value): void;
+}
+
+export class Form {
+  #controls = new Map<string, Control>();
+  readonly #store: Store;
+
+  constructor(store: Store) {
+    this.#store = store;
+    store.listen((settings) => this.#showAll(settings));
+  }
+
+  /** Builds the fields of a group into `parent`. */
+  mount(group: Group, parent: HTMLElement): void {
+    for (const field of fields.filter((each) => each.group === group)) {
+      const control = this.#build(field);
+      this.#controls.set(field.key, control);
+      control.show(this.#store.settings[field.key] ?? null);
+      parent.append(control.row);
+    }
+  }
+
+  /** Shows only the fields that mean something for this source, and what their present values entail. */
+  adapt(settings: Settings, source: Origin): void {
+    for (const { field, row, remark } of this.#controls.values()) {
+      row.hidden = !(field.when?.(settings, source) ?? true);
+      remark.textContent = field.remark?.(settings[field.key] ?? null, source) ?? "";
+    }
+  }
+
+  /** The choices that only the library knows. */
+  offer(key: string, values: readonly string[]): void {
+    const select = this.#controls.get(key)?.inputs[0];
+    if (!(select instanceof HTMLSelectElement)) return;
+    select.replaceChildren(...values.map((value) => make("option", { value }, value)));
+    select.value = String(this.#store.settings[key]);
+  }
+
+  /** Puts an error beside the field it names; false when no field answers to that path. */
+  complain(path: string, message: string): boolean {
+    const candidates = [...this.#controls.values()].filter(({ field, row }) => !row.hidden && (path === field.path || path.startsWith(`${field.path}.`)));
+    const control = candidates.sort((a, b) => b.field.path.length - a.field.path.length)[0];
+    if (!control) return false;
+    mark(control, message, "error");
+    control.row.closest("details")?.setAttribute("open", "");
+    return true;
+  }
+
+  /** A remark that is no error, such as what was guessed. */
+  remark(path: string, message: string): void {
+    const control = [...this.#controls.values()].find(({ field }) => field.path === path);
+    if (control) mark(control, message, "note");
+  }
+
+  clearMessages(): void {
+    for (const control of this.#controls.values()) mark(control, "", "note");
+  }
+
+  #showAll(settings: Settings): void {
+    for (const { field, show } of this.#controls.values()) show(settings[field.key] ?? null);
+  }
+
+  #build(field: Field): Control {
+    const id = freshId("field");
+    const note = make("p", { class: "note", id: `${id}-note`, hidden: true });
+    const change = (value: Value) => this.#store.change({ [field.key]: value });
+    const built = build(field, id, change);
+    const remark = make("p", { class: "note" });
+    const heading = make("span", { class: "heading" }, make("label", { for: id }, field.label));
+    const row = make("div", { class: `field ${field.kind}` }, heading, ...built.inputs);
+    if (field.kind === "number" && field.unit) row.append(make("span", { class: "unit" }, field.unit));
+    for (const input of built.inputs) input.setAttribute("aria-describedby", note.id);
+    if (field.hint) {
+      const hint = make("p", { class: "note", id: `${id}-hint`, hidden: true }, field.hint);
+      heading.append(hintButton(field.label, hint));
+      row.append(hint);
+      for (const input of built.inputs) input.setAttribute("aria-description", field.hint);
+    }
+    row.append(remark, note);
+    return { field, row, note, remark, ...built };
+  }
+}
+
+/** A title would be out of reach for fingers, so the hint unfolds below its field. */
+function hintButton(label: string, hint: HTMLElement): HTMLButtonElement {
+  const button = make("button", { type: "button", class: "quiet hint", "aria-expanded": "false", "aria-controls": hint.id, "aria-label": `What is "${label}"?` }, "?");
+  button.addEventListener("click", () => {
+    hint.hidden = !hint.hidden;
+    button.setAttribute("aria-expanded", String(!hint.hidden));
+  });
+  return button;
+}
+
+function mark({ note, inputs }: Control, message: string, tone: "error" | "note"): void {
+  note.textContent = message;
+  note.hidden = message === "";
+  note.classList.toggle("error", tone === "error" && message !== "");
+  for (const input of inputs) input.toggleAttribute("aria-invalid", tone === "error" && message !== "");
+}
+
+type Built = Pick<Control, "inputs" | "show">;
+
+function build(field: Field, id: string, change: (value: Value) => void): Built {
+  switch (field.kind) {
+    case "number":
+      return numbers(field, id, change);
+    case "choice":
+      return choice(field, id, change);
+    case "list":
+      return list(field, id, change);
+    case "flag":
+      return flag(id, change);
+  }
+}
+
+function numbers(field: NumberField, id: string, change: (value: Value) => void): Built {
+  const limits = { min: field.min, max: field.max, step: field.step };
+  // The library judges the numbers, in words that a browser's bubble does not have; so no limits but those of the slider.
+  const exact = make("input", { id, type: "number", step: "any", inputmode: "decimal", placeholder: field.empty ?? "default" });
+  const read = (input: HTMLInputElement) => change(input.value === "" ? null : input.valueAsNumber);
+  exact.addEventListener("change", () => read(exact));
+  if (!field.slider) return { inputs: [exact], show: (value) => (exact.value = value === null ? "" : String(value)) };
+  const slider = make("input", { type: "range", ...limits, "aria-label": field.label });
+  slider.addEventListener("input", () => (exact.value = slider.value));
+  slider.addEventListener("change", () => read(slider));
+  return {
+    inputs: [exact, slider],
+    show(value) {
+      exact.value = value === null ? "" : String(value);
+      slider.value = exact.value;
+    },
+  };
+}
+
+function choice(field: ChoiceField, id: string, change: (value: Value) => void): Built {
+  const options = field.choices ?? [[field.initial, field.initial]];
+  const select = make("select", { id }, ...options.map(([value, label]) => make("option", { value }, label)));
+  select.addEventListener("change", () => change(select.value));
+  return {
+    inputs: [select],
+    show(value) {
+      const wanted = String(value);
+      if (![...select.options].some((option) => option.value === wanted)) select.append(make("option", { value: wanted }, wanted));
+      select.value = wanted;
+    },
+  };
+}
+
+function list(field: ListField, id: string, change: (value: Value) => void): Built {
+  const line = make("input", { id, type: "text", placeholder: field.empty, spellcheck: "false", autocomplete: "off" });
+  line.addEventListener("change", () => change(line.value.trim()));
+  return { inputs: [line], show: (value) => (line.value = String(value ?? "")) };
+}
+
+function flag(id: string, change: (value: Value) => void): Built {
+  const box = make("input", { id, type: "checkbox" });
+  box.addEventListener("change", () => change(box.checked));
+  return { inputs: [box], show: (value) => (box.checked = value === true) };
+}

@@ -1,0 +1,163 @@
+/** All pictures of the Lab: seven canvases, the clouds, and the charts. */
+
+import type { StepReport } from "../../pkg/index.js";
+import { Painter } from "../draw/painter";
+import { Probe } from "../draw/probe";
+import { Scale } from "../draw/scale";
+import { View, type Content } from "../draw/view";
+import { byId, make } from "../dom";
+import type { Charts } from "../draw/charts";
+import type { Clouds } from "../draw/clouds";
+import type { Frame, Opened } from "../engine/protocol";
+
+export class Gallery {
+  readonly #painter = new Painter();
+  readonly #box = byId("views", HTMLElement);
+  readonly #figures: HTMLElement[] = [];
+  readonly #picture: View;
+  readonly #imageNormals: View;
+  readonly #imageDepth: View;
+  readonly #residual: View;
+  readonly #given: View;
+  readonly #refinedDepth: View;
+  readonly #depthNormals: View;
+  #units: Opened["units"] = { image: "px", depth: "px" };
+  #clouds: Clouds | undefined;
+  #charts: Charts | undefined;
+  #frame: Frame | undefined;
+  #history: readonly StepReport[] = [];
+  /** Whether the clouds are to be looked at anew: a new input, or its first real surface. */
+  #fresh = true;
+
+  constructor() {
+    const image = new Probe();
+    const depth = new Probe();
+    // Led by the refined depth, from which flying pixels are trimmed: they would stretch the range.
+    const depths = new Scale("viridis");
+    const view = (parent: string, probe: Probe, title: string, description: string, content: Content): View => {
+      const built = new View({ title, description, content, probe, painter: this.#painter });
+      this.#place(built.element, parent, title);
+      return built;
+    };
+    this.#picture = view("image-views", image, "Colour", "the colour image as it was given", { kind: "picture" });
+    this.#imageNormals = view("image-views", image, "Normals", "normals found from shading in the colour image", { kind: "normals" });
+    this.#imageDepth = view("image-views", image, "Depth", "depth of the colour image, integrated from its normals", { kind: "scalar", scale: new Scale("viridis"), leads: true });
+    this.#given = view("depth-views", depth, "Given depth", "the depth map as it was given", { kind: "scalar", scale: depths, leads: false });
+    this.#refinedDepth = view("depth-views", depth, "Refined depth", "the depth map after refinement", { kind: "scalar", scale: depths, leads: true });
+    this.#depthNormals = view("depth-views", depth, "Refined normals", "normals of the depth map after refinement", { kind: "normals" });
+    this.#place(byId("clouds", HTMLElement), undefined, "Both surfaces");
+    this.#residual = view("joint-views", image, "Colour residual", "how far the predicted colours are from the image", { kind: "scalar", scale: new Scale("magma", true), leads: true });
+    void this.#loadCharts();
+    this.#loadCloudsWhenSeen();
+  }
+
+  /** Resolves when the new input is on the screen. */
+  open({ picture, given, units, frame }: Opened): Promise<void> {
+    this.#units = units;
+    this.#fresh = true;
+    this.#picture.show(picture);
+    this.#given.show(given, units.depth);
+    return this.show(frame, []);
+  }
+
+  /** Resolves when the frame is on the screen, which is when the next one may be asked for. */
+  show(frame: Frame, history: readonly StepReport[]): Promise<void> {
+    this.#frame = frame;
+    this.#history = history;
+    this.#imageNormals.show(frame.imageNormals);
+    this.#imageDepth.show(frame.imageDepth, this.#units.image);
+    this.#residual.show(frame.residual, "log");
+    this.#refinedDepth.show(frame.refinedDepth, this.#units.depth);
+    this.#depthNormals.show(frame.depthNormals);
+    this.#showClouds();
+    this.#showCharts();
+    return this.#painter.drawn();
+  }
+
+  recolour(): void {
+    this.#clouds?.recolour();
+    this.#charts?.recolour();
+  }
+
+  /** One view alone and large, or all again. Views count from 1. */
+  enlarge(number: number | null): void {
+    const chosen = number === null ? undefined : this.#figures[number - 1];
+    const wasOpen = chosen?.hasAttribute("data-large") ?? true;
+    for (const figure of this.#figures) figure.toggleAttribute("data-large", figure === chosen && !wasOpen);
+    this.#box.toggleAttribute("data-single", !wasOpen);
+    for (const figure of this.#figures) {
+      const button = figure.querySelector(".enlarge");
+      button?.setAttribute("aria-pressed", String(figure.hasAttribute("data-large")));
+    }
+    if (!wasOpen) chosen?.querySelector("canvas")?.focus({ preventScroll: true });
+  }
+
+  get count(): number {
+    return this.#figures.length;
+  }
+
+  #place(figure: HTMLElement, parent: string | undefined, title: string): void {
+    this.#figures.push(figure);
+    const number = this.#figures.length;
+    const button = make("button", { type: "button", class: "quiet enlarge", "aria-pressed": "false", "aria-label": `Enlarge ${title}`, title: `Enlarge (${number})` }, String(number));
+    button.addEventListener("click", () => this.enlarge(number));
+    figure.querySelector("figcaption")?.prepend(button);
+    if (parent) byId(parent, HTMLElement).append(figure);
+  }
+
+  #showClouds(): void {
+    const frame = this.#frame;
+    if (!frame || !this.#clouds) return;
+    const iteration = frame.reports.at(-1)?.iteration ?? 0;
+    const clouds = this.#clouds;
+    const fresh = this.#fresh;
+    this.#painter.request(this.#clouds, () => {
+      clouds.show(frame.imagePoints, frame.depthPoints, fresh);
+      clouds.draw();
+    });
+    this.#fresh = fresh && iteration < 1;
+  }
+
+  #showCharts(): void {
+    const charts = this.#charts;
+    if (charts) this.#painter.request(charts, () => charts.show(this.#history));
+  }
+
+  async #loadCharts(): Promise<void> {
+    const { Charts } = await import("../draw/charts");
+    this.#charts = new Charts(byId("energy-chart", HTMLElement), byId("rotation-chart", HTMLElement));
+    this.#showCharts();
+  }
+
+  #loadCloudsWhenSeen(): void {
+    const box = byId("clouds-box", HTMLElement);
+    const seen = new IntersectionObserver((entries) => {
+      if (!entries.some((entry) => entry.isIntersecting)) return;
+      seen.disconnect();
+      void this.#loadClouds(box);
+    }, { rootMargin: "200px" });
+    seen.observe(box);
+  }
+
+  async #loadClouds(box: HTMLElement): Promise<void> {
+    const canvas = byId("clouds-canvas", HTMLCanvasElement);
+    const fallback = byId("clouds-note", HTMLElement);
+    try {
+      const { Clouds } = await import("../draw/clouds");
+      const redraw = {};
+      const clouds = new Clouds(canvas, box, () => this.#painter.request(redraw, () => clouds.draw()));
+      this.#clouds = clouds;
+      fallback.hidden = true;
+      canvas.addEventListener("keydown", (event) => {
+        const turn = { ArrowLeft: [-10, 0], ArrowRight: [10, 0], ArrowUp: [0, -10], ArrowDown: [0, 10] }[event.key];
+        if (!turn) return;
+        event.preventDefault();
+        clouds.turn(turn[0] ?? 0, turn[1] ?? 0);
+      });
+      byId("clouds-home", HTMLButtonElement).addEventListener("click", () => clouds.home());
+      this.#showClouds();
+    } catch {
+      fallback.textContent = "This browser offers no WebGL, so the clouds cannot be turned here.";
+    }
+  }
+}

@@ -1,0 +1,296 @@
+/** The Lab: settings in, frames out. It joins the parts and holds the state of one experiment. */
+
+import { byId } from "../dom";
+import { Engine, EngineError } from "../engine/engine";
+import type { Calls, Frame, Opened, OwnFiles, Source } from "../engine/protocol";
+import type { Pose, StepReport } from "../../pkg/index.js";
+import { Form } from "./form";
+import { Gallery } from "./gallery";
+import { Intake } from "./intake";
+import { Player } from "./player";
+import { PoseTable } from "./posetable";
+import { camera, fields, fromLink, inputGroups, runOptions, sampleRequest, type Origin, type Settings } from "./settings";
+import { download, writeAddress } from "./share";
+import { Store } from "./store";
+import { Strip, type Notice } from "./strip";
+import { verdict } from "./verdict";
+
+export class Lab {
+  readonly store = new Store(fromLink(location.hash));
+  readonly gallery = new Gallery();
+  readonly player: Player;
+  readonly #engine: Engine;
+  readonly #form = new Form(this.store);
+  readonly #intake = new Intake(() => void this.#reopen());
+  readonly #strip = new Strip(byId("stages", HTMLElement));
+  readonly #pose = new PoseTable(byId("pose", HTMLTableElement));
+  readonly #message = byId("message", HTMLElement);
+  readonly #alert = byId("alert", HTMLElement);
+  #origin: Origin = "sample";
+  #truth: Opened["truth"] = null;
+  #notes: Opened["notes"] = {};
+  #length: Opened["units"]["image"] = "px";
+  #report: StepReport | undefined;
+  /** Where the loop began. */
+  #from: Pose | undefined;
+  /** One report for each completed iteration. */
+  #history: StepReport[] = [];
+  /** The input that was asked for last, accepted or not. */
+  #wanted: Source | undefined;
+  /** What is on the screen: to be opened again where the worker has lost it. */
+  #good: { source: Source; settings: Settings } | undefined;
+  /** What the worker holds, which may be an input that was overtaken before it could be shown. */
+  #held: Source | undefined;
+  /** What the page does or suffers apart from the loop; it stands in the status until the next frame is on the screen. */
+  #notice: { state: Notice; words: string } | undefined;
+  /** Counts beginnings, so that the answer to an overtaken one is dropped. */
+  #turn = 0;
+  /** The beginning under way, which steps wait for. */
+  #beginning: Promise<void> = Promise.resolve();
+  #offered = false;
+
+  constructor() {
+    this.#engine = new Engine({
+      onLoad: (bytes) => {
+        if (!this.#report) this.#announce("loading", `loading the numerics, ${Math.round(bytes / 1000)} kB`);
+      },
+      onLost: () => (this.#held = undefined),
+    });
+    this.player = new Player({
+      advance: (request) => this.#advance(request),
+      restart: () => this.#start(this.#wanted),
+      isFinished: () => this.#isFinished(),
+      onChange: () => this.#showState(),
+      onError: (error) => void this.#enter(this.#fail(error)),
+    });
+    for (const group of ["sample", "colour", "depth", "method", "weights", "loop"] as const) {
+      this.#form.mount(group, byId(`fields-${group}`, HTMLElement));
+    }
+    byId("slots", HTMLElement).append(this.#intake.element);
+    this.store.listen((settings, changed) => this.#settingsChanged(settings, changed));
+    this.#form.adapt(this.store.settings, this.#origin);
+  }
+
+  begin(): Promise<void> {
+    return this.#reopen();
+  }
+
+  /** Samples or own files; the last input stays on the screen until there is a new one. */
+  choose(origin: Origin): void {
+    this.#origin = origin;
+    this.#form.adapt(this.store.settings, origin);
+    void this.#reopen();
+  }
+
+  restart(): Promise<void> {
+    this.player.pause();
+    return this.#start(this.#wanted);
+  }
+
+  download(): void {
+    if (!this.#good || !this.#report) return;
+    const { source, settings } = this.#good;
+    download({ source: source.kind, settings, truth: this.#truth, report: this.#report, history: this.#history });
+  }
+
+  #settingsChanged(settings: Settings, changed: readonly string[]): void {
+    writeAddress(settings);
+    byId("undo", HTMLButtonElement).disabled = !this.store.canUndo;
+    this.#form.adapt(settings, this.#origin);
+    const input = fields.some(({ key, group }) => inputGroups.includes(group) && changed.includes(key));
+    void (input ? this.#reopen() : this.restart());
+  }
+
+  #source(): Source | undefined {
+    const settings = this.store.settings;
+    if (this.#origin === "sample") return { kind: "sample", request: sampleRequest(settings) };
+    const { colour, depth, ...masks } = this.#intake.files;
+    if (!colour || !depth) return undefined;
+    const files: OwnFiles = { colour, depth, ...masks };
+    const colourCamera = camera(settings, "colour");
+    const depthCamera = camera(settings, "depth");
+    if (colourCamera) files.colourCamera = colourCamera;
+    if (depthCamera) files.depthCamera = depthCamera;
+    if (typeof settings.unit === "number") files.unit = settings.unit;
+    if (settings.transfer === "srgb" || settings.transfer === "linear") files.transfer = settings.transfer;
+    return { kind: "files", files };
+  }
+
+  #reopen(): Promise<void> {
+    this.player.pause();
+    return this.#start(this.#source());
+  }
+
+  /** The loop from its beginning, on an input that the worker may already hold. */
+  #start(source: Source | undefined): Promise<void> {
+    return this.#enter(this.#attempt(source, ++this.#turn));
+  }
+
+  #enter(beginning: Promise<void>): Promise<void> {
+    this.#beginning = beginning;
+    return beginning;
+  }
+
+  async #attempt(source: Source | undefined, turn: number): Promise<void> {
+    this.#wanted = source;
+    this.#clearMessages();
+    if (!source) {
+      this.#announce("waiting", "waiting for both files");
+      return;
+    }
+    const settings = this.store.settings;
+    const options = runOptions(settings, source.kind);
+    this.#announce("loading", source === this.#good?.source ? "starting over" : "reading the input");
+    try {
+      await this.#offerChoices();
+      await this.#engine.interrupt();
+      if (turn !== this.#turn) return;
+      if (this.#held === source && source === this.#good?.source) {
+        const frame = await this.#engine.call("reset", { options });
+        if (turn !== this.#turn) return;
+        this.#history = [];
+        await this.#show(frame);
+      } else {
+        const opened = await this.#engine.call("open", { source, options });
+        this.#held = source;
+        if (turn !== this.#turn) return;
+        await this.#present(opened);
+      }
+      this.#good = { source, settings };
+      if (turn === this.#turn) this.#settle();
+    } catch (error) {
+      if (turn === this.#turn) await this.#fail(error);
+    }
+  }
+
+  async #offerChoices(): Promise<void> {
+    if (this.#offered) return;
+    this.#announce("loading", "loading the numerics");
+    const { surfaces, lights } = await this.#engine.call("catalogue", {});
+    this.#form.offer("surface", surfaces);
+    this.#form.offer("light", lights);
+    this.#offered = true;
+  }
+
+  async #present(opened: Opened): Promise<void> {
+    this.#truth = opened.truth;
+    this.#length = opened.units.image;
+    this.#history = [];
+    this.#notes = opened.notes;
+    this.#showNotes();
+    const drawn = this.gallery.open(opened);
+    this.#take(opened.frame);
+    await drawn;
+  }
+
+  async #advance(request: Calls["advance"]["request"]): Promise<boolean> {
+    await this.#beginning;
+    if (!this.#good || this.#isFinished()) return false;
+    const turn = this.#turn;
+    if (request.by === "stage") this.#strip.run();
+    try {
+      const frame = await this.#engine.call("advance", request);
+      if (turn !== this.#turn) return false;
+      await this.#show(frame);
+    } catch (error) {
+      // Whatever came in between has begun anew by itself.
+      if (turn !== this.#turn) return false;
+      throw error;
+    }
+    if (turn === this.#turn) this.#settle();
+    return !this.#isFinished();
+  }
+
+  #isFinished(): boolean {
+    return this.#report !== undefined && this.#report.status !== "running";
+  }
+
+  #show(frame: Frame): Promise<void> {
+    this.#take(frame);
+    return this.gallery.show(frame, this.#history);
+  }
+
+  #take({ reports }: Frame): void {
+    for (const report of reports) {
+      if (report.iteration === 0) this.#from = report.pose;
+      this.#report = report;
+      if (report.iteration > (this.#history.at(-1)?.iteration ?? 0)) this.#history.push(report);
+    }
+    this.#showState();
+  }
+
+  #announce(state: Notice, words: string): void {
+    this.#notice = { state, words };
+    this.#showState();
+  }
+
+  /** A new frame is on the screen: the loop speaks for itself again. */
+  #settle(): void {
+    this.#notice = undefined;
+    this.#showState();
+  }
+
+  #showState(): void {
+    const { playing } = this.player;
+    const report = this.#report;
+    if (report) {
+      const end = verdict(report, this.#from, this.#truth);
+      this.#pose.show(report, this.#from, this.#truth, this.#length);
+      this.#message.textContent = (!end && report.message) || "";
+      this.#strip.show(report, playing ? "playing" : report.iteration > 0 ? "paused" : "ready", end);
+    }
+    if (this.#notice) this.#strip.announce(this.#notice.state, this.#notice.words);
+    const play = byId("play", HTMLButtonElement);
+    play.setAttribute("aria-pressed", String(playing));
+    play.setAttribute("aria-label", playing ? "Pause" : "Play");
+  }
+
+  #clearMessages(): void {
+    this.#alert.hidden = true;
+    this.#showNotes();
+  }
+
+  /** What was guessed about the input stays beside the fields; errors go. */
+  #showNotes(): void {
+    this.#form.clearMessages();
+    this.#intake.clearMessages();
+    for (const [path, note] of Object.entries(this.#notes)) {
+      if (!this.#intake.remark(path, note)) this.#form.remark(path, note);
+    }
+  }
+
+  /** Says what is wrong beside the field it concerns; what was on the screen stays, and stays usable. */
+  async #fail(error: unknown): Promise<void> {
+    this.player.pause();
+    const message = error instanceof Error ? error.message : String(error);
+    const field = error instanceof EngineError ? error.field : undefined;
+    const placed = field !== undefined && this.#complain(field, message);
+    this.#alert.textContent = message;
+    this.#alert.hidden = placed;
+    this.#announce("error", placed ? "see the marked field" : "see the message");
+    if (this.#good && this.#held !== this.#good.source) await this.#recover(this.#good);
+  }
+
+  /** Beside its field a message need not repeat the field's name. */
+  #complain(field: string, message: string): boolean {
+    const words = message.startsWith(`${field}: `) ? message.slice(field.length + 2) : message;
+    return this.#intake.complain(field, words) || this.#form.complain(field, words);
+  }
+
+  /** The worker has lost what is on the screen, as after a panic: the same input again, from its beginning. */
+  async #recover({ source, settings }: { source: Source; settings: Settings }): Promise<void> {
+    this.#good = undefined; // should it fail once more, the page waits for another input
+    const turn = ++this.#turn;
+    try {
+      const opened = await this.#engine.call("open", { source, options: runOptions(settings, source.kind) });
+      this.#held = source;
+      if (turn !== this.#turn) return;
+      await this.#present(opened);
+      this.#good = { source, settings };
+    } catch (error) {
+      if (turn !== this.#turn) return;
+      this.#alert.textContent = `${this.#alert.textContent} ${error instanceof Error ? error.message : String(error)}`;
+      this.#alert.hidden = false;
+    }
+  }
+}

@@ -1,0 +1,104 @@
+/** Play, pause and step: asks the worker for the next frame when the last one has been drawn, and never earlier. */
+
+import type { Calls } from "../engine/protocol";
+
+type Advance = Calls["advance"]["request"];
+
+/** Paces of play, slow to fast: the least time between two frames and how long the worker may compute for one. */
+export const paces = [
+  { label: "2 per second", pause: 500, milliseconds: 0 },
+  { label: "8 per second", pause: 125, milliseconds: 0 },
+  { label: "one per frame", pause: 0, milliseconds: 0 },
+  { label: "as fast as possible", pause: 0, milliseconds: 30 },
+] as const;
+
+/** Iterations that take longer than this, in milliseconds, are played stage by stage: there is more to see, and pause obeys sooner. */
+const SLOW = 300;
+
+export interface PlayerHooks {
+  /** Computes and draws one frame; resolves when it is on the screen, true while the loop has more to do. */
+  advance(request: Advance): Promise<boolean>;
+  /** Starts the loop over; resolves when that is on the screen, or has been refused. */
+  restart(): Promise<void>;
+  isFinished(): boolean;
+  onChange(): void;
+  onError(error: unknown): void;
+}
+
+export class Player {
+  pace = 2;
+  #playing = false;
+  #turn = 0;
+  #waiting = false;
+  #underWay: Promise<boolean> = Promise.resolve(true);
+  readonly #hooks: PlayerHooks;
+
+  constructor(hooks: PlayerHooks) {
+    this.#hooks = hooks;
+  }
+
+  get playing(): boolean {
+    return this.#playing;
+  }
+
+  toggle(): void {
+    if (this.#playing) this.pause();
+    else void this.#play();
+  }
+
+  pause(): void {
+    if (!this.#playing) return;
+    this.#playing = false;
+    this.#hooks.onChange();
+  }
+
+  /** One press waits for the frame under way; more than one, as from a key held down, are too many. */
+  async step(by: Advance["by"]): Promise<void> {
+    this.pause();
+    if (this.#waiting) return;
+    this.#waiting = true;
+    await this.#underWay;
+    this.#waiting = false;
+    await this.#once({ by, milliseconds: 0 });
+  }
+
+  async #play(): Promise<void> {
+    // Whoever pauses and plays again must not end up with two loops.
+    const turn = ++this.#turn;
+    const isOn = () => this.#playing && turn === this.#turn;
+    this.#playing = true;
+    this.#hooks.onChange();
+    await this.#underWay;
+    if (isOn() && this.#hooks.isFinished()) await this.#hooks.restart();
+    let by: Advance["by"] = "step";
+    while (isOn()) {
+      const { pause, milliseconds } = paces[this.pace] ?? paces[2];
+      const began = performance.now();
+      const more = await this.#once({ by, milliseconds });
+      if (!more) break;
+      const spent = performance.now() - began;
+      if (spent > SLOW + milliseconds) by = "stage";
+      const rest = pause - spent;
+      if (rest > 0) await new Promise((resolve) => setTimeout(resolve, rest));
+    }
+    if (turn === this.#turn) this.pause();
+  }
+
+  /** False when there is nothing more to do. */
+  #once(request: Advance): Promise<boolean> {
+    this.#underWay = this.#attempt(request);
+    return this.#underWay;
+  }
+
+  async #attempt(request: Advance): Promise<boolean> {
+    try {
+      return await this.#hooks.advance(request);
+    } catch (error) {
+      this.#playing = false;
+      this.#hooks.onError(error);
+      return false;
+    } finally {
+      this.#hooks.onChange();
+    }
+  }
+}

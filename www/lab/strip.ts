@@ -1,0 +1,75 @@
+/** The stages as the spine of the page: the one that ran last is lit, its time stands below, a press explains it. */
+
+import type { StepReport } from "../../pkg/index.js";
+import { decimals } from "../draw/numbers";
+import { byId, make } from "../dom";
+import { stages, type StageText } from "./stages";
+import type { Verdict } from "./verdict";
+
+/** What else than the loop the status can tell of. */
+export type Notice = "loading" | "waiting" | "error";
+
+export class Strip {
+  readonly #buttons = new Map<string, { button: HTMLButtonElement; time: HTMLElement }>();
+  readonly #count = byId("iteration", HTMLElement);
+  readonly #status = byId("status", HTMLElement);
+  readonly #verdict = byId("verdict", HTMLElement);
+  readonly #explanation = byId("explanation", HTMLElement);
+
+  #last = "";
+  readonly #bar = byId("bar", HTMLElement);
+
+  constructor(list: HTMLElement) {
+    for (const stage of stages) {
+      const time = make("span", { class: "time" });
+      const button = make("button", { type: "button", class: "stage", "aria-haspopup": "dialog" }, make("span", {}, stage.name), time);
+      button.addEventListener("click", () => this.#explain(stage));
+      this.#buttons.set(stage.name, { button, time });
+      list.append(make("li", {}, button));
+    }
+  }
+
+  /** `idle` is what the page itself does while the loop rests. */
+  show(report: StepReport, idle: "ready" | "paused" | "playing", end: Verdict | undefined): void {
+    const begun = report.iteration > 0 || report.milliseconds[report.stage] !== undefined;
+    this.#last = begun ? report.stage : "";
+    for (const [name, { button, time }] of this.#buttons) {
+      const spent = report.milliseconds[name];
+      button.toggleAttribute("data-lit", name === report.stage && begun);
+      if (spent !== undefined) time.textContent = `${decimals(spent, spent < 10 ? 1 : 0)} ms`;
+      else if (!begun) time.textContent = "";
+    }
+    this.#count.textContent = String(report.iteration);
+    this.#status.dataset.state = end ? report.status : idle;
+    this.#status.dataset.tone = end?.tone ?? "open";
+    this.#status.textContent = end?.status ?? idle;
+    this.#verdict.textContent = end?.words ?? "";
+  }
+
+  /** A stage is under way: the one after the last. */
+  run(): void {
+    const names = [...this.#buttons.keys()];
+    const next = names[(names.indexOf(this.#last) + 1) % names.length];
+    for (const [name, { button }] of this.#buttons) button.toggleAttribute("data-lit", name === next);
+  }
+
+  /** Something other than the loop is going on, or has gone wrong. */
+  announce(state: Notice, words: string): void {
+    this.#status.dataset.state = state;
+    this.#status.dataset.tone = state === "error" ? "wrong" : "open";
+    this.#status.textContent = words;
+    this.#verdict.textContent = "";
+  }
+
+  #explain({ title, equation, words, source }: StageText): void {
+    this.#explanation.replaceChildren(
+      make("h2", {}, title),
+      make("p", { class: "equation" }, equation),
+      make("p", {}, words),
+      make("p", { class: "soft" }, source),
+    );
+    // Above the bar, whose height depends on how it wraps.
+    this.#explanation.style.bottom = `${innerHeight - this.#bar.getBoundingClientRect().top + 8}px`;
+    this.#explanation.showPopover();
+  }
+}

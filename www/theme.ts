@@ -1,0 +1,40 @@
+/** Dark or light: the system's choice until the visitor makes one. */
+
+const KEY = "bimodal-stereo.theme";
+
+/** Private windows may refuse storage; the choice then lasts as long as the page. */
+function remembered(): string | null {
+  try {
+    return localStorage.getItem(KEY);
+  } catch {
+    return null;
+  }
+}
+
+function remember(theme: string): void {
+  try {
+    localStorage.setItem(KEY, theme);
+  } catch {
+    // Nothing to do: see above.
+  }
+}
+
+export function themeToggle(button: HTMLButtonElement, onChange: () => void): void {
+  const dark = matchMedia("(prefers-color-scheme: dark)");
+  const chosen = remembered();
+  if (chosen === "dark" || chosen === "light") document.documentElement.dataset.theme = chosen;
+  const current = () => document.documentElement.dataset.theme ?? (dark.matches ? "dark" : "light");
+  const label = () => button.setAttribute("aria-label", `Switch to ${current() === "dark" ? "light" : "dark"} colours`);
+  label();
+  button.addEventListener("click", () => {
+    const next = current() === "dark" ? "light" : "dark";
+    document.documentElement.dataset.theme = next;
+    remember(next);
+    label();
+    onChange();
+  });
+  dark.addEventListener("change", () => {
+    label();
+    onChange();
+  });
+}
