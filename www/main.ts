@@ -56,7 +56,7 @@ async function copyLink(): Promise<void> {
   } catch {
     target.textContent = "See address bar";
   }
-  setTimeout(() => (target.textContent = "Copy link"), 2000);
+  setTimeout(() => (target.textContent = "Link"), 2000);
 }
 
 const views = Array.from({ length: gallery.count }, (_, i): [string, () => void] => [String(i + 1), () => gallery.enlarge(i + 1)]);

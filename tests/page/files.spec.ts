@@ -70,7 +70,7 @@ test("a colour and a depth PNG of 16 bits run to convergence", async ({ lab, pag
   await page.locator("#fields-method").getByLabel("Light", { exact: true }).filter({ visible: true }).fill([...pair.light].join(" "));
   await page.keyboard.press("Enter");
   await expect(page.getByText("guessed: linear")).toBeAttached();
-  await page.getByLabel("Speed").selectOption({ label: "as fast as possible" });
+  await page.getByLabel("Speed").selectOption({ label: "fastest" });
   await page.getByRole("button", { name: "Play" }).click();
   await lab.reaches("converged");
   const beta = page.locator("#pose tbody tr").nth(2).locator("td").first();
@@ -173,5 +173,26 @@ test("a picture that is too large is scaled down with its camera, and says so", 
   await put(lab, "Depth map", depthNpy());
   await put(lab, "Colour image", { name: "wide.png", mimeType: "image/png", buffer: Buffer.from(encode({ width, height, data, channels: 3, depth: 8 })) });
   await expect(page.locator(".slot").first()).toContainText("scaled down by 2");
+  await lab.reaches("ready");
+});
+
+test("a camera waits for its four numbers, and its distortion must be five", async ({ lab, page }) => {
+  await openFiles(lab);
+  await put(lab, "Colour image", colourPng());
+  await put(lab, "Depth map", depthNpy());
+  await lab.reaches("ready");
+  await page.getByText("Colour camera", { exact: true }).click();
+  const fields = page.locator("#fields-colour");
+  const type = async (name: string, value: string) => {
+    await fields.getByLabel(name, { exact: true }).fill(value);
+    await page.keyboard.press("Enter");
+  };
+  await type("fx", "100");
+  await expect(page.locator("#status")).toHaveText("colour camera: waiting for fy, cx, cy");
+  for (const [name, value] of [["fy", "100"], ["cx", "31.5"], ["cy", "31.5"]] as const) await type(name, value);
+  await lab.reaches("ready");
+  await type("distortion", "0.1 0 0");
+  await expect(fields.locator(".field", { has: page.getByLabel("distortion", { exact: true }) })).toContainText("needs 5 numbers, not 3");
+  await type("distortion", "0.1 0 0 0 0");
   await lab.reaches("ready");
 });

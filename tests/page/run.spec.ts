@@ -5,10 +5,12 @@ import { expect, test } from "./lab";
 test("a sample runs to convergence with a small pose error", async ({ lab, page }) => {
   await lab.open("surface=bust&light=colourful&size=64&beta=20");
   const before = await lab.fingerprint("Normals");
-  await page.getByLabel("Speed").selectOption({ label: "as fast as possible" });
+  await page.getByLabel("Speed").selectOption({ label: "fastest" });
   await page.getByRole("button", { name: "Play" }).click();
   await lab.reaches("converged");
   expect(await lab.errorDegrees()).toBeLessThanOrEqual(1);
+  await expect(page.locator("#status")).toHaveText(/^converged, 0\.\d\d° off$/);
+  await expect(page.locator("#status")).toHaveAttribute("data-tone", "good");
   expect(await lab.fingerprint("Normals")).not.toBe(before);
   await expect(page.getByRole("button", { name: "Play" })).toHaveAttribute("aria-pressed", "false");
 
@@ -131,4 +133,22 @@ test("after a panic a new worker takes the same input up again", async ({ lab, p
   await expect(lab.iteration).toHaveText("0");
   await page.keyboard.press("s");
   await expect(lab.iteration).toHaveText("1");
+});
+
+test("a run that misses the pose does not look like a success", async ({ lab, page }) => {
+  await lab.open("lighting=estimate&iterations=2");
+  await expect(page.getByText("Estimated along with the pose.").filter({ visible: true })).toHaveCount(1);
+  await page.getByRole("button", { name: "Play" }).click();
+  await lab.reaches("max-iterations");
+  await expect(page.locator("#status")).toHaveText(/^stopped, \d+\.\d+° off$/);
+  await expect(page.locator("#status")).not.toHaveAttribute("data-tone", "good");
+  await expect(page.locator("#verdict")).toContainText("The cap of 2 iterations was reached.");
+});
+
+test("a hint unfolds at a tap", async ({ lab, page }) => {
+  await lab.open();
+  const hint = page.getByText("Side of both views.");
+  await expect(hint).toBeHidden();
+  await page.getByRole("button", { name: 'What is "Size"?' }).click();
+  await expect(hint).toBeVisible();
 });

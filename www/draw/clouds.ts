@@ -87,7 +87,7 @@ export class Clouds {
     if (width === 0 || height === 0) return;
     this.#renderer.setPixelRatio(Math.min(2, devicePixelRatio));
     this.#renderer.setSize(width, height, false);
-    const reach = 0.95 * this.#bounds.radius;
+    const reach = 1.05 * this.#bounds.radius;
     const [across, down] = width > height ? [(reach * width) / height, reach] : [reach, (reach * height) / width];
     Object.assign(this.#camera, { left: -across, right: across, top: down, bottom: -down });
     this.#camera.updateProjectionMatrix();

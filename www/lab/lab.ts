@@ -35,8 +35,8 @@ export class Lab {
   #from: Pose | undefined;
   /** One report for each completed iteration. */
   #history: StepReport[] = [];
-  /** The input that was asked for last, accepted or not. */
-  #wanted: Source | undefined;
+  /** The input that was asked for last, accepted or not, or what it lacked. */
+  #wanted: Source | string = "";
   /** What is on the screen: to be opened again where the worker has lost it. */
   #good: { source: Source; settings: Settings } | undefined;
   /** What the worker holds, which may be an input that was overtaken before it could be shown. */
@@ -101,16 +101,18 @@ export class Lab {
     void (input ? this.#reopen() : this.restart());
   }
 
-  #source(): Source | undefined {
+  /** The input that the settings describe, or in words what it still lacks. */
+  #source(): Source | string {
     const settings = this.store.settings;
     if (this.#origin === "sample") return { kind: "sample", request: sampleRequest(settings) };
     const { colour, depth, ...masks } = this.#intake.files;
-    if (!colour || !depth) return undefined;
+    if (!colour || !depth) return colour ? "waiting for a depth map" : depth ? "waiting for a colour image" : "waiting for both files";
     const files: OwnFiles = { colour, depth, ...masks };
-    const colourCamera = camera(settings, "colour");
-    const depthCamera = camera(settings, "depth");
-    if (colourCamera) files.colourCamera = colourCamera;
-    if (depthCamera) files.depthCamera = depthCamera;
+    for (const side of ["colour", "depth"] as const) {
+      const given = camera(settings, side);
+      if (typeof given === "string") return `${side} camera: waiting for ${given}`;
+      if (given) files[`${side}Camera`] = given;
+    }
     if (typeof settings.unit === "number") files.unit = settings.unit;
     if (settings.transfer === "srgb" || settings.transfer === "linear") files.transfer = settings.transfer;
     return { kind: "files", files };
@@ -122,7 +124,7 @@ export class Lab {
   }
 
   /** The loop from its beginning, on an input that the worker may already hold. */
-  #start(source: Source | undefined): Promise<void> {
+  #start(source: Source | string): Promise<void> {
     return this.#enter(this.#attempt(source, ++this.#turn));
   }
 
@@ -131,11 +133,11 @@ export class Lab {
     return beginning;
   }
 
-  async #attempt(source: Source | undefined, turn: number): Promise<void> {
+  async #attempt(source: Source | string, turn: number): Promise<void> {
     this.#wanted = source;
     this.#clearMessages();
-    if (!source) {
-      this.#announce("waiting", "waiting for both files");
+    if (typeof source === "string") {
+      this.#announce("waiting", source);
       return;
     }
     const settings = this.store.settings;

@@ -56,10 +56,14 @@ export class PoseTable {
       ...pair("Inliers", `${decimals(100 * report.inliers, 0)} %`),
       ...pair("Colour residual", decimals(report.residual, 4)),
       ...pair("Rotation change", `${decimals(report.rotationChange, 4)}°`),
-      ...(uncertainty ? pair("σ about x, y, z", `${uncertainty.rotationDegrees.map((value) => decimals(value, 2)).join(", ")}°`) : []),
+      ...(uncertainty ? pair("σ about x, y, z", sigmas(uncertainty.rotationDegrees)) : []),
       ...(uncertainty ? pair("Weakest", uncertainty.weakest) : []),
     );
   }
 }
+
+/** Half a turn of uncertainty is no knowledge at all. */
+const sigmas = (degrees: readonly number[]): string =>
+  degrees.every((value) => value >= 180) ? "unknown" : `${degrees.map((value) => (value >= 180 ? "any" : decimals(value, 2))).join(", ")}°`;
 
 const pair = (term: string, value: string): HTMLElement[] => [make("dt", {}, term), make("dd", {}, value)];

@@ -189,12 +189,17 @@ export function runOptions(settings: Settings, source: Origin): LabOptions {
   };
 }
 
-/** A camera once any of its numbers is given; what is still missing the library names. */
-export function camera(settings: Settings, side: "colour" | "depth"): OwnCamera | undefined {
-  const [fx, fy, cx, cy] = (["fx", "fy", "cx", "cy"] as const).map((key) => number(settings, `${side}.${key}`));
+const lensKeys = ["fx", "fy", "cx", "cy"] as const;
+
+/** A camera once all of its four numbers are given; none where none is; the name of what is missing in between. */
+export function camera(settings: Settings, side: "colour" | "depth"): OwnCamera | undefined | string {
+  const [fx, fy, cx, cy] = lensKeys.map((key) => number(settings, `${side}.${key}`));
   const distortion = listed(settings, `${side}.distortion`);
-  if ([fx, fy, cx, cy].every((value) => value === undefined) && distortion.length === 0) return undefined;
-  return { fx: fx ?? NaN, fy: fy ?? NaN, cx: cx ?? NaN, cy: cy ?? NaN, ...(distortion.length > 0 ? { distortion } : {}) };
+  if (fx !== undefined && fy !== undefined && cx !== undefined && cy !== undefined) {
+    return { fx, fy, cx, cy, ...(distortion.length > 0 ? { distortion } : {}) };
+  }
+  const missing = lensKeys.filter((key) => settings[`${side}.${key}`] === null);
+  return missing.length === lensKeys.length && distortion.length === 0 ? undefined : missing.join(", ");
 }
 
 /** What differs from the defaults, as the part of the address after #. */

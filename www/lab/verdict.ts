@@ -44,8 +44,8 @@ export function verdict({ status, message, pose }: StepReport, start: Pose | und
     return { tone: "good", status: ends[status], words: [...said, "The pose has settled; there is no true one to compare it with."].join(" ") };
   }
   const stayed = start !== undefined && angleBetween(pose.rotation, start.rotation) < STAYED;
-  const doubt = stayed ? "The rotation is still that of the start: nothing was found." : "The pose has not settled: do not build on it.";
-  return { tone: "wrong", status: stayed ? "no pose found" : ends[status], words: [...said, doubt].join(" ") };
+  const doubt = stayed ? "The rotation is still that of the start, which does not confirm it." : "The pose has not settled: do not build on it.";
+  return { tone: "wrong", status: stayed ? "start kept" : ends[status], words: [...said, doubt].join(" ") };
 }
 
 const sentence = (words: string): string => `${words.charAt(0).toUpperCase()}${words.slice(1)}${/[.!?]$/.test(words) ? "" : "."}`;
