@@ -173,7 +173,14 @@ const signal: Check = (value, field) => {
 const callback: Check = (value, field) => {
   if (typeof value !== "function") throw wrong(field, "a function", value);
 };
-const run = object({ maxIterations: number, signal, onStep: callback });
+/** The one number that never reaches the numerics, and so is judged here. */
+const count: Check = (value, field) => {
+  number(value, field);
+  if (typeof value === "number" && !(Number.isInteger(value) && value > 0)) {
+    throw new BimodalError("range", `${field}: must be a whole number above zero (got ${value})`, field);
+  }
+};
+const run = object({ maxIterations: count, signal, onStep: callback });
 
 /** Words of the contract that this version does not offer yet. */
 const LATER: Readonly<Record<string, string>> = { start: "search", registration: "joint", shading: "surface" };

@@ -1,4 +1,9 @@
+import { fileURLToPath } from "node:url";
+
 import { defineConfig } from "vite";
+
+/** Absolute, because the build and the development server disagree on what a page is relative to. */
+const page = (name: string): string => fileURLToPath(new URL(name, import.meta.url));
 
 export default defineConfig({
   // Relative addresses, so that the built page works under any path of a web server.
@@ -7,5 +12,5 @@ export default defineConfig({
   // The package lies beside this folder, where the development server would not look.
   server: { fs: { allow: [".."] } },
   // three.js is one such chunk, and loads only when the clouds come into view.
-  build: { target: "es2023", chunkSizeWarningLimit: 600, rollupOptions: { input: ["www/index.html", "www/shortest.html"] } },
+  build: { target: "es2023", chunkSizeWarningLimit: 600, rollupOptions: { input: [page("index.html"), page("shortest.html")] } },
 });

@@ -188,7 +188,10 @@ impl Estimator {
             ..IcpOptions::default()
         };
         let found = self.icp.register(&problem, &options)?;
-        self.report.uncertainty = Some(found.information.uncertainty(found.rms, &found.pose, &self.image.camera));
+        let mut uncertainty = found.information.uncertainty(found.rms, &found.pose, &self.image.camera);
+        // Behind a pinhole image the matching frees a scale that is the surface's, not the pose's.
+        uncertainty.scale = uncertainty.scale.filter(|_| gauge::held_scale(&self.image, &self.options).is_none());
+        self.report.uncertainty = Some(uncertainty);
         let [depth_points, image_points] = &mut self.paired_points;
         self.icp.paired_points(&problem, depth_points, image_points, MOST_VOTERS);
         let consensus = RansacOptions {

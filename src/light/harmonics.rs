@@ -5,6 +5,9 @@ use crate::error::{Error, ErrorKind, Result};
 /// Number of harmonics for each channel.
 pub const HARMONICS: usize = 9;
 
+/// Largest coefficient of a log light: e^100 is a factor that no camera sees, and squares of it still fit f32.
+const LARGEST_COEFFICIENT: f64 = 100.0;
+
 const C1: f64 = 0.429_043;
 const C2: f64 = 0.511_664;
 const C3: f64 = 0.743_125;
@@ -30,11 +33,15 @@ impl Light {
     }
 
     /// # Errors
-    /// [`ErrorKind::Range`] naming the coefficient that is not finite.
+    /// [`ErrorKind::Range`] naming the coefficient that is not finite or larger than any light's.
     pub fn validate(&self, field: &'static str) -> Result<()> {
-        match self.flat().iter().position(|value| !value.is_finite()) {
+        let flat = self.flat();
+        match flat.iter().position(|value| !value.is_finite() || value.abs() > LARGEST_COEFFICIENT) {
             None => Ok(()),
-            Some(index) => Err(Error::new(ErrorKind::Range, field, "must be finite").at(index)),
+            Some(index) => {
+                let message = format!("must be finite and within {LARGEST_COEFFICIENT} either way");
+                Err(Error::new(ErrorKind::Range, field, message).at(index).value(flat[index]))
+            }
         }
     }
 

@@ -60,6 +60,7 @@ describe("after init", () => {
 
   test("numbers among the options", () => {
     refused(withOptions({ light: new Array(27).fill(NaN) }), "range", "options.light");
+    refused(withOptions({ light: new Array(27).fill(1e300) }), "range", "options.light");
     refused(withOptions({ light: [1, 2, 3] }), "size", "options.light");
     refused(withOptions({ lambda: { prior: -1 } }), "range", "options.lambda.prior");
     refused(withOptions({ lambda: { light: NaN } }), "range", "options.lambda.light");

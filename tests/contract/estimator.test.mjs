@@ -178,6 +178,7 @@ describe("run", () => {
 
   test("refuses what it does not know", async () => {
     const made = estimator();
+    await assert.rejects(made.run({ maxIterations: -1 }), { code: "range", field: "run.maxIterations" });
     await assert.rejects(made.run({ maxIteration: 2 }), { name: "BimodalError", field: "run.maxIteration" });
     await assert.rejects(made.run({ onStep: 2 }), { name: "BimodalError", field: "run.onStep" });
   });
