@@ -58,6 +58,14 @@ async function openFiles(lab: Lab): Promise<void> {
   await lab.reaches("waiting");
 }
 
+test("nothing runs while files are awaited", async ({ lab, page }) => {
+  await openFiles(lab);
+  await page.getByRole("button", { name: "Step", exact: true }).click();
+  await page.getByRole("button", { name: "Play", exact: true }).click();
+  await lab.reaches("waiting");
+  await expect(lab.iteration).toHaveText("0");
+});
+
 test("a colour and a depth PNG of 16 bits run to convergence", async ({ lab, page }) => {
   await openFiles(lab);
   await page.getByText("Depth camera", { exact: true }).click();

@@ -187,7 +187,8 @@ export class Lab {
 
   async #advance(request: Calls["advance"]["request"]): Promise<boolean> {
     await this.#beginning;
-    if (!this.#good || this.#isFinished()) return false;
+    // While files are awaited, the pair on the screen is not the one asked for.
+    if (!this.#good || typeof this.#wanted === "string" || this.#isFinished()) return false;
     const turn = this.#turn;
     if (request.by === "stage") this.#strip.run();
     try {
