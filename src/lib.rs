@@ -23,7 +23,8 @@ pub use light::{COEFFICIENTS, CoefficientMatrix, Light, LightFit, LightFitter, L
 pub use options::{LightSource, Options, Registration, Shading, Start, Weights};
 pub use pose::{
     Angles, AnglesFit, CorrespondenceProblem, Correspondences, Icp, IcpOptions, IcpProblem, IcpReport, IcpTermination,
-    Information, Metric, Neighbour, Neighbours, Pair, RansacOptions, RansacReport, Similarity, ransac,
+    Information, Metric, Neighbour, Neighbours, Pair, Photometric, PhotometricOptions, PhotometricProblem,
+    PhotometricReport, PhotometricTermination, RansacOptions, RansacReport, Similarity, ransac,
 };
 pub use report::{Energy, Stage, Status, StepReport, Uncertainty};
 pub use shape::{
@@ -33,5 +34,5 @@ pub use shape::{
 };
 pub use view::{
     Camera, ColourImage, ColourSamples, ColourView, DepthMap, DepthSamples, DepthView, Normals, Pinhole, Points, Size,
-    Transfer, normals,
+    Transfer, cubic_normals, normals,
 };

@@ -84,6 +84,22 @@ pub fn basis([x, y, z]: [f64; 3]) -> [f64; HARMONICS] {
     ]
 }
 
+/// d basis / d normal.
+#[must_use]
+pub fn basis_gradient([x, y, z]: [f64; 3]) -> [[f64; 3]; HARMONICS] {
+    [
+        [0.0; 3],
+        [0.0, 2.0 * C2, 0.0],
+        [0.0, 0.0, 2.0 * C2],
+        [2.0 * C2, 0.0, 0.0],
+        [2.0 * C1 * y, 2.0 * C1 * x, 0.0],
+        [0.0, 2.0 * C1 * z, 2.0 * C1 * y],
+        [0.0, 0.0, 2.0 * C3 * z],
+        [2.0 * C1 * z, 0.0, 2.0 * C1 * x],
+        [2.0 * C1 * x, -2.0 * C1 * y, 0.0],
+    ]
+}
+
 /// One channel of a light as a polynomial of the normal in f32, for loops over pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Polynomial {
@@ -173,6 +189,20 @@ mod tests {
                 down[axis] -= 0.01;
                 let difference = (polynomial.shade(up) - polynomial.shade(down)) / 0.02;
                 assert!((polynomial.gradient(normal)[axis] - difference).abs() < 2e-5);
+            }
+        }
+    }
+
+    #[test]
+    fn the_gradient_of_the_basis_is_the_difference_quotient() {
+        let normal = [0.36, -0.48, -0.8];
+        let gradient = basis_gradient(normal);
+        for axis in 0..3 {
+            let (mut up, mut down) = (normal, normal);
+            up[axis] += 1e-5;
+            down[axis] -= 1e-5;
+            for (k, (up, down)) in basis(up).into_iter().zip(basis(down)).enumerate() {
+                assert!((gradient[k][axis] - (up - down) / 2e-5).abs() < 1e-9);
             }
         }
     }

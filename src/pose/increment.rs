@@ -20,6 +20,26 @@ pub(crate) type Square = SMatrix<f64, UNKNOWNS, UNKNOWNS>;
 /// A row of the Jacobian, or a step.
 pub(crate) type Row = SVector<f64, UNKNOWNS>;
 
+/// c and L: where the unknowns are zero, and their unit of length.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Frame {
+    pub centre: Vector3<f64>,
+    pub length: f64,
+}
+
+impl Frame {
+    /// The similarity of a step, shortened to where it is still near linear.
+    pub fn change(&self, step: &Row) -> Similarity {
+        let turn: Vector3<f64> = step.fixed_rows::<3>(0).into();
+        let shift: Vector3<f64> = step.fixed_rows::<3>(3).into();
+        let share = (LARGEST_TURN / turn.norm()).min(LARGEST_GROWTH / step[6].abs()).min(1.0);
+        let rotation = Rotation3::new(turn * share).into_inner();
+        let scale = (step[6] * share).exp();
+        let translation = self.centre + shift * (share * self.length) - scale * (rotation * self.centre);
+        Similarity { scale, rotation, translation }
+    }
+}
+
 /// Sums of one step.
 pub(crate) struct NormalEquations {
     centre: Vector3<f64>,
@@ -77,12 +97,9 @@ impl NormalEquations {
         if !step.norm().is_finite() {
             return None;
         }
-        let share = (LARGEST_TURN / turn.norm()).min(LARGEST_GROWTH / step[6].abs()).min(1.0);
-        let rotation = Rotation3::new(turn * share).into_inner();
-        let scale = (step[6] * share).exp();
-        let translation = self.centre + shift * (share * self.length) - scale * (rotation * self.centre);
+        let change = Frame { centre: self.centre, length: self.length }.change(&step);
         let size = turn.norm().max(shift.norm()).max(step[6].abs());
-        Some(Increment { change: Similarity { scale, rotation, translation }, size })
+        Some(Increment { change, size })
     }
 }
 

@@ -11,7 +11,7 @@
 use nalgebra::{SymmetricEigen, Vector3};
 
 use super::Similarity;
-use super::increment::{Row, Square, UNKNOWNS};
+use super::increment::{Frame, Row, Square, UNKNOWNS};
 use crate::report::Uncertainty;
 use crate::view::Camera;
 
@@ -73,25 +73,8 @@ impl Information {
     pub fn uncertainty(&self, sigma: f64, pose: &Similarity, camera: &Camera) -> Uncertainty {
         let gauge = camera.is_orthographic();
         let (covariance, weakest) = self.covariance(sigma, gauge);
-        // t is where the origin of the depth view goes; it turns and grows about the centre with everything else.
-        let arm = pose.translation - self.centre;
-        let turned = arm.cross_matrix();
-        let along = |axis: usize| {
-            let mut row = Row::zeros();
-            for k in 0..3 {
-                row[k] = -turned[(axis, k)];
-            }
-            row[3 + axis] = self.length;
-            row[SCALE] = arm[axis];
-            row.dot(&(covariance * row)).sqrt()
-        };
-        let degrees = |axis: usize| covariance[(axis, axis)].sqrt().to_degrees().min(LARGEST_SIGMA);
-        Uncertainty {
-            rotation_degrees: [degrees(0), degrees(1), degrees(2)],
-            translation: [Some(along(0)), Some(along(1)), (!gauge).then(|| along(2))],
-            scale: (!self.scale_is_held).then(|| pose.scale * covariance[(SCALE, SCALE)].sqrt()),
-            weakest,
-        }
+        let frame = Frame { centre: self.centre, length: self.length };
+        describe(&covariance, &frame, pose, [gauge, self.scale_is_held], weakest)
     }
 
     /// Covariance of the seven unknowns and the weakest direction in words. Held and gauge unknowns have no variance.
@@ -146,8 +129,38 @@ impl Information {
     }
 }
 
+/// One sigma of each number of `pose` from the covariance of the seven unknowns about a centre. The z of the translation
+/// and the scale have none where the first or the second of `inert` says so.
+pub(super) fn describe(
+    covariance: &Square,
+    frame: &Frame,
+    pose: &Similarity,
+    inert: [bool; 2],
+    weakest: String,
+) -> Uncertainty {
+    // t is where the origin of the depth view goes; it turns and grows about the centre with everything else.
+    let arm = pose.translation - frame.centre;
+    let turned = arm.cross_matrix();
+    let along = |axis: usize| {
+        let mut row = Row::zeros();
+        for k in 0..3 {
+            row[k] = -turned[(axis, k)];
+        }
+        row[3 + axis] = frame.length;
+        row[SCALE] = arm[axis];
+        row.dot(&(covariance * row)).sqrt()
+    };
+    let degrees = |axis: usize| covariance[(axis, axis)].sqrt().to_degrees().min(LARGEST_SIGMA);
+    Uncertainty {
+        rotation_degrees: [degrees(0), degrees(1), degrees(2)],
+        translation: [Some(along(0)), Some(along(1)), (!inert[0]).then(|| along(2))],
+        scale: (!inert[1]).then(|| pose.scale * covariance[(SCALE, SCALE)].sqrt()),
+        weakest,
+    }
+}
+
 /// The one or two largest parts of a direction.
-fn in_words(direction: &Row) -> String {
+pub(super) fn in_words(direction: &Row) -> String {
     const NAMES: [&str; UNKNOWNS] = [
         "rotation about x",
         "rotation about y",

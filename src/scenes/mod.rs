@@ -4,6 +4,7 @@
 //! known pose; [`bare_grid`] makes the pair of the paper's own synthetic test.
 
 mod bare_grid;
+mod bound;
 mod bust;
 mod flaws;
 pub mod lights;
@@ -14,6 +15,7 @@ mod sample;
 pub mod surfaces;
 
 pub use bare_grid::bare_grid;
+pub use bound::bound;
 pub use lights::light;
 pub use mesh::Mesh;
 pub use relief::{LARGEST_RELIEF, Relief, SMALLEST_RELIEF};

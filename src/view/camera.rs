@@ -50,6 +50,20 @@ impl Pinhole {
             y * radial + p1 * (r2 + 2.0 * y * y) + 2.0 * p2 * x * y,
         ]
     }
+
+    /// d distorted / d (x, y).
+    fn distortion_gradient(&self, [x, y]: [f64; 2]) -> [[f64; 2]; 2] {
+        let [k1, k2, p1, p2, k3] = self.distortion;
+        let r2 = x * x + y * y;
+        let radial = 1.0 + r2 * (k1 + r2 * (k2 + r2 * k3));
+        // d radial / d x = slope x.
+        let slope = 2.0 * (k1 + r2 * (2.0 * k2 + 3.0 * r2 * k3));
+        let mixed = x * y * slope + 2.0 * (p1 * x + p2 * y);
+        [
+            [radial + x * x * slope + 2.0 * p1 * y + 6.0 * p2 * x, mixed],
+            [mixed, radial + y * y * slope + 6.0 * p1 * y + 2.0 * p2 * x],
+        ]
+    }
 }
 
 /// How a view maps points to pixels.
@@ -78,6 +92,24 @@ impl Camera {
                 Some([pinhole.fx * x + pinhole.cx, pinhole.fy * y + pinhole.cy])
             }
         }
+    }
+
+    /// [`project`](Self::project) with its derivative: d column and d row, each by x, y, z of the point.
+    #[must_use]
+    pub fn project_with_gradient(&self, size: Size, [x, y, z]: [f64; 3]) -> Option<([f64; 2], [[f64; 3]; 2])> {
+        let pixel = self.project(size, [x, y, z])?;
+        let gradient = match self {
+            Self::Orthographic => [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
+            Self::Pinhole(pinhole) => {
+                let [u, v] = [x / z, y / z];
+                let by_ray = pinhole.distortion_gradient([u, v]);
+                [(pinhole.fx, by_ray[0]), (pinhole.fy, by_ray[1])].map(|(focal_length, [by_u, by_v])| {
+                    let share = focal_length / z;
+                    [share * by_u, share * by_v, -share * (by_u * u + by_v * v)]
+                })
+            }
+        };
+        Some((pixel, gradient))
     }
 
     /// Direction through a pixel with z = 1 for a pinhole camera; for an orthographic one the x and y of every point on it.
@@ -137,4 +169,30 @@ impl Camera {
 
 fn centre(side: usize) -> f64 {
     (side as f64 - 1.0) / 2.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_gradient_of_the_projection_is_the_difference_quotient() {
+        let distortion = [0.1, -0.05, 0.003, -0.002, 0.01];
+        let pinhole = Camera::Pinhole(Pinhole { fx: 500.0, fy: 510.0, cx: 320.0, cy: 240.0, distortion });
+        let size = Size { width: 640, height: 480 };
+        let point = [0.3, -0.2, 1.1];
+        for camera in [pinhole, Camera::Orthographic] {
+            let (pixel, gradient) = camera.project_with_gradient(size, point).unwrap();
+            assert_eq!(Some(pixel), camera.project(size, point));
+            for axis in 0..3 {
+                let (mut up, mut down) = (point, point);
+                up[axis] += 1e-6;
+                down[axis] -= 1e-6;
+                let (up, down) = (camera.project(size, up).unwrap(), camera.project(size, down).unwrap());
+                for k in 0..2 {
+                    assert!((gradient[k][axis] - (up[k] - down[k]) / 2e-6).abs() < 1e-5);
+                }
+            }
+        }
+    }
 }

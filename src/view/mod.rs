@@ -2,6 +2,7 @@
 
 mod camera;
 mod colour;
+pub mod cubic_normals;
 mod depth;
 mod grid;
 mod mask;

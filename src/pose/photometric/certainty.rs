@@ -1,0 +1,110 @@
+//! How sure a pose is: cov = M^-1 (sum over tiles of g g^T) M^-T.
+//!
+//! M is the matrix of the equations that the pose solves, g the sum of the scores of a tile of the depth map once the light
+//! has followed (Huber's sandwich over clusters). Noise, wrong normals and interpolation enter with the size and
+//! the correlation that they have, so nothing is assumed about them but that tiles are independent.
+
+use nalgebra::SymmetricEigen;
+
+use super::equations::{Reduced, hold};
+use super::points::Robust;
+use super::problem::{PhotometricProblem, PhotometricReport, PhotometricTermination};
+use super::residual::Scene;
+use super::{Phase, Photometric};
+use crate::error::Result;
+use crate::pose::increment::{Frame, Row, Square, UNKNOWNS};
+use crate::pose::uncertainty::{describe, in_words};
+use crate::view::Size;
+
+/// Side of the tiles of the depth map whose scores count as one observation, pixels: twice the reach of normals and splines.
+const TILE: usize = 8;
+/// Sigma of a direction that nothing is known about, radians or object sizes.
+const UNKNOWN: f64 = 1e3;
+/// Cap on the rounds of the eigenvalue iteration, which ends after about 20.
+const MOST_EIGEN_ROUNDS: usize = 500;
+
+/// Number of tiles of a depth map.
+pub(super) fn tiles(size: Size) -> usize {
+    size.width.div_ceil(TILE) * size.height.div_ceil(TILE)
+}
+
+impl Photometric {
+    /// What was found so far.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Degenerate`] where the visible points determine nothing.
+    pub fn report(&mut self, problem: &PhotometricProblem<'_>) -> Result<PhotometricReport> {
+        let frame = self.look(problem, 0)?;
+        self.measure(problem, 0);
+        self.robust = Robust { scale: self.final_scale(), prior: self.prior(problem) };
+        let held = problem.held();
+        let reduced = self.reduced(problem, 0, &frame, true)?;
+        let covariance = self.covariance(problem, &frame, &reduced);
+        let light = self.state.exposed();
+        let scene = Scene { image: &self.levels[0], slopes: None, camera: &problem.image.camera, light: &light };
+        let without_prior = Robust { prior: 0.0, ..self.robust };
+        let full = self.robust.scale * self.robust.scale * self.points.weight();
+        let mut information = 0.5 * (reduced.matrix + reduced.matrix.transpose()) / (self.noise * self.noise);
+        (0..UNKNOWNS).filter(|&k| held[k]).for_each(|k| {
+            information.row_mut(k).fill(0.0);
+            information.column_mut(k).fill(0.0);
+        });
+        let weakest = SymmetricEigen::try_new(covariance, f64::EPSILON, MOST_EIGEN_ROUNDS).map_or_else(
+            || "unknown".to_owned(),
+            |eigen| in_words(&eigen.eigenvectors.column(eigen.eigenvalues.imax()).into_owned()),
+        );
+        Ok(PhotometricReport {
+            pose: self.state.pose,
+            light: self.state.light,
+            exposure: self.state.exposure,
+            cost: self.points.cost(problem, &scene, &self.state, without_prior) / full,
+            noise: self.noise,
+            visible: self.points.len(),
+            inliers: self.points.inliers(problem, &scene, &self.state, self.robust),
+            iterations: self.iterations,
+            termination: match self.phase {
+                Phase::Done(termination) => termination,
+                _ => PhotometricTermination::MostRounds,
+            },
+            information,
+            covariance,
+            uncertainty: describe(&covariance, &frame, &self.state.pose, [held[5], held[6]], weakest),
+        })
+    }
+
+    /// M^-1 (sum over tiles of g g^T) M^-T with g the sum of a tile's scores.
+    fn covariance(&mut self, problem: &PhotometricProblem<'_>, frame: &Frame, reduced: &Reduced) -> Square {
+        let light = self.state.exposed();
+        let slopes = Some(&self.slopes);
+        let scene = Scene { image: &self.levels[0], slopes, camera: &problem.image.camera, light: &light };
+        self.tiles.fill(Row::zeros());
+        let across = problem.depth.size.width.div_ceil(TILE);
+        let tiles = &mut self.tiles;
+        self.points.each(problem, &scene, &self.state, self.robust, frame, |index, point, weight| {
+            let (column, row) = problem.depth.size.position(index as usize);
+            tiles[row / TILE * across + column / TILE] += weight * reduced.score(point);
+        });
+        let (mut spread, mut count) = (Square::zeros(), 0.0);
+        for score in tiles.iter().filter(|score| score.norm() > 0.0) {
+            spread.ger(1.0, score, score, 1.0);
+            count += 1.0;
+        }
+        let held = problem.held();
+        let free = held.iter().filter(|&&held| !held).count() as f64;
+        let mut matrix = reduced.matrix;
+        hold(&mut matrix, &held);
+        let mut covariance = match matrix.try_inverse() {
+            // Fewer tiles than unknowns say nothing about the spread.
+            Some(inverse) if count > free => inverse * spread * inverse.transpose() * (count / (count - free)),
+            _ => Square::identity() * UNKNOWN.powi(2),
+        };
+        if !covariance.norm().is_finite() {
+            covariance = Square::identity() * UNKNOWN.powi(2);
+        }
+        for k in (0..UNKNOWNS).filter(|&k| held[k]) {
+            covariance.row_mut(k).fill(0.0);
+            covariance.column_mut(k).fill(0.0);
+        }
+        covariance
+    }
+}

@@ -1,0 +1,128 @@
+//! What goes into a photometric registration, and what comes out.
+
+use nalgebra::Vector3;
+
+use crate::error::{Error, ErrorKind, Result};
+use crate::light::{Light, LightPrior};
+use crate::options::not_negative;
+use crate::pose::increment::{Square, UNKNOWNS};
+use crate::pose::similarity::Similarity;
+use crate::report::Uncertainty;
+use crate::view::{ColourView, DepthView, Normals, Points, Size};
+
+/// The coarsest level.
+pub(super) const COARSEST: usize = 2;
+
+/// What is registered. Points and normals (depth view's frame) are NaN where missing.
+#[derive(Clone, Copy)]
+pub struct PhotometricProblem<'a> {
+    /// The colour view.
+    pub image: &'a ColourView,
+    /// The depth view.
+    pub depth: &'a DepthView,
+    /// Points of the depth view, measured or refined.
+    pub points: &'a Points,
+    /// Their normals.
+    pub normals: &'a Normals,
+    /// One sigma of each normal in radians, see [`crate::cubic_normals`]; NaN leaves the point out. `None`: all are exact.
+    pub normal_error: Option<&'a [f32]>,
+    /// The light where it is known, but for its exposure.
+    pub light: Option<&'a Light>,
+    /// Prior of an unknown light.
+    pub prior: &'a LightPrior,
+    /// Weight of the prior: one is Bayes' own.
+    pub prior_weight: f64,
+    /// Whether the scale of the start is kept.
+    pub scale_is_held: bool,
+}
+
+impl PhotometricProblem<'_> {
+    /// A point and its normal in the colour view's frame.
+    pub(super) fn carried(&self, pose: &Similarity, index: u32) -> (Vector3<f64>, Vector3<f64>) {
+        let index = index as usize;
+        let point = pose.apply(Vector3::from(self.points.get(index).map(f64::from)));
+        (point, pose.rotation * Vector3::from(self.normals.get(index).map(f64::from)))
+    }
+
+    /// Unknowns that are no unknowns: the gauge t_z, the held scale.
+    pub(super) fn held(&self) -> [bool; UNKNOWNS] {
+        let gauge = self.image.camera.is_orthographic();
+        [false, false, false, false, false, gauge, self.scale_is_held || !gauge]
+    }
+
+    pub(super) fn check(&self, sizes: [Size; 2]) -> Result<()> {
+        if [self.image.size, self.depth.size] != sizes {
+            return Err(Error::new(
+                ErrorKind::Size,
+                "image",
+                "both views must have the sizes that memory was made for",
+            ));
+        }
+        let length = self.depth.size.len();
+        let errors = self.normal_error.map_or(length, <[f32]>::len);
+        if [self.points.len(), self.normals.len(), errors] != [length; 3] {
+            return Err(Error::new(
+                ErrorKind::Size,
+                "depth",
+                "must have a point, a normal and an error for each pixel",
+            ));
+        }
+        not_negative("options.lambda.light", self.prior_weight)
+    }
+}
+
+/// How far and how long to look.
+#[derive(Clone, Copy, Debug)]
+pub struct PhotometricOptions {
+    /// First level, 0 to 2: 2 from afar, 0 from a pose that is right to a degree.
+    pub first_level: usize,
+    /// Cap on the rounds.
+    pub most_rounds: usize,
+}
+
+impl Default for PhotometricOptions {
+    fn default() -> Self {
+        Self { first_level: COARSEST, most_rounds: 40 }
+    }
+}
+
+/// Why a registration ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PhotometricTermination {
+    /// Another round would change nothing.
+    Settled,
+    /// The last rounds would have raised the cost: the annealed pose was kept. Usable, with a bias of the noise.
+    Annealed,
+    /// The cap on the rounds came first.
+    MostRounds,
+}
+
+/// What the registration found.
+#[derive(Clone, Debug)]
+pub struct PhotometricReport {
+    /// The pose; its t_z is that of the start for an orthographic image.
+    pub pose: Similarity,
+    /// The light, without the exposure of a known one.
+    pub light: Light,
+    /// Offset of log S on top of a known light; zero where the light was free.
+    pub exposure: f64,
+    /// Mean robust cost at the scale of the noise over all visible points, 0 .. 1; their number does not enter.
+    pub cost: f64,
+    /// Robust standard deviation of a channel's residuals, log units.
+    pub noise: f64,
+    /// Number of visible points.
+    pub visible: usize,
+    /// Share of them within the robust scale.
+    pub inliers: f64,
+    /// Gauss-Newton steps taken.
+    pub iterations: usize,
+    /// Why it ended.
+    pub termination: PhotometricTermination,
+    /// Information of rotation (radians), translation (object sizes) and log scale once light is eliminated, over the noise's
+    /// variance: what white noise of that size would leave.
+    pub information: Square,
+    /// Covariance of the same from the spread of the scores; held unknowns have none.
+    pub covariance: Square,
+    /// One sigma of the pose's own numbers.
+    pub uncertainty: Uncertainty,
+}
