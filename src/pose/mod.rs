@@ -7,6 +7,7 @@ mod increment;
 mod neighbours;
 mod photometric;
 mod ransac;
+mod search;
 mod similarity;
 mod uncertainty;
 
@@ -16,5 +17,6 @@ pub use icp::{Icp, IcpOptions, IcpProblem, IcpReport, IcpTermination, Metric, Pa
 pub use neighbours::{Neighbour, Neighbours};
 pub use photometric::{Photometric, PhotometricOptions, PhotometricProblem, PhotometricReport, PhotometricTermination};
 pub use ransac::{RansacOptions, RansacReport, ransac};
+pub use search::{Candidate, Progress, Search};
 pub use similarity::Similarity;
 pub use uncertainty::Information;

@@ -1,0 +1,112 @@
+//! The depth view as a thin cloud of small patches: place, normal and area of each.
+//!
+//! Method: means over square blocks of pixels, so that noise averages out; the area of a patch is |dP/drow x dP/dcolumn|
+//! between neighbouring blocks, times the share of the block that is there. It works for any camera and for organised
+//! clouds. Limits: a block across a jump of depth floats between both sides; where its normals cancel it is dropped.
+
+use nalgebra::Vector3;
+
+use crate::error::{Error, ErrorKind, Result};
+use crate::view::{DepthView, Size, quantile};
+
+/// Patches at most: about four for each cell of the grid that an object covers.
+const MOST_PATCHES: usize = 1000;
+/// Fewest patches that say anything about a rotation.
+const FEWEST_PATCHES: usize = 16;
+/// Mean of the unit normals of a block below which they disagree too much to have a direction.
+const LEAST_AGREEMENT: f64 = 0.3;
+/// Largest area of a patch in medians: steeper patches are seen edge on by the depth camera, or span a jump.
+const LARGEST_AREA: f64 = 5.0;
+
+/// A patch of the surface, in the depth camera's frame and unit.
+#[derive(Clone, Copy, Debug)]
+pub struct Patch {
+    /// From the centre of the cloud.
+    pub place: [f32; 3],
+    pub normal: [f32; 3],
+    pub area: f32,
+}
+
+/// The thinned depth view.
+#[derive(Clone, Debug)]
+pub struct Cloud {
+    pub patches: Vec<Patch>,
+    pub centre: Vector3<f64>,
+}
+
+/// Sums over the pixels of one block.
+#[derive(Clone, Copy, Default)]
+struct Block {
+    point: Vector3<f64>,
+    normal: Vector3<f64>,
+    count: f64,
+}
+
+impl Block {
+    fn mean(&self) -> Option<Vector3<f64>> {
+        (self.count > 0.0).then(|| self.point / self.count)
+    }
+}
+
+impl Cloud {
+    /// # Errors
+    /// [`ErrorKind::Empty`] where too little of the view has a normal.
+    pub fn new(view: &DepthView) -> Result<Self> {
+        let usable = |&index: &usize| view.points.is_valid(index) && view.normals.is_valid(index);
+        let count = (0..view.size.len()).filter(usable).count();
+        let side = ((count as f64 / MOST_PATCHES as f64).sqrt().ceil() as usize).max(1);
+        let raster = Size { width: view.size.width.div_ceil(side), height: view.size.height.div_ceil(side) };
+        let mut blocks = vec![Block::default(); raster.len()];
+        for index in (0..view.size.len()).filter(usable) {
+            let (column, row) = view.size.position(index);
+            let block = &mut blocks[raster.index(column / side, row / side)];
+            block.point += Vector3::from(view.points.get(index).map(f64::from));
+            block.normal += Vector3::from(view.normals.get(index).map(f64::from));
+            block.count += 1.0;
+        }
+        let mut cloud = Self { patches: Vec::with_capacity(count), centre: Vector3::zeros() };
+        cloud.fill(&blocks, raster, (side * side) as f64);
+        if cloud.patches.len() < FEWEST_PATCHES {
+            return Err(Error::new(ErrorKind::Empty, "depth", "too few depth pixels have a normal")
+                .value(cloud.patches.len() as f64));
+        }
+        Ok(cloud)
+    }
+
+    fn fill(&mut self, blocks: &[Block], raster: Size, full: f64) {
+        let areas: Vec<Option<f64>> = (0..blocks.len()).map(|index| area(blocks, raster, index)).collect();
+        let mut known: Vec<f32> = areas.iter().flatten().map(|&area| area as f32).collect();
+        let median = if known.is_empty() { 1.0 } else { f64::from(quantile(&mut known, 0.5)) };
+        let kept = |block: &Block| block.normal.norm() >= LEAST_AGREEMENT * block.count;
+        let means = || blocks.iter().filter(|block| kept(block)).filter_map(Block::mean);
+        self.centre = means().sum::<Vector3<f64>>() / means().count().max(1) as f64;
+        for (block, area) in blocks.iter().zip(areas).filter(|(block, _)| kept(block)) {
+            let Some(point) = block.mean() else { continue };
+            let area = area.unwrap_or(median).min(LARGEST_AREA * median) * block.count / full;
+            self.patches.push(Patch {
+                place: (point - self.centre).map(|value| value as f32).into(),
+                normal: block.normal.normalize().map(|value| value as f32).into(),
+                area: area as f32,
+            });
+        }
+    }
+}
+
+/// Area between neighbouring blocks; `None` where an axis has no neighbour.
+fn area(blocks: &[Block], raster: Size, index: usize) -> Option<f64> {
+    let here = blocks[index].mean()?;
+    let (column, row) = raster.position(index);
+    let step = |before: Option<usize>, after: Option<usize>| {
+        let mean = |index: Option<usize>| index.and_then(|index| blocks[index].mean());
+        match (mean(before), mean(after)) {
+            (Some(before), Some(after)) => Some((after - before) / 2.0),
+            (Some(before), None) => Some(here - before),
+            (None, Some(after)) => Some(after - here),
+            (None, None) => None,
+        }
+    };
+    let across = step((column > 0).then(|| index - 1), (column + 1 < raster.width).then_some(index + 1))?;
+    let down =
+        step((row > 0).then(|| index - raster.width), (row + 1 < raster.height).then_some(index + raster.width))?;
+    Some(across.cross(&down).norm())
+}

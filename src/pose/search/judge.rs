@@ -1,0 +1,169 @@
+//! How well a template explains the colours under it, at one translation, exactly.
+//!
+//! score = N (N / V) (1/3) ln( det(T + e) / det(E + e) ): N cells of overlap out of V visible ones, T the covariance of
+//! the balanced colours y in the overlap, E that of what the template leaves of them. With an unknown light E is the
+//! residual of a linear fit of the nine harmonics in each channel; with a known one it is y - W B(n) L, free of a common
+//! exposure. It is the gain of likelihood over a constant colour, so exposure and white balance of the scores cancel;
+//! N / V is the share of the visible cells that the mask accepts: visible points off the object are a contradiction.
+//!
+//! Limits: every cell counts as independent, and shadows and albedo are not modelled.
+
+use nalgebra::{Matrix3, SMatrix, Vector3};
+
+use super::target::Target;
+use super::template::{PRODUCTS, Products, Sums, Template};
+use crate::light::{HARMONICS, Light, basis};
+
+/// Variance e added to the balanced colours, whose first axis has variance one: what a tilt by half the spacing of the
+/// rotations leaves unexplained at best. Ten times as much ranks alike.
+const UNEXPLAINED: f64 = 1e-3;
+/// Share added to the diagonal of the harmonics' Gram matrix, and of the weight: harmonics that hardly vary over the
+/// overlap must not be fitted with huge coefficients.
+const RIDGE: f64 = 1e-3;
+const RIDGE_OF_WEIGHT: f64 = 1e-4;
+/// Overlaps of fewer cells can be explained by anything: nine harmonics fit nine cells.
+pub const FEWEST_CELLS: f32 = 12.0;
+
+/// Products of the harmonics over some cells.
+pub type Gram = SMatrix<f64, HARMONICS, HARMONICS>;
+
+/// The balanced colours of a known light at every cell of a template, their mean along the exposure taken out.
+pub struct Prediction {
+    light: Light,
+    /// W (1, 1, 1) at length one: what another exposure adds.
+    pub exposure: Vector3<f64>,
+    /// In the order of the template's cells.
+    pub colours: Vec<[f32; 3]>,
+}
+
+impl Prediction {
+    pub fn new(light: &Light, target: &Target) -> Self {
+        let exposure = (target.balance * Vector3::repeat(1.0)).normalize();
+        Self { light: *light, exposure, colours: Vec::with_capacity(target.mask.len()) }
+    }
+
+    /// Shades the cells of a template. Allocates nothing.
+    pub fn shade(&mut self, template: &Template, target: &Target) {
+        self.colours.clear();
+        let constant = basis([0.0; 3])[0];
+        let (mut offset, mut total) = (0.0, 0.0);
+        let colour = |sums: &Sums| {
+            let log = self.light.0.map(|l| {
+                l[0] * constant + (1..HARMONICS).map(|k| l[k] * f64::from(sums[k])).sum::<f64>() / f64::from(sums[0])
+            });
+            target.balance * (Vector3::from(log) - target.mean)
+        };
+        for sums in template.cells.iter().map(|&cell| &template.sums[cell as usize]) {
+            let colour = colour(sums);
+            offset += f64::from(sums[0]) * self.exposure.dot(&colour);
+            total += f64::from(sums[0]);
+            self.colours.push(colour.map(|value| value as f32).into());
+        }
+        let offset = (self.exposure * (offset / total)).map(|value| value as f32);
+        self.colours.iter_mut().for_each(|colour| (0..3).for_each(|channel| colour[channel] -= offset[channel]));
+    }
+}
+
+/// The score of a template moved by whole cells; `None` where too little overlaps.
+pub fn judge(template: &Template, prediction: Option<&Prediction>, target: &Target, shift: [i32; 2]) -> Option<f64> {
+    let (total, residual, cells) = match prediction {
+        None => fitted(template, target, shift)?,
+        Some(prediction) => predicted(template, prediction, target, shift)?,
+    };
+    let floor = Matrix3::identity() * UNEXPLAINED;
+    let gain = ((total / cells + floor).determinant() / (residual / cells + floor).determinant()).ln() / 3.0;
+    gain.is_finite().then(|| gain * cells * cells / f64::from(template.visible))
+}
+
+/// Sums of squares of the colours about their mean, those of the residual, and the number of cells.
+type Squares = (Matrix3<f64>, Matrix3<f64>, f64);
+
+/// The cells under a moved template: position in its list, sums, index in the target.
+fn under<'a>(
+    template: &'a Template,
+    target: &'a Target,
+    shift: [i32; 2],
+) -> impl Iterator<Item = (usize, &'a Sums, usize)> {
+    let side = target.side as i32;
+    template.cells.iter().enumerate().filter_map(move |(order, &cell)| {
+        let (column, row) = (cell as i32 % side + shift[0], cell as i32 / side + shift[1]);
+        let inside = (0..side).contains(&column) && (0..side).contains(&row);
+        let place = inside.then_some((row * side + column) as usize)?;
+        (target.mask[place] > 0.0).then(|| (order, &template.sums[cell as usize], place))
+    })
+}
+
+fn fitted(template: &Template, target: &Target, shift: [i32; 2]) -> Option<Squares> {
+    let mut gram = [0.0_f32; PRODUCTS];
+    let mut cross = [[0.0_f32; HARMONICS]; 3];
+    let mut outer = [0.0_f32; 6];
+    for (order, sums, place) in under(template, target, shift) {
+        let mask = target.mask[place];
+        gram.iter_mut().zip(&template.products[order]).for_each(|(sum, product)| *sum += mask * product);
+        let colour = [target.colour[0][place], target.colour[1][place], target.colour[2][place]];
+        for (cross, value) in cross.iter_mut().zip(colour) {
+            (0..HARMONICS).for_each(|k| cross[k] += mask * value * sums[k]);
+        }
+        add_outer(&mut outer, mask * sums[0], colour);
+    }
+    let cells = gram[0];
+    let enough = cells >= FEWEST_CELLS;
+    let factor = regularised(&gram).cholesky().filter(|_| enough)?;
+    let cross = SMatrix::<f64, HARMONICS, 3>::from_fn(|k, channel| f64::from(cross[channel][k]));
+    let explained = cross.transpose() * factor.solve(&cross);
+    let (outer, cells) = (symmetric(&outer), f64::from(cells));
+    let sum = cross.row(0);
+    Some((outer - sum.transpose() * sum / cells, outer - explained, cells))
+}
+
+/// The Gram matrix from sums of products, with the ridge.
+pub fn regularised(products: &Products) -> Gram {
+    let mut gram = Gram::from_fn(|row, column| {
+        let (long, short) = (row.max(column), row.min(column));
+        f64::from(products[long * (long + 1) / 2 + short])
+    });
+    for k in 1..HARMONICS {
+        gram[(k, k)] += RIDGE * gram[(k, k)] + RIDGE_OF_WEIGHT * gram[(0, 0)];
+    }
+    gram
+}
+
+fn predicted(template: &Template, prediction: &Prediction, target: &Target, shift: [i32; 2]) -> Option<Squares> {
+    let (mut cells, mut sum, mut off) = (0.0_f32, [0.0_f32; 3], [0.0_f32; 3]);
+    let (mut outer, mut left) = ([0.0_f32; 6], [0.0_f32; 6]);
+    for (order, sums, place) in under(template, target, shift) {
+        let weight = target.mask[place] * sums[0];
+        let colour = [target.colour[0][place], target.colour[1][place], target.colour[2][place]];
+        let shade = prediction.colours[order];
+        let gap = [colour[0] - shade[0], colour[1] - shade[1], colour[2] - shade[2]];
+        cells += weight;
+        for channel in 0..3 {
+            sum[channel] += weight * colour[channel];
+            off[channel] += weight * gap[channel];
+        }
+        add_outer(&mut outer, weight, colour);
+        add_outer(&mut left, weight, gap);
+    }
+    if cells < FEWEST_CELLS {
+        return None;
+    }
+    let (sum, off, cells) = (Vector3::from(sum.map(f64::from)), Vector3::from(off.map(f64::from)), f64::from(cells));
+    // Taking the mean m out along the unit vector u: sum of (d - m u)(d - m u)^T with m = u . d / N.
+    let exposure = prediction.exposure;
+    let mean = exposure.dot(&off) / cells;
+    let mixed = off * exposure.transpose() * mean;
+    let residual =
+        symmetric(&left) - mixed - mixed.transpose() + exposure * exposure.transpose() * (mean * mean * cells);
+    Some((symmetric(&outer) - sum * sum.transpose() / cells, residual, cells))
+}
+
+fn add_outer(outer: &mut [f32; 6], weight: f32, [x, y, z]: [f32; 3]) {
+    for (sum, product) in outer.iter_mut().zip([x * x, x * y, x * z, y * y, y * z, z * z]) {
+        *sum += weight * product;
+    }
+}
+
+fn symmetric(outer: &[f32; 6]) -> Matrix3<f64> {
+    let [xx, xy, xz, yy, yz, zz] = outer.map(f64::from);
+    Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz)
+}

@@ -1,0 +1,146 @@
+//! The colour view on the search grid: coverage and balanced, mean-free log colours of each cell, and their spectra.
+//!
+//! y = W (log S - mean), W the principal axes of the object's colours, each divided by the root of its standard
+//! deviation: half-way between plain differences, where grey light is all there is, and whitened ones, where the faint
+//! hues of natural light count as much as its brightness, and so does noise.
+//!
+//! Limits: the grid spans the mask. Where the mask is the whole frame, an object that is small in it has few cells.
+
+use nalgebra::{Matrix3, SymmetricEigen, Vector3};
+
+use super::fourier::{Complex, Fourier};
+use crate::error::{Error, ErrorKind, Result};
+use crate::view::ColourView;
+
+/// Cells across the longer side of the mask: a tilt by the spacing of the rotations moves features by about two.
+const ACROSS: f64 = 18.0;
+/// Least share of a cell that carries a colour: less is a rim of interpolated pixels.
+const LEAST_COVER: f32 = 0.05;
+/// Standard deviation in log units below which a colour axis is not amplified further: noise of a good camera, twice.
+const NOISE: f64 = 0.02;
+/// Cap on the rounds of the 3x3 eigenvalue iteration, which ends after about five.
+const MOST_EIGEN_ROUNDS: usize = 200;
+
+/// The colour view on a square grid. Empty cells hold zeros.
+pub struct Target {
+    pub side: usize,
+    /// Pixels of a cell's edge.
+    pub cell: f64,
+    /// Column and row of the pixel at the middle of cell (side / 2, side / 2): the middle of the mask.
+    pub middle: [f64; 2],
+    /// Share of each cell that the mask covers.
+    pub mask: Vec<f32>,
+    /// Cells covered in all.
+    pub covered: f32,
+    /// y.
+    pub colour: [Vec<f32>; 3],
+    /// W and the mean that it is applied to.
+    pub balance: Matrix3<f64>,
+    pub mean: Vector3<f64>,
+    /// Spectra of the mask, of mask |y|^2 and of mask y.
+    pub spectra: Spectra,
+}
+
+/// Spectra of real fields, as [`Fourier`] leaves them.
+pub struct Spectra {
+    pub mask: Vec<Complex>,
+    pub energy: Vec<Complex>,
+    pub colour: [Vec<Complex>; 3],
+}
+
+impl Target {
+    /// # Errors
+    /// [`ErrorKind::Degenerate`] where all colours are the same.
+    pub fn new(view: &ColourView, side: usize, fourier: &mut Fourier) -> Result<Self> {
+        let (cell, middle) = frame(view);
+        let (mask, mut colour) = cells(view, side, cell, middle);
+        let (mean, covariance) = moments(&mask, &colour);
+        let balance = balance(&covariance)?;
+        for index in (0..mask.len()).filter(|&index| mask[index] > 0.0) {
+            let log = Vector3::from_fn(|channel, _| f64::from(colour[channel][index]));
+            let balanced = balance * (log - mean);
+            (0..3).for_each(|channel| colour[channel][index] = balanced[channel] as f32);
+        }
+        let mut spectrum = |value: &dyn Fn(usize) -> f32| {
+            let mut field: Vec<_> = (0..mask.len()).map(|index| Complex::new(value(index), 0.0)).collect();
+            fourier.forward(&mut field);
+            field
+        };
+        let energy = |index: usize| mask[index] * colour.iter().map(|channel| channel[index].powi(2)).sum::<f32>();
+        let spectra = Spectra {
+            mask: spectrum(&|index| mask[index]),
+            energy: spectrum(&energy),
+            colour: [0, 1, 2].map(|channel: usize| spectrum(&|index| mask[index] * colour[channel][index])),
+        };
+        let covered = mask.iter().sum();
+        Ok(Self { side, cell, middle, mask, covered, colour, balance, mean, spectra })
+    }
+}
+
+/// Pixels of a cell's edge and the middle of the mask.
+fn frame(view: &ColourView) -> (f64, [f64; 2]) {
+    let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+    for index in (0..view.size.len()).filter(|&index| view.mask[index]) {
+        let (column, row) = view.size.position(index);
+        for (axis, place) in [column as f64, row as f64].into_iter().enumerate() {
+            low[axis] = low[axis].min(place);
+            high[axis] = high[axis].max(place);
+        }
+    }
+    let extent = (high[0] - low[0]).max(high[1] - low[1]) + 1.0;
+    (extent / ACROSS, [0, 1].map(|axis| (low[axis] + high[axis]) / 2.0))
+}
+
+/// Coverage and mean log colours of the cells; each pixel is spread over the four around it.
+fn cells(view: &ColourView, side: usize, cell: f64, middle: [f64; 2]) -> (Vec<f32>, [Vec<f32>; 3]) {
+    let mut mask = vec![0.0_f32; side * side];
+    let mut colour = [(); 3].map(|()| vec![0.0_f32; side * side]);
+    for index in (0..view.size.len()).filter(|&index| view.mask[index]) {
+        let (column, row) = view.size.position(index);
+        let x = (column as f64 - middle[0]) / cell + (side / 2) as f64;
+        let y = (row as f64 - middle[1]) / cell + (side / 2) as f64;
+        let (right, low) = (x.fract() as f32, y.fract() as f32);
+        let corner = y as usize * side + x as usize;
+        for (place, share) in [
+            (corner, (1.0 - right) * (1.0 - low)),
+            (corner + 1, right * (1.0 - low)),
+            (corner + side, (1.0 - right) * low),
+            (corner + side + 1, right * low),
+        ] {
+            mask[place] += share;
+            (0..3).for_each(|channel| colour[channel][place] += share * view.log[channel][index]);
+        }
+    }
+    let full = (cell * cell) as f32;
+    for index in 0..mask.len() {
+        let kept = mask[index] > LEAST_COVER * full;
+        for channel in &mut colour {
+            channel[index] = if kept { channel[index] / mask[index] } else { 0.0 };
+        }
+        mask[index] = if kept { (mask[index] / full).min(1.0) } else { 0.0 };
+    }
+    (mask, colour)
+}
+
+/// Mean and covariance of the colours, weighted by the mask.
+fn moments(mask: &[f32], colour: &[Vec<f32>; 3]) -> (Vector3<f64>, Matrix3<f64>) {
+    let at = |index: usize| Vector3::from_fn(|channel, _| f64::from(colour[channel][index]));
+    let total: f64 = mask.iter().map(|&weight| f64::from(weight)).sum();
+    let weighted = || (0..mask.len()).map(|index| (f64::from(mask[index]) / total, at(index)));
+    let mean: Vector3<f64> = weighted().map(|(weight, colour)| weight * colour).sum();
+    let spread = |(weight, colour): (f64, Vector3<f64>)| weight * (colour - mean) * (colour - mean).transpose();
+    (mean, weighted().map(spread).sum())
+}
+
+/// W: principal axes over the fourth root of their variance, the first of them scaled to variance one.
+fn balance(covariance: &Matrix3<f64>) -> Result<Matrix3<f64>> {
+    let flat = || Error::new(ErrorKind::Degenerate, "image", "all colours are the same");
+    let eigen = SymmetricEigen::try_new(*covariance, f64::EPSILON, MOST_EIGEN_ROUNDS).ok_or_else(flat)?;
+    let largest = eigen.eigenvalues.max();
+    if largest.is_nan() || largest <= f64::from(f32::EPSILON).powi(2) {
+        return Err(flat());
+    }
+    let shares = eigen.eigenvalues.map(|value| (value.max(0.0) + NOISE * NOISE) / largest);
+    let gains = shares.map(|share| share.powf(-0.25) / largest.sqrt());
+    Ok(Matrix3::from_diagonal(&gains) * eigen.eigenvectors.transpose())
+}

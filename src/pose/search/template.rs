@@ -1,0 +1,189 @@
+//! What the colour camera would see of the turned cloud, on the search grid.
+//!
+//! Each patch that faces the camera and is not hidden spreads its projected area w over the four cells around it, with
+//! the nine harmonics of its turned normal: a cell holds w and w B_k(n). Coverage is at most one.
+//!
+//! Limits: hidden is what lies behind the nearest patch of the same cell or its neighbours by more than a tolerance, so
+//! that thin structures one behind the other show through. What leaves the grid is not seen.
+
+use nalgebra::Matrix3;
+
+use super::cloud::Cloud;
+use crate::light::{HARMONICS, basis};
+
+/// Least cosine between a normal and the direction to the camera: shallower patches are slivers on the grid.
+const GRAZING: f32 = 0.1;
+/// Depth in cells behind the nearest patch of a cell at which a patch is hidden: the slope of a visible surface within
+/// a cell and its neighbours.
+const HIDDEN: f32 = 2.5;
+
+/// Weight w, then w B_k for the harmonics after the constant one.
+pub type Sums = [f32; HARMONICS];
+
+/// Products of two harmonics, the lower triangle row by row.
+pub const PRODUCTS: usize = HARMONICS * (HARMONICS + 1) / 2;
+/// w B_k B_l.
+pub type Products = [f32; PRODUCTS];
+
+/// How patches fall on the grid: a camera that looks along `ray` (x and y at z = 1) at the centre of the cloud.
+#[derive(Clone, Copy, Debug)]
+pub struct Gaze {
+    /// Cells for each unit of the depth view at the centre of the cloud.
+    pub magnification: f32,
+    pub ray: [f32; 2],
+    /// One over the distance of the centre in units of the depth view; zero for parallel rays.
+    pub closeness: f32,
+}
+
+/// The turned cloud on a square grid; the centre of the cloud lies in cell (side / 2, side / 2).
+pub struct Template {
+    side: usize,
+    /// Sums of every cell.
+    pub sums: Vec<Sums>,
+    /// Indices of the cells that are not empty.
+    pub cells: Vec<u32>,
+    /// Products of the harmonics in those cells, in their order.
+    pub products: Vec<Products>,
+    /// Cells covered in all.
+    pub visible: f32,
+    nearest: Vec<f32>,
+    places: Vec<[f32; 3]>,
+}
+
+impl Template {
+    pub fn new(side: usize, cloud: &Cloud) -> Self {
+        Self {
+            side,
+            sums: vec![[0.0; HARMONICS]; side * side],
+            cells: Vec::with_capacity(side * side),
+            products: Vec::with_capacity(side * side),
+            visible: 0.0,
+            nearest: vec![f32::INFINITY; side * side],
+            places: Vec::with_capacity(cloud.patches.len()),
+        }
+    }
+
+    /// Draws the cloud under `rotation` in place of whatever was drawn before. Allocates nothing.
+    pub fn draw(&mut self, cloud: &Cloud, rotation: &Matrix3<f64>, gaze: &Gaze) {
+        let turn = rows(rotation);
+        self.clear();
+        self.place(cloud, &turn, gaze);
+        let length = (1.0 + gaze.ray[0] * gaze.ray[0] + gaze.ray[1] * gaze.ray[1]).sqrt();
+        for index in 0..cloud.patches.len() {
+            let patch = &cloud.patches[index];
+            let normal = times(&turn, patch.normal);
+            let facing = -(normal[0] * gaze.ray[0] + normal[1] * gaze.ray[1] + normal[2]) / length;
+            let Some(corner) = (facing > GRAZING).then(|| self.seen(index)).flatten() else { continue };
+            self.spread(index, corner, patch.area * gaze.magnification * gaze.magnification * facing, normal);
+        }
+        for &cell in &self.cells {
+            let sums = &mut self.sums[cell as usize];
+            let excess = sums[0].max(1.0);
+            sums.iter_mut().for_each(|sum| *sum /= excess);
+            self.visible += sums[0];
+        }
+    }
+
+    /// Multiplies the harmonics of each cell with each other. Allocates nothing.
+    pub fn multiply(&mut self) {
+        self.products.clear();
+        for sums in self.cells.iter().map(|&cell| &self.sums[cell as usize]) {
+            let mut products = [0.0; PRODUCTS];
+            let mut start = 0;
+            for row in 0..HARMONICS {
+                let scaled = sums[row] / sums[0];
+                (0..=row).for_each(|column| products[start + column] = scaled * sums[column]);
+                start += row + 1;
+            }
+            self.products.push(products);
+        }
+    }
+
+    fn clear(&mut self) {
+        for &cell in &self.cells {
+            self.sums[cell as usize] = [0.0; HARMONICS];
+        }
+        self.cells.clear();
+        self.nearest.fill(f32::INFINITY);
+        self.places.clear();
+        self.visible = 0.0;
+    }
+
+    /// Column, row and depth of every patch in cells, and the nearest depth of every cell.
+    fn place(&mut self, cloud: &Cloud, turn: &[[f32; 3]; 3], gaze: &Gaze) {
+        let middle = (self.side / 2) as f32;
+        let last = (self.side - 2) as f32;
+        for patch in &cloud.patches {
+            let [x, y, z] = times(turn, patch.place);
+            let shrink = gaze.magnification / (1.0 + z * gaze.closeness).max(f32::EPSILON);
+            // (ray D + x) / (D + z) - ray = (x - ray z) / (D + z)
+            let bend = if gaze.closeness > 0.0 { gaze.ray } else { [0.0; 2] };
+            let place =
+                [(x - bend[0] * z) * shrink + middle, (y - bend[1] * z) * shrink + middle, z * gaze.magnification];
+            self.places.push(place);
+            let [column, row] = [place[0], place[1]];
+            if column >= 1.0 && row >= 1.0 && column <= last && row <= last {
+                let cell = nearest(row) * self.side + nearest(column);
+                for cell in [cell, cell - 1, cell + 1, cell - self.side, cell + self.side] {
+                    self.nearest[cell] = self.nearest[cell].min(place[2]);
+                }
+            }
+        }
+    }
+
+    /// The upper left of the four cells around a patch, `None` where it is hidden or off the grid.
+    fn seen(&self, index: usize) -> Option<usize> {
+        let [x, y, z] = self.places[index];
+        let last = (self.side - 2) as f32;
+        if x < 0.0 || y < 0.0 || x >= last || y >= last {
+            return None;
+        }
+        let nearest = self.nearest[nearest(y) * self.side + nearest(x)];
+        (z <= nearest + HIDDEN).then(|| y as usize * self.side + x as usize)
+    }
+
+    fn spread(&mut self, index: usize, corner: usize, area: f32, normal: [f32; 3]) {
+        let [x, y, _] = self.places[index];
+        let (right, low) = (x - (x as usize) as f32, y - (y as usize) as f32);
+        let exact = basis([f64::from(normal[0]), f64::from(normal[1]), f64::from(normal[2])]);
+        let mut harmonics = [0.0_f32; HARMONICS];
+        (0..HARMONICS).for_each(|k| harmonics[k] = exact[k] as f32);
+        for (cell, share) in [
+            (corner, (1.0 - right) * (1.0 - low)),
+            (corner + 1, right * (1.0 - low)),
+            (corner + self.side, (1.0 - right) * low),
+            (corner + self.side + 1, right * low),
+        ] {
+            let weight = area * share;
+            if weight <= f32::MIN_POSITIVE {
+                continue;
+            }
+            let sums = &mut self.sums[cell];
+            if sums[0] <= 0.0 {
+                self.cells.push(cell as u32);
+            }
+            sums[0] += weight;
+            for k in 1..HARMONICS {
+                sums[k] += weight * harmonics[k];
+            }
+        }
+    }
+}
+
+/// The cell nearest to a coordinate that is not negative; `round` is a call on some targets.
+fn nearest(place: f32) -> usize {
+    (place + 0.5) as usize
+}
+
+fn rows(rotation: &Matrix3<f64>) -> [[f32; 3]; 3] {
+    std::array::from_fn(|row| std::array::from_fn(|column| rotation[(row, column)] as f32))
+}
+
+fn times(m: &[[f32; 3]; 3], [x, y, z]: [f32; 3]) -> [f32; 3] {
+    // Written out: a map over an array stays a call.
+    [
+        m[0][0] * x + m[0][1] * y + m[0][2] * z,
+        m[1][0] * x + m[1][1] * y + m[1][2] * z,
+        m[2][0] * x + m[2][1] * y + m[2][2] * z,
+    ]
+}
