@@ -13,8 +13,13 @@
 //! intrinsics the centre moves in the plane of its starting distance: that of the depth camera, or where the silhouettes
 //! are as large. There scale and distance look alike: the scale is held and the distance varies instead.
 //!
+//! Measured on 160 scenes of 64x64 (eight surfaces, natural and colourful lights, up to 75 degrees with roll, 0.4 to all of
+//! the columns, free scale, 1 % noise): a candidate within 10 degrees of the truth is first in 73 %, among the first ten
+//! in 92 % and among all in 98 % for an unknown light; in 88, 98 and 100 % for a known one.
+//!
 //! Limits: tilt up to 100 degrees with roll up to 32, or any rotation up to 76 degrees. Poses end a few degrees from the
-//! truth, the first being the right one in most cases only. Overlaps under 0.15 are not seen. No shadows, one albedo.
+//! truth. What is lost are tilts beyond 60 degrees of half a depth map: too little is seen twice. Overlaps under 0.15 are
+//! not seen. No shadows, one albedo.
 
 mod cloud;
 mod correlate;
@@ -41,17 +46,18 @@ use template::{Gaze, Template};
 /// Side of the grid in cells: the mask spans 18, so that the template may move by 14 before it comes in again
 /// on the other side, where next to nothing overlaps.
 const SIDE: usize = 32;
-/// Distance of neighbouring rotations of the sweep in degrees. On 160 scenes one within 15 degrees of the truth
-/// was among the first 40 in 99 % at 17, in 96 % at 20.
+/// Distance of neighbouring rotations of the sweep in degrees. On 160 scenes with unknown light, before any climb, one
+/// within 15 degrees of the truth was among the first 40 in 99 % at 17 and in 96 % at 20.
 const SPACING: f64 = 16.0;
-/// Scales of a free scale relative to s0: a factor of 1.15 apart, a cell at either end of the object.
-const FREE_SCALES: [f64; 6] = [0.70, 0.80, 0.92, 1.06, 1.22, 1.40];
+/// Scales of a free scale relative to s0, a cell apart at either end of the object; the climb reaches 0.7 and 1.4 and
+/// closes the gaps. Six of them rank alike and take half as long again.
+const FREE_SCALES: [f64; 4] = [0.74, 0.90, 1.09, 1.32];
 /// Apparent sizes behind a pinhole whose scale is held: the distance is known only roughly.
 const NEAR_SIZES: [f64; 3] = [0.87, 1.0, 1.15];
 /// Pairs of a rotation and a scale in one slice of the sweep.
 const SWEPT_AT_ONCE: usize = 12;
 /// Rotations that climb.
-const CLIMBERS: usize = 64;
+const CLIMBERS: usize = 96;
 /// Rotations of the sweep that are nearer to a better one than this many degrees do not climb: a climb goes farther.
 const SWEEP_TWINS: f64 = 10.0;
 /// Steps of the climb in degrees, one round each.
@@ -219,7 +225,7 @@ impl Search {
 
     /// Leaves the best places of the sweep, no two rotations alike.
     fn choose_climbers(&mut self) {
-        self.places.sort_by(|a, b| b.score.total_cmp(&a.score));
+        self.places.sort_unstable_by(|a, b| b.score.total_cmp(&a.score));
         keep_apart(&mut self.places, CLIMBERS, SWEEP_TWINS, |place| &place.rotation);
         self.climbers = self.places.len();
     }
@@ -269,7 +275,7 @@ impl Search {
 
     fn finish(&mut self) {
         self.found.retain(|candidate| candidate.score.is_finite());
-        self.found.sort_by(|a, b| b.score.total_cmp(&a.score));
+        self.found.sort_unstable_by(|a, b| b.score.total_cmp(&a.score));
         keep_apart(&mut self.found, KEPT, TWINS, |candidate| &candidate.pose.rotation);
     }
 }

@@ -13,7 +13,7 @@ use super::target::Target;
 use super::template::{PRODUCTS, Template};
 use crate::light::HARMONICS;
 
-/// Translations proposed for each rotation: the right one is nearly always the first.
+/// Translations proposed for each rotation; the exact score picks one of them.
 const PROPOSALS: usize = 3;
 /// Least share of the template, or of the mask where that is smaller, that a translation has to bring into overlap.
 const LEAST_OVERLAP: f32 = 0.15;
