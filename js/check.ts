@@ -157,7 +157,9 @@ const sample = object(
     },
     size: number,
     height: number,
+    protocol: word("rendered", "grid"),
     angles,
+    scale: number,
     overlap: number,
     noise: number,
     depthNoise: number,
@@ -166,6 +168,9 @@ const sample = object(
   },
   ["surface", "light"],
 );
+
+/** What the grid protocol has no use for: it would be ignored in silence. */
+const RENDERED_ALONE = ["size", "height", "scale", "noise", "depthNoise", "holes", "seed"];
 
 const signal: Check = (value, field) => {
   if (!(value instanceof AbortSignal)) throw wrong(field, "an AbortSignal", value);
@@ -190,7 +195,6 @@ export const unsupported = (field: string, what: string): BimodalError =>
 
 export const checkImage = (value: unknown): void => image(value, "image");
 export const checkDepth = (value: unknown): void => depth(value, "depth");
-export const checkSample = (value: unknown): void => sample(value, "sample");
 export const checkRun = (value: unknown): void => run(value, "run");
 
 export function checkOptions(value: unknown): void {
@@ -200,3 +204,15 @@ export function checkOptions(value: unknown): void {
     if (Object.hasOwn(LATER, key) && LATER[key] === member) throw unsupported(`options.${key}`, `"${member}"`);
   }
 }
+
+export function checkSample(value: unknown): void {
+  sample(value, "sample");
+  if (!isObject(value)) return;
+  const given = new Map<string, unknown>(Object.entries(value));
+  if (given.get("protocol") !== "grid") return;
+  const surplus = RENDERED_ALONE.find((key) => given.get(key) !== undefined);
+  if (surplus === undefined) return;
+  throw new BimodalError("option", `sample.${surplus}: the grid protocol has no such thing`, `sample.${surplus}`);
+}
+
+export const checkLightIsKnown = (value: unknown): void => flag(value, "lightIsKnown");

@@ -2,5 +2,5 @@
 export { checkCalibration } from "./calibration.js";
 export { BimodalError } from "./errors.js";
 export { Estimator } from "./estimator.js";
-export { sample, sampleLights, sampleSurfaces } from "./samples.js";
+export { sample, sampleBound, sampleLights, sampleSurfaces } from "./samples.js";
 export type * from "./types.js";

@@ -114,8 +114,16 @@ export interface SampleRequest {
   size?: number;
   /** Height of both views where it differs from `size`. */
   height?: number;
+  /**
+   * "rendered", the default: both views as cameras see them. "grid": samples 0, 8, 16, .. of the surface, without occlusion,
+   * resampling and noise; the depth view is the image's own points, turned, as an organised cloud with its normals. Its size
+   * follows from the surface; of the members below it takes `angles` and `overlap`.
+   */
+  protocol?: "rendered" | "grid";
   /** The pose to find, degrees. Default beta = 20. */
   angles?: { alpha?: number; beta?: number; gamma?: number };
+  /** Scale of the pose to find: the depth view is 1 / scale times as large. Default 1. */
+  scale?: number;
   /** Share of the depth map's valid columns that is kept, centred. Default 1. */
   overlap?: number;
   /** Sigma of the Gaussian noise on log S. Default 0. */

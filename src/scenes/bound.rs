@@ -23,7 +23,8 @@ type Row = SVector<f64, UNKNOWNS>;
 /// (at least one pixel length).
 const SAME_DEPTH: f64 = 1.0;
 
-/// The bound of a sample's rotation in degrees for noise `sigma` of log S; `None` where the scene determines no rotation.
+/// The bound of a sample's rotation in degrees for noise `sigma` of log S; `None` where the scene determines no rotation, and
+/// where there is no noise to bound.
 #[must_use]
 pub fn bound(sample: &Sample, light_is_known: bool, sigma: f64) -> Option<f64> {
     let size = sample.image.size;

@@ -283,6 +283,7 @@ impl SampleRequest {
             return Err(Error::new(ErrorKind::Size, "size", message));
         }
         self.light.validate("light")?;
+        positive("scale", self.scale)?;
         Similarity { scale: self.scale, rotation: self.rotation, translation: Vector3::zeros() }.validate("pose")?;
         check_overlap(self.overlap)?;
         not_negative("noise", self.noise)?;

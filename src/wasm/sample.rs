@@ -9,7 +9,7 @@ use super::input::{JsAngles, angles, numbers, side, whole};
 use super::output::{camera, mask, pose, set};
 use crate::error::Result;
 use crate::light::Light;
-use crate::scenes::{DepthData, Relief, Sample, SampleRequest, Scene, lights, surfaces};
+use crate::scenes::{DepthData, Relief, Sample, SampleRequest, Scene, bare_grid, bound, lights, surfaces};
 use crate::view::Size;
 
 #[wasm_bindgen]
@@ -26,6 +26,10 @@ extern "C" {
     fn height(this: &JsRequest) -> Option<f64>;
     #[wasm_bindgen(method, getter)]
     fn angles(this: &JsRequest) -> Option<JsAngles>;
+    #[wasm_bindgen(method, getter)]
+    fn protocol(this: &JsRequest) -> Option<String>;
+    #[wasm_bindgen(method, getter)]
+    fn scale(this: &JsRequest) -> Option<f64>;
     #[wasm_bindgen(method, getter)]
     fn overlap(this: &JsRequest) -> Option<f64>;
     #[wasm_bindgen(method, getter)]
@@ -70,8 +74,20 @@ pub fn sample(request: &JsRequest) -> std::result::Result<JsSample, Thrown> {
     Ok(plain(&made).unchecked_into())
 }
 
+/// The least error of the rotation that any estimator can have on this scene, degrees.
+#[wasm_bindgen(js_name = "sampleBound")]
+pub fn sample_bound(request: &JsRequest, light_is_known: bool) -> std::result::Result<Option<f64>, Thrown> {
+    let made = make(request).map_err(|error| error.below("sample"))?;
+    Ok(bound(&made, light_is_known, request.noise().unwrap_or_default()))
+}
+
 fn make(js: &JsRequest) -> Result<Sample> {
-    Scene::new(&relief(&js.surface())?)?.sample(&request(js)?)
+    let relief = relief(&js.surface())?;
+    let request = request(js)?;
+    match js.protocol().as_deref() {
+        Some("grid") => bare_grid(&relief, &request.light, &request.rotation, request.overlap),
+        _ => Scene::new(&relief)?.sample(&request),
+    }
 }
 
 fn relief(js: &JsValue) -> Result<Relief> {
@@ -96,6 +112,7 @@ fn request(js: &JsRequest) -> Result<SampleRequest> {
         },
         size: Size { width, height },
         rotation: js.angles().map_or(default.rotation, |given| angles(&given).rotation()),
+        scale: js.scale().unwrap_or(default.scale),
         overlap: js.overlap().unwrap_or(default.overlap),
         noise: js.noise().unwrap_or(default.noise),
         depth_noise: js.depth_noise().unwrap_or(default.depth_noise),
