@@ -1,9 +1,12 @@
 // npm test: sets up, builds and runs everything. `npm test -- contract page` runs these parts alone.
+import { readFileSync, rmSync } from "node:fs";
 import { createServer } from "node:net";
 import { browser } from "./browser.mjs";
 import { build } from "./build.mjs";
 import { WASM, setup } from "./setup.mjs";
 import { Failure, inRoot, matching, say, script, seconds, watch } from "./shell.mjs";
+import { hasData } from "./tables/library.mjs";
+import { missingKeys } from "./tables/keys.mjs";
 
 const DENY = ["--", "-D", "warnings"];
 const modules = (path) => inRoot("node_modules", path);
@@ -45,6 +48,18 @@ async function page() {
 
 const contract = () => watch(process.execPath, ["--test", "--test-reporter=spec", ...matching(["tests/contract"], /\.test\.mjs$/)]);
 
+/** Not on accuracy: aims are shown with their verdicts. It fails where a cell throws or the JSON lacks a key. */
+async function tables() {
+  const file = inRoot("target/tables/quick.json");
+  rmSync(file, { force: true });
+  const result = await watch(process.execPath, [inRoot("scripts/tables.mjs"), "--quick", "--json", file]);
+  if (result.code !== 0) return result;
+  const missing = missingKeys(JSON.parse(readFileSync(file, "utf8")), { realPairs: hasData() });
+  const verdict = missing.length === 0 ? "tables: every key is there" : `tables: the JSON lacks ${missing.join(", ")}`;
+  console.log(verdict);
+  return { code: missing.length === 0 ? 0 : 1, output: `${result.output}\n${verdict}\n` };
+}
+
 /** What a runner says last; these lines are repeated at the end. */
 const CARGO = /^(test result: .*|error: test failed.*|error: could not compile.*)$/gm;
 const NODE = /^(?:# |ℹ )((?:tests|pass|fail|skipped) .*)$/gm;
@@ -59,6 +74,7 @@ const PARTS = [
   { name: "wasm-worker", run: wasmIn("WASM_BINDGEN_USE_DEDICATED_WORKER"), closing: CARGO },
   { name: "types", run: types, needsBuild: true, closing: /^tsc .*$/gm },
   { name: "contract", run: contract, needsBuild: true, closing: NODE },
+  { name: "tables", run: tables, needsBuild: true, closing: /^(?:.* (?:ok|MISSED)$|.* cells failed:|tables: .*)$/gm },
   { name: "page", run: page, needsBuild: true, closing: /^ +\d+ (?:passed|failed|skipped|flaky|did not run).*$/gm },
 ];
 

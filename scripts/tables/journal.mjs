@@ -1,0 +1,40 @@
+// Results as they come, one JSON line each, so that a run that was broken off goes on where it was.
+import { createHash } from "node:crypto";
+import { appendFileSync, existsSync, mkdirSync, readFileSync } from "node:fs";
+import { inRoot, stamp } from "../shell.mjs";
+import { hasData } from "./library.mjs";
+
+const FOLDER = "target/tables";
+/** What decides about a result: the package, the protocols, and what the names stand for. */
+const DECISIVE = [
+  ...["index.js", "node.js", "files.js", "main.js", "errors.js", "bimodal_stereo_bg.wasm"].map((name) => `pkg/${name}`),
+  ...["scripts/tables/protocol", "scripts/tables/library.mjs", "scripts/tables/npy.mjs"],
+];
+
+const keyOf = (cell) => createHash("sha256").update(JSON.stringify(cell)).digest("hex").slice(0, 16);
+
+/** A line that Ctrl-C has cut off is no result. */
+function parsed(line) {
+  try {
+    return JSON.parse(line);
+  } catch {
+    return undefined;
+  }
+}
+
+/** The journal of this very package and these very protocols; another build begins another one. */
+export function openJournal() {
+  const path = inRoot(FOLDER, `${stamp(DECISIVE).slice(0, 16)}${hasData() ? "" : "-built-in"}.jsonl`);
+  mkdirSync(inRoot(FOLDER), { recursive: true });
+  const lines = existsSync(path) ? readFileSync(path, "utf8").split("\n").map(parsed).filter(Boolean) : [];
+  const results = new Map(lines.map(({ key, result }) => [key, result]));
+  return {
+    path,
+    find: (cell) => results.get(keyOf(cell)),
+    keep(cell, result) {
+      results.set(keyOf(cell), result);
+      // What failed is tried again by the next run.
+      if (!result.failure) appendFileSync(path, `\n${JSON.stringify({ id: cell.id, key: keyOf(cell), result })}`);
+    },
+  };
+}

@@ -1,0 +1,30 @@
+// What readers of the JSON rely on: its tables and the keys of their rows.
+
+const KEYS = {
+  table1: ["protocol", "sign", "scale", "alpha", "beta", "gamma", "iterations", "degrees"],
+  table2A: ["beta", "overlap", "size", "light", "lightName", "degrees", "error", "paper", "bound", "status", "milliseconds"],
+  table2B: ["beta", "overlap", "size", "light", "lightName", "degrees", "error", "paper", "bound", "status", "milliseconds"],
+  table3: ["name", "pose", "iterations", "residualBefore", "residualAfter"],
+  figure4: ["iteration", "depthRmse", "degrees"],
+  figure5: ["size", "lightName", "shading", "fraction", "degrees", "depthRmse"],
+  figure6: ["overlap", "error"],
+  figure7: ["name", "holesBefore", "holesAfter", "normalChange"],
+  refinement: ["lightName", "before", "after", "holes"],
+  photographs: ["object", "image", "beta", "degrees", "status"],
+  random: [
+    ...["cases", "found", "ambiguousOrLost", "confidentlyWrong", "flaggedThoughFound", "medianDegrees"],
+    ...["coverage1", "coverage3"],
+  ],
+  ablation: ["without", "medianDegrees", "found"],
+};
+/** Nothing stands in for these where other people's data is absent. */
+const REAL = ["table3", "figure7", "photographs"];
+
+/** Tables without a row, and keys that a row lacks. A key may be null: not everything has a value. */
+export const missingKeys = (json, { realPairs }) =>
+  Object.entries(KEYS).flatMap(([table, keys]) => {
+    if (json[table] === undefined) return [table];
+    const rows = [json[table]].flat();
+    if (rows.length === 0) return realPairs || !REAL.includes(table) ? [`rows of ${table}`] : [];
+    return keys.filter((key) => rows.some((row) => row[key] === undefined)).map((key) => `${table}.${key}`);
+  });

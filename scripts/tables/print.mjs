@@ -1,0 +1,191 @@
+// The tables as text.
+import { isConfidentlyWrong, isFlagged } from "./protocol/counts.mjs";
+import { median } from "./protocol/numbers.mjs";
+import { paperDegrees } from "./protocol/rotations.mjs";
+import { PAPER_TABLE_1, PAPER_TABLE_3 } from "./protocol/scenes.mjs";
+
+const DASH = "-";
+const fixed = (value, digits = 3) => (typeof value === "number" && Number.isFinite(value) ? value.toFixed(digits) : DASH);
+const percent = (value) => (typeof value === "number" ? `${(100 * value).toFixed(0)} %` : DASH);
+const small = (value) => (typeof value === "number" ? (value < 1e-4 ? value.toExponential(1) : value.toFixed(6)) : DASH);
+/** ? doubt was said, ! wrong by more than 3 degrees and nothing said. */
+const mark = (row) => (isFlagged(row) ? "?" : isConfidentlyWrong(row) ? "!" : "");
+
+/** Lists of words as columns, the first one flush left. */
+function columns(rows) {
+  const widths = rows[0].map((_, column) => Math.max(...rows.map((row) => String(row[column]).length)));
+  const pad = (word, column) => (column === 0 ? String(word).padEnd(widths[0]) : String(word).padStart(widths[column]));
+  return rows.map((row) => `  ${row.map(pad).join("  ")}`.trimEnd());
+}
+
+const unique = (values) => [...new Set(values)];
+
+function table1(rows) {
+  const keys = ["scale", "alpha", "beta", "gamma", "iterations", "degrees"];
+  const digits = (key) => (key === "iterations" ? 0 : 4);
+  const line = (name, row) => [name, ...keys.map((key) => fixed(row[key], digits(key))), row.status ?? ""];
+  return columns([
+    ["protocol", ...keys, "status"],
+    line("paper, +20", PAPER_TABLE_1),
+    ...rows.map((row) => line(`${row.protocol}, ${row.sign > 0 ? "+" : "-"}20`, row)),
+  ]);
+}
+
+/** Beta downward, overlap to the right; for each beta one line of every kind of figure. */
+function matrix(rows, kinds) {
+  const [betas, overlaps] = ["beta", "overlap"].map((key) => unique(rows.map((row) => row[key])).sort((a, b) => a - b));
+  const at = (beta, overlap) => rows.find((row) => row.beta === beta && row.overlap === overlap);
+  return columns([
+    ["beta", "P_w", ...overlaps],
+    ...betas.flatMap((beta) =>
+      kinds.map(([name, show], index) => [
+        index === 0 ? beta : "",
+        name,
+        ...overlaps.map((overlap) => (at(beta, overlap) ? show(at(beta, overlap)) : "")),
+      ]),
+    ),
+  ]);
+}
+
+const table2A = (rows) =>
+  matrix(rows, [
+    ["paper", ({ paper }) => small(paper)],
+    ["ours", (row) => small(row.error) + mark(row)],
+  ]);
+
+function table2B(rows, open3d) {
+  const blocks = unique(rows.map(({ size, lightName, light }) => `${size}x${size}, ${lightName}, light ${light}`));
+  return blocks.flatMap((block) => {
+    const members = rows.filter(({ size, lightName, light }) => `${size}x${size}, ${lightName}, light ${light}` === block);
+    const ratios = members.filter(({ bound }) => bound > 0).map(({ degrees, bound }) => degrees / bound);
+    const baseline = (row) => open3d(row);
+    return [
+      `  ${block}: degrees (median ${fixed(median(members.map(({ degrees }) => degrees)))}, ${fixed(median(ratios), 1)} times the bound)`,
+      ...matrix(members, [
+        ["paper", ({ paper }) => fixed(paperDegrees(paper))],
+        ...(members.some(baseline) ? [["Open3D", (row) => fixed(baseline(row))]] : []),
+        ["ours", (row) => fixed(row.degrees) + mark(row)],
+        ["bound", ({ bound }) => fixed(bound)],
+      ]),
+    ];
+  });
+}
+
+function table3(rows) {
+  const pose = ({ scale, angles: { alpha, beta, gamma } }) => [scale, alpha, beta, gamma].map((value) => fixed(value, 2));
+  return columns([
+    ["pair", "s", "alpha", "beta", "gamma", "iterations", "residual", "degrees", "(within)", "identity", "status"],
+    ["paper, food_box", ...pose({ ...PAPER_TABLE_3, angles: PAPER_TABLE_3 }), PAPER_TABLE_3.iterations, ...Array(5).fill(DASH)],
+    ...rows.map((row) => [
+      ...[row.name, ...pose(row.pose), row.iterations, `${fixed(row.residualBefore)} -> ${fixed(row.residualAfter)}`],
+      ...[fixed(row.degrees, 2), fixed(row.truthWithin, 2), fixed(row.identityDegrees, 2), row.status],
+    ]),
+  ]);
+}
+
+const figure4 = (rows) =>
+  columns([
+    ["run", "iteration", "depth rmse", "degrees"],
+    ...rows.map((row) => [`${row.run}, ${row.protocol}`, row.iteration, fixed(row.depthRmse), fixed(row.degrees, 4)]),
+  ]);
+
+function figure5(rows) {
+  const fractions = unique(rows.map(({ fraction }) => fraction)).sort((a, b) => a - b);
+  const nameOf = ({ size, lightName, shading }) => `${size}x${size}, ${lightName}, ${shading}`;
+  return columns([
+    ["degrees (depth rmse)", ...fractions.map((fraction) => `P_er ${fraction}`)],
+    ...unique(rows.map(nameOf)).map((name) => [
+      name,
+      ...fractions.map((fraction) => {
+        const row = rows.find((other) => nameOf(other) === name && other.fraction === fraction);
+        return row ? `${fixed(row.degrees, 2)} (${fixed(row.depthRmse, 2)})` : "";
+      }),
+    ]),
+  ]);
+}
+
+const figure6 = (rows) =>
+  columns([
+    ["overlap", "paper", "ours, 2A", "ours, 2B 128x128"],
+    ...rows.map((row) => [row.overlap, small(row.paper), small(row.error), small(row.rendered)]),
+  ]);
+
+const figure7 = (rows) =>
+  columns([
+    ["pair", "holes before", "after", "normals turned by"],
+    ...rows.map((row) => [row.name, row.holesBefore, row.holesAfter, fixed(row.normalChange, 2)]),
+  ]);
+
+const refinement = (rows) =>
+  columns([
+    ["light", "pose", "before", "after", "in holes", "gain", "degrees", "status"],
+    ...rows.map(({ lightName, pose, before, after, holes, gain, degrees, statuses }) => [
+      ...[lightName, pose, fixed(before), fixed(after), fixed(holes), `x${fixed(gain, 2)}`, fixed(degrees), unique(statuses).join(", ")],
+    ]),
+  ]);
+
+function photographs(rows) {
+  const [betas, images] = [unique(rows.map(({ beta }) => beta)), unique(rows.map(({ image }) => image))];
+  const cell = (object, image, beta) => rows.find((row) => row.object === object && row.image === image && row.beta === beta);
+  const show = (row) => (row ? fixed(row.degrees, 2) + mark(row) : "");
+  const medians = images.map((image) => median(rows.filter((row) => row.image === image).map(({ degrees }) => degrees)));
+  const costs = images.length < 3 ? [] : [
+    `  cost, by medians: albedo ${fixed(medians[0] - medians[1], 2)}, cast shadows and one white lamp ${fixed(medians[1] - medians[2], 2)} degrees`,
+  ];
+  return [
+    ...columns([
+      ["object", "image", ...betas.map((beta) => `beta ${beta}`)],
+      ...unique(rows.map(({ object }) => object)).flatMap((object) =>
+        images.map((image) => [object, image, ...betas.map((beta) => show(cell(object, image, beta)))]),
+      ),
+      ["median", "", ...betas.map((beta) => fixed(median(rows.filter((row) => row.beta === beta).map(({ degrees }) => degrees)), 2))],
+    ]),
+    ...costs,
+  ];
+}
+
+const random = (row) => [
+  `  ${row.cases} scenes: ${row.found} found, ${row.confidentlyWrong} confidently wrong, ${row.ambiguousOrLost} ambiguous or lost ` +
+    `(${row.flaggedThoughFound} of them found)`,
+  `  median of the found ${fixed(row.medianDegrees)} degrees; within 1 sigma ${percent(row.coverage1)} ` +
+    `(x, y, z: ${row.coverage1PerAxis.map(percent).join(", ")}), within 3 sigma ${percent(row.coverage3)}; ` +
+    `${fixed(row.meanMilliseconds / 1000, 2)} s each`,
+  ...row.scenes.filter(isConfidentlyWrong).map(
+    ({ scene, surface, degrees, status, overlap }) =>
+      `  wrong: scene ${scene}, ${surface}, ${fixed(degrees, 1)} degrees, ${status}, P_w ${fixed(overlap, 2)}`,
+  ),
+];
+
+const exposure = (rows) =>
+  columns([
+    ["scene", "colours x", "pose moved by", "degrees off", "status"],
+    ...rows.map((row) => [row.scene, row.factor, small(row.degreesMoved), fixed(row.degrees), row.status]),
+  ]);
+
+const ablation = (rows) =>
+  columns([
+    ["without", "found", "median degrees of those", "confidently wrong"],
+    ...rows.map((row) => [row.without, `${row.found} of ${row.cases}`, fixed(row.medianDegrees), row.confidentlyWrong]),
+  ]);
+
+const SHOWS = {
+  ...{ table1, table2A, table2B, table3, figure4, figure5, figure6, figure7 },
+  ...{ refinement, photographs, random, exposure, ablation },
+};
+
+/** One table's lines; `open3d` gives the baseline's degrees for a row of Table 2B, where there are any. */
+export function show({ name, title }, rows, open3d = () => undefined) {
+  const empty = rows.length === 0 || rows.cases === 0;
+  return [title, ...(empty ? ["  nothing to show"] : SHOWS[name](rows, open3d)), ""];
+}
+
+/** Every aim with its figure and the verdict. */
+export const showAims = (list) => [
+  "Aims (computed from the rows above)",
+  ...columns([
+    ["aim", "rows", "measured", "limit", ""],
+    ...list.map(({ table, what, rows, measured, sense, limit, ok }) => [
+      `${table}: ${what}`, rows, Math.abs(measured) < 1e-3 && measured !== 0 ? measured.toExponential(1) : fixed(measured), `${sense} ${limit}`, ok ? "ok" : "MISSED",
+    ]),
+  ]),
+];

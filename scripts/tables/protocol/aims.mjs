@@ -1,0 +1,124 @@
+// What the project has set out to reach, computed from the rows of the tables and never from anything else.
+import { FOUND_WITHIN, isFlagged, isFound, isHonest } from "./counts.mjs";
+import { IMAGES } from "./reals.mjs";
+import { COLOURFUL } from "./scenes.mjs";
+import { median, share, worst } from "./numbers.mjs";
+
+const least = (values) => (values.length === 0 ? null : Math.min(...values));
+
+/** One aim: `at most` or `at least` a limit; without rows nothing is said. */
+function aim(table, what, measured, sense, limit, rows) {
+  const known = typeof measured === "number" && rows > 0;
+  const ok = known ? (sense === "<=" ? measured <= limit : measured >= limit) : null;
+  return { table, what, measured: known ? measured : null, sense, limit, rows, ok };
+}
+
+function table1Aims(rows = []) {
+  const grid = rows.filter(({ protocol }) => protocol === "2A");
+  const off = (key, truth) => worst(grid.map((row) => Math.abs(row[key] - truth(row))));
+  return [
+    aim("table1", "2A, both signs: beta off, degrees", off("beta", ({ sign }) => 20 * sign), "<=", 0.001, grid.length),
+    aim("table1", "2A, both signs: alpha off", off("alpha", () => 0), "<=", 0.001, grid.length),
+    aim("table1", "2A, both signs: gamma off", off("gamma", () => 0), "<=", 0.001, grid.length),
+  ];
+}
+
+const table2AAims = (rows = []) => [
+  aim("table2A", "every cell: error / the paper's", worst(rows.map(({ error, paper }) => error / paper)), "<=", 0.01, rows.length),
+];
+
+const ratios = (rows) => rows.filter(({ bound }) => bound > 0).map(({ degrees, bound }) => degrees / bound);
+
+function table2BAims(rows = []) {
+  const of = (size, light, passes = () => true) => rows.filter((row) => row.size === size && row.light === light && passes(row));
+  const wide = ({ overlap }) => overlap >= 0.5;
+  const fair = (row) => wide(row) && row.beta <= 80;
+  const line = (size, light, where, what, members, statistic, limit, sense = "<=") =>
+    aim("table2B", `${size}x${size}, light ${light}, ${where}: ${what}`, statistic(members), sense, limit, members.length);
+  const degrees = (statistic) => (members) => statistic(members.map((row) => row.degrees));
+  const toBound = (members) => median(ratios(members));
+
+  const known = of(128, "known");
+  const unknown = of(128, "unknown", fair);
+  const edge = of(128, "unknown", ({ beta }) => beta === 90);
+  const small = of(64, "unknown", fair);
+  return [
+    line(128, "known", "P_w >= 0.5", "median degrees", known.filter(wide), degrees(median), 0.08),
+    line(128, "known", "P_w >= 0.5", "worst degrees", known.filter(wide), degrees(worst), 0.4),
+    line(128, "known", "P_w < 0.5", "worst degrees", known.filter((row) => !wide(row)), degrees(worst), 2),
+    line(128, "known", "all", "median of degrees / bound", known, toBound, 3),
+    line(128, "unknown", "P_w >= 0.5, beta <= 80", "median degrees", unknown, degrees(median), 0.15),
+    line(128, "unknown", "P_w >= 0.5, beta <= 80", "worst degrees", unknown, degrees(worst), 0.8),
+    line(128, "unknown", "P_w >= 0.5, beta <= 80", "median of degrees / bound", unknown, toBound, 4),
+    line(128, "unknown", "beta = 90", "share found or honest", edge, (members) => share(members, isHonest), 1, ">="),
+    line(64, "unknown", "P_w >= 0.5, beta <= 80", "median degrees", small, degrees(median), 0.6),
+    line(64, "unknown", "P_w >= 0.5, beta <= 80", `share under ${FOUND_WITHIN} degrees`, small, (members) => share(members, isFound), 0.95, ">="),
+  ];
+}
+
+function figure5Aims(rows = []) {
+  const of = (shading, fraction) => rows.filter((row) => row.shading === shading && row.fraction === fraction);
+  const pixel = rows.filter(({ shading }) => shading === "pixel").sort((a, b) => a.fraction - b.fraction);
+  const sameRun = (a, b) => a.size === b.size && a.lightName === b.lightName;
+  const rises = pixel.flatMap((row) => {
+    const next = pixel.find((other) => sameRun(row, other) && other.fraction > row.fraction);
+    return next ? [next.degrees - row.degrees] : [];
+  });
+  const halves = of("surface", 0).map((row) => row.degrees / of("pixel", 0).find((other) => sameRun(row, other)).degrees);
+  const full = of("surface", 1);
+  return [
+    aim("figure5", "pixel: largest rise from one share to the next, degrees", worst(rises), "<=", 0, rises.length),
+    aim("figure5", "no prior: surface / pixel, worst", worst(halves), "<=", 0.5, halves.length),
+    aim("figure5", "full prior: surface, worst degrees", worst(full.map(({ degrees }) => degrees)), "<=", 3, full.length),
+  ];
+}
+
+function refinementAims(rows = []) {
+  const gains = (passes) => rows.filter((row) => row.pose === "estimated" && passes(row)).map(({ gain }) => gain);
+  const [colourful, natural] = [gains(({ lightName }) => lightName === COLOURFUL), gains(({ lightName }) => lightName !== COLOURFUL)];
+  return [
+    aim("refinement", "pose estimated, colourful: error in / out", least(colourful), ">=", 5, colourful.length),
+    aim("refinement", "pose estimated, natural: error in / out, least", least(natural), ">=", 2.5, natural.length),
+  ];
+}
+
+function photographsAims(rows = []) {
+  const real = rows.filter(({ image }) => image !== IMAGES.at(-1));
+  const silent = real.filter((row) => !isFlagged(row));
+  return [
+    aim("photographs", "median degrees", median(real.map(({ degrees }) => degrees)), "<=", 1.5, real.length),
+    aim("photographs", "worst degrees of those not said to be doubtful", worst(silent.map(({ degrees }) => degrees)), "<=", 4, silent.length),
+  ];
+}
+
+function randomAims(row) {
+  if (!row) return [];
+  const { cases, found } = row;
+  const perAxis = row.coverage1PerAxis.filter((value) => value !== null);
+  return [
+    aim("random", `share under ${FOUND_WITHIN} degrees`, found / cases, ">=", 0.95, cases),
+    aim("random", "median degrees of those", row.medianDegrees, "<=", 0.4, found),
+    aim("random", "share confidently wrong", row.confidentlyWrong / cases, "<=", 0.01, cases),
+    aim("random", "share of the good ones flagged", row.flaggedThoughFound / found, "<=", 0.1, found),
+    aim("random", "found within 3 sigma on all axes", row.coverage3, ">=", 0.95, found),
+    aim("random", "found within 1 sigma, lowest axis", least(perAxis), ">=", 0.5, found),
+    aim("random", "found within 1 sigma, highest axis", worst(perAxis), "<=", 0.85, found),
+  ];
+}
+
+const exposureAims = (rows = []) => [
+  aim("exposure", "largest move of a pose, degrees", worst(rows.map(({ degreesMoved }) => degreesMoved)), "<=", 0.01, rows.length),
+];
+
+/** Every aim of the tables that are there. */
+export const aims = (json) =>
+  [
+    ...(json.table1 ? table1Aims(json.table1) : []),
+    ...(json.table2A ? table2AAims(json.table2A) : []),
+    ...(json.table2B ? table2BAims(json.table2B) : []),
+    ...(json.figure5 ? figure5Aims(json.figure5) : []),
+    ...(json.refinement ? refinementAims(json.refinement) : []),
+    ...(json.photographs ? photographsAims(json.photographs) : []),
+    ...randomAims(json.random),
+    ...(json.exposure ? exposureAims(json.exposure) : []),
+  ].filter(({ rows }) => rows > 0);

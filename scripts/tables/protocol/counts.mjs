@@ -1,0 +1,42 @@
+// What counts as found, as said and as wrong, and how many of each there are.
+import { mean, median, share } from "./numbers.mjs";
+
+/** A pose this near, in degrees, is found. */
+export const FOUND_WITHIN = 3;
+
+export const isFound = ({ degrees }) => typeof degrees === "number" && degrees < FOUND_WITHIN;
+/** Doubt that was said: in the status, or as rivals of a pose that did not converge. */
+export const isFlagged = ({ status, rivals }) =>
+  status === "ambiguous" || status === "lost" || (status === "max-iterations" && rivals > 0);
+export const isConfidentlyWrong = (row) => !isFound(row) && !isFlagged(row);
+/** Near, or said not to be. */
+export const isHonest = (row) => isFound(row) || isFlagged(row);
+
+const AXES = [0, 1, 2];
+
+/** Whether each axis of the rotation lies within so many of its own sigmas; undefined without sigmas. */
+const within = ({ rotationOff, sigmas }, count) =>
+  sigmas && AXES.map((axis) => Math.abs(rotationOff[axis]) <= count * sigmas[axis]);
+
+/** The row of the random scenes: counts; coverages are shares of the found. */
+export function randomRow(rows) {
+  const found = rows.filter(isFound);
+  const measured = found.filter((row) => row.sigmas);
+  const within1 = measured.map((row) => within(row, 1));
+  return {
+    cases: rows.length,
+    found: found.length,
+    ambiguousOrLost: rows.filter(isFlagged).length,
+    confidentlyWrong: rows.filter(isConfidentlyWrong).length,
+    flaggedThoughFound: found.filter(isFlagged).length,
+    medianDegrees: median(found.map(({ degrees }) => degrees)),
+    /** Single axes within one sigma, all of them and each by itself. */
+    coverage1: share(within1.flat(), Boolean),
+    coverage1PerAxis: AXES.map((axis) => share(within1, (axes) => axes[axis])),
+    /** Rotations with all three axes within three sigma; a found pose without sigmas has none. */
+    coverage3: found.length === 0 ? null : measured.filter((row) => within(row, 3).every(Boolean)).length / found.length,
+    withoutSigmas: found.length - measured.length,
+    meanMilliseconds: mean(rows.map(({ milliseconds }) => milliseconds)),
+    scenes: rows,
+  };
+}

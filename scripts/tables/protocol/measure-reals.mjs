@@ -1,0 +1,98 @@
+// Real pairs and photographs: what a library hands over, turned, resampled and run.
+import { aboutY, degreesBetween, transpose, turn } from "./rotations.mjs";
+import { requestOf } from "./scenes.mjs";
+import { judged, optionsOf, withRun } from "./runs.mjs";
+import { normalDegrees } from "./measure-shapes.mjs";
+
+/** The points of a depth map in metres, NaN where there is none. */
+function cloudOf({ width, height, data, camera, unit, mask }) {
+  const points = new Float32Array(3 * width * height).fill(NaN);
+  for (let index = 0; index < width * height; index++) {
+    if (!mask[index] || !(data[index] > 0)) continue;
+    const z = data[index] * unit;
+    const [x, y] = [(index % width) - camera.cx, Math.floor(index / width) - camera.cy];
+    points.set([(x * z) / camera.fx, (y * z) / camera.fy, z], 3 * index);
+  }
+  return points;
+}
+
+/** The depth view as from `degrees` further left: an organised cloud, turned about the mean of its points. */
+function turnedDepth({ width, height, ...depth }, degrees) {
+  const points = cloudOf({ width, height, ...depth });
+  const measured = [...Array(width * height).keys()].filter((index) => Number.isFinite(points[3 * index]));
+  const centre = [0, 1, 2].map((axis) => measured.reduce((sum, index) => sum + points[3 * index + axis], 0) / measured.length);
+  const inverse = transpose(aboutY(degrees));
+  for (const index of measured) {
+    const offset = centre.map((middle, axis) => points[3 * index + axis] - middle);
+    points.set(turn(inverse, offset).map((part, axis) => part + centre[axis]), 3 * index);
+  }
+  return { width, height, mask: depth.mask, camera: depth.camera, points };
+}
+
+export async function measurePair(cell, api, library) {
+  const { image, depth } = library.pair(cell.pair);
+  const truth = { rotation: aboutY(cell.turned), scale: 1 };
+  const given = cell.turned === 0 ? depth : turnedDepth(depth, cell.turned);
+  const isHole = (index) => depth.mask[index] && !(depth.data[index] > 0);
+  const holes = [...depth.data.keys()].filter(isHole);
+  let normalsBefore, residualBefore;
+  const atStart = (estimator) => {
+    normalsBefore = estimator.depthNormals();
+    residualBefore = estimator.report.residual;
+  };
+  const look = (report, estimator, milliseconds) => {
+    const refined = estimator.refinedDepth();
+    return {
+      ...judged(report, truth, milliseconds),
+      identityDegrees: degreesBetween([1, 0, 0, 0, 1, 0, 0, 0, 1], truth.rotation),
+      pose: report.pose,
+      residualBefore,
+      residualAfter: report.residual,
+      holesBefore: holes.length,
+      holesAfter: holes.filter((index) => !Number.isFinite(refined[index])).length,
+      normalChange: normalDegrees(estimator.depthNormals(), normalsBefore, (index) => !isHole(index)),
+    };
+  };
+  return withRun(api, { image, depth: given }, optionsOf(cell.options, {}), look, atStart);
+}
+
+/** Least share of a pixel's footprint on the photograph's object. */
+const COVERED = 0.5;
+
+/** The photograph on the pixels of the made view: means over what each pixel covers. */
+function onto(size, { width, height, data, mask, place }, made) {
+  const colours = new Float32Array(3 * size * size);
+  const inside = new Uint8Array(size * size);
+  // The relief spans 256 samples, the view `size` pixels; the library says where a sample lies in the photograph.
+  const step = 256 / size;
+  const reach = (0.5 * step) / place.samplesPerPixel;
+  for (let index = 0; index < size * size; index++) {
+    if (!made.image.mask[index]) continue;
+    const [column, row] = [index % size, Math.floor(index / size)].map((at) => (at - (size - 1) / 2) * step);
+    const [x, y] = [place.x + column / place.samplesPerPixel, place.y + row / place.samplesPerPixel];
+    const sum = [0, 0, 0];
+    let [covered, all] = [0, 0];
+    for (let v = Math.ceil(y - reach); v <= y + reach; v++) {
+      for (let u = Math.ceil(x - reach); u <= x + reach; u++) {
+        all++;
+        const at = v * width + u;
+        if (u < 0 || v < 0 || u >= width || v >= height || !mask[at]) continue;
+        covered++;
+        for (let channel = 0; channel < 3; channel++) sum[channel] += data[3 * at + channel];
+      }
+    }
+    if (covered < COVERED * all || covered === 0 || sum.some((channel) => channel <= 0)) continue;
+    inside[index] = 255;
+    colours.set(sum.map((channel) => channel / covered), 3 * index);
+  }
+  return { width: size, height: size, data: colours, mask: inside };
+}
+
+export async function measurePhotograph(cell, api, library) {
+  const made = api.sample(requestOf(cell.scene, library));
+  const photograph = cell.photograph && library.photograph(cell.scene.surface, cell.photograph);
+  const image = photograph ? onto(cell.scene.size, photograph, made) : made.image;
+  return withRun(api, { image, depth: made.depth }, optionsOf(cell.options, made), (report, _, milliseconds) =>
+    judged(report, made.pose, milliseconds),
+  );
+}

@@ -1,0 +1,66 @@
+// Runs one cell through the public contract and measures what came out. `api` is the package, `library` has the data.
+import { drawScene } from "./anywhere.mjs";
+import { chance } from "./numbers.mjs";
+import { judged, optionsOf, withRun } from "./runs.mjs";
+import { requestOf } from "./scenes.mjs";
+import { measurePair, measurePhotograph } from "./measure-reals.mjs";
+import { measureIterations, measureRefinement, measureShading } from "./measure-shapes.mjs";
+
+async function measurePose(cell, api, library) {
+  const request = requestOf(cell.scene, library);
+  const made = api.sample(request);
+  const bound = cell.bound ? api.sampleBound(request, cell.options.light === "known") : null;
+  const result = await withRun(api, made, optionsOf(cell.options, made), (report, _, milliseconds) =>
+    judged(report, made.pose, milliseconds),
+  );
+  return { ...result, bound };
+}
+
+async function measureRandom(cell, api, library) {
+  const scene = { ...drawScene(chance(cell.seed), cell.kit, library.gaussian), seed: cell.seed };
+  const made = api.sample(requestOf(scene, library));
+  const factor = cell.exposure ?? 1;
+  const image = { ...made.image, data: made.image.data.map((value) => value * factor) };
+  const options = optionsOf(cell.options, made);
+  const pair = { image, depth: made.depth };
+  const run = cell.alternations ? alternate(api, pair, options, cell.alternations) : withRun(api, pair, options, keep);
+  const { report, milliseconds } = await run;
+  const { surface, overlap, angles, scale } = scene;
+  return { surface, overlap, trueAngles: angles, trueScale: scale, ...judged(report, made.pose, milliseconds) };
+}
+
+const keep = (report, _, milliseconds) => ({ report, milliseconds });
+
+/** Pose under the present light, light under the present pose, and again, from where the opening search ends. */
+async function alternate(api, pair, options, rounds) {
+  const start = performance.now();
+  const opening = new api.Estimator(pair.image, pair.depth, options);
+  let report = opening.report;
+  let searching = true;
+  while (searching && report.status === "running") {
+    report = opening.stepStage();
+    searching = report.stage === "search";
+  }
+  opening.free();
+  for (let round = 0; round < rounds; round++) {
+    const { pose } = report;
+    const light = await withRun(
+      api, pair, { ...options, start: pose, registration: "fixed", maxIterations: 1 }, (_, estimator) => estimator.light(),
+    );
+    ({ report } = await withRun(api, pair, { ...options, start: pose, light }, keep));
+  }
+  return { report, milliseconds: performance.now() - start };
+}
+
+const KINDS = {
+  pose: measurePose,
+  random: measureRandom,
+  iterations: measureIterations,
+  shading: measureShading,
+  refinement: measureRefinement,
+  pair: measurePair,
+  photograph: measurePhotograph,
+};
+
+/** The figures of a cell, as plain JSON; whatever goes wrong is thrown. */
+export const measure = (cell, api, library) => KINDS[cell.kind](cell, api, library);

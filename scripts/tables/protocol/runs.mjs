@@ -1,0 +1,48 @@
+// One run of an estimator, and what its report says of a pose whose truth is known.
+import { degreesBetween, offBy, paperError } from "./rotations.mjs";
+
+/** A run that takes longer hangs: the slowest real pair takes a tenth of it. */
+const LONGEST_RUN = 600_000;
+
+/** Options of a cell for this scene: the known light is the scene's, the start may be the truth. */
+export const optionsOf = ({ light, start, scale, ...rest }, made) => ({
+  ...rest,
+  light: light === "known" ? made.light : light,
+  start: start === "truth" ? made.pose : start,
+  ...(scale === "free" ? {} : { scale }),
+});
+
+/** Makes an estimator, runs it to its end and hands it over before it is freed. */
+export async function withRun({ Estimator }, { image, depth }, options, look, onStart = () => {}) {
+  const start = performance.now();
+  const estimator = new Estimator(image, depth, options);
+  try {
+    onStart(estimator);
+    const report = await estimator.run({ signal: AbortSignal.timeout(LONGEST_RUN) });
+    return look(report, estimator, performance.now() - start);
+  } finally {
+    estimator.free();
+  }
+}
+
+/** What a report says of a pose whose truth is known. */
+export function judged(report, truth, milliseconds) {
+  const { pose, status, uncertainty, rivals, message, iteration } = report;
+  const degrees = degreesBetween(pose.rotation, truth.rotation);
+  return {
+    degrees,
+    error: paperError(degrees),
+    scale: pose.scale,
+    ...pose.angles,
+    iterations: iteration,
+    status,
+    milliseconds,
+    rivals: rivals?.length ?? 0,
+    rotation: pose.rotation,
+    rotationOff: offBy(pose.rotation, truth.rotation),
+    sigmas: uncertainty?.rotationDegrees ?? null,
+    scaleOff: pose.scale - truth.scale,
+    scaleSigma: uncertainty?.scale ?? null,
+    ...(message === undefined ? {} : { message }),
+  };
+}

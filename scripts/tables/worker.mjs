@@ -1,0 +1,25 @@
+// A process of its own for cells: one instance of the package, one cell after the other.
+import { library } from "./library.mjs";
+import { measure } from "./protocol/measure.mjs";
+
+const api = await import("../../pkg/node.js");
+await api.default();
+const data = library(await import("../../pkg/files.js"));
+
+/** What is worth keeping of an error. */
+const failure = ({ name, code, message }) => ({ name, code, message });
+
+process.on("message", async ({ cell }) => {
+  const start = performance.now();
+  let result;
+  try {
+    result = await measure(cell, api, data);
+  } catch (error) {
+    result = { failure: failure(error) };
+  }
+  process.send({ id: cell.id, result, took: performance.now() - start });
+});
+// Ctrl-C reaches every process of the terminal; the one in charge decides.
+process.on("SIGINT", () => {});
+process.on("disconnect", () => process.exit());
+process.send({ ready: true });
