@@ -174,9 +174,9 @@ const SHOWS = {
 };
 
 /** One table's lines; `open3d` gives the baseline's degrees for a row of Table 2B, where there are any. */
-export function show({ name, title }, rows, open3d = () => undefined) {
+export function show({ name, title, notes = [] }, rows, open3d = () => undefined) {
   const empty = rows.length === 0 || rows.cases === 0;
-  return [title, ...(empty ? ["  nothing to show"] : SHOWS[name](rows, open3d)), ""];
+  return [title, ...notes.map((note) => `  ${note}`), ...(empty ? ["  nothing to show"] : SHOWS[name](rows, open3d)), ""];
 }
 
 /** Every aim with its figure and the verdict. */

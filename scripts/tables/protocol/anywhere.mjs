@@ -91,6 +91,7 @@ const ABLATIONS = [
 export const ablation = {
   name: "ablation",
   title: "Ablation: the first random scenes without one part of the method",
+  notes: ["annealing can't be switched off through the public contract and is missing here"],
   cells: (kit, quick) =>
     seeds(quick ? 2 : 30).flatMap((seed) => [
       randomCell(kit, seed),
