@@ -45,7 +45,8 @@ await script(async () => {
   const { json, failures, complete } = await collect(tables, { quick, workers });
   if (!complete) throw new Failure("Broken off; what was done is kept, and the next run goes on from there.");
 
-  const open3d = baseline();
+  // The baseline's figures are of the paper's bust.
+  const open3d = hasData() ? baseline() : undefined;
   console.log();
   for (const table of tables) console.log(show(table, json[table.name], open3d).join("\n"));
   const list = aims(json);

@@ -1,10 +1,13 @@
 // The tables as text.
 import { isConfidentlyWrong, isFlagged } from "./protocol/counts.mjs";
-import { median } from "./protocol/numbers.mjs";
+import { median, worst } from "./protocol/numbers.mjs";
 import { paperDegrees } from "./protocol/rotations.mjs";
 import { PAPER_TABLE_1, PAPER_TABLE_3 } from "./protocol/scenes.mjs";
 
 const DASH = "-";
+/** Of a list of failures so many are shown; the JSON has all. */
+const WRONG_SHOWN = 20;
+const WORST_SHOWN = 5;
 const fixed = (value, digits = 3) => (typeof value === "number" && Number.isFinite(value) ? value.toFixed(digits) : DASH);
 const percent = (value) => (typeof value === "number" ? `${(100 * value).toFixed(0)} %` : DASH);
 const small = (value) => (typeof value === "number" ? (value < 1e-4 ? value.toExponential(1) : value.toFixed(6)) : DASH);
@@ -150,17 +153,27 @@ const random = (row) => [
   `  median of the found ${fixed(row.medianDegrees)} degrees; within 1 sigma ${percent(row.coverage1)} ` +
     `(x, y, z: ${row.coverage1PerAxis.map(percent).join(", ")}), within 3 sigma ${percent(row.coverage3)}; ` +
     `${fixed(row.meanMilliseconds / 1000, 2)} s each`,
-  ...row.scenes.filter(isConfidentlyWrong).map(
+  ...row.scenes.filter(isConfidentlyWrong).slice(0, WRONG_SHOWN).map(
     ({ scene, surface, degrees, status, overlap }) =>
       `  wrong: scene ${scene}, ${surface}, ${fixed(degrees, 1)} degrees, ${status}, P_w ${fixed(overlap, 2)}`,
   ),
 ];
 
-const exposure = (rows) =>
-  columns([
-    ["scene", "colours x", "pose moved by", "degrees off", "status"],
-    ...rows.map((row) => [row.scene, row.factor, small(row.degreesMoved), fixed(row.degrees), row.status]),
-  ]);
+function exposure(rows) {
+  const factors = unique(rows.map(({ factor }) => factor));
+  const moved = (factor) => rows.filter((row) => row.factor === factor).map(({ degreesMoved }) => degreesMoved);
+  const most = rows.filter(({ degreesMoved }) => degreesMoved !== null).sort((a, b) => b.degreesMoved - a.degreesMoved);
+  return [
+    ...columns([
+      ["colours x", "scenes", "median move", "worst, degrees"],
+      ...factors.map((factor) => [factor, moved(factor).length, small(median(moved(factor))), small(worst(moved(factor)))]),
+    ]),
+    ...most.slice(0, WORST_SHOWN).map(
+      ({ scene, factor, degreesMoved, degrees, status }) =>
+        `  scene ${scene} x${factor}: moved ${small(degreesMoved)}, ${fixed(degrees)} degrees off, ${status}`,
+    ),
+  ];
+}
 
 const ablation = (rows) =>
   columns([
