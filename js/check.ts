@@ -187,23 +187,13 @@ const count: Check = (value, field) => {
 };
 const run = object({ maxIterations: count, signal, onStep: callback });
 
-/** Words of the contract that this version does not offer yet. */
-const LATER: Readonly<Record<string, string>> = { start: "search", registration: "joint", shading: "surface" };
-
 export const unsupported = (field: string, what: string): BimodalError =>
   new BimodalError("unsupported", `${field}: ${what} is not part of this version yet`, field);
 
 export const checkImage = (value: unknown): void => image(value, "image");
 export const checkDepth = (value: unknown): void => depth(value, "depth");
+export const checkOptions = (value: unknown): void => options(value, "options");
 export const checkRun = (value: unknown): void => run(value, "run");
-
-export function checkOptions(value: unknown): void {
-  options(value, "options");
-  if (!isObject(value)) return;
-  for (const [key, member] of Object.entries(value)) {
-    if (Object.hasOwn(LATER, key) && LATER[key] === member) throw unsupported(`options.${key}`, `"${member}"`);
-  }
-}
 
 export function checkSample(value: unknown): void {
   sample(value, "sample");

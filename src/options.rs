@@ -19,6 +19,8 @@ pub enum LightSource {
 /// Where the pose starts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Start {
+    /// Looked for everywhere.
+    Search,
     /// Both views coincide.
     Identity,
     /// A pose given by the caller, as far as it is known.
@@ -35,6 +37,8 @@ pub enum Start {
 /// How the pose is refined in each iteration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Registration {
+    /// Straight from the colours: pose and light together, the light projected out.
+    Joint,
     /// The paper's own stage: ICP, RANSAC on the linear model, similarity.
     Icp,
     /// The start is kept.
@@ -101,10 +105,10 @@ impl Default for Options {
     fn default() -> Self {
         Self {
             light: LightSource::Estimate,
-            start: Start::Identity,
+            start: Start::Search,
             scale: None,
-            registration: Registration::Icp,
-            shading: Shading::Pixel,
+            registration: Registration::Joint,
+            shading: Shading::Surface,
             weights: Weights::default(),
             stop_degrees: 0.01,
             correspondence_distance: None,
@@ -119,6 +123,12 @@ impl Default for Options {
 const MOST_ITERATIONS: u32 = 100_000;
 
 impl Options {
+    /// The paper's own loop: from identity, ICP and consensus for the pose, one normal for each pixel.
+    #[must_use]
+    pub fn paper() -> Self {
+        Self { start: Start::Identity, registration: Registration::Icp, shading: Shading::Pixel, ..Self::default() }
+    }
+
     /// Checks every number against its range.
     ///
     /// # Errors

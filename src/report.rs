@@ -5,6 +5,8 @@ use crate::pose::Similarity;
 /// Stages of one iteration, in the order in which they run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stage {
+    /// A slice of the opening search, before the first iteration.
+    Search,
     /// Fit of the light, or of the exposure of a known light (Eq. 2).
     Light,
     /// Normals of the colour view (Eq. 6 to 9).
@@ -22,6 +24,7 @@ impl Stage {
     #[must_use]
     pub const fn next(self) -> Self {
         match self {
+            Self::Search => Self::Light,
             Self::Light => Self::Shading,
             Self::Shading => Self::Surface,
             Self::Surface => Self::Registration,
@@ -30,13 +33,14 @@ impl Stage {
         }
     }
 
-    /// All stages in order.
+    /// The stages of an iteration in order; the search comes before the first iteration.
     pub const ALL: [Self; 5] = [Self::Light, Self::Shading, Self::Surface, Self::Registration, Self::Refinement];
 
     /// Lower-case name, as JavaScript sees it.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
+            Self::Search => "search",
             Self::Light => "light",
             Self::Shading => "shading",
             Self::Surface => "surface",
@@ -132,6 +136,8 @@ pub struct StepReport {
     pub status: Status,
     /// Why, in words, where there is something to say.
     pub message: Option<String>,
+    /// Other poses that the data can't tell from this one, best first.
+    pub rivals: Vec<Similarity>,
     /// One sigma of the pose, where it could be computed.
     pub uncertainty: Option<Uncertainty>,
 }
@@ -150,6 +156,7 @@ impl StepReport {
             residual: 0.0,
             status: Status::Running,
             message: None,
+            rivals: Vec::new(),
             uncertainty: None,
         }
     }

@@ -27,7 +27,7 @@ fn noisy(light_name: &str) -> Sample {
 }
 
 fn known(sample: &Sample) -> Options {
-    Options { light: LightSource::Known(sample.light), ..Options::default() }
+    Options { light: LightSource::Known(sample.light), ..Options::paper() }
 }
 
 fn estimator(sample: &Sample, options: Options) -> Estimator {
@@ -88,14 +88,14 @@ fn exposure_leaves_the_pose_alone_under_an_estimated_light() {
         let sample = bust(&SampleRequest { light, ..SampleRequest::default() });
         let Similarity { rotation, scale, translation } = sample.pose;
         let start = Start::Pose { rotation, scale: Some(scale), translation: Some(translation) };
-        exposure_leaves_the_pose_alone(&sample, &Options { start, ..Options::default() });
+        exposure_leaves_the_pose_alone(&sample, &Options { start, ..Options::paper() });
     }
 }
 
 #[test]
 fn two_runs_are_the_same_to_the_last_bit() {
     let sample = noisy("window");
-    for options in [known(&sample), Options::default()] {
+    for options in [known(&sample), Options::paper()] {
         let [first, second] = [(); 2].map(|()| {
             let mut estimator = estimator(&sample, options.clone());
             let reports = finish(&mut estimator);
@@ -110,8 +110,8 @@ fn reset_is_a_new_beginning() {
     let sample = noisy("window");
     let mut used = estimator(&sample, known(&sample));
     finish(&mut used);
-    used.reset(Options::default()).expect("good options");
-    let mut fresh = estimator(&sample, Options::default());
+    used.reset(Options::paper()).expect("good options");
+    let mut fresh = estimator(&sample, Options::paper());
     assert!(outcome(&used) == outcome(&fresh));
     assert!(finish(&mut used) == finish(&mut fresh));
     assert!(outcome(&used) == outcome(&fresh));
@@ -212,11 +212,11 @@ fn an_iteration_taken_back_is_no_convergence() {
     let runs = [
         (
             &colourful,
-            Options { light: nonsense.clone(), start: true_pose(&colourful), scale: Some(1.0), ..Options::default() },
+            Options { light: nonsense.clone(), start: true_pose(&colourful), scale: Some(1.0), ..Options::paper() },
         ),
-        (&colourful, Options { light: nonsense, ..Options::default() }),
-        (&window, Options { start: true_pose(&window), ..Options::default() }),
-        (&window, Options::default()),
+        (&colourful, Options { light: nonsense, ..Options::paper() }),
+        (&window, Options { start: true_pose(&window), ..Options::paper() }),
+        (&window, Options::paper()),
         (&window, known(&window)),
         (&window, Options { registration: Registration::Fixed, start: true_pose(&window), ..known(&window) }),
     ];
@@ -239,7 +239,7 @@ fn an_iteration_taken_back_is_no_convergence() {
 fn reports_and_maps_hold_what_they_promise() {
     for light_name in ["colourful", "overcast"] {
         let sample = noisy(light_name);
-        let mut estimator = estimator(&sample, Options::default());
+        let mut estimator = estimator(&sample, Options::paper());
         while estimator.report().status == Status::Running {
             let report = estimator.step().clone();
             let energy = report.energy;

@@ -33,7 +33,7 @@ fn bust(request: &SampleRequest) -> Sample {
 }
 
 fn known(sample: &Sample) -> Options {
-    Options { light: LightSource::Known(sample.light), ..Options::default() }
+    Options { light: LightSource::Known(sample.light), ..Options::paper() }
 }
 
 /// Runs the loop to its end and says how it went.

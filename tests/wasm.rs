@@ -13,7 +13,7 @@ fn bust() -> Result<Sample, Error> {
 }
 
 fn estimator(sample: &Sample) -> Result<Estimator, Error> {
-    let options = Options { light: LightSource::Known(sample.light), scale: Some(1.0), ..Options::default() };
+    let options = Options { light: LightSource::Known(sample.light), scale: Some(1.0), ..Options::paper() };
     Estimator::new(sample.colour_image(), &sample.depth_map(), options)
 }
 
@@ -48,7 +48,7 @@ fn two_runs_agree_to_the_last_bit() -> Result<(), Error> {
 #[wasm_bindgen_test]
 fn a_bad_option_is_an_error_and_no_panic() -> Result<(), Error> {
     let sample = bust()?;
-    let options = Options { scale: Some(-1.0), ..Options::default() };
+    let options = Options { scale: Some(-1.0), ..Options::paper() };
     let error = Estimator::new(sample.colour_image(), &sample.depth_map(), options).err();
     assert_eq!(error.map(|error| error.field().to_owned()).as_deref(), Some("options.scale"));
     Ok(())

@@ -38,7 +38,7 @@ pub fn pixel_length(image: &ColourView, distance: f64) -> f64 {
 /// The pose of iteration zero.
 pub fn first_pose(image: &ColourView, depth: &DepthView, options: &Options) -> Similarity {
     let (rotation, scale, translation) = match options.start {
-        Start::Identity => (Matrix3::identity(), None, None),
+        Start::Search | Start::Identity => (Matrix3::identity(), None, None),
         Start::Pose { rotation, scale, translation } => (rotation, scale, translation),
     };
     let scale = held_scale(image, options).or(scale).unwrap_or_else(|| unit_scale(image, depth));

@@ -4,8 +4,11 @@
 //! until the rotation settles. After each iteration the merit l + f + g of the new solution is compared with that of
 //! the last one over the same depth points; a worse iteration is taken back, and the next one goes half the way.
 
+mod anywhere;
 mod gauge;
+mod joint;
 mod merit;
+mod opening;
 mod solution;
 mod stages;
 
@@ -13,12 +16,14 @@ use nalgebra::Vector3;
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::light::{Light, LightFitter, LightPrior};
-use crate::options::{LightSource, Options, Registration};
+use crate::options::{LightSource, Options, Registration, Shading, Start};
 use crate::pose::{Correspondences, Icp, Similarity};
 use crate::report::{Energy, Stage, Status, StepReport};
-use crate::shape::{Integrator, Refiner, ReliefSolver, ShadingSolver};
+use crate::shape::{Integrator, Refiner, ReliefSolver, STARTS, ShadingSolver};
 use crate::view::{ColourImage, ColourView, DepthMap, DepthView, Normals};
+use joint::{Given, Joint};
 use merit::Candidate;
+use opening::{Look, Opening, Outcome};
 use solution::Solution;
 
 /// Which surface [`Estimator::points`] returns.
@@ -40,6 +45,8 @@ const JURY_MARGIN: f32 = 1.5;
 const MOST_REJECTIONS: u32 = 6;
 /// Without a moving pose the loop has converged when the energy changes by less than this share.
 const SETTLED_ENERGY: f64 = 1e-3;
+/// Iterations after which shapes under a pose that stands have come as far as they will: they flicker by some tenths of a percent.
+const MOST_STILL: u32 = 8;
 /// Overlap (share of valid depth pixels) below which a pose cannot be trusted.
 const LEAST_OVERLAP: f64 = 0.05;
 /// Fewer correspondences than this determine nothing.
@@ -79,6 +86,9 @@ pub struct Estimator {
     solver: ShadingSolver,
     integrator: Integrator,
     icp: Icp,
+    /// Only where the options ask for it: it holds splines of the image.
+    joint: Option<Joint>,
+    opening: Option<Opening>,
     /// Points of ICP's pairs: depth view, image.
     paired_points: [Vec<Vector3<f64>>; 2],
     refiner: Refiner,
@@ -94,6 +104,8 @@ pub struct Estimator {
     /// Share of the registration's step that is taken; halves with each rejection.
     trust: f64,
     rejections: u32,
+    /// Iterations in a row whose registration moved nothing.
+    still: u32,
     /// Exposure of the first look at the colours.
     first_exposure: f64,
     /// Median log residual that the fitted light leaves; zero for a known light.
@@ -139,6 +151,8 @@ impl Estimator {
             fitter: LightFitter::default(),
             solver: ShadingSolver::new(),
             icp: Icp::new(),
+            joint: None,
+            opening: None,
             paired_points: [Vec::new(), Vec::new()],
             carried_normals: Normals::missing(pixels),
             gradient: [vec![0.0; pixels], vec![0.0; pixels]],
@@ -147,17 +161,20 @@ impl Estimator {
             residual: vec![f32::NAN; pixels],
             trust: 1.0,
             rejections: 0,
+            still: 0,
             first_exposure: 0.0,
             unexplained: 0.0,
             refused: false,
             proposed_change: 0.0,
-            next: Stage::Light,
+            next: if options.start == Start::Search { Stage::Search } else { Stage::Light },
             report: StepReport::at(pose),
             image,
             depth,
             options,
             prior,
         };
+        let joint = estimator.options.start == Start::Search || estimator.options.registration == Registration::Joint;
+        estimator.joint = joint.then(|| Joint::new(&estimator.given()));
         estimator.prepare()?;
         Ok(estimator)
     }
@@ -179,9 +196,12 @@ impl Estimator {
         Ok(())
     }
 
-    /// One iteration, or the rest of one that was begun by [`step_stage`](Self::step_stage).
+    /// One iteration, the rest of one that was begun by [`step_stage`](Self::step_stage), or a slice of the opening search.
     /// Changes nothing once the status is no longer [`Status::Running`].
     pub fn step(&mut self) -> &StepReport {
+        if self.is_searching() {
+            return self.step_stage();
+        }
         let iteration = self.report.iteration;
         while self.report.status == Status::Running && self.report.iteration == iteration {
             self.step_stage();
@@ -189,13 +209,20 @@ impl Estimator {
         &self.report
     }
 
-    /// One stage of an iteration.
+    /// Whether the next step is a slice of the opening search.
+    #[must_use]
+    pub fn is_searching(&self) -> bool {
+        self.next == Stage::Search
+    }
+
+    /// One stage of an iteration, or a slice of the opening search.
     pub fn step_stage(&mut self) -> &StepReport {
         if self.report.status != Status::Running {
             return &self.report;
         }
         let stage = self.next;
         let outcome = match stage {
+            Stage::Search => self.search(),
             Stage::Light => self.fit_light(),
             Stage::Shading => self.shade(),
             Stage::Surface => self.raise_surface(),
@@ -208,7 +235,8 @@ impl Estimator {
             Ok(()) if stage == Stage::Refinement => self.finish_iteration(),
             Ok(()) => {}
         }
-        self.next = stage.next();
+        let searching = stage == Stage::Search && self.opening.is_some();
+        self.next = if searching { stage } else { stage.next() };
         &self.report
     }
 
@@ -316,7 +344,9 @@ impl Estimator {
         let energy = merit::energy(&self.image, &self.depth, &self.kept_points, self.candidate(&self.solution, &light));
         let before = if first { None } else { Some(self.kept_energy()) };
         let change = self.kept.pose.degrees_to(&self.solution.pose);
-        let rejected = before.is_some_and(|before| worsens(before.total(), energy.total(), change));
+        // The joint registration has a cost of its own: a pose that it moves is not for the merit to take back.
+        let judged = self.options.registration != Registration::Joint || change < self.options.stop_degrees;
+        let rejected = judged && before.is_some_and(|before| worsens(before.total(), energy.total(), change));
         self.report.message = None;
         if let (true, Some(before)) = (rejected, before) {
             self.reject(before, energy);
@@ -385,22 +415,31 @@ impl Estimator {
     }
 
     fn decide(&mut self, rejected: bool, before: Option<Energy>) {
-        let settled = match (self.options.registration, before) {
-            (_, None) => false,
-            (Registration::Fixed, Some(before)) => {
-                let change = (self.report.energy.total() - before.total()).abs();
-                change < SETTLED_ENERGY * before.total().max(f64::MIN_POSITIVE)
-            }
-            (Registration::Icp, Some(_)) => {
-                self.proposed_change < self.options.stop_degrees && self.trust >= 1.0 && !self.refused
+        self.still = if self.proposed_change < self.options.stop_degrees { self.still + 1 } else { 0 };
+        let registration = self.options.registration;
+        let first_verdict = match self.options.shading {
+            Shading::Pixel => FIRST_VERDICT,
+            Shading::Surface => STARTS,
+        };
+        let steady = before.is_some_and(|before| {
+            let change = (self.report.energy.total() - before.total()).abs();
+            change < SETTLED_ENERGY * before.total().max(f64::MIN_POSITIVE)
+        });
+        let settled = match registration {
+            _ if before.is_none() => false,
+            Registration::Fixed => steady && !rejected,
+            // Shapes that get no better have settled, too.
+            Registration::Joint => self.still > 0 && (steady || rejected || self.still >= MOST_STILL),
+            Registration::Icp => {
+                self.proposed_change < self.options.stop_degrees && self.trust >= 1.0 && !self.refused && !rejected
             }
         };
         if self.correspondences.count() < FEWEST_PAIRS || self.report.overlap < LEAST_OVERLAP {
             let share = 100.0 * self.report.overlap;
             self.end(Status::Lost, format!("only {share:.1} % of the depth pixels have a counterpart in the image"));
-        } else if settled && !rejected && self.report.iteration >= FIRST_VERDICT {
-            self.report.status = Status::Converged;
-        } else if rejected && self.options.registration == Registration::Fixed {
+        } else if settled && self.report.iteration >= first_verdict {
+            self.conclude();
+        } else if rejected && registration == Registration::Fixed {
             // With the pose held the next iteration would be this one again.
             self.end(Status::MaxIterations, "another iteration would worsen the shapes under this pose".into());
         } else if self.rejections >= MOST_REJECTIONS {
@@ -413,6 +452,15 @@ impl Estimator {
                 format!("the cap of {} iterations was reached", self.options.max_iterations),
             );
         }
+        if self.report.status == Status::MaxIterations {
+            self.doubt();
+        }
+    }
+
+    /// The loop has settled: converged, unless there is reason to doubt.
+    fn conclude(&mut self) {
+        self.report.status = Status::Converged;
+        self.doubt();
     }
 
     fn end(&mut self, status: Status, message: String) {

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use super::merit::Candidate;
-use super::{Estimator, gauge, merit, worsens};
+use super::{Estimator, Joint, gauge, merit, worsens};
 use crate::error::Result;
 use crate::options::{LightSource, Registration, Shading};
 use crate::pose::{CorrespondenceProblem, IcpOptions, IcpProblem, RansacOptions, Similarity, ransac};
@@ -59,6 +59,9 @@ impl Estimator {
             self.solution.light = fit.light;
             self.unexplained = fit.residual;
         }
+        if let Some(found) = self.joint.as_ref().and_then(Joint::found) {
+            (self.solution.light, self.solution.exposure) = (found.light, found.exposure);
+        }
         Ok(())
     }
 
@@ -73,7 +76,8 @@ impl Estimator {
             let problem =
                 ShadingProblem { log: [&log[0], &log[1], &log[2]], prior: &self.carried_normals, light: &light };
             self.solver.solve(problem, weights, &mut self.solution.image_normals);
-            if known {
+            // The registration has found the exposure together with the pose.
+            if known && self.joint.as_ref().is_none_or(|joint| joint.found().is_none()) {
                 let moved = self.solution.exposure - self.first_exposure;
                 self.solution.exposure += exposure_step(problem, weights, &self.solution.image_normals, moved);
             }
@@ -154,6 +158,10 @@ impl Estimator {
     pub(super) fn register(&mut self) -> Result<()> {
         let before = self.pose();
         self.proposed_change = 0.0;
+        if self.options.registration == Registration::Joint {
+            self.register_colours(&before)?;
+            self.proposed_change = before.degrees_to(&self.solution.pose);
+        }
         if self.options.registration == Registration::Icp {
             let found = self.match_surfaces(before)?;
             self.proposed_change = before.degrees_to(&found);

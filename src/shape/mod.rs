@@ -17,6 +17,6 @@ pub use gradients::gradients;
 pub use heights::{HeightProblem, HeightReport, HeightSolver};
 pub use poisson::Termination;
 pub use refine::{RefinementProblem, Refiner};
-pub use relief::{ReliefProblem, ReliefSolver};
+pub use relief::{ReliefProblem, ReliefSolver, STARTS};
 pub use shading::{ShadingProblem, ShadingSolver, ShadingWeights, Terminations};
 pub use surface::{AnchorWeight, Anchors, IntegrationOptions, IntegrationReport, Integrator, Robust};

@@ -3,8 +3,8 @@
 //! Under natural light three colours hardly tell one normal from another, but the normals of one surface are not free. The
 //! heights of [`HeightSolver`] are solved at falling robust scales from several starts: the surface integrated
 //! from the pixels' own normals, a flat one and a dome over the mask. Shading is ambiguous and not convex; of the
-//! ends the one of least cost was the best one each time it was measured, so that one is taken. Later calls go on
-//! from the last surface. Limits: orthographic or pinhole alike, but parts of the mask that are not joined are solved on
+//! ends the one of least cost was the best one each time it was measured, so that one is taken. Each call tries one
+//! start more, so that none lasts long, and goes on from the best surface so far. Limits: orthographic or pinhole alike, but parts of the mask that are not joined are solved on
 //! their own, each at any level.
 
 use nalgebra::Matrix3;
@@ -33,12 +33,17 @@ pub struct ReliefProblem<'a> {
     pub firmness: &'a [f32],
 }
 
+/// Calls after which all starts have been tried.
+pub const STARTS: u32 = 3;
+
 /// Solves one image again and again; owns all memory.
 pub struct ReliefSolver {
     heights: HeightSolver,
-    starts: [Vec<f32>; 3],
+    starts: [Vec<f32>; STARTS as usize],
     surface: Vec<f32>,
-    started: bool,
+    /// Starts that were tried, and the least cost of their ends.
+    tried: usize,
+    least: f64,
 }
 
 impl ReliefSolver {
@@ -53,7 +58,8 @@ impl ReliefSolver {
             heights: HeightSolver::new(image.size, image.camera, &image.mask)?,
             starts: [vec![0.0; length], vec![0.0; length], dome],
             surface: vec![0.0; length],
-            started: false,
+            tried: 0,
+            least: f64::INFINITY,
         })
     }
 
@@ -72,24 +78,24 @@ impl ReliefSolver {
             steps,
         };
         let last_scale = COLOUR_SCALES[COLOUR_SCALES.len() - 1];
-        if self.started {
-            self.heights.solve(height_problem(last_scale, LATER_STEPS), &mut self.surface);
-        } else {
-            self.started = true;
-            for (start, &height) in self.starts[0].iter_mut().zip(integrated) {
-                *start = if height.is_nan() { 0.0 } else { height };
-            }
-            let mut least = f64::INFINITY;
-            for start in &mut self.starts {
-                let mut cost = f64::INFINITY;
-                for scale in COLOUR_SCALES {
-                    cost = self.heights.solve(height_problem(scale, FIRST_STEPS), start).cost;
-                }
-                if cost < least {
-                    least = cost;
-                    self.surface.copy_from_slice(start);
+        if self.tried > 0 {
+            self.least = self.heights.solve(height_problem(last_scale, LATER_STEPS), &mut self.surface).cost;
+        }
+        if let Some(start) = self.starts.get_mut(self.tried) {
+            if self.tried == 0 {
+                for (start, &height) in start.iter_mut().zip(integrated) {
+                    *start = if height.is_nan() { 0.0 } else { height };
                 }
             }
+            let mut cost = f64::INFINITY;
+            for scale in COLOUR_SCALES {
+                cost = self.heights.solve(height_problem(scale, FIRST_STEPS), start).cost;
+            }
+            if cost < self.least {
+                self.least = cost;
+                self.surface.copy_from_slice(start);
+            }
+            self.tried += 1;
         }
         for ((height, &surface), &inside) in heights.iter_mut().zip(&self.surface).zip(&problem.image.mask) {
             *height = if inside { surface } else { f32::NAN };

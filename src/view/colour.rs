@@ -107,6 +107,19 @@ impl ColourView {
         Ok(Self { size, camera, mask: usable, log, transfer })
     }
 
+    /// Standard deviation of log S over the mask, the three channels together (root of the sum of their variances).
+    #[must_use]
+    pub fn log_spread(&self) -> f64 {
+        let spread = |channel: &[f32]| {
+            let inside =
+                || channel.iter().zip(&self.mask).filter(|(_, inside)| **inside).map(|(&log, _)| f64::from(log));
+            let count = inside().count().max(1) as f64;
+            let mean = inside().sum::<f64>() / count;
+            inside().map(|log| (log - mean).powi(2)).sum::<f64>() / count
+        };
+        self.log.iter().map(|channel| spread(channel)).sum::<f64>().sqrt()
+    }
+
     /// log S of the three channels at a pixel, NaN off the mask.
     #[must_use]
     pub fn log_at(&self, index: usize) -> [f32; 3] {

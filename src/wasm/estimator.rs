@@ -46,9 +46,10 @@ impl Estimator {
         self.milliseconds.clear();
         let before = self.native.report().iteration;
         loop {
+            let searching = self.native.is_searching();
             self.timed_stage();
             let report = self.native.report();
-            if report.iteration != before || report.status != Status::Running {
+            if searching || report.iteration != before || report.status != Status::Running {
                 return self.report();
             }
         }

@@ -191,7 +191,7 @@ fn pinhole(distortion: &'static str, js: &JsPinhole) -> Result<Pinhole> {
     Ok(Pinhole { fx: js.fx(), fy: js.fy(), cx: js.cx(), cy: js.cy(), distortion })
 }
 
-/// Options of the contract over the native defaults. The facade has refused the words of later versions.
+/// Options of the contract over the native defaults.
 pub fn options(js: &JsOptions) -> Result<Options> {
     let default = Options::default();
     Ok(Options {
@@ -199,16 +199,21 @@ pub fn options(js: &JsOptions) -> Result<Options> {
             Some(values) => LightSource::Known(Light::from_slice("options.light", &values)?),
             None => LightSource::Estimate,
         },
-        start: match js.start().is_object() {
-            true => start(js.start().unchecked_ref())?,
-            false => Start::Identity,
+        start: match js.start().as_string().as_deref() {
+            Some("identity") => Start::Identity,
+            _ if js.start().is_object() => start(js.start().unchecked_ref())?,
+            _ => default.start,
         },
         scale: js.scale().as_f64(),
         registration: match js.registration().as_deref() {
             Some("fixed") => Registration::Fixed,
-            _ => Registration::Icp,
+            Some("icp") => Registration::Icp,
+            _ => Registration::Joint,
         },
-        shading: Shading::Pixel,
+        shading: match js.shading().as_deref() {
+            Some("pixel") => Shading::Pixel,
+            _ => Shading::Surface,
+        },
         weights: js.lambda().map_or(default.weights, |lambda| weights(&lambda, default.weights)),
         stop_degrees: js.stop_degrees().unwrap_or(default.stop_degrees),
         correspondence_distance: js.correspondence_distance(),

@@ -62,6 +62,8 @@ struct PlainReport<'a> {
     status: &'a str,
     #[serde(skip_serializing_if = "Option::is_none")]
     message: Option<&'a str>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    rivals: Vec<PlainPose>,
     #[serde(skip_serializing_if = "Option::is_none")]
     uncertainty: Option<PlainUncertainty<'a>>,
     milliseconds: &'a BTreeMap<&'static str, f64>,
@@ -105,6 +107,7 @@ pub fn report(report: &StepReport, milliseconds: &BTreeMap<&'static str, f64>) -
         residual: report.residual,
         status: report.status.name(),
         message: report.message.as_deref(),
+        rivals: report.rivals.iter().map(plain_pose).collect(),
         uncertainty: report.uncertainty.as_ref().map(|sigma| PlainUncertainty {
             rotation_degrees: sigma.rotation_degrees,
             translation: sigma.translation,

@@ -2,7 +2,8 @@
 //!
 //! M is the matrix of the equations that the pose solves, g the sum of the scores of a tile of the depth map once the light
 //! has followed (Huber's sandwich over clusters). Noise, wrong normals and interpolation enter with the size and
-//! the correlation that they have, so nothing is assumed about them but that tiles are independent.
+//! the correlation that they have, so nothing is assumed about them but that tiles are independent. What leaves no
+//! residual is allowed for by a factor that was measured.
 
 use nalgebra::SymmetricEigen;
 
@@ -18,6 +19,9 @@ use crate::view::Size;
 
 /// Side of the tiles of the depth map whose scores count as one observation, pixels: twice the reach of normals and splines.
 const TILE: usize = 8;
+/// Errors that leave no residual, such as normals that lean all one way, over those that do: measured on 116 random scenes of
+/// eight surfaces under natural lights (96x96), where one sigma from the residuals alone holds 44 % and three hold 85 %.
+const UNSEEN: f64 = 1.9;
 /// Sigma of a direction that nothing is known about, radians or object sizes.
 const UNKNOWN: f64 = 1e3;
 /// Cap on the rounds of the eigenvalue iteration, which ends after about 20.
@@ -95,7 +99,9 @@ impl Photometric {
         hold(&mut matrix, &held);
         let mut covariance = match matrix.try_inverse() {
             // Fewer tiles than unknowns say nothing about the spread.
-            Some(inverse) if count > free => inverse * spread * inverse.transpose() * (count / (count - free)),
+            Some(inverse) if count > free => {
+                inverse * spread * inverse.transpose() * (UNSEEN * UNSEEN * count / (count - free))
+            }
             _ => Square::identity() * UNKNOWN.powi(2),
         };
         if !covariance.norm().is_finite() {

@@ -31,6 +31,8 @@ mod residual;
 use super::increment::{Frame, Row};
 use super::similarity::Similarity;
 use crate::error::{Error, ErrorKind, Result};
+use crate::light::COEFFICIENTS;
+
 use crate::view::Size;
 use equations::Reduced;
 use image::SplineImage;
@@ -56,6 +58,8 @@ const FIRST_SCALE: f64 = 2.0;
 const ANNEALING: f64 = 0.6;
 /// Noise of log S that is always allowed for: half a percent of a good 8-bit image's rounding, log units.
 const LEAST_NOISE: f64 = 0.002;
+/// Degrees of freedom of the prior's tails: coloured lamps lie far outside the Gaussian, and it would bend them by degrees.
+const PRIOR_FREEDOM: f64 = 5.0;
 /// Scale and weight of the prior of the very first fit of the light, when nothing is known: all points count.
 const FIRST_LOOK: Robust = Robust { scale: 1e3, prior: 1e-2 };
 /// Reweightings of the light at the start of a round.
@@ -301,8 +305,11 @@ impl Photometric {
         KERNEL * CHANNELS * self.noise
     }
 
+    /// Weight of the prior: Gaussian near the natural lights, with the tails of Student's t for lights that no landscape has.
     fn prior(&self, problem: &PhotometricProblem<'_>) -> f64 {
-        problem.prior_weight * self.noise * self.noise
+        let energy = problem.prior.energy(&self.state.light);
+        let tail = (PRIOR_FREEDOM + COEFFICIENTS as f64) / (PRIOR_FREEDOM + energy);
+        problem.prior_weight * tail.min(1.0) * self.noise * self.noise
     }
 
     fn cost(&self, problem: &PhotometricProblem<'_>, level: usize, state: &State) -> f64 {

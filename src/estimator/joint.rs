@@ -1,0 +1,106 @@
+//! The photometric registration as a stage of the loop, and what it needs of the depth view.
+
+use crate::error::Result;
+use crate::light::{Light, LightPrior};
+use crate::pose::{Photometric, PhotometricOptions, PhotometricProblem, PhotometricReport, Similarity};
+use crate::view::{ColourView, DepthView, Normals, cubic_normals};
+
+/// Weight of the light's prior in the registration: Bayes' own. `lambda.light` weighs the fit of the light stage alone.
+const PRIOR_WEIGHT: f64 = 1.0;
+
+/// What one registration looks at, besides its own memory.
+#[derive(Clone, Copy)]
+pub struct Given<'a> {
+    pub image: &'a ColourView,
+    pub depth: &'a DepthView,
+    pub prior: &'a LightPrior,
+    /// The light where it is known, but for its exposure.
+    pub light: Option<&'a Light>,
+    pub scale_is_held: bool,
+}
+
+/// Registers the measured depth view to the image; owns all memory.
+pub struct Joint {
+    photometric: Photometric,
+    sharp: SharpNormals,
+    /// The last registration.
+    found: Option<PhotometricReport>,
+}
+
+/// Normals of third order with one sigma of each in radians.
+struct SharpNormals {
+    normals: Normals,
+    error: Vec<f32>,
+}
+
+impl SharpNormals {
+    /// Those of the caller are taken as exact.
+    fn new(depth: &DepthView) -> Self {
+        let mut normals = depth.normals.clone();
+        let mut error = vec![0.0; depth.size.len()];
+        if !depth.normals_given {
+            cubic_normals::improve(depth.size, &depth.points, &mut normals, &mut error);
+        }
+        Self { normals, error }
+    }
+
+    fn problem<'a>(&'a self, given: &Given<'a>) -> PhotometricProblem<'a> {
+        PhotometricProblem {
+            image: given.image,
+            depth: given.depth,
+            points: &given.depth.points,
+            normals: &self.normals,
+            normal_error: Some(&self.error),
+            light: given.light,
+            prior: given.prior,
+            prior_weight: PRIOR_WEIGHT,
+            scale_is_held: given.scale_is_held,
+        }
+    }
+}
+
+impl Joint {
+    pub fn new(given: &Given<'_>) -> Self {
+        let sharp = SharpNormals::new(given.depth);
+        Self { photometric: Photometric::new(&sharp.problem(given)), sharp, found: None }
+    }
+
+    /// The last registration; none before the first.
+    pub const fn found(&self) -> Option<&PhotometricReport> {
+        self.found.as_ref()
+    }
+
+    /// Takes over a registration that was made elsewhere, by the opening search.
+    pub fn adopt(&mut self, found: PhotometricReport) {
+        self.found = Some(found);
+    }
+
+    /// The best pose near `start`. A registration that stands where the last one ended is not repeated: the measured
+    /// normals do not change, so neither would its end.
+    pub fn register(&mut self, given: &Given<'_>, start: &Similarity) -> Result<&PhotometricReport> {
+        // t_z may have been settled since: it is a gauge.
+        let stands = self.found.as_ref().is_some_and(|found| {
+            let pose = &found.pose;
+            (pose.scale, pose.rotation, pose.translation.xy()) == (start.scale, start.rotation, start.translation.xy())
+        });
+        let found = match self.found.take().filter(|_| stands) {
+            Some(found) => found,
+            None => self.photometric.register(&self.sharp.problem(given), start, &PhotometricOptions::default())?,
+        };
+        Ok(self.found.insert(found))
+    }
+
+    /// Begins a registration that [`advance`](Self::advance) carries on, a round at a time.
+    pub fn begin(&mut self, given: &Given<'_>, start: &Similarity) -> Result<()> {
+        self.photometric.begin(&self.sharp.problem(given), start, &PhotometricOptions::default())
+    }
+
+    /// One round; the report once it was the last.
+    pub fn advance(&mut self, given: &Given<'_>) -> Result<Option<PhotometricReport>> {
+        let problem = self.sharp.problem(given);
+        if !self.photometric.step(&problem)? {
+            return Ok(None);
+        }
+        self.photometric.report(&problem).map(Some)
+    }
+}

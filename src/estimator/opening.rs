@@ -1,0 +1,179 @@
+//! The opening: search everywhere, register the best candidates, keep the one that explains most, remember its rivals.
+//!
+//! Ends of different registrations see different points, so their costs cannot be compared; what they are worth is
+//! gain = N^(1/2) ln(spread / noise): by how much the pose explains the colours better than a constant would, with the root of
+//! the number of visible points against overlaps that are tiny and thus easily explained. Measured on 180 random scenes
+//! at 96x96 (Mozart, four scanned animals, three built-in surfaces; natural lights, free scale): the winner is right in 175. In
+//! four of the others a rival leaves less than 1.25 times the winner's noise, in the fifth the rotation is uncertain by 10
+//! degrees; where the truth wins, rivals leave 1.26 times its noise or more.
+
+use crate::error::Result;
+use crate::pose::{PhotometricReport, Search, Similarity};
+
+use super::joint::{Given, Joint};
+
+/// Registrations after which an end that convinces is believed, and registrations at most.
+const FEW_TRIED: usize = 10;
+const MOST_TRIED: usize = 40;
+/// An end convinces when the noise of every other one that sees as much is larger by this factor.
+const CONVINCING_NOISE: f64 = 2.0;
+/// Share of the colours' spread that is nearly nothing: noise of 1 % under lights of good contrast.
+const UNEXPLAINED: f64 = 0.05;
+/// Ends nearer than this are one end, degrees.
+const SAME_END: f64 = 3.0;
+/// An end reached so often needs no more witnesses: candidates next to it are passed over.
+const WITNESSES: u32 = 2;
+/// Candidates nearer than this to such an end would only reach it again, degrees.
+const CATCHMENT: f64 = 15.0;
+/// A rival leaves a noise of at most so many times the winner's ..
+const RIVAL_NOISE: f64 = 1.25;
+/// .. on at least this share of its points.
+const RIVAL_VISIBLE: f64 = 0.5;
+/// Rivals reported at most.
+const MOST_RIVALS: usize = 5;
+/// Share of the opening's progress that the search itself takes.
+const SEARCH_SHARE: f64 = 0.5;
+
+/// Where the opening stands.
+pub enum Look {
+    /// Not done; the share of the work that is, and what is being done.
+    Ongoing(f64, &'static str),
+    /// The best pose, if any could be registered.
+    Done(Option<Outcome>),
+}
+
+/// What the opening found.
+pub struct Outcome {
+    pub best: PhotometricReport,
+    /// Poses that the data can't tell from the best, best first.
+    pub rivals: Vec<Similarity>,
+}
+
+struct End {
+    report: PhotometricReport,
+    gain: f64,
+    witnesses: u32,
+}
+
+impl End {
+    fn is_apart(&self, other: &Self) -> bool {
+        self.report.pose.degrees_to(&other.report.pose) >= SAME_END
+    }
+
+    /// Whether it explains about as many points as `best` nearly as well: up to `factor` times the noise.
+    fn rivals(&self, best: &Self, factor: f64) -> bool {
+        self.report.visible as f64 >= RIVAL_VISIBLE * best.report.visible as f64
+            && self.report.noise <= factor * best.report.noise
+    }
+}
+
+/// The opening in slices; owns its memory.
+pub struct Opening {
+    search: Search,
+    /// Standard deviation of log S over the mask.
+    spread: f64,
+    searching: bool,
+    /// The next candidate, and whether its registration has begun.
+    next: usize,
+    begun: bool,
+    tried: usize,
+    ends: Vec<End>,
+}
+
+impl Opening {
+    /// # Errors
+    /// Those of [`Search::new`].
+    pub fn new(given: &Given<'_>, scale: Option<f64>, unit_scale: f64, seed: u64) -> Result<Self> {
+        Ok(Self {
+            search: Search::new(given.image, given.depth, given.light, scale, unit_scale, seed)?,
+            spread: given.image.log_spread(),
+            searching: true,
+            next: 0,
+            begun: false,
+            tried: 0,
+            ends: Vec::with_capacity(MOST_TRIED),
+        })
+    }
+
+    /// One slice: a part of the search, or a round of a registration.
+    pub fn advance(&mut self, joint: &mut Joint, given: &Given<'_>) -> Look {
+        if self.searching {
+            let share = self.search.advance().share;
+            self.searching = share < 1.0;
+            return Look::Ongoing(SEARCH_SHARE * share, "comparing rotations, translations and scales");
+        }
+        self.skip_known();
+        let candidates = self.search.candidates();
+        let enough = self.tried >= MOST_TRIED || (self.tried >= FEW_TRIED && self.is_convincing());
+        if self.next >= candidates.len() || enough {
+            return Look::Done(self.outcome());
+        }
+        // A candidate that cannot be registered is no error of the pair.
+        let outcome = match self.begun {
+            false => joint.begin(given, &candidates[self.next].pose).map(|()| None),
+            true => joint.advance(given),
+        };
+        self.begun = matches!(outcome, Ok(None));
+        if !self.begun {
+            (self.next, self.tried) = (self.next + 1, self.tried + 1);
+            if let Ok(Some(report)) = outcome {
+                self.enter(report);
+            }
+        }
+        let expected = if self.tried < FEW_TRIED { FEW_TRIED } else { MOST_TRIED };
+        let share = self.tried as f64 / expected as f64;
+        Look::Ongoing(SEARCH_SHARE + (1.0 - SEARCH_SHARE) * share, "registering the best candidates")
+    }
+
+    /// Passes over candidates next to an end that has witnesses enough.
+    fn skip_known(&mut self) {
+        let candidates = self.search.candidates();
+        let known = |pose: &Similarity| {
+            let near = |end: &End| end.witnesses >= WITNESSES && end.report.pose.degrees_to(pose) < CATCHMENT;
+            self.ends.iter().any(near)
+        };
+        while !self.begun && candidates.get(self.next).is_some_and(|candidate| known(&candidate.pose)) {
+            self.next += 1;
+        }
+    }
+
+    /// Whether the best end has no rival by far, and either explains nearly all or is where most registrations end.
+    fn is_convincing(&self) -> bool {
+        let best = self.ends.iter().max_by(|a, b| a.gain.total_cmp(&b.gain));
+        best.is_some_and(|best| {
+            let others = self.ends.iter().filter(|end| end.is_apart(best));
+            let alone = !others.into_iter().any(|end| end.rivals(best, CONVINCING_NOISE));
+            let clear = best.report.noise < UNEXPLAINED * self.spread || 2 * best.witnesses as usize >= self.tried;
+            best.witnesses >= WITNESSES && alone && clear
+        })
+    }
+
+    /// Remembers where a registration ended: the better of two that are one.
+    fn enter(&mut self, report: PhotometricReport) {
+        let gain = (report.visible as f64).sqrt() * (self.spread / report.noise).ln();
+        if !gain.is_finite() {
+            return;
+        }
+        match self.ends.iter_mut().find(|end| end.report.pose.degrees_to(&report.pose) < SAME_END) {
+            Some(end) => {
+                end.witnesses += 1;
+                if gain > end.gain {
+                    (end.report, end.gain) = (report, gain);
+                }
+            }
+            None => self.ends.push(End { report, gain, witnesses: 1 }),
+        }
+    }
+
+    fn outcome(&mut self) -> Option<Outcome> {
+        self.ends.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+        let mut ends = self.ends.drain(..);
+        let best = ends.next().filter(|best| best.gain > 0.0)?;
+        let rivals = ends
+            .filter(|end| end.is_apart(&best) && end.rivals(&best, RIVAL_NOISE))
+            .map(|end| end.report.pose)
+            .take(MOST_RIVALS)
+            .collect();
+        Some(Outcome { best: best.report, rivals })
+    }
+}
