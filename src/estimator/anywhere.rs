@@ -2,7 +2,7 @@
 
 use super::{Estimator, Given, Joint, Look, Opening, Outcome, gauge};
 use crate::error::{Error, ErrorKind, Result};
-use crate::options::LightSource;
+use crate::options::{LightSource, Registration};
 use crate::pose::{PhotometricReport, Similarity};
 use crate::report::Status;
 
@@ -20,6 +20,20 @@ impl Estimator {
         given(&self.image, &self.depth, &self.prior, &self.options)
     }
 
+    /// The registration that this pair asks for: noisy depth is found by its colours and settled by its surface.
+    pub(super) fn registration(&self) -> Registration {
+        let settled_by_surface = |joint: &Joint| joint.is_coarse(&self.options.light) && joint.found().is_some();
+        match self.options.registration {
+            Registration::Joint if self.joint.as_ref().is_some_and(settled_by_surface) => Registration::Icp,
+            asked => asked,
+        }
+    }
+
+    /// What the registration by colours has found, where light and pose are its own.
+    pub(super) fn colours_found(&self) -> Option<&PhotometricReport> {
+        self.joint.as_ref().filter(|joint| !joint.is_coarse(&self.options.light)).and_then(Joint::found)
+    }
+
     /// One slice of the opening search.
     pub(super) fn search(&mut self) -> Result<()> {
         let Self { image, depth, prior, options, opening, joint, .. } = self;
@@ -29,7 +43,8 @@ impl Estimator {
             Some(opening) => opening,
             None => {
                 let scale = gauge::held_scale(image, options);
-                opening.insert(Opening::new(&given, scale, gauge::unit_scale(image, depth), options.seed)?)
+                let unit = gauge::unit_scale(image, depth);
+                opening.insert(Opening::new(&given, joint.depth(), scale, unit, options.seed)?)
             }
         };
         match opening.advance(joint, &given) {
@@ -100,7 +115,7 @@ impl Estimator {
     }
 
     fn reason_to_doubt(&self) -> Option<String> {
-        let found = self.joint.as_ref().and_then(Joint::found)?;
+        let found = self.colours_found()?;
         let uncertainty = &found.uncertainty;
         let sigma = uncertainty.rotation_degrees.into_iter().fold(0.0, f64::max);
         if sigma.is_nan() || sigma > LARGEST_SIGMA {

@@ -97,6 +97,8 @@ pub struct Estimator {
     firmness: Vec<f32>,
     /// Normals of the depth view at the image pixels, colour view's frame.
     carried_normals: Normals,
+    /// Normals of the image surface's heights, then what its pixels are drawn to.
+    surface_normals: Normals,
     gradient: [Vec<f32>; 2],
     height: Vec<f32>,
     spare: Vec<f32>,
@@ -155,6 +157,7 @@ impl Estimator {
             opening: None,
             paired_points: [Vec::new(), Vec::new()],
             carried_normals: Normals::missing(pixels),
+            surface_normals: Normals::missing(pixels),
             gradient: [vec![0.0; pixels], vec![0.0; pixels]],
             height: vec![0.0; pixels],
             spare: Vec::with_capacity(pixels),
@@ -345,7 +348,7 @@ impl Estimator {
         let before = if first { None } else { Some(self.kept_energy()) };
         let change = self.kept.pose.degrees_to(&self.solution.pose);
         // The joint registration has a cost of its own: a pose that it moves is not for the merit to take back.
-        let judged = self.options.registration != Registration::Joint || change < self.options.stop_degrees;
+        let judged = self.registration() != Registration::Joint || change < self.options.stop_degrees;
         let rejected = judged && before.is_some_and(|before| worsens(before.total(), energy.total(), change));
         self.report.message = None;
         if let (true, Some(before)) = (rejected, before) {
@@ -416,7 +419,7 @@ impl Estimator {
 
     fn decide(&mut self, rejected: bool, before: Option<Energy>) {
         self.still = if self.proposed_change < self.options.stop_degrees { self.still + 1 } else { 0 };
-        let registration = self.options.registration;
+        let registration = self.registration();
         let first_verdict = match self.options.shading {
             Shading::Pixel => FIRST_VERDICT,
             Shading::Surface => STARTS,

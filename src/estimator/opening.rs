@@ -9,6 +9,7 @@
 
 use crate::error::Result;
 use crate::pose::{PhotometricReport, Search, Similarity};
+use crate::view::DepthView;
 
 use super::joint::{Given, Joint};
 
@@ -81,11 +82,13 @@ pub struct Opening {
 }
 
 impl Opening {
+    /// `depth` is the view whose normals are searched by.
+    ///
     /// # Errors
     /// Those of [`Search::new`].
-    pub fn new(given: &Given<'_>, scale: Option<f64>, unit_scale: f64, seed: u64) -> Result<Self> {
+    pub fn new(given: &Given<'_>, depth: &DepthView, scale: Option<f64>, unit_scale: f64, seed: u64) -> Result<Self> {
         Ok(Self {
-            search: Search::new(given.image, given.depth, given.light, scale, unit_scale, seed)?,
+            search: Search::new(given.image, depth, given.light, scale, unit_scale, seed)?,
             spread: given.image.log_spread(),
             searching: true,
             next: 0,

@@ -3,8 +3,9 @@
 use nalgebra::Vector3;
 
 use super::merit::Candidate;
-use super::{Estimator, Joint, gauge, merit, worsens};
+use super::{Estimator, gauge, merit, worsens};
 use crate::error::Result;
+use crate::light::Light;
 use crate::options::{LightSource, Registration, Shading};
 use crate::pose::{CorrespondenceProblem, IcpOptions, IcpProblem, RansacOptions, Similarity, ransac};
 use crate::shape::{
@@ -15,6 +16,8 @@ use crate::view::{normals, quantile};
 
 /// |n - m| at which a prior normal has lost three quarters of its pull: 23 degrees, more than noise, less than a mistake.
 const PRIOR_SCALE: f32 = 0.4;
+/// Weight of the surface's own normals where no weight is given to the depth view's: that of the default.
+const LEAST_SURFACE_PRIOR: f64 = 0.05;
 /// Median log residual up to which a fitted light counts as explaining the colours: noise and discretisation.
 const EXPLAINED: f64 = 0.07;
 /// Solves of normals and exposure in the first iteration, which starts from a look at the colours alone.
@@ -59,7 +62,7 @@ impl Estimator {
             self.solution.light = fit.light;
             self.unexplained = fit.residual;
         }
-        if let Some(found) = self.joint.as_ref().and_then(Joint::found) {
+        if let Some(found) = self.colours_found() {
             (self.solution.light, self.solution.exposure) = (found.light, found.exposure);
         }
         Ok(())
@@ -77,7 +80,7 @@ impl Estimator {
                 ShadingProblem { log: [&log[0], &log[1], &log[2]], prior: &self.carried_normals, light: &light };
             self.solver.solve(problem, weights, &mut self.solution.image_normals);
             // The registration has found the exposure together with the pose.
-            if known && self.joint.as_ref().is_none_or(|joint| joint.found().is_none()) {
+            if known && self.colours_found().is_none() {
                 let moved = self.solution.exposure - self.first_exposure;
                 self.solution.exposure += exposure_step(problem, weights, &self.solution.image_normals, moved);
             }
@@ -151,18 +154,37 @@ impl Estimator {
         for (spare, &height) in self.spare.iter_mut().zip(&self.height) {
             *spare = if camera.is_orthographic() { height } else { (height / focal_length).exp() };
         }
-        normals::of_depth_into(self.image.size, camera, &self.spare, &mut self.solution.image_normals);
+        normals::of_depth_into(self.image.size, camera, &self.spare, &mut self.surface_normals);
+        self.shade_surface(&light);
+    }
+
+    /// Normals of the pixels once more, each drawn to the depth view's normal or else to that of the surface: differences of
+    /// heights lack the detail of a pixel, which its colours have.
+    fn shade_surface(&mut self, light: &Light) {
+        for pixel in 0..self.image.size.len() {
+            if self.carried_normals.is_valid(pixel) {
+                self.surface_normals.set(pixel, self.carried_normals.get(pixel));
+            }
+        }
+        let weights = self.shading_weights(self.options.weights.prior.max(LEAST_SURFACE_PRIOR));
+        let log = &self.image.log;
+        let problem = ShadingProblem { log: [&log[0], &log[1], &log[2]], prior: &self.surface_normals, light };
+        self.solver.solve(problem, weights, &mut self.solution.image_normals);
+        for pixel in (0..self.image.size.len()).filter(|&pixel| !self.image.mask[pixel]) {
+            self.solution.image_normals.set(pixel, [f32::NAN; 3]);
+        }
     }
 
     /// Pose (Eq. 12 to 16), then the correspondences that it gives.
     pub(super) fn register(&mut self) -> Result<()> {
         let before = self.pose();
         self.proposed_change = 0.0;
-        if self.options.registration == Registration::Joint {
+        let registration = self.registration();
+        if registration == Registration::Joint {
             self.register_colours(&before)?;
             self.proposed_change = before.degrees_to(&self.solution.pose);
         }
-        if self.options.registration == Registration::Icp {
+        if registration == Registration::Icp {
             let found = self.match_surfaces(before)?;
             self.proposed_change = before.degrees_to(&found);
             self.solution.pose = if self.trust < 1.0 {

@@ -1,26 +1,33 @@
 //! w(a, b) = sum c_jk a^j b^k, j + k <= 3, over the tangent plane: normals of third order, with their errors.
 //!
-//! For each point the neighbours within two pixels are seen from the point's own tangent plane (a, b along it, w off it) and
+//! For each point the neighbours within two pixels (more under noise) are seen from the point's own tangent plane (a, b along it, w off it) and
 //! a cubic is fitted by weighted least squares; its slope at the point corrects the normal, twice. In the tangent plane a
 //! round rim is as tame as a front: a depth z(x, y) has derivatives there that grow without bound, and central differences
 //! lean systematically. Measured on Mozart at 128x128 from the side (beta = 90 degrees): median error 0.011 against 0.024 rad.
 //!
 //! The error of a normal follows from the residual of its cubic and the share of the weights that its slopes have.
 //! Neighbours beyond a jump stay out. Where fewer neighbours are left than a cubic needs, the first normal stays, and its
-//! error says [`UNFITTED`]. Limits: detail finer than two pixels is smoothed; noise of the points passes with a gain of
+//! error says [`UNFITTED`]. Limits: detail finer than the window is smoothed; noise of the points passes with a gain of
 //! about a half, no worse than central differences.
 
 use nalgebra::{SMatrix, SVector, Vector3};
 
-use crate::view::{Normals, Points, Size};
+use crate::view::{Normals, Points, Size, quantile};
 
-/// Half width of the window in pixels: the smallest that holds a cubic with some spare.
-const RADIUS: isize = 2;
-/// Sigma of the weights along the tangent plane, in pixel lengths. Between 1 and 2 the poses of Mozart's tables differ little.
-const SIGMA: f64 = 1.5;
+/// Half widths of the windows in pixels. The first is the smallest that holds a cubic with some spare; noise asks for more.
+const RADII: [isize; 4] = [2, 3, 5, 8];
+/// Sigma of the weights along the tangent plane over the half width. Between 0.5 and 1 the poses of Mozart's tables differ little.
+const SIGMA: f64 = 0.75;
+/// Median error of the normals that asks for a larger window, radians: clean views stay below.
+const NOISY: f32 = 0.06;
 /// Largest |w|: half the distance along the plane and a third of a pixel. Steeper is another part of the object.
 const LARGEST_SLOPE: f64 = 0.5;
 const LARGEST_OFFSET: f64 = 0.3;
+/// .. or so many standard deviations of the depth's noise.
+const NOISE_OFFSETS: f64 = 3.0;
+/// Fourth differences of white noise in standard deviations of it, 70^(1/2), and the median of |x| in those of x.
+const FOURTH_DIFFERENCE: f64 = 8.366_600_265_340_756;
+const MEDIAN_ABSOLUTE: f64 = 0.674_489_750_196_082;
 /// Coefficients of a cubic in two variables.
 const TERMS: usize = 10;
 /// Rounds: the second starts from a normal that is right to a few hundredths.
@@ -35,8 +42,66 @@ pub const UNFITTED: f32 = 0.3;
 type Terms = SVector<f64, TERMS>;
 
 /// Improves `normals` (unit, NaN where missing) of the organised `points` in place and writes each one's error in
-/// radians; NaN where there is no normal. Allocates nothing.
-pub fn improve(size: Size, points: &Points, normals: &mut Normals, error: &mut [f32]) {
+/// radians; NaN where there is no normal. The window grows as long as that makes the errors of a noisy view smaller.
+/// Returns the standard deviation of the points in pixel lengths.
+pub fn improve(size: Size, points: &Points, normals: &mut Normals, error: &mut [f32]) -> f64 {
+    let first = normals.clone();
+    let noise = noise(size, points);
+    let (mut trial, mut trial_error) = (first.clone(), error.to_vec());
+    let mut least = f32::INFINITY;
+    for radius in RADII {
+        let window =
+            Window { radius, sigma: SIGMA * radius as f64, offset: LARGEST_OFFSET.max(NOISE_OFFSETS * noise), noise };
+        trial.clone_from(&first);
+        fit_all(size, points, window, &mut trial, &mut trial_error);
+        let typical = median(trial_error.iter().copied());
+        if typical >= least {
+            break;
+        }
+        least = typical;
+        std::mem::swap(normals, &mut trial);
+        error.copy_from_slice(&trial_error);
+        if typical < NOISY {
+            break;
+        }
+    }
+    if least.is_infinite() {
+        // Nothing could be fitted, or there is nothing.
+        fit_all(size, points, Window { radius: RADII[0], sigma: SIGMA, offset: LARGEST_OFFSET, noise }, normals, error);
+    }
+    noise
+}
+
+/// What takes part in a fit, pixel lengths.
+#[derive(Clone, Copy)]
+struct Window {
+    radius: isize,
+    sigma: f64,
+    /// Largest |w| next to the point.
+    offset: f64,
+    /// Standard deviation of the points.
+    noise: f64,
+}
+
+/// Standard deviation of the points by their rows' fourth differences, pixel lengths; what no cubic follows counts as noise.
+fn noise(size: Size, points: &Points) -> f64 {
+    let bends = (0..size.len()).filter(|index| index % size.width >= 4).filter_map(|index| {
+        let row: [Vector3<f64>; 5] = std::array::from_fn(|k| Vector3::from(points.get(index - k).map(f64::from)));
+        let unit = 0.25 * (row[4] - row[0]).norm();
+        let bend = (row[0] - 4.0 * row[1] + 6.0 * row[2] - 4.0 * row[3] + row[4]).norm() / unit;
+        bend.is_finite().then_some(bend as f32)
+    });
+    let median = f64::from(median(bends));
+    if median.is_finite() { median / (FOURTH_DIFFERENCE * MEDIAN_ABSOLUTE) } else { 0.0 }
+}
+
+/// Median of the numbers; infinite without any.
+fn median(values: impl Iterator<Item = f32>) -> f32 {
+    let mut values: Vec<f32> = values.filter(|value| value.is_finite()).collect();
+    if values.is_empty() { f32::INFINITY } else { quantile(&mut values, 0.5) }
+}
+
+fn fit_all(size: Size, points: &Points, window: Window, normals: &mut Normals, error: &mut [f32]) {
     for index in 0..size.len().min(normals.len()).min(error.len()) {
         error[index] = f32::NAN;
         if !normals.is_valid(index) || !points.is_valid(index) {
@@ -44,7 +109,7 @@ pub fn improve(size: Size, points: &Points, normals: &mut Normals, error: &mut [
         }
         error[index] = UNFITTED;
         let first = Vector3::from(normals.get(index).map(f64::from));
-        if let Some((normal, spread)) = fit(size, points, index, first)
+        if let Some((normal, spread)) = fit(size, points, window, index, first)
             && normal.dot(&first) > RIM
         {
             normals.set(index, [normal.x as f32, normal.y as f32, normal.z as f32]);
@@ -54,7 +119,7 @@ pub fn improve(size: Size, points: &Points, normals: &mut Normals, error: &mut [
 }
 
 /// The normal of the cubic and its error.
-fn fit(size: Size, points: &Points, index: usize, first: Vector3<f64>) -> Option<(Vector3<f64>, f64)> {
+fn fit(size: Size, points: &Points, window: Window, index: usize, first: Vector3<f64>) -> Option<(Vector3<f64>, f64)> {
     let centre = Vector3::from(points.get(index).map(f64::from));
     let unit = size
         .neighbours(index)
@@ -68,7 +133,7 @@ fn fit(size: Size, points: &Points, index: usize, first: Vector3<f64>) -> Option
     for _ in 0..ROUNDS {
         let across = normal.cross(&if normal.y.abs() < 0.7 { Vector3::y() } else { Vector3::x() }).normalize();
         let axes = [across, normal.cross(&across), normal].map(|axis| axis / unit);
-        let (slopes, error) = slopes(size, points, index, centre, &axes)?;
+        let (slopes, error) = slopes(size, points, window, index, centre, &axes)?;
         normal = (normal - slopes[0] * unit * axes[0] - slopes[1] * unit * axes[1]).normalize();
         spread = error;
     }
@@ -79,6 +144,7 @@ fn fit(size: Size, points: &Points, index: usize, first: Vector3<f64>) -> Option
 fn slopes(
     size: Size,
     points: &Points,
+    window: Window,
     index: usize,
     centre: Vector3<f64>,
     axes: &[Vector3<f64>; 3],
@@ -86,8 +152,8 @@ fn slopes(
     let (column, row) = size.position(index);
     let mut gram = SMatrix::<f64, TERMS, TERMS>::zeros();
     let (mut right, mut squares, mut total, mut count) = (Terms::zeros(), 0.0, 0.0, 0);
-    for down in -RADIUS..=RADIUS {
-        for across in -RADIUS..=RADIUS {
+    for down in -window.radius..=window.radius {
+        for across in -window.radius..=window.radius {
             let place = column.checked_add_signed(across).zip(row.checked_add_signed(down));
             let Some((c, r)) = place.filter(|&(c, r)| c < size.width && r < size.height) else { continue };
             let other = size.index(c, r);
@@ -97,10 +163,10 @@ fn slopes(
             let offset = Vector3::from(points.get(other).map(f64::from)) - centre;
             let [a, b, w] = axes.map(|axis| axis.dot(&offset));
             let far = a * a + b * b;
-            if w.abs() > LARGEST_SLOPE * far.sqrt() + LARGEST_OFFSET {
+            if w.abs() > LARGEST_SLOPE * far.sqrt() + window.offset {
                 continue;
             }
-            let weight = (-0.5 * far / (SIGMA * SIGMA)).exp();
+            let weight = (-0.5 * far / (window.sigma * window.sigma)).exp();
             let terms = Terms::from([1.0, a, b, a * a, a * b, b * b, a * a * a, a * a * b, a * b * b, b * b * b]);
             gram.syger(weight, &terms, &terms, 1.0);
             right.axpy(weight * w, &terms, 1.0);
@@ -120,8 +186,10 @@ fn slopes(
     let solution = factor.solve(&right);
     let residual = ((squares - right.dot(&solution)).max(0.0) / total).sqrt();
     let variance = |k: usize| factor.solve(&Terms::ith(k, 1.0))[k];
-    // A residual of wrong shape does not average out: the slopes err by no less than the residual itself.
-    let error = residual * (variance(1) + variance(2)).sqrt().max(1.0);
+    // Noise averages out. A residual of wrong shape does not: the slopes err by no less than the residual itself.
+    let spread = variance(1) + variance(2);
+    let noise = residual.min(window.noise);
+    let error = (noise * noise * spread + (residual * residual - noise * noise) * spread.max(1.0)).sqrt();
     (error.is_finite() && solution.norm().is_finite()).then_some(([solution[1], solution[2]], error))
 }
 
