@@ -10,7 +10,7 @@ use crate::report::Status;
 /// below 2; the one wrong one had 7.
 const LARGEST_SIGMA: f64 = 5.0;
 /// Share of the colours' spread that a trusted pose may leave unexplained. Renders leave 0.01 to 0.1.
-const LARGEST_UNEXPLAINED: f64 = 0.5;
+const LARGEST_UNEXPLAINED: f64 = 0.3;
 /// Share of the points within the robust scale that a trusted pose has at least.
 const FEWEST_INLIERS: f64 = 0.4;
 
