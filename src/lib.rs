@@ -10,13 +10,14 @@
 //! | [`light`](Light) | the image model, the natural lights, the fit of a light | Eq. 2, 3, 5 |
 //! | `shape/shading` ([`ShadingSolver`]) | a normal for each pixel, with a prior; `exposure` its one global unknown | Eq. 6 to 9 |
 //! | `shape/surface` ([`Integrator`]) | heights from normals on a mask; `poisson`, `cosine` its solvers | Harker and O'Leary's step |
+//! | `shape/relief` | the image surface's heights as a whole, for light that a pixel alone cannot read | beyond the paper |
 //! | `shape/refine` ([`Refiner`]) | the depth view's own normals and depth, through `heights` | Eq. 17 to 19 |
 //! | `pose/search` ([`Search`]) | where to start when nothing is known: all rotations, translations and scales, coarsely | before Algorithm 1 |
 //! | `pose/photometric` ([`Photometric`]) | the pose straight from the colours, the light projected out | beyond the paper |
 //! | `pose/icp`, `pose/ransac` ([`Icp`], [`ransac`]) | the pose from both surfaces | Eq. 12 to 14 |
 //! | `pose/similarity`, `pose/angles` ([`Similarity`], [`Angles`]) | s, R, t and the angles | Eq. 15, 16, 20 |
 //! | `pose/correspondence` ([`Correspondences`]) | which depth point is which pixel | the 1-pixel rule |
-//! | `estimator` ([`Estimator`]) | one iteration, its merit, its end | Eq. 1, Algorithm 1 |
+//! | `estimator` ([`Estimator`]) | one iteration, its merit, its end; `opening` (search, candidates, rivals) before it | Eq. 1, Algorithm 1 |
 //! | [`scenes`] | surfaces, lights and a renderer with a known answer | the experiments |
 //! | `wasm` | bindings without mathematics, wasm32 only | |
 //!

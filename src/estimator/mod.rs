@@ -3,6 +3,9 @@
 //! light (Eq. 2) -> shading (Eq. 6 to 9) -> surface -> registration (Eq. 12 to 16) -> refinement (Eq. 17 to 19),
 //! until the rotation settles. After each iteration the merit l + f + g of the new solution is compared with that of
 //! the last one over the same depth points; a worse iteration is taken back, and the next one goes half the way.
+//!
+//! Where nothing is known of the pose, [`opening`] comes first: a search in slices, then registrations of its best candidates
+//! by their colours. The joint registration has a cost of its own, so the merit never takes back a pose that it moves.
 
 mod anywhere;
 mod gauge;

@@ -38,6 +38,7 @@ const MOST_RIVALS: usize = 5;
 const SEARCH_SHARE: f64 = 0.5;
 
 /// Where the opening stands.
+#[expect(clippy::large_enum_variant, reason = "one value at a time, moved once")]
 pub enum Look {
     /// Not done; the share of the work that is, and what is being done.
     Ongoing(f64, &'static str),

@@ -1,4 +1,4 @@
-//! The image surface from shading as a whole: heights with integrability built in, from several starts (issue of poor light).
+//! The image surface from shading as a whole: heights with integrability built in, from several starts.
 //!
 //! Under natural light three colours hardly tell one normal from another, but the normals of one surface are not free. The
 //! heights of [`HeightSolver`] are solved at falling robust scales from several starts: the surface integrated

@@ -1,0 +1,112 @@
+//! Pose from anywhere: nothing is known but the two views.
+
+use bimodal_stereo::scenes::{Relief, Sample, SampleRequest, Scene, light, surface};
+use bimodal_stereo::{Angles, ColourSamples, Estimator, LightSource, Options, Size, Stage, Status, StepReport};
+
+fn scene(name: &str, light_name: &str) -> Sample {
+    let request = SampleRequest {
+        size: Size { width: 64, height: 64 },
+        light: light(light_name).unwrap(),
+        rotation: Angles { alpha: 10.0, beta: 50.0, gamma: 15.0 }.rotation(),
+        scale: 1.1,
+        overlap: 0.7,
+        noise: 0.01,
+        ..Default::default()
+    };
+    Scene::new(&surface(name).unwrap()).unwrap().sample(&request).unwrap()
+}
+
+fn run(sample: &Sample, gain: f32, options: Options) -> StepReport {
+    let mut image = sample.colour_image();
+    if let ColourSamples::RgbLinear(colours) = &mut image.samples {
+        colours.iter_mut().for_each(|value| *value *= gain);
+    }
+    let mut estimator = Estimator::new(image, &sample.depth_map(), options).unwrap();
+    while estimator.report().status == Status::Running {
+        estimator.step();
+    }
+    estimator.report().clone()
+}
+
+#[test]
+fn nothing_known_is_enough() {
+    for (name, light) in [("bust", "window"), ("bust", "colourful"), ("ripples", "window")] {
+        let sample = scene(name, light);
+        let report = run(&sample, 1.0, Options::default());
+        let error = report.pose.degrees_to(&sample.pose);
+        assert_eq!(report.status, Status::Converged, "{name} {light}: {report:?}");
+        assert!(error < 1.0, "{name} {light}: {error}");
+        assert!((report.pose.scale / sample.pose.scale - 1.0).abs() < 0.02, "{name} {light}: {}", report.pose.scale);
+        let sigma = report.uncertainty.unwrap().rotation_degrees;
+        assert!(error < 4.0 * sigma.iter().map(|s| s * s).sum::<f64>().sqrt(), "{name} {light}: {error} {sigma:?}");
+    }
+}
+
+#[test]
+fn a_known_light_is_used() {
+    let sample = scene("bust", "window");
+    let known = Options { light: LightSource::Known(sample.light), ..Options::default() };
+    let report = run(&sample, 1.0, known);
+    assert_eq!(report.status, Status::Converged);
+    assert!(report.pose.degrees_to(&sample.pose) < 0.5, "{}", report.pose.degrees_to(&sample.pose));
+}
+
+#[test]
+fn the_same_input_gives_the_same_pose_and_exposure_does_not_matter() {
+    let sample = scene("bust", "overcast");
+    let reports = [1.0, 1.0, 0.1, 10.0].map(|gain| run(&sample, gain, Options::default()));
+    assert_eq!(reports[0], reports[1]);
+    for other in &reports[2..] {
+        let off = other.pose.degrees_to(&reports[0].pose);
+        assert!(off < 0.01, "{off}");
+    }
+}
+
+#[test]
+fn the_search_comes_in_slices_and_says_how_far_it_is() {
+    let sample = scene("bust", "window");
+    let mut estimator = Estimator::new(sample.colour_image(), &sample.depth_map(), Options::default()).unwrap();
+    let (mut slices, mut last) = (0, -1.0);
+    while estimator.is_searching() {
+        let report = estimator.step();
+        assert_eq!((report.stage, report.iteration, report.status), (Stage::Search, 0, Status::Running));
+        let message = report.message.clone().expect("progress");
+        let share: f64 = message.split(' ').next().and_then(|number| number.parse().ok()).expect("a percentage");
+        assert!((0.0..=100.0).contains(&share), "{message}");
+        assert!(share >= last || share >= 50.0, "{last} then {message}");
+        (slices, last) = (slices + 1, share);
+    }
+    assert!(slices > 50 && last == 100.0, "{slices} {last}");
+    let report = estimator.step();
+    assert_eq!((report.stage, report.iteration), (Stage::Refinement, 1));
+}
+
+/// A ball looks the same from everywhere, and one colour says nothing: no pose may be called found.
+#[test]
+fn what_cannot_be_known_is_not_claimed() {
+    let ball: Vec<f32> = (0..256 * 256)
+        .map(|index| {
+            let [x, y] = [(index % 256) as f32 - 127.5, (index / 256) as f32 - 127.5];
+            (100.0_f32.powi(2) - x * x - y * y).max(0.0).sqrt()
+        })
+        .collect();
+    let request = SampleRequest {
+        size: Size { width: 64, height: 64 },
+        light: light("window").unwrap(),
+        rotation: Angles { beta: 40.0, ..Angles::default() }.rotation(),
+        noise: 0.01,
+        ..Default::default()
+    };
+    let ball = Scene::new(&Relief::new(256, 256, ball).unwrap()).unwrap().sample(&request).unwrap();
+    let report = run(&ball, 1.0, Options::default());
+    assert!(matches!(report.status, Status::Lost | Status::Ambiguous), "{report:?}");
+    assert!(report.message.is_some());
+
+    let mut grey = scene("bust", "window").colour_image();
+    grey.samples = ColourSamples::RgbLinear(vec![0.5; 3 * 64 * 64]);
+    let mut estimator = Estimator::new(grey, &ball.depth_map(), Options::default()).unwrap();
+    while estimator.report().status == Status::Running {
+        estimator.step();
+    }
+    assert_eq!(estimator.report().status, Status::Lost, "{:?}", estimator.report());
+}
