@@ -95,7 +95,11 @@ impl Estimator {
         if self.image.camera.is_orthographic() {
             self.solution.pose.translation.z = depth;
         }
-        (self.solution.light, self.solution.exposure) = (found.light, found.exposure);
+        self.solution.light = found.light;
+        // Normals that noise has flattened mislead about the exposure; the stages find it anew.
+        if self.joint.as_ref().is_none_or(|joint| !joint.is_coarse(&self.options.light)) {
+            self.solution.exposure = found.exposure;
+        }
         self.report.uncertainty = Some(found.uncertainty.clone());
     }
 

@@ -26,6 +26,9 @@ const UNEXPLAINED: f64 = 0.05;
 const SAME_END: f64 = 3.0;
 /// An end reached so often needs no more witnesses: candidates next to it are passed over.
 const WITNESSES: u32 = 2;
+/// Change of the scale (natural logarithm) beyond which a registration has collapsed: shrunk onto a few pixels, a cloud is easily
+/// explained. Candidates lie within 0.1 of a right scale.
+const LARGEST_GROWTH: f64 = 0.3;
 /// Candidates nearer than this to such an end would only reach it again, degrees.
 const CATCHMENT: f64 = 15.0;
 /// A rival leaves a noise of at most so many times the winner's ..
@@ -122,8 +125,10 @@ impl Opening {
         };
         self.begun = matches!(outcome, Ok(None));
         if !self.begun {
+            let growth = |report: &PhotometricReport| (report.pose.scale / candidates[self.next].pose.scale).ln().abs();
+            let found = outcome.ok().flatten().filter(|report| growth(report) < LARGEST_GROWTH);
             (self.next, self.tried) = (self.next + 1, self.tried + 1);
-            if let Ok(Some(report)) = outcome {
+            if let Some(report) = found {
                 self.enter(report);
             }
         }
