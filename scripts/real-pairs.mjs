@@ -53,7 +53,7 @@ const degrees = ([a, , , , b, , , , c]) => (Math.acos(Math.min(1, Math.max(-1, (
 
 /** Runs the loop to its end. Both frames are metric, so that the pose's translation is in metres. */
 export async function runPair(Estimator, { image, depth }, options = {}) {
-  const estimator = new Estimator(image, depth, { light: "estimate", start: "identity", ...options });
+  const estimator = new Estimator(image, depth, { light: "estimate", start: "identity", registration: "icp", shading: "pixel", ...options });
   try {
     const before = estimator.report;
     const after = await estimator.run();

@@ -107,6 +107,13 @@ impl ColourView {
         Ok(Self { size, camera, mask: usable, log, transfer })
     }
 
+    /// Mean of log S over the mask and the three channels: what a change of exposure shifts.
+    #[must_use]
+    pub fn log_mean(&self) -> f64 {
+        let inside = || self.log.iter().flatten().filter(|log| log.is_finite()).map(|&log| f64::from(log));
+        inside().sum::<f64>() / inside().count().max(1) as f64
+    }
+
     /// Standard deviation of log S over the mask, the three channels together (root of the sum of their variances).
     #[must_use]
     pub fn log_spread(&self) -> f64 {

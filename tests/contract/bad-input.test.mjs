@@ -110,9 +110,6 @@ describe("after init", () => {
   });
 
   test("what belongs to later versions", async () => {
-    refused(withOptions({ start: "search" }), "unsupported", "options.start");
-    refused(withOptions({ registration: "joint" }), "unsupported", "options.registration");
-    refused(withOptions({ shading: "surface" }), "unsupported", "options.shading");
     refused(() => Estimator.restore(new Uint8Array(4)), "unsupported", "restore");
     const made = estimator();
     refused(() => made.save(), "unsupported", "save");

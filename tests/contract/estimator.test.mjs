@@ -130,10 +130,10 @@ test("colours may come in every kind of array", () => {
   const levels = (most) => Array.from({ length: 4 * PIXELS }, (_, i) =>
     i % 4 === 3 ? most : Math.round(Math.min(1, image.data[3 * (i >> 2) + (i % 4)] * 0.9) * most));
   for (const data of [new Uint8Array(levels(255)), new Uint8ClampedArray(levels(255)), new Uint16Array(levels(65535))]) {
-    const made = new Estimator({ ...image, data, transfer: "linear" }, depth, { light });
+    const made = new Estimator({ ...image, data, transfer: "linear" }, depth, { light, start: "identity" });
     assert.equal(made.step().iteration, 1);
   }
-  const integers = new Estimator(image, { ...depth, data: new Uint16Array(depth.data.map((z) => z * 100)), unit: 0.01 }, { light });
+  const integers = new Estimator(image, { ...depth, data: new Uint16Array(depth.data.map((z) => z * 100)), unit: 0.01 }, { light, start: "identity" });
   assert.equal(integers.step().iteration, 1);
 });
 

@@ -4,6 +4,8 @@ import { test as base, expect, type Locator, type Page } from "@playwright/test"
 
 export { expect };
 
+const PAPER = "lighting=known&start=identity&registration=icp&shading=pixel";
+
 export class Lab {
   readonly page: Page;
   readonly complaints: string[] = [];
@@ -16,7 +18,13 @@ export class Lab {
     });
   }
 
+  /** The paper's own loop, whose steps are iterations from the start, under other settings. */
   async open(settings = ""): Promise<void> {
+    await this.visit([settings, PAPER].filter(Boolean).join("&"));
+  }
+
+  /** The page as a visitor finds it, under some settings. */
+  async visit(settings = ""): Promise<void> {
     await this.page.goto(`./${settings ? `#${settings}` : ""}`);
     await this.reaches("ready");
   }

@@ -152,3 +152,14 @@ test("a hint unfolds at a tap", async ({ lab, page }) => {
   await page.getByRole("button", { name: 'What is "Size"?' }).click();
   await expect(hint).toBeVisible();
 });
+
+test("nothing known: the search comes first, says how far it is, and the loop converges", async ({ lab, page }) => {
+  await lab.visit("light=window&beta=50&gamma=15&overlap=0.7&noise=0.01");
+  const search = page.getByRole("button", { name: /^search/ });
+  await page.getByRole("button", { name: "Play" }).click();
+  await expect(search).toHaveAttribute("data-lit", "");
+  await expect(search).toContainText(/\d+ %/);
+  await expect(page.locator("#status")).toHaveAttribute("data-state", "converged", { timeout: 30_000 });
+  expect(await lab.errorDegrees()).toBeLessThanOrEqual(1);
+  await expect(page.locator("#status")).toHaveAttribute("data-tone", "good");
+});

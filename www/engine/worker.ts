@@ -96,14 +96,20 @@ function reset({ options }: Calls["reset"]["request"]): Frame {
   return frame(current, [current.estimator.report]);
 }
 
+/** Least time spent on one frame of the search, in milliseconds. */
+const SEARCHING = 30;
+
 function advance({ by, milliseconds }: Calls["advance"]["request"]): Frame {
   const current = opened();
   const { estimator } = current;
   if (by === "stage") return frame(current, [estimator.stepStage()]);
-  const until = performance.now() + milliseconds;
+  const began = performance.now();
   const reports: StepReport[] = [];
-  do reports.push(estimator.step());
-  while (performance.now() < until && estimator.report.status === "running");
+  // A slice of the search is too little to look at: some of them make a frame, and the last one tells it.
+  do {
+    if (reports.at(-1)?.stage === "search") reports.pop();
+    reports.push(estimator.step());
+  } while (performance.now() - began < (reports.at(-1)?.stage === "search" ? SEARCHING : milliseconds) && estimator.report.status === "running");
   return frame(current, reports);
 }
 

@@ -65,7 +65,7 @@ const distortion = (side: "colour" | "depth"): ListField => ({
   kind: "list", key: `${side}.distortion`, label: "distortion", initial: "", empty: "none", group: side,
   hint: "Five numbers in OpenCV's order: k1 k2 p1 p2 k3.", path: `${side === "colour" ? "image" : "depth"}.camera.distortion`,
 });
-const ESTIMATED = "Estimated along with the pose. From a start that is far off the pose is then often not found.";
+const ESTIMATED = "Estimated along with the pose.";
 const near = (settings: Settings) => settings.start === "near";
 
 export const fields: readonly Field[] = [
@@ -87,19 +87,21 @@ export const fields: readonly Field[] = [
   { kind: "number", key: "unit", label: "Unit", hint: "Metres per stored number; pixels without a camera.", initial: null, step: 0.0001, group: "depth", path: "depth.unit" },
   lens("depth", "fx"), lens("depth", "fy"), lens("depth", "cx"), lens("depth", "cy"), distortion("depth"),
 
-  { kind: "choice", key: "lighting", label: "Light", initial: "known", group: "method", path: "options.light",
+  { kind: "choice", key: "lighting", label: "Light", initial: "estimate", group: "method", path: "options.light",
     when: (_, source) => source === "sample",
     remark: (value) => (value === "known" ? "The method is told the sample's own light, up to its exposure." : ESTIMATED),
     choices: [["known", "known"], ["estimate", "estimate"]] },
   { kind: "list", key: "coefficients", label: "Light", hint: "27 numbers where the light is known: nine for red, for green, for blue.", initial: "", empty: "estimated", group: "method", path: "options.light",
     when: (_, source) => source === "files", remark: (value) => (value === "" ? ESTIMATED : "") },
-  { kind: "choice", key: "start", label: "Start", initial: "identity", group: "method", path: "options.start",
-    hint: "Identity: both views coincide. Near: the angles below.", choices: [["identity", "identity"], ["near", "near"]] },
+  { kind: "choice", key: "start", label: "Start", initial: "search", group: "method", path: "options.start",
+    hint: "Search: everywhere. Identity: both views coincide. Near: the angles below.", choices: [["search", "search"], ["identity", "identity"], ["near", "near"]] },
   { ...angle("start.alpha", "Start α", 0, "method", "options.start.angles.alpha"), when: near },
   { ...angle("start.beta", "Start β", 12, "method", "options.start.angles.beta"), when: near },
   { ...angle("start.gamma", "Start γ", 0, "method", "options.start.angles.gamma"), when: near },
-  { kind: "choice", key: "registration", label: "Registration", initial: "icp", group: "method", path: "options.registration",
-    hint: "ICP and RANSAC as in the paper, or keep the start.", choices: [["icp", "ICP"], ["fixed", "keep start"]] },
+  { kind: "choice", key: "registration", label: "Registration", initial: "joint", group: "method", path: "options.registration",
+    hint: "Joint: pose and light straight from the colours. ICP and RANSAC: as in the paper. Or keep the start.", choices: [["joint", "joint"], ["icp", "ICP"], ["fixed", "keep start"]] },
+  { kind: "choice", key: "shading", label: "Shading", initial: "surface", group: "method", path: "options.shading",
+    hint: "The surface as a whole, or each pixel on its own as in the paper.", choices: [["surface", "surface"], ["pixel", "pixel"]] },
   { kind: "number", key: "scale", label: "Scale", hint: "A number holds it.", empty: "free", initial: null, step: 0.01, group: "method", path: "options.scale" },
   { kind: "flag", key: "trim", label: "Trim", hint: "Leave out flying pixels and background inside the mask.", initial: true, group: "method", path: "options.trim" },
 
@@ -133,6 +135,9 @@ function present<T extends object>(entries: { [K in keyof T]: T[K] | undefined }
   }
   return kept;
 }
+
+/** The word that is set; the first where it is none of them. */
+const one = <T extends string>(value: unknown, words: readonly [T, ...T[]]): T => words.find((word) => word === value) ?? words[0];
 
 const angles = (settings: Settings, prefix: string) => ({
   alpha: number(settings, `${prefix}alpha`) ?? 0,
@@ -175,8 +180,9 @@ export function runOptions(settings: Settings, source: Origin): LabOptions {
   });
   return {
     light: lightOption(settings, source),
-    start: near(settings) ? { angles: angles(settings, "start.") } : "identity",
-    registration: settings.registration === "fixed" ? "fixed" : "icp",
+    start: near(settings) ? { angles: angles(settings, "start.") } : settings.start === "identity" ? "identity" : "search",
+    registration: one(settings.registration, ["joint", "icp", "fixed"]),
+    shading: one(settings.shading, ["surface", "pixel"]),
     scale: number(settings, "scale") ?? "free",
     trim: settings.trim === true,
     lambda,

@@ -1,4 +1,4 @@
-/** The five stages of one iteration, in words. */
+/** The opening search and the five stages of one iteration, in words. */
 
 export interface StageText {
   name: string;
@@ -9,6 +9,14 @@ export interface StageText {
 }
 
 export const stages: readonly StageText[] = [
+  {
+    name: "search",
+    title: "Search",
+    equation: "maximise √N ln(spread / noise) over R, s, t",
+    words:
+      "Where nothing is known of the pose, rotations from all over are tried on a coarse grid, every shift of each at once by a Fourier transform. The best candidates are registered by their colours; the one that leaves the least noise opens the loop, and those that explain nearly as much are reported as its rivals.",
+    source: "Before Algorithm 1; not in the paper",
+  },
   {
     name: "light",
     title: "Light",
@@ -38,7 +46,7 @@ export const stages: readonly StageText[] = [
     title: "Registration",
     equation: "minimise Σ |P − (s R P_R + t)|²",
     words:
-      "The depth map's points are moved onto the image's surface: nearest neighbours first, then a robust fit of twelve linear parameters, from which the scale s, the rotation R and the shift t are taken apart.",
+      "As in the paper, the depth map's points are moved onto the image's surface: nearest neighbours first, then a robust fit of twelve linear parameters, from which the scale s, the rotation R and the shift t are taken apart. The joint registration skips the surface: it turns the depth map until its normals predict the image's colours, the light following along.",
     source: "Equations 12 to 16",
   },
   {

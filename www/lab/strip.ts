@@ -36,7 +36,8 @@ export class Strip {
     for (const [name, { button, time }] of this.#buttons) {
       const spent = report.milliseconds[name];
       button.toggleAttribute("data-lit", name === report.stage && begun);
-      if (spent !== undefined) time.textContent = `${decimals(spent, spent < 10 ? 1 : 0)} ms`;
+      if (name === "search" && report.stage === name) time.textContent = /^\d+ %/.exec(report.message ?? "")?.[0] ?? "";
+      else if (spent !== undefined) time.textContent = `${decimals(spent, spent < 10 ? 1 : 0)} ms`;
       else if (!begun) time.textContent = "";
     }
     this.#count.textContent = String(report.iteration);
@@ -46,8 +47,9 @@ export class Strip {
     this.#verdict.textContent = end?.words ?? "";
   }
 
-  /** A stage is under way: the one after the last. */
+  /** A stage is under way: the one after the last; a search is many stages. */
   run(): void {
+    if (this.#last === "search") return;
     const names = [...this.#buttons.keys()];
     const next = names[(names.indexOf(this.#last) + 1) % names.length];
     for (const [name, { button }] of this.#buttons) button.toggleAttribute("data-lit", name === next);

@@ -167,8 +167,12 @@ impl Photometric {
         start.validate("start")?;
         let coarsest = if problem.light.is_some() { COARSEST } else { COARSEST_UNKNOWN };
         let level = options.first_level.min(coarsest);
-        let light = problem.light.copied().unwrap_or_else(|| problem.prior.mean());
-        self.state = State { pose: *start, light, exposure: 0.0 };
+        // From the image's own brightness, so that a change of exposure changes nothing that follows.
+        let brightness = problem.image.log_mean();
+        self.state = match problem.light {
+            Some(light) => State { pose: *start, light: *light, exposure: brightness },
+            None => State { pose: *start, light: problem.prior.mean().exposed(brightness), exposure: 0.0 },
+        };
         (self.phase, self.rounds, self.iterations) = (Phase::Annealing { level, fine_rounds: 0 }, 0, 0);
         self.most_rounds = options.most_rounds.max(1);
         let frame = self.look(problem, level)?;

@@ -1,0 +1,48 @@
+// Nothing known, through the built package: the search opens the loop in slices, and the pose is found.
+import assert from "node:assert/strict";
+import { before, describe, test } from "node:test";
+import { Estimator, init, sample } from "./support.mjs";
+
+const REQUEST = { surface: "bust", light: "window", size: 64, angles: { alpha: 10, beta: 50, gamma: 15 }, overlap: 0.7, noise: 0.01 };
+const degrees = (a, b) => (2 * Math.asin(Math.hypot(...a.map((value, i) => value - b[i])) / Math.SQRT2 / 2) * 180) / Math.PI;
+
+/** Runs to the end; every report on the way. */
+function reports({ image, depth }, gain = 1) {
+  const estimator = new Estimator({ ...image, data: image.data.map((value) => gain * value) }, depth);
+  const seen = [];
+  do seen.push(estimator.step());
+  while (seen.at(-1).status === "running");
+  estimator.free();
+  return seen;
+}
+
+before(() => init());
+
+describe("opening", () => {
+  test("nothing known: slices of a search, then a converged loop", () => {
+    const pair = sample(REQUEST);
+    const seen = reports(pair);
+    const search = seen.filter(({ stage }) => stage === "search");
+    assert.ok(search.length > 50 && search.every(({ iteration, status }) => iteration === 0 && status === "running"));
+    assert.match(search[0].message, /^\d+ %: /);
+    assert.match(search.at(-1).message, /^100 %: /);
+    const last = seen.at(-1);
+    assert.equal(last.status, "converged", last.message);
+    assert.equal(last.rivals, undefined);
+    assert.ok(degrees(last.pose.rotation, pair.pose.rotation) < 1);
+    assert.equal(last.uncertainty.rotationDegrees.length, 3);
+  });
+
+  test("the exposure changes nothing", () => {
+    const pair = sample(REQUEST);
+    const [dark, bright] = [0.1, 10].map((gain) => reports(pair, gain).at(-1).pose.rotation);
+    assert.ok(degrees(dark, bright) < 0.01, `${degrees(dark, bright)}`);
+  });
+
+  test("one colour everywhere is no answer and no exception", () => {
+    const { image, depth } = sample(REQUEST);
+    const last = reports({ image: { ...image, data: image.data.fill(0.5) }, depth }).at(-1);
+    assert.equal(last.status, "lost");
+    assert.ok(last.message);
+  });
+});
