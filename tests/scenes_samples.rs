@@ -175,7 +175,7 @@ fn bad_requests_are_refused_by_name() {
         ("size", ErrorKind::Size, SampleRequest { size: square(1025), ..plain() }),
         ("light", ErrorKind::Range, SampleRequest { light: Light([[f64::NAN; 9]; 3]), ..plain() }),
         ("pose.rotation", ErrorKind::Range, SampleRequest { rotation: Matrix3::zeros(), ..plain() }),
-        ("pose.scale", ErrorKind::Range, SampleRequest { scale: 0.0, ..plain() }),
+        ("scale", ErrorKind::Range, SampleRequest { scale: 0.0, ..plain() }),
         ("overlap", ErrorKind::Range, SampleRequest { overlap: 0.0, ..plain() }),
         ("overlap", ErrorKind::Range, SampleRequest { overlap: 1.1, ..plain() }),
         ("noise", ErrorKind::Range, SampleRequest { noise: -1.0, ..plain() }),
