@@ -63,7 +63,12 @@ impl Light {
     /// log S of the three channels for one normal.
     #[must_use]
     pub fn shade(&self, normal: [f64; 3]) -> [f64; 3] {
-        let basis = basis(normal);
+        self.of_basis(&basis(normal))
+    }
+
+    /// The same for a normal whose harmonics are there already.
+    #[must_use]
+    pub(crate) fn of_basis(&self, basis: &[f64; HARMONICS]) -> [f64; 3] {
         self.0.map(|channel| channel.iter().zip(basis).map(|(l, b)| l * b).sum())
     }
 }

@@ -7,7 +7,7 @@
 //! then y = -D^-1 (d + E^T x). A known light has one unknown only, the exposure: it takes the first place of y, and
 //! K = -1 in all channels.
 
-use nalgebra::{Cholesky, Const, SMatrix};
+use nalgebra::{Cholesky, Const, SMatrix, Vector3};
 
 use super::residual::Linear;
 use crate::light::{COEFFICIENTS, CoefficientMatrix, Coefficients, HARMONICS, LightPrior};
@@ -18,18 +18,24 @@ type Cross = SMatrix<f64, UNKNOWNS, COEFFICIENTS>;
 /// Relative damping of unknowns without any information, so that the factorisation exists: rounding of 10^6 terms.
 const LEAST_DAMPING: f64 = 1e-12;
 
-/// Sums over points.
+/// Sums over points: those of the light, and those that a pose adds.
 pub(super) struct Equations {
+    light: LightEquations,
     pose: Square,
-    heard: Cross,
+    /// C, where the pose listens by other rows than its Jacobian's.
+    heard: Option<Cross>,
     cross: Cross,
+    pose_slope: Row,
+}
+
+/// Sums over points for the light alone: D and d.
+pub(super) struct LightEquations {
     /// One channel's block of D: all three have the same weights.
     gram: SMatrix<f64, HARMONICS, HARMONICS>,
     precision: CoefficientMatrix,
-    pose_slope: Row,
-    light_slope: Coefficients,
+    slope: Coefficients,
     /// Whether only the exposure is unknown of the light.
-    light_is_known: bool,
+    is_known: bool,
 }
 
 /// The pose's own system after the elimination of the light.
@@ -46,84 +52,109 @@ pub(super) struct Reduced {
     light_is_known: bool,
 }
 
-impl Equations {
+impl LightEquations {
     pub fn new(light_is_known: bool) -> Self {
         Self {
-            pose: Square::zeros(),
-            heard: Cross::zeros(),
-            cross: Cross::zeros(),
             gram: SMatrix::zeros(),
             precision: CoefficientMatrix::zeros(),
-            pose_slope: Row::zeros(),
-            light_slope: Coefficients::zeros(),
-            light_is_known,
+            slope: Coefficients::zeros(),
+            is_known: light_is_known,
         }
     }
 
-    /// Enters a point.
-    pub fn add(&mut self, point: &Linear, weight: f64) {
-        for channel in 0..3 {
-            let heard = weight * point.listener[channel];
-            self.pose.ger(1.0, &heard, &point.jacobian[channel], 1.0);
-            self.pose_slope.axpy(point.residual[channel], &heard, 1.0);
-            let moved = weight * point.jacobian[channel];
-            if self.light_is_known {
-                self.heard.column_mut(0).axpy(-1.0, &heard, 1.0);
-                self.cross.column_mut(0).axpy(-1.0, &moved, 1.0);
-                self.light_slope[0] -= weight * point.residual[channel];
-                continue;
-            }
-            for (k, basis) in point.basis.iter().enumerate() {
-                let place = channel * HARMONICS + k;
-                self.heard.column_mut(place).axpy(-basis, &heard, 1.0);
-                self.cross.column_mut(place).axpy(-basis, &moved, 1.0);
-                self.light_slope[place] -= weight * basis * point.residual[channel];
-            }
-        }
-        if self.light_is_known {
+    /// Enters a point by the harmonics of its normal.
+    pub fn add(&mut self, basis: &[f64; HARMONICS], residual: &Vector3<f64>, weight: f64) {
+        if self.is_known {
             self.gram[(0, 0)] += 3.0 * weight;
-        } else {
-            let basis = SMatrix::<f64, HARMONICS, 1>::from(point.basis);
-            self.gram.syger(weight, &basis, &basis, 1.0);
+            self.slope[0] -= weight * residual.sum();
+            return;
+        }
+        for (k, value) in basis.iter().enumerate() {
+            let share = weight * value;
+            (k..HARMONICS).for_each(|row| self.gram[(row, k)] += share * basis[row]);
+            (0..3).for_each(|channel| self.slope[channel * HARMONICS + k] -= share * residual[channel]);
         }
     }
 
     /// Enters the prior of an unknown light; `weight` is its share against squared residuals, `off` the light less the mean.
     pub fn add_prior(&mut self, prior: &LightPrior, weight: f64, off: &Coefficients) {
-        if !self.light_is_known {
+        if !self.is_known {
             self.precision += prior.precision() * weight;
-            self.light_slope += prior.precision() * off * weight;
+            self.slope += prior.precision() * off * weight;
         }
+    }
+
+    /// The light's step; `None` where the points do not determine it.
+    pub fn step(&self) -> Option<Coefficients> {
+        self.factor().map(|factor| -factor.solve(&self.slope))
+    }
+
+    fn factor(&self) -> Option<Cholesky<f64, Const<COEFFICIENTS>>> {
+        let mut light = self.precision;
+        if self.is_known {
+            light.fill_with_identity();
+            light[(0, 0)] = self.gram[(0, 0)];
+            return light.cholesky();
+        }
+        for channel in 0..3 {
+            for row in 0..HARMONICS {
+                for column in 0..HARMONICS {
+                    let value = self.gram[(row.max(column), row.min(column))];
+                    light[(channel * HARMONICS + row, channel * HARMONICS + column)] += value;
+                }
+            }
+        }
+        let most = light.diagonal().max();
+        (0..COEFFICIENTS).for_each(|k| light[(k, k)] += LEAST_DAMPING * most);
+        light.cholesky()
+    }
+}
+
+impl Equations {
+    /// `listens`: the pose listens by rows of its own.
+    pub fn new(light_is_known: bool, listens: bool) -> Self {
+        Self {
+            light: LightEquations::new(light_is_known),
+            pose: Square::zeros(),
+            heard: listens.then(Cross::zeros),
+            cross: Cross::zeros(),
+            pose_slope: Row::zeros(),
+        }
+    }
+
+    /// Enters a point.
+    pub fn add(&mut self, point: &Linear, weight: f64) {
+        self.light.add(&point.basis, &point.residual, weight);
+        for channel in 0..3 {
+            let heard = weight * point.listener[channel];
+            self.pose.ger(1.0, &heard, &point.jacobian[channel], 1.0);
+            self.pose_slope.axpy(point.residual[channel], &heard, 1.0);
+            let known = self.light.is_known;
+            enter(&mut self.cross, channel, &(weight * point.jacobian[channel]), &point.basis, known);
+            if let Some(sum) = &mut self.heard {
+                enter(sum, channel, &heard, &point.basis, known);
+            }
+        }
+    }
+
+    /// Enters the prior of an unknown light, see [`LightEquations::add_prior`].
+    pub fn add_prior(&mut self, prior: &LightPrior, weight: f64, off: &Coefficients) {
+        self.light.add_prior(prior, weight, off);
     }
 
     /// Eliminates the light; `None` where the points do not determine it.
     pub fn reduce(&self) -> Option<Reduced> {
-        let mut light = self.precision;
-        if self.light_is_known {
-            light.fill_with_identity();
-            light[(0, 0)] = self.gram[(0, 0)];
-        } else {
-            for channel in 0..3 {
-                for row in 0..HARMONICS {
-                    for column in 0..HARMONICS {
-                        let value = self.gram[(row.max(column), row.min(column))];
-                        light[(channel * HARMONICS + row, channel * HARMONICS + column)] += value;
-                    }
-                }
-            }
-            let most = light.diagonal().max();
-            (0..COEFFICIENTS).for_each(|k| light[(k, k)] += LEAST_DAMPING * most);
-        }
-        let factor: Cholesky<f64, Const<COEFFICIENTS>> = light.cholesky()?;
+        let factor = self.light.factor()?;
         let follow = factor.solve(&self.cross.transpose());
-        let solved = factor.solve(&self.light_slope);
+        let solved = factor.solve(&self.light.slope);
+        let heard = self.heard.as_ref().unwrap_or(&self.cross);
         Some(Reduced {
-            matrix: self.pose - self.heard * follow,
-            slope: self.pose_slope - self.heard * solved,
-            heard: factor.solve(&self.heard.transpose()).transpose(),
+            matrix: self.pose - heard * follow,
+            slope: self.pose_slope - heard * solved,
+            heard: if self.heard.is_some() { factor.solve(&heard.transpose()).transpose() } else { follow.transpose() },
             follow,
             light: solved,
-            light_is_known: self.light_is_known,
+            light_is_known: self.light.is_known,
         })
     }
 }
@@ -145,11 +176,6 @@ impl Reduced {
         (pose.norm().is_finite() && light.norm().is_finite()).then_some((pose, light))
     }
 
-    /// The light's step while the pose stays.
-    pub fn light_step(&self) -> Coefficients {
-        -self.light
-    }
-
     /// What a point says about the pose once the light has followed: sum over channels of (Z - C D^-1 K^T) r.
     pub fn score(&self, point: &Linear) -> Row {
         (0..3).fold(Row::zeros(), |mut sum, channel| {
@@ -164,6 +190,17 @@ impl Reduced {
             }
             sum
         })
+    }
+}
+
+/// sum of row K with K = -basis of this channel, or -1 where only the exposure is unknown.
+fn enter(sum: &mut Cross, channel: usize, row: &Row, basis: &[f64; HARMONICS], light_is_known: bool) {
+    if light_is_known {
+        sum.column_mut(0).axpy(-1.0, row, 1.0);
+        return;
+    }
+    for (k, value) in basis.iter().enumerate() {
+        sum.column_mut(channel * HARMONICS + k).axpy(-value, row, 1.0);
     }
 }
 

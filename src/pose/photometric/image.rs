@@ -18,6 +18,8 @@ const POLE: f64 = -0.267_949_192_431_122_7;
 const HORIZON: usize = 14;
 /// Rings of pixels that the continuation adds: the spline feels the last of them by 0.268^8 = 3e-5.
 const RINGS: usize = 8;
+/// Mirrored samples of a line: one before, two behind.
+const MIRRORED: usize = 3;
 /// Reach of a Gaussian in sigmas: what lies beyond weighs 1 %.
 const REACH: f64 = 3.0;
 
@@ -25,8 +27,11 @@ const REACH: f64 = 3.0;
 #[derive(Clone, Debug)]
 pub(super) struct SplineImage {
     size: Size,
-    mask: Vec<bool>,
-    coefficients: [Vec<f32>; 3],
+    /// Whether the four pixels right and below of each, itself included, are all on the mask.
+    cells: Vec<bool>,
+    /// R, G and B side by side, mirrored by one sample before and two behind each line and column, so that the sixteen
+    /// around a cell are always there.
+    coefficients: Vec<[f32; 3]>,
 }
 
 /// A place on the image: log S of the three channels and d log S / d (column, row).
@@ -39,23 +44,29 @@ pub(super) struct ImagePoint {
 impl SplineImage {
     /// Splines through the Gaussian mean (sigma `blur` in pixels, zero for none) of a view's log S.
     pub fn new(view: &ColourView, blur: f64) -> Self {
-        let coefficients = [0, 1, 2].map(|channel: usize| {
+        let fields = [0, 1, 2].map(|channel: usize| {
             let mut field = blurred(view.size, &view.log[channel], &view.mask, blur);
             continue_outwards(view.size, &mut field, &view.mask);
             filter(view.size, &mut field);
             field
         });
-        Self { size: view.size, mask: view.mask.clone(), coefficients }
+        let (columns, rows) = (mirrored(view.size.width), mirrored(view.size.height));
+        let places = rows.flat_map(|row| columns.clone().map(move |column| view.size.index(column, row)));
+        Self {
+            size: view.size,
+            cells: cells(view),
+            coefficients: places.map(|index| fields.each_ref().map(|field| field[index])).collect(),
+        }
     }
 
     /// Whether the cell around a position, and `margin` pixels beyond it on every side, is on the mask.
-    pub fn covers(&self, [column, row]: [f64; 2], margin: usize) -> bool {
-        let Some([left, top]) = self.cell([column, row]) else { return false };
-        let (right, low) = (left + 1 + margin, top + 1 + margin);
-        if left < margin || top < margin || right >= self.size.width || low >= self.size.height {
+    pub fn covers(&self, position: [f64; 2], margin: usize) -> bool {
+        let Some([left, top]) = self.cell(position) else { return false };
+        let (right, low) = (left + margin, top + margin);
+        if left < margin || top < margin || right + 1 >= self.size.width || low + 1 >= self.size.height {
             return false;
         }
-        (top - margin..=low).all(|r| (left - margin..=right).all(|c| self.mask[self.size.index(c, r)]))
+        (top - margin..=low).all(|r| (left - margin..=right).all(|c| self.cells[self.size.index(c, r)]))
     }
 
     /// Size of the image.
@@ -65,37 +76,52 @@ impl SplineImage {
 
     /// log S at a continuous position; `None` off the mask.
     pub fn value(&self, position: [f64; 2]) -> Option<[f64; 3]> {
-        self.at(position).map(|point| point.log)
+        let [left, top] = self.seen_cell(position)?;
+        let (across, _) = weights(position[0] - left as f64);
+        let (down, _) = weights(position[1] - top as f64);
+        let mut log = [0.0; 3];
+        for (share, line) in down.into_iter().zip(self.lines(left, top)) {
+            for (weight, sample) in across.into_iter().zip(line) {
+                let weight = share * weight;
+                (0..3).for_each(|channel| log[channel] += weight * f64::from(sample[channel]));
+            }
+        }
+        Some(log)
     }
 
     /// log S and its gradient at a continuous position; `None` off the mask.
     pub fn at(&self, position: [f64; 2]) -> Option<ImagePoint> {
-        if !self.covers(position, 0) {
-            return None;
-        }
-        let [left, top] = self.cell(position)?;
+        let [left, top] = self.seen_cell(position)?;
         let (across, across_slope) = weights(position[0] - left as f64);
         let (down, down_slope) = weights(position[1] - top as f64);
-        let columns = taps(left, self.size.width);
-        let rows = taps(top, self.size.height);
-        let mut point = ImagePoint { log: [0.0; 3], gradient: [[0.0; 2]; 3] };
-        for (channel, coefficients) in self.coefficients.iter().enumerate() {
-            let (mut value, mut along_column, mut along_row) = (0.0, 0.0, 0.0);
-            for (j, row) in rows.into_iter().enumerate() {
-                let (mut line, mut slope) = (0.0, 0.0);
-                for (i, column) in columns.into_iter().enumerate() {
-                    let c = f64::from(coefficients[self.size.index(column, row)]);
-                    line += across[i] * c;
-                    slope += across_slope[i] * c;
+        let (mut log, mut along_column, mut along_row) = ([0.0; 3], [0.0; 3], [0.0; 3]);
+        for (j, line) in self.lines(left, top).enumerate() {
+            let (mut value, mut slope) = ([0.0; 3], [0.0; 3]);
+            for (i, sample) in line.iter().enumerate() {
+                for channel in 0..3 {
+                    let sample = f64::from(sample[channel]);
+                    value[channel] += across[i] * sample;
+                    slope[channel] += across_slope[i] * sample;
                 }
-                value += down[j] * line;
-                along_column += down[j] * slope;
-                along_row += down_slope[j] * line;
             }
-            point.log[channel] = value;
-            point.gradient[channel] = [along_column, along_row];
+            for channel in 0..3 {
+                log[channel] += down[j] * value[channel];
+                along_column[channel] += down[j] * slope[channel];
+                along_row[channel] += down_slope[j] * value[channel];
+            }
         }
-        Some(point)
+        Some(ImagePoint { log, gradient: [0, 1, 2].map(|channel| [along_column[channel], along_row[channel]]) })
+    }
+
+    /// The four lines of four coefficients around a cell.
+    fn lines(&self, left: usize, top: usize) -> impl Iterator<Item = &[[f32; 3]]> {
+        let width = self.size.width + MIRRORED;
+        (top..top + 4).map(move |line| &self.coefficients[line * width + left..][..4])
+    }
+
+    /// The cell around a position whose pixels are all on the mask.
+    fn seen_cell(&self, position: [f64; 2]) -> Option<[usize; 2]> {
+        self.cell(position).filter(|&[left, top]| self.cells[self.size.index(left, top)])
     }
 
     /// Left column and top row of the cell around a position, inside the raster.
@@ -109,10 +135,25 @@ impl SplineImage {
     }
 }
 
-/// The four samples around a cell, mirrored at the ends of a line.
-fn taps(first: usize, length: usize) -> [usize; 4] {
+/// Samples of a line with its mirrored ends: one before, two behind.
+fn mirrored(length: usize) -> impl Iterator<Item = usize> + Clone {
     let last = length - 1;
-    [if first == 0 { 1 } else { first - 1 }, first, first + 1, if first + 2 > last { last - 1 } else { first + 2 }]
+    std::iter::once(1.min(last)).chain(0..length).chain([last.saturating_sub(1), last.saturating_sub(2)])
+}
+
+/// Whether the pixel and those right and below of it are on the mask; the last column and row begin no cell.
+fn cells(view: &ColourView) -> Vec<bool> {
+    let Size { width, height } = view.size;
+    let inside = |column: usize, row: usize| view.mask[view.size.index(column, row)];
+    let whole = |column: usize, row: usize| {
+        column + 1 < width
+            && row + 1 < height
+            && inside(column, row)
+            && inside(column + 1, row)
+            && inside(column, row + 1)
+            && inside(column + 1, row + 1)
+    };
+    (0..view.size.len()).map(|index| view.size.position(index)).map(|(column, row)| whole(column, row)).collect()
 }
 
 /// The cubic B-spline's four weights at `t` in 0 .. 1 within a cell, and their derivatives.

@@ -175,9 +175,9 @@ impl Photometric {
         };
         (self.phase, self.rounds, self.iterations) = (Phase::Annealing { level, fine_rounds: 0 }, 0, 0);
         self.most_rounds = options.most_rounds.max(1);
-        let frame = self.look(problem, level)?;
+        self.look(problem, level)?;
         self.robust = FIRST_LOOK;
-        self.fit_light(problem, level, &frame)?;
+        self.fit_light(problem, level)?;
         self.measure(problem, level);
         self.robust = Robust { scale: FIRST_SCALE * self.final_scale() / ANNEALING, prior: self.prior(problem) };
         Ok(())
@@ -207,7 +207,7 @@ impl Photometric {
     /// A round of damped Gauss-Newton at one level and one robust scale.
     fn anneal(&mut self, problem: &PhotometricProblem<'_>, level: usize, fine_rounds: usize) -> Result<Phase> {
         let frame = self.look(problem, level)?;
-        self.fit_light(problem, level, &frame)?;
+        self.fit_light(problem, level)?;
         self.measure(problem, level);
         let target = self.final_scale();
         self.robust = Robust { scale: target.max(ANNEALING * self.robust.scale), prior: self.prior(problem) };
@@ -290,10 +290,14 @@ impl Photometric {
     }
 
     /// The light alone, reweighted.
-    fn fit_light(&mut self, problem: &PhotometricProblem<'_>, level: usize, frame: &Frame) -> Result<()> {
+    fn fit_light(&mut self, problem: &PhotometricProblem<'_>, level: usize) -> Result<()> {
+        let light = self.state.exposed();
+        let scene = Scene { image: &self.levels[level], slopes: None, camera: &problem.image.camera, light: &light };
+        self.points.see(problem, &scene, &self.state);
         for _ in 0..LIGHT_ROUNDS {
-            let step = self.reduced(problem, level, frame, false)?.light_step();
-            self.state = self.state.moved(frame, &Row::zeros(), &step, problem.light.is_some());
+            let equations = self.points.light_equations(problem, &self.state, self.robust);
+            let step = equations.step().ok_or_else(undetermined_light)?;
+            self.state = self.state.relit(&step, problem.light.is_some());
         }
         Ok(())
     }
@@ -333,8 +337,12 @@ impl Photometric {
         let slopes = listening.then_some(&self.slopes);
         let scene = Scene { image: &self.levels[level], slopes, camera: &problem.image.camera, light: &light };
         let equations = self.points.equations(problem, &scene, &self.state, self.robust, frame);
-        equations.reduce().ok_or_else(|| degenerate("the visible points do not determine the light"))
+        equations.reduce().ok_or_else(undetermined_light)
     }
+}
+
+fn undetermined_light() -> Error {
+    degenerate("the visible points do not determine the light")
 }
 
 fn degenerate(message: &'static str) -> Error {

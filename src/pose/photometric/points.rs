@@ -3,10 +3,10 @@
 use nalgebra::Vector3;
 
 use super::PhotometricProblem;
-use super::equations::Equations;
+use super::equations::{Equations, LightEquations};
 use super::image::SplineImage;
 use super::residual::{Linear, Scene};
-use crate::light::{COEFFICIENTS, Coefficients, HARMONICS, Light};
+use crate::light::{COEFFICIENTS, Coefficients, HARMONICS, Light, basis};
 use crate::pose::correspondence::{CorrespondenceProblem, Correspondences};
 use crate::pose::increment::{Frame, Row};
 use crate::pose::similarity::Similarity;
@@ -39,11 +39,17 @@ pub(super) struct State {
 impl State {
     /// The state after a step of pose and light.
     pub fn moved(&self, frame: &Frame, step: &Row, light: &Coefficients, light_is_known: bool) -> Self {
-        let mut next = Self { pose: frame.change(step).after(&self.pose).orthonormal(), ..*self };
+        let pose = frame.change(step).after(&self.pose).orthonormal();
+        Self { pose, ..self.relit(light, light_is_known) }
+    }
+
+    /// The state after a step of the light alone.
+    pub fn relit(&self, step: &Coefficients, light_is_known: bool) -> Self {
+        let mut next = *self;
         if light_is_known {
-            next.exposure += light[0];
+            next.exposure += step[0];
         } else {
-            (0..COEFFICIENTS).for_each(|k| next.light.0[k / HARMONICS][k % HARMONICS] += light[k]);
+            (0..COEFFICIENTS).for_each(|k| next.light.0[k / HARMONICS][k % HARMONICS] += step[k]);
         }
         next
     }
@@ -70,6 +76,8 @@ pub(super) struct VisiblePoints {
     indices: Vec<u32>,
     weights: Vec<f32>,
     spare: Vec<f32>,
+    /// log S where the points are seen, NaN where they are not: while the pose stays.
+    seen: Vec<[f32; 3]>,
 }
 
 impl VisiblePoints {
@@ -81,6 +89,7 @@ impl VisiblePoints {
             indices: Vec::with_capacity(length),
             weights: Vec::with_capacity(length),
             spare: Vec::with_capacity(length),
+            seen: Vec::with_capacity(length),
         }
     }
 
@@ -181,8 +190,37 @@ impl VisiblePoints {
         robust: Robust,
         frame: &Frame,
     ) -> Equations {
-        let mut equations = Equations::new(problem.light.is_some());
+        let mut equations = Equations::new(problem.light.is_some(), scene.slopes.is_some());
         self.each(problem, scene, state, robust, frame, |_, point, weight| equations.add(point, weight));
+        let off = Coefficients::from(state.light.flat()) - problem.prior.mean_coefficients();
+        equations.add_prior(problem.prior, robust.prior, &off);
+        equations
+    }
+
+    /// Looks up what the image shows at the points, for [`light_equations`](Self::light_equations) under the same pose.
+    pub fn see(&mut self, problem: &PhotometricProblem<'_>, scene: &Scene<'_>, state: &State) {
+        self.seen.clear();
+        for &index in &self.indices {
+            let (point, _) = problem.carried(&state.pose, index);
+            let log = scene.seen(&point);
+            self.seen.push(log.map_or([f32::NAN; 3], |log| log.map(|value| value as f32)));
+        }
+    }
+
+    /// The equations of the light alone, of the points as they were last [seen](Self::see).
+    pub fn light_equations(&self, problem: &PhotometricProblem<'_>, state: &State, robust: Robust) -> LightEquations {
+        let mut equations = LightEquations::new(problem.light.is_some());
+        let full = robust.scale * robust.scale;
+        let light = state.exposed();
+        for ((&index, &weight), seen) in self.indices.iter().zip(&self.weights).zip(&self.seen) {
+            if seen[0].is_nan() {
+                continue;
+            }
+            let harmonics = basis(problem.turned(&state.pose, index).into());
+            let residual = Vector3::from(seen.map(f64::from)) - Vector3::from(light.of_basis(&harmonics));
+            let doubt = (1.0 + residual.norm_squared() / full).powi(-2);
+            equations.add(&harmonics, &residual, f64::from(weight) * doubt);
+        }
         let off = Coefficients::from(state.light.flat()) - problem.prior.mean_coefficients();
         equations.add_prior(problem.prior, robust.prior, &off);
         equations

@@ -39,9 +39,13 @@ pub struct PhotometricProblem<'a> {
 impl PhotometricProblem<'_> {
     /// A point and its normal in the colour view's frame.
     pub(super) fn carried(&self, pose: &Similarity, index: u32) -> (Vector3<f64>, Vector3<f64>) {
-        let index = index as usize;
-        let point = pose.apply(Vector3::from(self.points.get(index).map(f64::from)));
-        (point, pose.rotation * Vector3::from(self.normals.get(index).map(f64::from)))
+        let point = pose.apply(Vector3::from(self.points.get(index as usize).map(f64::from)));
+        (point, self.turned(pose, index))
+    }
+
+    /// A normal in the colour view's frame.
+    pub(super) fn turned(&self, pose: &Similarity, index: u32) -> Vector3<f64> {
+        pose.rotation * Vector3::from(self.normals.get(index as usize).map(f64::from))
     }
 
     /// Unknowns that are no unknowns: the gauge t_z, the held scale.

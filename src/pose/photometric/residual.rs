@@ -36,16 +36,21 @@ pub(super) struct Linear {
 impl Scene<'_> {
     /// r at a carried point with its carried normal; `None` where the image does not show it.
     pub fn residual(&self, point: &Vector3<f64>, normal: &Vector3<f64>) -> Option<Vector3<f64>> {
-        let pixel = self.camera.project(self.image.size(), (*point).into())?;
-        let log = self.image.value(pixel)?;
+        let log = self.seen(point)?;
         Some(Vector3::from(log) - Vector3::from(self.light.shade((*normal).into())))
+    }
+
+    /// log S where a carried point is seen; `None` where the image does not show it.
+    pub fn seen(&self, point: &Vector3<f64>) -> Option<[f64; 3]> {
+        self.image.value(self.camera.project(self.image.size(), (*point).into())?)
     }
 
     /// r and its derivatives.
     pub fn linear(&self, point: &Vector3<f64>, normal: &Vector3<f64>, frame: &Frame) -> Option<Linear> {
         let (pixel, by_point) = self.camera.project_with_gradient(self.image.size(), (*point).into())?;
         let seen = self.image.at(pixel)?;
-        let shade = self.light.shade((*normal).into());
+        let basis = basis((*normal).into());
+        let shade = self.light.of_basis(&basis);
         let by_normal = self.shade_gradient(normal);
         let arm = point - frame.centre;
         let rows = |seen: &ImagePoint| {
@@ -63,7 +68,7 @@ impl Scene<'_> {
             Some(slopes) => rows(&slopes.at(pixel)?),
         };
         let residual = Vector3::from(seen.log) - Vector3::from(shade);
-        Some(Linear { residual, jacobian, listener, basis: basis((*normal).into()) })
+        Some(Linear { residual, jacobian, listener, basis })
     }
 
     /// d (B L) / d n, a row for each channel.
