@@ -3,9 +3,8 @@
 //! A spectrum stays transposed, which products of two spectra do not mind; the inverse transposes it back. Neither
 //! direction divides by the number of cells.
 
-use std::sync::Arc;
-
-use rustfft::{Fft, FftPlanner, num_complex::Complex32};
+use rustfft::algorithm::Radix4;
+use rustfft::{Fft, FftDirection, num_complex::Complex32};
 
 /// A value of a field or of its spectrum.
 pub type Complex = Complex32;
@@ -13,16 +12,16 @@ pub type Complex = Complex32;
 /// Plans and scratch of one side length.
 pub struct Fourier {
     side: usize,
-    forward: Arc<dyn Fft<f32>>,
-    inverse: Arc<dyn Fft<f32>>,
+    forward: Radix4<f32>,
+    inverse: Radix4<f32>,
     turned: Vec<Complex>,
     scratch: Vec<Complex>,
 }
 
 impl Fourier {
+    /// `side` is a power of two.
     pub fn new(side: usize) -> Self {
-        let mut planner = FftPlanner::new();
-        let (forward, inverse) = (planner.plan_fft_forward(side), planner.plan_fft_inverse(side));
+        let [forward, inverse] = [FftDirection::Forward, FftDirection::Inverse].map(|way| Radix4::new(side, way));
         let scratch = forward.get_inplace_scratch_len().max(inverse.get_inplace_scratch_len());
         let empty = Complex::default();
         Self { side, forward, inverse, turned: vec![empty; side * side], scratch: vec![empty; scratch] }
