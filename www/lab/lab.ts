@@ -9,18 +9,18 @@ import { Gallery } from "./gallery";
 import { Intake } from "./intake";
 import { Player } from "./player";
 import { PoseTable } from "./posetable";
-import { camera, fields, fromLink, inputGroups, runOptions, sampleRequest, type Origin, type Settings } from "./settings";
+import { camera, fields, inputGroups, runOptions, sampleRequest, type Origin, type Settings } from "./settings";
 import { download, writeAddress } from "./share";
 import { Store } from "./store";
 import { Strip, type Notice } from "./strip";
 import { verdict } from "./verdict";
 
 export class Lab {
-  readonly store = new Store(fromLink(location.hash));
+  readonly store: Store;
   readonly gallery = new Gallery();
   readonly player: Player;
   readonly #engine: Engine;
-  readonly #form = new Form(this.store);
+  readonly #form: Form;
   readonly #intake = new Intake(() => void this.#reopen());
   readonly #strip = new Strip(byId("stages", HTMLElement));
   readonly #pose = new PoseTable(byId("pose", HTMLTableElement));
@@ -49,7 +49,9 @@ export class Lab {
   #beginning: Promise<void> = Promise.resolve();
   #offered = false;
 
-  constructor() {
+  constructor(settings: Settings) {
+    this.store = new Store(settings);
+    this.#form = new Form(this.store);
     this.#engine = new Engine({
       onLoad: (bytes) => {
         if (!this.#report) this.#announce("loading", `loading the numerics, ${Math.round(bytes / 1000)} kB`);
@@ -71,8 +73,18 @@ export class Lab {
     this.#form.adapt(this.store.settings, this.#origin);
   }
 
-  begin(): Promise<void> {
-    return this.#reopen();
+  /** These settings on the screen; the first ones open their input in any case. */
+  enter(settings: Settings): Promise<void> {
+    this.store.change(settings);
+    return this.#turn === 0 ? this.#reopen() : this.#beginning;
+  }
+
+  /** The run of these settings from its beginning. */
+  async watch(settings: Settings): Promise<void> {
+    const before = this.#turn;
+    await this.enter(settings);
+    if (before === this.#turn) await this.restart();
+    if (!this.player.playing) this.player.toggle();
   }
 
   /** Samples or own files; the last input stays on the screen until there is a new one. */

@@ -1,0 +1,202 @@
+/** The Tables: every table and figure that can be made from built-in scenes, computed here cell by cell. */
+
+import "../style/tables.css";
+import { make } from "../dom";
+import { Detail } from "./detail";
+import { Heat } from "./heat";
+import { legend } from "./legend";
+import { elsewhere, panels, type Panel } from "./panels";
+import type { Cell } from "./protocol";
+import { Runner } from "./runner";
+import { summary } from "./summary";
+
+/** A cell far down the page must not grow with each progress word; this is what is chosen in each table. */
+interface Chosen {
+  values: Record<string, string>;
+  cell: Cell | undefined;
+}
+
+const first = panels[0] as Panel;
+const optionsOf = ({ cells }: Panel, key: string): string[] => [...new Set(cells.map(({ row }) => String(row[key])))];
+
+export class TablesPage {
+  readonly #runner = new Runner((id) => this.#hear(id));
+  readonly #chosen = new Map<Panel, Chosen>();
+  readonly #tabs = new Map<Panel, { button: HTMLButtonElement; count: HTMLElement }>();
+  readonly #main = make("div", { class: "tables-main" });
+  readonly #detail = new Detail((cell) => this.#runner.runFirst(cell));
+  readonly #summary = make("div", { class: "summary" });
+  readonly #progress = make("p", { role: "status", class: "progress" });
+  readonly #runAll = make("button", { type: "button", class: "primary" }, "Run all");
+  readonly #stop = make("button", { type: "button" }, "Stop");
+  #panel = first;
+  #heat: Heat | undefined;
+  #open = false;
+
+  constructor(parent: HTMLElement) {
+    for (const panel of panels) this.#chosen.set(panel, { values: initial(panel), cell: undefined });
+    this.#runAll.addEventListener("click", () => this.#runner.runAll(this.#shown()));
+    this.#stop.addEventListener("click", () => this.#runner.stop());
+    const side = make("nav", { class: "tabs", "aria-label": "Tables and figures" }, ...panels.map((panel) => this.#tab(panel)));
+    parent.append(intro(), side, this.#main, this.#detail.element);
+  }
+
+  /** Shows what the address asks for, and where it asks for nothing, what was last seen. */
+  open(hash: string): void {
+    const asked = new URLSearchParams(hash.replace(/^#/, ""));
+    const panel = panels.find(({ name }) => name === asked.get("show"));
+    if (panel) {
+      const { values } = this.#of(panel);
+      for (const { key } of panel.choices) {
+        const value = asked.get(key);
+        if (value !== null && optionsOf(panel, key).includes(value)) values[key] = value;
+      }
+    }
+    this.#open = true;
+    this.#show(panel ?? this.#panel);
+  }
+
+  /** Nothing is computed for a page that nobody sees; what is done stays. */
+  leave(): void {
+    this.#open = false;
+    this.#runner.stop();
+  }
+
+  #of(panel: Panel): Chosen {
+    return this.#chosen.get(panel) ?? { values: {}, cell: undefined };
+  }
+
+  #shown(): Cell[] {
+    const { values } = this.#of(this.#panel);
+    return this.#panel.cells.filter(({ row }) => Object.entries(values).every(([key, value]) => String(row[key]) === value));
+  }
+
+  #tab(panel: Panel): HTMLElement {
+    const count = make("span", { class: "soft count" });
+    const button = make("button", { type: "button", class: "tab" }, panel.tab, count);
+    button.addEventListener("click", () => this.#show(panel));
+    this.#tabs.set(panel, { button, count });
+    return button;
+  }
+
+  #show(panel: Panel): void {
+    this.#panel = panel;
+    for (const [each, { button }] of this.#tabs) {
+      if (each === panel) button.setAttribute("aria-current", "true");
+      else button.removeAttribute("aria-current");
+    }
+    const cells = this.#shown();
+    const { cell } = this.#of(panel);
+    this.#heat = new Heat(panel, cells, (pressed) => this.#press(pressed));
+    this.#main.replaceChildren(
+      make("h2", {}, `${panel.tab}: ${panel.title}`),
+      make("p", { class: "soft" }, panel.words),
+      make("div", { class: "toolbar" }, ...panel.choices.map((choice) => this.#choice(choice)), this.#runAll, this.#stop, this.#progress),
+      make("div", { class: "heat-box" }, this.#heat.element),
+      legend(panel),
+      this.#summary,
+    );
+    for (const { id } of cells) this.#heat.show(id, this.#runner.stateOf(id));
+    this.#heat.choose(cells.includes(cell as Cell) ? cell?.id : undefined);
+    this.#showDetail();
+    this.#showProgress();
+    this.#showSummary();
+    this.#writeAddress();
+  }
+
+  #choice({ key, label, name }: Panel["choices"][number]): HTMLElement {
+    const { values } = this.#of(this.#panel);
+    const options = optionsOf(this.#panel, key).map((value) => make("option", { value }, name(value)));
+    const select = make("select", {}, ...options);
+    select.value = values[key] ?? "";
+    select.addEventListener("change", () => {
+      values[key] = select.value;
+      this.#follow();
+      this.#show(this.#panel);
+      this.#main.querySelector<HTMLSelectElement>(`label[data-key="${key}"] select`)?.focus();
+    });
+    return make("label", { class: "choice", "data-key": key }, make("span", {}, label), select);
+  }
+
+  /** The chosen place stays chosen when the same table is shown under another light. */
+  #follow(): void {
+    const chosen = this.#of(this.#panel);
+    const { down, across } = this.#panel;
+    const before = chosen.cell;
+    chosen.cell = before && this.#shown().find((cell) => down.of(cell) === down.of(before) && across.of(cell) === across.of(before));
+  }
+
+  /** A cell that has come to nothing yet runs at once. */
+  #press(cell: Cell): void {
+    this.#of(this.#panel).cell = cell;
+    this.#heat?.choose(cell.id);
+    if (this.#runner.stateOf(cell.id)?.kind !== "done") this.#runner.runFirst(cell);
+    this.#showDetail();
+    this.#detail.element.scrollIntoView({ block: "nearest" });
+  }
+
+  #hear(id: string): void {
+    const state = this.#runner.stateOf(id);
+    this.#heat?.show(id, state);
+    if (this.#of(this.#panel).cell?.id === id) this.#showDetail();
+    if (state?.kind === "running" && this.#stop.disabled === false) return;
+    this.#showProgress();
+    if (state?.kind !== "running") this.#showSummary();
+  }
+
+  #showDetail(): void {
+    const { cell } = this.#of(this.#panel);
+    this.#detail.show(this.#panel, cell, cell && this.#runner.stateOf(cell.id));
+  }
+
+  #showProgress(): void {
+    for (const [panel, { count }] of this.#tabs) {
+      const done = this.#runner.results(panel.cells).length;
+      count.textContent = `${done} of ${panel.cells.length}`;
+    }
+    const cells = this.#shown();
+    const done = this.#runner.results(cells).length;
+    const failed = cells.filter(({ id }) => this.#runner.stateOf(id)?.kind === "failed").length;
+    this.#progress.textContent = `${done} of ${cells.length}${failed > 0 ? `, ${failed} failed` : ""}`;
+    this.#runAll.disabled = done === cells.length;
+    this.#stop.disabled = !this.#runner.busy;
+  }
+
+  #showSummary(): void {
+    this.#summary.replaceChildren(...summary(this.#panel, this.#runner.results(this.#shown())));
+  }
+
+  #writeAddress(): void {
+    if (!this.#open) return;
+    const state = new URLSearchParams({ show: this.#panel.name, ...this.#of(this.#panel).values });
+    history.replaceState(null, "", `#tables&${state}`);
+  }
+}
+
+function initial(panel: Panel): Record<string, string> {
+  return Object.fromEntries(panel.choices.map(({ key }) => [key, optionsOf(panel, key)[0] ?? ""]));
+}
+
+function intro(): HTMLElement {
+  return make(
+    "section",
+    { class: "intro" },
+    make("h2", {}, "The paper's tables, computed here"),
+    make(
+      "p",
+      {},
+      "Every cell is a scene with a known answer, made and solved in this browser by the very protocols of ",
+      make("code", {}, "npm run tables"),
+      ". The paper's surface, a bust of Mozart, and its lights are other people's and no part of this project: ",
+      make("strong", {}, "here the built-in bust stands in"),
+      ", so the paper's figures, small below ours, are a reference and no contest.",
+    ),
+    make(
+      "details",
+      {},
+      make("summary", {}, "What is not here"),
+      make("p", {}, "These need other people's recordings and run on the command line alone, where those are at hand:"),
+      make("ul", {}, ...elsewhere.map((title) => make("li", {}, title))),
+    ),
+  );
+}
