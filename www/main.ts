@@ -4,8 +4,8 @@ import { byId, make } from "./dom";
 import { listenToKeys } from "./keys";
 import { Lab } from "./lab/lab";
 import { paces } from "./lab/player";
-import { defaults, fromLink, type Origin } from "./lab/settings";
-import { linkTo, writeAddress } from "./lab/share";
+import { defaults, fromLink, toLink, type Origin } from "./lab/settings";
+import { writeAddress } from "./lab/share";
 import { asksToPlay, placeOf, type Place } from "./place";
 import type { TablesPage } from "./tables/page";
 import { themeToggle } from "./theme";
@@ -15,6 +15,7 @@ const button = (id: string, action: () => void): void => byId(id, HTMLButtonElem
 const lab = new Lab(placeOf(location.hash) === "lab" ? fromLink(location.hash) : defaults);
 const { player, store, gallery } = lab;
 const help = byId("help", HTMLDialogElement);
+let tables: TablesPage | undefined;
 const phone = matchMedia("(max-width: 45rem)");
 
 const openHelp = () => help.showModal();
@@ -29,10 +30,13 @@ button("stage-step", stage);
 button("reset", reset);
 button("undo", undo);
 button("defaults", () => store.resetToDefaults());
-button("export", () => lab.download());
+button("export", () => (placeOf(location.hash) === "tables" ? tables?.download() : lab.download()));
 button("help-button", openHelp);
 button("link", () => void copyLink());
-themeToggle(byId("theme", HTMLButtonElement), () => gallery.recolour());
+themeToggle(byId("theme", HTMLButtonElement), () => {
+  gallery.recolour();
+  tables?.recolour();
+});
 
 const pace = byId("pace", HTMLSelectElement);
 pace.append(...paces.map(({ label }, i) => make("option", { value: i }, label)));
@@ -66,9 +70,7 @@ const places: Record<Place, { main: HTMLElement; link: HTMLAnchorElement; title:
   tables: { main: byId("tables", HTMLElement), link: byId("to-tables", HTMLAnchorElement), title: "Tables, bimodal-stereo" },
 };
 /** What belongs to the Lab outside its own part of the page. */
-const labOnly = [byId("bar", HTMLElement), byId("export", HTMLElement), byId("help-button", HTMLElement)];
-let tables: TablesPage | undefined;
-
+const labOnly = [byId("bar", HTMLElement), byId("help-button", HTMLElement)];
 function show(place: Place): void {
   for (const [name, { main, link, title }] of Object.entries(places)) {
     main.hidden = name !== place;
@@ -87,8 +89,9 @@ async function arrive(): Promise<void> {
   const place = placeOf(location.hash);
   show(place);
   if (place === "tables") {
-    player.pause();
-    places.lab.link.href = linkTo(store.settings);
+    lab.leave();
+    // Never without the #, which would load the page anew.
+    places.lab.link.href = `#${toLink(store.settings)}`;
     await openTables();
     return;
   }

@@ -68,14 +68,14 @@ const distortion = (side: "colour" | "depth"): ListField => ({
 const ESTIMATED = "Estimated along with the pose.";
 const near = (settings: Settings) => settings.start === "near";
 /** The bare grid is taken as it is: its size follows from the surface, and nothing is rendered that noise could be added to. */
-const rendered = (settings: Settings) => settings.views !== "grid";
+const rendered = (settings: Settings) => settings.protocol !== "grid";
 
 export const fields: readonly Field[] = [
   { kind: "choice", key: "surface", label: "Surface", initial: "bust", group: "sample", path: "sample.surface" },
   { kind: "choice", key: "light", label: "Light", initial: "colourful", group: "sample", path: "sample.light" },
   { kind: "choice", key: "size", label: "Size", hint: "Side of both views.", initial: "64", group: "sample", path: "sample.size", when: rendered,
     choices: [["32", "32 px"], ["64", "64 px"], ["96", "96 px"], ["128", "128 px"], ["256", "256 px"]] },
-  { kind: "choice", key: "views", label: "Views", initial: "rendered", group: "sample", path: "sample.protocol",
+  { kind: "choice", key: "protocol", label: "Protocol", initial: "rendered", group: "sample", path: "sample.protocol",
     hint: "Rendered: as cameras see the surface. Bare grid: every eighth sample of it, the same points in both views, as the paper may have done.",
     choices: [["rendered", "rendered"], ["grid", "bare grid"]] },
   { ...angle("beta", "Rotation β", 20, "sample", "sample.angles.beta"), slider: true, hint: "About the vertical axis: the angle to find." },

@@ -6,7 +6,7 @@ import { inWords, markOf, whereIs } from "./heat";
 import type { Panel } from "./panels";
 import type { Cell, Result } from "./protocol";
 import type { State } from "./runner";
-import { obstacle, watchLink } from "./scene";
+import { described, obstacle, watchLink } from "./scene";
 
 interface Line {
   term: string;
@@ -20,7 +20,7 @@ const pixels = (value: number): string => `${short(value)} px`;
 /** What a result may hold besides its main number; each kind of cell has some of it. */
 const lines: readonly Line[] = [
   { term: "Bound, one sigma", read: ({ bound }) => bound, show: degrees },
-  { term: "Rotation error", read: ({ degrees }) => degrees, show: degrees },
+  { term: "Rotation error", read: (result) => ("rivals" in result ? result.degrees : undefined), show: degrees },
   { term: "As the paper counts", read: ({ error }) => error, show: short },
   { term: "Depth error", read: ({ depthRmse }) => depthRmse, show: pixels },
   { term: "Depth error before", read: ({ before }) => before, show: pixels },
@@ -44,7 +44,10 @@ export class Detail {
   readonly #outcome = make("p", { class: "outcome" });
   readonly #mark = make("p");
   readonly #message = make("p", { class: "soft" });
+  readonly #scene = make("p", { class: "soft" });
   readonly #facts = make("dl");
+  /** Folded where the screen is small and the detail stands before the grid. */
+  readonly #more = make("details", { open: !matchMedia("(max-width: 45rem)").matches }, make("summary", {}, "Details"));
   readonly #watch = make("a", { class: "button primary" }, "Watch this run");
   readonly #obstacle = make("p", { class: "soft" });
   readonly #run = make("button", { type: "button" });
@@ -55,7 +58,8 @@ export class Detail {
       if (this.#cell) onRun(this.#cell);
     });
     const actions = make("div", { class: "actions" }, this.#watch, this.#run);
-    this.element.append(this.#title, this.#quantity, this.#outcome, this.#mark, this.#message, this.#facts, this.#obstacle, actions);
+    this.#more.append(this.#quantity, this.#message, this.#facts, this.#scene);
+    this.element.append(this.#title, this.#outcome, this.#mark, this.#more, this.#obstacle, actions);
   }
 
   /** What is there stays there and only changes, so that nobody's focus or press is lost while a cell runs. */
@@ -64,7 +68,7 @@ export class Detail {
     this.#cell = cell;
     const result = state?.kind === "done" ? state.result : undefined;
     const value = result && panel.value(result);
-    const mark = markOf(panel, state);
+    const mark = markOf(state);
     this.#outcome.textContent = cell ? (value === undefined ? inWords(panel, state) : `${short(value)}${panel.unit}`) : "";
     this.#outcome.classList.toggle("error", state?.kind === "failed");
     this.#mark.replaceChildren(...(mark ? [make("span", { class: "mark", "data-mark": mark.kind, "aria-hidden": "true" }, mark.glyph), ` ${mark.words}`] : []));
@@ -78,6 +82,8 @@ export class Detail {
   #showCell(panel: Panel, cell: Cell | undefined): void {
     this.#title.textContent = cell ? whereIs(panel, cell) : "No cell chosen";
     this.#quantity.textContent = cell ? sentence(panel.quantity) : "Press one: it runs here, and can then be watched in the Lab.";
+    this.#scene.textContent = cell ? `${sentence(described(cell))}.` : "";
+    this.element.toggleAttribute("data-empty", cell === undefined);
     const link = cell && watchLink(cell);
     this.#watch.hidden = link === undefined;
     if (link !== undefined) this.#watch.href = link;

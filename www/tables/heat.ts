@@ -22,11 +22,12 @@ export const marks: readonly Mark[] = [
 ];
 
 /** A wrong pose that nothing warns of is worse than anything that is said. */
-export function markOf({ value }: Panel, state: State | undefined): Mark | undefined {
+export function markOf(state: State | undefined): Mark | undefined {
   if (state?.kind !== "done") return undefined;
-  const { status, degrees } = state.result;
-  const judged = typeof degrees === "number" && value(state.result) === degrees && "rivals" in state.result;
-  const kind = judged && isConfidentlyWrong(state.result) ? "wrong" : status === "max-iterations" ? "stopped" : status;
+  const { result } = state;
+  // Where no pose was looked for, neither right nor wrong is said of it, and a loop without an aim always ends at its cap.
+  if (!("rivals" in result)) return undefined;
+  const kind = isConfidentlyWrong(result) ? "wrong" : result.status === "max-iterations" ? "stopped" : result.status;
   return marks.find((mark) => mark.kind === kind);
 }
 
@@ -43,15 +44,15 @@ export function inWords(panel: Panel, state: State | undefined): string {
       return `failed: ${state.message}`;
     case "done": {
       const value = panel.value(state.result);
-      const mark = markOf(panel, state);
+      const mark = markOf(state);
       return `${value === undefined ? "no value" : `${short(value)}${panel.unit}`}${mark ? `, ${mark.words}` : ""}`;
     }
   }
 }
 
 /** A cell's place in its table. */
-export const whereIs = ({ down, across }: Panel, cell: Cell): string =>
-  [down, across].map((axis) => `${axis.label} ${axis.name(axis.of(cell))}`.trim()).join(", ");
+export const whereIs = ({ down, across, where }: Panel, cell: Cell): string =>
+  where?.(cell) ?? [down, across].map((axis) => `${axis.label} ${axis.name(axis.of(cell))}`.trim()).join(", ");
 
 const values = (axis: Axis, cells: readonly Cell[]): (string | number)[] => [...new Set(cells.map((cell) => axis.of(cell)))];
 
@@ -61,13 +62,19 @@ const ordered = (axis: Axis, cells: readonly Cell[]): (string | number)[] => {
   return all.every((value) => typeof value === "number") ? all.sort((a, b) => a - b) : all;
 };
 
+export interface HeatHooks {
+  onPress(cell: Cell): void;
+  /** The heading of a row was pressed. */
+  onRow(cells: readonly Cell[]): void;
+}
+
 export class Heat {
   readonly element: HTMLElement;
   readonly #panel: Panel;
   readonly #buttons: (HTMLButtonElement | undefined)[][] = [];
   readonly #byId = new Map<string, { cell: Cell; button: HTMLButtonElement }>();
 
-  constructor(panel: Panel, cells: readonly Cell[], onPress: (cell: Cell) => void) {
+  constructor(panel: Panel, cells: readonly Cell[], { onPress, onRow }: HeatHooks) {
     this.#panel = panel;
     const { down, across } = panel;
     const rows = ordered(down, cells);
@@ -80,13 +87,16 @@ export class Heat {
         const cell = cells.find((each) => down.of(each) === row && across.of(each) === column);
         return cell && this.#button(cell, onPress);
       });
-      this.#buttons.push(line);
-      body.append(make("tr", {}, make("th", { scope: "row" }, down.name(row)), ...line.map((button) => make("td", {}, button ?? ""))));
+      const heading = make("button", { type: "button", class: "quiet", tabindex: -1, "aria-label": `Run row ${down.label} ${down.name(row)}`, title: "Run this row" }, down.name(row));
+      this.#buttons.push([heading, ...line]);
+      heading.addEventListener("click", () => onRow(cells.filter((cell) => down.of(cell) === row)));
+      body.append(make("tr", {}, make("th", { scope: "row" }, heading), ...line.map((button) => make("td", {}, button ?? ""))));
     }
-    this.element = make("table", { class: "heat", role: "grid", "aria-label": `${panel.tab}: ${panel.quantity}` }, head, body);
+    const attributes = { class: "heat", role: "grid", "aria-label": `${panel.tab}: ${panel.quantity}`, style: `--columns: ${columns.length}` };
+    this.element = make("table", { ...attributes, "data-two-lines": panel.paper !== undefined }, head, body);
     this.element.addEventListener("keydown", (event) => this.#move(event));
-    const first = this.#buttons.flat().find((button) => button !== undefined);
-    if (first) first.tabIndex = 0;
+    const [first] = this.#byId.values();
+    if (first) first.button.tabIndex = 0;
   }
 
   show(id: string, state: State | undefined): void {
@@ -94,7 +104,7 @@ export class Heat {
     if (!found) return;
     const { cell, button } = found;
     const value = state?.kind === "done" ? this.#panel.value(state.result) : undefined;
-    const mark = markOf(this.#panel, state);
+    const mark = markOf(state);
     button.dataset.state = state?.kind ?? "idle";
     button.toggleAttribute("data-absent", state?.kind === "done" && value === undefined);
     button.style.setProperty("--heat", value === undefined ? "transparent" : colourOf(value));
@@ -128,7 +138,7 @@ export class Heat {
   }
 
   #enter(button: HTMLButtonElement): void {
-    for (const each of this.#byId.values()) each.button.tabIndex = -1;
+    for (const each of this.#buttons.flat()) if (each) each.tabIndex = -1;
     button.tabIndex = 0;
   }
 
@@ -155,7 +165,8 @@ function caption(state: State | undefined, value: number | undefined): string {
     case "failed":
       return "failed";
     case "done":
-      return value === undefined ? "none" : short(value);
+      // In the narrow cells of a phone an exponent has room for one digit.
+      return value === undefined ? "none" : value > 0 && value < 1e-3 ? value.toExponential(0) : short(value);
     case undefined:
       return "–";
   }

@@ -1,16 +1,19 @@
 /** The Tables: every table and figure that can be made from built-in scenes, computed here cell by cell. */
 
+import "../style/heat.css";
 import "../style/tables.css";
 import { make } from "../dom";
+import { saveJson } from "../save";
+import type { Curves } from "./curves";
 import { Detail } from "./detail";
 import { Heat } from "./heat";
 import { legend } from "./legend";
 import { elsewhere, panels, type Panel } from "./panels";
-import type { Cell } from "./protocol";
+import { rowsOf, type Cell } from "./protocol";
 import { Runner } from "./runner";
 import { summary } from "./summary";
 
-/** A cell far down the page must not grow with each progress word; this is what is chosen in each table. */
+/** What is chosen in a table, kept while others are looked at. */
 interface Chosen {
   values: Record<string, string>;
   cell: Cell | undefined;
@@ -25,12 +28,14 @@ export class TablesPage {
   readonly #tabs = new Map<Panel, { button: HTMLButtonElement; count: HTMLElement }>();
   readonly #main = make("div", { class: "tables-main" });
   readonly #detail = new Detail((cell) => this.#runner.runFirst(cell));
+  readonly #curvesBox = make("div");
   readonly #summary = make("div", { class: "summary" });
   readonly #progress = make("p", { role: "status", class: "progress" });
   readonly #runAll = make("button", { type: "button", class: "primary" }, "Run all");
   readonly #stop = make("button", { type: "button" }, "Stop");
   #panel = first;
   #heat: Heat | undefined;
+  #curves: Curves | undefined;
   #open = false;
 
   constructor(parent: HTMLElement) {
@@ -62,6 +67,17 @@ export class TablesPage {
     this.#runner.stop();
   }
 
+  recolour(): void {
+    this.#curves?.recolour();
+  }
+
+  /** The rows of all that is done, under the names that the command gives them. */
+  download(): void {
+    const done = panels.map(({ name, cells }) => [name, this.#runner.results(cells)] as const).filter(([, results]) => results.length > 0);
+    const json = Object.fromEntries(done.map(([name, results]) => [name, rowsOf(name, results)]));
+    saveJson("bimodal-stereo-tables.json", { format: "bimodal-stereo tables", version: 1, data: false, ...json });
+  }
+
   #of(panel: Panel): Chosen {
     return this.#chosen.get(panel) ?? { values: {}, cell: undefined };
   }
@@ -87,13 +103,14 @@ export class TablesPage {
     }
     const cells = this.#shown();
     const { cell } = this.#of(panel);
-    this.#heat = new Heat(panel, cells, (pressed) => this.#press(pressed));
+    this.#heat = new Heat(panel, cells, { onPress: (pressed) => this.#press(pressed), onRow: (row) => this.#runner.runAll(row) });
     this.#main.replaceChildren(
       make("h2", {}, `${panel.tab}: ${panel.title}`),
       make("p", { class: "soft" }, panel.words),
       make("div", { class: "toolbar" }, ...panel.choices.map((choice) => this.#choice(choice)), this.#runAll, this.#stop, this.#progress),
       make("div", { class: "heat-box" }, this.#heat.element),
       legend(panel),
+      this.#curvesBox,
       this.#summary,
     );
     for (const { id } of cells) this.#heat.show(id, this.#runner.stateOf(id));
@@ -132,7 +149,6 @@ export class TablesPage {
     this.#heat?.choose(cell.id);
     if (this.#runner.stateOf(cell.id)?.kind !== "done") this.#runner.runFirst(cell);
     this.#showDetail();
-    this.#detail.element.scrollIntoView({ block: "nearest" });
   }
 
   #hear(id: string): void {
@@ -163,7 +179,23 @@ export class TablesPage {
   }
 
   #showSummary(): void {
-    this.#summary.replaceChildren(...summary(this.#panel, this.#runner.results(this.#shown())));
+    const done = this.#runner.results(this.#shown());
+    // Opened aims stay open while more cells come in.
+    const open = this.#summary.querySelector("details")?.open ?? false;
+    this.#summary.replaceChildren(...summary(this.#panel, done));
+    this.#summary.querySelector("details")?.toggleAttribute("open", open);
+    void this.#showCurves();
+  }
+
+  async #showCurves(): Promise<void> {
+    if (this.#panel.curves && !this.#curves) {
+      const { Curves } = await import("./curves");
+      this.#curves ??= new Curves();
+      this.#curvesBox.replaceChildren(this.#curves.element);
+    }
+    // While it loaded, another table may have been opened.
+    const cells = this.#shown();
+    this.#curves?.show(this.#panel, this.#runner.results(cells), cells);
   }
 
   #writeAddress(): void {

@@ -25,12 +25,16 @@ export interface Panel {
   choices: readonly Choice[];
   down: Axis;
   across: Axis;
+  /** What a single cell is called, where its place in the grid says too little. */
+  where?(cell: Cell): string;
   /** What the numbers are in, and of what. */
   unit: string;
   quantity: string;
   value(result: Result): number | undefined;
   /** The paper's own figure for a cell. */
   paper?(cell: Cell): number | undefined;
+  /** What is drawn as curves below: the rows of the grid, or each cell's iterations. */
+  curves?: "across" | "iterations";
   cells: readonly Cell[];
 }
 
@@ -55,18 +59,18 @@ const atTheEnd = ({ iterations }: Result): number | undefined => {
 };
 
 const beta = byKey("β", "beta", (value) => `${value}°`);
-const overlap = byKey("P_w", "overlap");
+const overlap = byKey("overlap", "overlap");
 const light: Choice = { key: "lightName", label: "Light", name: plain };
 const side: Choice = { key: "size", label: "Size", name: (value) => `${value} × ${value}` };
 const COLUMNS = 10;
 
 type Layout = Omit<Panel, "title" | "cells" | "value" | "unit" | "quantity" | "choices"> &
-  Partial<Pick<Panel, "value" | "unit" | "quantity" | "choices">> & { quick?: boolean };
+  Partial<Pick<Panel, "value" | "unit" | "quantity" | "choices">>;
 
 /** Titles are the protocol's own; they begin with the name that the tab already says. */
-function panel({ quick = false, ...layout }: Layout): Panel {
+function panel(layout: Layout): Panel {
   const title = tableNamed(layout.name).title.replace(/^[^:]+?: /, "");
-  return { value: degrees, unit: "°", quantity: "error of the rotation", choices: [], ...layout, title, cells: cellsOf(layout.name, quick) };
+  return { value: degrees, unit: "°", quantity: "error of the rotation", choices: [], ...layout, title, cells: cellsOf(layout.name) };
 }
 
 export const panels: readonly Panel[] = [
@@ -81,7 +85,7 @@ export const panels: readonly Panel[] = [
   panel({
     name: "table2A",
     tab: "Table 2A",
-    words: "The same points in both views, without occlusion, resampling or noise: an exact answer exists, and what is left should be rounding.",
+    words: "The same points in both views (the overlap is the paper's P_w), without occlusion, resampling or noise: an exact answer exists, and what is left should be rounding.",
     down: beta,
     across: overlap,
     paper: paperOfTable2,
@@ -103,6 +107,7 @@ export const panels: readonly Panel[] = [
     across: byKey("protocol", "protocol"),
     value: atTheEnd,
     quantity: "error of the rotation at the end",
+    curves: "iterations",
   }),
   panel({
     name: "figure5",
@@ -110,8 +115,9 @@ export const panels: readonly Panel[] = [
     words: "How good the normals from shading get when a share P_er of the pixels is told the true ones. Pose and light are known. Single pixels, as in the paper, or the surface as a whole.",
     choices: [side, light],
     down: byKey("shading", "shading"),
-    across: byKey("P_er", "fraction"),
+    across: byKey("share", "fraction"),
     quantity: "mean error of the normals",
+    curves: "across",
   }),
   panel({
     name: "figure6",
@@ -120,6 +126,7 @@ export const panels: readonly Panel[] = [
     down: { label: "protocol", of: ({ id }) => (id.startsWith("table2A/") ? "2A" : "2B"), name: plain },
     across: overlap,
     paper: paperOfTable2,
+    curves: "across",
   }),
   panel({
     name: "refinement",
@@ -134,9 +141,24 @@ export const panels: readonly Panel[] = [
   panel({
     name: "random",
     tab: "Random",
-    words: "Any surface, light, pose and scale, drawn by chance, and nothing known. All 300 take a good quarter of an hour; a row of them says much already.",
+    words: "Any surface, light, pose and scale, drawn by chance, and nothing known. All 300 take a good quarter of an hour; a row of ten says much already.",
     down: { label: "scenes", of: ({ row }) => COLUMNS * Math.floor((Number(row.scene) - 1) / COLUMNS) + 1, name: (first) => `${first}–${Number(first) + COLUMNS - 1}` },
+    where: ({ row }) => `scene ${row.scene}`,
     across: { label: "", of: ({ row }) => ((Number(row.scene) - 1) % COLUMNS) + 1, name: plain },
+  }),
+  panel({
+    name: "exposure",
+    tab: "Exposure",
+    words: "Whoever took the picture chose the exposure. It must not matter: random scenes with all their colours darker and brighter.",
+    down: byKey("scene", "scene"),
+    across: { label: "colours", of: ({ exposure = 1 }) => exposure, name: (factor) => `× ${factor}` },
+  }),
+  panel({
+    name: "ablation",
+    tab: "Ablation",
+    words: "What each part of the method is worth: the first random scenes without it.",
+    down: byKey("scene", "scene"),
+    across: { label: "without", of: ({ row }) => String(row.without ?? "nothing"), name: plain },
   }),
 ];
 

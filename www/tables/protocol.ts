@@ -76,8 +76,8 @@ const definition = (name: string) => {
 
 export const tableNamed = (name: string): Table => definition(name);
 
-/** All cells of a table, or its quick selection. */
-export const cellsOf = (name: string, quick = false): Cell[] => definition(name).cells(own, quick) as Cell[];
+/** All cells of a table. */
+export const cellsOf = (name: string): Cell[] => definition(name).cells(own, false) as Cell[];
 
 /** The rows as the command writes them: a list, or one summary with counts. */
 export const rowsOf = (name: string, results: readonly { cell: Cell; result: Result }[]): Row[] | Row =>

@@ -3,6 +3,7 @@
 import { short } from "../draw/numbers";
 import { make } from "../dom";
 import type { Panel } from "./panels";
+import { rowsTable } from "./rows";
 import { aimsOf, isFlagged, isFound, median, worst, type Aim, type Cell, type Result } from "./protocol";
 
 type Done = readonly { cell: Cell; result: Result }[];
@@ -11,7 +12,7 @@ const number = (value: unknown): string => (typeof value === "number" && Number.
 
 export function summary(panel: Panel, done: Done): HTMLElement[] {
   if (done.length === 0) return [];
-  return [overview(panel, done), ...aims(panel, done)];
+  return [overview(panel, done), ...rowsTable(panel.name, done), ...aims(panel, done)];
 }
 
 function overview(panel: Panel, done: Done): HTMLElement {
@@ -24,7 +25,7 @@ function overview(panel: Panel, done: Done): HTMLElement {
   return make("p", {}, `${words.join("; ")}.`);
 }
 
-/** Verdicts only where all cells of an aim may be there: the aims speak of whole tables. */
+/** The aims speak of whole tables, so each says from how many rows its figure is. */
 function aims(panel: Panel, done: Done): HTMLElement[] {
   const list = aimsOf(panel.name, done).filter(({ rows }) => rows > 0);
   if (list.length === 0) return [];
@@ -45,7 +46,7 @@ function aims(panel: Panel, done: Done): HTMLElement[] {
       { class: "aims" },
       make("summary", {}, "The project's aims for this table"),
       make("p", { class: "soft" }, "Set for the paper's surface and for whole tables; here they are computed from the cells that are done, on the built-in bust."),
-      make("div", { class: "wide-box" }, make("table", { class: "rows" }, make("thead", {}, make("tr", {}, ...head)), make("tbody", {}, ...list.map(row)))),
+      make("div", { class: "wide-box", tabindex: 0, role: "region", "aria-label": "Aims" }, make("table", { class: "rows" }, make("thead", {}, make("tr", {}, ...head)), make("tbody", {}, ...list.map(row)))),
     ),
   ];
 }
