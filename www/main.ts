@@ -71,6 +71,7 @@ const places: Record<Place, { main: HTMLElement; link: HTMLAnchorElement; title:
 };
 /** What belongs to the Lab outside its own part of the page. */
 const labOnly = [byId("bar", HTMLElement), byId("help-button", HTMLElement)];
+
 function show(place: Place): void {
   for (const [name, { main, link, title }] of Object.entries(places)) {
     main.hidden = name !== place;
@@ -107,15 +108,23 @@ async function arrive(): Promise<void> {
 /** Loaded when first asked for. */
 async function openTables(): Promise<void> {
   const { main } = places.tables;
-  try {
-    const { TablesPage } = await import("./tables/page");
-    // Whoever has gone on in the meantime is not called back.
-    if (placeOf(location.hash) !== "tables") return;
-    tables ??= new TablesPage(main);
-    tables.open(location.hash);
-  } catch (error) {
-    if (!tables) main.textContent = `The tables could not be loaded: ${error instanceof Error ? error.message : String(error)}`;
+  const loaded = await import("./tables/page").catch((error: unknown) => {
+    main.textContent = `The tables could not be loaded: ${error instanceof Error ? error.message : String(error)}`;
+  });
+  // Whoever has gone on in the meantime is not called back.
+  if (!loaded || placeOf(location.hash) !== "tables") return;
+  if (!tables) {
+    main.replaceChildren();
+    tables = new loaded.TablesPage(main);
   }
+  tables.open(location.hash);
+}
+
+// Where one is already there is nothing to go to, and nothing set there is to be lost.
+for (const [name, { link }] of Object.entries(places)) {
+  link.addEventListener("click", (event) => {
+    if (placeOf(location.hash) === name) event.preventDefault();
+  });
 }
 
 const views = Array.from({ length: gallery.count }, (_, i): [string, () => void] => [String(i + 1), () => gallery.enlarge(i + 1)]);

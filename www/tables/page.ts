@@ -26,6 +26,7 @@ export class TablesPage {
   readonly #runner = new Runner((id) => this.#hear(id));
   readonly #chosen = new Map<Panel, Chosen>();
   readonly #tabs = new Map<Panel, { button: HTMLButtonElement; count: HTMLElement }>();
+  readonly #side = make("nav", { class: "tabs", "aria-label": "Tables and figures" });
   readonly #main = make("div", { class: "tables-main" });
   readonly #detail = new Detail((cell) => this.#runner.runFirst(cell));
   readonly #curvesBox = make("div");
@@ -42,8 +43,8 @@ export class TablesPage {
     for (const panel of panels) this.#chosen.set(panel, { values: initial(panel), cell: undefined });
     this.#runAll.addEventListener("click", () => this.#runner.runAll(this.#shown()));
     this.#stop.addEventListener("click", () => this.#runner.stop());
-    const side = make("nav", { class: "tabs", "aria-label": "Tables and figures" }, ...panels.map((panel) => this.#tab(panel)));
-    parent.append(intro(), side, this.#main, this.#detail.element);
+    this.#side.append(...panels.map((panel) => this.#tab(panel)));
+    parent.append(intro(), this.#side, this.#main, this.#detail.element);
   }
 
   /** Shows what the address asks for, and where it asks for nothing, what was last seen. */
@@ -118,7 +119,14 @@ export class TablesPage {
     this.#showDetail();
     this.#showProgress();
     this.#showSummary();
+    this.#showTab();
     this.#writeAddress();
+  }
+
+  /** On small screens the tabs are a row to be swiped; the page itself must not move. */
+  #showTab(): void {
+    const tab = this.#tabs.get(this.#panel)?.button;
+    if (tab) this.#side.scrollLeft = tab.offsetLeft - this.#side.offsetLeft - this.#side.clientWidth / 4;
   }
 
   #choice({ key, label, name }: Panel["choices"][number]): HTMLElement {
@@ -217,17 +225,15 @@ function intro(): HTMLElement {
     make(
       "p",
       {},
-      "Every cell is a scene with a known answer, made and solved in this browser by the very protocols of ",
-      make("code", {}, "npm run tables"),
-      ". The paper's surface, a bust of Mozart, and its lights are other people's and no part of this project: ",
+      "Each cell is a scene with a known answer, made and solved in this browser. The paper's surface, a bust of Mozart, is no part of this project: ",
       make("strong", {}, "here the built-in bust stands in"),
-      ", so the paper's figures, small below ours, are a reference and no contest.",
+      ", under built-in lights, and the paper's figures, small below ours, are a reference.",
     ),
     make(
       "details",
       {},
       make("summary", {}, "What is not here"),
-      make("p", {}, "These need other people's recordings and run on the command line alone, where those are at hand:"),
+      make("p", {}, "The same protocols run on the command line, ", make("code", {}, "npm run tables"), ". There alone, where other people's recordings are at hand:"),
       make("ul", {}, ...elsewhere.map((title) => make("li", {}, title))),
     ),
   );

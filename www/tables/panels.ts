@@ -134,6 +134,7 @@ export const panels: readonly Panel[] = [
     words: "A depth map with half a pixel of noise and holes, mended by the colours. Five draws of the noise for each light, with the pose given and with the pose to be found.",
     down: { label: "light, pose", of: ({ row }) => `${row.lightName}, ${row.pose}`, name: plain },
     across: byKey("draw", "seed"),
+    where: ({ row }) => `${row.lightName} light, pose ${row.pose}, draw ${row.seed}`,
     value: ({ after }) => (isNumber(after) ? after : undefined),
     unit: " px",
     quantity: "error of the depth that is left",
