@@ -5,9 +5,9 @@ const typing = "input:not([type=checkbox], [type=range], [type=file]), select, t
 /** Elements that a space or an enter already means something to. */
 const pressable = "button, a, summary, label, input";
 
-export function listenToKeys(actions: Record<string, () => void>): void {
+export function listenToKeys(isOn: () => boolean, actions: Record<string, () => void>): void {
   document.addEventListener("keydown", (event) => {
-    if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey) return;
+    if (!isOn() || event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey) return;
     const target = event.target;
     if (target instanceof Element && target.closest(typing)) return;
     if (document.querySelector("dialog[open]")) return;

@@ -1,18 +1,21 @@
-/** Brings the page to life: the Lab and the controls around it. */
+/** Brings the page to life: its places, the Lab, and the controls around it. */
 
 import { byId, make } from "./dom";
 import { listenToKeys } from "./keys";
 import { Lab } from "./lab/lab";
 import { paces } from "./lab/player";
-import { fromLink, type Origin } from "./lab/settings";
-import { linkTo } from "./lab/share";
+import { defaults, fromLink, toLink, type Origin } from "./lab/settings";
+import { writeAddress } from "./lab/share";
+import { asksToPlay, placeOf, type Place } from "./place";
+import type { TablesPage } from "./tables/page";
 import { themeToggle } from "./theme";
 
 const button = (id: string, action: () => void): void => byId(id, HTMLButtonElement).addEventListener("click", action);
 
-const lab = new Lab();
+const lab = new Lab(placeOf(location.hash) === "lab" ? fromLink(location.hash) : defaults);
 const { player, store, gallery } = lab;
 const help = byId("help", HTMLDialogElement);
+let tables: TablesPage | undefined;
 const phone = matchMedia("(max-width: 45rem)");
 
 const openHelp = () => help.showModal();
@@ -27,10 +30,13 @@ button("stage-step", stage);
 button("reset", reset);
 button("undo", undo);
 button("defaults", () => store.resetToDefaults());
-button("export", () => lab.download());
+button("export", () => (placeOf(location.hash) === "tables" ? tables?.download() : lab.download()));
 button("help-button", openHelp);
 button("link", () => void copyLink());
-themeToggle(byId("theme", HTMLButtonElement), () => gallery.recolour());
+themeToggle(byId("theme", HTMLButtonElement), () => {
+  gallery.recolour();
+  tables?.recolour();
+});
 
 const pace = byId("pace", HTMLSelectElement);
 pace.append(...paces.map(({ label }, i) => make("option", { value: i }, label)));
@@ -51,7 +57,7 @@ button("origin-files", () => choose("files"));
 async function copyLink(): Promise<void> {
   const target = byId("link", HTMLButtonElement);
   try {
-    await navigator.clipboard.writeText(linkTo(store.settings));
+    await navigator.clipboard.writeText(location.href);
     target.textContent = "Copied";
   } catch {
     target.textContent = "See address bar";
@@ -59,8 +65,70 @@ async function copyLink(): Promise<void> {
   setTimeout(() => (target.textContent = "Link"), 2000);
 }
 
+const places: Record<Place, { main: HTMLElement; link: HTMLAnchorElement; title: string }> = {
+  lab: { main: byId("lab", HTMLElement), link: byId("to-lab", HTMLAnchorElement), title: "bimodal-stereo" },
+  tables: { main: byId("tables", HTMLElement), link: byId("to-tables", HTMLAnchorElement), title: "Tables, bimodal-stereo" },
+};
+/** What belongs to the Lab outside its own part of the page. */
+const labOnly = [byId("bar", HTMLElement), byId("help-button", HTMLElement)];
+
+function show(place: Place): void {
+  for (const [name, { main, link, title }] of Object.entries(places)) {
+    main.hidden = name !== place;
+    if (name === place) {
+      link.setAttribute("aria-current", "page");
+      document.title = title;
+    } else {
+      link.removeAttribute("aria-current");
+    }
+  }
+  for (const element of labOnly) element.hidden = place !== "lab";
+}
+
+/** The address says which place is asked for, and how it is set. */
+async function arrive(): Promise<void> {
+  const place = placeOf(location.hash);
+  show(place);
+  if (place === "tables") {
+    lab.leave();
+    // Never without the #, which would load the page anew.
+    places.lab.link.href = `#${toLink(store.settings)}`;
+    await openTables();
+    return;
+  }
+  tables?.leave();
+  const settings = fromLink(location.hash);
+  if (!asksToPlay(location.hash)) return lab.enter(settings);
+  if (byId("files-panel", HTMLElement).hidden === false) choose("sample");
+  const started = lab.watch(settings);
+  writeAddress(store.settings);
+  await started;
+}
+
+/** Loaded when first asked for. */
+async function openTables(): Promise<void> {
+  const { main } = places.tables;
+  const loaded = await import("./tables/page").catch((error: unknown) => {
+    main.textContent = `The tables could not be loaded: ${error instanceof Error ? error.message : String(error)}`;
+  });
+  // Whoever has gone on in the meantime is not called back.
+  if (!loaded || placeOf(location.hash) !== "tables") return;
+  if (!tables) {
+    main.replaceChildren();
+    tables = new loaded.TablesPage(main);
+  }
+  tables.open(location.hash);
+}
+
+// Where one is already there is nothing to go to, and nothing set there is to be lost.
+for (const [name, { link }] of Object.entries(places)) {
+  link.addEventListener("click", (event) => {
+    if (placeOf(location.hash) === name) event.preventDefault();
+  });
+}
+
 const views = Array.from({ length: gallery.count }, (_, i): [string, () => void] => [String(i + 1), () => gallery.enlarge(i + 1)]);
-listenToKeys({
+listenToKeys(() => placeOf(location.hash) === "lab", {
   " ": () => player.toggle(),
   s: step,
   t: stage,
@@ -76,5 +144,5 @@ for (const type of ["dragover", "drop"]) document.addEventListener(type, (event)
 
 byId("input", HTMLDetailsElement).open = !phone.matches;
 // A link opened in this very tab changes nothing but the part after #.
-addEventListener("hashchange", () => store.change(fromLink(location.hash)));
-void lab.begin();
+addEventListener("hashchange", () => void arrive());
+void arrive();

@@ -1,4 +1,4 @@
-/** Energy and rotation change by iteration. Loaded after the first paint. */
+/** Curves on a logarithmic axis: the Lab's energy and rotation change, and whatever else runs from left to right. Loaded after the first paint. */
 
 import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
@@ -6,9 +6,12 @@ import type { StepReport } from "../../pkg/index.js";
 import { ink } from "../dom";
 import { short } from "./numbers";
 
-interface Line {
+export interface Curve {
   label: string;
   token: string;
+}
+
+interface Line extends Curve {
   value(report: StepReport): number;
 }
 
@@ -22,42 +25,59 @@ const energies: readonly Line[] = [
 const rotation: readonly Line[] = [{ label: "change, deg", token: "accent", value: ({ rotationChange }) => rotationChange }];
 
 export class Charts {
-  readonly #charts: Chart[];
+  readonly #charts: readonly { plot: Plot; lines: readonly Line[] }[];
 
   constructor(energyBox: HTMLElement, rotationBox: HTMLElement) {
-    this.#charts = [new Chart(energyBox, energies), new Chart(rotationBox, rotation)];
+    const chart = (box: HTMLElement, lines: readonly Line[]) => ({ plot: new Plot(box, { xLabel: "iteration", curves: lines, whole: true }), lines });
+    this.#charts = [chart(energyBox, energies), chart(rotationBox, rotation)];
   }
 
   show(history: readonly StepReport[]): void {
-    for (const chart of this.#charts) chart.show(history);
+    const steps = history.filter(({ iteration }) => iteration > 0);
+    const iterations = steps.map(({ iteration }) => iteration);
+    for (const { plot, lines } of this.#charts) plot.show(iterations, lines.map(({ value }) => steps.map(value)));
   }
 
   /** uPlot draws on a canvas and has to be told the theme's colours anew. */
   recolour(): void {
-    for (const chart of this.#charts) chart.build();
+    for (const { plot } of this.#charts) plot.build();
   }
 }
 
-class Chart {
+const isPower = (value: number): boolean => Number.isInteger(Math.log10(value));
+
+/** Over many decades the lines in between would be a grey mass. */
+const MOST_LINES = 30;
+const sparse = (_: uPlot, splits: number[]): (number | null)[] => (splits.length > MOST_LINES ? splits.map((value) => (isPower(value) ? value : null)) : splits);
+
+export interface PlotOptions {
+  xLabel: string;
+  curves: readonly Curve[];
+  /** Whether x counts something: then it begins at one and has no ticks in between. */
+  whole: boolean;
+}
+
+export class Plot {
   readonly #box: HTMLElement;
-  readonly #lines: readonly Line[];
+  readonly #options: PlotOptions;
+  readonly #observer: ResizeObserver;
   #plot: uPlot | undefined;
   #data: uPlot.AlignedData;
 
-  constructor(box: HTMLElement, lines: readonly Line[]) {
+  constructor(box: HTMLElement, options: PlotOptions) {
     this.#box = box;
-    this.#lines = lines;
-    this.#data = [[], ...lines.map(() => [])];
+    this.#options = options;
+    this.#data = [[], ...options.curves.map(() => [])];
     this.build();
-    new ResizeObserver(() => this.#plot?.setSize(this.#size())).observe(box);
+    this.#observer = new ResizeObserver(() => this.#plot?.setSize(this.#size()));
+    this.#observer.observe(box);
   }
 
   /** A logarithm has no place for zero and below, so such values are gaps. */
-  show(history: readonly StepReport[]): void {
-    const steps = history.filter(({ iteration }) => iteration > 0);
-    const positive = (value: number) => (value > 0 && Number.isFinite(value) ? value : null);
-    this.#data = [steps.map(({ iteration }) => iteration), ...this.#lines.map(({ value }) => steps.map((report) => positive(value(report))))];
-    this.#showData();
+  show(xs: number[], ys: readonly (number | null)[][]): void {
+    const positive = (value: number | null) => (value !== null && value > 0 && Number.isFinite(value) ? value : null);
+    this.#data = [xs, ...ys.map((values) => values.map(positive))];
+    this.#plot?.setData(this.#data);
   }
 
   build(): void {
@@ -68,38 +88,43 @@ class Chart {
       grid: { stroke: ink("line"), width: 1 },
       ticks: { stroke: ink("line"), width: 1, size: 4 },
     };
+    const { xLabel, curves, whole } = this.#options;
+    const counted: Pick<uPlot.Scale, "range"> = { range: (_plot, _min, max) => [1, Math.max(max ?? 2, 2)] };
     this.#plot = new uPlot(
       {
         ...this.#size(),
         padding: [8, 8, 0, 0],
         cursor: { y: false, drag: { x: false, y: false } },
-        scales: { x: { time: false, range: (_plot, _min, max) => [1, Math.max(max ?? 2, 2)] }, y: { distr: 3 } },
+        scales: { x: { time: false, ...(whole ? counted : {}) }, y: { distr: 3 } },
         axes: [
-          { ...axis, size: 24, incrs: [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000] },
-          { ...axis, size: 48, values: (_, splits) => splits.map((value) => (Number.isInteger(Math.log10(value)) ? short(value) : "")) },
+          { ...axis, size: 24, ...(whole ? { incrs: [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000] } : {}) },
+          { ...axis, size: 48, grid: { ...axis.grid, filter: sparse }, ticks: { ...axis.ticks, filter: sparse }, values: (_, splits) => splits.map((value) => (isPower(value) ? short(value) : "")) },
         ],
         series: [
-          { label: "iteration" },
-          ...this.#lines.map(({ label, token }) => ({
+          { label: xLabel },
+          ...curves.map(({ label, token }) => ({
             label,
             stroke: ink(token),
             width: 1.5,
-            // A line needs two points; until then, dots.
-            points: { show: ({ data }: uPlot) => data[0].length < 2 },
-            value: (_: uPlot, value: number | null | undefined) => (typeof value === "number" ? short(value) : "–"),
+            spanGaps: !whole,
+            // A line needs two points; until then, dots. Where there are few, each was measured and deserves one.
+            points: { show: ({ data }: uPlot) => !whole || data[0].length < 2 },
+            // The newest value, until the pointer asks for another.
+            value: ({ data }: uPlot, value: number | null | undefined, index: number, at: number | null) => {
+              const shown = at === null ? Array.from(data[index] ?? []).findLast((each) => typeof each === "number") : value;
+              return typeof shown === "number" ? short(shown) : "–";
+            },
           })),
         ],
       },
       this.#data,
       this.#box,
     );
-    this.#showData();
   }
 
-  /** The legend shows the newest values until the pointer asks for others. */
-  #showData(): void {
-    this.#plot?.setData(this.#data);
-    this.#plot?.setLegend({ idx: Math.max(0, this.#data[0].length - 1) });
+  destroy(): void {
+    this.#observer.disconnect();
+    this.#plot?.destroy();
   }
 
   #size(): { width: number; height: number } {

@@ -45,6 +45,13 @@ function tabulate(fit: (typeof fits)[MapName]): Uint8ClampedArray {
 
 const tables: Record<MapName, Uint8ClampedArray> = { viridis: tabulate(fits.viridis), magma: tabulate(fits.magma) };
 
+/** The map's colour at a share of its way, in bytes. */
+export function colourAt(map: MapName, share: number): [number, number, number] {
+  const at = 3 * Math.max(0, Math.min(255, Math.round(255 * share)));
+  const table = tables[map];
+  return [table[at] ?? 0, table[at + 1] ?? 0, table[at + 2] ?? 0];
+}
+
 /** The map as a CSS gradient, for legends. */
 export function gradient(map: MapName): string {
   const table = tables[map];

@@ -21,8 +21,11 @@ export interface OwnFiles {
 
 export type Source = { kind: "sample"; request: SampleRequest } | { kind: "files"; files: OwnFiles };
 
-/** Options whose light may also be "known": that of the sample, which only the worker holds. */
-export type LabOptions = Omit<Options, "light"> & { light: "known" | "estimate" | number[] };
+/** Options whose light may also be "known" and whose start "truth": those of the sample, which only the worker holds. */
+export type LabOptions = Omit<Options, "light" | "start"> & {
+  light: "known" | "estimate" | number[];
+  start: NonNullable<Options["start"]> | "truth";
+};
 
 /**
  * Numbers of one view as they are drawn: from the pixel at `left`, `top` on, every `stride`-th of the full grid, so that

@@ -2,14 +2,16 @@
 
 import init, { BimodalError, Estimator, sample, sampleLights, sampleSurfaces } from "../../pkg/index.js";
 import wasm from "../../pkg/bimodal_stereo_bg.wasm?url";
-import type { ColorImage, DepthMap, Options, StepReport } from "../../pkg/index.js";
-import type { Answer, Calls, Fault, Frame, Kind, OwnFiles, Request, LabOptions, Source } from "./protocol";
+import type { ColorImage, DepthMap, Options, Pose, StepReport } from "../../pkg/index.js";
+import type { Answer, Calls, Frame, Kind, OwnFiles, Request, LabOptions, Source } from "./protocol";
+import { faultOf } from "./fault";
 import { cutOfDepth, cutOfImage, givenDepth, picture, raster, thinned, type Cut } from "./rasters";
 
 interface Input {
   image: ColorImage;
   depth: DepthMap;
   light?: ArrayLike<number>;
+  truth: Pose | null;
 }
 
 interface Experiment extends Input {
@@ -41,9 +43,15 @@ async function load(): Promise<void> {
   isLoaded = true;
 }
 
-function resolve({ light, ...rest }: LabOptions, input: Input): Options {
-  if (light !== "known") return { ...rest, light };
-  return { ...rest, light: input.light ?? "estimate" };
+function resolve({ light, start, ...rest }: LabOptions, input: Input): Options {
+  if (start === "truth" && !input.truth) {
+    throw new BimodalError("option", "options.start: the true pose is known of a sample alone", "options.start");
+  }
+  return {
+    ...rest,
+    light: light === "known" ? (input.light ?? "estimate") : light,
+    start: start === "truth" ? (input.truth ?? "search") : start,
+  };
 }
 
 function frame({ estimator, imageCut, depthCut }: Experiment, reports: StepReport[]): Frame {
@@ -77,7 +85,7 @@ async function open({ source, options }: Calls["open"]["request"]): Promise<Call
   };
 }
 
-type Prepared = Input & Pick<Calls["open"]["reply"], "notes" | "truth">;
+type Prepared = Input & Pick<Calls["open"]["reply"], "notes">;
 
 function fromSample({ request }: Extract<Source, { kind: "sample" }>): Prepared {
   const { image, depth, light, pose } = sample(request);
@@ -135,16 +143,6 @@ function answer(request: Request): Promise<Calls[Kind]["reply"]> | Calls[Kind]["
   }
 }
 
-function fault(error: unknown): Fault {
-  if (error instanceof BimodalError) {
-    const { code, message, field } = error;
-    return { code, message, fatal: code === "panic" || !isLoaded, ...(field === undefined ? {} : { field }) };
-  }
-  const reason = error instanceof Error ? error.message : String(error);
-  const message = isLoaded ? reason : `the numerics could not be loaded (${reason})`;
-  return { code: "internal", message, fatal: error instanceof WebAssembly.RuntimeError || !isLoaded };
-}
-
 /** Every array of a reply is a copy of its own, so all of them may be transferred. */
 function buffers(value: unknown, found = new Set<ArrayBuffer>()): Set<ArrayBuffer> {
   if (ArrayBuffer.isView(value)) {
@@ -166,7 +164,7 @@ async function handle(request: Request): Promise<void> {
     const reply = await answer(request);
     post({ id, ok: true, reply }, [...buffers(reply)]);
   } catch (error) {
-    post({ id, ok: false, fault: fault(error) }, []);
+    post({ id, ok: false, fault: faultOf(error, isLoaded) }, []);
   }
 }
 

@@ -2,25 +2,26 @@
 
 import { byId } from "../dom";
 import { Engine, EngineError } from "../engine/engine";
-import type { Calls, Frame, Opened, OwnFiles, Source } from "../engine/protocol";
+import type { Calls, Frame, Opened, Source } from "../engine/protocol";
 import type { Pose, StepReport } from "../../pkg/index.js";
 import { Form } from "./form";
 import { Gallery } from "./gallery";
 import { Intake } from "./intake";
 import { Player } from "./player";
 import { PoseTable } from "./posetable";
-import { camera, fields, fromLink, inputGroups, runOptions, sampleRequest, type Origin, type Settings } from "./settings";
+import { fields, inputGroups, runOptions, type Origin, type Settings } from "./settings";
 import { download, writeAddress } from "./share";
+import { sourceOf } from "./source";
 import { Store } from "./store";
 import { Strip, type Notice } from "./strip";
 import { verdict } from "./verdict";
 
 export class Lab {
-  readonly store = new Store(fromLink(location.hash));
+  readonly store: Store;
   readonly gallery = new Gallery();
   readonly player: Player;
   readonly #engine: Engine;
-  readonly #form = new Form(this.store);
+  readonly #form: Form;
   readonly #intake = new Intake(() => void this.#reopen());
   readonly #strip = new Strip(byId("stages", HTMLElement));
   readonly #pose = new PoseTable(byId("pose", HTMLTableElement));
@@ -48,8 +49,12 @@ export class Lab {
   /** The beginning under way, which steps wait for. */
   #beginning: Promise<void> = Promise.resolve();
   #offered = false;
+  /** The run that is to play once its input is there, if the visitor still waits for it. */
+  #watched: Settings | undefined;
 
-  constructor() {
+  constructor(settings: Settings) {
+    this.store = new Store(settings);
+    this.#form = new Form(this.store);
     this.#engine = new Engine({
       onLoad: (bytes) => {
         if (!this.#report) this.#announce("loading", `loading the numerics, ${Math.round(bytes / 1000)} kB`);
@@ -71,8 +76,28 @@ export class Lab {
     this.#form.adapt(this.store.settings, this.#origin);
   }
 
-  begin(): Promise<void> {
-    return this.#reopen();
+  /** These settings on the screen; the first ones open their input in any case. */
+  enter(settings: Settings): Promise<void> {
+    this.store.change(settings);
+    return this.#turn === 0 ? this.#reopen() : this.#beginning;
+  }
+
+  /** Plays the run of these settings from its beginning. */
+  async watch(settings: Settings): Promise<void> {
+    this.#watched = settings;
+    const before = this.#turn;
+    const entered = this.enter(settings);
+    const begun = before === this.#turn ? this.restart() : entered;
+    const turn = this.#turn;
+    await begun;
+    if (this.#watched !== settings || this.#turn !== turn || this.player.playing) return;
+    this.player.toggle();
+  }
+
+  /** Nobody looks any more. */
+  leave(): void {
+    this.#watched = undefined;
+    this.player.pause();
   }
 
   /** Samples or own files; the last input stays on the screen until there is a new one. */
@@ -101,26 +126,9 @@ export class Lab {
     void (input ? this.#reopen() : this.restart());
   }
 
-  /** The input that the settings describe, or in words what it still lacks. */
-  #source(): Source | string {
-    const settings = this.store.settings;
-    if (this.#origin === "sample") return { kind: "sample", request: sampleRequest(settings) };
-    const { colour, depth, ...masks } = this.#intake.files;
-    if (!colour || !depth) return colour ? "waiting for a depth map" : depth ? "waiting for a colour image" : "waiting for both files";
-    const files: OwnFiles = { colour, depth, ...masks };
-    for (const side of ["colour", "depth"] as const) {
-      const given = camera(settings, side);
-      if (typeof given === "string") return `${side} camera: waiting for ${given}`;
-      if (given) files[`${side}Camera`] = given;
-    }
-    if (typeof settings.unit === "number") files.unit = settings.unit;
-    if (settings.transfer === "srgb" || settings.transfer === "linear") files.transfer = settings.transfer;
-    return { kind: "files", files };
-  }
-
   #reopen(): Promise<void> {
     this.player.pause();
-    return this.#start(this.#source());
+    return this.#start(sourceOf(this.#origin, this.store.settings, this.#intake.files));
   }
 
   /** The loop from its beginning, on an input that the worker may already hold. */

@@ -67,19 +67,26 @@ const distortion = (side: "colour" | "depth"): ListField => ({
 });
 const ESTIMATED = "Estimated along with the pose.";
 const near = (settings: Settings) => settings.start === "near";
+/** The bare grid is taken as it is: its size follows from the surface, and nothing is rendered that noise could be added to. */
+const rendered = (settings: Settings) => settings.protocol !== "grid";
 
 export const fields: readonly Field[] = [
   { kind: "choice", key: "surface", label: "Surface", initial: "bust", group: "sample", path: "sample.surface" },
   { kind: "choice", key: "light", label: "Light", initial: "colourful", group: "sample", path: "sample.light" },
-  { kind: "choice", key: "size", label: "Size", hint: "Side of both views.", initial: "64", group: "sample", path: "sample.size",
-    choices: [["32", "32 px"], ["64", "64 px"], ["128", "128 px"], ["256", "256 px"]] },
+  { kind: "choice", key: "size", label: "Size", hint: "Side of both views.", initial: "64", group: "sample", path: "sample.size", when: rendered,
+    choices: [["32", "32 px"], ["64", "64 px"], ["96", "96 px"], ["128", "128 px"], ["256", "256 px"]] },
+  { kind: "choice", key: "protocol", label: "Protocol", initial: "rendered", group: "sample", path: "sample.protocol",
+    hint: "Rendered: as cameras see the surface. Bare grid: every eighth sample of it, the same points in both views, as the paper may have done.",
+    choices: [["rendered", "rendered"], ["grid", "bare grid"]] },
   { ...angle("beta", "Rotation β", 20, "sample", "sample.angles.beta"), slider: true, hint: "About the vertical axis: the angle to find." },
   angle("alpha", "Rotation α", 0, "sample", "sample.angles.alpha"),
   angle("gamma", "Rotation γ", 0, "sample", "sample.angles.gamma"),
-  { kind: "number", key: "noise", label: "Colour noise", hint: "Gaussian, on the logarithm of the intensity.", initial: 0, min: 0, max: 0.2, step: 0.005, slider: true, group: "sample", path: "sample.noise" },
+  { kind: "number", key: "trueScale", label: "True scale", hint: "Of the pose to find: the depth view is smaller by it.", initial: 1, step: 0.05, group: "sample", path: "sample.scale", when: rendered },
+  { kind: "number", key: "noise", label: "Colour noise", hint: "Gaussian, on the logarithm of the intensity.", initial: 0, min: 0, max: 0.2, step: 0.005, slider: true, group: "sample", path: "sample.noise", when: rendered },
   { kind: "number", key: "overlap", label: "Overlap", hint: "Share of the depth map's columns that is kept.", initial: 1, min: 0.1, max: 1, step: 0.05, slider: true, group: "sample", path: "sample.overlap" },
-  { kind: "number", key: "depthNoise", label: "Depth noise", initial: 0, min: 0, max: 5, step: 0.1, unit: "px", group: "sample", path: "sample.depthNoise" },
-  { kind: "number", key: "holes", label: "Holes", hint: "Share of the depth pixels that is lost.", initial: 0, min: 0, max: 0.5, step: 0.05, group: "sample", path: "sample.holes" },
+  { kind: "number", key: "depthNoise", label: "Depth noise", initial: 0, min: 0, max: 5, step: 0.1, unit: "px", group: "sample", path: "sample.depthNoise", when: rendered },
+  { kind: "number", key: "holes", label: "Holes", hint: "Share of the depth pixels that is lost.", initial: 0, min: 0, max: 0.5, step: 0.05, group: "sample", path: "sample.holes", when: rendered },
+  { kind: "number", key: "draw", label: "Noise seed", hint: "Another number draws other noise and other holes.", initial: null, min: 0, step: 1, group: "sample", path: "sample.seed", when: rendered },
 
   { kind: "choice", key: "transfer", label: "Encoding", hint: "How the file's numbers stand for intensity.", initial: "guess", group: "colour", path: "image.transfer",
     choices: [["guess", "guess"], ["srgb", "sRGB"], ["linear", "linear"]] },
@@ -94,7 +101,8 @@ export const fields: readonly Field[] = [
   { kind: "list", key: "coefficients", label: "Light", hint: "27 numbers where the light is known: nine for red, for green, for blue.", initial: "", empty: "estimated", group: "method", path: "options.light",
     when: (_, source) => source === "files", remark: (value) => (value === "" ? ESTIMATED : "") },
   { kind: "choice", key: "start", label: "Start", initial: "search", group: "method", path: "options.start",
-    hint: "Search: everywhere. Identity: both views coincide. Near: the angles below.", choices: [["search", "search"], ["identity", "identity"], ["near", "near"]] },
+    hint: "Search: everywhere. Identity: both views coincide. Near: the angles below. True pose: a sample's own.",
+    choices: [["search", "search"], ["identity", "identity"], ["near", "near"], ["truth", "true pose"]] },
   { ...angle("start.alpha", "Start α", 0, "method", "options.start.angles.alpha"), when: near },
   { ...angle("start.beta", "Start β", 12, "method", "options.start.angles.beta"), when: near },
   { ...angle("start.gamma", "Start γ", 0, "method", "options.start.angles.gamma"), when: near },
@@ -146,17 +154,20 @@ const angles = (settings: Settings, prefix: string) => ({
 });
 
 export function sampleRequest(settings: Settings): SampleRequest {
+  const surface = { surface: text(settings, "surface"), light: text(settings, "light"), angles: angles(settings, "") };
+  const kept = present<Pick<SampleRequest, "overlap">>({ overlap: number(settings, "overlap") });
+  // The library refuses what the bare grid has no use for.
+  if (!rendered(settings)) return { ...surface, ...kept, protocol: "grid" };
   return {
-    surface: text(settings, "surface"),
-    light: text(settings, "light"),
+    ...surface,
+    ...kept,
     size: Number(settings.size),
-    angles: angles(settings, ""),
-    ...present<Pick<SampleRequest, "noise" | "overlap" | "depthNoise" | "holes" | "seed">>({
+    ...present<Pick<SampleRequest, "scale" | "noise" | "depthNoise" | "holes" | "seed">>({
+      scale: number(settings, "trueScale"),
       noise: number(settings, "noise"),
-      overlap: number(settings, "overlap"),
       depthNoise: number(settings, "depthNoise"),
       holes: number(settings, "holes"),
-      seed: number(settings, "seed"),
+      seed: number(settings, "draw"),
     }),
   };
 }
@@ -180,7 +191,7 @@ export function runOptions(settings: Settings, source: Origin): LabOptions {
   });
   return {
     light: lightOption(settings, source),
-    start: near(settings) ? { angles: angles(settings, "start.") } : settings.start === "identity" ? "identity" : "search",
+    start: near(settings) ? { angles: angles(settings, "start.") } : one<"search" | "identity" | "truth">(settings.start, ["search", "identity", "truth"]),
     registration: one(settings.registration, ["joint", "icp", "fixed"]),
     shading: one(settings.shading, ["surface", "pixel"]),
     scale: number(settings, "scale") ?? "free",

@@ -1,6 +1,7 @@
 /** What can be taken away: a link that brings the same experiment back, and the report as a file. */
 
 import type { Pose, StepReport } from "../../pkg/index.js";
+import { saveJson } from "../save";
 import { toLink, type Origin, type Settings } from "./settings";
 import { angleBetween } from "./verdict";
 
@@ -26,12 +27,5 @@ export interface Experiment {
 /** Saves everything there is to say about a run as JSON. */
 export function download({ source, settings, truth, report, history }: Experiment): void {
   const rotationErrorDegrees = truth ? angleBetween(report.pose.rotation, truth.rotation) : null;
-  const text = JSON.stringify({ format: "bimodal-stereo report", version: 1, source, settings, truth, rotationErrorDegrees, report, history }, null, 2);
-  const url = URL.createObjectURL(new Blob([text], { type: "application/json" }));
-  const link = document.createElement("a");
-  link.href = url;
-  link.download = "bimodal-stereo-report.json";
-  link.click();
-  // Some browsers read the blob only after the click has returned.
-  setTimeout(() => URL.revokeObjectURL(url), 10_000);
+  saveJson("bimodal-stereo-report.json", { format: "bimodal-stereo report", version: 1, source, settings, truth, rotationErrorDegrees, report, history });
 }

@@ -1,7 +1,7 @@
 // Random scenes with nothing known, the same ones brighter and darker, and without one part of the method at a time.
 import { FROM_ANYWHERE, NOISE } from "./scenes.mjs";
 import { aboutAxis, anglesOf, degreesBetween, product } from "./rotations.mjs";
-import { drawGaussian } from "./numbers.mjs";
+import { chance, drawGaussian } from "./numbers.mjs";
 import { randomRow } from "./counts.mjs";
 
 export const SCENES = 300;
@@ -47,6 +47,10 @@ const randomCell = (kit, seed, { id = "random", row = {}, options = {}, ...chang
   options: { ...FROM_ANYWHERE, ...options },
   ...changes,
 });
+
+/** The scene of any cell: written down, or drawn from its seed. */
+export const sceneOf = (cell, library) =>
+  cell.kind === "random" ? { ...drawScene(chance(cell.seed), cell.kit, library.gaussian), seed: cell.seed } : cell.scene;
 
 const seeds = (count) => Array.from({ length: count }, (_, index) => index + 1);
 

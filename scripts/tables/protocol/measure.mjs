@@ -1,6 +1,5 @@
 // Runs one cell through the public contract and measures what came out. `api` is the package, `library` has the data.
-import { drawScene } from "./anywhere.mjs";
-import { chance } from "./numbers.mjs";
+import { sceneOf } from "./anywhere.mjs";
 import { judged, optionsOf, withRun } from "./runs.mjs";
 import { requestOf } from "./scenes.mjs";
 import { measurePair, measurePhotograph } from "./measure-reals.mjs";
@@ -17,7 +16,7 @@ async function measurePose(cell, api, library) {
 }
 
 async function measureRandom(cell, api, library) {
-  const scene = { ...drawScene(chance(cell.seed), cell.kit, library.gaussian), seed: cell.seed };
+  const scene = sceneOf(cell, library);
   const made = api.sample(requestOf(scene, library));
   const factor = cell.exposure ?? 1;
   const image = { ...made.image, data: made.image.data.map((value) => value * factor) };

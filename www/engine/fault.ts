@@ -1,0 +1,15 @@
+/** Errors in a form that survives the way between threads. */
+
+import { BimodalError } from "../../pkg/index.js";
+import type { Fault } from "./protocol";
+
+/** What went wrong in a worker, whose module may not even have been `loaded`. */
+export function faultOf(error: unknown, loaded: boolean): Fault {
+  if (error instanceof BimodalError) {
+    const { code, message, field } = error;
+    return { code, message, fatal: code === "panic" || !loaded, ...(field === undefined ? {} : { field }) };
+  }
+  const reason = error instanceof Error ? error.message : String(error);
+  const message = loaded ? reason : `the numerics could not be loaded (${reason})`;
+  return { code: "internal", message, fatal: error instanceof WebAssembly.RuntimeError || !loaded };
+}

@@ -1,0 +1,20 @@
+/** The input that the settings describe. */
+
+import type { OwnFiles, Source } from "../engine/protocol";
+import type { Slot } from "./intake";
+import { camera, sampleRequest, type Origin, type Settings } from "./settings";
+
+/** Or in words what it still lacks. */
+export function sourceOf(origin: Origin, settings: Settings, { colour, depth, ...masks }: Partial<Record<Slot, File>>): Source | string {
+  if (origin === "sample") return { kind: "sample", request: sampleRequest(settings) };
+  if (!colour || !depth) return colour ? "waiting for a depth map" : depth ? "waiting for a colour image" : "waiting for both files";
+  const files: OwnFiles = { colour, depth, ...masks };
+  for (const side of ["colour", "depth"] as const) {
+    const given = camera(settings, side);
+    if (typeof given === "string") return `${side} camera: waiting for ${given}`;
+    if (given) files[`${side}Camera`] = given;
+  }
+  if (typeof settings.unit === "number") files.unit = settings.unit;
+  if (settings.transfer === "srgb" || settings.transfer === "linear") files.transfer = settings.transfer;
+  return { kind: "files", files };
+}

@@ -1,0 +1,10 @@
+/** Which place of the page an address asks for. The Lab's own settings need no name: they have the address to themselves. */
+
+export type Place = "lab" | "tables";
+
+const TABLES = /^#tables(?=&|$)/;
+
+export const placeOf = (hash: string): Place => (TABLES.test(hash) ? "tables" : "lab");
+
+/** Beside its settings an address may ask that the run begins; whoever has obeyed takes the word out. */
+export const asksToPlay = (hash: string): boolean => new URLSearchParams(hash.replace(/^#/, "")).has("play");

@@ -1,0 +1,173 @@
+/** A table as a grid of buttons, coloured by their numbers. One of them is in the tab order; arrows lead to the others. */
+
+import { short } from "../draw/numbers";
+import { make } from "../dom";
+import type { Axis, Panel } from "./panels";
+import { isConfidentlyWrong, type Cell } from "./protocol";
+import { colourOf, wantsBlack } from "./ramp";
+import type { State } from "./runner";
+
+/** What a result says of itself: a shape to see, and the same in words. */
+export interface Mark {
+  kind: "ambiguous" | "lost" | "stopped" | "wrong";
+  glyph: string;
+  words: string;
+}
+
+export const marks: readonly Mark[] = [
+  { kind: "ambiguous", glyph: "?", words: "ambiguous: other poses explain it as well" },
+  { kind: "lost", glyph: "×", words: "lost, and said so" },
+  { kind: "stopped", glyph: "=", words: "stopped at the cap of iterations" },
+  { kind: "wrong", glyph: "!", words: "over 3° off, and nothing said" },
+];
+
+/** A wrong pose that nothing warns of is worse than anything that is said. */
+export function markOf(state: State | undefined): Mark | undefined {
+  if (state?.kind !== "done") return undefined;
+  const { result } = state;
+  // Where no pose was looked for, neither right nor wrong is said of it, and a loop without an aim always ends at its cap.
+  if (!("rivals" in result)) return undefined;
+  const kind = isConfidentlyWrong(result) ? "wrong" : result.status === "max-iterations" ? "stopped" : result.status;
+  return marks.find((mark) => mark.kind === kind);
+}
+
+/** How a state reads aloud. */
+export function inWords(panel: Panel, state: State | undefined): string {
+  switch (state?.kind) {
+    case undefined:
+      return "not run";
+    case "waiting":
+      return "waiting";
+    case "running":
+      return `running, ${state.words}`;
+    case "failed":
+      return `failed: ${state.message}`;
+    case "done": {
+      const value = panel.value(state.result);
+      const mark = markOf(state);
+      return `${value === undefined ? "no value" : `${short(value)}${panel.unit}`}${mark ? `, ${mark.words}` : ""}`;
+    }
+  }
+}
+
+/** A cell's place in its table. */
+export const whereIs = ({ down, across, where }: Panel, cell: Cell): string =>
+  where?.(cell) ?? [down, across].map((axis) => `${axis.label} ${axis.name(axis.of(cell))}`.trim()).join(", ");
+
+const values = (axis: Axis, cells: readonly Cell[]): (string | number)[] => [...new Set(cells.map((cell) => axis.of(cell)))];
+
+/** Numbers in their order; words in the protocol's. */
+const ordered = (axis: Axis, cells: readonly Cell[]): (string | number)[] => {
+  const all = values(axis, cells);
+  return all.every((value) => typeof value === "number") ? all.sort((a, b) => a - b) : all;
+};
+
+export interface HeatHooks {
+  onPress(cell: Cell): void;
+  /** The heading of a row was pressed. */
+  onRow(cells: readonly Cell[]): void;
+}
+
+export class Heat {
+  readonly element: HTMLElement;
+  readonly #panel: Panel;
+  readonly #buttons: (HTMLButtonElement | undefined)[][] = [];
+  readonly #byId = new Map<string, { cell: Cell; button: HTMLButtonElement }>();
+
+  constructor(panel: Panel, cells: readonly Cell[], { onPress, onRow }: HeatHooks) {
+    this.#panel = panel;
+    const { down, across } = panel;
+    const rows = ordered(down, cells);
+    const columns = ordered(across, cells);
+    const corner = make("th", { scope: "col" }, down.label, ...(across.label ? [make("span", { class: "soft" }, ` \\ ${across.label}`)] : []));
+    const head = make("thead", {}, make("tr", {}, corner, ...columns.map((column) => make("th", { scope: "col" }, across.name(column)))));
+    const body = make("tbody");
+    for (const row of rows) {
+      const line = columns.map((column) => {
+        const cell = cells.find((each) => down.of(each) === row && across.of(each) === column);
+        return cell && this.#button(cell, onPress);
+      });
+      const heading = make("button", { type: "button", class: "quiet", tabindex: -1, "aria-label": `Run row ${down.label} ${down.name(row)}`, title: "Run this row" }, down.name(row));
+      this.#buttons.push([heading, ...line]);
+      heading.addEventListener("click", () => onRow(cells.filter((cell) => down.of(cell) === row)));
+      body.append(make("tr", {}, make("th", { scope: "row" }, heading), ...line.map((button) => make("td", {}, button ?? ""))));
+    }
+    const attributes = { class: "heat", role: "grid", "aria-label": `${panel.tab}: ${panel.quantity}`, style: `--columns: ${columns.length}` };
+    this.element = make("table", { ...attributes, "data-two-lines": panel.paper !== undefined }, head, body);
+    this.element.addEventListener("keydown", (event) => this.#move(event));
+    const [first] = this.#byId.values();
+    if (first) first.button.tabIndex = 0;
+  }
+
+  show(id: string, state: State | undefined): void {
+    const found = this.#byId.get(id);
+    if (!found) return;
+    const { cell, button } = found;
+    const value = state?.kind === "done" ? this.#panel.value(state.result) : undefined;
+    const mark = markOf(state);
+    button.dataset.state = state?.kind ?? "idle";
+    button.toggleAttribute("data-absent", state?.kind === "done" && value === undefined);
+    button.style.setProperty("--heat", value === undefined ? "transparent" : colourOf(value));
+    button.style.setProperty("--on-heat", value === undefined ? "" : wantsBlack(value) ? "#000" : "#fff");
+    if (value === undefined) delete button.dataset.value;
+    else button.dataset.value = String(value);
+    const paper = this.#panel.paper?.(cell);
+    button.replaceChildren(
+      make("span", { class: "heat-value" }, caption(state, value)),
+      ...(paper === undefined ? [] : [make("span", { class: "heat-paper" }, short(paper))]),
+      ...(mark ? [make("span", { class: "mark", "data-mark": mark.kind, "aria-hidden": "true" }, mark.glyph)] : []),
+    );
+    const where = whereIs(this.#panel, cell);
+    const reference = paper === undefined ? "" : `; the paper: ${short(paper)}${this.#panel.unit}`;
+    button.setAttribute("aria-label", `${where}: ${inWords(this.#panel, state)}${reference}`);
+    button.title = `${inWords(this.#panel, state)}${reference}`;
+  }
+
+  /** The chosen cell is the one that the tab key comes back to. */
+  choose(id: string | undefined): void {
+    const chosen = id === undefined ? undefined : this.#byId.get(id)?.button;
+    for (const { button } of this.#byId.values()) button.setAttribute("aria-pressed", String(button === chosen));
+    if (chosen) this.#enter(chosen);
+  }
+
+  #button(cell: Cell, onPress: (cell: Cell) => void): HTMLButtonElement {
+    const button = make("button", { type: "button", class: "heat-cell", tabindex: -1, "data-cell": cell.id, "aria-pressed": "false" });
+    button.addEventListener("click", () => onPress(cell));
+    this.#byId.set(cell.id, { cell, button });
+    return button;
+  }
+
+  #enter(button: HTMLButtonElement): void {
+    for (const each of this.#buttons.flat()) if (each) each.tabIndex = -1;
+    button.tabIndex = 0;
+  }
+
+  #move(event: KeyboardEvent): void {
+    const step = { ArrowLeft: [0, -1], ArrowRight: [0, 1], ArrowUp: [-1, 0], ArrowDown: [1, 0] }[event.key];
+    const row = this.#buttons.findIndex((line) => line.some((button) => button === event.target));
+    const column = this.#buttons[row]?.findIndex((button) => button === event.target) ?? -1;
+    if (!step || column < 0) return;
+    event.preventDefault();
+    const target = this.#buttons[row + (step[0] ?? 0)]?.[column + (step[1] ?? 0)];
+    if (!target) return;
+    this.#enter(target);
+    target.focus();
+  }
+}
+
+/** Nothing yet is a dash, never a zero. */
+function caption(state: State | undefined, value: number | undefined): string {
+  switch (state?.kind) {
+    case "waiting":
+      return "···";
+    case "running":
+      return /\d+ %/.exec(state.words)?.[0] ?? "···";
+    case "failed":
+      return "failed";
+    case "done":
+      // In the narrow cells of a phone an exponent has room for one digit.
+      return value === undefined ? "none" : value > 0 && value < 1e-3 ? value.toExponential(0) : short(value);
+    case undefined:
+      return "–";
+  }
+}

@@ -1,0 +1,14 @@
+/** What the tables' page and their worker say to each other. */
+
+import type { Fault } from "../engine/protocol";
+import type { Cell, Result } from "./protocol";
+
+export interface Task {
+  cell: Cell;
+}
+
+export type Answer =
+  /** How far the cell is, in words. */
+  | { id: string; progress: string }
+  | { id: string; result: Result }
+  | { id: string; fault: Fault };

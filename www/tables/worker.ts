@@ -1,0 +1,58 @@
+/** The thread that measures cells, one after the other. What is measured and how is the protocol's alone. */
+
+import init, { Estimator, sample, sampleBound } from "../../pkg/index.js";
+import wasm from "../../pkg/bimodal_stereo_bg.wasm?url";
+import type { RunOptions, StepReport } from "../../pkg/index.js";
+import { measure } from "../../scripts/tables/protocol/measure.mjs";
+import { faultOf } from "../engine/fault";
+import type { Answer, Task } from "./messages";
+import { library, type Result } from "./protocol";
+
+/** Milliseconds between two words on how far a cell is. */
+const TELL_EVERY = 100;
+
+let isLoaded = false;
+const ready = init(wasm).then(() => (isLoaded = true));
+// Whoever waits for it hears of a failure; that nobody waits yet is no failure of its own.
+ready.catch(() => {});
+
+let current = "";
+let told = 0;
+
+function tell({ stage, message, iteration }: StepReport): void {
+  const now = performance.now();
+  if (now - told < TELL_EVERY) return;
+  told = now;
+  const share = stage === "search" ? /^\d+ %/.exec(message ?? "")?.[0] : undefined;
+  post({ id: current, progress: share ? `search ${share}` : `iteration ${iteration}` });
+}
+
+/** The protocol's own run, told of while it lasts. */
+class Watched extends Estimator {
+  override run(options: RunOptions = {}): Promise<StepReport> {
+    return super.run({ ...options, onStep: tell });
+  }
+}
+
+const api = { Estimator: Watched, sample, sampleBound };
+
+function post(answer: Answer): void {
+  self.postMessage(answer);
+}
+
+async function handle({ cell }: Task): Promise<void> {
+  const { id } = cell;
+  try {
+    await ready;
+    current = id;
+    post({ id, result: (await measure(cell, api, library)) as Result });
+  } catch (error) {
+    post({ id, fault: faultOf(error, isLoaded) });
+  }
+}
+
+/** A run leaves room for messages, so what comes in between has to wait. */
+let last: Promise<void> = Promise.resolve();
+self.onmessage = (event: MessageEvent<Task>) => {
+  last = last.then(() => handle(event.data));
+};
