@@ -143,6 +143,7 @@ const options = object({
   correspondenceDistance: number,
   maxIterations: number,
   seed: number,
+  annealing: flag,
   trim: flag,
 });
 

@@ -56,6 +56,8 @@ export interface Options {
   registration?: "joint" | "icp" | "fixed";
   shading?: "surface" | "pixel";
   lambda?: { prior?: number; unit?: number; light?: number; refinement?: number };
+  /** Whether the registration by colours starts tolerant and becomes strict by and by. Default true; false shows what that is good for. */
+  annealing?: boolean;
   stopDegrees?: number;
   /** In image pixels. */
   correspondenceDistance?: number;

@@ -97,6 +97,8 @@ pub struct Options {
     pub max_iterations: u32,
     /// Seed of everything random.
     pub seed: u64,
+    /// Whether the registration by colours starts tolerant and becomes strict by and by; `false` shows what that is good for.
+    pub annealing: bool,
     /// Whether flying pixels and background inside the mask are trimmed.
     pub trim: bool,
 }
@@ -114,6 +116,7 @@ impl Default for Options {
             correspondence_distance: None,
             max_iterations: 60,
             seed: 1,
+            annealing: true,
             trim: true,
         }
     }

@@ -22,6 +22,14 @@ pub struct Given<'a> {
     /// The light where it is known, but for its exposure.
     pub light: Option<&'a Light>,
     pub scale_is_held: bool,
+    /// Whether registrations start tolerant.
+    pub annealing: bool,
+}
+
+impl Given<'_> {
+    fn options(&self) -> PhotometricOptions {
+        PhotometricOptions { annealing: self.annealing, ..PhotometricOptions::default() }
+    }
 }
 
 /// Registers the measured depth view to the image; owns all memory.
@@ -104,14 +112,14 @@ impl Joint {
         });
         let found = match self.found.take().filter(|_| stands) {
             Some(found) => found,
-            None => self.photometric.register(&self.sharp.problem(given), start, &PhotometricOptions::default())?,
+            None => self.photometric.register(&self.sharp.problem(given), start, &given.options())?,
         };
         Ok(self.found.insert(found))
     }
 
     /// Begins a registration that [`advance`](Self::advance) carries on, a round at a time.
     pub fn begin(&mut self, given: &Given<'_>, start: &Similarity) -> Result<()> {
-        self.photometric.begin(&self.sharp.problem(given), start, &PhotometricOptions::default())
+        self.photometric.begin(&self.sharp.problem(given), start, &given.options())
     }
 
     /// One round; the report once it was the last.

@@ -2,6 +2,7 @@
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::view::mask::{self, FEWEST_PIXELS};
+use crate::view::noise;
 use crate::view::{Camera, Pinhole, Size};
 
 /// How integers encode intensity.
@@ -127,6 +128,16 @@ impl ColourView {
         self.log.iter().map(|channel| spread(channel)).sum::<f64>().sqrt()
     }
 
+    /// Standard deviation of the noise of log S in one channel, by its rows' fourth differences; print counts as noise.
+    #[must_use]
+    pub fn log_noise(&self) -> f64 {
+        let last = noise::REACH - 1;
+        let ends = || (0..self.size.len()).filter(|index| index % self.size.width >= last);
+        let bend =
+            |channel: &[f32], end: usize| noise::bend(std::array::from_fn(|k| f64::from(channel[end - k]))) as f32;
+        noise::of_bends(self.log.iter().flat_map(|channel| ends().map(|end| bend(channel, end))))
+    }
+
     /// log S of the three channels at a pixel, NaN off the mask.
     #[must_use]
     pub fn log_at(&self, index: usize) -> [f32; 3] {
@@ -182,6 +193,7 @@ fn decode(value: f32, transfer: Transfer) -> f32 {
 
 #[cfg(test)]
 mod tests {
+    use super::noise;
     use super::*;
 
     fn image(samples: ColourSamples) -> ColourImage {

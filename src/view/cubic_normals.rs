@@ -12,6 +12,7 @@
 
 use nalgebra::{SMatrix, SVector, Vector3};
 
+use super::noise;
 use crate::view::{Normals, Points, Size, quantile};
 
 /// Half widths of the windows in pixels. The first is the smallest that holds a cubic with some spare; noise asks for more.
@@ -25,9 +26,6 @@ const LARGEST_SLOPE: f64 = 0.5;
 const LARGEST_OFFSET: f64 = 0.3;
 /// .. or so many standard deviations of the depth's noise.
 const NOISE_OFFSETS: f64 = 3.0;
-/// Fourth differences of white noise in standard deviations of it, 70^(1/2), and the median of |x| in those of x.
-const FOURTH_DIFFERENCE: f64 = 8.366_600_265_340_756;
-const MEDIAN_ABSOLUTE: f64 = 0.674_489_750_196_082;
 /// Coefficients of a cubic in two variables.
 const TERMS: usize = 10;
 /// Rounds: the second starts from a normal that is right to a few hundredths.
@@ -46,7 +44,7 @@ type Terms = SVector<f64, TERMS>;
 /// Returns the standard deviation of the points in pixel lengths.
 pub fn improve(size: Size, points: &Points, normals: &mut Normals, error: &mut [f32]) -> f64 {
     let first = normals.clone();
-    let noise = noise(size, points);
+    let noise = noise_of(size, points);
     let (mut trial, mut trial_error) = (first.clone(), error.to_vec());
     let mut least = f32::INFINITY;
     for radius in RADII {
@@ -83,16 +81,15 @@ struct Window {
     noise: f64,
 }
 
-/// Standard deviation of the points by their rows' fourth differences, pixel lengths; what no cubic follows counts as noise.
-fn noise(size: Size, points: &Points) -> f64 {
-    let bends = (0..size.len()).filter(|index| index % size.width >= 4).filter_map(|index| {
-        let row: [Vector3<f64>; 5] = std::array::from_fn(|k| Vector3::from(points.get(index - k).map(f64::from)));
-        let unit = 0.25 * (row[4] - row[0]).norm();
-        let bend = (row[0] - 4.0 * row[1] + 6.0 * row[2] - 4.0 * row[3] + row[4]).norm() / unit;
-        bend.is_finite().then_some(bend as f32)
-    });
-    let median = f64::from(median(bends));
-    if median.is_finite() { median / (FOURTH_DIFFERENCE * MEDIAN_ABSOLUTE) } else { 0.0 }
+/// Standard deviation of the points, pixel lengths.
+fn noise_of(size: Size, points: &Points) -> f64 {
+    let last = noise::REACH - 1;
+    noise::of_bends((0..size.len()).filter(|index| index % size.width >= last).map(|index| {
+        let row: [Vector3<f64>; noise::REACH] =
+            std::array::from_fn(|k| Vector3::from(points.get(index - k).map(f64::from)));
+        let unit = (row[last] - row[0]).norm() / last as f64;
+        (noise::bend(row).norm() / unit) as f32
+    }))
 }
 
 /// Median of the numbers; infinite without any.

@@ -73,6 +73,8 @@ extern "C" {
     fn shading(this: &JsOptions) -> Option<String>;
     #[wasm_bindgen(method, getter)]
     fn lambda(this: &JsOptions) -> Option<JsLambda>;
+    #[wasm_bindgen(method, getter)]
+    fn annealing(this: &JsOptions) -> Option<bool>;
     #[wasm_bindgen(method, getter, js_name = "stopDegrees")]
     fn stop_degrees(this: &JsOptions) -> Option<f64>;
     #[wasm_bindgen(method, getter, js_name = "correspondenceDistance")]
@@ -215,6 +217,7 @@ pub fn options(js: &JsOptions) -> Result<Options> {
             _ => Shading::Surface,
         },
         weights: js.lambda().map_or(default.weights, |lambda| weights(&lambda, default.weights)),
+        annealing: js.annealing().unwrap_or(default.annealing),
         stop_degrees: js.stop_degrees().unwrap_or(default.stop_degrees),
         correspondence_distance: js.correspondence_distance(),
         max_iterations: match js.max_iterations() {

@@ -90,12 +90,12 @@ const ABLATIONS = [
   { without: "shape prior", options: { lambda: { prior: 0 } } },
   { without: "surface (pixel instead)", options: { shading: "pixel" } },
   { without: "joint (icp instead)", options: { registration: "icp" } },
+  { without: "annealing", options: { annealing: false } },
 ];
 
 export const ablation = {
   name: "ablation",
   title: "Ablation: the first random scenes without one part of the method",
-  notes: ["annealing can't be switched off through the public contract and is missing here"],
   cells: (kit, quick) =>
     seeds(quick ? 2 : 30).flatMap((seed) => [
       randomCell(kit, seed),

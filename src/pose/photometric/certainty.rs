@@ -23,6 +23,12 @@ const TILE: usize = 8;
 /// eight surfaces under natural lights (96x96), where one sigma from the residuals alone holds 44 % and three hold 85 %;
 /// at 1.9 three held all axes of 94.6 % of the 298 found poses of `npm run tables`.
 const UNSEEN: f64 = 2.1;
+/// Residuals so many times larger than the noise of the image itself are errors of the model: shadows, print, a lamp too
+/// sharp for nine harmonics. Made scenes leave 0.75 to 1 times that noise, photographs with shadows and paint 0.7 to 5 times.
+const MODEL_NOISE: f64 = 2.0;
+/// One sigma where all residuals are the model's, over what tiles tell: such errors reach across tiles. Photographs in one lamp's
+/// light that leave more than twice their noise end 4 to 17 such sigmas off, the others 1 to 3.
+const MODEL_SIGMA: f64 = 2.0;
 /// Sigma of a direction that nothing is known about, radians or object sizes.
 const UNKNOWN: f64 = 1e3;
 /// Cap on the rounds of the eigenvalue iteration, which ends after about 20.
@@ -77,6 +83,13 @@ impl Photometric {
         })
     }
 
+    /// Factor of one sigma for what the residuals of the tiles do not tell.
+    fn unseen(&self) -> f64 {
+        let of_image = MODEL_NOISE * self.image_noise / self.noise;
+        let of_model = (1.0 - of_image * of_image).max(0.0);
+        UNSEEN * (1.0 + (MODEL_SIGMA * MODEL_SIGMA - 1.0) * of_model).sqrt()
+    }
+
     /// M^-1 (sum over tiles of g g^T) M^-T with g the sum of a tile's scores.
     fn covariance(&mut self, problem: &PhotometricProblem<'_>, frame: &Frame, reduced: &Reduced) -> Square {
         let light = self.state.exposed();
@@ -101,7 +114,7 @@ impl Photometric {
         let mut covariance = match matrix.try_inverse() {
             // Fewer tiles than unknowns say nothing about the spread.
             Some(inverse) if count > free => {
-                inverse * spread * inverse.transpose() * (UNSEEN * UNSEEN * count / (count - free))
+                inverse * spread * inverse.transpose() * (self.unseen().powi(2) * count / (count - free))
             }
             _ => Square::identity() * UNKNOWN.powi(2),
         };

@@ -107,10 +107,13 @@ pub struct Photometric {
     /// The state at the end of the annealing.
     annealed: State,
     noise: f64,
+    /// That of the image itself, whatever the pose.
+    image_noise: f64,
     robust: Robust,
     phase: Phase,
     rounds: usize,
     most_rounds: usize,
+    annealing: bool,
     iterations: usize,
 }
 
@@ -129,10 +132,12 @@ impl Photometric {
             state,
             annealed: state,
             noise: f64::INFINITY,
+            image_noise: problem.image.log_noise().max(LEAST_NOISE),
             robust: FIRST_LOOK,
             phase: Phase::Done(PhotometricTermination::MostRounds),
             rounds: 0,
             most_rounds: 0,
+            annealing: true,
             iterations: 0,
         }
     }
@@ -179,7 +184,9 @@ impl Photometric {
         self.robust = FIRST_LOOK;
         self.fit_light(problem, level)?;
         self.measure(problem, level);
-        self.robust = Robust { scale: FIRST_SCALE * self.final_scale() / ANNEALING, prior: self.prior(problem) };
+        let tolerance = if options.annealing { FIRST_SCALE / ANNEALING } else { 1.0 };
+        self.robust = Robust { scale: tolerance * self.final_scale(), prior: self.prior(problem) };
+        self.annealing = options.annealing;
         Ok(())
     }
 
@@ -210,7 +217,8 @@ impl Photometric {
         self.fit_light(problem, level)?;
         self.measure(problem, level);
         let target = self.final_scale();
-        self.robust = Robust { scale: target.max(ANNEALING * self.robust.scale), prior: self.prior(problem) };
+        let tolerated = if self.annealing { ANNEALING * self.robust.scale } else { 0.0 };
+        self.robust = Robust { scale: target.max(tolerated), prior: self.prior(problem) };
         let before = self.state.pose;
         self.descend(problem, level, &frame)?;
         let change = before.degrees_to(&self.state.pose);

@@ -82,11 +82,13 @@ pub struct PhotometricOptions {
     pub first_level: usize,
     /// Cap on the rounds.
     pub most_rounds: usize,
+    /// Whether the robust scale shrinks from round to round; else it is the final one from the first round on.
+    pub annealing: bool,
 }
 
 impl Default for PhotometricOptions {
     fn default() -> Self {
-        Self { first_level: COARSEST, most_rounds: 40 }
+        Self { first_level: COARSEST, most_rounds: 40, annealing: true }
     }
 }
 

@@ -1,0 +1,47 @@
+//! The noise of a raster by the fourth differences of its rows: what no cubic follows counts as noise.
+
+use super::trim::quantile;
+
+/// Neighbours in a row that a fourth difference takes.
+pub const REACH: usize = 5;
+/// Fourth differences of white noise in standard deviations of it, 70^(1/2), and the median of |x| in those of x.
+const FOURTH_DIFFERENCE: f64 = 8.366_600_265_340_756;
+const MEDIAN_ABSOLUTE: f64 = 0.674_489_750_196_082;
+
+/// The fourth difference of five neighbours.
+pub fn bend<T>(row: [T; REACH]) -> T
+where
+    T: std::ops::Mul<f64, Output = T> + std::ops::Add<Output = T>,
+{
+    let [a, b, c, d, e] = row;
+    a + b * -4.0 + c * 6.0 + d * -4.0 + e
+}
+
+/// Standard deviation of the noise whose fourth differences have these sizes; zero without any.
+pub fn of_bends(sizes: impl Iterator<Item = f32>) -> f64 {
+    let mut sizes: Vec<f32> = sizes.filter(|size| size.is_finite()).map(f32::abs).collect();
+    if sizes.is_empty() {
+        return 0.0;
+    }
+    f64::from(quantile(&mut sizes, 0.5)) / (FOURTH_DIFFERENCE * MEDIAN_ABSOLUTE)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand_chacha::ChaCha8Rng;
+    use rand_chacha::rand_core::{Rng, SeedableRng};
+
+    #[test]
+    fn cubics_have_none_and_white_noise_its_own() {
+        let cubic = |x: f64| 0.3 * x.powi(3) - 2.0 * x * x + x - 7.0;
+        assert!(bend([0.0, 1.0, 2.0, 3.0, 4.0].map(cubic)).abs() < 1e-12);
+        // Sums of twelve uniform numbers are nearly normal, of variance one.
+        let mut dice = ChaCha8Rng::seed_from_u64(5);
+        let mut normal = || (0..12).map(|_| dice.next_u32() as f64 / f64::from(u32::MAX)).sum::<f64>() - 6.0;
+        let line: Vec<f64> = (0..20_000).map(|_| 0.2 * normal()).collect();
+        let bends = line.windows(REACH).map(|row| bend([row[0], row[1], row[2], row[3], row[4]]) as f32);
+        let noise = of_bends(bends);
+        assert!((noise - 0.2).abs() < 0.01, "{noise}");
+    }
+}
