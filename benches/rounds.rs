@@ -1,8 +1,9 @@
 //! The native half of `npm run bench`: answers requests line by line, so that its runs alternate with those of the browser
 //! and a busy machine slows both alike.
 //!
-//! `scene PATH` reads a scene, `run near MOST` and `run search MOST` run the loop through at most so many iterations; each
-//! answer is one line of JSON. Without requests, as under a plain `cargo bench`, it does nothing.
+//! `scene PATH` reads a scene, `run START SHADING MOST` runs the loop from "near" or "search" with "surface" or "pixel" through
+//! at most so many iterations; each answer is one line of JSON. Called without the word `requests`, as by a plain
+//! `cargo bench`, it does nothing: nobody would ask.
 
 mod common;
 
@@ -10,8 +11,8 @@ use std::error::Error;
 use std::fmt::Write as _;
 use std::io::{BufRead, Write as _, stdin, stdout};
 
-use bimodal_stereo::{ColourImage, ColourSamples, DepthMap, DepthSamples, Similarity};
-use common::{Run, Scene, Timed};
+use bimodal_stereo::{ColourImage, ColourSamples, DepthMap, DepthSamples, Shading, Similarity, Stage, Start};
+use common::{Run, Scene, Timed, near};
 use nalgebra::{Matrix3, Vector3};
 
 type Outcome<T> = Result<T, Box<dyn Error>>;
@@ -20,6 +21,9 @@ type Outcome<T> = Result<T, Box<dyn Error>>;
 const POSE: usize = 13;
 
 fn main() -> Outcome<()> {
+    if !std::env::args().any(|word| word == "requests") {
+        return Ok(());
+    }
     let mut scene = None;
     for line in stdin().lock().lines() {
         let line = line?;
@@ -29,8 +33,10 @@ fn main() -> Outcome<()> {
                 scene = Some(read(path)?);
                 "{}".into()
             }
-            (Some((&"run", [start, most])), Some(scene)) => {
-                json(&common::run(scene, *start == "search", most.parse()?)?)?
+            (Some((&"run", [start, shading, most])), Some(scene)) => {
+                let start = if *start == "search" { Start::Search } else { near(scene) };
+                let shading = if *shading == "pixel" { Shading::Pixel } else { Shading::Surface };
+                json(&common::run(scene, start, shading, most.parse()?)?)?
             }
             _ => return Err(format!("no request: {line:?}").into()),
         };
@@ -41,7 +47,9 @@ fn main() -> Outcome<()> {
 }
 
 fn json(run: &Run) -> Outcome<String> {
-    let Run { stages, status, iterations, degrees, milliseconds } = run;
+    let Run { stages, status, iterations, degrees, milliseconds, preparation } = run;
+    let slices = stages.iter().filter(|timed| timed.stage == Stage::Search).map(|timed| timed.milliseconds);
+    let slice = slices.fold(0.0, f64::max);
     let mut list = String::new();
     for Timed { stage, iteration, milliseconds } in stages {
         let comma = if list.is_empty() { "" } else { "," };
@@ -49,8 +57,9 @@ fn json(run: &Run) -> Outcome<String> {
         write!(list, r#"{comma}{{"stage":"{stage}","iteration":{iteration},"milliseconds":{milliseconds}}}"#)?;
     }
     let status = status.name();
+    let times = format!(r#""milliseconds":{milliseconds},"preparation":{preparation},"longestSlice":{slice}"#);
     Ok(format!(
-        r#"{{"status":"{status}","iterations":{iterations},"degrees":{degrees},"milliseconds":{milliseconds},"stages":[{list}]}}"#
+        r#"{{"status":"{status}","iterations":{iterations},"degrees":{degrees},{times},"stages":[{list}]}}"#
     ))
 }
 

@@ -4,7 +4,7 @@
 
 use std::time::Instant;
 
-use bimodal_stereo::{ColourImage, DepthMap, Estimator, Options, Result, Similarity, Stage, Start, Status};
+use bimodal_stereo::{ColourImage, DepthMap, Estimator, Options, Result, Shading, Similarity, Stage, Start, Status};
 
 /// A pair of views with the pose to find.
 pub struct Scene {
@@ -30,22 +30,27 @@ pub struct Run {
     pub degrees: f64,
     /// From the views to the end, preparation included.
     pub milliseconds: f64,
+    /// From the views to the first stage.
+    pub preparation: f64,
 }
 
-/// Nothing known but, where the search is left out, the pose: the loop that follows a search.
-pub fn options(scene: &Scene, search: bool) -> Options {
+/// The true pose as a start: where a search ends.
+#[must_use]
+pub fn near(scene: &Scene) -> Start {
     let Similarity { rotation, scale, translation } = scene.pose;
-    let near = Start::Pose { rotation, scale: Some(scale), translation: Some(translation) };
-    Options { start: if search { Start::Search } else { near }, ..Options::default() }
+    Start::Pose { rotation, scale: Some(scale), translation: Some(translation) }
 }
 
 /// A run to its end, or through `most` iterations.
 ///
 /// # Errors
 /// Those of [`Estimator::new`].
-pub fn run(scene: &Scene, search: bool, most: u32) -> Result<Run> {
+pub fn run(scene: &Scene, start: Start, shading: Shading, most: u32) -> Result<Run> {
     let begun = Instant::now();
-    let mut estimator = Estimator::new(scene.image.clone(), &scene.depth, options(scene, search))?;
+    // Nothing is known but, where the search is left out, the pose.
+    let options = Options { start, shading, ..Options::default() };
+    let mut estimator = Estimator::new(scene.image.clone(), &scene.depth, options)?;
+    let preparation = milliseconds(begun);
     let mut stages = Vec::new();
     while estimator.report().status == Status::Running && estimator.report().iteration < most {
         let iteration = estimator.report().iteration;
@@ -60,6 +65,7 @@ pub fn run(scene: &Scene, search: bool, most: u32) -> Result<Run> {
         iterations: report.iteration,
         degrees: report.pose.degrees_to(&scene.pose),
         milliseconds: milliseconds(begun),
+        preparation,
     })
 }
 
