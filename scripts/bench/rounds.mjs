@@ -1,5 +1,5 @@
 // What is timed, run by run, browser and native in turn: a busy machine slows both alike.
-import { say } from "../shell.mjs";
+import { Failure, say } from "../shell.mjs";
 
 /** Iterations that a loop needs to get going: with three different starts its surface finds the best (STARTS in src/shape/relief.rs). */
 const WARMING = 3;
@@ -9,10 +9,11 @@ const TO_THE_END = 1000;
 /** The times of one kind of stage in a run. */
 const timesOf = ({ stages }, wanted) => stages.filter(wanted).map(({ milliseconds }) => milliseconds);
 
-/** The steady iterations of a run, each as its stages by name. */
+/** The steady iterations of a run, each as its stages by name; of a run that ends before, the last one. */
 function steadyIterations({ stages, iterations }) {
-  const each = Array.from({ length: Math.max(0, iterations - WARMING) }, () => ({}));
-  for (const { stage, iteration, milliseconds } of stages) if (iteration >= WARMING) each[iteration - WARMING][stage] = milliseconds;
+  const first = Math.max(0, Math.min(WARMING, iterations - 1));
+  const each = Array.from({ length: Math.max(0, iterations - first) }, () => ({}));
+  for (const { stage, iteration, milliseconds } of stages) if (each[iteration - first]) each[iteration - first][stage] = milliseconds;
   return each;
 }
 
@@ -36,11 +37,11 @@ class Samples {
     return this.#registrations.length;
   }
 
-  add(run) {
+  addSteady(run) {
     this.#steady.push(...steadyIterations(run));
-    this.addRegistration(run);
   }
 
+  /** Only from a run that does not begin with a search, whose registrations the first iteration repeats just as little. */
   addRegistration(run) {
     this.#registrations.push(...timesOf(run, ({ stage, iteration }) => stage === "registration" && iteration === 0));
     this.#preparations.push(run.preparation);
@@ -63,24 +64,31 @@ class Samples {
   }
 }
 
-/** Runs from the true pose until every stage has `least` samples on every side. */
+/** Runs until every stage has `least` samples on every side. */
 export async function stages(sides, scene, { size, least }) {
   for (const side of sides) await side.open(scene);
   const samples = new Map(sides.map((side) => [side.where, new Samples()]));
   const lacks = (what) => sides.some(({ where }) => samples.get(where)[what] < least);
-  // What a browser compiles while it runs, it compiles in the first run.
-  for (const side of sides) await side.run({ start: "near", most: WARMING + 1 });
+  // The first runs are not counted: what a browser compiles while it runs, it compiles now. They start at the true pose. Where the
+  // colours do not hold it (the smallest views), the loop soon ends and steady iterations have to follow a search.
+  let start = "near";
+  for (const side of sides) {
+    const { iterations } = await side.run({ start, most: WARMING + 1 });
+    if (iterations <= WARMING) start = "search";
+  }
   let ends = [];
   while (lacks("steady")) {
     ends = [];
     for (const side of sides) {
-      const run = await side.run({ start: "near", most: TO_THE_END });
-      samples.get(side.where).add(run);
-      ends.push({ where: side.where, size, start: "near", ...endOf(run) });
+      const run = await side.run({ start, most: TO_THE_END });
+      const kept = samples.get(side.where);
+      kept.addSteady(run);
+      if (start === "near") kept.addRegistration(run);
+      ends.push({ where: side.where, size, start, ...endOf(run) });
     }
-    say(`${size}: ${samples.get(sides[0].where).steady} of ${least} steps`);
-    // An end before the first steady iteration would go on for ever.
-    if (ends.some(({ iterations }) => iterations <= WARMING)) break;
+    const done = Math.min(...sides.map(({ where }) => samples.get(where).steady));
+    say(`${size}: ${Math.min(done, least)} of ${least} steps`);
+    if (ends.some(({ iterations }) => iterations === 0)) throw new Failure(`${size}: a loop ended before its first iteration was over`);
   }
   // The registration does not look at the image's surface, so here that may be the one that is raised fastest.
   while (lacks("registrations")) {
@@ -88,7 +96,7 @@ export async function stages(sides, scene, { size, least }) {
   }
   say(`${size}: ${least} registrations`);
   const rows = sides.flatMap(({ where }) => samples.get(where).all().map(([stage, times]) => ({ where, size, stage, times })));
-  return { rows, ends };
+  return { rows, ends: ends.filter((end) => end.start === "near") };
 }
 
 const endOf = ({ milliseconds, degrees, status, iterations }) => ({ milliseconds, degrees, status, iterations });

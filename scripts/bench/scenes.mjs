@@ -66,19 +66,19 @@ export function scenes(api, files) {
     surface,
     lightName,
     /** The scene whose steps are timed: beta = 20, natural light. */
-    plain(size) {
+    plain(size, seed = 1) {
       const [width, height] = sidesOf(size);
       const made = api.sample({
         ...{ surface: width > height ? widened(relief, width / height) : relief, light: data.light(lightName) },
-        ...{ size: width, height, angles: { beta: 20 }, noise: NOISE, seed: 1 },
+        ...{ size: width, height, angles: { beta: 20 }, noise: NOISE, seed },
       });
-      return write(size, made);
+      return write(`${size}-plain-${seed}`, made);
     },
     /** Random surface, light, pose and scale: the scenes of the tables at another size. */
     random(size, seed) {
       const [width] = sidesOf(size);
       const scene = { ...drawScene(chance(seed), names, data.gaussian), size: width, seed };
-      return write(`${size}-${seed}`, api.sample(requestOf(scene, data)));
+      return write(`${size}-random-${seed}`, api.sample(requestOf(scene, data)));
     },
   };
 }
