@@ -58,9 +58,7 @@ fn json(run: &Run) -> Outcome<String> {
     }
     let status = status.name();
     let times = format!(r#""milliseconds":{milliseconds},"preparation":{preparation},"longestSlice":{slice}"#);
-    Ok(format!(
-        r#"{{"status":"{status}","iterations":{iterations},"degrees":{degrees},{times},"stages":[{list}]}}"#
-    ))
+    Ok(format!(r#"{{"status":"{status}","iterations":{iterations},"degrees":{degrees},{times},"stages":[{list}]}}"#))
 }
 
 /// Little-endian: width and height (u32), the pose (f64), linear RGB and depth (f32, NaN off the masks).
