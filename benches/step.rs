@@ -68,7 +68,7 @@ fn steps(criterion: &mut Criterion) {
     for size in SIZES {
         let scene = std::cell::LazyCell::new(|| scene(size));
         let mut group = criterion.benchmark_group(format!("{}x{}", size[0], size[1]));
-        // A stage is a part of a run, whose whole length each sample takes: as few runs as there are samples.
+        // A stage is a part of a run, whose whole length each sample takes: one run for each sample, which criterion warns of.
         group.sample_size(SAMPLES).sampling_mode(SamplingMode::Flat);
         group.warm_up_time(Duration::from_millis(1)).measurement_time(Duration::from_millis(1));
         for name in ["light", "shading", "surface", "registration", "refinement", "step"] {
