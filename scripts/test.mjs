@@ -5,6 +5,7 @@ import { browser } from "./browser.mjs";
 import { build } from "./build.mjs";
 import { WASM, setup } from "./setup.mjs";
 import { Failure, inRoot, matching, say, script, seconds, watch } from "./shell.mjs";
+import { buildPage, judgeSizes, sizes } from "./sizes.mjs";
 import { hasData } from "./tables/library.mjs";
 import { missingKeys } from "./tables/keys.mjs";
 
@@ -60,6 +61,14 @@ async function tables() {
   return { code: missing.length === 0 ? 0 : 1, output: `${result.output}\n${verdict}\n` };
 }
 
+/** What a visitor downloads, against its budgets. */
+async function downloads() {
+  await buildPage();
+  const { lines, kept } = judgeSizes(sizes());
+  console.log(lines.join("\n"));
+  return { code: kept ? 0 : 1, output: `${lines.join("\n")}\n` };
+}
+
 /** What a runner says last; these lines are repeated at the end. */
 const CARGO = /^(test result: .*|error: test failed.*|error: could not compile.*)$/gm;
 const NODE = /^(?:# |ℹ )((?:tests|pass|fail|skipped) .*)$/gm;
@@ -73,6 +82,7 @@ const PARTS = [
   { name: "wasm-browser", run: wasmIn("WASM_BINDGEN_USE_BROWSER"), closing: CARGO },
   { name: "wasm-worker", run: wasmIn("WASM_BINDGEN_USE_DEDICATED_WORKER"), closing: CARGO },
   { name: "types", run: types, needsBuild: true, closing: /^tsc .*$/gm },
+  { name: "sizes", run: downloads, needsBuild: true, closing: /^size of .*$/gm },
   { name: "contract", run: contract, needsBuild: true, closing: NODE },
   { name: "tables", run: tables, needsBuild: true, closing: /^(?:.* (?:ok|MISSED)$|.* cells failed:|tables: .*)$/gm },
   { name: "page", run: page, needsBuild: true, closing: /^ +\d+ (?:passed|failed|skipped|flaky|did not run).*$/gm },

@@ -8,14 +8,14 @@ const DASH = "-";
 /** Of a list of failures so many are shown; the JSON has all. */
 const WRONG_SHOWN = 20;
 const WORST_SHOWN = 5;
-const fixed = (value, digits = 3) => (typeof value === "number" && Number.isFinite(value) ? value.toFixed(digits) : DASH);
+export const fixed = (value, digits = 3) => (typeof value === "number" && Number.isFinite(value) ? value.toFixed(digits) : DASH);
 const percent = (value) => (typeof value === "number" ? `${(100 * value).toFixed(0)} %` : DASH);
 const small = (value) => (typeof value === "number" ? (value < 1e-4 ? value.toExponential(1) : value.toFixed(6)) : DASH);
 /** ? doubt was said, ! wrong by more than 3 degrees and nothing said. */
 const mark = (row) => (isFlagged(row) ? "?" : isConfidentlyWrong(row) ? "!" : "");
 
 /** Lists of words as columns, the first one flush left. */
-function columns(rows) {
+export function columns(rows) {
   const widths = rows[0].map((_, column) => Math.max(...rows.map((row) => String(row[column]).length)));
   const pad = (word, column) => (column === 0 ? String(word).padEnd(widths[0]) : String(word).padStart(widths[column]));
   return rows.map((row) => `  ${row.map(pad).join("  ")}`.trimEnd());

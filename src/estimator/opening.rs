@@ -16,8 +16,6 @@ use super::joint::{Given, Joint};
 /// Registrations after which an end that convinces is believed, and registrations at most.
 const FEW_TRIED: usize = 10;
 const MOST_TRIED: usize = 40;
-/// Depth points times registrations: what an opening of a large view may cost before it has to do with fewer.
-const MOST_POINTS: usize = 300_000;
 /// An end convinces when the noise of every other one that sees as much is larger by this factor.
 const CONVINCING_NOISE: f64 = 2.0;
 /// Share of the colours' spread that is nearly nothing: noise of 1 % under lights of good contrast.
@@ -113,8 +111,7 @@ impl Opening {
         }
         self.skip_known();
         let candidates = self.search.candidates();
-        let most = (MOST_POINTS / given.depth.valid().max(1)).clamp(FEW_TRIED, MOST_TRIED);
-        let enough = self.tried >= most || (self.tried >= FEW_TRIED && self.is_convincing());
+        let enough = self.tried >= MOST_TRIED || (self.tried >= FEW_TRIED && self.is_convincing());
         if self.next >= candidates.len() || enough {
             return Look::Done(self.outcome());
         }
@@ -132,7 +129,7 @@ impl Opening {
                 self.enter(report);
             }
         }
-        let expected = if self.tried < FEW_TRIED { FEW_TRIED } else { most };
+        let expected = if self.tried < FEW_TRIED { FEW_TRIED } else { MOST_TRIED };
         let share = self.tried as f64 / expected as f64;
         Look::Ongoing(SEARCH_SHARE + (1.0 - SEARCH_SHARE) * share, "registering the best candidates")
     }

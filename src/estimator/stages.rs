@@ -113,8 +113,11 @@ impl Estimator {
         let focal_length = image.camera.focal_length().unwrap_or(1.0) as f32;
         p.iter_mut().chain(q.iter_mut()).for_each(|slope| *slope *= focal_length);
         let options = IntegrationOptions { robust: Robust::Estimated, ..IntegrationOptions::default() };
-        self.integrator.integrate(p, q, None, &options, &mut self.height)?;
-        if self.options.shading == Shading::Surface {
+        let as_a_whole = self.options.shading == Shading::Surface;
+        if !as_a_whole || self.relief.wants_integrated() {
+            self.integrator.integrate(p, q, None, &options, &mut self.height)?;
+        }
+        if as_a_whole {
             self.solve_relief();
         }
         let image = &self.image;

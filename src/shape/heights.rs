@@ -18,6 +18,7 @@ use nalgebra::Matrix3;
 use crate::error::{Error, ErrorKind, Result};
 use crate::light::Light;
 use crate::shape::cosine::{CosineSolver, fast_width};
+use crate::shape::normal_operator::NormalOperator;
 use crate::shape::poisson::Edges;
 use crate::shape::slopes::{RayFrame, SlopeTerms};
 use crate::shape::surface::Anchors;
@@ -88,8 +89,7 @@ pub struct HeightSolver {
     trial: Vec<f32>,
     anchor: Vec<f32>,
     anchor_weight: Vec<f32>,
-    /// Gauss-Newton matrix of each pixel over (p, q): pp, pq, qq.
-    stiffness: [Vec<f32>; 3],
+    operator: NormalOperator,
     /// Suggested height differences to the right and lower neighbour, and their weights.
     edges: [Edges; 2],
     confidence: Vec<f32>,
@@ -143,7 +143,7 @@ impl HeightSolver {
             trial: zeros(),
             anchor: zeros(),
             anchor_weight: zeros(),
-            stiffness: [zeros(), zeros(), zeros()],
+            operator: NormalOperator::new(width, length),
             edges: [Edges::new(length), Edges::new(length)],
             confidence: zeros(),
             step: zeros(),
@@ -233,6 +233,12 @@ impl HeightSolver {
                 let joined = self.inside[index] && plus != index;
                 let weight = if joined { self.confidence[index].min(self.confidence[plus]) } else { 0.0 };
                 let source = self.source(index);
+                self.operator.bend[axis][index] =
+                    if matches!(self.stencil(index, stride), (_, _, 0.5)) && self.inside[index] {
+                        self.smoothness(index)
+                    } else {
+                        0.0
+                    };
                 self.edges[axis].weight[index] = weight;
                 self.edges[axis].gradient[index] =
                     if weight > 0.0 { 0.5 * (slopes[axis][source] + slopes[axis][source + view_stride]) } else { 0.0 };
@@ -272,13 +278,13 @@ impl HeightSolver {
                     f64::from(terms.cost(terms.frame(&self.frames, index), self.source(index), cell_slopes(z, cell)));
             }
             sum += f64::from(self.anchor_weight[index] * (z[index] - self.anchor[index]).powi(2));
-            for (stride, edges) in [1, self.width].into_iter().zip(&self.edges) {
+            for ((stride, edges), bend) in [1, self.width].into_iter().zip(&self.edges).zip(&self.operator.bend) {
                 if edges.weight[index] > 0.0 {
                     let off = z[index + stride] - z[index] - edges.gradient[index];
                     sum += f64::from(edges.weight[index] * off * off);
                 }
-                if let (plus, minus, 0.5) = self.stencil(index, stride) {
-                    sum += f64::from(self.smoothness(index) * (z[plus] - 2.0 * z[index] + z[minus]).powi(2));
+                if bend[index] > 0.0 {
+                    sum += f64::from(bend[index] * (z[index + stride] - 2.0 * z[index] + z[index - stride]).powi(2));
                 }
             }
         }
@@ -299,25 +305,25 @@ impl HeightSolver {
                     terms.cell_log(self.source(index)),
                     cell_slopes(&self.z, cell),
                 );
-                for (stiffness, value) in self.stiffness.iter_mut().zip(matrix) {
+                for (stiffness, value) in self.operator.stiffness.iter_mut().zip(matrix) {
                     stiffness[index] = value;
                 }
                 sum += f64::from(0.5 * (matrix[0] + matrix[2]));
                 scatter(&mut self.right, cell, [-gradient[0], -gradient[1]]);
             }
-            for (stride, edges) in [1, self.width].into_iter().zip(&self.edges) {
+            for ((stride, edges), bend) in [1, self.width].into_iter().zip(&self.edges).zip(&self.operator.bend) {
                 if edges.weight[index] > 0.0 {
                     let off = self.z[index + stride] - self.z[index] - edges.gradient[index];
                     self.right[index + stride] -= edges.weight[index] * off;
                     self.right[index] += edges.weight[index] * off;
                     sum += 0.5 * f64::from(edges.weight[index]);
                 }
-                let (plus, minus, factor) = self.stencil(index, stride);
-                if factor == 0.5 {
-                    let bend = self.smoothness(index) * (self.z[plus] - 2.0 * self.z[index] + self.z[minus]);
-                    self.right[plus] -= bend;
-                    self.right[index] += 2.0 * bend;
-                    self.right[minus] -= bend;
+                if bend[index] > 0.0 {
+                    let (plus, minus) = (index + stride, index - stride);
+                    let moment = bend[index] * (self.z[plus] - 2.0 * self.z[index] + self.z[minus]);
+                    self.right[plus] -= moment;
+                    self.right[index] += 2.0 * moment;
+                    self.right[minus] -= moment;
                 }
             }
             self.right[index] += self.anchor_weight[index] * (self.anchor[index] - self.z[index]);
@@ -325,47 +331,11 @@ impl HeightSolver {
         (sum / self.pixels as f64).max(LEAST_STIFFNESS)
     }
 
-    /// image = (D^T H D + a + kappa S + damping L) direction.
-    fn apply(&mut self, damping: f32) {
-        self.image.fill(0.0);
-        for index in 0..self.z.len() {
-            if !self.inside[index] {
-                continue;
-            }
-            let d = &self.direction;
-            let across = self.stencil(index, 1);
-            let down = self.stencil(index, self.width);
-            if let Some(cell) = self.cell(index) {
-                let [p, q] = cell_slopes(d, cell);
-                let [pp, pq, qq] = [0, 1, 2].map(|entry: usize| self.stiffness[entry][index]);
-                scatter(&mut self.image, cell, [pp * p + pq * q, pq * p + qq * q]);
-            }
-            for ((plus, minus, factor), edges) in [across, down].into_iter().zip(&self.edges) {
-                if edges.weight[index] > 0.0 {
-                    let pull = edges.weight[index] * (d[plus] - d[index]);
-                    self.image[plus] += pull;
-                    self.image[index] -= pull;
-                }
-                if factor == 0.5 {
-                    let bend = self.smoothness(index) * (d[plus] - 2.0 * d[index] + d[minus]);
-                    self.image[plus] += bend;
-                    self.image[index] -= 2.0 * bend;
-                    self.image[minus] += bend;
-                }
-                if plus != index {
-                    let pull = damping * (d[plus] - d[index]);
-                    self.image[plus] += pull;
-                    self.image[index] -= pull;
-                }
-            }
-            self.image[index] += self.anchor_weight[index] * d[index];
-        }
-    }
-
     /// step = solution of the linearised system by preconditioned conjugate gradients.
     fn find_step(&mut self, damping: f32, mean_stiffness: f64) {
         let anchors: f64 = self.anchor_weight.iter().map(|&weight| f64::from(weight)).sum();
         self.cosine.set(mean_stiffness + f64::from(damping), anchors / self.pixels as f64);
+        self.operator.set_links(&self.edges, &self.inside, damping);
         self.step.fill(0.0);
         self.direction.copy_from_slice(&self.right);
         self.cosine.solve(&mut self.direction);
@@ -375,7 +345,7 @@ impl HeightSolver {
         let mut rho = dot(&self.trial, &self.direction);
         let target = STEP_TOLERANCE * STEP_TOLERANCE * rho;
         for _ in 0..STEP_CAP {
-            self.apply(damping);
+            self.operator.apply(&self.anchor_weight, &self.direction, &mut self.image);
             let curvature = dot(&self.direction, &self.image);
             let length = (rho / curvature) as f32;
             if !(length.is_finite() && curvature > 0.0) {

@@ -5,6 +5,7 @@ mod cosine;
 mod exposure;
 mod gradients;
 mod heights;
+mod normal_operator;
 mod poisson;
 mod refine;
 mod relief;

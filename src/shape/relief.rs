@@ -63,6 +63,11 @@ impl ReliefSolver {
         })
     }
 
+    /// Whether the next call starts from the integrated surface; later ones do not look at it.
+    pub const fn wants_integrated(&self) -> bool {
+        self.tried == 0
+    }
+
     /// Heights (pixels, or f log Z) of the image surface; `integrated` is one of the starts. NaN off the mask.
     pub fn solve(&mut self, problem: ReliefProblem<'_>, integrated: &[f32], heights: &mut [f32]) {
         let identity = Matrix3::identity();

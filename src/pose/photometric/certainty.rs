@@ -71,6 +71,7 @@ impl Photometric {
             cost: self.points.cost(problem, &scene, &self.state, without_prior) / full,
             noise: self.noise,
             visible: self.points.len(),
+            sampled: self.points.are_sampled(),
             inliers: self.points.inliers(problem, &scene, &self.state, self.robust),
             iterations: self.iterations,
             termination: match self.phase {

@@ -113,6 +113,7 @@ pub struct Photometric {
     phase: Phase,
     rounds: usize,
     most_rounds: usize,
+    most_points: usize,
     annealing: bool,
     iterations: usize,
 }
@@ -137,6 +138,7 @@ impl Photometric {
             phase: Phase::Done(PhotometricTermination::MostRounds),
             rounds: 0,
             most_rounds: 0,
+            most_points: usize::MAX,
             annealing: true,
             iterations: 0,
         }
@@ -180,13 +182,13 @@ impl Photometric {
         };
         (self.phase, self.rounds, self.iterations) = (Phase::Annealing { level, fine_rounds: 0 }, 0, 0);
         self.most_rounds = options.most_rounds.max(1);
+        (self.most_points, self.annealing) = (options.most_points, options.annealing);
         self.look(problem, level)?;
         self.robust = FIRST_LOOK;
         self.fit_light(problem, level)?;
         self.measure(problem, level);
         let tolerance = if options.annealing { FIRST_SCALE / ANNEALING } else { 1.0 };
         self.robust = Robust { scale: tolerance * self.final_scale(), prior: self.prior(problem) };
-        self.annealing = options.annealing;
         Ok(())
     }
 
@@ -290,7 +292,7 @@ impl Photometric {
 
     /// Chooses the visible points of a round.
     fn look(&mut self, problem: &PhotometricProblem<'_>, level: usize) -> Result<Frame> {
-        self.points.update(problem, &self.state.pose, &self.levels[0], level);
+        self.points.update(problem, &self.state.pose, &self.levels[0], level, self.most_points);
         if self.points.len() < FEWEST_POINTS {
             return Err(degenerate("the image shows too few of the depth points").value(self.points.len() as f64));
         }

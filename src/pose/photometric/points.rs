@@ -10,7 +10,7 @@ use crate::light::{COEFFICIENTS, Coefficients, HARMONICS, Light, basis};
 use crate::pose::correspondence::{CorrespondenceProblem, Correspondences};
 use crate::pose::increment::{Frame, Row};
 use crate::pose::similarity::Similarity;
-use crate::view::{Points, quantile};
+use crate::view::{Points, Size, quantile};
 
 /// Distance from the border of the mask within which points stay out, image pixels: they would enter and leave with every
 /// step, and the spline is continued there.
@@ -22,6 +22,8 @@ const NORMAL_ERROR: f64 = 0.1;
 /// a fit (measured on Mozart at 64x64, starts 20 and 30 degrees off).
 const ENOUGH_KNOWN: usize = 100;
 const ENOUGH_UNKNOWN: usize = 1000;
+/// (5^(1/2) - 1) / 2.
+const GOLDEN_SECTION: f64 = 0.618_033_988_749_895;
 /// Points with less say than this do not vote on the noise.
 const VOTER: f64 = 0.25;
 /// Median of |r| over three channels of unit normal noise.
@@ -74,6 +76,7 @@ pub(super) struct VisiblePoints {
     /// Stands for an image surface that is not there.
     no_surface: Points,
     indices: Vec<u32>,
+    sampled: bool,
     weights: Vec<f32>,
     spare: Vec<f32>,
     /// log S where the points are seen, NaN where they are not: while the pose stays.
@@ -87,6 +90,7 @@ impl VisiblePoints {
             correspondences: Correspondences::new(problem.image, problem.depth),
             no_surface: Points::missing(problem.image.size.len()),
             indices: Vec::with_capacity(length),
+            sampled: false,
             weights: Vec::with_capacity(length),
             spare: Vec::with_capacity(length),
             seen: Vec::with_capacity(length),
@@ -97,8 +101,16 @@ impl VisiblePoints {
         self.indices.len()
     }
 
-    /// The points that the image shows under `pose`: every 2^level-th along both axes, more where that leaves too few.
-    pub fn update(&mut self, problem: &PhotometricProblem<'_>, pose: &Similarity, image: &SplineImage, level: usize) {
+    /// The points that the image shows under `pose`: every 2^level-th along both axes, more where that leaves too few, and
+    /// about `most` at most.
+    pub fn update(
+        &mut self,
+        problem: &PhotometricProblem<'_>,
+        pose: &Similarity,
+        image: &SplineImage,
+        level: usize,
+        most: usize,
+    ) {
         let centre = pose.apply(problem.points.centroid());
         self.correspondences.update(&CorrespondenceProblem {
             image: problem.image,
@@ -119,6 +131,33 @@ impl VisiblePoints {
                 break;
             }
         }
+        self.thin(problem.depth.size, most);
+    }
+
+    /// Whether the points are a sample of those that are visible.
+    pub fn are_sampled(&self) -> bool {
+        self.sampled
+    }
+
+    /// Leaves every k-th point, so that `most` or fewer are left of evenly spread ones: on a lattice, whose rows are
+    /// shifted by the golden section of k.
+    fn thin(&mut self, size: Size, most: usize) {
+        let every = self.indices.len().div_ceil(most.max(1)).max(1);
+        self.sampled = every > 1;
+        if !self.sampled {
+            return;
+        }
+        let shift = (GOLDEN_SECTION * every as f64).round() as usize;
+        let mut kept = 0;
+        for place in 0..self.indices.len() {
+            let (column, row) = size.position(self.indices[place] as usize);
+            if (column + shift * row).is_multiple_of(every) {
+                (self.indices[kept], self.weights[kept]) = (self.indices[place], self.weights[place]);
+                kept += 1;
+            }
+        }
+        self.indices.truncate(kept);
+        self.weights.truncate(kept);
     }
 
     /// Every `stride`-th visible point.

@@ -82,13 +82,15 @@ pub struct PhotometricOptions {
     pub first_level: usize,
     /// Cap on the rounds.
     pub most_rounds: usize,
+    /// Points that take part at most, spread evenly over those that are visible.
+    pub most_points: usize,
     /// Whether the robust scale shrinks from round to round; else it is the final one from the first round on.
     pub annealing: bool,
 }
 
 impl Default for PhotometricOptions {
     fn default() -> Self {
-        Self { first_level: COARSEST, most_rounds: 40, annealing: true }
+        Self { first_level: COARSEST, most_rounds: 40, most_points: usize::MAX, annealing: true }
     }
 }
 
@@ -118,6 +120,8 @@ pub struct PhotometricReport {
     pub noise: f64,
     /// Number of visible points.
     pub visible: usize,
+    /// Whether these are a sample only, see [`PhotometricOptions::most_points`].
+    pub sampled: bool,
     /// Share of them within the robust scale.
     pub inliers: f64,
     /// Gauss-Newton steps taken.

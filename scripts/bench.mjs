@@ -1,0 +1,129 @@
+// npm run bench: how fast the built package is in a browser's worker, and the same work native, run by run in turn.
+//   --quick          fewer sizes and samples, under a minute
+//   --sizes a,b      these sizes alone, as 64x64,640x480
+//   --json FILE      the numbers as JSON
+//   --browser-only, --native-only
+import { writeFileSync } from "node:fs";
+import { cpus, loadavg } from "node:os";
+import { resolve } from "node:path";
+import { parseArgs } from "node:util";
+import { drawings, startUps, transfers } from "./bench/page.mjs";
+import { report } from "./bench/print.mjs";
+import { searches, stages } from "./bench/rounds.mjs";
+import { scenes } from "./bench/scenes.mjs";
+import { serve } from "./bench/server.mjs";
+import { browserSide, launch, nativeSide } from "./bench/sides.mjs";
+import { aims, pixelsOf, summary } from "./bench/summary.mjs";
+import { browser } from "./browser.mjs";
+import { build } from "./build.mjs";
+import { setup } from "./setup.mjs";
+import { Failure, must, say, script, seconds } from "./shell.mjs";
+import { buildPage, sizes as measureSizes } from "./sizes.mjs";
+
+const SIZES = ["32x32", "64x64", "128x128", "256x256", "640x480"];
+/** A median of fewer says little on a machine that does other things as well. */
+const SAMPLES = 20;
+/** Searches of one scene: three up to this many pixels, one beyond, where each takes its time. */
+const SOON = 128 * 128;
+const RANDOM_SIZES = ["64x64", "128x128"];
+const RANDOM_SCENES = 8;
+/** Where memory is measured, and where a frame's transfer is. */
+const LARGEST = "640x480";
+const STARTED = "64x64";
+
+const FULL = { sizes: SIZES, samples: SAMPLES, again: 3, randomSizes: RANDOM_SIZES, randomScenes: RANDOM_SCENES };
+const QUICK = { sizes: ["32x32", "64x64"], samples: 5, again: 1, randomSizes: ["64x64"], randomScenes: 3 };
+
+function parsed() {
+  const flag = { type: "boolean", default: false };
+  const options = { quick: flag, "browser-only": flag, "native-only": flag, json: { type: "string" }, sizes: { type: "string" } };
+  try {
+    const { quick, json, sizes: named, ...only } = parseArgs({ options }).values;
+    const plan = quick ? QUICK : FULL;
+    const sizes = named?.split(",") ?? plan.sizes;
+    const unknown = sizes.find((size) => !SIZES.includes(size));
+    if (unknown) throw new Error(`There is no size "${unknown}"; there are ${SIZES.join(", ")}.`);
+    const randomSizes = plan.randomSizes.filter((size) => sizes.includes(size));
+    return { json, quick, plan: { ...plan, sizes, randomSizes }, native: !only["browser-only"], inBrowser: !only["native-only"] };
+  } catch (error) {
+    throw new Failure(error.message);
+  }
+}
+
+/** The loop itself: stages, ends, random scenes, and the memory that the largest run leaves. */
+async function loops(sides, made, plan) {
+  const found = { samples: [], ends: [], converged: [], searches: [], memory: undefined };
+  for (const size of plan.sizes) {
+    const scene = made.plain(size);
+    found.covered = scene.covered;
+    const { rows, ends } = await stages(sides, scene, { size, least: plan.samples });
+    found.samples.push(...rows);
+    found.ends.push(...ends);
+    found.converged.push(...(await searches(sides, scene, { size, times: pixelsOf(size) <= SOON ? plan.again : 1 })));
+    const reader = sides.find(({ where }) => where === "browser");
+    if (size === LARGEST && reader) {
+      const bytes = await reader.ask({ kind: "memory" });
+      found.memory = { size, bytes, bytesPerPixel: bytes / scene.pixels };
+    }
+  }
+  for (const size of plan.randomSizes) {
+    for (let seed = 1; seed <= plan.randomScenes; seed++) {
+      found.searches.push(...(await searches(sides, made.random(size, seed), { size, times: 1, name: `${size}, scene ${seed}` })));
+    }
+  }
+  return found;
+}
+
+/** What surrounds the loop in a browser. */
+async function around(chromium, address, side, made, plan) {
+  const startScene = made.plain(STARTED);
+  const startUp = { size: STARTED, times: await startUps(chromium, address, startScene, plan.samples) };
+  say(`init to first report: ${plan.samples} times`);
+  const size = plan.sizes.at(-1);
+  await side.open(made.plain(size));
+  const transfer = { size, ...(await transfers(side, plan.samples)) };
+  say(`transfer of a frame: ${plan.samples} times`);
+  const drawing = await drawings(chromium, address, plan.samples);
+  say(`drawing of a frame: ${plan.samples} times`);
+  return { startUp, transfer, drawing };
+}
+
+await script(async () => {
+  const { json: file, quick, plan, native, inBrowser } = parsed();
+  const start = performance.now();
+  await setup();
+  await build();
+  await buildPage();
+  if (native) await must("cargo", ["bench", "--bench", "rounds", "--no-run"]);
+
+  const api = await import("../pkg/node.js");
+  await api.default();
+  const made = scenes(api, await import("../pkg/files.js"));
+  const server = await serve();
+  const chromium = inBrowser ? await launch((await browser()).chromium) : undefined;
+  const sides = [];
+  try {
+    if (inBrowser) sides.push(await browserSide(chromium, server.address));
+    if (native) sides.push(nativeSide());
+    if (sides.length === 0) throw new Failure("--browser-only and --native-only leave nothing to time.");
+    const found = await loops(sides, made, plan);
+    const rest = inBrowser ? await around(chromium, server.address, sides[0], made, plan) : {};
+    const [one] = loadavg();
+    const about = {
+      ...{ surface: made.surface, lightName: made.lightName, covered: found.covered, quick, load: one },
+      machine: `${cpus()[0].model}, ${cpus().length} processors, load ${one.toFixed(1)}`,
+    };
+    const result = summary({ ...found, ...rest, sizes: measureSizes(), about });
+    const list = aims(result);
+    console.log(`\n${report(result, list).join("\n")}\n`);
+    if (file) {
+      writeFileSync(resolve(file), `${JSON.stringify({ ...result, aims: list }, null, 1)}\n`);
+      say(`wrote ${file}`);
+    }
+  } finally {
+    for (const side of sides) await side.close();
+    await chromium?.close();
+    server.close();
+  }
+  say(`benches in ${seconds(start)}`);
+});

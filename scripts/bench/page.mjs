@@ -1,0 +1,99 @@
+// What a visitor waits for beside the loop: the start, the way of a frame to the page, its drawing.
+import { openPage } from "./sides.mjs";
+
+/** A view in the page at its largest choice; the page draws at most 512 pixels a side. */
+const DRAWN_SIZE = 256;
+/** The loop whose iterations are quickest: frames are as large as in any other. */
+const DRAWN = `surface=bust&light=colourful&size=${DRAWN_SIZE}&lighting=known&start=identity&registration=icp&shading=pixel`;
+
+/** From `init()` to the first report, each time in a page of its own that has compiled nothing yet; the file comes from this machine. */
+export async function startUps(chromium, address, scene, times) {
+  const found = [];
+  for (let round = 0; round < times; round++) {
+    const { page, close } = await openPage(chromium, `${address}/scripts/bench/page/`);
+    const { milliseconds } = await page.evaluate(async (path) => {
+      window.bench.hire();
+      await window.bench.ask({ kind: "scene", path });
+      return window.bench.ask({ kind: "firstReport" });
+    }, `/${scene.path}`);
+    found.push(milliseconds);
+    await close();
+  }
+  return found;
+}
+
+/** All arrays of a frame in full size: copied out of the module's memory, and sent to the page. */
+export async function transfers(side, times) {
+  const found = { copying: [], travelling: [] };
+  for (let round = 0; round < times; round++) {
+    const { copying, travelling } = await side.ask({ kind: "frame" });
+    found.copying.push(copying);
+    found.travelling.push(travelling);
+  }
+  return found;
+}
+
+/** Before the page's own scripts: hears when a frame was asked for and came, and how long its drawing kept the page busy. */
+function listen() {
+  const frames = (window.benchFrames = []);
+  let asked;
+  let shown;
+  const animate = window.requestAnimationFrame.bind(window);
+  window.requestAnimationFrame = (draw) =>
+    animate((time) => {
+      const before = performance.now();
+      draw(time);
+      if (shown) shown.drawing += performance.now() - before;
+    });
+  window.Worker = class extends Worker {
+    postMessage(message, ...rest) {
+      asked = message.kind === "advance" ? performance.now() : undefined;
+      shown = undefined;
+      super.postMessage(message, ...rest);
+    }
+
+    set onmessage(hear) {
+      super.onmessage = (event) => {
+        const reports = event.data.reply?.reports;
+        if (reports && asked !== undefined) {
+          const computing = reports.flatMap(({ milliseconds }) => Object.values(milliseconds)).reduce((sum, value) => sum + value, 0);
+          shown = { delivery: performance.now() - asked - computing, drawing: 0 };
+          frames.push(shown);
+          asked = undefined;
+        }
+        hear(event);
+      };
+    }
+  };
+}
+
+/**
+ * Frames of the real page, stage by stage. `delivery`: from asking to hearing without the stage's own time, which is cutting,
+ * copying and sending. `drawing`: what its animation frames kept the main thread busy with, all canvases, clouds and charts.
+ */
+export async function drawings(chromium, address, times) {
+  const context = await chromium.newContext({ viewport: { width: 1280, height: 800 } });
+  const page = await context.newPage();
+  await page.addInitScript(listen);
+  await page.goto(`${address}/www/dist/#${DRAWN}`);
+  const status = () => page.evaluate(() => document.querySelector("#status").dataset.state);
+  const ready = () => page.waitForSelector('#status[data-state="ready"]');
+  await ready();
+  let frames = [];
+  // The first one builds what the others use again.
+  while (frames.length < times + 1) {
+    await page.keyboard.press("t");
+    await page.waitForFunction((count) => window.benchFrames.length > count, frames.length);
+    // A painting that is too long for one animation frame goes on in the next.
+    await page.evaluate(async () => {
+      for (let frame = 0; frame < 4; frame++) await new Promise((done) => requestAnimationFrame(done));
+    });
+    frames = await page.evaluate(() => window.benchFrames);
+    if (["ready", "paused"].includes(await status())) continue;
+    await page.keyboard.press("r");
+    await ready();
+  }
+  await context.close();
+  const later = frames.slice(1);
+  return { size: `${DRAWN_SIZE}x${DRAWN_SIZE}`, delivery: later.map(({ delivery }) => delivery), drawing: later.map(({ drawing }) => drawing) };
+}

@@ -1,0 +1,103 @@
+// The browser's half of the bench: the built package in a module worker, as the page has it. One request, one answer.
+import init, { Estimator } from "/pkg/index.js";
+
+/** The module's memory, caught on its way in: the package keeps it to itself. */
+let memory;
+for (const name of ["instantiate", "instantiateStreaming"]) {
+  const original = WebAssembly[name];
+  WebAssembly[name] = async (...given) => {
+    const result = await original.apply(WebAssembly, given);
+    memory = (result.instance ?? result).exports.memory;
+    return result;
+  };
+}
+
+let scene;
+
+/** Reads what scenes.mjs has written. */
+async function read(path) {
+  const buffer = await (await fetch(path)).arrayBuffer();
+  const [width, height] = new Uint32Array(buffer, 0, 2);
+  const [scale, ...rest] = new Float64Array(buffer, 8, 13);
+  const views = new Float32Array(buffer, 8 + 8 * 13);
+  const pixels = width * height;
+  const [colours, depth] = [views.subarray(0, 3 * pixels), views.subarray(3 * pixels)];
+  const mask = (inside) => Uint8Array.from({ length: pixels }, (_, index) => (inside(index) ? 255 : 0));
+  scene = {
+    image: { width, height, data: colours, mask: mask((index) => !Number.isNaN(colours[3 * index])) },
+    depth: { width, height, data: depth, mask: mask((index) => !Number.isNaN(depth[index])) },
+    pose: { scale, rotation: rest.slice(0, 9), translation: rest.slice(9) },
+  };
+}
+
+/** Angle between two rotations. */
+function degreesBetween(a, b) {
+  const distance = Math.hypot(...a.map((value, index) => value - b[index]));
+  return (2 * Math.asin(Math.min(1, distance / Math.sqrt(8))) * 180) / Math.PI;
+}
+
+/** The same as `run` of benches/common: to the end, or through `most` iterations. Stages carry the package's own times. */
+function run({ start, shading, most }) {
+  const { image, depth, pose } = scene;
+  const begun = performance.now();
+  const estimator = new Estimator(image, depth, { start: start === "search" ? "search" : pose, shading });
+  let { report } = estimator;
+  const preparation = performance.now() - begun;
+  const stages = [];
+  let longestSlice = 0;
+  while (report.status === "running" && report.iteration < most) {
+    const { iteration } = report;
+    const before = performance.now();
+    report = estimator.stepStage();
+    // From outside: so long nobody else has a turn.
+    if (report.stage === "search") longestSlice = Math.max(longestSlice, performance.now() - before);
+    stages.push({ stage: report.stage, iteration, milliseconds: report.milliseconds[report.stage] });
+  }
+  const milliseconds = performance.now() - begun;
+  estimator.free();
+  const degrees = degreesBetween(report.pose.rotation, pose.rotation);
+  return { status: report.status, iterations: report.iteration, degrees, milliseconds, preparation, longestSlice, stages };
+}
+
+/** From nothing loaded but this file to the first report. */
+async function firstReport() {
+  const begun = performance.now();
+  await init();
+  const estimator = new Estimator(scene.image, scene.depth);
+  const { iteration } = estimator.report;
+  const milliseconds = performance.now() - begun;
+  estimator.free();
+  return { milliseconds, iteration };
+}
+
+/** All arrays of a full-sized frame, copied out and sent: the time of the copies and when they were posted. */
+async function frame() {
+  const estimator = new Estimator(scene.image, scene.depth, { start: scene.pose });
+  const before = performance.now();
+  const arrays = [
+    ...[estimator.imageNormals(), estimator.imageDepth(), estimator.residual(), estimator.refinedDepth()],
+    ...[estimator.depthNormals(), estimator.points("image"), estimator.points("depth")],
+  ];
+  const copying = performance.now() - before;
+  estimator.free();
+  return { arrays, copying, posted: performance.timeOrigin + performance.now() };
+}
+
+const ANSWERS = {
+  scene: ({ path }) => read(path),
+  init: () => init(),
+  run,
+  firstReport,
+  frame,
+  memory: () => memory.buffer.byteLength,
+  clock: () => self.crossOriginIsolated,
+};
+
+self.onmessage = async ({ data: { kind, ...request } }) => {
+  try {
+    const answer = await ANSWERS[kind](request);
+    self.postMessage({ answer }, answer?.arrays?.map(({ buffer }) => buffer) ?? []);
+  } catch (error) {
+    self.postMessage({ failure: `${kind}: ${error.message}` });
+  }
+};

@@ -1,0 +1,117 @@
+// What is timed, run by run, browser and native in turn: a busy machine slows both alike.
+import { Failure, say } from "../shell.mjs";
+
+/** Iterations that a loop needs to get going: with three different starts its surface finds the best (STARTS in src/shape/relief.rs). */
+const WARMING = 3;
+/** No loop takes so many iterations: its end decides. */
+const TO_THE_END = 1000;
+
+/** The times of one kind of stage in a run. */
+const timesOf = ({ stages }, wanted) => stages.filter(wanted).map(({ milliseconds }) => milliseconds);
+
+/** The steady iterations of a run, each as its stages by name; of a run that ends before, the last one. */
+function steadyIterations({ stages, iterations }) {
+  const first = Math.max(0, Math.min(WARMING, iterations - 1));
+  const each = Array.from({ length: Math.max(0, iterations - first) }, () => ({}));
+  for (const { stage, iteration, milliseconds } of stages) if (each[iteration - first]) each[iteration - first][stage] = milliseconds;
+  return each;
+}
+
+const sum = (values) => values.reduce((total, value) => total + value, 0);
+
+/**
+ * Samples of every stage at one size on one side. The registration computes once in a run, in its first iteration; later ones
+ * find that the pose stands and repeat nothing. A step is therefore put together: the other stages of a steady iteration and a
+ * registration that did compute. "standing step" is the steady iteration as it was.
+ */
+class Samples {
+  #steady = [];
+  #registrations = [];
+  #preparations = [];
+
+  get steady() {
+    return this.#steady.length;
+  }
+
+  get registrations() {
+    return this.#registrations.length;
+  }
+
+  addSteady(run) {
+    this.#steady.push(...steadyIterations(run));
+  }
+
+  /** Only from a run that does not begin with a search, whose registrations the first iteration repeats just as little. */
+  addRegistration(run) {
+    this.#registrations.push(...timesOf(run, ({ stage, iteration }) => stage === "registration" && iteration === 0));
+    this.#preparations.push(run.preparation);
+  }
+
+  /** [stage, times] in the order in which a reader wants them. */
+  all() {
+    const others = ["light", "shading", "surface", "refinement"];
+    const registrations = this.#registrations;
+    const steps = this.#steady.map(
+      (stages, index) => sum(others.map((name) => stages[name])) + registrations[index % registrations.length],
+    );
+    const of = (name) => this.#steady.map((stages) => stages[name]);
+    return [
+      ["preparation", this.#preparations],
+      ...[["light", of("light")], ["shading", of("shading")], ["surface", of("surface")]],
+      ...[["registration", registrations], ["refinement", of("refinement")], ["step", steps]],
+      ["standing step", this.#steady.map((stages) => sum(Object.values(stages)))],
+    ];
+  }
+}
+
+/** Runs until every stage has `least` samples on every side. */
+export async function stages(sides, scene, { size, least }) {
+  for (const side of sides) await side.open(scene);
+  const samples = new Map(sides.map((side) => [side.where, new Samples()]));
+  const lacks = (what) => sides.some(({ where }) => samples.get(where)[what] < least);
+  // The first runs are not counted: what a browser compiles while it runs, it compiles now. They start at the true pose. Where the
+  // colours do not hold it (the smallest views), the loop soon ends and steady iterations have to follow a search.
+  let start = "near";
+  for (const side of sides) {
+    const { iterations } = await side.run({ start, most: WARMING + 1 });
+    if (iterations <= WARMING) start = "search";
+  }
+  let ends = [];
+  while (lacks("steady")) {
+    ends = [];
+    for (const side of sides) {
+      const run = await side.run({ start, most: TO_THE_END });
+      const kept = samples.get(side.where);
+      kept.addSteady(run);
+      if (start === "near") kept.addRegistration(run);
+      ends.push({ where: side.where, size, start, ...endOf(run) });
+    }
+    const done = Math.min(...sides.map(({ where }) => samples.get(where).steady));
+    say(`${size}: ${Math.min(done, least)} of ${least} steps`);
+    if (ends.some(({ iterations }) => iterations === 0)) throw new Failure(`${size}: a loop ended before its first iteration was over`);
+  }
+  // The registration does not look at the image's surface, so here that may be the one that is raised fastest.
+  while (lacks("registrations")) {
+    for (const side of sides) samples.get(side.where).addRegistration(await side.run({ start: "near", shading: "pixel", most: 1 }));
+  }
+  say(`${size}: ${least} registrations`);
+  const rows = sides.flatMap(({ where }) => samples.get(where).all().map(([stage, times]) => ({ where, size, stage, times })));
+  return { rows, ends: ends.filter((end) => end.start === "near") };
+}
+
+const endOf = ({ milliseconds, degrees, status, iterations }) => ({ milliseconds, degrees, status, iterations });
+
+/** From two views and nothing known to the end, `times` times on each side. */
+export async function searches(sides, scene, { size, times, name = size }) {
+  for (const side of sides) await side.open(scene);
+  const found = [];
+  for (let round = 0; round < times; round++) {
+    for (const side of sides) {
+      const run = await side.run({ start: "search", most: TO_THE_END });
+      const search = sum(timesOf(run, ({ stage }) => stage === "search"));
+      found.push({ where: side.where, size, scene: name, start: "search", ...endOf(run), search, longestSlice: run.longestSlice });
+      say(`${name}, ${side.where}: ${run.status} after ${(run.milliseconds / 1000).toFixed(1)} s, ${run.degrees.toFixed(2)} degrees off`);
+    }
+  }
+  return found;
+}
