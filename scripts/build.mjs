@@ -39,7 +39,10 @@ function manifest() {
 }
 
 async function numerics() {
-  await must("cargo", ["build", "--release", "--lib", "--target", WASM, "--target-dir", "target"]);
+  // Level 3 unrolls and inlines for a tenth of speed and a sixth of size; see .cargo/config.toml.
+  await must("cargo", ["build", "--release", "--lib", "--target", WASM, "--target-dir", "target"], {
+    env: { CARGO_PROFILE_RELEASE_OPT_LEVEL: "2" },
+  });
   await must(tool("wasm-bindgen"), [
     ...["--target", "web", "--omit-default-module-path", "--out-dir", "target/wasm-bindgen"],
     `target/${WASM}/release/${MODULE}.wasm`,

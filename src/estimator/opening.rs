@@ -8,7 +8,7 @@
 //! degrees; where the truth wins, rivals leave 1.26 times its noise or more.
 
 use crate::error::Result;
-use crate::pose::{PhotometricReport, Search, Similarity};
+use crate::pose::{PhotometricReport, Search, Similarity, sort_down};
 use crate::view::DepthView;
 
 use super::joint::{Given, Joint};
@@ -54,6 +54,7 @@ pub struct Outcome {
     pub rivals: Vec<Similarity>,
 }
 
+#[derive(Clone)]
 struct End {
     report: PhotometricReport,
     gain: f64,
@@ -175,7 +176,7 @@ impl Opening {
     }
 
     fn outcome(&mut self) -> Option<Outcome> {
-        self.ends.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+        sort_down(&mut self.ends, |end| end.gain);
         let mut ends = self.ends.drain(..);
         let best = ends.next().filter(|best| best.gain > 0.0)?;
         let rivals = ends

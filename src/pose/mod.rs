@@ -18,5 +18,6 @@ pub use neighbours::{Neighbour, Neighbours};
 pub use photometric::{Photometric, PhotometricOptions, PhotometricProblem, PhotometricReport, PhotometricTermination};
 pub use ransac::{RansacOptions, RansacReport, ransac};
 pub use search::{Candidate, Progress, Search};
+pub(crate) use search::sort_down;
 pub use similarity::Similarity;
 pub use uncertainty::Information;

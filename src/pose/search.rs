@@ -225,7 +225,7 @@ impl Search {
 
     /// Leaves the best places of the sweep, no two rotations alike.
     fn choose_climbers(&mut self) {
-        self.places.sort_unstable_by(|a, b| b.score.total_cmp(&a.score));
+        sort_down(&mut self.places, |place| place.score);
         keep_apart(&mut self.places, CLIMBERS, SWEEP_TWINS, |place| &place.rotation);
         self.climbers = self.places.len();
     }
@@ -275,7 +275,7 @@ impl Search {
 
     fn finish(&mut self) {
         self.found.retain(|candidate| candidate.score.is_finite());
-        self.found.sort_unstable_by(|a, b| b.score.total_cmp(&a.score));
+        sort_down(&mut self.found, |candidate| candidate.score);
         keep_apart(&mut self.found, KEPT, TWINS, |candidate| &candidate.pose.rotation);
     }
 }
@@ -332,6 +332,20 @@ fn peak(before: f64, here: f64, after: f64) -> f64 {
 
 fn better(a: Place, b: Place) -> Place {
     if b.score > a.score { b } else { a }
+}
+
+/// Best first. Sorts numbers, not the things themselves: sorting is a lot of code for each type there is, and all of it
+/// is downloaded.
+pub(crate) fn sort_down<T: Clone>(list: &mut Vec<T>, merit: impl Fn(&T) -> f64) {
+    let order = descending(&list.iter().map(merit).collect::<Vec<_>>());
+    *list = order.into_iter().map(|index| list[index].clone()).collect();
+}
+
+fn descending(merits: &[f64]) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..merits.len()).collect();
+    // By index where equal: the order is the same everywhere.
+    order.sort_unstable_by(|&a, &b| merits[b].total_cmp(&merits[a]).then(a.cmp(&b)));
+    order
 }
 
 /// Of a list sorted by merit keeps the first `most` whose rotations are `degrees` apart.

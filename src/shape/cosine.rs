@@ -14,14 +14,14 @@ use std::sync::Arc;
 
 use rustdct::algorithm::Type2And3ConvertToFft;
 use rustdct::{Dct2, Dct3, RequiredScratch};
-use rustfft::algorithm::butterflies::{Butterfly2, Butterfly3, Butterfly5, Butterfly6};
-use rustfft::algorithm::{Dft, MixedRadixSmall, Radix4};
+use rustfft::algorithm::butterflies::{Butterfly3, Butterfly6};
+use rustfft::algorithm::{Dft, Radix4};
 use rustfft::{Fft, FftDirection};
 
-/// The shortest row of at least `width` pixels that the transform handles well: 1, 3 or 5 times a power of two.
+/// The shortest row of at least `width` pixels that the transform handles well: once or three times a power of two.
 pub fn fast_width(width: usize) -> usize {
     let power = |factor: usize| factor * width.max(1).div_ceil(factor).next_power_of_two();
-    [1, 3, 5].map(power).into_iter().min().unwrap_or(width)
+    [1, 3].map(power).into_iter().min().unwrap_or(width)
 }
 
 /// A Fourier transform of `length` values. rustfft's planner would bring code for every length there is, a third of the
@@ -34,11 +34,6 @@ fn fourier(length: usize) -> Arc<dyn Fft<f32>> {
         (1, _) => Arc::new(Radix4::new(length, forward)),
         (3, 0) => Arc::new(Radix4::new_with_base(fours, Arc::new(Butterfly3::new(forward)))),
         (3, _) => Arc::new(Radix4::new_with_base(fours, Arc::new(Butterfly6::new(forward)))),
-        (5, 0) => Arc::new(Radix4::new_with_base(fours, Arc::new(Butterfly5::new(forward)))),
-        (5, _) => {
-            let ten = MixedRadixSmall::new(Arc::new(Butterfly2::new(forward)), Arc::new(Butterfly5::new(forward)));
-            Arc::new(Radix4::new_with_base(fours, Arc::new(ten)))
-        }
         _ => Arc::new(Dft::new(length, forward)),
     }
 }
@@ -202,6 +197,6 @@ mod tests {
 
     #[test]
     fn fast_widths_are_not_much_longer() {
-        assert_eq!([1, 7, 11, 64, 97, 150, 612].map(fast_width), [1, 8, 12, 64, 128, 160, 640]);
+        assert_eq!([1, 7, 11, 64, 97, 150, 612].map(fast_width), [1, 8, 12, 64, 128, 192, 768]);
     }
 }

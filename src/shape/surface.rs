@@ -21,7 +21,7 @@ use super::components::Components;
 use super::poisson::{Edges, Poisson, Solved, Termination};
 use crate::error::{Error, ErrorKind, Result};
 use crate::options::positive;
-use crate::view::Size;
+use crate::view::{Size, quantile};
 
 /// Gradients beyond this (height per pixel) count as unknown: beside heights of 1e6 an f32 has no digits left for a shape.
 const LARGEST_GRADIENT: f32 = 1e6;
@@ -383,9 +383,7 @@ impl Integrator {
         if samples.is_empty() {
             return 0.0;
         }
-        let middle = samples.len() / 2;
-        let median = *samples.select_nth_unstable_by(middle, f32::total_cmp).1;
-        SCALE_IN_SIGMAS * SIGMA_OF_MEDIAN * f64::from(median)
+        SCALE_IN_SIGMAS * SIGMA_OF_MEDIAN * f64::from(quantile(samples, 0.5))
     }
 
     /// Sets the weights for the current heights; returns their mean change.
