@@ -17,6 +17,8 @@ pub enum ErrorKind {
     Empty,
     /// The geometry does not determine the answer (a plane, a sphere, fewer than four pairs).
     Degenerate,
+    /// The input would take more memory than a page is granted.
+    Memory,
     /// A documented feature that this build does not offer.
     Unsupported,
 }
@@ -31,6 +33,7 @@ impl ErrorKind {
             Self::Missing => "missing",
             Self::Empty => "empty",
             Self::Degenerate => "degenerate",
+            Self::Memory => "memory",
             Self::Unsupported => "unsupported",
         }
     }

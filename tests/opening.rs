@@ -1,7 +1,10 @@
 //! Pose from anywhere: nothing is known but the two views.
 
 use bimodal_stereo::scenes::{Relief, Sample, SampleRequest, Scene, light, surface};
-use bimodal_stereo::{Angles, ColourSamples, Estimator, LightSource, Options, Size, Stage, Status, StepReport};
+use bimodal_stereo::{
+    Angles, ColourSamples, Estimator, LightSource, Options, Registration, Size, Stage, Start, Status, StepReport,
+    Weights,
+};
 
 fn scene(name: &str, light_name: &str) -> Sample {
     let request = SampleRequest {
@@ -132,4 +135,33 @@ fn what_paint_and_shadows_mislead_is_doubted() {
         let error = report.pose.degrees_to(&sample.pose);
         assert!(error < 3.0 || report.status != Status::Converged, "{name} {light}: {error} {report:?}");
     }
+}
+
+/// A depth map whose prior has no weight must not show in the image's normals: under a poor light they stay poor.
+#[test]
+fn a_prior_without_weight_has_no_say() {
+    let sample = scene("bust", "window");
+    let truth = &sample.truth.image_normals;
+    let error = |prior: f64| {
+        let start = Start::Pose {
+            rotation: sample.pose.rotation,
+            scale: Some(sample.pose.scale),
+            translation: Some(sample.pose.translation),
+        };
+        let weights = Weights { prior, ..Weights::default() };
+        let light = LightSource::Known(sample.light);
+        let options = Options { light, start, registration: Registration::Fixed, weights, ..Options::default() };
+        let mut depth = sample.depth_map();
+        depth.normals = Some(sample.truth.depth_normals.interleaved());
+        let mut estimator = Estimator::new(sample.colour_image(), &depth, options).unwrap();
+        while estimator.report().status == Status::Running {
+            estimator.step();
+        }
+        let found = estimator.image_normals();
+        let valid = || (0..found.len()).filter(|&i| found.is_valid(i) && truth.is_valid(i));
+        let cosine = |i: usize| found.get(i).iter().zip(truth.get(i)).map(|(a, b)| a * b).sum::<f32>();
+        valid().map(|i| cosine(i).min(1.0).acos().to_degrees()).sum::<f32>() / valid().count() as f32
+    };
+    let (without, with) = (error(0.0), error(0.05));
+    assert!(without > 1.5 * with, "{without} {with}");
 }

@@ -159,7 +159,8 @@ fn given<'a>(
         LightSource::Estimate => None,
     };
     let scale_is_held = gauge::held_scale(image, options).is_some();
-    Given { image, depth, prior, light, scale_is_held, annealing: options.annealing }
+    let has_prior = options.weights.light > 0.0;
+    Given { image, depth, prior, has_prior, light, scale_is_held, annealing: options.annealing }
 }
 
 fn nowhere(message: &'static str) -> Error {

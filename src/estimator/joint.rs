@@ -6,7 +6,8 @@ use crate::options::LightSource;
 use crate::pose::{Photometric, PhotometricOptions, PhotometricProblem, PhotometricReport, Similarity};
 use crate::view::{ColourView, DepthView, cubic_normals};
 
-/// Weight of the light's prior in the registration: Bayes' own. `lambda.light` weighs the fit of the light stage alone.
+/// Weight of the light's prior in the registration: Bayes' own. `lambda.light` weighs the fit of the light stage alone, but where it
+/// is zero there is no prior here, either.
 const PRIOR_WEIGHT: f64 = 1.0;
 
 /// Noise of the points from which on the surfaces tell the pose better than the normals, pixel lengths. Half a pixel on Mozart
@@ -23,6 +24,8 @@ pub struct Given<'a> {
     pub image: &'a ColourView,
     pub depth: &'a DepthView,
     pub prior: &'a LightPrior,
+    /// Whether the prior counts.
+    pub has_prior: bool,
     /// The light where it is known, but for its exposure.
     pub light: Option<&'a Light>,
     pub scale_is_held: bool,
@@ -73,7 +76,7 @@ impl SharpView {
             normal_error: Some(&self.error),
             light: given.light,
             prior: given.prior,
-            prior_weight: PRIOR_WEIGHT,
+            prior_weight: if given.has_prior { PRIOR_WEIGHT } else { 0.0 },
             scale_is_held: given.scale_is_held,
         }
     }

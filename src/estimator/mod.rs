@@ -10,6 +10,7 @@
 mod anywhere;
 mod gauge;
 mod joint;
+mod memory;
 mod merit;
 mod opening;
 mod solution;
@@ -130,6 +131,7 @@ impl Estimator {
     /// Any [`Error`] of the views or the options, naming the field.
     pub fn new(image: ColourImage, depth: &DepthMap, options: Options) -> Result<Self> {
         options.validate()?;
+        memory::check([image.width, image.height], [depth.width, depth.height])?;
         let image = ColourView::new(image)?;
         let depth = DepthView::new(depth, options.trim)?;
         Self::from_views(image, depth, options)

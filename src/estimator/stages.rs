@@ -161,11 +161,12 @@ impl Estimator {
         self.shade_surface(&light);
     }
 
-    /// Normals of the pixels once more, each drawn to the depth view's normal or else to that of the surface: differences of
-    /// heights lack the detail of a pixel, which its colours have.
+    /// Normals of the pixels once more, each drawn to the depth view's normal, where that has a say, or else to that of the
+    /// surface: differences of heights lack the detail of a pixel, which its colours have.
     fn shade_surface(&mut self, light: &Light) {
+        let depth_counts = self.options.weights.prior > 0.0;
         for pixel in 0..self.image.size.len() {
-            if self.carried_normals.is_valid(pixel) {
+            if depth_counts && self.carried_normals.is_valid(pixel) {
                 self.surface_normals.set(pixel, self.carried_normals.get(pixel));
             }
         }

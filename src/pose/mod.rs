@@ -17,7 +17,7 @@ pub use icp::{Icp, IcpOptions, IcpProblem, IcpReport, IcpTermination, Metric, Pa
 pub use neighbours::{Neighbour, Neighbours};
 pub use photometric::{Photometric, PhotometricOptions, PhotometricProblem, PhotometricReport, PhotometricTermination};
 pub use ransac::{RansacOptions, RansacReport, ransac};
-pub use search::{Candidate, Progress, Search};
 pub(crate) use search::sort_down;
+pub use search::{Candidate, Progress, Search};
 pub use similarity::Similarity;
 pub use uncertainty::Information;
