@@ -193,7 +193,6 @@ fn decode(value: f32, transfer: Transfer) -> f32 {
 
 #[cfg(test)]
 mod tests {
-    use super::noise;
     use super::*;
 
     fn image(samples: ColourSamples) -> ColourImage {
