@@ -10,7 +10,7 @@ use crate::report::Status;
 /// below 2; the one wrong one had 7.
 const LARGEST_SIGMA: f64 = 5.0;
 /// A rotation less certain than this is no single answer, degrees (one sigma): three sigmas pass the three degrees within which
-/// a pose counts as found. One in 300 random scenes is so uncertain, and all 13 photographs that end over 4 degrees off.
+/// a pose counts as found. One in 300 random scenes is so uncertain, and all 12 of 24 photographs that end over 4 degrees off.
 const DOUBTFUL_SIGMA: f64 = 1.0;
 /// Share of the colours' spread that a trusted pose may leave unexplained. Renders leave 0.01 to 0.1.
 const LARGEST_UNEXPLAINED: f64 = 0.3;
