@@ -24,7 +24,7 @@ use crate::options::{LightSource, Options, Registration, Shading, Start};
 use crate::pose::{Correspondences, Icp, Similarity};
 use crate::report::{Energy, Stage, Status, StepReport};
 use crate::shape::{Integrator, Refiner, ReliefSolver, STARTS, ShadingSolver};
-use crate::view::{ColourImage, ColourView, DepthMap, DepthView, Normals};
+use crate::view::{ColourImage, ColourView, DepthMap, DepthView, Normals, Size};
 use joint::{Given, Joint};
 use merit::Candidate;
 use opening::{Look, Opening, Outcome};
@@ -131,7 +131,8 @@ impl Estimator {
     /// Any [`Error`] of the views or the options, naming the field.
     pub fn new(image: ColourImage, depth: &DepthMap, options: Options) -> Result<Self> {
         options.validate()?;
-        memory::check([image.width, image.height], [depth.width, depth.height])?;
+        let sizes = (Size::new("image", image.width, image.height)?, Size::new("depth", depth.width, depth.height)?);
+        memory::check(sizes.0, sizes.1)?;
         let image = ColourView::new(image)?;
         let depth = DepthView::new(depth, options.trim)?;
         Self::from_views(image, depth, options)

@@ -186,7 +186,7 @@ mod tests {
     #[test]
     fn inverts_the_laplacian_of_a_rectangle() {
         for (width, height) in
-            [(1, 1), (1, 7), (9, 1), (2, 2), (16, 5), (60, 81), (40, 7), (96, 31), (80, 2), (256, 256)]
+            [(1, 1), (1, 7), (9, 1), (2, 2), (16, 5), (60, 81), (48, 7), (96, 31), (24, 2), (256, 256)]
         {
             for (stiffness, shift) in [(1.0, 0.0), (0.7, 0.02), (3.0, 1.5)] {
                 let error = error(width, height, stiffness, shift);

@@ -29,6 +29,8 @@ describe("after init", () => {
     refused(onImage({ width: 32.5 }), "range", "image.width");
     refused(onImage({ width: -32 }), "range", "image.width");
     refused(onImage({ width: 2 ** 32 + 32 }), "size", "image");
+    refused(onImage({ width: 4000, height: 3000, mask: undefined }), "memory", "image");
+    refused(onDepth({ width: 4000, height: 3000, mask: undefined }), "memory", "depth");
   });
 
   test("nothing to work on", () => {
