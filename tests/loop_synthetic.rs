@@ -17,6 +17,9 @@ const PAPER_ROTATION: f64 = 1.30;
 /// By how much the refinement has to lower the error of the depth.
 const GAIN_COLOURFUL: f64 = 4.0;
 const GAIN_NATURAL: f64 = 2.0;
+/// Mozart has less of a rim than the bust.
+const MOZART_COLOURFUL: f64 = 5.0;
+const MOZART_NATURAL: f64 = 3.0;
 /// The row of the natural lights that the handbook calls A: its easy one.
 const NATURAL_A: usize = 132;
 
@@ -141,9 +144,9 @@ fn refinement_lowers_the_error_of_mozart() {
     let Some(data) = data_dir() else { return };
     let scene = Scene::new(&mozart(&data)).expect("a surface");
     let colourful = refinement_gain("mozart, colourful", &scene, lights::COLOURFUL);
-    assert!(colourful >= GAIN_COLOURFUL, "x{colourful:.2}");
+    assert!(colourful >= MOZART_COLOURFUL, "x{colourful:.2}");
     let natural = refinement_gain("mozart, natural A", &scene, natural_light(&data, NATURAL_A));
-    assert!(natural >= GAIN_NATURAL, "x{natural:.2}");
+    assert!(natural >= MOZART_NATURAL, "x{natural:.2}");
 }
 
 #[test]

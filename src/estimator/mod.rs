@@ -150,7 +150,7 @@ impl Estimator {
         let mut estimator = Self {
             correspondences: Correspondences::new(&image, &depth),
             integrator: Integrator::new(image.size, &image.mask)?,
-            refiner: Refiner::new(&depth)?,
+            refiner: Refiner::new(&depth, &image)?,
             relief: ReliefSolver::new(&image)?,
             firmness: vec![0.0; pixels],
             kept: solution.clone(),

@@ -73,26 +73,38 @@ impl Size {
     /// Bilinear value of `field` at a continuous position. NaN neighbours that carry weight make the value NaN.
     #[must_use]
     pub fn bilinear(self, field: &[f32], column: f32, row: f32) -> f32 {
+        // A corner without weight must not spoil the value: NaN times zero is NaN.
+        let corners = self.corners(column, row).into_iter().flatten().filter(|&(_, weight)| weight > 0.0);
+        let mut count = 0;
+        let sum = corners.inspect(|_| count += 1).map(|(pixel, weight)| weight * field[pixel]).sum();
+        if count > 0 { sum } else { f32::NAN }
+    }
+
+    /// As [`bilinear`](Self::bilinear), from those neighbours that have a value: colours of an object's rim.
+    #[must_use]
+    pub fn bilinear_of_known(self, field: &[f32], column: f32, row: f32) -> f32 {
+        let known = self.corners(column, row).into_iter().flatten().filter(|&(pixel, _)| !field[pixel].is_nan());
+        let (sum, weights) =
+            known.fold((0.0, 0.0), |(sum, weights), (pixel, weight)| (sum + weight * field[pixel], weights + weight));
+        if weights > 0.0 { sum / weights } else { f32::NAN }
+    }
+
+    /// The four pixels around a continuous position and their bilinear weights; `None` outside of the raster.
+    fn corners(self, column: f32, row: f32) -> Option<[(usize, f32); 4]> {
         let inside =
             column >= 0.0 && row >= 0.0 && column <= (self.width - 1) as f32 && row <= (self.height - 1) as f32;
         if !inside {
-            return f32::NAN;
+            return None;
         }
         let (left, top) = (column.floor() as usize, row.floor() as usize);
         let (right_share, low_share) = (column - left as f32, row - top as f32);
         let (right, low) = ((left + 1).min(self.width - 1), (top + 1).min(self.height - 1));
-        let corners = [
-            (left, top, (1.0 - right_share) * (1.0 - low_share)),
-            (right, top, right_share * (1.0 - low_share)),
-            (left, low, (1.0 - right_share) * low_share),
-            (right, low, right_share * low_share),
-        ];
-        // A corner without weight must not spoil the value: NaN times zero is NaN.
-        corners
-            .into_iter()
-            .filter(|&(_, _, weight)| weight > 0.0)
-            .map(|(column, row, weight)| weight * field[self.index(column, row)])
-            .sum()
+        Some([
+            (self.index(left, top), (1.0 - right_share) * (1.0 - low_share)),
+            (self.index(right, top), right_share * (1.0 - low_share)),
+            (self.index(left, low), (1.0 - right_share) * low_share),
+            (self.index(right, low), right_share * low_share),
+        ])
     }
 
     /// Column and row of the pixel at `index`.
@@ -167,5 +179,22 @@ impl Normals {
     #[must_use]
     pub fn interleaved(&self) -> Vec<f32> {
         (0..self.len()).flat_map(|index| self.get(index)).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_rim_has_the_colours_of_its_known_neighbours() {
+        let size = Size { width: 2, height: 2 };
+        let rim = [1.0, f32::NAN, 3.0, f32::NAN];
+        assert!(size.bilinear(&rim, 0.25, 0.5).is_nan());
+        assert_eq!(size.bilinear(&rim, 0.0, 0.5), 2.0);
+        assert_eq!(size.bilinear_of_known(&rim, 0.25, 0.5), 2.0);
+        assert_eq!(size.bilinear_of_known(&rim, 0.0, 0.5), 2.0);
+        assert!(size.bilinear_of_known(&[f32::NAN; 4], 0.5, 0.5).is_nan());
+        assert!(size.bilinear_of_known(&rim, -0.1, 0.5).is_nan());
     }
 }

@@ -6,7 +6,7 @@ pub mod cubic_normals;
 mod depth;
 mod grid;
 mod mask;
-mod noise;
+pub(crate) mod noise;
 pub mod normals;
 mod trim;
 
