@@ -16,8 +16,9 @@ use crate::view::{normals, quantile};
 
 /// |n - m| at which a prior normal has lost three quarters of its pull: 23 degrees, more than noise, less than a mistake.
 const PRIOR_SCALE: f32 = 0.4;
-/// Weight of the surface's own normals where no weight is given to the depth view's: that of the default.
-const LEAST_SURFACE_PRIOR: f64 = 0.05;
+/// Least weight of the surface's own normals: the surface says more than a pixel's colours under natural light. Measured on Mozart
+/// under the lights A, B, C without a depth view: 0.1 is better than 0.05 in five cases of six, 0.03 in none.
+const LEAST_SURFACE_PRIOR: f64 = 0.1;
 /// Median log residual up to which a fitted light counts as explaining the colours: noise and discretisation.
 const EXPLAINED: f64 = 0.07;
 /// Solves of normals and exposure in the first iteration, which starts from a look at the colours alone.
