@@ -1,11 +1,14 @@
-//! The image surface from shading as a whole: heights with integrability built in, from several starts.
+//! The image surface from shading as a whole: heights with integrability built in, from several starts, coarse to fine.
 //!
 //! Under natural light three colours hardly tell one normal from another, but the normals of one surface are not free. The
 //! heights of [`HeightSolver`] are solved at falling robust scales from several starts: the surface integrated
 //! from the pixels' own normals, a flat one and a dome over the mask. Shading is ambiguous and not convex; of the
 //! ends the one of least cost was the best one each time it was measured, so that one is taken. Each call tries one
-//! start more, so that none lasts long, and goes on from the best surface so far. Limits: orthographic or pinhole alike, but parts of the mask that are not joined are solved on
-//! their own, each at any level.
+//! start more, so that none lasts long, and goes on from the best surface so far.
+//!
+//! A large image is halved until a level is small: the starts compete there, and the best of them is carried up from
+//! level to level, a few steps at each. Limits: orthographic or pinhole alike, but parts of the mask that are not joined
+//! are solved on their own, each at any level; detail whose shading is ambiguous is decided where it is coarse.
 
 use nalgebra::Matrix3;
 
@@ -16,9 +19,12 @@ use crate::view::{ColourView, Size};
 
 /// Log residuals at which a pixel loses its say, one solve after the other.
 const COLOUR_SCALES: [f32; 3] = [0.5, 0.2, 0.06];
+const LAST_SCALE: f32 = COLOUR_SCALES[COLOUR_SCALES.len() - 1];
 /// Gauss-Newton steps of a start at each scale, and of a later call at the last scale.
 const FIRST_STEPS: u32 = 15;
 const LATER_STEPS: u32 = 5;
+/// Object pixels up to which a level is small: an object that fills half of 96x96 is solved as it is.
+const SMALL: usize = 6000;
 
 /// What the surface has to explain.
 #[derive(Clone, Copy)]
@@ -33,17 +39,31 @@ pub struct ReliefProblem<'a> {
     pub firmness: &'a [f32],
 }
 
+impl<'a> ReliefProblem<'a> {
+    fn heights(&self, rotation: &'a Matrix3<f64>, colour_scale: f32, steps: u32) -> HeightProblem<'a> {
+        HeightProblem {
+            log: self.image.log.each_ref().map(Vec::as_slice),
+            light: self.light,
+            rotation,
+            slopes: self.slopes,
+            firmness: Some(self.firmness),
+            anchors: None,
+            colour_scale,
+            steps,
+        }
+    }
+}
+
 /// Calls after which all starts have been tried.
 pub const STARTS: u32 = 3;
 
 /// Solves one image again and again; owns all memory.
 pub struct ReliefSolver {
     heights: HeightSolver,
-    starts: [Vec<f32>; STARTS as usize],
     surface: Vec<f32>,
-    /// Starts that were tried, and the least cost of their ends.
-    tried: usize,
-    least: f64,
+    /// Halved again and again, the smallest last; empty for a small image.
+    coarser: Vec<Level>,
+    contest: Contest,
 }
 
 impl ReliefSolver {
@@ -52,59 +72,172 @@ impl ReliefSolver {
     /// # Errors
     /// [`crate::ErrorKind::Empty`] where the view's mask is empty.
     pub fn new(image: &ColourView) -> Result<Self> {
-        let length = image.size.len();
-        let dome = dome(image.size, &image.mask);
+        let mut coarser: Vec<Level> = Vec::new();
+        loop {
+            let finest = coarser.last().map_or(image, |level| &level.view.image);
+            if finest.mask.iter().filter(|&&inside| inside).count() <= SMALL {
+                break;
+            }
+            let level = Level::new(finest.halved())?;
+            coarser.push(level);
+        }
+        let smallest = coarser.last().map_or(image, |level| &level.view.image);
         Ok(Self {
+            contest: Contest::new(smallest.size, &smallest.mask),
             heights: HeightSolver::new(image.size, image.camera, &image.mask)?,
-            starts: [vec![0.0; length], vec![0.0; length], dome],
-            surface: vec![0.0; length],
-            tried: 0,
-            least: f64::INFINITY,
+            surface: vec![0.0; image.size.len()],
+            coarser,
         })
     }
 
     /// Whether the next call starts from the integrated surface; later ones do not look at it.
     pub const fn wants_integrated(&self) -> bool {
-        self.tried == 0
+        self.contest.tried == 0
     }
 
     /// Heights (pixels, or f log Z) of the image surface; `integrated` is one of the starts. NaN off the mask.
     pub fn solve(&mut self, problem: ReliefProblem<'_>, integrated: &[f32], heights: &mut [f32]) {
-        let identity = Matrix3::identity();
-        let log = &problem.image.log;
-        let height_problem = |colour_scale: f32, steps: u32| HeightProblem {
-            log: [&log[0], &log[1], &log[2]],
-            light: problem.light,
-            rotation: &identity,
-            slopes: problem.slopes,
-            firmness: Some(problem.firmness),
-            anchors: None,
-            colour_scale,
-            steps,
-        };
-        let last_scale = COLOUR_SCALES[COLOUR_SCALES.len() - 1];
-        if self.tried > 0 {
-            self.least = self.heights.solve(height_problem(last_scale, LATER_STEPS), &mut self.surface).cost;
-        }
-        if let Some(start) = self.starts.get_mut(self.tried) {
-            if self.tried == 0 {
-                for (start, &height) in start.iter_mut().zip(integrated) {
-                    *start = if height.is_nan() { 0.0 } else { height };
-                }
+        if self.coarser.is_empty() {
+            self.contest.hold(&mut self.heights, problem, integrated);
+            self.surface.copy_from_slice(&self.contest.surface);
+        } else {
+            if self.contest.is_open() {
+                self.decide_coarse(problem, integrated);
             }
-            let mut cost = f64::INFINITY;
-            for scale in COLOUR_SCALES {
-                cost = self.heights.solve(height_problem(scale, FIRST_STEPS), start).cost;
-            }
-            if cost < self.least {
-                self.least = cost;
-                self.surface.copy_from_slice(start);
-            }
-            self.tried += 1;
+            let identity = Matrix3::identity();
+            self.heights.solve(problem.heights(&identity, LAST_SCALE, LATER_STEPS), &mut self.surface);
         }
         for ((height, &surface), &inside) in heights.iter_mut().zip(&self.surface).zip(&problem.image.mask) {
             *height = if inside { surface } else { f32::NAN };
         }
+    }
+
+    /// The next start at the smallest level; if it is the best so far, its surface goes up.
+    fn decide_coarse(&mut self, problem: ReliefProblem<'_>, integrated: &[f32]) {
+        for index in 0..self.coarser.len() {
+            let (finer, level) = self.coarser.split_at_mut(index);
+            match finer.last() {
+                None => level[0].load(problem, integrated),
+                Some(finer) => level[0].load(finer.view.problem(problem.light), &finer.surface),
+            }
+        }
+        let Some((smallest, between)) = self.coarser.split_last_mut() else { return };
+        let Level { view, heights, surface } = smallest;
+        if !self.contest.hold(heights, view.problem(problem.light), surface) {
+            return;
+        }
+        surface.copy_from_slice(&self.contest.surface);
+        let mut below = &*smallest;
+        for level in between.iter_mut().rev() {
+            carry_up(&below.surface, &level.view.image, &mut level.surface);
+            level.improve(problem.light);
+            below = level;
+        }
+        carry_up(&below.surface, problem.image, &mut self.surface);
+    }
+}
+
+/// One halved image and its surface: heights in this level's pixels.
+struct Level {
+    view: HalvedProblem,
+    heights: HeightSolver,
+    surface: Vec<f32>,
+}
+
+impl Level {
+    fn new(image: ColourView) -> Result<Self> {
+        let zeros = || vec![0.0; image.size.len()];
+        let heights = HeightSolver::new(image.size, image.camera, &image.mask)?;
+        let surface = zeros();
+        Ok(Self { view: HalvedProblem { slopes: [zeros(), zeros()], firmness: zeros(), image }, heights, surface })
+    }
+
+    /// Takes over the problem of the next finer level and its surface.
+    fn load(&mut self, finer: ReliefProblem<'_>, surface: &[f32]) {
+        self.view.load(finer);
+        finer.image.size.halve(surface, &mut self.surface);
+        self.surface.iter_mut().for_each(|height| *height *= 0.5);
+    }
+
+    fn improve(&mut self, light: &Light) {
+        let identity = Matrix3::identity();
+        self.heights.solve(self.view.problem(light).heights(&identity, LAST_SCALE, LATER_STEPS), &mut self.surface);
+    }
+}
+
+/// What a surface of half the resolution has to explain.
+struct HalvedProblem {
+    image: ColourView,
+    slopes: [Vec<f32>; 2],
+    firmness: Vec<f32>,
+}
+
+impl HalvedProblem {
+    fn load(&mut self, finer: ReliefProblem<'_>) {
+        let size = finer.image.size;
+        for (coarse, fine) in self.slopes.iter_mut().zip(finer.slopes) {
+            size.halve(fine, coarse);
+        }
+        size.halve(finer.firmness, &mut self.firmness);
+    }
+
+    fn problem<'a>(&'a self, light: &'a Light) -> ReliefProblem<'a> {
+        let [p, q] = &self.slopes;
+        ReliefProblem { image: &self.image, light, slopes: [p, q], firmness: &self.firmness }
+    }
+}
+
+/// A surface of half the resolution over the pixels of `image`, zero off its mask.
+fn carry_up(coarse: &[f32], image: &ColourView, fine: &mut [f32]) {
+    image.size.double(coarse, fine);
+    for (height, &inside) in fine.iter_mut().zip(&image.mask) {
+        *height = if inside { 2.0 * *height } else { 0.0 };
+    }
+}
+
+/// The starts of one level and the best of their ends.
+struct Contest {
+    starts: [Vec<f32>; STARTS as usize],
+    surface: Vec<f32>,
+    /// Starts that were tried, and the least cost of their ends.
+    tried: usize,
+    least: f64,
+}
+
+impl Contest {
+    fn new(size: Size, mask: &[bool]) -> Self {
+        let zeros = || vec![0.0; size.len()];
+        Self { starts: [zeros(), zeros(), dome(size, mask)], surface: zeros(), tried: 0, least: f64::INFINITY }
+    }
+
+    const fn is_open(&self) -> bool {
+        self.tried < STARTS as usize
+    }
+
+    /// Improves the best surface so far and tries the next start, the first of which is `integrated`; whether the surface
+    /// is now another.
+    fn hold(&mut self, solver: &mut HeightSolver, problem: ReliefProblem<'_>, integrated: &[f32]) -> bool {
+        let identity = Matrix3::identity();
+        if self.tried > 0 {
+            self.least = solver.solve(problem.heights(&identity, LAST_SCALE, LATER_STEPS), &mut self.surface).cost;
+        }
+        let Some(start) = self.starts.get_mut(self.tried) else { return false };
+        if self.tried == 0 {
+            for (start, &height) in start.iter_mut().zip(integrated) {
+                *start = if height.is_nan() { 0.0 } else { height };
+            }
+        }
+        self.tried += 1;
+        let mut cost = f64::INFINITY;
+        for scale in COLOUR_SCALES {
+            cost = solver.solve(problem.heights(&identity, scale, FIRST_STEPS), start).cost;
+        }
+        let is_best = cost < self.least;
+        if is_best {
+            self.least = cost;
+            self.surface.copy_from_slice(start);
+        }
+        is_best
     }
 }
 

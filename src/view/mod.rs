@@ -5,6 +5,7 @@ mod colour;
 pub mod cubic_normals;
 mod depth;
 mod grid;
+mod halve;
 mod mask;
 pub(crate) mod noise;
 pub mod normals;

@@ -1,0 +1,117 @@
+//! Views of half the resolution: a pixel is the mean of the two by two that it covers, of those that have a value.
+
+use super::{Camera, ColourView, Pinhole, Size};
+
+impl Size {
+    /// Half as many columns and rows, rounded up.
+    #[must_use]
+    pub const fn halved(self) -> Self {
+        Self { width: self.width.div_ceil(2), height: self.height.div_ceil(2) }
+    }
+
+    /// Calls `visit` with the index of each pixel of the halved view and those that it covers.
+    fn for_each_block(self, mut visit: impl FnMut(usize, &[usize])) {
+        let half = self.halved();
+        for coarse in 0..half.len() {
+            let (column, row) = half.position(coarse);
+            let (mut covered, mut count) = ([0; 4], 0);
+            for row in 2 * row..(2 * row + 2).min(self.height) {
+                for column in 2 * column..(2 * column + 2).min(self.width) {
+                    covered[count] = self.index(column, row);
+                    count += 1;
+                }
+            }
+            visit(coarse, &covered[..count]);
+        }
+    }
+
+    /// Means of the known values of `fine` over each pixel of the halved view; NaN where all are unknown.
+    pub(crate) fn halve(self, fine: &[f32], coarse: &mut [f32]) {
+        self.for_each_block(|index, covered| {
+            let known = covered.iter().map(|&pixel| fine[pixel]).filter(|value| !value.is_nan());
+            let (sum, count) = known.fold((0.0, 0.0), |(sum, count), value| (sum + value, count + 1.0));
+            coarse[index] = if count > 0.0 { sum / count } else { f32::NAN };
+        });
+    }
+
+    /// The way back: bilinear between those pixels of the halved view that have a value.
+    pub(crate) fn double(self, coarse: &[f32], fine: &mut [f32]) {
+        let half = self.halved();
+        for (index, value) in fine.iter_mut().enumerate() {
+            let (column, row) = self.position(index);
+            let place = [(column, half.width), (row, half.height)]
+                .map(|(fine, coarse)| (0.5 * fine as f32 - 0.25).clamp(0.0, (coarse - 1) as f32));
+            *value = half.bilinear_of_known(coarse, place[0], place[1]);
+        }
+    }
+}
+
+impl Camera {
+    /// The same camera over pixels of twice the side.
+    fn halved(self) -> Self {
+        match self {
+            Self::Orthographic => Self::Orthographic,
+            Self::Pinhole(Pinhole { fx, fy, cx, cy, distortion }) => {
+                let [cx, cy] = [cx, cy].map(|centre| (centre + 0.5) / 2.0 - 0.5);
+                Self::Pinhole(Pinhole { fx: fx / 2.0, fy: fy / 2.0, cx, cy, distortion })
+            }
+        }
+    }
+}
+
+impl ColourView {
+    /// The view at half the resolution; an object pixel is one that covers any.
+    pub(crate) fn halved(&self) -> Self {
+        let size = self.size.halved();
+        let mut mask = vec![false; size.len()];
+        self.size.for_each_block(|index, covered| mask[index] = covered.iter().any(|&pixel| self.mask[pixel]));
+        let log = self.log.each_ref().map(|fine| {
+            let mut coarse = vec![0.0; size.len()];
+            self.size.halve(fine, &mut coarse);
+            coarse
+        });
+        Self { size, camera: self.camera.halved(), mask, log, transfer: self.transfer }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ODD: Size = Size { width: 7, height: 5 };
+
+    #[test]
+    fn a_plane_survives_there_and_back() {
+        let plane: Vec<f32> = (0..ODD.len()).map(|i| (ODD.position(i).0 + 3 * ODD.position(i).1) as f32).collect();
+        let mut coarse = vec![0.0; ODD.halved().len()];
+        ODD.halve(&plane, &mut coarse);
+        let mut back = vec![0.0; ODD.len()];
+        ODD.double(&coarse, &mut back);
+        for index in 0..ODD.len() {
+            let (column, row) = ODD.position(index);
+            if (1..5).contains(&column) && (1..3).contains(&row) {
+                assert!((back[index] - plane[index]).abs() < 1e-5, "{index}: {} {}", back[index], plane[index]);
+            }
+        }
+    }
+
+    #[test]
+    fn what_covers_a_known_pixel_is_known_and_gives_it_a_value() {
+        let mut fine = vec![f32::NAN; ODD.len()];
+        fine[ODD.index(6, 4)] = 2.0;
+        let mut coarse = vec![0.0; ODD.halved().len()];
+        ODD.halve(&fine, &mut coarse);
+        assert_eq!(coarse.iter().filter(|value| !value.is_nan()).count(), 1);
+        ODD.double(&coarse, &mut fine);
+        assert_eq!(fine[ODD.index(6, 4)], 2.0);
+    }
+
+    #[test]
+    fn rays_stay_where_they_were() {
+        let pinhole = Pinhole { fx: 80.0, fy: 90.0, cx: 3.2, cy: 2.1, distortion: [0.1, 0.0, 0.0, 0.0, 0.0] };
+        let camera = Camera::Pinhole(pinhole);
+        let fine = camera.ray(ODD, [2.5, 0.5]);
+        let coarse = camera.halved().ray(ODD.halved(), [1.0, 0.0]);
+        assert!((0..2).all(|axis| (fine[axis] - coarse[axis]).abs() < 1e-12), "{fine:?} {coarse:?}");
+    }
+}
