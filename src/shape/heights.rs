@@ -34,9 +34,8 @@ const FIRST_DAMPING: f32 = 0.1;
 const DAMPING: [f32; 2] = [1e-4, 1e4];
 /// Least stiffness of the preconditioner: dark pixels must not make it singular.
 const LEAST_STIFFNESS: f64 = 1e-6;
-/// Conjugate gradients of one step: relative residual and cap. A step is only a direction; digits are wasted on it.
+/// Relative residual of the conjugate gradients of one step. A step is only a direction; digits are wasted on it.
 const STEP_TOLERANCE: f64 = 0.03;
-const STEP_CAP: usize = 40;
 /// A step that lowers the cost by less than this share has arrived.
 const SETTLED: f64 = 1e-4;
 
@@ -59,8 +58,17 @@ pub struct HeightProblem<'a> {
     pub anchors: Option<Anchors<'a>>,
     /// Log residual at which a pixel has lost three quarters of its pull.
     pub colour_scale: f32,
-    /// Cap on the Gauss-Newton steps.
+    /// Cap on the work.
+    pub effort: Effort,
+}
+
+/// Caps on the work of a solve.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Effort {
+    /// Gauss-Newton steps.
     pub steps: u32,
+    /// Rounds of conjugate gradients in each: few settle what is fine, many what reaches over the whole object.
+    pub rounds: u32,
 }
 
 /// What a solve did.
@@ -163,11 +171,11 @@ impl HeightSolver {
         let mut cost = first_cost;
         let mut damping = FIRST_DAMPING;
         let (mut steps, mut settled) = (0, false);
-        while steps < problem.steps && !settled {
+        while steps < problem.effort.steps && !settled {
             steps += 1;
             let mean_stiffness = self.linearise(&terms);
             loop {
-                self.find_step(damping * mean_stiffness as f32, mean_stiffness);
+                self.find_step(damping * mean_stiffness as f32, mean_stiffness, problem.effort.rounds);
                 for ((trial, z), step) in self.trial.iter_mut().zip(&self.z).zip(&self.step) {
                     *trial = z + step;
                 }
@@ -332,7 +340,7 @@ impl HeightSolver {
     }
 
     /// step = solution of the linearised system by preconditioned conjugate gradients.
-    fn find_step(&mut self, damping: f32, mean_stiffness: f64) {
+    fn find_step(&mut self, damping: f32, mean_stiffness: f64, rounds: u32) {
         let anchors: f64 = self.anchor_weight.iter().map(|&weight| f64::from(weight)).sum();
         self.cosine.set(mean_stiffness + f64::from(damping), anchors / self.pixels as f64);
         self.operator.set_links(&self.edges, &self.inside, damping);
@@ -344,7 +352,7 @@ impl HeightSolver {
         self.trial.copy_from_slice(&self.right);
         let mut rho = dot(&self.trial, &self.direction);
         let target = STEP_TOLERANCE * STEP_TOLERANCE * rho;
-        for _ in 0..STEP_CAP {
+        for _ in 0..rounds {
             self.operator.apply(&self.anchor_weight, &self.direction, &mut self.image);
             let curvature = dot(&self.direction, &self.image);
             let length = (rho / curvature) as f32;

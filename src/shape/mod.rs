@@ -15,7 +15,7 @@ mod surface;
 
 pub use exposure::{exposure_step, first_exposure};
 pub use gradients::gradients;
-pub use heights::{HeightProblem, HeightReport, HeightSolver};
+pub use heights::{Effort, HeightProblem, HeightReport, HeightSolver};
 pub use poisson::Termination;
 pub use refine::{RefinementProblem, Refiner};
 pub use relief::{ReliefProblem, ReliefSolver, STARTS};

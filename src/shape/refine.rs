@@ -13,7 +13,7 @@ use nalgebra::{Matrix3, Vector3};
 use crate::error::Result;
 use crate::light::Light;
 use crate::shape::{
-    AnchorWeight, Anchors, HeightProblem, HeightSolver, IntegrationOptions, Integrator, Robust, ShadingProblem,
+    AnchorWeight, Anchors, Effort, HeightProblem, HeightSolver, IntegrationOptions, Integrator, Robust, ShadingProblem,
     ShadingSolver, ShadingWeights, gradients,
 };
 use crate::view::{ColourView, DepthView, Normals, Size, noise, normals};
@@ -27,10 +27,9 @@ const DISCRETISATION: f64 = 0.065;
 const ANCHOR: [f64; 2] = [1e-3, 10.0];
 /// Log residuals at which a pixel loses its say, one solve after the other: noisy depth starts far from its colours.
 const COLOUR_SCALES: [f32; 3] = [0.5, 0.2, 0.06];
-/// Gauss-Newton steps at each scale.
-const STEPS: u32 = 6;
-/// Steps of a refinement that continues an earlier one, at the last scale alone.
-const LATER_STEPS: u32 = 3;
+/// Work at each scale, and of a refinement that continues an earlier one, at the last scale alone.
+const FIRST: Effort = Effort { steps: 6, rounds: 40 };
+const LATER: Effort = Effort { steps: 3, rounds: 40 };
 /// Most sweeps that carry gradients into a hole: its radius in pixels at the most.
 const FILL_SWEEPS: usize = 256;
 
@@ -140,8 +139,7 @@ impl Refiner {
             *height = to_height(view, depth);
         }
         let anchors = Anchors { height: &self.anchor, weight: AnchorWeight::PerPixel(&self.anchor_weight) };
-        let (scales, steps) =
-            if self.continues { (&COLOUR_SCALES[2..], LATER_STEPS) } else { (&COLOUR_SCALES[..], STEPS) };
+        let (scales, effort) = if self.continues { (&COLOUR_SCALES[2..], LATER) } else { (&COLOUR_SCALES[..], FIRST) };
         self.continues = true;
         for &colour_scale in scales {
             let height_problem = HeightProblem {
@@ -152,7 +150,7 @@ impl Refiner {
                 firmness: None,
                 anchors: Some(anchors),
                 colour_scale,
-                steps,
+                effort,
             };
             self.heights.solve(height_problem, &mut self.height);
         }

@@ -14,15 +14,17 @@ use nalgebra::Matrix3;
 
 use crate::error::Result;
 use crate::light::Light;
-use crate::shape::{HeightProblem, HeightSolver};
+use crate::shape::{Effort, HeightProblem, HeightSolver};
 use crate::view::{ColourView, Size};
 
 /// Log residuals at which a pixel loses its say, one solve after the other.
 const COLOUR_SCALES: [f32; 3] = [0.5, 0.2, 0.06];
 const LAST_SCALE: f32 = COLOUR_SCALES[COLOUR_SCALES.len() - 1];
-/// Gauss-Newton steps of a start at each scale, and of a later call at the last scale.
-const FIRST_STEPS: u32 = 15;
-const LATER_STEPS: u32 = 5;
+/// Work on a start at each scale.
+const START: Effort = Effort { steps: 15, rounds: 40 };
+/// Work on a surface that has come from elsewhere or from other starts, and on one that every call improves a little.
+const ARRIVED: Effort = Effort { steps: 5, rounds: 20 };
+const SETTLING: Effort = Effort { steps: 2, rounds: 10 };
 /// Object pixels up to which a level is small: an object that fills half of 96x96 is solved as it is.
 const SMALL: usize = 6000;
 
@@ -40,7 +42,7 @@ pub struct ReliefProblem<'a> {
 }
 
 impl<'a> ReliefProblem<'a> {
-    fn heights(&self, rotation: &'a Matrix3<f64>, colour_scale: f32, steps: u32) -> HeightProblem<'a> {
+    fn heights(&self, rotation: &'a Matrix3<f64>, colour_scale: f32, effort: Effort) -> HeightProblem<'a> {
         HeightProblem {
             log: self.image.log.each_ref().map(Vec::as_slice),
             light: self.light,
@@ -49,7 +51,7 @@ impl<'a> ReliefProblem<'a> {
             firmness: Some(self.firmness),
             anchors: None,
             colour_scale,
-            steps,
+            effort,
         }
     }
 }
@@ -101,19 +103,17 @@ impl ReliefSolver {
             self.contest.hold(&mut self.heights, problem, integrated);
             self.surface.copy_from_slice(&self.contest.surface);
         } else {
-            if self.contest.is_open() {
-                self.decide_coarse(problem, integrated);
-            }
-            let identity = Matrix3::identity();
-            self.heights.solve(problem.heights(&identity, LAST_SCALE, LATER_STEPS), &mut self.surface);
+            let arrived = self.contest.is_open() && self.decide_coarse(problem, integrated);
+            let effort = if arrived { ARRIVED } else { SETTLING };
+            self.heights.solve(problem.heights(&Matrix3::identity(), LAST_SCALE, effort), &mut self.surface);
         }
         for ((height, &surface), &inside) in heights.iter_mut().zip(&self.surface).zip(&problem.image.mask) {
             *height = if inside { surface } else { f32::NAN };
         }
     }
 
-    /// The next start at the smallest level; if it is the best so far, its surface goes up.
-    fn decide_coarse(&mut self, problem: ReliefProblem<'_>, integrated: &[f32]) {
+    /// The next start at the smallest level; if it is the best so far, its surface goes up. Whether it did.
+    fn decide_coarse(&mut self, problem: ReliefProblem<'_>, integrated: &[f32]) -> bool {
         for index in 0..self.coarser.len() {
             let (finer, level) = self.coarser.split_at_mut(index);
             match finer.last() {
@@ -121,10 +121,10 @@ impl ReliefSolver {
                 Some(finer) => level[0].load(finer.view.problem(problem.light), &finer.surface),
             }
         }
-        let Some((smallest, between)) = self.coarser.split_last_mut() else { return };
+        let Some((smallest, between)) = self.coarser.split_last_mut() else { return false };
         let Level { view, heights, surface } = smallest;
         if !self.contest.hold(heights, view.problem(problem.light), surface) {
-            return;
+            return false;
         }
         surface.copy_from_slice(&self.contest.surface);
         let mut below = &*smallest;
@@ -134,6 +134,7 @@ impl ReliefSolver {
             below = level;
         }
         carry_up(&below.surface, problem.image, &mut self.surface);
+        true
     }
 }
 
@@ -160,8 +161,8 @@ impl Level {
     }
 
     fn improve(&mut self, light: &Light) {
-        let identity = Matrix3::identity();
-        self.heights.solve(self.view.problem(light).heights(&identity, LAST_SCALE, LATER_STEPS), &mut self.surface);
+        let problem = self.view.problem(light);
+        self.heights.solve(problem.heights(&Matrix3::identity(), LAST_SCALE, ARRIVED), &mut self.surface);
     }
 }
 
@@ -219,7 +220,8 @@ impl Contest {
     fn hold(&mut self, solver: &mut HeightSolver, problem: ReliefProblem<'_>, integrated: &[f32]) -> bool {
         let identity = Matrix3::identity();
         if self.tried > 0 {
-            self.least = solver.solve(problem.heights(&identity, LAST_SCALE, LATER_STEPS), &mut self.surface).cost;
+            let effort = if self.is_open() { ARRIVED } else { SETTLING };
+            self.least = solver.solve(problem.heights(&identity, LAST_SCALE, effort), &mut self.surface).cost;
         }
         let Some(start) = self.starts.get_mut(self.tried) else { return false };
         if self.tried == 0 {
@@ -230,7 +232,7 @@ impl Contest {
         self.tried += 1;
         let mut cost = f64::INFINITY;
         for scale in COLOUR_SCALES {
-            cost = solver.solve(problem.heights(&identity, scale, FIRST_STEPS), start).cost;
+            cost = solver.solve(problem.heights(&identity, scale, START), start).cost;
         }
         let is_best = cost < self.least;
         if is_best {
