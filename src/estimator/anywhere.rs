@@ -45,13 +45,13 @@ impl Estimator {
         let Self { image, depth, prior, options, opening, joint, .. } = self;
         let given = given(image, depth, prior, options);
         let joint = joint.as_mut().ok_or_else(|| nowhere("the search has no registration"))?;
-        let opening = match opening {
-            Some(opening) => opening,
-            None => {
-                let scale = gauge::held_scale(image, options);
-                let unit = gauge::unit_scale(image, depth);
-                opening.insert(Opening::new(&given, joint.depth(), scale, unit, options.seed)?)
-            }
+        let Some(opening) = opening else {
+            // Grids and spectra of both views are a slice of their own.
+            let scale = gauge::held_scale(image, options);
+            let unit = gauge::unit_scale(image, depth);
+            *opening = Some(Opening::new(&given, joint.depth(), scale, unit, options.seed)?);
+            self.report.message = Some("0 %: preparing the search".into());
+            return Ok(());
         };
         match opening.advance(joint, &given) {
             Look::Ongoing(share, what) => {

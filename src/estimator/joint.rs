@@ -134,18 +134,18 @@ impl Joint {
         Ok(self.found.insert(found))
     }
 
-    /// Begins a registration that [`advance`](Self::advance) carries on, a round at a time.
+    /// Begins a registration that [`advance`](Self::advance) carries on, a step at a time.
     pub fn begin(&mut self, given: &Given<'_>, start: &Similarity) -> Result<()> {
         let options = PhotometricOptions { most_points: CANDIDATE_POINTS, ..given.options() };
         self.photometric.begin(&self.sharp.problem(given), start, &options)
     }
 
-    /// One round; the report once it was the last.
+    /// One step; the report, which takes about as long, once there is none left.
     pub fn advance(&mut self, given: &Given<'_>) -> Result<Option<PhotometricReport>> {
         let problem = self.sharp.problem(given);
-        if !self.photometric.step(&problem)? {
-            return Ok(None);
+        if self.photometric.is_done() {
+            return self.photometric.report(&problem).map(Some);
         }
-        self.photometric.report(&problem).map(Some)
+        self.photometric.step(&problem).map(|_| None)
     }
 }

@@ -103,7 +103,7 @@ impl Opening {
         })
     }
 
-    /// One slice: a part of the search, or a round of a registration.
+    /// One slice: a part of the search, or a step of a registration.
     pub fn advance(&mut self, joint: &mut Joint, given: &Given<'_>) -> Look {
         if self.searching {
             let share = self.search.advance().share;

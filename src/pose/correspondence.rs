@@ -11,16 +11,12 @@
 
 use nalgebra::Vector3;
 
+use super::visibility::{HIDDEN_BEHIND, Sight, Visibility, splat, vector};
 use crate::pose::Similarity;
-use crate::view::{Camera, ColourView, DepthView, Normals, Points, Size, quantile};
+use crate::view::{ColourView, DepthView, Normals, Points, quantile};
 
-/// A point counts as hidden when it lies this many image pixels behind the nearest one: more than a steep slope drops
-/// between neighbours, less than a nose stands before a cheek.
-const HIDDEN_BEHIND: f64 = 3.0;
 /// Least accepted distance in image pixels: the paper's threshold.
 const LEAST_DISTANCE: f64 = 1.0;
-/// Cosine at the rim: flatter views of a surface have no reliable pixel.
-const RIM: f64 = 0.05;
 /// Inliers are within this multiple of the median distance.
 const INLIER_SPREADS: f32 = 3.0;
 
@@ -55,9 +51,7 @@ pub struct Correspondences {
     depth_of_pixel: Vec<i32>,
     /// Squared distance of the kept point from its pixel's centre.
     off_centre: Vec<f32>,
-    column: Vec<f32>,
-    row: Vec<f32>,
-    image_buffer: Vec<f32>,
+    visible: Visibility,
     depth_buffer: Vec<f32>,
     gaps: Vec<f32>,
     sorted: Vec<f32>,
@@ -73,9 +67,7 @@ impl Correspondences {
         Self {
             depth_of_pixel: vec![-1; pixels],
             off_centre: vec![f32::INFINITY; pixels],
-            column: vec![f32::NAN; points],
-            row: vec![f32::NAN; points],
-            image_buffer: vec![f32::INFINITY; pixels],
+            visible: Visibility::new(pixels, points),
             depth_buffer: vec![f32::INFINITY; points],
             gaps: vec![f32::NAN; points],
             sorted: Vec::with_capacity(points),
@@ -93,12 +85,12 @@ impl Correspondences {
     /// Continuous image column and row of each depth pixel, NaN where it has no counterpart.
     #[must_use]
     pub fn position(&self) -> [&[f32]; 2] {
-        [&self.column, &self.row]
+        [&self.visible.column, &self.visible.row]
     }
 
     /// Depth pixels that have a counterpart.
     pub fn visible_points(&self) -> impl Iterator<Item = usize> {
-        (0..self.column.len()).filter(|&index| !self.column[index].is_nan())
+        (0..self.visible.column.len()).filter(|&index| !self.visible.column[index].is_nan())
     }
 
     /// Number of measured depth pixels that have a counterpart.
@@ -115,49 +107,18 @@ impl Correspondences {
 
     /// Finds the correspondences of a pose. Allocates nothing.
     pub fn update(&mut self, problem: &CorrespondenceProblem<'_>) {
-        self.project(problem);
-        self.hide(problem);
+        self.visible.update(&Sight {
+            image: problem.image,
+            pose: problem.pose,
+            points: problem.depth_points,
+            normals: problem.depth_normals,
+            pixel_length: problem.pixel_length,
+        });
         if !problem.depth.organised {
             self.hide_from_depth_camera(problem);
         }
         self.accept_near(problem);
         self.assign(problem);
-    }
-
-    /// Places of all points that face the camera and fall on the mask, and the z-buffer of the colour view.
-    fn project(&mut self, problem: &CorrespondenceProblem<'_>) {
-        let size = problem.image.size;
-        self.image_buffer.fill(f32::INFINITY);
-        for index in 0..self.column.len() {
-            (self.column[index], self.row[index], self.gaps[index]) = (f32::NAN, f32::NAN, f32::NAN);
-            if !problem.depth_points.is_valid(index) {
-                continue;
-            }
-            let point = carried(problem, index);
-            let Some([column, row]) = problem.image.camera.project(size, point.into()) else { continue };
-            splat(size, &mut self.image_buffer, [column, row], point.z as f32);
-            let normal = problem.pose.rotation * vector(problem.depth_normals.get(index));
-            // A normal that is missing (a hole not yet filled) does not exclude its point.
-            if normal.dot(&sight(&problem.image.camera, point)) > -RIM {
-                continue;
-            }
-            let pixel = size.nearest(column as f32, row as f32);
-            if pixel.is_some_and(|pixel| problem.image.mask[pixel]) {
-                (self.column[index], self.row[index]) = (column as f32, row as f32);
-            }
-        }
-    }
-
-    /// Drops the points that lie behind others in the colour view.
-    fn hide(&mut self, problem: &CorrespondenceProblem<'_>) {
-        let tolerance = (HIDDEN_BEHIND * problem.pixel_length) as f32;
-        for index in 0..self.column.len() {
-            let Some(pixel) = problem.image.size.nearest(self.column[index], self.row[index]) else { continue };
-            if carried(problem, index).z as f32 > self.image_buffer[pixel] + tolerance {
-                self.column[index] = f32::NAN;
-                self.row[index] = f32::NAN;
-            }
-        }
     }
 
     /// Drops the points that the image surface hides from the depth camera.
@@ -173,10 +134,9 @@ impl Correspondences {
         }
         // The image surface is an estimate: only what it hides by a clear margin is hidden.
         let tolerance = (2.0 * HIDDEN_BEHIND * problem.pixel_length / problem.pose.scale) as f32;
-        for index in 0..self.column.len() {
+        for index in 0..self.visible.column.len() {
             if problem.depth_points.z[index] > self.depth_buffer[index] + tolerance {
-                self.column[index] = f32::NAN;
-                self.row[index] = f32::NAN;
+                self.visible.drop(index);
             }
         }
     }
@@ -185,8 +145,9 @@ impl Correspondences {
     fn accept_near(&mut self, problem: &CorrespondenceProblem<'_>) {
         let size = problem.image.size;
         self.sorted.clear();
-        for index in 0..self.column.len() {
-            let Some(pixel) = size.nearest(self.column[index], self.row[index]) else { continue };
+        self.gaps.fill(f32::NAN);
+        for index in 0..self.visible.column.len() {
+            let Some(pixel) = size.nearest(self.visible.column[index], self.visible.row[index]) else { continue };
             let gap = vector(problem.image_points.get(pixel)) - carried(problem, index);
             let gap = gap.dot(&vector(problem.image_normals.get(pixel))).abs() as f32;
             self.gaps[index] = gap;
@@ -199,11 +160,11 @@ impl Correspondences {
         let threshold = problem.distance.unwrap_or(follows) as f32;
         let inlier = (INLIER_SPREADS * median).min(threshold);
         (self.count, self.inliers) = (0, 0.0);
-        for index in 0..self.column.len() {
+        for index in 0..self.visible.column.len() {
             // A point over a pixel without a surface has no distance, and stays.
             if self.gaps[index] > threshold {
-                (self.column[index], self.row[index]) = (f32::NAN, f32::NAN);
-            } else if !self.column[index].is_nan() && !problem.depth.depth[index].is_nan() {
+                self.visible.drop(index);
+            } else if !self.visible.column[index].is_nan() && !problem.depth.depth[index].is_nan() {
                 self.count += 1;
                 self.inliers += f64::from(u8::from(self.gaps[index].is_nan() || self.gaps[index] <= inlier));
             }
@@ -215,8 +176,8 @@ impl Correspondences {
     fn assign(&mut self, problem: &CorrespondenceProblem<'_>) {
         self.depth_of_pixel.fill(-1);
         self.off_centre.fill(f32::INFINITY);
-        for index in 0..self.column.len() {
-            let (column, row) = (self.column[index], self.row[index]);
+        for index in 0..self.visible.column.len() {
+            let (column, row) = (self.visible.column[index], self.visible.row[index]);
             let Some(pixel) = problem.image.size.nearest(column, row) else { continue };
             let off = (column - column.round()).powi(2) + (row - row.round()).powi(2);
             if off < self.off_centre[pixel] && problem.depth_normals.is_valid(index) {
@@ -227,28 +188,6 @@ impl Correspondences {
     }
 }
 
-fn vector(values: [f32; 3]) -> Vector3<f64> {
-    Vector3::from(values.map(f64::from))
-}
-
 fn carried(problem: &CorrespondenceProblem<'_>, index: usize) -> Vector3<f64> {
     problem.pose.apply(vector(problem.depth_points.get(index)))
-}
-
-/// Unit direction from the camera to a point.
-fn sight(camera: &Camera, point: Vector3<f64>) -> Vector3<f64> {
-    if camera.is_orthographic() { Vector3::z() } else { point.normalize() }
-}
-
-/// Enters a depth at the four pixels around a position, so that gaps between points let nothing through.
-fn splat(size: Size, buffer: &mut [f32], position: [f64; 2], depth: f32) {
-    let [left, top] = position.map(f64::floor);
-    for (column, row) in [(left, top), (left + 1.0, top), (left, top + 1.0), (left + 1.0, top + 1.0)] {
-        // A position on a pixel's centre enters that pixel alone.
-        let near = (column - position[0]).abs() < 1.0 && (row - position[1]).abs() < 1.0;
-        if near && column >= 0.0 && row >= 0.0 && column < size.width as f64 && row < size.height as f64 {
-            let pixel = size.index(column as usize, row as usize);
-            buffer[pixel] = buffer[pixel].min(depth);
-        }
-    }
 }

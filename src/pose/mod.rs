@@ -10,6 +10,7 @@ mod ransac;
 mod search;
 mod similarity;
 mod uncertainty;
+mod visibility;
 
 pub use angles::{Angles, AnglesFit};
 pub use correspondence::{CorrespondenceProblem, Correspondences};

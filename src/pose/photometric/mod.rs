@@ -88,12 +88,42 @@ const LARGEST_RISE: f64 = 0.1;
 /// Fewest points: two for each unknown.
 const FEWEST_POINTS: usize = 14;
 
-/// Where the rounds stand.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// Where the rounds stand: what the next piece of work is.
+#[derive(Clone, Copy, Debug)]
 enum Phase {
-    Annealing { level: usize, fine_rounds: usize },
-    Listening { round: usize },
+    /// A round of annealing begins: its visible points and their light.
+    Annealing {
+        level: usize,
+        fine_rounds: usize,
+    },
+    /// A Gauss-Newton step of it.
+    Descending(Descent),
+    /// A listening round begins.
+    Listening {
+        round: usize,
+    },
+    /// A step of it.
+    Hearing {
+        round: usize,
+        frame: Frame,
+        steps: usize,
+    },
     Done(PhotometricTermination),
+}
+
+/// A round of damped Gauss-Newton at one level and one robust scale, between two of its steps.
+#[derive(Clone, Copy, Debug)]
+struct Descent {
+    level: usize,
+    fine_rounds: usize,
+    frame: Frame,
+    /// The pose at the beginning of the round.
+    before: Similarity,
+    /// Whether the robust scale is that of the noise.
+    at_noise: bool,
+    damping: f64,
+    cost: f64,
+    steps: usize,
 }
 
 /// Registers one depth view to one image again and again; owns all memory.
@@ -192,19 +222,26 @@ impl Photometric {
         Ok(())
     }
 
-    /// One round; whether it was the last.
+    /// A piece of a round, one Gauss-Newton step at most, so that a page stays alive; whether it was the last.
     ///
     /// # Errors
     /// [`ErrorKind::Degenerate`] where too few points are visible or they determine nothing.
     pub fn step(&mut self, problem: &PhotometricProblem<'_>) -> Result<bool> {
         self.phase = match self.phase {
-            Phase::Done(_) => return Ok(true),
+            Phase::Descending(descent) => self.descend(problem, descent)?,
+            Phase::Hearing { round, frame, steps } => self.hear(problem, round, &frame, steps)?,
+            Phase::Done(_) => self.phase,
             _ if self.rounds >= self.most_rounds => Phase::Done(PhotometricTermination::MostRounds),
             Phase::Annealing { level, fine_rounds } => self.anneal(problem, level, fine_rounds)?,
             Phase::Listening { round } => self.listen(problem, round)?,
         };
-        self.rounds += 1;
-        Ok(matches!(self.phase, Phase::Done(_)))
+        Ok(self.is_done())
+    }
+
+    /// Whether there is nothing left to [`step`](Self::step).
+    #[must_use]
+    pub const fn is_done(&self) -> bool {
+        matches!(self.phase, Phase::Done(_))
     }
 
     /// The present pose.
@@ -213,19 +250,54 @@ impl Photometric {
         &self.state.pose
     }
 
-    /// A round of damped Gauss-Newton at one level and one robust scale.
+    /// The beginning of a round: its points, their light, its robust scale.
     fn anneal(&mut self, problem: &PhotometricProblem<'_>, level: usize, fine_rounds: usize) -> Result<Phase> {
+        self.rounds += 1;
         let frame = self.look(problem, level)?;
         self.fit_light(problem, level)?;
         self.measure(problem, level);
         let target = self.final_scale();
         let tolerated = if self.annealing { ANNEALING * self.robust.scale } else { 0.0 };
         self.robust = Robust { scale: target.max(tolerated), prior: self.prior(problem) };
-        let before = self.state.pose;
-        self.descend(problem, level, &frame)?;
+        Ok(Phase::Descending(Descent {
+            level,
+            fine_rounds,
+            frame,
+            before: self.state.pose,
+            at_noise: self.robust.scale <= target,
+            damping: DAMPING,
+            cost: self.cost(problem, level, &self.state),
+            steps: 0,
+        }))
+    }
+
+    /// A step of pose and light that lowers the cost.
+    fn descend(&mut self, problem: &PhotometricProblem<'_>, mut descent: Descent) -> Result<Phase> {
+        let Descent { level, frame, .. } = descent;
+        self.iterations += 1;
+        descent.steps += 1;
+        let reduced = self.reduced(problem, level, &frame, false)?;
+        let mut size = 0.0;
+        for _ in 0..MOST_ATTEMPTS {
+            if let Some((step, light)) = reduced.step(descent.damping, &problem.held()) {
+                let next = self.state.moved(&frame, &step, &light, problem.light.is_some());
+                let next_cost = self.cost(problem, level, &next);
+                if next_cost <= descent.cost {
+                    (self.state, descent.cost, size) = (next, next_cost, step.norm());
+                    descent.damping = (RELAX * descent.damping).max(LEAST_DAMPING);
+                    break;
+                }
+            }
+            descent.damping *= TIGHTEN;
+        }
+        let ends = size < STILL || descent.steps >= MOST_STEPS;
+        Ok(if ends { self.after(&descent) } else { Phase::Descending(descent) })
+    }
+
+    /// What follows a round of annealing.
+    fn after(&mut self, &Descent { level, fine_rounds, before, at_noise, .. }: &Descent) -> Phase {
         let change = before.degrees_to(&self.state.pose);
-        let at_noise = self.robust.scale <= target;
-        Ok(match level {
+        match level {
             0 if at_noise && (change < FINE_DONE || fine_rounds >= MOST_FINE_ROUNDS) => {
                 self.annealed = self.state;
                 Phase::Listening { round: 0 }
@@ -235,50 +307,26 @@ impl Photometric {
                 Phase::Annealing { level: level - 1, fine_rounds: 0 }
             }
             _ => Phase::Annealing { level, fine_rounds: fine_rounds + usize::from(at_noise) },
-        })
-    }
-
-    /// Steps of pose and light that each lower the cost.
-    fn descend(&mut self, problem: &PhotometricProblem<'_>, level: usize, frame: &Frame) -> Result<()> {
-        let (mut damping, mut cost) = (DAMPING, self.cost(problem, level, &self.state));
-        for _ in 0..MOST_STEPS {
-            self.iterations += 1;
-            let reduced = self.reduced(problem, level, frame, false)?;
-            let mut size = 0.0;
-            for _ in 0..MOST_ATTEMPTS {
-                if let Some((step, light)) = reduced.step(damping, &problem.held()) {
-                    let next = self.state.moved(frame, &step, &light, problem.light.is_some());
-                    let next_cost = self.cost(problem, level, &next);
-                    if next_cost <= cost {
-                        (self.state, cost, size) = (next, next_cost, step.norm());
-                        damping = (RELAX * damping).max(LEAST_DAMPING);
-                        break;
-                    }
-                }
-                damping *= TIGHTEN;
-            }
-            if size < STILL {
-                break;
-            }
         }
-        Ok(())
     }
 
-    /// A round of sum w Z^T r = 0.
+    /// The beginning of a round of sum w Z^T r = 0: the visible points follow in the first.
     fn listen(&mut self, problem: &PhotometricProblem<'_>, round: usize) -> Result<Phase> {
-        if round == 0 {
-            self.look(problem, 0)?;
-        }
-        let frame = self.points.frame(problem, &self.state.pose);
+        self.rounds += 1;
+        let frame = if round == 0 { self.look(problem, 0)? } else { self.points.frame(problem, &self.state.pose) };
+        Ok(Phase::Hearing { round, frame, steps: 0 })
+    }
+
+    /// A step of such a round.
+    fn hear(&mut self, problem: &PhotometricProblem<'_>, round: usize, frame: &Frame, steps: usize) -> Result<Phase> {
+        self.iterations += 1;
+        let reduced = self.reduced(problem, 0, frame, true)?;
         let mut still = false;
-        for _ in 0..MOST_LISTENING_STEPS {
-            self.iterations += 1;
-            let reduced = self.reduced(problem, 0, &frame, true)?;
-            let Some((step, light)) = reduced.step(0.0, &problem.held()) else { break };
-            self.state = self.state.moved(&frame, &step, &light, problem.light.is_some());
+        if let Some((step, light)) = reduced.step(0.0, &problem.held()) {
+            self.state = self.state.moved(frame, &step, &light, problem.light.is_some());
             still = step.norm() < STILL;
-            if still {
-                break;
+            if !still && steps + 1 < MOST_LISTENING_STEPS {
+                return Ok(Phase::Hearing { round, frame: *frame, steps: steps + 1 });
             }
         }
         let rise = self.cost(problem, 0, &self.state) / self.cost(problem, 0, &self.annealed);

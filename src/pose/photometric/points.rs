@@ -7,10 +7,10 @@ use super::equations::{Equations, LightEquations};
 use super::image::SplineImage;
 use super::residual::{Linear, Scene};
 use crate::light::{COEFFICIENTS, Coefficients, HARMONICS, Light, basis};
-use crate::pose::correspondence::{CorrespondenceProblem, Correspondences};
 use crate::pose::increment::{Frame, Row};
 use crate::pose::similarity::Similarity;
-use crate::view::{Points, Size, quantile};
+use crate::pose::visibility::{Sight, Visibility};
+use crate::view::{Size, quantile};
 
 /// Distance from the border of the mask within which points stay out, image pixels: they would enter and leave with every
 /// step, and the spline is continued there.
@@ -72,9 +72,7 @@ pub(super) struct Robust {
 
 /// A fixed set of visible points; owns its memory.
 pub(super) struct VisiblePoints {
-    correspondences: Correspondences,
-    /// Stands for an image surface that is not there.
-    no_surface: Points,
+    visible: Visibility,
     indices: Vec<u32>,
     sampled: bool,
     weights: Vec<f32>,
@@ -87,8 +85,7 @@ impl VisiblePoints {
     pub fn new(problem: &PhotometricProblem<'_>) -> Self {
         let length = problem.depth.size.len();
         Self {
-            correspondences: Correspondences::new(problem.image, problem.depth),
-            no_surface: Points::missing(problem.image.size.len()),
+            visible: Visibility::new(problem.image.size.len(), length),
             indices: Vec::with_capacity(length),
             sampled: false,
             weights: Vec::with_capacity(length),
@@ -112,17 +109,12 @@ impl VisiblePoints {
         most: usize,
     ) {
         let centre = pose.apply(problem.points.centroid());
-        self.correspondences.update(&CorrespondenceProblem {
+        self.visible.update(&Sight {
             image: problem.image,
-            depth: problem.depth,
             pose,
-            depth_points: problem.points,
-            depth_normals: problem.normals,
-            image_points: &self.no_surface,
-            image_normals: &self.no_surface,
-            distance: None,
+            points: problem.points,
+            normals: problem.normals,
             pixel_length: problem.image.camera.focal_length().map_or(1.0, |focal_length| centre.z / focal_length),
-            spreads: 1.0,
         });
         let enough = if problem.light.is_some() { ENOUGH_KNOWN } else { ENOUGH_UNKNOWN };
         for level in (0..=level).rev() {
@@ -164,7 +156,7 @@ impl VisiblePoints {
     fn list(&mut self, problem: &PhotometricProblem<'_>, image: &SplineImage, stride: usize) {
         self.indices.clear();
         self.weights.clear();
-        let [columns, rows] = self.correspondences.position();
+        let Visibility { column: columns, row: rows, .. } = &self.visible;
         for index in 0..columns.len() {
             let (column, row) = problem.depth.size.position(index);
             let position = [f64::from(columns[index]), f64::from(rows[index])];

@@ -3,16 +3,20 @@
 //! Unknown light: with harmonics q_k made orthonormal over the whole template, the explained sum of squares is
 //! sum_k |q_k * y|^2 for k > 0, out of N * |y|^2 - |q_0 * y|^2. Known light: the squares of y - p expand into five
 //! correlations. Both only propose translations: orthonormal over the whole template is not orthonormal over an overlap,
-//! and [`judge`](super::judge) has the last word. Two real fields share each transform.
+//! and [`judge`](super::judge) has the last word. Two real fields share each transform: the one of f_0 + i f_1, correlated with a
+//! real field, is that of f_0 in its real and of f_1 in its imaginary part, the latter negated.
 //!
-//! Cost: 20 transforms for an unknown light, 5 for a known one.
+//! Cost: 21 transforms for an unknown light, 5 for a known one.
 
-use super::fourier::{Complex, Fourier};
+use super::fourier::{CELLS, Field, Fourier, opposite};
 use super::judge::{FEWEST_CELLS, Gram, Prediction, regularised};
 use super::target::Target;
 use super::template::{PRODUCTS, Template};
 use crate::light::HARMONICS;
+use nalgebra::Complex;
 
+/// What a transform and its inverse leave undone.
+const NORM: f32 = 1.0 / CELLS as f32;
 /// Translations proposed for each rotation; the exact score picks one of them.
 const PROPOSALS: usize = 3;
 /// Least share of the template, or of the mask where that is smaller, that a translation has to bring into overlap.
@@ -27,26 +31,22 @@ pub struct Correlator {
     fourier: Fourier,
     /// Index of the opposite frequency.
     mirror: Vec<u32>,
-    fields: [Vec<Complex>; PAIRS],
-    products: [Vec<Complex>; 2],
+    fields: [Field; PAIRS],
+    products: [Field; 2],
     /// Explained squares, then scores.
     scores: Vec<f32>,
     mean: Vec<f32>,
 }
 
 impl Correlator {
-    pub fn new(side: usize, fourier: Fourier) -> Self {
-        let cells = side * side;
-        let field = || vec![Complex::default(); cells];
-        let opposite = |index: usize| (side - index) % side;
-        let mirror = |index: usize| (opposite(index / side) * side + opposite(index % side)) as u32;
+    pub fn new(fourier: Fourier) -> Self {
         Self {
             fourier,
-            mirror: (0..cells).map(mirror).collect(),
-            fields: std::array::from_fn(|_| field()),
-            products: std::array::from_fn(|_| field()),
-            scores: vec![0.0; cells],
-            mean: vec![0.0; cells],
+            mirror: (0..CELLS).map(|index| opposite(index) as u32).collect(),
+            fields: std::array::from_fn(|_| Field::zero()),
+            products: std::array::from_fn(|_| Field::zero()),
+            scores: vec![0.0; CELLS],
+            mean: vec![0.0; CELLS],
         }
     }
 
@@ -76,23 +76,24 @@ impl Correlator {
         self.scores.fill(0.0);
         self.mean.fill(0.0);
         for pair in 0..PAIRS {
-            self.pair_with_two_channels(pair, target);
-            self.pair_with_third_channel(pair, target);
+            for colour in &target.spectra.colour {
+                self.pair_with_channel(pair, colour);
+            }
         }
         // Coverage and |y|^2 under the template: q_0 is w over the root of its sum.
-        let spectra = &target.spectra;
-        for index in 0..self.mirror.len() {
-            let opposite = self.fields[0][self.mirror[index] as usize];
-            let first = (self.fields[0][index].conj() + opposite) * (0.5 * weight);
-            self.products[0][index] = first * plus_i(spectra.mask[index], spectra.energy[index]);
+        let (spectra, [product, _]) = (&target.spectra, &mut self.products);
+        for index in 0..CELLS {
+            let (re, im) = even(&self.fields[0], index, self.mirror[index]);
+            let (re, im) = (weight * re, weight * im);
+            let (a, b) = plus_i(&spectra.mask, &spectra.energy, index);
+            (product.re[index], product.im[index]) = (re * a - im * b, re * b + im * a);
         }
-        self.fourier.inverse(&mut self.products[0]);
+        self.fourier.inverse(product);
         let least = least_cover(template, target);
-        let norm = 1.0 / self.mirror.len() as f32;
-        for index in 0..self.scores.len() {
-            let Complex { re: cover, im: energy } = self.products[0][index] * norm;
-            let total = energy - self.mean[index] * norm * norm;
-            let explained = self.scores[index] * norm * norm;
+        for index in 0..CELLS {
+            let (cover, energy) = (product.re[index] * NORM, product.im[index] * NORM);
+            let total = energy - self.mean[index] * NORM * NORM;
+            let explained = self.scores[index] * NORM * NORM;
             let share = (explained / total.max(LEAST_SQUARE)).min(1.0);
             self.scores[index] = if cover < least { f32::NEG_INFINITY } else { share * cover };
         }
@@ -107,83 +108,76 @@ impl Correlator {
         }
         let lower = regularised(&gram).cholesky()?.unpack();
         let inverse = lower.solve_lower_triangular(&Gram::identity())?.map(|value| value as f32);
-        self.fields.iter_mut().for_each(|field| field.fill(Complex::default()));
-        for (cell, sums) in template.cells.iter().map(|&cell| (cell as usize, &template.sums[cell as usize])) {
-            let whitened = |k: usize| (0..=k).map(|column| inverse[(k, column)] * sums[column]).sum::<f32>();
+        // Columns of the inverse over as many places as the pairs have.
+        let mut columns = [[0.0; 2 * PAIRS]; HARMONICS];
+        (0..HARMONICS).for_each(|k| columns[k][..HARMONICS].copy_from_slice(inverse.column(k).as_slice()));
+        self.fields.iter_mut().for_each(Field::clear);
+        for &cell in &template.cells {
+            let cell = cell as usize;
+            let mut whitened = [0.0; 2 * PAIRS];
+            for (column, sum) in columns.iter().zip(&template.sums[cell]) {
+                whitened.iter_mut().zip(column).for_each(|(value, share)| *value += share * sum);
+            }
             for (pair, field) in self.fields.iter_mut().enumerate() {
-                let odd = if 2 * pair + 1 < HARMONICS { whitened(2 * pair + 1) } else { 0.0 };
-                field[cell] = Complex::new(whitened(2 * pair), odd);
+                (field.re[cell], field.im[cell]) = (whitened[2 * pair], whitened[2 * pair + 1]);
             }
         }
         Some(lower[(0, 0)] as f32)
     }
 
-    /// Adds |q * (y_0 + i y_1)|^2 of both harmonics of a pair.
-    fn pair_with_two_channels(&mut self, pair: usize, target: &Target) {
-        let [first, second, _] = &target.spectra.colour;
-        let [even, odd] = &mut self.products;
-        for index in 0..self.mirror.len() {
-            let (here, opposite) = (self.fields[pair][index].conj(), self.fields[pair][self.mirror[index] as usize]);
-            let colour = plus_i(first[index], second[index]) * 0.5;
-            even[index] = (here + opposite) * colour;
-            odd[index] = times_i(here - opposite) * colour;
-        }
-        for (parity, product) in self.products.iter_mut().enumerate().take(HARMONICS - 2 * pair) {
-            self.fourier.inverse(product);
-            let sums = if pair + parity == 0 { &mut self.mean } else { &mut self.scores };
-            sums.iter_mut().zip(product).for_each(|(sum, value)| *sum += value.norm_sqr());
-        }
-    }
-
-    /// Adds (q * y_2)^2 of both harmonics of a pair.
-    fn pair_with_third_channel(&mut self, pair: usize, target: &Target) {
+    /// Adds (q * y)^2 of both harmonics of a pair.
+    fn pair_with_channel(&mut self, pair: usize, colour: &Field) {
         let product = &mut self.products[0];
-        for index in 0..self.mirror.len() {
-            product[index] = self.fields[pair][index].conj() * target.spectra.colour[2][index];
-        }
+        multiply_conjugate(&self.fields[pair], colour, product);
         self.fourier.inverse(product);
-        for (index, value) in product.iter().enumerate() {
-            let even = if pair == 0 { &mut self.mean } else { &mut self.scores };
-            even[index] += value.re * value.re;
-            self.scores[index] += value.im * value.im;
-        }
+        let squares = |sums: &mut [f32], values: &[f32]| {
+            sums.iter_mut().zip(values).for_each(|(sum, value)| *sum += value * value);
+        };
+        squares(if pair == 0 { &mut self.mean } else { &mut self.scores }, &product.re);
+        squares(&mut self.scores, &product.im);
     }
 
     /// Fields w p_0 + i w p_1, w p_2 + i w and w |p|^2 + i w u . p, with u the direction of the exposure.
     fn predicted(&mut self, template: &Template, prediction: &Prediction, target: &Target) {
         let exposure = prediction.exposure.map(|value| value as f32);
-        self.fields[..3].iter_mut().for_each(|field| field.fill(Complex::default()));
+        self.fields[..3].iter_mut().for_each(Field::clear);
+        let mut set = |field: usize, cell: u32, re: f32, im: f32| {
+            let field = &mut self.fields[field];
+            (field.re[cell as usize], field.im[cell as usize]) = (re, im);
+        };
         for (&cell, &[x, y, z]) in template.cells.iter().zip(&prediction.colours) {
             let weight = template.sums[cell as usize][0];
             let along = exposure[0] * x + exposure[1] * y + exposure[2] * z;
-            self.fields[0][cell as usize] = Complex::new(x, y) * weight;
-            self.fields[1][cell as usize] = Complex::new(z, 1.0) * weight;
-            self.fields[2][cell as usize] = Complex::new(x * x + y * y + z * z, along) * weight;
+            set(0, cell, x * weight, y * weight);
+            set(1, cell, z * weight, weight);
+            set(2, cell, (x * x + y * y + z * z) * weight, along * weight);
         }
         self.fields[..3].iter_mut().for_each(|field| self.fourier.forward(field));
         let spectra = &target.spectra;
-        for index in 0..self.mirror.len() {
-            let opposite = self.mirror[index] as usize;
-            let split = |field: &[Complex]| {
-                let (here, opposite) = (field[index].conj(), field[opposite]);
-                ((here + opposite) * 0.5, times_i(here - opposite) * 0.5)
+        let [product, cover] = &mut self.products;
+        for index in 0..CELLS {
+            let at = |field: &Field| Complex::new(field.re[index], field.im[index]);
+            let split = |field: &Field| {
+                let mirror = self.mirror[index];
+                let (even, odd) = (even(field, index, mirror), odd(field, index, mirror));
+                (Complex::new(even.0, even.1), Complex::new(odd.0, odd.1))
             };
             let (x, y) = split(&self.fields[0]);
             let (z, weight) = split(&self.fields[1]);
             let (square, along) = split(&self.fields[2]);
-            let (c0, c1, c2) = (spectra.colour[0][index], spectra.colour[1][index], spectra.colour[2][index]);
-            let mask = spectra.mask[index];
-            let squares = weight * spectra.energy[index] + square * mask - (x * c0 + y * c1 + z * c2) * 2.0;
+            let [c0, c1, c2] = spectra.colour.each_ref().map(at);
+            let mask = at(&spectra.mask);
+            let squares = weight * at(&spectra.energy) + square * mask - (x * c0 + y * c1 + z * c2) * 2.0;
             let shifted = weight * (c0 * exposure[0] + c1 * exposure[1] + c2 * exposure[2]) - along * mask;
-            self.products[0][index] = plus_i(squares, shifted);
-            self.products[1][index] = weight * mask;
+            (product.re[index], product.im[index]) = (squares.re - shifted.im, squares.im + shifted.re);
+            let seen = weight * mask;
+            (cover.re[index], cover.im[index]) = (seen.re, seen.im);
         }
         self.products.iter_mut().for_each(|product| self.fourier.inverse(product));
         let least = least_cover(template, target);
-        let norm = 1.0 / self.mirror.len() as f32;
-        for index in 0..self.scores.len() {
-            let cover = self.products[1][index].re * norm;
-            let Complex { re: squares, im: shifted } = self.products[0][index] * norm;
+        for index in 0..CELLS {
+            let cover = self.products[1].re[index] * NORM;
+            let (squares, shifted) = (self.products[0].re[index] * NORM, self.products[0].im[index] * NORM);
             let mean = ((squares - shifted * shifted / cover) / cover).max(0.0);
             self.scores[index] = if cover < least { f32::NEG_INFINITY } else { -(mean + LEAST_SQUARE).ln() * cover };
         }
@@ -217,12 +211,29 @@ fn least_cover(template: &Template, target: &Target) -> f32 {
     (LEAST_OVERLAP * template.visible.min(target.covered)).max(FEWEST_CELLS)
 }
 
-/// a + i b.
-fn plus_i(a: Complex, b: Complex) -> Complex {
-    Complex::new(a.re - b.im, a.im + b.re)
+/// conj(f) g, cell by cell.
+fn multiply_conjugate(f: &Field, g: &Field, product: &mut Field) {
+    let (re, im) = (&mut product.re[..CELLS], &mut product.im[..CELLS]);
+    let [a, b, c, d] = [&f.re[..CELLS], &f.im[..CELLS], &g.re[..CELLS], &g.im[..CELLS]];
+    for k in 0..CELLS {
+        re[k] = a[k] * c[k] + b[k] * d[k];
+        im[k] = a[k] * d[k] - b[k] * c[k];
+    }
 }
 
-/// i a.
-fn times_i(a: Complex) -> Complex {
-    Complex::new(-a.im, a.re)
+/// The conjugate spectrum of the real part of a field, from the spectrum of the whole.
+fn even(field: &Field, index: usize, mirror: u32) -> (f32, f32) {
+    let mirror = mirror as usize;
+    (0.5 * (field.re[index] + field.re[mirror]), 0.5 * (field.im[mirror] - field.im[index]))
+}
+
+/// The same of its imaginary part.
+fn odd(field: &Field, index: usize, mirror: u32) -> (f32, f32) {
+    let mirror = mirror as usize;
+    (0.5 * (field.im[index] + field.im[mirror]), 0.5 * (field.re[index] - field.re[mirror]))
+}
+
+/// a + i b of two spectra.
+fn plus_i(a: &Field, b: &Field, index: usize) -> (f32, f32) {
+    (a.re[index] - b.im[index], a.im[index] + b.re[index])
 }

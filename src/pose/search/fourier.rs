@@ -1,52 +1,170 @@
-//! Two-dimensional Fourier transforms of a square: rows, transposed, rows again.
+//! Two-dimensional Fourier transforms of a square: down the columns, transposed, down the columns again.
 //!
-//! A spectrum stays transposed, which products of two spectra do not mind; the inverse transposes it back. Neither
-//! direction divides by the number of cells.
+//! Real and imaginary parts are planes of their own, and each butterfly works on whole lines of them: straight loops, four
+//! numbers at a time under simd128. The forward transform decimates in frequency and leaves a spectrum transposed and in
+//! bit-reversed order, which products of two spectra do not mind; the inverse decimates in time and undoes it, step by step.
+//! Neither direction divides by the number of cells.
 
-use rustfft::algorithm::Radix4;
-use rustfft::{Fft, FftDirection, num_complex::Complex32};
+use std::f64::consts::PI;
 
-/// A value of a field or of its spectrum.
-pub type Complex = Complex32;
+/// Side of the grid in cells, a power of two: the mask spans 18, so that the template may move by 14 before it comes in again
+/// on the other side, where next to nothing overlaps.
+pub const SIDE: usize = 32;
+/// Cells of the grid.
+pub const CELLS: usize = SIDE * SIDE;
 
-/// Plans and scratch of one side length.
+/// A row of a plane.
+type Line = [f32; SIDE];
+
+/// A complex field or its spectrum, row by row.
+#[derive(Clone)]
+pub struct Field {
+    pub re: Vec<f32>,
+    pub im: Vec<f32>,
+}
+
+impl Field {
+    pub fn zero() -> Self {
+        Self { re: vec![0.0; CELLS], im: vec![0.0; CELLS] }
+    }
+
+    pub fn clear(&mut self) {
+        self.re.fill(0.0);
+        self.im.fill(0.0);
+    }
+}
+
+/// Roots of unity and scratch.
 pub struct Fourier {
-    side: usize,
-    forward: Radix4<f32>,
-    inverse: Radix4<f32>,
-    turned: Vec<Complex>,
-    scratch: Vec<Complex>,
+    /// exp(-2 pi i k / SIDE).
+    roots: [[f32; 2]; SIDE / 2],
+    turned: Vec<f32>,
 }
 
 impl Fourier {
-    /// `side` is a power of two.
-    pub fn new(side: usize) -> Self {
-        let [forward, inverse] = [FftDirection::Forward, FftDirection::Inverse].map(|way| Radix4::new(side, way));
-        let scratch = forward.get_inplace_scratch_len().max(inverse.get_inplace_scratch_len());
-        let empty = Complex::default();
-        Self { side, forward, inverse, turned: vec![empty; side * side], scratch: vec![empty; scratch] }
+    pub fn new() -> Self {
+        let angle = |k: usize| -2.0 * PI * k as f64 / SIDE as f64;
+        let roots = std::array::from_fn(|k| [angle(k).cos() as f32, angle(k).sin() as f32]);
+        Self { roots, turned: vec![0.0; CELLS] }
     }
 
-    /// Field to transposed spectrum, in place.
-    pub fn forward(&mut self, field: &mut [Complex]) {
-        self.forward.process_with_scratch(field, &mut self.scratch);
+    /// Field to spectrum, in place.
+    pub fn forward(&mut self, field: &mut Field) {
+        self.decimate(field);
         self.transpose(field);
-        self.forward.process_with_scratch(field, &mut self.scratch);
+        self.decimate(field);
     }
 
-    /// Transposed spectrum to field, in place.
-    pub fn inverse(&mut self, spectrum: &mut [Complex]) {
-        self.inverse.process_with_scratch(spectrum, &mut self.scratch);
+    /// Spectrum to field, in place.
+    pub fn inverse(&mut self, spectrum: &mut Field) {
+        self.assemble(spectrum);
         self.transpose(spectrum);
-        self.inverse.process_with_scratch(spectrum, &mut self.scratch);
+        self.assemble(spectrum);
     }
 
-    fn transpose(&mut self, field: &mut [Complex]) {
-        self.turned.copy_from_slice(field);
-        for (row, line) in field.chunks_exact_mut(self.side).enumerate() {
-            for (column, value) in line.iter_mut().enumerate() {
-                *value = self.turned[column * self.side + row];
+    fn decimate(&self, field: &mut Field) {
+        let mut half = SIDE / 2;
+        while half > 0 {
+            self.butterflies(field, half, part);
+            half /= 2;
+        }
+    }
+
+    fn assemble(&self, field: &mut Field) {
+        let mut half = 1;
+        while half < SIDE {
+            self.butterflies(field, half, join);
+            half *= 2;
+        }
+    }
+
+    /// All butterflies of lines that are `half` apart.
+    fn butterflies(&self, field: &mut Field, half: usize, one: impl Fn([&mut Line; 2], [&mut Line; 2], [f32; 2])) {
+        let (re, im) = (field.re.as_chunks_mut().0, field.im.as_chunks_mut().0);
+        for (re, im) in re.chunks_exact_mut(2 * half).zip(im.chunks_exact_mut(2 * half)) {
+            let ((re_top, re_low), (im_top, im_low)) = (re.split_at_mut(half), im.split_at_mut(half));
+            for k in 0..half {
+                let root = self.roots[k * (SIDE / 2 / half)];
+                one([&mut re_top[k], &mut im_top[k]], [&mut re_low[k], &mut im_low[k]], root);
             }
+        }
+    }
+
+    fn transpose(&mut self, field: &mut Field) {
+        for plane in [&mut field.re, &mut field.im] {
+            self.turned.copy_from_slice(plane);
+            let from: &[Line] = self.turned.as_chunks().0;
+            for (row, line) in plane.as_chunks_mut::<SIDE>().0.iter_mut().enumerate() {
+                (0..SIDE).for_each(|column| line[column] = from[column][row]);
+            }
+        }
+    }
+}
+
+/// Index of the opposite frequency in a spectrum.
+pub fn opposite(index: usize) -> usize {
+    let reversed = |k: usize| k.reverse_bits() >> (usize::BITS - SIDE.trailing_zeros());
+    let of = |k: usize| reversed((SIDE - reversed(k)) % SIDE);
+    of(index / SIDE) * SIDE + of(index % SIDE)
+}
+
+/// (a, b) -> (a + b, (a - b) root).
+fn part([re, im]: [&mut Line; 2], [low_re, low_im]: [&mut Line; 2], [cos, sin]: [f32; 2]) {
+    for k in 0..SIDE {
+        let (x, y) = (re[k] - low_re[k], im[k] - low_im[k]);
+        re[k] += low_re[k];
+        im[k] += low_im[k];
+        low_re[k] = x * cos - y * sin;
+        low_im[k] = x * sin + y * cos;
+    }
+}
+
+/// (a, b) -> (a + b / root, a - b / root).
+fn join([re, im]: [&mut Line; 2], [low_re, low_im]: [&mut Line; 2], [cos, sin]: [f32; 2]) {
+    for k in 0..SIDE {
+        let (x, y) = (low_re[k] * cos + low_im[k] * sin, low_im[k] * cos - low_re[k] * sin);
+        low_re[k] = re[k] - x;
+        low_im[k] = im[k] - y;
+        re[k] += x;
+        im[k] += y;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// exp(-2 pi i (3 column + 5 row) / SIDE) back and forth, and its single frequency.
+    #[test]
+    fn a_wave_has_one_frequency_and_comes_back() {
+        let mut field = Field::zero();
+        for index in 0..CELLS {
+            let angle = 2.0 * PI * (3 * (index % SIDE) + 5 * (index / SIDE)) as f64 / SIDE as f64;
+            (field.re[index], field.im[index]) = (angle.cos() as f32, angle.sin() as f32);
+        }
+        let (wave, mut fourier) = (field.clone(), Fourier::new());
+        fourier.forward(&mut field);
+        let large: Vec<usize> = (0..CELLS).filter(|&k| field.re[k].hypot(field.im[k]) > 1e-2).collect();
+        assert_eq!(large.len(), 1);
+        assert!((field.re[large[0]] - CELLS as f32).abs() < 1e-2);
+        fourier.inverse(&mut field);
+        for index in 0..CELLS {
+            assert!((field.re[index] / CELLS as f32 - wave.re[index]).abs() < 1e-5);
+            assert!((field.im[index] / CELLS as f32 - wave.im[index]).abs() < 1e-5);
+        }
+    }
+
+    /// A real field has conjugate values at opposite frequencies.
+    #[test]
+    fn opposite_frequencies_of_a_real_field_are_conjugate() {
+        let mut field = Field::zero();
+        (0..CELLS).for_each(|k| field.re[k] = ((k * k) % 17) as f32);
+        Fourier::new().forward(&mut field);
+        for index in 0..CELLS {
+            let other = opposite(index);
+            assert!(
+                (field.re[index] - field.re[other]).abs() < 0.01 && (field.im[index] + field.im[other]).abs() < 0.01
+            );
         }
     }
 }

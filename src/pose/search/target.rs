@@ -8,7 +8,7 @@
 
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 
-use super::fourier::{Complex, Fourier};
+use super::fourier::{Field, Fourier};
 use crate::error::{Error, ErrorKind, Result};
 use crate::view::ColourView;
 
@@ -43,9 +43,9 @@ pub struct Target {
 
 /// Spectra of real fields, as [`Fourier`] leaves them.
 pub struct Spectra {
-    pub mask: Vec<Complex>,
-    pub energy: Vec<Complex>,
-    pub colour: [Vec<Complex>; 3],
+    pub mask: Field,
+    pub energy: Field,
+    pub colour: [Field; 3],
 }
 
 impl Target {
@@ -62,7 +62,8 @@ impl Target {
             (0..3).for_each(|channel| colour[channel][index] = balanced[channel] as f32);
         }
         let mut spectrum = |value: &dyn Fn(usize) -> f32| {
-            let mut field: Vec<_> = (0..mask.len()).map(|index| Complex::new(value(index), 0.0)).collect();
+            let mut field = Field::zero();
+            (0..mask.len()).for_each(|index| field.re[index] = value(index));
             fourier.forward(&mut field);
             field
         };

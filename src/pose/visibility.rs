@@ -1,0 +1,117 @@
+//! Which points of the depth view the colour camera sees, and where.
+//!
+//! A point is seen where it falls on the mask, faces the camera, and no other depth point hides it (z-buffer of the colour
+//! view's own resolution, so parts thinner than two pixels may be judged wrongly).
+
+use nalgebra::Vector3;
+
+use crate::pose::Similarity;
+use crate::view::{Camera, ColourView, Normals, Points, Size};
+
+/// A point counts as hidden when it lies this many image pixels behind the nearest one: more than a steep slope drops
+/// between neighbours, less than a nose stands before a cheek.
+pub(super) const HIDDEN_BEHIND: f64 = 3.0;
+/// Cosine at the rim: flatter views of a surface have no reliable pixel.
+const RIM: f64 = 0.05;
+
+/// A cloud before a colour camera. Points and normals are NaN where missing.
+#[derive(Clone, Copy)]
+pub(super) struct Sight<'a> {
+    pub image: &'a ColourView,
+    pub pose: &'a Similarity,
+    pub points: &'a Points,
+    pub normals: &'a Normals,
+    /// Length of an image pixel at the object in units of the colour view.
+    pub pixel_length: f64,
+}
+
+/// Where the points are seen; owns its memory.
+#[derive(Clone, Debug)]
+pub(super) struct Visibility {
+    /// Continuous image column and row of each point, NaN where it is not seen.
+    pub column: Vec<f32>,
+    pub row: Vec<f32>,
+    depth: Vec<f32>,
+    buffer: Vec<f32>,
+}
+
+impl Visibility {
+    /// Memory for so many pixels and points.
+    pub fn new(pixels: usize, points: usize) -> Self {
+        Self {
+            column: vec![f32::NAN; points],
+            row: vec![f32::NAN; points],
+            depth: vec![f32::NAN; points],
+            buffer: vec![f32::INFINITY; pixels],
+        }
+    }
+
+    /// Looks anew. Allocates nothing.
+    pub fn update(&mut self, sight: &Sight<'_>) {
+        self.project(sight);
+        self.hide(sight);
+    }
+
+    /// A point is not seen after all.
+    pub fn drop(&mut self, index: usize) {
+        (self.column[index], self.row[index]) = (f32::NAN, f32::NAN);
+    }
+
+    /// Places of all points that face the camera and fall on the mask, and the z-buffer.
+    fn project(&mut self, sight: &Sight<'_>) {
+        let size = sight.image.size;
+        self.buffer.fill(f32::INFINITY);
+        for index in 0..self.column.len() {
+            self.drop(index);
+            if !sight.points.is_valid(index) {
+                continue;
+            }
+            let point = sight.pose.apply(vector(sight.points.get(index)));
+            let Some([column, row]) = sight.image.camera.project(size, point.into()) else { continue };
+            self.depth[index] = point.z as f32;
+            splat(size, &mut self.buffer, [column, row], self.depth[index]);
+            let normal = sight.pose.rotation * vector(sight.normals.get(index));
+            // A normal that is missing (a hole not yet filled) does not exclude its point.
+            if normal.dot(&direction(&sight.image.camera, point)) > -RIM {
+                continue;
+            }
+            let pixel = size.nearest(column as f32, row as f32);
+            if pixel.is_some_and(|pixel| sight.image.mask[pixel]) {
+                (self.column[index], self.row[index]) = (column as f32, row as f32);
+            }
+        }
+    }
+
+    /// Drops the points that lie behind others.
+    fn hide(&mut self, sight: &Sight<'_>) {
+        let tolerance = (HIDDEN_BEHIND * sight.pixel_length) as f32;
+        for index in 0..self.column.len() {
+            let Some(pixel) = sight.image.size.nearest(self.column[index], self.row[index]) else { continue };
+            if self.depth[index] > self.buffer[pixel] + tolerance {
+                self.drop(index);
+            }
+        }
+    }
+}
+
+/// Unit direction from the camera to a point.
+fn direction(camera: &Camera, point: Vector3<f64>) -> Vector3<f64> {
+    if camera.is_orthographic() { Vector3::z() } else { point.normalize() }
+}
+
+pub(super) fn vector(values: [f32; 3]) -> Vector3<f64> {
+    Vector3::from(values.map(f64::from))
+}
+
+/// Enters a depth at the four pixels around a position, so that gaps between points let nothing through.
+pub(super) fn splat(size: Size, buffer: &mut [f32], position: [f64; 2], depth: f32) {
+    let [left, top] = position.map(f64::floor);
+    for (column, row) in [(left, top), (left + 1.0, top), (left, top + 1.0), (left + 1.0, top + 1.0)] {
+        // A position on a pixel's centre enters that pixel alone.
+        let near = (column - position[0]).abs() < 1.0 && (row - position[1]).abs() < 1.0;
+        if near && column >= 0.0 && row >= 0.0 && column < size.width as f64 && row < size.height as f64 {
+            let pixel = size.index(column as usize, row as usize);
+            buffer[pixel] = buffer[pixel].min(depth);
+        }
+    }
+}
