@@ -4,3 +4,4 @@ export { BimodalError } from "./errors.js";
 export { Estimator } from "./estimator.js";
 export { sample, sampleBound, sampleLights, sampleSurfaces } from "./samples.js";
 export type * from "./types.js";
+export { wasmUrl } from "./wasm.js";

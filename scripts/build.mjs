@@ -1,13 +1,19 @@
 // npm run build: leaves the installable package in pkg/.
-import { cpSync, existsSync, mkdirSync, readFileSync, realpathSync, rmSync, statSync, writeFileSync } from "node:fs";
+import { cpSync, existsSync, mkdirSync, readFileSync, realpathSync, rmSync, writeFileSync } from "node:fs";
 import { gzipSync } from "node:zlib";
 import { WASM, setup, tool } from "./setup.mjs";
-import { inRoot, must, say, script, seconds, stamp } from "./shell.mjs";
+import { Failure, inRoot, must, say, script, seconds, stamp } from "./shell.mjs";
 
 const CARRIED = ["README.md", "CHANGELOG.md", "LICENSE-MIT", "LICENSE-APACHE"];
 const SOURCES = ["src", "js", "Cargo.toml", "Cargo.lock", "rust-toolchain.toml", ".cargo", "package-lock.json"];
 const MARK = "pkg/.stamp";
 const MODULE = "bimodal_stereo";
+/** The facade is bundled with the first one's glue. A target folder each, so that neither build throws away the other's crates. */
+const FLAVOURS = [
+  { file: `${MODULE}_bg.wasm`, target: "target", flags: [] },
+  // Cargo appends these to the flags of .cargo/config.toml, and of two opposite features the later one counts.
+  { file: `${MODULE}_scalar_bg.wasm`, target: "target/scalar", flags: ["-C", "target-feature=-simd128"] },
+];
 /** Declarations that no entry mentions; one of them names the generated bindings, which stay inside. */
 const INTERNAL = ["check", "engine", "node", "npy"];
 
@@ -30,7 +36,7 @@ function manifest() {
     exports: {
       ".": { types: "./index.d.ts", node: "./node.js", default: "./index.js" },
       "./files": { types: "./files.d.ts", default: "./files.js" },
-      [`./${MODULE}_bg.wasm`]: `./${MODULE}_bg.wasm`,
+      ...Object.fromEntries(FLAVOURS.map(({ file }) => [`./${file}`, `./${file}`])),
       "./package.json": "./package.json",
     },
     types: "./index.d.ts",
@@ -38,16 +44,28 @@ function manifest() {
   };
 }
 
-async function numerics() {
+async function numerics({ file, target, flags }) {
+  const config = `target.${WASM}.rustflags=${JSON.stringify(flags)}`;
   // Level 3 unrolls and inlines for a tenth of speed and a sixth of size; see .cargo/config.toml.
-  await must("cargo", ["build", "--release", "--lib", "--target", WASM, "--target-dir", "target"], {
+  await must("cargo", ["build", "--release", "--lib", "--target", WASM, "--target-dir", target, "--config", config], {
     env: { CARGO_PROFILE_RELEASE_OPT_LEVEL: "2" },
   });
   await must(tool("wasm-bindgen"), [
-    ...["--target", "web", "--omit-default-module-path", "--out-dir", "target/wasm-bindgen"],
-    `target/${WASM}/release/${MODULE}.wasm`,
+    ...["--target", "web", "--omit-default-module-path", "--out-dir", `${target}/wasm-bindgen`],
+    `${target}/${WASM}/release/${MODULE}.wasm`,
   ]);
-  await node("binaryen/bin/wasm-opt", "-O3", `target/wasm-bindgen/${MODULE}_bg.wasm`, "-o", `pkg/${MODULE}_bg.wasm`);
+  await node("binaryen/bin/wasm-opt", "-O3", `${target}/wasm-bindgen/${MODULE}_bg.wasm`, "-o", `pkg/${file}`);
+}
+
+/** One glue loads either file, so both must have been given the same: its imports, and what is exported with which types. */
+function checkGlue() {
+  for (const name of [`${MODULE}.js`, `${MODULE}.d.ts`, `${MODULE}_bg.wasm.d.ts`]) {
+    const paths = FLAVOURS.map(({ target }) => `${target}/wasm-bindgen/${name}`);
+    const [first, ...others] = paths.map((path) => readFileSync(inRoot(path), "utf8"));
+    if (others.some((text) => text !== first)) {
+      throw new Failure(`${paths.join(" and ")} differ, so that one package cannot load both: compare them with diff.`);
+    }
+  }
 }
 
 /** One file for each entry and one for what they share, with the PNG decoder in the files module alone. */
@@ -73,16 +91,20 @@ export async function build() {
   say("building pkg/");
   rmSync(inRoot("pkg"), { recursive: true, force: true });
   mkdirSync(inRoot("pkg"));
-  await numerics();
+  // Side by side: the last and longest crate of each keeps one processor busy.
+  await Promise.all(FLAVOURS.map(numerics));
+  checkGlue();
   await facade();
   for (const file of CARRIED) cpSync(inRoot(file), inRoot("pkg", file));
   writeFileSync(inRoot("pkg/package.json"), `${JSON.stringify(manifest(), null, 2)}\n`);
   writeFileSync(inRoot(MARK), wanted);
 
-  const wasm = inRoot(`pkg/${MODULE}_bg.wasm`);
   const kilobytes = (bytes) => `${(bytes / 1000).toFixed(0)} kB`;
-  const zipped = gzipSync(readFileSync(wasm)).length;
-  say(`built pkg/ (${seconds(start)}); wasm ${kilobytes(statSync(wasm).size)}, ${kilobytes(zipped)} gzipped`);
+  say(`built pkg/ (${seconds(start)})`);
+  for (const { file } of FLAVOURS) {
+    const bytes = readFileSync(inRoot("pkg", file));
+    say(`${file}: ${kilobytes(bytes.length)}, ${kilobytes(gzipSync(bytes).length)} gzipped`);
+  }
 }
 
 // Node names this module by its real path, and the command by the path it was given.

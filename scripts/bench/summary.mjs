@@ -64,7 +64,8 @@ function searchRows(searches) {
 export function summary({ samples, ends, converged, searches, startUp, transfer, drawing, memory, sizes, about }) {
   const rows = samples.map(({ where, size, stage, times }) => ({ where, size, stage, samples: times.length, milliseconds: quantiles(times) }));
   const timesOf = (found) => found && Object.fromEntries(Object.entries(found).map(([key, value]) => [key, Array.isArray(value) ? quantiles(value) : value]));
-  const { scripts, ...bytes } = sizes ?? { wasmBytes: null, wasmGzipBytes: null, jsGzipBytes: null };
+  const noSizes = { wasmBytes: null, wasmGzipBytes: null, scalarBytes: null, scalarGzipBytes: null, jsGzipBytes: null };
+  const { scripts, ...bytes } = sizes ?? noSizes;
   return {
     rows,
     ...bytes,
@@ -83,7 +84,7 @@ export function summary({ samples, ends, converged, searches, startUp, transfer,
 }
 
 /** [what, value, unit, limit] of each aim; a value is null where this run did not measure it. */
-export function aims({ rows, search, growth, wasmAgainstNative, bytesPerPixel, wasmGzipBytes, jsGzipBytes }) {
+export function aims({ rows, search, growth, wasmAgainstNative, bytesPerPixel, wasmGzipBytes, scalarGzipBytes, jsGzipBytes }) {
   const step = (size) => rows.find((row) => row.where === "browser" && row.size === size && row.stage === "step")?.milliseconds.median ?? null;
   const searched = (size) => search.find((row) => row.where === "browser" && row.size === size);
   const ratios = wasmAgainstNative.filter(({ stage }) => stage === "step").map(({ ratio }) => ratio);
@@ -102,6 +103,7 @@ export function aims({ rows, search, growth, wasmAgainstNative, bytesPerPixel, w
     ["growth of a step with the pixels", growth.step, "", 1.1],
     ["memory after a run at 640x480", bytesPerPixel, "B/px", 220],
     ["wasm, gzipped", kilo(wasmGzipBytes), "kB", WASM_BUDGET / 1000],
+    ["wasm without SIMD, gzipped", kilo(scalarGzipBytes), "kB", WASM_BUDGET / 1000],
     // Below, not at.
     ["first scripts of the page, gzipped", kilo(jsGzipBytes), "kB", (FIRST_PAINT_BUDGET - 1) / 1000],
   ].map(([what, value, unit, limit]) => ({ what, value, unit, limit, met: value === null ? null : value <= limit }));

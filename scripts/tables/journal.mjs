@@ -7,7 +7,8 @@ import { hasData } from "./library.mjs";
 const FOLDER = "target/tables";
 /** What decides about a result: the package, the protocols, and what the names stand for. */
 const DECISIVE = [
-  ...["index.js", "node.js", "files.js", "main.js", "errors.js", "bimodal_stereo_bg.wasm"].map((name) => `pkg/${name}`),
+  ...["index.js", "node.js", "files.js", "main.js", "errors.js"].map((name) => `pkg/${name}`),
+  ...["bimodal_stereo_bg.wasm", "bimodal_stereo_scalar_bg.wasm"].map((name) => `pkg/${name}`),
   ...["scripts/tables/protocol", "scripts/tables/library.mjs", "scripts/tables/npy.mjs"],
 ];
 

@@ -34,6 +34,13 @@ test("the README's example runs in Node", () => {
   assert.match(run(process.execPath, ["example.mjs"]), /converged/);
 });
 
+test("the file without SIMD can be asked for by its address", () => {
+  const code = `import init, { sampleLights } from "bimodal-stereo";
+    await init(new URL(import.meta.resolve("bimodal-stereo/bimodal_stereo_scalar_bg.wasm")));
+    console.log(sampleLights().includes("window"));`;
+  assert.equal(run(process.execPath, ["--input-type=module", "-e", code]).trim(), "true");
+});
+
 test("the files module loads by itself", () => {
   const code = 'import { decodeDepth } from "bimodal-stereo/files"; console.log(typeof decodeDepth);';
   assert.equal(run(process.execPath, ["--input-type=module", "-e", code]).trim(), "function");
@@ -44,7 +51,7 @@ test("types resolve for Node and for bundlers, without help from other type pack
   writeFileSync(join(folder, "typed/readme.ts"), examples("ts").join("\n"));
   writeFileSync(
     join(folder, "typed/contract.ts"),
-    `import init, { BimodalError, Estimator, checkCalibration, sample } from "bimodal-stereo";
+    `import init, { BimodalError, Estimator, checkCalibration, sample, wasmUrl } from "bimodal-stereo";
      import type { CheckReport, ColorImage, DepthMap, Options, Pose, StepReport } from "bimodal-stereo";
      import { decodeColour, decodeDepth, decodeMask } from "bimodal-stereo/files";
      const image: ColorImage = decodeColour(new Uint8Array());
@@ -53,6 +60,7 @@ test("types resolve for Node and for bundlers, without help from other type pack
      const options: Options = { light: new Float64Array(27), start, registration: "icp", lambda: { prior: 0.1 } };
      export async function all(signal: AbortSignal): Promise<[StepReport, CheckReport]> {
        await init(new URL("https://example.org/x.wasm"));
+       await init(new Response((await fetch(wasmUrl())).body));
        const estimator = new Estimator(sample({ surface: "bust", light: "window" }).image, depth, options);
        const correspondence: Int32Array = estimator.correspondence();
        const light: Float64Array = estimator.light();

@@ -1,7 +1,6 @@
 /** The thread that owns the estimator. It answers one request at a time and sends copies, never views on its memory. */
 
-import init, { BimodalError, Estimator, sample, sampleLights, sampleSurfaces } from "../../pkg/index.js";
-import wasm from "../../pkg/bimodal_stereo_bg.wasm?url";
+import init, { BimodalError, Estimator, sample, sampleLights, sampleSurfaces, wasmUrl } from "../../pkg/index.js";
 import type { ColorImage, DepthMap, Options, Pose, StepReport } from "../../pkg/index.js";
 import type { Answer, Calls, Frame, Kind, OwnFiles, Request, LabOptions, Source } from "./protocol";
 import { faultOf } from "./fault";
@@ -27,7 +26,7 @@ const ready = load();
 ready.catch(() => {});
 
 async function load(): Promise<void> {
-  const response = await fetch(wasm);
+  const response = await fetch(wasmUrl());
   if (!response.ok || !response.body) throw new Error(`status ${response.status}`);
   let loaded = 0;
   const counted = response.body.pipeThrough(

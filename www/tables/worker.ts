@@ -1,7 +1,6 @@
 /** The thread that measures cells, one after the other. What is measured and how is the protocol's alone. */
 
 import init, { Estimator, sample, sampleBound } from "../../pkg/index.js";
-import wasm from "../../pkg/bimodal_stereo_bg.wasm?url";
 import type { RunOptions, StepReport } from "../../pkg/index.js";
 import { measure } from "../../scripts/tables/protocol/measure.mjs";
 import { faultOf } from "../engine/fault";
@@ -12,7 +11,7 @@ import { library, type Result } from "./protocol";
 const TELL_EVERY = 100;
 
 let isLoaded = false;
-const ready = init(wasm).then(() => (isLoaded = true));
+const ready = init().then(() => (isLoaded = true));
 // Whoever waits for it hears of a failure; that nobody waits yet is no failure of its own.
 ready.catch(() => {});
 

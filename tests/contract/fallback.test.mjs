@@ -1,0 +1,44 @@
+// A machine without SIMD gets the other file, that one alone, and the same answer.
+import assert from "node:assert/strict";
+import { once } from "node:events";
+import { before, describe, test } from "node:test";
+import { Worker } from "node:worker_threads";
+
+const SIMD = "bimodal_stereo_bg.wasm";
+const SCALAR = "bimodal_stereo_scalar_bg.wasm";
+/** Rounding may differ where a compiler reorders sums; today it does not, and the poses are equal to the bit. */
+const DEGREES = 0.001;
+/** Nothing known: the whole method runs, the search included. */
+const REQUEST = { surface: "bust", light: "window", size: 64, angles: { alpha: 10, beta: 50, gamma: 15 }, overlap: 0.7, noise: 0.01 };
+
+async function start(entry, knowsSimd) {
+  const workerData = { entry: new URL(`../../pkg/${entry}`, import.meta.url).href, knowsSimd, request: REQUEST };
+  const [result] = await once(new Worker(new URL("start.mjs", import.meta.url), { workerData }), "message");
+  return result;
+}
+
+const degrees = (a, b) => (2 * Math.asin(Math.hypot(...a.map((value, i) => value - b[i])) / Math.SQRT2 / 2) * 180) / Math.PI;
+
+for (const [entry, where] of [["node.js", "Node"], ["index.js", "a browser"]]) {
+  describe(`init() in ${where}`, () => {
+    let usual;
+    let fallback;
+    before(async () => {
+      [usual, fallback] = await Promise.all([start(entry, true), start(entry, false)]);
+    });
+
+    test("reads one file: with SIMD the default, else the scalar one", () => {
+      assert.deepEqual(usual.opened, [SIMD]);
+      assert.deepEqual(fallback.opened, [SCALAR]);
+    });
+
+    test("finds the same pose with either", (t) => {
+      const apart = degrees(fallback.pose.rotation, usual.pose.rotation);
+      t.diagnostic(`${apart} degrees apart`);
+      assert.deepEqual([usual.status, fallback.status], ["converged", "converged"]);
+      assert.ok(apart < DEGREES, `${apart} degrees apart`);
+      assert.ok(Math.abs(fallback.pose.scale - usual.pose.scale) < 1e-5);
+      assert.ok(degrees(fallback.pose.rotation, fallback.truth.rotation) < 1);
+    });
+  });
+}

@@ -1,0 +1,27 @@
+// One start of the package in a thread of its own, which knows SIMD or doesn't: the files it reads, and where its search ends.
+import { promises } from "node:fs";
+import { syncBuiltinESMExports } from "node:module";
+import { basename } from "node:path";
+import { parentPort, workerData } from "node:worker_threads";
+
+const { entry, knowsSimd, request } = workerData;
+
+const read = promises.readFile;
+const opened = [];
+function noted(address) {
+  opened.push(basename(address.pathname));
+  return read(address);
+}
+promises.readFile = noted;
+syncBuiltinESMExports();
+// A browser's half: Node's own fetch refuses files.
+globalThis.fetch = async (address) => new Response(await noted(address), { headers: { "content-type": "application/wasm" } });
+if (!knowsSimd) WebAssembly.validate = () => false;
+
+const { default: init, Estimator, sample } = await import(entry);
+await init();
+const { image, depth, pose: truth } = sample(request);
+const estimator = new Estimator(image, depth);
+const { status, pose } = await estimator.run();
+estimator.free();
+parentPort.postMessage({ opened: opened.filter((name) => name.endsWith(".wasm")), status, pose, truth });
