@@ -52,7 +52,7 @@ const FREE_SCALES: [f64; 4] = [0.74, 0.90, 1.09, 1.32];
 /// Apparent sizes behind a pinhole whose scale is held: the distance is known only roughly.
 const NEAR_SIZES: [f64; 3] = [0.87, 1.0, 1.15];
 /// Pairs of a rotation and a scale in one slice of the sweep.
-const SWEPT_AT_ONCE: usize = 4;
+const SWEPT_AT_ONCE: usize = 6;
 /// Rotations that climb.
 const CLIMBERS: usize = 96;
 /// Rotations of the sweep that are nearer to a better one than this many degrees do not climb: a climb goes farther.

@@ -45,7 +45,7 @@ impl Photometric {
     /// # Errors
     /// [`ErrorKind::Degenerate`] where the visible points determine nothing.
     pub fn report(&mut self, problem: &PhotometricProblem<'_>) -> Result<PhotometricReport> {
-        let frame = self.look(problem, 0)?;
+        let frame = self.look(problem, 0, self.most_points)?;
         self.measure(problem, 0);
         self.robust = Robust { scale: self.final_scale(), prior: self.prior(problem) };
         let held = problem.held();

@@ -144,6 +144,7 @@ pub struct Photometric {
     rounds: usize,
     most_rounds: usize,
     most_points: usize,
+    annealed_points: usize,
     annealing: bool,
     iterations: usize,
 }
@@ -169,6 +170,7 @@ impl Photometric {
             rounds: 0,
             most_rounds: 0,
             most_points: usize::MAX,
+            annealed_points: usize::MAX,
             annealing: true,
             iterations: 0,
         }
@@ -213,7 +215,8 @@ impl Photometric {
         (self.phase, self.rounds, self.iterations) = (Phase::Annealing { level, fine_rounds: 0 }, 0, 0);
         self.most_rounds = options.most_rounds.max(1);
         (self.most_points, self.annealing) = (options.most_points, options.annealing);
-        self.look(problem, level)?;
+        self.annealed_points = options.annealed_points.min(options.most_points);
+        self.look(problem, level, self.annealed_points)?;
         self.robust = FIRST_LOOK;
         self.fit_light(problem, level)?;
         self.measure(problem, level);
@@ -253,7 +256,7 @@ impl Photometric {
     /// The beginning of a round: its points, their light, its robust scale.
     fn anneal(&mut self, problem: &PhotometricProblem<'_>, level: usize, fine_rounds: usize) -> Result<Phase> {
         self.rounds += 1;
-        let frame = self.look(problem, level)?;
+        let frame = self.look(problem, level, self.annealed_points)?;
         self.fit_light(problem, level)?;
         self.measure(problem, level);
         let target = self.final_scale();
@@ -313,7 +316,10 @@ impl Photometric {
     /// The beginning of a round of sum w Z^T r = 0: the visible points follow in the first.
     fn listen(&mut self, problem: &PhotometricProblem<'_>, round: usize) -> Result<Phase> {
         self.rounds += 1;
-        let frame = if round == 0 { self.look(problem, 0)? } else { self.points.frame(problem, &self.state.pose) };
+        let frame = match round {
+            0 => self.look(problem, 0, self.most_points)?,
+            _ => self.points.frame(problem, &self.state.pose),
+        };
         Ok(Phase::Hearing { round, frame, steps: 0 })
     }
 
@@ -339,8 +345,8 @@ impl Photometric {
     }
 
     /// Chooses the visible points of a round.
-    fn look(&mut self, problem: &PhotometricProblem<'_>, level: usize) -> Result<Frame> {
-        self.points.update(problem, &self.state.pose, &self.levels[0], level, self.most_points);
+    fn look(&mut self, problem: &PhotometricProblem<'_>, level: usize, most: usize) -> Result<Frame> {
+        self.points.update(problem, &self.state.pose, &self.levels[0], level, most);
         if self.points.len() < FEWEST_POINTS {
             return Err(degenerate("the image shows too few of the depth points").value(self.points.len() as f64));
         }

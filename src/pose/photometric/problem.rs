@@ -75,6 +75,9 @@ impl PhotometricProblem<'_> {
     }
 }
 
+/// Points that annealing needs: with 14 to 34 unknowns 20000 average noise to a hundredth of its size.
+const ENOUGH_ANNEALED: usize = 20_000;
+
 /// How far and how long to look.
 #[derive(Clone, Copy, Debug)]
 pub struct PhotometricOptions {
@@ -84,13 +87,21 @@ pub struct PhotometricOptions {
     pub most_rounds: usize,
     /// Points that take part at most, spread evenly over those that are visible.
     pub most_points: usize,
+    /// Those that the annealing takes at most: listening ends where all points want to, wherever it starts nearby.
+    pub annealed_points: usize,
     /// Whether the robust scale shrinks from round to round; else it is the final one from the first round on.
     pub annealing: bool,
 }
 
 impl Default for PhotometricOptions {
     fn default() -> Self {
-        Self { first_level: COARSEST, most_rounds: 40, most_points: usize::MAX, annealing: true }
+        Self {
+            first_level: COARSEST,
+            most_rounds: 40,
+            most_points: usize::MAX,
+            annealed_points: ENOUGH_ANNEALED,
+            annealing: true,
+        }
     }
 }
 

@@ -11,7 +11,7 @@
 use nalgebra::{Matrix3, SMatrix, Vector3};
 
 use super::target::Target;
-use super::template::{PRODUCTS, Products, Sums, Template};
+use super::template::{PADDED, PRODUCTS, Products, Sums, Template, row_start};
 use crate::light::{HARMONICS, Light, basis};
 
 /// Variance e added to the balanced colours, whose first axis has variance one: what a tilt by half the spacing of the
@@ -95,14 +95,15 @@ fn under<'a>(
 
 fn fitted(template: &Template, target: &Target, shift: [i32; 2]) -> Option<Squares> {
     let mut gram = [0.0_f32; PRODUCTS];
-    let mut cross = [[0.0_f32; HARMONICS]; 3];
+    let mut cross = [[0.0_f32; PADDED]; 3];
     let mut outer = [0.0_f32; 6];
     for (order, sums, place) in under(template, target, shift) {
         let mask = target.mask[place];
         gram.iter_mut().zip(&template.products[order]).for_each(|(sum, product)| *sum += mask * product);
         let colour = [target.colour[0][place], target.colour[1][place], target.colour[2][place]];
         for (cross, value) in cross.iter_mut().zip(colour) {
-            (0..HARMONICS).for_each(|k| cross[k] += mask * value * sums[k]);
+            let share = mask * value;
+            (0..PADDED).for_each(|k| cross[k] += share * sums[k]);
         }
         add_outer(&mut outer, mask * sums[0], colour);
     }
@@ -120,7 +121,7 @@ fn fitted(template: &Template, target: &Target, shift: [i32; 2]) -> Option<Squar
 pub fn regularised(products: &Products) -> Gram {
     let mut gram = Gram::from_fn(|row, column| {
         let (long, short) = (row.max(column), row.min(column));
-        f64::from(products[long * (long + 1) / 2 + short])
+        f64::from(products[row_start(long) + short])
     });
     for k in 1..HARMONICS {
         gram[(k, k)] += RIDGE * gram[(k, k)] + RIDGE_OF_WEIGHT * gram[(0, 0)];

@@ -17,11 +17,22 @@ const GRAZING: f32 = 0.1;
 /// a cell and its neighbours.
 const HIDDEN: f32 = 2.5;
 
-/// Weight w, then w B_k for the harmonics after the constant one.
-pub type Sums = [f32; HARMONICS];
+/// Numbers that are added and multiplied at once.
+const LANES: usize = 4;
+/// Harmonics rounded up to whole lanes.
+pub const PADDED: usize = HARMONICS.next_multiple_of(LANES);
 
-/// Products of two harmonics, the lower triangle row by row.
-pub const PRODUCTS: usize = HARMONICS * (HARMONICS + 1) / 2;
+/// Weight w, then w B_k for the harmonics after the constant one, then zeros.
+pub type Sums = [f32; PADDED];
+
+/// Where a row of the lower triangle of products begins: rows are as many lanes as reach the diagonal.
+pub const fn row_start(row: usize) -> usize {
+    let lanes = row / LANES;
+    LANES * (lanes + 1) * (row - LANES * lanes + LANES * lanes / 2)
+}
+
+/// Products of two harmonics.
+pub const PRODUCTS: usize = row_start(HARMONICS - 1) + PADDED;
 /// w B_k B_l.
 pub type Products = [f32; PRODUCTS];
 
@@ -54,7 +65,7 @@ impl Template {
     pub fn new(side: usize, cloud: &Cloud) -> Self {
         Self {
             side,
-            sums: vec![[0.0; HARMONICS]; side * side],
+            sums: vec![[0.0; PADDED]; side * side],
             cells: Vec::with_capacity(side * side),
             products: Vec::with_capacity(side * side),
             visible: 0.0,
@@ -89,11 +100,14 @@ impl Template {
         self.products.clear();
         for sums in self.cells.iter().map(|&cell| &self.sums[cell as usize]) {
             let mut products = [0.0; PRODUCTS];
-            let mut start = 0;
+            let per_weight = 1.0 / sums[0];
+            let all = sums.as_chunks::<LANES>().0;
             for row in 0..HARMONICS {
-                let scaled = sums[row] / sums[0];
-                (0..=row).for_each(|column| products[start + column] = scaled * sums[column]);
-                start += row + 1;
+                let scaled = sums[row] * per_weight;
+                let lanes = &mut products[row_start(row)..].as_chunks_mut::<LANES>().0[..=row / LANES];
+                for (products, sums) in lanes.iter_mut().zip(all) {
+                    (0..LANES).for_each(|k| products[k] = scaled * sums[k]);
+                }
             }
             self.products.push(products);
         }
@@ -101,7 +115,7 @@ impl Template {
 
     fn clear(&mut self) {
         for &cell in &self.cells {
-            self.sums[cell as usize] = [0.0; HARMONICS];
+            self.sums[cell as usize] = [0.0; PADDED];
         }
         self.cells.clear();
         self.nearest.fill(f32::INFINITY);
@@ -146,8 +160,9 @@ impl Template {
         let [x, y, _] = self.places[index];
         let (right, low) = (x - (x as usize) as f32, y - (y as usize) as f32);
         let exact = basis([f64::from(normal[0]), f64::from(normal[1]), f64::from(normal[2])]);
-        let mut harmonics = [0.0_f32; HARMONICS];
-        (0..HARMONICS).for_each(|k| harmonics[k] = exact[k] as f32);
+        let mut harmonics = [0.0_f32; PADDED];
+        (1..HARMONICS).for_each(|k| harmonics[k] = exact[k] as f32);
+        harmonics[0] = 1.0;
         for (cell, share) in [
             (corner, (1.0 - right) * (1.0 - low)),
             (corner + 1, right * (1.0 - low)),
@@ -162,10 +177,7 @@ impl Template {
             if sums[0] <= 0.0 {
                 self.cells.push(cell as u32);
             }
-            sums[0] += weight;
-            for k in 1..HARMONICS {
-                sums[k] += weight * harmonics[k];
-            }
+            (0..PADDED).for_each(|k| sums[k] += weight * harmonics[k]);
         }
     }
 }
