@@ -53,8 +53,12 @@ const word = (...words: readonly string[]): Check => (value, field) => {
 };
 
 /** A word, or else something that is no word. */
-const wordOr = (words: readonly string[], other: Check): Check => (value, field) =>
-  (typeof value === "string" ? word(...words) : other)(value, field);
+const wordOr = (words: readonly string[], other: Check, orElse: string): Check => (value, field) => {
+  if (typeof value !== "string") return other(value, field);
+  if (words.includes(value)) return;
+  const allowed = words.map((known) => `"${known}"`).join(", ");
+  throw new BimodalError("option", `${field}: "${value}" is unknown; known: ${allowed} or ${orElse}`, field);
+};
 
 /** Edits that turn one word into the other (Levenshtein). */
 function distance(a: string, b: string): number {
@@ -133,9 +137,9 @@ const depth = object(
 );
 
 const options = object({
-  light: wordOr(["estimate"], numbers),
-  start: wordOr(["search", "identity"], pose),
-  scale: wordOr(["free"], number),
+  light: wordOr(["estimate"], numbers, "27 numbers"),
+  start: wordOr(["search", "identity"], pose, "a pose"),
+  scale: wordOr(["free"], number, "a number"),
   registration: word("joint", "icp", "fixed"),
   shading: word("surface", "pixel"),
   lambda,

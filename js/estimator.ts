@@ -128,10 +128,12 @@ export class Estimator {
     return this.#call((raw) => raw.points(view));
   }
 
+  /** Not part of this version yet: throws a `BimodalError` of code "unsupported". */
   save(): Uint8Array {
     throw unsupported("save", "saving an estimator");
   }
 
+  /** Not part of this version yet: throws a `BimodalError` of code "unsupported". */
   static restore(_state: Uint8Array): Estimator {
     throw unsupported("restore", "restoring an estimator");
   }

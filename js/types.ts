@@ -70,11 +70,15 @@ export interface Options {
 export type Stage = "search" | "light" | "shading" | "surface" | "registration" | "refinement";
 export type Status = "running" | "converged" | "max-iterations" | "ambiguous" | "lost";
 
-/** One sigma of the pose. */
+/** One sigma of the pose: the truth is (a small turn) times the estimate, about the axes of the colour view. */
 export interface Uncertainty {
+  /** About x, y and z of the colour view, degrees. */
   rotationDegrees: number[];
+  /** Along x, y and z of the colour view, in its units; `null` where the views cannot see it. */
   translation: (number | null)[];
+  /** Of the scale itself; `null` where it is held. */
   scale: number | null;
+  /** The least certain direction in words. */
   weakest: string;
 }
 

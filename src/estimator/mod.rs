@@ -469,6 +469,8 @@ impl Estimator {
     /// The loop has settled: converged, unless there is reason to doubt.
     fn conclude(&mut self) {
         self.report.status = Status::Converged;
+        // What became of the last iteration is no news once the answer stands.
+        self.report.message = None;
         self.doubt();
     }
 

@@ -116,7 +116,11 @@ impl DepthView {
             return Ok(());
         }
         let field = if self.organised { "depth.points" } else { "depth.data" };
-        Err(Error::new(ErrorKind::Empty, field, format!("fewer than {FEWEST_PIXELS} object pixels have a depth")))
+        Err(Error::new(
+            ErrorKind::Empty,
+            field,
+            format!("fewer than {FEWEST_PIXELS} object pixels have a depth above zero"),
+        ))
     }
 
     fn trim(&mut self) {
