@@ -54,7 +54,8 @@ async function numerics({ file, target, flags }) {
     ...["--target", "web", "--omit-default-module-path", "--out-dir", `${target}/wasm-bindgen`],
     `${target}/${WASM}/release/${MODULE}.wasm`,
   ]);
-  await node("binaryen/bin/wasm-opt", "-O3", `${target}/wasm-bindgen/${MODULE}_bg.wasm`, "-o", `pkg/${file}`);
+  // Level "s" gives the last 0.7 kB; speed is LLVM's work.
+  await node("binaryen/bin/wasm-opt", "-Os", `${target}/wasm-bindgen/${MODULE}_bg.wasm`, "-o", `pkg/${file}`);
 }
 
 /** One glue loads either file, so both must have been given the same: its imports, and what is exported with which types. */

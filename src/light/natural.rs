@@ -8,8 +8,9 @@
 //! copying, modification and distribution for educational, research and not-for-profit purposes are granted without
 //! fee, provided that this notice goes with every copy. The software is provided "as is", without any warranty.
 
-/// Mean of the 27 coefficients.
-pub(super) const MEAN: [f64; 27] = [
+/// Mean of the 27 coefficients. Seven digits are kept of each number, which 32 bits hold: half the download.
+#[allow(clippy::excessive_precision, reason = "the digits are those of the source")]
+pub(super) const MEAN: [f32; 27] = [
     -1.147481,
     -0.1998278,
     -0.2815958,
@@ -40,7 +41,8 @@ pub(super) const MEAN: [f64; 27] = [
 ];
 
 /// Covariance of the 27 coefficients: the lower triangle, row by row (symmetric positive definite).
-pub(super) const COVARIANCE: [f64; 378] = [
+#[allow(clippy::excessive_precision, reason = "the digits are those of the source")]
+pub(super) const COVARIANCE: [f32; 378] = [
     0.1858586,
     0.1259432,
     0.4037586,

@@ -52,9 +52,10 @@ impl LightPrior {
     pub fn natural() -> Self {
         let covariance = CoefficientMatrix::from_fn(|row, column| {
             let (long, short) = (row.max(column), row.min(column));
-            natural::COVARIANCE[long * (long + 1) / 2 + short]
+            f64::from(natural::COVARIANCE[long * (long + 1) / 2 + short])
         });
-        Self::new(&natural::MEAN, &covariance).expect("the kept covariance is positive definite, as a test shows")
+        Self::new(&natural::MEAN.map(f64::from), &covariance)
+            .expect("the kept covariance is positive definite, as a test shows")
     }
 
     /// h(L): squared Mahalanobis distance from the mean, least over all exposures.
