@@ -162,4 +162,5 @@ test("nothing known: the search comes first, says how far it is, and the loop co
   await expect(page.locator("#status")).toHaveAttribute("data-state", "converged", { timeout: 30_000 });
   expect(await lab.errorDegrees()).toBeLessThanOrEqual(1);
   await expect(page.locator("#status")).toHaveAttribute("data-tone", "good");
+  await expect(search).toContainText("100 %");
 });

@@ -37,6 +37,8 @@ export class Strip {
       const spent = report.milliseconds[name];
       button.toggleAttribute("data-lit", name === report.stage && begun);
       if (name === "search" && report.stage === name) time.textContent = /^\d+ %/.exec(report.message ?? "")?.[0] ?? "";
+      // The last slice that was drawn is seldom the last one that ran.
+      else if (name === "search" && begun && time.textContent?.endsWith("%")) time.textContent = "100 %";
       else if (spent !== undefined) time.textContent = `${decimals(spent, spent < 10 ? 1 : 0)} ms`;
       else if (!begun) time.textContent = "";
     }
