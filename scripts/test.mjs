@@ -85,7 +85,7 @@ const PARTS = [
   { name: "sizes", run: downloads, needsBuild: true, closing: /^size of .*$/gm },
   { name: "contract", run: contract, needsBuild: true, closing: NODE },
   { name: "tables", run: tables, needsBuild: true, closing: /^(?:.* (?:ok|MISSED)$|.* cells failed:|tables: .*)$/gm },
-  { name: "page", run: page, needsBuild: true, closing: /^ +\d+ (?:passed|failed|skipped|flaky|did not run).*$/gm },
+  { name: "page", run: page, needsBuild: true, closing: /^ +(?:\d+ (?:passed|failed|skipped|flaky|did not run)| {3}tests\/page\/).*$/gm },
 ];
 
 function chosen(names) {

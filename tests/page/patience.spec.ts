@@ -67,3 +67,11 @@ test("of several wishes the last one counts", async ({ lab, page }) => {
   await expect(lab.iteration).toHaveText("1");
   expect(await lab.fingerprint("Colour")).toBe(vase);
 });
+
+test("where every frame is late the search still ends", async ({ lab, page }) => {
+  // Frames so late are played stage by stage, and a search has hundreds of them.
+  await slow(page, 0, 400);
+  await lab.visit("light=colourful");
+  await page.getByRole("button", { name: "Play" }).click();
+  await expect(lab.iteration).not.toHaveText("0", { timeout: 30_000 });
+});

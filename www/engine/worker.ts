@@ -103,20 +103,24 @@ function reset({ options }: Calls["reset"]["request"]): Frame {
   return frame(current, [current.estimator.report]);
 }
 
-/** Least time spent on one frame of the search, in milliseconds. */
-const SEARCHING = 30;
+/** Least and most time spent on one frame of the search, in milliseconds: pause must still obey at once. */
+const SEARCHING = [30, 250] as const;
+let answered = Infinity;
 
 function advance({ by, milliseconds }: Calls["advance"]["request"]): Frame {
   const current = opened();
   const { estimator } = current;
-  if (by === "stage") return frame(current, [estimator.stepStage()]);
   const began = performance.now();
   const reports: StepReport[] = [];
-  // A slice of the search is too little to look at: some of them make a frame, and the last one tells it.
+  const isSearch = () => reports.at(-1)?.stage === "search";
+  // A slice of the search is too little to look at: some of them make a frame, and the last one tells it. Where drawing is
+  // slow the search takes as long as the page does, and so at least half of all the time.
+  const searching = Math.min(Math.max(began - answered, SEARCHING[0]), SEARCHING[1]);
   do {
-    if (reports.at(-1)?.stage === "search") reports.pop();
-    reports.push(estimator.step());
-  } while (performance.now() - began < (reports.at(-1)?.stage === "search" ? SEARCHING : milliseconds) && estimator.report.status === "running");
+    if (isSearch()) reports.pop();
+    reports.push(by === "stage" ? estimator.stepStage() : estimator.step());
+  } while (performance.now() - began < (isSearch() ? searching : milliseconds) && estimator.report.status === "running");
+  answered = performance.now();
   return frame(current, reports);
 }
 
