@@ -1,8 +1,9 @@
-//! Shape, light and camera pose from one colour image and one depth map of the same object, taken from different places.
+//! Shape, light and camera pose from one colour image and one depth map of the same object, taken from different
+//! places.
 //!
-//! The method of Zhang, Liu, Wu, Zhang and Wang, "Bimodal Stereo: Joint Shape and Pose Estimation from Color-Depth Image
-//! Pair" (Machine Vision and Applications), stage by stage. Data flows one way; a later room may look into an earlier one,
-//! never the other way round:
+//! The method of Zhang, Liu, Wu, Zhang and Wang, "Bimodal Stereo: Joint Shape and Pose Estimation from Color-Depth
+//! Image Pair" (Machine Vision and Applications), stage by stage. Data flows one way; a later room may look into an
+//! earlier one, never the other way round:
 //!
 //! | room | what it holds | the paper |
 //! |---|---|---|
@@ -21,12 +22,13 @@
 //! | [`scenes`] | surfaces, lights and a renderer with a known answer | the experiments |
 //! | `wasm` | bindings without mathematics, wasm32 only | |
 //!
-//! One frame everywhere: x right, y down, z forward, normals face the camera (n_z < 0), depth along z. Without intrinsics a
-//! view is orthographic and its unit is the pixel; with them it is metric. Pose: P_colour = s R P_depth + t.
+//! One frame everywhere: x right, y down, z forward, normals face the camera (n_z < 0), depth along z. Without
+//! intrinsics a view is orthographic and its unit is the pixel; with them it is metric. A pose:
+//! P_colour = s R P_depth + t.
 //!
 //! Where we read the paper differently: it writes the two prior terms of Eq. 6 without a square and lambda_3 linear; a
-//! least-squares solver squares them, so do we. The norm of Eq. 20 is not named; its tables fit the spectral norm. Refined
-//! normals explain any colour under any pose, so the merit of an iteration asks the measured ones.
+//! least-squares solver squares them, so do we. The norm of Eq. 20 is not named; its tables fit the spectral norm.
+//! Refined normals explain any colour under any pose, so the merit of an iteration asks the measured ones.
 
 /// The README's Rust examples, compiled and run with the documentation's.
 #[cfg(doctest)]

@@ -69,7 +69,8 @@ pub struct Weights {
 
 impl Default for Weights {
     fn default() -> Self {
-        // light: one part in a million lets colourful lights pass that no landscape has; it is noise^2 / pixels at 64x64.
+        // light: one part in a million lets colourful lights pass that no landscape has; it is noise^2 / pixels at
+        // 64x64.
         Self { prior: 0.05, unit: 1.0, light: 1e-6, refinement: 0.01 }
     }
 }
@@ -91,13 +92,15 @@ pub struct Options {
     pub weights: Weights,
     /// The loop converges when the rotation changes by less than this, in degrees.
     pub stop_degrees: f64,
-    /// Accepted distance of a correspondence in image pixels; `None` follows the data (never under one pixel, the paper's value).
+    /// Accepted distance of a correspondence in image pixels; `None` follows the data (never under one pixel, the
+    /// paper's value).
     pub correspondence_distance: Option<f64>,
     /// The loop ends after so many iterations.
     pub max_iterations: u32,
     /// Seed of everything random.
     pub seed: u64,
-    /// Whether the registration by colours starts tolerant and becomes strict by and by; `false` shows what that is good for.
+    /// Whether the registration by colours starts tolerant and becomes strict by and by; `false` shows what that is
+    /// good for.
     pub annealing: bool,
     /// Whether flying pixels and background inside the mask are trimmed.
     pub trim: bool,

@@ -6,14 +6,15 @@ use crate::options::{LightSource, Registration};
 use crate::pose::{PhotometricReport, Similarity};
 use crate::report::Status;
 
-/// A rotation less certain than this about any axis is no answer, degrees (one sigma). Found poses of the random scenes stay
-/// below 2; the one wrong one had 7.
+/// A rotation less certain than this about any axis is no answer, degrees (one sigma). Found poses of the random scenes
+/// stay below 2; the one wrong one had 7.
 const LARGEST_SIGMA: f64 = 5.0;
-/// A rotation less certain than this is no single answer, degrees (one sigma): three sigmas pass the three degrees within which
-/// a pose counts as found. One in 300 random scenes is so uncertain, and all 12 of 24 photographs that end over 4 degrees off.
+/// A rotation less certain than this is no single answer, degrees (one sigma): three sigmas pass the three degrees
+/// within which a pose counts as found. One in 300 random scenes is so uncertain, and all 12 of 24 photographs that end
+/// over 4 degrees off.
 const DOUBTFUL_SIGMA: f64 = 1.0;
-/// Growth of the scale beyond which, or below whose inverse, a registration has collapsed: shrunk onto a few pixels a cloud is easily explained.
-/// The search looks from 0.7 to 1.4.
+/// Growth of the scale beyond which, or below whose inverse, a registration has collapsed: shrunk onto a few pixels a
+/// cloud is easily explained. The search looks from 0.7 to 1.4.
 const LARGEST_GROWTH: f64 = 2.0;
 /// Share of the colours' spread that a trusted pose may leave unexplained. Renders leave 0.01 to 0.1.
 const LARGEST_UNEXPLAINED: f64 = 0.3;
@@ -90,9 +91,9 @@ impl Estimator {
         let Self { image, depth, prior, options, joint, .. } = self;
         let Some(joint) = joint else { return Ok(()) };
         let found = joint.register(&given(image, depth, prior, options), start)?.clone();
-        let growth = found.pose.scale / start.scale;
-        if growth.ln().abs() > LARGEST_GROWTH.ln() {
-            return Err(nowhere("the colours pull the scale beyond half or twice that of the start").value(growth));
+        if found.pose.growth_from(start) > LARGEST_GROWTH.ln() {
+            let message = "the colours pull the scale beyond half or twice that of the start";
+            return Err(nowhere(message).value(found.pose.scale / start.scale));
         }
         self.adopt(&found);
         Ok(())

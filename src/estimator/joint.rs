@@ -6,16 +6,17 @@ use crate::options::LightSource;
 use crate::pose::{Photometric, PhotometricOptions, PhotometricProblem, PhotometricReport, Similarity};
 use crate::view::{ColourView, DepthView, cubic_normals};
 
-/// Weight of the light's prior in the registration: Bayes' own. `lambda.light` weighs the fit of the light stage alone, but where it
-/// is zero there is no prior here, either.
+/// Weight of the light's prior in the registration: Bayes' own. `lambda.light` weighs the fit of the light stage alone,
+/// but where it is zero there is no prior here, either.
 const PRIOR_WEIGHT: f64 = 1.0;
 
-/// Noise of the points from which on the surfaces tell the pose better than the normals, pixel lengths. Half a pixel on Mozart
-/// at 64x64 leaves 1.5 to 5 degrees by normals and 0.2 to 1 by surfaces; clean views have 0.1 at most.
+/// Noise of the points from which on the surfaces tell the pose better than the normals, pixel lengths. Half a pixel on
+/// Mozart at 64x64 leaves 1.5 to 5 degrees by normals and 0.2 to 1 by surfaces; clean views have 0.1 at most.
 const LARGEST_NOISE: f64 = 0.2;
 
-/// Points that candidates of the opening are registered by at most, evenly spread: the best one is registered anew by all. With 14
-/// to 34 unknowns noise is averaged well enough to tell one candidate from another, and large views take no longer.
+/// Points that candidates of the opening are registered by at most, evenly spread: the best one is registered anew by
+/// all. With 14 to 34 unknowns noise is averaged well enough to tell one candidate from another, and large views take
+/// no longer.
 const CANDIDATE_POINTS: usize = 2500;
 
 /// What one registration looks at, besides its own memory.
@@ -93,8 +94,9 @@ impl Joint {
         &self.sharp.depth
     }
 
-    /// Whether the depth is so noisy that its normals only find the pose, and matching surfaces, which averages the noise of
-    /// whole surfaces, has to settle it. The surface of an image under unknown light follows the pose and settles nothing.
+    /// Whether the depth is so noisy that its normals only find the pose, and matching surfaces, which averages the
+    /// noise of whole surfaces, has to settle it. The surface of an image under unknown light follows the pose and
+    /// settles nothing.
     pub fn is_coarse(&self, light: &LightSource) -> bool {
         self.sharp.noise > LARGEST_NOISE && *light != LightSource::Estimate
     }

@@ -4,8 +4,9 @@
 //! until the rotation settles. After each iteration the merit l + f + g of the new solution is compared with that of
 //! the last one over the same depth points; a worse iteration is taken back, and the next one goes half the way.
 //!
-//! Where nothing is known of the pose, [`opening`] comes first: a search in slices, then registrations of its best candidates
-//! by their colours. The joint registration has a cost of its own, so the merit never takes back a pose that it moves.
+//! Where nothing is known of the pose, [`opening`] comes first: a search in slices, then registrations of its best
+//! candidates by their colours. The joint registration has a cost of its own, so the merit never takes back a pose that
+//! it moves.
 
 mod anywhere;
 mod gauge;
@@ -39,7 +40,8 @@ pub enum Surface {
     Depth,
 }
 
-/// After a small step a merit that grows by less than this share has not grown: correspondences flicker at pixel borders.
+/// After a small step a merit that grows by less than this share has not grown: correspondences flicker at pixel
+/// borders.
 const MERIT_SLACK: f64 = 1e-2;
 /// Degrees up to which a step is small. A larger one has to lower the merit, or a flat merit would let the pose drift.
 const SMALL_STEP: f64 = 0.25;
@@ -49,7 +51,8 @@ const JURY_MARGIN: f32 = 1.5;
 const MOST_REJECTIONS: u32 = 6;
 /// Without a moving pose the loop has converged when the energy changes by less than this share.
 const SETTLED_ENERGY: f64 = 1e-3;
-/// Iterations after which shapes under a pose that stands have come as far as they will: they flicker by some tenths of a percent.
+/// Iterations after which shapes under a pose that stands have come as far as they will: they flicker by some tenths of
+/// a percent.
 const MOST_STILL: u32 = 8;
 /// Overlap (share of valid depth pixels) below which a pose cannot be trusted.
 const LEAST_OVERLAP: f64 = 0.05;
@@ -205,8 +208,8 @@ impl Estimator {
         Ok(())
     }
 
-    /// One iteration, the rest of one that was begun by [`step_stage`](Self::step_stage), or a slice of the opening search.
-    /// Changes nothing once the status is no longer [`Status::Running`].
+    /// One iteration, the rest of one that was begun by [`step_stage`](Self::step_stage), or a slice of the opening
+    /// search. Changes nothing once the status is no longer [`Status::Running`].
     pub fn step(&mut self) -> &StepReport {
         if self.is_searching() {
             return self.step_stage();

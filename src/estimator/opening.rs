@@ -1,11 +1,11 @@
 //! The opening: search everywhere, register the best candidates, keep the one that explains most, remember its rivals.
 //!
 //! Ends of different registrations see different points, so their costs cannot be compared; what they are worth is
-//! gain = N^(1/2) ln(spread / noise): by how much the pose explains the colours better than a constant would, with the root of
-//! the number of visible points against overlaps that are tiny and thus easily explained. Measured on 180 random scenes
-//! at 96x96 (Mozart, four scanned animals, three built-in surfaces; natural lights, free scale): the winner is right in 175. In
-//! four of the others a rival leaves less than 1.25 times the winner's noise, in the fifth the rotation is uncertain by 10
-//! degrees; where the truth wins, rivals leave 1.26 times its noise or more.
+//! gain = N^(1/2) ln(spread / noise): by how much the pose explains the colours better than a constant would, with the
+//! root of the number of visible points against overlaps that are tiny and thus easily explained. Measured on 180
+//! random scenes at 96x96 (Mozart, four scanned animals, three built-in surfaces; natural lights, free scale): the
+//! winner is right in 175. In four of the others a rival leaves less than 1.25 times the winner's noise, in the fifth
+//! the rotation is uncertain by 10 degrees; where the truth wins, rivals leave 1.26 times its noise or more.
 
 use crate::error::Result;
 use crate::pose::{PhotometricReport, Search, Similarity, sort_down};
@@ -24,9 +24,9 @@ const UNEXPLAINED: f64 = 0.05;
 const SAME_END: f64 = 3.0;
 /// An end reached so often needs no more witnesses: candidates next to it are passed over.
 const WITNESSES: u32 = 2;
-/// Change of the scale (natural logarithm) beyond which a registration has collapsed: shrunk onto a few pixels, a cloud is easily
-/// explained. Candidates lie within 0.1 of a right scale.
-const LARGEST_GROWTH: f64 = 0.3;
+/// Change of the scale (natural logarithm) beyond which a registration has collapsed: shrunk onto a few pixels, a cloud
+/// is easily explained. Candidates lie within 0.1 of a right scale.
+const COLLAPSE: f64 = 0.3;
 /// Candidates nearer than this to such an end would only reach it again, degrees.
 const CATCHMENT: f64 = 15.0;
 /// A rival leaves a noise of at most so many times the winner's ..
@@ -123,8 +123,8 @@ impl Opening {
         };
         self.begun = matches!(outcome, Ok(None));
         if !self.begun {
-            let growth = |report: &PhotometricReport| (report.pose.scale / candidates[self.next].pose.scale).ln().abs();
-            let found = outcome.ok().flatten().filter(|report| growth(report) < LARGEST_GROWTH);
+            let start = candidates[self.next].pose;
+            let found = outcome.ok().flatten().filter(|report| report.pose.growth_from(&start) < COLLAPSE);
             (self.next, self.tried) = (self.next + 1, self.tried + 1);
             if let Some(report) = found {
                 self.enter(report);

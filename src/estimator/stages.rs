@@ -16,8 +16,9 @@ use crate::view::{normals, quantile};
 
 /// |n - m| at which a prior normal has lost three quarters of its pull: 23 degrees, more than noise, less than a mistake.
 const PRIOR_SCALE: f32 = 0.4;
-/// Least weight of the surface's own normals: the surface says more than a pixel's colours under natural light. Measured on Mozart
-/// under the lights A, B, C without a depth view: 0.1 is better than 0.05 in five cases of six, 0.03 in none.
+/// Least weight of the surface's own normals: the surface says more than a pixel's colours under natural light.
+/// Measured on Mozart under the lights A, B, C without a depth view: 0.1 is better than 0.05 in five cases of six, 0.03
+/// in none.
 const LEAST_SURFACE_PRIOR: f64 = 0.1;
 /// Median log residual up to which a fitted light counts as explaining the colours: noise and discretisation.
 const EXPLAINED: f64 = 0.07;
@@ -94,8 +95,8 @@ impl Estimator {
         Ok(())
     }
 
-    /// Weights of the normals' terms. Colours that even the fitted light leaves unexplained (texture, cast shadows) weigh
-    /// less, which is to say that the prior weighs more.
+    /// Weights of the normals' terms. Colours that even the fitted light leaves unexplained (texture, cast shadows)
+    /// weigh less, which is to say that the prior weighs more.
     fn shading_weights(&self, prior: f64) -> ShadingWeights {
         let doubt = (self.unexplained / EXPLAINED).max(1.0).powi(2);
         ShadingWeights {
@@ -162,8 +163,8 @@ impl Estimator {
         self.shade_surface(&light);
     }
 
-    /// Normals of the pixels once more, each drawn to the depth view's normal, where that has a say, or else to that of the
-    /// surface: differences of heights lack the detail of a pixel, which its colours have.
+    /// Normals of the pixels once more, each drawn to the depth view's normal, where that has a say, or else to that of
+    /// the surface: differences of heights lack the detail of a pixel, which its colours have.
     fn shade_surface(&mut self, light: &Light) {
         let depth_counts = self.options.weights.prior > 0.0;
         for pixel in 0..self.image.size.len() {

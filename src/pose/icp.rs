@@ -1,18 +1,19 @@
 //! Iterative closest points with scale (Eq. 12): the depth view's points onto the image surface.
 //!
 //! Each iteration carries the depth points by the present pose, finds their nearest points on the image surface, and
-//! takes one damped Gauss-Newton step of the seven unknowns (six where the scale is held). Pairs whose normals disagree,
-//! that end on the border of the image surface (where everything that has no counterpart ends), that are farther apart than
-//! a distance which shrinks from iteration to iteration, or that are among the farthest, are left out; the rest is
-//! weighted by Geman and McClure's function of the residual.
+//! takes one damped Gauss-Newton step of the seven unknowns (six where the scale is held). Pairs whose normals
+//! disagree, that end on the border of the image surface (where everything that has no counterpart ends), that are
+//! farther apart than a distance which shrinks from iteration to iteration, or that are among the farthest, are left
+//! out; the rest is weighted by Geman and McClure's function of the residual.
 //!
 //! Point-to-plane is what holds a smooth object of free scale; point-to-point slides (12 to 32 degrees on a bust).
-//! Measured on smooth busts of 64 pixels, scale free, half of the columns cut off or not: a share of point-to-point that
-//! fades with the distance widens the basin a little; matching in position and normal, a residual on the normals, the
-//! symmetric distance and matching both ways each made it narrower.
+//! Measured on smooth busts of 64 pixels, scale free, half of the columns cut off or not: a share of point-to-point
+//! that fades with the distance widens the basin a little; matching in position and normal, a residual on the normals,
+//! the symmetric distance and matching both ways each made it narrower.
 //!
 //! Limits: from the identity a face comes home from 60 degrees, an almost bare ellipsoid from 30 only; beyond, it fits
-//! itself turned. [`Information`] flags many such fits, not all: they are true minima, and only a start elsewhere shows it.
+//! itself turned. [`Information`] flags many such fits, not all: they are true minima, and only a start elsewhere shows
+//! it.
 
 use nalgebra::Vector3;
 
@@ -199,8 +200,7 @@ impl Icp {
             };
             let increment = self.step(problem, &pose, options, point_weight)?;
             pose = increment.change.after(&pose).orthonormal();
-            let growth = (pose.scale / problem.start.scale).ln().abs();
-            if growth > LARGEST_GROWTH.ln() {
+            if pose.growth_from(&problem.start) > LARGEST_GROWTH.ln() {
                 return Err(degenerate("the scale runs away").value(pose.scale));
             }
             if distances.present <= distances.last && increment.size < SETTLED {

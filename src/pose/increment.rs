@@ -77,8 +77,8 @@ impl NormalEquations {
         self.weight += weight;
     }
 
-    /// The step that solves the equations, damped by a share of the total weight on each unknown, and shortened to where
-    /// it is still near linear. `None` where the sums are not finite or empty.
+    /// The step that solves the equations, damped by a share of the total weight on each unknown, and shortened to
+    /// where it is still near linear. `None` where the sums are not finite or empty.
     pub fn solve(&self, damping: f64, scale_is_held: bool) -> Option<Increment> {
         let mut matrix = self.matrix;
         let mut gradient = self.gradient;

@@ -1,8 +1,8 @@
 //! Consensus of correspondences over the linear model of Eq. 14: P -> A P + t with twelve parameters theta.
 //!
 //! Four pairs determine theta. The sample whose model explains the pairs best (residuals cut off at the threshold) is
-//! improved by least squares on its inliers; A becomes a similarity as in Eq. 15, and the similarity is fitted to its own
-//! inliers until they no longer change.
+//! improved by least squares on its inliers; A becomes a similarity as in Eq. 15, and the similarity is fitted to its
+//! own inliers until they no longer change.
 //!
 //! The linear model bends and shears, so on nearly flat parts it follows noise where a similarity would not; the pairs
 //! decide which are inliers, the similarity has the last word.
@@ -56,7 +56,8 @@ impl Default for RansacOptions {
 pub struct RansacReport {
     /// The similarity fitted to its own inliers.
     pub pose: Similarity,
-    /// A of Eq. 14 on the inliers of the linear model; [`Angles::fit`](super::Angles::fit) reads scale and angles off it.
+    /// A of Eq. 14 on the inliers of the linear model; [`Angles::fit`](super::Angles::fit) reads scale and angles off
+    /// it.
     pub matrix: Matrix3<f64>,
     /// Indices of the pairs that the similarity explains, ascending.
     pub inliers: Vec<u32>,

@@ -3,23 +3,24 @@
 //! maximise over R, s, tau: N (N / V) ln( det T / det E ) / 3, see [`judge`]: how much better the turned depth normals
 //! explain the image's log colours than a constant does.
 //!
-//! Method: depth and image on a coarse grid. First a sweep: for rotations spread evenly, and scales where they are free,
-//! the turned, visible cloud is laid over the grid and all translations are correlated by FFT; the best few are judged
-//! exactly. Then the best rotations, no two alike, climb to their local maximum, halving their steps. What is left after
-//! another suppression of twins is sorted by score. Order-2 harmonics are closed under rotation: for an unknown light any
-//! rotation explains any colours of the same normals, so that only where the normals lie speaks for a pose.
+//! Method: depth and image on a coarse grid. First a sweep: for rotations spread evenly, and scales where they are
+//! free, the turned, visible cloud is laid over the grid and all translations are correlated by FFT; the best few are
+//! judged exactly. Then the best rotations, no two alike, climb to their local maximum, halving their steps. What is
+//! left after another suppression of twins is sorted by score. Order-2 harmonics are closed under rotation: for an
+//! unknown light any rotation explains any colours of the same normals, so that only where the normals lie speaks for a
+//! pose.
 //!
 //! A colour camera without intrinsics sees parallel rays: a pose moves in the image plane, its centre at z = 0. With
-//! intrinsics the centre moves in the plane of its starting distance: that of the depth camera, or where the silhouettes
-//! are as large. There scale and distance look alike: the scale is held and the distance varies instead.
+//! intrinsics the centre moves in the plane of its starting distance: that of the depth camera, or where the
+//! silhouettes are as large. There scale and distance look alike: the scale is held and the distance varies instead.
 //!
-//! Measured on 160 scenes of 64x64 (eight surfaces, natural and colourful lights, up to 75 degrees with roll, 0.4 to all of
-//! the columns, free scale, 1 % noise): a candidate within 10 degrees of the truth is first in 73 %, among the first ten
-//! in 92 % and among all in 98 % for an unknown light; in 88, 98 and 100 % for a known one.
+//! Measured on 160 scenes of 64x64 (eight surfaces, natural and colourful lights, up to 75 degrees with roll, 0.4 to
+//! all of the columns, free scale, 1 % noise): a candidate within 10 degrees of the truth is first in 73 %, among the
+//! first ten in 92 % and among all in 98 % for an unknown light; in 88, 98 and 100 % for a known one.
 //!
-//! Limits: tilt up to 100 degrees with roll up to 32, or any rotation up to 76 degrees. Poses end a few degrees from the
-//! truth. What is lost are tilts beyond 60 degrees of half a depth map: too little is seen twice. Overlaps under 0.15 are
-//! not seen. No shadows, one albedo.
+//! Limits: tilt up to 100 degrees with roll up to 32, or any rotation up to 76 degrees. Poses end a few degrees from
+//! the truth. What is lost are tilts beyond 60 degrees of half a depth map: too little is seen twice. Overlaps under
+//! 0.15 are not seen. No shadows, one albedo.
 
 mod cloud;
 mod correlate;

@@ -74,6 +74,12 @@ impl Similarity {
         2.0 * chord.min(1.0).asin().to_degrees()
     }
 
+    /// By how much this scale differs from that of `other`: |ln(s / s')|.
+    #[must_use]
+    pub(crate) fn growth_from(&self, other: &Self) -> f64 {
+        (self.scale / other.scale).ln().abs()
+    }
+
     /// This similarity after `first`: P -> self(first(P)).
     #[must_use]
     pub fn after(&self, first: &Self) -> Self {
@@ -84,9 +90,9 @@ impl Similarity {
         }
     }
 
-    /// The pose a `share` of the way from this one (0) to `other` (1): constant turning, constant growth, and a straight
-    /// path for `centre`, a point of the depth view. With the centroid there the object does not swing about a far
-    /// origin half-way, as it would were the translations interpolated.
+    /// The pose a `share` of the way from this one (0) to `other` (1): constant turning, constant growth, and a
+    /// straight path for `centre`, a point of the depth view. With the centroid there the object does not swing about a
+    /// far origin half-way, as it would were the translations interpolated.
     #[must_use]
     pub fn towards(&self, other: &Self, share: f64, centre: Vector3<f64>) -> Self {
         let turn = quaternion(&(other.rotation * self.rotation.transpose())).powf(share);

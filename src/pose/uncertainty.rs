@@ -1,12 +1,12 @@
 //! How well the matched surfaces determine the pose, and one sigma of each of its numbers.
 //!
-//! The information is that of point-to-plane distances: a point that slides along its surface costs nothing, so a plane,
-//! a sphere or a cylinder leave the directions in which they slide onto themselves without information. It is formed
-//! from the normal of the image on one side and that of the depth view on the other, J_n^T J_m, instead of J_n^T J_n:
-//! errors of two independent normals do not multiply up, where noise squared would pass for shape.
+//! The information is that of point-to-plane distances: a point that slides along its surface costs nothing, so a
+//! plane, a sphere or a cylinder leave the directions in which they slide onto themselves without information. It is
+//! formed from the normal of the image on one side and that of the depth view on the other, J_n^T J_m, instead of J_n^T
+//! J_n: errors of two independent normals do not multiply up, where noise squared would pass for shape.
 //!
-//! One sigma covers what the residuals show, waves included; an error that leaves no residual (a surface that is tilted as
-//! a whole, a rival fit elsewhere) is not seen by it.
+//! One sigma covers what the residuals show, waves included; an error that leaves no residual (a surface that is tilted
+//! as a whole, a rival fit elsewhere) is not seen by it.
 
 use nalgebra::{SymmetricEigen, Vector3};
 
@@ -31,8 +31,8 @@ const MOST_EIGEN_ROUNDS: usize = 500;
 const DEPTH: usize = 5;
 const SCALE: usize = 6;
 
-/// Information of a registration about its seven unknowns: rotation about x, y, z (radians), translation along x, y, z (in
-/// object sizes) and the logarithm of the scale, all in the colour view's frame around the centroid of the points.
+/// Information of a registration about its seven unknowns: rotation about x, y, z (radians), translation along x, y, z
+/// (in object sizes) and the logarithm of the scale, all in the colour view's frame around the centroid of the points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Information {
     /// The 7x7 matrix; the last row and column are zero where the scale is held. Free of units.
@@ -67,8 +67,8 @@ impl Information {
         !matches!(self.weakest().partial_cmp(&self.floor()), Some(std::cmp::Ordering::Greater))
     }
 
-    /// One sigma of `pose` for distances with standard deviation `sigma` (units of the colour view). Rotation is capped at
-    /// 180 degrees, which means unknown. The z of the translation is a gauge for an orthographic image: `None`.
+    /// One sigma of `pose` for distances with standard deviation `sigma` (units of the colour view). Rotation is capped
+    /// at 180 degrees, which means unknown. The z of the translation is a gauge for an orthographic image: `None`.
     #[must_use]
     pub fn uncertainty(&self, sigma: f64, pose: &Similarity, camera: &Camera) -> Uncertainty {
         let gauge = camera.is_orthographic();
@@ -100,8 +100,8 @@ impl Information {
         (covariance, in_words(&eigen.eigenvectors.column(eigen.eigenvalues.imin()).into_owned()))
     }
 
-    /// Eigenvalues over the weight. The gauge is projected out, and unknowns that are no unknowns get the eigenvalue one,
-    /// which no real direction can fall behind: those of the three translations sum to one.
+    /// Eigenvalues over the weight. The gauge is projected out, and unknowns that are no unknowns get the eigenvalue
+    /// one, which no real direction can fall behind: those of the three translations sum to one.
     fn eigen(&self, gauge: bool) -> Option<SymmetricEigen<f64, nalgebra::Const<UNKNOWNS>>> {
         let mut matrix = self.matrix / self.weight;
         if gauge && matrix[(DEPTH, DEPTH)] > 0.0 {
@@ -129,8 +129,8 @@ impl Information {
     }
 }
 
-/// One sigma of each number of `pose` from the covariance of the seven unknowns about a centre. The z of the translation
-/// and the scale have none where the first or the second of `inert` says so.
+/// One sigma of each number of `pose` from the covariance of the seven unknowns about a centre. The z of the
+/// translation and the scale have none where the first or the second of `inert` says so.
 pub(super) fn describe(
     covariance: &Square,
     frame: &Frame,

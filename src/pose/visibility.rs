@@ -1,7 +1,7 @@
 //! Which points of the depth view the colour camera sees, and where.
 //!
-//! A point is seen where it falls on the mask, faces the camera, and no other depth point hides it (z-buffer of the colour
-//! view's own resolution, so parts thinner than two pixels may be judged wrongly).
+//! A point is seen where it falls on the mask, faces the camera, and no other depth point hides it (z-buffer of the
+//! colour view's own resolution, so parts thinner than two pixels may be judged wrongly).
 
 use nalgebra::Vector3;
 

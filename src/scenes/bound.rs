@@ -1,12 +1,14 @@
-//! sqrt(trace of the rotation block of F^-1): the least error of the rotation that any estimator can have (Cramer, Rao).
+//! sqrt(trace of the rotation block of F^-1): the least error of the rotation that any estimator can have (Cramer,
+//! Rao).
 //!
-//! F = sum over image pixels of J^T J / sigma^2, J the derivative of log S at the pixel with respect to rotation and translation
-//! (scale fixed) and, where it is unknown, the 27 coefficients of the light, at the true pose with the true normals. A
-//! pixel counts where the depth view sees its point. With g the slope of log S in the image and b its slope by the normal, a
-//! rotation about c turns the prediction at a fixed pixel by (P - c) x g - n x b, up to sign.
+//! F = sum over image pixels of J^T J / sigma^2, J the derivative of log S at the pixel with respect to rotation and
+//! translation (scale fixed) and, where it is unknown, the 27 coefficients of the light, at the true pose with the true
+//! normals. A pixel counts where the depth view sees its point. With g the slope of log S in the image and b its slope
+//! by the normal, a rotation about c turns the prediction at a fixed pixel by (P - c) x g - n x b, up to sign.
 //!
-//! Limits: no prior of the light, no exposure; slopes of log S by central differences of the noise-free image, so pixels at
-//! its border do not count; what the depth view does not resolve (noise, normals from differences) is not in it.
+//! Limits: no prior of the light, no exposure; slopes of log S by central differences of the noise-free image, so
+//! pixels at its border do not count; what the depth view does not resolve (noise, normals from differences) is not in
+//! it.
 
 use nalgebra::{SMatrix, SVector, Vector3};
 
@@ -19,12 +21,12 @@ const UNKNOWNS: usize = POSE + COEFFICIENTS;
 type Information = SMatrix<f64, UNKNOWNS, UNKNOWNS>;
 type Row = SVector<f64, UNKNOWNS>;
 
-/// A point of the image is seen by the depth view when their depths there differ by less, in steps between neighbouring pixels
-/// (at least one pixel length).
+/// A point of the image is seen by the depth view when their depths there differ by less, in steps between neighbouring
+/// pixels (at least one pixel length).
 const SAME_DEPTH: f64 = 1.0;
 
-/// The bound of a sample's rotation in degrees for noise `sigma` of log S; `None` where the scene determines no rotation, and
-/// where there is no noise to bound.
+/// The bound of a sample's rotation in degrees for noise `sigma` of log S; `None` where the scene determines no
+/// rotation, and where there is no noise to bound.
 #[must_use]
 pub fn bound(sample: &Sample, light_is_known: bool, sigma: f64) -> Option<f64> {
     let size = sample.image.size;

@@ -9,12 +9,14 @@ use crate::view::{Camera, Normals, Size};
 /// How far outside a triangle a pixel centre may lie, in barycentric coordinates (no unit): rounding must not open
 /// a crack between two triangles that share an edge. 64-bit rounding at 1024 pixels is 1e-13.
 const EDGE_TOLERANCE: f64 = 1e-9;
-/// A triangle smaller than this is seen edge on, in squared units of the ray plane, relative to its longest edge squared.
+/// A triangle smaller than this is seen edge on, in squared units of the ray plane, relative to its longest edge
+/// squared.
 const EDGE_ON: f64 = 1e-12;
 /// Pixels added around the corners of a triangle in search of the pixels it covers: its edges are straight lines only
 /// where the lens does not distort.
 const SEARCH_MARGIN: f64 = 1.0;
-/// A normal whose cosine to the line of sight is smaller does not face the camera: below it 32-bit slopes lose all digits.
+/// A normal whose cosine to the line of sight is smaller does not face the camera: below it 32-bit slopes lose all
+/// digits.
 const GRAZING: f64 = 1e-6;
 
 /// What a camera sees of a mesh. All fields are row-major over `size`.

@@ -1,21 +1,23 @@
-//! p = -n_x/n_z, q = -n_y/n_z; with a pinhole camera d(log Z)/du = -(n . r_u)/(n . r): gradients from normals (stage 4).
+//! p = -n_x/n_z, q = -n_y/n_z; with a pinhole camera d(log Z)/du = -(n . r_u)/(n . r): gradients from normals (stage
+//! 4).
 //!
-//! Method: a point of the surface is P = Z r(u, v) with the ray r = (x, y, 1); n . P_u = 0 gives the second formula, r_u and
-//! r_v by central differences of [`Camera::ray`] over one pixel, so that lens distortion is included.
+//! Method: a point of the surface is P = Z r(u, v) with the ray r = (x, y, 1); n . P_u = 0 gives the second formula,
+//! r_u and r_v by central differences of [`Camera::ray`] over one pixel, so that lens distortion is included.
 //!
 //! Limits: a surface seen edge-on has no finite gradient. The cosine between normal and line of sight is taken as
 //! at least [`GRAZING`]; normals that turn away from the camera count as grazing, too.
 
 use crate::view::{Camera, Normals, Size};
 
-/// Least cosine between the normal and the direction to the camera: 87 degrees, slopes up to 20 pixels of depth per pixel.
-/// Steeper measurements are noise at silhouettes; 20 is beyond the steepest slopes of smooth objects at 64 to 640 pixels.
+/// Least cosine between the normal and the direction to the camera: 87 degrees, slopes up to 20 pixels of depth per
+/// pixel. Steeper measurements are noise at silhouettes; 20 is beyond the steepest slopes of smooth objects at 64 to
+/// 640 pixels.
 pub const GRAZING: f64 = 0.05;
 
 /// Gradients of depth (orthographic: in pixels) or of log depth (pinhole) along columns, `p`, and along rows, `q`.
 ///
-/// All slices are row-major over the raster; normals in the optical frame, facing the camera (n_z < 0). NaN off the mask
-/// and where there is no normal. A slice that is shorter than the raster is filled as far as it goes.
+/// All slices are row-major over the raster; normals in the optical frame, facing the camera (n_z < 0). NaN off the
+/// mask and where there is no normal. A slice that is shorter than the raster is filled as far as it goes.
 pub fn gradients(size: Size, camera: &Camera, normals: &Normals, mask: &[bool], p: &mut [f32], q: &mut [f32]) {
     let targets = p.iter_mut().zip(q.iter_mut()).zip(mask).take(normals.len().min(size.len()));
     for (index, ((p, q), &inside)) in targets.enumerate() {

@@ -4,10 +4,10 @@
 //!
 //! The unknown is the surface, so every normal is integrable by construction: under natural light, where three colours
 //! hardly tell one normal from another, this is what a pixel alone does not know. n is the unit vector of
-//! N = a + p b + q c in the middle of a cell of four pixels, with p, q the slopes of z there and (a, b, c) fixed vectors of
-//! the pixel's ray (`RayFrame`); rho is Geman-McClure. The edges carry what the pixels' own normals say (trapezoidal
-//! rule, as in the integration), as firmly as the colours of one pixel fix its normal: under colourful light they do
-//! the work, to the rim of the mask, under natural light they are silent.
+//! N = a + p b + q c in the middle of a cell of four pixels, with p, q the slopes of z there and (a, b, c) fixed
+//! vectors of the pixel's ray (`RayFrame`); rho is Geman-McClure. The edges carry what the pixels' own normals say
+//! (trapezoidal rule, as in the integration), as firmly as the colours of one pixel fix its normal: under colourful
+//! light they do the work, to the rim of the mask, under natural light they are silent.
 //!
 //! Method: Gauss-Newton on z, damped by the Laplacian; each step by conjugate gradients, matrix-free, preconditioned
 //! by the cosine solve of the enclosing rectangle. Limits: not convex, so the start matters; across an occlusion edge
@@ -48,8 +48,8 @@ pub struct HeightProblem<'a> {
     pub light: &'a Light,
     /// Turns this view's normals into the light's frame.
     pub rotation: &'a Matrix3<f64>,
-    /// Slopes p, q that the pixels' own normals suggest, in pixels of height per pixel. They hold where the colours of a
-    /// pixel alone fix its normal, and count for nothing where they do not.
+    /// Slopes p, q that the pixels' own normals suggest, in pixels of height per pixel. They hold where the colours of
+    /// a pixel alone fix its normal, and count for nothing where they do not.
     pub slopes: [&'a [f32]; 2],
     /// Weight of each pixel's own normal beyond what its colours give, in squared log residual: lambda_2 where a prior
     /// normal stands behind it. `None`: nowhere.

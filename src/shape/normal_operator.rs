@@ -1,9 +1,9 @@
 //! The Gauss-Newton operator of the heights, (D^T H D + a + kappa S + E + damping L), applied to a direction.
 //!
 //! D takes the slopes in the middle of each cell of four pixels, H is the stiffness there; S are squared second
-//! differences, E the suggested edges, L the Laplacian, a the anchors. All weights are rasters that hold zero wherever a
-//! neighbour is missing, the ends of the rows included, so that the raster is one line with neighbours 1 and `width` apart: every
-//! loop runs straight through and fills vector registers.
+//! differences, E the suggested edges, L the Laplacian, a the anchors. All weights are rasters that hold zero wherever
+//! a neighbour is missing, the ends of the rows included, so that the raster is one line with neighbours 1 and `width`
+//! apart: every loop runs straight through and fills vector registers.
 
 use crate::shape::poisson::Edges;
 

@@ -1,12 +1,12 @@
 //! min over z of sum_e w_e (z_j - z_i - g_e)^2 + sum_i a_i (z_i - t_i)^2 over the edges e = (i, j) of a masked raster.
 //!
-//! Method: conjugate gradients on the normal equations (L_w + diag a) z = b, preconditioned by the rectangle: extend the
-//! residual by zero, solve (c L + s) there by [`CosineSolver`], restrict; c is the mean weight of the edges and s the mean
-//! weight of the anchors. On a full rectangle with equal weights that is the inverse and one iteration is the answer. On a
-//! mask the condition number does not grow with the resolution, only with how ragged the mask is: 5 to 10
-//! iterations for compact objects with holes, 20 for scattered pixels.
-//! Weights near zero along a line (a discontinuity of n pixels) act as a crack the rectangle knows nothing of;
-//! the condition then grows with n, the iterations with its root.
+//! Method: conjugate gradients on the normal equations (L_w + diag a) z = b, preconditioned by the rectangle: extend
+//! the residual by zero, solve (c L + s) there by [`CosineSolver`], restrict; c is the mean weight of the edges and s
+//! the mean weight of the anchors. On a full rectangle with equal weights that is the inverse and one iteration is the
+//! answer. On a mask the condition number does not grow with the resolution, only with how ragged the mask is: 5 to 10
+//! iterations for compact objects with holes, 20 for scattered pixels. Weights near zero along a line (a discontinuity
+//! of n pixels) act as a crack the rectangle knows nothing of; the condition then grows with n, the iterations with its
+//! root.
 //!
 //! Limits: what no edge and no anchor touches is not determined and keeps whatever it holds; each component without
 //! anchors is determined up to a constant. Pixels are f32, sums f64: relative tolerances below 1e-6 are not reached.
@@ -100,8 +100,8 @@ impl Poisson {
 
     /// Conjugate gradients from the current heights until the error is below `tolerance`, or `cap` iterations.
     ///
-    /// The error is measured in the norm that is minimised, estimated by the preconditioner, relative to that of the data
-    /// (sum w g^2 + sum a t^2)^(1/2).
+    /// The error is measured in the norm that is minimised, estimated by the preconditioner, relative to that of the
+    /// data (sum w g^2 + sum a t^2)^(1/2).
     pub fn solve(&mut self, tolerance: f64, cap: u32) -> Solved {
         let data = self.data_energy();
         let done = |iterations, rho: f64, termination| Solved {
@@ -196,7 +196,8 @@ impl Flux {
         }
     }
 
-    /// out_i = sum of w (z_j - z_i - g) over the edges that leave i minus those that enter it; g counts `with_gradient`.
+    /// out_i = sum of w (z_j - z_i - g) over the edges that leave i minus those that enter it; g counts
+    /// `with_gradient`.
     fn divergence(&mut self, [right, down]: [&Edges; 2], with_gradient: bool, z: &[f32], out: &mut [f32]) {
         let width = self.width;
         self.above.fill(0.0);

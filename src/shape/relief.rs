@@ -1,14 +1,14 @@
 //! The image surface from shading as a whole: heights with integrability built in, from several starts, coarse to fine.
 //!
-//! Under natural light three colours hardly tell one normal from another, but the normals of one surface are not free. The
-//! heights of [`HeightSolver`] are solved at falling robust scales from several starts: the surface integrated
-//! from the pixels' own normals, a flat one and a dome over the mask. Shading is ambiguous and not convex; of the
-//! ends the one of least cost was the best one each time it was measured, so that one is taken. Each call tries one
-//! start more, so that none lasts long, and goes on from the best surface so far.
+//! Under natural light three colours hardly tell one normal from another, but the normals of one surface are not free.
+//! The heights of [`HeightSolver`] are solved at falling robust scales from several starts: the surface integrated from
+//! the pixels' own normals, a flat one and a dome over the mask. Shading is ambiguous and not convex; of the ends the
+//! one of least cost was the best one each time it was measured, so that one is taken. Each call tries one start more,
+//! so that none lasts long, and goes on from the best surface so far.
 //!
 //! A large image is halved until a level is small: the starts compete there, and the best of them is carried up from
-//! level to level, a few steps at each. Limits: orthographic or pinhole alike, but parts of the mask that are not joined
-//! are solved on their own, each at any level; detail whose shading is ambiguous is decided where it is coarse.
+//! level to level, a few steps at each. Limits: orthographic or pinhole alike, but parts of the mask that are not
+//! joined are solved on their own, each at any level; detail whose shading is ambiguous is decided where it is coarse.
 
 use nalgebra::Matrix3;
 
@@ -62,6 +62,7 @@ pub const STARTS: u32 = 3;
 /// Solves one image again and again; owns all memory.
 pub struct ReliefSolver {
     heights: HeightSolver,
+    /// Of a large image; that of a small one is the contest's.
     surface: Vec<f32>,
     /// Halved again and again, the smallest last; empty for a small image.
     coarser: Vec<Level>,
@@ -87,7 +88,7 @@ impl ReliefSolver {
         Ok(Self {
             contest: Contest::new(smallest.size, &smallest.mask),
             heights: HeightSolver::new(image.size, image.camera, &image.mask)?,
-            surface: vec![0.0; image.size.len()],
+            surface: if coarser.is_empty() { Vec::new() } else { vec![0.0; image.size.len()] },
             coarser,
         })
     }
@@ -99,26 +100,32 @@ impl ReliefSolver {
 
     /// Heights (pixels, or f log Z) of the image surface; `integrated` is one of the starts. NaN off the mask.
     pub fn solve(&mut self, problem: ReliefProblem<'_>, integrated: &[f32], heights: &mut [f32]) {
-        if self.coarser.is_empty() {
+        let surface = if self.coarser.is_empty() {
             self.contest.hold(&mut self.heights, problem, integrated);
-            self.surface.copy_from_slice(&self.contest.surface);
+            &self.contest.surface
         } else {
             let arrived = self.contest.is_open() && self.decide_coarse(problem, integrated);
             let effort = if arrived { ARRIVED } else { SETTLING };
             self.heights.solve(problem.heights(&Matrix3::identity(), LAST_SCALE, effort), &mut self.surface);
-        }
-        for ((height, &surface), &inside) in heights.iter_mut().zip(&self.surface).zip(&problem.image.mask) {
+            &self.surface
+        };
+        for ((height, &surface), &inside) in heights.iter_mut().zip(surface).zip(&problem.image.mask) {
             *height = if inside { surface } else { f32::NAN };
         }
     }
 
     /// The next start at the smallest level; if it is the best so far, its surface goes up. Whether it did.
     fn decide_coarse(&mut self, problem: ReliefProblem<'_>, integrated: &[f32]) -> bool {
+        let wants_integrated = self.wants_integrated();
         for index in 0..self.coarser.len() {
             let (finer, level) = self.coarser.split_at_mut(index);
-            match finer.last() {
-                None => level[0].load(problem, integrated),
-                Some(finer) => level[0].load(finer.view.problem(problem.light), &finer.surface),
+            let (finer, surface) = match finer.last() {
+                None => (problem, integrated),
+                Some(finer) => (finer.view.problem(problem.light), &finer.surface[..]),
+            };
+            level[0].view.load(finer);
+            if wants_integrated {
+                level[0].carry_down(surface, finer.image.size);
             }
         }
         let Some((smallest, between)) = self.coarser.split_last_mut() else { return false };
@@ -153,10 +160,9 @@ impl Level {
         Ok(Self { view: HalvedProblem { slopes: [zeros(), zeros()], firmness: zeros(), image }, heights, surface })
     }
 
-    /// Takes over the problem of the next finer level and its surface.
-    fn load(&mut self, finer: ReliefProblem<'_>, surface: &[f32]) {
-        self.view.load(finer);
-        finer.image.size.halve(surface, &mut self.surface);
+    /// Takes over the surface of the next finer level, which has `size`.
+    fn carry_down(&mut self, surface: &[f32], size: Size) {
+        size.halve(surface, &mut self.surface);
         self.surface.iter_mut().for_each(|height| *height *= 0.5);
     }
 
@@ -215,8 +221,8 @@ impl Contest {
         self.tried < STARTS as usize
     }
 
-    /// Improves the best surface so far and tries the next start, the first of which is `integrated`; whether the surface
-    /// is now another.
+    /// Improves the best surface so far and tries the next start, the first of which is `integrated`; whether the
+    /// surface is now another.
     fn hold(&mut self, solver: &mut HeightSolver, problem: ReliefProblem<'_>, integrated: &[f32]) -> bool {
         let identity = Matrix3::identity();
         if self.tried > 0 {

@@ -6,8 +6,9 @@
 //! z'''/12 for anything else. Harker & O'Leary minimise the same functional on the full rectangle with wider
 //! differences, as a Sylvester equation; on a mask their equation is not separable, so we iterate (see `poisson`).
 //! Robust weights (iteratively reweighted least squares after Geman & McClure, w = (1 + (r/s)^2)^-2) cut the edges that
-//! cross a discontinuity. The scale s follows the noise, read off the gradients' curl, and is never below a share of the
-//! mean gradient, so that discretisation errors of smooth data are no outliers; a cold start comes down to it by halves.
+//! cross a discontinuity. The scale s follows the noise, read off the gradients' curl, and is never below a share of
+//! the mean gradient, so that discretisation errors of smooth data are no outliers; a cold start comes down to it by
+//! halves.
 //!
 //! Perspective views pass gradients of log Z (see [`gradients`](super::gradients())) and take exp of the result.
 //!
@@ -23,7 +24,8 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::options::positive;
 use crate::view::{Size, quantile};
 
-/// Gradients beyond this (height per pixel) count as unknown: beside heights of 1e6 an f32 has no digits left for a shape.
+/// Gradients beyond this (height per pixel) count as unknown: beside heights of 1e6 an f32 has no digits left for a
+/// shape.
 const LARGEST_GRADIENT: f32 = 1e6;
 /// sigma = 1.4826 median |x| for normal x, here sums of four edges: half of it for one.
 const SIGMA_OF_MEDIAN: f64 = 1.4826 / 2.0;
@@ -33,12 +35,13 @@ const SCALE_IN_SIGMAS: f64 = 3.0;
 const LEAST_SCALE: f64 = 0.05;
 /// Least weight of an edge: keeps pixels whose every edge is an outlier attached to their neighbours.
 const LEAST_WEIGHT: f32 = 1e-4;
-/// Reweighting ends when the weights change by less than this on average: three edges in a thousand are still undecided.
+/// Reweighting ends when the weights change by less than this on average: three edges in a thousand are still
+/// undecided.
 const SETTLED: f64 = 3e-3;
 /// Relative error of the solves between two reweightings, well under the least robust scale; the last one is exact.
 const ROUND_TOLERANCE: f64 = 1e-3;
-/// Factor on the scale from round to round of a cold start, from the residuals' root mean square down: what least squares
-/// has smeared around a jump is not cut before it has had time to draw together.
+/// Factor on the scale from round to round of a cold start, from the residuals' root mean square down: what least
+/// squares has smeared around a jump is not cut before it has had time to draw together.
 const ANNEALING: f64 = 0.5;
 /// The median is taken over at most so many cells, evenly spread: its own error is then below one percent.
 const MOST_SAMPLES: usize = 1 << 15;
@@ -192,8 +195,8 @@ impl Integrator {
 
     /// Finds the heights `z` whose differences follow `p` = dz/dcolumn and `q` = dz/drow, and the anchors.
     ///
-    /// All slices are row-major over the raster; gradients in height per pixel, NaN where unknown. `z` is NaN off the mask
-    /// and where nothing determines it; without anchors each connected component has mean zero. Allocates nothing.
+    /// All slices are row-major over the raster; gradients in height per pixel, NaN where unknown. `z` is NaN off the
+    /// mask and where nothing determines it; without anchors each connected component has mean zero. Allocates nothing.
     ///
     /// # Errors
     /// [`ErrorKind::Size`] where a slice is not as long as the raster, [`ErrorKind::Range`] for bad options. Solver
@@ -364,8 +367,8 @@ impl Integrator {
         (sum / count.max(1) as f64).sqrt()
     }
 
-    /// Three sigma of the edges' noise, from what the gradients sum to around each cell of four pixels. That is zero for
-    /// integrable gradients and knows nothing of the surface found so far, so that reweighting can't narrow it.
+    /// Three sigma of the edges' noise, from what the gradients sum to around each cell of four pixels. That is zero
+    /// for integrable gradients and knows nothing of the surface found so far, so that reweighting can't narrow it.
     fn noise_scale(&mut self) -> f64 {
         let (right, down, width) = (&self.system.right, &self.system.down, self.system.width);
         let samples = &mut self.samples;

@@ -112,7 +112,8 @@ impl Camera {
         Some((pixel, gradient))
     }
 
-    /// Direction through a pixel with z = 1 for a pinhole camera; for an orthographic one the x and y of every point on it.
+    /// Direction through a pixel with z = 1 for a pinhole camera; for an orthographic one the x and y of every point on
+    /// it.
     #[must_use]
     pub fn ray(&self, size: Size, [column, row]: [f64; 2]) -> [f64; 2] {
         match self {

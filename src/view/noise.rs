@@ -26,19 +26,23 @@ pub fn of_bends(sizes: impl Iterator<Item = f32>) -> f64 {
     f64::from(quantile(&mut sizes, 0.5)) / (FOURTH_DIFFERENCE * MEDIAN_ABSOLUTE)
 }
 
+/// White noise of variance one for tests: sums of twelve uniform numbers are nearly normal.
+#[cfg(test)]
+pub fn dice(seed: u64) -> impl FnMut() -> f64 {
+    use rand_chacha::rand_core::{Rng, SeedableRng};
+    let mut dice = rand_chacha::ChaCha8Rng::seed_from_u64(seed);
+    move || (0..12).map(|_| f64::from(dice.next_u32()) / f64::from(u32::MAX)).sum::<f64>() - 6.0
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rand_chacha::ChaCha8Rng;
-    use rand_chacha::rand_core::{Rng, SeedableRng};
 
     #[test]
     fn cubics_have_none_and_white_noise_its_own() {
         let cubic = |x: f64| 0.3 * x.powi(3) - 2.0 * x * x + x - 7.0;
         assert!(bend([0.0, 1.0, 2.0, 3.0, 4.0].map(cubic)).abs() < 1e-12);
-        // Sums of twelve uniform numbers are nearly normal, of variance one.
-        let mut dice = ChaCha8Rng::seed_from_u64(5);
-        let mut normal = || (0..12).map(|_| dice.next_u32() as f64 / f64::from(u32::MAX)).sum::<f64>() - 6.0;
+        let mut normal = dice(5);
         let line: Vec<f64> = (0..20_000).map(|_| 0.2 * normal()).collect();
         let bends = line.windows(REACH).map(|row| bend([row[0], row[1], row[2], row[3], row[4]]) as f32);
         let noise = of_bends(bends);

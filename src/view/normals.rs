@@ -6,8 +6,8 @@
 //! rotated organised cloud may turn away from the depth camera, as it should.
 //!
 //! Discontinuities: a step between neighbours is not used where it is longer than four times the median of
-//! the (up to) four steps around the pixel along the same axis. Lengths are in space, so a flat region has the steps of its
-//! sampling and neither quantisation nor noise below that counts as a jump.
+//! the (up to) four steps around the pixel along the same axis. Lengths are in space, so a flat region has the steps of
+//! its sampling and neither quantisation nor noise below that counts as a jump.
 //!
 //! Limits: second order inside (error z'''/6 per pixel), first order at borders and holes; a structure of one or two
 //! pixels has no surroundings to compare with and keeps its jumps. The plane fit is first order where its window is
@@ -15,8 +15,8 @@
 
 use crate::view::{Camera, Normals, Points, Size};
 
-/// Longest usable step in median steps around it. Smooth shapes stay below three up to their last pixel before the rim (a sphere
-/// of radius 50: 2.7); a fold of 75 degrees against a flat surround just passes.
+/// Longest usable step in median steps around it. Smooth shapes stay below three up to their last pixel before the rim
+/// (a sphere of radius 50: 2.7); a fold of 75 degrees against a flat surround just passes.
 const LONGEST_STEP: f64 = 4.0;
 /// Widest window of a plane fit, in pixels from its centre.
 const LARGEST_RADIUS: usize = 16;
@@ -43,8 +43,8 @@ pub fn of_depth(size: Size, camera: Camera, depth: &[f32]) -> Normals {
     normals
 }
 
-/// [`of_depth`] into memory of the caller's. Allocates nothing. With lens distortion, [`points_of_depth`] and [`from_points`]
-/// are quicker: each pixel's ray is found once instead of nine times.
+/// [`of_depth`] into memory of the caller's. Allocates nothing. With lens distortion, [`points_of_depth`] and
+/// [`from_points`] are quicker: each pixel's ray is found once instead of nine times.
 pub fn of_depth_into(size: Size, camera: Camera, depth: &[f32], normals: &mut Normals) {
     let point = |index| depth.get(index).and_then(|&depth| point_at(size, &camera, depth, index));
     Grid { size, point }.estimate(Estimate::Differences, normals);
@@ -67,7 +67,8 @@ pub fn from_points(size: Size, points: &Points, estimate: Estimate, normals: &mu
     Grid { size, point }.estimate(estimate, normals);
 }
 
-/// Points in the camera's frame of a depth map (row-major, along z, in metres or pixels); NaN where the depth is a hole.
+/// Points in the camera's frame of a depth map (row-major, along z, in metres or pixels); NaN where the depth is a
+/// hole.
 pub fn points_of_depth(size: Size, camera: &Camera, depth: &[f32], points: &mut Points) {
     for (index, &depth) in depth.iter().enumerate().take(points.len().min(size.len())) {
         let point = point_at(size, camera, depth, index);

@@ -1,7 +1,7 @@
 //! How sure a pose is: cov = M^-1 (sum over tiles of g g^T) M^-T.
 //!
-//! M is the matrix of the equations that the pose solves, g the sum of the scores of a tile of the depth map once the light
-//! has followed (Huber's sandwich over clusters). Noise, wrong normals and interpolation enter with the size and
+//! M is the matrix of the equations that the pose solves, g the sum of the scores of a tile of the depth map once the
+//! light has followed (Huber's sandwich over clusters). Noise, wrong normals and interpolation enter with the size and
 //! the correlation that they have, so nothing is assumed about them but that tiles are independent. What leaves no
 //! residual is allowed for by a factor that was measured.
 
@@ -17,17 +17,19 @@ use crate::pose::increment::{Frame, Row, Square, UNKNOWNS};
 use crate::pose::uncertainty::{describe, in_words};
 use crate::view::Size;
 
-/// Side of the tiles of the depth map whose scores count as one observation, pixels: twice the reach of normals and splines.
+/// Side of the tiles of the depth map whose scores count as one observation, pixels: twice the reach of normals and
+/// splines.
 const TILE: usize = 8;
-/// Errors that leave no residual, such as normals that lean all one way, over those that do: measured on 116 random scenes of
-/// eight surfaces under natural lights (96x96), where one sigma from the residuals alone holds 44 % and three hold 85 %;
-/// at 1.9 three held all axes of 94.6 % of the 298 found poses of `npm run tables`.
+/// Errors that leave no residual, such as normals that lean all one way, over those that do: measured on 116 random
+/// scenes of eight surfaces under natural lights (96x96), where one sigma from the residuals alone holds 44 % and three
+/// hold 85 %; at 1.9 three held all axes of 94.6 % of the 298 found poses of `npm run tables`.
 const UNSEEN: f64 = 2.1;
-/// Residuals so many times larger than the noise of the image itself are errors of the model: shadows, print, a lamp too
-/// sharp for nine harmonics. Made scenes leave 0.75 to 1 times that noise, photographs with shadows and paint 0.7 to 5 times.
+/// Residuals so many times larger than the noise of the image itself are errors of the model: shadows, print, a lamp
+/// too sharp for nine harmonics. Made scenes leave 0.75 to 1 times that noise, photographs with shadows and paint 0.7
+/// to 5 times.
 const MODEL_NOISE: f64 = 2.0;
-/// One sigma where all residuals are the model's, over what tiles tell: such errors reach across tiles. Photographs in one lamp's
-/// light that leave more than twice their noise end 4 to 17 such sigmas off, the others 1 to 3.
+/// One sigma where all residuals are the model's, over what tiles tell: such errors reach across tiles. Photographs in
+/// one lamp's light that leave more than twice their noise end 4 to 17 such sigmas off, the others 1 to 3.
 const MODEL_SIGMA: f64 = 2.0;
 /// Sigma of a direction that nothing is known about, radians or object sizes.
 const UNKNOWN: f64 = 1e3;

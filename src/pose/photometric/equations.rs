@@ -1,11 +1,11 @@
 //! The equations of pose and light, the light projected out.
 //!
-//! With r the residuals, J = dr/dpose, K = dr/dlight, weights w, and Z the rows by which the pose listens to the residuals
-//! (Z = J for least squares) the joint system is [A C; E^T D] [x; y] = -[a; d], A = sum w Z^T J, C = sum w Z^T K,
-//! E = sum w J^T K, D = sum w K^T K + precision of the light, a = sum w Z^T r, d = sum w K^T r. Eliminating y leaves the
-//! Schur complement (A - C D^-1 E^T) x = -(a - C D^-1 d), the system of the pose where the light follows it at its best;
-//! then y = -D^-1 (d + E^T x). A known light has one unknown only, the exposure: it takes the first place of y, and
-//! K = -1 in all channels.
+//! With r the residuals, J = dr/dpose, K = dr/dlight, weights w, and Z the rows by which the pose listens to the
+//! residuals (Z = J for least squares) the joint system is [A C; E^T D] [x; y] = -[a; d], A = sum w Z^T J, C = sum w
+//! Z^T K, E = sum w J^T K, D = sum w K^T K + precision of the light, a = sum w Z^T r, d = sum w K^T r. Eliminating y
+//! leaves the Schur complement (A - C D^-1 E^T) x = -(a - C D^-1 d), the system of the pose where the light follows it
+//! at its best; then y = -D^-1 (d + E^T x). A known light has one unknown only, the exposure: it takes the first place
+//! of y, and K = -1 in all channels.
 
 use nalgebra::{Cholesky, Const, SMatrix, Vector3};
 
@@ -76,7 +76,8 @@ impl LightEquations {
         }
     }
 
-    /// Enters the prior of an unknown light; `weight` is its share against squared residuals, `off` the light less the mean.
+    /// Enters the prior of an unknown light; `weight` is its share against squared residuals, `off` the light less the
+    /// mean.
     pub fn add_prior(&mut self, prior: &LightPrior, weight: f64, off: &Coefficients) {
         if !self.is_known {
             self.precision += prior.precision() * weight;

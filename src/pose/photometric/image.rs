@@ -195,8 +195,8 @@ fn blurred(size: Size, field: &[f32], mask: &[bool], sigma: f64) -> Vec<f32> {
     both.iter().zip(mask).map(|(&[v, w], &inside)| if inside { (v / w) as f32 } else { f32::NAN }).collect()
 }
 
-/// Continues a field beyond its mask: each new pixel is the mean of the straight lines (of the values, where there is no
-/// second pixel) that reach it from its neighbours. What is farther away than the rings becomes zero.
+/// Continues a field beyond its mask: each new pixel is the mean of the straight lines (of the values, where there is
+/// no second pixel) that reach it from its neighbours. What is farther away than the rings becomes zero.
 fn continue_outwards(size: Size, field: &mut [f32], mask: &[bool]) {
     let mut known = mask.to_vec();
     let mut ring: Vec<(usize, f32)> = Vec::new();

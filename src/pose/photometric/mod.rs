@@ -1,19 +1,20 @@
-//! min over T, L of sum_h w_h rho(|log S(pi(T P_h)) - B(R n_h) L|^2) + sigma^2 h(L): the pose straight from the colours.
+//! min over T, L of sum_h w_h rho(|log S(pi(T P_h)) - B(R n_h) L|^2) + sigma^2 h(L): the pose straight from the
+//! colours.
 //!
 //! Each depth point predicts a colour by its own normal; the pose is right where the image shows it. Unknown are the
-//! rotation, the translation, the logarithm of the scale, and the light: all 27 coefficients under the prior h of natural
-//! lights, or the exposure alone where the light is known. rho is the cost of Geman and McClure over the three channels
-//! together, sigma the noise of log S.
+//! rotation, the translation, the logarithm of the scale, and the light: all 27 coefficients under the prior h of
+//! natural lights, or the exposure alone where the light is known. rho is the cost of Geman and McClure over the three
+//! channels together, sigma the noise of log S.
 //!
 //! Method, in rounds. A round fixes the visible points (z-buffer); points that then leave the mask cost the full price,
 //! so that looking away never pays.
-//! 1. Annealing: Gauss-Newton with the light eliminated ([`equations`]) and Levenberg-Marquardt damping, steps accepted on
-//!    the very same cost. The robust scale shrinks from round to round, from twice what the residuals ask for down to
-//!    three sigmas of the noise; blurred images and every fourth, then every second point come first.
+//! 1. Annealing: Gauss-Newton with the light eliminated ([`equations`]) and Levenberg-Marquardt damping, steps
+//!    accepted on the very same cost. The robust scale shrinks from round to round, from twice what the residuals ask
+//!    for down to three sigmas of the noise; blurred images and every fourth, then every second point come first.
 //! 2. Listening: the gradient of a noisy image is noise as well, and together with the noise of the residual it pulls
 //!    poses: towards half pixels, where interpolation averages noise away (0.4 degrees on Mozart at 128x128 under weak
-//!    light, five times the error of the noise itself). So the last rounds solve sum w Z^T r = 0 with Z the jacobian from a
-//!    slightly blurred image: its noise is a fifth, and what it loses is a little efficiency, never the mean.
+//!    light, five times the error of the noise itself). So the last rounds solve sum w Z^T r = 0 with Z the jacobian
+//!    from a slightly blurred image: its noise is a fifth, and what it loses is a little efficiency, never the mean.
 //!
 //! One sigma follows from the scores' own spread over tiles of the depth map (a sandwich): noise, wrong normals and
 //! interpolation enter as they are, correlated or not. An error that leaves no residual is not seen by it.
@@ -43,8 +44,9 @@ use residual::Scene;
 
 /// Gaussian blur of each level's image, pixels; a level takes every 2^level-th point.
 const BLURS: [f64; COARSEST + 1] = [0.0, 1.5, 3.0];
-/// Coarsest level under an unknown light: a light that follows explains strongly blurred colours in any pose. From 20 degrees off
-/// level 1 always converged on Mozart at 64x64, level 2 in a third of the cases; a known light converges from 30 by level 2.
+/// Coarsest level under an unknown light: a light that follows explains strongly blurred colours in any pose. From 20
+/// degrees off level 1 always converged on Mozart at 64x64, level 2 in a third of the cases; a known light converges
+/// from 30 by level 2.
 const COARSEST_UNKNOWN: usize = 1;
 /// Blur of the image that the last rounds take slopes from, pixels: 0.7 to 1.5 serve alike.
 const SLOPE_BLUR: f64 = 1.0;
@@ -58,7 +60,8 @@ const FIRST_SCALE: f64 = 2.0;
 const ANNEALING: f64 = 0.6;
 /// Noise of log S that is always allowed for: half a percent of a good 8-bit image's rounding, log units.
 const LEAST_NOISE: f64 = 0.002;
-/// Degrees of freedom of the prior's tails: coloured lamps lie far outside the Gaussian, and it would bend them by degrees.
+/// Degrees of freedom of the prior's tails: coloured lamps lie far outside the Gaussian, and it would bend them by
+/// degrees.
 const PRIOR_FREEDOM: f64 = 5.0;
 /// Scale and weight of the prior of the very first fit of the light, when nothing is known: all points count.
 const FIRST_LOOK: Robust = Robust { scale: 1e3, prior: 1e-2 };
@@ -76,7 +79,8 @@ const LEAST_DAMPING: f64 = 1e-9;
 const STILL: f64 = 1e-7;
 /// A coarse level is done when a round turns by less, degrees.
 const COARSE_DONE: f64 = 0.3;
-/// Annealing is done when a round at the final scale turns by less, degrees: points flicker in and out by more than that.
+/// Annealing is done when a round at the final scale turns by less, degrees: points flicker in and out by more than
+/// that.
 const FINE_DONE: f64 = 3e-3;
 /// Rounds at the final scale after which flicker is all that is left.
 const MOST_FINE_ROUNDS: usize = 4;
@@ -377,7 +381,8 @@ impl Photometric {
         KERNEL * CHANNELS * self.noise
     }
 
-    /// Weight of the prior: Gaussian near the natural lights, with the tails of Student's t for lights that no landscape has.
+    /// Weight of the prior: Gaussian near the natural lights, with the tails of Student's t for lights that no
+    /// landscape has.
     fn prior(&self, problem: &PhotometricProblem<'_>) -> f64 {
         let energy = problem.prior.energy(&self.state.light);
         let tail = (PRIOR_FREEDOM + COEFFICIENTS as f64) / (PRIOR_FREEDOM + energy);

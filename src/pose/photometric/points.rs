@@ -12,8 +12,8 @@ use crate::pose::similarity::Similarity;
 use crate::pose::visibility::{Sight, Visibility};
 use crate::view::{Size, quantile};
 
-/// Distance from the border of the mask within which points stay out, image pixels: they would enter and leave with every
-/// step, and the spline is continued there.
+/// Distance from the border of the mask within which points stay out, image pixels: they would enter and leave with
+/// every step, and the spline is continued there.
 const MARGIN: usize = 1;
 /// Error of a normal, radians, at which its point has lost three quarters of its say. Errors act in the mean by their
 /// square: 0.1 rad shifts the pose by some tenths of a degree whatever the light.
@@ -98,8 +98,8 @@ impl VisiblePoints {
         self.indices.len()
     }
 
-    /// The points that the image shows under `pose`: every 2^level-th along both axes, more where that leaves too few, and
-    /// about `most` at most.
+    /// The points that the image shows under `pose`: every 2^level-th along both axes, more where that leaves too few,
+    /// and about `most` at most.
     pub fn update(
         &mut self,
         problem: &PhotometricProblem<'_>,

@@ -24,7 +24,8 @@ pub struct PhotometricProblem<'a> {
     pub points: &'a Points,
     /// Their normals.
     pub normals: &'a Normals,
-    /// One sigma of each normal in radians, see [`crate::cubic_normals`]; NaN leaves the point out. `None`: all are exact.
+    /// One sigma of each normal in radians, see [`crate::cubic_normals`]; NaN leaves the point out. `None`: all are
+    /// exact.
     pub normal_error: Option<&'a [f32]>,
     /// The light where it is known, but for its exposure.
     pub light: Option<&'a Light>,
@@ -139,8 +140,8 @@ pub struct PhotometricReport {
     pub iterations: usize,
     /// Why it ended.
     pub termination: PhotometricTermination,
-    /// Information of rotation (radians), translation (object sizes) and log scale once light is eliminated, over the noise's
-    /// variance: what white noise of that size would leave.
+    /// Information of rotation (radians), translation (object sizes) and log scale once light is eliminated, over the
+    /// noise's variance: what white noise of that size would leave.
     pub information: Square,
     /// Covariance of the same from the spread of the scores; held unknowns have none.
     pub covariance: Square,

@@ -1,8 +1,8 @@
 //! One depth point's residual r = log S(pi(T P)) - B(R n) L and its derivatives.
 //!
-//! The unknowns are those of every registration here: P' -> c + e^u exp([w]) (P' - c) + l v of the carried point P' = T P,
-//! n' -> exp([w]) n' of its normal. With g = d log S / d P' and b = d (B L) / d n', both of one channel,
-//! dr/dw = (P' - c) x g - n' x b, dr/dv = l g, dr/du = (P' - c) . g, and dr/dL = -B.
+//! The unknowns are those of every registration here: P' -> c + e^u exp([w]) (P' - c) + l v of the carried point P' = T
+//! P, n' -> exp([w]) n' of its normal. With g = d log S / d P' and b = d (B L) / d n', both of one channel, dr/dw = (P'
+//! - c) x g - n' x b, dr/dv = l g, dr/du = (P' - c) . g, and dr/dL = -B.
 
 use nalgebra::{Matrix3, Vector3};
 

@@ -1,8 +1,9 @@
 //! The depth view as a thin cloud of small patches: place, normal and area of each.
 //!
-//! Method: means over square blocks of pixels, so that noise averages out; the area of a patch is |dP/drow x dP/dcolumn|
-//! between neighbouring blocks, times the share of the block that is there. It works for any camera and for organised
-//! clouds. Limits: a block across a jump of depth floats between both sides; where its normals cancel it is dropped.
+//! Method: means over square blocks of pixels, so that noise averages out; the area of a patch is |dP/drow x
+//! dP/dcolumn| between neighbouring blocks, times the share of the block that is there. It works for any camera and for
+//! organised clouds. Limits: a block across a jump of depth floats between both sides; where its normals cancel it is
+//! dropped.
 
 use nalgebra::Vector3;
 

@@ -2,9 +2,9 @@
 //!
 //! Unknown light: with harmonics q_k made orthonormal over the whole template, the explained sum of squares is
 //! sum_k |q_k * y|^2 for k > 0, out of N * |y|^2 - |q_0 * y|^2. Known light: the squares of y - p expand into five
-//! correlations. Both only propose translations: orthonormal over the whole template is not orthonormal over an overlap,
-//! and [`judge`](super::judge) has the last word. Two real fields share each transform: the one of f_0 + i f_1, correlated with a
-//! real field, is that of f_0 in its real and of f_1 in its imaginary part, the latter negated.
+//! correlations. Both only propose translations: orthonormal over the whole template is not orthonormal over an
+//! overlap, and [`judge`](super::judge) has the last word. Two real fields share each transform: the one of f_0 + i
+//! f_1, correlated with a real field, is that of f_0 in its real and of f_1 in its imaginary part, the latter negated.
 //!
 //! Cost: 21 transforms for an unknown light, 5 for a known one.
 

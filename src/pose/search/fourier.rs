@@ -1,14 +1,14 @@
 //! Two-dimensional Fourier transforms of a square: down the columns, transposed, down the columns again.
 //!
-//! Real and imaginary parts are planes of their own, and each butterfly works on whole lines of them: straight loops, four
-//! numbers at a time under simd128. The forward transform decimates in frequency and leaves a spectrum transposed and in
-//! bit-reversed order, which products of two spectra do not mind; the inverse decimates in time and undoes it, step by step.
-//! Neither direction divides by the number of cells.
+//! Real and imaginary parts are planes of their own, and each butterfly works on whole lines of them: straight loops,
+//! four numbers at a time under simd128. The forward transform decimates in frequency and leaves a spectrum transposed
+//! and in bit-reversed order, which products of two spectra do not mind; the inverse decimates in time and undoes it,
+//! step by step. Neither direction divides by the number of cells.
 
 use std::f64::consts::PI;
 
-/// Side of the grid in cells, a power of two: the mask spans 18, so that the template may move by 14 before it comes in again
-/// on the other side, where next to nothing overlaps.
+/// Side of the grid in cells, a power of two: the mask spans 18, so that the template may move by 14 before it comes in
+/// again on the other side, where next to nothing overlaps.
 pub const SIDE: usize = 32;
 /// Cells of the grid.
 pub const CELLS: usize = SIDE * SIDE;

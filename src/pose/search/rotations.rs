@@ -1,9 +1,9 @@
 //! Rotations spread evenly over those that two views of one object can have between them.
 //!
 //! Method: the super-Fibonacci spiral (Alexa, CVPR 2022): unit quaternions
-//! q_i = (sqrt t sin a, sqrt t cos a, sqrt(1-t) sin b, sqrt(1-t) cos b) with t = (i + 1/2) / n, a = 2 pi (i + 1/2) / phi
-//! and b = 2 pi (i + 1/2) / psi. All of them are turned by one rotation that the seed draws, which leaves them as even;
-//! those inside the domain are kept.
+//! q_i = (sqrt t sin a, sqrt t cos a, sqrt(1-t) sin b, sqrt(1-t) cos b) with t = (i + 1/2) / n, a = 2 pi (i + 1/2) /
+//! phi and b = 2 pi (i + 1/2) / psi. All of them are turned by one rotation that the seed draws, which leaves them as
+//! even; those inside the domain are kept.
 //!
 //! Limits: the spacing is the edge of the cube that each rotation stands for; the farthest rotation is about 0.9 of it
 //! away from the next.
