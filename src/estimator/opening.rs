@@ -147,13 +147,17 @@ impl Opening {
         }
     }
 
-    /// Whether the best end has no rival by far, and either explains nearly all or is where most registrations end.
+    /// Whether the best end has no rival by far, and either explains nearly all or is where most of registrations end that
+    /// do not all end there.
     fn is_convincing(&self) -> bool {
         let best = self.ends.iter().max_by(|a, b| a.gain.total_cmp(&b.gain));
         best.is_some_and(|best| {
-            let others = self.ends.iter().filter(|end| end.is_apart(best));
-            let alone = !others.into_iter().any(|end| end.rivals(best, CONVINCING_NOISE));
-            let clear = best.report.noise < UNEXPLAINED * self.spread || 2 * best.witnesses as usize >= self.tried;
+            let mut others = self.ends.iter().filter(|end| end.is_apart(best)).peekable();
+            // Where all registrations end in one place, the candidates may just be alike.
+            let compared = others.peek().is_some();
+            let alone = !others.any(|end| end.rivals(best, CONVINCING_NOISE));
+            let most = compared && 2 * best.witnesses as usize >= self.tried;
+            let clear = best.report.noise < UNEXPLAINED * self.spread || most;
             best.witnesses >= WITNESSES && alone && clear
         })
     }
