@@ -45,25 +45,32 @@ pub const UNFITTED: f32 = 0.3;
 type Terms = SVector<f64, TERMS>;
 
 /// Improves `normals` (unit, NaN where missing) of the organised `points` in place and writes each one's error in
-/// radians; NaN where there is no normal. Each pixel has the window of its least error.
+/// radians; NaN where there is no normal. Each pixel has the window of its least error among those that agree with the
+/// narrower ones: a normal that moves by more than the error it had has been bent by what the wider window holds besides
+/// (Lepski's rule); where noise moves normals anyhow, the error alone decides. Measured on Mozart, median degrees of 48 poses at 64x64 with the light unknown and of 60 at 128x128
+/// with the light known: 0.57 and 0.079; without the rule 0.67 and 0.078, with the narrowest window alone 0.50 and 0.080.
 /// Returns the standard deviation of the points in pixel lengths.
 pub fn improve(size: Size, points: &Points, normals: &mut Normals, error: &mut [f32]) -> f64 {
     let first = normals.clone();
     let noise = noise_of(size, points);
     let (mut trial, mut trial_error) = (first.clone(), error.to_vec());
     error.fill(f32::NAN);
+    let mut noisy = false;
     for radius in RADII {
         let window =
             Window { radius, sigma: SIGMA * radius as f64, offset: LARGEST_OFFSET.max(NOISE_OFFSETS * noise), noise };
         trial.clone_from(&first);
         fit_all(size, points, window, &mut trial, &mut trial_error);
         for index in 0..error.len() {
-            if error[index].is_nan() || trial_error[index] < error[index] {
+            let apart = Vector3::from(trial.get(index)) - Vector3::from(normals.get(index));
+            let gains = trial_error[index] < error[index] && (noisy || apart.norm() < error[index]);
+            if error[index].is_nan() || gains {
                 normals.set(index, trial.get(index));
                 error[index] = trial_error[index];
             }
         }
-        if radius > RADII[0] && median(error.iter().copied()) < NOISY {
+        noisy = median(error.iter().copied()) >= NOISY;
+        if radius > RADII[0] && !noisy {
             break;
         }
     }
