@@ -422,7 +422,7 @@ impl Estimator {
                 !image.size.bilinear(&image.log[0], column, row).is_nan()
             })
         };
-        let jury = self.correspondences.visible_points();
+        let jury = merit::thinned(|| self.correspondences.visible_points());
         jury.filter(move |&index| depth.normals.is_valid(index) && inside(index)).map(|index| index as u32)
     }
 

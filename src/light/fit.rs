@@ -14,6 +14,9 @@ use crate::view::{Normals, quantile};
 
 /// Rounds of reweighting; the weights settle in four to six.
 const ROUNDS: usize = 8;
+/// Pixels that the light is fitted to at most, evenly spread: 27 numbers from three colours each, whose noise is averaged
+/// away by far; an object that fills half of 128x128 is taken whole.
+const MOST_PIXELS: usize = 8000;
 /// Residuals beyond this multiple of the median one count for less than a quarter.
 const SCALE_OF_MEDIAN: f64 = 3.0;
 /// Smallest robust scale in log units: the noise of a good 8-bit image.
@@ -48,6 +51,7 @@ impl LightFitter {
     pub fn fit(&mut self, normals: &Normals, log: [&[f32]; 3], prior: &LightPrior, weight: f64) -> Result<LightFit> {
         self.pixels.clear();
         self.pixels.extend((0..normals.len()).filter(|&i| normals.is_valid(i) && !log[0][i].is_nan()));
+        thin(&mut self.pixels, MOST_PIXELS);
         self.weights.clear();
         self.weights.resize(self.pixels.len(), 1.0);
         let colours = |index: usize| [0, 1, 2].map(|channel: usize| f64::from(log[channel][index]));
@@ -71,6 +75,15 @@ impl LightFitter {
             }
         }
         Ok(LightFit { light, residual: median })
+    }
+}
+
+/// Keeps at most `most` of the elements, evenly spread.
+fn thin(elements: &mut Vec<usize>, most: usize) {
+    let count = elements.len();
+    if count > most {
+        (0..most).for_each(|k| elements[k] = elements[k * count / most]);
+        elements.truncate(most);
     }
 }
 

@@ -248,9 +248,12 @@ impl Icp {
         if self.pairs.len() < FEWEST_PAIRS {
             return Err(degenerate("fewer than four pairs").value(self.pairs.len() as f64));
         }
-        let kept = ((KEPT_SHARE * self.pairs.len() as f64).ceil() as usize).clamp(FEWEST_PAIRS, self.pairs.len());
-        self.pairs.select_nth_unstable_by(kept - 1, |a, b| a.distance.total_cmp(&b.distance));
-        self.pairs.truncate(kept);
+        let count = self.pairs.len();
+        let kept = ((KEPT_SHARE * count as f64).ceil() as usize).clamp(FEWEST_PAIRS, count);
+        self.gaps.clear();
+        self.gaps.extend(self.pairs.iter().map(|pair| pair.distance));
+        let farthest = quantile(&mut self.gaps, (kept - 1) as f64 / (count - 1) as f64);
+        self.pairs.retain(|pair| pair.distance <= farthest);
         Ok(())
     }
 
@@ -305,8 +308,6 @@ impl Icp {
     /// Spread of the point-to-plane distances, and what they say about the pose.
     fn inform(&mut self, problem: &IcpProblem<'_>, pose: &Similarity, options: &IcpOptions) -> (f64, Information) {
         let options = IcpOptions { metric: Metric::PointToPlane, ..*options };
-        // In the order of the raster, so that the next pair is a neighbour.
-        self.pairs.sort_unstable_by_key(|pair| pair.depth);
         let kernel = self.kernel(problem, pose, &options);
         let (centre, length) = self.frame(problem, pose);
         let equations = NormalEquations::new(centre, length);

@@ -211,14 +211,15 @@ fn within(
 fn draw(generator: &mut ChaCha8Rng, count: u32) -> [usize; SAMPLE] {
     let mut sample = [0; SAMPLE];
     for k in 0..SAMPLE {
-        // One of the numbers not taken yet: a draw among the rest, moved up past those taken.
+        // One of the numbers not taken yet: a draw among the rest, moved up past those taken, which are in order.
         let mut number = generator.next_u32() % (count - k as u32);
-        let mut taken = sample;
-        taken[..k].sort_unstable();
-        for &other in &taken[..k] {
-            number += u32::from(number >= other);
+        let mut place = 0;
+        while place < k && number >= sample[place] {
+            number += 1;
+            place += 1;
         }
-        sample[k] = number;
+        sample.copy_within(place..k, place + 1);
+        sample[place] = number;
     }
     sample.map(|number| number as usize)
 }

@@ -9,7 +9,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use crate::light::{Light, Polynomial};
-use crate::shape::shading::{Pixel, ShadingProblem, ShadingWeights};
+use crate::shape::shading::{Linear, Pixel, ShadingProblem, ShadingWeights};
 use crate::view::{Normals, quantile};
 
 /// Pixels and directions of the first look: enough for two digits.
@@ -95,7 +95,7 @@ pub fn exposure_step(problem: ShadingProblem<'_>, weights: ShadingWeights, norma
         let Some(residuals) = pixel.residuals(normal) else { continue };
         let squared: f32 = residuals.iter().map(|residual| residual * residual).sum();
         let weight = f64::from((1.0 + squared / (STEP_SCALE * STEP_SCALE)).powi(-2));
-        let (gradient, [xx, xy, xz, yy, yz, zz]) = pixel.linearise(normal);
+        let Linear { gradient, matrix: [xx, xy, xz, yy, yz, zz], .. } = pixel.linearise(normal);
         let matrix = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz).map(f64::from);
         let pull = polynomials
             .iter()

@@ -38,6 +38,16 @@ const LEAST_STIFFNESS: f64 = 1e-6;
 const STEP_TOLERANCE: f64 = 0.03;
 /// A step that lowers the cost by less than this share has arrived.
 const SETTLED: f64 = 1e-4;
+/// A round of conjugate gradients that promises less than this share of the cost is the last one.
+const IDLE: f64 = 1e-5;
+
+/// Bits of a pixel: inside the mask; the cell of four pixels right of and below it as well; its neighbours inside.
+const INSIDE: u8 = 1;
+const CELL: u8 = 2;
+const LEFT: u8 = 4;
+const RIGHT: u8 = 8;
+const ABOVE: u8 = 16;
+const BELOW: u8 = 32;
 
 /// What a surface has to explain; all fields are rasters of the view, NaN where unknown.
 #[derive(Clone, Copy)]
@@ -89,8 +99,11 @@ pub struct HeightSolver {
     size: Size,
     /// Left column and top row of the mask's bounding box.
     corner: [usize; 2],
+    /// Of the box; the rows of the rasters here are `width` long, a length that the cosine transform likes.
+    columns: usize,
     width: usize,
-    inside: Vec<bool>,
+    /// Which pixels are inside, and which of their neighbours: bits of [`INSIDE`] and so on.
+    near: Vec<u8>,
     pixels: usize,
     cosine: CosineSolver,
     z: Vec<f32>,
@@ -124,11 +137,24 @@ impl HeightSolver {
         if left > rightmost {
             return Err(Error::new(ErrorKind::Empty, "mask", "holds no pixel"));
         }
-        let (width, height) = (fast_width(rightmost - left + 1), bottom - top + 1);
+        let (columns, height) = (rightmost - left + 1, bottom - top + 1);
+        let width = fast_width(columns);
         let length = width * height;
-        let mut inside = vec![false; length];
+        let is_inside =
+            |column: usize, row: usize| column < size.width && row < size.height && mask[size.index(column, row)];
+        let mut near = vec![0; length];
         for (column, row) in inside_view() {
-            inside[(row - top) * width + column - left] = true;
+            let [right, below] = [is_inside(column + 1, row), is_inside(column, row + 1)];
+            let flags = [
+                (INSIDE, true),
+                (CELL, right && below && is_inside(column + 1, row + 1)),
+                (LEFT, is_inside(column.wrapping_sub(1), row)),
+                (RIGHT, right),
+                (ABOVE, is_inside(column, row.wrapping_sub(1))),
+                (BELOW, below),
+            ];
+            near[(row - top) * width + column - left] =
+                flags.into_iter().filter(|(_, holds)| *holds).map(|(flag, _)| flag).sum();
         }
         let frames = match camera {
             Camera::Orthographic => Vec::new(),
@@ -143,9 +169,10 @@ impl HeightSolver {
         Ok(Self {
             size,
             corner: [left, top],
+            columns,
             width,
-            pixels: inside.iter().filter(|&&inside| inside).count(),
-            inside,
+            pixels: inside_view().count(),
+            near,
             cosine: CosineSolver::new(width, height),
             z: zeros(),
             trial: zeros(),
@@ -167,38 +194,58 @@ impl HeightSolver {
         self.load(problem, z);
         let terms = SlopeTerms::new(problem, self.size);
         self.load_edges(&terms);
-        let first_cost = self.cost(&terms, false);
-        let mut cost = first_cost;
+        let mut report = HeightReport { first_cost: 0.0, cost: 0.0, steps: 0, settled: false };
         let mut damping = FIRST_DAMPING;
-        let (mut steps, mut settled) = (0, false);
-        while steps < problem.effort.steps && !settled {
-            steps += 1;
-            let mean_stiffness = self.linearise(&terms);
+        while report.steps < problem.effort.steps && !report.settled {
+            let (cost, mean_stiffness) = self.linearise(&terms);
+            if report.steps == 0 {
+                (report.first_cost, report.cost) = (cost, cost);
+            }
+            report.steps += 1;
             loop {
-                self.find_step(damping * mean_stiffness as f32, mean_stiffness, problem.effort.rounds);
+                let promise =
+                    self.find_step(damping * mean_stiffness as f32, mean_stiffness, problem.effort.rounds, report.cost);
+                if promise < SETTLED * report.cost {
+                    report.settled = true;
+                    break;
+                }
                 for ((trial, z), step) in self.trial.iter_mut().zip(&self.z).zip(&self.step) {
                     *trial = z + step;
                 }
-                let trial_cost = self.cost(&terms, true);
-                if trial_cost < cost {
+                let trial_cost = self.cost(&terms);
+                if trial_cost < report.cost {
                     std::mem::swap(&mut self.z, &mut self.trial);
-                    settled = cost - trial_cost < SETTLED * cost;
-                    cost = trial_cost;
+                    report.settled = report.cost - trial_cost < SETTLED * report.cost;
+                    report.cost = trial_cost;
                     damping = (damping / 5.0).max(DAMPING[0]);
                     break;
                 }
                 damping *= 10.0;
                 if damping > DAMPING[1] {
-                    settled = true;
+                    report.settled = true;
                     break;
                 }
             }
         }
-        for index in (0..self.z.len()).filter(|&index| self.inside[index]) {
-            z[self.source(index)] = self.z[index];
+        for (index, source) in self.inside() {
+            z[source] = self.z[index];
         }
         let share = 1.0 / self.pixels as f64;
-        HeightReport { first_cost: share * first_cost, cost: share * cost, steps, settled }
+        HeightReport { first_cost: share * report.first_cost, cost: share * report.cost, ..report }
+    }
+
+    /// The pixels of the box in turn: their places here and in the view.
+    fn places(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
+        let ([left, top], columns, width, view_width) = (self.corner, self.columns, self.width, self.size.width);
+        (0..self.near.len() / width).flat_map(move |row| {
+            let (here, source) = (row * width, (top + row) * view_width + left);
+            (0..columns).map(move |column| (here + column, source + column))
+        })
+    }
+
+    /// Those of [`places`](Self::places) on the mask.
+    fn inside(&self) -> impl Iterator<Item = (usize, usize)> {
+        self.places().filter(|&(index, _)| self.near[index] & INSIDE != 0)
     }
 
     /// kappa of a pixel: less where its colours fix its normal.
@@ -206,16 +253,9 @@ impl HeightSolver {
         SMOOTHNESS * INDECISION / (INDECISION + self.confidence[index])
     }
 
-    fn source(&self, index: usize) -> usize {
-        let [left, top] = self.corner;
-        self.size.index(left + index % self.width, top + index / self.width)
-    }
-
     fn load(&mut self, problem: HeightProblem<'_>, z: &[f32]) {
-        for index in 0..self.z.len() {
-            (self.z[index], self.anchor[index], self.anchor_weight[index]) = (0.0, 0.0, 0.0);
-            if self.inside[index] {
-                let source = self.source(index);
+        for (index, source) in self.places() {
+            if self.near[index] & INSIDE != 0 {
                 self.z[index] = z[source];
                 if let Some(anchors) = problem.anchors {
                     (self.anchor[index], self.anchor_weight[index]) = anchors.get(source);
@@ -227,26 +267,22 @@ impl HeightSolver {
     /// Edges between neighbours with suggested slopes (trapezoidal rule), as firm as the less firm of the two.
     fn load_edges(&mut self, terms: &SlopeTerms<'_>) {
         let slopes = terms.problem.slopes;
-        for index in 0..self.z.len() {
-            let source = self.source(index);
+        for (index, source) in self.places() {
             self.confidence[index] = 0.0;
-            if self.inside[index] && !slopes[0][source].is_nan() && !slopes[1][source].is_nan() {
+            let suggested = [slopes[0][source], slopes[1][source]];
+            if self.near[index] & INSIDE != 0 && !suggested[0].is_nan() && !suggested[1].is_nan() {
                 let frame = terms.frame(&self.frames, index);
-                self.confidence[index] = terms.confidence(frame, source, [slopes[0][source], slopes[1][source]]);
+                self.confidence[index] = terms.confidence(frame, source, suggested);
             }
         }
-        for (axis, stride, view_stride) in [(0, 1, 1), (1, self.width, self.size.width)] {
-            for index in 0..self.z.len() {
-                let (plus, _, _) = self.stencil(index, stride);
-                let joined = self.inside[index] && plus != index;
-                let weight = if joined { self.confidence[index].min(self.confidence[plus]) } else { 0.0 };
-                let source = self.source(index);
+        let axes = [(1, 1, LEFT, RIGHT), (self.width, self.size.width, ABOVE, BELOW)];
+        for (axis, (stride, view_stride, before, after)) in axes.into_iter().enumerate() {
+            for (index, source) in self.places() {
+                let near = self.near[index];
+                let joined = near & after != 0;
+                let weight = if joined { self.confidence[index].min(self.confidence[index + stride]) } else { 0.0 };
                 self.operator.bend[axis][index] =
-                    if matches!(self.stencil(index, stride), (_, _, 0.5)) && self.inside[index] {
-                        self.smoothness(index)
-                    } else {
-                        0.0
-                    };
+                    if joined && near & before != 0 { self.smoothness(index) } else { 0.0 };
                 self.edges[axis].weight[index] = weight;
                 self.edges[axis].gradient[index] =
                     if weight > 0.0 { 0.5 * (slopes[axis][source] + slopes[axis][source + view_stride]) } else { 0.0 };
@@ -254,96 +290,89 @@ impl HeightSolver {
         }
     }
 
-    /// Neighbours of a pixel along an axis (`stride` 1 or `width`) for its slope, and the slope's factor.
-    fn stencil(&self, index: usize, stride: usize) -> (usize, usize, f32) {
-        let before =
-            index >= stride && (stride != 1 || !index.is_multiple_of(self.width)) && self.inside[index - stride];
-        let after = index + stride < self.inside.len()
-            && (stride != 1 || !(index + 1).is_multiple_of(self.width))
-            && self.inside[index + stride];
-        match (before, after) {
-            (true, true) => (index + stride, index - stride, 0.5),
-            (true, false) => (index, index - stride, 1.0),
-            (false, true) => (index + stride, index, 1.0),
-            (false, false) => (index, index, 0.0),
+    /// Cost of the trial heights.
+    fn cost(&self, terms: &SlopeTerms<'_>) -> f64 {
+        self.inside().map(|(index, source)| f64::from(self.cost_at(terms, index, source))).sum()
+    }
+
+    fn cost_at(&self, terms: &SlopeTerms<'_>, index: usize, source: usize) -> f32 {
+        let z = &self.trial;
+        let mut cost = self.anchor_weight[index] * (z[index] - self.anchor[index]).powi(2);
+        if self.near[index] & CELL != 0 {
+            let frame = terms.frame(&self.frames, index);
+            cost += terms.cost(frame, terms.cell_log(source), cell_slopes(z, cell_at(index, self.width)));
         }
-    }
-
-    /// The four pixels of the cell right of and below a pixel, where all are inside.
-    fn cell(&self, index: usize) -> Option<[usize; 4]> {
-        let cell = [index, index + 1, index + self.width, index + self.width + 1];
-        let usable = !(index + 1).is_multiple_of(self.width) && cell[3] < self.inside.len();
-        (usable && cell.iter().all(|&pixel| self.inside[pixel])).then_some(cell)
-    }
-
-    /// Cost of the current heights, or of the trial.
-    fn cost(&self, terms: &SlopeTerms<'_>, trial: bool) -> f64 {
-        let z = if trial { &self.trial } else { &self.z };
-        let mut sum = 0.0_f64;
-        for index in (0..z.len()).filter(|&index| self.inside[index]) {
-            if let Some(cell) = self.cell(index) {
-                sum +=
-                    f64::from(terms.cost(terms.frame(&self.frames, index), self.source(index), cell_slopes(z, cell)));
+        for ((stride, edges), bend) in [1, self.width].into_iter().zip(&self.edges).zip(&self.operator.bend) {
+            if edges.weight[index] > 0.0 {
+                let off = z[index + stride] - z[index] - edges.gradient[index];
+                cost += edges.weight[index] * off * off;
             }
-            sum += f64::from(self.anchor_weight[index] * (z[index] - self.anchor[index]).powi(2));
-            for ((stride, edges), bend) in [1, self.width].into_iter().zip(&self.edges).zip(&self.operator.bend) {
-                if edges.weight[index] > 0.0 {
-                    let off = z[index + stride] - z[index] - edges.gradient[index];
-                    sum += f64::from(edges.weight[index] * off * off);
-                }
-                if bend[index] > 0.0 {
-                    sum += f64::from(bend[index] * (z[index + stride] - 2.0 * z[index] + z[index - stride]).powi(2));
-                }
+            if bend[index] > 0.0 {
+                cost += bend[index] * (z[index + stride] - 2.0 * z[index] + z[index - stride]).powi(2);
             }
         }
-        sum
+        cost
     }
 
-    /// Fills the stiffness and the right-hand side; returns the mean stiffness.
-    fn linearise(&mut self, terms: &SlopeTerms<'_>) -> f64 {
+    /// Fills the stiffness and the right-hand side; returns the cost of the heights and the mean stiffness.
+    fn linearise(&mut self, terms: &SlopeTerms<'_>) -> (f64, f64) {
         self.right.fill(0.0);
-        let mut sum = 0.0_f64;
-        for index in 0..self.z.len() {
-            if !self.inside[index] {
-                continue;
+        let (mut costs, mut stiffnesses) = (0.0_f64, 0.0_f64);
+        self.places().for_each(|(index, source)| {
+            if self.near[index] != 0 {
+                let (cost, stiffness) = self.linearise_at(terms, index, source);
+                costs += f64::from(cost);
+                stiffnesses += f64::from(stiffness);
             }
-            if let Some(cell) = self.cell(index) {
-                let (matrix, gradient) = terms.linearise(
-                    terms.frame(&self.frames, index),
-                    terms.cell_log(self.source(index)),
-                    cell_slopes(&self.z, cell),
-                );
-                for (stiffness, value) in self.operator.stiffness.iter_mut().zip(matrix) {
-                    stiffness[index] = value;
-                }
-                sum += f64::from(0.5 * (matrix[0] + matrix[2]));
-                scatter(&mut self.right, cell, [-gradient[0], -gradient[1]]);
-            }
-            for ((stride, edges), bend) in [1, self.width].into_iter().zip(&self.edges).zip(&self.operator.bend) {
-                if edges.weight[index] > 0.0 {
-                    let off = self.z[index + stride] - self.z[index] - edges.gradient[index];
-                    self.right[index + stride] -= edges.weight[index] * off;
-                    self.right[index] += edges.weight[index] * off;
-                    sum += 0.5 * f64::from(edges.weight[index]);
-                }
-                if bend[index] > 0.0 {
-                    let (plus, minus) = (index + stride, index - stride);
-                    let moment = bend[index] * (self.z[plus] - 2.0 * self.z[index] + self.z[minus]);
-                    self.right[plus] -= moment;
-                    self.right[index] += 2.0 * moment;
-                    self.right[minus] -= moment;
-                }
-            }
-            self.right[index] += self.anchor_weight[index] * (self.anchor[index] - self.z[index]);
-        }
-        (sum / self.pixels as f64).max(LEAST_STIFFNESS)
+        });
+        (costs, (stiffnesses / self.pixels as f64).max(LEAST_STIFFNESS))
     }
 
-    /// step = solution of the linearised system by preconditioned conjugate gradients.
-    fn find_step(&mut self, damping: f32, mean_stiffness: f64, rounds: u32) {
+    /// Cost and stiffness of a pixel's own terms.
+    fn linearise_at(&mut self, terms: &SlopeTerms<'_>, index: usize, source: usize) -> (f32, f32) {
+        let (z, right) = (&self.z, &mut self.right);
+        let pull = self.anchor_weight[index] * (self.anchor[index] - z[index]);
+        right[index] += pull;
+        let (mut cost, mut stiffness) = (pull * (self.anchor[index] - z[index]), 0.0);
+        if self.near[index] & CELL != 0 {
+            let cell = cell_at(index, self.width);
+            let frame = terms.frame(&self.frames, index);
+            let shading = terms.linearise(frame, terms.cell_log(source), cell_slopes(z, cell));
+            for (raster, value) in self.operator.stiffness.iter_mut().zip(shading.matrix) {
+                raster[index] = value;
+            }
+            scatter(right, cell, shading.gradient.map(|value| -value));
+            cost += shading.cost;
+            stiffness += 0.5 * (shading.matrix[0] + shading.matrix[2]);
+        }
+        for ((stride, edges), bend) in [1, self.width].into_iter().zip(&self.edges).zip(&self.operator.bend) {
+            let weight = edges.weight[index];
+            if weight > 0.0 {
+                let off = z[index + stride] - z[index] - edges.gradient[index];
+                right[index + stride] -= weight * off;
+                right[index] += weight * off;
+                cost += weight * off * off;
+                stiffness += 0.5 * weight;
+            }
+            if bend[index] > 0.0 {
+                let (plus, minus) = (index + stride, index - stride);
+                let off = z[plus] - 2.0 * z[index] + z[minus];
+                let moment = bend[index] * off;
+                right[plus] -= moment;
+                right[index] += 2.0 * moment;
+                right[minus] -= moment;
+                cost += moment * off;
+            }
+        }
+        (cost, stiffness)
+    }
+
+    /// step = solution of the linearised system by preconditioned conjugate gradients. Returns by how much the
+    /// linearised cost falls.
+    fn find_step(&mut self, damping: f32, mean_stiffness: f64, rounds: u32, cost: f64) -> f64 {
         let anchors: f64 = self.anchor_weight.iter().map(|&weight| f64::from(weight)).sum();
         self.cosine.set(mean_stiffness + f64::from(damping), anchors / self.pixels as f64);
-        self.operator.set_links(&self.edges, &self.inside, damping);
+        self.operator.set_links(&self.edges, |index| [RIGHT, BELOW].map(|flag| self.near[index] & flag != 0), damping);
         self.step.fill(0.0);
         self.direction.copy_from_slice(&self.right);
         self.cosine.solve(&mut self.direction);
@@ -352,20 +381,26 @@ impl HeightSolver {
         self.trial.copy_from_slice(&self.right);
         let mut rho = dot(&self.trial, &self.direction);
         let target = STEP_TOLERANCE * STEP_TOLERANCE * rho;
+        let mut promise = 0.0;
         for _ in 0..rounds {
             self.operator.apply(&self.anchor_weight, &self.direction, &mut self.image);
             let curvature = dot(&self.direction, &self.image);
             let length = (rho / curvature) as f32;
             if !(length.is_finite() && curvature > 0.0) {
-                return;
+                break;
             }
             add_scaled(&mut self.step, length, &self.direction);
+            let gain = rho * f64::from(length);
+            promise += gain;
+            if gain < IDLE * cost {
+                break;
+            }
             add_scaled(&mut self.trial, -length, &self.image);
             self.image.copy_from_slice(&self.trial);
             self.cosine.solve(&mut self.image);
             let next = dot(&self.trial, &self.image);
             if next <= target {
-                return;
+                break;
             }
             let turn = (next / rho) as f32;
             rho = next;
@@ -374,11 +409,12 @@ impl HeightSolver {
             }
             self.restrict_direction();
         }
+        promise
     }
 
     fn restrict_direction(&mut self) {
-        for (direction, &inside) in self.direction.iter_mut().zip(&self.inside) {
-            if !inside {
+        for (direction, &near) in self.direction.iter_mut().zip(&self.near) {
+            if near == 0 {
                 *direction = 0.0;
             }
         }
@@ -393,6 +429,11 @@ fn add_scaled(target: &mut [f32], factor: f32, source: &[f32]) {
     for (target, source) in target.iter_mut().zip(source) {
         *target += factor * source;
     }
+}
+
+/// The four pixels of the cell right of and below a pixel.
+fn cell_at(index: usize, width: usize) -> [usize; 4] {
+    [index, index + 1, index + width, index + width + 1]
 }
 
 /// p and q in the middle of a cell.

@@ -40,17 +40,13 @@ impl NormalOperator {
         }
     }
 
-    /// Takes over the edges' weights, and a damping between all neighbours inside.
-    pub fn set_links(&mut self, edges: &[Edges; 2], inside: &[bool], damping: f32) {
-        for (axis, stride) in [(0, 1), (1, self.width)] {
-            let link = &mut self.link[axis];
-            link.copy_from_slice(&edges[axis].weight);
-            for (index, link) in link.iter_mut().enumerate() {
-                let ends_row = axis == 0 && (index + 1).is_multiple_of(self.width);
-                if inside[index] && !ends_row && inside.get(index + stride) == Some(&true) {
-                    *link += damping;
-                }
-            }
+    /// Takes over the edges' weights, and a damping between all neighbours inside: `joined` tells of a pixel whether it
+    /// has one to the right and one below.
+    pub fn set_links(&mut self, edges: &[Edges; 2], joined: impl Fn(usize) -> [bool; 2], damping: f32) {
+        let [right, below] = &mut self.link;
+        for (index, (right, below)) in right.iter_mut().zip(below).enumerate() {
+            let damped = joined(index).map(|joined| if joined { damping } else { 0.0 });
+            (*right, *below) = (edges[0].weight[index] + damped[0], edges[1].weight[index] + damped[1]);
         }
     }
 
@@ -149,7 +145,11 @@ mod tests {
         }
         let anchors = (0..length).map(|index| if inside[index] { weight(8, index) } else { 0.0 }).collect();
         let damping = 0.3;
-        operator.set_links(&edges, &inside, damping);
+        let joined = |index: usize| {
+            let (column, row) = (index % width, index / width);
+            [is_inside(column + 1, row), is_inside(column, row + 1)].map(|next| inside[index] && next)
+        };
+        operator.set_links(&edges, joined, damping);
         (operator, inside, anchors, f64::from(damping), edges)
     }
 

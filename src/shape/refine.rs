@@ -29,7 +29,7 @@ const ANCHOR: [f64; 2] = [1e-3, 10.0];
 const COLOUR_SCALES: [f32; 3] = [0.5, 0.2, 0.06];
 /// Work at each scale, and of a refinement that continues an earlier one, at the last scale alone.
 const FIRST: Effort = Effort { steps: 6, rounds: 40 };
-const LATER: Effort = Effort { steps: 3, rounds: 40 };
+const LATER: Effort = Effort { steps: 1, rounds: 20 };
 /// Most sweeps that carry gradients into a hole: its radius in pixels at the most.
 const FILL_SWEEPS: usize = 256;
 

@@ -24,7 +24,7 @@ const LAST_SCALE: f32 = COLOUR_SCALES[COLOUR_SCALES.len() - 1];
 const START: Effort = Effort { steps: 15, rounds: 40 };
 /// Work on a surface that has come from elsewhere or from other starts, and on one that every call improves a little.
 const ARRIVED: Effort = Effort { steps: 5, rounds: 20 };
-const SETTLING: Effort = Effort { steps: 2, rounds: 10 };
+const SETTLING: Effort = Effort { steps: 1, rounds: 10 };
 /// Object pixels up to which a level is small: an object that fills half of 96x96 is solved as it is.
 const SMALL: usize = 6000;
 

@@ -177,7 +177,10 @@ impl<'a> Pixel<'a> {
     }
 
     fn brightness(&self, shade: [f32; 3]) -> f32 {
-        self.log.map_or(0.0, |log| (0..3).map(|channel| (log[channel] - shade[channel]).powi(2)).sum())
+        self.log.map_or(0.0, |log| {
+            let off = [log[0] - shade[0], log[1] - shade[1], log[2] - shade[2]];
+            dot(off, off)
+        })
     }
 
     /// log S minus prediction for each channel, `None` without a colour.
@@ -198,40 +201,36 @@ impl<'a> Pixel<'a> {
 
     fn cost(&self, normal: [f32; 3]) -> f32 {
         let unit = dot(normal, normal) - 1.0;
-        let shade = self.polynomials.map(|polynomial| polynomial.shade(normal));
-        self.brightness(shade) + self.prior_cost(normal) + self.weights.unit * unit * unit
+        let [red, green, blue] = self.polynomials;
+        self.brightness([red.shade(normal), green.shade(normal), blue.shade(normal)])
+            + self.prior_cost(normal)
+            + self.weights.unit * unit * unit
     }
 
-    /// Gradient (halved) and Gauss-Newton matrix (xx, xy, xz, yy, yz, zz).
-    pub(super) fn linearise(&self, normal: [f32; 3]) -> ([f32; 3], [f32; 6]) {
-        let mut gradient = [0.0; 3];
-        let mut matrix = [0.0; 6];
-        let mut add = |row: [f32; 3], residual: f32, weight: f32| {
-            for axis in 0..3 {
-                gradient[axis] += weight * row[axis] * residual;
-            }
-            let products =
-                [row[0] * row[0], row[0] * row[1], row[0] * row[2], row[1] * row[1], row[1] * row[2], row[2] * row[2]];
-            for (entry, product) in matrix.iter_mut().zip(products) {
-                *entry += weight * product;
-            }
-        };
+    /// The cost around a normal.
+    #[inline(never)]
+    pub(super) fn linearise(&self, normal: [f32; 3]) -> Linear {
+        let unit = dot(normal, normal) - 1.0;
+        let mut sums = Linear { cost: self.weights.unit * unit * unit, gradient: [0.0; 3], matrix: [0.0; 6] };
+        sums.add([2.0 * normal[0], 2.0 * normal[1], 2.0 * normal[2]], unit, self.weights.unit);
         if let Some(log) = self.log {
             for (polynomial, log) in self.polynomials.iter().zip(log) {
-                add(polynomial.gradient(normal), polynomial.shade(normal) - log, 1.0);
+                let residual = polynomial.shade(normal) - log;
+                sums.cost += residual * residual;
+                sums.add(polynomial.gradient(normal), residual, 1.0);
             }
         }
-        add(normal.map(|value| 2.0 * value), dot(normal, normal) - 1.0, self.weights.unit);
         if let Some(prior) = self.prior {
+            sums.cost += self.prior_cost(normal);
             let weight = self.weights.prior * self.prior_weight(squared_distance(normal, prior));
             for axis in 0..3 {
-                gradient[axis] += weight * (normal[axis] - prior[axis]);
+                sums.gradient[axis] += weight * (normal[axis] - prior[axis]);
             }
             for diagonal in [0, 3, 5] {
-                matrix[diagonal] += weight;
+                sums.matrix[diagonal] += weight;
             }
         }
-        (gradient, matrix)
+        sums
     }
 
     /// Derivative of rho: Geman-McClure's weight.
@@ -241,18 +240,16 @@ impl<'a> Pixel<'a> {
 
     /// Damped Gauss-Newton; a step that turns the normal away from the camera counts as no descent.
     fn descend(&self, start: [f32; 3]) -> ([f32; 3], Termination) {
-        let mut normal = start;
-        let mut cost = self.cost(normal);
+        let (mut normal, mut here) = (start, self.linearise(start));
         let mut damping = FIRST_DAMPING;
         for _ in 0..MOST_STEPS {
-            let (gradient, matrix) = self.linearise(normal);
             loop {
-                let step = solve_damped(matrix, gradient, damping);
+                let step = solve_damped(here.matrix, here.gradient, damping);
                 let trial = [normal[0] - step[0], normal[1] - step[1], normal[2] - step[2]];
                 let length = dot(step, step).sqrt();
-                let trial_cost = if trial[2] < 0.0 { self.cost(trial) } else { f32::INFINITY };
-                if trial_cost <= cost {
-                    (normal, cost) = (trial, trial_cost);
+                let there = self.linearise(trial);
+                if trial[2] < 0.0 && there.cost <= here.cost {
+                    (normal, here) = (trial, there);
                     damping *= 0.1;
                     if length < SMALLEST_STEP {
                         return (normal, Termination::Converged);
@@ -264,12 +261,36 @@ impl<'a> Pixel<'a> {
                     return (normal, Termination::Converged);
                 }
                 damping *= 10.0;
-                if damping > LARGEST_DAMPING || !trial_cost.is_finite() && !length.is_finite() {
+                if damping > LARGEST_DAMPING || !there.cost.is_finite() && !length.is_finite() {
                     return (normal, Termination::Stalled);
                 }
             }
         }
         (normal, Termination::Capped)
+    }
+}
+
+/// A cost around a normal: its value, half its gradient, and the Gauss-Newton matrix (xx, xy, xz, yy, yz, zz).
+pub(super) struct Linear {
+    cost: f32,
+    pub(super) gradient: [f32; 3],
+    pub(super) matrix: [f32; 6],
+}
+
+impl Linear {
+    /// One residual of derivative `row`.
+    #[inline(always)]
+    fn add(&mut self, [x, y, z]: [f32; 3], residual: f32, weight: f32) {
+        let pull = weight * residual;
+        let (by_x, by_y, by_z) = (weight * x, weight * y, weight * z);
+        let gradient = [pull * x, pull * y, pull * z];
+        let matrix = [by_x * x, by_x * y, by_x * z, by_y * y, by_y * z, by_z * z];
+        for axis in 0..3 {
+            self.gradient[axis] += gradient[axis];
+        }
+        for entry in 0..6 {
+            self.matrix[entry] += matrix[entry];
+        }
     }
 }
 

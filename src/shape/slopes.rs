@@ -69,10 +69,9 @@ impl<'a> SlopeTerms<'a> {
     /// log S in the middle of the cell right of and below a pixel.
     pub(super) fn cell_log(&self, source: usize) -> [f32; 3] {
         let below = source + self.view_width;
-        [0, 1, 2].map(|channel: usize| {
-            let log = self.problem.log[channel];
-            0.25 * (log[source] + log[source + 1] + log[below] + log[below + 1])
-        })
+        let mean = |log: &[f32]| 0.25 * (log[source] + log[source + 1] + log[below] + log[below + 1]);
+        let [red, green, blue] = self.problem.log;
+        [mean(red), mean(green), mean(blue)]
     }
 
     fn pixel_log(&self, source: usize) -> [f32; 3] {
@@ -80,44 +79,53 @@ impl<'a> SlopeTerms<'a> {
     }
 
     /// Robust brightness cost of a cell; zero where it has no colour.
-    pub(super) fn cost(&self, frame: RayFrame, source: usize, slopes: [f32; 2]) -> f32 {
+    pub(super) fn cost(&self, frame: RayFrame, log: [f32; 3], slopes: [f32; 2]) -> f32 {
         let normal = Turn::at(frame, slopes).normal;
-        let log = self.cell_log(source);
-        let squared: f32 = (0..3).map(|c| (log[c] - self.polynomials[c].shade(normal)).powi(2)).sum();
-        let scale = self.problem.colour_scale * self.problem.colour_scale;
-        if squared.is_nan() { 0.0 } else { squared / (1.0 + squared / scale) }
+        let residuals = self.residuals(normal, log);
+        let squared = dot(residuals, residuals);
+        if squared.is_nan() { 0.0 } else { squared * self.trust(squared) }
     }
 
-    /// Gauss-Newton matrix (pp, pq, qq) and half the gradient over the slopes at which `log` is explained.
-    pub(super) fn linearise(&self, frame: RayFrame, log: [f32; 3], slopes: [f32; 2]) -> ([f32; 3], [f32; 2]) {
+    fn residuals(&self, normal: [f32; 3], log: [f32; 3]) -> [f32; 3] {
+        let [red, green, blue] = &self.polynomials;
+        [red.shade(normal) - log[0], green.shade(normal) - log[1], blue.shade(normal) - log[2]]
+    }
+
+    /// 1 / (1 + r^2 / scale^2): the cost of Geman and McClure is r^2 times this, its weight the square of this.
+    fn trust(&self, squared: f32) -> f32 {
+        1.0 / (1.0 + squared / (self.problem.colour_scale * self.problem.colour_scale))
+    }
+
+    /// The terms of a cell as functions of its slopes, where `log` is to be explained.
+    pub(super) fn linearise(&self, frame: RayFrame, log: [f32; 3], slopes: [f32; 2]) -> Linear {
         self.linearise_turn(Turn::at(frame, slopes), log)
     }
 
-    fn linearise_turn(&self, turn: Turn, log: [f32; 3]) -> ([f32; 3], [f32; 2]) {
-        let residuals: [f32; 3] = std::array::from_fn(|c| self.polynomials[c].shade(turn.normal) - log[c]);
-        let squared: f32 = residuals.iter().map(|r| r * r).sum();
+    fn linearise_turn(&self, turn: Turn, log: [f32; 3]) -> Linear {
+        let residuals = self.residuals(turn.normal, log);
+        let squared = dot(residuals, residuals);
         let (mut matrix, mut gradient) = ([0.0; 3], [0.0; 2]);
         if squared.is_nan() {
-            return (matrix, gradient);
+            return Linear { cost: 0.0, matrix, gradient };
         }
-        let scale = self.problem.colour_scale * self.problem.colour_scale;
-        let weight = (1.0 + squared / scale).powi(-2);
+        let trust = self.trust(squared);
+        let weight = trust * trust;
         for (polynomial, residual) in self.polynomials.iter().zip(residuals) {
             let slope = polynomial.gradient(turn.normal);
-            let row = turn.along.map(|along| dot(slope, along));
+            let row = [dot(slope, turn.along[0]), dot(slope, turn.along[1])];
             matrix[0] += weight * row[0] * row[0];
             matrix[1] += weight * row[0] * row[1];
             matrix[2] += weight * row[1] * row[1];
             gradient[0] += weight * row[0] * residual;
             gradient[1] += weight * row[1] * residual;
         }
-        (matrix, gradient)
+        Linear { cost: squared * trust, matrix, gradient }
     }
 
     /// How well a pixel alone, its colours and its firmness, fixes its slopes: the smaller eigenvalue of its matrix.
     pub(super) fn confidence(&self, frame: RayFrame, source: usize, slopes: [f32; 2]) -> f32 {
         let turn = Turn::at(frame, slopes);
-        let ([mut pp, mut pq, mut qq], _) = self.linearise_turn(turn, self.pixel_log(source));
+        let [mut pp, mut pq, mut qq] = self.linearise_turn(turn, self.pixel_log(source)).matrix;
         if let Some(firmness) = self.problem.firmness {
             let [p, q] = turn.along;
             pp += firmness[source] * dot(p, p);
@@ -129,6 +137,15 @@ impl<'a> SlopeTerms<'a> {
     }
 }
 
+/// What a cell says about its slopes; all zero where it has no colour.
+pub(super) struct Linear {
+    pub(super) cost: f32,
+    /// Gauss-Newton matrix: pp, pq, qq.
+    pub(super) matrix: [f32; 3],
+    /// Half the gradient.
+    pub(super) gradient: [f32; 2],
+}
+
 /// A normal and its derivatives along both slopes.
 #[derive(Clone, Copy)]
 struct Turn {
@@ -138,14 +155,15 @@ struct Turn {
 
 impl Turn {
     fn at(RayFrame([a, b, c]): RayFrame, [p, q]: [f32; 2]) -> Self {
-        let vector: [f32; 3] = std::array::from_fn(|axis| a[axis] + p * b[axis] + q * c[axis]);
+        let vector = [a[0] + p * b[0] + q * c[0], a[1] + p * b[1] + q * c[1], a[2] + p * b[2] + q * c[2]];
         let inverse = 1.0 / dot(vector, vector).sqrt();
-        let normal = vector.map(|value| value * inverse);
-        let along = [b, c].map(|side| {
+        let normal = [inverse * vector[0], inverse * vector[1], inverse * vector[2]];
+        let along = |side: [f32; 3]| {
             let share = dot(normal, side);
-            std::array::from_fn(|axis| inverse * (side[axis] - share * normal[axis]))
-        });
-        Self { normal, along }
+            let off = |axis: usize| inverse * (side[axis] - share * normal[axis]);
+            [off(0), off(1), off(2)]
+        };
+        Self { normal, along: [along(b), along(c)] }
     }
 }
 

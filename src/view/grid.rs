@@ -148,12 +148,14 @@ impl Normals {
     }
 
     /// The vector at `index`, NaN where missing.
+    #[inline]
     #[must_use]
     pub fn get(&self, index: usize) -> [f32; 3] {
         [self.x[index], self.y[index], self.z[index]]
     }
 
     /// Replaces the vector at `index`.
+    #[inline]
     pub fn set(&mut self, index: usize, vector: [f32; 3]) {
         [self.x[index], self.y[index], self.z[index]] = vector;
     }

@@ -178,11 +178,17 @@ fn median_step(line: [Option<Vector>; 5]) -> Option<f64> {
     let mut count = 0;
     for pair in line.windows(2) {
         if let (Some(a), Some(b)) = (pair[0], pair[1]) {
-            squares[count] = square(minus(b, a));
+            let square = square(minus(b, a));
+            // In order from the first: a general sort is slow, and large in wasm, for four numbers.
+            let mut place = count;
+            while place > 0 && squares[place - 1] > square {
+                squares[place] = squares[place - 1];
+                place -= 1;
+            }
+            squares[place] = square;
             count += 1;
         }
     }
-    squares.sort_unstable_by(f64::total_cmp);
     (count > 0).then(|| squares[(count - 1) / 2])
 }
 
