@@ -56,10 +56,20 @@ export class PoseTable {
       ...pair("Inliers", `${decimals(100 * report.inliers, 0)} %`),
       ...pair("Colour residual", decimals(report.residual, 4)),
       ...pair("Rotation change", `${decimals(report.rotationChange, 4)}°`),
-      ...(uncertainty ? pair("σ about x, y, z", sigmas(uncertainty.rotationDegrees)) : []),
-      ...(uncertainty ? pair("Weakest", uncertainty.weakest) : []),
+      ...(uncertainty ? certainty(uncertainty, length) : []),
     );
   }
+}
+
+/** One sigma of each part of the pose; what is held or cannot be seen has none. */
+function certainty({ rotationDegrees, translation, scale, weakest }: NonNullable<StepReport["uncertainty"]>, length: string): HTMLElement[] {
+  const known = translation.map((value) => (value === null ? "free" : decimals(value, 3))).join(", ");
+  return [
+    ...pair("σ about x, y, z", sigmas(rotationDegrees)),
+    ...pair("σ of t", `${known} ${length}`),
+    ...(scale === null ? [] : pair("σ of s", decimals(scale, 4))),
+    ...pair("Weakest", weakest),
+  ];
 }
 
 /** Half a turn of uncertainty is no knowledge at all. */

@@ -1,0 +1,64 @@
+// What the numerics take and give back. The module's memory never shrinks, so its size is the most that was ever in use.
+import assert from "node:assert/strict";
+import { describe, test } from "node:test";
+import { Estimator, estimator, init, pair, sample } from "./support.mjs";
+
+/** Bytes that a pixel of either view takes at most: BYTES_PER_PIXEL of src/estimator/memory.rs. */
+const BUDGET = 360;
+const ROUNDS = 100;
+const STEPS = 10_000;
+
+let memory;
+const instantiate = WebAssembly.instantiate;
+WebAssembly.instantiate = async (...given) => {
+  const made = await instantiate(...given);
+  memory = (made.instance ?? made).exports.memory;
+  return made;
+};
+await init();
+const size = () => memory.buffer.byteLength;
+
+describe("memory", () => {
+  test("a pair keeps to its budget, the search included", (t) => {
+    const before = size();
+    const [width, height] = [320, 240];
+    const { image, depth } = sample({ surface: "bust", light: "window", size: width, height, noise: 0.01 });
+    const made = new Estimator(image, depth);
+    for (let iterations = 0; iterations < 4; iterations = made.step().iteration);
+    made.free();
+    const bytes = (size() - before) / (2 * width * height);
+    t.diagnostic(`${bytes.toFixed(0)} bytes for each pixel of either view`);
+    assert.ok(bytes <= BUDGET, `${bytes} bytes`);
+  });
+
+  test(`${ROUNDS} estimators leave nothing behind`, () => {
+    const input = pair();
+    const round = () => {
+      const made = estimator({}, input);
+      made.step();
+      made.imageDepth();
+      made.free();
+    };
+    for (let k = 0; k < 5; k++) round();
+    const before = size();
+    for (let k = 0; k < ROUNDS; k++) round();
+    assert.equal(size(), before);
+  });
+
+  test(`${STEPS} steps take no more than the first`, () => {
+    const { image, depth, light } = pair({ size: 16 });
+    const options = { light, start: "identity", scale: 1 };
+    const made = new Estimator(image, depth, options);
+    const steps = (count) => {
+      for (let k = 0; k < count; k++) {
+        if (made.step().status !== "running") made.reset(options);
+        if (k % 100 === 0) made.imageNormals();
+      }
+    };
+    steps(100);
+    const before = size();
+    steps(STEPS);
+    assert.equal(size(), before);
+    made.free();
+  });
+});
