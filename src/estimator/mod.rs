@@ -91,7 +91,7 @@ pub struct Estimator {
     correspondences: Correspondences,
     fitter: LightFitter,
     solver: ShadingSolver,
-    integrator: Integrator,
+    integrator: Option<Integrator>,
     icp: Icp,
     /// Only where the options ask for it: it holds splines of the image.
     joint: Option<Joint>,
@@ -152,7 +152,7 @@ impl Estimator {
         let solution = Solution::new(&image, &depth, pose, light);
         let mut estimator = Self {
             correspondences: Correspondences::new(&image, &depth),
-            integrator: Integrator::new(image.size, &image.mask)?,
+            integrator: None,
             refiner: Refiner::new(&depth, &image)?,
             relief: ReliefSolver::new(&image)?,
             firmness: vec![0.0; pixels],

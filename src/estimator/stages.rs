@@ -9,8 +9,8 @@ use crate::light::Light;
 use crate::options::{LightSource, Registration, Shading};
 use crate::pose::{CorrespondenceProblem, IcpOptions, IcpProblem, RansacOptions, Similarity, ransac};
 use crate::shape::{
-    IntegrationOptions, RefinementProblem, ReliefProblem, Robust, ShadingProblem, ShadingWeights, exposure_step,
-    first_exposure, gradients,
+    IntegrationOptions, Integrator, RefinementProblem, ReliefProblem, Robust, ShadingProblem, ShadingWeights,
+    exposure_step, first_exposure, gradients,
 };
 use crate::view::{normals, quantile};
 
@@ -117,7 +117,13 @@ impl Estimator {
         let options = IntegrationOptions { robust: Robust::Estimated, ..IntegrationOptions::default() };
         let as_a_whole = self.options.shading == Shading::Surface;
         if !as_a_whole || self.relief.wants_integrated() {
-            self.integrator.integrate(p, q, None, &options, &mut self.height)?;
+            let mut integrator = match self.integrator.take() {
+                Some(integrator) => integrator,
+                None => Integrator::new(image.size, &image.mask)?,
+            };
+            integrator.integrate(p, q, None, &options, &mut self.height)?;
+            // A surface that is solved as a whole starts from it once.
+            self.integrator = (!as_a_whole).then_some(integrator);
         }
         if as_a_whole {
             self.solve_relief();

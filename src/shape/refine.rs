@@ -56,8 +56,6 @@ pub struct RefinementProblem<'a> {
 
 /// Refines one depth view again and again; owns all memory.
 pub struct Refiner {
-    integrator: Integrator,
-    options: IntegrationOptions,
     solver: ShadingSolver,
     heights: HeightSolver,
     log: [Vec<f32>; 3],
@@ -86,8 +84,6 @@ impl Refiner {
         let zeros = || vec![0.0; length];
         let shading_error = (SHADING_ERROR * image.log_noise()).hypot(DISCRETISATION * image.log_spread());
         Ok(Self {
-            integrator: Integrator::new(depth.size, &depth.mask)?,
-            options: IntegrationOptions { robust: Robust::Off, ..IntegrationOptions::default() },
             solver: ShadingSolver::new(),
             heights: HeightSolver::new(depth.size, depth.camera, &depth.mask)?,
             log: [zeros(), zeros(), zeros()],
@@ -219,7 +215,7 @@ impl Refiner {
         }
     }
 
-    /// Surface from `normals` and the loaded anchors.
+    /// Surface from `normals` and the loaded anchors. It is asked for once, so the integrator's memory is not kept.
     fn integrate(&mut self, view: &DepthView, normals: &Normals, depth: &mut [f32]) -> Result<()> {
         self.find_slopes(view, normals);
         for gradient in &mut self.gradient {
@@ -227,7 +223,8 @@ impl Refiner {
         }
         let [p, q] = &self.gradient;
         let anchors = Anchors { height: &self.anchor, weight: AnchorWeight::PerPixel(&self.anchor_weight) };
-        self.integrator.integrate(p, q, Some(anchors), &self.options, &mut self.height)?;
+        let options = IntegrationOptions { robust: Robust::Off, ..IntegrationOptions::default() };
+        Integrator::new(view.size, &view.mask)?.integrate(p, q, Some(anchors), &options, &mut self.height)?;
         for (depth, &height) in depth.iter_mut().zip(&self.height) {
             *depth = from_height(view, height);
         }

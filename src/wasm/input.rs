@@ -123,7 +123,7 @@ pub fn whole(field: &'static str, value: f64) -> Result<u64> {
     if value.fract() == 0.0 && (0.0..=LARGEST_WHOLE).contains(&value) {
         return Ok(value as u64);
     }
-    Err(Error::new(ErrorKind::Range, field, "must be a whole number, zero or above").value(value))
+    Err(Error::new(ErrorKind::Range, field, "must be a whole number, 0 .. 2^53 - 1").value(value))
 }
 
 pub fn side(field: &'static str, value: f64) -> Result<usize> {

@@ -95,10 +95,8 @@ fn relief(js: &JsValue) -> Result<Relief> {
         return surfaces::surface(&name);
     }
     let given: &JsRelief = js.unchecked_ref();
-    let (width, height) = (side("width", given.width()), side("height", given.height()));
-    width
-        .and_then(|width| Relief::new(width, height?, given.heights().to_vec()))
-        .map_err(|error| error.below("surface"))
+    let side = |name, value| side(name, value).map_err(|error| error.below("surface"));
+    Relief::new(side("width", given.width())?, side("height", given.height())?, given.heights().to_vec())
 }
 
 fn request(js: &JsRequest) -> Result<SampleRequest> {

@@ -133,7 +133,10 @@ describe("after init", () => {
     refused(request({ holes: 1 }), "range", "sample.holes");
     refused(request({ surface: undefined }), "missing", "sample.surface");
     refused(request({ surface: { width: 64, height: 64 } }), "missing", "sample.surface.heights");
+    refused(request({ surface: { width: 10, height: 10, heights: new Float32Array(100) } }), "size", "sample.surface");
+    refused(request({ surface: { width: 64, height: 64, heights: new Float32Array(64 * 64) } }), "empty", "sample.surface.heights");
     const heights = new Float32Array(5);
+    refused(request({ surface: { width: 0.5, height: 64, heights } }), "range", "sample.surface.width");
     assert.throws(request({ surface: { width: 64, height: 64, heights } }), (error) => error.field.startsWith("sample.surface"));
   });
 

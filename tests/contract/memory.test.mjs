@@ -4,7 +4,7 @@ import { describe, test } from "node:test";
 import { Estimator, estimator, init, pair, sample } from "./support.mjs";
 
 /** Bytes that a pixel of either view takes at most: BYTES_PER_PIXEL of src/estimator/memory.rs. */
-const BUDGET = 360;
+const BUDGET = 335;
 const ROUNDS = 100;
 const STEPS = 10_000;
 
