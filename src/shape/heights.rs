@@ -257,9 +257,8 @@ impl HeightSolver {
         for (index, source) in self.places() {
             if self.near[index] & INSIDE != 0 {
                 self.z[index] = z[source];
-                if let Some(anchors) = problem.anchors {
-                    (self.anchor[index], self.anchor_weight[index]) = anchors.get(source);
-                }
+                (self.anchor[index], self.anchor_weight[index]) =
+                    problem.anchors.map_or((0.0, 0.0), |anchors| anchors.get(source));
             }
         }
     }
@@ -447,4 +446,43 @@ fn scatter(heights: &mut [f32], [a, b, c, d]: [usize; 4], [p, q]: [f32; 2]) {
     heights[b] += 0.5 * (p - q);
     heights[c] += 0.5 * (q - p);
     heights[d] += 0.5 * (p + q);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::light::LightPrior;
+    use crate::shape::AnchorWeight;
+
+    /// A used solver knows nothing of what it solved before.
+    #[test]
+    fn anchors_of_an_earlier_solve_are_forgotten() {
+        let size = Size { width: 9, height: 7 };
+        let mask: Vec<bool> = (0..size.len()).map(|index| index % 11 != 5).collect();
+        let colours: [Vec<f32>; 3] =
+            std::array::from_fn(|channel| (0..size.len()).map(|k| 0.1 * ((k + channel) as f32).sin()).collect());
+        let slopes = vec![0.2_f32; size.len()];
+        let far = vec![40.0_f32; size.len()];
+        let light = LightPrior::natural().mean();
+        let free = HeightProblem {
+            log: colours.each_ref().map(Vec::as_slice),
+            light: &light,
+            rotation: &Matrix3::identity(),
+            slopes: [&slopes, &slopes],
+            firmness: None,
+            anchors: None,
+            colour_scale: 0.2,
+            effort: Effort { steps: 4, rounds: 10 },
+        };
+        let anchors = Some(Anchors { height: &far, weight: AnchorWeight::Uniform(5.0) });
+        let solver = || HeightSolver::new(size, Camera::Orthographic, &mask).expect("a solver");
+        let solve = |solver: &mut HeightSolver, problem| {
+            let mut heights = vec![0.0; size.len()];
+            (solver.solve(problem, &mut heights), heights)
+        };
+        let mut used = solver();
+        let (report, anchored) = solve(&mut used, HeightProblem { anchors, ..free });
+        assert!(report.cost < report.first_cost && anchored[0] > 30.0, "{report:?} {}", anchored[0]);
+        assert_eq!(solve(&mut used, free), solve(&mut solver(), free));
+    }
 }

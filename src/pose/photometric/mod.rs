@@ -52,6 +52,11 @@ const COARSEST_UNKNOWN: usize = 1;
 const SLOPE_BLUR: f64 = 1.0;
 /// The robust scale in standard deviations of |r|, handbook section 5: three.
 const KERNEL: f64 = 3.0;
+/// Noise per channel, log units, from which on the scale grows in proportion, and by how much at most. What is left then
+/// is no noise but shadows and paint, and a narrow scale would settle on a part of the object that light and normals
+/// happen to explain. Renders with 1 % noise stay below, photographs in one lamp's light have 0.05 to 0.2.
+const ROUGH: f64 = 0.035;
+const WIDEST: f64 = 2.0;
 /// |r| over three channels in standard deviations of one.
 const CHANNELS: f64 = 1.732_050_807_568_877_2;
 /// The first robust scale over that of the residuals at the start.
@@ -378,7 +383,7 @@ impl Photometric {
     }
 
     fn final_scale(&self) -> f64 {
-        KERNEL * CHANNELS * self.noise
+        KERNEL * CHANNELS * self.noise * (self.noise / ROUGH).clamp(1.0, WIDEST)
     }
 
     /// Weight of the prior: Gaussian near the natural lights, with the tails of Student's t for lights that no
