@@ -9,6 +9,8 @@ use crate::report::Status;
 /// A rotation less certain than this about any axis is no answer, degrees (one sigma). Found poses of the random scenes
 /// stay below 2; the one wrong one had 7.
 const LARGEST_SIGMA: f64 = 5.0;
+/// A rotation less certain than this about any axis is not observable at all, degrees (one sigma).
+const UNOBSERVABLE: f64 = 30.0;
 /// A rotation less certain than this is no single answer, degrees (one sigma): three sigmas pass the three degrees
 /// within which a pose counts as found. One in 300 random scenes is so uncertain, and all 12 of 24 photographs that end
 /// over 4 degrees off.
@@ -143,7 +145,13 @@ impl Estimator {
         let found = self.colours_found()?;
         let uncertainty = &found.uncertainty;
         let sigma = uncertainty.rotation_degrees.into_iter().fold(0.0, f64::max);
-        if sigma.is_nan() || sigma > LARGEST_SIGMA {
+        if sigma.is_nan() || sigma > UNOBSERVABLE {
+            return Some(format!(
+                "{} is not observable: as far as the noise lets see, turning the object changes no colour",
+                uncertainty.weakest
+            ));
+        }
+        if sigma > LARGEST_SIGMA {
             return Some(format!("the rotation is uncertain by {sigma:.0} degrees: {}", uncertainty.weakest));
         }
         let unexplained = found.noise / self.image.log_spread();

@@ -19,6 +19,10 @@ const LARGEST_NOISE: f64 = 0.2;
 /// no longer.
 const CANDIDATE_POINTS: usize = 2500;
 
+/// Change of the scale (natural logarithm) beyond which a registration has collapsed: shrunk onto a few pixels, a cloud
+/// is easily explained. Candidates of the search lie within 0.1 of a right scale.
+pub const COLLAPSE: f64 = 0.3;
+
 /// What one registration looks at, besides its own memory.
 #[derive(Clone, Copy)]
 pub struct Given<'a> {
@@ -130,10 +134,29 @@ impl Joint {
             Some(found) => found,
             None => {
                 let options = PhotometricOptions { first_level, ..given.options() };
-                self.photometric.register(&self.sharp.problem(given), start, &options)?
+                let found = self.photometric.register(&self.sharp.problem(given), start, &options);
+                match found {
+                    Ok(found) if found.pose.growth_from(start) < COLLAPSE => found,
+                    found if given.scale_is_held => found?,
+                    _ => self.register_in_turn(given, start, &options)?,
+                }
             }
         };
         Ok(self.found.insert(found))
+    }
+
+    /// A cloud that shrinks onto a few pixels is easily explained, and on its way from a coarse level a registration may
+    /// get there: so everything else goes first, and the scale follows at the noise of the sharp image.
+    fn register_in_turn(
+        &mut self,
+        given: &Given<'_>,
+        start: &Similarity,
+        options: &PhotometricOptions,
+    ) -> Result<PhotometricReport> {
+        let held = Given { scale_is_held: true, ..*given };
+        let near = self.photometric.register(&self.sharp.problem(&held), start, options)?;
+        let options = PhotometricOptions { first_level: 0, annealing: false, ..*options };
+        self.photometric.register(&self.sharp.problem(given), &near.pose, &options)
     }
 
     /// Begins a registration that [`advance`](Self::advance) carries on, a step at a time.

@@ -1,17 +1,18 @@
 //! The opening: search everywhere, register the best candidates, keep the one that explains most, remember its rivals.
 //!
 //! Ends of different registrations see different points, so their costs cannot be compared; what they are worth is
-//! gain = N^(1/3) ln(spread / noise): by how much the pose explains the colours better than a constant would, with a root
+//! gain = N^(1/4) ln(spread / noise): by how much the pose explains the colours better than a constant would, with a root
 //! of the number of visible points against overlaps that are tiny and thus easily explained. Measured on the ends of 300
 //! random scenes at 96x96 (Mozart, four scanned animals, three built-in surfaces; natural lights, free scale): any power
-//! from 0.1 to 0.6 puts a right end first in all of them, none at all errs in one; of two ends a few degrees apart, the
-//! square root favours the one that merely sees more. Rivals of right winners leave 1.25 times their noise or more.
+//! from 0.1 to 0.6 puts a right end first in all of them, none at all errs in one; the fourth root is the middle of the
+//! two by ratio. Larger roots favour the end that merely sees more: of a dented ball one that sees 1.8 times as much and
+//! leaves 1.6 times the noise. Rivals of right winners leave 1.25 times their noise or more.
 
 use crate::error::Result;
 use crate::pose::{PhotometricReport, Search, Similarity, sort_down};
 use crate::view::DepthView;
 
-use super::joint::{Given, Joint};
+use super::joint::{COLLAPSE, Given, Joint};
 
 /// Registrations after which an end that convinces is believed, and registrations at most.
 const FEW_TRIED: usize = 10;
@@ -24,9 +25,6 @@ const UNEXPLAINED: f64 = 0.05;
 const SAME_END: f64 = 3.0;
 /// An end reached so often needs no more witnesses: candidates next to it are passed over.
 const WITNESSES: u32 = 2;
-/// Change of the scale (natural logarithm) beyond which a registration has collapsed: shrunk onto a few pixels, a cloud
-/// is easily explained. Candidates lie within 0.1 of a right scale.
-const COLLAPSE: f64 = 0.3;
 /// Candidates nearer than this to such an end would only reach it again, degrees.
 const CATCHMENT: f64 = 15.0;
 /// A rival leaves a noise of at most so many times the winner's ..
@@ -164,7 +162,7 @@ impl Opening {
 
     /// Remembers where a registration ended: the better of two that are one.
     fn enter(&mut self, report: PhotometricReport) {
-        let gain = (report.visible as f64).cbrt() * (self.spread / report.noise).ln();
+        let gain = (report.visible as f64).sqrt().sqrt() * (self.spread / report.noise).ln();
         if !gain.is_finite() {
             return;
         }

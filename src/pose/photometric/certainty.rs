@@ -4,6 +4,12 @@
 //! light has followed (Huber's sandwich over clusters). Noise, wrong normals and interpolation enter with the size and
 //! the correlation that they have, so nothing is assumed about them but that tiles are independent. What leaves no
 //! residual is allowed for by a factor that was measured.
+//!
+//! M itself is feigned in part: slopes of a noisy image are noise as well, and noise squared passes for information. A
+//! ball, whose colours tell nothing of its rotation, has just as much of it as F = sum w s^2 k D^T D with s the noise of
+//! the image, D = d pixel / d unknowns and k the covariance of the two slopes of white noise. So the eigenvalues of M
+//! over F (one where there is nothing but noise, 5 to 5000 for shapes with features) say what the colours tell, and
+//! sigmas grow by lambda / (lambda - 1) along each of their directions.
 
 use nalgebra::SymmetricEigen;
 
@@ -31,6 +37,11 @@ const MODEL_NOISE: f64 = 2.0;
 /// One sigma where all residuals are the model's, over what tiles tell: such errors reach across tiles. Photographs in
 /// one lamp's light that leave more than twice their noise end 4 to 17 such sigmas off, the others 1 to 3.
 const MODEL_SIGMA: f64 = 2.0;
+/// k: covariance of the slopes of white noise of variance one, once of the image's spline and once of the slightly
+/// blurred one's, mean over the positions in a cell (by quadrature over both splines' responses to one pixel).
+const SLOPE_COVARIANCE: f64 = 0.144;
+/// Least lambda - 1: chance puts lambda of a ball to 0.85 .. 1.15, and a sigma a thousand times as large is unknown.
+const LEAST_SIGNAL: f64 = 1e-3;
 /// Sigma of a direction that nothing is known about, radians or object sizes.
 const UNKNOWN: f64 = 1e3;
 /// Cap on the rounds of the eigenvalue iteration, which ends after about 20.
@@ -86,6 +97,19 @@ impl Photometric {
         })
     }
 
+    /// F, see the module.
+    fn feigned(&self, problem: &PhotometricProblem<'_>, scene: &Scene<'_>, frame: &Frame) -> Square {
+        let variance = 3.0 * SLOPE_COVARIANCE * self.image_noise.powi(2);
+        let mut sum = Square::zeros();
+        self.points.each(problem, scene, &self.state, self.robust, frame, |index, _, weight| {
+            let (point, _) = problem.carried(&self.state.pose, index);
+            for motion in scene.motion(&point, frame).iter().flatten() {
+                sum.ger(variance * weight, motion, motion, 1.0);
+            }
+        });
+        sum
+    }
+
     /// Factor of one sigma for what the residuals of the tiles do not tell.
     fn unseen(&self) -> f64 {
         let of_image = MODEL_NOISE * self.image_noise / self.noise;
@@ -98,6 +122,7 @@ impl Photometric {
         let light = self.state.exposed();
         let slopes = Some(&self.slopes);
         let scene = Scene { image: &self.levels[0], slopes, camera: &problem.image.camera, light: &light };
+        let mut feigned = self.feigned(problem, &scene, frame);
         self.tiles.fill(Row::zeros());
         let across = problem.depth.size.width.div_ceil(TILE);
         let tiles = &mut self.tiles;
@@ -114,10 +139,13 @@ impl Photometric {
         let free = held.iter().filter(|&&held| !held).count() as f64;
         let mut matrix = reduced.matrix;
         hold(&mut matrix, &held);
+        hold(&mut feigned, &held);
         let mut covariance = match matrix.try_inverse() {
             // Fewer tiles than unknowns say nothing about the spread.
             Some(inverse) if count > free => {
-                inverse * spread * inverse.transpose() * (self.unseen().powi(2) * count / (count - free))
+                let growth = growth(&matrix, &feigned).unwrap_or_else(Square::identity);
+                let listening = growth * inverse;
+                listening * spread * listening.transpose() * (self.unseen().powi(2) * count / (count - free))
             }
             _ => Square::identity() * UNKNOWN.powi(2),
         };
@@ -130,4 +158,16 @@ impl Photometric {
         }
         covariance
     }
+}
+
+/// The map of steps that stretches each eigenvector of `matrix` over `feigned` by lambda / (lambda - 1); `None` where
+/// the noise feigns nothing.
+fn growth(matrix: &Square, feigned: &Square) -> Option<Square> {
+    let root = feigned.cholesky()?.l();
+    let inverse = root.try_inverse()?;
+    let symmetric = 0.5 * (matrix + matrix.transpose());
+    let eigen = SymmetricEigen::try_new(inverse * symmetric * inverse.transpose(), f64::EPSILON, MOST_EIGEN_ROUNDS)?;
+    let stretch = eigen.eigenvalues.map(|value| value.max(1.0) / (value - 1.0).max(LEAST_SIGNAL));
+    let vectors = eigen.eigenvectors;
+    Some(inverse.transpose() * vectors * Square::from_diagonal(&stretch) * vectors.transpose() * root.transpose())
 }

@@ -71,6 +71,17 @@ impl Scene<'_> {
         Some(Linear { residual, jacobian, listener, basis })
     }
 
+    /// d (column, row) / d unknowns of a carried point: by this the noise of the image's slopes enters the equations.
+    pub fn motion(&self, point: &Vector3<f64>, frame: &Frame) -> Option<[Row; 2]> {
+        let (_, by_point) = self.camera.project_with_gradient(self.image.size(), (*point).into())?;
+        let arm = point - frame.centre;
+        Some(by_point.map(|slope| {
+            let slope = Vector3::from(slope);
+            let (turn, shift) = (arm.cross(&slope), frame.length * slope);
+            Row::from([turn.x, turn.y, turn.z, shift.x, shift.y, shift.z, arm.dot(&slope)])
+        }))
+    }
+
     /// d (B L) / d n, a row for each channel.
     fn shade_gradient(&self, normal: &Vector3<f64>) -> Matrix3<f64> {
         let gradient = basis_gradient((*normal).into());
