@@ -51,6 +51,29 @@ impl Pinhole {
         ]
     }
 
+    fn is_undistorted(&self) -> bool {
+        self.distortion == [0.0; 5]
+    }
+
+    /// The point that is distorted to `target`, NaN where there is none. Newton's method: where the lens folds, the
+    /// point may have no origin or a second one behind the fold, which mirrors and does not count.
+    fn undistort(&self, target: [f64; 2]) -> [f64; 2] {
+        let mut point = target;
+        for _ in 0..UNDISTORT_ROUNDS {
+            let [x, y] = self.distort(point);
+            let [right, down] = [target[0] - x, target[1] - y];
+            let [[a, b], [c, d]] = self.distortion_gradient(point);
+            let determinant = a * d - b * c;
+            let returns = (self.fx * right).hypot(self.fy * down) < RETURN_DISTANCE;
+            if returns && determinant > 0.0 && a + d > 0.0 {
+                return point;
+            }
+            point[0] += (d * right - b * down) / determinant;
+            point[1] += (a * down - c * right) / determinant;
+        }
+        [f64::NAN; 2]
+    }
+
     /// d distorted / d (x, y).
     fn distortion_gradient(&self, [x, y]: [f64; 2]) -> [[f64; 2]; 2] {
         let [k1, k2, p1, p2, k3] = self.distortion;
@@ -75,8 +98,10 @@ pub enum Camera {
     Pinhole(Pinhole),
 }
 
-/// Fixed-point rounds that undo the distortion; 20 bring usual lenses below 1e-9.
+/// Newton's rounds that undo the distortion at most; usual lenses take two or three.
 const UNDISTORT_ROUNDS: usize = 20;
+/// A ray that comes this near to its pixel runs through it, in pixels: far below what depths of 32 bits can tell.
+const RETURN_DISTANCE: f64 = 1e-6;
 
 impl Camera {
     /// Continuous pixel coordinates (column, row) of a point, `None` behind a pinhole camera.
@@ -112,25 +137,43 @@ impl Camera {
         Some((pixel, gradient))
     }
 
-    /// Direction through a pixel with z = 1 for a pinhole camera; for an orthographic one the x and y of every point on
-    /// it.
+    /// Direction through a pixel with z = 1 for a pinhole camera, NaN where the lens lets none through; for an
+    /// orthographic camera the x and y of every point on it.
     #[must_use]
     pub fn ray(&self, size: Size, [column, row]: [f64; 2]) -> [f64; 2] {
         match self {
             Self::Orthographic => [column - centre(size.width), row - centre(size.height)],
             Self::Pinhole(pinhole) => {
                 let target = [(column - pinhole.cx) / pinhole.fx, (row - pinhole.cy) / pinhole.fy];
-                if pinhole.distortion == [0.0; 5] {
-                    return target;
-                }
-                let mut point = target;
-                for _ in 0..UNDISTORT_ROUNDS {
-                    let [x, y] = pinhole.distort(point);
-                    point = [point[0] + target[0] - x, point[1] + target[1] - y];
-                }
-                point
+                if pinhole.is_undistorted() { target } else { pinhole.undistort(target) }
             }
         }
+    }
+
+    /// Takes the pixels out of `mask` that no ray runs through, or through half a pixel around, where slopes and normals
+    /// look: a lens may bend all light elsewhere.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Range`] naming `field` where that is so of most pixels in the mask whose `values` are not NaN.
+    pub(super) fn keep_seen(&self, field: &'static str, size: Size, values: &[f32], mask: &mut [bool]) -> Result<()> {
+        if self.pinhole().is_none_or(|pinhole| pinhole.is_undistorted()) {
+            return Ok(());
+        }
+        let mut balance = 0;
+        for (index, inside) in mask.iter_mut().enumerate().filter(|(_, inside)| **inside) {
+            let (column, row) = size.position(index);
+            *inside = [[0.0, 0.0], [0.5, 0.0], [-0.5, 0.0], [0.0, 0.5], [0.0, -0.5]]
+                .into_iter()
+                .all(|[right, down]| !self.ray(size, [column as f64 + right, row as f64 + down])[0].is_nan());
+            if !values[index].is_nan() {
+                balance += if *inside { 1 } else { -1 };
+            }
+        }
+        if balance >= 0 {
+            return Ok(());
+        }
+        let message = "can't be undone: no ray runs through most of the object's pixels";
+        Err(Error::new(ErrorKind::Range, field, message))
     }
 
     /// The point at `depth` seen through a pixel.
@@ -175,6 +218,29 @@ fn centre(side: usize) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn rays_return_to_their_pixels_and_end_where_the_lens_folds() {
+        let size = Size { width: 64, height: 64 };
+        let camera = |distortion| Camera::Pinhole(Pinhole { fx: 60.0, fy: 60.0, cx: 32.0, cy: 32.0, distortion });
+        // A barrel, a strong pincushion that a fixed point would run away from, and one with everything.
+        for lens in [[-0.2, 0.0, 0.0, 0.0, 0.0], [2.0, 0.0, 0.0, 0.0, 0.0], [0.1, -0.05, 0.003, -0.002, 0.01]] {
+            let camera = camera(lens);
+            for pixel in [[0.0, 0.0], [63.0, 10.0], [31.5, 32.5]] {
+                let [x, y] = camera.ray(size, pixel);
+                let [column, row] = camera.project(size, [x, y, 1.0]).unwrap();
+                assert!((column - pixel[0]).hypot(row - pixel[1]) < RETURN_DISTANCE, "{lens:?} {pixel:?}");
+            }
+        }
+        // r - r^3 grows to 0.385 at most: 23 pixels from the middle. Beyond lie mirrored solutions alone.
+        let folding = camera([-1.0, 0.0, 0.0, 0.0, 0.0]);
+        assert!(folding.ray(size, [54.5, 32.0])[0].is_finite() && folding.ray(size, [55.5, 32.0])[0].is_nan());
+        let mut middle: Vec<bool> = (0..size.len()).map(|index| size.position(index).0 == 32).collect();
+        folding.keep_seen("lens", size, &[1.0; 64 * 64], &mut middle).unwrap();
+        assert!(middle[size.index(32, 32)] && !middle[size.index(32, 2)]);
+        let error = folding.keep_seen("lens", size, &[1.0; 64 * 64], &mut [true; 64 * 64]).unwrap_err();
+        assert_eq!((error.kind(), error.field()), (ErrorKind::Range, "lens"));
+    }
 
     #[test]
     fn the_gradient_of_the_projection_is_the_difference_quotient() {

@@ -66,7 +66,7 @@ impl ColourView {
     /// Checks the image and takes its logarithms. Masked out are black and saturated pixels, and transparent ones.
     ///
     /// # Errors
-    /// [`ErrorKind::Size`] for sizes that disagree, [`ErrorKind::Range`] for bad intrinsics,
+    /// [`ErrorKind::Size`] for sizes that disagree, [`ErrorKind::Range`] for bad intrinsics or lenses,
     /// [`ErrorKind::Empty`] where fewer than 16 pixels are usable.
     pub fn new(image: ColourImage) -> Result<Self> {
         let size = Size::new("image", image.width, image.height)?;
@@ -97,6 +97,11 @@ impl ColourView {
                 }
             }
         }
+        let camera = image.camera.map_or(Camera::Orthographic, Camera::Pinhole);
+        camera.keep_seen("image.camera.distortion", size, &log[0], &mut usable)?;
+        for index in (0..size.len()).filter(|&index| !usable[index]) {
+            log.iter_mut().for_each(|channel| channel[index] = f32::NAN);
+        }
         if usable.iter().filter(|&&usable| usable).count() < FEWEST_PIXELS {
             return Err(Error::new(
                 ErrorKind::Empty,
@@ -104,7 +109,6 @@ impl ColourView {
                 format!("fewer than {FEWEST_PIXELS} object pixels are neither black nor saturated"),
             ));
         }
-        let camera = image.camera.map_or(Camera::Orthographic, Camera::Pinhole);
         Ok(Self { size, camera, mask: usable, log, transfer })
     }
 

@@ -59,6 +59,8 @@ pub struct DepthView {
     pub trimmed: usize,
 }
 
+/// What is at fault where the lens lets no rays through.
+const LENS: &str = "depth.camera.distortion";
 /// Default metres of a stored integer where a camera is known: millimetres.
 const MILLIMETRE: f64 = 0.001;
 /// Without a mask, an enclosed gap belongs to the object up to this share of its pixels.
@@ -68,7 +70,7 @@ impl DepthView {
     /// Checks the depth map, trims it where `trim` is set, and computes points and normals.
     ///
     /// # Errors
-    /// [`ErrorKind::Size`] for sizes that disagree, [`ErrorKind::Range`] for bad intrinsics or units,
+    /// [`ErrorKind::Size`] for sizes that disagree, [`ErrorKind::Range`] for bad intrinsics, lenses or units,
     /// [`ErrorKind::Empty`] where fewer than 16 pixels have a depth.
     pub fn new(map: &DepthMap, trim: bool) -> Result<Self> {
         let size = Size::new("depth", map.width, map.height)?;
@@ -77,12 +79,15 @@ impl DepthView {
         }
         let camera = map.camera.map_or(Camera::Orthographic, Camera::Pinhole);
         let unit = map.unit_or_default()?;
-        let object = mask::object("depth.mask", size, map.mask.as_deref())?;
+        let mut object = mask::object("depth.mask", size, map.mask.as_deref())?;
         let mut points = map.points(size, camera, unit)?;
+        let organised = matches!(map.samples, DepthSamples::Cloud(_));
+        // A cloud has no use for rays.
+        let rays = if organised { Camera::Orthographic } else { camera };
+        rays.keep_seen(LENS, size, &points.z, &mut object)?;
         for index in (0..size.len()).filter(|&index| !object[index]) {
             points.set(index, [f32::NAN; 3]);
         }
-        let organised = matches!(map.samples, DepthSamples::Cloud(_));
         let mut view = Self {
             size,
             camera,
@@ -100,6 +105,7 @@ impl DepthView {
         }
         if map.mask.is_none() {
             view.mask = enclosed(size, &view.depth);
+            rays.keep_seen(LENS, size, &view.depth, &mut view.mask)?;
         }
         view.drop_islands();
         view.normals = match &map.normals {
@@ -163,7 +169,7 @@ impl DepthMap {
         }
     }
 
-    /// Points in metres or pixels, NaN at holes.
+    /// Points in metres or pixels, NaN at holes; x and y also where no ray runs.
     fn points(&self, size: Size, camera: Camera, unit: f64) -> Result<Points> {
         let (field, per_pixel, length) = match &self.samples {
             DepthSamples::Float(data) => ("depth.data", 1, data.len()),
@@ -274,6 +280,20 @@ mod tests {
     fn all_nan_is_refused_by_name() {
         let error = DepthView::new(&map(DepthSamples::Float(vec![f32::NAN; 100])), true).unwrap_err();
         assert_eq!((error.kind(), error.field()), (ErrorKind::Empty, "depth.data"));
+    }
+
+    #[test]
+    fn where_the_lens_lets_no_ray_through_is_no_depth() {
+        let mut input = map(DepthSamples::Float(vec![1.0; 100]));
+        // No ray runs farther than 0.385 focal lengths from the middle.
+        let camera = Pinhole { fx: 10.0, fy: 10.0, cx: 4.5, cy: 4.5, distortion: [-1.0, 0.0, 0.0, 0.0, 0.0] };
+        input.camera = Some(camera);
+        assert_eq!(DepthView::new(&input, true).unwrap_err().field(), "depth.camera.distortion");
+        input.camera = Some(Pinhole { fx: 14.0, fy: 14.0, ..camera });
+        let view = DepthView::new(&input, true).unwrap();
+        assert!(!view.mask[0] && view.depth[0].is_nan() && view.mask[55]);
+        assert!((50..100).contains(&view.valid()));
+        assert!((0..100).all(|index| view.points.is_valid(index) != view.depth[index].is_nan()));
     }
 
     #[test]

@@ -163,7 +163,8 @@ impl Normals {
     /// Whether there is a vector at `index`.
     #[must_use]
     pub fn is_valid(&self, index: usize) -> bool {
-        !self.z[index].is_nan()
+        // A sum is NaN where a member is.
+        !self.get(index).iter().sum::<f32>().is_nan()
     }
 
     /// Mean of the vectors that are there, zero where there is none.
@@ -187,6 +188,18 @@ impl Normals {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_vector_with_a_missing_member_is_missing() {
+        let mut points = Points::missing(1);
+        points.set(0, [1.0; 3]);
+        assert!(points.is_valid(0));
+        for axis in 0..3 {
+            let point = [0, 1, 2].map(|other| if other == axis { f32::NAN } else { 1.0 });
+            points.set(0, point);
+            assert!(!points.is_valid(0), "{point:?}");
+        }
+    }
 
     #[test]
     fn the_rim_has_the_colours_of_its_known_neighbours() {

@@ -57,6 +57,9 @@ describe("after init", () => {
     refused(onImage({ camera: { ...camera, distortion: [1, 2] } }), "size", "image.camera.distortion");
     refused(onImage({ camera: { ...camera, f: 30 } }), "option", "image.camera.f");
     refused(onDepth({ camera: { fx: 30, fy: 30, cx: 16 } }), "missing", "depth.camera.cy");
+    const folded = { fx: 60, fy: 60, cx: 90, cy: 90, distortion: [-1, 0, 0, 0, 0] };
+    refused(onDepth({ camera: folded }), "range", "depth.camera.distortion");
+    refused(onImage({ camera: folded }), "range", "image.camera.distortion");
     refused(onDepth({ unit: 0 }), "range", "depth.unit");
   });
 

@@ -137,6 +137,17 @@ test("colours may come in every kind of array", () => {
   assert.equal(integers.step().iteration, 1);
 });
 
+test("depths where a folding lens lets no ray through are left out", () => {
+  const { image, depth, light } = pair({ size: 64 });
+  const camera = { fx: 60, fy: 60, cx: 32, cy: 32, distortion: [-1, 0, 0, 0, 0] };
+  const made = new Estimator(image, { ...depth, camera }, { light, start: "identity" });
+  const { pose, stage, message } = made.step();
+  assert.equal(stage, "refinement", message);
+  assert.ok([pose.scale, ...pose.rotation, ...pose.translation].every(Number.isFinite));
+  for (const view of ["image", "depth"]) assert.ok(made.points(view).every(Number.isFinite), view);
+  assert.ok(made.refinedDepth().some(Number.isFinite));
+});
+
 test("stepFor does at least one step and stops at the end", () => {
   const made = estimator({ maxIterations: 3 });
   assert.equal(made.stepFor(0).iteration, 1);
