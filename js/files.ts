@@ -85,8 +85,7 @@ function alphaMask({ width, height, channels, data }: Raster<Pixels>): Uint8Arra
 /** A colour image: PNG, or .npy of rows x columns (x 3 or 4), floats being linear. */
 export function decodeColour(file: Bytes): ColorImage {
   const raster = read(file);
-  const { width, height, channels, data } = raster;
-  if (channels > 4) throw bad(`a colour image has 1 to 4 channels, not ${channels}`);
+  const { width, height, data } = raster;
   const pixels = width * height;
   if (data instanceof Float32Array) return { width, height, data: spread(raster, new Float32Array(3 * pixels), 3, 1) };
   const rgba =

@@ -18,6 +18,9 @@ const MAGIC = "\x93NUMPY";
 /** Magic, two bytes of version, two or four of header length. */
 const SHORTEST = 10;
 
+/** Red, green, blue and alpha. */
+const MOST_CHANNELS = 4;
+
 const bad = (message: string) => new BimodalError("file", `file: ${message}`, "file");
 
 export const isNpy = (bytes: Uint8Array): boolean => [...MAGIC].every((letter, i) => bytes[i] === letter.charCodeAt(0));
@@ -51,11 +54,17 @@ export function readNpy(bytes: Uint8Array): Raster<Float32Array | Uint16Array | 
   if (!header.includes("'fortran_order': False")) {
     throw bad("this .npy file is in column order; save it with numpy.ascontiguousarray");
   }
-  const shape = /'shape': \(([^)]*)\)/.exec(header)?.[1]?.split(",").filter((part) => part.trim() !== "").map(Number) ?? [];
-  const [height = 0, width = 0, channels = 1] = shape;
-  if (shape.length < 2 || shape.length > 3) {
-    throw bad(`this .npy file has ${shape.length} axes; rows and columns, or rows, columns and channels are needed`);
+  const listed = /'shape': \(([^)]*)\)/.exec(header)?.[1] ?? "";
+  const axes = listed.split(",").map((part) => part.trim()).filter((part) => part !== "");
+  if (axes.length < 2 || axes.length > 3) {
+    throw bad(`this .npy file has ${axes.length} axes; rows and columns, or rows, columns and channels are needed`);
   }
+  // Nothing but digits: Number() would also take "2.5", "-2" and "0x2".
+  if (!axes.every((axis) => /^[0-9]+$/.test(axis) && Number(axis) > 0)) {
+    throw bad(`this .npy file has the shape (${listed.trim()}); whole numbers above zero are needed`);
+  }
+  const [height = 0, width = 0, channels = 1] = axes.map(Number);
+  if (channels > MOST_CHANNELS) throw bad(`this .npy file has ${channels} channels; 1 to ${MOST_CHANNELS} are read here`);
   const count = height * width * channels;
   const { size, read } = KINDS[kind];
   const body = bytes.subarray(until);

@@ -95,10 +95,19 @@ describe(".npy", () => {
       { shape: [1, 1, 2, 3] },
       { shape: [1, 3, 2] },
       { shape: [20, 3] },
+      { shape: [-2, 3] },
+      { shape: [2.5, 3] },
+      { shape: ["x", 3] },
+      { shape: ["0x2", 3] },
+      { shape: [2, 3, 0] },
+      { shape: [0, 3] },
+      { shape: [1e300, 3] },
     ]) {
       refused(wrong(changes), "file", "file");
     }
     assert.throws(wrong({ descr: "<c8" }), /type "<c8"/);
+    const five = npy({ descr: "|u1", shape: [1, 1, 5], data: new Uint8Array(5) });
+    for (const decode of [decodeColour, decodeDepth, decodeMask]) refused(() => decode(five), "file", "file");
     const whole = npy({ descr: "<f4", shape: [2, 3], data });
     for (const length of [6, 9, 20, whole.length - 1]) refused(() => decodeDepth(whole.slice(0, length)), "file", "file");
   });
