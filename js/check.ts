@@ -27,12 +27,13 @@ const flag: Check = (value, field) => {
   if (typeof value !== "boolean") throw wrong(field, "true or false", value);
 };
 
-/** Any list of numbers, typed arrays included. */
-const numbers: Check = (value, field) => {
-  const listed =
-    isObject(value) && "length" in value && typeof value.length === "number" &&
-    Array.from({ ...value, length: value.length }).every((item) => typeof item === "number");
-  if (!listed) throw wrong(field, "a list of numbers", value);
+/** A list of so many numbers, typed arrays included. Its length comes first: what claims to be longer is not copied. */
+const numbers = (count: number): Check => (value, field) => {
+  const length = isObject(value) && "length" in value ? value.length : undefined;
+  if (typeof length !== "number") throw wrong(field, "a list of numbers", value);
+  if (length !== count) throw new BimodalError("size", `${field}: needs ${count} numbers, not ${length}`, field);
+  const copy: unknown[] = Array.from({ ...Object(value), length });
+  if (!copy.every((item) => typeof item === "number")) throw wrong(field, "a list of numbers", value);
 };
 
 type ArrayType = { readonly name: string; new (length: number): ArrayBufferView };
@@ -105,9 +106,11 @@ const object = (shape: Shape, required: readonly string[] = []): Check => (value
   }
 };
 
-const camera = object({ fx: number, fy: number, cx: number, cy: number, distortion: numbers }, ["fx", "fy", "cx", "cy"]);
+const camera = object({ fx: number, fy: number, cx: number, cy: number, distortion: numbers(5) }, ["fx", "fy", "cx", "cy"]);
 const angles = object({ alpha: number, beta: number, gamma: number });
-const pose = object({ scale: number, rotation: numbers, translation: numbers, angles });
+const pose = object({ scale: number, rotation: numbers(9), translation: numbers(3), angles });
+/** Nine coefficients for each of three channels. */
+const light = numbers(27);
 const lambda = object({ prior: number, unit: number, light: number, refinement: number });
 
 const image = object(
@@ -137,7 +140,7 @@ const depth = object(
 );
 
 const options = object({
-  light: wordOr(["estimate"], numbers, "27 numbers"),
+  light: wordOr(["estimate"], light, "27 numbers"),
   start: wordOr(["search", "identity"], pose, "a pose"),
   scale: wordOr(["free"], number, "a number"),
   registration: word("joint", "icp", "fixed"),
@@ -158,7 +161,7 @@ const sample = object(
       if (typeof value !== "string") relief(value, field);
     },
     light: (value, field) => {
-      if (typeof value !== "string") numbers(value, field);
+      if (typeof value !== "string") light(value, field);
     },
     size: number,
     height: number,

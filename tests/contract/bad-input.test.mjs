@@ -81,6 +81,18 @@ describe("after init", () => {
     refused(withOptions({ start: { angles: { beta: NaN } } }), "range", "options.start.rotation");
   });
 
+  test("lists that claim a length are not copied to see", () => {
+    const endless = { length: 1e9 };
+    const camera = { fx: 30, fy: 30, cx: 16, cy: 16, distortion: endless };
+    refused(withOptions({ light: endless }), "size", "options.light");
+    refused(withOptions({ start: { rotation: endless } }), "size", "options.start.rotation");
+    refused(withOptions({ start: { translation: endless } }), "size", "options.start.translation");
+    refused(onDepth({ camera }), "size", "depth.camera.distortion");
+    refused(() => sample({ surface: "bust", light: endless }), "size", "sample.light");
+    refused(withOptions({ light: { length: NaN } }), "size", "options.light");
+    refused(withOptions({ light: { length: 27 } }), "type", "options.light");
+  });
+
   test("misspelt names, with the likely one", () => {
     refused(withOptions({ regstration: "icp" }), "option", "options.regstration");
     assert.throws(withOptions({ regstration: "icp" }), /did you mean "registration"\?/);
@@ -108,7 +120,7 @@ describe("after init", () => {
     refused(onImage({ transfer: "gamma" }), "option", "image.transfer");
     refused(onDepth({ data: new Float64Array(32 * 32) }), "type", "depth.data");
     refused(withOptions({ light: { red: 1 } }), "type", "options.light");
-    refused(withOptions({ light: ["1"] }), "type", "options.light");
+    refused(withOptions({ light: new Array(27).fill("1") }), "type", "options.light");
     refused(withOptions({ maxIterations: "10" }), "type", "options.maxIterations");
     refused(withOptions({ trim: 1 }), "type", "options.trim");
     refused(withOptions({ registration: 3 }), "type", "options.registration");
