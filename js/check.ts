@@ -1,6 +1,7 @@
 /**
  * Names and types, checked before wasm sees them: a misspelt key or a string for a number would otherwise pass in
- * silence or fail without a name. Values (ranges, lengths, finiteness) are checked in Rust, once.
+ * silence or fail without a name. Values (ranges, lengths, finiteness) are checked in Rust, once, but for those that it
+ * never sees or could not take in.
  */
 import { BimodalError } from "./errors.js";
 
@@ -27,6 +28,25 @@ const flag: Check = (value, field) => {
   if (typeof value !== "boolean") throw wrong(field, "true or false", value);
 };
 
+/** Counts and seeds: JavaScript has one type for all numbers, the numerics have none for halves and infinities. */
+const whole: Check = (value, field) => {
+  number(value, field);
+  if (typeof value === "number" && !(Number.isSafeInteger(value) && value >= 0)) {
+    throw new BimodalError("range", `${field}: must be a whole number, 0 .. 2^53 - 1 (got ${value})`, field);
+  }
+};
+
+/** Beyond it the numerics, which count in 32 bits, would take another number for it; their own limits are far below. */
+const LARGEST_COUNT = 2 ** 32 - 1;
+/** A whole number that fits 32 bits, or what a larger one is refused with. */
+const within = (code: "size" | "range"): Check => (value, field) => {
+  whole(value, field);
+  if (typeof value === "number" && value > LARGEST_COUNT) {
+    throw new BimodalError(code, `${field}: is far too large (got ${value})`, field);
+  }
+};
+const side = within("size");
+
 /** A list of so many numbers, typed arrays included. Its length comes first: what claims to be longer is not copied. */
 const numbers = (count: number): Check => (value, field) => {
   const length = isObject(value) && "length" in value ? value.length : undefined;
@@ -34,6 +54,17 @@ const numbers = (count: number): Check => (value, field) => {
   if (length !== count) throw new BimodalError("size", `${field}: needs ${count} numbers, not ${length}`, field);
   const copy: unknown[] = Array.from({ ...Object(value), length });
   if (!copy.every((item) => typeof item === "number")) throw wrong(field, "a list of numbers", value);
+};
+
+/** More is a mistake, no turn; far beyond, a sine means nothing. */
+const FULL_TURN = 360;
+/** An angle in degrees; here, because only the rotation that it makes is handed on. */
+const degrees: Check = (value, field) => {
+  number(value, field);
+  if (typeof value === "number" && !(Math.abs(value) <= FULL_TURN)) {
+    const message = `${field}: must lie within -${FULL_TURN} .. ${FULL_TURN} degrees (got ${value})`;
+    throw new BimodalError("range", message, field);
+  }
 };
 
 type ArrayType = { readonly name: string; new (length: number): ArrayBufferView };
@@ -107,7 +138,7 @@ const object = (shape: Shape, required: readonly string[] = []): Check => (value
 };
 
 const camera = object({ fx: number, fy: number, cx: number, cy: number, distortion: numbers(5) }, ["fx", "fy", "cx", "cy"]);
-const angles = object({ alpha: number, beta: number, gamma: number });
+const angles = object({ alpha: degrees, beta: degrees, gamma: degrees });
 const pose = object({ scale: number, rotation: numbers(9), translation: numbers(3), angles });
 /** Nine coefficients for each of three channels. */
 const light = numbers(27);
@@ -115,8 +146,8 @@ const lambda = object({ prior: number, unit: number, light: number, refinement: 
 
 const image = object(
   {
-    width: number,
-    height: number,
+    width: side,
+    height: side,
     mask: array(Uint8Array),
     camera,
     transfer: word("srgb", "linear"),
@@ -127,8 +158,8 @@ const image = object(
 
 const depth = object(
   {
-    width: number,
-    height: number,
+    width: side,
+    height: side,
     mask: array(Uint8Array),
     camera,
     unit: number,
@@ -148,13 +179,13 @@ const options = object({
   lambda,
   stopDegrees: number,
   correspondenceDistance: number,
-  maxIterations: number,
-  seed: number,
+  maxIterations: within("range"),
+  seed: whole,
   annealing: flag,
   trim: flag,
 });
 
-const relief = object({ width: number, height: number, heights: array(Float32Array) }, ["width", "height", "heights"]);
+const relief = object({ width: side, height: side, heights: array(Float32Array) }, ["width", "height", "heights"]);
 const sample = object(
   {
     surface: (value, field) => {
@@ -163,8 +194,8 @@ const sample = object(
     light: (value, field) => {
       if (typeof value !== "string") light(value, field);
     },
-    size: number,
-    height: number,
+    size: side,
+    height: side,
     protocol: word("rendered", "grid"),
     angles,
     scale: number,
@@ -172,7 +203,7 @@ const sample = object(
     noise: number,
     depthNoise: number,
     holes: number,
-    seed: number,
+    seed: whole,
   },
   ["surface", "light"],
 );
@@ -186,7 +217,7 @@ const signal: Check = (value, field) => {
 const callback: Check = (value, field) => {
   if (typeof value !== "function") throw wrong(field, "a function", value);
 };
-/** The one number that never reaches the numerics, and so is judged here. */
+/** A number that never reaches the numerics, and so is judged here. */
 const count: Check = (value, field) => {
   number(value, field);
   if (typeof value === "number" && !(Number.isInteger(value) && value > 0)) {

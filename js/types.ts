@@ -41,7 +41,10 @@ export interface DepthMap {
   normals?: Float32Array;
 }
 
-/** P_colour = scale * rotation * P_depth + translation; rotation row-major; angles in degrees, R = Rx Ry Rz. */
+/**
+ * P_colour = scale * rotation * P_depth + translation; rotation row-major; angles in degrees, R = Rx Ry Rz. A reported
+ * beta lies within -90 .. 90; given angles may be anything from -360 to 360.
+ */
 export interface Pose {
   scale: number;
   rotation: number[];
@@ -126,7 +129,7 @@ export interface SampleRequest {
    * follows from the surface; of the members below it takes `angles` and `overlap`.
    */
   protocol?: "rendered" | "grid";
-  /** The pose to find, degrees. Default beta = 20. */
+  /** The pose to find, degrees, each -360 .. 360. Default beta = 20. */
   angles?: { alpha?: number; beta?: number; gamma?: number };
   /** Scale of the pose to find: the depth view is 1 / scale times as large. Default 1. */
   scale?: number;

@@ -125,6 +125,8 @@ impl Default for Options {
     }
 }
 
+/// A term that weighs a million times the colours leaves no more than rounding of them in a 32-bit sum.
+const LARGEST_WEIGHT: f64 = 1e6;
 /// More iterations than anybody waits for; a cap against typing errors.
 const MOST_ITERATIONS: u32 = 100_000;
 
@@ -151,10 +153,17 @@ impl Options {
         if let Some(scale) = self.scale {
             positive("options.scale", scale)?;
         }
-        not_negative("options.lambda.prior", self.weights.prior)?;
-        not_negative("options.lambda.unit", self.weights.unit)?;
-        not_negative("options.lambda.light", self.weights.light)?;
-        not_negative("options.lambda.refinement", self.weights.refinement)?;
+        for (field, weight) in [
+            ("options.lambda.prior", self.weights.prior),
+            ("options.lambda.unit", self.weights.unit),
+            ("options.lambda.light", self.weights.light),
+            ("options.lambda.refinement", self.weights.refinement),
+        ] {
+            not_negative(field, weight)?;
+            if weight > LARGEST_WEIGHT {
+                return Err(Error::new(ErrorKind::Range, field, "must be at most a million").value(weight));
+            }
+        }
         positive("options.stopDegrees", self.stop_degrees)?;
         if let Some(distance) = self.correspondence_distance {
             positive("options.correspondenceDistance", distance)?;

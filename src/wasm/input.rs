@@ -1,4 +1,5 @@
-//! From the objects of the JavaScript contract to the native inputs.
+//! From the objects of the JavaScript contract to the native inputs. JavaScript has one type for all numbers: that sides,
+//! counts and seeds are whole and fit their types here has been checked by the facade.
 
 use js_sys::{Float32Array, Float64Array, Uint8Array, Uint8ClampedArray, Uint16Array};
 use nalgebra::{Matrix3, Vector3};
@@ -115,22 +116,6 @@ extern "C" {
     fn gamma(this: &JsAngles) -> Option<f64>;
 }
 
-/// Largest whole number that a JavaScript number holds exactly.
-const LARGEST_WHOLE: f64 = 9_007_199_254_740_991.0;
-
-/// A count or a seed: JavaScript has one type for all numbers.
-pub fn whole(field: &'static str, value: f64) -> Result<u64> {
-    if value.fract() == 0.0 && (0.0..=LARGEST_WHOLE).contains(&value) {
-        return Ok(value as u64);
-    }
-    Err(Error::new(ErrorKind::Range, field, "must be a whole number, 0 .. 2^53 - 1").value(value))
-}
-
-pub fn side(field: &'static str, value: f64) -> Result<usize> {
-    // wasm32 has 32-bit sizes: a larger number would wrap around into the allowed range.
-    whole(field, value).map(|side| usize::try_from(side).unwrap_or(usize::MAX))
-}
-
 /// Numbers from any list of numbers; `None` where there is none.
 pub fn numbers(value: &JsValue) -> Option<Vec<f64>> {
     value.is_object().then(|| Float64Array::new(value).to_vec())
@@ -155,8 +140,8 @@ pub fn image(js: &JsImage) -> Result<ColourImage> {
         ColourSamples::Rgba8(Uint8Array::new(&data).to_vec())
     };
     Ok(ColourImage {
-        width: side("image.width", js.width())?,
-        height: side("image.height", js.height())?,
+        width: js.width() as usize,
+        height: js.height() as usize,
         samples,
         transfer: js.transfer().map(|name| if name == "linear" { Transfer::Linear } else { Transfer::Srgb }),
         mask: js.mask().map(|mask| mask.to_vec()),
@@ -178,8 +163,8 @@ pub fn depth(js: &JsDepth) -> Result<DepthMap> {
         },
     };
     Ok(DepthMap {
-        width: side("depth.width", js.width())?,
-        height: side("depth.height", js.height())?,
+        width: js.width() as usize,
+        height: js.height() as usize,
         samples,
         unit: js.unit(),
         mask: js.mask().map(|mask| mask.to_vec()),
@@ -220,12 +205,8 @@ pub fn options(js: &JsOptions) -> Result<Options> {
         annealing: js.annealing().unwrap_or(default.annealing),
         stop_degrees: js.stop_degrees().unwrap_or(default.stop_degrees),
         correspondence_distance: js.correspondence_distance(),
-        max_iterations: match js.max_iterations() {
-            // Beyond 32 bits it is out of range all the more.
-            Some(most) => u32::try_from(whole("options.maxIterations", most)?).unwrap_or(u32::MAX),
-            None => default.max_iterations,
-        },
-        seed: js.seed().map_or(Ok(default.seed), |seed| whole("options.seed", seed))?,
+        max_iterations: js.max_iterations().map_or(default.max_iterations, |most| most as u32),
+        seed: js.seed().map_or(default.seed, |seed| seed as u64),
         trim: js.trim().unwrap_or(default.trim),
     })
 }

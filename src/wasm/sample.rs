@@ -5,7 +5,7 @@ use wasm_bindgen::prelude::wasm_bindgen;
 use wasm_bindgen::{JsCast, JsValue};
 
 use super::error::Thrown;
-use super::input::{JsAngles, angles, numbers, side, whole};
+use super::input::{JsAngles, angles, numbers};
 use super::output::{camera, mask, pose, set};
 use crate::error::Result;
 use crate::light::Light;
@@ -95,14 +95,13 @@ fn relief(js: &JsValue) -> Result<Relief> {
         return surfaces::surface(&name);
     }
     let given: &JsRelief = js.unchecked_ref();
-    let side = |name, value| side(name, value).map_err(|error| error.below("surface"));
-    Relief::new(side("width", given.width())?, side("height", given.height())?, given.heights().to_vec())
+    Relief::new(given.width() as usize, given.height() as usize, given.heights().to_vec())
 }
 
 fn request(js: &JsRequest) -> Result<SampleRequest> {
     let default = SampleRequest::default();
-    let width = js.size().map_or(Ok(default.size.width), |size| side("size", size))?;
-    let height = js.height().map_or(Ok(width), |height| side("height", height))?;
+    let width = js.size().map_or(default.size.width, |size| size as usize);
+    let height = js.height().map_or(width, |height| height as usize);
     Ok(SampleRequest {
         light: match numbers(&js.light()) {
             Some(values) => Light::from_slice("light", &values)?,
@@ -115,7 +114,7 @@ fn request(js: &JsRequest) -> Result<SampleRequest> {
         noise: js.noise().unwrap_or(default.noise),
         depth_noise: js.depth_noise().unwrap_or(default.depth_noise),
         holes: js.holes().unwrap_or(default.holes),
-        seed: js.seed().map_or(Ok(default.seed), |seed| whole("seed", seed))?,
+        seed: js.seed().map_or(default.seed, |seed| seed as u64),
         ..default
     })
 }

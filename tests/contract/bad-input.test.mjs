@@ -28,7 +28,9 @@ describe("after init", () => {
     refused(onDepth({ normals: new Float32Array(5) }), "size", "depth.normals");
     refused(onImage({ width: 32.5 }), "range", "image.width");
     refused(onImage({ width: -32 }), "range", "image.width");
-    refused(onImage({ width: 2 ** 32 + 32 }), "size", "image");
+    refused(onImage({ width: 2 ** 32 + 32 }), "size", "image.width");
+    assert.throws(onImage({ width: 2 ** 32 + 1 }), /\(got 4294967297\)$/);
+    assert.throws(onImage({ width: 1e300 }), /\(got 1e\+300\)$/);
     refused(onImage({ width: 4000, height: 3000, mask: undefined }), "memory", "image");
     refused(onDepth({ width: 4000, height: 3000, mask: undefined }), "memory", "depth");
   });
@@ -55,11 +57,11 @@ describe("after init", () => {
     refused(onImage({ camera: { ...camera, fy: -1 } }), "range", "image.camera.fy");
     refused(onImage({ camera: { ...camera, cx: NaN } }), "range", "image.camera.cx");
     refused(onImage({ camera: { ...camera, distortion: [1, 2] } }), "size", "image.camera.distortion");
-    refused(onImage({ camera: { ...camera, f: 30 } }), "option", "image.camera.f");
-    refused(onDepth({ camera: { fx: 30, fy: 30, cx: 16 } }), "missing", "depth.camera.cy");
     const folded = { fx: 60, fy: 60, cx: 90, cy: 90, distortion: [-1, 0, 0, 0, 0] };
     refused(onDepth({ camera: folded }), "range", "depth.camera.distortion");
     refused(onImage({ camera: folded }), "range", "image.camera.distortion");
+    refused(onImage({ camera: { ...camera, f: 30 } }), "option", "image.camera.f");
+    refused(onDepth({ camera: { fx: 30, fy: 30, cx: 16 } }), "missing", "depth.camera.cy");
     refused(onDepth({ unit: 0 }), "range", "depth.unit");
   });
 
@@ -69,6 +71,8 @@ describe("after init", () => {
     refused(withOptions({ light: [1, 2, 3] }), "size", "options.light");
     refused(withOptions({ lambda: { prior: -1 } }), "range", "options.lambda.prior");
     refused(withOptions({ lambda: { light: NaN } }), "range", "options.lambda.light");
+    refused(withOptions({ lambda: { light: 1e300 } }), "range", "options.lambda.light");
+    assert.throws(withOptions({ lambda: { light: 1e300 } }), /\(got 1e\+300\)$/);
     refused(withOptions({ scale: 0 }), "range", "options.scale");
     refused(withOptions({ stopDegrees: 0 }), "range", "options.stopDegrees");
     refused(withOptions({ correspondenceDistance: -1 }), "range", "options.correspondenceDistance");
@@ -78,7 +82,10 @@ describe("after init", () => {
     refused(withOptions({ start: { rotation: [1, 0, 0] } }), "size", "options.start.rotation");
     refused(withOptions({ start: { rotation: new Array(9).fill(0) } }), "range", "options.start.rotation");
     refused(withOptions({ start: { translation: [0, 0, Infinity] } }), "range", "options.start.translation");
-    refused(withOptions({ start: { angles: { beta: NaN } } }), "range", "options.start.rotation");
+    for (const beta of [NaN, 500, -1e308]) {
+      refused(withOptions({ start: { angles: { beta } } }), "range", "options.start.angles.beta");
+    }
+    withOptions({ start: { angles: { beta: 360 } } })().free();
   });
 
   test("lists that claim a length are not copied to see", () => {
@@ -145,6 +152,7 @@ describe("after init", () => {
     refused(request({ size: 8 }), "size", "sample.size");
     refused(request({ overlap: 0 }), "range", "sample.overlap");
     refused(request({ noise: -1 }), "range", "sample.noise");
+    for (const beta of [NaN, 500]) refused(request({ angles: { beta } }), "range", "sample.angles.beta");
     refused(request({ holes: 1 }), "range", "sample.holes");
     refused(request({ surface: undefined }), "missing", "sample.surface");
     refused(request({ surface: { width: 64, height: 64 } }), "missing", "sample.surface.heights");
