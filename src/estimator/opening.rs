@@ -33,8 +33,10 @@ const RIVAL_NOISE: f64 = 1.25;
 const RIVAL_VISIBLE: f64 = 0.5;
 /// Rivals reported at most.
 const MOST_RIVALS: usize = 5;
-/// Share of the opening's progress that the search itself takes.
+/// Share of the opening's progress that the search itself takes ..
 const SEARCH_SHARE: f64 = 0.5;
+/// .. and the first few registrations: what comes after them may be spared, and then progress leaps to its end.
+const FEW_SHARE: f64 = 0.25;
 
 /// Where the opening stands.
 #[expect(clippy::large_enum_variant, reason = "one value at a time, moved once")]
@@ -128,9 +130,7 @@ impl Opening {
                 self.enter(report);
             }
         }
-        let expected = if self.tried < FEW_TRIED { FEW_TRIED } else { MOST_TRIED };
-        let share = self.tried as f64 / expected as f64;
-        Look::Ongoing(SEARCH_SHARE + (1.0 - SEARCH_SHARE) * share, "registering the best candidates")
+        Look::Ongoing(registered_share(self.tried), "registering the best candidates")
     }
 
     /// Passes over candidates next to an end that has witnesses enough.
@@ -188,4 +188,11 @@ impl Opening {
             .collect();
         Some(Outcome { best: best.report, rivals })
     }
+}
+
+/// Share of the opening that is done after so many registrations.
+fn registered_share(tried: usize) -> f64 {
+    let few = tried.min(FEW_TRIED);
+    let more = (tried - few) as f64 / (MOST_TRIED - FEW_TRIED) as f64;
+    SEARCH_SHARE + FEW_SHARE * few as f64 / FEW_TRIED as f64 + (1.0 - SEARCH_SHARE - FEW_SHARE) * more
 }
