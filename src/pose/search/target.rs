@@ -52,6 +52,10 @@ impl Target {
     /// # Errors
     /// [`ErrorKind::Degenerate`] where all colours are the same.
     pub fn new(view: &ColourView, side: usize, fourier: &mut Fourier) -> Result<Self> {
+        // Asked of the pixels: their means over cells differ by rounding. Bright colours have large logarithms.
+        if view.log_spread() <= f64::from(f32::EPSILON) * (1.0 + view.log_mean().abs()) {
+            return Err(flat());
+        }
         let (cell, middle) = frame(view);
         let (mask, mut colour) = cells(view, side, cell, middle);
         let (mean, covariance) = moments(&mask, &colour);
@@ -133,9 +137,12 @@ fn moments(mask: &[f32], colour: &[Vec<f32>; 3]) -> (Vector3<f64>, Matrix3<f64>)
     (mean, weighted().map(spread).sum())
 }
 
+fn flat() -> Error {
+    Error::new(ErrorKind::Degenerate, "image", "all colours are the same")
+}
+
 /// W: principal axes over the fourth root of their variance, the first of them scaled to variance one.
 fn balance(covariance: &Matrix3<f64>) -> Result<Matrix3<f64>> {
-    let flat = || Error::new(ErrorKind::Degenerate, "image", "all colours are the same");
     let eigen = SymmetricEigen::try_new(*covariance, f64::EPSILON, MOST_EIGEN_ROUNDS).ok_or_else(flat)?;
     let largest = eigen.eigenvalues.max();
     if largest.is_nan() || largest <= f64::from(f32::EPSILON).powi(2) {
