@@ -63,8 +63,15 @@ impl Estimator {
             }
             Look::Done(outcome) => {
                 self.opening = None;
-                let outcome =
-                    outcome.ok_or_else(|| nowhere("no pose explains the colours by the depth map's normals"))?;
+                let outcome = outcome.ok_or_else(|| {
+                    nowhere(match gauge::held_scale(image, options) {
+                        Some(_) => "no pose explains the colours by the depth map's normals",
+                        None => {
+                            "no pose explains the colours by the depth map's normals at 0.7 to 1.4 times the scale \
+                             that the units give; `scale` or `start.scale` takes another one"
+                        }
+                    })
+                })?;
                 self.open(outcome);
                 Ok(())
             }
@@ -94,7 +101,7 @@ impl Estimator {
         let Some(joint) = joint else { return Ok(()) };
         let found = joint.register(&given(image, depth, prior, options), start)?.clone();
         if found.pose.growth_from(start) > LARGEST_GROWTH.ln() {
-            let message = "the colours pull the scale beyond half or twice that of the start";
+            let message = "the colours pull the scale away from the start's: their ratio must stay between 0.5 and 2";
             return Err(nowhere(message).value(found.pose.scale / start.scale));
         }
         self.adopt(&found);

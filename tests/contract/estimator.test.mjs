@@ -148,6 +148,13 @@ test("depths where a folding lens lets no ray through are left out", () => {
   assert.ok(made.refinedDepth().some(Number.isFinite));
 });
 
+test("a start of an absurd scale is lost, and the number that is named is a ratio", () => {
+  const made = estimator({ start: { scale: 1e-9 }, scale: "free" });
+  const { status, message } = made.step();
+  assert.equal(status, "lost");
+  assert.match(message, /their ratio must stay between 0\.5 and 2 \(got [\d.]+\)$/);
+});
+
 test("stepFor does at least one step and stops at the end", () => {
   const made = estimator({ maxIterations: 3 });
   assert.equal(made.stepFor(0).iteration, 1);

@@ -7,8 +7,8 @@ const REQUEST = { surface: "bust", light: "window", size: 64, angles: { alpha: 1
 const degrees = (a, b) => (2 * Math.asin(Math.hypot(...a.map((value, i) => value - b[i])) / Math.SQRT2 / 2) * 180) / Math.PI;
 
 /** Runs to the end; every report on the way. */
-function reports({ image, depth }, gain = 1) {
-  const estimator = new Estimator({ ...image, data: image.data.map((value) => gain * value) }, depth);
+function reports({ image, depth }, gain = 1, options = {}) {
+  const estimator = new Estimator({ ...image, data: image.data.map((value) => gain * value) }, depth, options);
   const seen = [];
   do seen.push(estimator.step());
   while (seen.at(-1).status === "running");
@@ -46,5 +46,12 @@ describe("opening", () => {
       assert.equal(last.status, "lost");
       assert.match(last.message, /all colours are the same/, `${value}`);
     }
+  });
+
+  test("where nothing is found, the scales that were compared are named, if there were any", () => {
+    const { image, depth } = sample({ ...REQUEST, size: 32 });
+    const message = (data, options) => reports({ image, depth: { ...depth, data } }, 1, options).at(-1).message;
+    assert.match(message(depth.data.map(() => 20)), /no pose explains .* 0\.7 to 1\.4 .*`scale` or `start\.scale`/);
+    assert.match(message(depth.data, { scale: 10 }), /no pose explains the colours by the depth map's normals$/);
   });
 });
