@@ -154,7 +154,7 @@ export interface Sample {
 }
 
 export interface RunOptions {
-  /** At most so many steps in this call. */
+  /** At most so many steps in this call, slices of the search included; `Options.maxIterations` counts iterations. */
   maxIterations?: number;
   signal?: AbortSignal;
   onStep?: (report: StepReport) => void;
