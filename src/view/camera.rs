@@ -150,8 +150,8 @@ impl Camera {
         }
     }
 
-    /// Takes the pixels out of `mask` that no ray runs through, or through half a pixel around, where slopes and normals
-    /// look: a lens may bend all light elsewhere.
+    /// Takes the pixels out of `mask` that no ray runs through, or through half a pixel around, where slopes look: a
+    /// lens may bend all light elsewhere.
     ///
     /// # Errors
     /// [`ErrorKind::Range`] naming `field` where that is so of most pixels in the mask whose `values` are not NaN.
