@@ -103,9 +103,8 @@ impl Photometric {
         let mut sum = Square::zeros();
         self.points.each(problem, scene, &self.state, self.robust, frame, |index, _, weight| {
             let (point, _) = problem.carried(&self.state.pose, index);
-            for motion in scene.motion(&point, frame).iter().flatten() {
-                sum.ger(variance * weight, motion, motion, 1.0);
-            }
+            let (_, motion) = scene.motion(&point, frame).unwrap_or_default();
+            motion.iter().for_each(|row| sum.ger(variance * weight, row, row, 1.0));
         });
         sum
     }

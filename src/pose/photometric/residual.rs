@@ -47,19 +47,18 @@ impl Scene<'_> {
 
     /// r and its derivatives.
     pub fn linear(&self, point: &Vector3<f64>, normal: &Vector3<f64>, frame: &Frame) -> Option<Linear> {
-        let (pixel, by_point) = self.camera.project_with_gradient(self.image.size(), (*point).into())?;
+        let (pixel, motion) = self.motion(point, frame)?;
         let seen = self.image.at(pixel)?;
         let basis = basis((*normal).into());
         let shade = self.light.of_basis(&basis);
         let by_normal = self.shade_gradient(normal);
-        let arm = point - frame.centre;
         let rows = |seen: &ImagePoint| {
             std::array::from_fn(|channel| {
                 let [by_column, by_row] = seen.gradient[channel];
-                let slope = Vector3::from_fn(|axis, _| by_column * by_point[0][axis] + by_row * by_point[1][axis]);
-                let turn = arm.cross(&slope) - normal.cross(&by_normal.row(channel).transpose());
-                let shift = frame.length * slope;
-                Row::from([turn.x, turn.y, turn.z, shift.x, shift.y, shift.z, arm.dot(&slope)])
+                let mut row = motion[0] * by_column + motion[1] * by_row;
+                let turn = normal.cross(&by_normal.row(channel).transpose());
+                (0..3).for_each(|axis| row[axis] -= turn[axis]);
+                row
             })
         };
         let jacobian = rows(&seen);
@@ -71,15 +70,16 @@ impl Scene<'_> {
         Some(Linear { residual, jacobian, listener, basis })
     }
 
-    /// d (column, row) / d unknowns of a carried point: by this the noise of the image's slopes enters the equations.
-    pub fn motion(&self, point: &Vector3<f64>, frame: &Frame) -> Option<[Row; 2]> {
-        let (_, by_point) = self.camera.project_with_gradient(self.image.size(), (*point).into())?;
+    /// The pixel of a carried point and its derivatives by the unknowns, of the column and of the row.
+    pub fn motion(&self, point: &Vector3<f64>, frame: &Frame) -> Option<([f64; 2], [Row; 2])> {
+        let (pixel, by_point) = self.camera.project_with_gradient(self.image.size(), (*point).into())?;
         let arm = point - frame.centre;
-        Some(by_point.map(|slope| {
+        let motion = by_point.map(|slope| {
             let slope = Vector3::from(slope);
             let (turn, shift) = (arm.cross(&slope), frame.length * slope);
             Row::from([turn.x, turn.y, turn.z, shift.x, shift.y, shift.z, arm.dot(&slope)])
-        }))
+        });
+        Some((pixel, motion))
     }
 
     /// d (B L) / d n, a row for each channel.
