@@ -163,8 +163,11 @@ test("nothing known: the search comes first, says how far it is, and the loop co
     new MutationObserver(listen).observe(chip, { attributes: true, childList: true, characterData: true, subtree: true });
     return said;
   });
+  const before = (await page.locator("#pose-error").textContent())?.match(/[\d.]+° at the start/)?.[0] ?? "none";
   await page.getByRole("button", { name: "Play" }).click();
   await expect(page.locator("#status")).toHaveAttribute("data-state", "converged", { timeout: 40_000 });
+  // The start is where the visitor began, not what the search found.
+  await expect(page.locator("#pose-error")).toContainText(before);
   expect((await said.jsonValue()).join(" ")).toMatch(/\d+ %/);
   expect(await lab.errorDegrees()).toBeLessThanOrEqual(1);
   await expect(page.locator("#status")).toHaveAttribute("data-tone", "good");

@@ -158,7 +158,7 @@ export class Lab {
       if (this.#held === source && source === this.#good?.source) {
         const frame = await this.#engine.call("reset", { options });
         if (turn !== this.#turn) return;
-        this.#history = [];
+        this.#forget();
         await this.#show(frame);
       } else {
         const opened = await this.#engine.call("open", { source, options });
@@ -185,7 +185,7 @@ export class Lab {
   async #present(opened: Opened): Promise<void> {
     this.#truth = opened.truth;
     this.#length = opened.units.image;
-    this.#history = [];
+    this.#forget();
     this.#notes = opened.notes;
     this.#showNotes();
     const drawn = this.gallery.open(opened);
@@ -212,6 +212,12 @@ export class Lab {
     return !this.#isFinished();
   }
 
+  /** What the last run showed. */
+  #forget(): void {
+    this.#history = [];
+    this.#from = undefined;
+  }
+
   #isFinished(): boolean {
     return this.#report !== undefined && this.#report.status !== "running";
   }
@@ -223,7 +229,8 @@ export class Lab {
 
   #take({ reports }: Frame): void {
     for (const report of reports) {
-      if (report.iteration === 0) this.#from = report.pose;
+      // The first of a run: a search has found its pose before the first iteration.
+      this.#from ??= report.pose;
       this.#report = report;
       if (report.iteration > (this.#history.at(-1)?.iteration ?? 0)) this.#history.push(report);
     }
