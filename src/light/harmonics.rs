@@ -1,6 +1,7 @@
 //! log S = n^T M n with n = [n_x n_y n_z 1]: second-order spherical harmonics (Eq. 3, 5).
 
 use crate::error::{Error, ErrorKind, Result};
+use crate::view::Real;
 
 /// Number of harmonics for each channel.
 pub const HARMONICS: usize = 9;
@@ -132,24 +133,28 @@ impl Polynomial {
         })
     }
 
-    /// log S (Eq. 3).
-    #[inline]
+    /// log S (Eq. 3) of one normal or of four.
+    #[inline(always)]
     #[must_use]
-    pub fn shade(&self, [x, y, z]: [f32; 3]) -> f32 {
-        self.one
-            + x * (self.linear[0] + self.xy * y + self.xz * z + self.xx_yy * x)
-            + y * (self.linear[1] + self.yz * z - self.xx_yy * y)
-            + z * (self.linear[2] + self.zz * z)
+    pub(crate) fn shade<T: Real>(&self, [x, y, z]: [T; 3]) -> T {
+        let [by_x, by_y, by_z] = self.linear;
+        T::splat(self.one)
+            + x * (T::splat(by_x) + T::splat(self.xy) * y + T::splat(self.xz) * z + T::splat(self.xx_yy) * x)
+            + y * (T::splat(by_y) + T::splat(self.yz) * z - T::splat(self.xx_yy) * y)
+            + z * (T::splat(by_z) + T::splat(self.zz) * z)
     }
 
     /// d log S / d n.
-    #[inline]
+    #[inline(always)]
     #[must_use]
-    pub fn gradient(&self, [x, y, z]: [f32; 3]) -> [f32; 3] {
+    pub(crate) fn gradient<T: Real>(&self, [x, y, z]: [T; 3]) -> [T; 3] {
+        let [by_x, by_y, by_z] = self.linear;
+        let (xy, yz, xz) = (T::splat(self.xy), T::splat(self.yz), T::splat(self.xz));
+        let (twice_zz, twice_xx_yy) = (T::splat(2.0 * self.zz), T::splat(2.0 * self.xx_yy));
         [
-            self.linear[0] + self.xy * y + self.xz * z + 2.0 * self.xx_yy * x,
-            self.linear[1] + self.xy * x + self.yz * z - 2.0 * self.xx_yy * y,
-            self.linear[2] + self.yz * y + self.xz * x + 2.0 * self.zz * z,
+            T::splat(by_x) + xy * y + xz * z + twice_xx_yy * x,
+            T::splat(by_y) + xy * x + yz * z - twice_xx_yy * y,
+            T::splat(by_z) + yz * y + xz * x + twice_zz * z,
         ]
     }
 }

@@ -9,8 +9,8 @@
 use nalgebra::{Matrix3, Vector3};
 
 use crate::light::{Light, Polynomial};
-use crate::shape::shading::{Linear, Pixel, ShadingProblem, ShadingWeights};
-use crate::view::{Normals, quantile};
+use crate::shape::shading::{self, Linear, Pixels, ShadingProblem, ShadingWeights};
+use crate::view::{LANES, Lanes, Normals, Real, quantile};
 
 /// Pixels and directions of the first look: enough for two digits.
 const LOOK_PIXELS: usize = 400;
@@ -89,23 +89,30 @@ fn misfit(colour: [f64; 3], offset: f64, shades: &[[f64; 3]]) -> f64 {
 pub fn exposure_step(problem: ShadingProblem<'_>, weights: ShadingWeights, normals: &Normals, moved: f64) -> f64 {
     let polynomials = Polynomial::of(problem.light);
     let (mut slope, mut curvature, mut count) = (0.0, 0.0, 0.0);
-    for index in (0..normals.len()).filter(|&index| normals.is_valid(index)) {
-        let pixel = Pixel::new(problem, index, weights, &polynomials);
-        let normal = normals.get(index);
-        let Some(residuals) = pixel.residuals(normal) else { continue };
-        let squared: f32 = residuals.iter().map(|residual| residual * residual).sum();
-        let weight = f64::from((1.0 + squared / (STEP_SCALE * STEP_SCALE)).powi(-2));
-        let Linear { gradient, matrix: [xx, xy, xz, yy, yz, zz], .. } = pixel.linearise(normal);
-        let matrix = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz).map(f64::from);
-        let pull = polynomials
-            .iter()
-            .fold(Vector3::zeros(), |sum, polynomial| sum + Vector3::from(polynomial.gradient(normal)).map(f64::from));
-        let Some(inverse) = matrix.try_inverse() else { continue };
-        // Zero where the normal's own solve has ended at a minimum; at the rim it ends at the border of the visible.
-        let unsettled = pull.dot(&(inverse * Vector3::from(gradient).map(f64::from)));
-        slope += weight * (f64::from(residuals.iter().sum::<f32>()) + unsettled);
-        curvature += weight * (3.0 - (pull.transpose() * inverse * pull)[0]).max(0.0);
-        count += weight;
+    for first in (0..normals.len()).step_by(LANES) {
+        let pixels = Pixels::new(problem, first, weights, &polynomials);
+        let four = shading::load(normals, first);
+        let residuals = pixels.residuals(four).map(Lanes::array);
+        let Linear { gradient, matrix, .. } = pixels.linearise(four);
+        let (gradient, matrix) = (gradient.map(Lanes::array), matrix.map(Lanes::array));
+        let usable = (pixels.coloured & four[2].finite()).select(Lanes::splat(1.0), Lanes::splat(0.0)).array();
+        for lane in (0..LANES).filter(|&lane| usable[lane] > 0.0) {
+            let residuals = residuals.map(|four| four[lane]);
+            let squared: f32 = residuals.iter().map(|residual| residual * residual).sum();
+            let weight = f64::from((1.0 + squared / (STEP_SCALE * STEP_SCALE)).powi(-2));
+            let [xx, xy, xz, yy, yz, zz] = matrix.map(|four| f64::from(four[lane]));
+            let gradient = Vector3::from(gradient.map(|four| f64::from(four[lane])));
+            let normal = normals.get(first + lane);
+            let pull = polynomials.iter().fold(Vector3::zeros(), |sum, polynomial| {
+                sum + Vector3::from(polynomial.gradient(normal)).map(f64::from)
+            });
+            let Some(inverse) = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz).try_inverse() else { continue };
+            // Zero where the normal's own solve has ended at a minimum; at the rim it ends at the border of the visible.
+            let unsettled = pull.dot(&(inverse * gradient));
+            slope += weight * (unsettled - f64::from(residuals.iter().sum::<f32>()));
+            curvature += weight * (3.0 - (pull.transpose() * inverse * pull)[0]).max(0.0);
+            count += weight;
+        }
     }
     if count == 0.0 {
         return 0.0;

@@ -34,8 +34,6 @@ const FIRST_DAMPING: f32 = 0.1;
 const DAMPING: [f32; 2] = [1e-4, 1e4];
 /// Least stiffness of the preconditioner: dark pixels must not make it singular.
 const LEAST_STIFFNESS: f64 = 1e-6;
-/// Relative residual of the conjugate gradients of one step. A step is only a direction; digits are wasted on it.
-const STEP_TOLERANCE: f64 = 0.03;
 /// A step that lowers the cost by less than this share has arrived.
 const SETTLED: f64 = 1e-4;
 /// A round of conjugate gradients that promises less than this share of the cost is the last one.
@@ -73,12 +71,14 @@ pub struct HeightProblem<'a> {
 }
 
 /// Caps on the work of a solve.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Effort {
     /// Gauss-Newton steps.
     pub steps: u32,
     /// Rounds of conjugate gradients in each: few settle what is fine, many what reaches over the whole object.
     pub rounds: u32,
+    /// Relative residual at which they end. A step is only a direction; digits are wasted on it.
+    pub tolerance: f64,
 }
 
 /// What a solve did.
@@ -204,7 +204,7 @@ impl HeightSolver {
             report.steps += 1;
             loop {
                 let promise =
-                    self.find_step(damping * mean_stiffness as f32, mean_stiffness, problem.effort.rounds, report.cost);
+                    self.find_step(damping * mean_stiffness as f32, mean_stiffness, problem.effort, report.cost);
                 if promise < SETTLED * report.cost {
                     report.settled = true;
                     break;
@@ -368,7 +368,7 @@ impl HeightSolver {
 
     /// step = solution of the linearised system by preconditioned conjugate gradients. Returns by how much the
     /// linearised cost falls.
-    fn find_step(&mut self, damping: f32, mean_stiffness: f64, rounds: u32, cost: f64) -> f64 {
+    fn find_step(&mut self, damping: f32, mean_stiffness: f64, effort: Effort, cost: f64) -> f64 {
         let anchors: f64 = self.anchor_weight.iter().map(|&weight| f64::from(weight)).sum();
         self.cosine.set(mean_stiffness + f64::from(damping), anchors / self.pixels as f64);
         self.operator.set_links(&self.edges, |index| [RIGHT, BELOW].map(|flag| self.near[index] & flag != 0), damping);
@@ -379,9 +379,9 @@ impl HeightSolver {
         // `trial` holds the residual: it is written anew after the step.
         self.trial.copy_from_slice(&self.right);
         let mut rho = dot(&self.trial, &self.direction);
-        let target = STEP_TOLERANCE * STEP_TOLERANCE * rho;
+        let target = effort.tolerance * effort.tolerance * rho;
         let mut promise = 0.0;
-        for _ in 0..rounds {
+        for _ in 0..effort.rounds {
             self.operator.apply(&self.anchor_weight, &self.direction, &mut self.image);
             let curvature = dot(&self.direction, &self.image);
             let length = (rho / curvature) as f32;
@@ -472,7 +472,7 @@ mod tests {
             firmness: None,
             anchors: None,
             colour_scale: 0.2,
-            effort: Effort { steps: 4, rounds: 10 },
+            effort: Effort { steps: 4, rounds: 10, tolerance: 0.03 },
         };
         let anchors = Some(Anchors { height: &far, weight: AnchorWeight::Uniform(5.0) });
         let solver = || HeightSolver::new(size, Camera::Orthographic, &mask).expect("a solver");

@@ -28,8 +28,8 @@ const ANCHOR: [f64; 2] = [1e-3, 10.0];
 /// Log residuals at which a pixel loses its say, one solve after the other: noisy depth starts far from its colours.
 const COLOUR_SCALES: [f32; 3] = [0.5, 0.2, 0.06];
 /// Work at each scale, and of a refinement that continues an earlier one, at the last scale alone.
-const FIRST: Effort = Effort { steps: 6, rounds: 40 };
-const LATER: Effort = Effort { steps: 1, rounds: 20 };
+const FIRST: Effort = Effort { steps: 6, rounds: 40, tolerance: 0.03 };
+const LATER: Effort = Effort { steps: 1, rounds: 20, tolerance: 0.1 };
 /// Most sweeps that carry gradients into a hole: its radius in pixels at the most.
 const FILL_SWEEPS: usize = 256;
 

@@ -21,10 +21,12 @@ use crate::view::{ColourView, Size};
 const COLOUR_SCALES: [f32; 3] = [0.5, 0.2, 0.06];
 const LAST_SCALE: f32 = COLOUR_SCALES[COLOUR_SCALES.len() - 1];
 /// Work on a start at each scale.
-const START: Effort = Effort { steps: 15, rounds: 40 };
-/// Work on a surface that has come from elsewhere or from other starts, and on one that every call improves a little.
-const ARRIVED: Effort = Effort { steps: 5, rounds: 20 };
-const SETTLING: Effort = Effort { steps: 1, rounds: 10 };
+const START: Effort = Effort { steps: 15, rounds: 40, tolerance: 0.03 };
+/// Work on a surface that has come from elsewhere or from other starts.
+const ARRIVED: Effort = Effort { steps: 5, rounds: 20, tolerance: 0.03 };
+/// Work on one that every call improves a little: four rounds bring four fifths of what ten would, at any size, and the
+/// next call linearises anew.
+const SETTLING: Effort = Effort { steps: 1, rounds: 4, tolerance: 0.1 };
 /// Object pixels up to which a level is small: an object that fills half of 96x96 is solved as it is.
 const SMALL: usize = 6000;
 

@@ -1,0 +1,258 @@
+//! Four pixels side by side: f32 arithmetic that fills one vector register of WebAssembly.
+//!
+//! Solvers of single pixels branch too much for the compiler to find the four by itself. Here all four take every
+//! branch and a [`Mask`] chooses. Every operation is rounded as f32 is, so that builds with and without SIMD agree to
+//! the bit.
+
+use std::array::from_fn;
+use std::ops::{Add, BitAnd, BitOr, Div, Mul, Not, Sub};
+
+/// Pixels that are worked on at once.
+pub const LANES: usize = 4;
+
+/// What formulas need of a number: one pixel's or four.
+pub trait Real: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> {
+    /// The same number everywhere.
+    fn splat(value: f32) -> Self;
+}
+
+impl Real for f32 {
+    #[inline(always)]
+    fn splat(value: f32) -> Self {
+        value
+    }
+}
+
+/// Four numbers.
+#[derive(Clone, Copy, Debug)]
+pub struct Lanes(arch::Four);
+
+/// A choice for each of four.
+#[derive(Clone, Copy, Debug)]
+pub struct Mask(arch::Choice);
+
+impl Lanes {
+    /// Four values from `start`, NaN beyond the end.
+    #[inline(always)]
+    pub fn load(values: &[f32], start: usize) -> Self {
+        match values.get(start..start + LANES) {
+            Some(four) => Self::from([four[0], four[1], four[2], four[3]]),
+            None => Self::from(from_fn(|lane| values.get(start + lane).copied().unwrap_or(f32::NAN))),
+        }
+    }
+
+    /// Writes the four from `start`, as far as there is room.
+    #[inline(always)]
+    pub fn store(self, values: &mut [f32], start: usize) {
+        let end = values.len().min(start + LANES);
+        values[start..end].copy_from_slice(&self.array()[..end - start]);
+    }
+
+    #[inline(always)]
+    pub fn array(self) -> [f32; LANES] {
+        arch::array(self.0)
+    }
+
+    #[inline(always)]
+    pub fn sqrt(self) -> Self {
+        Self(arch::sqrt(self.0))
+    }
+
+    /// False for NaN.
+    #[inline(always)]
+    pub fn less(self, other: Self) -> Mask {
+        Mask(arch::less(self.0, other.0))
+    }
+
+    /// False for NaN.
+    #[inline(always)]
+    pub fn at_most(self, other: Self) -> Mask {
+        Mask(arch::at_most(self.0, other.0))
+    }
+
+    /// Neither NaN nor infinite.
+    #[inline(always)]
+    pub fn finite(self) -> Mask {
+        (self - self).at_most(Self::splat(0.0))
+    }
+}
+
+impl From<[f32; LANES]> for Lanes {
+    #[inline(always)]
+    fn from(values: [f32; LANES]) -> Self {
+        Self(arch::four(values))
+    }
+}
+
+impl Real for Lanes {
+    #[inline(always)]
+    fn splat(value: f32) -> Self {
+        Self::from([value; LANES])
+    }
+}
+
+impl Mask {
+    /// `yes` where it holds.
+    #[inline(always)]
+    pub fn select(self, yes: Lanes, no: Lanes) -> Lanes {
+        Lanes(arch::select(self.0, yes.0, no.0))
+    }
+
+    /// [`select`](Self::select) of a vector.
+    #[inline(always)]
+    pub fn select3(self, yes: [Lanes; 3], no: [Lanes; 3]) -> [Lanes; 3] {
+        [self.select(yes[0], no[0]), self.select(yes[1], no[1]), self.select(yes[2], no[2])]
+    }
+
+    #[inline(always)]
+    pub fn any(self) -> bool {
+        arch::any(self.0)
+    }
+
+    /// Of how many it holds.
+    #[inline(always)]
+    pub fn count(self) -> usize {
+        self.select(Lanes::splat(1.0), Lanes::splat(0.0)).array().iter().sum::<f32>() as usize
+    }
+}
+
+impl BitAnd for Mask {
+    type Output = Self;
+    #[inline(always)]
+    fn bitand(self, other: Self) -> Self {
+        Self(arch::and(self.0, other.0))
+    }
+}
+
+impl BitOr for Mask {
+    type Output = Self;
+    #[inline(always)]
+    fn bitor(self, other: Self) -> Self {
+        Self(arch::or(self.0, other.0))
+    }
+}
+
+impl Not for Mask {
+    type Output = Self;
+    #[inline(always)]
+    fn not(self) -> Self {
+        Self(arch::not(self.0))
+    }
+}
+
+macro_rules! operator {
+    ($name:ident, $method:ident) => {
+        impl $name for Lanes {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                Self(arch::$method(self.0, other.0))
+            }
+        }
+    };
+}
+operator!(Add, add);
+operator!(Sub, sub);
+operator!(Mul, mul);
+operator!(Div, div);
+
+#[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+mod arch {
+    use core::arch::wasm32::{f32x4, f32x4_extract_lane as lane, v128, v128_bitselect};
+    pub use core::arch::wasm32::{
+        f32x4_add as add, f32x4_div as div, f32x4_le as at_most, f32x4_lt as less, f32x4_mul as mul,
+        f32x4_sqrt as sqrt, f32x4_sub as sub, v128_and as and, v128_any_true as any, v128_not as not, v128_or as or,
+    };
+
+    pub type Four = v128;
+    pub type Choice = v128;
+
+    #[inline(always)]
+    pub fn four([a, b, c, d]: [f32; 4]) -> v128 {
+        f32x4(a, b, c, d)
+    }
+
+    #[inline(always)]
+    pub fn array(v: v128) -> [f32; 4] {
+        [lane::<0>(v), lane::<1>(v), lane::<2>(v), lane::<3>(v)]
+    }
+
+    #[inline(always)]
+    pub fn select(choice: v128, yes: v128, no: v128) -> v128 {
+        v128_bitselect(yes, no, choice)
+    }
+}
+
+#[cfg(not(all(target_arch = "wasm32", target_feature = "simd128")))]
+mod arch {
+    pub type Four = [f32; 4];
+    pub type Choice = [bool; 4];
+
+    macro_rules! each {
+        ($($name:ident($a:ident $(, $b:ident)*: $from:ty) -> $to:ty { $body:expr })*) => {
+            $(#[inline(always)]
+            pub fn $name($a: $from $(, $b: $from)*) -> $to {
+                std::array::from_fn(|lane| {
+                    let $a = $a[lane];
+                    $(let $b = $b[lane];)*
+                    $body
+                })
+            })*
+        };
+    }
+    each! {
+        add(a, b: Four) -> Four { a + b }
+        sub(a, b: Four) -> Four { a - b }
+        mul(a, b: Four) -> Four { a * b }
+        div(a, b: Four) -> Four { a / b }
+        sqrt(a: Four) -> Four { a.sqrt() }
+        less(a, b: Four) -> Choice { a < b }
+        at_most(a, b: Four) -> Choice { a <= b }
+        or(a, b: Choice) -> Choice { a || b }
+        and(a, b: Choice) -> Choice { a && b }
+        not(a: Choice) -> Choice { !a }
+    }
+
+    #[inline(always)]
+    pub fn four(values: [f32; 4]) -> Four {
+        values
+    }
+
+    #[inline(always)]
+    pub fn array(four: Four) -> [f32; 4] {
+        four
+    }
+
+    #[inline(always)]
+    pub fn any(choice: Choice) -> bool {
+        choice.contains(&true)
+    }
+
+    #[inline(always)]
+    pub fn select(choice: Choice, yes: Four, no: Four) -> Four {
+        std::array::from_fn(|lane| if choice[lane] { yes[lane] } else { no[lane] })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ends_are_padded_and_nothing_is_written_beyond_them() {
+        let mut values = [1.0, 2.0, 3.0, 4.0, 5.0];
+        let [a, b, ..] = Lanes::load(&values, 4).array();
+        assert!(a == 5.0 && b.is_nan());
+        Lanes::splat(7.0).store(&mut values, 3);
+        assert_eq!(values, [1.0, 2.0, 3.0, 7.0, 7.0]);
+    }
+
+    #[test]
+    fn neither_nan_nor_infinity_is_finite_or_less() {
+        let odd = Lanes::from([f32::NAN, f32::INFINITY, f32::NEG_INFINITY, -2.0]);
+        assert_eq!(odd.finite().count(), 1);
+        assert_eq!(odd.less(Lanes::splat(0.0)).count(), 2);
+        let chosen = (!odd.finite() & odd.less(Lanes::splat(0.0))).select(Lanes::splat(1.0), Lanes::splat(0.0));
+        assert_eq!(chosen.array(), [0.0, 0.0, 1.0, 0.0]);
+    }
+}
