@@ -22,7 +22,7 @@ use crate::shape::normal_operator::NormalOperator;
 use crate::shape::poisson::Edges;
 use crate::shape::slopes::{RayFrame, SlopeTerms};
 use crate::shape::surface::Anchors;
-use crate::view::{Camera, Size};
+use crate::view::{Camera, LANES, Lanes, Mask, Real, Size};
 
 /// kappa: squared log residual per squared second difference in pixels (handbook section 5).
 const SMOOTHNESS: f32 = 1e-3;
@@ -38,6 +38,9 @@ const LEAST_STIFFNESS: f64 = 1e-6;
 const SETTLED: f64 = 1e-4;
 /// A round of conjugate gradients that promises less than this share of the cost is the last one.
 const IDLE: f64 = 1e-5;
+
+/// Costs of pixels that are summed in f32 before the sum goes on in f64: few enough to keep six digits.
+const SUMMANDS: usize = 256;
 
 /// Bits of a pixel: inside the mask; the cell of four pixels right of and below it as well; its neighbours inside.
 const INSIDE: u8 = 1;
@@ -138,7 +141,8 @@ impl HeightSolver {
             return Err(Error::new(ErrorKind::Empty, "mask", "holds no pixel"));
         }
         let (columns, height) = (rightmost - left + 1, bottom - top + 1);
-        let width = fast_width(columns);
+        // Blocks of four must not reach into the next row.
+        let width = fast_width(columns.next_multiple_of(LANES));
         let length = width * height;
         let is_inside =
             |column: usize, row: usize| column < size.width && row < size.height && mask[size.index(column, row)];
@@ -243,6 +247,22 @@ impl HeightSolver {
         })
     }
 
+    /// The same [`LANES`] at a time: the first of each.
+    fn blocks(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
+        let ([left, top], columns, width, view_width) = (self.corner, self.columns, self.width, self.size.width);
+        (0..self.near.len() / width).flat_map(move |row| {
+            let (here, source) = (row * width, (top + row) * view_width + left);
+            (0..columns).step_by(LANES).map(move |column| (here + column, source + column))
+        })
+    }
+
+    /// Who of a block has a flag.
+    #[inline(always)]
+    fn flagged(&self, index: usize, flag: u8) -> Mask {
+        let has = |lane: usize| f32::from(self.near.get(index + lane).map_or(0, |near| near & flag));
+        Lanes::splat(0.0).less(Lanes::from([has(0), has(1), has(2), has(3)]))
+    }
+
     /// Those of [`places`](Self::places) on the mask.
     fn inside(&self) -> impl Iterator<Item = (usize, usize)> {
         self.places().filter(|&(index, _)| self.near[index] & INSIDE != 0)
@@ -266,13 +286,15 @@ impl HeightSolver {
     /// Edges between neighbours with suggested slopes (trapezoidal rule), as firm as the less firm of the two.
     fn load_edges(&mut self, terms: &SlopeTerms<'_>) {
         let slopes = terms.problem.slopes;
-        for (index, source) in self.places() {
-            self.confidence[index] = 0.0;
-            let suggested = [slopes[0][source], slopes[1][source]];
-            if self.near[index] & INSIDE != 0 && !suggested[0].is_nan() && !suggested[1].is_nan() {
-                let frame = terms.frame(&self.frames, index);
-                self.confidence[index] = terms.confidence(frame, source, suggested);
-            }
+        for (index, source) in self.blocks() {
+            let suggested = slopes.map(|slopes| Lanes::load(slopes, source as isize));
+            let wanted = self.flagged(index, INSIDE) & suggested[0].finite() & suggested[1].finite();
+            let confidence = if wanted.any() {
+                terms.confidence(&terms.frames(&self.frames, index), source, suggested, wanted)
+            } else {
+                Lanes::splat(0.0)
+            };
+            confidence.store(&mut self.confidence[index..]);
         }
         let axes = [(1, 1, LEFT, RIGHT), (self.width, self.size.width, ABOVE, BELOW)];
         for (axis, (stride, view_stride, before, after)) in axes.into_iter().enumerate() {
@@ -291,79 +313,52 @@ impl HeightSolver {
 
     /// Cost of the trial heights.
     fn cost(&self, terms: &SlopeTerms<'_>) -> f64 {
-        self.inside().map(|(index, source)| f64::from(self.cost_at(terms, index, source))).sum()
+        let z = &self.trial;
+        let colours = self.blocks().map(|(index, source)| {
+            let cells = self.flagged(index, CELL);
+            if !cells.any() {
+                return 0.0;
+            }
+            let frames = terms.frames(&self.frames, index);
+            let slopes = cell_slopes(z, index, self.width);
+            f64::from(terms.cost(&frames, terms.cell_log(source), slopes, cells).sum())
+        });
+        colours.sum::<f64>() + self.resistance(z)
     }
 
-    fn cost_at(&self, terms: &SlopeTerms<'_>, index: usize, source: usize) -> f32 {
-        let z = &self.trial;
-        let mut cost = self.anchor_weight[index] * (z[index] - self.anchor[index]).powi(2);
-        if self.near[index] & CELL != 0 {
-            let frame = terms.frame(&self.frames, index);
-            cost += terms.cost(frame, terms.cell_log(source), cell_slopes(z, cell_at(index, self.width)));
-        }
-        for ((stride, edges), bend) in [1, self.width].into_iter().zip(&self.edges).zip(&self.operator.bend) {
-            if edges.weight[index] > 0.0 {
-                let off = z[index + stride] - z[index] - edges.gradient[index];
-                cost += edges.weight[index] * off * off;
-            }
-            if bend[index] > 0.0 {
-                cost += bend[index] * (z[index + stride] - 2.0 * z[index] + z[index - stride]).powi(2);
-            }
-        }
-        cost
+    /// Cost of everything but the colours: anchors, edges and bends.
+    fn resistance(&self, z: &[f32]) -> f64 {
+        let anchors = weighted_squares(&self.anchor_weight, |at| Lanes::load(z, at) - Lanes::load(&self.anchor, at));
+        let strides = [1, self.width as isize];
+        let lines = strides.into_iter().zip(&self.edges).zip(&self.operator.bend).map(|((stride, edges), bend)| {
+            let fall = |at: isize| Lanes::load(z, at + stride) - Lanes::load(z, at);
+            weighted_squares(&edges.weight, |at| fall(at) - Lanes::load(&edges.gradient, at))
+                + weighted_squares(bend, |at| fall(at) - fall(at - stride))
+        });
+        anchors + lines.sum::<f64>()
     }
 
     /// Fills the stiffness and the right-hand side; returns the cost of the heights and the mean stiffness.
     fn linearise(&mut self, terms: &SlopeTerms<'_>) -> (f64, f64) {
-        self.right.fill(0.0);
         let (mut costs, mut stiffnesses) = (0.0_f64, 0.0_f64);
-        self.places().for_each(|(index, source)| {
-            if self.near[index] != 0 {
-                let (cost, stiffness) = self.linearise_at(terms, index, source);
-                costs += f64::from(cost);
-                stiffnesses += f64::from(stiffness);
-            }
-        });
-        (costs, (stiffnesses / self.pixels as f64).max(LEAST_STIFFNESS))
-    }
-
-    /// Cost and stiffness of a pixel's own terms.
-    fn linearise_at(&mut self, terms: &SlopeTerms<'_>, index: usize, source: usize) -> (f32, f32) {
-        let (z, right) = (&self.z, &mut self.right);
-        let pull = self.anchor_weight[index] * (self.anchor[index] - z[index]);
-        right[index] += pull;
-        let (mut cost, mut stiffness) = (pull * (self.anchor[index] - z[index]), 0.0);
-        if self.near[index] & CELL != 0 {
-            let cell = cell_at(index, self.width);
-            let frame = terms.frame(&self.frames, index);
-            let shading = terms.linearise(frame, terms.cell_log(source), cell_slopes(z, cell));
-            for (raster, value) in self.operator.stiffness.iter_mut().zip(shading.matrix) {
-                raster[index] = value;
-            }
-            scatter(right, cell, shading.gradient.map(|value| -value));
-            cost += shading.cost;
-            stiffness += 0.5 * (shading.matrix[0] + shading.matrix[2]);
-        }
-        for ((stride, edges), bend) in [1, self.width].into_iter().zip(&self.edges).zip(&self.operator.bend) {
-            let weight = edges.weight[index];
-            if weight > 0.0 {
-                let off = z[index + stride] - z[index] - edges.gradient[index];
-                right[index + stride] -= weight * off;
-                right[index] += weight * off;
-                cost += weight * off * off;
-                stiffness += 0.5 * weight;
-            }
-            if bend[index] > 0.0 {
-                let (plus, minus) = (index + stride, index - stride);
-                let off = z[plus] - 2.0 * z[index] + z[minus];
-                let moment = bend[index] * off;
-                right[plus] -= moment;
-                right[index] += 2.0 * moment;
-                right[minus] -= moment;
-                cost += moment * off;
+        for (index, source) in self.blocks() {
+            let cells = self.flagged(index, CELL);
+            if cells.any() {
+                let slopes = cell_slopes(&self.z, index, self.width);
+                let frames = terms.frames(&self.frames, index);
+                let shading = terms.linearise(&frames, terms.cell_log(source), slopes, cells);
+                costs += f64::from(shading.cost.sum());
+                let [pp, _, qq] = shading.matrix;
+                stiffnesses += 0.5 * f64::from((pp + qq).sum());
+                self.operator.set_cells(index, &shading);
             }
         }
-        (cost, stiffness)
+        let linked: f64 = self.edges.iter().flat_map(|edges| &edges.weight).map(|&weight| f64::from(weight)).sum();
+        for ((off, z), anchor) in self.direction.iter_mut().zip(&self.z).zip(&self.anchor) {
+            *off = z - anchor;
+        }
+        self.operator.resist(&self.edges, &self.z, &self.anchor_weight, &self.direction, &mut self.right);
+        (costs + self.resistance(&self.z), ((stiffnesses + 0.5 * linked) / self.pixels as f64).max(LEAST_STIFFNESS))
     }
 
     /// step = solution of the linearised system by preconditioned conjugate gradients. Returns by how much the
@@ -430,22 +425,29 @@ fn add_scaled(target: &mut [f32], factor: f32, source: &[f32]) {
     }
 }
 
-/// The four pixels of the cell right of and below a pixel.
-fn cell_at(index: usize, width: usize) -> [usize; 4] {
-    [index, index + 1, index + width, index + width + 1]
+/// Sum of weight times square over all pixels; `off` may be anything where there is no weight.
+#[inline(always)]
+fn weighted_squares(weight: &[f32], off: impl Fn(isize) -> Lanes) -> f64 {
+    let zero = Lanes::splat(0.0);
+    let mut total = 0.0;
+    for start in (0..weight.len()).step_by(SUMMANDS) {
+        let mut sum = zero;
+        for at in (start..weight.len().min(start + SUMMANDS)).step_by(LANES) {
+            let (weight, off) = (Lanes::load(weight, at as isize), off(at as isize));
+            sum = sum + zero.less(weight).select(weight * off * off, zero);
+        }
+        total += f64::from(sum.sum());
+    }
+    total
 }
 
-/// p and q in the middle of a cell.
-fn cell_slopes(z: &[f32], [a, b, c, d]: [usize; 4]) -> [f32; 2] {
-    [0.5 * (z[b] - z[a] + z[d] - z[c]), 0.5 * (z[c] - z[a] + z[d] - z[b])]
-}
-
-/// Adds what a force on the slopes of a cell does to its heights: the transpose of [`cell_slopes`].
-fn scatter(heights: &mut [f32], [a, b, c, d]: [usize; 4], [p, q]: [f32; 2]) {
-    heights[a] -= 0.5 * (p + q);
-    heights[b] += 0.5 * (p - q);
-    heights[c] += 0.5 * (q - p);
-    heights[d] += 0.5 * (p + q);
+/// p and q in the middle of the cells right of and below some pixels.
+#[inline(always)]
+fn cell_slopes(z: &[f32], index: usize, width: usize) -> [Lanes; 2] {
+    let (here, below) = (index as isize, (index + width) as isize);
+    let [a, b, c, d] = [here, here + 1, below, below + 1].map(|at| Lanes::load(z, at));
+    let half = Lanes::splat(0.5);
+    [half * (b - a + d - c), half * (c - a + d - b)]
 }
 
 #[cfg(test)]

@@ -6,6 +6,8 @@
 //! apart: every loop runs straight through and fills vector registers.
 
 use crate::shape::poisson::Edges;
+use crate::shape::slopes::Linear;
+use crate::view::{Lanes, Real};
 
 /// Weights of one system and the scratch of its products.
 pub(super) struct NormalOperator {
@@ -57,6 +59,31 @@ impl NormalOperator {
             self.strain_lines(axis, direction);
         }
         self.gather(anchor_weight, direction, image);
+    }
+
+    /// Takes over what the cells right of and below some pixels say, their forces for [`resist`](Self::resist).
+    pub fn set_cells(&mut self, index: usize, shading: &Linear) {
+        for (raster, value) in self.stiffness.iter_mut().zip(shading.matrix) {
+            value.store(&mut raster[index..]);
+        }
+        let (half, [by_p, by_q], place) = (Lanes::splat(0.5), shading.gradient, self.width + 1 + index);
+        (half * (by_p + by_q)).store(&mut self.sum[place..]);
+        (half * (by_p - by_q)).store(&mut self.difference[place..]);
+    }
+
+    /// right = what all terms do to the heights `z`, those of the cells from [`set_cells`](Self::set_cells), the anchors
+    /// from `off`, which is z less the anchor.
+    pub fn resist(&mut self, edges: &[Edges; 2], z: &[f32], anchor_weight: &[f32], off: &[f32], right: &mut [f32]) {
+        for (axis, edges) in edges.iter().enumerate() {
+            self.link[axis].copy_from_slice(&edges.weight);
+            self.strain_lines(axis, z);
+            let pull = &mut self.pull[axis][self.width + 1..];
+            for ((pull, weight), gradient) in pull.iter_mut().zip(&edges.weight).zip(&edges.gradient) {
+                *pull -= weight * gradient;
+            }
+        }
+        self.gather(anchor_weight, off, right);
+        right.iter_mut().for_each(|force| *force = -*force);
     }
 
     fn strain_cells(&mut self, d: &[f32]) {

@@ -113,9 +113,9 @@ impl ShadingSolver {
                 let (start, known) = self.start(&pixels, load(normals, index));
                 solved = known.select3(normalise(pixels.descend(start, known, &mut counts)), solved);
             }
-            solved[0].store(&mut normals.x, index);
-            solved[1].store(&mut normals.y, index);
-            solved[2].store(&mut normals.z, index);
+            solved[0].store(&mut normals.x[index..]);
+            solved[1].store(&mut normals.y[index..]);
+            solved[2].store(&mut normals.z[index..]);
         }
         counts.skipped = normals.len() - counts.converged - counts.stalled - counts.capped;
         counts
@@ -167,7 +167,8 @@ impl<'a> Pixels<'a> {
         polynomials: &'a [Polynomial; 3],
     ) -> Self {
         let [red, green, blue] = problem.log;
-        let log = [Lanes::load(red, index), Lanes::load(green, index), Lanes::load(blue, index)];
+        let start = index as isize;
+        let log = [Lanes::load(red, start), Lanes::load(green, start), Lanes::load(blue, start)];
         let coloured = log[0].finite() & log[1].finite() & log[2].finite();
         let prior = load(problem.prior, index);
         let drawn = prior[2].finite();
@@ -318,7 +319,8 @@ fn solve_damped(linear: &Linear, damping: Lanes) -> [Lanes; 3] {
 
 /// The vectors of [`LANES`] pixels.
 pub(super) fn load(vectors: &Normals, index: usize) -> [Lanes; 3] {
-    [Lanes::load(&vectors.x, index), Lanes::load(&vectors.y, index), Lanes::load(&vectors.z, index)]
+    let start = index as isize;
+    [Lanes::load(&vectors.x, start), Lanes::load(&vectors.y, start), Lanes::load(&vectors.z, start)]
 }
 
 #[inline(always)]

@@ -1,4 +1,5 @@
-//! One pixel's terms of shape from shading for heights, as functions of the surface's two slopes there.
+//! The pixels' terms of shape from shading for heights, as functions of the surface's two slopes there,
+//! four pixels side by side.
 //!
 //! N = a + p b + q c points at the camera; n = N / |N|; dn/dp = (b - n (n . b)) / |N|, and so for q.
 
@@ -6,7 +7,7 @@ use nalgebra::Vector3;
 
 use crate::light::Polynomial;
 use crate::shape::heights::HeightProblem;
-use crate::view::{Camera, Size};
+use crate::view::{Camera, Lanes, Mask, Real, Size};
 
 /// (a, b, c) of N = a + p b + q c: N points at the camera, p and q are slopes per pixel in pixels of height.
 ///
@@ -39,127 +40,158 @@ impl RayFrame {
     }
 }
 
-/// The shading of one problem, its light turned into the view's frame.
+/// (a, b, c) of four pixels in the light's frame.
+type Frames = [[Lanes; 3]; 3];
+
+/// The shading of one problem, its light turned into the view's frame. Everything is of four pixels, or cells right of
+/// and below them, from the one that is named.
 pub(super) struct SlopeTerms<'a> {
     pub(super) problem: HeightProblem<'a>,
     polynomials: [Polynomial; 3],
     view_width: usize,
     rotation: [[f32; 3]; 3],
     /// Rotated (a, b, c) of an orthographic camera.
-    frame: RayFrame,
+    frame: Frames,
+    /// 1 / scale^2 of rho.
+    sharpness: Lanes,
 }
 
 impl<'a> SlopeTerms<'a> {
     pub(super) fn new(problem: HeightProblem<'a>, size: Size) -> Self {
         let rotation = std::array::from_fn(|row| std::array::from_fn(|column| problem.rotation[(row, column)] as f32));
+        let frame = RayFrame::at(&Camera::Orthographic, size, 0).0.map(|vector| vector.map(Lanes::splat));
         Self {
             problem,
             polynomials: Polynomial::of(problem.light),
             view_width: size.width,
             rotation,
-            frame: RayFrame(RayFrame::at(&Camera::Orthographic, size, 0).0.map(|v| rotate(&rotation, v))),
+            frame: frame.map(|vector| rotate(&rotation, vector)),
+            sharpness: Lanes::splat(1.0 / (problem.colour_scale * problem.colour_scale)),
         }
     }
 
-    /// (a, b, c) of a pixel in the light's frame; `frames` is empty for an orthographic camera.
-    pub(super) fn frame(&self, frames: &[RayFrame], index: usize) -> RayFrame {
-        frames.get(index).map_or(self.frame, |frame| RayFrame(frame.0.map(|vector| rotate(&self.rotation, vector))))
+    /// (a, b, c) in the light's frame; `frames` is empty for an orthographic camera.
+    #[inline(always)]
+    pub(super) fn frames(&self, frames: &[RayFrame], index: usize) -> Frames {
+        if frames.is_empty() { self.frame } else { self.gather(frames, index) }
     }
 
-    /// log S in the middle of the cell right of and below a pixel.
-    pub(super) fn cell_log(&self, source: usize) -> [f32; 3] {
-        let below = source + self.view_width;
-        let mean = |log: &[f32]| 0.25 * (log[source] + log[source + 1] + log[below] + log[below + 1]);
+    #[inline(never)]
+    fn gather(&self, frames: &[RayFrame], index: usize) -> Frames {
+        let last = frames.len() - 1;
+        let entry = |side: usize, axis: usize| {
+            Lanes::from([0, 1, 2, 3].map(|lane: usize| frames[last.min(index + lane)].0[side][axis]))
+        };
+        let vector = |side| [entry(side, 0), entry(side, 1), entry(side, 2)];
+        [0, 1, 2].map(|side: usize| rotate(&self.rotation, vector(side)))
+    }
+
+    /// log S in the middle of the cells.
+    #[inline(always)]
+    pub(super) fn cell_log(&self, source: usize) -> [Lanes; 3] {
+        let (here, below) = (source as isize, (source + self.view_width) as isize);
+        let mean = |log: &[f32]| {
+            let above = Lanes::load(log, here) + Lanes::load(log, here + 1);
+            Lanes::splat(0.25) * (above + Lanes::load(log, below) + Lanes::load(log, below + 1))
+        };
         let [red, green, blue] = self.problem.log;
         [mean(red), mean(green), mean(blue)]
     }
 
-    fn pixel_log(&self, source: usize) -> [f32; 3] {
-        [0, 1, 2].map(|channel: usize| self.problem.log[channel][source])
+    fn pixel_log(&self, source: usize) -> [Lanes; 3] {
+        let [red, green, blue] = self.problem.log.map(|log| Lanes::load(log, source as isize));
+        [red, green, blue]
     }
 
-    /// Robust brightness cost of a cell; zero where it has no colour.
-    pub(super) fn cost(&self, frame: RayFrame, log: [f32; 3], slopes: [f32; 2]) -> f32 {
-        let normal = Turn::at(frame, slopes).normal;
-        let residuals = self.residuals(normal, log);
+    /// Robust brightness cost of those of the cells that have a colour.
+    #[inline(never)]
+    pub(super) fn cost(&self, frames: &Frames, log: [Lanes; 3], slopes: [Lanes; 2], cells: Mask) -> Lanes {
+        let residuals = self.residuals(Turn::at(frames, slopes).normal, log);
         let squared = dot(residuals, residuals);
-        if squared.is_nan() { 0.0 } else { squared * self.trust(squared) }
+        (cells & squared.finite()).select(squared * self.trust(squared), Lanes::splat(0.0))
     }
 
-    fn residuals(&self, normal: [f32; 3], log: [f32; 3]) -> [f32; 3] {
+    #[inline(always)]
+    fn residuals(&self, normal: [Lanes; 3], log: [Lanes; 3]) -> [Lanes; 3] {
         let [red, green, blue] = &self.polynomials;
         [red.shade(normal) - log[0], green.shade(normal) - log[1], blue.shade(normal) - log[2]]
     }
 
     /// 1 / (1 + r^2 / scale^2): the cost of Geman and McClure is r^2 times this, its weight the square of this.
-    fn trust(&self, squared: f32) -> f32 {
-        1.0 / (1.0 + squared / (self.problem.colour_scale * self.problem.colour_scale))
+    #[inline(always)]
+    fn trust(&self, squared: Lanes) -> Lanes {
+        Lanes::splat(1.0) / (Lanes::splat(1.0) + squared * self.sharpness)
     }
 
-    /// The terms of a cell as functions of its slopes, where `log` is to be explained.
-    pub(super) fn linearise(&self, frame: RayFrame, log: [f32; 3], slopes: [f32; 2]) -> Linear {
-        self.linearise_turn(Turn::at(frame, slopes), log)
+    /// The terms of `cells` as functions of their slopes, where `log` is to be explained.
+    pub(super) fn linearise(&self, frames: &Frames, log: [Lanes; 3], slopes: [Lanes; 2], cells: Mask) -> Linear {
+        self.linearise_turn(&Turn::at(frames, slopes), log, cells)
     }
 
-    fn linearise_turn(&self, turn: Turn, log: [f32; 3]) -> Linear {
+    #[inline(never)]
+    fn linearise_turn(&self, turn: &Turn, log: [Lanes; 3], wanted: Mask) -> Linear {
+        let zero = Lanes::splat(0.0);
         let residuals = self.residuals(turn.normal, log);
         let squared = dot(residuals, residuals);
-        let (mut matrix, mut gradient) = ([0.0; 3], [0.0; 2]);
-        if squared.is_nan() {
-            return Linear { cost: 0.0, matrix, gradient };
-        }
         let trust = self.trust(squared);
         let weight = trust * trust;
+        let (mut pp, mut pq, mut qq, mut by_p, mut by_q) = (zero, zero, zero, zero, zero);
         for (polynomial, residual) in self.polynomials.iter().zip(residuals) {
             let slope = polynomial.gradient(turn.normal);
-            let row = [dot(slope, turn.along[0]), dot(slope, turn.along[1])];
-            matrix[0] += weight * row[0] * row[0];
-            matrix[1] += weight * row[0] * row[1];
-            matrix[2] += weight * row[1] * row[1];
-            gradient[0] += weight * row[0] * residual;
-            gradient[1] += weight * row[1] * residual;
+            let (p, q) = (dot(slope, turn.along[0]), dot(slope, turn.along[1]));
+            let (weighted_p, weighted_q) = (weight * p, weight * q);
+            (pp, pq, qq) = (pp + weighted_p * p, pq + weighted_p * q, qq + weighted_q * q);
+            (by_p, by_q) = (by_p + weighted_p * residual, by_q + weighted_q * residual);
         }
-        Linear { cost: squared * trust, matrix, gradient }
+        let known = wanted & squared.finite();
+        Linear {
+            cost: known.select(squared * trust, zero),
+            matrix: known.select3([pp, pq, qq], [zero; 3]),
+            gradient: [known.select(by_p, zero), known.select(by_q, zero)],
+        }
     }
 
-    /// How well a pixel alone, its colours and its firmness, fixes its slopes: the smaller eigenvalue of its matrix.
-    pub(super) fn confidence(&self, frame: RayFrame, source: usize, slopes: [f32; 2]) -> f32 {
-        let turn = Turn::at(frame, slopes);
-        let [mut pp, mut pq, mut qq] = self.linearise_turn(turn, self.pixel_log(source)).matrix;
+    /// How well a pixel alone, its colours and its firmness, fixes its slopes: the smaller eigenvalue of its matrix. Zero
+    /// unless `wanted`.
+    pub(super) fn confidence(&self, frames: &Frames, source: usize, slopes: [Lanes; 2], wanted: Mask) -> Lanes {
+        let turn = Turn::at(frames, slopes);
+        let [mut pp, mut pq, mut qq] = self.linearise_turn(&turn, self.pixel_log(source), wanted).matrix;
         if let Some(firmness) = self.problem.firmness {
-            let [p, q] = turn.along;
-            pp += firmness[source] * dot(p, p);
-            pq += firmness[source] * dot(p, q);
-            qq += firmness[source] * dot(q, q);
+            let (firmness, [p, q]) = (Lanes::load(firmness, source as isize), turn.along);
+            pp = pp + firmness * dot(p, p);
+            pq = pq + firmness * dot(p, q);
+            qq = qq + firmness * dot(q, q);
         }
-        let (mean, half) = (0.5 * (pp + qq), 0.5 * (pp - qq));
-        (mean - (half * half + pq * pq).sqrt()).max(0.0)
+        let (zero, half) = (Lanes::splat(0.0), Lanes::splat(0.5));
+        let (mean, off) = (half * (pp + qq), half * (pp - qq));
+        let least = mean - (off * off + pq * pq).sqrt();
+        (wanted & zero.less(least)).select(least, zero)
     }
 }
 
-/// What a cell says about its slopes; all zero where it has no colour.
+/// What cells say about their slopes; all zero where one has no colour.
 pub(super) struct Linear {
-    pub(super) cost: f32,
+    pub(super) cost: Lanes,
     /// Gauss-Newton matrix: pp, pq, qq.
-    pub(super) matrix: [f32; 3],
+    pub(super) matrix: [Lanes; 3],
     /// Half the gradient.
-    pub(super) gradient: [f32; 2],
+    pub(super) gradient: [Lanes; 2],
 }
 
-/// A normal and its derivatives along both slopes.
-#[derive(Clone, Copy)]
+/// Normals and their derivatives along both slopes.
 struct Turn {
-    normal: [f32; 3],
-    along: [[f32; 3]; 2],
+    normal: [Lanes; 3],
+    along: [[Lanes; 3]; 2],
 }
 
 impl Turn {
-    fn at(RayFrame([a, b, c]): RayFrame, [p, q]: [f32; 2]) -> Self {
+    #[inline(always)]
+    fn at([a, b, c]: &Frames, [p, q]: [Lanes; 2]) -> Self {
         let vector = [a[0] + p * b[0] + q * c[0], a[1] + p * b[1] + q * c[1], a[2] + p * b[2] + q * c[2]];
-        let inverse = 1.0 / dot(vector, vector).sqrt();
+        let inverse = Lanes::splat(1.0) / dot(vector, vector).sqrt();
         let normal = [inverse * vector[0], inverse * vector[1], inverse * vector[2]];
-        let along = |side: [f32; 3]| {
-            let share = dot(normal, side);
+        let along = |side: &[Lanes; 3]| {
+            let share = dot(normal, *side);
             let off = |axis: usize| inverse * (side[axis] - share * normal[axis]);
             [off(0), off(1), off(2)]
         };
@@ -167,10 +199,11 @@ impl Turn {
     }
 }
 
-fn rotate(rotation: &[[f32; 3]; 3], vector: [f32; 3]) -> [f32; 3] {
-    rotation.map(|row| dot(row, vector))
+fn rotate(rotation: &[[f32; 3]; 3], [x, y, z]: [Lanes; 3]) -> [Lanes; 3] {
+    rotation.map(|row| Lanes::splat(row[0]) * x + Lanes::splat(row[1]) * y + Lanes::splat(row[2]) * z)
 }
 
-fn dot(a: [f32; 3], b: [f32; 3]) -> f32 {
+#[inline(always)]
+fn dot(a: [Lanes; 3], b: [Lanes; 3]) -> Lanes {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }

@@ -4,7 +4,6 @@
 //! branch and a [`Mask`] chooses. Every operation is rounded as f32 is, so that builds with and without SIMD agree to
 //! the bit.
 
-use std::array::from_fn;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Not, Sub};
 
 /// Pixels that are worked on at once.
@@ -32,25 +31,51 @@ pub struct Lanes(arch::Four);
 pub struct Mask(arch::Choice);
 
 impl Lanes {
-    /// Four values from `start`, NaN beyond the end.
+    /// Four values from `start`, NaN beyond the ends.
     #[inline(always)]
-    pub fn load(values: &[f32], start: usize) -> Self {
-        match values.get(start..start + LANES) {
+    pub fn load(values: &[f32], start: isize) -> Self {
+        match usize::try_from(start).ok().and_then(|start| values.get(start..start + LANES)) {
             Some(four) => Self::from([four[0], four[1], four[2], four[3]]),
-            None => Self::from(from_fn(|lane| values.get(start + lane).copied().unwrap_or(f32::NAN))),
+            None => Self::load_end(values, start),
         }
     }
 
-    /// Writes the four from `start`, as far as there is room.
+    #[cold]
+    #[inline(never)]
+    fn load_end(values: &[f32], start: isize) -> Self {
+        let mut four = [f32::NAN; LANES];
+        for (lane, value) in four.iter_mut().enumerate() {
+            let index = start.checked_add_unsigned(lane).and_then(|index| usize::try_from(index).ok());
+            if let Some(&known) = index.and_then(|index| values.get(index)) {
+                *value = known;
+            }
+        }
+        Self::from(four)
+    }
+
+    /// Writes as many of the four as there is room for.
     #[inline(always)]
-    pub fn store(self, values: &mut [f32], start: usize) {
-        let end = values.len().min(start + LANES);
-        values[start..end].copy_from_slice(&self.array()[..end - start]);
+    pub fn store(self, values: &mut [f32]) {
+        let four = self.array();
+        if let Some(room) = values.first_chunk_mut() {
+            *room = four;
+        } else {
+            for (value, new) in values.iter_mut().zip(four) {
+                *value = new;
+            }
+        }
     }
 
     #[inline(always)]
     pub fn array(self) -> [f32; LANES] {
         arch::array(self.0)
+    }
+
+    /// Of all four.
+    #[inline(always)]
+    pub fn sum(self) -> f32 {
+        let [a, b, c, d] = self.array();
+        (a + b) + (c + d)
     }
 
     #[inline(always)]
@@ -73,7 +98,7 @@ impl Lanes {
     /// Neither NaN nor infinite.
     #[inline(always)]
     pub fn finite(self) -> Mask {
-        (self - self).at_most(Self::splat(0.0))
+        (self * Self::splat(0.0)).at_most(Self::splat(0.0))
     }
 }
 
@@ -243,7 +268,9 @@ mod tests {
         let mut values = [1.0, 2.0, 3.0, 4.0, 5.0];
         let [a, b, ..] = Lanes::load(&values, 4).array();
         assert!(a == 5.0 && b.is_nan());
-        Lanes::splat(7.0).store(&mut values, 3);
+        let [a, b, c, d] = Lanes::load(&values, -2).array();
+        assert!(a.is_nan() && b.is_nan() && c == 1.0 && d == 2.0);
+        Lanes::splat(7.0).store(&mut values[3..]);
         assert_eq!(values, [1.0, 2.0, 3.0, 7.0, 7.0]);
     }
 

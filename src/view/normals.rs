@@ -13,7 +13,7 @@
 //! pixels has no surroundings to compare with and keeps its jumps. The plane fit is first order where its window is
 //! lopsided, and rounds edges off within its radius. NaN where an axis has no usable neighbour.
 
-use crate::view::{Camera, Normals, Points, Size};
+use crate::view::{Camera, LANES, Lanes, Normals, Points, Real, Size};
 
 /// Longest usable step in median steps around it. Smooth shapes stay below three up to their last pixel before the rim
 /// (a sphere of radius 50: 2.7); a fold of 75 degrees against a flat surround just passes.
@@ -46,6 +46,9 @@ pub fn of_depth(size: Size, camera: Camera, depth: &[f32]) -> Normals {
 /// [`of_depth`] into memory of the caller's. Allocates nothing. With lens distortion, [`points_of_depth`] and
 /// [`from_points`] are quicker: each pixel's ray is found once instead of nine times.
 pub fn of_depth_into(size: Size, camera: Camera, depth: &[f32], normals: &mut Normals) {
+    if camera.is_orthographic() && depth.len() == size.len() && normals.len() == size.len() {
+        return of_orthographic(size, depth, normals);
+    }
     let point = |index| depth.get(index).and_then(|&depth| point_at(size, &camera, depth, index));
     Grid { size, point }.estimate(Estimate::Differences, normals);
 }
@@ -170,6 +173,60 @@ impl<F: Fn(usize) -> Option<Vector>> Grid<F> {
             std::array::from_fn(|axis| (uu * rv[axis] - uv * ru[axis]) / determinant),
         ])
     }
+}
+
+/// The same differences where steps along an axis are (1, dz): four pixels at a time, in f32, in which neighbouring
+/// depths have exact differences.
+fn of_orthographic(size: Size, depth: &[f32], normals: &mut Normals) {
+    for row in 0..size.height {
+        for column in (0..size.width).step_by(LANES) {
+            let row_at = |row: usize| {
+                if row < size.height { &depth[row * size.width..][..size.width] } else { &[] }
+            };
+            let below = |step: usize| Lanes::load(row_at((row + step).wrapping_sub(2)), column as isize);
+            let here = row_at(row);
+            let beside = |step: isize| Lanes::load(here, column as isize + step);
+            let middle = beside(0);
+            let p = lane_slope([beside(-2), beside(-1), middle, beside(1), beside(2)]);
+            let q = lane_slope([below(0), below(1), middle, below(3), below(4)]);
+            let one = Lanes::splat(1.0);
+            let inverse = one / (p * p + q * q + one).sqrt();
+            let start = row * size.width + column;
+            let end = start + LANES.min(size.width - column);
+            (p * inverse).store(&mut normals.x[start..end]);
+            (q * inverse).store(&mut normals.y[start..end]);
+            (Lanes::splat(0.0) - inverse).store(&mut normals.z[start..end]);
+        }
+    }
+}
+
+/// [`slope`] of five depths in a line, a pixel apart; NaN where there is none.
+#[inline(never)]
+fn lane_slope(line: [Lanes; 5]) -> Lanes {
+    let far = Lanes::splat(f32::INFINITY);
+    let lengths = |step: Lanes| {
+        let square = Lanes::splat(1.0) + step * step;
+        square.finite().select(square, far)
+    };
+    let (before, after) = (line[2] - line[1], line[3] - line[2]);
+    let [a, b, c, d] = [lengths(line[1] - line[0]), lengths(before), lengths(after), lengths(line[4] - line[3])];
+    let (b_first, d_first) = (b.less(a), d.less(c));
+    let (low, high) = (b_first.select(b, a), b_first.select(a, b));
+    let (other_low, other_high) = (d_first.select(d, c), d_first.select(c, d));
+    let (least, more) = {
+        let other_first = other_low.less(low);
+        (other_first.select(other_low, low), other_first.select(low, other_low))
+    };
+    let rest = other_high.less(high).select(other_high, high);
+    // Of one or two steps the shorter, of three or four the second: at least three are there if the third is.
+    let second = rest.less(more).select(rest, more);
+    let third = rest.less(more).select(more, rest);
+    let median = third.less(far).select(second, least);
+    let longest = Lanes::splat((LONGEST_STEP * LONGEST_STEP) as f32) * median;
+    let usable = |length: Lanes| length.less(far) & length.at_most(longest);
+    let (has_before, has_after) = (usable(b), usable(c));
+    let either = has_before.select(before, has_after.select(after, Lanes::splat(f32::NAN)));
+    (has_before & has_after).select(Lanes::splat(0.5) * (before + after), either)
 }
 
 /// Lower median of the squared lengths of the steps between five points in a line.
