@@ -354,7 +354,8 @@ impl Estimator {
         }
         let light = self.solution.exposed_light();
         let energy = merit::energy(&self.image, &self.depth, &self.kept_points, self.candidate(&self.solution, &light));
-        let before = if first { None } else { Some(self.kept_energy()) };
+        // Since it was measured neither the kept solution nor its points have changed.
+        let before = if first { None } else { Some(self.report.energy) };
         let change = self.kept.pose.degrees_to(&self.solution.pose);
         // The joint registration has a cost of its own: a pose that it moves is not for the merit to take back.
         let judged = self.registration() != Registration::Joint || change < self.options.stop_degrees;

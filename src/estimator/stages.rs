@@ -277,8 +277,10 @@ impl Estimator {
 
     /// Length of an image pixel at the object.
     pub(super) fn pixel_length(&self) -> f64 {
-        let centre = self.solution.carried_centre();
-        gauge::pixel_length(&self.image, centre.z)
+        if self.image.camera.is_orthographic() {
+            return 1.0;
+        }
+        gauge::pixel_length(&self.image, self.solution.carried_centre().z)
     }
 
     /// Projects the depth points, hides what is occluded, and drops what is too far from the image surface.

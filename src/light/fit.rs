@@ -12,8 +12,10 @@ use crate::light::harmonics::{HARMONICS, basis};
 use crate::light::prior::{CoefficientMatrix, Coefficients, LightPrior};
 use crate::view::{Normals, quantile};
 
-/// Rounds of reweighting; the weights settle in four to six.
+/// Most rounds of reweighting; the weights settle in four to six.
 const ROUNDS: usize = 8;
+/// Change of the median residual, a share of it, at which they have: their scale follows the median.
+const SETTLED: f64 = 0.01;
 /// Pixels that the light is fitted to at most, evenly spread: 27 numbers from three colours each, whose noise is averaged
 /// away by far; an object that fills half of 128x128 is taken whole.
 const MOST_PIXELS: usize = 8000;
@@ -68,7 +70,11 @@ impl LightFitter {
             let residual = |&index: &usize| distance(light.shade(normal(index)), colours(index)) as f32;
             self.residuals.extend(self.pixels.iter().map(residual));
             self.sorted.clone_from(&self.residuals);
+            let before = median;
             median = f64::from(quantile(&mut self.sorted, 0.5));
+            if (median - before).abs() <= SETTLED * median {
+                break;
+            }
             let scale = (SCALE_OF_MEDIAN * median).max(SMALLEST_SCALE) as f32;
             for (weight, &residual) in self.weights.iter_mut().zip(&self.residuals) {
                 *weight = (1.0 + (residual / scale).powi(2)).powi(-2);

@@ -180,13 +180,18 @@ impl Correspondences {
         for index in 0..self.visible.column.len() {
             let (column, row) = (self.visible.column[index], self.visible.row[index]);
             let Some(pixel) = problem.image.size.nearest(column, row) else { continue };
-            let off = (column - column.round()).powi(2) + (row - row.round()).powi(2);
+            let off = from_centre(column).powi(2) + from_centre(row).powi(2);
             if off < self.off_centre[pixel] && problem.depth_normals.is_valid(index) {
                 self.off_centre[pixel] = off;
                 self.depth_of_pixel[pixel] = i32::try_from(index).unwrap_or(-1);
             }
         }
     }
+}
+
+/// Distance along an axis from the middle of the pixel that a position falls on.
+fn from_centre(position: f32) -> f32 {
+    position - (position + 0.5).floor()
 }
 
 fn carried(problem: &CorrespondenceProblem<'_>, index: usize) -> Vector3<f64> {

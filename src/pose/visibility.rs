@@ -105,13 +105,16 @@ pub(super) fn vector(values: [f32; 3]) -> Vector3<f64> {
 
 /// Enters a depth at the four pixels around a position, so that gaps between points let nothing through.
 pub(super) fn splat(size: Size, buffer: &mut [f32], position: [f64; 2], depth: f32) {
-    let [left, top] = position.map(f64::floor);
-    for (column, row) in [(left, top), (left + 1.0, top), (left, top + 1.0), (left + 1.0, top + 1.0)] {
-        // A position on a pixel's centre enters that pixel alone.
-        let near = (column - position[0]).abs() < 1.0 && (row - position[1]).abs() < 1.0;
-        if near && column >= 0.0 && row >= 0.0 && column < size.width as f64 && row < size.height as f64 {
-            let pixel = size.index(column as usize, row as usize);
-            buffer[pixel] = buffer[pixel].min(depth);
+    // A position on a pixel's centre enters that pixel alone. Positions far out, or NaN, make empty ranges.
+    let range = |position: f64, side: usize| {
+        (position.floor() as usize).min(side)..((position.ceil() + 1.0) as usize).min(side)
+    };
+    let columns = range(position[0], size.width);
+    for row in range(position[1], size.height) {
+        for buffered in
+            buffer.get_mut(size.index(columns.start, row)..size.index(columns.end, row)).into_iter().flatten()
+        {
+            *buffered = if depth < *buffered { depth } else { *buffered };
         }
     }
 }

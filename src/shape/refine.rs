@@ -29,7 +29,7 @@ const ANCHOR: [f64; 2] = [1e-3, 10.0];
 const COLOUR_SCALES: [f32; 3] = [0.5, 0.2, 0.06];
 /// Work at each scale, and of a refinement that continues an earlier one, at the last scale alone.
 const FIRST: Effort = Effort { steps: 6, rounds: 40, tolerance: 0.03 };
-const LATER: Effort = Effort { steps: 1, rounds: 20, tolerance: 0.1 };
+const LATER: Effort = Effort { steps: 1, rounds: 20, tolerance: 0.03 };
 /// Most sweeps that carry gradients into a hole: its radius in pixels at the most.
 const FILL_SWEEPS: usize = 256;
 
@@ -160,19 +160,16 @@ impl Refiner {
     /// Eq. 17 for each pixel alone: what an organised cloud, which has no rays, gets.
     fn refine_normals(&mut self, problem: RefinementProblem<'_>, normals: &mut Normals) {
         self.bring_prior(problem);
-        for index in 0..normals.len() {
-            self.prior.set(index, rotate(problem.rotation, self.prior.get(index)));
-            self.turned.set(index, rotate(problem.rotation, normals.get(index)));
-        }
+        normals.rotated(problem.rotation, &mut self.turned);
         let log = [&self.log[0][..], &self.log[1], &self.log[2]];
         let shading = ShadingProblem { log, prior: &self.prior, light: problem.light };
         self.solver.solve(shading, problem.weights, &mut self.turned);
-        let back = problem.rotation.transpose();
         for index in 0..normals.len() {
-            if self.turned.is_valid(index) {
-                normals.set(index, rotate(&back, self.turned.get(index)));
+            if !self.turned.is_valid(index) {
+                self.turned.set(index, rotate(problem.rotation, normals.get(index)));
             }
         }
+        self.turned.rotated(&problem.rotation.transpose(), normals);
     }
 
     /// Bilinear log colours at the positions of the depth pixels; NaN where a neighbour is off the mask.
@@ -186,14 +183,12 @@ impl Refiner {
         }
     }
 
-    /// Eq. 19: the image's normal where each depth pixel falls, in the depth view's frame.
+    /// Eq. 19: the image's normal where each depth pixel falls, in the colour view's frame.
     fn bring_prior(&mut self, problem: RefinementProblem<'_>) {
-        let back = problem.rotation.transpose();
         let [columns, rows] = problem.position;
         for index in 0..columns.len() {
             let seen = problem.image.size.nearest(columns[index], rows[index]);
-            let normal = seen.map_or([f32::NAN; 3], |pixel| rotate(&back, problem.image_normals.get(pixel)));
-            self.prior.set(index, normal);
+            self.prior.set(index, seen.map_or([f32::NAN; 3], |pixel| problem.image_normals.get(pixel)));
         }
     }
 

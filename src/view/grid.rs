@@ -1,6 +1,6 @@
 //! Rasters: their size, and fields of vectors over them as structure-of-arrays.
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
 use crate::error::{Error, ErrorKind, Result};
 
@@ -65,7 +65,8 @@ impl Size {
     /// Index of the pixel nearest to a continuous position, `None` outside the raster.
     #[must_use]
     pub fn nearest(self, column: f32, row: f32) -> Option<usize> {
-        let (column, row) = (column.round(), row.round());
+        // WebAssembly has no instruction that rounds halves away from zero, but one that rounds down.
+        let (column, row) = ((column + 0.5).floor(), (row + 0.5).floor());
         let inside = column >= 0.0 && row >= 0.0 && column < self.width as f32 && row < self.height as f32;
         inside.then(|| self.index(column as usize, row as usize))
     }
@@ -74,18 +75,22 @@ impl Size {
     #[must_use]
     pub fn bilinear(self, field: &[f32], column: f32, row: f32) -> f32 {
         // A corner without weight must not spoil the value: NaN times zero is NaN.
-        let corners = self.corners(column, row).into_iter().flatten().filter(|&(_, weight)| weight > 0.0);
-        let mut count = 0;
-        let sum = corners.inspect(|_| count += 1).map(|(pixel, weight)| weight * field[pixel]).sum();
-        if count > 0 { sum } else { f32::NAN }
+        let Some(corners) = self.corners(column, row) else { return f32::NAN };
+        let part = |(pixel, weight): (usize, f32)| if weight > 0.0 { weight * field[pixel] } else { 0.0 };
+        part(corners[0]) + part(corners[1]) + part(corners[2]) + part(corners[3])
     }
 
     /// As [`bilinear`](Self::bilinear), from those neighbours that have a value: colours of an object's rim.
     #[must_use]
     pub fn bilinear_of_known(self, field: &[f32], column: f32, row: f32) -> f32 {
-        let known = self.corners(column, row).into_iter().flatten().filter(|&(pixel, _)| !field[pixel].is_nan());
-        let (sum, weights) =
-            known.fold((0.0, 0.0), |(sum, weights), (pixel, weight)| (sum + weight * field[pixel], weights + weight));
+        let Some(corners) = self.corners(column, row) else { return f32::NAN };
+        let (mut sum, mut weights) = (0.0, 0.0);
+        for (pixel, weight) in corners {
+            if !field[pixel].is_nan() {
+                sum += weight * field[pixel];
+                weights += weight;
+            }
+        }
         if weights > 0.0 { sum / weights } else { f32::NAN }
     }
 
@@ -165,6 +170,17 @@ impl Normals {
     pub fn is_valid(&self, index: usize) -> bool {
         // A sum is NaN where a member is.
         !self.get(index).iter().sum::<f32>().is_nan()
+    }
+
+    /// All vectors turned, into memory of the caller's of the same length.
+    pub(crate) fn rotated(&self, rotation: &Matrix3<f64>, turned: &mut Self) {
+        let [x, y, z] = [&self.x, &self.y, &self.z];
+        for (axis, out) in [&mut turned.x, &mut turned.y, &mut turned.z].into_iter().enumerate() {
+            let [a, b, c] = [0, 1, 2].map(|column: usize| rotation[(axis, column)] as f32);
+            for (((out, x), y), z) in out.iter_mut().zip(x).zip(y).zip(z) {
+                *out = a * x + b * y + c * z;
+            }
+        }
     }
 
     /// Mean of the vectors that are there, zero where there is none.
