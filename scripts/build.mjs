@@ -55,7 +55,8 @@ async function numerics({ file, target, flags }) {
     `${target}/${WASM}/release/${MODULE}.wasm`,
   ]);
   // Level "s" gives the last 0.7 kB; speed is LLVM's work.
-  await node("binaryen/bin/wasm-opt", "-Os", "--converge", `${target}/wasm-bindgen/${MODULE}_bg.wasm`, "-o", `pkg/${file}`);
+  const smaller = ["-Os", "--converge", "--strip-producers", "--strip-target-features"];
+  await node("binaryen/bin/wasm-opt", ...smaller, `${target}/wasm-bindgen/${MODULE}_bg.wasm`, "-o", `pkg/${file}`);
 }
 
 /** One glue loads either file, so both must have been given the same: its imports, and what is exported with which types. */

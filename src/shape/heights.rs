@@ -19,7 +19,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::light::Light;
 use crate::shape::cosine::{CosineSolver, fast_width};
 use crate::shape::normal_operator::NormalOperator;
-use crate::shape::poisson::Edges;
+use crate::shape::poisson::{Edges, add_scaled, dot};
 use crate::shape::slopes::{RayFrame, SlopeTerms};
 use crate::shape::surface::Anchors;
 use crate::view::{Camera, LANES, Lanes, Mask, Real, Size};
@@ -412,16 +412,6 @@ impl HeightSolver {
                 *direction = 0.0;
             }
         }
-    }
-}
-
-fn dot(a: &[f32], b: &[f32]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| f64::from(*a) * f64::from(*b)).sum()
-}
-
-fn add_scaled(target: &mut [f32], factor: f32, source: &[f32]) {
-    for (target, source) in target.iter_mut().zip(source) {
-        *target += factor * source;
     }
 }
 

@@ -231,11 +231,13 @@ fn flux(weight: &[f32], here: &[f32], next: &[f32], gradient: &[f32], out: &mut 
     }
 }
 
-fn add_scaled(target: &mut [f32], factor: f32, source: &[f32]) {
+#[inline(never)]
+pub(super) fn add_scaled(target: &mut [f32], factor: f32, source: &[f32]) {
     target.iter_mut().zip(source).for_each(|(t, s)| *t += factor * s);
 }
 
-fn dot(a: &[f32], b: &[f32]) -> f64 {
+#[inline(never)]
+pub(super) fn dot(a: &[f32], b: &[f32]) -> f64 {
     lanes(a, b, |a, b| f64::from(a) * f64::from(b))
 }
 

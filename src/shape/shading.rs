@@ -61,8 +61,9 @@ const DIRECTIONS: usize = 600;
 const RIM: f32 = -0.05;
 /// Trials of one pixel in one solve; the paper allows 1000 and needs 300, Gauss-Newton needs about five.
 const MOST_STEPS: usize = 30;
-/// A step that short (in units of a unit normal, 0.006 degrees) has arrived: a hundredth of the best normals' error.
-const SMALLEST_STEP: f32 = 1e-4;
+/// A step that short (in units of a unit normal, 0.06 degrees) is the last one: it is taken, and leaves a tenth of itself
+/// at most, a hundredth of the best normals' error.
+const SMALLEST_STEP: f32 = 1e-3;
 /// First damping, relative to the diagonal.
 const FIRST_DAMPING: f32 = 1e-3;
 /// Damping beyond which no step is worth trying.

@@ -34,8 +34,9 @@ impl Lanes {
     /// Four values from `start`, NaN beyond the ends.
     #[inline(always)]
     pub fn load(values: &[f32], start: isize) -> Self {
-        match usize::try_from(start).ok().and_then(|start| values.get(start..start + LANES)) {
-            Some(four) => Self::from([four[0], four[1], four[2], four[3]]),
+        // A start before the first value is, without its sign, beyond the last one.
+        match values.get(start as usize..).and_then(|values| values.first_chunk()) {
+            Some(four) => Self::from(*four),
             None => Self::load_end(values, start),
         }
     }
@@ -183,23 +184,26 @@ operator!(Div, div);
 
 #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
 mod arch {
-    use core::arch::wasm32::{f32x4, f32x4_extract_lane as lane, v128, v128_bitselect};
     pub use core::arch::wasm32::{
         f32x4_add as add, f32x4_div as div, f32x4_le as at_most, f32x4_lt as less, f32x4_mul as mul,
         f32x4_sqrt as sqrt, f32x4_sub as sub, v128_and as and, v128_any_true as any, v128_not as not, v128_or as or,
     };
+    use core::arch::wasm32::{v128, v128_bitselect};
 
     pub type Four = v128;
     pub type Choice = v128;
 
     #[inline(always)]
-    pub fn four([a, b, c, d]: [f32; 4]) -> v128 {
-        f32x4(a, b, c, d)
+    pub fn four(values: [f32; 4]) -> v128 {
+        // SAFETY: both are sixteen bytes of which every pattern is valid. Lane by lane the compiler would load and insert
+        // each by itself.
+        unsafe { std::mem::transmute(values) }
     }
 
     #[inline(always)]
-    pub fn array(v: v128) -> [f32; 4] {
-        [lane::<0>(v), lane::<1>(v), lane::<2>(v), lane::<3>(v)]
+    pub fn array(four: v128) -> [f32; 4] {
+        // SAFETY: as above.
+        unsafe { std::mem::transmute(four) }
     }
 
     #[inline(always)]

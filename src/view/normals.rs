@@ -183,12 +183,15 @@ fn of_orthographic(size: Size, depth: &[f32], normals: &mut Normals) {
             let row_at = |row: usize| {
                 if row < size.height { &depth[row * size.width..][..size.width] } else { &[] }
             };
-            let below = |step: usize| Lanes::load(row_at((row + step).wrapping_sub(2)), column as isize);
-            let here = row_at(row);
-            let beside = |step: isize| Lanes::load(here, column as isize + step);
-            let middle = beside(0);
-            let p = lane_slope([beside(-2), beside(-1), middle, beside(1), beside(2)]);
-            let q = lane_slope([below(0), below(1), middle, below(3), below(4)]);
+            let line = |right: isize, down: isize| {
+                let mut line = [Lanes::splat(f32::NAN); 5];
+                for (value, step) in line.iter_mut().zip(-2..) {
+                    let row = row.wrapping_add_signed(step * down);
+                    *value = Lanes::load(row_at(row), column as isize + step * right);
+                }
+                lane_slope(line)
+            };
+            let (p, q) = (line(1, 0), line(0, 1));
             let one = Lanes::splat(1.0);
             let inverse = one / (p * p + q * q + one).sqrt();
             let start = row * size.width + column;
