@@ -4,8 +4,8 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::view::Size;
 
 /// Bytes that one pixel of either view takes at most, all stages and the opening search together. Measured on a pair at
-/// 640x480 whose object covers half of the frame (`tests/contract/memory.test.mjs` watches it): 325 of each view's pixels, the module's own
-/// megabyte included.
+/// 640x480 whose object covers half of the frame (`tests/contract/memory.test.mjs` watches it): 325 of each view's
+/// pixels, the module's own megabyte included.
 const BYTES_PER_PIXEL: f64 = 335.0;
 /// Most bytes of a pair: a quarter of what a wasm module may have, and what a phone's browser grants a page.
 const MOST_BYTES: f64 = 1e9;

@@ -30,6 +30,8 @@ mod rotations;
 mod target;
 mod template;
 
+use std::collections::BinaryHeap;
+
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
 use super::Similarity;
@@ -340,10 +342,14 @@ pub(crate) fn sort_down<T: Clone>(list: &mut Vec<T>, merit: impl Fn(&T) -> f64) 
 }
 
 fn descending(merits: &[f64]) -> Vec<usize> {
-    let mut order: Vec<usize> = (0..merits.len()).collect();
-    // By index where equal: the order is the same everywhere.
-    order.sort_unstable_by(|&a, &b| merits[b].total_cmp(&merits[a]).then(a.cmp(&b)));
-    order
+    // Bits of positive numbers are in their order, those of negative ones in the opposite (IEEE 754). A heap, because the
+    // library's sort is four times as much code; by index where equal, so that the order is the same everywhere.
+    let rank = |value: f64| {
+        let bits = value.to_bits();
+        if value.is_sign_negative() { bits } else { !bits & (u64::MAX >> 1) }
+    };
+    let ranked: BinaryHeap<_> = merits.iter().enumerate().map(|(index, &merit)| (rank(merit), index)).collect();
+    ranked.into_sorted_vec().into_iter().map(|(_, index)| index).collect()
 }
 
 /// Of a list sorted by merit keeps the first `most` whose rotations are `degrees` apart.
@@ -359,4 +365,17 @@ fn keep_apart<T>(list: &mut Vec<T>, most: usize, degrees: f64, rotation: impl Fn
         }
     }
     list.truncate(kept);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_order_is_that_of_a_sort() {
+        let merits = [0.5, -2.0, 3.0, 0.0, f64::INFINITY, -0.0, 3.0, -1e-300, f64::NEG_INFINITY, 1e-310, -2.0];
+        let mut order: Vec<usize> = (0..merits.len()).collect();
+        order.sort_by(|&a, &b| merits[b].total_cmp(&merits[a]));
+        assert_eq!(descending(&merits), order);
+    }
 }

@@ -14,28 +14,33 @@ use std::sync::Arc;
 
 use rustdct::algorithm::Type2And3ConvertToFft;
 use rustdct::{Dct2, Dct3, RequiredScratch};
-use rustfft::algorithm::butterflies::{Butterfly3, Butterfly6};
+use rustfft::algorithm::butterflies::{Butterfly3, Butterfly4, Butterfly8};
 use rustfft::algorithm::{Dft, Radix4};
 use rustfft::{Fft, FftDirection};
 
-/// The shortest row of at least `width` pixels that the transform handles well: once or three times a power of two.
+/// The shortest row of at least `width` pixels that the transform handles well: once, twice or three times a power of four.
 pub fn fast_width(width: usize) -> usize {
-    let power = |factor: usize| factor * width.max(1).div_ceil(factor).next_power_of_two();
-    [1, 3].map(power).into_iter().min().unwrap_or(width)
+    let power = |factor: usize| {
+        let two = width.max(1).div_ceil(factor).next_power_of_two();
+        factor * (two << (two.trailing_zeros() % 2))
+    };
+    [1, 2, 3].map(power).into_iter().min().unwrap_or(width)
 }
 
 /// A Fourier transform of `length` values. rustfft's planner would bring code for every length there is, a third of the
-/// whole wasm; here fast widths get what they need, and others the definition itself.
+/// whole wasm, and its own choice of the smallest transforms another 5 kB (gzipped); here fast widths get what
+/// they need, and others the definition itself.
 fn fourier(length: usize) -> Arc<dyn Fft<f32>> {
     let forward = FftDirection::Forward;
     let (odd, doublings) = (length >> length.trailing_zeros(), length.trailing_zeros());
-    let fours = doublings / 2;
-    match (odd, doublings % 2) {
-        (1, _) => Arc::new(Radix4::new(length, forward)),
-        (3, 0) => Arc::new(Radix4::new_with_base(fours, Arc::new(Butterfly3::new(forward)))),
-        (3, _) => Arc::new(Radix4::new_with_base(fours, Arc::new(Butterfly6::new(forward)))),
-        _ => Arc::new(Dft::new(length, forward)),
-    }
+    let smallest: Arc<dyn Fft<f32>> = match (odd, doublings % 2, doublings) {
+        (1, 0, 2..) => Arc::new(Butterfly4::new(forward)),
+        (1, 1, 3..) => Arc::new(Butterfly8::new(forward)),
+        (3, 0, _) => Arc::new(Butterfly3::new(forward)),
+        _ => return Arc::new(Dft::new(length, forward)),
+    };
+    let fours = (length / smallest.len()).trailing_zeros() / 2;
+    Arc::new(Radix4::new_with_base(fours, smallest))
 }
 
 /// Direct solver for one size of rectangle; owns its plan and its scratch memory.

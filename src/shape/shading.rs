@@ -6,9 +6,9 @@
 //! terms without a square and lambda_3 linear; a least-squares solver squares them, and so do we.
 //!
 //! Three colours give up to eight solutions, so each pixel first looks over the whole visible hemisphere, then
-//! descends by damped Gauss-Newton, [`LANES`] pixels side by side. The same code refines the depth view (Eq. 17, 18): its normals, turned into the
-//! colour view's frame, are pixels like any other. Limits: normals have n_z < 0, and under a light of one hue a pixel
-//! alone cannot tell its normal.
+//! descends by damped Gauss-Newton, [`LANES`] pixels side by side. The same code refines the depth view (Eq. 17, 18):
+//! its normals, turned into the colour view's frame, are pixels like any other. Limits: normals have n_z < 0, and under
+//! a light of one hue a pixel alone cannot tell its normal.
 
 use crate::light::{Light, Polynomial};
 use crate::view::{LANES, Lanes, Mask, Normals, Real};

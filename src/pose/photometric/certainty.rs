@@ -143,8 +143,9 @@ impl Photometric {
             // Fewer tiles than unknowns say nothing about the spread.
             Some(inverse) if count > free => {
                 let growth = growth(&matrix, &feigned).unwrap_or_else(Square::identity);
-                let listening = growth * inverse;
-                listening * spread * listening.transpose() * (self.unseen().powi(2) * count / (count - free))
+                let listening = product(&growth, &inverse);
+                product(&product(&listening, &spread), &listening.transpose())
+                    * (self.unseen().powi(2) * count / (count - free))
             }
             _ => Square::identity() * UNKNOWN.powi(2),
         };
@@ -165,8 +166,18 @@ fn growth(matrix: &Square, feigned: &Square) -> Option<Square> {
     let root = feigned.cholesky()?.l();
     let inverse = root.try_inverse()?;
     let symmetric = 0.5 * (matrix + matrix.transpose());
-    let eigen = SymmetricEigen::try_new(inverse * symmetric * inverse.transpose(), f64::EPSILON, MOST_EIGEN_ROUNDS)?;
-    let stretch = eigen.eigenvalues.map(|value| value.max(1.0) / (value - 1.0).max(LEAST_SIGNAL));
-    let vectors = eigen.eigenvectors;
-    Some(inverse.transpose() * vectors * Square::from_diagonal(&stretch) * vectors.transpose() * root.transpose())
+    let whitened = product(&product(&inverse, &symmetric), &inverse.transpose());
+    let SymmetricEigen { eigenvalues, eigenvectors } =
+        SymmetricEigen::try_new(whitened, f64::EPSILON, MOST_EIGEN_ROUNDS)?;
+    let mut along = product(&root, &eigenvectors).transpose();
+    for (mut row, value) in along.row_iter_mut().zip(&eigenvalues) {
+        row *= value.max(1.0) / (value - 1.0).max(LEAST_SIGNAL);
+    }
+    Some(product(&product(&inverse.transpose(), &eigenvectors), &along))
+}
+
+/// One copy of a product that would be unrolled wherever it is written: visitors download each.
+#[inline(never)]
+fn product(left: &Square, right: &Square) -> Square {
+    left * right
 }
