@@ -12,7 +12,7 @@ const LARGEST_SIGMA: f64 = 5.0;
 /// A rotation less certain than this about any axis is not observable at all, degrees (one sigma).
 const UNOBSERVABLE: f64 = 30.0;
 /// A rotation less certain than this is no single answer, degrees (one sigma): two sigmas pass the three degrees within
-/// which a pose counts as found. None in 300 random scenes is so uncertain, and all photographs that end over 4 degrees
+/// which a pose counts as found. One in 300 random scenes is so uncertain, and all photographs that end over 4 degrees
 /// off are, by 2.2 or more.
 const DOUBTFUL_SIGMA: f64 = 1.5;
 /// Growth of the scale beyond which, or below whose inverse, a registration has collapsed: shrunk onto a few pixels a

@@ -181,3 +181,35 @@ fn growth(matrix: &Square, feigned: &Square) -> Option<Square> {
 fn product(left: &Square, right: &Square) -> Square {
     left * right
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pose::photometric::SLOPE_BLUR;
+    use crate::pose::photometric::image::SplineImage;
+    use crate::view::{ColourImage, ColourSamples, ColourView, noise};
+
+    #[test]
+    fn the_slopes_of_white_noise_vary_together_by_the_constant() {
+        let side = 96;
+        let mut dice = noise::dice(3);
+        let samples = ColourSamples::RgbLinear((0..3 * side * side).map(|_| dice().exp() as f32).collect());
+        let image = ColourImage { width: side, height: side, samples, transfer: None, mask: None, camera: None };
+        let view = ColourView::new(image).unwrap();
+        let [sharp, blurred] = [0.0, SLOPE_BLUR].map(|blur| SplineImage::new(&view, blur));
+        let (mut sum, mut count) = (0.0, 0.0);
+        for row in 8..side - 8 {
+            for column in 8..side - 8 {
+                // All positions within a cell, one after the other.
+                let within = [0.618 * row as f64, 0.755 * column as f64].map(f64::fract);
+                let place = [column as f64 + within[0], row as f64 + within[1]];
+                let [first, second] = [&sharp, &blurred].map(|image| image.at(place).unwrap().gradient);
+                for (a, b) in first.as_flattened().iter().zip(second.as_flattened()) {
+                    sum += a * b;
+                    count += 1.0;
+                }
+            }
+        }
+        assert!((sum / count / SLOPE_COVARIANCE - 1.0).abs() < 0.06, "{}", sum / count);
+    }
+}
