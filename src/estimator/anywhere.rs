@@ -7,7 +7,7 @@ use crate::pose::{PhotometricReport, Similarity};
 use crate::report::Status;
 
 /// A rotation less certain than this about any axis is no answer, degrees (one sigma). Found poses of the random scenes
-/// stay below 2; the one wrong one had 7.
+/// stay below 3.
 const LARGEST_SIGMA: f64 = 5.0;
 /// A rotation less certain than this about any axis is not observable at all, degrees (one sigma).
 const UNOBSERVABLE: f64 = 30.0;
@@ -154,7 +154,7 @@ impl Estimator {
         let sigma = uncertainty.rotation_degrees.into_iter().fold(0.0, f64::max);
         if sigma.is_nan() || sigma > UNOBSERVABLE {
             return Some(format!(
-                "{} is not observable: as far as the noise lets see, turning the object changes no colour",
+                "{} is not observable: as far as the noise lets see, changing it changes no colour",
                 uncertainty.weakest
             ));
         }

@@ -6,7 +6,7 @@
 //! of 300 random scenes at 96x96 (Mozart, four scanned animals, three built-in surfaces; natural lights, free scale):
 //! any power from 0.1 to 0.6 puts a right end first in all of them, none at all errs in one; of two ends a few degrees
 //! apart, the square root favours the one that merely sees more. Rivals of right winners leave 1.25 times their noise or
-//! more, so an end that leaves nothing but the noise of the image comes before one that sees more and leaves as much.
+//! more, so an end that leaves nothing but the noise of the image comes before one that sees more but leaves so much.
 
 use crate::error::Result;
 use crate::pose::{PhotometricReport, Search, Similarity, sort_down};
@@ -182,8 +182,11 @@ impl Opening {
 
     fn outcome(&mut self) -> Option<Outcome> {
         sort_down(&mut self.ends, |end| end.gain);
-        let explains_all = |end: &End| end.report.noise <= self.noise && !self.ends[0].rivals(end, RIVAL_NOISE);
-        if let Some(index) = self.ends.iter().position(|end| end.rivals(&self.ends[0], 1.0) && explains_all(end)) {
+        // Nothing but the image's noise is left by it, and far more by the first.
+        let wins = |first: &End, end: &End| {
+            end.report.noise <= self.noise && end.rivals(first, 1.0) && !first.rivals(end, RIVAL_NOISE)
+        };
+        if let Some(index) = self.ends.iter().position(|end| wins(&self.ends[0], end)) {
             self.ends.swap(0, index);
         }
         let mut ends = self.ends.drain(..);

@@ -11,7 +11,7 @@
 //! a light of one hue a pixel alone cannot tell its normal.
 
 use crate::light::{Light, Polynomial};
-use crate::view::{LANES, Lanes, Mask, Normals, Real};
+use crate::view::{LANES, Lanes, Mask, Normals, Real, dot};
 
 /// What surrounds the unknown normals: all slices have one length, one element for each pixel.
 #[derive(Clone, Copy)]
@@ -327,11 +327,6 @@ pub(super) fn load(vectors: &Normals, index: usize) -> [Lanes; 3] {
 #[inline(always)]
 fn splat([x, y, z]: [f32; 3]) -> [Lanes; 3] {
     [Lanes::splat(x), Lanes::splat(y), Lanes::splat(z)]
-}
-
-#[inline(always)]
-fn dot(a: [Lanes; 3], b: [Lanes; 3]) -> Lanes {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 #[inline(always)]

@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 
 use crate::light::Polynomial;
 use crate::shape::heights::HeightProblem;
-use crate::view::{Camera, Lanes, Mask, Real, Size};
+use crate::view::{Camera, Lanes, Mask, Real, Size, dot};
 
 /// (a, b, c) of N = a + p b + q c: N points at the camera, p and q are slopes per pixel in pixels of height.
 ///
@@ -201,9 +201,4 @@ impl Turn {
 
 fn rotate(rotation: &[[f32; 3]; 3], [x, y, z]: [Lanes; 3]) -> [Lanes; 3] {
     rotation.map(|row| Lanes::splat(row[0]) * x + Lanes::splat(row[1]) * y + Lanes::splat(row[2]) * z)
-}
-
-#[inline(always)]
-fn dot(a: [Lanes; 3], b: [Lanes; 3]) -> Lanes {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }

@@ -103,6 +103,12 @@ impl Lanes {
     }
 }
 
+/// The products of four pairs of vectors.
+#[inline(always)]
+pub fn dot(a: [Lanes; 3], b: [Lanes; 3]) -> Lanes {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
 impl From<[f32; LANES]> for Lanes {
     #[inline(always)]
     fn from(values: [f32; LANES]) -> Self {

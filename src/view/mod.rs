@@ -16,5 +16,5 @@ pub use camera::{Camera, Pinhole};
 pub use colour::{ColourImage, ColourSamples, ColourView, Transfer};
 pub use depth::{DepthMap, DepthSamples, DepthView};
 pub use grid::{Normals, Points, Size};
-pub(crate) use lanes::{LANES, Lanes, Mask, Real};
+pub(crate) use lanes::{LANES, Lanes, Mask, Real, dot};
 pub(crate) use trim::quantile;

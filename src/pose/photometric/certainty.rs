@@ -97,18 +97,6 @@ impl Photometric {
         })
     }
 
-    /// F, see the module.
-    fn feigned(&self, problem: &PhotometricProblem<'_>, scene: &Scene<'_>, frame: &Frame) -> Square {
-        let variance = 3.0 * SLOPE_COVARIANCE * self.image_noise.powi(2);
-        let mut sum = Square::zeros();
-        self.points.each(problem, scene, &self.state, self.robust, frame, |index, _, weight| {
-            let (point, _) = problem.carried(&self.state.pose, index);
-            let (_, motion) = scene.motion(&point, frame).unwrap_or_default();
-            motion.iter().for_each(|row| sum.ger(variance * weight, row, row, 1.0));
-        });
-        sum
-    }
-
     /// Factor of one sigma for what the residuals of the tiles do not tell.
     fn unseen(&self) -> f64 {
         let of_image = MODEL_NOISE * self.image_noise / self.noise;
@@ -121,13 +109,17 @@ impl Photometric {
         let light = self.state.exposed();
         let slopes = Some(&self.slopes);
         let scene = Scene { image: &self.levels[0], slopes, camera: &problem.image.camera, light: &light };
-        let mut feigned = self.feigned(problem, &scene, frame);
+        let slope_variance = 3.0 * SLOPE_COVARIANCE * self.image_noise.powi(2);
+        let mut feigned = Square::zeros();
         self.tiles.fill(Row::zeros());
         let across = problem.depth.size.width.div_ceil(TILE);
         let tiles = &mut self.tiles;
         self.points.each(problem, &scene, &self.state, self.robust, frame, |index, point, weight| {
             let (column, row) = problem.depth.size.position(index as usize);
             tiles[row / TILE * across + column / TILE] += weight * reduced.score(point);
+            let (carried, _) = problem.carried(&self.state.pose, index);
+            let (_, motion) = scene.motion(&carried, frame).unwrap_or_default();
+            motion.iter().for_each(|row| feigned.ger(slope_variance * weight, row, row, 1.0));
         });
         let (mut spread, mut count) = (Square::zeros(), 0.0);
         for score in tiles.iter().filter(|score| score.norm() > 0.0) {
@@ -139,10 +131,9 @@ impl Photometric {
         let mut matrix = reduced.matrix;
         hold(&mut matrix, &held);
         hold(&mut feigned, &held);
-        let mut covariance = match matrix.try_inverse() {
+        let mut covariance = match matrix.try_inverse().zip(growth(&matrix, &feigned)) {
             // Fewer tiles than unknowns say nothing about the spread.
-            Some(inverse) if count > free => {
-                let growth = growth(&matrix, &feigned).unwrap_or_else(Square::identity);
+            Some((inverse, growth)) if count > free => {
                 let listening = product(&growth, &inverse);
                 product(&product(&listening, &spread), &listening.transpose())
                     * (self.unseen().powi(2) * count / (count - free))
@@ -161,7 +152,7 @@ impl Photometric {
 }
 
 /// The map of steps that stretches each eigenvector of `matrix` over `feigned` by lambda / (lambda - 1); `None` where
-/// the noise feigns nothing.
+/// the points do not move in every direction.
 fn growth(matrix: &Square, feigned: &Square) -> Option<Square> {
     let root = feigned.cholesky()?.l();
     let inverse = root.try_inverse()?;
