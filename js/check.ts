@@ -170,6 +170,16 @@ const depth = object(
   ["width", "height"],
 );
 
+/** More threads than this wait for one another. */
+const MOST_WORKERS = 16;
+/** A number that never reaches the numerics, and so is judged here. */
+const count: Check = (value, field) => {
+  number(value, field);
+  if (typeof value === "number" && !(Number.isInteger(value) && value > 0)) {
+    throw new BimodalError("range", `${field}: must be a whole number above zero (got ${value})`, field);
+  }
+};
+
 const options = object({
   light: wordOr(["estimate"], light, "27 numbers"),
   start: wordOr(["search", "identity"], pose, "a pose"),
@@ -183,6 +193,12 @@ const options = object({
   seed: whole,
   annealing: flag,
   trim: flag,
+  workers: (value, field) => {
+    count(value, field);
+    if (typeof value === "number" && value > MOST_WORKERS) {
+      throw new BimodalError("range", `${field}: at most ${MOST_WORKERS} (got ${value})`, field);
+    }
+  },
 });
 
 const relief = object({ width: side, height: side, heights: array(Float32Array) }, ["width", "height", "heights"]);
@@ -216,13 +232,6 @@ const signal: Check = (value, field) => {
 };
 const callback: Check = (value, field) => {
   if (typeof value !== "function") throw wrong(field, "a function", value);
-};
-/** A number that never reaches the numerics, and so is judged here. */
-const count: Check = (value, field) => {
-  number(value, field);
-  if (typeof value === "number" && !(Number.isInteger(value) && value > 0)) {
-    throw new BimodalError("range", `${field}: must be a whole number above zero (got ${value})`, field);
-  }
 };
 const run = object({ maxIterations: count, signal, onStep: callback });
 

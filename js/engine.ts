@@ -1,15 +1,28 @@
 /** The one wasm module behind all estimators of a page, and the border every call crosses. */
 import start, * as glue from "../target/wasm-bindgen/bimodal_stereo.js";
 import { BimodalError, translate } from "./errors.js";
+import type { Thread } from "./scouting.js";
 import type { WasmSource } from "./types.js";
 
 let loading: Promise<void> | undefined;
-let ready = false;
+let module: WebAssembly.Module | undefined;
+let spawnThread: (() => Thread) | undefined;
+
+async function compile(wasm: WasmSource): Promise<WebAssembly.Module> {
+  if (wasm instanceof WebAssembly.Module) return wasm;
+  if (ArrayBuffer.isView(wasm) || wasm instanceof ArrayBuffer) return WebAssembly.compile(wasm);
+  const response = wasm instanceof Response ? wasm : await fetch(wasm);
+  if (!response.ok) throw new Error(`status ${response.status}`);
+  // Only what is declared as wasm may be compiled while it arrives.
+  const isDeclared = response.headers.get("Content-Type")?.startsWith("application/wasm");
+  return isDeclared ? WebAssembly.compileStreaming(response) : WebAssembly.compile(await response.arrayBuffer());
+}
 
 async function loadOnce(wasm: WasmSource): Promise<void> {
   try {
-    await start({ module_or_path: wasm });
-    ready = true;
+    const compiled = await compile(wasm);
+    await start({ module_or_path: compiled });
+    module = compiled;
   } catch (error) {
     loading = undefined;
     const reason = error instanceof Error ? error.message : String(error);
@@ -17,8 +30,9 @@ async function loadOnce(wasm: WasmSource): Promise<void> {
   }
 }
 
-/** Loads the module once; later calls share the first one, and a failed one may be repeated. */
-export function load(wasm: WasmSource): Promise<void> {
+/** Loads the module once; later calls share the first one, and a failed one may be repeated. `spawn` makes the thread of a scout. */
+export function load(wasm: WasmSource, spawn?: () => Thread): Promise<void> {
+  spawnThread ??= spawn;
   loading ??= loadOnce(wasm);
   return loading;
 }
@@ -26,11 +40,20 @@ export function load(wasm: WasmSource): Promise<void> {
 /** Whether somebody has already called `init`. */
 export const isLoading = (): boolean => loading !== undefined;
 
+/** The compiled module, which other threads can start as well. */
+export function compiled(): WebAssembly.Module {
+  if (!module) throw new BimodalError("init", "await init() first");
+  return module;
+}
+
 /** The generated bindings; only once they are loaded. */
 export function bindings(): typeof glue {
-  if (!ready) throw new BimodalError("init", "await init() first");
+  compiled();
   return glue;
 }
+
+/** A thread for a scout, where this place has any. */
+export const spawn = (): Thread | undefined => spawnThread?.();
 
 /** Runs a call into wasm; its errors come out as `BimodalError`. */
 export function across<T>(call: () => T): T {

@@ -2,6 +2,7 @@ import type { Estimator as Raw } from "../target/wasm-bindgen/bimodal_stereo.js"
 import { checkDepth, checkImage, checkOptions, checkRun, unsupported } from "./check.js";
 import { across, bindings } from "./engine.js";
 import { BimodalError, isPanic, translate } from "./errors.js";
+import { Scouts } from "./scouts.js";
 import type { ColorImage, DepthMap, Options, RunOptions, StepReport } from "./types.js";
 
 /** Lets events, timers and drawing happen. A message instead of a timer: timers wait 4 ms, hidden pages 1 s. */
@@ -26,6 +27,8 @@ function breathe(): Promise<void> {
 export class Estimator {
   #raw: Raw | undefined;
   #broken = false;
+  readonly #workers: number;
+  readonly #scouts: Scouts | undefined;
 
   constructor(image: ColorImage, depth: DepthMap, options: Options = {}) {
     checkImage(image);
@@ -33,16 +36,25 @@ export class Estimator {
     checkOptions(options);
     const { Estimator: Binding } = bindings();
     this.#raw = across(() => new Binding(image, depth, options));
+    this.#workers = options.workers ?? 1;
+    const scouts = Math.min(this.#workers - 1, this.#raw.scoutsAfforded());
+    if (scouts > 0) {
+      this.#scouts = new Scouts(scouts, image, depth, options, {
+        take: () => this.#call((raw) => raw.takeTask()),
+        accept: (finding) => this.#call((raw) => raw.accept(finding)),
+      });
+      this.#scouts.begin();
+    }
   }
 
   /** One iteration of the loop. */
   step(): StepReport {
-    return this.#call((raw) => raw.step());
+    return this.#after(this.#call((raw) => raw.step()));
   }
 
   /** One stage of an iteration; the report says which. */
   stepStage(): StepReport {
-    return this.#call((raw) => raw.stepStage());
+    return this.#after(this.#call((raw) => raw.stepStage()));
   }
 
   /** As many steps as fit into the time, at least one. */
@@ -77,7 +89,12 @@ export class Estimator {
   /** Back to the start, with the same views and, if given, other options. */
   reset(options?: Options): void {
     if (options !== undefined) checkOptions(options);
+    if ((options?.workers ?? this.#workers) !== this.#workers) {
+      const message = "options.workers: threads get the views when they are made; make a new estimator to change it";
+      throw new BimodalError("unsupported", message, "options.workers");
+    }
     this.#call((raw) => raw.reset(options));
+    this.#scouts?.begin(options);
   }
 
   /** Where the loop stands. */
@@ -142,12 +159,20 @@ export class Estimator {
   free(): void {
     const raw = this.#raw;
     this.#raw = undefined;
+    this.#scouts?.end();
     // A broken one can't be freed: wasm-bindgen still counts it as borrowed by the call that broke off.
     if (!this.#broken) raw?.free();
   }
 
   [Symbol.dispose](): void {
     this.free();
+  }
+
+  /** Lets the scouts know how far the search has come. */
+  #after(report: StepReport): StepReport {
+    if (report.stage === "search" && report.status === "running") this.#scouts?.feed();
+    else this.#scouts?.rest();
+    return report;
   }
 
   #call<T>(method: (raw: Raw) => T): T {

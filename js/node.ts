@@ -1,6 +1,8 @@
 /** Entry for Node, whose fetch does not read files. */
 import { readFile } from "node:fs/promises";
+import { Worker } from "node:worker_threads";
 import { isLoading, load } from "./engine.js";
+import type { Thread } from "./scouting.js";
 import type { WasmSource } from "./types.js";
 import { wasmUrl } from "./wasm.js";
 
@@ -9,5 +11,19 @@ export * from "./main.js";
 /** Loads the numerics; without an argument from the .wasm file beside this module that `wasmUrl` names, read from disk. */
 export default async function init(wasm: WasmSource = wasmUrl()): Promise<void> {
   const onDisk = wasm instanceof URL && wasm.protocol === "file:" && !isLoading();
-  return load(onDisk ? await readFile(wasm) : wasm);
+  return load(onDisk ? await readFile(wasm) : wasm, spawn);
+}
+
+function spawn(): Thread {
+  const worker = new Worker(new URL("./scout-node.js", import.meta.url));
+  return {
+    post: (order, transfer) => worker.postMessage(order, transfer),
+    onAnswer: (hear) => {
+      worker.on("message", hear);
+      // A scout keeps no program from ending; whoever listens to one would.
+      worker.unref();
+    },
+    onFailure: (hear) => worker.on("error", hear),
+    end: () => void worker.terminate(),
+  };
 }

@@ -68,6 +68,11 @@ export interface Options {
   seed?: number;
   /** Whether flying pixels and background inside the mask are trimmed; default true. */
   trim?: boolean;
+  /**
+   * Threads that share the opening search, 1 .. 16, this one included; default 1. The result is the same to the bit for
+   * any number. The others find something to do as long as this one lets events through, as `run` does.
+   */
+  workers?: number;
 }
 
 export type Stage = "search" | "light" | "shading" | "surface" | "registration" | "refinement";

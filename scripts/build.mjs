@@ -14,8 +14,10 @@ const FLAVOURS = [
   // Cargo appends these to the flags of .cargo/config.toml, and of two opposite features the later one counts.
   { file: `${MODULE}_scalar_bg.wasm`, target: "target/scalar", flags: ["-C", "target-feature=-simd128"] },
 ];
+/** Two for programs, one for what reads files, and two for threads. */
+const ENTRIES = ["index", "node", "files", "scout", "scout-node"];
 /** Declarations that no entry mentions; one of them names the generated bindings, which stay inside. */
-const INTERNAL = ["check", "engine", "node", "npy"];
+const INTERNAL = ["check", "engine", "node", "npy", "scout", "scout-node", "scouting", "scouts"];
 
 const node = (module, ...args) => must(process.execPath, [inRoot("node_modules", module), ...args]);
 
@@ -74,7 +76,7 @@ function checkGlue() {
 async function facade() {
   const { rolldown } = await import("rolldown");
   const bundle = await rolldown({
-    input: { index: inRoot("js/index.ts"), node: inRoot("js/node.ts"), files: inRoot("js/files.ts") },
+    input: Object.fromEntries(ENTRIES.map((name) => [name, inRoot(`js/${name}.ts`)])),
     external: /^node:/,
     platform: "neutral",
     resolve: { mainFields: ["module", "main"] },

@@ -18,7 +18,7 @@
 //! | `pose/icp`, `pose/ransac` ([`Icp`], [`ransac`]) | the pose from both surfaces | Eq. 12 to 14 |
 //! | `pose/similarity`, `pose/angles` ([`Similarity`], [`Angles`]) | s, R, t and the angles | Eq. 15, 16, 20 |
 //! | `pose/correspondence` ([`Correspondences`]) | which depth point is which pixel | the 1-pixel rule |
-//! | `estimator` ([`Estimator`]) | one iteration, its merit, its end; `opening` (search, candidates, rivals) before it | Eq. 1, Algorithm 1 |
+//! | `estimator` ([`Estimator`]) | one iteration, its merit, its end; `opening` (search, candidates, rivals) before it, parts of it done by a [`Scout`] elsewhere | Eq. 1, Algorithm 1 |
 //! | [`scenes`] | surfaces, lights and a renderer with a known answer | the experiments |
 //! | `wasm` | bindings without mathematics, wasm32 only | |
 //!
@@ -48,7 +48,7 @@ mod view;
 mod wasm;
 
 pub use error::{Error, ErrorKind, Result};
-pub use estimator::{Estimator, Surface};
+pub use estimator::{Estimator, Finding, Scout, Surface, Task};
 pub use light::{COEFFICIENTS, CoefficientMatrix, Light, LightFit, LightFitter, LightPrior};
 pub use options::{LightSource, Options, Registration, Shading, Start, Weights};
 pub use pose::{

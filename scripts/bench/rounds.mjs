@@ -106,11 +106,12 @@ export async function searches(sides, scene, { size, times, name = size }) {
   for (const side of sides) await side.open(scene);
   const found = [];
   for (let round = 0; round < times; round++) {
-    for (const side of sides) {
-      const run = await side.run({ start: "search", most: TO_THE_END });
+    for (const [side, workers] of sides.flatMap((side) => side.crews.map((workers) => [side, workers]))) {
+      const where = workers > 1 ? `${side.where}, ${workers} workers` : side.where;
+      const run = await side.run({ start: "search", most: TO_THE_END, workers });
       const search = sum(timesOf(run, ({ stage }) => stage === "search"));
-      found.push({ where: side.where, size, scene: name, start: "search", ...endOf(run), search, longestSlice: run.longestSlice });
-      say(`${name}, ${side.where}: ${run.status} after ${(run.milliseconds / 1000).toFixed(1)} s, ${run.degrees.toFixed(2)} degrees off`);
+      found.push({ where, size, scene: name, start: "search", ...endOf(run), search, longestSlice: run.longestSlice });
+      say(`${name}, ${where}: ${run.status} after ${(run.milliseconds / 1000).toFixed(1)} s, ${run.degrees.toFixed(2)} degrees off`);
     }
   }
   return found;

@@ -27,13 +27,15 @@ export async function browserSide(chromium, address) {
   const ask = (request) => page.evaluate((given) => window.bench.ask(given), request);
   return {
     where: "browser",
+    /** How many workers share a search, one figure after the other. */
+    crews: [1, 2],
     ask,
     async open({ path }) {
       await page.evaluate(() => window.bench.hire());
       await ask({ kind: "init" });
       await ask({ kind: "scene", path: `/${path}` });
     },
-    run: ({ start, shading = "surface", most }) => ask({ kind: "run", start, shading, most }),
+    run: ({ start, shading = "surface", most, workers = 1 }) => ask({ kind: "run", start, shading, most, workers }),
     close,
   };
 }
@@ -50,6 +52,7 @@ export function nativeSide() {
   }
   return {
     where: "native",
+    crews: [1],
     open: ({ path }) => ask("scene", path),
     run: ({ start, shading = "surface", most }) => ask("run", start, shading, most),
     close: () => child.stdin.end(),

@@ -85,19 +85,25 @@ export function summary({ samples, ends, converged, searches, startUp, transfer,
 
 /** [what, value, unit, limit] of each aim; a value is null where this run did not measure it. */
 export function aims({ rows, search, growth, wasmAgainstNative, bytesPerPixel, wasmGzipBytes, scalarGzipBytes, jsGzipBytes }) {
-  const step = (size) => rows.find((row) => row.where === "browser" && row.size === size && row.stage === "step")?.milliseconds.median ?? null;
-  const searched = (size) => search.find((row) => row.where === "browser" && row.size === size);
+  const step = (size, stage = "step") =>
+    rows.find((row) => row.where === "browser" && row.size === size && row.stage === stage)?.milliseconds.median ?? null;
+  const searched = (size, where) => search.find((row) => row.where === where && row.size === size);
   const ratios = wasmAgainstNative.filter(({ stage }) => stage === "step").map(({ ratio }) => ratio);
   const slices = search.filter(({ where }) => where === "browser").map(({ longestSlice }) => longestSlice);
   const most = (values) => (values.length === 0 ? null : Math.max(...values));
   const kilo = (bytes) => (bytes === null ? null : bytes / 1000);
-  const seconds = (size) => kilo(searched(size)?.milliseconds.median ?? null);
+  const seconds = (size, where = "browser") => kilo(searched(size, where)?.milliseconds.median ?? null);
   return [
     ["whole step at 32x32", step("32x32"), "ms", 0.4],
     ["whole step at 128x128", step("128x128"), "ms", 3],
     ["whole step at 640x480", step("640x480"), "ms", 33],
+    ["standing step at 32x32", step("32x32", "standing step"), "ms", 0.4],
+    ["standing step at 128x128", step("128x128", "standing step"), "ms", 3],
+    ["standing step at 640x480", step("640x480", "standing step"), "ms", 33],
     ["search to converged at 64x64", seconds("64x64"), "s", 1.5],
     ["search to converged at 128x128", seconds("128x128"), "s", 3],
+    ["the same with two workers, 64x64", seconds("64x64", "browser, 2 workers"), "s", 1.5],
+    ["the same with two workers, 128x128", seconds("128x128", "browser, 2 workers"), "s", 3],
     ["longest slice of a search", most(slices), "ms", 8],
     ["wasm against native, worst step", most(ratios), "x", 1.8],
     ["growth of a step with the pixels", growth.step, "", 1.1],

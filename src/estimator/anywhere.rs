@@ -1,10 +1,12 @@
 //! Pose from anywhere: the opening search, the registration by colours, and when to doubt their answer.
 
-use super::{Estimator, Given, Joint, Look, Opening, Outcome, gauge};
+use super::{Estimator, Finding, Given, Joint, Look, Opening, Outcome, Task, gauge, memory};
 use crate::error::{Error, ErrorKind, Result};
-use crate::options::{LightSource, Registration};
-use crate::pose::{PhotometricReport, Similarity};
+use crate::light::LightPrior;
+use crate::options::{LightSource, Options, Registration};
+use crate::pose::{PhotometricReport, Search, Similarity};
 use crate::report::Status;
+use crate::view::{ColourView, DepthView};
 
 /// A rotation less certain than this about any axis is no answer, degrees (one sigma). Found poses of the random scenes
 /// stay below 3.
@@ -50,9 +52,7 @@ impl Estimator {
         let joint = joint.as_mut().ok_or_else(|| nowhere("the search has no registration"))?;
         let Some(opening) = opening else {
             // Grids and spectra of both views are a slice of their own.
-            let scale = gauge::held_scale(image, options);
-            let unit = gauge::unit_scale(image, depth);
-            *opening = Some(Opening::new(&given, joint.depth(), scale, unit, options.seed)?);
+            *opening = Some(Opening::new(&given, search(image, depth, prior, options, joint)?));
             self.report.message = Some("0 %: preparing the search".into());
             return Ok(());
         };
@@ -78,11 +78,30 @@ impl Estimator {
         }
     }
 
+    /// How many [`Scout`](super::Scout)s may work beside this estimator within the memory of a pair.
+    #[must_use]
+    pub fn scouts_afforded(&self) -> u32 {
+        memory::scouts_afforded(self.image.size, self.depth.size)
+    }
+
+    /// A part of the opening search for a [`Scout`](super::Scout) elsewhere; `None` while there is none to give away.
+    /// Whatever scouts do or fail to do, steps go on and the outcome is the same.
+    pub fn take_task(&mut self) -> Option<Task> {
+        self.opening.as_mut()?.take()
+    }
+
+    /// Takes in what a scout has found. What is no longer needed is passed over.
+    pub fn accept(&mut self, finding: Finding) {
+        if let Some(opening) = &mut self.opening {
+            opening.accept(finding);
+        }
+    }
+
     /// Starts the loop from what the search found.
     fn open(&mut self, Outcome { best, rivals }: Outcome) {
         self.adopt(&best);
         if let Some(joint) = &mut self.joint {
-            joint.adopt(best);
+            joint.adopt(*best);
         }
         self.report.message = Some(match rivals.len() {
             0 => "100 %: one pose explains the colours best".into(),
@@ -171,11 +190,12 @@ impl Estimator {
     }
 }
 
-fn given<'a>(
-    image: &'a crate::view::ColourView,
-    depth: &'a crate::view::DepthView,
-    prior: &'a crate::light::LightPrior,
-    options: &'a crate::options::Options,
+/// What registrations by colours look at.
+pub(super) fn given<'a>(
+    image: &'a ColourView,
+    depth: &'a DepthView,
+    prior: &'a LightPrior,
+    options: &'a Options,
 ) -> Given<'a> {
     let light = match &options.light {
         LightSource::Known(light) => Some(light),
@@ -184,6 +204,19 @@ fn given<'a>(
     let scale_is_held = gauge::held_scale(image, options).is_some();
     let has_prior = options.weights.light > 0.0;
     Given { image, depth, prior, has_prior, light, scale_is_held, annealing: options.annealing }
+}
+
+/// The search of a pair, by the normals that registrations go by.
+pub(super) fn search(
+    image: &ColourView,
+    depth: &DepthView,
+    prior: &LightPrior,
+    options: &Options,
+    joint: &Joint,
+) -> Result<Search> {
+    let given = given(image, depth, prior, options);
+    let scale = gauge::held_scale(image, options);
+    Search::new(image, joint.depth(), given.light, scale, gauge::unit_scale(image, depth), options.seed)
 }
 
 fn nowhere(message: &'static str) -> Error {

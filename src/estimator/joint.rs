@@ -21,7 +21,7 @@ const CANDIDATE_POINTS: usize = 2500;
 
 /// Change of the scale (natural logarithm) beyond which a registration has collapsed: shrunk onto a few pixels, a cloud
 /// is easily explained. Candidates of the search lie within 0.1 of a right scale.
-pub const COLLAPSE: f64 = 0.3;
+const COLLAPSE: f64 = 0.3;
 
 /// What one registration looks at, besides its own memory.
 #[derive(Clone, Copy)]
@@ -42,6 +42,13 @@ impl Given<'_> {
     fn options(&self) -> PhotometricOptions {
         PhotometricOptions { annealing: self.annealing, ..PhotometricOptions::default() }
     }
+}
+
+/// How the registration of a candidate stands.
+pub enum Attempt {
+    Ongoing,
+    /// Its report, or nothing: a candidate that cannot be registered is no error of the pair.
+    Ended(Option<Box<PhotometricReport>>),
 }
 
 /// Registers the measured depth view to the image; owns all memory.
@@ -159,14 +166,25 @@ impl Joint {
         self.photometric.register(&self.sharp.problem(given), &near.pose, &options)
     }
 
-    /// Begins a registration that [`advance`](Self::advance) carries on, a step at a time.
-    pub fn begin(&mut self, given: &Given<'_>, start: &Similarity) -> Result<()> {
+    /// A step of the registration of a candidate, `anew` the first.
+    pub fn attempt(&mut self, given: &Given<'_>, start: &Similarity, anew: bool) -> Attempt {
+        let outcome = if anew { self.begin(given, start).map(|()| None) } else { self.advance(given) };
+        match outcome {
+            Ok(None) => Attempt::Ongoing,
+            outcome => {
+                let found = outcome.ok().flatten();
+                Attempt::Ended(found.filter(|found| found.pose.growth_from(start) < COLLAPSE).map(Box::new))
+            }
+        }
+    }
+
+    fn begin(&mut self, given: &Given<'_>, start: &Similarity) -> Result<()> {
         let options = PhotometricOptions { most_points: CANDIDATE_POINTS, ..given.options() };
         self.photometric.begin(&self.sharp.problem(given), start, &options)
     }
 
     /// One step; the report, which takes about as long, once there is none left.
-    pub fn advance(&mut self, given: &Given<'_>) -> Result<Option<PhotometricReport>> {
+    fn advance(&mut self, given: &Given<'_>) -> Result<Option<PhotometricReport>> {
         let problem = self.sharp.problem(given);
         if self.photometric.is_done() {
             return self.photometric.report(&problem).map(Some);

@@ -7,6 +7,8 @@ use crate::view::Size;
 /// 640x480 whose object covers half of the frame (`tests/contract/memory.test.mjs` watches it): 325 of each view's
 /// pixels, the module's own megabyte included.
 const BYTES_PER_PIXEL: f64 = 335.0;
+/// Bytes that one pixel of either view takes in a [`Scout`](super::Scout), which has a module of its own.
+const SCOUT_BYTES_PER_PIXEL: f64 = 100.0;
 /// Most bytes of a pair: a quarter of what a wasm module may have, and what a phone's browser grants a page.
 const MOST_BYTES: f64 = 1e9;
 
@@ -24,6 +26,12 @@ pub fn check(image: Size, depth: Size) -> Result<()> {
     let [needed, granted] = [bytes, MOST_BYTES].map(|bytes| bytes / 1e6);
     let message = format!("the pair would take {needed:.0} MB and may take {granted:.0}: hand over smaller views");
     Err(Error::new(ErrorKind::Memory, field, message))
+}
+
+/// How many scouts of a pair fit beside its estimator.
+pub fn scouts_afforded(image: Size, depth: Size) -> u32 {
+    let pixels = (image.len() + depth.len()) as f64;
+    ((MOST_BYTES / pixels - BYTES_PER_PIXEL) / SCOUT_BYTES_PER_PIXEL).max(0.0) as u32
 }
 
 #[cfg(test)]

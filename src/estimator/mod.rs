@@ -14,8 +14,10 @@ mod joint;
 mod memory;
 mod merit;
 mod opening;
+mod scout;
 mod solution;
 mod stages;
+mod task;
 
 use nalgebra::Vector3;
 
@@ -29,7 +31,9 @@ use crate::view::{ColourImage, ColourView, DepthMap, DepthView, Normals, Size};
 use joint::{Given, Joint};
 use merit::Candidate;
 use opening::{Look, Opening, Outcome};
+pub use scout::Scout;
 use solution::Solution;
+pub use task::{Finding, Task};
 
 /// Which surface [`Estimator::points`] returns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

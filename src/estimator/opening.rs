@@ -8,11 +8,15 @@
 //! apart, the square root favours the one that merely sees more. Rivals of right winners leave 1.25 times their noise or
 //! more, so an end that leaves nothing but the noise of the image comes before one that sees more but leaves so much.
 
-use crate::error::Result;
-use crate::pose::{PhotometricReport, Search, Similarity, sort_down};
-use crate::view::DepthView;
+//!
+//! All of it falls into tasks that depend on nothing but the pair and themselves, so that others may do some of them
+//! ([`Scout`](super::Scout)). What they find counts in the order of the tasks, however it comes in: the outcome is the
+//! same to the bit.
 
-use super::joint::{COLLAPSE, Given, Joint};
+use crate::pose::{PhotometricReport, Search, Similarity, Slots, sort_down};
+
+use super::joint::{Attempt, Given, Joint};
+use super::task::{Finding, Found, Registered, Task, Work};
 
 /// Registrations after which an end that convinces is believed, and registrations at most.
 const FEW_TRIED: usize = 10;
@@ -39,7 +43,6 @@ const SEARCH_SHARE: f64 = 0.5;
 const FEW_SHARE: f64 = 0.25;
 
 /// Where the opening stands.
-#[expect(clippy::large_enum_variant, reason = "one value at a time, moved once")]
 pub enum Look {
     /// Not done; the share of the work that is, and what is being done.
     Ongoing(f64, &'static str),
@@ -49,27 +52,30 @@ pub enum Look {
 
 /// What the opening found.
 pub struct Outcome {
-    pub best: PhotometricReport,
+    pub best: Box<PhotometricReport>,
     /// Poses that the data can't tell from the best, best first.
     pub rivals: Vec<Similarity>,
 }
 
+/// Where registrations end.
 #[derive(Clone)]
 struct End {
-    report: PhotometricReport,
+    /// The candidate that ended best here.
+    candidate: usize,
+    registered: Registered,
     gain: f64,
     witnesses: u32,
 }
 
 impl End {
     fn is_apart(&self, other: &Self) -> bool {
-        self.report.pose.degrees_to(&other.report.pose) >= SAME_END
+        self.registered.pose.degrees_to(&other.registered.pose) >= SAME_END
     }
 
     /// Whether it explains about as many points as `best` nearly as well: up to `factor` times the noise.
     fn rivals(&self, best: &Self, factor: f64) -> bool {
-        self.report.visible as f64 >= RIVAL_VISIBLE * best.report.visible as f64
-            && self.report.noise <= factor * best.report.noise
+        self.registered.visible >= RIVAL_VISIBLE * best.registered.visible
+            && self.registered.noise <= factor * best.registered.noise
     }
 }
 
@@ -80,72 +86,134 @@ pub struct Opening {
     spread: f64,
     /// Standard deviation of the noise of log S.
     noise: f64,
-    searching: bool,
-    /// The next candidate, and whether its registration has begun.
+    /// What became of each candidate; `None` where it could not be registered.
+    registrations: Slots<Option<Registered>>,
+    /// The next candidate to count, and how many have been counted.
     next: usize,
-    begun: bool,
     tried: usize,
     ends: Vec<End>,
+    /// The candidate whose registration is under way here.
+    begun: Option<usize>,
+    decision: Option<Decision>,
+}
+
+/// The best end, if any is worth something, and its rivals.
+struct Decision {
+    best: Option<End>,
+    rivals: Vec<Similarity>,
 }
 
 impl Opening {
-    /// `depth` is the view whose normals are searched by.
-    ///
-    /// # Errors
-    /// Those of [`Search::new`].
-    pub fn new(given: &Given<'_>, depth: &DepthView, scale: Option<f64>, unit_scale: f64, seed: u64) -> Result<Self> {
-        Ok(Self {
-            search: Search::new(given.image, depth, given.light, scale, unit_scale, seed)?,
+    pub fn new(given: &Given<'_>, search: Search) -> Self {
+        Self {
+            search,
             spread: given.image.log_spread(),
             noise: given.image.log_noise(),
-            searching: true,
+            registrations: Slots::new(0),
             next: 0,
-            begun: false,
             tried: 0,
             ends: Vec::with_capacity(MOST_TRIED),
-        })
+            begun: None,
+            decision: None,
+        }
+    }
+
+    /// A task for somebody else; `None` while none can be begun.
+    pub fn take(&mut self) -> Option<Task> {
+        if let Some(task) = self.search.take() {
+            return Some(Task(Work::Search(task)));
+        }
+        if self.decision.is_some() {
+            return None;
+        }
+        let Self { registrations, search, ends, next, begun, .. } = self;
+        let candidates = search.candidates();
+        let wanted = |index| index >= *next && Some(index) != *begun && !is_known(ends, &candidates[index].pose);
+        let index = registrations.take(wanted)?;
+        Some(Task(Work::Register(index, candidates[index].pose)))
+    }
+
+    /// What somebody else has found.
+    pub fn accept(&mut self, finding: Finding) {
+        match finding.0 {
+            Found::Search(finding) => self.search.accept(finding),
+            Found::Registered(index, registered) => self.registrations.put(index, registered),
+        }
+        self.count();
     }
 
     /// One slice: a part of the search, or a step of a registration.
     pub fn advance(&mut self, joint: &mut Joint, given: &Given<'_>) -> Look {
-        if self.searching {
-            let share = self.search.advance().share;
-            self.searching = share < 1.0;
+        if self.is_searching() {
+            self.search.advance();
+            self.count();
+        } else if let Some(decision) = self.decision.take() {
+            return self.conclude(joint, given, decision);
+        } else {
+            self.register(joint, given);
+            self.count();
+        }
+        self.look()
+    }
+
+    fn is_searching(&self) -> bool {
+        self.search.progress().share < 1.0
+    }
+
+    fn look(&self) -> Look {
+        if self.is_searching() {
+            let share = self.search.progress().share;
             return Look::Ongoing(SEARCH_SHARE * share, "comparing rotations, translations and scales");
-        }
-        self.skip_known();
-        let candidates = self.search.candidates();
-        let enough = self.tried >= MOST_TRIED || (self.tried >= FEW_TRIED && self.is_convincing());
-        if self.next >= candidates.len() || enough {
-            return Look::Done(self.outcome());
-        }
-        // A candidate that cannot be registered is no error of the pair.
-        let outcome = match self.begun {
-            false => joint.begin(given, &candidates[self.next].pose).map(|()| None),
-            true => joint.advance(given),
-        };
-        self.begun = matches!(outcome, Ok(None));
-        if !self.begun {
-            let start = candidates[self.next].pose;
-            let found = outcome.ok().flatten().filter(|report| report.pose.growth_from(&start) < COLLAPSE);
-            (self.next, self.tried) = (self.next + 1, self.tried + 1);
-            if let Some(report) = found {
-                self.enter(report);
-            }
         }
         Look::Ongoing(registered_share(self.tried), "registering the best candidates")
     }
 
-    /// Passes over candidates next to an end that has witnesses enough.
-    fn skip_known(&mut self) {
+    /// A step of the registration that is under way here, or the beginning of the next one.
+    fn register(&mut self, joint: &mut Joint, given: &Given<'_>) {
         let candidates = self.search.candidates();
-        let known = |pose: &Similarity| {
-            let near = |end: &End| end.witnesses >= WITNESSES && end.report.pose.degrees_to(pose) < CATCHMENT;
-            self.ends.iter().any(near)
-        };
-        while !self.begun && candidates.get(self.next).is_some_and(|candidate| known(&candidate.pose)) {
-            self.next += 1;
+        let wanted = |index: usize| index >= self.next && !is_known(&self.ends, &candidates[index].pose);
+        let begun = self.begun.filter(|&index| wanted(index) && self.registrations.get(index).is_none());
+        let Some(index) = begun.or_else(|| self.registrations.next(wanted)) else { return };
+        if let Attempt::Ended(report) = self.attempt(index, joint, given) {
+            self.registrations.put(index, report.map(Registered::of));
         }
+    }
+
+    /// A step of one registration; another one that was under way here is dropped.
+    fn attempt(&mut self, candidate: usize, joint: &mut Joint, given: &Given<'_>) -> Attempt {
+        let start = self.search.candidates()[candidate].pose;
+        let attempt = joint.attempt(given, &start, self.begun != Some(candidate));
+        self.begun = matches!(attempt, Attempt::Ongoing).then_some(candidate);
+        attempt
+    }
+
+    /// Counts what has become of the candidates, in their order, up to the first that is still open.
+    fn count(&mut self) {
+        if self.is_searching() || self.decision.is_some() {
+            return;
+        }
+        let count = self.search.candidates().len();
+        if self.registrations.len() != count {
+            self.registrations = Slots::new(count);
+        }
+        while !self.is_exhausted() {
+            if is_known(&self.ends, &self.search.candidates()[self.next].pose) {
+                self.next += 1;
+                continue;
+            }
+            let Some(registered) = self.registrations.get(self.next) else { return };
+            (self.next, self.tried) = (self.next + 1, self.tried + 1);
+            if let Some(registered) = registered.clone() {
+                self.enter(self.next - 1, registered);
+            }
+        }
+        self.decision = Some(self.decide());
+    }
+
+    /// Whether no further candidate counts.
+    fn is_exhausted(&self) -> bool {
+        let enough = self.tried >= MOST_TRIED || (self.tried >= FEW_TRIED && self.is_convincing());
+        self.next >= self.search.candidates().len() || enough
     }
 
     /// Whether the best end has no rival by far, and either explains nearly all or is where most registrations end,
@@ -158,46 +226,70 @@ impl Opening {
             let compared = others.peek().is_some();
             let alone = !others.any(|end| end.rivals(best, CONVINCING_NOISE));
             let most = compared && 2 * best.witnesses as usize >= self.tried;
-            let clear = best.report.noise < UNEXPLAINED * self.spread || most;
+            let clear = best.registered.noise < UNEXPLAINED * self.spread || most;
             best.witnesses >= WITNESSES && alone && clear
         })
     }
 
     /// Remembers where a registration ended: the better of two that are one.
-    fn enter(&mut self, report: PhotometricReport) {
-        let gain = (report.visible as f64).cbrt() * (self.spread / report.noise).ln();
+    fn enter(&mut self, candidate: usize, registered: Registered) {
+        let gain = registered.visible.cbrt() * (self.spread / registered.noise).ln();
         if !gain.is_finite() {
             return;
         }
-        match self.ends.iter_mut().find(|end| end.report.pose.degrees_to(&report.pose) < SAME_END) {
+        match self.ends.iter_mut().find(|end| end.registered.pose.degrees_to(&registered.pose) < SAME_END) {
             Some(end) => {
                 end.witnesses += 1;
                 if gain > end.gain {
-                    (end.report, end.gain) = (report, gain);
+                    *end = End { candidate, registered, gain, witnesses: end.witnesses };
                 }
             }
-            None => self.ends.push(End { report, gain, witnesses: 1 }),
+            None => self.ends.push(End { candidate, registered, gain, witnesses: 1 }),
         }
     }
 
-    fn outcome(&mut self) -> Option<Outcome> {
+    /// The best end and those that the data can't tell from it.
+    fn decide(&mut self) -> Decision {
         sort_down(&mut self.ends, |end| end.gain);
         // Nothing but the image's noise is left by it, and far more by the first.
         let wins = |first: &End, end: &End| {
-            end.report.noise <= self.noise && end.rivals(first, 1.0) && !first.rivals(end, RIVAL_NOISE)
+            end.registered.noise <= self.noise && end.rivals(first, 1.0) && !first.rivals(end, RIVAL_NOISE)
         };
         if let Some(index) = self.ends.iter().position(|end| wins(&self.ends[0], end)) {
             self.ends.swap(0, index);
         }
         let mut ends = self.ends.drain(..);
-        let best = ends.next().filter(|best| best.gain > 0.0)?;
+        let Some(best) = ends.next().filter(|best| best.gain > 0.0) else {
+            return Decision { best: None, rivals: Vec::new() };
+        };
         let rivals = ends
             .filter(|end| end.is_apart(&best) && end.rivals(&best, RIVAL_NOISE))
-            .map(|end| end.report.pose)
+            .map(|end| end.registered.pose)
             .take(MOST_RIVALS)
             .collect();
-        Some(Outcome { best: best.report, rivals })
+        Decision { best: Some(best), rivals }
     }
+
+    /// The outcome, once the best one's whole report is here: a scout brings only what tells one end from another.
+    fn conclude(&mut self, joint: &mut Joint, given: &Given<'_>, decision: Decision) -> Look {
+        let Decision { best: Some(mut best), rivals } = decision else { return Look::Done(None) };
+        if best.registered.report.is_none() {
+            match self.attempt(best.candidate, joint, given) {
+                Attempt::Ended(report) => best.registered.report = report,
+                Attempt::Ongoing => {
+                    self.decision = Some(Decision { best: Some(best), rivals });
+                    return self.look();
+                }
+            }
+        }
+        Look::Done(best.registered.report.map(|best| Outcome { best, rivals }))
+    }
+}
+
+/// Whether a candidate lies next to an end that has witnesses enough.
+fn is_known(ends: &[End], pose: &Similarity) -> bool {
+    let near = |end: &End| end.witnesses >= WITNESSES && end.registered.pose.degrees_to(pose) < CATCHMENT;
+    ends.iter().any(near)
 }
 
 /// Share of the opening that is done after so many registrations.

@@ -9,6 +9,7 @@ mod photometric;
 mod ransac;
 mod search;
 mod similarity;
+mod slots;
 mod uncertainty;
 mod visibility;
 
@@ -18,7 +19,8 @@ pub use icp::{Icp, IcpOptions, IcpProblem, IcpReport, IcpTermination, Metric, Pa
 pub use neighbours::{Neighbour, Neighbours};
 pub use photometric::{Photometric, PhotometricOptions, PhotometricProblem, PhotometricReport, PhotometricTermination};
 pub use ransac::{RansacOptions, RansacReport, ransac};
-pub(crate) use search::sort_down;
 pub use search::{Candidate, Progress, Search};
+pub(crate) use search::{Place, SearchFinding, SearchTask, sort_down};
 pub use similarity::Similarity;
+pub(crate) use slots::Slots;
 pub use uncertainty::Information;

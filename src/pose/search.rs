@@ -35,6 +35,7 @@ use std::collections::BinaryHeap;
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
 use super::Similarity;
+use super::slots::Slots;
 use crate::error::Result;
 use crate::light::Light;
 use crate::options::positive;
@@ -98,20 +99,39 @@ pub struct Search {
     rotations: Vec<Matrix3<f64>>,
     sizes: Vec<f64>,
     sizes_vary: bool,
-    next: usize,
-    /// Best place of each pair of rotation and size, then the climbers.
-    places: Vec<Place>,
-    climbers: usize,
+    /// Best places of each slice of the sweep.
+    sweeps: Slots<Vec<Place>>,
+    /// Chosen once the sweep is done, and where they end.
+    climbers: Vec<Place>,
+    climbs: Slots<Candidate>,
     found: Vec<Candidate>,
 }
 
+/// A slice of the search, which needs nothing but the search's own views and options: whoever has the same can do it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum SearchTask {
+    /// Some pairs of rotation and size, by the number of their slice.
+    Sweep(usize),
+    /// The climb of one, and its number.
+    Climb(usize, Place),
+}
+
+/// What became of a task.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum SearchFinding {
+    /// The best places of a slice of the sweep.
+    Swept(usize, Vec<Place>),
+    /// Where a climber ended.
+    Climbed(usize, Candidate),
+}
+
 /// A point of the search: a rotation, an apparent size relative to the start's, a translation in cells.
-#[derive(Clone, Copy, Debug)]
-struct Place {
-    rotation: Matrix3<f64>,
-    size: f64,
-    shift: [i32; 2],
-    score: f64,
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Place {
+    pub rotation: Matrix3<f64>,
+    pub size: f64,
+    pub shift: [i32; 2],
+    pub score: f64,
 }
 
 /// What carries places of the grid to poses.
@@ -152,14 +172,14 @@ impl Search {
         };
         let rotations = rotations::spread(SPACING, seed);
         Ok(Self {
-            places: Vec::with_capacity(rotations.len() * sizes.len()),
+            sweeps: Slots::new((rotations.len() * sizes.len()).div_ceil(SWEPT_AT_ONCE)),
             template: Template::new(SIDE, &cloud),
             prediction: light.map(|light| Prediction::new(light, &target)),
             correlator: Correlator::new(fourier),
             sizes_vary: sizes.len() > 1,
-            next: 0,
-            climbers: CLIMBERS,
-            found: Vec::with_capacity(CLIMBERS),
+            climbers: Vec::new(),
+            climbs: Slots::new(CLIMBERS),
+            found: Vec::new(),
             geometry,
             cloud,
             target,
@@ -170,30 +190,65 @@ impl Search {
 
     /// One bounded slice of work: a few rotations of the sweep, or the climb of one. Does nothing once all is done.
     pub fn advance(&mut self) -> Progress {
-        let pairs = self.rotations.len() * self.sizes.len();
-        let sweeps = pairs.div_ceil(SWEPT_AT_ONCE);
-        if self.next < sweeps {
-            for pair in SWEPT_AT_ONCE * self.next..(SWEPT_AT_ONCE * (self.next + 1)).min(pairs) {
-                self.sweep(self.rotations[pair / self.sizes.len()], self.sizes[pair % self.sizes.len()]);
-            }
-            if self.next + 1 == sweeps {
-                self.choose_climbers();
-            }
-        } else if self.next < sweeps + self.climbers {
-            self.climb(self.next - sweeps);
+        let sweep = self.sweeps.next(|_| true).map(SearchTask::Sweep);
+        let task = sweep.or_else(|| self.climbs.next(|_| true).map(|index| self.climb_of(index)));
+        if let Some(task) = task {
+            let finding = self.perform(&task);
+            self.accept(finding);
         }
-        self.next = (self.next + 1).min(sweeps + self.climbers);
-        if self.next == sweeps + self.climbers {
+        self.progress()
+    }
+
+    /// How much is done.
+    #[must_use]
+    pub fn progress(&self) -> Progress {
+        let done = self.sweeps.done() + self.climbs.done();
+        Progress { share: done as f64 / (self.sweeps.len() + self.climbs.len()) as f64 }
+    }
+
+    /// A slice for somebody else to do; `None` while none can be begun.
+    pub(crate) fn take(&mut self) -> Option<SearchTask> {
+        if !self.sweeps.is_complete() {
+            return self.sweeps.take(|_| true).map(SearchTask::Sweep);
+        }
+        self.climbs.take(|_| true).map(|index| self.climb_of(index))
+    }
+
+    fn climb_of(&self, index: usize) -> SearchTask {
+        SearchTask::Climb(index, self.climbers[index])
+    }
+
+    /// Does a slice, whoever it is for.
+    pub(crate) fn perform(&mut self, task: &SearchTask) -> SearchFinding {
+        match *task {
+            SearchTask::Sweep(slice) => SearchFinding::Swept(slice, self.sweep(slice)),
+            SearchTask::Climb(index, place) => SearchFinding::Climbed(index, self.climb(place)),
+        }
+    }
+
+    /// Takes in what became of a slice, in any order.
+    pub(crate) fn accept(&mut self, finding: SearchFinding) {
+        let sweeping = !self.sweeps.is_complete();
+        match finding {
+            SearchFinding::Swept(slice, places) => self.sweeps.put(slice, places),
+            SearchFinding::Climbed(index, candidate) => self.climbs.put(index, candidate),
+        }
+        if sweeping && self.sweeps.is_complete() {
+            self.choose_climbers();
+        }
+        if self.is_done() && self.found.is_empty() {
             self.finish();
         }
-        Progress { share: self.next as f64 / (sweeps + self.climbers) as f64 }
+    }
+
+    fn is_done(&self) -> bool {
+        self.sweeps.is_complete() && self.climbs.is_complete()
     }
 
     /// The poses found, best first; none before the search is done.
     #[must_use]
     pub fn candidates(&self) -> &[Candidate] {
-        let done = self.next >= (self.rotations.len() * self.sizes.len()).div_ceil(SWEPT_AT_ONCE) + self.climbers;
-        if done { &self.found } else { &[] }
+        &self.found
     }
 
     /// Lays the cloud over the grid; whether enough of it is seen.
@@ -213,25 +268,35 @@ impl Search {
         judge(&self.template, self.prediction.as_ref(), &self.target, shift).unwrap_or(f64::NEG_INFINITY)
     }
 
-    fn sweep(&mut self, rotation: Matrix3<f64>, size: f64) {
+    /// The best places of one slice.
+    fn sweep(&mut self, slice: usize) -> Vec<Place> {
+        let pairs = self.rotations.len() * self.sizes.len();
+        let slice = SWEPT_AT_ONCE.saturating_mul(slice)..pairs.min(SWEPT_AT_ONCE.saturating_mul(slice + 1));
+        let pair = |pair| (self.rotations[pair / self.sizes.len()], self.sizes[pair % self.sizes.len()]);
+        let pairs: Vec<_> = slice.map(pair).collect();
+        pairs.into_iter().filter_map(|(rotation, size)| self.look(rotation, size)).collect()
+    }
+
+    /// The best place of a rotation and a size.
+    fn look(&mut self, rotation: Matrix3<f64>, size: f64) -> Option<Place> {
         if !self.draw(&rotation, size) {
-            return;
+            return None;
         }
         let proposals = self.correlator.proposals(&self.template, self.prediction.as_ref(), &self.target);
         let judged = proposals.map(|shift| Place { rotation, size, shift, score: self.judge(shift) });
-        let best = judged.max_by(|a, b| a.score.total_cmp(&b.score));
-        self.places.extend(best.filter(|place| place.score.is_finite()));
+        judged.max_by(|a, b| a.score.total_cmp(&b.score)).filter(|place| place.score.is_finite())
     }
 
-    /// Leaves the best places of the sweep, no two rotations alike.
+    /// The best places of the sweep, no two rotations alike.
     fn choose_climbers(&mut self) {
-        sort_down(&mut self.places, |place| place.score);
-        keep_apart(&mut self.places, CLIMBERS, SWEEP_TWINS, |place| &place.rotation);
-        self.climbers = self.places.len();
+        self.climbers = self.sweeps.results().flatten().copied().collect();
+        sort_down(&mut self.climbers, |place| place.score);
+        keep_apart(&mut self.climbers, CLIMBERS, SWEEP_TWINS, |place| &place.rotation);
+        self.climbs = Slots::new(self.climbers.len());
     }
 
-    fn climb(&mut self, index: usize) {
-        let mut best = self.places[index];
+    fn climb(&mut self, start: Place) -> Candidate {
+        let mut best = start;
         for (turn, growth) in TURNS.into_iter().zip(GROWTHS) {
             let centre = best;
             let mut vertex = [0.0; 4];
@@ -249,8 +314,7 @@ impl Search {
             }
             best = better(best, self.settle(moved(&centre, vertex, turn, growth)));
         }
-        let pose = self.geometry.pose(&best, &self.cloud, &self.target);
-        self.found.push(Candidate { pose, score: best.score });
+        Candidate { pose: self.geometry.pose(&best, &self.cloud, &self.target), score: best.score }
     }
 
     /// The place with its score, moved to the best translation next to it.
@@ -274,7 +338,7 @@ impl Search {
     }
 
     fn finish(&mut self) {
-        self.found.retain(|candidate| candidate.score.is_finite());
+        self.found = self.climbs.results().filter(|candidate| candidate.score.is_finite()).copied().collect();
         sort_down(&mut self.found, |candidate| candidate.score);
         keep_apart(&mut self.found, KEPT, TWINS, |candidate| &candidate.pose.rotation);
     }

@@ -9,7 +9,7 @@ use wasm_bindgen::prelude::wasm_bindgen;
 use super::error::Thrown;
 use super::input::{self, JsDepth, JsImage, JsOptions};
 use super::output;
-use crate::estimator::{Estimator as Native, Surface};
+use crate::estimator::{Estimator as Native, Finding, Surface};
 use crate::options::Options;
 use crate::report::Status;
 
@@ -78,6 +78,25 @@ impl Estimator {
         self.options = options;
         self.milliseconds.clear();
         Ok(())
+    }
+
+    /// How many scouts the memory of a pair leaves room for.
+    #[wasm_bindgen(js_name = "scoutsAfforded")]
+    pub fn scouts_afforded(&self) -> u32 {
+        self.native.scouts_afforded()
+    }
+
+    /// A part of the opening search for a scout in another thread, as plain numbers.
+    #[wasm_bindgen(js_name = "takeTask")]
+    pub fn take_task(&mut self) -> Option<Float64Array> {
+        self.native.take_task().map(|task| Float64Array::from(task.to_numbers().as_slice()))
+    }
+
+    /// What a scout has found.
+    pub fn accept(&mut self, finding: &Float64Array) {
+        if let Some(finding) = Finding::from_numbers(&finding.to_vec()) {
+            self.native.accept(finding);
+        }
     }
 
     #[wasm_bindgen(js_name = "imageNormals")]

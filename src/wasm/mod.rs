@@ -8,6 +8,7 @@ mod estimator;
 mod input;
 mod output;
 mod sample;
+mod scout;
 
 use wasm_bindgen::prelude::wasm_bindgen;
 

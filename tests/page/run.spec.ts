@@ -173,3 +173,11 @@ test("nothing known: the search comes first, says how far it is, and the loop co
   await expect(page.locator("#status")).toHaveAttribute("data-tone", "good");
   await expect(search).toContainText("100 %");
 });
+
+test("other threads share the search where the machine has them", async ({ lab, page }) => {
+  const scouts: string[] = [];
+  page.context().on("request", (request) => /\/scout-[^/]*\.js$/.test(request.url()) && scouts.push(request.url()));
+  await lab.visit("light=window");
+  const threads = await page.evaluate(() => navigator.hardwareConcurrency);
+  await expect.poll(() => scouts.length).toBe(Math.min(threads, 4) - 1);
+});

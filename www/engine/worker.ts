@@ -42,12 +42,16 @@ async function load(): Promise<void> {
   isLoaded = true;
 }
 
+/** More do not make a search much shorter, and each takes memory. */
+const MOST_WORKERS = 4;
+
 function resolve({ light, start, ...rest }: LabOptions, input: Input): Options {
   if (start === "truth" && !input.truth) {
     throw new BimodalError("option", "options.start: the true pose is known of a sample alone", "options.start");
   }
   return {
     ...rest,
+    workers: Math.min(navigator.hardwareConcurrency || 1, MOST_WORKERS),
     light: light === "known" ? (input.light ?? "estimate") : light,
     start: start === "truth" ? (input.truth ?? "search") : start,
   };
@@ -107,7 +111,7 @@ function reset({ options }: Calls["reset"]["request"]): Frame {
 const SEARCHING = [30, 250] as const;
 let answered = Infinity;
 
-function advance({ by, milliseconds }: Calls["advance"]["request"]): Frame {
+async function advance({ by, milliseconds }: Calls["advance"]["request"]): Promise<Frame> {
   const current = opened();
   const { estimator } = current;
   const began = performance.now();
@@ -118,7 +122,8 @@ function advance({ by, milliseconds }: Calls["advance"]["request"]): Frame {
   const searching = Math.min(Math.max(began - answered, SEARCHING[0]), SEARCHING[1]);
   do {
     if (isSearch()) reports.pop();
-    reports.push(by === "stage" ? estimator.stepStage() : estimator.step());
+    // Unlike a plain step this one lets the threads be heard that share the search.
+    reports.push(by === "stage" ? estimator.stepStage() : await estimator.run({ maxIterations: 1 }));
   } while (performance.now() - began < (isSearch() ? searching : milliseconds) && estimator.report.status === "running");
   answered = performance.now();
   return frame(current, reports);

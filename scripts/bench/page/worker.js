@@ -36,11 +36,19 @@ function degreesBetween(a, b) {
   return (2 * Math.asin(Math.min(1, distance / Math.sqrt(8))) * 180) / Math.PI;
 }
 
+/** Lets messages in: from the workers that share a search. */
+const breathe = () =>
+  new Promise((resume) => {
+    const { port1, port2 } = new MessageChannel();
+    port1.onmessage = resume;
+    port2.postMessage(null);
+  });
+
 /** The same as `run` of benches/common: to the end, or through `most` iterations. Stages carry the package's own times. */
-function run({ start, shading, most }) {
+async function run({ start, shading, most, workers }) {
   const { image, depth, pose } = scene;
   const begun = performance.now();
-  const estimator = new Estimator(image, depth, { start: start === "search" ? "search" : pose, shading });
+  const estimator = new Estimator(image, depth, { start: start === "search" ? "search" : pose, shading, workers });
   let { report } = estimator;
   const preparation = performance.now() - begun;
   const stages = [];
@@ -52,6 +60,7 @@ function run({ start, shading, most }) {
     // From outside: so long nobody else has a turn.
     if (report.stage === "search") longestSlice = Math.max(longestSlice, performance.now() - before);
     stages.push({ stage: report.stage, iteration, milliseconds: report.milliseconds[report.stage] });
+    if (workers > 1 && report.stage === "search") await breathe();
   }
   const milliseconds = performance.now() - begun;
   estimator.free();

@@ -1,0 +1,192 @@
+//! Parts of the opening that somebody else may do, what becomes of them, and both as plain numbers: that is all that
+//! threads without shared memory have to tell each other. An f64 carries every number here to the bit.
+
+use nalgebra::{Matrix3, Vector3};
+
+use crate::pose::{Candidate, PhotometricReport, Place, SearchFinding, SearchTask, Similarity};
+
+/// A part of the opening. It depends on the pair, the options and itself alone, so that anybody who has these gets the
+/// same.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Task(pub(super) Work);
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Work {
+    Search(SearchTask),
+    /// The registration of a candidate, by its number, from its pose.
+    Register(usize, Similarity),
+}
+
+/// What became of a [`Task`].
+#[derive(Clone, Debug)]
+pub struct Finding(pub(super) Found);
+
+#[derive(Clone, Debug)]
+pub(super) enum Found {
+    Search(SearchFinding),
+    /// `None` where the candidate could not be registered.
+    Registered(usize, Option<Registered>),
+}
+
+/// What tells one registration from another.
+#[derive(Clone, Debug)]
+pub(super) struct Registered {
+    pub pose: Similarity,
+    /// Number of visible points.
+    pub visible: f64,
+    /// Standard deviation of what is left of log S.
+    pub noise: f64,
+    /// All of it, where it was made here.
+    pub report: Option<Box<PhotometricReport>>,
+}
+
+impl Registered {
+    pub fn of(report: Box<PhotometricReport>) -> Self {
+        Self { pose: report.pose, visible: report.visible as f64, noise: report.noise, report: Some(report) }
+    }
+}
+
+/// First number of each kind of task or finding.
+const SWEEP: f64 = 0.0;
+const CLIMB: f64 = 1.0;
+const REGISTER: f64 = 2.0;
+
+impl Task {
+    /// As plain numbers.
+    #[must_use]
+    pub fn to_numbers(&self) -> Vec<f64> {
+        match &self.0 {
+            Work::Search(SearchTask::Sweep(slice)) => list(SWEEP, *slice, &[]),
+            Work::Search(SearchTask::Climb(index, place)) => list(CLIMB, *index, &place_numbers(place)),
+            Work::Register(index, pose) => list(REGISTER, *index, &pose_numbers(pose)),
+        }
+    }
+
+    /// From [`to_numbers`](Self::to_numbers); `None` from any others.
+    #[must_use]
+    pub fn from_numbers(numbers: &[f64]) -> Option<Self> {
+        let (&[kind, index], rest) = numbers.split_first_chunk()?;
+        let index = index as usize;
+        Some(Self(match kind {
+            SWEEP if rest.is_empty() => Work::Search(SearchTask::Sweep(index)),
+            CLIMB => Work::Search(SearchTask::Climb(index, place(rest.try_into().ok()?))),
+            REGISTER => Work::Register(index, pose(rest.try_into().ok()?)),
+            _ => return None,
+        }))
+    }
+}
+
+impl Finding {
+    /// As plain numbers.
+    #[must_use]
+    pub fn to_numbers(&self) -> Vec<f64> {
+        let (mut numbers, rest) = match &self.0 {
+            Found::Search(SearchFinding::Swept(slice, places)) => {
+                let places: Vec<_> = places.iter().map(place_numbers).collect();
+                return list(SWEEP, *slice, places.as_flattened());
+            }
+            Found::Registered(index, None) => return list(REGISTER, *index, &[]),
+            Found::Search(SearchFinding::Climbed(index, candidate)) => {
+                (list(CLIMB, *index, &pose_numbers(&candidate.pose)), &[candidate.score][..])
+            }
+            Found::Registered(index, Some(end)) => {
+                (list(REGISTER, *index, &pose_numbers(&end.pose)), &[end.visible, end.noise][..])
+            }
+        };
+        numbers.extend_from_slice(rest);
+        numbers
+    }
+
+    /// From [`to_numbers`](Self::to_numbers); `None` from any others.
+    #[must_use]
+    pub fn from_numbers(numbers: &[f64]) -> Option<Self> {
+        let (&[kind, index], rest) = numbers.split_first_chunk()?;
+        let index = index as usize;
+        Some(Self(match kind {
+            SWEEP => {
+                let (places, surplus) = rest.as_chunks();
+                if !surplus.is_empty() {
+                    return None;
+                }
+                Found::Search(SearchFinding::Swept(index, places.iter().map(place).collect()))
+            }
+            CLIMB => {
+                let (start, &[score]) = rest.split_first_chunk()? else { return None };
+                Found::Search(SearchFinding::Climbed(index, Candidate { pose: pose(start), score }))
+            }
+            REGISTER if rest.is_empty() => Found::Registered(index, None),
+            REGISTER => {
+                let (end, &[visible, noise]) = rest.split_first_chunk()? else { return None };
+                Found::Registered(index, Some(Registered { pose: pose(end), visible, noise, report: None }))
+            }
+            _ => return None,
+        }))
+    }
+}
+
+fn list(kind: f64, index: usize, rest: &[f64]) -> Vec<f64> {
+    [&[kind, index as f64], rest].concat()
+}
+
+/// Scale, rotation, translation.
+fn pose_numbers(pose: &Similarity) -> [f64; 13] {
+    let mut numbers = [pose.scale; 13];
+    numbers[1..10].copy_from_slice(pose.rotation.as_slice());
+    numbers[10..].copy_from_slice(pose.translation.as_slice());
+    numbers
+}
+
+fn pose(numbers: &[f64; 13]) -> Similarity {
+    let [scale, rotation @ .., x, y, z] = *numbers;
+    Similarity { scale, rotation: Matrix3::from_column_slice(&rotation), translation: Vector3::new(x, y, z) }
+}
+
+/// Size, rotation, shift, score.
+fn place_numbers(place: &Place) -> [f64; 13] {
+    let mut numbers = [place.size; 13];
+    numbers[1..10].copy_from_slice(place.rotation.as_slice());
+    numbers[10..].copy_from_slice(&[f64::from(place.shift[0]), f64::from(place.shift[1]), place.score]);
+    numbers
+}
+
+fn place(numbers: &[f64; 13]) -> Place {
+    let [size, rotation @ .., column, row, score] = *numbers;
+    Place { rotation: Matrix3::from_column_slice(&rotation), size, shift: [column as i32, row as i32], score }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_come_back_as_they_went() {
+        let place =
+            Place { rotation: Matrix3::from_fn(|i, j| (i + 3 * j) as f64), size: 0.9, shift: [-3, 4], score: 0.1 };
+        let pose = Similarity { translation: Vector3::new(0.1, 0.2, 0.3), ..Similarity::identity() };
+        for work in
+            [Work::Search(SearchTask::Sweep(7)), Work::Search(SearchTask::Climb(3, place)), Work::Register(5, pose)]
+        {
+            assert_eq!(Task::from_numbers(&Task(work).to_numbers()), Some(Task(work)));
+        }
+        let registered = Registered { pose, visible: 9.0, noise: 0.1, report: None };
+        for found in [
+            Found::Search(SearchFinding::Swept(2, vec![place; 2])),
+            Found::Search(SearchFinding::Swept(2, Vec::new())),
+            Found::Search(SearchFinding::Climbed(1, Candidate { pose, score: -1.5 })),
+            Found::Registered(4, Some(registered)),
+            Found::Registered(4, None),
+        ] {
+            let numbers = Finding(found).to_numbers();
+            assert_eq!(Finding::from_numbers(&numbers).map(|finding| finding.to_numbers()), Some(numbers));
+        }
+    }
+
+    #[test]
+    fn other_numbers_are_refused() {
+        for numbers in [&[][..], &[0.0], &[3.0, 0.0], &[1.0, 0.0, 1.0], &[f64::NAN, 0.0]] {
+            assert!(Task::from_numbers(numbers).is_none());
+            assert!(Finding::from_numbers(numbers).is_none());
+        }
+        assert!(Finding::from_numbers(&[0.0, 0.0, 1.0]).is_none());
+    }
+}

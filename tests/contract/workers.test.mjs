@@ -1,0 +1,128 @@
+// Several threads share a search, and nothing but the time it takes depends on how many.
+import assert from "node:assert/strict";
+import { spawnSync } from "node:child_process";
+import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { before, describe, test } from "node:test";
+import { setTimeout as wait } from "node:timers/promises";
+import { Estimator, init, pair, refused } from "./support.mjs";
+
+/** Until the other threads are there, milliseconds; a search takes as long. */
+const ARRIVAL = 1000;
+
+const scene = (request = {}) => pair({ light: "window", size: 48, angles: { alpha: 10, beta: 40 }, noise: 0.01, ...request });
+
+/** All that comes out, to the bit, but for the times. */
+function outcome(estimator) {
+  const { milliseconds, ...report } = estimator.report;
+  const arrays = [estimator.imageNormals(), estimator.imageDepth(), estimator.depthNormals(), estimator.refinedDepth(), estimator.residual()];
+  return { report, bits: arrays.map((array) => new Uint32Array(array.buffer)), light: estimator.light() };
+}
+
+/** Runs to the end; how many slices of the search were done in this thread. */
+async function slicesOf(estimator) {
+  let slices = 0;
+  await estimator.run({ onStep: ({ stage }) => (slices += stage === "search" ? 1 : 0) });
+  return slices;
+}
+
+before(() => init());
+
+describe("workers", () => {
+  test("any number of them finds the same to the bit", async () => {
+    const scenes = [[scene(), true], [scene({ surface: "ripples", scale: 1.1, overlap: 0.7 }), false]];
+    for (const [{ image, depth, light }, known] of scenes) {
+      for (const options of [known ? { light } : {}]) {
+        const alone = new Estimator(image, depth, options);
+        const all = await slicesOf(alone);
+        for (const workers of [2, 4]) {
+          const together = new Estimator(image, depth, { ...options, workers });
+          await wait(ARRIVAL);
+          const slices = await slicesOf(together);
+          assert.ok(slices < all, `${slices} of ${all} slices`);
+          assert.deepEqual(outcome(together), outcome(alone));
+          // The same threads serve the next search, too.
+          together.reset();
+          assert.ok((await slicesOf(together)) < all);
+          assert.deepEqual(outcome(together), outcome(alone));
+        }
+        alone.free();
+      }
+    }
+  });
+
+  test("a reset in the middle leaves no trace of the search before it", async () => {
+    const { image, depth, light } = scene();
+    const other = new Estimator(image, depth, { light });
+    await other.run();
+    const together = new Estimator(image, depth, { workers: 2 });
+    await wait(ARRIVAL);
+    await together.run({ maxIterations: 100 });
+    together.reset({ light });
+    await together.run();
+    assert.deepEqual(outcome(together), outcome(other));
+    together.reset({ light, start: "identity" });
+    other.reset({ light, start: "identity" });
+    await Promise.all([together.run(), other.run()]);
+    assert.deepEqual(outcome(together), outcome(other));
+  });
+
+  test("what is changed after it was handed over changes nothing", async () => {
+    const { image, depth, light } = scene();
+    const alone = new Estimator(image, depth, { light });
+    await alone.run();
+    const options = { light: light.slice(), workers: 2 };
+    const own = { ...image, data: image.data.slice() };
+    const together = new Estimator(own, depth, options);
+    options.light.fill(0);
+    own.data.fill(0.5);
+    await wait(ARRIVAL);
+    await together.run();
+    assert.deepEqual(outcome(together), outcome(alone));
+  });
+
+  test("steps without a pause do all of it themselves", () => {
+    const { image, depth } = scene({ size: 32 });
+    const alone = new Estimator(image, depth);
+    const together = new Estimator(image, depth, { workers: 3 });
+    for (const estimator of [alone, together]) while (estimator.step().status === "running");
+    assert.deepEqual(outcome(together), outcome(alone));
+  });
+
+  test("freed in the middle, nobody goes on", async () => {
+    const { image, depth } = scene();
+    const together = new Estimator(image, depth, { workers: 3 });
+    await wait(ARRIVAL);
+    await together.run({ maxIterations: 20 });
+    together.free();
+    await wait(50);
+    assert.throws(() => together.step(), { code: "freed" });
+  });
+
+  test("a program ends though nobody frees them", () => {
+    const folder = mkdtempSync(join(tmpdir(), "bimodal-stereo-"));
+    const program = join(folder, "program.mjs");
+    const support = JSON.stringify(new URL("./support.mjs", import.meta.url).href);
+    writeFileSync(
+      program,
+      `import { Estimator, init, pair } from ${support};
+      await init();
+      const { image, depth } = pair();
+      await new Estimator(image, depth, { workers: 3 }).run({ maxIterations: 3 });
+      console.log("done");`,
+    );
+    const { status, stdout, stderr } = spawnSync(process.execPath, [program], { encoding: "utf8", timeout: 30_000 });
+    rmSync(folder, { recursive: true });
+    assert.deepEqual([status, stdout.trim()], [0, "done"], stderr);
+  });
+
+  test("their number is checked, and stays", () => {
+    const { image, depth } = scene({ size: 32 });
+    for (const workers of [0, 1.5, 17, -1, NaN]) refused(() => new Estimator(image, depth, { workers }), "range", "options.workers");
+    refused(() => new Estimator(image, depth, { workers: "2" }), "type", "options.workers");
+    const estimator = new Estimator(image, depth);
+    refused(() => estimator.reset({ workers: 2 }), "unsupported", "options.workers");
+    estimator.reset({ workers: 1 });
+  });
+});
