@@ -34,6 +34,8 @@ impl Neighbours {
     /// Forgets the points it held and takes those of `points` for which `accept(index)` holds and that are not missing.
     /// Equal points are all kept; any one of them may be the answer.
     pub fn rebuild(&mut self, points: &Points, accept: impl Fn(usize) -> bool) {
+        // Not one tree beside the other.
+        self.tree = None;
         self.points.clear();
         self.original.clear();
         for index in 0..points.len() {

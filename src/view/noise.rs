@@ -18,8 +18,11 @@ where
 }
 
 /// Standard deviation of the noise whose fourth differences have these sizes; zero without any.
-pub fn of_bends(sizes: impl Iterator<Item = f32>) -> f64 {
-    let mut sizes: Vec<f32> = sizes.filter(|size| size.is_finite()).map(f32::abs).collect();
+pub fn of_bends(sizes: impl Iterator<Item = f32> + Clone) -> f64 {
+    let known = sizes.filter(|size| size.is_finite()).map(f32::abs);
+    // Counted first: a list that grows takes three times the memory.
+    let mut sizes = Vec::with_capacity(known.clone().count());
+    sizes.extend(known);
     if sizes.is_empty() {
         return 0.0;
     }
