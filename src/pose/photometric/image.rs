@@ -10,6 +10,8 @@
 //! Limits: an image with detail near one pixel is not band-limited and no interpolation finds what lies between; the
 //! outermost cells feel the continuation, a quarter of it for each pixel inwards.
 
+use std::sync::Arc;
+
 use crate::view::{ColourView, Size};
 
 /// Pole of the cubic B-spline's inverse filter.
@@ -28,7 +30,7 @@ const REACH: f64 = 3.0;
 pub(super) struct SplineImage {
     size: Size,
     /// Whether the four pixels right and below of each, itself included, are all on the mask.
-    cells: Vec<bool>,
+    cells: Arc<[bool]>,
     /// R, G and B side by side, mirrored by one sample before and two behind each line and column, so that the sixteen
     /// around a cell are always there.
     coefficients: Vec<[f32; 3]>,
@@ -44,6 +46,15 @@ pub(super) struct ImagePoint {
 impl SplineImage {
     /// Splines through the Gaussian mean (sigma `blur` in pixels, zero for none) of a view's log S.
     pub fn new(view: &ColourView, blur: f64) -> Self {
+        Self::over(&Arc::from(cells(view)), view, blur)
+    }
+
+    /// The same view's with another blur.
+    pub fn blurred(&self, view: &ColourView, blur: f64) -> Self {
+        Self::over(&self.cells, view, blur)
+    }
+
+    fn over(cells: &Arc<[bool]>, view: &ColourView, blur: f64) -> Self {
         let fields = [0, 1, 2].map(|channel: usize| {
             let mut field = blurred(view.size, &view.log[channel], &view.mask, blur);
             continue_outwards(view.size, &mut field, &view.mask);
@@ -54,7 +65,7 @@ impl SplineImage {
         let places = rows.flat_map(|row| columns.clone().map(move |column| view.size.index(column, row)));
         Self {
             size: view.size,
-            cells: cells(view),
+            cells: Arc::clone(cells),
             coefficients: places.map(|index| fields.each_ref().map(|field| field[index])).collect(),
         }
     }

@@ -138,7 +138,8 @@ struct Descent {
 /// Registers one depth view to one image again and again; owns all memory.
 pub struct Photometric {
     sizes: [Size; 2],
-    levels: [SplineImage; COARSEST + 1],
+    /// Down to the coarsest that is looked at.
+    levels: Vec<SplineImage>,
     slopes: SplineImage,
     points: VisiblePoints,
     tiles: Vec<Row>,
@@ -159,15 +160,19 @@ pub struct Photometric {
 }
 
 impl Photometric {
-    /// Splines of the image's levels, and memory for both views.
+    /// Splines of the image's levels, as many as a light that is known or not asks for, and memory for both views.
     #[must_use]
     pub fn new(problem: &PhotometricProblem<'_>) -> Self {
         let light = problem.prior.mean();
         let state = State { pose: Similarity::identity(), light, exposure: 0.0 };
+        let sharp = SplineImage::new(problem.image, BLURS[0]);
+        let slopes = sharp.blurred(problem.image, SLOPE_BLUR);
+        let mut levels = vec![sharp];
+        levels.extend((1..=coarsest(problem)).map(|level| slopes.blurred(problem.image, BLURS[level])));
         Self {
             sizes: [problem.image.size, problem.depth.size],
-            levels: BLURS.map(|blur| SplineImage::new(problem.image, blur)),
-            slopes: SplineImage::new(problem.image, SLOPE_BLUR),
+            slopes,
+            levels,
             points: VisiblePoints::new(problem),
             tiles: vec![Row::zeros(); certainty::tiles(problem.depth.size)],
             state,
@@ -213,8 +218,7 @@ impl Photometric {
     ) -> Result<()> {
         problem.check(self.sizes)?;
         start.validate("start")?;
-        let coarsest = if problem.light.is_some() { COARSEST } else { COARSEST_UNKNOWN };
-        let level = options.first_level.min(coarsest);
+        let level = options.first_level.min(coarsest(problem)).min(self.levels.len() - 1);
         // From the image's own brightness, so that a change of exposure changes nothing that follows.
         let brightness = problem.image.log_mean();
         self.state = match problem.light {
@@ -413,6 +417,11 @@ impl Photometric {
         let equations = self.points.equations(problem, &scene, &self.state, self.robust, frame);
         equations.reduce().ok_or_else(undetermined_light)
     }
+}
+
+/// The coarsest level that serves a problem.
+const fn coarsest(problem: &PhotometricProblem<'_>) -> usize {
+    if problem.light.is_some() { COARSEST } else { COARSEST_UNKNOWN }
 }
 
 fn undetermined_light() -> Error {

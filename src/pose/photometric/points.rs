@@ -83,14 +83,15 @@ pub(super) struct VisiblePoints {
 
 impl VisiblePoints {
     pub fn new(problem: &PhotometricProblem<'_>) -> Self {
-        let length = problem.depth.size.len();
+        let length = problem.points.len();
+        let room = (0..length).filter(|&index| problem.points.is_valid(index)).count();
         Self {
             visible: Visibility::new(problem.image.size.len(), length),
-            indices: Vec::with_capacity(length),
+            indices: Vec::with_capacity(room),
             sampled: false,
-            weights: Vec::with_capacity(length),
-            spare: Vec::with_capacity(length),
-            seen: Vec::with_capacity(length),
+            weights: Vec::with_capacity(room),
+            spare: Vec::with_capacity(room),
+            seen: Vec::new(),
         }
     }
 
@@ -231,6 +232,7 @@ impl VisiblePoints {
     /// Looks up what the image shows at the points, for [`light_equations`](Self::light_equations) under the same pose.
     pub fn see(&mut self, problem: &PhotometricProblem<'_>, scene: &Scene<'_>, state: &State) {
         self.seen.clear();
+        self.seen.reserve_exact(self.indices.len());
         for &index in &self.indices {
             let (point, _) = problem.carried(&state.pose, index);
             let log = scene.seen(&point);
