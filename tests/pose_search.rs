@@ -29,7 +29,7 @@ fn search(sample: &Sample, gain: f32, light: Option<&Light>, scale: Option<f64>,
         colours.iter_mut().for_each(|colour| *colour *= gain);
     }
     let (image, depth) = (ColourView::new(image).unwrap(), DepthView::new(&sample.depth_map(), true).unwrap());
-    Search::new(&image, &depth, light, scale, 1.0, seed).unwrap()
+    Search::new(&image, &depth, &depth.normals, light, scale, 1.0, seed).unwrap()
 }
 
 fn run(mut search: Search) -> Vec<(Similarity, f64)> {
@@ -166,9 +166,9 @@ fn what_cannot_be_searched_is_refused_by_name() {
     let sample = bust(far());
     let mut image = ColourView::new(sample.colour_image()).unwrap();
     let depth = DepthView::new(&sample.depth_map(), true).unwrap();
-    assert_eq!(Search::new(&image, &depth, None, Some(-1.0), 1.0, 1).err().unwrap().field(), "scale");
+    assert_eq!(Search::new(&image, &depth, &depth.normals, None, Some(-1.0), 1.0, 1).err().unwrap().field(), "scale");
     for channel in &mut image.log {
         channel.iter_mut().filter(|log| !log.is_nan()).for_each(|log| *log = -1.0);
     }
-    assert_eq!(Search::new(&image, &depth, None, None, 1.0, 1).err().unwrap().field(), "image");
+    assert_eq!(Search::new(&image, &depth, &depth.normals, None, None, 1.0, 1).err().unwrap().field(), "image");
 }

@@ -216,7 +216,7 @@ pub(super) fn search(
 ) -> Result<Search> {
     let given = given(image, depth, prior, options);
     let scale = gauge::held_scale(image, options);
-    Search::new(image, joint.depth(), given.light, scale, gauge::unit_scale(image, depth), options.seed)
+    Search::new(image, depth, joint.normals(), given.light, scale, gauge::unit_scale(image, depth), options.seed)
 }
 
 fn nowhere(message: &'static str) -> Error {

@@ -4,7 +4,7 @@ use crate::error::Result;
 use crate::light::{Light, LightPrior};
 use crate::options::LightSource;
 use crate::pose::{Photometric, PhotometricOptions, PhotometricProblem, PhotometricReport, Similarity};
-use crate::view::{ColourView, DepthView, cubic_normals};
+use crate::view::{ColourView, DepthView, Normals, cubic_normals};
 
 /// Weight of the light's prior in the registration: Bayes' own. `lambda.light` weighs the fit of the light stage alone,
 /// but where it is zero there is no prior here, either.
@@ -54,37 +54,37 @@ pub enum Attempt {
 /// Registers the measured depth view to the image; owns all memory.
 pub struct Joint {
     photometric: Photometric,
-    sharp: SharpView,
+    sharp: SharpNormals,
     /// The last registration.
     found: Option<PhotometricReport>,
 }
 
-/// The depth view with normals of third order, and one sigma of each in radians.
-struct SharpView {
-    depth: DepthView,
+/// Normals of the depth view of third order, and one sigma of each in radians.
+struct SharpNormals {
+    normals: Normals,
     error: Vec<f32>,
-    /// Standard deviation of its points, pixel lengths.
+    /// Standard deviation of the view's points, pixel lengths.
     noise: f64,
 }
 
-impl SharpView {
+impl SharpNormals {
     /// Those of the caller are taken as exact.
     fn new(depth: &DepthView) -> Self {
-        let mut depth = depth.clone();
+        let mut normals = depth.normals.clone();
         let mut error = vec![0.0; depth.size.len()];
         let mut noise = 0.0;
         if !depth.normals_given {
-            noise = cubic_normals::improve(depth.size, &depth.points, &mut depth.normals, &mut error);
+            noise = cubic_normals::improve(depth.size, &depth.points, &mut normals, &mut error);
         }
-        Self { depth, error, noise }
+        Self { normals, error, noise }
     }
 
     fn problem<'a>(&'a self, given: &Given<'a>) -> PhotometricProblem<'a> {
         PhotometricProblem {
             image: given.image,
-            depth: &self.depth,
-            points: &self.depth.points,
-            normals: &self.depth.normals,
+            depth: given.depth,
+            points: &given.depth.points,
+            normals: &self.normals,
             normal_error: Some(&self.error),
             light: given.light,
             prior: given.prior,
@@ -96,13 +96,13 @@ impl SharpView {
 
 impl Joint {
     pub fn new(given: &Given<'_>) -> Self {
-        let sharp = SharpView::new(given.depth);
+        let sharp = SharpNormals::new(given.depth);
         Self { photometric: Photometric::new(&sharp.problem(given)), sharp, found: None }
     }
 
-    /// The depth view as it is registered.
-    pub const fn depth(&self) -> &DepthView {
-        &self.sharp.depth
+    /// Normals of the depth view, which it is registered by.
+    pub const fn normals(&self) -> &Normals {
+        &self.sharp.normals
     }
 
     /// Whether the depth is so noisy that its normals only find the pose, and matching surfaces, which averages the

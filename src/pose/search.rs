@@ -39,7 +39,7 @@ use super::slots::Slots;
 use crate::error::Result;
 use crate::light::Light;
 use crate::options::positive;
-use crate::view::{Camera, ColourView, DepthView, Size};
+use crate::view::{Camera, ColourView, DepthView, Normals, Size};
 use cloud::Cloud;
 use correlate::Correlator;
 use fourier::{Fourier, SIDE};
@@ -146,8 +146,9 @@ struct Geometry {
 }
 
 impl Search {
-    /// Prepares a search of `depth` in `image`. `light` in the colour view's frame, where it is known; `scale` holds s,
-    /// `None` searches 0.7 .. 1.4 times `unit_scale`; `seed` turns the set of rotations.
+    /// Prepares a search of `depth` in `image` by its points and these `normals` of them. `light` in the colour view's
+    /// frame, where it is known; `scale` holds s, `None` searches 0.7 .. 1.4 times `unit_scale`; `seed` turns the set of
+    /// rotations.
     ///
     /// # Errors
     /// [`Range`](crate::ErrorKind::Range) for a scale out of range, [`Empty`](crate::ErrorKind::Empty) where too few
@@ -155,6 +156,7 @@ impl Search {
     pub fn new(
         image: &ColourView,
         depth: &DepthView,
+        normals: &Normals,
         light: Option<&Light>,
         scale: Option<f64>,
         unit_scale: f64,
@@ -163,7 +165,7 @@ impl Search {
         positive("scale", scale.unwrap_or(unit_scale))?;
         let mut fourier = Fourier::new();
         let target = Target::new(image, SIDE, &mut fourier)?;
-        let cloud = Cloud::new(depth)?;
+        let cloud = Cloud::new(depth.size, &depth.points, normals)?;
         let geometry = Geometry::new(image, depth, &target, &cloud, scale.unwrap_or(unit_scale));
         let sizes = match (scale, geometry.distance) {
             (None, _) => FREE_SCALES.to_vec(),

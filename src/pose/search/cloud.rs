@@ -8,7 +8,7 @@
 use nalgebra::Vector3;
 
 use crate::error::{Error, ErrorKind, Result};
-use crate::view::{DepthView, Size, quantile};
+use crate::view::{Normals, Points, Size, quantile};
 
 /// Patches at most: about four for each cell of the grid that an object covers.
 const MOST_PATCHES: usize = 1000;
@@ -52,17 +52,17 @@ impl Block {
 impl Cloud {
     /// # Errors
     /// [`ErrorKind::Empty`] where too little of the view has a normal.
-    pub fn new(view: &DepthView) -> Result<Self> {
-        let usable = |&index: &usize| view.points.is_valid(index) && view.normals.is_valid(index);
-        let count = (0..view.size.len()).filter(usable).count();
+    pub fn new(size: Size, points: &Points, normals: &Normals) -> Result<Self> {
+        let usable = |&index: &usize| points.is_valid(index) && normals.is_valid(index);
+        let count = (0..size.len()).filter(usable).count();
         let side = ((count as f64 / MOST_PATCHES as f64).sqrt().ceil() as usize).max(1);
-        let raster = Size { width: view.size.width.div_ceil(side), height: view.size.height.div_ceil(side) };
+        let raster = Size { width: size.width.div_ceil(side), height: size.height.div_ceil(side) };
         let mut blocks = vec![Block::default(); raster.len()];
-        for index in (0..view.size.len()).filter(usable) {
-            let (column, row) = view.size.position(index);
+        for index in (0..size.len()).filter(usable) {
+            let (column, row) = size.position(index);
             let block = &mut blocks[raster.index(column / side, row / side)];
-            block.point += Vector3::from(view.points.get(index).map(f64::from));
-            block.normal += Vector3::from(view.normals.get(index).map(f64::from));
+            block.point += Vector3::from(points.get(index).map(f64::from));
+            block.normal += Vector3::from(normals.get(index).map(f64::from));
             block.count += 1.0;
         }
         let mut cloud = Self { patches: Vec::with_capacity(count), centre: Vector3::zeros() };
