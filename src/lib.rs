@@ -59,9 +59,9 @@ pub use pose::{
 };
 pub use report::{Energy, Stage, Status, StepReport, Uncertainty};
 pub use shape::{
-    AnchorWeight, Anchors, HeightProblem, HeightReport, HeightSolver, IntegrationOptions, IntegrationReport,
-    Integrator, RefinementProblem, Refiner, Robust, ShadingProblem, ShadingSolver, ShadingWeights, Termination,
-    Terminations, exposure_step, first_exposure, gradients,
+    AnchorWeight, Anchors, HeightDomain, HeightProblem, HeightReport, HeightSolver, IntegrationOptions,
+    IntegrationReport, Integrator, RefinementProblem, Refiner, Robust, ShadingProblem, ShadingSolver, ShadingWeights,
+    Termination, Terminations, Workbench, exposure_step, first_exposure, gradients,
 };
 pub use view::{
     Camera, ColourImage, ColourSamples, ColourView, DepthMap, DepthSamples, DepthView, Normals, Pinhole, Points, Size,

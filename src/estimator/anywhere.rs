@@ -26,11 +26,6 @@ const LARGEST_UNEXPLAINED: f64 = 0.3;
 const FEWEST_INLIERS: f64 = 0.4;
 
 impl Estimator {
-    /// What the registration by colours looks at.
-    pub(super) fn given(&self) -> Given<'_> {
-        given(&self.image, &self.depth, &self.prior, &self.options)
-    }
-
     /// The registration that this pair asks for: noisy depth is found by its colours and settled by its surface.
     pub(super) fn registration(&self) -> Registration {
         let settled_by_surface = |joint: &Joint| joint.is_coarse(&self.options.light) && joint.found().is_some();
@@ -110,7 +105,7 @@ impl Estimator {
         self.report.rivals = rivals;
         self.report.pose = self.solution.pose;
         self.update_correspondences();
-        self.kept.copy_from(&self.solution);
+        self.kept.keep(&self.solution);
         self.measure();
     }
 

@@ -97,6 +97,6 @@ fn centring(image: &ColourView, depth: &DepthView, pose: &Similarity) -> Vector3
 }
 
 fn median_depth(depth: &DepthView) -> f64 {
-    let mut values: Vec<f32> = depth.depth.iter().copied().filter(|value| !value.is_nan()).collect();
+    let mut values: Vec<f32> = depth.depth().iter().copied().filter(|value| !value.is_nan()).collect();
     f64::from(quantile(&mut values, 0.5))
 }

@@ -23,7 +23,7 @@ const NORMAL_SCALE: f64 = 0.2;
 
 /// Points or pixels that a mean is taken of at most: of robust costs in 0 .. 1 it is then right to half a percent, and two
 /// solutions are compared over the same ones.
-const MOST_JURORS: usize = 10_000;
+pub const MOST_JURORS: usize = 10_000;
 
 /// Residuals within this multiple of their median enter the robust mean.
 pub const SPREADS_OF_MEDIAN: f32 = 3.0;

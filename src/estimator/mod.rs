@@ -19,6 +19,8 @@ mod solution;
 mod stages;
 mod task;
 
+use std::borrow::Borrow;
+
 use nalgebra::Vector3;
 
 use crate::error::{Error, ErrorKind, Result};
@@ -26,13 +28,13 @@ use crate::light::{Light, LightFitter, LightPrior};
 use crate::options::{LightSource, Options, Registration, Shading, Start};
 use crate::pose::{Correspondences, Icp, Similarity};
 use crate::report::{Energy, Stage, Status, StepReport};
-use crate::shape::{Integrator, Refiner, ReliefSolver, STARTS, ShadingSolver};
+use crate::shape::{Integrator, Refiner, ReliefSolver, STARTS, ShadingSolver, Workbench};
 use crate::view::{ColourImage, ColourView, DepthMap, DepthView, Normals, Size};
 use joint::{Given, Joint};
 use merit::Candidate;
 use opening::{Look, Opening, Outcome};
 pub use scout::Scout;
-use solution::Solution;
+use solution::{Kept, Solution};
 pub use task::{Finding, Task};
 
 /// Which surface [`Estimator::points`] returns.
@@ -88,8 +90,8 @@ pub struct Estimator {
     prior: LightPrior,
     /// The solution that the stages work on.
     solution: Solution,
-    /// The last solution that was kept.
-    kept: Solution,
+    /// What was kept of the last iteration that was.
+    kept: Kept,
     /// Depth points with a correspondence in `kept`.
     kept_points: Vec<u32>,
     correspondences: Correspondences,
@@ -103,16 +105,11 @@ pub struct Estimator {
     /// Points of ICP's pairs: depth view, image.
     paired_points: [Vec<Vector3<f64>>; 2],
     refiner: Refiner,
-    relief: ReliefSolver,
-    /// Weight of the prior at each image pixel.
-    firmness: Vec<f32>,
+    /// Only where the image surface is solved as a whole.
+    relief: Option<ReliefSolver>,
+    bench: Workbench,
     /// Normals of the depth view at the image pixels, colour view's frame.
     carried_normals: Normals,
-    /// Normals of the image surface's heights, then what its pixels are drawn to.
-    surface_normals: Normals,
-    gradient: [Vec<f32>; 2],
-    height: Vec<f32>,
-    spare: Vec<f32>,
     residual: Vec<f32>,
     /// Share of the registration's step that is taken; halves with each rejection.
     trust: f64,
@@ -136,13 +133,16 @@ impl Estimator {
     ///
     /// # Errors
     /// Any [`Error`] of the views or the options, naming the field.
-    pub fn new(image: ColourImage, depth: &DepthMap, options: Options) -> Result<Self> {
+    pub fn new(image: ColourImage, depth: impl Borrow<DepthMap>, options: Options) -> Result<Self> {
         options.validate()?;
-        let sizes = (Size::new("image", image.width, image.height)?, Size::new("depth", depth.width, depth.height)?);
+        let map = depth.borrow();
+        let sizes = (Size::new("image", image.width, image.height)?, Size::new("depth", map.width, map.height)?);
         memory::check(sizes.0, sizes.1)?;
         let image = ColourView::new(image)?;
-        let depth = DepthView::new(depth, options.trim)?;
-        Self::from_views(image, depth, options)
+        let view = DepthView::new(map, options.trim)?;
+        // Samples that were handed over are not needed any more.
+        drop(depth);
+        Self::from_views(image, view, options)
     }
 
     fn from_views(image: ColourView, depth: DepthView, options: Options) -> Result<Self> {
@@ -152,28 +152,32 @@ impl Estimator {
             LightSource::Known(light) => light,
             LightSource::Estimate => prior.mean(),
         };
-        let pixels = image.size.len();
-        let solution = Solution::new(&image, &depth, pose, light);
+        // What takes much memory only while it is made comes first.
+        let asks = options.start == Start::Search || options.registration == Registration::Joint;
+        let joint = asks.then(|| Joint::new(&anywhere::given(&image, &depth, &prior, &options)));
+        let refiner = Refiner::new(&depth, &image)?;
+        let relief = match options.shading {
+            Shading::Surface => Some(ReliefSolver::new(&image)?),
+            Shading::Pixel => None,
+        };
+        let (pixels, points) = (image.size.len(), depth.size.len());
+        let domains = relief.iter().map(ReliefSolver::domain).chain([refiner.domain()]);
         let mut estimator = Self {
+            bench: Workbench::new(pixels.max(points), domains),
+            solution: Solution::new(&image, &depth, pose, light),
+            kept: Kept::new(pose, light),
+            kept_points: Vec::with_capacity(merit::MOST_JURORS),
             correspondences: Correspondences::new(&image, &depth),
-            integrator: None,
-            refiner: Refiner::new(&depth, &image)?,
-            relief: ReliefSolver::new(&image)?,
-            firmness: vec![0.0; pixels],
-            kept: solution.clone(),
-            kept_points: Vec::with_capacity(depth.size.len()),
-            solution,
             fitter: LightFitter::default(),
             solver: ShadingSolver::new(),
+            integrator: None,
             icp: Icp::new(),
-            joint: None,
+            joint,
             opening: None,
             paired_points: [Vec::new(), Vec::new()],
+            refiner,
+            relief,
             carried_normals: Normals::missing(pixels),
-            surface_normals: Normals::missing(pixels),
-            gradient: [vec![0.0; pixels], vec![0.0; pixels]],
-            height: vec![0.0; pixels],
-            spare: Vec::with_capacity(pixels),
             residual: vec![f32::NAN; pixels],
             trust: 1.0,
             rejections: 0,
@@ -189,8 +193,6 @@ impl Estimator {
             options,
             prior,
         };
-        let joint = estimator.options.start == Start::Search || estimator.options.registration == Registration::Joint;
-        estimator.joint = joint.then(|| Joint::new(&estimator.given()));
         estimator.prepare()?;
         Ok(estimator)
     }
@@ -243,7 +245,10 @@ impl Estimator {
             Stage::Shading => self.shade(),
             Stage::Surface => self.raise_surface(),
             Stage::Registration => self.register(),
-            Stage::Refinement => self.refine(),
+            Stage::Refinement => {
+                self.refine();
+                Ok(())
+            }
         };
         self.report.stage = stage;
         match outcome {
@@ -271,7 +276,7 @@ impl Estimator {
     /// Depth of the image surface, NaN off the mask; pixels with median zero for an orthographic image.
     #[must_use]
     pub fn image_depth(&self) -> &[f32] {
-        &self.solution.image_depth
+        &self.solution.image_points.z
     }
 
     /// Refined normals of the depth view, its own frame.
@@ -283,7 +288,7 @@ impl Estimator {
     /// Refined depth of the depth view, holes filled.
     #[must_use]
     pub fn refined_depth(&self) -> &[f32] {
-        &self.solution.refined_depth
+        &self.solution.depth_points.z
     }
 
     /// For each image pixel the index of its depth pixel, or -1.
@@ -338,7 +343,9 @@ impl Estimator {
         }
     }
 
-    fn candidate<'a>(&self, solution: &'a Solution, light: &'a Light) -> Candidate<'a> {
+    /// The working solution under `light`, its own.
+    fn candidate<'a>(&'a self, light: &'a Light) -> Candidate<'a> {
+        let solution = &self.solution;
         Candidate {
             pose: &solution.pose,
             light,
@@ -357,7 +364,7 @@ impl Estimator {
             self.list_points();
         }
         let light = self.solution.exposed_light();
-        let energy = merit::energy(&self.image, &self.depth, &self.kept_points, self.candidate(&self.solution, &light));
+        let energy = self.energy(&light);
         // Since it was measured neither the kept solution nor its points have changed.
         let before = if first { None } else { Some(self.report.energy) };
         let change = self.kept.pose.degrees_to(&self.solution.pose);
@@ -374,7 +381,8 @@ impl Estimator {
                 self.report.message = Some("the registration found no pose better than the present one".into());
             }
             self.keep();
-            self.report.energy = self.kept_energy();
+            // Over its own points.
+            self.report.energy = self.energy(&light);
         }
         self.report.pose = self.kept.pose;
         self.measure();
@@ -382,16 +390,15 @@ impl Estimator {
         self.trust = if rejected { 0.5 * self.trust } else { (2.0 * self.trust).min(1.0) };
     }
 
-    /// Energy of the kept solution over its own points.
-    fn kept_energy(&self) -> Energy {
-        let light = self.kept.exposed_light();
-        merit::energy(&self.image, &self.depth, &self.kept_points, self.candidate(&self.kept, &light))
+    /// Energy of the working solution over the points that were kept.
+    fn energy(&self, light: &Light) -> Energy {
+        merit::energy(&self.image, &self.depth, &self.kept_points, self.candidate(light))
     }
 
     /// Takes the iteration back.
     fn reject(&mut self, before: Energy, after: Energy) {
         self.rejections += 1;
-        self.solution.copy_from(&self.kept);
+        self.solution.restore(&self.kept, &self.image, &self.depth);
         self.update_correspondences();
         self.report.rotation_change = 0.0;
         self.report.message = Some(format!(
@@ -403,7 +410,7 @@ impl Estimator {
 
     /// Makes the new solution the one to beat.
     fn keep(&mut self) {
-        self.kept.copy_from(&self.solution);
+        self.kept.keep(&self.solution);
         self.list_points();
     }
 

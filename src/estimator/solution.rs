@@ -17,15 +17,11 @@ pub struct Solution {
     pub exposure: f64,
     /// Normals of the image surface, colour view's frame.
     pub image_normals: Normals,
-    /// Depth of the image surface in the colour view's unit.
-    pub image_depth: Vec<f32>,
-    /// Points of the image surface.
+    /// Points of the image surface; their z is its depth in the colour view's unit.
     pub image_points: Points,
     /// Refined normals, depth view's frame.
     pub depth_normals: Normals,
-    /// Refined depth.
-    pub refined_depth: Vec<f32>,
-    /// Refined points, depth view's frame.
+    /// Refined points, depth view's frame; their z is the refined depth.
     pub depth_points: Points,
 }
 
@@ -37,10 +33,8 @@ impl Solution {
             light,
             exposure: 0.0,
             image_normals: Normals::missing(image.size.len()),
-            image_depth: vec![f32::NAN; image.size.len()],
             image_points: Points::missing(image.size.len()),
             depth_normals: depth.normals.clone(),
-            refined_depth: depth.depth.clone(),
             depth_points: depth.points.clone(),
         }
     }
@@ -50,35 +44,27 @@ impl Solution {
         self.light.exposed(self.exposure)
     }
 
-    /// Takes everything over from another solution of the same sizes without allocating.
-    pub fn copy_from(&mut self, other: &Self) {
-        self.pose = other.pose;
-        self.light = other.light;
-        self.exposure = other.exposure;
-        self.image_depth.clone_from(&other.image_depth);
-        self.refined_depth.clone_from(&other.refined_depth);
-        for (mine, theirs) in [
-            (&mut self.image_normals, &other.image_normals),
-            (&mut self.image_points, &other.image_points),
-            (&mut self.depth_normals, &other.depth_normals),
-            (&mut self.depth_points, &other.depth_points),
-        ] {
-            mine.x.clone_from(&theirs.x);
-            mine.y.clone_from(&theirs.y);
-            mine.z.clone_from(&theirs.z);
-        }
+    /// Goes back to what was kept, without allocating.
+    pub fn restore(&mut self, kept: &Kept, image: &ColourView, depth: &DepthView) {
+        (self.pose, self.light, self.exposure) = (kept.pose, kept.light, kept.exposure);
+        self.image_normals.copy_from(&kept.image_normals);
+        self.image_points.z.clone_from(&kept.image_depth);
+        self.raise_image_points(image);
+        self.depth_normals.copy_from(&kept.depth_normals);
+        self.depth_points.z.clone_from(&kept.refined_depth);
+        self.raise_depth_points(depth);
     }
 
-    /// Points of both surfaces from their depths. An organised cloud keeps its own.
+    /// Points of the depth view from their z. An organised cloud keeps its own.
     pub fn raise_depth_points(&mut self, view: &DepthView) {
         if !view.organised {
-            raise(view.size, &view.camera, &self.refined_depth, &mut self.depth_points);
+            raise(view.size, &view.camera, &mut self.depth_points);
         }
     }
 
-    /// Points of the image surface from its depth.
+    /// Points of the image surface from their z.
     pub fn raise_image_points(&mut self, view: &ColourView) {
-        raise(view.size, &view.camera, &self.image_depth, &mut self.image_points);
+        raise(view.size, &view.camera, &mut self.image_points);
     }
 
     /// Centre of the depth points in the colour view's frame.
@@ -92,9 +78,40 @@ impl Solution {
     }
 }
 
-fn raise(size: Size, camera: &Camera, depth: &[f32], points: &mut Points) {
-    for (index, &depth) in depth.iter().enumerate() {
+/// What a rejected iteration has to give back; points follow from their depths.
+pub struct Kept {
+    pub pose: Similarity,
+    light: Light,
+    exposure: f64,
+    image_normals: Normals,
+    image_depth: Vec<f32>,
+    depth_normals: Normals,
+    refined_depth: Vec<f32>,
+}
+
+impl Kept {
+    /// No shape yet.
+    pub fn new(pose: Similarity, light: Light) -> Self {
+        let [image_normals, depth_normals] = [Normals::default(), Normals::default()];
+        let [image_depth, refined_depth] = [Vec::new(), Vec::new()];
+        Self { pose, light, exposure: 0.0, image_normals, image_depth, depth_normals, refined_depth }
+    }
+
+    /// Keeps `solution` instead; allocates the first time.
+    pub fn keep(&mut self, solution: &Solution) {
+        (self.pose, self.light, self.exposure) = (solution.pose, solution.light, solution.exposure);
+        self.image_normals.copy_from(&solution.image_normals);
+        self.image_depth.clone_from(&solution.image_points.z);
+        self.depth_normals.copy_from(&solution.depth_normals);
+        self.refined_depth.clone_from(&solution.depth_points.z);
+    }
+}
+
+/// The points at their depths along the pixels' rays.
+fn raise(size: Size, camera: &Camera, points: &mut Points) {
+    for index in 0..points.len() {
         let (column, row) = size.position(index);
+        let depth = points.z[index];
         let point = if depth.is_nan() {
             [f32::NAN; 3]
         } else {

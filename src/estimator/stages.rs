@@ -6,11 +6,11 @@ use super::merit::Candidate;
 use super::{Estimator, gauge, merit, worsens};
 use crate::error::Result;
 use crate::light::Light;
-use crate::options::{LightSource, Registration, Shading};
+use crate::options::{LightSource, Registration};
 use crate::pose::{CorrespondenceProblem, IcpOptions, IcpProblem, RansacOptions, Similarity, ransac};
 use crate::shape::{
-    IntegrationOptions, Integrator, RefinementProblem, ReliefProblem, Robust, ShadingProblem, ShadingWeights,
-    exposure_step, first_exposure, gradients,
+    IntegrationOptions, Integrator, RefinementProblem, ReliefProblem, ReliefSolver, Robust, ShadingProblem,
+    ShadingWeights, Workbench, exposure_step, first_exposure, gradients,
 };
 use crate::view::{normals, quantile};
 
@@ -38,8 +38,9 @@ const SPREADS: f64 = 3.0;
 impl Estimator {
     /// Everything that iteration zero needs: holes guessed, points raised, correspondences by the first pose.
     pub(super) fn prepare(&mut self) -> Result<()> {
-        let Self { refiner, depth, solution, .. } = self;
-        refiner.fill(depth, &depth.normals, &mut solution.refined_depth)?;
+        let Self { refiner, bench, depth, solution, .. } = self;
+        bench.fit(depth.size.len());
+        refiner.fill(bench, depth, &mut solution.depth_points.z)?;
         solution.raise_depth_points(depth);
         if let LightSource::Known(light) = self.options.light {
             let log = &self.image.log;
@@ -48,7 +49,7 @@ impl Estimator {
         }
         self.update_correspondences();
         self.fit_light()?;
-        self.kept.copy_from(&self.solution);
+        self.kept.keep(&self.solution);
         self.measure();
         Ok(())
     }
@@ -108,36 +109,23 @@ impl Estimator {
 
     /// Heights of the colour view from its normals.
     pub(super) fn raise_surface(&mut self) -> Result<()> {
-        let image = &self.image;
-        let [p, q] = &mut self.gradient;
-        gradients(image.size, &image.camera, &self.solution.image_normals, &image.mask, p, q);
-        // Pinhole gradients are of log Z: times f they are pixels of height per pixel, too.
-        let focal_length = image.camera.focal_length().unwrap_or(1.0) as f32;
-        p.iter_mut().chain(q.iter_mut()).for_each(|slope| *slope *= focal_length);
-        let options = IntegrationOptions { robust: Robust::Estimated, ..IntegrationOptions::default() };
-        let as_a_whole = self.options.shading == Shading::Surface;
-        if !as_a_whole || self.relief.wants_integrated() {
-            let mut integrator = match self.integrator.take() {
-                Some(integrator) => integrator,
-                None => Integrator::new(image.size, &image.mask)?,
-            };
-            integrator.integrate(p, q, None, &options, &mut self.height)?;
-            // A surface that is solved as a whole starts from it once.
-            self.integrator = (!as_a_whole).then_some(integrator);
+        self.find_slopes();
+        if self.relief.as_ref().is_none_or(ReliefSolver::wants_integrated) {
+            self.integrate()?;
         }
-        if as_a_whole {
-            self.solve_relief();
+        let light = self.solution.exposed_light();
+        self.solve_relief(&light);
+        if let Some(focal_length) = self.image.camera.focal_length() {
+            let focal_length = focal_length as f32;
+            self.solution.image_points.z.iter_mut().for_each(|depth| *depth = (*depth / focal_length).exp());
         }
-        let image = &self.image;
-        if image.camera.is_orthographic() {
-            let middle = median_of(&self.height, &mut self.spare).unwrap_or(0.0);
-            for (depth, &height) in self.solution.image_depth.iter_mut().zip(&self.height) {
-                *depth = height - middle;
-            }
+        if self.relief.is_some() {
+            self.shade_surface(&light);
+        }
+        if self.image.camera.is_orthographic() {
+            let middle = median_of(&self.solution.image_points.z, &mut self.bench.spare).unwrap_or(0.0);
+            self.solution.image_points.z.iter_mut().for_each(|depth| *depth -= middle);
         } else {
-            for (depth, &height) in self.solution.image_depth.iter_mut().zip(&self.height) {
-                *depth = (height / focal_length).exp();
-            }
             self.match_distance();
         }
         self.solution.raise_image_points(&self.image);
@@ -145,45 +133,66 @@ impl Estimator {
         Ok(())
     }
 
-    /// Heights and normals of the image surface as a whole, from the integrated one.
-    fn solve_relief(&mut self) {
+    /// Slopes of the pixels' own normals, pixels of height per pixel.
+    fn find_slopes(&mut self) {
+        let image = &self.image;
+        self.bench.fit(image.size.len());
+        let [p, q] = &mut self.bench.slopes;
+        gradients(image.size, &image.camera, &self.solution.image_normals, &image.mask, p, q);
+        // Pinhole gradients are of log Z: times f they are pixels of height per pixel, too.
+        let focal_length = image.camera.focal_length().unwrap_or(1.0) as f32;
+        p.iter_mut().chain(q.iter_mut()).for_each(|slope| *slope *= focal_length);
+    }
+
+    /// The surface that has these slopes, in heights for now.
+    fn integrate(&mut self) -> Result<()> {
+        let mut integrator = match self.integrator.take() {
+            Some(integrator) => integrator,
+            None => Integrator::new(self.image.size, &self.image.mask)?,
+        };
+        let options = IntegrationOptions { robust: Robust::Estimated, ..IntegrationOptions::default() };
+        let [p, q] = &self.bench.slopes;
+        integrator.integrate(p, q, None, &options, &mut self.solution.image_points.z)?;
+        // A surface that is solved as a whole starts from it once.
+        self.integrator = self.relief.is_none().then_some(integrator);
+        Ok(())
+    }
+
+    /// Heights of the image surface as a whole, at first from the integrated one.
+    fn solve_relief(&mut self, light: &Light) {
         let prior = self.shading_weights(self.options.weights.prior).prior;
-        for (pixel, firmness) in self.firmness.iter_mut().enumerate() {
+        let Some(relief) = &mut self.relief else { return };
+        let Workbench { slopes: [p, q], weight: firmness, heights, .. } = &mut self.bench;
+        for (pixel, firmness) in firmness.iter_mut().enumerate() {
             *firmness = if self.carried_normals.is_valid(pixel) { prior } else { 0.0 };
         }
-        let light = self.solution.exposed_light();
-        let problem = ReliefProblem {
-            image: &self.image,
-            light: &light,
-            slopes: [&self.gradient[0], &self.gradient[1]],
-            firmness: &self.firmness,
-        };
-        self.spare.clone_from(&self.height);
-        self.relief.solve(problem, &self.spare, &mut self.height);
-        let camera = self.image.camera;
-        let focal_length = camera.focal_length().unwrap_or(1.0) as f32;
-        for (spare, &height) in self.spare.iter_mut().zip(&self.height) {
-            *spare = if camera.is_orthographic() { height } else { (height / focal_length).exp() };
-        }
-        normals::of_depth_into(self.image.size, camera, &self.spare, &mut self.surface_normals);
-        self.shade_surface(&light);
+        let problem = ReliefProblem { image: &self.image, light, slopes: [p, q], firmness };
+        relief.solve(heights, problem, &mut self.solution.image_points.z);
     }
 
     /// Normals of the pixels once more, each drawn to the depth view's normal, where that has a say, or else to that of
     /// the surface: differences of heights lack the detail of a pixel, which its colours have.
     fn shade_surface(&mut self, light: &Light) {
         let depth_counts = self.options.weights.prior > 0.0;
-        for pixel in 0..self.image.size.len() {
-            if depth_counts && self.carried_normals.is_valid(pixel) {
-                self.surface_normals.set(pixel, self.carried_normals.get(pixel));
-            }
-        }
         let weights = self.shading_weights(self.options.weights.prior.max(LEAST_SURFACE_PRIOR));
-        let log = &self.image.log;
-        let problem = ShadingProblem { log: [&log[0], &log[1], &log[2]], prior: &self.surface_normals, light };
-        self.solver.solve(problem, weights, &mut self.solution.image_normals);
-        for pixel in (0..self.image.size.len()).filter(|&pixel| !self.image.mask[pixel]) {
-            self.solution.image_normals.set(pixel, [f32::NAN; 3]);
+        let Self { image, solution, .. } = self;
+        for band in Workbench::bands(image.size) {
+            self.bench.fit_band(&band);
+            let Workbench { prior, found, .. } = &mut self.bench;
+            let first = band.start / image.size.width;
+            normals::of_depth_rows(image.size, image.camera, &solution.image_points.z, first, prior);
+            for (place, pixel) in band.clone().enumerate() {
+                if depth_counts && self.carried_normals.is_valid(pixel) {
+                    prior.set(place, self.carried_normals.get(pixel));
+                }
+                found.set(place, solution.image_normals.get(pixel));
+            }
+            let log = image.log.each_ref().map(|channel| &channel[band.clone()]);
+            self.solver.solve(ShadingProblem { log, prior, light }, weights, found);
+            for (place, pixel) in band.enumerate() {
+                let normal = if image.mask[pixel] { found.get(place) } else { [f32::NAN; 3] };
+                solution.image_normals.set(pixel, normal);
+            }
         }
     }
 
@@ -248,7 +257,7 @@ impl Estimator {
         let jury: Vec<u32> = self.jury().collect();
         let light = self.solution.exposed_light();
         let merit = |pose: &Similarity| {
-            let candidate = Candidate { pose, ..self.candidate(&self.solution, &light) };
+            let candidate = Candidate { pose, ..self.candidate(&light) };
             merit::energy(&self.image, &self.depth, &jury, candidate).total()
         };
         let better = if merit(&agreed) < merit(&found.pose) { agreed } else { found.pose };
@@ -258,7 +267,7 @@ impl Estimator {
     }
 
     /// Normals and depth of the depth view (Eq. 17 to 19).
-    pub(super) fn refine(&mut self) -> Result<()> {
+    pub(super) fn refine(&mut self) {
         let light = self.solution.exposed_light();
         let problem = RefinementProblem {
             depth: &self.depth,
@@ -270,9 +279,10 @@ impl Estimator {
             weights: self.shading_weights(self.options.weights.refinement),
             colour_error: self.unexplained,
         };
-        self.refiner.refine(problem, &mut self.solution.depth_normals, &mut self.solution.refined_depth)?;
+        self.bench.fit(self.depth.size.len());
+        let (normals, points) = (&mut self.solution.depth_normals, &mut self.solution.depth_points);
+        self.refiner.refine(&mut self.bench, problem, normals, &mut points.z);
         self.solution.raise_depth_points(&self.depth);
-        Ok(())
     }
 
     /// Length of an image pixel at the object.
@@ -317,7 +327,7 @@ impl Estimator {
     pub(super) fn measure(&mut self) {
         let light = self.solution.exposed_light();
         let rotation = self.solution.pose.rotation;
-        self.spare.clear();
+        self.bench.spare.clear();
         for pixel in 0..self.image.size.len() {
             self.residual[pixel] = f32::NAN;
             if !self.image.mask[pixel] {
@@ -333,13 +343,13 @@ impl Estimator {
             };
             self.residual[pixel] = merit::residual(&self.image, pixel, &light, normal);
             if carried.is_some() {
-                self.spare.push(self.residual[pixel]);
+                self.bench.spare.push(self.residual[pixel]);
             }
         }
         self.report.overlap = self.correspondences.count() as f64 / self.depth.valid().max(1) as f64;
         self.report.inliers = self.correspondences.inliers();
-        if !self.spare.is_empty() {
-            let residuals = &mut self.spare;
+        if !self.bench.spare.is_empty() {
+            let residuals = &mut self.bench.spare;
             let scale = merit::SPREADS_OF_MEDIAN * quantile(residuals, 0.5);
             let (sum, count) =
                 residuals.iter().filter(|&&r| r <= scale).fold((0.0, 0.0), |(s, c), &r| (s + f64::from(r), c + 1.0));
@@ -356,7 +366,7 @@ impl Estimator {
         }
         self.solution.pose.scale = held;
         self.solution.pose.translation *= factor;
-        for depth in &mut self.solution.image_depth {
+        for depth in &mut self.solution.image_points.z {
             *depth *= factor as f32;
         }
         self.solution.raise_image_points(&self.image);
@@ -375,22 +385,22 @@ impl Estimator {
     fn match_distance(&mut self) {
         let ratio = self.median_gap(|image, depth| depth / image);
         let Some(ratio) = ratio.filter(|ratio| *ratio > 0.0) else { return };
-        for depth in &mut self.solution.image_depth {
+        for depth in &mut self.solution.image_points.z {
             *depth *= ratio as f32;
         }
     }
 
     /// Median over the correspondences of a function of the image surface's depth and the depth point's.
     fn median_gap(&mut self, gap: impl Fn(f64, f64) -> f64) -> Option<f64> {
-        self.spare.clear();
+        self.bench.spare.clear();
         for (pixel, &index) in self.correspondences.depth_of_pixel().iter().enumerate() {
             let Ok(index) = usize::try_from(index) else { continue };
-            let depth = self.solution.image_depth[pixel];
+            let depth = self.solution.image_points.z[pixel];
             if !depth.is_nan() {
-                self.spare.push(gap(f64::from(depth), self.solution.carried(index).z) as f32);
+                self.bench.spare.push(gap(f64::from(depth), self.solution.carried(index).z) as f32);
             }
         }
-        (!self.spare.is_empty()).then(|| f64::from(quantile(&mut self.spare, 0.5)))
+        (!self.bench.spare.is_empty()).then(|| f64::from(quantile(&mut self.bench.spare, 0.5)))
     }
 }
 

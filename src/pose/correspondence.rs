@@ -152,7 +152,7 @@ impl Correspondences {
             let gap = vector(problem.image_points.get(pixel)) - carried(problem, index);
             let gap = gap.dot(&vector(problem.image_normals.get(pixel))).abs() as f32;
             self.gaps[index] = gap;
-            if !gap.is_nan() && !problem.depth.depth[index].is_nan() {
+            if !gap.is_nan() && !problem.depth.depth()[index].is_nan() {
                 self.sorted.push(gap);
             }
         }
@@ -165,7 +165,7 @@ impl Correspondences {
             // A point over a pixel without a surface has no distance, and stays.
             if self.gaps[index] > threshold {
                 self.visible.drop(index);
-            } else if !self.visible.column[index].is_nan() && !problem.depth.depth[index].is_nan() {
+            } else if !self.visible.column[index].is_nan() && !problem.depth.depth()[index].is_nan() {
                 self.count += 1;
                 self.inliers += f64::from(u8::from(self.gaps[index].is_nan() || self.gaps[index] <= inlier));
             }

@@ -15,14 +15,13 @@
 
 use nalgebra::Matrix3;
 
-use crate::error::{Error, ErrorKind, Result};
 use crate::light::Light;
-use crate::shape::cosine::{CosineSolver, fast_width};
-use crate::shape::normal_operator::NormalOperator;
+use crate::shape::height_domain::{ABOVE, BELOW, CELL, HeightDomain, INSIDE, LEFT, RIGHT};
+use crate::shape::normal_operator::{NormalOperator, padded};
 use crate::shape::poisson::{Edges, add_scaled, dot};
-use crate::shape::slopes::{RayFrame, SlopeTerms};
+use crate::shape::slopes::SlopeTerms;
 use crate::shape::surface::Anchors;
-use crate::view::{Camera, LANES, Lanes, Mask, Real, Size};
+use crate::view::{LANES, Lanes, Real};
 
 /// kappa: squared log residual per squared second difference in pixels (handbook section 5).
 const SMOOTHNESS: f32 = 1e-3;
@@ -41,14 +40,6 @@ const IDLE: f64 = 1e-5;
 
 /// Costs of pixels that are summed in f32 before the sum goes on in f64: few enough to keep six digits.
 const SUMMANDS: usize = 256;
-
-/// Bits of a pixel: inside the mask; the cell of four pixels right of and below it as well; its neighbours inside.
-const INSIDE: u8 = 1;
-const CELL: u8 = 2;
-const LEFT: u8 = 4;
-const RIGHT: u8 = 8;
-const ABOVE: u8 = 16;
-const BELOW: u8 = 32;
 
 /// What a surface has to explain; all fields are rasters of the view, NaN where unknown.
 #[derive(Clone, Copy)]
@@ -97,18 +88,11 @@ pub struct HeightReport {
     pub settled: bool,
 }
 
-/// Solves one mask again and again; owns all memory.
+/// Solves one domain or another, again and again. No two solves run at once, so that all levels of both views lend
+/// themselves this one's memory; it is allocated by the first solve, for the largest domain.
 pub struct HeightSolver {
-    size: Size,
-    /// Left column and top row of the mask's bounding box.
-    corner: [usize; 2],
-    /// Of the box; the rows of the rasters here are `width` long, a length that the cosine transform likes.
-    columns: usize,
-    width: usize,
-    /// Which pixels are inside, and which of their neighbours: bits of [`INSIDE`] and so on.
-    near: Vec<u8>,
-    pixels: usize,
-    cosine: CosineSolver,
+    /// Most values that a raster will have to hold.
+    room: usize,
     z: Vec<f32>,
     trial: Vec<f32>,
     anchor: Vec<f32>,
@@ -116,99 +100,68 @@ pub struct HeightSolver {
     operator: NormalOperator,
     /// Suggested height differences to the right and lower neighbour, and their weights.
     edges: [Edges; 2],
-    confidence: Vec<f32>,
     step: Vec<f32>,
     right: Vec<f32>,
     direction: Vec<f32>,
+    /// The operator's product with the direction, and before there is one the pixels' confidence.
     image: Vec<f32>,
-    /// (a, b, c) of each pixel for a pinhole camera, empty for an orthographic one.
-    frames: Vec<RayFrame>,
 }
 
 impl HeightSolver {
-    /// A solver for the pixels of `mask`.
-    ///
-    /// # Errors
-    /// [`ErrorKind::Empty`] where the mask holds no pixel.
-    pub fn new(size: Size, camera: Camera, mask: &[bool]) -> Result<Self> {
-        let inside_view = || (0..size.len()).filter(|&index| mask[index]).map(|index| size.position(index));
-        let bounds = |values: &mut dyn Iterator<Item = usize>| {
-            values.fold((usize::MAX, 0), |(low, high), value| (low.min(value), high.max(value)))
-        };
-        let (left, rightmost) = bounds(&mut inside_view().map(|(column, _)| column));
-        let (top, bottom) = bounds(&mut inside_view().map(|(_, row)| row));
-        if left > rightmost {
-            return Err(Error::new(ErrorKind::Empty, "mask", "holds no pixel"));
+    /// A solver whose domains are `domains`. It takes others, too, and allocates again for one that is larger.
+    pub fn new<'a>(domains: impl IntoIterator<Item = &'a HeightDomain>) -> Self {
+        Self {
+            room: domains.into_iter().map(|domain| padded(domain.len(), domain.width)).max().unwrap_or(0),
+            z: Vec::new(),
+            trial: Vec::new(),
+            anchor: Vec::new(),
+            anchor_weight: Vec::new(),
+            operator: NormalOperator::default(),
+            edges: [Edges::new(0), Edges::new(0)],
+            step: Vec::new(),
+            right: Vec::new(),
+            direction: Vec::new(),
+            image: Vec::new(),
         }
-        let (columns, height) = (rightmost - left + 1, bottom - top + 1);
-        // Blocks of four must not reach into the next row.
-        let width = fast_width(columns.next_multiple_of(LANES));
-        let length = width * height;
-        let is_inside =
-            |column: usize, row: usize| column < size.width && row < size.height && mask[size.index(column, row)];
-        let mut near = vec![0; length];
-        for (column, row) in inside_view() {
-            let [right, below] = [is_inside(column + 1, row), is_inside(column, row + 1)];
-            let flags = [
-                (INSIDE, true),
-                (CELL, right && below && is_inside(column + 1, row + 1)),
-                (LEFT, is_inside(column.wrapping_sub(1), row)),
-                (RIGHT, right),
-                (ABOVE, is_inside(column, row.wrapping_sub(1))),
-                (BELOW, below),
-            ];
-            near[(row - top) * width + column - left] =
-                flags.into_iter().filter(|(_, holds)| *holds).map(|(flag, _)| flag).sum();
+    }
+
+    /// Makes the rasters those of `domain`. What a solve does not write before it reads it, off the mask too, is zero.
+    fn fit(&mut self, domain: &HeightDomain) {
+        let Self {
+            z, trial, anchor, anchor_weight, edges: [right, below], step, right: force, direction, image, ..
+        } = self;
+        let edges = [right, below].into_iter().flat_map(|Edges { weight, gradient }| [weight, gradient]);
+        for raster in [z, anchor, anchor_weight].into_iter().chain(edges) {
+            clear(raster, domain.len(), self.room);
         }
-        let frames = match camera {
-            Camera::Orthographic => Vec::new(),
-            Camera::Pinhole(_) => (0..length)
-                .map(|index| {
-                    let column = (left + index % width).min(size.width - 1);
-                    RayFrame::at(&camera, size, size.index(column, top + index / width))
-                })
-                .collect(),
-        };
-        let zeros = || vec![0.0; length];
-        Ok(Self {
-            size,
-            corner: [left, top],
-            columns,
-            width,
-            pixels: inside_view().count(),
-            near,
-            cosine: CosineSolver::new(width, height),
-            z: zeros(),
-            trial: zeros(),
-            anchor: zeros(),
-            anchor_weight: zeros(),
-            operator: NormalOperator::new(width, length),
-            edges: [Edges::new(length), Edges::new(length)],
-            confidence: zeros(),
-            step: zeros(),
-            right: zeros(),
-            direction: zeros(),
-            image: zeros(),
-            frames,
-        })
+        for raster in [trial, step, force, direction, image] {
+            fit(raster, domain.len(), self.room);
+        }
+        self.operator.fit(domain.width, domain.len(), self.room);
     }
 
     /// Improves `z` (depth in pixels, or f log Z; finite on the mask) in place.
-    pub fn solve(&mut self, problem: HeightProblem<'_>, z: &mut [f32]) -> HeightReport {
-        self.load(problem, z);
-        let terms = SlopeTerms::new(problem, self.size);
-        self.load_edges(&terms);
+    pub fn solve(&mut self, domain: &mut HeightDomain, problem: HeightProblem<'_>, z: &mut [f32]) -> HeightReport {
+        self.fit(domain);
+        self.load(domain, problem, z);
+        let terms = SlopeTerms::new(problem, domain.size);
+        self.load_edges(domain, &terms);
         let mut report = HeightReport { first_cost: 0.0, cost: 0.0, steps: 0, settled: false };
         let mut damping = FIRST_DAMPING;
         while report.steps < problem.effort.steps && !report.settled {
-            let (cost, mean_stiffness) = self.linearise(&terms);
+            let (cost, mean_stiffness) = self.linearise(domain, &terms);
             if report.steps == 0 {
                 (report.first_cost, report.cost) = (cost, cost);
             }
             report.steps += 1;
             loop {
-                let promise =
-                    self.find_step(damping * mean_stiffness as f32, mean_stiffness, problem.effort, report.cost);
+                let promise = self.find_step(
+                    domain,
+                    damping * mean_stiffness as f32,
+                    mean_stiffness,
+                    problem.effort,
+                    report.cost,
+                );
                 if promise < SETTLED * report.cost {
                     report.settled = true;
                     break;
@@ -216,7 +169,7 @@ impl HeightSolver {
                 for ((trial, z), step) in self.trial.iter_mut().zip(&self.z).zip(&self.step) {
                     *trial = z + step;
                 }
-                let trial_cost = self.cost(&terms);
+                let trial_cost = self.cost(domain, &terms);
                 if trial_cost < report.cost {
                     std::mem::swap(&mut self.z, &mut self.trial);
                     report.settled = report.cost - trial_cost < SETTLED * report.cost;
@@ -231,51 +184,21 @@ impl HeightSolver {
                 }
             }
         }
-        for (index, source) in self.inside() {
+        for (index, source) in domain.inside() {
             z[source] = self.z[index];
         }
-        let share = 1.0 / self.pixels as f64;
+        let share = 1.0 / domain.pixels as f64;
         HeightReport { first_cost: share * report.first_cost, cost: share * report.cost, ..report }
-    }
-
-    /// The pixels of the box in turn: their places here and in the view.
-    fn places(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
-        let ([left, top], columns, width, view_width) = (self.corner, self.columns, self.width, self.size.width);
-        (0..self.near.len() / width).flat_map(move |row| {
-            let (here, source) = (row * width, (top + row) * view_width + left);
-            (0..columns).map(move |column| (here + column, source + column))
-        })
-    }
-
-    /// The same [`LANES`] at a time: the first of each.
-    fn blocks(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
-        let ([left, top], columns, width, view_width) = (self.corner, self.columns, self.width, self.size.width);
-        (0..self.near.len() / width).flat_map(move |row| {
-            let (here, source) = (row * width, (top + row) * view_width + left);
-            (0..columns).step_by(LANES).map(move |column| (here + column, source + column))
-        })
-    }
-
-    /// Who of a block has a flag.
-    #[inline(always)]
-    fn flagged(&self, index: usize, flag: u8) -> Mask {
-        let has = |lane: usize| f32::from(self.near.get(index + lane).map_or(0, |near| near & flag));
-        Lanes::splat(0.0).less(Lanes::from([has(0), has(1), has(2), has(3)]))
-    }
-
-    /// Those of [`places`](Self::places) on the mask.
-    fn inside(&self) -> impl Iterator<Item = (usize, usize)> {
-        self.places().filter(|&(index, _)| self.near[index] & INSIDE != 0)
     }
 
     /// kappa of a pixel: less where its colours fix its normal.
     fn smoothness(&self, index: usize) -> f32 {
-        SMOOTHNESS * INDECISION / (INDECISION + self.confidence[index])
+        SMOOTHNESS * INDECISION / (INDECISION + self.image[index])
     }
 
-    fn load(&mut self, problem: HeightProblem<'_>, z: &[f32]) {
-        for (index, source) in self.places() {
-            if self.near[index] & INSIDE != 0 {
+    fn load(&mut self, domain: &HeightDomain, problem: HeightProblem<'_>, z: &[f32]) {
+        for (index, source) in domain.places() {
+            if domain.near[index] & INSIDE != 0 {
                 self.z[index] = z[source];
                 (self.anchor[index], self.anchor_weight[index]) =
                     problem.anchors.map_or((0.0, 0.0), |anchors| anchors.get(source));
@@ -284,24 +207,24 @@ impl HeightSolver {
     }
 
     /// Edges between neighbours with suggested slopes (trapezoidal rule), as firm as the less firm of the two.
-    fn load_edges(&mut self, terms: &SlopeTerms<'_>) {
+    fn load_edges(&mut self, domain: &HeightDomain, terms: &SlopeTerms<'_>) {
         let slopes = terms.problem.slopes;
-        for (index, source) in self.blocks() {
+        for (index, source) in domain.blocks() {
             let suggested = slopes.map(|slopes| Lanes::load(slopes, source as isize));
-            let wanted = self.flagged(index, INSIDE) & suggested[0].finite() & suggested[1].finite();
+            let wanted = domain.flagged(index, INSIDE) & suggested[0].finite() & suggested[1].finite();
             let confidence = if wanted.any() {
-                terms.confidence(&terms.frames(&self.frames, index), source, suggested, wanted)
+                terms.confidence(&terms.frames(&domain.frames, index), source, suggested, wanted)
             } else {
                 Lanes::splat(0.0)
             };
-            confidence.store(&mut self.confidence[index..]);
+            confidence.store(&mut self.image[index..]);
         }
-        let axes = [(1, 1, LEFT, RIGHT), (self.width, self.size.width, ABOVE, BELOW)];
+        let axes = [(1, 1, LEFT, RIGHT), (domain.width, domain.size.width, ABOVE, BELOW)];
         for (axis, (stride, view_stride, before, after)) in axes.into_iter().enumerate() {
-            for (index, source) in self.places() {
-                let near = self.near[index];
+            for (index, source) in domain.places() {
+                let near = domain.near[index];
                 let joined = near & after != 0;
-                let weight = if joined { self.confidence[index].min(self.confidence[index + stride]) } else { 0.0 };
+                let weight = if joined { self.image[index].min(self.image[index + stride]) } else { 0.0 };
                 self.operator.bend[axis][index] =
                     if joined && near & before != 0 { self.smoothness(index) } else { 0.0 };
                 self.edges[axis].weight[index] = weight;
@@ -312,24 +235,24 @@ impl HeightSolver {
     }
 
     /// Cost of the trial heights.
-    fn cost(&self, terms: &SlopeTerms<'_>) -> f64 {
+    fn cost(&self, domain: &HeightDomain, terms: &SlopeTerms<'_>) -> f64 {
         let z = &self.trial;
-        let colours = self.blocks().map(|(index, source)| {
-            let cells = self.flagged(index, CELL);
+        let colours = domain.blocks().map(|(index, source)| {
+            let cells = domain.flagged(index, CELL);
             if !cells.any() {
                 return 0.0;
             }
-            let frames = terms.frames(&self.frames, index);
-            let slopes = cell_slopes(z, index, self.width);
+            let frames = terms.frames(&domain.frames, index);
+            let slopes = cell_slopes(z, index, domain.width);
             f64::from(terms.cost(&frames, terms.cell_log(source), slopes, cells).sum())
         });
-        colours.sum::<f64>() + self.resistance(z)
+        colours.sum::<f64>() + self.resistance(z, domain.width)
     }
 
     /// Cost of everything but the colours: anchors, edges and bends.
-    fn resistance(&self, z: &[f32]) -> f64 {
+    fn resistance(&self, z: &[f32], width: usize) -> f64 {
         let anchors = weighted_squares(&self.anchor_weight, |at| Lanes::load(z, at) - Lanes::load(&self.anchor, at));
-        let strides = [1, self.width as isize];
+        let strides = [1, width as isize];
         let lines = strides.into_iter().zip(&self.edges).zip(&self.operator.bend).map(|((stride, edges), bend)| {
             let fall = |at: isize| Lanes::load(z, at + stride) - Lanes::load(z, at);
             weighted_squares(&edges.weight, |at| fall(at) - Lanes::load(&edges.gradient, at))
@@ -339,13 +262,13 @@ impl HeightSolver {
     }
 
     /// Fills the stiffness and the right-hand side; returns the cost of the heights and the mean stiffness.
-    fn linearise(&mut self, terms: &SlopeTerms<'_>) -> (f64, f64) {
+    fn linearise(&mut self, domain: &HeightDomain, terms: &SlopeTerms<'_>) -> (f64, f64) {
         let (mut costs, mut stiffnesses) = (0.0_f64, 0.0_f64);
-        for (index, source) in self.blocks() {
-            let cells = self.flagged(index, CELL);
+        for (index, source) in domain.blocks() {
+            let cells = domain.flagged(index, CELL);
             if cells.any() {
-                let slopes = cell_slopes(&self.z, index, self.width);
-                let frames = terms.frames(&self.frames, index);
+                let slopes = cell_slopes(&self.z, index, domain.width);
+                let frames = terms.frames(&domain.frames, index);
                 let shading = terms.linearise(&frames, terms.cell_log(source), slopes, cells);
                 costs += f64::from(shading.cost.sum());
                 let [pp, _, qq] = shading.matrix;
@@ -358,19 +281,33 @@ impl HeightSolver {
             *off = z - anchor;
         }
         self.operator.resist(&self.edges, &self.z, &self.anchor_weight, &self.direction, &mut self.right);
-        (costs + self.resistance(&self.z), ((stiffnesses + 0.5 * linked) / self.pixels as f64).max(LEAST_STIFFNESS))
+        (
+            costs + self.resistance(&self.z, domain.width),
+            ((stiffnesses + 0.5 * linked) / domain.pixels as f64).max(LEAST_STIFFNESS),
+        )
     }
 
     /// step = solution of the linearised system by preconditioned conjugate gradients. Returns by how much the
     /// linearised cost falls.
-    fn find_step(&mut self, damping: f32, mean_stiffness: f64, effort: Effort, cost: f64) -> f64 {
+    fn find_step(
+        &mut self,
+        domain: &mut HeightDomain,
+        damping: f32,
+        mean_stiffness: f64,
+        effort: Effort,
+        cost: f64,
+    ) -> f64 {
         let anchors: f64 = self.anchor_weight.iter().map(|&weight| f64::from(weight)).sum();
-        self.cosine.set(mean_stiffness + f64::from(damping), anchors / self.pixels as f64);
-        self.operator.set_links(&self.edges, |index| [RIGHT, BELOW].map(|flag| self.near[index] & flag != 0), damping);
+        domain.cosine.set(mean_stiffness + f64::from(damping), anchors / domain.pixels as f64);
+        self.operator.set_links(
+            &self.edges,
+            |index| [RIGHT, BELOW].map(|flag| domain.near[index] & flag != 0),
+            damping,
+        );
         self.step.fill(0.0);
         self.direction.copy_from_slice(&self.right);
-        self.cosine.solve(&mut self.direction);
-        self.restrict_direction();
+        domain.cosine.solve(&mut self.direction);
+        self.restrict_direction(domain);
         // `trial` holds the residual: it is written anew after the step.
         self.trial.copy_from_slice(&self.right);
         let mut rho = dot(&self.trial, &self.direction);
@@ -391,7 +328,7 @@ impl HeightSolver {
             }
             add_scaled(&mut self.trial, -length, &self.image);
             self.image.copy_from_slice(&self.trial);
-            self.cosine.solve(&mut self.image);
+            domain.cosine.solve(&mut self.image);
             let next = dot(&self.trial, &self.image);
             if next <= target {
                 break;
@@ -401,18 +338,30 @@ impl HeightSolver {
             for (direction, image) in self.direction.iter_mut().zip(&self.image) {
                 *direction = image + turn * *direction;
             }
-            self.restrict_direction();
+            self.restrict_direction(domain);
         }
         promise
     }
 
-    fn restrict_direction(&mut self) {
-        for (direction, &near) in self.direction.iter_mut().zip(&self.near) {
+    fn restrict_direction(&mut self, domain: &HeightDomain) {
+        for (direction, &near) in self.direction.iter_mut().zip(&domain.near) {
             if near == 0 {
                 *direction = 0.0;
             }
         }
     }
+}
+
+/// Makes a raster one of `length` numbers, whatever they are; there will be `room` for more.
+pub(super) fn fit(raster: &mut Vec<f32>, length: usize, room: usize) {
+    raster.reserve_exact(room.saturating_sub(raster.len()));
+    raster.resize(length, 0.0);
+}
+
+/// The same of zeros.
+pub(super) fn clear(raster: &mut Vec<f32>, length: usize, room: usize) {
+    fit(raster, length, room);
+    raster.fill(0.0);
 }
 
 /// Sum of weight times square over all pixels; `off` may be anything where there is no weight.
@@ -445,6 +394,7 @@ mod tests {
     use super::*;
     use crate::light::LightPrior;
     use crate::shape::AnchorWeight;
+    use crate::view::{Camera, Size};
 
     /// A used solver knows nothing of what it solved before.
     #[test]
@@ -467,14 +417,18 @@ mod tests {
             effort: Effort { steps: 4, rounds: 10, tolerance: 0.03 },
         };
         let anchors = Some(Anchors { height: &far, weight: AnchorWeight::Uniform(5.0) });
-        let solver = || HeightSolver::new(size, Camera::Orthographic, &mask).expect("a solver");
-        let solve = |solver: &mut HeightSolver, problem| {
+        let mut domain = HeightDomain::new(size, Camera::Orthographic, &mask).expect("a mask");
+        let smaller = Size { width: 6, height: 4 };
+        let mut other = HeightDomain::new(smaller, Camera::Orthographic, &mask[..smaller.len()]).expect("a mask");
+        let solve = |solver: &mut HeightSolver, domain: &mut HeightDomain, problem| {
             let mut heights = vec![0.0; size.len()];
-            (solver.solve(problem, &mut heights), heights)
+            (solver.solve(domain, problem, &mut heights), heights)
         };
-        let mut used = solver();
-        let (report, anchored) = solve(&mut used, HeightProblem { anchors, ..free });
+        let mut used = HeightSolver::new([&other]);
+        let (report, anchored) = solve(&mut used, &mut domain, HeightProblem { anchors, ..free });
         assert!(report.cost < report.first_cost && anchored[0] > 30.0, "{report:?} {}", anchored[0]);
-        assert_eq!(solve(&mut used, free), solve(&mut solver(), free));
+        solve(&mut used, &mut other, free);
+        let mut fresh = HeightSolver::new([&domain]);
+        assert_eq!(solve(&mut used, &mut domain, free), solve(&mut fresh, &mut domain, free));
     }
 }

@@ -5,11 +5,13 @@
 //! a neighbour is missing, the ends of the rows included, so that the raster is one line with neighbours 1 and `width`
 //! apart: every loop runs straight through and fills vector registers.
 
+use crate::shape::heights::{clear, fit};
 use crate::shape::poisson::Edges;
 use crate::shape::slopes::Linear;
 use crate::view::{Lanes, Real};
 
 /// Weights of one system and the scratch of its products.
+#[derive(Default)]
 pub(super) struct NormalOperator {
     width: usize,
     /// Over (p, q) of the cell right of and below each pixel: pp, pq, qq; zero where there is no cell.
@@ -26,20 +28,21 @@ pub(super) struct NormalOperator {
     moment: [Vec<f32>; 2],
 }
 
+/// Length of a raster with a margin of a row and a pixel at both ends.
+pub(super) const fn padded(length: usize, width: usize) -> usize {
+    length + 2 * (width + 1)
+}
+
 impl NormalOperator {
-    pub fn new(width: usize, length: usize) -> Self {
-        let zeros = || vec![0.0; length];
-        let padded = || vec![0.0; length + 2 * (width + 1)];
-        Self {
-            width,
-            stiffness: [zeros(), zeros(), zeros()],
-            bend: [zeros(), zeros()],
-            link: [zeros(), zeros()],
-            sum: padded(),
-            difference: padded(),
-            pull: [padded(), padded()],
-            moment: [padded(), padded()],
-        }
+    /// Makes it one of `length` pixels in rows of `width` that do not resist, with no forces; there will be `room` for
+    /// more.
+    pub fn fit(&mut self, width: usize, length: usize, room: usize) {
+        self.width = width;
+        let Self { stiffness, bend, link, sum, difference, pull, moment, .. } = self;
+        stiffness.iter_mut().chain(bend).for_each(|raster| clear(raster, length, room));
+        link.iter_mut().for_each(|raster| fit(raster, length, room));
+        let forces = [sum, difference].into_iter().chain(pull).chain(moment);
+        forces.for_each(|raster| clear(raster, padded(length, width), room));
     }
 
     /// Takes over the edges' weights, and a damping between all neighbours inside: `joined` tells of a pixel whether it
@@ -152,7 +155,8 @@ mod tests {
         let weight = |seed: usize, index: usize| 1.1 + (1.7 * index as f32 + seed as f32).sin();
         let inside: Vec<bool> = (0..length).map(|index| index % 7 != 3).collect();
         let is_inside = |column: usize, row: usize| column < width && row < height && inside[row * width + column];
-        let mut operator = NormalOperator::new(width, length);
+        let mut operator = NormalOperator::default();
+        operator.fit(width, length, 0);
         let mut edges = [Edges::new(length), Edges::new(length)];
         for index in 0..length {
             let (column, row) = (index % width, index / width);

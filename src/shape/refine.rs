@@ -8,13 +8,15 @@
 //!
 //! Limits: an organised cloud has no depth along a ray; its normals are refined, its points are kept.
 
+use std::ops::Range;
+
 use nalgebra::{Matrix3, Vector3};
 
 use crate::error::Result;
 use crate::light::Light;
 use crate::shape::{
-    AnchorWeight, Anchors, Effort, HeightProblem, HeightSolver, IntegrationOptions, Integrator, Robust, ShadingProblem,
-    ShadingSolver, ShadingWeights, gradients,
+    AnchorWeight, Anchors, Effort, HeightDomain, HeightProblem, IntegrationOptions, Integrator, Robust, ShadingProblem,
+    ShadingSolver, ShadingWeights, Workbench, gradients,
 };
 use crate::view::{ColourView, DepthView, Normals, Size, noise, normals};
 
@@ -54,18 +56,12 @@ pub struct RefinementProblem<'a> {
     pub colour_error: f64,
 }
 
-/// Refines one depth view again and again; owns all memory.
+/// Refines one depth view again and again; the workbench is lent, and fits the view.
 pub struct Refiner {
     solver: ShadingSolver,
-    heights: HeightSolver,
+    domain: HeightDomain,
+    /// The image's log colours where the depth pixels fall.
     log: [Vec<f32>; 3],
-    prior: Normals,
-    turned: Normals,
-    gradient: [Vec<f32>; 2],
-    anchor: Vec<f32>,
-    anchor_weight: Vec<f32>,
-    height: Vec<f32>,
-    spare: Vec<f32>,
     /// Of the colours, log units.
     shading_error: f64,
     /// Weight of a measured depth against the shading, or against its neighbours where there is no colour.
@@ -85,91 +81,100 @@ impl Refiner {
         let shading_error = (SHADING_ERROR * image.log_noise()).hypot(DISCRETISATION * image.log_spread());
         Ok(Self {
             solver: ShadingSolver::new(),
-            heights: HeightSolver::new(depth.size, depth.camera, &depth.mask)?,
+            domain: HeightDomain::new(depth.size, depth.camera, &depth.mask)?,
             log: [zeros(), zeros(), zeros()],
-            prior: Normals::missing(length),
-            turned: Normals::missing(length),
-            gradient: [zeros(), zeros()],
-            anchor: zeros(),
-            anchor_weight: zeros(),
-            height: zeros(),
-            spare: zeros(),
             shading_error,
             anchor_firmness: firmness(shading_error, depth),
             continues: false,
         })
     }
 
+    /// Where the heights of the view are unknown.
+    pub const fn domain(&self) -> &HeightDomain {
+        &self.domain
+    }
+
     /// Fills the holes of the measured depth smoothly: a first guess that gives hidden pixels a place in the image.
     ///
     /// # Errors
     /// Those of the integration.
-    pub fn fill(&mut self, view: &DepthView, normals: &Normals, depth: &mut [f32]) -> Result<()> {
+    pub fn fill(&self, bench: &mut Workbench, view: &DepthView, depth: &mut [f32]) -> Result<()> {
         if view.organised {
-            depth.copy_from_slice(&view.depth);
+            depth.copy_from_slice(view.depth());
             return Ok(());
         }
+        find_slopes(view, &view.normals, &mut bench.slopes);
+        for slopes in &mut bench.slopes {
+            diffuse(view, slopes, &mut bench.spare);
+        }
         let weight = self.anchor_firmness;
-        self.load_anchors(view, |_| weight);
-        self.integrate(view, normals, depth)
+        self.load_anchors(bench, view, |_| weight);
+        let options = IntegrationOptions { robust: Robust::Off, ..IntegrationOptions::default() };
+        let anchors = Anchors { height: &bench.spare, weight: AnchorWeight::PerPixel(&bench.weight) };
+        let [p, q] = &bench.slopes;
+        // It is asked for once, so the integrator's memory is not kept.
+        Integrator::new(view.size, &view.mask)?.integrate(p, q, Some(anchors), &options, depth)?;
+        depth.iter_mut().for_each(|depth| *depth = from_height(view, *depth));
+        Ok(())
     }
 
     /// One refinement: `normals` (depth view's frame) and `depth` hold the current estimate and receive the new one.
-    ///
-    /// # Errors
-    /// Those of the integration.
-    pub fn refine(&mut self, problem: RefinementProblem<'_>, normals: &mut Normals, depth: &mut [f32]) -> Result<()> {
+    pub fn refine(
+        &mut self,
+        bench: &mut Workbench,
+        problem: RefinementProblem<'_>,
+        normals: &mut Normals,
+        depth: &mut [f32],
+    ) {
         let view = problem.depth;
         self.sample_colours(problem);
+        self.refine_normals(bench, problem, normals);
         if view.organised {
-            self.refine_normals(problem, normals);
-            return Ok(());
+            return;
         }
         let doubt = (problem.colour_error / self.shading_error).max(1.0).powi(2);
         let unshaded = self.anchor_firmness;
         let shaded = (f64::from(unshaded) * doubt).min(ANCHOR[1]) as f32;
-        self.load_anchors(view, |has_colour| if has_colour { shaded } else { unshaded });
-        self.refine_normals(problem, normals);
-        self.find_slopes(view, normals);
-        for (height, &depth) in self.height.iter_mut().zip(&*depth) {
-            *height = to_height(view, depth);
-        }
-        let anchors = Anchors { height: &self.anchor, weight: AnchorWeight::PerPixel(&self.anchor_weight) };
+        self.load_anchors(bench, view, |has_colour| if has_colour { shaded } else { unshaded });
+        find_slopes(view, normals, &mut bench.slopes);
+        depth.iter_mut().for_each(|depth| *depth = to_height(view, *depth));
         let (scales, effort) = if self.continues { (&COLOUR_SCALES[2..], LATER) } else { (&COLOUR_SCALES[..], FIRST) };
         self.continues = true;
+        let anchors = Anchors { height: &bench.spare, weight: AnchorWeight::PerPixel(&bench.weight) };
         for &colour_scale in scales {
             let height_problem = HeightProblem {
                 log: [&self.log[0], &self.log[1], &self.log[2]],
                 light: problem.light,
                 rotation: problem.rotation,
-                slopes: [&self.gradient[0], &self.gradient[1]],
+                slopes: [&bench.slopes[0], &bench.slopes[1]],
                 firmness: None,
                 anchors: Some(anchors),
                 colour_scale,
                 effort,
             };
-            self.heights.solve(height_problem, &mut self.height);
+            bench.heights.solve(&mut self.domain, height_problem, depth);
         }
-        for (depth, &height) in depth.iter_mut().zip(&self.height) {
-            *depth = from_height(view, height);
-        }
+        depth.iter_mut().for_each(|depth| *depth = from_height(view, *depth));
         normals::of_depth_into(view.size, view.camera, depth, normals);
-        Ok(())
     }
 
     /// Eq. 17 for each pixel alone: what an organised cloud, which has no rays, gets.
-    fn refine_normals(&mut self, problem: RefinementProblem<'_>, normals: &mut Normals) {
-        self.bring_prior(problem);
-        normals.rotated(problem.rotation, &mut self.turned);
-        let log = [&self.log[0][..], &self.log[1], &self.log[2]];
-        let shading = ShadingProblem { log, prior: &self.prior, light: problem.light };
-        self.solver.solve(shading, problem.weights, &mut self.turned);
-        for index in 0..normals.len() {
-            if !self.turned.is_valid(index) {
-                self.turned.set(index, rotate(problem.rotation, normals.get(index)));
+    fn refine_normals(&mut self, bench: &mut Workbench, problem: RefinementProblem<'_>, normals: &mut Normals) {
+        let back = problem.rotation.transpose();
+        for band in Workbench::bands(problem.depth.size) {
+            bench.fit_band(&band);
+            let Workbench { prior, found, .. } = bench;
+            bring_prior(problem, &band, prior);
+            normals.rotate(&band, problem.rotation, found, 0);
+            let log = self.log.each_ref().map(|channel| &channel[band.clone()]);
+            self.solver.solve(ShadingProblem { log, prior, light: problem.light }, problem.weights, found);
+            for (place, index) in band.clone().enumerate() {
+                if !found.is_valid(place) {
+                    found.set(place, rotate(problem.rotation, normals.get(index)));
+                }
             }
+            found.rotate(&(0..band.len()), &back, normals, band.start);
         }
-        self.turned.rotated(&problem.rotation.transpose(), normals);
     }
 
     /// Bilinear log colours at the positions of the depth pixels; NaN where a neighbour is off the mask.
@@ -183,47 +188,32 @@ impl Refiner {
         }
     }
 
-    /// Eq. 19: the image's normal where each depth pixel falls, in the colour view's frame.
-    fn bring_prior(&mut self, problem: RefinementProblem<'_>) {
-        let [columns, rows] = problem.position;
-        for index in 0..columns.len() {
-            let seen = problem.image.size.nearest(columns[index], rows[index]);
-            self.prior.set(index, seen.map_or([f32::NAN; 3], |pixel| problem.image_normals.get(pixel)));
-        }
-    }
-
     /// Anchors at the measured depth, in the integrator's coordinate (log depth for a pinhole camera).
-    fn load_anchors(&mut self, view: &DepthView, weight: impl Fn(bool) -> f32) {
-        for index in 0..view.depth.len() {
-            self.anchor[index] = to_height(view, view.depth[index]);
-            self.anchor_weight[index] = weight(!self.log[0][index].is_nan());
+    fn load_anchors(&self, bench: &mut Workbench, view: &DepthView, weight: impl Fn(bool) -> f32) {
+        let targets = bench.spare.iter_mut().zip(&mut bench.weight).zip(view.depth()).zip(&self.log[0]);
+        for (((anchor, anchor_weight), &depth), log) in targets {
+            *anchor = to_height(view, depth);
+            *anchor_weight = weight(!log.is_nan());
         }
     }
+}
 
-    /// Slopes of the surface that has these normals, in pixels of height per pixel.
-    fn find_slopes(&mut self, view: &DepthView, normals: &Normals) {
-        let [p, q] = &mut self.gradient;
-        gradients(view.size, &view.camera, normals, &view.mask, p, q);
-        let pixels = view.camera.focal_length().unwrap_or(1.0) as f32;
-        for gradient in [p, q] {
-            gradient.iter_mut().for_each(|slope| *slope *= pixels);
-        }
+/// Eq. 19: the image's normal where each depth pixel of a band falls, in the colour view's frame.
+fn bring_prior(problem: RefinementProblem<'_>, band: &Range<usize>, prior: &mut Normals) {
+    let [columns, rows] = problem.position;
+    for (place, index) in band.clone().enumerate() {
+        let seen = problem.image.size.nearest(columns[index], rows[index]);
+        prior.set(place, seen.map_or([f32::NAN; 3], |pixel| problem.image_normals.get(pixel)));
     }
+}
 
-    /// Surface from `normals` and the loaded anchors. It is asked for once, so the integrator's memory is not kept.
-    fn integrate(&mut self, view: &DepthView, normals: &Normals, depth: &mut [f32]) -> Result<()> {
-        self.find_slopes(view, normals);
-        for gradient in &mut self.gradient {
-            diffuse(view, gradient, &mut self.spare);
-        }
-        let [p, q] = &self.gradient;
-        let anchors = Anchors { height: &self.anchor, weight: AnchorWeight::PerPixel(&self.anchor_weight) };
-        let options = IntegrationOptions { robust: Robust::Off, ..IntegrationOptions::default() };
-        Integrator::new(view.size, &view.mask)?.integrate(p, q, Some(anchors), &options, &mut self.height)?;
-        for (depth, &height) in depth.iter_mut().zip(&self.height) {
-            *depth = from_height(view, height);
-        }
-        Ok(())
+/// Slopes of the surface that has these normals, in pixels of height per pixel.
+fn find_slopes(view: &DepthView, normals: &Normals, slopes: &mut [Vec<f32>; 2]) {
+    let [p, q] = slopes;
+    gradients(view.size, &view.camera, normals, &view.mask, p, q);
+    let pixels = view.camera.focal_length().unwrap_or(1.0) as f32;
+    for slopes in [p, q] {
+        slopes.iter_mut().for_each(|slope| *slope *= pixels);
     }
 }
 
@@ -236,7 +226,7 @@ fn firmness(shading_error: f64, view: &DepthView) -> f32 {
         [(column + reach < width, 1), (row + reach < height, width)]
     };
     let bend = |index: usize, step: usize| {
-        noise::bend(std::array::from_fn(|k| f64::from(to_height(view, view.depth[index + k * step])))) as f32
+        noise::bend(std::array::from_fn(|k| f64::from(to_height(view, view.depth()[index + k * step])))) as f32
     };
     let bends = (0..view.size.len())
         .flat_map(|index| lines(index).into_iter().filter(|(fits, _)| *fits).map(move |(_, step)| bend(index, step)));

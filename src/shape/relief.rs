@@ -14,7 +14,7 @@ use nalgebra::Matrix3;
 
 use crate::error::Result;
 use crate::light::Light;
-use crate::shape::{Effort, HeightProblem, HeightSolver};
+use crate::shape::{Effort, HeightDomain, HeightProblem, HeightSolver};
 use crate::view::{ColourView, Size};
 
 /// Log residuals at which a pixel loses its say, one solve after the other.
@@ -61,9 +61,9 @@ impl<'a> ReliefProblem<'a> {
 /// Calls after which all starts have been tried.
 pub const STARTS: u32 = 3;
 
-/// Solves one image again and again; owns all memory.
+/// Solves one image again and again. Owns what lasts from call to call; the solver is lent.
 pub struct ReliefSolver {
-    heights: HeightSolver,
+    domain: HeightDomain,
     /// Of a large image; that of a small one is the contest's.
     surface: Vec<f32>,
     /// Halved again and again, the smallest last; empty for a small image.
@@ -89,7 +89,7 @@ impl ReliefSolver {
         let smallest = coarser.last().map_or(image, |level| &level.view.image);
         Ok(Self {
             contest: Contest::new(smallest.size, &smallest.mask),
-            heights: HeightSolver::new(image.size, image.camera, &image.mask)?,
+            domain: HeightDomain::new(image.size, image.camera, &image.mask)?,
             surface: if coarser.is_empty() { Vec::new() } else { vec![0.0; image.size.len()] },
             coarser,
         })
@@ -100,15 +100,23 @@ impl ReliefSolver {
         self.contest.tried == 0
     }
 
-    /// Heights (pixels, or f log Z) of the image surface; `integrated` is one of the starts. NaN off the mask.
-    pub fn solve(&mut self, problem: ReliefProblem<'_>, integrated: &[f32], heights: &mut [f32]) {
+    /// The largest domain.
+    pub const fn domain(&self) -> &HeightDomain {
+        &self.domain
+    }
+
+    /// Heights (pixels, or f log Z) of the image surface, NaN off the mask. Where an integrated surface is
+    /// [wanted](Self::wants_integrated), `heights` holds it: it is one of the starts.
+    pub fn solve(&mut self, solver: &mut HeightSolver, problem: ReliefProblem<'_>, heights: &mut [f32]) {
         let surface = if self.coarser.is_empty() {
-            self.contest.hold(&mut self.heights, problem, integrated);
+            self.contest.hold(solver, &mut self.domain, problem, heights);
             &self.contest.surface
         } else {
-            let arrived = self.contest.is_open() && self.decide_coarse(problem, integrated);
+            let arrived = self.contest.is_open() && self.decide_coarse(solver, problem, heights);
             let effort = if arrived { ARRIVED } else { SETTLING };
-            self.heights.solve(problem.heights(&Matrix3::identity(), LAST_SCALE, effort), &mut self.surface);
+            let identity = Matrix3::identity();
+            let problem = problem.heights(&identity, LAST_SCALE, effort);
+            solver.solve(&mut self.domain, problem, &mut self.surface);
             &self.surface
         };
         for ((height, &surface), &inside) in heights.iter_mut().zip(surface).zip(&problem.image.mask) {
@@ -117,7 +125,7 @@ impl ReliefSolver {
     }
 
     /// The next start at the smallest level; if it is the best so far, its surface goes up. Whether it did.
-    fn decide_coarse(&mut self, problem: ReliefProblem<'_>, integrated: &[f32]) -> bool {
+    fn decide_coarse(&mut self, solver: &mut HeightSolver, problem: ReliefProblem<'_>, integrated: &[f32]) -> bool {
         let wants_integrated = self.wants_integrated();
         for index in 0..self.coarser.len() {
             let (finer, level) = self.coarser.split_at_mut(index);
@@ -131,15 +139,15 @@ impl ReliefSolver {
             }
         }
         let Some((smallest, between)) = self.coarser.split_last_mut() else { return false };
-        let Level { view, heights, surface } = smallest;
-        if !self.contest.hold(heights, view.problem(problem.light), surface) {
+        let Level { view, domain, surface } = smallest;
+        if !self.contest.hold(solver, domain, view.problem(problem.light), surface) {
             return false;
         }
         surface.copy_from_slice(&self.contest.surface);
         let mut below = &*smallest;
         for level in between.iter_mut().rev() {
             carry_up(&below.surface, &level.view.image, &mut level.surface);
-            level.improve(problem.light);
+            level.improve(solver, problem.light);
             below = level;
         }
         carry_up(&below.surface, problem.image, &mut self.surface);
@@ -150,16 +158,16 @@ impl ReliefSolver {
 /// One halved image and its surface: heights in this level's pixels.
 struct Level {
     view: HalvedProblem,
-    heights: HeightSolver,
+    domain: HeightDomain,
     surface: Vec<f32>,
 }
 
 impl Level {
     fn new(image: ColourView) -> Result<Self> {
         let zeros = || vec![0.0; image.size.len()];
-        let heights = HeightSolver::new(image.size, image.camera, &image.mask)?;
+        let domain = HeightDomain::new(image.size, image.camera, &image.mask)?;
         let surface = zeros();
-        Ok(Self { view: HalvedProblem { slopes: [zeros(), zeros()], firmness: zeros(), image }, heights, surface })
+        Ok(Self { view: HalvedProblem { slopes: [zeros(), zeros()], firmness: zeros(), image }, domain, surface })
     }
 
     /// Takes over the surface of the next finer level, which has `size`.
@@ -168,9 +176,11 @@ impl Level {
         self.surface.iter_mut().for_each(|height| *height *= 0.5);
     }
 
-    fn improve(&mut self, light: &Light) {
+    fn improve(&mut self, solver: &mut HeightSolver, light: &Light) {
         let problem = self.view.problem(light);
-        self.heights.solve(problem.heights(&Matrix3::identity(), LAST_SCALE, ARRIVED), &mut self.surface);
+        let identity = Matrix3::identity();
+        let problem = problem.heights(&identity, LAST_SCALE, ARRIVED);
+        solver.solve(&mut self.domain, problem, &mut self.surface);
     }
 }
 
@@ -225,11 +235,17 @@ impl Contest {
 
     /// Improves the best surface so far and tries the next start, the first of which is `integrated`; whether the
     /// surface is now another.
-    fn hold(&mut self, solver: &mut HeightSolver, problem: ReliefProblem<'_>, integrated: &[f32]) -> bool {
+    fn hold(
+        &mut self,
+        solver: &mut HeightSolver,
+        domain: &mut HeightDomain,
+        problem: ReliefProblem<'_>,
+        integrated: &[f32],
+    ) -> bool {
         let identity = Matrix3::identity();
         if self.tried > 0 {
             let effort = if self.is_open() { ARRIVED } else { SETTLING };
-            self.least = solver.solve(problem.heights(&identity, LAST_SCALE, effort), &mut self.surface).cost;
+            self.least = solver.solve(domain, problem.heights(&identity, LAST_SCALE, effort), &mut self.surface).cost;
         }
         let Some(start) = self.starts.get_mut(self.tried) else { return false };
         if self.tried == 0 {
@@ -240,7 +256,7 @@ impl Contest {
         self.tried += 1;
         let mut cost = f64::INFINITY;
         for scale in COLOUR_SCALES {
-            cost = solver.solve(problem.heights(&identity, scale, START), start).cost;
+            cost = solver.solve(domain, problem.heights(&identity, scale, START), start).cost;
         }
         let is_best = cost < self.least;
         if is_best {

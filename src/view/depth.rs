@@ -45,9 +45,7 @@ pub struct DepthView {
     pub camera: Camera,
     /// Object pixels, holes included where they touch a depth.
     pub mask: Vec<bool>,
-    /// Depth along z in metres or pixels, NaN at holes and off the mask.
-    pub depth: Vec<f32>,
-    /// Points in the depth camera's frame, NaN where there is no depth.
+    /// Points in the depth camera's frame in metres or pixels, NaN at holes and off the mask.
     pub points: Points,
     /// Unit normals in the depth camera's frame, NaN where there is none.
     pub normals: Normals,
@@ -92,8 +90,7 @@ impl DepthView {
             size,
             camera,
             mask: object,
-            depth: points.z.clone(),
-            normals: Normals::missing(size.len()),
+            normals: Normals::default(),
             points,
             organised,
             normals_given: map.normals.is_some(),
@@ -104,21 +101,21 @@ impl DepthView {
             view.trim();
         }
         if map.mask.is_none() {
-            view.mask = enclosed(size, &view.depth);
-            rays.keep_seen(LENS, size, &view.depth, &mut view.mask)?;
+            view.mask = enclosed(size, &view.points.z);
+            rays.keep_seen(LENS, size, &view.points.z, &mut view.mask)?;
         }
         view.drop_islands();
         view.normals = match &map.normals {
             Some(given) => given_normals(size, given)?,
             None if organised => normals::of_cloud(size, &view.points),
-            None => normals::of_depth(size, camera, &view.depth),
+            None => normals::of_depth(size, camera, view.depth()),
         };
         view.require_depth()?;
         Ok(view)
     }
 
     fn require_depth(&self) -> Result<()> {
-        if self.depth.iter().filter(|depth| !depth.is_nan()).count() >= FEWEST_PIXELS {
+        if self.valid() >= FEWEST_PIXELS {
             return Ok(());
         }
         let field = if self.organised { "depth.points" } else { "depth.data" };
@@ -130,12 +127,11 @@ impl DepthView {
     }
 
     fn trim(&mut self) {
-        let kept = trim::kept(self.size, &self.depth, self.camera.focal_length());
+        let kept = trim::kept(self.size, self.depth(), self.camera.focal_length());
         for index in 0..self.size.len() {
-            if !kept[index] && !self.depth[index].is_nan() {
+            if !kept[index] && !self.depth()[index].is_nan() {
                 self.trimmed += 1;
                 self.mask[index] = false;
-                self.depth[index] = f32::NAN;
                 self.points.set(index, [f32::NAN; 3]);
             }
         }
@@ -146,17 +142,23 @@ impl DepthView {
         let (labels, counts) = components(self.size, |index| self.mask[index], |_, _| true);
         let mut measured = vec![false; counts.len()];
         for index in (0..self.size.len()).filter(|&index| self.mask[index]) {
-            measured[labels[index]] |= !self.depth[index].is_nan();
+            measured[labels[index]] |= !self.depth()[index].is_nan();
         }
         for (inside, &label) in self.mask.iter_mut().zip(&labels) {
             *inside &= label != usize::MAX && measured[label];
         }
     }
 
+    /// Depth along z, NaN at holes and off the mask.
+    #[must_use]
+    pub fn depth(&self) -> &[f32] {
+        &self.points.z
+    }
+
     /// Number of pixels with a depth.
     #[must_use]
     pub fn valid(&self) -> usize {
-        self.depth.iter().filter(|depth| !depth.is_nan()).count()
+        self.depth().iter().filter(|depth| !depth.is_nan()).count()
     }
 }
 
@@ -291,9 +293,9 @@ mod tests {
         assert_eq!(DepthView::new(&input, true).unwrap_err().field(), "depth.camera.distortion");
         input.camera = Some(Pinhole { fx: 14.0, fy: 14.0, ..camera });
         let view = DepthView::new(&input, true).unwrap();
-        assert!(!view.mask[0] && view.depth[0].is_nan() && view.mask[55]);
+        assert!(!view.mask[0] && view.depth()[0].is_nan() && view.mask[55]);
         assert!((50..100).contains(&view.valid()));
-        assert!((0..100).all(|index| view.points.is_valid(index) != view.depth[index].is_nan()));
+        assert!((0..100).all(|index| view.points.is_valid(index) != view.depth()[index].is_nan()));
     }
 
     #[test]

@@ -1,5 +1,7 @@
 //! Rasters: their size, and fields of vectors over them as structure-of-arrays.
 
+use std::ops::Range;
+
 use nalgebra::{Matrix3, Vector3};
 
 use crate::error::{Error, ErrorKind, Result};
@@ -172,12 +174,24 @@ impl Normals {
         !self.get(index).iter().sum::<f32>().is_nan()
     }
 
-    /// All vectors turned, into memory of the caller's of the same length.
-    pub(crate) fn rotated(&self, rotation: &Matrix3<f64>, turned: &mut Self) {
-        let [x, y, z] = [&self.x, &self.y, &self.z];
+    /// Takes over other vectors; allocates where there are more than ever.
+    pub(crate) fn copy_from(&mut self, other: &Self) {
+        self.x.clone_from(&other.x);
+        self.y.clone_from(&other.y);
+        self.z.clone_from(&other.z);
+    }
+
+    /// Makes room for, or leaves, so many vectors; new ones are missing.
+    pub(crate) fn resize(&mut self, length: usize) {
+        [&mut self.x, &mut self.y, &mut self.z].into_iter().for_each(|axis| axis.resize(length, f32::NAN));
+    }
+
+    /// Some vectors turned, into others from `place` on.
+    pub(crate) fn rotate(&self, some: &Range<usize>, rotation: &Matrix3<f64>, turned: &mut Self, place: usize) {
+        let [x, y, z] = [&self.x, &self.y, &self.z].map(|axis| &axis[some.clone()]);
         for (axis, out) in [&mut turned.x, &mut turned.y, &mut turned.z].into_iter().enumerate() {
             let [a, b, c] = [0, 1, 2].map(|column: usize| rotation[(axis, column)] as f32);
-            for (((out, x), y), z) in out.iter_mut().zip(x).zip(y).zip(z) {
+            for (((out, x), y), z) in out[place..].iter_mut().zip(x).zip(y).zip(z) {
                 *out = a * x + b * y + c * z;
             }
         }

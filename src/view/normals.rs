@@ -46,11 +46,21 @@ pub fn of_depth(size: Size, camera: Camera, depth: &[f32]) -> Normals {
 /// [`of_depth`] into memory of the caller's. Allocates nothing. With lens distortion, [`points_of_depth`] and
 /// [`from_points`] are quicker: each pixel's ray is found once instead of nine times.
 pub fn of_depth_into(size: Size, camera: Camera, depth: &[f32], normals: &mut Normals) {
-    if camera.is_orthographic() && depth.len() == size.len() && normals.len() == size.len() {
-        return of_orthographic(size, depth, normals);
+    of_depth_rows(size, camera, depth, 0, normals);
+}
+
+/// [`of_depth_into`] of as many pixels as `normals` holds, from the row `first` on.
+pub(crate) fn of_depth_rows(size: Size, camera: Camera, depth: &[f32], first: usize, normals: &mut Normals) {
+    let rows = normals.len() / size.width;
+    if camera.is_orthographic()
+        && depth.len() == size.len()
+        && normals.len() == rows * size.width
+        && first + rows <= size.height
+    {
+        return of_orthographic(size, depth, first, normals);
     }
     let point = |index| depth.get(index).and_then(|&depth| point_at(size, &camera, depth, index));
-    Grid { size, point }.estimate(Estimate::Differences, normals);
+    Grid { size, point }.estimate(Estimate::Differences, first * size.width, normals);
 }
 
 /// Unit normals of an organised cloud by central differences, oriented by the grid.
@@ -67,7 +77,7 @@ pub fn from_points(size: Size, points: &Points, estimate: Estimate, normals: &mu
         let point = if index < points.len() { points.get(index).map(f64::from) } else { return None };
         point.iter().all(|value| value.is_finite()).then_some(point)
     };
-    Grid { size, point }.estimate(estimate, normals);
+    Grid { size, point }.estimate(estimate, 0, normals);
 }
 
 /// Points in the camera's frame of a depth map (row-major, along z, in metres or pixels); NaN where the depth is a
@@ -97,9 +107,10 @@ struct Grid<F> {
 }
 
 impl<F: Fn(usize) -> Option<Vector>> Grid<F> {
-    fn estimate(&self, estimate: Estimate, normals: &mut Normals) {
-        for index in 0..self.size.len().min(normals.len()) {
-            let pixel = self.size.position(index);
+    /// Of the pixels from `first` on.
+    fn estimate(&self, estimate: Estimate, first: usize, normals: &mut Normals) {
+        for index in 0..(self.size.len() - first).min(normals.len()) {
+            let pixel = self.size.position(first + index);
             let slopes = match estimate {
                 Estimate::Differences => self.differences(pixel),
                 Estimate::PlaneFit { radius } => self.plane(pixel, radius.clamp(1, LARGEST_RADIUS)),
@@ -176,9 +187,9 @@ impl<F: Fn(usize) -> Option<Vector>> Grid<F> {
 }
 
 /// The same differences where steps along an axis are (1, dz): four pixels at a time, in f32, in which neighbouring
-/// depths have exact differences.
-fn of_orthographic(size: Size, depth: &[f32], normals: &mut Normals) {
-    for row in 0..size.height {
+/// depths have exact differences. From the row `first` on.
+fn of_orthographic(size: Size, depth: &[f32], first: usize, normals: &mut Normals) {
+    for row in first..first + normals.len() / size.width {
         for column in (0..size.width).step_by(LANES) {
             let row_at = |row: usize| {
                 if row < size.height { &depth[row * size.width..][..size.width] } else { &[] }
@@ -194,7 +205,7 @@ fn of_orthographic(size: Size, depth: &[f32], normals: &mut Normals) {
             let (p, q) = (line(1, 0), line(0, 1));
             let one = Lanes::splat(1.0);
             let inverse = one / (p * p + q * q + one).sqrt();
-            let start = row * size.width + column;
+            let start = (row - first) * size.width + column;
             let end = start + LANES.min(size.width - column);
             (p * inverse).store(&mut normals.x[start..end]);
             (q * inverse).store(&mut normals.y[start..end]);

@@ -1,0 +1,114 @@
+//! Where heights are unknown: the mask of one view, its neighbours, the rays of its pixels.
+
+use crate::error::{Error, ErrorKind, Result};
+use crate::shape::cosine::{CosineSolver, fast_width};
+use crate::shape::slopes::RayFrame;
+use crate::view::{Camera, LANES, Lanes, Mask, Real, Size};
+
+/// Bits of a pixel: inside the mask; the cell of four pixels right of and below it as well; its neighbours inside.
+pub(super) const INSIDE: u8 = 1;
+pub(super) const CELL: u8 = 2;
+pub(super) const LEFT: u8 = 4;
+pub(super) const RIGHT: u8 = 8;
+pub(super) const ABOVE: u8 = 16;
+pub(super) const BELOW: u8 = 32;
+
+/// The pixels of one mask, over its bounding box: all that stays the same from solve to solve.
+pub struct HeightDomain {
+    pub(super) size: Size,
+    /// Left column and top row of the mask's bounding box.
+    corner: [usize; 2],
+    /// Of the box; the rows of the rasters over it are `width` long, a length that the cosine transform likes.
+    columns: usize,
+    pub(super) width: usize,
+    /// Which pixels are inside, and which of their neighbours: bits of [`INSIDE`] and so on.
+    pub(super) near: Vec<u8>,
+    pub(super) pixels: usize,
+    pub(super) cosine: CosineSolver,
+    /// (a, b, c) of each pixel for a pinhole camera, empty for an orthographic one.
+    pub(super) frames: Vec<RayFrame>,
+}
+
+impl HeightDomain {
+    /// The pixels of `mask`.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Empty`] where the mask holds no pixel.
+    pub fn new(size: Size, camera: Camera, mask: &[bool]) -> Result<Self> {
+        let inside_view = || (0..size.len()).filter(|&index| mask[index]).map(|index| size.position(index));
+        let bounds = |values: &mut dyn Iterator<Item = usize>| {
+            values.fold((usize::MAX, 0), |(low, high), value| (low.min(value), high.max(value)))
+        };
+        let (left, rightmost) = bounds(&mut inside_view().map(|(column, _)| column));
+        let (top, bottom) = bounds(&mut inside_view().map(|(_, row)| row));
+        if left > rightmost {
+            return Err(Error::new(ErrorKind::Empty, "mask", "holds no pixel"));
+        }
+        let (columns, height) = (rightmost - left + 1, bottom - top + 1);
+        // Blocks of four must not reach into the next row.
+        let width = fast_width(columns.next_multiple_of(LANES));
+        let length = width * height;
+        let is_inside =
+            |column: usize, row: usize| column < size.width && row < size.height && mask[size.index(column, row)];
+        let mut near = vec![0; length];
+        for (column, row) in inside_view() {
+            let [right, below] = [is_inside(column + 1, row), is_inside(column, row + 1)];
+            let flags = [
+                (INSIDE, true),
+                (CELL, right && below && is_inside(column + 1, row + 1)),
+                (LEFT, is_inside(column.wrapping_sub(1), row)),
+                (RIGHT, right),
+                (ABOVE, is_inside(column, row.wrapping_sub(1))),
+                (BELOW, below),
+            ];
+            near[(row - top) * width + column - left] =
+                flags.into_iter().filter(|(_, holds)| *holds).map(|(flag, _)| flag).sum();
+        }
+        let frames = match camera {
+            Camera::Orthographic => Vec::new(),
+            Camera::Pinhole(_) => (0..length)
+                .map(|index| {
+                    let column = (left + index % width).min(size.width - 1);
+                    RayFrame::at(&camera, size, size.index(column, top + index / width))
+                })
+                .collect(),
+        };
+        let (corner, pixels) = ([left, top], inside_view().count());
+        Ok(Self { size, corner, columns, width, pixels, near, cosine: CosineSolver::new(width, height), frames })
+    }
+
+    /// Length of the rasters over the box.
+    pub(super) fn len(&self) -> usize {
+        self.near.len()
+    }
+
+    /// The pixels of the box in turn: their places here and in the view.
+    pub(super) fn places(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
+        self.every(1)
+    }
+
+    /// The same [`LANES`] at a time: the first of each.
+    pub(super) fn blocks(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
+        self.every(LANES)
+    }
+
+    fn every(&self, step: usize) -> impl Iterator<Item = (usize, usize)> + use<> {
+        let ([left, top], columns, width, view_width) = (self.corner, self.columns, self.width, self.size.width);
+        (0..self.near.len() / width).flat_map(move |row| {
+            let (here, source) = (row * width, (top + row) * view_width + left);
+            (0..columns).step_by(step).map(move |column| (here + column, source + column))
+        })
+    }
+
+    /// Who of a block has a flag.
+    #[inline(always)]
+    pub(super) fn flagged(&self, index: usize, flag: u8) -> Mask {
+        let has = |lane: usize| f32::from(self.near.get(index + lane).map_or(0, |near| near & flag));
+        Lanes::splat(0.0).less(Lanes::from([has(0), has(1), has(2), has(3)]))
+    }
+
+    /// Those of [`places`](Self::places) on the mask.
+    pub(super) fn inside(&self) -> impl Iterator<Item = (usize, usize)> {
+        self.places().filter(|&(index, _)| self.near[index] & INSIDE != 0)
+    }
+}

@@ -1,0 +1,60 @@
+//! Rasters that a stage fills for itself.
+//!
+//! None outlives its stage, and no two stages run at once: so the image's surface and the depth view's refinement take
+//! turns at one workbench, and normals pixel by pixel are solved in bands.
+
+use std::ops::Range;
+
+use crate::shape::{HeightDomain, HeightSolver};
+use crate::view::{Normals, Size};
+
+/// Pixels of a band: many enough for the shading solver's own preparation not to count.
+const BAND: usize = 1 << 15;
+
+/// What the stages of both views lend themselves.
+pub struct Workbench {
+    /// Solves the heights of either view.
+    pub heights: HeightSolver,
+    /// Slopes of normals: along columns and along rows.
+    pub slopes: [Vec<f32>; 2],
+    /// Weights of priors or anchors.
+    pub weight: Vec<f32>,
+    pub spare: Vec<f32>,
+    /// Prior normals of a band of pixels, and those that are to be found.
+    pub prior: Normals,
+    pub found: Normals,
+}
+
+impl Workbench {
+    /// For views of at most `pixels`, and for their domains.
+    pub fn new<'a>(pixels: usize, domains: impl IntoIterator<Item = &'a HeightDomain>) -> Self {
+        let raster = || Vec::with_capacity(pixels);
+        let band = || Normals::missing(BAND.min(pixels));
+        Self {
+            heights: HeightSolver::new(domains),
+            slopes: [raster(), raster()],
+            weight: raster(),
+            spare: raster(),
+            prior: band(),
+            found: band(),
+        }
+    }
+
+    /// Makes the rasters those of a view of so many pixels; they hold anything.
+    pub fn fit(&mut self, pixels: usize) {
+        let [p, q] = &mut self.slopes;
+        [p, q, &mut self.weight, &mut self.spare].into_iter().for_each(|raster| raster.resize(pixels, 0.0));
+    }
+
+    /// All pixels of a view in bands of whole rows.
+    pub fn bands(size: Size) -> impl Iterator<Item = Range<usize>> {
+        let band = (BAND / size.width).max(1) * size.width;
+        (0..size.len()).step_by(band).map(move |start| start..(start + band).min(size.len()))
+    }
+
+    /// Makes the normals those of a band.
+    pub fn fit_band(&mut self, band: &Range<usize>) {
+        self.prior.resize(band.len());
+        self.found.resize(band.len());
+    }
+}
