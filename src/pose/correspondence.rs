@@ -50,11 +50,7 @@ pub struct CorrespondenceProblem<'a> {
 #[derive(Clone, Debug)]
 pub struct Correspondences {
     depth_of_pixel: Vec<i32>,
-    /// Squared distance of the kept point from its pixel's centre.
-    off_centre: Vec<f32>,
     visible: Visibility,
-    depth_buffer: Vec<f32>,
-    gaps: Vec<f32>,
     sorted: Vec<f32>,
     count: usize,
     inliers: f64,
@@ -67,11 +63,8 @@ impl Correspondences {
         let (pixels, points) = (image.size.len(), depth.size.len());
         Self {
             depth_of_pixel: vec![-1; pixels],
-            off_centre: vec![f32::INFINITY; pixels],
             visible: Visibility::new(pixels, points),
-            depth_buffer: vec![f32::INFINITY; points],
-            gaps: vec![f32::NAN; points],
-            sorted: Vec::with_capacity(points),
+            sorted: Vec::with_capacity(depth.valid()),
             count: 0,
             inliers: 0.0,
         }
@@ -126,17 +119,18 @@ impl Correspondences {
     fn hide_from_depth_camera(&mut self, problem: &CorrespondenceProblem<'_>) {
         let inverse = problem.pose.inverse();
         let size = problem.depth.size;
-        self.depth_buffer.fill(f32::INFINITY);
+        let Visibility { of_point: buffer, .. } = &mut self.visible;
+        buffer.fill(f32::INFINITY);
         for pixel in (0..problem.image_points.len()).filter(|&pixel| problem.image_points.is_valid(pixel)) {
             let point = inverse.apply(vector(problem.image_points.get(pixel)));
             if let Some([column, row]) = problem.depth.camera.project(size, point.into()) {
-                splat(size, &mut self.depth_buffer, [column, row], point.z as f32);
+                splat(size, buffer, [column, row], point.z as f32);
             }
         }
         // The image surface is an estimate: only what it hides by a clear margin is hidden.
         let tolerance = (2.0 * HIDDEN_BEHIND * problem.pixel_length / problem.pose.scale) as f32;
         for index in 0..self.visible.column.len() {
-            if problem.depth_points.z[index] > self.depth_buffer[index] + tolerance {
+            if problem.depth_points.z[index] > self.visible.of_point[index] + tolerance {
                 self.visible.drop(index);
             }
         }
@@ -146,12 +140,13 @@ impl Correspondences {
     fn accept_near(&mut self, problem: &CorrespondenceProblem<'_>) {
         let size = problem.image.size;
         self.sorted.clear();
-        self.gaps.fill(f32::NAN);
-        for index in 0..self.visible.column.len() {
-            let Some(pixel) = size.nearest(self.visible.column[index], self.visible.row[index]) else { continue };
+        let Visibility { column, row, of_point: gaps, .. } = &mut self.visible;
+        gaps.fill(f32::NAN);
+        for index in 0..column.len() {
+            let Some(pixel) = size.nearest(column[index], row[index]) else { continue };
             let gap = vector(problem.image_points.get(pixel)) - carried(problem, index);
             let gap = gap.dot(&vector(problem.image_normals.get(pixel))).abs() as f32;
-            self.gaps[index] = gap;
+            gaps[index] = gap;
             if !gap.is_nan() && !problem.depth.depth()[index].is_nan() {
                 self.sorted.push(gap);
             }
@@ -163,11 +158,12 @@ impl Correspondences {
         (self.count, self.inliers) = (0, 0.0);
         for index in 0..self.visible.column.len() {
             // A point over a pixel without a surface has no distance, and stays.
-            if self.gaps[index] > threshold {
+            if self.visible.of_point[index] > threshold {
                 self.visible.drop(index);
             } else if !self.visible.column[index].is_nan() && !problem.depth.depth()[index].is_nan() {
                 self.count += 1;
-                self.inliers += f64::from(u8::from(self.gaps[index].is_nan() || self.gaps[index] <= inlier));
+                let gap = self.visible.of_point[index];
+                self.inliers += f64::from(u8::from(gap.is_nan() || gap <= inlier));
             }
         }
         self.inliers /= self.count.max(1) as f64;
@@ -176,13 +172,14 @@ impl Correspondences {
     /// Gives each pixel the point nearest to its centre.
     fn assign(&mut self, problem: &CorrespondenceProblem<'_>) {
         self.depth_of_pixel.fill(-1);
-        self.off_centre.fill(f32::INFINITY);
-        for index in 0..self.visible.column.len() {
-            let (column, row) = (self.visible.column[index], self.visible.row[index]);
+        let Visibility { column: columns, row: rows, of_pixel: off_centre, .. } = &mut self.visible;
+        // Squared distance of each pixel's point from its centre.
+        off_centre.fill(f32::INFINITY);
+        for (index, (&column, &row)) in columns.iter().zip(&*rows).enumerate() {
             let Some(pixel) = problem.image.size.nearest(column, row) else { continue };
             let off = from_centre(column).powi(2) + from_centre(row).powi(2);
-            if off < self.off_centre[pixel] && problem.depth_normals.is_valid(index) {
-                self.off_centre[pixel] = off;
+            if off < off_centre[pixel] && problem.depth_normals.is_valid(index) {
+                off_centre[pixel] = off;
                 self.depth_of_pixel[pixel] = i32::try_from(index).unwrap_or(-1);
             }
         }

@@ -31,8 +31,10 @@ pub(super) struct Visibility {
     /// Continuous image column and row of each point, NaN where it is not seen.
     pub column: Vec<f32>,
     pub row: Vec<f32>,
-    depth: Vec<f32>,
-    buffer: Vec<f32>,
+    /// A number for each point and one for each pixel: the depths of all points and the z-buffer while it looks, after
+    /// that the caller's.
+    pub of_point: Vec<f32>,
+    pub of_pixel: Vec<f32>,
 }
 
 impl Visibility {
@@ -41,8 +43,8 @@ impl Visibility {
         Self {
             column: vec![f32::NAN; points],
             row: vec![f32::NAN; points],
-            depth: vec![f32::NAN; points],
-            buffer: vec![f32::INFINITY; pixels],
+            of_point: vec![f32::NAN; points],
+            of_pixel: vec![f32::INFINITY; pixels],
         }
     }
 
@@ -60,7 +62,7 @@ impl Visibility {
     /// Places of all points that face the camera and fall on the mask, and the z-buffer.
     fn project(&mut self, sight: &Sight<'_>) {
         let size = sight.image.size;
-        self.buffer.fill(f32::INFINITY);
+        self.of_pixel.fill(f32::INFINITY);
         for index in 0..self.column.len() {
             self.drop(index);
             if !sight.points.is_valid(index) {
@@ -68,8 +70,8 @@ impl Visibility {
             }
             let point = sight.pose.apply(vector(sight.points.get(index)));
             let Some([column, row]) = sight.image.camera.project(size, point.into()) else { continue };
-            self.depth[index] = point.z as f32;
-            splat(size, &mut self.buffer, [column, row], self.depth[index]);
+            self.of_point[index] = point.z as f32;
+            splat(size, &mut self.of_pixel, [column, row], self.of_point[index]);
             let normal = sight.pose.rotation * vector(sight.normals.get(index));
             // A normal that is missing (a hole not yet filled) does not exclude its point.
             if normal.dot(&direction(&sight.image.camera, point)) > -RIM {
@@ -87,7 +89,7 @@ impl Visibility {
         let tolerance = (HIDDEN_BEHIND * sight.pixel_length) as f32;
         for index in 0..self.column.len() {
             let Some(pixel) = sight.image.size.nearest(self.column[index], self.row[index]) else { continue };
-            if self.depth[index] > self.buffer[pixel] + tolerance {
+            if self.of_point[index] > self.of_pixel[pixel] + tolerance {
                 self.drop(index);
             }
         }
