@@ -7,7 +7,6 @@
 //! any power from 0.1 to 0.6 puts a right end first in all of them, none at all errs in one; of two ends a few degrees
 //! apart, the square root favours the one that merely sees more. Rivals of right winners leave 1.25 times their noise or
 //! more, so an end that leaves nothing but the noise of the image comes before one that sees more but leaves so much.
-
 //!
 //! All of it falls into tasks that depend on nothing but the pair and themselves, so that others may do some of them
 //! ([`Scout`](super::Scout)). What they find counts in the order of the tasks, however it comes in: the outcome is the
@@ -207,7 +206,7 @@ impl Opening {
                 self.enter(self.next - 1, registered);
             }
         }
-        self.decision = Some(self.decide());
+        self.decision = Some(decide(std::mem::take(&mut self.ends), self.noise));
     }
 
     /// Whether no further candidate counts.
@@ -248,28 +247,6 @@ impl Opening {
         }
     }
 
-    /// The best end and those that the data can't tell from it.
-    fn decide(&mut self) -> Decision {
-        sort_down(&mut self.ends, |end| end.gain);
-        // Nothing but the image's noise is left by it, and far more by the first.
-        let wins = |first: &End, end: &End| {
-            end.registered.noise <= self.noise && end.rivals(first, 1.0) && !first.rivals(end, RIVAL_NOISE)
-        };
-        if let Some(index) = self.ends.iter().position(|end| wins(&self.ends[0], end)) {
-            self.ends.swap(0, index);
-        }
-        let mut ends = self.ends.drain(..);
-        let Some(best) = ends.next().filter(|best| best.gain > 0.0) else {
-            return Decision { best: None, rivals: Vec::new() };
-        };
-        let rivals = ends
-            .filter(|end| end.is_apart(&best) && end.rivals(&best, RIVAL_NOISE))
-            .map(|end| end.registered.pose)
-            .take(MOST_RIVALS)
-            .collect();
-        Decision { best: Some(best), rivals }
-    }
-
     /// The outcome, once the best one's whole report is here: a scout brings only what tells one end from another.
     fn conclude(&mut self, joint: &mut Joint, given: &Given<'_>, decision: Decision) -> Look {
         let Decision { best: Some(mut best), rivals } = decision else { return Look::Done(None) };
@@ -286,6 +263,28 @@ impl Opening {
     }
 }
 
+/// The best of the ends and those that the data can't tell from it, where the image has so much noise.
+fn decide(mut ends: Vec<End>, image_noise: f64) -> Decision {
+    sort_down(&mut ends, |end| end.gain);
+    // Nothing but the image's noise is left by it, and far more by the first.
+    let wins = |first: &End, end: &End| {
+        end.registered.noise <= image_noise && end.rivals(first, 1.0) && !first.rivals(end, RIVAL_NOISE)
+    };
+    if let Some(index) = ends.iter().position(|end| wins(&ends[0], end)) {
+        ends.swap(0, index);
+    }
+    let mut ends = ends.into_iter();
+    let Some(best) = ends.next().filter(|best| best.gain > 0.0) else {
+        return Decision { best: None, rivals: Vec::new() };
+    };
+    let rivals = ends
+        .filter(|end| end.is_apart(&best) && end.rivals(&best, RIVAL_NOISE))
+        .map(|end| end.registered.pose)
+        .take(MOST_RIVALS)
+        .collect();
+    Decision { best: Some(best), rivals }
+}
+
 /// Whether a candidate lies next to an end that has witnesses enough.
 fn is_known(ends: &[End], pose: &Similarity) -> bool {
     let near = |end: &End| end.witnesses >= WITNESSES && end.registered.pose.degrees_to(pose) < CATCHMENT;
@@ -297,4 +296,44 @@ fn registered_share(tried: usize) -> f64 {
     let few = tried.min(FEW_TRIED);
     let more = (tried - few) as f64 / (MOST_TRIED - FEW_TRIED) as f64;
     SEARCH_SHARE + FEW_SHARE * few as f64 / FEW_TRIED as f64 + (1.0 - SEARCH_SHARE - FEW_SHARE) * more
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{Rotation3, Vector3};
+
+    use super::*;
+
+    /// An end so many degrees about z, with what it sees and leaves.
+    fn end(degrees: f64, visible: f64, noise: f64) -> End {
+        let rotation = Rotation3::new(Vector3::z() * degrees.to_radians()).into_inner();
+        let pose = Similarity { rotation, ..Similarity::identity() };
+        let registered = Registered { pose, visible, noise, report: None };
+        End { candidate: degrees as usize, registered, gain: visible.cbrt() * (1.0 / noise).ln(), witnesses: 2 }
+    }
+
+    fn winner(ends: &[End], image_noise: f64) -> (Option<usize>, usize) {
+        let Decision { best, rivals } = decide(ends.to_vec(), image_noise);
+        (best.map(|best| best.candidate), rivals.len())
+    }
+
+    #[test]
+    fn what_leaves_only_the_image_s_noise_comes_before_what_sees_more() {
+        let (large, exact) = (end(40.0, 1000.0, 0.02), end(0.0, 600.0, 0.0099));
+        assert!(large.gain > exact.gain);
+        assert_eq!(winner(&[large.clone(), exact.clone()], 0.01), (Some(0), 0));
+        // Not where the image is so clean that there is more to explain ..
+        assert_eq!(winner(&[large.clone(), exact], 0.005).0, Some(40));
+        // .. nor where the first leaves hardly more, or the other sees little.
+        assert_eq!(winner(&[end(40.0, 1000.0, 0.012), end(0.0, 600.0, 0.0099)], 0.01), (Some(40), 1));
+        assert_eq!(winner(&[large, end(0.0, 400.0, 0.0099)], 0.01), (Some(40), 0));
+    }
+
+    #[test]
+    fn rivals_are_apart_and_ends_that_explain_nothing_win_nothing() {
+        let ends = [end(0.0, 900.0, 0.01), end(2.0, 800.0, 0.01), end(30.0, 500.0, 0.012), end(60.0, 900.0, 0.02)];
+        assert_eq!(winner(&ends, 0.0), (Some(0), 1));
+        assert_eq!(winner(&[end(0.0, 900.0, 1.1)], 0.0), (None, 0));
+        assert_eq!(winner(&[], 0.0), (None, 0));
+    }
 }
