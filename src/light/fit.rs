@@ -51,10 +51,11 @@ impl LightFitter {
     /// # Errors
     /// [`ErrorKind::Degenerate`] where the normals do not determine the light and `weight` is zero.
     pub fn fit(&mut self, normals: &Normals, log: [&[f32]; 3], prior: &LightPrior, weight: f64) -> Result<LightFit> {
-        let usable = || (0..normals.len()).filter(|&i| normals.is_valid(i) && !log[0][i].is_nan());
         self.pixels.clear();
-        self.pixels.reserve_exact(MOST_PIXELS);
-        self.pixels.extend(thinned(usable, MOST_PIXELS));
+        // A list that grows takes three times the memory.
+        self.pixels.reserve_exact(normals.len());
+        self.pixels.extend((0..normals.len()).filter(|&i| normals.is_valid(i) && !log[0][i].is_nan()));
+        thin(&mut self.pixels, MOST_PIXELS);
         self.weights.clear();
         self.weights.resize(self.pixels.len(), 1.0);
         let colours = |index: usize| [0, 1, 2].map(|channel: usize| f64::from(log[channel][index]));
@@ -85,19 +86,13 @@ impl LightFitter {
     }
 }
 
-/// At most `most` of some indices, evenly spread.
-fn thinned<I: Iterator<Item = usize>>(indices: impl Fn() -> I, most: usize) -> impl Iterator<Item = usize> {
-    let count = indices().count();
-    let most = most.min(count);
-    let mut kept = 0;
-    indices()
-        .enumerate()
-        .filter(move |&(order, _)| {
-            let keeps = kept < most && order == kept * count / most;
-            kept += usize::from(keeps);
-            keeps
-        })
-        .map(|(_, index)| index)
+/// Keeps at most `most` of the elements, evenly spread.
+fn thin(elements: &mut Vec<usize>, most: usize) {
+    let count = elements.len();
+    if count > most {
+        (0..most).for_each(|k| elements[k] = elements[k * count / most]);
+        elements.truncate(most);
+    }
 }
 
 /// Weighted least squares with the prior: (G + lambda P) L = b + lambda P mu.

@@ -230,7 +230,7 @@ fn firmness(shading_error: f64, view: &DepthView) -> f32 {
     };
     let bends = (0..view.size.len())
         .flat_map(|index| lines(index).into_iter().filter(|(fits, _)| *fits).map(move |(_, step)| bend(index, step)));
-    balance(shading_error, noise::of_bends(bends))
+    balance(shading_error, noise::of_bends(bends, 2 * view.size.len()))
 }
 
 /// Depth without noise, as far as anybody can tell, is firm, however exact the colours are.

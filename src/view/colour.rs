@@ -139,7 +139,8 @@ impl ColourView {
         let ends = || (0..self.size.len()).filter(|index| index % self.size.width >= last);
         let bend =
             |channel: &[f32], end: usize| noise::bend(std::array::from_fn(|k| f64::from(channel[end - k]))) as f32;
-        noise::of_bends(self.log.iter().flat_map(|channel| ends().map(|end| bend(channel, end))))
+        let bends = self.log.iter().flat_map(|channel| ends().map(|end| bend(channel, end)));
+        noise::of_bends(bends, 3 * self.size.len())
     }
 
     /// log S of the three channels at a pixel, NaN off the mask.

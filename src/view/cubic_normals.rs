@@ -93,12 +93,13 @@ struct Window {
 /// Standard deviation of the points, pixel lengths.
 fn noise_of(size: Size, points: &Points) -> f64 {
     let last = noise::REACH - 1;
-    noise::of_bends((0..size.len()).filter(|index| index % size.width >= last).map(|index| {
+    let bends = (0..size.len()).filter(|index| index % size.width >= last).map(|index| {
         let row: [Vector3<f64>; noise::REACH] =
             std::array::from_fn(|k| Vector3::from(points.get(index - k).map(f64::from)));
         let unit = (row[last] - row[0]).norm() / last as f64;
         (noise::bend(row).norm() / unit) as f32
-    }))
+    });
+    noise::of_bends(bends, size.len())
 }
 
 /// Median of the numbers; infinite without any.
