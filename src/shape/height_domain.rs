@@ -2,7 +2,7 @@
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::shape::cosine::{CosineSolver, fast_width};
-use crate::shape::slopes::RayFrame;
+use crate::shape::ray_frames::RayFrames;
 use crate::view::{Camera, LANES, Lanes, Mask, Real, Size};
 
 /// Bits of a pixel: inside the mask; the cell of four pixels right of and below it as well; its neighbours inside.
@@ -25,8 +25,8 @@ pub struct HeightDomain {
     pub(super) near: Vec<u8>,
     pub(super) pixels: usize,
     pub(super) cosine: CosineSolver,
-    /// (a, b, c) of each pixel for a pinhole camera, empty for an orthographic one.
-    pub(super) frames: Vec<RayFrame>,
+    /// How normals follow from slopes at each pixel.
+    pub(super) frames: RayFrames,
 }
 
 impl HeightDomain {
@@ -64,15 +64,7 @@ impl HeightDomain {
             near[(row - top) * width + column - left] =
                 flags.into_iter().filter(|(_, holds)| *holds).map(|(flag, _)| flag).sum();
         }
-        let frames = match camera {
-            Camera::Orthographic => Vec::new(),
-            Camera::Pinhole(_) => (0..length)
-                .map(|index| {
-                    let column = (left + index % width).min(size.width - 1);
-                    RayFrame::at(&camera, size, size.index(column, top + index / width))
-                })
-                .collect(),
-        };
+        let frames = RayFrames::new(&camera, size, [left, top], [width, height]);
         let (corner, pixels) = ([left, top], inside_view().count());
         Ok(Self { size, corner, columns, width, pixels, near, cosine: CosineSolver::new(width, height), frames })
     }

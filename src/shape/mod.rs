@@ -8,6 +8,7 @@ mod height_domain;
 mod heights;
 mod normal_operator;
 mod poisson;
+mod ray_frames;
 mod refine;
 mod relief;
 mod shading;

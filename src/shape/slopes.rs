@@ -3,42 +3,10 @@
 //!
 //! N = a + p b + q c points at the camera; n = N / |N|; dn/dp = (b - n (n . b)) / |N|, and so for q.
 
-use nalgebra::Vector3;
-
 use crate::light::Polynomial;
 use crate::shape::heights::HeightProblem;
-use crate::view::{Camera, Lanes, Mask, Real, Size, dot};
-
-/// (a, b, c) of N = a + p b + q c: N points at the camera, p and q are slopes per pixel in pixels of height.
-///
-/// Orthographic: z is depth in pixels and N = (p, q, -1). Pinhole: z = f log Z, so that slopes are alike, and with the
-/// ray r(u, v): a = r_v x r_u, b = (r_v x r) / f, c = (r x r_u) / f.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct RayFrame(pub(super) [[f32; 3]; 3]);
-
-impl RayFrame {
-    pub(super) fn at(camera: &Camera, size: Size, index: usize) -> Self {
-        let Some(focal_length) = camera.focal_length() else {
-            return Self([[0.0, 0.0, -1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
-        };
-        let (column, row) = size.position(index);
-        let ray = |right: f64, down: f64| {
-            let [x, y] = camera.ray(size, [column as f64 + right, row as f64 + down]);
-            Vector3::new(x, y, 1.0)
-        };
-        let along_column = ray(0.5, 0.0) - ray(-0.5, 0.0);
-        let along_row = ray(0.0, 0.5) - ray(0.0, -0.5);
-        let here = ray(0.0, 0.0);
-        // Scaled by f^2 so that N has length of order one.
-        let scale = focal_length * focal_length;
-        let vectors = [
-            scale * along_row.cross(&along_column),
-            focal_length * along_row.cross(&here),
-            focal_length * here.cross(&along_column),
-        ];
-        Self(vectors.map(|v| [v.x as f32, v.y as f32, v.z as f32]))
-    }
-}
+use crate::shape::ray_frames::{PARALLEL, RayFrames};
+use crate::view::{Lanes, Mask, Real, Size, dot};
 
 /// (a, b, c) of four pixels in the light's frame.
 type Frames = [[Lanes; 3]; 3];
@@ -59,7 +27,7 @@ pub(super) struct SlopeTerms<'a> {
 impl<'a> SlopeTerms<'a> {
     pub(super) fn new(problem: HeightProblem<'a>, size: Size) -> Self {
         let rotation = std::array::from_fn(|row| std::array::from_fn(|column| problem.rotation[(row, column)] as f32));
-        let frame = RayFrame::at(&Camera::Orthographic, size, 0).0.map(|vector| vector.map(Lanes::splat));
+        let frame = PARALLEL.map(|vector| vector.map(Lanes::splat));
         Self {
             problem,
             polynomials: Polynomial::of(problem.light),
@@ -70,20 +38,15 @@ impl<'a> SlopeTerms<'a> {
         }
     }
 
-    /// (a, b, c) in the light's frame; `frames` is empty for an orthographic camera.
+    /// (a, b, c) in the light's frame.
     #[inline(always)]
-    pub(super) fn frames(&self, frames: &[RayFrame], index: usize) -> Frames {
-        if frames.is_empty() { self.frame } else { self.gather(frames, index) }
+    pub(super) fn frames(&self, frames: &RayFrames, index: usize) -> Frames {
+        if matches!(frames, RayFrames::Parallel) { self.frame } else { self.gather(frames, index) }
     }
 
     #[inline(never)]
-    fn gather(&self, frames: &[RayFrame], index: usize) -> Frames {
-        let last = frames.len() - 1;
-        let entry = |side: usize, axis: usize| {
-            Lanes::from([0, 1, 2, 3].map(|lane: usize| frames[last.min(index + lane)].0[side][axis]))
-        };
-        let vector = |side| [entry(side, 0), entry(side, 1), entry(side, 2)];
-        [0, 1, 2].map(|side: usize| rotate(&self.rotation, vector(side)))
+    fn gather(&self, frames: &RayFrames, index: usize) -> Frames {
+        frames.lanes(index).map(|vector| rotate(&self.rotation, vector))
     }
 
     /// log S in the middle of the cells.

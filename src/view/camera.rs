@@ -51,7 +51,8 @@ impl Pinhole {
         ]
     }
 
-    fn is_undistorted(&self) -> bool {
+    /// Whether rays are straight.
+    pub(crate) fn is_undistorted(&self) -> bool {
         self.distortion == [0.0; 5]
     }
 
