@@ -25,6 +25,12 @@ const NORMAL_SCALE: f64 = 0.2;
 /// solutions are compared over the same ones.
 pub const MOST_JURORS: usize = 10_000;
 
+/// After a small step a merit that grows by less than this share has not grown: correspondences flicker at pixel
+/// borders.
+const MERIT_SLACK: f64 = 1e-2;
+/// Degrees up to which a step is small. A larger one has to lower the merit, or a flat merit would let the pose drift.
+const SMALL_STEP: f64 = 0.25;
+
 /// Residuals within this multiple of their median enter the robust mean.
 pub const SPREADS_OF_MEDIAN: f32 = 3.0;
 
@@ -113,4 +119,10 @@ pub fn residual(image: &ColourView, index: usize, light: &Light, normal: [f32; 3
     let shade = light.shade(normal.map(f64::from));
     let log = image.log_at(index);
     (0..3).map(|channel| (f64::from(log[channel]) - shade[channel]).powi(2)).sum::<f64>().sqrt() as f32
+}
+
+/// Whether a step of so many degrees has made the merit worse.
+pub fn worsens(before: f64, after: f64, degrees: f64) -> bool {
+    let slack = if degrees < SMALL_STEP { MERIT_SLACK } else { 0.0 };
+    after > before * (1.0 + slack)
 }

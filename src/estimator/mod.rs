@@ -19,8 +19,6 @@ mod solution;
 mod stages;
 mod task;
 
-use std::borrow::Borrow;
-
 use nalgebra::Vector3;
 
 use crate::error::{Error, ErrorKind, Result};
@@ -46,11 +44,6 @@ pub enum Surface {
     Depth,
 }
 
-/// After a small step a merit that grows by less than this share has not grown: correspondences flicker at pixel
-/// borders.
-const MERIT_SLACK: f64 = 1e-2;
-/// Degrees up to which a step is small. A larger one has to lower the merit, or a flat merit would let the pose drift.
-const SMALL_STEP: f64 = 0.25;
 /// Distance of the jury of the merit from the border of the mask, image pixels.
 const JURY_MARGIN: f32 = 1.5;
 /// Rejected iterations in a row after which nothing new is to be expected.
@@ -133,16 +126,13 @@ impl Estimator {
     ///
     /// # Errors
     /// Any [`Error`] of the views or the options, naming the field.
-    pub fn new(image: ColourImage, depth: impl Borrow<DepthMap>, options: Options) -> Result<Self> {
+    pub fn new(image: ColourImage, depth: &DepthMap, options: Options) -> Result<Self> {
         options.validate()?;
-        let map = depth.borrow();
-        let sizes = (Size::new("image", image.width, image.height)?, Size::new("depth", map.width, map.height)?);
+        let sizes = (Size::new("image", image.width, image.height)?, Size::new("depth", depth.width, depth.height)?);
         memory::check(sizes.0, sizes.1)?;
         let image = ColourView::new(image)?;
-        let view = DepthView::new(map, options.trim)?;
-        // Samples that were handed over are not needed any more.
-        drop(depth);
-        Self::from_views(image, view, options)
+        let depth = DepthView::new(depth, options.trim)?;
+        Self::from_views(image, depth, options)
     }
 
     fn from_views(image: ColourView, depth: DepthView, options: Options) -> Result<Self> {
@@ -153,8 +143,8 @@ impl Estimator {
             LightSource::Estimate => prior.mean(),
         };
         // What takes much memory only while it is made comes first.
-        let asks = options.start == Start::Search || options.registration == Registration::Joint;
-        let joint = asks.then(|| Joint::new(&anywhere::given(&image, &depth, &prior, &options)));
+        let registers_colours = options.start == Start::Search || options.registration == Registration::Joint;
+        let joint = registers_colours.then(|| Joint::new(&anywhere::given(&image, &depth, &prior, &options)));
         let refiner = Refiner::new(&depth, &image)?;
         let relief = match options.shading {
             Shading::Surface => Some(ReliefSolver::new(&image)?),
@@ -239,6 +229,7 @@ impl Estimator {
             return &self.report;
         }
         let stage = self.next;
+        self.report.stage = stage;
         let outcome = match stage {
             Stage::Search => self.search(),
             Stage::Light => self.fit_light(),
@@ -247,14 +238,12 @@ impl Estimator {
             Stage::Registration => self.register(),
             Stage::Refinement => {
                 self.refine();
+                self.finish_iteration();
                 Ok(())
             }
         };
-        self.report.stage = stage;
-        match outcome {
-            Err(error) => self.end(Status::Lost, error.to_string()),
-            Ok(()) if stage == Stage::Refinement => self.finish_iteration(),
-            Ok(()) => {}
+        if let Err(error) = outcome {
+            self.end(Status::Lost, error.to_string());
         }
         let searching = stage == Stage::Search && self.opening.is_some();
         self.next = if searching { stage } else { stage.next() };
@@ -370,7 +359,7 @@ impl Estimator {
         let change = self.kept.pose.degrees_to(&self.solution.pose);
         // The joint registration has a cost of its own: a pose that it moves is not for the merit to take back.
         let judged = self.registration() != Registration::Joint || change < self.options.stop_degrees;
-        let rejected = judged && before.is_some_and(|before| worsens(before.total(), energy.total(), change));
+        let rejected = judged && before.is_some_and(|before| merit::worsens(before.total(), energy.total(), change));
         self.report.message = None;
         if let (true, Some(before)) = (rejected, before) {
             self.reject(before, energy);
@@ -498,10 +487,4 @@ impl Estimator {
     fn pose(&self) -> Similarity {
         self.solution.pose
     }
-}
-
-/// Whether a step of so many degrees has made the merit worse.
-fn worsens(before: f64, after: f64, degrees: f64) -> bool {
-    let slack = if degrees < SMALL_STEP { MERIT_SLACK } else { 0.0 };
-    after > before * (1.0 + slack)
 }

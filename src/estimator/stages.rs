@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use super::merit::Candidate;
-use super::{Estimator, gauge, merit, worsens};
+use super::{Estimator, gauge, merit};
 use crate::error::Result;
 use crate::light::Light;
 use crate::options::{LightSource, Registration};
@@ -88,11 +88,7 @@ impl Estimator {
                 self.solution.exposure += exposure_step(problem, weights, &self.solution.image_normals, moved);
             }
         }
-        for (index, &inside) in self.image.mask.iter().enumerate() {
-            if !inside {
-                self.solution.image_normals.set(index, [f32::NAN; 3]);
-            }
-        }
+        self.solution.image_normals.forget_outside(&self.image.mask);
         Ok(())
     }
 
@@ -185,15 +181,13 @@ impl Estimator {
                 if depth_counts && self.carried_normals.is_valid(pixel) {
                     prior.set(place, self.carried_normals.get(pixel));
                 }
-                found.set(place, solution.image_normals.get(pixel));
             }
+            found.copy_some(0, &solution.image_normals, &band);
             let log = image.log.each_ref().map(|channel| &channel[band.clone()]);
             self.solver.solve(ShadingProblem { log, prior, light }, weights, found);
-            for (place, pixel) in band.enumerate() {
-                let normal = if image.mask[pixel] { found.get(place) } else { [f32::NAN; 3] };
-                solution.image_normals.set(pixel, normal);
-            }
+            solution.image_normals.copy_some(band.start, found, &(0..band.len()));
         }
+        solution.image_normals.forget_outside(&image.mask);
     }
 
     /// Pose (Eq. 12 to 16), then the correspondences that it gives.
@@ -261,8 +255,8 @@ impl Estimator {
             merit::energy(&self.image, &self.depth, &jury, candidate).total()
         };
         let better = if merit(&agreed) < merit(&found.pose) { agreed } else { found.pose };
-        self.refused =
-            found.information.is_degenerate() || worsens(merit(&start), merit(&better), start.degrees_to(&better));
+        self.refused = found.information.is_degenerate()
+            || merit::worsens(merit(&start), merit(&better), start.degrees_to(&better));
         Ok(if self.refused { start } else { better })
     }
 

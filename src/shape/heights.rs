@@ -5,7 +5,7 @@
 //! The unknown is the surface, so every normal is integrable by construction: under natural light, where three colours
 //! hardly tell one normal from another, this is what a pixel alone does not know. n is the unit vector of
 //! N = a + p b + q c in the middle of a cell of four pixels, with p, q the slopes of z there and (a, b, c) fixed
-//! vectors of the pixel's ray (`RayFrame`); rho is Geman-McClure. The edges carry what the pixels' own normals say
+//! vectors of the pixel's ray (`ray_frames`); rho is Geman-McClure. The edges carry what the pixels' own normals say
 //! (trapezoidal rule, as in the integration), as firmly as the colours of one pixel fix its normal: under colourful
 //! light they do the work, to the rim of the mask, under natural light they are silent.
 //!
@@ -127,17 +127,18 @@ impl HeightSolver {
 
     /// Makes the rasters those of `domain`. What a solve does not write before it reads it, off the mask too, is zero.
     fn fit(&mut self, domain: &HeightDomain) {
-        let Self {
-            z, trial, anchor, anchor_weight, edges: [right, below], step, right: force, direction, image, ..
-        } = self;
-        let edges = [right, below].into_iter().flat_map(|Edges { weight, gradient }| [weight, gradient]);
-        for raster in [z, anchor, anchor_weight].into_iter().chain(edges) {
-            clear(raster, domain.len(), self.room);
+        let (length, room) = (domain.len(), self.room);
+        for raster in [&mut self.z, &mut self.anchor, &mut self.anchor_weight] {
+            clear(raster, length, room);
         }
-        for raster in [trial, step, force, direction, image] {
-            fit(raster, domain.len(), self.room);
+        for Edges { weight, gradient } in &mut self.edges {
+            clear(weight, length, room);
+            clear(gradient, length, room);
         }
-        self.operator.fit(domain.width, domain.len(), self.room);
+        for raster in [&mut self.trial, &mut self.step, &mut self.right, &mut self.direction, &mut self.image] {
+            fit(raster, length, room);
+        }
+        self.operator.fit(domain.width, length, room);
     }
 
     /// Improves `z` (depth in pixels, or f log Z; finite on the mask) in place.
@@ -353,12 +354,14 @@ impl HeightSolver {
 }
 
 /// Makes a raster one of `length` numbers, whatever they are; there will be `room` for more.
+#[inline(never)]
 pub(super) fn fit(raster: &mut Vec<f32>, length: usize, room: usize) {
     raster.reserve_exact(room.saturating_sub(raster.len()));
     raster.resize(length, 0.0);
 }
 
 /// The same of zeros.
+#[inline(never)]
 pub(super) fn clear(raster: &mut Vec<f32>, length: usize, room: usize) {
     fit(raster, length, room);
     raster.fill(0.0);

@@ -38,11 +38,18 @@ impl NormalOperator {
     /// more.
     pub fn fit(&mut self, width: usize, length: usize, room: usize) {
         self.width = width;
-        let Self { stiffness, bend, link, sum, difference, pull, moment, .. } = self;
-        stiffness.iter_mut().chain(bend).for_each(|raster| clear(raster, length, room));
-        link.iter_mut().for_each(|raster| fit(raster, length, room));
-        let forces = [sum, difference].into_iter().chain(pull).chain(moment);
-        forces.for_each(|raster| clear(raster, padded(length, width), room));
+        let [pp, pq, qq] = &mut self.stiffness;
+        let [bend_right, bend_below] = &mut self.bend;
+        for raster in [pp, pq, qq, bend_right, bend_below] {
+            clear(raster, length, room);
+        }
+        for raster in &mut self.link {
+            fit(raster, length, room);
+        }
+        let ([pull_right, pull_below], [moment_right, moment_below]) = (&mut self.pull, &mut self.moment);
+        for raster in [&mut self.sum, &mut self.difference, pull_right, pull_below, moment_right, moment_below] {
+            clear(raster, padded(length, width), room);
+        }
     }
 
     /// Takes over the edges' weights, and a damping between all neighbours inside: `joined` tells of a pixel whether it

@@ -186,6 +186,21 @@ impl Normals {
         [&mut self.x, &mut self.y, &mut self.z].into_iter().for_each(|axis| axis.resize(length, f32::NAN));
     }
 
+    /// Leaves only the vectors on a mask.
+    pub(crate) fn forget_outside(&mut self, mask: &[bool]) {
+        for index in (0..mask.len()).filter(|&index| !mask[index]) {
+            self.set(index, [f32::NAN; 3]);
+        }
+    }
+
+    /// Takes over some of other vectors, from `place` on.
+    pub(crate) fn copy_some(&mut self, place: usize, other: &Self, some: &Range<usize>) {
+        let [x, y, z] = [&other.x, &other.y, &other.z].map(|axis| &axis[some.clone()]);
+        for (mine, theirs) in [(&mut self.x, x), (&mut self.y, y), (&mut self.z, z)] {
+            mine[place..place + theirs.len()].copy_from_slice(theirs);
+        }
+    }
+
     /// Some vectors turned, into others from `place` on.
     pub(crate) fn rotate(&self, some: &Range<usize>, rotation: &Matrix3<f64>, turned: &mut Self, place: usize) {
         let [x, y, z] = [&self.x, &self.y, &self.z].map(|axis| &axis[some.clone()]);
