@@ -17,7 +17,7 @@ use nalgebra::Matrix3;
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::light::Light;
-use crate::shape::cosine::{CosineSolver, fast_width};
+use crate::shape::cosine::CosineSolver;
 use crate::shape::normal_operator::NormalOperator;
 use crate::shape::poisson::{Edges, add_scaled, dot};
 use crate::shape::slopes::{RayFrame, SlopeTerms};
@@ -102,7 +102,7 @@ pub struct HeightSolver {
     size: Size,
     /// Left column and top row of the mask's bounding box.
     corner: [usize; 2],
-    /// Of the box; the rows of the rasters here are `width` long, a length that the cosine transform likes.
+    /// Of the box; the rows of the rasters here are `width` long, a multiple of [`LANES`].
     columns: usize,
     width: usize,
     /// Which pixels are inside, and which of their neighbours: bits of [`INSIDE`] and so on.
@@ -142,7 +142,7 @@ impl HeightSolver {
         }
         let (columns, height) = (rightmost - left + 1, bottom - top + 1);
         // Blocks of four must not reach into the next row.
-        let width = fast_width(columns.next_multiple_of(LANES));
+        let width = columns.next_multiple_of(LANES);
         let length = width * height;
         let is_inside =
             |column: usize, row: usize| column < size.width && row < size.height && mask[size.index(column, row)];
@@ -368,8 +368,7 @@ impl HeightSolver {
         self.cosine.set(mean_stiffness + f64::from(damping), anchors / self.pixels as f64);
         self.operator.set_links(&self.edges, |index| [RIGHT, BELOW].map(|flag| self.near[index] & flag != 0), damping);
         self.step.fill(0.0);
-        self.direction.copy_from_slice(&self.right);
-        self.cosine.solve(&mut self.direction);
+        self.cosine.solve(&self.right, &mut self.direction);
         self.restrict_direction();
         // `trial` holds the residual: it is written anew after the step.
         self.trial.copy_from_slice(&self.right);
@@ -390,8 +389,7 @@ impl HeightSolver {
                 break;
             }
             add_scaled(&mut self.trial, -length, &self.image);
-            self.image.copy_from_slice(&self.trial);
-            self.cosine.solve(&mut self.image);
+            self.cosine.solve(&self.trial, &mut self.image);
             let next = dot(&self.trial, &self.image);
             if next <= target {
                 break;

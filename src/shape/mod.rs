@@ -3,6 +3,7 @@
 mod components;
 mod cosine;
 mod exposure;
+mod fourier;
 mod gradients;
 mod heights;
 mod normal_operator;

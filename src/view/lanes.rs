@@ -72,6 +72,12 @@ impl Lanes {
         arch::array(self.0)
     }
 
+    /// The four first numbers, the four second ones, and so on.
+    #[inline(always)]
+    pub fn transpose(rows: [Self; LANES]) -> [Self; LANES] {
+        arch::transpose(rows.map(|row| row.0)).map(Self)
+    }
+
     /// Of all four.
     #[inline(always)]
     pub fn sum(self) -> f32 {
@@ -194,7 +200,7 @@ mod arch {
         f32x4_add as add, f32x4_div as div, f32x4_le as at_most, f32x4_lt as less, f32x4_mul as mul,
         f32x4_sqrt as sqrt, f32x4_sub as sub, v128_and as and, v128_any_true as any, v128_not as not, v128_or as or,
     };
-    use core::arch::wasm32::{v128, v128_bitselect};
+    use core::arch::wasm32::{i32x4_shuffle, v128, v128_bitselect};
 
     pub type Four = v128;
     pub type Choice = v128;
@@ -215,6 +221,18 @@ mod arch {
     #[inline(always)]
     pub fn select(choice: v128, yes: v128, no: v128) -> v128 {
         v128_bitselect(yes, no, choice)
+    }
+
+    #[inline(always)]
+    pub fn transpose([a, b, c, d]: [v128; 4]) -> [v128; 4] {
+        let [low, high] = [i32x4_shuffle::<0, 4, 1, 5>(a, b), i32x4_shuffle::<2, 6, 3, 7>(a, b)];
+        let [other_low, other_high] = [i32x4_shuffle::<0, 4, 1, 5>(c, d), i32x4_shuffle::<2, 6, 3, 7>(c, d)];
+        [
+            i32x4_shuffle::<0, 1, 4, 5>(low, other_low),
+            i32x4_shuffle::<2, 3, 6, 7>(low, other_low),
+            i32x4_shuffle::<0, 1, 4, 5>(high, other_high),
+            i32x4_shuffle::<2, 3, 6, 7>(high, other_high),
+        ]
     }
 }
 
@@ -266,6 +284,11 @@ mod arch {
     #[inline(always)]
     pub fn select(choice: Choice, yes: Four, no: Four) -> Four {
         std::array::from_fn(|lane| if choice[lane] { yes[lane] } else { no[lane] })
+    }
+
+    #[inline(always)]
+    pub fn transpose(rows: [Four; 4]) -> [Four; 4] {
+        std::array::from_fn(|lane| rows.map(|row| row[lane]))
     }
 }
 
