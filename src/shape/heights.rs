@@ -39,9 +39,6 @@ const SETTLED: f64 = 1e-4;
 /// A round of conjugate gradients that promises less than this share of the cost is the last one.
 const IDLE: f64 = 1e-5;
 
-/// Costs of pixels that are summed in f32 before the sum goes on in f64: few enough to keep six digits.
-const SUMMANDS: usize = 256;
-
 /// Bits of a pixel: inside the mask; the cell of four pixels right of and below it as well; its neighbours inside.
 const INSIDE: u8 = 1;
 const CELL: u8 = 2;
@@ -113,6 +110,9 @@ pub struct HeightSolver {
     trial: Vec<f32>,
     anchor: Vec<f32>,
     anchor_weight: Vec<f32>,
+    /// Sums of the weights of all anchors and of all edges.
+    anchored: f64,
+    linked: f64,
     operator: NormalOperator,
     /// Suggested height differences to the right and lower neighbour, and their weights.
     edges: [Edges; 2],
@@ -182,6 +182,8 @@ impl HeightSolver {
             trial: zeros(),
             anchor: zeros(),
             anchor_weight: zeros(),
+            anchored: 0.0,
+            linked: 0.0,
             operator: NormalOperator::new(width, length),
             edges: [Edges::new(length), Edges::new(length)],
             confidence: zeros(),
@@ -238,144 +240,170 @@ impl HeightSolver {
         HeightReport { first_cost: share * report.first_cost, cost: share * report.cost, ..report }
     }
 
-    /// The pixels of the box in turn: their places here and in the view.
-    fn places(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
-        let ([left, top], columns, width, view_width) = (self.corner, self.columns, self.width, self.size.width);
-        (0..self.near.len() / width).flat_map(move |row| {
-            let (here, source) = (row * width, (top + row) * view_width + left);
-            (0..columns).map(move |column| (here + column, source + column))
-        })
+    /// The rows of the box: where each starts here and in the view.
+    fn rows(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
+        let ([left, top], width, view_width) = (self.corner, self.width, self.size.width);
+        (0..self.near.len() / width).map(move |row| (row * width, (top + row) * view_width + left))
     }
 
-    /// The same [`LANES`] at a time: the first of each.
-    fn blocks(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
-        let ([left, top], columns, width, view_width) = (self.corner, self.columns, self.width, self.size.width);
-        (0..self.near.len() / width).flat_map(move |row| {
-            let (here, source) = (row * width, (top + row) * view_width + left);
-            (0..columns).step_by(LANES).map(move |column| (here + column, source + column))
-        })
-    }
-
-    /// Who of a block has a flag.
+    /// Who of a block of [`LANES`] pixels has one of these flags.
     #[inline(always)]
-    fn flagged(&self, index: usize, flag: u8) -> Mask {
-        let has = |lane: usize| f32::from(self.near.get(index + lane).map_or(0, |near| near & flag));
-        Lanes::splat(0.0).less(Lanes::from([has(0), has(1), has(2), has(3)]))
+    fn flagged(&self, index: usize, flags: u8) -> Mask {
+        Mask::with_bits(self.near.get(index..).and_then(|near| near.first_chunk()).copied().unwrap_or_default(), flags)
     }
 
-    /// Those of [`places`](Self::places) on the mask.
+    /// Those of its pixels that are on the mask, here and in the view.
     fn inside(&self) -> impl Iterator<Item = (usize, usize)> {
-        self.places().filter(|&(index, _)| self.near[index] & INSIDE != 0)
-    }
-
-    /// kappa of a pixel: less where its colours fix its normal.
-    fn smoothness(&self, index: usize) -> f32 {
-        SMOOTHNESS * INDECISION / (INDECISION + self.confidence[index])
+        let pixels = self.rows().flat_map(|(here, source)| (0..self.columns).map(move |k| (here + k, source + k)));
+        pixels.filter(|&(index, _)| self.near[index] & INSIDE != 0)
     }
 
     fn load(&mut self, problem: HeightProblem<'_>, z: &[f32]) {
-        for (index, source) in self.places() {
-            if self.near[index] & INSIDE != 0 {
-                self.z[index] = z[source];
-                (self.anchor[index], self.anchor_weight[index]) =
-                    problem.anchors.map_or((0.0, 0.0), |anchors| anchors.get(source));
+        let zero = Lanes::splat(0.0);
+        let mut anchored = 0.0;
+        for (here, source) in self.rows() {
+            let mut row = zero;
+            for column in (0..self.columns).step_by(LANES) {
+                let (index, source) = (here + column, (source + column) as isize);
+                let inside = self.flagged(index, INSIDE);
+                inside.select(Lanes::load(z, source), zero).store(&mut self.z[index..]);
+                let (height, weight) = problem.anchors.map_or((zero, zero), |anchors| anchors.four(source, inside));
+                height.store(&mut self.anchor[index..]);
+                weight.store(&mut self.anchor_weight[index..]);
+                row = row + weight;
             }
+            anchored += f64::from(row.sum());
         }
+        self.anchored = anchored;
     }
 
     /// Edges between neighbours with suggested slopes (trapezoidal rule), as firm as the less firm of the two.
     fn load_edges(&mut self, terms: &SlopeTerms<'_>) {
-        let slopes = terms.problem.slopes;
-        for (index, source) in self.blocks() {
-            let suggested = slopes.map(|slopes| Lanes::load(slopes, source as isize));
-            let wanted = self.flagged(index, INSIDE) & suggested[0].finite() & suggested[1].finite();
-            let confidence = if wanted.any() {
-                terms.confidence(&terms.frames(&self.frames, index), source, suggested, wanted)
-            } else {
-                Lanes::splat(0.0)
-            };
-            confidence.store(&mut self.confidence[index..]);
-        }
-        let axes = [(1, 1, LEFT, RIGHT), (self.width, self.size.width, ABOVE, BELOW)];
-        for (axis, (stride, view_stride, before, after)) in axes.into_iter().enumerate() {
-            for (index, source) in self.places() {
-                let near = self.near[index];
-                let joined = near & after != 0;
-                let weight = if joined { self.confidence[index].min(self.confidence[index + stride]) } else { 0.0 };
-                self.operator.bend[axis][index] =
-                    if joined && near & before != 0 { self.smoothness(index) } else { 0.0 };
-                self.edges[axis].weight[index] = weight;
-                self.edges[axis].gradient[index] =
-                    if weight > 0.0 { 0.5 * (slopes[axis][source] + slopes[axis][source + view_stride]) } else { 0.0 };
+        let (zero, slopes) = (Lanes::splat(0.0), terms.problem.slopes);
+        for (here, source) in self.rows() {
+            for column in (0..self.columns).step_by(LANES) {
+                let (index, source) = (here + column, source + column);
+                let suggested = slopes.map(|slopes| Lanes::load(slopes, source as isize));
+                let wanted = self.flagged(index, INSIDE) & suggested[0].finite() & suggested[1].finite();
+                let confidence = if wanted.any() {
+                    terms.confidence(&terms.frames(&self.frames, index), source, suggested, wanted)
+                } else {
+                    zero
+                };
+                confidence.store(&mut self.confidence[index..]);
             }
         }
+        self.linked = 0.0;
+        for (axis, strides) in [[1, 1], [self.width, self.size.width]].into_iter().enumerate() {
+            self.linked += self.load_axis(axis, strides.map(|stride| stride as isize), slopes[axis]);
+        }
+    }
+
+    /// Edges and bends along one axis, whose neighbours are so far apart here and in the view; the sum of the edges' weights.
+    fn load_axis(&mut self, axis: usize, [stride, view_stride]: [isize; 2], slopes: &[f32]) -> f64 {
+        let (zero, half) = (Lanes::splat(0.0), Lanes::splat(0.5));
+        let (smoothness, indecision) = (Lanes::splat(SMOOTHNESS * INDECISION), Lanes::splat(INDECISION));
+        let [before, after] = [[LEFT, RIGHT], [ABOVE, BELOW]][axis];
+        let mut linked = 0.0;
+        for (here, source) in self.rows() {
+            let mut row = zero;
+            for column in (0..self.columns).step_by(LANES) {
+                let (index, source) = (here + column, (source + column) as isize);
+                let (place, joined) = (index as isize, self.flagged(index, after));
+                let confidence = Lanes::load(&self.confidence, place);
+                let weight = joined.select(confidence.min(Lanes::load(&self.confidence, place + stride)), zero);
+                let gradient = half * (Lanes::load(slopes, source) + Lanes::load(slopes, source + view_stride));
+                weight.store(&mut self.edges[axis].weight[index..]);
+                zero.less(weight).select(gradient, zero).store(&mut self.edges[axis].gradient[index..]);
+                // kappa: less where a pixel's colours fix its normal.
+                let bend = (joined & self.flagged(index, before)).select(smoothness / (indecision + confidence), zero);
+                bend.store(&mut self.operator.bend[axis][index..]);
+                row = row + weight;
+            }
+            linked += f64::from(row.sum());
+        }
+        linked
     }
 
     /// Cost of the trial heights.
     fn cost(&self, terms: &SlopeTerms<'_>) -> f64 {
-        let z = &self.trial;
-        let colours = self.blocks().map(|(index, source)| {
-            let cells = self.flagged(index, CELL);
-            if !cells.any() {
-                return 0.0;
+        let (z, mut total) = (&self.trial, 0.0);
+        for (here, source) in self.rows() {
+            let mut row = Lanes::splat(0.0);
+            for index in (here..here + self.columns).step_by(LANES) {
+                if self.flagged(index, u8::MAX).any() {
+                    row = row + self.resistance(z, index as isize);
+                }
+                let cells = self.flagged(index, CELL);
+                if cells.any() {
+                    let frames = terms.frames(&self.frames, index);
+                    let slopes = cell_slopes(z, index, self.width);
+                    row = row + terms.cost(&frames, terms.cell_log(source + index - here), slopes, cells);
+                }
             }
-            let frames = terms.frames(&self.frames, index);
-            let slopes = cell_slopes(z, index, self.width);
-            f64::from(terms.cost(&frames, terms.cell_log(source), slopes, cells).sum())
-        });
-        colours.sum::<f64>() + self.resistance(z)
+            total += f64::from(row.sum());
+        }
+        total
     }
 
-    /// Cost of everything but the colours: anchors, edges and bends.
-    fn resistance(&self, z: &[f32]) -> f64 {
-        let anchors = weighted_squares(&self.anchor_weight, |at| Lanes::load(z, at) - Lanes::load(&self.anchor, at));
-        let strides = [1, self.width as isize];
-        let lines = strides.into_iter().zip(&self.edges).zip(&self.operator.bend).map(|((stride, edges), bend)| {
-            let fall = |at: isize| Lanes::load(z, at + stride) - Lanes::load(z, at);
-            weighted_squares(&edges.weight, |at| fall(at) - Lanes::load(&edges.gradient, at))
-                + weighted_squares(bend, |at| fall(at) - fall(at - stride))
-        });
-        anchors + lines.sum::<f64>()
+    /// Cost of everything but the colours in a block: anchors, edges and bends.
+    #[inline(always)]
+    fn resistance(&self, z: &[f32], at: isize) -> Lanes {
+        let here = Lanes::load(z, at);
+        let mut cost = weighted_square(&self.anchor_weight, at, here - Lanes::load(&self.anchor, at));
+        for (axis, stride) in [1, self.width as isize].into_iter().enumerate() {
+            let (fall, before) = (Lanes::load(z, at + stride) - here, here - Lanes::load(z, at - stride));
+            let edges = &self.edges[axis];
+            cost = cost + weighted_square(&edges.weight, at, fall - Lanes::load(&edges.gradient, at));
+            cost = cost + weighted_square(&self.operator.bend[axis], at, fall - before);
+        }
+        cost
     }
 
     /// Fills the stiffness and the right-hand side; returns the cost of the heights and the mean stiffness.
     fn linearise(&mut self, terms: &SlopeTerms<'_>) -> (f64, f64) {
-        let (mut costs, mut stiffnesses) = (0.0_f64, 0.0_f64);
-        for (index, source) in self.blocks() {
-            let cells = self.flagged(index, CELL);
-            if cells.any() {
-                let slopes = cell_slopes(&self.z, index, self.width);
-                let frames = terms.frames(&self.frames, index);
-                let shading = terms.linearise(&frames, terms.cell_log(source), slopes, cells);
-                costs += f64::from(shading.cost.sum());
-                let [pp, _, qq] = shading.matrix;
-                stiffnesses += 0.5 * f64::from((pp + qq).sum());
-                self.operator.set_cells(index, &shading);
+        let (mut cost, mut stiffness) = (0.0_f64, 0.0_f64);
+        for (here, source) in self.rows() {
+            let (mut row_cost, mut row_stiffness) = (Lanes::splat(0.0), Lanes::splat(0.0));
+            for index in (here..here + self.columns).step_by(LANES) {
+                if self.flagged(index, u8::MAX).any() {
+                    row_cost = row_cost + self.resistance(&self.z, index as isize);
+                }
+                let cells = self.flagged(index, CELL);
+                if cells.any() {
+                    let slopes = cell_slopes(&self.z, index, self.width);
+                    let frames = terms.frames(&self.frames, index);
+                    let shading = terms.linearise(&frames, terms.cell_log(source + index - here), slopes, cells);
+                    row_cost = row_cost + shading.cost;
+                    row_stiffness = row_stiffness + shading.matrix[0] + shading.matrix[2];
+                    self.operator.set_cells(index, &shading);
+                }
             }
+            cost += f64::from(row_cost.sum());
+            stiffness += 0.5 * f64::from(row_stiffness.sum());
         }
-        let linked: f64 = self.edges.iter().flat_map(|edges| &edges.weight).map(|&weight| f64::from(weight)).sum();
         for ((off, z), anchor) in self.direction.iter_mut().zip(&self.z).zip(&self.anchor) {
             *off = z - anchor;
         }
         self.operator.resist(&self.edges, &self.z, &self.anchor_weight, &self.direction, &mut self.right);
-        (costs + self.resistance(&self.z), ((stiffnesses + 0.5 * linked) / self.pixels as f64).max(LEAST_STIFFNESS))
+        (cost, ((stiffness + 0.5 * self.linked) / self.pixels as f64).max(LEAST_STIFFNESS))
     }
 
     /// step = solution of the linearised system by preconditioned conjugate gradients. Returns by how much the
     /// linearised cost falls.
     fn find_step(&mut self, damping: f32, mean_stiffness: f64, effort: Effort, cost: f64) -> f64 {
-        let anchors: f64 = self.anchor_weight.iter().map(|&weight| f64::from(weight)).sum();
-        self.cosine.set(mean_stiffness + f64::from(damping), anchors / self.pixels as f64);
-        self.operator.set_links(&self.edges, |index| [RIGHT, BELOW].map(|flag| self.near[index] & flag != 0), damping);
+        self.cosine.set(mean_stiffness + f64::from(damping), self.anchored / self.pixels as f64);
+        self.operator.set_links(&self.edges, &self.near, [RIGHT, BELOW], damping);
         self.step.fill(0.0);
-        self.cosine.solve(&self.right, &mut self.direction);
-        self.restrict_direction();
+        self.cosine.solve(&self.right, &mut self.image);
+        self.direction.fill(0.0);
+        self.direct(0.0);
         // `trial` holds the residual: it is written anew after the step.
         self.trial.copy_from_slice(&self.right);
         let mut rho = dot(&self.trial, &self.direction);
         let target = effort.tolerance * effort.tolerance * rho;
         let mut promise = 0.0;
-        for _ in 0..effort.rounds {
+        for round in 1..=effort.rounds {
             self.operator.apply(&self.anchor_weight, &self.direction, &mut self.image);
             let curvature = dot(&self.direction, &self.image);
             let length = (rho / curvature) as f32;
@@ -385,7 +413,7 @@ impl HeightSolver {
             add_scaled(&mut self.step, length, &self.direction);
             let gain = rho * f64::from(length);
             promise += gain;
-            if gain < IDLE * cost {
+            if gain < IDLE * cost || round == effort.rounds {
                 break;
             }
             add_scaled(&mut self.trial, -length, &self.image);
@@ -394,39 +422,28 @@ impl HeightSolver {
             if next <= target {
                 break;
             }
-            let turn = (next / rho) as f32;
+            self.direct((next / rho) as f32);
             rho = next;
-            for (direction, image) in self.direction.iter_mut().zip(&self.image) {
-                *direction = image + turn * *direction;
-            }
-            self.restrict_direction();
         }
         promise
     }
 
-    fn restrict_direction(&mut self) {
-        for (direction, &near) in self.direction.iter_mut().zip(&self.near) {
-            if near == 0 {
-                *direction = 0.0;
-            }
+    /// direction = image + turn * direction on the mask.
+    fn direct(&mut self, turn: f32) {
+        let (turn, zero) = (Lanes::splat(turn), Lanes::splat(0.0));
+        for index in (0..self.near.len()).step_by(LANES) {
+            let [direction, image] = [&self.direction, &self.image].map(|raster| Lanes::load(raster, index as isize));
+            let inside = self.flagged(index, u8::MAX);
+            inside.select(image + turn * direction, zero).store(&mut self.direction[index..]);
         }
     }
 }
 
-/// Sum of weight times square over all pixels; `off` may be anything where there is no weight.
+/// Weight times square; `off` may be anything where there is no weight.
 #[inline(always)]
-fn weighted_squares(weight: &[f32], off: impl Fn(isize) -> Lanes) -> f64 {
-    let zero = Lanes::splat(0.0);
-    let mut total = 0.0;
-    for start in (0..weight.len()).step_by(SUMMANDS) {
-        let mut sum = zero;
-        for at in (start..weight.len().min(start + SUMMANDS)).step_by(LANES) {
-            let (weight, off) = (Lanes::load(weight, at as isize), off(at as isize));
-            sum = sum + zero.less(weight).select(weight * off * off, zero);
-        }
-        total += f64::from(sum.sum());
-    }
-    total
+fn weighted_square(weight: &[f32], at: isize, off: Lanes) -> Lanes {
+    let (weight, zero) = (Lanes::load(weight, at), Lanes::splat(0.0));
+    zero.less(weight).select(weight * off * off, zero)
 }
 
 /// p and q in the middle of the cells right of and below some pixels.

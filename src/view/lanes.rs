@@ -90,6 +90,12 @@ impl Lanes {
         Self(arch::sqrt(self.0))
     }
 
+    /// The smaller of each two; the other's where this one is NaN.
+    #[inline(always)]
+    pub fn min(self, other: Self) -> Self {
+        self.less(other).select(self, other)
+    }
+
     /// False for NaN.
     #[inline(always)]
     pub fn less(self, other: Self) -> Mask {
@@ -130,6 +136,12 @@ impl Real for Lanes {
 }
 
 impl Mask {
+    /// Which of four bytes have one of these bits.
+    #[inline(always)]
+    pub fn with_bits(bytes: [u8; LANES], bits: u8) -> Self {
+        Self(arch::with_bits(bytes, bits))
+    }
+
     /// `yes` where it holds.
     #[inline(always)]
     pub fn select(self, yes: Lanes, no: Lanes) -> Lanes {
@@ -150,7 +162,7 @@ impl Mask {
     /// Of how many it holds.
     #[inline(always)]
     pub fn count(self) -> usize {
-        self.select(Lanes::splat(1.0), Lanes::splat(0.0)).array().iter().sum::<f32>() as usize
+        arch::count(self.0)
     }
 }
 
@@ -200,7 +212,10 @@ mod arch {
         f32x4_add as add, f32x4_div as div, f32x4_le as at_most, f32x4_lt as less, f32x4_mul as mul,
         f32x4_sqrt as sqrt, f32x4_sub as sub, v128_and as and, v128_any_true as any, v128_not as not, v128_or as or,
     };
-    use core::arch::wasm32::{i32x4_shuffle, v128, v128_bitselect};
+    use core::arch::wasm32::{
+        i32x4_bitmask, i32x4_ne, i32x4_shuffle, i32x4_splat, u16x8_extend_low_u8x16, u32x4_extend_low_u16x8, v128,
+        v128_bitselect,
+    };
 
     pub type Four = v128;
     pub type Choice = v128;
@@ -221,6 +236,17 @@ mod arch {
     #[inline(always)]
     pub fn select(choice: v128, yes: v128, no: v128) -> v128 {
         v128_bitselect(yes, no, choice)
+    }
+
+    #[inline(always)]
+    pub fn with_bits(bytes: [u8; 4], bits: u8) -> v128 {
+        let spread = u32x4_extend_low_u16x8(u16x8_extend_low_u8x16(i32x4_splat(i32::from_le_bytes(bytes))));
+        i32x4_ne(and(spread, i32x4_splat(i32::from(bits))), i32x4_splat(0))
+    }
+
+    #[inline(always)]
+    pub fn count(choice: v128) -> usize {
+        i32x4_bitmask(choice).count_ones() as usize
     }
 
     #[inline(always)]
@@ -282,6 +308,16 @@ mod arch {
     }
 
     #[inline(always)]
+    pub fn count(choice: Choice) -> usize {
+        choice.iter().filter(|&&holds| holds).count()
+    }
+
+    #[inline(always)]
+    pub fn with_bits(bytes: [u8; 4], bits: u8) -> Choice {
+        bytes.map(|byte| byte & bits != 0)
+    }
+
+    #[inline(always)]
     pub fn select(choice: Choice, yes: Four, no: Four) -> Four {
         std::array::from_fn(|lane| if choice[lane] { yes[lane] } else { no[lane] })
     }
@@ -305,6 +341,15 @@ mod tests {
         assert!(a.is_nan() && b.is_nan() && c == 1.0 && d == 2.0);
         Lanes::splat(7.0).store(&mut values[3..]);
         assert_eq!(values, [1.0, 2.0, 3.0, 7.0, 7.0]);
+    }
+
+    #[test]
+    fn bits_choose_and_rows_become_columns() {
+        let chosen = Mask::with_bits([1, 4, 0, 255], 5);
+        assert_eq!(chosen.count(), 3);
+        assert_eq!(chosen.select(Lanes::splat(1.0), Lanes::splat(0.0)).array(), [1.0, 1.0, 0.0, 1.0]);
+        let rows = [0.0, 4.0, 8.0, 12.0].map(|first| Lanes::from([first, first + 1.0, first + 2.0, first + 3.0]));
+        assert_eq!(Lanes::transpose(rows)[1].array(), [1.0, 5.0, 9.0, 13.0]);
     }
 
     #[test]
