@@ -9,7 +9,7 @@
 
 use nalgebra::Vector3;
 
-use crate::light::Light;
+use crate::light::{Light, Polynomial};
 use crate::pose::Similarity;
 use crate::report::Energy;
 use crate::view::{ColourView, DepthView, Normals, Points};
@@ -96,9 +96,10 @@ fn point_terms(image: &ColourView, depth: &DepthView, index: usize, candidate: C
 fn brightness(image: &ColourView, candidate: Candidate<'_>) -> f64 {
     let (mut sum, mut count) = (0.0, 0.0);
     let inside = || (0..image.size.len()).filter(|&index| image.mask[index]);
+    let polynomials = Polynomial::of(candidate.light);
     for index in thinned(inside) {
         count += 1.0;
-        sum += robust(f64::from(residual(image, index, candidate.light, candidate.normals.get(index))), COLOUR_SCALE);
+        sum += robust(f64::from(residual(image, index, &polynomials, candidate.normals.get(index))), COLOUR_SCALE);
     }
     sum / f64::max(count, 1.0)
 }
@@ -108,9 +109,8 @@ pub fn thinned<I: Iterator<Item = usize>>(indices: impl Fn() -> I) -> impl Itera
     indices().step_by(indices().count().div_ceil(MOST_JURORS).max(1))
 }
 
-/// |log S - predicted| of an image pixel for a normal in the colour view's frame.
-pub fn residual(image: &ColourView, index: usize, light: &Light, normal: [f32; 3]) -> f32 {
-    let shade = light.shade(normal.map(f64::from));
-    let log = image.log_at(index);
-    (0..3).map(|channel| (f64::from(log[channel]) - shade[channel]).powi(2)).sum::<f64>().sqrt() as f32
+/// |log S - predicted| of an image pixel for a normal in the colour view's frame, under a light as three polynomials.
+pub fn residual(image: &ColourView, index: usize, light: &[Polynomial; 3], normal: [f32; 3]) -> f32 {
+    let square = |channel: usize| (image.log[channel][index] - light[channel].shade(normal)).powi(2);
+    (square(0) + square(1) + square(2)).sqrt()
 }

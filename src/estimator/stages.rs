@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use super::merit::Candidate;
 use super::{Estimator, gauge, merit, worsens};
 use crate::error::Result;
-use crate::light::Light;
+use crate::light::{Light, Polynomial};
 use crate::options::{LightSource, Registration, Shading};
 use crate::pose::{CorrespondenceProblem, IcpOptions, IcpProblem, RansacOptions, Similarity, ransac};
 use crate::shape::{
@@ -87,11 +87,6 @@ impl Estimator {
                 self.solution.exposure += exposure_step(problem, weights, &self.solution.image_normals, moved);
             }
         }
-        for (index, &inside) in self.image.mask.iter().enumerate() {
-            if !inside {
-                self.solution.image_normals.set(index, [f32::NAN; 3]);
-            }
-        }
         Ok(())
     }
 
@@ -161,9 +156,9 @@ impl Estimator {
         self.spare.clone_from(&self.height);
         self.relief.solve(problem, &self.spare, &mut self.height);
         let camera = self.image.camera;
-        let focal_length = camera.focal_length().unwrap_or(1.0) as f32;
-        for (spare, &height) in self.spare.iter_mut().zip(&self.height) {
-            *spare = if camera.is_orthographic() { height } else { (height / focal_length).exp() };
+        self.spare.clone_from(&self.height);
+        if let Some(focal_length) = camera.focal_length() {
+            self.spare.iter_mut().for_each(|height| *height = (*height / focal_length as f32).exp());
         }
         normals::of_depth_into(self.image.size, camera, &self.spare, &mut self.surface_normals);
         self.shade_surface(&light);
@@ -182,9 +177,6 @@ impl Estimator {
         let log = &self.image.log;
         let problem = ShadingProblem { log: [&log[0], &log[1], &log[2]], prior: &self.surface_normals, light };
         self.solver.solve(problem, weights, &mut self.solution.image_normals);
-        for pixel in (0..self.image.size.len()).filter(|&pixel| !self.image.mask[pixel]) {
-            self.solution.image_normals.set(pixel, [f32::NAN; 3]);
-        }
     }
 
     /// Pose (Eq. 12 to 16), then the correspondences that it gives.
@@ -303,20 +295,18 @@ impl Estimator {
 
     /// Normals of the depth view at the image pixels: R n_R of Eq. 9.
     fn carry_normals(&mut self) {
-        let rotation = self.solution.pose.rotation;
+        let rotation = self.solution.pose.rotation.cast::<f32>();
         for (pixel, &index) in self.correspondences.depth_of_pixel().iter().enumerate() {
-            let normal = match usize::try_from(index) {
-                Ok(index) => rotation * Vector3::from(self.solution.depth_normals.get(index).map(f64::from)),
-                Err(_) => Vector3::repeat(f64::NAN),
-            };
-            self.carried_normals.set(pixel, [normal.x as f32, normal.y as f32, normal.z as f32]);
+            let carried = usize::try_from(index).ok().map(|index| self.solution.depth_normals.get(index));
+            let normal = carried.map_or([f32::NAN; 3], |normal| (rotation * Vector3::from(normal)).into());
+            self.carried_normals.set(pixel, normal);
         }
     }
 
     /// Overlap, inliers and residuals of the present correspondences.
     pub(super) fn measure(&mut self) {
-        let light = self.solution.exposed_light();
-        let rotation = self.solution.pose.rotation;
+        let light = Polynomial::of(&self.solution.exposed_light());
+        let rotation = self.solution.pose.rotation.cast::<f32>();
         self.spare.clear();
         for pixel in 0..self.image.size.len() {
             self.residual[pixel] = f32::NAN;
@@ -326,11 +316,8 @@ impl Estimator {
             let carried = usize::try_from(self.correspondences.depth_of_pixel()[pixel])
                 .ok()
                 .filter(|&index| self.depth.normals.is_valid(index))
-                .map(|index| rotation * Vector3::from(self.depth.normals.get(index).map(f64::from)));
-            let normal = match carried {
-                Some(normal) => [normal.x as f32, normal.y as f32, normal.z as f32],
-                None => self.solution.image_normals.get(pixel),
-            };
+                .map(|index| (rotation * Vector3::from(self.depth.normals.get(index))).into());
+            let normal = carried.unwrap_or_else(|| self.solution.image_normals.get(pixel));
             self.residual[pixel] = merit::residual(&self.image, pixel, &light, normal);
             if carried.is_some() {
                 self.spare.push(self.residual[pixel]);

@@ -6,7 +6,7 @@
 use nalgebra::Vector3;
 
 use crate::pose::Similarity;
-use crate::view::{Camera, ColourView, Normals, Points, Size};
+use crate::view::{ColourView, Normals, Points, Size};
 
 /// A point counts as hidden when it lies this many image pixels behind the nearest one: more than a steep slope drops
 /// between neighbours, less than a nose stands before a cheek.
@@ -59,20 +59,23 @@ impl Visibility {
 
     /// Places of all points that face the camera and fall on the mask, and the z-buffer.
     fn project(&mut self, sight: &Sight<'_>) {
-        let size = sight.image.size;
+        let (size, camera) = (sight.image.size, &sight.image.camera);
         self.buffer.fill(f32::INFINITY);
+        let along_axis = sight.pose.rotation.tr_mul(&Vector3::z());
         for index in 0..self.column.len() {
             self.drop(index);
             if !sight.points.is_valid(index) {
                 continue;
             }
             let point = sight.pose.apply(vector(sight.points.get(index)));
-            let Some([column, row]) = sight.image.camera.project(size, point.into()) else { continue };
+            let Some([column, row]) = camera.project(size, point.into()) else { continue };
             self.depth[index] = point.z as f32;
             splat(size, &mut self.buffer, [column, row], self.depth[index]);
-            let normal = sight.pose.rotation * vector(sight.normals.get(index));
+            // Unit direction from the camera to the point, in the depth view's frame.
+            let direction =
+                if camera.is_orthographic() { along_axis } else { sight.pose.rotation.tr_mul(&point.normalize()) };
             // A normal that is missing (a hole not yet filled) does not exclude its point.
-            if normal.dot(&direction(&sight.image.camera, point)) > -RIM {
+            if vector(sight.normals.get(index)).dot(&direction) > -RIM {
                 continue;
             }
             let pixel = size.nearest(column as f32, row as f32);
@@ -94,11 +97,7 @@ impl Visibility {
     }
 }
 
-/// Unit direction from the camera to a point.
-fn direction(camera: &Camera, point: Vector3<f64>) -> Vector3<f64> {
-    if camera.is_orthographic() { Vector3::z() } else { point.normalize() }
-}
-
+#[inline(always)]
 pub(super) fn vector(values: [f32; 3]) -> Vector3<f64> {
     Vector3::from(values.map(f64::from))
 }
@@ -111,9 +110,9 @@ pub(super) fn splat(size: Size, buffer: &mut [f32], position: [f64; 2], depth: f
     };
     let columns = range(position[0], size.width);
     for row in range(position[1], size.height) {
-        for buffered in
-            buffer.get_mut(size.index(columns.start, row)..size.index(columns.end, row)).into_iter().flatten()
-        {
+        let start = size.index(0, row);
+        let Some(buffered) = buffer.get_mut(start + columns.start..start + columns.end) else { continue };
+        for buffered in buffered {
             *buffered = if depth < *buffered { depth } else { *buffered };
         }
     }

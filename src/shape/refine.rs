@@ -131,9 +131,7 @@ impl Refiner {
         self.load_anchors(view, |has_colour| if has_colour { shaded } else { unshaded });
         self.refine_normals(problem, normals);
         self.find_slopes(view, normals);
-        for (height, &depth) in self.height.iter_mut().zip(&*depth) {
-            *height = to_height(view, depth);
-        }
+        to_heights(view, depth, &mut self.height);
         let anchors = Anchors { height: &self.anchor, weight: AnchorWeight::PerPixel(&self.anchor_weight) };
         let (scales, effort) = if self.continues { (&COLOUR_SCALES[2..], LATER) } else { (&COLOUR_SCALES[..], FIRST) };
         self.continues = true;
@@ -150,9 +148,7 @@ impl Refiner {
             };
             self.heights.solve(height_problem, &mut self.height);
         }
-        for (depth, &height) in depth.iter_mut().zip(&self.height) {
-            *depth = from_height(view, height);
-        }
+        from_heights(view, &self.height, depth);
         normals::of_depth_into(view.size, view.camera, depth, normals);
         Ok(())
     }
@@ -175,28 +171,28 @@ impl Refiner {
     /// Bilinear log colours at the positions of the depth pixels; NaN where a neighbour is off the mask.
     fn sample_colours(&mut self, problem: RefinementProblem<'_>) {
         let [columns, rows] = problem.position;
-        for index in 0..columns.len() {
-            for channel in 0..3 {
-                self.log[channel][index] =
-                    problem.image.size.bilinear_of_known(&problem.image.log[channel], columns[index], rows[index]);
-            }
+        let channels = problem.image.log.each_ref().map(Vec::as_slice);
+        let [red, green, blue] = &mut self.log;
+        let pixels = red.iter_mut().zip(green).zip(blue).zip(columns.iter().zip(rows));
+        for (((red, green), blue), (&column, &row)) in pixels {
+            [*red, *green, *blue] = problem.image.size.each_bilinear_of_known(channels, column, row);
         }
     }
 
     /// Eq. 19: the image's normal where each depth pixel falls, in the colour view's frame.
     fn bring_prior(&mut self, problem: RefinementProblem<'_>) {
         let [columns, rows] = problem.position;
-        for index in 0..columns.len() {
-            let seen = problem.image.size.nearest(columns[index], rows[index]);
+        for (index, (&column, &row)) in columns.iter().zip(rows).enumerate() {
+            let seen = problem.image.size.nearest(column, row);
             self.prior.set(index, seen.map_or([f32::NAN; 3], |pixel| problem.image_normals.get(pixel)));
         }
     }
 
     /// Anchors at the measured depth, in the integrator's coordinate (log depth for a pinhole camera).
     fn load_anchors(&mut self, view: &DepthView, weight: impl Fn(bool) -> f32) {
-        for index in 0..view.depth.len() {
-            self.anchor[index] = to_height(view, view.depth[index]);
-            self.anchor_weight[index] = weight(!self.log[0][index].is_nan());
+        to_heights(view, &view.depth, &mut self.anchor);
+        for (anchor_weight, log) in self.anchor_weight.iter_mut().zip(&self.log[0]) {
+            *anchor_weight = weight(!log.is_nan());
         }
     }
 
@@ -220,9 +216,7 @@ impl Refiner {
         let anchors = Anchors { height: &self.anchor, weight: AnchorWeight::PerPixel(&self.anchor_weight) };
         let options = IntegrationOptions { robust: Robust::Off, ..IntegrationOptions::default() };
         Integrator::new(view.size, &view.mask)?.integrate(p, q, Some(anchors), &options, &mut self.height)?;
-        for (depth, &height) in depth.iter_mut().zip(&self.height) {
-            *depth = from_height(view, height);
-        }
+        from_heights(view, &self.height, depth);
         Ok(())
     }
 }
@@ -235,9 +229,10 @@ fn firmness(shading_error: f64, view: &DepthView) -> f32 {
         let (column, row) = view.size.position(index);
         [(column + reach < width, 1), (row + reach < height, width)]
     };
-    let bend = |index: usize, step: usize| {
-        noise::bend(std::array::from_fn(|k| f64::from(to_height(view, view.depth[index + k * step])))) as f32
-    };
+    let mut heights = vec![0.0; view.depth.len()];
+    to_heights(view, &view.depth, &mut heights);
+    let bend =
+        |index: usize, step: usize| noise::bend(std::array::from_fn(|k| f64::from(heights[index + k * step]))) as f32;
     let bends = (0..view.size.len())
         .flat_map(|index| lines(index).into_iter().filter(|(fits, _)| *fits).map(move |(_, step)| bend(index, step)));
     balance(shading_error, noise::of_bends(bends))
@@ -250,17 +245,17 @@ fn balance(shading_error: f64, depth_noise: f64) -> f32 {
 }
 
 /// The coordinate of the solvers: depth in pixels, or f log Z, whose slopes are in pixels of depth per pixel, too.
-fn to_height(view: &DepthView, depth: f32) -> f32 {
-    match view.camera.focal_length() {
-        None => depth,
-        Some(focal_length) => (focal_length * f64::from(depth).ln()) as f32,
+fn to_heights(view: &DepthView, depth: &[f32], heights: &mut [f32]) {
+    let Some(focal_length) = view.camera.focal_length() else { return heights.copy_from_slice(depth) };
+    for (height, &depth) in heights.iter_mut().zip(depth) {
+        *height = (focal_length * f64::from(depth).ln()) as f32;
     }
 }
 
-fn from_height(view: &DepthView, height: f32) -> f32 {
-    match view.camera.focal_length() {
-        None => height,
-        Some(focal_length) => (f64::from(height) / focal_length).exp() as f32,
+fn from_heights(view: &DepthView, heights: &[f32], depth: &mut [f32]) {
+    let Some(focal_length) = view.camera.focal_length() else { return depth.copy_from_slice(heights) };
+    for (depth, &height) in depth.iter_mut().zip(heights) {
+        *depth = (f64::from(height) / focal_length).exp() as f32;
     }
 }
 

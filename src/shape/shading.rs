@@ -110,7 +110,7 @@ impl ShadingSolver {
             let pixels = Pixels::new(problem, index, weights, &polynomials);
             let missing = Lanes::splat(f32::NAN);
             let mut solved = [missing; 3];
-            if pixels.count() > 0 {
+            if (pixels.coloured | pixels.drawn).any() {
                 let (start, known) = self.start(&pixels, load(normals, index));
                 solved = known.select3(normalise(pixels.descend(start, known, &mut counts)), solved);
             }
@@ -185,11 +185,6 @@ impl<'a> Pixels<'a> {
             sharpness: Lanes::splat(weights.robust.map_or(0.0, |scale| 1.0 / (scale * scale))),
             polynomials,
         }
-    }
-
-    /// Of how many something is known.
-    fn count(&self) -> usize {
-        (self.coloured | self.drawn).count()
     }
 
     fn brightness(&self, shade: [Lanes; 3]) -> Lanes {

@@ -83,18 +83,29 @@ impl Size {
     /// As [`bilinear`](Self::bilinear), from those neighbours that have a value: colours of an object's rim.
     #[must_use]
     pub fn bilinear_of_known(self, field: &[f32], column: f32, row: f32) -> f32 {
-        let Some(corners) = self.corners(column, row) else { return f32::NAN };
-        let (mut sum, mut weights) = (0.0, 0.0);
-        for (pixel, weight) in corners {
-            if !field[pixel].is_nan() {
-                sum += weight * field[pixel];
-                weights += weight;
+        let [value] = self.each_bilinear_of_known([field], column, row);
+        value
+    }
+
+    /// [`bilinear_of_known`](Self::bilinear_of_known) of several fields.
+    #[must_use]
+    pub fn each_bilinear_of_known<const N: usize>(self, fields: [&[f32]; N], column: f32, row: f32) -> [f32; N] {
+        let Some(corners) = self.corners(column, row) else { return [f32::NAN; N] };
+        let sum = |[a, b, c, d]: [f32; 4]| a + b + c + d;
+        fields.map(|field| {
+            let values = corners.map(|(pixel, weight)| [field[pixel], weight]);
+            let whole = sum(values.map(|[value, weight]| value * weight));
+            if !whole.is_nan() {
+                return whole;
             }
-        }
-        if weights > 0.0 { sum / weights } else { f32::NAN }
+            let known = values.map(|[value, weight]| if value.is_nan() { [0.0; 2] } else { [value, weight] });
+            let weights = sum(known.map(|[_, weight]| weight));
+            if weights > 0.0 { sum(known.map(|[value, weight]| value * weight)) / weights } else { f32::NAN }
+        })
     }
 
     /// The four pixels around a continuous position and their bilinear weights; `None` outside of the raster.
+    #[inline(always)]
     fn corners(self, column: f32, row: f32) -> Option<[(usize, f32); 4]> {
         let inside =
             column >= 0.0 && row >= 0.0 && column <= (self.width - 1) as f32 && row <= (self.height - 1) as f32;
@@ -153,19 +164,20 @@ impl Normals {
     }
 
     /// The vector at `index`, NaN where missing.
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn get(&self, index: usize) -> [f32; 3] {
         [self.x[index], self.y[index], self.z[index]]
     }
 
     /// Replaces the vector at `index`.
-    #[inline]
+    #[inline(always)]
     pub fn set(&mut self, index: usize, vector: [f32; 3]) {
         [self.x[index], self.y[index], self.z[index]] = vector;
     }
 
     /// Whether there is a vector at `index`.
+    #[inline(always)]
     #[must_use]
     pub fn is_valid(&self, index: usize) -> bool {
         // A sum is NaN where a member is.
