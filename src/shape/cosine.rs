@@ -165,8 +165,8 @@ impl Rows {
         for column in (0..width).step_by(LANES) {
             let places = self.samples(column);
             for half in 0..2 {
-                let four = [0, 1, 2, 3].map(|row| load(rows, (half * LANES + row) * width + column));
-                for (place, value) in places.into_iter().zip(Lanes::transpose(four)) {
+                let four = columns(rows, half * LANES * width + column, width);
+                for (place, value) in places.into_iter().zip(four) {
                     self.work[place][half] = value;
                 }
             }
@@ -176,10 +176,8 @@ impl Rows {
         let length = self.work.len();
         for (block, values) in self.work.as_chunks::<LANES>().0.iter().enumerate() {
             for half in 0..2 {
-                let four = Lanes::transpose(values.map(|value| value[half]));
-                for (row, value) in four.into_iter().enumerate() {
-                    store(value, spectrum, (half * LANES + row) * length + block * LANES);
-                }
+                let four = values.map(|value| value[half]);
+                set_columns(four, spectrum, (half * length + block) * LANES, length);
             }
         }
     }
@@ -189,8 +187,8 @@ impl Rows {
         let length = self.work.len();
         for (block, values) in self.work.as_chunks_mut::<LANES>().0.iter_mut().enumerate() {
             for half in 0..2 {
-                let four = [0, 1, 2, 3].map(|row| load(spectrum, (half * LANES + row) * length + block * LANES));
-                for (value, new) in values.iter_mut().zip(Lanes::transpose(four)) {
+                let four = columns(spectrum, (half * length + block) * LANES, length);
+                for (value, new) in values.iter_mut().zip(four) {
                     value[half] = new;
                 }
             }
@@ -201,10 +199,8 @@ impl Rows {
             let places = self.samples(column);
             for half in 0..2 {
                 // Real and imaginary part have changed places.
-                let four = Lanes::transpose(places.map(|place| self.work[place][1 - half]));
-                for (row, value) in four.into_iter().enumerate() {
-                    store(value, rows, (half * LANES + row) * width + column);
-                }
+                let four = places.map(|place| self.work[place][1 - half]);
+                set_columns(four, rows, half * LANES * width + column, width);
             }
         }
     }
@@ -241,17 +237,22 @@ impl Rows {
     }
 }
 
-/// Four of a row; zeros of a row that is missing.
-#[inline(always)]
-fn load(rows: &[f32], start: usize) -> Lanes {
-    if start < rows.len() { Lanes::load(rows, start as isize) } else { Lanes::splat(0.0) }
+/// Four columns from `start` on of four rows that are `stride` apart; zeros of a row that is missing.
+#[inline(never)]
+fn columns(rows: &[f32], start: usize, stride: usize) -> [Lanes; LANES] {
+    Lanes::transpose([0, 1, 2, 3].map(|row| {
+        let place = start + row * stride;
+        if place < rows.len() { Lanes::load(rows, place as isize) } else { Lanes::splat(0.0) }
+    }))
 }
 
-/// Nothing of a row that is missing.
-#[inline(always)]
-fn store(four: Lanes, rows: &mut [f32], start: usize) {
-    if let Some(row) = rows.get_mut(start..) {
-        four.store(row);
+/// The way back; nothing of a row that is missing.
+#[inline(never)]
+fn set_columns(four: [Lanes; LANES], rows: &mut [f32], start: usize, stride: usize) {
+    for (row, value) in Lanes::transpose(four).into_iter().enumerate() {
+        if let Some(row) = rows.get_mut(start + row * stride..) {
+            value.store(row);
+        }
     }
 }
 
@@ -296,7 +297,7 @@ mod tests {
     #[test]
     fn inverts_the_laplacian_of_a_rectangle() {
         for (width, height) in
-            [(4, 1), (4, 7), (8, 1), (12, 2), (16, 5), (80, 81), (48, 7), (96, 31), (24, 2), (256, 256)]
+            [(4, 1), (4, 7), (8, 1), (12, 2), (16, 5), (72, 81), (48, 7), (96, 31), (24, 2), (256, 256)]
         {
             for (stiffness, shift) in [(1.0, 0.0), (0.7, 0.02), (3.0, 1.5)] {
                 let error = error(width, height, stiffness, shift);
@@ -308,7 +309,7 @@ mod tests {
     /// Of a field that ends in zeros the narrower solver gives the same, as far as it is wide.
     #[test]
     fn a_narrow_field_is_part_of_a_wide_one() {
-        let (width, wider, height) = (36, 40, 11);
+        let (width, wider, height) = (44, 48, 11);
         let narrow: Vec<f32> = (0..width * height).map(|i| (i as f32 * 0.7).sin()).collect();
         let mut wide = vec![0.0; wider * height];
         wide.chunks_mut(wider).zip(narrow.chunks(width)).for_each(|(wide, row)| wide[..width].copy_from_slice(row));

@@ -1,8 +1,8 @@
 //! Fourier transforms of complex rows, four side by side in lanes.
 //!
 //! Method: Stockham's, decimation in frequency: each stage takes a factor out of the length, reads one buffer and writes
-//! the other in an order that leaves the spectrum sorted. Lengths are once, three or five times a power of two;
-//! factors of four come first, as they need the fewest products.
+//! the other in an order that leaves the spectrum sorted. Factors of four come first, as they need the fewest products;
+//! others are 2 and 3.
 
 use std::f64::consts::TAU;
 
@@ -13,8 +13,8 @@ pub(super) type Complex = [Lanes; 2];
 /// cos and -sin of an angle: a root of unity.
 type Root = [f32; 2];
 
-/// The largest factor beside the powers of two.
-const LARGEST_FACTOR: usize = 5;
+/// Of a third of the circle.
+const SINE_OF_A_THIRD: f32 = 0.866_025_4;
 
 /// A transform of one length; owns its roots and its scratch.
 pub(super) struct Fourier {
@@ -29,22 +29,30 @@ struct Stage {
     stride: usize,
     /// exp(-2 pi i p k / n) for k = 1 .. factor - 1 (fast) and p (slow), n the length that is left.
     roots: Vec<Root>,
-    /// exp(-2 pi i j k / factor) of an odd factor, for j (slow) and k up to half of it.
-    units: [[Root; LARGEST_FACTOR / 2]; LARGEST_FACTOR / 2],
 }
 
-/// The shortest length from `least` on that is once, three or five times a power of two, and a multiple of four.
+/// The shortest length from `least` on that is a multiple of four and has no factor but 2 and 3.
 pub(super) fn fast_length(least: usize) -> usize {
-    let next = |odd: usize| odd * least.div_ceil(odd).next_power_of_two().max(4);
-    [1, 3, LARGEST_FACTOR].map(next).into_iter().min().unwrap_or(least)
+    (least.next_multiple_of(4)..)
+        .step_by(4)
+        .find(|&length| factors(length).product::<usize>() == length)
+        .unwrap_or(least)
+}
+
+/// The factors of a length that are 4, 2 or 3, with repetition.
+fn factors(mut length: usize) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let factor = [4, 2, 3].into_iter().find(|factor| length.is_multiple_of(*factor) && length > 0)?;
+        length /= factor;
+        Some(factor)
+    })
 }
 
 impl Fourier {
     /// A transform of `length` numbers, a [`fast_length`].
     pub fn new(length: usize) -> Self {
         let (mut stages, mut left) = (Vec::new(), length);
-        while left > 1 {
-            let factor = [4, 2].into_iter().find(|factor| left % factor == 0).unwrap_or(left);
+        for factor in factors(length) {
             stages.push(Stage::new(factor, left, length / left));
             left /= factor;
         }
@@ -57,8 +65,7 @@ impl Fourier {
             match stage.factor {
                 4 => stage.run(values, &mut self.spare, fourth),
                 2 => stage.run(values, &mut self.spare, half),
-                3 => stage.run(values, &mut self.spare, |values| odd::<3>(values, &stage.units)),
-                _ => stage.run(values, &mut self.spare, |values| odd::<LARGEST_FACTOR>(values, &stage.units)),
+                _ => stage.run(values, &mut self.spare, third),
             }
             std::mem::swap(values, &mut self.spare);
         }
@@ -67,13 +74,12 @@ impl Fourier {
 
 impl Stage {
     fn new(factor: usize, left: usize, stride: usize) -> Self {
-        let root = |step: usize, length: usize| -> Root {
-            let (sin, cos) = (TAU * step as f64 / length as f64).sin_cos();
+        let root = |step: usize| -> Root {
+            let (sin, cos) = (TAU * step as f64 / left as f64).sin_cos();
             [cos as f32, -sin as f32]
         };
-        let roots = (0..left / factor).flat_map(|p| (1..factor).map(move |k| root(p * k, left))).collect();
-        let units = [1, 2].map(|j| [1, 2].map(|k| root(j * k, factor)));
-        Self { factor, stride, roots, units }
+        let roots = (0..left / factor).flat_map(|p| (1..factor).map(move |k| root(p * k))).collect();
+        Self { factor, stride, roots }
     }
 
     /// `to` = the shorter transforms of `from`, times the roots.
@@ -132,23 +138,12 @@ fn fourth([a, b, c, d]: [Complex; 4]) -> [Complex; 4] {
     [plus(even, odd), plus(off_even, off_odd), minus(even, odd), minus(off_even, off_odd)]
 }
 
-/// An odd number of values, by the definition: sums of opposite ones go with cosines, differences with sines.
 #[inline(always)]
-fn odd<const F: usize>(values: [Complex; F], units: &[[Root; LARGEST_FACTOR / 2]; LARGEST_FACTOR / 2]) -> [Complex; F] {
-    let mut sums = values;
-    for k in 1..=F / 2 {
-        sums[0] = plus(sums[0], plus(values[k], values[F - k]));
-        let (mut even, mut off) = (values[0], [Lanes::splat(0.0); 2]);
-        for j in 1..=F / 2 {
-            let [cos, sin] = units[j - 1][k - 1].map(Lanes::splat);
-            let (sum, difference) = (plus(values[j], values[F - j]), minus(values[j], values[F - j]));
-            even = plus(even, [cos * sum[0], cos * sum[1]]);
-            // -i times the difference, times the sine.
-            off = minus(off, [sin * difference[1], Lanes::splat(0.0) - sin * difference[0]]);
-        }
-        (sums[k], sums[F - k]) = (plus(even, off), minus(even, off));
-    }
-    sums
+fn third([a, b, c]: [Complex; 3]) -> [Complex; 3] {
+    let (sum, [re, im]) = (plus(b, c), minus(b, c));
+    let (half, sine) = (Lanes::splat(0.5), Lanes::splat(SINE_OF_A_THIRD));
+    let (even, off) = ([a[0] - half * sum[0], a[1] - half * sum[1]], quarter_turn([sine * re, sine * im]));
+    [plus(a, sum), plus(even, off), minus(even, off)]
 }
 
 #[cfg(test)]
@@ -157,7 +152,7 @@ mod tests {
 
     #[test]
     fn the_transform_is_its_definition() {
-        for length in [4, 8, 12, 16, 20, 24, 40, 64, 96] {
+        for length in [4, 8, 12, 16, 24, 32, 36, 64, 72, 96, 108] {
             let value = |n: usize, lane: usize| [(n * n + lane) as f32 % 7.0, (3 * n + lane) as f32 % 5.0];
             let complex = |n: usize| [0, 1].map(|part| Lanes::from([0, 1, 2, 3].map(|lane| value(n, lane)[part])));
             let mut values: Vec<Complex> = (0..length).map(complex).collect();
@@ -179,6 +174,6 @@ mod tests {
 
     #[test]
     fn fast_lengths_are_not_much_longer() {
-        assert_eq!([1, 7, 11, 64, 97, 150, 612, 640].map(fast_length), [4, 8, 12, 64, 128, 160, 640, 640]);
+        assert_eq!([1, 7, 11, 64, 97, 150, 412, 640].map(fast_length), [4, 8, 12, 64, 108, 192, 432, 648]);
     }
 }

@@ -347,7 +347,7 @@ impl HeightSolver {
     }
 
     /// Cost of everything but the colours in a block: anchors, edges and bends.
-    #[inline(always)]
+    #[inline(never)]
     fn resistance(&self, z: &[f32], at: isize) -> Lanes {
         let here = Lanes::load(z, at);
         let mut cost = weighted_square(&self.anchor_weight, at, here - Lanes::load(&self.anchor, at));
@@ -392,7 +392,10 @@ impl HeightSolver {
     /// step = solution of the linearised system by preconditioned conjugate gradients. Returns by how much the
     /// linearised cost falls.
     fn find_step(&mut self, damping: f32, mean_stiffness: f64, effort: Effort, cost: f64) -> f64 {
-        self.cosine.set(mean_stiffness + f64::from(damping), self.anchored / self.pixels as f64);
+        // Cut to a power of two: then the pivots, which take a division each, often stand from solve to solve.
+        let (stiffness, shift) = (mean_stiffness + f64::from(damping), self.anchored / self.pixels as f64);
+        let ratio = f64::from_bits((shift / stiffness).to_bits() & f64::INFINITY.to_bits());
+        self.cosine.set(stiffness, ratio * stiffness);
         self.operator.set_links(&self.edges, &self.near, [RIGHT, BELOW], damping);
         self.step.fill(0.0);
         self.cosine.solve(&self.right, &mut self.image);
