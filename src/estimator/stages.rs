@@ -370,9 +370,8 @@ impl Estimator {
     /// Median over the correspondences of a function of the image surface's depth and the depth point's.
     fn median_gap(&mut self, gap: impl Fn(f64, f64) -> f64) -> Option<f64> {
         self.spare.clear();
-        for (pixel, &index) in self.correspondences.depth_of_pixel().iter().enumerate() {
+        for (&index, &depth) in self.correspondences.depth_of_pixel().iter().zip(&self.solution.image_depth) {
             let Ok(index) = usize::try_from(index) else { continue };
-            let depth = self.solution.image_depth[pixel];
             if !depth.is_nan() {
                 self.spare.push(gap(f64::from(depth), self.solution.carried(index).z) as f32);
             }

@@ -104,15 +104,18 @@ pub(super) fn vector(values: [f32; 3]) -> Vector3<f64> {
 
 /// Enters a depth at the four pixels around a position, so that gaps between points let nothing through.
 pub(super) fn splat(size: Size, buffer: &mut [f32], position: [f64; 2], depth: f32) {
-    // A position on a pixel's centre enters that pixel alone. Positions far out, or NaN, make empty ranges.
-    let range = |position: f64, side: usize| {
-        (position.floor() as usize).min(side)..((position.ceil() + 1.0) as usize).min(side)
-    };
-    let columns = range(position[0], size.width);
-    for row in range(position[1], size.height) {
-        let start = size.index(0, row);
-        let Some(buffered) = buffer.get_mut(start + columns.start..start + columns.end) else { continue };
-        for buffered in buffered {
+    // A position on a pixel's centre enters that pixel alone: then the four are one, and it is entered again.
+    let [left, top] = position.map(f64::floor);
+    let [right, low] = position.map(f64::ceil);
+    // A position may lie outside by less than a pixel; NaN fails every comparison.
+    let (last_column, last_row) = ((size.width - 1) as f64, (size.height - 1) as f64);
+    if !(right >= 0.0 && low >= 0.0 && left <= last_column && top <= last_row) {
+        return;
+    }
+    let columns = [left.max(0.0), right.min(last_column)].map(|column| column as usize);
+    for row in [top.max(0.0), low.min(last_row)].map(|row| row as usize) {
+        for column in columns {
+            let Some(buffered) = buffer.get_mut(size.index(column, row)) else { continue };
             *buffered = if depth < *buffered { depth } else { *buffered };
         }
     }

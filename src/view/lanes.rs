@@ -32,7 +32,9 @@ pub struct Mask(arch::Choice);
 
 impl Lanes {
     /// Four values from `start`, NaN beyond the ends.
-    #[inline(always)]
+    // Without SIMD these are four loads, and copies of them a tenth of the download.
+    #[cfg_attr(not(all(target_arch = "wasm32", not(target_feature = "simd128"))), inline(always))]
+    #[cfg_attr(all(target_arch = "wasm32", not(target_feature = "simd128")), inline(never))]
     pub fn load(values: &[f32], start: isize) -> Self {
         // A start before the first value is, without its sign, beyond the last one.
         match values.get(start as usize..).and_then(|values| values.first_chunk()) {
@@ -57,14 +59,16 @@ impl Lanes {
     /// Writes as many of the four as there is room for.
     #[inline(always)]
     pub fn store(self, values: &mut [f32]) {
-        let four = self.array();
-        if let Some(room) = values.first_chunk_mut() {
-            *room = four;
-        } else {
-            for (value, new) in values.iter_mut().zip(four) {
-                *value = new;
-            }
+        match values.first_chunk_mut() {
+            Some(room) => *room = self.array(),
+            None => self.store_end(values),
         }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn store_end(self, values: &mut [f32]) {
+        values.iter_mut().zip(self.array()).for_each(|(value, new)| *value = new);
     }
 
     #[inline(always)]
