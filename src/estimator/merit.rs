@@ -9,7 +9,7 @@
 
 use nalgebra::Vector3;
 
-use crate::light::Light;
+use crate::light::{Light, Polynomial};
 use crate::pose::Similarity;
 use crate::report::Energy;
 use crate::view::{ColourView, DepthView, Normals, Points};
@@ -60,15 +60,16 @@ fn robust(value: f64, scale: f64) -> f64 {
 /// The energy of `candidate` over the depth points `fixed`, each term a mean over them or over the image's mask.
 pub fn energy(image: &ColourView, depth: &DepthView, fixed: &[u32], candidate: Candidate<'_>) -> Energy {
     let (mut prior, mut distance, mut colour) = (0.0, 0.0, 0.0);
+    let light = Polynomial::of(candidate.light);
     for &index in fixed {
-        let terms = point_terms(image, depth, index as usize, candidate).unwrap_or([1.0; 3]);
+        let terms = point_terms(image, depth, index as usize, candidate, &light).unwrap_or([1.0; 3]);
         prior += terms[0];
         distance += terms[1];
         colour += terms[2];
     }
     let share = 1.0 / fixed.len().max(1) as f64;
     Energy {
-        shading: brightness(image, candidate),
+        shading: brightness(image, candidate, &light),
         prior: share * prior,
         registration: share * distance,
         refinement: share * colour,
@@ -76,7 +77,13 @@ pub fn energy(image: &ColourView, depth: &DepthView, fixed: &[u32], candidate: C
 }
 
 /// Costs of one depth point: of its normal, its distance, its colour. `None` where the image does not see it.
-fn point_terms(image: &ColourView, depth: &DepthView, index: usize, candidate: Candidate<'_>) -> Option<[f64; 3]> {
+fn point_terms(
+    image: &ColourView,
+    depth: &DepthView,
+    index: usize,
+    candidate: Candidate<'_>,
+    light: &[Polynomial; 3],
+) -> Option<[f64; 3]> {
     let point = candidate.pose.apply(Vector3::from(candidate.depth_points.get(index).map(f64::from)));
     let [column, row] = image.camera.project(image.size, [point.x, point.y, point.z])?;
     let pixel = image.size.nearest(column as f32, row as f32).filter(|&pixel| image.mask[pixel])?;
@@ -84,13 +91,10 @@ fn point_terms(image: &ColourView, depth: &DepthView, index: usize, candidate: C
     let image_normal = Vector3::from(candidate.normals.get(pixel).map(f64::from));
     let image_point = Vector3::from(candidate.points.get(pixel).map(f64::from));
     let gap = image_normal.dot(&(image_point - point)) / candidate.pixel_length;
-    let shade = candidate.light.shade(normal.into());
-    let colour: f64 = (0..3)
-        .map(|channel| {
-            let log = image.size.bilinear(&image.log[channel], column as f32, row as f32);
-            (f64::from(log) - shade[channel]).powi(2)
-        })
-        .sum();
+    let log = image.size.each_bilinear(image.log.each_ref().map(Vec::as_slice), column as f32, row as f32);
+    let normal_f32 = [normal.x as f32, normal.y as f32, normal.z as f32];
+    let square = |channel: usize| (log[channel] - light[channel].shade(normal_f32)).powi(2);
+    let colour = f64::from(square(0) + square(1) + square(2));
     Some([
         robust((image_normal - normal).norm(), NORMAL_SCALE),
         robust(gap, DISTANCE_SCALE),
@@ -99,12 +103,12 @@ fn point_terms(image: &ColourView, depth: &DepthView, index: usize, candidate: C
 }
 
 /// Mean brightness cost of the image's own normals.
-fn brightness(image: &ColourView, candidate: Candidate<'_>) -> f64 {
+fn brightness(image: &ColourView, candidate: Candidate<'_>, light: &[Polynomial; 3]) -> f64 {
     let (mut sum, mut count) = (0.0, 0.0);
     let inside = || (0..image.size.len()).filter(|&index| image.mask[index]);
     for index in thinned(inside) {
         count += 1.0;
-        sum += robust(f64::from(residual(image, index, candidate.light, candidate.normals.get(index))), COLOUR_SCALE);
+        sum += robust(f64::from(residual(image, index, light, candidate.normals.get(index))), COLOUR_SCALE);
     }
     sum / f64::max(count, 1.0)
 }
@@ -114,11 +118,10 @@ pub fn thinned<I: Iterator<Item = usize>>(indices: impl Fn() -> I) -> impl Itera
     indices().step_by(indices().count().div_ceil(MOST_JURORS).max(1))
 }
 
-/// |log S - predicted| of an image pixel for a normal in the colour view's frame.
-pub fn residual(image: &ColourView, index: usize, light: &Light, normal: [f32; 3]) -> f32 {
-    let shade = light.shade(normal.map(f64::from));
-    let log = image.log_at(index);
-    (0..3).map(|channel| (f64::from(log[channel]) - shade[channel]).powi(2)).sum::<f64>().sqrt() as f32
+/// |log S - predicted| of an image pixel for a normal in the colour view's frame, under a light as three polynomials.
+pub fn residual(image: &ColourView, index: usize, light: &[Polynomial; 3], normal: [f32; 3]) -> f32 {
+    let square = |channel: usize| (image.log[channel][index] - light[channel].shade(normal)).powi(2);
+    (square(0) + square(1) + square(2)).sqrt()
 }
 
 /// Whether a step of so many degrees has made the merit worse.

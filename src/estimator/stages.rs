@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use super::merit::Candidate;
 use super::{Estimator, gauge, merit};
 use crate::error::Result;
-use crate::light::Light;
+use crate::light::{Light, Polynomial};
 use crate::options::{LightSource, Registration};
 use crate::pose::{CorrespondenceProblem, IcpOptions, IcpProblem, RansacOptions, Similarity, ransac};
 use crate::shape::{
@@ -88,7 +88,6 @@ impl Estimator {
                 self.solution.exposure += exposure_step(problem, weights, &self.solution.image_normals, moved);
             }
         }
-        self.solution.image_normals.forget_outside(&self.image.mask);
         Ok(())
     }
 
@@ -187,7 +186,6 @@ impl Estimator {
             self.solver.solve(ShadingProblem { log, prior, light }, weights, found);
             solution.image_normals.copy_some(band.start, found, &(0..band.len()));
         }
-        solution.image_normals.forget_outside(&image.mask);
     }
 
     /// Pose (Eq. 12 to 16), then the correspondences that it gives.
@@ -307,20 +305,18 @@ impl Estimator {
 
     /// Normals of the depth view at the image pixels: R n_R of Eq. 9.
     fn carry_normals(&mut self) {
-        let rotation = self.solution.pose.rotation;
+        let rotation = self.solution.pose.rotation.cast::<f32>();
         for (pixel, &index) in self.correspondences.depth_of_pixel().iter().enumerate() {
-            let normal = match usize::try_from(index) {
-                Ok(index) => rotation * Vector3::from(self.solution.depth_normals.get(index).map(f64::from)),
-                Err(_) => Vector3::repeat(f64::NAN),
-            };
-            self.carried_normals.set(pixel, [normal.x as f32, normal.y as f32, normal.z as f32]);
+            let carried = usize::try_from(index).ok().map(|index| self.solution.depth_normals.get(index));
+            let normal = carried.map_or([f32::NAN; 3], |normal| (rotation * Vector3::from(normal)).into());
+            self.carried_normals.set(pixel, normal);
         }
     }
 
     /// Overlap, inliers and residuals of the present correspondences.
     pub(super) fn measure(&mut self) {
-        let light = self.solution.exposed_light();
-        let rotation = self.solution.pose.rotation;
+        let light = Polynomial::of(&self.solution.exposed_light());
+        let rotation = self.solution.pose.rotation.cast::<f32>();
         self.bench.spare.clear();
         for pixel in 0..self.image.size.len() {
             self.residual[pixel] = f32::NAN;
@@ -330,11 +326,8 @@ impl Estimator {
             let carried = usize::try_from(self.correspondences.depth_of_pixel()[pixel])
                 .ok()
                 .filter(|&index| self.depth.normals.is_valid(index))
-                .map(|index| rotation * Vector3::from(self.depth.normals.get(index).map(f64::from)));
-            let normal = match carried {
-                Some(normal) => [normal.x as f32, normal.y as f32, normal.z as f32],
-                None => self.solution.image_normals.get(pixel),
-            };
+                .map(|index| (rotation * Vector3::from(self.depth.normals.get(index))).into());
+            let normal = carried.unwrap_or_else(|| self.solution.image_normals.get(pixel));
             self.residual[pixel] = merit::residual(&self.image, pixel, &light, normal);
             if carried.is_some() {
                 self.bench.spare.push(self.residual[pixel]);
@@ -387,9 +380,8 @@ impl Estimator {
     /// Median over the correspondences of a function of the image surface's depth and the depth point's.
     fn median_gap(&mut self, gap: impl Fn(f64, f64) -> f64) -> Option<f64> {
         self.bench.spare.clear();
-        for (pixel, &index) in self.correspondences.depth_of_pixel().iter().enumerate() {
+        for (&index, &depth) in self.correspondences.depth_of_pixel().iter().zip(&self.solution.image_points.z) {
             let Ok(index) = usize::try_from(index) else { continue };
-            let depth = self.solution.image_points.z[pixel];
             if !depth.is_nan() {
                 self.bench.spare.push(gap(f64::from(depth), self.solution.carried(index).z) as f32);
             }

@@ -4,13 +4,13 @@
 //! mean_i w_i |log S_i - B(n_i) L|^2 + lambda_L h(L), B the nine harmonics of each channel. The weights w are those of
 //! Geman and McClure at a scale that follows the residuals, so that cast shadows and wrong correspondences lose.
 
-use nalgebra::SMatrix;
+use std::ops::Range;
 
 use crate::error::{Error, ErrorKind, Result};
-use crate::light::Light;
-use crate::light::harmonics::{HARMONICS, basis};
+use crate::light::harmonics::{HARMONICS, basis_of_four};
 use crate::light::prior::{CoefficientMatrix, Coefficients, LightPrior};
-use crate::view::{Normals, quantile};
+use crate::light::{Light, Polynomial};
+use crate::view::{LANES, Lanes, Normals, Real, dot, quantile};
 
 /// Most rounds of reweighting; the weights settle in four to six.
 const ROUNDS: usize = 8;
@@ -23,6 +23,10 @@ const MOST_PIXELS: usize = 8000;
 const SCALE_OF_MEDIAN: f64 = 3.0;
 /// Smallest robust scale in log units: the noise of a good 8-bit image.
 const SMALLEST_SCALE: f64 = 0.005;
+/// Pixels whose terms are summed in f32 before the sums go on in f64: few enough to keep six digits.
+const SUMMANDS: usize = 256;
+/// Sums of a harmonic: with the harmonics, then with R, G, B.
+const COLUMNS: usize = HARMONICS + 3;
 
 /// A fitted light and how well it explains the colours.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,7 +41,14 @@ pub struct LightFit {
 #[derive(Clone, Debug, Default)]
 pub struct LightFitter {
     pixels: Vec<usize>,
+    /// Of these pixels, filled up to whole [`LANES`] with what weighs nothing.
+    normals: Normals,
+    /// log S less `offset`.
+    colours: [Vec<f32>; 3],
+    /// Mean of log S, which f32 need not carry: a common offset is the exposure's, of which the prior knows nothing.
+    offset: f64,
     weights: Vec<f32>,
+    /// Of these pixels alone.
     residuals: Vec<f32>,
     sorted: Vec<f32>,
 }
@@ -51,26 +62,15 @@ impl LightFitter {
     /// # Errors
     /// [`ErrorKind::Degenerate`] where the normals do not determine the light and `weight` is zero.
     pub fn fit(&mut self, normals: &Normals, log: [&[f32]; 3], prior: &LightPrior, weight: f64) -> Result<LightFit> {
-        self.pixels.clear();
-        // A list that grows takes three times the memory.
-        self.pixels.reserve_exact(normals.len());
-        self.pixels.extend((0..normals.len()).filter(|&i| normals.is_valid(i) && !log[0][i].is_nan()));
-        thin(&mut self.pixels, MOST_PIXELS);
-        self.weights.clear();
-        self.weights.resize(self.pixels.len(), 1.0);
-        let colours = |index: usize| [0, 1, 2].map(|channel: usize| f64::from(log[channel][index]));
-        let normal = |index: usize| normals.get(index).map(f64::from);
+        self.gather(normals, log);
         let mut light = prior.mean();
         let mut median = 0.0;
         for _ in 0..ROUNDS {
-            let samples = self.pixels.iter().zip(&self.weights);
-            light = solve(samples.map(|(&i, &w)| (normal(i), colours(i), f64::from(w))), prior, weight)?;
+            light = self.solve(prior, weight)?;
             if self.pixels.is_empty() {
                 break;
             }
-            self.residuals.clear();
-            let residual = |&index: &usize| distance(light.shade(normal(index)), colours(index)) as f32;
-            self.residuals.extend(self.pixels.iter().map(residual));
+            self.find_residuals(&light);
             self.sorted.clone_from(&self.residuals);
             let before = median;
             median = f64::from(quantile(&mut self.sorted, 0.5));
@@ -79,10 +79,109 @@ impl LightFitter {
             }
             let scale = (SCALE_OF_MEDIAN * median).max(SMALLEST_SCALE) as f32;
             for (weight, &residual) in self.weights.iter_mut().zip(&self.residuals) {
-                *weight = (1.0 + (residual / scale).powi(2)).powi(-2);
+                let ratio = residual / scale;
+                let trust = 1.0 / (1.0 + ratio * ratio);
+                *weight = trust * trust;
             }
         }
+        let light = light.exposed(self.offset);
+        light.validate("light")?;
         Ok(LightFit { light, residual: median })
+    }
+
+    /// The pixels that count, their normals and colours side by side.
+    fn gather(&mut self, normals: &Normals, log: [&[f32]; 3]) {
+        self.pixels.clear();
+        // A list that grows takes three times the memory.
+        self.pixels.reserve_exact(normals.len());
+        self.pixels.extend((0..normals.len()).filter(|&i| normals.is_valid(i) && !log[0][i].is_nan()));
+        thin(&mut self.pixels, MOST_PIXELS);
+        let [red, green, blue] = &mut self.colours;
+        let Normals { x, y, z } = &mut self.normals;
+        let fields =
+            [(x, &normals.x[..]), (y, &normals.y), (z, &normals.z), (red, log[0]), (green, log[1]), (blue, log[2])];
+        let whole = self.pixels.len().next_multiple_of(LANES);
+        for (gathered, field) in fields {
+            gathered.clear();
+            gathered.extend(self.pixels.iter().map(|&index| field[index]));
+            gathered.resize(whole, 0.0);
+        }
+        let count = self.pixels.len();
+        let sum: f64 = self.colours.iter().flatten().map(|&log| f64::from(log)).sum();
+        self.offset = sum / (3 * count).max(1) as f64;
+        for log in self.colours.iter_mut().flat_map(|channel| &mut channel[..count]) {
+            *log = (f64::from(*log) - self.offset) as f32;
+        }
+        self.weights.clear();
+        self.weights.resize(count, 1.0);
+        self.weights.resize(whole, 0.0);
+        self.residuals.resize(count, 0.0);
+    }
+
+    /// Four normals and their colours.
+    #[inline(always)]
+    fn four(&self, start: usize) -> ([Lanes; 3], [Lanes; 3]) {
+        let load = |field: &[f32]| Lanes::load(field, start as isize);
+        let [red, green, blue] = &self.colours;
+        ([load(&self.normals.x), load(&self.normals.y), load(&self.normals.z)], [load(red), load(green), load(blue)])
+    }
+
+    /// |log S - predicted| of the pixels.
+    fn find_residuals(&mut self, light: &Light) {
+        let [red, green, blue] = Polynomial::of(light);
+        for start in (0..self.residuals.len()).step_by(LANES) {
+            let (normal, colour) = self.four(start);
+            let off = [red.shade(normal) - colour[0], green.shade(normal) - colour[1], blue.shade(normal) - colour[2]];
+            dot(off, off).sqrt().store(&mut self.residuals[start..]);
+        }
+    }
+
+    /// Weighted least squares with the prior: (G + lambda P) L = b + lambda P mu.
+    fn solve(&self, prior: &LightPrior, weight: f64) -> Result<Light> {
+        let mut sums = [[0.0; COLUMNS]; HARMONICS];
+        for start in (0..self.weights.len()).step_by(SUMMANDS) {
+            self.add_up(start..self.weights.len().min(start + SUMMANDS), &mut sums);
+        }
+        let total: f64 = self.weights.iter().map(|&weight| f64::from(weight)).sum();
+        let share = if total > 0.0 { 1.0 / total } else { 0.0 };
+        let mut matrix: CoefficientMatrix = weight * prior.precision();
+        let mut target: Coefficients = weight * (prior.precision() * prior.mean_coefficients());
+        for channel in 0..3 {
+            for row in 0..HARMONICS {
+                target[channel * HARMONICS + row] += share * sums[row][HARMONICS + channel];
+                for column in 0..HARMONICS {
+                    let value = share * sums[row.max(column)][row.min(column)];
+                    matrix[(channel * HARMONICS + row, channel * HARMONICS + column)] += value;
+                }
+            }
+        }
+        let solution =
+            matrix.cholesky().map(|factor| factor.solve(&target)).filter(|l| l.iter().all(|v| v.is_finite()));
+        let solution = solution
+            .ok_or_else(|| Error::new(ErrorKind::Degenerate, "light", "the normals do not determine the light"))?;
+        Light::from_slice("light", solution.as_slice())
+    }
+
+    /// Adds the harmonics' weighted products with each other, up to the diagonal, and with the colours.
+    fn add_up(&self, samples: Range<usize>, sums: &mut [[f64; COLUMNS]; HARMONICS]) {
+        let mut parts = [[Lanes::splat(0.0); COLUMNS]; HARMONICS];
+        for start in samples.step_by(LANES) {
+            let (normal, colour) = self.four(start);
+            let weight = Lanes::load(&self.weights, start as isize);
+            let basis = basis_of_four(normal);
+            for (row, parts) in parts.iter_mut().enumerate() {
+                let weighted = weight * basis[row];
+                for (part, other) in parts.iter_mut().zip(&basis[..=row]) {
+                    *part = *part + weighted * *other;
+                }
+                for (part, colour) in parts[HARMONICS..].iter_mut().zip(colour) {
+                    *part = *part + weighted * colour;
+                }
+            }
+        }
+        for (sum, part) in sums.iter_mut().flatten().zip(parts.iter().flatten()) {
+            *sum += f64::from(part.sum());
+        }
     }
 }
 
@@ -93,44 +192,6 @@ fn thin(elements: &mut Vec<usize>, most: usize) {
         (0..most).for_each(|k| elements[k] = elements[k * count / most]);
         elements.truncate(most);
     }
-}
-
-/// Weighted least squares with the prior: (G + lambda P) L = b + lambda P mu.
-fn solve(samples: impl Iterator<Item = ([f64; 3], [f64; 3], f64)>, prior: &LightPrior, weight: f64) -> Result<Light> {
-    let mut gram = SMatrix::<f64, HARMONICS, HARMONICS>::zeros();
-    let mut right = Coefficients::zeros();
-    let mut total = 0.0;
-    for (normal, colour, sample_weight) in samples {
-        let basis = basis(normal);
-        total += sample_weight;
-        for row in 0..HARMONICS {
-            for column in 0..=row {
-                gram[(row, column)] += sample_weight * basis[row] * basis[column];
-            }
-            for channel in 0..3 {
-                right[channel * HARMONICS + row] += sample_weight * basis[row] * colour[channel];
-            }
-        }
-    }
-    let share = if total > 0.0 { 1.0 / total } else { 0.0 };
-    let mut matrix: CoefficientMatrix = weight * prior.precision();
-    for channel in 0..3 {
-        for row in 0..HARMONICS {
-            for column in 0..HARMONICS {
-                let value = share * gram[(row.max(column), row.min(column))];
-                matrix[(channel * HARMONICS + row, channel * HARMONICS + column)] += value;
-            }
-        }
-    }
-    let target = share * right + weight * (prior.precision() * prior.mean_coefficients());
-    let solution = matrix.cholesky().map(|factor| factor.solve(&target)).filter(|l| l.iter().all(|v| v.is_finite()));
-    let solution =
-        solution.ok_or_else(|| Error::new(ErrorKind::Degenerate, "light", "the normals do not determine the light"))?;
-    Light::from_slice("light", solution.as_slice())
-}
-
-fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
 }
 
 #[cfg(test)]

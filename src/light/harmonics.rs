@@ -1,7 +1,7 @@
 //! log S = n^T M n with n = [n_x n_y n_z 1]: second-order spherical harmonics (Eq. 3, 5).
 
 use crate::error::{Error, ErrorKind, Result};
-use crate::view::Real;
+use crate::view::{Lanes, Real};
 
 /// Number of harmonics for each channel.
 pub const HARMONICS: usize = 9;
@@ -90,6 +90,23 @@ pub fn basis([x, y, z]: [f64; 3]) -> [f64; HARMONICS] {
     ]
 }
 
+/// [`basis`] of four normals in f32.
+#[inline(always)]
+pub(crate) fn basis_of_four([x, y, z]: [Lanes; 3]) -> [Lanes; HARMONICS] {
+    let times = |constant: f64, value: Lanes| Lanes::splat(constant as f32) * value;
+    [
+        Lanes::splat(C4 as f32),
+        times(2.0 * C2, y),
+        times(2.0 * C2, z),
+        times(2.0 * C2, x),
+        times(2.0 * C1, x * y),
+        times(2.0 * C1, y * z),
+        times(C3, z * z) - Lanes::splat(C5 as f32),
+        times(2.0 * C1, x * z),
+        times(C1, x * x - y * y),
+    ]
+}
+
 /// d basis / d normal.
 #[must_use]
 pub fn basis_gradient([x, y, z]: [f64; 3]) -> [[f64; 3]; HARMONICS] {
@@ -144,6 +161,17 @@ impl Polynomial {
             + z * (T::splat(by_z) + T::splat(self.zz) * z)
     }
 
+    /// [`shade`](Self::shade) and [`gradient`](Self::gradient) together: a quadratic is its constant and half the sum of both
+    /// slopes, here and at zero, along the normal.
+    #[inline(always)]
+    #[must_use]
+    pub(crate) fn expand<T: Real>(&self, [x, y, z]: [T; 3]) -> (T, [T; 3]) {
+        let [by_x, by_y, by_z] = self.linear.map(T::splat);
+        let slope = self.gradient([x, y, z]);
+        let along = x * (slope[0] + by_x) + y * (slope[1] + by_y) + z * (slope[2] + by_z);
+        (T::splat(self.one) + T::splat(0.5) * along, slope)
+    }
+
     /// d log S / d n.
     #[inline(always)]
     #[must_use]
@@ -193,6 +221,8 @@ mod tests {
         let normal = [0.36_f32, -0.48, -0.8];
         for (polynomial, expected) in Polynomial::of(&light()).iter().zip(light().shade(normal.map(f64::from))) {
             assert!((f64::from(polynomial.shade(normal)) - expected).abs() < 1e-6);
+            let (shade, slope) = polynomial.expand(normal);
+            assert!((f64::from(shade) - expected).abs() < 1e-6 && slope == polynomial.gradient(normal));
             for axis in 0..3 {
                 let (mut up, mut down) = (normal, normal);
                 up[axis] += 0.01;
@@ -201,6 +231,13 @@ mod tests {
                 assert!((polynomial.gradient(normal)[axis] - difference).abs() < 2e-5);
             }
         }
+    }
+
+    #[test]
+    fn four_normals_have_the_same_basis() {
+        let normal = [0.36, -0.48, -0.8];
+        let four = basis_of_four(normal.map(|value| Lanes::splat(value as f32)));
+        assert!(basis(normal).into_iter().zip(four).all(|(one, four)| (one - f64::from(four.array()[2])).abs() < 1e-6));
     }
 
     #[test]

@@ -6,7 +6,7 @@
 use nalgebra::Vector3;
 
 use crate::pose::Similarity;
-use crate::view::{Camera, ColourView, Normals, Points, Size};
+use crate::view::{ColourView, Normals, Points, Size};
 
 /// A point counts as hidden when it lies this many image pixels behind the nearest one: more than a steep slope drops
 /// between neighbours, less than a nose stands before a cheek.
@@ -61,20 +61,23 @@ impl Visibility {
 
     /// Places of all points that face the camera and fall on the mask, and the z-buffer.
     fn project(&mut self, sight: &Sight<'_>) {
-        let size = sight.image.size;
+        let (size, camera) = (sight.image.size, &sight.image.camera);
         self.of_pixel.fill(f32::INFINITY);
+        let along_axis = sight.pose.rotation.tr_mul(&Vector3::z());
         for index in 0..self.column.len() {
             self.drop(index);
             if !sight.points.is_valid(index) {
                 continue;
             }
             let point = sight.pose.apply(vector(sight.points.get(index)));
-            let Some([column, row]) = sight.image.camera.project(size, point.into()) else { continue };
+            let Some([column, row]) = camera.project(size, point.into()) else { continue };
             self.of_point[index] = point.z as f32;
             splat(size, &mut self.of_pixel, [column, row], self.of_point[index]);
-            let normal = sight.pose.rotation * vector(sight.normals.get(index));
+            // Unit direction from the camera to the point, in the depth view's frame.
+            let direction =
+                if camera.is_orthographic() { along_axis } else { sight.pose.rotation.tr_mul(&point.normalize()) };
             // A normal that is missing (a hole not yet filled) does not exclude its point.
-            if normal.dot(&direction(&sight.image.camera, point)) > -RIM {
+            if vector(sight.normals.get(index)).dot(&direction) > -RIM {
                 continue;
             }
             let pixel = size.nearest(column as f32, row as f32);
@@ -96,26 +99,25 @@ impl Visibility {
     }
 }
 
-/// Unit direction from the camera to a point.
-fn direction(camera: &Camera, point: Vector3<f64>) -> Vector3<f64> {
-    if camera.is_orthographic() { Vector3::z() } else { point.normalize() }
-}
-
+#[inline(always)]
 pub(super) fn vector(values: [f32; 3]) -> Vector3<f64> {
     Vector3::from(values.map(f64::from))
 }
 
 /// Enters a depth at the four pixels around a position, so that gaps between points let nothing through.
 pub(super) fn splat(size: Size, buffer: &mut [f32], position: [f64; 2], depth: f32) {
-    // A position on a pixel's centre enters that pixel alone. Positions far out, or NaN, make empty ranges.
-    let range = |position: f64, side: usize| {
-        (position.floor() as usize).min(side)..((position.ceil() + 1.0) as usize).min(side)
-    };
-    let columns = range(position[0], size.width);
-    for row in range(position[1], size.height) {
-        for buffered in
-            buffer.get_mut(size.index(columns.start, row)..size.index(columns.end, row)).into_iter().flatten()
-        {
+    // A position on a pixel's centre enters that pixel alone: then the four are one, and it is entered again.
+    let [left, top] = position.map(f64::floor);
+    let [right, low] = position.map(f64::ceil);
+    // A position may lie outside by less than a pixel; NaN fails every comparison.
+    let (last_column, last_row) = ((size.width - 1) as f64, (size.height - 1) as f64);
+    if !(right >= 0.0 && low >= 0.0 && left <= last_column && top <= last_row) {
+        return;
+    }
+    let columns = [left.max(0.0), right.min(last_column)].map(|column| column as usize);
+    for row in [top.max(0.0), low.min(last_row)].map(|row| row as usize) {
+        for column in columns {
+            let Some(buffered) = buffer.get_mut(size.index(column, row)) else { continue };
             *buffered = if depth < *buffered { depth } else { *buffered };
         }
     }

@@ -20,21 +20,22 @@ pub const GRAZING: f64 = 0.05;
 /// mask and where there is no normal. A slice that is shorter than the raster is filled as far as it goes.
 pub fn gradients(size: Size, camera: &Camera, normals: &Normals, mask: &[bool], p: &mut [f32], q: &mut [f32]) {
     let targets = p.iter_mut().zip(q.iter_mut()).zip(mask).take(normals.len().min(size.len()));
-    for (index, ((p, q), &inside)) in targets.enumerate() {
-        let normal = normals.get(index).map(f64::from);
-        [*p, *q] = if inside && normal.iter().all(|value| value.is_finite()) {
-            gradient(size, camera, normal, index).map(|value| value as f32)
-        } else {
-            [f32::NAN; 2]
-        };
+    let normals = normals.x.iter().zip(&normals.y).zip(&normals.z);
+    let of_pixel = |[nx, ny, nz]: [f32; 3], index: usize| {
+        if camera.is_orthographic() {
+            let facing = (-nz).max(GRAZING as f32);
+            return [nx / facing, ny / facing];
+        }
+        gradient(size, camera, [nx, ny, nz].map(f64::from), index).map(|value| value as f32)
+    };
+    for (index, (((p, q), &inside), ((&nx, &ny), &nz))) in targets.zip(normals).enumerate() {
+        let known = inside && nx.is_finite() && ny.is_finite() && nz.is_finite();
+        [*p, *q] = if known { of_pixel([nx, ny, nz], index) } else { [f32::NAN; 2] };
     }
 }
 
+/// Of log depth, before a pinhole camera.
 fn gradient(size: Size, camera: &Camera, [nx, ny, nz]: [f64; 3], index: usize) -> [f64; 2] {
-    if camera.is_orthographic() {
-        let facing = (-nz).max(GRAZING);
-        return [nx / facing, ny / facing];
-    }
     let (column, row) = size.position(index);
     let ray = |right: f64, down: f64| camera.ray(size, [column as f64 + right, row as f64 + down]);
     let [x, y] = ray(0.0, 0.0);

@@ -1,9 +1,9 @@
 //! Where heights are unknown: the mask of one view, its neighbours, the rays of its pixels.
 
 use crate::error::{Error, ErrorKind, Result};
-use crate::shape::cosine::{CosineSolver, fast_width};
+use crate::shape::cosine::CosineSolver;
 use crate::shape::ray_frames::RayFrames;
-use crate::view::{Camera, LANES, Lanes, Mask, Real, Size};
+use crate::view::{Camera, LANES, Mask, Size};
 
 /// Bits of a pixel: inside the mask; the cell of four pixels right of and below it as well; its neighbours inside.
 pub(super) const INSIDE: u8 = 1;
@@ -18,8 +18,8 @@ pub struct HeightDomain {
     pub(super) size: Size,
     /// Left column and top row of the mask's bounding box.
     corner: [usize; 2],
-    /// Of the box; the rows of the rasters over it are `width` long, a length that the cosine transform likes.
-    columns: usize,
+    /// Of the box; the rows of the rasters over it are `width` long, a multiple of [`LANES`].
+    pub(super) columns: usize,
     pub(super) width: usize,
     /// Which pixels are inside, and which of their neighbours: bits of [`INSIDE`] and so on.
     pub(super) near: Vec<u8>,
@@ -46,7 +46,7 @@ impl HeightDomain {
         }
         let (columns, height) = (rightmost - left + 1, bottom - top + 1);
         // Blocks of four must not reach into the next row.
-        let width = fast_width(columns.next_multiple_of(LANES));
+        let width = columns.next_multiple_of(LANES);
         let length = width * height;
         let is_inside =
             |column: usize, row: usize| column < size.width && row < size.height && mask[size.index(column, row)];
@@ -74,33 +74,21 @@ impl HeightDomain {
         self.near.len()
     }
 
-    /// The pixels of the box in turn: their places here and in the view.
-    pub(super) fn places(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
-        self.every(1)
+    /// The rows of the box: where each starts here and in the view.
+    pub(super) fn rows(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
+        let ([left, top], width, view_width) = (self.corner, self.width, self.size.width);
+        (0..self.near.len() / width).map(move |row| (row * width, (top + row) * view_width + left))
     }
 
-    /// The same [`LANES`] at a time: the first of each.
-    pub(super) fn blocks(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
-        self.every(LANES)
-    }
-
-    fn every(&self, step: usize) -> impl Iterator<Item = (usize, usize)> + use<> {
-        let ([left, top], columns, width, view_width) = (self.corner, self.columns, self.width, self.size.width);
-        (0..self.near.len() / width).flat_map(move |row| {
-            let (here, source) = (row * width, (top + row) * view_width + left);
-            (0..columns).step_by(step).map(move |column| (here + column, source + column))
-        })
-    }
-
-    /// Who of a block has a flag.
+    /// Who of a block of [`LANES`] pixels has one of these flags.
     #[inline(always)]
-    pub(super) fn flagged(&self, index: usize, flag: u8) -> Mask {
-        let has = |lane: usize| f32::from(self.near.get(index + lane).map_or(0, |near| near & flag));
-        Lanes::splat(0.0).less(Lanes::from([has(0), has(1), has(2), has(3)]))
+    pub(super) fn flagged(&self, index: usize, flags: u8) -> Mask {
+        Mask::with_bits(self.near.get(index..).and_then(|near| near.first_chunk()).copied().unwrap_or_default(), flags)
     }
 
-    /// Those of [`places`](Self::places) on the mask.
+    /// The pixels on the mask, here and in the view.
     pub(super) fn inside(&self) -> impl Iterator<Item = (usize, usize)> {
-        self.places().filter(|&(index, _)| self.near[index] & INSIDE != 0)
+        let pixels = self.rows().flat_map(|(here, source)| (0..self.columns).map(move |k| (here + k, source + k)));
+        pixels.filter(|&(index, _)| self.near[index] & INSIDE != 0)
     }
 }

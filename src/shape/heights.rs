@@ -38,9 +38,6 @@ const SETTLED: f64 = 1e-4;
 /// A round of conjugate gradients that promises less than this share of the cost is the last one.
 const IDLE: f64 = 1e-5;
 
-/// Costs of pixels that are summed in f32 before the sum goes on in f64: few enough to keep six digits.
-const SUMMANDS: usize = 256;
-
 /// What a surface has to explain; all fields are rasters of the view, NaN where unknown.
 #[derive(Clone, Copy)]
 pub struct HeightProblem<'a> {
@@ -97,6 +94,9 @@ pub struct HeightSolver {
     trial: Vec<f32>,
     anchor: Vec<f32>,
     anchor_weight: Vec<f32>,
+    /// Sums of the weights of all anchors and of all edges.
+    anchored: f64,
+    linked: f64,
     operator: NormalOperator,
     /// Suggested height differences to the right and lower neighbour, and their weights.
     edges: [Edges; 2],
@@ -105,39 +105,46 @@ pub struct HeightSolver {
     direction: Vec<f32>,
     /// The operator's product with the direction, and before there is one the pixels' confidence.
     image: Vec<f32>,
+    /// What the preconditioner works on.
+    spectrum: Vec<f32>,
 }
 
 impl HeightSolver {
     /// A solver whose domains are `domains`. It takes others, too, and allocates again for one that is larger.
     pub fn new<'a>(domains: impl IntoIterator<Item = &'a HeightDomain>) -> Self {
+        let room = |domain: &HeightDomain| padded(domain.len(), domain.width).max(domain.cosine.len());
         Self {
-            room: domains.into_iter().map(|domain| padded(domain.len(), domain.width)).max().unwrap_or(0),
+            room: domains.into_iter().map(room).max().unwrap_or(0),
             z: Vec::new(),
             trial: Vec::new(),
             anchor: Vec::new(),
             anchor_weight: Vec::new(),
+            anchored: 0.0,
+            linked: 0.0,
             operator: NormalOperator::default(),
             edges: [Edges::new(0), Edges::new(0)],
             step: Vec::new(),
             right: Vec::new(),
             direction: Vec::new(),
             image: Vec::new(),
+            spectrum: Vec::new(),
         }
     }
 
-    /// Makes the rasters those of `domain`. What a solve does not write before it reads it, off the mask too, is zero.
+    /// Makes the rasters those of `domain`, with anything in them: a solve writes them before it reads them.
     fn fit(&mut self, domain: &HeightDomain) {
         let (length, room) = (domain.len(), self.room);
-        for raster in [&mut self.z, &mut self.anchor, &mut self.anchor_weight] {
-            clear(raster, length, room);
-        }
-        for Edges { weight, gradient } in &mut self.edges {
-            clear(weight, length, room);
-            clear(gradient, length, room);
-        }
-        for raster in [&mut self.trial, &mut self.step, &mut self.right, &mut self.direction, &mut self.image] {
+        for raster in [&mut self.z, &mut self.trial, &mut self.anchor, &mut self.anchor_weight] {
             fit(raster, length, room);
         }
+        for Edges { weight, gradient } in &mut self.edges {
+            fit(weight, length, room);
+            fit(gradient, length, room);
+        }
+        for raster in [&mut self.step, &mut self.right, &mut self.direction, &mut self.image] {
+            fit(raster, length, room);
+        }
+        fit(&mut self.spectrum, domain.cosine.len(), room);
         self.operator.fit(domain.width, length, room);
     }
 
@@ -192,100 +199,142 @@ impl HeightSolver {
         HeightReport { first_cost: share * report.first_cost, cost: share * report.cost, ..report }
     }
 
-    /// kappa of a pixel: less where its colours fix its normal.
-    fn smoothness(&self, index: usize) -> f32 {
-        SMOOTHNESS * INDECISION / (INDECISION + self.image[index])
-    }
-
     fn load(&mut self, domain: &HeightDomain, problem: HeightProblem<'_>, z: &[f32]) {
-        for (index, source) in domain.places() {
-            if domain.near[index] & INSIDE != 0 {
-                self.z[index] = z[source];
-                (self.anchor[index], self.anchor_weight[index]) =
-                    problem.anchors.map_or((0.0, 0.0), |anchors| anchors.get(source));
+        let zero = Lanes::splat(0.0);
+        let mut anchored = 0.0;
+        for (here, source) in domain.rows() {
+            let mut row = zero;
+            for column in (0..domain.columns).step_by(LANES) {
+                let (index, source) = (here + column, (source + column) as isize);
+                let inside = domain.flagged(index, INSIDE);
+                inside.select(Lanes::load(z, source), zero).store(&mut self.z[index..]);
+                let (height, weight) = problem.anchors.map_or((zero, zero), |anchors| anchors.four(source, inside));
+                height.store(&mut self.anchor[index..]);
+                weight.store(&mut self.anchor_weight[index..]);
+                row = row + weight;
             }
+            anchored += f64::from(row.sum());
         }
+        self.anchored = anchored;
     }
 
     /// Edges between neighbours with suggested slopes (trapezoidal rule), as firm as the less firm of the two.
     fn load_edges(&mut self, domain: &HeightDomain, terms: &SlopeTerms<'_>) {
-        let slopes = terms.problem.slopes;
-        for (index, source) in domain.blocks() {
-            let suggested = slopes.map(|slopes| Lanes::load(slopes, source as isize));
-            let wanted = domain.flagged(index, INSIDE) & suggested[0].finite() & suggested[1].finite();
-            let confidence = if wanted.any() {
-                terms.confidence(&terms.frames(&domain.frames, index), source, suggested, wanted)
-            } else {
-                Lanes::splat(0.0)
-            };
-            confidence.store(&mut self.image[index..]);
-        }
-        let axes = [(1, 1, LEFT, RIGHT), (domain.width, domain.size.width, ABOVE, BELOW)];
-        for (axis, (stride, view_stride, before, after)) in axes.into_iter().enumerate() {
-            for (index, source) in domain.places() {
-                let near = domain.near[index];
-                let joined = near & after != 0;
-                let weight = if joined { self.image[index].min(self.image[index + stride]) } else { 0.0 };
-                self.operator.bend[axis][index] =
-                    if joined && near & before != 0 { self.smoothness(index) } else { 0.0 };
-                self.edges[axis].weight[index] = weight;
-                self.edges[axis].gradient[index] =
-                    if weight > 0.0 { 0.5 * (slopes[axis][source] + slopes[axis][source + view_stride]) } else { 0.0 };
+        let (zero, slopes) = (Lanes::splat(0.0), terms.problem.slopes);
+        for (here, source) in domain.rows() {
+            for column in (0..domain.columns).step_by(LANES) {
+                let (index, source) = (here + column, source + column);
+                let suggested = slopes.map(|slopes| Lanes::load(slopes, source as isize));
+                let wanted = domain.flagged(index, INSIDE) & suggested[0].finite() & suggested[1].finite();
+                let confidence = if wanted.any() {
+                    terms.confidence(&terms.frames(&domain.frames, index), source, suggested, wanted)
+                } else {
+                    zero
+                };
+                confidence.store(&mut self.image[index..]);
             }
         }
+        self.linked = 0.0;
+        for (axis, strides) in [[1, 1], [domain.width, domain.size.width]].into_iter().enumerate() {
+            self.linked += self.load_axis(domain, axis, strides.map(|stride| stride as isize), slopes[axis]);
+        }
+    }
+
+    /// Edges and bends along one axis, whose neighbours are so far apart here and in the view; the sum of the edges' weights.
+    fn load_axis(
+        &mut self,
+        domain: &HeightDomain,
+        axis: usize,
+        [stride, view_stride]: [isize; 2],
+        slopes: &[f32],
+    ) -> f64 {
+        let (zero, half) = (Lanes::splat(0.0), Lanes::splat(0.5));
+        let (smoothness, indecision) = (Lanes::splat(SMOOTHNESS * INDECISION), Lanes::splat(INDECISION));
+        let [before, after] = [[LEFT, RIGHT], [ABOVE, BELOW]][axis];
+        let mut linked = 0.0;
+        for (here, source) in domain.rows() {
+            let mut row = zero;
+            for column in (0..domain.columns).step_by(LANES) {
+                let (index, source) = (here + column, (source + column) as isize);
+                let (place, joined) = (index as isize, domain.flagged(index, after));
+                let confidence = Lanes::load(&self.image, place);
+                let weight = joined.select(confidence.min(Lanes::load(&self.image, place + stride)), zero);
+                let gradient = half * (Lanes::load(slopes, source) + Lanes::load(slopes, source + view_stride));
+                weight.store(&mut self.edges[axis].weight[index..]);
+                zero.less(weight).select(gradient, zero).store(&mut self.edges[axis].gradient[index..]);
+                // kappa: less where a pixel's colours fix its normal.
+                let bend =
+                    (joined & domain.flagged(index, before)).select(smoothness / (indecision + confidence), zero);
+                bend.store(&mut self.operator.bend[axis][index..]);
+                row = row + weight;
+            }
+            linked += f64::from(row.sum());
+        }
+        linked
     }
 
     /// Cost of the trial heights.
     fn cost(&self, domain: &HeightDomain, terms: &SlopeTerms<'_>) -> f64 {
-        let z = &self.trial;
-        let colours = domain.blocks().map(|(index, source)| {
-            let cells = domain.flagged(index, CELL);
-            if !cells.any() {
-                return 0.0;
+        let (z, mut total) = (&self.trial, 0.0);
+        for (here, source) in domain.rows() {
+            let mut row = Lanes::splat(0.0);
+            for index in (here..here + domain.columns).step_by(LANES) {
+                if domain.flagged(index, u8::MAX).any() {
+                    row = row + self.resistance(z, index as isize, domain.width);
+                }
+                let cells = domain.flagged(index, CELL);
+                if cells.any() {
+                    let frames = terms.frames(&domain.frames, index);
+                    let slopes = cell_slopes(z, index, domain.width);
+                    row = row + terms.cost(&frames, terms.cell_log(source + index - here), slopes, cells);
+                }
             }
-            let frames = terms.frames(&domain.frames, index);
-            let slopes = cell_slopes(z, index, domain.width);
-            f64::from(terms.cost(&frames, terms.cell_log(source), slopes, cells).sum())
-        });
-        colours.sum::<f64>() + self.resistance(z, domain.width)
+            total += f64::from(row.sum());
+        }
+        total
     }
 
-    /// Cost of everything but the colours: anchors, edges and bends.
-    fn resistance(&self, z: &[f32], width: usize) -> f64 {
-        let anchors = weighted_squares(&self.anchor_weight, |at| Lanes::load(z, at) - Lanes::load(&self.anchor, at));
-        let strides = [1, width as isize];
-        let lines = strides.into_iter().zip(&self.edges).zip(&self.operator.bend).map(|((stride, edges), bend)| {
-            let fall = |at: isize| Lanes::load(z, at + stride) - Lanes::load(z, at);
-            weighted_squares(&edges.weight, |at| fall(at) - Lanes::load(&edges.gradient, at))
-                + weighted_squares(bend, |at| fall(at) - fall(at - stride))
-        });
-        anchors + lines.sum::<f64>()
+    /// Cost of everything but the colours in a block: anchors, edges and bends.
+    #[inline(never)]
+    fn resistance(&self, z: &[f32], at: isize, width: usize) -> Lanes {
+        let here = Lanes::load(z, at);
+        let mut cost = weighted_square(&self.anchor_weight, at, here - Lanes::load(&self.anchor, at));
+        for (axis, stride) in [1, width as isize].into_iter().enumerate() {
+            let (fall, before) = (Lanes::load(z, at + stride) - here, here - Lanes::load(z, at - stride));
+            let edges = &self.edges[axis];
+            cost = cost + weighted_square(&edges.weight, at, fall - Lanes::load(&edges.gradient, at));
+            cost = cost + weighted_square(&self.operator.bend[axis], at, fall - before);
+        }
+        cost
     }
 
     /// Fills the stiffness and the right-hand side; returns the cost of the heights and the mean stiffness.
     fn linearise(&mut self, domain: &HeightDomain, terms: &SlopeTerms<'_>) -> (f64, f64) {
-        let (mut costs, mut stiffnesses) = (0.0_f64, 0.0_f64);
-        for (index, source) in domain.blocks() {
-            let cells = domain.flagged(index, CELL);
-            if cells.any() {
-                let slopes = cell_slopes(&self.z, index, domain.width);
-                let frames = terms.frames(&domain.frames, index);
-                let shading = terms.linearise(&frames, terms.cell_log(source), slopes, cells);
-                costs += f64::from(shading.cost.sum());
-                let [pp, _, qq] = shading.matrix;
-                stiffnesses += 0.5 * f64::from((pp + qq).sum());
-                self.operator.set_cells(index, &shading);
+        let (mut cost, mut stiffness) = (0.0_f64, 0.0_f64);
+        for (here, source) in domain.rows() {
+            let (mut row_cost, mut row_stiffness) = (Lanes::splat(0.0), Lanes::splat(0.0));
+            for index in (here..here + domain.columns).step_by(LANES) {
+                if domain.flagged(index, u8::MAX).any() {
+                    row_cost = row_cost + self.resistance(&self.z, index as isize, domain.width);
+                }
+                let cells = domain.flagged(index, CELL);
+                if cells.any() {
+                    let slopes = cell_slopes(&self.z, index, domain.width);
+                    let frames = terms.frames(&domain.frames, index);
+                    let shading = terms.linearise(&frames, terms.cell_log(source + index - here), slopes, cells);
+                    row_cost = row_cost + shading.cost;
+                    row_stiffness = row_stiffness + shading.matrix[0] + shading.matrix[2];
+                    self.operator.set_cells(index, &shading);
+                }
             }
+            cost += f64::from(row_cost.sum());
+            stiffness += 0.5 * f64::from(row_stiffness.sum());
         }
-        let linked: f64 = self.edges.iter().flat_map(|edges| &edges.weight).map(|&weight| f64::from(weight)).sum();
         for ((off, z), anchor) in self.direction.iter_mut().zip(&self.z).zip(&self.anchor) {
             *off = z - anchor;
         }
         self.operator.resist(&self.edges, &self.z, &self.anchor_weight, &self.direction, &mut self.right);
-        (
-            costs + self.resistance(&self.z, domain.width),
-            ((stiffnesses + 0.5 * linked) / domain.pixels as f64).max(LEAST_STIFFNESS),
-        )
+        (cost, ((stiffness + 0.5 * self.linked) / domain.pixels as f64).max(LEAST_STIFFNESS))
     }
 
     /// step = solution of the linearised system by preconditioned conjugate gradients. Returns by how much the
@@ -298,23 +347,18 @@ impl HeightSolver {
         effort: Effort,
         cost: f64,
     ) -> f64 {
-        let anchors: f64 = self.anchor_weight.iter().map(|&weight| f64::from(weight)).sum();
-        domain.cosine.set(mean_stiffness + f64::from(damping), anchors / domain.pixels as f64);
-        self.operator.set_links(
-            &self.edges,
-            |index| [RIGHT, BELOW].map(|flag| domain.near[index] & flag != 0),
-            damping,
-        );
+        domain.cosine.set(mean_stiffness + f64::from(damping), self.anchored / domain.pixels as f64);
+        self.operator.set_links(&self.edges, &domain.near, [RIGHT, BELOW], damping);
         self.step.fill(0.0);
-        self.direction.copy_from_slice(&self.right);
-        domain.cosine.solve(&mut self.direction);
-        self.restrict_direction(domain);
+        domain.cosine.solve(&self.right, &mut self.spectrum, &mut self.image);
+        self.direction.fill(0.0);
+        self.direct(domain, 0.0);
         // `trial` holds the residual: it is written anew after the step.
         self.trial.copy_from_slice(&self.right);
         let mut rho = dot(&self.trial, &self.direction);
         let target = effort.tolerance * effort.tolerance * rho;
         let mut promise = 0.0;
-        for _ in 0..effort.rounds {
+        for round in 1..=effort.rounds {
             self.operator.apply(&self.anchor_weight, &self.direction, &mut self.image);
             let curvature = dot(&self.direction, &self.image);
             let length = (rho / curvature) as f32;
@@ -324,31 +368,28 @@ impl HeightSolver {
             add_scaled(&mut self.step, length, &self.direction);
             let gain = rho * f64::from(length);
             promise += gain;
-            if gain < IDLE * cost {
+            if gain < IDLE * cost || round == effort.rounds {
                 break;
             }
             add_scaled(&mut self.trial, -length, &self.image);
-            self.image.copy_from_slice(&self.trial);
-            domain.cosine.solve(&mut self.image);
+            domain.cosine.solve(&self.trial, &mut self.spectrum, &mut self.image);
             let next = dot(&self.trial, &self.image);
             if next <= target {
                 break;
             }
-            let turn = (next / rho) as f32;
+            self.direct(domain, (next / rho) as f32);
             rho = next;
-            for (direction, image) in self.direction.iter_mut().zip(&self.image) {
-                *direction = image + turn * *direction;
-            }
-            self.restrict_direction(domain);
         }
         promise
     }
 
-    fn restrict_direction(&mut self, domain: &HeightDomain) {
-        for (direction, &near) in self.direction.iter_mut().zip(&domain.near) {
-            if near == 0 {
-                *direction = 0.0;
-            }
+    /// direction = image + turn * direction on the mask.
+    fn direct(&mut self, domain: &HeightDomain, turn: f32) {
+        let (turn, zero) = (Lanes::splat(turn), Lanes::splat(0.0));
+        for index in (0..domain.near.len()).step_by(LANES) {
+            let [direction, image] = [&self.direction, &self.image].map(|raster| Lanes::load(raster, index as isize));
+            let inside = domain.flagged(index, u8::MAX);
+            inside.select(image + turn * direction, zero).store(&mut self.direction[index..]);
         }
     }
 }
@@ -367,20 +408,11 @@ pub(super) fn clear(raster: &mut Vec<f32>, length: usize, room: usize) {
     raster.fill(0.0);
 }
 
-/// Sum of weight times square over all pixels; `off` may be anything where there is no weight.
+/// Weight times square; `off` may be anything where there is no weight.
 #[inline(always)]
-fn weighted_squares(weight: &[f32], off: impl Fn(isize) -> Lanes) -> f64 {
-    let zero = Lanes::splat(0.0);
-    let mut total = 0.0;
-    for start in (0..weight.len()).step_by(SUMMANDS) {
-        let mut sum = zero;
-        for at in (start..weight.len().min(start + SUMMANDS)).step_by(LANES) {
-            let (weight, off) = (Lanes::load(weight, at as isize), off(at as isize));
-            sum = sum + zero.less(weight).select(weight * off * off, zero);
-        }
-        total += f64::from(sum.sum());
-    }
-    total
+fn weighted_square(weight: &[f32], at: isize, off: Lanes) -> Lanes {
+    let (weight, zero) = (Lanes::load(weight, at), Lanes::splat(0.0));
+    zero.less(weight).select(weight * off * off, zero)
 }
 
 /// p and q in the middle of the cells right of and below some pixels.

@@ -3,6 +3,7 @@
 mod components;
 mod cosine;
 mod exposure;
+mod fourier;
 mod gradients;
 mod height_domain;
 mod heights;

@@ -52,13 +52,13 @@ impl NormalOperator {
         }
     }
 
-    /// Takes over the edges' weights, and a damping between all neighbours inside: `joined` tells of a pixel whether it
-    /// has one to the right and one below.
-    pub fn set_links(&mut self, edges: &[Edges; 2], joined: impl Fn(usize) -> [bool; 2], damping: f32) {
-        let [right, below] = &mut self.link;
-        for (index, (right, below)) in right.iter_mut().zip(below).enumerate() {
-            let damped = joined(index).map(|joined| if joined { damping } else { 0.0 });
-            (*right, *below) = (edges[0].weight[index] + damped[0], edges[1].weight[index] + damped[1]);
+    /// Takes over the edges' weights, and a damping between all neighbours inside: a pixel of which `near` has the first of
+    /// the `flags` has one to the right, with the second one below.
+    pub fn set_links(&mut self, edges: &[Edges; 2], near: &[u8], flags: [u8; 2], damping: f32) {
+        for ((link, edges), flag) in self.link.iter_mut().zip(edges).zip(flags) {
+            for ((link, weight), near) in link.iter_mut().zip(&edges.weight).zip(near) {
+                *link = weight + if near & flag != 0 { damping } else { 0.0 };
+            }
         }
     }
 
@@ -185,9 +185,11 @@ mod tests {
         let damping = 0.3;
         let joined = |index: usize| {
             let (column, row) = (index % width, index / width);
-            [is_inside(column + 1, row), is_inside(column, row + 1)].map(|next| inside[index] && next)
+            let next =
+                [is_inside(column + 1, row), is_inside(column, row + 1)].map(|next| u8::from(inside[index] && next));
+            next[0] + 2 * next[1]
         };
-        operator.set_links(&edges, joined, damping);
+        operator.set_links(&edges, &(0..length).map(joined).collect::<Vec<u8>>(), [1, 2], damping);
         (operator, inside, anchors, f64::from(damping), edges)
     }
 

@@ -11,7 +11,8 @@
 //! Limits: what no edge and no anchor touches is not determined and keeps whatever it holds; each component without
 //! anchors is determined up to a constant. Pixels are f32, sums f64: relative tolerances below 1e-6 are not reached.
 
-use super::cosine::{CosineSolver, fast_width};
+use super::cosine::CosineSolver;
+use crate::view::LANES;
 
 /// Why a solve ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -65,14 +66,16 @@ pub struct Poisson {
     direction: Vec<f32>,
     /// Preconditioned residual, then the system applied to the direction: never needed at once.
     work: Vec<f32>,
+    spectrum: Vec<f32>,
     flux: Flux,
 }
 
 impl Poisson {
     /// A system without edges or anchors for a raster of at least `columns` x `rows`; it may be wider.
     pub fn new(columns: usize, rows: usize) -> Self {
-        let (width, height) = (fast_width(columns), rows);
+        let (width, height) = (columns.next_multiple_of(LANES), rows);
         let length = width * height;
+        let solver = CosineSolver::new(width, height);
         Self {
             width,
             right: Edges::new(length),
@@ -80,7 +83,8 @@ impl Poisson {
             anchor_weight: vec![0.0; length],
             anchor: vec![0.0; length],
             z: vec![0.0; length],
-            solver: CosineSolver::new(width, height),
+            spectrum: vec![0.0; solver.len()],
+            solver,
             residual: vec![0.0; length],
             direction: vec![0.0; length],
             work: vec![0.0; length],
@@ -168,8 +172,7 @@ impl Poisson {
     /// work = preconditioned residual; returns its product with the residual. Off the domain the residual is zero and
     /// no edge reads a height, so that extension and restriction need no code.
     fn precondition_residual(&mut self) -> f64 {
-        self.work.copy_from_slice(&self.residual);
-        self.solver.solve(&mut self.work);
+        self.solver.solve(&self.residual, &mut self.spectrum, &mut self.work);
         dot(&self.work, &self.residual)
     }
 }
@@ -242,11 +245,11 @@ pub(super) fn dot(a: &[f32], b: &[f32]) -> f64 {
 }
 
 /// Independent partial sums, so that the compiler may use vector registers.
-const LANES: usize = 8;
+const SUMS: usize = 8;
 
 fn lanes(a: &[f32], b: &[f32], term: impl Fn(f32, f32) -> f64) -> f64 {
-    let mut sums = [0.0; LANES];
-    let (a, b) = (a.chunks_exact(LANES), b.chunks_exact(LANES));
+    let mut sums = [0.0; SUMS];
+    let (a, b) = (a.chunks_exact(SUMS), b.chunks_exact(SUMS));
     let rest: f64 = a.remainder().iter().zip(b.remainder()).map(|(&a, &b)| term(a, b)).sum();
     for (a, b) in a.zip(b) {
         for ((sum, &a), &b) in sums.iter_mut().zip(a).zip(b) {

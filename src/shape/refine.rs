@@ -114,7 +114,7 @@ impl Refiner {
         let [p, q] = &bench.slopes;
         // It is asked for once, so the integrator's memory is not kept.
         Integrator::new(view.size, &view.mask)?.integrate(p, q, Some(anchors), &options, depth)?;
-        depth.iter_mut().for_each(|depth| *depth = from_height(view, *depth));
+        from_heights(view, depth);
         Ok(())
     }
 
@@ -137,7 +137,7 @@ impl Refiner {
         let shaded = (f64::from(unshaded) * doubt).min(ANCHOR[1]) as f32;
         self.load_anchors(bench, view, |has_colour| if has_colour { shaded } else { unshaded });
         find_slopes(view, normals, &mut bench.slopes);
-        depth.iter_mut().for_each(|depth| *depth = to_height(view, *depth));
+        to_heights(view, depth);
         let (scales, effort) = if self.continues { (&COLOUR_SCALES[2..], LATER) } else { (&COLOUR_SCALES[..], FIRST) };
         self.continues = true;
         let anchors = Anchors { height: &bench.spare, weight: AnchorWeight::PerPixel(&bench.weight) };
@@ -154,7 +154,7 @@ impl Refiner {
             };
             bench.heights.solve(&mut self.domain, height_problem, depth);
         }
-        depth.iter_mut().for_each(|depth| *depth = from_height(view, *depth));
+        from_heights(view, depth);
         normals::of_depth_into(view.size, view.camera, depth, normals);
     }
 
@@ -180,19 +180,19 @@ impl Refiner {
     /// Bilinear log colours at the positions of the depth pixels; NaN where a neighbour is off the mask.
     fn sample_colours(&mut self, problem: RefinementProblem<'_>) {
         let [columns, rows] = problem.position;
-        for index in 0..columns.len() {
-            for channel in 0..3 {
-                self.log[channel][index] =
-                    problem.image.size.bilinear_of_known(&problem.image.log[channel], columns[index], rows[index]);
-            }
+        let channels = problem.image.log.each_ref().map(Vec::as_slice);
+        let [red, green, blue] = &mut self.log;
+        let pixels = red.iter_mut().zip(green).zip(blue).zip(columns.iter().zip(rows));
+        for (((red, green), blue), (&column, &row)) in pixels {
+            [*red, *green, *blue] = problem.image.size.each_bilinear_of_known(channels, column, row);
         }
     }
 
     /// Anchors at the measured depth, in the integrator's coordinate (log depth for a pinhole camera).
     fn load_anchors(&self, bench: &mut Workbench, view: &DepthView, weight: impl Fn(bool) -> f32) {
-        let targets = bench.spare.iter_mut().zip(&mut bench.weight).zip(view.depth()).zip(&self.log[0]);
-        for (((anchor, anchor_weight), &depth), log) in targets {
-            *anchor = to_height(view, depth);
+        bench.spare.copy_from_slice(view.depth());
+        to_heights(view, &mut bench.spare);
+        for (anchor_weight, log) in bench.weight.iter_mut().zip(&self.log[0]) {
             *anchor_weight = weight(!log.is_nan());
         }
     }
@@ -225,9 +225,10 @@ fn firmness(shading_error: f64, view: &DepthView) -> f32 {
         let (column, row) = view.size.position(index);
         [(column + reach < width, 1), (row + reach < height, width)]
     };
-    let bend = |index: usize, step: usize| {
-        noise::bend(std::array::from_fn(|k| f64::from(to_height(view, view.depth()[index + k * step])))) as f32
-    };
+    let mut heights = view.depth().to_vec();
+    to_heights(view, &mut heights);
+    let bend =
+        |index: usize, step: usize| noise::bend(std::array::from_fn(|k| f64::from(heights[index + k * step]))) as f32;
     let bends = (0..view.size.len())
         .flat_map(|index| lines(index).into_iter().filter(|(fits, _)| *fits).map(move |(_, step)| bend(index, step)));
     balance(shading_error, noise::of_bends(bends, 2 * view.size.len()))
@@ -240,17 +241,18 @@ fn balance(shading_error: f64, depth_noise: f64) -> f32 {
 }
 
 /// The coordinate of the solvers: depth in pixels, or f log Z, whose slopes are in pixels of depth per pixel, too.
-fn to_height(view: &DepthView, depth: f32) -> f32 {
-    match view.camera.focal_length() {
-        None => depth,
-        Some(focal_length) => (focal_length * f64::from(depth).ln()) as f32,
+fn to_heights(view: &DepthView, field: &mut [f32]) {
+    let Some(focal_length) = view.camera.focal_length() else { return };
+    for value in field {
+        *value = (focal_length * f64::from(*value).ln()) as f32;
     }
 }
 
-fn from_height(view: &DepthView, height: f32) -> f32 {
-    match view.camera.focal_length() {
-        None => height,
-        Some(focal_length) => (f64::from(height) / focal_length).exp() as f32,
+/// Back to depth.
+fn from_heights(view: &DepthView, field: &mut [f32]) {
+    let Some(focal_length) = view.camera.focal_length() else { return };
+    for value in field {
+        *value = (f64::from(*value) / focal_length).exp() as f32;
     }
 }
 

@@ -110,9 +110,9 @@ impl ShadingSolver {
             let pixels = Pixels::new(problem, index, weights, &polynomials);
             let missing = Lanes::splat(f32::NAN);
             let mut solved = [missing; 3];
-            if pixels.count() > 0 {
-                let (start, known) = self.start(&pixels, load(normals, index));
-                solved = known.select3(normalise(pixels.descend(start, known, &mut counts)), solved);
+            if (pixels.coloured | pixels.drawn).any() {
+                let (start, here, known) = self.start(&pixels, load(normals, index));
+                solved = known.select3(normalise(pixels.descend(start, here, known, &mut counts)), solved);
             }
             solved[0].store(&mut normals.x[index..]);
             solved[1].store(&mut normals.y[index..]);
@@ -122,11 +122,13 @@ impl ShadingSolver {
         counts
     }
 
-    /// The cheapest of the present normal, the prior and, where there is no present one, the hemisphere; and who has one.
-    fn start(&self, pixels: &Pixels<'_>, present: [Lanes; 3]) -> ([Lanes; 3], Mask) {
+    /// The cheapest of the present normal, the prior and, where there is no present one, the hemisphere; the cost around
+    /// it; and who has one.
+    fn start(&self, pixels: &Pixels<'_>, present: [Lanes; 3]) -> ([Lanes; 3], Linear, Mask) {
         let (zero, far) = (Lanes::splat(0.0), Lanes::splat(f32::INFINITY));
         let facing = present[2].less(zero);
-        let (mut best, mut least) = (present, facing.select(pixels.cost(present), far));
+        let here = pixels.linearise(present);
+        let (mut best, mut least) = (present, facing.select(here.cost, far));
         let lost = !facing & pixels.coloured;
         if lost.any() {
             for (&direction, &shade) in self.directions.iter().zip(&self.shades) {
@@ -140,7 +142,9 @@ impl ShadingSolver {
         let cost = pixels.cost(pixels.prior);
         let better = drawn & cost.less(least);
         (best, least) = (better.select3(pixels.prior, best), better.select(cost, least));
-        (best, (pixels.coloured | drawn) & least.less(far))
+        let known = (pixels.coloured | drawn) & least.less(far);
+        let here = if (lost | better).any() { pixels.linearise(best) } else { here };
+        (best, here, known)
     }
 }
 
@@ -187,11 +191,6 @@ impl<'a> Pixels<'a> {
         }
     }
 
-    /// Of how many something is known.
-    fn count(&self) -> usize {
-        (self.coloured | self.drawn).count()
-    }
-
     fn brightness(&self, shade: [Lanes; 3]) -> Lanes {
         self.colour_weight * squared_distance(shade, self.log)
     }
@@ -220,11 +219,10 @@ impl<'a> Pixels<'a> {
         let mut sums = Linear { cost: zero, gradient: [zero; 3], matrix: [zero; 6] };
         let unit = dot(normal, normal) - one;
         sums.add([two * normal[0], two * normal[1], two * normal[2]], unit, self.unit_weight);
-        let [red, green, blue] = self.polynomials;
-        let residuals = self.residuals(normal);
-        sums.add(red.gradient(normal), residuals[0], self.colour_weight);
-        sums.add(green.gradient(normal), residuals[1], self.colour_weight);
-        sums.add(blue.gradient(normal), residuals[2], self.colour_weight);
+        for (polynomial, log) in self.polynomials.iter().zip(self.log) {
+            let (shade, slope) = polynomial.expand(normal);
+            sums.add(slope, shade - log, self.colour_weight);
+        }
         // The weight of Geman and McClure is the square of what their cost has once.
         let squared = squared_distance(normal, self.prior);
         let trust = one / (one + squared * self.sharpness);
@@ -240,10 +238,10 @@ impl<'a> Pixels<'a> {
 
     /// Damped Gauss-Newton; a step that turns the normal away from the camera counts as no descent. All go on until the
     /// last has arrived, but only those that have not move.
-    fn descend(&self, start: [Lanes; 3], known: Mask, counts: &mut Terminations) -> [Lanes; 3] {
+    fn descend(&self, start: [Lanes; 3], mut here: Linear, known: Mask, counts: &mut Terminations) -> [Lanes; 3] {
         let (zero, tenth, ten) = (Lanes::splat(0.0), Lanes::splat(0.1), Lanes::splat(10.0));
         let shortest = Lanes::splat(SMALLEST_STEP * SMALLEST_STEP);
-        let (mut normal, mut here) = (start, self.linearise(start));
+        let mut normal = start;
         let mut damping = Lanes::splat(FIRST_DAMPING);
         let mut moving = known;
         for _ in 0..MOST_STEPS {

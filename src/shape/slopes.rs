@@ -3,6 +3,8 @@
 //!
 //! N = a + p b + q c points at the camera; n = N / |N|; dn/dp = (b - n (n . b)) / |N|, and so for q.
 
+use std::borrow::Cow;
+
 use crate::light::Polynomial;
 use crate::shape::heights::HeightProblem;
 use crate::shape::ray_frames::{PARALLEL, RayFrames};
@@ -40,8 +42,11 @@ impl<'a> SlopeTerms<'a> {
 
     /// (a, b, c) in the light's frame.
     #[inline(always)]
-    pub(super) fn frames(&self, frames: &RayFrames, index: usize) -> Frames {
-        if matches!(frames, RayFrames::Parallel) { self.frame } else { self.gather(frames, index) }
+    pub(super) fn frames(&self, frames: &RayFrames, index: usize) -> Cow<'_, Frames> {
+        match frames {
+            RayFrames::Parallel => Cow::Borrowed(&self.frame),
+            _ => Cow::Owned(self.gather(frames, index)),
+        }
     }
 
     #[inline(never)]
@@ -53,12 +58,13 @@ impl<'a> SlopeTerms<'a> {
     #[inline(always)]
     pub(super) fn cell_log(&self, source: usize) -> [Lanes; 3] {
         let (here, below) = (source as isize, (source + self.view_width) as isize);
-        let mean = |log: &[f32]| {
-            let above = Lanes::load(log, here) + Lanes::load(log, here + 1);
-            Lanes::splat(0.25) * (above + Lanes::load(log, below) + Lanes::load(log, below + 1))
-        };
         let [red, green, blue] = self.problem.log;
-        [mean(red), mean(green), mean(blue)]
+        let [mut a, mut b, mut c] = [red, green, blue].map(|log| Lanes::load(log, here));
+        for place in [here + 1, below, below + 1] {
+            (a, b, c) = (a + Lanes::load(red, place), b + Lanes::load(green, place), c + Lanes::load(blue, place));
+        }
+        let quarter = Lanes::splat(0.25);
+        [quarter * a, quarter * b, quarter * c]
     }
 
     fn pixel_log(&self, source: usize) -> [Lanes; 3] {
@@ -94,23 +100,23 @@ impl<'a> SlopeTerms<'a> {
     #[inline(never)]
     fn linearise_turn(&self, turn: &Turn, log: [Lanes; 3], wanted: Mask) -> Linear {
         let zero = Lanes::splat(0.0);
-        let residuals = self.residuals(turn.normal, log);
-        let squared = dot(residuals, residuals);
+        let (mut squared, mut pp, mut pq, mut qq, mut by_p, mut by_q) = (zero, zero, zero, zero, zero, zero);
+        for (polynomial, log) in self.polynomials.iter().zip(log) {
+            let (shade, slope) = polynomial.expand(turn.normal);
+            let residual = shade - log;
+            let (p, q) = (dot(slope, turn.along[0]), dot(slope, turn.along[1]));
+            squared = squared + residual * residual;
+            (pp, pq, qq) = (pp + p * p, pq + p * q, qq + q * q);
+            (by_p, by_q) = (by_p + p * residual, by_q + q * residual);
+        }
+        // The weight of Geman and McClure is the square of what their cost has once.
         let trust = self.trust(squared);
         let weight = trust * trust;
-        let (mut pp, mut pq, mut qq, mut by_p, mut by_q) = (zero, zero, zero, zero, zero);
-        for (polynomial, residual) in self.polynomials.iter().zip(residuals) {
-            let slope = polynomial.gradient(turn.normal);
-            let (p, q) = (dot(slope, turn.along[0]), dot(slope, turn.along[1]));
-            let (weighted_p, weighted_q) = (weight * p, weight * q);
-            (pp, pq, qq) = (pp + weighted_p * p, pq + weighted_p * q, qq + weighted_q * q);
-            (by_p, by_q) = (by_p + weighted_p * residual, by_q + weighted_q * residual);
-        }
         let known = wanted & squared.finite();
         Linear {
             cost: known.select(squared * trust, zero),
-            matrix: known.select3([pp, pq, qq], [zero; 3]),
-            gradient: [known.select(by_p, zero), known.select(by_q, zero)],
+            matrix: known.select3([weight * pp, weight * pq, weight * qq], [zero; 3]),
+            gradient: [known.select(weight * by_p, zero), known.select(weight * by_q, zero)],
         }
     }
 

@@ -22,7 +22,7 @@ use super::components::Components;
 use super::poisson::{Edges, Poisson, Solved, Termination};
 use crate::error::{Error, ErrorKind, Result};
 use crate::options::positive;
-use crate::view::{Size, quantile};
+use crate::view::{Lanes, Mask, Real, Size, quantile};
 
 /// Gradients beyond this (height per pixel) count as unknown: beside heights of 1e6 an f32 has no digits left for a
 /// shape.
@@ -114,6 +114,19 @@ impl Anchors<'_> {
         };
         let height = self.height[index];
         if height.is_finite() && weight.is_finite() && weight > 0.0 { (height, weight) } else { (0.0, 0.0) }
+    }
+
+    /// The same of those of four pixels that are `wanted`.
+    #[inline(always)]
+    pub(super) fn four(&self, start: isize, wanted: Mask) -> (Lanes, Lanes) {
+        let zero = Lanes::splat(0.0);
+        let weight = match self.weight {
+            AnchorWeight::Uniform(weight) => Lanes::splat(weight),
+            AnchorWeight::PerPixel(weights) => Lanes::load(weights, start),
+        };
+        let height = Lanes::load(self.height, start);
+        let holds = wanted & height.finite() & weight.finite() & zero.less(weight);
+        (holds.select(height, zero), holds.select(weight, zero))
     }
 }
 

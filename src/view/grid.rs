@@ -76,28 +76,35 @@ impl Size {
     /// Bilinear value of `field` at a continuous position. NaN neighbours that carry weight make the value NaN.
     #[must_use]
     pub fn bilinear(self, field: &[f32], column: f32, row: f32) -> f32 {
+        let [value] = self.each_bilinear([field], column, row);
+        value
+    }
+
+    /// [`bilinear`](Self::bilinear) of several fields.
+    #[must_use]
+    pub fn each_bilinear<const N: usize>(self, fields: [&[f32]; N], column: f32, row: f32) -> [f32; N] {
         // A corner without weight must not spoil the value: NaN times zero is NaN.
-        let Some(corners) = self.corners(column, row) else { return f32::NAN };
-        let part = |(pixel, weight): (usize, f32)| if weight > 0.0 { weight * field[pixel] } else { 0.0 };
-        part(corners[0]) + part(corners[1]) + part(corners[2]) + part(corners[3])
+        let Some(corners) = self.corners(column, row) else { return [f32::NAN; N] };
+        fields.map(|field| weigh(field, &corners))
     }
 
     /// As [`bilinear`](Self::bilinear), from those neighbours that have a value: colours of an object's rim.
     #[must_use]
     pub fn bilinear_of_known(self, field: &[f32], column: f32, row: f32) -> f32 {
-        let Some(corners) = self.corners(column, row) else { return f32::NAN };
-        let (mut sum, mut weights) = (0.0, 0.0);
-        for (pixel, weight) in corners {
-            if !field[pixel].is_nan() {
-                sum += weight * field[pixel];
-                weights += weight;
-            }
-        }
-        if weights > 0.0 { sum / weights } else { f32::NAN }
+        let [value] = self.each_bilinear_of_known([field], column, row);
+        value
+    }
+
+    /// [`bilinear_of_known`](Self::bilinear_of_known) of several fields.
+    #[must_use]
+    pub fn each_bilinear_of_known<const N: usize>(self, fields: [&[f32]; N], column: f32, row: f32) -> [f32; N] {
+        let Some(corners) = self.corners(column, row) else { return [f32::NAN; N] };
+        fields.map(|field| weigh_known(field, &corners))
     }
 
     /// The four pixels around a continuous position and their bilinear weights; `None` outside of the raster.
-    fn corners(self, column: f32, row: f32) -> Option<[(usize, f32); 4]> {
+    #[inline(always)]
+    fn corners(self, column: f32, row: f32) -> Option<Corners> {
         let inside =
             column >= 0.0 && row >= 0.0 && column <= (self.width - 1) as f32 && row <= (self.height - 1) as f32;
         if !inside {
@@ -119,6 +126,28 @@ impl Size {
     pub const fn position(self, index: usize) -> (usize, usize) {
         (index % self.width, index / self.width)
     }
+}
+
+/// Four pixels and their weights, which add up to one.
+type Corners = [(usize, f32); 4];
+
+/// Their mean; one that is NaN and has a weight makes it NaN.
+#[inline(never)]
+fn weigh(field: &[f32], corners: &Corners) -> f32 {
+    corners.iter().filter(|(_, weight)| *weight > 0.0).map(|&(pixel, weight)| weight * field[pixel]).sum()
+}
+
+/// Their mean as far as they are known; NaN where none is.
+#[inline(never)]
+fn weigh_known(field: &[f32], corners: &Corners) -> f32 {
+    let (mut sum, mut weights) = (0.0, 0.0);
+    for &(pixel, weight) in corners {
+        if !field[pixel].is_nan() {
+            sum += weight * field[pixel];
+            weights += weight;
+        }
+    }
+    if weights > 0.0 { sum / weights } else { f32::NAN }
 }
 
 /// Unit normals over a raster, NaN where there is none. They face the camera: z < 0.
@@ -155,19 +184,20 @@ impl Normals {
     }
 
     /// The vector at `index`, NaN where missing.
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn get(&self, index: usize) -> [f32; 3] {
         [self.x[index], self.y[index], self.z[index]]
     }
 
     /// Replaces the vector at `index`.
-    #[inline]
+    #[inline(always)]
     pub fn set(&mut self, index: usize, vector: [f32; 3]) {
         [self.x[index], self.y[index], self.z[index]] = vector;
     }
 
     /// Whether there is a vector at `index`.
+    #[inline(always)]
     #[must_use]
     pub fn is_valid(&self, index: usize) -> bool {
         // A sum is NaN where a member is.
@@ -184,13 +214,6 @@ impl Normals {
     /// Makes room for, or leaves, so many vectors; new ones are missing.
     pub(crate) fn resize(&mut self, length: usize) {
         [&mut self.x, &mut self.y, &mut self.z].into_iter().for_each(|axis| axis.resize(length, f32::NAN));
-    }
-
-    /// Leaves only the vectors on a mask.
-    pub(crate) fn forget_outside(&mut self, mask: &[bool]) {
-        for index in (0..mask.len()).filter(|&index| !mask[index]) {
-            self.set(index, [f32::NAN; 3]);
-        }
     }
 
     /// Takes over some of other vectors, from `place` on.

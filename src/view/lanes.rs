@@ -32,7 +32,9 @@ pub struct Mask(arch::Choice);
 
 impl Lanes {
     /// Four values from `start`, NaN beyond the ends.
-    #[inline(always)]
+    // Without SIMD these are four loads, and copies of them a tenth of the download.
+    #[cfg_attr(not(all(target_arch = "wasm32", not(target_feature = "simd128"))), inline(always))]
+    #[cfg_attr(all(target_arch = "wasm32", not(target_feature = "simd128")), inline(never))]
     pub fn load(values: &[f32], start: isize) -> Self {
         // A start before the first value is, without its sign, beyond the last one.
         match values.get(start as usize..).and_then(|values| values.first_chunk()) {
@@ -57,19 +59,27 @@ impl Lanes {
     /// Writes as many of the four as there is room for.
     #[inline(always)]
     pub fn store(self, values: &mut [f32]) {
-        let four = self.array();
-        if let Some(room) = values.first_chunk_mut() {
-            *room = four;
-        } else {
-            for (value, new) in values.iter_mut().zip(four) {
-                *value = new;
-            }
+        match values.first_chunk_mut() {
+            Some(room) => *room = self.array(),
+            None => self.store_end(values),
         }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn store_end(self, values: &mut [f32]) {
+        values.iter_mut().zip(self.array()).for_each(|(value, new)| *value = new);
     }
 
     #[inline(always)]
     pub fn array(self) -> [f32; LANES] {
         arch::array(self.0)
+    }
+
+    /// The four first numbers, the four second ones, and so on.
+    #[inline(always)]
+    pub fn transpose(rows: [Self; LANES]) -> [Self; LANES] {
+        arch::transpose(rows.map(|row| row.0)).map(Self)
     }
 
     /// Of all four.
@@ -82,6 +92,12 @@ impl Lanes {
     #[inline(always)]
     pub fn sqrt(self) -> Self {
         Self(arch::sqrt(self.0))
+    }
+
+    /// The smaller of each two; the other's where this one is NaN.
+    #[inline(always)]
+    pub fn min(self, other: Self) -> Self {
+        self.less(other).select(self, other)
     }
 
     /// False for NaN.
@@ -124,6 +140,12 @@ impl Real for Lanes {
 }
 
 impl Mask {
+    /// Which of four bytes have one of these bits.
+    #[inline(always)]
+    pub fn with_bits(bytes: [u8; LANES], bits: u8) -> Self {
+        Self(arch::with_bits(bytes, bits))
+    }
+
     /// `yes` where it holds.
     #[inline(always)]
     pub fn select(self, yes: Lanes, no: Lanes) -> Lanes {
@@ -144,7 +166,7 @@ impl Mask {
     /// Of how many it holds.
     #[inline(always)]
     pub fn count(self) -> usize {
-        self.select(Lanes::splat(1.0), Lanes::splat(0.0)).array().iter().sum::<f32>() as usize
+        arch::count(self.0)
     }
 }
 
@@ -194,7 +216,10 @@ mod arch {
         f32x4_add as add, f32x4_div as div, f32x4_le as at_most, f32x4_lt as less, f32x4_mul as mul,
         f32x4_sqrt as sqrt, f32x4_sub as sub, v128_and as and, v128_any_true as any, v128_not as not, v128_or as or,
     };
-    use core::arch::wasm32::{v128, v128_bitselect};
+    use core::arch::wasm32::{
+        i32x4_bitmask, i32x4_ne, i32x4_shuffle, i32x4_splat, u16x8_extend_low_u8x16, u32x4_extend_low_u16x8, v128,
+        v128_bitselect,
+    };
 
     pub type Four = v128;
     pub type Choice = v128;
@@ -215,6 +240,29 @@ mod arch {
     #[inline(always)]
     pub fn select(choice: v128, yes: v128, no: v128) -> v128 {
         v128_bitselect(yes, no, choice)
+    }
+
+    #[inline(always)]
+    pub fn with_bits(bytes: [u8; 4], bits: u8) -> v128 {
+        let spread = u32x4_extend_low_u16x8(u16x8_extend_low_u8x16(i32x4_splat(i32::from_le_bytes(bytes))));
+        i32x4_ne(and(spread, i32x4_splat(i32::from(bits))), i32x4_splat(0))
+    }
+
+    #[inline(always)]
+    pub fn count(choice: v128) -> usize {
+        i32x4_bitmask(choice).count_ones() as usize
+    }
+
+    #[inline(always)]
+    pub fn transpose([a, b, c, d]: [v128; 4]) -> [v128; 4] {
+        let [low, high] = [i32x4_shuffle::<0, 4, 1, 5>(a, b), i32x4_shuffle::<2, 6, 3, 7>(a, b)];
+        let [other_low, other_high] = [i32x4_shuffle::<0, 4, 1, 5>(c, d), i32x4_shuffle::<2, 6, 3, 7>(c, d)];
+        [
+            i32x4_shuffle::<0, 1, 4, 5>(low, other_low),
+            i32x4_shuffle::<2, 3, 6, 7>(low, other_low),
+            i32x4_shuffle::<0, 1, 4, 5>(high, other_high),
+            i32x4_shuffle::<2, 3, 6, 7>(high, other_high),
+        ]
     }
 }
 
@@ -264,8 +312,23 @@ mod arch {
     }
 
     #[inline(always)]
+    pub fn count(choice: Choice) -> usize {
+        choice.iter().filter(|&&holds| holds).count()
+    }
+
+    #[inline(always)]
+    pub fn with_bits(bytes: [u8; 4], bits: u8) -> Choice {
+        bytes.map(|byte| byte & bits != 0)
+    }
+
+    #[inline(always)]
     pub fn select(choice: Choice, yes: Four, no: Four) -> Four {
         std::array::from_fn(|lane| if choice[lane] { yes[lane] } else { no[lane] })
+    }
+
+    #[inline(always)]
+    pub fn transpose(rows: [Four; 4]) -> [Four; 4] {
+        std::array::from_fn(|lane| rows.map(|row| row[lane]))
     }
 }
 
@@ -282,6 +345,15 @@ mod tests {
         assert!(a.is_nan() && b.is_nan() && c == 1.0 && d == 2.0);
         Lanes::splat(7.0).store(&mut values[3..]);
         assert_eq!(values, [1.0, 2.0, 3.0, 7.0, 7.0]);
+    }
+
+    #[test]
+    fn bits_choose_and_rows_become_columns() {
+        let chosen = Mask::with_bits([1, 4, 0, 255], 5);
+        assert_eq!(chosen.count(), 3);
+        assert_eq!(chosen.select(Lanes::splat(1.0), Lanes::splat(0.0)).array(), [1.0, 1.0, 0.0, 1.0]);
+        let rows = [0.0, 4.0, 8.0, 12.0].map(|first| Lanes::from([first, first + 1.0, first + 2.0, first + 3.0]));
+        assert_eq!(Lanes::transpose(rows)[1].array(), [1.0, 5.0, 9.0, 13.0]);
     }
 
     #[test]

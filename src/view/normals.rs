@@ -189,27 +189,27 @@ impl<F: Fn(usize) -> Option<Vector>> Grid<F> {
 /// The same differences where steps along an axis are (1, dz): four pixels at a time, in f32, in which neighbouring
 /// depths have exact differences. From the row `first` on.
 fn of_orthographic(size: Size, depth: &[f32], first: usize, normals: &mut Normals) {
+    let (one, missing) = (Lanes::splat(1.0), Lanes::splat(f32::NAN));
     for row in first..first + normals.len() / size.width {
+        // Two rows above, this one, two below.
+        let rows = [-2, -1, 0, 1, 2].map(|step| {
+            let row = row.wrapping_add_signed(step);
+            if row < size.height { &depth[row * size.width..][..size.width] } else { &[] }
+        });
         for column in (0..size.width).step_by(LANES) {
-            let row_at = |row: usize| {
-                if row < size.height { &depth[row * size.width..][..size.width] } else { &[] }
-            };
-            let line = |right: isize, down: isize| {
-                let mut line = [Lanes::splat(f32::NAN); 5];
-                for (value, step) in line.iter_mut().zip(-2..) {
-                    let row = row.wrapping_add_signed(step * down);
-                    *value = Lanes::load(row_at(row), column as isize + step * right);
-                }
-                lane_slope(line)
-            };
-            let (p, q) = (line(1, 0), line(0, 1));
-            let one = Lanes::splat(1.0);
-            let inverse = one / (p * p + q * q + one).sqrt();
             let start = (row - first) * size.width + column;
             let end = start + LANES.min(size.width - column);
-            (p * inverse).store(&mut normals.x[start..end]);
-            (q * inverse).store(&mut normals.y[start..end]);
-            (Lanes::splat(0.0) - inverse).store(&mut normals.z[start..end]);
+            let place = column as isize;
+            let mut normal = [missing; 3];
+            if Lanes::load(rows[2], place).finite().any() {
+                let p = lane_slope([-2, -1, 0, 1, 2].map(|step| Lanes::load(rows[2], place + step)));
+                let q = lane_slope(rows.map(|row| Lanes::load(row, place)));
+                let inverse = one / (p * p + q * q + one).sqrt();
+                normal = [p * inverse, q * inverse, Lanes::splat(0.0) - inverse];
+            }
+            normal[0].store(&mut normals.x[start..end]);
+            normal[1].store(&mut normals.y[start..end]);
+            normal[2].store(&mut normals.z[start..end]);
         }
     }
 }
