@@ -17,6 +17,8 @@ use crate::pose::{PhotometricReport, Search, Similarity, Slots, sort_down};
 use super::joint::{Attempt, Given, Joint};
 use super::task::{Finding, Found, Registered, Task, Work};
 
+/// Power of the number of visible points. A cube root of its own would be 1 kB of the download.
+const THIRD: f64 = 1.0 / 3.0;
 /// Registrations after which an end that convinces is believed, and registrations at most.
 const FEW_TRIED: usize = 10;
 const MOST_TRIED: usize = 40;
@@ -232,7 +234,7 @@ impl Opening {
 
     /// Remembers where a registration ended: the better of two that are one.
     fn enter(&mut self, candidate: usize, registered: Registered) {
-        let gain = registered.visible.cbrt() * (self.spread / registered.noise).ln();
+        let gain = registered.visible.powf(THIRD) * (self.spread / registered.noise).ln();
         if !gain.is_finite() {
             return;
         }
@@ -309,7 +311,7 @@ mod tests {
         let rotation = Rotation3::new(Vector3::z() * degrees.to_radians()).into_inner();
         let pose = Similarity { rotation, ..Similarity::identity() };
         let registered = Registered { pose, visible, noise, report: None };
-        End { candidate: degrees as usize, registered, gain: visible.cbrt() * (1.0 / noise).ln(), witnesses: 2 }
+        End { candidate: degrees as usize, registered, gain: visible.powf(THIRD) * (1.0 / noise).ln(), witnesses: 2 }
     }
 
     fn winner(ends: &[End], image_noise: f64) -> (Option<usize>, usize) {

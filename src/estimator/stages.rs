@@ -111,8 +111,8 @@ impl Estimator {
         let light = self.solution.exposed_light();
         self.solve_relief(&light);
         if let Some(focal_length) = self.image.camera.focal_length() {
-            let focal_length = focal_length as f32;
-            self.solution.image_points.z.iter_mut().for_each(|depth| *depth = (*depth / focal_length).exp());
+            let depth_of = |height: f32| (f64::from(height) / focal_length).exp() as f32;
+            self.solution.image_points.z.iter_mut().for_each(|height| *height = depth_of(*height));
         }
         if self.relief.is_some() {
             self.shade_surface(&light);

@@ -156,10 +156,13 @@ impl Rows {
         }
     }
 
-    /// Where the samples of columns `column` to `column + 3` are in v.
+    /// Where the samples of [`LANES`] columns from `column` on are in v.
     fn samples(&self, column: usize) -> [usize; LANES] {
-        let (first, last) = (column / 2, self.work.len() - 1 - column / 2);
-        [first, last, first + 1, last - 1]
+        let last = self.work.len() - 1;
+        std::array::from_fn(|lane| {
+            let pair = (column + lane) / 2;
+            if (column + lane).is_multiple_of(2) { pair } else { last - pair }
+        })
     }
 
     /// `spectrum` = `gain` times the sums of x_n cos(pi k (n + 1/2) / W) of up to eight rows of `width`, zero beyond.
@@ -240,10 +243,10 @@ impl Rows {
     }
 }
 
-/// Four columns from `start` on of four rows that are `stride` apart; zeros of a row that is missing.
+/// As many columns from `start` on of as many rows as there are lanes, the rows `stride` apart; zeros of a row that is missing.
 #[inline(never)]
 fn columns(rows: &[f32], start: usize, stride: usize) -> [Lanes; LANES] {
-    Lanes::transpose([0, 1, 2, 3].map(|row| {
+    Lanes::transpose(std::array::from_fn(|row| {
         let place = start + row * stride;
         if place < rows.len() { Lanes::load(rows, place as isize) } else { Lanes::splat(0.0) }
     }))

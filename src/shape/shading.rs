@@ -81,13 +81,14 @@ impl ShadingSolver {
     /// A solver with its directions spread evenly (a Fibonacci spiral) over the visible hemisphere.
     #[must_use]
     pub fn new() -> Self {
-        let golden = std::f32::consts::PI * (3.0 - 5.0_f32.sqrt());
+        let golden = std::f64::consts::PI * (3.0 - 5.0_f64.sqrt());
+        let rim = f64::from(RIM);
         let directions: Vec<[f32; 3]> = (0..DIRECTIONS)
             .map(|index| {
-                let z = RIM + (-1.0 - RIM) * (index as f32 + 0.5) / DIRECTIONS as f32;
+                let z = rim + (-1.0 - rim) * (index as f64 + 0.5) / DIRECTIONS as f64;
                 let radius = (1.0 - z * z).sqrt();
-                let (sin, cos) = (golden * index as f32).sin_cos();
-                [radius * cos, radius * sin, z]
+                let (sin, cos) = (golden * index as f64).sin_cos();
+                [radius * cos, radius * sin, z].map(|value| value as f32)
             })
             .collect();
         let shades = vec![[0.0; 3]; directions.len()];

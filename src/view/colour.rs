@@ -192,7 +192,8 @@ fn decode(value: f32, transfer: Transfer) -> f32 {
     match transfer {
         Transfer::Linear => value,
         Transfer::Srgb if value <= 0.040_45 => value / 12.92,
-        Transfer::Srgb => ((value + 0.055) / 1.055).powf(2.4),
+        // In f64, whose power others need as well.
+        Transfer::Srgb => ((f64::from(value) + 0.055) / 1.055).powf(2.4) as f32,
     }
 }
 

@@ -1,13 +1,13 @@
 //! Four pixels side by side: f32 arithmetic that fills one vector register of WebAssembly.
 //!
 //! Solvers of single pixels branch too much for the compiler to find the four by itself. Here all four take every
-//! branch and a [`Mask`] chooses. Every operation is rounded as f32 is, so that builds with and without SIMD agree to
-//! the bit.
+//! branch and a [`Mask`] chooses. WebAssembly without SIMD takes one pixel at a time: four of each instruction would be a
+//! larger download and no faster. Every operation is rounded as f32 is, so that both agree but for the order of sums.
 
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Not, Sub};
 
 /// Pixels that are worked on at once.
-pub const LANES: usize = 4;
+pub const LANES: usize = if cfg!(all(target_arch = "wasm32", not(target_feature = "simd128"))) { 1 } else { 4 };
 
 /// What formulas need of a number: one pixel's or four.
 pub trait Real: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> {
@@ -32,9 +32,7 @@ pub struct Mask(arch::Choice);
 
 impl Lanes {
     /// Four values from `start`, NaN beyond the ends.
-    // Without SIMD these are four loads, and copies of them a tenth of the download.
-    #[cfg_attr(not(all(target_arch = "wasm32", not(target_feature = "simd128"))), inline(always))]
-    #[cfg_attr(all(target_arch = "wasm32", not(target_feature = "simd128")), inline(never))]
+    #[inline(always)]
     pub fn load(values: &[f32], start: isize) -> Self {
         // A start before the first value is, without its sign, beyond the last one.
         match values.get(start as usize..).and_then(|values| values.first_chunk()) {
@@ -85,8 +83,10 @@ impl Lanes {
     /// Of all four.
     #[inline(always)]
     pub fn sum(self) -> f32 {
-        let [a, b, c, d] = self.array();
-        (a + b) + (c + d)
+        match self.array()[..] {
+            [a, b, c, d] => (a + b) + (c + d),
+            ref few => few.iter().sum(),
+        }
     }
 
     #[inline(always)]
@@ -268,8 +268,10 @@ mod arch {
 
 #[cfg(not(all(target_arch = "wasm32", target_feature = "simd128")))]
 mod arch {
-    pub type Four = [f32; 4];
-    pub type Choice = [bool; 4];
+    use super::LANES;
+
+    pub type Four = [f32; LANES];
+    pub type Choice = [bool; LANES];
 
     macro_rules! each {
         ($($name:ident($a:ident $(, $b:ident)*: $from:ty) -> $to:ty { $body:expr })*) => {
@@ -297,12 +299,12 @@ mod arch {
     }
 
     #[inline(always)]
-    pub fn four(values: [f32; 4]) -> Four {
+    pub fn four(values: Four) -> Four {
         values
     }
 
     #[inline(always)]
-    pub fn array(four: Four) -> [f32; 4] {
+    pub fn array(four: Four) -> Four {
         four
     }
 
@@ -317,7 +319,7 @@ mod arch {
     }
 
     #[inline(always)]
-    pub fn with_bits(bytes: [u8; 4], bits: u8) -> Choice {
+    pub fn with_bits(bytes: [u8; LANES], bits: u8) -> Choice {
         bytes.map(|byte| byte & bits != 0)
     }
 
@@ -327,7 +329,7 @@ mod arch {
     }
 
     #[inline(always)]
-    pub fn transpose(rows: [Four; 4]) -> [Four; 4] {
+    pub fn transpose(rows: [Four; LANES]) -> [Four; LANES] {
         std::array::from_fn(|lane| rows.map(|row| row[lane]))
     }
 }
