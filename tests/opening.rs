@@ -1,9 +1,11 @@
 //! Pose from anywhere: nothing is known but the two views.
 
+use std::collections::VecDeque;
+
 use bimodal_stereo::scenes::{Relief, Sample, SampleRequest, Scene, light, surface};
 use bimodal_stereo::{
-    Angles, ColourSamples, Estimator, LightSource, Options, Registration, Size, Stage, Start, Status, StepReport,
-    Weights,
+    Angles, ColourSamples, Estimator, Finding, LightSource, Options, Registration, Scout, Size, Stage, Start, Status,
+    StepReport, Task, Weights,
 };
 
 fn scene(name: &str, light_name: &str) -> Sample {
@@ -164,4 +166,62 @@ fn a_prior_without_weight_has_no_say() {
     };
     let (without, with) = (error(0.0), error(0.05));
     assert!(without > 1.5 * with, "{without} {with}");
+}
+
+/// Noise that needs no library: which task is given away, which one comes back, and when.
+struct Chance(u64);
+
+impl Chance {
+    fn below(&mut self, count: u64) -> u64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+        (self.0 >> 33) % count
+    }
+}
+
+/// Runs with so many scouts; each brings what it finds late and out of order, and the first one brings nothing at all
+/// after a while. Also how many findings came in.
+fn run_with_scouts(sample: &Sample, options: &Options, scouts: usize, seed: u64) -> (StepReport, Vec<u32>, usize) {
+    let mut chance = Chance(seed);
+    let mut estimator = Estimator::new(sample.colour_image(), &sample.depth_map(), options.clone()).unwrap();
+    let scout = || Scout::new(sample.colour_image(), &sample.depth_map(), options.clone()).unwrap();
+    let mut scouts: Vec<(Scout, VecDeque<Vec<f64>>)> = (0..scouts).map(|_| (scout(), VecDeque::new())).collect();
+    let mut findings = 0;
+    while estimator.report().status == Status::Running {
+        estimator.step();
+        for (index, (scout, tasks)) in scouts.iter_mut().enumerate() {
+            while tasks.len() < 3 {
+                let Some(task) = estimator.take_task() else { break };
+                tasks.push_back(task.to_numbers());
+            }
+            let is_gone = index == 0 && findings > 40;
+            if is_gone || chance.below(3) == 0 {
+                continue;
+            }
+            let task = if chance.below(2) == 0 { tasks.pop_front() } else { tasks.pop_back() };
+            if let Some(task) = task.and_then(|task| Task::from_numbers(&task)) {
+                let finding = scout.perform(&task).to_numbers();
+                estimator.accept(Finding::from_numbers(&finding).unwrap());
+                findings += 1;
+            }
+        }
+    }
+    let depth = estimator.image_depth().iter().map(|depth| depth.to_bits()).collect();
+    (estimator.report().clone(), depth, findings)
+}
+
+#[test]
+fn any_number_of_scouts_leaves_the_same_to_the_bit() {
+    for (name, light, known) in [("bust", "window", false), ("ripples", "overcast", false), ("vase", "colourful", true)]
+    {
+        let sample = scene(name, light);
+        let light = if known { LightSource::Known(sample.light) } else { LightSource::Estimate };
+        let options = Options { light, ..Options::default() };
+        let (alone, depth, _) = run_with_scouts(&sample, &options, 0, 0);
+        for (scouts, seed) in [(1, 1), (2, 2), (3, 3)] {
+            let (report, other, findings) = run_with_scouts(&sample, &options, scouts, seed);
+            assert!(findings > 40, "{name}: {findings}");
+            assert_eq!(report, alone, "{name}, {scouts} scouts");
+            assert_eq!(depth, other, "{name}, {scouts} scouts");
+        }
+    }
 }
