@@ -2,6 +2,7 @@ import type { Estimator as Raw } from "../target/wasm-bindgen/bimodal_stereo.js"
 import { checkDepth, checkImage, checkOptions, checkRun, unsupported } from "./check.js";
 import { across, bindings } from "./engine.js";
 import { BimodalError, isPanic, translate } from "./errors.js";
+import { plainDepth, plainImage, plainOptions } from "./plain.js";
 import { Scouts } from "./scouts.js";
 import type { ColorImage, DepthMap, Options, RunOptions, StepReport } from "./types.js";
 
@@ -18,6 +19,14 @@ function breathe(): Promise<void> {
   });
 }
 
+/** An input made plain; checked before, for keys that are unknown, and after, for members that are inherited. */
+function checked<T>(check: (value: unknown) => void, plain: (input: T) => T, input: T): T {
+  check(input);
+  const own = plain(input);
+  check(own);
+  return own;
+}
+
 /**
  * Shape, light and pose from one colour image and one depth map, one iteration after the other.
  *
@@ -27,23 +36,23 @@ function breathe(): Promise<void> {
 export class Estimator {
   #raw: Raw | undefined;
   #broken = false;
-  readonly #workers: number;
+  /** Those of the loop that is under way. */
+  #options: Options;
   readonly #scouts: Scouts | undefined;
 
   constructor(image: ColorImage, depth: DepthMap, options: Options = {}) {
-    checkImage(image);
-    checkDepth(depth);
-    checkOptions(options);
+    const [ownImage, ownDepth] = [checked(checkImage, plainImage, image), checked(checkDepth, plainDepth, depth)];
+    const own = checked(checkOptions, plainOptions, options);
+    this.#options = own;
     const { Estimator: Binding } = bindings();
-    this.#raw = across(() => new Binding(image, depth, options));
-    this.#workers = options.workers ?? 1;
-    const scouts = Math.min(this.#workers - 1, this.#raw.scoutsAfforded());
+    this.#raw = across(() => new Binding(ownImage, ownDepth, own));
+    const scouts = Math.min((own.workers ?? 1) - 1, this.#raw.scoutsAfforded());
     if (scouts > 0) {
-      this.#scouts = new Scouts(scouts, image, depth, options, {
+      this.#scouts = new Scouts(scouts, ownImage, ownDepth, {
         take: () => this.#call((raw) => raw.takeTask()),
         accept: (finding) => this.#call((raw) => raw.accept(finding)),
       });
-      this.#scouts.begin();
+      this.#seek();
     }
   }
 
@@ -88,13 +97,15 @@ export class Estimator {
 
   /** Back to the start, with the same views and, if given, other options. */
   reset(options?: Options): void {
-    if (options !== undefined) checkOptions(options);
-    if ((options?.workers ?? this.#workers) !== this.#workers) {
+    const own = options && checked(checkOptions, plainOptions, options);
+    const workers = this.#options.workers ?? 1;
+    if ((own?.workers ?? workers) !== workers) {
       const message = "options.workers: threads get the views when they are made; make a new estimator to change it";
       throw new BimodalError("unsupported", message, "options.workers");
     }
-    this.#call((raw) => raw.reset(options));
-    this.#scouts?.begin(options);
+    this.#call((raw) => raw.reset(own));
+    if (own) this.#options = { ...own, workers };
+    this.#seek();
   }
 
   /** Where the loop stands. */
@@ -168,10 +179,16 @@ export class Estimator {
     this.free();
   }
 
+  /** The scouts begin anew, if the loop does with a search. */
+  #seek(): void {
+    if ((this.#options.start ?? "search") === "search") this.#scouts?.begin(this.#options);
+    else this.#scouts?.end();
+  }
+
   /** Lets the scouts know how far the search has come. */
   #after(report: StepReport): StepReport {
     if (report.stage === "search" && report.status === "running") this.#scouts?.feed();
-    else this.#scouts?.rest();
+    else this.#scouts?.end();
     return report;
   }
 

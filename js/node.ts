@@ -15,7 +15,8 @@ export default async function init(wasm: WasmSource = wasmUrl()): Promise<void> 
 }
 
 function spawn(): Thread {
-  const worker = new Worker(new URL("./scout-node.js", import.meta.url));
+  // Without the flags of the program: what it was given as text, as by `node -e`, a scout is not.
+  const worker = new Worker(new URL("./scout-node.js", import.meta.url), { execArgv: [] });
   return {
     post: (order, transfer) => worker.postMessage(order, transfer),
     onAnswer: (hear) => {

@@ -3,18 +3,13 @@ import type { Scout } from "../target/wasm-bindgen/bimodal_stereo.js";
 import { bindings, load } from "./engine.js";
 import type { ColorImage, DepthMap, Options } from "./types.js";
 
-/** A search is one run of the estimator; what belongs to an earlier one is stale. */
+/** A scout serves one search: first it hears of which, then come tasks. */
 export type Order =
-  | { kind: "meet"; module: WebAssembly.Module; image: ColorImage; depth: DepthMap }
-  | { kind: "search"; run: number; options: Options }
-  | { kind: "task"; run: number; task: Float64Array }
-  | { kind: "rest" };
+  | { kind: "search"; module: WebAssembly.Module; image: ColorImage; depth: DepthMap; options: Options }
+  | { kind: "task"; task: Float64Array };
 
 /** `null` where nothing can be found, now or later: the estimator then goes on without this scout. */
-export interface Answer {
-  run: number;
-  finding: Float64Array | null;
-}
+export type Answer = Float64Array | null;
 
 /** The end of a thread that the estimator holds. */
 export interface Thread {
@@ -26,30 +21,19 @@ export interface Thread {
 
 /** Handles one order after the other, in the thread of the scout. */
 export function serve(answer: (answer: Answer) => void): (order: Order) => void {
-  let pair: { image: ColorImage; depth: DepthMap } | undefined;
   let scout: Scout | undefined;
 
   async function handle(order: Order): Promise<void> {
-    switch (order.kind) {
-      case "meet":
-        pair = order;
-        return load(order.module);
-      case "search":
-        scout?.free();
-        scout = undefined;
-        if (pair) scout = new (bindings().Scout)(pair.image, pair.depth, order.options);
-        return;
-      case "task":
-        answer({ run: order.run, finding: scout?.perform(order.task) ?? null });
-        return;
-      case "rest":
-        scout?.free();
-        scout = undefined;
+    if (order.kind === "task") {
+      answer(scout?.perform(order.task) ?? null);
+      return;
     }
+    await load(order.module);
+    scout = new (bindings().Scout)(order.image, order.depth, order.options);
   }
 
   let last: Promise<void> = Promise.resolve();
   return (order) => {
-    last = last.then(() => handle(order)).catch(() => answer({ run: "run" in order ? order.run : 0, finding: null }));
+    last = last.then(() => handle(order)).catch(() => answer(null));
   };
 }

@@ -34,6 +34,7 @@ export interface DepthMap {
   camera?: Pinhole;
   /** Metres (or pixels, orthographic) per stored unit; default 1, and 0.001 for a Uint16Array with a camera. */
   unit?: number;
+  /** Depth along z. Zero, negative, infinite and NaN are holes: a depth that is relative has to be moved above zero. */
   data?: Float32Array | Uint16Array;
   /** An organised cloud, 3*w*h interleaved, NaN where missing. */
   points?: Float32Array;
@@ -70,7 +71,8 @@ export interface Options {
   trim?: boolean;
   /**
    * Threads that share the opening search, 1 .. 16, this one included; default 1. The result is the same to the bit for
-   * any number. The others find something to do as long as this one lets events through, as `run` does.
+   * any number. The others last as long as the search and find something to do while this one lets events through, as
+   * `run` does; a copy of the pair is kept for them.
    */
   workers?: number;
 }

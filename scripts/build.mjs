@@ -2,22 +2,31 @@
 import { cpSync, existsSync, mkdirSync, readFileSync, realpathSync, rmSync, writeFileSync } from "node:fs";
 import { gzipSync } from "node:zlib";
 import { WASM, setup, tool } from "./setup.mjs";
+import { withoutFeature } from "./wasm-features.mjs";
 import { Failure, inRoot, must, say, script, seconds, stamp } from "./shell.mjs";
 
 const CARRIED = ["README.md", "CHANGELOG.md", "LICENSE-MIT", "LICENSE-APACHE"];
 const SOURCES = ["src", "js", "Cargo.toml", "Cargo.lock", "rust-toolchain.toml", ".cargo", "package-lock.json"];
 const MARK = "pkg/.stamp";
 const MODULE = "bimodal_stereo";
-/** The facade is bundled with the first one's glue. A target folder each, so that neither build throws away the other's crates. */
+/**
+ * Where it may, wasm-bindgen lets exports return references. Node 20 aborts as a whole when it throws away optimised code that is
+ * inside such a call (V8 11.3, "unreachable code" in its deoptimiser), so neither the crates nor, further down, the tool are told
+ * that they may.
+ */
+const REFERENCES = "reference-types";
+/**
+ * The facade is bundled with the first one's glue. A target folder each, so that neither build throws away the other's crates.
+ * Cargo appends these to the flags of .cargo/config.toml, and of two opposite features the later one counts.
+ */
 const FLAVOURS = [
-  { file: `${MODULE}_bg.wasm`, target: "target", flags: [] },
-  // Cargo appends these to the flags of .cargo/config.toml, and of two opposite features the later one counts.
-  { file: `${MODULE}_scalar_bg.wasm`, target: "target/scalar", flags: ["-C", "target-feature=-simd128"] },
+  { file: `${MODULE}_bg.wasm`, target: "target", flags: ["-C", `target-feature=-${REFERENCES}`] },
+  { file: `${MODULE}_scalar_bg.wasm`, target: "target/scalar", flags: ["-C", `target-feature=-${REFERENCES},-simd128`] },
 ];
 /** Two for programs, one for what reads files, and two for threads. */
 const ENTRIES = ["index", "node", "files", "scout", "scout-node"];
 /** Declarations that no entry mentions; one of them names the generated bindings, which stay inside. */
-const INTERNAL = ["check", "engine", "node", "npy", "scout", "scout-node", "scouting", "scouts"];
+const INTERNAL = ["check", "engine", "node", "npy", "plain", "scout", "scout-node", "scouting", "scouts"];
 
 const node = (module, ...args) => must(process.execPath, [inRoot("node_modules", module), ...args]);
 
@@ -52,9 +61,13 @@ async function numerics({ file, target, flags }) {
   await must("cargo", ["build", "--release", "--lib", "--target", WASM, "--target-dir", target, "--config", config], {
     env: { CARGO_PROFILE_RELEASE_OPT_LEVEL: "2" },
   });
+  // The standard library was compiled with references, and the linker says so of the whole.
+  const linked = inRoot(`${target}/${MODULE}.wasm`);
+  const compiled = readFileSync(inRoot(`${target}/${WASM}/release/${MODULE}.wasm`));
+  writeFileSync(linked, withoutFeature(compiled, REFERENCES));
   await must(tool("wasm-bindgen"), [
     ...["--target", "web", "--omit-default-module-path", "--out-dir", `${target}/wasm-bindgen`],
-    `${target}/${WASM}/release/${MODULE}.wasm`,
+    linked,
   ]);
   // Level "s" gives the last 0.7 kB; speed is LLVM's work.
   const smaller = ["-Os", "--converge", "--strip-producers", "--strip-target-features"];
@@ -88,7 +101,7 @@ async function facade() {
 }
 
 export async function build() {
-  const wanted = stamp([...SOURCES, ...CARRIED, "scripts/build.mjs"]);
+  const wanted = stamp([...SOURCES, ...CARRIED, "scripts/build.mjs", "scripts/wasm-features.mjs"]);
   const complete = [MARK, `target/wasm-bindgen/${MODULE}.d.ts`].every((path) => existsSync(inRoot(path)));
   if (complete && readFileSync(inRoot(MARK), "utf8") === wanted) return say("pkg/ is up to date");
   const start = performance.now();

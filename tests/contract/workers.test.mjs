@@ -42,8 +42,9 @@ describe("workers", () => {
           const slices = await slicesOf(together);
           assert.ok(slices < all, `${slices} of ${all} slices`);
           assert.deepEqual(outcome(together), outcome(alone));
-          // The same threads serve the next search, too.
+          // Others serve the next search.
           together.reset();
+          await wait(ARRIVAL);
           assert.ok((await slicesOf(together)) < all);
           assert.deepEqual(outcome(together), outcome(alone));
         }
@@ -80,6 +81,55 @@ describe("workers", () => {
     await wait(ARRIVAL);
     await together.run();
     assert.deepEqual(outcome(together), outcome(alone));
+  });
+
+  test("inputs of any make look the same in every thread, and stay their owner's", async () => {
+    const { image, depth, light } = scene();
+    const bytes = Buffer.alloc(4 * image.width * image.height);
+    image.data.forEach((value, index) => (bytes[4 * Math.floor(index / 3) + (index % 3)] = Math.min(254, 160 * value)));
+    for (let pixel = 0; pixel < image.width * image.height; pixel++) bytes[4 * pixel + 3] = 255;
+    const shared = new Float64Array(new SharedArrayBuffer(8 * 27));
+    shared.set(light);
+    class Settings {
+      get light() {
+        return new Proxy([...shared], {});
+      }
+    }
+    class Photo {
+      constructor() {
+        Object.assign(this, { width: image.width, height: image.height, data: bytes, transfer: "linear" });
+      }
+      get mask() {
+        return image.mask;
+      }
+    }
+    const alone = new Estimator(new Photo(), depth, new Settings());
+    await alone.run();
+    for (const options of [{ workers: 3, light: new Proxy([...light], {}) }, { workers: 3, light: shared }]) {
+      const together = new Estimator(new Photo(), depth, options);
+      assert.equal(bytes.length, 4 * image.width * image.height);
+      shared.fill(0);
+      await wait(ARRIVAL);
+      await together.run();
+      assert.deepEqual(outcome(together), outcome(alone));
+      together.free();
+      shared.set(light);
+    }
+    alone.free();
+  });
+
+  test("a reset that is refused in the middle leaves the search as it is", async () => {
+    const { image, depth } = scene();
+    const alone = new Estimator(image, depth);
+    await alone.run();
+    const together = new Estimator(image, depth, { workers: 2 });
+    await wait(ARRIVAL);
+    await together.run({ maxIterations: 50 });
+    refused(() => together.reset({ light: new Float64Array(27).fill(NaN) }), "range", "options.light");
+    await together.run();
+    assert.deepEqual(outcome(together), outcome(alone));
+    alone.free();
+    together.free();
   });
 
   test("steps without a pause do all of it themselves", () => {

@@ -1,0 +1,67 @@
+/**
+ * Inputs as plain objects of nothing but what the contract names. All threads are given the same: a class with getters, a
+ * proxy or memory that is shared would look different in another one.
+ */
+import type { ColorImage, DepthMap, Options, Pinhole, Pose } from "./types.js";
+
+/** Some members of an object, inherited ones as well, without those that are undefined. */
+function pick<T extends object, K extends keyof T>(source: T, keys: readonly K[]): Pick<T, K> {
+  return Object.fromEntries(keys.map((key) => [key, source[key]]).filter(([, value]) => value !== undefined)) as Pick<T, K>;
+}
+
+/** Some of them made plain, where they are there. */
+function plainMember<T extends object, K extends keyof T>(source: T, key: K, plain: (value: NonNullable<T[K]>) => unknown): object {
+  const value = source[key];
+  return value === undefined || value === null ? {} : { [key]: plain(value) };
+}
+
+const numbers = (list: ArrayLike<number>): number[] => Array.from(list);
+
+const plainCamera = (camera: Pinhole): Pinhole => ({
+  ...pick(camera, ["fx", "fy", "cx", "cy"]),
+  ...plainMember(camera, "distortion", numbers),
+});
+
+export const plainImage = (image: ColorImage): ColorImage => ({
+  ...pick(image, ["width", "height", "mask", "transfer", "data"]),
+  ...plainMember(image, "camera", plainCamera),
+});
+
+export const plainDepth = (depth: DepthMap): DepthMap => ({
+  ...pick(depth, ["width", "height", "mask", "unit", "data", "points", "normals"]),
+  ...plainMember(depth, "camera", plainCamera),
+});
+
+const plainPose = (pose: Partial<Pose>): Partial<Pose> => ({
+  ...pick(pose, ["scale"]),
+  ...plainMember(pose, "rotation", numbers),
+  ...plainMember(pose, "translation", numbers),
+  ...plainMember(pose, "angles", (angles) => pick(angles, ["alpha", "beta", "gamma"])),
+});
+
+const SIMPLE_OPTIONS = [
+  ...(["scale", "registration", "shading", "annealing", "stopDegrees"] as const),
+  ...(["correspondenceDistance", "maxIterations", "seed", "trim", "workers"] as const),
+] as const;
+
+export const plainOptions = (options: Options): Options => ({
+  ...pick(options, SIMPLE_OPTIONS),
+  ...plainMember(options, "light", (light) => (typeof light === "string" ? light : numbers(light))),
+  ...plainMember(options, "start", (start) => (typeof start === "string" ? start : plainPose(start))),
+  ...plainMember(options, "lambda", (lambda) => pick(lambda, ["prior", "unit", "light", "refinement"])),
+});
+
+/** What the contract takes; Node's Buffer is one of them by inheritance, and its slices are views. */
+const ARRAYS = [Uint8ClampedArray, Uint8Array, Uint16Array, Float32Array] as const;
+
+/** A copy for another thread, whose arrays may be `transfer`red: each has a buffer of its own. */
+export function copyOf<T extends object>(input: T, transfer: ArrayBuffer[]): T {
+  const copied = Object.entries(input).map(([key, value]: [string, unknown]) => {
+    const type = ARRAYS.find((type) => value instanceof type);
+    if (type === undefined) return [key, value];
+    const array = new type(value as ArrayLike<number>);
+    transfer.push(array.buffer);
+    return [key, array];
+  });
+  return Object.fromEntries(copied) as T;
+}
