@@ -97,7 +97,7 @@ export class Estimator {
 
   /** Back to the start, with the same views and, if given, other options. */
   reset(options?: Options): void {
-    const own = options && checked(checkOptions, plainOptions, options);
+    const own = options === undefined ? undefined : checked(checkOptions, plainOptions, options);
     const workers = this.#options.workers ?? 1;
     if ((own?.workers ?? workers) !== workers) {
       const message = "options.workers: threads get the views when they are made; make a new estimator to change it";

@@ -47,7 +47,7 @@ impl Estimator {
         let joint = joint.as_mut().ok_or_else(|| nowhere("the search has no registration"))?;
         let Some(opening) = opening else {
             // Grids and spectra of both views are a slice of their own.
-            *opening = Some(Opening::new(&given, search(image, depth, prior, options, joint)?));
+            *opening = Some(Opening::new(&given, search(&given, options, joint)?));
             self.report.message = Some("0 %: preparing the search".into());
             return Ok(());
         };
@@ -202,16 +202,10 @@ pub(super) fn given<'a>(
 }
 
 /// The search of a pair, by the normals that registrations go by.
-pub(super) fn search(
-    image: &ColourView,
-    depth: &DepthView,
-    prior: &LightPrior,
-    options: &Options,
-    joint: &Joint,
-) -> Result<Search> {
-    let given = given(image, depth, prior, options);
+pub(super) fn search(given: &Given<'_>, options: &Options, joint: &Joint) -> Result<Search> {
+    let Given { image, depth, light, .. } = *given;
     let scale = gauge::held_scale(image, options);
-    Search::new(image, depth, joint.normals(), given.light, scale, gauge::unit_scale(image, depth), options.seed)
+    Search::new(image, depth, joint.normals(), light, scale, gauge::unit_scale(image, depth), options.seed)
 }
 
 fn nowhere(message: &'static str) -> Error {

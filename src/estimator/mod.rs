@@ -127,11 +127,7 @@ impl Estimator {
     /// # Errors
     /// Any [`Error`] of the views or the options, naming the field.
     pub fn new(image: ColourImage, depth: &DepthMap, options: Options) -> Result<Self> {
-        options.validate()?;
-        let sizes = (Size::new("image", image.width, image.height)?, Size::new("depth", depth.width, depth.height)?);
-        memory::check(sizes.0, sizes.1)?;
-        let image = ColourView::new(image)?;
-        let depth = DepthView::new(depth, options.trim)?;
+        let (image, depth) = views(image, depth, &options)?;
         Self::from_views(image, depth, options)
     }
 
@@ -487,4 +483,11 @@ impl Estimator {
     fn pose(&self) -> Similarity {
         self.solution.pose
     }
+}
+
+/// Both views, checked, with the options and the memory that they ask for.
+fn views(image: ColourImage, depth: &DepthMap, options: &Options) -> Result<(ColourView, DepthView)> {
+    options.validate()?;
+    memory::check(Size::new("image", image.width, image.height)?, Size::new("depth", depth.width, depth.height)?)?;
+    Ok((ColourView::new(image)?, DepthView::new(depth, options.trim)?))
 }

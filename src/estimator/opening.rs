@@ -158,7 +158,7 @@ impl Opening {
     }
 
     fn is_searching(&self) -> bool {
-        self.search.progress().share < 1.0
+        !self.search.is_done()
     }
 
     fn look(&self) -> Look {

@@ -2,13 +2,12 @@
 
 use super::anywhere::{given, search};
 use super::joint::{Attempt, Joint};
-use super::memory;
 use super::task::{Finding, Found, Registered, Task, Work};
 use crate::error::Result;
 use crate::light::LightPrior;
 use crate::options::Options;
 use crate::pose::Search;
-use crate::view::{ColourImage, ColourView, DepthMap, DepthView, Size};
+use crate::view::{ColourImage, ColourView, DepthMap, DepthView};
 
 /// Does tasks of the opening of an [`Estimator`](super::Estimator) of the same pair and options. What it finds does not
 /// depend on what it did before.
@@ -27,13 +26,11 @@ impl Scout {
     /// # Errors
     /// Those of [`Estimator::new`](super::Estimator::new) and of its search.
     pub fn new(image: ColourImage, depth: &DepthMap, options: Options) -> Result<Self> {
-        options.validate()?;
-        memory::check(Size::new("image", image.width, image.height)?, Size::new("depth", depth.width, depth.height)?)?;
-        let image = ColourView::new(image)?;
-        let depth = DepthView::new(depth, options.trim)?;
+        let (image, depth) = super::views(image, depth, &options)?;
         let prior = LightPrior::natural();
-        let joint = Joint::new(&given(&image, &depth, &prior, &options));
-        let search = search(&image, &depth, &prior, &options, &joint)?;
+        let given = given(&image, &depth, &prior, &options);
+        let joint = Joint::new(&given);
+        let search = search(&given, &options, &joint)?;
         Ok(Self { image, depth, options, prior, joint, search })
     }
 

@@ -243,7 +243,8 @@ impl Search {
         }
     }
 
-    fn is_done(&self) -> bool {
+    /// Whether the candidates are ready.
+    pub(crate) fn is_done(&self) -> bool {
         self.sweeps.is_complete() && self.climbs.is_complete()
     }
 

@@ -174,5 +174,6 @@ describe("workers", () => {
     const estimator = new Estimator(image, depth);
     refused(() => estimator.reset({ workers: 2 }), "unsupported", "options.workers");
     estimator.reset({ workers: 1 });
+    refused(() => estimator.reset(null), "type", "options");
   });
 });
