@@ -1,7 +1,7 @@
 /** The one wasm module behind all estimators of a page, and the border every call crosses. */
 import start, * as glue from "../target/wasm-bindgen/bimodal_stereo.js";
 import { BimodalError, translate } from "./errors.js";
-import type { Thread } from "./scouting.js";
+import type { Thread } from "./threads.js";
 import type { WasmSource } from "./types.js";
 
 let loading: Promise<void> | undefined;
@@ -30,7 +30,7 @@ async function loadOnce(wasm: WasmSource): Promise<void> {
   }
 }
 
-/** Loads the module once; later calls share the first one, and a failed one may be repeated. `spawn` makes the thread of a scout. */
+/** Loads the module once; later calls share the first one, and a failed one may be repeated. `spawn` makes the thread of a helper. */
 export function load(wasm: WasmSource, spawn?: () => Thread): Promise<void> {
   spawnThread ??= spawn;
   loading ??= loadOnce(wasm);
@@ -52,7 +52,7 @@ export function bindings(): typeof glue {
   return glue;
 }
 
-/** A thread for a scout, where this place has any. */
+/** A thread for a helper, where this place has any. */
 export const spawn = (): Thread | undefined => spawnThread?.();
 
 /** Runs a call into wasm; its errors come out as `BimodalError`. */

@@ -32,13 +32,9 @@ function isCrossing(value: unknown): value is Crossing {
 /** Whether the numerics broke off in the middle: whatever they were working on is suspect from then on. */
 export const isPanic = (error: unknown): boolean => error instanceof WebAssembly.RuntimeError;
 
-/** Rust writes 1e300 with 301 digits, which bury the message; JavaScript writes a number as it would be typed. */
-const briefly = (message: string): string =>
-  message.replace(/\(got (-?[\d.]+)\)$/, (_, digits) => `(got ${Number(digits)})`);
-
 /** What came out of wasm as what the contract promises; anything else passes unchanged. */
 export function translate(error: unknown): unknown {
-  if (isCrossing(error)) return new BimodalError(error.code, briefly(error.message), error.field);
+  if (isCrossing(error)) return new BimodalError(error.code, error.message, error.field);
   if (isPanic(error)) {
     const message = "the numerics broke off; this is a bug. Free this estimator and make another one";
     return new BimodalError("panic", message, undefined, { cause: error });

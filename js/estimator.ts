@@ -2,7 +2,8 @@ import type { Estimator as Raw } from "../target/wasm-bindgen/bimodal_stereo.js"
 import { checkDepth, checkImage, checkOptions, checkRun, unsupported } from "./check.js";
 import { across, bindings } from "./engine.js";
 import { BimodalError, isPanic, translate } from "./errors.js";
-import { plainDepth, plainImage, plainOptions } from "./plain.js";
+import { Partner, type Refinement } from "./partner.js";
+import { copyOf, plainDepth, plainImage, plainOptions } from "./plain.js";
 import { Scouts } from "./scouts.js";
 import type { ColorImage, DepthMap, Options, RunOptions, StepReport } from "./types.js";
 
@@ -18,6 +19,9 @@ function breathe(): Promise<void> {
     port2.postMessage(null);
   });
 }
+
+/** Pixels of the depth view from which on a partner is worth its messages: a refinement then takes some milliseconds. */
+const LEAST_SHARED = 96 * 96;
 
 /** An input made plain; checked before, for keys that are unknown, and after, for members that are inherited. */
 function checked<T>(check: (value: unknown) => void, plain: (input: T) => T, input: T): T {
@@ -39,6 +43,7 @@ export class Estimator {
   /** Those of the loop that is under way. */
   #options: Options;
   readonly #scouts: Scouts | undefined;
+  readonly #partner: Partner | undefined;
 
   constructor(image: ColorImage, depth: DepthMap, options: Options = {}) {
     const [ownImage, ownDepth] = [checked(checkImage, plainImage, image), checked(checkDepth, plainDepth, depth)];
@@ -46,23 +51,29 @@ export class Estimator {
     this.#options = own;
     const { Estimator: Binding } = bindings();
     this.#raw = across(() => new Binding(ownImage, ownDepth, own));
-    const scouts = Math.min((own.workers ?? 1) - 1, this.#raw.scoutsAfforded());
-    if (scouts > 0) {
-      this.#scouts = new Scouts(scouts, ownImage, ownDepth, {
+    const helpers = Math.min((own.workers ?? 1) - 1, this.#raw.helpersAfforded());
+    if (helpers > 0) {
+      // Its owner may change the pair before it is asked for again.
+      const pair = { image: copyOf(ownImage, []), depth: copyOf(ownDepth, []) };
+      this.#scouts = new Scouts(helpers, pair, {
         take: () => this.#call((raw) => raw.takeTask()),
         accept: (finding) => this.#call((raw) => raw.accept(finding)),
       });
-      this.#seek();
+      if (pair.depth.width * pair.depth.height >= LEAST_SHARED) this.#partner = new Partner(pair);
+      this.#begin();
     }
   }
 
   /** One iteration of the loop. */
   step(): StepReport {
-    return this.#after(this.#call((raw) => raw.step()));
+    const answer = this.#partner?.answer;
+    if (answer) this.#call((raw) => raw.stepHalfway());
+    return this.#finish(answer);
   }
 
   /** One stage of an iteration; the report says which. */
   stepStage(): StepReport {
+    this.#take(this.#partner?.answer);
     return this.#after(this.#call((raw) => raw.stepStage()));
   }
 
@@ -87,7 +98,7 @@ export class Estimator {
     signal?.throwIfAborted();
     let report = this.report;
     for (let done = 0; report.status === "running" && done < maxIterations; done++) {
-      report = this.step();
+      report = await this.#stepTogether();
       onStep?.(report);
       await breathe();
       signal?.throwIfAborted();
@@ -105,7 +116,7 @@ export class Estimator {
     }
     this.#call((raw) => raw.reset(own));
     if (own) this.#options = { ...own, workers };
-    this.#seek();
+    this.#begin();
   }
 
   /** Where the loop stands. */
@@ -171,6 +182,7 @@ export class Estimator {
     const raw = this.#raw;
     this.#raw = undefined;
     this.#scouts?.end();
+    this.#partner?.end();
     // A broken one can't be freed: wasm-bindgen still counts it as borrowed by the call that broke off.
     if (!this.#broken) raw?.free();
   }
@@ -179,16 +191,49 @@ export class Estimator {
     this.free();
   }
 
-  /** The scouts begin anew, if the loop does with a search. */
-  #seek(): void {
+  /** The helpers begin anew: scouts if the loop does with a search, or else the partner. */
+  #begin(): void {
+    this.#scouts?.end();
+    this.#partner?.end();
     if ((this.#options.start ?? "search") === "search") this.#scouts?.begin(this.#options);
-    else this.#scouts?.end();
+    else this.#share();
   }
 
-  /** Lets the scouts know how far the search has come. */
+  /** The partner is there from the start: it needs its time to get ready. The paper's registration never lets the pose stand. */
+  #share(): void {
+    if (this.#options.registration !== "icp") this.#partner?.begin(this.#options);
+  }
+
+  /** A step that waits for the partner, if it is at work. */
+  async #stepTogether(): Promise<StepReport> {
+    if (!this.#partner?.isBusy) return this.step();
+    this.#call((raw) => raw.stepHalfway());
+    await this.#partner.rest();
+    return this.#finish(this.#partner.answer);
+  }
+
+  /** The rest of a step, with what the partner has found. */
+  #finish(answer: Refinement | undefined): StepReport {
+    this.#take(answer);
+    return this.#after(this.#call((raw) => raw.step()));
+  }
+
+  #take(answer: Refinement | undefined): void {
+    if (answer) this.#call((raw) => raw.acceptRefinement(answer.shape, answer.planes));
+  }
+
+  /** Lets the helpers know how far search and loop have come. */
   #after(report: StepReport): StepReport {
-    if (report.stage === "search" && report.status === "running") this.#scouts?.feed();
-    else this.#scouts?.end();
+    if (report.status !== "running") {
+      this.#scouts?.end();
+      this.#partner?.end();
+    } else if (report.stage === "search") {
+      this.#scouts?.feed();
+    } else {
+      this.#scouts?.end();
+      this.#share();
+      if (report.stage === "refinement") this.#partner?.ask((held) => this.#call((raw) => raw.refinementTask(held)));
+    }
     return report;
   }
 

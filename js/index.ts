@@ -1,6 +1,6 @@
 /** Entry for browsers and bundlers. */
 import { load } from "./engine.js";
-import type { Thread } from "./scouting.js";
+import type { Thread } from "./threads.js";
 import type { WasmSource } from "./types.js";
 import { wasmUrl } from "./wasm.js";
 
@@ -13,13 +13,13 @@ export default function init(wasm?: WasmSource): Promise<void> {
 
 function spawn(): Thread {
   // Written out in one piece: bundlers look for exactly this to carry the file along.
-  const worker = new Worker(new URL("./scout.js", import.meta.url), { type: "module" });
+  const worker = new Worker(new URL("./thread.js", import.meta.url), { type: "module" });
   return {
     post: (order, transfer) => worker.postMessage(order, transfer),
     onAnswer: (hear) => worker.addEventListener("message", (event) => hear(event.data)),
     onFailure: (hear) =>
       worker.addEventListener("error", (event) => {
-        // Nobody misses a scout.
+        // Nobody misses a helper.
         event.preventDefault();
         hear();
       }),

@@ -2,7 +2,7 @@
 import { readFile } from "node:fs/promises";
 import { Worker } from "node:worker_threads";
 import { isLoading, load } from "./engine.js";
-import type { Thread } from "./scouting.js";
+import type { Thread } from "./threads.js";
 import type { WasmSource } from "./types.js";
 import { wasmUrl } from "./wasm.js";
 
@@ -15,16 +15,16 @@ export default async function init(wasm: WasmSource = wasmUrl()): Promise<void> 
 }
 
 function spawn(): Thread {
-  // Without the flags of the program: what it was given as text, as by `node -e`, a scout is not.
-  const worker = new Worker(new URL("./scout-node.js", import.meta.url), { execArgv: [] });
+  // Without the flags of the program: what it was given as text, as by `node -e`, a helper is not.
+  const worker = new Worker(new URL("./thread-node.js", import.meta.url), { execArgv: [] });
   return {
     post: (order, transfer) => worker.postMessage(order, transfer),
     onAnswer: (hear) => {
       worker.on("message", hear);
-      // A scout keeps no program from ending; whoever listens to one would.
+      // A helper keeps no program from ending; whoever listens to one would.
       worker.unref();
     },
-    onFailure: (hear) => worker.on("error", hear),
+    onFailure: (hear) => worker.on("error", hear).on("exit", hear),
     end: () => void worker.terminate(),
   };
 }

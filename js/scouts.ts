@@ -1,8 +1,6 @@
 /** Other threads that take parts of the opening search off an estimator's hands. */
-import { compiled, spawn } from "./engine.js";
-import { copyOf } from "./plain.js";
-import type { Answer, Thread } from "./scouting.js";
-import type { ColorImage, DepthMap, Options } from "./types.js";
+import { READY, hire, type Answer, type Pair, type Thread } from "./threads.js";
+import type { Options } from "./types.js";
 
 /** What the estimator's side of wasm gives away and takes in. */
 export interface Tasks {
@@ -26,48 +24,43 @@ interface Hired {
 export class Scouts {
   #hired: Hired[] = [];
   readonly #count: number;
-  readonly #image: ColorImage;
-  readonly #depth: DepthMap;
+  readonly #pair: Pair;
   readonly #tasks: Tasks;
 
-  /** For one pair, of which it keeps a copy: its owner may change it before the next search. */
-  constructor(count: number, image: ColorImage, depth: DepthMap, tasks: Tasks) {
+  constructor(count: number, pair: Pair, tasks: Tasks) {
     this.#count = count;
-    this.#image = copyOf(image, []);
-    this.#depth = copyOf(depth, []);
+    this.#pair = pair;
     this.#tasks = tasks;
   }
 
   /** A search begins, which nobody works at yet. */
   begin(options: Options): void {
     this.end();
-    try {
-      for (let hired = 0; hired < this.#count; hired++) this.#hire(options);
-    } catch {
-      // A page may forbid workers, a system may be out of threads or of memory for them.
-    }
+    for (let hired = 0; hired < this.#count; hired++) this.#hire(options);
   }
 
   #hire(options: Options): void {
-    const thread = spawn();
+    const thread = hire(this.#pair, options);
     if (!thread) return;
     const hired: Hired = { thread, inHand: 0 };
     this.#hired.push(hired);
     thread.onAnswer((answer) => this.#hear(hired, answer));
     thread.onFailure(() => this.#dismiss(hired));
-    const transfer: ArrayBuffer[] = [];
-    const [image, depth] = [copyOf(this.#image, transfer), copyOf(this.#depth, transfer)];
-    thread.post({ kind: "search", module: compiled(), image, depth, options }, transfer);
   }
 
   /** Hands out tasks, as many as there are and scouts have hands for. */
   feed(): void {
-    for (const hired of this.#hired) {
+    for (const hired of [...this.#hired]) {
       while (hired.inHand < IN_HAND) {
         const task = this.#tasks.take();
         if (!task) return;
         hired.inHand++;
-        hired.thread.post({ kind: "task", task }, []);
+        try {
+          hired.thread.post({ kind: "task", task }, []);
+        } catch {
+          this.#dismiss(hired);
+          break;
+        }
       }
     }
   }
@@ -79,7 +72,8 @@ export class Scouts {
 
   #hear(hired: Hired, finding: Answer): void {
     if (!this.#hired.includes(hired)) return;
-    if (finding === null) return this.#dismiss(hired);
+    if (finding === READY) return;
+    if (!(finding instanceof Float64Array)) return this.#dismiss(hired);
     hired.inHand--;
     try {
       this.#tasks.accept(finding);

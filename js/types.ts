@@ -70,9 +70,9 @@ export interface Options {
   /** Whether flying pixels and background inside the mask are trimmed; default true. */
   trim?: boolean;
   /**
-   * Threads that share the opening search, 1 .. 16, this one included; default 1. The result is the same to the bit for
-   * any number. The others last as long as the search and find something to do while this one lets events through, as
-   * `run` does; a copy of the pair is kept for them.
+   * Threads, 1 .. 16, this one included; default 1. All of them share the opening search, and two the iterations of larger
+   * views. The result is the same to the bit for any number. They hear and are heard while this one lets events through,
+   * as `run` does, which also waits for them; a copy of the pair is kept for them.
    */
   workers?: number;
 }

@@ -9,7 +9,7 @@ import { resolve } from "node:path";
 import { parseArgs } from "node:util";
 import { drawings, startUps, transfers } from "./bench/page.mjs";
 import { report } from "./bench/print.mjs";
-import { searches, stages } from "./bench/rounds.mjs";
+import { searches, sharedSteps, stages } from "./bench/rounds.mjs";
 import { scenes } from "./bench/scenes.mjs";
 import { serve } from "./bench/server.mjs";
 import { browserSide, launch, nativeSide } from "./bench/sides.mjs";
@@ -25,6 +25,8 @@ const SIZES = ["32x32", "64x64", "128x128", "256x256", "640x480"];
 const SAMPLES = 20;
 /** Searches of one scene: three up to this many pixels, one beyond, where each takes its time. */
 const SOON = 128 * 128;
+/** Pixels from which on iterations are shared (js/estimator.ts), rounded up to a size that is timed. */
+const SHARED = 128 * 128;
 const RANDOM_SIZES = ["64x64", "128x128"];
 const RANDOM_SCENES = 8;
 /** Where memory is measured, and where a frame's transfer is. */
@@ -58,6 +60,7 @@ async function loops(sides, made, plan) {
     found.covered = scene.covered;
     const { rows, ends } = await stages(sides, scene, { size, least: plan.samples });
     found.samples.push(...rows);
+    if (pixelsOf(size) >= SHARED) found.samples.push(...(await sharedSteps(sides, scene, { size, least: plan.samples })));
     found.ends.push(...ends);
     found.converged.push(...(await searches(sides, scene, { size, times: pixelsOf(size) <= SOON ? plan.again : 1 })));
     const reader = sides.find(({ where }) => where === "browser");

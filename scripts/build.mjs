@@ -24,9 +24,9 @@ const FLAVOURS = [
   { file: `${MODULE}_scalar_bg.wasm`, target: "target/scalar", flags: ["-C", `target-feature=-${REFERENCES},-simd128`] },
 ];
 /** Two for programs, one for what reads files, and two for threads. */
-const ENTRIES = ["index", "node", "files", "scout", "scout-node"];
+const ENTRIES = ["index", "node", "files", "thread", "thread-node"];
 /** Declarations that no entry mentions; one of them names the generated bindings, which stay inside. */
-const INTERNAL = ["check", "engine", "node", "npy", "plain", "scout", "scout-node", "scouting", "scouts"];
+const INTERNAL = ["check", "engine", "node", "npy", "partner", "plain", "scouts", "thread", "thread-node", "threads"];
 
 const node = (module, ...args) => must(process.execPath, [inRoot("node_modules", module), ...args]);
 
@@ -69,8 +69,10 @@ async function numerics({ file, target, flags }) {
     ...["--target", "web", "--omit-default-module-path", "--out-dir", `${target}/wasm-bindgen`],
     linked,
   ]);
-  // Level "s" gives the last 0.7 kB; speed is LLVM's work.
-  const smaller = ["-Os", "--converge", "--strip-producers", "--strip-target-features"];
+  // Level "s" gives the last 0.7 kB; speed is LLVM's work. Binaryen would put functions of one caller into it, whatever their size:
+  // engines replace a function by its optimised code at its next call only, and what is one long loop would run slowly to its end.
+  const apart = ["--one-caller-inline-max-function-size", "50"];
+  const smaller = ["-Os", "--converge", ...apart, "--strip-producers", "--strip-target-features"];
   await node("binaryen/bin/wasm-opt", ...smaller, `${target}/wasm-bindgen/${MODULE}_bg.wasm`, "-o", `pkg/${file}`);
 }
 

@@ -3,6 +3,8 @@
 use std::borrow::Cow;
 use std::fmt;
 
+use crate::text::Brief;
+
 /// The family an [`Error`] belongs to. Its [`code`](ErrorKind::code) is stable and is what JavaScript sees.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
@@ -104,7 +106,7 @@ impl fmt::Display for Error {
         }
         write!(f, ": {}", self.message)?;
         if let Some(value) = self.value {
-            write!(f, " (got {value})")?;
+            write!(f, " (got {})", Brief(value))?;
         }
         Ok(())
     }

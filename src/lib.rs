@@ -18,7 +18,7 @@
 //! | `pose/icp`, `pose/ransac` ([`Icp`], [`ransac`]) | the pose from both surfaces | Eq. 12 to 14 |
 //! | `pose/similarity`, `pose/angles` ([`Similarity`], [`Angles`]) | s, R, t and the angles | Eq. 15, 16, 20 |
 //! | `pose/correspondence` ([`Correspondences`]) | which depth point is which pixel | the 1-pixel rule |
-//! | `estimator` ([`Estimator`]) | one iteration, its merit, its end; `opening` (search, candidates, rivals) before it, parts of it done by a [`Scout`] elsewhere | Eq. 1, Algorithm 1 |
+//! | `estimator` ([`Estimator`]) | one iteration, its merit, its end; `opening` (search, candidates, rivals) before it, parts of it done by a [`Helper`] elsewhere | Eq. 1, Algorithm 1 |
 //! | [`scenes`] | surfaces, lights and a renderer with a known answer | the experiments |
 //! | `wasm` | bindings without mathematics, wasm32 only | |
 //!
@@ -43,12 +43,13 @@ mod pose;
 mod report;
 pub mod scenes;
 mod shape;
+mod text;
 mod view;
 #[cfg(target_arch = "wasm32")]
 mod wasm;
 
 pub use error::{Error, ErrorKind, Result};
-pub use estimator::{Estimator, Finding, Scout, Surface, Task};
+pub use estimator::{Estimator, Finding, Helper, RefinementTask, Surface, Task};
 pub use light::{COEFFICIENTS, CoefficientMatrix, Light, LightFit, LightFitter, LightPrior};
 pub use options::{LightSource, Options, Registration, Shading, Start, Weights};
 pub use pose::{
@@ -60,8 +61,8 @@ pub use pose::{
 pub use report::{Energy, Stage, Status, StepReport, Uncertainty};
 pub use shape::{
     AnchorWeight, Anchors, HeightDomain, HeightProblem, HeightReport, HeightSolver, IntegrationOptions,
-    IntegrationReport, Integrator, RefinementProblem, Refiner, Robust, ShadingProblem, ShadingSolver, ShadingWeights,
-    Termination, Terminations, Workbench, exposure_step, first_exposure, gradients,
+    IntegrationReport, Integrator, RefinementProblem, RefinementTerms, Refiner, Robust, ShadingProblem, ShadingSolver,
+    ShadingWeights, Termination, Terminations, Workbench, exposure_step, first_exposure, gradients,
 };
 pub use view::{
     Camera, ColourImage, ColourSamples, ColourView, DepthMap, DepthSamples, DepthView, Normals, Pinhole, Points, Size,

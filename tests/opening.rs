@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use bimodal_stereo::scenes::{Relief, Sample, SampleRequest, Scene, light, surface};
 use bimodal_stereo::{
-    Angles, ColourSamples, Estimator, Finding, LightSource, Options, Registration, Scout, Size, Stage, Start, Status,
+    Angles, ColourSamples, Estimator, Finding, Helper, LightSource, Options, Registration, Size, Stage, Start, Status,
     StepReport, Task, Weights,
 };
 
@@ -183,8 +183,8 @@ impl Chance {
 fn run_with_scouts(sample: &Sample, options: &Options, scouts: usize, seed: u64) -> (StepReport, Vec<u32>, usize) {
     let mut chance = Chance(seed);
     let mut estimator = Estimator::new(sample.colour_image(), &sample.depth_map(), options.clone()).unwrap();
-    let scout = || Scout::new(sample.colour_image(), &sample.depth_map(), options.clone()).unwrap();
-    let mut scouts: Vec<(Scout, VecDeque<Vec<f64>>)> = (0..scouts).map(|_| (scout(), VecDeque::new())).collect();
+    let scout = || Helper::new(sample.colour_image(), &sample.depth_map(), options.clone()).unwrap();
+    let mut scouts: Vec<(Helper, VecDeque<Vec<f64>>)> = (0..scouts).map(|_| (scout(), VecDeque::new())).collect();
     let mut findings = 0;
     while estimator.report().status == Status::Running {
         estimator.step();
@@ -199,7 +199,7 @@ fn run_with_scouts(sample: &Sample, options: &Options, scouts: usize, seed: u64)
             }
             let task = if chance.below(2) == 0 { tasks.pop_front() } else { tasks.pop_back() };
             if let Some(task) = task.and_then(|task| Task::from_numbers(&task)) {
-                let finding = scout.perform(&task).to_numbers();
+                let finding = scout.perform(&task).unwrap().to_numbers();
                 estimator.accept(Finding::from_numbers(&finding).unwrap());
                 findings += 1;
             }

@@ -15,11 +15,13 @@ function stageTable({ rows, wasmAgainstNative, growth }) {
     return row ? spread(row.milliseconds) : "";
   };
   const ratio = (stage, size) => fixed(wasmAgainstNative.find((row) => row.stage === stage && row.size === size)?.ratio, 2);
-  const exponent = (where, stage) => fixed((where === "native" ? growth.native : growth)?.[stage], 2);
+  const slopes = { browser: growth, native: growth.native };
+  const exponent = (where, stage) => (slopes[where] ? fixed(slopes[where][stage], 2) : "");
+  const timed = (stage) => places.filter((where) => rows.some((row) => row.where === where && row.stage === stage));
   return columns([
     ["stage", "where", ...sizes, "growth"],
     ...stages.flatMap((stage) => [
-      ...places.map((where) => [stage, where, ...sizes.map((size) => cell(where, stage, size)), exponent(where, stage)]),
+      ...timed(stage).map((where) => [stage, where, ...sizes.map((size) => cell(where, stage, size)), exponent(where, stage)]),
       ...(places.length > 1 ? [["", "ratio", ...sizes.map((size) => ratio(stage, size)), ""]] : []),
     ]),
   ]);

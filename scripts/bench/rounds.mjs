@@ -99,6 +99,27 @@ export async function stages(sides, scene, { size, least }) {
   return { rows, ends: ends.filter((end) => end.start === "near") };
 }
 
+/** Steady iterations that several workers share, until each such crew has `least` of them. */
+export async function sharedSteps(sides, scene, { size, least }) {
+  const rows = [];
+  for (const side of sides) {
+    await side.open(scene);
+    for (const workers of side.crews.filter((workers) => workers > 1)) {
+      const times = [];
+      await side.run({ start: "near", most: WARMING + 1, workers });
+      while (times.length < least) {
+        const run = await side.run({ start: "near", most: TO_THE_END, workers });
+        const steady = run.shared.filter(({ iteration }) => iteration >= WARMING);
+        if (steady.length === 0) throw new Failure(`${size}: a loop ended before its steady state`);
+        times.push(...steady.map(({ milliseconds }) => milliseconds));
+      }
+      rows.push({ where: `${side.where}, ${workers} workers`, size, stage: "standing step", times });
+      say(`${size}: ${least} steps of ${workers} workers`);
+    }
+  }
+  return rows;
+}
+
 const endOf = ({ milliseconds, degrees, status, iterations }) => ({ milliseconds, degrees, status, iterations });
 
 /** From two views and nothing known to the end, `times` times on each side. */

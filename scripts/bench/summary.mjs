@@ -85,8 +85,8 @@ export function summary({ samples, ends, converged, searches, startUp, transfer,
 
 /** [what, value, unit, limit] of each aim; a value is null where this run did not measure it. */
 export function aims({ rows, search, growth, wasmAgainstNative, bytesPerPixel, wasmGzipBytes, scalarGzipBytes, jsGzipBytes }) {
-  const step = (size, stage = "step") =>
-    rows.find((row) => row.where === "browser" && row.size === size && row.stage === stage)?.milliseconds.median ?? null;
+  const step = (size, stage = "step", where = "browser") =>
+    rows.find((row) => row.where === where && row.size === size && row.stage === stage)?.milliseconds.median ?? null;
   const searched = (size, where) => search.find((row) => row.where === where && row.size === size);
   const ratios = wasmAgainstNative.filter(({ stage }) => stage === "step").map(({ ratio }) => ratio);
   const slices = search.filter(({ where }) => where === "browser").map(({ longestSlice }) => longestSlice);
@@ -100,6 +100,7 @@ export function aims({ rows, search, growth, wasmAgainstNative, bytesPerPixel, w
     ["standing step at 32x32", step("32x32", "standing step"), "ms", 0.4],
     ["standing step at 128x128", step("128x128", "standing step"), "ms", 3],
     ["standing step at 640x480", step("640x480", "standing step"), "ms", 33],
+    ["the same with two workers", step("640x480", "standing step", "browser, 2 workers"), "ms", 22],
     ["search to converged at 64x64", seconds("64x64"), "s", 1.5],
     ["search to converged at 128x128", seconds("128x128"), "s", 3],
     ["the same with two workers, 64x64", seconds("64x64", "browser, 2 workers"), "s", 1.5],

@@ -6,6 +6,7 @@ use crate::light::LightPrior;
 use crate::options::{LightSource, Options, Registration};
 use crate::pose::{PhotometricReport, Search, Similarity};
 use crate::report::Status;
+use crate::text::Fixed;
 use crate::view::{ColourView, DepthView};
 
 /// A rotation less certain than this about any axis is no answer, degrees (one sigma). Found poses of the random scenes
@@ -53,7 +54,7 @@ impl Estimator {
         };
         match opening.advance(joint, &given) {
             Look::Ongoing(share, what) => {
-                self.report.message = Some(format!("{:.0} %: {what}", 100.0 * share));
+                self.report.message = Some(format!("{} %: {what}", Fixed(100.0 * share, 0)));
                 Ok(())
             }
             Look::Done(outcome) => {
@@ -73,13 +74,13 @@ impl Estimator {
         }
     }
 
-    /// How many [`Scout`](super::Scout)s may work beside this estimator within the memory of a pair.
+    /// How many [`Helper`](super::Helper)s may work beside this estimator within the memory of a pair.
     #[must_use]
-    pub fn scouts_afforded(&self) -> u32 {
-        memory::scouts_afforded(self.image.size, self.depth.size)
+    pub fn helpers_afforded(&self) -> u32 {
+        memory::helpers_afforded(self.image.size, self.depth.size)
     }
 
-    /// A part of the opening search for a [`Scout`](super::Scout) elsewhere; `None` while there is none to give away.
+    /// A part of the opening search for a [`Helper`](super::Helper) elsewhere; `None` while there is none to give away.
     /// Whatever scouts do or fail to do, steps go on and the outcome is the same.
     pub fn take_task(&mut self) -> Option<Task> {
         self.opening.as_mut()?.take()
@@ -147,11 +148,14 @@ impl Estimator {
             let count = self.report.rivals.len();
             self.end(
                 Status::Ambiguous,
-                format!("{count} other poses explain the colours as well, the nearest {nearest:.0} degrees away"),
+                format!(
+                    "{count} other poses explain the colours as well, the nearest {} degrees away",
+                    Fixed(nearest, 0)
+                ),
             );
         } else if let Some(sigma) = self.largest_sigma().filter(|&sigma| sigma > DOUBTFUL_SIGMA) {
             let weakest = self.report.uncertainty.as_ref().map_or("", |uncertainty| &uncertainty.weakest);
-            let message = format!("the rotation is uncertain by {sigma:.1} degrees (one sigma): {weakest}");
+            let message = format!("the rotation is uncertain by {} degrees (one sigma): {weakest}", Fixed(sigma, 1));
             self.end(Status::Ambiguous, message);
         }
     }
@@ -173,15 +177,15 @@ impl Estimator {
             ));
         }
         if sigma > LARGEST_SIGMA {
-            return Some(format!("the rotation is uncertain by {sigma:.0} degrees: {}", uncertainty.weakest));
+            return Some(format!("the rotation is uncertain by {} degrees: {}", Fixed(sigma, 0), uncertainty.weakest));
         }
         let unexplained = found.noise / self.image.log_spread();
         if unexplained.is_nan() || unexplained > LARGEST_UNEXPLAINED {
-            let share = 100.0 * unexplained;
-            return Some(format!("light and normals leave {share:.0} % of the colours' spread unexplained"));
+            let share = Fixed(100.0 * unexplained, 0);
+            return Some(format!("light and normals leave {share} % of the colours' spread unexplained"));
         }
-        let share = 100.0 * found.inliers;
-        (found.inliers < FEWEST_INLIERS).then(|| format!("only {share:.0} % of the points agree with the pose"))
+        let share = Fixed(100.0 * found.inliers, 0);
+        (found.inliers < FEWEST_INLIERS).then(|| format!("only {share} % of the points agree with the pose"))
     }
 }
 

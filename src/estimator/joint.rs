@@ -122,16 +122,16 @@ impl Joint {
         self.found = Some(found);
     }
 
+    /// Whether the last registration has ended in `pose`. t_z may have been settled since: it is a gauge.
+    pub fn stands(&self, pose: &Similarity) -> bool {
+        let free = |pose: &Similarity| (pose.scale, pose.rotation, pose.translation.xy());
+        self.found.as_ref().is_some_and(|found| !found.sampled && free(&found.pose) == free(pose))
+    }
+
     /// The best pose near `start`. A registration that stands where the last one ended is not repeated: the measured
     /// normals do not change, so neither would its end.
     pub fn register(&mut self, given: &Given<'_>, start: &Similarity) -> Result<&PhotometricReport> {
-        // t_z may have been settled since: it is a gauge.
-        let stands = self.found.as_ref().is_some_and(|found| {
-            let pose = &found.pose;
-            !found.sampled
-                && (pose.scale, pose.rotation, pose.translation.xy())
-                    == (start.scale, start.rotation, start.translation.xy())
-        });
+        let stands = self.stands(start);
         // From the end of a sample all points are a small step away.
         let first_level = match &self.found {
             Some(found) if found.sampled => 0,

@@ -1,6 +1,7 @@
 //! How much memory a pair of views will take, asked before any of it is allocated.
 
 use crate::error::{Error, ErrorKind, Result};
+use crate::text::Fixed;
 use crate::view::Size;
 
 /// Bytes that one pixel of either view takes, all stages and the opening search together. Measured on pairs at 640x480
@@ -8,9 +9,9 @@ use crate::view::Size;
 /// object covers a third of the frame, 216 where it fills it. A lens with distortion adds up to 52, a noisy depth map,
 /// whose pose its surface settles, up to 35; of smaller views the megabyte is a larger share: 222 at 480x360.
 const BYTES_PER_PIXEL: f64 = 220.0;
-/// Bytes that one pixel of either view takes in a [`Scout`](super::Scout), which has a module of its own: 75 were measured at
-/// 640x480.
-const SCOUT_BYTES_PER_PIXEL: f64 = 80.0;
+/// Bytes that one pixel of either view takes in a [`Helper`](super::Helper), which has a module of its own. Measured at 640x480: 75
+/// while it searches; while it refines 84 where the object covers a third of the frame, 98 where it covers most of it.
+const HELPER_BYTES_PER_PIXEL: f64 = 110.0;
 /// Most bytes of a pair: a quarter of what a wasm module may have, and what a phone's browser grants a page.
 const MOST_BYTES: f64 = 1e9;
 
@@ -25,15 +26,15 @@ pub fn check(image: Size, depth: Size) -> Result<()> {
         return Ok(());
     }
     let field = if image >= depth { "image" } else { "depth" };
-    let [needed, granted] = [bytes, MOST_BYTES].map(|bytes| bytes / 1e6);
-    let message = format!("the pair would take {needed:.0} MB and may take {granted:.0}: hand over smaller views");
+    let [needed, granted] = [bytes, MOST_BYTES].map(|bytes| Fixed(bytes / 1e6, 0));
+    let message = format!("the pair would take {needed} MB and may take {granted}: hand over smaller views");
     Err(Error::new(ErrorKind::Memory, field, message))
 }
 
-/// How many scouts of a pair fit beside its estimator.
-pub fn scouts_afforded(image: Size, depth: Size) -> u32 {
+/// How many helpers of a pair fit beside its estimator.
+pub fn helpers_afforded(image: Size, depth: Size) -> u32 {
     let pixels = (image.len() + depth.len()) as f64;
-    ((MOST_BYTES / pixels - BYTES_PER_PIXEL) / SCOUT_BYTES_PER_PIXEL).max(0.0) as u32
+    ((MOST_BYTES / pixels - BYTES_PER_PIXEL) / HELPER_BYTES_PER_PIXEL).max(0.0) as u32
 }
 
 #[cfg(test)]

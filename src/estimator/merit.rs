@@ -12,7 +12,7 @@ use nalgebra::Vector3;
 use crate::light::{Light, Polynomial};
 use crate::pose::Similarity;
 use crate::report::Energy;
-use crate::view::{ColourView, DepthView, Normals, Points};
+use crate::view::{ColourView, DepthView, Lanes, Normals, Points, Real};
 
 /// Robust scale of the log-colour residual: a tenth is half a step of a photographer's stop over three channels.
 const COLOUR_SCALE: f64 = 0.1;
@@ -93,12 +93,10 @@ fn point_terms(
     let gap = image_normal.dot(&(image_point - point)) / candidate.pixel_length;
     let log = image.size.each_bilinear(image.log.each_ref().map(Vec::as_slice), column as f32, row as f32);
     let normal_f32 = [normal.x as f32, normal.y as f32, normal.z as f32];
-    let square = |channel: usize| (log[channel] - light[channel].shade(normal_f32)).powi(2);
-    let colour = f64::from(square(0) + square(1) + square(2));
     Some([
         robust((image_normal - normal).norm(), NORMAL_SCALE),
         robust(gap, DISTANCE_SCALE),
-        robust(colour.sqrt(), COLOUR_SCALE),
+        robust(residual(log, light, normal_f32), COLOUR_SCALE),
     ])
 }
 
@@ -108,7 +106,9 @@ fn brightness(image: &ColourView, candidate: Candidate<'_>, light: &[Polynomial;
     let inside = || (0..image.size.len()).filter(|&index| image.mask[index]);
     for index in thinned(inside) {
         count += 1.0;
-        sum += robust(f64::from(residual(image, index, light, candidate.normals.get(index))), COLOUR_SCALE);
+        let [red, green, blue] = &image.log;
+        let log = [red[index], green[index], blue[index]];
+        sum += robust(residual(log, light, candidate.normals.get(index)), COLOUR_SCALE);
     }
     sum / f64::max(count, 1.0)
 }
@@ -118,10 +118,25 @@ pub fn thinned<I: Iterator<Item = usize>>(indices: impl Fn() -> I) -> impl Itera
     indices().step_by(indices().count().div_ceil(MOST_JURORS).max(1))
 }
 
-/// |log S - predicted| of an image pixel for a normal in the colour view's frame, under a light as three polynomials.
-pub fn residual(image: &ColourView, index: usize, light: &[Polynomial; 3], normal: [f32; 3]) -> f32 {
-    let square = |channel: usize| (image.log[channel][index] - light[channel].shade(normal)).powi(2);
-    (square(0) + square(1) + square(2)).sqrt()
+/// |log S - predicted| for a normal in the colour view's frame, under a light as three polynomials.
+#[inline(never)]
+fn residual(log: [f32; 3], light: &[Polynomial; 3], normal: [f32; 3]) -> f64 {
+    f64::from(square_residual(log, light, normal).sqrt())
+}
+
+/// [`residual`] of the pixels from `start` on, each for its own normal.
+pub fn residuals(image: &ColourView, start: usize, light: &[Polynomial; 3], normals: [Lanes; 3]) -> Lanes {
+    let [red, green, blue] = &image.log;
+    let start = start as isize;
+    let log = [Lanes::load(red, start), Lanes::load(green, start), Lanes::load(blue, start)];
+    square_residual(log, light, normals).sqrt()
+}
+
+#[inline(always)]
+fn square_residual<T: Real>(log: [T; 3], light: &[Polynomial; 3], normal: [T; 3]) -> T {
+    let off = |channel: usize| log[channel] - light[channel].shade(normal);
+    let [red, green, blue] = [off(0), off(1), off(2)];
+    red * red + green * green + blue * blue
 }
 
 /// Whether a step of so many degrees has made the merit worse.

@@ -10,11 +10,12 @@
 
 mod anywhere;
 mod gauge;
+mod helper;
 mod joint;
 mod memory;
 mod merit;
 mod opening;
-mod scout;
+mod partner;
 mod solution;
 mod stages;
 mod task;
@@ -27,11 +28,14 @@ use crate::options::{LightSource, Options, Registration, Shading, Start};
 use crate::pose::{Correspondences, Icp, Similarity};
 use crate::report::{Energy, Stage, Status, StepReport};
 use crate::shape::{Integrator, Refiner, ReliefSolver, STARTS, ShadingSolver, Workbench};
+use crate::text::Fixed;
 use crate::view::{ColourImage, ColourView, DepthMap, DepthView, Normals, Size};
+pub use helper::Helper;
 use joint::{Given, Joint};
 use merit::Candidate;
 use opening::{Look, Opening, Outcome};
-pub use scout::Scout;
+use partner::Outlook;
+pub use partner::RefinementTask;
 use solution::{Kept, Solution};
 pub use task::{Finding, Task};
 
@@ -98,6 +102,7 @@ pub struct Estimator {
     /// Points of ICP's pairs: depth view, image.
     paired_points: [Vec<Vector3<f64>>; 2],
     refiner: Refiner,
+    outlook: Outlook,
     /// Only where the image surface is solved as a whole.
     relief: Option<ReliefSolver>,
     bench: Workbench,
@@ -147,9 +152,9 @@ impl Estimator {
             Shading::Pixel => None,
         };
         let (pixels, points) = (image.size.len(), depth.size.len());
-        let domains = relief.iter().map(ReliefSolver::domain).chain([refiner.domain()]);
+        let domains = [refiner.domain(), relief.as_ref().map_or(refiner.domain(), ReliefSolver::domain)];
         let mut estimator = Self {
-            bench: Workbench::new(pixels.max(points), domains),
+            bench: Workbench::new(pixels.max(points), &domains),
             solution: Solution::new(&image, &depth, pose, light),
             kept: Kept::new(pose, light),
             kept_points: Vec::with_capacity(merit::MOST_JURORS),
@@ -162,6 +167,7 @@ impl Estimator {
             opening: None,
             paired_points: [Vec::new(), Vec::new()],
             refiner,
+            outlook: Outlook::new(points),
             relief,
             carried_normals: Normals::missing(pixels),
             residual: vec![f32::NAN; pixels],
@@ -373,6 +379,7 @@ impl Estimator {
         self.measure();
         self.decide(rejected, before);
         self.trust = if rejected { 0.5 * self.trust } else { (2.0 * self.trust).min(1.0) };
+        self.look_ahead();
     }
 
     /// Energy of the working solution over the points that were kept.
@@ -384,12 +391,13 @@ impl Estimator {
     fn reject(&mut self, before: Energy, after: Energy) {
         self.rejections += 1;
         self.solution.restore(&self.kept, &self.image, &self.depth);
+        self.outlook.change();
         self.update_correspondences();
         self.report.rotation_change = 0.0;
         self.report.message = Some(format!(
-            "iteration taken back: the merit would have risen from {:.4} to {:.4}; the next one goes half as far",
-            before.total(),
-            after.total()
+            "iteration taken back: the merit would have risen from {} to {}; the next one goes half as far",
+            Fixed(before.total(), 4),
+            Fixed(after.total(), 4)
         ));
     }
 
@@ -444,8 +452,8 @@ impl Estimator {
             }
         };
         if self.correspondences.count() < FEWEST_PAIRS || self.report.overlap < LEAST_OVERLAP {
-            let share = 100.0 * self.report.overlap;
-            self.end(Status::Lost, format!("only {share:.1} % of the depth pixels have a counterpart in the image"));
+            let share = Fixed(100.0 * self.report.overlap, 1);
+            self.end(Status::Lost, format!("only {share} % of the depth pixels have a counterpart in the image"));
         } else if settled && self.report.iteration >= first_verdict {
             self.conclude();
         } else if rejected && registration == Registration::Fixed {

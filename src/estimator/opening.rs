@@ -9,7 +9,7 @@
 //! more, so an end that leaves nothing but the noise of the image comes before one that sees more but leaves so much.
 //!
 //! All of it falls into tasks that depend on nothing but the pair and themselves, so that others may do some of them
-//! ([`Scout`](super::Scout)). What they find counts in the order of the tasks, however it comes in: the outcome is the
+//! ([`Helper`](super::Helper)). What they find counts in the order of the tasks, however it comes in: the outcome is the
 //! same to the bit.
 
 use crate::pose::{PhotometricReport, Search, Similarity, Slots, sort_down};

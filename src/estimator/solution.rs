@@ -97,6 +97,11 @@ impl Kept {
         Self { pose, light, exposure: 0.0, image_normals, image_depth, depth_normals, refined_depth }
     }
 
+    /// Normals of the image surface, those of the working solution until its iteration finds others.
+    pub const fn image_normals(&self) -> &Normals {
+        &self.image_normals
+    }
+
     /// Keeps `solution` instead; allocates the first time.
     pub fn keep(&mut self, solution: &Solution) {
         (self.pose, self.light, self.exposure) = (solution.pose, solution.light, solution.exposure);
@@ -109,14 +114,26 @@ impl Kept {
 
 /// The points at their depths along the pixels' rays.
 fn raise(size: Size, camera: &Camera, points: &mut Points) {
-    for index in 0..points.len() {
-        let (column, row) = size.position(index);
-        let depth = points.z[index];
-        let point = if depth.is_nan() {
-            [f32::NAN; 3]
-        } else {
-            camera.point(size, [column as f64, row as f64], f64::from(depth)).map(|value| value as f32)
-        };
-        points.set(index, point);
+    let parallel = camera.is_orthographic();
+    let straight = camera.pinhole().is_none_or(|pinhole| pinhole.is_undistorted());
+    // Of straight rays x follows from the column and y from the row.
+    let [first, second] = [0.0, 1.0].map(|place| camera.ray(size, [place; 2]));
+    let step = second[0] - first[0];
+    for row in 0..size.height {
+        let down = first[1] + row as f64 * (second[1] - first[1]);
+        for column in 0..size.width {
+            let index = size.index(column, row);
+            let depth = points.z[index];
+            let mut point = [f32::NAN; 3];
+            if !depth.is_nan() {
+                let mut ray = [first[0] + column as f64 * step, down];
+                if !straight {
+                    ray = camera.ray(size, [column as f64, row as f64]);
+                }
+                let reach = if parallel { 1.0 } else { f64::from(depth) };
+                point = [(ray[0] * reach) as f32, (ray[1] * reach) as f32, depth];
+            }
+            points.set(index, point);
+        }
     }
 }

@@ -9,10 +9,10 @@ use crate::light::{Light, Polynomial};
 use crate::options::{LightSource, Registration};
 use crate::pose::{CorrespondenceProblem, IcpOptions, IcpProblem, RansacOptions, Similarity, ransac};
 use crate::shape::{
-    IntegrationOptions, Integrator, RefinementProblem, ReliefProblem, ReliefSolver, Robust, ShadingProblem,
-    ShadingWeights, Workbench, exposure_step, first_exposure, gradients,
+    IntegrationOptions, Integrator, ReliefProblem, ReliefSolver, Robust, ShadingProblem, ShadingWeights, Workbench,
+    exposure_step, first_exposure, gradients,
 };
-use crate::view::{normals, quantile};
+use crate::view::{LANES, Lanes, Points, normals, quantile};
 
 /// |n - m| at which a prior normal has lost three quarters of its pull: 23 degrees, more than noise, less than a mistake.
 const PRIOR_SCALE: f32 = 0.4;
@@ -93,13 +93,9 @@ impl Estimator {
 
     /// Weights of the normals' terms. Colours that even the fitted light leaves unexplained (texture, cast shadows)
     /// weigh less, which is to say that the prior weighs more.
-    fn shading_weights(&self, prior: f64) -> ShadingWeights {
+    pub(super) fn shading_weights(&self, prior: f64) -> ShadingWeights {
         let doubt = (self.unexplained / EXPLAINED).max(1.0).powi(2);
-        ShadingWeights {
-            prior: (prior * doubt) as f32,
-            unit: self.options.weights.unit as f32,
-            robust: Some(PRIOR_SCALE),
-        }
+        weights((prior * doubt) as f32, self.options.weights.unit as f32)
     }
 
     /// Heights of the colour view from its normals.
@@ -258,25 +254,6 @@ impl Estimator {
         Ok(if self.refused { start } else { better })
     }
 
-    /// Normals and depth of the depth view (Eq. 17 to 19).
-    pub(super) fn refine(&mut self) {
-        let light = self.solution.exposed_light();
-        let problem = RefinementProblem {
-            depth: &self.depth,
-            image: &self.image,
-            light: &light,
-            rotation: &self.solution.pose.rotation,
-            position: self.correspondences.position(),
-            image_normals: &self.solution.image_normals,
-            weights: self.shading_weights(self.options.weights.refinement),
-            colour_error: self.unexplained,
-        };
-        self.bench.fit(self.depth.size.len());
-        let (normals, points) = (&mut self.solution.depth_normals, &mut self.solution.depth_points);
-        self.refiner.refine(&mut self.bench, problem, normals, &mut points.z);
-        self.solution.raise_depth_points(&self.depth);
-    }
-
     /// Length of an image pixel at the object.
     pub(super) fn pixel_length(&self) -> f64 {
         if self.image.camera.is_orthographic() {
@@ -318,20 +295,27 @@ impl Estimator {
         let light = Polynomial::of(&self.solution.exposed_light());
         let rotation = self.solution.pose.rotation.cast::<f32>();
         self.bench.spare.clear();
-        for pixel in 0..self.image.size.len() {
-            self.residual[pixel] = f32::NAN;
-            if !self.image.mask[pixel] {
-                continue;
+        for start in (0..self.residual.len()).step_by(LANES) {
+            let mut normals = [[f32::NAN; LANES]; 3];
+            let mut is_carried = [false; LANES];
+            for lane in 0..LANES {
+                let pixel = start + lane;
+                if !self.image.mask.get(pixel).is_some_and(|&inside| inside) {
+                    continue;
+                }
+                let index = usize::try_from(self.correspondences.depth_of_pixel()[pixel]).ok();
+                let index = index.filter(|&index| self.depth.normals.is_valid(index));
+                is_carried[lane] = index.is_some();
+                let normal = match index {
+                    Some(index) => (rotation * Vector3::from(self.depth.normals.get(index))).into(),
+                    None => self.solution.image_normals.get(pixel),
+                };
+                [normals[0][lane], normals[1][lane], normals[2][lane]] = normal;
             }
-            let carried = usize::try_from(self.correspondences.depth_of_pixel()[pixel])
-                .ok()
-                .filter(|&index| self.depth.normals.is_valid(index))
-                .map(|index| (rotation * Vector3::from(self.depth.normals.get(index))).into());
-            let normal = carried.unwrap_or_else(|| self.solution.image_normals.get(pixel));
-            self.residual[pixel] = merit::residual(&self.image, pixel, &light, normal);
-            if carried.is_some() {
-                self.bench.spare.push(self.residual[pixel]);
-            }
+            let residuals = merit::residuals(&self.image, start, &light, normals.map(Lanes::from));
+            residuals.store(&mut self.residual[start..]);
+            let carried = residuals.array().into_iter().zip(is_carried).filter(|(_, carried)| *carried);
+            self.bench.spare.extend(carried.map(|(residual, _)| residual));
         }
         self.report.overlap = self.correspondences.count() as f64 / self.depth.valid().max(1) as f64;
         self.report.inliers = self.correspondences.inliers();
@@ -379,15 +363,24 @@ impl Estimator {
 
     /// Median over the correspondences of a function of the image surface's depth and the depth point's.
     fn median_gap(&mut self, gap: impl Fn(f64, f64) -> f64) -> Option<f64> {
+        let (row, shift) =
+            (self.solution.pose.scale * self.solution.pose.rotation.row(2), self.solution.pose.translation.z);
+        let Points { x, y, z } = &self.solution.depth_points;
         self.bench.spare.clear();
         for (&index, &depth) in self.correspondences.depth_of_pixel().iter().zip(&self.solution.image_points.z) {
             let Ok(index) = usize::try_from(index) else { continue };
             if !depth.is_nan() {
-                self.bench.spare.push(gap(f64::from(depth), self.solution.carried(index).z) as f32);
+                let [x, y, z] = [f64::from(x[index]), f64::from(y[index]), f64::from(z[index])];
+                self.bench.spare.push(gap(f64::from(depth), row[0] * x + row[1] * y + row[2] * z + shift) as f32);
             }
         }
         (!self.bench.spare.is_empty()).then(|| f64::from(quantile(&mut self.bench.spare, 0.5)))
     }
+}
+
+/// Weights of a prior that mistakes do not count for, and of the unit length.
+pub(super) const fn weights(prior: f32, unit: f32) -> ShadingWeights {
+    ShadingWeights { prior, unit, robust: Some(PRIOR_SCALE) }
 }
 
 fn median_of(values: &[f32], spare: &mut Vec<f32>) -> Option<f32> {

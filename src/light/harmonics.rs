@@ -1,6 +1,7 @@
 //! log S = n^T M n with n = [n_x n_y n_z 1]: second-order spherical harmonics (Eq. 3, 5).
 
 use crate::error::{Error, ErrorKind, Result};
+use crate::text::Brief;
 use crate::view::{Lanes, Real};
 
 /// Number of harmonics for each channel.
@@ -40,7 +41,7 @@ impl Light {
         match flat.iter().position(|value| !value.is_finite() || value.abs() > LARGEST_COEFFICIENT) {
             None => Ok(()),
             Some(index) => {
-                let message = format!("must be finite and within {LARGEST_COEFFICIENT} either way");
+                let message = format!("must be finite and within {} either way", Brief(LARGEST_COEFFICIENT));
                 Err(Error::new(ErrorKind::Range, field, message).at(index).value(flat[index]))
             }
         }
@@ -166,9 +167,9 @@ impl Polynomial {
     #[inline(always)]
     #[must_use]
     pub(crate) fn expand<T: Real>(&self, [x, y, z]: [T; 3]) -> (T, [T; 3]) {
-        let [by_x, by_y, by_z] = self.linear.map(T::splat);
+        let [by_x, by_y, by_z] = self.linear;
         let slope = self.gradient([x, y, z]);
-        let along = x * (slope[0] + by_x) + y * (slope[1] + by_y) + z * (slope[2] + by_z);
+        let along = x * (slope[0] + T::splat(by_x)) + y * (slope[1] + T::splat(by_y)) + z * (slope[2] + T::splat(by_z));
         (T::splat(self.one) + T::splat(0.5) * along, slope)
     }
 

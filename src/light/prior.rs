@@ -54,8 +54,10 @@ impl LightPrior {
             let (long, short) = (row.max(column), row.min(column));
             f64::from(natural::COVARIANCE[long * (long + 1) / 2 + short])
         });
-        Self::new(&natural::MEAN.map(f64::from), &covariance)
-            .expect("the kept covariance is positive definite, as a test shows")
+        let Ok(prior) = Self::new(&natural::MEAN.map(f64::from), &covariance) else {
+            unreachable!("the kept covariance is positive definite, as a test shows")
+        };
+        prior
     }
 
     /// h(L): squared Mahalanobis distance from the mean, least over all exposures.

@@ -10,11 +10,9 @@
 //! so parts thinner than two pixels may be judged wrongly; organised clouds have no depth camera and skip the reverse
 //! test.
 
-use nalgebra::Vector3;
-
-use super::visibility::{HIDDEN_BEHIND, Sight, Visibility, splat, vector};
+use super::visibility::{HIDDEN_BEHIND, Projection, Sight, Visibility};
 use crate::pose::Similarity;
-use crate::view::{ColourView, DepthView, Normals, Points, quantile};
+use crate::view::{ColourView, DepthView, LANES, Normals, Points, quantile};
 
 /// Least accepted distance in image pixels: the paper's threshold.
 const LEAST_DISTANCE: f64 = 1.0;
@@ -51,6 +49,8 @@ pub struct CorrespondenceProblem<'a> {
 pub struct Correspondences {
     depth_of_pixel: Vec<i32>,
     visible: Visibility,
+    /// A number for each point: the z-buffer of the reverse view, then distances from the image surface.
+    of_point: Vec<f32>,
     sorted: Vec<f32>,
     count: usize,
     inliers: f64,
@@ -64,6 +64,7 @@ impl Correspondences {
         Self {
             depth_of_pixel: vec![-1; pixels],
             visible: Visibility::new(pixels, points),
+            of_point: vec![f32::INFINITY; points],
             sorted: Vec::with_capacity(depth.valid()),
             count: 0,
             inliers: 0.0,
@@ -101,96 +102,80 @@ impl Correspondences {
 
     /// Finds the correspondences of a pose. Allocates nothing.
     pub fn update(&mut self, problem: &CorrespondenceProblem<'_>) {
-        self.visible.update(&Sight {
-            image: problem.image,
-            pose: problem.pose,
-            points: problem.depth_points,
-            normals: problem.depth_normals,
-            pixel_length: problem.pixel_length,
-        });
         if !problem.depth.organised {
-            self.hide_from_depth_camera(problem);
+            self.look_back(problem);
         }
-        self.accept_near(problem);
-        self.assign(problem);
-    }
-
-    /// Drops the points that the image surface hides from the depth camera.
-    fn hide_from_depth_camera(&mut self, problem: &CorrespondenceProblem<'_>) {
-        let inverse = problem.pose.inverse();
-        let size = problem.depth.size;
-        let Visibility { of_point: buffer, .. } = &mut self.visible;
-        buffer.fill(f32::INFINITY);
-        for pixel in (0..problem.image_points.len()).filter(|&pixel| problem.image_points.is_valid(pixel)) {
-            let point = inverse.apply(vector(problem.image_points.get(pixel)));
-            if let Some([column, row]) = problem.depth.camera.project(size, point.into()) {
-                splat(size, buffer, [column, row], point.z as f32);
-            }
-        }
-        // The image surface is an estimate: only what it hides by a clear margin is hidden.
-        let tolerance = (2.0 * HIDDEN_BEHIND * problem.pixel_length / problem.pose.scale) as f32;
-        for index in 0..self.visible.column.len() {
-            if problem.depth_points.z[index] > self.visible.of_point[index] + tolerance {
-                self.visible.drop(index);
-            }
-        }
-    }
-
-    /// Drops the points that are too far from the image surface.
-    fn accept_near(&mut self, problem: &CorrespondenceProblem<'_>) {
-        let size = problem.image.size;
-        self.sorted.clear();
-        let Visibility { column, row, of_point: gaps, .. } = &mut self.visible;
-        gaps.fill(f32::NAN);
-        for index in 0..column.len() {
-            let Some(pixel) = size.nearest(column[index], row[index]) else { continue };
-            let gap = vector(problem.image_points.get(pixel)) - carried(problem, index);
-            let gap = gap.dot(&vector(problem.image_normals.get(pixel))).abs() as f32;
-            gaps[index] = gap;
-            if !gap.is_nan() && !problem.depth.depth()[index].is_nan() {
-                self.sorted.push(gap);
-            }
-        }
+        self.measure_gaps(problem);
         let median = if self.sorted.is_empty() { 0.0 } else { quantile(&mut self.sorted, 0.5) };
+        self.accept_near(problem, median);
+    }
+
+    /// The image surface before the depth camera.
+    fn look_back(&mut self, problem: &CorrespondenceProblem<'_>) {
+        let DepthView { camera, size, .. } = problem.depth;
+        let projection = Projection::new(&problem.pose.inverse(), problem.image_points, camera, *size);
+        self.of_point.fill(f32::INFINITY);
+        for start in (0..problem.image_points.len()).step_by(LANES) {
+            projection.enter(start, &mut self.of_point);
+        }
+    }
+
+    /// Which points neither view hides, and how far they are from the image surface.
+    fn measure_gaps(&mut self, problem: &CorrespondenceProblem<'_>) {
+        let CorrespondenceProblem { image, depth, pose, depth_points: points, image_points, .. } = *problem;
+        let sight = Sight { image, pose, points, normals: problem.depth_normals, pixel_length: problem.pixel_length };
+        // The image surface is an estimate: only what it hides by a clear margin is hidden.
+        let tolerance = (2.0 * HIDDEN_BEHIND * problem.pixel_length / pose.scale) as f32;
+        let Self { visible, of_point, sorted, .. } = self;
+        sorted.clear();
+        visible.update(&sight, &mut |index, pixel, [x, y, z]| {
+            if !depth.organised && points.z[index] > of_point[index] + tolerance {
+                return false;
+            }
+            let [surface, normal] = [image_points.get(pixel), problem.image_normals.get(pixel)];
+            let gap = (surface[0] - x) * normal[0] + (surface[1] - y) * normal[1] + (surface[2] - z) * normal[2];
+            of_point[index] = gap.abs();
+            if !gap.is_nan() && !depth.depth()[index].is_nan() {
+                sorted.push(gap.abs());
+            }
+            true
+        });
+    }
+
+    /// Drops the points that are too far from the image surface, and gives each pixel the point nearest to its centre.
+    fn accept_near(&mut self, problem: &CorrespondenceProblem<'_>, median: f32) {
         let follows = (problem.spreads * f64::from(median)).max(LEAST_DISTANCE * problem.pixel_length);
         let threshold = problem.distance.unwrap_or(follows) as f32;
         let inlier = (INLIER_SPREADS * median).min(threshold);
+        self.depth_of_pixel.fill(-1);
+        // Squared distance of each pixel's point from its centre.
+        self.visible.of_pixel.fill(f32::INFINITY);
         (self.count, self.inliers) = (0, 0.0);
-        for index in 0..self.visible.column.len() {
+        for index in 0..self.of_point.len() {
+            let (column, row) = (self.visible.column[index], self.visible.row[index]);
+            let Some(pixel) = problem.image.size.nearest(column, row) else { continue };
             // A point over a pixel without a surface has no distance, and stays.
-            if self.visible.of_point[index] > threshold {
+            let gap = self.of_point[index];
+            if gap > threshold {
                 self.visible.drop(index);
-            } else if !self.visible.column[index].is_nan() && !problem.depth.depth()[index].is_nan() {
+                continue;
+            }
+            if !problem.depth.depth()[index].is_nan() {
                 self.count += 1;
-                let gap = self.visible.of_point[index];
                 self.inliers += f64::from(u8::from(gap.is_nan() || gap <= inlier));
             }
-        }
-        self.inliers /= self.count.max(1) as f64;
-    }
-
-    /// Gives each pixel the point nearest to its centre.
-    fn assign(&mut self, problem: &CorrespondenceProblem<'_>) {
-        self.depth_of_pixel.fill(-1);
-        let Visibility { column: columns, row: rows, of_pixel: off_centre, .. } = &mut self.visible;
-        // Squared distance of each pixel's point from its centre.
-        off_centre.fill(f32::INFINITY);
-        for (index, (&column, &row)) in columns.iter().zip(&*rows).enumerate() {
-            let Some(pixel) = problem.image.size.nearest(column, row) else { continue };
             let off = from_centre(column).powi(2) + from_centre(row).powi(2);
-            if off < off_centre[pixel] && problem.depth_normals.is_valid(index) {
-                off_centre[pixel] = off;
+            let nearest = &mut self.visible.of_pixel[pixel];
+            if off < *nearest && problem.depth_normals.is_valid(index) {
+                *nearest = off;
                 self.depth_of_pixel[pixel] = i32::try_from(index).unwrap_or(-1);
             }
         }
+        self.inliers /= self.count.max(1) as f64;
     }
 }
 
 /// Distance along an axis from the middle of the pixel that a position falls on.
 fn from_centre(position: f32) -> f32 {
     position - (position + 0.5).floor()
-}
-
-fn carried(problem: &CorrespondenceProblem<'_>, index: usize) -> Vector3<f64> {
-    problem.pose.apply(vector(problem.depth_points.get(index)))
 }

@@ -57,6 +57,9 @@ const FREE_SCALES: [f64; 4] = [0.74, 0.90, 1.09, 1.32];
 const NEAR_SIZES: [f64; 3] = [0.87, 1.0, 1.15];
 /// Pairs of a rotation and a scale in one slice of the sweep.
 const SWEPT_AT_ONCE: usize = 6;
+/// Slices of a single pair at the beginning: the very first call compiles what it needs, and until engines
+/// have optimised that, a pair takes several times as long.
+const WARMING_SLICES: usize = 12;
 /// Rotations that climb.
 const CLIMBERS: usize = 96;
 /// Rotations of the sweep that are nearer to a better one than this many degrees do not climb: a climb goes farther.
@@ -174,7 +177,7 @@ impl Search {
         };
         let rotations = rotations::spread(SPACING, seed);
         Ok(Self {
-            sweeps: Slots::new((rotations.len() * sizes.len()).div_ceil(SWEPT_AT_ONCE)),
+            sweeps: Slots::new(slices(rotations.len() * sizes.len())),
             template: Template::new(SIDE, &cloud),
             prediction: light.map(|light| Prediction::new(light, &target)),
             correlator: Correlator::new(fourier),
@@ -274,7 +277,7 @@ impl Search {
     /// The best places of one slice.
     fn sweep(&mut self, slice: usize) -> Vec<Place> {
         let pairs = self.rotations.len() * self.sizes.len();
-        let slice = SWEPT_AT_ONCE.saturating_mul(slice)..pairs.min(SWEPT_AT_ONCE.saturating_mul(slice + 1));
+        let slice = slice_start(slice).min(pairs)..slice_start(slice.saturating_add(1)).min(pairs);
         let pair = |pair| (self.rotations[pair / self.sizes.len()], self.sizes[pair % self.sizes.len()]);
         let pairs: Vec<_> = slice.map(pair).collect();
         pairs.into_iter().filter_map(|(rotation, size)| self.look(rotation, size)).collect()
@@ -382,6 +385,22 @@ impl Geometry {
     }
 }
 
+/// Slices of a sweep over so many pairs of rotation and size.
+const fn slices(pairs: usize) -> usize {
+    match pairs.checked_sub(WARMING_SLICES) {
+        Some(others) => WARMING_SLICES + others.div_ceil(SWEPT_AT_ONCE),
+        None => pairs,
+    }
+}
+
+/// The first pair of a slice.
+const fn slice_start(slice: usize) -> usize {
+    match slice.checked_sub(WARMING_SLICES) {
+        Some(others) => WARMING_SLICES.saturating_add(others.saturating_mul(SWEPT_AT_ONCE)),
+        None => slice,
+    }
+}
+
 /// Turned about x, y, z and grown by as many steps.
 fn moved(place: &Place, [x, y, z, grown]: [f64; 4], turn: f64, growth: f64) -> Place {
     let rotation = Rotation3::new(Vector3::new(x, y, z) * turn.to_radians()).into_inner() * place.rotation;
@@ -437,6 +456,15 @@ fn keep_apart<T>(list: &mut Vec<T>, most: usize, degrees: f64, rotation: impl Fn
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn slices_hold_every_pair_once() {
+        for pairs in [0, 5, 12, 13, 100, 2792] {
+            let starts: Vec<usize> = (0..=slices(pairs)).map(|slice| slice_start(slice).min(pairs)).collect();
+            assert!(starts.windows(2).all(|pair| pair[0] < pair[1]) && starts[0] == 0 && starts.last() == Some(&pairs));
+        }
+        assert!(slice_start(usize::MAX) >= 2792);
+    }
 
     #[test]
     fn the_order_is_that_of_a_sort() {

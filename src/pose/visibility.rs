@@ -6,13 +6,13 @@
 use nalgebra::Vector3;
 
 use crate::pose::Similarity;
-use crate::view::{ColourView, Normals, Points, Size};
+use crate::view::{Camera, ColourView, LANES, Lanes, Mask, Normals, Points, Real, Size, dot};
 
 /// A point counts as hidden when it lies this many image pixels behind the nearest one: more than a steep slope drops
 /// between neighbours, less than a nose stands before a cheek.
 pub(super) const HIDDEN_BEHIND: f64 = 3.0;
 /// Cosine at the rim: flatter views of a surface have no reliable pixel.
-const RIM: f64 = 0.05;
+const RIM: f32 = 0.05;
 
 /// A cloud before a colour camera. Points and normals are NaN where missing.
 #[derive(Clone, Copy)]
@@ -25,98 +25,184 @@ pub(super) struct Sight<'a> {
     pub pixel_length: f64,
 }
 
+/// A pose for many points of one cloud in f32: differences from one of them keep their digits however far off the cloud
+/// stands.
+struct Carrier {
+    /// One point of the cloud, before and after.
+    from: [f32; 3],
+    to: [f32; 3],
+    /// s R.
+    matrix: [[f32; 3]; 3],
+}
+
+impl Carrier {
+    fn new(pose: &Similarity, cloud: &Points) -> Self {
+        let valid = (0..cloud.len()).find(|&index| cloud.is_valid(index));
+        let from = valid.map_or([0.0; 3], |index| cloud.get(index));
+        let to = pose.apply(vector(from)).map(|value| value as f32).into();
+        // Columns of the transpose are rows.
+        let matrix = (pose.scale * pose.rotation).transpose().map(|value| value as f32).into();
+        Self { from, to, matrix }
+    }
+
+    #[inline(always)]
+    fn apply<T: Real>(&self, [x, y, z]: [T; 3]) -> [T; 3] {
+        let [x, y, z] = [x - T::splat(self.from[0]), y - T::splat(self.from[1]), z - T::splat(self.from[2])];
+        let row = |axis: usize| {
+            let [a, b, c] = self.matrix[axis];
+            T::splat(a) * x + T::splat(b) * y + T::splat(c) * z + T::splat(self.to[axis])
+        };
+        [row(0), row(1), row(2)]
+    }
+}
+
+/// A cloud on its way into a view.
+pub(super) struct Projection<'a> {
+    carrier: Carrier,
+    cloud: &'a Points,
+    camera: &'a Camera,
+    size: Size,
+}
+
+impl<'a> Projection<'a> {
+    pub fn new(pose: &Similarity, cloud: &'a Points, camera: &'a Camera, size: Size) -> Self {
+        Self { carrier: Carrier::new(pose, cloud), cloud, camera, size }
+    }
+
+    /// Columns and rows of the points from `start` on, which it enters into the z-buffer `buffer`; `None` where all of
+    /// them are missing.
+    #[inline(never)]
+    pub fn enter(&self, start: usize, buffer: &mut [f32]) -> Option<[Lanes; 2]> {
+        if !Lanes::load(&self.cloud.z, start as isize).finite().any() {
+            return None;
+        }
+        let carried = self.carrier.apply(self.cloud.lanes(start));
+        let [column, row] = self.camera.project_lanes(self.size, carried);
+        let (columns, rows, depths) = (column.array(), row.array(), carried[2].array());
+        for lane in 0..LANES {
+            splat(self.size, buffer, [columns[lane], rows[lane]], depths[lane]);
+        }
+        Some([column, row])
+    }
+}
+
 /// Where the points are seen; owns its memory.
 #[derive(Clone, Debug)]
 pub(super) struct Visibility {
     /// Continuous image column and row of each point, NaN where it is not seen.
     pub column: Vec<f32>,
     pub row: Vec<f32>,
-    /// A number for each point and one for each pixel: the depths of all points and the z-buffer while it looks, after
-    /// that the caller's.
-    pub of_point: Vec<f32>,
+    /// A number for each pixel: the z-buffer while it looks, after that the caller's.
     pub of_pixel: Vec<f32>,
 }
 
 impl Visibility {
     /// Memory for so many pixels and points.
     pub fn new(pixels: usize, points: usize) -> Self {
-        Self {
-            column: vec![f32::NAN; points],
-            row: vec![f32::NAN; points],
-            of_point: vec![f32::NAN; points],
-            of_pixel: vec![f32::INFINITY; pixels],
-        }
+        Self { column: vec![f32::NAN; points], row: vec![f32::NAN; points], of_pixel: vec![f32::INFINITY; pixels] }
     }
 
-    /// Looks anew. Allocates nothing.
-    pub fn update(&mut self, sight: &Sight<'_>) {
-        self.project(sight);
-        self.hide(sight);
+    /// Looks anew. Of each point that is seen, the pixel that it falls on and where the pose carries it, `keeps` has the
+    /// last word. Allocates nothing.
+    pub fn update(&mut self, sight: &Sight<'_>, keeps: &mut dyn FnMut(usize, usize, [f32; 3]) -> bool) {
+        let projection = Projection::new(sight.pose, sight.points, &sight.image.camera, sight.image.size);
+        self.project(sight, &projection);
+        self.hide(sight, &projection.carrier, keeps);
     }
 
     /// A point is not seen after all.
+    #[inline(always)]
     pub fn drop(&mut self, index: usize) {
         (self.column[index], self.row[index]) = (f32::NAN, f32::NAN);
     }
 
-    /// Places of all points that face the camera and fall on the mask, and the z-buffer.
-    fn project(&mut self, sight: &Sight<'_>) {
-        let (size, camera) = (sight.image.size, &sight.image.camera);
+    /// Places of all points that face the camera, and the z-buffer.
+    fn project(&mut self, sight: &Sight<'_>, projection: &Projection<'_>) {
         self.of_pixel.fill(f32::INFINITY);
-        let along_axis = sight.pose.rotation.tr_mul(&Vector3::z());
-        for index in 0..self.column.len() {
-            self.drop(index);
-            if !sight.points.is_valid(index) {
-                continue;
+        let missing = Lanes::splat(f32::NAN);
+        let rays = Rays::new(sight);
+        for start in (0..self.column.len()).step_by(LANES) {
+            let mut position = [missing; 2];
+            if let Some([column, row]) = projection.enter(start, &mut self.of_pixel) {
+                let away = rays.meet(sight.points.lanes(start), sight.normals.lanes(start));
+                position = [away.select(missing, column), away.select(missing, row)];
             }
-            let point = sight.pose.apply(vector(sight.points.get(index)));
-            let Some([column, row]) = camera.project(size, point.into()) else { continue };
-            self.of_point[index] = point.z as f32;
-            splat(size, &mut self.of_pixel, [column, row], self.of_point[index]);
-            // Unit direction from the camera to the point, in the depth view's frame.
-            let direction =
-                if camera.is_orthographic() { along_axis } else { sight.pose.rotation.tr_mul(&point.normalize()) };
-            // A normal that is missing (a hole not yet filled) does not exclude its point.
-            if vector(sight.normals.get(index)).dot(&direction) > -RIM {
-                continue;
-            }
-            let pixel = size.nearest(column as f32, row as f32);
-            if pixel.is_some_and(|pixel| sight.image.mask[pixel]) {
-                (self.column[index], self.row[index]) = (column as f32, row as f32);
-            }
+            position[0].store(&mut self.column[start..]);
+            position[1].store(&mut self.row[start..]);
         }
     }
 
-    /// Drops the points that lie behind others.
-    fn hide(&mut self, sight: &Sight<'_>) {
+    /// Drops the points that fall off the mask, lie behind others or are not kept.
+    fn hide(&mut self, sight: &Sight<'_>, carrier: &Carrier, keeps: &mut dyn FnMut(usize, usize, [f32; 3]) -> bool) {
         let tolerance = (HIDDEN_BEHIND * sight.pixel_length) as f32;
         for index in 0..self.column.len() {
-            let Some(pixel) = sight.image.size.nearest(self.column[index], self.row[index]) else { continue };
-            if self.of_point[index] > self.of_pixel[pixel] + tolerance {
+            if self.column[index].is_nan() {
+                continue;
+            }
+            let pixel = sight.image.size.nearest(self.column[index], self.row[index]);
+            let kept = pixel.is_some_and(|pixel| {
+                let carried = carrier.apply(sight.points.get(index));
+                let hidden = carried[2] > self.of_pixel[pixel] + tolerance;
+                sight.image.mask[pixel] && !hidden && keeps(index, pixel, carried)
+            });
+            if !kept {
                 self.drop(index);
             }
         }
     }
 }
 
+/// Rays from the camera to the points, in the depth view's frame: all along its axis, or from where it stands.
+enum Rays {
+    Along([f32; 3]),
+    From([f32; 3]),
+}
+
+impl Rays {
+    fn new(sight: &Sight<'_>) -> Self {
+        if sight.image.camera.is_orthographic() {
+            Self::Along(sight.pose.rotation.tr_mul(&Vector3::z()).map(|value| value as f32).into())
+        } else {
+            Self::From(sight.pose.inverse().translation.map(|value| value as f32).into())
+        }
+    }
+
+    /// Whose surface is seen from behind or too flat. A normal that is missing (a hole not yet filled) does not exclude
+    /// its point.
+    #[inline(always)]
+    fn meet(&self, point: [Lanes; 3], normal: [Lanes; 3]) -> Mask {
+        match self {
+            Self::Along([x, y, z]) => {
+                let along = [Lanes::splat(*x), Lanes::splat(*y), Lanes::splat(*z)];
+                Lanes::splat(-RIM).less(dot(normal, along))
+            }
+            Self::From([x, y, z]) => {
+                let ray = [point[0] - Lanes::splat(*x), point[1] - Lanes::splat(*y), point[2] - Lanes::splat(*z)];
+                (Lanes::splat(-RIM) * dot(ray, ray).sqrt()).less(dot(normal, ray))
+            }
+        }
+    }
+}
+
 #[inline(always)]
-pub(super) fn vector(values: [f32; 3]) -> Vector3<f64> {
+fn vector(values: [f32; 3]) -> Vector3<f64> {
     Vector3::from(values.map(f64::from))
 }
 
 /// Enters a depth at the four pixels around a position, so that gaps between points let nothing through.
-pub(super) fn splat(size: Size, buffer: &mut [f32], position: [f64; 2], depth: f32) {
+#[inline(always)]
+fn splat(size: Size, buffer: &mut [f32], [column, row]: [f32; 2], depth: f32) {
     // A position on a pixel's centre enters that pixel alone: then the four are one, and it is entered again.
-    let [left, top] = position.map(f64::floor);
-    let [right, low] = position.map(f64::ceil);
+    let (left, right, top, low) = (column.floor(), column.ceil(), row.floor(), row.ceil());
     // A position may lie outside by less than a pixel; NaN fails every comparison.
-    let (last_column, last_row) = ((size.width - 1) as f64, (size.height - 1) as f64);
+    let (last_column, last_row) = ((size.width - 1) as f32, (size.height - 1) as f32);
     if !(right >= 0.0 && low >= 0.0 && left <= last_column && top <= last_row) {
         return;
     }
-    let columns = [left.max(0.0), right.min(last_column)].map(|column| column as usize);
-    for row in [top.max(0.0), low.min(last_row)].map(|row| row as usize) {
-        for column in columns {
+    // Negative numbers become zero.
+    let (left, right) = (left as usize, right.min(last_column) as usize);
+    for row in [top as usize, low.min(last_row) as usize] {
+        for column in [left, right] {
             let Some(buffered) = buffer.get_mut(size.index(column, row)) else { continue };
             *buffered = if depth < *buffered { depth } else { *buffered };
         }

@@ -1,6 +1,7 @@
 //! A height map to make a scene from.
 
 use crate::error::{Error, ErrorKind, Result};
+use crate::text::Brief;
 use crate::view::Size;
 
 /// Smallest side of a relief in samples: the mesh of a coarser one shows its triangles.
@@ -51,7 +52,7 @@ impl Relief {
         if relief.object().any(|inside| inside) {
             return Ok(relief);
         }
-        let message = format!("no height lies above the background, {} samples", relief.floor());
+        let message = format!("no height lies above the background, {} samples", Brief(relief.floor()));
         Err(Error::new(ErrorKind::Empty, "surface.heights", message))
     }
 

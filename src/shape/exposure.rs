@@ -9,7 +9,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use crate::light::{Light, Polynomial};
-use crate::shape::shading::{self, Linear, Pixels, ShadingProblem, ShadingWeights};
+use crate::shape::shading::{Linear, Pixels, ShadingProblem, ShadingWeights};
 use crate::view::{LANES, Lanes, Normals, Real, quantile};
 
 /// Pixels and directions of the first look: enough for two digits.
@@ -91,7 +91,7 @@ pub fn exposure_step(problem: ShadingProblem<'_>, weights: ShadingWeights, norma
     let (mut slope, mut curvature, mut count) = (0.0, 0.0, 0.0);
     for first in (0..normals.len()).step_by(LANES) {
         let pixels = Pixels::new(problem, first, weights, &polynomials);
-        let four = shading::load(normals, first);
+        let four = normals.lanes(first);
         let residuals = pixels.residuals(four).map(Lanes::array);
         let Linear { gradient, matrix, .. } = pixels.linearise(four);
         let (gradient, matrix) = (gradient.map(Lanes::array), matrix.map(Lanes::array));

@@ -111,10 +111,11 @@ pub struct HeightSolver {
 
 impl HeightSolver {
     /// A solver whose domains are `domains`. It takes others, too, and allocates again for one that is larger.
-    pub fn new<'a>(domains: impl IntoIterator<Item = &'a HeightDomain>) -> Self {
-        let room = |domain: &HeightDomain| padded(domain.len(), domain.width).max(domain.cosine.len());
+    #[inline(never)]
+    pub fn new(domains: &[&HeightDomain]) -> Self {
+        let room = |domain: &&HeightDomain| padded(domain.len(), domain.width).max(domain.cosine.len());
         Self {
-            room: domains.into_iter().map(room).max().unwrap_or(0),
+            room: domains.iter().map(room).max().unwrap_or(0),
             z: Vec::new(),
             trial: Vec::new(),
             anchor: Vec::new(),
@@ -459,11 +460,11 @@ mod tests {
             let mut heights = vec![0.0; size.len()];
             (solver.solve(domain, problem, &mut heights), heights)
         };
-        let mut used = HeightSolver::new([&other]);
+        let mut used = HeightSolver::new(&[&other]);
         let (report, anchored) = solve(&mut used, &mut domain, HeightProblem { anchors, ..free });
         assert!(report.cost < report.first_cost && anchored[0] > 30.0, "{report:?} {}", anchored[0]);
         solve(&mut used, &mut other, free);
-        let mut fresh = HeightSolver::new([&domain]);
+        let mut fresh = HeightSolver::new(&[&domain]);
         assert_eq!(solve(&mut used, &mut domain, free), solve(&mut fresh, &mut domain, free));
     }
 }

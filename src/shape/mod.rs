@@ -22,7 +22,7 @@ pub use gradients::gradients;
 pub use height_domain::HeightDomain;
 pub use heights::{Effort, HeightProblem, HeightReport, HeightSolver};
 pub use poisson::Termination;
-pub use refine::{RefinementProblem, Refiner};
+pub use refine::{RefinementProblem, RefinementTerms, Refiner};
 pub use relief::{ReliefProblem, ReliefSolver, STARTS};
 pub use shading::{ShadingProblem, ShadingSolver, ShadingWeights, Terminations};
 pub use surface::{AnchorWeight, Anchors, IntegrationOptions, IntegrationReport, Integrator, Robust};

@@ -42,14 +42,21 @@ pub struct RefinementProblem<'a> {
     pub depth: &'a DepthView,
     /// The colour view.
     pub image: &'a ColourView,
-    /// The light, exposure included.
-    pub light: &'a Light,
-    /// R of the pose.
-    pub rotation: &'a Matrix3<f64>,
     /// Continuous image column and row of each depth pixel, NaN where the colour camera does not see it.
     pub position: [&'a [f32]; 2],
     /// Normals of the image surface in the colour view's frame.
     pub image_normals: &'a Normals,
+    /// Light, rotation and weights.
+    pub terms: RefinementTerms,
+}
+
+/// What the refinement looks at besides rasters.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RefinementTerms {
+    /// The light, exposure included.
+    pub light: Light,
+    /// R of the pose.
+    pub rotation: Matrix3<f64>,
     /// Weights of Eq. 17; `prior` is lambda_g2.
     pub weights: ShadingWeights,
     /// What the light leaves unexplained of the colours, in log units; zero where it is known.
@@ -87,6 +94,12 @@ impl Refiner {
             anchor_firmness: firmness(shading_error, depth),
             continues: false,
         })
+    }
+
+    /// One that goes on from a depth that another one has refined.
+    #[must_use]
+    pub fn resumed(self) -> Self {
+        Self { continues: true, ..self }
     }
 
     /// Where the heights of the view are unknown.
@@ -132,7 +145,7 @@ impl Refiner {
         if view.organised {
             return;
         }
-        let doubt = (problem.colour_error / self.shading_error).max(1.0).powi(2);
+        let doubt = (problem.terms.colour_error / self.shading_error).max(1.0).powi(2);
         let unshaded = self.anchor_firmness;
         let shaded = (f64::from(unshaded) * doubt).min(ANCHOR[1]) as f32;
         self.load_anchors(bench, view, |has_colour| if has_colour { shaded } else { unshaded });
@@ -144,8 +157,8 @@ impl Refiner {
         for &colour_scale in scales {
             let height_problem = HeightProblem {
                 log: [&self.log[0], &self.log[1], &self.log[2]],
-                light: problem.light,
-                rotation: problem.rotation,
+                light: &problem.terms.light,
+                rotation: &problem.terms.rotation,
                 slopes: [&bench.slopes[0], &bench.slopes[1]],
                 firmness: None,
                 anchors: Some(anchors),
@@ -160,17 +173,18 @@ impl Refiner {
 
     /// Eq. 17 for each pixel alone: what an organised cloud, which has no rays, gets.
     fn refine_normals(&mut self, bench: &mut Workbench, problem: RefinementProblem<'_>, normals: &mut Normals) {
-        let back = problem.rotation.transpose();
+        let RefinementTerms { light, rotation, weights, .. } = &problem.terms;
+        let back = rotation.transpose();
         for band in Workbench::bands(problem.depth.size) {
             bench.fit_band(&band);
             let Workbench { prior, found, .. } = bench;
             bring_prior(problem, &band, prior);
-            normals.rotate(&band, problem.rotation, found, 0);
+            normals.rotate(&band, rotation, found, 0);
             let log = self.log.each_ref().map(|channel| &channel[band.clone()]);
-            self.solver.solve(ShadingProblem { log, prior, light: problem.light }, problem.weights, found);
+            self.solver.solve(ShadingProblem { log, prior, light }, *weights, found);
             for (place, index) in band.clone().enumerate() {
                 if !found.is_valid(place) {
-                    found.set(place, rotate(problem.rotation, normals.get(index)));
+                    found.set(place, rotate(rotation, normals.get(index)));
                 }
             }
             found.rotate(&(0..band.len()), &back, normals, band.start);

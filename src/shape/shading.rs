@@ -108,11 +108,14 @@ impl ShadingSolver {
         }
         let mut counts = Terminations::default();
         for index in (0..normals.len()).step_by(LANES) {
-            let pixels = Pixels::new(problem, index, weights, &polynomials);
             let missing = Lanes::splat(f32::NAN);
             let mut solved = [missing; 3];
-            if (pixels.coloured | pixels.drawn).any() {
-                let (start, here, known) = self.start(&pixels, load(normals, index));
+            // Most blocks of a raster lie off the object.
+            let start = index as isize;
+            let (red, drawn) = (Lanes::load(problem.log[0], start), Lanes::load(&problem.prior.z, start));
+            if (red.finite() | drawn.finite()).any() {
+                let pixels = Pixels::new(problem, index, weights, &polynomials);
+                let (start, here, known) = self.start(&pixels, normals.lanes(index));
                 solved = known.select3(normalise(pixels.descend(start, here, known, &mut counts)), solved);
             }
             solved[0].store(&mut normals.x[index..]);
@@ -176,7 +179,7 @@ impl<'a> Pixels<'a> {
         let start = index as isize;
         let log = [Lanes::load(red, start), Lanes::load(green, start), Lanes::load(blue, start)];
         let coloured = log[0].finite() & log[1].finite() & log[2].finite();
-        let prior = load(problem.prior, index);
+        let prior = problem.prior.lanes(index);
         let drawn = prior[2].finite();
         let zero = Lanes::splat(0.0);
         Self {
@@ -315,12 +318,6 @@ fn solve_damped(linear: &Linear, damping: Lanes) -> [Lanes; 3] {
         inverse * (cofactors[1] * right[0] + yy_inverse * right[1] + yz_inverse * right[2]),
         inverse * (cofactors[2] * right[0] + yz_inverse * right[1] + zz_inverse * right[2]),
     ]
-}
-
-/// The vectors of [`LANES`] pixels.
-pub(super) fn load(vectors: &Normals, index: usize) -> [Lanes; 3] {
-    let start = index as isize;
-    [Lanes::load(&vectors.x, start), Lanes::load(&vectors.y, start), Lanes::load(&vectors.z, start)]
 }
 
 #[inline(always)]

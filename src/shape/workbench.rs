@@ -27,7 +27,8 @@ pub struct Workbench {
 
 impl Workbench {
     /// For views of at most `pixels`, and for their domains.
-    pub fn new<'a>(pixels: usize, domains: impl IntoIterator<Item = &'a HeightDomain>) -> Self {
+    #[inline(never)]
+    pub fn new(pixels: usize, domains: &[&HeightDomain]) -> Self {
         let raster = || Vec::with_capacity(pixels);
         let band = || Normals::missing(BAND.min(pixels));
         Self {

@@ -2,7 +2,7 @@
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::options::positive;
-use crate::view::Size;
+use crate::view::{Lanes, Real, Size};
 
 /// A pinhole camera with the five distortion coefficients of OpenCV.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,6 +49,16 @@ impl Pinhole {
             x * radial + 2.0 * p1 * x * y + p2 * (r2 + 2.0 * x * x),
             y * radial + p1 * (r2 + 2.0 * y * y) + 2.0 * p2 * x * y,
         ]
+    }
+
+    /// [`distort`](Self::distort) of four.
+    #[inline(never)]
+    fn distort_lanes(&self, [x, y]: [Lanes; 2]) -> [Lanes; 2] {
+        let [k1, k2, p1, p2, k3] = self.distortion.map(|value| Lanes::splat(value as f32));
+        let (xx, yy, xy) = (x * x, y * y, x * y + x * y);
+        let r2 = xx + yy;
+        let radial = Lanes::splat(1.0) + r2 * (k1 + r2 * (k2 + r2 * k3));
+        [x * radial + p1 * xy + p2 * (r2 + xx + xx), y * radial + p1 * (r2 + yy + yy) + p2 * xy]
     }
 
     /// Whether rays are straight.
@@ -116,6 +126,23 @@ impl Camera {
                 }
                 let [x, y] = pinhole.distort([x / z, y / z]);
                 Some([pinhole.fx * x + pinhole.cx, pinhole.fy * y + pinhole.cy])
+            }
+        }
+    }
+
+    /// Columns and rows of four points, NaN behind a pinhole camera.
+    #[inline(always)]
+    pub(crate) fn project_lanes(&self, size: Size, [x, y, z]: [Lanes; 3]) -> [Lanes; 2] {
+        let splat = |value: f64| Lanes::splat(value as f32);
+        match self {
+            Self::Orthographic => [x + splat(centre(size.width)), y + splat(centre(size.height))],
+            Self::Pinhole(pinhole) => {
+                let inverse = splat(0.0).less(z).select(splat(1.0) / z, splat(f64::NAN));
+                let mut ray = [x * inverse, y * inverse];
+                if !pinhole.is_undistorted() {
+                    ray = pinhole.distort_lanes(ray);
+                }
+                [splat(pinhole.fx) * ray[0] + splat(pinhole.cx), splat(pinhole.fy) * ray[1] + splat(pinhole.cy)]
             }
         }
     }

@@ -55,6 +55,8 @@ pub struct ColourView {
     pub log: [Vec<f32>; 3],
     /// How integers were decoded; floats are linear.
     pub transfer: Transfer,
+    log_spread: f64,
+    log_noise: f64,
 }
 
 /// Darkest usable 8-bit level: below it one step of the code is more than a quarter of the intensity.
@@ -109,7 +111,14 @@ impl ColourView {
                 format!("fewer than {FEWEST_PIXELS} object pixels are neither black nor saturated"),
             ));
         }
-        Ok(Self { size, camera, mask: usable, log, transfer })
+        Ok(Self::of(size, camera, usable, log, transfer))
+    }
+
+    /// The view of these logarithms, NaN off the mask.
+    pub(super) fn of(size: Size, camera: Camera, mask: Vec<bool>, log: [Vec<f32>; 3], transfer: Transfer) -> Self {
+        // Asked for by each stage's preparation: a fifth of the search's, which may not last long.
+        let (log_spread, log_noise) = (spread_of(&log), noise_of(size, &log));
+        Self { size, camera, mask, log, transfer, log_spread, log_noise }
     }
 
     /// Mean of log S over the mask and the three channels: what a change of exposure shifts.
@@ -121,26 +130,14 @@ impl ColourView {
 
     /// Standard deviation of log S over the mask, the three channels together (root of the sum of their variances).
     #[must_use]
-    pub fn log_spread(&self) -> f64 {
-        let spread = |channel: &[f32]| {
-            let inside =
-                || channel.iter().zip(&self.mask).filter(|(_, inside)| **inside).map(|(&log, _)| f64::from(log));
-            let count = inside().count().max(1) as f64;
-            let mean = inside().sum::<f64>() / count;
-            inside().map(|log| (log - mean).powi(2)).sum::<f64>() / count
-        };
-        self.log.iter().map(|channel| spread(channel)).sum::<f64>().sqrt()
+    pub const fn log_spread(&self) -> f64 {
+        self.log_spread
     }
 
     /// Standard deviation of the noise of log S in one channel, by its rows' fourth differences; print counts as noise.
     #[must_use]
-    pub fn log_noise(&self) -> f64 {
-        let last = noise::REACH - 1;
-        let ends = || (0..self.size.len()).filter(|index| index % self.size.width >= last);
-        let bend =
-            |channel: &[f32], end: usize| noise::bend(std::array::from_fn(|k| f64::from(channel[end - k]))) as f32;
-        let bends = self.log.iter().flat_map(|channel| ends().map(|end| bend(channel, end)));
-        noise::of_bends(bends, 3 * self.size.len())
+    pub const fn log_noise(&self) -> f64 {
+        self.log_noise
     }
 
     /// log S of the three channels at a pixel, NaN off the mask.
@@ -148,6 +145,24 @@ impl ColourView {
     pub fn log_at(&self, index: usize) -> [f32; 3] {
         [self.log[0][index], self.log[1][index], self.log[2][index]]
     }
+}
+
+fn spread_of(log: &[Vec<f32>; 3]) -> f64 {
+    let spread = |channel: &[f32]| {
+        let inside = || channel.iter().filter(|log| !log.is_nan()).map(|&log| f64::from(log));
+        let count = inside().count().max(1) as f64;
+        let mean = inside().sum::<f64>() / count;
+        inside().map(|log| (log - mean).powi(2)).sum::<f64>() / count
+    };
+    log.iter().map(|channel| spread(channel)).sum::<f64>().sqrt()
+}
+
+fn noise_of(size: Size, log: &[Vec<f32>; 3]) -> f64 {
+    let last = noise::REACH - 1;
+    let ends = || (0..size.len()).filter(|index| index % size.width >= last);
+    let bend = |channel: &[f32], end: usize| noise::bend(std::array::from_fn(|k| f64::from(channel[end - k]))) as f32;
+    let bends = log.iter().flat_map(|channel| ends().map(|end| bend(channel, end)));
+    noise::of_bends(bends, 3 * size.len())
 }
 
 impl ColourSamples {

@@ -11,14 +11,15 @@
 //! its error says [`UNFITTED`]. Limits: detail finer than the window is smoothed; noise of the points passes with a
 //! gain of about a half, no worse than central differences.
 
-use nalgebra::{SMatrix, SVector, Vector3};
+use nalgebra::Vector3;
 
+use super::doubles::{DOUBLE_LANES, Doubles, dot};
 use super::noise;
 use crate::view::{Normals, Points, Size, quantile};
 
 /// Half widths of the windows in pixels. The first is the smallest that holds a cubic with some spare; flat parts are
 /// better served by the second, noisy views by more.
-const RADII: [isize; 4] = [2, 3, 5, 8];
+const RADII: [usize; 4] = [2, 3, 5, 8];
 /// Sigma of the weights along the tangent plane over the half width. Between 0.5 and 1 the poses of Mozart's tables
 /// differ little.
 const SIGMA: f64 = 0.75;
@@ -39,10 +40,10 @@ const ROUNDS: usize = 2;
 const DAMPING: f64 = 1e-9;
 /// Flatter than this (cosine) a normal has turned away from its own view.
 const RIM: f64 = 0.02;
+/// |y| of normals whose tangents start from the y axis.
+const LEVEL: f64 = 0.7;
 /// Error of a normal that no cubic could be fitted for, radians: that of a one-sided difference.
 pub const UNFITTED: f32 = 0.3;
-
-type Terms = SVector<f64, TERMS>;
 
 /// Improves `normals` (unit, NaN where missing) of the organised `points` in place and writes each one's error in
 /// radians; NaN where there is no normal. Returns the standard deviation of the points in pixel lengths.
@@ -55,22 +56,23 @@ type Terms = SVector<f64, TERMS>;
 pub fn improve(size: Size, points: &Points, normals: &mut Normals, error: &mut [f32]) -> f64 {
     let first = normals.clone();
     let noise = noise_of(size, points);
-    let (mut trial, mut trial_error) = (first.clone(), error.to_vec());
     error.fill(f32::NAN);
     let mut noisy = false;
     for radius in RADII {
-        let window =
-            Window { radius, sigma: SIGMA * radius as f64, offset: LARGEST_OFFSET.max(NOISE_OFFSETS * noise), noise };
-        trial.clone_from(&first);
-        fit_all(size, points, window, &mut trial, &mut trial_error);
-        for index in 0..error.len() {
-            let apart = Vector3::from(trial.get(index)) - Vector3::from(normals.get(index));
-            let gains = trial_error[index] < error[index] && (noisy || apart.norm() < error[index]);
+        let window = Window {
+            radius,
+            sigma: SIGMA * radius as f64,
+            offset: LARGEST_OFFSET.max(NOISE_OFFSETS * noise),
+            noise: NOISE_MARGIN * noise,
+        };
+        fit_all(size, points, &first, window, |index, normal, new_error| {
+            let apart = Vector3::from(normal) - Vector3::from(normals.get(index));
+            let gains = new_error < error[index] && (noisy || apart.norm() < error[index]);
             if error[index].is_nan() || gains {
-                normals.set(index, trial.get(index));
-                error[index] = trial_error[index];
+                normals.set(index, normal);
+                error[index] = new_error;
             }
-        }
+        });
         noisy = median(error.iter().copied()) >= NOISY;
         if radius > RADII[0] && !noisy {
             break;
@@ -82,11 +84,11 @@ pub fn improve(size: Size, points: &Points, normals: &mut Normals, error: &mut [
 /// What takes part in a fit, pixel lengths.
 #[derive(Clone, Copy)]
 struct Window {
-    radius: isize,
+    radius: usize,
     sigma: f64,
     /// Largest |w| next to the point.
     offset: f64,
-    /// Standard deviation of the points.
+    /// Largest residual that is noise.
     noise: f64,
 }
 
@@ -108,96 +110,227 @@ fn median(values: impl Iterator<Item = f32>) -> f32 {
     if values.is_empty() { f32::INFINITY } else { quantile(&mut values, 0.5) }
 }
 
-fn fit_all(size: Size, points: &Points, window: Window, normals: &mut Normals, error: &mut [f32]) {
-    for index in 0..size.len().min(normals.len()).min(error.len()) {
-        error[index] = f32::NAN;
-        if !normals.is_valid(index) || !points.is_valid(index) {
-            continue;
-        }
-        error[index] = UNFITTED;
-        let first = Vector3::from(normals.get(index).map(f64::from));
-        if let Some((normal, spread)) = fit(size, points, window, index, first)
-            && normal.dot(&first) > RIM
-        {
-            normals.set(index, [normal.x as f32, normal.y as f32, normal.z as f32]);
-            error[index] = (spread as f32).min(UNFITTED);
+/// Visits every point that has a first normal with the normal of its cubic and its error.
+fn fit_all(size: Size, points: &Points, first: &Normals, window: Window, mut visit: impl FnMut(usize, [f32; 3], f32)) {
+    let known = |index: usize| first.is_valid(index) && points.is_valid(index);
+    let mut band = Band::new(size, window);
+    for row in 0..size.height {
+        band.fill(size, points, row);
+        for column in (0..size.width).step_by(DOUBLE_LANES) {
+            let start = size.index(column, row);
+            let count = DOUBLE_LANES.min(size.width - column);
+            if !(start..start + count).any(known) {
+                continue;
+            }
+            let firsts: [[f32; 3]; DOUBLE_LANES] = std::array::from_fn(|lane| first.get(start + lane.min(count - 1)));
+            let normal = [0, 1, 2].map(|axis: usize| Doubles::from(firsts.map(|first| f64::from(first[axis]))));
+            let (fitted, spread) = band.fit(column, normal);
+            let (turned, spread) = (dot(fitted, normal).array(), spread.array());
+            for lane in (0..count).filter(|lane| known(start + lane)) {
+                let fitted = fitted.map(|axis| axis.array()[lane] as f32);
+                // Both are NaN where nothing could be fitted.
+                let good = turned[lane] > RIM && spread[lane].is_finite();
+                let (normal, error) = if good { (fitted, spread[lane] as f32) } else { (firsts[lane], UNFITTED) };
+                visit(start + lane, normal, error.min(UNFITTED));
+            }
         }
     }
 }
 
-/// The normal of the cubic and its error.
-fn fit(size: Size, points: &Points, window: Window, index: usize, first: Vector3<f64>) -> Option<(Vector3<f64>, f64)> {
-    let centre = Vector3::from(points.get(index).map(f64::from));
-    let unit = size
-        .neighbours(index)
-        .filter(|&near| points.is_valid(near))
-        .map(|near| (Vector3::from(points.get(near).map(f64::from)) - centre).norm())
-        .fold(f64::INFINITY, f64::min);
-    if !unit.is_finite() || unit <= 0.0 {
-        return None;
-    }
-    let (mut normal, mut spread) = (first, 0.0);
-    for _ in 0..ROUNDS {
-        let across = normal.cross(&if normal.y.abs() < 0.7 { Vector3::y() } else { Vector3::x() }).normalize();
-        let axes = [across, normal.cross(&across), normal].map(|axis| axis / unit);
-        let (slopes, error) = slopes(size, points, window, index, centre, &axes)?;
-        normal = (normal - slopes[0] * unit * axes[0] - slopes[1] * unit * axes[1]).normalize();
-        spread = error;
-    }
-    Some((normal, spread))
-}
-
-/// Slopes of the cubic at the point along both tangents, and their standard error.
-fn slopes(
-    size: Size,
-    points: &Points,
+/// The rows of points that the windows of one row reach, NaN where there is none, also left and right of the raster:
+/// so no neighbour has to be asked whether it exists.
+struct Band {
     window: Window,
-    index: usize,
-    centre: Vector3<f64>,
-    axes: &[Vector3<f64>; 3],
-) -> Option<([f64; 2], f64)> {
-    let (column, row) = size.position(index);
-    let mut gram = SMatrix::<f64, TERMS, TERMS>::zeros();
-    let (mut right, mut squares, mut total, mut count) = (Terms::zeros(), 0.0, 0.0, 0);
-    for down in -window.radius..=window.radius {
-        for across in -window.radius..=window.radius {
-            let place = column.checked_add_signed(across).zip(row.checked_add_signed(down));
-            let Some((c, r)) = place.filter(|&(c, r)| c < size.width && r < size.height) else { continue };
-            let other = size.index(c, r);
-            if !points.is_valid(other) {
-                continue;
+    stride: usize,
+    axes: [Vec<f64>; 3],
+}
+
+impl Band {
+    fn new(size: Size, window: Window) -> Self {
+        let stride = size.width + 2 * window.radius + DOUBLE_LANES;
+        let axes = [(); 3].map(|()| vec![f64::NAN; (2 * window.radius + 1) * stride]);
+        Self { window, stride, axes }
+    }
+
+    /// Takes over the rows around `row`.
+    fn fill(&mut self, size: Size, points: &Points, row: usize) {
+        for (axis, values) in self.axes.iter_mut().zip([&points.x, &points.y, &points.z]) {
+            for (place, line) in axis.chunks_exact_mut(self.stride).enumerate() {
+                let line = &mut line[self.window.radius..][..size.width];
+                match (row + place).checked_sub(self.window.radius).filter(|&row| row < size.height) {
+                    Some(row) => {
+                        let values = &values[size.index(0, row)..][..size.width];
+                        line.iter_mut().zip(values).for_each(|(new, &value)| *new = f64::from(value));
+                    }
+                    None => line.fill(f64::NAN),
+                }
             }
-            let offset = Vector3::from(points.get(other).map(f64::from)) - centre;
-            let [a, b, w] = axes.map(|axis| axis.dot(&offset));
-            let far = a * a + b * b;
-            if w.abs() > LARGEST_SLOPE * far.sqrt() + window.offset {
-                continue;
-            }
-            let weight = (-0.5 * far / (window.sigma * window.sigma)).exp();
-            let terms = Terms::from([1.0, a, b, a * a, a * b, b * b, a * a * a, a * a * b, a * b * b, b * b * b]);
-            gram.syger(weight, &terms, &terms, 1.0);
-            right.axpy(weight * w, &terms, 1.0);
-            squares += weight * w * w;
-            total += weight;
-            count += 1;
         }
     }
-    if count <= TERMS {
-        return None;
+
+    /// The points at so many columns and rows from the upper left of the window.
+    #[inline(always)]
+    fn points(&self, start: usize) -> [Doubles; 3] {
+        let [x, y, z] = &self.axes;
+        [Doubles::load(x, start), Doubles::load(y, start), Doubles::load(z, start)]
     }
-    gram.fill_upper_triangle_with_lower_triangle();
-    for k in 0..TERMS {
-        gram[(k, k)] *= 1.0 + DAMPING;
+
+    /// The normals of the cubics at `column` and its right neighbour, and their errors; NaN where there is none.
+    fn fit(&self, column: usize, first: [Doubles; 3]) -> ([Doubles; 3], Doubles) {
+        let middle = column + self.window.radius * (self.stride + 1);
+        let centre = self.points(middle);
+        let missing = Doubles::splat(f64::INFINITY);
+        let square = [middle - 1, middle + 1, middle - self.stride, middle + self.stride]
+            .map(|near| subtract(self.points(near), centre))
+            .into_iter()
+            .fold(missing, |least, step| dot(step, step).min(least));
+        let unit = square.sqrt();
+        let (mut normal, mut spread) = (first, missing);
+        for _ in 0..ROUNDS {
+            let tangents = tangents(normal);
+            let axes = [tangents[0], tangents[1], normal].map(|axis| scale(axis, Doubles::splat(1.0) / unit));
+            let (slopes, error) = self.moments(column, centre, axes).slopes(self.window.noise);
+            let lean = |axis: usize| slopes[0] * tangents[0][axis] + slopes[1] * tangents[1][axis];
+            normal = normalize([0, 1, 2].map(|axis: usize| normal[axis] - lean(axis)));
+            spread = error;
+        }
+        (normal, spread)
     }
-    let factor = gram.cholesky()?;
-    let solution = factor.solve(&right);
-    let residual = ((squares - right.dot(&solution)).max(0.0) / total).sqrt();
-    let variance = |k: usize| factor.solve(&Terms::ith(k, 1.0))[k];
-    // Noise averages out. A residual of wrong shape does not: the slopes err by no less than the residual itself.
-    let spread = variance(1) + variance(2);
-    let noise = residual.min(NOISE_MARGIN * window.noise);
-    let error = (noise * noise * spread + (residual * residual - noise * noise) * spread.max(1.0)).sqrt();
-    (error.is_finite() && solution.norm().is_finite()).then_some(([solution[1], solution[2]], error))
+
+    /// Sums over the neighbours of two points, seen along their `axes`.
+    #[inline(never)]
+    fn moments(&self, column: usize, centre: [Doubles; 3], axes: [[Doubles; 3]; 3]) -> Moments {
+        let slope = Doubles::splat(LARGEST_SLOPE * LARGEST_SLOPE);
+        let flatness = Doubles::splat(-0.5 * std::f64::consts::LOG2_E / (self.window.sigma * self.window.sigma));
+        let mut moments = Moments::zero();
+        for row in 0..=2 * self.window.radius {
+            for across in 0..=2 * self.window.radius {
+                let offset = subtract(self.points(row * self.stride + column + across), centre);
+                let [a, b, w] = [dot(axes[0], offset), dot(axes[1], offset), dot(axes[2], offset)];
+                let far = a * a + b * b;
+                let beyond = ((w * w).sqrt() - Doubles::splat(self.window.offset)).raised_to(0.0);
+                // Not so where the neighbour is missing: its weight and place are zero.
+                let near = (beyond * beyond).at_most(slope * far);
+                let weight = near.keep((far * flatness).exp2());
+                moments.add(near.keep(Doubles::splat(1.0)), weight, near.keep(a), near.keep(b), near.keep(w));
+            }
+        }
+        moments
+    }
+}
+
+/// Sums of a^j b^k up to the sixth power, all that the products of a cubic's terms are.
+const MOMENTS: usize = 28;
+
+/// Sums over the neighbours: of the weights times a^j b^k by rising j + k, then by rising k, and of those to the third
+/// power times w.
+struct Moments {
+    count: Doubles,
+    plain: [Doubles; MOMENTS],
+    offset: [Doubles; TERMS],
+    square: Doubles,
+}
+
+/// Sums of products, entry by entry, in straight lines: the build unrolls no loop of so many.
+macro_rules! add {
+    ($sums:expr, $($place:literal: $value:expr),*) => { $($sums[$place] = $sums[$place] + $value;)* };
+}
+
+impl Moments {
+    fn zero() -> Self {
+        let zero = Doubles::splat(0.0);
+        Self { count: zero, plain: [zero; MOMENTS], offset: [zero; TERMS], square: zero }
+    }
+
+    #[inline(always)]
+    fn add(&mut self, one: Doubles, weight: Doubles, a: Doubles, b: Doubles, w: Doubles) {
+        let (x, y) = (weight * a, weight * b);
+        let (xx, xy, yy) = (x * a, x * b, y * b);
+        let (xxx, xxy, xyy, yyy) = (xx * a, xx * b, xy * b, yy * b);
+        let [x4, x3y, x2y2, xy3, y4] = [xxx * a, xxx * b, xxy * b, xyy * b, yyy * b];
+        let [x5, x4y, x3y2, x2y3, xy4, y5] = [x4 * a, x4 * b, x3y * b, x2y2 * b, xy3 * b, y4 * b];
+        add!(self.plain, 0: weight, 1: x, 2: y, 3: xx, 4: xy, 5: yy, 6: xxx, 7: xxy, 8: xyy, 9: yyy);
+        add!(self.plain, 10: x4, 11: x3y, 12: x2y2, 13: xy3, 14: y4);
+        add!(self.plain, 15: x5, 16: x4y, 17: x3y2, 18: x2y3, 19: xy4, 20: y5);
+        add!(self.plain, 21: x5 * a, 22: x5 * b, 23: x4y * b, 24: x3y2 * b, 25: x2y3 * b, 26: xy4 * b, 27: y5 * b);
+        add!(self.offset, 0: weight * w, 1: x * w, 2: y * w, 3: xx * w, 4: xy * w, 5: yy * w);
+        add!(self.offset, 6: xxx * w, 7: xxy * w, 8: xyy * w, 9: yyy * w);
+        self.square = self.square + weight * w * w;
+        self.count = self.count + one;
+    }
+
+    /// Slopes of the cubics at the points along both tangents, and their standard errors with so much `noise`; the
+    /// errors are NaN where the neighbours do not determine them.
+    ///
+    /// The normal equations with w as a last column are eliminated; what is left of w^2 is the residual, and of the
+    /// slopes, which come last, the inverse of their variances.
+    #[inline(never)]
+    fn slopes(&self, noise: f64) -> ([Doubles; 2], Doubles) {
+        const A: usize = TERMS - 2;
+        const B: usize = TERMS - 1;
+        let mut rows = [[Doubles::splat(0.0); TERMS]; TERMS + 1];
+        for (i, &[j, k]) in POWERS.iter().enumerate() {
+            for (entry, &[other_j, other_k]) in rows[i][..=i].iter_mut().zip(&POWERS) {
+                *entry = self.plain[place([j + other_j, k + other_k])];
+            }
+            rows[i][i] = rows[i][i] * Doubles::splat(1.0 + DAMPING);
+            rows[TERMS][i] = self.offset[place([j, k])];
+        }
+        let (zero, one) = (Doubles::splat(0.0), Doubles::splat(1.0));
+        let mut left = self.square;
+        let mut good = Doubles::splat(TERMS as f64).less(self.count);
+        for k in 0..TERMS {
+            let pivot = rows[k][k];
+            good = good & zero.less(pivot);
+            let inverse = one / pivot;
+            for i in k + 1..TERMS {
+                let share = rows[i][k] * inverse;
+                for j in k + 1..=i {
+                    rows[i][j] = rows[i][j] - share * rows[j][k];
+                }
+                rows[TERMS][i] = rows[TERMS][i] - share * rows[TERMS][k];
+            }
+            left = left - rows[TERMS][k] * rows[TERMS][k] * inverse;
+        }
+        let share = rows[B][A] / rows[A][A];
+        let along_b = rows[TERMS][B] / rows[B][B];
+        let along_a = rows[TERMS][A] / rows[A][A] - share * along_b;
+        let variance = one / rows[A][A] + (one + share * share) / rows[B][B];
+        // Noise averages out. A residual of wrong shape does not: the slopes err by no less than the residual itself.
+        let residual = left.raised_to(0.0) / self.plain[0];
+        let noise = residual.min(Doubles::splat(noise * noise));
+        let error = (noise * variance + (residual - noise) * variance.raised_to(1.0)).sqrt();
+        ([along_a, along_b], good.select(error, Doubles::splat(f64::NAN)))
+    }
+}
+
+/// The terms of a cubic as powers of a and b, its slopes last.
+const POWERS: [[usize; 2]; TERMS] = [[0, 0], [2, 0], [1, 1], [0, 2], [3, 0], [2, 1], [1, 2], [0, 3], [1, 0], [0, 1]];
+
+/// Where the sum of a^j b^k is.
+const fn place([j, k]: [usize; 2]) -> usize {
+    (j + k) * (j + k + 1) / 2 + k
+}
+
+/// Unit vectors across a normal: the first across the y axis, too, or across x where that is near.
+fn tangents([x, y, z]: [Doubles; 3]) -> [[Doubles; 3]; 2] {
+    let zero = Doubles::splat(0.0);
+    let level = (y * y).less(Doubles::splat(LEVEL * LEVEL));
+    let across = normalize([level.keep(zero - z), level.select(zero, z), level.select(x, zero - y)]);
+    let [ax, ay, az] = across;
+    [across, [y * az - z * ay, z * ax - x * az, x * ay - y * ax]]
+}
+
+fn subtract(a: [Doubles; 3], b: [Doubles; 3]) -> [Doubles; 3] {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+fn scale([x, y, z]: [Doubles; 3], factor: Doubles) -> [Doubles; 3] {
+    [x * factor, y * factor, z * factor]
+}
+
+fn normalize(vector: [Doubles; 3]) -> [Doubles; 3] {
+    scale(vector, Doubles::splat(1.0) / dot(vector, vector).sqrt())
 }
 
 #[cfg(test)]

@@ -5,6 +5,7 @@ use std::ops::Range;
 use nalgebra::{Matrix3, Vector3};
 
 use crate::error::{Error, ErrorKind, Result};
+use crate::view::Lanes;
 
 /// Smallest side of a view: below it neither a normal nor a light is determined.
 pub const SMALLEST_SIDE: usize = 4;
@@ -167,6 +168,7 @@ pub type Points = Normals;
 impl Normals {
     /// `length` missing vectors.
     #[must_use]
+    #[inline(never)]
     pub fn missing(length: usize) -> Self {
         Self { x: vec![f32::NAN; length], y: vec![f32::NAN; length], z: vec![f32::NAN; length] }
     }
@@ -188,6 +190,12 @@ impl Normals {
     #[must_use]
     pub fn get(&self, index: usize) -> [f32; 3] {
         [self.x[index], self.y[index], self.z[index]]
+    }
+
+    /// The four vectors from `index` on, NaN beyond the last one.
+    pub(crate) fn lanes(&self, index: usize) -> [Lanes; 3] {
+        let start = index as isize;
+        [Lanes::load(&self.x, start), Lanes::load(&self.y, start), Lanes::load(&self.z, start)]
     }
 
     /// Replaces the vector at `index`.

@@ -70,7 +70,7 @@ impl ColourView {
             self.size.halve(fine, &mut coarse);
             coarse
         });
-        Self { size, camera: self.camera.halved(), mask, log, transfer: self.transfer }
+        Self::of(size, self.camera.halved(), mask, log, self.transfer)
     }
 }
 

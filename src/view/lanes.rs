@@ -194,21 +194,10 @@ impl Not for Mask {
     }
 }
 
-macro_rules! operator {
-    ($name:ident, $method:ident) => {
-        impl $name for Lanes {
-            type Output = Self;
-            #[inline(always)]
-            fn $method(self, other: Self) -> Self {
-                Self(arch::$method(self.0, other.0))
-            }
-        }
-    };
-}
-operator!(Add, add);
-operator!(Sub, sub);
-operator!(Mul, mul);
-operator!(Div, div);
+operator!(Lanes, Add, add);
+operator!(Lanes, Sub, sub);
+operator!(Lanes, Mul, mul);
+operator!(Lanes, Div, div);
 
 #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
 mod arch {
@@ -273,18 +262,6 @@ mod arch {
     pub type Four = [f32; LANES];
     pub type Choice = [bool; LANES];
 
-    macro_rules! each {
-        ($($name:ident($a:ident $(, $b:ident)*: $from:ty) -> $to:ty { $body:expr })*) => {
-            $(#[inline(always)]
-            pub fn $name($a: $from $(, $b: $from)*) -> $to {
-                std::array::from_fn(|lane| {
-                    let $a = $a[lane];
-                    $(let $b = $b[lane];)*
-                    $body
-                })
-            })*
-        };
-    }
     each! {
         add(a, b: Four) -> Four { a + b }
         sub(a, b: Four) -> Four { a - b }

@@ -1,9 +1,13 @@
 //! What comes in: sizes, masks, cameras, one colour image and one depth map, checked once.
 
+#[macro_use]
+mod elementwise;
+
 mod camera;
 mod colour;
 pub mod cubic_normals;
 mod depth;
+mod doubles;
 mod grid;
 mod halve;
 mod lanes;

@@ -2,14 +2,14 @@
 
 use std::collections::BTreeMap;
 
-use js_sys::{Float32Array, Float64Array, Int32Array};
+use js_sys::{Array, Float32Array, Float64Array, Int32Array};
 use wasm_bindgen::JsCast;
 use wasm_bindgen::prelude::wasm_bindgen;
 
 use super::error::Thrown;
 use super::input::{self, JsDepth, JsImage, JsOptions};
 use super::output;
-use crate::estimator::{Estimator as Native, Finding, Surface};
+use crate::estimator::{Estimator as Native, Finding, RefinementTask, Surface};
 use crate::options::Options;
 use crate::report::Status;
 
@@ -20,6 +20,10 @@ extern "C" {
 
     #[wasm_bindgen(typescript_type = "StepReport")]
     pub type JsReport;
+
+    /// Number of the shape that it starts from, numbers, planes one after the other.
+    #[wasm_bindgen(typescript_type = "[number, Float64Array, Float32Array]")]
+    pub type JsRefinementTask;
 }
 
 type Result<T> = std::result::Result<T, Thrown>;
@@ -31,6 +35,8 @@ pub struct Estimator {
     native: Native,
     options: Options,
     milliseconds: BTreeMap<&'static str, f64>,
+    /// Whether these are of the stages before a refinement, which the next step goes on with.
+    halfway: bool,
 }
 
 #[wasm_bindgen]
@@ -39,11 +45,13 @@ impl Estimator {
     pub fn new(image: &JsImage, depth: &JsDepth, options: &JsOptions) -> Result<Self> {
         let options = input::options(options)?;
         let native = Native::new(input::image(image)?, &input::depth(depth)?, options.clone())?;
-        Ok(Self { native, options, milliseconds: BTreeMap::new() })
+        Ok(Self { native, options, milliseconds: BTreeMap::new(), halfway: false })
     }
 
     pub fn step(&mut self) -> JsReport {
-        self.milliseconds.clear();
+        if !std::mem::take(&mut self.halfway) {
+            self.milliseconds.clear();
+        }
         let before = self.native.report().iteration;
         loop {
             let searching = self.native.is_searching();
@@ -55,8 +63,38 @@ impl Estimator {
         }
     }
 
+    /// The stages before a refinement that a partner may be making.
+    #[wasm_bindgen(js_name = "stepHalfway")]
+    pub fn step_halfway(&mut self) {
+        if !std::mem::replace(&mut self.halfway, true) {
+            self.milliseconds.clear();
+        }
+        while self.native.precedes_refinement() {
+            self.timed_stage();
+        }
+    }
+
+    /// The next refinement for a partner that holds the shape of number `held`.
+    #[wasm_bindgen(js_name = "refinementTask")]
+    pub fn refinement_task(&self, held: Option<u32>) -> Option<JsRefinementTask> {
+        let RefinementTask { shape, numbers, planes } = self.native.refinement_task(held)?;
+        let numbers = Float64Array::from(numbers.as_slice());
+        Some(Array::of3(&shape.into(), &numbers, &output::planes(&planes)).unchecked_into())
+    }
+
+    /// What a partner has made of the shape of number `shape`; passed over where it is not asked for.
+    #[wasm_bindgen(js_name = "acceptRefinement")]
+    pub fn accept_refinement(&mut self, shape: u32, planes: &Float32Array) {
+        if planes.length() as usize == 4 * self.native.depth().size.len()
+            && let Some(own) = self.native.accept_refinement(shape)
+        {
+            input::planes(planes, own);
+        }
+    }
+
     #[wasm_bindgen(js_name = "stepStage")]
     pub fn step_stage(&mut self) -> JsReport {
+        self.halfway = false;
         self.milliseconds.clear();
         self.timed_stage();
         self.report()
@@ -76,23 +114,24 @@ impl Estimator {
         let options = options.map_or_else(|| Ok(self.options.clone()), |options| input::options(&options))?;
         self.native.reset(options.clone())?;
         self.options = options;
+        self.halfway = false;
         self.milliseconds.clear();
         Ok(())
     }
 
-    /// How many scouts the memory of a pair leaves room for.
-    #[wasm_bindgen(js_name = "scoutsAfforded")]
-    pub fn scouts_afforded(&self) -> u32 {
-        self.native.scouts_afforded()
+    /// How many helpers the memory of a pair leaves room for.
+    #[wasm_bindgen(js_name = "helpersAfforded")]
+    pub fn helpers_afforded(&self) -> u32 {
+        self.native.helpers_afforded()
     }
 
-    /// A part of the opening search for a scout in another thread, as plain numbers.
+    /// A part of the opening search for a helper in another thread, as plain numbers.
     #[wasm_bindgen(js_name = "takeTask")]
     pub fn take_task(&mut self) -> Option<Float64Array> {
         self.native.take_task().map(|task| Float64Array::from(task.to_numbers().as_slice()))
     }
 
-    /// What a scout has found.
+    /// What a helper has found.
     pub fn accept(&mut self, finding: &Float64Array) {
         if let Some(finding) = Finding::from_numbers(&finding.to_vec()) {
             self.native.accept(finding);

@@ -237,3 +237,17 @@ pub fn angles(js: &JsAngles) -> Angles {
         gamma: js.gamma().unwrap_or_default(),
     }
 }
+
+/// Takes over rasters that stand one after the other, as many as there are; whether they end with a whole one.
+pub fn planes<'a>(all: &Float32Array, planes: impl IntoIterator<Item = &'a mut [f32]>) -> bool {
+    let mut start = 0;
+    for plane in planes {
+        let end = start + plane.len() as u32;
+        if end > all.length() {
+            break;
+        }
+        all.subarray(start, end).copy_to(plane);
+        start = end;
+    }
+    start == all.length()
+}

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use js_sys::{Object, Reflect, Uint8Array};
+use js_sys::{Float32Array, Object, Reflect, Uint8Array};
 use serde::Serialize;
 use wasm_bindgen::{JsValue, UnwrapThrowExt};
 
@@ -133,4 +133,17 @@ pub fn camera(camera: &Camera) -> JsValue {
 pub fn mask(mask: &[bool]) -> Uint8Array {
     let bytes: Vec<u8> = mask.iter().map(|&inside| if inside { u8::MAX } else { 0 }).collect();
     Uint8Array::from(bytes.as_slice())
+}
+
+/// Rasters one after the other.
+pub fn planes(planes: &[&[f32]]) -> Float32Array {
+    let length: usize = planes.iter().map(|plane| plane.len()).sum();
+    let all = Float32Array::new_with_length(length as u32);
+    let mut start = 0;
+    for plane in planes {
+        let end = start + plane.len() as u32;
+        all.subarray(start, end).copy_from(plane);
+        start = end;
+    }
+    all
 }

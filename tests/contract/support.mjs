@@ -14,6 +14,13 @@ export function estimator(options = {}, { image, depth, light } = pair()) {
   return new Estimator(image, depth, { light, start: "identity", scale: 1, ...options });
 }
 
+/** All that comes out, to the bit, but for the times. */
+export function outcome(estimator) {
+  const { milliseconds, ...report } = estimator.report;
+  const arrays = [estimator.imageNormals(), estimator.imageDepth(), estimator.depthNormals(), estimator.refinedDepth(), estimator.residual()];
+  return { report, bits: arrays.map((array) => new Uint32Array(array.buffer)), light: estimator.light() };
+}
+
 /** Checks that a call is refused with this code and this field, and that the message begins with the field. */
 export function refused(call, code, field) {
   assert.throws(call, (error) => {

@@ -6,19 +6,12 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { before, describe, test } from "node:test";
 import { setTimeout as wait } from "node:timers/promises";
-import { Estimator, init, pair, refused } from "./support.mjs";
+import { Estimator, init, outcome, pair, refused } from "./support.mjs";
 
 /** Until the other threads are there, milliseconds; a search takes as long. */
 const ARRIVAL = 1000;
 
 const scene = (request = {}) => pair({ light: "window", size: 48, angles: { alpha: 10, beta: 40 }, noise: 0.01, ...request });
-
-/** All that comes out, to the bit, but for the times. */
-function outcome(estimator) {
-  const { milliseconds, ...report } = estimator.report;
-  const arrays = [estimator.imageNormals(), estimator.imageDepth(), estimator.depthNormals(), estimator.refinedDepth(), estimator.residual()];
-  return { report, bits: arrays.map((array) => new Uint32Array(array.buffer)), light: estimator.light() };
-}
 
 /** Runs to the end; how many slices of the search were done in this thread. */
 async function slicesOf(estimator) {

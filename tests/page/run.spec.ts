@@ -175,9 +175,9 @@ test("nothing known: the search comes first, says how far it is, and the loop co
 });
 
 test("other threads share the search where the machine has them", async ({ lab, page }) => {
-  const scouts: string[] = [];
-  page.context().on("request", (request) => /\/scout-[^/]*\.js$/.test(request.url()) && scouts.push(request.url()));
+  const helpers: string[] = [];
+  page.context().on("request", (request) => /\/thread-[^/]*\.js$/.test(request.url()) && helpers.push(request.url()));
   await lab.visit("light=window");
   const threads = await page.evaluate(() => navigator.hardwareConcurrency);
-  await expect.poll(() => scouts.length).toBe(Math.min(threads, 4) - 1);
+  await expect.poll(() => helpers.length).toBe(Math.min(threads, 4) - 1);
 });

@@ -44,18 +44,26 @@ const breathe = () =>
     port2.postMessage(null);
   });
 
-/** The same as `run` of benches/common: to the end, or through `most` iterations. Stages carry the package's own times. */
+/**
+ * The same as `run` of benches/common: to the end, or through `most` iterations. Stages carry the package's own times. With several
+ * workers an iteration is one step, which waits for them: `shared` has the wall times.
+ */
 async function run({ start, shading, most, workers }) {
   const { image, depth, pose } = scene;
   const begun = performance.now();
   const estimator = new Estimator(image, depth, { start: start === "search" ? "search" : pose, shading, workers });
   let { report } = estimator;
   const preparation = performance.now() - begun;
-  const stages = [];
+  const [stages, shared] = [[], []];
   let longestSlice = 0;
   while (report.status === "running" && report.iteration < most) {
     const { iteration } = report;
     const before = performance.now();
+    if (workers > 1 && !(start === "search" && report.iteration === 0)) {
+      report = await estimator.run({ maxIterations: 1 });
+      shared.push({ iteration, milliseconds: performance.now() - before });
+      continue;
+    }
     report = estimator.stepStage();
     // From outside: so long nobody else has a turn.
     if (report.stage === "search") longestSlice = Math.max(longestSlice, performance.now() - before);
@@ -65,7 +73,7 @@ async function run({ start, shading, most, workers }) {
   const milliseconds = performance.now() - begun;
   estimator.free();
   const degrees = degreesBetween(report.pose.rotation, pose.rotation);
-  return { status: report.status, iterations: report.iteration, degrees, milliseconds, preparation, longestSlice, stages };
+  return { status: report.status, iterations: report.iteration, degrees, milliseconds, preparation, longestSlice, stages, shared };
 }
 
 /** From nothing loaded but this file to the first report. */

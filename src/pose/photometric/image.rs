@@ -19,7 +19,7 @@ const POLE: f64 = -0.267_949_192_431_122_7;
 /// Samples after which the pole's powers have fallen below the rounding of f32: 0.268^14 = 1e-8.
 const HORIZON: usize = 14;
 /// Rings of pixels that the continuation adds: the spline feels the last of them by 0.268^8 = 3e-5.
-const RINGS: usize = 8;
+const RINGS: u8 = 8;
 /// Mirrored samples of a line: one before, two behind.
 const MIRRORED: usize = 3;
 /// Reach of a Gaussian in sigmas: what lies beyond weighs 1 %.
@@ -55,19 +55,18 @@ impl SplineImage {
     }
 
     fn over(cells: &Arc<[bool]>, view: &ColourView, blur: f64) -> Self {
-        let fields = [0, 1, 2].map(|channel: usize| {
-            let mut field = blurred(view.size, &view.log[channel], &view.mask, blur);
-            continue_outwards(view.size, &mut field, &view.mask);
-            filter(view.size, &mut field);
-            field
+        let mut fields = blurred(view, blur);
+        continue_outwards(view.size, &mut fields, &view.mask);
+        fields.iter_mut().for_each(|field| filter(view.size, field));
+        let [red, green, blue] = &fields;
+        let mut coefficients = Vec::with_capacity((view.size.width + MIRRORED) * (view.size.height + MIRRORED));
+        mirrored(view.size.height).for_each(|row| {
+            mirrored(view.size.width).for_each(|column| {
+                let index = view.size.index(column, row);
+                coefficients.push([red[index], green[index], blue[index]]);
+            });
         });
-        let (columns, rows) = (mirrored(view.size.width), mirrored(view.size.height));
-        let places = rows.flat_map(|row| columns.clone().map(move |column| view.size.index(column, row)));
-        Self {
-            size: view.size,
-            cells: Arc::clone(cells),
-            coefficients: places.map(|index| fields.each_ref().map(|field| field[index])).collect(),
-        }
+        Self { size: view.size, cells: Arc::clone(cells), coefficients }
     }
 
     /// Whether the cell around a position, and `margin` pixels beyond it on every side, is on the mask.
@@ -180,64 +179,93 @@ fn weights(t: f64) -> ([f64; 4], [f64; 4]) {
     (values, slopes)
 }
 
-/// Mask-normalised Gaussian mean; NaN off the mask.
-fn blurred(size: Size, field: &[f32], mask: &[bool], sigma: f64) -> Vec<f32> {
+/// Mask-normalised Gaussian means of the channels; NaN off the mask.
+fn blurred(view: &ColourView, sigma: f64) -> [Vec<f32>; 3] {
     if sigma <= 0.0 {
-        return field.to_vec();
+        return view.log.clone();
     }
     let reach = (REACH * sigma).ceil() as usize;
-    let kernel: Vec<f64> = (0..=reach).map(|k| (-0.5 * (k as f64 / sigma).powi(2)).exp()).collect();
-    let start: Vec<[f64; 2]> =
-        field.iter().zip(mask).map(|(&v, &inside)| if inside { [f64::from(v), 1.0] } else { [0.0; 2] }).collect();
-    let pass = |values: &[[f64; 2]], step: usize, length: usize| -> Vec<[f64; 2]> {
-        (0..values.len())
-            .map(|index| {
-                let place = index / step % length;
-                let first = place.saturating_sub(reach);
-                (first..=(place + reach).min(length - 1)).fold([0.0; 2], |sum, other| {
-                    let [value, weight] = values[index + other * step - place * step];
-                    let share = kernel[place.abs_diff(other)];
-                    [sum[0] + share * value, sum[1] + share * weight]
-                })
-            })
-            .collect()
-    };
-    let both = pass(&pass(&start, 1, size.width), size.width, size.height);
-    both.iter().zip(mask).map(|(&[v, w], &inside)| if inside { (v / w) as f32 } else { f32::NAN }).collect()
+    let kernel: Vec<f64> = (0..=2 * reach).map(|k| (-0.5 * (k.abs_diff(reach) as f64 / sigma).powi(2)).exp()).collect();
+    let inside = || view.mask.iter().copied();
+    let weights = smoothed(view.size, &kernel, inside().map(f64::from).collect());
+    view.log.each_ref().map(|log| {
+        let masked = log.iter().zip(inside()).map(|(&value, inside)| if inside { f64::from(value) } else { 0.0 });
+        let sums = smoothed(view.size, &kernel, masked.collect());
+        let mean = |((sum, weight), inside): ((f64, &f64), bool)| if inside { (sum / weight) as f32 } else { f32::NAN };
+        sums.into_iter().zip(&weights).zip(inside()).map(mean).collect()
+    })
 }
 
-/// Continues a field beyond its mask: each new pixel is the mean of the straight lines (of the values, where there is
-/// no second pixel) that reach it from its neighbours. What is farther away than the rings becomes zero.
-fn continue_outwards(size: Size, field: &mut [f32], mask: &[bool]) {
-    let mut known = mask.to_vec();
-    let mut ring: Vec<(usize, f32)> = Vec::new();
-    for _ in 0..RINGS {
-        ring.clear();
-        for index in (0..field.len()).filter(|&index| !known[index]) {
-            let (mut sum, mut count) = (0.0, 0.0);
-            let (column, row) = size.position(index);
-            for (right, down) in [(-1, 0), (1, 0), (0, -1), (0, 1)] {
-                let value = |steps: isize| {
-                    let column = column.checked_add_signed(steps * right).filter(|&c| c < size.width)?;
-                    let row = row.checked_add_signed(steps * down).filter(|&r| r < size.height)?;
-                    let other = size.index(column, row);
-                    known[other].then(|| field[other])
-                };
-                if let Some(first) = value(1) {
-                    sum += value(2).map_or(first, |second| 2.0 * first - second);
-                    count += 1.0;
-                }
-            }
-            if count > 0.0 {
-                ring.push((index, sum / count));
-            }
-        }
-        for &(index, value) in &ring {
-            field[index] = value;
-            known[index] = true;
+/// Sums of the values around each pixel, weighted by the kernel along rows, then along columns.
+fn smoothed(size: Size, kernel: &[f64], mut values: Vec<f64>) -> Vec<f64> {
+    let reach = kernel.len() / 2;
+    let mut sums = vec![0.0; values.len()];
+    for (sums, values) in sums.chunks_exact_mut(size.width).zip(values.chunks_exact(size.width)) {
+        for (k, &share) in kernel.iter().enumerate() {
+            // What lies beyond the ends counts as zero.
+            let (first, source) = (reach.saturating_sub(k), k.saturating_sub(reach));
+            add(sums.get_mut(first..), share, values.get(source..));
         }
     }
-    field.iter_mut().zip(&known).filter(|(_, known)| !**known).for_each(|(value, _)| *value = 0.0);
+    values.fill(0.0);
+    for (row, values) in values.chunks_exact_mut(size.width).enumerate() {
+        for (k, &share) in kernel.iter().enumerate() {
+            let source = (row + k).checked_sub(reach).and_then(|row| sums.chunks_exact(size.width).nth(row));
+            add(Some(&mut *values), share, source);
+        }
+    }
+    values
+}
+
+/// Adds a share of the values to as many sums, if there are any.
+fn add(sums: Option<&mut [f64]>, share: f64, values: Option<&[f64]>) {
+    let (Some(sums), Some(values)) = (sums, values) else { return };
+    sums.iter_mut().zip(values).for_each(|(sum, value)| *sum += share * value);
+}
+
+/// Continues fields beyond their mask: each new pixel is the mean of the straight lines (of the values, where there is
+/// no second pixel) that reach it from its neighbours. What is farther away than the rings becomes zero.
+fn continue_outwards(size: Size, fields: &mut [Vec<f32>; 3], mask: &[bool]) {
+    // Zero on the mask, then the number of the ring; one more than there are is not known yet.
+    let mut rings: Vec<u8> = mask.iter().map(|&inside| if inside { 0 } else { RINGS + 1 }).collect();
+    let mut ring: Vec<usize> = (0..mask.len()).filter(|&index| mask[index]).collect();
+    for number in 1..=RINGS {
+        let mut next = Vec::new();
+        for near in ring.into_iter().flat_map(|index| size.neighbours(index)) {
+            if rings[near] > RINGS {
+                rings[near] = number;
+                next.push(near);
+            }
+        }
+        for &index in &next {
+            let known = |other: &usize| rings[*other] < number;
+            for field in fields.iter_mut() {
+                field[index] = continued(size, field, index, known);
+            }
+        }
+        ring = next;
+    }
+    for field in fields {
+        field.iter_mut().zip(&rings).filter(|(_, ring)| **ring > RINGS).for_each(|(value, _)| *value = 0.0);
+    }
+}
+
+/// The mean of the straight lines from the neighbours that are known.
+fn continued(size: Size, field: &[f32], index: usize, known: impl Fn(&usize) -> bool) -> f32 {
+    let (column, row) = size.position(index);
+    let (mut sum, mut count) = (0.0, 0.0);
+    for (right, down) in [(-1, 0), (1, 0), (0, -1), (0, 1)] {
+        let value = |steps: isize| {
+            let column = column.checked_add_signed(steps * right).filter(|&c| c < size.width)?;
+            let row = row.checked_add_signed(steps * down).filter(|&r| r < size.height)?;
+            Some(size.index(column, row)).filter(&known).map(|other| field[other])
+        };
+        if let Some(first) = value(1) {
+            sum += value(2).map_or(first, |second| 2.0 * first - second);
+            count += 1.0;
+        }
+    }
+    sum / count
 }
 
 /// Pixel values to B-spline coefficients, in place: rows, then columns.

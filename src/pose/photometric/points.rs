@@ -110,13 +110,14 @@ impl VisiblePoints {
         most: usize,
     ) {
         let centre = pose.apply(problem.points.centroid());
-        self.visible.update(&Sight {
+        let sight = Sight {
             image: problem.image,
             pose,
             points: problem.points,
             normals: problem.normals,
             pixel_length: problem.image.camera.focal_length().map_or(1.0, |focal_length| centre.z / focal_length),
-        });
+        };
+        self.visible.update(&sight, &mut |_, _, _| true);
         let enough = if problem.light.is_some() { ENOUGH_KNOWN } else { ENOUGH_UNKNOWN };
         for level in (0..=level).rev() {
             self.list(problem, image, 1 << level);

@@ -1,0 +1,33 @@
+//! A helper for JavaScript: tasks and findings are plain numbers, and rasters one after the other.
+
+use js_sys::{Float32Array, Float64Array};
+use wasm_bindgen::prelude::wasm_bindgen;
+
+use super::error::Thrown;
+use super::input::{self, JsDepth, JsImage, JsOptions};
+use super::output;
+use crate::estimator::{Helper as Native, Task};
+
+#[wasm_bindgen]
+pub struct Helper(Native);
+
+#[wasm_bindgen]
+impl Helper {
+    #[wasm_bindgen(constructor)]
+    pub fn new(image: &JsImage, depth: &JsDepth, options: &JsOptions) -> Result<Self, Thrown> {
+        Ok(Self(Native::new(input::image(image)?, &input::depth(depth)?, input::options(options)?)?))
+    }
+
+    /// What became of a task; nothing of what is none.
+    pub fn perform(&mut self, task: &Float64Array) -> Option<Float64Array> {
+        let finding = self.0.perform(&Task::from_numbers(&task.to_vec())?).ok()?;
+        Some(Float64Array::from(finding.to_numbers().as_slice()))
+    }
+
+    /// The refined shape of a task; nothing of what is none.
+    pub fn refine(&mut self, numbers: &Float64Array, planes: &Float32Array) -> Option<Float32Array> {
+        let mut whole = false;
+        let refined = self.0.refine(&numbers.to_vec(), |own| whole = input::planes(planes, own)).ok()?;
+        whole.then(|| output::planes(&refined))
+    }
+}
