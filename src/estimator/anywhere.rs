@@ -4,7 +4,7 @@ use super::{Estimator, Finding, Given, Joint, Look, Opening, Outcome, Task, gaug
 use crate::error::{Error, ErrorKind, Result};
 use crate::light::LightPrior;
 use crate::options::{LightSource, Options, Registration};
-use crate::pose::{PhotometricReport, Search, Similarity};
+use crate::pose::{ImageGrid, Known, PhotometricReport, Search, Similarity};
 use crate::report::Status;
 use crate::text::Fixed;
 use crate::view::{ColourView, DepthView};
@@ -43,12 +43,15 @@ impl Estimator {
 
     /// One slice of the opening search.
     pub(super) fn search(&mut self) -> Result<()> {
-        let Self { image, depth, prior, options, opening, joint, .. } = self;
+        let Self { image, depth, prior, options, grid, opening, joint, .. } = self;
         let given = given(image, depth, prior, options);
         let joint = joint.as_mut().ok_or_else(|| nowhere("the search has no registration"))?;
         let Some(opening) = opening else {
-            // Grids and spectra of both views are a slice of their own.
-            *opening = Some(Opening::new(&given, search(&given, options, joint)?));
+            // Each view's preparation is a slice of its own.
+            match grid.take() {
+                None => *grid = Some(ImageGrid::new(image)?),
+                Some(grid) => *opening = Some(Opening::new(&given, search(&given, grid, options, joint)?)),
+            }
             self.report.message = Some("0 %: preparing the search".into());
             return Ok(());
         };
@@ -206,10 +209,10 @@ pub(super) fn given<'a>(
 }
 
 /// The search of a pair, by the normals that registrations go by.
-pub(super) fn search(given: &Given<'_>, options: &Options, joint: &Joint) -> Result<Search> {
+pub(super) fn search(given: &Given<'_>, grid: ImageGrid, options: &Options, joint: &Joint) -> Result<Search> {
     let Given { image, depth, light, .. } = *given;
-    let scale = gauge::held_scale(image, options);
-    Search::new(image, depth, joint.normals(), light, scale, gauge::unit_scale(image, depth), options.seed)
+    let (scale, unit_scale) = (gauge::held_scale(image, options), gauge::unit_scale(image, depth));
+    Search::over(grid, image, depth, joint.normals(), Known { light, scale, unit_scale, seed: options.seed })
 }
 
 fn nowhere(message: &'static str) -> Error {

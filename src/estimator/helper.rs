@@ -7,7 +7,7 @@ use super::task::{Finding, Found, Registered, Task, Work};
 use crate::error::Result;
 use crate::light::LightPrior;
 use crate::options::Options;
-use crate::pose::Search;
+use crate::pose::{ImageGrid, Search};
 use crate::view::{ColourImage, ColourView, DepthMap, DepthView};
 
 /// Does tasks of the opening, and later refinements, for an [`Estimator`](super::Estimator) of the same pair and options.
@@ -44,7 +44,7 @@ impl Helper {
             Some(scout) => scout,
             nobody => {
                 let joint = Joint::new(&given);
-                let search = search(&given, options, &joint)?;
+                let search = search(&given, ImageGrid::new(given.image)?, options, &joint)?;
                 nobody.insert((joint, search))
             }
         };

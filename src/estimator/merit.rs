@@ -133,7 +133,7 @@ pub fn residuals(image: &ColourView, start: usize, light: &[Polynomial; 3], norm
 }
 
 #[inline(always)]
-fn square_residual<T: Real>(log: [T; 3], light: &[Polynomial; 3], normal: [T; 3]) -> T {
+fn square_residual<T: Real<Scalar = f32>>(log: [T; 3], light: &[Polynomial; 3], normal: [T; 3]) -> T {
     let off = |channel: usize| log[channel] - light[channel].shade(normal);
     let [red, green, blue] = [off(0), off(1), off(2)];
     red * red + green * green + blue * blue

@@ -25,7 +25,7 @@ use nalgebra::Vector3;
 use crate::error::{Error, ErrorKind, Result};
 use crate::light::{Light, LightFitter, LightPrior};
 use crate::options::{LightSource, Options, Registration, Shading, Start};
-use crate::pose::{Correspondences, Icp, Similarity};
+use crate::pose::{Correspondences, Icp, ImageGrid, Similarity};
 use crate::report::{Energy, Stage, Status, StepReport};
 use crate::shape::{Integrator, Refiner, ReliefSolver, STARTS, ShadingSolver, Workbench};
 use crate::text::Fixed;
@@ -98,6 +98,8 @@ pub struct Estimator {
     icp: Icp,
     /// Only where the options ask for it: it holds splines of the image.
     joint: Option<Joint>,
+    /// The image as the opening search will look at it, until that begins.
+    grid: Option<ImageGrid>,
     opening: Option<Opening>,
     /// Points of ICP's pairs: depth view, image.
     paired_points: [Vec<Vector3<f64>>; 2],
@@ -164,6 +166,7 @@ impl Estimator {
             integrator: None,
             icp: Icp::new(),
             joint,
+            grid: None,
             opening: None,
             paired_points: [Vec::new(), Vec::new()],
             refiner,
@@ -247,7 +250,7 @@ impl Estimator {
         if let Err(error) = outcome {
             self.end(Status::Lost, error.to_string());
         }
-        let searching = stage == Stage::Search && self.opening.is_some();
+        let searching = stage == Stage::Search && (self.grid.is_some() || self.opening.is_some());
         self.next = if searching { stage } else { stage.next() };
         &self.report
     }

@@ -7,7 +7,7 @@
 use std::ops::Range;
 
 use crate::error::{Error, ErrorKind, Result};
-use crate::light::harmonics::{HARMONICS, basis_of_four};
+use crate::light::harmonics::{HARMONICS, basis};
 use crate::light::prior::{CoefficientMatrix, Coefficients, LightPrior};
 use crate::light::{Light, Polynomial};
 use crate::view::{LANES, Lanes, Normals, Real, dot, quantile};
@@ -168,7 +168,7 @@ impl LightFitter {
         for start in samples.step_by(LANES) {
             let (normal, colour) = self.four(start);
             let weight = Lanes::load(&self.weights, start as isize);
-            let basis = basis_of_four(normal);
+            let basis = basis(normal);
             for (row, parts) in parts.iter_mut().enumerate() {
                 let weighted = weight * basis[row];
                 for (part, other) in parts.iter_mut().zip(&basis[..=row]) {

@@ -2,7 +2,7 @@
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::text::Brief;
-use crate::view::{Lanes, Real};
+use crate::view::Real;
 
 /// Number of harmonics for each channel.
 pub const HARMONICS: usize = 9;
@@ -76,33 +76,18 @@ impl Light {
 }
 
 /// What L1..L9 multiply, so that log S = sum L_k basis_k: the quadratic form of Eq. 5 written out.
-#[must_use]
-pub fn basis([x, y, z]: [f64; 3]) -> [f64; HARMONICS] {
-    [
-        C4,
-        2.0 * C2 * y,
-        2.0 * C2 * z,
-        2.0 * C2 * x,
-        2.0 * C1 * x * y,
-        2.0 * C1 * y * z,
-        C3 * z * z - C5,
-        2.0 * C1 * x * z,
-        C1 * (x * x - y * y),
-    ]
-}
-
-/// [`basis`] of four normals in f32.
 #[inline(always)]
-pub(crate) fn basis_of_four([x, y, z]: [Lanes; 3]) -> [Lanes; HARMONICS] {
-    let times = |constant: f64, value: Lanes| Lanes::splat(constant as f32) * value;
+#[must_use]
+pub(crate) fn basis<T: Real>([x, y, z]: [T; 3]) -> [T; HARMONICS] {
+    let times = |constant: f64, value: T| T::constant(constant) * value;
     [
-        Lanes::splat(C4 as f32),
+        T::constant(C4),
         times(2.0 * C2, y),
         times(2.0 * C2, z),
         times(2.0 * C2, x),
         times(2.0 * C1, x * y),
         times(2.0 * C1, y * z),
-        times(C3, z * z) - Lanes::splat(C5 as f32),
+        times(C3, z * z) - T::constant(C5),
         times(2.0 * C1, x * z),
         times(C1, x * x - y * y),
     ]
@@ -124,37 +109,37 @@ pub fn basis_gradient([x, y, z]: [f64; 3]) -> [[f64; 3]; HARMONICS] {
     ]
 }
 
-/// One channel of a light as a polynomial of the normal in f32, for loops over pixels.
+/// One channel of a light as a polynomial of the normal, for loops over pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Polynomial {
-    one: f32,
-    linear: [f32; 3],
-    xy: f32,
-    yz: f32,
-    zz: f32,
-    xz: f32,
-    xx_yy: f32,
+pub(crate) struct Polynomial<S = f32> {
+    one: S,
+    linear: [S; 3],
+    xy: S,
+    yz: S,
+    zz: S,
+    xz: S,
+    xx_yy: S,
 }
 
-impl Polynomial {
+impl<S: Real<Scalar = S>> Polynomial<S> {
     /// The polynomials of R, G, B.
     #[must_use]
     pub fn of(light: &Light) -> [Self; 3] {
         light.0.map(|l| Self {
-            one: (C4 * l[0] - C5 * l[6]) as f32,
-            linear: [2.0 * C2 * l[3], 2.0 * C2 * l[1], 2.0 * C2 * l[2]].map(|value| value as f32),
-            xy: (2.0 * C1 * l[4]) as f32,
-            yz: (2.0 * C1 * l[5]) as f32,
-            zz: (C3 * l[6]) as f32,
-            xz: (2.0 * C1 * l[7]) as f32,
-            xx_yy: (C1 * l[8]) as f32,
+            one: S::constant(C4 * l[0] - C5 * l[6]),
+            linear: [2.0 * C2 * l[3], 2.0 * C2 * l[1], 2.0 * C2 * l[2]].map(S::constant),
+            xy: S::constant(2.0 * C1 * l[4]),
+            yz: S::constant(2.0 * C1 * l[5]),
+            zz: S::constant(C3 * l[6]),
+            xz: S::constant(2.0 * C1 * l[7]),
+            xx_yy: S::constant(C1 * l[8]),
         })
     }
 
-    /// log S (Eq. 3) of one normal or of four.
+    /// log S (Eq. 3) of one normal or of several.
     #[inline(always)]
     #[must_use]
-    pub(crate) fn shade<T: Real>(&self, [x, y, z]: [T; 3]) -> T {
+    pub fn shade<T: Real<Scalar = S>>(&self, [x, y, z]: [T; 3]) -> T {
         let [by_x, by_y, by_z] = self.linear;
         T::splat(self.one)
             + x * (T::splat(by_x) + T::splat(self.xy) * y + T::splat(self.xz) * z + T::splat(self.xx_yy) * x)
@@ -166,20 +151,20 @@ impl Polynomial {
     /// slopes, here and at zero, along the normal.
     #[inline(always)]
     #[must_use]
-    pub(crate) fn expand<T: Real>(&self, [x, y, z]: [T; 3]) -> (T, [T; 3]) {
+    pub fn expand<T: Real<Scalar = S>>(&self, [x, y, z]: [T; 3]) -> (T, [T; 3]) {
         let [by_x, by_y, by_z] = self.linear;
         let slope = self.gradient([x, y, z]);
         let along = x * (slope[0] + T::splat(by_x)) + y * (slope[1] + T::splat(by_y)) + z * (slope[2] + T::splat(by_z));
-        (T::splat(self.one) + T::splat(0.5) * along, slope)
+        (T::splat(self.one) + T::constant(0.5) * along, slope)
     }
 
     /// d log S / d n.
     #[inline(always)]
     #[must_use]
-    pub(crate) fn gradient<T: Real>(&self, [x, y, z]: [T; 3]) -> [T; 3] {
+    pub fn gradient<T: Real<Scalar = S>>(&self, [x, y, z]: [T; 3]) -> [T; 3] {
         let [by_x, by_y, by_z] = self.linear;
         let (xy, yz, xz) = (T::splat(self.xy), T::splat(self.yz), T::splat(self.xz));
-        let (twice_zz, twice_xx_yy) = (T::splat(2.0 * self.zz), T::splat(2.0 * self.xx_yy));
+        let (twice_zz, twice_xx_yy) = (T::splat(self.zz + self.zz), T::splat(self.xx_yy + self.xx_yy));
         [
             T::splat(by_x) + xy * y + xz * z + twice_xx_yy * x,
             T::splat(by_y) + xy * x + yz * z - twice_xx_yy * y,
@@ -191,6 +176,7 @@ impl Polynomial {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::view::Lanes;
     use nalgebra::{Matrix4, Vector4};
 
     fn light() -> Light {
@@ -237,7 +223,7 @@ mod tests {
     #[test]
     fn four_normals_have_the_same_basis() {
         let normal = [0.36, -0.48, -0.8];
-        let four = basis_of_four(normal.map(|value| Lanes::splat(value as f32)));
+        let four = basis(normal.map(|value| Lanes::splat(value as f32)));
         assert!(basis(normal).into_iter().zip(four).all(|(one, four)| (one - f64::from(four.array()[2])).abs() < 1e-6));
     }
 

@@ -6,7 +6,7 @@ mod natural;
 mod prior;
 
 pub use fit::{LightFit, LightFitter};
-pub(crate) use harmonics::{HARMONICS, basis, basis_gradient};
-pub use harmonics::{Light, Polynomial};
+pub use harmonics::Light;
+pub(crate) use harmonics::{HARMONICS, Polynomial, basis, basis_gradient};
 pub(crate) use prior::Coefficients;
 pub use prior::{COEFFICIENTS, CoefficientMatrix, LightPrior};

@@ -20,7 +20,7 @@ pub use neighbours::{Neighbour, Neighbours};
 pub use photometric::{Photometric, PhotometricOptions, PhotometricProblem, PhotometricReport, PhotometricTermination};
 pub use ransac::{RansacOptions, RansacReport, ransac};
 pub use search::{Candidate, Progress, Search};
-pub(crate) use search::{Place, SearchFinding, SearchTask, sort_down};
+pub(crate) use search::{ImageGrid, Known, Place, SearchFinding, SearchTask, sort_down};
 pub use similarity::Similarity;
 pub(crate) use slots::Slots;
 pub use uncertainty::Information;

@@ -56,10 +56,10 @@ const FREE_SCALES: [f64; 4] = [0.74, 0.90, 1.09, 1.32];
 /// Apparent sizes behind a pinhole whose scale is held: the distance is known only roughly.
 const NEAR_SIZES: [f64; 3] = [0.87, 1.0, 1.15];
 /// Pairs of a rotation and a scale in one slice of the sweep.
-const SWEPT_AT_ONCE: usize = 6;
+const SWEPT_AT_ONCE: usize = 8;
 /// Slices of a single pair at the beginning: the very first call compiles what it needs, and until engines
 /// have optimised that, a pair takes several times as long.
-const WARMING_SLICES: usize = 12;
+const WARMING_SLICES: usize = 30;
 /// Rotations that climb.
 const CLIMBERS: usize = 96;
 /// Rotations of the sweep that are nearer to a better one than this many degrees do not climb: a climb goes farther.
@@ -89,6 +89,30 @@ pub struct Candidate {
 pub struct Progress {
     /// Share of the work that is done: one when the candidates are ready.
     pub share: f64,
+}
+
+/// The image as a search looks at it, and how it was transformed.
+pub(crate) struct ImageGrid {
+    target: Target,
+    fourier: Fourier,
+}
+
+impl ImageGrid {
+    /// # Errors
+    /// [`Degenerate`](crate::ErrorKind::Degenerate) where all colours are the same.
+    pub fn new(image: &ColourView) -> Result<Self> {
+        let mut fourier = Fourier::new();
+        Ok(Self { target: Target::new(image, SIDE, &mut fourier)?, fourier })
+    }
+}
+
+/// What is known beforehand of a pose to be searched.
+#[derive(Clone, Copy)]
+pub(crate) struct Known<'a> {
+    pub light: Option<&'a Light>,
+    pub scale: Option<f64>,
+    pub unit_scale: f64,
+    pub seed: u64,
 }
 
 /// A search in slices; owns all its memory.
@@ -165,9 +189,20 @@ impl Search {
         unit_scale: f64,
         seed: u64,
     ) -> Result<Self> {
+        let known = Known { light, scale, unit_scale, seed };
+        Self::over(ImageGrid::new(image)?, image, depth, normals, known)
+    }
+
+    /// [`new`](Self::new) over a grid of the image that is there already: half of the preparation.
+    pub(crate) fn over(
+        grid: ImageGrid,
+        image: &ColourView,
+        depth: &DepthView,
+        normals: &Normals,
+        Known { light, scale, unit_scale, seed }: Known<'_>,
+    ) -> Result<Self> {
         positive("scale", scale.unwrap_or(unit_scale))?;
-        let mut fourier = Fourier::new();
-        let target = Target::new(image, SIDE, &mut fourier)?;
+        let ImageGrid { target, fourier } = grid;
         let cloud = Cloud::new(depth.size, &depth.points, normals)?;
         let geometry = Geometry::new(image, depth, &target, &cloud, scale.unwrap_or(unit_scale));
         let sizes = match (scale, geometry.distance) {

@@ -46,7 +46,7 @@ impl Carrier {
     }
 
     #[inline(always)]
-    fn apply<T: Real>(&self, [x, y, z]: [T; 3]) -> [T; 3] {
+    fn apply<T: Real<Scalar = f32>>(&self, [x, y, z]: [T; 3]) -> [T; 3] {
         let [x, y, z] = [x - T::splat(self.from[0]), y - T::splat(self.from[1]), z - T::splat(self.from[2])];
         let row = |axis: usize| {
             let [a, b, c] = self.matrix[axis];

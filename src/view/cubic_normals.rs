@@ -13,7 +13,8 @@
 
 use nalgebra::Vector3;
 
-use super::doubles::{DOUBLE_LANES, Doubles, dot};
+use super::doubles::{DOUBLE_LANES, Doubles};
+use super::lanes::{Real, dot};
 use super::noise;
 use crate::view::{Normals, Points, Size, quantile};
 

@@ -4,6 +4,8 @@
 
 use std::ops::{Add, BitAnd, Div, Mul, Sub};
 
+use super::lanes::Real;
+
 /// Pixels that are worked on at once.
 pub const DOUBLE_LANES: usize = if cfg!(all(target_arch = "wasm32", not(target_feature = "simd128"))) { 1 } else { 2 };
 
@@ -25,12 +27,6 @@ pub struct Doubles(arch::Two);
 pub struct Choices(arch::Choice);
 
 impl Doubles {
-    /// The same number in both.
-    #[inline(always)]
-    pub fn splat(value: f64) -> Self {
-        Self::from([value; DOUBLE_LANES])
-    }
-
     /// Two values from `start`, NaN where there are not as many.
     #[inline(always)]
     pub fn load(values: &[f64], start: usize) -> Self {
@@ -41,6 +37,12 @@ impl Doubles {
     #[inline(always)]
     pub fn array(self) -> [f64; DOUBLE_LANES] {
         arch::array(self.0)
+    }
+
+    /// Of both.
+    #[inline(always)]
+    pub fn sum(self) -> f64 {
+        self.array().iter().sum()
     }
 
     #[inline(always)]
@@ -85,16 +87,24 @@ impl Doubles {
     }
 }
 
-/// The products of two pairs of vectors.
-#[inline(always)]
-pub fn dot(a: [Doubles; 3], b: [Doubles; 3]) -> Doubles {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
 impl From<[f64; DOUBLE_LANES]> for Doubles {
     #[inline(always)]
     fn from(values: [f64; DOUBLE_LANES]) -> Self {
         Self(arch::two(values))
+    }
+}
+
+impl Real for Doubles {
+    type Scalar = f64;
+
+    #[inline(always)]
+    fn splat(value: f64) -> Self {
+        Self::from([value; DOUBLE_LANES])
+    }
+
+    #[inline(always)]
+    fn constant(value: f64) -> Self {
+        Self::splat(value)
     }
 }
 

@@ -9,15 +9,42 @@ use std::ops::{Add, BitAnd, BitOr, Div, Mul, Not, Sub};
 /// Pixels that are worked on at once.
 pub const LANES: usize = if cfg!(all(target_arch = "wasm32", not(target_feature = "simd128"))) { 1 } else { 4 };
 
-/// What formulas need of a number: one pixel's or four.
+/// What formulas need of a number: one pixel's or several.
 pub trait Real: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> {
+    /// One pixel's.
+    type Scalar: Real<Scalar = Self::Scalar>;
+
     /// The same number everywhere.
-    fn splat(value: f32) -> Self;
+    fn splat(value: Self::Scalar) -> Self;
+
+    /// A constant of a formula, rounded as this is.
+    fn constant(value: f64) -> Self;
 }
 
 impl Real for f32 {
+    type Scalar = Self;
+
     #[inline(always)]
-    fn splat(value: f32) -> Self {
+    fn splat(value: Self) -> Self {
+        value
+    }
+
+    #[inline(always)]
+    fn constant(value: f64) -> Self {
+        value as Self
+    }
+}
+
+impl Real for f64 {
+    type Scalar = Self;
+
+    #[inline(always)]
+    fn splat(value: Self) -> Self {
+        value
+    }
+
+    #[inline(always)]
+    fn constant(value: f64) -> Self {
         value
     }
 }
@@ -119,9 +146,9 @@ impl Lanes {
     }
 }
 
-/// The products of four pairs of vectors.
+/// The product of two vectors.
 #[inline(always)]
-pub fn dot(a: [Lanes; 3], b: [Lanes; 3]) -> Lanes {
+pub fn dot<T: Real>(a: [T; 3], b: [T; 3]) -> T {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
@@ -133,9 +160,16 @@ impl From<[f32; LANES]> for Lanes {
 }
 
 impl Real for Lanes {
+    type Scalar = f32;
+
     #[inline(always)]
     fn splat(value: f32) -> Self {
         Self::from([value; LANES])
+    }
+
+    #[inline(always)]
+    fn constant(value: f64) -> Self {
+        Self::splat(value as f32)
     }
 }
 

@@ -19,6 +19,7 @@ mod trim;
 pub use camera::{Camera, Pinhole};
 pub use colour::{ColourImage, ColourSamples, ColourView, Transfer};
 pub use depth::{DepthMap, DepthSamples, DepthView};
+pub(crate) use doubles::{DOUBLE_LANES, Doubles};
 pub use grid::{Normals, Points, Size};
 pub(crate) use lanes::{LANES, Lanes, Mask, Real, dot};
 pub(crate) use trim::quantile;

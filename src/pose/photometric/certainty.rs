@@ -13,7 +13,7 @@
 
 use nalgebra::SymmetricEigen;
 
-use super::equations::{Reduced, hold};
+use super::equations::{Reduced, add_product, folded, hold, no_sums, scaled};
 use super::points::Robust;
 use super::problem::{PhotometricProblem, PhotometricReport, PhotometricTermination};
 use super::residual::Scene;
@@ -21,7 +21,7 @@ use super::{Phase, Photometric};
 use crate::error::Result;
 use crate::pose::increment::{Frame, Row, Square, UNKNOWNS};
 use crate::pose::uncertainty::{describe, in_words};
-use crate::view::Size;
+use crate::view::{Doubles, Real, Size};
 
 /// Side of the tiles of the depth map whose scores count as one observation, pixels: twice the reach of normals and
 /// splines.
@@ -64,8 +64,7 @@ impl Photometric {
         let held = problem.held();
         let reduced = self.reduced(problem, 0, &frame, true)?;
         let covariance = self.covariance(problem, &frame, &reduced);
-        let light = self.state.exposed();
-        let scene = Scene { image: &self.levels[0], slopes: None, camera: &problem.image.camera, light: &light };
+        let scene = Scene::new(&self.levels[0], None, &problem.image.camera, &self.state.exposed());
         let without_prior = Robust { prior: 0.0, ..self.robust };
         let full = self.robust.scale * self.robust.scale * self.points.weight();
         let mut information = 0.5 * (reduced.matrix + reduced.matrix.transpose()) / (self.noise * self.noise);
@@ -106,21 +105,23 @@ impl Photometric {
 
     /// M^-1 (sum over tiles of g g^T) M^-T with g the sum of a tile's scores.
     fn covariance(&mut self, problem: &PhotometricProblem<'_>, frame: &Frame, reduced: &Reduced) -> Square {
-        let light = self.state.exposed();
-        let slopes = Some(&self.slopes);
-        let scene = Scene { image: &self.levels[0], slopes, camera: &problem.image.camera, light: &light };
+        let scene = Scene::new(&self.levels[0], Some(&self.slopes), &problem.image.camera, &self.state.exposed());
         let slope_variance = 3.0 * SLOPE_COVARIANCE * self.image_noise.powi(2);
-        let mut feigned = Square::zeros();
+        let mut feigned = no_sums();
         self.tiles.fill(Row::zeros());
         let across = problem.depth.size.width.div_ceil(TILE);
         let tiles = &mut self.tiles;
-        self.points.each(problem, &scene, &self.state, self.robust, frame, |index, point, weight| {
-            let (column, row) = problem.depth.size.position(index as usize);
-            tiles[row / TILE * across + column / TILE] += weight * reduced.score(point);
-            let (carried, _) = problem.carried(&self.state.pose, index);
-            let (_, motion) = scene.motion(&carried, frame).unwrap_or_default();
-            motion.iter().for_each(|row| feigned.ger(slope_variance * weight, row, row, 1.0));
+        self.points.each(problem, &scene, &self.state, self.robust, frame, |indices, point, weight| {
+            let score = scaled(&reduced.score(point), weight).map(Doubles::array);
+            for (lane, &index) in indices.iter().enumerate() {
+                let (column, row) = problem.depth.size.position(index as usize);
+                tiles[row / TILE * across + column / TILE] += Row::from(score.map(|score| score[lane]));
+            }
+            for row in &point.motion {
+                add_product(&mut feigned, &scaled(row, weight * Doubles::splat(slope_variance)), row);
+            }
         });
+        let mut feigned = folded(&feigned);
         let (mut spread, mut count) = (Square::zeros(), 0.0);
         for score in tiles.iter().filter(|score| score.norm() > 0.0) {
             spread.ger(1.0, score, score, 1.0);

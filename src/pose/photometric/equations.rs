@@ -7,11 +7,12 @@
 //! at its best; then y = -D^-1 (d + E^T x). A known light has one unknown only, the exposure: it takes the first place
 //! of y, and K = -1 in all channels.
 
-use nalgebra::{Cholesky, Const, SMatrix, Vector3};
+use nalgebra::{Cholesky, Const, SMatrix};
 
-use super::residual::Linear;
+use super::residual::{Linear, Motion};
 use crate::light::{COEFFICIENTS, CoefficientMatrix, Coefficients, HARMONICS, LightPrior};
 use crate::pose::increment::{Row, Square, UNKNOWNS};
+use crate::view::{Doubles, Real};
 
 type Cross = SMatrix<f64, UNKNOWNS, COEFFICIENTS>;
 
@@ -21,17 +22,24 @@ const LEAST_DAMPING: f64 = 1e-12;
 /// Sums over points: those of the light, and those that a pose adds.
 pub(super) struct Equations {
     light: LightEquations,
-    pose: Square,
+    pose: SquareSums,
     /// C, where the pose listens by other rows than its Jacobian's.
-    heard: Option<Cross>,
-    cross: Cross,
-    pose_slope: Row,
+    heard: Option<CrossSums>,
+    /// E.
+    cross: CrossSums,
+    pose_slope: Motion,
 }
+
+/// Sums of points side by side, each lane by itself.
+pub(super) type SquareSums = [Motion; UNKNOWNS];
+type CrossSums = [Motion; COEFFICIENTS];
 
 /// Sums over points for the light alone: D and d.
 pub(super) struct LightEquations {
-    /// One channel's block of D: all three have the same weights.
-    gram: SMatrix<f64, HARMONICS, HARMONICS>,
+    /// One channel's block of D up to its diagonal: all three have the same weights.
+    gram: [[Doubles; HARMONICS]; HARMONICS],
+    heard: [[Doubles; HARMONICS]; 3],
+    /// The prior's share of D and d.
     precision: CoefficientMatrix,
     slope: Coefficients,
     /// Whether only the exposure is unknown of the light.
@@ -55,24 +63,33 @@ pub(super) struct Reduced {
 impl LightEquations {
     pub fn new(light_is_known: bool) -> Self {
         Self {
-            gram: SMatrix::zeros(),
+            gram: [[Doubles::splat(0.0); HARMONICS]; HARMONICS],
+            heard: [[Doubles::splat(0.0); HARMONICS]; 3],
             precision: CoefficientMatrix::zeros(),
             slope: Coefficients::zeros(),
             is_known: light_is_known,
         }
     }
 
-    /// Enters a point by the harmonics of its normal.
-    pub fn add(&mut self, basis: &[f64; HARMONICS], residual: &Vector3<f64>, weight: f64) {
+    /// Enters points by the harmonics of their normals.
+    #[inline(always)]
+    pub fn add(&mut self, basis: &[Doubles; HARMONICS], residual: &[Doubles; 3], weight: Doubles) {
         if self.is_known {
-            self.gram[(0, 0)] += 3.0 * weight;
-            self.slope[0] -= weight * residual.sum();
+            self.gram[0][0] = self.gram[0][0] + Doubles::splat(3.0) * weight;
+            self.heard[0][0] = self.heard[0][0] - weight * (residual[0] + residual[1] + residual[2]);
             return;
         }
-        for (k, value) in basis.iter().enumerate() {
-            let share = weight * value;
-            (k..HARMONICS).for_each(|row| self.gram[(row, k)] += share * basis[row]);
-            (0..3).for_each(|channel| self.slope[channel * HARMONICS + k] -= share * residual[channel]);
+        for (row, sums) in self.gram.iter_mut().enumerate() {
+            let share = weight * basis[row];
+            for (sum, &other) in sums.iter_mut().zip(&basis[..=row]) {
+                *sum = *sum + share * other;
+            }
+        }
+        for (sums, &residual) in self.heard.iter_mut().zip(residual) {
+            let share = weight * residual;
+            for (sum, &other) in sums.iter_mut().zip(basis) {
+                *sum = *sum - share * other;
+            }
         }
     }
 
@@ -87,20 +104,25 @@ impl LightEquations {
 
     /// The light's step; `None` where the points do not determine it.
     pub fn step(&self) -> Option<Coefficients> {
-        self.factor().map(|factor| -factor.solve(&self.slope))
+        self.factor().map(|factor| -factor.solve(&self.slope()))
+    }
+
+    /// d.
+    fn slope(&self) -> Coefficients {
+        self.slope + Coefficients::from_iterator(self.heard.as_flattened().iter().map(|sum| sum.sum()))
     }
 
     fn factor(&self) -> Option<Cholesky<f64, Const<COEFFICIENTS>>> {
         let mut light = self.precision;
         if self.is_known {
             light.fill_with_identity();
-            light[(0, 0)] = self.gram[(0, 0)];
+            light[(0, 0)] = self.gram[0][0].sum();
             return light.cholesky();
         }
-        for channel in 0..3 {
-            for row in 0..HARMONICS {
-                for column in 0..HARMONICS {
-                    let value = self.gram[(row.max(column), row.min(column))];
+        for row in 0..HARMONICS {
+            for column in 0..HARMONICS {
+                let value = self.gram[row.max(column)][row.min(column)].sum();
+                for channel in 0..3 {
                     light[(channel * HARMONICS + row, channel * HARMONICS + column)] += value;
                 }
             }
@@ -116,24 +138,27 @@ impl Equations {
     pub fn new(light_is_known: bool, listens: bool) -> Self {
         Self {
             light: LightEquations::new(light_is_known),
-            pose: Square::zeros(),
-            heard: listens.then(Cross::zeros),
-            cross: Cross::zeros(),
-            pose_slope: Row::zeros(),
+            pose: no_sums(),
+            heard: listens.then(no_sums),
+            cross: no_sums(),
+            pose_slope: [Doubles::splat(0.0); UNKNOWNS],
         }
     }
 
-    /// Enters a point.
-    pub fn add(&mut self, point: &Linear, weight: f64) {
+    /// Enters points.
+    #[inline(always)]
+    pub fn add(&mut self, point: &Linear, weight: Doubles) {
         self.light.add(&point.basis, &point.residual, weight);
+        let is_known = self.light.is_known;
         for channel in 0..3 {
-            let heard = weight * point.listener[channel];
-            self.pose.ger(1.0, &heard, &point.jacobian[channel], 1.0);
-            self.pose_slope.axpy(point.residual[channel], &heard, 1.0);
-            let known = self.light.is_known;
-            enter(&mut self.cross, channel, &(weight * point.jacobian[channel]), &point.basis, known);
-            if let Some(sum) = &mut self.heard {
-                enter(sum, channel, &heard, &point.basis, known);
+            let jacobian = &point.jacobian[channel];
+            let heard = scaled(&point.listener()[channel], weight);
+            add_product(&mut self.pose, &heard, jacobian);
+            add_scaled(&mut self.pose_slope, &heard, point.residual[channel]);
+            let weighted = scaled(jacobian, weight);
+            enter(&mut self.cross, channel, &weighted, &point.basis, is_known);
+            if let Some(sums) = &mut self.heard {
+                enter(sums, channel, &heard, &point.basis, is_known);
             }
         }
     }
@@ -146,13 +171,16 @@ impl Equations {
     /// Eliminates the light; `None` where the points do not determine it.
     pub fn reduce(&self) -> Option<Reduced> {
         let factor = self.light.factor()?;
-        let follow = factor.solve(&self.cross.transpose());
-        let solved = factor.solve(&self.light.slope);
-        let heard = self.heard.as_ref().unwrap_or(&self.cross);
+        // E^T and C^T: a row for each coefficient.
+        let cross = folded(&self.cross);
+        let heard = self.heard.as_ref().map(folded);
+        let follow = factor.solve(&cross);
+        let solved = factor.solve(&self.light.slope());
+        let listening = heard.as_ref().unwrap_or(&cross).transpose();
         Some(Reduced {
-            matrix: self.pose - heard * follow,
-            slope: self.pose_slope - heard * solved,
-            heard: if self.heard.is_some() { factor.solve(&heard.transpose()).transpose() } else { follow.transpose() },
+            matrix: folded(&self.pose) - listening * follow,
+            slope: Row::from(self.pose_slope.map(Doubles::sum)) - listening * solved,
+            heard: heard.map_or(follow, |heard| factor.solve(&heard)).transpose(),
             follow,
             light: solved,
             light_is_known: self.light.is_known,
@@ -177,31 +205,71 @@ impl Reduced {
         (pose.norm().is_finite() && light.norm().is_finite()).then_some((pose, light))
     }
 
-    /// What a point says about the pose once the light has followed: sum over channels of (Z - C D^-1 K^T) r.
-    pub fn score(&self, point: &Linear) -> Row {
-        (0..3).fold(Row::zeros(), |mut sum, channel| {
-            let residual = point.residual[channel];
-            sum.axpy(residual, &point.listener[channel], 1.0);
-            if self.light_is_known {
-                sum.axpy(residual, &self.heard.column(0), 1.0);
-            } else {
-                for (k, basis) in point.basis.iter().enumerate() {
-                    sum.axpy(residual * basis, &self.heard.column(channel * HARMONICS + k), 1.0);
+    /// What points say about the pose once the light has followed: sum over channels of (Z - C D^-1 K^T) r.
+    pub fn score(&self, point: &Linear) -> Motion {
+        let [mut sum] = no_sums();
+        for (channel, &residual) in point.residual.iter().enumerate() {
+            add_scaled(&mut sum, &point.listener()[channel], residual);
+            let mut follow = |coefficient: usize, share: Doubles| {
+                for (sum, &heard) in sum.iter_mut().zip(&self.heard.column(coefficient)) {
+                    *sum = *sum + share * Doubles::splat(heard);
                 }
+            };
+            if self.light_is_known {
+                follow(0, residual);
+                continue;
             }
-            sum
-        })
+            for (k, &basis) in point.basis.iter().enumerate() {
+                follow(channel * HARMONICS + k, residual * basis);
+            }
+        }
+        sum
     }
 }
 
-/// sum of row K with K = -basis of this channel, or -1 where only the exposure is unknown.
-fn enter(sum: &mut Cross, channel: usize, row: &Row, basis: &[f64; HARMONICS], light_is_known: bool) {
-    if light_is_known {
-        sum.column_mut(0).axpy(-1.0, row, 1.0);
-        return;
+/// Sums of nothing yet.
+pub(super) fn no_sums<const ROWS: usize>() -> [Motion; ROWS] {
+    [[Doubles::splat(0.0); UNKNOWNS]; ROWS]
+}
+
+/// Adds the outer product of two rows.
+#[inline(always)]
+pub(super) fn add_product(sums: &mut SquareSums, left: &Motion, right: &Motion) {
+    for (sums, &share) in sums.iter_mut().zip(left) {
+        add_scaled(sums, right, share);
     }
-    for (k, value) in basis.iter().enumerate() {
-        sum.column_mut(channel * HARMONICS + k).axpy(-value, row, 1.0);
+}
+
+#[inline(always)]
+fn add_scaled(sums: &mut Motion, row: &Motion, share: Doubles) {
+    for (sum, &entry) in sums.iter_mut().zip(row) {
+        *sum = *sum + share * entry;
+    }
+}
+
+#[inline(always)]
+pub(super) fn scaled(row: &Motion, share: Doubles) -> Motion {
+    let mut scaled = *row;
+    scaled.iter_mut().for_each(|entry| *entry = *entry * share);
+    scaled
+}
+
+/// The sums over all lanes.
+#[inline(never)]
+pub(super) fn folded<const ROWS: usize>(sums: &[Motion; ROWS]) -> SMatrix<f64, ROWS, UNKNOWNS> {
+    SMatrix::from_fn(|row, column| sums[row][column].sum())
+}
+
+/// sum of row K with K = -basis of this channel, or -1 where only the exposure is unknown.
+#[inline(always)]
+fn enter(sums: &mut CrossSums, channel: usize, row: &Motion, basis: &[Doubles; HARMONICS], light_is_known: bool) {
+    if light_is_known {
+        return add_scaled(&mut sums[0], row, Doubles::splat(-1.0));
+    }
+    for (sums, &value) in sums[channel * HARMONICS..].iter_mut().zip(basis) {
+        for (sum, &entry) in sums.iter_mut().zip(row) {
+            *sum = *sum - value * entry;
+        }
     }
 }
 

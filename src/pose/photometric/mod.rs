@@ -368,11 +368,11 @@ impl Photometric {
 
     /// The light alone, reweighted.
     fn fit_light(&mut self, problem: &PhotometricProblem<'_>, level: usize) -> Result<()> {
-        let light = self.state.exposed();
-        let scene = Scene { image: &self.levels[level], slopes: None, camera: &problem.image.camera, light: &light };
-        self.points.see(problem, &scene, &self.state);
+        let camera = &problem.image.camera;
+        let scene = |state: &State| Scene::new(&self.levels[level], None, camera, &state.exposed());
+        self.points.see(problem, &scene(&self.state), &self.state);
         for _ in 0..LIGHT_ROUNDS {
-            let equations = self.points.light_equations(problem, &self.state, self.robust);
+            let equations = self.points.light_equations(problem, &scene(&self.state), &self.state, self.robust);
             let step = equations.step().ok_or_else(undetermined_light)?;
             self.state = self.state.relit(&step, problem.light.is_some());
         }
@@ -381,8 +381,7 @@ impl Photometric {
 
     /// The noise of the residuals.
     fn measure(&mut self, problem: &PhotometricProblem<'_>, level: usize) {
-        let light = self.state.exposed();
-        let scene = Scene { image: &self.levels[level], slopes: None, camera: &problem.image.camera, light: &light };
+        let scene = Scene::new(&self.levels[level], None, &problem.image.camera, &self.state.exposed());
         self.noise = self.points.noise(problem, &scene, &self.state).max(LEAST_NOISE);
     }
 
@@ -399,8 +398,7 @@ impl Photometric {
     }
 
     fn cost(&self, problem: &PhotometricProblem<'_>, level: usize, state: &State) -> f64 {
-        let light = state.exposed();
-        let scene = Scene { image: &self.levels[level], slopes: None, camera: &problem.image.camera, light: &light };
+        let scene = Scene::new(&self.levels[level], None, &problem.image.camera, &state.exposed());
         self.points.cost(problem, &scene, state, self.robust)
     }
 
@@ -411,9 +409,8 @@ impl Photometric {
         frame: &Frame,
         listening: bool,
     ) -> Result<Reduced> {
-        let light = self.state.exposed();
         let slopes = listening.then_some(&self.slopes);
-        let scene = Scene { image: &self.levels[level], slopes, camera: &problem.image.camera, light: &light };
+        let scene = Scene::new(&self.levels[level], slopes, &problem.image.camera, &self.state.exposed());
         let equations = self.points.equations(problem, &scene, &self.state, self.robust, frame);
         equations.reduce().ok_or_else(undetermined_light)
     }

@@ -5,12 +5,13 @@ use nalgebra::Vector3;
 use super::PhotometricProblem;
 use super::equations::{Equations, LightEquations};
 use super::image::SplineImage;
-use super::residual::{Linear, Scene};
+use super::problem::Indices;
+use super::residual::{Linear, Scene, Seen};
 use crate::light::{COEFFICIENTS, Coefficients, HARMONICS, Light, basis};
 use crate::pose::increment::{Frame, Row};
 use crate::pose::similarity::Similarity;
 use crate::pose::visibility::{Sight, Visibility};
-use crate::view::{Size, quantile};
+use crate::view::{DOUBLE_LANES, Doubles, Real, Size, dot, quantile};
 
 /// Distance from the border of the mask within which points stay out, image pixels: they would enter and leave with
 /// every step, and the spline is continued there.
@@ -77,8 +78,8 @@ pub(super) struct VisiblePoints {
     sampled: bool,
     weights: Vec<f32>,
     spare: Vec<f32>,
-    /// log S where the points are seen, NaN where they are not: while the pose stays.
-    seen: Vec<[f32; 3]>,
+    /// What the image shows of them while the pose stays.
+    seen: Vec<Seen>,
 }
 
 impl VisiblePoints {
@@ -173,13 +174,25 @@ impl VisiblePoints {
         }
     }
 
+    /// The points side by side with their own weights. An odd last one comes twice, once without weight.
+    fn groups(&self) -> impl Iterator<Item = (Indices, Doubles)> {
+        self.indices.chunks(DOUBLE_LANES).zip(self.weights.chunks(DOUBLE_LANES)).map(|(some, weights)| {
+            let (mut indices, mut shares) = ([some[0]; DOUBLE_LANES], [0.0; DOUBLE_LANES]);
+            indices[..some.len()].copy_from_slice(some);
+            shares.iter_mut().zip(weights).for_each(|(share, &weight)| *share = f64::from(weight));
+            (indices, Doubles::from(shares))
+        })
+    }
+
     /// Centroid of the carried points and their root mean square distance from it.
     pub fn frame(&self, problem: &PhotometricProblem<'_>, pose: &Similarity) -> Frame {
-        let points = || self.indices.iter().map(|&index| problem.carried(pose, index).0);
+        let points =
+            || self.indices.iter().map(|&index| Vector3::from(problem.points.get(index as usize).map(f64::from)));
         let count = self.indices.len().max(1) as f64;
         let centre = points().sum::<Vector3<f64>>() / count;
-        let length = (points().map(|point| (point - centre).norm_squared()).sum::<f64>() / count).sqrt();
-        Frame { centre, length: if length > 0.0 { length } else { 1.0 } }
+        let spread = (points().map(|point| (point - centre).norm_squared()).sum::<f64>() / count).sqrt();
+        let length = pose.scale * spread;
+        Frame { centre: pose.apply(centre), length: if length > 0.0 { length } else { 1.0 } }
     }
 
     /// Sum of the points' own weights.
@@ -189,29 +202,40 @@ impl VisiblePoints {
 
     /// Sum of w rho + prior; a point that left the mask costs the full robust price.
     pub fn cost(&self, problem: &PhotometricProblem<'_>, scene: &Scene<'_>, state: &State, robust: Robust) -> f64 {
-        let full = robust.scale * robust.scale;
-        let mut sum = 0.0;
-        for (&index, &weight) in self.indices.iter().zip(&self.weights) {
-            let (point, normal) = problem.carried(&state.pose, index);
-            let price = scene.residual(&point, &normal).map_or(full, |residual| {
-                let square = residual.norm_squared();
-                full * square / (full + square)
-            });
-            sum += f64::from(weight) * price;
-        }
+        let full = Doubles::splat(robust.scale * robust.scale);
+        let mut sum = Doubles::splat(0.0);
+        self.each_square(problem, scene, &state.pose, |weight, shown, square| {
+            let saved = Doubles::splat(1.0) - square / (full + square);
+            sum = sum + weight * full * (Doubles::splat(1.0) - shown * saved);
+        });
+        let sum = sum.sum();
         if problem.light.is_none() { sum + robust.prior * problem.prior.energy(&state.light) } else { sum }
     }
 
     /// Share of the weights whose residuals are below the robust scale.
     pub fn inliers(&self, problem: &PhotometricProblem<'_>, scene: &Scene<'_>, state: &State, robust: Robust) -> f64 {
-        let mut sum = 0.0;
-        for (&index, &weight) in self.indices.iter().zip(&self.weights) {
-            let (point, normal) = problem.carried(&state.pose, index);
-            if scene.residual(&point, &normal).is_some_and(|residual| residual.norm() < robust.scale) {
-                sum += f64::from(weight);
-            }
+        let full = Doubles::splat(robust.scale * robust.scale);
+        let mut sum = Doubles::splat(0.0);
+        self.each_square(problem, scene, &state.pose, |weight, shown, square| {
+            sum = sum + square.less(full).keep(weight * shown);
+        });
+        sum.sum() / self.weight().max(f64::MIN_POSITIVE)
+    }
+
+    /// Visits the points with their weights, whether the image shows them (one or zero) and |r|^2.
+    #[inline(always)]
+    fn each_square(
+        &self,
+        problem: &PhotometricProblem<'_>,
+        scene: &Scene<'_>,
+        pose: &Similarity,
+        mut visit: impl FnMut(Doubles, Doubles, Doubles),
+    ) {
+        for (indices, weight) in self.groups() {
+            let seen = scene.seen(problem.carried(pose, &indices));
+            let residual = scene.residual(&seen, problem.turned(pose, &indices));
+            visit(weight, seen.shown, dot(residual, residual));
         }
-        sum / self.weight().max(f64::MIN_POSITIVE)
     }
 
     /// The equations of pose and light.
@@ -223,7 +247,7 @@ impl VisiblePoints {
         robust: Robust,
         frame: &Frame,
     ) -> Equations {
-        let mut equations = Equations::new(problem.light.is_some(), scene.slopes.is_some());
+        let mut equations = Equations::new(problem.light.is_some(), scene.listens());
         self.each(problem, scene, state, robust, frame, |_, point, weight| equations.add(point, weight));
         let off = Coefficients::from(state.light.flat()) - problem.prior.mean_coefficients();
         equations.add_prior(problem.prior, robust.prior, &off);
@@ -232,35 +256,35 @@ impl VisiblePoints {
 
     /// Looks up what the image shows at the points, for [`light_equations`](Self::light_equations) under the same pose.
     pub fn see(&mut self, problem: &PhotometricProblem<'_>, scene: &Scene<'_>, state: &State) {
-        self.seen.clear();
-        self.seen.reserve_exact(self.indices.len());
-        for &index in &self.indices {
-            let (point, _) = problem.carried(&state.pose, index);
-            let log = scene.seen(&point);
-            self.seen.push(log.map_or([f32::NAN; 3], |log| log.map(|value| value as f32)));
-        }
+        let mut seen = std::mem::take(&mut self.seen);
+        seen.clear();
+        seen.reserve_exact(self.indices.len().div_ceil(DOUBLE_LANES));
+        seen.extend(self.groups().map(|(indices, _)| scene.seen(problem.carried(&state.pose, &indices))));
+        self.seen = seen;
     }
 
-    /// The equations of the light alone, of the points as they were last [seen](Self::see).
-    pub fn light_equations(&self, problem: &PhotometricProblem<'_>, state: &State, robust: Robust) -> LightEquations {
+    /// The equations of the light alone, of the points as they were last [seen](Self::see) in this scene.
+    pub fn light_equations(
+        &self,
+        problem: &PhotometricProblem<'_>,
+        scene: &Scene<'_>,
+        state: &State,
+        robust: Robust,
+    ) -> LightEquations {
         let mut equations = LightEquations::new(problem.light.is_some());
-        let full = robust.scale * robust.scale;
-        let light = state.exposed();
-        for ((&index, &weight), seen) in self.indices.iter().zip(&self.weights).zip(&self.seen) {
-            if seen[0].is_nan() {
-                continue;
-            }
-            let harmonics = basis(problem.turned(&state.pose, index).into());
-            let residual = Vector3::from(seen.map(f64::from)) - Vector3::from(light.of_basis(&harmonics));
-            let doubt = (1.0 + residual.norm_squared() / full).powi(-2);
-            equations.add(&harmonics, &residual, f64::from(weight) * doubt);
+        for ((indices, weight), seen) in self.groups().zip(&self.seen) {
+            let normals = problem.turned(&state.pose, &indices);
+            let residual = scene.residual(seen, normals);
+            let weight = weight * seen.shown * doubt(&residual, robust);
+            equations.add(&basis(normals), &residual, weight);
         }
         let off = Coefficients::from(state.light.flat()) - problem.prior.mean_coefficients();
         equations.add_prior(problem.prior, robust.prior, &off);
         equations
     }
 
-    /// Visits each point with its index and its weight: its own times the robust one.
+    /// Visits the points side by side with their indices and weights: their own times the robust ones.
+    #[inline(always)]
     pub fn each(
         &self,
         problem: &PhotometricProblem<'_>,
@@ -268,32 +292,36 @@ impl VisiblePoints {
         state: &State,
         robust: Robust,
         frame: &Frame,
-        mut visit: impl FnMut(u32, &Linear, f64),
+        mut visit: impl FnMut(&Indices, &Linear, Doubles),
     ) {
-        let full = robust.scale * robust.scale;
-        for (&index, &weight) in self.indices.iter().zip(&self.weights) {
-            let (point, normal) = problem.carried(&state.pose, index);
-            if let Some(linear) = scene.linear(&point, &normal, frame) {
-                let doubt = (1.0 + linear.residual.norm_squared() / full).powi(-2);
-                visit(index, &linear, f64::from(weight) * doubt);
-            }
+        for (indices, weight) in self.groups() {
+            let points = problem.carried(&state.pose, &indices);
+            let linear = scene.linear(points, problem.turned(&state.pose, &indices), frame);
+            visit(&indices, &linear, weight * linear.shown * doubt(&linear.residual, robust));
         }
     }
 
     /// Robust standard deviation of a channel's residuals, from the median of |r|; infinite without points.
     pub fn noise(&mut self, problem: &PhotometricProblem<'_>, scene: &Scene<'_>, state: &State) -> f64 {
-        self.spare.clear();
-        for (&index, &weight) in self.indices.iter().zip(&self.weights) {
-            let (point, normal) = problem.carried(&state.pose, index);
-            if f64::from(weight) >= VOTER
-                && let Some(residual) = scene.residual(&point, &normal)
-            {
-                self.spare.push(residual.norm() as f32);
-            }
-        }
+        let mut spare = std::mem::take(&mut self.spare);
+        spare.clear();
+        self.each_square(problem, scene, &state.pose, |weight, shown, square| {
+            let [votes, squares] = [weight * shown, square].map(Doubles::array);
+            let voters = votes.into_iter().zip(squares).filter(|(vote, _)| *vote >= VOTER);
+            spare.extend(voters.map(|(_, square)| square.sqrt() as f32));
+        });
+        self.spare = spare;
         if self.spare.is_empty() {
             return f64::INFINITY;
         }
         f64::from(quantile(&mut self.spare, 0.5)) / MEDIAN_OF_THREE
     }
+}
+
+/// Robust weights.
+#[inline(always)]
+fn doubt(residual: &[Doubles; 3], robust: Robust) -> Doubles {
+    let one = Doubles::splat(1.0);
+    let doubt = one / (one + dot(*residual, *residual) / Doubles::splat(robust.scale * robust.scale));
+    doubt * doubt
 }

@@ -1,6 +1,6 @@
 //! What goes into a photometric registration, and what comes out.
 
-use nalgebra::Vector3;
+use nalgebra::Matrix3;
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::light::{Light, LightPrior};
@@ -8,10 +8,13 @@ use crate::options::not_negative;
 use crate::pose::increment::{Square, UNKNOWNS};
 use crate::pose::similarity::Similarity;
 use crate::report::Uncertainty;
-use crate::view::{ColourView, DepthView, Normals, Points, Size};
+use crate::view::{ColourView, DOUBLE_LANES, DepthView, Doubles, Normals, Points, Real, Size, dot};
 
 /// The coarsest level.
 pub(super) const COARSEST: usize = 2;
+
+/// Depth pixels whose points are worked on side by side.
+pub(super) type Indices = [u32; DOUBLE_LANES];
 
 /// What is registered. Points and normals (depth view's frame) are NaN where missing.
 #[derive(Clone, Copy)]
@@ -38,15 +41,18 @@ pub struct PhotometricProblem<'a> {
 }
 
 impl PhotometricProblem<'_> {
-    /// A point and its normal in the colour view's frame.
-    pub(super) fn carried(&self, pose: &Similarity, index: u32) -> (Vector3<f64>, Vector3<f64>) {
-        let point = pose.apply(Vector3::from(self.points.get(index as usize).map(f64::from)));
-        (point, self.turned(pose, index))
+    /// Points in the colour view's frame.
+    #[inline(always)]
+    pub(super) fn carried(&self, pose: &Similarity, indices: &Indices) -> [Doubles; 3] {
+        let turned = turned(&pose.rotation, gathered(self.points, indices));
+        let carried = |axis: usize| Doubles::splat(pose.scale) * turned[axis] + Doubles::splat(pose.translation[axis]);
+        [carried(0), carried(1), carried(2)]
     }
 
-    /// A normal in the colour view's frame.
-    pub(super) fn turned(&self, pose: &Similarity, index: u32) -> Vector3<f64> {
-        pose.rotation * Vector3::from(self.normals.get(index as usize).map(f64::from))
+    /// Normals in the colour view's frame.
+    #[inline(always)]
+    pub(super) fn turned(&self, pose: &Similarity, indices: &Indices) -> [Doubles; 3] {
+        turned(&pose.rotation, gathered(self.normals, indices))
     }
 
     /// Unknowns that are no unknowns: the gauge t_z, the held scale.
@@ -74,6 +80,27 @@ impl PhotometricProblem<'_> {
         }
         not_negative("options.lambda.light", self.prior_weight)
     }
+}
+
+#[inline(always)]
+fn gathered(vectors: &Normals, indices: &Indices) -> [Doubles; 3] {
+    let gathered = |values: &[f32]| {
+        let mut numbers = [0.0; DOUBLE_LANES];
+        for (number, &index) in numbers.iter_mut().zip(indices) {
+            *number = f64::from(values[index as usize]);
+        }
+        Doubles::from(numbers)
+    };
+    [gathered(&vectors.x), gathered(&vectors.y), gathered(&vectors.z)]
+}
+
+#[inline(always)]
+fn turned(rotation: &Matrix3<f64>, vector: [Doubles; 3]) -> [Doubles; 3] {
+    let row = |row: usize| {
+        let entry = |column: usize| Doubles::splat(rotation[(row, column)]);
+        dot([entry(0), entry(1), entry(2)], vector)
+    };
+    [row(0), row(1), row(2)]
 }
 
 /// Points that annealing needs: with 14 to 34 unknowns 20000 average noise to a hundredth of its size.

@@ -139,7 +139,10 @@ impl Template {
             if column >= 1.0 && row >= 1.0 && column <= last && row <= last {
                 let cell = nearest(row) * self.side + nearest(column);
                 for cell in [cell, cell - 1, cell + 1, cell - self.side, cell + self.side] {
-                    self.nearest[cell] = self.nearest[cell].min(place[2]);
+                    // Written out: `min` is a call on some targets.
+                    if place[2] < self.nearest[cell] {
+                        self.nearest[cell] = place[2];
+                    }
                 }
             }
         }
@@ -159,9 +162,8 @@ impl Template {
     fn spread(&mut self, index: usize, corner: usize, area: f32, normal: [f32; 3]) {
         let [x, y, _] = self.places[index];
         let (right, low) = (x - (x as usize) as f32, y - (y as usize) as f32);
-        let exact = basis([f64::from(normal[0]), f64::from(normal[1]), f64::from(normal[2])]);
-        let mut harmonics = [0.0_f32; PADDED];
-        (1..HARMONICS).for_each(|k| harmonics[k] = exact[k] as f32);
+        let mut harmonics = [0.0; PADDED];
+        harmonics[..HARMONICS].copy_from_slice(&basis(normal));
         harmonics[0] = 1.0;
         for (cell, share) in [
             (corner, (1.0 - right) * (1.0 - low)),
