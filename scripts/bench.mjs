@@ -7,7 +7,7 @@ import { writeFileSync } from "node:fs";
 import { cpus, loadavg } from "node:os";
 import { resolve } from "node:path";
 import { parseArgs } from "node:util";
-import { drawings, startUps, transfers } from "./bench/page.mjs";
+import { drawings, playing, startUps, transfers } from "./bench/page.mjs";
 import { report } from "./bench/print.mjs";
 import { searches, sharedSteps, stages } from "./bench/rounds.mjs";
 import { scenes } from "./bench/scenes.mjs";
@@ -88,7 +88,9 @@ async function around(chromium, address, side, made, plan) {
   say(`transfer of a frame: ${plan.samples} times`);
   const drawing = await drawings(chromium, address, plan.samples);
   say(`drawing of a frame: ${plan.samples} times`);
-  return { startUp, transfer, drawing };
+  const played = await playing(chromium, address);
+  say(`the page played for ${played.seconds.toFixed(1)} s`);
+  return { startUp, transfer, drawing, playing: played };
 }
 
 await script(async () => {

@@ -1,7 +1,7 @@
 // What a visitor waits for beside the loop: the start, the way of a frame to the page, its drawing.
 import { openPage } from "./sides.mjs";
 
-/** A view in the page at its largest choice; the page draws at most 512 pixels a side. */
+/** The page's largest square; it draws at most 512 pixels a side. */
 const DRAWN_SIZE = 256;
 /** The loop whose iterations are quickest: frames are as large as in any other. */
 const DRAWN = `surface=bust&light=colourful&size=${DRAWN_SIZE}&lighting=known&start=identity&registration=icp&shading=pixel`;
@@ -47,6 +47,8 @@ function listen() {
     });
   window.Worker = class extends Worker {
     postMessage(message, ...rest) {
+      // The clouds have a thread of their own, which is never asked for a frame.
+      if (!("kind" in message)) return super.postMessage(message, ...rest);
       asked = message.kind === "advance" ? performance.now() : undefined;
       shown = undefined;
       super.postMessage(message, ...rest);

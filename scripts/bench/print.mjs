@@ -42,13 +42,15 @@ const searchTable = ({ search }) =>
     ]),
   ]);
 
-function otherTable({ startUp, transfer, drawing, memory }) {
+function otherTable({ startUp, transfer, drawing, playing, memory }) {
   const lines = [];
   if (startUp) lines.push(["init to first report", startUp.size, spread(startUp.milliseconds)]);
   if (transfer) lines.push(["transfer: copying out, every array", transfer.size, spread(transfer.copying)]);
   if (transfer) lines.push(["transfer: from worker to page", transfer.size, spread(transfer.travelling)]);
   if (drawing) lines.push(["page: cutting, copying, sending", drawing.size, spread(drawing.delivery)]);
   if (drawing) lines.push(["page: drawing", drawing.size, spread(drawing.drawing)]);
+  if (playing) lines.push(["page: frames a second while it plays", playing.size, fixed(playing.framesPerSecond, 1)]);
+  if (playing) lines.push(["page: its longest tasks over 50 ms", playing.size, playing.longTasks.map(time).join(", ") || "none"]);
   if (memory) lines.push(["memory after a run, MB", memory.size, fixed(memory.bytes / 1e6, 1)]);
   return lines.length === 0 ? ["  not measured"] : columns([["what", "size", "ms"], ...lines]);
 }

@@ -61,7 +61,7 @@ function searchRows(searches) {
 }
 
 /** Everything as it goes into the JSON; what was not measured is null. */
-export function summary({ samples, ends, converged, searches, startUp, transfer, drawing, memory, sizes, about }) {
+export function summary({ samples, ends, converged, searches, startUp, transfer, drawing, playing, memory, sizes, about }) {
   const rows = samples.map(({ where, size, stage, times }) => ({ where, size, stage, samples: times.length, milliseconds: quantiles(times) }));
   const timesOf = (found) => found && Object.fromEntries(Object.entries(found).map(([key, value]) => [key, Array.isArray(value) ? quantiles(value) : value]));
   const noSizes = { wasmBytes: null, wasmGzipBytes: null, scalarBytes: null, scalarGzipBytes: null, jsGzipBytes: null };
@@ -77,6 +77,7 @@ export function summary({ samples, ends, converged, searches, startUp, transfer,
     startUp: startUp ? { size: startUp.size, milliseconds: quantiles(startUp.times) } : null,
     transfer: timesOf(transfer) ?? null,
     drawing: timesOf(drawing) ?? null,
+    playing: playing ?? null,
     memory: memory ?? null,
     firstScripts: scripts ?? null,
     ...about,
@@ -84,7 +85,7 @@ export function summary({ samples, ends, converged, searches, startUp, transfer,
 }
 
 /** [what, value, unit, limit] of each aim; a value is null where this run did not measure it. */
-export function aims({ rows, search, growth, wasmAgainstNative, bytesPerPixel, wasmGzipBytes, scalarGzipBytes, jsGzipBytes }) {
+export function aims({ rows, search, growth, wasmAgainstNative, playing, bytesPerPixel, wasmGzipBytes, scalarGzipBytes, jsGzipBytes }) {
   const step = (size, stage = "step", where = "browser") =>
     rows.find((row) => row.where === where && row.size === size && row.stage === stage)?.milliseconds.median ?? null;
   const searched = (size, where) => search.find((row) => row.where === where && row.size === size);
@@ -108,6 +109,9 @@ export function aims({ rows, search, growth, wasmAgainstNative, bytesPerPixel, w
     ["longest slice of a search", most(slices), "ms", 8],
     ["wasm against native, worst step", most(ratios), "x", 1.8],
     ["growth of a step with the pixels", growth.step, "", 1.1],
+    ["page playing 640x480: tasks over 50 ms", playing?.longTasks.length ?? null, "", 0],
+    // At least 55 of them a second.
+    ["page playing 640x480: mean frame", playing ? 1000 / playing.framesPerSecond : null, "ms", 1000 / 55],
     ["memory after a run at 640x480", bytesPerPixel, "B/px", 220],
     ["wasm, gzipped", kilo(wasmGzipBytes), "kB", WASM_BUDGET / 1000],
     ["wasm without SIMD, gzipped", kilo(scalarGzipBytes), "kB", WASM_BUDGET / 1000],

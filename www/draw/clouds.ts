@@ -1,47 +1,43 @@
 /** Both surfaces in the colour view's frame, to be turned by hand. Loaded when first seen: three.js outweighs all the rest. */
 
-import {
-  BufferAttribute, BufferGeometry, Color, OrthographicCamera, Points, PointsMaterial, Scene, Sphere, Vector3, WebGLRenderer,
-} from "three";
+import { OrthographicCamera, Sphere, Vector3 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { ink } from "../dom";
+import type { Change } from "./stage";
 
-/** Sizes of a point on the screen, in CSS pixels: near enough to the next to make a surface, small enough to see two. */
-const SMALLEST = 1.5;
-const LARGEST = 6;
+/** Draws, and resolves when that is done. */
+type Draw = (change: Change) => Promise<void>;
 
 export class Clouds {
-  readonly #renderer: WebGLRenderer;
-  readonly #scene = new Scene();
   readonly #camera = new OrthographicCamera();
   readonly #controls: OrbitControls;
-  readonly #image: Points<BufferGeometry, PointsMaterial>;
-  readonly #depth: Points<BufferGeometry, PointsMaterial>;
   readonly #box: HTMLElement;
-  readonly #redraw: () => void;
+  readonly #draw: Draw;
+  /** What has changed since the drawing under way began. */
+  #next: Change | undefined;
+  #drawing = false;
+  #shown: Change["clouds"];
   #bounds = new Sphere(new Vector3(), 1);
 
-  /** Throws where the browser has no WebGL. `redraw` asks for a call of `draw` in the next frame. */
-  constructor(canvas: HTMLCanvasElement, box: HTMLElement, redraw: () => void) {
-    // Points are squares: smoothing their edges costs a browser without a graphics card half of its time.
-    this.#renderer = new WebGLRenderer({ canvas, alpha: true });
+  /** Rejects where the browser has no WebGL. */
+  static async open(canvas: HTMLCanvasElement, box: HTMLElement): Promise<Clouds> {
+    return new Clouds(canvas, box, await (drawsElsewhere(canvas) ? elsewhere(canvas) : here(canvas)));
+  }
+
+  private constructor(canvas: HTMLCanvasElement, box: HTMLElement, draw: Draw) {
     this.#box = box;
-    this.#redraw = redraw;
-    this.#image = cloud();
-    this.#depth = cloud();
-    this.#scene.add(this.#image, this.#depth);
+    this.#draw = draw;
     this.#controls = new OrbitControls(this.#camera, canvas);
-    this.#controls.addEventListener("change", redraw);
+    this.#controls.addEventListener("change", () => this.#look());
     new ResizeObserver(() => this.#resize()).observe(box);
     this.recolour();
   }
 
   /** `fresh` looks at the new clouds from the front; otherwise the visitor's viewpoint stays. */
   show(image: Float32Array, depth: Float32Array, fresh: boolean): void {
-    fill(this.#image, image);
-    fill(this.#depth, depth);
+    this.#shown = { image, depth };
     if (fresh) this.home();
-    this.#redraw();
+    this.#change({ clouds: this.#shown });
   }
 
   /**
@@ -49,7 +45,7 @@ export class Clouds {
    * measured, whereas the image's surface can be anything before the loop has settled.
    */
   home(): void {
-    const bounds = extent(this.#depth) ?? extent(this.#image);
+    const bounds = this.#shown && (extent(this.#shown.depth) ?? extent(this.#shown.image));
     if (!bounds) return;
     this.#bounds = bounds;
     const { center, radius } = bounds;
@@ -70,71 +66,82 @@ export class Clouds {
     offset.applyAxisAngle(this.#camera.up, (across * Math.PI) / 180).applyAxisAngle(side, (down * Math.PI) / 180);
     this.#camera.position.copy(this.#controls.target).add(offset);
     this.#controls.update();
-    this.#redraw();
+    this.#look();
   }
 
   recolour(): void {
-    this.#image.material.color = new Color(ink("cloud-image"));
-    this.#depth.material.color = new Color(ink("cloud-depth"));
-    this.#redraw();
-  }
-
-  draw(): void {
-    this.#renderer.render(this.#scene, this.#camera);
+    this.#change({ inks: { image: ink("cloud-image"), depth: ink("cloud-depth") } });
   }
 
   #resize(): void {
     const { clientWidth: width, clientHeight: height } = this.#box;
     if (width === 0 || height === 0) return;
-    this.#renderer.setPixelRatio(Math.min(2, devicePixelRatio));
-    this.#renderer.setSize(width, height, false);
     const reach = 1.05 * this.#bounds.radius;
     const [across, down] = width > height ? [(reach * width) / height, reach] : [reach, (reach * height) / width];
     Object.assign(this.#camera, { left: -across, right: across, top: down, bottom: -down });
     this.#camera.updateProjectionMatrix();
-    for (const { geometry, material } of [this.#image, this.#depth]) {
-      const apart = Math.min(width, height) / Math.sqrt(Math.max(1, geometry.getAttribute("position")?.count ?? 1));
-      material.size = this.#renderer.getPixelRatio() * Math.max(SMALLEST, Math.min(LARGEST, 0.6 * apart));
+    this.#look();
+  }
+
+  #look(): void {
+    const { clientWidth: width, clientHeight: height } = this.#box;
+    if (width === 0 || height === 0) return;
+    this.#camera.updateMatrixWorld();
+    const [world, projection] = [this.#camera.matrixWorld.toArray(), this.#camera.projectionMatrix.toArray()];
+    this.#change({ sight: { width, height, pixelRatio: Math.min(2, devicePixelRatio), world, projection } });
+  }
+
+  /** Draws one thing after the other; what comes faster than it can be drawn is passed over. */
+  #change(change: Change): void {
+    this.#next = { ...this.#next, ...change };
+    if (!this.#drawing) void this.#drawAll();
+  }
+
+  async #drawAll(): Promise<void> {
+    this.#drawing = true;
+    while (this.#next) {
+      const next = this.#next;
+      this.#next = undefined;
+      await this.#draw(next);
     }
-    this.#redraw();
+    this.#drawing = false;
   }
 }
 
-function cloud(): Points<BufferGeometry, PointsMaterial> {
-  const material = new PointsMaterial({ sizeAttenuation: false, transparent: true, opacity: 0.75 });
-  const points = new Points(new BufferGeometry(), material);
-  points.frustumCulled = false;
-  return points;
+/** Whether a thread can have the canvas and WebGL as well: older Safaris draw in two dimensions there. */
+function drawsElsewhere(canvas: HTMLCanvasElement): boolean {
+  return "transferControlToOffscreen" in canvas && new OffscreenCanvas(1, 1).getContext("webgl2") !== null;
 }
 
-function fill({ geometry }: Points<BufferGeometry, PointsMaterial>, positions: Float32Array): void {
-  const finite = positions.every((value) => !Number.isNaN(value)) ? positions : withoutHoles(positions);
-  const old = geometry.getAttribute("position");
-  if (old instanceof BufferAttribute && old.array.length === finite.length) {
-    old.copyArray(finite);
-    old.needsUpdate = true;
-  } else {
-    geometry.dispose();
-    geometry.setAttribute("position", new BufferAttribute(finite, 3));
-  }
+async function elsewhere(canvas: HTMLCanvasElement): Promise<Draw> {
+  const thread = new Worker(new URL("./stage-thread.ts", import.meta.url), { type: "module" });
+  const ask = (message: OffscreenCanvas | Change, transfer: Transferable[] = []) =>
+    new Promise<boolean>((resolve, reject) => {
+      thread.onmessage = ({ data }: MessageEvent<boolean>) => resolve(data);
+      thread.onerror = reject;
+      thread.postMessage(message, transfer);
+    });
+  const offscreen = canvas.transferControlToOffscreen();
+  if (!(await ask(offscreen, [offscreen]))) throw new Error("no WebGL in a thread");
+  return async (change) => void (await ask(change));
 }
 
-function withoutHoles(positions: Float32Array): Float32Array {
-  const kept: number[] = [];
-  for (let i = 0; i + 2 < positions.length; i += 3) {
-    const point = positions.subarray(i, i + 3);
-    if (point.every(Number.isFinite)) kept.push(...point);
-  }
-  return new Float32Array(kept);
+async function here(canvas: HTMLCanvasElement): Promise<Draw> {
+  const { Stage } = await import("./stage");
+  const stage = new Stage(canvas);
+  return async (change) => {
+    await new Promise(requestAnimationFrame);
+    stage.show(change);
+  };
 }
 
 /** A sphere about the bulk of the points: a few flying ones must not shrink the rest to a dot. */
-function extent({ geometry }: Points<BufferGeometry, PointsMaterial>): Sphere | undefined {
+function extent(points: Float32Array): Sphere | undefined {
   const axes: number[][] = [[], [], []];
-  const array = geometry.getAttribute("position")?.array ?? [];
-  const every = Math.max(1, Math.floor(array.length / 3 / 2000));
-  for (let i = 0; i + 2 < array.length; i += 3 * every) {
-    axes.forEach((axis, a) => axis.push(array[i + a] ?? 0));
+  const every = Math.max(1, Math.floor(points.length / 3 / 2000));
+  for (let i = 0; i + 2 < points.length; i += 3 * every) {
+    const point = points.subarray(i, i + 3);
+    if (point.every(Number.isFinite)) axes.forEach((axis, a) => axis.push(point[a] ?? 0));
   }
   const spans = axes.map((axis) => {
     axis.sort((a, b) => a - b);

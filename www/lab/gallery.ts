@@ -111,10 +111,7 @@ export class Gallery {
     const iteration = frame.reports.at(-1)?.iteration ?? 0;
     const clouds = this.#clouds;
     const fresh = this.#fresh;
-    this.#painter.request(this.#clouds, () => {
-      clouds.show(frame.imagePoints, frame.depthPoints, fresh);
-      clouds.draw();
-    });
+    this.#painter.request(clouds, () => clouds.show(frame.imagePoints, frame.depthPoints, fresh));
     this.#fresh = fresh && iteration < 1;
   }
 
@@ -144,8 +141,7 @@ export class Gallery {
     const fallback = byId("clouds-note", HTMLElement);
     try {
       const { Clouds } = await import("../draw/clouds");
-      const redraw = {};
-      const clouds = new Clouds(canvas, box, () => this.#painter.request(redraw, () => clouds.draw()));
+      const clouds = await Clouds.open(canvas, box);
       this.#clouds = clouds;
       fallback.hidden = true;
       canvas.addEventListener("keydown", (event) => {

@@ -73,8 +73,8 @@ const rendered = (settings: Settings) => settings.protocol !== "grid";
 export const fields: readonly Field[] = [
   { kind: "choice", key: "surface", label: "Surface", initial: "bust", group: "sample", path: "sample.surface" },
   { kind: "choice", key: "light", label: "Light", initial: "colourful", group: "sample", path: "sample.light" },
-  { kind: "choice", key: "size", label: "Size", hint: "Side of both views.", initial: "64", group: "sample", path: "sample.size", when: rendered,
-    choices: [["32", "32 px"], ["64", "64 px"], ["96", "96 px"], ["128", "128 px"], ["256", "256 px"]] },
+  { kind: "choice", key: "size", label: "Size", hint: "Of both views: a side, or a camera's whole frame.", initial: "64", group: "sample", path: "sample.size", when: rendered,
+    choices: [["32", "32 px"], ["64", "64 px"], ["96", "96 px"], ["128", "128 px"], ["256", "256 px"], ["640x480", "640×480"]] },
   { kind: "choice", key: "protocol", label: "Protocol", initial: "rendered", group: "sample", path: "sample.protocol",
     hint: "Rendered: as cameras see the surface. Bare grid: every eighth sample of it, the same points in both views, as the paper may have done.",
     choices: [["rendered", "rendered"], ["grid", "bare grid"]] },
@@ -161,7 +161,7 @@ export function sampleRequest(settings: Settings): SampleRequest {
   return {
     ...surface,
     ...kept,
-    size: Number(settings.size),
+    ...size(settings),
     ...present<Pick<SampleRequest, "scale" | "noise" | "depthNoise" | "holes" | "seed">>({
       scale: number(settings, "trueScale"),
       noise: number(settings, "noise"),
@@ -170,6 +170,12 @@ export function sampleRequest(settings: Settings): SampleRequest {
       seed: number(settings, "draw"),
     }),
   };
+}
+
+/** "64" is a square. */
+function size(settings: Settings): Pick<SampleRequest, "size" | "height"> {
+  const [width = 0, height = width] = text(settings, "size").split("x").map(Number);
+  return { size: width, height };
 }
 
 /** The numbers in a line of text, however they are set apart. */

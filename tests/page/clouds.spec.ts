@@ -1,0 +1,57 @@
+/** Both surfaces, drawn by a thread of their own where the browser lets one. */
+
+import type { Locator } from "@playwright/test";
+import { decode } from "fast-png";
+import { expect, test } from "./lab";
+
+/** Share of the picture that two clouds cover, at least. */
+const DRAWN = 0.02;
+
+/** Share of the pixels of the clouds' picture that are not of its ground, which its corner shows. */
+async function covered(clouds: Locator): Promise<number> {
+  const { data, channels, width, height } = decode(await clouds.screenshot());
+  const ground = data.subarray(0, 3);
+  let count = 0;
+  for (let i = 0; i < width * height; i++) {
+    if (ground.some((value, c) => Math.abs(value - (data[i * channels + c] ?? 0)) > 24)) count++;
+  }
+  return count / (width * height);
+}
+
+const NO_OFFSCREEN = "delete HTMLCanvasElement.prototype.transferControlToOffscreen;";
+const NO_WEBGL = `
+  for (const { prototype } of [HTMLCanvasElement, OffscreenCanvas]) {
+    const original = prototype.getContext;
+    prototype.getContext = function (kind, ...rest) { return kind.startsWith("webgl") ? null : original.call(this, kind, ...rest); };
+  }`;
+
+for (const [where, script] of [["in a thread", ""], ["on the page where threads have no canvas", NO_OFFSCREEN]] as const) {
+  test(`the clouds are drawn ${where}, and turn with the arrow keys`, async ({ lab, page }) => {
+    await page.addInitScript(script);
+    const threads = () => page.workers().filter((worker) => worker.url().includes("stage-thread")).length;
+    await lab.open();
+    await page.keyboard.press("s");
+    await expect(lab.iteration).toHaveText("1");
+    const clouds = page.locator("#clouds-canvas");
+    await expect(page.locator("#clouds-note")).toBeHidden();
+    await expect.poll(() => covered(clouds)).toBeGreaterThan(DRAWN);
+    const first = await clouds.screenshot();
+    expect(threads()).toBe(script === "" ? 1 : 0);
+    await clouds.focus();
+    await page.keyboard.press("ArrowLeft");
+    await expect.poll(async () => (await clouds.screenshot()).equals(first)).toBe(false);
+    await page.getByRole("button", { name: "front" }).click();
+    await expect.poll(() => covered(clouds)).toBeGreaterThan(DRAWN);
+  });
+}
+
+test("without WebGL the page says so and computes all the same", async ({ lab, page }) => {
+  // three.js complains on the console before it gives up; nothing else may.
+  await page.addInitScript(NO_WEBGL);
+  await lab.open();
+  await expect(page.locator("#clouds-note")).toHaveText(/no WebGL/);
+  await page.keyboard.press("s");
+  await expect(lab.iteration).toHaveText("1");
+  expect(lab.complaints.filter((line) => !line.includes("THREE.WebGLRenderer"))).toEqual([]);
+  lab.complaints.length = 0;
+});
