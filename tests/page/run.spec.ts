@@ -147,7 +147,7 @@ test("a run that misses the pose does not look like a success", async ({ lab, pa
 
 test("a hint unfolds at a tap", async ({ lab, page }) => {
   await lab.open();
-  const hint = page.getByText("Side of both views.");
+  const hint = page.getByText("Of both views: a side, or a camera's whole frame.");
   await expect(hint).toBeHidden();
   await page.getByRole("button", { name: 'What is "Size"?' }).click();
   await expect(hint).toBeVisible();
