@@ -69,6 +69,41 @@ function listen() {
   };
 }
 
+/** A camera's frame on the page, from a search to the end of the loop. */
+const PLAYED_SIZE = "640x480";
+/** Seconds of it, at most. */
+const PLAYED = 10;
+
+/** Before the page's own scripts: its animation frames, and tasks that held the main thread for over 50 ms. */
+function watch() {
+  const seen = (window.benchSeen = { frames: [], longTasks: [] });
+  new PerformanceObserver((list) => seen.longTasks.push(...list.getEntries().map(({ duration }) => duration))).observe({ type: "longtask" });
+  const frame = (time) => {
+    seen.frames.push(time);
+    requestAnimationFrame(frame);
+  };
+  requestAnimationFrame(frame);
+}
+
+/** How smoothly the page runs while it plays. */
+export async function playing(chromium, address) {
+  const context = await chromium.newContext({ viewport: { width: 1280, height: 800 } });
+  const page = await context.newPage();
+  await page.addInitScript(watch);
+  await page.goto(`${address}/www/dist/#size=${PLAYED_SIZE}`);
+  await page.waitForSelector('#status[data-state="ready"]', { timeout: 60_000 });
+  // What loads late is there by then.
+  await page.waitForTimeout(2000);
+  await page.evaluate(() => Object.values(window.benchSeen).forEach((list) => (list.length = 0)));
+  await page.keyboard.press("Space");
+  await page.waitForSelector('#status[data-state="playing"]');
+  await page.waitForSelector('#status:not([data-state="playing"])', { timeout: 1000 * PLAYED }).catch(() => {});
+  const { frames, longTasks } = await page.evaluate(() => window.benchSeen);
+  await context.close();
+  const seconds = (frames.at(-1) - frames[0]) / 1000;
+  return { size: PLAYED_SIZE, seconds, framesPerSecond: (frames.length - 1) / seconds, longTasks };
+}
+
 /**
  * Frames of the real page, stage by stage. `delivery`: from asking to hearing without the stage's own time, which is cutting,
  * copying and sending. `drawing`: what its animation frames kept the main thread busy with, all canvases, clouds and charts.
