@@ -74,7 +74,8 @@ fn write(f: &mut fmt::Formatter<'_>, value: f64, digits: u64, decimals: u32) -> 
         f.write_str("-")?;
     }
     if value.is_infinite() {
-        return f.write_str("inf");
+        // As JavaScript writes it.
+        return f.write_str("Infinity");
     }
     let unit = 10_u64.pow(decimals);
     write!(f, "{}", digits / unit)?;
@@ -123,7 +124,7 @@ mod tests {
             (5e-324, "4.9406565e-324"),
             (f64::MAX, "1.7976931e+308"),
             (f64::NAN, "NaN"),
-            (f64::NEG_INFINITY, "-inf"),
+            (f64::NEG_INFINITY, "-Infinity"),
         ] {
             assert_eq!(Brief(value).to_string(), text);
         }

@@ -7,7 +7,7 @@ use bimodal_stereo::{
     Angles, Camera, Estimator, Light, LightSource, Options, Pinhole, Registration, Size, Start, Status,
 };
 use common::{angles_between, data_dir, mean, mozart, natural_light};
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, Vector3};
 
 /// Aims for the bust: error of the rotation and mean error of the image's normals, degrees.
 const BUST_ROTATION: f64 = 1.0;
@@ -161,6 +161,18 @@ fn two_pinhole_cameras_give_a_metric_pose() {
     assert_eq!(report.status, Status::Converged);
     assert_eq!(report.pose.scale, 1.0);
     assert!(report.pose.degrees_to(&sample.pose) <= BUST_ROTATION);
+}
+
+#[test]
+fn a_start_behind_the_camera_is_lost_for_that_reason() {
+    let pinhole = Camera::Pinhole(Pinhole { fx: 160.0, fy: 160.0, cx: 31.5, cy: 31.5, distortion: [0.0; 5] });
+    let sample = bust(&SampleRequest { image_camera: pinhole, depth_camera: pinhole, ..SampleRequest::default() });
+    let translation = Some(Vector3::new(0.0, 0.0, -1e4));
+    let start = Start::Pose { rotation: Matrix3::identity(), scale: None, translation };
+    let estimator = run("bust, behind the camera", &sample, Options { start, ..known(&sample) });
+    let report = estimator.report();
+    assert_eq!(report.status, Status::Lost);
+    assert!(report.message.as_ref().is_some_and(|message| message.contains("behind the colour camera")), "{report:?}");
 }
 
 #[test]

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use super::merit::Candidate;
 use super::{Estimator, gauge, merit};
-use crate::error::Result;
+use crate::error::{Error, ErrorKind, Result};
 use crate::light::{Light, Polynomial};
 use crate::options::{LightSource, Registration};
 use crate::pose::{CorrespondenceProblem, IcpOptions, IcpProblem, RansacOptions, Similarity, ransac};
@@ -211,6 +211,9 @@ impl Estimator {
     /// ICP, then the consensus of its pairs: of both poses the one with the lower merit over the same pairs.
     fn match_surfaces(&mut self, start: Similarity) -> Result<Similarity> {
         let pixel = self.pixel_length();
+        if pixel <= 0.0 {
+            return Err(Error::new(ErrorKind::Degenerate, "pose", "puts the object behind the colour camera"));
+        }
         let problem = IcpProblem {
             depth_points: &self.solution.depth_points,
             depth_normals: &self.solution.depth_normals,

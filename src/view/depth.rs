@@ -61,6 +61,9 @@ pub struct DepthView {
 const LENS: &str = "depth.camera.distortion";
 /// Default metres of a stored integer where a camera is known: millimetres.
 const MILLIMETRE: f64 = 0.001;
+/// Metres or pixels from which on a depth is as good as infinite, and so is a coordinate of a cloud: some formats write the
+/// largest number of theirs for a hole, whose squares f32 cannot hold.
+const FARTHEST: f32 = 1e12;
 /// Without a mask, an enclosed gap belongs to the object up to this share of its pixels.
 const LARGEST_HOLE: f64 = 0.02;
 
@@ -184,7 +187,7 @@ impl DepthMap {
             let depth = match &self.samples {
                 DepthSamples::Cloud(data) => {
                     let point = [0, 1, 2].map(|axis| (f64::from(data[3 * index + axis]) * unit) as f32);
-                    if point.iter().all(|value| value.is_finite()) {
+                    if point.iter().all(|value| value.abs() < FARTHEST) {
                         points.set(index, point);
                     }
                     continue;
@@ -192,10 +195,10 @@ impl DepthMap {
                 DepthSamples::Float(data) => f64::from(data[index]),
                 DepthSamples::Integer(data) => f64::from(data[index]),
             };
-            if depth.is_finite() && depth > 0.0 {
-                let (column, row) = size.position(index);
-                let point = camera.point(size, [column as f64, row as f64], depth * unit);
-                points.set(index, point.map(|value| value as f32));
+            let (column, row) = size.position(index);
+            let point = camera.point(size, [column as f64, row as f64], depth * unit).map(|value| value as f32);
+            if point[2] > 0.0 && point[2] < FARTHEST {
+                points.set(index, point);
             }
         }
         Ok(points)
@@ -250,11 +253,11 @@ mod tests {
     #[test]
     fn holes_are_never_values() {
         let mut depth = vec![5.0_f32; 100];
-        for (index, hole) in [(11, 0.0), (22, f32::NAN), (33, -1.0), (44, f32::INFINITY)] {
+        for (index, hole) in [(11, 0.0), (22, f32::NAN), (33, -1.0), (44, f32::INFINITY), (66, f32::MAX)] {
             depth[index] = hole;
         }
         let view = DepthView::new(&map(DepthSamples::Float(depth)), true).unwrap();
-        assert_eq!(view.valid(), 96);
+        assert_eq!(view.valid(), 95);
         assert!(view.mask[11] && view.mask[44] && !view.points.is_valid(33));
     }
 
