@@ -34,6 +34,8 @@ const LINE: usize = 4 * 3 + 1;
 #[derive(Clone, Debug)]
 pub(super) struct SplineImage {
     size: Size,
+    /// The mean of log S. Splines run through what differs from it, so that another exposure is rounded in the same way.
+    mean: f64,
     /// Whether the four pixels right and below of each, itself included, are all on the mask.
     cells: Arc<[bool]>,
     /// R, G and B side by side, mirrored by one sample before and two behind each line and column, so that the sixteen
@@ -61,6 +63,8 @@ impl SplineImage {
 
     fn over(cells: &Arc<[bool]>, view: &ColourView, blur: f64) -> Self {
         let mut fields = blurred(view, blur);
+        let mean = view.log_mean();
+        fields.iter_mut().flatten().for_each(|log| *log = (f64::from(*log) - mean) as f32);
         continue_outwards(view.size, &mut fields, &view.mask);
         fields.iter_mut().for_each(|field| filter(view.size, field));
         let [red, green, blue] = &fields;
@@ -74,7 +78,7 @@ impl SplineImage {
             });
         });
         coefficients.push([0.0; 3]);
-        Self { size: view.size, cells: Arc::clone(cells), coefficients }
+        Self { size: view.size, mean, cells: Arc::clone(cells), coefficients }
     }
 
     /// Whether the cell around a position, and `margin` pixels beyond it on every side, is on the mask.
@@ -101,7 +105,7 @@ impl SplineImage {
         for (j, &share) in down.iter().enumerate() {
             add_share(&mut log, share, &sum(&across, self.line(left, top + j)));
         }
-        Some(colours(log))
+        Some(self.colours(log))
     }
 
     /// log S and its gradient at a continuous position; `None` off the mask.
@@ -118,9 +122,14 @@ impl SplineImage {
             add_share(&mut by_row, down_slope[j], &value);
             add_share(&mut by_column, down[j], &sum(&across_slope, line));
         }
-        let (by_column, by_row) = (colours(by_column), colours(by_row));
+        let (by_column, by_row) = (numbers(by_column), numbers(by_row));
         let gradient = |channel: usize| [by_column[channel], by_row[channel]];
-        Some(ImagePoint { log: colours(log), gradient: [gradient(0), gradient(1), gradient(2)] })
+        Some(ImagePoint { log: self.colours(log), gradient: [gradient(0), gradient(1), gradient(2)] })
+    }
+
+    fn colours(&self, sums: [Lanes; CHUNKS]) -> [f64; 3] {
+        let [red, green, blue] = numbers(sums);
+        [red + self.mean, green + self.mean, blue + self.mean]
     }
 
     /// Four samples of a line around a cell, and one number more.
@@ -203,11 +212,11 @@ fn add_share(sums: &mut [Lanes; CHUNKS], share: Lanes, values: &[Lanes; CHUNKS])
     sums.iter_mut().zip(values).for_each(|(sum, &value)| *sum = *sum + share * value);
 }
 
-/// The three colours without what lies beyond them.
+/// Those of the three colours without what lies beyond them.
 #[inline(always)]
-fn colours(sums: [Lanes; CHUNKS]) -> [f64; 3] {
-    let colour = |channel: usize| f64::from(sums[channel / LANES].array()[channel % LANES]);
-    [colour(0), colour(1), colour(2)]
+fn numbers(sums: [Lanes; CHUNKS]) -> [f64; 3] {
+    let number = |channel: usize| f64::from(sums[channel / LANES].array()[channel % LANES]);
+    [number(0), number(1), number(2)]
 }
 
 /// Mask-normalised Gaussian means of the channels; NaN off the mask.
