@@ -71,7 +71,7 @@ impl<'a> Scene<'a> {
     }
 
     /// log S where carried points are seen.
-    #[inline(always)]
+    #[inline(never)]
     pub fn seen(&self, points: [Doubles; 3]) -> Seen {
         let (mut shown, mut log) = ([0.0; DOUBLE_LANES], [[0.0; DOUBLE_LANES]; 3]);
         for (lane, shown) in shown.iter_mut().enumerate() {
@@ -84,7 +84,7 @@ impl<'a> Scene<'a> {
     }
 
     /// r and its derivatives.
-    #[inline(always)]
+    #[inline(never)]
     pub fn linear(&self, points: [Doubles; 3], normals: [Doubles; 3], frame: &Frame) -> Linear {
         let mut look = Look::default();
         for lane in 0..DOUBLE_LANES {
