@@ -34,9 +34,9 @@ export interface DepthMap {
   camera?: Pinhole;
   /** Metres (or pixels, orthographic) per stored unit; default 1, and 0.001 for a Uint16Array with a camera. */
   unit?: number;
-  /** Depth along z. Zero, negative, infinite and NaN are holes: a depth that is relative has to be moved above zero. */
+  /** Depth along z. Zero, negative, NaN, and 1e12 or more are holes: a depth that is relative has to be moved above zero. */
   data?: Float32Array | Uint16Array;
-  /** An organised cloud, 3*w*h interleaved, NaN where missing. */
+  /** An organised cloud, 3*w*h interleaved, NaN where missing; 1e12 or more is missing, too. */
   points?: Float32Array;
   /** Unit normals, 3*w*h interleaved; they override our own. */
   normals?: Float32Array;

@@ -169,10 +169,13 @@ fn a_start_behind_the_camera_is_lost_for_that_reason() {
     let sample = bust(&SampleRequest { image_camera: pinhole, depth_camera: pinhole, ..SampleRequest::default() });
     let translation = Some(Vector3::new(0.0, 0.0, -1e4));
     let start = Start::Pose { rotation: Matrix3::identity(), scale: None, translation };
-    let estimator = run("bust, behind the camera", &sample, Options { start, ..known(&sample) });
-    let report = estimator.report();
-    assert_eq!(report.status, Status::Lost);
-    assert!(report.message.as_ref().is_some_and(|message| message.contains("behind the colour camera")), "{report:?}");
+    for registration in [Registration::Icp, Registration::Joint, Registration::Fixed] {
+        let estimator = run("bust, behind the camera", &sample, Options { start, registration, ..known(&sample) });
+        let report = estimator.report();
+        assert_eq!(report.status, Status::Lost);
+        let message = report.message.as_deref().unwrap_or_default();
+        assert!(message.contains("behind the colour camera"), "{registration:?}: {message}");
+    }
 }
 
 #[test]

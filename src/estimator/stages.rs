@@ -186,6 +186,9 @@ impl Estimator {
 
     /// Pose (Eq. 12 to 16), then the correspondences that it gives.
     pub(super) fn register(&mut self) -> Result<()> {
+        if self.pixel_length() <= 0.0 {
+            return Err(Error::new(ErrorKind::Degenerate, "pose", "puts the object behind the colour camera"));
+        }
         let before = self.pose();
         self.proposed_change = 0.0;
         let registration = self.registration();
@@ -211,9 +214,6 @@ impl Estimator {
     /// ICP, then the consensus of its pairs: of both poses the one with the lower merit over the same pairs.
     fn match_surfaces(&mut self, start: Similarity) -> Result<Similarity> {
         let pixel = self.pixel_length();
-        if pixel <= 0.0 {
-            return Err(Error::new(ErrorKind::Degenerate, "pose", "puts the object behind the colour camera"));
-        }
         let problem = IcpProblem {
             depth_points: &self.solution.depth_points,
             depth_normals: &self.solution.depth_normals,

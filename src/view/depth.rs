@@ -2,6 +2,7 @@
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::options::positive;
+use crate::text::Brief;
 use crate::view::mask::{self, FEWEST_PIXELS, components};
 use crate::view::trim;
 use crate::view::{Camera, Normals, Pinhole, Points, Size, normals};
@@ -125,7 +126,10 @@ impl DepthView {
         Err(Error::new(
             ErrorKind::Empty,
             field,
-            format!("fewer than {FEWEST_PIXELS} object pixels have a depth above zero"),
+            format!(
+                "fewer than {FEWEST_PIXELS} object pixels have a depth above zero and below {}",
+                Brief(f64::from(FARTHEST))
+            ),
         ))
     }
 

@@ -22,7 +22,9 @@ const energies: readonly Line[] = [
   { label: "registration", token: "series-3", value: ({ energy }) => energy.registration },
   { label: "refinement", token: "series-4", value: ({ energy }) => energy.refinement },
 ];
-const rotation: readonly Line[] = [{ label: "change, deg", token: "accent", value: ({ rotationChange }) => rotationChange }];
+/** Degrees. A rotation that stands changes by zero, for which a logarithm has no place. */
+const LEAST_CHANGE = 1e-6;
+const rotation: readonly Line[] = [{ label: "change, deg (1e-6: none)", token: "accent", value: ({ rotationChange }) => Math.max(rotationChange, LEAST_CHANGE) }];
 
 export class Charts {
   readonly #charts: readonly { plot: Plot; lines: readonly Line[] }[];
@@ -93,7 +95,8 @@ export class Plot {
     this.#plot = new uPlot(
       {
         ...this.#size(),
-        padding: [8, 8, 0, 0],
+        // Left of the first number there may be no axis.
+        padding: [8, 8, 0, 4],
         cursor: { y: false, drag: { x: false, y: false } },
         scales: { x: { time: false, ...(whole ? counted : {}) }, y: { distr: 3 } },
         axes: [

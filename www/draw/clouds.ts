@@ -28,6 +28,8 @@ export class Clouds {
     this.#box = box;
     this.#draw = draw;
     this.#controls = new OrbitControls(this.#camera, canvas);
+    // A finger that moves up or down scrolls the page; across it turns the clouds.
+    canvas.style.touchAction = "pan-y";
     this.#controls.addEventListener("change", () => this.#look());
     new ResizeObserver(() => this.#resize()).observe(box);
     this.recolour();

@@ -5,9 +5,12 @@ import type { Raster } from "../engine/protocol";
 import { automaticRange, gradient, type MapName, type Range } from "./colours";
 import { short } from "./numbers";
 
+/** The range of a view that has no values yet. */
+const NOTHING: Range = { min: 0, max: 1 };
+
 export class Scale {
   readonly map: MapName;
-  #automatic: Range = { min: 0, max: 1 };
+  #automatic = NOTHING;
   #fixed: Range | null = null;
   #listeners: (() => void)[] = [];
   #legends: { min: HTMLInputElement; max: HTMLInputElement; auto: HTMLButtonElement; unit: HTMLElement }[] = [];
@@ -30,8 +33,7 @@ export class Scale {
 
   /** Takes the automatic range from these values. */
   follow(raster: Raster): void {
-    const range = automaticRange(raster);
-    if (!range) return;
+    const range = automaticRange(raster) ?? NOTHING;
     this.#automatic = this.#fromZero ? { min: 0, max: range.max } : range;
     if (!this.#fixed) this.#tell();
   }

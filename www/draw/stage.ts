@@ -68,10 +68,10 @@ export class Stage {
     this.#sight = sight;
   }
 
-  #resizePoints({ width, height, pixelRatio }: Sight): void {
+  #resizePoints({ width, height }: Sight): void {
     for (const { geometry, material } of [this.#image, this.#depth]) {
       const apart = Math.min(width, height) / Math.sqrt(Math.max(1, geometry.getAttribute("position")?.count ?? 1));
-      material.size = pixelRatio * Math.max(SMALLEST, Math.min(LARGEST, 0.6 * apart));
+      material.size = Math.max(SMALLEST, Math.min(LARGEST, 0.6 * apart));
     }
   }
 }

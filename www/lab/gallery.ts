@@ -89,7 +89,10 @@ export class Gallery {
       const button = figure.querySelector(".enlarge");
       button?.setAttribute("aria-pressed", String(figure.hasAttribute("data-large")));
     }
-    if (!wasOpen) chosen?.querySelector("canvas")?.focus({ preventScroll: true });
+    if (wasOpen || !chosen) return;
+    chosen.querySelector("canvas")?.focus({ preventScroll: true });
+    // The others have made room above it.
+    chosen.scrollIntoView({ block: "nearest" });
   }
 
   get count(): number {
