@@ -55,3 +55,25 @@ test("without WebGL the page says so and computes all the same", async ({ lab, p
   expect(lab.complaints.filter((line) => !line.includes("THREE.WebGLRenderer"))).toEqual([]);
   lab.complaints.length = 0;
 });
+
+test("points are as large on a dense screen", async ({ browser, baseURL }) => {
+  const shares: number[] = [];
+  for (const deviceScaleFactor of [1, 2]) {
+    const context = await browser.newContext({ deviceScaleFactor, viewport: { width: 1280, height: 800 } });
+    const page = await context.newPage();
+    await page.goto(`${baseURL}#start=truth`);
+    await expect(page.locator("#status")).toHaveAttribute("data-state", "ready");
+    await page.keyboard.press("s");
+    await expect(page.locator("#iteration")).toHaveText("1");
+    const clouds = page.locator("#clouds-canvas");
+    await expect(page.locator("#clouds-note")).toBeHidden();
+    await expect.poll(() => covered(clouds)).toBeGreaterThan(DRAWN);
+    // The image's surface comes after the depth map's.
+    await page.waitForTimeout(500);
+    shares.push(await covered(clouds));
+    await context.close();
+  }
+  const [plain = 0, dense = 0] = shares;
+  expect(dense / plain).toBeGreaterThan(0.8);
+  expect(dense / plain).toBeLessThan(1.25);
+});

@@ -63,3 +63,36 @@ test("the shortest page runs on the main thread", async ({ lab, page }) => {
   await expect(page.locator("output")).toHaveText(/ converged: beta (19|20)\.\d\d \(true: 20\)$/);
   expect(lab.complaints).toEqual([]);
 });
+
+test("the Lab looks the same after the Tables", async ({ lab, page }) => {
+  await lab.open();
+  const look = () => page.locator("#fields-sample .heading").first().evaluate((heading) => {
+    const { fontSize, color } = getComputedStyle(heading);
+    return `${fontSize} ${color}`;
+  });
+  const before = await look();
+  await page.getByRole("link", { name: "Tables" }).click();
+  await expect(page.getByRole("heading", { name: "Table 1" }).first()).toBeVisible();
+  await page.getByRole("link", { name: "Lab" }).click();
+  await lab.reaches("ready");
+  expect(await look()).toBe(before);
+});
+
+test("an enlarged view comes into sight", async ({ lab, page }) => {
+  await lab.open();
+  expect(await page.evaluate(() => (scrollTo({ top: 5000, behavior: "instant" }), scrollY))).toBeGreaterThan(200);
+  await page.keyboard.press("1");
+  await expect(page.locator("figure[data-large]")).toBeInViewport({ ratio: 0.9 });
+});
+
+test("a view without values has no range of earlier ones", async ({ lab, page }) => {
+  await lab.open();
+  await page.keyboard.press("s");
+  await expect(lab.iteration).toHaveText("1");
+  const lowest = page.getByLabel("Depth: lowest value shown", { exact: true });
+  await expect(lowest).not.toHaveValue("0");
+  await page.getByLabel("Surface", { exact: true }).selectOption("vase");
+  await lab.reaches("ready");
+  await expect(lab.iteration).toHaveText("0");
+  await expect(lowest).toHaveValue("0");
+});
