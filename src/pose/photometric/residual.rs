@@ -1,4 +1,4 @@
-//! One depth point's residual r = log S(pi(T P)) - B(R n) L and its derivatives.
+//! Residuals of depth points, two side by side: r = log S(pi(T P)) - B(R n) L and its derivatives.
 //!
 //! The unknowns are those of every registration here: P' -> c + e^u exp([w]) (P' - c) + l v of the carried point P' = T
 //! P, n' -> exp([w]) n' of its normal. With g = d log S / d P' and b = d (B L) / d n', both of one channel, dr/dw = (P'
@@ -71,6 +71,7 @@ impl<'a> Scene<'a> {
     }
 
     /// log S where carried points are seen.
+    // One copy of it: visitors download each.
     #[inline(never)]
     pub fn seen(&self, points: [Doubles; 3]) -> Seen {
         let (mut shown, mut log) = ([0.0; DOUBLE_LANES], [[0.0; DOUBLE_LANES]; 3]);
@@ -84,6 +85,7 @@ impl<'a> Scene<'a> {
     }
 
     /// r and its derivatives.
+    // As above.
     #[inline(never)]
     pub fn linear(&self, points: [Doubles; 3], normals: [Doubles; 3], frame: &Frame) -> Linear {
         let mut look = Look::default();
