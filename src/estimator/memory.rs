@@ -6,7 +6,7 @@ use crate::view::Size;
 
 /// Bytes that one pixel of either view takes, all stages and the opening search together. Measured on pairs at 640x480
 /// (`tests/contract/memory.test.mjs` watches it), the module's own megabyte included: 180 of each view's pixels where the
-/// object covers a third of the frame, 216 where it fills it. A lens with distortion adds up to 52, a noisy depth map,
+/// object covers a third of the frame, 210 where it fills it. A lens with distortion adds up to 52, a noisy depth map,
 /// whose pose its surface settles, up to 35; of smaller views the megabyte is a larger share: 222 at 480x360.
 const BYTES_PER_PIXEL: f64 = 220.0;
 /// Bytes that one pixel of either view takes in a [`Helper`](super::Helper), which has a module of its own. Measured at 640x480: 75

@@ -64,7 +64,7 @@ const LENS: &str = "depth.camera.distortion";
 const MILLIMETRE: f64 = 0.001;
 /// Metres or pixels from which on a depth is as good as infinite, and so is a coordinate of a cloud: some formats write the
 /// largest number of theirs for a hole, whose squares f32 cannot hold.
-const FARTHEST: f32 = 1e12;
+const FARTHEST: f64 = 1e12;
 /// Without a mask, an enclosed gap belongs to the object up to this share of its pixels.
 const LARGEST_HOLE: f64 = 0.02;
 
@@ -126,10 +126,7 @@ impl DepthView {
         Err(Error::new(
             ErrorKind::Empty,
             field,
-            format!(
-                "fewer than {FEWEST_PIXELS} object pixels have a depth above zero and below {}",
-                Brief(f64::from(FARTHEST))
-            ),
+            format!("fewer than {FEWEST_PIXELS} object pixels have a depth above zero and below {}", Brief(FARTHEST)),
         ))
     }
 
@@ -191,7 +188,7 @@ impl DepthMap {
             let depth = match &self.samples {
                 DepthSamples::Cloud(data) => {
                     let point = [0, 1, 2].map(|axis| (f64::from(data[3 * index + axis]) * unit) as f32);
-                    if point.iter().all(|value| value.abs() < FARTHEST) {
+                    if point.iter().all(|value| value.abs() < FARTHEST as f32) {
                         points.set(index, point);
                     }
                     continue;
@@ -201,7 +198,7 @@ impl DepthMap {
             };
             let (column, row) = size.position(index);
             let point = camera.point(size, [column as f64, row as f64], depth * unit).map(|value| value as f32);
-            if point[2] > 0.0 && point[2] < FARTHEST {
+            if point[2] > 0.0 && point[2] < FARTHEST as f32 {
                 points.set(index, point);
             }
         }
@@ -289,6 +286,8 @@ mod tests {
     fn all_nan_is_refused_by_name() {
         let error = DepthView::new(&map(DepthSamples::Float(vec![f32::NAN; 100])), true).unwrap_err();
         assert_eq!((error.kind(), error.field()), (ErrorKind::Empty, "depth.data"));
+        let far = DepthView::new(&map(DepthSamples::Float(vec![1e12; 100])), true).unwrap_err();
+        assert!(far.to_string().contains("below 1000000000000"), "{far}");
     }
 
     #[test]

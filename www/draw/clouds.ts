@@ -124,7 +124,10 @@ async function elsewhere(canvas: HTMLCanvasElement): Promise<Draw> {
       thread.postMessage(message, transfer);
     });
   const offscreen = canvas.transferControlToOffscreen();
-  if (!(await ask(offscreen, [offscreen]))) throw new Error("no WebGL in a thread");
+  if (!(await ask(offscreen, [offscreen]))) {
+    thread.terminate();
+    throw new Error("no WebGL in a thread");
+  }
   return async (change) => void (await ask(change));
 }
 

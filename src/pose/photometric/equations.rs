@@ -38,7 +38,8 @@ type CrossSums = [Motion; COEFFICIENTS];
 pub(super) struct LightEquations {
     /// One channel's block of D up to its diagonal: all three have the same weights.
     gram: [[Doubles; HARMONICS]; HARMONICS],
-    heard: [[Doubles; HARMONICS]; 3],
+    /// The points' share of d, channel by channel.
+    slopes: [[Doubles; HARMONICS]; 3],
     /// The prior's share of D and d.
     precision: CoefficientMatrix,
     slope: Coefficients,
@@ -64,7 +65,7 @@ impl LightEquations {
     pub fn new(light_is_known: bool) -> Self {
         Self {
             gram: [[Doubles::splat(0.0); HARMONICS]; HARMONICS],
-            heard: [[Doubles::splat(0.0); HARMONICS]; 3],
+            slopes: [[Doubles::splat(0.0); HARMONICS]; 3],
             precision: CoefficientMatrix::zeros(),
             slope: Coefficients::zeros(),
             is_known: light_is_known,
@@ -76,7 +77,7 @@ impl LightEquations {
     pub fn add(&mut self, basis: &[Doubles; HARMONICS], residual: &[Doubles; 3], weight: Doubles) {
         if self.is_known {
             self.gram[0][0] = self.gram[0][0] + Doubles::splat(3.0) * weight;
-            self.heard[0][0] = self.heard[0][0] - weight * (residual[0] + residual[1] + residual[2]);
+            self.slopes[0][0] = self.slopes[0][0] - weight * (residual[0] + residual[1] + residual[2]);
             return;
         }
         for (row, sums) in self.gram.iter_mut().enumerate() {
@@ -85,7 +86,7 @@ impl LightEquations {
                 *sum = *sum + share * other;
             }
         }
-        for (sums, &residual) in self.heard.iter_mut().zip(residual) {
+        for (sums, &residual) in self.slopes.iter_mut().zip(residual) {
             let share = weight * residual;
             for (sum, &other) in sums.iter_mut().zip(basis) {
                 *sum = *sum - share * other;
@@ -109,7 +110,7 @@ impl LightEquations {
 
     /// d.
     fn slope(&self) -> Coefficients {
-        self.slope + Coefficients::from_iterator(self.heard.as_flattened().iter().map(|sum| sum.sum()))
+        self.slope + Coefficients::from_iterator(self.slopes.as_flattened().iter().map(|sum| sum.sum()))
     }
 
     fn factor(&self) -> Option<Cholesky<f64, Const<COEFFICIENTS>>> {

@@ -53,17 +53,16 @@ pub(super) struct ImagePoint {
 impl SplineImage {
     /// Splines through the Gaussian mean (sigma `blur` in pixels, zero for none) of a view's log S.
     pub fn new(view: &ColourView, blur: f64) -> Self {
-        Self::over(&Arc::from(cells(view)), view, blur)
+        Self::over(&Arc::from(cells(view)), view.log_mean(), view, blur)
     }
 
     /// The same view's with another blur.
     pub fn blurred(&self, view: &ColourView, blur: f64) -> Self {
-        Self::over(&self.cells, view, blur)
+        Self::over(&self.cells, self.mean, view, blur)
     }
 
-    fn over(cells: &Arc<[bool]>, view: &ColourView, blur: f64) -> Self {
+    fn over(cells: &Arc<[bool]>, mean: f64, view: &ColourView, blur: f64) -> Self {
         let mut fields = blurred(view, blur);
-        let mean = view.log_mean();
         fields.iter_mut().flatten().for_each(|log| *log = (f64::from(*log) - mean) as f32);
         continue_outwards(view.size, &mut fields, &view.mask);
         fields.iter_mut().for_each(|field| filter(view.size, field));
