@@ -35,9 +35,12 @@
 #[doc = include_str!("../README.md")]
 struct Readme;
 
+mod check;
 mod error;
 mod estimator;
 mod light;
+#[macro_use]
+mod numeric;
 mod options;
 mod pose;
 mod report;
@@ -56,9 +59,9 @@ pub use pose::{
     Angles, AnglesFit, Candidate, CorrespondenceProblem, Correspondences, Icp, IcpOptions, IcpProblem, IcpReport,
     IcpTermination, Information, Metric, Neighbour, Neighbours, Pair, Photometric, PhotometricOptions,
     PhotometricProblem, PhotometricReport, PhotometricTermination, Progress, RansacOptions, RansacReport, Search,
-    Similarity, ransac,
+    Similarity, Uncertainty, ransac,
 };
-pub use report::{Energy, Stage, Status, StepReport, Uncertainty};
+pub use report::{Energy, Stage, Status, StepReport};
 pub use shape::{
     AnchorWeight, Anchors, HeightDomain, HeightProblem, HeightReport, HeightSolver, IntegrationOptions,
     IntegrationReport, Integrator, RefinementProblem, RefinementTerms, Refiner, Robust, ShadingProblem, ShadingSolver,

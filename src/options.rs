@@ -2,6 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
+use crate::check::{not_negative, positive};
 use crate::error::{Error, ErrorKind, Result};
 use crate::light::Light;
 use crate::pose::Similarity;
@@ -178,20 +179,4 @@ impl Options {
         }
         Ok(())
     }
-}
-
-/// Refuses anything but a finite number above zero.
-pub(crate) fn positive(field: &'static str, value: f64) -> Result<()> {
-    if value.is_finite() && value > 0.0 {
-        return Ok(());
-    }
-    Err(Error::new(ErrorKind::Range, field, "must be a finite number above zero").value(value))
-}
-
-/// Refuses anything but a finite number, zero or above.
-pub(crate) fn not_negative(field: &'static str, value: f64) -> Result<()> {
-    if value.is_finite() && value >= 0.0 {
-        return Ok(());
-    }
-    Err(Error::new(ErrorKind::Range, field, "must be a finite number, zero or above").value(value))
 }

@@ -1,6 +1,6 @@
 //! What the loop says after each step.
 
-use crate::pose::Similarity;
+use crate::pose::{Similarity, Uncertainty};
 
 /// Stages of one iteration, in the order in which they run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -98,19 +98,6 @@ impl Energy {
     pub fn total(&self) -> f64 {
         self.shading + self.prior + self.registration + self.refinement
     }
-}
-
-/// Uncertainty of the pose, one sigma.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Uncertainty {
-    /// Rotation about the x, y and z axis of the colour view, degrees.
-    pub rotation_degrees: [f64; 3],
-    /// Translation along x, y, z in units of the colour view; `None` where it is a gauge.
-    pub translation: [Option<f64>; 3],
-    /// Scale; `None` where it is held.
-    pub scale: Option<f64>,
-    /// The weakest direction, in words.
-    pub weakest: String,
 }
 
 /// State of the loop after a step or a stage.

@@ -7,9 +7,10 @@
 
 use nalgebra::{Matrix3, Vector3};
 
+use crate::numeric::quantile;
 use crate::options::{Options, Start};
 use crate::pose::Similarity;
-use crate::view::{Camera, ColourView, DepthView, quantile};
+use crate::view::{Camera, ColourView, DepthView};
 
 /// Two orthographic masks that overlap less than this (intersection over union) are centred on each other first.
 const LEAST_OVERLAP: f64 = 0.5;

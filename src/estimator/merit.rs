@@ -10,9 +10,10 @@
 use nalgebra::Vector3;
 
 use crate::light::{Light, Polynomial};
+use crate::numeric::{Lanes, Real, evenly_spread};
 use crate::pose::Similarity;
 use crate::report::Energy;
-use crate::view::{ColourView, DepthView, Lanes, Normals, Points, Real};
+use crate::view::{ColourView, DepthView, Normals, Points};
 
 /// Robust scale of the log-colour residual: a tenth is half a step of a photographer's stop over three channels.
 const COLOUR_SCALE: f64 = 0.1;
@@ -104,18 +105,13 @@ fn point_terms(
 fn brightness(image: &ColourView, candidate: Candidate<'_>, light: &[Polynomial; 3]) -> f64 {
     let (mut sum, mut count) = (0.0, 0.0);
     let inside = || (0..image.size.len()).filter(|&index| image.mask[index]);
-    for index in thinned(inside) {
+    for index in evenly_spread(MOST_JURORS, inside) {
         count += 1.0;
         let [red, green, blue] = &image.log;
         let log = [red[index], green[index], blue[index]];
         sum += robust(residual(log, light, candidate.normals.get(index)), COLOUR_SCALE);
     }
     sum / f64::max(count, 1.0)
-}
-
-/// At most [`MOST_JURORS`] of some indices, evenly spread.
-pub fn thinned<I: Iterator<Item = usize>>(indices: impl Fn() -> I) -> impl Iterator<Item = usize> {
-    indices().step_by(indices().count().div_ceil(MOST_JURORS).max(1))
 }
 
 /// |log S - predicted| for a normal in the colour view's frame, under a light as three polynomials.

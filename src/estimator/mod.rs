@@ -24,6 +24,7 @@ use nalgebra::Vector3;
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::light::{Light, LightFitter, LightPrior};
+use crate::numeric::evenly_spread;
 use crate::options::{LightSource, Options, Registration, Shading, Start};
 use crate::pose::{Correspondences, Icp, ImageGrid, Similarity};
 use crate::report::{Energy, Stage, Status, StepReport};
@@ -430,7 +431,7 @@ impl Estimator {
                 !image.size.bilinear(&image.log[0], column, row).is_nan()
             })
         };
-        let jury = merit::thinned(|| self.correspondences.visible_points());
+        let jury = evenly_spread(merit::MOST_JURORS, || self.correspondences.visible_points());
         jury.filter(move |&index| depth.normals.is_valid(index) && inside(index)).map(|index| index as u32)
     }
 

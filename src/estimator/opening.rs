@@ -12,7 +12,8 @@
 //! ([`Helper`](super::Helper)). What they find counts in the order of the tasks, however it comes in: the outcome is the
 //! same to the bit.
 
-use crate::pose::{PhotometricReport, Search, Similarity, Slots, sort_down};
+use crate::numeric::sort_descending;
+use crate::pose::{PhotometricReport, Search, Similarity, Slots};
 
 use super::joint::{Attempt, Given, Joint};
 use super::task::{Finding, Found, Registered, Task, Work};
@@ -267,7 +268,7 @@ impl Opening {
 
 /// The best of the ends and those that the data can't tell from it, where the image has so much noise.
 fn decide(mut ends: Vec<End>, image_noise: f64) -> Decision {
-    sort_down(&mut ends, |end| end.gain);
+    sort_descending(&mut ends, |end| end.gain);
     // Nothing but the image's noise is left by it, and far more by the first.
     let wins = |first: &End, end: &End| {
         end.registered.noise <= image_noise && end.rivals(first, 1.0) && !first.rivals(end, RIVAL_NOISE)

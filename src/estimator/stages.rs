@@ -6,13 +6,14 @@ use super::merit::Candidate;
 use super::{Estimator, gauge, merit};
 use crate::error::{Error, ErrorKind, Result};
 use crate::light::{Light, Polynomial};
+use crate::numeric::{LANES, Lanes, quantile};
 use crate::options::{LightSource, Registration};
 use crate::pose::{CorrespondenceProblem, IcpOptions, IcpProblem, RansacOptions, Similarity, ransac};
 use crate::shape::{
     IntegrationOptions, Integrator, ReliefProblem, ReliefSolver, Robust, ShadingProblem, ShadingWeights, Workbench,
     exposure_step, first_exposure, gradients,
 };
-use crate::view::{LANES, Lanes, Points, normals, quantile};
+use crate::view::{Points, normals};
 
 /// |n - m| at which a prior normal has lost three quarters of its pull: 23 degrees, more than noise, less than a mistake.
 const PRIOR_SCALE: f32 = 0.4;

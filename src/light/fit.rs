@@ -10,7 +10,8 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::light::harmonics::{HARMONICS, basis};
 use crate::light::prior::{CoefficientMatrix, Coefficients, LightPrior};
 use crate::light::{Light, Polynomial};
-use crate::view::{LANES, Lanes, Normals, Real, dot, quantile};
+use crate::numeric::{LANES, Lanes, Real, dot, quantile};
+use crate::view::Normals;
 
 /// Most rounds of reweighting; the weights settle in four to six.
 const ROUNDS: usize = 8;

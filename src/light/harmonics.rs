@@ -1,8 +1,8 @@
 //! log S = n^T M n with n = [n_x n_y n_z 1]: second-order spherical harmonics (Eq. 3, 5).
 
 use crate::error::{Error, ErrorKind, Result};
+use crate::numeric::Real;
 use crate::text::Brief;
-use crate::view::Real;
 
 /// Number of harmonics for each channel.
 pub const HARMONICS: usize = 9;
@@ -176,7 +176,7 @@ impl<S: Real<Scalar = S>> Polynomial<S> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::view::Lanes;
+    use crate::numeric::Lanes;
     use nalgebra::{Matrix4, Vector4};
 
     fn light() -> Light {

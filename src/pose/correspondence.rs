@@ -11,8 +11,9 @@
 //! test.
 
 use super::visibility::{HIDDEN_BEHIND, Projection, Sight, Visibility};
+use crate::numeric::{LANES, quantile};
 use crate::pose::Similarity;
-use crate::view::{ColourView, DepthView, LANES, Normals, Points, quantile};
+use crate::view::{ColourView, DepthView, Normals, Points};
 
 /// Least accepted distance in image pixels: the paper's threshold.
 const LEAST_DISTANCE: f64 = 1.0;

@@ -20,9 +20,10 @@ use nalgebra::Vector3;
 use super::increment::{Increment, NormalEquations, Square};
 use super::similarity::FEWEST_PAIRS;
 use super::{Information, Neighbours, Similarity};
+use crate::check::positive;
 use crate::error::{Error, ErrorKind, Result};
-use crate::options::positive;
-use crate::view::{Normals, Points, Size, quantile};
+use crate::numeric::quantile;
+use crate::view::{Normals, Points, Size};
 
 /// Normals of a pair must agree to 60 degrees. Up to 90 makes no difference; 45 loses 3 of 34 far starts, 26 loses 7.
 const LEAST_COSINE: f64 = 0.5;

@@ -9,7 +9,6 @@ mod photometric;
 mod ransac;
 mod search;
 mod similarity;
-mod slots;
 mod uncertainty;
 mod visibility;
 
@@ -20,7 +19,6 @@ pub use neighbours::{Neighbour, Neighbours};
 pub use photometric::{Photometric, PhotometricOptions, PhotometricProblem, PhotometricReport, PhotometricTermination};
 pub use ransac::{RansacOptions, RansacReport, ransac};
 pub use search::{Candidate, Progress, Search};
-pub(crate) use search::{ImageGrid, Known, Place, SearchFinding, SearchTask, sort_down};
+pub(crate) use search::{ImageGrid, Known, Place, SearchFinding, SearchTask, Slots};
 pub use similarity::Similarity;
-pub(crate) use slots::Slots;
-pub use uncertainty::Information;
+pub use uncertainty::{Information, Uncertainty};

@@ -13,8 +13,8 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 
 use super::Similarity;
 use super::similarity::FEWEST_PAIRS;
+use crate::check::positive;
 use crate::error::{Error, ErrorKind, Result};
-use crate::options::positive;
 
 /// Number of pairs that determine the twelve parameters.
 const SAMPLE: usize = 4;

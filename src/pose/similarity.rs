@@ -2,8 +2,8 @@
 
 use nalgebra::{Matrix3, Matrix4, Quaternion, Rotation3, SymmetricEigen, UnitQuaternion, Vector3};
 
+use crate::check::positive;
 use crate::error::{Error, ErrorKind, Result};
-use crate::options::positive;
 
 /// How far R^T R may be from one: rotations typed with five digits pass, anything else is a mistake.
 const ROTATION_TOLERANCE: f64 = 1e-4;

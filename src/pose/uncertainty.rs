@@ -12,7 +12,6 @@ use nalgebra::{SymmetricEigen, Vector3};
 
 use super::Similarity;
 use super::increment::{Frame, Row, Square, UNKNOWNS};
-use crate::report::Uncertainty;
 use crate::view::Camera;
 
 /// Eigenvalues of the information, divided by its weight, below this count as zero. Free of units: the squared cosine
@@ -30,6 +29,19 @@ const MOST_EIGEN_ROUNDS: usize = 500;
 /// Index of the translation along z and of the scale.
 const DEPTH: usize = 5;
 const SCALE: usize = 6;
+
+/// Uncertainty of the pose, one sigma.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Uncertainty {
+    /// Rotation about the x, y and z axis of the colour view, degrees.
+    pub rotation_degrees: [f64; 3],
+    /// Translation along x, y, z in units of the colour view; `None` where it is a gauge.
+    pub translation: [Option<f64>; 3],
+    /// Scale; `None` where it is held.
+    pub scale: Option<f64>,
+    /// The weakest direction, in words.
+    pub weakest: String,
+}
 
 /// Information of a registration about its seven unknowns: rotation about x, y, z (radians), translation along x, y, z
 /// (in object sizes) and the logarithm of the scale, all in the colour view's frame around the centroid of the points.

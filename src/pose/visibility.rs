@@ -5,8 +5,9 @@
 
 use nalgebra::Vector3;
 
+use crate::numeric::{LANES, Lanes, Mask, Real, dot};
 use crate::pose::Similarity;
-use crate::view::{Camera, ColourView, LANES, Lanes, Mask, Normals, Points, Real, Size, dot};
+use crate::view::{Camera, ColourView, Normals, Points, Size};
 
 /// A point counts as hidden when it lies this many image pixels behind the nearest one: more than a steep slope drops
 /// between neighbours, less than a nose stands before a cheek.

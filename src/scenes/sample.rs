@@ -7,9 +7,9 @@ use super::lights;
 use super::mesh::Mesh;
 use super::relief::Relief;
 use super::render::{View, render};
+use crate::check::{not_negative, positive};
 use crate::error::{Error, ErrorKind, Result};
 use crate::light::Light;
-use crate::options::{not_negative, positive};
 use crate::pose::{Angles, Similarity};
 use crate::view::{Camera, ColourImage, ColourSamples, DepthMap, DepthSamples, Normals, Points, Size};
 

@@ -1,8 +1,9 @@
 //! From pixels to rays and back (handbook frame: x right, y down, z forward).
 
+use crate::check::positive;
 use crate::error::{Error, ErrorKind, Result};
-use crate::options::positive;
-use crate::view::{Lanes, Real, Size};
+use crate::numeric::{Lanes, Real};
+use crate::view::Size;
 
 /// A pinhole camera with the five distortion coefficients of OpenCV.
 #[derive(Clone, Copy, Debug, PartialEq)]

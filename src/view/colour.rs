@@ -1,8 +1,8 @@
 //! The colour image: checked once, turned into log intensities over a mask.
 
 use crate::error::{Error, ErrorKind, Result};
+use crate::numeric::noise;
 use crate::view::mask::{self, FEWEST_PIXELS};
-use crate::view::noise;
 use crate::view::{Camera, Pinhole, Size};
 
 /// How integers encode intensity.

@@ -13,10 +13,8 @@
 
 use nalgebra::Vector3;
 
-use super::doubles::{DOUBLE_LANES, Doubles};
-use super::lanes::{Real, dot};
-use super::noise;
-use crate::view::{Normals, Points, Size, quantile};
+use crate::numeric::{DOUBLE_LANES, Doubles, Real, dot, noise, quantile};
+use crate::view::{Normals, Points, Size};
 
 /// Half widths of the windows in pixels. The first is the smallest that holds a cubic with some spare; flat parts are
 /// better served by the second, noisy views by more.

@@ -1,7 +1,7 @@
 //! The depth map: checked once, turned into points and normals, its holes told from its background.
 
+use crate::check::positive;
 use crate::error::{Error, ErrorKind, Result};
-use crate::options::positive;
 use crate::text::Brief;
 use crate::view::mask::{self, FEWEST_PIXELS, components};
 use crate::view::trim;

@@ -5,7 +5,7 @@ use std::ops::Range;
 use nalgebra::{Matrix3, Vector3};
 
 use crate::error::{Error, ErrorKind, Result};
-use crate::view::Lanes;
+use crate::numeric::Lanes;
 
 /// Smallest side of a view: below it neither a normal nor a light is determined.
 pub const SMALLEST_SIDE: usize = 4;

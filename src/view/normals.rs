@@ -13,7 +13,8 @@
 //! pixels has no surroundings to compare with and keeps its jumps. The plane fit is first order where its window is
 //! lopsided, and rounds edges off within its radius. NaN where an axis has no usable neighbour.
 
-use crate::view::{Camera, LANES, Lanes, Normals, Points, Real, Size};
+use crate::numeric::{LANES, Lanes, Real};
+use crate::view::{Camera, Normals, Points, Size};
 
 /// Longest usable step in median steps around it. Smooth shapes stay below three up to their last pixel before the rim
 /// (a sphere of radius 50: 2.7); a fold of 75 degrees against a flat surround just passes.

@@ -5,6 +5,7 @@
 //! What is thin, small or far behind goes and no longer counts as object. Limits: an object whose parts lie one behind
 //! the other by more than its own extent loses the smaller parts; switch the rule off then.
 
+use crate::numeric::quantile;
 use crate::view::Size;
 use crate::view::mask::components;
 
@@ -56,12 +57,6 @@ pub fn kept(size: Size, depth: &[f32], focal_length: Option<f64>) -> Vec<bool> {
         })
         .collect();
     labels.into_iter().map(|label| label != usize::MAX && keep[label]).collect()
-}
-
-/// The value below which the `share` of `values` lies; `values` is reordered and must hold no NaN.
-pub fn quantile(values: &mut [f32], share: f64) -> f32 {
-    let rank = ((values.len() - 1) as f64 * share).round() as usize;
-    *values.select_nth_unstable_by(rank, f32::total_cmp).1
 }
 
 #[cfg(test)]

@@ -19,9 +19,10 @@ use super::problem::{PhotometricProblem, PhotometricReport, PhotometricTerminati
 use super::residual::Scene;
 use super::{Phase, Photometric};
 use crate::error::Result;
+use crate::numeric::{Doubles, Real};
 use crate::pose::increment::{Frame, Row, Square, UNKNOWNS};
 use crate::pose::uncertainty::{describe, in_words};
-use crate::view::{Doubles, Real, Size};
+use crate::view::Size;
 
 /// Side of the tiles of the depth map whose scores count as one observation, pixels: twice the reach of normals and
 /// splines.
@@ -177,9 +178,10 @@ fn product(left: &Square, right: &Square) -> Square {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::numeric::noise;
     use crate::pose::photometric::SLOPE_BLUR;
     use crate::pose::photometric::image::SplineImage;
-    use crate::view::{ColourImage, ColourSamples, ColourView, noise};
+    use crate::view::{ColourImage, ColourSamples, ColourView};
 
     #[test]
     fn the_slopes_of_white_noise_vary_together_by_the_constant() {

@@ -11,8 +11,8 @@ use nalgebra::{Cholesky, Const, SMatrix};
 
 use super::residual::{Linear, Motion};
 use crate::light::{COEFFICIENTS, CoefficientMatrix, Coefficients, HARMONICS, LightPrior};
+use crate::numeric::{Doubles, Real};
 use crate::pose::increment::{Row, Square, UNKNOWNS};
-use crate::view::{Doubles, Real};
 
 type Cross = SMatrix<f64, UNKNOWNS, COEFFICIENTS>;
 

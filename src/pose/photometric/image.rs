@@ -12,7 +12,8 @@
 
 use std::sync::Arc;
 
-use crate::view::{ColourView, LANES, Lanes, Real, Size};
+use crate::numeric::{LANES, Lanes, Real};
+use crate::view::{ColourView, Size};
 
 /// Pole of the cubic B-spline's inverse filter.
 const POLE: f64 = -0.267_949_192_431_122_7;

@@ -8,10 +8,11 @@ use super::image::SplineImage;
 use super::problem::Indices;
 use super::residual::{Linear, Scene, Seen};
 use crate::light::{COEFFICIENTS, Coefficients, HARMONICS, Light, basis};
+use crate::numeric::{DOUBLE_LANES, Doubles, Real, dot, quantile};
 use crate::pose::increment::{Frame, Row};
 use crate::pose::similarity::Similarity;
 use crate::pose::visibility::{Sight, Visibility};
-use crate::view::{DOUBLE_LANES, Doubles, Real, Size, dot, quantile};
+use crate::view::Size;
 
 /// Distance from the border of the mask within which points stay out, image pixels: they would enter and leave with
 /// every step, and the spline is continued there.

@@ -2,13 +2,14 @@
 
 use nalgebra::Matrix3;
 
+use crate::check::not_negative;
 use crate::error::{Error, ErrorKind, Result};
 use crate::light::{Light, LightPrior};
-use crate::options::not_negative;
+use crate::numeric::{DOUBLE_LANES, Doubles, Real, dot};
 use crate::pose::increment::{Square, UNKNOWNS};
 use crate::pose::similarity::Similarity;
-use crate::report::Uncertainty;
-use crate::view::{ColourView, DOUBLE_LANES, DepthView, Doubles, Normals, Points, Real, Size, dot};
+use crate::pose::uncertainty::Uncertainty;
+use crate::view::{ColourView, DepthView, Normals, Points, Size};
 
 /// The coarsest level.
 pub(super) const COARSEST: usize = 2;

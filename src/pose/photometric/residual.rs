@@ -6,8 +6,9 @@
 
 use super::image::{ImagePoint, SplineImage};
 use crate::light::{HARMONICS, Light, Polynomial, basis};
+use crate::numeric::{DOUBLE_LANES, Doubles, Real, dot};
 use crate::pose::increment::{Frame, UNKNOWNS};
-use crate::view::{Camera, DOUBLE_LANES, Doubles, Real, dot};
+use crate::view::Camera;
 
 /// A derivative by the unknowns.
 pub(super) type Motion = [Doubles; UNKNOWNS];

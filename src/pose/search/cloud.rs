@@ -8,7 +8,8 @@
 use nalgebra::Vector3;
 
 use crate::error::{Error, ErrorKind, Result};
-use crate::view::{Normals, Points, Size, quantile};
+use crate::numeric::quantile;
+use crate::view::{Normals, Points, Size};
 
 /// Patches at most: about four for each cell of the grid that an object covers.
 const MOST_PATCHES: usize = 1000;

@@ -8,8 +8,8 @@
 //!
 //! Cost: 21 transforms for an unknown light, 5 for a known one.
 
-use super::fourier::{CELLS, Field, Fourier, opposite};
 use super::judge::{FEWEST_CELLS, Gram, Prediction, regularised};
+use super::plane_fourier::{CELLS, Field, Fourier, opposite};
 use super::target::Target;
 use super::template::{PRODUCTS, Template};
 use crate::light::HARMONICS;

@@ -8,7 +8,7 @@
 
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 
-use super::fourier::{Field, Fourier};
+use super::plane_fourier::{Field, Fourier};
 use crate::error::{Error, ErrorKind, Result};
 use crate::view::ColourView;
 

@@ -5,10 +5,10 @@
 //! a neighbour is missing, the ends of the rows included, so that the raster is one line with neighbours 1 and `width`
 //! apart: every loop runs straight through and fills vector registers.
 
-use crate::shape::heights::{clear, fit};
-use crate::shape::poisson::Edges;
-use crate::shape::slopes::Linear;
-use crate::view::{Lanes, Real};
+use super::cell_terms::Linear;
+use super::solver::{clear, fit};
+use crate::numeric::{Lanes, Real};
+use crate::shape::integration::Edges;
 
 /// Weights of one system and the scratch of its products.
 #[derive(Default)]

@@ -5,10 +5,11 @@
 
 use std::borrow::Cow;
 
+use super::ray_frames::{PARALLEL, RayFrames};
+use super::solver::HeightProblem;
 use crate::light::Polynomial;
-use crate::shape::heights::HeightProblem;
-use crate::shape::ray_frames::{PARALLEL, RayFrames};
-use crate::view::{Lanes, Mask, Real, Size, dot};
+use crate::numeric::{Lanes, Mask, Real, dot};
+use crate::view::Size;
 
 /// (a, b, c) of four pixels in the light's frame.
 type Frames = [[Lanes; 3]; 3];

@@ -2,7 +2,8 @@
 
 use nalgebra::Vector3;
 
-use crate::view::{Camera, LANES, Lanes, Size};
+use crate::numeric::{LANES, Lanes};
+use crate::view::{Camera, Size};
 
 /// (a, b, c) of N = a + p b + q c: N points at the camera, p and q are slopes per pixel in pixels of height.
 ///

@@ -11,8 +11,9 @@
 //! Limits: what no edge and no anchor touches is not determined and keeps whatever it holds; each component without
 //! anchors is determined up to a constant. Pixels are f32, sums f64: relative tolerances below 1e-6 are not reached.
 
-use super::cosine::CosineSolver;
-use crate::view::LANES;
+use crate::numeric::LANES;
+use crate::numeric::cosine::CosineSolver;
+use crate::numeric::vector::{add_scaled, dot, sum_of};
 
 /// Why a solve ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -146,7 +147,7 @@ impl Poisson {
 
     /// sum w g^2 + sum a t^2.
     fn data_energy(&self) -> f64 {
-        let term = |weight: &[f32], value: &[f32]| lanes(weight, value, |w, v| f64::from(w) * f64::from(v).powi(2));
+        let term = |weight: &[f32], value: &[f32]| sum_of(weight, value, |w, v| f64::from(w) * f64::from(v).powi(2));
         term(&self.right.weight, &self.right.gradient)
             + term(&self.down.weight, &self.down.gradient)
             + term(&self.anchor_weight, &self.anchor)
@@ -232,29 +233,4 @@ fn flux(weight: &[f32], here: &[f32], next: &[f32], gradient: &[f32], out: &mut 
     for ((out, w), ((here, next), g)) in out.iter_mut().zip(weight).zip(ends) {
         *out = w * (next - here - g);
     }
-}
-
-#[inline(never)]
-pub(super) fn add_scaled(target: &mut [f32], factor: f32, source: &[f32]) {
-    target.iter_mut().zip(source).for_each(|(t, s)| *t += factor * s);
-}
-
-#[inline(never)]
-pub(super) fn dot(a: &[f32], b: &[f32]) -> f64 {
-    lanes(a, b, |a, b| f64::from(a) * f64::from(b))
-}
-
-/// Independent partial sums, so that the compiler may use vector registers.
-const SUMS: usize = 8;
-
-fn lanes(a: &[f32], b: &[f32], term: impl Fn(f32, f32) -> f64) -> f64 {
-    let mut sums = [0.0; SUMS];
-    let (a, b) = (a.chunks_exact(SUMS), b.chunks_exact(SUMS));
-    let rest: f64 = a.remainder().iter().zip(b.remainder()).map(|(&a, &b)| term(a, b)).sum();
-    for (a, b) in a.zip(b) {
-        for ((sum, &a), &b) in sums.iter_mut().zip(a).zip(b) {
-            *sum += term(a, b);
-        }
-    }
-    sums.iter().sum::<f64>() + rest
 }

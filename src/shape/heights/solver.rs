@@ -15,13 +15,14 @@
 
 use nalgebra::Matrix3;
 
+use super::cell_terms::SlopeTerms;
+use super::domain::{ABOVE, BELOW, CELL, HeightDomain, INSIDE, LEFT, RIGHT};
+use super::normal_operator::{NormalOperator, padded};
 use crate::light::Light;
-use crate::shape::height_domain::{ABOVE, BELOW, CELL, HeightDomain, INSIDE, LEFT, RIGHT};
-use crate::shape::normal_operator::{NormalOperator, padded};
-use crate::shape::poisson::{Edges, add_scaled, dot};
-use crate::shape::slopes::SlopeTerms;
-use crate::shape::surface::Anchors;
-use crate::view::{LANES, Lanes, Real};
+use crate::numeric::vector::{add_scaled, dot};
+use crate::numeric::{LANES, Lanes, Real};
+use crate::shape::Anchors;
+use crate::shape::integration::Edges;
 
 /// kappa: squared log residual per squared second difference in pixels (handbook section 5).
 const SMOOTHNESS: f32 = 1e-3;

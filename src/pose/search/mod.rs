@@ -24,27 +24,27 @@
 
 mod cloud;
 mod correlate;
-mod fourier;
 mod judge;
+mod plane_fourier;
 mod rotations;
 mod target;
+mod task_results;
 mod template;
-
-use std::collections::BinaryHeap;
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
 use super::Similarity;
-use super::slots::Slots;
+use crate::check::positive;
 use crate::error::Result;
 use crate::light::Light;
-use crate::options::positive;
+use crate::numeric::sort_descending;
 use crate::view::{Camera, ColourView, DepthView, Normals, Size};
 use cloud::Cloud;
 use correlate::Correlator;
-use fourier::{Fourier, SIDE};
 use judge::{FEWEST_CELLS, Prediction, judge};
+use plane_fourier::{Fourier, SIDE};
 use target::Target;
+pub(crate) use task_results::Slots;
 use template::{Gaze, Template};
 
 /// Distance of neighbouring rotations of the sweep in degrees. On 160 scenes with unknown light, before any climb, one
@@ -331,7 +331,7 @@ impl Search {
     /// The best places of the sweep, no two rotations alike.
     fn choose_climbers(&mut self) {
         self.climbers = self.sweeps.results().flatten().copied().collect();
-        sort_down(&mut self.climbers, |place| place.score);
+        sort_descending(&mut self.climbers, |place| place.score);
         keep_apart(&mut self.climbers, CLIMBERS, SWEEP_TWINS, |place| &place.rotation);
         self.climbs = Slots::new(self.climbers.len());
     }
@@ -380,7 +380,7 @@ impl Search {
 
     fn finish(&mut self) {
         self.found = self.climbs.results().filter(|candidate| candidate.score.is_finite()).copied().collect();
-        sort_down(&mut self.found, |candidate| candidate.score);
+        sort_descending(&mut self.found, |candidate| candidate.score);
         keep_apart(&mut self.found, KEPT, TWINS, |candidate| &candidate.pose.rotation);
     }
 }
@@ -455,24 +455,6 @@ fn better(a: Place, b: Place) -> Place {
     if b.score > a.score { b } else { a }
 }
 
-/// Best first. Sorts numbers, not the things themselves: sorting is a lot of code for each type there is, and all of it
-/// is downloaded.
-pub(crate) fn sort_down<T: Clone>(list: &mut Vec<T>, merit: impl Fn(&T) -> f64) {
-    let order = descending(&list.iter().map(merit).collect::<Vec<_>>());
-    *list = order.into_iter().map(|index| list[index].clone()).collect();
-}
-
-fn descending(merits: &[f64]) -> Vec<usize> {
-    // Bits of positive numbers are in their order, those of negative ones in the opposite (IEEE 754). A heap, because the
-    // library's sort is four times as much code; by index where equal, so that the order is the same everywhere.
-    let rank = |value: f64| {
-        let bits = value.to_bits();
-        if value.is_sign_negative() { bits } else { !bits & (u64::MAX >> 1) }
-    };
-    let ranked: BinaryHeap<_> = merits.iter().enumerate().map(|(index, &merit)| (rank(merit), index)).collect();
-    ranked.into_sorted_vec().into_iter().map(|(_, index)| index).collect()
-}
-
 /// Of a list sorted by merit keeps the first `most` whose rotations are `degrees` apart.
 fn keep_apart<T>(list: &mut Vec<T>, most: usize, degrees: f64, rotation: impl Fn(&T) -> &Matrix3<f64>) {
     // |R - R'|_F^2 = 8 sin^2(angle / 2)
@@ -499,13 +481,5 @@ mod tests {
             assert!(starts.windows(2).all(|pair| pair[0] < pair[1]) && starts[0] == 0 && starts.last() == Some(&pairs));
         }
         assert!(slice_start(usize::MAX) >= 2792);
-    }
-
-    #[test]
-    fn the_order_is_that_of_a_sort() {
-        let merits = [0.5, -2.0, 3.0, 0.0, f64::INFINITY, -0.0, 3.0, -1e-300, f64::NEG_INFINITY, 1e-310, -2.0];
-        let mut order: Vec<usize> = (0..merits.len()).collect();
-        order.sort_by(|&a, &b| merits[b].total_cmp(&merits[a]));
-        assert_eq!(descending(&merits), order);
     }
 }

@@ -11,7 +11,8 @@
 //! a light of one hue a pixel alone cannot tell its normal.
 
 use crate::light::{Light, Polynomial};
-use crate::view::{LANES, Lanes, Mask, Normals, Real, dot};
+use crate::numeric::{LANES, Lanes, Mask, Real, dot};
+use crate::view::Normals;
 
 /// What surrounds the unknown normals: all slices have one length, one element for each pixel.
 #[derive(Clone, Copy)]

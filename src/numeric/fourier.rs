@@ -9,7 +9,7 @@
 
 use std::f64::consts::TAU;
 
-use crate::view::{Lanes, Real};
+use crate::numeric::{Lanes, Real};
 
 /// Real and imaginary part of four numbers.
 pub(super) type Complex = [Lanes; 2];

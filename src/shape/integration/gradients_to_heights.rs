@@ -20,9 +20,10 @@
 
 use super::components::Components;
 use super::poisson::{Edges, Poisson, Solved, Termination};
+use crate::check::positive;
 use crate::error::{Error, ErrorKind, Result};
-use crate::options::positive;
-use crate::view::{Lanes, Mask, Real, Size, quantile};
+use crate::numeric::{Lanes, Mask, Real, quantile};
+use crate::view::Size;
 
 /// Gradients beyond this (height per pixel) count as unknown: beside heights of 1e6 an f32 has no digits left for a
 /// shape.
@@ -118,7 +119,7 @@ impl Anchors<'_> {
 
     /// The same of those of four pixels that are `wanted`.
     #[inline(always)]
-    pub(super) fn four(&self, start: isize, wanted: Mask) -> (Lanes, Lanes) {
+    pub(crate) fn four(&self, start: isize, wanted: Mask) -> (Lanes, Lanes) {
         let zero = Lanes::splat(0.0);
         let weight = match self.weight {
             AnchorWeight::Uniform(weight) => Lanes::splat(weight),

@@ -1,9 +1,10 @@
 //! Where heights are unknown: the mask of one view, its neighbours, the rays of its pixels.
 
+use super::ray_frames::RayFrames;
 use crate::error::{Error, ErrorKind, Result};
-use crate::shape::cosine::CosineSolver;
-use crate::shape::ray_frames::RayFrames;
-use crate::view::{Camera, LANES, Mask, Size};
+use crate::numeric::cosine::CosineSolver;
+use crate::numeric::{LANES, Mask};
+use crate::view::{Camera, Size};
 
 /// Bits of a pixel: inside the mask; the cell of four pixels right of and below it as well; its neighbours inside.
 pub(super) const INSIDE: u8 = 1;

@@ -1,6 +1,6 @@
 //! The noise of a raster by the fourth differences of its rows: what no cubic follows counts as noise.
 
-use super::trim::quantile;
+use super::quantile;
 
 /// Neighbours in a row that a fourth difference takes.
 pub const REACH: usize = 5;

@@ -14,7 +14,7 @@
 use std::f64::consts::PI;
 
 use super::fourier::{Complex, Fourier, fast_length};
-use crate::view::{LANES, Lanes, Real};
+use crate::numeric::{LANES, Lanes, Real};
 
 /// Direct solver for one size of rectangle; owns its plan and its scratch memory.
 pub struct CosineSolver {

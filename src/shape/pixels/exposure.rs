@@ -8,9 +8,10 @@
 
 use nalgebra::{Matrix3, Vector3};
 
+use super::shading::{Linear, Pixels, ShadingProblem, ShadingWeights};
 use crate::light::{Light, Polynomial};
-use crate::shape::shading::{Linear, Pixels, ShadingProblem, ShadingWeights};
-use crate::view::{LANES, Lanes, Normals, Real, quantile};
+use crate::numeric::{LANES, Lanes, Real, quantile};
+use crate::view::Normals;
 
 /// Pixels and directions of the first look: enough for two digits.
 const LOOK_PIXELS: usize = 400;

@@ -1,0 +1,48 @@
+//! Ranks: quantiles, sorting, and thinning of long lists.
+
+use std::collections::BinaryHeap;
+
+/// The value below which the `share` of `values` lies; `values` is reordered and must hold no NaN.
+pub(crate) fn quantile(values: &mut [f32], share: f64) -> f32 {
+    let rank = ((values.len() - 1) as f64 * share).round() as usize;
+    *values.select_nth_unstable_by(rank, f32::total_cmp).1
+}
+
+/// At most `most` of some indices, evenly spread.
+pub(crate) fn evenly_spread<I: Iterator<Item = usize>>(
+    most: usize,
+    indices: impl Fn() -> I,
+) -> impl Iterator<Item = usize> {
+    indices().step_by(indices().count().div_ceil(most).max(1))
+}
+
+/// Largest key first. Sorts numbers, not the things themselves: sorting is a lot of code for each type there is, and all of it
+/// is downloaded.
+pub(crate) fn sort_descending<T: Clone>(list: &mut Vec<T>, key: impl Fn(&T) -> f64) {
+    let order = descending(&list.iter().map(key).collect::<Vec<_>>());
+    *list = order.into_iter().map(|index| list[index].clone()).collect();
+}
+
+fn descending(keys: &[f64]) -> Vec<usize> {
+    // Bits of positive numbers are in their order, those of negative ones in the opposite (IEEE 754). A heap, because the
+    // library's sort is four times as much code; by index where equal, so that the order is the same everywhere.
+    let rank = |value: f64| {
+        let bits = value.to_bits();
+        if value.is_sign_negative() { bits } else { !bits & (u64::MAX >> 1) }
+    };
+    let ranked: BinaryHeap<_> = keys.iter().enumerate().map(|(index, &key)| (rank(key), index)).collect();
+    ranked.into_sorted_vec().into_iter().map(|(_, index)| index).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_order_is_that_of_a_sort() {
+        let keys = [0.5, -2.0, 3.0, 0.0, f64::INFINITY, -0.0, 3.0, -1e-300, f64::NEG_INFINITY, 1e-310, -2.0];
+        let mut order: Vec<usize> = (0..keys.len()).collect();
+        order.sort_by(|&a, &b| keys[b].total_cmp(&keys[a]));
+        assert_eq!(descending(&keys), order);
+    }
+}

@@ -1,0 +1,46 @@
+//! rho(r) = r^2 / (1 + r^2 / s^2), the robust function of Geman and McClure, and the robust standard deviation.
+//!
+//! Everything here is a function of u = (r / s)^2, the square of a residual in units of the scale s. A residual of one
+//! scale has lost three quarters of its weight, and none costs more than s^2.
+//! S. Geman, D. McClure: "Bayesian image analysis: an application to single photon emission tomography", 1985.
+
+use super::Real;
+
+/// sigma = 1.4826 median |x| of normal x: the median absolute deviation as a standard deviation.
+pub(crate) const SIGMA_OF_MEDIAN: f64 = 1.4826;
+
+/// 1 / (1 + u): rho is r^2 times this, and the weight in least squares is the square of this.
+#[inline(always)]
+pub(crate) fn attenuation<T: Real>(u: T) -> T {
+    let one = T::constant(1.0);
+    one / (one + u)
+}
+
+/// rho'(r) / (2 r) = 1 / (1 + u)^2: the weight of a squared residual in iteratively reweighted least squares.
+#[inline(always)]
+pub(crate) fn weight<T: Real>(u: T) -> T {
+    let attenuation = attenuation(u);
+    attenuation * attenuation
+}
+
+/// rho / s^2 = u / (1 + u), between zero and one.
+#[inline(always)]
+pub(crate) fn saturated<T: Real>(u: T) -> T {
+    u / (T::constant(1.0) + u)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_weight_is_the_derivative_of_the_cost() {
+        for u in [0.0, 0.3, 1.0, 9.0, 1e6_f64] {
+            let step = 1e-6 * (1.0 + u);
+            let slope = (saturated(u + step) - saturated((u - step).max(0.0))) / (step + step.min(u));
+            assert!((weight(u) - slope).abs() < 1e-5 * weight(u).max(1e-3), "{u}: {} {slope}", weight(u));
+            assert!((saturated(u) - u * attenuation(u)).abs() < 1e-12);
+        }
+        assert_eq!(weight(1.0), 0.25);
+    }
+}

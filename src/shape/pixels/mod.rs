@@ -1,0 +1,7 @@
+//! One normal for each pixel (Eq. 6 to 9), and the exposure, the one unknown that all pixels share.
+
+mod exposure;
+mod shading;
+
+pub use exposure::{exposure_step, first_exposure};
+pub use shading::{ShadingProblem, ShadingSolver, ShadingWeights, Terminations};
