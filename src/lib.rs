@@ -7,20 +7,25 @@
 //!
 //! | room | what it holds | the paper |
 //! |---|---|---|
-//! | [`view`](ColourView) | what comes in: sizes, masks, cameras, log colours, points, normals | input of Algorithm 1 |
-//! | [`light`](Light) | the image model, the natural lights, the fit of a light | Eq. 2, 3, 5 |
-//! | `shape/shading` ([`ShadingSolver`]) | a normal for each pixel, with a prior; `exposure` its one global unknown | Eq. 6 to 9 |
-//! | `shape/surface` ([`Integrator`]) | heights from normals on a mask; `poisson`, `cosine` its solvers | Harker and O'Leary's step |
-//! | `shape/relief` | the image surface's heights as a whole, for light that a pixel alone cannot read | beyond the paper |
-//! | `shape/refine` ([`Refiner`]) | the depth view's own normals and depth, through `heights` | Eq. 17 to 19 |
+//! | `error`, `text`, `check` ([`Error`]) | errors as values, numbers in messages, checks of single numbers | |
+//! | `numeric` | lanes, robust weights, conjugate gradients, cosine and Fourier transforms, ranks, noise | |
+//! | `view` ([`ColourView`], [`DepthView`]) | what comes in: sizes, masks, cameras, log colours, points, normals | input of Algorithm 1 |
+//! | `light` ([`Light`]) | `harmonics` the image model, `prior` the natural lights, `fit` the light of known normals | Eq. 2, 3, 5 |
+//! | `shape/pixels` ([`ShadingSolver`]) | a normal for each pixel, with a prior; the exposure, which all share | Eq. 6 to 9 |
+//! | `shape/integration` ([`Integrator`]) | the surface from gradients of normals, on a mask | Harker and O'Leary's step |
+//! | `shape/heights` | the surface from shading as a whole, for light that a pixel alone cannot read | beyond the paper |
+//! | `shape/refinement` ([`Refiner`]) | the depth view's own normals and depth, through `heights` | Eq. 17 to 19 |
 //! | `pose/search` ([`Search`]) | where to start when nothing is known: all rotations, translations and scales, coarsely | before Algorithm 1 |
 //! | `pose/photometric` ([`Photometric`]) | the pose straight from the colours, the light projected out | beyond the paper |
 //! | `pose/icp`, `pose/ransac` ([`Icp`], [`ransac`]) | the pose from both surfaces | Eq. 12 to 14 |
 //! | `pose/similarity`, `pose/angles` ([`Similarity`], [`Angles`]) | s, R, t and the angles | Eq. 15, 16, 20 |
-//! | `pose/correspondence` ([`Correspondences`]) | which depth point is which pixel | the 1-pixel rule |
-//! | `estimator` ([`Estimator`]) | one iteration, its merit, its end; `opening` (search, candidates, rivals) before it, parts of it done by a [`Helper`] elsewhere | Eq. 1, Algorithm 1 |
-//! | [`scenes`] | surfaces, lights and a renderer with a known answer | the experiments |
+//! | `pose/correspondence` ([`Correspondences`]) | which depth point is which pixel, and what hides it | the 1-pixel rule |
+//! | `options`, `report` ([`Options`], [`StepReport`]) | what the loop can be told, what it says | |
+//! | `estimator` ([`Estimator`]) | Algorithm 1 stage by stage, its `objective`, its `verdict`; the `initialisation` before it; its [`Worker`]s | Eq. 1, Algorithm 1 |
+//! | [`scenes`] | surfaces, lights and a renderer with a known answer; stands on `view`, `light`, `pose` | the experiments |
 //! | `wasm` | bindings without mathematics, wasm32 only | |
+//!
+//! `docs/method.md` has the objective, unknowns, solver, cost and limits of each stage.
 //!
 //! One frame everywhere: x right, y down, z forward, normals face the camera (n_z < 0), depth along z. Without
 //! intrinsics a view is orthographic and its unit is the pixel; with them it is metric. A pose:
@@ -28,7 +33,7 @@
 //!
 //! Where we read the paper differently: it writes the two prior terms of Eq. 6 without a square and lambda_3 linear; a
 //! least-squares solver squares them, so do we. The norm of Eq. 20 is not named; its tables fit the spectral norm.
-//! Refined normals explain any colour under any pose, so the merit of an iteration asks the measured ones.
+//! Refined normals explain any colour under any pose, so the objective of an iteration asks the measured ones.
 
 /// The README's Rust examples, compiled and run with the documentation's.
 #[cfg(doctest)]
@@ -52,7 +57,7 @@ mod view;
 mod wasm;
 
 pub use error::{Error, ErrorKind, Result};
-pub use estimator::{Estimator, Finding, Helper, RefinementTask, Surface, Task};
+pub use estimator::{Estimator, Finding, RefinementTask, Surface, Task, Worker};
 pub use light::{COEFFICIENTS, CoefficientMatrix, Light, LightFit, LightFitter, LightPrior};
 pub use options::{LightSource, Options, Registration, Shading, Start, Weights};
 pub use pose::{
@@ -61,7 +66,7 @@ pub use pose::{
     PhotometricProblem, PhotometricReport, PhotometricTermination, Progress, RansacOptions, RansacReport, Search,
     Similarity, Uncertainty, ransac,
 };
-pub use report::{Energy, Stage, Status, StepReport};
+pub use report::{Objective, Stage, Status, StepReport};
 pub use shape::{
     AnchorWeight, Anchors, HeightDomain, HeightProblem, HeightReport, HeightSolver, IntegrationOptions,
     IntegrationReport, Integrator, RefinementProblem, RefinementTerms, Refiner, Robust, ShadingProblem, ShadingSolver,

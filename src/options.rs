@@ -55,7 +55,7 @@ pub enum Shading {
     Surface,
 }
 
-/// Weights of the energy terms. Brightness residuals are differences of natural logarithms; normals have no unit.
+/// Weights of the terms of the objective. Brightness residuals are differences of natural logarithms; normals have no unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Weights {
     /// lambda_2 of Eq. 6: how strongly a normal follows the normal of the other view.
@@ -89,7 +89,7 @@ pub struct Options {
     pub registration: Registration,
     /// Shape stage.
     pub shading: Shading,
-    /// Weights of the energy terms.
+    /// Weights of the terms of the objective.
     pub weights: Weights,
     /// The loop converges when the rotation changes by less than this, in degrees.
     pub stop_degrees: f64,

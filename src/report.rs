@@ -5,7 +5,7 @@ use crate::pose::{Similarity, Uncertainty};
 /// Stages of one iteration, in the order in which they run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stage {
-    /// A slice of the opening search, before the first iteration.
+    /// A slice of the search over all poses, before the first iteration.
     Search,
     /// Fit of the light, or of the exposure of a known light (Eq. 2).
     Light,
@@ -81,7 +81,7 @@ impl Status {
 
 /// The terms of Eq. 1, each a robust mean, so that sizes of images do not matter.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Energy {
+pub struct Objective {
     /// Brightness term l_1 of the colour view (Eq. 8).
     pub shading: f64,
     /// Shape prior l_2 of the colour view (Eq. 9).
@@ -92,8 +92,8 @@ pub struct Energy {
     pub refinement: f64,
 }
 
-impl Energy {
-    /// Sum of all terms: the merit by which an iteration is kept or not.
+impl Objective {
+    /// Sum of all terms: the number by which an iteration is accepted or taken back.
     #[must_use]
     pub fn total(&self) -> f64 {
         self.shading + self.prior + self.registration + self.refinement
@@ -111,8 +111,8 @@ pub struct StepReport {
     pub pose: Similarity,
     /// Change of the rotation in the last iteration, degrees.
     pub rotation_change: f64,
-    /// Terms of the objective.
-    pub energy: Energy,
+    /// Terms of the objective over the evaluation points.
+    pub objective: Objective,
     /// Share of the valid depth pixels that have a correspondence.
     pub overlap: f64,
     /// Share of the correspondences within the robust scale.
@@ -137,7 +137,7 @@ impl StepReport {
             stage: Stage::Light,
             pose,
             rotation_change: 0.0,
-            energy: Energy::default(),
+            objective: Objective::default(),
             overlap: 0.0,
             inliers: 0.0,
             residual: 0.0,

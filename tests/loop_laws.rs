@@ -242,7 +242,7 @@ fn reports_and_maps_hold_what_they_promise() {
         let mut estimator = estimator(&sample, Options::paper());
         while estimator.report().status == Status::Running {
             let report = estimator.step().clone();
-            let energy = report.energy;
+            let energy = report.objective;
             let terms = [energy.shading, energy.prior, energy.registration, energy.refinement];
             assert!(
                 terms.iter().all(|term| (0.0..=1.0).contains(term)),

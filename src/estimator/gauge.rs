@@ -1,22 +1,25 @@
-//! Units, starts and gauges: what the data cannot say, decided once and for all.
+//! Units, starts and gauges: what the data cannot say, decided once and for all (`docs/method.md`, section 1).
 //!
 //! - Scale: a metric cloud against a pixel image has s near s0 = focal length / median Z; pixels against pixels and
-//!   any image with known intrinsics have s0 = 1 (handbook section 2).
+//!   any image with known intrinsics have s0 = 1.
 //! - An orthographic image cannot see t_z: the median depth difference of the correspondences is made zero.
 //! - A pinhole image cannot see the size of its surface: s is held and the surface scaled instead.
 
 use nalgebra::{Matrix3, Vector3};
 
+use super::pair::Pair;
+use super::solution::Solution;
 use crate::numeric::quantile;
-use crate::options::{Options, Start};
-use crate::pose::Similarity;
-use crate::view::{Camera, ColourView, DepthView};
+use crate::options::Start;
+use crate::pose::{Correspondences, Similarity};
+use crate::view::{Camera, ColourView, DepthView, Points};
 
 /// Two orthographic masks that overlap less than this (intersection over union) are centred on each other first.
 const LEAST_OVERLAP: f64 = 0.5;
 
 /// s0: what one unit of the depth view measures in the colour view.
-pub fn unit_scale(image: &ColourView, depth: &DepthView) -> f64 {
+pub fn unit_scale(pair: &Pair) -> f64 {
+    let Pair { image, depth, .. } = pair;
     let focal_length = image.camera.focal_length().or_else(|| depth.camera.focal_length());
     match (image.camera, focal_length) {
         (Camera::Orthographic, Some(focal_length)) => focal_length / median_depth(depth),
@@ -27,31 +30,33 @@ pub fn unit_scale(image: &ColourView, depth: &DepthView) -> f64 {
 /// The scale that the registration holds, `None` where it is free.
 ///
 /// Behind a pinhole image a change of scale is a change of the surface's size, so the pose keeps its scale.
-pub fn held_scale(image: &ColourView, options: &Options) -> Option<f64> {
-    options.scale.or_else(|| (!image.camera.is_orthographic()).then_some(1.0))
+pub fn held_scale(pair: &Pair) -> Option<f64> {
+    pair.options.scale.or_else(|| (!pair.image.camera.is_orthographic()).then_some(1.0))
 }
 
-/// Length of an image pixel at the object, in units of the colour view.
-pub fn pixel_length(image: &ColourView, distance: f64) -> f64 {
-    image.camera.focal_length().map_or(1.0, |focal_length| distance / focal_length)
+/// Length of an image pixel at the object as the pose places it, in units of the colour view.
+pub fn pixel_length(image: &ColourView, solution: &Solution) -> f64 {
+    let distance = || solution.pose.apply(solution.depth.points.centroid()).z;
+    image.camera.focal_length().map_or(1.0, |focal_length| distance() / focal_length)
 }
 
 /// The pose of iteration zero.
-pub fn first_pose(image: &ColourView, depth: &DepthView, options: &Options) -> Similarity {
-    let (rotation, scale, translation) = match options.start {
+pub fn first_pose(pair: &Pair) -> Similarity {
+    let start = pair.options.start;
+    let (rotation, scale, translation) = match start {
         Start::Search | Start::Identity => (Matrix3::identity(), None, None),
         Start::Pose { rotation, scale, translation } => (rotation, scale, translation),
     };
-    let scale = held_scale(image, options).or(scale).unwrap_or_else(|| unit_scale(image, depth));
+    let scale = held_scale(pair).or(scale).unwrap_or_else(|| unit_scale(pair));
     let mut pose = Similarity { scale, rotation, translation: translation.unwrap_or_else(Vector3::zeros) };
-    if translation.is_none() && !coincides(image, depth, options.start) {
-        pose.translation = centring(image, depth, &pose);
+    if translation.is_none() && !coincides(&pair.image, &pair.depth, start) {
+        pose.translation = centring(&pair.image, &pair.depth, &pose);
     }
     pose
 }
 
 /// Whether both views share their frame as they stand, so that no translation is the best first one. A view that is
-/// turned by the start is turned about its own centre, which has to be brought back.
+/// rotated by the start is rotated about its own centre, which has to be brought back.
 fn coincides(image: &ColourView, depth: &DepthView, start: Start) -> bool {
     start == Start::Identity
         && match (image.camera, depth.camera) {
@@ -79,7 +84,7 @@ fn mask_overlap(image: &ColourView, depth: &DepthView) -> f64 {
 
 /// The translation that puts the centre of the depth points on the centre of the image's mask.
 fn centring(image: &ColourView, depth: &DepthView, pose: &Similarity) -> Vector3<f64> {
-    let turned = pose.scale * (pose.rotation * depth.points.centroid());
+    let rotated = pose.scale * (pose.rotation * depth.points.centroid());
     let (mut column, mut row, mut count) = (0.0, 0.0, 0.0);
     for index in (0..image.size.len()).filter(|&index| image.mask[index]) {
         let (c, r) = image.size.position(index);
@@ -90,14 +95,47 @@ fn centring(image: &ColourView, depth: &DepthView, pose: &Similarity) -> Vector3
     let pixel = [column / count, row / count];
     let distance = match (image.camera.focal_length(), depth.camera) {
         (None, _) => 0.0,
-        (Some(_), Camera::Pinhole(_)) => turned.z,
+        (Some(_), Camera::Pinhole(_)) => rotated.z,
         // A cloud in pixels of its own stands where its silhouette is as large as the image's.
         (Some(focal_length), Camera::Orthographic) => focal_length * pose.scale * (depth.valid() as f64 / count).sqrt(),
     };
-    Vector3::from(image.camera.point(image.size, pixel, distance)) - turned
+    Vector3::from(image.camera.point(image.size, pixel, distance)) - rotated
 }
 
 fn median_depth(depth: &DepthView) -> f64 {
     let mut values: Vec<f32> = depth.depth().iter().copied().filter(|value| !value.is_nan()).collect();
     f64::from(quantile(&mut values, 0.5))
+}
+
+/// By how much the image surface lies behind the depth points that fall on it, at the median: t_z of an orthographic
+/// image is what makes it zero.
+pub fn depth_difference(solution: &Solution, correspondences: &Correspondences, spare: &mut Vec<f32>) -> Option<f64> {
+    median_gap(solution, correspondences, spare, |image, depth| image - depth)
+}
+
+/// How many times farther away the surface of a pinhole image has to stand, so that it meets the depth points that fall
+/// on it.
+pub fn distance_ratio(solution: &Solution, correspondences: &Correspondences, spare: &mut Vec<f32>) -> Option<f64> {
+    median_gap(solution, correspondences, spare, |image, depth| depth / image).filter(|ratio| *ratio > 0.0)
+}
+
+/// Median over the correspondences of a function of the image surface's depth and the depth point's.
+fn median_gap(
+    solution: &Solution,
+    correspondences: &Correspondences,
+    spare: &mut Vec<f32>,
+    gap: impl Fn(f64, f64) -> f64,
+) -> Option<f64> {
+    let Solution { pose, image, depth, .. } = solution;
+    let (row, shift) = (pose.scale * pose.rotation.row(2), pose.translation.z);
+    let Points { x, y, z } = &depth.points;
+    spare.clear();
+    for (&index, &depth) in correspondences.depth_of_pixel().iter().zip(&image.points.z) {
+        let Ok(index) = usize::try_from(index) else { continue };
+        if !depth.is_nan() {
+            let [x, y, z] = [f64::from(x[index]), f64::from(y[index]), f64::from(z[index])];
+            spare.push(gap(f64::from(depth), row[0] * x + row[1] * y + row[2] * z + shift) as f32);
+        }
+    }
+    (!spare.is_empty()).then(|| f64::from(quantile(spare, 0.5)))
 }

@@ -4,14 +4,14 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::text::Fixed;
 use crate::view::Size;
 
-/// Bytes that one pixel of either view takes, all stages and the opening search together. Measured on pairs at 640x480
+/// Bytes that one pixel of either view takes, all stages and the initialisation together. Measured on pairs at 640x480
 /// (`tests/contract/memory.test.mjs` watches it), the module's own megabyte included: 180 of each view's pixels where the
 /// object covers a third of the frame, 210 where it fills it. A lens with distortion adds up to 52, a noisy depth map,
 /// whose pose its surface settles, up to 35; of smaller views the megabyte is a larger share: 222 at 480x360.
 const BYTES_PER_PIXEL: f64 = 220.0;
-/// Bytes that one pixel of either view takes in a [`Helper`](super::Helper), which has a module of its own. Measured at 640x480: 75
+/// Bytes that one pixel of either view takes in a [`Worker`](super::Worker), which has a module of its own. Measured at 640x480: 75
 /// while it searches; while it refines 84 where the object covers a third of the frame, 98 where it covers most of it.
-const HELPER_BYTES_PER_PIXEL: f64 = 110.0;
+const WORKER_BYTES_PER_PIXEL: f64 = 110.0;
 /// Most bytes of a pair: a quarter of what a wasm module may have, and what a phone's browser grants a page.
 const MOST_BYTES: f64 = 1e9;
 
@@ -31,10 +31,10 @@ pub fn check(image: Size, depth: Size) -> Result<()> {
     Err(Error::new(ErrorKind::Memory, field, message))
 }
 
-/// How many helpers of a pair fit beside its estimator.
-pub fn helpers_afforded(image: Size, depth: Size) -> u32 {
+/// How many workers of a pair fit beside its estimator.
+pub fn workers_afforded(image: Size, depth: Size) -> u32 {
     let pixels = (image.len() + depth.len()) as f64;
-    ((MOST_BYTES / pixels - BYTES_PER_PIXEL) / HELPER_BYTES_PER_PIXEL).max(0.0) as u32
+    ((MOST_BYTES / pixels - BYTES_PER_PIXEL) / WORKER_BYTES_PER_PIXEL).max(0.0) as u32
 }
 
 #[cfg(test)]

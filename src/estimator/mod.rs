@@ -1,69 +1,74 @@
 //! Algorithm 1: one iteration, stage by stage.
 //!
 //! light (Eq. 2) -> shading (Eq. 6 to 9) -> surface -> registration (Eq. 12 to 16) -> refinement (Eq. 17 to 19),
-//! until the rotation settles. After each iteration the merit l + f + g of the new solution is compared with that of
-//! the last one over the same depth points; a worse iteration is taken back, and the next one goes half the way.
+//! until the rotation settles. After each iteration the objective l + f + g (Eq. 1) of the new solution is compared with
+//! that of the last accepted one over the same depth points; a worse iteration is taken back, and the next one takes half
+//! the registration's step.
 //!
-//! Where nothing is known of the pose, [`opening`] comes first: a search in slices, then registrations of its best
-//! candidates by their colours. The joint registration has a cost of its own, so the merit never takes back a pose that
-//! it moves.
+//! Where nothing is known of the pose, the [`initialisation`] comes first: a search in slices, then registrations of its
+//! best candidates by their colours. The registration by colours has an objective of its own, so the loop's never takes
+//! back a pose that it moves.
+//!
+//! Each stage owns its memory and says by its signature what it reads and what it writes ([`stages`]); this file is the
+//! order in which they run. What an end is called is decided in [`verdict`].
 
-mod anywhere;
 mod gauge;
-mod helper;
-mod joint;
+mod initialisation;
+mod local_optima;
+mod measurement;
 mod memory;
-mod merit;
-mod opening;
-mod partner;
+mod objective;
+mod outputs;
+mod pair;
 mod solution;
 mod stages;
-mod task;
-
-use nalgebra::Vector3;
+mod verdict;
+mod workers;
 
 use crate::error::{Error, ErrorKind, Result};
-use crate::light::{Light, LightFitter, LightPrior};
-use crate::numeric::evenly_spread;
-use crate::options::{LightSource, Options, Registration, Shading, Start};
-use crate::pose::{Correspondences, Icp, ImageGrid, Similarity};
-use crate::report::{Energy, Stage, Status, StepReport};
-use crate::shape::{Integrator, Refiner, ReliefSolver, STARTS, ShadingSolver, Workbench};
+use crate::options::{Options, Registration, Start};
+use crate::pose::{Correspondences, ImageGrid, Similarity};
+use crate::report::{Objective, Stage, Status, StepReport};
+use crate::shape::Workbench;
 use crate::text::Fixed;
-use crate::view::{ColourImage, ColourView, DepthMap, DepthView, Normals, Size};
-pub use helper::Helper;
-use joint::{Given, Joint};
-use merit::Candidate;
-use opening::{Look, Opening, Outcome};
-use partner::Outlook;
-pub use partner::RefinementTask;
-use solution::{Kept, Solution};
-pub use task::{Finding, Task};
+use crate::view::{ColourImage, DepthMap};
+use initialisation::{Advance, Initialisation, Outcome};
+use measurement::Residuals;
+use objective::Trial;
+pub use outputs::Surface;
+use pair::Pair;
+use solution::{Accepted, Solution};
+pub use stages::RefinementTask;
+use stages::{Inputs, LightStage, RefinementStage, Registered, RegistrationStage, ShapeStage, exposure_rounds};
+use verdict::{ColourEvidence, Evidence, verdict};
+pub use workers::Worker;
+pub use workers::task::{Finding, Task};
 
-/// Which surface [`Estimator::points`] returns.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Surface {
-    /// The surface found in the image.
-    Image,
-    /// The refined depth view, carried by the pose.
-    Depth,
+/// Where the run stands: what the next step does.
+enum Run {
+    /// Prepares the image's grid for the search, then the search of the depth view in it: a slice each.
+    Preparing(Option<Box<ImageGrid>>),
+    /// A slice of the initialisation.
+    Searching(Box<Initialisation>),
+    /// A stage of an iteration.
+    Iterating(Stage),
+    /// Nothing: the status says how it ended.
+    Ended,
 }
 
-/// Distance of the jury of the merit from the border of the mask, image pixels.
-const JURY_MARGIN: f32 = 1.5;
-/// Rejected iterations in a row after which nothing new is to be expected.
-const MOST_REJECTIONS: u32 = 6;
-/// Without a moving pose the loop has converged when the energy changes by less than this share.
-const SETTLED_ENERGY: f64 = 1e-3;
-/// Iterations after which shapes under a pose that stands have come as far as they will: they flicker by some tenths of
-/// a percent.
-const MOST_STILL: u32 = 8;
-/// Overlap (share of valid depth pixels) below which a pose cannot be trusted.
-const LEAST_OVERLAP: f64 = 0.05;
-/// Fewer correspondences than this determine nothing.
-const FEWEST_PAIRS: usize = 12;
-/// Iterations before convergence is believed: the first has no predecessor.
-const FIRST_VERDICT: u32 = 2;
+/// How the registrations of the iterations have gone.
+struct Course {
+    /// Share of the registration's step that is taken; halves with each rejection.
+    step_fraction: f64,
+    /// Change of rotation that the last registration proposed, degrees, before it was shortened.
+    proposed_degrees: f64,
+    /// Whether it found a pose better than its start.
+    improved: bool,
+    /// Iterations in a row that were taken back or did not improve the pose.
+    rejections: u32,
+    /// Iterations in a row whose registration proposed less than `stop_degrees`.
+    unmoved: u32,
+}
 
 /// The loop with all its memory. One value works on one pair of views.
 ///
@@ -82,50 +87,22 @@ const FIRST_VERDICT: u32 = 2;
 /// # Ok::<(), bimodal_stereo::Error>(())
 /// ```
 pub struct Estimator {
-    image: ColourView,
-    depth: DepthView,
-    options: Options,
-    prior: LightPrior,
-    /// The solution that the stages work on.
-    solution: Solution,
-    /// What was kept of the last iteration that was.
-    kept: Kept,
-    /// Depth points with a correspondence in `kept`.
-    kept_points: Vec<u32>,
+    pair: Pair,
+    run: Run,
+    light: LightStage,
+    shape: ShapeStage,
+    registration: RegistrationStage,
+    refinement: RefinementStage,
     correspondences: Correspondences,
-    fitter: LightFitter,
-    solver: ShadingSolver,
-    integrator: Option<Integrator>,
-    icp: Icp,
-    /// Only where the options ask for it: it holds splines of the image.
-    joint: Option<Joint>,
-    /// The image as the opening search will look at it, until that begins.
-    grid: Option<ImageGrid>,
-    opening: Option<Opening>,
-    /// Points of ICP's pairs: depth view, image.
-    paired_points: [Vec<Vector3<f64>>; 2],
-    refiner: Refiner,
-    outlook: Outlook,
-    /// Only where the image surface is solved as a whole.
-    relief: Option<ReliefSolver>,
-    bench: Workbench,
-    /// Normals of the depth view at the image pixels, colour view's frame.
-    carried_normals: Normals,
-    residual: Vec<f32>,
-    /// Share of the registration's step that is taken; halves with each rejection.
-    trust: f64,
-    rejections: u32,
-    /// Iterations in a row whose registration moved nothing.
-    still: u32,
-    /// Exposure of the first look at the colours.
-    first_exposure: f64,
-    /// Median log residual that the fitted light leaves; zero for a known light.
-    unexplained: f64,
-    /// Whether the registration proposed nothing better than the pose it started from.
-    refused: bool,
-    /// The registration's own change of rotation, degrees, before it was shortened.
-    proposed_change: f64,
-    next: Stage,
+    residuals: Residuals,
+    /// Memory that the stages take turns at.
+    scratch: Workbench,
+    /// What the stages of this iteration work on.
+    solution: Solution,
+    /// The last iteration that was accepted, and the depth points over which the next one is compared with it.
+    accepted: Accepted,
+    evaluated: Vec<u32>,
+    course: Course,
     report: StepReport,
 }
 
@@ -135,62 +112,49 @@ impl Estimator {
     /// # Errors
     /// Any [`Error`] of the views or the options, naming the field.
     pub fn new(image: ColourImage, depth: &DepthMap, options: Options) -> Result<Self> {
-        let (image, depth) = views(image, depth, &options)?;
-        Self::from_views(image, depth, options)
+        Self::of(Pair::new(image, depth, options)?)
     }
 
-    fn from_views(image: ColourView, depth: DepthView, options: Options) -> Result<Self> {
-        let prior = LightPrior::natural();
-        let pose = gauge::first_pose(&image, &depth, &options);
-        let light = match options.light {
-            LightSource::Known(light) => light,
-            LightSource::Estimate => prior.mean(),
-        };
+    fn of(pair: Pair) -> Result<Self> {
+        let pose = gauge::first_pose(&pair);
+        let light = pair.known_light().copied().unwrap_or_else(|| pair.prior.mean());
         // What takes much memory only while it is made comes first.
-        let registers_colours = options.start == Start::Search || options.registration == Registration::Joint;
-        let joint = registers_colours.then(|| Joint::new(&anywhere::given(&image, &depth, &prior, &options)));
-        let refiner = Refiner::new(&depth, &image)?;
-        let relief = match options.shading {
-            Shading::Surface => Some(ReliefSolver::new(&image)?),
-            Shading::Pixel => None,
-        };
-        let (pixels, points) = (image.size.len(), depth.size.len());
-        let domains = [refiner.domain(), relief.as_ref().map_or(refiner.domain(), ReliefSolver::domain)];
+        let registration = RegistrationStage::new(&pair);
+        let refinement = RefinementStage::new(&pair)?;
+        let shape = ShapeStage::new(&pair)?;
+        let [pixels, points] = pair.lengths();
+        let domains = [refinement.domain(), shape.domain().unwrap_or(refinement.domain())];
+        let scratch = Workbench::new(pixels.max(points), &domains);
+        let solution = Solution::new(&pair, pose, light);
         let mut estimator = Self {
-            bench: Workbench::new(pixels.max(points), &domains),
-            solution: Solution::new(&image, &depth, pose, light),
-            kept: Kept::new(pose, light),
-            kept_points: Vec::with_capacity(merit::MOST_JURORS),
-            correspondences: Correspondences::new(&image, &depth),
-            fitter: LightFitter::default(),
-            solver: ShadingSolver::new(),
-            integrator: None,
-            icp: Icp::new(),
-            joint,
-            grid: None,
-            opening: None,
-            paired_points: [Vec::new(), Vec::new()],
-            refiner,
-            outlook: Outlook::new(points),
-            relief,
-            carried_normals: Normals::missing(pixels),
-            residual: vec![f32::NAN; pixels],
-            trust: 1.0,
-            rejections: 0,
-            still: 0,
-            first_exposure: 0.0,
-            unexplained: 0.0,
-            refused: false,
-            proposed_change: 0.0,
-            next: if options.start == Start::Search { Stage::Search } else { Stage::Light },
+            run: if pair.options.start == Start::Search { Run::Preparing(None) } else { Run::Iterating(Stage::Light) },
+            light: LightStage::new(pixels),
+            shape,
+            registration,
+            refinement,
+            correspondences: Correspondences::new(&pair.image, &pair.depth),
+            residuals: Residuals::new(pixels),
+            scratch,
+            accepted: Accepted::new(&solution),
+            solution,
+            evaluated: Vec::with_capacity(objective::MOST_POINTS),
+            course: Course { step_fraction: 1.0, proposed_degrees: 0.0, improved: true, rejections: 0, unmoved: 0 },
             report: StepReport::at(pose),
-            image,
-            depth,
-            options,
-            prior,
+            pair,
         };
         estimator.prepare()?;
         Ok(estimator)
+    }
+
+    /// Everything that iteration zero needs: holes guessed, points placed, correspondences and light by the first pose.
+    fn prepare(&mut self) -> Result<()> {
+        self.refinement.fill_holes(&self.pair, &mut self.scratch, &mut self.solution.depth)?;
+        self.solution.light.exposure = self.light.find_first_exposure(&self.pair);
+        self.find_correspondences();
+        self.fit_light()?;
+        self.accepted.accept(&self.solution);
+        self.measure();
+        Ok(())
     }
 
     /// Starts again from iteration zero with other options on the same views.
@@ -199,19 +163,19 @@ impl Estimator {
     /// [`ErrorKind::Range`] for a bad option, [`ErrorKind::Unsupported`] where `trim` differs: it belongs to the views.
     pub fn reset(&mut self, options: Options) -> Result<()> {
         options.validate()?;
-        if options.trim != self.options.trim {
+        if options.trim != self.pair.options.trim {
             return Err(Error::new(
                 ErrorKind::Unsupported,
                 "options.trim",
                 "is applied when the views are read; make a new estimator to change it",
             ));
         }
-        *self = Self::from_views(self.image.clone(), self.depth.clone(), options)?;
+        *self = Self::of(self.pair.with(options))?;
         Ok(())
     }
 
-    /// One iteration, the rest of one that was begun by [`step_stage`](Self::step_stage), or a slice of the opening
-    /// search. Changes nothing once the status is no longer [`Status::Running`].
+    /// One iteration, the rest of one that was begun by [`step_stage`](Self::step_stage), or a slice of the
+    /// initialisation. Changes nothing once the status is no longer [`Status::Running`].
     pub fn step(&mut self) -> &StepReport {
         if self.is_searching() {
             return self.step_stage();
@@ -223,283 +187,340 @@ impl Estimator {
         &self.report
     }
 
-    /// Whether the next step is a slice of the opening search.
+    /// Whether the next step is a slice of the initialisation.
     #[must_use]
-    pub fn is_searching(&self) -> bool {
-        self.next == Stage::Search
+    pub const fn is_searching(&self) -> bool {
+        matches!(self.run, Run::Preparing(_) | Run::Searching(_))
     }
 
-    /// One stage of an iteration, or a slice of the opening search.
+    /// One stage of an iteration, or a slice of the initialisation.
     pub fn step_stage(&mut self) -> &StepReport {
-        if self.report.status != Status::Running {
-            return &self.report;
+        let outcome = match self.run {
+            Run::Preparing(_) => self.prepare_search(),
+            Run::Searching(_) => self.search(),
+            Run::Iterating(stage) => self.iterate(stage),
+            Run::Ended => Ok(()),
+        };
+        if let Err(error) = outcome {
+            self.end(Status::Lost, Some(error.to_string()));
         }
-        let stage = self.next;
+        &self.report
+    }
+
+    /// One stage of Algorithm 1, and what follows the last of an iteration.
+    fn iterate(&mut self, stage: Stage) -> Result<()> {
         self.report.stage = stage;
-        let outcome = match stage {
-            Stage::Search => self.search(),
-            Stage::Light => self.fit_light(),
-            Stage::Shading => self.shade(),
-            Stage::Surface => self.raise_surface(),
-            Stage::Registration => self.register(),
+        self.run = Run::Iterating(stage.next());
+        match stage {
+            Stage::Search => {}
+            Stage::Light => self.fit_light()?,
+            Stage::Shading => self.find_normals(),
+            Stage::Surface => self.find_surface()?,
+            Stage::Registration => self.register()?,
             Stage::Refinement => {
                 self.refine();
                 self.finish_iteration();
+            }
+        }
+        Ok(())
+    }
+
+    /// What the search needs of one of the views.
+    fn prepare_search(&mut self) -> Result<()> {
+        self.report.stage = Stage::Search;
+        self.report.message = Some("0 %: preparing the search".into());
+        let Run::Preparing(grid) = std::mem::replace(&mut self.run, Run::Preparing(None)) else { return Ok(()) };
+        let pair = &self.pair;
+        self.run = match (grid, self.registration.colours()) {
+            (None, _) => Run::Preparing(Some(Box::new(ImageGrid::new(&pair.image)?))),
+            (Some(grid), Some(colours)) => {
+                let search = initialisation::search(pair, *grid, colours)?;
+                Run::Searching(Box::new(Initialisation::new(pair, search)))
+            }
+            (Some(_), None) => return Err(nowhere("the search has no registration")),
+        };
+        Ok(())
+    }
+
+    /// A slice of the initialisation.
+    fn search(&mut self) -> Result<()> {
+        let (Run::Searching(initialisation), Some(colours)) = (&mut self.run, self.registration.colours()) else {
+            return Ok(());
+        };
+        match initialisation.advance(&self.pair, colours) {
+            Advance::Ongoing(share, what) => {
+                self.report.message = Some(format!("{} %: {what}", Fixed(100.0 * share, 0)));
                 Ok(())
             }
-        };
-        if let Err(error) = outcome {
-            self.end(Status::Lost, error.to_string());
-        }
-        let searching = stage == Stage::Search && (self.grid.is_some() || self.opening.is_some());
-        self.next = if searching { stage } else { stage.next() };
-        &self.report
-    }
-
-    /// What the last stage left.
-    #[must_use]
-    pub fn report(&self) -> &StepReport {
-        &self.report
-    }
-
-    /// Normals of the image surface, colour view's frame, NaN off the mask.
-    #[must_use]
-    pub fn image_normals(&self) -> &Normals {
-        &self.solution.image_normals
-    }
-
-    /// Depth of the image surface, NaN off the mask; pixels with median zero for an orthographic image.
-    #[must_use]
-    pub fn image_depth(&self) -> &[f32] {
-        &self.solution.image_points.z
-    }
-
-    /// Refined normals of the depth view, its own frame.
-    #[must_use]
-    pub fn depth_normals(&self) -> &Normals {
-        &self.solution.depth_normals
-    }
-
-    /// Refined depth of the depth view, holes filled.
-    #[must_use]
-    pub fn refined_depth(&self) -> &[f32] {
-        &self.solution.depth_points.z
-    }
-
-    /// For each image pixel the index of its depth pixel, or -1.
-    #[must_use]
-    pub fn correspondence(&self) -> &[i32] {
-        self.correspondences.depth_of_pixel()
-    }
-
-    /// |log S - predicted| of each image pixel, NaN off the mask: predicted from the measured normal of the depth view
-    /// where it reaches, from the image's own normal elsewhere.
-    #[must_use]
-    pub fn residual(&self) -> &[f32] {
-        &self.residual
-    }
-
-    /// The light, known or estimated. The exposure of a known light is [`exposure`](Self::exposure).
-    #[must_use]
-    pub fn light(&self) -> Light {
-        self.solution.light
-    }
-
-    /// Offset of log S on top of [`light`](Self::light).
-    #[must_use]
-    pub fn exposure(&self) -> f64 {
-        self.solution.exposure
-    }
-
-    /// The checked colour view.
-    #[must_use]
-    pub fn image(&self) -> &ColourView {
-        &self.image
-    }
-
-    /// The checked depth view.
-    #[must_use]
-    pub fn depth(&self) -> &DepthView {
-        &self.depth
-    }
-
-    /// Points of a surface in the colour view's frame: x, y, z of each valid pixel in turn.
-    #[must_use]
-    pub fn points(&self, surface: Surface) -> Vec<f32> {
-        match surface {
-            Surface::Image => {
-                let points = &self.solution.image_points;
-                (0..points.len()).filter(|&i| points.is_valid(i)).flat_map(|i| points.get(i)).collect()
-            }
-            Surface::Depth => {
-                let valid = (0..self.depth.size.len()).filter(|&i| self.solution.depth_points.is_valid(i));
-                valid.flat_map(|i| <[f64; 3]>::from(self.solution.carried(i)).map(|value| value as f32)).collect()
+            Advance::Done(outcome) => {
+                self.run = Run::Iterating(Stage::Light);
+                let outcome = outcome.ok_or_else(|| {
+                    nowhere(match gauge::held_scale(&self.pair) {
+                        Some(_) => "no pose explains the colours by the depth map's normals",
+                        None => {
+                            "no pose explains the colours by the depth map's normals at 0.7 to 1.4 times the scale \
+                             that the units give; `scale` or `start.scale` takes another one"
+                        }
+                    })
+                })?;
+                self.start_from(outcome);
+                Ok(())
             }
         }
     }
 
-    /// The working solution under `light`, its own.
-    fn candidate<'a>(&'a self, light: &'a Light) -> Candidate<'a> {
-        let solution = &self.solution;
-        Candidate {
-            pose: &solution.pose,
-            light,
-            normals: &solution.image_normals,
-            points: &solution.image_points,
-            depth_points: &solution.depth_points,
-            pixel_length: self.pixel_length(),
+    /// Starts the loop from what the initialisation found.
+    fn start_from(&mut self, Outcome { best, rivals }: Outcome) {
+        let registered = self.registration.adopt(&self.pair, *best, &self.solution.pose);
+        self.adopt(registered);
+        self.report.message = Some(match rivals.len() {
+            0 => "100 %: one pose explains the colours best".into(),
+            count => format!("100 %: {count} other poses explain the colours as well"),
+        });
+        self.report.rivals = rivals;
+        self.report.pose = self.solution.pose;
+        self.find_correspondences();
+        self.accepted.accept(&self.solution);
+        self.measure();
+    }
+
+    /// Light (Eq. 2). What the registration by colours has found together with the pose comes before the fit.
+    fn fit_light(&mut self) -> Result<()> {
+        let fitted = self.light.fit(&self.pair, &self.solution, &self.correspondences)?;
+        if let Some(light) = fitted {
+            self.solution.light.light = light;
+        }
+        if let Some(found) = self.registration.found_by_colours() {
+            (self.solution.light.light, self.solution.light.exposure) = (found.light, found.exposure);
+        }
+        Ok(())
+    }
+
+    /// Normals of the image (Eq. 6 to 9), and the exposure of a known light unless the registration has found it.
+    fn find_normals(&mut self) {
+        let exposure_is_free = self.pair.known_light().is_some() && self.registration.found_by_colours().is_none();
+        let inputs = Inputs { pair: &self.pair, fitted: &self.light, correspondences: &self.correspondences };
+        let Solution { light, image, .. } = &mut self.solution;
+        for _ in 0..exposure_rounds(&self.pair, self.report.iteration) {
+            self.shape.find_normals(inputs, exposure_is_free, light, &mut image.normals);
         }
     }
 
-    /// Compares the new solution with the kept one, keeps the better, and decides whether the loop goes on.
+    /// Heights of the image, then the gauges that neither view can tell: t_z of an orthographic image, the distance of a
+    /// pinhole image's surface.
+    fn find_surface(&mut self) -> Result<()> {
+        let light = self.solution.light.total();
+        let inputs = Inputs { pair: &self.pair, fitted: &self.light, correspondences: &self.correspondences };
+        self.shape.find_surface(inputs, &light, &mut self.scratch, &mut self.solution.image)?;
+        let is_orthographic = self.pair.image.camera.is_orthographic();
+        if is_orthographic {
+            self.solution.image.centre_depth(&mut self.scratch.spare);
+        } else if let Some(ratio) =
+            gauge::distance_ratio(&self.solution, &self.correspondences, &mut self.scratch.spare)
+        {
+            self.solution.image.scale_depth(ratio);
+        }
+        self.solution.image.place_image_points(&self.pair.image);
+        self.settle_depth();
+        Ok(())
+    }
+
+    /// Pose (Eq. 12 to 16), then the correspondences that it gives.
+    fn register(&mut self) -> Result<()> {
+        if gauge::pixel_length(&self.pair.image, &self.solution) <= 0.0 {
+            return Err(Error::new(ErrorKind::Degenerate, "pose", "puts the object behind the colour camera"));
+        }
+        let start = self.solution.pose;
+        let inputs = Inputs { pair: &self.pair, fitted: &self.light, correspondences: &self.correspondences };
+        let is_first = self.report.iteration == 0;
+        (self.course.proposed_degrees, self.course.improved) = (0.0, true);
+        if let Some(registered) = self.registration.register(inputs, &self.solution, is_first)? {
+            self.course.improved = registered.improved;
+            self.adopt(registered);
+            self.course.proposed_degrees = start.degrees_to(&self.solution.pose);
+            if self.registration.kind(&self.pair) == Registration::Icp {
+                self.shorten_step(&start);
+            }
+        }
+        self.settle_depth();
+        self.find_correspondences();
+        Ok(())
+    }
+
+    /// Takes over a pose, its uncertainty, and the light where it was found with the pose.
+    fn adopt(&mut self, found: Registered) {
+        self.solution.pose = found.pose;
+        self.solution.light.light = found.light.unwrap_or(self.solution.light.light);
+        self.solution.light.exposure = found.exposure.unwrap_or(self.solution.light.exposure);
+        self.report.uncertainty = Some(found.uncertainty);
+    }
+
+    /// Of a match of surfaces only a fraction is taken after rejections. Behind a pinhole image the pose keeps its scale
+    /// and the image's surface takes the rest.
+    fn shorten_step(&mut self, start: &Similarity) {
+        let Solution { pose, image, depth, .. } = &mut self.solution;
+        if self.course.step_fraction < 1.0 {
+            *pose = start.towards(pose, self.course.step_fraction, depth.points.centroid());
+        }
+        let Some(held) = gauge::held_scale(&self.pair) else { return };
+        let factor = held / pose.scale;
+        if !self.pair.image.camera.is_orthographic() && factor != 1.0 {
+            pose.scale = held;
+            pose.translation *= factor;
+            image.scale_depth(factor);
+            image.place_image_points(&self.pair.image);
+        }
+    }
+
+    /// Normals and depth of the depth view (Eq. 17 to 19).
+    fn refine(&mut self) {
+        let inputs = Inputs { pair: &self.pair, fitted: &self.light, correspondences: &self.correspondences };
+        self.refinement.refine(inputs, &self.accepted, &mut self.scratch, &mut self.solution);
+    }
+
+    /// Orthographic gauge: the median depth difference of the overlap is zero.
+    fn settle_depth(&mut self) {
+        if self.pair.image.camera.is_orthographic()
+            && let Some(difference) =
+                gauge::depth_difference(&self.solution, &self.correspondences, &mut self.scratch.spare)
+        {
+            self.solution.pose.translation.z += difference;
+        }
+    }
+
+    /// Projects the depth points, hides what is occluded, and drops what is too far from the image surface.
+    fn find_correspondences(&mut self) {
+        let problem = stages::correspondence_problem(&self.pair, &self.solution);
+        self.correspondences.update(&problem);
+    }
+
+    /// Compares the new solution with the accepted one, keeps the better, and decides whether the loop goes on.
     fn finish_iteration(&mut self) {
         self.report.iteration += 1;
-        let first = self.report.iteration == 1;
-        if first {
-            self.list_points();
+        let is_first = self.report.iteration == 1;
+        if is_first {
+            self.choose_evaluation_points();
         }
-        let light = self.solution.exposed_light();
-        let energy = self.energy(&light);
-        // Since it was measured neither the kept solution nor its points have changed.
-        let before = if first { None } else { Some(self.report.energy) };
-        let change = self.kept.pose.degrees_to(&self.solution.pose);
-        // The joint registration has a cost of its own: a pose that it moves is not for the merit to take back.
-        let judged = self.registration() != Registration::Joint || change < self.options.stop_degrees;
-        let rejected = judged && before.is_some_and(|before| merit::worsens(before.total(), energy.total(), change));
-        self.report.message = None;
-        if let (true, Some(before)) = (rejected, before) {
-            self.reject(before, energy);
-        } else {
-            self.report.rotation_change = change;
-            self.rejections = if self.refused { self.rejections + 1 } else { 0 };
-            if self.refused {
-                self.report.message = Some("the registration found no pose better than the present one".into());
-            }
-            self.keep();
-            // Over its own points.
-            self.report.energy = self.energy(&light);
+        let before = (!is_first).then_some(self.report.objective);
+        let after = self.objective();
+        let change = self.accepted.pose.degrees_to(&self.solution.pose);
+        // The registration by colours has an objective of its own: a pose that it moves is not for this one to take back.
+        let is_comparable =
+            self.registration.kind(&self.pair) != Registration::Joint || change < self.pair.options.stop_degrees;
+        let worse_than =
+            before.filter(|before| is_comparable && objective::worsens(before.total(), after.total(), change));
+        match worse_than {
+            Some(before) => self.take_back(before, after),
+            None => self.accept(change),
         }
-        self.report.pose = self.kept.pose;
+        self.report.pose = self.accepted.pose;
         self.measure();
-        self.decide(rejected, before);
-        self.trust = if rejected { 0.5 * self.trust } else { (2.0 * self.trust).min(1.0) };
+        self.conclude(worse_than.is_some(), before);
+        let Course { step_fraction, .. } = &mut self.course;
+        *step_fraction = if worse_than.is_some() { 0.5 * *step_fraction } else { (2.0 * *step_fraction).min(1.0) };
         self.look_ahead();
     }
 
-    /// Energy of the working solution over the points that were kept.
-    fn energy(&self, light: &Light) -> Energy {
-        merit::energy(&self.image, &self.depth, &self.kept_points, self.candidate(light))
+    /// Objective of the working solution over the evaluation points.
+    fn objective(&self) -> Objective {
+        let light = self.solution.light.total();
+        objective::evaluate(&self.pair, &self.evaluated, Trial::of(&self.pair, &self.solution, &light))
     }
 
-    /// Takes the iteration back.
-    fn reject(&mut self, before: Energy, after: Energy) {
-        self.rejections += 1;
-        self.solution.restore(&self.kept, &self.image, &self.depth);
-        self.outlook.change();
-        self.update_correspondences();
+    /// Goes back to the accepted solution.
+    fn take_back(&mut self, before: Objective, after: Objective) {
+        self.course.rejections += 1;
+        self.solution.restore(&self.accepted, &self.pair);
+        self.refinement.change_shape();
+        self.find_correspondences();
         self.report.rotation_change = 0.0;
         self.report.message = Some(format!(
-            "iteration taken back: the merit would have risen from {} to {}; the next one goes half as far",
+            "iteration taken back: the objective would have risen from {} to {}; the next one goes half as far",
             Fixed(before.total(), 4),
             Fixed(after.total(), 4)
         ));
     }
 
     /// Makes the new solution the one to beat.
-    fn keep(&mut self) {
-        self.kept.keep(&self.solution);
-        self.list_points();
+    fn accept(&mut self, rotation_change: f64) {
+        self.report.rotation_change = rotation_change;
+        self.course.rejections = if self.course.improved { 0 } else { self.course.rejections + 1 };
+        let stayed = || "the registration found no pose better than the present one".into();
+        self.report.message = (!self.course.improved).then(stayed);
+        self.accepted.accept(&self.solution);
+        self.choose_evaluation_points();
+        // Over its own points.
+        self.report.objective = self.objective();
     }
 
-    /// The jury of the next comparison, from the present correspondences.
-    fn list_points(&mut self) {
-        let mut points = std::mem::take(&mut self.kept_points);
-        points.clear();
-        points.extend(self.jury());
-        self.kept_points = points;
+    /// The evaluation points of the next comparison, from the present correspondences.
+    fn choose_evaluation_points(&mut self) {
+        self.evaluated.clear();
+        self.evaluated.extend(objective::evaluation_points(&self.pair, &self.correspondences));
     }
 
-    /// Depth points that have a correspondence and a measured normal. Those near the border of the mask stay out: they
-    /// would enter and leave it with every small step.
-    fn jury(&self) -> impl Iterator<Item = u32> {
-        let (image, depth) = (&self.image, &self.depth);
-        let [columns, rows] = self.correspondences.position();
-        let inside = move |index: usize| {
-            [[-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0], [1.0, 1.0]].iter().all(|[right, down]| {
-                let column = columns[index] + JURY_MARGIN * right;
-                let row = rows[index] + JURY_MARGIN * down;
-                !image.size.bilinear(&image.log[0], column, row).is_nan()
-            })
-        };
-        let jury = evenly_spread(merit::MOST_JURORS, || self.correspondences.visible_points());
-        jury.filter(move |&index| depth.normals.is_valid(index) && inside(index)).map(|index| index as u32)
+    /// Overlap, inliers and residuals of the present correspondences.
+    fn measure(&mut self) {
+        let Self { pair, solution, correspondences, scratch, .. } = self;
+        let residual = self.residuals.measure(pair, solution, correspondences, &mut scratch.spare);
+        self.report.residual = residual.unwrap_or(self.report.residual);
+        self.report.overlap = correspondences.count() as f64 / pair.depth.valid().max(1) as f64;
+        self.report.inliers = correspondences.inliers();
     }
 
-    fn decide(&mut self, rejected: bool, before: Option<Energy>) {
-        self.still = if self.proposed_change < self.options.stop_degrees { self.still + 1 } else { 0 };
-        let registration = self.registration();
-        let first_verdict = match self.options.shading {
-            Shading::Pixel => FIRST_VERDICT,
-            Shading::Surface => STARTS,
-        };
-        let steady = before.is_some_and(|before| {
-            let change = (self.report.energy.total() - before.total()).abs();
-            change < SETTLED_ENERGY * before.total().max(f64::MIN_POSITIVE)
+    /// Ends the loop where the evidence says so.
+    fn conclude(&mut self, is_rejected: bool, before: Option<Objective>) {
+        let is_unmoved = self.course.proposed_degrees < self.pair.options.stop_degrees;
+        self.course.unmoved = if is_unmoved { self.course.unmoved + 1 } else { 0 };
+        let Self { pair, report, course, .. } = &*self;
+        let nearest = report.rivals.iter().map(|rival| rival.degrees_to(&report.pose)).fold(f64::INFINITY, f64::min);
+        let ended = verdict(&Evidence {
+            iteration: report.iteration,
+            max_iterations: pair.options.max_iterations,
+            registration: self.registration.kind(pair),
+            shading: pair.options.shading,
+            correspondences: self.correspondences.count(),
+            overlap: report.overlap,
+            objective_before: before.map(|before| before.total()),
+            objective: report.objective.total(),
+            is_rejected,
+            rejections: course.rejections,
+            unmoved: course.unmoved,
+            is_whole_step: course.step_fraction >= 1.0 && course.improved,
+            colours: self.registration.found_by_colours().map(|found| ColourEvidence {
+                sigma: found.uncertainty.rotation_degrees.into_iter().fold(0.0, f64::max),
+                weakest: &found.uncertainty.weakest,
+                unexplained: found.noise / pair.image.log_spread(),
+                inliers: found.inliers,
+            }),
+            rivals: report.rivals.len(),
+            nearest_rival: nearest,
         });
-        let settled = match registration {
-            _ if before.is_none() => false,
-            Registration::Fixed => steady && !rejected,
-            // Shapes that get no better have settled, too.
-            Registration::Joint => self.still > 0 && (steady || rejected || self.still >= MOST_STILL),
-            Registration::Icp => {
-                self.proposed_change < self.options.stop_degrees && self.trust >= 1.0 && !self.refused && !rejected
-            }
-        };
-        if self.correspondences.count() < FEWEST_PAIRS || self.report.overlap < LEAST_OVERLAP {
-            let share = Fixed(100.0 * self.report.overlap, 1);
-            self.end(Status::Lost, format!("only {share} % of the depth pixels have a counterpart in the image"));
-        } else if settled && self.report.iteration >= first_verdict {
-            self.conclude();
-        } else if rejected && registration == Registration::Fixed {
-            // With the pose held the next iteration would be this one again.
-            self.end(Status::MaxIterations, "another iteration would worsen the shapes under this pose".into());
-        } else if self.rejections >= MOST_REJECTIONS {
-            let message =
-                format!("{MOST_REJECTIONS} iterations in a row brought no better pose: none lowers the merit any more");
-            self.end(Status::MaxIterations, message);
-        } else if self.report.iteration >= self.options.max_iterations {
-            self.end(
-                Status::MaxIterations,
-                format!("the cap of {} iterations was reached", self.options.max_iterations),
-            );
-        }
-        if self.report.status == Status::MaxIterations {
-            self.doubt();
+        if let Some((status, message)) = ended {
+            self.end(status, message);
         }
     }
 
-    /// The loop has settled: converged, unless there is reason to doubt.
-    fn conclude(&mut self) {
-        self.report.status = Status::Converged;
-        // What became of the last iteration is no news once the answer stands.
-        self.report.message = None;
-        self.doubt();
-    }
-
-    fn end(&mut self, status: Status, message: String) {
+    fn end(&mut self, status: Status, message: Option<String>) {
+        self.run = Run::Ended;
         self.report.status = status;
-        self.report.message = Some(message);
+        self.report.message = message;
     }
 
-    /// The pose of the working solution, for stages that look at it.
-    fn pose(&self) -> Similarity {
-        self.solution.pose
+    /// What the next refinement looks at, where that is known: then a worker may make it while the other stages run.
+    fn look_ahead(&mut self) {
+        let is_known =
+            self.report.status == Status::Running && self.registration.keeps(&self.pair, &self.solution.pose);
+        if is_known {
+            let inputs = Inputs { pair: &self.pair, fitted: &self.light, correspondences: &self.correspondences };
+            self.refinement.look_ahead(inputs, &self.solution);
+        } else {
+            self.refinement.forget();
+        }
     }
 }
 
-/// Both views, checked, with the options and the memory that they ask for.
-fn views(image: ColourImage, depth: &DepthMap, options: &Options) -> Result<(ColourView, DepthView)> {
-    options.validate()?;
-    memory::check(Size::new("image", image.width, image.height)?, Size::new("depth", depth.width, depth.height)?)?;
-    Ok((ColourView::new(image)?, DepthView::new(depth, options.trim)?))
+/// There is no pose to start from.
+fn nowhere(message: &'static str) -> Error {
+    Error::new(ErrorKind::Degenerate, "start", message)
 }

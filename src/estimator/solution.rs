@@ -1,119 +1,97 @@
-//! What one iteration produces and the next one may have to give back.
+//! What one iteration finds, and what is kept of the last one that was accepted.
 
-use nalgebra::Vector3;
-
+use super::pair::Pair;
 use crate::light::Light;
+use crate::numeric::quantile;
 use crate::pose::Similarity;
 use crate::view::{Camera, ColourView, DepthView, Normals, Points, Size};
 
 /// Pose, light and both shapes.
 #[derive(Clone, Debug)]
 pub struct Solution {
-    /// Pose.
     pub pose: Similarity,
-    /// Light without exposure.
+    pub light: ExposedLight,
+    /// The surface of the image, in the colour view's frame and unit.
+    pub image: Shape,
+    /// The refined surface of the depth view, in its own frame and unit.
+    pub depth: Shape,
+}
+
+/// A light, and the offset of log S on top of it.
+#[derive(Clone, Copy, Debug)]
+pub struct ExposedLight {
     pub light: Light,
-    /// Offset of log S on top of `light`.
     pub exposure: f64,
-    /// Normals of the image surface, colour view's frame.
-    pub image_normals: Normals,
-    /// Points of the image surface; their z is its depth in the colour view's unit.
-    pub image_points: Points,
-    /// Refined normals, depth view's frame.
-    pub depth_normals: Normals,
-    /// Refined points, depth view's frame; their z is the refined depth.
-    pub depth_points: Points,
+}
+
+impl ExposedLight {
+    /// The light that predicts the image: exposure included.
+    pub fn total(&self) -> Light {
+        self.light.exposed(self.exposure)
+    }
+}
+
+/// Normals and points of the surface that one view sees, pixel by pixel; the points' z is the depth.
+#[derive(Clone, Debug)]
+pub struct Shape {
+    pub normals: Normals,
+    pub points: Points,
 }
 
 impl Solution {
     /// Nothing known but the pose and the measured depth.
-    pub fn new(image: &ColourView, depth: &DepthView, pose: Similarity, light: Light) -> Self {
+    pub fn new(pair: &Pair, pose: Similarity, light: Light) -> Self {
+        let Pair { image, depth, .. } = pair;
+        let pixels = image.size.len();
         Self {
             pose,
-            light,
-            exposure: 0.0,
-            image_normals: Normals::missing(image.size.len()),
-            image_points: Points::missing(image.size.len()),
-            depth_normals: depth.normals.clone(),
-            depth_points: depth.points.clone(),
+            light: ExposedLight { light, exposure: 0.0 },
+            image: Shape { normals: Normals::missing(pixels), points: Points::missing(pixels) },
+            depth: Shape { normals: depth.normals.clone(), points: depth.points.clone() },
         }
     }
 
-    /// The light that predicts the image: exposure included.
-    pub fn exposed_light(&self) -> Light {
-        self.light.exposed(self.exposure)
+    /// Goes back to what was accepted, without allocating.
+    pub fn restore(&mut self, accepted: &Accepted, pair: &Pair) {
+        (self.pose, self.light) = (accepted.pose, accepted.light);
+        self.image.normals.copy_from(&accepted.image_normals);
+        self.image.points.z.clone_from(&accepted.image_depth);
+        self.image.place_image_points(&pair.image);
+        self.depth.normals.copy_from(&accepted.depth_normals);
+        self.depth.points.z.clone_from(&accepted.refined_depth);
+        self.depth.place_depth_points(&pair.depth);
+    }
+}
+
+impl Shape {
+    /// Points of the image surface at their depths.
+    pub fn place_image_points(&mut self, view: &ColourView) {
+        place(view.size, &view.camera, &mut self.points);
     }
 
-    /// Goes back to what was kept, without allocating.
-    pub fn restore(&mut self, kept: &Kept, image: &ColourView, depth: &DepthView) {
-        (self.pose, self.light, self.exposure) = (kept.pose, kept.light, kept.exposure);
-        self.image_normals.copy_from(&kept.image_normals);
-        self.image_points.z.clone_from(&kept.image_depth);
-        self.raise_image_points(image);
-        self.depth_normals.copy_from(&kept.depth_normals);
-        self.depth_points.z.clone_from(&kept.refined_depth);
-        self.raise_depth_points(depth);
+    /// Moves all depths so that their median is zero.
+    pub fn centre_depth(&mut self, spare: &mut Vec<f32>) {
+        spare.clear();
+        spare.extend(self.points.z.iter().filter(|depth| !depth.is_nan()));
+        let middle = if spare.is_empty() { 0.0 } else { quantile(spare, 0.5) };
+        self.points.z.iter_mut().for_each(|depth| *depth -= middle);
     }
 
-    /// Points of the depth view from their z. An organised cloud keeps its own.
-    pub fn raise_depth_points(&mut self, view: &DepthView) {
+    /// Multiplies all depths.
+    pub fn scale_depth(&mut self, factor: f64) {
+        self.points.z.iter_mut().for_each(|depth| *depth *= factor as f32);
+    }
+
+    /// Points of the depth view at their depths. An organised cloud keeps its own.
+    pub fn place_depth_points(&mut self, view: &DepthView) {
         if !view.organised {
-            raise(view.size, &view.camera, &mut self.depth_points);
+            place(view.size, &view.camera, &mut self.points);
         }
-    }
-
-    /// Points of the image surface from their z.
-    pub fn raise_image_points(&mut self, view: &ColourView) {
-        raise(view.size, &view.camera, &mut self.image_points);
-    }
-
-    /// Centre of the depth points in the colour view's frame.
-    pub fn carried_centre(&self) -> Vector3<f64> {
-        self.pose.apply(self.depth_points.centroid())
-    }
-
-    /// The depth point at `index` in the colour view's frame.
-    pub fn carried(&self, index: usize) -> Vector3<f64> {
-        self.pose.apply(Vector3::from(self.depth_points.get(index).map(f64::from)))
-    }
-}
-
-/// What a rejected iteration has to give back; points follow from their depths.
-pub struct Kept {
-    pub pose: Similarity,
-    light: Light,
-    exposure: f64,
-    image_normals: Normals,
-    image_depth: Vec<f32>,
-    depth_normals: Normals,
-    refined_depth: Vec<f32>,
-}
-
-impl Kept {
-    /// No shape yet.
-    pub fn new(pose: Similarity, light: Light) -> Self {
-        let [image_normals, depth_normals] = [Normals::default(), Normals::default()];
-        let [image_depth, refined_depth] = [Vec::new(), Vec::new()];
-        Self { pose, light, exposure: 0.0, image_normals, image_depth, depth_normals, refined_depth }
-    }
-
-    /// Normals of the image surface, those of the working solution until its iteration finds others.
-    pub const fn image_normals(&self) -> &Normals {
-        &self.image_normals
-    }
-
-    /// Keeps `solution` instead; allocates the first time.
-    pub fn keep(&mut self, solution: &Solution) {
-        (self.pose, self.light, self.exposure) = (solution.pose, solution.light, solution.exposure);
-        self.image_normals.copy_from(&solution.image_normals);
-        self.image_depth.clone_from(&solution.image_points.z);
-        self.depth_normals.copy_from(&solution.depth_normals);
-        self.refined_depth.clone_from(&solution.depth_points.z);
     }
 }
 
 /// The points at their depths along the pixels' rays.
-fn raise(size: Size, camera: &Camera, points: &mut Points) {
+fn place(size: Size, camera: &Camera, points: &mut Points) {
     let parallel = camera.is_orthographic();
     let straight = camera.pinhole().is_none_or(|pinhole| pinhole.is_undistorted());
     // Of straight rays x follows from the column and y from the row.
@@ -135,5 +113,44 @@ fn raise(size: Size, camera: &Camera, points: &mut Points) {
             }
             points.set(index, point);
         }
+    }
+}
+
+/// The last accepted iteration: what a rejected one gives back, and what the next one is compared with. Points follow
+/// from their depths.
+pub struct Accepted {
+    pub pose: Similarity,
+    light: ExposedLight,
+    image_normals: Normals,
+    image_depth: Vec<f32>,
+    depth_normals: Normals,
+    refined_depth: Vec<f32>,
+}
+
+impl Accepted {
+    /// No shape yet.
+    pub fn new(solution: &Solution) -> Self {
+        Self {
+            pose: solution.pose,
+            light: solution.light,
+            image_normals: Normals::default(),
+            image_depth: Vec::new(),
+            depth_normals: Normals::default(),
+            refined_depth: Vec::new(),
+        }
+    }
+
+    /// Normals of the image surface, those of the working solution until its iteration finds others.
+    pub const fn image_normals(&self) -> &Normals {
+        &self.image_normals
+    }
+
+    /// Accepts `solution`; allocates the first time.
+    pub fn accept(&mut self, solution: &Solution) {
+        (self.pose, self.light) = (solution.pose, solution.light);
+        self.image_normals.copy_from(&solution.image.normals);
+        self.image_depth.clone_from(&solution.image.points.z);
+        self.depth_normals.copy_from(&solution.depth.normals);
+        self.refined_depth.clone_from(&solution.depth.points.z);
     }
 }

@@ -63,7 +63,7 @@ impl Estimator {
         }
     }
 
-    /// The stages before a refinement that a partner may be making.
+    /// The stages before a refinement that a worker may be making.
     #[wasm_bindgen(js_name = "stepHalfway")]
     pub fn step_halfway(&mut self) {
         if !std::mem::replace(&mut self.halfway, true) {
@@ -74,7 +74,7 @@ impl Estimator {
         }
     }
 
-    /// The next refinement for a partner that holds the shape of number `held`.
+    /// The next refinement for a worker that holds the shape of number `held`.
     #[wasm_bindgen(js_name = "refinementTask")]
     pub fn refinement_task(&self, held: Option<u32>) -> Option<JsRefinementTask> {
         let RefinementTask { shape, numbers, planes } = self.native.refinement_task(held)?;
@@ -82,7 +82,7 @@ impl Estimator {
         Some(Array::of3(&shape.into(), &numbers, &output::planes(&planes)).unchecked_into())
     }
 
-    /// What a partner has made of the shape of number `shape`; passed over where it is not asked for.
+    /// What a worker has made of the shape of number `shape`; passed over where it is not asked for.
     #[wasm_bindgen(js_name = "acceptRefinement")]
     pub fn accept_refinement(&mut self, shape: u32, planes: &Float32Array) {
         if planes.length() as usize == 4 * self.native.depth().size.len()
@@ -119,22 +119,22 @@ impl Estimator {
         Ok(())
     }
 
-    /// How many helpers the memory of a pair leaves room for.
-    #[wasm_bindgen(js_name = "helpersAfforded")]
-    pub fn helpers_afforded(&self) -> u32 {
-        self.native.helpers_afforded()
+    /// How many workers the memory of a pair leaves room for.
+    #[wasm_bindgen(js_name = "workersAfforded")]
+    pub fn workers_afforded(&self) -> u32 {
+        self.native.workers_afforded()
     }
 
-    /// A part of the opening search for a helper in another thread, as plain numbers.
+    /// A part of the initialisation for a worker in another thread, as plain numbers.
     #[wasm_bindgen(js_name = "takeTask")]
     pub fn take_task(&mut self) -> Option<Float64Array> {
         self.native.take_task().map(|task| Float64Array::from(task.to_numbers().as_slice()))
     }
 
-    /// What a helper has found.
+    /// What a worker has found.
     pub fn accept(&mut self, finding: &Float64Array) {
         if let Some(finding) = Finding::from_numbers(&finding.to_vec()) {
-            self.native.accept(finding);
+            self.native.accept_finding(finding);
         }
     }
 

@@ -5,10 +5,10 @@
 
 mod error;
 mod estimator;
-mod helper;
 mod input;
 mod output;
 mod sample;
+mod worker;
 
 use wasm_bindgen::prelude::wasm_bindgen;
 

@@ -89,18 +89,18 @@ pub fn pose(pose: &Similarity) -> JsValue {
 }
 
 pub fn report(report: &StepReport, milliseconds: &BTreeMap<&'static str, f64>) -> JsValue {
-    let energy = &report.energy;
+    let objective = &report.objective;
     plain(&PlainReport {
         iteration: report.iteration,
         stage: report.stage.name(),
         pose: plain_pose(&report.pose),
         rotation_change: report.rotation_change,
         energy: PlainEnergy {
-            shading: energy.shading,
-            prior: energy.prior,
-            registration: energy.registration,
-            refinement: energy.refinement,
-            total: energy.total(),
+            shading: objective.shading,
+            prior: objective.prior,
+            registration: objective.registration,
+            refinement: objective.refinement,
+            total: objective.total(),
         },
         overlap: report.overlap,
         inliers: report.inliers,

@@ -1,4 +1,4 @@
-//! A helper for JavaScript: tasks and findings are plain numbers, and rasters one after the other.
+//! A worker for JavaScript: tasks and findings are plain numbers, and rasters one after the other.
 
 use js_sys::{Float32Array, Float64Array};
 use wasm_bindgen::prelude::wasm_bindgen;
@@ -6,13 +6,13 @@ use wasm_bindgen::prelude::wasm_bindgen;
 use super::error::Thrown;
 use super::input::{self, JsDepth, JsImage, JsOptions};
 use super::output;
-use crate::estimator::{Helper as Native, Task};
+use crate::estimator::{Task, Worker as Native};
 
 #[wasm_bindgen]
-pub struct Helper(Native);
+pub struct Worker(Native);
 
 #[wasm_bindgen]
-impl Helper {
+impl Worker {
     #[wasm_bindgen(constructor)]
     pub fn new(image: &JsImage, depth: &JsDepth, options: &JsOptions) -> Result<Self, Thrown> {
         Ok(Self(Native::new(input::image(image)?, &input::depth(depth)?, input::options(options)?)?))

@@ -1,17 +1,17 @@
-//! Parts of the opening that somebody else may do, what becomes of them, and both as plain numbers: that is all that
-//! threads without shared memory have to tell each other. An f64 carries every number here to the bit.
+//! Parts of the initialisation that a worker may do, what becomes of them, and both as plain numbers: that is all that
+//! threads without shared memory have to tell each other. An f64 holds every number here to the bit.
 
 use nalgebra::{Matrix3, Vector3};
 
 use crate::pose::{Candidate, PhotometricReport, Place, SearchFinding, SearchTask, Similarity};
 
-/// A part of the opening. It depends on the pair, the options and itself alone, so that anybody who has these gets the
+/// A part of the initialisation. It depends on the pair, the options and itself alone, so that whoever has these gets the
 /// same.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Task(pub(super) Work);
+pub struct Task(pub(in crate::estimator) Work);
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Work {
+pub(in crate::estimator) enum Work {
     Search(SearchTask),
     /// The registration of a candidate, by its number, from its pose.
     Register(usize, Similarity),
@@ -19,28 +19,28 @@ pub(super) enum Work {
 
 /// What became of a [`Task`].
 #[derive(Clone, Debug)]
-pub struct Finding(pub(super) Found);
+pub struct Finding(pub(in crate::estimator) Found);
 
 #[derive(Clone, Debug)]
-pub(super) enum Found {
+pub(in crate::estimator) enum Found {
     Search(SearchFinding),
     /// `None` where the candidate could not be registered.
-    Registered(usize, Option<Registered>),
+    Registered(usize, Option<RegisteredCandidate>),
 }
 
 /// What tells one registration from another.
 #[derive(Clone, Debug)]
-pub(super) struct Registered {
+pub(in crate::estimator) struct RegisteredCandidate {
     pub pose: Similarity,
     /// Number of visible points.
     pub visible: f64,
     /// Standard deviation of what is left of log S.
     pub noise: f64,
-    /// All of it, where it was made here.
+    /// All of it, where it was made in this thread.
     pub report: Option<Box<PhotometricReport>>,
 }
 
-impl Registered {
+impl RegisteredCandidate {
     pub fn of(report: Box<PhotometricReport>) -> Self {
         Self { pose: report.pose, visible: report.visible as f64, noise: report.noise, report: Some(report) }
     }
@@ -117,7 +117,7 @@ impl Finding {
             REGISTER if rest.is_empty() => Found::Registered(index, None),
             REGISTER => {
                 let (end, &[visible, noise]) = rest.split_first_chunk()? else { return None };
-                Found::Registered(index, Some(Registered { pose: pose(end), visible, noise, report: None }))
+                Found::Registered(index, Some(RegisteredCandidate { pose: pose(end), visible, noise, report: None }))
             }
             _ => return None,
         }))
@@ -168,7 +168,7 @@ mod tests {
         {
             assert_eq!(Task::from_numbers(&Task(work).to_numbers()), Some(Task(work)));
         }
-        let registered = Registered { pose, visible: 9.0, noise: 0.1, report: None };
+        let registered = RegisteredCandidate { pose, visible: 9.0, noise: 0.1, report: None };
         for found in [
             Found::Search(SearchFinding::Swept(2, vec![place; 2])),
             Found::Search(SearchFinding::Swept(2, Vec::new())),

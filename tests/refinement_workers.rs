@@ -1,23 +1,23 @@
-//! The refinement beside the image surface: whoever makes it, the outcome is the same to the bit.
+//! The refinement beside the image surface, here or in a worker: the outcome is the same to the bit.
 
 use bimodal_stereo::scenes::{Sample, SampleRequest, Scene, light, surface};
 use bimodal_stereo::{
-    Camera, Estimator, Helper, LightSource, Options, Pinhole, Registration, Similarity, Stage, Start, Status,
-    StepReport, Weights,
+    Camera, Estimator, LightSource, Options, Pinhole, Registration, Similarity, Stage, Start, Status, StepReport,
+    Weights, Worker,
 };
 
-/// What a run leaves: its report, refined depth and image depth to the bit, and how many refinements others have made.
+/// What a run leaves: its report, refined depth and image depth to the bit, and how many refinements a worker has made.
 type End = (StepReport, [Vec<u32>; 2], usize);
 
 fn bits(values: &[f32]) -> Vec<u32> {
     values.iter().map(|value| value.to_bits()).collect()
 }
 
-/// Runs with a helper who brings the refinements that `brings` names by their number, and who is told shapes that it holds
-/// already if it `forgets`.
+/// Runs with a worker that brings the refinements that `brings` names by their number, and that is told shapes that it
+/// holds already if it `forgets`.
 fn run(sample: &Sample, options: &Options, brings: impl Fn(usize) -> bool, forgets: bool) -> End {
     let mut estimator = Estimator::new(sample.colour_image(), &sample.depth_map(), options.clone()).unwrap();
-    let mut helper = Helper::new(sample.colour_image(), &sample.depth_map(), options.clone()).unwrap();
+    let mut worker = Worker::new(sample.colour_image(), &sample.depth_map(), options.clone()).unwrap();
     let (mut held, mut asked, mut brought) = (None, 0, 0);
     while estimator.report().status == Status::Running {
         let task = estimator.refinement_task(held).filter(|_| estimator.report().stage == Stage::Refinement);
@@ -27,7 +27,7 @@ fn run(sample: &Sample, options: &Options, brings: impl Fn(usize) -> bool, forge
         };
         let load =
             |own: [&mut [f32]; 9]| own.into_iter().zip(&task.planes).for_each(|(own, it)| own.copy_from_slice(it));
-        let refined = helper.refine(&task.numbers, load).unwrap().map(<[f32]>::to_vec);
+        let refined = worker.refine(&task.numbers, load).unwrap().map(<[f32]>::to_vec);
         let shape = task.shape;
         held = (!forgets).then_some(shape + 1);
         asked += 1;
@@ -70,7 +70,7 @@ fn near(sample: &Sample) -> Options {
 }
 
 #[test]
-fn a_pose_that_stands_lets_others_refine() {
+fn a_pose_that_does_not_move_lets_a_worker_refine() {
     let camera = Camera::Pinhole(Pinhole { fx: 150.0, fy: 150.0, cx: 31.5, cy: 31.5, distortion: [0.0; 5] });
     let plain = SampleRequest { light: light("window").unwrap(), noise: 0.01, ..SampleRequest::default() };
     let holes = SampleRequest { holes: 0.1, depth_noise: 0.1, ..plain.clone() };
@@ -100,7 +100,7 @@ fn an_iteration_that_is_taken_back_takes_its_shape_along() {
     assert!(known < unknown);
     let message = estimator.step().message.clone().unwrap_or_default();
     assert!(message.contains("taken back"), "{message}");
-    // Who has made the second shape does not hold the first one any more.
+    // A worker that has made the second shape does not hold the first one any more.
     assert_eq!(planes(&estimator, Some(first + 1)), unknown);
     assert_same("taken back", &sample, &options);
 }
@@ -114,7 +114,7 @@ fn after_a_search_the_loop_is_shared_as_well() {
 }
 
 #[test]
-fn a_pose_that_may_move_is_refined_at_home() {
+fn a_pose_that_may_move_is_refined_here() {
     let sample = sample(&SampleRequest::default());
     let mut estimator = Estimator::new(sample.colour_image(), &sample.depth_map(), Options::paper()).unwrap();
     assert!(estimator.refinement_task(None).is_none());
@@ -125,8 +125,8 @@ fn a_pose_that_may_move_is_refined_at_home() {
 #[test]
 fn numbers_of_something_else_are_refused() {
     let sample = sample(&SampleRequest::default());
-    let mut helper = Helper::new(sample.colour_image(), &sample.depth_map(), Options::default()).unwrap();
+    let mut worker = Worker::new(sample.colour_image(), &sample.depth_map(), Options::default()).unwrap();
     for count in [0, 26, 27, 38, 40] {
-        assert_eq!(helper.refine(&vec![0.5; count], |_| {}).unwrap_err().field(), "numbers");
+        assert_eq!(worker.refine(&vec![0.5; count], |_| {}).unwrap_err().field(), "numbers");
     }
 }

@@ -4,8 +4,8 @@ use std::collections::VecDeque;
 
 use bimodal_stereo::scenes::{Relief, Sample, SampleRequest, Scene, light, surface};
 use bimodal_stereo::{
-    Angles, ColourSamples, Estimator, Finding, Helper, LightSource, Options, Registration, Size, Stage, Start, Status,
-    StepReport, Task, Weights,
+    Angles, ColourSamples, Estimator, Finding, LightSource, Options, Registration, Size, Stage, Start, Status,
+    StepReport, Task, Weights, Worker,
 };
 
 fn scene(name: &str, light_name: &str) -> Sample {
@@ -178,17 +178,17 @@ impl Chance {
     }
 }
 
-/// Runs with so many scouts; each brings what it finds late and out of order, and the first one brings nothing at all
+/// Runs with so many workers; each brings what it finds late and out of order, and the first one brings nothing at all
 /// after a while. Also how many findings came in.
-fn run_with_scouts(sample: &Sample, options: &Options, scouts: usize, seed: u64) -> (StepReport, Vec<u32>, usize) {
+fn run_with_workers(sample: &Sample, options: &Options, workers: usize, seed: u64) -> (StepReport, Vec<u32>, usize) {
     let mut chance = Chance(seed);
     let mut estimator = Estimator::new(sample.colour_image(), &sample.depth_map(), options.clone()).unwrap();
-    let scout = || Helper::new(sample.colour_image(), &sample.depth_map(), options.clone()).unwrap();
-    let mut scouts: Vec<(Helper, VecDeque<Vec<f64>>)> = (0..scouts).map(|_| (scout(), VecDeque::new())).collect();
+    let worker = || Worker::new(sample.colour_image(), &sample.depth_map(), options.clone()).unwrap();
+    let mut workers: Vec<(Worker, VecDeque<Vec<f64>>)> = (0..workers).map(|_| (worker(), VecDeque::new())).collect();
     let mut findings = 0;
     while estimator.report().status == Status::Running {
         estimator.step();
-        for (index, (scout, tasks)) in scouts.iter_mut().enumerate() {
+        for (index, (worker, tasks)) in workers.iter_mut().enumerate() {
             while tasks.len() < 3 {
                 let Some(task) = estimator.take_task() else { break };
                 tasks.push_back(task.to_numbers());
@@ -199,8 +199,8 @@ fn run_with_scouts(sample: &Sample, options: &Options, scouts: usize, seed: u64)
             }
             let task = if chance.below(2) == 0 { tasks.pop_front() } else { tasks.pop_back() };
             if let Some(task) = task.and_then(|task| Task::from_numbers(&task)) {
-                let finding = scout.perform(&task).unwrap().to_numbers();
-                estimator.accept(Finding::from_numbers(&finding).unwrap());
+                let finding = worker.perform(&task).unwrap().to_numbers();
+                estimator.accept_finding(Finding::from_numbers(&finding).unwrap());
                 findings += 1;
             }
         }
@@ -210,18 +210,18 @@ fn run_with_scouts(sample: &Sample, options: &Options, scouts: usize, seed: u64)
 }
 
 #[test]
-fn any_number_of_scouts_leaves_the_same_to_the_bit() {
+fn any_number_of_workers_leaves_the_same_to_the_bit() {
     for (name, light, known) in [("bust", "window", false), ("ripples", "overcast", false), ("vase", "colourful", true)]
     {
         let sample = scene(name, light);
         let light = if known { LightSource::Known(sample.light) } else { LightSource::Estimate };
         let options = Options { light, ..Options::default() };
-        let (alone, depth, _) = run_with_scouts(&sample, &options, 0, 0);
-        for (scouts, seed) in [(1, 1), (2, 2), (3, 3)] {
-            let (report, other, findings) = run_with_scouts(&sample, &options, scouts, seed);
+        let (alone, depth, _) = run_with_workers(&sample, &options, 0, 0);
+        for (workers, seed) in [(1, 1), (2, 2), (3, 3)] {
+            let (report, other, findings) = run_with_workers(&sample, &options, workers, seed);
             assert!(findings > 40, "{name}: {findings}");
-            assert_eq!(report, alone, "{name}, {scouts} scouts");
-            assert_eq!(depth, other, "{name}, {scouts} scouts");
+            assert_eq!(report, alone, "{name}, {workers} workers");
+            assert_eq!(depth, other, "{name}, {workers} workers");
         }
     }
 }

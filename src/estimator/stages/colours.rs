@@ -1,10 +1,10 @@
-//! The photometric registration as a stage of the loop, and what it needs of the depth view.
+//! The registration by colours as a stage of the loop: the photometric registration, its normals, and its last result.
 
 use crate::error::Result;
-use crate::light::{Light, LightPrior};
-use crate::options::LightSource;
+use crate::estimator::gauge;
+use crate::estimator::pair::Pair;
 use crate::pose::{Photometric, PhotometricOptions, PhotometricProblem, PhotometricReport, Similarity};
-use crate::view::{ColourView, DepthView, Normals, cubic_normals};
+use crate::view::{DepthView, Normals, cubic_normals};
 
 /// Weight of the light's prior in the registration: Bayes' own. `lambda.light` weighs the fit of the light stage alone,
 /// but where it is zero there is no prior here, either.
@@ -14,7 +14,7 @@ const PRIOR_WEIGHT: f64 = 1.0;
 /// Mozart at 64x64 leaves 1.5 to 5 degrees by normals and 0.2 to 1 by surfaces; clean views have 0.1 at most.
 const LARGEST_NOISE: f64 = 0.2;
 
-/// Points that candidates of the opening are registered by at most, evenly spread: the best one is registered anew by
+/// Points that candidates of the search are registered by at most, evenly spread: the best one is registered anew by
 /// all. With 14 to 34 unknowns noise is averaged well enough to tell one candidate from another, and large views take
 /// no longer.
 const CANDIDATE_POINTS: usize = 2500;
@@ -22,27 +22,6 @@ const CANDIDATE_POINTS: usize = 2500;
 /// Change of the scale (natural logarithm) beyond which a registration has collapsed: shrunk onto a few pixels, a cloud
 /// is easily explained. Candidates of the search lie within 0.1 of a right scale.
 const COLLAPSE: f64 = 0.3;
-
-/// What one registration looks at, besides its own memory.
-#[derive(Clone, Copy)]
-pub struct Given<'a> {
-    pub image: &'a ColourView,
-    pub depth: &'a DepthView,
-    pub prior: &'a LightPrior,
-    /// Whether the prior counts.
-    pub has_prior: bool,
-    /// The light where it is known, but for its exposure.
-    pub light: Option<&'a Light>,
-    pub scale_is_held: bool,
-    /// Whether registrations start tolerant.
-    pub annealing: bool,
-}
-
-impl Given<'_> {
-    fn options(&self) -> PhotometricOptions {
-        PhotometricOptions { annealing: self.annealing, ..PhotometricOptions::default() }
-    }
-}
 
 /// How the registration of a candidate stands.
 pub enum Attempt {
@@ -52,9 +31,10 @@ pub enum Attempt {
 }
 
 /// Registers the measured depth view to the image; owns all memory.
-pub struct Joint {
+pub struct ColourRegistration {
     photometric: Photometric,
     sharp: SharpNormals,
+    is_coarse: bool,
     /// The last registration.
     found: Option<PhotometricReport>,
 }
@@ -79,25 +59,30 @@ impl SharpNormals {
         Self { normals, error, noise }
     }
 
-    fn problem<'a>(&'a self, given: &Given<'a>) -> PhotometricProblem<'a> {
+    fn problem<'a>(&'a self, pair: &'a Pair, scale_is_held: bool) -> PhotometricProblem<'a> {
         PhotometricProblem {
-            image: given.image,
-            depth: given.depth,
-            points: &given.depth.points,
+            image: &pair.image,
+            depth: &pair.depth,
+            points: &pair.depth.points,
             normals: &self.normals,
             normal_error: Some(&self.error),
-            light: given.light,
-            prior: given.prior,
-            prior_weight: if given.has_prior { PRIOR_WEIGHT } else { 0.0 },
-            scale_is_held: given.scale_is_held,
+            light: pair.known_light(),
+            prior: &pair.prior,
+            prior_weight: if pair.options.weights.light > 0.0 { PRIOR_WEIGHT } else { 0.0 },
+            scale_is_held,
         }
     }
 }
 
-impl Joint {
-    pub fn new(given: &Given<'_>) -> Self {
-        let sharp = SharpNormals::new(given.depth);
-        Self { photometric: Photometric::new(&sharp.problem(given)), sharp, found: None }
+impl ColourRegistration {
+    pub fn new(pair: &Pair) -> Self {
+        let sharp = SharpNormals::new(&pair.depth);
+        Self {
+            photometric: Photometric::new(&sharp.problem(pair, is_scale_held(pair))),
+            is_coarse: sharp.noise > LARGEST_NOISE && pair.known_light().is_some(),
+            sharp,
+            found: None,
+        }
     }
 
     /// Normals of the depth view, which it is registered by.
@@ -108,8 +93,8 @@ impl Joint {
     /// Whether the depth is so noisy that its normals only find the pose, and matching surfaces, which averages the
     /// noise of whole surfaces, has to settle it. The surface of an image under unknown light follows the pose and
     /// settles nothing.
-    pub fn is_coarse(&self, light: &LightSource) -> bool {
-        self.sharp.noise > LARGEST_NOISE && *light != LightSource::Estimate
+    pub const fn is_coarse(&self) -> bool {
+        self.is_coarse
     }
 
     /// The last registration; none before the first.
@@ -117,58 +102,63 @@ impl Joint {
         self.found.as_ref()
     }
 
-    /// Takes over a registration that was made elsewhere, by the opening search.
+    /// Takes over a registration that the search has made.
     pub fn adopt(&mut self, found: PhotometricReport) {
         self.found = Some(found);
     }
 
     /// Whether the last registration has ended in `pose`. t_z may have been settled since: it is a gauge.
-    pub fn stands(&self, pose: &Similarity) -> bool {
+    pub fn ended_in(&self, pose: &Similarity) -> bool {
         let free = |pose: &Similarity| (pose.scale, pose.rotation, pose.translation.xy());
         self.found.as_ref().is_some_and(|found| !found.sampled && free(&found.pose) == free(pose))
     }
 
-    /// The best pose near `start`. A registration that stands where the last one ended is not repeated: the measured
+    /// The best pose near `start`. A registration that starts where the last one ended is not repeated: the measured
     /// normals do not change, so neither would its end.
-    pub fn register(&mut self, given: &Given<'_>, start: &Similarity) -> Result<&PhotometricReport> {
-        let stands = self.stands(start);
+    pub fn register(&mut self, pair: &Pair, start: &Similarity) -> Result<&PhotometricReport> {
+        let is_done = self.ended_in(start);
         // From the end of a sample all points are a small step away.
         let first_level = match &self.found {
             Some(found) if found.sampled => 0,
-            _ => given.options().first_level,
+            _ => options(pair).first_level,
         };
-        let found = match self.found.take().filter(|_| stands) {
+        let found = match self.found.take().filter(|_| is_done) {
             Some(found) => found,
-            None => {
-                let options = PhotometricOptions { first_level, ..given.options() };
-                let found = self.photometric.register(&self.sharp.problem(given), start, &options);
-                match found {
-                    Ok(found) if found.pose.growth_from(start) < COLLAPSE => found,
-                    found if given.scale_is_held => found?,
-                    _ => self.register_in_turn(given, start, &options)?,
-                }
-            }
+            None => self.register_anew(pair, start, &PhotometricOptions { first_level, ..options(pair) })?,
         };
         Ok(self.found.insert(found))
     }
 
-    /// A cloud that shrinks onto a few pixels is easily explained, and on its way from a coarse level a registration may
-    /// get there: so everything else goes first, and the scale follows at the noise of the sharp image.
-    fn register_in_turn(
+    fn register_anew(
         &mut self,
-        given: &Given<'_>,
+        pair: &Pair,
         start: &Similarity,
         options: &PhotometricOptions,
     ) -> Result<PhotometricReport> {
-        let held = Given { scale_is_held: true, ..*given };
-        let near = self.photometric.register(&self.sharp.problem(&held), start, options)?;
+        let scale_is_held = is_scale_held(pair);
+        match self.photometric.register(&self.sharp.problem(pair, scale_is_held), start, options) {
+            Ok(found) if found.pose.growth_from(start) < COLLAPSE => Ok(found),
+            found if scale_is_held => found,
+            _ => self.register_scale_last(pair, start, options),
+        }
+    }
+
+    /// A cloud that shrinks onto a few pixels is easily explained, and on its way from a coarse level a registration may
+    /// get there: so everything else goes first, and the scale follows at the noise of the sharp image.
+    fn register_scale_last(
+        &mut self,
+        pair: &Pair,
+        start: &Similarity,
+        options: &PhotometricOptions,
+    ) -> Result<PhotometricReport> {
+        let near = self.photometric.register(&self.sharp.problem(pair, true), start, options)?;
         let options = PhotometricOptions { first_level: 0, annealing: false, ..*options };
-        self.photometric.register(&self.sharp.problem(given), &near.pose, &options)
+        self.photometric.register(&self.sharp.problem(pair, is_scale_held(pair)), &near.pose, &options)
     }
 
     /// A step of the registration of a candidate, `anew` the first.
-    pub fn attempt(&mut self, given: &Given<'_>, start: &Similarity, anew: bool) -> Attempt {
-        let outcome = if anew { self.begin(given, start).map(|()| None) } else { self.advance(given) };
+    pub fn step_candidate(&mut self, pair: &Pair, start: &Similarity, anew: bool) -> Attempt {
+        let outcome = if anew { self.begin(pair, start).map(|()| None) } else { self.advance(pair) };
         match outcome {
             Ok(None) => Attempt::Ongoing,
             outcome => {
@@ -178,17 +168,25 @@ impl Joint {
         }
     }
 
-    fn begin(&mut self, given: &Given<'_>, start: &Similarity) -> Result<()> {
-        let options = PhotometricOptions { most_points: CANDIDATE_POINTS, ..given.options() };
-        self.photometric.begin(&self.sharp.problem(given), start, &options)
+    fn begin(&mut self, pair: &Pair, start: &Similarity) -> Result<()> {
+        let options = PhotometricOptions { most_points: CANDIDATE_POINTS, ..options(pair) };
+        self.photometric.begin(&self.sharp.problem(pair, is_scale_held(pair)), start, &options)
     }
 
     /// One step; the report, which takes about as long, once there is none left.
-    fn advance(&mut self, given: &Given<'_>) -> Result<Option<PhotometricReport>> {
-        let problem = self.sharp.problem(given);
+    fn advance(&mut self, pair: &Pair) -> Result<Option<PhotometricReport>> {
+        let problem = self.sharp.problem(pair, is_scale_held(pair));
         if self.photometric.is_done() {
             return self.photometric.report(&problem).map(Some);
         }
         self.photometric.step(&problem).map(|_| None)
     }
+}
+
+fn options(pair: &Pair) -> PhotometricOptions {
+    PhotometricOptions { annealing: pair.options.annealing, ..PhotometricOptions::default() }
+}
+
+fn is_scale_held(pair: &Pair) -> bool {
+    gauge::held_scale(pair).is_some()
 }

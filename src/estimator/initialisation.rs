@@ -1,0 +1,193 @@
+//! The initialisation, where nothing is known of the pose: search everywhere, register the best candidates by their
+//! colours, keep the pose that explains most, remember its rivals.
+//!
+//! All of it falls into tasks that depend on nothing but the pair and themselves, so that threads may do some of them
+//! ([`Worker`](super::Worker)). What they find counts in the order of the tasks, however it comes in: the outcome is the
+//! same to the bit.
+
+use crate::error::Result;
+use crate::pose::{ImageGrid, Known, PhotometricReport, Search, Similarity, Slots};
+
+use super::gauge;
+use super::local_optima::{Decision, LocalOptima};
+use super::pair::Pair;
+use super::stages::{Attempt, ColourRegistration};
+use super::workers::task::{Finding, Found, RegisteredCandidate, Task, Work};
+
+/// Registrations after which an optimum that convinces is believed, and registrations at most.
+const FEW_TRIED: usize = 10;
+const MOST_TRIED: usize = 40;
+/// Share of the progress that the search itself takes ..
+const SEARCH_SHARE: f64 = 0.5;
+/// .. and the first few registrations: what comes after them may be spared, and then progress leaps to its end.
+const FEW_SHARE: f64 = 0.25;
+
+/// How the initialisation stands.
+pub enum Advance {
+    /// Not done; the share of the work that is, and what is being done.
+    Ongoing(f64, &'static str),
+    /// The best pose, if any could be registered.
+    Done(Option<Outcome>),
+}
+
+/// What the initialisation found.
+pub struct Outcome {
+    pub best: Box<PhotometricReport>,
+    /// Poses that the data can't tell from the best, best first.
+    pub rivals: Vec<Similarity>,
+}
+
+/// The initialisation in slices; owns its memory.
+pub struct Initialisation {
+    search: Search,
+    /// What became of each candidate; `None` where it could not be registered.
+    registrations: Slots<Option<RegisteredCandidate>>,
+    /// The next candidate to count, and how many have been counted.
+    next: usize,
+    tried: usize,
+    optima: LocalOptima,
+    /// The candidate whose registration is under way here.
+    begun: Option<usize>,
+    decision: Option<Decision>,
+}
+
+/// The search of a pair, by the normals that registrations go by.
+pub fn search(pair: &Pair, grid: ImageGrid, colours: &ColourRegistration) -> Result<Search> {
+    let (scale, unit_scale) = (gauge::held_scale(pair), gauge::unit_scale(pair));
+    let known = Known { light: pair.known_light(), scale, unit_scale, seed: pair.options.seed };
+    Search::over(grid, &pair.image, &pair.depth, colours.normals(), known)
+}
+
+impl Initialisation {
+    pub fn new(pair: &Pair, search: Search) -> Self {
+        Self {
+            search,
+            registrations: Slots::new(0),
+            next: 0,
+            tried: 0,
+            optima: LocalOptima::new(MOST_TRIED, pair.image.log_spread(), pair.image.log_noise()),
+            begun: None,
+            decision: None,
+        }
+    }
+
+    /// A task for a worker; `None` while none can be begun.
+    pub fn take(&mut self) -> Option<Task> {
+        if let Some(task) = self.search.take() {
+            return Some(Task(Work::Search(task)));
+        }
+        if self.decision.is_some() {
+            return None;
+        }
+        let Self { registrations, search, optima, next, begun, .. } = self;
+        let candidates = search.candidates();
+        let is_wanted = |index| index >= *next && Some(index) != *begun && !optima.is_known(&candidates[index].pose);
+        let index = registrations.take(is_wanted)?;
+        Some(Task(Work::Register(index, candidates[index].pose)))
+    }
+
+    /// What a worker has found.
+    pub fn accept(&mut self, finding: Finding) {
+        match finding.0 {
+            Found::Search(finding) => self.search.accept(finding),
+            Found::Registered(index, registered) => self.registrations.put(index, registered),
+        }
+        self.count();
+    }
+
+    /// One slice: a part of the search, or a step of a registration.
+    pub fn advance(&mut self, pair: &Pair, colours: &mut ColourRegistration) -> Advance {
+        if self.is_searching() {
+            self.search.advance();
+            self.count();
+        } else if let Some(decision) = self.decision.take() {
+            return self.conclude(pair, colours, decision);
+        } else {
+            self.register(pair, colours);
+            self.count();
+        }
+        self.progress()
+    }
+
+    fn is_searching(&self) -> bool {
+        !self.search.is_done()
+    }
+
+    fn progress(&self) -> Advance {
+        if self.is_searching() {
+            let share = self.search.progress().share;
+            return Advance::Ongoing(SEARCH_SHARE * share, "comparing rotations, translations and scales");
+        }
+        Advance::Ongoing(registered_share(self.tried), "registering the best candidates")
+    }
+
+    /// A step of the registration that is under way here, or the beginning of the next one.
+    fn register(&mut self, pair: &Pair, colours: &mut ColourRegistration) {
+        let candidates = self.search.candidates();
+        let is_wanted = |index: usize| index >= self.next && !self.optima.is_known(&candidates[index].pose);
+        let begun = self.begun.filter(|&index| is_wanted(index) && self.registrations.get(index).is_none());
+        let Some(index) = begun.or_else(|| self.registrations.next(is_wanted)) else { return };
+        if let Attempt::Ended(report) = self.step_candidate(pair, colours, index) {
+            self.registrations.put(index, report.map(RegisteredCandidate::of));
+        }
+    }
+
+    /// A step of one registration; another one that was under way here is dropped.
+    fn step_candidate(&mut self, pair: &Pair, colours: &mut ColourRegistration, candidate: usize) -> Attempt {
+        let start = self.search.candidates()[candidate].pose;
+        let progress = colours.step_candidate(pair, &start, self.begun != Some(candidate));
+        self.begun = matches!(progress, Attempt::Ongoing).then_some(candidate);
+        progress
+    }
+
+    /// Counts what has become of the candidates, in their order, up to the first that is still open.
+    fn count(&mut self) {
+        if self.is_searching() || self.decision.is_some() {
+            return;
+        }
+        let count = self.search.candidates().len();
+        if self.registrations.len() != count {
+            self.registrations = Slots::new(count);
+        }
+        while !self.is_exhausted() {
+            if self.optima.is_known(&self.search.candidates()[self.next].pose) {
+                self.next += 1;
+                continue;
+            }
+            let Some(registered) = self.registrations.get(self.next) else { return };
+            (self.next, self.tried) = (self.next + 1, self.tried + 1);
+            if let Some(registered) = registered.clone() {
+                self.optima.enter(self.next - 1, registered);
+            }
+        }
+        self.decision = Some(self.optima.decide());
+    }
+
+    /// Whether no further candidate counts.
+    fn is_exhausted(&self) -> bool {
+        let enough = self.tried >= MOST_TRIED || (self.tried >= FEW_TRIED && self.optima.is_convincing(self.tried));
+        self.next >= self.search.candidates().len() || enough
+    }
+
+    /// The outcome, once the best one's whole report is here: a worker brings only what tells one optimum from another.
+    fn conclude(&mut self, pair: &Pair, colours: &mut ColourRegistration, decision: Decision) -> Advance {
+        let Decision { best: Some(mut best), rivals } = decision else { return Advance::Done(None) };
+        if best.registered.report.is_none() {
+            match self.step_candidate(pair, colours, best.candidate) {
+                Attempt::Ended(report) => best.registered.report = report,
+                Attempt::Ongoing => {
+                    self.decision = Some(Decision { best: Some(best), rivals });
+                    return self.progress();
+                }
+            }
+        }
+        Advance::Done(best.registered.report.map(|best| Outcome { best, rivals }))
+    }
+}
+
+/// Share of the initialisation that is done after so many registrations.
+fn registered_share(tried: usize) -> f64 {
+    let few = tried.min(FEW_TRIED);
+    let more = (tried - few) as f64 / (MOST_TRIED - FEW_TRIED) as f64;
+    SEARCH_SHARE + FEW_SHARE * few as f64 / FEW_TRIED as f64 + (1.0 - SEARCH_SHARE - FEW_SHARE) * more
+}

@@ -1,0 +1,161 @@
+//! The objective l + f + g (Eq. 1): one number by which an iteration is accepted or taken back.
+//!
+//! Two solutions are compared over the SAME depth points, the evaluation points: those that had a correspondence before
+//! the iteration. A pose that moves points out of the image pays for each of them in full, so it can't look good by
+//! seeing less. Each term is a mean of Geman-McClure costs in 0 .. 1, so sizes of images do not matter.
+//!
+//! The depth term g asks how well the measured normals, not the refined ones, explain the colours where the pose puts
+//! them: refined normals explain any colour, and would call any pose good.
+
+use nalgebra::Vector3;
+
+use super::gauge;
+use super::pair::Pair;
+use super::solution::Solution;
+use crate::light::{Light, Polynomial};
+use crate::numeric::robust::saturated;
+use crate::numeric::{Lanes, Real, evenly_spread};
+use crate::pose::{Correspondences, Similarity};
+use crate::report::Objective;
+use crate::view::ColourView;
+
+/// Robust scale of the log-colour residual, natural logarithm over three channels: a tenth is a brightness that is wrong
+/// by 6 % in each of them, several times the noise of a good image.
+const COLOUR_SCALE: f64 = 0.1;
+/// Robust scale of the distance of both surfaces in image pixels: the paper's threshold for a correspondence.
+const DISTANCE_SCALE: f64 = 1.0;
+/// Robust scale of the difference of two normals: 12 degrees.
+const NORMAL_SCALE: f64 = 0.2;
+
+/// Points or pixels that a mean is taken of at most: of robust costs in 0 .. 1 it is then right to half a percent, and two
+/// solutions are compared over the same ones.
+pub const MOST_POINTS: usize = 10_000;
+/// Distance of the evaluation points from the border of the mask, image pixels.
+const MARGIN: f32 = 1.5;
+
+/// After a small step an objective that grows by less than this share has not grown: correspondences flicker at pixel
+/// borders.
+const SLACK: f64 = 1e-2;
+/// Degrees up to which a step is small. A larger one has to lower the objective, or a flat one would let the pose drift.
+const SMALL_STEP: f64 = 0.25;
+
+/// What is evaluated: a pose with the shape and light that go with it.
+#[derive(Clone, Copy)]
+pub struct Trial<'a> {
+    pub pose: &'a Similarity,
+    /// Light, exposure included.
+    pub light: &'a Light,
+    pub solution: &'a Solution,
+    /// Length of an image pixel at the object, in units of the colour view.
+    pub pixel_length: f64,
+}
+
+impl<'a> Trial<'a> {
+    /// The solution as it is, under `light`, its own.
+    pub fn of(pair: &Pair, solution: &'a Solution, light: &'a Light) -> Self {
+        Self { pose: &solution.pose, light, solution, pixel_length: gauge::pixel_length(&pair.image, solution) }
+    }
+}
+
+/// Depth points that have a correspondence and a measured normal. Those near the border of the mask stay out: they
+/// would enter and leave it with every small step.
+pub fn evaluation_points(pair: &Pair, correspondences: &Correspondences) -> impl Iterator<Item = u32> {
+    let (image, depth) = (&pair.image, &pair.depth);
+    let [columns, rows] = correspondences.position();
+    let inside = move |index: usize| {
+        [[-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0], [1.0, 1.0]].iter().all(|[right, down]| {
+            let (column, row) = (columns[index] + MARGIN * right, rows[index] + MARGIN * down);
+            !image.size.bilinear(&image.log[0], column, row).is_nan()
+        })
+    };
+    let points = evenly_spread(MOST_POINTS, || correspondences.visible_points());
+    points.filter(move |&index| depth.normals.is_valid(index) && inside(index)).map(|index| index as u32)
+}
+
+/// Geman-McClure cost in 0 .. 1; numbers out of range cost the most.
+fn robust(value: f64, scale: f64) -> f64 {
+    let squared = (value / scale).powi(2);
+    if squared.is_finite() { saturated(squared) } else { 1.0 }
+}
+
+/// The objective of `trial` over the depth points `evaluated`, each term a mean over them or over the image's mask.
+pub fn evaluate(pair: &Pair, evaluated: &[u32], trial: Trial<'_>) -> Objective {
+    let (mut prior, mut distance, mut colour) = (0.0, 0.0, 0.0);
+    let light = Polynomial::of(trial.light);
+    for &index in evaluated {
+        let terms = point_terms(pair, index as usize, trial, &light).unwrap_or([1.0; 3]);
+        prior += terms[0];
+        distance += terms[1];
+        colour += terms[2];
+    }
+    let share = 1.0 / evaluated.len().max(1) as f64;
+    Objective {
+        shading: brightness(&pair.image, trial, &light),
+        prior: share * prior,
+        registration: share * distance,
+        refinement: share * colour,
+    }
+}
+
+/// Costs of one depth point: of its normal, its distance, its colour. `None` where the image does not see it.
+fn point_terms(
+    Pair { image, depth, .. }: &Pair,
+    index: usize,
+    Trial { pose, solution, pixel_length, .. }: Trial<'_>,
+    light: &[Polynomial; 3],
+) -> Option<[f64; 3]> {
+    let point = pose.apply(Vector3::from(solution.depth.points.get(index).map(f64::from)));
+    let [column, row] = image.camera.project(image.size, [point.x, point.y, point.z])?;
+    let pixel = image.size.nearest(column as f32, row as f32).filter(|&pixel| image.mask[pixel])?;
+    let normal = pose.rotation * Vector3::from(depth.normals.get(index).map(f64::from));
+    let image_normal = Vector3::from(solution.image.normals.get(pixel).map(f64::from));
+    let image_point = Vector3::from(solution.image.points.get(pixel).map(f64::from));
+    let gap = image_normal.dot(&(image_point - point)) / pixel_length;
+    let log = image.size.each_bilinear(image.log.each_ref().map(Vec::as_slice), column as f32, row as f32);
+    let normal_f32 = [normal.x as f32, normal.y as f32, normal.z as f32];
+    Some([
+        robust((image_normal - normal).norm(), NORMAL_SCALE),
+        robust(gap, DISTANCE_SCALE),
+        robust(residual(log, light, normal_f32), COLOUR_SCALE),
+    ])
+}
+
+/// Mean brightness cost of the image's own normals.
+fn brightness(image: &ColourView, trial: Trial<'_>, light: &[Polynomial; 3]) -> f64 {
+    let (mut sum, mut count) = (0.0, 0.0);
+    let inside = || (0..image.size.len()).filter(|&index| image.mask[index]);
+    for index in evenly_spread(MOST_POINTS, inside) {
+        count += 1.0;
+        let [red, green, blue] = &image.log;
+        let log = [red[index], green[index], blue[index]];
+        sum += robust(residual(log, light, trial.solution.image.normals.get(index)), COLOUR_SCALE);
+    }
+    sum / f64::max(count, 1.0)
+}
+
+/// |log S - predicted| for a normal in the colour view's frame, under a light as three polynomials.
+#[inline(never)]
+fn residual(log: [f32; 3], light: &[Polynomial; 3], normal: [f32; 3]) -> f64 {
+    f64::from(square_residual(log, light, normal).sqrt())
+}
+
+/// [`residual`] of the pixels from `start` on, each for its own normal.
+pub fn residuals(image: &ColourView, start: usize, light: &[Polynomial; 3], normals: [Lanes; 3]) -> Lanes {
+    let [red, green, blue] = &image.log;
+    let start = start as isize;
+    let log = [Lanes::load(red, start), Lanes::load(green, start), Lanes::load(blue, start)];
+    square_residual(log, light, normals).sqrt()
+}
+
+#[inline(always)]
+fn square_residual<T: Real<Scalar = f32>>(log: [T; 3], light: &[Polynomial; 3], normal: [T; 3]) -> T {
+    let off = |channel: usize| log[channel] - light[channel].shade(normal);
+    let [red, green, blue] = [off(0), off(1), off(2)];
+    red * red + green * green + blue * blue
+}
+
+/// Whether a step of so many degrees has made the objective worse.
+pub fn worsens(before: f64, after: f64, degrees: f64) -> bool {
+    let slack = if degrees < SMALL_STEP { SLACK } else { 0.0 };
+    after > before * (1.0 + slack)
+}

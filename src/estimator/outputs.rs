@@ -1,0 +1,104 @@
+//! What a run has found so far, to read.
+
+use nalgebra::Vector3;
+
+use super::Estimator;
+use crate::light::Light;
+use crate::report::StepReport;
+use crate::view::{ColourView, DepthView, Normals};
+
+/// Which surface [`Estimator::points`] returns.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Surface {
+    /// The surface found in the image.
+    Image,
+    /// The refined depth view, transformed by the pose.
+    Depth,
+}
+
+impl Estimator {
+    /// What the last stage left.
+    #[must_use]
+    pub const fn report(&self) -> &StepReport {
+        &self.report
+    }
+
+    /// Normals of the image surface, colour view's frame, NaN off the mask.
+    #[must_use]
+    pub const fn image_normals(&self) -> &Normals {
+        &self.solution.image.normals
+    }
+
+    /// Depth of the image surface, NaN off the mask; pixels with median zero for an orthographic image.
+    #[must_use]
+    pub fn image_depth(&self) -> &[f32] {
+        &self.solution.image.points.z
+    }
+
+    /// Refined normals of the depth view, its own frame.
+    #[must_use]
+    pub const fn depth_normals(&self) -> &Normals {
+        &self.solution.depth.normals
+    }
+
+    /// Refined depth of the depth view, holes filled.
+    #[must_use]
+    pub fn refined_depth(&self) -> &[f32] {
+        &self.solution.depth.points.z
+    }
+
+    /// For each image pixel the index of its depth pixel, or -1.
+    #[must_use]
+    pub fn correspondence(&self) -> &[i32] {
+        self.correspondences.depth_of_pixel()
+    }
+
+    /// |log S - predicted| of each image pixel, NaN off the mask: predicted from the measured normal of the depth view
+    /// where it reaches, from the image's own normal elsewhere.
+    #[must_use]
+    pub fn residual(&self) -> &[f32] {
+        self.residuals.of_pixels()
+    }
+
+    /// The light, known or estimated. The exposure of a known light is [`exposure`](Self::exposure).
+    #[must_use]
+    pub const fn light(&self) -> Light {
+        self.solution.light.light
+    }
+
+    /// Offset of log S on top of [`light`](Self::light).
+    #[must_use]
+    pub const fn exposure(&self) -> f64 {
+        self.solution.light.exposure
+    }
+
+    /// The checked colour view.
+    #[must_use]
+    pub const fn image(&self) -> &ColourView {
+        &self.pair.image
+    }
+
+    /// The checked depth view.
+    #[must_use]
+    pub const fn depth(&self) -> &DepthView {
+        &self.pair.depth
+    }
+
+    /// Points of a surface in the colour view's frame: x, y, z of each valid pixel in turn.
+    #[must_use]
+    pub fn points(&self, surface: Surface) -> Vec<f32> {
+        let points = match surface {
+            Surface::Image => &self.solution.image.points,
+            Surface::Depth => &self.solution.depth.points,
+        };
+        let valid = (0..points.len()).filter(|&index| points.is_valid(index)).map(|index| points.get(index));
+        match surface {
+            Surface::Image => valid.flatten().collect(),
+            Surface::Depth => {
+                let pose = &self.solution.pose;
+                let transformed = |point: [f32; 3]| <[f64; 3]>::from(pose.apply(Vector3::from(point.map(f64::from))));
+                valid.flat_map(|point| transformed(point).map(|value| value as f32)).collect()
+            }
+        }
+    }
+}

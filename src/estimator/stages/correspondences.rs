@@ -1,0 +1,26 @@
+//! Which depth point is which pixel under the pose of a solution.
+
+use crate::estimator::gauge;
+use crate::estimator::pair::Pair;
+use crate::estimator::solution::Solution;
+use crate::pose::CorrespondenceProblem;
+
+/// A correspondence is accepted within this multiple of the robust spread of the surfaces' distances.
+const SPREADS: f64 = 3.0;
+
+/// Projects the depth points, hides what is occluded, and drops what is too far from the image surface.
+pub fn correspondence_problem<'a>(pair: &'a Pair, solution: &'a Solution) -> CorrespondenceProblem<'a> {
+    let pixel_length = gauge::pixel_length(&pair.image, solution);
+    CorrespondenceProblem {
+        image: &pair.image,
+        depth: &pair.depth,
+        pose: &solution.pose,
+        depth_points: &solution.depth.points,
+        depth_normals: &solution.depth.normals,
+        image_points: &solution.image.points,
+        image_normals: &solution.image.normals,
+        distance: pair.options.correspondence_distance.map(|distance| distance * pixel_length),
+        pixel_length,
+        spreads: SPREADS,
+    }
+}

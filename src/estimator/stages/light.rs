@@ -1,0 +1,109 @@
+//! The light stage (Eq. 2): the light from the depth view's normals where the present pose puts them.
+
+use nalgebra::Vector3;
+
+use crate::error::Result;
+use crate::estimator::pair::Pair;
+use crate::estimator::solution::Solution;
+use crate::light::{Light, LightFitter};
+use crate::pose::Correspondences;
+use crate::shape::{ShadingWeights, first_exposure};
+use crate::view::Normals;
+
+/// |n - m| at which a prior normal has lost three quarters of its weight: 23 degrees, more than noise, less than a
+/// mistake.
+const PRIOR_SCALE: f32 = 0.4;
+/// Median log residual up to which a fitted light counts as explaining the colours: noise and discretisation.
+const EXPLAINED: f64 = 0.07;
+
+/// What the stages after the light look at besides the solution.
+#[derive(Clone, Copy)]
+pub struct Inputs<'a> {
+    pub pair: &'a Pair,
+    /// The light stage, for the depth view's normals at the image's pixels and for the weights.
+    pub fitted: &'a LightStage,
+    pub correspondences: &'a Correspondences,
+}
+
+/// Fits the light, and says how far the normals' other terms can rely on it.
+pub struct LightStage {
+    fitter: LightFitter,
+    /// R n_R of Eq. 9: normals of the depth view at the image's pixels, colour view's frame, NaN without correspondence.
+    depth_normals: Normals,
+    /// Exposure of a known light by the colours alone, before any normal is known.
+    first_exposure: f64,
+    /// Median log residual that the fitted light leaves; zero for a known light.
+    residual: f64,
+}
+
+impl LightStage {
+    /// Memory for so many image pixels.
+    pub fn new(pixels: usize) -> Self {
+        Self {
+            fitter: LightFitter::default(),
+            depth_normals: Normals::missing(pixels),
+            first_exposure: 0.0,
+            residual: 0.0,
+        }
+    }
+
+    /// The exposure that a known light starts from.
+    pub fn find_first_exposure(&mut self, pair: &Pair) -> f64 {
+        self.first_exposure = pair.known_light().map_or(0.0, |light| first_exposure(light, pair.log()));
+        self.first_exposure
+    }
+
+    /// Brings the depth view's normals to the image's pixels and fits the light to them; `None` where it is known: its
+    /// exposure follows with the normals.
+    pub fn fit(
+        &mut self,
+        pair: &Pair,
+        solution: &Solution,
+        correspondences: &Correspondences,
+    ) -> Result<Option<Light>> {
+        self.bring_normals(solution, correspondences);
+        if pair.known_light().is_some() {
+            return Ok(None);
+        }
+        let weight = pair.options.weights.light;
+        let fit = self.fitter.fit(&self.depth_normals, pair.log(), &pair.prior, weight)?;
+        self.residual = fit.residual;
+        Ok(Some(fit.light))
+    }
+
+    fn bring_normals(&mut self, solution: &Solution, correspondences: &Correspondences) {
+        let rotation = solution.pose.rotation.cast::<f32>();
+        for (pixel, &index) in correspondences.depth_of_pixel().iter().enumerate() {
+            let normal = usize::try_from(index).ok().map(|index| solution.depth.normals.get(index));
+            let rotated = normal.map_or([f32::NAN; 3], |normal| (rotation * Vector3::from(normal)).into());
+            self.depth_normals.set(pixel, rotated);
+        }
+    }
+
+    /// Normals of the depth view at the image's pixels, colour view's frame, as the last fit saw them.
+    pub const fn depth_normals(&self) -> &Normals {
+        &self.depth_normals
+    }
+
+    /// By how much an exposure differs from the one that the colours alone suggest.
+    pub fn exposure_change(&self, exposure: f64) -> f64 {
+        exposure - self.first_exposure
+    }
+
+    /// Median log residual that the fitted light leaves; zero for a known light.
+    pub const fn residual(&self) -> f64 {
+        self.residual
+    }
+
+    /// Weights of the normals' terms. Colours that even the fitted light leaves unexplained (texture, cast shadows) have a
+    /// larger variance and weigh less, which is to say that the prior weighs more.
+    pub fn weights(&self, pair: &Pair, prior: f64) -> ShadingWeights {
+        let variance_inflation = (self.residual / EXPLAINED).max(1.0).powi(2);
+        robust_weights((prior * variance_inflation) as f32, pair.options.weights.unit as f32)
+    }
+}
+
+/// Weights of a robust prior and of the unit length.
+pub const fn robust_weights(prior: f32, unit: f32) -> ShadingWeights {
+    ShadingWeights { prior, unit, robust: Some(PRIOR_SCALE) }
+}

@@ -1,0 +1,20 @@
+//! The stages of an iteration. Each owns what it remembers from one iteration to the next, reads the [`Pair`] and parts of
+//! the [`Solution`], and writes nothing but what its signature lends it mutably or what it returns.
+//!
+//! [`Pair`]: super::pair::Pair
+//! [`Solution`]: super::solution::Solution
+
+mod colours;
+mod correspondences;
+mod light;
+mod refinement;
+mod registration;
+mod shape;
+mod surfaces;
+
+pub use colours::{Attempt, ColourRegistration};
+pub use correspondences::correspondence_problem;
+pub use light::{Inputs, LightStage};
+pub use refinement::{RefinementStage, RefinementTask, terms_from_numbers};
+pub use registration::{Registered, RegistrationStage};
+pub use shape::{ShapeStage, exposure_rounds};

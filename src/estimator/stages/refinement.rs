@@ -1,0 +1,180 @@
+//! The refinement of the depth view (Eq. 17 to 19) as a stage of the loop, here or in another thread.
+//!
+//! Where the pose will not move, the refinement of an iteration looks at the solution that the iteration starts from: its
+//! light, the normals of its image surface, and where its depth pixels fall. So it asks nothing of the other stages of
+//! the iteration, and a [`Worker`](crate::Worker) may make it while they run: the same to the bit. Both surfaces settle as
+//! before, only that one of them sees the other an iteration late. Where the registration may still move the pose, the
+//! refinement comes after it and looks at what its own iteration found.
+
+use nalgebra::Matrix3;
+
+use crate::error::{Error, ErrorKind, Result};
+use crate::estimator::pair::Pair;
+use crate::estimator::solution::{Accepted, Shape, Solution};
+use crate::light::{COEFFICIENTS, Light};
+use crate::shape::{HeightDomain, RefinementProblem, RefinementTerms, Refiner, Workbench};
+use crate::view::Normals;
+
+use super::light::{Inputs, robust_weights};
+
+/// A refinement for a [`Worker`](crate::Worker).
+pub struct RefinementTask<'a> {
+    /// The shape that it starts from, by its number: each refinement makes the next one.
+    pub shape: u32,
+    /// Light, rotation and weights.
+    pub numbers: Vec<f64>,
+    /// Image columns and rows of the depth pixels, normals (x, y, z) of the image surface, and, for a worker that does
+    /// not hold it, the shape: refined depth and normals (x, y, z).
+    pub planes: Vec<&'a [f32]>,
+}
+
+/// Refines the depth view; owns what lasts from iteration to iteration.
+pub struct RefinementStage {
+    refiner: Refiner,
+    /// What the next refinement looks at, where that is known before its iteration; none where it looks at what its own
+    /// iteration finds.
+    terms: Option<RefinementTerms>,
+    /// Image column and row of each depth pixel, likewise.
+    position: [Vec<f32>; 2],
+    /// Whether a worker has made it.
+    is_made: bool,
+    /// Refined shapes so far, those that were taken back included.
+    shapes: u32,
+}
+
+impl RefinementStage {
+    pub fn new(pair: &Pair) -> Result<Self> {
+        let points = pair.depth.size.len();
+        Ok(Self {
+            refiner: Refiner::new(&pair.depth, &pair.image)?,
+            terms: None,
+            position: [0, 1].map(|_| Vec::with_capacity(points)),
+            is_made: false,
+            shapes: 0,
+        })
+    }
+
+    /// Where the heights of the depth view are unknown.
+    pub const fn domain(&self) -> &HeightDomain {
+        self.refiner.domain()
+    }
+
+    /// Guesses the holes of the measured depth.
+    pub fn fill_holes(&self, pair: &Pair, scratch: &mut Workbench, shape: &mut Shape) -> Result<()> {
+        scratch.fit(pair.depth.size.len());
+        self.refiner.fill(scratch, &pair.depth, &mut shape.points.z)?;
+        shape.place_depth_points(&pair.depth);
+        Ok(())
+    }
+
+    /// At the end of an iteration after which the pose will not move: keeps what the next refinement looks at.
+    pub fn look_ahead(&mut self, inputs: Inputs<'_>, solution: &Solution) {
+        for (kept, found) in self.position.iter_mut().zip(inputs.correspondences.position()) {
+            kept.clear();
+            kept.extend_from_slice(found);
+        }
+        self.terms = Some(terms(inputs, solution));
+    }
+
+    /// The next refinement looks at what its own iteration finds.
+    pub const fn forget(&mut self) {
+        self.terms = None;
+    }
+
+    /// The refined shape is another one now.
+    pub const fn change_shape(&mut self) {
+        (self.terms, self.is_made) = (None, false);
+        self.shapes = self.shapes.wrapping_add(1);
+    }
+
+    /// Whether a worker may make the next refinement.
+    pub const fn is_open(&self) -> bool {
+        self.terms.is_some() && !self.is_made
+    }
+
+    /// The next refinement, for a worker that holds the shape of number `held`.
+    pub fn task<'a>(
+        &'a self,
+        accepted: &'a Accepted,
+        shape: &'a Shape,
+        held: Option<u32>,
+    ) -> Option<RefinementTask<'a>> {
+        if self.is_made {
+            return None;
+        }
+        let [columns, rows] = &self.position;
+        let mut planes = vec![&columns[..], rows];
+        planes.extend(components(accepted.image_normals()));
+        if held != Some(self.shapes) {
+            planes.push(&shape.points.z);
+            planes.extend(components(&shape.normals));
+        }
+        Some(RefinementTask { shape: self.shapes, numbers: terms_to_numbers(self.terms.as_ref()?), planes })
+    }
+
+    /// Whether a worker's refinement of the shape of number `shape` is what is asked for; then it counts as made.
+    pub fn accept(&mut self, shape: u32) -> bool {
+        let is_wanted = self.is_open() && self.shapes == shape;
+        self.is_made |= is_wanted;
+        is_wanted
+    }
+
+    /// Normals and depth of the depth view (Eq. 17 to 19), unless a worker has made them. Writes the depth view's shape in
+    /// `solution` and nothing else of it.
+    pub fn refine(
+        &mut self,
+        inputs: Inputs<'_>,
+        accepted: &Accepted,
+        scratch: &mut Workbench,
+        solution: &mut Solution,
+    ) {
+        let Inputs { pair, correspondences, .. } = inputs;
+        if !self.is_made {
+            let terms = self.terms.unwrap_or_else(|| terms(inputs, solution));
+            let (image_normals, position) = match self.terms {
+                Some(_) => (accepted.image_normals(), self.position.each_ref().map(Vec::as_slice)),
+                None => (&solution.image.normals, correspondences.position()),
+            };
+            let problem = RefinementProblem { depth: &pair.depth, image: &pair.image, position, image_normals, terms };
+            scratch.fit(pair.depth.size.len());
+            let Shape { normals, points } = &mut solution.depth;
+            self.refiner.refine(scratch, problem, normals, &mut points.z);
+        }
+        self.change_shape();
+        solution.depth.place_depth_points(&pair.depth);
+    }
+}
+
+fn terms(Inputs { pair, fitted, .. }: Inputs<'_>, solution: &Solution) -> RefinementTerms {
+    RefinementTerms {
+        light: solution.light.total(),
+        rotation: solution.pose.rotation,
+        weights: fitted.weights(pair, pair.options.weights.refinement),
+        colour_error: fitted.residual(),
+    }
+}
+
+/// Light, rotation, the weights of prior and unit length, the colours' error.
+fn terms_to_numbers(terms: &RefinementTerms) -> Vec<f64> {
+    let RefinementTerms { light, rotation, weights, colour_error } = terms;
+    let rest = [f64::from(weights.prior), f64::from(weights.unit), *colour_error];
+    [&light.flat()[..], rotation.as_slice(), &rest].concat()
+}
+
+/// The terms of a [`RefinementTask`]'s numbers.
+pub fn terms_from_numbers(numbers: &[f64]) -> Result<RefinementTerms> {
+    let (light, rest) = numbers.split_at(COEFFICIENTS.min(numbers.len()));
+    let &[xx, yx, zx, xy, yy, zy, xz, yz, zz, prior, unit, colour_error] = rest else {
+        return Err(Error::new(ErrorKind::Size, "numbers", "are not those of a refinement"));
+    };
+    Ok(RefinementTerms {
+        light: Light::from_slice("numbers", light)?,
+        rotation: Matrix3::new(xx, xy, xz, yx, yy, yz, zx, zy, zz),
+        weights: robust_weights(prior as f32, unit as f32),
+        colour_error,
+    })
+}
+
+fn components(normals: &Normals) -> [&[f32]; 3] {
+    [&normals.x, &normals.y, &normals.z]
+}

@@ -1,0 +1,55 @@
+//! What an estimator gives to workers and takes from them. Whatever they do or fail to do, the outcome is the same to the
+//! bit.
+
+use crate::estimator::{Estimator, RefinementTask, Run, memory};
+use crate::report::Stage;
+use crate::view::Normals;
+
+use super::task::{Finding, Task};
+
+impl Estimator {
+    /// How many [`Worker`](crate::Worker)s may work beside this estimator within the memory of a pair.
+    #[must_use]
+    pub fn workers_afforded(&self) -> u32 {
+        memory::workers_afforded(self.pair.image.size, self.pair.depth.size)
+    }
+
+    /// A part of the initialisation for a [`Worker`](crate::Worker); `None` while there is none to give away.
+    pub fn take_task(&mut self) -> Option<Task> {
+        match &mut self.run {
+            Run::Searching(initialisation) => initialisation.take(),
+            _ => None,
+        }
+    }
+
+    /// Takes in what a worker has found. What is no longer needed is passed over.
+    pub fn accept_finding(&mut self, finding: Finding) {
+        if let Run::Searching(initialisation) = &mut self.run {
+            initialisation.accept(finding);
+        }
+    }
+
+    /// The next refinement, for a worker that holds the shape of number `held`; `None` where it depends on what is still
+    /// to be found.
+    #[must_use]
+    pub fn refinement_task(&self, held: Option<u32>) -> Option<RefinementTask<'_>> {
+        self.refinement.task(&self.accepted, &self.solution.depth, held)
+    }
+
+    /// Whether there are stages left before a refinement that a worker may be making.
+    #[must_use]
+    pub fn precedes_refinement(&self) -> bool {
+        matches!(self.run, Run::Iterating(stage) if stage != Stage::Refinement) && self.refinement.is_open()
+    }
+
+    /// Where to put the shape that a worker has made of the one with number `shape`: refined depth and normals (x, y, z).
+    /// `None` unless the next stage asks for it.
+    pub fn accept_refinement(&mut self, shape: u32) -> Option<[&mut [f32]; 4]> {
+        if !matches!(self.run, Run::Iterating(Stage::Refinement)) || !self.refinement.accept(shape) {
+            return None;
+        }
+        let depth = &mut self.solution.depth;
+        let Normals { x, y, z } = &mut depth.normals;
+        Some([&mut depth.points.z, x, y, z])
+    }
+}

@@ -1,0 +1,82 @@
+//! Does parts of an estimator's work for it, in another thread with an instance of its own.
+
+use crate::error::Result;
+use crate::estimator::initialisation::search;
+use crate::estimator::pair::Pair;
+use crate::estimator::stages::{Attempt, ColourRegistration};
+use crate::options::Options;
+use crate::pose::{ImageGrid, PhotometricReport, Search, Similarity};
+use crate::view::{ColourImage, DepthMap};
+
+use super::refinement::RefinementWorker;
+use super::task::{Finding, Found, RegisteredCandidate, Task, Work};
+
+/// Does tasks of the initialisation, and later refinements, for an [`Estimator`](crate::Estimator) of the same pair and
+/// options. What it finds does not depend on what it did before, but for the shape that its last refinement has left.
+pub struct Worker {
+    pair: Pair,
+    /// What the initialisation needs, and what refinements do: one gives way to the other.
+    initialisation: Option<(ColourRegistration, Search)>,
+    refinement: Option<RefinementWorker>,
+}
+
+impl Worker {
+    /// A worker for one pair.
+    ///
+    /// # Errors
+    /// Those of [`Estimator::new`](crate::Estimator::new).
+    pub fn new(image: ColourImage, depth: &DepthMap, options: Options) -> Result<Self> {
+        Ok(Self { pair: Pair::new(image, depth, options)?, initialisation: None, refinement: None })
+    }
+
+    /// Does one task of the initialisation, however long it takes.
+    ///
+    /// # Errors
+    /// Those of the search.
+    pub fn perform(&mut self, task: &Task) -> Result<Finding> {
+        let Self { pair, initialisation, refinement } = self;
+        *refinement = None;
+        let (colours, search) = match initialisation {
+            Some(memory) => memory,
+            none => {
+                let colours = ColourRegistration::new(pair);
+                let search = search(pair, ImageGrid::new(&pair.image)?, &colours)?;
+                none.insert((colours, search))
+            }
+        };
+        Ok(Finding(match &task.0 {
+            Work::Search(task) => Found::Search(search.perform(task)),
+            Work::Register(index, start) => {
+                let report = register(pair, colours, start);
+                Found::Registered(*index, report.map(RegisteredCandidate::of))
+            }
+        }))
+    }
+
+    /// Makes a refinement: `load` puts the planes of its [`RefinementTask`](crate::RefinementTask) in their places, of which
+    /// those of the shape hold what the last one has left. Refined depth and normals (x, y, z).
+    ///
+    /// # Errors
+    /// [`ErrorKind::Size`](crate::ErrorKind::Size) where `numbers` are not those of a task.
+    pub fn refine(&mut self, numbers: &[f64], load: impl FnOnce([&mut [f32]; 9])) -> Result<[&[f32]; 4]> {
+        let Self { pair, initialisation, refinement } = self;
+        *initialisation = None;
+        let refinement = match refinement {
+            Some(memory) => memory,
+            none => none.insert(RefinementWorker::new(pair)?),
+        };
+        load(refinement.planes());
+        refinement.refine(pair, numbers)
+    }
+}
+
+/// The whole registration of one candidate.
+fn register(pair: &Pair, colours: &mut ColourRegistration, start: &Similarity) -> Option<Box<PhotometricReport>> {
+    let mut attempt = colours.step_candidate(pair, start, true);
+    loop {
+        match attempt {
+            Attempt::Ongoing => attempt = colours.step_candidate(pair, start, false),
+            Attempt::Ended(report) => return report,
+        }
+    }
+}
