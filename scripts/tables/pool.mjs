@@ -2,22 +2,22 @@
 import { fork } from "node:child_process";
 import { inRoot } from "../shell.mjs";
 
-const WORKER = inRoot("scripts/tables/worker.mjs");
+const CELLS = inRoot("scripts/tables/worker.mjs");
 /** A cell that ends its process so often fails. A process, not a thread: when Node itself breaks, the others go on. */
 const MOST_TRIES = 2;
 
 /**
  * Runs all cells; `onResult(id, result, took)` gets each one's as it comes. Resolves when all are done, or, once `signal` is
- * aborted, when those at work have been given up.
+ * aborted, when those at work have been given up. `program` is what each process runs.
  */
-export function runCells(cells, { workers, signal, onResult }) {
+export function runCells(cells, { workers, signal, onResult, program = CELLS }) {
   const waiting = cells.map((cell) => ({ cell, tries: 0 }));
   return new Promise((done) => {
     const children = new Set();
     const finish = () => children.size === 0 && done();
 
     function hire() {
-      const child = fork(WORKER, { stdio: ["ignore", "inherit", "inherit", "ipc"] });
+      const child = fork(program, { stdio: ["ignore", "inherit", "inherit", "ipc"] });
       children.add(child);
       let task;
       const next = () => {

@@ -1,0 +1,146 @@
+// npm run answers: whether a redesign gives the answers that were there before it.
+//   --against FOLDER  compares with the package in the pkg/ of another checkout, every pixel; else with the committed figures
+//   --write           writes the figures anew; empty scripts/answers/reasons.mjs then
+//   --scalar          the .wasm without SIMD, whose figures are the same
+//   --only WORDS      scenes whose names contain them
+//   --built           pkg/ as it is, unbuilt
+//   --processes N     two by default; the answers do not depend on it
+//
+// Sixty scenes (scripts/answers/scenes.mjs) go through the package's public contract: sizes 32 to 160, every surface, light, option,
+// kind of input and way to drive the loop, ends that are lost included. Two packages side by side differ by nothing where nothing
+// was reordered, and have to agree on status, iterations, missing values and correspondences, on the pose within 1e-6 degrees, and on
+// heights (pixels), normals, light and residuals within 1e-5 (scripts/answers/compare.mjs has all limits). A sum that was reordered
+// and moved more has its line in scripts/answers/reasons.mjs, up to 1e-3 degrees. The wording of a message may change, its numbers may not.
+// The committed figures keep of each raster the pixels that have values, mean, spread and some samples. WebAssembly computes the same
+// on any processor; the scenes are rendered partly in JavaScript, whose Math.exp, log, sin, cos and ** may round otherwise in
+// another version of Node (these are of Node 20). Then "the pair itself" differs, and --against is the way to compare.
+// It takes about two minutes for each package on two processors, which is why `npm test` leaves it out.
+import { existsSync, readFileSync, writeFileSync } from "node:fs";
+import { join, resolve } from "node:path";
+import { parseArgs } from "node:util";
+import { EXCUSED, LIMITS, compare } from "./answers/compare.mjs";
+import { neglected } from "./answers/contract.mjs";
+import { SAMPLED } from "./answers/figures.mjs";
+import { REASONS } from "./answers/reasons.mjs";
+import { SCENES } from "./answers/scenes.mjs";
+import { build } from "./build.mjs";
+import { setup } from "./setup.mjs";
+import { Failure, inRoot, root, say, script, seconds } from "./shell.mjs";
+import { runCells } from "./tables/pool.mjs";
+import { columns } from "./tables/print.mjs";
+
+const FIGURES = inRoot("scripts/answers/figures.json");
+/** Progress is told after so many scenes. */
+const TOLD_EVERY = 10;
+
+function parsed() {
+  const [flag, text] = [{ type: "boolean", default: false }, { type: "string" }];
+  const options = { against: text, write: flag, scalar: flag, only: text, built: flag, processes: { ...text, default: "2" } };
+  let given;
+  try {
+    given = parseArgs({ options }).values;
+  } catch (error) {
+    throw new Failure(error.message);
+  }
+  const { against, write, only = "", processes } = given;
+  const scenes = SCENES.filter(({ name }) => name.includes(only));
+  const unknown = REASONS.find(({ scene }) => !SCENES.some(({ name }) => name === scene));
+  if (scenes.length === 0) throw new Failure(`No scene's name contains "${only}".`);
+  if (write && (only || against)) throw new Failure("--write takes all scenes of this package: without --only and --against.");
+  if (!(Number.isInteger(Number(processes)) && Number(processes) > 0)) throw new Failure(`--processes must be a whole number above zero, not "${processes}".`);
+  if (unknown) throw new Failure(`scripts/answers/reasons.mjs: there is no scene "${unknown.scene}".`);
+  const other = against === undefined ? undefined : resolve(against);
+  if (other && !existsSync(join(other, "pkg/package.json"))) throw new Failure(`${other} has no pkg/: run "npm run build" there.`);
+  return { ...given, scenes, processes: Number(processes), against: other };
+}
+
+/** Results of all scenes by name. */
+async function answers({ scenes, against, scalar, processes }) {
+  const results = new Map();
+  await runCells(scenes.map(({ name }) => ({ id: name, folder: root, against, scalar })), {
+    workers: processes,
+    signal: new AbortController().signal,
+    program: inRoot("scripts/answers/worker.mjs"),
+    onResult(id, result) {
+      results.set(id, result);
+      if (results.size % TOLD_EVERY === 0) say(`${results.size} of ${scenes.length} scenes`);
+    },
+  });
+  const failed = scenes.filter(({ name }) => results.get(name).failure);
+  if (failed.length === 0) return results;
+  const lines = failed.map(({ name }) => `  ${name}: ${results.get(name).failure.message}`);
+  throw new Failure(`${failed.length} scenes failed:\n${lines.join("\n")}`);
+}
+
+/** "same", "within", "moved" where a reason says why, or "OVER". */
+function verdict(name, { columns: measured, disagreements }) {
+  if (disagreements.length > 0) return "OVER";
+  const moved = REASONS.filter(({ scene }) => scene === name).flatMap((reason) => reason.moved);
+  const over = Object.keys(LIMITS).filter((column) => !(measured[column] <= LIMITS[column]));
+  if (over.some((column) => !(moved.includes(column) && measured[column] <= EXCUSED * LIMITS[column]))) return "OVER";
+  if (over.length > 0) return "moved";
+  return Object.values(measured).every((value) => value === 0) ? "same" : "within";
+}
+
+const shown = (value) => (value === 0 ? "0" : Number.isFinite(value) ? value.toExponential(1) : "missing");
+
+/** Prints a line for each scene and what there is to say about some; returns how many are over the limits. */
+function report(rows) {
+  const names = Object.keys(LIMITS);
+  const line = (name, status, values, found) => [name, status, ...names.map((column) => shown(values[column])), found];
+  const lines = rows.map(({ name, status, verdict: found, comparison }) => line(name, status, comparison.columns, found));
+  console.log(`\n${columns([["scene", "status", ...names, ""], line("at most", "", LIMITS, ""), ...lines]).join("\n")}\n`);
+  for (const { name, comparison } of rows) {
+    for (const line of comparison.disagreements) console.log(`  ${name}: ${line}`);
+    if (comparison.reworded) console.log(`  ${name}: reworded: ${comparison.reworded.map((text) => `"${text}"`).join(" -> ")}`);
+  }
+  for (const { scene, moved, sum } of REASONS) console.log(`  ${scene}: ${moved.join(", ")}: ${sum}`);
+  const worst = names.map((column) => `${column} ${shown(Math.max(...rows.map(({ comparison }) => comparison.columns[column])))}`);
+  const count = (word) => rows.filter((row) => row.verdict === word).length;
+  say(`largest: ${worst.join(", ")}`);
+  const kinds = [["same", "the same"], ["within", "within the limits"], ["moved", "moved with a reason"], ["OVER", "over"]];
+  say(`${rows.length} scenes: ${kinds.map(([word, words]) => `${count(word)} ${words}`).join(", ")}`);
+  return count("OVER");
+}
+
+function checkCoverage(results) {
+  const rare = neglected([...results.values()].map(({ uses }) => uses));
+  const list = rare.map(({ member, count }) => `${member} (${count})`).join(", ");
+  if (rare.length > 0) throw new Failure(`Too few scenes make use of ${list}.`);
+}
+
+/** A scene a line, so that a change shows where it is. */
+const written = (figures) => `{\n${figures.map(([name, figure]) => `${JSON.stringify(name)}: ${JSON.stringify(figure)}`).join(",\n")}\n}\n`;
+
+/** Figures as they are once written and read. */
+const asWritten = (figure) => JSON.parse(JSON.stringify(figure));
+
+function againstFigures(scenes, results) {
+  const figures = JSON.parse(readFileSync(FIGURES, "utf8"));
+  const missing = scenes.find(({ name }) => !figures[name]);
+  if (missing) throw new Failure(`There are no figures of "${missing.name}": run it with --write.`);
+  return scenes.map(({ name }) => {
+    const figure = asWritten(results.get(name).figure);
+    return { name, status: figure.report.status, comparison: compare(figures[name], figure, SAMPLED) };
+  });
+}
+
+await script(async () => {
+  const given = parsed();
+  const start = performance.now();
+  if (!given.built) {
+    await setup();
+    await build();
+  }
+  const results = await answers(given);
+  if (given.scenes.length === SCENES.length) checkCoverage(results);
+  if (given.write) {
+    const text = written(given.scenes.map(({ name }) => [name, results.get(name).figure]));
+    writeFileSync(FIGURES, text);
+    return say(`wrote ${FIGURES} (${(text.length / 1000).toFixed(0)} kB, ${seconds(start)})`);
+  }
+  const rows = given.against ? given.scenes.map(({ name }) => ({ name, ...results.get(name) })) : againstFigures(given.scenes, results);
+  const over = report(rows.map((row) => ({ ...row, verdict: verdict(row.name, row.comparison) })));
+  say(seconds(start));
+  if (over > 0) throw new Failure(`${over} scenes give other answers.`);
+});

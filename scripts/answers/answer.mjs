@@ -1,0 +1,78 @@
+// One scene run by one package, and everything that came out of it.
+import { createHash } from "node:crypto";
+import { usesOf } from "./contract.mjs";
+import { optionsOf, pairOf } from "./pairs.mjs";
+
+/** No scene goes on longer, unless it says so; what does not converge by then is compared where it stands. */
+const MOST_ITERATIONS = 25;
+/** Steps before a reset. */
+const BEFORE_RESET = 12;
+
+const steps = {
+  step: (estimator) => estimator.step(),
+  stage: (estimator) => estimator.stepStage(),
+  time: (estimator) => estimator.stepFor(Infinity),
+};
+
+async function drive(estimator, way, options) {
+  if (way.reset) {
+    await estimator.run({ maxIterations: BEFORE_RESET });
+    estimator.reset(options);
+  }
+  if (way.stop) return estimator.run({ maxIterations: way.stop });
+  if (!steps[way]) return estimator.run();
+  let report = estimator.report;
+  while (report.status === "running") report = steps[way](estimator);
+  return report;
+}
+
+/** Length of a pixel at the middle of the surface, in the view's units: one where it is orthographic. */
+const pixelOf = ({ camera }, middle) => (camera ? middle / camera.fx : 1);
+/** Lengths in pixels; where the pixel is the unit, to the bit. */
+const inPixels = (lengths, pixel) => (pixel === 1 ? lengths : Float64Array.from(lengths, (length) => length / pixel));
+
+/** What goes into the estimator, as one word. */
+function fingerprint(views) {
+  const hash = createHash("sha256");
+  for (const view of views) {
+    for (const array of [view.data, view.points, view.normals, view.mask].filter(Boolean)) {
+      hash.update(new Uint8Array(array.buffer, array.byteOffset, array.byteLength));
+    }
+  }
+  return hash.digest("hex").slice(0, 12);
+}
+
+function everything(estimator, { image, depth, middle }) {
+  const { milliseconds, ...report } = estimator.report;
+  const pixels = { image: pixelOf(image, middle), depth: pixelOf(depth, middle) };
+  return {
+    report,
+    light: [...estimator.light()],
+    pixel: pixels.image,
+    correspondence: estimator.correspondence(),
+    rasters: {
+      imageDepth: inPixels(estimator.imageDepth(), pixels.image),
+      refinedDepth: inPixels(estimator.refinedDepth(), pixels.depth),
+      imageNormals: estimator.imageNormals(),
+      depthNormals: estimator.depthNormals(),
+      residual: estimator.residual(),
+      imagePoints: inPixels(estimator.points("image"), pixels.image),
+      depthPoints: inPixels(estimator.points("depth"), pixels.image),
+    },
+  };
+}
+
+/** The pair is made by the same package, so that what `sample` renders is compared as well. */
+export async function answerOf(scene, api) {
+  const made = pairOf(scene, api);
+  const options = { maxIterations: MOST_ITERATIONS, ...optionsOf(scene.options ?? {}, made) };
+  const way = scene.drive ?? "run";
+  const first = way.reset ? { ...options, ...optionsOf(way.reset, made) } : options;
+  const estimator = new api.Estimator(made.image, made.depth, first);
+  try {
+    await drive(estimator, way, options);
+    return { input: fingerprint([made.image, made.depth]), uses: usesOf(made, options, way), ...everything(estimator, made) };
+  } finally {
+    estimator.free();
+  }
+}

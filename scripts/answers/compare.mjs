@@ -1,0 +1,112 @@
+// How far two answers to one scene lie apart, and what may be.
+import { degreesBetween } from "../tables/protocol/rotations.mjs";
+
+/**
+ * Largest differences of a redesign that only reorders sums. Lengths are in pixels: of an orthographic view its unit, of a view
+ * with a camera a pixel's length at the middle of the surface. At 128 pixels and more one bit of a 32-bit depth is 1.5e-5.
+ */
+export const LIMITS = {
+  /** Of the rotation, and of the rivals' rotations. */
+  degrees: 1e-6,
+  /** Relative: at 80 pixels from the middle it moves a point as far as a height may move. */
+  scale: 1e-7,
+  translation: 1e-5,
+  /** `imageDepth` and `refinedDepth`. */
+  heights: 1e-5,
+  /** `imageNormals` and `depthNormals`. */
+  normals: 1e-5,
+  /** Coefficients, and residuals of log S. */
+  light: 1e-5,
+  residual: 1e-5,
+  /** `points` of both views. */
+  points: 1e-5,
+  /** Relative: objective terms, overlap, inliers, residual, sigmas; the rotation's last change in degrees counts with `degrees`. */
+  report: 1e-5,
+};
+/** Even where a reason is given (reasons.mjs): 1e-3 degrees. */
+export const EXCUSED = 1000;
+/** Numbers of a report below it count as absolute. */
+const LEAST_NUMBER = 1e-6;
+
+/** Rasters of each column; their lengths are in pixels. */
+const RASTERS = {
+  heights: ["imageDepth", "refinedDepth"],
+  normals: ["imageNormals", "depthNormals"],
+  residual: ["residual"],
+  points: ["imagePoints", "depthPoints"],
+};
+
+const apart = (a, b) => (a === b ? 0 : Math.abs(a - b));
+const relative = (a, b) => apart(a, b) / Math.max(Math.abs(a), Math.abs(b), LEAST_NUMBER);
+/** Largest of some differences; what is no number differs beyond measure. */
+const largest = (values) => values.reduce((most, value) => (value <= most ? most : Number.isNaN(value) ? Infinity : value), 0);
+
+/** Largest difference of two lists; `null` and a missing list equal only themselves. */
+function listsApart(a, b, measure = apart) {
+  if (!a || !b || a.length !== b.length) return (a ?? null) === (b ?? null) ? 0 : Infinity;
+  return largest(a.map((value, index) => ((value === null) !== (b[index] === null) ? Infinity : measure(value, b[index]))));
+}
+
+/** Everything in a report that is a number and neither a pose nor a count. */
+function numbersOf({ energy, overlap, inliers, residual, uncertainty }) {
+  const { rotationDegrees = [], translation = [], scale = null } = uncertainty ?? {};
+  return [...Object.keys(energy).sort().map((term) => energy[term]), overlap, inliers, residual, ...rotationDegrees, ...translation, scale];
+}
+
+/** Words are wording, numbers are answers. */
+const numbersIn = (message = "") => message.match(/-?\d+(\.\d+)?(e-?\d+)?/g)?.join(" ") ?? "";
+
+/** What may not differ at all, in words. */
+function disagreements(before, after) {
+  const [a, b] = [before.report, after.report];
+  const list = ["status", "iteration", "stage"].filter((key) => a[key] !== b[key]).map((key) => `${key}: ${a[key]} -> ${b[key]}`);
+  const count = ({ rivals = [] }) => rivals.length;
+  if (count(a) !== count(b)) list.push(`rivals: ${count(a)} -> ${count(b)}`);
+  if (a.uncertainty?.weakest !== b.uncertainty?.weakest) list.push(`weakest: ${a.uncertainty?.weakest} -> ${b.uncertainty?.weakest}`);
+  if (numbersIn(a.message) !== numbersIn(b.message)) list.push(`message: ${a.message} -> ${b.message}`);
+  if (before.input !== after.input) list.push("the pair itself: `sample` renders other numbers");
+  return list;
+}
+
+/**
+ * Two answers, or two figures of answers. `rasterApart(a, b)` is the largest difference of two rasters where both have values,
+ * or Infinity where the pixels that have values differ; `pairsApart(a, b)` says how the correspondences differ, if they do.
+ */
+export function compare(before, after, { rasterApart, pairsApart }) {
+  const [a, b] = [before.report, after.report];
+  const column = (rasters) => largest(rasters.map((name) => rasterApart(before.rasters[name], after.rasters[name])));
+  const rivals = (a.rivals ?? []).map(({ rotation }, index) => degreesBetween(rotation, b.rivals?.[index]?.rotation ?? rotation));
+  const columns = {
+    degrees: largest([degreesBetween(a.pose.rotation, b.pose.rotation), apart(a.rotationChange, b.rotationChange), ...rivals]),
+    scale: relative(a.pose.scale, b.pose.scale),
+    translation: listsApart(a.pose.translation, b.pose.translation) / before.pixel,
+    light: listsApart(before.light, after.light),
+    report: listsApart(numbersOf(a), numbersOf(b), relative),
+  };
+  for (const [name, rasters] of Object.entries(RASTERS)) columns[name] = column(rasters);
+  const pairs = pairsApart(before.correspondence, after.correspondence);
+  return {
+    columns: Object.fromEntries(Object.keys(LIMITS).map((name) => [name, columns[name]])),
+    disagreements: [...disagreements(before, after), ...(pairs ? [`correspondence: ${pairs}`] : [])],
+    reworded: a.message === b.message ? undefined : [a.message, b.message],
+  };
+}
+
+/** For whole answers. */
+export const WHOLE = {
+  rasterApart(a, b) {
+    if (a.length !== b.length) return Infinity;
+    let most = 0;
+    for (let index = 0; index < a.length; index++) {
+      if (Number.isNaN(a[index]) !== Number.isNaN(b[index])) return Infinity;
+      // False where neither has a value.
+      const difference = apart(a[index], b[index]);
+      if (difference > most) most = difference;
+    }
+    return most;
+  },
+  pairsApart(a, b) {
+    const differ = a.reduce((count, partner, index) => count + (partner === b[index] ? 0 : 1), Math.abs(a.length - b.length));
+    return differ === 0 ? undefined : `${differ} of ${a.length} pixels have another partner`;
+  },
+};

@@ -1,0 +1,47 @@
+// Which members of the public contract the scenes make use of: each of them in several, or the list of scenes is not complete.
+
+/** Scenes that each member has to occur in. */
+const LEAST = 3;
+
+const under = (path, ...names) => names.map((name) => `${path}${name}`);
+
+/** Members and values as `namesOf` spells them. Of defaults nothing is asked: scenes that say nothing have them. */
+const MEMBERS = [
+  ...under("sample.surface", ": bust", ": vase", ": ripples", ".heights"),
+  ...under("sample.light", ": colourful", ": window", ": overcast", " of 27 numbers"),
+  ...under("sample.", "size", "height", "protocol: grid", "angles.alpha", "angles.beta", "angles.gamma"),
+  ...under("sample.", "scale", "overlap", "noise", "depthNoise", "holes", "seed"),
+  ...under("image.", "width", "height", "mask", "camera.fx", "camera.distortion", "transfer: srgb", "transfer: linear"),
+  ...under("image.data: ", "Uint8Array", "Uint8ClampedArray", "Uint16Array", "Float32Array"),
+  ...under("depth.", "width", "height", "mask", "camera.fx", "camera.distortion", "unit", "points", "normals"),
+  ...under("depth.data: ", "Float32Array", "Uint16Array"),
+  ...under("options.light", " of 27 numbers"),
+  ...under("options.start", ": identity", ".scale", ".rotation", ".translation", ".angles"),
+  ...under("options.", "scale", "registration: icp", "registration: fixed", "shading: pixel"),
+  ...under("options.lambda.", "prior", "unit", "light", "refinement"),
+  ...under("options.", "annealing", "stopDegrees", "correspondenceDistance", "maxIterations", "seed", "trim", "workers"),
+  ...under("driven by ", "run", "step", "stage", "time", "stop", "reset"),
+];
+
+/** "path.to.member", and with it a word's value, an array's type, a light's length. */
+function namesOf(path, value) {
+  if (typeof value === "string") return [path, `${path}: ${value}`];
+  if (ArrayBuffer.isView(value) || Array.isArray(value)) {
+    return [path, `${path}: ${value.constructor.name}`, `${path} of ${value.length} numbers`];
+  }
+  if (typeof value !== "object") return [path];
+  return [path, ...Object.entries(value).flatMap(([key, member]) => namesOf(`${path}.${key}`, member))];
+}
+
+/** Those that a scene makes use of. */
+export function usesOf({ request = {}, image, depth }, options, way) {
+  const used = Object.entries({ sample: request, image, depth, options }).flatMap(([path, value]) => namesOf(path, value));
+  const all = new Set([...used, `driven by ${typeof way === "string" ? way : Object.keys(way)[0]}`]);
+  return MEMBERS.filter((member) => all.has(member));
+}
+
+/** Members that too few scenes make use of, with their number. */
+export function neglected(uses) {
+  const counts = MEMBERS.map((member) => ({ member, count: uses.filter((used) => used.includes(member)).length }));
+  return counts.filter(({ count }) => count < LEAST);
+}

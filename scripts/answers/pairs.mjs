@@ -1,0 +1,153 @@
+// The pair of views of a scene: rendered by the package's `sample` or in metres, then changed into what the scene asks for.
+import { chance } from "../tables/protocol/numbers.mjs";
+import { aboutAxis, anglesOf, product, turn } from "../tables/protocol/rotations.mjs";
+import { metricPair } from "./metric.mjs";
+
+/** Grid of a relief of our own, samples; its radius is that of its disc. */
+const SIDE = 128;
+const RADIUS = 0.44 * SIDE;
+
+/** Heights over a disc in units of its radius, raised so that none is background. */
+function relief(height) {
+  const heights = new Float32Array(SIDE * SIDE);
+  for (let index = 0; index < heights.length; index++) {
+    const [x, y] = [index % SIDE, Math.floor(index / SIDE)].map((at) => (at - (SIDE - 1) / 2) / RADIUS);
+    heights[index] = x * x + y * y < 0.98 ? RADIUS * (1 + height(x, y)) : NaN;
+  }
+  return { width: SIDE, height: SIDE, heights };
+}
+
+/** Surfaces beside the built-in ones. A ball looks the same after any turn and does not tell its pose. */
+const RELIEFS = {
+  ball: (x, y) => Math.sqrt(Math.max(0, 1 - x * x - y * y)),
+  hills(x, y) {
+    const hill = 0.25 / (1 + 20 * ((x - 0.3) ** 2 + (y + 0.4) ** 2));
+    const hollow = 0.3 / (1 + 15 * ((x + 0.4) ** 2 + y * y));
+    return 0.4 - 0.5 * x * x - 0.3 * y * y + hill - hollow;
+  },
+};
+/** A light of nobody's: neither built in nor natural. */
+const OWN_LIGHT = [
+  ...[-1.1, 0.3, -0.5, 0.4, 0.05, 0.1, 0.1, -0.1, 0.05],
+  ...[-1.2, -0.4, -0.45, 0.1, -0.1, 0.05, -0.05, 0.12, 0.1],
+  ...[-1.0, 0.1, -0.6, -0.45, 0.1, -0.1, 0.05, 0.1, -0.1],
+];
+
+const lightOf = (light) => (light === "own" ? OWN_LIGHT : light);
+
+function sampled(request, { sample }) {
+  const { surface, light, ...rest } = request;
+  const complete = { surface: RELIEFS[surface] ? relief(RELIEFS[surface]) : surface, light: lightOf(light), ...rest };
+  return { ...sample(complete), request: complete };
+}
+
+function metric({ light, ...request }, { sample }) {
+  // The package says what its lights are.
+  const numbers = sample({ surface: "bust", light: lightOf(light), size: 16 }).light;
+  return metricPair(request, numbers);
+}
+
+/** IEC 61966-2-1, from linear intensity to what a file holds; both 0 .. 1. */
+const toSrgb = (value) => (value <= 0.0031308 ? 12.92 * value : 1.055 * value ** (1 / 2.4) - 0.055);
+
+/** RGBA integers of the given type: the brightest pixel just under what counts as saturated. */
+function integers({ data, mask, ...image }, Type, most, transfer, encode) {
+  const brightest = data.reduce((high, value) => Math.max(high, value), 0);
+  const rgba = new Type(4 * image.width * image.height);
+  for (let index = 0; index < image.width * image.height; index++) {
+    for (let channel = 0; channel < 3; channel++) {
+      rgba[4 * index + channel] = Math.round(0.96 * most * encode(data[3 * index + channel] / brightest));
+    }
+    rgba[4 * index + 3] = most;
+  }
+  return { ...image, mask, data: rgba, ...(transfer ? { transfer } : {}) };
+}
+
+const same = (value) => value;
+const COLOURS = {
+  "8 bit, sRGB": (image) => integers(image, Uint8Array, 255, undefined, toSrgb),
+  "8 bit, linear": (image) => integers(image, Uint8ClampedArray, 255, "linear", same),
+  "8 bit clamped, sRGB": (image) => integers(image, Uint8ClampedArray, 255, "srgb", toSrgb),
+  "16 bit, guessed": (image) => integers(image, Uint16Array, 65535, undefined, same),
+  "16 bit, linear": (image) => integers(image, Uint16Array, 65535, "linear", same),
+  "16 bit, sRGB": (image) => integers(image, Uint16Array, 65535, "srgb", toSrgb),
+  grey: (image) => ({ ...image, data: new Float32Array(image.data.length).fill(0.5) }),
+};
+
+/** Stored units per unit of the depth map; the default unit is left unsaid. */
+function quantised({ data, ...depth }, unit, isDefault) {
+  const stored = Uint16Array.from(data, (value) => (value > 0 ? Math.round(value / unit) : 0));
+  return { ...depth, data: stored, ...(isDefault ? {} : { unit }) };
+}
+
+/** The orthographic map as an organised cloud. */
+function cloud({ data, ...depth }) {
+  const points = new Float32Array(3 * data.length);
+  for (const [index, value] of data.entries()) {
+    const [column, row] = [index % depth.width, Math.floor(index / depth.width)];
+    points.set(Number.isNaN(value) ? [NaN, NaN, NaN] : [column - (depth.width - 1) / 2, row - (depth.height - 1) / 2, value], 3 * index);
+  }
+  return { ...depth, points };
+}
+
+/** Some pixels float behind the surface, as beside edges they do. */
+function flying(depth, seed = 5) {
+  const dice = chance(seed);
+  const share = 0.03;
+  return { ...depth, data: depth.data.map((value) => (dice.uniform() < share ? value + dice.uniform(0.1, 0.3) * depth.width : value)) };
+}
+
+const without = (key) => ({ [key]: _, ...rest }) => rest;
+
+/** Scenes name what becomes of the depth view; it happens in the order given. */
+const DEPTHS = {
+  "16 bit, 1/200 pixel": (depth) => quantised(depth, 1 / 200, false),
+  "16 bit, millimetres": (depth) => quantised(depth, 0.001, true),
+  "16 bit, 0.2 mm": (depth) => quantised(depth, 0.0002, false),
+  "float, half pixels": (depth) => ({ ...depth, data: depth.data.map((value) => 2 * value), unit: 0.5 }),
+  "with given normals": (depth, made) => ({ ...depth, normals: made.truth.depthNormals }),
+  "as a cloud": cloud,
+  "without normals": without("normals"),
+  "without mask": without("mask"),
+  "flying pixels": (depth) => flying(depth),
+};
+
+/** Turns a start away from the truth; the axis is no axis of symmetry. */
+const AWAY = [0.48, 0.6, 0.64];
+
+/** The pose that a scene is told: so many degrees off the truth about the surface's middle, or about the depth camera. */
+function startOf({ off, about = "middle", members = ["scale", "rotation", "translation"] }, { pose, middle }) {
+  const rotation = product(aboutAxis(AWAY, off), pose.rotation);
+  const stays = [0, 0, about === "middle" ? middle : 0];
+  const [before, after] = [pose.rotation, rotation].map((matrix) => turn(matrix, stays));
+  const translation = pose.translation.map((value, axis) => value + pose.scale * (before[axis] - after[axis]));
+  const all = { scale: pose.scale, rotation, translation, angles: anglesOf(rotation) };
+  return Object.fromEntries(members.map((member) => [member, all[member]]));
+}
+
+/** Median depth of a rendered view. */
+function middleOf({ data, points }) {
+  const depths = (data ?? points.filter((_, index) => index % 3 === 2)).filter((depth) => depth > 0).sort();
+  return depths[Math.floor(depths.length / 2)];
+}
+
+/** The pair of a scene, made by a package; `request` is what `sample` was asked for, `middle` the depth of the surface's middle. */
+export function pairOf({ sample, metric: body, colours, depths = [], maskless = false }, api) {
+  const made = body ? metric(body, api) : sampled(sample, api);
+  const image = colours ? COLOURS[colours](made.image) : made.image;
+  return {
+    ...made,
+    middle: middleOf(made.depth),
+    image: maskless ? without("mask")(image) : image,
+    depth: depths.reduce((depth, change) => DEPTHS[change](depth, made), made.depth),
+  };
+}
+
+/** Options as the estimator takes them: what is known comes from the pair. */
+export function optionsOf({ light, start, ...rest }, made) {
+  return {
+    ...rest,
+    ...(light === undefined ? {} : { light: light === "known" ? made.light : light }),
+    ...(start === undefined ? {} : { start: typeof start === "string" ? start : startOf(start, made) }),
+  };
+}

@@ -1,0 +1,43 @@
+// A process of its own for scenes: one instance of each package, one scene after the other.
+import { readFileSync } from "node:fs";
+import { join } from "node:path";
+import { pathToFileURL } from "node:url";
+import { answerOf } from "./answer.mjs";
+import { WHOLE, compare } from "./compare.mjs";
+import { figureOf } from "./figures.mjs";
+import { SCENES } from "./scenes.mjs";
+
+const packages = new Map();
+
+/** The package that a checkout has built; the file without SIMD has to give the same answers. */
+async function load(folder, scalar) {
+  if (!packages.has(folder)) {
+    const inPackage = (path) => pathToFileURL(join(folder, "pkg", path));
+    const { exports } = JSON.parse(readFileSync(inPackage("package.json"), "utf8"));
+    const api = await import(inPackage(exports["."].node));
+    await (scalar ? api.default(inPackage("bimodal_stereo_scalar_bg.wasm")) : api.default());
+    packages.set(folder, api);
+  }
+  return packages.get(folder);
+}
+
+async function run({ id, folder, against, scalar }) {
+  const scene = SCENES.find(({ name }) => name === id);
+  const answer = await answerOf(scene, await load(folder, scalar));
+  if (against === undefined) return { uses: answer.uses, figure: figureOf(answer) };
+  const before = await answerOf(scene, await load(against, scalar));
+  return { uses: answer.uses, status: answer.report.status, comparison: compare(before, answer, WHOLE) };
+}
+
+process.on("message", async ({ cell }) => {
+  const start = performance.now();
+  let result;
+  try {
+    result = await run(cell);
+  } catch ({ name, code, message }) {
+    result = { failure: { name, code, message } };
+  }
+  process.send({ id: cell.id, result, took: performance.now() - start });
+});
+process.on("disconnect", () => process.exit());
+process.send({ ready: true });
