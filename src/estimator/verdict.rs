@@ -2,7 +2,7 @@
 //!
 //! One pure function: evidence in, status and message out. First it decides whether the loop goes on; an end that looks
 //! good is then held against what the registration by colours says of its own answer, and may turn out to be ambiguous
-//! or lost. `docs/method.md`, section 13, lists the thresholds with the data they were calibrated on.
+//! or lost. `docs/method.md`, section 16, lists the thresholds with the data they were calibrated on.
 
 use crate::options::{Registration, Shading};
 use crate::report::Status;
