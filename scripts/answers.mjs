@@ -1,7 +1,7 @@
 // npm run answers: whether a redesign gives the answers that were there before it.
 //   --against FOLDER  compares with the package in the pkg/ of another checkout, every pixel; else with the committed figures
 //   --write           writes the figures anew; empty scripts/answers/reasons.mjs then
-//   --scalar          the .wasm without SIMD, whose figures are the same
+//   --scalar          the .wasm without SIMD, with --against alone: its sums run in another order, so that it has figures of its own
 //   --only WORDS      scenes whose names contain them
 //   --built           pkg/ as it is, unbuilt
 //   --processes N     two by default; the answers do not depend on it
@@ -11,10 +11,12 @@
 // was reordered, and have to agree on status, iterations, missing values and correspondences, on the pose within 1e-6 degrees, and on
 // heights (pixels), normals, light and residuals within 1e-5 (scripts/answers/compare.mjs has all limits). A sum that was reordered
 // and moved more has its line in scripts/answers/reasons.mjs, up to 1e-3 degrees. The wording of a message may change, its numbers may not.
-// The committed figures keep of each raster the pixels that have values, mean, spread and some samples. WebAssembly computes the same
-// on any processor; the scenes are rendered partly in JavaScript, whose Math.exp, log, sin, cos and ** may round otherwise in
-// another version of Node (these are of Node 20). Then "the pair itself" differs, and --against is the way to compare.
-// It takes about two minutes for each package on two processors, which is why `npm test` leaves it out.
+// The committed figures keep of each raster the pixels that have values, mean, spread and some samples. They are of the .wasm with SIMD,
+// which computes the same on any processor that has it; on one without it --against is the way to compare. So it is where another
+// version of Node rounds Math.exp, log, sin, cos or ** otherwise (the figures are of Node 20): the scenes are rendered partly in
+// JavaScript, and "the pair itself" differs. How much the order of sums can do: between the two .wasm files rotations differ by 1e-8 to
+// 1e-4 degrees, heights by up to 1e-2 pixels, and one run of the paper's loop ends after 4 iterations instead of 8.
+// It takes a minute of computing for each package, which is why `npm test` leaves it out.
 import { existsSync, readFileSync, writeFileSync } from "node:fs";
 import { join, resolve } from "node:path";
 import { parseArgs } from "node:util";
@@ -43,15 +45,17 @@ function parsed() {
     throw new Failure(error.message);
   }
   const { against, write, only = "", processes } = given;
+  const count = Number(processes);
   const scenes = SCENES.filter(({ name }) => name.includes(only));
   const unknown = REASONS.find(({ scene }) => !SCENES.some(({ name }) => name === scene));
   if (scenes.length === 0) throw new Failure(`No scene's name contains "${only}".`);
   if (write && (only || against)) throw new Failure("--write takes all scenes of this package: without --only and --against.");
-  if (!(Number.isInteger(Number(processes)) && Number(processes) > 0)) throw new Failure(`--processes must be a whole number above zero, not "${processes}".`);
+  if (given.scalar && against === undefined) throw new Failure("--scalar needs --against: the committed figures are of the .wasm with SIMD.");
+  if (!(Number.isInteger(count) && count > 0)) throw new Failure(`--processes must be a whole number above zero, not "${processes}".`);
   if (unknown) throw new Failure(`scripts/answers/reasons.mjs: there is no scene "${unknown.scene}".`);
   const other = against === undefined ? undefined : resolve(against);
   if (other && !existsSync(join(other, "pkg/package.json"))) throw new Failure(`${other} has no pkg/: run "npm run build" there.`);
-  return { ...given, scenes, processes: Number(processes), against: other };
+  return { ...given, scenes, processes: count, against: other };
 }
 
 /** Results of all scenes by name. */
@@ -92,7 +96,7 @@ function report(rows) {
   console.log(`\n${columns([["scene", "status", ...names, ""], line("at most", "", LIMITS, ""), ...lines]).join("\n")}\n`);
   for (const { name, comparison } of rows) {
     for (const line of comparison.disagreements) console.log(`  ${name}: ${line}`);
-    if (comparison.reworded) console.log(`  ${name}: reworded: ${comparison.reworded.map((text) => `"${text}"`).join(" -> ")}`);
+    if (comparison.reworded) console.log(`  ${name}: reworded: ${comparison.reworded.map((text) => text ?? "nothing").join(" -> ")}`);
   }
   for (const { scene, moved, sum } of REASONS) console.log(`  ${scene}: ${moved.join(", ")}: ${sum}`);
   const worst = names.map((column) => `${column} ${shown(Math.max(...rows.map(({ comparison }) => comparison.columns[column])))}`);

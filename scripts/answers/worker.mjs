@@ -9,7 +9,7 @@ import { SCENES } from "./scenes.mjs";
 
 const packages = new Map();
 
-/** The package that a checkout has built; the file without SIMD has to give the same answers. */
+/** The package that a checkout has built, with either of its .wasm files. */
 async function load(folder, scalar) {
   if (!packages.has(folder)) {
     const inPackage = (path) => pathToFileURL(join(folder, "pkg", path));
