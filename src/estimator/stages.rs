@@ -107,10 +107,7 @@ impl Estimator {
         }
         let light = self.solution.exposed_light();
         self.solve_relief(&light);
-        if let Some(focal_length) = self.image.camera.focal_length() {
-            let depth_of = |height: f32| (f64::from(height) / focal_length).exp() as f32;
-            self.solution.image_points.z.iter_mut().for_each(|height| *height = depth_of(*height));
-        }
+        self.image.camera.depth_from_heights(&mut self.solution.image_points.z);
         if self.relief.is_some() {
             self.shade_surface(&light);
         }

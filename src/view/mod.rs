@@ -6,6 +6,7 @@ pub mod cubic_normals;
 mod depth;
 mod grid;
 mod halve;
+mod heights;
 mod mask;
 pub mod normals;
 mod trim;
