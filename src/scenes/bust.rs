@@ -1,4 +1,4 @@
-//! A bust: head with hair, face, ears, neck and turned shoulders. Nothing of it is quite symmetric, so that its pose
+//! A bust: head with hair, face, ears, neck and shoulders turned to one side. Nothing of it is quite symmetric, so that its pose
 //! can be observed.
 
 use super::profiles::{bell, bump, dome, overhang, step, union};

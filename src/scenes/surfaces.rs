@@ -1,4 +1,4 @@
-//! Procedural surfaces on the 256 grid: they are ours to ship, and their truth is known.
+//! Procedural surfaces on the 256 grid: free of licences, and their true shape is known.
 
 use std::f64::consts::TAU;
 
@@ -10,7 +10,7 @@ use crate::error::{Error, ErrorKind, Result};
 /// Names of the built-in surfaces.
 pub const NAMES: [&str; 3] = ["bust", "vase", "ripples"];
 
-/// Side of the grid of every built-in surface in samples: that of the protocol (handbook section 4).
+/// Side of the grid of every built-in surface in samples: that of the protocol (docs/method.md, section 15).
 const SIDE: usize = 256;
 
 /// The built-in surface of that name, one of [`NAMES`], as heights on a 256 x 256 grid.
@@ -33,8 +33,8 @@ pub fn surface(name: &str) -> Result<Relief> {
 /// (y, radius) of the vase where its radius is largest or smallest, from lip to foot.
 const PROFILE: [[f64; 2]; 5] = [[-108.0, 41.0], [-72.0, 25.0], [10.0, 66.0], [86.0, 24.0], [110.0, 38.0]];
 
-/// A turned vase. Flutes that wind around its belly, a medallion left of the middle and two unlike handles show by how
-/// much it was turned about its axis.
+/// A vase as from a potter's wheel. Flutes that wind around its belly, a medallion left of the middle and two unlike
+/// handles make its rotation about its axis observable.
 fn vase(x: f64, y: f64) -> f64 {
     let radius = profile(y);
     let shell = round(x / radius, radius);
