@@ -175,10 +175,10 @@ impl Estimator {
                     prior.set(place, self.carried_normals.get(pixel));
                 }
             }
-            found.copy_some(0, &solution.image_normals, &band);
+            found.copy_range(0, &solution.image_normals, &band);
             let log = image.log.each_ref().map(|channel| &channel[band.clone()]);
             self.solver.solve(ShadingProblem { log, prior, light }, weights, found);
-            solution.image_normals.copy_some(band.start, found, &(0..band.len()));
+            solution.image_normals.copy_range(band.start, found, &(0..band.len()));
         }
     }
 

@@ -235,18 +235,19 @@ fn find_slopes(view: &DepthView, normals: &Normals, slopes: &mut [Vec<f32>; 2]) 
 /// (shading error / depth noise)^2, the weight that balances both.
 fn firmness(shading_error: f64, view: &DepthView) -> f32 {
     let Size { width, height } = view.size;
-    let reach = noise::REACH - 1;
+    let reach = noise::NEIGHBOURS - 1;
     let lines = |index: usize| {
         let (column, row) = view.size.position(index);
         [(column + reach < width, 1), (row + reach < height, width)]
     };
     let mut heights = view.depth().to_vec();
     view.camera.heights_from_depth(&mut heights);
-    let bend =
-        |index: usize, step: usize| noise::bend(std::array::from_fn(|k| f64::from(heights[index + k * step]))) as f32;
-    let bends = (0..view.size.len())
-        .flat_map(|index| lines(index).into_iter().filter(|(fits, _)| *fits).map(move |(_, step)| bend(index, step)));
-    balance(shading_error, noise::of_bends(bends, 2 * view.size.len()))
+    let fourth = |index: usize, step: usize| {
+        noise::fourth_difference(std::array::from_fn(|k| f64::from(heights[index + k * step]))) as f32
+    };
+    let fourths = (0..view.size.len())
+        .flat_map(|index| lines(index).into_iter().filter(|(fits, _)| *fits).map(move |(_, step)| fourth(index, step)));
+    balance(shading_error, noise::of_fourth_differences(fourths, 2 * view.size.len()))
 }
 
 /// Depth without noise, as far as anybody can tell, is firm, however exact the colours are.
