@@ -2,12 +2,12 @@
 //! places.
 //!
 //! The method of Zhang, Liu, Wu, Zhang and Wang, "Bimodal Stereo: Joint Shape and Pose Estimation from Color-Depth
-//! Image Pair" (Machine Vision and Applications), stage by stage. Data flows one way; a later room may look into an
-//! earlier one, never the other way round:
+//! Image Pair" (Machine Vision and Applications), stage by stage. Data flows one way: a room looks only into rooms before
+//! it, and no two files of a room import each other (held by `tests/floors`).
 //!
 //! | room | what it holds | the paper |
 //! |---|---|---|
-//! | `error`, `text`, `check` ([`Error`]) | errors as values, numbers in messages, checks of single numbers | |
+//! | `text`, `error`, `check` ([`Error`]) | numbers in messages, errors as values, checks of single numbers | |
 //! | `numeric` | lanes, robust weights, conjugate gradients, cosine and Fourier transforms, ranks, noise | |
 //! | `view` ([`ColourView`], [`DepthView`]) | what comes in: sizes, masks, cameras, log colours, points, normals | input of Algorithm 1 |
 //! | `light` ([`Light`]) | `harmonics` the image model, `prior` the natural lights, `fit` the light of known normals | Eq. 2, 3, 5 |

@@ -1,8 +1,9 @@
-//! The light from normals and colours.
+//! The light from normals and colours (Eq. 2; docs/method.md, section 3).
 //!
 //! Given normals, log S is linear in the light: min over L of
 //! mean_i w_i |log S_i - B(n_i) L|^2 + lambda_L h(L), B the nine harmonics of each channel. The weights w are those of
-//! Geman and McClure at a scale that follows the residuals, so that cast shadows and wrong correspondences lose.
+//! Geman and McClure, their scale a multiple of the median residual, so that cast shadows and wrong correspondences weigh
+//! little.
 
 use std::ops::Range;
 
@@ -10,23 +11,24 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::light::harmonics::{HARMONICS, basis};
 use crate::light::prior::{CoefficientMatrix, Coefficients, LightPrior};
 use crate::light::{Light, Polynomial};
-use crate::numeric::{LANES, Lanes, Real, dot, quantile};
+use crate::numeric::{LANES, Lanes, Real, dot, quantile, robust, thin};
 use crate::view::Normals;
 
-/// Most rounds of reweighting; the weights settle in four to six.
+/// Most rounds of reweighting; the weights settle in four to six (data not recorded).
 const ROUNDS: usize = 8;
-/// Change of the median residual, a share of it, at which they have: their scale follows the median.
+/// Relative change of the median residual at which the weights, whose scale follows it, have settled.
 const SETTLED: f64 = 0.01;
-/// Pixels that the light is fitted to at most, evenly spread: 27 numbers from three colours each, whose noise is averaged
-/// away by far; an object that fills half of 128x128 is taken whole.
+/// Pixels that the light is fitted to at most, evenly spread. There are 27 unknowns and three equations from each pixel, so
+/// noise averages out long before; an object that fills half of 128x128 is taken whole.
 const MOST_PIXELS: usize = 8000;
-/// Residuals beyond this multiple of the median one count for less than a quarter.
+/// The robust scale in median residuals: residuals beyond it keep less than a quarter of their weight (two standard
+/// deviations of normal noise).
 const SCALE_OF_MEDIAN: f64 = 3.0;
-/// Smallest robust scale in log units: the noise of a good 8-bit image.
+/// Smallest robust scale in log units: the noise of a good 8-bit image. Exact colours would make it zero.
 const SMALLEST_SCALE: f64 = 0.005;
-/// Pixels whose terms are summed in f32 before the sums go on in f64: few enough to keep six digits.
+/// Pixels whose terms are summed in f32 before the sum is added to one in f64: few enough to keep six digits.
 const SUMMANDS: usize = 256;
-/// Sums of a harmonic: with the harmonics, then with R, G, B.
+/// Products summed for each harmonic: with the nine harmonics, then with R, G, B.
 const COLUMNS: usize = HARMONICS + 3;
 
 /// A fitted light and how well it explains the colours.
@@ -42,14 +44,15 @@ pub struct LightFit {
 #[derive(Clone, Debug, Default)]
 pub struct LightFitter {
     pixels: Vec<usize>,
-    /// Of these pixels, filled up to whole [`LANES`] with what weighs nothing.
+    /// Normals of these pixels, filled up to whole [`LANES`] with pixels of weight zero.
     normals: Normals,
     /// log S less `offset`.
     colours: [Vec<f32>; 3],
-    /// Mean of log S, which f32 need not carry: a common offset is the exposure's, of which the prior knows nothing.
+    /// Mean of log S, subtracted so that f32 keeps more digits of the rest. It is a change of exposure, to which the prior
+    /// is blind.
     offset: f64,
     weights: Vec<f32>,
-    /// Of these pixels alone.
+    /// One for each pixel, without the filling.
     residuals: Vec<f32>,
     sorted: Vec<f32>,
 }
@@ -58,7 +61,8 @@ impl LightFitter {
     /// Fits 27 coefficients to the pixels that have a normal and a colour.
     ///
     /// `normals` in the colour view's frame and `log` (R, G, B) have the same length; NaN marks what is missing.
-    /// `weight` is lambda_L against the mean squared log residual. Allocates only when there are more pixels than ever.
+    /// `weight` is lambda_L against the mean squared log residual. Allocates only where there are more pixels than in every
+    /// fit before.
     ///
     /// # Errors
     /// [`ErrorKind::Degenerate`] where the normals do not determine the light and `weight` is zero.
@@ -81,8 +85,7 @@ impl LightFitter {
             let scale = (SCALE_OF_MEDIAN * median).max(SMALLEST_SCALE) as f32;
             for (weight, &residual) in self.weights.iter_mut().zip(&self.residuals) {
                 let ratio = residual / scale;
-                let trust = 1.0 / (1.0 + ratio * ratio);
-                *weight = trust * trust;
+                *weight = robust::weight(ratio * ratio);
             }
         }
         let light = light.exposed(self.offset);
@@ -93,7 +96,7 @@ impl LightFitter {
     /// The pixels that count, their normals and colours side by side.
     fn gather(&mut self, normals: &Normals, log: [&[f32]; 3]) {
         self.pixels.clear();
-        // A list that grows takes three times the memory.
+        // A list that grows step by step takes up to three times the memory.
         self.pixels.reserve_exact(normals.len());
         self.pixels.extend((0..normals.len()).filter(|&i| normals.is_valid(i) && !log[0][i].is_nan()));
         thin(&mut self.pixels, MOST_PIXELS);
@@ -186,15 +189,6 @@ impl LightFitter {
     }
 }
 
-/// Keeps at most `most` of the elements, evenly spread.
-fn thin(elements: &mut Vec<usize>, most: usize) {
-    let count = elements.len();
-    if count > most {
-        (0..most).for_each(|k| elements[k] = elements[k * count / most]);
-        elements.truncate(most);
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -235,7 +229,7 @@ mod tests {
     }
 
     #[test]
-    fn without_pixels_the_prior_speaks_and_without_a_prior_nothing_does() {
+    fn without_pixels_and_without_a_prior_there_is_no_light() {
         let none = Normals::missing(4);
         let log = [0.0_f32; 4];
         let prior = LightPrior::natural();
@@ -243,7 +237,7 @@ mod tests {
     }
 
     #[test]
-    fn the_exposure_passes_through() {
+    fn another_exposure_gives_the_same_light_at_that_exposure() {
         let truth = LightPrior::natural().mean();
         let (normals, log) = scene(&truth, false);
         let brighter = [0, 1, 2].map(|c: usize| log[c].iter().map(|v| v + 2.3).collect::<Vec<f32>>());

@@ -1,4 +1,4 @@
-//! log S = n^T M n with n = [n_x n_y n_z 1]: second-order spherical harmonics (Eq. 3, 5).
+//! log S = n^T M n with n = [n_x n_y n_z 1]: second-order spherical harmonics (Eq. 3, 5; docs/method.md, section 2).
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::numeric::Real;
@@ -7,9 +7,11 @@ use crate::text::Brief;
 /// Number of harmonics for each channel.
 pub const HARMONICS: usize = 9;
 
-/// Largest coefficient of a log light: e^100 is a factor that no camera sees, and squares of it still fit f32.
+/// Largest coefficient of a log light: e^100 is a ratio of intensities that no camera records, and squares of 100 are far
+/// from the limits of f32.
 const LARGEST_COEFFICIENT: f64 = 100.0;
 
+// The constants of Ramamoorthi and Hanrahan ("An efficient representation for irradiance environment maps", 2001).
 const C1: f64 = 0.429_043;
 const C2: f64 = 0.511_664;
 const C3: f64 = 0.743_125;
@@ -68,7 +70,7 @@ impl Light {
         self.of_basis(&basis(normal))
     }
 
-    /// The same for a normal whose harmonics are there already.
+    /// log S of a normal by its harmonics.
     #[must_use]
     pub(crate) fn of_basis(&self, basis: &[f64; HARMONICS]) -> [f64; 3] {
         self.0.map(|channel| channel.iter().zip(basis).map(|(l, b)| l * b).sum())

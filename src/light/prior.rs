@@ -1,6 +1,6 @@
-//! h(L) = (L - mu)^T Sigma^-1 (L - mu) with the exposure left free (Eq. 2).
+//! h(L) = (L - mu)^T Sigma^-1 (L - mu) with the exposure left free (Eq. 2; docs/method.md, section 3).
 //!
-//! A common offset of log S is nobody's fault: it is the exposure. It moves L1 of all three channels alike, along
+//! A common offset of log S is the exposure and says nothing about the light. It moves L1 of all three channels alike, along
 //! e = (1 at R1, G1, B1). Minimising h over that direction leaves the precision
 //! P = W^T (I - w w^T / w^T w) W with the whitening W = C^-1 of Sigma = C C^T and w = W e: in whitened
 //! coordinates the prior is a unit ball flattened along w.
@@ -19,7 +19,7 @@ pub type Coefficients = SVector<f64, COEFFICIENTS>;
 /// Matrix over them.
 pub type CoefficientMatrix = SMatrix<f64, COEFFICIENTS, COEFFICIENTS>;
 
-/// A Gaussian over lights, blind to the exposure.
+/// A Gaussian over lights that does not depend on the exposure.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LightPrior {
     mean: Coefficients,
@@ -62,7 +62,7 @@ impl LightPrior {
 
     /// h(L): squared Mahalanobis distance from the mean, least over all exposures.
     #[must_use]
-    pub fn energy(&self, light: &Light) -> f64 {
+    pub fn squared_distance(&self, light: &Light) -> f64 {
         let off = Coefficients::from(light.flat()) - self.mean;
         (self.precision * off).dot(&off)
     }
@@ -92,20 +92,20 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_mean_and_every_exposure_of_it_cost_nothing() {
+    fn the_mean_has_distance_zero_at_every_exposure() {
         let prior = LightPrior::natural();
         for offset in [-3.0, 0.0, 2.5] {
-            assert!(prior.energy(&prior.mean().exposed(offset)).abs() < 1e-9);
+            assert!(prior.squared_distance(&prior.mean().exposed(offset)).abs() < 1e-9);
         }
     }
 
     #[test]
-    fn another_direction_costs_its_mahalanobis_distance_at_most() {
+    fn another_light_has_a_distance() {
         let prior = LightPrior::natural();
         let mut light = prior.mean();
         light.0[0][3] += 1.0;
-        let energy = prior.energy(&light);
-        assert!(energy > 1.0 && energy.is_finite());
+        let distance = prior.squared_distance(&light);
+        assert!(distance > 1.0 && distance.is_finite());
     }
 
     #[test]

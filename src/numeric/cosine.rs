@@ -3,17 +3,18 @@
 //! Method: L has free (Neumann) borders, so the cosines cos(pi k (x + 1/2) / W) are its eigenvectors along a row, with
 //! eigenvalues mu_k = 2 - 2 cos(pi k / W). A cosine transform (DCT-II) of every row leaves, for each k, one tridiagonal
 //! system down the columns with 2 + mu_k + s/c on its diagonal; elimination solves it, the inverse transform (DCT-III)
-//! returns. One transform of every row and back, against two for the transform along both axes, and columns of any
-//! length at no extra price. Cost O(W H log W). Eight rows are transformed at once, see [`Rows`].
+//! returns. That is one transform of every row and back, where transforms along both axes take two, and columns may have
+//! any length. Cost O(W H log W). Eight rows are transformed at once, see [`Rows`].
 //!
-//! A rectangle of an awkward width is solved as a part of a wider one, zero beyond: as a preconditioner that serves as well.
+//! A rectangle whose width has large prime factors is solved as part of a wider one, zero beyond it: a preconditioner need
+//! not be exact (docs/method.md, section 6).
 //!
 //! Limits: without a shift (s = 0) constants are in the null space: f has to sum to zero (its mean is ignored)
 //! and the answer has mean zero. Rounding: about 1e-6 of the largest height at 256x256 (f32 pixels, f64 pivots).
 
 use std::f64::consts::PI;
 
-use super::fourier::{Complex, Fourier, fast_length};
+use super::fourier::rows::{Complex, RowFourier, fast_length};
 use crate::numeric::{LANES, Lanes, Real};
 
 /// Direct solver for one size of rectangle; owns its plan and its scratch memory.
@@ -45,7 +46,7 @@ impl CosineSolver {
             eigenvalues,
             above: vec![0.0; length],
             gain: 0.0,
-            // No ratio yet: whatever is set first differs.
+            // NaN differs from every ratio that may be set first.
             ratio: f64::NAN,
         };
         solver.set(1.0, 0.0);
@@ -86,7 +87,7 @@ impl CosineSolver {
         self.reciprocals.len()
     }
 
-    /// Writes the solution for the right-hand side `field`; both are `width` x `height`. `spectrum` is lent for the work.
+    /// Writes the solution for the right-hand side `field`; both are `width` x `height`. `spectrum` is scratch.
     pub fn solve(&mut self, field: &[f32], spectrum: &mut [f32], solution: &mut [f32]) {
         let (several, length) = (ROWS * self.width, ROWS * self.above.len());
         for (field, spectrum) in field.chunks(several).zip(spectrum.chunks_mut(length)) {
@@ -136,7 +137,7 @@ const ROWS: usize = 2 * LANES;
 /// its Fourier transform and e_k = exp(-i pi k / 2W), e_k V_k = X_k - i X_(W-k), X the cosine transform. V of a row a and
 /// of a row b come out of one transform of a + i b: V_k + conj V_(W-k) is twice that of a.
 struct Rows {
-    fourier: Fourier,
+    fourier: RowFourier,
     /// Of a frequency or a sample: the first four rows and the other four.
     work: Vec<Complex>,
     /// cos and sin of pi k / 2W.
@@ -150,7 +151,7 @@ impl Rows {
             [cos as f32, sin as f32]
         };
         Self {
-            fourier: Fourier::new(length),
+            fourier: RowFourier::new(length),
             work: vec![[Lanes::splat(0.0); 2]; length],
             turns: (0..=length / 2).map(turn).collect(),
         }

@@ -1,6 +1,6 @@
 //! Two pixels side by side: f64 arithmetic that fills one vector register of WebAssembly, see [`lanes`](super::lanes).
 //!
-//! For sums whose differences count: normal equations lose half of their digits when they are solved.
+//! For sums of which small differences matter: solving normal equations loses half of the digits.
 
 use std::ops::{Add, BitAnd, Div, Mul, Sub};
 
@@ -9,20 +9,20 @@ use super::lanes::Real;
 /// Pixels that are worked on at once.
 pub const DOUBLE_LANES: usize = if cfg!(all(target_arch = "wasm32", not(target_feature = "simd128"))) { 1 } else { 2 };
 
-/// Below it [`Doubles::exp2`] says what 2^-1000 is: nothing.
+/// Exponents below this one count as this one: 2^-1000 is as good as zero.
 const LEAST_POWER: f64 = -1000.0;
-/// 1.5 2^52: what is added to it is rounded to an integer, which then is the number's last bits.
+/// 1.5 2^52. A number added to it is rounded to an integer, which is then found in the last bits of the sum.
 const ROUNDING: f64 = 6_755_399_441_055_744.0;
 /// Bits of an f64 behind its exponent.
 const MANTISSA: u32 = 52;
-/// Taylor's series of e^x, from the sixth power down: 2e-7 of the value off at most where |x| < ln(2) / 2.
+/// Taylor's series of e^x, from the sixth power down; its relative error is below 2e-7 where |x| < ln(2) / 2.
 const SERIES: [f64; 7] = [1.0 / 720.0, 1.0 / 120.0, 1.0 / 24.0, 1.0 / 6.0, 0.5, 1.0, 1.0];
 
 /// Two numbers.
 #[derive(Clone, Copy, Debug)]
 pub struct Doubles(arch::Two);
 
-/// A choice for each of two.
+/// True or false for each of two.
 #[derive(Clone, Copy, Debug)]
 pub struct Choices(arch::Choice);
 
@@ -39,7 +39,7 @@ impl Doubles {
         arch::array(self.0)
     }
 
-    /// Of both.
+    /// Sum of both.
     #[inline(always)]
     pub fn sum(self) -> f64 {
         self.array().iter().sum()
@@ -109,13 +109,13 @@ impl Real for Doubles {
 }
 
 impl Choices {
-    /// `yes` where it holds.
+    /// `yes` where it is true, `no` elsewhere.
     #[inline(always)]
     pub fn select(self, yes: Doubles, no: Doubles) -> Doubles {
         Doubles(arch::select(self.0, yes.0, no.0))
     }
 
-    /// The number where it holds, zero elsewhere.
+    /// The number where it is true, zero elsewhere.
     #[inline(always)]
     pub fn keep(self, number: Doubles) -> Doubles {
         self.select(number, Doubles::splat(0.0))

@@ -1,6 +1,6 @@
-//! Arithmetic number by number, as [`lanes`](super::lanes) and [`doubles`](super::doubles) spell it out.
+//! Macros that define the arithmetic of [`lanes`](super::lanes) and [`doubles`](super::doubles) number by number.
 
-/// An operator of a vector, by the function of its `arch` with that name.
+/// Implements an operator of a vector by the function of that name in its module `arch`.
 macro_rules! operator {
     ($type:ident, $name:ident, $method:ident) => {
         impl $name for $type {
@@ -13,7 +13,7 @@ macro_rules! operator {
     };
 }
 
-/// Functions of arrays that do one thing with each number: what `arch` has where there are no vectors.
+/// Defines functions of arrays that treat each number alike: the module `arch` where there are no vector instructions.
 #[cfg(not(all(target_arch = "wasm32", target_feature = "simd128")))]
 macro_rules! each {
     ($($name:ident($a:ident $(, $b:ident)*: $from:ty) -> $to:ty { $body:expr })*) => {

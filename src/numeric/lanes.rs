@@ -1,17 +1,20 @@
 //! Four pixels side by side: f32 arithmetic that fills one vector register of WebAssembly.
 //!
-//! Solvers of single pixels branch too much for the compiler to find the four by itself. Here all four take every
-//! branch and a [`Mask`] chooses. WebAssembly without SIMD takes one pixel at a time: four of each instruction would be a
-//! larger download and no faster. Every operation is rounded as f32 is, so that both agree but for the order of sums.
+//! Solvers of single pixels branch too much for the compiler to vectorise them. Here all four pixels compute both sides
+//! of a branch, and a [`Mask`] selects. WebAssembly without SIMD takes one pixel at a time: four of each instruction would
+//! be a larger download and no faster. Every operation is rounded as f32 is, so that both agree but for the order of sums.
+//!
+//! Why not the crate `wide` (1.7): its vectors are four wide on every target, the one without SIMD included; it has no load
+//! that is padded at the ends of a row, and its masks are numbers, which can be mistaken for values.
 
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Not, Sub};
 
 /// Pixels that are worked on at once.
 pub const LANES: usize = if cfg!(all(target_arch = "wasm32", not(target_feature = "simd128"))) { 1 } else { 4 };
 
-/// What formulas need of a number: one pixel's or several.
+/// What a formula needs of a number, be it one pixel's or several pixels'.
 pub trait Real: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> {
-    /// One pixel's.
+    /// The type of one pixel's number.
     type Scalar: Real<Scalar = Self::Scalar>;
 
     /// The same number everywhere.
@@ -49,11 +52,11 @@ impl Real for f64 {
     }
 }
 
-/// Four numbers.
+/// Four numbers, of four pixels.
 #[derive(Clone, Copy, Debug)]
 pub struct Lanes(arch::Four);
 
-/// A choice for each of four.
+/// True or false for each of four pixels.
 #[derive(Clone, Copy, Debug)]
 pub struct Mask(arch::Choice);
 
@@ -101,13 +104,13 @@ impl Lanes {
         arch::array(self.0)
     }
 
-    /// The four first numbers, the four second ones, and so on.
+    /// The first numbers of all rows, the second ones, and so on.
     #[inline(always)]
     pub fn transpose(rows: [Self; LANES]) -> [Self; LANES] {
         arch::transpose(rows.map(|row| row.0)).map(Self)
     }
 
-    /// Of all four.
+    /// Sum of all four.
     #[inline(always)]
     pub fn sum(self) -> f32 {
         match self.array()[..] {
@@ -174,13 +177,13 @@ impl Real for Lanes {
 }
 
 impl Mask {
-    /// Which of four bytes have one of these bits.
+    /// True for those of four bytes that have one of these bits.
     #[inline(always)]
     pub fn with_bits(bytes: [u8; LANES], bits: u8) -> Self {
         Self(arch::with_bits(bytes, bits))
     }
 
-    /// `yes` where it holds.
+    /// `yes` where the mask is true, `no` elsewhere.
     #[inline(always)]
     pub fn select(self, yes: Lanes, no: Lanes) -> Lanes {
         Lanes(arch::select(self.0, yes.0, no.0))
@@ -197,7 +200,7 @@ impl Mask {
         arch::any(self.0)
     }
 
-    /// Of how many it holds.
+    /// For how many it is true.
     #[inline(always)]
     pub fn count(self) -> usize {
         arch::count(self.0)

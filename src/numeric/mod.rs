@@ -1,4 +1,8 @@
 //! The ground floor: arithmetic that knows nothing of images, lights or poses.
+//!
+//! [`lanes`] and [`doubles`] are numbers of several pixels side by side, `elementwise` the macros that define them;
+//! [`vector`] holds sums over long vectors, [`order`] quantiles, sorting and thinning, [`robust`] robust weights,
+//! [`noise`] the noise of a raster, [`fourier`] and [`cosine`] transforms and the Poisson solver made of them.
 
 #[macro_use]
 mod elementwise;
@@ -9,10 +13,10 @@ pub(crate) mod fourier;
 mod lanes;
 pub(crate) mod noise;
 mod order;
-#[expect(dead_code, reason = "adopted room by room")]
+#[expect(dead_code, reason = "part of it is adopted in later rooms first")]
 pub(crate) mod robust;
 pub(crate) mod vector;
 
 pub(crate) use doubles::{DOUBLE_LANES, Doubles};
 pub(crate) use lanes::{LANES, Lanes, Mask, Real, dot};
-pub(crate) use order::{evenly_spread, quantile, sort_descending};
+pub(crate) use order::{evenly_spread, quantile, sort_descending, thin};

@@ -1,7 +1,8 @@
 //! rho(r) = r^2 / (1 + r^2 / s^2), the robust function of Geman and McClure, and the robust standard deviation.
 //!
-//! Everything here is a function of u = (r / s)^2, the square of a residual in units of the scale s. A residual of one
-//! scale has lost three quarters of its weight, and none costs more than s^2.
+//! Everything here is a function of u = (r / s)^2, the square of a residual in units of the scale s; callers form u, as
+//! their residuals are at hand squared, or divided, or times 1 / s^2. A residual of one scale keeps a quarter of its
+//! weight, and rho never exceeds s^2.
 //! S. Geman, D. McClure: "Bayesian image analysis: an application to single photon emission tomography", 1985.
 
 use super::Real;
@@ -34,7 +35,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_weight_is_the_derivative_of_the_cost() {
+    fn the_weight_is_the_derivative_of_rho() {
         for u in [0.0, 0.3, 1.0, 9.0, 1e6_f64] {
             let step = 1e-6 * (1.0 + u);
             let slope = (saturated(u + step) - saturated((u - step).max(0.0))) / (step + step.min(u));

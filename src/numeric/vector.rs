@@ -12,7 +12,7 @@ pub(crate) fn dot(a: &[f32], b: &[f32]) -> f64 {
     sum_of(a, b, |a, b| f64::from(a) * f64::from(b))
 }
 
-/// Independent partial sums, so that the compiler may use vector registers.
+/// Independent partial sums: the compiler may not reorder one sum, but it may keep eight in vector registers.
 const SUMS: usize = 8;
 
 /// Sum of a function of two vectors' members.
@@ -26,4 +26,25 @@ pub(crate) fn sum_of(a: &[f32], b: &[f32], term: impl Fn(f32, f32) -> f64) -> f6
         }
     }
     sums.iter().sum::<f64>() + rest
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Lengths around multiples of the partial sums; whole numbers, so that no order of sums rounds.
+    #[test]
+    fn sums_are_those_of_a_plain_loop() {
+        for length in [0, 1, 7, 8, 9, 16, 21] {
+            let a: Vec<f32> = (0..length).map(|k| (k * k % 11) as f32 - 4.0).collect();
+            let b: Vec<f32> = (0..length).map(|k| (3 * k % 7) as f32 - 2.0).collect();
+            let expected: f64 = (0..length).map(|k| f64::from(a[k]) * f64::from(b[k])).sum();
+            assert_eq!(dot(&a, &b), expected, "{length}");
+            let expected: f64 = (0..length).map(|k| f64::from(a[k]).max(f64::from(b[k]))).sum();
+            assert_eq!(sum_of(&a, &b, |a, b| f64::from(a.max(b))), expected, "{length}");
+            let mut scaled = a.clone();
+            add_scaled(&mut scaled, 0.5, &b);
+            assert!((0..length).all(|k| scaled[k] == a[k] + 0.5 * b[k]), "{length}");
+        }
+    }
 }

@@ -1,4 +1,4 @@
-//! The pair of the paper's easy reading (handbook section 4, Table 2A): one bare grid, seen twice without occlusion
+//! The pair of the paper's easy reading (docs/method.md, section 15, Table 2A): one bare grid, seen twice without occlusion
 //! and without resampling.
 
 use nalgebra::{Matrix3, Vector3};
@@ -17,9 +17,9 @@ const STRIDE: usize = 8;
 /// Image and organised cloud from samples 0, 8, 16, .. of the relief, heights divided by 8.
 ///
 /// The normals are the central finite differences of that very grid; samples that lack a neighbour leave both masks.
-/// The cloud holds the image's own points turned by R_g^T about their mean, with the turned normals; `overlap` keeps
-/// the middle round(overlap * n) of the object's n columns. An exact answer exists, so that what an estimator misses
-/// is its own.
+/// The cloud holds the image's own points rotated by R_g^T about their mean, with the rotated normals; `overlap` keeps
+/// the middle round(overlap * n) of the object's n columns. An exact answer exists, so that every
+/// error is the estimator's.
 ///
 /// # Errors
 /// [`ErrorKind::Range`] for a light, rotation or overlap out of range, [`ErrorKind::Empty`] where no sample has all

@@ -4,11 +4,10 @@
 //! F = sum over image pixels of J^T J / sigma^2, J the derivative of log S at the pixel with respect to rotation and
 //! translation (scale fixed) and, where it is unknown, the 27 coefficients of the light, at the true pose with the true
 //! normals. A pixel counts where the depth view sees its point. With g the slope of log S in the image and b its slope
-//! by the normal, a rotation about c turns the prediction at a fixed pixel by (P - c) x g - n x b, up to sign.
+//! by the normal, a rotation about c changes the prediction at a fixed pixel by (P - c) x g - n x b, up to sign.
 //!
 //! Limits: no prior of the light, no exposure; slopes of log S by central differences of the noise-free image, so
-//! pixels at its border do not count; what the depth view does not resolve (noise, normals from differences) is not in
-//! it.
+//! pixels at its border do not count; errors of the depth view (noise, normals from differences) are not in it.
 
 use nalgebra::{SMatrix, SVector, Vector3};
 
@@ -40,9 +39,9 @@ pub fn bound(sample: &Sample, light_is_known: bool, sigma: f64) -> Option<f64> {
         for (channel, slope) in slopes.into_iter().enumerate() {
             let slope = in_space(&sample.image.camera, size, point, slope)?;
             let by_normal = shade_slope(sample, channel, normal);
-            let turn = (point - centre).cross(&slope) - normal.cross(&by_normal);
+            let by_rotation = (point - centre).cross(&slope) - normal.cross(&by_normal);
             let mut row = Row::zeros();
-            row.fixed_rows_mut::<3>(0).copy_from(&turn);
+            row.fixed_rows_mut::<3>(0).copy_from(&by_rotation);
             row.fixed_rows_mut::<3>(3).copy_from(&slope);
             if !light_is_known {
                 row.fixed_rows_mut::<HARMONICS>(POSE + channel * HARMONICS)
@@ -53,8 +52,8 @@ pub fn bound(sample: &Sample, light_is_known: bool, sigma: f64) -> Option<f64> {
     }
     information.fill_upper_triangle_with_lower_triangle();
     for k in 0..UNKNOWNS {
-        let inert = (k >= POSE && light_is_known) || (k == POSE - 1 && sample.image.camera.is_orthographic());
-        if inert {
+        let is_fixed = (k >= POSE && light_is_known) || (k == POSE - 1 && sample.image.camera.is_orthographic());
+        if is_fixed {
             information[(k, k)] = 1.0;
         }
     }

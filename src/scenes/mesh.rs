@@ -1,4 +1,4 @@
-//! One triangle mesh of a relief (handbook section 4), from which every view of a scene is rendered.
+//! One triangle mesh of a relief (docs/method.md, section 15), from which every view of a scene is rendered.
 
 use nalgebra::Vector3;
 
@@ -6,11 +6,11 @@ use super::relief::Relief;
 use crate::error::{Error, ErrorKind, Result};
 use crate::view::Size;
 
-/// Sigma of the smoothing of the heights in samples (handbook section 4): scanner noise goes, features stay.
+/// Sigma of the smoothing of the heights in samples (docs/method.md, section 15): scanner noise goes, features stay.
 const SMOOTHING: f64 = 1.0;
 /// Samples on each side of the smoothing kernel: what lies beyond four sigma weighs less than 1e-4.
 const SMOOTHING_REACH: usize = 4;
-/// Largest difference of the heights in one triangle, in samples (handbook section 4): beyond it the grid jumps
+/// Largest difference of the heights in one triangle, in samples (docs/method.md, section 15): beyond it the grid jumps
 /// from one part of the object to another, and there is no surface in between.
 const LARGEST_JUMP: f64 = 12.0;
 
@@ -72,7 +72,7 @@ impl Mesh {
         }
     }
 
-    /// Mean of the vertices: the point about which synthetic views turn.
+    /// Mean of the vertices: the point about which synthetic views are rotated.
     #[must_use]
     pub const fn centroid(&self) -> Vector3<f64> {
         self.centroid
@@ -103,7 +103,7 @@ impl Mesh {
     }
 }
 
-/// Gaussian mean over the samples of the object alone, so that the background does not pull its rim down.
+/// Gaussian mean over the samples of the object alone, so that the background does not lower its rim.
 fn smooth(heights: &[f32], object: &[bool], size: Size) -> Vec<f64> {
     let weighted: Vec<[f64; 2]> = heights
         .iter()

@@ -1,4 +1,4 @@
-//! Built-in surfaces, lights and the renderer that tests, tables and the page share (handbook section 4).
+//! Built-in surfaces, lights and the renderer that tests, tables and the page share (docs/method.md, section 15).
 //!
 //! [`surface`] and [`Relief`] give heights, [`Scene`] makes a mesh of them, [`Scene::sample`] a pair of views with a
 //! known pose; [`bare_grid`] makes the pair of the paper's own synthetic test.
@@ -9,6 +9,7 @@ mod bust;
 mod flaws;
 pub mod lights;
 mod mesh;
+mod profiles;
 mod relief;
 mod render;
 mod sample;

@@ -66,7 +66,7 @@ impl View {
     }
 }
 
-/// Renders `mesh`, carried into the camera's frame by `placement`.
+/// Renders `mesh`, transformed into the camera's frame by `placement`.
 ///
 /// Every triangle hides what lies behind it, also where its back is seen. Normals are interpolated linearly over the
 /// surface (perspective-correct) and made unit again; a pixel whose normal faces away from the camera is dropped.

@@ -1,4 +1,4 @@
-//! Two views of one surface with a known pose between them (handbook section 4).
+//! Two views of one surface with a known pose between them (docs/method.md, section 15).
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -77,7 +77,7 @@ pub struct Sample {
     pub depth: SampleDepth,
     /// The light of the colour view.
     pub light: Light,
-    /// Carries points of the depth view into the colour view.
+    /// Transforms points of the depth view into the frame of the colour view.
     pub pose: Similarity,
     /// What to measure against.
     pub truth: Truth,
@@ -192,7 +192,7 @@ impl Scene {
         &self.mesh
     }
 
-    /// The surface turned by `rotation` about its centroid, scaled to the view (times `scale`) and seen by `camera`.
+    /// The surface rotated by `rotation` about its centroid, scaled to the view (times `scale`) and seen by `camera`.
     ///
     /// The centroid keeps the place it has without rotation; its depth is fx * scale for a pinhole and the larger side
     /// of the view for an orthographic camera (1.25 radii of the object where that is more).
@@ -201,7 +201,7 @@ impl Scene {
         render(&self.mesh, &self.placement(rotation, scale, size, camera), size, camera)
     }
 
-    /// Carries the mesh into the frame of a camera.
+    /// Transforms the mesh into the frame of a camera.
     fn placement(&self, rotation: &Matrix3<f64>, scale: f64, size: Size, camera: Camera) -> Similarity {
         let scaled = scale * self.fit(size);
         let place = self.place(scale, size, camera);
@@ -228,7 +228,7 @@ impl Scene {
     }
 
     /// The colour view is the surface as it is; the depth view is the surface under R_g^T, 1 / s times as large.
-    /// The pose carries the one exactly into the other: t = C_image - s R_g C_depth with the centroid C of each view.
+    /// The pose transforms the second exactly into the first: t = C_image - s R_g C_depth with the centroid C of each view.
     ///
     /// # Errors
     /// [`ErrorKind::Size`] or [`ErrorKind::Range`] naming the field at fault, [`ErrorKind::Empty`] where a view sees

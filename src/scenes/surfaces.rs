@@ -1,15 +1,16 @@
-//! Procedural surfaces on the 256 grid: they are ours to ship, and their truth is known.
+//! Procedural surfaces on the 256 grid: free of licences, and their true shape is known.
 
 use std::f64::consts::TAU;
 
 use super::bust;
+use super::profiles::{bell, bump, overhang, round, step, union, window};
 use super::relief::Relief;
 use crate::error::{Error, ErrorKind, Result};
 
 /// Names of the built-in surfaces.
 pub const NAMES: [&str; 3] = ["bust", "vase", "ripples"];
 
-/// Side of the grid of every built-in surface in samples: that of the protocol (handbook section 4).
+/// Side of the grid of every built-in surface in samples: that of the protocol (docs/method.md, section 15).
 const SIDE: usize = 256;
 
 /// The built-in surface of that name, one of [`NAMES`], as heights on a 256 x 256 grid.
@@ -32,8 +33,8 @@ pub fn surface(name: &str) -> Result<Relief> {
 /// (y, radius) of the vase where its radius is largest or smallest, from lip to foot.
 const PROFILE: [[f64; 2]; 5] = [[-108.0, 41.0], [-72.0, 25.0], [10.0, 66.0], [86.0, 24.0], [110.0, 38.0]];
 
-/// A turned vase. Flutes that wind around its belly, a medallion left of the middle and two unlike handles show by how
-/// much it was turned about its axis.
+/// A vase as from a potter's wheel. Flutes that wind around its belly, a medallion left of the middle and two unlike
+/// handles make its rotation about its axis observable.
 fn vase(x: f64, y: f64) -> f64 {
     let radius = profile(y);
     let shell = round(x / radius, radius);
@@ -74,48 +75,4 @@ fn ripples(x: f64, y: f64) -> f64 {
     let far = (x - 170.0).hypot(y - 60.0);
     let waves = 4.2 * (TAU * near / 38.0).cos() * (-near / 120.0).exp() + 2.6 * (TAU * far / 47.0).sin();
     4.0 + 46.0 * inside + 5.0 * bump(x, y, [38.0, -28.0], [26.0, 18.0]) + waves * calm * calm * (3.0 - 2.0 * calm)
-}
-
-/// Half circle of the given depth over -1 .. 1; outside, it falls away in a straight line.
-pub(super) fn round(offset: f64, depth: f64) -> f64 {
-    dome_of(offset * offset, depth)
-}
-
-/// Front of an ellipsoid about `centre` with `radii` across the view.
-pub(super) fn dome(x: f64, y: f64, centre: [f64; 2], radii: [f64; 2], depth: f64) -> f64 {
-    dome_of(((x - centre[0]) / radii[0]).powi(2) + ((y - centre[1]) / radii[1]).powi(2), depth)
-}
-
-fn dome_of(square: f64, depth: f64) -> f64 {
-    if square < 1.0 { depth * (1.0 - square).sqrt() } else { -2.0 * depth * (square.sqrt() - 1.0) }
-}
-
-/// Gaussian bell of height one.
-pub(super) fn bell(at: f64, centre: f64, sigma: f64) -> f64 {
-    (-0.5 * ((at - centre) / sigma).powi(2)).exp()
-}
-
-/// Product of two bells.
-pub(super) fn bump(x: f64, y: f64, centre: [f64; 2], sigma: [f64; 2]) -> f64 {
-    bell(x, centre[0], sigma[0]) * bell(y, centre[1], sigma[1])
-}
-
-/// Smooth step from 0 to 1 about zero.
-pub(super) fn step(at: f64) -> f64 {
-    1.0 / (1.0 + (-at).exp())
-}
-
-/// One between `centre - half` and `centre + half`, with soft flanks.
-fn window(at: f64, centre: f64, half: f64) -> f64 {
-    step((half - (at - centre).abs()) / 5.0)
-}
-
-/// Zero until `past` has the sign of `reach`, then a fourth power that is one at `reach`: rounds an end off.
-pub(super) fn overhang(past: f64, reach: f64) -> f64 {
-    (past / reach).max(0.0).powi(4)
-}
-
-/// The larger of two heights, with a fillet of about `blend` samples.
-pub(super) fn union(a: f64, b: f64, blend: f64) -> f64 {
-    a.max(b) + blend * (-(a - b).abs() / blend).exp().ln_1p()
 }

@@ -128,7 +128,7 @@ impl Refiner {
         let [p, q] = &bench.slopes;
         // It is asked for once, so the integrator's memory is not kept.
         Integrator::new(view.size, &view.mask)?.integrate(p, q, Some(anchors), &options, depth)?;
-        from_heights(view, depth);
+        view.camera.depth_from_heights(depth);
         Ok(())
     }
 
@@ -151,7 +151,7 @@ impl Refiner {
         let shaded = (f64::from(unshaded) * doubt).min(ANCHOR[1]) as f32;
         self.load_anchors(bench, view, |has_colour| if has_colour { shaded } else { unshaded });
         find_slopes(view, normals, &mut bench.slopes);
-        to_heights(view, depth);
+        view.camera.heights_from_depth(depth);
         let (scales, effort) = if self.continues { (&COLOUR_SCALES[2..], LATER) } else { (&COLOUR_SCALES[..], FIRST) };
         self.continues = true;
         let anchors = Anchors { height: &bench.spare, weight: AnchorWeight::PerPixel(&bench.weight) };
@@ -168,7 +168,7 @@ impl Refiner {
             };
             bench.heights.solve(&mut self.domain, height_problem, depth);
         }
-        from_heights(view, depth);
+        view.camera.depth_from_heights(depth);
         normals::of_depth_into(view.size, view.camera, depth, normals);
     }
 
@@ -206,7 +206,7 @@ impl Refiner {
     /// Anchors at the measured depth, in the integrator's coordinate (log depth for a pinhole camera).
     fn load_anchors(&self, bench: &mut Workbench, view: &DepthView, weight: impl Fn(bool) -> f32) {
         bench.spare.copy_from_slice(view.depth());
-        to_heights(view, &mut bench.spare);
+        view.camera.heights_from_depth(&mut bench.spare);
         for (anchor_weight, log) in bench.weight.iter_mut().zip(&self.log[0]) {
             *anchor_weight = weight(!log.is_nan());
         }
@@ -235,40 +235,25 @@ fn find_slopes(view: &DepthView, normals: &Normals, slopes: &mut [Vec<f32>; 2]) 
 /// (shading error / depth noise)^2, the weight that balances both.
 fn firmness(shading_error: f64, view: &DepthView) -> f32 {
     let Size { width, height } = view.size;
-    let reach = noise::REACH - 1;
+    let reach = noise::NEIGHBOURS - 1;
     let lines = |index: usize| {
         let (column, row) = view.size.position(index);
         [(column + reach < width, 1), (row + reach < height, width)]
     };
     let mut heights = view.depth().to_vec();
-    to_heights(view, &mut heights);
-    let bend =
-        |index: usize, step: usize| noise::bend(std::array::from_fn(|k| f64::from(heights[index + k * step]))) as f32;
-    let bends = (0..view.size.len())
-        .flat_map(|index| lines(index).into_iter().filter(|(fits, _)| *fits).map(move |(_, step)| bend(index, step)));
-    balance(shading_error, noise::of_bends(bends, 2 * view.size.len()))
+    view.camera.heights_from_depth(&mut heights);
+    let fourth = |index: usize, step: usize| {
+        noise::fourth_difference(std::array::from_fn(|k| f64::from(heights[index + k * step]))) as f32
+    };
+    let fourths = (0..view.size.len())
+        .flat_map(|index| lines(index).into_iter().filter(|(fits, _)| *fits).map(move |(_, step)| fourth(index, step)));
+    balance(shading_error, noise::of_fourth_differences(fourths, 2 * view.size.len()))
 }
 
 /// Depth without noise, as far as anybody can tell, is firm, however exact the colours are.
 fn balance(shading_error: f64, depth_noise: f64) -> f32 {
     let weight = if depth_noise > 0.0 { (shading_error / depth_noise).powi(2) } else { f64::INFINITY };
     weight.clamp(ANCHOR[0], ANCHOR[1]) as f32
-}
-
-/// The coordinate of the solvers: depth in pixels, or f log Z, whose slopes are in pixels of depth per pixel, too.
-fn to_heights(view: &DepthView, field: &mut [f32]) {
-    let Some(focal_length) = view.camera.focal_length() else { return };
-    for value in field {
-        *value = (focal_length * f64::from(*value).ln()) as f32;
-    }
-}
-
-/// Back to depth.
-fn from_heights(view: &DepthView, field: &mut [f32]) {
-    let Some(focal_length) = view.camera.focal_length() else { return };
-    for value in field {
-        *value = (f64::from(*value) / focal_length).exp() as f32;
-    }
 }
 
 /// Carries a field from where it is known into the unknown pixels of the mask, ring by ring, each the mean of its known

@@ -1,4 +1,4 @@
-//! From pixels to rays and back (handbook frame: x right, y down, z forward).
+//! From pixels to rays and back (docs/method.md, section 1: x right, y down, z forward).
 
 use crate::check::positive;
 use crate::error::{Error, ErrorKind, Result};
@@ -52,7 +52,7 @@ impl Pinhole {
         ]
     }
 
-    /// [`distort`](Self::distort) of four.
+    /// [`distort`](Self::distort) of four points.
     #[inline(never)]
     fn distort_lanes(&self, [x, y]: [Lanes; 2]) -> [Lanes; 2] {
         let [k1, k2, p1, p2, k3] = self.distortion.map(|value| Lanes::splat(value as f32));
@@ -62,13 +62,14 @@ impl Pinhole {
         [x * radial + p1 * xy + p2 * (r2 + xx + xx), y * radial + p1 * (r2 + yy + yy) + p2 * xy]
     }
 
-    /// Whether rays are straight.
+    /// Whether all coefficients of the distortion are zero.
     pub(crate) fn is_undistorted(&self) -> bool {
         self.distortion == [0.0; 5]
     }
 
-    /// The point that is distorted to `target`, NaN where there is none. Newton's method: where the lens folds, the
-    /// point may have no origin or a second one behind the fold, which mirrors and does not count.
+    /// The point that is distorted to `target`, NaN where there is none, by Newton's method. A strong lens folds the image:
+    /// from some radius on the distorted one shrinks. Beyond its maximum a target has no point, or one behind the fold,
+    /// where the image is mirrored; that one does not count.
     fn undistort(&self, target: [f64; 2]) -> [f64; 2] {
         let mut point = target;
         for _ in 0..UNDISTORT_ROUNDS {
@@ -110,9 +111,9 @@ pub enum Camera {
     Pinhole(Pinhole),
 }
 
-/// Newton's rounds that undo the distortion at most; usual lenses take two or three.
+/// Most rounds of Newton's method that undo the distortion; usual lenses take two or three.
 const UNDISTORT_ROUNDS: usize = 20;
-/// A ray that comes this near to its pixel runs through it, in pixels: far below what depths of 32 bits can tell.
+/// Newton's method has converged when the ray's pixel is this near, in pixels: far below the rounding of points in f32.
 const RETURN_DISTANCE: f64 = 1e-6;
 
 impl Camera {
@@ -179,15 +180,22 @@ impl Camera {
         }
     }
 
-    /// Takes the pixels out of `mask` that no ray runs through, or through half a pixel around, where slopes look: a
-    /// lens may bend all light elsewhere.
+    /// Takes the pixels out of `mask` that no ray runs through, or none through the points half a pixel beside, where slopes
+    /// are evaluated.
     ///
     /// # Errors
     /// [`ErrorKind::Range`] naming `field` where that is so of most pixels in the mask whose `values` are not NaN.
-    pub(super) fn keep_seen(&self, field: &'static str, size: Size, values: &[f32], mask: &mut [bool]) -> Result<()> {
+    pub(super) fn keep_pixels_with_rays(
+        &self,
+        field: &'static str,
+        size: Size,
+        values: &[f32],
+        mask: &mut [bool],
+    ) -> Result<()> {
         if self.pinhole().is_none_or(|pinhole| pinhole.is_undistorted()) {
             return Ok(());
         }
+        // Kept pixels less removed ones.
         let mut balance = 0;
         for (index, inside) in mask.iter_mut().enumerate().filter(|(_, inside)| **inside) {
             let (column, row) = size.position(index);
@@ -265,9 +273,9 @@ mod tests {
         let folding = camera([-1.0, 0.0, 0.0, 0.0, 0.0]);
         assert!(folding.ray(size, [54.5, 32.0])[0].is_finite() && folding.ray(size, [55.5, 32.0])[0].is_nan());
         let mut middle: Vec<bool> = (0..size.len()).map(|index| size.position(index).0 == 32).collect();
-        folding.keep_seen("lens", size, &[1.0; 64 * 64], &mut middle).unwrap();
+        folding.keep_pixels_with_rays("lens", size, &[1.0; 64 * 64], &mut middle).unwrap();
         assert!(middle[size.index(32, 32)] && !middle[size.index(32, 2)]);
-        let error = folding.keep_seen("lens", size, &[1.0; 64 * 64], &mut [true; 64 * 64]).unwrap_err();
+        let error = folding.keep_pixels_with_rays("lens", size, &[1.0; 64 * 64], &mut [true; 64 * 64]).unwrap_err();
         assert_eq!((error.kind(), error.field()), (ErrorKind::Range, "lens"));
     }
 

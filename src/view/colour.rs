@@ -1,4 +1,4 @@
-//! The colour image: checked once, turned into log intensities over a mask.
+//! The colour image: checked once and converted to log intensities over a mask (docs/method.md, section 4).
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::numeric::noise;
@@ -59,9 +59,9 @@ pub struct ColourView {
     log_noise: f64,
 }
 
-/// Darkest usable 8-bit level: below it one step of the code is more than a quarter of the intensity.
+/// Darkest usable 8-bit level: below it one quantisation step is more than a quarter of the intensity.
 const DARKEST_LEVEL_8: u8 = 4;
-/// Darkest usable 16-bit level: the same share of an intensity that is 16 times finer than 12 bits.
+/// Darkest usable 16-bit level: level 4 of a sensor of 12 bits, which is 16 times coarser.
 const DARKEST_LEVEL_16: u16 = 64;
 
 impl ColourView {
@@ -75,7 +75,7 @@ impl ColourView {
         if let Some(camera) = &image.camera {
             camera.validate("image.camera")?;
         }
-        let object = mask::object("image.mask", size, image.mask.as_deref())?;
+        let object = mask::checked("image.mask", size, image.mask.as_deref())?;
         let (channels, length) = match &image.samples {
             ColourSamples::Rgba8(data) => (4, data.len()),
             ColourSamples::Rgba16(data) => (4, data.len()),
@@ -100,7 +100,7 @@ impl ColourView {
             }
         }
         let camera = image.camera.map_or(Camera::Orthographic, Camera::Pinhole);
-        camera.keep_seen("image.camera.distortion", size, &log[0], &mut usable)?;
+        camera.keep_pixels_with_rays("image.camera.distortion", size, &log[0], &mut usable)?;
         for index in (0..size.len()).filter(|&index| !usable[index]) {
             log.iter_mut().for_each(|channel| channel[index] = f32::NAN);
         }
@@ -116,7 +116,7 @@ impl ColourView {
 
     /// The view of these logarithms, NaN off the mask.
     pub(super) fn of(size: Size, camera: Camera, mask: Vec<bool>, log: [Vec<f32>; 3], transfer: Transfer) -> Self {
-        // Asked for by each stage's preparation: a fifth of the search's, which may not last long.
+        // Computed once: every stage's preparation needs them, and they would be a fifth of the search's.
         let (log_spread, log_noise) = (spread_of(&log), noise_of(size, &log));
         Self { size, camera, mask, log, transfer, log_spread, log_noise }
     }
@@ -134,7 +134,8 @@ impl ColourView {
         self.log_spread
     }
 
-    /// Standard deviation of the noise of log S in one channel, by its rows' fourth differences; print counts as noise.
+    /// Standard deviation of the noise of log S in one channel, by its rows' fourth differences; printed
+    /// texture counts as noise.
     #[must_use]
     pub const fn log_noise(&self) -> f64 {
         self.log_noise
@@ -158,11 +159,13 @@ fn spread_of(log: &[Vec<f32>; 3]) -> f64 {
 }
 
 fn noise_of(size: Size, log: &[Vec<f32>; 3]) -> f64 {
-    let last = noise::REACH - 1;
+    let last = noise::NEIGHBOURS - 1;
     let ends = || (0..size.len()).filter(|index| index % size.width >= last);
-    let bend = |channel: &[f32], end: usize| noise::bend(std::array::from_fn(|k| f64::from(channel[end - k]))) as f32;
-    let bends = log.iter().flat_map(|channel| ends().map(|end| bend(channel, end)));
-    noise::of_bends(bends, 3 * size.len())
+    let fourth = |channel: &[f32], end: usize| {
+        noise::fourth_difference(std::array::from_fn(|k| f64::from(channel[end - k]))) as f32
+    };
+    let fourths = log.iter().flat_map(|channel| ends().map(|end| fourth(channel, end)));
+    noise::of_fourth_differences(fourths, 3 * size.len())
 }
 
 impl ColourSamples {

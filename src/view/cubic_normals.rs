@@ -1,14 +1,15 @@
-//! w(a, b) = sum c_jk a^j b^k, j + k <= 3, over the tangent plane: normals of third order, with their errors.
+//! w(a, b) = sum c_jk a^j b^k, j + k <= 3, over the tangent plane: normals of third order, with their errors
+//! (docs/method.md, section 4).
 //!
-//! For each point the neighbours within two or three pixels (more under noise), whichever errs least, are seen from the
-//! point's own tangent plane (a, b along it, w off it) and a cubic is fitted by weighted least squares; its slope at
-//! the point corrects the normal, twice. In the tangent plane a round rim is as tame as a front: a depth z(x, y) has
-//! derivatives there that grow without bound, and central differences lean systematically. Measured on Mozart at
+//! The neighbours of a point are expressed in its tangent plane (a, b along it, w off it), and a cubic is fitted to them by
+//! weighted least squares; its slope at the point corrects the normal, twice. Neighbours are those within two or three
+//! pixels (more under noise), whichever gives the smaller error. In the tangent plane a round rim is as smooth as a front,
+//! whereas a depth z(x, y) has derivatives that grow without bound there, and central differences are biased. Measured on Mozart at
 //! 128x128 from the side (beta = 90 degrees): median error 0.011 against 0.024 rad.
 //!
 //! The error of a normal follows from the residual of its cubic and the share of the weights that its slopes have.
-//! Neighbours beyond a jump stay out. Where fewer neighbours are left than a cubic needs, the first normal stays, and
-//! its error says [`UNFITTED`]. Limits: detail finer than the window is smoothed; noise of the points passes with a
+//! Neighbours beyond a jump are left out. Where fewer are left than a cubic needs, the first normal stays with the
+//! error [`UNFITTED`]. Limits: detail finer than the window is smoothed; noise of the points passes with a
 //! gain of about a half, no worse than central differences.
 
 use nalgebra::Vector3;
@@ -22,24 +23,27 @@ const RADII: [usize; 4] = [2, 3, 5, 8];
 /// Sigma of the weights along the tangent plane over the half width. Between 0.5 and 1 the poses of Mozart's tables
 /// differ little.
 const SIGMA: f64 = 0.75;
-/// Median error of the normals that asks for more than two windows, radians: clean views stay below.
+/// Median error of the normals from which on wider windows than the first two are tried, radians: views without noise
+/// stay below (which, not recorded).
 const NOISY: f32 = 0.06;
-/// Largest |w|: half the distance along the plane and a third of a pixel. Steeper is another part of the object.
+/// Largest |w| of a neighbour: half the distance along the plane and a third of a pixel; beyond lies another part of the
+/// object.
 const LARGEST_SLOPE: f64 = 0.5;
 const LARGEST_OFFSET: f64 = 0.3;
-/// .. or so many standard deviations of the depth's noise.
+/// Instead of the third of a pixel, where that is more: standard deviations of the depth's noise.
 const NOISE_OFFSETS: f64 = 3.0;
-/// Residuals up to so many times the noise are noise: its estimate is off by a sixth on steep or small views.
+/// Residuals up to this multiple of the estimated noise count as noise: the estimate is off by a sixth on steep or small
+/// views.
 const NOISE_MARGIN: f64 = 1.25;
 /// Coefficients of a cubic in two variables.
 const TERMS: usize = 10;
 /// Rounds: the second starts from a normal that is right to a few hundredths.
 const ROUNDS: usize = 2;
-/// Relative damping of the normal equations: rounding of their sums.
+/// Relative damping of the normal equations: above the rounding of their sums.
 const DAMPING: f64 = 1e-9;
-/// Flatter than this (cosine) a normal has turned away from its own view.
-const RIM: f64 = 0.02;
-/// |y| of normals whose tangents start from the y axis.
+/// Least cosine between the fitted normal and the first one: with less it is rejected.
+const LEAST_COSINE: f64 = 0.02;
+/// Largest |n_y| for which the y axis serves to construct the tangents.
 const LEVEL: f64 = 0.7;
 /// Error of a normal that no cubic could be fitted for, radians: that of a one-sided difference.
 pub const UNFITTED: f32 = 0.3;
@@ -48,7 +52,7 @@ pub const UNFITTED: f32 = 0.3;
 /// radians; NaN where there is no normal. Returns the standard deviation of the points in pixel lengths.
 ///
 /// Each pixel has the window of its least error among those that agree with the narrower ones: a normal that moves by
-/// more than the error it had has been bent by what the wider window holds besides (Lepski's rule). In noisy views,
+/// more than the error it had is biased by the wider window (Lepski's rule). In noisy views,
 /// where noise moves normals anyhow, the error alone decides. Measured on Mozart, median degrees of 48 poses at 64x64
 /// with the light unknown and of 60 at 128x128 with the light known: 0.56 and 0.079; without the rule 0.67 and 0.078,
 /// with the narrowest window alone 0.50 and 0.080.
@@ -93,14 +97,14 @@ struct Window {
 
 /// Standard deviation of the points, pixel lengths.
 fn noise_of(size: Size, points: &Points) -> f64 {
-    let last = noise::REACH - 1;
-    let bends = (0..size.len()).filter(|index| index % size.width >= last).map(|index| {
-        let row: [Vector3<f64>; noise::REACH] =
+    let last = noise::NEIGHBOURS - 1;
+    let fourths = (0..size.len()).filter(|index| index % size.width >= last).map(|index| {
+        let row: [Vector3<f64>; noise::NEIGHBOURS] =
             std::array::from_fn(|k| Vector3::from(points.get(index - k).map(f64::from)));
         let unit = (row[last] - row[0]).norm() / last as f64;
-        (noise::bend(row).norm() / unit) as f32
+        (noise::fourth_difference(row).norm() / unit) as f32
     });
-    noise::of_bends(bends, size.len())
+    noise::of_fourth_differences(fourths, size.len())
 }
 
 /// Median of the numbers; infinite without any.
@@ -123,21 +127,21 @@ fn fit_all(size: Size, points: &Points, first: &Normals, window: Window, mut vis
             }
             let firsts: [[f32; 3]; DOUBLE_LANES] = std::array::from_fn(|lane| first.get(start + lane.min(count - 1)));
             let normal = [0, 1, 2].map(|axis: usize| Doubles::from(firsts.map(|first| f64::from(first[axis]))));
-            let (fitted, spread) = band.fit(column, normal);
-            let (turned, spread) = (dot(fitted, normal).array(), spread.array());
+            let (fitted, error) = band.fit(column, normal);
+            let (cosine, error) = (dot(fitted, normal).array(), error.array());
             for lane in (0..count).filter(|lane| known(start + lane)) {
                 let fitted = fitted.map(|axis| axis.array()[lane] as f32);
                 // Both are NaN where nothing could be fitted.
-                let good = turned[lane] > RIM && spread[lane].is_finite();
-                let (normal, error) = if good { (fitted, spread[lane] as f32) } else { (firsts[lane], UNFITTED) };
+                let good = cosine[lane] > LEAST_COSINE && error[lane].is_finite();
+                let (normal, error) = if good { (fitted, error[lane] as f32) } else { (firsts[lane], UNFITTED) };
                 visit(start + lane, normal, error.min(UNFITTED));
             }
         }
     }
 }
 
-/// The rows of points that the windows of one row reach, NaN where there is none, also left and right of the raster:
-/// so no neighbour has to be asked whether it exists.
+/// The rows of points that the windows of one row reach, padded with NaN left and right of the raster, so that no index
+/// has to be checked.
 struct Band {
     window: Window,
     stride: usize,
@@ -151,7 +155,7 @@ impl Band {
         Self { window, stride, axes }
     }
 
-    /// Takes over the rows around `row`.
+    /// Copies the rows around `row`.
     fn fill(&mut self, size: Size, points: &Points, row: usize) {
         for (axis, values) in self.axes.iter_mut().zip([&points.x, &points.y, &points.z]) {
             for (place, line) in axis.chunks_exact_mut(self.stride).enumerate() {
@@ -184,16 +188,16 @@ impl Band {
             .into_iter()
             .fold(missing, |least, step| dot(step, step).min(least));
         let unit = square.sqrt();
-        let (mut normal, mut spread) = (first, missing);
+        let (mut normal, mut last_error) = (first, missing);
         for _ in 0..ROUNDS {
             let tangents = tangents(normal);
             let axes = [tangents[0], tangents[1], normal].map(|axis| scale(axis, Doubles::splat(1.0) / unit));
             let (slopes, error) = self.moments(column, centre, axes).slopes(self.window.noise);
-            let lean = |axis: usize| slopes[0] * tangents[0][axis] + slopes[1] * tangents[1][axis];
-            normal = normalize([0, 1, 2].map(|axis: usize| normal[axis] - lean(axis)));
-            spread = error;
+            let tilt = |axis: usize| slopes[0] * tangents[0][axis] + slopes[1] * tangents[1][axis];
+            normal = normalize([0, 1, 2].map(|axis: usize| normal[axis] - tilt(axis)));
+            last_error = error;
         }
-        (normal, spread)
+        (normal, last_error)
     }
 
     /// Sums over the neighbours of two points, seen along their `axes`.
@@ -208,7 +212,7 @@ impl Band {
                 let [a, b, w] = [dot(axes[0], offset), dot(axes[1], offset), dot(axes[2], offset)];
                 let far = a * a + b * b;
                 let beyond = ((w * w).sqrt() - Doubles::splat(self.window.offset)).raised_to(0.0);
-                // Not so where the neighbour is missing: its weight and place are zero.
+                // NaN is not near: a missing neighbour gets weight and position zero.
                 let near = (beyond * beyond).at_most(slope * far);
                 let weight = near.keep((far * flatness).exp2());
                 moments.add(near.keep(Doubles::splat(1.0)), weight, near.keep(a), near.keep(b), near.keep(w));
@@ -295,7 +299,7 @@ impl Moments {
         let along_b = rows[TERMS][B] / rows[B][B];
         let along_a = rows[TERMS][A] / rows[A][A] - share * along_b;
         let variance = one / rows[A][A] + (one + share * share) / rows[B][B];
-        // Noise averages out. A residual of wrong shape does not: the slopes err by no less than the residual itself.
+        // Noise averages out, a misfit of the cubic does not: its share of the error is no less than the misfit itself.
         let residual = left.raised_to(0.0) / self.plain[0];
         let noise = residual.min(Doubles::splat(noise * noise));
         let error = (noise * variance + (residual - noise) * variance.raised_to(1.0)).sqrt();
@@ -377,24 +381,24 @@ mod tests {
         }
     }
 
-    /// Half a pixel of noise leans differences by 20 degrees; the errors that are claimed are those that are made.
+    /// Half a pixel of noise tilts differences by 20 degrees; the estimated errors are the true ones within a factor of two.
     #[test]
-    fn noise_asks_for_wider_windows() {
+    fn noise_takes_wider_windows_and_errors_are_estimated() {
         let (size, mut points, truth) = sphere();
-        let mut normal = noise::dice(3);
+        let mut normal = noise::white_noise(3);
         points.z.iter_mut().for_each(|z| *z += 0.5 * normal() as f32);
         let mut found = normals::of_cloud(size, &points);
         let before = median_error(&found, &truth);
         let mut error = vec![0.0; size.len()];
         improve(size, &points, &mut found, &mut error);
         let after = median_error(&found, &truth);
-        let claimed = median(error.iter().copied());
+        let estimated = median(error.iter().copied());
         assert!(after < 0.3 * before, "{before} {after}");
-        assert!((0.5 * after..2.0 * after).contains(&claimed), "{after} {claimed}");
+        assert!((0.5 * after..2.0 * after).contains(&estimated), "{after} {estimated}");
     }
 
     #[test]
-    fn what_cannot_be_fitted_keeps_its_normal_and_says_so() {
+    fn what_cannot_be_fitted_keeps_its_normal_with_the_largest_error() {
         let size = Size { width: 4, height: 4 };
         let mut points = Points::missing(size.len());
         (0..8).for_each(|k| points.set(k, [(k % 4) as f32, (k / 4) as f32, 5.0]));

@@ -1,10 +1,11 @@
-//! The depth map: checked once, turned into points and normals, its holes told from its background.
+//! The depth map: checked once and converted to points and normals; holes are told from background (docs/method.md,
+//! section 4).
 
 use crate::check::positive;
 use crate::error::{Error, ErrorKind, Result};
 use crate::text::Brief;
+use crate::view::flying_pixels;
 use crate::view::mask::{self, FEWEST_PIXELS, components};
-use crate::view::trim;
 use crate::view::{Camera, Normals, Pinhole, Points, Size, normals};
 
 /// Samples as they come from a sensor or a file.
@@ -54,18 +55,19 @@ pub struct DepthView {
     pub organised: bool,
     /// Whether the normals are the caller's own.
     pub normals_given: bool,
-    /// Pixels that [`trim`] took out of the object.
+    /// Pixels with a depth that trimming took out of the object.
     pub trimmed: usize,
 }
 
-/// What is at fault where the lens lets no rays through.
+/// The field that is named where the lens lets no rays through.
 const LENS: &str = "depth.camera.distortion";
-/// Default metres of a stored integer where a camera is known: millimetres.
+/// Metres of a stored integer where a camera is known and no unit is given: millimetres, as sensors store them.
 const MILLIMETRE: f64 = 0.001;
-/// Metres or pixels from which on a depth is as good as infinite, and so is a coordinate of a cloud: some formats write the
-/// largest number of theirs for a hole, whose squares f32 cannot hold.
+/// Metres or pixels from which on a depth, or a coordinate of a cloud, counts as missing: some formats write their largest
+/// number for a hole, and f32 cannot hold its square.
 const FARTHEST: f64 = 1e12;
-/// Without a mask, an enclosed gap belongs to the object up to this share of its pixels.
+/// Without a mask, a gap in the depth that the object encloses belongs to it up to this share of its pixels (data not
+/// recorded).
 const LARGEST_HOLE: f64 = 0.02;
 
 impl DepthView {
@@ -81,12 +83,12 @@ impl DepthView {
         }
         let camera = map.camera.map_or(Camera::Orthographic, Camera::Pinhole);
         let unit = map.unit_or_default()?;
-        let mut object = mask::object("depth.mask", size, map.mask.as_deref())?;
+        let mut object = mask::checked("depth.mask", size, map.mask.as_deref())?;
         let mut points = map.points(size, camera, unit)?;
         let organised = matches!(map.samples, DepthSamples::Cloud(_));
-        // A cloud has no use for rays.
+        // The pixels of a cloud have no rays.
         let rays = if organised { Camera::Orthographic } else { camera };
-        rays.keep_seen(LENS, size, &points.z, &mut object)?;
+        rays.keep_pixels_with_rays(LENS, size, &points.z, &mut object)?;
         for index in (0..size.len()).filter(|&index| !object[index]) {
             points.set(index, [f32::NAN; 3]);
         }
@@ -106,7 +108,7 @@ impl DepthView {
         }
         if map.mask.is_none() {
             view.mask = enclosed(size, &view.points.z);
-            rays.keep_seen(LENS, size, &view.points.z, &mut view.mask)?;
+            rays.keep_pixels_with_rays(LENS, size, &view.points.z, &mut view.mask)?;
         }
         view.drop_islands();
         view.normals = match &map.normals {
@@ -131,7 +133,7 @@ impl DepthView {
     }
 
     fn trim(&mut self) {
-        let kept = trim::kept(self.size, self.depth(), self.camera.focal_length());
+        let kept = flying_pixels::object_pixels(self.size, self.depth(), self.camera.focal_length());
         for index in 0..self.size.len() {
             if !kept[index] && !self.depth()[index].is_nan() {
                 self.trimmed += 1;
@@ -141,7 +143,7 @@ impl DepthView {
         }
     }
 
-    /// Takes parts of the mask that hold no depth at all out of it: nothing says where such a hole would lie.
+    /// Takes those components of the mask that hold no depth at all out of it: nothing tells how far away they are.
     fn drop_islands(&mut self) {
         let (labels, counts) = components(self.size, |index| self.mask[index], |_, _| true);
         let mut measured = vec![false; counts.len()];

@@ -1,13 +1,13 @@
-//! Masks of the object, and what a robust eye drops from them.
+//! Masks of the object, and their connected components.
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::view::Size;
 
-/// Fewest usable pixels of a view: those of the smallest view, 4x4.
+/// Fewest usable pixels of a view: as many as the smallest view, 4x4, has.
 pub const FEWEST_PIXELS: usize = 16;
 
-/// Checks a mask given by the caller; none means every pixel.
-pub fn object(field: &'static str, size: Size, mask: Option<&[u8]>) -> Result<Vec<bool>> {
+/// The caller's mask, checked; none means every pixel.
+pub fn checked(field: &'static str, size: Size, mask: Option<&[u8]>) -> Result<Vec<bool>> {
     let Some(mask) = mask else { return Ok(vec![true; size.len()]) };
     if mask.len() != size.len() {
         return Err(Error::new(

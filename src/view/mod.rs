@@ -1,16 +1,19 @@
-//! What comes in: sizes, masks, cameras, one colour image and one depth map, checked once.
+//! What comes in: sizes, masks, cameras, one colour image and one depth map, checked once (docs/method.md, section 4).
 
 mod camera;
 mod colour;
 pub mod cubic_normals;
 mod depth;
-mod grid;
-mod halve;
+mod flying_pixels;
+mod half_resolution;
+mod heights;
 mod mask;
 pub mod normals;
-mod trim;
+mod raster;
+mod vectors;
 
 pub use camera::{Camera, Pinhole};
 pub use colour::{ColourImage, ColourSamples, ColourView, Transfer};
 pub use depth::{DepthMap, DepthSamples, DepthView};
-pub use grid::{Normals, Points, Size};
+pub use raster::Size;
+pub use vectors::{Normals, Points};

@@ -1,4 +1,5 @@
-//! n = (dP/drow x dP/dcolumn) / |...|: normals of a depth map or an organised cloud P(column, row).
+//! n = (dP/drow x dP/dcolumn) / |...|: normals of a depth map or an organised cloud P(column, row) (docs/method.md,
+//! section 4).
 //!
 //! Method: central differences of the points along both axes, so that camera and distortion are in them; one-sided at
 //! holes and borders. Or, for noisy depth, the slopes of the weighted least-squares plane P = c + a column + b row over
@@ -10,7 +11,7 @@
 //! its sampling and neither quantisation nor noise below that counts as a jump.
 //!
 //! Limits: second order inside (error z'''/6 per pixel), first order at borders and holes; a structure of one or two
-//! pixels has no surroundings to compare with and keeps its jumps. The plane fit is first order where its window is
+//! pixels has no steps around it to compare with and keeps its jumps. The plane fit is first order where its window is
 //! lopsided, and rounds edges off within its radius. NaN where an axis has no usable neighbour.
 
 use crate::numeric::{LANES, Lanes, Real};
@@ -187,8 +188,8 @@ impl<F: Fn(usize) -> Option<Vector>> Grid<F> {
     }
 }
 
-/// The same differences where steps along an axis are (1, dz): four pixels at a time, in f32, in which neighbouring
-/// depths have exact differences. From the row `first` on.
+/// Central differences of an orthographic depth map, whose steps along an axis are (1, dz): four pixels at a time and in f32,
+/// as the difference of two neighbouring depths is exact there. From the row `first` on.
 fn of_orthographic(size: Size, depth: &[f32], first: usize, normals: &mut Normals) {
     let (one, missing) = (Lanes::splat(1.0), Lanes::splat(f32::NAN));
     for row in first..first + normals.len() / size.width {

@@ -140,10 +140,10 @@ impl ShapeStage {
                     prior.set(place, fitted.depth_normals().get(pixel));
                 }
             }
-            found.copy_some(0, &shape.normals, &band);
+            found.copy_range(0, &shape.normals, &band);
             let log = image.log.each_ref().map(|channel| &channel[band.clone()]);
             self.pixels.solve(ShadingProblem { log, prior, light }, weights, found);
-            shape.normals.copy_some(band.start, found, &(0..band.len()));
+            shape.normals.copy_range(band.start, found, &(0..band.len()));
         }
     }
 }

@@ -186,7 +186,7 @@ mod tests {
     #[test]
     fn the_slopes_of_white_noise_vary_together_by_the_constant() {
         let side = 96;
-        let mut dice = noise::dice(3);
+        let mut dice = noise::white_noise(3);
         let samples = ColourSamples::RgbLinear((0..3 * side * side).map(|_| dice().exp() as f32).collect());
         let image = ColourImage { width: side, height: side, samples, transfer: None, mask: None, camera: None };
         let view = ColourView::new(image).unwrap();

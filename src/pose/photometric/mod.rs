@@ -392,7 +392,7 @@ impl Photometric {
     /// Weight of the prior: Gaussian near the natural lights, with the tails of Student's t for lights that no
     /// landscape has.
     fn prior(&self, problem: &PhotometricProblem<'_>) -> f64 {
-        let energy = problem.prior.energy(&self.state.light);
+        let energy = problem.prior.squared_distance(&self.state.light);
         let tail = (PRIOR_FREEDOM + COEFFICIENTS as f64) / (PRIOR_FREEDOM + energy);
         problem.prior_weight * tail.min(1.0) * self.noise * self.noise
     }

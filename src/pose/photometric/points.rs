@@ -210,7 +210,7 @@ impl VisiblePoints {
             sum = sum + weight * full * (Doubles::splat(1.0) - shown * saved);
         });
         let sum = sum.sum();
-        if problem.light.is_none() { sum + robust.prior * problem.prior.energy(&state.light) } else { sum }
+        if problem.light.is_none() { sum + robust.prior * problem.prior.squared_distance(&state.light) } else { sum }
     }
 
     /// Share of the weights whose residuals are below the robust scale.

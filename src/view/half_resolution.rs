@@ -1,4 +1,4 @@
-//! Views of half the resolution: a pixel is the mean of the two by two that it covers, of those that have a value.
+//! Views at half the resolution: a pixel is the mean of those of the 2x2 pixels it covers that have a value.
 
 use super::{Camera, ColourView, Pinhole, Size};
 
@@ -34,7 +34,7 @@ impl Size {
         });
     }
 
-    /// The way back: bilinear between those pixels of the halved view that have a value.
+    /// The inverse: bilinear values between those pixels of the halved view that are not NaN.
     pub(crate) fn double(self, coarse: &[f32], fine: &mut [f32]) {
         let half = self.halved();
         for (index, value) in fine.iter_mut().enumerate() {

@@ -1,27 +1,29 @@
-//! Flying pixels and background inside the mask.
+//! Trimming: flying pixels and background are taken out of the object (docs/method.md, section 4).
 //!
-//! The rule: cut the depth map wherever neighbours jump by more than a robust multiple of its usual step; of
-//! the pieces keep those that hold a fair share of the largest one and lie within reach of its depths.
-//! What is thin, small or far behind goes and no longer counts as object. Limits: an object whose parts lie one behind
-//! the other by more than its own extent loses the smaller parts; switch the rule off then.
+//! The depth map is cut wherever neighbours differ by more than a multiple of the median step. Of the pieces those stay
+//! that have enough pixels, relative to the largest piece, and lie no farther before or behind it than its own extent.
+//! Limits: an object whose parts lie one behind the other by more than that loses the smaller parts; trimming can be
+//! switched off. Data behind the constants: not recorded.
 
 use crate::numeric::quantile;
 use crate::view::Size;
 use crate::view::mask::components;
 
-/// A jump is a cut beyond this multiple of the median step between neighbours: steep but smooth surfaces stay whole.
+/// Neighbours are cut apart beyond this multiple of the median step between neighbours: steep but smooth surfaces stay
+/// whole.
 const JUMP_STEPS: f32 = 12.0;
-/// Smallest cut of a metric view as a share of the median depth: above the noise of consumer sensors at arm's length.
+/// Smallest step that cuts in a metric view, as a share of the median depth: above the noise of consumer sensors at arm's
+/// length.
 const METRIC_JUMP: f32 = 0.015;
-/// Smallest cut in pixels: a slope of 76 degrees.
+/// Smallest step that cuts in pixels: a slope of 76 degrees.
 const PIXEL_JUMP: f32 = 4.0;
-/// Smallest kept piece as a share of the largest one.
-const FAIR_SHARE: f64 = 0.05;
-/// How far a kept piece may lie before or behind the largest one, in extents of that one.
+/// Pixels of the smallest piece that stays, as a share of the largest piece's.
+const LEAST_SHARE: f64 = 0.05;
+/// How far a piece that stays may lie before or behind the largest one, in extents of that one.
 const REACH: f32 = 1.0;
 
-/// Whether each pixel stays. `depth` is NaN at holes; `focal_length` in pixels is `None` for an orthographic view.
-pub fn kept(size: Size, depth: &[f32], focal_length: Option<f64>) -> Vec<bool> {
+/// For each pixel whether it belongs to the object. `depth` is NaN at holes; `focal_length` in pixels is `None` for an orthographic view.
+pub fn object_pixels(size: Size, depth: &[f32], focal_length: Option<f64>) -> Vec<bool> {
     let valid = |index: usize| !depth[index].is_nan();
     let mut values: Vec<f32> = depth.iter().copied().filter(|value| !value.is_nan()).collect();
     if values.is_empty() {
@@ -51,7 +53,7 @@ pub fn kept(size: Size, depth: &[f32], focal_length: Option<f64>) -> Vec<bool> {
     let keep: Vec<bool> = (0..counts.len())
         .map(|label| {
             let middle = quantile(&mut pieces[label], 0.5);
-            counts[label] as f64 >= FAIR_SHARE * counts[largest] as f64
+            counts[label] as f64 >= LEAST_SHARE * counts[largest] as f64
                 && middle >= near - reach
                 && middle <= far + reach
         })
@@ -80,7 +82,7 @@ mod tests {
             depth[index] = 2.5;
         }
         depth[900] = f32::NAN;
-        let kept = kept(size, &depth, Some(525.0));
+        let kept = object_pixels(size, &depth, Some(525.0));
         for index in 0..size.len() {
             let bad = index == 900 || index % 40 > 37 || outliers.iter().any(|&(bad, _)| bad == index);
             assert_eq!(kept[index], !bad, "pixel {index}");
@@ -91,6 +93,6 @@ mod tests {
     fn two_large_parts_of_one_object_stay() {
         let size = Size { width: 20, height: 20 };
         let depth: Vec<f32> = (0..size.len()).map(|index| if index % 20 < 10 { 50.0 } else { 60.0 }).collect();
-        assert!(kept(size, &depth, None).into_iter().all(|kept| kept));
+        assert!(object_pixels(size, &depth, None).into_iter().all(|kept| kept));
     }
 }

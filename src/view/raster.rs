@@ -1,11 +1,6 @@
-//! Rasters: their size, and fields of vectors over them as structure-of-arrays.
-
-use std::ops::Range;
-
-use nalgebra::{Matrix3, Vector3};
+//! A raster's size, its pixels and their neighbours, and bilinear values between pixels.
 
 use crate::error::{Error, ErrorKind, Result};
-use crate::numeric::Lanes;
 
 /// Smallest side of a view: below it neither a normal nor a light is determined.
 pub const SMALLEST_SIDE: usize = 4;
@@ -84,12 +79,10 @@ impl Size {
     /// [`bilinear`](Self::bilinear) of several fields.
     #[must_use]
     pub fn each_bilinear<const N: usize>(self, fields: [&[f32]; N], column: f32, row: f32) -> [f32; N] {
-        // A corner without weight must not spoil the value: NaN times zero is NaN.
-        let Some(corners) = self.corners(column, row) else { return [f32::NAN; N] };
-        fields.map(|field| weigh(field, &corners))
+        self.interpolate(fields, column, row, weighted_mean)
     }
 
-    /// As [`bilinear`](Self::bilinear), from those neighbours that have a value: colours of an object's rim.
+    /// As [`bilinear`](Self::bilinear), of those neighbours that are not NaN: at an object's rim some are off the mask.
     #[must_use]
     pub fn bilinear_of_known(self, field: &[f32], column: f32, row: f32) -> f32 {
         let [value] = self.each_bilinear_of_known([field], column, row);
@@ -99,8 +92,20 @@ impl Size {
     /// [`bilinear_of_known`](Self::bilinear_of_known) of several fields.
     #[must_use]
     pub fn each_bilinear_of_known<const N: usize>(self, fields: [&[f32]; N], column: f32, row: f32) -> [f32; N] {
+        self.interpolate(fields, column, row, weighted_mean_of_known)
+    }
+
+    /// A mean of the four pixels around a position in each field, NaN outside of the raster.
+    #[inline(always)]
+    fn interpolate<const N: usize>(
+        self,
+        fields: [&[f32]; N],
+        column: f32,
+        row: f32,
+        mean: impl Fn(&[f32], &Corners) -> f32,
+    ) -> [f32; N] {
         let Some(corners) = self.corners(column, row) else { return [f32::NAN; N] };
-        fields.map(|field| weigh_known(field, &corners))
+        fields.map(|field| mean(field, &corners))
     }
 
     /// The four pixels around a continuous position and their bilinear weights; `None` outside of the raster.
@@ -132,15 +137,15 @@ impl Size {
 /// Four pixels and their weights, which add up to one.
 type Corners = [(usize, f32); 4];
 
-/// Their mean; one that is NaN and has a weight makes it NaN.
+/// Weighted mean of the corners. A corner without weight must not make it NaN, and NaN times zero is NaN.
 #[inline(never)]
-fn weigh(field: &[f32], corners: &Corners) -> f32 {
+fn weighted_mean(field: &[f32], corners: &Corners) -> f32 {
     corners.iter().filter(|(_, weight)| *weight > 0.0).map(|&(pixel, weight)| weight * field[pixel]).sum()
 }
 
-/// Their mean as far as they are known; NaN where none is.
+/// Weighted mean of those corners that are not NaN; NaN where all are.
 #[inline(never)]
-fn weigh_known(field: &[f32], corners: &Corners) -> f32 {
+fn weighted_mean_of_known(field: &[f32], corners: &Corners) -> f32 {
     let (mut sum, mut weights) = (0.0, 0.0);
     for &(pixel, weight) in corners {
         if !field[pixel].is_nan() {
@@ -151,131 +156,9 @@ fn weigh_known(field: &[f32], corners: &Corners) -> f32 {
     if weights > 0.0 { sum / weights } else { f32::NAN }
 }
 
-/// Unit normals over a raster, NaN where there is none. They face the camera: z < 0.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Normals {
-    /// x components (right).
-    pub x: Vec<f32>,
-    /// y components (down).
-    pub y: Vec<f32>,
-    /// z components (forward).
-    pub z: Vec<f32>,
-}
-
-/// Points over a raster, NaN where there is none.
-pub type Points = Normals;
-
-impl Normals {
-    /// `length` missing vectors.
-    #[must_use]
-    #[inline(never)]
-    pub fn missing(length: usize) -> Self {
-        Self { x: vec![f32::NAN; length], y: vec![f32::NAN; length], z: vec![f32::NAN; length] }
-    }
-
-    /// Number of vectors.
-    #[must_use]
-    pub fn len(&self) -> usize {
-        self.z.len()
-    }
-
-    /// Whether there is no vector at all.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.z.is_empty()
-    }
-
-    /// The vector at `index`, NaN where missing.
-    #[inline(always)]
-    #[must_use]
-    pub fn get(&self, index: usize) -> [f32; 3] {
-        [self.x[index], self.y[index], self.z[index]]
-    }
-
-    /// The four vectors from `index` on, NaN beyond the last one.
-    pub(crate) fn lanes(&self, index: usize) -> [Lanes; 3] {
-        let start = index as isize;
-        [Lanes::load(&self.x, start), Lanes::load(&self.y, start), Lanes::load(&self.z, start)]
-    }
-
-    /// Replaces the vector at `index`.
-    #[inline(always)]
-    pub fn set(&mut self, index: usize, vector: [f32; 3]) {
-        [self.x[index], self.y[index], self.z[index]] = vector;
-    }
-
-    /// Whether there is a vector at `index`.
-    #[inline(always)]
-    #[must_use]
-    pub fn is_valid(&self, index: usize) -> bool {
-        // A sum is NaN where a member is.
-        !self.get(index).iter().sum::<f32>().is_nan()
-    }
-
-    /// Takes over other vectors; allocates where there are more than ever.
-    pub(crate) fn copy_from(&mut self, other: &Self) {
-        self.x.clone_from(&other.x);
-        self.y.clone_from(&other.y);
-        self.z.clone_from(&other.z);
-    }
-
-    /// Makes room for, or leaves, so many vectors; new ones are missing.
-    pub(crate) fn resize(&mut self, length: usize) {
-        [&mut self.x, &mut self.y, &mut self.z].into_iter().for_each(|axis| axis.resize(length, f32::NAN));
-    }
-
-    /// Takes over some of other vectors, from `place` on.
-    pub(crate) fn copy_some(&mut self, place: usize, other: &Self, some: &Range<usize>) {
-        let [x, y, z] = [&other.x, &other.y, &other.z].map(|axis| &axis[some.clone()]);
-        for (mine, theirs) in [(&mut self.x, x), (&mut self.y, y), (&mut self.z, z)] {
-            mine[place..place + theirs.len()].copy_from_slice(theirs);
-        }
-    }
-
-    /// Some vectors turned, into others from `place` on.
-    pub(crate) fn rotate(&self, some: &Range<usize>, rotation: &Matrix3<f64>, turned: &mut Self, place: usize) {
-        let [x, y, z] = [&self.x, &self.y, &self.z].map(|axis| &axis[some.clone()]);
-        for (axis, out) in [&mut turned.x, &mut turned.y, &mut turned.z].into_iter().enumerate() {
-            let [a, b, c] = [0, 1, 2].map(|column: usize| rotation[(axis, column)] as f32);
-            for (((out, x), y), z) in out[place..].iter_mut().zip(x).zip(y).zip(z) {
-                *out = a * x + b * y + c * z;
-            }
-        }
-    }
-
-    /// Mean of the vectors that are there, zero where there is none.
-    #[must_use]
-    pub fn centroid(&self) -> Vector3<f64> {
-        let (mut sum, mut count) = (Vector3::zeros(), 0.0);
-        for index in (0..self.len()).filter(|&index| self.is_valid(index)) {
-            sum += Vector3::from(self.get(index).map(f64::from));
-            count += 1.0;
-        }
-        sum / f64::max(count, 1.0)
-    }
-
-    /// The vectors interleaved: x, y, z, x, y, z, ...
-    #[must_use]
-    pub fn interleaved(&self) -> Vec<f32> {
-        (0..self.len()).flat_map(|index| self.get(index)).collect()
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_vector_with_a_missing_member_is_missing() {
-        let mut points = Points::missing(1);
-        points.set(0, [1.0; 3]);
-        assert!(points.is_valid(0));
-        for axis in 0..3 {
-            let point = [0, 1, 2].map(|other| if other == axis { f32::NAN } else { 1.0 });
-            points.set(0, point);
-            assert!(!points.is_valid(0), "{point:?}");
-        }
-    }
 
     #[test]
     fn the_rim_has_the_colours_of_its_known_neighbours() {
