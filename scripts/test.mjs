@@ -47,7 +47,15 @@ async function page() {
   return watch(process.execPath, [modules("@playwright/test/cli.js"), "test"], { env });
 }
 
-const contract = () => watch(process.execPath, ["--test", "--test-reporter=spec", ...matching(["tests/contract"], /\.test\.mjs$/)]);
+/** No test is about time: the limit, in milliseconds, ends what hangs. */
+const HANGS = 1_800_000;
+const contract = () => {
+  const files = matching(["tests/contract"], /\.test\.mjs$/);
+  return watch(process.execPath, ["--test", "--test-reporter=spec", `--test-timeout=${HANGS}`, ...files]);
+};
+
+/** Tests that need the data beside the project are marked as ignored, with that reason, and asked for where the data are there. */
+const rust = () => watch("cargo", ["test", ...(hasData() ? ["--", "--include-ignored"] : [])]);
 
 /** Not on accuracy: aims are shown with their verdicts. It fails where a cell throws or the JSON lacks a key. */
 async function tables() {
@@ -56,9 +64,10 @@ async function tables() {
   const result = await watch(process.execPath, [inRoot("scripts/tables.mjs"), "--quick", "--json", file]);
   if (result.code !== 0) return result;
   const missing = missingKeys(JSON.parse(readFileSync(file, "utf8")), { realPairs: hasData() });
-  const verdict = missing.length === 0 ? "tables: every key is there" : `tables: the JSON lacks ${missing.join(", ")}`;
-  console.log(verdict);
-  return { code: missing.length === 0 ? 0 : 1, output: `${result.output}\n${verdict}\n` };
+  const lines = [missing.length === 0 ? "tables: every key is there" : `tables: the JSON lacks ${missing.join(", ")}`];
+  if (!hasData()) lines.push("skipped: real pairs and photographs # needs ../shared/data");
+  console.log(lines.join("\n"));
+  return { code: missing.length === 0 ? 0 : 1, output: `${result.output}\n${lines.join("\n")}\n` };
 }
 
 /** What a visitor downloads, against its budgets. */
@@ -73,11 +82,27 @@ async function downloads() {
 const CARGO = /^(test result: .*|error: test failed.*|error: could not compile.*)$/gm;
 const NODE = /^(?:# |ℹ )((?:tests|pass|fail|skipped) .*)$/gm;
 
+/** How cargo, Node and the page's reporter (or `tables`) name a test that did not run: its name, and the reason. */
+const NOT_RUN = [
+  /^test (?<name>.+) \.\.\. ignored(?:, (?<reason>.+))?$/gm,
+  /^ *﹣ (?<name>.+) \([\d.]+ms\) # (?<reason>.+)$/gm,
+  /^skipped: (?<name>.+) # (?<reason>.+)$/gm,
+];
+
+/** One line for each reason why tests did not run, with their number and names. */
+function notRun(output) {
+  const names = new Map();
+  const found = NOT_RUN.flatMap((pattern) => [...output.matchAll(pattern)]);
+  for (const { groups: { name, reason = "no reason given" } } of found) names.set(reason, [...(names.get(reason) ?? []), name]);
+  const lines = [...names].map(([reason, all]) => `NOT RUN: ${all.length}, ${reason} (${all.join(", ")})`);
+  return { count: found.length, lines };
+}
+
 const PARTS = [
   { name: "format", run: cargo("fmt", "--check") },
   { name: "clippy", run: cargo("clippy", "--all-targets", ...DENY), closing: CARGO },
   { name: "clippy-wasm", run: cargo("clippy", "--target", WASM, "--all-targets", ...DENY), closing: CARGO },
-  { name: "rust", run: cargo("test"), closing: CARGO },
+  { name: "rust", run: rust, closing: CARGO },
   { name: "wasm-node", run: wasmIn(), closing: CARGO },
   { name: "wasm-browser", run: wasmIn("WASM_BINDGEN_USE_BROWSER"), closing: CARGO },
   { name: "wasm-worker", run: wasmIn("WASM_BINDGEN_USE_DEDICATED_WORKER"), closing: CARGO },
@@ -110,8 +135,9 @@ async function attempt({ name, run, needsBuild, closing }) {
     console.error(error.message);
     result = { code: 1, output: "" };
   }
-  const lines = closing ? [...result.output.matchAll(closing)].map((match) => (match[1] ?? match[0]).trim()) : [];
-  return { name, passed: result.code === 0, lines, time: seconds(start) };
+  const closed = closing ? [...result.output.matchAll(closing)].map((match) => (match[1] ?? match[0]).trim()) : [];
+  const { count, lines } = notRun(result.output);
+  return { name, passed: result.code === 0, lines: [...closed, ...lines], notRun: count, time: seconds(start) };
 }
 
 await script(async () => {
@@ -127,6 +153,8 @@ await script(async () => {
     for (const line of lines) console.log(`          ${line}`);
   }
   const failed = results.filter((result) => !result.passed).map((result) => result.name);
+  const left = results.reduce((sum, result) => sum + result.notRun, 0);
+  if (left > 0) console.log(`\n${left} tests were NOT RUN; the lines above say which and why.`);
   console.log(failed.length === 0 ? `\nAll parts passed in ${seconds(start)}.` : `\nFailed: ${failed.join(", ")} (${seconds(start)}).`);
   if (failed.length > 0) process.exitCode = 1;
 });

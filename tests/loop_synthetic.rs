@@ -20,7 +20,7 @@ const GAIN_NATURAL: f64 = 2.0;
 /// Mozart has less of a rim than the bust.
 const MOZART_COLOURFUL: f64 = 5.0;
 const MOZART_NATURAL: f64 = 3.0;
-/// The row of the natural lights that the handbook calls A: its easy one.
+/// The row of an easy one among the natural lights.
 const NATURAL_A: usize = 132;
 
 fn square(side: usize) -> Size {
@@ -75,8 +75,9 @@ fn the_other_sense_of_rotation_is_found_as_well() {
 }
 
 #[test]
+#[ignore = "needs ../shared/data"]
 fn mozart_beats_the_paper() {
-    let Some(data) = data_dir() else { return };
+    let data = data_dir();
     let scene = Scene::new(&mozart(&data)).expect("a surface");
     // Sign conventions differ, the protocol has noise in one table and none in another, and the scale is free or one.
     for (beta, noise, scale) in [(20.0, 0.0, None), (-20.0, 0.0, None), (20.0, 0.01, None), (20.0, 0.01, Some(1.0))] {
@@ -98,7 +99,7 @@ fn squares(depth: &[f32], truth: &[f32], counts: impl Fn(usize) -> bool) -> Vec<
     indices.map(|index| f64::from(depth[index] - truth[index]).powi(2)).collect()
 }
 
-/// Handbook section 4, Refinement: the pose is known and held. Returns the depth's error before over its error after,
+/// Refinement alone: the pose is known and held. Returns the depth's error before over its error after,
 /// root mean square over the pixels where depth was measured.
 fn refinement_gain(name: &str, scene: &Scene, light: Light) -> f64 {
     let [mut before, mut after, mut holes] = [const { Vec::new() }; 3];
@@ -140,8 +141,9 @@ fn refinement_lowers_the_error_of_the_bust() {
 }
 
 #[test]
+#[ignore = "needs ../shared/data"]
 fn refinement_lowers_the_error_of_mozart() {
-    let Some(data) = data_dir() else { return };
+    let data = data_dir();
     let scene = Scene::new(&mozart(&data)).expect("a surface");
     let colourful = refinement_gain("mozart, colourful", &scene, lights::COLOURFUL);
     assert!(colourful >= MOZART_COLOURFUL, "x{colourful:.2}");

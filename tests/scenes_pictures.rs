@@ -35,8 +35,9 @@ fn built_in_surfaces_under_built_in_lights() {
 }
 
 #[test]
+#[ignore = "needs ../shared/data"]
 fn mozart() {
-    let Some(data) = data_dir() else { return };
+    let data = data_dir();
     let relief = common::mozart(&data);
     for side in [32, 64, 128] {
         draw("mozart", &relief, "colourful", side);

@@ -1,34 +1,8 @@
 // Another thread refines the depth view beside the image surface, and nothing but the time it takes depends on it.
 import assert from "node:assert/strict";
-import { syncBuiltinESMExports } from "node:module";
 import { before, describe, test } from "node:test";
-import { setTimeout as wait } from "node:timers/promises";
-import threads from "node:worker_threads";
 import { Estimator, init, outcome, pair } from "./support.mjs";
-
-/** Until the other thread is there, milliseconds. */
-const ARRIVAL = 1000;
-
-/** Refinements that other threads were asked for, and brought. */
-const told = { asked: 0, brought: 0 };
-/** What becomes of an order before it is sent. */
-let tamper = (order) => order;
-/** Threads that were made, and those of them that ended. */
-const made = { begun: 0, ended: 0 };
-
-class Watched extends threads.Worker {
-  constructor(...args) {
-    super(...args);
-    made.begun++;
-    this.on("exit", () => made.ended++);
-    this.on("message", (answer) => (told.brought += answer instanceof Float32Array ? 1 : 0));
-  }
-
-  postMessage(order, transfer) {
-    if (order.kind === "refine") told.asked++;
-    super.postMessage(tamper(order), transfer);
-  }
-}
+import { runSettled, seen, settled, tamperWith, until } from "./threads.mjs";
 
 /** Large enough to be shared; the pose that is to be found stands from the second iteration on. */
 function scene(options = {}, request = {}) {
@@ -46,50 +20,64 @@ async function endOf(estimator) {
   return end;
 }
 
-/** As many steps, with time for messages between them. */
-async function pacedEnd(estimator, step) {
-  while (step(estimator).status === "running") await wait(20);
+/** As many steps of this kind, each after all threads have answered. */
+async function settledEnd(estimator, step) {
+  await runSettled(estimator, step);
   const end = outcome(estimator);
   estimator.free();
   return end;
 }
 
-before(async () => {
-  await init();
-  threads.Worker = Watched;
-  syncBuiltinESMExports();
-});
+/** How long the estimator waits for an answer, milliseconds: PATIENCE of js/partner.ts. */
+const PATIENCE = 2000;
+
+/** The estimator waits for the other thread as long as it takes: its patience is a timer, which is stopped. */
+const withoutHaste = (t) => t.mock.timers.enable({ apis: ["setTimeout"] });
+
+/** Until a run waits for a refinement that never comes. */
+async function lostInWaiting() {
+  const before = seen.asked;
+  tamperWith((order) => (order.kind === "refine" ? undefined : order));
+  await until(() => seen.asked > before);
+  tamperWith();
+  // The run goes on to the place where it waits.
+  for (let turns = 0; turns < 10; turns++) await new Promise(setImmediate);
+}
+
+before(() => init());
 
 describe("a partner", () => {
-  test("refines the same to the bit, whatever kind of step is taken", async () => {
+  test("refines the same to the bit, whatever kind of step is taken", async (t) => {
+    withoutHaste(t);
     for (const given of [scene(), scene({ registration: "fixed" }), scene({}, { depthNoise: 0.1, holes: 0.1 })]) {
       const expected = await endOf(alone(given));
       const ways = [
         (estimator) => endOf(estimator),
-        (estimator) => pacedEnd(estimator, (e) => e.step()),
-        (estimator) => pacedEnd(estimator, (e) => e.stepStage()),
+        (estimator) => settledEnd(estimator, (e) => e.step()),
+        (estimator) => settledEnd(estimator, (e) => e.stepStage()),
       ];
       for (const way of ways) {
-        const before = { ...told };
+        const before = { ...seen };
         const estimator = together(given);
-        await wait(ARRIVAL);
+        await settled();
         assert.deepEqual(await way(estimator), expected);
-        assert.ok(told.brought > before.brought, `${told.brought - before.brought} of ${told.asked - before.asked}`);
+        assert.ok(seen.brought > before.brought, `${seen.brought - before.brought} of ${seen.asked - before.asked}`);
       }
     }
   });
 
-  test("follows a search", async () => {
+  test("follows a search", async (t) => {
+    withoutHaste(t);
     const given = scene({ start: "search", stopDegrees: 1e-12 });
-    const before = told.brought;
-    assert.deepEqual(await endOf(together(given, 3)), await endOf(alone(given)));
-    assert.ok(told.brought > before);
+    const before = seen.brought;
+    assert.deepEqual(await settledEnd(together(given, 3)), await endOf(alone(given)));
+    assert.ok(seen.brought > before);
   });
 
   test("is not waited for by steps without a pause", async () => {
     const given = scene();
     const estimator = together(given);
-    await wait(ARRIVAL);
+    await settled();
     while (estimator.step().status === "running");
     assert.deepEqual(outcome(estimator), await endOf(alone(given)));
     estimator.free();
@@ -97,7 +85,7 @@ describe("a partner", () => {
 
   test("a report's times are those of a whole iteration", async () => {
     const estimator = together(scene());
-    await wait(ARRIVAL);
+    await settled();
     const stages = [];
     await estimator.run({ onStep: ({ milliseconds }) => stages.push(Object.keys(milliseconds).sort().join()) });
     assert.deepEqual(new Set(stages), new Set(["light,refinement,registration,shading,surface"]));
@@ -117,57 +105,74 @@ describe("a partner", () => {
       },
     ];
     for (const death of deaths) {
-      tamper = (order) => (order.kind === "refine" ? death(order) : order);
+      tamperWith((order) => (order.kind === "refine" ? death(order) : order));
       const estimator = together(given);
-      await wait(ARRIVAL);
-      const before = made.begun;
+      await settled();
+      const before = { ...seen };
       assert.deepEqual(await endOf(estimator), expected);
-      // Whoever has failed once is not hired again.
-      assert.equal(made.begun, before);
+      // Whoever has failed once is neither asked nor hired again.
+      assert.deepEqual([seen.asked - before.asked, seen.begun - before.begun], [1, 0]);
     }
-    tamper = (order) => order;
+    tamperWith();
+  });
+
+  test("that is late is waited for in vain once", async (t) => {
+    withoutHaste(t);
+    const given = scene();
+    const expected = await endOf(alone(given));
+    const estimator = together(given);
+    await settled();
+    let ended = false;
+    const end = endOf(estimator).finally(() => (ended = true));
+    await lostInWaiting();
+    const { asked } = seen;
+    // Patience runs out here, and nowhere else.
+    for (; !ended; t.mock.timers.tick(PATIENCE)) await new Promise(setImmediate);
+    assert.deepEqual(await end, expected);
+    assert.equal(seen.asked, asked, "it is not asked again");
   });
 
   test("that cannot be given its pair leaves no thread behind", async () => {
     const given = scene();
     const expected = await endOf(alone(given));
-    tamper = () => {
+    tamperWith(() => {
       throw new RangeError("no memory for it");
-    };
-    const before = { ...made };
+    });
+    const before = seen.begun;
     assert.deepEqual(await endOf(together(given)), expected);
-    tamper = (order) => order;
-    await wait(200);
-    assert.deepEqual([made.begun - before.begun, made.ended - before.ended], [1, 1]);
+    tamperWith();
+    assert.equal(seen.begun - before, 1);
+    await until(() => seen.ended === seen.begun);
   });
 
   test("is not hired for a loop whose pose never stands", async () => {
-    const before = made.begun;
+    const before = seen.begun;
     await endOf(together(scene({ registration: "icp", maxIterations: 3 })));
-    assert.equal(made.begun, before);
+    assert.equal(seen.begun, before);
   });
 
-  test("goes when the loop begins anew or the estimator is freed, also while somebody waits", async () => {
+  test("goes when the loop begins anew or the estimator is freed, also while somebody waits", async (t) => {
+    withoutHaste(t);
     const given = scene();
     const expected = await endOf(alone(given));
     const estimator = together(given);
-    await wait(ARRIVAL);
+    await settled();
     const first = estimator.run();
-    await wait(5);
+    await lostInWaiting();
     estimator.reset();
     await first;
     estimator.reset();
     await estimator.run();
     assert.deepEqual(outcome(estimator), expected);
     estimator.reset();
-    await wait(ARRIVAL);
+    await settled();
     const [one, two] = [estimator.run(), estimator.run()];
     await Promise.all([one, two]);
     assert.deepEqual(outcome(estimator), expected);
     estimator.reset();
-    await wait(ARRIVAL);
+    await settled();
     const last = estimator.run();
-    await wait(5);
+    await lostInWaiting();
     estimator.free();
     await assert.rejects(last, { code: "freed" });
   });

@@ -4,6 +4,7 @@ import { readFile } from "node:fs/promises";
 import { encode } from "fast-png";
 import init, { sample, type Sample } from "../../pkg/index.js";
 import { expect, test, type Lab } from "./lab";
+import { Messages } from "./messages";
 
 const size = 64;
 let pair: Sample;
@@ -59,11 +60,15 @@ async function openFiles(lab: Lab): Promise<void> {
 }
 
 test("nothing runs while files are awaited", async ({ lab, page }) => {
+  const messages = await Messages.of(page);
   await openFiles(lab);
   await page.getByRole("button", { name: "Step", exact: true }).click();
-  await page.getByRole("button", { name: "Play", exact: true }).click();
+  const play = page.locator("#play");
+  await play.click();
+  await expect(play).toHaveAttribute("aria-pressed", "false");
   await lab.reaches("waiting");
   await expect(lab.iteration).toHaveText("0");
+  expect(await messages.count("advance")).toBe(0);
 });
 
 test("a colour and a depth PNG of 16 bits run to convergence", async ({ lab, page }) => {

@@ -1,8 +1,10 @@
 /** The method runs, by pointer and by keyboard, and its pictures and numbers follow. */
 
 import { expect, test } from "./lab";
+import { Messages } from "./messages";
 
 test("a sample runs to convergence with a small pose error", async ({ lab, page }) => {
+  const messages = await Messages.of(page);
   await lab.open("surface=bust&light=colourful&size=64&beta=20");
   const before = await lab.fingerprint("Normals");
   await page.getByLabel("Speed").selectOption({ label: "fastest" });
@@ -14,13 +16,15 @@ test("a sample runs to convergence with a small pose error", async ({ lab, page 
   expect(await lab.fingerprint("Normals")).not.toBe(before);
   await expect(page.getByRole("button", { name: "Play" })).toHaveAttribute("aria-pressed", "false");
 
-  await page.getByLabel("Speed").selectOption({ label: "2 per second" });
+  // Played again it begins anew; the second step is kept back, so that the first can be seen.
+  await messages.hold("advance", 1);
   await page.getByRole("button", { name: "Play" }).click();
-  await lab.reaches("playing");
   await expect(lab.iteration).toHaveText("1");
+  await lab.reaches("playing");
 });
 
 test("keys step, stage, play, pause, reset and enlarge", async ({ lab, page }) => {
+  const messages = await Messages.of(page);
   await lab.open();
   const depth = await lab.fingerprint("Depth");
   await page.keyboard.press("s");
@@ -32,12 +36,13 @@ test("keys step, stage, play, pause, reset and enlarge", async ({ lab, page }) =
   await page.keyboard.press("t");
   await expect(page.locator(".stage[data-lit]")).toContainText("shading");
 
-  await page.getByLabel("Speed").selectOption({ label: "2 per second" });
-  await page.getByLabel("Speed").blur();
+  // It plays until the other key is pressed, however late that is.
+  await messages.hold("advance");
   await page.keyboard.press(" ");
   await lab.reaches("playing");
   await page.keyboard.press(" ");
   await lab.reaches("paused");
+  await messages.release();
 
   await page.keyboard.press("r");
   await lab.reaches("ready");
@@ -153,6 +158,9 @@ test("a hint unfolds at a tap", async ({ lab, page }) => {
   await expect(hint).toBeVisible();
 });
 
+/** The error that the table names for the start of a run. */
+const AT_START = /[\d.]+° at the start/;
+
 test("nothing known: the search comes first, says how far it is, and the loop converges", async ({ lab, page }) => {
   await lab.visit("light=window&beta=50&gamma=15&overlap=0.7&noise=0.01");
   const search = page.getByRole("button", { name: /^search/ });
@@ -163,11 +171,13 @@ test("nothing known: the search comes first, says how far it is, and the loop co
     new MutationObserver(listen).observe(chip, { attributes: true, childList: true, characterData: true, subtree: true });
     return said;
   });
-  const before = (await page.locator("#pose-error").textContent())?.match(/[\d.]+° at the start/)?.[0] ?? "none";
+  const error = page.locator("#pose-error");
+  await expect(error).toContainText(AT_START);
+  const before = AT_START.exec((await error.textContent()) ?? "")?.[0] ?? "";
   await page.getByRole("button", { name: "Play" }).click();
-  await expect(page.locator("#status")).toHaveAttribute("data-state", "converged", { timeout: 40_000 });
+  await expect(page.locator("#status")).toHaveAttribute("data-state", "converged");
   // The start is where the visitor began, not what the search found.
-  await expect(page.locator("#pose-error")).toContainText(before);
+  await expect(error).toContainText(before);
   expect((await said.jsonValue()).join(" ")).toMatch(/\d+ %/);
   expect(await lab.errorDegrees()).toBeLessThanOrEqual(1);
   await expect(page.locator("#status")).toHaveAttribute("data-tone", "good");
@@ -175,9 +185,10 @@ test("nothing known: the search comes first, says how far it is, and the loop co
 });
 
 test("other threads share the search where the machine has them", async ({ lab, page }) => {
-  const helpers: string[] = [];
-  page.context().on("request", (request) => /\/thread-[^/]*\.js$/.test(request.url()) && helpers.push(request.url()));
+  const workers: string[] = [];
+  page.context().on("request", (request) => /\/thread-[^/]*\.js$/.test(request.url()) && workers.push(request.url()));
   await lab.visit("light=window");
   const threads = await page.evaluate(() => navigator.hardwareConcurrency);
-  await expect.poll(() => helpers.length).toBe(Math.min(threads, 4) - 1);
+  test.skip(threads < 2, "needs two processors");
+  await expect.poll(() => workers.length).toBe(Math.min(threads, 4) - 1);
 });
