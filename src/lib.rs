@@ -9,10 +9,10 @@
 //! |---|---|---|
 //! | [`view`](ColourView) | what comes in: sizes, masks, cameras, log colours, points, normals | input of Algorithm 1 |
 //! | [`light`](Light) | the image model, the natural lights, the fit of a light | Eq. 2, 3, 5 |
-//! | `shape/shading` ([`ShadingSolver`]) | a normal for each pixel, with a prior; `exposure` its one global unknown | Eq. 6 to 9 |
-//! | `shape/surface` ([`Integrator`]) | heights from normals on a mask; `poisson`, `cosine` its solvers | Harker and O'Leary's step |
-//! | `shape/relief` | the image surface's heights as a whole, for light that a pixel alone cannot read | beyond the paper |
-//! | `shape/refine` ([`Refiner`]) | the depth view's own normals and depth, through `heights` | Eq. 17 to 19 |
+//! | `shape/pixels` ([`ShadingSolver`]) | a normal for each pixel, with a prior; `exposure` its one global unknown | Eq. 6 to 9 |
+//! | `shape/integration` ([`Integrator`]) | the surface that has given gradients, on a mask | Harker and O'Leary's step |
+//! | `shape/heights` | heights from shading as a whole, for light that leaves the normal of a single pixel open | beyond the paper |
+//! | `shape/refinement` | the depth view's own normals and depth, through `heights` | Eq. 17 to 19 |
 //! | `pose/search` ([`Search`]) | where to start when nothing is known: all rotations, translations and scales, coarsely | before Algorithm 1 |
 //! | `pose/photometric` ([`Photometric`]) | the pose straight from the colours, the light projected out | beyond the paper |
 //! | `pose/icp`, `pose/ransac` ([`Icp`], [`ransac`]) | the pose from both surfaces | Eq. 12 to 14 |
@@ -63,9 +63,8 @@ pub use pose::{
 };
 pub use report::{Energy, Stage, Status, StepReport};
 pub use shape::{
-    AnchorWeight, Anchors, HeightDomain, HeightProblem, HeightReport, HeightSolver, IntegrationOptions,
-    IntegrationReport, Integrator, RefinementProblem, RefinementTerms, Refiner, Robust, ShadingProblem, ShadingSolver,
-    ShadingWeights, Termination, Terminations, Workbench, exposure_step, first_exposure, gradients,
+    AnchorWeight, Anchors, IntegrationOptions, IntegrationReport, IntegrationTermination, Integrator, Robustness,
+    ShadingProblem, ShadingReport, ShadingSolver, ShadingWeights, exposure_step, first_exposure, gradients,
 };
 pub use view::{
     Camera, ColourImage, ColourSamples, ColourView, DepthMap, DepthSamples, DepthView, Normals, Pinhole, Points, Size,

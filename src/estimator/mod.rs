@@ -28,7 +28,7 @@ use crate::numeric::evenly_spread;
 use crate::options::{LightSource, Options, Registration, Shading, Start};
 use crate::pose::{Correspondences, Icp, ImageGrid, Similarity};
 use crate::report::{Energy, Stage, Status, StepReport};
-use crate::shape::{Integrator, Refiner, ReliefSolver, STARTS, ShadingSolver, Workbench};
+use crate::shape::{ImageSurfaceSolver, Integrator, Refiner, STARTS, Scratch, ShadingSolver};
 use crate::text::Fixed;
 use crate::view::{ColourImage, ColourView, DepthMap, DepthView, Normals, Size};
 pub use helper::Helper;
@@ -107,8 +107,8 @@ pub struct Estimator {
     refiner: Refiner,
     outlook: Outlook,
     /// Only where the image surface is solved as a whole.
-    relief: Option<ReliefSolver>,
-    bench: Workbench,
+    relief: Option<ImageSurfaceSolver>,
+    scratch: Scratch,
     /// Normals of the depth view at the image pixels, colour view's frame.
     carried_normals: Normals,
     residual: Vec<f32>,
@@ -151,13 +151,13 @@ impl Estimator {
         let joint = registers_colours.then(|| Joint::new(&anywhere::given(&image, &depth, &prior, &options)));
         let refiner = Refiner::new(&depth, &image)?;
         let relief = match options.shading {
-            Shading::Surface => Some(ReliefSolver::new(&image)?),
+            Shading::Surface => Some(ImageSurfaceSolver::new(&image)?),
             Shading::Pixel => None,
         };
         let (pixels, points) = (image.size.len(), depth.size.len());
-        let domains = [refiner.domain(), relief.as_ref().map_or(refiner.domain(), ReliefSolver::domain)];
+        let domains = [refiner.domain(), relief.as_ref().map_or(refiner.domain(), ImageSurfaceSolver::domain)];
         let mut estimator = Self {
-            bench: Workbench::new(pixels.max(points), &domains),
+            scratch: Scratch::new(pixels.max(points), &domains),
             solution: Solution::new(&image, &depth, pose, light),
             kept: Kept::new(pose, light),
             kept_points: Vec::with_capacity(merit::MOST_JURORS),

@@ -15,7 +15,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::light::{COEFFICIENTS, Light};
 use crate::options::Registration;
 use crate::report::{Stage, Status};
-use crate::shape::{RefinementProblem, RefinementTerms, Refiner, Workbench};
+use crate::shape::{RefinementProblem, RefinementTerms, Refiner, Scratch};
 use crate::view::{ColourView, DepthView, Normals};
 
 /// What the next refinement looks at, where that is known beforehand.
@@ -119,9 +119,9 @@ impl Estimator {
             };
             let terms = self.outlook.terms.unwrap_or_else(|| self.refinement_terms());
             let problem = RefinementProblem { depth: &self.depth, image: &self.image, position, image_normals, terms };
-            self.bench.fit(self.depth.size.len());
+            self.scratch.resize(self.depth.size.len());
             let (normals, points) = (&mut self.solution.depth_normals, &mut self.solution.depth_points);
-            self.refiner.refine(&mut self.bench, problem, normals, &mut points.z);
+            self.refiner.refine(&mut self.scratch, problem, normals, &mut points.z);
         }
         self.outlook.change();
         self.solution.raise_depth_points(&self.depth);
@@ -140,7 +140,7 @@ impl Estimator {
 /// Refines a depth view for somebody else, one refinement after the other.
 pub(super) struct Partner {
     refiner: Refiner,
-    bench: Workbench,
+    scratch: Scratch,
     position: [Vec<f32>; 2],
     image_normals: Normals,
     refined_depth: Vec<f32>,
@@ -153,7 +153,7 @@ impl Partner {
         let (pixels, points) = (image.size.len(), depth.size.len());
         let refiner = Refiner::new(depth, image)?.resumed();
         Ok(Self {
-            bench: Workbench::new(points, &[refiner.domain()]),
+            scratch: Scratch::new(points, &[refiner.domain()]),
             position: [0, 1].map(|_| vec![f32::NAN; points]),
             image_normals: Normals::missing(pixels),
             refined_depth: vec![f32::NAN; points],
@@ -175,8 +175,8 @@ impl Partner {
         let position = self.position.each_ref().map(Vec::as_slice);
         let terms = from_numbers(numbers)?;
         let problem = RefinementProblem { depth, image, position, image_normals: &self.image_normals, terms };
-        self.bench.fit(depth.size.len());
-        self.refiner.refine(&mut self.bench, problem, &mut self.refined_normals, &mut self.refined_depth);
+        self.scratch.resize(depth.size.len());
+        self.refiner.refine(&mut self.scratch, problem, &mut self.refined_normals, &mut self.refined_depth);
         let [x, y, z] = components(&self.refined_normals);
         Ok([&self.refined_depth, x, y, z])
     }

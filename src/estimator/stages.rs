@@ -10,8 +10,8 @@ use crate::numeric::{LANES, Lanes, quantile};
 use crate::options::{LightSource, Registration};
 use crate::pose::{CorrespondenceProblem, IcpOptions, IcpProblem, RansacOptions, Similarity, ransac};
 use crate::shape::{
-    IntegrationOptions, Integrator, ReliefProblem, ReliefSolver, Robust, ShadingProblem, ShadingWeights, Workbench,
-    exposure_step, first_exposure, gradients,
+    ImageSurfaceProblem, ImageSurfaceSolver, IntegrationOptions, Integrator, Robustness, Scratch, ShadingProblem,
+    ShadingWeights, exposure_step, find_slopes, first_exposure,
 };
 use crate::view::{Points, normals};
 
@@ -39,9 +39,9 @@ const SPREADS: f64 = 3.0;
 impl Estimator {
     /// Everything that iteration zero needs: holes guessed, points raised, correspondences by the first pose.
     pub(super) fn prepare(&mut self) -> Result<()> {
-        let Self { refiner, bench, depth, solution, .. } = self;
-        bench.fit(depth.size.len());
-        refiner.fill(bench, depth, &mut solution.depth_points.z)?;
+        let Self { refiner, scratch, depth, solution, .. } = self;
+        scratch.resize(depth.size.len());
+        refiner.fill(scratch, depth, &mut solution.depth_points.z)?;
         solution.raise_depth_points(depth);
         if let LightSource::Known(light) = self.options.light {
             let log = &self.image.log;
@@ -102,7 +102,7 @@ impl Estimator {
     /// Heights of the colour view from its normals.
     pub(super) fn raise_surface(&mut self) -> Result<()> {
         self.find_slopes();
-        if self.relief.as_ref().is_none_or(ReliefSolver::wants_integrated) {
+        if self.relief.as_ref().is_none_or(ImageSurfaceSolver::needs_integrated) {
             self.integrate()?;
         }
         let light = self.solution.exposed_light();
@@ -112,7 +112,7 @@ impl Estimator {
             self.shade_surface(&light);
         }
         if self.image.camera.is_orthographic() {
-            let middle = median_of(&self.solution.image_points.z, &mut self.bench.spare).unwrap_or(0.0);
+            let middle = median_of(&self.solution.image_points.z, &mut self.scratch.spare).unwrap_or(0.0);
             self.solution.image_points.z.iter_mut().for_each(|depth| *depth -= middle);
         } else {
             self.match_distance();
@@ -125,12 +125,9 @@ impl Estimator {
     /// Slopes of the pixels' own normals, pixels of height per pixel.
     fn find_slopes(&mut self) {
         let image = &self.image;
-        self.bench.fit(image.size.len());
-        let [p, q] = &mut self.bench.slopes;
-        gradients(image.size, &image.camera, &self.solution.image_normals, &image.mask, p, q);
-        // Pinhole gradients are of log Z: times f they are pixels of height per pixel, too.
-        let focal_length = image.camera.focal_length().unwrap_or(1.0) as f32;
-        p.iter_mut().chain(q.iter_mut()).for_each(|slope| *slope *= focal_length);
+        self.scratch.resize(image.size.len());
+        let normals = &self.solution.image_normals;
+        find_slopes(image.size, &image.camera, normals, &image.mask, &mut self.scratch.slopes);
     }
 
     /// The surface that has these slopes, in heights for now.
@@ -139,8 +136,8 @@ impl Estimator {
             Some(integrator) => integrator,
             None => Integrator::new(self.image.size, &self.image.mask)?,
         };
-        let options = IntegrationOptions { robust: Robust::Estimated, ..IntegrationOptions::default() };
-        let [p, q] = &self.bench.slopes;
+        let options = IntegrationOptions { robustness: Robustness::Estimated, ..IntegrationOptions::default() };
+        let [p, q] = &self.scratch.slopes;
         integrator.integrate(p, q, None, &options, &mut self.solution.image_points.z)?;
         // A surface that is solved as a whole starts from it once.
         self.integrator = self.relief.is_none().then_some(integrator);
@@ -151,11 +148,11 @@ impl Estimator {
     fn solve_relief(&mut self, light: &Light) {
         let prior = self.shading_weights(self.options.weights.prior).prior;
         let Some(relief) = &mut self.relief else { return };
-        let Workbench { slopes: [p, q], weight: firmness, heights, .. } = &mut self.bench;
-        for (pixel, firmness) in firmness.iter_mut().enumerate() {
-            *firmness = if self.carried_normals.is_valid(pixel) { prior } else { 0.0 };
+        let Scratch { slopes: [p, q], weight: normal_weight, heights, .. } = &mut self.scratch;
+        for (pixel, weight) in normal_weight.iter_mut().enumerate() {
+            *weight = if self.carried_normals.is_valid(pixel) { prior } else { 0.0 };
         }
-        let problem = ReliefProblem { image: &self.image, light, slopes: [p, q], firmness };
+        let problem = ImageSurfaceProblem { image: &self.image, light, slopes: [p, q], normal_weight };
         relief.solve(heights, problem, &mut self.solution.image_points.z);
     }
 
@@ -165,9 +162,9 @@ impl Estimator {
         let depth_counts = self.options.weights.prior > 0.0;
         let weights = self.shading_weights(self.options.weights.prior.max(LEAST_SURFACE_PRIOR));
         let Self { image, solution, .. } = self;
-        for band in Workbench::bands(image.size) {
-            self.bench.fit_band(&band);
-            let Workbench { prior, found, .. } = &mut self.bench;
+        for band in Scratch::bands(image.size) {
+            self.scratch.resize_band(&band);
+            let Scratch { prior, found, .. } = &mut self.scratch;
             let first = band.start / image.size.width;
             normals::of_depth_rows(image.size, image.camera, &solution.image_points.z, first, prior);
             for (place, pixel) in band.clone().enumerate() {
@@ -295,7 +292,7 @@ impl Estimator {
     pub(super) fn measure(&mut self) {
         let light = Polynomial::of(&self.solution.exposed_light());
         let rotation = self.solution.pose.rotation.cast::<f32>();
-        self.bench.spare.clear();
+        self.scratch.spare.clear();
         for start in (0..self.residual.len()).step_by(LANES) {
             let mut normals = [[f32::NAN; LANES]; 3];
             let mut is_carried = [false; LANES];
@@ -316,12 +313,12 @@ impl Estimator {
             let residuals = merit::residuals(&self.image, start, &light, normals.map(Lanes::from));
             residuals.store(&mut self.residual[start..]);
             let carried = residuals.array().into_iter().zip(is_carried).filter(|(_, carried)| *carried);
-            self.bench.spare.extend(carried.map(|(residual, _)| residual));
+            self.scratch.spare.extend(carried.map(|(residual, _)| residual));
         }
         self.report.overlap = self.correspondences.count() as f64 / self.depth.valid().max(1) as f64;
         self.report.inliers = self.correspondences.inliers();
-        if !self.bench.spare.is_empty() {
-            let residuals = &mut self.bench.spare;
+        if !self.scratch.spare.is_empty() {
+            let residuals = &mut self.scratch.spare;
             let scale = merit::SPREADS_OF_MEDIAN * quantile(residuals, 0.5);
             let (sum, count) =
                 residuals.iter().filter(|&&r| r <= scale).fold((0.0, 0.0), |(s, c), &r| (s + f64::from(r), c + 1.0));
@@ -367,15 +364,15 @@ impl Estimator {
         let (row, shift) =
             (self.solution.pose.scale * self.solution.pose.rotation.row(2), self.solution.pose.translation.z);
         let Points { x, y, z } = &self.solution.depth_points;
-        self.bench.spare.clear();
+        self.scratch.spare.clear();
         for (&index, &depth) in self.correspondences.depth_of_pixel().iter().zip(&self.solution.image_points.z) {
             let Ok(index) = usize::try_from(index) else { continue };
             if !depth.is_nan() {
                 let [x, y, z] = [f64::from(x[index]), f64::from(y[index]), f64::from(z[index])];
-                self.bench.spare.push(gap(f64::from(depth), row[0] * x + row[1] * y + row[2] * z + shift) as f32);
+                self.scratch.spare.push(gap(f64::from(depth), row[0] * x + row[1] * y + row[2] * z + shift) as f32);
             }
         }
-        (!self.bench.spare.is_empty()).then(|| f64::from(quantile(&mut self.bench.spare, 0.5)))
+        (!self.scratch.spare.is_empty()).then(|| f64::from(quantile(&mut self.scratch.spare, 0.5)))
     }
 }
 

@@ -6,11 +6,10 @@ mod integration;
 mod pixels;
 mod refinement;
 
-pub use heights::{
-    Effort, HeightDomain, HeightProblem, HeightReport, HeightSolver, ReliefProblem, ReliefSolver, STARTS, Workbench,
-};
+pub use heights::{ImageSurfaceProblem, ImageSurfaceSolver, STARTS, Scratch};
 pub use integration::{
-    AnchorWeight, Anchors, IntegrationOptions, IntegrationReport, Integrator, Robust, Termination, gradients,
+    AnchorWeight, Anchors, IntegrationOptions, IntegrationReport, IntegrationTermination, Integrator, Robustness,
+    find_slopes, gradients,
 };
-pub use pixels::{ShadingProblem, ShadingSolver, ShadingWeights, Terminations, exposure_step, first_exposure};
+pub use pixels::{ShadingProblem, ShadingReport, ShadingSolver, ShadingWeights, exposure_step, first_exposure};
 pub use refinement::{RefinementProblem, RefinementTerms, Refiner};
