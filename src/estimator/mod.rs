@@ -28,7 +28,7 @@ use crate::numeric::evenly_spread;
 use crate::options::{LightSource, Options, Registration, Shading, Start};
 use crate::pose::{Correspondences, Icp, ImageGrid, Similarity};
 use crate::report::{Energy, Stage, Status, StepReport};
-use crate::shape::{ImageSurfaceSolver, Integrator, Refiner, STARTS, Scratch, ShadingSolver};
+use crate::shape::{ImageShapeSolver, Refiner, STARTS, Scratch};
 use crate::text::Fixed;
 use crate::view::{ColourImage, ColourView, DepthMap, DepthView, Normals, Size};
 pub use helper::Helper;
@@ -94,8 +94,7 @@ pub struct Estimator {
     kept_points: Vec<u32>,
     correspondences: Correspondences,
     fitter: LightFitter,
-    solver: ShadingSolver,
-    integrator: Option<Integrator>,
+    shape: ImageShapeSolver,
     icp: Icp,
     /// Only where the options ask for it: it holds splines of the image.
     joint: Option<Joint>,
@@ -106,8 +105,6 @@ pub struct Estimator {
     paired_points: [Vec<Vector3<f64>>; 2],
     refiner: Refiner,
     outlook: Outlook,
-    /// Only where the image surface is solved as a whole.
-    relief: Option<ImageSurfaceSolver>,
     scratch: Scratch,
     /// Normals of the depth view at the image pixels, colour view's frame.
     carried_normals: Normals,
@@ -150,12 +147,12 @@ impl Estimator {
         let registers_colours = options.start == Start::Search || options.registration == Registration::Joint;
         let joint = registers_colours.then(|| Joint::new(&anywhere::given(&image, &depth, &prior, &options)));
         let refiner = Refiner::new(&depth, &image)?;
-        let relief = match options.shading {
-            Shading::Surface => Some(ImageSurfaceSolver::new(&image)?),
-            Shading::Pixel => None,
+        let shape = match options.shading {
+            Shading::Surface => ImageShapeSolver::as_a_whole(&image)?,
+            Shading::Pixel => ImageShapeSolver::by_integration(),
         };
         let (pixels, points) = (image.size.len(), depth.size.len());
-        let domains = [refiner.domain(), relief.as_ref().map_or(refiner.domain(), ImageSurfaceSolver::domain)];
+        let domains = [refiner.domain(), shape.domain().unwrap_or(refiner.domain())];
         let mut estimator = Self {
             scratch: Scratch::new(pixels.max(points), &domains),
             solution: Solution::new(&image, &depth, pose, light),
@@ -163,8 +160,7 @@ impl Estimator {
             kept_points: Vec::with_capacity(merit::MOST_JURORS),
             correspondences: Correspondences::new(&image, &depth),
             fitter: LightFitter::default(),
-            solver: ShadingSolver::new(),
-            integrator: None,
+            shape,
             icp: Icp::new(),
             joint,
             grid: None,
@@ -172,7 +168,6 @@ impl Estimator {
             paired_points: [Vec::new(), Vec::new()],
             refiner,
             outlook: Outlook::new(points),
-            relief,
             carried_normals: Normals::missing(pixels),
             residual: vec![f32::NAN; pixels],
             trust: 1.0,

@@ -10,12 +10,12 @@
 
 use nalgebra::Matrix3;
 
-use super::{Estimator, stages};
+use super::Estimator;
 use crate::error::{Error, ErrorKind, Result};
 use crate::light::{COEFFICIENTS, Light};
 use crate::options::Registration;
 use crate::report::{Stage, Status};
-use crate::shape::{RefinementProblem, RefinementTerms, Refiner, Scratch};
+use crate::shape::{RefinementProblem, RefinementTerms, Refiner, Scratch, ShadingWeights};
 use crate::view::{ColourView, DepthView, Normals};
 
 /// What the next refinement looks at, where that is known beforehand.
@@ -131,7 +131,7 @@ impl Estimator {
         RefinementTerms {
             light: self.solution.exposed_light(),
             rotation: self.solution.pose.rotation,
-            weights: self.shading_weights(self.options.weights.refinement),
+            weights: self.refinement_weights(),
             colour_error: self.unexplained,
         }
     }
@@ -201,7 +201,7 @@ fn from_numbers(numbers: &[f64]) -> Result<RefinementTerms> {
     Ok(RefinementTerms {
         light: Light::from_slice("numbers", light)?,
         rotation: Matrix3::new(xx, xy, xz, yx, yy, yz, zx, zy, zz),
-        weights: stages::weights(prior as f32, unit as f32),
+        weights: ShadingWeights::with_robust_prior(prior as f32, unit as f32),
         colour_error,
     })
 }

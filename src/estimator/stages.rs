@@ -7,20 +7,11 @@ use super::{Estimator, gauge, merit};
 use crate::error::{Error, ErrorKind, Result};
 use crate::light::{Light, Polynomial};
 use crate::numeric::{LANES, Lanes, quantile};
-use crate::options::{LightSource, Registration};
+use crate::options::{LightSource, Registration, Weights};
 use crate::pose::{CorrespondenceProblem, IcpOptions, IcpProblem, RansacOptions, Similarity, ransac};
-use crate::shape::{
-    ImageSurfaceProblem, ImageSurfaceSolver, IntegrationOptions, Integrator, Robustness, Scratch, ShadingProblem,
-    ShadingWeights, exposure_step, find_slopes, first_exposure,
-};
-use crate::view::{Points, normals};
+use crate::shape::{ImageShapeProblem, ImageShapeSolver, ShadingWeights, first_exposure};
+use crate::view::{ColourView, Normals, Points};
 
-/// |n - m| at which a prior normal has lost three quarters of its pull: 23 degrees, more than noise, less than a mistake.
-const PRIOR_SCALE: f32 = 0.4;
-/// Least weight of the surface's own normals: the surface says more than a pixel's colours under natural light.
-/// Measured on Mozart under the lights A, B, C without a depth view: 0.1 is better than 0.05 in five cases of six, 0.03
-/// in none.
-const LEAST_SURFACE_PRIOR: f64 = 0.1;
 /// Median log residual up to which a fitted light counts as explaining the colours: noise and discretisation.
 const EXPLAINED: f64 = 0.07;
 /// Solves of normals and exposure in the first iteration, which starts from a look at the colours alone.
@@ -74,43 +65,36 @@ impl Estimator {
 
     /// Normals of the colour view (Eq. 6 to 9).
     pub(super) fn shade(&mut self) -> Result<()> {
-        let weights = self.shading_weights(self.options.weights.prior);
         let known = self.options.light != LightSource::Estimate;
         let rounds = if known && self.report.iteration == 0 { FIRST_EXPOSURE_ROUNDS } else { 1 };
-        let log = &self.image.log;
         for _ in 0..rounds {
             let light = self.solution.exposed_light();
             let problem =
-                ShadingProblem { log: [&log[0], &log[1], &log[2]], prior: &self.carried_normals, light: &light };
-            self.solver.solve(problem, weights, &mut self.solution.image_normals);
+                shape_problem(&self.image, &self.carried_normals, &light, &self.options.weights, self.unexplained);
+            self.shape.solve_normals(&problem, &mut self.solution.image_normals);
             // The registration has found the exposure together with the pose.
             if known && self.colours_found().is_none() {
                 let moved = self.solution.exposure - self.first_exposure;
-                self.solution.exposure += exposure_step(problem, weights, &self.solution.image_normals, moved);
+                self.solution.exposure +=
+                    ImageShapeSolver::exposure_step(&problem, &self.solution.image_normals, moved);
             }
         }
         Ok(())
     }
 
-    /// Weights of the normals' terms. Colours that even the fitted light leaves unexplained (texture, cast shadows)
-    /// weigh less, which is to say that the prior weighs more.
-    pub(super) fn shading_weights(&self, prior: f64) -> ShadingWeights {
-        let doubt = (self.unexplained / EXPLAINED).max(1.0).powi(2);
-        weights((prior * doubt) as f32, self.options.weights.unit as f32)
+    /// Weights of the refinement's normals.
+    pub(super) fn refinement_weights(&self) -> ShadingWeights {
+        let Weights { refinement, unit, .. } = self.options.weights;
+        ShadingWeights::with_robust_prior((refinement * variance_inflation(self.unexplained)) as f32, unit as f32)
     }
 
     /// Heights of the colour view from its normals.
     pub(super) fn raise_surface(&mut self) -> Result<()> {
-        self.find_slopes();
-        if self.relief.as_ref().is_none_or(ImageSurfaceSolver::needs_integrated) {
-            self.integrate()?;
-        }
         let light = self.solution.exposed_light();
-        self.solve_relief(&light);
-        self.image.camera.depth_from_heights(&mut self.solution.image_points.z);
-        if self.relief.is_some() {
-            self.shade_surface(&light);
-        }
+        let problem =
+            shape_problem(&self.image, &self.carried_normals, &light, &self.options.weights, self.unexplained);
+        let (normals, points) = (&mut self.solution.image_normals, &mut self.solution.image_points);
+        self.shape.solve_surface(&mut self.scratch, &problem, normals, &mut points.z)?;
         if self.image.camera.is_orthographic() {
             let middle = median_of(&self.solution.image_points.z, &mut self.scratch.spare).unwrap_or(0.0);
             self.solution.image_points.z.iter_mut().for_each(|depth| *depth -= middle);
@@ -120,63 +104,6 @@ impl Estimator {
         self.solution.raise_image_points(&self.image);
         self.settle_gauge();
         Ok(())
-    }
-
-    /// Slopes of the pixels' own normals, pixels of height per pixel.
-    fn find_slopes(&mut self) {
-        let image = &self.image;
-        self.scratch.resize(image.size.len());
-        let normals = &self.solution.image_normals;
-        find_slopes(image.size, &image.camera, normals, &image.mask, &mut self.scratch.slopes);
-    }
-
-    /// The surface that has these slopes, in heights for now.
-    fn integrate(&mut self) -> Result<()> {
-        let mut integrator = match self.integrator.take() {
-            Some(integrator) => integrator,
-            None => Integrator::new(self.image.size, &self.image.mask)?,
-        };
-        let options = IntegrationOptions { robustness: Robustness::Estimated, ..IntegrationOptions::default() };
-        let [p, q] = &self.scratch.slopes;
-        integrator.integrate(p, q, None, &options, &mut self.solution.image_points.z)?;
-        // A surface that is solved as a whole starts from it once.
-        self.integrator = self.relief.is_none().then_some(integrator);
-        Ok(())
-    }
-
-    /// Heights of the image surface as a whole, at first from the integrated one.
-    fn solve_relief(&mut self, light: &Light) {
-        let prior = self.shading_weights(self.options.weights.prior).prior;
-        let Some(relief) = &mut self.relief else { return };
-        let Scratch { slopes: [p, q], weight: normal_weight, heights, .. } = &mut self.scratch;
-        for (pixel, weight) in normal_weight.iter_mut().enumerate() {
-            *weight = if self.carried_normals.is_valid(pixel) { prior } else { 0.0 };
-        }
-        let problem = ImageSurfaceProblem { image: &self.image, light, slopes: [p, q], normal_weight };
-        relief.solve(heights, problem, &mut self.solution.image_points.z);
-    }
-
-    /// Normals of the pixels once more, each drawn to the depth view's normal, where that has a say, or else to that of
-    /// the surface: differences of heights lack the detail of a pixel, which its colours have.
-    fn shade_surface(&mut self, light: &Light) {
-        let depth_counts = self.options.weights.prior > 0.0;
-        let weights = self.shading_weights(self.options.weights.prior.max(LEAST_SURFACE_PRIOR));
-        let Self { image, solution, .. } = self;
-        for band in Scratch::bands(image.size) {
-            self.scratch.resize_band(&band);
-            let Scratch { prior, found, .. } = &mut self.scratch;
-            let first = band.start / image.size.width;
-            normals::of_depth_rows(image.size, image.camera, &solution.image_points.z, first, prior);
-            for (place, pixel) in band.clone().enumerate() {
-                if depth_counts && self.carried_normals.is_valid(pixel) {
-                    prior.set(place, self.carried_normals.get(pixel));
-                }
-            }
-            found.copy_some(0, &solution.image_normals, &band);
-            let log = image.log.each_ref().map(|channel| &channel[band.clone()]);
-            self.solver.solve(ShadingProblem { log, prior, light }, weights, found);
-            solution.image_normals.copy_some(band.start, found, &(0..band.len()));
-        }
     }
 
     /// Pose (Eq. 12 to 16), then the correspondences that it gives.
@@ -376,9 +303,26 @@ impl Estimator {
     }
 }
 
-/// Weights of a prior that mistakes do not count for, and of the unit length.
-pub(super) const fn weights(prior: f32, unit: f32) -> ShadingWeights {
-    ShadingWeights { prior, unit, robust: Some(PRIOR_SCALE) }
+/// Colours that even the fitted light leaves unexplained (texture, cast shadows) have so many times the usual variance.
+fn variance_inflation(unexplained: f64) -> f64 {
+    (unexplained / EXPLAINED).max(1.0).powi(2)
+}
+
+fn shape_problem<'a>(
+    image: &'a ColourView,
+    prior: &'a Normals,
+    light: &'a Light,
+    weights: &Weights,
+    unexplained: f64,
+) -> ImageShapeProblem<'a> {
+    ImageShapeProblem {
+        image,
+        light,
+        prior,
+        prior_weight: weights.prior,
+        unit_weight: weights.unit,
+        variance_inflation: variance_inflation(unexplained),
+    }
 }
 
 fn median_of(values: &[f32], spare: &mut Vec<f32>) -> Option<f32> {

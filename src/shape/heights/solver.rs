@@ -406,10 +406,9 @@ mod tests {
             (solver.solve(domain, problem, &mut heights), heights)
         };
         let mut used = HeightSolver::new(&[&other]);
-        let short = HeightProblem { anchors, effort: Effort { steps: 1, ..free.effort }, ..free };
-        let (first, _) = solve(&mut used, &mut domain, short);
-        let (last, anchored) = solve(&mut used, &mut domain, HeightProblem { anchors, ..free });
-        assert!(last < first && anchored[0] > 30.0, "{first} {last} {}", anchored[0]);
+        let (objective, anchored) = solve(&mut used, &mut domain, HeightProblem { anchors, ..free });
+        // Flat heights cost 5 * 40^2.
+        assert!(objective < 100.0 && anchored[0] > 30.0, "{objective} {}", anchored[0]);
         solve(&mut used, &mut other, free);
         let mut fresh = HeightSolver::new(&[&domain]);
         assert_eq!(solve(&mut used, &mut domain, free), solve(&mut fresh, &mut domain, free));

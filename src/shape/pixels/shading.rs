@@ -36,6 +36,17 @@ pub struct ShadingWeights {
     pub robust: Option<f32>,
 }
 
+/// Scale of rho: 23 degrees, more than the noise of normals, less than a wrong correspondence.
+const PRIOR_SCALE: f32 = 0.4;
+
+impl ShadingWeights {
+    /// Those of a prior whose mistakes do not count.
+    #[must_use]
+    pub const fn with_robust_prior(prior: f32, unit: f32) -> Self {
+        Self { prior, unit, robust: Some(PRIOR_SCALE) }
+    }
+}
+
 /// For how many pixels the solver ended for which reason.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ShadingReport {
