@@ -2,24 +2,27 @@
 //! places.
 //!
 //! The method of Zhang, Liu, Wu, Zhang and Wang, "Bimodal Stereo: Joint Shape and Pose Estimation from Color-Depth
-//! Image Pair" (Machine Vision and Applications), stage by stage. Data flows one way; a later room may look into an
-//! earlier one, never the other way round:
+//! Image Pair" (Machine Vision and Applications), stage by stage. Data flows one way: a room looks only into rooms before
+//! it, and no two files of a room import each other (held by `tests/floors`).
 //!
 //! | room | what it holds | the paper |
 //! |---|---|---|
+//! | `text`, `error`, `check` | numbers in messages, errors as values, checks of single numbers | |
+//! | `numeric` | vectors of lanes, quantiles, robust weights, transforms: arithmetic that knows nothing of images | |
 //! | [`view`](ColourView) | what comes in: sizes, masks, cameras, log colours, points, normals | input of Algorithm 1 |
 //! | [`light`](Light) | the image model, the natural lights, the fit of a light | Eq. 2, 3, 5 |
-//! | `shape/pixels` ([`ShadingSolver`]) | a normal for each pixel, with a prior; `exposure` its one global unknown | Eq. 6 to 9 |
+//! | `shape/pixels` ([`ShadingSolver`]) | a normal for each pixel from its colours, with a prior; the exposure as its one global unknown | Eq. 6 to 9 |
 //! | `shape/integration` ([`Integrator`]) | the surface that has given gradients, on a mask | Harker and O'Leary's step |
-//! | `shape/heights` | heights from shading as a whole, for light that leaves the normal of a single pixel open | beyond the paper |
-//! | `shape/refinement` | the depth view's own normals and depth, through `heights` | Eq. 17 to 19 |
+//! | `shape/heights` | heights from shading as a whole, for light under which the normal of a single pixel stays open | beyond the paper |
+//! | `shape/refinement` | the depth view's own normals and depth | Eq. 17 to 19 |
 //! | `pose/search` ([`Search`]) | where to start when nothing is known: all rotations, translations and scales, coarsely | before Algorithm 1 |
 //! | `pose/photometric` ([`Photometric`]) | the pose straight from the colours, the light projected out | beyond the paper |
 //! | `pose/icp`, `pose/ransac` ([`Icp`], [`ransac`]) | the pose from both surfaces | Eq. 12 to 14 |
 //! | `pose/similarity`, `pose/angles` ([`Similarity`], [`Angles`]) | s, R, t and the angles | Eq. 15, 16, 20 |
 //! | `pose/correspondence` ([`Correspondences`]) | which depth point is which pixel | the 1-pixel rule |
-//! | `estimator` ([`Estimator`]) | one iteration, its merit, its end; `opening` (search, candidates, rivals) before it, parts of it done by a [`Helper`] elsewhere | Eq. 1, Algorithm 1 |
-//! | [`scenes`] | surfaces, lights and a renderer with a known answer | the experiments |
+//! | `options`, `report` ([`Options`], [`StepReport`]) | what a run is asked for and what it says | |
+//! | `estimator` ([`Estimator`]) | one iteration, its objective, its end; `opening` (search, candidates, rivals) before it, parts of it done by a [`Helper`] elsewhere | Eq. 1, Algorithm 1 |
+//! | [`scenes`] | surfaces, lights and a renderer with a known answer; stands on `view`, `light` and `pose` | the experiments |
 //! | `wasm` | bindings without mathematics, wasm32 only | |
 //!
 //! One frame everywhere: x right, y down, z forward, normals face the camera (n_z < 0), depth along z. Without
@@ -28,7 +31,7 @@
 //!
 //! Where we read the paper differently: it writes the two prior terms of Eq. 6 without a square and lambda_3 linear; a
 //! least-squares solver squares them, so do we. The norm of Eq. 20 is not named; its tables fit the spectral norm.
-//! Refined normals explain any colour under any pose, so the merit of an iteration asks the measured ones.
+//! Refined normals explain any colour under any pose, so the objective of an iteration asks the measured ones.
 
 /// The README's Rust examples, compiled and run with the documentation's.
 #[cfg(doctest)]

@@ -13,7 +13,7 @@
 
 use std::f64::consts::PI;
 
-use super::fourier::{Complex, Fourier, fast_length};
+use super::fourier::rows::{Complex, RowFourier, fast_length};
 use crate::numeric::{LANES, Lanes, Real};
 
 /// Direct solver for one size of rectangle; owns its plan and its scratch memory.
@@ -136,7 +136,7 @@ const ROWS: usize = 2 * LANES;
 /// its Fourier transform and e_k = exp(-i pi k / 2W), e_k V_k = X_k - i X_(W-k), X the cosine transform. V of a row a and
 /// of a row b come out of one transform of a + i b: V_k + conj V_(W-k) is twice that of a.
 struct Rows {
-    fourier: Fourier,
+    fourier: RowFourier,
     /// Of a frequency or a sample: the first four rows and the other four.
     work: Vec<Complex>,
     /// cos and sin of pi k / 2W.
@@ -150,7 +150,7 @@ impl Rows {
             [cos as f32, sin as f32]
         };
         Self {
-            fourier: Fourier::new(length),
+            fourier: RowFourier::new(length),
             work: vec![[Lanes::splat(0.0); 2]; length],
             turns: (0..=length / 2).map(turn).collect(),
         }

@@ -1,7 +1,7 @@
 //! A bust: head with hair, face, ears, neck and turned shoulders. Nothing of it is quite symmetric, so that its pose
 //! can be observed.
 
-use super::surfaces::{bell, bump, dome, overhang, step, union};
+use super::profiles::{bell, bump, dome, overhang, step, union};
 
 /// Size of the head relative to the samples in which its parts below are measured.
 const HEAD_SCALE: f64 = 1.13;

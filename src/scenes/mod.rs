@@ -9,6 +9,7 @@ mod bust;
 mod flaws;
 pub mod lights;
 mod mesh;
+mod profiles;
 mod relief;
 mod render;
 mod sample;

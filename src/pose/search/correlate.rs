@@ -9,10 +9,10 @@
 //! Cost: 21 transforms for an unknown light, 5 for a known one.
 
 use super::judge::{FEWEST_CELLS, Gram, Prediction, regularised};
-use super::plane_fourier::{CELLS, Field, Fourier, opposite};
-use super::target::Target;
+use super::target::{CELLS, Fourier, SIDE, Target};
 use super::template::{PRODUCTS, Template};
 use crate::light::HARMONICS;
+use crate::numeric::fourier::planes::{Field, opposite};
 use nalgebra::Complex;
 
 /// What a transform and its inverse leave undone.
@@ -42,9 +42,9 @@ impl Correlator {
     pub fn new(fourier: Fourier) -> Self {
         Self {
             fourier,
-            mirror: (0..CELLS).map(|index| opposite(index) as u32).collect(),
-            fields: std::array::from_fn(|_| Field::zero()),
-            products: std::array::from_fn(|_| Field::zero()),
+            mirror: (0..CELLS).map(|index| opposite::<SIDE>(index) as u32).collect(),
+            fields: std::array::from_fn(|_| Field::zero(CELLS)),
+            products: std::array::from_fn(|_| Field::zero(CELLS)),
             scores: vec![0.0; CELLS],
             mean: vec![0.0; CELLS],
         }

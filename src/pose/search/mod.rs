@@ -25,7 +25,6 @@
 mod cloud;
 mod correlate;
 mod judge;
-mod plane_fourier;
 mod rotations;
 mod target;
 mod task_results;
@@ -42,8 +41,7 @@ use crate::view::{Camera, ColourView, DepthView, Normals, Size};
 use cloud::Cloud;
 use correlate::Correlator;
 use judge::{FEWEST_CELLS, Prediction, judge};
-use plane_fourier::{Fourier, SIDE};
-use target::Target;
+use target::{Fourier, SIDE, Target};
 pub(crate) use task_results::Slots;
 use template::{Gaze, Template};
 

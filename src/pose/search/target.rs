@@ -8,10 +8,17 @@
 
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 
-use super::plane_fourier::{Field, Fourier};
 use crate::error::{Error, ErrorKind, Result};
+use crate::numeric::fourier::planes::{Field, PlaneFourier};
 use crate::view::ColourView;
 
+/// Side of the grid in cells: the mask spans 18, so that the template may move by 14 before it comes in again on the other
+/// side, where next to nothing overlaps.
+pub const SIDE: usize = 32;
+/// Cells of the grid.
+pub const CELLS: usize = SIDE * SIDE;
+/// The transform of the grid.
+pub type Fourier = PlaneFourier<SIDE>;
 /// Cells across the longer side of the mask: a tilt by the spacing of the rotations moves features by about two.
 const ACROSS: f64 = 18.0;
 /// Least share of a cell that carries a colour: less is a rim of interpolated pixels.
@@ -66,7 +73,7 @@ impl Target {
             (0..3).for_each(|channel| colour[channel][index] = balanced[channel] as f32);
         }
         let mut spectrum = |value: &dyn Fn(usize) -> f32| {
-            let mut field = Field::zero();
+            let mut field = Field::zero(CELLS);
             (0..mask.len()).for_each(|index| field.re[index] = value(index));
             fourier.forward(&mut field);
             field

@@ -1,20 +1,14 @@
 //! Two-dimensional Fourier transforms of a square: down the columns, transposed, down the columns again.
 //!
-//! Real and imaginary parts are planes of their own, and each butterfly works on whole lines of them: straight loops,
+//! Real and imaginary parts are planes of their own, and each butterfly works on two whole lines of them: straight loops,
 //! four numbers at a time under simd128. The forward transform decimates in frequency and leaves a spectrum transposed
-//! and in bit-reversed order, which products of two spectra do not mind; the inverse decimates in time and undoes it,
-//! step by step. Neither direction divides by the number of cells.
+//! and in bit-reversed order, which products of two spectra do not mind; the inverse decimates in time and takes the same
+//! steps back. Neither direction divides by the number of cells.
 
-use std::f64::consts::PI;
+use super::roots::{Root, root};
 
-/// Side of the grid in cells, a power of two: the mask spans 18, so that the template may move by 14 before it comes in
-/// again on the other side, where next to nothing overlaps.
-pub const SIDE: usize = 32;
-/// Cells of the grid.
-pub const CELLS: usize = SIDE * SIDE;
-
-/// A row of a plane.
-type Line = [f32; SIDE];
+/// The same line of the real and of the imaginary part.
+type Lines<'a, const SIDE: usize> = [&'a mut [f32; SIDE]; 2];
 
 /// A complex field or its spectrum, row by row.
 #[derive(Clone)]
@@ -24,8 +18,9 @@ pub struct Field {
 }
 
 impl Field {
-    pub fn zero() -> Self {
-        Self { re: vec![0.0; CELLS], im: vec![0.0; CELLS] }
+    /// Zeros over as many cells.
+    pub fn zero(cells: usize) -> Self {
+        Self { re: vec![0.0; cells], im: vec![0.0; cells] }
     }
 
     pub fn clear(&mut self) {
@@ -34,18 +29,17 @@ impl Field {
     }
 }
 
-/// Roots of unity and scratch.
-pub struct Fourier {
-    /// exp(-2 pi i k / SIDE).
-    roots: [[f32; 2]; SIDE / 2],
-    turned: Vec<f32>,
+/// Transforms of squares with this side in cells, a power of two; owns its roots and its scratch.
+pub struct PlaneFourier<const SIDE: usize> {
+    /// exp(-2 pi i k / SIDE) for k < SIDE / 2.
+    roots: Vec<Root>,
+    spare: Vec<f32>,
 }
 
-impl Fourier {
+impl<const SIDE: usize> PlaneFourier<SIDE> {
     pub fn new() -> Self {
-        let angle = |k: usize| -2.0 * PI * k as f64 / SIDE as f64;
-        let roots = std::array::from_fn(|k| [angle(k).cos() as f32, angle(k).sin() as f32]);
-        Self { roots, turned: vec![0.0; CELLS] }
+        let roots = (0..SIDE / 2).map(|k| root(k, SIDE)).collect();
+        Self { roots, spare: vec![0.0; SIDE * SIDE] }
     }
 
     /// Field to spectrum, in place.
@@ -79,7 +73,7 @@ impl Fourier {
     }
 
     /// All butterflies of lines that are `half` apart.
-    fn butterflies(&self, field: &mut Field, half: usize, one: impl Fn([&mut Line; 2], [&mut Line; 2], [f32; 2])) {
+    fn butterflies(&self, field: &mut Field, half: usize, one: impl Fn(Lines<'_, SIDE>, Lines<'_, SIDE>, Root)) {
         let (re, im) = (field.re.as_chunks_mut().0, field.im.as_chunks_mut().0);
         for (re, im) in re.chunks_exact_mut(2 * half).zip(im.chunks_exact_mut(2 * half)) {
             let ((re_top, re_low), (im_top, im_low)) = (re.split_at_mut(half), im.split_at_mut(half));
@@ -92,8 +86,8 @@ impl Fourier {
 
     fn transpose(&mut self, field: &mut Field) {
         for plane in [&mut field.re, &mut field.im] {
-            self.turned.copy_from_slice(plane);
-            let from: &[Line] = self.turned.as_chunks().0;
+            self.spare.copy_from_slice(plane);
+            let from: &[[f32; SIDE]] = self.spare.as_chunks().0;
             for (row, line) in plane.as_chunks_mut::<SIDE>().0.iter_mut().enumerate() {
                 (0..SIDE).for_each(|column| line[column] = from[column][row]);
             }
@@ -101,15 +95,15 @@ impl Fourier {
     }
 }
 
-/// Index of the opposite frequency in a spectrum.
-pub fn opposite(index: usize) -> usize {
+/// Where a spectrum holds the frequency opposite to the one at `index`.
+pub fn opposite<const SIDE: usize>(index: usize) -> usize {
     let reversed = |k: usize| k.reverse_bits() >> (usize::BITS - SIDE.trailing_zeros());
     let of = |k: usize| reversed((SIDE - reversed(k)) % SIDE);
     of(index / SIDE) * SIDE + of(index % SIDE)
 }
 
 /// (a, b) -> (a + b, (a - b) root).
-fn part([re, im]: [&mut Line; 2], [low_re, low_im]: [&mut Line; 2], [cos, sin]: [f32; 2]) {
+fn part<const SIDE: usize>([re, im]: Lines<'_, SIDE>, [low_re, low_im]: Lines<'_, SIDE>, [cos, sin]: Root) {
     for k in 0..SIDE {
         let (x, y) = (re[k] - low_re[k], im[k] - low_im[k]);
         re[k] += low_re[k];
@@ -120,7 +114,7 @@ fn part([re, im]: [&mut Line; 2], [low_re, low_im]: [&mut Line; 2], [cos, sin]: 
 }
 
 /// (a, b) -> (a + b / root, a - b / root).
-fn join([re, im]: [&mut Line; 2], [low_re, low_im]: [&mut Line; 2], [cos, sin]: [f32; 2]) {
+fn join<const SIDE: usize>([re, im]: Lines<'_, SIDE>, [low_re, low_im]: Lines<'_, SIDE>, [cos, sin]: Root) {
     for k in 0..SIDE {
         let (x, y) = (low_re[k] * cos + low_im[k] * sin, low_im[k] * cos - low_re[k] * sin);
         low_re[k] = re[k] - x;
@@ -132,17 +126,22 @@ fn join([re, im]: [&mut Line; 2], [low_re, low_im]: [&mut Line; 2], [cos, sin]: 
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::TAU;
+
     use super::*;
+
+    const SIDE: usize = 32;
+    const CELLS: usize = SIDE * SIDE;
 
     /// exp(-2 pi i (3 column + 5 row) / SIDE) back and forth, and its single frequency.
     #[test]
     fn a_wave_has_one_frequency_and_comes_back() {
-        let mut field = Field::zero();
+        let mut field = Field::zero(CELLS);
         for index in 0..CELLS {
-            let angle = 2.0 * PI * (3 * (index % SIDE) + 5 * (index / SIDE)) as f64 / SIDE as f64;
+            let angle = TAU * (3 * (index % SIDE) + 5 * (index / SIDE)) as f64 / SIDE as f64;
             (field.re[index], field.im[index]) = (angle.cos() as f32, angle.sin() as f32);
         }
-        let (wave, mut fourier) = (field.clone(), Fourier::new());
+        let (wave, mut fourier) = (field.clone(), PlaneFourier::<SIDE>::new());
         fourier.forward(&mut field);
         let large: Vec<usize> = (0..CELLS).filter(|&k| field.re[k].hypot(field.im[k]) > 1e-2).collect();
         assert_eq!(large.len(), 1);
@@ -157,11 +156,11 @@ mod tests {
     /// A real field has conjugate values at opposite frequencies.
     #[test]
     fn opposite_frequencies_of_a_real_field_are_conjugate() {
-        let mut field = Field::zero();
+        let mut field = Field::zero(CELLS);
         (0..CELLS).for_each(|k| field.re[k] = ((k * k) % 17) as f32);
-        Fourier::new().forward(&mut field);
+        PlaneFourier::<SIDE>::new().forward(&mut field);
         for index in 0..CELLS {
-            let other = opposite(index);
+            let other = opposite::<SIDE>(index);
             assert!(
                 (field.re[index] - field.re[other]).abs() < 0.01 && (field.im[index] + field.im[other]).abs() < 0.01
             );

@@ -7,20 +7,17 @@
 //! Why no library: rustfft 6.4 takes one row after the other, and its SIMD for WebAssembly is a download of 67 kB. With
 //! rows side by side the image surface at 640x480 took 54 ms instead of 70, and the download lost 3 kB.
 
-use std::f64::consts::TAU;
-
+use super::roots::{Root, root};
 use crate::numeric::{Lanes, Real};
 
 /// Real and imaginary part of four numbers.
-pub(super) type Complex = [Lanes; 2];
-/// cos and -sin of an angle: a root of unity.
-type Root = [f32; 2];
+pub(crate) type Complex = [Lanes; 2];
 
-/// Of a third of the circle.
+/// sin(2 pi / 3).
 const SINE_OF_A_THIRD: f32 = 0.866_025_4;
 
 /// A transform of one length; owns its roots and its scratch.
-pub(super) struct Fourier {
+pub(crate) struct RowFourier {
     stages: Vec<Stage>,
     spare: Vec<Complex>,
 }
@@ -35,7 +32,7 @@ struct Stage {
 }
 
 /// The shortest length from `least` on that is a multiple of four and has no factor but 2 and 3.
-pub(super) fn fast_length(least: usize) -> usize {
+pub(crate) fn fast_length(least: usize) -> usize {
     (least.next_multiple_of(4)..)
         .step_by(4)
         .find(|&length| factors(length).product::<usize>() == length)
@@ -51,7 +48,7 @@ fn factors(mut length: usize) -> impl Iterator<Item = usize> {
     })
 }
 
-impl Fourier {
+impl RowFourier {
     /// A transform of `length` numbers, a [`fast_length`].
     pub fn new(length: usize) -> Self {
         let (mut stages, mut left) = (Vec::new(), length);
@@ -77,11 +74,7 @@ impl Fourier {
 
 impl Stage {
     fn new(factor: usize, left: usize, stride: usize) -> Self {
-        let root = |step: usize| -> Root {
-            let (sin, cos) = (TAU * step as f64 / left as f64).sin_cos();
-            [cos as f32, -sin as f32]
-        };
-        let roots = (0..left / factor).flat_map(|p| (1..factor).map(move |k| root(p * k))).collect();
+        let roots = (0..left / factor).flat_map(|p| (1..factor).map(move |k| root(p * k, left))).collect();
         Self { factor, stride, roots }
     }
 
@@ -100,15 +93,16 @@ impl Stage {
                 let sums = butterfly(std::array::from_fn(|part_index| from[part_index * part + start + place]));
                 block[place] = sums[0];
                 for k in 1..F {
-                    block[k * self.stride + place] = turned(sums[k], roots[k - 1]);
+                    block[k * self.stride + place] = multiply(sums[k], roots[k - 1]);
                 }
             }
         }
     }
 }
 
+/// Times a root.
 #[inline(always)]
-fn turned([re, im]: Complex, [cos, sin]: Root) -> Complex {
+fn multiply([re, im]: Complex, [cos, sin]: Root) -> Complex {
     let (cos, sin) = (Lanes::splat(cos), Lanes::splat(sin));
     [re * cos - im * sin, re * sin + im * cos]
 }
@@ -123,9 +117,8 @@ fn minus(a: Complex, b: Complex) -> Complex {
     [a[0] - b[0], a[1] - b[1]]
 }
 
-/// Times -i.
 #[inline(always)]
-fn quarter_turn([re, im]: Complex) -> Complex {
+fn times_minus_i([re, im]: Complex) -> Complex {
     [im, Lanes::splat(0.0) - re]
 }
 
@@ -137,7 +130,7 @@ fn half([a, b]: [Complex; 2]) -> [Complex; 2] {
 #[inline(always)]
 fn fourth([a, b, c, d]: [Complex; 4]) -> [Complex; 4] {
     let (even, off_even) = (plus(a, c), minus(a, c));
-    let (odd, off_odd) = (plus(b, d), quarter_turn(minus(b, d)));
+    let (odd, off_odd) = (plus(b, d), times_minus_i(minus(b, d)));
     [plus(even, odd), plus(off_even, off_odd), minus(even, odd), minus(off_even, off_odd)]
 }
 
@@ -145,12 +138,14 @@ fn fourth([a, b, c, d]: [Complex; 4]) -> [Complex; 4] {
 fn third([a, b, c]: [Complex; 3]) -> [Complex; 3] {
     let (sum, [re, im]) = (plus(b, c), minus(b, c));
     let (half, sine) = (Lanes::splat(0.5), Lanes::splat(SINE_OF_A_THIRD));
-    let (even, off) = ([a[0] - half * sum[0], a[1] - half * sum[1]], quarter_turn([sine * re, sine * im]));
+    let (even, off) = ([a[0] - half * sum[0], a[1] - half * sum[1]], times_minus_i([sine * re, sine * im]));
     [plus(a, sum), plus(even, off), minus(even, off)]
 }
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::TAU;
+
     use super::*;
 
     #[test]
@@ -159,7 +154,7 @@ mod tests {
             let value = |n: usize, lane: usize| [(n * n + lane) as f32 % 7.0, (3 * n + lane) as f32 % 5.0];
             let complex = |n: usize| [0, 1].map(|part| Lanes::from([0, 1, 2, 3].map(|lane| value(n, lane)[part])));
             let mut values: Vec<Complex> = (0..length).map(complex).collect();
-            Fourier::new(length).transform(&mut values);
+            RowFourier::new(length).transform(&mut values);
             for (k, found) in values.into_iter().enumerate() {
                 for lane in 0..4 {
                     let (mut re, mut im) = (0.0, 0.0);
