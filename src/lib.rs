@@ -14,7 +14,7 @@
 //! | `shape/pixels` ([`ShadingSolver`]) | a normal for each pixel, with a prior; the exposure, which all share | Eq. 6 to 9 |
 //! | `shape/integration` ([`Integrator`]) | the surface from gradients of normals, on a mask | Harker and O'Leary's step |
 //! | `shape/heights` | the surface from shading as a whole, for light that a pixel alone cannot read | beyond the paper |
-//! | `shape/refinement` ([`Refiner`]) | the depth view's own normals and depth, through `heights` | Eq. 17 to 19 |
+//! | `shape/refinement` | the depth view's own normals and depth, through `heights` | Eq. 17 to 19 |
 //! | `pose/search` ([`Search`]) | where to start when nothing is known: all rotations, translations and scales, coarsely | before Algorithm 1 |
 //! | `pose/photometric` ([`Photometric`]) | the pose straight from the colours, the light projected out | beyond the paper |
 //! | `pose/icp`, `pose/ransac` ([`Icp`], [`ransac`]) | the pose from both surfaces | Eq. 12 to 14 |
@@ -68,9 +68,8 @@ pub use pose::{
 };
 pub use report::{Objective, Stage, Status, StepReport};
 pub use shape::{
-    AnchorWeight, Anchors, HeightDomain, HeightProblem, HeightReport, HeightSolver, IntegrationOptions,
-    IntegrationReport, Integrator, RefinementProblem, RefinementTerms, Refiner, Robust, ShadingProblem, ShadingSolver,
-    ShadingWeights, Termination, Terminations, Workbench, exposure_step, first_exposure, gradients,
+    AnchorWeight, Anchors, IntegrationOptions, IntegrationReport, IntegrationTermination, Integrator, Robustness,
+    ShadingProblem, ShadingReport, ShadingSolver, ShadingWeights, exposure_step, first_exposure, gradients,
 };
 pub use view::{
     Camera, ColourImage, ColourSamples, ColourView, DepthMap, DepthSamples, DepthView, Normals, Pinhole, Points, Size,

@@ -1,8 +1,8 @@
 //! Integration of analytic surfaces: exact cases, masks, anchors, noise, perspective.
 
 use bimodal_stereo::{
-    AnchorWeight, Anchors, Camera, ErrorKind, IntegrationOptions, IntegrationReport, Integrator, Normals, Pinhole,
-    Robust, Size, Termination, gradients,
+    AnchorWeight, Anchors, Camera, ErrorKind, IntegrationOptions, IntegrationReport, IntegrationTermination,
+    Integrator, Normals, Pinhole, Robustness, Size, gradients,
 };
 
 fn size(width: usize, height: usize) -> Size {
@@ -29,7 +29,7 @@ fn integrate(
     let report = Integrator::new(size, mask)
         .and_then(|mut integrator| integrator.integrate(p, q, anchors, options, &mut z))
         .expect("sizes agree");
-    assert_eq!(report.termination, Termination::Converged, "{report:?}");
+    assert_eq!(report.termination, IntegrationTermination::Converged, "{report:?}");
     for (z, &inside) in z.iter().zip(mask) {
         assert_eq!(z.is_nan(), !inside);
     }
@@ -58,13 +58,13 @@ fn planes_and_quadratics_are_exact() {
     });
     let everywhere = vec![true; size.len()];
     let ragged: Vec<bool> = (0..size.len()).map(|index| (index * 7919) % 11 > 0).collect();
-    for (mask, robust) in [
-        (&everywhere, Robust::Off),
-        (&everywhere, Robust::Estimated),
-        (&ragged, Robust::Off),
-        (&ragged, Robust::Estimated),
+    for (mask, robustness) in [
+        (&everywhere, Robustness::Off),
+        (&everywhere, Robustness::Estimated),
+        (&ragged, Robustness::Off),
+        (&ragged, Robustness::Estimated),
     ] {
-        let options = IntegrationOptions { robust, tolerance: 1e-6, ..Default::default() };
+        let options = IntegrationOptions { robustness, tolerance: 1e-6, ..Default::default() };
         let (found, report) = integrate(size, mask, &p, &q, None, &options);
         let error = largest(&found, &z, |index| mask[index]);
         println!("{error:e} px, {report:?}");
@@ -137,7 +137,7 @@ fn robust_weights_leave_smooth_data_alone() {
     let [_, p, q] = sample(size, |x, y| bump(16.0, x - 39.0, y - 41.0));
     let mask = vec![true; size.len()];
     let (plain, _) = integrate(size, &mask, &p, &q, None, &IntegrationOptions::default());
-    let options = IntegrationOptions { robust: Robust::Estimated, ..Default::default() };
+    let options = IntegrationOptions { robustness: Robustness::Estimated, ..Default::default() };
     let (robust, report) = integrate(size, &mask, &p, &q, None, &options);
     let error = largest(&robust, &plain, |_| true);
     println!("{error:e} px, {report:?}");
@@ -153,8 +153,8 @@ fn noise_that_is_not_integrable_averages_out() {
         p[index] += noise(index, 0.0);
         q[index] += noise(index, 1e5);
     }
-    for robust in [Robust::Off, Robust::Estimated] {
-        let options = IntegrationOptions { robust, ..Default::default() };
+    for robustness in [Robustness::Off, Robustness::Estimated] {
+        let options = IntegrationOptions { robustness, ..Default::default() };
         let (found, report) = integrate(size, &vec![true; size.len()], &p, &q, None, &options);
         let error = largest(&found, &z, |_| true);
         println!("{error:.3} px at worst, {report:?}");
@@ -173,7 +173,7 @@ fn anchors_alone_are_reproduced() {
     let report = Integrator::new(size, &mask)
         .and_then(|mut i| i.integrate(&unknown, &unknown, Some(anchors), &IntegrationOptions::default(), &mut found))
         .expect("sizes agree");
-    assert_eq!((report.termination, report.undetermined), (Termination::Empty, 0));
+    assert_eq!((report.termination, report.undetermined), (IntegrationTermination::Empty, 0));
     assert_eq!(found, z);
 }
 
@@ -262,7 +262,7 @@ fn bad_input_is_an_error_or_a_report() {
     let (flat, mut z) = (vec![0.0; 48], vec![0.0; 48]);
     let options = IntegrationOptions::default();
     let report = Integrator::new(size, &one).expect("a pixel").integrate(&flat, &flat, None, &options, &mut z);
-    assert_eq!(report.map(|report| (report.termination, report.undetermined)), Ok((Termination::Empty, 1)));
+    assert_eq!(report.map(|report| (report.termination, report.undetermined)), Ok((IntegrationTermination::Empty, 1)));
     assert!(z[20].is_nan());
     let mut integrator = Integrator::new(size, &mask).expect("a mask");
     let short =
@@ -272,9 +272,9 @@ fn bad_input_is_an_error_or_a_report() {
     assert!(integrator.integrate(&flat, &flat, None, &bad, &mut z).is_err());
     // Flat, unbounded and absurd gradients: numbers, unknown edges and the largest that count.
     for value in [0.0, f32::INFINITY, f32::MAX, -1e6] {
-        for robust in [Robust::Off, Robust::Estimated] {
+        for robustness in [Robustness::Off, Robustness::Estimated] {
             let p = vec![value; 48];
-            let options = IntegrationOptions { robust, ..options };
+            let options = IntegrationOptions { robustness, ..options };
             let report = integrator.integrate(&p, &flat, None, &options, &mut z).expect("sizes agree");
             assert!(z.iter().all(|z| z.is_finite()), "{value} {report:?}");
         }

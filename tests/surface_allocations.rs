@@ -4,7 +4,7 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use bimodal_stereo::{
-    AnchorWeight, Anchors, Camera, IntegrationOptions, Integrator, Normals, Robust, Size, gradients, normals,
+    AnchorWeight, Anchors, Camera, IntegrationOptions, Integrator, Normals, Robustness, Size, gradients, normals,
 };
 
 struct Counting;
@@ -34,7 +34,7 @@ fn later_integrations_allocate_nothing() {
     let mask: Vec<bool> = (0..size.len()).map(|index| index % 61 > 4 && index / 61 > 2).collect();
     let field = |scale: f32| (0..size.len()).map(|index| (index as f32 * scale).sin()).collect::<Vec<f32>>();
     let (mut p, mut q, height) = (field(0.01), field(0.03), field(0.002));
-    let options = IntegrationOptions { robust: Robust::Estimated, ..Default::default() };
+    let options = IntegrationOptions { robustness: Robustness::Estimated, ..Default::default() };
     let mut z = vec![0.0; size.len()];
     let mut surface = Normals::missing(size.len());
     let mut integrator = Integrator::new(size, &mask).expect("a mask");

@@ -1,6 +1,6 @@
 //! Integration against scipy's sparse least squares (scripts/reference/integration.py).
 
-use bimodal_stereo::{AnchorWeight, Anchors, IntegrationOptions, Integrator, Size, Termination};
+use bimodal_stereo::{AnchorWeight, Anchors, IntegrationOptions, IntegrationTermination, Integrator, Size};
 
 const FIXTURE: &str = include_str!("fixtures/integration.txt");
 /// Largest accepted difference in heights of some ten pixels.
@@ -24,7 +24,7 @@ fn agrees_with_sparse_least_squares() {
     for (anchors, truth) in [(None, column(5)), (Some(anchors), column(6)), (None, column(5))] {
         let mut z = vec![0.0; size.len()];
         let report = integrator.integrate(&p, &q, anchors, &options, &mut z).expect("sizes agree");
-        assert_eq!(report.termination, Termination::Converged, "{report:?}");
+        assert_eq!(report.termination, IntegrationTermination::Converged, "{report:?}");
         for index in 0..size.len() {
             assert_eq!(z[index].is_nan(), truth[index].is_nan(), "pixel {index}");
             assert!(z[index].is_nan() || (z[index] - truth[index]).abs() < TOLERANCE, "{} {}", z[index], truth[index]);

@@ -2,7 +2,7 @@
 
 mod common;
 
-use bimodal_stereo::{IntegrationOptions, Integrator, Robust, Size, Termination};
+use bimodal_stereo::{IntegrationOptions, IntegrationTermination, Integrator, Robustness, Size};
 use common::{data_dir, median, read_npy_f32};
 
 struct Vase {
@@ -29,17 +29,17 @@ fn vase() -> Vase {
 
 impl Vase {
     /// Root mean square error on the vase about its median, after integrating over `domain`.
-    fn error(&self, domain: &[bool], robust: Robust) -> f64 {
+    fn error(&self, domain: &[bool], robustness: Robustness) -> f64 {
         let mut z = vec![0.0; self.size.len()];
-        let options = IntegrationOptions { robust, ..Default::default() };
+        let options = IntegrationOptions { robustness, ..Default::default() };
         let mut integrator = Integrator::new(self.size, domain).expect("a mask");
         let report = integrator.integrate(&self.right, &self.down, None, &options, &mut z).expect("sizes agree");
-        assert_eq!(report.termination, Termination::Converged, "{report:?}");
+        assert_eq!(report.termination, IntegrationTermination::Converged, "{report:?}");
         let on_vase = (0..self.size.len()).filter(|&index| self.mask[index]);
         let errors: Vec<f64> = on_vase.map(|index| f64::from(z[index] - self.height[index])).collect();
         let level = median(errors.clone());
         let rmse = (errors.iter().map(|error| (error - level).powi(2)).sum::<f64>() / errors.len() as f64).sqrt();
-        println!("{robust:?}: rmse {rmse:.4} px, {report:?}");
+        println!("{robustness:?}: rmse {rmse:.4} px, {report:?}");
         rmse
     }
 }
@@ -49,7 +49,7 @@ impl Vase {
 #[ignore = "needs ../shared/data"]
 fn spikes_inside_the_mask_are_cut() {
     let vase = vase();
-    let (plain, robust) = (vase.error(&vase.mask, Robust::Off), vase.error(&vase.mask, Robust::Estimated));
+    let (plain, robust) = (vase.error(&vase.mask, Robustness::Off), vase.error(&vase.mask, Robustness::Estimated));
     assert!((plain - 0.1093).abs() < 1e-3, "{plain}");
     assert!(robust < 0.09, "{robust}");
 }
@@ -60,6 +60,6 @@ fn spikes_inside_the_mask_are_cut() {
 fn the_background_bends_the_vase_less_with_robust_weights() {
     let vase = vase();
     let everywhere = vec![true; vase.size.len()];
-    let (plain, robust) = (vase.error(&everywhere, Robust::Off), vase.error(&everywhere, Robust::Estimated));
+    let (plain, robust) = (vase.error(&everywhere, Robustness::Off), vase.error(&everywhere, Robustness::Estimated));
     assert!(robust < plain / 4.0, "{plain} {robust}");
 }

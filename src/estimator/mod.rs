@@ -29,7 +29,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::options::{Options, Registration, Start};
 use crate::pose::{Correspondences, ImageGrid, Similarity};
 use crate::report::{Objective, Stage, Status, StepReport};
-use crate::shape::Workbench;
+use crate::shape::Scratch;
 use crate::text::Fixed;
 use crate::view::{ColourImage, DepthMap};
 use initialisation::{Advance, Initialisation, Outcome};
@@ -39,7 +39,7 @@ pub use outputs::Surface;
 use pair::Pair;
 use solution::{Accepted, Solution};
 pub use stages::RefinementTask;
-use stages::{Inputs, LightStage, RefinementStage, Registered, RegistrationStage, ShapeStage, exposure_rounds};
+use stages::{Inputs, LightStage, RefinementStage, Registered, RegistrationStage, ShapeStage};
 use verdict::{ColourEvidence, Evidence, verdict};
 pub use workers::Worker;
 pub use workers::task::{Finding, Task};
@@ -96,7 +96,7 @@ pub struct Estimator {
     correspondences: Correspondences,
     residuals: Residuals,
     /// Memory that the stages take turns at.
-    scratch: Workbench,
+    scratch: Scratch,
     /// What the stages of this iteration work on.
     solution: Solution,
     /// The last iteration that was accepted, and the depth points over which the next one is compared with it.
@@ -124,7 +124,7 @@ impl Estimator {
         let shape = ShapeStage::new(&pair)?;
         let [pixels, points] = pair.lengths();
         let domains = [refinement.domain(), shape.domain().unwrap_or(refinement.domain())];
-        let scratch = Workbench::new(pixels.max(points), &domains);
+        let scratch = Scratch::new(pixels.max(points), &domains);
         let solution = Solution::new(&pair, pose, light);
         let mut estimator = Self {
             run: if pair.options.start == Start::Search { Run::Preparing(None) } else { Run::Iterating(Stage::Light) },
@@ -301,9 +301,8 @@ impl Estimator {
         let exposure_is_free = self.pair.known_light().is_some() && self.registration.found_by_colours().is_none();
         let inputs = Inputs { pair: &self.pair, fitted: &self.light, correspondences: &self.correspondences };
         let Solution { light, image, .. } = &mut self.solution;
-        for _ in 0..exposure_rounds(&self.pair, self.report.iteration) {
-            self.shape.find_normals(inputs, exposure_is_free, light, &mut image.normals);
-        }
+        let is_first = self.report.iteration == 0;
+        self.shape.find_normals(inputs, is_first, exposure_is_free, light, &mut image.normals);
     }
 
     /// Heights of the image, then the gauges that neither view can tell: t_z of an orthographic image, the distance of a

@@ -7,13 +7,13 @@
 #[macro_use]
 mod elementwise;
 
+pub(crate) mod conjugate_gradient;
 pub(crate) mod cosine;
 mod doubles;
 pub(crate) mod fourier;
 mod lanes;
 pub(crate) mod noise;
 mod order;
-#[expect(dead_code, reason = "part of it is adopted in later rooms first")]
 pub(crate) mod robust;
 pub(crate) mod vector;
 

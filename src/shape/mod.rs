@@ -1,16 +1,44 @@
-//! Shape of both views: normals of single pixels, integration of gradients, heights from shading, refinement of the
-//! depth map.
+//! Shape of both views (docs/method.md, sections 5 to 8). Four problems, each with its unknowns, objective and solver:
+//!
+//! | where | unknowns | objective | solver |
+//! |---|---|---|---|
+//! | `pixels/` | one normal for each pixel | brightness, prior and unit length, Eq. 6 to 9 | the best of 600 directions, then damped Gauss-Newton, four pixels side by side |
+//! | `pixels/exposure` | one offset of log S for all pixels | the same | a grid at first, then Gauss-Newton by variable projection |
+//! | `integration/` | one height for each pixel of a mask | (differences - gradients)^2, weights of Geman and McClure; anchors | reweighting; conjugate gradients, preconditioned by a cosine transform |
+//! | `heights/` | the same | brightness of every cell of four pixels, edges, anchors, smoothness | damped Gauss-Newton; each step as above; several starts, coarse to fine |
+//! | `refinement` | normals and depth of the depth view, Eq. 17 to 19 | those of `pixels` and `heights`, anchored to the measured depth | these |
+//!
+//! Where an equation is:
+//!
+//! | equation | file |
+//! |---|---|
+//! | Eq. 6 to 9 (17 and 18 for the depth view): terms and derivatives of one pixel | `pixels/shading` |
+//! | the exposure of a known light | `pixels/exposure` |
+//! | gradients and slopes of normals | `integration/normals_to_gradients` |
+//! | robust weights of gradients | `integration/gradients_to_heights` |
+//! | the weighted Poisson equation and its preconditioner | `integration/poisson` |
+//! | brightness of a cell as a function of its slopes | `heights/cell_terms`, the rays' part in `heights/ray_frames` |
+//! | the Gauss-Newton matrix of the heights | `heights/normal_operator` |
+//! | Gauss-Newton steps, edges and smoothness | `heights/solver` |
+//! | starts and the choice between local optima | `heights/starts`, coarse to fine in `heights/image_surface` |
+//! | normals and surface of the colour view, one after the other | `image_shape` |
+//! | Eq. 19, anchors and their weights | `refinement` |
+//!
+//! Data flow one way: `pixels` and `integration` know nothing of each other, `heights` takes edges and anchors from
+//! `integration`, `image_shape` and `refinement` use all three. Rasters that live for one stage only are those of a
+//! [`Scratch`], which the caller lends to one stage after the other.
 
 mod heights;
+mod image_shape;
 mod integration;
 mod pixels;
 mod refinement;
 
-pub use heights::{
-    Effort, HeightDomain, HeightProblem, HeightReport, HeightSolver, ReliefProblem, ReliefSolver, STARTS, Workbench,
-};
+pub use heights::{HeightDomain, STARTS, Scratch};
+pub use image_shape::{ImageShapeProblem, ImageShapeSolver};
 pub use integration::{
-    AnchorWeight, Anchors, IntegrationOptions, IntegrationReport, Integrator, Robust, Termination, gradients,
+    AnchorWeight, Anchors, IntegrationOptions, IntegrationReport, IntegrationTermination, Integrator, Robustness,
+    gradients,
 };
-pub use pixels::{ShadingProblem, ShadingSolver, ShadingWeights, Terminations, exposure_step, first_exposure};
+pub use pixels::{ShadingProblem, ShadingReport, ShadingSolver, ShadingWeights, exposure_step, first_exposure};
 pub use refinement::{RefinementProblem, RefinementTerms, Refiner};

@@ -1,10 +1,11 @@
-//! Shading-based refinement of the depth view (Eq. 17 to 19): the mirror image of shape from shading.
+//! Shading-based refinement of the depth view (Eq. 17 to 19; docs/method.md, section 8): shape from shading over the
+//! pixels of the other view.
 //!
-//! Each depth pixel that the colour camera sees has a colour: its normal, turned into the colour view's frame, has to
-//! explain it. So the same solver runs over the depth pixels, with the prior of Eq. 19 (the normal that the image has
-//! found there) and the normal of the current surface. The surface then follows these normals by integration,
-//! anchored to the measured depth as firmly as its noise allows:
-//! noise goes down where there is shading, holes inside the mask are filled, and nothing moves elsewhere.
+//! Each depth pixel that the colour camera sees has a colour: its normal, rotated into the colour view's frame, has to
+//! explain it. So the solver of single pixels runs over the depth pixels, with the prior of Eq. 19 (the normal that the
+//! image has found there). The heights then follow these normals and the colours, anchored to the measured depth with
+//! a weight that its noise decides: noise goes down where there is shading, holes inside the mask are filled, and nothing
+//! moves elsewhere.
 //!
 //! Limits: an organised cloud has no depth along a ray; its normals are refined, its points are kept.
 
@@ -12,13 +13,12 @@ use std::ops::Range;
 
 use nalgebra::{Matrix3, Vector3};
 
+use super::heights::{COLOUR_SCALES, Effort, HeightDomain, HeightProblem, LAST_SCALE, Scratch};
+use super::integration::{AnchorWeight, Anchors, IntegrationOptions, Integrator, Robustness, find_slopes};
+use super::pixels::{ShadingProblem, ShadingSolver, ShadingWeights};
 use crate::error::Result;
 use crate::light::Light;
 use crate::numeric::noise;
-use crate::shape::{
-    AnchorWeight, Anchors, Effort, HeightDomain, HeightProblem, IntegrationOptions, Integrator, Robust, ShadingProblem,
-    ShadingSolver, ShadingWeights, Workbench, gradients,
-};
 use crate::view::{ColourView, DepthView, Normals, Size, normals};
 
 /// Error of the shading in log units, in standard deviations of the image's own noise, and what discretisation adds as
@@ -26,14 +26,14 @@ use crate::view::{ColourView, DepthView, Normals, Size, normals};
 /// Mozart at 64x64 with depth noise of half a pixel: the best errors there are 0.045 to 0.06 and 0.028 to 0.035.
 const SHADING_ERROR: f64 = 1.4;
 const DISCRETISATION: f64 = 0.065;
-/// Bounds of the weight of an anchor: noise is never taken for more, nor for less, than that.
-const ANCHOR: [f64; 2] = [1e-3, 10.0];
-/// Log residuals at which a pixel loses its say, one solve after the other: noisy depth starts far from its colours.
-const COLOUR_SCALES: [f32; 3] = [0.5, 0.2, 0.06];
-/// Work at each scale, and of a refinement that continues an earlier one, at the last scale alone.
-const FIRST: Effort = Effort { steps: 6, rounds: 40, tolerance: 0.03 };
-const LATER: Effort = Effort { steps: 1, rounds: 20, tolerance: 0.03 };
-/// Most sweeps that carry gradients into a hole: its radius in pixels at the most.
+/// Bounds of the weight of an anchor, squared log residual per squared pixel of height: whatever its noise, depth neither
+/// loses all weight nor overrides the colours.
+const ANCHOR_WEIGHTS: [f64; 2] = [1e-3, 10.0];
+/// Work at each scale of the first refinement: noisy depth starts far from its colours.
+const FIRST: Effort = Effort { steps: 6, iterations: 40, tolerance: 0.03 };
+/// Work of a refinement that continues an earlier one, at the last scale alone.
+const LATER: Effort = Effort { steps: 1, iterations: 20, tolerance: 0.03 };
+/// Most sweeps that extend slopes into a hole: its radius in pixels at the most.
 const FILL_SWEEPS: usize = 256;
 
 /// What the refinement looks at.
@@ -64,7 +64,7 @@ pub struct RefinementTerms {
     pub colour_error: f64,
 }
 
-/// Refines one depth view again and again; the workbench is lent, and fits the view.
+/// Refines one depth view again and again; the scratch is lent, and has the view's size.
 pub struct Refiner {
     solver: ShadingSolver,
     domain: HeightDomain,
@@ -73,7 +73,7 @@ pub struct Refiner {
     /// Of the colours, log units.
     shading_error: f64,
     /// Weight of a measured depth against the shading, or against its neighbours where there is no colour.
-    anchor_firmness: f32,
+    anchor_weight: f32,
     /// Whether the depth has been refined before, so that it starts near its colours.
     continues: bool,
 }
@@ -92,7 +92,7 @@ impl Refiner {
             domain: HeightDomain::new(depth.size, depth.camera, &depth.mask)?,
             log: [zeros(), zeros(), zeros()],
             shading_error,
-            anchor_firmness: firmness(shading_error, depth),
+            anchor_weight: anchor_weight(shading_error, depth),
             continues: false,
         })
     }
@@ -112,20 +112,19 @@ impl Refiner {
     ///
     /// # Errors
     /// Those of the integration.
-    pub fn fill(&self, bench: &mut Workbench, view: &DepthView, depth: &mut [f32]) -> Result<()> {
+    pub fn fill(&self, scratch: &mut Scratch, view: &DepthView, depth: &mut [f32]) -> Result<()> {
         if view.organised {
             depth.copy_from_slice(view.depth());
             return Ok(());
         }
-        find_slopes(view, &view.normals, &mut bench.slopes);
-        for slopes in &mut bench.slopes {
-            diffuse(view, slopes, &mut bench.spare);
+        find_slopes(view.size, &view.camera, &view.normals, &view.mask, &mut scratch.slopes);
+        for slopes in &mut scratch.slopes {
+            extend(view, slopes, &mut scratch.spare);
         }
-        let weight = self.anchor_firmness;
-        self.load_anchors(bench, view, |_| weight);
-        let options = IntegrationOptions { robust: Robust::Off, ..IntegrationOptions::default() };
-        let anchors = Anchors { height: &bench.spare, weight: AnchorWeight::PerPixel(&bench.weight) };
-        let [p, q] = &bench.slopes;
+        self.load_anchors(scratch, view, |_| self.anchor_weight);
+        let options = IntegrationOptions { robustness: Robustness::Off, ..IntegrationOptions::default() };
+        let anchors = Anchors { height: &scratch.spare, weight: AnchorWeight::PerPixel(&scratch.weight) };
+        let [p, q] = &scratch.slopes;
         // It is asked for once, so the integrator's memory is not kept.
         Integrator::new(view.size, &view.mask)?.integrate(p, q, Some(anchors), &options, depth)?;
         view.camera.depth_from_heights(depth);
@@ -135,51 +134,52 @@ impl Refiner {
     /// One refinement: `normals` (depth view's frame) and `depth` hold the current estimate and receive the new one.
     pub fn refine(
         &mut self,
-        bench: &mut Workbench,
+        scratch: &mut Scratch,
         problem: RefinementProblem<'_>,
         normals: &mut Normals,
         depth: &mut [f32],
     ) {
         let view = problem.depth;
         self.sample_colours(problem);
-        self.refine_normals(bench, problem, normals);
+        self.refine_normals(scratch, problem, normals);
         if view.organised {
             return;
         }
-        let doubt = (problem.terms.colour_error / self.shading_error).max(1.0).powi(2);
-        let unshaded = self.anchor_firmness;
-        let shaded = (f64::from(unshaded) * doubt).min(ANCHOR[1]) as f32;
-        self.load_anchors(bench, view, |has_colour| if has_colour { shaded } else { unshaded });
-        find_slopes(view, normals, &mut bench.slopes);
+        // Colours that the light does not explain have a larger variance, so that depth weighs more against them.
+        let variance_inflation = (problem.terms.colour_error / self.shading_error).max(1.0).powi(2);
+        let unshaded = self.anchor_weight;
+        let shaded = (f64::from(unshaded) * variance_inflation).min(ANCHOR_WEIGHTS[1]) as f32;
+        self.load_anchors(scratch, view, |has_colour| if has_colour { shaded } else { unshaded });
+        find_slopes(view.size, &view.camera, normals, &view.mask, &mut scratch.slopes);
         view.camera.heights_from_depth(depth);
-        let (scales, effort) = if self.continues { (&COLOUR_SCALES[2..], LATER) } else { (&COLOUR_SCALES[..], FIRST) };
+        let (scales, effort) = if self.continues { (&[LAST_SCALE][..], LATER) } else { (&COLOUR_SCALES[..], FIRST) };
         self.continues = true;
-        let anchors = Anchors { height: &bench.spare, weight: AnchorWeight::PerPixel(&bench.weight) };
+        let anchors = Anchors { height: &scratch.spare, weight: AnchorWeight::PerPixel(&scratch.weight) };
         for &colour_scale in scales {
             let height_problem = HeightProblem {
                 log: [&self.log[0], &self.log[1], &self.log[2]],
                 light: &problem.terms.light,
                 rotation: &problem.terms.rotation,
-                slopes: [&bench.slopes[0], &bench.slopes[1]],
-                firmness: None,
+                slopes: [&scratch.slopes[0], &scratch.slopes[1]],
+                normal_weight: None,
                 anchors: Some(anchors),
                 colour_scale,
                 effort,
             };
-            bench.heights.solve(&mut self.domain, height_problem, depth);
+            scratch.heights.solve(&mut self.domain, height_problem, depth);
         }
         view.camera.depth_from_heights(depth);
         normals::of_depth_into(view.size, view.camera, depth, normals);
     }
 
     /// Eq. 17 for each pixel alone: what an organised cloud, which has no rays, gets.
-    fn refine_normals(&mut self, bench: &mut Workbench, problem: RefinementProblem<'_>, normals: &mut Normals) {
+    fn refine_normals(&mut self, scratch: &mut Scratch, problem: RefinementProblem<'_>, normals: &mut Normals) {
         let RefinementTerms { light, rotation, weights, .. } = &problem.terms;
         let back = rotation.transpose();
-        for band in Workbench::bands(problem.depth.size) {
-            bench.fit_band(&band);
-            let Workbench { prior, found, .. } = bench;
-            bring_prior(problem, &band, prior);
+        for band in Scratch::bands(problem.depth.size) {
+            scratch.resize_band(&band);
+            let Scratch { prior, found, .. } = scratch;
+            sample_prior(problem, &band, prior);
             normals.rotate(&band, rotation, found, 0);
             let log = self.log.each_ref().map(|channel| &channel[band.clone()]);
             self.solver.solve(ShadingProblem { log, prior, light }, *weights, found);
@@ -203,18 +203,18 @@ impl Refiner {
         }
     }
 
-    /// Anchors at the measured depth, in the integrator's coordinate (log depth for a pinhole camera).
-    fn load_anchors(&self, bench: &mut Workbench, view: &DepthView, weight: impl Fn(bool) -> f32) {
-        bench.spare.copy_from_slice(view.depth());
-        view.camera.heights_from_depth(&mut bench.spare);
-        for (anchor_weight, log) in bench.weight.iter_mut().zip(&self.log[0]) {
+    /// Anchors at the measured heights.
+    fn load_anchors(&self, scratch: &mut Scratch, view: &DepthView, weight: impl Fn(bool) -> f32) {
+        scratch.spare.copy_from_slice(view.depth());
+        view.camera.heights_from_depth(&mut scratch.spare);
+        for (anchor_weight, log) in scratch.weight.iter_mut().zip(&self.log[0]) {
             *anchor_weight = weight(!log.is_nan());
         }
     }
 }
 
 /// Eq. 19: the image's normal where each depth pixel of a band falls, in the colour view's frame.
-fn bring_prior(problem: RefinementProblem<'_>, band: &Range<usize>, prior: &mut Normals) {
+fn sample_prior(problem: RefinementProblem<'_>, band: &Range<usize>, prior: &mut Normals) {
     let [columns, rows] = problem.position;
     for (place, index) in band.clone().enumerate() {
         let seen = problem.image.size.nearest(columns[index], rows[index]);
@@ -222,18 +222,8 @@ fn bring_prior(problem: RefinementProblem<'_>, band: &Range<usize>, prior: &mut 
     }
 }
 
-/// Slopes of the surface that has these normals, in pixels of height per pixel.
-fn find_slopes(view: &DepthView, normals: &Normals, slopes: &mut [Vec<f32>; 2]) {
-    let [p, q] = slopes;
-    gradients(view.size, &view.camera, normals, &view.mask, p, q);
-    let pixels = view.camera.focal_length().unwrap_or(1.0) as f32;
-    for slopes in [p, q] {
-        slopes.iter_mut().for_each(|slope| *slope *= pixels);
-    }
-}
-
-/// (shading error / depth noise)^2, the weight that balances both.
-fn firmness(shading_error: f64, view: &DepthView) -> f32 {
+/// (shading error / depth noise)^2: least squares weighs each by its variance.
+fn anchor_weight(shading_error: f64, view: &DepthView) -> f32 {
     let Size { width, height } = view.size;
     let reach = noise::NEIGHBOURS - 1;
     let lines = |index: usize| {
@@ -247,18 +237,19 @@ fn firmness(shading_error: f64, view: &DepthView) -> f32 {
     };
     let fourths = (0..view.size.len())
         .flat_map(|index| lines(index).into_iter().filter(|(fits, _)| *fits).map(move |(_, step)| fourth(index, step)));
-    balance(shading_error, noise::of_fourth_differences(fourths, 2 * view.size.len()))
+    variance_ratio(shading_error, noise::of_fourth_differences(fourths, 2 * view.size.len()))
 }
 
-/// Depth without noise, as far as anybody can tell, is firm, however exact the colours are.
-fn balance(shading_error: f64, depth_noise: f64) -> f32 {
+/// That of the variances, within bounds. Depth without measurable noise gets the largest weight, however exact the
+/// colours are.
+fn variance_ratio(shading_error: f64, depth_noise: f64) -> f32 {
     let weight = if depth_noise > 0.0 { (shading_error / depth_noise).powi(2) } else { f64::INFINITY };
-    weight.clamp(ANCHOR[0], ANCHOR[1]) as f32
+    weight.clamp(ANCHOR_WEIGHTS[0], ANCHOR_WEIGHTS[1]) as f32
 }
 
-/// Carries a field from where it is known into the unknown pixels of the mask, ring by ring, each the mean of its known
+/// Extends a field from where it is known into the unknown pixels of the mask, ring by ring, each the mean of its known
 /// neighbours.
-fn diffuse(view: &DepthView, field: &mut [f32], spare: &mut [f32]) {
+fn extend(view: &DepthView, field: &mut [f32], spare: &mut [f32]) {
     for _ in 0..FILL_SWEEPS {
         spare.copy_from_slice(field);
         let mut changed = false;
@@ -285,8 +276,8 @@ fn diffuse(view: &DepthView, field: &mut [f32], spare: &mut [f32]) {
 }
 
 fn rotate(rotation: &Matrix3<f64>, vector: [f32; 3]) -> [f32; 3] {
-    let turned = rotation * Vector3::from(vector.map(f64::from));
-    [turned.x as f32, turned.y as f32, turned.z as f32]
+    let rotated = rotation * Vector3::from(vector.map(f64::from));
+    [rotated.x as f32, rotated.y as f32, rotated.z as f32]
 }
 
 #[cfg(test)]
@@ -294,10 +285,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn exact_depth_is_firm_even_beside_exact_colours() {
-        assert_eq!(balance(0.0, 0.0), ANCHOR[1] as f32);
-        assert_eq!(balance(0.05, 0.0), ANCHOR[1] as f32);
-        assert_eq!(balance(0.0, 0.5), ANCHOR[0] as f32);
-        assert!((balance(0.05, 0.5) - 0.01).abs() < 1e-6);
+    fn exact_depth_has_the_largest_weight_even_beside_exact_colours() {
+        assert_eq!(variance_ratio(0.0, 0.0), ANCHOR_WEIGHTS[1] as f32);
+        assert_eq!(variance_ratio(0.05, 0.0), ANCHOR_WEIGHTS[1] as f32);
+        assert_eq!(variance_ratio(0.0, 0.5), ANCHOR_WEIGHTS[0] as f32);
+        assert!((variance_ratio(0.05, 0.5) - 0.01).abs() < 1e-6);
     }
 }

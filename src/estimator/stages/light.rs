@@ -7,12 +7,9 @@ use crate::estimator::pair::Pair;
 use crate::estimator::solution::Solution;
 use crate::light::{Light, LightFitter};
 use crate::pose::Correspondences;
-use crate::shape::{ShadingWeights, first_exposure};
+use crate::shape::first_exposure;
 use crate::view::Normals;
 
-/// |n - m| at which a prior normal has lost three quarters of its weight: 23 degrees, more than noise, less than a
-/// mistake.
-const PRIOR_SCALE: f32 = 0.4;
 /// Median log residual up to which a fitted light counts as explaining the colours: noise and discretisation.
 const EXPLAINED: f64 = 0.07;
 
@@ -20,7 +17,7 @@ const EXPLAINED: f64 = 0.07;
 #[derive(Clone, Copy)]
 pub struct Inputs<'a> {
     pub pair: &'a Pair,
-    /// The light stage, for the depth view's normals at the image's pixels and for the weights.
+    /// The light stage, for the depth view's normals at the image's pixels and the variance of the colours.
     pub fitted: &'a LightStage,
     pub correspondences: &'a Correspondences,
 }
@@ -95,15 +92,9 @@ impl LightStage {
         self.residual
     }
 
-    /// Weights of the normals' terms. Colours that even the fitted light leaves unexplained (texture, cast shadows) have a
-    /// larger variance and weigh less, which is to say that the prior weighs more.
-    pub fn weights(&self, pair: &Pair, prior: f64) -> ShadingWeights {
-        let variance_inflation = (self.residual / EXPLAINED).max(1.0).powi(2);
-        robust_weights((prior * variance_inflation) as f32, pair.options.weights.unit as f32)
+    /// By how much the variance of the colours exceeds what is usual. Colours that even the fitted light leaves unexplained
+    /// (texture, cast shadows) weigh less, which is to say that priors weigh more.
+    pub fn variance_inflation(&self) -> f64 {
+        (self.residual / EXPLAINED).max(1.0).powi(2)
     }
-}
-
-/// Weights of a robust prior and of the unit length.
-pub const fn robust_weights(prior: f32, unit: f32) -> ShadingWeights {
-    ShadingWeights { prior, unit, robust: Some(PRIOR_SCALE) }
 }

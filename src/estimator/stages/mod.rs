@@ -17,4 +17,4 @@ pub use correspondences::correspondence_problem;
 pub use light::{Inputs, LightStage};
 pub use refinement::{RefinementStage, RefinementTask, terms_from_numbers};
 pub use registration::{Registered, RegistrationStage};
-pub use shape::{ShapeStage, exposure_rounds};
+pub use shape::ShapeStage;

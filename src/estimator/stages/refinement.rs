@@ -12,10 +12,11 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::estimator::pair::Pair;
 use crate::estimator::solution::{Accepted, Shape, Solution};
 use crate::light::{COEFFICIENTS, Light};
-use crate::shape::{HeightDomain, RefinementProblem, RefinementTerms, Refiner, Workbench};
+use crate::options::Weights;
+use crate::shape::{HeightDomain, RefinementProblem, RefinementTerms, Refiner, Scratch, ShadingWeights};
 use crate::view::Normals;
 
-use super::light::{Inputs, robust_weights};
+use super::light::Inputs;
 
 /// A refinement for a [`Worker`](crate::Worker).
 pub struct RefinementTask<'a> {
@@ -60,8 +61,8 @@ impl RefinementStage {
     }
 
     /// Guesses the holes of the measured depth.
-    pub fn fill_holes(&self, pair: &Pair, scratch: &mut Workbench, shape: &mut Shape) -> Result<()> {
-        scratch.fit(pair.depth.size.len());
+    pub fn fill_holes(&self, pair: &Pair, scratch: &mut Scratch, shape: &mut Shape) -> Result<()> {
+        scratch.resize(pair.depth.size.len());
         self.refiner.fill(scratch, &pair.depth, &mut shape.points.z)?;
         shape.place_depth_points(&pair.depth);
         Ok(())
@@ -121,13 +122,7 @@ impl RefinementStage {
 
     /// Normals and depth of the depth view (Eq. 17 to 19), unless a worker has made them. Writes the depth view's shape in
     /// `solution` and nothing else of it.
-    pub fn refine(
-        &mut self,
-        inputs: Inputs<'_>,
-        accepted: &Accepted,
-        scratch: &mut Workbench,
-        solution: &mut Solution,
-    ) {
+    pub fn refine(&mut self, inputs: Inputs<'_>, accepted: &Accepted, scratch: &mut Scratch, solution: &mut Solution) {
         let Inputs { pair, correspondences, .. } = inputs;
         if !self.is_made {
             let terms = self.terms.unwrap_or_else(|| terms(inputs, solution));
@@ -136,7 +131,7 @@ impl RefinementStage {
                 None => (&solution.image.normals, correspondences.position()),
             };
             let problem = RefinementProblem { depth: &pair.depth, image: &pair.image, position, image_normals, terms };
-            scratch.fit(pair.depth.size.len());
+            scratch.resize(pair.depth.size.len());
             let Shape { normals, points } = &mut solution.depth;
             self.refiner.refine(scratch, problem, normals, &mut points.z);
         }
@@ -146,10 +141,12 @@ impl RefinementStage {
 }
 
 fn terms(Inputs { pair, fitted, .. }: Inputs<'_>, solution: &Solution) -> RefinementTerms {
+    let Weights { refinement, unit, .. } = pair.options.weights;
+    let prior = refinement * fitted.variance_inflation();
     RefinementTerms {
         light: solution.light.total(),
         rotation: solution.pose.rotation,
-        weights: fitted.weights(pair, pair.options.weights.refinement),
+        weights: ShadingWeights::with_robust_prior(prior as f32, unit as f32),
         colour_error: fitted.residual(),
     }
 }
@@ -170,7 +167,7 @@ pub fn terms_from_numbers(numbers: &[f64]) -> Result<RefinementTerms> {
     Ok(RefinementTerms {
         light: Light::from_slice("numbers", light)?,
         rotation: Matrix3::new(xx, xy, xz, yx, yy, yz, zx, zy, zz),
-        weights: robust_weights(prior as f32, unit as f32),
+        weights: ShadingWeights::with_robust_prior(prior as f32, unit as f32),
         colour_error,
     })
 }

@@ -3,13 +3,13 @@
 use crate::error::Result;
 use crate::estimator::pair::Pair;
 use crate::estimator::stages::terms_from_numbers;
-use crate::shape::{RefinementProblem, Refiner, Workbench};
+use crate::shape::{RefinementProblem, Refiner, Scratch};
 use crate::view::Normals;
 
 /// Refines the depth view of a pair; owns all memory.
 pub struct RefinementWorker {
     refiner: Refiner,
-    scratch: Workbench,
+    scratch: Scratch,
     position: [Vec<f32>; 2],
     image_normals: Normals,
     refined_depth: Vec<f32>,
@@ -22,7 +22,7 @@ impl RefinementWorker {
         let [pixels, points] = pair.lengths();
         let refiner = Refiner::new(&pair.depth, &pair.image)?.resumed();
         Ok(Self {
-            scratch: Workbench::new(points, &[refiner.domain()]),
+            scratch: Scratch::new(points, &[refiner.domain()]),
             position: [0, 1].map(|_| vec![f32::NAN; points]),
             image_normals: Normals::missing(pixels),
             refined_depth: vec![f32::NAN; points],
@@ -48,7 +48,7 @@ impl RefinementWorker {
             image_normals: &self.image_normals,
             terms: terms_from_numbers(numbers)?,
         };
-        self.scratch.fit(pair.depth.size.len());
+        self.scratch.resize(pair.depth.size.len());
         self.refiner.refine(&mut self.scratch, problem, &mut self.refined_normals, &mut self.refined_depth);
         let Normals { x, y, z } = &self.refined_normals;
         Ok([&self.refined_depth, x, y, z])

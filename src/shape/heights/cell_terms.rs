@@ -1,43 +1,43 @@
-//! The pixels' terms of shape from shading for heights, as functions of the surface's two slopes there,
-//! four pixels side by side.
+//! The brightness terms of shape from shading for heights, as functions of the surface's two slopes in a cell, four
+//! cells side by side (docs/method.md, section 7).
 //!
 //! N = a + p b + q c points at the camera; n = N / |N|; dn/dp = (b - n (n . b)) / |N|, and so for q.
 
 use std::borrow::Cow;
 
-use super::ray_frames::{PARALLEL, RayFrames};
-use super::solver::HeightProblem;
+use super::problem::HeightProblem;
+use super::ray_frames::{ORTHOGRAPHIC, RayFrames};
 use crate::light::Polynomial;
-use crate::numeric::{Lanes, Mask, Real, dot};
+use crate::numeric::{Lanes, Mask, Real, dot, robust};
 use crate::view::Size;
 
 /// (a, b, c) of four pixels in the light's frame.
 type Frames = [[Lanes; 3]; 3];
 
-/// The shading of one problem, its light turned into the view's frame. Everything is of four pixels, or cells right of
-/// and below them, from the one that is named.
-pub(super) struct SlopeTerms<'a> {
+/// The shading of one problem, its normals rotated into the light's frame. Everything is of four pixels, or cells right
+/// of and below them, from the one that is named.
+pub(super) struct CellTerms<'a> {
     pub(super) problem: HeightProblem<'a>,
     polynomials: [Polynomial; 3],
     view_width: usize,
     rotation: [[f32; 3]; 3],
     /// Rotated (a, b, c) of an orthographic camera.
-    frame: Frames,
-    /// 1 / scale^2 of rho.
-    sharpness: Lanes,
+    orthographic: Frames,
+    /// 1 / scale^2 of the robust function.
+    inverse_square_scale: Lanes,
 }
 
-impl<'a> SlopeTerms<'a> {
+impl<'a> CellTerms<'a> {
     pub(super) fn new(problem: HeightProblem<'a>, size: Size) -> Self {
         let rotation = std::array::from_fn(|row| std::array::from_fn(|column| problem.rotation[(row, column)] as f32));
-        let frame = PARALLEL.map(|vector| vector.map(Lanes::splat));
+        let frame = ORTHOGRAPHIC.map(|vector| vector.map(Lanes::splat));
         Self {
             problem,
             polynomials: Polynomial::of(problem.light),
             view_width: size.width,
             rotation,
-            frame: frame.map(|vector| rotate(&rotation, vector)),
-            sharpness: Lanes::splat(1.0 / (problem.colour_scale * problem.colour_scale)),
+            orthographic: frame.map(|vector| rotate(&rotation, vector)),
+            inverse_square_scale: Lanes::splat(1.0 / (problem.colour_scale * problem.colour_scale)),
         }
     }
 
@@ -45,13 +45,13 @@ impl<'a> SlopeTerms<'a> {
     #[inline(always)]
     pub(super) fn frames(&self, frames: &RayFrames, index: usize) -> Cow<'_, Frames> {
         match frames {
-            RayFrames::Parallel => Cow::Borrowed(&self.frame),
-            _ => Cow::Owned(self.gather(frames, index)),
+            RayFrames::Orthographic => Cow::Borrowed(&self.orthographic),
+            _ => Cow::Owned(self.rotated(frames, index)),
         }
     }
 
     #[inline(never)]
-    fn gather(&self, frames: &RayFrames, index: usize) -> Frames {
+    fn rotated(&self, frames: &RayFrames, index: usize) -> Frames {
         frames.lanes(index).map(|vector| rotate(&self.rotation, vector))
     }
 
@@ -73,12 +73,12 @@ impl<'a> SlopeTerms<'a> {
         [red, green, blue]
     }
 
-    /// Robust brightness cost of those of the cells that have a colour.
+    /// Robust brightness term of those of the cells that have a colour.
     #[inline(never)]
-    pub(super) fn cost(&self, frames: &Frames, log: [Lanes; 3], slopes: [Lanes; 2], cells: Mask) -> Lanes {
-        let residuals = self.residuals(Turn::at(frames, slopes).normal, log);
+    pub(super) fn objective(&self, frames: &Frames, log: [Lanes; 3], slopes: [Lanes; 2], cells: Mask) -> Lanes {
+        let residuals = self.residuals(NormalWithDerivatives::at(frames, slopes).normal, log);
         let squared = dot(residuals, residuals);
-        (cells & squared.finite()).select(squared * self.trust(squared), Lanes::splat(0.0))
+        (cells & squared.finite()).select(squared * self.attenuation(squared), Lanes::splat(0.0))
     }
 
     #[inline(always)]
@@ -87,50 +87,54 @@ impl<'a> SlopeTerms<'a> {
         [red.shade(normal) - log[0], green.shade(normal) - log[1], blue.shade(normal) - log[2]]
     }
 
-    /// 1 / (1 + r^2 / scale^2): the cost of Geman and McClure is r^2 times this, its weight the square of this.
     #[inline(always)]
-    fn trust(&self, squared: Lanes) -> Lanes {
-        Lanes::splat(1.0) / (Lanes::splat(1.0) + squared * self.sharpness)
+    fn attenuation(&self, squared: Lanes) -> Lanes {
+        robust::attenuation(squared * self.inverse_square_scale)
     }
 
     /// The terms of `cells` as functions of their slopes, where `log` is to be explained.
-    pub(super) fn linearise(&self, frames: &Frames, log: [Lanes; 3], slopes: [Lanes; 2], cells: Mask) -> Linear {
-        self.linearise_turn(&Turn::at(frames, slopes), log, cells)
+    pub(super) fn linearise(
+        &self,
+        frames: &Frames,
+        log: [Lanes; 3],
+        slopes: [Lanes; 2],
+        cells: Mask,
+    ) -> LinearisedCells {
+        self.linearise_at(&NormalWithDerivatives::at(frames, slopes), log, cells)
     }
 
     #[inline(never)]
-    fn linearise_turn(&self, turn: &Turn, log: [Lanes; 3], wanted: Mask) -> Linear {
+    fn linearise_at(&self, at: &NormalWithDerivatives, log: [Lanes; 3], wanted: Mask) -> LinearisedCells {
         let zero = Lanes::splat(0.0);
         let (mut squared, mut pp, mut pq, mut qq, mut by_p, mut by_q) = (zero, zero, zero, zero, zero, zero);
         for (polynomial, log) in self.polynomials.iter().zip(log) {
-            let (shade, slope) = polynomial.expand(turn.normal);
+            let (shade, slope) = polynomial.expand(at.normal);
             let residual = shade - log;
-            let (p, q) = (dot(slope, turn.along[0]), dot(slope, turn.along[1]));
+            let (p, q) = (dot(slope, at.derivatives[0]), dot(slope, at.derivatives[1]));
             squared = squared + residual * residual;
             (pp, pq, qq) = (pp + p * p, pq + p * q, qq + q * q);
             (by_p, by_q) = (by_p + p * residual, by_q + q * residual);
         }
-        // The weight of Geman and McClure is the square of what their cost has once.
-        let trust = self.trust(squared);
-        let weight = trust * trust;
+        let attenuation = self.attenuation(squared);
+        let weight = attenuation * attenuation;
         let known = wanted & squared.finite();
-        Linear {
-            cost: known.select(squared * trust, zero),
+        LinearisedCells {
+            objective: known.select(squared * attenuation, zero),
             matrix: known.select3([weight * pp, weight * pq, weight * qq], [zero; 3]),
             gradient: [known.select(weight * by_p, zero), known.select(weight * by_q, zero)],
         }
     }
 
-    /// How well a pixel alone, its colours and its firmness, fixes its slopes: the smaller eigenvalue of its matrix. Zero
-    /// unless `wanted`.
+    /// How well a pixel alone, its colours and the weight of its normal, fixes its slopes: the smaller eigenvalue of its
+    /// matrix. Zero unless `wanted`.
     pub(super) fn confidence(&self, frames: &Frames, source: usize, slopes: [Lanes; 2], wanted: Mask) -> Lanes {
-        let turn = Turn::at(frames, slopes);
-        let [mut pp, mut pq, mut qq] = self.linearise_turn(&turn, self.pixel_log(source), wanted).matrix;
-        if let Some(firmness) = self.problem.firmness {
-            let (firmness, [p, q]) = (Lanes::load(firmness, source as isize), turn.along);
-            pp = pp + firmness * dot(p, p);
-            pq = pq + firmness * dot(p, q);
-            qq = qq + firmness * dot(q, q);
+        let at = NormalWithDerivatives::at(frames, slopes);
+        let [mut pp, mut pq, mut qq] = self.linearise_at(&at, self.pixel_log(source), wanted).matrix;
+        if let Some(weights) = self.problem.normal_weight {
+            let (weight, [p, q]) = (Lanes::load(weights, source as isize), at.derivatives);
+            pp = pp + weight * dot(p, p);
+            pq = pq + weight * dot(p, q);
+            qq = qq + weight * dot(q, q);
         }
         let (zero, half) = (Lanes::splat(0.0), Lanes::splat(0.5));
         let (mean, off) = (half * (pp + qq), half * (pp - qq));
@@ -139,33 +143,33 @@ impl<'a> SlopeTerms<'a> {
     }
 }
 
-/// What cells say about their slopes; all zero where one has no colour.
-pub(super) struct Linear {
-    pub(super) cost: Lanes,
+/// The brightness terms of four cells around their slopes; all zero where one has no colour.
+pub(super) struct LinearisedCells {
+    pub(super) objective: Lanes,
     /// Gauss-Newton matrix: pp, pq, qq.
     pub(super) matrix: [Lanes; 3],
     /// Half the gradient.
     pub(super) gradient: [Lanes; 2],
 }
 
-/// Normals and their derivatives along both slopes.
-struct Turn {
+/// n, dn/dp and dn/dq.
+struct NormalWithDerivatives {
     normal: [Lanes; 3],
-    along: [[Lanes; 3]; 2],
+    derivatives: [[Lanes; 3]; 2],
 }
 
-impl Turn {
+impl NormalWithDerivatives {
     #[inline(always)]
     fn at([a, b, c]: &Frames, [p, q]: [Lanes; 2]) -> Self {
         let vector = [a[0] + p * b[0] + q * c[0], a[1] + p * b[1] + q * c[1], a[2] + p * b[2] + q * c[2]];
         let inverse = Lanes::splat(1.0) / dot(vector, vector).sqrt();
         let normal = [inverse * vector[0], inverse * vector[1], inverse * vector[2]];
-        let along = |side: &[Lanes; 3]| {
-            let share = dot(normal, *side);
-            let off = |axis: usize| inverse * (side[axis] - share * normal[axis]);
-            [off(0), off(1), off(2)]
+        let derivative = |side: &[Lanes; 3]| {
+            let along_normal = dot(normal, *side);
+            let across = |axis: usize| inverse * (side[axis] - along_normal * normal[axis]);
+            [across(0), across(1), across(2)]
         };
-        Self { normal, along: [along(b), along(c)] }
+        Self { normal, derivatives: [derivative(b), derivative(c)] }
     }
 }
 

@@ -23,7 +23,7 @@ pub struct HeightDomain {
     pub(super) columns: usize,
     pub(super) width: usize,
     /// Which pixels are inside, and which of their neighbours: bits of [`INSIDE`] and so on.
-    pub(super) near: Vec<u8>,
+    pub(super) flags: Vec<u8>,
     pub(super) pixels: usize,
     pub(super) cosine: CosineSolver,
     /// How normals follow from slopes at each pixel.
@@ -51,10 +51,10 @@ impl HeightDomain {
         let length = width * height;
         let is_inside =
             |column: usize, row: usize| column < size.width && row < size.height && mask[size.index(column, row)];
-        let mut near = vec![0; length];
+        let mut flags = vec![0; length];
         for (column, row) in inside_view() {
             let [right, below] = [is_inside(column + 1, row), is_inside(column, row + 1)];
-            let flags = [
+            let own = [
                 (INSIDE, true),
                 (CELL, right && below && is_inside(column + 1, row + 1)),
                 (LEFT, is_inside(column.wrapping_sub(1), row)),
@@ -62,34 +62,35 @@ impl HeightDomain {
                 (ABOVE, is_inside(column, row.wrapping_sub(1))),
                 (BELOW, below),
             ];
-            near[(row - top) * width + column - left] =
-                flags.into_iter().filter(|(_, holds)| *holds).map(|(flag, _)| flag).sum();
+            flags[(row - top) * width + column - left] =
+                own.into_iter().filter(|(_, holds)| *holds).map(|(flag, _)| flag).sum();
         }
         let frames = RayFrames::new(&camera, size, [left, top], [width, height]);
         let (corner, pixels) = ([left, top], inside_view().count());
-        Ok(Self { size, corner, columns, width, pixels, near, cosine: CosineSolver::new(width, height), frames })
+        Ok(Self { size, corner, columns, width, pixels, flags, cosine: CosineSolver::new(width, height), frames })
     }
 
     /// Length of the rasters over the box.
     pub(super) fn len(&self) -> usize {
-        self.near.len()
+        self.flags.len()
     }
 
     /// The rows of the box: where each starts here and in the view.
     pub(super) fn rows(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
         let ([left, top], width, view_width) = (self.corner, self.width, self.size.width);
-        (0..self.near.len() / width).map(move |row| (row * width, (top + row) * view_width + left))
+        (0..self.flags.len() / width).map(move |row| (row * width, (top + row) * view_width + left))
     }
 
-    /// Who of a block of [`LANES`] pixels has one of these flags.
+    /// Which of a block of [`LANES`] pixels have one of `wanted`.
     #[inline(always)]
-    pub(super) fn flagged(&self, index: usize, flags: u8) -> Mask {
-        Mask::with_bits(self.near.get(index..).and_then(|near| near.first_chunk()).copied().unwrap_or_default(), flags)
+    pub(super) fn flagged(&self, index: usize, wanted: u8) -> Mask {
+        let flags = self.flags.get(index..).and_then(|flags| flags.first_chunk());
+        Mask::with_bits(flags.copied().unwrap_or_default(), wanted)
     }
 
     /// The pixels on the mask, here and in the view.
     pub(super) fn inside(&self) -> impl Iterator<Item = (usize, usize)> {
         let pixels = self.rows().flat_map(|(here, source)| (0..self.columns).map(move |k| (here + k, source + k)));
-        pixels.filter(|&(index, _)| self.near[index] & INSIDE != 0)
+        pixels.filter(|&(index, _)| self.flags[index] & INSIDE != 0)
     }
 }

@@ -4,11 +4,15 @@ mod cell_terms;
 mod domain;
 mod image_surface;
 mod normal_operator;
+mod problem;
+mod rasters;
 mod ray_frames;
 mod scratch;
 mod solver;
+mod starts;
 
 pub use domain::HeightDomain;
-pub use image_surface::{ReliefProblem, ReliefSolver, STARTS};
-pub use scratch::Workbench;
-pub use solver::{Effort, HeightProblem, HeightReport, HeightSolver};
+pub use image_surface::ImageSurfaceSolver;
+pub use problem::{COLOUR_SCALES, Effort, HeightProblem, LAST_SCALE};
+pub use scratch::Scratch;
+pub use starts::{ImageSurfaceProblem, STARTS};

@@ -1,4 +1,4 @@
-//! How a normal follows from the slopes of a surface at a pixel.
+//! How a normal follows from the slopes of a surface at a pixel (docs/method.md, section 7).
 
 use nalgebra::Vector3;
 
@@ -12,26 +12,26 @@ use crate::view::{Camera, Size};
 pub(super) type RayFrame = [[f32; 3]; 3];
 
 /// That of every pixel of an orthographic camera.
-pub(super) const PARALLEL: RayFrame = [[0.0, 0.0, -1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+pub(super) const ORTHOGRAPHIC: RayFrame = [[0.0, 0.0, -1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
 
 /// Those of the pixels of a box.
 pub(super) enum RayFrames {
-    Parallel,
-    /// Without a lens a ray is made of its column's x and its row's y: here both with their change to the next pixel.
-    Straight {
+    Orthographic,
+    /// Without distortion a ray is made of its column's x and its row's y: here both with their change to the next pixel.
+    Pinhole {
         columns: Vec<[f64; 2]>,
         rows: Vec<[f64; 2]>,
         focal_length: f64,
     },
-    /// Behind a lens each pixel has its own.
-    Bent(Vec<RayFrame>),
+    /// With distortion each pixel has its own.
+    Distorted(Vec<RayFrame>),
 }
 
 impl RayFrames {
     /// Of a box of `sides` columns and rows from the pixel `corner` on. Columns beyond the view repeat its last one.
     pub fn new(camera: &Camera, size: Size, corner: [usize; 2], sides: [usize; 2]) -> Self {
         let (Some(pinhole), Some(focal_length)) = (camera.pinhole(), camera.focal_length()) else {
-            return Self::Parallel;
+            return Self::Orthographic;
         };
         let last = [size.width - 1, size.height - 1];
         let place = |axis: usize, index: usize| (corner[axis] + index).min(last[axis]) as f64;
@@ -42,28 +42,28 @@ impl RayFrames {
                 let places = (0..sides[axis]).map(|index| place(axis, index));
                 places.map(|place| [ray(place), ray(place + 0.5) - ray(place - 0.5)]).collect()
             };
-            return Self::Straight { columns: line(0), rows: line(1), focal_length };
+            return Self::Pinhole { columns: line(0), rows: line(1), focal_length };
         }
         let pixels = (0..sides[0] * sides[1]).map(|index| [place(0, index % sides[0]), place(1, index / sides[0])]);
-        Self::Bent(
+        Self::Distorted(
             pixels
-                .map(|pixel| bent(|off| camera.ray(size, [pixel[0] + off[0], pixel[1] + off[1]]), focal_length))
+                .map(|pixel| frame_of(|off| camera.ray(size, [pixel[0] + off[0], pixel[1] + off[1]]), focal_length))
                 .collect(),
         )
     }
 
     /// (a, b, c) of four pixels in a row.
     pub fn lanes(&self, index: usize) -> [[Lanes; 3]; 3] {
-        let mut four = [PARALLEL; LANES];
+        let mut four = [ORTHOGRAPHIC; LANES];
         match self {
-            Self::Parallel => {}
-            Self::Straight { columns, rows, focal_length } => {
+            Self::Orthographic => {}
+            Self::Pinhole { columns, rows, focal_length } => {
                 let (row, columns) = (rows[index / columns.len()], &columns[index % columns.len()..]);
                 for (frame, &column) in four.iter_mut().zip(columns) {
-                    *frame = straight(column, row, *focal_length);
+                    *frame = pinhole_frame(column, row, *focal_length);
                 }
             }
-            Self::Bent(frames) => {
+            Self::Distorted(frames) => {
                 for (frame, own) in four.iter_mut().zip(&frames[index..]) {
                     *frame = *own;
                 }
@@ -74,9 +74,9 @@ impl RayFrames {
     }
 }
 
-/// [`bent`] where x changes along a row alone, and y down a column.
+/// [`frame_of`] where x changes along a row alone, and y down a column.
 #[inline(never)]
-fn straight([x, along_column]: [f64; 2], [y, along_row]: [f64; 2], focal_length: f64) -> RayFrame {
+fn pinhole_frame([x, along_column]: [f64; 2], [y, along_row]: [f64; 2], focal_length: f64) -> RayFrame {
     let scale = focal_length * focal_length;
     [
         [0.0, 0.0, (scale * -(along_row * along_column)) as f32],
@@ -85,7 +85,7 @@ fn straight([x, along_column]: [f64; 2], [y, along_row]: [f64; 2], focal_length:
     ]
 }
 
-fn bent(ray: impl Fn([f64; 2]) -> [f64; 2], focal_length: f64) -> RayFrame {
+fn frame_of(ray: impl Fn([f64; 2]) -> [f64; 2], focal_length: f64) -> RayFrame {
     let ray = |right: f64, down: f64| {
         let [x, y] = ray([right, down]);
         Vector3::new(x, y, 1.0)
@@ -108,7 +108,7 @@ mod tests {
 
     /// What is made of columns and rows is what each pixel's own rays make.
     #[test]
-    fn straight_rays_have_the_frames_of_bent_ones() {
+    fn frames_of_rows_and_columns_are_those_of_the_rays() {
         let size = Size { width: 23, height: 17 };
         let pinhole = Pinhole { fx: 41.0, fy: 43.7, cx: 10.3, cy: 8.9, distortion: [0.0; 5] };
         let camera = Camera::Pinhole(pinhole);
@@ -118,7 +118,7 @@ mod tests {
             for lane in 0..4 {
                 let (column, row) = ((3 + index % 24 + lane).min(22), 2 + index / 24);
                 let ray = |[right, down]: [f64; 2]| camera.ray(size, [column as f64 + right, row as f64 + down]);
-                let expected = bent(ray, (41.0_f64 * 43.7).sqrt());
+                let expected = frame_of(ray, (41.0_f64 * 43.7).sqrt());
                 assert_eq!(four.map(|vector| vector.map(|axis| axis[lane])), expected);
             }
         }

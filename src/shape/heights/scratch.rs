@@ -1,31 +1,33 @@
 //! Rasters that a stage fills for itself.
 //!
 //! None outlives its stage, and no two stages run at once: so the image's surface and the depth view's refinement take
-//! turns at one workbench, and normals pixel by pixel are solved in bands.
+//! turns at one scratch, and normals pixel by pixel are solved in bands.
 
 use std::ops::Range;
 
-use crate::shape::{HeightDomain, HeightSolver};
+use super::domain::HeightDomain;
+use super::solver::HeightSolver;
 use crate::view::{Normals, Size};
 
 /// Pixels of a band: many enough for the shading solver's own preparation not to count.
 const BAND: usize = 1 << 15;
 
-/// What the stages of both views lend themselves.
-pub struct Workbench {
+/// What the stages of both views are lent.
+pub struct Scratch {
     /// Solves the heights of either view.
     pub heights: HeightSolver,
     /// Slopes of normals: along columns and along rows.
     pub slopes: [Vec<f32>; 2],
     /// Weights of priors or anchors.
     pub weight: Vec<f32>,
+    /// Anything else.
     pub spare: Vec<f32>,
     /// Prior normals of a band of pixels, and those that are to be found.
     pub prior: Normals,
     pub found: Normals,
 }
 
-impl Workbench {
+impl Scratch {
     /// For views of at most `pixels`, and for their domains.
     #[inline(never)]
     pub fn new(pixels: usize, domains: &[&HeightDomain]) -> Self {
@@ -42,7 +44,7 @@ impl Workbench {
     }
 
     /// Makes the rasters those of a view of so many pixels; they hold anything.
-    pub fn fit(&mut self, pixels: usize) {
+    pub fn resize(&mut self, pixels: usize) {
         let [p, q] = &mut self.slopes;
         [p, q, &mut self.weight, &mut self.spare].into_iter().for_each(|raster| raster.resize(pixels, 0.0));
     }
@@ -54,7 +56,7 @@ impl Workbench {
     }
 
     /// Makes the normals those of a band.
-    pub fn fit_band(&mut self, band: &Range<usize>) {
+    pub fn resize_band(&mut self, band: &Range<usize>) {
         self.prior.resize(band.len());
         self.found.resize(band.len());
     }

@@ -3,7 +3,7 @@
 //! Method: union-find over the edges in raster order, the smallest index as root, so that one more ascending pass turns
 //! parents into labels. Near linear in the number of pixels.
 
-use super::poisson::Edges;
+use super::terms::Edges;
 
 /// Labels and per-component sums; memory for the worst case (pairs of pixels) is taken once.
 pub struct Components {

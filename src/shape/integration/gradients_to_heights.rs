@@ -1,5 +1,5 @@
 //! min over z of sum_e w_e (z_j - z_i - (g_i + g_j)/2)^2 + sum_i a_i (z_i - anchor_i)^2: a surface from its gradients
-//! (stage 4 of the loop, the paper's "integration", there after Harker & O'Leary).
+//! (docs/method.md, section 6; the paper's "integration", there after Harker & O'Leary).
 //!
 //! Method: an edge e joins neighbours i and j (right or below) inside the mask; the trapezoidal rule on the gradients
 //! g = p (along a row) or q (down a column) predicts its height difference, exactly for quadratics, with an error of
@@ -19,26 +19,26 @@
 //! integrable on the large (not noise, not jumps) settle slowly: `max_rounds` bounds the time.
 
 use super::components::Components;
-use super::poisson::{Edges, Poisson, Solved, Termination};
+use super::poisson::{IntegrationTermination, Poisson, PoissonReport};
+use super::terms::{AnchorWeight, Anchors, Edges};
 use crate::check::positive;
 use crate::error::{Error, ErrorKind, Result};
-use crate::numeric::{Lanes, Mask, Real, quantile};
+use crate::numeric::{quantile, robust};
 use crate::view::Size;
 
 /// Gradients beyond this (height per pixel) count as unknown: beside heights of 1e6 an f32 has no digits left for a
 /// shape.
 const LARGEST_GRADIENT: f32 = 1e6;
-/// sigma = 1.4826 median |x| for normal x, here sums of four edges: half of it for one.
-const SIGMA_OF_MEDIAN: f64 = 1.4826 / 2.0;
-/// s in sigmas: normal residuals at three sigma keep a quarter of their weight, spikes lose theirs.
+/// sigma of one edge's noise in medians of |curl|: a curl sums four edges, which doubles sigma.
+const SIGMA_OF_CURL: f64 = robust::SIGMA_OF_MEDIAN / 2.0;
+/// s in sigmas: residuals of three sigma, the most that noise has, keep a quarter of their weight, spikes lose theirs.
 const SCALE_IN_SIGMAS: f64 = 3.0;
 /// Least s as a share of the mean |gradient|: a few times the trapezoidal error of a surface sampled well.
 const LEAST_SCALE: f64 = 0.05;
 /// Least weight of an edge: keeps pixels whose every edge is an outlier attached to their neighbours.
 const LEAST_WEIGHT: f32 = 1e-4;
-/// Reweighting ends when the weights change by less than this on average: three edges in a thousand are still
-/// undecided.
-const SETTLED: f64 = 3e-3;
+/// Reweighting ends when the weights change by less than this on average: as if three edges in a thousand changed sides.
+const SMALLEST_CHANGE: f64 = 3e-3;
 /// Relative error of the solves between two reweightings, well under the least robust scale; the last one is exact.
 const ROUND_TOLERANCE: f64 = 1e-3;
 /// Factor on the scale from round to round of a cold start, from the residuals' root mean square down: what least
@@ -49,7 +49,7 @@ const MOST_SAMPLES: usize = 1 << 15;
 
 /// How outliers among the gradients are met.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Robust {
+pub enum Robustness {
     /// Plain least squares.
     Off,
     /// Geman-McClure weights, scale from the gradients' curl.
@@ -62,7 +62,7 @@ pub enum Robust {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct IntegrationOptions {
     /// Outliers among the gradients.
-    pub robust: Robust,
+    pub robustness: Robustness,
     /// Relative error at which a solve ends, in the norm that is minimised.
     pub tolerance: f64,
     /// Cap on the conjugate-gradient iterations of all rounds together.
@@ -72,62 +72,19 @@ pub struct IntegrationOptions {
 }
 
 impl Default for IntegrationOptions {
-    /// Least squares to 1e-5 in at most 400 iterations; at most 10 rounds where `robust` is switched on.
+    /// Least squares to 1e-5 in at most 400 iterations; at most 10 rounds where `robustness` is switched on.
     fn default() -> Self {
-        Self { robust: Robust::Off, tolerance: 1e-5, max_iterations: 400, max_rounds: 10 }
+        Self { robustness: Robustness::Off, tolerance: 1e-5, max_iterations: 400, max_rounds: 10 }
     }
 }
 
 impl IntegrationOptions {
     fn validate(&self) -> Result<()> {
         positive("integration.tolerance", self.tolerance)?;
-        match self.robust {
-            Robust::Scale(scale) => positive("integration.robust", scale),
-            Robust::Off | Robust::Estimated => Ok(()),
+        match self.robustness {
+            Robustness::Scale(scale) => positive("integration.robustness", scale),
+            Robustness::Off | Robustness::Estimated => Ok(()),
         }
-    }
-}
-
-/// Weights of the anchors.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum AnchorWeight<'a> {
-    /// The same for every anchor.
-    Uniform(f32),
-    /// One for each pixel of the raster.
-    PerPixel(&'a [f32]),
-}
-
-/// Heights that the surface is drawn to.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Anchors<'a> {
-    /// Target height of each pixel of the raster, NaN where there is none.
-    pub height: &'a [f32],
-    /// a_i against edges of weight one; an anchor whose weight is not finite or not above zero is ignored.
-    pub weight: AnchorWeight<'a>,
-}
-
-impl Anchors<'_> {
-    /// Target and weight, zero weight where there is no anchor.
-    pub(super) fn get(&self, index: usize) -> (f32, f32) {
-        let weight = match self.weight {
-            AnchorWeight::Uniform(weight) => weight,
-            AnchorWeight::PerPixel(weights) => weights[index],
-        };
-        let height = self.height[index];
-        if height.is_finite() && weight.is_finite() && weight > 0.0 { (height, weight) } else { (0.0, 0.0) }
-    }
-
-    /// The same of those of four pixels that are `wanted`.
-    #[inline(always)]
-    pub(crate) fn four(&self, start: isize, wanted: Mask) -> (Lanes, Lanes) {
-        let zero = Lanes::splat(0.0);
-        let weight = match self.weight {
-            AnchorWeight::Uniform(weight) => Lanes::splat(weight),
-            AnchorWeight::PerPixel(weights) => Lanes::load(weights, start),
-        };
-        let height = Lanes::load(self.height, start);
-        let holds = wanted & height.finite() & weight.finite() & zero.less(weight);
-        (holds.select(height, zero), holds.select(weight, zero))
     }
 }
 
@@ -147,7 +104,7 @@ pub struct IntegrationReport {
     /// Mask pixels that neither an edge nor an anchor determines.
     pub undetermined: usize,
     /// Why it ended.
-    pub termination: Termination,
+    pub termination: IntegrationTermination,
 }
 
 /// Integrates gradients over one mask again and again; owns all memory, and starts from its previous surface.
@@ -214,7 +171,7 @@ impl Integrator {
     ///
     /// # Errors
     /// [`ErrorKind::Size`] where a slice is not as long as the raster, [`ErrorKind::Range`] for bad options. Solver
-    /// trouble is no error but a [`Termination`] in the report.
+    /// trouble is no error but a [`IntegrationTermination`] in the report.
     pub fn integrate(
         &mut self,
         p: &[f32],
@@ -244,7 +201,7 @@ impl Integrator {
         self.load_anchors(anchors);
         let mut report = self.solve(options);
         self.components.level(&mut self.system.z, &self.system.anchor_weight);
-        if report.termination == Termination::Breakdown {
+        if report.termination == IntegrationTermination::Breakdown {
             self.reset();
         }
         report.undetermined = self.store(anchors, z);
@@ -308,16 +265,16 @@ impl Integrator {
             scale: None,
             components: self.components.count(),
             undetermined: 0,
-            termination: Termination::Empty,
+            termination: IntegrationTermination::Empty,
         };
         if self.components.count() == 0 {
             return report;
         }
-        if options.robust != Robust::Off {
+        if options.robustness != Robustness::Off {
             self.reweigh_in_rounds(options, &mut report);
         }
         self.solve_weighted(options.tolerance, options.max_iterations, &mut report);
-        self.robust = options.robust != Robust::Off;
+        self.robust = options.robustness != Robustness::Off;
         report
     }
 
@@ -327,17 +284,17 @@ impl Integrator {
         if !self.robust {
             self.solve_weighted(tolerance, options.max_iterations, report);
         }
-        let aim = match options.robust {
-            Robust::Scale(scale) => scale,
-            Robust::Off | Robust::Estimated => self.noise_scale().max(LEAST_SCALE * self.mean_gradient()),
+        let aim = match options.robustness {
+            Robustness::Scale(scale) => scale,
+            Robustness::Off | Robustness::Estimated => self.noise_scale().max(LEAST_SCALE * self.mean_gradient()),
         };
         let mut start = if self.robust { 0.0 } else { SCALE_IN_SIGMAS * self.residual_rms() };
-        while report.rounds < options.max_rounds && report.termination != Termination::Breakdown {
+        while report.rounds < options.max_rounds && report.termination != IntegrationTermination::Breakdown {
             let scale = start.max(aim);
             start *= ANNEALING;
             report.scale = Some(scale);
             report.rounds += 1;
-            if self.reweigh(scale) < SETTLED && report.rounds > 1 && scale == aim {
+            if self.reweigh(scale) < SMALLEST_CHANGE && report.rounds > 1 && scale == aim {
                 break;
             }
             self.solve_weighted(tolerance, options.max_iterations, report);
@@ -346,7 +303,7 @@ impl Integrator {
 
     fn solve_weighted(&mut self, tolerance: f64, cap: u32, report: &mut IntegrationReport) {
         self.system.precondition(self.pixels);
-        let Solved { iterations, residual, termination } =
+        let PoissonReport { iterations, residual, termination } =
             self.system.solve(tolerance, cap.saturating_sub(report.iterations));
         report.iterations += iterations;
         report.residual = residual;
@@ -400,7 +357,7 @@ impl Integrator {
         if samples.is_empty() {
             return 0.0;
         }
-        SCALE_IN_SIGMAS * SIGMA_OF_MEDIAN * f64::from(quantile(samples, 0.5))
+        SCALE_IN_SIGMAS * SIGMA_OF_CURL * f64::from(quantile(samples, 0.5))
     }
 
     /// Sets the weights for the current heights; returns their mean change.
@@ -413,9 +370,8 @@ impl Integrator {
                 let old = edges.weight[index];
                 if old > 0.0 {
                     let ratio = residual(edges, offset, &self.system.z, index) * per_scale;
-                    let root = 1.0 / (1.0 + ratio * ratio);
-                    // max also turns the NaN of 0/0 (a flat surface with scale zero) into a number.
-                    let new = if ratio.is_nan() { 1.0 } else { (root * root).max(LEAST_WEIGHT) };
+                    // NaN is 0/0, a flat surface with scale zero.
+                    let new = if ratio.is_nan() { 1.0 } else { robust::weight(ratio * ratio).max(LEAST_WEIGHT) };
                     edges.weight[index] = new;
                     change += f64::from((new - old).abs());
                     count += 1;

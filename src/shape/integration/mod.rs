@@ -1,11 +1,13 @@
-//! Heights from normals: gradients of the normals, then the surface that has these gradients in the least-squares sense.
+//! Integration: the surface that has given gradients in the least-squares sense, and the gradients of normals.
 
 mod components;
 mod gradients_to_heights;
 mod normals_to_gradients;
 mod poisson;
+mod terms;
 
-pub use gradients_to_heights::{AnchorWeight, Anchors, IntegrationOptions, IntegrationReport, Integrator, Robust};
-pub use normals_to_gradients::gradients;
-pub(super) use poisson::Edges;
-pub use poisson::Termination;
+pub use gradients_to_heights::{IntegrationOptions, IntegrationReport, Integrator, Robustness};
+pub use normals_to_gradients::{find_slopes, gradients};
+pub use poisson::IntegrationTermination;
+pub(super) use terms::Edges;
+pub use terms::{AnchorWeight, Anchors};

@@ -1,5 +1,5 @@
-//! p = -n_x/n_z, q = -n_y/n_z; with a pinhole camera d(log Z)/du = -(n . r_u)/(n . r): gradients from normals (stage
-//! 4).
+//! p = -n_x/n_z, q = -n_y/n_z; with a pinhole camera d(log Z)/du = -(n . r_u)/(n . r): gradients from normals
+//! (docs/method.md, section 6).
 //!
 //! Method: a point of the surface is P = Z r(u, v) with the ray r = (x, y, 1); n . P_u = 0 gives the second formula,
 //! r_u and r_v by central differences of [`Camera::ray`] over one pixel, so that lens distortion is included.
@@ -32,6 +32,15 @@ pub fn gradients(size: Size, camera: &Camera, normals: &Normals, mask: &[bool], 
         let known = inside && nx.is_finite() && ny.is_finite() && nz.is_finite();
         [*p, *q] = if known { of_pixel([nx, ny, nz], index) } else { [f32::NAN; 2] };
     }
+}
+
+/// Slopes of normals, in pixels of height per pixel: [`gradients`] of the coordinate in which surfaces are solved for.
+/// Before a pinhole camera that is f log Z, so its gradients are those of log Z times f.
+pub fn find_slopes(size: Size, camera: &Camera, normals: &Normals, mask: &[bool], slopes: &mut [Vec<f32>; 2]) {
+    let [p, q] = slopes;
+    gradients(size, camera, normals, mask, p, q);
+    let focal_length = camera.focal_length().unwrap_or(1.0) as f32;
+    p.iter_mut().chain(q).for_each(|slope| *slope *= focal_length);
 }
 
 /// Of log depth, before a pinhole camera.

@@ -1,4 +1,5 @@
-//! min over z of sum_e w_e (z_j - z_i - g_e)^2 + sum_i a_i (z_i - t_i)^2 over the edges e = (i, j) of a masked raster.
+//! min over z of sum_e w_e (z_j - z_i - g_e)^2 + sum_i a_i (z_i - t_i)^2 over the edges e = (i, j) of a masked raster: a
+//! weighted discrete Poisson equation (docs/method.md, section 6).
 //!
 //! Method: conjugate gradients on the normal equations (L_w + diag a) z = b, preconditioned by the rectangle: extend
 //! the residual by zero, solve (c L + s) there by [`CosineSolver`], restrict; c is the mean weight of the edges and s
@@ -11,13 +12,15 @@
 //! Limits: what no edge and no anchor touches is not determined and keeps whatever it holds; each component without
 //! anchors is determined up to a constant. Pixels are f32, sums f64: relative tolerances below 1e-6 are not reached.
 
+use super::terms::Edges;
 use crate::numeric::LANES;
+use crate::numeric::conjugate_gradient::{self, End, Limits, System, Vectors};
 use crate::numeric::cosine::CosineSolver;
-use crate::numeric::vector::{add_scaled, dot, sum_of};
+use crate::numeric::vector::{dot, sum_of};
 
 /// Why a solve ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Termination {
+pub enum IntegrationTermination {
     /// The relative residual is within the tolerance.
     Converged,
     /// The cap on iterations came first; the heights are the best so far and usable.
@@ -30,24 +33,10 @@ pub enum Termination {
 
 /// What one solve did.
 #[derive(Clone, Copy, Debug)]
-pub struct Solved {
+pub struct PoissonReport {
     pub iterations: u32,
     pub residual: f64,
-    pub termination: Termination,
-}
-
-/// Edge e from a pixel to its right or lower neighbour, stored at the pixel.
-pub struct Edges {
-    /// w_e >= 0; zero where there is no edge, which includes the last column (row).
-    pub weight: Vec<f32>,
-    /// g_e.
-    pub gradient: Vec<f32>,
-}
-
-impl Edges {
-    pub fn new(length: usize) -> Self {
-        Self { weight: vec![0.0; length], gradient: vec![0.0; length] }
-    }
+    pub termination: IntegrationTermination,
 }
 
 /// The system on a rectangle and the memory of its solver.
@@ -62,11 +51,10 @@ pub struct Poisson {
     pub anchor: Vec<f32>,
     /// Current heights; the next solve starts from them.
     pub z: Vec<f32>,
-    solver: CosineSolver,
+    cosine: CosineSolver,
     residual: Vec<f32>,
     direction: Vec<f32>,
-    /// Preconditioned residual, then the system applied to the direction: never needed at once.
-    work: Vec<f32>,
+    product: Vec<f32>,
     spectrum: Vec<f32>,
     flux: Flux,
 }
@@ -76,7 +64,7 @@ impl Poisson {
     pub fn new(columns: usize, rows: usize) -> Self {
         let (width, height) = (columns.next_multiple_of(LANES), rows);
         let length = width * height;
-        let solver = CosineSolver::new(width, height);
+        let cosine = CosineSolver::new(width, height);
         Self {
             width,
             right: Edges::new(length),
@@ -84,11 +72,11 @@ impl Poisson {
             anchor_weight: vec![0.0; length],
             anchor: vec![0.0; length],
             z: vec![0.0; length],
-            spectrum: vec![0.0; solver.len()],
-            solver,
+            spectrum: vec![0.0; cosine.len()],
+            cosine,
             residual: vec![0.0; length],
             direction: vec![0.0; length],
-            work: vec![0.0; length],
+            product: vec![0.0; length],
             flux: Flux::new(width),
         }
     }
@@ -100,53 +88,50 @@ impl Poisson {
             edges.filter(|&&w| w > 0.0).fold((0usize, 0.0), |(count, sum), &w| (count + 1, sum + f64::from(w)));
         let anchors: f64 = self.anchor_weight.iter().map(|&a| f64::from(a)).sum();
         let stiffness = if count == 0 { 1.0 } else { sum / count as f64 };
-        self.solver.set(stiffness, anchors / pixels.max(1) as f64);
+        self.cosine.set(stiffness, anchors / pixels.max(1) as f64);
     }
 
     /// Conjugate gradients from the current heights until the error is below `tolerance`, or `cap` iterations.
     ///
     /// The error is measured in the norm that is minimised, estimated by the preconditioner, relative to that of the
     /// data (sum w g^2 + sum a t^2)^(1/2).
-    pub fn solve(&mut self, tolerance: f64, cap: u32) -> Solved {
-        let data = self.data_energy();
-        let done = |iterations, rho: f64, termination| Solved {
-            iterations,
-            residual: if data > 0.0 { (rho.max(0.0) / data).sqrt() } else { 0.0 },
-            termination,
-        };
-        let target = tolerance * tolerance * data;
+    pub fn solve(&mut self, tolerance: f64, cap: u32) -> PoissonReport {
+        let data = self.squared_data();
         self.find_residual();
-        let mut rho = self.precondition_residual();
-        self.direction.copy_from_slice(&self.work);
-        for iteration in 0..cap {
-            if rho <= target {
-                return done(iteration, rho, Termination::Converged);
-            }
-            self.apply();
-            let curvature = dot(&self.direction, &self.work);
-            let step = rho / curvature;
-            if !(step.is_finite() && curvature > 0.0) {
-                return done(iteration, rho, Termination::Breakdown);
-            }
-            add_scaled(&mut self.z, step as f32, &self.direction);
-            add_scaled(&mut self.residual, -step as f32, &self.work);
-            let next = self.precondition_residual();
-            let turn = (next / rho) as f32;
-            rho = next;
-            self.direction.iter_mut().zip(&self.work).for_each(|(d, s)| *d = s + turn * *d);
-        }
-        let ended = if rho <= target {
-            Termination::Converged
-        } else if rho.is_finite() {
-            Termination::IterationCap
-        } else {
-            Termination::Breakdown
+        let limits =
+            Limits { iterations: cap, error: tolerance * tolerance * data, relative_error: 0.0, decrease: 0.0 };
+        let mut equations = NormalEquations {
+            edges: [&self.right, &self.down],
+            anchor_weight: &self.anchor_weight,
+            flux: &mut self.flux,
+            cosine: &mut self.cosine,
+            spectrum: &mut self.spectrum,
         };
-        done(cap, rho, ended)
+        let vectors = Vectors {
+            solution: &mut self.z,
+            residual: &mut self.residual,
+            direction: &mut self.direction,
+            product: &mut self.product,
+        };
+        let solved = conjugate_gradient::solve(&mut equations, limits, vectors);
+        let (error, termination) = match solved.end {
+            End::Converged => (solved.error, IntegrationTermination::Converged),
+            End::Breakdown => (solved.error, IntegrationTermination::Breakdown),
+            End::Capped => {
+                equations.precondition(&self.residual, &mut self.product);
+                match dot(&self.residual, &self.product) {
+                    error if error <= limits.error => (error, IntegrationTermination::Converged),
+                    error if error.is_finite() => (error, IntegrationTermination::IterationCap),
+                    error => (error, IntegrationTermination::Breakdown),
+                }
+            }
+        };
+        let residual = if data > 0.0 { (error.max(0.0) / data).sqrt() } else { 0.0 };
+        PoissonReport { iterations: solved.iterations, residual, termination }
     }
 
     /// sum w g^2 + sum a t^2.
-    fn data_energy(&self) -> f64 {
+    fn squared_data(&self) -> f64 {
         let term = |weight: &[f32], value: &[f32]| sum_of(weight, value, |w, v| f64::from(w) * f64::from(v).powi(2));
         term(&self.right.weight, &self.right.gradient)
             + term(&self.down.weight, &self.down.gradient)
@@ -161,20 +146,28 @@ impl Poisson {
             *out += a * (t - z);
         }
     }
+}
 
-    /// work = (L_w + a) direction.
-    fn apply(&mut self) {
-        self.flux.divergence([&self.right, &self.down], false, &self.direction, &mut self.work);
-        for ((out, a), d) in self.work.iter_mut().zip(&self.anchor_weight).zip(&self.direction) {
+/// L_w + diag a and its preconditioner. Off the domain the residual is zero and no edge reads a height, so that extension
+/// and restriction need no code.
+struct NormalEquations<'a> {
+    edges: [&'a Edges; 2],
+    anchor_weight: &'a [f32],
+    flux: &'a mut Flux,
+    cosine: &'a mut CosineSolver,
+    spectrum: &'a mut [f32],
+}
+
+impl System for NormalEquations<'_> {
+    fn apply(&mut self, direction: &[f32], product: &mut [f32]) {
+        self.flux.divergence(self.edges, false, direction, product);
+        for ((out, a), d) in product.iter_mut().zip(self.anchor_weight).zip(direction) {
             *out = a * d - *out;
         }
     }
 
-    /// work = preconditioned residual; returns its product with the residual. Off the domain the residual is zero and
-    /// no edge reads a height, so that extension and restriction need no code.
-    fn precondition_residual(&mut self) -> f64 {
-        self.solver.solve(&self.residual, &mut self.spectrum, &mut self.work);
-        dot(&self.work, &self.residual)
+    fn precondition(&mut self, residual: &[f32], solution: &mut [f32]) {
+        self.cosine.solve(residual, self.spectrum, solution);
     }
 }
 

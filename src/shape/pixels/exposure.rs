@@ -1,35 +1,37 @@
-//! The exposure of a known light.
+//! The exposure of a known light (docs/method.md, section 5).
 //!
 //! A light is known only up to the exposure of the camera: log S = c + [n;1]^T M [n;1] with one c for all pixels.
-//! First c comes from the colours alone: the colours of the hemisphere are a sheet in log RGB, and c shifts the image's
+//! First c comes from the colours alone: the colours of the hemisphere are a surface in log RGB, and c shifts the image's
 //! colours onto it. Then each solve of the normals improves c by variable projection: the normals follow c, so
-//! that d cost / dc = -2 sum r and d2 cost / dc2 = 2 sum (3 - 1^T J H^-1 J^T 1), H the pixel's own Gauss-Newton matrix.
-//! Under a light of one hue the sheet is a line along c itself and only the prior fixes it.
+//! that dF/dc = -2 sum r and d2F/dc2 = 2 sum (3 - 1^T J H^-1 J^T 1), F the objective, H the pixel's own Gauss-Newton
+//! matrix. Under a light of one hue that surface is a line along c itself, and only the prior fixes it.
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::shading::{Linear, Pixels, ShadingProblem, ShadingWeights};
+use super::shading::{LinearisedPixels, Pixels, ShadingProblem, ShadingWeights};
 use crate::light::{Light, Polynomial};
-use crate::numeric::{LANES, Lanes, Real, quantile};
+use crate::numeric::{LANES, Lanes, Real, quantile, robust};
 use crate::view::Normals;
 
-/// Pixels and directions of the first look: enough for two digits.
-const LOOK_PIXELS: usize = 400;
-const LOOK_DIRECTIONS: usize = 300;
-/// Step and half width of the first look in log units: a fifth of the step is left for the parabola.
-const LOOK_STEP: f64 = 0.05;
-const LOOK_STEPS: i32 = 60;
-/// Robust scale of the first look in log units.
-const LOOK_SCALE: f64 = 0.1;
-/// Pull towards equal medians, against a cost of at most one: it decides only where the colours do not.
-const LOOK_PULL: f64 = 1e-3;
-/// Longest step in log units: the first look is nearer than that.
+/// Most pixels, and directions on the hemisphere, that the first exposure is found from: enough for two digits.
+const MOST_PIXELS: usize = 400;
+const DIRECTIONS: usize = 300;
+/// The first exposure is the best of a grid: its step in log units (a parabola then leaves a fifth of it), and the number
+/// of steps to either side of equal medians.
+const GRID_STEP: f64 = 0.05;
+const GRID_STEPS: i32 = 60;
+/// Robust scale of the grid's objective in log units.
+const GRID_SCALE: f64 = 0.1;
+/// Weight of the squared distance from equal medians, against an objective of at most one: it decides only where the
+/// colours do not.
+const GRID_PRIOR: f64 = 1e-3;
+/// Longest step in log units: the first exposure is nearer than that.
 const LONGEST_STEP: f64 = 0.2;
-/// Residual (log units) at which a pixel has lost three quarters of its say about the exposure.
+/// Robust scale of a step: the residual, log units, at which a pixel keeps a quarter of its weight.
 const STEP_SCALE: f32 = 0.1;
-/// Pull of each pixel towards the first look, in squared log residual: a light of almost one hue leaves the exposure
+/// Weight of each pixel for the first exposure, in squared log residual: a light of almost one hue leaves the exposure
 /// almost free, and a step must not run away along it.
-const STEP_PULL: f64 = 1e-3;
+const STEP_PRIOR: f64 = 1e-3;
 
 /// The offset of log S that puts the image's colours onto those of the light.
 ///
@@ -40,34 +42,37 @@ pub fn first_exposure(light: &Light, log: [&[f32]; 3]) -> f64 {
     if usable.is_empty() {
         return 0.0;
     }
-    let stride = usable.len().div_ceil(LOOK_PIXELS);
+    let stride = usable.len().div_ceil(MOST_PIXELS);
     let colours: Vec<[f64; 3]> =
         usable.iter().step_by(stride).map(|&index| [0, 1, 2].map(|c: usize| f64::from(log[c][index]))).collect();
     let shades = projected_hemisphere(light);
     let centre = median_of_means(&colours) - median_of_means(&shades);
-    let cost = |step: f64| {
-        let offset = centre + step * LOOK_STEP;
+    let objective = |step: f64| {
+        let offset = centre + step * GRID_STEP;
         let misfit: f64 = colours.iter().map(|colour| misfit(*colour, offset, &shades)).sum();
-        misfit / colours.len() as f64 + LOOK_PULL * (step * LOOK_STEP).powi(2)
+        misfit / colours.len() as f64 + GRID_PRIOR * (step * GRID_STEP).powi(2)
     };
-    let costs: Vec<f64> = (-LOOK_STEPS..=LOOK_STEPS).map(|step| cost(f64::from(step))).collect();
-    let best = (0..costs.len()).min_by(|&a, &b| costs[a].total_cmp(&costs[b])).unwrap_or(0);
-    let vertex = if best == 0 || best + 1 == costs.len() {
-        0.0
-    } else {
-        let (before, at, after) = (costs[best - 1], costs[best], costs[best + 1]);
-        let curvature = before - 2.0 * at + after;
-        if curvature > 0.0 { 0.5 * (before - after) / curvature } else { 0.0 }
-    };
-    centre + LOOK_STEP * (best as f64 - f64::from(LOOK_STEPS) + vertex)
+    let grid: Vec<f64> = (-GRID_STEPS..=GRID_STEPS).map(|step| objective(f64::from(step))).collect();
+    let best = (0..grid.len()).min_by(|&a, &b| grid[a].total_cmp(&grid[b])).unwrap_or(0);
+    centre + GRID_STEP * (best as f64 - f64::from(GRID_STEPS) + vertex(&grid, best))
+}
+
+/// Where the parabola through a value and its neighbours has its minimum, in steps from there; zero at the ends.
+fn vertex(grid: &[f64], best: usize) -> f64 {
+    if best == 0 || best + 1 >= grid.len() {
+        return 0.0;
+    }
+    let (before, at, after) = (grid[best - 1], grid[best], grid[best + 1]);
+    let curvature = before - 2.0 * at + after;
+    if curvature > 0.0 { 0.5 * (before - after) / curvature } else { 0.0 }
 }
 
 /// Colours of directions spread over the visible hemisphere as a sphere shows them: evenly over the disc.
 fn projected_hemisphere(light: &Light) -> Vec<[f64; 3]> {
     let golden = std::f64::consts::PI * (3.0 - 5.0_f64.sqrt());
-    (0..LOOK_DIRECTIONS)
+    (0..DIRECTIONS)
         .map(|index| {
-            let radius = ((index as f64 + 0.5) / LOOK_DIRECTIONS as f64).sqrt();
+            let radius = ((index as f64 + 0.5) / DIRECTIONS as f64).sqrt();
             let (sin, cos) = (golden * index as f64).sin_cos();
             light.shade([radius * cos, radius * sin, -(1.0 - radius * radius).sqrt()])
         })
@@ -79,13 +84,14 @@ fn median_of_means(colours: &[[f64; 3]]) -> f64 {
     f64::from(quantile(&mut means, 0.5))
 }
 
+/// Robust squared distance of a colour from the nearest one of the hemisphere, between zero and one.
 fn misfit(colour: [f64; 3], offset: f64, shades: &[[f64; 3]]) -> f64 {
     let squared = |shade: &[f64; 3]| (0..3).map(|c| (colour[c] - offset - shade[c]).powi(2)).sum::<f64>();
-    let nearest = shades.iter().map(squared).fold(f64::INFINITY, f64::min) / (LOOK_SCALE * LOOK_SCALE);
-    nearest / (1.0 + nearest)
+    let nearest = shades.iter().map(squared).fold(f64::INFINITY, f64::min) / (GRID_SCALE * GRID_SCALE);
+    robust::saturated(nearest)
 }
 
-/// The change of the exposure after a solve of `normals`; `moved` is how far it is from the first look already.
+/// The change of the exposure after a solve of `normals`; `moved` is how far it is from the first one already.
 #[must_use]
 pub fn exposure_step(problem: ShadingProblem<'_>, weights: ShadingWeights, normals: &Normals, moved: f64) -> f64 {
     let polynomials = Polynomial::of(problem.light);
@@ -94,9 +100,9 @@ pub fn exposure_step(problem: ShadingProblem<'_>, weights: ShadingWeights, norma
         let pixels = Pixels::new(problem, first, weights, &polynomials);
         let four = normals.lanes(first);
         let residuals = pixels.residuals(four).map(Lanes::array);
-        let Linear { gradient, matrix, .. } = pixels.linearise(four);
+        let LinearisedPixels { gradient, matrix, .. } = pixels.linearise(four);
         let (gradient, matrix) = (gradient.map(Lanes::array), matrix.map(Lanes::array));
-        let usable = (pixels.coloured & four[2].finite()).select(Lanes::splat(1.0), Lanes::splat(0.0)).array();
+        let usable = (pixels.has_colour & four[2].finite()).select(Lanes::splat(1.0), Lanes::splat(0.0)).array();
         for lane in (0..LANES).filter(|&lane| usable[lane] > 0.0) {
             let residuals = residuals.map(|four| four[lane]);
             let squared: f32 = residuals.iter().map(|residual| residual * residual).sum();
@@ -104,28 +110,29 @@ pub fn exposure_step(problem: ShadingProblem<'_>, weights: ShadingWeights, norma
             let [xx, xy, xz, yy, yz, zz] = matrix.map(|four| f64::from(four[lane]));
             let gradient = Vector3::from(gradient.map(|four| f64::from(four[lane])));
             let normal = normals.get(first + lane);
-            let pull = polynomials.iter().fold(Vector3::zeros(), |sum, polynomial| {
+            // J^T 1, the derivative of the channels' sum by the normal.
+            let derivative = polynomials.iter().fold(Vector3::zeros(), |sum, polynomial| {
                 sum + Vector3::from(polynomial.gradient(normal)).map(f64::from)
             });
             let Some(inverse) = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz).try_inverse() else { continue };
             // Zero where the normal's own solve has ended at a minimum; at the rim it ends at the border of the visible.
-            let unsettled = pull.dot(&(inverse * gradient));
-            slope += weight * (unsettled - f64::from(residuals.iter().sum::<f32>()));
-            curvature += weight * (3.0 - (pull.transpose() * inverse * pull)[0]).max(0.0);
+            let remaining = derivative.dot(&(inverse * gradient));
+            slope += weight * (remaining - f64::from(residuals.iter().sum::<f32>()));
+            curvature += weight * (3.0 - (derivative.transpose() * inverse * derivative)[0]).max(0.0);
             count += weight;
         }
     }
     if count == 0.0 {
         return 0.0;
     }
-    ((slope - STEP_PULL * count * moved) / (curvature + STEP_PULL * count)).clamp(-LONGEST_STEP, LONGEST_STEP)
+    ((slope - STEP_PRIOR * count * moved) / (curvature + STEP_PRIOR * count)).clamp(-LONGEST_STEP, LONGEST_STEP)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::light::LightPrior;
-    use crate::shape::ShadingSolver;
+    use crate::shape::pixels::ShadingSolver;
 
     fn colours(light: &Light, offset: f64) -> (Normals, [Vec<f32>; 3]) {
         let count = 400;
@@ -156,7 +163,7 @@ mod tests {
             let log = [&log[0][..], &log[1], &log[2]];
             let first = first_exposure(&light, log);
             let mut exposure = first;
-            assert!((exposure - truth).abs() < 0.1, "first look {exposure} for {truth}");
+            assert!((exposure - truth).abs() < 0.1, "first exposure {exposure} for {truth}");
             let prior = Normals::missing(log[0].len());
             let mut normals = prior.clone();
             for _ in 0..6 {
@@ -165,7 +172,7 @@ mod tests {
                 ShadingSolver::new().solve(problem, weights, &mut normals);
                 exposure += exposure_step(problem, weights, &normals, exposure - first);
             }
-            assert!((exposure - truth).abs() < 2e-3, "settled at {exposure} for {truth}");
+            assert!((exposure - truth).abs() < 2e-3, "ended at {exposure} for {truth}");
         }
     }
 

@@ -4,4 +4,4 @@ mod exposure;
 mod shading;
 
 pub use exposure::{exposure_step, first_exposure};
-pub use shading::{ShadingProblem, ShadingSolver, ShadingWeights, Terminations};
+pub use shading::{ShadingProblem, ShadingReport, ShadingSolver, ShadingWeights};

@@ -1,17 +1,17 @@
-//! Shape from shading with a shape prior, one normal for each pixel (Eq. 6 to 9).
+//! Shape from shading with a shape prior, one normal for each pixel (Eq. 6 to 9; docs/method.md, section 5).
 //!
 //! For each pixel: min over n of
 //! sum_j (log S_j - [n;1]^T M_j [n;1])^2 + lambda_2 rho(|n - m|^2) + lambda_3 (n^T n - 1)^2,
 //! m the normal that the other view sees there, rho the identity or Geman-McClure. The paper writes the two prior
 //! terms without a square and lambda_3 linear; a least-squares solver squares them, and so do we.
 //!
-//! Three colours give up to eight solutions, so each pixel first looks over the whole visible hemisphere, then
+//! Three colours give up to eight solutions, so each pixel first compares directions all over the visible hemisphere, then
 //! descends by damped Gauss-Newton, [`LANES`] pixels side by side. The same code refines the depth view (Eq. 17, 18):
-//! its normals, turned into the colour view's frame, are pixels like any other. Limits: normals have n_z < 0, and under
-//! a light of one hue a pixel alone cannot tell its normal.
+//! its normals, rotated into the colour view's frame, are pixels like any other. Limits: normals have n_z < 0, and under
+//! a light of one hue the colours of a pixel do not determine its normal.
 
 use crate::light::{Light, Polynomial};
-use crate::numeric::{LANES, Lanes, Mask, Real, dot};
+use crate::numeric::{LANES, Lanes, Mask, Real, dot, robust};
 use crate::view::Normals;
 
 /// What surrounds the unknown normals: all slices have one length, one element for each pixel.
@@ -32,16 +32,27 @@ pub struct ShadingWeights {
     pub prior: f32,
     /// lambda_3.
     pub unit: f32,
-    /// |n - m| at which the prior has lost three quarters of its pull; `None` trusts it at any distance.
+    /// Scale of rho, the distance |n - m| at which the prior keeps a quarter of its weight; `None` for the identity.
     pub robust: Option<f32>,
 }
 
-/// Why the pixels stopped.
+/// Scale of rho: 23 degrees, more than the noise of normals, less than a wrong correspondence.
+const PRIOR_SCALE: f32 = 0.4;
+
+impl ShadingWeights {
+    /// Those of a prior whose mistakes do not count.
+    #[must_use]
+    pub const fn with_robust_prior(prior: f32, unit: f32) -> Self {
+        Self { prior, unit, robust: Some(PRIOR_SCALE) }
+    }
+}
+
+/// For how many pixels the solver ended for which reason.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Terminations {
+pub struct ShadingReport {
     /// The step fell below [`SMALLEST_STEP`].
     pub converged: usize,
-    /// No step, however short, lowered the cost.
+    /// No step, however short, lowered the objective.
     pub stalled: usize,
     /// [`MOST_STEPS`] were not enough.
     pub capped: usize,
@@ -56,9 +67,9 @@ pub struct ShadingSolver {
     shades: Vec<[f32; 3]>,
 }
 
-/// Directions of the look over the hemisphere: 5 degrees apart, well inside the basin of the local solve.
+/// Directions on the hemisphere that are compared: 5 degrees apart, well inside the basin of the local solve.
 const DIRECTIONS: usize = 600;
-/// Flattest visible normal of the look: closer to the rim a pixel is not seen.
+/// n_z of the flattest of them: nearer the rim a surface is too steep to be seen in a pixel.
 const RIM: f32 = -0.05;
 /// Trials of one pixel in one solve; the paper allows 1000 and needs 300, Gauss-Newton needs about five.
 const MOST_STEPS: usize = 30;
@@ -69,8 +80,9 @@ const SMALLEST_STEP: f32 = 1e-3;
 const FIRST_DAMPING: f32 = 1e-3;
 /// Damping beyond which no step is worth trying.
 const LARGEST_DAMPING: f32 = 1e6;
-/// Diagonal floor: a flat light must not make the system singular.
-const FLOOR: f32 = 1e-9;
+/// Added to the diagonal, in squared log residuals per squared unit of a normal: a flat light must not make the system
+/// singular.
+const LEAST_DIAGONAL: f32 = 1e-9;
 
 impl Default for ShadingSolver {
     fn default() -> Self {
@@ -102,19 +114,19 @@ impl ShadingSolver {
         problem: ShadingProblem<'_>,
         weights: ShadingWeights,
         normals: &mut Normals,
-    ) -> Terminations {
+    ) -> ShadingReport {
         let polynomials = Polynomial::of(problem.light);
         for (shade, &direction) in self.shades.iter_mut().zip(&self.directions) {
             *shade = polynomials.map(|polynomial| polynomial.shade(direction));
         }
-        let mut counts = Terminations::default();
+        let mut counts = ShadingReport::default();
         for index in (0..normals.len()).step_by(LANES) {
             let missing = Lanes::splat(f32::NAN);
             let mut solved = [missing; 3];
             // Most blocks of a raster lie off the object.
             let start = index as isize;
-            let (red, drawn) = (Lanes::load(problem.log[0], start), Lanes::load(&problem.prior.z, start));
-            if (red.finite() | drawn.finite()).any() {
+            let (red, prior) = (Lanes::load(problem.log[0], start), Lanes::load(&problem.prior.z, start));
+            if (red.finite() | prior.finite()).any() {
                 let pixels = Pixels::new(problem, index, weights, &polynomials);
                 let (start, here, known) = self.start(&pixels, normals.lanes(index));
                 solved = known.select3(normalise(pixels.descend(start, here, known, &mut counts)), solved);
@@ -127,28 +139,28 @@ impl ShadingSolver {
         counts
     }
 
-    /// The cheapest of the present normal, the prior and, where there is no present one, the hemisphere; the cost around
-    /// it; and who has one.
-    fn start(&self, pixels: &Pixels<'_>, present: [Lanes; 3]) -> ([Lanes; 3], Linear, Mask) {
+    /// The best of the present normal, the prior and, where there is no present one, the hemisphere; the objective around
+    /// it; and which pixels have one.
+    fn start(&self, pixels: &Pixels<'_>, present: [Lanes; 3]) -> ([Lanes; 3], LinearisedPixels, Mask) {
         let (zero, far) = (Lanes::splat(0.0), Lanes::splat(f32::INFINITY));
         let facing = present[2].less(zero);
         let here = pixels.linearise(present);
-        let (mut best, mut least) = (present, facing.select(here.cost, far));
-        let lost = !facing & pixels.coloured;
-        if lost.any() {
+        let (mut best, mut least) = (present, facing.select(here.objective, far));
+        let unknown = !facing & pixels.has_colour;
+        if unknown.any() {
             for (&direction, &shade) in self.directions.iter().zip(&self.shades) {
                 let [direction, shade] = [splat(direction), splat(shade)];
-                let cost = pixels.brightness(shade) + pixels.prior_cost(direction);
-                let better = lost & cost.less(least);
-                (best, least) = (better.select3(direction, best), better.select(cost, least));
+                let objective = pixels.brightness_term(shade) + pixels.prior_term(direction);
+                let better = unknown & objective.less(least);
+                (best, least) = (better.select3(direction, best), better.select(objective, least));
             }
         }
-        let drawn = pixels.drawn & pixels.prior[2].less(zero);
-        let cost = pixels.cost(pixels.prior);
-        let better = drawn & cost.less(least);
-        (best, least) = (better.select3(pixels.prior, best), better.select(cost, least));
-        let known = (pixels.coloured | drawn) & least.less(far);
-        let here = if (lost | better).any() { pixels.linearise(best) } else { here };
+        let has_prior = pixels.has_prior & pixels.prior[2].less(zero);
+        let objective = pixels.objective(pixels.prior);
+        let better = has_prior & objective.less(least);
+        (best, least) = (better.select3(pixels.prior, best), better.select(objective, least));
+        let known = (pixels.has_colour | has_prior) & least.less(far);
+        let here = if (unknown | better).any() { pixels.linearise(best) } else { here };
         (best, here, known)
     }
 }
@@ -157,15 +169,14 @@ impl ShadingSolver {
 pub(super) struct Pixels<'a> {
     log: [Lanes; 3],
     prior: [Lanes; 3],
-    /// Who has a colour, and who a prior.
-    pub(super) coloured: Mask,
-    drawn: Mask,
+    pub(super) has_colour: Mask,
+    has_prior: Mask,
     /// One with a colour, lambda_2 with a prior.
     colour_weight: Lanes,
     prior_weight: Lanes,
     unit_weight: Lanes,
     /// 1 / scale^2 of rho; zero where it is the identity.
-    sharpness: Lanes,
+    inverse_square_scale: Lanes,
     polynomials: &'a [Polynomial; 3],
 }
 
@@ -179,24 +190,24 @@ impl<'a> Pixels<'a> {
         let [red, green, blue] = problem.log;
         let start = index as isize;
         let log = [Lanes::load(red, start), Lanes::load(green, start), Lanes::load(blue, start)];
-        let coloured = log[0].finite() & log[1].finite() & log[2].finite();
+        let has_colour = log[0].finite() & log[1].finite() & log[2].finite();
         let prior = problem.prior.lanes(index);
-        let drawn = prior[2].finite();
+        let has_prior = prior[2].finite();
         let zero = Lanes::splat(0.0);
         Self {
-            log: coloured.select3(log, [zero; 3]),
-            prior: drawn.select3(prior, [zero; 3]),
-            coloured,
-            drawn,
-            colour_weight: coloured.select(Lanes::splat(1.0), zero),
-            prior_weight: drawn.select(Lanes::splat(weights.prior), zero),
+            log: has_colour.select3(log, [zero; 3]),
+            prior: has_prior.select3(prior, [zero; 3]),
+            has_colour,
+            has_prior,
+            colour_weight: has_colour.select(Lanes::splat(1.0), zero),
+            prior_weight: has_prior.select(Lanes::splat(weights.prior), zero),
             unit_weight: Lanes::splat(weights.unit),
-            sharpness: Lanes::splat(weights.robust.map_or(0.0, |scale| 1.0 / (scale * scale))),
+            inverse_square_scale: Lanes::splat(weights.robust.map_or(0.0, |scale| 1.0 / (scale * scale))),
             polynomials,
         }
     }
 
-    fn brightness(&self, shade: [Lanes; 3]) -> Lanes {
+    fn brightness_term(&self, shade: [Lanes; 3]) -> Lanes {
         self.colour_weight * squared_distance(shade, self.log)
     }
 
@@ -206,33 +217,32 @@ impl<'a> Pixels<'a> {
         [red.shade(normal) - self.log[0], green.shade(normal) - self.log[1], blue.shade(normal) - self.log[2]]
     }
 
-    fn prior_cost(&self, normal: [Lanes; 3]) -> Lanes {
+    fn prior_term(&self, normal: [Lanes; 3]) -> Lanes {
         let squared = squared_distance(normal, self.prior);
-        self.prior_weight * squared / (Lanes::splat(1.0) + squared * self.sharpness)
+        self.prior_weight * squared / (Lanes::splat(1.0) + squared * self.inverse_square_scale)
     }
 
-    fn cost(&self, normal: [Lanes; 3]) -> Lanes {
+    fn objective(&self, normal: [Lanes; 3]) -> Lanes {
         let unit = dot(normal, normal) - Lanes::splat(1.0);
         let residuals = self.residuals(normal);
-        self.colour_weight * dot(residuals, residuals) + self.prior_cost(normal) + self.unit_weight * unit * unit
+        self.colour_weight * dot(residuals, residuals) + self.prior_term(normal) + self.unit_weight * unit * unit
     }
 
-    /// The cost around a normal.
+    /// The objective around a normal.
     #[inline(never)]
-    pub(super) fn linearise(&self, normal: [Lanes; 3]) -> Linear {
+    pub(super) fn linearise(&self, normal: [Lanes; 3]) -> LinearisedPixels {
         let (zero, one, two) = (Lanes::splat(0.0), Lanes::splat(1.0), Lanes::splat(2.0));
-        let mut sums = Linear { cost: zero, gradient: [zero; 3], matrix: [zero; 6] };
+        let mut sums = LinearisedPixels { objective: zero, gradient: [zero; 3], matrix: [zero; 6] };
         let unit = dot(normal, normal) - one;
         sums.add([two * normal[0], two * normal[1], two * normal[2]], unit, self.unit_weight);
         for (polynomial, log) in self.polynomials.iter().zip(self.log) {
             let (shade, slope) = polynomial.expand(normal);
             sums.add(slope, shade - log, self.colour_weight);
         }
-        // The weight of Geman and McClure is the square of what their cost has once.
         let squared = squared_distance(normal, self.prior);
-        let trust = one / (one + squared * self.sharpness);
-        sums.cost = sums.cost + self.prior_weight * squared * trust;
-        let weight = self.prior_weight * trust * trust;
+        let attenuation = robust::attenuation(squared * self.inverse_square_scale);
+        sums.objective = sums.objective + self.prior_weight * squared * attenuation;
+        let weight = self.prior_weight * attenuation * attenuation;
         let [x, y, z] = sums.gradient;
         let off = [normal[0] - self.prior[0], normal[1] - self.prior[1], normal[2] - self.prior[2]];
         sums.gradient = [x + weight * off[0], y + weight * off[1], z + weight * off[2]];
@@ -241,9 +251,15 @@ impl<'a> Pixels<'a> {
         sums
     }
 
-    /// Damped Gauss-Newton; a step that turns the normal away from the camera counts as no descent. All go on until the
-    /// last has arrived, but only those that have not move.
-    fn descend(&self, start: [Lanes; 3], mut here: Linear, known: Mask, counts: &mut Terminations) -> [Lanes; 3] {
+    /// Damped Gauss-Newton; a step to a normal that faces away from the camera counts as no descent. The loop goes on until
+    /// the last of the four has converged, the others keep their normals.
+    fn descend(
+        &self,
+        start: [Lanes; 3],
+        mut here: LinearisedPixels,
+        known: Mask,
+        counts: &mut ShadingReport,
+    ) -> [Lanes; 3] {
         let (zero, tenth, ten) = (Lanes::splat(0.0), Lanes::splat(0.1), Lanes::splat(10.0));
         let shortest = Lanes::splat(SMALLEST_STEP * SMALLEST_STEP);
         let mut normal = start;
@@ -252,17 +268,17 @@ impl<'a> Pixels<'a> {
         for _ in 0..MOST_STEPS {
             let step = solve_damped(&here, damping);
             let trial = [normal[0] - step[0], normal[1] - step[1], normal[2] - step[2]];
-            let arrived = moving & dot(step, step).less(shortest);
-            counts.converged += arrived.count();
+            let converged = moving & dot(step, step).less(shortest);
+            counts.converged += converged.count();
             let facing = trial[2].less(zero);
-            // In f32 the last digits of the cost rise and fall: the last step is taken unseen.
-            normal = (arrived & facing).select3(trial, normal);
-            moving = moving & !arrived;
+            // In f32 the last digits of the objective are noise, so the last step is not compared.
+            normal = (converged & facing).select3(trial, normal);
+            moving = moving & !converged;
             if !moving.any() {
                 return normal;
             }
             let there = self.linearise(trial);
-            let better = moving & facing & there.cost.at_most(here.cost);
+            let better = moving & facing & there.objective.at_most(here.objective);
             normal = better.select3(trial, normal);
             here.replace(better, &there);
             damping = damping * better.select(tenth, ten);
@@ -275,28 +291,29 @@ impl<'a> Pixels<'a> {
     }
 }
 
-/// A cost around a normal: its value, half its gradient, and the Gauss-Newton matrix (xx, xy, xz, yy, yz, zz).
-pub(super) struct Linear {
-    cost: Lanes,
+/// The objective of four pixels around their normals: its value, half its gradient, and the Gauss-Newton matrix (xx, xy,
+/// xz, yy, yz, zz).
+pub(super) struct LinearisedPixels {
+    objective: Lanes,
     pub(super) gradient: [Lanes; 3],
     pub(super) matrix: [Lanes; 6],
 }
 
-impl Linear {
-    /// One residual of derivative `row`.
+impl LinearisedPixels {
+    /// Adds one residual with its derivatives by the normal.
     #[inline(always)]
     fn add(&mut self, [x, y, z]: [Lanes; 3], residual: Lanes, weight: Lanes) {
-        let (pull, by_x, by_y, by_z) = (weight * residual, weight * x, weight * y, weight * z);
-        self.cost = self.cost + pull * residual;
+        let (weighted, by_x, by_y, by_z) = (weight * residual, weight * x, weight * y, weight * z);
+        self.objective = self.objective + weighted * residual;
         let [gx, gy, gz] = self.gradient;
-        self.gradient = [gx + pull * x, gy + pull * y, gz + pull * z];
+        self.gradient = [gx + weighted * x, gy + weighted * y, gz + weighted * z];
         let [xx, xy, xz, yy, yz, zz] = self.matrix;
         self.matrix = [xx + by_x * x, xy + by_x * y, xz + by_x * z, yy + by_y * y, yz + by_y * z, zz + by_z * z];
     }
 
     #[inline(always)]
     fn replace(&mut self, chosen: Mask, other: &Self) {
-        self.cost = chosen.select(other.cost, self.cost);
+        self.objective = chosen.select(other.objective, self.objective);
         self.gradient = chosen.select3(other.gradient, self.gradient);
         for (entry, other) in self.matrix.iter_mut().zip(other.matrix) {
             *entry = chosen.select(other, *entry);
@@ -306,10 +323,10 @@ impl Linear {
 
 /// Solves (A + damping diag A) x = b for a symmetric 3x3 matrix by cofactors.
 #[inline(always)]
-fn solve_damped(linear: &Linear, damping: Lanes) -> [Lanes; 3] {
-    let Linear { matrix: [xx, xy, xz, yy, yz, zz], gradient: right, .. } = *linear;
-    let (growth, floor) = (Lanes::splat(1.0) + damping, Lanes::splat(FLOOR));
-    let (xx, yy, zz) = (xx * growth + floor, yy * growth + floor, zz * growth + floor);
+fn solve_damped(linear: &LinearisedPixels, damping: Lanes) -> [Lanes; 3] {
+    let LinearisedPixels { matrix: [xx, xy, xz, yy, yz, zz], gradient: right, .. } = *linear;
+    let (growth, least) = (Lanes::splat(1.0) + damping, Lanes::splat(LEAST_DIAGONAL));
+    let (xx, yy, zz) = (xx * growth + least, yy * growth + least, zz * growth + least);
     let cofactors = [yy * zz - yz * yz, xz * yz - xy * zz, xy * yz - xz * yy];
     let determinant = xx * cofactors[0] + xy * cofactors[1] + xz * cofactors[2];
     let inverse = Lanes::splat(1.0) / determinant;

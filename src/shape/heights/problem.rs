@@ -1,0 +1,46 @@
+//! What a surface has to explain, and how much work may be spent on it.
+
+use nalgebra::Matrix3;
+
+use crate::light::Light;
+use crate::shape::integration::Anchors;
+
+/// Robust scales of successive solves from far away, log residuals: falling, so that no pixel is discarded before the
+/// surface is near. The last one is three times the noise of an image of 2 % noise.
+pub const COLOUR_SCALES: [f32; 3] = [0.5, 0.2, LAST_SCALE];
+/// That of solves that continue an earlier one.
+pub const LAST_SCALE: f32 = 0.06;
+
+/// The data of one surface; all fields are rasters of the view, NaN where unknown.
+#[derive(Clone, Copy)]
+pub struct HeightProblem<'a> {
+    /// log S of R, G, B.
+    pub log: [&'a [f32]; 3],
+    /// The light, exposure included.
+    pub light: &'a Light,
+    /// Rotates this view's normals into the light's frame.
+    pub rotation: &'a Matrix3<f64>,
+    /// Slopes p, q of the pixels' own normals, in pixels of height per pixel. They count where the colours of a pixel
+    /// alone fix its normal.
+    pub slopes: [&'a [f32]; 2],
+    /// Weight of each pixel's own normal beyond what its colours give, in squared log residual: lambda_2 where a prior
+    /// normal stands behind it. `None`: nowhere.
+    pub normal_weight: Option<&'a [f32]>,
+    /// Heights that the surface is drawn to.
+    pub anchors: Option<Anchors<'a>>,
+    /// Scale of the robust function: the log residual at which a pixel keeps a quarter of its weight.
+    pub colour_scale: f32,
+    /// Limits of the work.
+    pub effort: Effort,
+}
+
+/// Limits of the work of a solve.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Effort {
+    /// Gauss-Newton steps.
+    pub steps: u32,
+    /// Conjugate-gradient iterations of each: few settle what is fine, many what reaches over the whole object.
+    pub iterations: u32,
+    /// Relative residual at which these end. A step is only a direction; digits are wasted on it.
+    pub tolerance: f64,
+}

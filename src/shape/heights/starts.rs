@@ -1,0 +1,160 @@
+//! Several starts at one resolution, of which the local optimum of least objective is kept (docs/method.md, section 7).
+
+use nalgebra::Matrix3;
+
+use super::domain::HeightDomain;
+use super::problem::{COLOUR_SCALES, Effort, HeightProblem, LAST_SCALE};
+use super::solver::HeightSolver;
+use crate::light::Light;
+use crate::view::{ColourView, Size};
+
+/// Work on a start at each scale.
+const FROM_START: Effort = Effort { steps: 15, iterations: 40, tolerance: 0.03 };
+/// Work on a surface that has changed resolution, or that is the best while there are starts left.
+pub const INTERMEDIATE: Effort = Effort { steps: 5, iterations: 20, tolerance: 0.03 };
+/// Work on one that every call improves a little: four iterations bring four fifths of what ten would, at any size, and
+/// the next call linearises anew.
+pub const EVERY_CALL: Effort = Effort { steps: 1, iterations: 4, tolerance: 0.1 };
+
+/// Calls after which all starts have been tried.
+pub const STARTS: u32 = 3;
+
+/// What the surface has to explain.
+#[derive(Clone, Copy)]
+pub struct ImageSurfaceProblem<'a> {
+    /// The colour view.
+    pub image: &'a ColourView,
+    /// The light, exposure included.
+    pub light: &'a Light,
+    /// Slopes of the pixels' own normals, pixels of height per pixel, NaN where unknown.
+    pub slopes: [&'a [f32]; 2],
+    /// Weight of each pixel's prior normal, squared log residual.
+    pub normal_weight: &'a [f32],
+}
+
+impl<'a> ImageSurfaceProblem<'a> {
+    /// Improves the heights `z`; their objective.
+    pub fn improve(
+        &self,
+        solver: &mut HeightSolver,
+        domain: &mut HeightDomain,
+        (colour_scale, effort): (f32, Effort),
+        z: &mut [f32],
+    ) -> f64 {
+        let problem = HeightProblem {
+            log: self.image.log.each_ref().map(Vec::as_slice),
+            light: self.light,
+            rotation: &Matrix3::identity(),
+            slopes: self.slopes,
+            normal_weight: Some(self.normal_weight),
+            anchors: None,
+            colour_scale,
+            effort,
+        };
+        solver.solve(domain, problem, z)
+    }
+}
+
+/// The starts of one level and the best of their local optima.
+pub struct MultiStart {
+    /// The integrated surface, a flat one and a dome over the mask.
+    starts: [Vec<f32>; STARTS as usize],
+    surface: Vec<f32>,
+    /// Starts that were tried, and the least objective of their optima.
+    tried: usize,
+    least: f64,
+}
+
+impl MultiStart {
+    pub fn new(size: Size, mask: &[bool]) -> Self {
+        let zeros = || vec![0.0; size.len()];
+        Self { starts: [zeros(), zeros(), dome(size, mask)], surface: zeros(), tried: 0, least: f64::INFINITY }
+    }
+
+    /// The best surface so far.
+    pub fn surface(&self) -> &[f32] {
+        &self.surface
+    }
+
+    /// Whether the next start is the integrated surface.
+    pub const fn needs_integrated(&self) -> bool {
+        self.tried == 0
+    }
+
+    /// Whether there are starts left.
+    pub const fn has_next(&self) -> bool {
+        self.tried < STARTS as usize
+    }
+
+    /// Improves the best surface so far and tries the next start, the first of which is `integrated`; whether the
+    /// surface is now another.
+    pub fn advance(
+        &mut self,
+        solver: &mut HeightSolver,
+        domain: &mut HeightDomain,
+        problem: ImageSurfaceProblem<'_>,
+        integrated: &[f32],
+    ) -> bool {
+        if self.tried > 0 {
+            let effort = if self.has_next() { INTERMEDIATE } else { EVERY_CALL };
+            self.least = problem.improve(solver, domain, (LAST_SCALE, effort), &mut self.surface);
+        }
+        let Some(start) = self.starts.get_mut(self.tried) else { return false };
+        if self.tried == 0 {
+            for (start, &height) in start.iter_mut().zip(integrated) {
+                *start = if height.is_nan() { 0.0 } else { height };
+            }
+        }
+        self.tried += 1;
+        let mut objective = f64::INFINITY;
+        for scale in COLOUR_SCALES {
+            objective = problem.improve(solver, domain, (scale, FROM_START), start);
+        }
+        let is_best = objective < self.least;
+        if is_best {
+            self.least = objective;
+            self.surface.copy_from_slice(start);
+        }
+        is_best
+    }
+}
+
+/// A dome over the mask: elliptic across the narrowest way to the border, as high as that way is long.
+fn dome(size: Size, mask: &[bool]) -> Vec<f32> {
+    let distance = distance_to_border(size, mask);
+    let radius = distance.iter().copied().fold(0.0, f32::max);
+    distance.iter().map(|&d| -(d * (2.0 * radius - d)).max(0.0).sqrt()).collect()
+}
+
+/// City-block distance of each pixel to the outside of the mask, in two sweeps.
+fn distance_to_border(size: Size, mask: &[bool]) -> Vec<f32> {
+    let mut distance: Vec<f32> = mask.iter().map(|&inside| if inside { f32::INFINITY } else { 0.0 }).collect();
+    let mut sweep = |indices: &mut dyn Iterator<Item = usize>| {
+        for index in indices {
+            let (column, row) = size.position(index);
+            let border = column == 0 || row == 0 || column + 1 == size.width || row + 1 == size.height;
+            let nearest = size.neighbours(index).map(|neighbour| distance[neighbour]).fold(f32::INFINITY, f32::min);
+            let nearest = if border { nearest.min(0.0) } else { nearest };
+            distance[index] = distance[index].min(nearest + 1.0);
+        }
+    };
+    sweep(&mut (0..size.len()));
+    sweep(&mut (0..size.len()).rev());
+    distance
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_dome_is_highest_in_the_middle_and_flat_outside() {
+        let size = Size { width: 9, height: 9 };
+        let mask: Vec<bool> = (0..81).map(|index| index / 9 > 1).collect();
+        let dome = dome(size, &mask);
+        // Seven rows and nine columns are inside; z points away from the camera.
+        let highest = dome.iter().copied().fold(0.0, f32::min);
+        assert_eq!((highest, dome[5 * 9 + 4]), (-4.0, -4.0));
+        assert!(dome[..18].iter().all(|&z| z == 0.0) && dome[18..].iter().all(|&z| z < 0.0));
+    }
+}
