@@ -1,18 +1,18 @@
-//! Consensus of correspondences over the linear model of Eq. 14: P -> A P + t with twelve parameters theta.
+//! Consensus of correspondences over the linear model of Eq. 14, an affine map P -> A P + t with twelve parameters theta
+//! (docs/method.md, section 11).
 //!
-//! Four pairs determine theta. The sample whose model explains the pairs best (residuals cut off at the threshold) is
+//! Four pairs determine theta. The sample whose model has the least objective, sum min(|r|^2, threshold^2), is
 //! improved by least squares on its inliers; A becomes a similarity as in Eq. 15, and the similarity is fitted to its
 //! own inliers until they no longer change.
 //!
-//! The linear model bends and shears, so on nearly flat parts it follows noise where a similarity would not; the pairs
-//! decide which are inliers, the similarity has the last word.
+//! The linear model shears and stretches, so on nearly flat parts it follows noise where a similarity would not: it only
+//! decides which pairs the similarity is first fitted to.
 
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
-use super::Similarity;
-use super::similarity::FEWEST_PAIRS;
+use super::similarity::{FEWEST_PAIRS, Similarity};
 use crate::check::positive;
 use crate::error::{Error, ErrorKind, Result};
 
@@ -67,7 +67,7 @@ pub struct RansacReport {
 
 /// The linear model of Eq. 14.
 #[derive(Clone, Copy)]
-struct Linear {
+struct AffineModel {
     matrix: Matrix3<f64>,
     translation: Vector3<f64>,
 }
@@ -81,31 +81,31 @@ pub fn ransac(depth: &[Vector3<f64>], image: &[Vector3<f64>], options: &RansacOp
     check(depth, image, options)?;
     let mut generator = ChaCha8Rng::seed_from_u64(options.seed);
     let cut = options.threshold * options.threshold;
-    let mut best: Option<(f64, Linear)> = None;
+    let mut best: Option<(f64, AffineModel)> = None;
     let (mut iterations, mut needed) = (0, options.most_iterations.max(1));
     while iterations < needed {
         iterations += 1;
         let sample = draw(&mut generator, depth.len() as u32);
-        let Some(linear) = Linear::through(sample.map(|k| depth[k]), sample.map(|k| image[k])) else { continue };
-        let (mut cost, mut count) = (0.0, 0_u32);
+        let Some(affine) = AffineModel::through(sample.map(|k| depth[k]), sample.map(|k| image[k])) else { continue };
+        let (mut objective, mut count) = (0.0, 0_u32);
         for (p, q) in depth.iter().zip(image) {
-            let squared = (q - linear.apply(p)).norm_squared();
-            cost += squared.min(cut);
+            let squared = (q - affine.apply(p)).norm_squared();
+            objective += squared.min(cut);
             count += u32::from(squared < cut);
         }
-        if best.as_ref().is_none_or(|(least, _)| cost < *least) {
-            best = Some((cost, linear));
+        if best.as_ref().is_none_or(|(least, _)| objective < *least) {
+            best = Some((objective, affine));
             let share = f64::from(count) / depth.len() as f64;
             needed = needed.min(samples_needed(share));
         }
     }
-    let (_, linear) = best.ok_or_else(|| degenerate("every sample is flat"))?;
-    let (linear, inliers) = refine_linear(linear, depth, image, cut)?;
-    let (pose, inliers) = refine_similarity(&linear, inliers, depth, image, options)?;
-    Ok(RansacReport { pose, matrix: linear.matrix, inliers, iterations })
+    let (_, affine) = best.ok_or_else(|| degenerate("every sample is flat"))?;
+    let (affine, inliers) = refine_affine(affine, depth, image, cut)?;
+    let (pose, inliers) = refine_similarity(&affine, inliers, depth, image, options)?;
+    Ok(RansacReport { pose, matrix: affine.matrix, inliers, iterations })
 }
 
-impl Linear {
+impl AffineModel {
     /// The model through four pairs, `None` where the depth points are flat.
     fn through(p: [Vector3<f64>; SAMPLE], q: [Vector3<f64>; SAMPLE]) -> Option<Self> {
         let from = Matrix3::from_columns(&[p[1] - p[0], p[2] - p[0], p[3] - p[0]]);
@@ -144,42 +144,42 @@ impl Linear {
 }
 
 /// Least squares on the inliers, new inliers, and so on; a round that loses inliers is the last.
-fn refine_linear(
-    mut linear: Linear,
+fn refine_affine(
+    mut affine: AffineModel,
     depth: &[Vector3<f64>],
     image: &[Vector3<f64>],
     cut: f64,
-) -> Result<(Linear, Vec<u32>)> {
-    let mut inliers = within(depth, image, cut, |point| linear.apply(point));
+) -> Result<(AffineModel, Vec<u32>)> {
+    let mut inliers = within(depth, image, cut, |point| affine.apply(point));
     for _ in 0..MOST_REFITS {
-        let Some(refit) = Linear::fit(depth, image, &inliers) else { break };
+        let Some(refit) = AffineModel::fit(depth, image, &inliers) else { break };
         let found = within(depth, image, cut, |point| refit.apply(point));
         if found.len() < inliers.len() {
             break;
         }
         let settled = found == inliers;
-        (linear, inliers) = (refit, found);
+        (affine, inliers) = (refit, found);
         if settled {
-            return Ok((linear, inliers));
+            return Ok((affine, inliers));
         }
     }
     if inliers.len() < FEWEST_PAIRS {
         return Err(degenerate("fewer than four pairs agree").value(inliers.len() as f64));
     }
-    Ok((linear, inliers))
+    Ok((affine, inliers))
 }
 
 /// The similarity nearest to A (Eq. 15), fitted to the pairs that it explains.
 fn refine_similarity(
-    linear: &Linear,
-    linear_inliers: Vec<u32>,
+    affine: &AffineModel,
+    affine_inliers: Vec<u32>,
     depth: &[Vector3<f64>],
     image: &[Vector3<f64>],
     options: &RansacOptions,
 ) -> Result<(Similarity, Vec<u32>)> {
     let cut = options.threshold * options.threshold;
-    let mut pose = Similarity::nearest(&linear.matrix, linear.translation)?;
-    let mut inliers = linear_inliers;
+    let mut pose = Similarity::nearest(&affine.matrix, affine.translation)?;
+    let mut inliers = affine_inliers;
     for _ in 0..MOST_REFITS {
         let select = |points: &[Vector3<f64>]| -> Vec<_> { inliers.iter().map(|&k| points[k as usize]).collect() };
         pose = Similarity::fit(&select(depth), &select(image), None, options.scale)?;
