@@ -59,7 +59,7 @@ pub use pose::{
     Angles, AnglesFit, Candidate, CorrespondenceProblem, Correspondences, Icp, IcpOptions, IcpProblem, IcpReport,
     IcpTermination, Information, Metric, Neighbour, Neighbours, Pair, Photometric, PhotometricOptions,
     PhotometricProblem, PhotometricReport, PhotometricTermination, Progress, RansacOptions, RansacReport, Search,
-    Similarity, Uncertainty, ransac,
+    SearchProblem, Similarity, Uncertainty, ransac,
 };
 pub use report::{Energy, Stage, Status, StepReport};
 pub use shape::{

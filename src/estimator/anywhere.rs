@@ -4,7 +4,7 @@ use super::{Estimator, Finding, Given, Joint, Look, Opening, Outcome, Task, gaug
 use crate::error::{Error, ErrorKind, Result};
 use crate::light::LightPrior;
 use crate::options::{LightSource, Options, Registration};
-use crate::pose::{ImageGrid, Known, PhotometricReport, Search, Similarity};
+use crate::pose::{ImageGrid, PhotometricReport, Search, SearchProblem, Similarity};
 use crate::report::Status;
 use crate::text::Fixed;
 use crate::view::{ColourView, DepthView};
@@ -212,7 +212,8 @@ pub(super) fn given<'a>(
 pub(super) fn search(given: &Given<'_>, grid: ImageGrid, options: &Options, joint: &Joint) -> Result<Search> {
     let Given { image, depth, light, .. } = *given;
     let (scale, unit_scale) = (gauge::held_scale(image, options), gauge::unit_scale(image, depth));
-    Search::over(grid, image, depth, joint.normals(), Known { light, scale, unit_scale, seed: options.seed })
+    let (normals, seed) = (joint.normals(), options.seed);
+    Search::with_grid(&SearchProblem { image, depth, normals, light, scale, unit_scale, seed }, grid)
 }
 
 fn nowhere(message: &'static str) -> Error {

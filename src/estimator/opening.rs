@@ -13,7 +13,7 @@
 //! same to the bit.
 
 use crate::numeric::sort_descending;
-use crate::pose::{PhotometricReport, Search, Similarity, Slots};
+use crate::pose::{PhotometricReport, Search, Similarity, TaskResults};
 
 use super::joint::{Attempt, Given, Joint};
 use super::task::{Finding, Found, Registered, Task, Work};
@@ -89,7 +89,7 @@ pub struct Opening {
     /// Standard deviation of the noise of log S.
     noise: f64,
     /// What became of each candidate; `None` where it could not be registered.
-    registrations: Slots<Option<Registered>>,
+    registrations: TaskResults<Option<Registered>>,
     /// The next candidate to count, and how many have been counted.
     next: usize,
     tried: usize,
@@ -111,7 +111,7 @@ impl Opening {
             search,
             spread: given.image.log_spread(),
             noise: given.image.log_noise(),
-            registrations: Slots::new(0),
+            registrations: TaskResults::new(0),
             next: 0,
             tried: 0,
             ends: Vec::with_capacity(MOST_TRIED),
@@ -196,7 +196,7 @@ impl Opening {
         }
         let count = self.search.candidates().len();
         if self.registrations.len() != count {
-            self.registrations = Slots::new(count);
+            self.registrations = TaskResults::new(count);
         }
         while !self.is_exhausted() {
             if is_known(&self.ends, &self.search.candidates()[self.next].pose) {

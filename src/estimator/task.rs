@@ -3,7 +3,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::pose::{Candidate, PhotometricReport, Place, SearchFinding, SearchTask, Similarity};
+use crate::pose::{Candidate, Hypothesis, PhotometricReport, SearchFinding, SearchTask, Similarity};
 
 /// A part of the opening. It depends on the pair, the options and itself alone, so that anybody who has these gets the
 /// same.
@@ -142,16 +142,16 @@ fn pose(numbers: &[f64; 13]) -> Similarity {
 }
 
 /// Size, rotation, shift, score.
-fn place_numbers(place: &Place) -> [f64; 13] {
+fn place_numbers(place: &Hypothesis) -> [f64; 13] {
     let mut numbers = [place.size; 13];
     numbers[1..10].copy_from_slice(place.rotation.as_slice());
     numbers[10..].copy_from_slice(&[f64::from(place.shift[0]), f64::from(place.shift[1]), place.score]);
     numbers
 }
 
-fn place(numbers: &[f64; 13]) -> Place {
+fn place(numbers: &[f64; 13]) -> Hypothesis {
     let [size, rotation @ .., column, row, score] = *numbers;
-    Place { rotation: Matrix3::from_column_slice(&rotation), size, shift: [column as i32, row as i32], score }
+    Hypothesis { rotation: Matrix3::from_column_slice(&rotation), size, shift: [column as i32, row as i32], score }
 }
 
 #[cfg(test)]
@@ -161,7 +161,7 @@ mod tests {
     #[test]
     fn numbers_come_back_as_they_went() {
         let place =
-            Place { rotation: Matrix3::from_fn(|i, j| (i + 3 * j) as f64), size: 0.9, shift: [-3, 4], score: 0.1 };
+            Hypothesis { rotation: Matrix3::from_fn(|i, j| (i + 3 * j) as f64), size: 0.9, shift: [-3, 4], score: 0.1 };
         let pose = Similarity { translation: Vector3::new(0.1, 0.2, 0.3), ..Similarity::identity() };
         for work in
             [Work::Search(SearchTask::Sweep(7)), Work::Search(SearchTask::Climb(3, place)), Work::Register(5, pose)]

@@ -18,7 +18,7 @@ pub use icp::{Icp, IcpOptions, IcpProblem, IcpReport, IcpTermination, Metric, Pa
 pub use neighbours::{Neighbour, Neighbours};
 pub use photometric::{Photometric, PhotometricOptions, PhotometricProblem, PhotometricReport, PhotometricTermination};
 pub use ransac::{RansacOptions, RansacReport, ransac};
-pub use search::{Candidate, Progress, Search};
-pub(crate) use search::{ImageGrid, Known, Place, SearchFinding, SearchTask, Slots};
+pub use search::{Candidate, Progress, Search, SearchProblem};
+pub(crate) use search::{Hypothesis, ImageGrid, SearchFinding, SearchTask, TaskResults};
 pub use similarity::Similarity;
 pub use uncertainty::{Information, Uncertainty};
