@@ -57,9 +57,9 @@ pub use light::{COEFFICIENTS, CoefficientMatrix, Light, LightFit, LightFitter, L
 pub use options::{LightSource, Options, Registration, Shading, Start, Weights};
 pub use pose::{
     Angles, AnglesFit, Candidate, CorrespondenceProblem, Correspondences, Icp, IcpOptions, IcpProblem, IcpReport,
-    IcpTermination, Information, Metric, Neighbour, Neighbours, Pair, Photometric, PhotometricOptions,
-    PhotometricProblem, PhotometricReport, PhotometricTermination, Progress, RansacOptions, RansacReport, Search,
-    SearchProblem, Similarity, Uncertainty, ransac,
+    IcpTermination, Information, Metric, Pair, Photometric, PhotometricOptions, PhotometricProblem, PhotometricReport,
+    PhotometricTermination, Progress, RansacOptions, RansacReport, Search, SearchProblem, Similarity, Uncertainty,
+    ransac,
 };
 pub use report::{Energy, Stage, Status, StepReport};
 pub use shape::{

@@ -7,7 +7,7 @@
 //! from shading under poor light is off by several pixels although every pose but one is worse.
 //!
 //! Of several points on one pixel the nearest to its centre is kept. Limits: the z-buffers have the views' resolution,
-//! so parts thinner than two pixels may be judged wrongly; organised clouds have no depth camera and skip the reverse
+//! so parts thinner than two pixels may be wrong; organised clouds have no depth camera and skip the reverse
 //! test.
 
 use super::similarity::Similarity;

@@ -26,7 +26,8 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::numeric::{quantile, robust};
 use crate::view::{Normals, Points, Size};
 
-/// Normals of a pair must agree to 60 degrees. Up to 90 makes no difference; 45 loses 3 of 34 far starts, 26 loses 7.
+/// Normals of a pair must agree to 60 degrees. Up to 90 makes no difference; 45 loses 3 of 34 far starts of the busts
+/// above, 26 loses 7.
 const LEAST_COSINE: f64 = 0.5;
 /// Share of the pairs that is kept, nearest first. Of 34 far starts that are registered 0.7 loses 2, and 1 loses 6, most of
 /// them with half of the columns missing.
@@ -126,7 +127,7 @@ pub struct IcpReport {
     pub iterations: u32,
     /// Why it ended.
     pub termination: IcpTermination,
-    /// What the pairs say about the pose; ask it before trusting the pose.
+    /// How well the pairs determine the pose; where it [is degenerate](Information::is_degenerate), they do not.
     pub information: Information,
 }
 
@@ -308,7 +309,7 @@ impl Icp {
         (centre, if length > 0.0 { length } else { 1.0 })
     }
 
-    /// Spread of the point-to-plane distances, and what they say about the pose.
+    /// Root mean square of the point-to-plane distances, and their information about the pose.
     fn information(&mut self, problem: &IcpProblem<'_>, pose: &Similarity, options: &IcpOptions) -> (f64, Information) {
         let options = IcpOptions { metric: Metric::PointToPlane, ..*options };
         let scale = self.robust_scale(problem, pose, &options);

@@ -1,7 +1,7 @@
 //! One Gauss-Newton step of a similarity: seven unknowns around the centre of the matched points.
 //!
 //! The step is P -> c + e^u exp([w]) (P - c) + L v with the rotation w (radians), the translation L v and the growth u
-//! (natural logarithm of the scale). c is the centroid of the points and L their root mean square distance from it, so
+//! (natural logarithm of the scale's factor). c is the centroid of the points and L their root mean square distance from it, so
 //! that all seven numbers are free of units, of like size, and hardly coupled. Residuals are divided by L as well.
 
 use nalgebra::{Rotation3, SMatrix, SVector, Vector3};
@@ -140,9 +140,9 @@ mod tests {
         for k in 0..UNKNOWNS {
             let mut step = PoseVector::zeros();
             step[k] = small;
-            let turn: Vector3<f64> = step.fixed_rows::<3>(0).into();
+            let rotation: Vector3<f64> = step.fixed_rows::<3>(0).into();
             let shift: Vector3<f64> = step.fixed_rows::<3>(3).into();
-            let arm = Rotation3::new(turn) * (point - equations.centre) * step[6].exp();
+            let arm = Rotation3::new(rotation) * (point - equations.centre) * step[SCALE].exp();
             let moved = equations.centre + arm + shift * equations.length;
             let slope = (moved - point).dot(&direction) / (small * equations.length);
             assert!((slope - row[k]).abs() < 1e-5, "{k}: {slope} {}", row[k]);

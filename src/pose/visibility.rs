@@ -1,7 +1,8 @@
 //! Which points of the depth view the colour camera sees, and where.
 //!
 //! A point is visible where it falls on the mask, faces the camera, and no other depth point hides it (z-buffer of the
-//! colour view's own resolution, so parts thinner than two pixels may be judged wrongly).
+//! colour view's own resolution, so parts thinner than two pixels may be wrong).
+//! See docs/method.md, section 12.
 
 use nalgebra::Vector3;
 

@@ -212,7 +212,7 @@ impl ReducedSystem {
         (pose.norm().is_finite() && light.norm().is_finite()).then_some(Step { pose, light })
     }
 
-    /// What points say about the pose once the light has followed: sum over channels of (Z - C D^-1 K^T) r.
+    /// The score of points, their share of the reduced system's right side: sum over channels of (Z - C D^-1 K^T) r.
     pub fn score(&self, points: &LinearisedPoints) -> Derivative {
         let [mut sum] = no_sums();
         for (channel, &residual) in points.residual.iter().enumerate() {

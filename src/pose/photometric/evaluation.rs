@@ -1,4 +1,4 @@
-//! What a registration asks of its points at one state of pose and light: the objective, the linearised equations, the
+//! Sums over the points of a registration at one state of pose and light: the objective, the linearised equations, the
 //! noise and the share of inliers.
 
 use super::equations::{Equations, LightEquations, ReducedSystem};
@@ -11,7 +11,8 @@ use crate::light::{Coefficients, basis};
 use crate::numeric::{DOUBLE_LANES, Doubles, Real, dot, quantile, robust};
 use crate::pose::increment::Frame;
 
-/// Points whose weight is below this say nothing about the noise: their normals, not the image, make their residuals.
+/// Points whose weight is below this are left out of the noise: their residuals come from their normals, not from the
+/// image.
 const LEAST_WEIGHT_FOR_NOISE: f64 = 0.25;
 /// Median of |r| over three channels of unit normal noise: the root of the median of chi squared with three degrees of
 /// freedom.

@@ -413,7 +413,7 @@ impl Photometric {
         self.weighting = Weighting { robust_scale, prior };
     }
 
-    /// What the points say at one level of the image under a state.
+    /// The points at one level of the image under a state, derivatives for least squares.
     fn evaluation<'a>(&'a self, problem: &'a PhotometricProblem<'a>, level: usize, state: &'a State) -> Evaluation<'a> {
         let model = ColourModel::new(&self.levels[level], &problem.image.camera, &state.exposed_light());
         Evaluation { problem, points: &self.points, model, state, weighting: self.weighting }

@@ -13,7 +13,7 @@ use crate::view::{Normals, Points, Size};
 
 /// Patches at most: about four for each cell of the grid that an object covers.
 const MOST_PATCHES: usize = 1000;
-/// Fewest patches that say anything about a rotation.
+/// Fewest patches that tell one rotation from another.
 const FEWEST_PATCHES: usize = 16;
 /// Mean of the unit normals of a block below which they disagree too much to have a direction.
 const LEAST_AGREEMENT: f64 = 0.3;
