@@ -71,6 +71,23 @@ struct AffineModel {
     translation: Vector3<f64>,
 }
 
+/// Points of both views side by side.
+struct Pairs<'a> {
+    depth: &'a [Vector3<f64>],
+    image: &'a [Vector3<f64>],
+    /// Squared distance below which a pair is an inlier.
+    threshold: f64,
+}
+
+impl Pairs<'_> {
+    /// Indices of the pairs that a model explains.
+    fn inliers(&self, model: impl Fn(&Vector3<f64>) -> Vector3<f64>) -> Vec<u32> {
+        let residual = |k: usize| self.image[k] - model(&self.depth[k]);
+        let is_inlier = |&k: &u32| residual(k as usize).norm_squared() < self.threshold;
+        (0..self.depth.len() as u32).filter(is_inlier).collect()
+    }
+}
+
 /// The pose that most of the pairs `depth[i]`, `image[i]` agree on. Units: those of the two views.
 ///
 /// # Errors
@@ -78,8 +95,17 @@ struct AffineModel {
 /// [`ErrorKind::Degenerate`] for fewer than four pairs, points on a plane or line, or where no four pairs agree.
 pub fn ransac(depth: &[Vector3<f64>], image: &[Vector3<f64>], options: &RansacOptions) -> Result<RansacReport> {
     check(depth, image, options)?;
+    let pairs = Pairs { depth, image, threshold: options.threshold * options.threshold };
+    let (affine, iterations) = best_of_samples(&pairs, options)?;
+    let (affine, inliers) = refine_affine(affine, &pairs)?;
+    let (pose, inliers) = refine_similarity(&affine, inliers, &pairs, options.scale)?;
+    Ok(RansacReport { pose, matrix: affine.matrix, inliers, iterations })
+}
+
+/// The model of the best sample, and how many samples were drawn.
+fn best_of_samples(pairs: &Pairs<'_>, options: &RansacOptions) -> Result<(AffineModel, u32)> {
+    let Pairs { depth, image, threshold } = *pairs;
     let mut generator = ChaCha8Rng::seed_from_u64(options.seed);
-    let cut = options.threshold * options.threshold;
     let mut best: Option<(f64, AffineModel)> = None;
     let (mut iterations, mut needed) = (0, options.most_iterations.max(1));
     while iterations < needed {
@@ -89,8 +115,8 @@ pub fn ransac(depth: &[Vector3<f64>], image: &[Vector3<f64>], options: &RansacOp
         let (mut objective, mut count) = (0.0, 0_u32);
         for (p, q) in depth.iter().zip(image) {
             let squared = (q - affine.apply(p)).norm_squared();
-            objective += squared.min(cut);
-            count += u32::from(squared < cut);
+            objective += squared.min(threshold);
+            count += u32::from(squared < threshold);
         }
         if best.as_ref().is_none_or(|(least, _)| objective < *least) {
             best = Some((objective, affine));
@@ -99,9 +125,7 @@ pub fn ransac(depth: &[Vector3<f64>], image: &[Vector3<f64>], options: &RansacOp
         }
     }
     let (_, affine) = best.ok_or_else(|| degenerate("every sample is flat"))?;
-    let (affine, inliers) = refine_affine(affine, depth, image, cut)?;
-    let (pose, inliers) = refine_similarity(&affine, inliers, depth, image, options)?;
-    Ok(RansacReport { pose, matrix: affine.matrix, inliers, iterations })
+    Ok((affine, iterations))
 }
 
 impl AffineModel {
@@ -120,9 +144,9 @@ impl AffineModel {
     }
 
     /// Least squares of Eq. 14 over the pairs with these indices.
-    fn fit(depth: &[Vector3<f64>], image: &[Vector3<f64>], indices: &[u32]) -> Option<Self> {
+    fn fit(all: &Pairs<'_>, indices: &[u32]) -> Option<Self> {
         let count = indices.len() as f64;
-        let pairs = || indices.iter().map(|&index| (depth[index as usize], image[index as usize]));
+        let pairs = || indices.iter().map(|&index| (all.depth[index as usize], all.image[index as usize]));
         let from = pairs().map(|(p, _)| p).sum::<Vector3<f64>>() / count;
         let to = pairs().map(|(_, q)| q).sum::<Vector3<f64>>() / count;
         let (mut across, mut within) = (Matrix3::zeros(), Matrix3::zeros());
@@ -143,16 +167,11 @@ impl AffineModel {
 }
 
 /// Least squares on the inliers, new inliers, and so on; a round that loses inliers is the last.
-fn refine_affine(
-    mut affine: AffineModel,
-    depth: &[Vector3<f64>],
-    image: &[Vector3<f64>],
-    cut: f64,
-) -> Result<(AffineModel, Vec<u32>)> {
-    let mut inliers = within(depth, image, cut, |point| affine.apply(point));
+fn refine_affine(mut affine: AffineModel, pairs: &Pairs<'_>) -> Result<(AffineModel, Vec<u32>)> {
+    let mut inliers = pairs.inliers(|point| affine.apply(point));
     for _ in 0..MOST_REFITS {
-        let Some(refit) = AffineModel::fit(depth, image, &inliers) else { break };
-        let found = within(depth, image, cut, |point| refit.apply(point));
+        let Some(refit) = AffineModel::fit(pairs, &inliers) else { break };
+        let found = pairs.inliers(|point| refit.apply(point));
         if found.len() < inliers.len() {
             break;
         }
@@ -172,17 +191,15 @@ fn refine_affine(
 fn refine_similarity(
     affine: &AffineModel,
     affine_inliers: Vec<u32>,
-    depth: &[Vector3<f64>],
-    image: &[Vector3<f64>],
-    options: &RansacOptions,
+    pairs: &Pairs<'_>,
+    scale: Option<f64>,
 ) -> Result<(Similarity, Vec<u32>)> {
-    let cut = options.threshold * options.threshold;
     let mut pose = Similarity::nearest(&affine.matrix, affine.translation)?;
     let mut inliers = affine_inliers;
     for _ in 0..MOST_REFITS {
         let select = |points: &[Vector3<f64>]| -> Vec<_> { inliers.iter().map(|&k| points[k as usize]).collect() };
-        pose = Similarity::fit(&select(depth), &select(image), None, options.scale)?;
-        let found = within(depth, image, cut, |point| pose.apply(*point));
+        pose = Similarity::fit(&select(pairs.depth), &select(pairs.image), None, scale)?;
+        let found = pairs.inliers(|point| pose.apply(*point));
         let settled = found == inliers;
         inliers = found;
         if settled {
@@ -193,17 +210,6 @@ fn refine_similarity(
         return Err(degenerate("fewer than four pairs agree on a similarity").value(inliers.len() as f64));
     }
     Ok((pose, inliers))
-}
-
-/// Indices of the pairs whose squared distance is below `cut`.
-fn within(
-    depth: &[Vector3<f64>],
-    image: &[Vector3<f64>],
-    cut: f64,
-    model: impl Fn(&Vector3<f64>) -> Vector3<f64>,
-) -> Vec<u32> {
-    let near = |&k: &u32| (image[k as usize] - model(&depth[k as usize])).norm_squared() < cut;
-    (0..depth.len() as u32).filter(near).collect()
 }
 
 /// Four different numbers below `count`, which is at least four.
