@@ -9,7 +9,7 @@ pub(crate) mod fourier;
 mod lanes;
 pub(crate) mod noise;
 mod order;
-#[expect(dead_code, reason = "adopted room by room")]
+#[allow(dead_code, reason = "adopted room by room")]
 pub(crate) mod robust;
 pub(crate) mod vector;
 
