@@ -62,9 +62,9 @@ pub use light::{COEFFICIENTS, CoefficientMatrix, Light, LightFit, LightFitter, L
 pub use options::{LightSource, Options, Registration, Shading, Start, Weights};
 pub use pose::{
     Angles, AnglesFit, Candidate, CorrespondenceProblem, Correspondences, Icp, IcpOptions, IcpProblem, IcpReport,
-    IcpTermination, Information, Metric, Neighbour, Neighbours, Pair, Photometric, PhotometricOptions,
-    PhotometricProblem, PhotometricReport, PhotometricTermination, Progress, RansacOptions, RansacReport, Search,
-    Similarity, Uncertainty, ransac,
+    IcpTermination, Information, Metric, Pair, Photometric, PhotometricOptions, PhotometricProblem, PhotometricReport,
+    PhotometricTermination, Progress, RansacOptions, RansacReport, Search, SearchProblem, Similarity, Uncertainty,
+    ransac,
 };
 pub use report::{Objective, Stage, Status, StepReport};
 pub use shape::{

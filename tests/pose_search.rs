@@ -1,7 +1,9 @@
 //! The opening search on scenes with a known pose: what it finds, and the laws it obeys.
 
 use bimodal_stereo::scenes::{self, Sample, SampleRequest, Scene};
-use bimodal_stereo::{Angles, Camera, ColourSamples, ColourView, DepthView, Light, Pinhole, Search, Similarity, Size};
+use bimodal_stereo::{
+    Angles, Camera, ColourSamples, ColourView, DepthView, Light, Pinhole, Search, SearchProblem, Similarity, Size,
+};
 use nalgebra::{Rotation3, Vector3};
 
 /// A refinement comes home from 15 degrees; a candidate has to be nearer.
@@ -29,7 +31,13 @@ fn search(sample: &Sample, gain: f32, light: Option<&Light>, scale: Option<f64>,
         colours.iter_mut().for_each(|colour| *colour *= gain);
     }
     let (image, depth) = (ColourView::new(image).unwrap(), DepthView::new(&sample.depth_map(), true).unwrap());
-    Search::new(&image, &depth, &depth.normals, light, scale, 1.0, seed).unwrap()
+    let problem = SearchProblem { light, scale, seed, ..problem(&image, &depth) };
+    Search::new(&problem).unwrap()
+}
+
+/// One of unknown light and free scale.
+fn problem<'a>(image: &'a ColourView, depth: &'a DepthView) -> SearchProblem<'a> {
+    SearchProblem { image, depth, normals: &depth.normals, light: None, scale: None, unit_scale: 1.0, seed: 1 }
 }
 
 fn run(mut search: Search) -> Vec<(Similarity, f64)> {
@@ -166,9 +174,12 @@ fn what_cannot_be_searched_is_refused_by_name() {
     let sample = bust(far());
     let mut image = ColourView::new(sample.colour_image()).unwrap();
     let depth = DepthView::new(&sample.depth_map(), true).unwrap();
-    assert_eq!(Search::new(&image, &depth, &depth.normals, None, Some(-1.0), 1.0, 1).err().unwrap().field(), "scale");
+    assert_eq!(
+        Search::new(&SearchProblem { scale: Some(-1.0), ..problem(&image, &depth) }).err().unwrap().field(),
+        "scale"
+    );
     for channel in &mut image.log {
         channel.iter_mut().filter(|log| !log.is_nan()).for_each(|log| *log = -1.0);
     }
-    assert_eq!(Search::new(&image, &depth, &depth.normals, None, None, 1.0, 1).err().unwrap().field(), "image");
+    assert_eq!(Search::new(&problem(&image, &depth)).err().unwrap().field(), "image");
 }

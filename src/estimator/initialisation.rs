@@ -6,7 +6,7 @@
 //! same to the bit.
 
 use crate::error::Result;
-use crate::pose::{ImageGrid, Known, PhotometricReport, Search, Similarity, Slots};
+use crate::pose::{ImageGrid, PhotometricReport, Search, SearchProblem, Similarity, TaskResults};
 
 use super::gauge;
 use super::local_optima::{Decision, LocalOptima};
@@ -41,7 +41,7 @@ pub struct Outcome {
 pub struct Initialisation {
     search: Search,
     /// What became of each candidate; `None` where it could not be registered.
-    registrations: Slots<Option<RegisteredCandidate>>,
+    registrations: TaskResults<Option<RegisteredCandidate>>,
     /// The next candidate to count, and how many have been counted.
     next: usize,
     tried: usize,
@@ -53,16 +53,23 @@ pub struct Initialisation {
 
 /// The search of a pair, by the normals that registrations go by.
 pub fn search(pair: &Pair, grid: ImageGrid, colours: &ColourRegistration) -> Result<Search> {
-    let (scale, unit_scale) = (gauge::held_scale(pair), gauge::unit_scale(pair));
-    let known = Known { light: pair.known_light(), scale, unit_scale, seed: pair.options.seed };
-    Search::over(grid, &pair.image, &pair.depth, colours.normals(), known)
+    let problem = SearchProblem {
+        image: &pair.image,
+        depth: &pair.depth,
+        normals: colours.normals(),
+        light: pair.known_light(),
+        scale: gauge::held_scale(pair),
+        unit_scale: gauge::unit_scale(pair),
+        seed: pair.options.seed,
+    };
+    Search::with_grid(&problem, grid)
 }
 
 impl Initialisation {
     pub fn new(pair: &Pair, search: Search) -> Self {
         Self {
             search,
-            registrations: Slots::new(0),
+            registrations: TaskResults::new(0),
             next: 0,
             tried: 0,
             optima: LocalOptima::new(MOST_TRIED, pair.image.log_spread(), pair.image.log_noise()),
@@ -147,7 +154,7 @@ impl Initialisation {
         }
         let count = self.search.candidates().len();
         if self.registrations.len() != count {
-            self.registrations = Slots::new(count);
+            self.registrations = TaskResults::new(count);
         }
         while !self.is_exhausted() {
             if self.optima.is_known(&self.search.candidates()[self.next].pose) {

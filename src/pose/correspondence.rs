@@ -1,22 +1,25 @@
 //! Which depth point is which image pixel (the paper's 1-pixel rule), with occlusion in both directions.
 //!
-//! A depth point is carried by the pose and projected. It corresponds to the pixel that it falls on if the pixel is on
+//! See docs/method.md, section 12. A depth point is transformed by the pose and projected. It corresponds to the pixel that it falls on if the pixel is on
 //! the mask, the point faces the colour camera, no other depth point hides it there (z-buffer), the image surface does
 //! not hide it from the depth camera (z-buffer of the reverse view), and both surfaces are close to each other. How
 //! close is the caller's threshold, or follows the robust spread of the distances, never below one pixel: a surface
 //! from shading under poor light is off by several pixels although every pose but one is worse.
 //!
 //! Of several points on one pixel the nearest to its centre is kept. Limits: the z-buffers have the views' resolution,
-//! so parts thinner than two pixels may be judged wrongly; organised clouds have no depth camera and skip the reverse
+//! so parts thinner than two pixels may be wrong; organised clouds have no depth camera and skip the reverse
 //! test.
 
-use super::visibility::{HIDDEN_BEHIND, Projection, Sight, Visibility};
+use super::similarity::Similarity;
+use super::visibility::{CloudProjection, HIDDEN_BEHIND, Visibility, VisibilityProblem};
 use crate::numeric::{LANES, quantile};
-use crate::pose::Similarity;
 use crate::view::{ColourView, DepthView, Normals, Points};
 
 /// Least accepted distance in image pixels: the paper's threshold.
 const LEAST_DISTANCE: f64 = 1.0;
+/// Tolerance of the reverse view over that of the colour view: the image surface is an estimate, and only what it hides
+/// by a clear margin is hidden.
+const REVERSE_TOLERANCE: f64 = 2.0;
 /// Inliers are within this multiple of the median distance.
 const INLIER_SPREADS: f32 = 3.0;
 
@@ -52,7 +55,8 @@ pub struct Correspondences {
     visible: Visibility,
     /// A number for each point: the z-buffer of the reverse view, then distances from the image surface.
     of_point: Vec<f32>,
-    sorted: Vec<f32>,
+    /// Scratch of the median distance.
+    distances: Vec<f32>,
     count: usize,
     inliers: f64,
 }
@@ -66,7 +70,7 @@ impl Correspondences {
             depth_of_pixel: vec![-1; pixels],
             visible: Visibility::new(pixels, points),
             of_point: vec![f32::INFINITY; points],
-            sorted: Vec::with_capacity(depth.valid()),
+            distances: Vec::with_capacity(depth.valid()),
             count: 0,
             inliers: 0.0,
         }
@@ -104,17 +108,17 @@ impl Correspondences {
     /// Finds the correspondences of a pose. Allocates nothing.
     pub fn update(&mut self, problem: &CorrespondenceProblem<'_>) {
         if !problem.depth.organised {
-            self.look_back(problem);
+            self.project_back(problem);
         }
-        self.measure_gaps(problem);
-        let median = if self.sorted.is_empty() { 0.0 } else { quantile(&mut self.sorted, 0.5) };
+        self.measure_distances(problem);
+        let median = if self.distances.is_empty() { 0.0 } else { quantile(&mut self.distances, 0.5) };
         self.accept_near(problem, median);
     }
 
-    /// The image surface before the depth camera.
-    fn look_back(&mut self, problem: &CorrespondenceProblem<'_>) {
+    /// The z-buffer of the image surface before the depth camera.
+    fn project_back(&mut self, problem: &CorrespondenceProblem<'_>) {
         let DepthView { camera, size, .. } = problem.depth;
-        let projection = Projection::new(&problem.pose.inverse(), problem.image_points, camera, *size);
+        let projection = CloudProjection::new(&problem.pose.inverse(), problem.image_points, camera, *size);
         self.of_point.fill(f32::INFINITY);
         for start in (0..problem.image_points.len()).step_by(LANES) {
             projection.enter(start, &mut self.of_point);
@@ -122,25 +126,28 @@ impl Correspondences {
     }
 
     /// Which points neither view hides, and how far they are from the image surface.
-    fn measure_gaps(&mut self, problem: &CorrespondenceProblem<'_>) {
+    fn measure_distances(&mut self, problem: &CorrespondenceProblem<'_>) {
         let CorrespondenceProblem { image, depth, pose, depth_points: points, image_points, .. } = *problem;
-        let sight = Sight { image, pose, points, normals: problem.depth_normals, pixel_length: problem.pixel_length };
-        // The image surface is an estimate: only what it hides by a clear margin is hidden.
-        let tolerance = (2.0 * HIDDEN_BEHIND * problem.pixel_length / pose.scale) as f32;
-        let Self { visible, of_point, sorted, .. } = self;
-        sorted.clear();
-        visible.update(&sight, &mut |index, pixel, [x, y, z]| {
-            if !depth.organised && points.z[index] > of_point[index] + tolerance {
-                return false;
-            }
-            let [surface, normal] = [image_points.get(pixel), problem.image_normals.get(pixel)];
-            let gap = (surface[0] - x) * normal[0] + (surface[1] - y) * normal[1] + (surface[2] - z) * normal[2];
-            of_point[index] = gap.abs();
-            if !gap.is_nan() && !depth.depth()[index].is_nan() {
-                sorted.push(gap.abs());
-            }
-            true
-        });
+        let (normals, pixel_length) = (problem.depth_normals, problem.pixel_length);
+        let tolerance = (REVERSE_TOLERANCE * HIDDEN_BEHIND * pixel_length / pose.scale) as f32;
+        let Self { visible, of_point, distances, .. } = self;
+        distances.clear();
+        visible.update(
+            &VisibilityProblem { image, pose, points, normals, pixel_length },
+            &mut |index, pixel, [x, y, z]| {
+                if !depth.organised && points.z[index] > of_point[index] + tolerance {
+                    return false;
+                }
+                let [surface, normal] = [image_points.get(pixel), problem.image_normals.get(pixel)];
+                let distance =
+                    (surface[0] - x) * normal[0] + (surface[1] - y) * normal[1] + (surface[2] - z) * normal[2];
+                of_point[index] = distance.abs();
+                if !distance.is_nan() && !depth.depth()[index].is_nan() {
+                    distances.push(distance.abs());
+                }
+                true
+            },
+        );
     }
 
     /// Drops the points that are too far from the image surface, and gives each pixel the point nearest to its centre.
@@ -156,14 +163,14 @@ impl Correspondences {
             let (column, row) = (self.visible.column[index], self.visible.row[index]);
             let Some(pixel) = problem.image.size.nearest(column, row) else { continue };
             // A point over a pixel without a surface has no distance, and stays.
-            let gap = self.of_point[index];
-            if gap > threshold {
+            let distance = self.of_point[index];
+            if distance > threshold {
                 self.visible.drop(index);
                 continue;
             }
             if !problem.depth.depth()[index].is_nan() {
                 self.count += 1;
-                self.inliers += f64::from(u8::from(gap.is_nan() || gap <= inlier));
+                self.inliers += f64::from(u8::from(distance.is_nan() || distance <= inlier));
             }
             let off = from_centre(column).powi(2) + from_centre(row).powi(2);
             let nearest = &mut self.visible.of_pixel[pixel];

@@ -1,6 +1,6 @@
 //! Iterative closest points with scale (Eq. 12): the depth view's points onto the image surface.
 //!
-//! Each iteration carries the depth points by the present pose, finds their nearest points on the image surface, and
+//! See docs/method.md, section 11. Each iteration transforms the depth points by the present pose, finds their nearest points on the image surface, and
 //! takes one damped Gauss-Newton step of the seven unknowns (six where the scale is held). Pairs whose normals
 //! disagree, that end on the border of the image surface (where everything that has no counterpart ends), that are
 //! farther apart than a distance which shrinks from iteration to iteration, or that are among the farthest, are left
@@ -11,23 +11,25 @@
 //! that fades with the distance widens the basin a little; matching in position and normal, a residual on the normals,
 //! the symmetric distance and matching both ways each made it narrower.
 //!
-//! Limits: from the identity a face comes home from 60 degrees, an almost bare ellipsoid from 30 only; beyond, it fits
-//! itself turned. [`Information`] flags many such fits, not all: they are true minima, and only a start elsewhere shows
-//! it.
+//! Limits: from the identity a face is registered from 60 degrees off, an almost bare ellipsoid from 30 only; beyond, it
+//! ends in a wrong rotation. [`Information`] flags many such ends, not all: they are local optima, and only a start
+//! elsewhere shows it.
 
 use nalgebra::Vector3;
 
-use super::increment::{Increment, NormalEquations, Square};
-use super::similarity::FEWEST_PAIRS;
-use super::{Information, Neighbours, Similarity};
+use super::increment::{Increment, NormalEquations, PoseMatrix, SCALE, clear_unknowns};
+use super::neighbours::Neighbours;
+use super::similarity::{FEWEST_PAIRS, Similarity};
+use super::uncertainty::Information;
 use crate::check::positive;
 use crate::error::{Error, ErrorKind, Result};
-use crate::numeric::quantile;
+use crate::numeric::{quantile, robust};
 use crate::view::{Normals, Points, Size};
 
-/// Normals of a pair must agree to 60 degrees. Up to 90 makes no difference; 45 loses 3 of 34 far starts, 26 loses 7.
+/// Normals of a pair must agree to 60 degrees. Up to 90 makes no difference; 45 loses 3 of 34 far starts of the busts
+/// above, 26 loses 7.
 const LEAST_COSINE: f64 = 0.5;
-/// Share of the pairs that is kept, nearest first. Of 34 far starts that come home 0.7 loses 2, and 1 loses 6, most of
+/// Share of the pairs that is kept, nearest first. Of 34 far starts that are registered 0.7 loses 2, and 1 loses 6, most of
 /// them with half of the columns missing.
 const KEPT_SHARE: f64 = 0.9;
 /// The distance shrinks by this factor from one iteration to the next.
@@ -37,15 +39,15 @@ const SHRINKING: f64 = 0.9;
 const FIRST_POINT_WEIGHT: f64 = 1.0;
 /// Damping as a share of the weight: 1e-2 slows far starts so much that 10 of 34 do not arrive, 1e-5 is no faster.
 const DAMPING: f64 = 1e-3;
-/// Residuals of three robust standard deviations (1.4826 medians) have a quarter of their weight left.
-const KERNEL_MEDIANS: f64 = 3.0 * 1.4826;
-/// Least width of that kernel as a share of the final distance: below it residuals are rounding.
-const LEAST_KERNEL: f64 = 0.02;
-/// Settled: a step that turns by less (radians), moves by less (object sizes) and grows by less. 0.0006 degrees.
+/// The robust scale in robust standard deviations of the residuals: beyond three hardly any residual is noise.
+const SCALE_IN_SIGMAS: f64 = 3.0;
+/// Least robust scale as a share of the final distance: below it residuals are rounding.
+const LEAST_SCALE: f64 = 0.02;
+/// Settled: a step that rotates by less (radians), moves by less (object sizes) and grows by less. 0.0006 degrees.
 const SETTLED: f64 = 1e-5;
 /// Scale beyond this factor of its start has run away.
 const LARGEST_GROWTH: f64 = 4.0;
-/// Residuals of neighbours that correlate more than this say no more than that they do: 40000 pixels count as one.
+/// Correlation of neighbouring residuals is capped here, where 40000 pixels count as one.
 const LARGEST_CORRELATION: f64 = 0.99;
 /// More depth points than this are thinned out evenly: their number no longer limits the accuracy, but the time.
 const MOST_POINTS: usize = 5_000;
@@ -125,7 +127,7 @@ pub struct IcpReport {
     pub iterations: u32,
     /// Why it ended.
     pub termination: IcpTermination,
-    /// What the pairs say about the pose; ask it before trusting the pose.
+    /// How well the pairs determine the pose; where it [is degenerate](Information::is_degenerate), they do not.
     pub information: Information,
 }
 
@@ -146,7 +148,8 @@ pub struct Icp {
     neighbours: Neighbours,
     sources: Vec<u32>,
     pairs: Vec<Pair>,
-    gaps: Vec<f32>,
+    /// Scratch of quantiles.
+    distances: Vec<f32>,
 }
 
 impl Icp {
@@ -211,7 +214,7 @@ impl Icp {
             distances.shrink();
         }
         self.pair(problem, &pose, distances.last)?;
-        let (rms, information) = self.inform(problem, &pose, options);
+        let (rms, information) = self.information(problem, &pose, options);
         Ok(IcpReport { pose, rms, pairs: self.pairs.len(), iterations, termination, information })
     }
 
@@ -251,9 +254,9 @@ impl Icp {
         }
         let count = self.pairs.len();
         let kept = ((KEPT_SHARE * count as f64).ceil() as usize).clamp(FEWEST_PAIRS, count);
-        self.gaps.clear();
-        self.gaps.extend(self.pairs.iter().map(|pair| pair.distance));
-        let farthest = quantile(&mut self.gaps, (kept - 1) as f64 / (count - 1) as f64);
+        self.distances.clear();
+        self.distances.extend(self.pairs.iter().map(|pair| pair.distance));
+        let farthest = quantile(&mut self.distances, (kept - 1) as f64 / (count - 1) as f64);
         self.pairs.retain(|pair| pair.distance <= farthest);
         Ok(())
     }
@@ -266,37 +269,37 @@ impl Icp {
         options: &IcpOptions,
         point_weight: f64,
     ) -> Result<Increment> {
-        let kernel = self.kernel(problem, pose, options);
+        let scale = self.robust_scale(problem, pose, options);
         let (centre, length) = self.frame(problem, pose);
         let mut equations = NormalEquations::new(centre, length);
         for pair in &self.pairs {
-            let Match { point, gap, normal, .. } = Match::new(problem, pose, pair);
-            let residual = residual(options.metric, &gap, &normal);
-            let weight = (1.0 + (residual / kernel).powi(2)).powi(-2);
+            let Match { point, difference, normal, .. } = Match::new(problem, pose, pair);
+            let residual = residual(options.metric, &difference, &normal);
+            let weight = (1.0 + (residual / scale).powi(2)).powi(-2);
             if options.metric == Metric::PointToPlane {
                 equations.add(&point, &normal, residual, weight);
             }
             if point_weight > 0.0 {
                 for axis in [Vector3::x(), Vector3::y(), Vector3::z()] {
-                    equations.add(&point, &axis, gap.dot(&axis), weight * point_weight);
+                    equations.add(&point, &axis, difference.dot(&axis), weight * point_weight);
                 }
             }
         }
         equations.solve(DAMPING, options.scale_is_held).ok_or_else(|| degenerate("the pairs determine no step"))
     }
 
-    /// Width of the robust kernel: three robust standard deviations of the residuals.
-    fn kernel(&mut self, problem: &IcpProblem<'_>, pose: &Similarity, options: &IcpOptions) -> f64 {
-        self.gaps.clear();
-        self.gaps.extend(self.pairs.iter().map(|pair| {
+    /// The scale of the robust function.
+    fn robust_scale(&mut self, problem: &IcpProblem<'_>, pose: &Similarity, options: &IcpOptions) -> f64 {
+        self.distances.clear();
+        self.distances.extend(self.pairs.iter().map(|pair| {
             let found = Match::new(problem, pose, pair);
-            residual(options.metric, &found.gap, &found.normal).abs() as f32
+            residual(options.metric, &found.difference, &found.normal).abs() as f32
         }));
-        let median = quantile(&mut self.gaps, 0.5);
-        (KERNEL_MEDIANS * f64::from(median)).max(LEAST_KERNEL * options.final_distance)
+        let median = quantile(&mut self.distances, 0.5);
+        (SCALE_IN_SIGMAS * robust::SIGMA_OF_MEDIAN * f64::from(median)).max(LEAST_SCALE * options.final_distance)
     }
 
-    /// Centroid of the carried points of the pairs and their root mean square distance from it.
+    /// Centroid of the transformed points of the pairs and their root mean square distance from it.
     fn frame(&self, problem: &IcpProblem<'_>, pose: &Similarity) -> (Vector3<f64>, f64) {
         let points = || self.pairs.iter().map(|pair| pose.apply(vector(problem.depth_points, pair.depth)));
         let count = self.pairs.len() as f64;
@@ -306,30 +309,29 @@ impl Icp {
         (centre, if length > 0.0 { length } else { 1.0 })
     }
 
-    /// Spread of the point-to-plane distances, and what they say about the pose.
-    fn inform(&mut self, problem: &IcpProblem<'_>, pose: &Similarity, options: &IcpOptions) -> (f64, Information) {
+    /// Root mean square of the point-to-plane distances, and their information about the pose.
+    fn information(&mut self, problem: &IcpProblem<'_>, pose: &Similarity, options: &IcpOptions) -> (f64, Information) {
         let options = IcpOptions { metric: Metric::PointToPlane, ..*options };
-        let kernel = self.kernel(problem, pose, &options);
+        let scale = self.robust_scale(problem, pose, &options);
         let (centre, length) = self.frame(problem, pose);
         let equations = NormalEquations::new(centre, length);
-        let (mut matrix, mut weights, mut squares, mut noise) = (Square::zeros(), 0.0, 0.0, 0.0);
+        let (mut matrix, mut weights, mut squares, mut noise) = (PoseMatrix::zeros(), 0.0, 0.0, 0.0);
         let (mut before, mut products) = (0.0, 0.0);
         for pair in &self.pairs {
-            let Match { point, gap, normal, carried } = Match::new(problem, pose, pair);
-            let residual = gap.dot(&normal);
-            let weight = (1.0 + (residual / kernel).powi(2)).powi(-2);
-            let (row, other) = (equations.row(&point, &normal), equations.row(&point, &carried));
+            let Match { point, difference, normal, depth_normal } = Match::new(problem, pose, pair);
+            let residual = difference.dot(&normal);
+            let weight = (1.0 + (residual / scale).powi(2)).powi(-2);
+            let (row, other) = (equations.row(&point, &normal), equations.row(&point, &depth_normal));
             matrix.ger(0.5 * weight, &row, &other, 1.0);
             matrix.ger(0.5 * weight, &other, &row, 1.0);
             weights += weight;
             squares += weight * residual * residual;
             products += before * weight.sqrt() * residual;
             before = weight.sqrt() * residual;
-            noise += weight * (normal - carried).norm_squared();
+            noise += weight * (normal - depth_normal).norm_squared();
         }
         if options.scale_is_held {
-            matrix.row_mut(6).fill(0.0);
-            matrix.column_mut(6).fill(0.0);
+            clear_unknowns(&mut matrix, &std::array::from_fn(|k| k == SCALE));
         }
         let information = Information {
             matrix,
@@ -347,14 +349,14 @@ impl Icp {
 
 /// One pair under a pose, colour view's frame.
 struct Match {
-    /// The carried depth point.
+    /// The transformed depth point.
     point: Vector3<f64>,
     /// From it to the image point.
-    gap: Vector3<f64>,
+    difference: Vector3<f64>,
     /// Normal of the image surface.
     normal: Vector3<f64>,
-    /// Carried normal of the depth view.
-    carried: Vector3<f64>,
+    /// Rotated normal of the depth view.
+    depth_normal: Vector3<f64>,
 }
 
 impl Match {
@@ -362,17 +364,17 @@ impl Match {
         let point = pose.apply(vector(problem.depth_points, pair.depth));
         Self {
             point,
-            gap: vector(problem.image_points, pair.image) - point,
+            difference: vector(problem.image_points, pair.image) - point,
             normal: vector(problem.image_normals, pair.image),
-            carried: pose.rotation * vector(problem.depth_normals, pair.depth),
+            depth_normal: pose.rotation * vector(problem.depth_normals, pair.depth),
         }
     }
 }
 
-fn residual(metric: Metric, gap: &Vector3<f64>, normal: &Vector3<f64>) -> f64 {
+fn residual(metric: Metric, difference: &Vector3<f64>, normal: &Vector3<f64>) -> f64 {
     match metric {
-        Metric::PointToPoint => gap.norm(),
-        Metric::PointToPlane => gap.dot(normal),
+        Metric::PointToPoint => difference.norm(),
+        Metric::PointToPlane => difference.dot(normal),
     }
 }
 

@@ -1,24 +1,27 @@
 //! One Gauss-Newton step of a similarity: seven unknowns around the centre of the matched points.
 //!
 //! The step is P -> c + e^u exp([w]) (P - c) + L v with the rotation w (radians), the translation L v and the growth u
-//! (natural logarithm of the scale). c is the centroid of the points and L their root mean square distance from it, so
+//! (natural logarithm of the scale's factor). c is the centroid of the points and L their root mean square distance from it, so
 //! that all seven numbers are free of units, of like size, and hardly coupled. Residuals are divided by L as well.
 
 use nalgebra::{Rotation3, SMatrix, SVector, Vector3};
 
-use super::Similarity;
+use super::similarity::Similarity;
 
-/// Largest turn of one step in radians: beyond it the linear model of a rotation is off by more than 2 %.
-const LARGEST_TURN: f64 = 0.2;
+/// Largest rotation of one step in radians: beyond it the linear model of a rotation is off by more than 2 %.
+const LARGEST_ROTATION: f64 = 0.2;
 /// Largest |u| of one step, for the same reason.
 const LARGEST_GROWTH: f64 = 0.1;
 
 /// The unknowns in the order w (3), v (3), u.
 pub(crate) const UNKNOWNS: usize = 7;
-/// A symmetric matrix over the unknowns.
-pub(crate) type Square = SMatrix<f64, UNKNOWNS, UNKNOWNS>;
-/// A row of the Jacobian, or a step.
-pub(crate) type Row = SVector<f64, UNKNOWNS>;
+/// Indices of the translation along z and of the scale among them.
+pub(crate) const TRANSLATION_Z: usize = 5;
+pub(crate) const SCALE: usize = 6;
+/// A matrix over the unknowns.
+pub(crate) type PoseMatrix = SMatrix<f64, UNKNOWNS, UNKNOWNS>;
+/// A number for each unknown: a row of a Jacobian, a gradient, a step.
+pub(crate) type PoseVector = SVector<f64, UNKNOWNS>;
 
 /// c and L: where the unknowns are zero, and their unit of length.
 #[derive(Clone, Copy, Debug)]
@@ -29,23 +32,37 @@ pub(crate) struct Frame {
 
 impl Frame {
     /// The similarity of a step, shortened to where it is still near linear.
-    pub fn change(&self, step: &Row) -> Similarity {
-        let turn: Vector3<f64> = step.fixed_rows::<3>(0).into();
+    pub fn change(&self, step: &PoseVector) -> Similarity {
+        let rotation: Vector3<f64> = step.fixed_rows::<3>(0).into();
         let shift: Vector3<f64> = step.fixed_rows::<3>(3).into();
-        let share = (LARGEST_TURN / turn.norm()).min(LARGEST_GROWTH / step[6].abs()).min(1.0);
-        let rotation = Rotation3::new(turn * share).into_inner();
-        let scale = (step[6] * share).exp();
+        let share = (LARGEST_ROTATION / rotation.norm()).min(LARGEST_GROWTH / step[SCALE].abs()).min(1.0);
+        let rotation = Rotation3::new(rotation * share).into_inner();
+        let scale = (step[SCALE] * share).exp();
         let translation = self.centre + shift * (share * self.length) - scale * (rotation * self.centre);
         Similarity { scale, rotation, translation }
     }
 }
 
-/// Sums of one step.
+/// Clears rows and columns of the unknowns that are `held`.
+pub(crate) fn clear_unknowns(matrix: &mut PoseMatrix, held: &[bool; UNKNOWNS]) {
+    for k in (0..UNKNOWNS).filter(|&k| held[k]) {
+        matrix.row_mut(k).fill(0.0);
+        matrix.column_mut(k).fill(0.0);
+    }
+}
+
+/// Clears them but for a one on the diagonal, so that they stay where they are and the matrix can be inverted.
+pub(crate) fn fix_unknowns(matrix: &mut PoseMatrix, held: &[bool; UNKNOWNS]) {
+    clear_unknowns(matrix, held);
+    (0..UNKNOWNS).filter(|&k| held[k]).for_each(|k| matrix[(k, k)] = 1.0);
+}
+
+/// Sums of one step over point-to-plane or point-to-point residuals.
 pub(crate) struct NormalEquations {
     centre: Vector3<f64>,
     length: f64,
-    matrix: Square,
-    gradient: Row,
+    matrix: PoseMatrix,
+    gradient: PoseVector,
     weight: f64,
 }
 
@@ -53,27 +70,35 @@ pub(crate) struct NormalEquations {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Increment {
     pub change: Similarity,
-    /// The largest of the turn in radians, the shift in object sizes and the growth.
+    /// The largest of the rotation in radians, the shift in object sizes and the growth of the scale.
     pub size: f64,
 }
 
 impl NormalEquations {
     pub fn new(centre: Vector3<f64>, length: f64) -> Self {
-        Self { centre, length, matrix: Square::zeros(), gradient: Row::zeros(), weight: 0.0 }
+        Self { centre, length, matrix: PoseMatrix::zeros(), gradient: PoseVector::zeros(), weight: 0.0 }
     }
 
     /// How far a point moves along `direction` with each unknown, in units of L.
-    pub fn row(&self, point: &Vector3<f64>, direction: &Vector3<f64>) -> Row {
+    pub fn row(&self, point: &Vector3<f64>, direction: &Vector3<f64>) -> PoseVector {
         let arm = (point - self.centre) / self.length;
-        let turn = arm.cross(direction);
-        Row::from([turn.x, turn.y, turn.z, direction.x, direction.y, direction.z, arm.dot(direction)])
+        let by_rotation = arm.cross(direction);
+        PoseVector::from([
+            by_rotation.x,
+            by_rotation.y,
+            by_rotation.z,
+            direction.x,
+            direction.y,
+            direction.z,
+            arm.dot(direction),
+        ])
     }
 
-    /// A residual `gap` along the unit vector `direction`: what `point` still has to move.
-    pub fn add(&mut self, point: &Vector3<f64>, direction: &Vector3<f64>, gap: f64, weight: f64) {
+    /// Enters a residual: what `point` still has to move along the unit vector `direction`.
+    pub fn add(&mut self, point: &Vector3<f64>, direction: &Vector3<f64>, residual: f64, weight: f64) {
         let row = self.row(point, direction);
         self.matrix.syger(weight, &row, &row, 1.0);
-        self.gradient.axpy(weight * gap / self.length, &row, 1.0);
+        self.gradient.axpy(weight * residual / self.length, &row, 1.0);
         self.weight += weight;
     }
 
@@ -84,21 +109,20 @@ impl NormalEquations {
         let mut gradient = self.gradient;
         matrix.fill_upper_triangle_with_lower_triangle();
         if scale_is_held {
-            matrix.row_mut(UNKNOWNS - 1).fill(0.0);
-            matrix.column_mut(UNKNOWNS - 1).fill(0.0);
-            gradient[UNKNOWNS - 1] = 0.0;
+            clear_unknowns(&mut matrix, &std::array::from_fn(|k| k == SCALE));
+            gradient[SCALE] = 0.0;
         }
         for k in 0..UNKNOWNS {
             matrix[(k, k)] += damping * self.weight;
         }
         let step = matrix.cholesky()?.solve(&gradient);
-        let turn: Vector3<f64> = step.fixed_rows::<3>(0).into();
+        let rotation: Vector3<f64> = step.fixed_rows::<3>(0).into();
         let shift: Vector3<f64> = step.fixed_rows::<3>(3).into();
         if !step.norm().is_finite() {
             return None;
         }
         let change = Frame { centre: self.centre, length: self.length }.change(&step);
-        let size = turn.norm().max(shift.norm()).max(step[6].abs());
+        let size = rotation.norm().max(shift.norm()).max(step[SCALE].abs());
         Some(Increment { change, size })
     }
 }
@@ -114,11 +138,11 @@ mod tests {
         let row = equations.row(&point, &direction);
         let small = 1e-6;
         for k in 0..UNKNOWNS {
-            let mut step = Row::zeros();
+            let mut step = PoseVector::zeros();
             step[k] = small;
-            let turn: Vector3<f64> = step.fixed_rows::<3>(0).into();
+            let rotation: Vector3<f64> = step.fixed_rows::<3>(0).into();
             let shift: Vector3<f64> = step.fixed_rows::<3>(3).into();
-            let arm = Rotation3::new(turn) * (point - equations.centre) * step[6].exp();
+            let arm = Rotation3::new(rotation) * (point - equations.centre) * step[SCALE].exp();
             let moved = equations.centre + arm + shift * equations.length;
             let slope = (moved - point).dot(&direction) / (small * equations.length);
             assert!((slope - row[k]).abs() < 1e-5, "{k}: {slope} {}", row[k]);

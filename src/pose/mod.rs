@@ -1,4 +1,20 @@
-//! The pose between both views (Eq. 12 to 16).
+//! The pose between both views: P_colour = s R P_depth + t (docs/method.md, sections 9 to 12 and 14).
+//!
+//! | file | what it holds | objective | unknowns | solver |
+//! |---|---|---|---|---|
+//! | `search/` | initialisation, before Algorithm 1: poses worth refining when nothing is known | log likelihood over a constant colour | rotation, scale, translation in the image | sweep over all rotations, correlation by FFT, local ascent |
+//! | `photometric/` | registration by colours, beyond the paper | robust residuals of log colours + prior of the light | pose and light | Gauss-Newton, the light eliminated; instrumental variables |
+//! | `icp` | Eq. 12: the depth points onto the image surface | robust point-to-plane distance | pose | nearest neighbours and Gauss-Newton, alternating |
+//! | `ransac` | Eq. 13 and 14: consensus of pairs over the linear model P -> A P + t | truncated squared distance | the twelve numbers theta | samples of four pairs, then linear least squares |
+//! | `similarity` | Eq. 15: the similarity nearest to A; Eq. 12 for known pairs, in closed form | least squares | s, R, t | Horn's quaternion |
+//! | `angles` | Eq. 16: the angles of a rotation | | alpha, beta, gamma | closed form |
+//! | `correspondence`, `visibility` | which depth point is which pixel, with occlusion in both directions: the 1-pixel rule | | | z-buffers |
+//! | `increment` | a Gauss-Newton step of a similarity: seven unknowns | | | |
+//! | `uncertainty` | one sigma of each number of a pose, from the information of matched surfaces | | | |
+//! | `neighbours` | nearest points | | | k-d tree |
+//!
+//! The error of Eq. 20, the spectral norm of R - R_g, is 2 sin(a / 2) of the angle a that [`Similarity::degrees_to`]
+//! returns. The loop that calls these stages is `estimator`.
 
 mod angles;
 mod correspondence;
@@ -15,10 +31,9 @@ mod visibility;
 pub use angles::{Angles, AnglesFit};
 pub use correspondence::{CorrespondenceProblem, Correspondences};
 pub use icp::{Icp, IcpOptions, IcpProblem, IcpReport, IcpTermination, Metric, Pair};
-pub use neighbours::{Neighbour, Neighbours};
 pub use photometric::{Photometric, PhotometricOptions, PhotometricProblem, PhotometricReport, PhotometricTermination};
 pub use ransac::{RansacOptions, RansacReport, ransac};
-pub use search::{Candidate, Progress, Search};
-pub(crate) use search::{ImageGrid, Known, Place, SearchFinding, SearchTask, Slots};
+pub use search::{Candidate, Progress, Search, SearchProblem};
+pub(crate) use search::{Hypothesis, ImageGrid, SearchFinding, SearchTask, TaskResults};
 pub use similarity::Similarity;
 pub use uncertainty::{Information, Uncertainty};

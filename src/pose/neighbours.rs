@@ -1,4 +1,4 @@
-//! Nearest points of a surface: a thin guard around kiddo's tree.
+//! Nearest points of a surface, by kiddo's k-d tree.
 
 use kiddo::{ImmutableKdTree, SquaredEuclidean};
 
@@ -7,13 +7,13 @@ use crate::view::Points;
 /// Coordinates beyond this have squared distances that overflow f32; such points count as missing.
 const LARGEST_COORDINATE: f32 = 1e15;
 
-/// The points of one surface, ready to be asked for the nearest one.
+/// The points of one surface in a tree.
 ///
 /// The immutable tree is the one used: it is built in one go for each new surface, takes any number of identical points
 /// (the mutable one panics beyond 32) and answers faster. NaN makes either tree panic, so missing points never enter it
 /// and a missing query has no neighbour.
 #[derive(Default)]
-pub struct Neighbours {
+pub(super) struct Neighbours {
     tree: Option<ImmutableKdTree<f32, 3>>,
     /// Coordinates of the valid points in the order of `original`; kept to spare the next build its allocation.
     points: Vec<[f32; 3]>,
@@ -23,7 +23,7 @@ pub struct Neighbours {
 
 /// The nearest point to a query.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Neighbour {
+pub(super) struct Neighbour {
     /// Index in the points that were given, missing ones counted.
     pub index: usize,
     /// Distance in the points' unit.
@@ -53,12 +53,6 @@ impl Neighbours {
     #[must_use]
     pub fn len(&self) -> usize {
         self.points.len()
-    }
-
-    /// Whether no point is held.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.points.is_empty()
     }
 
     /// The nearest point to `query` that is no farther than `distance`; `None` too where the query is missing.
@@ -107,7 +101,7 @@ mod tests {
         neighbours.rebuild(&points([[1.0, 2.0, 3.0]; 1000]), |_| true);
         assert_eq!(neighbours.nearest([1.0, 2.0, 3.0], 0.0).map(|found| found.distance), Some(0.0));
         neighbours.rebuild(&points([]), |_| true);
-        assert!(neighbours.is_empty());
+        assert_eq!(neighbours.len(), 0);
         assert_eq!(neighbours.nearest([1.0, 2.0, 3.0], 1.0), None);
     }
 

@@ -1,18 +1,18 @@
-//! Consensus of correspondences over the linear model of Eq. 14: P -> A P + t with twelve parameters theta.
+//! Consensus of correspondences over the linear model of Eq. 14, an affine map P -> A P + t with twelve parameters theta
+//! (docs/method.md, section 11).
 //!
-//! Four pairs determine theta. The sample whose model explains the pairs best (residuals cut off at the threshold) is
+//! Four pairs determine theta. The sample whose model has the least objective, sum min(|r|^2, threshold^2), is
 //! improved by least squares on its inliers; A becomes a similarity as in Eq. 15, and the similarity is fitted to its
 //! own inliers until they no longer change.
 //!
-//! The linear model bends and shears, so on nearly flat parts it follows noise where a similarity would not; the pairs
-//! decide which are inliers, the similarity has the last word.
+//! The linear model shears and stretches, so on nearly flat parts it follows noise where a similarity would not: it only
+//! decides which pairs the similarity is first fitted to.
 
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
-use super::Similarity;
-use super::similarity::FEWEST_PAIRS;
+use super::similarity::{FEWEST_PAIRS, Similarity};
 use crate::check::positive;
 use crate::error::{Error, ErrorKind, Result};
 
@@ -56,8 +56,7 @@ impl Default for RansacOptions {
 pub struct RansacReport {
     /// The similarity fitted to its own inliers.
     pub pose: Similarity,
-    /// A of Eq. 14 on the inliers of the linear model; [`Angles::fit`](super::Angles::fit) reads scale and angles off
-    /// it.
+    /// A of Eq. 14 on the inliers of the linear model.
     pub matrix: Matrix3<f64>,
     /// Indices of the pairs that the similarity explains, ascending.
     pub inliers: Vec<u32>,
@@ -67,9 +66,26 @@ pub struct RansacReport {
 
 /// The linear model of Eq. 14.
 #[derive(Clone, Copy)]
-struct Linear {
+struct AffineModel {
     matrix: Matrix3<f64>,
     translation: Vector3<f64>,
+}
+
+/// Points of both views side by side.
+struct Pairs<'a> {
+    depth: &'a [Vector3<f64>],
+    image: &'a [Vector3<f64>],
+    /// Squared distance below which a pair is an inlier.
+    threshold: f64,
+}
+
+impl Pairs<'_> {
+    /// Indices of the pairs that a model explains.
+    fn inliers(&self, model: impl Fn(&Vector3<f64>) -> Vector3<f64>) -> Vec<u32> {
+        let residual = |k: usize| self.image[k] - model(&self.depth[k]);
+        let is_inlier = |&k: &u32| residual(k as usize).norm_squared() < self.threshold;
+        (0..self.depth.len() as u32).filter(is_inlier).collect()
+    }
 }
 
 /// The pose that most of the pairs `depth[i]`, `image[i]` agree on. Units: those of the two views.
@@ -79,33 +95,40 @@ struct Linear {
 /// [`ErrorKind::Degenerate`] for fewer than four pairs, points on a plane or line, or where no four pairs agree.
 pub fn ransac(depth: &[Vector3<f64>], image: &[Vector3<f64>], options: &RansacOptions) -> Result<RansacReport> {
     check(depth, image, options)?;
+    let pairs = Pairs { depth, image, threshold: options.threshold * options.threshold };
+    let (affine, iterations) = best_of_samples(&pairs, options)?;
+    let (affine, inliers) = refine_affine(affine, &pairs)?;
+    let (pose, inliers) = refine_similarity(&affine, inliers, &pairs, options.scale)?;
+    Ok(RansacReport { pose, matrix: affine.matrix, inliers, iterations })
+}
+
+/// The model of the best sample, and how many samples were drawn.
+fn best_of_samples(pairs: &Pairs<'_>, options: &RansacOptions) -> Result<(AffineModel, u32)> {
+    let Pairs { depth, image, threshold } = *pairs;
     let mut generator = ChaCha8Rng::seed_from_u64(options.seed);
-    let cut = options.threshold * options.threshold;
-    let mut best: Option<(f64, Linear)> = None;
+    let mut best: Option<(f64, AffineModel)> = None;
     let (mut iterations, mut needed) = (0, options.most_iterations.max(1));
     while iterations < needed {
         iterations += 1;
         let sample = draw(&mut generator, depth.len() as u32);
-        let Some(linear) = Linear::through(sample.map(|k| depth[k]), sample.map(|k| image[k])) else { continue };
-        let (mut cost, mut count) = (0.0, 0_u32);
+        let Some(affine) = AffineModel::through(sample.map(|k| depth[k]), sample.map(|k| image[k])) else { continue };
+        let (mut objective, mut count) = (0.0, 0_u32);
         for (p, q) in depth.iter().zip(image) {
-            let squared = (q - linear.apply(p)).norm_squared();
-            cost += squared.min(cut);
-            count += u32::from(squared < cut);
+            let squared = (q - affine.apply(p)).norm_squared();
+            objective += squared.min(threshold);
+            count += u32::from(squared < threshold);
         }
-        if best.as_ref().is_none_or(|(least, _)| cost < *least) {
-            best = Some((cost, linear));
+        if best.as_ref().is_none_or(|(least, _)| objective < *least) {
+            best = Some((objective, affine));
             let share = f64::from(count) / depth.len() as f64;
             needed = needed.min(samples_needed(share));
         }
     }
-    let (_, linear) = best.ok_or_else(|| degenerate("every sample is flat"))?;
-    let (linear, inliers) = refine_linear(linear, depth, image, cut)?;
-    let (pose, inliers) = refine_similarity(&linear, inliers, depth, image, options)?;
-    Ok(RansacReport { pose, matrix: linear.matrix, inliers, iterations })
+    let (_, affine) = best.ok_or_else(|| degenerate("every sample is flat"))?;
+    Ok((affine, iterations))
 }
 
-impl Linear {
+impl AffineModel {
     /// The model through four pairs, `None` where the depth points are flat.
     fn through(p: [Vector3<f64>; SAMPLE], q: [Vector3<f64>; SAMPLE]) -> Option<Self> {
         let from = Matrix3::from_columns(&[p[1] - p[0], p[2] - p[0], p[3] - p[0]]);
@@ -121,9 +144,9 @@ impl Linear {
     }
 
     /// Least squares of Eq. 14 over the pairs with these indices.
-    fn fit(depth: &[Vector3<f64>], image: &[Vector3<f64>], indices: &[u32]) -> Option<Self> {
+    fn fit(all: &Pairs<'_>, indices: &[u32]) -> Option<Self> {
         let count = indices.len() as f64;
-        let pairs = || indices.iter().map(|&index| (depth[index as usize], image[index as usize]));
+        let pairs = || indices.iter().map(|&index| (all.depth[index as usize], all.image[index as usize]));
         let from = pairs().map(|(p, _)| p).sum::<Vector3<f64>>() / count;
         let to = pairs().map(|(_, q)| q).sum::<Vector3<f64>>() / count;
         let (mut across, mut within) = (Matrix3::zeros(), Matrix3::zeros());
@@ -144,46 +167,39 @@ impl Linear {
 }
 
 /// Least squares on the inliers, new inliers, and so on; a round that loses inliers is the last.
-fn refine_linear(
-    mut linear: Linear,
-    depth: &[Vector3<f64>],
-    image: &[Vector3<f64>],
-    cut: f64,
-) -> Result<(Linear, Vec<u32>)> {
-    let mut inliers = within(depth, image, cut, |point| linear.apply(point));
+fn refine_affine(mut affine: AffineModel, pairs: &Pairs<'_>) -> Result<(AffineModel, Vec<u32>)> {
+    let mut inliers = pairs.inliers(|point| affine.apply(point));
     for _ in 0..MOST_REFITS {
-        let Some(refit) = Linear::fit(depth, image, &inliers) else { break };
-        let found = within(depth, image, cut, |point| refit.apply(point));
+        let Some(refit) = AffineModel::fit(pairs, &inliers) else { break };
+        let found = pairs.inliers(|point| refit.apply(point));
         if found.len() < inliers.len() {
             break;
         }
         let settled = found == inliers;
-        (linear, inliers) = (refit, found);
+        (affine, inliers) = (refit, found);
         if settled {
-            return Ok((linear, inliers));
+            return Ok((affine, inliers));
         }
     }
     if inliers.len() < FEWEST_PAIRS {
         return Err(degenerate("fewer than four pairs agree").value(inliers.len() as f64));
     }
-    Ok((linear, inliers))
+    Ok((affine, inliers))
 }
 
 /// The similarity nearest to A (Eq. 15), fitted to the pairs that it explains.
 fn refine_similarity(
-    linear: &Linear,
-    linear_inliers: Vec<u32>,
-    depth: &[Vector3<f64>],
-    image: &[Vector3<f64>],
-    options: &RansacOptions,
+    affine: &AffineModel,
+    affine_inliers: Vec<u32>,
+    pairs: &Pairs<'_>,
+    scale: Option<f64>,
 ) -> Result<(Similarity, Vec<u32>)> {
-    let cut = options.threshold * options.threshold;
-    let mut pose = Similarity::nearest(&linear.matrix, linear.translation)?;
-    let mut inliers = linear_inliers;
+    let mut pose = Similarity::nearest(&affine.matrix, affine.translation)?;
+    let mut inliers = affine_inliers;
     for _ in 0..MOST_REFITS {
         let select = |points: &[Vector3<f64>]| -> Vec<_> { inliers.iter().map(|&k| points[k as usize]).collect() };
-        pose = Similarity::fit(&select(depth), &select(image), None, options.scale)?;
-        let found = within(depth, image, cut, |point| pose.apply(*point));
+        pose = Similarity::fit(&select(pairs.depth), &select(pairs.image), None, scale)?;
+        let found = pairs.inliers(|point| pose.apply(*point));
         let settled = found == inliers;
         inliers = found;
         if settled {
@@ -194,17 +210,6 @@ fn refine_similarity(
         return Err(degenerate("fewer than four pairs agree on a similarity").value(inliers.len() as f64));
     }
     Ok((pose, inliers))
-}
-
-/// Indices of the pairs whose squared distance is below `cut`.
-fn within(
-    depth: &[Vector3<f64>],
-    image: &[Vector3<f64>],
-    cut: f64,
-    model: impl Fn(&Vector3<f64>) -> Vector3<f64>,
-) -> Vec<u32> {
-    let near = |&k: &u32| (image[k as usize] - model(&depth[k as usize])).norm_squared() < cut;
-    (0..depth.len() as u32).filter(near).collect()
 }
 
 /// Four different numbers below `count`, which is at least four.

@@ -1,4 +1,4 @@
-//! P_colour = s R P_depth + t.
+//! P_colour = s R P_depth + t: the pose (Eq. 12 with known pairs, Eq. 15; docs/method.md, sections 1 and 11).
 
 use nalgebra::{Matrix3, Matrix4, Quaternion, Rotation3, SymmetricEigen, UnitQuaternion, Vector3};
 
@@ -15,10 +15,10 @@ const RANK_TOLERANCE: f64 = 1e-9;
 /// Cap on the rounds of the 4x4 eigenvalue iteration, which ends after about ten.
 const MOST_EIGEN_ROUNDS: usize = 200;
 
-/// Fewest pairs that determine a similarity: three leave no contradiction to see a mistake by.
+/// Fewest pairs that determine a similarity: three are fitted so well that no residual shows a mistake.
 pub(crate) const FEWEST_PAIRS: usize = 4;
 
-/// An active, right-handed similarity that carries points of the depth view into the colour view.
+/// An active, right-handed similarity that transforms points of the depth view into the colour view.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Similarity {
     /// s > 0.
@@ -90,13 +90,13 @@ impl Similarity {
         }
     }
 
-    /// The pose a `share` of the way from this one (0) to `other` (1): constant turning, constant growth, and a
+    /// The pose a `share` of the way from this one (0) to `other` (1): constant rotation, constant growth, and a
     /// straight path for `centre`, a point of the depth view. With the centroid there the object does not swing about a
     /// far origin half-way, as it would were the translations interpolated.
     #[must_use]
     pub fn towards(&self, other: &Self, share: f64, centre: Vector3<f64>) -> Self {
-        let turn = quaternion(&(other.rotation * self.rotation.transpose())).powf(share);
-        let rotation = turn.to_rotation_matrix().into_inner() * self.rotation;
+        let change = quaternion(&(other.rotation * self.rotation.transpose())).powf(share);
+        let rotation = change.to_rotation_matrix().into_inner() * self.rotation;
         let scale = self.scale * (other.scale / self.scale).powf(share);
         let target = self.apply(centre).lerp(&other.apply(centre), share);
         Self { scale, rotation, translation: target - scale * (rotation * centre) }

@@ -5,13 +5,13 @@
 //! formed from the normal of the image on one side and that of the depth view on the other, J_n^T J_m, instead of J_n^T
 //! J_n: errors of two independent normals do not multiply up, where noise squared would pass for shape.
 //!
-//! One sigma covers what the residuals show, waves included; an error that leaves no residual (a surface that is tilted
-//! as a whole, a rival fit elsewhere) is not seen by it.
+//! One sigma covers what the residuals show, correlated ones included; an error that leaves no residual (a surface that
+//! is tilted as a whole, another local optimum that fits as well) is not seen by it. See docs/method.md, section 14.
 
 use nalgebra::{SymmetricEigen, Vector3};
 
-use super::Similarity;
-use super::increment::{Frame, Row, Square, UNKNOWNS};
+use super::increment::{Frame, PoseMatrix, PoseVector, SCALE, TRANSLATION_Z, UNKNOWNS, clear_unknowns, fix_unknowns};
+use super::similarity::Similarity;
 use crate::view::Camera;
 
 /// Eigenvalues of the information, divided by its weight, below this count as zero. Free of units: the squared cosine
@@ -26,9 +26,6 @@ const LARGEST_SIGMA: f64 = 180.0;
 const WORTH_NAMING: f64 = 0.6;
 /// Cap on the rounds of the 7x7 eigenvalue iteration, which ends after about 20.
 const MOST_EIGEN_ROUNDS: usize = 500;
-/// Index of the translation along z and of the scale.
-const DEPTH: usize = 5;
-const SCALE: usize = 6;
 
 /// Uncertainty of the pose, one sigma.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,7 +45,7 @@ pub struct Uncertainty {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Information {
     /// The 7x7 matrix; the last row and column are zero where the scale is held. Free of units.
-    pub matrix: Square,
+    pub matrix: PoseMatrix,
     /// Sum of the weights in it.
     pub weight: f64,
     /// Centroid of the matched points in the colour view.
@@ -59,7 +56,7 @@ pub struct Information {
     pub normal_noise: f64,
     /// Number of pairs.
     pub pairs: usize,
-    /// Share of the pairs that count as independent, 0 .. 1: errors of a surface go in waves, not pixel by pixel.
+    /// Share of the pairs that count as independent, 0 .. 1: errors of neighbouring points of a surface correlate.
     pub independent: f64,
     /// Whether the scale was held.
     pub scale_is_held: bool,
@@ -89,13 +86,13 @@ impl Information {
         describe(&covariance, &frame, pose, [gauge, self.scale_is_held], weakest)
     }
 
-    /// Covariance of the seven unknowns and the weakest direction in words. Held and gauge unknowns have no variance.
-    fn covariance(&self, sigma: f64, gauge: bool) -> (Square, String) {
+    /// Covariance of the seven unknowns and the weakest direction in words. Held and gauge unknowns have none.
+    fn covariance(&self, sigma: f64, gauge: bool) -> (PoseMatrix, String) {
         let Some(eigen) = self.eigen(gauge) else {
-            return (Square::identity() * UNKNOWN.powi(2), "unknown".to_owned());
+            return (PoseMatrix::identity() * UNKNOWN.powi(2), "unknown".to_owned());
         };
         let floor = self.floor();
-        let mut covariance = Square::zeros();
+        let mut covariance = PoseMatrix::zeros();
         for (k, &value) in eigen.eigenvalues.iter().enumerate() {
             let variance = if value > floor {
                 ((sigma / self.length).powi(2) / (value * self.weight * self.independent)).min(UNKNOWN.powi(2))
@@ -105,10 +102,7 @@ impl Information {
             let direction = eigen.eigenvectors.column(k);
             covariance += variance * direction * direction.transpose();
         }
-        for k in self.inert(gauge) {
-            covariance.row_mut(k).fill(0.0);
-            covariance.column_mut(k).fill(0.0);
-        }
+        clear_unknowns(&mut covariance, &self.without_variance(gauge));
         (covariance, in_words(&eigen.eigenvectors.column(eigen.eigenvalues.imin()).into_owned()))
     }
 
@@ -116,23 +110,20 @@ impl Information {
     /// one, which no real direction can fall behind: those of the three translations sum to one.
     fn eigen(&self, gauge: bool) -> Option<SymmetricEigen<f64, nalgebra::Const<UNKNOWNS>>> {
         let mut matrix = self.matrix / self.weight;
-        if gauge && matrix[(DEPTH, DEPTH)] > 0.0 {
-            let column = matrix.column(DEPTH).into_owned();
-            matrix -= column * column.transpose() / matrix[(DEPTH, DEPTH)];
+        if gauge && matrix[(TRANSLATION_Z, TRANSLATION_Z)] > 0.0 {
+            let column = matrix.column(TRANSLATION_Z).into_owned();
+            matrix -= column * column.transpose() / matrix[(TRANSLATION_Z, TRANSLATION_Z)];
         }
-        for k in self.inert(gauge) {
-            matrix.row_mut(k).fill(0.0);
-            matrix.column_mut(k).fill(0.0);
-            matrix[(k, k)] = 1.0;
-        }
+        fix_unknowns(&mut matrix, &self.without_variance(gauge));
         if !matrix.norm().is_finite() {
             return None;
         }
         SymmetricEigen::try_new(matrix, f64::EPSILON, MOST_EIGEN_ROUNDS)
     }
 
-    fn inert(&self, gauge: bool) -> impl Iterator<Item = usize> {
-        [(DEPTH, gauge), (SCALE, self.scale_is_held)].into_iter().filter(|&(_, inert)| inert).map(|(k, _)| k)
+    /// Unknowns that are none: the gauge, a scale that is held.
+    fn without_variance(&self, gauge: bool) -> [bool; UNKNOWNS] {
+        std::array::from_fn(|k| (k == TRANSLATION_Z && gauge) || (k == SCALE && self.scale_is_held))
     }
 
     /// What chance leaves of J_n^T J_m where there is no shape: the noise of the normals, averaged over the pairs.
@@ -142,21 +133,21 @@ impl Information {
 }
 
 /// One sigma of each number of `pose` from the covariance of the seven unknowns about a centre. The z of the
-/// translation and the scale have none where the first or the second of `inert` says so.
+/// translation and the scale have none where the first or the second of `fixed` says so.
 pub(super) fn describe(
-    covariance: &Square,
+    covariance: &PoseMatrix,
     frame: &Frame,
     pose: &Similarity,
-    inert: [bool; 2],
+    fixed: [bool; 2],
     weakest: String,
 ) -> Uncertainty {
-    // t is where the origin of the depth view goes; it turns and grows about the centre with everything else.
+    // t is where the origin of the depth view goes; it is rotated and scaled about the centre with everything else.
     let arm = pose.translation - frame.centre;
-    let turned = arm.cross_matrix();
+    let cross = arm.cross_matrix();
     let along = |axis: usize| {
-        let mut row = Row::zeros();
+        let mut row = PoseVector::zeros();
         for k in 0..3 {
-            row[k] = -turned[(axis, k)];
+            row[k] = -cross[(axis, k)];
         }
         row[3 + axis] = frame.length;
         row[SCALE] = arm[axis];
@@ -165,14 +156,14 @@ pub(super) fn describe(
     let degrees = |axis: usize| covariance[(axis, axis)].sqrt().to_degrees().min(LARGEST_SIGMA);
     Uncertainty {
         rotation_degrees: [degrees(0), degrees(1), degrees(2)],
-        translation: [Some(along(0)), Some(along(1)), (!inert[0]).then(|| along(2))],
-        scale: (!inert[1]).then(|| pose.scale * covariance[(SCALE, SCALE)].sqrt()),
+        translation: [Some(along(0)), Some(along(1)), (!fixed[0]).then(|| along(2))],
+        scale: (!fixed[1]).then(|| pose.scale * covariance[(SCALE, SCALE)].sqrt()),
         weakest,
     }
 }
 
 /// The one or two largest parts of a direction.
-pub(super) fn in_words(direction: &Row) -> String {
+pub(super) fn in_words(direction: &PoseVector) -> String {
     const NAMES: [&str; UNKNOWNS] = [
         "rotation about x",
         "rotation about y",

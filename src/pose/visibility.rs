@@ -1,12 +1,13 @@
 //! Which points of the depth view the colour camera sees, and where.
 //!
-//! A point is seen where it falls on the mask, faces the camera, and no other depth point hides it (z-buffer of the
-//! colour view's own resolution, so parts thinner than two pixels may be judged wrongly).
+//! A point is visible where it falls on the mask, faces the camera, and no other depth point hides it (z-buffer of the
+//! colour view's own resolution, so parts thinner than two pixels may be wrong).
+//! See docs/method.md, section 12.
 
 use nalgebra::Vector3;
 
+use super::similarity::Similarity;
 use crate::numeric::{LANES, Lanes, Mask, Real, dot};
-use crate::pose::Similarity;
 use crate::view::{Camera, ColourView, Normals, Points, Size};
 
 /// A point counts as hidden when it lies this many image pixels behind the nearest one: more than a steep slope drops
@@ -17,7 +18,7 @@ const RIM: f32 = 0.05;
 
 /// A cloud before a colour camera. Points and normals are NaN where missing.
 #[derive(Clone, Copy)]
-pub(super) struct Sight<'a> {
+pub(super) struct VisibilityProblem<'a> {
     pub image: &'a ColourView,
     pub pose: &'a Similarity,
     pub points: &'a Points,
@@ -26,9 +27,9 @@ pub(super) struct Sight<'a> {
     pub pixel_length: f64,
 }
 
-/// A pose for many points of one cloud in f32: differences from one of them keep their digits however far off the cloud
-/// stands.
-struct Carrier {
+/// A pose for many points of one cloud in f32, as the transform of differences from one of them: these keep their digits
+/// however far off the cloud stands.
+struct SingleTransform {
     /// One point of the cloud, before and after.
     from: [f32; 3],
     to: [f32; 3],
@@ -36,7 +37,7 @@ struct Carrier {
     matrix: [[f32; 3]; 3],
 }
 
-impl Carrier {
+impl SingleTransform {
     fn new(pose: &Similarity, cloud: &Points) -> Self {
         let valid = (0..cloud.len()).find(|&index| cloud.is_valid(index));
         let from = valid.map_or([0.0; 3], |index| cloud.get(index));
@@ -57,17 +58,17 @@ impl Carrier {
     }
 }
 
-/// A cloud on its way into a view.
-pub(super) struct Projection<'a> {
-    carrier: Carrier,
+/// Transforms a cloud and projects it into a view.
+pub(super) struct CloudProjection<'a> {
+    transform: SingleTransform,
     cloud: &'a Points,
     camera: &'a Camera,
     size: Size,
 }
 
-impl<'a> Projection<'a> {
+impl<'a> CloudProjection<'a> {
     pub fn new(pose: &Similarity, cloud: &'a Points, camera: &'a Camera, size: Size) -> Self {
-        Self { carrier: Carrier::new(pose, cloud), cloud, camera, size }
+        Self { transform: SingleTransform::new(pose, cloud), cloud, camera, size }
     }
 
     /// Columns and rows of the points from `start` on, which it enters into the z-buffer `buffer`; `None` where all of
@@ -77,9 +78,9 @@ impl<'a> Projection<'a> {
         if !Lanes::load(&self.cloud.z, start as isize).finite().any() {
             return None;
         }
-        let carried = self.carrier.apply(self.cloud.lanes(start));
-        let [column, row] = self.camera.project_lanes(self.size, carried);
-        let (columns, rows, depths) = (column.array(), row.array(), carried[2].array());
+        let transformed = self.transform.apply(self.cloud.lanes(start));
+        let [column, row] = self.camera.project_lanes(self.size, transformed);
+        let (columns, rows, depths) = (column.array(), row.array(), transformed[2].array());
         for lane in 0..LANES {
             splat(self.size, buffer, [columns[lane], rows[lane]], depths[lane]);
         }
@@ -87,13 +88,13 @@ impl<'a> Projection<'a> {
     }
 }
 
-/// Where the points are seen; owns its memory.
+/// Where the points are visible; owns its memory.
 #[derive(Clone, Debug)]
 pub(super) struct Visibility {
-    /// Continuous image column and row of each point, NaN where it is not seen.
+    /// Continuous image column and row of each point, NaN where it is not visible.
     pub column: Vec<f32>,
     pub row: Vec<f32>,
-    /// A number for each pixel: the z-buffer while it looks, after that the caller's.
+    /// A number for each pixel: the z-buffer during an update, after that the caller's.
     pub of_pixel: Vec<f32>,
 }
 
@@ -103,29 +104,29 @@ impl Visibility {
         Self { column: vec![f32::NAN; points], row: vec![f32::NAN; points], of_pixel: vec![f32::INFINITY; pixels] }
     }
 
-    /// Looks anew. Of each point that is seen, the pixel that it falls on and where the pose carries it, `keeps` has the
-    /// last word. Allocates nothing.
-    pub fn update(&mut self, sight: &Sight<'_>, keeps: &mut dyn FnMut(usize, usize, [f32; 3]) -> bool) {
-        let projection = Projection::new(sight.pose, sight.points, &sight.image.camera, sight.image.size);
-        self.project(sight, &projection);
-        self.hide(sight, &projection.carrier, keeps);
+    /// Finds the visible points anew. Of those that mask, normal and z-buffer leave, `keeps` leaves some: given are the
+    /// index, the pixel that the point falls on and the transformed point. Allocates nothing.
+    pub fn update(&mut self, problem: &VisibilityProblem<'_>, keeps: &mut dyn FnMut(usize, usize, [f32; 3]) -> bool) {
+        let projection = CloudProjection::new(problem.pose, problem.points, &problem.image.camera, problem.image.size);
+        self.project(problem, &projection);
+        self.hide(problem, &projection.transform, keeps);
     }
 
-    /// A point is not seen after all.
+    /// Makes a point invisible.
     #[inline(always)]
     pub fn drop(&mut self, index: usize) {
         (self.column[index], self.row[index]) = (f32::NAN, f32::NAN);
     }
 
     /// Places of all points that face the camera, and the z-buffer.
-    fn project(&mut self, sight: &Sight<'_>, projection: &Projection<'_>) {
+    fn project(&mut self, problem: &VisibilityProblem<'_>, projection: &CloudProjection<'_>) {
         self.of_pixel.fill(f32::INFINITY);
         let missing = Lanes::splat(f32::NAN);
-        let rays = Rays::new(sight);
+        let rays = Rays::new(problem);
         for start in (0..self.column.len()).step_by(LANES) {
             let mut position = [missing; 2];
             if let Some([column, row]) = projection.enter(start, &mut self.of_pixel) {
-                let away = rays.meet(sight.points.lanes(start), sight.normals.lanes(start));
+                let away = rays.meet(problem.points.lanes(start), problem.normals.lanes(start));
                 position = [away.select(missing, column), away.select(missing, row)];
             }
             position[0].store(&mut self.column[start..]);
@@ -134,17 +135,22 @@ impl Visibility {
     }
 
     /// Drops the points that fall off the mask, lie behind others or are not kept.
-    fn hide(&mut self, sight: &Sight<'_>, carrier: &Carrier, keeps: &mut dyn FnMut(usize, usize, [f32; 3]) -> bool) {
-        let tolerance = (HIDDEN_BEHIND * sight.pixel_length) as f32;
+    fn hide(
+        &mut self,
+        problem: &VisibilityProblem<'_>,
+        transform: &SingleTransform,
+        keeps: &mut dyn FnMut(usize, usize, [f32; 3]) -> bool,
+    ) {
+        let tolerance = (HIDDEN_BEHIND * problem.pixel_length) as f32;
         for index in 0..self.column.len() {
             if self.column[index].is_nan() {
                 continue;
             }
-            let pixel = sight.image.size.nearest(self.column[index], self.row[index]);
+            let pixel = problem.image.size.nearest(self.column[index], self.row[index]);
             let kept = pixel.is_some_and(|pixel| {
-                let carried = carrier.apply(sight.points.get(index));
-                let hidden = carried[2] > self.of_pixel[pixel] + tolerance;
-                sight.image.mask[pixel] && !hidden && keeps(index, pixel, carried)
+                let transformed = transform.apply(problem.points.get(index));
+                let hidden = transformed[2] > self.of_pixel[pixel] + tolerance;
+                problem.image.mask[pixel] && !hidden && keeps(index, pixel, transformed)
             });
             if !kept {
                 self.drop(index);
@@ -160,11 +166,11 @@ enum Rays {
 }
 
 impl Rays {
-    fn new(sight: &Sight<'_>) -> Self {
-        if sight.image.camera.is_orthographic() {
-            Self::Along(sight.pose.rotation.tr_mul(&Vector3::z()).map(|value| value as f32).into())
+    fn new(problem: &VisibilityProblem<'_>) -> Self {
+        if problem.image.camera.is_orthographic() {
+            Self::Along(problem.pose.rotation.tr_mul(&Vector3::z()).map(|value| value as f32).into())
         } else {
-            Self::From(sight.pose.inverse().translation.map(|value| value as f32).into())
+            Self::From(problem.pose.inverse().translation.map(|value| value as f32).into())
         }
     }
 

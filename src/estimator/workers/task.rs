@@ -3,7 +3,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::pose::{Candidate, PhotometricReport, Place, SearchFinding, SearchTask, Similarity};
+use crate::pose::{Candidate, Hypothesis, PhotometricReport, SearchFinding, SearchTask, Similarity};
 
 /// A part of the initialisation. It depends on the pair, the options and itself alone, so that whoever has these gets the
 /// same.
@@ -57,7 +57,7 @@ impl Task {
     pub fn to_numbers(&self) -> Vec<f64> {
         match &self.0 {
             Work::Search(SearchTask::Sweep(slice)) => list(SWEEP, *slice, &[]),
-            Work::Search(SearchTask::Climb(index, place)) => list(CLIMB, *index, &place_numbers(place)),
+            Work::Search(SearchTask::Climb(index, hypothesis)) => list(CLIMB, *index, &hypothesis_numbers(hypothesis)),
             Work::Register(index, pose) => list(REGISTER, *index, &pose_numbers(pose)),
         }
     }
@@ -69,7 +69,7 @@ impl Task {
         let index = index as usize;
         Some(Self(match kind {
             SWEEP if rest.is_empty() => Work::Search(SearchTask::Sweep(index)),
-            CLIMB => Work::Search(SearchTask::Climb(index, place(rest.try_into().ok()?))),
+            CLIMB => Work::Search(SearchTask::Climb(index, hypothesis(rest.try_into().ok()?))),
             REGISTER => Work::Register(index, pose(rest.try_into().ok()?)),
             _ => return None,
         }))
@@ -81,9 +81,9 @@ impl Finding {
     #[must_use]
     pub fn to_numbers(&self) -> Vec<f64> {
         let (mut numbers, rest) = match &self.0 {
-            Found::Search(SearchFinding::Swept(slice, places)) => {
-                let places: Vec<_> = places.iter().map(place_numbers).collect();
-                return list(SWEEP, *slice, places.as_flattened());
+            Found::Search(SearchFinding::Swept(slice, hypotheses)) => {
+                let hypotheses: Vec<_> = hypotheses.iter().map(hypothesis_numbers).collect();
+                return list(SWEEP, *slice, hypotheses.as_flattened());
             }
             Found::Registered(index, None) => return list(REGISTER, *index, &[]),
             Found::Search(SearchFinding::Climbed(index, candidate)) => {
@@ -104,11 +104,11 @@ impl Finding {
         let index = index as usize;
         Some(Self(match kind {
             SWEEP => {
-                let (places, surplus) = rest.as_chunks();
+                let (hypotheses, surplus) = rest.as_chunks();
                 if !surplus.is_empty() {
                     return None;
                 }
-                Found::Search(SearchFinding::Swept(index, places.iter().map(place).collect()))
+                Found::Search(SearchFinding::Swept(index, hypotheses.iter().map(hypothesis).collect()))
             }
             CLIMB => {
                 let (start, &[score]) = rest.split_first_chunk()? else { return None };
@@ -142,16 +142,16 @@ fn pose(numbers: &[f64; 13]) -> Similarity {
 }
 
 /// Size, rotation, shift, score.
-fn place_numbers(place: &Place) -> [f64; 13] {
-    let mut numbers = [place.size; 13];
-    numbers[1..10].copy_from_slice(place.rotation.as_slice());
-    numbers[10..].copy_from_slice(&[f64::from(place.shift[0]), f64::from(place.shift[1]), place.score]);
+fn hypothesis_numbers(hypothesis: &Hypothesis) -> [f64; 13] {
+    let mut numbers = [hypothesis.size; 13];
+    numbers[1..10].copy_from_slice(hypothesis.rotation.as_slice());
+    numbers[10..].copy_from_slice(&[f64::from(hypothesis.shift[0]), f64::from(hypothesis.shift[1]), hypothesis.score]);
     numbers
 }
 
-fn place(numbers: &[f64; 13]) -> Place {
+fn hypothesis(numbers: &[f64; 13]) -> Hypothesis {
     let [size, rotation @ .., column, row, score] = *numbers;
-    Place { rotation: Matrix3::from_column_slice(&rotation), size, shift: [column as i32, row as i32], score }
+    Hypothesis { rotation: Matrix3::from_column_slice(&rotation), size, shift: [column as i32, row as i32], score }
 }
 
 #[cfg(test)]
@@ -160,17 +160,19 @@ mod tests {
 
     #[test]
     fn numbers_come_back_as_they_went() {
-        let place =
-            Place { rotation: Matrix3::from_fn(|i, j| (i + 3 * j) as f64), size: 0.9, shift: [-3, 4], score: 0.1 };
+        let hypothesis =
+            Hypothesis { rotation: Matrix3::from_fn(|i, j| (i + 3 * j) as f64), size: 0.9, shift: [-3, 4], score: 0.1 };
         let pose = Similarity { translation: Vector3::new(0.1, 0.2, 0.3), ..Similarity::identity() };
-        for work in
-            [Work::Search(SearchTask::Sweep(7)), Work::Search(SearchTask::Climb(3, place)), Work::Register(5, pose)]
-        {
+        for work in [
+            Work::Search(SearchTask::Sweep(7)),
+            Work::Search(SearchTask::Climb(3, hypothesis)),
+            Work::Register(5, pose),
+        ] {
             assert_eq!(Task::from_numbers(&Task(work).to_numbers()), Some(Task(work)));
         }
         let registered = RegisteredCandidate { pose, visible: 9.0, noise: 0.1, report: None };
         for found in [
-            Found::Search(SearchFinding::Swept(2, vec![place; 2])),
+            Found::Search(SearchFinding::Swept(2, vec![hypothesis; 2])),
             Found::Search(SearchFinding::Swept(2, Vec::new())),
             Found::Search(SearchFinding::Climbed(1, Candidate { pose, score: -1.5 })),
             Found::Registered(4, Some(registered)),

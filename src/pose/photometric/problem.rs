@@ -6,12 +6,12 @@ use crate::check::not_negative;
 use crate::error::{Error, ErrorKind, Result};
 use crate::light::{Light, LightPrior};
 use crate::numeric::{DOUBLE_LANES, Doubles, Real, dot};
-use crate::pose::increment::{Square, UNKNOWNS};
+use crate::pose::increment::{PoseMatrix, UNKNOWNS};
 use crate::pose::similarity::Similarity;
 use crate::pose::uncertainty::Uncertainty;
 use crate::view::{ColourView, DepthView, Normals, Points, Size};
 
-/// The coarsest level.
+/// The coarsest level of the image.
 pub(super) const COARSEST: usize = 2;
 
 /// Depth pixels whose points are worked on side by side.
@@ -42,21 +42,21 @@ pub struct PhotometricProblem<'a> {
 }
 
 impl PhotometricProblem<'_> {
-    /// Points in the colour view's frame.
+    /// Points transformed into the colour view's frame.
     #[inline(always)]
-    pub(super) fn carried(&self, pose: &Similarity, indices: &Indices) -> [Doubles; 3] {
-        let turned = turned(&pose.rotation, gathered(self.points, indices));
-        let carried = |axis: usize| Doubles::splat(pose.scale) * turned[axis] + Doubles::splat(pose.translation[axis]);
-        [carried(0), carried(1), carried(2)]
+    pub(super) fn points(&self, pose: &Similarity, indices: &Indices) -> [Doubles; 3] {
+        let rotated = rotated(&pose.rotation, gathered(self.points, indices));
+        let moved = |axis: usize| Doubles::splat(pose.scale) * rotated[axis] + Doubles::splat(pose.translation[axis]);
+        [moved(0), moved(1), moved(2)]
     }
 
-    /// Normals in the colour view's frame.
+    /// Normals rotated into the colour view's frame.
     #[inline(always)]
-    pub(super) fn turned(&self, pose: &Similarity, indices: &Indices) -> [Doubles; 3] {
-        turned(&pose.rotation, gathered(self.normals, indices))
+    pub(super) fn normals(&self, pose: &Similarity, indices: &Indices) -> [Doubles; 3] {
+        rotated(&pose.rotation, gathered(self.normals, indices))
     }
 
-    /// Unknowns that are no unknowns: the gauge t_z, the held scale.
+    /// Unknowns that keep their values: t_z of an orthographic image, which is a gauge, and a scale that is held.
     pub(super) fn held(&self) -> [bool; UNKNOWNS] {
         let gauge = self.image.camera.is_orthographic();
         [false, false, false, false, false, gauge, self.scale_is_held || !gauge]
@@ -96,7 +96,7 @@ fn gathered(vectors: &Normals, indices: &Indices) -> [Doubles; 3] {
 }
 
 #[inline(always)]
-fn turned(rotation: &Matrix3<f64>, vector: [Doubles; 3]) -> [Doubles; 3] {
+fn rotated(rotation: &Matrix3<f64>, vector: [Doubles; 3]) -> [Doubles; 3] {
     let row = |row: usize| {
         let entry = |column: usize| Doubles::splat(rotation[(row, column)]);
         dot([entry(0), entry(1), entry(2)], vector)
@@ -107,7 +107,7 @@ fn turned(rotation: &Matrix3<f64>, vector: [Doubles; 3]) -> [Doubles; 3] {
 /// Points that annealing needs: with 14 to 34 unknowns 20000 average noise to a hundredth of its size.
 const ENOUGH_ANNEALED: usize = 20_000;
 
-/// How far and how long to look.
+/// How far from the pose a registration may start, and how long it may take.
 #[derive(Clone, Copy, Debug)]
 pub struct PhotometricOptions {
     /// First level, 0 to 2: 2 from afar, 0 from a pose that is right to a degree.
@@ -116,7 +116,8 @@ pub struct PhotometricOptions {
     pub most_rounds: usize,
     /// Points that take part at most, spread evenly over those that are visible.
     pub most_points: usize,
-    /// Those that the annealing takes at most: listening ends where all points want to, wherever it starts nearby.
+    /// Points that take part in the annealing at most: the rounds after it, with instrumental variables, end at the same
+    /// pose from wherever nearby they start.
     pub annealed_points: usize,
     /// Whether the robust scale shrinks from round to round; else it is the final one from the first round on.
     pub annealing: bool,
@@ -139,7 +140,8 @@ impl Default for PhotometricOptions {
 pub enum PhotometricTermination {
     /// Another round would change nothing.
     Settled,
-    /// The last rounds would have raised the cost: the annealed pose was kept. Usable, with a bias of the noise.
+    /// The last rounds, with instrumental variables, would have raised the objective: the pose of least squares was kept.
+    /// Usable, with the bias of the noise.
     Annealed,
     /// The cap on the rounds came first.
     MostRounds,
@@ -154,8 +156,8 @@ pub struct PhotometricReport {
     pub light: Light,
     /// Offset of log S on top of a known light; zero where the light was free.
     pub exposure: f64,
-    /// Mean robust cost at the scale of the noise over all visible points, 0 .. 1; their number does not enter.
-    pub cost: f64,
+    /// Mean of rho over the visible points as a share of its largest value, 0 .. 1, at the robust scale of the noise.
+    pub objective: f64,
     /// Robust standard deviation of a channel's residuals, log units.
     pub noise: f64,
     /// Number of visible points.
@@ -170,9 +172,9 @@ pub struct PhotometricReport {
     pub termination: PhotometricTermination,
     /// Information of rotation (radians), translation (object sizes) and log scale once light is eliminated, over the
     /// noise's variance: what white noise of that size would leave.
-    pub information: Square,
+    pub information: PoseMatrix,
     /// Covariance of the same from the spread of the scores; held unknowns have none.
-    pub covariance: Square,
+    pub covariance: PoseMatrix,
     /// One sigma of the pose's own numbers.
     pub uncertainty: Uncertainty,
 }

@@ -1,30 +1,31 @@
 //! Residuals of depth points, two side by side: r = log S(pi(T P)) - B(R n) L and its derivatives.
 //!
-//! The unknowns are those of every registration here: P' -> c + e^u exp([w]) (P' - c) + l v of the carried point P' = T
-//! P, n' -> exp([w]) n' of its normal. With g = d log S / d P' and b = d (B L) / d n', both of one channel, dr/dw = (P'
+//! The unknowns are those of every registration here: P' -> c + e^u exp([w]) (P' - c) + l v of the transformed point
+//! P' = T P, n' -> exp([w]) n' of its rotated normal. With g = d log S / d P' and b = d (B L) / d n', both of one channel, dr/dw = (P'
 //! - c) x g - n' x b, dr/dv = l g, dr/du = (P' - c) . g, and dr/dL = -B.
 
-use super::image::{ImagePoint, SplineImage};
+use super::spline_image::{ImagePoint, SplineImage};
 use crate::light::{HARMONICS, Light, Polynomial, basis};
 use crate::numeric::{DOUBLE_LANES, Doubles, Real, dot};
 use crate::pose::increment::{Frame, UNKNOWNS};
 use crate::view::Camera;
 
-/// A derivative by the unknowns.
-pub(super) type Motion = [Doubles; UNKNOWNS];
+/// A derivative by the unknowns of the pose.
+pub(super) type Derivative = [Doubles; UNKNOWNS];
 
-/// Where residuals are taken: one image under one light.
+/// The colours of one image, and those that one light predicts (Eq. 3 and 5).
 #[derive(Clone, Copy)]
-pub(super) struct Scene<'a> {
+pub(super) struct ColourModel<'a> {
     image: &'a SplineImage,
-    slopes: Option<&'a SplineImage>,
+    /// The image whose gradients are the instrumental variables; none for least squares.
+    instruments: Option<&'a SplineImage>,
     camera: &'a Camera,
     light: [Polynomial<f64>; 3],
 }
 
-/// What the image shows of points side by side, zero where it does not show them.
+/// log S at points side by side, zero where the image does not show them.
 #[derive(Clone, Copy)]
-pub(super) struct Seen {
+pub(super) struct Samples {
     /// One where the image shows the point.
     pub shown: Doubles,
     /// log S of the three channels.
@@ -32,49 +33,55 @@ pub(super) struct Seen {
 }
 
 /// Residuals of points side by side with what the equations need of them.
-pub(super) struct Linear {
+pub(super) struct LinearisedPoints {
     pub shown: Doubles,
     /// One for each channel.
     pub residual: [Doubles; 3],
     /// d r / d unknowns, a row for each channel.
-    pub jacobian: [Motion; 3],
-    /// The same by the slopes of another image, where the scene has one.
-    listener: Option<[Motion; 3]>,
+    pub jacobian: [Derivative; 3],
+    /// Z, the same by the gradients of another image, where the model has one.
+    instruments: Option<[Derivative; 3]>,
     /// d column, d row / d unknowns.
-    pub motion: [Motion; 2],
-    /// Harmonics of the carried normal.
+    pub pixel_derivatives: [Derivative; 2],
+    /// Harmonics of the rotated normal.
     pub basis: [Doubles; HARMONICS],
 }
 
-impl Linear {
-    /// The rows by which the pose listens to the residuals.
-    pub fn listener(&self) -> &[Motion; 3] {
-        self.listener.as_ref().unwrap_or(&self.jacobian)
+impl LinearisedPoints {
+    /// Z: the instrumental variables, or the Jacobian for least squares.
+    pub fn instruments(&self) -> &[Derivative; 3] {
+        self.instruments.as_ref().unwrap_or(&self.jacobian)
     }
 }
 
-impl<'a> Scene<'a> {
-    /// `light` with its exposure; slopes of the listening rows come from `slopes`, where that is another image.
-    pub fn new(image: &'a SplineImage, slopes: Option<&'a SplineImage>, camera: &'a Camera, light: &Light) -> Self {
-        Self { image, slopes, camera, light: Polynomial::of(light) }
+impl<'a> ColourModel<'a> {
+    /// A model for least squares; `light` with its exposure.
+    pub fn new(image: &'a SplineImage, camera: &'a Camera, light: &Light) -> Self {
+        Self { image, instruments: None, camera, light: Polynomial::of(light) }
     }
 
-    /// Whether the pose listens by rows of its own.
-    pub fn listens(&self) -> bool {
-        self.slopes.is_some()
+    /// The same with the gradients of another image as instrumental variables.
+    pub fn with_instruments(self, image: &'a SplineImage) -> Self {
+        Self { instruments: Some(image), ..self }
     }
 
-    /// r of carried points with their carried normals.
+    /// Whether there are instrumental variables.
+    pub fn has_instruments(&self) -> bool {
+        self.instruments.is_some()
+    }
+
+    /// r of sampled points with their rotated normals.
     #[inline(always)]
-    pub fn residual(&self, seen: &Seen, normals: [Doubles; 3]) -> [Doubles; 3] {
+    pub fn residual(&self, samples: &Samples, normals: [Doubles; 3]) -> [Doubles; 3] {
         let [red, green, blue] = &self.light;
-        [seen.log[0] - red.shade(normals), seen.log[1] - green.shade(normals), seen.log[2] - blue.shade(normals)]
+        let [log_red, log_green, log_blue] = samples.log;
+        [log_red - red.shade(normals), log_green - green.shade(normals), log_blue - blue.shade(normals)]
     }
 
-    /// log S where carried points are seen.
+    /// log S where transformed points are seen.
     // One copy of it: visitors download each.
     #[inline(never)]
-    pub fn seen(&self, points: [Doubles; 3]) -> Seen {
+    pub fn sample(&self, points: [Doubles; 3]) -> Samples {
         let (mut shown, mut log) = ([0.0; DOUBLE_LANES], [[0.0; DOUBLE_LANES]; 3]);
         for (lane, shown) in shown.iter_mut().enumerate() {
             let pixel = self.camera.project(self.image.size(), of_lane(points, lane));
@@ -82,92 +89,93 @@ impl<'a> Scene<'a> {
             *shown = 1.0;
             (0..3).for_each(|channel| log[channel][lane] = colours[channel]);
         }
-        Seen { shown: Doubles::from(shown), log: triple(&log) }
+        Samples { shown: Doubles::from(shown), log: triple(&log) }
     }
 
     /// r and its derivatives.
     // As above.
     #[inline(never)]
-    pub fn linear(&self, points: [Doubles; 3], normals: [Doubles; 3], frame: &Frame) -> Linear {
-        let mut look = Look::default();
+    pub fn linearise(&self, points: [Doubles; 3], normals: [Doubles; 3], frame: &Frame) -> LinearisedPoints {
+        let mut sampled = SampledGradients::default();
         for lane in 0..DOUBLE_LANES {
-            self.look(of_lane(points, lane), lane, &mut look);
+            self.sample_gradients(of_lane(points, lane), lane, &mut sampled);
         }
-        let motion = motion(points, &look, frame);
-        let (mut residual, mut turns) = (triple(&look.log), [normals; 3]);
+        let pixel_derivatives = pixel_derivatives(points, &sampled, frame);
+        let (mut residual, mut by_rotation) = (triple(&sampled.log), [normals; 3]);
         for (channel, light) in self.light.iter().enumerate() {
             let (shade, by_normal) = light.expand(normals);
-            turns[channel] = cross(normals, by_normal);
+            by_rotation[channel] = cross(normals, by_normal);
             residual[channel] = residual[channel] - shade;
         }
         let rows = |gradient: &[[[f64; DOUBLE_LANES]; 2]; 3]| {
-            let row = |channel: usize| row(&motion, &gradient[channel], turns[channel]);
+            let row = |channel: usize| row(&pixel_derivatives, &gradient[channel], by_rotation[channel]);
             [row(0), row(1), row(2)]
         };
-        Linear {
-            shown: Doubles::from(look.shown),
+        LinearisedPoints {
+            shown: Doubles::from(sampled.shown),
             residual,
-            jacobian: rows(&look.gradient),
-            listener: self.slopes.map(|_| rows(&look.slopes)),
-            motion,
+            jacobian: rows(&sampled.gradient),
+            instruments: self.instruments.map(|_| rows(&sampled.instruments)),
+            pixel_derivatives,
             basis: basis(normals),
         }
     }
 
-    /// Looks a point up, for its lane.
-    fn look(&self, point: [f64; 3], lane: usize, look: &mut Look) {
+    /// Samples the image at one point, for its lane.
+    fn sample_gradients(&self, point: [f64; 3], lane: usize, sampled: &mut SampledGradients) {
         let Some((pixel, by_point)) = self.camera.project_with_gradient(self.image.size(), point) else { return };
         let Some(ImagePoint { log, gradient }) = self.image.at(pixel) else { return };
-        let slopes = self.slopes.and_then(|image| image.at(pixel)).map_or(gradient, |point| point.gradient);
-        look.shown[lane] = 1.0;
+        let other = self.instruments.and_then(|image| image.at(pixel));
+        let instruments = other.map_or(gradient, |point| point.gradient);
+        sampled.shown[lane] = 1.0;
         for channel in 0..3 {
-            look.log[channel][lane] = log[channel];
+            sampled.log[channel][lane] = log[channel];
             for along in 0..2 {
-                look.gradient[channel][along][lane] = gradient[channel][along];
-                look.slopes[channel][along][lane] = slopes[channel][along];
+                sampled.gradient[channel][along][lane] = gradient[channel][along];
+                sampled.instruments[channel][along][lane] = instruments[channel][along];
             }
         }
         for along in 0..2 {
-            (0..3).for_each(|axis| look.by_point[along][axis][lane] = by_point[along][axis]);
+            (0..3).for_each(|axis| sampled.by_point[along][axis][lane] = by_point[along][axis]);
         }
     }
 }
 
-/// What the image says of points side by side, zero where they are not shown.
+/// Values and gradients of the image at points side by side, zero where they are not shown.
 #[derive(Default)]
-struct Look {
+struct SampledGradients {
     shown: [f64; DOUBLE_LANES],
     log: [[f64; DOUBLE_LANES]; 3],
-    /// d log S / d (column, row) of each channel, and what the listening rows take for it.
+    /// d log S / d (column, row) of each channel, and the same of the image of the instruments.
     gradient: [[[f64; DOUBLE_LANES]; 2]; 3],
-    slopes: [[[f64; DOUBLE_LANES]; 2]; 3],
+    instruments: [[[f64; DOUBLE_LANES]; 2]; 3],
     /// d (column, row) / d point.
     by_point: [[[f64; DOUBLE_LANES]; 3]; 2],
 }
 
 /// d column and d row / d unknowns.
 #[inline(always)]
-fn motion(points: [Doubles; 3], look: &Look, frame: &Frame) -> [Motion; 2] {
+fn pixel_derivatives(points: [Doubles; 3], sampled: &SampledGradients, frame: &Frame) -> [Derivative; 2] {
     let arm = |axis: usize| points[axis] - Doubles::splat(frame.centre[axis]);
     let arm = [arm(0), arm(1), arm(2)];
     let length = Doubles::splat(frame.length);
     let by = |along: usize| {
-        let slope = triple(&look.by_point[along]);
-        let [x, y, z] = cross(arm, slope);
-        [x, y, z, length * slope[0], length * slope[1], length * slope[2], dot(arm, slope)]
+        let gradient = triple(&sampled.by_point[along]);
+        let [x, y, z] = cross(arm, gradient);
+        [x, y, z, length * gradient[0], length * gradient[1], length * gradient[2], dot(arm, gradient)]
     };
     [by(0), by(1)]
 }
 
-/// d r / d unknowns of one channel.
+/// d r / d unknowns of one channel: by its pixel, less by its rotated normal.
 #[inline(always)]
-fn row(motion: &[Motion; 2], gradient: &[[f64; DOUBLE_LANES]; 2], turn: [Doubles; 3]) -> Motion {
+fn row(pixel: &[Derivative; 2], gradient: &[[f64; DOUBLE_LANES]; 2], by_rotation: [Doubles; 3]) -> Derivative {
     let [by_column, by_row] = [Doubles::from(gradient[0]), Doubles::from(gradient[1])];
-    let mut row = motion[0];
-    for (entry, &below) in row.iter_mut().zip(&motion[1]) {
+    let mut row = pixel[0];
+    for (entry, &below) in row.iter_mut().zip(&pixel[1]) {
         *entry = *entry * by_column + below * by_row;
     }
-    (0..3).for_each(|axis| row[axis] = row[axis] - turn[axis]);
+    (0..3).for_each(|axis| row[axis] = row[axis] - by_rotation[axis]);
     row
 }
 
@@ -192,7 +200,7 @@ mod tests {
     use nalgebra::Vector3;
 
     use super::*;
-    use crate::pose::increment::Row;
+    use crate::pose::increment::PoseVector;
     use crate::scenes::lights::COLOURFUL;
     use crate::view::{ColourImage, ColourSamples, ColourView, Pinhole};
 
@@ -218,7 +226,7 @@ mod tests {
         for (camera, point, length) in
             [(Camera::Orthographic, Vector3::new(3.3, -4.2, 7.0), 9.0), (pinhole, Vector3::new(0.21, -0.13, 1.2), 0.2)]
         {
-            let scene = Scene::new(&image, None, &camera, &COLOURFUL);
+            let model = ColourModel::new(&image, &camera, &COLOURFUL);
             let frame = Frame { centre: 0.7 * point, length };
             // The point itself in the last lane, another one beside it.
             let lanes = |vector: Vector3<f64>| {
@@ -229,17 +237,17 @@ mod tests {
                 })
             };
             let last = |numbers: Doubles| numbers.array()[DOUBLE_LANES - 1];
-            let linear = scene.linear(lanes(point), lanes(normal), &frame);
-            assert!(last(linear.shown) > 0.0);
+            let linearised = model.linearise(lanes(point), lanes(normal), &frame);
+            assert!(last(linearised.shown) > 0.0);
             for k in 0..UNKNOWNS {
                 let moved = |by: f64| {
-                    let change = frame.change(&Row::ith(k, by));
-                    let seen = scene.seen(lanes(change.apply(point)));
-                    Vector3::from(scene.residual(&seen, lanes(change.rotation * normal)).map(last))
+                    let change = frame.change(&PoseVector::ith(k, by));
+                    let samples = model.sample(lanes(change.apply(point)));
+                    Vector3::from(model.residual(&samples, lanes(change.rotation * normal)).map(last))
                 };
                 let difference = (moved(small) - moved(-small)) / (2.0 * small);
                 for channel in 0..3 {
-                    let jacobian = Row::from(linear.jacobian[channel].map(last));
+                    let jacobian = PoseVector::from(linearised.jacobian[channel].map(last));
                     // Relative to the row: a single entry may be zero.
                     let error = (jacobian[k] - difference[channel]).abs() / jacobian.norm();
                     assert!(error <= 1e-4, "{k}: {} {difference} {error}", jacobian[k]);

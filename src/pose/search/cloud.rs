@@ -1,4 +1,4 @@
-//! The depth view as a thin cloud of small patches: place, normal and area of each.
+//! The depth view as a thin cloud of small patches: position, normal and area of each.
 //!
 //! Method: means over square blocks of pixels, so that noise averages out; the area of a patch is |dP/drow x
 //! dP/dcolumn| between neighbouring blocks, times the share of the block that is there. It works for any camera and for
@@ -13,7 +13,7 @@ use crate::view::{Normals, Points, Size};
 
 /// Patches at most: about four for each cell of the grid that an object covers.
 const MOST_PATCHES: usize = 1000;
-/// Fewest patches that say anything about a rotation.
+/// Fewest patches that tell one rotation from another.
 const FEWEST_PATCHES: usize = 16;
 /// Mean of the unit normals of a block below which they disagree too much to have a direction.
 const LEAST_AGREEMENT: f64 = 0.3;
@@ -24,7 +24,7 @@ const LARGEST_AREA: f64 = 5.0;
 #[derive(Clone, Copy, Debug)]
 pub struct Patch {
     /// From the centre of the cloud.
-    pub place: [f32; 3],
+    pub position: [f32; 3],
     pub normal: [f32; 3],
     pub area: f32,
 }
@@ -86,7 +86,7 @@ impl Cloud {
             let Some(point) = block.mean() else { continue };
             let area = area.unwrap_or(median).min(LARGEST_AREA * median) * block.count / full;
             self.patches.push(Patch {
-                place: (point - self.centre).map(|value| value as f32).into(),
+                position: (point - self.centre).map(|value| value as f32).into(),
                 normal: block.normal.normalize().map(|value| value as f32).into(),
                 area: area as f32,
             });

@@ -3,12 +3,12 @@
 //! Unknown light: with harmonics q_k made orthonormal over the whole template, the explained sum of squares is
 //! sum_k |q_k * y|^2 for k > 0, out of N * |y|^2 - |q_0 * y|^2. Known light: the squares of y - p expand into five
 //! correlations. Both only propose translations: orthonormal over the whole template is not orthonormal over an
-//! overlap, and [`judge`](super::judge) has the last word. Two real fields share each transform: the one of f_0 + i
+//! overlap, so that the exact [`score`](super::score) chooses among them. Two real fields share each transform: the one of f_0 + i
 //! f_1, correlated with a real field, is that of f_0 in its real and of f_1 in its imaginary part, the latter negated.
 //!
 //! Cost: 21 transforms for an unknown light, 5 for a known one.
 
-use super::judge::{FEWEST_CELLS, Gram, Prediction, regularised};
+use super::score::{FEWEST_CELLS, Gram, Prediction, regularised};
 use super::target::{CELLS, Fourier, SIDE, Target};
 use super::template::{PRODUCTS, Template};
 use crate::light::HARMONICS;
@@ -58,9 +58,9 @@ impl Correlator {
         target: &Target,
     ) -> impl Iterator<Item = [i32; 2]> + use<> {
         let scored = match prediction {
-            None => self.fitted(template, target),
+            None => self.score_fits(template, target),
             Some(prediction) => {
-                self.predicted(template, prediction, target);
+                self.score_prediction(template, prediction, target);
                 Some(())
             }
         };
@@ -70,7 +70,8 @@ impl Correlator {
         peaks.into_iter().flatten().map(move |cell| [signed(cell as i32 % side), signed(cell as i32 / side)])
     }
 
-    fn fitted(&mut self, template: &Template, target: &Target) -> Option<()> {
+    /// Scores of all translations under an unknown light.
+    fn score_fits(&mut self, template: &Template, target: &Target) -> Option<()> {
         let weight = self.whitened(template)?;
         self.fields.iter_mut().for_each(|field| self.fourier.forward(field));
         self.scores.fill(0.0);
@@ -85,14 +86,14 @@ impl Correlator {
         for index in 0..CELLS {
             let (re, im) = even(&self.fields[0], index, self.mirror[index]);
             let (re, im) = (weight * re, weight * im);
-            let (a, b) = plus_i(&spectra.mask, &spectra.energy, index);
+            let (a, b) = plus_i(&spectra.mask, &spectra.square, index);
             (product.re[index], product.im[index]) = (re * a - im * b, re * b + im * a);
         }
         self.fourier.inverse(product);
         let least = least_cover(template, target);
         for index in 0..CELLS {
-            let (cover, energy) = (product.re[index] * NORM, product.im[index] * NORM);
-            let total = energy - self.mean[index] * NORM * NORM;
+            let (cover, square) = (product.re[index] * NORM, product.im[index] * NORM);
+            let total = square - self.mean[index] * NORM * NORM;
             let explained = self.scores[index] * NORM * NORM;
             let share = (explained / total.max(LEAST_SQUARE)).min(1.0);
             self.scores[index] = if cover < least { f32::NEG_INFINITY } else { share * cover };
@@ -137,8 +138,8 @@ impl Correlator {
         squares(&mut self.scores, &product.im);
     }
 
-    /// Fields w p_0 + i w p_1, w p_2 + i w and w |p|^2 + i w u . p, with u the direction of the exposure.
-    fn predicted(&mut self, template: &Template, prediction: &Prediction, target: &Target) {
+    /// Scores of all translations under a known light. Fields w p_0 + i w p_1, w p_2 + i w and w |p|^2 + i w u . p, with u the direction of the exposure.
+    fn score_prediction(&mut self, template: &Template, prediction: &Prediction, target: &Target) {
         let exposure = prediction.exposure.map(|value| value as f32);
         self.fields[..3].iter_mut().for_each(Field::clear);
         let mut set = |field: usize, cell: u32, re: f32, im: f32| {
@@ -167,7 +168,7 @@ impl Correlator {
             let (square, along) = split(&self.fields[2]);
             let [c0, c1, c2] = spectra.colour.each_ref().map(at);
             let mask = at(&spectra.mask);
-            let squares = weight * at(&spectra.energy) + square * mask - (x * c0 + y * c1 + z * c2) * 2.0;
+            let squares = weight * at(&spectra.square) + square * mask - (x * c0 + y * c1 + z * c2) * 2.0;
             let shifted = weight * (c0 * exposure[0] + c1 * exposure[1] + c2 * exposure[2]) - along * mask;
             (product.re[index], product.im[index]) = (squares.re - shifted.im, squares.im + shifted.re);
             let seen = weight * mask;
@@ -192,8 +193,8 @@ impl Correlator {
             let [left, right] = [(column + side - 1) % side, (column + 1) % side];
             let [up, down] = [(row + side - 1) % side, (row + 1) % side];
             let lower = |column: usize, row: usize| self.scores[row * side + column] <= score;
-            let near = lower(left, row) && lower(right, row) && lower(column, up) && lower(column, down);
-            if score == f32::NEG_INFINITY || !near {
+            let is_peak = lower(left, row) && lower(right, row) && lower(column, up) && lower(column, down);
+            if score == f32::NEG_INFINITY || !is_peak {
                 continue;
             }
             let rank = peaks.iter().position(|peak: &Option<usize>| peak.is_none_or(|peak| self.scores[peak] < score));

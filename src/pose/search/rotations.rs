@@ -2,7 +2,7 @@
 //!
 //! Method: the super-Fibonacci spiral (Alexa, CVPR 2022): unit quaternions
 //! q_i = (sqrt t sin a, sqrt t cos a, sqrt(1-t) sin b, sqrt(1-t) cos b) with t = (i + 1/2) / n, a = 2 pi (i + 1/2) /
-//! phi and b = 2 pi (i + 1/2) / psi. All of them are turned by one rotation that the seed draws, which leaves them as
+//! phi and b = 2 pi (i + 1/2) / psi. All of them are rotated by one rotation that the seed draws, which leaves them as
 //! even; those inside the domain are kept.
 //!
 //! Limits: the spacing is the edge of the cube that each rotation stands for; the farthest rotation is about 0.9 of it
@@ -28,12 +28,12 @@ pub fn spread(spacing: f64, seed: u64) -> Vec<Matrix3<f64>> {
     let mut generator = ChaCha8Rng::seed_from_u64(seed);
     let mut uniform = || (generator.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
     // Shoemake's uniform rotation has the form of the spiral's members.
-    let turn = member(uniform(), TAU * uniform(), TAU * uniform());
+    let drawn = member(uniform(), TAU * uniform(), TAU * uniform());
     // All rotations together measure 8 pi^2 cubic radians.
     let count = (8.0 * PI.powi(2) / spacing.to_radians().powi(3)).ceil() as usize;
     let along = |index: usize| {
         let i = index as f64 + 0.5;
-        turn * member(i / count as f64, TAU * i / SQRT_2, TAU * i / PSI)
+        drawn * member(i / count as f64, TAU * i / SQRT_2, TAU * i / PSI)
     };
     (0..count).map(along).filter(in_domain).map(|rotation| rotation.to_rotation_matrix().into_inner()).collect()
 }

@@ -51,7 +51,8 @@ pub struct Target {
 /// Spectra of real fields, as [`Fourier`] leaves them.
 pub struct Spectra {
     pub mask: Field,
-    pub energy: Field,
+    /// Of mask |y|^2.
+    pub square: Field,
     pub colour: [Field; 3],
 }
 
@@ -65,7 +66,7 @@ impl Target {
         }
         let (cell, middle) = frame(view);
         let (mask, mut colour) = cells(view, side, cell, middle);
-        let (mean, covariance) = moments(&mask, &colour);
+        let (mean, covariance) = mean_and_covariance(&mask, &colour);
         let balance = balance(&covariance)?;
         for index in (0..mask.len()).filter(|&index| mask[index] > 0.0) {
             let log = Vector3::from_fn(|channel, _| f64::from(colour[channel][index]));
@@ -78,10 +79,10 @@ impl Target {
             fourier.forward(&mut field);
             field
         };
-        let energy = |index: usize| mask[index] * colour.iter().map(|channel| channel[index].powi(2)).sum::<f32>();
+        let square = |index: usize| mask[index] * colour.iter().map(|channel| channel[index].powi(2)).sum::<f32>();
         let spectra = Spectra {
             mask: spectrum(&|index| mask[index]),
-            energy: spectrum(&energy),
+            square: spectrum(&square),
             colour: [0, 1, 2].map(|channel: usize| spectrum(&|index| mask[index] * colour[channel][index])),
         };
         let covered = mask.iter().sum();
@@ -135,7 +136,7 @@ fn cells(view: &ColourView, side: usize, cell: f64, middle: [f64; 2]) -> (Vec<f3
 }
 
 /// Mean and covariance of the colours, weighted by the mask.
-fn moments(mask: &[f32], colour: &[Vec<f32>; 3]) -> (Vector3<f64>, Matrix3<f64>) {
+fn mean_and_covariance(mask: &[f32], colour: &[Vec<f32>; 3]) -> (Vector3<f64>, Matrix3<f64>) {
     let at = |index: usize| Vector3::from_fn(|channel, _| f64::from(colour[channel][index]));
     let total: f64 = mask.iter().map(|&weight| f64::from(weight)).sum();
     let weighted = || (0..mask.len()).map(|index| (f64::from(mask[index]) / total, at(index)));

@@ -1,53 +1,54 @@
-//! Results of tasks that several hands work on: they come in any order and are used in their own.
+//! Results of tasks that several workers share: they come in any order and are used in the order of the tasks.
 
-/// One place for the result of each task.
+/// The state of each task.
 #[derive(Debug)]
-pub struct Slots<T>(Vec<Slot<T>>);
+pub struct TaskResults<T>(Vec<TaskState<T>>);
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Slot<T> {
+enum TaskState<T> {
     Open,
-    /// Somebody else is at it.
+    /// A worker has it.
     Taken,
     Done(T),
 }
 
-impl<T> Slots<T> {
+impl<T> TaskResults<T> {
     pub fn new(count: usize) -> Self {
-        Self((0..count).map(|_| Slot::Open).collect())
+        Self((0..count).map(|_| TaskState::Open).collect())
     }
 
-    /// The first task that nobody is at and that `is_wanted`, for somebody else to do.
+    /// The first open task that `is_wanted`, for a worker.
     pub fn take(&mut self, is_wanted: impl Fn(usize) -> bool) -> Option<usize> {
         let index = self.first_open(is_wanted)?;
-        self.0[index] = Slot::Taken;
+        self.0[index] = TaskState::Taken;
         Some(index)
     }
 
-    /// What to do here: the first task that nobody is at, or else the last one that others have not brought back. They
-    /// begin with their first, so it is the least likely to be under way, and whoever never returns is not waited for.
+    /// The task to do in this thread: the first open one, or else the last one that a worker has not returned. Workers
+    /// take the first ones first, so the last is the least likely to be under way; and a worker that never returns is not
+    /// waited for.
     pub fn next(&self, is_wanted: impl Fn(usize) -> bool) -> Option<usize> {
         self.first_open(&is_wanted).or_else(|| {
-            let is_taken = |slot: &Slot<T>| matches!(slot, Slot::Taken);
+            let is_taken = |state: &TaskState<T>| matches!(state, TaskState::Taken);
             (0..self.0.len()).rev().find(|&index| is_taken(&self.0[index]) && is_wanted(index))
         })
     }
 
     fn first_open(&self, is_wanted: impl Fn(usize) -> bool) -> Option<usize> {
-        (0..self.0.len()).find(|&index| matches!(self.0[index], Slot::Open) && is_wanted(index))
+        (0..self.0.len()).find(|&index| matches!(self.0[index], TaskState::Open) && is_wanted(index))
     }
 
     /// Keeps the first result of a task: whoever does it gets the same.
     pub fn put(&mut self, index: usize, result: T) {
-        if let Some(slot @ (Slot::Open | Slot::Taken)) = self.0.get_mut(index) {
-            *slot = Slot::Done(result);
+        if let Some(state @ (TaskState::Open | TaskState::Taken)) = self.0.get_mut(index) {
+            *state = TaskState::Done(result);
         }
     }
 
     pub fn get(&self, index: usize) -> Option<&T> {
         match self.0.get(index)? {
-            Slot::Done(result) => Some(result),
-            Slot::Open | Slot::Taken => None,
+            TaskState::Done(result) => Some(result),
+            TaskState::Open | TaskState::Taken => None,
         }
     }
 
@@ -75,20 +76,20 @@ mod tests {
     use super::*;
 
     #[test]
-    fn any_order_of_hands_leaves_the_order_of_tasks() {
-        let mut slots = Slots::new(4);
-        assert_eq!((slots.take(|_| true), slots.take(|index| index != 1)), (Some(0), Some(2)));
-        slots.put(2, 'c');
-        assert_eq!(slots.next(|_| true), Some(1));
-        slots.put(1, 'b');
-        slots.put(3, 'd');
-        assert!(!slots.is_complete());
-        // Nobody has brought the first, so it is done here; what comes later is the same and ignored.
-        assert_eq!(slots.next(|_| true), Some(0));
-        slots.put(0, 'a');
-        slots.put(0, 'x');
-        slots.put(9, 'x');
-        assert!(slots.is_complete() && slots.next(|_| true).is_none());
-        assert_eq!(slots.results().collect::<String>(), "abcd");
+    fn results_in_any_order_are_used_in_the_order_of_tasks() {
+        let mut tasks = TaskResults::new(4);
+        assert_eq!((tasks.take(|_| true), tasks.take(|index| index != 1)), (Some(0), Some(2)));
+        tasks.put(2, 'c');
+        assert_eq!(tasks.next(|_| true), Some(1));
+        tasks.put(1, 'b');
+        tasks.put(3, 'd');
+        assert!(!tasks.is_complete());
+        // No worker has returned the first, so it is done here; what comes later is the same and ignored.
+        assert_eq!(tasks.next(|_| true), Some(0));
+        tasks.put(0, 'a');
+        tasks.put(0, 'x');
+        tasks.put(9, 'x');
+        assert!(tasks.is_complete() && tasks.next(|_| true).is_none());
+        assert_eq!(tasks.results().collect::<String>(), "abcd");
     }
 }

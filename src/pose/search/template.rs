@@ -1,7 +1,7 @@
-//! What the colour camera would see of the turned cloud, on the search grid.
+//! What the colour camera would see of the rotated cloud, on the search grid.
 //!
 //! Each patch that faces the camera and is not hidden spreads its projected area w over the four cells around it, with
-//! the nine harmonics of its turned normal: a cell holds w and w B_k(n). Coverage is at most one.
+//! the nine harmonics of its rotated normal: a cell holds w and w B_k(n). Coverage is at most one.
 //!
 //! Limits: hidden is what lies behind the nearest patch of the same cell or its neighbours by more than a tolerance, so
 //! that thin structures one behind the other show through. What leaves the grid is not seen.
@@ -38,15 +38,15 @@ pub type Products = [f32; PRODUCTS];
 
 /// How patches fall on the grid: a camera that looks along `ray` (x and y at z = 1) at the centre of the cloud.
 #[derive(Clone, Copy, Debug)]
-pub struct Gaze {
+pub struct GridProjection {
     /// Cells for each unit of the depth view at the centre of the cloud.
     pub magnification: f32,
     pub ray: [f32; 2],
     /// One over the distance of the centre in units of the depth view; zero for parallel rays.
-    pub closeness: f32,
+    pub inverse_distance: f32,
 }
 
-/// The turned cloud on a square grid; the centre of the cloud lies in cell (side / 2, side / 2).
+/// The rotated cloud on a square grid; the centre of the cloud lies in cell (side / 2, side / 2).
 pub struct Template {
     side: usize,
     /// Sums of every cell.
@@ -57,8 +57,10 @@ pub struct Template {
     pub products: Vec<Products>,
     /// Cells covered in all.
     pub visible: f32,
+    /// The nearest depth in every cell, cells.
     nearest: Vec<f32>,
-    places: Vec<[f32; 3]>,
+    /// Column, row and depth of every patch, cells.
+    positions: Vec<[f32; 3]>,
 }
 
 impl Template {
@@ -70,22 +72,27 @@ impl Template {
             products: Vec::with_capacity(side * side),
             visible: 0.0,
             nearest: vec![f32::INFINITY; side * side],
-            places: Vec::with_capacity(cloud.patches.len()),
+            positions: Vec::with_capacity(cloud.patches.len()),
         }
     }
 
     /// Draws the cloud under `rotation` in place of whatever was drawn before. Allocates nothing.
-    pub fn draw(&mut self, cloud: &Cloud, rotation: &Matrix3<f64>, gaze: &Gaze) {
-        let turn = rows(rotation);
+    pub fn draw(&mut self, cloud: &Cloud, rotation: &Matrix3<f64>, projection: &GridProjection) {
+        let rotation = rows(rotation);
         self.clear();
-        self.place(cloud, &turn, gaze);
-        let length = (1.0 + gaze.ray[0] * gaze.ray[0] + gaze.ray[1] * gaze.ray[1]).sqrt();
+        self.project(cloud, &rotation, projection);
+        let length = (1.0 + projection.ray[0] * projection.ray[0] + projection.ray[1] * projection.ray[1]).sqrt();
         for index in 0..cloud.patches.len() {
             let patch = &cloud.patches[index];
-            let normal = times(&turn, patch.normal);
-            let facing = -(normal[0] * gaze.ray[0] + normal[1] * gaze.ray[1] + normal[2]) / length;
-            let Some(corner) = (facing > GRAZING).then(|| self.seen(index)).flatten() else { continue };
-            self.spread(index, corner, patch.area * gaze.magnification * gaze.magnification * facing, normal);
+            let normal = times(&rotation, patch.normal);
+            let facing = -(normal[0] * projection.ray[0] + normal[1] * projection.ray[1] + normal[2]) / length;
+            let Some(corner) = (facing > GRAZING).then(|| self.visible_corner(index)).flatten() else { continue };
+            self.spread(
+                index,
+                corner,
+                patch.area * projection.magnification * projection.magnification * facing,
+                normal,
+            );
         }
         for &cell in &self.cells {
             let sums = &mut self.sums[cell as usize];
@@ -119,29 +126,32 @@ impl Template {
         }
         self.cells.clear();
         self.nearest.fill(f32::INFINITY);
-        self.places.clear();
+        self.positions.clear();
         self.visible = 0.0;
     }
 
     /// Column, row and depth of every patch in cells, and the nearest depth of every cell.
-    fn place(&mut self, cloud: &Cloud, turn: &[[f32; 3]; 3], gaze: &Gaze) {
+    fn project(&mut self, cloud: &Cloud, rotation: &[[f32; 3]; 3], projection: &GridProjection) {
         let middle = (self.side / 2) as f32;
         let last = (self.side - 2) as f32;
         for patch in &cloud.patches {
-            let [x, y, z] = times(turn, patch.place);
-            let shrink = gaze.magnification / (1.0 + z * gaze.closeness).max(f32::EPSILON);
+            let [x, y, z] = times(rotation, patch.position);
+            let shrink = projection.magnification / (1.0 + z * projection.inverse_distance).max(f32::EPSILON);
             // (ray D + x) / (D + z) - ray = (x - ray z) / (D + z)
-            let bend = if gaze.closeness > 0.0 { gaze.ray } else { [0.0; 2] };
-            let place =
-                [(x - bend[0] * z) * shrink + middle, (y - bend[1] * z) * shrink + middle, z * gaze.magnification];
-            self.places.push(place);
-            let [column, row] = [place[0], place[1]];
+            let slant = if projection.inverse_distance > 0.0 { projection.ray } else { [0.0; 2] };
+            let position = [
+                (x - slant[0] * z) * shrink + middle,
+                (y - slant[1] * z) * shrink + middle,
+                z * projection.magnification,
+            ];
+            self.positions.push(position);
+            let [column, row, depth] = position;
             if column >= 1.0 && row >= 1.0 && column <= last && row <= last {
                 let cell = nearest(row) * self.side + nearest(column);
                 for cell in [cell, cell - 1, cell + 1, cell - self.side, cell + self.side] {
                     // Written out: `min` is a call on some targets.
-                    if place[2] < self.nearest[cell] {
-                        self.nearest[cell] = place[2];
+                    if depth < self.nearest[cell] {
+                        self.nearest[cell] = depth;
                     }
                 }
             }
@@ -149,8 +159,8 @@ impl Template {
     }
 
     /// The upper left of the four cells around a patch, `None` where it is hidden or off the grid.
-    fn seen(&self, index: usize) -> Option<usize> {
-        let [x, y, z] = self.places[index];
+    fn visible_corner(&self, index: usize) -> Option<usize> {
+        let [x, y, z] = self.positions[index];
         let last = (self.side - 2) as f32;
         if x < 0.0 || y < 0.0 || x >= last || y >= last {
             return None;
@@ -160,7 +170,7 @@ impl Template {
     }
 
     fn spread(&mut self, index: usize, corner: usize, area: f32, normal: [f32; 3]) {
-        let [x, y, _] = self.places[index];
+        let [x, y, _] = self.positions[index];
         let (right, low) = (x - (x as usize) as f32, y - (y as usize) as f32);
         let mut harmonics = [0.0; PADDED];
         harmonics[..HARMONICS].copy_from_slice(&basis(normal));

@@ -1,14 +1,15 @@
-//! log S between pixels: cubic splines over the mask, with their gradients.
+//! log S between pixels: cubic splines over the mask, with their gradients (docs/method.md, section 10).
 //!
 //! f(x, y) = sum c_ij b(x - i) b(y - j) with the cubic B-spline b and coefficients that make f pass through every pixel
-//! (Unser 1999: one pole, 3^(1/2) - 2, forwards and backwards). Fourth order between pixels, twice differentiable
+//! (M. Unser: "Splines: a perfect fit for signal and image processing", IEEE Signal Processing Magazine 16, 1999: one
+//! pole, 3^(1/2) - 2, forwards and backwards). Fourth order between pixels, twice differentiable
 //! across them, exact on them. Off the mask the image is first continued in straight lines, ring by ring, so that the
 //! spline meets no step at the rim; values are given only inside cells whose four pixels are all on the mask.
 //!
 //! Coarse levels hold the mask-normalised Gaussian mean of log S on the same raster.
 //!
 //! Limits: an image with detail near one pixel is not band-limited and no interpolation finds what lies between; the
-//! outermost cells feel the continuation, a quarter of it for each pixel inwards.
+//! outermost cells depend on the continuation, a quarter of it for each pixel inwards.
 
 use std::sync::Arc;
 
@@ -19,14 +20,14 @@ use crate::view::{ColourView, Size};
 const POLE: f64 = -0.267_949_192_431_122_7;
 /// Samples after which the pole's powers have fallen below the rounding of f32: 0.268^14 = 1e-8.
 const HORIZON: usize = 14;
-/// Rings of pixels that the continuation adds: the spline feels the last of them by 0.268^8 = 3e-5.
+/// Rings of pixels that the continuation adds: the spline on the mask depends on the last of them by 0.268^8 = 3e-5.
 const RINGS: u8 = 8;
 /// Mirrored samples of a line: one before, two behind.
 const MIRRORED: usize = 3;
 /// Reach of a Gaussian in sigmas: what lies beyond weighs 1 %.
 const REACH: f64 = 3.0;
 
-/// Lanes that hold the three colours of a sample: one, and what follows in the fourth is not looked at.
+/// Lanes that hold the three colours of a sample: one, and what follows in the fourth is ignored.
 const CHUNKS: usize = 3_usize.div_ceil(LANES);
 /// Numbers of a line of four samples, with the one more that the last lanes load.
 const LINE: usize = 4 * 3 + 1;
@@ -98,7 +99,7 @@ impl SplineImage {
 
     /// log S at a continuous position; `None` off the mask.
     pub fn value(&self, position: [f64; 2]) -> Option<[f64; 3]> {
-        let [left, top] = self.seen_cell(position)?;
+        let [left, top] = self.whole_cell(position)?;
         let across = splat(values(position[0] - left as f64));
         let down = splat(values(position[1] - top as f64));
         let mut log = [Lanes::splat(0.0); CHUNKS];
@@ -110,17 +111,17 @@ impl SplineImage {
 
     /// log S and its gradient at a continuous position; `None` off the mask.
     pub fn at(&self, position: [f64; 2]) -> Option<ImagePoint> {
-        let [left, top] = self.seen_cell(position)?;
+        let [left, top] = self.whole_cell(position)?;
         let [along, below] = [position[0] - left as f64, position[1] - top as f64];
         let (across, down) = (splat(values(along)), splat(values(below)));
-        let (across_slope, down_slope) = (splat(slopes(along)), splat(slopes(below)));
+        let (across_derivative, down_derivative) = (splat(derivatives(along)), splat(derivatives(below)));
         let [mut log, mut by_column, mut by_row] = [[Lanes::splat(0.0); CHUNKS]; 3];
         for j in 0..4 {
             let line = self.line(left, top + j);
             let value = sum(&across, line);
             add_share(&mut log, down[j], &value);
-            add_share(&mut by_row, down_slope[j], &value);
-            add_share(&mut by_column, down[j], &sum(&across_slope, line));
+            add_share(&mut by_row, down_derivative[j], &value);
+            add_share(&mut by_column, down[j], &sum(&across_derivative, line));
         }
         let (by_column, by_row) = (numbers(by_column), numbers(by_row));
         let gradient = |channel: usize| [by_column[channel], by_row[channel]];
@@ -139,8 +140,8 @@ impl SplineImage {
         self.coefficients.as_flattened().get(start..start + LINE).unwrap_or_default()
     }
 
-    /// The cell around a position whose pixels are all on the mask.
-    fn seen_cell(&self, position: [f64; 2]) -> Option<[usize; 2]> {
+    /// The cell around a position, where its pixels are all on the mask.
+    fn whole_cell(&self, position: [f64; 2]) -> Option<[usize; 2]> {
         self.cell(position).filter(|&[left, top]| self.cells[self.size.index(left, top)])
     }
 
@@ -184,7 +185,7 @@ fn values(t: f64) -> [f64; 4] {
 }
 
 /// Their derivatives.
-fn slopes(t: f64) -> [f64; 4] {
+fn derivatives(t: f64) -> [f64; 4] {
     let u = 1.0 - t;
     let middle = |t: f64| (1.5 * t - 2.0) * t;
     [-0.5 * u * u, middle(t), -middle(u), 0.5 * t * t]

@@ -3,9 +3,8 @@
 //! score = N (N / V) (1/3) ln( det(T + e) / det(E + e) ): N cells of overlap out of V visible ones, T the covariance of
 //! the balanced colours y in the overlap, E that of what the template leaves of them. With an unknown light E is the
 //! residual of a linear fit of the nine harmonics in each channel; with a known one it is y - W B(n) L, free of a
-//! common exposure. It is the gain of likelihood over a constant colour, so exposure and white balance of the scores
-//! cancel; N / V is the share of the visible cells that the mask accepts: visible points off the object are a
-//! contradiction.
+//! common exposure. It is the gain of log likelihood over a constant colour, so that exposure and white balance cancel; N / V is the share of the visible cells that lie on the mask: points that should be visible off the object speak
+//! against the pose.
 //!
 //! Limits: every cell counts as independent, and shadows and albedo are not modelled.
 
@@ -16,13 +15,13 @@ use super::template::{PADDED, PRODUCTS, Products, Sums, Template, row_start};
 use crate::light::{HARMONICS, Light, basis};
 
 /// Variance e added to the balanced colours, whose first axis has variance one: what a tilt by half the spacing of the
-/// rotations leaves unexplained at best. Ten times as much ranks alike.
+/// rotations leaves unexplained at best. Ten times as much ranks candidates alike.
 const UNEXPLAINED: f64 = 1e-3;
 /// Share added to the diagonal of the harmonics' Gram matrix, and of the weight: harmonics that hardly vary over the
 /// overlap must not be fitted with huge coefficients.
 const RIDGE: f64 = 1e-3;
 const RIDGE_OF_WEIGHT: f64 = 1e-4;
-/// Overlaps of fewer cells can be explained by anything: nine harmonics fit nine cells.
+/// Fewest cells of an overlap: nine harmonics fit any colours of nine cells.
 pub const FEWEST_CELLS: f32 = 12.0;
 
 /// Products of the harmonics over some cells.
@@ -66,10 +65,10 @@ impl Prediction {
 }
 
 /// The score of a template moved by whole cells; `None` where too little overlaps.
-pub fn judge(template: &Template, prediction: Option<&Prediction>, target: &Target, shift: [i32; 2]) -> Option<f64> {
+pub fn score(template: &Template, prediction: Option<&Prediction>, target: &Target, shift: [i32; 2]) -> Option<f64> {
     let (total, residual, cells) = match prediction {
-        None => fitted(template, target, shift)?,
-        Some(prediction) => predicted(template, prediction, target, shift)?,
+        None => squares_of_fit(template, target, shift)?,
+        Some(prediction) => squares_of_prediction(template, prediction, target, shift)?,
     };
     let floor = Matrix3::identity() * UNEXPLAINED;
     let gain = ((total / cells + floor).determinant() / (residual / cells + floor).determinant()).ln() / 3.0;
@@ -79,8 +78,8 @@ pub fn judge(template: &Template, prediction: Option<&Prediction>, target: &Targ
 /// Sums of squares of the colours about their mean, those of the residual, and the number of cells.
 type Squares = (Matrix3<f64>, Matrix3<f64>, f64);
 
-/// The cells under a moved template: position in its list, sums, index in the target.
-fn under<'a>(
+/// The cells that a moved template and the target share: number in the template's list, sums, index in the target.
+fn overlap<'a>(
     template: &'a Template,
     target: &'a Target,
     shift: [i32; 2],
@@ -94,11 +93,11 @@ fn under<'a>(
     })
 }
 
-fn fitted(template: &Template, target: &Target, shift: [i32; 2]) -> Option<Squares> {
+fn squares_of_fit(template: &Template, target: &Target, shift: [i32; 2]) -> Option<Squares> {
     let mut gram = [0.0_f32; PRODUCTS];
     let mut cross = [[0.0_f32; PADDED]; 3];
     let mut outer = [0.0_f32; 6];
-    for (order, sums, place) in under(template, target, shift) {
+    for (order, sums, place) in overlap(template, target, shift) {
         let mask = target.mask[place];
         gram.iter_mut().zip(&template.products[order]).for_each(|(sum, product)| *sum += mask * product);
         let colour = [target.colour[0][place], target.colour[1][place], target.colour[2][place]];
@@ -130,21 +129,26 @@ pub fn regularised(products: &Products) -> Gram {
     gram
 }
 
-fn predicted(template: &Template, prediction: &Prediction, target: &Target, shift: [i32; 2]) -> Option<Squares> {
+fn squares_of_prediction(
+    template: &Template,
+    prediction: &Prediction,
+    target: &Target,
+    shift: [i32; 2],
+) -> Option<Squares> {
     let (mut cells, mut sum, mut off) = (0.0_f32, [0.0_f32; 3], [0.0_f32; 3]);
     let (mut outer, mut left) = ([0.0_f32; 6], [0.0_f32; 6]);
-    for (order, sums, place) in under(template, target, shift) {
+    for (order, sums, place) in overlap(template, target, shift) {
         let weight = target.mask[place] * sums[0];
         let colour = [target.colour[0][place], target.colour[1][place], target.colour[2][place]];
         let shade = prediction.colours[order];
-        let gap = [colour[0] - shade[0], colour[1] - shade[1], colour[2] - shade[2]];
+        let residual = [colour[0] - shade[0], colour[1] - shade[1], colour[2] - shade[2]];
         cells += weight;
         for channel in 0..3 {
             sum[channel] += weight * colour[channel];
-            off[channel] += weight * gap[channel];
+            off[channel] += weight * residual[channel];
         }
         add_outer(&mut outer, weight, colour);
-        add_outer(&mut left, weight, gap);
+        add_outer(&mut left, weight, residual);
     }
     if cells < FEWEST_CELLS {
         return None;

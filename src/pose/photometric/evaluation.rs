@@ -1,0 +1,141 @@
+//! Sums over the points of a registration at one state of pose and light: the objective, the linearised equations, the
+//! noise and the share of inliers.
+
+use super::equations::{Equations, LightEquations, ReducedSystem};
+use super::points::VisiblePoints;
+use super::problem::{Indices, PhotometricProblem};
+use super::residual::{ColourModel, LinearisedPoints, Samples};
+use super::state::State;
+use super::weighting::Weighting;
+use crate::light::{Coefficients, basis};
+use crate::numeric::{DOUBLE_LANES, Doubles, Real, dot, quantile, robust};
+use crate::pose::increment::Frame;
+
+/// Points whose weight is below this are left out of the noise: their residuals come from their normals, not from the
+/// image.
+const LEAST_WEIGHT_FOR_NOISE: f64 = 0.25;
+/// Median of |r| over three channels of unit normal noise: the root of the median of chi squared with three degrees of
+/// freedom.
+const MEDIAN_OF_THREE: f64 = 1.538_172_253_6;
+
+/// The residuals of some points at one state, on one level of the image.
+pub(super) struct Evaluation<'a> {
+    pub problem: &'a PhotometricProblem<'a>,
+    pub points: &'a VisiblePoints,
+    /// The image under the light of the state.
+    pub model: ColourModel<'a>,
+    pub state: &'a State,
+    pub weighting: Weighting,
+}
+
+impl Evaluation<'_> {
+    /// Sum of w rho + prior.
+    pub fn objective(&self) -> f64 {
+        let sum = self.data_term();
+        if self.problem.light.is_some() {
+            return sum;
+        }
+        sum + self.weighting.prior * self.problem.prior.squared_distance(&self.state.light)
+    }
+
+    /// Sum of w rho; a point that left the mask counts with the largest rho, the square of the robust scale.
+    pub fn data_term(&self) -> f64 {
+        let largest = self.largest_rho();
+        let mut sum = Doubles::splat(0.0);
+        self.for_each_square(|weight, shown, square| {
+            let saved = Doubles::splat(1.0) - square / (largest + square);
+            sum = sum + weight * largest * (Doubles::splat(1.0) - shown * saved);
+        });
+        sum.sum()
+    }
+
+    /// Share of the weights whose residuals are below the robust scale.
+    pub fn inlier_share(&self) -> f64 {
+        let largest = self.largest_rho();
+        let mut sum = Doubles::splat(0.0);
+        self.for_each_square(|weight, shown, square| {
+            sum = sum + square.less(largest).keep(weight * shown);
+        });
+        sum.sum() / self.points.weight().max(f64::MIN_POSITIVE)
+    }
+
+    /// Robust standard deviation of a channel's residuals, from the median of |r|; infinite without points.
+    pub fn noise(&self, scratch: &mut Vec<f32>) -> f64 {
+        scratch.clear();
+        self.for_each_square(|weight, shown, square| {
+            let [weights, squares] = [weight * shown, square].map(Doubles::array);
+            let counted = weights.into_iter().zip(squares).filter(|(weight, _)| *weight >= LEAST_WEIGHT_FOR_NOISE);
+            scratch.extend(counted.map(|(_, square)| square.sqrt() as f32));
+        });
+        if scratch.is_empty() {
+            return f64::INFINITY;
+        }
+        f64::from(quantile(scratch, 0.5)) / MEDIAN_OF_THREE
+    }
+
+    /// The equations of the pose, the light eliminated; `None` where the points do not determine the light.
+    pub fn reduced_system(&self, frame: &Frame) -> Option<ReducedSystem> {
+        let mut equations = Equations::new(self.problem.light.is_some(), self.model.has_instruments());
+        self.for_each_linearised(frame, |_, points, weight| equations.add(points, weight));
+        equations.add_prior(self.problem.prior, self.weighting.prior, &self.off_the_mean_light());
+        equations.reduce()
+    }
+
+    /// log S at the points, for [`light_equations`](Self::light_equations) under the same pose.
+    pub fn sample(&self, samples: &mut Vec<Samples>) {
+        samples.clear();
+        samples.reserve_exact(self.points.len().div_ceil(DOUBLE_LANES));
+        let points = self.points.lane_groups().map(|(indices, _)| self.problem.points(&self.state.pose, &indices));
+        samples.extend(points.map(|points| self.model.sample(points)));
+    }
+
+    /// The equations of the light alone; `samples` are those of the same points under the same pose.
+    pub fn light_equations(&self, samples: &[Samples]) -> LightEquations {
+        let mut equations = LightEquations::new(self.problem.light.is_some());
+        for ((indices, weight), samples) in self.points.lane_groups().zip(samples) {
+            let normals = self.problem.normals(&self.state.pose, &indices);
+            let residual = self.model.residual(samples, normals);
+            let weight = weight * samples.shown * self.robust_weight(&residual);
+            equations.add(&basis(normals), &residual, weight);
+        }
+        equations.add_prior(self.problem.prior, self.weighting.prior, &self.off_the_mean_light());
+        equations
+    }
+
+    /// Visits the points side by side with their indices and weights: their own times the robust ones.
+    #[inline(always)]
+    pub fn for_each_linearised(&self, frame: &Frame, mut visit: impl FnMut(&Indices, &LinearisedPoints, Doubles)) {
+        let (problem, pose) = (self.problem, &self.state.pose);
+        for (indices, weight) in self.points.lane_groups() {
+            let points = problem.points(pose, &indices);
+            let linearised = self.model.linearise(points, problem.normals(pose, &indices), frame);
+            visit(&indices, &linearised, weight * linearised.shown * self.robust_weight(&linearised.residual));
+        }
+    }
+
+    /// Visits the points with their weights, whether the image shows them (one or zero) and |r|^2.
+    #[inline(always)]
+    fn for_each_square(&self, mut visit: impl FnMut(Doubles, Doubles, Doubles)) {
+        let (problem, pose) = (self.problem, &self.state.pose);
+        for (indices, weight) in self.points.lane_groups() {
+            let samples = self.model.sample(problem.points(pose, &indices));
+            let residual = self.model.residual(&samples, problem.normals(pose, &indices));
+            visit(weight, samples.shown, dot(residual, residual));
+        }
+    }
+
+    #[inline(always)]
+    fn robust_weight(&self, residual: &[Doubles; 3]) -> Doubles {
+        robust::weight(dot(*residual, *residual) / self.largest_rho())
+    }
+
+    /// The square of the robust scale.
+    #[inline(always)]
+    fn largest_rho(&self) -> Doubles {
+        Doubles::splat(self.weighting.robust_scale * self.weighting.robust_scale)
+    }
+
+    fn off_the_mean_light(&self) -> Coefficients {
+        Coefficients::from(self.state.light.flat()) - self.problem.prior.mean_coefficients()
+    }
+}

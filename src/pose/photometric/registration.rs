@@ -1,0 +1,451 @@
+//! The rounds of a photometric registration: annealing, then instrumental variables.
+
+use nalgebra::SymmetricEigen;
+
+use super::covariance::{MOST_EIGEN_ROUNDS, Noise, Tiles};
+use super::equations::ReducedSystem;
+use super::evaluation::Evaluation;
+use super::points::{Sampling, VisiblePoints};
+use super::problem::{COARSEST, PhotometricOptions, PhotometricProblem, PhotometricReport, PhotometricTermination};
+use super::residual::{ColourModel, Samples};
+use super::spline_image::SplineImage;
+use super::state::State;
+use super::weighting::{Weighting, final_robust_scale, prior_weight};
+use crate::error::{Error, ErrorKind, Result};
+use crate::pose::increment::{Frame, PoseMatrix, SCALE, TRANSLATION_Z, clear_unknowns};
+use crate::pose::similarity::Similarity;
+use crate::pose::uncertainty::{describe, in_words};
+use crate::view::Size;
+
+/// Gaussian blur of each level's image, pixels; a level takes every 2^level-th point.
+const BLURS: [f64; COARSEST + 1] = [0.0, 1.5, 3.0];
+/// Coarsest level under an unknown light: a light that follows explains strongly blurred colours in any pose. From 20
+/// degrees off level 1 always converged on Mozart at 64x64, level 2 in a third of the cases; a known light converges
+/// from 30 by level 2.
+const COARSEST_UNKNOWN: usize = 1;
+/// Blur of the image whose gradients are the instrumental variables, pixels: 0.7 to 1.5 serve alike.
+pub(super) const INSTRUMENT_BLUR: f64 = 1.0;
+/// The first robust scale over that of the residuals at the start.
+const FIRST_SCALE: f64 = 2.0;
+/// The robust scale of a round over the one before, at least.
+const SCALE_SHRINKING: f64 = 0.6;
+/// Noise of log S that is always allowed for: half a percent of a good 8-bit image's rounding, log units.
+const LEAST_NOISE: f64 = 0.002;
+/// Reweightings of the light at the start of a round.
+const LIGHT_ROUNDS: usize = 6;
+/// Gauss-Newton steps of a round, and attempts to find the damping of each.
+const MOST_STEPS: usize = 6;
+const MOST_ATTEMPTS: usize = 8;
+/// Damping at the start of a round, as a share of the diagonal; its factors after a success and a failure; its least.
+const FIRST_DAMPING: f64 = 1e-3;
+const DAMPING_AFTER_SUCCESS: f64 = 0.2;
+const DAMPING_AFTER_FAILURE: f64 = 8.0;
+const LEAST_DAMPING: f64 = 1e-9;
+/// A step below this, in radians and object sizes, changes nothing: 1e-5 degrees.
+const SETTLED_STEP: f64 = 1e-7;
+/// A coarse level is done when a round rotates by less, degrees.
+const COARSE_SETTLED: f64 = 0.3;
+/// Annealing is done when a round at the final scale rotates by less, degrees: points that appear and disappear at the
+/// rim change the pose by more than that.
+const FINE_SETTLED: f64 = 3e-3;
+/// Rounds at the final scale after which only such points still change the pose.
+const MOST_FINE_ROUNDS: usize = 4;
+/// Rounds with instrumental variables: the visible points follow in the first, and stay in the others.
+const INSTRUMENTAL_ROUNDS: usize = 3;
+const MOST_INSTRUMENTAL_STEPS: usize = 12;
+/// These rounds are undone when they raise the objective by more than this share: they should only trade noise.
+const LARGEST_RISE: f64 = 0.1;
+/// Fewest points: two for each unknown of the pose.
+const FEWEST_POINTS: usize = 14;
+
+/// What the next piece of work is.
+#[derive(Clone, Copy, Debug)]
+enum Phase {
+    /// The beginning of a round of annealing: its visible points, their light, its robust scale.
+    AnnealingRound {
+        level: usize,
+        fine_rounds: usize,
+    },
+    /// A Gauss-Newton step of such a round.
+    AnnealingStep(Descent),
+    /// The beginning of a round with instrumental variables.
+    InstrumentalRound {
+        round: usize,
+    },
+    /// A step of such a round.
+    InstrumentalStep {
+        round: usize,
+        frame: Frame,
+        steps: usize,
+    },
+    Done(PhotometricTermination),
+}
+
+/// A round of damped Gauss-Newton at one level and one robust scale, between two of its steps.
+#[derive(Clone, Copy, Debug)]
+struct Descent {
+    level: usize,
+    /// Rounds at the robust scale of the noise before this one.
+    fine_rounds: usize,
+    frame: Frame,
+    /// The pose at the beginning of the round.
+    before: Similarity,
+    /// Whether the robust scale is that of the noise.
+    at_noise: bool,
+    damping: f64,
+    objective: f64,
+    steps: usize,
+}
+
+/// Registers one depth view to one image again and again; owns all memory.
+pub struct Photometric {
+    sizes: [Size; 2],
+    /// The image sharp and blurred, down to the coarsest level that is used.
+    levels: Vec<SplineImage>,
+    /// The image whose gradients are the instrumental variables.
+    instruments: SplineImage,
+    points: VisiblePoints,
+    tiles: Tiles,
+    /// log S at the points while the pose stays.
+    samples: Vec<Samples>,
+    magnitudes: Vec<f32>,
+    state: State,
+    /// The state at the end of the annealing.
+    annealed: State,
+    noise: Noise,
+    weighting: Weighting,
+    phase: Phase,
+    rounds: usize,
+    most_rounds: usize,
+    most_points: usize,
+    annealed_points: usize,
+    annealing: bool,
+    iterations: usize,
+}
+
+impl Photometric {
+    /// Splines of the image's levels, as many as a light that is known or not asks for, and memory for both views.
+    #[must_use]
+    pub fn new(problem: &PhotometricProblem<'_>) -> Self {
+        let light = problem.prior.mean();
+        let state = State { pose: Similarity::identity(), light, exposure: 0.0 };
+        let sharp = SplineImage::new(problem.image, BLURS[0]);
+        let instruments = sharp.blurred(problem.image, INSTRUMENT_BLUR);
+        let mut levels = vec![sharp];
+        levels.extend((1..=coarsest(problem)).map(|level| instruments.blurred(problem.image, BLURS[level])));
+        let points = VisiblePoints::new(problem);
+        Self {
+            sizes: [problem.image.size, problem.depth.size],
+            instruments,
+            levels,
+            samples: Vec::new(),
+            magnitudes: Vec::with_capacity(points.capacity()),
+            points,
+            tiles: Tiles::new(problem.depth.size),
+            state,
+            annealed: state,
+            noise: Noise { residuals: f64::INFINITY, image: problem.image.log_noise().max(LEAST_NOISE) },
+            weighting: Weighting::FIRST,
+            phase: Phase::Done(PhotometricTermination::MostRounds),
+            rounds: 0,
+            most_rounds: 0,
+            most_points: usize::MAX,
+            annealed_points: usize::MAX,
+            annealing: true,
+            iterations: 0,
+        }
+    }
+
+    /// The pose from `start`: [`begin`](Self::begin), [`step`](Self::step) to the end, [`report`](Self::report).
+    ///
+    /// # Errors
+    /// [`ErrorKind::Size`] where lengths disagree, [`ErrorKind::Range`] for a start that is no similarity,
+    /// [`ErrorKind::Degenerate`] where fewer than 14 points are visible or they determine nothing.
+    pub fn register(
+        &mut self,
+        problem: &PhotometricProblem<'_>,
+        start: &Similarity,
+        options: &PhotometricOptions,
+    ) -> Result<PhotometricReport> {
+        self.begin(problem, start, options)?;
+        while !self.step(problem)? {}
+        self.report(problem)
+    }
+
+    /// Starts anew.
+    ///
+    /// # Errors
+    /// Those of [`register`](Self::register).
+    pub fn begin(
+        &mut self,
+        problem: &PhotometricProblem<'_>,
+        start: &Similarity,
+        options: &PhotometricOptions,
+    ) -> Result<()> {
+        problem.check(self.sizes)?;
+        start.validate("start")?;
+        let level = options.first_level.min(coarsest(problem)).min(self.levels.len() - 1);
+        // From the image's own brightness, so that a change of exposure changes nothing that follows.
+        let brightness = problem.image.log_mean();
+        self.state = match problem.light {
+            Some(light) => State { pose: *start, light: *light, exposure: brightness },
+            None => State { pose: *start, light: problem.prior.mean().exposed(brightness), exposure: 0.0 },
+        };
+        (self.phase, self.rounds, self.iterations) = (Phase::AnnealingRound { level, fine_rounds: 0 }, 0, 0);
+        self.most_rounds = options.most_rounds.max(1);
+        (self.most_points, self.annealing) = (options.most_points, options.annealing);
+        self.annealed_points = options.annealed_points.min(options.most_points);
+        self.choose_points(problem, Sampling { level, most: self.annealed_points })?;
+        self.weighting = Weighting::FIRST;
+        self.fit_light(problem, level)?;
+        self.measure_noise(problem, level);
+        let tolerance = if options.annealing { FIRST_SCALE / SCALE_SHRINKING } else { 1.0 };
+        self.weigh(problem, tolerance * final_robust_scale(self.noise.residuals));
+        Ok(())
+    }
+
+    /// A piece of a round, one Gauss-Newton step at most, so that a page stays alive; whether it was the last.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Degenerate`] where too few points are visible or they determine nothing.
+    pub fn step(&mut self, problem: &PhotometricProblem<'_>) -> Result<bool> {
+        self.phase = match self.phase {
+            Phase::AnnealingStep(descent) => self.descend(problem, descent)?,
+            Phase::InstrumentalStep { round, frame, steps } => {
+                self.step_by_instruments(problem, round, &frame, steps)?
+            }
+            Phase::Done(_) => self.phase,
+            _ if self.rounds >= self.most_rounds => Phase::Done(PhotometricTermination::MostRounds),
+            Phase::AnnealingRound { level, fine_rounds } => self.begin_annealing(problem, level, fine_rounds)?,
+            Phase::InstrumentalRound { round } => self.begin_instrumental(problem, round)?,
+        };
+        Ok(self.is_done())
+    }
+
+    /// Whether there is nothing left to [`step`](Self::step).
+    #[must_use]
+    pub const fn is_done(&self) -> bool {
+        matches!(self.phase, Phase::Done(_))
+    }
+
+    /// The present pose.
+    #[must_use]
+    pub const fn pose(&self) -> &Similarity {
+        &self.state.pose
+    }
+
+    /// What was found so far.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Degenerate`] where the visible points determine nothing.
+    pub fn report(&mut self, problem: &PhotometricProblem<'_>) -> Result<PhotometricReport> {
+        let frame = self.choose_points(problem, Sampling { level: 0, most: self.most_points })?;
+        self.measure_noise(problem, 0);
+        self.weigh(problem, final_robust_scale(self.noise.residuals));
+        let reduced = self.reduce_by_instruments(problem, &frame)?;
+        let covariance = self.covariance(problem, &frame, &reduced);
+        let held = problem.held();
+        let mut information =
+            0.5 * (reduced.matrix + reduced.matrix.transpose()) / (self.noise.residuals * self.noise.residuals);
+        clear_unknowns(&mut information, &held);
+        let weakest = SymmetricEigen::try_new(covariance, f64::EPSILON, MOST_EIGEN_ROUNDS).map_or_else(
+            || "unknown".to_owned(),
+            |eigen| in_words(&eigen.eigenvectors.column(eigen.eigenvalues.imax()).into_owned()),
+        );
+        let evaluation = self.evaluation(problem, 0, &self.state);
+        let largest = self.weighting.robust_scale * self.weighting.robust_scale * self.points.weight();
+        Ok(PhotometricReport {
+            pose: self.state.pose,
+            light: self.state.light,
+            exposure: self.state.exposure,
+            objective: evaluation.data_term() / largest,
+            noise: self.noise.residuals,
+            visible: self.points.len(),
+            sampled: self.points.are_sampled(),
+            inliers: evaluation.inlier_share(),
+            iterations: self.iterations,
+            termination: match self.phase {
+                Phase::Done(termination) => termination,
+                _ => PhotometricTermination::MostRounds,
+            },
+            information,
+            covariance,
+            uncertainty: describe(&covariance, &frame, &self.state.pose, [held[TRANSLATION_Z], held[SCALE]], weakest),
+        })
+    }
+
+    /// The beginning of a round of annealing: its points, their light, its robust scale.
+    fn begin_annealing(&mut self, problem: &PhotometricProblem<'_>, level: usize, fine_rounds: usize) -> Result<Phase> {
+        self.rounds += 1;
+        let frame = self.choose_points(problem, Sampling { level, most: self.annealed_points })?;
+        self.fit_light(problem, level)?;
+        self.measure_noise(problem, level);
+        let target = final_robust_scale(self.noise.residuals);
+        let tolerated = if self.annealing { SCALE_SHRINKING * self.weighting.robust_scale } else { 0.0 };
+        self.weigh(problem, target.max(tolerated));
+        Ok(Phase::AnnealingStep(Descent {
+            level,
+            fine_rounds,
+            frame,
+            before: self.state.pose,
+            at_noise: self.weighting.robust_scale <= target,
+            damping: FIRST_DAMPING,
+            objective: self.evaluation(problem, level, &self.state).objective(),
+            steps: 0,
+        }))
+    }
+
+    /// A step of pose and light that lowers the objective.
+    fn descend(&mut self, problem: &PhotometricProblem<'_>, mut descent: Descent) -> Result<Phase> {
+        let Descent { level, frame, .. } = descent;
+        self.iterations += 1;
+        descent.steps += 1;
+        let reduced = self.evaluation(problem, level, &self.state).reduced_system(&frame);
+        let reduced = reduced.ok_or_else(undetermined_light)?;
+        let mut size = 0.0;
+        for _ in 0..MOST_ATTEMPTS {
+            if let Some(step) = reduced.step(descent.damping, &problem.held()) {
+                let next = self.state.stepped(&frame, &step, problem.light.is_some());
+                let objective = self.evaluation(problem, level, &next).objective();
+                if objective <= descent.objective {
+                    (self.state, descent.objective, size) = (next, objective, step.pose.norm());
+                    descent.damping = (DAMPING_AFTER_SUCCESS * descent.damping).max(LEAST_DAMPING);
+                    break;
+                }
+            }
+            descent.damping *= DAMPING_AFTER_FAILURE;
+        }
+        let ends = size < SETTLED_STEP || descent.steps >= MOST_STEPS;
+        Ok(if ends { self.after_annealing_round(&descent) } else { Phase::AnnealingStep(descent) })
+    }
+
+    /// What follows a round of annealing.
+    fn after_annealing_round(&mut self, &Descent { level, fine_rounds, before, at_noise, .. }: &Descent) -> Phase {
+        let change = before.degrees_to(&self.state.pose);
+        match level {
+            0 if at_noise && (change < FINE_SETTLED || fine_rounds >= MOST_FINE_ROUNDS) => {
+                self.annealed = self.state;
+                Phase::InstrumentalRound { round: 0 }
+            }
+            0 => Phase::AnnealingRound { level, fine_rounds: fine_rounds + usize::from(at_noise) },
+            _ if change < COARSE_SETTLED || (at_noise && fine_rounds >= MOST_FINE_ROUNDS) => {
+                Phase::AnnealingRound { level: level - 1, fine_rounds: 0 }
+            }
+            _ => Phase::AnnealingRound { level, fine_rounds: fine_rounds + usize::from(at_noise) },
+        }
+    }
+
+    /// The beginning of a round of sum w Z^T r = 0: the visible points follow in the first.
+    fn begin_instrumental(&mut self, problem: &PhotometricProblem<'_>, round: usize) -> Result<Phase> {
+        self.rounds += 1;
+        let frame = match round {
+            0 => self.choose_points(problem, Sampling { level: 0, most: self.most_points })?,
+            _ => self.points.frame(problem, &self.state.pose),
+        };
+        Ok(Phase::InstrumentalStep { round, frame, steps: 0 })
+    }
+
+    /// A step of such a round: undamped, for there is no objective that it has to lower.
+    fn step_by_instruments(
+        &mut self,
+        problem: &PhotometricProblem<'_>,
+        round: usize,
+        frame: &Frame,
+        steps: usize,
+    ) -> Result<Phase> {
+        self.iterations += 1;
+        let reduced = self.reduce_by_instruments(problem, frame)?;
+        let mut settled = false;
+        if let Some(step) = reduced.step(0.0, &problem.held()) {
+            self.state = self.state.stepped(frame, &step, problem.light.is_some());
+            settled = step.pose.norm() < SETTLED_STEP;
+            if !settled && steps + 1 < MOST_INSTRUMENTAL_STEPS {
+                return Ok(Phase::InstrumentalStep { round, frame: *frame, steps: steps + 1 });
+            }
+        }
+        let objective = |state: &State| self.evaluation(problem, 0, state).objective();
+        let rise = objective(&self.state) / objective(&self.annealed);
+        if rise.is_nan() || rise > 1.0 + LARGEST_RISE {
+            self.state = self.annealed;
+            return Ok(Phase::Done(PhotometricTermination::Annealed));
+        }
+        let last = round + 1 >= INSTRUMENTAL_ROUNDS || (settled && round > 0);
+        Ok(if last {
+            Phase::Done(PhotometricTermination::Settled)
+        } else {
+            Phase::InstrumentalRound { round: round + 1 }
+        })
+    }
+
+    /// Chooses the visible points of a round.
+    fn choose_points(&mut self, problem: &PhotometricProblem<'_>, sampling: Sampling) -> Result<Frame> {
+        self.points.update(problem, &self.state.pose, &self.levels[0], sampling);
+        if self.points.len() < FEWEST_POINTS {
+            return Err(degenerate("the image shows too few of the depth points").value(self.points.len() as f64));
+        }
+        Ok(self.points.frame(problem, &self.state.pose))
+    }
+
+    /// The light alone, reweighted.
+    fn fit_light(&mut self, problem: &PhotometricProblem<'_>, level: usize) -> Result<()> {
+        let mut samples = std::mem::take(&mut self.samples);
+        self.evaluation(problem, level, &self.state).sample(&mut samples);
+        for _ in 0..LIGHT_ROUNDS {
+            let equations = self.evaluation(problem, level, &self.state).light_equations(&samples);
+            let step = equations.step().ok_or_else(undetermined_light)?;
+            self.state = self.state.relit(&step, problem.light.is_some());
+        }
+        self.samples = samples;
+        Ok(())
+    }
+
+    /// The noise of the residuals.
+    fn measure_noise(&mut self, problem: &PhotometricProblem<'_>, level: usize) {
+        let mut magnitudes = std::mem::take(&mut self.magnitudes);
+        let noise = self.evaluation(problem, level, &self.state).noise(&mut magnitudes);
+        self.noise.residuals = noise.max(LEAST_NOISE);
+        self.magnitudes = magnitudes;
+    }
+
+    /// Takes a robust scale, and the prior's weight at the present light.
+    fn weigh(&mut self, problem: &PhotometricProblem<'_>, robust_scale: f64) {
+        let prior = prior_weight(problem, &self.state.light, self.noise.residuals);
+        self.weighting = Weighting { robust_scale, prior };
+    }
+
+    /// The points at one level of the image under a state, derivatives for least squares.
+    fn evaluation<'a>(&'a self, problem: &'a PhotometricProblem<'a>, level: usize, state: &'a State) -> Evaluation<'a> {
+        let model = ColourModel::new(&self.levels[level], &problem.image.camera, &state.exposed_light());
+        Evaluation { problem, points: &self.points, model, state, weighting: self.weighting }
+    }
+
+    /// The same on the sharp image at the present state, with instrumental variables.
+    fn evaluation_by_instruments<'a>(&'a self, problem: &'a PhotometricProblem<'a>) -> Evaluation<'a> {
+        let evaluation = self.evaluation(problem, 0, &self.state);
+        Evaluation { model: evaluation.model.with_instruments(&self.instruments), ..evaluation }
+    }
+
+    fn reduce_by_instruments(&self, problem: &PhotometricProblem<'_>, frame: &Frame) -> Result<ReducedSystem> {
+        self.evaluation_by_instruments(problem).reduced_system(frame).ok_or_else(undetermined_light)
+    }
+
+    fn covariance(&mut self, problem: &PhotometricProblem<'_>, frame: &Frame, reduced: &ReducedSystem) -> PoseMatrix {
+        let mut tiles = std::mem::take(&mut self.tiles);
+        let covariance = tiles.covariance(&self.evaluation_by_instruments(problem), frame, reduced, self.noise);
+        self.tiles = tiles;
+        covariance
+    }
+}
+
+/// The coarsest level that serves a problem.
+const fn coarsest(problem: &PhotometricProblem<'_>) -> usize {
+    if problem.light.is_some() { COARSEST } else { COARSEST_UNKNOWN }
+}
+
+fn undetermined_light() -> Error {
+    degenerate("the visible points do not determine the light")
+}
+
+fn degenerate(message: &'static str) -> Error {
+    Error::new(ErrorKind::Degenerate, "registration", message)
+}

@@ -1,0 +1,182 @@
+//! The search in slices: a sweep over all rotations and sizes, then ascents from the best of them.
+
+use nalgebra::Matrix3;
+
+use super::ascent::climb;
+use super::hypothesis::Hypothesis;
+use super::matcher::{ImageGrid, Matcher};
+use super::problem::{Candidate, Progress, SearchProblem};
+use super::sweep::Sweep;
+use super::task_results::TaskResults;
+use crate::check::positive;
+use crate::error::Result;
+use crate::numeric::sort_descending;
+
+/// Ascents at most.
+const MOST_ASCENTS: usize = 96;
+/// Hypotheses of the sweep that are nearer to a better one than this many degrees are left out: an ascent goes farther.
+const SWEEP_SEPARATION: f64 = 10.0;
+/// Candidates kept.
+const MOST_CANDIDATES: usize = 40;
+/// Candidates that are nearer to a better one than this many degrees are duplicates: a refinement would join them.
+const CANDIDATE_SEPARATION: f64 = 5.0;
+
+/// A search in slices; owns all its memory.
+pub struct Search {
+    matcher: Matcher,
+    sweep: Sweep,
+    /// Best hypotheses of each slice of the sweep.
+    swept: TaskResults<Vec<Hypothesis>>,
+    /// Where ascents start, chosen once the sweep is done, and where they end.
+    starts: Vec<Hypothesis>,
+    ascents: TaskResults<Candidate>,
+    candidates: Vec<Candidate>,
+}
+
+/// A slice of the search, which needs nothing but the search's own problem: whoever has the same can do it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum SearchTask {
+    /// Some pairs of rotation and size, by the number of their slice.
+    Sweep(usize),
+    /// The ascent from one hypothesis, and its number.
+    Climb(usize, Hypothesis),
+}
+
+/// The result of a task.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum SearchFinding {
+    /// The best hypotheses of a slice of the sweep.
+    Swept(usize, Vec<Hypothesis>),
+    /// Where an ascent ended.
+    Climbed(usize, Candidate),
+}
+
+impl Search {
+    /// Prepares a search.
+    ///
+    /// # Errors
+    /// [`Range`](crate::ErrorKind::Range) for a scale out of range, [`Empty`](crate::ErrorKind::Empty) where too few
+    /// pixels have a normal, [`Degenerate`](crate::ErrorKind::Degenerate) where all colours are the same.
+    pub fn new(problem: &SearchProblem<'_>) -> Result<Self> {
+        Self::with_grid(problem, ImageGrid::new(problem.image)?)
+    }
+
+    /// [`new`](Self::new) with the grid of its image made beforehand: half of the preparation.
+    pub(crate) fn with_grid(problem: &SearchProblem<'_>, grid: ImageGrid) -> Result<Self> {
+        positive("scale", problem.scale.unwrap_or(problem.unit_scale))?;
+        let matcher = Matcher::new(problem, grid)?;
+        let sweep = Sweep::new(problem.scale.is_none(), matcher.has_distance(), problem.seed);
+        Ok(Self {
+            swept: TaskResults::new(sweep.slices()),
+            starts: Vec::new(),
+            ascents: TaskResults::new(MOST_ASCENTS),
+            candidates: Vec::new(),
+            matcher,
+            sweep,
+        })
+    }
+
+    /// One bounded slice of work: a few rotations of the sweep, or one ascent. Does nothing once all is done.
+    pub fn advance(&mut self) -> Progress {
+        let sweep = self.swept.next(|_| true).map(SearchTask::Sweep);
+        let task = sweep.or_else(|| self.ascents.next(|_| true).map(|index| self.ascent(index)));
+        if let Some(task) = task {
+            let finding = self.perform(&task);
+            self.accept(finding);
+        }
+        self.progress()
+    }
+
+    /// How much is done.
+    #[must_use]
+    pub fn progress(&self) -> Progress {
+        let done = self.swept.done() + self.ascents.done();
+        Progress { share: done as f64 / (self.swept.len() + self.ascents.len()) as f64 }
+    }
+
+    /// A slice for a worker; `None` while none can be begun.
+    pub(crate) fn take(&mut self) -> Option<SearchTask> {
+        if !self.swept.is_complete() {
+            return self.swept.take(|_| true).map(SearchTask::Sweep);
+        }
+        self.ascents.take(|_| true).map(|index| self.ascent(index))
+    }
+
+    fn ascent(&self, index: usize) -> SearchTask {
+        SearchTask::Climb(index, self.starts[index])
+    }
+
+    /// Does a slice, of this search or of another one of the same problem.
+    pub(crate) fn perform(&mut self, task: &SearchTask) -> SearchFinding {
+        match *task {
+            SearchTask::Sweep(slice) => SearchFinding::Swept(slice, self.best_of_slice(slice)),
+            SearchTask::Climb(index, start) => {
+                let end = climb(&mut self.matcher, start, self.sweep.varies_size());
+                SearchFinding::Climbed(index, self.matcher.candidate(&end))
+            }
+        }
+    }
+
+    /// Takes in the result of a slice, in any order.
+    pub(crate) fn accept(&mut self, finding: SearchFinding) {
+        let sweeping = !self.swept.is_complete();
+        match finding {
+            SearchFinding::Swept(slice, hypotheses) => self.swept.put(slice, hypotheses),
+            SearchFinding::Climbed(index, candidate) => self.ascents.put(index, candidate),
+        }
+        if sweeping && self.swept.is_complete() {
+            self.choose_starts();
+        }
+        if self.is_done() && self.candidates.is_empty() {
+            self.choose_candidates();
+        }
+    }
+
+    /// Whether the candidates are ready.
+    pub(crate) fn is_done(&self) -> bool {
+        self.swept.is_complete() && self.ascents.is_complete()
+    }
+
+    /// The poses found, best first; none before the search is done.
+    #[must_use]
+    pub fn candidates(&self) -> &[Candidate] {
+        &self.candidates
+    }
+
+    /// For each pair of a slice the best translation.
+    fn best_of_slice(&mut self, slice: usize) -> Vec<Hypothesis> {
+        let Self { matcher, sweep, .. } = self;
+        sweep.slice(slice).filter_map(|(rotation, size)| matcher.best_shift(rotation, size)).collect()
+    }
+
+    /// The best hypotheses of the sweep, no two rotations alike.
+    fn choose_starts(&mut self) {
+        self.starts = self.swept.results().flatten().copied().collect();
+        sort_descending(&mut self.starts, |start| start.score);
+        suppress_duplicates(&mut self.starts, MOST_ASCENTS, SWEEP_SEPARATION, |start| &start.rotation);
+        self.ascents = TaskResults::new(self.starts.len());
+    }
+
+    /// The best ends of the ascents, no two rotations alike.
+    fn choose_candidates(&mut self) {
+        let ends = self.ascents.results().filter(|candidate| candidate.score.is_finite());
+        self.candidates = ends.copied().collect();
+        sort_descending(&mut self.candidates, |candidate| candidate.score);
+        suppress_duplicates(&mut self.candidates, MOST_CANDIDATES, CANDIDATE_SEPARATION, |one| &one.pose.rotation);
+    }
+}
+
+/// Non-maximum suppression: of a list sorted by score keeps the first `most` whose rotations are `degrees` apart.
+fn suppress_duplicates<T>(list: &mut Vec<T>, most: usize, degrees: f64, rotation: impl Fn(&T) -> &Matrix3<f64>) {
+    // |R - R'|_F^2 = 8 sin^2(angle / 2)
+    let least = 8.0 * (degrees.to_radians() / 2.0).sin().powi(2);
+    let mut kept = 0;
+    for index in 0..list.len() {
+        let apart = |other: &T| (rotation(other) - rotation(&list[index])).norm_squared() >= least;
+        if kept < most && list[..kept].iter().all(apart) {
+            list.swap(kept, index);
+            kept += 1;
+        }
+    }
+    list.truncate(kept);
+}

@@ -1,0 +1,73 @@
+//! From hypotheses on the grid to poses: a colour camera without intrinsics sees parallel rays, and a pose moves in the
+//! image plane, its centre at z = 0. With intrinsics the centre moves in the plane of its starting distance: that of the
+//! depth camera, or where the silhouettes are as large. There scale and distance look alike: the scale is held and the
+//! distance varies instead.
+
+use nalgebra::Vector3;
+
+use super::cloud::Cloud;
+use super::hypothesis::Hypothesis;
+use super::problem::SearchProblem;
+use super::target::Target;
+use super::template::GridProjection;
+use crate::pose::similarity::Similarity;
+use crate::view::{Camera, Size};
+
+/// The cameras and the first guess of scale and distance.
+pub struct Geometry {
+    camera: Camera,
+    image: Size,
+    /// s where the apparent size is one.
+    scale: f64,
+    /// Of the centre of the cloud from a pinhole, in units of the colour view.
+    distance: Option<f64>,
+    ray: [f64; 2],
+}
+
+impl Geometry {
+    pub fn new(problem: &SearchProblem<'_>, target: &Target, cloud: &Cloud) -> Self {
+        let SearchProblem { image, depth, .. } = *problem;
+        let scale = problem.scale.unwrap_or(problem.unit_scale);
+        let ray = image.camera.ray(image.size, target.middle);
+        let seen = image.mask.iter().filter(|&&inside| inside).count();
+        let distance = image.camera.focal_length().map(|focal_length| match depth.camera {
+            Camera::Pinhole(_) => scale * cloud.centre.z,
+            Camera::Orthographic => focal_length * scale * (depth.valid() as f64 / seen as f64).sqrt(),
+        });
+        let ray = if distance.is_some() { ray } else { [0.0; 2] };
+        Self { camera: image.camera, image: image.size, scale, distance, ray }
+    }
+
+    /// Whether the distance varies in the scale's place: behind a pinhole.
+    pub const fn has_distance(&self) -> bool {
+        self.distance.is_some()
+    }
+
+    /// How the cloud falls on a grid with such cells, at an apparent size.
+    pub fn projection(&self, size: f64, cell: f64) -> GridProjection {
+        let (pixels, inverse_distance) = match (self.camera.focal_length(), self.distance) {
+            (Some(focal_length), Some(distance)) => (focal_length * self.scale / distance, self.scale / distance),
+            _ => (self.scale, 0.0),
+        };
+        GridProjection {
+            magnification: (size * pixels / cell) as f32,
+            ray: self.ray.map(|value| value as f32),
+            inverse_distance: (size * inverse_distance) as f32,
+        }
+    }
+
+    /// The pose of a hypothesis.
+    pub fn pose(&self, hypothesis: &Hypothesis, cloud: &Cloud, target: &Target) -> Similarity {
+        let pixel = [0, 1].map(|axis| target.middle[axis] + f64::from(hypothesis.shift[axis]) * target.cell);
+        let (scale, distance) = match self.distance {
+            None => (self.scale * hypothesis.size, 0.0),
+            Some(distance) => (self.scale, distance / hypothesis.size),
+        };
+        let centre = Vector3::from(self.camera.point(self.image, pixel, distance));
+        Similarity {
+            scale,
+            rotation: hypothesis.rotation,
+            translation: centre - scale * (hypothesis.rotation * cloud.centre),
+        }
+    }
+}

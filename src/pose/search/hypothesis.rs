@@ -1,0 +1,25 @@
+//! A pose as the search knows it.
+
+use nalgebra::{Matrix3, Rotation3, Vector3};
+
+/// A rotation, an apparent size relative to the start's, a translation in cells of the grid, and how well it scores.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Hypothesis {
+    pub rotation: Matrix3<f64>,
+    pub size: f64,
+    pub shift: [i32; 2],
+    pub score: f64,
+}
+
+impl Hypothesis {
+    /// Rotated about x, y and z by so many radians, and grown by the natural logarithm of a factor.
+    pub fn moved(&self, rotation: Vector3<f64>, growth: f64) -> Self {
+        let rotation = Rotation3::new(rotation).into_inner() * self.rotation;
+        Self { rotation, size: self.size * growth.exp(), ..*self }
+    }
+
+    /// The one with the higher score.
+    pub fn better(self, other: Self) -> Self {
+        if other.score > self.score { other } else { self }
+    }
+}

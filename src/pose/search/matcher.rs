@@ -1,0 +1,118 @@
+//! Matches the cloud of the depth view with the grid of the image: the score of a hypothesis, and the best translations.
+
+use nalgebra::Matrix3;
+
+use super::cloud::Cloud;
+use super::correlate::Correlator;
+use super::geometry::Geometry;
+use super::hypothesis::Hypothesis;
+use super::problem::{Candidate, SearchProblem};
+use super::score::{FEWEST_CELLS, Prediction, score};
+use super::target::{Fourier, SIDE, Target};
+use super::template::Template;
+use crate::error::Result;
+use crate::view::ColourView;
+
+/// Moves by one cell after each change of rotation or size, at most.
+const MOST_MOVES: usize = 3;
+
+/// The image on the search grid, and the memory of its transforms.
+pub(crate) struct ImageGrid {
+    target: Target,
+    fourier: Fourier,
+}
+
+impl ImageGrid {
+    /// # Errors
+    /// [`Degenerate`](crate::ErrorKind::Degenerate) where all colours are the same.
+    pub fn new(image: &ColourView) -> Result<Self> {
+        let mut fourier = Fourier::new();
+        Ok(Self { target: Target::new(image, SIDE, &mut fourier)?, fourier })
+    }
+}
+
+/// Both views on one grid; owns its memory.
+pub struct Matcher {
+    geometry: Geometry,
+    cloud: Cloud,
+    target: Target,
+    template: Template,
+    /// Of a known light.
+    prediction: Option<Prediction>,
+    correlator: Correlator,
+}
+
+impl Matcher {
+    /// # Errors
+    /// [`Empty`](crate::ErrorKind::Empty) where too few pixels have a normal.
+    pub fn new(problem: &SearchProblem<'_>, ImageGrid { target, fourier }: ImageGrid) -> Result<Self> {
+        let cloud = Cloud::new(problem.depth.size, &problem.depth.points, problem.normals)?;
+        Ok(Self {
+            geometry: Geometry::new(problem, &target, &cloud),
+            template: Template::new(SIDE, &cloud),
+            prediction: problem.light.map(|light| Prediction::new(light, &target)),
+            correlator: Correlator::new(fourier),
+            cloud,
+            target,
+        })
+    }
+
+    /// Whether the distance varies in the scale's place.
+    pub const fn has_distance(&self) -> bool {
+        self.geometry.has_distance()
+    }
+
+    /// The best translation of a rotation and a size; `None` where too little of the cloud is visible.
+    pub fn best_shift(&mut self, rotation: Matrix3<f64>, size: f64) -> Option<Hypothesis> {
+        if !self.draw(&rotation, size) {
+            return None;
+        }
+        let proposals = self.correlator.proposals(&self.template, self.prediction.as_ref(), &self.target);
+        let scored = proposals.map(|shift| Hypothesis { rotation, size, shift, score: self.score(shift) });
+        scored.max_by(|a, b| a.score.total_cmp(&b.score)).filter(|best| best.score.is_finite())
+    }
+
+    /// The hypothesis with its score, moved to the best translation next to it.
+    pub fn best_shift_nearby(&mut self, mut hypothesis: Hypothesis) -> Hypothesis {
+        hypothesis.score = f64::NEG_INFINITY;
+        if !self.draw(&hypothesis.rotation, hypothesis.size) {
+            return hypothesis;
+        }
+        hypothesis.score = self.score(hypothesis.shift);
+        for _ in 0..MOST_MOVES {
+            let [column, row] = hypothesis.shift;
+            let beside = [[column - 1, row], [column + 1, row], [column, row - 1], [column, row + 1]];
+            let moved = beside.map(|shift| Hypothesis { shift, score: self.score(shift), ..hypothesis });
+            let best = moved.into_iter().fold(hypothesis, Hypothesis::better);
+            if best.shift == hypothesis.shift {
+                break;
+            }
+            hypothesis = best;
+        }
+        hypothesis
+    }
+
+    /// The pose of a hypothesis, with its score.
+    pub fn candidate(&self, hypothesis: &Hypothesis) -> Candidate {
+        let pose = self.geometry.pose(hypothesis, &self.cloud, &self.target);
+        Candidate { pose, score: hypothesis.score }
+    }
+
+    /// Draws the rotated cloud as a template; whether enough of it is visible.
+    fn draw(&mut self, rotation: &Matrix3<f64>, size: f64) -> bool {
+        self.template.draw(&self.cloud, rotation, &self.geometry.projection(size, self.target.cell));
+        if self.template.visible < FEWEST_CELLS {
+            return false;
+        }
+        match &mut self.prediction {
+            None => self.template.multiply(),
+            Some(prediction) => prediction.shade(&self.template, &self.target),
+        }
+        true
+    }
+
+    /// The exact score of the template at a translation.
+    fn score(&self, shift: [i32; 2]) -> f64 {
+        score(&self.template, self.prediction.as_ref(), &self.target, shift).unwrap_or(f64::NEG_INFINITY)
+    }
+}

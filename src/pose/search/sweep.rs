@@ -1,0 +1,88 @@
+//! The sweep: pairs of a rotation and an apparent size, spread evenly, in slices.
+
+use nalgebra::Matrix3;
+
+use super::rotations;
+
+/// Distance of neighbouring rotations in degrees. On 160 scenes with unknown light, before any ascent, one within 15
+/// degrees of the truth was among the first 40 in 99 % at 17 and in 96 % at 20.
+const SPACING: f64 = 16.0;
+/// Scales of a free scale relative to s0, a cell apart at either end of the object; the ascent reaches 0.7 and 1.4 and
+/// closes the gaps. Six of them rank alike and take half as long again.
+const FREE_SCALES: [f64; 4] = [0.74, 0.90, 1.09, 1.32];
+/// Apparent sizes behind a pinhole whose scale is held: the distance is known only roughly.
+const NEAR_SIZES: [f64; 3] = [0.87, 1.0, 1.15];
+/// Pairs of a rotation and a size in one slice.
+const SWEPT_AT_ONCE: usize = 8;
+/// Slices of a single pair at the beginning: the very first call compiles what it needs, and until engines have optimised
+/// that, a pair takes several times as long.
+const WARMING_SLICES: usize = 30;
+
+/// All pairs of a rotation and a size.
+pub struct Sweep {
+    rotations: Vec<Matrix3<f64>>,
+    sizes: &'static [f64],
+}
+
+impl Sweep {
+    /// `seed` draws the set of rotations.
+    pub fn new(scale_is_free: bool, has_distance: bool, seed: u64) -> Self {
+        let sizes: &[f64] = match (scale_is_free, has_distance) {
+            (true, _) => &FREE_SCALES,
+            (false, true) => &NEAR_SIZES,
+            (false, false) => &[1.0],
+        };
+        Self { rotations: rotations::spread(SPACING, seed), sizes }
+    }
+
+    /// Whether there is more than one size.
+    pub const fn varies_size(&self) -> bool {
+        self.sizes.len() > 1
+    }
+
+    /// Number of slices.
+    pub const fn slices(&self) -> usize {
+        slices(self.pairs())
+    }
+
+    /// The pairs of a slice; none beyond the last.
+    pub fn slice(&self, slice: usize) -> impl Iterator<Item = (Matrix3<f64>, f64)> {
+        let start = |slice| slice_start(slice).min(self.pairs());
+        let pair = |pair: usize| (self.rotations[pair / self.sizes.len()], self.sizes[pair % self.sizes.len()]);
+        (start(slice)..start(slice.saturating_add(1))).map(pair)
+    }
+
+    const fn pairs(&self) -> usize {
+        self.rotations.len() * self.sizes.len()
+    }
+}
+
+/// Slices of a sweep over so many pairs of rotation and size.
+const fn slices(pairs: usize) -> usize {
+    match pairs.checked_sub(WARMING_SLICES) {
+        Some(others) => WARMING_SLICES + others.div_ceil(SWEPT_AT_ONCE),
+        None => pairs,
+    }
+}
+
+/// The first pair of a slice.
+const fn slice_start(slice: usize) -> usize {
+    match slice.checked_sub(WARMING_SLICES) {
+        Some(others) => WARMING_SLICES.saturating_add(others.saturating_mul(SWEPT_AT_ONCE)),
+        None => slice,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn slices_hold_every_pair_once() {
+        for pairs in [0, 5, 12, 13, 100, 2792] {
+            let starts: Vec<usize> = (0..=slices(pairs)).map(|slice| slice_start(slice).min(pairs)).collect();
+            assert!(starts.windows(2).all(|pair| pair[0] < pair[1]) && starts[0] == 0 && starts.last() == Some(&pairs));
+        }
+        assert!(slice_start(usize::MAX) >= 2792);
+    }
+}
