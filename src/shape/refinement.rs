@@ -36,7 +36,7 @@ const LATER: Effort = Effort { steps: 1, iterations: 20, tolerance: 0.03 };
 /// Most sweeps that extend slopes into a hole: its radius in pixels at the most.
 const FILL_SWEEPS: usize = 256;
 
-/// What the refinement looks at.
+/// What a refinement needs.
 #[derive(Clone, Copy)]
 pub struct RefinementProblem<'a> {
     /// The measured depth view.
@@ -51,7 +51,7 @@ pub struct RefinementProblem<'a> {
     pub terms: RefinementTerms,
 }
 
-/// What the refinement looks at besides rasters.
+/// What a refinement needs besides rasters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RefinementTerms {
     /// The light, exposure included.
@@ -232,11 +232,12 @@ fn anchor_weight(shading_error: f64, view: &DepthView) -> f32 {
     };
     let mut heights = view.depth().to_vec();
     view.camera.heights_from_depth(&mut heights);
-    let bend =
+    let difference =
         |index: usize, step: usize| noise::bend(std::array::from_fn(|k| f64::from(heights[index + k * step]))) as f32;
-    let bends = (0..view.size.len())
-        .flat_map(|index| lines(index).into_iter().filter(|(fits, _)| *fits).map(move |(_, step)| bend(index, step)));
-    variance_ratio(shading_error, noise::of_bends(bends, 2 * view.size.len()))
+    let differences = (0..view.size.len()).flat_map(|index| {
+        lines(index).into_iter().filter(|(fits, _)| *fits).map(move |(_, step)| difference(index, step))
+    });
+    variance_ratio(shading_error, noise::of_bends(differences, 2 * view.size.len()))
 }
 
 /// That of the variances, within bounds. Depth without measurable noise gets the largest weight, however exact the
