@@ -1,7 +1,7 @@
 // What is timed, run by run, browser and native in turn: a busy machine slows both alike.
 import { Failure, say } from "../shell.mjs";
 
-/** Iterations that a loop needs to get going: with three different starts its surface finds the best (STARTS in src/shape/relief.rs). */
+/** Iterations that a loop needs to get going: with three different starts its surface finds the best (STARTS in src/shape/heights/starts.rs). */
 const WARMING = 3;
 /** No loop takes so many iterations: its end decides. */
 const TO_THE_END = 1000;

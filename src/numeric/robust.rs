@@ -24,10 +24,16 @@ pub(crate) fn weight<T: Real>(u: T) -> T {
     attenuation * attenuation
 }
 
+/// rho = r^2 / (1 + u) of a squared residual r^2, weighted or not.
+#[inline(always)]
+pub(crate) fn rho<T: Real>(squared: T, u: T) -> T {
+    squared / (T::constant(1.0) + u)
+}
+
 /// rho / s^2 = u / (1 + u), between zero and one.
 #[inline(always)]
 pub(crate) fn saturated<T: Real>(u: T) -> T {
-    u / (T::constant(1.0) + u)
+    rho(u, u)
 }
 
 #[cfg(test)]

@@ -36,7 +36,7 @@ const LATER: Effort = Effort { steps: 1, iterations: 20, tolerance: 0.03 };
 /// Most sweeps that extend slopes into a hole: its radius in pixels at the most.
 const FILL_SWEEPS: usize = 256;
 
-/// What the refinement looks at.
+/// What a refinement needs.
 #[derive(Clone, Copy)]
 pub struct RefinementProblem<'a> {
     /// The measured depth view.
@@ -51,7 +51,7 @@ pub struct RefinementProblem<'a> {
     pub terms: RefinementTerms,
 }
 
-/// What the refinement looks at besides rasters.
+/// What a refinement needs besides rasters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RefinementTerms {
     /// The light, exposure included.

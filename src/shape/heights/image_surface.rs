@@ -23,7 +23,7 @@ use crate::view::{ColourView, Size};
 /// is.
 const MOST_PIXELS: usize = 6000;
 
-/// Solves one image again and again. Owns what lasts from call to call; the solver is lent.
+/// Solves one image again and again. Owns what lasts from call to call; the memory of a solve is the caller's.
 pub struct ImageSurfaceSolver {
     domain: HeightDomain,
     /// Of a large image; that of a small one is in `starts`.

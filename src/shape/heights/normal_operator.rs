@@ -238,7 +238,7 @@ mod tests {
     fn the_product_is_half_the_gradient_of_the_quadratic_form() {
         for (width, height) in [(9, 8), (5, 1), (1, 6), (2, 2), (16, 3)] {
             let (mut operator, inside, anchors, damping, edges) = system(width, height);
-            // Not zero off the mask: nothing looks there.
+            // Not zero off the mask, where it must not count.
             let direction: Vec<f32> = (0..width * height).map(|index| (0.9 * index as f32).cos()).collect();
             let mut image = vec![f32::NAN; direction.len()];
             operator.apply(&anchors, &direction, &mut image);

@@ -37,7 +37,7 @@ impl RayFrames {
         let place = |axis: usize, index: usize| (corner[axis] + index).min(last[axis]) as f64;
         if pinhole.is_undistorted() {
             let line = |axis: usize| {
-                // What the other axis says does not matter.
+                // Without distortion the other axis does not matter.
                 let ray = |place: f64| camera.ray(size, [place; 2])[axis];
                 let places = (0..sides[axis]).map(|index| place(axis, index));
                 places.map(|place| [ray(place), ray(place + 0.5) - ray(place - 0.5)]).collect()

@@ -12,7 +12,7 @@ use crate::view::{Normals, Size};
 /// Pixels of a band: many enough for the shading solver's own preparation not to count.
 const BAND: usize = 1 << 15;
 
-/// What the stages of both views are lent.
+/// Memory for the stages of both views.
 pub struct Scratch {
     /// Solves the heights of either view.
     pub heights: HeightSolver,

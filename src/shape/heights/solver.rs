@@ -39,11 +39,11 @@ const TIGHTEN: f32 = 10.0;
 const LEAST_STIFFNESS: f64 = 1e-6;
 /// The solve has converged when a step lowers the objective by less than this share.
 const SMALLEST_DECREASE: f64 = 1e-4;
-/// The last conjugate-gradient iteration is the one that promises less than this share of the objective.
-const SMALLEST_PROMISE: f64 = 1e-5;
+/// The conjugate gradients of a step end with the iteration that lowers the linearised objective by less than this share.
+const SMALLEST_GAIN: f64 = 1e-5;
 
-/// Solves one domain or another, again and again. No two solves run at once, so that all levels of both views lend
-/// themselves this one's memory; it is allocated by the first solve, for the largest domain.
+/// Solves one domain or another, again and again. No two solves run at once, so that all levels of both views share
+/// this one's memory; it is allocated by the first solve, for the largest domain.
 pub struct HeightSolver {
     /// Most values that a raster will have to hold.
     room: usize,
@@ -134,7 +134,7 @@ impl HeightSolver {
     }
 
     /// One step that lowers the objective, damped as strongly as that takes; the objective after it. `None` where there is
-    /// none, or it promises too little.
+    /// none, or too little is expected of it.
     fn descend(
         &mut self,
         domain: &mut HeightDomain,
@@ -144,8 +144,8 @@ impl HeightSolver {
     ) -> Option<f64> {
         while *damping <= DAMPING[1] {
             let limits = limits(terms.problem.effort, objective);
-            let promise = self.find_step(domain, *damping * stiffness as f32, stiffness, limits);
-            if promise < SMALLEST_DECREASE * objective {
+            let expected = self.find_step(domain, *damping * stiffness as f32, stiffness, limits);
+            if expected < SMALLEST_DECREASE * objective {
                 return None;
             }
             for ((trial, z), step) in self.trial.iter_mut().zip(&self.z).zip(&self.step) {
@@ -329,7 +329,7 @@ fn limits(effort: Effort, objective: f64) -> Limits {
         iterations: effort.iterations,
         error: 0.0,
         relative_error: effort.tolerance * effort.tolerance,
-        decrease: SMALLEST_PROMISE * objective,
+        decrease: SMALLEST_GAIN * objective,
     }
 }
 
@@ -377,7 +377,7 @@ mod tests {
     use crate::shape::integration::{AnchorWeight, Anchors};
     use crate::view::{Camera, Size};
 
-    /// A used solver knows nothing of what it solved before.
+    /// A used solver gives what a new one gives.
     #[test]
     fn anchors_of_an_earlier_solve_are_forgotten() {
         let size = Size { width: 9, height: 7 };

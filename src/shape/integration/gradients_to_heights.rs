@@ -16,7 +16,7 @@
 //! edge (unknown gradient) and no anchor touches is not determined and comes out NaN. Robust weights are
 //! not convex: the surface they find depends on the start (least squares when cold, the previous surface when that was
 //! robust), and a discontinuity whose edges outnumber the good ones that hold it is smeared. Gradients that are not
-//! integrable on the large (not noise, not jumps) settle slowly: `max_rounds` bounds the time.
+//! integrable on the large (not noise, not jumps) converge slowly: `max_rounds` bounds the time.
 
 use super::components::Components;
 use super::poisson::{IntegrationTermination, Poisson, PoissonReport};
@@ -41,8 +41,8 @@ const LEAST_WEIGHT: f32 = 1e-4;
 const SMALLEST_CHANGE: f64 = 3e-3;
 /// Relative error of the solves between two reweightings, well under the least robust scale; the last one is exact.
 const ROUND_TOLERANCE: f64 = 1e-3;
-/// Factor on the scale from round to round of a cold start, from the residuals' root mean square down: what least
-/// squares has smeared around a jump is not cut before it has had time to draw together.
+/// Factor on the scale from round to round of a cold start, from the residuals' root mean square down: least squares smears
+/// a jump over its neighbours, which a small scale would cut as well before the jump alone is left.
 const ANNEALING: f64 = 0.5;
 /// The median is taken over at most so many cells, evenly spread: its own error is then below one percent.
 const MOST_SAMPLES: usize = 1 << 15;
@@ -278,7 +278,7 @@ impl Integrator {
         report
     }
 
-    /// Alternates robust weights and coarse solves until the weights have settled.
+    /// Alternates robust weights and coarse solves until the weights hardly change.
     fn reweigh_in_rounds(&mut self, options: &IntegrationOptions, report: &mut IntegrationReport) {
         let tolerance = options.tolerance.max(ROUND_TOLERANCE);
         if !self.robust {
@@ -310,7 +310,7 @@ impl Integrator {
         report.termination = termination;
     }
 
-    /// Both kinds of edges with the distance of their ends.
+    /// Both kinds of edges with the distance of the pixels that they join.
     fn edges(&self) -> [(&Edges, usize); 2] {
         [(&self.system.right, 1), (&self.system.down, self.system.width)]
     }
@@ -339,7 +339,7 @@ impl Integrator {
     }
 
     /// Three sigma of the edges' noise, from what the gradients sum to around each cell of four pixels. That is zero
-    /// for integrable gradients and knows nothing of the surface found so far, so that reweighting can't narrow it.
+    /// for integrable gradients and independent of the surface found so far, so that reweighting can't narrow it.
     fn noise_scale(&mut self) -> f64 {
         let (right, down, width) = (&self.system.right, &self.system.down, self.system.width);
         let samples = &mut self.samples;

@@ -106,6 +106,7 @@ pub fn exposure_step(problem: ShadingProblem<'_>, weights: ShadingWeights, norma
         for lane in (0..LANES).filter(|&lane| usable[lane] > 0.0) {
             let residuals = residuals.map(|four| four[lane]);
             let squared: f32 = residuals.iter().map(|residual| residual * residual).sum();
+            // As `robust::weight`, with one rounding less.
             let weight = f64::from((1.0 + squared / (STEP_SCALE * STEP_SCALE)).powi(-2));
             let [xx, xy, xz, yy, yz, zz] = matrix.map(|four| f64::from(four[lane]));
             let gradient = Vector3::from(gradient.map(|four| f64::from(four[lane])));

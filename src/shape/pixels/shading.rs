@@ -219,7 +219,7 @@ impl<'a> Pixels<'a> {
 
     fn prior_term(&self, normal: [Lanes; 3]) -> Lanes {
         let squared = squared_distance(normal, self.prior);
-        self.prior_weight * squared / (Lanes::splat(1.0) + squared * self.inverse_square_scale)
+        robust::rho(self.prior_weight * squared, squared * self.inverse_square_scale)
     }
 
     fn objective(&self, normal: [Lanes; 3]) -> Lanes {
