@@ -4,8 +4,8 @@
 //! The neighbours of a point are expressed in its tangent plane (a, b along it, w off it), and a cubic is fitted to them by
 //! weighted least squares; its slope at the point corrects the normal, twice. Neighbours are those within two or three
 //! pixels (more under noise), whichever gives the smaller error. In the tangent plane a round rim is as smooth as a front,
-//! whereas a depth z(x, y) has derivatives that grow without bound there, and central differences are biased. Measured on Mozart at
-//! 128x128 from the side (beta = 90 degrees): median error 0.011 against 0.024 rad.
+//! whereas a depth z(x, y) has derivatives that grow without bound there, and central differences are biased. Measured on
+//! Mozart at 128x128 from the side (beta = 90 degrees): median error 0.011 against 0.024 rad.
 //!
 //! The error of a normal follows from the residual of its cubic and the share of the weights that its slopes have.
 //! Neighbours beyond a jump are left out. Where fewer are left than a cubic needs, the first normal stays with the
@@ -26,11 +26,10 @@ const SIGMA: f64 = 0.75;
 /// Median error of the normals from which on wider windows than the first two are tried, radians: views without noise
 /// stay below (which, not recorded).
 const NOISY: f32 = 0.06;
-/// Largest |w| of a neighbour: half the distance along the plane and a third of a pixel; beyond lies another part of the
-/// object.
+/// Largest |w| of a neighbour: half the distance along the plane and 0.3 pixel lengths; beyond lies another part of the object.
 const LARGEST_SLOPE: f64 = 0.5;
 const LARGEST_OFFSET: f64 = 0.3;
-/// Instead of the third of a pixel, where that is more: standard deviations of the depth's noise.
+/// Instead of [`LARGEST_OFFSET`], where that is more: standard deviations of the depth's noise.
 const NOISE_OFFSETS: f64 = 3.0;
 /// Residuals up to this multiple of the estimated noise count as noise: the estimate is off by a sixth on steep or small
 /// views.
