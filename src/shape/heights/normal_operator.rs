@@ -38,14 +38,15 @@ impl NormalOperator {
     pub fn resize(&mut self, width: usize, length: usize, room: usize) {
         self.width = width;
         let [pp, pq, qq] = &mut self.stiffness;
-        for raster in [pp, pq, qq].into_iter().chain(&mut self.smoothness) {
+        let [along_rows, along_columns] = &mut self.smoothness;
+        for raster in [pp, pq, qq, along_rows, along_columns] {
             resize_to_zeros(raster, length, room);
         }
         for raster in &mut self.edge_weight {
             resize(raster, length, room);
         }
-        let cells = [&mut self.cell_sum, &mut self.cell_difference];
-        for raster in cells.into_iter().chain(&mut self.edge_flux).chain(&mut self.second_difference) {
+        let ([right, below], [along_rows, along_columns]) = (&mut self.edge_flux, &mut self.second_difference);
+        for raster in [&mut self.cell_sum, &mut self.cell_difference, right, below, along_rows, along_columns] {
             resize_to_zeros(raster, padded(length, width), room);
         }
     }

@@ -34,6 +34,7 @@ pub struct ImageSurfaceProblem<'a> {
 
 impl<'a> ImageSurfaceProblem<'a> {
     /// Improves the heights `z`; their objective.
+    #[inline(never)]
     pub fn improve(
         &self,
         solver: &mut HeightSolver,

@@ -40,7 +40,9 @@ pub fn find_slopes(size: Size, camera: &Camera, normals: &Normals, mask: &[bool]
     let [p, q] = slopes;
     gradients(size, camera, normals, mask, p, q);
     let focal_length = camera.focal_length().unwrap_or(1.0) as f32;
-    p.iter_mut().chain(q).for_each(|slope| *slope *= focal_length);
+    for slopes in [p, q] {
+        slopes.iter_mut().for_each(|slope| *slope *= focal_length);
+    }
 }
 
 /// Of log depth, before a pinhole camera.
