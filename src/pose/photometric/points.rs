@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use super::problem::{Indices, PhotometricProblem};
 use super::spline_image::SplineImage;
-use crate::numeric::{DOUBLE_LANES, Doubles};
+use crate::numeric::{DOUBLE_LANES, Doubles, robust};
 use crate::pose::increment::Frame;
 use crate::pose::similarity::Similarity;
 use crate::pose::visibility::{Visibility, VisibilityProblem};
@@ -130,7 +130,7 @@ impl VisiblePoints {
             let error = problem.normal_error.map_or(0.0, |error| f64::from(error[index]));
             if !error.is_nan() && image.covers(position, MARGIN) {
                 self.indices.push(index as u32);
-                self.weights.push((1.0 + (error / NORMAL_ERROR).powi(2)).powi(-2) as f32);
+                self.weights.push(robust::weight((error / NORMAL_ERROR).powi(2)) as f32);
             }
         }
     }
