@@ -23,8 +23,8 @@ const FLAVOURS = [
   { file: `${MODULE}_bg.wasm`, target: "target", flags: ["-C", `target-feature=-${REFERENCES}`] },
   { file: `${MODULE}_scalar_bg.wasm`, target: "target/scalar", flags: ["-C", `target-feature=-${REFERENCES},-simd128`] },
 ];
-/** Two for programs, one for what reads files, and two for threads. */
-const ENTRIES = ["index", "node", "files", "thread", "thread-node"];
+/** Two for programs, one for what reads files, one for the page's fields, and two for threads. */
+const ENTRIES = ["index", "node", "files", "options", "thread", "thread-node"];
 /** Declarations that no entry mentions; one of them names the generated bindings, which stay inside. */
 const INTERNAL = ["check", "engine", "node", "npy", "partner", "plain", "scouts", "thread", "thread-node", "threads"];
 
