@@ -1,5 +1,6 @@
 /** Another thread that refines the depth view while the estimator's own finds the image surface. */
-import { READY, hire, type Answer, type Pair, type Thread } from "./threads.js";
+import { hire } from "./spawn.js";
+import { READY, type Answer, type Pair, type Thread } from "./threads.js";
 import type { Options } from "./types.js";
 
 /** A refinement to be made: the number of the shape that it starts from, numbers, and rasters one after the other. */

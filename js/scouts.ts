@@ -1,5 +1,6 @@
 /** Other threads that take parts of the opening search off an estimator's hands. */
-import { READY, hire, type Answer, type Pair, type Thread } from "./threads.js";
+import { hire } from "./spawn.js";
+import { READY, type Answer, type Pair, type Thread } from "./threads.js";
 import type { Options } from "./types.js";
 
 /** What the estimator's side of wasm gives away and takes in. */

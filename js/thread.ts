@@ -1,5 +1,37 @@
-/** Another thread in a browser: a module worker. */
-import { serve, type Order } from "./threads.js";
+/** What another thread runs: it handles one order after the other. */
+import type { Helper } from "../target/wasm-bindgen/bimodal_stereo.js";
+import { bindings, load } from "./engine.js";
+import { nodeModule } from "./node.js";
+import { READY, type Answer, type Order } from "./threads.js";
 
-const handle = serve((answer, transfer) => self.postMessage(answer, { transfer }));
-self.onmessage = (event: MessageEvent<Order>) => handle(event.data);
+function serve(answer: (answer: Answer, transfer: ArrayBuffer[]) => void): (order: Order) => void {
+  let helper: Helper | undefined;
+
+  async function handle(order: Order): Promise<void> {
+    switch (order.kind) {
+      case "pair":
+        await load(order.module);
+        helper = new (bindings().Helper)(order.image, order.depth, order.options);
+        return answer(READY, []);
+      case "task":
+        return answer(helper?.perform(order.task) ?? null, []);
+      case "refine": {
+        const refined = helper?.refine(order.numbers, order.planes) ?? null;
+        return answer(refined, refined ? [refined.buffer as ArrayBuffer] : []);
+      }
+    }
+  }
+
+  let last: Promise<void> = Promise.resolve();
+  return (order) => {
+    last = last.then(() => handle(order)).catch(() => answer(null, []));
+  };
+}
+
+const port = nodeModule("node:worker_threads")?.parentPort;
+if (port) {
+  port.on("message", serve((answer, transfer) => port.postMessage(answer, transfer)));
+} else {
+  const handle = serve((answer, transfer) => self.postMessage(answer, { transfer }));
+  self.onmessage = (event: MessageEvent<Order>) => handle(event.data);
+}

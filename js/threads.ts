@@ -1,7 +1,4 @@
-/** What an estimator and its helpers in other threads say to each other, how they are hired, and their side of it. */
-import type { Helper } from "../target/wasm-bindgen/bimodal_stereo.js";
-import { bindings, compiled, load, spawn } from "./engine.js";
-import { copyOf } from "./plain.js";
+/** What an estimator and its helpers in other threads say to each other. */
 import type { ColorImage, DepthMap, Options } from "./types.js";
 
 /** Both views, which every helper gets a copy of. */
@@ -28,46 +25,4 @@ export interface Thread {
   onAnswer(hear: (answer: Answer) => void): void;
   onFailure(hear: () => void): void;
   end(): void;
-}
-
-/**
- * A thread with a copy of the pair, where this place has any. A page may forbid workers, a system may be out of threads or
- * of memory for them.
- */
-export function hire({ image, depth }: Pair, options: Options): Thread | undefined {
-  let thread: Thread | undefined;
-  try {
-    thread = spawn();
-    const transfer: ArrayBuffer[] = [];
-    thread?.post({ kind: "pair", module: compiled(), image: copyOf(image, transfer), depth: copyOf(depth, transfer), options }, transfer);
-    return thread;
-  } catch {
-    thread?.end();
-    return undefined;
-  }
-}
-
-/** Handles one order after the other, in the helper's thread. */
-export function serve(answer: (answer: Answer, transfer: ArrayBuffer[]) => void): (order: Order) => void {
-  let helper: Helper | undefined;
-
-  async function handle(order: Order): Promise<void> {
-    switch (order.kind) {
-      case "pair":
-        await load(order.module);
-        helper = new (bindings().Helper)(order.image, order.depth, order.options);
-        return answer(READY, []);
-      case "task":
-        return answer(helper?.perform(order.task) ?? null, []);
-      case "refine": {
-        const refined = helper?.refine(order.numbers, order.planes) ?? null;
-        return answer(refined, refined ? [refined.buffer as ArrayBuffer] : []);
-      }
-    }
-  }
-
-  let last: Promise<void> = Promise.resolve();
-  return (order) => {
-    last = last.then(() => handle(order)).catch(() => answer(null, []));
-  };
 }

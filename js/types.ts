@@ -1,6 +1,6 @@
 /** The public contract: what goes in and what comes out. No value is hidden behind `any`. */
 
-/** What `init` takes: where the .wasm is, or the .wasm itself; `bimodal_stereo_scalar_bg.wasm` needs no SIMD. */
+/** What `init` takes: where the .wasm is, or the .wasm itself; `bimodal_stereo_scalar_bg.wasm` needs no SIMD. Node also takes `file:` addresses. */
 export type WasmSource = string | URL | Request | Response | BufferSource | WebAssembly.Module;
 
 /** A pinhole camera; distortion is k1 k2 p1 p2 k3 (OpenCV). Units: pixels. */

@@ -23,10 +23,10 @@ const FLAVOURS = [
   { file: `${MODULE}_bg.wasm`, target: "target", flags: ["-C", `target-feature=-${REFERENCES}`] },
   { file: `${MODULE}_scalar_bg.wasm`, target: "target/scalar", flags: ["-C", `target-feature=-${REFERENCES},-simd128`] },
 ];
-/** Two for programs, one for what reads files, one for the page's fields, and two for threads. */
-const ENTRIES = ["index", "node", "files", "options", "thread", "thread-node"];
+/** One for programs, one for what reads files, one for the page's fields, and one for threads. */
+const ENTRIES = ["index", "files", "options", "thread"];
 /** Declarations that no entry mentions; one of them names the generated bindings, which stay inside. */
-const INTERNAL = ["check", "engine", "node", "npy", "partner", "plain", "scouts", "thread", "thread-node", "threads"];
+const INTERNAL = ["check", "engine", "node", "npy", "partner", "plain", "scouts", "spawn", "thread", "threads"];
 
 const node = (module, ...args) => must(process.execPath, [inRoot("node_modules", module), ...args]);
 
@@ -45,7 +45,7 @@ function manifest() {
     engines: { node: "^20.19.0 || >=22.12.0" },
     sideEffects: false,
     exports: {
-      ".": { types: "./index.d.ts", node: "./node.js", default: "./index.js" },
+      ".": { types: "./index.d.ts", default: "./index.js" },
       "./files": { types: "./files.d.ts", default: "./files.js" },
       ...Object.fromEntries(FLAVOURS.map(({ file }) => [`./${file}`, `./${file}`])),
       "./package.json": "./package.json",
