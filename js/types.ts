@@ -94,7 +94,8 @@ export interface Uncertainty {
 
 export interface StepReport {
   iteration: number;
-  stage: string;
+  /** The one that ran last. */
+  stage: Stage;
   pose: Pose;
   /** Degrees. */
   rotationChange: number;

@@ -83,7 +83,7 @@ test("types resolve for Node and for bundlers, without help from other type pack
   writeFileSync(
     join(folder, "typed/contract.ts"),
     `import init, { BimodalError, Estimator, checkCalibration, sample, wasmUrl } from "bimodal-stereo";
-     import type { CheckReport, ColorImage, DepthMap, Options, Pose, StepReport } from "bimodal-stereo";
+     import type { CheckReport, ColorImage, DepthMap, Options, Pose, Stage, StepReport } from "bimodal-stereo";
      import { decodeColour, decodeDepth, decodeMask } from "bimodal-stereo/files";
      const image: ColorImage = decodeColour(new Uint8Array());
      const depth: DepthMap = { ...decodeDepth(new ArrayBuffer(0)), mask: decodeMask(new Uint8Array()).data };
@@ -101,6 +101,9 @@ test("types resolve for Node and for bundlers, without help from other type pack
        return [await estimator.run({ maxIterations: 3, signal, onStep: (report) => report.status }), await checkCalibration([], {})];
      }
      export const code = (error: BimodalError): string => error.code + (error.field ?? "");
+     export const isSearch = ({ stage }: StepReport): Stage | undefined => (stage === "search" ? stage : undefined);
+     // @ts-expect-error a misspelt stage is a type error
+     export const isOther = ({ stage }: StepReport): boolean => stage === "serach";
      // @ts-expect-error a misspelt option is a type error as well
      export const misspelt: Options = { regstration: "icp" };
      // @ts-expect-error a report is not any
