@@ -16,7 +16,7 @@
 //! | `pose/search` ([`Search`]) | where to start when nothing is known: all rotations, translations and scales, coarsely | before Algorithm 1 |
 //! | `pose/photometric` ([`Photometric`]) | the pose straight from the colours, the light projected out | beyond the paper |
 //! | `pose/icp`, `pose/ransac` ([`Icp`], [`ransac`]) | the pose from both surfaces | Eq. 12 to 14 |
-//! | `pose/similarity`, `pose/angles` ([`Similarity`], [`Angles`]) | s, R, t and the angles | Eq. 15, 16, 20 |
+//! | `pose/similarity`, `pose/angles` ([`Similarity`], [`Angles`]) | s, R, t and the angles, in closed form; the least-squares fit of Eq. 16 is a test, `tests/pose_angles.rs` | Eq. 15, 16, 20 |
 //! | `pose/correspondence` ([`Correspondences`]) | which depth point is which pixel | the 1-pixel rule |
 //! | `estimator` ([`Estimator`]) | one iteration, its merit, its end; `opening` (search, candidates, rivals) before it, parts of it done by a [`Helper`] elsewhere | Eq. 1, Algorithm 1 |
 //! | [`scenes`] | surfaces, lights and a renderer with a known answer | the experiments |
@@ -53,10 +53,9 @@ pub use estimator::{Estimator, Finding, Helper, RefinementTask, Surface, Task};
 pub use light::{COEFFICIENTS, CoefficientMatrix, Light, LightFit, LightFitter, LightPrior};
 pub use options::{LightSource, Options, Registration, Shading, Start, Weights};
 pub use pose::{
-    Angles, AnglesFit, Candidate, CorrespondenceProblem, Correspondences, Icp, IcpOptions, IcpProblem, IcpReport,
-    IcpTermination, Information, Metric, Neighbour, Neighbours, Pair, Photometric, PhotometricOptions,
-    PhotometricProblem, PhotometricReport, PhotometricTermination, Progress, RansacOptions, RansacReport, Search,
-    Similarity, ransac,
+    Angles, Candidate, CorrespondenceProblem, Correspondences, Icp, IcpOptions, IcpProblem, IcpReport, IcpTermination,
+    Information, Metric, Neighbour, Neighbours, Pair, Photometric, PhotometricOptions, PhotometricProblem,
+    PhotometricReport, PhotometricTermination, Progress, RansacOptions, RansacReport, Search, Similarity, ransac,
 };
 pub use report::{Energy, Stage, Status, StepReport, Uncertainty};
 pub use shape::{

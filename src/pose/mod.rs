@@ -13,7 +13,7 @@ mod slots;
 mod uncertainty;
 mod visibility;
 
-pub use angles::{Angles, AnglesFit};
+pub use angles::Angles;
 pub use correspondence::{CorrespondenceProblem, Correspondences};
 pub use icp::{Icp, IcpOptions, IcpProblem, IcpReport, IcpTermination, Metric, Pair};
 pub use neighbours::{Neighbour, Neighbours};
