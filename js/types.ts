@@ -71,8 +71,8 @@ export interface Options {
   trim?: boolean;
   /**
    * Threads, 1 .. 16, this one included; default 1. All of them share the opening search, and two the iterations of larger
-   * views. The result is the same to the bit for any number. They hear and are heard while this one lets events through,
-   * as `run` does, which also waits for them; a copy of the pair is kept for them.
+   * views. The result is the same to the bit for any number of them. Messages pass while this one lets events through, as
+   * `run` does, which also waits for answers; a copy of the pair is kept for the others.
    */
   workers?: number;
 }

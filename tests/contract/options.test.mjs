@@ -129,7 +129,7 @@ function another({ kind, words, max = Infinity, default: value }) {
 
 describe("defaults", () => {
   for (const [path, row] of ROWS) {
-    // Other threads change nothing that comes out: tests/contract/workers.test.mjs.
+    // Other threads change nothing that comes out: tests/contract/search-workers.test.mjs.
     if (row.default === undefined || path === "options.workers") continue;
     const { given = noisy, steps, other = another(row) } = SHOWN[path] ?? {};
     test(path, async () => {

@@ -1,4 +1,4 @@
-// Another thread refines the depth view beside the image surface, and nothing but the time it takes depends on it.
+// A worker refines the depth view beside the image surface, and nothing but the time it takes depends on it.
 import assert from "node:assert/strict";
 import { syncBuiltinESMExports } from "node:module";
 import { before, describe, test } from "node:test";
@@ -6,14 +6,14 @@ import { setTimeout as wait } from "node:timers/promises";
 import threads from "node:worker_threads";
 import { Estimator, init, outcome, pair } from "./support.mjs";
 
-/** Until the other thread is there, milliseconds. */
+/** Until the worker is there, milliseconds. */
 const ARRIVAL = 1000;
 
-/** Refinements that other threads were asked for, and brought. */
+/** Refinements that workers were asked for, and made. */
 const told = { asked: 0, brought: 0 };
 /** What becomes of an order before it is sent. */
 let tamper = (order) => order;
-/** Threads that were made, and those of them that ended. */
+/** Workers that were started, and those of them that ended. */
 const made = { begun: 0, ended: 0 };
 
 class Watched extends threads.Worker {
@@ -60,7 +60,7 @@ before(async () => {
   syncBuiltinESMExports();
 });
 
-describe("a partner", () => {
+describe("a refinement worker", () => {
   test("refines the same to the bit, whatever kind of step is taken", async () => {
     for (const given of [scene(), scene({ registration: "fixed" }), scene({}, { depthNoise: 0.1, holes: 0.1 })]) {
       const expected = await endOf(alone(given));
@@ -104,7 +104,7 @@ describe("a partner", () => {
     estimator.free();
   });
 
-  test("that answers nonsense, or dies, is not missed", async () => {
+  test("that answers nonsense, or dies, changes nothing", async () => {
     const given = scene();
     const expected = await endOf(alone(given));
     const deaths = [
@@ -122,13 +122,13 @@ describe("a partner", () => {
       await wait(ARRIVAL);
       const before = made.begun;
       assert.deepEqual(await endOf(estimator), expected);
-      // Whoever has failed once is not hired again.
+      // After a failure none is started again in this loop.
       assert.equal(made.begun, before);
     }
     tamper = (order) => order;
   });
 
-  test("that cannot be given its pair leaves no thread behind", async () => {
+  test("that cannot be given its pair is ended", async () => {
     const given = scene();
     const expected = await endOf(alone(given));
     tamper = () => {
@@ -141,7 +141,7 @@ describe("a partner", () => {
     assert.deepEqual([made.begun - before.begun, made.ended - before.ended], [1, 1]);
   });
 
-  test("is not hired for a loop whose pose never stands", async () => {
+  test("is not started for a loop whose pose changes to the end", async () => {
     const before = made.begun;
     await endOf(together(scene({ registration: "icp", maxIterations: 3 })));
     assert.equal(made.begun, before);

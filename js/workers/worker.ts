@@ -1,22 +1,22 @@
-/** What another thread runs: it handles one order after the other. */
-import type { Helper } from "../target/wasm-bindgen/bimodal_stereo.js";
-import { bindings, load } from "./engine.js";
-import { nodeModule } from "./node.js";
-import { READY, type Answer, type Order } from "./threads.js";
+/** What a worker runs: it handles one order after the other. */
+import type { Helper } from "../../target/wasm-bindgen/bimodal_stereo.js";
+import { bindings, load } from "../engine.js";
+import { nodeModule } from "../node.js";
+import { READY, type Answer, type Order } from "./messages.js";
 
 function serve(answer: (answer: Answer, transfer: ArrayBuffer[]) => void): (order: Order) => void {
-  let helper: Helper | undefined;
+  let native: Helper | undefined;
 
   async function handle(order: Order): Promise<void> {
     switch (order.kind) {
       case "pair":
         await load(order.module);
-        helper = new (bindings().Helper)(order.image, order.depth, order.options);
+        native = new (bindings().Helper)(order.image, order.depth, order.options);
         return answer(READY, []);
       case "task":
-        return answer(helper?.perform(order.task) ?? null, []);
+        return answer(native?.perform(order.task) ?? null, []);
       case "refine": {
-        const refined = helper?.refine(order.numbers, order.planes) ?? null;
+        const refined = native?.refine(order.numbers, order.planes) ?? null;
         return answer(refined, refined ? [refined.buffer as ArrayBuffer] : []);
       }
     }
