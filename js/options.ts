@@ -7,7 +7,7 @@
 import type { NumberRow, RowsOf } from "./rows.js";
 import type { Options, Pose, SampleRequest } from "./types.js";
 
-export { paths, type Face, type Row, type Rows, type ShownRow } from "./rows.js";
+export { paths, type PageField, type Row, type Rows, type ShownRow } from "./rows.js";
 
 /** More is a mistake, no turn; far beyond, a sine means nothing. */
 const FULL_TURN = 360;

@@ -1,7 +1,7 @@
 /** How a member of the contract is described once: what is checked, and what the page shows, is made from such rows. */
 
-/** The words of a page for a member that it lets its visitor choose. */
-export interface Face {
+/** How the page shows a member that its visitor may choose. */
+export interface PageField {
   readonly group: "sample" | "method" | "weights" | "loop";
   readonly label: string;
   /** One sentence for whoever does not know the label. */
@@ -25,7 +25,7 @@ interface Common {
 
 /** Of a kind that the page has a control for. */
 interface Shown extends Common {
-  readonly page?: Face;
+  readonly page?: PageField;
 }
 
 /** A finite number, a whole one, or a side of a raster in pixels, which differs in the code of its errors. */

@@ -5,7 +5,7 @@
  */
 
 import type { SampleRequest } from "../../pkg/index.js";
-import { OPTIONS, RENDERED_ALONE, SAMPLE, paths, type Face, type Rows, type ShownRow } from "../../pkg/options.js";
+import { OPTIONS, RENDERED_ALONE, SAMPLE, paths, type PageField, type Rows, type ShownRow } from "../../pkg/options.js";
 import type { LabOptions, OwnCamera } from "../engine/protocol";
 
 /** Where the pair comes from: made by the crate, or the visitor's own. */
@@ -31,7 +31,7 @@ export interface NumberField extends Common {
   unit?: string | undefined;
   /** What an empty field means. */
   empty: string;
-  slider?: Face["slider"];
+  slider?: PageField["slider"];
 }
 export interface ChoiceField extends Common {
   kind: "choice";
@@ -50,7 +50,7 @@ export interface ListField extends Common {
   empty: string;
 }
 export type Field = NumberField | ChoiceField | FlagField | ListField;
-export type Group = Face["group"] | "colour" | "depth";
+export type Group = PageField["group"] | "colour" | "depth";
 export type Settings = Readonly<Record<string, Value>>;
 
 const near = (settings: Settings) => settings.start === "near";
@@ -58,7 +58,7 @@ const near = (settings: Settings) => settings.start === "near";
 const rendered = (settings: Settings) => settings.protocol !== "grid";
 
 /** The field of a row. */
-function fieldOf(path: string, row: ShownRow, { group, label, hint, link, initial, empty, slider }: Face): Field {
+function fieldOf(path: string, row: ShownRow, { group, label, hint, link, initial, empty, slider }: PageField): Field {
   const [, ...names] = path.split(".");
   const common = {
     ...{ key: link ?? String(names.at(-1)), label, group, path },
