@@ -1,9 +1,10 @@
 /**
- * Names and types, checked before wasm sees them: a misspelt key or a string for a number would otherwise pass in
- * silence or fail without a name. Values (ranges, lengths, finiteness) are checked in Rust, once, but for those that it
- * never sees or could not take in.
+ * What is checked before wasm sees it: names and types, because a misspelt key or a string for a number would pass in
+ * silence or fail without a name, and whatever the rows of the options say. What lies in rasters is checked in Rust.
  */
 import { BimodalError } from "./errors.js";
+import { OPTIONS, RENDERED_ALONE, SAMPLE } from "./options.js";
+import type { NumberRow, Row, Rows, WordRow } from "./rows.js";
 
 /** Checks one value; `field` is its path in the contract. */
 type Check = (value: unknown, field: string) => void;
@@ -28,24 +29,27 @@ const flag: Check = (value, field) => {
   if (typeof value !== "boolean") throw wrong(field, "true or false", value);
 };
 
-/** Counts and seeds: JavaScript has one type for all numbers, the numerics have none for halves and infinities. */
-const whole: Check = (value, field) => {
-  number(value, field);
-  if (typeof value === "number" && !(Number.isSafeInteger(value) && value >= 0)) {
-    throw new BimodalError("range", `${field}: must be a whole number, 0 .. 2^53 - 1 (got ${value})`, field);
-  }
-};
+/** The range of a number in words. */
+function range({ kind, min, above, max, below, unit = "" }: NumberRow): string {
+  const what = kind === "number" ? "a finite number" : "a whole number";
+  const end = unit && ` ${unit}`;
+  if (min && max) return `${what}, ${min} .. ${max}${end}`;
+  const named = (limit: number) => (limit === 0 ? "zero" : `${limit}`);
+  const from = above !== undefined ? ` above ${named(above)}` : min !== undefined ? `, ${named(min)} or above` : "";
+  const to = max !== undefined ? `, at most ${max}` : below !== undefined ? `, below ${below}` : "";
+  return what + from + to + end;
+}
 
-/** Beyond it the numerics, which count in 32 bits, would take another number for it; their own limits are far below. */
-const LARGEST_COUNT = 2 ** 32 - 1;
-/** A whole number that fits 32 bits, or what a larger one is refused with. */
-const within = (code: "size" | "range"): Check => (value, field) => {
-  whole(value, field);
-  if (typeof value === "number" && value > LARGEST_COUNT) {
-    throw new BimodalError(code, `${field}: is far too large (got ${value})`, field);
-  }
+/** A number in its range. JavaScript has one type for all numbers, the numerics have none for halves and infinities. */
+const ranged = (row: NumberRow): Check => (value, field) => {
+  if (typeof value !== "number") throw wrong(field, "a number", value);
+  const { kind, min = -Infinity, above = -Infinity, max = Infinity, below = Infinity } = row;
+  const isWhole = Number.isInteger(value);
+  const isKind = kind === "number" ? Number.isFinite(value) : isWhole;
+  if (isKind && value >= min && value > above && value <= max && value < below) return;
+  const code = kind === "side" && isWhole && value >= 0 ? "size" : "range";
+  throw new BimodalError(code, `${field}: must be ${range(row)} (got ${value})`, field);
 };
-const side = within("size");
 
 /** A list of so many numbers, typed arrays included. Its length comes first: what claims to be longer is not copied. */
 const numbers = (count: number): Check => (value, field) => {
@@ -54,17 +58,6 @@ const numbers = (count: number): Check => (value, field) => {
   if (length !== count) throw new BimodalError("size", `${field}: needs ${count} numbers, not ${length}`, field);
   const copy: unknown[] = Array.from({ ...Object(value), length });
   if (!copy.every((item) => typeof item === "number")) throw wrong(field, "a list of numbers", value);
-};
-
-/** More is a mistake, no turn; far beyond, a sine means nothing. */
-const FULL_TURN = 360;
-/** An angle in degrees; here, because only the rotation that it makes is handed on. */
-const degrees: Check = (value, field) => {
-  number(value, field);
-  if (typeof value === "number" && !(Math.abs(value) <= FULL_TURN)) {
-    const message = `${field}: must lie within -${FULL_TURN} .. ${FULL_TURN} degrees (got ${value})`;
-    throw new BimodalError("range", message, field);
-  }
 };
 
 type ArrayType = { readonly name: string; new (length: number): ArrayBufferView };
@@ -137,12 +130,9 @@ const object = (shape: Shape, required: readonly string[] = []): Check => (value
   }
 };
 
+/** Beyond it the numerics, which count in 32 bits, would take another number for it; their own limits are far below. */
+const side = ranged({ kind: "side", min: 0, max: 2 ** 32 - 1 });
 const camera = object({ fx: number, fy: number, cx: number, cy: number, distortion: numbers(5) }, ["fx", "fy", "cx", "cy"]);
-const angles = object({ alpha: degrees, beta: degrees, gamma: degrees });
-const pose = object({ scale: number, rotation: numbers(9), translation: numbers(3), angles });
-/** Nine coefficients for each of three channels. */
-const light = numbers(27);
-const lambda = object({ prior: number, unit: number, light: number, refinement: number });
 
 const image = object(
   {
@@ -170,62 +160,38 @@ const depth = object(
   ["width", "height"],
 );
 
-/** More threads than this wait for one another. */
-const MOST_WORKERS = 16;
-/** A number that never reaches the numerics, and so is judged here. */
-const count: Check = (value, field) => {
-  number(value, field);
-  if (typeof value === "number" && !(Number.isInteger(value) && value > 0)) {
-    throw new BimodalError("range", `${field}: must be a whole number above zero (got ${value})`, field);
+/** The check of a value that is no word, and what it takes, with an article. */
+function valueOf(row: Exclude<Row, WordRow>): readonly [check: Check, what: string] {
+  switch (row.kind) {
+    case "flag":
+      return [flag, "a flag"];
+    case "list":
+      return [numbers(row.length), `${row.length} numbers`];
+    case "object":
+      return [object(shapeOf(row.members)), row.noun];
+    default:
+      return [ranged(row), "a number"];
   }
-};
+}
 
-const options = object({
-  light: wordOr(["estimate"], light, "27 numbers"),
-  start: wordOr(["search", "identity"], pose, "a pose"),
-  scale: wordOr(["free"], number, "a number"),
-  registration: word("joint", "icp", "fixed"),
-  shading: word("surface", "pixel"),
-  lambda,
-  stopDegrees: number,
-  correspondenceDistance: number,
-  maxIterations: within("range"),
-  seed: whole,
-  annealing: flag,
-  trim: flag,
-  workers: (value, field) => {
-    count(value, field);
-    if (typeof value === "number" && value > MOST_WORKERS) {
-      throw new BimodalError("range", `${field}: at most ${MOST_WORKERS} (got ${value})`, field);
-    }
-  },
-});
+function checkOf(row: Row): Check {
+  const words = Object.keys(row.words ?? {});
+  if (row.kind === "word") return word(...words);
+  const [check, what] = valueOf(row);
+  return words.length === 0 ? check : wordOr(words, check, what);
+}
 
+const shapeOf = (rows: Rows): Shape => Object.fromEntries(Object.entries(rows).map(([name, row]) => [name, checkOf(row)]));
+
+const options = object(shapeOf(OPTIONS));
+
+const light = checkOf(OPTIONS.light);
 const relief = object({ width: side, height: side, heights: array(Float32Array) }, ["width", "height", "heights"]);
-const sample = object(
-  {
-    surface: (value, field) => {
-      if (typeof value !== "string") relief(value, field);
-    },
-    light: (value, field) => {
-      if (typeof value !== "string") light(value, field);
-    },
-    size: side,
-    height: side,
-    protocol: word("rendered", "grid"),
-    angles,
-    scale: number,
-    overlap: number,
-    noise: number,
-    depthNoise: number,
-    holes: number,
-    seed: whole,
-  },
-  ["surface", "light"],
-);
-
-/** What the grid protocol has no use for: it would be ignored in silence. */
-const RENDERED_ALONE = ["size", "height", "scale", "noise", "depthNoise", "holes", "seed"];
+/** A name, which the numerics judge, or something that is none. */
+const nameOr = (other: Check): Check => (value, field) => {
+  if (typeof value !== "string") other(value, field);
+};
+const sample = object({ surface: nameOr(relief), light: nameOr(light), ...shapeOf(SAMPLE) }, ["surface", "light"]);
 
 const signal: Check = (value, field) => {
   if (!(value instanceof AbortSignal)) throw wrong(field, "an AbortSignal", value);
@@ -233,7 +199,7 @@ const signal: Check = (value, field) => {
 const callback: Check = (value, field) => {
   if (typeof value !== "function") throw wrong(field, "a function", value);
 };
-const run = object({ maxIterations: count, signal, onStep: callback });
+const run = object({ maxIterations: ranged({ kind: "whole", min: 1 }), signal, onStep: callback });
 
 export const unsupported = (field: string, what: string): BimodalError =>
   new BimodalError("unsupported", `${field}: ${what} is not part of this version yet`, field);

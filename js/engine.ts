@@ -1,16 +1,23 @@
 /** The one wasm module behind all estimators of a page, and the border every call crosses. */
 import start, * as glue from "../target/wasm-bindgen/bimodal_stereo.js";
 import { BimodalError, translate } from "./errors.js";
-import type { Thread } from "./threads.js";
+import { nodeModule } from "./node.js";
 import type { WasmSource } from "./types.js";
 
 let loading: Promise<void> | undefined;
 let module: WebAssembly.Module | undefined;
-let spawnThread: (() => Thread) | undefined;
+
+/** The bytes of a file in Node, whose fetch reads none; nothing where the address is no file's. */
+function fromDisk(wasm: string | URL | Request | Response): Promise<BufferSource> | undefined {
+  const address = typeof wasm === "string" || wasm instanceof URL ? String(wasm) : "";
+  return address.startsWith("file:") ? nodeModule("node:fs/promises")?.readFile(new URL(address)) : undefined;
+}
 
 async function compile(wasm: WasmSource): Promise<WebAssembly.Module> {
   if (wasm instanceof WebAssembly.Module) return wasm;
   if (ArrayBuffer.isView(wasm) || wasm instanceof ArrayBuffer) return WebAssembly.compile(wasm);
+  const file = fromDisk(wasm);
+  if (file) return WebAssembly.compile(await file);
   const response = wasm instanceof Response ? wasm : await fetch(wasm);
   if (!response.ok) throw new Error(`status ${response.status}`);
   // Only what is declared as wasm may be compiled while it arrives.
@@ -30,15 +37,11 @@ async function loadOnce(wasm: WasmSource): Promise<void> {
   }
 }
 
-/** Loads the module once; later calls share the first one, and a failed one may be repeated. `spawn` makes the thread of a helper. */
-export function load(wasm: WasmSource, spawn?: () => Thread): Promise<void> {
-  spawnThread ??= spawn;
+/** Loads the module once; later calls share the first one, and a failed one may be repeated. */
+export function load(wasm: WasmSource): Promise<void> {
   loading ??= loadOnce(wasm);
   return loading;
 }
-
-/** Whether somebody has already called `init`. */
-export const isLoading = (): boolean => loading !== undefined;
 
 /** The compiled module, which other threads can start as well. */
 export function compiled(): WebAssembly.Module {
@@ -51,9 +54,6 @@ export function bindings(): typeof glue {
   compiled();
   return glue;
 }
-
-/** A thread for a helper, where this place has any. */
-export const spawn = (): Thread | undefined => spawnThread?.();
 
 /** Runs a call into wasm; its errors come out as `BimodalError`. */
 export function across<T>(call: () => T): T {

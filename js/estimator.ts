@@ -2,10 +2,10 @@ import type { Estimator as Raw } from "../target/wasm-bindgen/bimodal_stereo.js"
 import { checkDepth, checkImage, checkOptions, checkRun, unsupported } from "./check.js";
 import { across, bindings } from "./engine.js";
 import { BimodalError, isPanic, translate } from "./errors.js";
-import { Partner, type Refinement } from "./partner.js";
 import { copyOf, plainDepth, plainImage, plainOptions } from "./plain.js";
-import { Scouts } from "./scouts.js";
 import type { ColorImage, DepthMap, Options, RunOptions, StepReport } from "./types.js";
+import { RefinementWorker, type Refinement } from "./workers/refinement.js";
+import { SearchWorkers } from "./workers/search.js";
 
 /** Lets events, timers and drawing happen. A message instead of a timer: timers wait 4 ms, hidden pages 1 s. */
 function breathe(): Promise<void> {
@@ -20,7 +20,7 @@ function breathe(): Promise<void> {
   });
 }
 
-/** Pixels of the depth view from which on a partner is worth its messages: a refinement then takes some milliseconds. */
+/** Pixels of the depth view from which on a refinement worker is worth its messages: a refinement then takes some milliseconds. */
 const LEAST_SHARED = 96 * 96;
 
 /** An input made plain; checked before, for keys that are unknown, and after, for members that are inherited. */
@@ -42,8 +42,8 @@ export class Estimator {
   #broken = false;
   /** Those of the loop that is under way. */
   #options: Options;
-  readonly #scouts: Scouts | undefined;
-  readonly #partner: Partner | undefined;
+  readonly #searchWorkers: SearchWorkers | undefined;
+  readonly #refinementWorker: RefinementWorker | undefined;
 
   constructor(image: ColorImage, depth: DepthMap, options: Options = {}) {
     const [ownImage, ownDepth] = [checked(checkImage, plainImage, image), checked(checkDepth, plainDepth, depth)];
@@ -51,29 +51,29 @@ export class Estimator {
     this.#options = own;
     const { Estimator: Binding } = bindings();
     this.#raw = across(() => new Binding(ownImage, ownDepth, own));
-    const helpers = Math.min((own.workers ?? 1) - 1, this.#raw.helpersAfforded());
-    if (helpers > 0) {
+    const workers = Math.min((own.workers ?? 1) - 1, this.#raw.workersAfforded());
+    if (workers > 0) {
       // Its owner may change the pair before it is asked for again.
       const pair = { image: copyOf(ownImage, []), depth: copyOf(ownDepth, []) };
-      this.#scouts = new Scouts(helpers, pair, {
+      this.#searchWorkers = new SearchWorkers(workers, pair, {
         take: () => this.#call((raw) => raw.takeTask()),
-        accept: (finding) => this.#call((raw) => raw.accept(finding)),
+        accept: (result) => this.#call((raw) => raw.accept(result)),
       });
-      if (pair.depth.width * pair.depth.height >= LEAST_SHARED) this.#partner = new Partner(pair);
+      if (pair.depth.width * pair.depth.height >= LEAST_SHARED) this.#refinementWorker = new RefinementWorker(pair);
       this.#begin();
     }
   }
 
   /** One iteration of the loop. */
   step(): StepReport {
-    const answer = this.#partner?.answer;
+    const answer = this.#refinementWorker?.answer;
     if (answer) this.#call((raw) => raw.stepHalfway());
     return this.#finish(answer);
   }
 
   /** One stage of an iteration; the report says which. */
   stepStage(): StepReport {
-    this.#take(this.#partner?.answer);
+    this.#take(this.#refinementWorker?.answer);
     return this.#after(this.#call((raw) => raw.stepStage()));
   }
 
@@ -181,8 +181,8 @@ export class Estimator {
   free(): void {
     const raw = this.#raw;
     this.#raw = undefined;
-    this.#scouts?.end();
-    this.#partner?.end();
+    this.#searchWorkers?.end();
+    this.#refinementWorker?.end();
     // A broken one can't be freed: wasm-bindgen still counts it as borrowed by the call that broke off.
     if (!this.#broken) raw?.free();
   }
@@ -191,28 +191,31 @@ export class Estimator {
     this.free();
   }
 
-  /** The helpers begin anew: scouts if the loop does with a search, or else the partner. */
+  /** The workers begin anew: those of the search if the loop starts with one, or else the one that refines. */
   #begin(): void {
-    this.#scouts?.end();
-    this.#partner?.end();
-    if ((this.#options.start ?? "search") === "search") this.#scouts?.begin(this.#options);
+    this.#searchWorkers?.end();
+    this.#refinementWorker?.end();
+    if ((this.#options.start ?? "search") === "search") this.#searchWorkers?.begin(this.#options);
     else this.#share();
   }
 
-  /** The partner is there from the start: it needs its time to get ready. The paper's registration never lets the pose stand. */
+  /**
+   * The refinement worker is started with the first iteration, because it takes its time to get ready. Not with the paper's
+   * registration, which changes the pose in every iteration: a refinement for the pose before would be of no use.
+   */
   #share(): void {
-    if (this.#options.registration !== "icp") this.#partner?.begin(this.#options);
+    if (this.#options.registration !== "icp") this.#refinementWorker?.begin(this.#options);
   }
 
-  /** A step that waits for the partner, if it is at work. */
+  /** A step that waits for the refinement worker, if it is busy. */
   async #stepTogether(): Promise<StepReport> {
-    if (!this.#partner?.isBusy) return this.step();
+    if (!this.#refinementWorker?.isBusy) return this.step();
     this.#call((raw) => raw.stepHalfway());
-    await this.#partner.rest();
-    return this.#finish(this.#partner.answer);
+    await this.#refinementWorker.settled();
+    return this.#finish(this.#refinementWorker.answer);
   }
 
-  /** The rest of a step, with what the partner has found. */
+  /** The rest of a step, with what the refinement worker has made. */
   #finish(answer: Refinement | undefined): StepReport {
     this.#take(answer);
     return this.#after(this.#call((raw) => raw.step()));
@@ -222,17 +225,17 @@ export class Estimator {
     if (answer) this.#call((raw) => raw.acceptRefinement(answer.shape, answer.planes));
   }
 
-  /** Lets the helpers know how far search and loop have come. */
+  /** Gives the workers what comes next, or ends them. */
   #after(report: StepReport): StepReport {
     if (report.status !== "running") {
-      this.#scouts?.end();
-      this.#partner?.end();
+      this.#searchWorkers?.end();
+      this.#refinementWorker?.end();
     } else if (report.stage === "search") {
-      this.#scouts?.feed();
+      this.#searchWorkers?.feed();
     } else {
-      this.#scouts?.end();
+      this.#searchWorkers?.end();
       this.#share();
-      if (report.stage === "refinement") this.#partner?.ask((held) => this.#call((raw) => raw.refinementTask(held)));
+      if (report.stage === "refinement") this.#refinementWorker?.ask((held) => this.#call((raw) => raw.refinementTask(held)));
     }
     return report;
   }

@@ -1,28 +1,16 @@
-/** Entry for browsers and bundlers. */
+/** Entry for browsers, bundlers and Node. */
 import { load } from "./engine.js";
-import type { Thread } from "./threads.js";
 import type { WasmSource } from "./types.js";
 import { wasmUrl } from "./wasm.js";
 
-export * from "./main.js";
+export { checkCalibration } from "./calibration.js";
+export { BimodalError } from "./errors.js";
+export { Estimator } from "./estimator.js";
+export { sample, sampleBound, sampleLights, sampleSurfaces } from "./samples.js";
+export type * from "./types.js";
+export { wasmUrl } from "./wasm.js";
 
-/** Loads the numerics; without an argument from the .wasm file beside this module that `wasmUrl` names. */
-export default function init(wasm?: WasmSource): Promise<void> {
-  return load(wasm ?? wasmUrl(), spawn);
-}
-
-function spawn(): Thread {
-  // Written out in one piece: bundlers look for exactly this to carry the file along.
-  const worker = new Worker(new URL("./thread.js", import.meta.url), { type: "module" });
-  return {
-    post: (order, transfer) => worker.postMessage(order, transfer),
-    onAnswer: (hear) => worker.addEventListener("message", (event) => hear(event.data)),
-    onFailure: (hear) =>
-      worker.addEventListener("error", (event) => {
-        // Nobody misses a helper.
-        event.preventDefault();
-        hear();
-      }),
-    end: () => worker.terminate(),
-  };
+/** Loads the numerics; without an argument from the .wasm file beside this module that `wasmUrl` names, in Node from disk. */
+export default function init(wasm: WasmSource = wasmUrl()): Promise<void> {
+  return load(wasm);
 }

@@ -2,7 +2,9 @@
  * Inputs as plain objects of nothing but what the contract names. All threads are given the same: a class with getters, a
  * proxy or memory that is shared would look different in another one.
  */
-import type { ColorImage, DepthMap, Options, Pinhole, Pose } from "./types.js";
+import { OPTIONS } from "./options.js";
+import type { Row, Rows } from "./rows.js";
+import type { ColorImage, DepthMap, Options, Pinhole } from "./types.js";
 
 /** Some members of an object, inherited ones as well, without those that are undefined. */
 function pick<T extends object, K extends keyof T>(source: T, keys: readonly K[]): Pick<T, K> {
@@ -32,24 +34,20 @@ export const plainDepth = (depth: DepthMap): DepthMap => ({
   ...plainMember(depth, "camera", plainCamera),
 });
 
-const plainPose = (pose: Partial<Pose>): Partial<Pose> => ({
-  ...pick(pose, ["scale"]),
-  ...plainMember(pose, "rotation", numbers),
-  ...plainMember(pose, "translation", numbers),
-  ...plainMember(pose, "angles", (angles) => pick(angles, ["alpha", "beta", "gamma"])),
-});
+/** The members that some rows describe. */
+function plainMembers(source: object, rows: Rows): object {
+  const values = pick(source as Record<string, unknown>, Object.keys(rows));
+  return Object.fromEntries(Object.entries(values).map(([key, value]) => [key, plainValue(value, rows[key])]));
+}
 
-const SIMPLE_OPTIONS = [
-  ...(["scale", "registration", "shading", "annealing", "stopDegrees"] as const),
-  ...(["correspondenceDistance", "maxIterations", "seed", "trim", "workers"] as const),
-] as const;
+/** Where a value isn't what its row says, it is left to the check. */
+function plainValue(value: unknown, row: Row | undefined): unknown {
+  if (typeof value !== "object" || value === null) return value;
+  if (row?.kind === "list") return numbers(value as ArrayLike<number>);
+  return row?.kind === "object" ? plainMembers(value, row.members) : value;
+}
 
-export const plainOptions = (options: Options): Options => ({
-  ...pick(options, SIMPLE_OPTIONS),
-  ...plainMember(options, "light", (light) => (typeof light === "string" ? light : numbers(light))),
-  ...plainMember(options, "start", (start) => (typeof start === "string" ? start : plainPose(start))),
-  ...plainMember(options, "lambda", (lambda) => pick(lambda, ["prior", "unit", "light", "refinement"])),
-});
+export const plainOptions = (options: Options): Options => plainMembers(options, OPTIONS);
 
 /** What the contract takes; Node's Buffer is one of them by inheritance, and its slices are views. */
 const ARRAYS = [Uint8ClampedArray, Uint8Array, Uint16Array, Float32Array] as const;

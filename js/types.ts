@@ -1,6 +1,6 @@
 /** The public contract: what goes in and what comes out. No value is hidden behind `any`. */
 
-/** What `init` takes: where the .wasm is, or the .wasm itself; `bimodal_stereo_scalar_bg.wasm` needs no SIMD. */
+/** What `init` takes: where the .wasm is, or the .wasm itself; `bimodal_stereo_scalar_bg.wasm` needs no SIMD. Node also takes `file:` addresses. */
 export type WasmSource = string | URL | Request | Response | BufferSource | WebAssembly.Module;
 
 /** A pinhole camera; distortion is k1 k2 p1 p2 k3 (OpenCV). Units: pixels. */
@@ -71,8 +71,8 @@ export interface Options {
   trim?: boolean;
   /**
    * Threads, 1 .. 16, this one included; default 1. All of them share the opening search, and two the iterations of larger
-   * views. The result is the same to the bit for any number. They hear and are heard while this one lets events through,
-   * as `run` does, which also waits for them; a copy of the pair is kept for them.
+   * views. The result is the same to the bit for any number of them. Messages pass while this one lets events through, as
+   * `run` does, which also waits for answers; a copy of the pair is kept for the others.
    */
   workers?: number;
 }
@@ -94,7 +94,8 @@ export interface Uncertainty {
 
 export interface StepReport {
   iteration: number;
-  stage: string;
+  /** The one that ran last. */
+  stage: Stage;
   pose: Pose;
   /** Degrees. */
   rotationChange: number;

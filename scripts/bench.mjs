@@ -101,7 +101,7 @@ await script(async () => {
   await buildPage();
   if (native) await must("cargo", ["bench", "--bench", "rounds", "--no-run"]);
 
-  const api = await import("../pkg/node.js");
+  const api = await import("../pkg/index.js");
   await api.default();
   const made = scenes(api, await import("../pkg/files.js"));
   const server = await serve();

@@ -23,10 +23,10 @@ const FLAVOURS = [
   { file: `${MODULE}_bg.wasm`, target: "target", flags: ["-C", `target-feature=-${REFERENCES}`] },
   { file: `${MODULE}_scalar_bg.wasm`, target: "target/scalar", flags: ["-C", `target-feature=-${REFERENCES},-simd128`] },
 ];
-/** Two for programs, one for what reads files, and two for threads. */
-const ENTRIES = ["index", "node", "files", "thread", "thread-node"];
+/** One for programs, one for what reads files, one for the page's fields, and one for what a worker runs. */
+const ENTRIES = { index: "index", files: "files", options: "options", worker: "workers/worker" };
 /** Declarations that no entry mentions; one of them names the generated bindings, which stay inside. */
-const INTERNAL = ["check", "engine", "node", "npy", "partner", "plain", "scouts", "thread", "thread-node", "threads"];
+const INTERNAL = ["check.d.ts", "engine.d.ts", "node.d.ts", "npy.d.ts", "plain.d.ts", "workers"];
 
 const node = (module, ...args) => must(process.execPath, [inRoot("node_modules", module), ...args]);
 
@@ -45,7 +45,7 @@ function manifest() {
     engines: { node: "^20.19.0 || >=22.12.0" },
     sideEffects: false,
     exports: {
-      ".": { types: "./index.d.ts", node: "./node.js", default: "./index.js" },
+      ".": { types: "./index.d.ts", default: "./index.js" },
       "./files": { types: "./files.d.ts", default: "./files.js" },
       ...Object.fromEntries(FLAVOURS.map(({ file }) => [`./${file}`, `./${file}`])),
       "./package.json": "./package.json",
@@ -91,7 +91,7 @@ function checkGlue() {
 async function facade() {
   const { rolldown } = await import("rolldown");
   const bundle = await rolldown({
-    input: Object.fromEntries(ENTRIES.map((name) => [name, inRoot(`js/${name}.ts`)])),
+    input: Object.fromEntries(Object.entries(ENTRIES).map(([name, source]) => [name, inRoot(`js/${source}.ts`)])),
     external: /^node:/,
     platform: "neutral",
     resolve: { mainFields: ["module", "main"] },
@@ -99,7 +99,7 @@ async function facade() {
   await bundle.write({ dir: inRoot("pkg"), format: "esm", chunkFileNames: "[name].js" });
   await bundle.close();
   await node("typescript/bin/tsc", "-p", "js/tsconfig.json");
-  for (const name of INTERNAL) rmSync(inRoot(`pkg/${name}.d.ts`));
+  for (const name of INTERNAL) rmSync(inRoot("pkg", name), { recursive: true });
 }
 
 export async function build() {

@@ -60,7 +60,7 @@ await script(async () => {
   if (!hasData()) throw new Failure(`Nothing to do: ${MISSING}.`);
   await setup();
   await build();
-  const { default: init, Estimator } = await import("../pkg/node.js");
+  const { default: init, Estimator } = await import("../pkg/index.js");
   const files = await import("../pkg/files.js");
   await init();
   mkdirSync(inRoot("target/pairs"), { recursive: true });

@@ -18,7 +18,7 @@
 //! | `pose/search` ([`Search`]) | where to start when nothing is known: all rotations, translations and scales, coarsely | before Algorithm 1 |
 //! | `pose/photometric` ([`Photometric`]) | the pose straight from the colours, the light projected out | beyond the paper |
 //! | `pose/icp`, `pose/ransac` ([`Icp`], [`ransac`]) | the pose from both surfaces | Eq. 12 to 14 |
-//! | `pose/similarity`, `pose/angles` ([`Similarity`], [`Angles`]) | s, R, t and the angles | Eq. 15, 16, 20 |
+//! | `pose/similarity`, `pose/angles` ([`Similarity`], [`Angles`]) | s, R, t and the angles, in closed form; the least-squares fit of Eq. 16 is a test, `tests/pose_angles.rs` | Eq. 15, 16, 20 |
 //! | `pose/correspondence` ([`Correspondences`]) | which depth point is which pixel, and what hides it | the 1-pixel rule |
 //! | `options`, `report` ([`Options`], [`StepReport`]) | what the loop can be told, what it says | |
 //! | `estimator` ([`Estimator`]) | Algorithm 1 stage by stage, its `objective`, its `verdict`; the `initialisation` before it; its [`Worker`]s | Eq. 1, Algorithm 1 |
@@ -61,8 +61,8 @@ pub use estimator::{Estimator, Finding, RefinementTask, Surface, Task, Worker};
 pub use light::{COEFFICIENTS, CoefficientMatrix, Light, LightFit, LightFitter, LightPrior};
 pub use options::{LightSource, Options, Registration, Shading, Start, Weights};
 pub use pose::{
-    Angles, AnglesFit, Candidate, CorrespondenceProblem, Correspondences, Icp, IcpOptions, IcpProblem, IcpReport,
-    IcpTermination, Information, Metric, Pair, Photometric, PhotometricOptions, PhotometricProblem, PhotometricReport,
+    Angles, Candidate, CorrespondenceProblem, Correspondences, Icp, IcpOptions, IcpProblem, IcpReport, IcpTermination,
+    Information, Metric, Pair, Photometric, PhotometricOptions, PhotometricProblem, PhotometricReport,
     PhotometricTermination, Progress, RansacOptions, RansacReport, Search, SearchProblem, Similarity, Uncertainty,
     ransac,
 };

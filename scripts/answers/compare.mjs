@@ -106,7 +106,7 @@ export const WHOLE = {
     return most;
   },
   pairsApart(a, b) {
-    const differ = a.reduce((count, partner, index) => count + (partner === b[index] ? 0 : 1), Math.abs(a.length - b.length));
-    return differ === 0 ? undefined : `${differ} of ${a.length} pixels have another partner`;
+    const differ = a.reduce((count, depth, index) => count + (depth === b[index] ? 0 : 1), Math.abs(a.length - b.length));
+    return differ === 0 ? undefined : `${differ} of ${a.length} pixels have another correspondence`;
   },
 };

@@ -42,7 +42,7 @@ export const figureOf = ({ input, report, light, pixel, correspondence, rasters 
   report: rounded(report),
   light: light.map(fixed),
   pixel: rounded(pixel),
-  correspondence: { pattern: hash(correspondence), count: correspondence.filter((partner) => partner >= 0).length },
+  correspondence: { pattern: hash(correspondence), count: correspondence.filter((depth) => depth >= 0).length },
   rasters: Object.fromEntries(Object.entries(SAMPLES).map(([name, count]) => [name, rasterFigure(rasters[name], count)])),
 });
 
@@ -52,5 +52,5 @@ export const SAMPLED = {
     if (a.pattern !== b.pattern || a.values.length !== b.values.length) return Infinity;
     return a.values.reduce((most, value, index) => Math.max(most, Math.abs(value - b.values[index])), 0);
   },
-  pairsApart: (a, b) => (a.pattern === b.pattern ? undefined : `${a.count} -> ${b.count} pixels, or other partners`),
+  pairsApart: (a, b) => (a.pattern === b.pattern ? undefined : `${a.count} -> ${b.count} pixels, or other correspondences`),
 };

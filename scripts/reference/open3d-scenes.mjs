@@ -4,7 +4,7 @@
 // the pose) and `N.depth.f32` (x y z of the depth map), float32, and in `scenes.json` their names and the rotation to find.
 import { writeFileSync } from "node:fs";
 import { join } from "node:path";
-import init, { Estimator, sample } from "../../pkg/node.js";
+import init, { Estimator, sample } from "../../pkg/index.js";
 import * as files from "../../pkg/files.js";
 import { hasData, library } from "../tables/library.mjs";
 import { table2B } from "../tables/protocol/poses.mjs";

@@ -1,14 +1,13 @@
 // Results as they come, one JSON line each, so that a run that was broken off goes on where it was.
 import { createHash } from "node:crypto";
 import { appendFileSync, existsSync, mkdirSync, readFileSync } from "node:fs";
-import { inRoot, stamp } from "../shell.mjs";
+import { inRoot, matching, stamp } from "../shell.mjs";
 import { hasData } from "./library.mjs";
 
 const FOLDER = "target/tables";
 /** What decides about a result: the package, the protocols, and what the names stand for. */
-const DECISIVE = [
-  ...["index.js", "node.js", "files.js", "main.js", "errors.js"].map((name) => `pkg/${name}`),
-  ...["bimodal_stereo_bg.wasm", "bimodal_stereo_scalar_bg.wasm"].map((name) => `pkg/${name}`),
+const decisive = () => [
+  ...matching(["pkg"], /\.(js|wasm)$/),
   ...["scripts/tables/protocol", "scripts/tables/library.mjs", "scripts/tables/npy.mjs"],
 ];
 
@@ -25,7 +24,7 @@ function parsed(line) {
 
 /** The journal of this very package and these very protocols; another build begins another one. */
 export function openJournal() {
-  const path = inRoot(FOLDER, `${stamp(DECISIVE).slice(0, 16)}${hasData() ? "" : "-built-in"}.jsonl`);
+  const path = inRoot(FOLDER, `${stamp(decisive()).slice(0, 16)}${hasData() ? "" : "-built-in"}.jsonl`);
   mkdirSync(inRoot(FOLDER), { recursive: true });
   const lines = existsSync(path) ? readFileSync(path, "utf8").split("\n").map(parsed).filter(Boolean) : [];
   const results = new Map(lines.map(({ key, result }) => [key, result]));

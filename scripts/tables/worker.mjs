@@ -2,7 +2,7 @@
 import { library } from "./library.mjs";
 import { measure } from "./protocol/measure.mjs";
 
-const api = await import("../../pkg/node.js");
+const api = await import("../../pkg/index.js");
 await api.default();
 const data = library(await import("../../pkg/files.js"));
 

@@ -28,7 +28,7 @@ mod similarity;
 mod uncertainty;
 mod visibility;
 
-pub use angles::{Angles, AnglesFit};
+pub use angles::Angles;
 pub use correspondence::{CorrespondenceProblem, Correspondences};
 pub use icp::{Icp, IcpOptions, IcpProblem, IcpReport, IcpTermination, Metric, Pair};
 pub use photometric::{Photometric, PhotometricOptions, PhotometricProblem, PhotometricReport, PhotometricTermination};

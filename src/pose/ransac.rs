@@ -56,7 +56,7 @@ impl Default for RansacOptions {
 pub struct RansacReport {
     /// The similarity fitted to its own inliers.
     pub pose: Similarity,
-    /// A of Eq. 14 on the inliers of the linear model.
+    /// A of Eq. 14 on the inliers of the linear model; [`Similarity::nearest`] reads scale and rotation off it.
     pub matrix: Matrix3<f64>,
     /// Indices of the pairs that the similarity explains, ascending.
     pub inliers: Vec<u32>,

@@ -5,7 +5,8 @@ import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "nod
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { fileURLToPath } from "node:url";
+import { fileURLToPath, pathToFileURL } from "node:url";
+import { build } from "vite";
 
 const root = fileURLToPath(new URL("../..", import.meta.url));
 const folder = mkdtempSync(join(tmpdir(), "bimodal-stereo-"));
@@ -34,11 +35,41 @@ test("the README's example runs in Node", () => {
   assert.match(run(process.execPath, ["example.mjs"]), /converged/);
 });
 
+/** What a program of one line sees of the package after `init`. */
+function lightsAfter(specifier, argument) {
+  const code = `import init, { sampleLights } from ${JSON.stringify(specifier)}; await init(${argument}); console.log(...sampleLights());`;
+  return run(process.execPath, ["--input-type=module", "-e", code]).trim().split(" ");
+}
+
 test("the file without SIMD can be asked for by its address", () => {
-  const code = `import init, { sampleLights } from "bimodal-stereo";
-    await init(new URL(import.meta.resolve("bimodal-stereo/bimodal_stereo_scalar_bg.wasm")));
-    console.log(sampleLights().includes("window"));`;
-  assert.equal(run(process.execPath, ["--input-type=module", "-e", code]).trim(), "true");
+  const address = 'import.meta.resolve("bimodal-stereo/bimodal_stereo_scalar_bg.wasm")';
+  for (const argument of [address, `new URL(${address})`]) assert.ok(lightsAfter("bimodal-stereo", argument).includes("window"));
+});
+
+test("Node may import the module by its path, too", () => {
+  const path = pathToFileURL(join(folder, "node_modules/bimodal-stereo/index.js")).href;
+  assert.ok(lightsAfter(path, "").includes("window"));
+});
+
+test("a .wasm that is not there is a BimodalError", () => {
+  const code = `import init from "bimodal-stereo";
+    await init(new URL("file:///no/such.wasm")).catch(({ name, code, field }) => console.log(name, code, field));`;
+  assert.equal(run(process.execPath, ["--input-type=module", "-e", code]).trim(), "BimodalError init wasm");
+});
+
+test("bundled for browsers it carries its files along, and asks for nothing of Node's", async () => {
+  writeFileSync(join(folder, "page.js"), 'import init, { Estimator } from "bimodal-stereo"; console.log(init, Estimator);');
+  const warnings = [];
+  const warn = (message) => void warnings.push(message);
+  const logger = { info() {}, warn, warnOnce: warn, error: warn, clearScreen() {}, hasErrorLogged: () => false, hasWarned: false };
+  const { output } = await build({
+    ...{ root: folder, configFile: false, logLevel: "warn", customLogger: logger, worker: { format: "es" } },
+    build: { write: false, rollupOptions: { input: join(folder, "page.js") } },
+  });
+  assert.deepEqual(warnings, []);
+  const carried = output.map(({ fileName }) => fileName.replace(/^assets\/|-[\w-]{8}(?=\.)/g, "")).sort();
+  assert.deepEqual(carried, ["bimodal_stereo_bg.wasm", "bimodal_stereo_scalar_bg.wasm", "page.js", "worker.js"]);
+  for (const { fileName, imports = [], dynamicImports = [] } of output) assert.deepEqual([...imports, ...dynamicImports], [], fileName);
 });
 
 test("the files module loads by itself", () => {
@@ -52,7 +83,7 @@ test("types resolve for Node and for bundlers, without help from other type pack
   writeFileSync(
     join(folder, "typed/contract.ts"),
     `import init, { BimodalError, Estimator, checkCalibration, sample, wasmUrl } from "bimodal-stereo";
-     import type { CheckReport, ColorImage, DepthMap, Options, Pose, StepReport } from "bimodal-stereo";
+     import type { CheckReport, ColorImage, DepthMap, Options, Pose, Stage, StepReport } from "bimodal-stereo";
      import { decodeColour, decodeDepth, decodeMask } from "bimodal-stereo/files";
      const image: ColorImage = decodeColour(new Uint8Array());
      const depth: DepthMap = { ...decodeDepth(new ArrayBuffer(0)), mask: decodeMask(new Uint8Array()).data };
@@ -70,6 +101,9 @@ test("types resolve for Node and for bundlers, without help from other type pack
        return [await estimator.run({ maxIterations: 3, signal, onStep: (report) => report.status }), await checkCalibration([], {})];
      }
      export const code = (error: BimodalError): string => error.code + (error.field ?? "");
+     export const isSearch = ({ stage }: StepReport): Stage | undefined => (stage === "search" ? stage : undefined);
+     // @ts-expect-error a misspelt stage is a type error
+     export const isOther = ({ stage }: StepReport): boolean => stage === "serach";
      // @ts-expect-error a misspelt option is a type error as well
      export const misspelt: Options = { regstration: "icp" };
      // @ts-expect-error a report is not any

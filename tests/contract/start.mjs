@@ -4,7 +4,7 @@ import { syncBuiltinESMExports } from "node:module";
 import { basename } from "node:path";
 import { parentPort, workerData } from "node:worker_threads";
 
-const { entry, knowsSimd, request } = workerData;
+const { inNode, knowsSimd, request } = workerData;
 
 const read = promises.readFile;
 const opened = [];
@@ -14,11 +14,14 @@ function noted(address) {
 }
 promises.readFile = noted;
 syncBuiltinESMExports();
-// A browser's half: Node's own fetch refuses files.
-globalThis.fetch = async (address) => new Response(await noted(address), { headers: { "content-type": "application/wasm" } });
+if (!inNode) {
+  process.getBuiltinModule = undefined;
+  // Node's own refuses files.
+  globalThis.fetch = async (address) => new Response(await noted(address), { headers: { "content-type": "application/wasm" } });
+}
 if (!knowsSimd) WebAssembly.validate = () => false;
 
-const { default: init, Estimator, sample } = await import(entry);
+const { default: init, Estimator, sample } = await import("../../pkg/index.js");
 await init();
 const { image, depth, pose: truth } = sample(request);
 const estimator = new Estimator(image, depth);

@@ -1,7 +1,7 @@
 // The built package, small inputs for it, and files made byte by byte.
 import assert from "node:assert/strict";
 import { crc32, deflateSync } from "node:zlib";
-import init, * as package_ from "../../pkg/node.js";
+import init, * as package_ from "../../pkg/index.js";
 
 export { init };
 export const { BimodalError, Estimator, checkCalibration, sample, sampleBound, sampleLights, sampleSurfaces } = package_;

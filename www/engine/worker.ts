@@ -122,7 +122,7 @@ async function advance({ by, milliseconds }: Calls["advance"]["request"]): Promi
   const searching = Math.min(Math.max(began - answered, SEARCHING[0]), SEARCHING[1]);
   do {
     if (isSearch()) reports.pop();
-    // Unlike a plain step this one lets the threads be heard that share the search.
+    // Unlike a plain step this one lets the messages of the search's other threads through.
     reports.push(by === "stage" ? estimator.stepStage() : await estimator.run({ maxIterations: 1 }));
   } while (performance.now() - began < (isSearch() ? searching : milliseconds) && estimator.report.status === "running");
   answered = performance.now();

@@ -126,13 +126,12 @@ function build(field: Field, id: string, change: (value: Value) => void): Built 
 }
 
 function numbers(field: NumberField, id: string, change: (value: Value) => void): Built {
-  const limits = { min: field.min, max: field.max, step: field.step };
-  // The library judges the numbers, in words that a browser's bubble does not have; so no limits but those of the slider.
-  const exact = make("input", { id, type: "number", step: "any", inputmode: "decimal", placeholder: field.empty ?? "default" });
+  // The library judges the numbers, in words that a browser's bubble does not have; so no limits here.
+  const exact = make("input", { id, type: "number", step: "any", inputmode: "decimal", placeholder: field.empty });
   const read = (input: HTMLInputElement) => change(input.value === "" ? null : input.valueAsNumber);
   exact.addEventListener("change", () => read(exact));
   if (!field.slider) return { inputs: [exact], show: (value) => (exact.value = value === null ? "" : String(value)) };
-  const slider = make("input", { type: "range", ...limits, "aria-label": field.label });
+  const slider = make("input", { type: "range", ...field.slider, "aria-label": field.label });
   slider.addEventListener("input", () => (exact.value = slider.value));
   slider.addEventListener("change", () => read(slider));
   return {

@@ -1,7 +1,9 @@
 /** The opening search and the five stages of one iteration, in words. */
 
+import type { Stage } from "../../pkg/index.js";
+
 export interface StageText {
-  name: string;
+  name: Stage;
   title: string;
   equation: string;
   words: string;

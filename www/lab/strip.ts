@@ -1,6 +1,6 @@
 /** The stages as the spine of the page: the one that ran last is lit, its time stands below, a press explains it. */
 
-import type { StepReport } from "../../pkg/index.js";
+import type { Stage, StepReport } from "../../pkg/index.js";
 import { decimals } from "../draw/numbers";
 import { byId, make } from "../dom";
 import { stages, type StageText } from "./stages";
@@ -10,13 +10,13 @@ import type { Verdict } from "./verdict";
 export type Notice = "loading" | "waiting" | "error";
 
 export class Strip {
-  readonly #buttons = new Map<string, { button: HTMLButtonElement; time: HTMLElement }>();
+  readonly #buttons = new Map<Stage, { button: HTMLButtonElement; time: HTMLElement }>();
   readonly #count = byId("iteration", HTMLElement);
   readonly #status = byId("status", HTMLElement);
   readonly #verdict = byId("verdict", HTMLElement);
   readonly #explanation = byId("explanation", HTMLElement);
 
-  #last = "";
+  #last: Stage | undefined;
   readonly #bar = byId("bar", HTMLElement);
 
   constructor(list: HTMLElement) {
@@ -32,7 +32,7 @@ export class Strip {
   /** `idle` is what the page itself does while the loop rests. */
   show(report: StepReport, idle: "ready" | "paused" | "playing", end: Verdict | undefined): void {
     const begun = report.iteration > 0 || report.milliseconds[report.stage] !== undefined;
-    this.#last = begun ? report.stage : "";
+    this.#last = begun ? report.stage : undefined;
     for (const [name, { button, time }] of this.#buttons) {
       const spent = report.milliseconds[name];
       button.toggleAttribute("data-lit", name === report.stage && begun);
@@ -53,7 +53,7 @@ export class Strip {
   run(): void {
     if (this.#last === "search") return;
     const names = [...this.#buttons.keys()];
-    const next = names[(names.indexOf(this.#last) + 1) % names.length];
+    const next = names[this.#last ? (names.indexOf(this.#last) + 1) % names.length : 0];
     for (const [name, { button }] of this.#buttons) button.toggleAttribute("data-lit", name === next);
   }
 

@@ -1,4 +1,4 @@
-// Another thread refines the depth view beside the image surface, and nothing but the time it takes depends on it.
+// A worker refines the depth view beside the image surface, and nothing but the time it takes depends on it.
 import assert from "node:assert/strict";
 import { before, describe, test } from "node:test";
 import { Estimator, init, outcome, pair } from "./support.mjs";
@@ -28,8 +28,8 @@ async function settledEnd(estimator, step) {
   return end;
 }
 
-/** How long the estimator waits for an answer, milliseconds: PATIENCE of js/partner.ts. */
-const PATIENCE = 2000;
+/** How long the estimator waits for an answer, milliseconds: LONGEST_WAIT of js/workers/refinement.ts. */
+const LONGEST_WAIT = 2000;
 
 /** The estimator waits for the other thread as long as it takes: its patience is a timer, which is stopped. */
 const withoutHaste = (t) => t.mock.timers.enable({ apis: ["setTimeout"] });
@@ -46,7 +46,7 @@ async function lostInWaiting() {
 
 before(() => init());
 
-describe("a partner", () => {
+describe("a refinement worker", () => {
   test("refines the same to the bit, whatever kind of step is taken", async (t) => {
     withoutHaste(t);
     for (const given of [scene(), scene({ registration: "fixed" }), scene({}, { depthNoise: 0.1, holes: 0.1 })]) {
@@ -92,7 +92,7 @@ describe("a partner", () => {
     estimator.free();
   });
 
-  test("that answers nonsense, or dies, is not missed", async () => {
+  test("that answers nonsense, or dies, changes nothing", async () => {
     const given = scene();
     const expected = await endOf(alone(given));
     const deaths = [
@@ -110,7 +110,7 @@ describe("a partner", () => {
       await settled();
       const before = { ...seen };
       assert.deepEqual(await endOf(estimator), expected);
-      // Whoever has failed once is neither asked nor hired again.
+      // After a failure none is asked, nor another started, in this loop.
       assert.deepEqual([seen.asked - before.asked, seen.begun - before.begun], [1, 0]);
     }
     tamperWith();
@@ -126,13 +126,13 @@ describe("a partner", () => {
     const end = endOf(estimator).finally(() => (ended = true));
     await lostInWaiting();
     const { asked } = seen;
-    // Patience runs out here, and nowhere else.
-    for (; !ended; t.mock.timers.tick(PATIENCE)) await new Promise(setImmediate);
+    // The wait ends here, and nowhere else.
+    for (; !ended; t.mock.timers.tick(LONGEST_WAIT)) await new Promise(setImmediate);
     assert.deepEqual(await end, expected);
     assert.equal(seen.asked, asked, "it is not asked again");
   });
 
-  test("that cannot be given its pair leaves no thread behind", async () => {
+  test("that cannot be given its pair is ended", async () => {
     const given = scene();
     const expected = await endOf(alone(given));
     tamperWith(() => {
@@ -145,13 +145,13 @@ describe("a partner", () => {
     await until(() => seen.ended === seen.begun);
   });
 
-  test("is not hired for a loop whose pose never stands", async () => {
+  test("is not started for a loop whose pose changes to the end", async () => {
     const before = seen.begun;
     await endOf(together(scene({ registration: "icp", maxIterations: 3 })));
     assert.equal(seen.begun, before);
   });
 
-  test("goes when the loop begins anew or the estimator is freed, also while somebody waits", async (t) => {
+  test("goes when the loop begins anew or the estimator is freed, also while a run waits", async (t) => {
     withoutHaste(t);
     const given = scene();
     const expected = await endOf(alone(given));

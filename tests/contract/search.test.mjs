@@ -18,7 +18,7 @@ function reports({ image, depth }, gain = 1, options = {}) {
 
 before(() => init());
 
-describe("opening", () => {
+describe("search", () => {
   test("nothing known: slices of a search, then a converged loop", () => {
     const pair = sample(REQUEST);
     const seen = reports(pair);

@@ -1,4 +1,4 @@
-// Several threads share a search, and nothing but the time it takes depends on how many.
+// Workers share a search, and nothing but the time it takes depends on how many.
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
 import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
@@ -17,7 +17,7 @@ async function slicesOf(estimator) {
 
 before(() => init());
 
-describe("workers", () => {
+describe("search workers", () => {
   test("any number of them finds the same to the bit", async () => {
     const scenes = [[scene(), true], [scene({ surface: "ripples", scale: 1.1, overlap: 0.7 }), false]];
     for (const [{ image, depth, light }, known] of scenes) {
@@ -124,7 +124,7 @@ describe("workers", () => {
     assert.deepEqual(outcome(together), outcome(alone));
   });
 
-  test("freed in the middle, no thread goes on", async () => {
+  test("freed in the middle, they end", async () => {
     const { image, depth } = scene();
     const together = new Estimator(image, depth, { workers: 3 });
     await settled();

@@ -1,0 +1,183 @@
+/**
+ * What may be chosen, one row for each member of `Options` and of `SampleRequest`: type, range, default, unit, and the
+ * page's words. The checks of this facade, its plain copies and the page's fields are all made from these rows, in their
+ * order. Defaults and ranges are those of `src/options.rs` and `src/scenes/sample.rs`, which judge what native callers
+ * give; `tests/contract/options.test.mjs` holds that they agree.
+ */
+import type { NumberRow, RowsOf } from "./rows.js";
+import type { Options, Pose, SampleRequest } from "./types.js";
+
+export { paths, type PageField, type Row, type Rows, type ShownRow } from "./rows.js";
+
+/** More is a mistake, no turn; far beyond, a sine means nothing. */
+const FULL_TURN = 360;
+const angle: NumberRow & { default: number } = { kind: "number", min: -FULL_TURN, max: FULL_TURN, unit: "deg", default: 0 };
+/** A term that weighs a million times the colours leaves no more than rounding of them. */
+const weight = { kind: "number", min: 0, max: 1e6 } as const;
+/** What JavaScript's one type for numbers holds without a gap; a random generator takes any of them. */
+const seed = { kind: "whole", min: 0, max: Number.MAX_SAFE_INTEGER, default: 1 } as const;
+const side = { kind: "side", min: 16, max: 1024, unit: "px" } as const;
+
+const POSE: RowsOf<Partial<Pose>> = {
+  scale: { kind: "number", above: 0 },
+  rotation: { kind: "list", length: 9 },
+  translation: { kind: "list", length: 3 },
+  angles: { kind: "object", noun: "angles", members: { alpha: angle, beta: angle, gamma: angle } },
+};
+
+export const OPTIONS: RowsOf<Options> = {
+  /** Nine coefficients for each of three channels. */
+  light: { kind: "list", length: 27, words: { estimate: "estimate" }, default: "estimate" },
+  start: { kind: "object", noun: "a pose", members: POSE, words: { search: "search", identity: "identity" }, default: "search" },
+  registration: {
+    kind: "word",
+    words: { joint: "joint", icp: "ICP", fixed: "keep start" },
+    default: "joint",
+    page: {
+      group: "method",
+      label: "Registration",
+      hint: "Joint: pose and light straight from the colours. ICP and RANSAC: as in the paper. Or keep the start.",
+    },
+  },
+  shading: {
+    kind: "word",
+    words: { surface: "surface", pixel: "pixel" },
+    default: "surface",
+    page: { group: "method", label: "Shading", hint: "The surface as a whole, or each pixel on its own as in the paper." },
+  },
+  scale: {
+    kind: "number",
+    above: 0,
+    words: { free: "free" },
+    default: "free",
+    page: { group: "method", label: "Scale", hint: "A number holds it." },
+  },
+  trim: {
+    kind: "flag",
+    default: true,
+    page: { group: "method", label: "Trim", hint: "Leave out flying pixels and background inside the mask." },
+  },
+  annealing: { kind: "flag", default: true },
+  lambda: {
+    kind: "object",
+    noun: "weights",
+    members: {
+      prior: {
+        ...weight,
+        default: 0.05,
+        page: { group: "weights", label: "λ shape prior", hint: "How strongly a normal follows the other view's." },
+      },
+      unit: { ...weight, default: 1, page: { group: "weights", label: "λ unit length", link: "unitLength" } },
+      light: {
+        ...weight,
+        default: 1e-6,
+        page: { group: "weights", label: "λ light", link: "lightPrior", hint: "How strongly the light follows natural lights." },
+      },
+      refinement: { ...weight, default: 0.01, page: { group: "weights", label: "λ refinement" } },
+    },
+  },
+  stopDegrees: {
+    kind: "number",
+    above: 0,
+    unit: "deg",
+    default: 0.01,
+    page: { group: "loop", label: "Stop below", link: "stop", hint: "Change of the rotation that counts as settled." },
+  },
+  /** More than anybody waits for are a typing error. */
+  maxIterations: {
+    kind: "whole",
+    min: 1,
+    max: 100_000,
+    unit: "iterations",
+    default: 60,
+    page: { group: "loop", label: "At most", link: "iterations" },
+  },
+  correspondenceDistance: {
+    kind: "number",
+    above: 0,
+    unit: "px",
+    page: { group: "loop", label: "Match within", link: "distance", hint: "Accepted distance of a correspondence.", empty: "automatic" },
+  },
+  seed: { ...seed, page: { group: "loop", label: "Seed" } },
+  /** More threads would wait for one another. */
+  workers: { kind: "whole", min: 1, max: 16, default: 1 },
+};
+
+/** All but `surface` and `light`, whose names only the built module knows. */
+export const SAMPLE: RowsOf<Omit<SampleRequest, "surface" | "light">> = {
+  size: { ...side, default: 64 },
+  height: side,
+  protocol: {
+    kind: "word",
+    words: { rendered: "rendered", grid: "bare grid" },
+    default: "rendered",
+    page: {
+      group: "sample",
+      label: "Protocol",
+      hint: "Rendered: as cameras see the surface. Bare grid: every eighth sample of it, the same points in both views, as the paper may have done.",
+    },
+  },
+  angles: {
+    kind: "object",
+    noun: "angles",
+    members: {
+      // A missing angle is zero, but for beta where all of them are missing: that is what the page starts with.
+      beta: {
+        ...angle,
+        page: {
+          group: "sample",
+          label: "Rotation β",
+          hint: "About the vertical axis: the angle to find.",
+          initial: 20,
+          slider: { min: -90, max: 90, step: 1 },
+        },
+      },
+      alpha: { ...angle, page: { group: "sample", label: "Rotation α" } },
+      gamma: { ...angle, page: { group: "sample", label: "Rotation γ" } },
+    },
+  },
+  scale: {
+    kind: "number",
+    above: 0,
+    default: 1,
+    page: { group: "sample", label: "True scale", link: "trueScale", hint: "Of the pose to find: the depth view is smaller by it." },
+  },
+  noise: {
+    kind: "number",
+    min: 0,
+    default: 0,
+    page: {
+      group: "sample",
+      label: "Colour noise",
+      hint: "Gaussian, on the logarithm of the intensity.",
+      slider: { min: 0, max: 0.2, step: 0.005 },
+    },
+  },
+  overlap: {
+    kind: "number",
+    above: 0,
+    max: 1,
+    default: 1,
+    page: {
+      group: "sample",
+      label: "Overlap",
+      hint: "Share of the depth map's columns that is kept.",
+      slider: { min: 0.1, max: 1, step: 0.05 },
+    },
+  },
+  depthNoise: { kind: "number", min: 0, unit: "px", default: 0, page: { group: "sample", label: "Depth noise" } },
+  holes: {
+    kind: "number",
+    min: 0,
+    below: 1,
+    default: 0,
+    page: { group: "sample", label: "Holes", hint: "Share of the depth pixels that is lost." },
+  },
+  seed: {
+    ...seed,
+    page: { group: "sample", label: "Noise seed", link: "draw", hint: "Another number draws other noise and other holes." },
+  },
+};
+
+/** What the grid protocol has no use for: it would be ignored in silence. */
+export const RENDERED_ALONE: readonly string[] = ["size", "height", "scale", "noise", "depthNoise", "holes", "seed"];

@@ -1,0 +1,86 @@
+/** How a member of the contract is described once: what is checked, and what the page shows, is made from such rows. */
+
+/** How the page shows a member that its visitor may choose. */
+export interface PageField {
+  readonly group: "sample" | "method" | "weights" | "loop";
+  readonly label: string;
+  /** One sentence for whoever does not know the label. */
+  readonly hint?: string;
+  /** Its name in links, where the last part of its path has another meaning there. */
+  readonly link?: string;
+  /** What the field starts with, if not with the default. */
+  readonly initial?: number;
+  /** What an empty field means, where neither a number nor a word is the default. */
+  readonly empty?: string;
+  /** The part of the range that a slider spans. */
+  readonly slider?: { readonly min: number; readonly max: number; readonly step: number };
+}
+
+interface Common {
+  /** What holds where the member is absent; without one that follows from the data. */
+  readonly default?: number | string | boolean;
+  /** The words that may stand in its place, each with its name on the page. */
+  readonly words?: Readonly<Record<string, string>>;
+}
+
+/** Of a kind that the page has a control for. */
+interface Shown extends Common {
+  readonly page?: PageField;
+}
+
+/** A finite number, a whole one, or a side of a raster in pixels, which differs in the code of its errors. */
+export interface NumberRow extends Shown {
+  readonly kind: "number" | "whole" | "side";
+  readonly min?: number;
+  readonly above?: number;
+  readonly max?: number;
+  readonly below?: number;
+  readonly unit?: string;
+}
+export interface FlagRow extends Shown {
+  readonly kind: "flag";
+}
+export interface WordRow extends Shown {
+  readonly kind: "word";
+  readonly words: Readonly<Record<string, string>>;
+}
+/** So many numbers. */
+export interface ListRow extends Common {
+  readonly kind: "list";
+  readonly length: number;
+}
+export interface ObjectRow extends Common {
+  readonly kind: "object";
+  /** What it is, with its article. */
+  readonly noun: string;
+  readonly members: Rows;
+}
+
+export type ShownRow = NumberRow | FlagRow | WordRow;
+export type Row = ShownRow | ListRow | ObjectRow;
+export type Rows = Readonly<Record<string, Row>>;
+
+type Words<T> = Extract<T, string>;
+type Kind<V> =
+  [V] extends [never] ? WordRow
+  : [V] extends [boolean] ? FlagRow
+  : [V] extends [number] ? NumberRow
+  : [V] extends [ArrayLike<number>] ? ListRow
+  : ObjectRow & { readonly members: RowsOf<V> };
+
+/** Ties a row to the type of its member: of the same kind, with all of its words, and a default that it may have. */
+export type RowOf<T> = Kind<Exclude<T, string>> &
+  ([Words<T>] extends [never] ? unknown : { readonly words: Readonly<Record<Words<T>, string>> }) & {
+    readonly default?: Extract<T, number | string | boolean>;
+  };
+/** A row for each member of a type: the compiler misses one that is missing. */
+export type RowsOf<T> = { readonly [K in keyof T]-?: RowOf<NonNullable<T[K]>> };
+
+/** Every row, with the path of its member below `path`. */
+export function* paths(rows: Rows, path: string): Generator<readonly [path: string, row: Row]> {
+  for (const [name, row] of Object.entries(rows)) {
+    const own = `${path}.${name}`;
+    yield [own, row];
+    if (row.kind === "object") yield* paths(row.members, own);
+  }
+}

@@ -1,0 +1,119 @@
+/** A worker that refines the depth view while the estimator's own thread finds the image surface. */
+import type { Options } from "../types.js";
+import { READY, type Answer, type Pair, type WorkerHandle } from "./messages.js";
+import { startWorker } from "./start.js";
+
+/** A refinement to be made: the number of the shape that it starts from, numbers, and rasters one after the other. */
+export type RefinementTask = [shape: number, numbers: Float64Array, planes: Float32Array];
+
+/** A refinement that was made: the number of the shape that it started from, and the new one. */
+export interface Refinement {
+  shape: number;
+  planes: Float32Array;
+}
+
+/** Longest wait for an answer, milliseconds: a refinement of the largest views takes half of it. After that the estimator goes on alone. */
+const LONGEST_WAIT = 2000;
+
+/**
+ * The worker changes how long an iteration takes, and nothing else: where there is none, or it fails or is late, the
+ * estimator refines alone, to the end of the loop. The worker lasts as long as the loop.
+ */
+export class RefinementWorker {
+  readonly #pair: Pair;
+  #worker: WorkerHandle | undefined;
+  /** Whether it could not be started or has failed; no other one is started in this loop. */
+  #failed = false;
+  /** Whether it has read the pair. */
+  #ready = false;
+  /** The shape that the refinement under way started from. */
+  #asked: number | undefined;
+  /** The shape that the worker has. */
+  #held: number | undefined;
+  #answer: Refinement | undefined;
+  #waiting: (() => void)[] = [];
+
+  constructor(pair: Pair) {
+    this.#pair = pair;
+  }
+
+  /** A loop begins, unless it is under way. */
+  begin(options: Options): void {
+    if (this.#worker || this.#failed) return;
+    const worker = startWorker(this.#pair, options);
+    this.#worker = worker;
+    this.#failed = !worker;
+    worker?.onAnswer((answer) => {
+      if (worker === this.#worker) this.#receive(answer);
+    });
+    worker?.onFailure(() => {
+      if (worker === this.#worker) this.#fail();
+    });
+  }
+
+  /** Asks for the next refinement, unless one is still under way; `take` gives its task to who holds a shape. */
+  ask(take: (held: number | undefined) => RefinementTask | undefined): void {
+    this.#answer = undefined;
+    if (!this.#worker || !this.#ready || this.isBusy) return;
+    const task = take(this.#held);
+    if (!task) return;
+    const [shape, numbers, planes] = task;
+    this.#asked = shape;
+    try {
+      this.#worker.post({ kind: "refine", numbers, planes }, [planes.buffer as ArrayBuffer]);
+    } catch {
+      this.#fail();
+    }
+  }
+
+  /** Whether a refinement is under way. */
+  get isBusy(): boolean {
+    return this.#asked !== undefined;
+  }
+
+  /** What has come back since the last refinement was asked for. */
+  get answer(): Refinement | undefined {
+    return this.#answer;
+  }
+
+  /** Waits until there is an answer, or it is clear that there will be none. */
+  async settled(): Promise<void> {
+    if (!this.isBusy) return;
+    const late = setTimeout(() => this.#fail(), LONGEST_WAIT);
+    await new Promise<void>((resolve) => this.#waiting.push(resolve));
+    clearTimeout(late);
+  }
+
+  /** The loop is over, or the estimator freed. */
+  end(): void {
+    this.#worker?.end();
+    this.#worker = this.#asked = this.#held = this.#answer = undefined;
+    this.#ready = this.#failed = false;
+    this.#resume();
+  }
+
+  #fail(): void {
+    this.end();
+    this.#failed = true;
+  }
+
+  #receive(answer: Answer): void {
+    if (answer === READY) {
+      this.#ready = true;
+      return;
+    }
+    const shape = this.#asked;
+    if (!(answer instanceof Float32Array) || shape === undefined) return this.#fail();
+    this.#asked = undefined;
+    this.#held = shape + 1;
+    this.#answer = { shape, planes: answer };
+    this.#resume();
+  }
+
+  /** Lets go on who waits for the answer. */
+  #resume(): void {
+    const waiting = this.#waiting;
+    this.#waiting = [];
+    for (const resolve of waiting) resolve();
+  }
+}

@@ -1,0 +1,92 @@
+/** Workers that do parts of the opening search for an estimator. */
+import type { Options } from "../types.js";
+import { READY, type Answer, type Pair, type WorkerHandle } from "./messages.js";
+import { startWorker } from "./start.js";
+
+/** The tasks of a search: what the estimator gives away, and what it takes back. */
+export interface Tasks {
+  take(): Float64Array | undefined;
+  accept(result: Float64Array): void;
+}
+
+/** Tasks that a worker has before it: enough for some ten milliseconds, in which its estimator's thread may be busy. */
+const QUEUE = 3;
+
+interface SearchWorker {
+  handle: WorkerHandle;
+  /** Tasks that it has been sent and has not answered. */
+  queued: number;
+}
+
+/**
+ * Workers change how long a search takes, and nothing else: where none can be had, or one fails, the estimator does all
+ * of it. Messages pass whenever the estimator's thread lets events through. The workers last as long as the search.
+ */
+export class SearchWorkers {
+  #workers: SearchWorker[] = [];
+  readonly #count: number;
+  readonly #pair: Pair;
+  readonly #tasks: Tasks;
+
+  constructor(count: number, pair: Pair, tasks: Tasks) {
+    this.#count = count;
+    this.#pair = pair;
+    this.#tasks = tasks;
+  }
+
+  /** A search begins, with workers of its own. */
+  begin(options: Options): void {
+    this.end();
+    for (let started = 0; started < this.#count; started++) this.#start(options);
+  }
+
+  #start(options: Options): void {
+    const handle = startWorker(this.#pair, options);
+    if (!handle) return;
+    const worker: SearchWorker = { handle, queued: 0 };
+    this.#workers.push(worker);
+    handle.onAnswer((answer) => this.#receive(worker, answer));
+    handle.onFailure(() => this.#drop(worker));
+  }
+
+  /** Gives out tasks until there are none or every queue is full. */
+  feed(): void {
+    for (const worker of [...this.#workers]) {
+      while (worker.queued < QUEUE) {
+        const task = this.#tasks.take();
+        if (!task) return;
+        worker.queued++;
+        try {
+          worker.handle.post({ kind: "task", task }, []);
+        } catch {
+          this.#drop(worker);
+          break;
+        }
+      }
+    }
+  }
+
+  /** The search is over, or the estimator freed. */
+  end(): void {
+    for (const worker of [...this.#workers]) this.#drop(worker);
+  }
+
+  #receive(worker: SearchWorker, answer: Answer): void {
+    if (!this.#workers.includes(worker)) return;
+    if (answer === READY) return;
+    if (!(answer instanceof Float64Array)) return this.#drop(worker);
+    worker.queued--;
+    try {
+      this.#tasks.accept(answer);
+      this.feed();
+    } catch {
+      // Of an estimator that has broken off its next call will tell.
+      this.end();
+    }
+  }
+
+  #drop(worker: SearchWorker): void {
+    this.#workers = this.#workers.filter((other) => other !== worker);
+    worker.handle.end();
+  }
+}

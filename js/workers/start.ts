@@ -1,0 +1,61 @@
+/** How a worker is started: a module worker of a browser, or one of Node. */
+import { compiled } from "../engine.js";
+import { nodeModule } from "../node.js";
+import { copyOf } from "../plain.js";
+import type { Options } from "../types.js";
+import type { Pair, WorkerHandle } from "./messages.js";
+
+/**
+ * A worker with a copy of the pair, where this place has any. A page may forbid workers, a system may be out of threads or
+ * of memory for them.
+ */
+export function startWorker({ image, depth }: Pair, options: Options): WorkerHandle | undefined {
+  let worker: WorkerHandle | undefined;
+  try {
+    worker = spawn();
+    const transfer: ArrayBuffer[] = [];
+    worker.post({ kind: "pair", module: compiled(), image: copyOf(image, transfer), depth: copyOf(depth, transfer), options }, transfer);
+    return worker;
+  } catch {
+    worker?.end();
+    return undefined;
+  }
+}
+
+function spawn(): WorkerHandle {
+  const threads = nodeModule("node:worker_threads");
+  return threads ? spawnInNode(threads) : spawnInBrowser();
+}
+
+function spawnInBrowser(): WorkerHandle {
+  // Written out in one piece: bundlers look for exactly this to carry the file along.
+  const worker = new Worker(new URL("./worker.js", import.meta.url), { type: "module" });
+  return {
+    post: (order, transfer) => worker.postMessage(order, transfer),
+    onAnswer: (handler) => worker.addEventListener("message", (event) => handler(event.data)),
+    onFailure: (handler) =>
+      worker.addEventListener("error", (event) => {
+        // The estimator does the work itself, so that a console need not show it.
+        event.preventDefault();
+        handler();
+      }),
+    end: () => worker.terminate(),
+  };
+}
+
+function spawnInNode({ Worker }: typeof import("node:worker_threads")): WorkerHandle {
+  // Not the URL above once more: bundlers would carry the file along twice.
+  const file = import.meta.url.replace(/[^/]*$/, "worker.js");
+  // Without the program's own flags: those of `node -e`, for one, would run its text again.
+  const worker = new Worker(new URL(file), { execArgv: [] });
+  return {
+    post: (order, transfer) => worker.postMessage(order, transfer),
+    onAnswer: (handler) => {
+      worker.on("message", handler);
+      // A worker keeps no program from ending, which a listener would undo.
+      worker.unref();
+    },
+    onFailure: (handler) => worker.on("error", handler).on("exit", handler),
+    end: () => void worker.terminate(),
+  };
+}
