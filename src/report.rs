@@ -7,13 +7,13 @@ use crate::pose::{Similarity, Uncertainty};
 pub enum Stage {
     /// A slice of the search over all poses, before the first iteration.
     Search,
-    /// Fit of the light, or of the exposure of a known light (Eq. 2).
+    /// Fit of an unknown light (Eq. 2).
     Light,
     /// Normals of the colour view (Eq. 6 to 9).
     Shading,
     /// Heights from these normals.
     Surface,
-    /// Pose between both surfaces (Eq. 12 to 16).
+    /// Pose, by the colours or between both surfaces (Eq. 12 to 16).
     Registration,
     /// Normals and depth of the depth view (Eq. 17 to 19).
     Refinement,

@@ -7,7 +7,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::pair::Pair;
+use super::pair::ViewPair;
 use super::solution::Solution;
 use crate::numeric::quantile;
 use crate::options::Start;
@@ -18,8 +18,8 @@ use crate::view::{Camera, ColourView, DepthView, Points};
 const LEAST_OVERLAP: f64 = 0.5;
 
 /// s0: what one unit of the depth view measures in the colour view.
-pub fn unit_scale(pair: &Pair) -> f64 {
-    let Pair { image, depth, .. } = pair;
+pub fn unit_scale(pair: &ViewPair) -> f64 {
+    let ViewPair { image, depth, .. } = pair;
     let focal_length = image.camera.focal_length().or_else(|| depth.camera.focal_length());
     match (image.camera, focal_length) {
         (Camera::Orthographic, Some(focal_length)) => focal_length / median_depth(depth),
@@ -30,7 +30,7 @@ pub fn unit_scale(pair: &Pair) -> f64 {
 /// The scale that the registration holds, `None` where it is free.
 ///
 /// Behind a pinhole image a change of scale is a change of the surface's size, so the pose keeps its scale.
-pub fn held_scale(pair: &Pair) -> Option<f64> {
+pub fn held_scale(pair: &ViewPair) -> Option<f64> {
     pair.options.scale.or_else(|| (!pair.image.camera.is_orthographic()).then_some(1.0))
 }
 
@@ -41,7 +41,7 @@ pub fn pixel_length(image: &ColourView, solution: &Solution) -> f64 {
 }
 
 /// The pose of iteration zero.
-pub fn first_pose(pair: &Pair) -> Similarity {
+pub fn first_pose(pair: &ViewPair) -> Similarity {
     let start = pair.options.start;
     let (rotation, scale, translation) = match start {
         Start::Search | Start::Identity => (Matrix3::identity(), None, None),

@@ -10,7 +10,7 @@ use crate::pose::{ImageGrid, PhotometricReport, Search, SearchProblem, Similarit
 
 use super::gauge;
 use super::local_optima::{Decision, LocalOptima};
-use super::pair::Pair;
+use super::pair::ViewPair;
 use super::stages::{Attempt, ColourRegistration};
 use super::workers::task::{Finding, Found, RegisteredCandidate, Task, Work};
 
@@ -52,7 +52,7 @@ pub struct Initialisation {
 }
 
 /// The search of a pair, by the normals that registrations go by.
-pub fn search(pair: &Pair, grid: ImageGrid, colours: &ColourRegistration) -> Result<Search> {
+pub fn search(pair: &ViewPair, grid: ImageGrid, colours: &ColourRegistration) -> Result<Search> {
     let problem = SearchProblem {
         image: &pair.image,
         depth: &pair.depth,
@@ -66,7 +66,7 @@ pub fn search(pair: &Pair, grid: ImageGrid, colours: &ColourRegistration) -> Res
 }
 
 impl Initialisation {
-    pub fn new(pair: &Pair, search: Search) -> Self {
+    pub fn new(pair: &ViewPair, search: Search) -> Self {
         Self {
             search,
             registrations: TaskResults::new(0),
@@ -103,7 +103,7 @@ impl Initialisation {
     }
 
     /// One slice: a part of the search, or a step of a registration.
-    pub fn advance(&mut self, pair: &Pair, colours: &mut ColourRegistration) -> Advance {
+    pub fn advance(&mut self, pair: &ViewPair, colours: &mut ColourRegistration) -> Advance {
         if self.is_searching() {
             self.search.advance();
             self.count();
@@ -129,7 +129,7 @@ impl Initialisation {
     }
 
     /// A step of the registration that is under way here, or the beginning of the next one.
-    fn register(&mut self, pair: &Pair, colours: &mut ColourRegistration) {
+    fn register(&mut self, pair: &ViewPair, colours: &mut ColourRegistration) {
         let candidates = self.search.candidates();
         let is_wanted = |index: usize| index >= self.next && !self.optima.is_known(&candidates[index].pose);
         let begun = self.begun.filter(|&index| is_wanted(index) && self.registrations.get(index).is_none());
@@ -140,7 +140,7 @@ impl Initialisation {
     }
 
     /// A step of one registration; another one that was under way here is dropped.
-    fn step_candidate(&mut self, pair: &Pair, colours: &mut ColourRegistration, candidate: usize) -> Attempt {
+    fn step_candidate(&mut self, pair: &ViewPair, colours: &mut ColourRegistration, candidate: usize) -> Attempt {
         let start = self.search.candidates()[candidate].pose;
         let progress = colours.step_candidate(pair, &start, self.begun != Some(candidate));
         self.begun = matches!(progress, Attempt::Ongoing).then_some(candidate);
@@ -177,7 +177,7 @@ impl Initialisation {
     }
 
     /// The outcome, once the best one's whole report is here: a worker brings only what tells one optimum from another.
-    fn conclude(&mut self, pair: &Pair, colours: &mut ColourRegistration, decision: Decision) -> Advance {
+    fn conclude(&mut self, pair: &ViewPair, colours: &mut ColourRegistration, decision: Decision) -> Advance {
         let Decision { best: Some(mut best), rivals } = decision else { return Advance::Done(None) };
         if best.registered.report.is_none() {
             match self.step_candidate(pair, colours, best.candidate) {

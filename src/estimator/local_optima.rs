@@ -118,7 +118,7 @@ impl LocalOptima {
         })
     }
 
-    /// The best optimum and those that the data can't tell from it, where the image has so much noise.
+    /// The best optimum and those that the data can't tell from it, given the noise of the image.
     pub fn decide(&mut self) -> Decision {
         let (mut optima, noise) = (std::mem::take(&mut self.optima), self.noise);
         sort_descending(&mut optima, |optimum| optimum.gain);

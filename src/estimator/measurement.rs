@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use super::objective;
-use super::pair::Pair;
+use super::pair::ViewPair;
 use super::solution::Solution;
 use crate::light::Polynomial;
 use crate::numeric::{LANES, Lanes, quantile};
@@ -29,7 +29,7 @@ impl Residuals {
     /// elsewhere. Returns the robust mean over the pixels that the depth view reaches, if there are any.
     pub fn measure(
         &mut self,
-        pair: &Pair,
+        pair: &ViewPair,
         solution: &Solution,
         correspondences: &Correspondences,
         spare: &mut Vec<f32>,

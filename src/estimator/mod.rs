@@ -36,7 +36,7 @@ use initialisation::{Advance, Initialisation, Outcome};
 use measurement::Residuals;
 use objective::Trial;
 pub use outputs::Surface;
-use pair::Pair;
+use pair::ViewPair;
 use solution::{Accepted, Solution};
 pub use stages::RefinementTask;
 use stages::{Inputs, LightStage, RefinementStage, Registered, RegistrationStage, ShapeStage};
@@ -56,8 +56,8 @@ enum Run {
     Ended,
 }
 
-/// How the registrations of the iterations have gone.
-struct Course {
+/// What the loop remembers of the iterations before: how their registrations ended.
+struct History {
     /// Share of the registration's step that is taken; halves with each rejection.
     step_fraction: f64,
     /// Change of rotation that the last registration proposed, degrees, before it was shortened.
@@ -87,7 +87,7 @@ struct Course {
 /// # Ok::<(), bimodal_stereo::Error>(())
 /// ```
 pub struct Estimator {
-    pair: Pair,
+    pair: ViewPair,
     run: Run,
     light: LightStage,
     shape: ShapeStage,
@@ -102,7 +102,7 @@ pub struct Estimator {
     /// The last iteration that was accepted, and the depth points over which the next one is compared with it.
     accepted: Accepted,
     evaluated: Vec<u32>,
-    course: Course,
+    history: History,
     report: StepReport,
 }
 
@@ -112,13 +112,13 @@ impl Estimator {
     /// # Errors
     /// Any [`Error`] of the views or the options, naming the field.
     pub fn new(image: ColourImage, depth: &DepthMap, options: Options) -> Result<Self> {
-        Self::of(Pair::new(image, depth, options)?)
+        Self::of(ViewPair::new(image, depth, options)?)
     }
 
-    fn of(pair: Pair) -> Result<Self> {
+    fn of(pair: ViewPair) -> Result<Self> {
         let pose = gauge::first_pose(&pair);
         let light = pair.known_light().copied().unwrap_or_else(|| pair.prior.mean());
-        // What takes much memory only while it is made comes first.
+        // First what needs much more memory while it is made than afterwards.
         let registration = RegistrationStage::new(&pair);
         let refinement = RefinementStage::new(&pair)?;
         let shape = ShapeStage::new(&pair)?;
@@ -138,7 +138,7 @@ impl Estimator {
             accepted: Accepted::new(&solution),
             solution,
             evaluated: Vec::with_capacity(objective::MOST_POINTS),
-            course: Course { step_fraction: 1.0, proposed_degrees: 0.0, improved: true, rejections: 0, unmoved: 0 },
+            history: History { step_fraction: 1.0, proposed_degrees: 0.0, improved: true, rejections: 0, unmoved: 0 },
             report: StepReport::at(pose),
             pair,
         };
@@ -332,11 +332,11 @@ impl Estimator {
         let start = self.solution.pose;
         let inputs = Inputs { pair: &self.pair, fitted: &self.light, correspondences: &self.correspondences };
         let is_first = self.report.iteration == 0;
-        (self.course.proposed_degrees, self.course.improved) = (0.0, true);
+        (self.history.proposed_degrees, self.history.improved) = (0.0, true);
         if let Some(registered) = self.registration.register(inputs, &self.solution, is_first)? {
-            self.course.improved = registered.improved;
+            self.history.improved = registered.improved;
             self.adopt(registered);
-            self.course.proposed_degrees = start.degrees_to(&self.solution.pose);
+            self.history.proposed_degrees = start.degrees_to(&self.solution.pose);
             if self.registration.kind(&self.pair) == Registration::Icp {
                 self.shorten_step(&start);
             }
@@ -358,8 +358,8 @@ impl Estimator {
     /// and the image's surface takes the rest.
     fn shorten_step(&mut self, start: &Similarity) {
         let Solution { pose, image, depth, .. } = &mut self.solution;
-        if self.course.step_fraction < 1.0 {
-            *pose = start.towards(pose, self.course.step_fraction, depth.points.centroid());
+        if self.history.step_fraction < 1.0 {
+            *pose = start.towards(pose, self.history.step_fraction, depth.points.centroid());
         }
         let Some(held) = gauge::held_scale(&self.pair) else { return };
         let factor = held / pose.scale;
@@ -415,9 +415,9 @@ impl Estimator {
         self.report.pose = self.accepted.pose;
         self.measure();
         self.conclude(worse_than.is_some(), before);
-        let Course { step_fraction, .. } = &mut self.course;
+        let History { step_fraction, .. } = &mut self.history;
         *step_fraction = if worse_than.is_some() { 0.5 * *step_fraction } else { (2.0 * *step_fraction).min(1.0) };
-        self.look_ahead();
+        self.prepare_next_refinement();
     }
 
     /// Objective of the working solution over the evaluation points.
@@ -428,9 +428,9 @@ impl Estimator {
 
     /// Goes back to the accepted solution.
     fn take_back(&mut self, before: Objective, after: Objective) {
-        self.course.rejections += 1;
+        self.history.rejections += 1;
         self.solution.restore(&self.accepted, &self.pair);
-        self.refinement.change_shape();
+        self.refinement.shape_changed();
         self.find_correspondences();
         self.report.rotation_change = 0.0;
         self.report.message = Some(format!(
@@ -443,12 +443,12 @@ impl Estimator {
     /// Makes the new solution the one to beat.
     fn accept(&mut self, rotation_change: f64) {
         self.report.rotation_change = rotation_change;
-        self.course.rejections = if self.course.improved { 0 } else { self.course.rejections + 1 };
+        self.history.rejections = if self.history.improved { 0 } else { self.history.rejections + 1 };
         let stayed = || "the registration found no pose better than the present one".into();
-        self.report.message = (!self.course.improved).then(stayed);
+        self.report.message = (!self.history.improved).then(stayed);
         self.accepted.accept(&self.solution);
         self.choose_evaluation_points();
-        // Over its own points.
+        // Over the new evaluation points, as the next iteration will be.
         self.report.objective = self.objective();
     }
 
@@ -469,9 +469,9 @@ impl Estimator {
 
     /// Ends the loop where the evidence says so.
     fn conclude(&mut self, is_rejected: bool, before: Option<Objective>) {
-        let is_unmoved = self.course.proposed_degrees < self.pair.options.stop_degrees;
-        self.course.unmoved = if is_unmoved { self.course.unmoved + 1 } else { 0 };
-        let Self { pair, report, course, .. } = &*self;
+        let is_unmoved = self.history.proposed_degrees < self.pair.options.stop_degrees;
+        self.history.unmoved = if is_unmoved { self.history.unmoved + 1 } else { 0 };
+        let Self { pair, report, history, .. } = &*self;
         let nearest = report.rivals.iter().map(|rival| rival.degrees_to(&report.pose)).fold(f64::INFINITY, f64::min);
         let ended = verdict(&Evidence {
             iteration: report.iteration,
@@ -483,9 +483,9 @@ impl Estimator {
             objective_before: before.map(|before| before.total()),
             objective: report.objective.total(),
             is_rejected,
-            rejections: course.rejections,
-            unmoved: course.unmoved,
-            is_whole_step: course.step_fraction >= 1.0 && course.improved,
+            rejections: history.rejections,
+            unmoved: history.unmoved,
+            is_whole_step: history.step_fraction >= 1.0 && history.improved,
             colours: self.registration.found_by_colours().map(|found| ColourEvidence {
                 sigma: found.uncertainty.rotation_degrees.into_iter().fold(0.0, f64::max),
                 weakest: &found.uncertainty.weakest,
@@ -507,14 +507,14 @@ impl Estimator {
     }
 
     /// What the next refinement looks at, where that is known: then a worker may make it while the other stages run.
-    fn look_ahead(&mut self) {
+    fn prepare_next_refinement(&mut self) {
         let is_known =
             self.report.status == Status::Running && self.registration.keeps(&self.pair, &self.solution.pose);
         if is_known {
             let inputs = Inputs { pair: &self.pair, fitted: &self.light, correspondences: &self.correspondences };
-            self.refinement.look_ahead(inputs, &self.solution);
+            self.refinement.prepare_next(inputs, &self.solution);
         } else {
-            self.refinement.forget();
+            self.refinement.discard_prepared();
         }
     }
 }

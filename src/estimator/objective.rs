@@ -10,7 +10,7 @@
 use nalgebra::Vector3;
 
 use super::gauge;
-use super::pair::Pair;
+use super::pair::ViewPair;
 use super::solution::Solution;
 use crate::light::{Light, Polynomial};
 use crate::numeric::robust::saturated;
@@ -52,14 +52,14 @@ pub struct Trial<'a> {
 
 impl<'a> Trial<'a> {
     /// The solution as it is, under `light`, its own.
-    pub fn of(pair: &Pair, solution: &'a Solution, light: &'a Light) -> Self {
+    pub fn of(pair: &ViewPair, solution: &'a Solution, light: &'a Light) -> Self {
         Self { pose: &solution.pose, light, solution, pixel_length: gauge::pixel_length(&pair.image, solution) }
     }
 }
 
 /// Depth points that have a correspondence and a measured normal. Those near the border of the mask stay out: they
 /// would enter and leave it with every small step.
-pub fn evaluation_points(pair: &Pair, correspondences: &Correspondences) -> impl Iterator<Item = u32> {
+pub fn evaluation_points(pair: &ViewPair, correspondences: &Correspondences) -> impl Iterator<Item = u32> {
     let (image, depth) = (&pair.image, &pair.depth);
     let [columns, rows] = correspondences.position();
     let inside = move |index: usize| {
@@ -79,7 +79,7 @@ fn robust(value: f64, scale: f64) -> f64 {
 }
 
 /// The objective of `trial` over the depth points `evaluated`, each term a mean over them or over the image's mask.
-pub fn evaluate(pair: &Pair, evaluated: &[u32], trial: Trial<'_>) -> Objective {
+pub fn evaluate(pair: &ViewPair, evaluated: &[u32], trial: Trial<'_>) -> Objective {
     let (mut prior, mut distance, mut colour) = (0.0, 0.0, 0.0);
     let light = Polynomial::of(trial.light);
     for &index in evaluated {
@@ -99,7 +99,7 @@ pub fn evaluate(pair: &Pair, evaluated: &[u32], trial: Trial<'_>) -> Objective {
 
 /// Costs of one depth point: of its normal, its distance, its colour. `None` where the image does not see it.
 fn point_terms(
-    Pair { image, depth, .. }: &Pair,
+    ViewPair { image, depth, .. }: &ViewPair,
     index: usize,
     Trial { pose, solution, pixel_length, .. }: Trial<'_>,
     light: &[Polynomial; 3],

@@ -6,14 +6,14 @@ use crate::light::{Light, LightPrior};
 use crate::options::{LightSource, Options};
 use crate::view::{ColourImage, ColourView, DepthMap, DepthView, Size};
 
-pub struct Pair {
+pub struct ViewPair {
     pub image: ColourView,
     pub depth: DepthView,
     pub options: Options,
     pub prior: LightPrior,
 }
 
-impl Pair {
+impl ViewPair {
     /// Checks both views and the options, and asks whether the memory for them is granted.
     ///
     /// # Errors

@@ -1,6 +1,6 @@
 //! What one iteration finds, and what is kept of the last one that was accepted.
 
-use super::pair::Pair;
+use super::pair::ViewPair;
 use crate::light::Light;
 use crate::numeric::quantile;
 use crate::pose::Similarity;
@@ -40,8 +40,8 @@ pub struct Shape {
 
 impl Solution {
     /// Nothing known but the pose and the measured depth.
-    pub fn new(pair: &Pair, pose: Similarity, light: Light) -> Self {
-        let Pair { image, depth, .. } = pair;
+    pub fn new(pair: &ViewPair, pose: Similarity, light: Light) -> Self {
+        let ViewPair { image, depth, .. } = pair;
         let pixels = image.size.len();
         Self {
             pose,
@@ -52,7 +52,7 @@ impl Solution {
     }
 
     /// Goes back to what was accepted, without allocating.
-    pub fn restore(&mut self, accepted: &Accepted, pair: &Pair) {
+    pub fn restore(&mut self, accepted: &Accepted, pair: &ViewPair) {
         (self.pose, self.light) = (accepted.pose, accepted.light);
         self.image.normals.copy_from(&accepted.image_normals);
         self.image.points.z.clone_from(&accepted.image_depth);

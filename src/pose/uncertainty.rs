@@ -106,8 +106,8 @@ impl Information {
         (covariance, in_words(&eigen.eigenvectors.column(eigen.eigenvalues.imin()).into_owned()))
     }
 
-    /// Eigenvalues over the weight. The gauge is projected out, and unknowns that are no unknowns get the eigenvalue
-    /// one, which no real direction can fall behind: those of the three translations sum to one.
+    /// Eigenvalues over the weight. The gauge is projected out. What is not estimated gets the eigenvalue one, so that it is
+    /// never the weakest direction: those of the three translations sum to one.
     fn eigen(&self, gauge: bool) -> Option<SymmetricEigen<f64, nalgebra::Const<UNKNOWNS>>> {
         let mut matrix = self.matrix / self.weight;
         if gauge && matrix[(TRANSLATION_Z, TRANSLATION_Z)] > 0.0 {
@@ -121,7 +121,7 @@ impl Information {
         SymmetricEigen::try_new(matrix, f64::EPSILON, MOST_EIGEN_ROUNDS)
     }
 
-    /// Unknowns that are none: the gauge, a scale that is held.
+    /// Which of the seven are not estimated: the gauge, a scale that is held.
     fn without_variance(&self, gauge: bool) -> [bool; UNKNOWNS] {
         std::array::from_fn(|k| (k == TRANSLATION_Z && gauge) || (k == SCALE && self.scale_is_held))
     }

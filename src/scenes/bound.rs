@@ -17,7 +17,7 @@ use crate::view::{Camera, Size};
 
 const POSE: usize = 6;
 const UNKNOWNS: usize = POSE + COEFFICIENTS;
-type Information = SMatrix<f64, UNKNOWNS, UNKNOWNS>;
+type FisherInformation = SMatrix<f64, UNKNOWNS, UNKNOWNS>;
 type Row = SVector<f64, UNKNOWNS>;
 
 /// A point of the image is seen by the depth view when their depths there differ by less, in steps between neighbouring
@@ -32,7 +32,7 @@ pub fn bound(sample: &Sample, light_is_known: bool, sigma: f64) -> Option<f64> {
     let points: Vec<Option<Vector3<f64>>> = (0..size.len()).map(|index| point(sample, index)).collect();
     let seen: Vec<usize> = (0..size.len()).filter(|&index| points[index].is_some_and(|p| is_seen(sample, p))).collect();
     let centre = seen.iter().filter_map(|&index| points[index]).sum::<Vector3<f64>>() / seen.len().max(1) as f64;
-    let mut information = Information::zeros();
+    let mut information = FisherInformation::zeros();
     for &index in &seen {
         let (Some(point), Some(slopes)) = (points[index], log_slopes(sample, index)) else { continue };
         let normal = normal(sample, index);

@@ -70,7 +70,7 @@ pub struct Refiner {
     domain: HeightDomain,
     /// The image's log colours where the depth pixels fall.
     log: [Vec<f32>; 3],
-    /// Of the colours, log units.
+    /// Standard deviation of the shading, log units.
     shading_error: f64,
     /// Weight of a measured depth against the shading, or against its neighbours where there is no colour.
     anchor_weight: f32,
@@ -240,7 +240,7 @@ fn anchor_weight(shading_error: f64, view: &DepthView) -> f32 {
     variance_ratio(shading_error, noise::of_fourth_differences(fourths, 2 * view.size.len()))
 }
 
-/// That of the variances, within bounds. Depth without measurable noise gets the largest weight, however exact the
+/// The ratio of the variances, within bounds. Depth without measurable noise gets the largest weight, however exact the
 /// colours are.
 fn variance_ratio(shading_error: f64, depth_noise: f64) -> f32 {
     let weight = if depth_noise > 0.0 { (shading_error / depth_noise).powi(2) } else { f64::INFINITY };

@@ -35,7 +35,7 @@ pub struct Estimator {
     native: Native,
     options: Options,
     milliseconds: BTreeMap<&'static str, f64>,
-    /// Whether these are of the stages before a refinement, which the next step goes on with.
+    /// Whether an iteration has been begun by `step_halfway`: the next step finishes it and adds to these times.
     halfway: bool,
 }
 

@@ -2,11 +2,11 @@
 
 use crate::error::Result;
 use crate::estimator::gauge;
-use crate::estimator::pair::Pair;
+use crate::estimator::pair::ViewPair;
 use crate::pose::{Photometric, PhotometricOptions, PhotometricProblem, PhotometricReport, Similarity};
 use crate::view::{DepthView, Normals, cubic_normals};
 
-/// Weight of the light's prior in the registration: Bayes' own. `lambda.light` weighs the fit of the light stage alone,
+/// Weight of the light's prior in the registration: one, as Bayes' rule has it. `lambda.light` weighs the fit of the light stage alone,
 /// but where it is zero there is no prior here, either.
 const PRIOR_WEIGHT: f64 = 1.0;
 
@@ -59,7 +59,7 @@ impl SharpNormals {
         Self { normals, error, noise }
     }
 
-    fn problem<'a>(&'a self, pair: &'a Pair, scale_is_held: bool) -> PhotometricProblem<'a> {
+    fn problem<'a>(&'a self, pair: &'a ViewPair, scale_is_held: bool) -> PhotometricProblem<'a> {
         PhotometricProblem {
             image: &pair.image,
             depth: &pair.depth,
@@ -75,7 +75,7 @@ impl SharpNormals {
 }
 
 impl ColourRegistration {
-    pub fn new(pair: &Pair) -> Self {
+    pub fn new(pair: &ViewPair) -> Self {
         let sharp = SharpNormals::new(&pair.depth);
         Self {
             photometric: Photometric::new(&sharp.problem(pair, is_scale_held(pair))),
@@ -115,9 +115,9 @@ impl ColourRegistration {
 
     /// The best pose near `start`. A registration that starts where the last one ended is not repeated: the measured
     /// normals do not change, so neither would its end.
-    pub fn register(&mut self, pair: &Pair, start: &Similarity) -> Result<&PhotometricReport> {
+    pub fn register(&mut self, pair: &ViewPair, start: &Similarity) -> Result<&PhotometricReport> {
         let is_done = self.ended_in(start);
-        // From the end of a sample all points are a small step away.
+        // A registration by a sample of the points ends so near that the sharp level is enough for all of them.
         let first_level = match &self.found {
             Some(found) if found.sampled => 0,
             _ => options(pair).first_level,
@@ -131,7 +131,7 @@ impl ColourRegistration {
 
     fn register_anew(
         &mut self,
-        pair: &Pair,
+        pair: &ViewPair,
         start: &Similarity,
         options: &PhotometricOptions,
     ) -> Result<PhotometricReport> {
@@ -147,7 +147,7 @@ impl ColourRegistration {
     /// get there: so everything else goes first, and the scale follows at the noise of the sharp image.
     fn register_scale_last(
         &mut self,
-        pair: &Pair,
+        pair: &ViewPair,
         start: &Similarity,
         options: &PhotometricOptions,
     ) -> Result<PhotometricReport> {
@@ -157,7 +157,7 @@ impl ColourRegistration {
     }
 
     /// A step of the registration of a candidate, `anew` the first.
-    pub fn step_candidate(&mut self, pair: &Pair, start: &Similarity, anew: bool) -> Attempt {
+    pub fn step_candidate(&mut self, pair: &ViewPair, start: &Similarity, anew: bool) -> Attempt {
         let outcome = if anew { self.begin(pair, start).map(|()| None) } else { self.advance(pair) };
         match outcome {
             Ok(None) => Attempt::Ongoing,
@@ -168,13 +168,13 @@ impl ColourRegistration {
         }
     }
 
-    fn begin(&mut self, pair: &Pair, start: &Similarity) -> Result<()> {
+    fn begin(&mut self, pair: &ViewPair, start: &Similarity) -> Result<()> {
         let options = PhotometricOptions { most_points: CANDIDATE_POINTS, ..options(pair) };
         self.photometric.begin(&self.sharp.problem(pair, is_scale_held(pair)), start, &options)
     }
 
     /// One step; the report, which takes about as long, once there is none left.
-    fn advance(&mut self, pair: &Pair) -> Result<Option<PhotometricReport>> {
+    fn advance(&mut self, pair: &ViewPair) -> Result<Option<PhotometricReport>> {
         let problem = self.sharp.problem(pair, is_scale_held(pair));
         if self.photometric.is_done() {
             return self.photometric.report(&problem).map(Some);
@@ -183,10 +183,10 @@ impl ColourRegistration {
     }
 }
 
-fn options(pair: &Pair) -> PhotometricOptions {
+fn options(pair: &ViewPair) -> PhotometricOptions {
     PhotometricOptions { annealing: pair.options.annealing, ..PhotometricOptions::default() }
 }
 
-fn is_scale_held(pair: &Pair) -> bool {
+fn is_scale_held(pair: &ViewPair) -> bool {
     gauge::held_scale(pair).is_some()
 }

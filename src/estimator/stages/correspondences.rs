@@ -1,7 +1,7 @@
 //! Which depth point is which pixel under the pose of a solution.
 
 use crate::estimator::gauge;
-use crate::estimator::pair::Pair;
+use crate::estimator::pair::ViewPair;
 use crate::estimator::solution::Solution;
 use crate::pose::CorrespondenceProblem;
 
@@ -9,7 +9,7 @@ use crate::pose::CorrespondenceProblem;
 const SPREADS: f64 = 3.0;
 
 /// Projects the depth points, hides what is occluded, and drops what is too far from the image surface.
-pub fn correspondence_problem<'a>(pair: &'a Pair, solution: &'a Solution) -> CorrespondenceProblem<'a> {
+pub fn correspondence_problem<'a>(pair: &'a ViewPair, solution: &'a Solution) -> CorrespondenceProblem<'a> {
     let pixel_length = gauge::pixel_length(&pair.image, solution);
     CorrespondenceProblem {
         image: &pair.image,

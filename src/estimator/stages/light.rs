@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use crate::error::Result;
-use crate::estimator::pair::Pair;
+use crate::estimator::pair::ViewPair;
 use crate::estimator::solution::Solution;
 use crate::light::{Light, LightFitter};
 use crate::pose::Correspondences;
@@ -16,7 +16,7 @@ const EXPLAINED: f64 = 0.07;
 /// What the stages after the light look at besides the solution.
 #[derive(Clone, Copy)]
 pub struct Inputs<'a> {
-    pub pair: &'a Pair,
+    pub pair: &'a ViewPair,
     /// The light stage, for the depth view's normals at the image's pixels and the variance of the colours.
     pub fitted: &'a LightStage,
     pub correspondences: &'a Correspondences,
@@ -45,7 +45,7 @@ impl LightStage {
     }
 
     /// The exposure that a known light starts from.
-    pub fn find_first_exposure(&mut self, pair: &Pair) -> f64 {
+    pub fn find_first_exposure(&mut self, pair: &ViewPair) -> f64 {
         self.first_exposure = pair.known_light().map_or(0.0, |light| first_exposure(light, pair.log()));
         self.first_exposure
     }
@@ -54,7 +54,7 @@ impl LightStage {
     /// exposure follows with the normals.
     pub fn fit(
         &mut self,
-        pair: &Pair,
+        pair: &ViewPair,
         solution: &Solution,
         correspondences: &Correspondences,
     ) -> Result<Option<Light>> {

@@ -1,7 +1,7 @@
-//! The stages of an iteration. Each owns what it remembers from one iteration to the next, reads the [`Pair`] and parts of
+//! The stages of an iteration. Each owns what it remembers from one iteration to the next, reads the [`ViewPair`] and parts of
 //! the [`Solution`], and writes nothing but what its signature lends it mutably or what it returns.
 //!
-//! [`Pair`]: super::pair::Pair
+//! [`ViewPair`]: super::pair::ViewPair
 //! [`Solution`]: super::solution::Solution
 
 mod colours;

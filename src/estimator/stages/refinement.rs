@@ -9,7 +9,7 @@
 use nalgebra::Matrix3;
 
 use crate::error::{Error, ErrorKind, Result};
-use crate::estimator::pair::Pair;
+use crate::estimator::pair::ViewPair;
 use crate::estimator::solution::{Accepted, Shape, Solution};
 use crate::light::{COEFFICIENTS, Light};
 use crate::options::Weights;
@@ -37,20 +37,20 @@ pub struct RefinementStage {
     terms: Option<RefinementTerms>,
     /// Image column and row of each depth pixel, likewise.
     position: [Vec<f32>; 2],
-    /// Whether a worker has made it.
-    is_made: bool,
+    /// Whether a worker has made the next refinement.
+    made_by_worker: bool,
     /// Refined shapes so far, those that were taken back included.
     shapes: u32,
 }
 
 impl RefinementStage {
-    pub fn new(pair: &Pair) -> Result<Self> {
+    pub fn new(pair: &ViewPair) -> Result<Self> {
         let points = pair.depth.size.len();
         Ok(Self {
             refiner: Refiner::new(&pair.depth, &pair.image)?,
             terms: None,
             position: [0, 1].map(|_| Vec::with_capacity(points)),
-            is_made: false,
+            made_by_worker: false,
             shapes: 0,
         })
     }
@@ -61,7 +61,7 @@ impl RefinementStage {
     }
 
     /// Guesses the holes of the measured depth.
-    pub fn fill_holes(&self, pair: &Pair, scratch: &mut Scratch, shape: &mut Shape) -> Result<()> {
+    pub fn fill_holes(&self, pair: &ViewPair, scratch: &mut Scratch, shape: &mut Shape) -> Result<()> {
         scratch.resize(pair.depth.size.len());
         self.refiner.fill(scratch, &pair.depth, &mut shape.points.z)?;
         shape.place_depth_points(&pair.depth);
@@ -69,7 +69,7 @@ impl RefinementStage {
     }
 
     /// At the end of an iteration after which the pose will not move: keeps what the next refinement looks at.
-    pub fn look_ahead(&mut self, inputs: Inputs<'_>, solution: &Solution) {
+    pub fn prepare_next(&mut self, inputs: Inputs<'_>, solution: &Solution) {
         for (kept, found) in self.position.iter_mut().zip(inputs.correspondences.position()) {
             kept.clear();
             kept.extend_from_slice(found);
@@ -78,19 +78,19 @@ impl RefinementStage {
     }
 
     /// The next refinement looks at what its own iteration finds.
-    pub const fn forget(&mut self) {
+    pub const fn discard_prepared(&mut self) {
         self.terms = None;
     }
 
-    /// The refined shape is another one now.
-    pub const fn change_shape(&mut self) {
-        (self.terms, self.is_made) = (None, false);
+    /// To be called when the refined shape is replaced: what was prepared belongs to the one before.
+    pub const fn shape_changed(&mut self) {
+        (self.terms, self.made_by_worker) = (None, false);
         self.shapes = self.shapes.wrapping_add(1);
     }
 
     /// Whether a worker may make the next refinement.
-    pub const fn is_open(&self) -> bool {
-        self.terms.is_some() && !self.is_made
+    pub const fn can_be_shared(&self) -> bool {
+        self.terms.is_some() && !self.made_by_worker
     }
 
     /// The next refinement, for a worker that holds the shape of number `held`.
@@ -100,7 +100,7 @@ impl RefinementStage {
         shape: &'a Shape,
         held: Option<u32>,
     ) -> Option<RefinementTask<'a>> {
-        if self.is_made {
+        if self.made_by_worker {
             return None;
         }
         let [columns, rows] = &self.position;
@@ -115,8 +115,8 @@ impl RefinementStage {
 
     /// Whether a worker's refinement of the shape of number `shape` is what is asked for; then it counts as made.
     pub fn accept(&mut self, shape: u32) -> bool {
-        let is_wanted = self.is_open() && self.shapes == shape;
-        self.is_made |= is_wanted;
+        let is_wanted = self.can_be_shared() && self.shapes == shape;
+        self.made_by_worker |= is_wanted;
         is_wanted
     }
 
@@ -124,7 +124,7 @@ impl RefinementStage {
     /// `solution` and nothing else of it.
     pub fn refine(&mut self, inputs: Inputs<'_>, accepted: &Accepted, scratch: &mut Scratch, solution: &mut Solution) {
         let Inputs { pair, correspondences, .. } = inputs;
-        if !self.is_made {
+        if !self.made_by_worker {
             let terms = self.terms.unwrap_or_else(|| terms(inputs, solution));
             let (image_normals, position) = match self.terms {
                 Some(_) => (accepted.image_normals(), self.position.each_ref().map(Vec::as_slice)),
@@ -135,7 +135,7 @@ impl RefinementStage {
             let Shape { normals, points } = &mut solution.depth;
             self.refiner.refine(scratch, problem, normals, &mut points.z);
         }
-        self.change_shape();
+        self.shape_changed();
         solution.depth.place_depth_points(&pair.depth);
     }
 }

@@ -1,7 +1,7 @@
 //! The registration stage: which of the two registrations a pair asks for, and what it found.
 
 use crate::error::{Error, ErrorKind, Result};
-use crate::estimator::pair::Pair;
+use crate::estimator::pair::ViewPair;
 use crate::estimator::solution::Solution;
 use crate::light::Light;
 use crate::options::{Registration, Start};
@@ -35,13 +35,13 @@ pub struct RegistrationStage {
 }
 
 impl RegistrationStage {
-    pub fn new(pair: &Pair) -> Self {
+    pub fn new(pair: &ViewPair) -> Self {
         let by_colours = pair.options.start == Start::Search || pair.options.registration == Registration::Joint;
         Self { colours: by_colours.then(|| ColourRegistration::new(pair)), surfaces: SurfaceRegistration::new() }
     }
 
     /// The registration that this pair asks for now: noisy depth is found by its colours and settled by its surface.
-    pub fn kind(&self, pair: &Pair) -> Registration {
+    pub fn kind(&self, pair: &ViewPair) -> Registration {
         let settled_by_surface = |colours: &ColourRegistration| colours.is_coarse() && colours.found().is_some();
         match pair.options.registration {
             Registration::Joint if self.colours.as_ref().is_some_and(settled_by_surface) => Registration::Icp,
@@ -60,7 +60,7 @@ impl RegistrationStage {
     }
 
     /// Takes over what the search has found.
-    pub fn adopt(&mut self, pair: &Pair, found: PhotometricReport, present: &Similarity) -> Registered {
+    pub fn adopt(&mut self, pair: &ViewPair, found: PhotometricReport, present: &Similarity) -> Registered {
         let registered = self.registered(pair, &found, present);
         if let Some(colours) = &mut self.colours {
             colours.adopt(found);
@@ -69,7 +69,7 @@ impl RegistrationStage {
     }
 
     /// Whether the next registration will leave `pose` as it is, whatever the shapes become.
-    pub fn keeps(&self, pair: &Pair, pose: &Similarity) -> bool {
+    pub fn keeps(&self, pair: &ViewPair, pose: &Similarity) -> bool {
         match self.kind(pair) {
             Registration::Fixed => true,
             Registration::Joint => self.colours.as_ref().is_some_and(|colours| colours.ended_in(pose)),
@@ -90,7 +90,7 @@ impl RegistrationStage {
     }
 
     /// Pose and light together from the colours.
-    fn register_colours(&mut self, pair: &Pair, start: &Similarity) -> Result<Option<Registered>> {
+    fn register_colours(&mut self, pair: &ViewPair, start: &Similarity) -> Result<Option<Registered>> {
         let Some(colours) = &mut self.colours else { return Ok(None) };
         let found = colours.register(pair, start)?.clone();
         if found.pose.growth_from(start) > LARGEST_GROWTH.ln() {
@@ -101,7 +101,7 @@ impl RegistrationStage {
         Ok(Some(self.registered(pair, &found, start)))
     }
 
-    fn registered(&self, pair: &Pair, found: &PhotometricReport, present: &Similarity) -> Registered {
+    fn registered(&self, pair: &ViewPair, found: &PhotometricReport, present: &Similarity) -> Registered {
         let mut pose = found.pose;
         // t_z of an orthographic image is a gauge, which the loop has settled already.
         if pair.image.camera.is_orthographic() {

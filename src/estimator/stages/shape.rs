@@ -1,7 +1,7 @@
 //! The stages of the image's shape: normals of its pixels (Eq. 6 to 9), then the surface.
 
 use crate::error::Result;
-use crate::estimator::pair::Pair;
+use crate::estimator::pair::ViewPair;
 use crate::estimator::solution::{ExposedLight, Shape};
 use crate::light::Light;
 use crate::options::Shading;
@@ -18,7 +18,7 @@ pub struct ShapeStage(ImageShapeSolver);
 
 impl ShapeStage {
     /// Memory for the surface that the options ask for.
-    pub fn new(pair: &Pair) -> Result<Self> {
+    pub fn new(pair: &ViewPair) -> Result<Self> {
         Ok(Self(match pair.options.shading {
             Shading::Surface => ImageShapeSolver::as_a_whole(&pair.image)?,
             Shading::Pixel => ImageShapeSolver::by_integration(),

@@ -39,7 +39,7 @@ impl Estimator {
     /// Whether there are stages left before a refinement that a worker may be making.
     #[must_use]
     pub fn precedes_refinement(&self) -> bool {
-        matches!(self.run, Run::Iterating(stage) if stage != Stage::Refinement) && self.refinement.is_open()
+        matches!(self.run, Run::Iterating(stage) if stage != Stage::Refinement) && self.refinement.can_be_shared()
     }
 
     /// Where to put the shape that a worker has made of the one with number `shape`: refined depth and normals (x, y, z).

@@ -1,7 +1,7 @@
 //! Refinements of one depth view in a worker, one after the other.
 
 use crate::error::Result;
-use crate::estimator::pair::Pair;
+use crate::estimator::pair::ViewPair;
 use crate::estimator::stages::terms_from_numbers;
 use crate::shape::{RefinementProblem, Refiner, Scratch};
 use crate::view::Normals;
@@ -18,7 +18,7 @@ pub struct RefinementWorker {
 
 impl RefinementWorker {
     /// For one pair, whose shapes are refined already.
-    pub fn new(pair: &Pair) -> Result<Self> {
+    pub fn new(pair: &ViewPair) -> Result<Self> {
         let [pixels, points] = pair.lengths();
         let refiner = Refiner::new(&pair.depth, &pair.image)?.resumed();
         Ok(Self {
@@ -40,7 +40,7 @@ impl RefinementWorker {
     }
 
     /// Refines the shape by what the planes hold and the task's numbers: depth and normals (x, y, z).
-    pub fn refine(&mut self, pair: &Pair, numbers: &[f64]) -> Result<[&[f32]; 4]> {
+    pub fn refine(&mut self, pair: &ViewPair, numbers: &[f64]) -> Result<[&[f32]; 4]> {
         let problem = RefinementProblem {
             depth: &pair.depth,
             image: &pair.image,

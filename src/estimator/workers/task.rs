@@ -48,7 +48,7 @@ impl RegisteredCandidate {
 
 /// First number of each kind of task or finding.
 const SWEEP: f64 = 0.0;
-const CLIMB: f64 = 1.0;
+const ASCEND: f64 = 1.0;
 const REGISTER: f64 = 2.0;
 
 impl Task {
@@ -57,7 +57,9 @@ impl Task {
     pub fn to_numbers(&self) -> Vec<f64> {
         match &self.0 {
             Work::Search(SearchTask::Sweep(slice)) => list(SWEEP, *slice, &[]),
-            Work::Search(SearchTask::Climb(index, hypothesis)) => list(CLIMB, *index, &hypothesis_numbers(hypothesis)),
+            Work::Search(SearchTask::Ascend(index, hypothesis)) => {
+                list(ASCEND, *index, &hypothesis_numbers(hypothesis))
+            }
             Work::Register(index, pose) => list(REGISTER, *index, &pose_numbers(pose)),
         }
     }
@@ -69,7 +71,7 @@ impl Task {
         let index = index as usize;
         Some(Self(match kind {
             SWEEP if rest.is_empty() => Work::Search(SearchTask::Sweep(index)),
-            CLIMB => Work::Search(SearchTask::Climb(index, hypothesis(rest.try_into().ok()?))),
+            ASCEND => Work::Search(SearchTask::Ascend(index, hypothesis(rest.try_into().ok()?))),
             REGISTER => Work::Register(index, pose(rest.try_into().ok()?)),
             _ => return None,
         }))
@@ -86,8 +88,8 @@ impl Finding {
                 return list(SWEEP, *slice, hypotheses.as_flattened());
             }
             Found::Registered(index, None) => return list(REGISTER, *index, &[]),
-            Found::Search(SearchFinding::Climbed(index, candidate)) => {
-                (list(CLIMB, *index, &pose_numbers(&candidate.pose)), &[candidate.score][..])
+            Found::Search(SearchFinding::Ascended(index, candidate)) => {
+                (list(ASCEND, *index, &pose_numbers(&candidate.pose)), &[candidate.score][..])
             }
             Found::Registered(index, Some(end)) => {
                 (list(REGISTER, *index, &pose_numbers(&end.pose)), &[end.visible, end.noise][..])
@@ -110,9 +112,9 @@ impl Finding {
                 }
                 Found::Search(SearchFinding::Swept(index, hypotheses.iter().map(hypothesis).collect()))
             }
-            CLIMB => {
+            ASCEND => {
                 let (start, &[score]) = rest.split_first_chunk()? else { return None };
-                Found::Search(SearchFinding::Climbed(index, Candidate { pose: pose(start), score }))
+                Found::Search(SearchFinding::Ascended(index, Candidate { pose: pose(start), score }))
             }
             REGISTER if rest.is_empty() => Found::Registered(index, None),
             REGISTER => {
@@ -165,7 +167,7 @@ mod tests {
         let pose = Similarity { translation: Vector3::new(0.1, 0.2, 0.3), ..Similarity::identity() };
         for work in [
             Work::Search(SearchTask::Sweep(7)),
-            Work::Search(SearchTask::Climb(3, hypothesis)),
+            Work::Search(SearchTask::Ascend(3, hypothesis)),
             Work::Register(5, pose),
         ] {
             assert_eq!(Task::from_numbers(&Task(work).to_numbers()), Some(Task(work)));
@@ -174,7 +176,7 @@ mod tests {
         for found in [
             Found::Search(SearchFinding::Swept(2, vec![hypothesis; 2])),
             Found::Search(SearchFinding::Swept(2, Vec::new())),
-            Found::Search(SearchFinding::Climbed(1, Candidate { pose, score: -1.5 })),
+            Found::Search(SearchFinding::Ascended(1, Candidate { pose, score: -1.5 })),
             Found::Registered(4, Some(registered)),
             Found::Registered(4, None),
         ] {

@@ -2,7 +2,7 @@
 
 use crate::error::Result;
 use crate::estimator::initialisation::search;
-use crate::estimator::pair::Pair;
+use crate::estimator::pair::ViewPair;
 use crate::estimator::stages::{Attempt, ColourRegistration};
 use crate::options::Options;
 use crate::pose::{ImageGrid, PhotometricReport, Search, Similarity};
@@ -14,8 +14,8 @@ use super::task::{Finding, Found, RegisteredCandidate, Task, Work};
 /// Does tasks of the initialisation, and later refinements, for an [`Estimator`](crate::Estimator) of the same pair and
 /// options. What it finds does not depend on what it did before, but for the shape that its last refinement has left.
 pub struct Worker {
-    pair: Pair,
-    /// What the initialisation needs, and what refinements do: one gives way to the other.
+    pair: ViewPair,
+    /// Memory of the initialisation and of refinements: each is given back before the other is taken.
     initialisation: Option<(ColourRegistration, Search)>,
     refinement: Option<RefinementWorker>,
 }
@@ -26,7 +26,7 @@ impl Worker {
     /// # Errors
     /// Those of [`Estimator::new`](crate::Estimator::new).
     pub fn new(image: ColourImage, depth: &DepthMap, options: Options) -> Result<Self> {
-        Ok(Self { pair: Pair::new(image, depth, options)?, initialisation: None, refinement: None })
+        Ok(Self { pair: ViewPair::new(image, depth, options)?, initialisation: None, refinement: None })
     }
 
     /// Does one task of the initialisation, however long it takes.
@@ -71,7 +71,7 @@ impl Worker {
 }
 
 /// The whole registration of one candidate.
-fn register(pair: &Pair, colours: &mut ColourRegistration, start: &Similarity) -> Option<Box<PhotometricReport>> {
+fn register(pair: &ViewPair, colours: &mut ColourRegistration, start: &Similarity) -> Option<Box<PhotometricReport>> {
     let mut attempt = colours.step_candidate(pair, start, true);
     loop {
         match attempt {

@@ -18,12 +18,12 @@ const SINE_OF_A_THIRD: f32 = 0.866_025_4;
 
 /// A transform of one length; owns its roots and its scratch.
 pub(crate) struct RowFourier {
-    stages: Vec<Stage>,
+    stages: Vec<Pass>,
     spare: Vec<Complex>,
 }
 
 /// One factor of the length.
-struct Stage {
+struct Pass {
     factor: usize,
     /// Sequences that are transformed side by side by now: the product of the factors before.
     stride: usize,
@@ -53,7 +53,7 @@ impl RowFourier {
     pub fn new(length: usize) -> Self {
         let (mut stages, mut left) = (Vec::new(), length);
         for factor in factors(length) {
-            stages.push(Stage::new(factor, left, length / left));
+            stages.push(Pass::new(factor, left, length / left));
             left /= factor;
         }
         Self { stages, spare: vec![[Lanes::splat(0.0); 2]; length] }
@@ -72,7 +72,7 @@ impl RowFourier {
     }
 }
 
-impl Stage {
+impl Pass {
     fn new(factor: usize, left: usize, stride: usize) -> Self {
         let roots = (0..left / factor).flat_map(|p| (1..factor).map(move |k| root(p * k, left))).collect();
         Self { factor, stride, roots }

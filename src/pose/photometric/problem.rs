@@ -35,7 +35,7 @@ pub struct PhotometricProblem<'a> {
     pub light: Option<&'a Light>,
     /// Prior of an unknown light.
     pub prior: &'a LightPrior,
-    /// Weight of the prior: one is Bayes' own.
+    /// Weight of the prior: one is that of Bayes' rule.
     pub prior_weight: f64,
     /// Whether the scale of the start is kept.
     pub scale_is_held: bool,

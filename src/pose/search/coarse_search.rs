@@ -2,7 +2,7 @@
 
 use nalgebra::Matrix3;
 
-use super::ascent::climb;
+use super::ascent::ascend;
 use super::hypothesis::Hypothesis;
 use super::matcher::{ImageGrid, Matcher};
 use super::problem::{Candidate, Progress, SearchProblem};
@@ -39,7 +39,7 @@ pub(crate) enum SearchTask {
     /// Some pairs of rotation and size, by the number of their slice.
     Sweep(usize),
     /// The ascent from one hypothesis, and its number.
-    Climb(usize, Hypothesis),
+    Ascend(usize, Hypothesis),
 }
 
 /// The result of a task.
@@ -48,7 +48,7 @@ pub(crate) enum SearchFinding {
     /// The best hypotheses of a slice of the sweep.
     Swept(usize, Vec<Hypothesis>),
     /// Where an ascent ended.
-    Climbed(usize, Candidate),
+    Ascended(usize, Candidate),
 }
 
 impl Search {
@@ -103,16 +103,16 @@ impl Search {
     }
 
     fn ascent(&self, index: usize) -> SearchTask {
-        SearchTask::Climb(index, self.starts[index])
+        SearchTask::Ascend(index, self.starts[index])
     }
 
     /// Does a slice, of this search or of another one of the same problem.
     pub(crate) fn perform(&mut self, task: &SearchTask) -> SearchFinding {
         match *task {
             SearchTask::Sweep(slice) => SearchFinding::Swept(slice, self.best_of_slice(slice)),
-            SearchTask::Climb(index, start) => {
-                let end = climb(&mut self.matcher, start, self.sweep.varies_size());
-                SearchFinding::Climbed(index, self.matcher.candidate(&end))
+            SearchTask::Ascend(index, start) => {
+                let end = ascend(&mut self.matcher, start, self.sweep.varies_size());
+                SearchFinding::Ascended(index, self.matcher.candidate(&end))
             }
         }
     }
@@ -122,7 +122,7 @@ impl Search {
         let sweeping = !self.swept.is_complete();
         match finding {
             SearchFinding::Swept(slice, hypotheses) => self.swept.put(slice, hypotheses),
-            SearchFinding::Climbed(index, candidate) => self.ascents.put(index, candidate),
+            SearchFinding::Ascended(index, candidate) => self.ascents.put(index, candidate),
         }
         if sweeping && self.swept.is_complete() {
             self.choose_starts();

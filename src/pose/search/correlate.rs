@@ -15,7 +15,7 @@ use crate::light::HARMONICS;
 use crate::numeric::fourier::planes::{Field, opposite};
 use nalgebra::Complex;
 
-/// What a transform and its inverse leave undone.
+/// 1 / number of cells: neither a transform nor its inverse divides by it.
 const NORM: f32 = 1.0 / CELLS as f32;
 /// Translations proposed for each rotation; the exact score picks one of them.
 const PROPOSALS: usize = 3;

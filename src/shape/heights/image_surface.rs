@@ -26,11 +26,11 @@ const MOST_PIXELS: usize = 6000;
 /// Solves one image again and again. Owns what lasts from call to call; the memory of a solve is the caller's.
 pub struct ImageSurfaceSolver {
     domain: HeightDomain,
-    /// Of a large image; that of a small one is in `starts`.
+    /// Heights of a large image; those of a small one are in `starts`.
     surface: Vec<f32>,
-    /// Halved again and again, the smallest last; empty for a small image.
+    /// The image halved again and again, the smallest last; empty for a small image.
     coarser: Vec<Level>,
-    /// At the smallest level.
+    /// The starts compete at the smallest level.
     starts: MultiStart,
 }
 

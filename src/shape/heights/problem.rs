@@ -8,7 +8,7 @@ use crate::shape::integration::Anchors;
 /// Robust scales of successive solves from far away, log residuals: falling, so that no pixel is discarded before the
 /// surface is near. The last one is three times the noise of an image of 2 % noise.
 pub const COLOUR_SCALES: [f32; 3] = [0.5, 0.2, LAST_SCALE];
-/// That of solves that continue an earlier one.
+/// The robust scale of solves that continue an earlier one.
 pub const LAST_SCALE: f32 = 0.06;
 
 /// The data of one surface; all fields are rasters of the view, NaN where unknown.

@@ -11,10 +11,10 @@ use crate::view::{Camera, Size};
 /// ray r(u, v): a = r_v x r_u, b = (r_v x r) / f, c = (r x r_u) / f; times f^2, so that N has length of order one.
 pub(super) type RayFrame = [[f32; 3]; 3];
 
-/// That of every pixel of an orthographic camera.
+/// The frame of every pixel of an orthographic camera.
 pub(super) const ORTHOGRAPHIC: RayFrame = [[0.0, 0.0, -1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
 
-/// Those of the pixels of a box.
+/// The frames of the pixels of a box.
 pub(super) enum RayFrames {
     Orthographic,
     /// Without distortion a ray is made of its column's x and its row's y: here both with their change to the next pixel.

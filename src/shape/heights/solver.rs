@@ -33,8 +33,8 @@ const HALVING_CONFIDENCE: f32 = 0.01;
 const FIRST_DAMPING: f32 = 0.1;
 const DAMPING: [f32; 2] = [1e-4, 1e4];
 /// Divisor of the damping after a step that lowered the objective, and factor after one that did not.
-const EASE: f32 = 5.0;
-const TIGHTEN: f32 = 10.0;
+const DAMPING_DIVISOR: f32 = 5.0;
+const DAMPING_FACTOR: f32 = 10.0;
 /// Least stiffness of the preconditioner, squared log residual per squared slope: dark pixels must not make it singular.
 const LEAST_STIFFNESS: f64 = 1e-6;
 /// The solve has converged when a step lowers the objective by less than this share.
@@ -154,10 +154,10 @@ impl HeightSolver {
             let lower = self.objective(domain, terms);
             if lower < objective {
                 std::mem::swap(&mut self.z, &mut self.trial);
-                *damping = (*damping / EASE).max(DAMPING[0]);
+                *damping = (*damping / DAMPING_DIVISOR).max(DAMPING[0]);
                 return Some(lower);
             }
-            *damping *= TIGHTEN;
+            *damping *= DAMPING_FACTOR;
         }
         None
     }
@@ -307,7 +307,7 @@ impl HeightSolver {
         self.operator.set_edges(&self.edges, &domain.flags, [RIGHT, BELOW], damping);
         self.step.fill(0.0);
         self.trial.copy_from_slice(&self.right);
-        let mut equations = NormalEquations {
+        let mut equations = HeightSystem {
             operator: &mut self.operator,
             anchor_weight: &self.anchor_weight,
             cosine: &mut domain.cosine,
@@ -323,7 +323,7 @@ impl HeightSolver {
     }
 }
 
-/// Those of the conjugate gradients.
+/// Limits of the conjugate gradients of one step.
 fn limits(effort: Effort, objective: f64) -> Limits {
     Limits {
         iterations: effort.iterations,
@@ -335,14 +335,14 @@ fn limits(effort: Effort, objective: f64) -> Limits {
 
 /// The matrix of a step and its preconditioner. Off the mask the right-hand side is zero and no weight reads a height, so
 /// that extension and restriction need no code.
-struct NormalEquations<'a> {
+struct HeightSystem<'a> {
     operator: &'a mut NormalOperator,
     anchor_weight: &'a [f32],
     cosine: &'a mut CosineSolver,
     spectrum: &'a mut [f32],
 }
 
-impl System for NormalEquations<'_> {
+impl System for HeightSystem<'_> {
     fn apply(&mut self, direction: &[f32], product: &mut [f32]) {
         self.operator.apply(self.anchor_weight, direction, product);
     }

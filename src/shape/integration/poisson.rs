@@ -100,7 +100,7 @@ impl Poisson {
         self.find_residual();
         let limits =
             Limits { iterations: cap, error: tolerance * tolerance * data, relative_error: 0.0, decrease: 0.0 };
-        let mut equations = NormalEquations {
+        let mut equations = PoissonSystem {
             edges: [&self.right, &self.down],
             anchor_weight: &self.anchor_weight,
             flux: &mut self.flux,
@@ -150,7 +150,7 @@ impl Poisson {
 
 /// L_w + diag a and its preconditioner. Off the domain the residual is zero and no edge reads a height, so that extension
 /// and restriction need no code.
-struct NormalEquations<'a> {
+struct PoissonSystem<'a> {
     edges: [&'a Edges; 2],
     anchor_weight: &'a [f32],
     flux: &'a mut Flux,
@@ -158,7 +158,7 @@ struct NormalEquations<'a> {
     spectrum: &'a mut [f32],
 }
 
-impl System for NormalEquations<'_> {
+impl System for PoissonSystem<'_> {
     fn apply(&mut self, direction: &[f32], product: &mut [f32]) {
         self.flux.divergence(self.edges, false, direction, product);
         for ((out, a), d) in product.iter_mut().zip(self.anchor_weight).zip(direction) {

@@ -40,7 +40,7 @@ pub struct ShadingWeights {
 const PRIOR_SCALE: f32 = 0.4;
 
 impl ShadingWeights {
-    /// Those of a prior whose mistakes do not count.
+    /// Weights with a robust prior: a prior normal that is far off, such as one of a wrong correspondence, loses its weight.
     #[must_use]
     pub const fn with_robust_prior(prior: f32, unit: f32) -> Self {
         Self { prior, unit, robust: Some(PRIOR_SCALE) }
