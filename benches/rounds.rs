@@ -1,9 +1,9 @@
-//! The native half of `npm run bench`: answers requests line by line, so that its runs alternate with those of the browser
-//! and a busy machine slows both alike.
+//! The native half of `npm run bench`: answers requests line by line, so that its runs alternate with those of the
+//! browser and a busy machine slows both alike.
 //!
-//! `scene PATH` reads a scene, `run START SHADING MOST` runs the loop from "near" or "search" with "surface" or "pixel" through
-//! at most so many iterations; each answer is one line of JSON. Called without the word `requests`, as by a plain
-//! `cargo bench`, it does nothing: nobody would ask.
+//! `scene PATH` reads a scene, `run START SHADING MOST` runs the loop from "near" or "search" with "surface" or "pixel"
+//! through at most so many iterations; each answer is one line of JSON. Called without the word `requests`, as by a
+//! plain `cargo bench`, it does nothing: nobody would ask.
 
 mod common;
 

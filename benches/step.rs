@@ -41,8 +41,8 @@ fn whole(scene: &Scene) -> Run {
     run(scene, near(scene), Shading::Surface, TO_THE_END).expect("the scene is sound")
 }
 
-/// Mean time of a stage in the steady iterations of a run, or in its last one where it ends before. The registration computes once
-/// in a run, in its first iteration; later ones find that the pose stands.
+/// Mean time of a stage in the steady iterations of a run, or in its last one where it ends before. The registration
+/// computes once in a run, in its first iteration; later ones find that the pose stands.
 fn time_of(run: &Run, stage: Stage) -> Duration {
     let first = if stage == Stage::Registration { 0 } else { WARMING.min(run.iterations.saturating_sub(1)) };
     let counts = |iteration: u32| iteration >= first && (stage != Stage::Registration || iteration == 0);
@@ -68,7 +68,8 @@ fn steps(criterion: &mut Criterion) {
     for size in SIZES {
         let scene = std::cell::LazyCell::new(|| scene(size));
         let mut group = criterion.benchmark_group(format!("{}x{}", size[0], size[1]));
-        // A stage is a part of a run, whose whole length each sample takes: one run for each sample, which criterion warns of.
+        // A stage is a part of a run, whose whole length each sample takes: one run for each sample, which criterion
+        // warns of.
         group.sample_size(SAMPLES).sampling_mode(SamplingMode::Flat);
         group.warm_up_time(Duration::from_millis(1)).measurement_time(Duration::from_millis(1));
         for name in ["light", "shading", "surface", "registration", "refinement", "step"] {

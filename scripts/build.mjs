@@ -23,8 +23,8 @@ const FLAVOURS = [
   { file: `${MODULE}_bg.wasm`, target: "target", flags: ["-C", `target-feature=-${REFERENCES}`] },
   { file: `${MODULE}_scalar_bg.wasm`, target: "target/scalar", flags: ["-C", `target-feature=-${REFERENCES},-simd128`] },
 ];
-/** One for programs, one for what reads files, one for the page's fields, and one for what a worker runs. */
-const ENTRIES = { index: "index", files: "files", options: "options", worker: "workers/worker" };
+/** One for programs, one for what reads files, one for the page's fields, and one for the threads of workers. */
+const ENTRIES = { index: "index", files: "files", options: "options", thread: "workers/thread" };
 /** Declarations that no entry mentions; one of them names the generated bindings, which stay inside. */
 const INTERNAL = ["check.d.ts", "engine.d.ts", "node.d.ts", "npy.d.ts", "plain.d.ts", "workers"];
 

@@ -2,8 +2,8 @@
 //! places.
 //!
 //! The method of Zhang, Liu, Wu, Zhang and Wang, "Bimodal Stereo: Joint Shape and Pose Estimation from Color-Depth
-//! Image Pair" (Machine Vision and Applications), stage by stage. Data flows one way: a room looks only into rooms before
-//! it, and no two files of a room import each other (held by `tests/floors`).
+//! Image Pair" (Machine Vision and Applications), stage by stage. Data flows one way: a room looks only into rooms
+//! before it, and no two files of a room import each other (held by `tests/floors`).
 //!
 //! | room | what it holds | the paper |
 //! |---|---|---|

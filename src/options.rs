@@ -55,7 +55,8 @@ pub enum Shading {
     Surface,
 }
 
-/// Weights of the terms of the objective. Brightness residuals are differences of natural logarithms; normals have no unit.
+/// Weights of the terms of the objective. Brightness residuals are differences of natural logarithms; normals have no
+/// unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Weights {
     /// lambda_2 of Eq. 6: how strongly a normal follows the normal of the other view.

@@ -1,12 +1,12 @@
 //! Numbers in messages for people.
 //!
-//! The standard library writes any float exactly, to its 300th digit if asked to. Messages need three or eight, and a visitor
-//! downloads 10 kB less without the rest.
+//! The standard library writes any float exactly, to its 300th digit if asked to. Messages need three or eight, and a
+//! visitor downloads 10 kB less without the rest.
 
 use std::fmt;
 
-/// Decimals of a [`Brief`] number between one and ten: eight digits tell one that is just too large from the limit, and leave out
-/// most of what f32 adds to 0.1.
+/// Decimals of a [`Brief`] number between one and ten: eight digits tell one that is just too large from the limit, and
+/// leave out most of what f32 adds to 0.1.
 const DECIMALS: i32 = 7;
 /// Powers of ten that a [`Brief`] number is written out for; others get an exponent.
 const WRITTEN_OUT: std::ops::Range<i32> = -4..15;
@@ -39,8 +39,8 @@ impl fmt::Display for Brief {
     }
 }
 
-/// The first digits of a magnitude as a whole number, and the power of ten of the first one; zeros unless it is a number
-/// above zero.
+/// The first digits of a magnitude as a whole number, and the power of ten of the first one; zeros unless it is a
+/// number above zero.
 fn leading_digits(mut magnitude: f64) -> (u64, i32) {
     if magnitude == 0.0 || !magnitude.is_finite() {
         return (0, 0);

@@ -29,7 +29,7 @@ function spawn(): WorkerHandle {
 
 function spawnInBrowser(): WorkerHandle {
   // Written out in one piece: bundlers look for exactly this to carry the file along.
-  const worker = new Worker(new URL("./worker.js", import.meta.url), { type: "module" });
+  const worker = new Worker(new URL("./thread.js", import.meta.url), { type: "module" });
   return {
     post: (order, transfer) => worker.postMessage(order, transfer),
     onAnswer: (handler) => worker.addEventListener("message", (event) => handler(event.data)),
@@ -45,7 +45,7 @@ function spawnInBrowser(): WorkerHandle {
 
 function spawnInNode({ Worker }: typeof import("node:worker_threads")): WorkerHandle {
   // Not the URL above once more: bundlers would carry the file along twice.
-  const file = import.meta.url.replace(/[^/]*$/, "worker.js");
+  const file = import.meta.url.replace(/[^/]*$/, "thread.js");
   // Without the program's own flags: those of `node -e`, for one, would run its text again.
   const worker = new Worker(new URL(file), { execArgv: [] });
   return {

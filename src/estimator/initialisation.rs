@@ -2,8 +2,8 @@
 //! colours, keep the pose that explains most, remember its rivals.
 //!
 //! All of it falls into tasks that depend on nothing but the pair and themselves, so that threads may do some of them
-//! ([`Worker`](super::Worker)). What they find counts in the order of the tasks, however it comes in: the outcome is the
-//! same to the bit.
+//! ([`Worker`](super::Worker)). What they find counts in the order of the tasks, however it comes in: the outcome is
+//! the same to the bit.
 
 use crate::error::Result;
 use crate::pose::{ImageGrid, PhotometricReport, Search, SearchProblem, Similarity, TaskResults};

@@ -1,13 +1,13 @@
 //! Where registrations from different candidates ended: which of these poses is the answer, and which are its rivals.
 //!
-//! Registrations that end in different poses see different points, so their objectives cannot be compared; what they are
-//! worth is gain = N^(1/3) ln(spread / noise): by how much the pose explains the colours better than a constant would,
-//! with a root of the number of visible points against overlaps that are tiny and thus easily explained. Measured on the
-//! local optima of 300 random scenes at 96x96 (Mozart, four scanned animals, three built-in surfaces; natural lights,
-//! free scale): any power from 0.1 to 0.6 puts a right pose first in all of them, none at all errs in one; of two a few
-//! degrees apart, the square root favours the one that merely sees more. Rivals of right winners leave 1.25 times their
-//! noise or more, so a pose that leaves nothing but the noise of the image comes before one that sees more but leaves so
-//! much.
+//! Registrations that end in different poses see different points, so their objectives cannot be compared; what they
+//! are worth is gain = N^(1/3) ln(spread / noise): by how much the pose explains the colours better than a constant
+//! would, with a root of the number of visible points against overlaps that are tiny and thus easily explained.
+//! Measured on the local optima of 300 random scenes at 96x96 (Mozart, four scanned animals, three built-in surfaces;
+//! natural lights, free scale): any power from 0.1 to 0.6 puts a right pose first in all of them, none at all errs in
+//! one; of two a few degrees apart, the square root favours the one that merely sees more. Rivals of right winners
+//! leave 1.25 times their noise or more, so a pose that leaves nothing but the noise of the image comes before one that
+//! sees more but leaves so much.
 
 use crate::numeric::sort_descending;
 use crate::pose::Similarity;

@@ -5,12 +5,13 @@ use crate::text::Fixed;
 use crate::view::Size;
 
 /// Bytes that one pixel of either view takes, all stages and the initialisation together. Measured on pairs at 640x480
-/// (`tests/contract/memory.test.mjs` watches it), the module's own megabyte included: 180 of each view's pixels where the
-/// object covers a third of the frame, 210 where it fills it. A lens with distortion adds up to 52, a noisy depth map,
-/// whose pose its surface settles, up to 35; of smaller views the megabyte is a larger share: 222 at 480x360.
+/// (`tests/contract/memory.test.mjs` watches it), the module's own megabyte included: 180 of each view's pixels where
+/// the object covers a third of the frame, 210 where it fills it. A lens with distortion adds up to 52, a noisy depth
+/// map, whose pose its surface settles, up to 35; of smaller views the megabyte is a larger share: 222 at 480x360.
 const BYTES_PER_PIXEL: f64 = 220.0;
-/// Bytes that one pixel of either view takes in a [`Worker`](super::Worker), which has a module of its own. Measured at 640x480: 75
-/// while it searches; while it refines 84 where the object covers a third of the frame, 98 where it covers most of it.
+/// Bytes that one pixel of either view takes in a [`Worker`](super::Worker), which has a module of its own. Measured at
+/// 640x480: 75 while it searches; while it refines 84 where the object covers a third of the frame, 98 where it covers
+/// most of it.
 const WORKER_BYTES_PER_PIXEL: f64 = 110.0;
 /// Most bytes of a pair: a quarter of what a wasm module may have, and what a phone's browser grants a page.
 const MOST_BYTES: f64 = 1e9;

@@ -1,13 +1,13 @@
 //! Algorithm 1: one iteration, stage by stage.
 //!
 //! light (Eq. 2) -> shading (Eq. 6 to 9) -> surface -> registration (Eq. 12 to 16) -> refinement (Eq. 17 to 19),
-//! until the rotation settles. After each iteration the objective l + f + g (Eq. 1) of the new solution is compared with
-//! that of the last accepted one over the same depth points; a worse iteration is taken back, and the next one takes half
-//! the registration's step.
+//! until the rotation settles. After each iteration the objective l + f + g (Eq. 1) of the new solution is compared
+//! with that of the last accepted one over the same depth points; a worse iteration is taken back, and the next one
+//! takes half the registration's step.
 //!
-//! Where nothing is known of the pose, the [`initialisation`] comes first: a search in slices, then registrations of its
-//! best candidates by their colours. The registration by colours has an objective of its own, so the loop's never takes
-//! back a pose that it moves.
+//! Where nothing is known of the pose, the [`initialisation`] comes first: a search in slices, then registrations of
+//! its best candidates by their colours. The registration by colours has an objective of its own, so the loop's never
+//! takes back a pose that it moves.
 //!
 //! Each stage owns its memory and says by its signature what it reads and what it writes ([`stages`]); this file is the
 //! order in which they run. What an end is called is decided in [`verdict`].
@@ -305,8 +305,8 @@ impl Estimator {
         self.shape.find_normals(inputs, is_first, exposure_is_free, light, &mut image.normals);
     }
 
-    /// Heights of the image, then the gauges that neither view can tell: t_z of an orthographic image, the distance of a
-    /// pinhole image's surface.
+    /// Heights of the image, then the gauges that neither view can tell: t_z of an orthographic image, the distance of
+    /// a pinhole image's surface.
     fn find_surface(&mut self) -> Result<()> {
         let light = self.solution.light.total();
         let inputs = Inputs { pair: &self.pair, fitted: &self.light, correspondences: &self.correspondences };
@@ -354,8 +354,8 @@ impl Estimator {
         self.report.uncertainty = Some(found.uncertainty);
     }
 
-    /// Of a match of surfaces only a fraction is taken after rejections. Behind a pinhole image the pose keeps its scale
-    /// and the image's surface takes the rest.
+    /// Of a match of surfaces only a fraction is taken after rejections. Behind a pinhole image the pose keeps its
+    /// scale and the image's surface takes the rest.
     fn shorten_step(&mut self, start: &Similarity) {
         let Solution { pose, image, depth, .. } = &mut self.solution;
         if self.history.step_fraction < 1.0 {
@@ -403,7 +403,8 @@ impl Estimator {
         let before = (!is_first).then_some(self.report.objective);
         let after = self.objective();
         let change = self.accepted.pose.degrees_to(&self.solution.pose);
-        // The registration by colours has an objective of its own: a pose that it moves is not for this one to take back.
+        // The registration by colours has an objective of its own: a pose that it moves is not for this one to take
+        // back.
         let is_comparable =
             self.registration.kind(&self.pair) != Registration::Joint || change < self.pair.options.stop_degrees;
         let worse_than =

@@ -19,16 +19,16 @@ use crate::pose::{Correspondences, Similarity};
 use crate::report::Objective;
 use crate::view::ColourView;
 
-/// Robust scale of the log-colour residual, natural logarithm over three channels: a tenth is a brightness that is wrong
-/// by 6 % in each of them, several times the noise of a good image.
+/// Robust scale of the log-colour residual, natural logarithm over three channels: a tenth is a brightness that is
+/// wrong by 6 % in each of them, several times the noise of a good image.
 const COLOUR_SCALE: f64 = 0.1;
 /// Robust scale of the distance of both surfaces in image pixels: the paper's threshold for a correspondence.
 const DISTANCE_SCALE: f64 = 1.0;
 /// Robust scale of the difference of two normals: 12 degrees.
 const NORMAL_SCALE: f64 = 0.2;
 
-/// Points or pixels that a mean is taken of at most: of robust costs in 0 .. 1 it is then right to half a percent, and two
-/// solutions are compared over the same ones.
+/// Points or pixels that a mean is taken of at most: of robust costs in 0 .. 1 it is then right to half a percent, and
+/// two solutions are compared over the same ones.
 pub const MOST_POINTS: usize = 10_000;
 /// Distance of the evaluation points from the border of the mask, image pixels.
 const MARGIN: f32 = 1.5;
@@ -36,7 +36,8 @@ const MARGIN: f32 = 1.5;
 /// After a small step an objective that grows by less than this share has not grown: correspondences flicker at pixel
 /// borders.
 const SLACK: f64 = 1e-2;
-/// Degrees up to which a step is small. A larger one has to lower the objective, or a flat one would let the pose drift.
+/// Degrees up to which a step is small. A larger one has to lower the objective, or a flat one would let the pose
+/// drift.
 const SMALL_STEP: f64 = 0.25;
 
 /// What is evaluated: a pose with the shape and light that go with it.

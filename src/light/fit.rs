@@ -2,8 +2,8 @@
 //!
 //! Given normals, log S is linear in the light: min over L of
 //! mean_i w_i |log S_i - B(n_i) L|^2 + lambda_L h(L), B the nine harmonics of each channel. The weights w are those of
-//! Geman and McClure, their scale a multiple of the median residual, so that cast shadows and wrong correspondences weigh
-//! little.
+//! Geman and McClure, their scale a multiple of the median residual, so that cast shadows and wrong correspondences
+//! weigh little.
 
 use std::ops::Range;
 
@@ -18,8 +18,8 @@ use crate::view::Normals;
 const ROUNDS: usize = 8;
 /// Relative change of the median residual at which the weights, whose scale follows it, have settled.
 const SETTLED: f64 = 0.01;
-/// Pixels that the light is fitted to at most, evenly spread. There are 27 unknowns and three equations from each pixel, so
-/// noise averages out long before; an object that fills half of 128x128 is taken whole.
+/// Pixels that the light is fitted to at most, evenly spread. There are 27 unknowns and three equations from each
+/// pixel, so noise averages out long before; an object that fills half of 128x128 is taken whole.
 const MOST_PIXELS: usize = 8000;
 /// The robust scale in median residuals: residuals beyond it keep less than a quarter of their weight (two standard
 /// deviations of normal noise).
@@ -48,8 +48,8 @@ pub struct LightFitter {
     normals: Normals,
     /// log S less `offset`.
     colours: [Vec<f32>; 3],
-    /// Mean of log S, subtracted so that f32 keeps more digits of the rest. It is a change of exposure, to which the prior
-    /// is blind.
+    /// Mean of log S, subtracted so that f32 keeps more digits of the rest. It is a change of exposure, to which the
+    /// prior is blind.
     offset: f64,
     weights: Vec<f32>,
     /// One for each pixel, without the filling.
@@ -61,8 +61,8 @@ impl LightFitter {
     /// Fits 27 coefficients to the pixels that have a normal and a colour.
     ///
     /// `normals` in the colour view's frame and `log` (R, G, B) have the same length; NaN marks what is missing.
-    /// `weight` is lambda_L against the mean squared log residual. Allocates only where there are more pixels than in every
-    /// fit before.
+    /// `weight` is lambda_L against the mean squared log residual. Allocates only where there are more pixels than in
+    /// every fit before.
     ///
     /// # Errors
     /// [`ErrorKind::Degenerate`] where the normals do not determine the light and `weight` is zero.

@@ -7,8 +7,8 @@ use crate::text::Brief;
 /// Number of harmonics for each channel.
 pub const HARMONICS: usize = 9;
 
-/// Largest coefficient of a log light: e^100 is a ratio of intensities that no camera records, and squares of 100 are far
-/// from the limits of f32.
+/// Largest coefficient of a log light: e^100 is a ratio of intensities that no camera records, and squares of 100 are
+/// far from the limits of f32.
 const LARGEST_COEFFICIENT: f64 = 100.0;
 
 // The constants of Ramamoorthi and Hanrahan ("An efficient representation for irradiance environment maps", 2001).
@@ -149,8 +149,8 @@ impl<S: Real<Scalar = S>> Polynomial<S> {
             + z * (T::splat(by_z) + T::splat(self.zz) * z)
     }
 
-    /// [`shade`](Self::shade) and [`gradient`](Self::gradient) together: a quadratic is its constant and half the sum of both
-    /// slopes, here and at zero, along the normal.
+    /// [`shade`](Self::shade) and [`gradient`](Self::gradient) together: a quadratic is its constant and half the sum
+    /// of both slopes, here and at zero, along the normal.
     #[inline(always)]
     #[must_use]
     pub fn expand<T: Real<Scalar = S>>(&self, [x, y, z]: [T; 3]) -> (T, [T; 3]) {

@@ -1,10 +1,10 @@
 //! Preconditioned conjugate gradients: the minimum over x of x^T A x / 2 - b^T x, A symmetric and positive
 //! semi-definite, without its matrix (docs/method.md, sections 6 and 7).
 //!
-//! M, the preconditioner, is close to A and easy to solve for. In exact arithmetic each iteration minimises over one more
-//! dimension, and the error in the norm of A falls by (k - 1) / (k + 1) or better, k the root of the condition number of
-//! M^-1 A. Vectors are f32, sums f64: relative residuals below about 1e-6 are not reached.
-//! M. Hestenes, E. Stiefel: "Methods of conjugate gradients for solving linear systems", 1952.
+//! M, the preconditioner, is close to A and easy to solve for. In exact arithmetic each iteration minimises over one
+//! more dimension, and the error in the norm of A falls by (k - 1) / (k + 1) or better, k the root of the condition
+//! number of M^-1 A. Vectors are f32, sums f64: relative residuals below about 1e-6 are not reached. M. Hestenes, E.
+//! Stiefel: "Methods of conjugate gradients for solving linear systems", 1952.
 
 use super::vector::{add_scaled, dot};
 
@@ -29,7 +29,8 @@ pub(crate) struct Vectors<'a> {
     pub product: &'a mut [f32],
 }
 
-/// When a solve ends. Its error is measured as r^T M^-1 r, r the residual: about the square of the error in the norm of A.
+/// When a solve ends. Its error is measured as r^T M^-1 r, r the residual: about the square of the error in the norm of
+/// A.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Limits {
     /// Most iterations.
@@ -38,8 +39,8 @@ pub(crate) struct Limits {
     pub error: f64,
     /// Error that is small enough, as a share of the first one; the larger of both limits counts.
     pub relative_error: f64,
-    /// Decrease of the objective (twice it: x^T A x - 2 b^T x) by one iteration after which another one is not worth its
-    /// time.
+    /// Decrease of the objective (twice it: x^T A x - 2 b^T x) by one iteration after which another one is not worth
+    /// its time.
     pub decrease: f64,
 }
 
@@ -48,7 +49,8 @@ pub(crate) struct Limits {
 pub(crate) enum End {
     /// The error or the decrease is within its limit.
     Converged,
-    /// The limit on iterations came first. The residual is that of the solution; the error is that of the solution before.
+    /// The limit on iterations came first. The residual is that of the solution; the error is that of the solution
+    /// before.
     Capped,
     /// A is not positive along a direction, or numbers ran out of range.
     Breakdown,
@@ -65,7 +67,8 @@ pub(crate) struct Solved {
     pub end: End,
 }
 
-/// Solves A x = b from the start that `vectors` holds. (The system is a trait object: one copy of this code serves all.)
+/// Solves A x = b from the start that `vectors` holds. (The system is a trait object: one copy of this code serves
+/// all.)
 pub(crate) fn solve(system: &mut dyn System, limits: Limits, vectors: Vectors<'_>) -> Solved {
     let Vectors { solution, residual, direction, product } = vectors;
     system.precondition(residual, product);

@@ -3,11 +3,11 @@
 //! Method: L has free (Neumann) borders, so the cosines cos(pi k (x + 1/2) / W) are its eigenvectors along a row, with
 //! eigenvalues mu_k = 2 - 2 cos(pi k / W). A cosine transform (DCT-II) of every row leaves, for each k, one tridiagonal
 //! system down the columns with 2 + mu_k + s/c on its diagonal; elimination solves it, the inverse transform (DCT-III)
-//! returns. That is one transform of every row and back, where transforms along both axes take two, and columns may have
-//! any length. Cost O(W H log W). Eight rows are transformed at once, see [`Rows`].
+//! returns. That is one transform of every row and back, where transforms along both axes take two, and columns may
+//! have any length. Cost O(W H log W). Eight rows are transformed at once, see [`Rows`].
 //!
-//! A rectangle whose width has large prime factors is solved as part of a wider one, zero beyond it: a preconditioner need
-//! not be exact (docs/method.md, section 6).
+//! A rectangle whose width has large prime factors is solved as part of a wider one, zero beyond it: a preconditioner
+//! need not be exact (docs/method.md, section 6).
 //!
 //! Limits: without a shift (s = 0) constants are in the null space: f has to sum to zero (its mean is ignored)
 //! and the answer has mean zero. Rounding: about 1e-6 of the largest height at 256x256 (f32 pixels, f64 pivots).
@@ -133,9 +133,9 @@ const ROWS: usize = 2 * LANES;
 
 /// Cosine transforms of eight rows: four in lanes, and other four as their imaginary parts.
 ///
-/// Method (Makhoul): v holds the even samples of a row x from its start and the odd ones, backwards, from its end. With V
-/// its Fourier transform and e_k = exp(-i pi k / 2W), e_k V_k = X_k - i X_(W-k), X the cosine transform. V of a row a and
-/// of a row b come out of one transform of a + i b: V_k + conj V_(W-k) is twice that of a.
+/// Method (Makhoul): v holds the even samples of a row x from its start and the odd ones, backwards, from its end. With
+/// V its Fourier transform and e_k = exp(-i pi k / 2W), e_k V_k = X_k - i X_(W-k), X the cosine transform. V of a row a
+/// and of a row b come out of one transform of a + i b: V_k + conj V_(W-k) is twice that of a.
 struct Rows {
     fourier: RowFourier,
     /// Of a frequency or a sample: the first four rows and the other four.
@@ -244,7 +244,8 @@ impl Rows {
     }
 }
 
-/// As many columns from `start` on of as many rows as there are lanes, the rows `stride` apart; zeros of a row that is missing.
+/// As many columns from `start` on of as many rows as there are lanes, the rows `stride` apart; zeros of a row that is
+/// missing.
 #[inline(never)]
 fn columns(rows: &[f32], start: usize, stride: usize) -> [Lanes; LANES] {
     Lanes::transpose(std::array::from_fn(|row| {

@@ -148,8 +148,8 @@ mod arch {
 
     #[inline(always)]
     pub fn two(values: [f64; 2]) -> v128 {
-        // SAFETY: both are sixteen bytes of which every pattern is valid. Lane by lane the compiler would load and insert
-        // each by itself.
+        // SAFETY: both are sixteen bytes of which every pattern is valid. Lane by lane the compiler would load and
+        // insert each by itself.
         unsafe { std::mem::transmute(values) }
     }
 

@@ -1,11 +1,12 @@
 //! Four pixels side by side: f32 arithmetic that fills one vector register of WebAssembly.
 //!
 //! Solvers of single pixels branch too much for the compiler to vectorise them. Here all four pixels compute both sides
-//! of a branch, and a [`Mask`] selects. WebAssembly without SIMD takes one pixel at a time: four of each instruction would
-//! be a larger download and no faster. Every operation is rounded as f32 is, so that both agree but for the order of sums.
+//! of a branch, and a [`Mask`] selects. WebAssembly without SIMD takes one pixel at a time: four of each instruction
+//! would be a larger download and no faster. Every operation is rounded as f32 is, so that both agree but for the order
+//! of sums.
 //!
-//! Why not the crate `wide` (1.7): its vectors are four wide on every target, the one without SIMD included; it has no load
-//! that is padded at the ends of a row, and its masks are numbers, which can be mistaken for values.
+//! Why not the crate `wide` (1.7): its vectors are four wide on every target, the one without SIMD included; it has no
+//! load that is padded at the ends of a row, and its masks are numbers, which can be mistaken for values.
 
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Not, Sub};
 
@@ -252,8 +253,8 @@ mod arch {
 
     #[inline(always)]
     pub fn four(values: [f32; 4]) -> v128 {
-        // SAFETY: both are sixteen bytes of which every pattern is valid. Lane by lane the compiler would load and insert
-        // each by itself.
+        // SAFETY: both are sixteen bytes of which every pattern is valid. Lane by lane the compiler would load and
+        // insert each by itself.
         unsafe { std::mem::transmute(values) }
     }
 

@@ -1,7 +1,7 @@
 //! The noise of a raster by the fourth differences of its rows (docs/method.md, section 4).
 //!
-//! Fourth differences of a cubic vanish, so what a cubic through five neighbours does not follow counts as noise. Limits: so
-//! does texture as fine as that.
+//! Fourth differences of a cubic vanish, so what a cubic through five neighbours does not follow counts as noise.
+//! Limits: so does texture as fine as that.
 
 use super::quantile;
 

@@ -1,18 +1,18 @@
 //! Iterative closest points with scale (Eq. 12): the depth view's points onto the image surface.
 //!
-//! See docs/method.md, section 11. Each iteration transforms the depth points by the present pose, finds their nearest points on the image surface, and
-//! takes one damped Gauss-Newton step of the seven unknowns (six where the scale is held). Pairs whose normals
-//! disagree, that end on the border of the image surface (where everything that has no counterpart ends), that are
-//! farther apart than a distance which shrinks from iteration to iteration, or that are among the farthest, are left
-//! out; the rest is weighted by Geman and McClure's function of the residual.
+//! See docs/method.md, section 11. Each iteration transforms the depth points by the present pose, finds their nearest
+//! points on the image surface, and takes one damped Gauss-Newton step of the seven unknowns (six where the scale is
+//! held). Pairs whose normals disagree, that end on the border of the image surface (where everything that has no
+//! counterpart ends), that are farther apart than a distance which shrinks from iteration to iteration, or that are
+//! among the farthest, are left out; the rest is weighted by Geman and McClure's function of the residual.
 //!
 //! Point-to-plane is what holds a smooth object of free scale; point-to-point slides (12 to 32 degrees on a bust).
 //! Measured on smooth busts of 64 pixels, scale free, half of the columns cut off or not: a share of point-to-point
 //! that fades with the distance widens the basin a little; matching in position and normal, a residual on the normals,
 //! the symmetric distance and matching both ways each made it narrower.
 //!
-//! Limits: from the identity a face is registered from 60 degrees off, an almost bare ellipsoid from 30 only; beyond, it
-//! ends in a wrong rotation. [`Information`] flags many such ends, not all: they are local optima, and only a start
+//! Limits: from the identity a face is registered from 60 degrees off, an almost bare ellipsoid from 30 only; beyond,
+//! it ends in a wrong rotation. [`Information`] flags many such ends, not all: they are local optima, and only a start
 //! elsewhere shows it.
 
 use nalgebra::Vector3;
@@ -29,8 +29,8 @@ use crate::view::{Normals, Points, Size};
 /// Normals of a pair must agree to 60 degrees. Up to 90 makes no difference; 45 loses 3 of 34 far starts of the busts
 /// above, 26 loses 7.
 const LEAST_COSINE: f64 = 0.5;
-/// Share of the pairs that is kept, nearest first. Of 34 far starts that are registered 0.7 loses 2, and 1 loses 6, most of
-/// them with half of the columns missing.
+/// Share of the pairs that is kept, nearest first. Of 34 far starts that are registered 0.7 loses 2, and 1 loses 6,
+/// most of them with half of the columns missing.
 const KEPT_SHARE: f64 = 0.9;
 /// The distance shrinks by this factor from one iteration to the next.
 const SHRINKING: f64 = 0.9;

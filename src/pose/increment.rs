@@ -1,8 +1,9 @@
 //! One Gauss-Newton step of a similarity: seven unknowns around the centre of the matched points.
 //!
 //! The step is P -> c + e^u exp([w]) (P - c) + L v with the rotation w (radians), the translation L v and the growth u
-//! (natural logarithm of the scale's factor). c is the centroid of the points and L their root mean square distance from it, so
-//! that all seven numbers are free of units, of like size, and hardly coupled. Residuals are divided by L as well.
+//! (natural logarithm of the scale's factor). c is the centroid of the points and L their root mean square distance
+//! from it, so that all seven numbers are free of units, of like size, and hardly coupled. Residuals are divided by L
+//! as well.
 
 use nalgebra::{Rotation3, SMatrix, SVector, Vector3};
 

@@ -1,12 +1,12 @@
-//! Consensus of correspondences over the linear model of Eq. 14, an affine map P -> A P + t with twelve parameters theta
-//! (docs/method.md, section 11).
+//! Consensus of correspondences over the linear model of Eq. 14, an affine map P -> A P + t with twelve parameters
+//! theta (docs/method.md, section 11).
 //!
 //! Four pairs determine theta. The sample whose model has the least objective, sum min(|r|^2, threshold^2), is
 //! improved by least squares on its inliers; A becomes a similarity as in Eq. 15, and the similarity is fitted to its
 //! own inliers until they no longer change.
 //!
-//! The linear model shears and stretches, so on nearly flat parts it follows noise where a similarity would not: it only
-//! decides which pairs the similarity is first fitted to.
+//! The linear model shears and stretches, so on nearly flat parts it follows noise where a similarity would not: it
+//! only decides which pairs the similarity is first fitted to.
 
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 use rand_chacha::ChaCha8Rng;

@@ -106,8 +106,8 @@ impl Information {
         (covariance, in_words(&eigen.eigenvectors.column(eigen.eigenvalues.imin()).into_owned()))
     }
 
-    /// Eigenvalues over the weight. The gauge is projected out. What is not estimated gets the eigenvalue one, so that it is
-    /// never the weakest direction: those of the three translations sum to one.
+    /// Eigenvalues over the weight. The gauge is projected out. What is not estimated gets the eigenvalue one, so that
+    /// it is never the weakest direction: those of the three translations sum to one.
     fn eigen(&self, gauge: bool) -> Option<SymmetricEigen<f64, nalgebra::Const<UNKNOWNS>>> {
         let mut matrix = self.matrix / self.weight;
         if gauge && matrix[(TRANSLATION_Z, TRANSLATION_Z)] > 0.0 {

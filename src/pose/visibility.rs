@@ -27,8 +27,8 @@ pub(super) struct VisibilityProblem<'a> {
     pub pixel_length: f64,
 }
 
-/// A pose for many points of one cloud in f32, as the transform of differences from one of them: these keep their digits
-/// however far off the cloud stands.
+/// A pose for many points of one cloud in f32, as the transform of differences from one of them: these keep their
+/// digits however far off the cloud stands.
 struct SingleTransform {
     /// One point of the cloud, before and after.
     from: [f32; 3],

@@ -1,5 +1,5 @@
-//! The pair of the paper's easy reading (docs/method.md, section 15, Table 2A): one bare grid, seen twice without occlusion
-//! and without resampling.
+//! The pair of the paper's easy reading (docs/method.md, section 15, Table 2A): one bare grid, seen twice without
+//! occlusion and without resampling.
 
 use nalgebra::{Matrix3, Vector3};
 

@@ -1,5 +1,5 @@
-//! A bust: head with hair, face, ears, neck and shoulders turned to one side. Nothing of it is quite symmetric, so that its
-//! pose can be observed.
+//! A bust: head with hair, face, ears, neck and shoulders turned to one side. Nothing of it is quite symmetric, so that
+//! its pose can be observed.
 
 use super::profiles::{bell, bump, dome, overhang, step, union};
 

@@ -13,8 +13,8 @@ const LARGEST_HEIGHT: f32 = 4096.0;
 
 /// Side of the grid for which the thresholds of the protocol (docs/method.md, section 15) are stated, in samples.
 const PROTOCOL_SIDE: f64 = 256.0;
-/// Height above which a sample of a 256 grid belongs to the object, in samples (docs/method.md, section 15): the scanned
-/// bust has a skirt of small values around it. On other grids it shrinks and grows with the side.
+/// Height above which a sample of a 256 grid belongs to the object, in samples (docs/method.md, section 15): the
+/// scanned bust has a skirt of small values around it. On other grids it shrinks and grows with the side.
 const PROTOCOL_FLOOR: f64 = 5.0;
 
 /// Heights over a grid: larger is nearer, NaN, zero and everything below [`floor`](Relief::floor) is background.

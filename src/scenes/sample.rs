@@ -228,7 +228,8 @@ impl Scene {
     }
 
     /// The colour view is the surface as it is; the depth view is the surface under R_g^T, 1 / s times as large.
-    /// The pose transforms the second exactly into the first: t = C_image - s R_g C_depth with the centroid C of each view.
+    /// The pose transforms the second exactly into the first: t = C_image - s R_g C_depth with the centroid C of each
+    /// view.
     ///
     /// # Errors
     /// [`ErrorKind::Size`] or [`ErrorKind::Range`] naming the field at fault, [`ErrorKind::Empty`] where a view sees

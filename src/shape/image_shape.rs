@@ -1,8 +1,8 @@
 //! The shape of the colour view: normals of its pixels, a surface that has them, and the normals once more, with the
 //! surface for a prior (docs/method.md, sections 5 to 7).
 //!
-//! The surface is found in one of two ways: by integration alone, as the paper does, or as a whole, heights from shading,
-//! for which the integrated surface is one of several starts.
+//! The surface is found in one of two ways: by integration alone, as the paper does, or as a whole, heights from
+//! shading, for which the integrated surface is one of several starts.
 
 use super::heights::{HeightDomain, ImageSurfaceProblem, ImageSurfaceSolver, Scratch};
 use super::integration::{IntegrationOptions, Integrator, Robustness, find_slopes};
@@ -11,9 +11,9 @@ use crate::error::Result;
 use crate::light::Light;
 use crate::view::{ColourView, Normals, normals};
 
-/// Least weight of the surface's own normals as a prior, as lambda_2: the surface says more than a pixel's colours under
-/// natural light. Measured on Mozart under the lights A, B, C without a depth view: 0.1 is better than 0.05 in five cases
-/// of six, 0.03 in none.
+/// Least weight of the surface's own normals as a prior, as lambda_2: the surface says more than a pixel's colours
+/// under natural light. Measured on Mozart under the lights A, B, C without a depth view: 0.1 is better than 0.05 in
+/// five cases of six, 0.03 in none.
 const LEAST_SURFACE_PRIOR: f64 = 0.1;
 
 /// What the shape of the colour view is found from.
@@ -29,8 +29,8 @@ pub struct ImageShapeProblem<'a> {
     pub prior_weight: f64,
     /// lambda_3 of Eq. 6.
     pub unit_weight: f64,
-    /// Variance of the colours' residuals in units of what is usual: colours that even the light leaves unexplained weigh
-    /// less, which is to say that priors weigh more.
+    /// Variance of the colours' residuals in units of what is usual: colours that even the light leaves unexplained
+    /// weigh less, which is to say that priors weigh more.
     pub variance_inflation: f64,
 }
 
@@ -78,14 +78,14 @@ impl ImageShapeSolver {
         self.pixels.solve(problem.shading(), problem.weights(problem.prior_weight), normals);
     }
 
-    /// How to change the exposure after [`solve_normals`](Self::solve_normals); `moved` is how far it is from the first one
-    /// already.
+    /// How to change the exposure after [`solve_normals`](Self::solve_normals); `moved` is how far it is from the first
+    /// one already.
     pub fn exposure_step(problem: &ImageShapeProblem<'_>, normals: &Normals, moved: f64) -> f64 {
         pixels::exposure_step(problem.shading(), problem.weights(problem.prior_weight), normals, moved)
     }
 
-    /// `depth` of the surface, NaN off the mask, from the normals of the pixels; these improve by it where the surface is
-    /// solved as a whole. The depth is determined up to a constant (orthographic) or a factor (pinhole).
+    /// `depth` of the surface, NaN off the mask, from the normals of the pixels; these improve by it where the surface
+    /// is solved as a whole. The depth is determined up to a constant (orthographic) or a factor (pinhole).
     ///
     /// # Errors
     /// Those of the integration.
@@ -136,8 +136,8 @@ impl ImageShapeSolver {
         surface.solve(solver, problem, heights);
     }
 
-    /// Normals of the pixels once more. Their prior is the depth view's normal, where that weighs anything, or else that of
-    /// the surface: differences of heights lack the detail of a pixel, which its colours have.
+    /// Normals of the pixels once more. Their prior is the depth view's normal, where that weighs anything, or else
+    /// that of the surface: differences of heights lack the detail of a pixel, which its colours have.
     fn solve_normals_again(
         &mut self,
         scratch: &mut Scratch,

@@ -4,8 +4,8 @@
 //! Each depth pixel that the colour camera sees has a colour: its normal, rotated into the colour view's frame, has to
 //! explain it. So the solver of single pixels runs over the depth pixels, with the prior of Eq. 19 (the normal that the
 //! image has found there). The heights then follow these normals and the colours, anchored to the measured depth with
-//! a weight that its noise decides: noise goes down where there is shading, holes inside the mask are filled, and nothing
-//! moves elsewhere.
+//! a weight that its noise decides: noise goes down where there is shading, holes inside the mask are filled, and
+//! nothing moves elsewhere.
 //!
 //! Limits: an organised cloud has no depth along a ray; its normals are refined, its points are kept.
 
@@ -26,8 +26,8 @@ use crate::view::{ColourView, DepthView, Normals, Size, normals};
 /// Mozart at 64x64 with depth noise of half a pixel: the best errors there are 0.045 to 0.06 and 0.028 to 0.035.
 const SHADING_ERROR: f64 = 1.4;
 const DISCRETISATION: f64 = 0.065;
-/// Bounds of the weight of an anchor, squared log residual per squared pixel of height: whatever its noise, depth neither
-/// loses all weight nor overrides the colours.
+/// Bounds of the weight of an anchor, squared log residual per squared pixel of height: whatever its noise, depth
+/// neither loses all weight nor overrides the colours.
 const ANCHOR_WEIGHTS: [f64; 2] = [1e-3, 10.0];
 /// Work at each scale of the first refinement: noisy depth starts far from its colours.
 const FIRST: Effort = Effort { steps: 6, iterations: 40, tolerance: 0.03 };

@@ -67,9 +67,9 @@ impl Pinhole {
         self.distortion == [0.0; 5]
     }
 
-    /// The point that is distorted to `target`, NaN where there is none, by Newton's method. A strong lens folds the image:
-    /// from some radius on the distorted one shrinks. Beyond its maximum a target has no point, or one behind the fold,
-    /// where the image is mirrored; that one does not count.
+    /// The point that is distorted to `target`, NaN where there is none, by Newton's method. A strong lens folds the
+    /// image: from some radius on the distorted one shrinks. Beyond its maximum a target has no point, or one behind
+    /// the fold, where the image is mirrored; that one does not count.
     fn undistort(&self, target: [f64; 2]) -> [f64; 2] {
         let mut point = target;
         for _ in 0..UNDISTORT_ROUNDS {
@@ -180,8 +180,8 @@ impl Camera {
         }
     }
 
-    /// Takes the pixels out of `mask` that no ray runs through, or none through the points half a pixel beside, where slopes
-    /// are evaluated.
+    /// Takes the pixels out of `mask` that no ray runs through, or none through the points half a pixel beside, where
+    /// slopes are evaluated.
     ///
     /// # Errors
     /// [`ErrorKind::Range`] naming `field` where that is so of most pixels in the mask whose `values` are not NaN.

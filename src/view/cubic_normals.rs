@@ -1,11 +1,11 @@
 //! w(a, b) = sum c_jk a^j b^k, j + k <= 3, over the tangent plane: normals of third order, with their errors
 //! (docs/method.md, section 4).
 //!
-//! The neighbours of a point are expressed in its tangent plane (a, b along it, w off it), and a cubic is fitted to them by
-//! weighted least squares; its slope at the point corrects the normal, twice. Neighbours are those within two or three
-//! pixels (more under noise), whichever gives the smaller error. In the tangent plane a round rim is as smooth as a front,
-//! whereas a depth z(x, y) has derivatives that grow without bound there, and central differences are biased. Measured on
-//! Mozart at 128x128 from the side (beta = 90 degrees): median error 0.011 against 0.024 rad.
+//! The neighbours of a point are expressed in its tangent plane (a, b along it, w off it), and a cubic is fitted to
+//! them by weighted least squares; its slope at the point corrects the normal, twice. Neighbours are those within two
+//! or three pixels (more under noise), whichever gives the smaller error. In the tangent plane a round rim is as smooth
+//! as a front, whereas a depth z(x, y) has derivatives that grow without bound there, and central differences are
+//! biased. Measured on Mozart at 128x128 from the side (beta = 90 degrees): median error 0.011 against 0.024 rad.
 //!
 //! The error of a normal follows from the residual of its cubic and the share of the weights that its slopes have.
 //! Neighbours beyond a jump are left out. Where fewer are left than a cubic needs, the first normal stays with the
@@ -26,13 +26,14 @@ const SIGMA: f64 = 0.75;
 /// Median error of the normals from which on wider windows than the first two are tried, radians: views without noise
 /// stay below (which, not recorded).
 const NOISY: f32 = 0.06;
-/// Largest |w| of a neighbour: half the distance along the plane and 0.3 pixel lengths; beyond lies another part of the object.
+/// Largest |w| of a neighbour: half the distance along the plane and 0.3 pixel lengths; beyond lies another part of the
+/// object.
 const LARGEST_SLOPE: f64 = 0.5;
 const LARGEST_OFFSET: f64 = 0.3;
 /// Instead of [`LARGEST_OFFSET`], where that is more: standard deviations of the depth's noise.
 const NOISE_OFFSETS: f64 = 3.0;
-/// Residuals up to this multiple of the estimated noise count as noise: the estimate is off by a sixth on steep or small
-/// views.
+/// Residuals up to this multiple of the estimated noise count as noise: the estimate is off by a sixth on steep or
+/// small views.
 const NOISE_MARGIN: f64 = 1.25;
 /// Coefficients of a cubic in two variables.
 const TERMS: usize = 10;
@@ -380,7 +381,8 @@ mod tests {
         }
     }
 
-    /// Half a pixel of noise tilts differences by 20 degrees; the estimated errors are the true ones within a factor of two.
+    /// Half a pixel of noise tilts differences by 20 degrees; the estimated errors are the true ones within a factor of
+    /// two.
     #[test]
     fn noise_takes_wider_windows_and_errors_are_estimated() {
         let (size, mut points, truth) = sphere();

@@ -63,8 +63,8 @@ pub struct DepthView {
 const LENS: &str = "depth.camera.distortion";
 /// Metres of a stored integer where a camera is known and no unit is given: millimetres, as sensors store them.
 const MILLIMETRE: f64 = 0.001;
-/// Metres or pixels from which on a depth, or a coordinate of a cloud, counts as missing: some formats write their largest
-/// number for a hole, and f32 cannot hold its square.
+/// Metres or pixels from which on a depth, or a coordinate of a cloud, counts as missing: some formats write their
+/// largest number for a hole, and f32 cannot hold its square.
 const FARTHEST: f64 = 1e12;
 /// Without a mask, a gap in the depth that the object encloses belongs to it up to this share of its pixels (data not
 /// recorded).

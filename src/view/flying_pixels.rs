@@ -12,8 +12,8 @@ use crate::view::mask::components;
 /// Neighbours are cut apart beyond this multiple of the median step between neighbours: steep but smooth surfaces stay
 /// whole.
 const JUMP_STEPS: f32 = 12.0;
-/// Smallest step that cuts in a metric view, as a share of the median depth: above the noise of consumer sensors at arm's
-/// length.
+/// Smallest step that cuts in a metric view, as a share of the median depth: above the noise of consumer sensors at
+/// arm's length.
 const METRIC_JUMP: f32 = 0.015;
 /// Smallest step that cuts in pixels: a slope of 76 degrees.
 const PIXEL_JUMP: f32 = 4.0;
@@ -22,8 +22,8 @@ const LEAST_SHARE: f64 = 0.05;
 /// How far a piece that stays may lie before or behind the largest one, in extents of that one.
 const REACH: f32 = 1.0;
 
-/// For each pixel whether it belongs to the object. `depth` is NaN at holes; `focal_length`, in pixels, is `None` for an
-/// orthographic view.
+/// For each pixel whether it belongs to the object. `depth` is NaN at holes; `focal_length`, in pixels, is `None` for
+/// an orthographic view.
 pub fn object_pixels(size: Size, depth: &[f32], focal_length: Option<f64>) -> Vec<bool> {
     let valid = |index: usize| !depth[index].is_nan();
     let mut values: Vec<f32> = depth.iter().copied().filter(|value| !value.is_nan()).collect();

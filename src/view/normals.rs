@@ -188,8 +188,8 @@ impl<F: Fn(usize) -> Option<Vector>> Grid<F> {
     }
 }
 
-/// Central differences of an orthographic depth map, whose steps along an axis are (1, dz): four pixels at a time and in f32,
-/// as the difference of two neighbouring depths is exact there. From the row `first` on.
+/// Central differences of an orthographic depth map, whose steps along an axis are (1, dz): four pixels at a time and
+/// in f32, as the difference of two neighbouring depths is exact there. From the row `first` on.
 fn of_orthographic(size: Size, depth: &[f32], first: usize, normals: &mut Normals) {
     let (one, missing) = (Lanes::splat(1.0), Lanes::splat(f32::NAN));
     for row in first..first + normals.len() / size.width {

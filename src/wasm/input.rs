@@ -1,5 +1,5 @@
-//! From the objects of the JavaScript contract to the native inputs. JavaScript has one type for all numbers: that sides,
-//! counts and seeds are whole and fit their types here has been checked by the facade.
+//! From the objects of the JavaScript contract to the native inputs. JavaScript has one type for all numbers: that
+//! sides, counts and seeds are whole and fit their types here has been checked by the facade.
 
 use js_sys::{Float32Array, Float64Array, Uint8Array, Uint8ClampedArray, Uint16Array};
 use nalgebra::{Matrix3, Vector3};

@@ -10,8 +10,9 @@ use bimodal_stereo::scenes::Relief;
 use bimodal_stereo::{Light, Normals, Size};
 use nalgebra::Vector3;
 
-/// Folder of other people's data, which is never part of the project. A test that needs it is marked `#[ignore]` with that
-/// reason, so that no summary counts it as passed where it could not run; `npm test` asks for it where the data are there.
+/// Folder of other people's data, which is never part of the project. A test that needs it is marked `#[ignore]` with
+/// that reason, so that no summary counts it as passed where it could not run; `npm test` asks for it where the data
+/// are there.
 pub fn data_dir() -> PathBuf {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data");
     assert!(folder.is_dir(), "no data in {}", folder.display());

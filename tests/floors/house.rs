@@ -1,6 +1,7 @@
 //! Which file looks into which: the paths of every file, resolved to the file that defines what they name.
 //!
-//! Limits: a method of a type from elsewhere is not a path, and macros are not expanded; what a macro's call names counts.
+//! Limits: a method of a type from elsewhere is not a path, and macros are not expanded; what a macro's call names
+//! counts.
 
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::fs;

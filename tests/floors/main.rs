@@ -41,7 +41,8 @@ fn may_look(from: &str, into: &str) -> bool {
     is_below && (from != "scenes" || BELOW_SCENES.contains(&into))
 }
 
-/// The rooms of a table in the documentation of lib.rs: names in a row's first cell, before any bracket and up to a slash.
+/// The rooms of a table in the documentation of lib.rs: names in a row's first cell, before any bracket and up to a
+/// slash.
 fn table(library: &str) -> Vec<String> {
     let cells = library.lines().filter_map(|line| line.strip_prefix("//! |")?.split(['|', '(']).next());
     let names = cells.flat_map(|cell| cell.split('`').skip(1).step_by(2));

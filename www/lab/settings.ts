@@ -126,6 +126,7 @@ export const fields: readonly Field[] = [
 export const inputGroups: readonly Group[] = ["sample", "colour", "depth"];
 
 export const defaults: Settings = Object.fromEntries(fields.map(({ key, initial }) => [key, initial]));
+if (Object.keys(defaults).length < fields.length) throw new Error("Two fields share a name: give one of their rows a `link`.");
 
 const number = (settings: Settings, key: string): number | undefined => {
   const value = settings[key];

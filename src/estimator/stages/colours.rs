@@ -6,8 +6,8 @@ use crate::estimator::pair::ViewPair;
 use crate::pose::{Photometric, PhotometricOptions, PhotometricProblem, PhotometricReport, Similarity};
 use crate::view::{DepthView, Normals, cubic_normals};
 
-/// Weight of the light's prior in the registration: one, as Bayes' rule has it. `lambda.light` weighs the fit of the light stage alone,
-/// but where it is zero there is no prior here, either.
+/// Weight of the light's prior in the registration: one, as Bayes' rule has it. `lambda.light` weighs the fit of the
+/// light stage alone, but where it is zero there is no prior here, either.
 const PRIOR_WEIGHT: f64 = 1.0;
 
 /// Noise of the points from which on the surfaces tell the pose better than the normals, pixel lengths. Half a pixel on
@@ -143,8 +143,8 @@ impl ColourRegistration {
         }
     }
 
-    /// A cloud that shrinks onto a few pixels is easily explained, and on its way from a coarse level a registration may
-    /// get there: so everything else goes first, and the scale follows at the noise of the sharp image.
+    /// A cloud that shrinks onto a few pixels is easily explained, and on its way from a coarse level a registration
+    /// may get there: so everything else goes first, and the scale follows at the noise of the sharp image.
     fn register_scale_last(
         &mut self,
         pair: &ViewPair,

@@ -25,7 +25,8 @@ pub struct Inputs<'a> {
 /// Fits the light, and says how far the normals' other terms can rely on it.
 pub struct LightStage {
     fitter: LightFitter,
-    /// R n_R of Eq. 9: normals of the depth view at the image's pixels, colour view's frame, NaN without correspondence.
+    /// R n_R of Eq. 9: normals of the depth view at the image's pixels, colour view's frame, NaN without
+    /// correspondence.
     depth_normals: Normals,
     /// Exposure of a known light by the colours alone, before any normal is known.
     first_exposure: f64,
@@ -92,8 +93,8 @@ impl LightStage {
         self.residual
     }
 
-    /// By how much the variance of the colours exceeds what is usual. Colours that even the fitted light leaves unexplained
-    /// (texture, cast shadows) weigh less, which is to say that priors weigh more.
+    /// By how much the variance of the colours exceeds what is usual. Colours that even the fitted light leaves
+    /// unexplained (texture, cast shadows) weigh less, which is to say that priors weigh more.
     pub fn variance_inflation(&self) -> f64 {
         (self.residual / EXPLAINED).max(1.0).powi(2)
     }

@@ -1,5 +1,5 @@
-//! The stages of an iteration. Each owns what it remembers from one iteration to the next, reads the [`ViewPair`] and parts of
-//! the [`Solution`], and writes nothing but what its signature lends it mutably or what it returns.
+//! The stages of an iteration. Each owns what it remembers from one iteration to the next, reads the [`ViewPair`] and
+//! parts of the [`Solution`], and writes nothing but what its signature lends it mutably or what it returns.
 //!
 //! [`ViewPair`]: super::pair::ViewPair
 //! [`Solution`]: super::solution::Solution

@@ -1,10 +1,10 @@
 //! The refinement of the depth view (Eq. 17 to 19) as a stage of the loop, here or in another thread.
 //!
-//! Where the pose will not move, the refinement of an iteration looks at the solution that the iteration starts from: its
-//! light, the normals of its image surface, and where its depth pixels fall. So it asks nothing of the other stages of
-//! the iteration, and a [`Worker`](crate::Worker) may make it while they run: the same to the bit. Both surfaces settle as
-//! before, only that one of them sees the other an iteration late. Where the registration may still move the pose, the
-//! refinement comes after it and looks at what its own iteration found.
+//! Where the pose will not move, the refinement of an iteration looks at the solution that the iteration starts from:
+//! its light, the normals of its image surface, and where its depth pixels fall. So it asks nothing of the other stages
+//! of the iteration, and a [`Worker`](crate::Worker) may make it while they run: the same to the bit. Both surfaces
+//! settle as before, only that one of them sees the other an iteration late. Where the registration may still move the
+//! pose, the refinement comes after it and looks at what its own iteration found.
 
 use nalgebra::Matrix3;
 
@@ -120,8 +120,8 @@ impl RefinementStage {
         is_wanted
     }
 
-    /// Normals and depth of the depth view (Eq. 17 to 19), unless a worker has made them. Writes the depth view's shape in
-    /// `solution` and nothing else of it.
+    /// Normals and depth of the depth view (Eq. 17 to 19), unless a worker has made them. Writes the depth view's shape
+    /// in `solution` and nothing else of it.
     pub fn refine(&mut self, inputs: Inputs<'_>, accepted: &Accepted, scratch: &mut Scratch, solution: &mut Solution) {
         let Inputs { pair, correspondences, .. } = inputs;
         if !self.made_by_worker {

@@ -1,5 +1,5 @@
-//! What an estimator gives to workers and takes from them. Whatever they do or fail to do, the outcome is the same to the
-//! bit.
+//! What an estimator gives to workers and takes from them. Whatever they do or fail to do, the outcome is the same to
+//! the bit.
 
 use crate::estimator::{Estimator, RefinementTask, Run, memory};
 use crate::report::Stage;
@@ -29,8 +29,8 @@ impl Estimator {
         }
     }
 
-    /// The next refinement, for a worker that holds the shape of number `held`; `None` where it depends on what is still
-    /// to be found.
+    /// The next refinement, for a worker that holds the shape of number `held`; `None` where it depends on what is
+    /// still to be found.
     #[must_use]
     pub fn refinement_task(&self, held: Option<u32>) -> Option<RefinementTask<'_>> {
         self.refinement.task(&self.accepted, &self.solution.depth, held)
@@ -42,8 +42,8 @@ impl Estimator {
         matches!(self.run, Run::Iterating(stage) if stage != Stage::Refinement) && self.refinement.can_be_shared()
     }
 
-    /// Where to put the shape that a worker has made of the one with number `shape`: refined depth and normals (x, y, z).
-    /// `None` unless the next stage asks for it.
+    /// Where to put the shape that a worker has made of the one with number `shape`: refined depth and normals (x, y,
+    /// z). `None` unless the next stage asks for it.
     pub fn accept_refinement(&mut self, shape: u32) -> Option<[&mut [f32]; 4]> {
         if !matches!(self.run, Run::Iterating(Stage::Refinement)) || !self.refinement.accept(shape) {
             return None;

@@ -5,8 +5,8 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::pose::{Candidate, Hypothesis, PhotometricReport, SearchFinding, SearchTask, Similarity};
 
-/// A part of the initialisation. It depends on the pair, the options and itself alone, so that whoever has these gets the
-/// same.
+/// A part of the initialisation. It depends on the pair, the options and itself alone, so that whoever has these gets
+/// the same.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Task(pub(in crate::estimator) Work);
 

@@ -53,8 +53,8 @@ impl Worker {
         }))
     }
 
-    /// Makes a refinement: `load` puts the planes of its [`RefinementTask`](crate::RefinementTask) in their places, of which
-    /// those of the shape hold what the last one has left. Refined depth and normals (x, y, z).
+    /// Makes a refinement: `load` puts the planes of its [`RefinementTask`](crate::RefinementTask) in their places, of
+    /// which those of the shape hold what the last one has left. Refined depth and normals (x, y, z).
     ///
     /// # Errors
     /// [`ErrorKind::Size`](crate::ErrorKind::Size) where `numbers` are not those of a task.

@@ -1,9 +1,9 @@
 //! Two-dimensional Fourier transforms of a square: down the columns, transposed, down the columns again.
 //!
-//! Real and imaginary parts are planes of their own, and each butterfly works on two whole lines of them: straight loops,
-//! four numbers at a time under simd128. The forward transform decimates in frequency and leaves a spectrum transposed
-//! and in bit-reversed order, which products of two spectra do not mind; the inverse decimates in time and takes the same
-//! steps back. Neither direction divides by the number of cells.
+//! Real and imaginary parts are planes of their own, and each butterfly works on two whole lines of them: straight
+//! loops, four numbers at a time under simd128. The forward transform decimates in frequency and leaves a spectrum
+//! transposed and in bit-reversed order, which products of two spectra do not mind; the inverse decimates in time and
+//! takes the same steps back. Neither direction divides by the number of cells.
 
 use super::roots::{Root, root};
 

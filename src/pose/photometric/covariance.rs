@@ -2,9 +2,9 @@
 //! section 14).
 //!
 //! M is the matrix of the equations that the pose solves, g the sum of the scores of a tile of the depth map once the
-//! light has followed. Noise, wrong normals and interpolation enter with the size and the correlation that they have, so
-//! nothing is assumed about them but that tiles are independent. What leaves no residual is allowed for by a factor that
-//! was measured.
+//! light has followed. Noise, wrong normals and interpolation enter with the size and the correlation that they have,
+//! so nothing is assumed about them but that tiles are independent. What leaves no residual is allowed for by a factor
+//! that was measured.
 //!
 //! M itself is in part an effect of noise: gradients of a noisy image are noisy as well, and noise squared looks like
 //! information. A sphere, whose colours tell nothing of its rotation, has as much of it as F = sum w s^2 k D^T D with s
@@ -29,7 +29,8 @@ const TILE: usize = 8;
 /// Errors that leave no residual, such as normals that lean all one way, over those that do: measured on 116 random
 /// scenes of eight surfaces under natural lights (96x96), where one sigma from the residuals alone holds 44 % and three
 /// hold 85 %; 1.9 was set on them, with which three sigmas held all axes of 94.6 % of the 298 found
-/// random scenes of `npm run tables`; 2.1 is 1.9 raised to what 95 % ask for there, so those scenes are no independent test.
+/// random scenes of `npm run tables`; 2.1 is 1.9 raised to what 95 % ask for there, so those scenes are no independent
+/// test.
 const SIGMA_INFLATION: f64 = 2.1;
 /// Residuals so many times larger than the noise of the image itself are errors of the model: shadows, print, a lamp
 /// too sharp for nine harmonics. Made scenes leave 0.75 to 1 times that noise, photographs with shadows and paint 0.7

@@ -196,8 +196,8 @@ impl Equations {
 }
 
 impl ReducedSystem {
-    /// The step of pose and light, the pose's damped by a share of its diagonal; `held` unknowns stay. `None` where it is
-    /// not finite.
+    /// The step of pose and light, the pose's damped by a share of its diagonal; `held` unknowns stay. `None` where it
+    /// is not finite.
     pub fn step(&self, damping: f64, held: &[bool; UNKNOWNS]) -> Option<Step> {
         let mut matrix = self.matrix;
         let mut score = self.score;

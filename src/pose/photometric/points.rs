@@ -13,8 +13,8 @@ use crate::view::Size;
 /// Distance from the border of the mask within which points stay out, image pixels: they would enter and leave with
 /// every step, and the spline is continued there.
 const MARGIN: usize = 1;
-/// Error of a normal, radians, at which its point has lost three quarters of its weight. Errors act in the mean by their
-/// square: 0.1 rad shifts the pose by some tenths of a degree whatever the light.
+/// Error of a normal, radians, at which its point has lost three quarters of its weight. Errors act in the mean by
+/// their square: 0.1 rad shifts the pose by some tenths of a degree whatever the light.
 const NORMAL_ERROR: f64 = 0.1;
 /// Points that a coarse level needs: 20 for each unknown of the pose, 30 where the light's 27 unknowns come in as well,
 /// which may fit the colours in a wrong pose. Measured on Mozart at 64x64, starts 20 and 30 degrees off.

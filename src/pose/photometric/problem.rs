@@ -116,8 +116,8 @@ pub struct PhotometricOptions {
     pub most_rounds: usize,
     /// Points that take part at most, spread evenly over those that are visible.
     pub most_points: usize,
-    /// Points that take part in the annealing at most: the rounds after it, with instrumental variables, end at the same
-    /// pose from wherever nearby they start.
+    /// Points that take part in the annealing at most: the rounds after it, with instrumental variables, end at the
+    /// same pose from wherever nearby they start.
     pub annealed_points: usize,
     /// Whether the robust scale shrinks from round to round; else it is the final one from the first round on.
     pub annealing: bool,
@@ -140,8 +140,8 @@ impl Default for PhotometricOptions {
 pub enum PhotometricTermination {
     /// Another round would change nothing.
     Settled,
-    /// The last rounds, with instrumental variables, would have raised the objective: the pose of least squares was kept.
-    /// Usable, with the bias of the noise.
+    /// The last rounds, with instrumental variables, would have raised the objective: the pose of least squares was
+    /// kept. Usable, with the bias of the noise.
     Annealed,
     /// The cap on the rounds came first.
     MostRounds,

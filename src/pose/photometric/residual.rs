@@ -1,7 +1,8 @@
 //! Residuals of depth points, two side by side: r = log S(pi(T P)) - B(R n) L and its derivatives.
 //!
 //! The unknowns are those of every registration here: P' -> c + e^u exp([w]) (P' - c) + l v of the transformed point
-//! P' = T P, n' -> exp([w]) n' of its rotated normal. With g = d log S / d P' and b = d (B L) / d n', both of one channel, dr/dw = (P'
+//! P' = T P, n' -> exp([w]) n' of its rotated normal. With g = d log S / d P' and b = d (B L) / d n', both of one
+//! channel, dr/dw = (P'
 //! - c) x g - n' x b, dr/dv = l g, dr/du = (P' - c) . g, and dr/dL = -B.
 
 use super::spline_image::{ImagePoint, SplineImage};

@@ -36,7 +36,8 @@ const LINE: usize = 4 * 3 + 1;
 #[derive(Clone, Debug)]
 pub(super) struct SplineImage {
     size: Size,
-    /// The mean of log S. Splines run through what differs from it, so that another exposure is rounded in the same way.
+    /// The mean of log S. Splines run through what differs from it, so that another exposure is rounded in the same
+    /// way.
     mean: f64,
     /// Whether the four pixels right and below of each, itself included, are all on the mask.
     cells: Arc<[bool]>,

@@ -7,9 +7,9 @@ use crate::light::{COEFFICIENTS, Light};
 const SCALE_IN_SIGMAS: f64 = 3.0;
 /// |r| over three channels in standard deviations of one: 3^(1/2).
 const NORM_OF_CHANNELS: f64 = 1.732_050_807_568_877_2;
-/// Noise per channel, log units, from which on the scale grows in proportion, and by how much at most. What is left then
-/// is no noise but shadows and paint, and a narrow scale would settle on a part of the object that light and normals
-/// happen to explain. Nearly all renders with 1 % noise stay below, photographs in one lamp's light do not.
+/// Noise per channel, log units, from which on the scale grows in proportion, and by how much at most. What is left
+/// then is no noise but shadows and paint, and a narrow scale would settle on a part of the object that light and
+/// normals happen to explain. Nearly all renders with 1 % noise stay below, photographs in one lamp's light do not.
 const LARGEST_PURE_NOISE: f64 = 0.035;
 const LARGEST_WIDENING: f64 = 2.0;
 /// Degrees of freedom of the prior's tails: coloured lamps lie far outside the Gaussian, and it would bend them by
@@ -26,8 +26,8 @@ pub(super) struct Weighting {
 }
 
 impl Weighting {
-    /// For the very first fit of the light, when nothing is known of the residuals: no residual is near the scale, so that
-    /// all points count alike.
+    /// For the very first fit of the light, when nothing is known of the residuals: no residual is near the scale, so
+    /// that all points count alike.
     pub const FIRST: Self = Self { robust_scale: 1e3, prior: 1e-2 };
 }
 

@@ -11,8 +11,8 @@ const ROTATION_STEPS: [f64; 2] = [8.0, 4.0];
 /// Growth of the size that goes with them, natural logarithm.
 const GROWTH_STEPS: [f64; 2] = [0.07, 0.035];
 
-/// The local maximum near `start`: three rotations, and the size where it varies. Each is tried one step to either side,
-/// then the vertex of the parabolas through these scores.
+/// The local maximum near `start`: three rotations, and the size where it varies. Each is tried one step to either
+/// side, then the vertex of the parabolas through these scores.
 pub fn ascend(matcher: &mut Matcher, start: Hypothesis, size_varies: bool) -> Hypothesis {
     let mut best = start;
     for steps in ROTATION_STEPS.into_iter().zip(GROWTH_STEPS) {

@@ -3,8 +3,9 @@
 //! Unknown light: with harmonics q_k made orthonormal over the whole template, the explained sum of squares is
 //! sum_k |q_k * y|^2 for k > 0, out of N * |y|^2 - |q_0 * y|^2. Known light: the squares of y - p expand into five
 //! correlations. Both only propose translations: orthonormal over the whole template is not orthonormal over an
-//! overlap, so that the exact [`score`](super::score) chooses among them. Two real fields share each transform: the one of f_0 + i
-//! f_1, correlated with a real field, is that of f_0 in its real and of f_1 in its imaginary part, the latter negated.
+//! overlap, so that the exact [`score`](super::score) chooses among them. Two real fields share each transform: the one
+//! of f_0 + i f_1, correlated with a real field, is that of f_0 in its real and of f_1 in its imaginary part, the
+//! latter negated.
 //!
 //! Cost: 21 transforms for an unknown light, 5 for a known one.
 
@@ -138,7 +139,8 @@ impl Correlator {
         squares(&mut self.scores, &product.im);
     }
 
-    /// Scores of all translations under a known light. Fields w p_0 + i w p_1, w p_2 + i w and w |p|^2 + i w u . p, with u the direction of the exposure.
+    /// Scores of all translations under a known light. Fields w p_0 + i w p_1, w p_2 + i w and w |p|^2 + i w u . p,
+    /// with u the direction of the exposure.
     fn score_prediction(&mut self, template: &Template, prediction: &Prediction, target: &Target) {
         let exposure = prediction.exposure.map(|value| value as f32);
         self.fields[..3].iter_mut().for_each(Field::clear);

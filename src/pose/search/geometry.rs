@@ -1,7 +1,7 @@
 //! From hypotheses on the grid to poses: a colour camera without intrinsics sees parallel rays, and a pose moves in the
-//! image plane, its centre at z = 0. With intrinsics the centre moves in the plane of its starting distance: that of the
-//! depth camera, or where the silhouettes are as large. There scale and distance look alike: the scale is held and the
-//! distance varies instead.
+//! image plane, its centre at z = 0. With intrinsics the centre moves in the plane of its starting distance: that of
+//! the depth camera, or where the silhouettes are as large. There scale and distance look alike: the scale is held and
+//! the distance varies instead.
 
 use nalgebra::Vector3;
 

@@ -1,4 +1,5 @@
-//! Matches the cloud of the depth view with the grid of the image: the score of a hypothesis, and the best translations.
+//! Matches the cloud of the depth view with the grid of the image: the score of a hypothesis, and the best
+//! translations.
 
 use nalgebra::Matrix3;
 

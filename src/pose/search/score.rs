@@ -3,7 +3,8 @@
 //! score = N (N / V) (1/3) ln( det(T + e) / det(E + e) ): N cells of overlap out of V visible ones, T the covariance of
 //! the balanced colours y in the overlap, E that of what the template leaves of them. With an unknown light E is the
 //! residual of a linear fit of the nine harmonics in each channel; with a known one it is y - W B(n) L, free of a
-//! common exposure. It is the gain of log likelihood over a constant colour, so that exposure and white balance cancel; N / V is the share of the visible cells that lie on the mask: points that should be visible off the object speak
+//! common exposure. It is the gain of log likelihood over a constant colour, so that exposure and white balance cancel;
+//! N / V is the share of the visible cells that lie on the mask: points that should be visible off the object speak
 //! against the pose.
 //!
 //! Limits: every cell counts as independent, and shadows and albedo are not modelled.

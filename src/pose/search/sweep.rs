@@ -14,8 +14,8 @@ const FREE_SCALES: [f64; 4] = [0.74, 0.90, 1.09, 1.32];
 const NEAR_SIZES: [f64; 3] = [0.87, 1.0, 1.15];
 /// Pairs of a rotation and a size in one slice.
 const SWEPT_AT_ONCE: usize = 8;
-/// Slices of a single pair at the beginning: the very first call compiles what it needs, and until engines have optimised
-/// that, a pair takes several times as long.
+/// Slices of a single pair at the beginning: the very first call compiles what it needs, and until engines have
+/// optimised that, a pair takes several times as long.
 const WARMING_SLICES: usize = 30;
 
 /// All pairs of a rotation and a size.

@@ -12,8 +12,8 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::numeric::fourier::planes::{Field, PlaneFourier};
 use crate::view::ColourView;
 
-/// Side of the grid in cells: the mask spans 18, so that the template may move by 14 before it comes in again on the other
-/// side, where next to nothing overlaps.
+/// Side of the grid in cells: the mask spans 18, so that the template may move by 14 before it comes in again on the
+/// other side, where next to nothing overlaps.
 pub const SIDE: usize = 32;
 /// Cells of the grid.
 pub const CELLS: usize = SIDE * SIDE;

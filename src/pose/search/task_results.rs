@@ -25,8 +25,8 @@ impl<T> TaskResults<T> {
     }
 
     /// The task to do in this thread: the first open one, or else the last one that a worker has not returned. Workers
-    /// take the first ones first, so the last is the least likely to be under way; and a worker that never returns is not
-    /// waited for.
+    /// take the first ones first, so the last is the least likely to be under way; and a worker that never returns is
+    /// not waited for.
     pub fn next(&self, is_wanted: impl Fn(usize) -> bool) -> Option<usize> {
         self.first_open(&is_wanted).or_else(|| {
             let is_taken = |state: &TaskState<T>| matches!(state, TaskState::Taken);

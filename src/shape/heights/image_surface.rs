@@ -3,9 +3,10 @@
 //!
 //! Under natural light three colours hardly tell one normal from another, but the normals of one surface are not free.
 //! The heights of [`HeightSolver`] are solved at falling robust scales from several starts: the surface integrated from
-//! the pixels' own normals, a flat one and a dome over the mask. Shading is ambiguous and not convex; of the local optima
-//! the one of least objective was the best one each time it was measured (Mozart at 64x64 under the lights A, B and C), so
-//! that one is taken. Each call tries one start more, so that none lasts long, and goes on from the best surface so far.
+//! the pixels' own normals, a flat one and a dome over the mask. Shading is ambiguous and not convex; of the local
+//! optima the one of least objective was the best one each time it was measured (Mozart at 64x64 under the lights A, B
+//! and C), so that one is taken. Each call tries one start more, so that none lasts long, and goes on from the best
+//! surface so far.
 //!
 //! A large image is halved until a level is small: the starts are tried there, and the best surface goes up from
 //! level to level, a few steps at each. Limits: orthographic or pinhole alike, but parts of the mask that are not
@@ -19,8 +20,8 @@ use crate::error::Result;
 use crate::light::Light;
 use crate::view::{ColourView, Size};
 
-/// Object pixels up to which all starts are tried at full resolution: an object that fills half of 96x96 is solved as it
-/// is.
+/// Object pixels up to which all starts are tried at full resolution: an object that fills half of 96x96 is solved as
+/// it is.
 const MOST_PIXELS: usize = 6000;
 
 /// Solves one image again and again. Owns what lasts from call to call; the memory of a solve is the caller's.

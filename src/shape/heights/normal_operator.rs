@@ -2,11 +2,11 @@
 //! direction (docs/method.md, section 7).
 //!
 //! D takes the slopes p, q in the middle of each cell of four pixels, H is the 2x2 matrix of its brightness terms; S
-//! takes second differences along rows and columns, E first differences along the edges; a are the anchors' weights, L is
-//! the Laplacian. Each product works in two passes: differences of the direction times their weights (fluxes), then the
-//! transposed differences of these. All weights are rasters that hold zero wherever a neighbour is missing, the ends of
-//! the rows included, so that the raster is one line with neighbours 1 and `width` apart: every loop runs straight
-//! through and fills vector registers.
+//! takes second differences along rows and columns, E first differences along the edges; a are the anchors' weights, L
+//! is the Laplacian. Each product works in two passes: differences of the direction times their weights (fluxes), then
+//! the transposed differences of these. All weights are rasters that hold zero wherever a neighbour is missing, the
+//! ends of the rows included, so that the raster is one line with neighbours 1 and `width` apart: every loop runs
+//! straight through and fills vector registers.
 
 use super::cell_terms::LinearisedCells;
 use super::rasters::{padded, resize, resize_to_zeros};
@@ -23,8 +23,8 @@ pub(super) struct NormalOperator {
     pub smoothness: [Vec<f32>; 2],
     /// Weights of the differences to the right and to the lower neighbour: edges and damping together.
     edge_weight: [Vec<f32>; 2],
-    /// Weighted differences, with a margin of zeros of a row and a pixel at both ends. Of cells, from H (p, q): half the
-    /// sum and half the difference of both components.
+    /// Weighted differences, with a margin of zeros of a row and a pixel at both ends. Of cells, from H (p, q): half
+    /// the sum and half the difference of both components.
     cell_sum: Vec<f32>,
     cell_difference: Vec<f32>,
     /// Of edges: weight times first difference.
@@ -51,8 +51,8 @@ impl NormalOperator {
         }
     }
 
-    /// Takes over the edges' weights, and a damping between all neighbours inside: a pixel whose `flags` contain the first
-    /// of `neighbours` has one to the right, with the second one below.
+    /// Takes over the edges' weights, and a damping between all neighbours inside: a pixel whose `flags` contain the
+    /// first of `neighbours` has one to the right, with the second one below.
     pub fn set_edges(&mut self, edges: &[Edges; 2], flags: &[u8], neighbours: [u8; 2], damping: f32) {
         for ((sum, edges), neighbour) in self.edge_weight.iter_mut().zip(edges).zip(neighbours) {
             for ((sum, weight), flags) in sum.iter_mut().zip(&edges.weight).zip(flags) {
@@ -82,8 +82,8 @@ impl NormalOperator {
         (half * (by_p - by_q)).store(&mut self.cell_difference[place..]);
     }
 
-    /// right = minus half the gradient of the objective at the heights `z`: the right-hand side of a Gauss-Newton step. The
-    /// cells' share comes from [`set_cells`](Self::set_cells), the anchors' from `off`, which is z less the anchor.
+    /// right = minus half the gradient of the objective at the heights `z`: the right-hand side of a Gauss-Newton step.
+    /// The cells' share comes from [`set_cells`](Self::set_cells), the anchors' from `off`, which is z less the anchor.
     pub fn downhill(&mut self, edges: &[Edges; 2], z: &[f32], anchor_weight: &[f32], off: &[f32], right: &mut [f32]) {
         for (axis, edges) in edges.iter().enumerate() {
             self.edge_weight[axis].copy_from_slice(&edges.weight);

@@ -17,7 +17,8 @@ pub(super) const ORTHOGRAPHIC: RayFrame = [[0.0, 0.0, -1.0], [1.0, 0.0, 0.0], [0
 /// The frames of the pixels of a box.
 pub(super) enum RayFrames {
     Orthographic,
-    /// Without distortion a ray is made of its column's x and its row's y: here both with their change to the next pixel.
+    /// Without distortion a ray is made of its column's x and its row's y: here both with their change to the next
+    /// pixel.
     Pinhole {
         columns: Vec<[f64; 2]>,
         rows: Vec<[f64; 2]>,

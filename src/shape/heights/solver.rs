@@ -5,13 +5,13 @@
 //! The unknown is the surface, so every normal is integrable by construction: under natural light, where three colours
 //! hardly tell one normal from another, this is what a pixel alone does not know. n is the unit vector of
 //! N = a + p b + q c in the middle of a cell of four pixels, with p, q the slopes of z there and (a, b, c) fixed
-//! vectors of the pixel's ray (`ray_frames`); rho is Geman-McClure. The edges hold the slopes of the pixels' own normals
-//! (trapezoidal rule, as in the integration), with a weight that says how well the colours of one pixel fix its normal:
-//! under colourful light they decide, to the rim of the mask, under natural light they hardly weigh.
+//! vectors of the pixel's ray (`ray_frames`); rho is Geman-McClure. The edges hold the slopes of the pixels' own
+//! normals (trapezoidal rule, as in the integration), with a weight that says how well the colours of one pixel fix its
+//! normal: under colourful light they decide, to the rim of the mask, under natural light they hardly weigh.
 //!
 //! Method: Gauss-Newton on z, damped by the Laplacian (Levenberg-Marquardt); each step by conjugate gradients,
-//! matrix-free, preconditioned by the cosine solve of the enclosing rectangle. Limits: not convex, so the start matters;
-//! across an occlusion edge the slope is wrong and rho has to discard it.
+//! matrix-free, preconditioned by the cosine solve of the enclosing rectangle. Limits: not convex, so the start
+//! matters; across an occlusion edge the slope is wrong and rho has to discard it.
 
 use super::cell_terms::CellTerms;
 use super::domain::{ABOVE, BELOW, CELL, HeightDomain, INSIDE, LEFT, RIGHT};
@@ -23,8 +23,8 @@ use crate::numeric::cosine::CosineSolver;
 use crate::numeric::{LANES, Lanes, Real};
 use crate::shape::integration::Edges;
 
-/// kappa, squared log residual per squared second difference in pixels. Chosen on Mozart at 64x64 with 2 % noise under the
-/// lights A, B and C, the light known; docs/accuracy.md tells what larger ones did.
+/// kappa, squared log residual per squared second difference in pixels. Chosen on Mozart at 64x64 with 2 % noise under
+/// the lights A, B and C, the light known; docs/accuracy.md tells what larger ones did.
 const SMOOTHNESS: f32 = 1e-3;
 /// Confidence (squared log residual per squared slope) at which the smoothness has lost half its weight: a light whose
 /// colours change by 0.1 for a slope of one.
@@ -35,11 +35,13 @@ const DAMPING: [f32; 2] = [1e-4, 1e4];
 /// Divisor of the damping after a step that lowered the objective, and factor after one that did not.
 const DAMPING_DIVISOR: f32 = 5.0;
 const DAMPING_FACTOR: f32 = 10.0;
-/// Least stiffness of the preconditioner, squared log residual per squared slope: dark pixels must not make it singular.
+/// Least stiffness of the preconditioner, squared log residual per squared slope: dark pixels must not make it
+/// singular.
 const LEAST_STIFFNESS: f64 = 1e-6;
 /// The solve has converged when a step lowers the objective by less than this share.
 const SMALLEST_DECREASE: f64 = 1e-4;
-/// The conjugate gradients of a step end with the iteration that lowers the linearised objective by less than this share.
+/// The conjugate gradients of a step end with the iteration that lowers the linearised objective by less than this
+/// share.
 const SMALLEST_GAIN: f64 = 1e-5;
 
 /// Solves one domain or another, again and again. No two solves run at once, so that all levels of both views share
@@ -107,7 +109,8 @@ impl HeightSolver {
         self.operator.resize(domain.width, length, room);
     }
 
-    /// Improves `z` (depth in pixels, or f log Z; finite on the mask) in place; the objective that it ends with, per pixel.
+    /// Improves `z` (depth in pixels, or f log Z; finite on the mask) in place; the objective that it ends with, per
+    /// pixel.
     pub fn solve(&mut self, domain: &mut HeightDomain, problem: HeightProblem<'_>, z: &mut [f32]) -> f64 {
         self.resize(domain);
         self.load(domain, problem, z);
@@ -133,8 +136,8 @@ impl HeightSolver {
         objective / domain.pixels as f64
     }
 
-    /// One step that lowers the objective, damped as strongly as that takes; the objective after it. `None` where there is
-    /// none, or too little is expected of it.
+    /// One step that lowers the objective, damped as strongly as that takes; the objective after it. `None` where there
+    /// is none, or too little is expected of it.
     fn descend(
         &mut self,
         domain: &mut HeightDomain,
@@ -181,7 +184,8 @@ impl HeightSolver {
         self.anchors_weight = sum;
     }
 
-    /// Edges between neighbours with slopes of their own (trapezoidal rule), weighted by the lesser confidence of the two.
+    /// Edges between neighbours with slopes of their own (trapezoidal rule), weighted by the lesser confidence of the
+    /// two.
     fn load_edges(&mut self, domain: &HeightDomain, terms: &CellTerms<'_>) {
         let (zero, slopes) = (Lanes::splat(0.0), terms.problem.slopes);
         for (here, source) in domain.rows() {
@@ -203,8 +207,8 @@ impl HeightSolver {
         }
     }
 
-    /// Edges and smoothness along one axis, whose neighbours are so far apart here and in the view; the sum of the edges'
-    /// weights.
+    /// Edges and smoothness along one axis, whose neighbours are so far apart here and in the view; the sum of the
+    /// edges' weights.
     fn load_axis(
         &mut self,
         domain: &HeightDomain,
@@ -333,8 +337,8 @@ fn limits(effort: Effort, objective: f64) -> Limits {
     }
 }
 
-/// The matrix of a step and its preconditioner. Off the mask the right-hand side is zero and no weight reads a height, so
-/// that extension and restriction need no code.
+/// The matrix of a step and its preconditioner. Off the mask the right-hand side is zero and no weight reads a height,
+/// so that extension and restriction need no code.
 struct HeightSystem<'a> {
     operator: &'a mut NormalOperator,
     anchor_weight: &'a [f32],

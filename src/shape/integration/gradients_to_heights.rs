@@ -37,12 +37,13 @@ const SCALE_IN_SIGMAS: f64 = 3.0;
 const LEAST_SCALE: f64 = 0.05;
 /// Least weight of an edge: keeps pixels whose every edge is an outlier attached to their neighbours.
 const LEAST_WEIGHT: f32 = 1e-4;
-/// Reweighting ends when the weights change by less than this on average: as if three edges in a thousand changed sides.
+/// Reweighting ends when the weights change by less than this on average: as if three edges in a thousand changed
+/// sides.
 const SMALLEST_CHANGE: f64 = 3e-3;
 /// Relative error of the solves between two reweightings, well under the least robust scale; the last one is exact.
 const ROUND_TOLERANCE: f64 = 1e-3;
-/// Factor on the scale from round to round of a cold start, from the residuals' root mean square down: least squares smears
-/// a jump over its neighbours, which a small scale would cut as well before the jump alone is left.
+/// Factor on the scale from round to round of a cold start, from the residuals' root mean square down: least squares
+/// smears a jump over its neighbours, which a small scale would cut as well before the jump alone is left.
 const ANNEALING: f64 = 0.5;
 /// The median is taken over at most so many cells, evenly spread: its own error is then below one percent.
 const MOST_SAMPLES: usize = 1 << 15;

@@ -1,5 +1,5 @@
-//! min over z of sum_e w_e (z_j - z_i - g_e)^2 + sum_i a_i (z_i - t_i)^2 over the edges e = (i, j) of a masked raster: a
-//! weighted discrete Poisson equation (docs/method.md, section 6).
+//! min over z of sum_e w_e (z_j - z_i - g_e)^2 + sum_i a_i (z_i - t_i)^2 over the edges e = (i, j) of a masked raster:
+//! a weighted discrete Poisson equation (docs/method.md, section 6).
 //!
 //! Method: conjugate gradients on the normal equations (L_w + diag a) z = b, preconditioned by the rectangle: extend
 //! the residual by zero, solve (c L + s) there by [`CosineSolver`], restrict; c is the mean weight of the edges and s
@@ -148,8 +148,8 @@ impl Poisson {
     }
 }
 
-/// L_w + diag a and its preconditioner. Off the domain the residual is zero and no edge reads a height, so that extension
-/// and restriction need no code.
+/// L_w + diag a and its preconditioner. Off the domain the residual is zero and no edge reads a height, so that
+/// extension and restriction need no code.
 struct PoissonSystem<'a> {
     edges: [&'a Edges; 2],
     anchor_weight: &'a [f32],

@@ -1,8 +1,8 @@
 //! The exposure of a known light (docs/method.md, section 3).
 //!
 //! A light is known only up to the exposure of the camera: log S = c + [n;1]^T M [n;1] with one c for all pixels.
-//! First c comes from the colours alone: the colours of the hemisphere are a surface in log RGB, and c shifts the image's
-//! colours onto it. Then each solve of the normals improves c by variable projection: the normals follow c, so
+//! First c comes from the colours alone: the colours of the hemisphere are a surface in log RGB, and c shifts the
+//! image's colours onto it. Then each solve of the normals improves c by variable projection: the normals follow c, so
 //! that dF/dc = -2 sum r and d2F/dc2 = 2 sum (3 - 1^T J H^-1 J^T 1), F the objective, H the pixel's own Gauss-Newton
 //! matrix. Under a light of one hue that surface is a line along c itself, and only the prior fixes it.
 
@@ -16,8 +16,8 @@ use crate::view::Normals;
 /// Most pixels, and directions on the hemisphere, that the first exposure is found from: enough for two digits.
 const MOST_PIXELS: usize = 400;
 const DIRECTIONS: usize = 300;
-/// The first exposure is the best of a grid: its step in log units (a parabola then leaves a fifth of it), and the number
-/// of steps to either side of equal medians.
+/// The first exposure is the best of a grid: its step in log units (a parabola then leaves a fifth of it), and the
+/// number of steps to either side of equal medians.
 const GRID_STEP: f64 = 0.05;
 const GRID_STEPS: i32 = 60;
 /// Robust scale of the grid's objective in log units.
@@ -116,7 +116,8 @@ pub fn exposure_step(problem: ShadingProblem<'_>, weights: ShadingWeights, norma
                 sum + Vector3::from(polynomial.gradient(normal)).map(f64::from)
             });
             let Some(inverse) = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz).try_inverse() else { continue };
-            // Zero where the normal's own solve has ended at a minimum; at the rim it ends at the border of the visible.
+            // Zero where the normal's own solve has ended at a minimum; at the rim it ends at the border of the
+            // visible.
             let remaining = derivative.dot(&(inverse * gradient));
             slope += weight * (remaining - f64::from(residuals.iter().sum::<f32>()));
             curvature += weight * (3.0 - (derivative.transpose() * inverse * derivative)[0]).max(0.0);

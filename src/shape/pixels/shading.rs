@@ -5,10 +5,10 @@
 //! m the normal that the other view sees there, rho the identity or Geman-McClure. The paper writes the two prior
 //! terms without a square and lambda_3 linear; a least-squares solver squares them, and so do we.
 //!
-//! Three colours give up to eight solutions, so each pixel first compares directions all over the visible hemisphere, then
-//! descends by damped Gauss-Newton, [`LANES`] pixels side by side. The same code refines the depth view (Eq. 17, 18):
-//! its normals, rotated into the colour view's frame, are pixels like any other. Limits: normals have n_z < 0, and under
-//! a light of one hue the colours of a pixel do not determine its normal.
+//! Three colours give up to eight solutions, so each pixel first compares directions all over the visible hemisphere,
+//! then descends by damped Gauss-Newton, [`LANES`] pixels side by side. The same code refines the depth view (Eq. 17,
+//! 18): its normals, rotated into the colour view's frame, are pixels like any other. Limits: normals have n_z < 0, and
+//! under a light of one hue the colours of a pixel do not determine its normal.
 
 use crate::light::{Light, Polynomial};
 use crate::numeric::{LANES, Lanes, Mask, Real, dot, robust};
@@ -40,7 +40,8 @@ pub struct ShadingWeights {
 const PRIOR_SCALE: f32 = 0.4;
 
 impl ShadingWeights {
-    /// Weights with a robust prior: a prior normal that is far off, such as one of a wrong correspondence, loses its weight.
+    /// Weights with a robust prior: a prior normal that is far off, such as one of a wrong correspondence, loses its
+    /// weight.
     #[must_use]
     pub const fn with_robust_prior(prior: f32, unit: f32) -> Self {
         Self { prior, unit, robust: Some(PRIOR_SCALE) }
@@ -73,8 +74,8 @@ const DIRECTIONS: usize = 600;
 const RIM: f32 = -0.05;
 /// Trials of one pixel in one solve; the paper allows 1000 and needs 300, Gauss-Newton needs about five.
 const MOST_STEPS: usize = 30;
-/// A step that short (in units of a unit normal, 0.06 degrees) is the last one: it is taken, and leaves a tenth of itself
-/// at most, a hundredth of the best normals' error.
+/// A step that short (in units of a unit normal, 0.06 degrees) is the last one: it is taken, and leaves a tenth of
+/// itself at most, a hundredth of the best normals' error.
 const SMALLEST_STEP: f32 = 1e-3;
 /// First damping, relative to the diagonal.
 const FIRST_DAMPING: f32 = 1e-3;
@@ -139,8 +140,8 @@ impl ShadingSolver {
         counts
     }
 
-    /// The best of the present normal, the prior and, where there is no present one, the hemisphere; the objective around
-    /// it; and which pixels have one.
+    /// The best of the present normal, the prior and, where there is no present one, the hemisphere; the objective
+    /// around it; and which pixels have one.
     fn start(&self, pixels: &Pixels<'_>, present: [Lanes; 3]) -> ([Lanes; 3], LinearisedPixels, Mask) {
         let (zero, far) = (Lanes::splat(0.0), Lanes::splat(f32::INFINITY));
         let facing = present[2].less(zero);
@@ -251,8 +252,8 @@ impl<'a> Pixels<'a> {
         sums
     }
 
-    /// Damped Gauss-Newton; a step to a normal that faces away from the camera counts as no descent. The loop goes on until
-    /// the last of the four has converged, the others keep their normals.
+    /// Damped Gauss-Newton; a step to a normal that faces away from the camera counts as no descent. The loop goes on
+    /// until the last of the four has converged, the others keep their normals.
     fn descend(
         &self,
         start: [Lanes; 3],
@@ -291,8 +292,8 @@ impl<'a> Pixels<'a> {
     }
 }
 
-/// The objective of four pixels around their normals: its value, half its gradient, and the Gauss-Newton matrix (xx, xy,
-/// xz, yy, yz, zz).
+/// The objective of four pixels around their normals: its value, half its gradient, and the Gauss-Newton matrix (xx,
+/// xy, xz, yy, yz, zz).
 pub(super) struct LinearisedPixels {
     objective: Lanes,
     pub(super) gradient: [Lanes; 3],
