@@ -51,11 +51,11 @@ impl ShadingWeights {
 /// For how many pixels the solver ended for which reason.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ShadingReport {
-    /// The step fell below [`SMALLEST_STEP`].
+    /// The step fell below `SMALLEST_STEP`.
     pub converged: usize,
     /// No step, however short, lowered the objective.
     pub stalled: usize,
-    /// [`MOST_STEPS`] were not enough.
+    /// `MOST_STEPS` were not enough.
     pub capped: usize,
     /// Neither colour nor prior: no normal.
     pub skipped: usize,
