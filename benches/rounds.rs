@@ -3,7 +3,7 @@
 //!
 //! `scene PATH` reads a scene, `run START SHADING MOST` runs the loop from "near" or "search" with "surface" or "pixel"
 //! through at most so many iterations; each answer is one line of JSON. Called without the word `requests`, as by a
-//! plain `cargo bench`, it does nothing: nobody would ask.
+//! plain `cargo bench`, it does nothing: no requests would come.
 
 mod common;
 

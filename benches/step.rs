@@ -42,7 +42,7 @@ fn whole(scene: &Scene) -> Run {
 }
 
 /// Mean time of a stage in the steady iterations of a run, or in its last one where it ends before. The registration
-/// computes once in a run, in its first iteration; later ones find that the pose stands.
+/// computes once in a run, in its first iteration; later ones find that the pose no longer moves.
 fn time_of(run: &Run, stage: Stage) -> Duration {
     let first = if stage == Stage::Registration { 0 } else { WARMING.min(run.iterations.saturating_sub(1)) };
     let counts = |iteration: u32| iteration >= first && (stage != Stage::Registration || iteration == 0);

@@ -34,7 +34,7 @@ function checked<T>(check: (value: unknown) => void, plain: (input: T) => T, inp
 /**
  * Shape, light and pose from one colour image and one depth map, one iteration after the other.
  *
- * Every array that comes out is a copy of its own. An estimator owns memory that no garbage collector sees in time:
+ * Every array that comes out is a copy of its own. An estimator owns memory that a garbage collector frees too late or never:
  * `free()` it, or declare it with `using`.
  */
 export class Estimator {
@@ -64,14 +64,14 @@ export class Estimator {
     }
   }
 
-  /** One iteration of the loop. */
+  /** One iteration, or one slice of the search while the loop is still there. */
   step(): StepReport {
     const answer = this.#refinementWorker?.answer;
     if (answer) this.#call((raw) => raw.stepHalfway());
     return this.#finish(answer);
   }
 
-  /** One stage of an iteration; the report says which. */
+  /** One stage of an iteration, or one slice of the search; the report says which. */
   stepStage(): StepReport {
     this.#take(this.#refinementWorker?.answer);
     return this.#after(this.#call((raw) => raw.stepStage()));
@@ -119,7 +119,7 @@ export class Estimator {
     this.#begin();
   }
 
-  /** Where the loop stands. */
+  /** The report of the last step; before the first one, that of the start. */
   get report(): StepReport {
     return this.#call((raw) => raw.report());
   }

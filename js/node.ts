@@ -6,8 +6,8 @@ interface Modules {
 }
 
 /**
- * A module of Node's own; nothing elsewhere. It is asked for by name while the program runs: bundlers for browsers follow
- * every import, also one that a browser never reaches, and refuse what they find or put something empty in its place.
+ * A module of Node's own; undefined in a browser. It is asked for by name at run time and not imported: bundlers for
+ * browsers follow every import, even one that no browser reaches, and fail on Node's modules or replace them by empty ones.
  */
 export const nodeModule = <K extends keyof Modules>(name: K): Modules[K] | undefined =>
   globalThis.process?.getBuiltinModule?.(name) as Modules[K] | undefined;

@@ -83,7 +83,7 @@ export const OPTIONS: RowsOf<Options> = {
     default: 0.01,
     page: { group: "loop", label: "Stop below", link: "stop", hint: "Change of the rotation that counts as settled." },
   },
-  /** More than anybody waits for are a typing error. */
+  /** More are taken for a typing error. */
   maxIterations: {
     kind: "whole",
     min: 1,

@@ -4,7 +4,7 @@
 export interface PageField {
   readonly group: "sample" | "method" | "weights" | "loop";
   readonly label: string;
-  /** One sentence for whoever does not know the label. */
+  /** One sentence that explains the label. */
   readonly hint?: string;
   /** Its name in links, where the last part of its path has another meaning there. */
   readonly link?: string;

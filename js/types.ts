@@ -70,7 +70,7 @@ export interface Options {
   /** Whether flying pixels and background inside the mask are trimmed; default true. */
   trim?: boolean;
   /**
-   * Threads, 1 .. 16, this one included; default 1. All of them share the opening search, and two the iterations of larger
+   * Threads, 1 .. 16, this one included; default 1. All of them share the search, and two the iterations of larger
    * views. The result is the same to the bit for any number of them. Messages pass while this one lets events through, as
    * `run` does, which also waits for answers; a copy of the pair is kept for the others.
    */

@@ -5,7 +5,7 @@ import { WASM, setup, tool } from "./setup.mjs";
 import { withoutFeature } from "./wasm-features.mjs";
 import { Failure, inRoot, must, say, script, seconds, stamp } from "./shell.mjs";
 
-const CARRIED = ["README.md", "CHANGELOG.md", "LICENSE-MIT", "LICENSE-APACHE"];
+const COPIED = ["README.md", "CHANGELOG.md", "LICENSE-MIT", "LICENSE-APACHE"];
 const SOURCES = ["src", "js", "Cargo.toml", "Cargo.lock", "rust-toolchain.toml", ".cargo", "package-lock.json"];
 const MARK = "pkg/.stamp";
 const MODULE = "bimodal_stereo";
@@ -51,7 +51,7 @@ function manifest() {
       "./package.json": "./package.json",
     },
     types: "./index.d.ts",
-    files: ["*.js", "*.d.ts", "*.wasm", ...CARRIED],
+    files: ["*.js", "*.d.ts", "*.wasm", ...COPIED],
   };
 }
 
@@ -103,7 +103,7 @@ async function facade() {
 }
 
 export async function build() {
-  const wanted = stamp([...SOURCES, ...CARRIED, "scripts/build.mjs", "scripts/wasm-features.mjs"]);
+  const wanted = stamp([...SOURCES, ...COPIED, "scripts/build.mjs", "scripts/wasm-features.mjs"]);
   const complete = [MARK, `target/wasm-bindgen/${MODULE}.d.ts`].every((path) => existsSync(inRoot(path)));
   if (complete && readFileSync(inRoot(MARK), "utf8") === wanted) return say("pkg/ is up to date");
   const start = performance.now();
@@ -114,7 +114,7 @@ export async function build() {
   await Promise.all(FLAVOURS.map(numerics));
   checkGlue();
   await facade();
-  for (const file of CARRIED) cpSync(inRoot(file), inRoot("pkg", file));
+  for (const file of COPIED) cpSync(inRoot(file), inRoot("pkg", file));
   writeFileSync(inRoot("pkg/package.json"), `${JSON.stringify(manifest(), null, 2)}\n`);
   writeFileSync(inRoot(MARK), wanted);
 

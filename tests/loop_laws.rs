@@ -242,13 +242,13 @@ fn reports_and_maps_hold_what_they_promise() {
         let mut estimator = estimator(&sample, Options::paper());
         while estimator.report().status == Status::Running {
             let report = estimator.step().clone();
-            let energy = report.objective;
-            let terms = [energy.shading, energy.prior, energy.registration, energy.refinement];
+            let objective = report.objective;
+            let terms = [objective.shading, objective.prior, objective.registration, objective.refinement];
             assert!(
                 terms.iter().all(|term| (0.0..=1.0).contains(term)),
-                "means of costs that saturate at one: {terms:?}"
+                "means of robust residuals that saturate at one: {terms:?}"
             );
-            assert!((energy.total() - terms.iter().sum::<f64>()).abs() < 1e-12);
+            assert!((objective.total() - terms.iter().sum::<f64>()).abs() < 1e-12);
             assert!((0.0..=1.0).contains(&report.overlap) && (0.0..=1.0).contains(&report.inliers));
 
             let (image, depth) = (estimator.image(), estimator.depth());

@@ -62,8 +62,8 @@ fn pairs_at_the_true_pose_are_the_same_place() {
         for (pixel, &index) in found.depth_of_pixel().iter().enumerate() {
             let Ok(index) = usize::try_from(index) else { continue };
             pairs += 1;
-            let carried = pose.apply(vector(views.depth.points.get(index)));
-            let gap = vector(views.image_points.get(pixel)) - carried;
+            let transformed = pose.apply(vector(views.depth.points.get(index)));
+            let gap = vector(views.image_points.get(pixel)) - transformed;
             let normal = vector(views.sample.truth.image_normals.get(pixel));
             assert!(gap.x.abs() < 0.51 && gap.y.abs() < 0.51 && gap.dot(&normal).abs() <= 1.0, "{beta}: {gap}");
             assert_eq!(size.nearest(columns[index], rows[index]), Some(pixel));
@@ -74,11 +74,11 @@ fn pairs_at_the_true_pose_are_the_same_place() {
         // Completeness: a depth point that lies on the visible image surface, well inside, has its counterpart.
         let (mut expected, mut missed) = (0, 0);
         for index in (0..views.depth.size.len()).filter(|&index| views.depth.points.is_valid(index)) {
-            let carried = pose.apply(vector(views.depth.points.get(index)));
-            let [column, row] = views.sample.image.camera.project(size, carried.into()).unwrap();
+            let transformed = pose.apply(vector(views.depth.points.get(index)));
+            let [column, row] = views.sample.image.camera.project(size, transformed.into()).unwrap();
             let Some(pixel) = size.nearest(column as f32, row as f32) else { continue };
             let turned = pose.rotation * vector(views.depth.normals.get(index));
-            let gap = vector(views.image_points.get(pixel)) - carried;
+            let gap = vector(views.image_points.get(pixel)) - transformed;
             if gap.norm() < 0.8 && turned.z < -0.5 {
                 expected += 1;
                 missed += usize::from(columns[index].is_nan());

@@ -96,7 +96,7 @@ fn exposure_changes_nothing() {
     }
 }
 
-/// The paper's easy reading has an exact answer: every point falls on a pixel's centre.
+/// The pair of Table 2A, the bare grid, has an exact answer: every point falls on a pixel's centre.
 fn exact_views_give_the_pose_to_rounding(relief: &Relief) {
     for (beta, overlap) in [(20.0, 1.0), (-20.0, 1.0), (60.0, 0.5), (90.0, 0.25), (90.0, 1.0)] {
         let rotation = Angles { beta, ..Angles::default() }.rotation();

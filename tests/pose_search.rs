@@ -1,4 +1,4 @@
-//! The opening search on scenes with a known pose: what it finds, and the laws it obeys.
+//! The search over poses on scenes with a known pose: what it finds, and the laws it obeys.
 
 use bimodal_stereo::scenes::{self, Sample, SampleRequest, Scene};
 use bimodal_stereo::{
@@ -6,11 +6,11 @@ use bimodal_stereo::{
 };
 use nalgebra::{Rotation3, Vector3};
 
-/// A refinement comes home from 15 degrees; a candidate has to be nearer.
+/// Degrees: a registration by colours converges from 15 degrees off; a candidate has to be nearer.
 const NEAR: f64 = 12.0;
 /// Candidates that are looked at.
 const FIRST: usize = 10;
-/// Slices of a search of one scale; with six scales less than four times as many.
+/// Slices of a search of one scale; a free scale has four, and less than four times as many slices.
 const MOST_SLICES: usize = 200;
 
 fn bust(request: SampleRequest) -> Sample {

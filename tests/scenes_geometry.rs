@@ -113,7 +113,7 @@ fn a_sphere_cap_is_rendered_as_it_is() {
     }
 }
 
-/// Every point of the depth view, carried by the true pose, lies on the sphere of the colour view.
+/// Every point of the depth view, moved by the true pose, lies on the sphere of the colour view.
 #[test]
 fn the_pose_carries_the_depth_view_onto_the_surface() {
     let scene = cap();

@@ -197,7 +197,7 @@ fn bad_requests_are_refused_by_name() {
     assert_eq!(Scene::new(&relief).expect_err("without a surface").kind(), ErrorKind::Empty);
 }
 
-/// The pair of Table 2A is exact: each point of the cloud, carried by the pose, is the image's point of that pixel.
+/// The pair of Table 2A is exact: each point of the cloud, moved by the pose, is the image's point of that pixel.
 #[test]
 fn the_bare_grid_is_exact() {
     let relief = surface("bust").expect("a name");

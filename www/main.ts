@@ -111,7 +111,7 @@ async function openTables(): Promise<void> {
   const loaded = await import("./tables/page").catch((error: unknown) => {
     main.textContent = `The tables could not be loaded: ${error instanceof Error ? error.message : String(error)}`;
   });
-  // Whoever has gone on in the meantime is not called back.
+  // A visitor who has gone on in the meantime is not called back.
   if (!loaded || placeOf(location.hash) !== "tables") return;
   if (!tables) {
     main.replaceChildren();

@@ -6,5 +6,5 @@ const TABLES = /^#tables(?=&|$)/;
 
 export const placeOf = (hash: string): Place => (TABLES.test(hash) ? "tables" : "lab");
 
-/** Beside its settings an address may ask that the run begins; whoever has obeyed takes the word out. */
+/** Beside its settings an address may ask that the run begins; once it has begun the word is taken out. */
 export const asksToPlay = (hash: string): boolean => new URLSearchParams(hash.replace(/^#/, "")).has("play");

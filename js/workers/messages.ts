@@ -2,14 +2,14 @@
 import type { ColorImage, DepthMap, Options } from "../types.js";
 
 /** Both views, of which every worker gets a copy. */
-export interface Pair {
+export interface Views {
   image: ColorImage;
   depth: DepthMap;
 }
 
 /** A worker first gets its pair, then tasks of the search, or refinements. */
 export type Order =
-  | ({ kind: "pair"; module: WebAssembly.Module; options: Options } & Pair)
+  | ({ kind: "pair"; module: WebAssembly.Module; options: Options } & Views)
   | { kind: "task"; task: Float64Array }
   | { kind: "refine"; numbers: Float64Array; planes: Float32Array };
 
@@ -17,12 +17,12 @@ export type Order =
 export const READY = "ready";
 
 /** Numbers that a task of the search gave, planes of a refined shape; `null` where the worker can do nothing, now or later. */
-export type Answer = Float64Array | Float32Array | typeof READY | null;
+export type WorkerAnswer = Float64Array | Float32Array | typeof READY | null;
 
 /** A worker as its estimator sees it. */
 export interface WorkerHandle {
   post(order: Order, transfer: ArrayBuffer[]): void;
-  onAnswer(handler: (answer: Answer) => void): void;
+  onAnswer(handler: (answer: WorkerAnswer) => void): void;
   onFailure(handler: () => void): void;
   end(): void;
 }

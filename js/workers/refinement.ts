@@ -1,6 +1,6 @@
 /** A worker that refines the depth view while the estimator's own thread finds the image surface. */
 import type { Options } from "../types.js";
-import { READY, type Answer, type Pair, type WorkerHandle } from "./messages.js";
+import { READY, type WorkerAnswer, type Views, type WorkerHandle } from "./messages.js";
 import { startWorker } from "./start.js";
 
 /** A refinement to be made: the number of the shape that it starts from, numbers, and rasters one after the other. */
@@ -20,7 +20,7 @@ const LONGEST_WAIT = 2000;
  * estimator refines alone, to the end of the loop. The worker lasts as long as the loop.
  */
 export class RefinementWorker {
-  readonly #pair: Pair;
+  readonly #pair: Views;
   #worker: WorkerHandle | undefined;
   /** Whether it could not be started or has failed; no other one is started in this loop. */
   #failed = false;
@@ -33,7 +33,7 @@ export class RefinementWorker {
   #answer: Refinement | undefined;
   #waiting: (() => void)[] = [];
 
-  constructor(pair: Pair) {
+  constructor(pair: Views) {
     this.#pair = pair;
   }
 
@@ -51,7 +51,7 @@ export class RefinementWorker {
     });
   }
 
-  /** Asks for the next refinement, unless one is still under way; `take` gives its task to who holds a shape. */
+  /** Asks for the next refinement, unless one is still under way; `take` makes its task for a worker that holds a shape. */
   ask(take: (held: number | undefined) => RefinementTask | undefined): void {
     this.#answer = undefined;
     if (!this.#worker || !this.#ready || this.isBusy) return;
@@ -97,7 +97,7 @@ export class RefinementWorker {
     this.#failed = true;
   }
 
-  #receive(answer: Answer): void {
+  #receive(answer: WorkerAnswer): void {
     if (answer === READY) {
       this.#ready = true;
       return;
@@ -110,7 +110,7 @@ export class RefinementWorker {
     this.#resume();
   }
 
-  /** Lets go on who waits for the answer. */
+  /** Lets those go on that wait for the answer. */
   #resume(): void {
     const waiting = this.#waiting;
     this.#waiting = [];

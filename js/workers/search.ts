@@ -1,6 +1,6 @@
-/** Workers that do parts of the opening search for an estimator. */
+/** Workers that do parts of the search over poses for an estimator. */
 import type { Options } from "../types.js";
-import { READY, type Answer, type Pair, type WorkerHandle } from "./messages.js";
+import { READY, type WorkerAnswer, type Views, type WorkerHandle } from "./messages.js";
 import { startWorker } from "./start.js";
 
 /** The tasks of a search: what the estimator gives away, and what it takes back. */
@@ -25,10 +25,10 @@ interface SearchWorker {
 export class SearchWorkers {
   #workers: SearchWorker[] = [];
   readonly #count: number;
-  readonly #pair: Pair;
+  readonly #pair: Views;
   readonly #tasks: Tasks;
 
-  constructor(count: number, pair: Pair, tasks: Tasks) {
+  constructor(count: number, pair: Views, tasks: Tasks) {
     this.#count = count;
     this.#pair = pair;
     this.#tasks = tasks;
@@ -71,7 +71,7 @@ export class SearchWorkers {
     for (const worker of [...this.#workers]) this.#drop(worker);
   }
 
-  #receive(worker: SearchWorker, answer: Answer): void {
+  #receive(worker: SearchWorker, answer: WorkerAnswer): void {
     if (!this.#workers.includes(worker)) return;
     if (answer === READY) return;
     if (!(answer instanceof Float64Array)) return this.#drop(worker);
@@ -80,7 +80,7 @@ export class SearchWorkers {
       this.#tasks.accept(answer);
       this.feed();
     } catch {
-      // Of an estimator that has broken off its next call will tell.
+      // The estimator has panicked; its next call throws the error.
       this.end();
     }
   }

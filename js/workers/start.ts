@@ -3,13 +3,13 @@ import { compiled } from "../engine.js";
 import { nodeModule } from "../node.js";
 import { copyOf } from "../plain.js";
 import type { Options } from "../types.js";
-import type { Pair, WorkerHandle } from "./messages.js";
+import type { Views, WorkerHandle } from "./messages.js";
 
 /**
  * A worker with a copy of the pair, where this place has any. A page may forbid workers, a system may be out of threads or
  * of memory for them.
  */
-export function startWorker({ image, depth }: Pair, options: Options): WorkerHandle | undefined {
+export function startWorker({ image, depth }: Views, options: Options): WorkerHandle | undefined {
   let worker: WorkerHandle | undefined;
   try {
     worker = spawn();
@@ -28,7 +28,7 @@ function spawn(): WorkerHandle {
 }
 
 function spawnInBrowser(): WorkerHandle {
-  // Written out in one piece: bundlers look for exactly this to carry the file along.
+  // Written out in one piece: bundlers look for exactly this form to include the file.
   const worker = new Worker(new URL("./thread.js", import.meta.url), { type: "module" });
   return {
     post: (order, transfer) => worker.postMessage(order, transfer),
@@ -44,15 +44,15 @@ function spawnInBrowser(): WorkerHandle {
 }
 
 function spawnInNode({ Worker }: typeof import("node:worker_threads")): WorkerHandle {
-  // Not the URL above once more: bundlers would carry the file along twice.
+  // Not the URL above once more: bundlers would include the file twice.
   const file = import.meta.url.replace(/[^/]*$/, "thread.js");
-  // Without the program's own flags: those of `node -e`, for one, would run its text again.
+  // Without the program's own flags: with `node -e TEXT` the worker would be started with the same flag and run TEXT.
   const worker = new Worker(new URL(file), { execArgv: [] });
   return {
     post: (order, transfer) => worker.postMessage(order, transfer),
     onAnswer: (handler) => {
       worker.on("message", handler);
-      // A worker keeps no program from ending, which a listener would undo.
+      // Adding a listener refs the worker again, and a program would not end before its workers do.
       worker.unref();
     },
     onFailure: (handler) => worker.on("error", handler).on("exit", handler),

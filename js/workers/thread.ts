@@ -2,9 +2,9 @@
 import type { Worker as Native } from "../../target/wasm-bindgen/bimodal_stereo.js";
 import { bindings, load } from "../engine.js";
 import { nodeModule } from "../node.js";
-import { READY, type Answer, type Order } from "./messages.js";
+import { READY, type WorkerAnswer, type Order } from "./messages.js";
 
-function serve(answer: (answer: Answer, transfer: ArrayBuffer[]) => void): (order: Order) => void {
+function serve(answer: (answer: WorkerAnswer, transfer: ArrayBuffer[]) => void): (order: Order) => void {
   let native: Native | undefined;
 
   async function handle(order: Order): Promise<void> {

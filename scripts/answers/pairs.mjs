@@ -26,7 +26,7 @@ const RELIEFS = {
     return 0.4 - 0.5 * x * x - 0.3 * y * y + hill - hollow;
   },
 };
-/** A light of nobody's: neither built in nor natural. */
+/** A light that is neither built in nor natural. */
 const OWN_LIGHT = [
   ...[-1.1, 0.3, -0.5, 0.4, 0.05, 0.1, 0.1, -0.1, 0.05],
   ...[-1.2, -0.4, -0.45, 0.1, -0.1, 0.05, -0.05, 0.12, 0.1],

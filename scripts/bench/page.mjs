@@ -12,7 +12,7 @@ export async function startUps(chromium, address, scene, times) {
   for (let round = 0; round < times; round++) {
     const { page, close } = await openPage(chromium, `${address}/scripts/bench/page/`);
     const { milliseconds } = await page.evaluate(async (path) => {
-      window.bench.hire();
+      window.bench.start();
       await window.bench.ask({ kind: "scene", path });
       return window.bench.ask({ kind: "firstReport" });
     }, `/${scene.path}`);
@@ -33,8 +33,8 @@ export async function transfers(side, times) {
   return found;
 }
 
-/** Before the page's own scripts: hears when a frame was asked for and came, and how long its drawing kept the page busy. */
-function listen() {
+/** Before the page's own scripts: records when a frame was asked for and came, and how long its drawing kept the page busy. */
+function recordFrames() {
   const frames = (window.benchFrames = []);
   let asked;
   let shown;
@@ -54,7 +54,7 @@ function listen() {
       super.postMessage(message, ...rest);
     }
 
-    set onmessage(hear) {
+    set onmessage(handler) {
       super.onmessage = (event) => {
         const reports = event.data.reply?.reports;
         if (reports && asked !== undefined) {
@@ -63,7 +63,7 @@ function listen() {
           frames.push(shown);
           asked = undefined;
         }
-        hear(event);
+        handler(event);
       };
     }
   };
@@ -105,13 +105,13 @@ export async function playing(chromium, address) {
 }
 
 /**
- * Frames of the real page, stage by stage. `delivery`: from asking to hearing without the stage's own time, which is cutting,
+ * Frames of the real page, stage by stage. `delivery`: from the request to the reply without the stage's own time, which is cutting,
  * copying and sending. `drawing`: what its animation frames kept the main thread busy with, all canvases, clouds and charts.
  */
 export async function drawings(chromium, address, times) {
   const context = await chromium.newContext({ viewport: { width: 1280, height: 800 } });
   const page = await context.newPage();
-  await page.addInitScript(listen);
+  await page.addInitScript(recordFrames);
   await page.goto(`${address}/www/dist/#${DRAWN}`);
   const status = () => page.evaluate(() => document.querySelector("#status").dataset.state);
   const ready = () => page.waitForSelector('#status[data-state="ready"]');

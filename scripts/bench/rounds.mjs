@@ -21,8 +21,8 @@ const sum = (values) => values.reduce((total, value) => total + value, 0);
 
 /**
  * Samples of every stage at one size on one side. The registration computes once in a run, in its first iteration; later ones
- * find that the pose stands and repeat nothing. A step is therefore put together: the other stages of a steady iteration and a
- * registration that did compute. "standing step" is the steady iteration as it was.
+ * find that the pose no longer moves and repeat nothing. A step is therefore put together: the other stages of a steady iteration and a
+ * registration that did compute. "standing step" is the steady iteration as it was, its pose no longer moving.
  */
 class Samples {
   #steady = [];
@@ -99,12 +99,12 @@ export async function stages(sides, scene, { size, least }) {
   return { rows, ends: ends.filter((end) => end.start === "near") };
 }
 
-/** Steady iterations that several workers share, until each such crew has `least` of them. */
+/** Steady iterations that several workers share, until there are `least` for each number of workers. */
 export async function sharedSteps(sides, scene, { size, least }) {
   const rows = [];
   for (const side of sides) {
     await side.open(scene);
-    for (const workers of side.crews.filter((workers) => workers > 1)) {
+    for (const workers of side.workerCounts.filter((workers) => workers > 1)) {
       const times = [];
       await side.run({ start: "near", most: WARMING + 1, workers });
       while (times.length < least) {
@@ -127,7 +127,7 @@ export async function searches(sides, scene, { size, times, name = size }) {
   for (const side of sides) await side.open(scene);
   const found = [];
   for (let round = 0; round < times; round++) {
-    for (const [side, workers] of sides.flatMap((side) => side.crews.map((workers) => [side, workers]))) {
+    for (const [side, workers] of sides.flatMap((side) => side.workerCounts.map((workers) => [side, workers]))) {
       const where = workers > 1 ? `${side.where}, ${workers} workers` : side.where;
       const run = await side.run({ start: "search", most: TO_THE_END, workers });
       const search = sum(timesOf(run, ({ stage }) => stage === "search"));

@@ -21,17 +21,17 @@ export async function openPage(chromium, address) {
   return { page, close: () => context.close() };
 }
 
-/** The package in a worker of a browser; `hire` brings a fresh worker, whose memory nothing has grown yet. */
+/** The package in a worker of a browser; `start` makes a fresh worker, whose memory nothing has grown yet. */
 export async function browserSide(chromium, address) {
   const { page, close } = await openPage(chromium, `${address}/scripts/bench/page/`);
   const ask = (request) => page.evaluate((given) => window.bench.ask(given), request);
   return {
     where: "browser",
-    /** How many workers share a search, one figure after the other. */
-    crews: [1, 2],
+    /** Numbers of workers that runs are timed with. */
+    workerCounts: [1, 2],
     ask,
     async open({ path }) {
-      await page.evaluate(() => window.bench.hire());
+      await page.evaluate(() => window.bench.start());
       await ask({ kind: "init" });
       await ask({ kind: "scene", path: `/${path}` });
     },
@@ -47,12 +47,12 @@ export function nativeSide() {
   async function ask(...words) {
     child.stdin.write(`${words.join(" ")}\n`);
     const { value, done } = await lines.next();
-    if (done) throw new Failure("The native bench ended early; its message stands above.");
+    if (done) throw new Failure("The native bench ended early; see its message above.");
     return JSON.parse(value);
   }
   return {
     where: "native",
-    crews: [1],
+    workerCounts: [1],
     open: ({ path }) => ask("scene", path),
     run: ({ start, shading = "surface", most }) => ask("run", start, shading, most),
     close: () => child.stdin.end(),

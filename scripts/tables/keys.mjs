@@ -17,7 +17,7 @@ const KEYS = {
   ],
   ablation: ["without", "medianDegrees", "found"],
 };
-/** Nothing stands in for these where other people's data is absent. */
+/** Nothing replaces these where other people's data is absent. */
 const REAL = ["table3", "figure7", "photographs"];
 
 /** Tables without a row, and keys that a row lacks. A key may be null: not everything has a value. */

@@ -16,7 +16,7 @@ export function runCells(cells, { workers, signal, onResult, program = CELLS }) 
     const children = new Set();
     const finish = () => children.size === 0 && done();
 
-    function hire() {
+    function start() {
       const child = fork(program, { stdio: ["ignore", "inherit", "inherit", "ipc"] });
       children.add(child);
       let task;
@@ -39,13 +39,13 @@ export function runCells(cells, { workers, signal, onResult, program = CELLS }) 
           if (lost.tries < MOST_TRIES) waiting.unshift(lost);
           else onResult(lost.cell.id, { failure: { name: "Error", code: "exit", message: `its process ended (${by ?? code})` } }, 0);
         }
-        if (waiting.length > 0 && !signal.aborted) hire();
+        if (waiting.length > 0 && !signal.aborted) start();
         finish();
       });
     }
 
     signal.addEventListener("abort", () => children.forEach((child) => child.kill("SIGKILL")));
     if (cells.length === 0 || signal.aborted) return done();
-    for (let count = 0; count < Math.min(workers, cells.length); count++) hire();
+    for (let count = 0; count < Math.min(workers, cells.length); count++) start();
   });
 }

@@ -11,7 +11,7 @@ const WORST_SHOWN = 5;
 export const fixed = (value, digits = 3) => (typeof value === "number" && Number.isFinite(value) ? value.toFixed(digits) : DASH);
 const percent = (value) => (typeof value === "number" ? `${(100 * value).toFixed(0)} %` : DASH);
 const small = (value) => (typeof value === "number" ? (value < 1e-4 ? value.toExponential(1) : value.toFixed(6)) : DASH);
-/** ? doubt was said, ! wrong by more than 3 degrees and nothing said. */
+/** ? flagged as uncertain, ! wrong by more than 3 degrees and not flagged. */
 const mark = (row) => (isFlagged(row) ? "?" : isConfidentlyWrong(row) ? "!" : "");
 
 /** Lists of words as columns, the first one flush left. */

@@ -67,8 +67,8 @@ test("bundled for browsers it carries its files along, and asks for nothing of N
     build: { write: false, rollupOptions: { input: join(folder, "page.js") } },
   });
   assert.deepEqual(warnings, []);
-  const carried = output.map(({ fileName }) => fileName.replace(/^assets\/|-[\w-]{8}(?=\.)/g, "")).sort();
-  assert.deepEqual(carried, ["bimodal_stereo_bg.wasm", "bimodal_stereo_scalar_bg.wasm", "page.js", "thread.js"]);
+  const bundled = output.map(({ fileName }) => fileName.replace(/^assets\/|-[\w-]{8}(?=\.)/g, "")).sort();
+  assert.deepEqual(bundled, ["bimodal_stereo_bg.wasm", "bimodal_stereo_scalar_bg.wasm", "page.js", "thread.js"]);
   for (const { fileName, imports = [], dynamicImports = [] } of output) assert.deepEqual([...imports, ...dynamicImports], [], fileName);
 });
 

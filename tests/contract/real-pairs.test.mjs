@@ -1,4 +1,4 @@
-// Real pairs through the built package: the loop ends, says where it stands, and fills the holes.
+// Real pairs through the built package: the loop ends, with a status, and fills the holes.
 import assert from "node:assert/strict";
 import { before, describe, test } from "node:test";
 import * as files from "../../pkg/files.js";

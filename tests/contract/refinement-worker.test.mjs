@@ -4,7 +4,7 @@ import { before, describe, test } from "node:test";
 import { Estimator, init, outcome, pair } from "./support.mjs";
 import { runSettled, seen, settled, tamperWith, until } from "./threads.mjs";
 
-/** Large enough to be shared; the pose that is to be found stands from the second iteration on. */
+/** Large enough to be shared; the pose that is to be found no longer moves from the second iteration on. */
 function scene(options = {}, request = {}) {
   const { image, depth, pose } = pair({ light: "window", size: 112, noise: 0.01, angles: { beta: 20 }, ...request });
   return { image, depth, options: { start: pose, stopDegrees: 1e-12, ...options } };
@@ -31,7 +31,7 @@ async function settledEnd(estimator, step) {
 /** How long the estimator waits for an answer, milliseconds: LONGEST_WAIT of js/workers/refinement.ts. */
 const LONGEST_WAIT = 2000;
 
-/** The estimator waits for the other thread as long as it takes: its patience is a timer, which is stopped. */
+/** The estimator waits for the other thread as long as it takes: the timer that ends its wait is stopped. */
 const withoutHaste = (t) => t.mock.timers.enable({ apis: ["setTimeout"] });
 
 /** Until a run waits for a refinement that never comes. */

@@ -134,7 +134,7 @@ describe("search workers", () => {
     assert.throws(() => together.step(), { code: "freed" });
   });
 
-  test("a program ends though nobody frees them", () => {
+  test("a program ends though they are never freed", () => {
     const folder = mkdtempSync(join(tmpdir(), "bimodal-stereo-"));
     const program = join(folder, "program.mjs");
     const support = JSON.stringify(new URL("./support.mjs", import.meta.url).href);

@@ -1,4 +1,4 @@
-// Builds meant to have SIMD have shipped without it, and nobody sees that from outside: so the instructions are counted.
+// Builds meant to have SIMD have shipped without it, which cannot be seen from outside: so the instructions are counted.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { describe, test } from "node:test";

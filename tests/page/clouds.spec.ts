@@ -18,7 +18,7 @@ async function covered(clouds: Locator): Promise<number> {
   return count / (width * height);
 }
 
-/** Patience of one attempt of several. */
+/** Longest wait, milliseconds, of one attempt of several. */
 const BRIEFLY = { timeout: 5_000 };
 
 const NO_OFFSCREEN = "delete HTMLCanvasElement.prototype.transferControlToOffscreen;";

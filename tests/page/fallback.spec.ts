@@ -23,7 +23,7 @@ test("with SIMD the default file is downloaded, and no other", async ({ lab, pag
 
 test("without SIMD the Lab's worker downloads the scalar file alone, and computes", async ({ lab, page }) => {
   const names = downloads(page);
-  // A worker hears nothing of the page's init scripts, so its own script begins with the line.
+  // The page's init scripts do not run in a worker, so its own script begins with the line.
   await page.route(/worker[^/]*\.js$/, async (route) => {
     const response = await route.fetch();
     await route.fulfill({ response, body: `${NO_SIMD}${await response.text()}` });

@@ -1,4 +1,4 @@
-/** What every test of the page needs: the Lab, opened, with an ear on the console. */
+/** What every test of the page needs: the Lab, opened, and a record of its errors on the console. */
 
 import { test as base, expect, type Locator, type Page } from "@playwright/test";
 

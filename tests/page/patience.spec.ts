@@ -35,7 +35,7 @@ test("another input replaces one that is being worked on", async ({ lab, page })
   await expect(lab.iteration).toHaveText("1");
 });
 
-test("of several wishes the last one counts", async ({ lab, page }) => {
+test("of several requests the last one counts", async ({ lab, page }) => {
   const messages = await Messages.of(page);
   await lab.open("surface=vase");
   const vase = await lab.fingerprint("Colour");
@@ -43,7 +43,7 @@ test("of several wishes the last one counts", async ({ lab, page }) => {
   await lab.open("surface=bust");
   const surface = page.getByLabel("Surface", { exact: true });
   const start = page.getByLabel("Start", { exact: true });
-  // All of them are made before the worker hears of the first.
+  // All of them are made before the worker receives the first.
   await messages.hold();
   for (const name of ["ripples", "bust", "vase"]) await surface.selectOption(name);
   await start.selectOption("near");

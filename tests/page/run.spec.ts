@@ -164,11 +164,11 @@ const AT_START = /[\d.]+° at the start/;
 test("nothing known: the search comes first, says how far it is, and the loop converges", async ({ lab, page }) => {
   await lab.visit("light=window&beta=50&gamma=15&overlap=0.7&noise=0.01");
   const search = page.getByRole("button", { name: /^search/ });
-  // Whoever looks now and then may miss the search, so all that its chip says while it is lit is written down.
+  // A look now and then may miss the search, so all that its chip says while it is lit is written down.
   const said = await search.evaluateHandle((chip) => {
     const said: string[] = [];
-    const listen = () => chip.hasAttribute("data-lit") && said.push(chip.textContent ?? "");
-    new MutationObserver(listen).observe(chip, { attributes: true, childList: true, characterData: true, subtree: true });
+    const record = () => chip.hasAttribute("data-lit") && said.push(chip.textContent ?? "");
+    new MutationObserver(record).observe(chip, { attributes: true, childList: true, characterData: true, subtree: true });
     return said;
   });
   const error = page.locator("#pose-error");

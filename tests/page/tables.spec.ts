@@ -36,7 +36,7 @@ test("the navigation leads to the Tables and back, and the Lab keeps its setting
   expect(await messages.count("advance")).toBe(0);
 });
 
-test("whoever comes for the Lab alone loads nothing of the Tables", async ({ lab, page }) => {
+test("the Lab alone loads nothing of the Tables", async ({ lab, page }) => {
   const asked: string[] = [];
   page.on("request", (request) => asked.push(new URL(request.url()).pathname));
   await lab.open();

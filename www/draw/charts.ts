@@ -1,4 +1,4 @@
-/** Curves on a logarithmic axis: the Lab's energy and rotation change, and whatever else runs from left to right. Loaded after the first paint. */
+/** Curves on a logarithmic axis: the Lab's objective and rotation change, and whatever else runs from left to right. Loaded after the first paint. */
 
 import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
@@ -15,23 +15,24 @@ interface Line extends Curve {
   value(report: StepReport): number;
 }
 
-const energies: readonly Line[] = [
+/** `report.energy` holds the objective (Eq. 1) and its terms. */
+const objectiveTerms: readonly Line[] = [
   { label: "total", token: "ink", value: ({ energy }) => energy.total },
   { label: "shading", token: "series-1", value: ({ energy }) => energy.shading },
   { label: "prior", token: "series-2", value: ({ energy }) => energy.prior },
   { label: "registration", token: "series-3", value: ({ energy }) => energy.registration },
   { label: "refinement", token: "series-4", value: ({ energy }) => energy.refinement },
 ];
-/** Degrees. A rotation that stands changes by zero, for which a logarithm has no place. */
+/** Degrees. A rotation that no longer moves changes by zero, for which a logarithm has no place. */
 const LEAST_CHANGE = 1e-6;
 const rotation: readonly Line[] = [{ label: "change, deg (1e-6: none)", token: "accent", value: ({ rotationChange }) => Math.max(rotationChange, LEAST_CHANGE) }];
 
 export class Charts {
   readonly #charts: readonly { plot: Plot; lines: readonly Line[] }[];
 
-  constructor(energyBox: HTMLElement, rotationBox: HTMLElement) {
+  constructor(objectiveBox: HTMLElement, rotationBox: HTMLElement) {
     const chart = (box: HTMLElement, lines: readonly Line[]) => ({ plot: new Plot(box, { xLabel: "iteration", curves: lines, whole: true }), lines });
-    this.#charts = [chart(energyBox, energies), chart(rotationBox, rotation)];
+    this.#charts = [chart(objectiveBox, objectiveTerms), chart(rotationBox, rotation)];
   }
 
   show(history: readonly StepReport[]): void {

@@ -132,8 +132,8 @@ async function elsewhere(canvas: HTMLCanvasElement): Promise<Draw> {
 }
 
 async function here(canvas: HTMLCanvasElement): Promise<Draw> {
-  const { Stage } = await import("./stage");
-  const stage = new Stage(canvas);
+  const { CloudStage } = await import("./stage");
+  const stage = new CloudStage(canvas);
   return async (change) => {
     await new Promise(requestAnimationFrame);
     stage.show(change);

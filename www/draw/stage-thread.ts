@@ -1,14 +1,14 @@
-/** The thread that draws the clouds: a page that waits for its own WebGL drawing answers nobody meanwhile. */
+/** The thread that draws the clouds: a page that waits for its own WebGL drawing answers no press meanwhile. */
 
-import { Stage, type Change } from "./stage";
+import { CloudStage, type Change } from "./stage";
 
-let stage: Stage | undefined;
+let stage: CloudStage | undefined;
 
 /** First the canvas, then changes; each is answered once it is drawn, the canvas by whether there is WebGL. */
 self.onmessage = ({ data }: MessageEvent<OffscreenCanvas | Change>) => {
   if (data instanceof OffscreenCanvas) {
     try {
-      stage = new Stage(data);
+      stage = new CloudStage(data);
       self.postMessage(true);
     } catch {
       self.postMessage(false);

@@ -23,7 +23,7 @@ export interface Change {
   inks?: { image: string; depth: string };
 }
 
-export class Stage {
+export class CloudStage {
   readonly #renderer: WebGLRenderer;
   readonly #scene = new Scene();
   readonly #camera = new Camera();

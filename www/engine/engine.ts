@@ -17,8 +17,8 @@ export class EngineError extends Error {
   }
 }
 
-/** How long, in milliseconds, a new wish waits for the answer to an old one before the worker is replaced. */
-const PATIENCE = 400;
+/** How long, in milliseconds, a new request waits for the reply to an old one before the worker is replaced. */
+const LONGEST_WAIT = 400;
 
 interface Pending {
   resolve(reply: Calls[Kind]["reply"]): void;
@@ -26,7 +26,7 @@ interface Pending {
 }
 
 export interface EngineHooks {
-  /** Hears how many bytes of the module have arrived. */
+  /** Told how many bytes of the module have arrived. */
   onLoad(bytes: number): void;
   /** The worker is gone, and with it the input that it held. */
   onLost(): void;
@@ -37,6 +37,7 @@ export class Engine {
   /** Before its first answer a worker is still loading; to replace it then would only load everything again. */
   #loaded = false;
   #pending = new Map<number, Pending>();
+  /** Called when nothing is pending any more. */
   #resting: (() => void)[] = [];
   #next = 0;
   readonly #hooks: EngineHooks;
@@ -54,22 +55,22 @@ export class Engine {
     });
   }
 
-  /** Resolves when nothing is under way any more. What takes too long is broken off, and its caller hears so. */
+  /** Resolves when nothing is under way any more. What takes too long is broken off, and its promise rejected. */
   async interrupt(): Promise<void> {
     if (this.#pending.size === 0) return;
     const rest = new Promise<void>((resolve) => this.#resting.push(resolve));
-    const impatient = setTimeout(() => {
+    const late = setTimeout(() => {
       if (this.#loaded) this.#drop({ code: "interrupted", message: "broken off for something newer", fatal: false });
-    }, PATIENCE);
+    }, LONGEST_WAIT);
     await rest;
-    clearTimeout(impatient);
+    clearTimeout(late);
   }
 
   #spawn(): Worker {
     const worker = new Worker(new URL("./worker.ts", import.meta.url), { type: "module" });
     // What a worker said before its end may arrive after it.
     worker.onmessage = (event: MessageEvent<Answer>) => {
-      if (worker === this.#worker) this.#hear(event.data);
+      if (worker === this.#worker) this.#receive(event.data);
     };
     worker.onerror = (event) => {
       event.preventDefault();
@@ -78,7 +79,7 @@ export class Engine {
     return worker;
   }
 
-  #hear(answer: Answer): void {
+  #receive(answer: Answer): void {
     if (answer.id === null) {
       this.#hooks.onLoad(answer.loaded);
       return;
@@ -103,7 +104,7 @@ export class Engine {
   }
 
   /**
-   * Nothing that a poisoned or busy instance still says can be used, so whoever waits for it hears the same fault. The
+   * No reply of an instance that has panicked or is being replaced can be used, so all pending calls fail with the same fault. The
    * next call makes a new worker; making it here would go round in circles where the worker cannot be loaded at all.
    */
   #drop(fault: Fault): void {

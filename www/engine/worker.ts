@@ -13,16 +13,16 @@ interface Input {
   truth: Pose | null;
 }
 
-interface Experiment extends Input {
+interface OpenInput extends Input {
   estimator: Estimator;
   imageCut: Cut;
   depthCut: Cut;
 }
 
-let experiment: Experiment | undefined;
+let experiment: OpenInput | undefined;
 let isLoaded = false;
 const ready = load();
-// Whoever waits for it hears of a failure; that nobody waits yet is no failure of its own.
+// Each request waits for it and reports a failure; before the first request its rejection must not count as unhandled.
 ready.catch(() => {});
 
 async function load(): Promise<void> {
@@ -57,7 +57,7 @@ function resolve({ light, start, ...rest }: LabOptions, input: Input): Options {
   };
 }
 
-function frame({ estimator, imageCut, depthCut }: Experiment, reports: StepReport[]): Frame {
+function frame({ estimator, imageCut, depthCut }: OpenInput, reports: StepReport[]): Frame {
   return {
     reports,
     imageNormals: raster(estimator.imageNormals(), 3, imageCut),
@@ -107,7 +107,7 @@ function reset({ options }: Calls["reset"]["request"]): Frame {
   return frame(current, [current.estimator.report]);
 }
 
-/** Least and most time spent on one frame of the search, in milliseconds: pause must still obey at once. */
+/** Least and most time spent on one frame of the search, in milliseconds: a pause must still take effect at once. */
 const SEARCHING = [30, 250] as const;
 let answered = Infinity;
 
@@ -117,19 +117,19 @@ async function advance({ by, milliseconds }: Calls["advance"]["request"]): Promi
   const began = performance.now();
   const reports: StepReport[] = [];
   const isSearch = () => reports.at(-1)?.stage === "search";
-  // A slice of the search is too little to look at: some of them make a frame, and the last one tells it. Where drawing is
+  // A slice of the search is too little to look at: some of them make a frame, which has the report of the last one. Where drawing is
   // slow the search takes as long as the page does, and so at least half of all the time.
   const searching = Math.min(Math.max(began - answered, SEARCHING[0]), SEARCHING[1]);
   do {
     if (isSearch()) reports.pop();
-    // Unlike a plain step this one lets the messages of the search's other threads through.
+    // Unlike `step` this lets the messages of the other threads through.
     reports.push(by === "stage" ? estimator.stepStage() : await estimator.run({ maxIterations: 1 }));
   } while (performance.now() - began < (isSearch() ? searching : milliseconds) && estimator.report.status === "running");
   answered = performance.now();
   return frame(current, reports);
 }
 
-function opened(): Experiment {
+function opened(): OpenInput {
   if (!experiment) throw new Error("No input is open.");
   return experiment;
 }

@@ -125,7 +125,7 @@ export class Gallery {
 
   async #loadCharts(): Promise<void> {
     const { Charts } = await import("../draw/charts");
-    this.#charts = new Charts(byId("energy-chart", HTMLElement), byId("rotation-chart", HTMLElement));
+    this.#charts = new Charts(byId("objective-chart", HTMLElement), byId("rotation-chart", HTMLElement));
     this.#showCharts();
   }
 

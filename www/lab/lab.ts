@@ -42,7 +42,7 @@ export class Lab {
   #good: { source: Source; settings: Settings } | undefined;
   /** What the worker holds, which may be an input that was overtaken before it could be shown. */
   #held: Source | undefined;
-  /** What the page does or suffers apart from the loop; it stands in the status until the next frame is on the screen. */
+  /** What the page does or fails at apart from the loop; the status shows it until the next frame is on the screen. */
   #notice: { state: Notice; words: string } | undefined;
   /** Counts beginnings, so that the answer to an overtaken one is dropped. */
   #turn = 0;
@@ -94,7 +94,7 @@ export class Lab {
     this.player.toggle();
   }
 
-  /** Nobody looks any more. */
+  /** The visitor has gone to the Tables. */
   leave(): void {
     this.#watched = undefined;
     this.player.pause();

@@ -12,7 +12,7 @@ export const paces = [
   { label: "fastest", pause: 0, milliseconds: 30 },
 ] as const;
 
-/** Iterations that take longer than this, in milliseconds, are played stage by stage: there is more to see, and pause obeys sooner. */
+/** Iterations that take longer than this, in milliseconds, are played stage by stage: there is more to see, and a pause takes effect sooner. */
 const SLOW = 300;
 
 export interface PlayerHooks {
@@ -63,7 +63,7 @@ export class Player {
   }
 
   async #play(): Promise<void> {
-    // Whoever pauses and plays again must not end up with two loops.
+    // To pause and play again must not end up with two loops.
     const turn = ++this.#turn;
     const isOn = () => this.#playing && turn === this.#turn;
     this.#playing = true;

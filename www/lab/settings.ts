@@ -1,6 +1,6 @@
 /**
  * Everything the Lab can be told: the form, its errors, undo and the link are all made from this list. What is a member of
- * the library's options comes from the library's own rows, with its default and its words; here stands what the Lab makes of
+ * the library's options comes from the library's own rows, with its default and its words; here is what the Lab makes of
  * several, or of files. An empty number is absent, and so the library's default.
  */
 
@@ -15,7 +15,7 @@ export type Value = string | number | boolean | null;
 interface Common {
   key: string;
   label: string;
-  /** One sentence for whoever does not know the word. */
+  /** One sentence that explains the label. */
   hint?: string;
   /** What the present choice entails, always in sight. */
   remark?: (value: Value, source: Origin) => string;

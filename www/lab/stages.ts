@@ -1,4 +1,4 @@
-/** The opening search and the five stages of one iteration, in words. */
+/** The search and the five stages of one iteration, in words. */
 
 import type { Stage } from "../../pkg/index.js";
 
@@ -16,7 +16,7 @@ export const stages: readonly StageText[] = [
     title: "Search",
     equation: "maximise √N ln(spread / noise) over R, s, t",
     words:
-      "Where nothing is known of the pose, rotations from all over are tried on a coarse grid, every shift of each at once by a Fourier transform. The best candidates are registered by their colours; the one that leaves the least noise opens the loop, and those that explain nearly as much are reported as its rivals.",
+      "Where nothing is known of the pose, rotations from all over are tried on a coarse grid, every shift of each at once by a Fourier transform. The best candidates are registered by their colours; the loop starts from the one that leaves the least noise, and those that explain nearly as much are reported as its rivals.",
     source: "Before Algorithm 1; not in the paper",
   },
   {
@@ -24,7 +24,7 @@ export const stages: readonly StageText[] = [
     title: "Light",
     equation: "log S = nᵀ M n",
     words:
-      "With the normals held, the logarithm of every colour is linear in 27 numbers, nine spherical harmonics for each channel. They are fitted by least squares; a Gaussian learned from natural lights says which lights are likely. A known light keeps its form and only its exposure is fitted.",
+      "With the normals held, the logarithm of every colour is linear in 27 numbers, nine spherical harmonics for each channel. They are fitted by least squares; a Gaussian learned from natural lights says which lights are likely. A known light is not fitted; its exposure is found in the shading stage.",
     source: "Equations 2, 3 and 5",
   },
   {
@@ -32,7 +32,7 @@ export const stages: readonly StageText[] = [
     title: "Shading",
     equation: "minimise |log S − nᵀ M n|² + λ₂ |n − R n_R|² + λ₃ (nᵀ n − 1)²",
     words:
-      "With light and pose held, each pixel of the image looks for the normal that explains its three colours, stays close to the normal that the depth map has at the corresponding point, and has length one.",
+      "With light and pose held, each pixel of the image looks for the normal that explains its three colours, stays close to the normal that the depth map has at the corresponding point, and has length one. Under a known light the exposure of the picture is found along with the normals.",
     source: "Equations 6 to 9",
   },
   {

@@ -1,4 +1,4 @@
-/** The stages as the spine of the page: the one that ran last is lit, its time stands below, a press explains it. */
+/** The stages as the spine of the page: the one that ran last is lit, its time is shown below, a press explains it. */
 
 import type { Stage, StepReport } from "../../pkg/index.js";
 import { decimals } from "../draw/numbers";

@@ -1,4 +1,4 @@
-/** What a run has come to, in words that nobody takes for more than it is. */
+/** What a run has come to, in words that do not claim more than it is. */
 
 import type { Pose, StepReport } from "../../pkg/index.js";
 import { decimals } from "../draw/numbers";
@@ -44,8 +44,8 @@ export function verdict({ status, message, pose }: StepReport, start: Pose | und
     return { tone: "good", status: ends[status], words: [...said, "The pose has settled; there is no true one to compare it with."].join(" ") };
   }
   const stayed = start !== undefined && angleBetween(pose.rotation, start.rotation) < STAYED;
-  const doubt = stayed ? "The rotation is still that of the start, which does not confirm it." : "The pose has not settled: do not build on it.";
-  return { tone: "wrong", status: stayed ? "start kept" : ends[status], words: [...said, doubt].join(" ") };
+  const caution = stayed ? "The rotation is still that of the start, which does not confirm it." : "The pose has not settled: do not build on it.";
+  return { tone: "wrong", status: stayed ? "start kept" : ends[status], words: [...said, caution].join(" ") };
 }
 
 const sentence = (words: string): string => `${words.charAt(0).toUpperCase()}${words.slice(1)}${/[.!?]$/.test(words) ? "" : "."}`;

@@ -3,9 +3,7 @@
 import { Plot, type Curve } from "../draw/charts";
 import { make } from "../dom";
 import type { Panel } from "./panels";
-import type { Cell, Result } from "./protocol";
-
-type Done = readonly { cell: Cell; result: Result }[];
+import type { Cell, Done } from "./protocol";
 
 interface Data {
   title: string;

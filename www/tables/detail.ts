@@ -8,7 +8,7 @@ import type { Cell, Result } from "./protocol";
 import type { State } from "./runner";
 import { described, obstacle, watchLink } from "./scene";
 
-interface Line {
+interface Fact {
   term: string;
   read(result: Result): unknown;
   show(value: number): string;
@@ -18,7 +18,7 @@ const degrees = (value: number): string => `${short(value)}°`;
 const pixels = (value: number): string => `${short(value)} px`;
 
 /** What a result may hold besides its main number; each kind of cell has some of it. */
-const lines: readonly Line[] = [
+const lines: readonly Fact[] = [
   { term: "Bound, one sigma", read: ({ bound }) => bound, show: degrees },
   { term: "Rotation error", read: (result) => ("rivals" in result ? result.degrees : undefined), show: degrees },
   { term: "As the paper counts", read: ({ error }) => error, show: short },
@@ -46,7 +46,7 @@ export class Detail {
   readonly #message = make("p", { class: "soft" });
   readonly #scene = make("p", { class: "soft" });
   readonly #facts = make("dl");
-  /** Folded where the screen is small and the detail stands before the grid. */
+  /** Folded where the screen is small and the detail comes before the grid. */
   readonly #more = make("details", { open: !matchMedia("(max-width: 45rem)").matches }, make("summary", {}, "Details"));
   readonly #watch = make("a", { class: "button primary" }, "Watch this run");
   readonly #obstacle = make("p", { class: "soft" });
@@ -62,7 +62,7 @@ export class Detail {
     this.element.append(this.#title, this.#outcome, this.#mark, this.#more, this.#obstacle, actions);
   }
 
-  /** What is there stays there and only changes, so that nobody's focus or press is lost while a cell runs. */
+  /** What is there stays there and only changes, so that no focus or press is lost while a cell runs. */
   show(panel: Panel, cell: Cell | undefined, state: State | undefined): void {
     const moved = this.#cell !== cell;
     this.#cell = cell;

@@ -16,16 +16,16 @@ export interface Mark {
 
 export const marks: readonly Mark[] = [
   { kind: "ambiguous", glyph: "?", words: "ambiguous: other poses explain it as well" },
-  { kind: "lost", glyph: "×", words: "lost, and said so" },
+  { kind: "lost", glyph: "×", words: "lost, and flagged as such" },
   { kind: "stopped", glyph: "=", words: "stopped at the cap of iterations" },
-  { kind: "wrong", glyph: "!", words: "over 3° off, and nothing said" },
+  { kind: "wrong", glyph: "!", words: "over 3° off, and not flagged" },
 ];
 
-/** A wrong pose that nothing warns of is worse than anything that is said. */
+/** A wrong pose that is not flagged is worse than any that is, so its mark comes first. */
 export function markOf(state: State | undefined): Mark | undefined {
   if (state?.kind !== "done") return undefined;
   const { result } = state;
-  // Where no pose was looked for, neither right nor wrong is said of it, and a loop without an aim always ends at its cap.
+  // Where no pose was looked for, it is neither right nor wrong, and a loop without an aim always ends at its cap.
   if (!("rivals" in result)) return undefined;
   const kind = isConfidentlyWrong(result) ? "wrong" : result.status === "max-iterations" ? "stopped" : result.status;
   return marks.find((mark) => mark.kind === kind);

@@ -7,7 +7,7 @@ export interface Task {
   cell: Cell;
 }
 
-export type Answer =
+export type CellAnswer =
   /** How far the cell is, in words. */
   | { id: string; progress: string }
   | { id: string; result: Result }

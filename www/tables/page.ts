@@ -23,7 +23,7 @@ const first = panels[0] as Panel;
 const optionsOf = ({ cells }: Panel, key: string): string[] => [...new Set(cells.map(({ row }) => String(row[key])))];
 
 export class TablesPage {
-  readonly #runner = new Runner((id) => this.#hear(id));
+  readonly #runner = new Runner((id) => this.#update(id));
   readonly #chosen = new Map<Panel, Chosen>();
   readonly #tabs = new Map<Panel, { button: HTMLButtonElement; count: HTMLElement }>();
   readonly #side = make("nav", { class: "tabs", "aria-label": "Tables and figures" });
@@ -62,7 +62,7 @@ export class TablesPage {
     this.#show(panel ?? this.#panel);
   }
 
-  /** Nothing is computed for a page that nobody sees; what is done stays. */
+  /** Nothing is computed for a page that is not shown; what is done stays. */
   leave(): void {
     this.#open = false;
     this.#runner.stop();
@@ -159,7 +159,7 @@ export class TablesPage {
     this.#showDetail();
   }
 
-  #hear(id: string): void {
+  #update(id: string): void {
     const state = this.#runner.stateOf(id);
     this.#heat?.show(id, state);
     if (this.#of(this.#panel).cell?.id === id) this.#showDetail();

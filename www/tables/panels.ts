@@ -20,7 +20,7 @@ export interface Panel {
   name: string;
   tab: string;
   title: string;
-  /** What is measured, for somebody who has not read the paper. */
+  /** What is measured, for a visitor who has not read the paper. */
   words: string;
   choices: readonly Choice[];
   down: Axis;
@@ -102,7 +102,7 @@ export const panels: readonly Panel[] = [
   panel({
     name: "figure4",
     tab: "Figure 4",
-    words: "Table 1's run, iteration by iteration: by the opening search, and by the paper's own stages from the paper's own start.",
+    words: "Table 1's run, iteration by iteration: by the search over poses, and by the paper's own stages from the paper's own start.",
     down: byKey("run", "run"),
     across: byKey("protocol", "protocol"),
     value: atTheEnd,
@@ -150,7 +150,7 @@ export const panels: readonly Panel[] = [
   panel({
     name: "exposure",
     tab: "Exposure",
-    words: "Whoever took the picture chose the exposure. It must not matter: random scenes with all their colours darker and brighter.",
+    words: "The exposure is the photographer's choice and must not matter: random scenes with all their colours darker and brighter.",
     down: byKey("scene", "scene"),
     across: { label: "colours", of: ({ exposure = 1 }) => exposure, name: (factor) => `× ${factor}` },
   }),

@@ -39,6 +39,9 @@ export interface Result extends Row {
   milliseconds?: number;
 }
 
+/** Cells that have come to an end, each with its result. */
+export type Done = readonly { cell: Cell; result: Result }[];
+
 /** Where a result lacks what is asked for, the protocol's answer is no. */
 const judgement = (judge: (result: never) => boolean) => judge as (result: Result) => boolean;
 export const isFound = judgement(counts.isFound);
@@ -80,10 +83,10 @@ export const tableNamed = (name: string): Table => definition(name);
 export const cellsOf = (name: string): Cell[] => definition(name).cells(own, false) as Cell[];
 
 /** The rows as the command writes them: a list, or one summary with counts. */
-export const rowsOf = (name: string, results: readonly { cell: Cell; result: Result }[]): Row[] | Row =>
+export const rowsOf = (name: string, results: Done): Row[] | Row =>
   rows(definition(name), results) as Row[] | Row;
 
-export const aimsOf = (name: string, results: readonly { cell: Cell; result: Result }[]): Aim[] =>
+export const aimsOf = (name: string, results: Done): Aim[] =>
   judge({ [name]: rowsOf(name, results) }) as Aim[];
 
 export const sceneOf = (cell: Cell): Cell["scene"] => scene(cell, library) as Cell["scene"];

@@ -2,25 +2,25 @@
 
 import { short } from "../draw/numbers";
 import { make } from "../dom";
-import { rowsOf, type Cell, type Result, type Row } from "./protocol";
+import { rowsOf, type Cell, type Done, type Row } from "./protocol";
 
 type Column = readonly [key: string, heading: string];
 
-const share: readonly Column[] = [["cases", "scenes"], ["found", "found"], ["ambiguousOrLost", "doubt said"]];
+const share: readonly Column[] = [["cases", "scenes"], ["found", "found"], ["ambiguousOrLost", "flagged"]];
 
 const columns: Record<string, readonly Column[]> = {
   table1: [["protocol", "protocol"], ["sign", "sign"], ["scale", "s"], ["alpha", "α"], ["beta", "β"], ["gamma", "γ"], ["iterations", "iterations"], ["degrees", "degrees"]],
   refinement: [["lightName", "light"], ["pose", "pose"], ["before", "px before"], ["after", "after"], ["holes", "in former holes"], ["gain", "gain"], ["degrees", "degrees"]],
   random: [
     ...share,
-    ["flaggedThoughFound", "of found ones"],
-    ["confidentlyWrong", "wrong, not said"],
+    ["flaggedThoughFound", "found, but flagged"],
+    ["confidentlyWrong", "wrong, not flagged"],
     ["medianDegrees", "median degrees"],
     ["coverage1", "within 1 σ"],
     ["coverage3", "within 3 σ"],
   ],
   exposure: [["scene", "scene"], ["factor", "colours ×"], ["degreesMoved", "degrees moved"], ["degrees", "degrees off"], ["status", "status"]],
-  ablation: [["without", "without"], ["cases", "scenes"], ["found", "found"], ["confidentlyWrong", "wrong, not said"], ["medianDegrees", "median degrees"]],
+  ablation: [["without", "without"], ["cases", "scenes"], ["found", "found"], ["confidentlyWrong", "wrong, not flagged"], ["medianDegrees", "median degrees"]],
 };
 
 function shown(value: unknown): string {
@@ -34,7 +34,7 @@ function paperRow(name: string, [first]: readonly { cell: Cell }[]): Row[] {
   return name === "table1" && typeof paper === "object" && paper !== null ? [{ ...paper, protocol: "the paper", sign: first?.cell.row.sign }] : [];
 }
 
-export function rowsTable(name: string, done: readonly { cell: Cell; result: Result }[]): HTMLElement[] {
+export function rowsTable(name: string, done: Done): HTMLElement[] {
   const wanted = columns[name];
   if (!wanted || done.length === 0) return [];
   const rows = [...paperRow(name, done), ...[rowsOf(name, done)].flat()];

@@ -1,6 +1,6 @@
 /** Runs cells one after the other in a worker of its own, and keeps what came out for as long as the page lives. */
 
-import type { Answer, Task } from "./messages";
+import type { CellAnswer, Task } from "./messages";
 import type { Cell, Result } from "./protocol";
 
 export type State =
@@ -103,8 +103,8 @@ export class Runner {
   #spawn(): Worker {
     const worker = new Worker(new URL("./worker.ts", import.meta.url), { type: "module" });
     // What a worker said before its end may arrive after it.
-    worker.onmessage = (event: MessageEvent<Answer>) => {
-      if (worker === this.#worker) this.#hear(event.data);
+    worker.onmessage = (event: MessageEvent<CellAnswer>) => {
+      if (worker === this.#worker) this.#receive(event.data);
     };
     worker.onerror = (event) => {
       event.preventDefault();
@@ -113,7 +113,7 @@ export class Runner {
     return worker;
   }
 
-  #hear(answer: Answer): void {
+  #receive(answer: CellAnswer): void {
     const { id } = answer;
     if (this.#running?.id !== id) return;
     if ("progress" in answer) {
@@ -125,7 +125,7 @@ export class Runner {
     }
   }
 
-  /** A poisoned instance measures nothing more; the next cell gets a new one. */
+  /** An instance that has panicked measures nothing more; the next cell gets a new one. */
   #breakDown(message: string): void {
     this.#worker?.terminate();
     this.#worker = undefined;
@@ -138,7 +138,7 @@ export class Runner {
     this.#running = undefined;
     this.#become(id, state);
     this.#next();
-    // The last one to hear: nothing runs any more.
+    // Reported once more, now that nothing runs.
     if (!this.#running) this.#onChange(id);
   }
 }

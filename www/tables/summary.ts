@@ -4,9 +4,7 @@ import { short } from "../draw/numbers";
 import { make } from "../dom";
 import type { Panel } from "./panels";
 import { rowsTable } from "./rows";
-import { aimsOf, isFlagged, isFound, median, worst, type Aim, type Cell, type Result } from "./protocol";
-
-type Done = readonly { cell: Cell; result: Result }[];
+import { aimsOf, isFlagged, isFound, median, worst, type Aim, type Done } from "./protocol";
 
 const number = (value: unknown): string => (typeof value === "number" && Number.isFinite(value) ? short(value) : "–");
 
@@ -20,7 +18,7 @@ function overview(panel: Panel, done: Done): HTMLElement {
   const posed = done.filter(({ result }) => "rivals" in result).map(({ result }) => result);
   const words = [
     `Of ${done.length} done: median ${number(median(values))}${panel.unit}, worst ${number(worst(values))}${panel.unit}`,
-    ...(posed.length > 0 ? [`${posed.filter(isFound).length} of ${posed.length} poses found within 3°`, `${posed.filter(isFlagged).length} with doubt said`] : []),
+    ...(posed.length > 0 ? [`${posed.filter(isFound).length} of ${posed.length} poses found within 3°`, `${posed.filter(isFlagged).length} flagged as uncertain`] : []),
   ];
   return make("p", {}, `${words.join("; ")}.`);
 }

@@ -4,7 +4,7 @@ import init, { Estimator, sample, sampleBound } from "../../pkg/index.js";
 import type { RunOptions, StepReport } from "../../pkg/index.js";
 import { measure } from "../../scripts/tables/protocol/measure.mjs";
 import { faultOf } from "../engine/fault";
-import type { Answer, Task } from "./messages";
+import type { CellAnswer, Task } from "./messages";
 import { library, type Result } from "./protocol";
 
 /** Milliseconds between two words on how far a cell is. */
@@ -12,7 +12,7 @@ const TELL_EVERY = 100;
 
 let isLoaded = false;
 const ready = init().then(() => (isLoaded = true));
-// Whoever waits for it hears of a failure; that nobody waits yet is no failure of its own.
+// Each request waits for it and reports a failure; before the first request its rejection must not count as unhandled.
 ready.catch(() => {});
 
 let current = "";
@@ -35,7 +35,7 @@ class Watched extends Estimator {
 
 const api = { Estimator: Watched, sample, sampleBound };
 
-function post(answer: Answer): void {
+function post(answer: CellAnswer): void {
   self.postMessage(answer);
 }
 

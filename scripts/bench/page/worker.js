@@ -65,7 +65,7 @@ async function run({ start, shading, most, workers }) {
       continue;
     }
     report = estimator.stepStage();
-    // From outside: so long nobody else has a turn.
+    // Wall time of the call: so long no other event is handled.
     if (report.stage === "search") longestSlice = Math.max(longestSlice, performance.now() - before);
     stages.push({ stage: report.stage, iteration, milliseconds: report.milliseconds[report.stage] });
     if (workers > 1 && report.stage === "search") await breathe();

@@ -1,5 +1,5 @@
 // What the project has set out to reach, computed from the rows of the tables and never from anything else.
-import { FOUND_WITHIN, isFlagged, isFound, isHonest } from "./counts.mjs";
+import { FOUND_WITHIN, isFlagged, isFound, isFoundOrFlagged } from "./counts.mjs";
 import { IMAGES } from "./reals.mjs";
 import { COLOURFUL } from "./scenes.mjs";
 import { median, share, worst } from "./numbers.mjs";
@@ -50,7 +50,7 @@ function table2BAims(rows = []) {
     line(128, "unknown", "P_w >= 0.5, beta <= 80", "median degrees", unknown, degrees(median), 0.15),
     line(128, "unknown", "P_w >= 0.5, beta <= 80", "worst degrees", unknown, degrees(worst), 0.8),
     line(128, "unknown", "P_w >= 0.5, beta <= 80", "median of degrees / bound", unknown, toBound, 4),
-    line(128, "unknown", "beta = 90", "share found or honest", edge, (members) => share(members, isHonest), 1, ">="),
+    line(128, "unknown", "beta = 90", "share found or flagged", edge, (members) => share(members, isFoundOrFlagged), 1, ">="),
     line(64, "unknown", "P_w >= 0.5, beta <= 80", "median degrees", small, degrees(median), 0.6),
     line(64, "unknown", "P_w >= 0.5, beta <= 80", `share under ${FOUND_WITHIN} degrees`, small, (members) => share(members, isFound), 0.95, ">="),
   ];
@@ -84,10 +84,10 @@ function refinementAims(rows = []) {
 
 function photographsAims(rows = []) {
   const real = rows.filter(({ image }) => image !== IMAGES.at(-1));
-  const silent = real.filter((row) => !isFlagged(row));
+  const unflagged = real.filter((row) => !isFlagged(row));
   return [
     aim("photographs", "median degrees", median(real.map(({ degrees }) => degrees)), "<=", 1.5, real.length),
-    aim("photographs", "worst degrees of those not said to be doubtful", worst(silent.map(({ degrees }) => degrees)), "<=", 4, silent.length),
+    aim("photographs", "worst degrees of those not flagged", worst(unflagged.map(({ degrees }) => degrees)), "<=", 4, unflagged.length),
   ];
 }
 

@@ -1,16 +1,16 @@
-// What counts as found, as said and as wrong, and how many of each there are.
+// What counts as found, as flagged and as wrong, and how many of each there are.
 import { mean, median, share } from "./numbers.mjs";
 
 /** A pose this near, in degrees, is found. */
 export const FOUND_WITHIN = 3;
 
 export const isFound = ({ degrees }) => typeof degrees === "number" && degrees < FOUND_WITHIN;
-/** Doubt that was said: in the status, or as rivals of a pose that did not converge. */
+/** Flagged as uncertain: by the status, or by rivals of a pose that did not converge. */
 export const isFlagged = ({ status, rivals }) =>
   status === "ambiguous" || status === "lost" || (status === "max-iterations" && rivals > 0);
 export const isConfidentlyWrong = (row) => !isFound(row) && !isFlagged(row);
-/** Near, or said not to be. */
-export const isHonest = (row) => isFound(row) || isFlagged(row);
+/** Near, or flagged. */
+export const isFoundOrFlagged = (row) => isFound(row) || isFlagged(row);
 
 const AXES = [0, 1, 2];
 

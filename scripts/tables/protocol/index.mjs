@@ -1,4 +1,4 @@
-// All tables and figures. Pure definitions: whoever imports them (the command, a page) brings the package and the data.
+// All tables and figures. Pure definitions: what imports them (the command, a page) brings the package and the data.
 import { ablation, exposure, random } from "./anywhere.mjs";
 import { figure6, table1, table2A, table2B } from "./poses.mjs";
 import { figure7, photographs, table3 } from "./reals.mjs";

@@ -33,7 +33,7 @@ export async function measureIterations(cell, { sample, Estimator }, library) {
     let { report } = estimator;
     while (report.status === "running") {
       report = estimator.step();
-      // Slices of the opening search are no iterations.
+      // Slices of the search are no iterations.
       if (report.iteration === (iterations.at(-1)?.iteration ?? 0)) continue;
       iterations.push({
         iteration: report.iteration,

@@ -30,7 +30,7 @@ async function measureRandom(cell, api, library) {
 
 const keep = (report, _, milliseconds) => ({ report, milliseconds });
 
-/** Pose under the present light, light under the present pose, and again, from where the opening search ends. */
+/** Pose under the present light, light under the present pose, and again, from where the search ends. */
 async function alternate(api, pair, options, rounds) {
   const start = performance.now();
   const opening = new api.Estimator(pair.image, pair.depth, options);

@@ -80,7 +80,7 @@ export const table2B = {
   name: "table2B",
   title: "Table 2B, what a camera sees: rendered with occlusion, sigma = 0.01 on log S, start unknown",
   notes: [
-    "degrees; paper: its one figure for all of this; bound: Cramer-Rao, one sigma; ? doubt was said, ! wrong and nothing said",
+    "degrees; paper: its one figure for all of this; bound: Cramer-Rao, one sigma; ? flagged, ! wrong and not flagged",
     "Open3D is the baseline: FPFH, RANSAC, point-to-plane ICP to the surface from shading; it can't start where the light is unknown",
   ],
   cells: (kit, quick) => (quick ? quick2B(kit) : full2B(kit)),

@@ -22,7 +22,7 @@ export const COLOURFUL = "colourful";
 /** Noise of log S where a protocol says nothing else. */
 export const NOISE = 0.01;
 
-/** Nothing known: every option as whoever has two files would leave it. */
+/** Nothing known: every option as it is left by a user who has nothing but two files. */
 export const FROM_ANYWHERE = { start: "search", registration: "joint", shading: "surface", light: "estimate", scale: "free" };
 
 /** Objects of `mit_berkeley`. */
@@ -31,7 +31,7 @@ export const BUILT_IN = ["bust", "vase", "ripples"];
 
 /**
  * Names of what there is: with other people's data the paper's bust and natural lights, without it what the package brings.
- * A cell names its surface and its light; whoever runs it has a library that knows these names (`requestOf`).
+ * A cell names its surface and its light; the program that runs it has a library that knows these names (`requestOf`).
  */
 export const kit = (complete) =>
   complete
