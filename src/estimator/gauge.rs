@@ -107,16 +107,33 @@ fn median_depth(depth: &DepthView) -> f64 {
     f64::from(quantile(&mut values, 0.5))
 }
 
-/// By how much the image surface lies behind the depth points that fall on it, at the median: t_z of an orthographic
-/// image is what makes it zero.
-pub fn depth_difference(solution: &Solution, correspondences: &Correspondences, spare: &mut Vec<f32>) -> Option<f64> {
-    median_gap(solution, correspondences, spare, |image, depth| image - depth)
+/// Puts the image's surface where neither view can tell: an orthographic one's median depth is zero, a pinhole's stands
+/// where it meets the depth points that fall on it. Writes the image's points, and the pose's t_z.
+pub fn settle_surface(
+    pair: &ViewPair,
+    correspondences: &Correspondences,
+    spare: &mut Vec<f32>,
+    solution: &mut Solution,
+) {
+    if pair.image.camera.is_orthographic() {
+        solution.image.centre_depth(spare);
+    } else {
+        let ratio = median_gap(solution, correspondences, spare, |image, depth| depth / image);
+        if let Some(ratio) = ratio.filter(|ratio| *ratio > 0.0) {
+            solution.image.scale_depth(ratio);
+        }
+    }
+    solution.image.place_image_points(&pair.image);
+    settle_depth(pair, correspondences, spare, solution);
 }
 
-/// How many times farther away the surface of a pinhole image has to stand, so that it meets the depth points that fall
-/// on it.
-pub fn distance_ratio(solution: &Solution, correspondences: &Correspondences, spare: &mut Vec<f32>) -> Option<f64> {
-    median_gap(solution, correspondences, spare, |image, depth| depth / image).filter(|ratio| *ratio > 0.0)
+/// The pose's t_z of an orthographic image: the median depth difference of the overlap becomes zero.
+pub fn settle_depth(pair: &ViewPair, correspondences: &Correspondences, spare: &mut Vec<f32>, solution: &mut Solution) {
+    if pair.image.camera.is_orthographic()
+        && let Some(difference) = median_gap(solution, correspondences, spare, |image, depth| image - depth)
+    {
+        solution.pose.translation.z += difference;
+    }
 }
 
 /// Median over the correspondences of a function of the image surface's depth and the depth point's.

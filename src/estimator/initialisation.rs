@@ -5,7 +5,7 @@
 //! ([`Worker`](super::Worker)). What they find counts in the order of the tasks, however it comes in: the outcome is
 //! the same to the bit.
 
-use crate::error::Result;
+use crate::error::{Error, ErrorKind, Result};
 use crate::pose::{ImageGrid, PhotometricReport, Search, SearchProblem, Similarity, TaskResults};
 
 use super::gauge;
@@ -197,4 +197,24 @@ fn registered_share(tried: usize) -> f64 {
     let few = tried.min(FEW_TRIED);
     let more = (tried - few) as f64 / (MOST_TRIED - FEW_TRIED) as f64;
     SEARCH_SHARE + FEW_SHARE * few as f64 / FEW_TRIED as f64 + (1.0 - SEARCH_SHARE - FEW_SHARE) * more
+}
+
+/// Why there is no pose to start from.
+pub fn nothing_found(pair: &ViewPair) -> Error {
+    no_start(match gauge::held_scale(pair) {
+        Some(_) => "no pose explains the colours by the depth map's normals",
+        None => {
+            "no pose explains the colours by the depth map's normals at 0.7 to 1.4 times the scale that the units give; \
+             `scale` or `start.scale` takes another one"
+        }
+    })
+}
+
+/// A search is asked for, and nothing that could register its candidates is there.
+pub fn no_registration() -> Error {
+    no_start("the search has no registration")
+}
+
+fn no_start(message: &'static str) -> Error {
+    Error::new(ErrorKind::Degenerate, "start", message)
 }

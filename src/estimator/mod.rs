@@ -237,7 +237,7 @@ impl Estimator {
                 let search = initialisation::search(pair, *grid, colours)?;
                 Run::Searching(Box::new(Initialisation::new(pair, search)))
             }
-            (Some(_), None) => return Err(nowhere("the search has no registration")),
+            (Some(_), None) => return Err(initialisation::no_registration()),
         };
         Ok(())
     }
@@ -254,15 +254,7 @@ impl Estimator {
             }
             Advance::Done(outcome) => {
                 self.run = Run::Iterating(Stage::Light);
-                let outcome = outcome.ok_or_else(|| {
-                    nowhere(match gauge::held_scale(&self.pair) {
-                        Some(_) => "no pose explains the colours by the depth map's normals",
-                        None => {
-                            "no pose explains the colours by the depth map's normals at 0.7 to 1.4 times the scale \
-                             that the units give; `scale` or `start.scale` takes another one"
-                        }
-                    })
-                })?;
+                let outcome = outcome.ok_or_else(|| initialisation::nothing_found(&self.pair))?;
                 self.start_from(outcome);
                 Ok(())
             }
@@ -299,28 +291,19 @@ impl Estimator {
     /// Normals of the image (Eq. 6 to 9), and the exposure of a known light unless the registration has found it.
     fn find_normals(&mut self) {
         let exposure_is_free = self.pair.known_light().is_some() && self.registration.found_by_colours().is_none();
-        let inputs = Inputs { pair: &self.pair, fitted: &self.light, correspondences: &self.correspondences };
+        let inputs = Inputs::of(&self.pair, &self.light, &self.correspondences, self.report.iteration);
         let Solution { light, image, .. } = &mut self.solution;
-        let is_first = self.report.iteration == 0;
-        self.shape.find_normals(inputs, is_first, exposure_is_free, light, &mut image.normals);
+        self.shape.find_normals(inputs, exposure_is_free, light, &mut image.normals);
     }
 
     /// Heights of the image, then the gauges that neither view can tell: t_z of an orthographic image, the distance of
     /// a pinhole image's surface.
     fn find_surface(&mut self) -> Result<()> {
         let light = self.solution.light.total();
-        let inputs = Inputs { pair: &self.pair, fitted: &self.light, correspondences: &self.correspondences };
+        let inputs = Inputs::of(&self.pair, &self.light, &self.correspondences, self.report.iteration);
         self.shape.find_surface(inputs, &light, &mut self.scratch, &mut self.solution.image)?;
-        let is_orthographic = self.pair.image.camera.is_orthographic();
-        if is_orthographic {
-            self.solution.image.centre_depth(&mut self.scratch.spare);
-        } else if let Some(ratio) =
-            gauge::distance_ratio(&self.solution, &self.correspondences, &mut self.scratch.spare)
-        {
-            self.solution.image.scale_depth(ratio);
-        }
-        self.solution.image.place_image_points(&self.pair.image);
-        self.settle_depth();
+        gauge::settle_surface(&self.pair, &self.correspondences, &mut self.scratch.spare, &mut self.solution);
+        gauge::settle_depth(&self.pair, &self.correspondences, &mut self.scratch.spare, &mut self.solution);
         Ok(())
     }
 
@@ -330,10 +313,9 @@ impl Estimator {
             return Err(Error::new(ErrorKind::Degenerate, "pose", "puts the object behind the colour camera"));
         }
         let start = self.solution.pose;
-        let inputs = Inputs { pair: &self.pair, fitted: &self.light, correspondences: &self.correspondences };
-        let is_first = self.report.iteration == 0;
+        let inputs = Inputs::of(&self.pair, &self.light, &self.correspondences, self.report.iteration);
         (self.history.proposed_degrees, self.history.improved) = (0.0, true);
-        if let Some(registered) = self.registration.register(inputs, &self.solution, is_first)? {
+        if let Some(registered) = self.registration.register(inputs, &self.solution)? {
             self.history.improved = registered.improved;
             self.adopt(registered);
             self.history.proposed_degrees = start.degrees_to(&self.solution.pose);
@@ -341,7 +323,7 @@ impl Estimator {
                 self.shorten_step(&start);
             }
         }
-        self.settle_depth();
+        gauge::settle_depth(&self.pair, &self.correspondences, &mut self.scratch.spare, &mut self.solution);
         self.find_correspondences();
         Ok(())
     }
@@ -373,18 +355,8 @@ impl Estimator {
 
     /// Normals and depth of the depth view (Eq. 17 to 19).
     fn refine(&mut self) {
-        let inputs = Inputs { pair: &self.pair, fitted: &self.light, correspondences: &self.correspondences };
+        let inputs = Inputs::of(&self.pair, &self.light, &self.correspondences, self.report.iteration);
         self.refinement.refine(inputs, &self.accepted, &mut self.scratch, &mut self.solution);
-    }
-
-    /// Orthographic gauge: the median depth difference of the overlap is zero.
-    fn settle_depth(&mut self) {
-        if self.pair.image.camera.is_orthographic()
-            && let Some(difference) =
-                gauge::depth_difference(&self.solution, &self.correspondences, &mut self.scratch.spare)
-        {
-            self.solution.pose.translation.z += difference;
-        }
     }
 
     /// Projects the depth points, hides what is occluded, and drops what is too far from the image surface.
@@ -512,15 +484,10 @@ impl Estimator {
         let is_known =
             self.report.status == Status::Running && self.registration.keeps(&self.pair, &self.solution.pose);
         if is_known {
-            let inputs = Inputs { pair: &self.pair, fitted: &self.light, correspondences: &self.correspondences };
+            let inputs = Inputs::of(&self.pair, &self.light, &self.correspondences, self.report.iteration);
             self.refinement.prepare_next(inputs, &self.solution);
         } else {
             self.refinement.discard_prepared();
         }
     }
-}
-
-/// There is no pose to start from.
-fn nowhere(message: &'static str) -> Error {
-    Error::new(ErrorKind::Degenerate, "start", message)
 }

@@ -20,6 +20,20 @@ pub struct Inputs<'a> {
     /// The light stage, for the depth view's normals at the image's pixels and the variance of the colours.
     pub fitted: &'a LightStage,
     pub correspondences: &'a Correspondences,
+    /// Whether this is the first iteration.
+    pub is_first: bool,
+}
+
+impl<'a> Inputs<'a> {
+    /// Of an iteration, by its number from zero.
+    pub const fn of(
+        pair: &'a ViewPair,
+        fitted: &'a LightStage,
+        correspondences: &'a Correspondences,
+        iteration: u32,
+    ) -> Self {
+        Self { pair, fitted, correspondences, is_first: iteration == 0 }
+    }
 }
 
 /// Fits the light, and says how far the normals' other terms can rely on it.

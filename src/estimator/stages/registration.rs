@@ -78,12 +78,12 @@ impl RegistrationStage {
     }
 
     /// The pose from the present one; nothing where it is fixed.
-    pub fn register(&mut self, inputs: Inputs<'_>, solution: &Solution, is_first: bool) -> Result<Option<Registered>> {
+    pub fn register(&mut self, inputs: Inputs<'_>, solution: &Solution) -> Result<Option<Registered>> {
         match self.kind(inputs.pair) {
             Registration::Fixed => Ok(None),
             Registration::Joint => self.register_colours(inputs.pair, &solution.pose),
             Registration::Icp => {
-                let Matched { pose, improved, uncertainty } = self.surfaces.register(inputs, solution, is_first)?;
+                let Matched { pose, improved, uncertainty } = self.surfaces.register(inputs, solution)?;
                 Ok(Some(Registered { pose, light: None, exposure: None, uncertainty, improved }))
             }
         }

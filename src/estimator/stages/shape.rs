@@ -35,13 +35,12 @@ impl ShapeStage {
     pub fn find_normals(
         &mut self,
         inputs: Inputs<'_>,
-        is_first: bool,
         exposure_is_free: bool,
         light: &mut ExposedLight,
         normals: &mut Normals,
     ) {
         let is_known = inputs.pair.known_light().is_some();
-        for _ in 0..if is_known && is_first { FIRST_EXPOSURE_ROUNDS } else { 1 } {
+        for _ in 0..if is_known && inputs.is_first { FIRST_EXPOSURE_ROUNDS } else { 1 } {
             let total = light.total();
             let problem = problem(inputs, &total);
             self.0.solve_normals(&problem, normals);

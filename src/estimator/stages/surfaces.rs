@@ -39,7 +39,7 @@ impl SurfaceRegistration {
     }
 
     /// ICP, then the consensus of its pairs: of both poses the one with the lower objective over the same points.
-    pub fn register(&mut self, inputs: Inputs<'_>, solution: &Solution, is_first: bool) -> Result<Matched> {
+    pub fn register(&mut self, inputs: Inputs<'_>, solution: &Solution) -> Result<Matched> {
         let pair = inputs.pair;
         let (start, pixel) = (solution.pose, gauge::pixel_length(&pair.image, solution));
         let problem = IcpProblem {
@@ -53,7 +53,7 @@ impl SurfaceRegistration {
         let scale_is_held = pair.options.scale.is_some() && pair.image.camera.is_orthographic();
         let options = IcpOptions {
             scale_is_held,
-            first_distance: (!is_first).then_some(FIRST_DISTANCE * pixel),
+            first_distance: (!inputs.is_first).then_some(FIRST_DISTANCE * pixel),
             final_distance: FINAL_DISTANCE * pixel,
             ..IcpOptions::default()
         };
