@@ -32,7 +32,8 @@ const flag: Check = (value, field) => {
 /** The range of a number in words. */
 function range({ kind, min, above, max, below, unit = "" }: NumberRow): string {
   const what = kind === "number" ? "a finite number" : "a whole number";
-  const end = unit && ` ${unit}`;
+  // A unit follows a number, not a zero in words.
+  const end = unit && (max ?? below ?? above ?? min) ? ` ${unit}` : "";
   if (min && max) return `${what}, ${min} .. ${max}${end}`;
   const named = (limit: number) => (limit === 0 ? "zero" : `${limit}`);
   const from = above !== undefined ? ` above ${named(above)}` : min !== undefined ? `, ${named(min)} or above` : "";

@@ -4,7 +4,7 @@ export class BimodalError extends Error {
   /** Stable, for programs: "size", "range", "missing", "empty", "option", "type", "unsupported", "freed", "panic", ... */
   readonly code: string;
   /** The input at fault, as a path in the contract, e.g. "depth.camera.fx". */
-  readonly field?: string;
+  declare readonly field?: string;
 
   constructor(code: string, message: string, field?: string, options?: ErrorOptions) {
     super(message, options);

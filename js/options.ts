@@ -88,15 +88,14 @@ export const OPTIONS: RowsOf<Options> = {
     kind: "whole",
     min: 1,
     max: 100_000,
-    unit: "iterations",
     default: 60,
-    page: { group: "loop", label: "At most", link: "iterations" },
+    page: { group: "loop", label: "Iterations", link: "iterations", hint: "At most so many." },
   },
   correspondenceDistance: {
     kind: "number",
     above: 0,
     unit: "px",
-    page: { group: "loop", label: "Match within", link: "distance", hint: "Accepted distance of a correspondence.", empty: "automatic" },
+    page: { group: "loop", label: "Match within", link: "distance", hint: "Accepted distance of a correspondence.", empty: "auto" },
   },
   seed: { ...seed, page: { group: "loop", label: "Seed" } },
   /** More threads would wait for one another. */

@@ -28,6 +28,7 @@ export function refused(call, code, field) {
     assert.ok(error instanceof Error);
     assert.equal(error.name, "BimodalError");
     assert.deepEqual([error.code, error.field], [code, field], error.message);
+    assert.equal("field" in error, field !== undefined, "absent rather than undefined");
     if (field) assert.ok(error.message.startsWith(field), error.message);
     return true;
   });

@@ -146,6 +146,21 @@ test("a number out of range is refused beside its field", async ({ lab, page }) 
   await expect(page.locator(".field", { has: prior })).not.toContainText("must be");
 });
 
+test("on a phone a refused field is unfolded", async ({ lab, page }) => {
+  await page.setViewportSize({ width: 390, height: 844 });
+  await page.goto("./#distance=0");
+  await lab.reaches("error");
+  await expect(page.getByLabel("Match within", { exact: true })).toBeVisible();
+});
+
+test("empty angles of a sample are zero, all of them as well as one", async ({ lab, page }) => {
+  for (const [settings, beta] of [["beta=20&alpha=&gamma=", "20.00"], ["alpha=&beta=&gamma=", "0.00"]] as const) {
+    await page.goto("about:blank");
+    await lab.open(settings);
+    await expect(page.locator("#pose tr", { hasText: "β" }).locator("td").nth(1)).toHaveText(beta);
+  }
+});
+
 /** A JPEG as a phone held upright writes it: the sensor's landscape, and a tag that says which way is up. */
 function phonePhoto(jpeg: Buffer): Upload {
   const exif = Buffer.from("457869660000" + "49492a0008000000" + "0100" + "120103000100000006000000" + "00000000", "hex");

@@ -54,7 +54,8 @@ export class Form {
     const control = candidates.sort((a, b) => b.field.path.length - a.field.path.length)[0];
     if (!control) return false;
     mark(control, message, "error");
-    control.row.closest("details")?.setAttribute("open", "");
+    let folded = control.row.closest("details");
+    for (; folded; folded = folded.parentElement?.closest("details") ?? null) folded.open = true;
     return true;
   }
 

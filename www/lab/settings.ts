@@ -154,10 +154,13 @@ function told<T extends object>(given: readonly Field[], settings: Settings, sou
 }
 
 export function sampleRequest(settings: Settings): SampleRequest {
+  const request = told<SampleRequest>(sampleFields, settings, "sample");
   return {
     surface: text(settings, "surface"),
     light: text(settings, "light"),
-    ...told<SampleRequest>(sampleFields, settings, "sample"),
+    ...request,
+    // Each empty angle is zero; the library takes its own where it is told of none at all.
+    angles: { ...request.angles },
     ...(rendered(settings) ? size(settings) : {}),
   };
 }

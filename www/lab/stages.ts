@@ -14,7 +14,7 @@ export const stages: readonly StageText[] = [
   {
     name: "search",
     title: "Search",
-    equation: "maximise √N ln(spread / noise) over R, s, t",
+    equation: "maximise ∛N ln(spread / noise) over R, s, t",
     words:
       "Where nothing is known of the pose, rotations from all over are tried on a coarse grid, every shift of each at once by a Fourier transform. The best candidates are registered by their colours; the loop starts from the one that leaves the least noise, and those that explain nearly as much are reported as its rivals.",
     source: "Before Algorithm 1; not in the paper",
