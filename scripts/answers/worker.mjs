@@ -14,7 +14,8 @@ async function load(folder, scalar) {
   if (!packages.has(folder)) {
     const inPackage = (path) => pathToFileURL(join(folder, "pkg", path));
     const { exports } = JSON.parse(readFileSync(inPackage("package.json"), "utf8"));
-    const api = await import(inPackage(exports["."].node));
+    // Older packages have a module of their own for Node.
+    const api = await import(inPackage(exports["."].node ?? exports["."].default));
     await (scalar ? api.default(inPackage("bimodal_stereo_scalar_bg.wasm")) : api.default());
     packages.set(folder, api);
   }

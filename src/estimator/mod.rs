@@ -303,7 +303,6 @@ impl Estimator {
         let inputs = Inputs::of(&self.pair, &self.light, &self.correspondences, self.report.iteration);
         self.shape.find_surface(inputs, &light, &mut self.scratch, &mut self.solution.image)?;
         gauge::settle_surface(&self.pair, &self.correspondences, &mut self.scratch.spare, &mut self.solution);
-        gauge::settle_depth(&self.pair, &self.correspondences, &mut self.scratch.spare, &mut self.solution);
         Ok(())
     }
 

@@ -275,7 +275,7 @@ impl Icp {
         for pair in &self.pairs {
             let Match { point, difference, normal, .. } = Match::new(problem, pose, pair);
             let residual = residual(options.metric, &difference, &normal);
-            let weight = robust::weight((residual / scale).powi(2));
+            let weight = robust::weight_of_square((residual / scale).powi(2));
             if options.metric == Metric::PointToPlane {
                 equations.add(&point, &normal, residual, weight);
             }
@@ -320,7 +320,7 @@ impl Icp {
         for pair in &self.pairs {
             let Match { point, difference, normal, depth_normal } = Match::new(problem, pose, pair);
             let residual = difference.dot(&normal);
-            let weight = robust::weight((residual / scale).powi(2));
+            let weight = robust::weight_of_square((residual / scale).powi(2));
             let (row, other) = (equations.row(&point, &normal), equations.row(&point, &depth_normal));
             matrix.ger(0.5 * weight, &row, &other, 1.0);
             matrix.ger(0.5 * weight, &other, &row, 1.0);

@@ -130,7 +130,7 @@ impl VisiblePoints {
             let error = problem.normal_error.map_or(0.0, |error| f64::from(error[index]));
             if !error.is_nan() && image.covers(position, MARGIN) {
                 self.indices.push(index as u32);
-                self.weights.push(robust::weight((error / NORMAL_ERROR).powi(2)) as f32);
+                self.weights.push(robust::weight_of_square((error / NORMAL_ERROR).powi(2)) as f32);
             }
         }
     }

@@ -107,7 +107,7 @@ pub fn exposure_step(problem: ShadingProblem<'_>, weights: ShadingWeights, norma
             let residuals = residuals.map(|four| four[lane]);
             let squared: f32 = residuals.iter().map(|residual| residual * residual).sum();
             // As `robust::weight`, with one rounding less.
-            let weight = f64::from((1.0 + squared / (STEP_SCALE * STEP_SCALE)).powi(-2));
+            let weight = f64::from(robust::weight_of_square(squared / (STEP_SCALE * STEP_SCALE)));
             let [xx, xy, xz, yy, yz, zz] = matrix.map(|four| f64::from(four[lane]));
             let gradient = Vector3::from(gradient.map(|four| f64::from(four[lane])));
             let normal = normals.get(first + lane);
