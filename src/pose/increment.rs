@@ -32,6 +32,14 @@ pub(crate) struct Frame {
 }
 
 impl Frame {
+    /// How far a point moves along `direction` with each unknown.
+    pub fn row(&self, point: &Vector3<f64>, direction: &Vector3<f64>) -> PoseVector {
+        let arm = point - self.centre;
+        let by_rotation = arm.cross(direction);
+        let shift = self.length * direction;
+        PoseVector::from([by_rotation.x, by_rotation.y, by_rotation.z, shift.x, shift.y, shift.z, arm.dot(direction)])
+    }
+
     /// The similarity of a step, shortened to where it is still near linear.
     pub fn change(&self, step: &PoseVector) -> Similarity {
         let rotation: Vector3<f64> = step.fixed_rows::<3>(0).into();

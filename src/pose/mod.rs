@@ -17,6 +17,7 @@
 //! returns. The loop that calls these stages is `estimator`.
 
 mod angles;
+mod contrast;
 mod correspondence;
 mod icp;
 mod increment;
@@ -24,12 +25,15 @@ mod neighbours;
 mod photometric;
 mod ransac;
 mod search;
+mod silhouette;
 mod similarity;
+mod spline_image;
 mod uncertainty;
 mod visibility;
 
 pub use angles::Angles;
 pub use correspondence::{CorrespondenceProblem, Correspondences};
+pub use contrast::{ContrastEffort, ContrastProblem, ContrastRegistration, ContrastReport};
 pub use icp::{Icp, IcpOptions, IcpProblem, IcpReport, IcpTermination, Metric, Pair};
 pub use photometric::{Photometric, PhotometricOptions, PhotometricProblem, PhotometricReport, PhotometricTermination};
 pub use ransac::{RansacOptions, RansacReport, ransac};

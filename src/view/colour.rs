@@ -1,7 +1,7 @@
 //! The colour image: checked once and converted to log intensities over a mask (docs/method.md, section 4).
 
 use crate::error::{Error, ErrorKind, Result};
-use crate::numeric::noise;
+use crate::numeric::{noise, quantile};
 use crate::view::mask::{self, FEWEST_PIXELS};
 use crate::view::{Camera, Pinhole, Size};
 
@@ -139,6 +139,18 @@ impl ColourView {
     #[must_use]
     pub const fn log_noise(&self) -> f64 {
         self.log_noise
+    }
+
+    /// The same view with `share` of each channel's median intensity added to it: log(I + share median I). The dark end,
+    /// where logarithms magnify whatever light was left out, loses its weight.
+    #[must_use]
+    pub(crate) fn lifted(&self, share: f32) -> Self {
+        let log = self.log.each_ref().map(|channel| {
+            let mut known: Vec<f32> = channel.iter().copied().filter(|log| !log.is_nan()).collect();
+            let added = share * quantile(&mut known, 0.5).exp();
+            channel.iter().map(|log| (log.exp() + added).ln()).collect()
+        });
+        Self::of(self.size, self.camera, self.mask.clone(), log, self.transfer)
     }
 
     /// log S of the three channels at a pixel, NaN off the mask.

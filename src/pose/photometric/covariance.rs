@@ -168,7 +168,7 @@ mod tests {
     use super::*;
     use crate::numeric::noise;
     use crate::pose::photometric::registration::INSTRUMENT_BLUR;
-    use crate::pose::photometric::spline_image::SplineImage;
+    use crate::pose::spline_image::SplineImage;
     use crate::view::{ColourImage, ColourSamples, ColourView};
 
     #[test]

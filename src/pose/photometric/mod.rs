@@ -32,7 +32,6 @@
 //! | `registration` | the rounds: [`Photometric`] |
 //! | `state` | pose and light, and a step of both |
 //! | `points` | which depth points take part |
-//! | `spline_image` | log S between pixels, and its gradient |
 //! | `residual` | r and its derivatives |
 //! | `weighting` | robust scale and weight of the prior |
 //! | `evaluation` | sums over the points: objective, equations, noise, inliers |
@@ -49,7 +48,6 @@ mod points;
 mod problem;
 mod registration;
 mod residual;
-mod spline_image;
 mod state;
 mod weighting;
 

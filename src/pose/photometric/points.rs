@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use super::problem::{Indices, PhotometricProblem};
-use super::spline_image::SplineImage;
+use crate::pose::spline_image::SplineImage;
 use crate::numeric::{DOUBLE_LANES, Doubles, robust};
 use crate::pose::increment::Frame;
 use crate::pose::similarity::Similarity;

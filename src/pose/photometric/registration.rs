@@ -8,7 +8,7 @@ use super::evaluation::Evaluation;
 use super::points::{Sampling, VisiblePoints};
 use super::problem::{COARSEST, PhotometricOptions, PhotometricProblem, PhotometricReport, PhotometricTermination};
 use super::residual::{ColourModel, Samples};
-use super::spline_image::SplineImage;
+use crate::pose::spline_image::SplineImage;
 use super::state::State;
 use super::weighting::{Weighting, final_robust_scale, prior_weight};
 use crate::error::{Error, ErrorKind, Result};

@@ -5,7 +5,7 @@
 //! channel, dr/dw = (P'
 //! - c) x g - n' x b, dr/dv = l g, dr/du = (P' - c) . g, and dr/dL = -B.
 
-use super::spline_image::{ImagePoint, SplineImage};
+use crate::pose::spline_image::{ImagePoint, SplineImage};
 use crate::light::{HARMONICS, Light, Polynomial, basis};
 use crate::numeric::{DOUBLE_LANES, Doubles, Real, dot};
 use crate::pose::increment::{Frame, UNKNOWNS};

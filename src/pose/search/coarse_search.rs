@@ -11,6 +11,7 @@ use super::task_results::TaskResults;
 use crate::check::positive;
 use crate::error::Result;
 use crate::numeric::sort_descending;
+use crate::pose::similarity::Similarity;
 
 /// Ascents at most.
 const MOST_ASCENTS: usize = 96;
@@ -141,6 +142,19 @@ impl Search {
     #[must_use]
     pub fn candidates(&self) -> &[Candidate] {
         &self.candidates
+    }
+
+    /// The poses of the sweep, each rotation once, before any ascent: the better of its sizes.
+    #[must_use]
+    pub fn swept_poses(&self) -> Vec<Similarity> {
+        let mut poses: Vec<Hypothesis> = Vec::new();
+        for hypothesis in self.swept.results().flatten() {
+            match poses.last_mut().filter(|last| last.rotation == hypothesis.rotation) {
+                Some(last) => *last = last.better(*hypothesis),
+                None => poses.push(*hypothesis),
+            }
+        }
+        poses.iter().map(|hypothesis| self.matcher.candidate(hypothesis).pose).collect()
     }
 
     /// For each pair of a slice the best translation.

@@ -1,0 +1,111 @@
+//! H: what values on a raster differ by from the weighted mean around them,
+//!
+//! (H a)_p = a_p - sum_q g(p - q) w_q a_q / sum_q g(p - q) w_q,
+//!
+//! with a Gaussian g. What changes slowly over the surface, the slopes of a badly modelled light as well as most of
+//! paint, is gone; edges and small relief stay. H is linear while the weights stay, so derivatives go through it as
+//! values do.
+
+/// Reach of the Gaussian in sigmas: what lies beyond weighs 4 %, and a window of constant values is constant anyway.
+const REACH: f64 = 2.5;
+
+/// Values of a pixel, at most.
+const MOST: usize = 21;
+
+/// The operator on one raster; owns its memory. Values of a pixel lie side by side, so that all are worked on at once.
+pub(super) struct LocalMeans {
+    width: usize,
+    /// The Gaussian from -reach to reach.
+    kernel: Vec<f32>,
+    weights: Vec<f32>,
+    /// One over the sum of the weights around each pixel, zero where the pixel itself has none.
+    normaliser: Vec<f32>,
+    /// Sums along rows.
+    along: Vec<f32>,
+}
+
+impl LocalMeans {
+    /// On `width` columns of as many pixels as `length` holds; sigma in pixels.
+    pub fn new(width: usize, length: usize, sigma: f64) -> Self {
+        let reach = (REACH * sigma).ceil() as usize;
+        let bell = |k: usize| (-0.5 * (k.abs_diff(reach) as f64 / sigma).powi(2)).exp() as f32;
+        Self {
+            width,
+            kernel: (0..=2 * reach).map(bell).collect(),
+            weights: vec![0.0; length],
+            normaliser: vec![0.0; length],
+            along: vec![0.0; length * MOST],
+        }
+    }
+
+    /// Takes other weights.
+    pub fn weigh(&mut self, weights: &[f32]) {
+        self.weights.copy_from_slice(weights);
+        self.normaliser.fill(1.0);
+        self.sum_along(weights.len(), |_| [1.0]);
+        for pixel in 0..weights.len() {
+            let [sum] = self.sum_down(pixel);
+            self.normaliser[pixel] = if weights[pixel] > 0.0 && sum > 0.0 { 1.0 / sum } else { 0.0 };
+        }
+    }
+
+    /// H of the values, in place. Those of pixels without weight count for nothing and are left as they are.
+    pub fn remove<const N: usize>(&mut self, values: &mut [[f32; N]]) {
+        self.sum_along(values.len(), |pixel| values[pixel]);
+        for pixel in 0..values.len() {
+            let normaliser = self.normaliser[pixel];
+            if normaliser > 0.0 {
+                let sums: [f32; N] = self.sum_down(pixel);
+                for (value, sum) in values[pixel].iter_mut().zip(sums) {
+                    *value -= normaliser * sum;
+                }
+            }
+        }
+    }
+
+    /// The means themselves, of pixels that have a weight: what is blurred.
+    pub fn smoothed<const N: usize>(&mut self, weights: &[f32], values: &[[f32; N]]) -> Vec<[f32; N]> {
+        self.weigh(weights);
+        let mut off = values.to_vec();
+        self.remove(&mut off);
+        values.iter().zip(off).map(|(value, off)| std::array::from_fn(|k| value[k] - off[k])).collect()
+    }
+
+    /// Weighted sums along rows.
+    fn sum_along<const N: usize>(&mut self, length: usize, value: impl Fn(usize) -> [f32; N]) {
+        let reach = self.kernel.len() / 2;
+        let (sums, _) = self.along.as_chunks_mut::<N>();
+        for (row, sums) in sums[..length].chunks_mut(self.width).enumerate() {
+            let start = row * self.width;
+            sums.fill([0.0; N]);
+            for source in 0..sums.len() {
+                let weight = self.weights[start + source];
+                if weight == 0.0 {
+                    continue;
+                }
+                let values = value(start + source);
+                let first = source.saturating_sub(reach);
+                let last = (source + reach).min(sums.len() - 1);
+                for (sum, &share) in sums[first..=last].iter_mut().zip(&self.kernel[first + reach - source..]) {
+                    let share = share * weight;
+                    sum.iter_mut().zip(values).for_each(|(sum, value)| *sum += share * value);
+                }
+            }
+        }
+    }
+
+    /// The sum down a column of those along rows, around a pixel.
+    fn sum_down<const N: usize>(&self, pixel: usize) -> [f32; N] {
+        let reach = self.kernel.len() / 2;
+        let (row, column) = (pixel / self.width, pixel % self.width);
+        let (along, _) = self.along.as_chunks::<N>();
+        let first = row.saturating_sub(reach);
+        let last = (row + reach).min(self.weights.len() / self.width - 1);
+        let mut sums = [0.0; N];
+        for (row, &share) in (first..=last).zip(&self.kernel[first + reach - row..]) {
+            let values = &along[row * self.width + column];
+            sums.iter_mut().zip(values).for_each(|(sum, value)| *sum += share * value);
+        }
+        sums
+    }
+}

@@ -1,0 +1,12 @@
+//! Registration by local contrast: the pose of a painted object.
+mod equations;
+mod local_means;
+mod objective;
+mod problem;
+mod registration;
+mod samples;
+mod seen;
+mod uncertainty;
+
+pub use problem::{ContrastProblem, ContrastReport};
+pub use registration::{ContrastEffort, ContrastRegistration};

@@ -1,0 +1,378 @@
+//! E of a pose and its light, and its equations: contrast, silhouette, contour generator, apparent size.
+//!
+//! A round fixes what is discrete, the visible samples, their weights in the local means, the contour generator; E is
+//! smooth then.
+
+use nalgebra::Vector3;
+
+use super::equations::{Equations, Lights, Reduced, SHADES};
+use super::local_means::LocalMeans;
+use super::problem::ContrastProblem;
+use super::samples::Samples;
+use super::seen::Seen;
+use crate::numeric::{quantile, robust};
+use crate::pose::increment::{Frame, PoseVector, SCALE, TRANSLATION_Z, UNKNOWNS};
+use crate::pose::silhouette::Silhouette;
+use crate::pose::similarity::Similarity;
+use crate::pose::spline_image::SplineImage;
+
+/// Distances to the outline below this are the sampling of the mask and of the points, pixels.
+const SLACK: f64 = 0.7;
+/// Weight and robust scale (pixels) of points beside the mask, against the contrast's share of one.
+const BESIDE_WEIGHT: f64 = 3.0;
+const BESIDE_SCALE: f64 = 3.0;
+/// The same of the contour generator off the outline. Its scale is tighter: contours inside the mask, where one part of
+/// the object hides another, are no part of the outline.
+const LIMB_WEIGHT: f64 = 1.0;
+const LIMB_SCALE: f64 = 1.5;
+/// Weight of log^2 of the apparent size over that of the units: 20 % more costs as much as a fifth of the contrast.
+const SIZE_WEIGHT: f64 = 5.0;
+/// Median of the squared residuals of three channels of unit normal noise: that of chi squared with three degrees of
+/// freedom.
+const MEDIAN_OF_SQUARES: f64 = 2.366;
+/// Noise that is always allowed for, log units.
+const LEAST_NOISE: f64 = 0.002;
+/// The least share of its weight that a sample keeps in the local means: one that has none would have no mean.
+const LEAST_SHARE: f64 = 1e-4;
+/// Fits of the light, each reweighted, at the beginning of a round.
+const LIGHT_FITS: usize = 3;
+/// Samples, at least.
+const FEWEST: u32 = 30;
+
+/// v of three channels, and their derivatives.
+const CHANNELS: usize = 3;
+const DERIVATIVES: usize = CHANNELS * UNKNOWNS;
+
+/// Pose and light at one moment.
+#[derive(Clone, Copy)]
+pub(super) struct State {
+    pub pose: Similarity,
+    pub light: Lights,
+}
+
+/// One resolution of image and means.
+pub(super) struct Level {
+    pub image: SplineImage,
+    pub means: LocalMeans,
+    /// The harmonics, as blurred as the image.
+    pub shades: Vec<[f32; SHADES]>,
+}
+
+/// What E is made of, one round after the other; owns its memory.
+pub(super) struct Objective {
+    pub samples: Samples,
+    pub seen: Seen,
+    silhouette: Silhouette,
+    /// Pixels on the mask's border, over which limbs are averaged.
+    border: f64,
+    /// Of each grid pixel: its weight in the local means, zero where it takes no part; the harmonics with their local
+    /// means removed; v as last seen, and with its local means removed; its derivatives.
+    weights: Vec<f32>,
+    shades: Vec<[f32; SHADES]>,
+    seen_values: Vec<[f32; CHANNELS]>,
+    values: Vec<[f32; CHANNELS]>,
+    derivatives: Vec<[f32; DERIVATIVES]>,
+    squares: Vec<f32>,
+    /// Sum of the weights of samples on and beside the mask, and of those beside it.
+    all: f64,
+    beside: f64,
+    /// The robust scale, squared.
+    scale: f64,
+    /// Apparent size that the units give.
+    size: f64,
+}
+
+impl Objective {
+    pub fn new(problem: &ContrastProblem<'_>, samples: Samples, silhouette: Silhouette, seen: Seen) -> Self {
+        let length = samples.grid.len();
+        Self {
+            seen,
+            border: silhouette.border().max(1) as f64,
+            silhouette,
+            weights: vec![0.0; length],
+            shades: vec![[0.0; SHADES]; length],
+            seen_values: vec![[0.0; CHANNELS]; length],
+            values: vec![[0.0; CHANNELS]; length],
+            derivatives: vec![[0.0; DERIVATIVES]; length],
+            squares: Vec::with_capacity(samples.list.len()),
+            all: 0.0,
+            beside: 0.0,
+            scale: f64::INFINITY,
+            size: problem.unit_scale,
+            samples,
+        }
+    }
+
+    /// What the apparent size is compared with.
+    pub fn expect_size(&mut self, problem: &ContrastProblem<'_>, start: &Similarity) {
+        self.size = match problem.is_metric() || problem.scale_is_held {
+            true => self.apparent_size(problem, start),
+            false => problem.unit_scale,
+        };
+    }
+
+    /// s, or s / z behind a pinhole.
+    fn apparent_size(&self, problem: &ContrastProblem<'_>, pose: &Similarity) -> f64 {
+        if problem.is_metric() { pose.scale / pose.apply(self.samples.centre).z } else { pose.scale }
+    }
+
+    /// Takes tau, in units of log intensity.
+    pub fn set_scale(&mut self, tau: f64) {
+        self.scale = tau * tau;
+    }
+
+    /// Fixes what is seen from a pose and fits its light; `None` where too little is seen.
+    pub fn begin(&mut self, problem: &ContrastProblem<'_>, level: &mut Level, state: &mut State) -> Option<Frame> {
+        self.seen.look(problem, &self.samples, &state.pose);
+        let (mut middle, mut square, mut count) = (Vector3::zeros(), 0.0, 0);
+        self.weights.fill(0.0);
+        (self.all, self.beside) = (0.0, 0.0);
+        for (sample, _) in self.samples.list.iter().zip(&self.seen.visible).filter(|(_, visible)| **visible) {
+            let Some(place) = problem.place(&state.pose, &sample.point) else { continue };
+            let weight = self.samples.weight[sample.cell];
+            if let Some(value) = level.image.value(place) {
+                self.weights[sample.cell] = weight;
+                self.seen_values[sample.cell] = value.map(|value| value as f32);
+                self.all += f64::from(weight);
+                middle += sample.point;
+                square += sample.point.norm_squared();
+                count += 1;
+            } else if self.silhouette.at(place).0 > SLACK {
+                self.all += f64::from(weight);
+                self.beside += f64::from(weight);
+            }
+        }
+        if count < FEWEST {
+            return None;
+        }
+        middle /= f64::from(count);
+        let radius = (square / f64::from(count) - middle.norm_squared()).max(0.0).sqrt();
+        self.fit(level, state);
+        Some(Frame { centre: state.pose.apply(middle), length: (state.pose.scale * radius).max(f64::MIN_POSITIVE) })
+    }
+
+    /// Light, noise and weights in turn.
+    fn fit(&mut self, level: &mut Level, state: &mut State) {
+        for _ in 0..LIGHT_FITS {
+            self.take_means(level);
+            self.relight(state);
+            self.scale = 27.0 * self.noise(&state.light).powi(2);
+            self.relight(state);
+            for sample in &self.samples.list {
+                let cell = sample.cell;
+                if self.weights[cell] > 0.0 {
+                    let share = robust::weight(self.square(cell, &state.light) / self.scale).max(LEAST_SHARE);
+                    self.weights[cell] = self.samples.weight[cell] * share as f32;
+                }
+            }
+        }
+        self.take_means(level);
+    }
+
+    /// Local means of what was seen, under the present weights.
+    fn take_means(&mut self, level: &mut Level) {
+        level.means.weigh(&self.weights);
+        self.shades.copy_from_slice(&level.shades);
+        level.means.remove(&mut self.shades);
+        self.values.copy_from_slice(&self.seen_values);
+        level.means.remove(&mut self.values);
+    }
+
+    fn residual(&self, cell: usize, light: &Lights) -> [f64; CHANNELS] {
+        let shades = &self.shades[cell];
+        std::array::from_fn(|channel| {
+            let shade: f64 = shades.iter().zip(&light[channel]).map(|(shade, l)| f64::from(*shade) * l).sum();
+            f64::from(self.values[cell][channel]) - shade
+        })
+    }
+
+    fn square(&self, cell: usize, light: &Lights) -> f64 {
+        self.residual(cell, light).iter().map(|r| r * r).sum()
+    }
+
+    /// Grid pixels that take part.
+    fn cells(&self) -> impl Iterator<Item = usize> {
+        self.samples.list.iter().map(|sample| sample.cell).filter(|&cell| self.weights[cell] > 0.0)
+    }
+
+    /// One reweighted fit of the light.
+    fn relight(&self, state: &mut State) {
+        let mut equations = Equations::new();
+        for cell in self.cells() {
+            let residual = self.residual(cell, &state.light);
+            let square: f64 = residual.iter().map(|r| r * r).sum();
+            let weight = f64::from(self.samples.weight[cell]) * robust::weight(square / self.scale);
+            equations.add_shades(&self.shades[cell], residual, weight);
+        }
+        if let Some(step) = equations.light_step() {
+            state.light.iter_mut().zip(step).for_each(|(light, step)| *light += step);
+        }
+    }
+
+    /// Robust standard deviation of a channel's residuals.
+    pub fn noise(&mut self, light: &Lights) -> f64 {
+        let mut squares = std::mem::take(&mut self.squares);
+        squares.clear();
+        squares.extend(self.cells().map(|cell| self.square(cell, light) as f32));
+        let median = if squares.is_empty() { 0.0 } else { quantile(&mut squares, 0.5) };
+        self.squares = squares;
+        (f64::from(median) / MEDIAN_OF_SQUARES).sqrt().max(LEAST_NOISE)
+    }
+
+    /// Samples that take part.
+    pub fn count(&self) -> usize {
+        self.cells().count()
+    }
+
+    /// The contrast's share of E: 0 where shading explains all, 1 where nothing.
+    pub fn unexplained(&self, light: &Lights) -> f64 {
+        let cost = |cell| {
+            f64::from(self.samples.weight[cell]) * robust::saturated(self.square(cell, light) / self.scale)
+        };
+        (self.beside + self.cells().map(cost).sum::<f64>()) / self.all
+    }
+
+    /// E.
+    pub fn value(&mut self, problem: &ContrastProblem<'_>, level: &mut Level, state: &State) -> f64 {
+        for sample in &self.samples.list {
+            if self.weights[sample.cell] > 0.0 {
+                let place = problem.place(&state.pose, &sample.point);
+                if let Some(value) = place.and_then(|place| level.image.value(place)) {
+                    self.seen_values[sample.cell] = value.map(|value| value as f32);
+                }
+            }
+        }
+        self.values.copy_from_slice(&self.seen_values);
+        level.means.remove(&mut self.values);
+        self.unexplained(&state.light) + self.outlines(problem, &state.pose) + self.size_term(problem, &state.pose)
+    }
+
+    fn size_term(&self, problem: &ContrastProblem<'_>, pose: &Similarity) -> f64 {
+        SIZE_WEIGHT * (self.apparent_size(problem, pose) / self.size).ln().powi(2)
+    }
+
+    /// Points beside the mask, and the contour generator off its border.
+    fn outlines(&self, problem: &ContrastProblem<'_>, pose: &Similarity) -> f64 {
+        let rho = |u: f64, scale: f64| robust::rho(u * u, (u / scale).powi(2));
+        let beside = |sample: &super::samples::Sample| match problem.place(pose, &sample.point) {
+            Some(place) => rho((self.silhouette.at(place).0 - SLACK).max(0.0), BESIDE_SCALE),
+            None => BESIDE_SCALE.powi(2),
+        };
+        let limb = |point: &Vector3<f64>| match problem.place(pose, point) {
+            Some(place) => rho(self.silhouette.signed_at(place).0, LIMB_SCALE),
+            None => LIMB_SCALE.powi(2),
+        };
+        let beside: f64 = self.samples.list.iter().map(beside).sum();
+        let limbs: f64 = self.seen.limbs.iter().map(limb).sum();
+        BESIDE_WEIGHT * beside / self.samples.list.len() as f64 + self.limb_weight() * limbs
+    }
+
+    /// Weight of one limb: there are as many more of them as samples lie closer.
+    fn limb_weight(&self) -> f64 {
+        LIMB_WEIGHT * self.samples.stride as f64 / self.border
+    }
+
+    /// The equations of a step, the light eliminated.
+    pub fn linearise(
+        &mut self,
+        problem: &ContrastProblem<'_>,
+        level: &mut Level,
+        frame: &Frame,
+        state: &State,
+    ) -> Option<Reduced> {
+        let mut equations = Equations::new();
+        self.enter_samples(problem, level, frame, state, &mut equations);
+        self.enter_limbs(problem, frame, &state.pose, &mut equations);
+        self.values.copy_from_slice(&self.seen_values);
+        level.means.remove(&mut self.values);
+        level.means.remove(&mut self.derivatives);
+        for cell in self.cells() {
+            let residual = self.residual(cell, &state.light);
+            let square: f64 = residual.iter().map(|r| r * r).sum();
+            let own = f64::from(self.samples.weight[cell]) / (self.scale * self.all);
+            let (rows, _) = self.derivatives[cell].as_chunks::<UNKNOWNS>();
+            let weight = own * robust::weight(square / self.scale);
+            equations.add(&self.shades[cell], residual, &[rows[0], rows[1], rows[2]], weight);
+        }
+        let mut row = PoseVector::zeros();
+        row[SCALE] = 1.0;
+        if problem.is_metric() {
+            row[TRANSLATION_Z] = -frame.length / frame.centre.z;
+        }
+        let growth = (self.apparent_size(problem, &state.pose) / self.size).ln();
+        equations.add_row(&row, growth, SIZE_WEIGHT);
+        equations.reduced()
+    }
+
+    /// v and its derivatives, and points beside the mask.
+    fn enter_samples(
+        &mut self,
+        problem: &ContrastProblem<'_>,
+        level: &Level,
+        frame: &Frame,
+        state: &State,
+        equations: &mut Equations,
+    ) {
+        let beside = BESIDE_WEIGHT / self.samples.list.len() as f64;
+        for sample in &self.samples.list {
+            let point = state.pose.apply(sample.point);
+            let Some((place, by_pose)) = by_pose(problem, &point, frame) else { continue };
+            let (distance, slope) = self.silhouette.at(place);
+            if distance > SLACK {
+                let off = distance - SLACK;
+                let row = slope[0] * by_pose[0] + slope[1] * by_pose[1];
+                equations.add_row(&row, off, beside * robust::weight((off / BESIDE_SCALE).powi(2)));
+            }
+            let cell = sample.cell;
+            if self.weights[cell] == 0.0 {
+                continue;
+            }
+            self.derivatives[cell].fill(0.0);
+            let Some(colours) = level.image.at(place) else { continue };
+            self.seen_values[cell] = colours.log.map(|log| log as f32);
+            let (rows, _) = self.derivatives[cell].as_chunks_mut::<UNKNOWNS>();
+            for (row, [by_column, by_row]) in rows.iter_mut().zip(colours.gradient) {
+                let derivative = by_column * by_pose[0] + by_row * by_pose[1];
+                row.iter_mut().zip(&derivative).for_each(|(out, value)| *out = *value as f32);
+            }
+        }
+    }
+
+    fn enter_limbs(
+        &self,
+        problem: &ContrastProblem<'_>,
+        frame: &Frame,
+        pose: &Similarity,
+        equations: &mut Equations,
+    ) {
+        for limb in &self.seen.limbs {
+            let Some((place, by_pose)) = by_pose(problem, &pose.apply(*limb), frame) else { continue };
+            let (off, slope) = self.silhouette.signed_at(place);
+            let row = slope[0] * by_pose[0] + slope[1] * by_pose[1];
+            equations.add_row(&row, off, self.limb_weight() * robust::weight((off / LIMB_SCALE).powi(2)));
+        }
+    }
+
+    /// Calls `visit` with the grid pixel, residuals, weight and derivatives of each sample that takes part.
+    pub fn for_each_score(&self, light: &Lights, mut visit: impl FnMut(usize, [f64; CHANNELS], f64, &[[f32; UNKNOWNS]])) {
+        for cell in self.cells() {
+            let residual = self.residual(cell, light);
+            let square: f64 = residual.iter().map(|r| r * r).sum();
+            let own = f64::from(self.samples.weight[cell]) / (self.scale * self.all);
+            let (rows, _) = self.derivatives[cell].as_chunks::<UNKNOWNS>();
+            visit(cell, residual, own * robust::weight(square / self.scale), rows);
+        }
+    }
+
+    /// The harmonics of a grid pixel with their local means removed.
+    pub fn shades(&self, cell: usize) -> &[f32; SHADES] {
+        &self.shades[cell]
+    }
+}
+
+/// Where a point of the colour view is seen, and how that place moves with each unknown.
+fn by_pose(problem: &ContrastProblem<'_>, point: &Vector3<f64>, frame: &Frame) -> Option<([f64; 2], [PoseVector; 2])> {
+    let (place, by_point) =
+        problem.image.camera.project_with_gradient(problem.image.size, [point.x, point.y, point.z])?;
+    Some((place, by_point.map(|by_point| frame.row(point, &by_point.into()))))
+}

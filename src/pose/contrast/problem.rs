@@ -1,0 +1,60 @@
+//! What goes into a registration by local contrast, and what comes out.
+
+use nalgebra::Vector3;
+
+use crate::pose::increment::{Frame, PoseMatrix, UNKNOWNS};
+use crate::pose::similarity::Similarity;
+use crate::view::{ColourView, DepthView, Normals};
+
+/// What is registered. Points and normals (depth view's frame) are NaN where missing.
+#[derive(Clone, Copy)]
+pub struct ContrastProblem<'a> {
+    /// The colour view.
+    pub image: &'a ColourView,
+    /// The depth view.
+    pub depth: &'a DepthView,
+    /// Its normals.
+    pub normals: &'a Normals,
+    /// One sigma of each normal in radians; NaN leaves the point out.
+    pub normal_error: &'a [f32],
+    /// The scale that the units of both views give, where it is not known: the prior's middle.
+    pub unit_scale: f64,
+    /// Whether the scale of the start is kept.
+    pub scale_is_held: bool,
+}
+
+impl ContrastProblem<'_> {
+    /// Unknowns that keep their values: t_z of an orthographic image, which is a gauge, and a scale that is held.
+    pub(super) fn held(&self) -> [bool; UNKNOWNS] {
+        let gauge = self.image.camera.is_orthographic();
+        [false, false, false, false, false, gauge, self.scale_is_held || !gauge]
+    }
+
+    /// Whether the image has a pinhole camera.
+    pub(super) fn is_metric(&self) -> bool {
+        !self.image.camera.is_orthographic()
+    }
+
+    /// Where the image sees a point of the depth view.
+    pub(super) fn place(&self, pose: &Similarity, point: &Vector3<f64>) -> Option<[f64; 2]> {
+        self.image.camera.project(self.image.size, pose.apply(*point).into())
+    }
+}
+
+/// What the registration found.
+#[derive(Clone, Debug)]
+pub struct ContrastReport {
+    /// The pose; its t_z is that of the start for an orthographic image.
+    pub pose: Similarity,
+    /// E at the robust scale of its own noise.
+    pub objective: f64,
+    /// The contrast's share of it: 0 where shading explains all, 1 where nothing.
+    pub unexplained: f64,
+    /// Robust standard deviation of a channel's residuals, log units.
+    pub noise: f64,
+    /// Number of samples that the image shows.
+    pub visible: usize,
+    /// Covariance of rotation (radians), translation (object sizes) and log scale about the frame.
+    pub(super) covariance: PoseMatrix,
+    pub(super) frame: Frame,
+}

@@ -1,0 +1,97 @@
+//! What the image sees of the samples under one pose: which of them are visible, and where the surface turns away.
+
+use nalgebra::Vector3;
+
+use super::problem::ContrastProblem;
+use super::samples::Samples;
+use crate::pose::similarity::Similarity;
+use crate::view::Size;
+
+/// Cosine at the rim: flatter views of a surface have no reliable pixel.
+const RIM: f64 = 0.05;
+/// A sample counts as hidden when it lies this many cells behind the nearest one.
+const HIDDEN_BEHIND: f64 = 3.0;
+/// Neighbours farther apart than this many median steps do not belong to one surface.
+const JUMP: f64 = 4.0;
+
+/// Visible samples and contour generator under one pose; owns its memory.
+pub(super) struct Seen {
+    /// Nearest depth in each cell of the image, as wide as samples lie apart.
+    buffer: Vec<f64>,
+    size: Size,
+    /// Pixels of the image to a cell.
+    cell: f64,
+    /// Whether each sample is visible, were the mask everywhere.
+    pub visible: Vec<bool>,
+    /// Cosine of each sample between its normal and the ray towards it, negative where it faces the camera.
+    facing: Vec<f64>,
+    /// Points of the depth view where the surface turns away from the image's camera: they are seen on the outline.
+    pub limbs: Vec<Vector3<f64>>,
+}
+
+impl Seen {
+    pub fn new(image: Size, samples: &Samples, pixels_per_sample: f64) -> Self {
+        let cell = pixels_per_sample.max(1.0);
+        let side = |length: usize| (length as f64 / cell).ceil() as usize + 1;
+        let size = Size { width: side(image.width), height: side(image.height) };
+        let count = samples.list.len();
+        Self {
+            buffer: vec![f64::INFINITY; size.len()],
+            size,
+            cell,
+            visible: vec![false; count],
+            facing: vec![0.0; count],
+            limbs: Vec::with_capacity(count),
+        }
+    }
+
+    /// Looks anew from a pose.
+    pub fn look(&mut self, problem: &ContrastProblem<'_>, samples: &Samples, pose: &Similarity) {
+        self.buffer.fill(f64::INFINITY);
+        let camera = &problem.image.camera;
+        let place = |point: &Vector3<f64>| camera.project(problem.image.size, (*point).into());
+        for (k, sample) in samples.list.iter().enumerate() {
+            let point = pose.apply(sample.point);
+            let normal = pose.rotation * sample.normal;
+            self.facing[k] = if camera.is_orthographic() { normal.z } else { normal.dot(&point) / point.norm() };
+            if let Some(place) = place(&point) {
+                self.enter(place, point.z);
+            }
+        }
+        let length = camera.focal_length().map_or(1.0, |focal_length| pose.apply(samples.centre).z / focal_length);
+        let tolerance = HIDDEN_BEHIND * self.cell * length;
+        for (k, sample) in samples.list.iter().enumerate() {
+            let point = pose.apply(sample.point);
+            let nearest = place(&point).and_then(|place| self.at(place));
+            self.visible[k] = self.facing[k] < -RIM && nearest.is_some_and(|nearest| point.z <= nearest + tolerance);
+        }
+        self.find_limbs(samples);
+    }
+
+    fn at(&self, [column, row]: [f64; 2]) -> Option<f64> {
+        let pixel = self.size.nearest((column / self.cell) as f32, (row / self.cell) as f32)?;
+        Some(self.buffer[pixel])
+    }
+
+    /// Enters a depth at the four cells around a place, so that gaps let nothing through.
+    fn enter(&mut self, [column, row]: [f64; 2], depth: f64) {
+        let (column, row) = (column / self.cell, row / self.cell);
+        for (right, down) in [(-0.5, -0.5), (0.5, -0.5), (-0.5, 0.5), (0.5, 0.5)] {
+            if let Some(pixel) = self.size.nearest((column + right) as f32, (row + down) as f32) {
+                self.buffer[pixel] = self.buffer[pixel].min(depth);
+            }
+        }
+    }
+
+    /// Where the facing changes its sign between neighbours on one surface.
+    fn find_limbs(&mut self, samples: &Samples) {
+        self.limbs.clear();
+        for &pair in &samples.neighbours {
+            let [a, b] = pair.map(|k| k as usize);
+            let (here, there) = (self.facing[a], self.facing[b]);
+            if (here < 0.0) != (there < 0.0) && samples.distance(pair) < JUMP * samples.step {
+                self.limbs.push(samples.list[a].point.lerp(&samples.list[b].point, here / (here - there)));
+            }
+        }
+    }
+}

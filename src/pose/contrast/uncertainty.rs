@@ -1,0 +1,49 @@
+//! Covariance of a pose from contrast: the sandwich over tiles (docs/method.md, section 14).
+
+use super::equations::{Lights, Reduced};
+use super::objective::Objective;
+use crate::pose::increment::{PoseMatrix, PoseVector, UNKNOWNS, clear_unknowns, fix_unknowns};
+
+/// Side of the tiles of the depth map whose scores count as one observation, depth pixels: three sigmas of the local
+/// means.
+const TILE: usize = 9;
+/// Errors that leave no residual over those that do.
+const SIGMA_INFLATION: f64 = 2.1;
+/// Sigma of a direction that nothing is known about, radians or object sizes.
+const UNKNOWN: f64 = 1e3;
+
+/// Of the linearisation that the objective holds; held unknowns have none.
+pub(super) fn covariance(
+    objective: &Objective,
+    light: &Lights,
+    reduced: &Reduced,
+    held: &[bool; UNKNOWNS],
+) -> PoseMatrix {
+    let samples = &objective.samples;
+    let tile = TILE.div_ceil(samples.stride);
+    let across = samples.grid.width.div_ceil(tile);
+    let mut scores = vec![PoseVector::zeros(); across * samples.grid.height.div_ceil(tile)];
+    objective.for_each_score(light, |cell, residual, weight, rows| {
+        let (column, row) = samples.grid.position(cell);
+        scores[row / tile * across + column / tile] += reduced.score(objective.shades(cell), residual, rows) * weight;
+    });
+    let (mut spread, mut count) = (PoseMatrix::zeros(), 0.0);
+    for score in scores.iter().filter(|score| score.norm() > 0.0) {
+        spread.ger(1.0, score, score, 1.0);
+        count += 1.0;
+    }
+    let free = held.iter().filter(|&&held| !held).count() as f64;
+    let mut matrix = reduced.matrix;
+    fix_unknowns(&mut matrix, held);
+    let mut covariance = match matrix.try_inverse() {
+        Some(inverse) if count > free => {
+            inverse * spread * inverse.transpose() * (SIGMA_INFLATION.powi(2) * count / (count - free))
+        }
+        _ => PoseMatrix::identity() * UNKNOWN.powi(2),
+    };
+    if !covariance.norm().is_finite() {
+        covariance = PoseMatrix::identity() * UNKNOWN.powi(2);
+    }
+    clear_unknowns(&mut covariance, held);
+    covariance
+}

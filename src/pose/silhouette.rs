@@ -1,0 +1,96 @@
+//! How far a place lies off an image's mask: its exact Euclidean distance to the nearest pixel of the mask
+//! (P. Felzenszwalb, D. Huttenlocher: "Distance transforms of sampled functions", Theory of Computing 8, 2012).
+
+use crate::view::Size;
+
+/// Distances to one mask, pixels: zero on it.
+pub(super) struct Silhouette {
+    size: Size,
+    distance: Vec<f32>,
+    /// Likewise, negative on the mask: the distance to its border.
+    signed: Vec<f32>,
+}
+
+impl Silhouette {
+    pub fn new(size: Size, mask: &[bool]) -> Self {
+        let distance = distances(size, mask);
+        let other: Vec<bool> = mask.iter().map(|inside| !inside).collect();
+        let inside = distances(size, &other);
+        // Centres of pixels on either side of a border are half a pixel off it.
+        let signed = distance.iter().zip(&inside).map(|(out, inn)| if *out > 0.0 { out - 0.5 } else { 0.5 - inn }).collect();
+        Self { size, distance, signed }
+    }
+
+    /// Pixels of the mask next to one that is not.
+    pub fn border(&self) -> usize {
+        self.signed.iter().filter(|&&signed| signed == -0.5).count()
+    }
+
+    /// The signed distance of a place and its derivative.
+    pub fn signed_at(&self, place: [f64; 2]) -> (f64, [f64; 2]) {
+        self.bilinear(&self.signed, place)
+    }
+
+    /// Distance of a place and its derivative by column and row. Beyond the raster that of the nearest place within
+    /// counts on: an object that the frame cuts off may go on there.
+    pub fn at(&self, place: [f64; 2]) -> (f64, [f64; 2]) {
+        self.bilinear(&self.distance, place)
+    }
+
+    fn bilinear(&self, field: &[f32], [column, row]: [f64; 2]) -> (f64, [f64; 2]) {
+        let Size { width, height } = self.size;
+        let x = column.clamp(0.0, (width - 1) as f64);
+        let y = row.clamp(0.0, (height - 1) as f64);
+        let (left, top) = ((x as usize).min(width - 2), (y as usize).min(height - 2));
+        let (u, v) = (x - left as f64, y - top as f64);
+        let at = |c: usize, r: usize| f64::from(field[self.size.index(left + c, top + r)]);
+        let [a, b, c, d] = [at(0, 0), at(1, 0), at(0, 1), at(1, 1)];
+        let distance = (1.0 - v) * ((1.0 - u) * a + u * b) + v * ((1.0 - u) * c + u * d);
+        let gradient = [(1.0 - v) * (b - a) + v * (d - c), (1.0 - u) * (c - a) + u * (d - b)];
+        (distance, gradient)
+    }
+}
+
+/// Distance of each pixel to the nearest one of the mask.
+fn distances(size: Size, mask: &[bool]) -> Vec<f32> {
+        // Farther than any pixel, and its square exact.
+        let far = (size.width + size.height) as f32;
+        let mut squared: Vec<f32> = mask.iter().map(|&inside| if inside { 0.0 } else { far * far }).collect();
+        let mut line = vec![0.0; size.width.max(size.height)];
+        for row in 0..size.height {
+            lower_envelope(&mut squared, row * size.width, 1, &mut line[..size.width]);
+        }
+        for column in 0..size.width {
+            lower_envelope(&mut squared, column, size.width, &mut line[..size.height]);
+        }
+        squared.into_iter().map(f32::sqrt).collect()
+}
+
+
+/// One pass: min over q of (p - q)^2 + squared[q] along a line, by the lower envelope of its parabolas.
+fn lower_envelope(squared: &mut [f32], start: usize, step: usize, line: &mut [f32]) {
+    let at = |k: usize| start + k * step;
+    line.iter_mut().enumerate().for_each(|(k, value)| *value = squared[at(k)]);
+    // Parabolas of the envelope, and where each begins.
+    let mut parabolas: Vec<(usize, f32)> = Vec::with_capacity(line.len());
+    for q in 0..line.len() {
+        let begins = loop {
+            let Some(&(p, begin)) = parabolas.last() else { break f32::NEG_INFINITY };
+            let (p_square, q_square) = ((p * p) as f32, (q * q) as f32);
+            let meet = (line[q] + q_square - line[p] - p_square) / (2.0 * (q - p) as f32);
+            if meet > begin {
+                break meet;
+            }
+            parabolas.pop();
+        };
+        parabolas.push((q, begins));
+    }
+    let mut next = 0;
+    for k in 0..line.len() {
+        while parabolas.get(next + 1).is_some_and(|&(_, begin)| begin < k as f32) {
+            next += 1;
+        }
+        let q = parabolas[next].0;
+        squared[at(k)] = k.abs_diff(q).pow(2) as f32 + line[q];
+    }
+}
