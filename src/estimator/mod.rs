@@ -332,7 +332,7 @@ impl Estimator {
         self.solution.pose = found.pose;
         self.solution.light.light = found.light.unwrap_or(self.solution.light.light);
         self.solution.light.exposure = found.exposure.unwrap_or(self.solution.light.exposure);
-        self.report.uncertainty = Some(found.uncertainty);
+        self.report.uncertainty = found.uncertainty.or(self.report.uncertainty.take());
     }
 
     /// Of a match of surfaces only a fraction is taken after rejections. Behind a pinhole image the pose keeps its
@@ -464,6 +464,7 @@ impl Estimator {
                 unexplained: found.noise / pair.image.log_spread(),
                 inliers: found.inliers,
             }),
+            has_kept_start: self.registration.has_kept_start(),
             rivals: report.rivals.len(),
             nearest_rival: nearest,
         });

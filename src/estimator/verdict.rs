@@ -63,6 +63,8 @@ pub struct Evidence<'a> {
     pub is_whole_step: bool,
     /// What the registration by colours says of its answer, where the answer is its own.
     pub colours: Option<ColourEvidence<'a>>,
+    /// Whether nothing near a told start explains the colours better, so that it was kept.
+    pub has_kept_start: bool,
     /// Number of rivals, and the degrees to the nearest.
     pub rivals: usize,
     pub nearest_rival: f64,
@@ -130,6 +132,10 @@ fn has_settled(evidence: &Evidence<'_>) -> bool {
 
 /// Why the answer is "lost" or "ambiguous" although the loop came to an end, if it is.
 fn reason_for_distrust(evidence: &Evidence<'_>) -> Option<Verdict> {
+    if evidence.has_kept_start {
+        let reason = "nothing within startTolerance explains the colours better than the told pose, which is kept";
+        return Some((Status::Lost, Some(reason.into())));
+    }
     if let Some(reason) = evidence.colours.and_then(|colours| reason_to_be_lost(&colours)) {
         return Some((Status::Lost, Some(reason)));
     }
@@ -182,6 +188,7 @@ mod tests {
         unmoved: 1,
         is_whole_step: true,
         colours: Some(SURE),
+        has_kept_start: false,
         rivals: 0,
         nearest_rival: f64::INFINITY,
     };
@@ -246,6 +253,13 @@ mod tests {
             ("colours without spread", colours(ColourEvidence { unexplained: f64::NAN, ..SURE }), lost, "unexplained"),
             ("outliers", colours(ColourEvidence { inliers: 0.3, ..SURE }), lost, "only 30 % of the points"),
             ("a fair sigma", colours(ColourEvidence { sigma: 1.6, ..SURE }), ambiguous, "1.6 degrees (one sigma)"),
+            (
+                "a told start that nothing improves",
+                Evidence { has_kept_start: true, colours: None, ..SETTLED },
+                lost,
+                "within startTolerance",
+            ),
+            ("a told start that still settles", Evidence { has_kept_start: true, ..MOVING }, None, ""),
             ("rivals", Evidence { rivals: 2, nearest_rival: 40.2, ..SETTLED }, ambiguous, "2 other poses"),
             (
                 "rivals of matched surfaces",

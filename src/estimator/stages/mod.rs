@@ -11,6 +11,7 @@ mod refinement;
 mod registration;
 mod shape;
 mod surfaces;
+mod told_start;
 
 pub use colours::{Attempt, ColourRegistration};
 pub use correspondences::correspondence_problem;
