@@ -47,7 +47,7 @@ mod light;
 #[macro_use]
 mod numeric;
 mod options;
-mod pose;
+pub mod pose;
 mod report;
 pub mod scenes;
 mod shape;

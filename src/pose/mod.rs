@@ -21,6 +21,7 @@ mod correspondence;
 mod icp;
 mod increment;
 mod neighbours;
+pub mod outline;
 mod photometric;
 mod ransac;
 mod search;
