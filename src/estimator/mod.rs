@@ -40,7 +40,7 @@ use pair::ViewPair;
 use solution::{Accepted, Solution};
 pub use stages::RefinementTask;
 use stages::{Inputs, LightStage, RefinementStage, Registered, RegistrationStage, ShapeStage};
-use verdict::{ColourEvidence, Evidence, verdict};
+use verdict::{ColourEvidence, Evidence, OutlineEvidence, verdict};
 pub use workers::Worker;
 pub use workers::task::{Finding, Task};
 
@@ -463,6 +463,11 @@ impl Estimator {
                 weakest: &found.uncertainty.weakest,
                 unexplained: found.noise / pair.image.log_spread(),
                 inliers: found.inliers,
+            }),
+            outlines: self.registration.found_by_outlines().map(|found| OutlineEvidence {
+                sigma: found.uncertainty.rotation_degrees.into_iter().fold(0.0, f64::max),
+                weakest: &found.uncertainty.weakest,
+                is_unseen: found.unseen,
             }),
             has_kept_start: self.registration.has_kept_start(),
             rivals: report.rivals.len(),

@@ -32,6 +32,7 @@ mod visibility;
 pub use angles::Angles;
 pub use correspondence::{CorrespondenceProblem, Correspondences};
 pub use icp::{Icp, IcpOptions, IcpProblem, IcpReport, IcpTermination, Metric, Pair};
+pub(crate) use outline::{Outline, OutlinePrior, OutlineProblem, OutlineReport};
 pub use photometric::{Photometric, PhotometricOptions, PhotometricProblem, PhotometricReport, PhotometricTermination};
 pub use ransac::{RansacOptions, RansacReport, ransac};
 pub use search::{Candidate, Progress, Search, SearchProblem};

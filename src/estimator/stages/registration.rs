@@ -6,12 +6,12 @@ use crate::estimator::pair::ViewPair;
 use crate::estimator::solution::Solution;
 use crate::light::Light;
 use crate::options::{Registration, Start};
-use crate::pose::{PhotometricReport, Similarity, Uncertainty};
+use crate::pose::{OutlineReport, PhotometricReport, Similarity, Uncertainty};
 
 use super::colours::ColourRegistration;
 use super::light::Inputs;
 use super::surfaces::{Matched, SurfaceRegistration};
-use super::told_start::TrustRegion;
+use super::told_start::{Settled, TrustRegion};
 
 /// Growth of the apparent size beyond which, or below whose inverse, a registration has collapsed: shrunk onto a few pixels
 /// a cloud is easily explained. The search looks from 0.7 to 1.4.
@@ -28,6 +28,13 @@ pub struct Registered {
     pub uncertainty: Option<Uncertainty>,
     /// Whether the pose is better than its start.
     pub improved: bool,
+}
+
+impl Registered {
+    fn by_outlines(found: &OutlineReport) -> Self {
+        let uncertainty = Some(found.uncertainty.clone());
+        Self { pose: found.pose, light: None, exposure: None, uncertainty, improved: true }
+    }
 }
 
 /// Registers the depth view to the image, by colours or by surfaces.
@@ -47,6 +54,8 @@ enum Told {
     Improved(TrustRegion),
     /// None was: the told pose is kept.
     Kept,
+    /// The colours are painted; the pose is that of the outlines.
+    Outlined(OutlineReport),
 }
 
 impl RegistrationStage {
@@ -94,12 +103,21 @@ impl RegistrationStage {
         matches!(self.told, Told::Kept)
     }
 
+    /// What outlines have found, where they decide.
+    pub const fn found_by_outlines(&self) -> Option<&OutlineReport> {
+        match &self.told {
+            Told::Outlined(found) => Some(found),
+            _ => None,
+        }
+    }
+
     /// Whether the next registration will leave `pose` as it is, whatever the shapes become.
     pub fn keeps(&self, pair: &ViewPair, pose: &Similarity) -> bool {
         match self.kind(pair) {
             Registration::Fixed => true,
             Registration::Joint => {
-                self.has_kept_start() || self.colours.as_ref().is_some_and(|colours| colours.ended_in(pose))
+                let is_told = matches!(self.told, Told::Kept | Told::Outlined(_));
+                is_told || self.colours.as_ref().is_some_and(|colours| colours.ended_in(pose))
             }
             Registration::Icp => false,
         }
@@ -127,11 +145,25 @@ impl RegistrationStage {
     fn register_colours(&mut self, pair: &ViewPair, start: &Similarity) -> Result<Option<Registered>> {
         let Some(colours) = &mut self.colours else { return Ok(None) };
         let found = match std::mem::replace(&mut self.told, Told::Kept) {
-            Told::Kept => return Ok(None),
+            told @ (Told::Kept | Told::Outlined(_)) => {
+                self.told = told;
+                return Ok(None);
+            }
             Told::Untried(region) => {
-                let Some(found) = region.settle(pair, colours)? else { return Ok(None) };
+                let settled = region.settle(pair, colours)?;
                 self.told = Told::Improved(region);
-                found
+                match settled {
+                    Settled::ByColours(found) => found,
+                    Settled::ByOutlines(found) => {
+                        let registered = Registered::by_outlines(&found);
+                        self.told = Told::Outlined(found);
+                        return Ok(Some(registered));
+                    }
+                    Settled::Kept => {
+                        self.told = Told::Kept;
+                        return Ok(None);
+                    }
+                }
             }
             told => {
                 self.told = told;

@@ -1,12 +1,14 @@
 //! The rounds of a registration by outlines.
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 
 use super::edges::{Edge, Edges, LEVELS};
 use super::mask_distance::MaskDistance;
 use super::rims::Rims;
-use crate::pose::increment::{Frame, PoseMatrix, PoseVector, SCALE, UNKNOWNS};
+use crate::numeric::{quantile, robust};
+use crate::pose::increment::{Frame, PoseMatrix, PoseVector, SCALE, UNKNOWNS, clear_unknowns};
 use crate::pose::similarity::Similarity;
+use crate::pose::uncertainty::{Uncertainty, describe, in_words};
 use crate::view::{ColourView, DepthView, Normals};
 
 /// Half the width of an outline, pixels: neither a pixel's own size nor the rounding of a mask is an error. Without it
@@ -32,6 +34,19 @@ const DAMPING: f64 = 1e-3;
 /// Points that ask whether they leave the mask at most; outline pixels and rims at most.
 const MOST_POINTS: usize = 4000;
 const MOST_OUTLINE: usize = 1000;
+/// The last robust scale.
+const FINEST: f64 = SCALES[SCALES.len() - 1];
+/// Length of outline that errs together, pixels, and by how much errors exceed what residuals tell: masks, registration
+/// of the sensors and loss of outlines are wrong all one way.
+const CORRELATED: f64 = 8.0;
+const SIGMA_INFLATION: f64 = 3.0;
+/// Least noise of rims, pixels: a third of one.
+const LEAST_NOISE: f64 = 0.3;
+/// Variance of a direction that nothing is known about.
+const UNKNOWN: f64 = 1e3;
+/// Variance of a rotation as a share of the prior's above which outlines do not see it.
+const UNSEEN: f64 = 0.8;
+const MOST_EIGEN_ROUNDS: usize = 100;
 
 /// The unknowns: those of a pose without its scale, and the loss in the scale's place.
 const LOSS: usize = SCALE;
@@ -66,9 +81,12 @@ pub struct OutlineReport {
     pub loss: f64,
     /// Robust standard deviation of the rims about the mask's outline, pixels.
     pub noise: f64,
-    /// Covariance of rotation (radians) and translation (object sizes) about the middle; the scale has none.
-    pub covariance: PoseMatrix,
-    pub frame: Frame,
+    pub uncertainty: Uncertainty,
+    /// Whether its weakest rotation is as good as unseen: what was told of it is kept.
+    pub unseen: bool,
+    /// The objective at the finest scale.
+    pub cost: f64,
+    /// Number of rims.
     pub rims: usize,
 }
 
@@ -282,12 +300,7 @@ impl Outline {
             }
         }
         self.add_edges(problem, pose, loss, scale, &mut sums);
-        let total: f64 = self.rims.rims.iter().filter(|rim| rim.is_outer).map(|rim| rim.weight).sum();
-        for rim in self.rims.rims.iter().filter(|rim| rim.is_outer) {
-            if let Some((residual, row)) = self.against_mask(problem, pose, loss, rim.index as usize) {
-                sums.add(&row, residual, RIM * rim.weight / total, scale);
-            }
-        }
+        self.add_rims(problem, pose, loss, scale, &mut sums);
         let share = BARE / self.outline.len().max(1) as f64;
         for &(place, index) in &self.bare {
             let Some((pixel, [across, down])) = self.rows(problem, pose, index as usize) else { continue };
@@ -302,6 +315,16 @@ impl Outline {
         }
         self.add_prior(problem, pose, loss, &mut sums);
         sums
+    }
+
+    fn add_rims(&self, problem: &OutlineProblem<'_>, pose: &Similarity, loss: f64, scale: f64, sums: &mut Sums) {
+        let rims = || self.rims.rims.iter().filter(|rim| rim.is_outer);
+        let total: f64 = rims().map(|rim| rim.weight).sum();
+        for rim in rims() {
+            if let Some((residual, row)) = self.against_mask(problem, pose, loss, rim.index as usize) {
+                sums.add(&row, residual, RIM * rim.weight / total, scale);
+            }
+        }
     }
 
     fn add_edges(&self, problem: &OutlineProblem<'_>, pose: &Similarity, loss: f64, scale: f64, sums: &mut Sums) {
@@ -339,23 +362,61 @@ impl Outline {
         sums.add(&row, loss / LOSS_SIGMA, PRIOR, f64::INFINITY);
     }
 
+    /// What is said of the end.
     fn report(&mut self, problem: &OutlineProblem<'_>, pose: Similarity, loss: f64) -> OutlineReport {
         self.freeze(problem, &pose);
-        let mut residuals: Vec<f32> = self
-            .rims
-            .rims
-            .iter()
-            .filter(|rim| rim.is_outer)
-            .filter_map(|rim| self.against_mask(problem, &pose, loss, rim.index as usize))
-            .map(|(residual, _)| residual.abs() as f32)
-            .collect();
-        let noise = if residuals.is_empty() {
-            f64::INFINITY
-        } else {
-            1.4826 * f64::from(crate::numeric::quantile(&mut residuals, 0.5))
-        };
-        let mut matrix = self.sums(problem, &pose, loss, SCALES[SCALES.len() - 1]).matrix;
-        matrix.fill_upper_triangle_with_lower_triangle();
-        OutlineReport { pose, loss, noise, covariance: matrix, frame: self.frame(&pose), rims: self.rims.rims.len() }
+        self.match_edges(Some(LEVELS.len() - 1), loss);
+        let noise = self.noise(problem, &pose, loss);
+        let mut data = Sums::new();
+        self.add_rims(problem, &pose, loss, FINEST, &mut data);
+        self.add_edges(problem, &pose, loss, FINEST, &mut data);
+        let independent = self.rims.rims.len() as f64 * self.rims.cell() / CORRELATED;
+        let mut information = data.matrix * (independent / ((RIM + EDGE) * (SIGMA_INFLATION * noise).powi(2)));
+        let mut prior = Sums::new();
+        self.add_prior(problem, &pose, loss, &mut prior);
+        information += prior.matrix / PRIOR;
+        information.fill_upper_triangle_with_lower_triangle();
+        let frame = self.frame(&pose);
+        let mut covariance = information.try_inverse().unwrap_or_else(|| PoseMatrix::identity() * UNKNOWN.powi(2));
+        clear_unknowns(&mut covariance, &std::array::from_fn(|k| k == LOSS));
+        let (weakest, share) = weakest_turn(&covariance, problem.prior.rotation);
+        OutlineReport {
+            uncertainty: describe(&covariance, &frame, &pose, [false, true], weakest),
+            unseen: share > UNSEEN,
+            cost: self.sums(problem, &pose, loss, FINEST).cost,
+            rims: self.rims.rims.len(),
+            pose,
+            loss,
+            noise,
+        }
     }
+
+    /// What outlines say of a pose as it is.
+    pub fn judge(&mut self, problem: &OutlineProblem<'_>, pose: &Similarity) -> OutlineReport {
+        self.report(problem, *pose, 0.0)
+    }
+
+    /// Robust standard deviation of the rims about outline and edges.
+    fn noise(&self, problem: &OutlineProblem<'_>, pose: &Similarity, loss: f64) -> f64 {
+        let rims = self.rims.rims.iter().filter(|rim| rim.is_outer);
+        let against_mask = rims.filter_map(|rim| self.against_mask(problem, pose, loss, rim.index as usize));
+        let mut residuals: Vec<f32> = against_mask.map(|(residual, _)| residual.abs() as f32).collect();
+        residuals.extend(self.matches.iter().flatten().map(|(_, edge)| edge.offset.abs() as f32));
+        if residuals.is_empty() {
+            return f64::INFINITY;
+        }
+        (robust::SIGMA_OF_MEDIAN * f64::from(quantile(&mut residuals, 0.5))).max(LEAST_NOISE)
+    }
+}
+
+/// The rotation that is known least, in words, and its variance as a share of the prior's.
+fn weakest_turn(covariance: &PoseMatrix, prior: f64) -> (String, f64) {
+    let turns: Matrix3<f64> = covariance.fixed_view::<3, 3>(0, 0).into();
+    let Some(eigen) = SymmetricEigen::try_new(turns, f64::EPSILON, MOST_EIGEN_ROUNDS) else {
+        return ("unknown".to_owned(), 1.0);
+    };
+    let weakest = eigen.eigenvalues.imax();
+    let mut direction = PoseVector::zeros();
+    direction.fixed_rows_mut::<3>(0).copy_from(&eigen.eigenvectors.column(weakest));
+    (in_words(&direction), eigen.eigenvalues[weakest] / (prior * prior))
 }

@@ -46,7 +46,7 @@ pub struct Rims {
 }
 
 /// Cells around a rim that tell its normal.
-const AROUND: usize = 3;
+const AROUND: usize = 5;
 /// No point.
 const BARE: u32 = u32::MAX;
 
@@ -104,6 +104,11 @@ impl Rims {
         }
         let length = sum[0].hypot(sum[1]);
         (length > 0.0).then(|| (sum.map(|part| part / length), 2 * bare > count))
+    }
+
+    /// Pixels of a cell's edge: how far apart rims are.
+    pub const fn cell(&self) -> f64 {
+        self.cell
     }
 
     /// Whether a pixel of the image is covered.
