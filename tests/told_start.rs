@@ -30,7 +30,11 @@ fn painted(sample: &Sample) -> ColourSamples {
     let paints = [[0.8, 0.2, 0.1], [0.1, 0.6, 0.2], [0.2, 0.2, 0.7], [0.9, 0.9, 0.3]];
     let paint = |index: usize| {
         let (column, row) = sample.image.size.position(index);
-        if sample.image.mask[index] { paints[(column / 5 + 2 * (row / 7) + (column + row) / 11) % 4] } else { [0.02; 3] }
+        if sample.image.mask[index] {
+            paints[(column / 5 + 2 * (row / 7) + (column + row) / 11) % 4]
+        } else {
+            [0.02; 3]
+        }
     };
     let shaded = |index: usize| {
         let shading = sample.image.colours[3 * index..3 * index + 3].iter().sum::<f32>() / 3.0;
@@ -47,7 +51,10 @@ fn turned_about_the_sensor(sample: &Sample, axis: Vector3<f64>, degrees: f64) ->
 
 fn told(pose: &Similarity) -> Options {
     let Similarity { rotation, scale, translation } = *pose;
-    Options { start: Start::Pose { rotation, scale: Some(scale), translation: Some(translation) }, ..Options::default() }
+    Options {
+        start: Start::Pose { rotation, scale: Some(scale), translation: Some(translation) },
+        ..Options::default()
+    }
 }
 
 fn run(sample: &Sample, paint: bool, options: Options) -> StepReport {
@@ -134,7 +141,8 @@ fn what_never_moved_has_no_sigmas() {
     let start = turned_about_the_sensor(&sample, Vector3::y(), 2.0);
     for paint in [false, true] {
         let report = run(&sample, paint, Options { registration: Registration::Icp, ..told(&start) });
-        let moved = report.pose != Similarity { translation: start.translation, ..report.pose } || report.pose.degrees_to(&start) > 0.0;
+        let moved = report.pose != Similarity { translation: start.translation, ..report.pose }
+            || report.pose.degrees_to(&start) > 0.0;
         assert_eq!(report.uncertainty.is_some(), moved, "{paint}: {report:?}");
     }
 }

@@ -68,6 +68,14 @@ pub fn first_pose(pair: &ViewPair) -> Similarity {
     pose
 }
 
+/// The pose of a rotation that puts the middle of the depth points on the middle of the image's object.
+pub fn centred(pair: &ViewPair, rotation: Matrix3<f64>) -> Similarity {
+    let scale = held_scale(pair).unwrap_or_else(|| unit_scale(pair));
+    let mut pose = Similarity { scale, rotation, translation: Vector3::zeros() };
+    pose.translation = centring(&pair.image, &pair.depth, &pose);
+    pose
+}
+
 /// Whether the views of the identity share their frame.
 pub fn shares_frame(pair: &ViewPair) -> bool {
     coincides(&pair.image, &pair.depth, Start::Identity)

@@ -7,6 +7,7 @@
 mod colours;
 mod correspondences;
 mod light;
+mod outlines;
 mod refinement;
 mod registration;
 mod shape;

@@ -10,6 +10,7 @@ use crate::pose::{OutlineReport, PhotometricReport, Similarity, Uncertainty};
 
 use super::colours::ColourRegistration;
 use super::light::Inputs;
+use super::outlines::{self, LARGEST_PURE_NOISE};
 use super::surfaces::{Matched, SurfaceRegistration};
 use super::told_start::{Settled, TrustRegion};
 
@@ -89,13 +90,28 @@ impl RegistrationStage {
         self.colours.as_mut()
     }
 
-    /// Takes over what the search has found.
-    pub fn adopt(&mut self, pair: &ViewPair, found: PhotometricReport, present: &Similarity) -> Registered {
+    /// Takes over what the search has found, if anything; what outlines say where the colours are painted.
+    pub fn adopt(
+        &mut self,
+        pair: &ViewPair,
+        found: Option<PhotometricReport>,
+        present: &Similarity,
+    ) -> Option<Registered> {
+        let is_painted = found.as_ref().is_none_or(|found| found.noise > LARGEST_PURE_NOISE);
+        if is_painted
+            && pair.options.registration == Registration::Joint
+            && let Some(outlined) = outlines::anywhere(pair, self.colours.as_ref()?.normals())
+        {
+            let registered = Registered::by_outlines(&outlined);
+            self.told = Told::Outlined(outlined);
+            return Some(registered);
+        }
+        let found = found?;
         let registered = self.registered(pair, &found, present);
         if let Some(colours) = &mut self.colours {
             colours.adopt(found);
         }
-        registered
+        Some(registered)
     }
 
     /// Whether nothing near a told start explains the colours better, so that it is kept.

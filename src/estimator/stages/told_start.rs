@@ -12,6 +12,7 @@
 use nalgebra::Vector3;
 
 use super::colours::ColourRegistration;
+use super::outlines::{self, LARGEST_PURE_NOISE};
 use crate::error::Result;
 use crate::estimator::gauge;
 use crate::estimator::local_optima::LocalOptima;
@@ -31,17 +32,11 @@ const OBJECT_SIZES: f64 = 3.0;
 /// leave 0.75 to 1 times the noise.
 const EXPLAINED_NOISE: f64 = 1.5;
 const EXPLAINED_SHARE: f64 = 0.05;
-/// Noise that the colours leave above which it is none, but paint and shadow, log units; renders leave 0.010 to 0.018, all
-/// that is real 0.041 to 0.34. Then outlines decide where there are any.
-const LARGEST_PURE_NOISE: f64 = 0.035;
 /// One sigma of what is told as a share of its tolerance: of the rotation, and of the object's place across and along the
 /// line of sight. For a mug at 0.8 m 3 degrees, 45 and 25 mm.
 const SIGMA_OF_DEGREES: f64 = 0.1;
 const SIGMA_ACROSS: f64 = 0.4;
 const SIGMA_ALONG: f64 = 0.22;
-/// Outlines of fewer points, or that are farther from the image's in the median, tell nothing; pixels.
-const FEWEST_RIMS: usize = 40;
-const LARGEST_RIM_NOISE: f64 = 6.0;
 /// Candidates of the search around that are registered at most.
 const MOST_TRIED: usize = 12;
 /// Number of the told pose among the candidates: none of the others has it.
@@ -158,22 +153,13 @@ impl TrustRegion {
         if !self.sees_depth || !self.distance.is_finite() {
             return None;
         }
-        let problem = OutlineProblem {
-            image: &pair.image,
-            depth: &pair.depth,
-            normals: colours.normals(),
-            prior: OutlinePrior {
-                pose: self.told,
-                rotation: (SIGMA_OF_DEGREES * self.degrees).to_radians(),
-                across: SIGMA_ACROSS * self.distance,
-                along: SIGMA_ALONG * self.distance,
-            },
+        let told = OutlinePrior {
+            pose: self.told,
+            rotation: (SIGMA_OF_DEGREES * self.degrees).to_radians(),
+            across: SIGMA_ACROSS * self.distance,
+            along: SIGMA_ALONG * self.distance,
         };
-        let mut outline = Outline::new(&problem);
-        let staying = outline.judge(&problem, &self.told);
-        let found = outline.register(&problem, &self.told);
-        let is_seen = found.rims >= FEWEST_RIMS && found.noise <= LARGEST_RIM_NOISE;
-        Some(found).filter(|found| is_seen && found.cost < staying.cost && self.holds(&found.pose))
+        outlines::near(pair, colours.normals(), told).filter(|found| self.holds(&found.pose))
     }
 
     /// Registers from where mask, colours and projected cloud agree at the told rotation, then from the best of a search
