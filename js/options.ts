@@ -29,6 +29,14 @@ export const OPTIONS: RowsOf<Options> = {
   /** Nine coefficients for each of three channels. */
   light: { kind: "list", length: 27, words: { estimate: "estimate" }, default: "estimate" },
   start: { kind: "object", noun: "a pose", members: POSE, words: { search: "search", identity: "identity" }, default: "search" },
+  startTolerance: {
+    kind: "object",
+    noun: "a tolerance",
+    members: {
+      degrees: { kind: "number", above: 0, unit: "deg", default: 30 },
+      distance: { kind: "number", above: 0 },
+    },
+  },
   registration: {
     kind: "word",
     words: { joint: "joint", icp: "ICP", fixed: "keep start" },

@@ -56,6 +56,12 @@ export interface Pose {
 export interface Options {
   light?: "estimate" | ArrayLike<number>;
   start?: "search" | "identity" | Partial<Pose>;
+  /**
+   * How far from a told start the registration by colours may end: the rotation, by default 30 degrees, and the object's
+   * middle in the colour view's units, by default the object's own width. Where nothing within explains the colours better,
+   * the told pose is kept and the status is "lost".
+   */
+  startTolerance?: { degrees?: number; distance?: number };
   scale?: "free" | number;
   registration?: "joint" | "icp" | "fixed";
   shading?: "surface" | "pixel";

@@ -15,8 +15,8 @@ export const MISSING = `no data in ${DATA}`;
 
 const bytes = (...path) => readFileSync(join(DATA, ...path));
 
-/** Colour of frame 1 and depth of frame 2, which the same camera took a moment later. */
-function consecutive(object, { decodeColour, decodeDepth, decodeMask }) {
+/** Colour of one frame and depth of another one, which the same camera took a moment later, or of the same. */
+function frames(object, [first, second], { decodeColour, decodeDepth, decodeMask }) {
   const frame = (number, kind) => bytes("rgbd_object", `${object}_1_${number}_${kind}`);
   const camera = (number) => {
     // The crop's first column and row in the whole frame, counted from 1.
@@ -25,8 +25,8 @@ function consecutive(object, { decodeColour, decodeDepth, decodeMask }) {
   };
   const mask = (number) => decodeMask(frame(number, "maskcrop.png")).data;
   return {
-    image: { ...decodeColour(frame(1, "crop.png")), mask: mask(1), camera: camera(1) },
-    depth: { ...decodeDepth(frame(2, "depthcrop.png")), mask: mask(2), camera: camera(2), unit: MILLIMETRE },
+    image: { ...decodeColour(frame(first, "crop.png")), mask: mask(first), camera: camera(first) },
+    depth: { ...decodeDepth(frame(second, "depthcrop.png")), mask: mask(second), camera: camera(second), unit: MILLIMETRE },
   };
 }
 
@@ -40,11 +40,46 @@ function vase({ decodeColour, decodeDepth, decodeMask }) {
   };
 }
 
+/** Every second pixel of a colour image's blocks in one: means. */
+function halved({ width, height, data, ...rest }) {
+  const half = { width: width / 2, height: height / 2, data: new data.constructor(data.length / 4) };
+  for (let index = 0; index < half.width * half.height; index++) {
+    const first = 2 * (index % half.width) + 2 * width * Math.floor(index / half.width);
+    for (let channel = 0; channel < 4; channel++) {
+      const sum = [0, 1, width, width + 1].reduce((total, step) => total + data[4 * (first + step) + channel], 0);
+      half.data[4 * index + channel] = Math.round(sum / 4);
+    }
+  }
+  return { ...rest, ...half };
+}
+
+/** A colour image twice as large as its depth map, both registered: `android_rgbd` and a lamp of `mitten_rgbd`. */
+function twofold(folder, names, camera, { decodeColour, decodeDepth, decodeMask }) {
+  const [colour, depth, mask] = names.map((name) => bytes(folder, name));
+  const shared = { mask: decodeMask(mask).data, camera };
+  const FIFTH = 0.2 * MILLIMETRE;
+  return { image: { ...halved(decodeColour(colour)), ...shared }, depth: { ...decodeDepth(depth), ...shared, unit: FIFTH } };
+}
+
+/** Colour and depth of one moment, seen by one camera: the true pose is the identity. */
+export function capture(name, frame, files) {
+  if (name === "vase_rgbd") return vase(files);
+  if (name === "android_rgbd") {
+    const camera = { fx: 608.35, fy: 608.35, cx: 319.75, cy: 239.75 };
+    return twofold(name, ["color.png", "depth.png", "mask.png"], camera, files);
+  }
+  if (name === "mitten_rgbd") {
+    const camera = { fx: 608.365, fy: 608.365, cx: 319.5, cy: 239.5 };
+    return twofold(name, [`color_${frame}.png`, `depth_${frame}.png`, "mask.png"], camera, files);
+  }
+  return frames(name, [frame, frame], files);
+}
+
 const OBJECTS = ["coffee_mug_1", "bowl_1", "cap_1", "cereal_box_1"];
 
 /** Names of the pairs and how to read each with the package's decoders. */
 export const PAIRS = {
-  ...Object.fromEntries(OBJECTS.map((object) => [object, (files) => consecutive(object, files)])),
+  ...Object.fromEntries(OBJECTS.map((object) => [object, (files) => frames(object, [1, 2], files)])),
   vase_rgbd: vase,
 };
 

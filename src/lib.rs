@@ -47,7 +47,7 @@ mod light;
 #[macro_use]
 mod numeric;
 mod options;
-mod pose;
+pub mod pose;
 mod report;
 pub mod scenes;
 mod shape;
@@ -59,7 +59,7 @@ mod wasm;
 pub use error::{Error, ErrorKind, Result};
 pub use estimator::{Estimator, Finding, RefinementTask, Surface, Task, Worker};
 pub use light::{COEFFICIENTS, CoefficientMatrix, Light, LightFit, LightFitter, LightPrior};
-pub use options::{LightSource, Options, Registration, Shading, Start, Weights};
+pub use options::{LightSource, Options, Registration, Shading, Start, StartTolerance, Weights};
 pub use pose::{
     Angles, Candidate, ContrastEffort, ContrastProblem, ContrastRegistration, ContrastReport, CorrespondenceProblem, Correspondences, Icp, IcpOptions, IcpProblem, IcpReport, IcpTermination,
     Information, Metric, Pair, Photometric, PhotometricOptions, PhotometricProblem, PhotometricReport,

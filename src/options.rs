@@ -35,6 +35,22 @@ pub enum Start {
     },
 }
 
+/// How far from a told start the answer may lie.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StartTolerance {
+    /// Rotation in degrees.
+    pub degrees: f64,
+    /// Distance of the object's middle in units of the colour view; `None`: about the object's own width.
+    pub distance: Option<f64>,
+}
+
+impl Default for StartTolerance {
+    fn default() -> Self {
+        // As far as registrations reach.
+        Self { degrees: 30.0, distance: None }
+    }
+}
+
 /// How the pose is refined in each iteration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Registration {
@@ -84,6 +100,8 @@ pub struct Options {
     pub light: LightSource,
     /// First pose.
     pub start: Start,
+    /// How far from a told start the registration by colours may end.
+    pub start_tolerance: StartTolerance,
     /// Scale of the pose: `None` is free, `Some(s)` holds it.
     pub scale: Option<f64>,
     /// Pose stage.
@@ -113,6 +131,7 @@ impl Default for Options {
         Self {
             light: LightSource::Estimate,
             start: Start::Search,
+            start_tolerance: StartTolerance::default(),
             scale: None,
             registration: Registration::Joint,
             shading: Shading::Surface,
@@ -151,6 +170,10 @@ impl Options {
             let scale = scale.unwrap_or(1.0);
             let translation = translation.unwrap_or_else(Vector3::zeros);
             Similarity { scale, rotation, translation }.validate("options.start")?;
+        }
+        let StartTolerance { degrees, distance } = self.start_tolerance;
+        for (field, value) in [("degrees", degrees), ("distance", distance.unwrap_or(1.0))] {
+            positive(field, value).map_err(|error| error.below("options.startTolerance"))?;
         }
         if let Some(scale) = self.scale {
             positive("options.scale", scale)?;

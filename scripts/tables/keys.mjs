@@ -11,6 +11,8 @@ const KEYS = {
   figure7: ["name", "holesBefore", "holesAfter", "normalChange"],
   refinement: ["lightName", "before", "after", "holes"],
   photographs: ["object", "image", "beta", "degrees", "status"],
+  rgbd: ["name", "turned", "start", "degrees", "inPlane", "tilt", "lateral", "along", "status"],
+  pinhole: ["scene", "start", "degrees", "translation", "status"],
   random: [
     ...["cases", "found", "ambiguousOrLost", "confidentlyWrong", "flaggedThoughFound", "medianDegrees"],
     ...["coverage1", "coverage3"],
@@ -18,7 +20,7 @@ const KEYS = {
   ablation: ["without", "medianDegrees", "found"],
 };
 /** Nothing replaces these where other people's data is absent. */
-const REAL = ["table3", "figure7", "photographs"];
+const REAL = ["table3", "figure7", "photographs", "rgbd"];
 
 /** Tables without a row, and keys that a row lacks. A key may be null: not everything has a value. */
 export const missingKeys = (json, { realPairs }) =>

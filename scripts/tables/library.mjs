@@ -1,7 +1,7 @@
 // The names in the cells and what they stand for: the package's own scenes, and other people's data from beside the project.
 import { existsSync, readFileSync } from "node:fs";
 import { join } from "node:path";
-import { PAIRS } from "../real-pairs.mjs";
+import { PAIRS, capture } from "../real-pairs.mjs";
 import { inRoot } from "../shell.mjs";
 import { readHeights } from "./npy.mjs";
 import { OBJECTS } from "./protocol/scenes.mjs";
@@ -104,6 +104,8 @@ export function library(files) {
     light: (name) => (name in NATURAL_LIGHTS ? natural(name) : name),
     gaussian: JSON.parse(bytes("lights", "natural_light_gaussian.json").toString()),
     pair: (name) => PAIRS[name](files),
+    /** Colour and depth of one moment, one frame of their own each. */
+    capture: (name, frame) => capture(name, frame, files),
     /** Linear colours with the object's mask, and where a relief's samples lie on it. */
     photograph: (name, image) => photograph(`${name}/${image}`),
   };

@@ -147,6 +147,39 @@ function photographs(rows) {
   ];
 }
 
+function rgbd(rows) {
+  const figures = ({ degrees, inPlane, tilt, lateral, along }) => [degrees, inPlane, tilt, lateral, along].map((value) => fixed(value, 2));
+  const medians = (name, members) => {
+    const of = (key) => median(members.map((row) => row[key]));
+    return [name, "", ...figures({ degrees: of("degrees"), inPlane: of("inPlane"), tilt: of("tilt"), lateral: of("lateral"), along: of("along") }), ""];
+  };
+  const starts = unique(rows.map(({ start }) => start));
+  return columns([
+    ["capture", "seen from", "degrees", "in-plane", "tilt", "lateral mm", "along mm", "status"],
+    ...rows.map((row) => [`${row.name}, ${row.start}${row.tuned ? " *" : ""}`, row.turned, ...figures(row), row.status + mark(row)]),
+    ...starts.flatMap((start) => {
+      const members = rows.filter((row) => row.start === start);
+      return [medians(`median, ${start}`, members), medians(`.. not tuned on`, members.filter(({ tuned }) => !tuned))];
+    }),
+  ]);
+}
+
+function pinhole(rows) {
+  const starts = unique(rows.map(({ start }) => start));
+  return columns([
+    ["start", "scenes", "found", "median degrees", "mm", "worst degrees", "s each"],
+    ...starts.map((start) => {
+      const members = rows.filter((row) => row.start === start);
+      const of = (key) => members.map((row) => row[key]);
+      const found = members.filter(({ degrees }) => degrees < 3).length;
+      return [
+        ...[start === "search" ? "nothing known" : `${start} degrees off`, members.length, found, fixed(median(of("degrees")))],
+        ...[fixed(median(of("translation")), 2), fixed(worst(of("degrees")), 2), fixed(median(of("milliseconds")) / 1000, 1)],
+      ];
+    }),
+  ]);
+}
+
 const random = (row) => [
   `  ${row.cases} scenes: ${row.found} found, ${row.confidentlyWrong} confidently wrong, ${row.ambiguousOrLost} ambiguous or lost ` +
     `(${row.flaggedThoughFound} of them found)`,
@@ -183,7 +216,7 @@ const ablation = (rows) =>
 
 const SHOWS = {
   ...{ table1, table2A, table2B, table3, figure4, figure5, figure6, figure7 },
-  ...{ refinement, photographs, random, exposure, ablation },
+  ...{ refinement, photographs, rgbd, pinhole, random, exposure, ablation },
 };
 
 /** One table's lines; `open3d` gives the baseline's degrees for a row of Table 2B, where there are any. */

@@ -34,6 +34,19 @@ pub fn held_scale(pair: &ViewPair) -> Option<f64> {
     pair.options.scale.or_else(|| (!pair.image.camera.is_orthographic()).then_some(1.0))
 }
 
+/// By how much the object's apparent size differs between two poses: |ln(s / s')| before an orthographic image, and
+/// |ln((s / z) / (s' / z'))| with the distances of its middle behind a pinhole, which holds s. Infinite behind the
+/// camera.
+pub fn growth(pair: &ViewPair, pose: &Similarity, other: &Similarity) -> f64 {
+    if pair.image.camera.is_orthographic() {
+        return pose.growth_from(other);
+    }
+    let middle = pair.depth.points.centroid();
+    let size = |pose: &Similarity| pose.scale / pose.apply(middle).z;
+    let growth = (size(pose) / size(other)).ln().abs();
+    if growth.is_finite() { growth } else { f64::INFINITY }
+}
+
 /// Length of an image pixel at the object as the pose places it, in units of the colour view.
 pub fn pixel_length(image: &ColourView, solution: &Solution) -> f64 {
     let distance = || solution.pose.apply(solution.depth.points.centroid()).z;
@@ -53,6 +66,19 @@ pub fn first_pose(pair: &ViewPair) -> Similarity {
         pose.translation = centring(&pair.image, &pair.depth, &pose);
     }
     pose
+}
+
+/// The pose of a rotation that puts the middle of the depth points on the middle of the image's object.
+pub fn centred(pair: &ViewPair, rotation: Matrix3<f64>) -> Similarity {
+    let scale = held_scale(pair).unwrap_or_else(|| unit_scale(pair));
+    let mut pose = Similarity { scale, rotation, translation: Vector3::zeros() };
+    pose.translation = centring(&pair.image, &pair.depth, &pose);
+    pose
+}
+
+/// Whether the views of the identity share their frame.
+pub fn shares_frame(pair: &ViewPair) -> bool {
+    coincides(&pair.image, &pair.depth, Start::Identity)
 }
 
 /// Whether both views share their frame as they stand, so that no translation is the best first one. A view that is

@@ -40,7 +40,7 @@ use pair::ViewPair;
 use solution::{Accepted, Solution};
 pub use stages::RefinementTask;
 use stages::{Inputs, LightStage, RefinementStage, Registered, RegistrationStage, ShapeStage};
-use verdict::{ColourEvidence, Evidence, verdict};
+use verdict::{ColourEvidence, Evidence, OutlineEvidence, verdict};
 pub use workers::Worker;
 pub use workers::task::{Finding, Task};
 
@@ -254,18 +254,20 @@ impl Estimator {
             }
             Advance::Done(outcome) => {
                 self.run = Run::Iterating(Stage::Light);
-                let outcome = outcome.ok_or_else(|| initialisation::nothing_found(&self.pair))?;
-                self.start_from(outcome);
-                Ok(())
+                self.start_from(outcome)
             }
         }
     }
 
     /// Starts the loop from what the initialisation found.
-    fn start_from(&mut self, Outcome { best, rivals }: Outcome) {
-        let registered = self.registration.adopt(&self.pair, *best, &self.solution.pose);
-        self.adopt(registered);
+    fn start_from(&mut self, outcome: Option<Outcome>) -> Result<()> {
+        let (best, rivals) = outcome.map_or_else(Default::default, |found| (Some(*found.best), found.rivals));
+        let registered = self.registration.adopt(&self.pair, best, &self.solution.pose);
+        self.adopt(registered.ok_or_else(|| initialisation::nothing_found(&self.pair))?);
+        let by_outlines = self.registration.found_by_outlines().is_some();
+        let rivals = if by_outlines { Vec::new() } else { rivals };
         self.report.message = Some(match rivals.len() {
+            _ if by_outlines => "100 %: the colours are painted; outlines tell the pose".into(),
             0 => "100 %: one pose explains the colours best".into(),
             count => format!("100 %: {count} other poses explain the colours as well"),
         });
@@ -274,6 +276,7 @@ impl Estimator {
         self.find_correspondences();
         self.accepted.accept(&self.solution);
         self.measure();
+        Ok(())
     }
 
     /// Light (Eq. 2). What the registration by colours has found together with the pose comes before the fit.
@@ -332,7 +335,7 @@ impl Estimator {
         self.solution.pose = found.pose;
         self.solution.light.light = found.light.unwrap_or(self.solution.light.light);
         self.solution.light.exposure = found.exposure.unwrap_or(self.solution.light.exposure);
-        self.report.uncertainty = Some(found.uncertainty);
+        self.report.uncertainty = found.uncertainty.or(self.report.uncertainty.take());
     }
 
     /// Of a match of surfaces only a fraction is taken after rejections. Behind a pinhole image the pose keeps its
@@ -464,6 +467,12 @@ impl Estimator {
                 unexplained: found.noise / pair.image.log_spread(),
                 inliers: found.inliers,
             }),
+            outlines: self.registration.found_by_outlines().map(|found| OutlineEvidence {
+                sigma: found.uncertainty.rotation_degrees.into_iter().fold(0.0, f64::max),
+                weakest: &found.uncertainty.weakest,
+                is_unseen: found.unseen,
+            }),
+            has_kept_start: self.registration.has_kept_start(),
             rivals: report.rivals.len(),
             nearest_rival: nearest,
         });

@@ -63,6 +63,10 @@ pub struct Evidence<'a> {
     pub is_whole_step: bool,
     /// What the registration by colours says of its answer, where the answer is its own.
     pub colours: Option<ColourEvidence<'a>>,
+    /// What outlines say of their answer, where the colours are painted and the answer is theirs.
+    pub outlines: Option<OutlineEvidence<'a>>,
+    /// Whether nothing near a told start explains the colours better, so that it was kept.
+    pub has_kept_start: bool,
     /// Number of rivals, and the degrees to the nearest.
     pub rivals: usize,
     pub nearest_rival: f64,
@@ -78,6 +82,16 @@ pub struct ColourEvidence<'a> {
     pub unexplained: f64,
     /// Share of the points within the robust scale.
     pub inliers: f64,
+}
+
+/// What outlines say of their answer.
+#[derive(Clone, Copy, Debug)]
+pub struct OutlineEvidence<'a> {
+    /// Sigma of the rotation about the least certain axis, degrees, and that axis in words.
+    pub sigma: f64,
+    pub weakest: &'a str,
+    /// Whether that rotation is as good as unseen.
+    pub is_unseen: bool,
 }
 
 /// A status with its reason.
@@ -130,6 +144,22 @@ fn has_settled(evidence: &Evidence<'_>) -> bool {
 
 /// Why the answer is "lost" or "ambiguous" although the loop came to an end, if it is.
 fn reason_for_distrust(evidence: &Evidence<'_>) -> Option<Verdict> {
+    if evidence.has_kept_start {
+        let reason = "nothing within startTolerance explains the colours better than the told pose, which is kept";
+        return Some((Status::Lost, Some(reason.into())));
+    }
+    if let Some(OutlineEvidence { sigma, weakest, is_unseen }) = evidence.outlines {
+        let painted = "outlines decide, since the colours are painted";
+        let sigma = (sigma.is_nan() || sigma > DOUBTFUL_SIGMA).then(|| Fixed(sigma, 1));
+        let reason = match (is_unseen, sigma) {
+            (true, _) => format!("{painted}; they do not show {weakest}: what was told of it is kept"),
+            (_, Some(sigma)) => {
+                format!("{painted}; the rotation is uncertain by {sigma} degrees (one sigma): {weakest}")
+            }
+            (..) => return None,
+        };
+        return Some((Status::Ambiguous, Some(reason)));
+    }
     if let Some(reason) = evidence.colours.and_then(|colours| reason_to_be_lost(&colours)) {
         return Some((Status::Lost, Some(reason)));
     }
@@ -182,11 +212,15 @@ mod tests {
         unmoved: 1,
         is_whole_step: true,
         colours: Some(SURE),
+        outlines: None,
+        has_kept_start: false,
         rivals: 0,
         nearest_rival: f64::INFINITY,
     };
     const SURE: ColourEvidence<'static> =
         ColourEvidence { sigma: 0.1, weakest: "rotation about x", unexplained: 0.05, inliers: 0.9 };
+    const SEEN: OutlineEvidence<'static> =
+        OutlineEvidence { sigma: 0.8, weakest: "rotation about y", is_unseen: false };
     const ICP: Evidence<'static> = Evidence { registration: Registration::Icp, colours: None, ..SETTLED };
     const FIXED: Evidence<'static> = Evidence { registration: Registration::Fixed, colours: None, ..SETTLED };
     const MOVING: Evidence<'static> = Evidence { unmoved: 0, ..SETTLED };
@@ -230,6 +264,8 @@ mod tests {
     /// Whether its end is to be relied on.
     fn reliability() -> Vec<Row> {
         let colours = |colours: ColourEvidence<'static>| Evidence { colours: Some(colours), ..SETTLED };
+        let outlines =
+            |outlines: OutlineEvidence<'static>| Evidence { colours: None, outlines: Some(outlines), ..SETTLED };
         let (lost, ambiguous) = (Some(Status::Lost), Some(Status::Ambiguous));
         vec![
             ("little overlap", Evidence { overlap: 0.04, ..MOVING }, lost, "only 4.0 %"),
@@ -246,6 +282,26 @@ mod tests {
             ("colours without spread", colours(ColourEvidence { unexplained: f64::NAN, ..SURE }), lost, "unexplained"),
             ("outliers", colours(ColourEvidence { inliers: 0.3, ..SURE }), lost, "only 30 % of the points"),
             ("a fair sigma", colours(ColourEvidence { sigma: 1.6, ..SURE }), ambiguous, "1.6 degrees (one sigma)"),
+            (
+                "a told start that nothing improves",
+                Evidence { has_kept_start: true, colours: None, ..SETTLED },
+                lost,
+                "within startTolerance",
+            ),
+            ("outlines that see everything", outlines(SEEN), Some(Status::Converged), ""),
+            (
+                "outlines that see little",
+                outlines(OutlineEvidence { sigma: 1.9, ..SEEN }),
+                ambiguous,
+                "1.9 degrees (one sigma): rotation about y",
+            ),
+            (
+                "a mug's own axis",
+                outlines(OutlineEvidence { sigma: 2.8, is_unseen: true, ..SEEN }),
+                ambiguous,
+                "do not show rotation about y",
+            ),
+            ("a told start that still settles", Evidence { has_kept_start: true, ..MOVING }, None, ""),
             ("rivals", Evidence { rivals: 2, nearest_rival: 40.2, ..SETTLED }, ambiguous, "2 other poses"),
             (
                 "rivals of matched surfaces",

@@ -55,8 +55,20 @@ pub struct ColourView {
     pub log: [Vec<f32>; 3],
     /// How integers were decoded; floats are linear.
     pub transfer: Transfer,
+    /// The whole frame, where its intrinsics are known.
+    pub whole: WholeFrame,
     log_spread: f64,
     log_noise: f64,
+}
+
+/// What outlines are read off: the object with its black and saturated pixels, and the brightness beside it. Empty
+/// without intrinsics.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct WholeFrame {
+    /// Object pixels, as the caller says.
+    pub object: Vec<bool>,
+    /// Brightness, as bright as it looks, 0 .. 1 for integers; zero where it is none.
+    pub grey: Vec<f32>,
 }
 
 /// Darkest usable 8-bit level: below it one quantisation step is more than a quarter of the intensity.
@@ -89,6 +101,13 @@ impl ColourView {
             ));
         }
         let transfer = transfer_of(&image);
+        let whole = match image.camera {
+            Some(_) => WholeFrame {
+                object: object.clone(),
+                grey: (0..size.len()).map(|index| image.samples.grey(index)).collect(),
+            },
+            None => WholeFrame::default(),
+        };
         let mut log = [(); 3].map(|()| vec![f32::NAN; size.len()]);
         let mut usable = vec![false; size.len()];
         for index in (0..size.len()).filter(|&index| object[index]) {
@@ -111,14 +130,14 @@ impl ColourView {
                 format!("fewer than {FEWEST_PIXELS} object pixels are neither black nor saturated"),
             ));
         }
-        Ok(Self::of(size, camera, usable, log, transfer))
+        Ok(Self { whole, ..Self::of(size, camera, usable, log, transfer) })
     }
 
     /// The view of these logarithms, NaN off the mask.
     pub(super) fn of(size: Size, camera: Camera, mask: Vec<bool>, log: [Vec<f32>; 3], transfer: Transfer) -> Self {
         // Computed once: every stage's preparation needs them, and they would be a fifth of the search's.
         let (log_spread, log_noise) = (spread_of(&log), noise_of(size, &log));
-        Self { size, camera, mask, log, transfer, log_spread, log_noise }
+        Self { size, camera, mask, log, transfer, whole: WholeFrame::default(), log_spread, log_noise }
     }
 
     /// Mean of log S over the mask and the three channels: what a change of exposure shifts.
@@ -201,6 +220,20 @@ impl ColourSamples {
                 pixel.iter().all(|&value| value.is_finite() && value > 0.0).then_some(pixel)
             }
         }
+    }
+}
+
+impl ColourSamples {
+    /// Mean of the channels of a pixel as they look: integers as stored, the root of linear floats.
+    fn grey(&self, index: usize) -> f32 {
+        let grey = match self {
+            Self::Rgba8(data) => (0..3).map(|c| f32::from(data[4 * index + c]) / f32::from(u8::MAX)).sum::<f32>() / 3.0,
+            Self::Rgba16(data) => {
+                (0..3).map(|c| f32::from(data[4 * index + c]) / f32::from(u16::MAX)).sum::<f32>() / 3.0
+            }
+            Self::RgbLinear(data) => (data[3 * index..3 * index + 3].iter().sum::<f32>() / 3.0).max(0.0).sqrt(),
+        };
+        if grey.is_finite() { grey } else { 0.0 }
     }
 }
 

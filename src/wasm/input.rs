@@ -8,7 +8,7 @@ use wasm_bindgen::{JsCast, JsValue};
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::light::Light;
-use crate::options::{LightSource, Options, Registration, Shading, Start, Weights};
+use crate::options::{LightSource, Options, Registration, Shading, Start, StartTolerance, Weights};
 use crate::pose::Angles;
 use crate::view::{ColourImage, ColourSamples, DepthMap, DepthSamples, Pinhole, Transfer};
 
@@ -66,6 +66,8 @@ extern "C" {
     fn light(this: &JsOptions) -> JsValue;
     #[wasm_bindgen(method, getter)]
     fn start(this: &JsOptions) -> JsValue;
+    #[wasm_bindgen(method, getter, js_name = "startTolerance")]
+    fn start_tolerance(this: &JsOptions) -> Option<JsTolerance>;
     #[wasm_bindgen(method, getter)]
     fn scale(this: &JsOptions) -> JsValue;
     #[wasm_bindgen(method, getter)]
@@ -86,6 +88,12 @@ extern "C" {
     fn seed(this: &JsOptions) -> Option<f64>;
     #[wasm_bindgen(method, getter)]
     fn trim(this: &JsOptions) -> Option<bool>;
+
+    pub type JsTolerance;
+    #[wasm_bindgen(method, getter)]
+    fn degrees(this: &JsTolerance) -> Option<f64>;
+    #[wasm_bindgen(method, getter)]
+    fn distance(this: &JsTolerance) -> Option<f64>;
 
     pub type JsLambda;
     #[wasm_bindgen(method, getter)]
@@ -191,6 +199,10 @@ pub fn options(js: &JsOptions) -> Result<Options> {
             _ if js.start().is_object() => start(js.start().unchecked_ref())?,
             _ => default.start,
         },
+        start_tolerance: js.start_tolerance().map_or(default.start_tolerance, |js| StartTolerance {
+            degrees: js.degrees().unwrap_or(default.start_tolerance.degrees),
+            distance: js.distance(),
+        }),
         scale: js.scale().as_f64(),
         registration: match js.registration().as_deref() {
             Some("fixed") => Registration::Fixed,

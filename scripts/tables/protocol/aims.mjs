@@ -1,8 +1,9 @@
 // What the project has set out to reach, computed from the rows of the tables and never from anything else.
-import { FOUND_WITHIN, isFlagged, isFound, isFoundOrFlagged } from "./counts.mjs";
+import { FOUND_WITHIN, isConfidentlyWrong, isFlagged, isFound, isFoundOrFlagged } from "./counts.mjs";
 import { IMAGES } from "./reals.mjs";
 import { COLOURFUL } from "./scenes.mjs";
-import { median, share, worst } from "./numbers.mjs";
+import { median, quantile, share, worst } from "./numbers.mjs";
+import { degreesBetween } from "./rotations.mjs";
 
 const least = (values) => (values.length === 0 ? null : Math.min(...values));
 
@@ -91,6 +92,47 @@ function photographsAims(rows = []) {
   ];
 }
 
+function rgbdAims(rows = []) {
+  const told = rows.filter(({ start }) => start === "told");
+  const known = rows.filter(({ start }) => start === "search");
+  const line = (what, members, measured, sense, limit) => aim("rgbd", what, measured, sense, limit, members.length);
+  const of = (key, at) => quantile(told.map((row) => row[key]), at);
+  return [
+    line("told: lateral, median mm", told, of("lateral", 0.5), "<=", 2),
+    line("told: lateral, ninetieth percentile", told, of("lateral", 0.9), "<=", 4),
+    line("told: along the line of sight, median mm", told, of("along", 0.5), "<=", 6),
+    line("told: along the line of sight, ninetieth percentile", told, of("along", 0.9), "<=", 14),
+    line("told: in-plane turn, median degrees", told, of("inPlane", 0.5), "<=", 0.7),
+    line("told: tilt over what was told, by medians", told, of("tilt", 0.5) / median(told.map((row) => row.told.tilt)), "<=", 1),
+    line("told: share confidently wrong", told, share(told, isConfidentlyWrong), "<=", 0),
+    line("nothing known: share under 10 degrees", known, share(known, ({ degrees }) => degrees < 10), ">=", 0.7),
+    line("nothing known: share confidently wrong", known, share(known, isConfidentlyWrong), "<=", 0),
+  ];
+}
+
+/** Starts that end this near to the search's own end, degrees, end like it. */
+const SAME_END = 0.5;
+
+function pinholeAims(rows = []) {
+  const of = (start) => rows.filter((row) => row.start === start);
+  const searched = of("search");
+  const middle = (members, key) => median(members.map((row) => row[key]));
+  const ends = (start) =>
+    share(of(start), (row) => {
+      const own = searched.find(({ scene }) => scene === row.scene);
+      return own !== undefined && degreesBetween(row.rotation, own.rotation) < SAME_END;
+    });
+  const sure = rows.filter((row) => isFound(row) && row.sigmas);
+  const held = ({ rotationOff, sigmas }) => rotationOff.every((off, axis) => Math.abs(off) <= 3 * sigmas[axis]);
+  return [
+    aim("pinhole", "nothing known: median degrees", middle(searched, "degrees"), "<=", 0.35, searched.length),
+    aim("pinhole", "nothing known: median mm", middle(searched, "translation"), "<=", 5.5, searched.length),
+    ...[1, 2, 4, 8].map((start) => aim("pinhole", `${start} degrees off: share that ends like the search`, ends(start), ">=", 0.95, of(start).length)),
+    aim("pinhole", "share confidently wrong", share(rows, isConfidentlyWrong), "<=", 0, rows.length),
+    aim("pinhole", "found within 3 sigma on all axes", share(sure, held), ">=", 0.93, sure.length),
+  ];
+}
+
 function randomAims(row) {
   if (!row) return [];
   const { cases, found } = row;
@@ -119,6 +161,8 @@ export const aims = (json) =>
     ...(json.figure5 ? figure5Aims(json.figure5) : []),
     ...(json.refinement ? refinementAims(json.refinement) : []),
     ...(json.photographs ? photographsAims(json.photographs) : []),
+    ...(json.rgbd ? rgbdAims(json.rgbd) : []),
+    ...(json.pinhole ? pinholeAims(json.pinhole) : []),
     ...randomAims(json.random),
     ...(json.exposure ? exposureAims(json.exposure) : []),
   ].filter(({ rows }) => rows > 0);

@@ -3,6 +3,7 @@ import { sceneOf } from "./anywhere.mjs";
 import { judged, optionsOf, withRun } from "./runs.mjs";
 import { requestOf } from "./scenes.mjs";
 import { measurePair, measurePhotograph } from "./measure-reals.mjs";
+import { measureCapture, measurePinhole } from "./measure-perspective.mjs";
 import { measureIterations, measureRefinement, measureShading } from "./measure-shapes.mjs";
 
 async function measurePose(cell, api, library) {
@@ -59,6 +60,8 @@ const KINDS = {
   refinement: measureRefinement,
   pair: measurePair,
   photograph: measurePhotograph,
+  capture: measureCapture,
+  pinhole: measurePinhole,
 };
 
 /** The figures of a cell, as plain JSON; whatever goes wrong is thrown. */

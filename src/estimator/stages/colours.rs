@@ -1,6 +1,6 @@
 //! The registration by colours as a stage of the loop: the photometric registration, its normals, and its last result.
 
-use crate::error::Result;
+use crate::error::{Error, ErrorKind, Result};
 use crate::estimator::gauge;
 use crate::estimator::pair::ViewPair;
 use crate::pose::{Photometric, PhotometricOptions, PhotometricProblem, PhotometricReport, Similarity};
@@ -19,8 +19,8 @@ const LARGEST_NOISE: f64 = 0.2;
 /// no longer.
 const CANDIDATE_POINTS: usize = 2500;
 
-/// Change of the scale (natural logarithm) beyond which a registration has collapsed: shrunk onto a few pixels, a cloud
-/// is easily explained. Candidates of the search lie within 0.1 of a right scale.
+/// Change of the apparent size (natural logarithm) beyond which a registration has collapsed: shrunk onto a few pixels, a
+/// cloud is easily explained. Candidates of the search lie within 0.1 of a right size.
 const COLLAPSE: f64 = 0.3;
 
 /// How the registration of a candidate stands.
@@ -102,6 +102,11 @@ impl ColourRegistration {
         self.found.as_ref()
     }
 
+    /// Gives away the last registration.
+    pub fn take_found(&mut self) -> Option<PhotometricReport> {
+        self.found.take()
+    }
+
     /// Takes over a registration that the search has made.
     pub fn adopt(&mut self, found: PhotometricReport) {
         self.found = Some(found);
@@ -137,7 +142,8 @@ impl ColourRegistration {
     ) -> Result<PhotometricReport> {
         let scale_is_held = is_scale_held(pair);
         match self.photometric.register(&self.sharp.problem(pair, scale_is_held), start, options) {
-            Ok(found) if found.pose.growth_from(start) < COLLAPSE => Ok(found),
+            Ok(found) if gauge::growth(pair, &found.pose, start) < COLLAPSE => Ok(found),
+            Ok(_) if scale_is_held && !pair.image.camera.is_orthographic() => Err(collapsed()),
             found if scale_is_held => found,
             _ => self.register_scale_last(pair, start, options),
         }
@@ -163,9 +169,27 @@ impl ColourRegistration {
             Ok(None) => Attempt::Ongoing,
             outcome => {
                 let found = outcome.ok().flatten();
-                Attempt::Ended(found.filter(|found| found.pose.growth_from(start) < COLLAPSE).map(Box::new))
+                Attempt::Ended(found.filter(|found| gauge::growth(pair, &found.pose, start) < COLLAPSE).map(Box::new))
             }
         }
+    }
+
+    /// All steps of the registration of a candidate.
+    pub fn register_candidate(&mut self, pair: &ViewPair, start: &Similarity) -> Option<Box<PhotometricReport>> {
+        let mut attempt = self.step_candidate(pair, start, true);
+        while matches!(attempt, Attempt::Ongoing) {
+            attempt = self.step_candidate(pair, start, false);
+        }
+        let Attempt::Ended(found) = attempt else { return None };
+        found
+    }
+
+    /// What the colours say of a pose as it is, the light fitted to it.
+    pub fn judge(&mut self, pair: &ViewPair, pose: &Similarity) -> Option<Box<PhotometricReport>> {
+        let options = PhotometricOptions { most_points: CANDIDATE_POINTS, first_level: 0, ..options(pair) };
+        let problem = self.sharp.problem(pair, is_scale_held(pair));
+        self.photometric.begin(&problem, pose, &options).ok()?;
+        self.photometric.report(&problem).ok().map(Box::new)
     }
 
     fn begin(&mut self, pair: &ViewPair, start: &Similarity) -> Result<()> {
@@ -181,6 +205,11 @@ impl ColourRegistration {
         }
         self.photometric.step(&problem).map(|_| None)
     }
+}
+
+/// The object would be far off or near: that explains anything by a few pixels.
+fn collapsed() -> Error {
+    Error::new(ErrorKind::Degenerate, "start", "the colours pull the object along the line of sight")
 }
 
 fn options(pair: &ViewPair) -> PhotometricOptions {

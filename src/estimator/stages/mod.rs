@@ -7,10 +7,12 @@
 mod colours;
 mod correspondences;
 mod light;
+mod outlines;
 mod refinement;
 mod registration;
 mod shape;
 mod surfaces;
+mod told_start;
 
 pub use colours::{Attempt, ColourRegistration};
 pub use correspondences::correspondence_problem;

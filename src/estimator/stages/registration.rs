@@ -1,18 +1,21 @@
 //! The registration stage: which of the two registrations a pair asks for, and what it found.
 
 use crate::error::{Error, ErrorKind, Result};
+use crate::estimator::gauge;
 use crate::estimator::pair::ViewPair;
 use crate::estimator::solution::Solution;
 use crate::light::Light;
 use crate::options::{Registration, Start};
-use crate::pose::{PhotometricReport, Similarity, Uncertainty};
+use crate::pose::{OutlineReport, PhotometricReport, Similarity, Uncertainty};
 
 use super::colours::ColourRegistration;
 use super::light::Inputs;
+use super::outlines::{self, LARGEST_PURE_NOISE};
 use super::surfaces::{Matched, SurfaceRegistration};
+use super::told_start::{Settled, TrustRegion};
 
-/// Growth of the scale beyond which, or below whose inverse, a registration has collapsed: shrunk onto a few pixels a
-/// cloud is easily explained. The search looks from 0.7 to 1.4.
+/// Growth of the apparent size beyond which, or below whose inverse, a registration has collapsed: shrunk onto a few pixels
+/// a cloud is easily explained. The search looks from 0.7 to 1.4.
 const LARGEST_GROWTH: f64 = 2.0;
 
 /// What a registration found: a pose, and what came with it.
@@ -22,9 +25,17 @@ pub struct Registered {
     pub light: Option<Light>,
     /// Exposure, likewise.
     pub exposure: Option<f64>,
-    pub uncertainty: Uncertainty,
+    /// None of a pose that never moved: what says nothing of the pose says nothing of its error.
+    pub uncertainty: Option<Uncertainty>,
     /// Whether the pose is better than its start.
     pub improved: bool,
+}
+
+impl Registered {
+    fn by_outlines(found: &OutlineReport) -> Self {
+        let uncertainty = Some(found.uncertainty.clone());
+        Self { pose: found.pose, light: None, exposure: None, uncertainty, improved: true }
+    }
 }
 
 /// Registers the depth view to the image, by colours or by surfaces.
@@ -32,12 +43,32 @@ pub struct RegistrationStage {
     /// Only where the options ask for it: it holds splines of the image.
     colours: Option<ColourRegistration>,
     surfaces: SurfaceRegistration,
+    told: Told,
+}
+
+/// What is known of a told start.
+enum Told {
+    /// The pose is free: nothing was told, or the registration is the paper's own, which walks as far as it likes.
+    Nothing,
+    Untried(TrustRegion),
+    /// A better pose within the tolerance was found.
+    Improved(TrustRegion),
+    /// None was: the told pose is kept.
+    Kept,
+    /// The colours are painted; the pose is that of the outlines.
+    Outlined(OutlineReport),
 }
 
 impl RegistrationStage {
     pub fn new(pair: &ViewPair) -> Self {
         let by_colours = pair.options.start == Start::Search || pair.options.registration == Registration::Joint;
-        Self { colours: by_colours.then(|| ColourRegistration::new(pair)), surfaces: SurfaceRegistration::new() }
+        let is_joint = pair.options.registration == Registration::Joint;
+        let region = is_joint.then(|| TrustRegion::new(pair)).flatten();
+        Self {
+            colours: by_colours.then(|| ColourRegistration::new(pair)),
+            surfaces: SurfaceRegistration::new(),
+            told: region.map_or(Told::Nothing, Told::Untried),
+        }
     }
 
     /// The registration that this pair asks for now: noisy depth is found by its colours and settled by its surface.
@@ -59,20 +90,51 @@ impl RegistrationStage {
         self.colours.as_mut()
     }
 
-    /// Takes over what the search has found.
-    pub fn adopt(&mut self, pair: &ViewPair, found: PhotometricReport, present: &Similarity) -> Registered {
+    /// Takes over what the search has found, if anything; what outlines say where the colours are painted.
+    pub fn adopt(
+        &mut self,
+        pair: &ViewPair,
+        found: Option<PhotometricReport>,
+        present: &Similarity,
+    ) -> Option<Registered> {
+        let is_painted = found.as_ref().is_none_or(|found| found.noise > LARGEST_PURE_NOISE);
+        if is_painted
+            && pair.options.registration == Registration::Joint
+            && let Some(outlined) = outlines::anywhere(pair, self.colours.as_ref()?.normals())
+        {
+            let registered = Registered::by_outlines(&outlined);
+            self.told = Told::Outlined(outlined);
+            return Some(registered);
+        }
+        let found = found?;
         let registered = self.registered(pair, &found, present);
         if let Some(colours) = &mut self.colours {
             colours.adopt(found);
         }
-        registered
+        Some(registered)
+    }
+
+    /// Whether nothing near a told start explains the colours better, so that it is kept.
+    pub const fn has_kept_start(&self) -> bool {
+        matches!(self.told, Told::Kept)
+    }
+
+    /// What outlines have found, where they decide.
+    pub const fn found_by_outlines(&self) -> Option<&OutlineReport> {
+        match &self.told {
+            Told::Outlined(found) => Some(found),
+            _ => None,
+        }
     }
 
     /// Whether the next registration will leave `pose` as it is, whatever the shapes become.
     pub fn keeps(&self, pair: &ViewPair, pose: &Similarity) -> bool {
         match self.kind(pair) {
             Registration::Fixed => true,
-            Registration::Joint => self.colours.as_ref().is_some_and(|colours| colours.ended_in(pose)),
+            Registration::Joint => {
+                let is_told = matches!(self.told, Told::Kept | Told::Outlined(_));
+                is_told || self.colours.as_ref().is_some_and(|colours| colours.ended_in(pose))
+            }
             Registration::Icp => false,
         }
     }
@@ -83,7 +145,13 @@ impl RegistrationStage {
             Registration::Fixed => Ok(None),
             Registration::Joint => self.register_colours(inputs.pair, &solution.pose),
             Registration::Icp => {
-                let Matched { pose, improved, uncertainty } = self.surfaces.register(inputs, solution)?;
+                let Matched { mut pose, mut improved, uncertainty } = self.surfaces.register(inputs, solution)?;
+                if let Told::Improved(region) = &self.told
+                    && !region.holds(&pose)
+                {
+                    (pose, improved) = (solution.pose, false);
+                }
+                let uncertainty = improved.then_some(uncertainty);
                 Ok(Some(Registered { pose, light: None, exposure: None, uncertainty, improved }))
             }
         }
@@ -92,11 +160,36 @@ impl RegistrationStage {
     /// Pose and light together from the colours.
     fn register_colours(&mut self, pair: &ViewPair, start: &Similarity) -> Result<Option<Registered>> {
         let Some(colours) = &mut self.colours else { return Ok(None) };
-        let found = colours.register(pair, start)?.clone();
-        if found.pose.growth_from(start) > LARGEST_GROWTH.ln() {
-            let message = "the colours pull the scale away from the start's: their ratio must stay between 0.5 and 2";
-            let ratio = found.pose.scale / start.scale;
-            return Err(Error::new(ErrorKind::Degenerate, "start", message).value(ratio));
+        let found = match std::mem::replace(&mut self.told, Told::Kept) {
+            told @ (Told::Kept | Told::Outlined(_)) => {
+                self.told = told;
+                return Ok(None);
+            }
+            Told::Untried(region) => {
+                let settled = region.settle(pair, colours)?;
+                self.told = Told::Improved(region);
+                match settled {
+                    Settled::ByColours(found) => found,
+                    Settled::ByOutlines(found) => {
+                        let registered = Registered::by_outlines(&found);
+                        self.told = Told::Outlined(found);
+                        return Ok(Some(registered));
+                    }
+                    Settled::Kept => {
+                        self.told = Told::Kept;
+                        return Ok(None);
+                    }
+                }
+            }
+            told => {
+                self.told = told;
+                colours.register(pair, start)?.clone()
+            }
+        };
+        let growth = gauge::growth(pair, &found.pose, start);
+        if growth > LARGEST_GROWTH.ln() {
+            let message = "the colours pull the apparent size away from the start's by a factor of more than two";
+            return Err(Error::new(ErrorKind::Degenerate, "start", message).value(growth.exp()));
         }
         Ok(Some(self.registered(pair, &found, start)))
     }
@@ -113,7 +206,7 @@ impl RegistrationStage {
             pose,
             light: Some(found.light),
             exposure: (!is_coarse).then_some(found.exposure),
-            uncertainty: found.uncertainty.clone(),
+            uncertainty: Some(found.uncertainty.clone()),
             improved: true,
         }
     }

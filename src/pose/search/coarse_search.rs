@@ -77,6 +77,22 @@ impl Search {
         })
     }
 
+    /// Leaves the rotations within so many degrees of a pose that is told, and looks at its distance. Before the first
+    /// slice.
+    pub(crate) fn narrow(&mut self, told: &Similarity, degrees: f64) {
+        self.matcher.place_at(told);
+        self.sweep.narrow(&told.rotation, degrees);
+        self.swept = TaskResults::new(self.sweep.slices());
+    }
+
+    /// The best translation for a rotation as it is; `None` where too little of the cloud is visible.
+    pub(crate) fn shifted(&mut self, rotation: &Matrix3<f64>) -> Option<Similarity> {
+        let Self { matcher, sweep, .. } = self;
+        let shifted = sweep.sizes().iter().filter_map(|&size| matcher.best_shift(*rotation, size));
+        let best = shifted.max_by(|a, b| a.score.total_cmp(&b.score))?;
+        Some(self.matcher.candidate(&best).pose)
+    }
+
     /// One bounded slice of work: a few rotations of the sweep, or one ascent. Does nothing once all is done.
     pub fn advance(&mut self) -> Progress {
         let sweep = self.swept.next(|_| true).map(SearchTask::Sweep);

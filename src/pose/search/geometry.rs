@@ -38,6 +38,11 @@ impl Geometry {
         Self { camera: image.camera, image: image.size, scale, distance, ray }
     }
 
+    /// Takes the distance of the centre from a pose that is told.
+    pub fn place_at(&mut self, told: &Similarity, cloud: &Cloud) {
+        self.distance = self.distance.map(|_| told.apply(cloud.centre).z);
+    }
+
     /// Whether the distance varies in the scale's place: behind a pinhole.
     pub const fn has_distance(&self) -> bool {
         self.distance.is_some()

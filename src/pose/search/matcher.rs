@@ -12,6 +12,7 @@ use super::score::{FEWEST_CELLS, Prediction, score};
 use super::target::{Fourier, SIDE, Target};
 use super::template::Template;
 use crate::error::Result;
+use crate::pose::similarity::Similarity;
 use crate::view::ColourView;
 
 /// Moves by one cell after each change of rotation or size, at most.
@@ -56,6 +57,11 @@ impl Matcher {
             cloud,
             target,
         })
+    }
+
+    /// Takes the distance from a pose that is told.
+    pub fn place_at(&mut self, told: &Similarity) {
+        self.geometry.place_at(told, &self.cloud);
     }
 
     /// Whether the distance varies in the scale's place.

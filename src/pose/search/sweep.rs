@@ -35,6 +35,19 @@ impl Sweep {
         Self { rotations: rotations::spread(SPACING, seed), sizes }
     }
 
+    /// Leaves the rotations within so many degrees of one that is told, and that one.
+    pub fn narrow(&mut self, told: &Matrix3<f64>, degrees: f64) {
+        let least_trace = 1.0 + 2.0 * degrees.min(180.0).to_radians().cos();
+        self.rotations.retain(|turn| turn.trace() >= least_trace);
+        self.rotations.iter_mut().for_each(|turn| *turn *= told);
+        self.rotations.push(*told);
+    }
+
+    /// The apparent sizes that are tried.
+    pub const fn sizes(&self) -> &'static [f64] {
+        self.sizes
+    }
+
     /// Whether there is more than one size.
     pub const fn varies_size(&self) -> bool {
         self.sizes.len() > 1

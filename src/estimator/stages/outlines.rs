@@ -1,0 +1,59 @@
+//! Outlines in place of colours that are painted (docs/method.md, section 10): near a told pose, or from anywhere.
+
+use nalgebra::{Matrix3, Vector3};
+
+use crate::estimator::gauge;
+use crate::estimator::pair::ViewPair;
+use crate::pose::{Angles, Outline, OutlinePrior, OutlineProblem, OutlineReport, Similarity};
+use crate::view::Normals;
+
+/// Noise that the colours leave above which it is none, but paint and shadow, log units; renders leave 0.010 to 0.018, all
+/// that is real 0.041 to 0.34. Then outlines decide where there are any.
+pub const LARGEST_PURE_NOISE: f64 = 0.035;
+/// Outlines of fewer points, or that are farther from the image's in the median, tell nothing; pixels.
+const FEWEST_RIMS: usize = 40;
+const LARGEST_RIM_NOISE: f64 = 6.0;
+/// Where nothing is told, starts are turned by so many degrees about y and x: from all of them the captures that see their
+/// rotation at all end in one place.
+const TURNS: [f64; 3] = [0.0, -32.0, 32.0];
+const TILTS: [f64; 3] = [0.0, -24.0, 24.0];
+/// One sigma of the pose where nothing is told: cameras look from one side by and large. Degrees, and shares of the
+/// distance.
+const ANYWHERE_DEGREES: f64 = 25.0;
+const ANYWHERE_ACROSS: f64 = 0.12;
+const ANYWHERE_ALONG: f64 = 0.08;
+
+/// The pose near a told one, where outlines like it better.
+pub fn near(pair: &ViewPair, normals: &Normals, told: OutlinePrior) -> Option<OutlineReport> {
+    let problem = OutlineProblem { image: &pair.image, depth: &pair.depth, normals, prior: told };
+    let mut outline = Outline::new(&problem);
+    let staying = outline.judge(&problem, &told.pose).cost;
+    let found = outline.register(&problem, &told.pose);
+    Some(found).filter(|found| is_seen(found) && found.cost < staying)
+}
+
+/// The pose where nothing is told: the best from several rotations at the middle of the image's object.
+pub fn anywhere(pair: &ViewPair, normals: &Normals) -> Option<OutlineReport> {
+    // An orthographic image has other ways; a frame without a mask has no object whose middle it could be.
+    if pair.image.camera.is_orthographic() || !pair.image.whole.object.contains(&false) {
+        return None;
+    }
+    let turned = |angles: Angles| gauge::centred(pair, angles.rotation());
+    let pose = turned(Angles::default());
+    let distance = pose.apply(pair.depth.points.centroid()).z;
+    let prior = OutlinePrior {
+        pose,
+        rotation: ANYWHERE_DEGREES.to_radians(),
+        across: ANYWHERE_ACROSS * distance,
+        along: ANYWHERE_ALONG * distance,
+    };
+    let problem = OutlineProblem { image: &pair.image, depth: &pair.depth, normals, prior };
+    let mut outline = Outline::new(&problem);
+    let starts = TURNS.into_iter().flat_map(|beta| TILTS.map(|alpha| turned(Angles { alpha, beta, gamma: 0.0 })));
+    let found = starts.map(|start| outline.register(&problem, &start)).filter(is_seen);
+    found.min_by(|a, b| a.cost.total_cmp(&b.cost))
+}
+
+fn is_seen(found: &OutlineReport) -> bool {
+    found.rims >= FEWEST_RIMS && found.noise <= LARGEST_RIM_NOISE
+}

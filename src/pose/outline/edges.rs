@@ -1,0 +1,84 @@
+//! Edges of the image next to a line: the strongest gradient along its normal.
+//!
+//! Limits: brightness alone; an edge of print is one as well, which rounds and robust weights have to tell.
+
+use crate::view::Size;
+
+/// Gaussian blurs, pixels, and how far along the normal an edge is looked for on each.
+pub const LEVELS: [(f64, f64); 3] = [(3.0, 14.0), (1.5, 7.0), (0.8, 3.5)];
+/// Steps along the normal, pixels.
+const STEP: f64 = 0.5;
+/// Standard deviations that a blur reaches.
+const REACH: f64 = 3.0;
+/// Gradient that is no edge, brightness of 0 .. 1 for each pixel: two levels of 8 bit.
+const LEAST_GRADIENT: f64 = 0.008;
+
+/// The brightness of a frame, blurred.
+pub struct Edges {
+    size: Size,
+    levels: Vec<Vec<f32>>,
+}
+
+/// An edge: how far along the normal, and how clear it is, 0 .. 1.
+#[derive(Clone, Copy)]
+pub struct Edge {
+    pub offset: f64,
+    pub strength: f64,
+}
+
+impl Edges {
+    pub fn new(size: Size, grey: &[f32]) -> Self {
+        Self { size, levels: LEVELS.iter().map(|&(blur, _)| blurred(size, grey, blur)).collect() }
+    }
+
+    /// The strongest edge across a line through `place` with this unit normal; `None` where the frame ends or nothing
+    /// stands out.
+    pub fn nearest(&self, level: usize, place: [f64; 2], normal: [f64; 2]) -> Option<Edge> {
+        let reach = (LEVELS[level].1 / STEP) as i32;
+        let (mut best, mut sum, mut count) = (Edge { offset: 0.0, strength: 0.0 }, 0.0, 0.0);
+        for step in -reach..=reach {
+            let offset = STEP * f64::from(step);
+            let ahead = |by: f64| {
+                let at = [0, 1].map(|axis| (place[axis] + (offset + by) * normal[axis]) as f32);
+                f64::from(self.size.bilinear(&self.levels[level], at[0], at[1]))
+            };
+            let slope = (ahead(0.5) - ahead(-0.5)).abs();
+            if slope.is_nan() {
+                continue;
+            }
+            (sum, count) = (sum + slope, count + 1.0);
+            // Of two that are alike the nearer one.
+            let weighed = slope * (1.0 - 0.5 * (offset / LEVELS[level].1).abs());
+            if weighed > best.strength {
+                best = Edge { offset, strength: weighed };
+            }
+        }
+        if best.strength < LEAST_GRADIENT {
+            return None;
+        }
+        // One where it holds all of the contrast, zero where it is like its surroundings.
+        let mean = sum / count;
+        Some(Edge { strength: (1.0 - mean / best.strength).max(0.0), ..best })
+    }
+}
+
+/// A Gaussian blur, the frame continued by its border.
+fn blurred(size: Size, values: &[f32], sigma: f64) -> Vec<f32> {
+    let reach = (REACH * sigma).ceil() as isize;
+    let weights: Vec<f32> = (-reach..=reach).map(|k| (-0.5 * (k as f64 / sigma).powi(2)).exp() as f32).collect();
+    let total: f32 = weights.iter().sum();
+    let pass = |source: &[f32], along_rows: bool| -> Vec<f32> {
+        let sum = |index: usize| {
+            let (column, row) = size.position(index);
+            let value = |k: isize| {
+                let within = |at: usize, length: usize| (at as isize + k).clamp(0, length as isize - 1) as usize;
+                let (column, row) =
+                    if along_rows { (within(column, size.width), row) } else { (column, within(row, size.height)) };
+                source[size.index(column, row)]
+            };
+            (-reach..=reach).zip(&weights).map(|(k, weight)| weight * value(k)).sum::<f32>() / total
+        };
+        (0..size.len()).map(sum).collect()
+    };
+    pass(&pass(values, true), false)
+}

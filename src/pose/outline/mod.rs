@@ -1,0 +1,28 @@
+//! The pose from outlines: where the depth map's rims fall on the image's mask (docs/method.md, section 10).
+//!
+//! min over w, t, d of 3 mean rho(max(0, sd(p) + d - 0.7)) over the depth points + mean w rho(sd(p) + d) over their rims
+//! + 0.3 mean rho(max(0, |q - p(q)| - 0.7 - d)) over the pixels q of the mask's outline that no point covers + a prior
+//! about the told pose, with sd the signed distance to the mask's outline, positive outside, and p(q) the nearest point.
+//!
+//! A sensor loses the outline of what it sees, or blurs it outward, by an amount d that is alike all around: one pixel of
+//! it would be 17 mm of distance, so it is an unknown of its own.
+//!
+//! The object turns about its own middle c, x = R (X - c) + c + t. Method: rounds of damped Gauss-Newton; what is visible,
+//! covered and next to what is frozen in a round, and rho narrows from round to round.
+//!
+//! | file | what it holds |
+//! |---|---|
+//! | `edges` | edges of the image across a line |
+//! | `mask_distance` | the signed distance to the mask's outline |
+//! | `rims` | which points of the depth map draw its outline under a pose |
+//! | `registration` | the rounds: [`Outline`] |
+//!
+//! Limits: the image needs a mask that was not drawn from the depth map, and its outline has to be inside the frame. What
+//! turns without changing its outline (a bowl about its axis) keeps the told turn.
+
+mod edges;
+mod mask_distance;
+mod registration;
+mod rims;
+
+pub use registration::{Outline, OutlinePrior, OutlineProblem, OutlineReport};

@@ -1,0 +1,422 @@
+//! The rounds of a registration by outlines.
+
+use nalgebra::{Matrix3, SymmetricEigen, Vector3};
+
+use super::edges::{Edge, Edges, LEVELS};
+use super::mask_distance::MaskDistance;
+use super::rims::Rims;
+use crate::numeric::{quantile, robust};
+use crate::pose::increment::{Frame, PoseMatrix, PoseVector, SCALE, UNKNOWNS, clear_unknowns};
+use crate::pose::similarity::Similarity;
+use crate::pose::uncertainty::{Uncertainty, describe, in_words};
+use crate::view::{ColourView, DepthView, Normals};
+
+/// Half the width of an outline, pixels: neither a pixel's own size nor the rounding of a mask is an error. Without it
+/// the silhouette pulls poses by one to two degrees.
+const OUTLINE: f64 = 0.7;
+/// Weights of points that leave the mask, of rims off its outline and of outline that nothing covers.
+const OUTSIDE: f64 = 3.0;
+const RIM: f64 = 1.0;
+const BARE: f64 = 0.3;
+/// Weight of rims beside edges of the image.
+const EDGE: f64 = 1.0;
+/// Weight of the prior.
+const PRIOR: f64 = 0.1;
+/// One sigma of the loss of outlines, pixels.
+const LOSS_SIGMA: f64 = 2.0;
+/// Robust scales, pixels, and rounds of each.
+const SCALES: [f64; 4] = [40.0, 14.0, 7.0, 3.5];
+const ROUNDS: usize = 6;
+/// Steps of a round.
+const STEPS: usize = 3;
+/// Damping as a share of the diagonal.
+const DAMPING: f64 = 1e-3;
+/// Points that ask whether they leave the mask at most; outline pixels and rims at most.
+const MOST_POINTS: usize = 4000;
+const MOST_OUTLINE: usize = 1000;
+/// The last robust scale.
+const FINEST: f64 = SCALES[SCALES.len() - 1];
+/// Length of outline that errs together, pixels, and by how much errors exceed what residuals tell: masks, registration
+/// of the sensors and loss of outlines are wrong all one way.
+const CORRELATED: f64 = 8.0;
+const SIGMA_INFLATION: f64 = 3.0;
+/// Least noise of rims, pixels: a third of one.
+const LEAST_NOISE: f64 = 0.3;
+/// Variance of a direction that nothing is known about.
+const UNKNOWN: f64 = 1e3;
+/// Variance of a rotation as a share of the prior's above which outlines do not see it.
+const UNSEEN: f64 = 0.8;
+const MOST_EIGEN_ROUNDS: usize = 100;
+
+/// The unknowns: those of a pose without its scale, and the loss in the scale's place.
+const LOSS: usize = SCALE;
+
+/// Two views whose outlines shall agree.
+#[derive(Clone, Copy)]
+pub struct OutlineProblem<'a> {
+    pub image: &'a ColourView,
+    pub depth: &'a DepthView,
+    /// Normals of the depth view's points.
+    pub normals: &'a Normals,
+    /// What is told.
+    pub prior: OutlinePrior,
+}
+
+/// A told pose and one sigma of it.
+#[derive(Clone, Copy)]
+pub struct OutlinePrior {
+    pub pose: Similarity,
+    /// Radians.
+    pub rotation: f64,
+    /// Of the object's middle, across and along the line of sight, units of the colour view.
+    pub across: f64,
+    pub along: f64,
+}
+
+/// What outlines say.
+#[derive(Clone, Debug)]
+pub struct OutlineReport {
+    pub pose: Similarity,
+    /// Loss of the depth map's outlines, pixels.
+    pub loss: f64,
+    /// Robust standard deviation of the rims about the mask's outline, pixels.
+    pub noise: f64,
+    pub uncertainty: Uncertainty,
+    /// Whether its weakest rotation is as good as unseen: what was told of it is kept.
+    pub unseen: bool,
+    /// The objective at the finest scale.
+    pub cost: f64,
+    /// Number of rims.
+    pub rims: usize,
+}
+
+impl OutlineProblem<'_> {
+    pub(super) fn point(&self, index: usize) -> Vector3<f64> {
+        Vector3::from(self.depth.points.get(index).map(f64::from))
+    }
+}
+
+/// One residual: how it changes with each unknown.
+type Row = PoseVector;
+
+/// Sums of a step.
+struct Sums {
+    matrix: PoseMatrix,
+    gradient: PoseVector,
+    cost: f64,
+}
+
+impl Sums {
+    fn new() -> Self {
+        Self { matrix: PoseMatrix::zeros(), gradient: PoseVector::zeros(), cost: 0.0 }
+    }
+
+    /// A residual under a robust function.
+    fn add(&mut self, row: &Row, residual: f64, weight: f64, scale: f64) {
+        let square = (residual / scale).powi(2);
+        let robust = weight / (1.0 + square).powi(2);
+        self.cost += weight * residual * residual / (1.0 + square);
+        self.matrix.syger(robust, row, row, 1.0);
+        self.gradient.axpy(robust * residual, row, 1.0);
+    }
+}
+
+/// Registers by outlines; owns its memory.
+pub struct Outline {
+    /// Where there is a mask.
+    distance: Option<MaskDistance>,
+    edges: Edges,
+    /// The edge next to each rim, where there is one.
+    matches: Vec<Option<([f64; 2], Edge)>>,
+    /// Pixels of the mask beside the outside.
+    outline: Vec<[f64; 2]>,
+    rims: Rims,
+    /// Places of the depth points in the image.
+    pixels: Vec<[f32; 2]>,
+    /// Points that ask whether they leave the mask.
+    sample: Vec<u32>,
+    /// Outline pixels that nothing covers, and the point next to each.
+    bare: Vec<([f64; 2], u32)>,
+    middle: Vector3<f64>,
+    size: f64,
+}
+
+impl Outline {
+    pub fn new(problem: &OutlineProblem<'_>) -> Self {
+        let (image, depth) = (problem.image, problem.depth);
+        let object = &image.whole.object;
+        let is_masked = object.contains(&false);
+        let is_outline = |index: usize| object[index] && image.size.neighbours(index).any(|beside| !object[beside]);
+        let all: Vec<usize> = (0..image.size.len()).filter(|&index| is_outline(index)).collect();
+        let every = all.len().div_ceil(MOST_OUTLINE).max(1);
+        let place = |index: usize| {
+            let (column, row) = image.size.position(index);
+            [column as f64, row as f64]
+        };
+        let valid: Vec<u32> =
+            (0..depth.size.len()).filter(|&index| depth.points.is_valid(index)).map(|index| index as u32).collect();
+        let thinned = valid.len().div_ceil(MOST_POINTS).max(1);
+        let middle = depth.points.centroid();
+        let squares = valid.iter().map(|&index| (problem.point(index as usize) - middle).norm_squared());
+        let size = (squares.sum::<f64>() / valid.len().max(1) as f64).sqrt();
+        Self {
+            distance: is_masked.then(|| MaskDistance::new(image.size, object)),
+            edges: Edges::new(image.size, &image.whole.grey),
+            matches: Vec::new(),
+            outline: all.into_iter().step_by(every).map(place).collect(),
+            rims: Rims::new(problem),
+            pixels: vec![[f32::NAN; 2]; depth.size.len()],
+            sample: valid.into_iter().step_by(thinned).collect(),
+            bare: Vec::new(),
+            middle,
+            size,
+        }
+    }
+
+    /// The pose from `start`.
+    pub fn register(&mut self, problem: &OutlineProblem<'_>, start: &Similarity) -> OutlineReport {
+        let (mut pose, mut loss) = (*start, 0.0);
+        for (stage, scale) in SCALES.into_iter().enumerate() {
+            for _ in 0..ROUNDS {
+                self.freeze(problem, &pose);
+                self.match_edges(stage.checked_sub(SCALES.len() - LEVELS.len()), loss);
+                for _ in 0..STEPS {
+                    let frame = self.frame(&pose);
+                    let sums = self.sums(problem, &pose, loss, scale);
+                    let mut matrix = sums.matrix;
+                    matrix.fill_upper_triangle_with_lower_triangle();
+                    for k in 0..UNKNOWNS {
+                        matrix[(k, k)] *= 1.0 + DAMPING;
+                    }
+                    let Some(step) = matrix.cholesky().map(|factor| -factor.solve(&sums.gradient)) else { break };
+                    loss += step[LOSS];
+                    let mut change = step;
+                    change[SCALE] = 0.0;
+                    pose = frame.change(&change).after(&pose).orthonormal();
+                }
+            }
+        }
+        self.report(problem, pose, loss)
+    }
+
+    // DEBUG
+    pub fn debug(&mut self, problem: &OutlineProblem<'_>, pose: &Similarity) -> (Vec<([f32; 2], f64)>, Vec<[f64; 2]>) {
+        self.freeze(problem, pose);
+        (
+            self.rims.rims.iter().map(|r| (self.pixels[r.index as usize], r.weight)).collect(),
+            self.bare.iter().map(|b| b.0).collect(),
+        )
+    }
+
+    fn frame(&self, pose: &Similarity) -> Frame {
+        Frame { centre: pose.apply(self.middle), length: pose.scale * self.size }
+    }
+
+    /// Where the points fall, which of them are rims, and what of the outline is bare.
+    fn freeze(&mut self, problem: &OutlineProblem<'_>, pose: &Similarity) {
+        let image = problem.image;
+        for index in 0..self.pixels.len() {
+            let place = if problem.depth.points.is_valid(index) {
+                image.camera.project(image.size, pose.apply(problem.point(index)).into())
+            } else {
+                None
+            };
+            self.pixels[index] = place.map_or([f32::NAN; 2], |place| place.map(|at| at as f32));
+        }
+        self.rims.update(problem, pose, &self.pixels);
+        self.bare.clear();
+        let every = self.rims.rims.len().div_ceil(MOST_OUTLINE).max(1);
+        for &place in self.outline.iter().filter(|place| !self.rims.covers(**place)) {
+            let distance = |index: u32| {
+                let [column, row] = self.pixels[index as usize];
+                (f64::from(column) - place[0]).powi(2) + (f64::from(row) - place[1]).powi(2)
+            };
+            let rims = self.rims.rims.iter().step_by(every).map(|rim| rim.index);
+            if let Some(nearest) = rims.min_by(|&a, &b| distance(a).total_cmp(&distance(b))) {
+                self.bare.push((place, nearest));
+            }
+        }
+    }
+
+    /// The edges next to the rims on a level of the image; none before the first.
+    fn match_edges(&mut self, level: Option<usize>, loss: f64) {
+        self.matches.clear();
+        let Some(level) = level else { return };
+        let Self { rims, pixels, edges, matches, .. } = self;
+        matches.extend(rims.rims.iter().map(|rim| {
+            let [column, row] = pixels[rim.index as usize].map(f64::from);
+            let place = [column + loss * rim.normal[0], row + loss * rim.normal[1]];
+            let edge = edges.nearest(level, place, rim.normal)?;
+            let at = [0, 1].map(|axis| place[axis] + edge.offset * rim.normal[axis]);
+            Some((at, edge))
+        }));
+    }
+
+    /// How a point's place in the image changes with the unknowns.
+    fn rows(&self, problem: &OutlineProblem<'_>, pose: &Similarity, index: usize) -> Option<([f64; 2], [Row; 2])> {
+        let frame = self.frame(pose);
+        let point = pose.apply(problem.point(index));
+        let (pixel, slopes) = problem.image.camera.project_with_gradient(problem.image.size, point.into())?;
+        let arm = point - frame.centre;
+        let row = |slope: [f64; 3]| {
+            let slope = Vector3::from(slope);
+            let turn = arm.cross(&slope);
+            Row::from([
+                turn.x,
+                turn.y,
+                turn.z,
+                frame.length * slope.x,
+                frame.length * slope.y,
+                frame.length * slope.z,
+                0.0,
+            ])
+        };
+        Some((pixel, slopes.map(row)))
+    }
+
+    /// The residual of a point against the mask's outline.
+    fn against_mask(
+        &self,
+        problem: &OutlineProblem<'_>,
+        pose: &Similarity,
+        loss: f64,
+        index: usize,
+    ) -> Option<(f64, Row)> {
+        let (pixel, [across, down]) = self.rows(problem, pose, index)?;
+        let (distance, [right, low]) = self.distance.as_ref()?.at(pixel);
+        let mut row = right * across + low * down;
+        row[LOSS] = 1.0;
+        Some((distance + loss, row))
+    }
+
+    fn sums(&self, problem: &OutlineProblem<'_>, pose: &Similarity, loss: f64, scale: f64) -> Sums {
+        let mut sums = Sums::new();
+        let share = OUTSIDE / self.sample.len().max(1) as f64;
+        for &index in &self.sample {
+            if let Some((residual, row)) = self.against_mask(problem, pose, loss, index as usize)
+                && residual > OUTLINE
+            {
+                sums.add(&row, residual - OUTLINE, share, scale);
+            }
+        }
+        self.add_edges(problem, pose, loss, scale, &mut sums);
+        self.add_rims(problem, pose, loss, scale, &mut sums);
+        let share = BARE / self.outline.len().max(1) as f64;
+        for &(place, index) in &self.bare {
+            let Some((pixel, [across, down])) = self.rows(problem, pose, index as usize) else { continue };
+            let offset = [pixel[0] - place[0], pixel[1] - place[1]];
+            let distance = offset[0].hypot(offset[1]);
+            let residual = distance - OUTLINE - loss;
+            if residual > 0.0 {
+                let mut row = (offset[0] * across + offset[1] * down) / distance;
+                row[LOSS] = -1.0;
+                sums.add(&row, residual, share, scale);
+            }
+        }
+        self.add_prior(problem, pose, loss, &mut sums);
+        sums
+    }
+
+    fn add_rims(&self, problem: &OutlineProblem<'_>, pose: &Similarity, loss: f64, scale: f64, sums: &mut Sums) {
+        let rims = || self.rims.rims.iter().filter(|rim| rim.is_outer);
+        let total: f64 = rims().map(|rim| rim.weight).sum();
+        for rim in rims() {
+            if let Some((residual, row)) = self.against_mask(problem, pose, loss, rim.index as usize) {
+                sums.add(&row, residual, RIM * rim.weight / total, scale);
+            }
+        }
+    }
+
+    fn add_edges(&self, problem: &OutlineProblem<'_>, pose: &Similarity, loss: f64, scale: f64, sums: &mut Sums) {
+        let total: f64 = self.rims.rims.iter().map(|rim| rim.weight).sum();
+        for (rim, found) in self.rims.rims.iter().zip(&self.matches) {
+            if let Some((at, edge)) = found
+                && let Some((pixel, [across, down])) = self.rows(problem, pose, rim.index as usize)
+            {
+                let [right, low] = rim.normal;
+                let mut row = right * across + low * down;
+                row[LOSS] = 1.0;
+                let residual = right * (pixel[0] - at[0]) + low * (pixel[1] - at[1]) + loss;
+                sums.add(&row, residual, EDGE * rim.weight * edge.strength / total, scale);
+            }
+        }
+    }
+
+    fn add_prior(&self, problem: &OutlineProblem<'_>, pose: &Similarity, loss: f64, sums: &mut Sums) {
+        let OutlinePrior { pose: told, rotation, across, along } = &problem.prior;
+        let turn = (pose.rotation * told.rotation.transpose()).transpose();
+        let turned = -nalgebra::Rotation3::from_matrix_unchecked(turn).scaled_axis();
+        let moved = pose.apply(self.middle) - told.apply(self.middle);
+        let length = pose.scale * self.size;
+        for axis in 0..3 {
+            let mut row = Row::zeros();
+            row[axis] = 1.0 / rotation;
+            sums.add(&row, turned[axis] / rotation, PRIOR, f64::INFINITY);
+            let sigma = if axis < 2 { across } else { along };
+            let mut row = Row::zeros();
+            row[3 + axis] = length / sigma;
+            sums.add(&row, moved[axis] / sigma, PRIOR, f64::INFINITY);
+        }
+        let mut row = Row::zeros();
+        row[LOSS] = 1.0 / LOSS_SIGMA;
+        sums.add(&row, loss / LOSS_SIGMA, PRIOR, f64::INFINITY);
+    }
+
+    /// What is said of the end.
+    fn report(&mut self, problem: &OutlineProblem<'_>, pose: Similarity, loss: f64) -> OutlineReport {
+        self.freeze(problem, &pose);
+        self.match_edges(Some(LEVELS.len() - 1), loss);
+        let noise = self.noise(problem, &pose, loss);
+        let mut data = Sums::new();
+        self.add_rims(problem, &pose, loss, FINEST, &mut data);
+        self.add_edges(problem, &pose, loss, FINEST, &mut data);
+        let independent = self.rims.rims.len() as f64 * self.rims.cell() / CORRELATED;
+        let mut information = data.matrix * (independent / ((RIM + EDGE) * (SIGMA_INFLATION * noise).powi(2)));
+        let mut prior = Sums::new();
+        self.add_prior(problem, &pose, loss, &mut prior);
+        information += prior.matrix / PRIOR;
+        information.fill_upper_triangle_with_lower_triangle();
+        let frame = self.frame(&pose);
+        let mut covariance = information.try_inverse().unwrap_or_else(|| PoseMatrix::identity() * UNKNOWN.powi(2));
+        clear_unknowns(&mut covariance, &std::array::from_fn(|k| k == LOSS));
+        let (weakest, share) = weakest_turn(&covariance, problem.prior.rotation);
+        OutlineReport {
+            uncertainty: describe(&covariance, &frame, &pose, [false, true], weakest),
+            unseen: share > UNSEEN,
+            cost: self.sums(problem, &pose, loss, FINEST).cost,
+            rims: self.rims.rims.len(),
+            pose,
+            loss,
+            noise,
+        }
+    }
+
+    /// What outlines say of a pose as it is.
+    pub fn judge(&mut self, problem: &OutlineProblem<'_>, pose: &Similarity) -> OutlineReport {
+        self.report(problem, *pose, 0.0)
+    }
+
+    /// Robust standard deviation of the rims about outline and edges.
+    fn noise(&self, problem: &OutlineProblem<'_>, pose: &Similarity, loss: f64) -> f64 {
+        let rims = self.rims.rims.iter().filter(|rim| rim.is_outer);
+        let against_mask = rims.filter_map(|rim| self.against_mask(problem, pose, loss, rim.index as usize));
+        let mut residuals: Vec<f32> = against_mask.map(|(residual, _)| residual.abs() as f32).collect();
+        residuals.extend(self.matches.iter().flatten().map(|(_, edge)| edge.offset.abs() as f32));
+        if residuals.is_empty() {
+            return f64::INFINITY;
+        }
+        (robust::SIGMA_OF_MEDIAN * f64::from(quantile(&mut residuals, 0.5))).max(LEAST_NOISE)
+    }
+}
+
+/// The rotation that is known least, in words, and its variance as a share of the prior's.
+fn weakest_turn(covariance: &PoseMatrix, prior: f64) -> (String, f64) {
+    let turns: Matrix3<f64> = covariance.fixed_view::<3, 3>(0, 0).into();
+    let Some(eigen) = SymmetricEigen::try_new(turns, f64::EPSILON, MOST_EIGEN_ROUNDS) else {
+        return ("unknown".to_owned(), 1.0);
+    };
+    let weakest = eigen.eigenvalues.imax();
+    let mut direction = PoseVector::zeros();
+    direction.fixed_rows_mut::<3>(0).copy_from(&eigen.eigenvectors.column(weakest));
+    (in_words(&direction), eigen.eigenvalues[weakest] / (prior * prior))
+}

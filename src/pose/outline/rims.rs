@@ -1,0 +1,169 @@
+//! Which points of the depth map draw the object's outline under a pose.
+//!
+//! Method: the points on a raster of cells as wide as the points are apart, nearest first; rims are the points of covered
+//! cells beside bare ones. Where the data end is not always where the object ends: a sharp rim of the depth map, where the
+//! surface faces the sensor and then stops, is one in every view; a soft limb, where the surface turns away, is one only
+//! in the view that it turns away from.
+
+use nalgebra::Vector3;
+
+use super::registration::OutlineProblem;
+use crate::pose::similarity::Similarity;
+use crate::view::Size;
+
+/// Neighbours in the depth map whose distance differs by more than this share of it are no neighbours on the surface: 15
+/// mm at 0.75 m, where the sensors of the captures stand.
+const JUMP: f64 = 0.02;
+/// Cosine between normal and sight of the depth camera above which a rim is sharp, and where half of it is; normals of
+/// real sensors at a limb do not fall below 0.3.
+const SHARP: [f64; 2] = [0.35, 0.7];
+/// Cosine between normal and sight of the colour camera below which a surface turns away, and what such a rim weighs.
+const LIMB: f64 = 0.45;
+const LIMB_WEIGHT: f64 = 0.5;
+
+/// A point of the depth map on the outline.
+#[derive(Clone, Copy)]
+pub struct Rim {
+    pub index: u32,
+    pub weight: f64,
+    /// Outward, in the image.
+    pub normal: [f64; 2],
+    /// Whether background is beside it; else another part of the object.
+    pub is_outer: bool,
+}
+
+/// Finds rims; owns its memory.
+pub struct Rims {
+    raster: Size,
+    /// Pixels of a cell's edge.
+    cell: f64,
+    /// The nearest point of each cell and its distance.
+    owners: Vec<u32>,
+    depths: Vec<f32>,
+    /// How sharp the depth map's own rim is at each point; zero inside.
+    sharpness: Vec<f32>,
+    pub rims: Vec<Rim>,
+}
+
+/// Cells around a rim that tell its normal.
+const AROUND: usize = 5;
+/// No point.
+const BARE: u32 = u32::MAX;
+
+impl Rims {
+    pub fn new(problem: &OutlineProblem<'_>) -> Self {
+        let (image, depth) = (problem.image, problem.depth);
+        let inside = image.mask.iter().filter(|&&inside| inside).count();
+        let cell = (inside as f64 / depth.valid().max(1) as f64).sqrt().max(1.0);
+        let across = |length: usize| (length as f64 / cell).ceil() as usize + 1;
+        let raster = Size { width: across(image.size.width), height: across(image.size.height) };
+        Self {
+            owners: vec![BARE; raster.len()],
+            depths: vec![f32::INFINITY; raster.len()],
+            sharpness: (0..depth.size.len()).map(|index| sharpness(problem, index)).collect(),
+            rims: Vec::new(),
+            raster,
+            cell,
+        }
+    }
+
+    /// The rims under a pose. `pixels` are the places of the points, NaN where missing.
+    pub fn update(&mut self, problem: &OutlineProblem<'_>, pose: &Similarity, pixels: &[[f32; 2]]) {
+        self.draw(problem, pose, pixels);
+        self.rims.clear();
+        let eye = pose.inverse().translation;
+        for cell in 0..self.raster.len() {
+            let owner = self.owners[cell];
+            if owner == BARE || !self.raster.neighbours(cell).any(|beside| self.is_beyond(cell, beside)) {
+                continue;
+            }
+            let weight = f64::from(self.sharpness[owner as usize]).max(limb(problem, pose, &eye, owner as usize));
+            let Some((normal, is_outer)) = self.outward(cell).filter(|_| weight > 0.0) else { continue };
+            self.rims.push(Rim { index: owner, weight, normal, is_outer });
+        }
+    }
+
+    /// Whether a cell is bare or much farther than another one.
+    fn is_beyond(&self, cell: usize, other: usize) -> bool {
+        f64::from(self.depths[other]) > (1.0 + JUMP) * f64::from(self.depths[cell])
+    }
+
+    /// The direction of what is beyond a cell, and whether most of that is bare.
+    fn outward(&self, cell: usize) -> Option<([f64; 2], bool)> {
+        let (column, row) = self.raster.position(cell);
+        let (mut sum, mut bare, mut count) = ([0.0; 2], 0, 0);
+        for v in row.saturating_sub(AROUND)..=(row + AROUND).min(self.raster.height - 1) {
+            for u in column.saturating_sub(AROUND)..=(column + AROUND).min(self.raster.width - 1) {
+                let other = self.raster.index(u, v);
+                if self.is_beyond(cell, other) {
+                    sum[0] += u as f64 - column as f64;
+                    sum[1] += v as f64 - row as f64;
+                    (bare, count) = (bare + usize::from(self.owners[other] == BARE), count + 1);
+                }
+            }
+        }
+        let length = sum[0].hypot(sum[1]);
+        (length > 0.0).then(|| (sum.map(|part| part / length), 2 * bare > count))
+    }
+
+    /// Pixels of a cell's edge: how far apart rims are.
+    pub const fn cell(&self) -> f64 {
+        self.cell
+    }
+
+    /// Whether a pixel of the image is covered.
+    pub fn covers(&self, [column, row]: [f64; 2]) -> bool {
+        let at = self.raster.nearest((column / self.cell) as f32, (row / self.cell) as f32);
+        at.is_some_and(|cell| self.owners[cell] != BARE)
+    }
+
+    fn draw(&mut self, problem: &OutlineProblem<'_>, pose: &Similarity, pixels: &[[f32; 2]]) {
+        self.owners.fill(BARE);
+        self.depths.fill(f32::INFINITY);
+        let [along, shift] = [pose.scale * pose.rotation.row(2).transpose(), Vector3::repeat(pose.translation.z)];
+        for (index, &[column, row]) in pixels.iter().enumerate().filter(|(_, pixel)| !pixel[0].is_nan()) {
+            let depth = (along.dot(&problem.point(index)) + shift.z) as f32;
+            let [x, y] = [column, row].map(|at| at / self.cell as f32);
+            for at in [[x.floor(), y.floor()], [x.ceil(), y.floor()], [x.floor(), y.ceil()], [x.ceil(), y.ceil()]] {
+                if let Some(cell) = self.raster.nearest(at[0], at[1])
+                    && depth < self.depths[cell]
+                {
+                    (self.depths[cell], self.owners[cell]) = (depth, index as u32);
+                }
+            }
+        }
+    }
+}
+
+/// How sharp the depth map's own rim is at a point: nothing inside, nothing at the frame, where it is cut.
+fn sharpness(problem: &OutlineProblem<'_>, index: usize) -> f32 {
+    let depth = problem.depth;
+    if !depth.points.is_valid(index) {
+        return 0.0;
+    }
+    let here = f64::from(depth.points.z[index]);
+    let ends = depth.size.neighbours(index).any(|beside| {
+        let there = f64::from(depth.points.z[beside]);
+        if there.is_nan() { !depth.mask[beside] } else { there - here > JUMP * here }
+    });
+    if !ends {
+        return 0.0;
+    }
+    let sight = if depth.camera.is_orthographic() { Vector3::z() } else { problem.point(index) };
+    let [none, full] = SHARP;
+    ((cosine(problem, index, &sight) - none) / (full - none)).clamp(0.0, 1.0) as f32
+}
+
+/// The weight of a surface that turns away from the colour camera at `eye`.
+fn limb(problem: &OutlineProblem<'_>, pose: &Similarity, eye: &Vector3<f64>, index: usize) -> f64 {
+    let is_parallel = problem.image.camera.is_orthographic();
+    let sight = if is_parallel { pose.rotation.tr_mul(&Vector3::z()) } else { problem.point(index) - eye };
+    LIMB_WEIGHT * (1.0 - cosine(problem, index, &sight) / LIMB).max(0.0)
+}
+
+/// |cosine| between normal and sight; one where there is no normal.
+fn cosine(problem: &OutlineProblem<'_>, index: usize, sight: &Vector3<f64>) -> f64 {
+    let normal = Vector3::from(problem.normals.get(index).map(f64::from));
+    let cosine = normal.dot(sight).abs() / sight.norm();
+    if cosine.is_nan() { 1.0 } else { cosine }
+}

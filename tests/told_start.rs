@@ -1,0 +1,148 @@
+//! A start that is told: believed within its tolerance, searched around, and kept where nothing better is near.
+
+use bimodal_stereo::scenes::{Sample, SampleRequest, Scene, light, surface};
+use bimodal_stereo::{
+    Angles, Camera, ColourSamples, DepthView, Estimator, Options, Pinhole, Registration, Similarity, Size, Start,
+    StartTolerance, Status, StepReport,
+};
+use nalgebra::{Rotation3, Vector3};
+
+const SIZE: Size = Size { width: 96, height: 72 };
+
+/// The bust four of its heights away from both cameras, which are calibrated.
+fn perspective(light_name: &str) -> Sample {
+    let pinhole = Pinhole { fx: 288.0, fy: 288.0, cx: 47.5, cy: 35.5, distortion: [0.0; 5] };
+    let request = SampleRequest {
+        size: SIZE,
+        light: light(light_name).unwrap(),
+        rotation: Angles { alpha: -5.0, beta: 20.0, gamma: 5.0 }.rotation(),
+        noise: 0.01,
+        depth_noise: 0.1,
+        image_camera: Camera::Pinhole(pinhole),
+        depth_camera: Camera::Pinhole(pinhole),
+        ..Default::default()
+    };
+    Scene::new(&surface("bust").unwrap()).unwrap().sample(&request).unwrap()
+}
+
+/// Colours that no shading explains: four paints in a pattern, on a background of its own.
+fn painted(sample: &Sample) -> ColourSamples {
+    let paints = [[0.8, 0.2, 0.1], [0.1, 0.6, 0.2], [0.2, 0.2, 0.7], [0.9, 0.9, 0.3]];
+    let paint = |index: usize| {
+        let (column, row) = sample.image.size.position(index);
+        if sample.image.mask[index] {
+            paints[(column / 5 + 2 * (row / 7) + (column + row) / 11) % 4]
+        } else {
+            [0.02; 3]
+        }
+    };
+    let shaded = |index: usize| {
+        let shading = sample.image.colours[3 * index..3 * index + 3].iter().sum::<f32>() / 3.0;
+        paint(index).map(|paint: f32| if sample.image.mask[index] { paint * (0.5 + shading) } else { paint })
+    };
+    ColourSamples::RgbLinear((0..sample.image.size.len()).flat_map(shaded).collect())
+}
+
+/// The true pose turned by so many degrees about the depth camera.
+fn turned_about_the_sensor(sample: &Sample, axis: Vector3<f64>, degrees: f64) -> Similarity {
+    let turn = Rotation3::new(axis.normalize() * degrees.to_radians()).into_inner();
+    Similarity { rotation: sample.pose.rotation * turn, ..sample.pose }
+}
+
+fn told(pose: &Similarity) -> Options {
+    let Similarity { rotation, scale, translation } = *pose;
+    Options {
+        start: Start::Pose { rotation, scale: Some(scale), translation: Some(translation) },
+        ..Options::default()
+    }
+}
+
+fn run(sample: &Sample, paint: bool, options: Options) -> StepReport {
+    let mut image = sample.colour_image();
+    if paint {
+        image.samples = painted(sample);
+    }
+    let mut estimator = Estimator::new(image, &sample.depth_map(), options).unwrap();
+    while estimator.report().status == Status::Running {
+        estimator.step();
+    }
+    estimator.report().clone()
+}
+
+fn middle(sample: &Sample) -> Vector3<f64> {
+    DepthView::new(&sample.depth_map(), true).unwrap().points.centroid()
+}
+
+#[test]
+fn a_start_turned_about_the_sensor_comes_home_under_an_unknown_light() {
+    for (name, axis) in [("window", Vector3::new(0.3, 1.0, 0.1)), ("colourful", Vector3::new(1.0, -0.4, 0.2))] {
+        let sample = perspective(name);
+        let searched = run(&sample, false, Options::default());
+        for degrees in [1.0, 3.0, 8.0] {
+            let start = turned_about_the_sensor(&sample, axis, degrees);
+            let report = run(&sample, false, told(&start));
+            let (error, apart) = (report.pose.degrees_to(&sample.pose), report.pose.degrees_to(&searched.pose));
+            assert!(error < 2.0 && apart < 0.2, "{name}, {degrees}: {error} {apart} {report:?}");
+            assert_ne!(report.status, Status::Lost, "{name}, {degrees}");
+        }
+    }
+}
+
+#[test]
+fn a_told_start_never_ends_further_from_itself_than_its_tolerance() {
+    let sample = perspective("window");
+    let middle = middle(&sample);
+    for (degrees, distance, off) in [(1.0, 2.0, 4.0), (30.0, 3.0, 6.0), (5.0, 100.0, 8.0), (0.1, 0.1, 1.0)] {
+        for paint in [false, true] {
+            let start = turned_about_the_sensor(&sample, Vector3::new(0.5, 1.0, 0.0), off);
+            let start_tolerance = StartTolerance { degrees, distance: Some(distance) };
+            let report = run(&sample, paint, Options { start_tolerance, ..told(&start) });
+            let moved = (report.pose.apply(middle) - start.apply(middle)).norm();
+            let turned = report.pose.degrees_to(&start);
+            let tolerance = format!("{degrees} {distance} {off} {paint}: {turned} {moved}");
+            assert!(turned <= degrees && moved <= distance, "{tolerance}");
+            // What is out of reach is not found, and that is said.
+            if off > degrees {
+                assert_ne!(report.status, Status::Converged, "{tolerance}");
+            }
+            if turned == 0.0 && moved == 0.0 {
+                assert_eq!((report.status, &report.uncertainty), (Status::Lost, &None), "{tolerance}");
+                assert!(report.message.unwrap().contains("startTolerance"), "{tolerance}");
+            }
+        }
+    }
+}
+
+#[test]
+fn outlines_bring_a_painted_object_home() {
+    let sample = perspective("window");
+    let middle = middle(&sample);
+    for (axis, degrees) in [(Vector3::new(0.2, 1.0, 0.3), 3.0), (Vector3::new(1.0, 0.1, -0.5), 4.0)] {
+        let start = turned_about_the_sensor(&sample, axis, degrees);
+        let report = run(&sample, true, told(&start));
+        let off = |pose: &Similarity| pose.apply(middle) - sample.pose.apply(middle);
+        let (before, after) = (off(&start), off(&report.pose));
+        // A pixel measures one unit at the object.
+        assert!(after.xy().norm() < 1.5 && before.norm() > 10.0, "{before} {after} {report:?}");
+        assert!(report.pose.degrees_to(&sample.pose) < 3.5, "{report:?}");
+        // What outlines say of their error holds.
+        let sigma = report.uncertainty.as_ref().expect("sigmas");
+        let turned = Rotation3::from_matrix_unchecked(report.pose.rotation * sample.pose.rotation.transpose());
+        let turned = turned.scaled_axis().map(f64::to_degrees);
+        for axis in 0..3 {
+            assert!(turned[axis].abs() < 3.0 * sigma.rotation_degrees[axis], "{turned} {sigma:?}");
+        }
+    }
+}
+
+#[test]
+fn what_never_moved_has_no_sigmas() {
+    let sample = perspective("window");
+    let start = turned_about_the_sensor(&sample, Vector3::y(), 2.0);
+    for paint in [false, true] {
+        let report = run(&sample, paint, Options { registration: Registration::Icp, ..told(&start) });
+        let moved = report.pose != Similarity { translation: start.translation, ..report.pose }
+            || report.pose.degrees_to(&start) > 0.0;
+        assert_eq!(report.uncertainty.is_some(), moved, "{paint}: {report:?}");
+    }
+}
