@@ -61,7 +61,8 @@ pub use estimator::{Estimator, Finding, RefinementTask, Surface, Task, Worker};
 pub use light::{COEFFICIENTS, CoefficientMatrix, Light, LightFit, LightFitter, LightPrior};
 pub use options::{LightSource, Options, Registration, Shading, Start, StartTolerance, Weights};
 pub use pose::{
-    Angles, Candidate, ContrastEffort, ContrastProblem, ContrastRegistration, ContrastReport, CorrespondenceProblem, Correspondences, Icp, IcpOptions, IcpProblem, IcpReport, IcpTermination,
+    Angles, Candidate, ContrastEffort, ContrastOutcome, ContrastProblem, ContrastRegistration, ContrastReport,
+    ContrastSearch, CorrespondenceProblem, Correspondences, Icp, IcpOptions, IcpProblem, IcpReport, IcpTermination,
     Information, Metric, Pair, Photometric, PhotometricOptions, PhotometricProblem, PhotometricReport,
     PhotometricTermination, Progress, RansacOptions, RansacReport, Search, SearchProblem, Similarity, Uncertainty,
     ransac,

@@ -6,11 +6,14 @@
 //! the same to the bit.
 
 use crate::error::{Error, ErrorKind, Result};
-use crate::pose::{ImageGrid, PhotometricReport, Search, SearchProblem, Similarity, TaskResults};
+use crate::pose::{
+    ContrastOutcome, ContrastSearch, ImageGrid, PhotometricReport, Search, SearchProblem, Similarity, TaskResults,
+};
 
 use super::gauge;
 use super::local_optima::{Decision, LocalOptima};
 use super::pair::ViewPair;
+use super::stages::painted::{self, Canvas, Conclusion};
 use super::stages::{Attempt, ColourRegistration};
 use super::workers::task::{Finding, Found, RegisteredCandidate, Task, Work};
 
@@ -18,23 +21,32 @@ use super::workers::task::{Finding, Found, RegisteredCandidate, Task, Work};
 const FEW_TRIED: usize = 10;
 const MOST_TRIED: usize = 40;
 /// Share of the progress that the search itself takes ..
-const SEARCH_SHARE: f64 = 0.5;
-/// .. and the first few registrations: what comes after them may be spared, and then progress leaps to its end.
-const FEW_SHARE: f64 = 0.25;
+const SEARCH_SHARE: f64 = 0.4;
+/// .. the first few registrations: what comes after them may be spared, and then progress leaps to its end ..
+const FEW_SHARE: f64 = 0.2;
+/// .. and local contrast, where the colours are painted.
+const CONTRAST_SHARE: f64 = 0.25;
+
+/// What is done where the colours are painted.
+const COMPARING_CONTRAST: &str = "comparing local contrast, for the colours are painted";
 
 /// How the initialisation stands.
 pub enum Advance {
     /// Not done; the share of the work that is, and what is being done.
     Ongoing(f64, &'static str),
-    /// The best pose, if any could be registered.
-    Done(Option<Outcome>),
+    /// What was found.
+    Done(Outcome),
 }
 
 /// What the initialisation found.
+#[derive(Default)]
 pub struct Outcome {
-    pub best: Box<PhotometricReport>,
+    /// The best pose by colours, if any could be registered.
+    pub best: Option<Box<PhotometricReport>>,
     /// Poses that the data can't tell from the best, best first.
     pub rivals: Vec<Similarity>,
+    /// What local contrast says, where the colours are painted.
+    pub contrast: Option<Box<ContrastOutcome>>,
 }
 
 /// The initialisation in slices; owns its memory.
@@ -48,7 +60,19 @@ pub struct Initialisation {
     optima: LocalOptima,
     /// The candidate whose registration is under way here.
     begun: Option<usize>,
+    /// Whether local contrast can be asked where colours explain nothing.
+    may_be_painted: bool,
     decision: Option<Decision>,
+    /// Once the colours have spoken and are painted: the search by contrast.
+    contrast: Option<ByContrast>,
+}
+
+/// The search by local contrast.
+struct ByContrast {
+    /// What the colours said.
+    colours: Outcome,
+    canvas: Canvas,
+    search: Box<ContrastSearch>,
 }
 
 /// The search of a pair, by the normals that registrations go by.
@@ -74,7 +98,9 @@ impl Initialisation {
             tried: 0,
             optima: LocalOptima::new(MOST_TRIED, pair.image.log_spread(), pair.image.log_noise()),
             begun: None,
+            may_be_painted: painted::is_called_for(pair, None),
             decision: None,
+            contrast: None,
         }
     }
 
@@ -83,7 +109,7 @@ impl Initialisation {
         if let Some(task) = self.search.take() {
             return Some(Task(Work::Search(task)));
         }
-        if self.decision.is_some() {
+        if self.has_decided() {
             return None;
         }
         let Self { registrations, search, optima, next, begun, .. } = self;
@@ -104,6 +130,9 @@ impl Initialisation {
 
     /// One slice: a part of the search, or a step of a registration.
     pub fn advance(&mut self, pair: &ViewPair, colours: &mut ColourRegistration) -> Advance {
+        if self.contrast.is_some() {
+            return self.search_by_contrast(pair, colours);
+        }
         if self.is_searching() {
             self.search.advance();
             self.count();
@@ -118,6 +147,10 @@ impl Initialisation {
 
     fn is_searching(&self) -> bool {
         !self.search.is_done()
+    }
+
+    fn has_decided(&self) -> bool {
+        self.decision.is_some() || self.contrast.is_some()
     }
 
     fn progress(&self) -> Advance {
@@ -149,7 +182,7 @@ impl Initialisation {
 
     /// Counts what has become of the candidates, in their order, up to the first that is still open.
     fn count(&mut self) {
-        if self.is_searching() || self.decision.is_some() {
+        if self.is_searching() || self.has_decided() {
             return;
         }
         let count = self.search.candidates().len();
@@ -172,13 +205,16 @@ impl Initialisation {
 
     /// Whether no further candidate counts.
     fn is_exhausted(&self) -> bool {
-        let enough = self.tried >= MOST_TRIED || (self.tried >= FEW_TRIED && self.optima.is_convincing(self.tried));
+        let is_clear = || self.optima.is_convincing(self.tried) || (self.may_be_painted && self.optima.is_painted());
+        let enough = self.tried >= MOST_TRIED || (self.tried >= FEW_TRIED && is_clear());
         self.next >= self.search.candidates().len() || enough
     }
 
     /// The outcome, once the best one's whole report is here: a worker brings only what tells one optimum from another.
     fn conclude(&mut self, pair: &ViewPair, colours: &mut ColourRegistration, decision: Decision) -> Advance {
-        let Decision { best: Some(mut best), rivals } = decision else { return Advance::Done(None) };
+        let Decision { best: Some(mut best), rivals } = decision else {
+            return self.finish(pair, colours, Outcome::default());
+        };
         if best.registered.report.is_none() {
             match self.step_candidate(pair, colours, best.candidate) {
                 Attempt::Ended(report) => best.registered.report = report,
@@ -188,7 +224,38 @@ impl Initialisation {
                 }
             }
         }
-        Advance::Done(best.registered.report.map(|best| Outcome { best, rivals }))
+        self.finish(pair, colours, Outcome { best: best.registered.report, rivals, contrast: None })
+    }
+
+    /// The outcome, or the search by contrast where the colours are painted: from all that was looked at so far.
+    fn finish(&mut self, pair: &ViewPair, colours: &ColourRegistration, outcome: Outcome) -> Advance {
+        if !painted::is_called_for(pair, outcome.best.as_deref()) {
+            return Advance::Done(outcome);
+        }
+        let mut poses = self.search.swept_poses();
+        poses.extend(self.search.candidates().iter().map(|candidate| candidate.pose));
+        poses.extend(outcome.best.iter().map(|best| best.pose).chain(outcome.rivals.iter().copied()));
+        let canvas = Canvas::new(pair);
+        let search = Box::new(painted::search(pair, colours, &canvas, &poses));
+        self.contrast = Some(ByContrast { colours: outcome, canvas, search });
+        Advance::Ongoing(1.0 - CONTRAST_SHARE, COMPARING_CONTRAST)
+    }
+
+    /// A slice of the search by contrast.
+    fn search_by_contrast(&mut self, pair: &ViewPair, colours: &ColourRegistration) -> Advance {
+        let Some(ByContrast { colours: outcome, canvas, search }) = &mut self.contrast else {
+            return Advance::Done(Outcome::default());
+        };
+        if !search.advance(&colours.contrast_problem(pair, canvas.image(pair))) {
+            return Advance::Ongoing(1.0 - CONTRAST_SHARE * (1.0 - search.share()), COMPARING_CONTRAST);
+        }
+        Advance::Done(match painted::conclude(pair, colours, canvas, search) {
+            Some(Conclusion::ByColours(best)) => Outcome { best: Some(Box::new(best)), ..Outcome::default() },
+            Some(Conclusion::ByContrast(contrast)) => {
+                Outcome { contrast: Some(Box::new(contrast)), ..std::mem::take(outcome) }
+            }
+            None => std::mem::take(outcome),
+        })
     }
 }
 
@@ -196,7 +263,7 @@ impl Initialisation {
 fn registered_share(tried: usize) -> f64 {
     let few = tried.min(FEW_TRIED);
     let more = (tried - few) as f64 / (MOST_TRIED - FEW_TRIED) as f64;
-    SEARCH_SHARE + FEW_SHARE * few as f64 / FEW_TRIED as f64 + (1.0 - SEARCH_SHARE - FEW_SHARE) * more
+    SEARCH_SHARE + FEW_SHARE * few as f64 / FEW_TRIED as f64 + (1.0 - SEARCH_SHARE - FEW_SHARE - CONTRAST_SHARE) * more
 }
 
 /// Why there is no pose to start from.

@@ -40,7 +40,7 @@ use pair::ViewPair;
 use solution::{Accepted, Solution};
 pub use stages::RefinementTask;
 use stages::{Inputs, LightStage, RefinementStage, Registered, RegistrationStage, ShapeStage};
-use verdict::{ColourEvidence, Evidence, OutlineEvidence, verdict};
+use verdict::{ColourEvidence, ContrastEvidence, Evidence, OutlineEvidence, verdict};
 pub use workers::Worker;
 pub use workers::task::{Finding, Task};
 
@@ -260,14 +260,16 @@ impl Estimator {
     }
 
     /// Starts the loop from what the initialisation found.
-    fn start_from(&mut self, outcome: Option<Outcome>) -> Result<()> {
-        let (best, rivals) = outcome.map_or_else(Default::default, |found| (Some(*found.best), found.rivals));
-        let registered = self.registration.adopt(&self.pair, best, &self.solution.pose);
+    fn start_from(&mut self, outcome: Outcome) -> Result<()> {
+        let (registered, rivals) = self.registration.adopt(&self.pair, outcome, &self.solution.pose);
         self.adopt(registered.ok_or_else(|| initialisation::nothing_found(&self.pair))?);
-        let by_outlines = self.registration.found_by_outlines().is_some();
-        let rivals = if by_outlines { Vec::new() } else { rivals };
         self.report.message = Some(match rivals.len() {
-            _ if by_outlines => "100 %: the colours are painted; outlines tell the pose".into(),
+            0 if self.registration.found_by_outlines().is_some() => {
+                "100 %: the colours are painted; outlines tell the pose".into()
+            }
+            0 if self.registration.found_by_contrast().is_some() => {
+                "100 %: the colours are painted; local contrast tells the pose".into()
+            }
             0 => "100 %: one pose explains the colours best".into(),
             count => format!("100 %: {count} other poses explain the colours as well"),
         });
@@ -471,6 +473,11 @@ impl Estimator {
                 sigma: found.uncertainty.rotation_degrees.into_iter().fold(0.0, f64::max),
                 weakest: &found.uncertainty.weakest,
                 is_unseen: found.unseen,
+            }),
+            contrast: self.registration.found_by_contrast().map(|found| ContrastEvidence {
+                sigma: found.uncertainty.rotation_degrees.into_iter().fold(0.0, f64::max),
+                weakest: &found.uncertainty.weakest,
+                unexplained: found.objective,
             }),
             has_kept_start: self.registration.has_kept_start(),
             rivals: report.rivals.len(),

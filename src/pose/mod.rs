@@ -33,8 +33,10 @@ mod uncertainty;
 mod visibility;
 
 pub use angles::Angles;
+pub use contrast::{
+    ContrastEffort, ContrastOutcome, ContrastProblem, ContrastRegistration, ContrastReport, ContrastSearch,
+};
 pub use correspondence::{CorrespondenceProblem, Correspondences};
-pub use contrast::{ContrastEffort, ContrastProblem, ContrastRegistration, ContrastReport};
 pub use icp::{Icp, IcpOptions, IcpProblem, IcpReport, IcpTermination, Metric, Pair};
 pub(crate) use outline::{Outline, OutlinePrior, OutlineProblem, OutlineReport};
 pub use photometric::{Photometric, PhotometricOptions, PhotometricProblem, PhotometricReport, PhotometricTermination};

@@ -17,7 +17,8 @@ impl Silhouette {
         let other: Vec<bool> = mask.iter().map(|inside| !inside).collect();
         let inside = distances(size, &other);
         // Centres of pixels on either side of a border are half a pixel off it.
-        let signed = distance.iter().zip(&inside).map(|(out, inn)| if *out > 0.0 { out - 0.5 } else { 0.5 - inn }).collect();
+        let signed =
+            distance.iter().zip(&inside).map(|(out, inn)| if *out > 0.0 { out - 0.5 } else { 0.5 - inn }).collect();
         Self { size, distance, signed }
     }
 
@@ -53,19 +54,18 @@ impl Silhouette {
 
 /// Distance of each pixel to the nearest one of the mask.
 fn distances(size: Size, mask: &[bool]) -> Vec<f32> {
-        // Farther than any pixel, and its square exact.
-        let far = (size.width + size.height) as f32;
-        let mut squared: Vec<f32> = mask.iter().map(|&inside| if inside { 0.0 } else { far * far }).collect();
-        let mut line = vec![0.0; size.width.max(size.height)];
-        for row in 0..size.height {
-            lower_envelope(&mut squared, row * size.width, 1, &mut line[..size.width]);
-        }
-        for column in 0..size.width {
-            lower_envelope(&mut squared, column, size.width, &mut line[..size.height]);
-        }
-        squared.into_iter().map(f32::sqrt).collect()
+    // Farther than any pixel, and its square exact.
+    let far = (size.width + size.height) as f32;
+    let mut squared: Vec<f32> = mask.iter().map(|&inside| if inside { 0.0 } else { far * far }).collect();
+    let mut line = vec![0.0; size.width.max(size.height)];
+    for row in 0..size.height {
+        lower_envelope(&mut squared, row * size.width, 1, &mut line[..size.width]);
+    }
+    for column in 0..size.width {
+        lower_envelope(&mut squared, column, size.width, &mut line[..size.height]);
+    }
+    squared.into_iter().map(f32::sqrt).collect()
 }
-
 
 /// One pass: min over q of (p - q)^2 + squared[q] along a line, by the lower envelope of its parabolas.
 fn lower_envelope(squared: &mut [f32], start: usize, step: usize, line: &mut [f32]) {
@@ -92,5 +92,57 @@ fn lower_envelope(squared: &mut [f32], start: usize, step: usize, line: &mut [f3
         }
         let q = parabolas[next].0;
         squared[at(k)] = k.abs_diff(q).pow(2) as f32 + line[q];
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SIZE: Size = Size { width: 40, height: 32 };
+
+    fn disc() -> Silhouette {
+        let inside = |(column, row): (usize, usize)| (column as f64 - 18.0).hypot(row as f64 - 15.0) <= 9.0;
+        Silhouette::new(SIZE, &(0..SIZE.len()).map(|index| inside(SIZE.position(index))).collect::<Vec<_>>())
+    }
+
+    #[test]
+    fn distances_are_those_to_the_nearest_pixel_of_the_mask() {
+        let mask: Vec<bool> = (0..SIZE.len()).map(|index| index % 97 == 5).collect();
+        let silhouette = Silhouette::new(SIZE, &mask);
+        for index in (0..SIZE.len()).step_by(13) {
+            let (column, row) = SIZE.position(index);
+            let distance = |other: usize| {
+                let (c, r) = SIZE.position(other);
+                (column as f64 - c as f64).hypot(row as f64 - r as f64)
+            };
+            let nearest = (0..SIZE.len()).filter(|&other| mask[other]).map(distance).fold(f64::INFINITY, f64::min);
+            let (found, _) = silhouette.at([column as f64, row as f64]);
+            assert!((found - nearest).abs() < 1e-5, "{found} {nearest}");
+        }
+    }
+
+    #[test]
+    fn signed_distances_cross_zero_at_the_border_and_slopes_are_difference_quotients() {
+        let silhouette = disc();
+        for angle in 0..12 {
+            let (sine, cosine) = (0.5 * f64::from(angle)).sin_cos();
+            let off = |radius: f64| silhouette.signed_at([18.0 + radius * cosine, 15.0 + radius * sine]).0;
+            assert!((off(4.0) + 5.3).abs() < 0.8 && (off(13.0) - 3.7).abs() < 0.8, "{angle}");
+            assert!(off(8.0) < 0.0 && off(11.0) > 0.0);
+        }
+        let (place, step) = ([29.3, 20.6], 1e-6);
+        let (_, slope) = silhouette.signed_at(place);
+        let right =
+            silhouette.signed_at([place[0] + step, place[1]]).0 - silhouette.signed_at([place[0] - step, place[1]]).0;
+        let down =
+            silhouette.signed_at([place[0], place[1] + step]).0 - silhouette.signed_at([place[0], place[1] - step]).0;
+        assert!((slope[0] - right / (2.0 * step)).abs() < 1e-4 && (slope[1] - down / (2.0 * step)).abs() < 1e-4);
+    }
+
+    #[test]
+    fn a_mask_without_border_is_near_everywhere() {
+        let all = Silhouette::new(SIZE, &[true; 40 * 32]);
+        assert_eq!((all.at([-50.0, 100.0]), all.border()), ((0.0, [0.0; 2]), 0));
     }
 }

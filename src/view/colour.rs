@@ -172,6 +172,20 @@ impl ColourView {
         Self::of(self.size, self.camera, self.mask.clone(), log, self.transfer)
     }
 
+    /// Standard deviation of the noise of a difference of neighbours, as far as paint at edges lets see: most neighbours
+    /// have one paint.
+    pub(super) fn edge_noise(&self) -> f32 {
+        let mut steps: Vec<f32> = (1..self.mask.len())
+            .filter(|&index| self.mask[index] && self.mask[index - 1])
+            .map(|index| {
+                let step: [f32; 3] =
+                    std::array::from_fn(|channel| self.log[channel][index] - self.log[channel][index - 1]);
+                (step[0] - step[1]).abs().max((step[1] - step[2]).abs()) * std::f32::consts::FRAC_1_SQRT_2
+            })
+            .collect();
+        if steps.is_empty() { 0.0 } else { quantile(&mut steps, 0.5) }
+    }
+
     /// log S of the three channels at a pixel, NaN off the mask.
     #[must_use]
     pub fn log_at(&self, index: usize) -> [f32; 3] {

@@ -9,6 +9,7 @@ mod half_resolution;
 mod heights;
 mod mask;
 pub mod normals;
+mod paint;
 mod raster;
 mod vectors;
 

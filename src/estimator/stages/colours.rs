@@ -3,8 +3,10 @@
 use crate::error::{Error, ErrorKind, Result};
 use crate::estimator::gauge;
 use crate::estimator::pair::ViewPair;
-use crate::pose::{Photometric, PhotometricOptions, PhotometricProblem, PhotometricReport, Similarity};
-use crate::view::{DepthView, Normals, cubic_normals};
+use crate::pose::{
+    ContrastProblem, Photometric, PhotometricOptions, PhotometricProblem, PhotometricReport, Similarity,
+};
+use crate::view::{ColourView, DepthView, Normals, cubic_normals};
 
 /// Weight of the light's prior in the registration: one, as Bayes' rule has it. `lambda.light` weighs the fit of the
 /// light stage alone, but where it is zero there is no prior here, either.
@@ -88,6 +90,26 @@ impl ColourRegistration {
     /// Normals of the depth view, which it is registered by.
     pub const fn normals(&self) -> &Normals {
         &self.sharp.normals
+    }
+
+    /// The best pose near `start` by the colours of another version of the image.
+    pub fn register_in(&self, pair: &ViewPair, image: &ColourView, start: &Similarity) -> Option<PhotometricReport> {
+        let problem = PhotometricProblem { image, ..self.sharp.problem(pair, is_scale_held(pair)) };
+        let found = Photometric::new(&problem).register(&problem, start, &options(pair)).ok()?;
+        Some(found).filter(|found| gauge::growth(pair, &found.pose, start) < COLLAPSE)
+    }
+
+    /// The pair for a registration by local contrast, with a version of its image.
+    pub fn contrast_problem<'a>(&'a self, pair: &'a ViewPair, image: &'a ColourView) -> ContrastProblem<'a> {
+        ContrastProblem {
+            image,
+            object: &pair.image.mask,
+            depth: &pair.depth,
+            normals: &self.sharp.normals,
+            normal_error: &self.sharp.error,
+            unit_scale: gauge::unit_scale(pair),
+            scale_is_held: is_scale_held(pair),
+        }
     }
 
     /// Whether the depth is so noisy that its normals only find the pose, and matching surfaces, which averages the

@@ -8,6 +8,7 @@ mod colours;
 mod correspondences;
 mod light;
 mod outlines;
+pub mod painted;
 mod refinement;
 mod registration;
 mod shape;

@@ -2,11 +2,12 @@
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::estimator::gauge;
+use crate::estimator::initialisation::Outcome;
 use crate::estimator::pair::ViewPair;
 use crate::estimator::solution::Solution;
 use crate::light::Light;
 use crate::options::{Registration, Start};
-use crate::pose::{OutlineReport, PhotometricReport, Similarity, Uncertainty};
+use crate::pose::{ContrastReport, OutlineReport, PhotometricReport, Similarity, Uncertainty};
 
 use super::colours::ColourRegistration;
 use super::light::Inputs;
@@ -36,6 +37,11 @@ impl Registered {
         let uncertainty = Some(found.uncertainty.clone());
         Self { pose: found.pose, light: None, exposure: None, uncertainty, improved: true }
     }
+
+    fn by_contrast(pair: &ViewPair, found: &ContrastReport, present: &Similarity) -> Self {
+        let pose = with_gauge_of(pair, found.pose, present);
+        Self { pose, light: None, exposure: None, uncertainty: Some(found.uncertainty.clone()), improved: true }
+    }
 }
 
 /// Registers the depth view to the image, by colours or by surfaces.
@@ -55,8 +61,10 @@ enum Told {
     Improved(TrustRegion),
     /// None was: the told pose is kept.
     Kept,
-    /// The colours are painted; the pose is that of the outlines.
+    /// The colours are painted; the pose is that of the outlines ..
     Outlined(OutlineReport),
+    /// .. or that of local contrast.
+    Contrasted(ContrastReport),
 }
 
 impl RegistrationStage {
@@ -90,8 +98,29 @@ impl RegistrationStage {
         self.colours.as_mut()
     }
 
-    /// Takes over what the search has found, if anything; what outlines say where the colours are painted.
+    /// Takes over what the search has found, if anything, with its rivals; what contrast or outlines say where the
+    /// colours are painted.
     pub fn adopt(
+        &mut self,
+        pair: &ViewPair,
+        outcome: Outcome,
+        present: &Similarity,
+    ) -> (Option<Registered>, Vec<Similarity>) {
+        let Outcome { best, rivals, contrast } = outcome;
+        if let Some(contrast) = contrast {
+            return (Some(self.adopt_contrast(pair, contrast.best, present)), contrast.rivals);
+        }
+        let registered = self.adopt_colours(pair, best.map(|best| *best), present);
+        (registered, if self.found_by_outlines().is_some() { Vec::new() } else { rivals })
+    }
+
+    fn adopt_contrast(&mut self, pair: &ViewPair, found: ContrastReport, present: &Similarity) -> Registered {
+        let registered = Registered::by_contrast(pair, &found, present);
+        self.told = Told::Contrasted(found);
+        registered
+    }
+
+    fn adopt_colours(
         &mut self,
         pair: &ViewPair,
         found: Option<PhotometricReport>,
@@ -127,12 +156,20 @@ impl RegistrationStage {
         }
     }
 
+    /// What local contrast has found, where it decides.
+    pub const fn found_by_contrast(&self) -> Option<&ContrastReport> {
+        match &self.told {
+            Told::Contrasted(found) => Some(found),
+            _ => None,
+        }
+    }
+
     /// Whether the next registration will leave `pose` as it is, whatever the shapes become.
     pub fn keeps(&self, pair: &ViewPair, pose: &Similarity) -> bool {
         match self.kind(pair) {
             Registration::Fixed => true,
             Registration::Joint => {
-                let is_told = matches!(self.told, Told::Kept | Told::Outlined(_));
+                let is_told = matches!(self.told, Told::Kept | Told::Outlined(_) | Told::Contrasted(_));
                 is_told || self.colours.as_ref().is_some_and(|colours| colours.ended_in(pose))
             }
             Registration::Icp => false,
@@ -161,7 +198,7 @@ impl RegistrationStage {
     fn register_colours(&mut self, pair: &ViewPair, start: &Similarity) -> Result<Option<Registered>> {
         let Some(colours) = &mut self.colours else { return Ok(None) };
         let found = match std::mem::replace(&mut self.told, Told::Kept) {
-            told @ (Told::Kept | Told::Outlined(_)) => {
+            told @ (Told::Kept | Told::Outlined(_) | Told::Contrasted(_)) => {
                 self.told = told;
                 return Ok(None);
             }
@@ -175,6 +212,7 @@ impl RegistrationStage {
                         self.told = Told::Outlined(found);
                         return Ok(Some(registered));
                     }
+                    Settled::ByContrast(found) => return Ok(Some(self.adopt_contrast(pair, found, start))),
                     Settled::Kept => {
                         self.told = Told::Kept;
                         return Ok(None);
@@ -195,11 +233,7 @@ impl RegistrationStage {
     }
 
     fn registered(&self, pair: &ViewPair, found: &PhotometricReport, present: &Similarity) -> Registered {
-        let mut pose = found.pose;
-        // t_z of an orthographic image is a gauge, which the loop has settled already.
-        if pair.image.camera.is_orthographic() {
-            pose.translation.z = present.translation.z;
-        }
+        let pose = with_gauge_of(pair, found.pose, present);
         // Normals that noise has flattened mislead about the exposure; the stages find it anew.
         let is_coarse = self.colours.as_ref().is_some_and(ColourRegistration::is_coarse);
         Registered {
@@ -210,4 +244,12 @@ impl RegistrationStage {
             improved: true,
         }
     }
+}
+
+/// A pose with the present t_z before an orthographic image: there it is a gauge, which the loop has settled already.
+fn with_gauge_of(pair: &ViewPair, mut pose: Similarity, present: &Similarity) -> Similarity {
+    if pair.image.camera.is_orthographic() {
+        pose.translation.z = present.translation.z;
+    }
+    pose
 }

@@ -13,6 +13,7 @@ use nalgebra::Vector3;
 
 use super::colours::ColourRegistration;
 use super::outlines::{self, LARGEST_PURE_NOISE};
+use super::painted::{self, Conclusion};
 use crate::error::Result;
 use crate::estimator::gauge;
 use crate::estimator::local_optima::LocalOptima;
@@ -20,8 +21,7 @@ use crate::estimator::pair::ViewPair;
 use crate::estimator::workers::task::RegisteredCandidate;
 use crate::options::Start;
 use crate::pose::{
-    ImageGrid, Outline, OutlinePrior, OutlineProblem, OutlineReport, PhotometricReport, Search, SearchProblem,
-    Similarity,
+    ContrastReport, ImageGrid, OutlinePrior, OutlineReport, PhotometricReport, Search, SearchProblem, Similarity,
 };
 
 /// Tolerance of the object's place where none is stated, in object sizes (root mean square distance of its points from
@@ -57,8 +57,10 @@ pub struct TrustRegion {
 /// What became of a told start.
 pub enum Settled {
     ByColours(PhotometricReport),
-    /// The colours are painted: outlines decide.
+    /// The colours are painted: outlines decide ..
     ByOutlines(OutlineReport),
+    /// .. or local contrast.
+    ByContrast(ContrastReport),
     /// Nothing better within the tolerance.
     Kept,
 }
@@ -121,6 +123,20 @@ impl TrustRegion {
         }
         let best =
             optima.decide().best.filter(|best| best.candidate != STAYING).and_then(|best| best.registered.report);
+        if painted::is_called_for(pair, best.as_deref())
+            && let Some(found) = painted::near(pair, colours, &self.told)
+        {
+            match found {
+                Conclusion::ByColours(found) if self.holds(&found.pose) => {
+                    colours.adopt(found.clone());
+                    return Ok(Settled::ByColours(found));
+                }
+                Conclusion::ByContrast(found) if self.holds(&found.best.pose) => {
+                    return Ok(Settled::ByContrast(found.best));
+                }
+                _ => {}
+            }
+        }
         match (best, outlined) {
             (Some(best), outlined) if best.noise <= LARGEST_PURE_NOISE || outlined.is_none() => {
                 self.by_all_points(pair, colours, *best)

@@ -10,50 +10,82 @@ pub(super) const SHADES: usize = 8;
 /// Light of the three channels over the harmonics of the depth view's own normals.
 pub(super) type Lights = [SVector<f64, SHADES>; 3];
 type Gram = SMatrix<f64, SHADES, SHADES>;
+/// A row for each unknown of the pose, a column for each harmonic.
+type Cross = SMatrix<f64, UNKNOWNS, SHADES>;
 
 /// A share of the trace that keeps harmonics that the points do not tell apart from growing without bound.
 const RIDGE: f64 = 1e-4;
 
+/// What a channel of a point is made of: derivatives by the pose, harmonics, residual, side by side.
+const NUMBERS: usize = UNKNOWNS + SHADES + 1;
+const RESIDUAL: usize = NUMBERS - 1;
+/// Points whose products are added up in single precision before they join the sums.
+const BATCH: usize = 64;
+
+/// Sums over points of the products of those numbers, for one channel.
+struct Products {
+    batch: [[f32; NUMBERS]; NUMBERS],
+    sums: [[f64; NUMBERS]; NUMBERS],
+}
+
+impl Products {
+    const ZERO: Self = Self { batch: [[0.0; NUMBERS]; NUMBERS], sums: [[0.0; NUMBERS]; NUMBERS] };
+
+    #[inline(always)]
+    fn add(&mut self, numbers: &[f32; NUMBERS], weight: f32, from: usize) {
+        for row in from..NUMBERS {
+            let share = weight * numbers[row];
+            self.batch[row].iter_mut().zip(numbers).for_each(|(sum, number)| *sum += share * number);
+        }
+    }
+
+    fn flush(&mut self) {
+        for (sums, batch) in self.sums.iter_mut().zip(&mut self.batch) {
+            sums.iter_mut().zip(batch).for_each(|(sum, share)| *sum += f64::from(std::mem::take(share)));
+        }
+    }
+}
+
 /// Sums over points.
 pub(super) struct Equations {
+    channels: [Products; 3],
+    entered: usize,
+    /// What the light has no part in.
     pose: PoseMatrix,
     gradient: PoseVector,
-    gram: Gram,
-    /// One for each channel: d r / d pose times the harmonics, and r times the harmonics.
-    cross: [SMatrix<f64, UNKNOWNS, SHADES>; 3],
-    shade_gradient: Lights,
 }
 
 impl Equations {
     pub fn new() -> Self {
-        Self {
-            pose: PoseMatrix::zeros(),
-            gradient: PoseVector::zeros(),
-            gram: Gram::zeros(),
-            cross: [SMatrix::zeros(); 3],
-            shade_gradient: [SVector::zeros(); 3],
-        }
+        Self { channels: [Products::ZERO; 3], entered: 0, pose: PoseMatrix::zeros(), gradient: PoseVector::zeros() }
     }
 
     /// Enters a point: its harmonics and, for each channel, residual and derivative by the pose.
-    pub fn add(&mut self, shades: &[f32; SHADES], residual: [f64; 3], by_pose: &[[f32; UNKNOWNS]; 3], weight: f64) {
-        let shades = SVector::from(shades.map(f64::from));
-        self.gram.ger(weight, &shades, &shades, 1.0);
-        for channel in 0..3 {
-            let row = PoseVector::from(by_pose[channel].map(f64::from));
-            self.pose.ger(weight, &row, &row, 1.0);
-            self.gradient.axpy(weight * residual[channel], &row, 1.0);
-            self.cross[channel].ger(weight, &row, &shades, 1.0);
-            self.shade_gradient[channel].axpy(weight * residual[channel], &shades, 1.0);
+    pub fn add(&mut self, shades: &[f32; SHADES], residual: [f64; 3], by_pose: &[[f32; UNKNOWNS]], weight: f64) {
+        for ((products, residual), row) in self.channels.iter_mut().zip(residual).zip(by_pose) {
+            let mut numbers = [residual as f32; NUMBERS];
+            numbers[..UNKNOWNS].copy_from_slice(row);
+            numbers[UNKNOWNS..RESIDUAL].copy_from_slice(shades);
+            products.add(&numbers, weight as f32, 0);
         }
+        self.count();
     }
 
     /// Enters a point for the light alone.
     pub fn add_shades(&mut self, shades: &[f32; SHADES], residual: [f64; 3], weight: f64) {
-        let shades = SVector::from(shades.map(f64::from));
-        self.gram.ger(weight, &shades, &shades, 1.0);
-        for channel in 0..3 {
-            self.shade_gradient[channel].axpy(weight * residual[channel], &shades, 1.0);
+        for (products, residual) in self.channels.iter_mut().zip(residual) {
+            let mut numbers = [0.0; NUMBERS];
+            numbers[UNKNOWNS..RESIDUAL].copy_from_slice(shades);
+            numbers[RESIDUAL] = residual as f32;
+            products.add(&numbers, weight as f32, UNKNOWNS);
+        }
+        self.count();
+    }
+
+    fn count(&mut self) {
+        self.entered += 1;
+        if self.entered.is_multiple_of(BATCH) {
+            self.channels.iter_mut().for_each(Products::flush);
         }
     }
 
@@ -63,28 +95,40 @@ impl Equations {
         self.gradient.axpy(weight * residual, row, 1.0);
     }
 
-    fn inverse_gram(&self) -> Option<Gram> {
-        let ridge = Gram::identity() * (RIDGE * self.gram.trace() / SHADES as f64);
-        (self.gram + ridge).try_inverse()
+    /// D^-1 of a channel: all three have the same weights.
+    fn inverse_gram(&mut self) -> Option<Gram> {
+        self.channels.iter_mut().for_each(Products::flush);
+        let sums = &self.channels[0].sums;
+        let gram = Gram::from_fn(|row, column| sums[UNKNOWNS + row][UNKNOWNS + column]);
+        let ridge = Gram::identity() * (RIDGE * gram.trace() / SHADES as f64);
+        (gram + ridge).try_inverse()
+    }
+
+    fn shade_gradients(&self) -> Lights {
+        [0, 1, 2].map(|channel: usize| SVector::from_fn(|k, _| self.channels[channel].sums[RESIDUAL][UNKNOWNS + k]))
     }
 
     /// The step of the light alone; r = v - B L, so that its derivative is -B.
-    pub fn light_step(&self) -> Option<Lights> {
+    pub fn light_step(&mut self) -> Option<Lights> {
         let inverse = self.inverse_gram()?;
-        Some(self.shade_gradient.map(|gradient| inverse * gradient))
+        Some(self.shade_gradients().map(|gradient| inverse * gradient))
     }
 
     /// The matrix and gradient of the pose once the light follows it.
-    pub fn reduced(&self) -> Option<Reduced> {
-        let inverse = self.inverse_gram()?;
+    pub fn reduced(&mut self) -> Option<Reduced> {
+        let inverse_gram = self.inverse_gram()?;
+        let shade_gradient = self.shade_gradients();
         let (mut matrix, mut gradient) = (self.pose, self.gradient);
-        for (cross, shade_gradient) in self.cross.iter().zip(&self.shade_gradient) {
-            let projected = cross * inverse;
-            matrix -= projected * cross.transpose();
-            gradient -= projected * shade_gradient;
+        let mut projected = [Cross::zeros(); 3];
+        for ((Products { sums, .. }, shade_gradient), projected) in
+            self.channels.iter().zip(&shade_gradient).zip(&mut projected)
+        {
+            let cross = Cross::from_fn(|row, column| sums[row][UNKNOWNS + column]);
+            *projected = cross * inverse_gram;
+            matrix += PoseMatrix::from_fn(|row, column| sums[row][column]) - *projected * cross.transpose();
+            gradient += PoseVector::from_fn(|row, _| sums[RESIDUAL][row]) - *projected * shade_gradient;
         }
-        let projected = self.cross.map(|cross| cross * inverse);
-        Some(Reduced { matrix, gradient, inverse_gram: inverse, projected, shade_gradient: self.shade_gradient })
+        Some(Reduced { matrix, gradient, inverse_gram, projected, shade_gradient })
     }
 }
 
@@ -94,7 +138,7 @@ pub(super) struct Reduced {
     gradient: PoseVector,
     inverse_gram: Gram,
     /// C D^-1 of each channel.
-    projected: [SMatrix<f64, UNKNOWNS, SHADES>; 3],
+    projected: [Cross; 3],
     shade_gradient: Lights,
 }
 
@@ -128,5 +172,49 @@ impl Reduced {
             score += (PoseVector::from(row.map(f64::from)) - projected * shades) * residual;
         }
         score
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{DMatrix, DVector};
+
+    /// A number between -1 and 1 that looks random.
+    fn wild(seed: usize) -> f64 {
+        (12.9898 * (seed + 1) as f64).sin() * 43758.5453 % 1.0
+    }
+
+    #[test]
+    fn the_step_is_that_of_pose_and_light_together() {
+        let (light_unknowns, points) = (3 * SHADES, 200);
+        let mut equations = Equations::new();
+        let mut matrix = DMatrix::<f64>::zeros(UNKNOWNS + light_unknowns, UNKNOWNS + light_unknowns);
+        let mut gradient = DVector::<f64>::zeros(UNKNOWNS + light_unknowns);
+        for point in 0..points {
+            let number = |k: usize| wild(97 * point + k) as f32;
+            let shades: [f32; SHADES] = std::array::from_fn(number);
+            let rows: [[f32; UNKNOWNS]; 3] = std::array::from_fn(|c| std::array::from_fn(|k| number(10 + 8 * c + k)));
+            let residual = std::array::from_fn(|c| f64::from(number(40 + c)));
+            let weight = 0.5 + 0.4 * f64::from(number(50));
+            equations.add(&shades, residual, &rows, weight);
+            for channel in 0..3 {
+                let mut row = DVector::<f64>::zeros(UNKNOWNS + light_unknowns);
+                (0..UNKNOWNS).for_each(|k| row[k] = f64::from(rows[channel][k]));
+                (0..SHADES).for_each(|k| row[UNKNOWNS + channel * SHADES + k] = -f64::from(shades[k]));
+                matrix += weight * &row * row.transpose();
+                gradient += weight * residual[channel] * row;
+            }
+        }
+        let trace: f64 = (0..SHADES).map(|k| matrix[(UNKNOWNS + k, UNKNOWNS + k)]).sum();
+        (UNKNOWNS..UNKNOWNS + light_unknowns).for_each(|k| matrix[(k, k)] += RIDGE * trace / SHADES as f64);
+        let whole = -matrix.cholesky().expect("well determined").solve(&gradient);
+        let (pose, light) = equations.reduced().and_then(|reduced| reduced.step(0.0, &[false; UNKNOWNS])).unwrap();
+        for k in 0..UNKNOWNS {
+            assert!((pose[k] - whole[k]).abs() < 1e-4, "{k}: {} {}", pose[k], whole[k]);
+        }
+        for k in 0..light_unknowns {
+            assert!((light[k / SHADES][k % SHADES] - whole[UNKNOWNS + k]).abs() < 1e-4, "{k}");
+        }
     }
 }

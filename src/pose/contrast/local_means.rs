@@ -109,3 +109,64 @@ impl LocalMeans {
         sums
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const WIDTH: usize = 24;
+
+    fn values(value: impl Fn(f32, f32) -> [f32; 2]) -> Vec<[f32; 2]> {
+        (0..WIDTH * WIDTH).map(|k| value((k % WIDTH) as f32, (k / WIDTH) as f32)).collect()
+    }
+
+    #[test]
+    fn constants_go_slopes_go_inside_and_edges_stay() {
+        let mut means = LocalMeans::new(WIDTH, WIDTH * WIDTH, 2.0);
+        // Pixels without weight, however wild, count for nothing.
+        let hole = |k: usize| k % 7 == 0;
+        let weights: Vec<f32> = (0..WIDTH * WIDTH).map(|k| if hole(k) { 0.0 } else { 0.5 }).collect();
+        means.weigh(&weights);
+        let mut constant = values(|_, _| [4.0, -3.0]);
+        (0..constant.len()).filter(|&k| hole(k)).for_each(|k| constant[k] = [1e6, 1e6]);
+        means.remove(&mut constant);
+        assert!((0..constant.len()).filter(|&k| !hole(k)).all(|k| constant[k].iter().all(|value| value.abs() < 1e-5)));
+
+        means.weigh(&[1.0; WIDTH * WIDTH]);
+        let mut slopes = values(|x, y| [x, 2.0 * y]);
+        means.remove(&mut slopes);
+        let inside = 12 * WIDTH + 12;
+        assert!(slopes[inside].iter().all(|value| value.abs() < 1e-4));
+        assert!(slopes[0][0] < -0.5, "one-sided at the border: {:?}", slopes[0]);
+        let mut edge = values(|x, _| [f32::from(x >= 12.0), 0.0]);
+        means.remove(&mut edge);
+        assert!(edge[inside][0] > 0.3 && edge[inside - 1][0] < -0.3 && edge[inside + 8][0].abs() < 1e-5);
+    }
+
+    #[test]
+    fn it_is_what_the_definition_says() {
+        let sigma = 1.5;
+        let mut means = LocalMeans::new(WIDTH, WIDTH * WIDTH, sigma);
+        let weights: Vec<f32> = (0..WIDTH * WIDTH).map(|k| (k % 5) as f32).collect();
+        let original = values(|x, y| [(0.7 * x).sin() + y, x * y]);
+        let mut removed = original.clone();
+        means.weigh(&weights);
+        means.remove(&mut removed);
+        let reach = (REACH * sigma).ceil();
+        for pixel in [3, WIDTH * WIDTH / 2 + 6, WIDTH * WIDTH - 2] {
+            let (mut sum, mut total) = (0.0, 0.0);
+            for other in 0..weights.len() {
+                let off =
+                    [(pixel % WIDTH, other % WIDTH), (pixel / WIDTH, other / WIDTH)].map(|(a, b)| a.abs_diff(b) as f64);
+                if off.iter().all(|&off| off <= reach) {
+                    let share =
+                        (-0.5 * (off[0].powi(2) + off[1].powi(2)) / sigma.powi(2)).exp() * f64::from(weights[other]);
+                    sum += share * f64::from(original[other][1]);
+                    total += share;
+                }
+            }
+            let expected = f64::from(original[pixel][1]) - sum / total;
+            assert!((f64::from(removed[pixel][1]) - expected).abs() < 1e-3, "{pixel}");
+        }
+    }
+}

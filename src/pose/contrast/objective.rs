@@ -80,10 +80,12 @@ pub(super) struct Objective {
     scale: f64,
     /// Apparent size that the units give.
     size: f64,
+    unit: f64,
 }
 
 impl Objective {
-    pub fn new(problem: &ContrastProblem<'_>, samples: Samples, silhouette: Silhouette, seen: Seen) -> Self {
+    /// `unit` is the length, in pixels, that distances to the outline are counted in.
+    pub fn new(problem: &ContrastProblem<'_>, samples: Samples, silhouette: Silhouette, seen: Seen, unit: f64) -> Self {
         let length = samples.grid.len();
         Self {
             seen,
@@ -99,6 +101,7 @@ impl Objective {
             beside: 0.0,
             scale: f64::INFINITY,
             size: problem.unit_scale,
+            unit,
             samples,
         }
     }
@@ -226,9 +229,8 @@ impl Objective {
 
     /// The contrast's share of E: 0 where shading explains all, 1 where nothing.
     pub fn unexplained(&self, light: &Lights) -> f64 {
-        let cost = |cell| {
-            f64::from(self.samples.weight[cell]) * robust::saturated(self.square(cell, light) / self.scale)
-        };
+        let cost =
+            |cell| f64::from(self.samples.weight[cell]) * robust::saturated(self.square(cell, light) / self.scale);
         (self.beside + self.cells().map(cost).sum::<f64>()) / self.all
     }
 
@@ -255,11 +257,11 @@ impl Objective {
     fn outlines(&self, problem: &ContrastProblem<'_>, pose: &Similarity) -> f64 {
         let rho = |u: f64, scale: f64| robust::rho(u * u, (u / scale).powi(2));
         let beside = |sample: &super::samples::Sample| match problem.place(pose, &sample.point) {
-            Some(place) => rho((self.silhouette.at(place).0 - SLACK).max(0.0), BESIDE_SCALE),
+            Some(place) => rho((self.silhouette.at(place).0 - SLACK).max(0.0) / self.unit, BESIDE_SCALE),
             None => BESIDE_SCALE.powi(2),
         };
         let limb = |point: &Vector3<f64>| match problem.place(pose, point) {
-            Some(place) => rho(self.silhouette.signed_at(place).0, LIMB_SCALE),
+            Some(place) => rho(self.silhouette.signed_at(place).0 / self.unit, LIMB_SCALE),
             None => LIMB_SCALE.powi(2),
         };
         let beside: f64 = self.samples.list.iter().map(beside).sum();
@@ -292,7 +294,7 @@ impl Objective {
             let own = f64::from(self.samples.weight[cell]) / (self.scale * self.all);
             let (rows, _) = self.derivatives[cell].as_chunks::<UNKNOWNS>();
             let weight = own * robust::weight(square / self.scale);
-            equations.add(&self.shades[cell], residual, &[rows[0], rows[1], rows[2]], weight);
+            equations.add(&self.shades[cell], residual, rows, weight);
         }
         let mut row = PoseVector::zeros();
         row[SCALE] = 1.0;
@@ -319,8 +321,8 @@ impl Objective {
             let Some((place, by_pose)) = by_pose(problem, &point, frame) else { continue };
             let (distance, slope) = self.silhouette.at(place);
             if distance > SLACK {
-                let off = distance - SLACK;
-                let row = slope[0] * by_pose[0] + slope[1] * by_pose[1];
+                let off = (distance - SLACK) / self.unit;
+                let row = (slope[0] * by_pose[0] + slope[1] * by_pose[1]) / self.unit;
                 equations.add_row(&row, off, beside * robust::weight((off / BESIDE_SCALE).powi(2)));
             }
             let cell = sample.cell;
@@ -338,23 +340,22 @@ impl Objective {
         }
     }
 
-    fn enter_limbs(
-        &self,
-        problem: &ContrastProblem<'_>,
-        frame: &Frame,
-        pose: &Similarity,
-        equations: &mut Equations,
-    ) {
+    fn enter_limbs(&self, problem: &ContrastProblem<'_>, frame: &Frame, pose: &Similarity, equations: &mut Equations) {
         for limb in &self.seen.limbs {
             let Some((place, by_pose)) = by_pose(problem, &pose.apply(*limb), frame) else { continue };
-            let (off, slope) = self.silhouette.signed_at(place);
-            let row = slope[0] * by_pose[0] + slope[1] * by_pose[1];
+            let (distance, slope) = self.silhouette.signed_at(place);
+            let off = distance / self.unit;
+            let row = (slope[0] * by_pose[0] + slope[1] * by_pose[1]) / self.unit;
             equations.add_row(&row, off, self.limb_weight() * robust::weight((off / LIMB_SCALE).powi(2)));
         }
     }
 
     /// Calls `visit` with the grid pixel, residuals, weight and derivatives of each sample that takes part.
-    pub fn for_each_score(&self, light: &Lights, mut visit: impl FnMut(usize, [f64; CHANNELS], f64, &[[f32; UNKNOWNS]])) {
+    pub fn for_each_score(
+        &self,
+        light: &Lights,
+        mut visit: impl FnMut(usize, [f64; CHANNELS], f64, &[[f32; UNKNOWNS]]),
+    ) {
         for cell in self.cells() {
             let residual = self.residual(cell, light);
             let square: f64 = residual.iter().map(|r| r * r).sum();

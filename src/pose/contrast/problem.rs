@@ -2,8 +2,9 @@
 
 use nalgebra::Vector3;
 
-use crate::pose::increment::{Frame, PoseMatrix, UNKNOWNS};
+use crate::pose::increment::UNKNOWNS;
 use crate::pose::similarity::Similarity;
+use crate::pose::uncertainty::Uncertainty;
 use crate::view::{ColourView, DepthView, Normals};
 
 /// What is registered. Points and normals (depth view's frame) are NaN where missing.
@@ -11,6 +12,8 @@ use crate::view::{ColourView, DepthView, Normals};
 pub struct ContrastProblem<'a> {
     /// The colour view.
     pub image: &'a ColourView,
+    /// Where the object is in it, pixels without a usable colour included.
+    pub object: &'a [bool],
     /// The depth view.
     pub depth: &'a DepthView,
     /// Its normals.
@@ -46,7 +49,7 @@ impl ContrastProblem<'_> {
 pub struct ContrastReport {
     /// The pose; its t_z is that of the start for an orthographic image.
     pub pose: Similarity,
-    /// E at the robust scale of its own noise.
+    /// E: at the robust scale of its own noise, or of a search at that of all of its ends.
     pub objective: f64,
     /// The contrast's share of it: 0 where shading explains all, 1 where nothing.
     pub unexplained: f64,
@@ -54,7 +57,6 @@ pub struct ContrastReport {
     pub noise: f64,
     /// Number of samples that the image shows.
     pub visible: usize,
-    /// Covariance of rotation (radians), translation (object sizes) and log scale about the frame.
-    pub(super) covariance: PoseMatrix,
-    pub(super) frame: Frame,
+    /// One sigma of the pose's own numbers.
+    pub uncertainty: Uncertainty,
 }

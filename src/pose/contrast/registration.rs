@@ -6,7 +6,7 @@ use super::objective::{Level, Objective, State};
 use super::problem::{ContrastProblem, ContrastReport};
 use super::samples::Samples;
 use super::seen::Seen;
-use super::uncertainty::covariance;
+use super::uncertainty::{covariance, described};
 use crate::pose::increment::Frame;
 use crate::pose::silhouette::Silhouette;
 use crate::pose::similarity::Similarity;
@@ -15,8 +15,13 @@ use crate::pose::spline_image::SplineImage;
 /// Sharp, and blurred: by so many pixels ..
 const LEVELS: usize = 2;
 const BLURS: [f64; LEVELS] = [0.0, 1.5];
-/// .. with local means over a Gaussian of this sigma, depth pixels; that of 2 to 5 serve alike.
+/// .. with local means over a Gaussian of this sigma, depth pixels; that of 2 to 5 serve alike. All three for objects as
+/// large as those that they were measured on, views of 96x96; on larger ones they grow with it.
 const MEANS: [f64; LEVELS] = [3.0, 5.0];
+/// Depth pixels of such an object, root of their number.
+const MEASURED_SIDE: f64 = 64.0;
+/// Blur of the sharp image in strides beyond the first: what lies between samples would be noise.
+const BLUR_OF_STRIDE: f64 = 0.4;
 /// v = log(I + 0.1 median I).
 const LIFT: f32 = 0.1;
 /// The robust scale over the noise: three sigmas of three channels. The first is twice as large, and shrinks by 0.6 a
@@ -76,10 +81,13 @@ impl ContrastRegistration {
     #[must_use]
     pub fn new(problem: &ContrastProblem<'_>, stride: usize) -> Self {
         let samples = Samples::new(problem, stride.max(1));
+        let unit = ((problem.depth.valid() as f64).sqrt() / MEASURED_SIDE).max(1.0);
         let lifted = problem.image.lifted(LIFT);
-        let sharp = SplineImage::new(&lifted, BLURS[0]);
-        let blurred = sharp.blurred(&lifted, BLURS[1]);
-        let means = |sigma: f64| LocalMeans::new(samples.grid.width, samples.grid.len(), sigma / samples.stride as f64);
+        let between = BLUR_OF_STRIDE * (samples.stride as f64 / unit - 1.0).max(0.0);
+        let sharp = SplineImage::new(&lifted, unit * BLURS[0].max(if unit > 1.0 { between } else { 0.0 }));
+        let blurred = sharp.blurred(&lifted, unit * BLURS[1]);
+        let means =
+            |sigma: f64| LocalMeans::new(samples.grid.width, samples.grid.len(), unit * sigma / samples.stride as f64);
         let mut blur = means(BLURS[1]);
         let shades = [samples.shades.clone(), blur.smoothed(&samples.weight, &samples.shades)];
         let [sharp_shades, blurred_shades] = shades;
@@ -87,9 +95,9 @@ impl ContrastRegistration {
             Level { image: sharp, means: means(MEANS[0]), shades: sharp_shades },
             Level { image: blurred, means: means(MEANS[1]), shades: blurred_shades },
         ];
-        let silhouette = Silhouette::new(problem.image.size, &problem.image.mask);
+        let silhouette = Silhouette::new(problem.image.size, problem.object);
         let seen = Seen::new(problem.image.size, &samples, samples.stride as f64);
-        Self { levels, objective: Objective::new(problem, samples, silhouette, seen), course: None }
+        Self { levels, objective: Objective::new(problem, samples, silhouette, seen, unit), course: None }
     }
 
     /// The best pose near `start`: [`begin`](Self::begin), [`step`](Self::step) to the end; `None` where too little of
@@ -117,7 +125,9 @@ impl ContrastRegistration {
         let Some(mut course) = self.course.take() else { return true };
         let Course { level, effort, .. } = course;
         let before = course.state.pose;
-        let Some(frame) = self.objective.begin(problem, &mut self.levels[level], &mut course.state) else { return true };
+        let Some(frame) = self.objective.begin(problem, &mut self.levels[level], &mut course.state) else {
+            return true;
+        };
         let target = SCALE_OVER_NOISE * self.objective.noise(&course.state.light);
         course.tau = match course.tau.is_finite() {
             true => (SHRINKING * course.tau).max(target),
@@ -136,9 +146,22 @@ impl ContrastRegistration {
         last
     }
 
+    /// The present pose, where enough is seen from it.
+    #[must_use]
+    pub fn pose(&self) -> Option<Similarity> {
+        self.course.as_ref().map(|course| course.state.pose)
+    }
+
     /// What was found.
     pub fn report(&mut self, problem: &ContrastProblem<'_>) -> Option<ContrastReport> {
-        let mut state = self.course.as_ref()?.state;
+        let pose = self.pose()?;
+        self.judge(problem, &pose)
+    }
+
+    /// What the contrast says of a pose as it is.
+    pub fn judge(&mut self, problem: &ContrastProblem<'_>, pose: &Similarity) -> Option<ContrastReport> {
+        let mut state = State { pose: *pose, light: Lights::default() };
+        self.objective.expect_size(problem, pose);
         let frame = self.look(problem, &mut state, None)?;
         let noise = self.objective.noise(&state.light);
         let value = self.objective.value(problem, &mut self.levels[0], &state);
@@ -150,8 +173,7 @@ impl ContrastRegistration {
             unexplained: self.objective.unexplained(&state.light),
             noise,
             visible: self.objective.count(),
-            covariance,
-            frame,
+            uncertainty: described(problem, &covariance, &frame, &state.pose),
         })
     }
 

@@ -3,10 +3,10 @@
 use nalgebra::Vector3;
 
 use super::problem::{Indices, PhotometricProblem};
-use crate::pose::spline_image::SplineImage;
 use crate::numeric::{DOUBLE_LANES, Doubles, robust};
 use crate::pose::increment::Frame;
 use crate::pose::similarity::Similarity;
+use crate::pose::spline_image::SplineImage;
 use crate::pose::visibility::{Visibility, VisibilityProblem};
 use crate::view::Size;
 

@@ -8,12 +8,12 @@ use super::evaluation::Evaluation;
 use super::points::{Sampling, VisiblePoints};
 use super::problem::{COARSEST, PhotometricOptions, PhotometricProblem, PhotometricReport, PhotometricTermination};
 use super::residual::{ColourModel, Samples};
-use crate::pose::spline_image::SplineImage;
 use super::state::State;
 use super::weighting::{Weighting, final_robust_scale, prior_weight};
 use crate::error::{Error, ErrorKind, Result};
 use crate::pose::increment::{Frame, PoseMatrix, SCALE, TRANSLATION_Z, clear_unknowns};
 use crate::pose::similarity::Similarity;
+use crate::pose::spline_image::SplineImage;
 use crate::pose::uncertainty::{describe, in_words};
 use crate::view::Size;
 

@@ -5,10 +5,10 @@
 //! channel, dr/dw = (P'
 //! - c) x g - n' x b, dr/dv = l g, dr/du = (P' - c) . g, and dr/dL = -B.
 
-use crate::pose::spline_image::{ImagePoint, SplineImage};
 use crate::light::{HARMONICS, Light, Polynomial, basis};
 use crate::numeric::{DOUBLE_LANES, Doubles, Real, dot};
 use crate::pose::increment::{Frame, UNKNOWNS};
+use crate::pose::spline_image::{ImagePoint, SplineImage};
 use crate::view::Camera;
 
 /// A derivative by the unknowns of the pose.

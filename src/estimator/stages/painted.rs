@@ -1,0 +1,102 @@
+//! Local contrast in place of colours that are painted (docs/method.md, section 10): from what the search has seen, or
+//! around a told pose.
+
+use nalgebra::{Rotation3, Vector3};
+
+use super::colours::ColourRegistration;
+use super::outlines::LARGEST_PURE_NOISE;
+use crate::estimator::gauge;
+use crate::estimator::pair::ViewPair;
+use crate::options::Registration;
+use crate::pose::{ContrastOutcome, ContrastSearch, PhotometricReport, Similarity};
+use crate::view::ColourView;
+
+/// Colours whose noise is at most so many times that of the image itself are noisy, not painted.
+const NOISY: f64 = 1.25;
+/// Both registrations have found one pose where their ends are this near, degrees: contrast may be off by a few.
+const SAME_POSE: f64 = 8.0;
+/// Around a told pose starts are turned by so many degrees about the axes and diagonals: half the basin of a start.
+const TURN: f64 = 6.0;
+
+/// Whether colours that leave so much have something else to be asked: paint, in an image whose object has an outline.
+/// Behind a pinhole outlines in space decide.
+pub fn is_called_for(pair: &ViewPair, plain: Option<&PhotometricReport>) -> bool {
+    pair.options.registration == Registration::Joint
+        && pair.image.camera.is_orthographic()
+        && pair.image.mask.contains(&false)
+        && plain.is_none_or(|plain| plain.noise > LARGEST_PURE_NOISE)
+}
+
+/// Whether a registration by colours from where contrast ended leaves no more than noise: then there is no paint, and its
+/// pose is the better one.
+fn is_plain(pair: &ViewPair, plain: &PhotometricReport, contrast: &ContrastOutcome) -> bool {
+    plain.noise <= LARGEST_PURE_NOISE.max(NOISY * pair.image.log_noise())
+        && plain.pose.degrees_to(&contrast.best.pose) < SAME_POSE
+}
+
+/// What contrast is compared in: the image without the paint that shows at its edges, or as it is.
+pub struct Canvas(Option<Box<ColourView>>);
+
+impl Canvas {
+    /// Of a pair's image.
+    pub fn new(pair: &ViewPair) -> Self {
+        Self(pair.image.without_paint().map(Box::new))
+    }
+
+    /// The image.
+    pub fn image<'a>(&'a self, pair: &'a ViewPair) -> &'a ColourView {
+        self.0.as_deref().unwrap_or(&pair.image)
+    }
+}
+
+/// A search from these poses, at the scale that the units give where it is free.
+pub fn search(pair: &ViewPair, colours: &ColourRegistration, canvas: &Canvas, poses: &[Similarity]) -> ContrastSearch {
+    let middle = pair.depth.points.centroid();
+    let scale = gauge::held_scale(pair).unwrap_or_else(|| gauge::unit_scale(pair));
+    let rescaled = |pose: &Similarity| Similarity {
+        scale,
+        rotation: pose.rotation,
+        translation: pose.apply(middle) - scale * (pose.rotation * middle),
+    };
+    ContrastSearch::new(&colours.contrast_problem(pair, canvas.image(pair)), poses.iter().map(rescaled).collect())
+}
+
+/// The outcome of a search that is done: contrast's, or that of the colours from there, where that leaves nothing more.
+pub fn conclude(
+    pair: &ViewPair,
+    colours: &ColourRegistration,
+    canvas: &Canvas,
+    search: &mut ContrastSearch,
+) -> Option<Conclusion> {
+    let image = canvas.image(pair);
+    let contrast = search.outcome(&colours.contrast_problem(pair, image))?;
+    let plain = colours.register_in(pair, image, &contrast.best.pose);
+    Some(match plain {
+        Some(plain) if is_plain(pair, &plain, &contrast) => Conclusion::ByColours(plain),
+        _ => Conclusion::ByContrast(contrast),
+    })
+}
+
+/// Which of the two has the pose.
+pub enum Conclusion {
+    ByColours(PhotometricReport),
+    ByContrast(ContrastOutcome),
+}
+
+/// The pose around a told one.
+pub fn near(pair: &ViewPair, colours: &ColourRegistration, told: &Similarity) -> Option<Conclusion> {
+    let canvas = Canvas::new(pair);
+    let middle = pair.depth.points.centroid();
+    let turned = |turn: Vector3<f64>| {
+        let rotation = Rotation3::new(turn).into_inner() * told.rotation;
+        Similarity { rotation, translation: told.apply(middle) - told.scale * (rotation * middle), ..*told }
+    };
+    let sides = [-1.0, 0.0, 1.0];
+    let turns = sides.iter().flat_map(|&x| sides.iter().flat_map(move |&y| sides.map(|z| Vector3::new(x, y, z))));
+    let length = |turn: &Vector3<f64>| TURN.to_radians() / turn.norm().max(1.0);
+    let starts = turns.map(|turn| turned(turn * length(&turn))).collect();
+    let problem = colours.contrast_problem(pair, canvas.image(pair));
+    let mut search = ContrastSearch::new(&problem, starts);
+    while !search.advance(&problem) {}
+    conclude(pair, colours, &canvas, &mut search)
+}

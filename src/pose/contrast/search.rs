@@ -1,0 +1,140 @@
+//! From many starts to one pose and its rivals, coarse to fine, in slices: a glance at all of them by few samples, then
+//! the best by more, at last by as many as there are.
+//!
+//! At each stage the ends are ranked by E on the sharp image at one robust scale, so that they can be compared. On ten
+//! photographed objects seen from 0 to 60 degrees off the right end was first after the glance wherever it was found at
+//! all, and rivals of right ends were worse by 0.05 or more.
+
+use super::problem::{ContrastProblem, ContrastReport};
+use super::registration::{ContrastEffort, ContrastRegistration};
+use crate::pose::similarity::Similarity;
+
+/// A stage: samples, what a registration may take, how many ends go on and how far apart they are, degrees.
+struct Stage {
+    samples: f64,
+    effort: ContrastEffort,
+    kept: usize,
+    apart: f64,
+}
+
+const STAGES: [Stage; 3] = [
+    Stage { samples: 350.0, effort: ContrastEffort { rounds: 2, ..ContrastEffort::GLANCE }, kept: 12, apart: 6.0 },
+    Stage {
+        samples: 1400.0,
+        effort: ContrastEffort { rounds: 5, ..ContrastEffort::FULL },
+        kept: 6,
+        apart: RIVAL_APART,
+    },
+    Stage {
+        samples: 10_000.0,
+        effort: ContrastEffort { first_level: 0, rounds: 6, ..ContrastEffort::FULL },
+        kept: 6,
+        apart: RIVAL_APART,
+    },
+];
+/// Noise, in log units, whose robust scale ends are ranked at: sharper than photographs leave, so that the details
+/// decide, and far above that of renders.
+const RANKING_NOISE: f64 = 0.05;
+/// An end whose E is larger by less than this is a rival: of found poses none is, where lost ones nearly always have one.
+const RIVAL_MARGIN: f64 = 0.03;
+/// A rival is at least so far away, degrees.
+const RIVAL_APART: f64 = 3.0;
+
+/// An end of a registration with its E.
+type End = (f64, Similarity);
+
+/// The pose found and those that E hardly tells from it, best first.
+#[derive(Clone, Debug)]
+pub struct ContrastOutcome {
+    /// The best end.
+    pub best: ContrastReport,
+    /// Poses that explain the contrast as well.
+    pub rivals: Vec<Similarity>,
+}
+
+/// The search in slices; owns its memory.
+pub struct ContrastSearch {
+    stage: usize,
+    starts: Vec<Similarity>,
+    next: usize,
+    ends: Vec<End>,
+    registration: ContrastRegistration,
+    under_way: bool,
+}
+
+impl ContrastSearch {
+    /// From these starts.
+    #[must_use]
+    pub fn new(problem: &ContrastProblem<'_>, starts: Vec<Similarity>) -> Self {
+        let registration = registration(problem, &STAGES[0]);
+        Self { stage: 0, starts, next: 0, ends: Vec::new(), registration, under_way: false }
+    }
+
+    /// One round of one registration; whether all are done.
+    pub fn advance(&mut self, problem: &ContrastProblem<'_>) -> bool {
+        let Some(stage) = STAGES.get(self.stage) else { return true };
+        let Some(start) = self.starts.get(self.next) else {
+            self.begin_next_stage(problem, stage);
+            return self.stage >= STAGES.len();
+        };
+        if !self.under_way {
+            self.registration.begin(problem, start, stage.effort);
+            self.under_way = true;
+        }
+        if self.registration.step(problem) {
+            let pose = self.registration.pose();
+            let end = pose.and_then(|pose| Some((self.registration.evaluate(problem, &pose, RANKING_NOISE)?, pose)));
+            self.ends.extend(end.filter(|(value, _)| value.is_finite()));
+            (self.next, self.under_way) = (self.next + 1, false);
+        }
+        false
+    }
+
+    /// Share of the work that is done, more or less.
+    #[must_use]
+    pub fn share(&self) -> f64 {
+        let within = self.next as f64 / self.starts.len().max(1) as f64;
+        ((self.stage as f64 + within) / STAGES.len() as f64).min(1.0)
+    }
+
+    /// The best pose so far, if any.
+    #[must_use]
+    pub fn best(&self) -> Option<&Similarity> {
+        self.ends.iter().min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, pose)| pose).or(self.starts.first())
+    }
+
+    fn begin_next_stage(&mut self, problem: &ContrastProblem<'_>, done: &Stage) {
+        self.ends.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut kept: Vec<End> = Vec::with_capacity(done.kept);
+        for end in &self.ends {
+            let is_apart = |other: &End| other.1.degrees_to(&end.1) >= done.apart;
+            if kept.len() < done.kept && kept.iter().all(is_apart) {
+                kept.push(*end);
+            }
+        }
+        self.stage += 1;
+        if let Some(stage) = STAGES.get(self.stage) {
+            self.registration = registration(problem, stage);
+            self.starts = kept.iter().map(|(_, pose)| *pose).collect();
+            (self.next, self.ends) = (0, Vec::new());
+        } else {
+            self.ends = kept;
+        }
+    }
+
+    /// What was found, once all is done; `None` where no registration saw enough of the object.
+    pub fn outcome(&mut self, problem: &ContrastProblem<'_>) -> Option<ContrastOutcome> {
+        let &(value, pose) = self.ends.first()?;
+        let mut best = self.registration.judge(problem, &pose)?;
+        best.objective = value;
+        let is_rival = |(other, _): &&End| *other <= value + RIVAL_MARGIN;
+        let rivals = self.ends[1..].iter().filter(is_rival).map(|(_, pose)| *pose).collect();
+        Some(ContrastOutcome { best, rivals })
+    }
+}
+
+/// The registration of a stage: by about so many samples.
+fn registration(problem: &ContrastProblem<'_>, stage: &Stage) -> ContrastRegistration {
+    let stride = (problem.depth.valid() as f64 / stage.samples).sqrt().round();
+    ContrastRegistration::new(problem, stride as usize)
+}
