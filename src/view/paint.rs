@@ -34,6 +34,13 @@ const LEAST_PAINT: f64 = 0.03;
 /// Ties each region to the others' mean, in pairs: only where no border does.
 const LOOSE_TIE: f64 = 1e-3;
 
+/// Regions whose paints differ by less, in hue (what differs from the mean of the channels) and in brightness, are of one
+/// paint: edges of the relief between them shift brightness, and hardly hue.
+const ONE_HUE: f64 = 0.1;
+const ONE_BRIGHTNESS: f64 = 0.4;
+/// Times that paints are joined and compared anew, over all borders between two of them together.
+const PALETTE_ROUNDS: usize = 2;
+
 /// No region.
 const NONE: u32 = u32::MAX;
 
@@ -41,12 +48,16 @@ impl ColourView {
     /// This view without the paint that shows at its edges; `None` where there is none.
     #[must_use]
     pub(crate) fn without_paint(&self) -> Option<Self> {
-        let regions = Regions::new(self);
+        let mut regions = Regions::new(self);
         let painted = regions.pixels() - regions.sizes.first().copied().unwrap_or(0);
         if regions.sizes.len() < 2 || (painted as f64) < LEAST_PAINT * regions.pixels() as f64 {
             return None;
         }
-        let offsets = regions.offsets(self)?;
+        let mut offsets = regions.offsets(self)?;
+        for _ in 0..PALETTE_ROUNDS {
+            regions.join(&offsets);
+            offsets = regions.offsets(self)?;
+        }
         let mut log = self.log.clone();
         let mask: Vec<bool> = regions.of_pixel.iter().map(|&region| region != NONE).collect();
         for (index, &region) in regions.of_pixel.iter().enumerate() {
@@ -70,7 +81,14 @@ impl ColourView {
     }
 }
 
-/// Connected pixels of one paint.
+/// Whether two log paints are one.
+fn is_one_paint(a: &[f64; 3], b: &[f64; 3]) -> bool {
+    let off: [f64; 3] = std::array::from_fn(|channel| a[channel] - b[channel]);
+    let brightness = off.iter().sum::<f64>() / 3.0;
+    brightness.abs() < ONE_BRIGHTNESS && off.iter().all(|value| (value - brightness).abs() < ONE_HUE)
+}
+
+/// Pixels of one paint: connected ones at first.
 struct Regions {
     of_pixel: Vec<u32>,
     /// Pixels of each, largest first.
@@ -108,6 +126,28 @@ impl Regions {
         let names: BTreeMap<u32, u32> = (0..).zip(&found).map(|(name, &(_, label))| (label, name)).collect();
         of_pixel.iter_mut().for_each(|label| *label = names.get(label).copied().unwrap_or(NONE));
         Self { of_pixel, sizes: found.into_iter().map(|(pixels, _)| pixels).collect() }
+    }
+
+    /// Makes one of all regions that have one paint, by the log paint of each.
+    fn join(&mut self, offsets: &[Vec<f64>; 3]) {
+        let paint = |region: usize| offsets.each_ref().map(|channel| channel[region]);
+        let mut palette: Vec<(usize, [f64; 3])> = Vec::new();
+        let mut sizes: Vec<usize> = Vec::new();
+        let mut names = Vec::with_capacity(self.sizes.len());
+        for (region, &size) in self.sizes.iter().enumerate() {
+            let known = palette.iter().find(|(_, known)| is_one_paint(known, &paint(region))).map(|(name, _)| *name);
+            let name = known.unwrap_or_else(|| {
+                palette.push((sizes.len(), paint(region)));
+                sizes.push(0);
+                sizes.len() - 1
+            });
+            sizes[name] += size;
+            names.push(name as u32);
+        }
+        for region in self.of_pixel.iter_mut().filter(|region| **region != NONE) {
+            *region = names[*region as usize];
+        }
+        self.sizes = sizes;
     }
 
     fn pixels(&self) -> usize {
