@@ -233,8 +233,7 @@ impl Mixture {
             for k in 0..self.regions {
                 let off = minus(unshaded, self.offsets[k]);
                 let off: [f64; 3] = std::array::from_fn(|c| off[c] / whitening[c]);
-                // What lies beyond three scales is another paint's, or nobody's.
-                let weight = responsibilities[k] / (1.0 + off.iter().map(|v| v * v).sum::<f64>() / 9.0);
+                let weight = responsibilities[k];
                 mass[k] += weight;
                 for (row, scatter) in scatter[k].iter_mut().enumerate() {
                     (0..3).for_each(|column| scatter[column] += weight * off[row] * off[column]);
