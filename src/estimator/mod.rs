@@ -39,7 +39,7 @@ pub use outputs::Surface;
 use pair::ViewPair;
 use solution::{Accepted, Solution};
 pub use stages::RefinementTask;
-use stages::{Inputs, LightStage, RefinementStage, Registered, RegistrationStage, ShapeStage};
+use stages::{Inputs, LightStage, PaintStage, RefinementStage, Registered, RegistrationStage, ShapeStage};
 use verdict::{ColourEvidence, Evidence, verdict};
 pub use workers::Worker;
 pub use workers::task::{Finding, Task};
@@ -90,6 +90,7 @@ pub struct Estimator {
     pair: ViewPair,
     run: Run,
     light: LightStage,
+    paint: PaintStage,
     shape: ShapeStage,
     registration: RegistrationStage,
     refinement: RefinementStage,
@@ -129,6 +130,7 @@ impl Estimator {
         let mut estimator = Self {
             run: if pair.options.start == Start::Search { Run::Preparing(None) } else { Run::Iterating(Stage::Light) },
             light: LightStage::new(pixels),
+            paint: PaintStage::new(),
             shape,
             registration,
             refinement,
@@ -276,22 +278,37 @@ impl Estimator {
         self.measure();
     }
 
-    /// Light (Eq. 2). What the registration by colours has found together with the pose comes before the fit.
+    /// Light (Eq. 2). What the registration by colours has found together with the pose comes before the fit, and what
+    /// was found together with paint before both.
     fn fit_light(&mut self) -> Result<()> {
-        let fitted = self.light.fit(&self.pair, &self.solution, &self.correspondences)?;
+        self.find_paint();
+        let colours = self.paint.colours(&self.pair);
+        let fitted = self.light.fit(&self.pair, colours, &self.solution, &self.correspondences)?;
         if let Some(light) = fitted {
             self.solution.light.light = light;
         }
         if let Some(found) = self.registration.found_by_colours() {
             (self.solution.light.light, self.solution.light.exposure) = (found.light, found.exposure);
         }
+        if let Some(painted) = self.paint.found() {
+            self.solution.light = painted.light;
+        }
         Ok(())
+    }
+
+    /// Paint, where the pose has come to rest and it has not been looked for yet.
+    fn find_paint(&mut self) {
+        let Solution { pose, .. } = &self.solution;
+        if self.registration.keeps(&self.pair, pose) && !self.paint.knows(&self.pair, pose) {
+            self.light.bring_normals(self.registration.measured_normals(&self.pair), pose, &self.correspondences);
+            self.paint.find(&self.pair, pose, self.light.depth_normals());
+        }
     }
 
     /// Normals of the image (Eq. 6 to 9), and the exposure of a known light unless the registration has found it.
     fn find_normals(&mut self) {
         let exposure_is_free = self.pair.known_light().is_some() && self.registration.found_by_colours().is_none();
-        let inputs = Inputs::of(&self.pair, &self.light, &self.correspondences, self.report.iteration);
+        let inputs = Inputs::of(&self.pair, &self.paint, &self.light, &self.correspondences, self.report.iteration);
         let Solution { light, image, .. } = &mut self.solution;
         self.shape.find_normals(inputs, exposure_is_free, light, &mut image.normals);
     }
@@ -300,7 +317,7 @@ impl Estimator {
     /// a pinhole image's surface.
     fn find_surface(&mut self) -> Result<()> {
         let light = self.solution.light.total();
-        let inputs = Inputs::of(&self.pair, &self.light, &self.correspondences, self.report.iteration);
+        let inputs = Inputs::of(&self.pair, &self.paint, &self.light, &self.correspondences, self.report.iteration);
         self.shape.find_surface(inputs, &light, &mut self.scratch, &mut self.solution.image)?;
         gauge::settle_surface(&self.pair, &self.correspondences, &mut self.scratch.spare, &mut self.solution);
         Ok(())
@@ -312,7 +329,7 @@ impl Estimator {
             return Err(Error::new(ErrorKind::Degenerate, "pose", "puts the object behind the colour camera"));
         }
         let start = self.solution.pose;
-        let inputs = Inputs::of(&self.pair, &self.light, &self.correspondences, self.report.iteration);
+        let inputs = Inputs::of(&self.pair, &self.paint, &self.light, &self.correspondences, self.report.iteration);
         (self.history.proposed_degrees, self.history.improved) = (0.0, true);
         if let Some(registered) = self.registration.register(inputs, &self.solution)? {
             self.history.improved = registered.improved;
@@ -354,7 +371,7 @@ impl Estimator {
 
     /// Normals and depth of the depth view (Eq. 17 to 19).
     fn refine(&mut self) {
-        let inputs = Inputs::of(&self.pair, &self.light, &self.correspondences, self.report.iteration);
+        let inputs = Inputs::of(&self.pair, &self.paint, &self.light, &self.correspondences, self.report.iteration);
         self.refinement.refine(inputs, &self.accepted, &mut self.scratch, &mut self.solution);
     }
 
@@ -395,7 +412,8 @@ impl Estimator {
     /// Objective of the working solution over the evaluation points.
     fn objective(&self) -> Objective {
         let light = self.solution.light.total();
-        objective::evaluate(&self.pair, &self.evaluated, Trial::of(&self.pair, &self.solution, &light))
+        let colours = self.paint.colours(&self.pair);
+        objective::evaluate(&self.pair, &self.evaluated, Trial::of(&self.pair, colours, &self.solution, &light))
     }
 
     /// Goes back to the accepted solution.
@@ -432,8 +450,8 @@ impl Estimator {
 
     /// Overlap, inliers and residuals of the present correspondences.
     fn measure(&mut self) {
-        let Self { pair, solution, correspondences, scratch, .. } = self;
-        let residual = self.residuals.measure(pair, solution, correspondences, &mut scratch.spare);
+        let Self { pair, paint, solution, correspondences, scratch, .. } = self;
+        let residual = self.residuals.measure(pair, paint, solution, correspondences, &mut scratch.spare);
         self.report.residual = residual.unwrap_or(self.report.residual);
         self.report.overlap = correspondences.count() as f64 / pair.depth.valid().max(1) as f64;
         self.report.inliers = correspondences.inliers();
@@ -480,10 +498,12 @@ impl Estimator {
 
     /// What the next refinement looks at, where that is known: then a worker may make it while the other stages run.
     fn prepare_next_refinement(&mut self) {
-        let is_known =
-            self.report.status == Status::Running && self.registration.keeps(&self.pair, &self.solution.pose);
+        // A worker has the image with its paint.
+        let is_known = self.report.status == Status::Running
+            && self.paint.found().is_none()
+            && self.registration.keeps(&self.pair, &self.solution.pose);
         if is_known {
-            let inputs = Inputs::of(&self.pair, &self.light, &self.correspondences, self.report.iteration);
+            let inputs = Inputs::of(&self.pair, &self.paint, &self.light, &self.correspondences, self.report.iteration);
             self.refinement.prepare_next(inputs, &self.solution);
         } else {
             self.refinement.discard_prepared();

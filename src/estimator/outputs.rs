@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::Estimator;
+use super::{Estimator, measurement};
 use crate::light::Light;
 use crate::report::StepReport;
 use crate::view::{ColourView, DepthView, Normals};
@@ -58,6 +58,24 @@ impl Estimator {
     #[must_use]
     pub fn residual(&self) -> &[f32] {
         self.residuals.of_pixels()
+    }
+
+    /// Log paint of each image pixel, R, G, B interleaved: mean zero over the mask in each channel, NaN off it. Zero
+    /// where one paint explains the colours, and before the pose has come to rest.
+    #[must_use]
+    pub fn albedo(&self) -> Vec<f32> {
+        let mask = self.pair.image.mask.iter().enumerate();
+        match self.paint.found() {
+            Some(found) => mask.flat_map(|(pixel, _)| [0, 1, 2].map(|c: usize| found.albedo[c][pixel])).collect(),
+            None => mask.flat_map(|(_, &inside)| [if inside { 0.0 } else { f32::NAN }; 3]).collect(),
+        }
+    }
+
+    /// Log shading of each image pixel, R, G, B interleaved, NaN off the mask: log S less [`albedo`](Self::albedo) and
+    /// this has [`residual`](Self::residual) for its length.
+    #[must_use]
+    pub fn shading(&self) -> Vec<f32> {
+        measurement::shading(&self.pair, &self.paint, &self.solution, &self.correspondences)
     }
 
     /// The light, known or estimated. The exposure of a known light is [`exposure`](Self::exposure).

@@ -70,6 +70,12 @@ impl Light {
         self
     }
 
+    /// By how much log S of R, G, B grows from `other`, a light that differs in its colour alone.
+    #[must_use]
+    pub fn offsets_to(&self, other: &Self) -> [f64; 3] {
+        std::array::from_fn(|channel| C4 * (self.0[channel][0] - other.0[channel][0]))
+    }
+
     /// log S of the three channels for one normal.
     #[must_use]
     pub fn shade(&self, normal: [f64; 3]) -> [f64; 3] {

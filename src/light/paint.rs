@@ -129,9 +129,8 @@ impl PaintFitter {
         if (lightness * lightness + 2.0 * colour * colour) < 3.0 * PURE_NOISE * PURE_NOISE {
             return None;
         }
-        let evidence = |mixture: &Mixture| {
-            tiles * mixture.likelihood - 0.5 * UNKNOWNS * mixture.regions as f64 * tiles.ln()
-        };
+        let evidence =
+            |mixture: &Mixture| tiles * mixture.likelihood - 0.5 * UNKNOWNS * mixture.regions as f64 * tiles.ln();
         let mut best = mixture;
         while mixture.regions < MOST_REGIONS && mixture.regions < best.regions + PATIENCE {
             let Some(further) = mixture.split(&self.samples).fitted(&self.samples, prior, weight) else { break };

@@ -7,6 +7,7 @@
 mod colours;
 mod correspondences;
 mod light;
+mod paint;
 mod refinement;
 mod registration;
 mod shape;
@@ -15,6 +16,7 @@ mod surfaces;
 pub use colours::{Attempt, ColourRegistration};
 pub use correspondences::correspondence_problem;
 pub use light::{Inputs, LightStage};
+pub use paint::PaintStage;
 pub use refinement::{RefinementStage, RefinementTask, terms_from_numbers};
 pub use registration::{Registered, RegistrationStage};
 pub use shape::ShapeStage;
