@@ -166,6 +166,14 @@ impl Estimator {
         Float32Array::from(self.native.residual())
     }
 
+    pub fn albedo(&self) -> Float32Array {
+        Float32Array::from(self.native.albedo().as_slice())
+    }
+
+    pub fn shading(&self) -> Float32Array {
+        Float32Array::from(self.native.shading().as_slice())
+    }
+
     pub fn light(&self) -> Float64Array {
         Float64Array::from(self.native.light().flat().as_slice())
     }
