@@ -1,28 +1,24 @@
 //! Light and a palette of paints together, for one number of regions (docs/method.md, section 3).
 //!
 //! log S = B(n) L + a_k + e: the light L of section 2, and for each pixel one of a few log offsets a_k, nobody knows
-//! which. The error e falls into lightness, where cast shadows and wrong normals go, and two differences of colour,
-//! where lamps of one colour leave hardly any. Both have a scale of their own, so colour decides which paint a pixel
-//! has wherever it can, and lightness where shading is good enough to. Student's t makes both robust.
+//! which. The error e falls into the direction in which this light's shading varies most with the normal, where wrong
+//! normals and cast shadows go (lightness, under white lamps), and into the two others, where they leave hardly any.
+//! Each has a scale of its own, so that hue decides which paint a pixel has wherever it can, and lightness where shading
+//! is good enough to. Student's t makes both robust.
 //!
 //! Expectation maximisation: shares of the paints for each pixel, then L and all a_k in one weighted least squares. The
 //! prior over lights and one over paints hold what the pixels leave open.
 //! A. Dempster, N. Laird, D. Rubin, J. R. Stat. Soc. B 39, 1977; K. Lange, R. Little, J. Taylor: "Robust statistical
 //! modeling using the t distribution", J. Am. Stat. Assoc. 84, 1989.
 
-use crate::light::harmonics::HARMONICS;
+use crate::light::Light;
+use crate::light::harmonics::{HARMONICS, basis_gradient};
 use crate::light::prior::{COEFFICIENTS, CoefficientMatrix, Coefficients, LightPrior};
 
 /// Most paints of an object. Each of ten photographs was as well explained by eight as by more (docs/method.md, 16).
 pub const MOST_REGIONS: usize = 8;
 /// Most unknowns: a light and three offsets for each paint.
 const MOST_UNKNOWNS: usize = COEFFICIENTS + 3 * MOST_REGIONS;
-/// Lightness and two differences of colour by R, G, B: orthonormal rows.
-const OPPONENT: [[f64; 3]; 3] = [
-    [0.577_350_269_189_625_8, 0.577_350_269_189_625_8, 0.577_350_269_189_625_8],
-    [std::f64::consts::FRAC_1_SQRT_2, -std::f64::consts::FRAC_1_SQRT_2, 0.0],
-    [0.408_248_290_463_863, 0.408_248_290_463_863, -0.816_496_580_927_726],
-];
 /// Degrees of freedom of Student's t: the usual choice of robust regression.
 const DEGREES: f64 = 4.0;
 /// Smallest scale in log units: the noise of a good 8-bit image. Exact colours would make it zero.
@@ -34,51 +30,108 @@ const PAINT_SPREAD: f64 = 1.0;
 const ROUNDS: usize = 14;
 const SETTLED: f64 = 1e-3;
 
-/// A pixel: the harmonics of its normal, and its log colour in opponent coordinates.
+/// A pixel: its normal, the harmonics of it, and its log colour along the axes.
 #[derive(Clone, Copy, Debug)]
 pub struct Sample {
+    pub normal: [f64; 3],
     pub basis: [f64; HARMONICS],
     pub colour: [f64; 3],
 }
 
-/// R, G, B to lightness and differences of colour.
-pub fn to_opponent(rgb: [f64; 3]) -> [f64; 3] {
-    OPPONENT.map(|row| row[0] * rgb[0] + row[1] * rgb[1] + row[2] * rgb[2])
+/// Orthonormal axes of colour (R, G, B), the one of the shading first.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Axes([[f64; 3]; 3]);
+
+impl Axes {
+    /// Lightness and two differences of colour: those of white lamps.
+    pub const WHITE: Self = Self([
+        [0.577_350_269_189_625_8, 0.577_350_269_189_625_8, 0.577_350_269_189_625_8],
+        [std::f64::consts::FRAC_1_SQRT_2, -std::f64::consts::FRAC_1_SQRT_2, 0.0],
+        [0.408_248_290_463_863, 0.408_248_290_463_863, -0.816_496_580_927_726],
+    ]);
+
+    /// The first is the direction in which the shading of `light` varies most with the normals of the samples.
+    pub fn of_shading(light: &Light, samples: &[Sample]) -> Self {
+        let mut scatter = [[0.0; 3]; 3];
+        for Sample { normal, .. } in samples {
+            let gradient = basis_gradient(*normal);
+            let slopes = light.0.map(|channel| {
+                let slope: [f64; 3] =
+                    std::array::from_fn(|axis| (0..HARMONICS).map(|k| channel[k] * gradient[k][axis]).sum());
+                // A normal stays a unit vector.
+                let along: f64 = slope.iter().zip(normal).map(|(s, n)| s * n).sum();
+                [0, 1, 2].map(|axis: usize| slope[axis] - along * normal[axis])
+            });
+            for row in 0..3 {
+                for column in 0..3 {
+                    scatter[row][column] += slopes[row].iter().zip(&slopes[column]).map(|(a, b)| a * b).sum::<f64>();
+                }
+            }
+        }
+        let (first, variance) = principal_axis(&scatter);
+        if variance <= 0.0 {
+            return Self::WHITE;
+        }
+        // The second is any direction across it, the third completes the two.
+        let least = if first[0].abs() < first[1].abs() { 0 } else { 1 };
+        let mut second: [f64; 3] = std::array::from_fn(|c| f64::from(c == least) - first[least] * first[c]);
+        let length = second.iter().map(|value| value * value).sum::<f64>().sqrt();
+        second = second.map(|value| value / length);
+        let third = std::array::from_fn(|c| {
+            let (a, b) = ((c + 1) % 3, (c + 2) % 3);
+            first[a] * second[b] - first[b] * second[a]
+        });
+        Self([first, second, third])
+    }
+
+    /// R, G, B along the axes.
+    pub fn along(&self, rgb: [f64; 3]) -> [f64; 3] {
+        self.0.map(|row| row[0] * rgb[0] + row[1] * rgb[1] + row[2] * rgb[2])
+    }
+
+    /// And back.
+    pub fn back(&self, values: [f64; 3]) -> [f64; 3] {
+        std::array::from_fn(|channel| (0..3).map(|row| self.0[row][channel] * values[row]).sum())
+    }
 }
 
-/// And back.
-pub fn from_opponent(values: [f64; 3]) -> [f64; 3] {
-    std::array::from_fn(|channel| (0..3).map(|row| OPPONENT[row][channel] * values[row]).sum())
-}
-
-/// The prior over lights in opponent coordinates; zero where the light is known.
-pub struct OpponentPrior {
+/// The prior over lights along the axes.
+pub struct AxesPrior {
     precision: CoefficientMatrix,
     target: Coefficients,
+    /// A known light is taken off the colours before, and none is left to find.
     is_known: bool,
-    /// lambda_L against the mean squared error of lightness.
+    /// lambda_L against the mean squared error along the first axis.
     weight: f64,
 }
 
-impl OpponentPrior {
+impl AxesPrior {
     /// Of an unknown light.
-    pub fn of(prior: &LightPrior, weight: f64) -> Self {
-        let turn = CoefficientMatrix::from_fn(|row, column| {
-            let same = row % HARMONICS == column % HARMONICS;
-            if same { OPPONENT[row / HARMONICS][column / HARMONICS] } else { 0.0 }
+    pub fn of(prior: &LightPrior, weight: f64, Axes(axes): &Axes) -> Self {
+        let turned = |row: usize, column: usize| -> f64 {
+            let (i, j) = (row % HARMONICS, column % HARMONICS);
+            let (first, second) = (&axes[row / HARMONICS], &axes[column / HARMONICS]);
+            let term =
+                |c: usize, d: usize| first[c] * second[d] * prior.precision()[(c * HARMONICS + i, d * HARMONICS + j)];
+            (0..9).map(|pair| term(pair / 3, pair % 3)).sum()
+        };
+        let precision = CoefficientMatrix::from_fn(turned);
+        let mean = |row: usize| -> f64 {
+            (0..3).map(|c| axes[row / HARMONICS][c] * prior.mean_coefficients()[c * HARMONICS + row % HARMONICS]).sum()
+        };
+        let target = Coefficients::from_fn(|row, _| {
+            (0..COEFFICIENTS).map(|column| precision[(row, column)] * mean(column)).sum()
         });
-        let precision = turn * prior.precision() * turn.transpose();
-        let target = precision * (turn * prior.mean_coefficients());
         Self { precision, target, is_known: false, weight }
     }
 
-    /// Of a light that is taken off the colours before.
+    /// Of a light that is known.
     pub fn known() -> Self {
         Self { precision: CoefficientMatrix::identity(), target: Coefficients::zeros(), is_known: true, weight: 1.0 }
     }
 }
 
-/// Light and palette in opponent coordinates.
+/// Light and palette along the axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mixture {
     pub light: [[f64; HARMONICS]; 3],
@@ -87,16 +140,16 @@ pub struct Mixture {
     pub offsets: [[f64; 3]; MOST_REGIONS],
     /// Share of the pixels that have it.
     pub shares: [f64; MOST_REGIONS],
-    /// Scales of lightness and of the differences of colour, log units.
-    pub scales: [f64; 2],
+    /// Scale of the error along each axis, log units.
+    pub scales: [f64; 3],
     /// Log likelihood of a pixel, at the mean and up to a constant.
     pub likelihood: f64,
 }
 
-/// u = 1 + r^2 / (nu s^2) of lightness and colour.
-fn spreads([lightness, first, second]: [f64; 3], scales: [f64; 2]) -> [f64; 2] {
-    let squares = [lightness * lightness, first * first + second * second];
-    [0, 1].map(|k| 1.0 + squares[k] / (DEGREES * scales[k] * scales[k]))
+/// u = 1 + r^2 / (nu s^2) along the first axis, and of both others together.
+fn spreads(residual: [f64; 3], scales: [f64; 3]) -> [f64; 2] {
+    let [first, second, third] = [0, 1, 2].map(|axis: usize| (residual[axis] / scales[axis]).powi(2) / DEGREES);
+    [1.0 + first, 1.0 + second + third]
 }
 
 impl Mixture {
@@ -107,9 +160,19 @@ impl Mixture {
             regions: 1,
             offsets: [[0.0; 3]; MOST_REGIONS],
             shares: [1.0; MOST_REGIONS],
-            scales: [1.0; 2],
+            scales: [1.0; 3],
             likelihood: f64::NEG_INFINITY,
         }
+    }
+
+    /// Its light for R, G, B.
+    pub fn light(&self, axes: &Axes) -> Light {
+        let mut light = Light([[0.0; HARMONICS]; 3]);
+        for k in 0..HARMONICS {
+            let coefficients = axes.back(self.light.map(|channel| channel[k]));
+            (0..3).for_each(|channel| light.0[channel][k] = coefficients[channel]);
+        }
+        light
     }
 
     /// What is left of a colour without its shading.
@@ -124,7 +187,6 @@ impl Mixture {
     /// of colour alone decide.
     pub fn responsibilities(&self, unshaded: [f64; 3], lightness: bool) -> ([f64; MOST_REGIONS], f64) {
         let mut densities = [0.0; MOST_REGIONS];
-        let [light_scale, colour_scale] = self.scales;
         for k in 0..self.regions {
             let [light, colour] = spreads(minus(unshaded, self.offsets[k]), self.scales);
             let by_light = if lightness { light * light * light.sqrt() } else { 1.0 };
@@ -132,7 +194,7 @@ impl Mixture {
         }
         let total: f64 = densities.iter().sum();
         densities.iter_mut().for_each(|density| *density /= total);
-        (densities, total / (light_scale * colour_scale * colour_scale))
+        (densities, total / self.scales.iter().product::<f64>())
     }
 
     /// Mean paint by the probabilities.
@@ -148,9 +210,9 @@ impl Mixture {
         })
     }
 
-    /// Expectation maximisation from here. A pixel counts as `weight` of an independent one. `None` where the system has
-    /// no solution.
-    pub fn fitted(mut self, samples: &[Sample], prior: &OpponentPrior, weight: f64) -> Option<Self> {
+    /// Expectation maximisation from here. The samples count as so many independent ones, `tiles`. `None` where the
+    /// system has no solution.
+    pub fn fitted(mut self, samples: &[Sample], prior: &AxesPrior, tiles: f64) -> Option<Self> {
         for _ in 0..ROUNDS {
             let sums = Sums::of(&self, samples);
             let before = self.likelihood;
@@ -158,16 +220,16 @@ impl Mixture {
             if (self.likelihood - before).abs() < SETTLED {
                 break;
             }
-            self.solve(&sums, prior, weight)?;
+            self.solve(&sums, prior, tiles)?;
             self.find_scales(samples, &sums);
         }
         Some(self)
     }
 
     /// Light and paints in one system.
-    fn solve(&mut self, sums: &Sums, prior: &OpponentPrior, weight: f64) -> Option<()> {
+    fn solve(&mut self, sums: &Sums, prior: &AxesPrior, tiles: f64) -> Option<()> {
         let size = COEFFICIENTS + 3 * self.regions;
-        let firmness = prior.weight * weight * sums.count / (self.scales[0] * self.scales[0]);
+        let firmness = prior.weight * tiles / (self.scales[0] * self.scales[0]);
         let mut system = System::new(size);
         for (row, column) in (0..COEFFICIENTS).flat_map(|row| (0..=row).map(move |column| (row, column))) {
             system.matrix[row][column] = firmness * prior.precision[(row, column)];
@@ -177,7 +239,7 @@ impl Mixture {
         }
         for channel in 0..3 {
             let class = channel.min(1);
-            let scale = weight / (self.scales[class] * self.scales[class]);
+            let scale = tiles / (sums.count * self.scales[channel] * self.scales[channel]);
             let light = channel * HARMONICS;
             for i in (0..HARMONICS).filter(|_| !prior.is_known) {
                 for j in 0..=i {
@@ -206,19 +268,18 @@ impl Mixture {
     /// Shares of the paints, and scales of what light and paints leave.
     fn find_scales(&mut self, samples: &[Sample], sums: &Sums) {
         let count = sums.count;
-        let mut squares = [0.0; 2];
+        let mut squares = [0.0; 3];
         for sample in samples {
             let unshaded = self.unshaded(sample);
             let (responsibilities, _) = self.responsibilities(unshaded, true);
             for k in 0..self.regions {
                 let residual = minus(unshaded, self.offsets[k]);
                 let [light, colour] = spreads(residual, self.scales);
-                let [lightness, first, second] = residual.map(|value| value * value);
-                squares[0] += responsibilities[k] * weight_of(light, 1.0) * lightness;
-                squares[1] += responsibilities[k] * weight_of(colour, 2.0) * (first + second);
+                let weights = [weight_of(light, 1.0), weight_of(colour, 2.0), weight_of(colour, 2.0)];
+                (0..3).for_each(|c| squares[c] += responsibilities[k] * weights[c] * residual[c] * residual[c]);
             }
         }
-        self.scales = [squares[0] / count, squares[1] / (2.0 * count)].map(|square| square.sqrt().max(SMALLEST_SCALE));
+        self.scales = squares.map(|square| (square / count).sqrt().max(SMALLEST_SCALE));
         self.shares = std::array::from_fn(|k| sums.share[k] / count);
     }
 
@@ -226,13 +287,12 @@ impl Mixture {
     pub fn split(&self, samples: &[Sample]) -> Self {
         let mut scatter = [[[0.0; 3]; 3]; MOST_REGIONS];
         let mut mass = [0.0; MOST_REGIONS];
-        let whitening = [self.scales[0], self.scales[1], self.scales[1]];
         for sample in samples {
             let unshaded = self.unshaded(sample);
             let (responsibilities, _) = self.responsibilities(unshaded, true);
             for k in 0..self.regions {
                 let off = minus(unshaded, self.offsets[k]);
-                let off: [f64; 3] = std::array::from_fn(|c| off[c] / whitening[c]);
+                let off: [f64; 3] = std::array::from_fn(|c| off[c] / self.scales[c]);
                 let weight = responsibilities[k];
                 mass[k] += weight;
                 for (row, scatter) in scatter[k].iter_mut().enumerate() {
@@ -242,10 +302,11 @@ impl Mixture {
         }
         let (mut best, mut parent, mut step) = (-1.0, 0, [0.0; 3]);
         for k in 0..self.regions {
-            let (axis, variance) = principal_axis(&scatter[k], mass[k]);
+            let (axis, scatter) = principal_axis(&scatter[k]);
+            let variance = scatter / mass[k].max(f64::MIN_POSITIVE);
             if self.shares[k] * variance > best {
                 (best, parent) = (self.shares[k] * variance, k);
-                step = std::array::from_fn(|c| axis[c] * variance.sqrt() * whitening[c]);
+                step = std::array::from_fn(|c| axis[c] * variance.sqrt() * self.scales[c]);
             }
         }
         let mut split = *self;
@@ -269,8 +330,8 @@ fn weight_of(spread: f64, dimensions: f64) -> f64 {
     (DEGREES + dimensions) / (DEGREES * spread)
 }
 
-/// Axis of largest scatter and the variance along it, by the power method; a few rounds are enough for a direction.
-fn principal_axis(scatter: &[[f64; 3]; 3], mass: f64) -> ([f64; 3], f64) {
+/// Axis of largest scatter, and the scatter along it, by the power method; a few rounds are enough for a direction.
+fn principal_axis(scatter: &[[f64; 3]; 3]) -> ([f64; 3], f64) {
     let mut axis = [0.5, 0.6, 0.62];
     let mut variance = 0.0;
     for _ in 0..12 {
@@ -280,12 +341,12 @@ fn principal_axis(scatter: &[[f64; 3]; 3], mass: f64) -> ([f64; 3], f64) {
             break;
         }
         axis = turned.map(|value| value / length);
-        variance = length / mass.max(f64::MIN_POSITIVE);
+        variance = length;
     }
     (axis, variance)
 }
 
-/// What one round sums over the pixels; the first index of a pair tells lightness from colour.
+/// What one round sums over the pixels; the first index of a pair tells the first axis from the others.
 struct Sums {
     gram: [[[f64; HARMONICS]; HARMONICS]; 2],
     cross: [[[f64; HARMONICS]; MOST_REGIONS]; 2],
@@ -313,8 +374,9 @@ impl Sums {
         sums
     }
 
-    fn add(&mut self, mixture: &Mixture, Sample { basis, colour }: &Sample) {
-        let unshaded = mixture.unshaded(&Sample { basis: *basis, colour: *colour });
+    fn add(&mut self, mixture: &Mixture, sample: &Sample) {
+        let Sample { basis, colour, .. } = sample;
+        let unshaded = mixture.unshaded(sample);
         let (responsibilities, density) = mixture.responsibilities(unshaded, true);
         self.likelihood += density.max(f64::MIN_POSITIVE).ln();
         let mut weights = [0.0; 2];
