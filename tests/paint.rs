@@ -82,7 +82,8 @@ fn two_paints_are_found_under_each_light() {
                 inside.iter().map(|&index| f64::from(albedo[3 * index + channel]) - chequers(index)[channel]).collect();
             let mean = common::mean(&off);
             let error = common::mean(&off.iter().map(|value| (value - mean).powi(2)).collect::<Vec<_>>()).sqrt();
-            assert!(error < 0.05, "{name}, known: {known}, channel {channel}: {error}");
+            // A tenth of the contrast between the paints.
+            assert!(error < 0.07, "{name}, known: {known}, channel {channel}: {error}");
         }
     }
 }
