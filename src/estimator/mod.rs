@@ -22,6 +22,7 @@ mod outputs;
 mod pair;
 mod solution;
 mod stages;
+mod units;
 mod verdict;
 mod workers;
 
@@ -105,6 +106,8 @@ pub struct Estimator {
     evaluated: Vec<u32>,
     history: History,
     report: StepReport,
+    /// The same in the caller's units, where they are others.
+    report_out: Option<Box<StepReport>>,
 }
 
 impl Estimator {
@@ -142,9 +145,11 @@ impl Estimator {
             evaluated: Vec::with_capacity(objective::MOST_POINTS),
             history: History { step_fraction: 1.0, proposed_degrees: 0.0, improved: true, rejections: 0, unmoved: 0 },
             report: StepReport::at(pose),
+            report_out: None,
             pair,
         };
         estimator.prepare()?;
+        estimator.translate_report();
         Ok(estimator)
     }
 
@@ -186,7 +191,7 @@ impl Estimator {
         while self.report.status == Status::Running && self.report.iteration == iteration {
             self.step_stage();
         }
-        &self.report
+        self.report()
     }
 
     /// Whether the next step is a slice of the initialisation.
@@ -206,7 +211,12 @@ impl Estimator {
         if let Err(error) = outcome {
             self.end(Status::Lost, Some(error.to_string()));
         }
-        &self.report
+        self.translate_report();
+        self.report()
+    }
+
+    fn translate_report(&mut self) {
+        self.report_out = self.pair.way.as_ref().map(|way| Box::new(units::report_out(way, &self.report)));
     }
 
     /// One stage of Algorithm 1, and what follows the last of an iteration.
