@@ -23,6 +23,8 @@ impl ViewPair {
     pub fn new(image: ColourImage, depth: &DepthMap, options: Options) -> Result<Self> {
         options.validate()?;
         let size = Size::new("depth", depth.width, depth.height)?;
+        // What is too large whatever the image becomes is refused before anything is read.
+        memory::check(Size { width: 0, height: 0 }, size)?;
         let (image, way) = WorkingSize::of(image, depth, memory::most_image_pixels(size))?;
         memory::check(image.size, size)?;
         let depth = DepthView::new(depth, options.trim)?;
