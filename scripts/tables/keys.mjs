@@ -11,6 +11,7 @@ const KEYS = {
   figure7: ["name", "holesBefore", "holesAfter", "normalChange"],
   refinement: ["lightName", "before", "after", "holes"],
   photographs: ["object", "image", "beta", "degrees", "status"],
+  albedo: ["object", "image", "pose", "beta", "correlation", "error", "naive", "degrees", "status"],
   random: [
     ...["cases", "found", "ambiguousOrLost", "confidentlyWrong", "flaggedThoughFound", "medianDegrees"],
     ...["coverage1", "coverage3"],
@@ -18,7 +19,7 @@ const KEYS = {
   ablation: ["without", "medianDegrees", "found"],
 };
 /** Nothing replaces these where other people's data is absent. */
-const REAL = ["table3", "figure7", "photographs"];
+const REAL = ["table3", "figure7", "photographs", "albedo"];
 
 /** Tables without a row, and keys that a row lacks. A key may be null: not everything has a value. */
 export const missingKeys = (json, { realPairs }) =>

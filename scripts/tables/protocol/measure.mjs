@@ -2,7 +2,7 @@
 import { sceneOf } from "./anywhere.mjs";
 import { judged, optionsOf, withRun } from "./runs.mjs";
 import { requestOf } from "./scenes.mjs";
-import { measurePair, measurePhotograph } from "./measure-reals.mjs";
+import { measureAlbedo, measurePair, measurePhotograph } from "./measure-reals.mjs";
 import { measureIterations, measureRefinement, measureShading } from "./measure-shapes.mjs";
 
 async function measurePose(cell, api, library) {
@@ -59,6 +59,7 @@ const KINDS = {
   refinement: measureRefinement,
   pair: measurePair,
   photograph: measurePhotograph,
+  albedo: measureAlbedo,
 };
 
 /** The figures of a cell, as plain JSON; whatever goes wrong is thrown. */
