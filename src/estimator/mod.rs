@@ -20,6 +20,7 @@ mod memory;
 mod objective;
 mod outputs;
 mod pair;
+mod run;
 mod solution;
 mod stages;
 mod units;
@@ -38,38 +39,13 @@ use measurement::Residuals;
 use objective::Trial;
 pub use outputs::Surface;
 use pair::ViewPair;
+use run::{History, Run};
 use solution::{Accepted, Solution};
 pub use stages::RefinementTask;
 use stages::{Inputs, LightStage, PaintStage, RefinementStage, Registered, RegistrationStage, ShapeStage};
 use verdict::{ColourEvidence, Evidence, verdict};
 pub use workers::Worker;
 pub use workers::task::{Finding, Task};
-
-/// Where the run stands: what the next step does.
-enum Run {
-    /// Prepares the image's grid for the search, then the search of the depth view in it: a slice each.
-    Preparing(Option<Box<ImageGrid>>),
-    /// A slice of the initialisation.
-    Searching(Box<Initialisation>),
-    /// A stage of an iteration.
-    Iterating(Stage),
-    /// Nothing: the status says how it ended.
-    Ended,
-}
-
-/// What the loop remembers of the iterations before: how their registrations ended.
-struct History {
-    /// Share of the registration's step that is taken; halves with each rejection.
-    step_fraction: f64,
-    /// Change of rotation that the last registration proposed, degrees, before it was shortened.
-    proposed_degrees: f64,
-    /// Whether it found a pose better than its start.
-    improved: bool,
-    /// Iterations in a row that were taken back or did not improve the pose.
-    rejections: u32,
-    /// Iterations in a row whose registration proposed less than `stop_degrees`.
-    unmoved: u32,
-}
 
 /// The loop with all its memory. One value works on one pair of views.
 ///
@@ -143,7 +119,7 @@ impl Estimator {
             accepted: Accepted::new(&solution),
             solution,
             evaluated: Vec::with_capacity(objective::MOST_POINTS),
-            history: History { step_fraction: 1.0, proposed_degrees: 0.0, improved: true, rejections: 0, unmoved: 0 },
+            history: History::default(),
             report: StepReport::at(pose),
             report_out: None,
             pair,
@@ -213,10 +189,6 @@ impl Estimator {
         }
         self.translate_report();
         self.report()
-    }
-
-    fn translate_report(&mut self) {
-        self.report_out = self.pair.way.as_ref().map(|way| Box::new(units::report_out(way, &self.report)));
     }
 
     /// One stage of Algorithm 1, and what follows the last of an iteration.

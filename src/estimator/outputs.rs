@@ -70,10 +70,12 @@ impl Estimator {
     /// where one paint explains the colours, and before the pose has come to rest.
     #[must_use]
     pub fn albedo(&self) -> Vec<f32> {
-        let mask = self.pair.image.mask.iter().enumerate();
+        let mask = &self.pair.image.mask;
         self.carried(match self.paint.found() {
-            Some(found) => mask.flat_map(|(pixel, _)| [0, 1, 2].map(|c: usize| found.albedo[c][pixel])).collect(),
-            None => mask.flat_map(|(_, &inside)| [if inside { 0.0 } else { f32::NAN }; 3]).collect(),
+            Some(found) => {
+                (0..mask.len()).flat_map(|pixel| [0, 1, 2].map(|channel: usize| found.albedo[channel][pixel])).collect()
+            }
+            None => mask.iter().flat_map(|&inside| [if inside { 0.0 } else { f32::NAN }; 3]).collect(),
         })
     }
 
@@ -82,6 +84,11 @@ impl Estimator {
     #[must_use]
     pub fn shading(&self) -> Vec<f32> {
         self.carried(measurement::shading(&self.pair, &self.paint, &self.solution, &self.correspondences))
+    }
+
+    /// The report of the last stage in the caller's units.
+    pub(super) fn translate_report(&mut self) {
+        self.report_out = self.pair.way.as_ref().map(|way| Box::new(units::report_out(way, &self.report)));
     }
 
     /// Colours of the working view at the caller's pixels.

@@ -88,7 +88,7 @@ impl PaintFitter {
         if self.samples.len() < FEWEST_SAMPLES {
             return None;
         }
-        let tiles = (count_of(normals, log[0]) as f64 / TILE).min(MOST_TILES).max(1.0);
+        let tiles = (count_of(normals, log[0]) as f64 / TILE).clamp(1.0, MOST_TILES);
         let prior = |axes: &Axes| known.map_or_else(|| AxesPrior::of(prior, weight, axes), |_| AxesPrior::known());
         // One paint under white lamps, for the light's own axes.
         self.turn(None, &Axes::WHITE);
