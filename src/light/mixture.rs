@@ -85,11 +85,13 @@ impl Axes {
     }
 
     /// R, G, B along the axes.
+    #[inline(never)]
     pub fn along(&self, rgb: [f64; 3]) -> [f64; 3] {
         self.0.map(|row| row[0] * rgb[0] + row[1] * rgb[1] + row[2] * rgb[2])
     }
 
     /// And back.
+    #[inline(never)]
     pub fn back(&self, values: [f64; 3]) -> [f64; 3] {
         std::array::from_fn(|channel| (0..3).map(|row| self.0[row][channel] * values[row]).sum())
     }
@@ -147,6 +149,7 @@ pub struct Mixture {
 }
 
 /// u = 1 + r^2 / (nu s^2) along the first axis, and of both others together.
+#[inline(never)]
 fn spreads(residual: [f64; 3], scales: [f64; 3]) -> [f64; 2] {
     let [first, second, third] = [0, 1, 2].map(|axis: usize| (residual[axis] / scales[axis]).powi(2) / DEGREES);
     [1.0 + first, 1.0 + second + third]
@@ -176,6 +179,7 @@ impl Mixture {
     }
 
     /// What is left of a colour without its shading.
+    #[inline(never)]
     pub fn unshaded(&self, sample: &Sample) -> [f64; 3] {
         std::array::from_fn(|channel| {
             let shading: f64 = self.light[channel].iter().zip(&sample.basis).map(|(l, b)| l * b).sum();
@@ -185,6 +189,7 @@ impl Mixture {
 
     /// Probability of each paint for a colour without its shading, and its density. Without `lightness` the differences
     /// of colour alone decide.
+    #[inline(never)]
     pub fn responsibilities(&self, unshaded: [f64; 3], lightness: bool) -> ([f64; MOST_REGIONS], f64) {
         let mut densities = [0.0; MOST_REGIONS];
         for k in 0..self.regions {
@@ -198,6 +203,7 @@ impl Mixture {
     }
 
     /// Mean paint by the probabilities.
+    #[inline(never)]
     pub fn mean_offset(&self, responsibilities: &[f64; MOST_REGIONS]) -> [f64; 3] {
         std::array::from_fn(|c| (0..self.regions).map(|k| responsibilities[k] * self.offsets[k][c]).sum())
     }

@@ -143,21 +143,6 @@ impl WorkingSize {
         [place(column, self.origin[0], self.working.width), place(row, self.origin[1], self.working.height)]
     }
 
-    /// Bilinear values of `fields` at the caller's pixels, the nearest that there is at rims; NaN off the mask.
-    fn each_carried<const N: usize>(&self, fields: [&[f32]; N]) -> [Vec<f32>; N] {
-        let mut carried = [(); N].map(|()| vec![f32::NAN; self.full.len()]);
-        for pixel in (0..self.full.len()).filter(|&pixel| self.mask[pixel]) {
-            let [column, row] = self.place(pixel);
-            let mut values = self.working.each_bilinear_of_known(fields, column, row);
-            if values[0].is_nan() {
-                let beside = self.around(column, row).find(|&beside| !fields[0][beside].is_nan());
-                values = beside.map_or(values, |beside| fields.map(|field| field[beside]));
-            }
-            (0..N).for_each(|k| carried[k][pixel] = values[k]);
-        }
-        carried
-    }
-
     /// The working pixels around a position, near ones first by rings.
     fn around(&self, column: f32, row: f32) -> impl Iterator<Item = usize> + use<> {
         let size = self.working;
@@ -167,18 +152,29 @@ impl WorkingSize {
         offsets.filter_map(move |[right, down]| size.nearest(column + right, row + down))
     }
 
-    /// A field of lengths, or of numbers without a unit where `unit` is one.
+    /// A field at the caller's pixels, times `unit`: bilinear, the nearest value that there is at rims, NaN off the mask.
     #[must_use]
     pub fn carry(&self, field: &[f32], unit: f64) -> Vec<f32> {
-        let [mut carried] = self.each_carried([field]);
-        carried.iter_mut().for_each(|value| *value *= unit as f32);
+        let mut carried = vec![f32::NAN; self.full.len()];
+        for pixel in (0..self.full.len()).filter(|&pixel| self.mask[pixel]) {
+            let [column, row] = self.place(pixel);
+            let mut value = self.working.bilinear_of_known(field, column, row);
+            if value.is_nan() {
+                value = self
+                    .around(column, row)
+                    .map(|beside| field[beside])
+                    .find(|beside| !beside.is_nan())
+                    .unwrap_or(value);
+            }
+            carried[pixel] = unit as f32 * value;
+        }
         carried
     }
 
     /// Normals, of unit length.
     #[must_use]
     pub fn carry_normals(&self, normals: &Normals) -> Normals {
-        let [x, y, z] = self.each_carried([&normals.x, &normals.y, &normals.z]);
+        let [x, y, z] = [&normals.x, &normals.y, &normals.z].map(|axis| self.carry(axis, 1.0));
         let mut carried = Normals { x, y, z };
         for pixel in 0..carried.len() {
             let normal = carried.get(pixel);
@@ -191,8 +187,10 @@ impl WorkingSize {
     /// Three channels, interleaved.
     #[must_use]
     pub fn carry_colours(&self, interleaved: &[f32]) -> Vec<f32> {
-        let planes = [0, 1, 2].map(|channel| interleaved.iter().skip(channel).step_by(3).copied().collect::<Vec<_>>());
-        let [x, y, z] = self.each_carried(planes.each_ref().map(Vec::as_slice));
+        let [x, y, z] = [0, 1, 2].map(|channel| {
+            let plane: Vec<f32> = interleaved.iter().skip(channel).step_by(3).copied().collect();
+            self.carry(&plane, 1.0)
+        });
         Normals { x, y, z }.interleaved()
     }
 
