@@ -270,3 +270,77 @@ fn measured(depth: &DepthMap) -> usize {
     };
     (0..depth.width * depth.height).filter(|&index| inside(index) && known(index)).count()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MOST: usize = 4_000_000;
+
+    fn image(width: usize, height: usize) -> ColourImage {
+        let samples = ColourSamples::RgbLinear((0..3 * width * height).map(|index| 1.0 + (index % 7) as f32).collect());
+        ColourImage { width, height, samples, transfer: None, mask: None, camera: None }
+    }
+
+    fn depth(width: usize, height: usize) -> DepthMap {
+        let samples = DepthSamples::Float(vec![5.0; width * height]);
+        DepthMap { width, height, samples, unit: None, mask: None, camera: None, normals: None }
+    }
+
+    fn camera(focal_length: f64) -> Option<Pinhole> {
+        Some(Pinhole { fx: focal_length, fy: focal_length, cx: 20.0, cy: 20.0, distortion: [0.0; 5] })
+    }
+
+    fn factor_of(image: &ColourImage, depth: &DepthMap, most: usize) -> usize {
+        WorkingSize::of(image.clone(), depth, most).unwrap().1.map_or(1, |way| way.factor())
+    }
+
+    #[test]
+    fn the_factor_is_that_of_the_footprints_and_never_more_than_that_of_the_frames() {
+        for (side, expected) in [(40, 1), (60, 1), (72, 2), (80, 2), (158, 4), (20, 1)] {
+            assert_eq!(factor_of(&image(side, side), &depth(40, 40), MOST), expected, "{side}");
+        }
+        // A tenth of the columns in a frame of the same size is no coarser map.
+        let mut narrow = depth(40, 40);
+        narrow.mask = Some((0..1600).map(|index| u8::from(index % 40 < 4)).collect());
+        let mut whole = image(40, 40);
+        whole.mask = Some(vec![1; 1600]);
+        assert_eq!(factor_of(&whole, &narrow, MOST), 1);
+        // Focal lengths say it before masks do, and a cut frame does not make an image coarser.
+        let (mut metric, mut cut) = (image(120, 120), image(40, 40));
+        (metric.camera, cut.camera) = (camera(300.0), camera(300.0));
+        let mut coarse = depth(40, 40);
+        coarse.camera = camera(100.0);
+        assert_eq!([factor_of(&metric, &coarse, MOST), factor_of(&cut, &coarse, MOST)], [3, 1]);
+        coarse.camera = camera(290.0);
+        assert_eq!(factor_of(&metric, &coarse, MOST), 1);
+        // What does not fit is made smaller as long as it is finer than the depth map.
+        assert_eq!([MOST, 450].map(|most| factor_of(&image(72, 72), &depth(20, 20), most)), [3, 4]);
+    }
+
+    #[test]
+    fn an_object_in_a_corner_keeps_its_place() {
+        let mut fine = image(123, 90);
+        fine.mask = Some((0..123 * 90).map(|index| u8::from(index % 123 > 40 && index / 123 > 30)).collect());
+        let mut coarse = depth(30, 22);
+        coarse.mask = Some((0..30 * 22).map(|index| u8::from(index % 30 > 9 && index / 30 > 6)).collect());
+        let (view, way) = WorkingSize::of(fine, &coarse, MOST).unwrap();
+        let way = way.expect("four times as fine");
+        let full = Size { width: 123, height: 90 };
+        for working in [0, 40, view.size.len() - 1] {
+            // The middle of the pixels that it covers, in the frame of either view.
+            let covered: Vec<_> = way.covered(working).collect();
+            if covered.len() < way.factor() * way.factor() {
+                continue;
+            }
+            let middle = |place: fn((usize, usize)) -> usize| {
+                covered.iter().map(|&pixel| place(full.position(pixel)) as f64).sum::<f64>() / covered.len() as f64
+            };
+            let expected = Camera::Orthographic.ray(full, [middle(|place| place.0), middle(|place| place.1)]);
+            let (column, row) = view.size.position(working);
+            let [x, y] = Camera::Orthographic.ray(view.size, [column as f64, row as f64]);
+            let found = way.unit() * Vector3::new(x, y, 0.0) + way.shift();
+            assert!((found.x - expected[0]).abs() + (found.y - expected[1]).abs() < 1e-9, "{found} {expected:?}");
+        }
+    }
+}
