@@ -149,9 +149,25 @@ export class Estimator {
     return this.#call((raw) => raw.correspondence());
   }
 
-  /** |log S - predicted| for each image pixel, NaN outside the mask. */
+  /** |log S - predicted| for each image pixel, NaN outside the mask: the length of log S - albedo - shading over R, G, B. */
   residual(): Float32Array {
     return this.#call((raw) => raw.residual());
+  }
+
+  /**
+   * Log paint of the image view (natural logarithm), 3*w*h interleaved, mean 0 over the mask in each channel, NaN outside it. Zero where
+   * one paint explains the colours, with `registration: "icp"`, and before the pose has come to rest.
+   */
+  albedo(): Float32Array {
+    return this.#call((raw) => raw.albedo());
+  }
+
+  /**
+   * Log shading of the image view, 3*w*h interleaved, NaN outside the mask and where there is no normal yet. The light carries the
+   * exposure; log S - albedo - shading is noise and what the model leaves out.
+   */
+  shading(): Float32Array {
+    return this.#call((raw) => raw.shading());
   }
 
   /** The 27 coefficients of the light: R1..9, G1..9, B1..9. */

@@ -58,7 +58,9 @@ mod wasm;
 
 pub use error::{Error, ErrorKind, Result};
 pub use estimator::{Estimator, Finding, RefinementTask, Surface, Task, Worker};
-pub use light::{COEFFICIENTS, CoefficientMatrix, Light, LightFit, LightFitter, LightPrior};
+pub use light::{
+    COEFFICIENTS, CoefficientMatrix, Light, LightFit, LightFitter, LightPrior, Paint, PaintFitter, PaintOfPixel,
+};
 pub use options::{LightSource, Options, Registration, Shading, Start, StartTolerance, Weights};
 pub use pose::{
     Angles, Candidate, ContrastEffort, ContrastOutcome, ContrastProblem, ContrastRegistration, ContrastReport,

@@ -46,7 +46,7 @@ fn finish(estimator: &mut Estimator) -> Vec<StepReport> {
 /// Everything that an estimator gives out, as bits: NaN equals NaN.
 fn outcome(estimator: &Estimator) -> (StepReport, Vec<u32>, Vec<i32>, Light) {
     let (image, depth) = (estimator.image_normals().interleaved(), estimator.depth_normals().interleaved());
-    let fields = [&image, estimator.image_depth(), &depth, estimator.refined_depth(), estimator.residual()];
+    let fields = [&image[..], &estimator.image_depth(), &depth, estimator.refined_depth(), &estimator.residual()];
     let bits = fields.into_iter().flatten().map(|value| value.to_bits()).collect();
     (estimator.report().clone(), bits, estimator.correspondence().to_vec(), estimator.light())
 }

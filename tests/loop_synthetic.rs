@@ -52,7 +52,7 @@ fn run(name: &str, sample: &Sample, options: Options) -> Estimator {
         report.iteration,
         report.pose.degrees_to(&sample.pose),
         report.pose.scale,
-        mean(&angles_between(estimator.image_normals(), &sample.truth.image_normals)),
+        mean(&angles_between(&estimator.image_normals(), &sample.truth.image_normals)),
     );
     estimator
 }
@@ -63,7 +63,7 @@ fn the_bust_is_found_from_identity() {
     let estimator = run("bust", &sample, known(&sample));
     assert_eq!(estimator.report().status, Status::Converged);
     assert!(estimator.report().pose.degrees_to(&sample.pose) <= BUST_ROTATION);
-    assert!(mean(&angles_between(estimator.image_normals(), &sample.truth.image_normals)) <= BUST_NORMALS);
+    assert!(mean(&angles_between(&estimator.image_normals(), &sample.truth.image_normals)) <= BUST_NORMALS);
 }
 
 #[test]

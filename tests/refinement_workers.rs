@@ -45,7 +45,7 @@ fn run(sample: &Sample, options: &Options, brings: impl Fn(usize) -> bool, forge
         }
         estimator.step_stage();
     }
-    (estimator.report().clone(), [bits(estimator.refined_depth()), bits(estimator.image_depth())], brought)
+    (estimator.report().clone(), [bits(estimator.refined_depth()), bits(&estimator.image_depth())], brought)
 }
 
 fn assert_same(name: &str, sample: &Sample, options: &Options) {

@@ -127,7 +127,7 @@ for (const [name, { link }] of Object.entries(places)) {
   });
 }
 
-const views = Array.from({ length: gallery.count }, (_, i): [string, () => void] => [String(i + 1), () => gallery.enlarge(i + 1)]);
+const views = Array.from({ length: gallery.count }, (_, i): [string, () => void] => [String((i + 1) % 10), () => gallery.enlarge(i + 1)]);
 listenToKeys(() => placeOf(location.hash) === "lab", {
   " ": () => player.toggle(),
   s: step,

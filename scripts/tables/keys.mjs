@@ -13,6 +13,7 @@ const KEYS = {
   photographs: ["object", "image", "beta", "degrees", "status"],
   rgbd: ["name", "turned", "start", "degrees", "inPlane", "tilt", "lateral", "along", "status"],
   pinhole: ["scene", "start", "degrees", "translation", "status"],
+  albedo: ["object", "image", "pose", "beta", "correlation", "error", "naive", "degrees", "status"],
   random: [
     ...["cases", "found", "ambiguousOrLost", "confidentlyWrong", "flaggedThoughFound", "medianDegrees"],
     ...["coverage1", "coverage3"],
@@ -20,7 +21,7 @@ const KEYS = {
   ablation: ["without", "medianDegrees", "found"],
 };
 /** Nothing replaces these where other people's data is absent. */
-const REAL = ["table3", "figure7", "photographs", "rgbd"];
+const REAL = ["table3", "figure7", "photographs", "albedo", "rgbd"];
 
 /** Tables without a row, and keys that a row lacks. A key may be null: not everything has a value. */
 export const missingKeys = (json, { realPairs }) =>

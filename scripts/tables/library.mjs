@@ -4,7 +4,7 @@ import { join } from "node:path";
 import { PAIRS, capture } from "../real-pairs.mjs";
 import { inRoot } from "../shell.mjs";
 import { readHeights } from "./npy.mjs";
-import { OBJECTS } from "./protocol/scenes.mjs";
+import { PAINTED } from "./protocol/scenes.mjs";
 
 const DATA = inRoot("../shared/data");
 /** Rows of `natural_lights_114.csv`: the easy, the median and the hard one. */
@@ -100,7 +100,7 @@ export function library(files) {
     return { width, height, data: colours, mask, place: object(name).place };
   });
   return {
-    surface: (name) => (name === "mozart" ? mozart(name) : OBJECTS.includes(name) ? object(name).relief : name),
+    surface: (name) => (name === "mozart" ? mozart(name) : PAINTED.includes(name) ? object(name).relief : name),
     light: (name) => (name in NATURAL_LIGHTS ? natural(name) : name),
     gaussian: JSON.parse(bytes("lights", "natural_light_gaussian.json").toString()),
     pair: (name) => PAIRS[name](files),

@@ -180,6 +180,25 @@ function pinhole(rows) {
   ]);
 }
 
+function albedo(rows) {
+  const groups = unique(rows.map(({ image, pose }) => `${image}, pose ${pose}`));
+  const cell = (object, group) => rows.find((row) => row.object === object && `${row.image}, pose ${row.pose}` === group);
+  const show = (row) => (row ? `${fixed(row.correlation, 2)} ${fixed(row.error, 3)} (${fixed(row.naive, 2)}) ${fixed(row.normals, 1)}` : "");
+  const middle = (group) => {
+    const members = rows.filter((row) => `${row.image}, pose ${row.pose}` === group);
+    const of = (key) => median(members.map((row) => row[key]));
+    return `${fixed(of("correlation"), 2)} ${fixed(of("error"), 3)} (${fixed(of("naive"), 2)}) ${fixed(of("normals"), 1)}`;
+  };
+  return [
+    "  correlation, error in log units (naive), and degrees that the image's normals are off",
+    ...columns([
+      ["object", ...groups],
+      ...unique(rows.map(({ object }) => object)).map((object) => [object, ...groups.map((group) => show(cell(object, group)))]),
+      ["median", ...groups.map(middle)],
+    ]),
+  ];
+}
+
 const random = (row) => [
   `  ${row.cases} scenes: ${row.found} found, ${row.confidentlyWrong} confidently wrong, ${row.ambiguousOrLost} ambiguous or lost ` +
     `(${row.flaggedThoughFound} of them found)`,
@@ -216,7 +235,7 @@ const ablation = (rows) =>
 
 const SHOWS = {
   ...{ table1, table2A, table2B, table3, figure4, figure5, figure6, figure7 },
-  ...{ refinement, photographs, rgbd, pinhole, random, exposure, ablation },
+  ...{ refinement, photographs, albedo, rgbd, pinhole, random, exposure, ablation },
 };
 
 /** One table's lines; `open3d` gives the baseline's degrees for a row of Table 2B, where there are any. */

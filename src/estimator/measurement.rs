@@ -1,13 +1,15 @@
 //! What an iteration leaves unexplained: |log S - predicted| pixel by pixel, and its robust mean.
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
 use super::objective;
 use super::pair::ViewPair;
 use super::solution::Solution;
-use crate::light::Polynomial;
+use super::stages::PaintStage;
+use crate::light::{Light, Polynomial};
 use crate::numeric::{LANES, Lanes, quantile};
 use crate::pose::Correspondences;
+use crate::view::Normals;
 
 /// Residuals within this multiple of their median enter the robust mean.
 const MOST_MEDIANS: f32 = 3.0;
@@ -30,37 +32,79 @@ impl Residuals {
     pub fn measure(
         &mut self,
         pair: &ViewPair,
+        paint: &PaintStage,
         solution: &Solution,
         correspondences: &Correspondences,
         spare: &mut Vec<f32>,
     ) -> Option<f64> {
-        let light = Polynomial::of(&solution.light.total());
-        let rotation = solution.pose.rotation.cast::<f32>();
+        let light = Polynomial::of(&shading_light(paint, solution));
+        let albedo = paint.found().map(|found| &found.albedo);
+        let seen = SeenNormals::new(pair, solution, correspondences);
         spare.clear();
         for start in (0..self.0.len()).step_by(LANES) {
             let mut normals = [[f32::NAN; LANES]; 3];
             let mut is_reached = [false; LANES];
             for lane in 0..LANES {
                 let pixel = start + lane;
-                if !pair.image.mask.get(pixel).is_some_and(|&inside| inside) {
-                    continue;
+                if pair.image.mask.get(pixel).is_some_and(|&inside| inside) {
+                    let (normal, reached) = seen.of_pixel(pixel);
+                    is_reached[lane] = reached;
+                    [normals[0][lane], normals[1][lane], normals[2][lane]] = normal;
                 }
-                let index = usize::try_from(correspondences.depth_of_pixel()[pixel]).ok();
-                let index = index.filter(|&index| pair.depth.normals.is_valid(index));
-                is_reached[lane] = index.is_some();
-                let normal = match index {
-                    Some(index) => (rotation * Vector3::from(pair.depth.normals.get(index))).into(),
-                    None => solution.image.normals.get(pixel),
-                };
-                [normals[0][lane], normals[1][lane], normals[2][lane]] = normal;
             }
-            let residuals = objective::residuals(&pair.image, start, &light, normals.map(Lanes::from));
+            let residuals = objective::residuals(&pair.image, albedo, start, &light, normals.map(Lanes::from));
             residuals.store(&mut self.0[start..]);
             let reached = residuals.array().into_iter().zip(is_reached).filter(|(_, reached)| *reached);
             spare.extend(reached.map(|(residual, _)| residual));
         }
         (!spare.is_empty()).then(|| robust_mean(spare))
     }
+}
+
+/// The normals that the image's pixels are predicted from, colour view's frame.
+struct SeenNormals<'a> {
+    measured: &'a Normals,
+    own: &'a Normals,
+    depth_of_pixel: &'a [i32],
+    rotation: Matrix3<f32>,
+}
+
+impl<'a> SeenNormals<'a> {
+    fn new(pair: &'a ViewPair, solution: &'a Solution, correspondences: &'a Correspondences) -> Self {
+        let rotation = solution.pose.rotation.cast::<f32>();
+        let depth_of_pixel = correspondences.depth_of_pixel();
+        Self { measured: &pair.depth.normals, own: &solution.image.normals, depth_of_pixel, rotation }
+    }
+
+    /// The measured one where the depth view reaches, else the image's own; and which of them it is.
+    fn of_pixel(&self, pixel: usize) -> ([f32; 3], bool) {
+        let index = usize::try_from(self.depth_of_pixel[pixel]).ok();
+        match index.filter(|&index| self.measured.is_valid(index)) {
+            Some(index) => ((self.rotation * Vector3::from(self.measured.get(index))).into(), true),
+            None => (self.own.get(pixel), false),
+        }
+    }
+}
+
+/// The light of the shading: exposure and tint included.
+fn shading_light(paint: &PaintStage, solution: &Solution) -> Light {
+    solution.light.total().tinted(paint.found().map_or([0.0; 3], |found| found.tint))
+}
+
+/// Log shading of each image pixel, R, G, B interleaved: what [`Residuals`] are off. NaN off the mask.
+pub fn shading(
+    pair: &ViewPair,
+    paint: &PaintStage,
+    solution: &Solution,
+    correspondences: &Correspondences,
+) -> Vec<f32> {
+    let light = shading_light(paint, solution);
+    let seen = SeenNormals::new(pair, solution, correspondences);
+    let of_pixel = |(pixel, &inside): (usize, &bool)| {
+        let normal = if inside { seen.of_pixel(pixel).0 } else { [f32::NAN; 3] };
+        light.shade(normal.map(f64::from)).map(|log| log as f32)
+    };
+    pair.image.mask.iter().enumerate().flat_map(of_pixel).collect()
 }
 
 fn robust_mean(residuals: &mut [f32]) -> f64 {

@@ -32,6 +32,11 @@ pub fn check(image: Size, depth: Size) -> Result<()> {
     Err(Error::new(ErrorKind::Memory, field, message))
 }
 
+/// Image pixels that fit beside a depth map.
+pub fn most_image_pixels(depth: Size) -> usize {
+    (MOST_BYTES / BYTES_PER_PIXEL - depth.len() as f64).max(0.0) as usize
+}
+
 /// How many workers of a pair fit beside its estimator.
 pub fn workers_afforded(image: Size, depth: Size) -> u32 {
     let pixels = (image.len() + depth.len()) as f64;

@@ -20,8 +20,10 @@ mod memory;
 mod objective;
 mod outputs;
 mod pair;
+mod run;
 mod solution;
 mod stages;
+mod units;
 mod verdict;
 mod workers;
 
@@ -37,38 +39,13 @@ use measurement::Residuals;
 use objective::Trial;
 pub use outputs::Surface;
 use pair::ViewPair;
+use run::{History, Run};
 use solution::{Accepted, Solution};
 pub use stages::RefinementTask;
-use stages::{Inputs, LightStage, RefinementStage, Registered, RegistrationStage, ShapeStage};
+use stages::{Inputs, LightStage, PaintStage, RefinementStage, Registered, RegistrationStage, ShapeStage};
 use verdict::{ColourEvidence, ContrastEvidence, Evidence, OutlineEvidence, verdict};
 pub use workers::Worker;
 pub use workers::task::{Finding, Task};
-
-/// Where the run stands: what the next step does.
-enum Run {
-    /// Prepares the image's grid for the search, then the search of the depth view in it: a slice each.
-    Preparing(Option<Box<ImageGrid>>),
-    /// A slice of the initialisation.
-    Searching(Box<Initialisation>),
-    /// A stage of an iteration.
-    Iterating(Stage),
-    /// Nothing: the status says how it ended.
-    Ended,
-}
-
-/// What the loop remembers of the iterations before: how their registrations ended.
-struct History {
-    /// Share of the registration's step that is taken; halves with each rejection.
-    step_fraction: f64,
-    /// Change of rotation that the last registration proposed, degrees, before it was shortened.
-    proposed_degrees: f64,
-    /// Whether it found a pose better than its start.
-    improved: bool,
-    /// Iterations in a row that were taken back or did not improve the pose.
-    rejections: u32,
-    /// Iterations in a row whose registration proposed less than `stop_degrees`.
-    unmoved: u32,
-}
 
 /// The loop with all its memory. One value works on one pair of views.
 ///
@@ -90,6 +67,7 @@ pub struct Estimator {
     pair: ViewPair,
     run: Run,
     light: LightStage,
+    paint: PaintStage,
     shape: ShapeStage,
     registration: RegistrationStage,
     refinement: RefinementStage,
@@ -104,6 +82,8 @@ pub struct Estimator {
     evaluated: Vec<u32>,
     history: History,
     report: StepReport,
+    /// The same in the caller's units, where they are others.
+    report_out: Option<Box<StepReport>>,
 }
 
 impl Estimator {
@@ -129,6 +109,7 @@ impl Estimator {
         let mut estimator = Self {
             run: if pair.options.start == Start::Search { Run::Preparing(None) } else { Run::Iterating(Stage::Light) },
             light: LightStage::new(pixels),
+            paint: PaintStage::new(),
             shape,
             registration,
             refinement,
@@ -138,11 +119,13 @@ impl Estimator {
             accepted: Accepted::new(&solution),
             solution,
             evaluated: Vec::with_capacity(objective::MOST_POINTS),
-            history: History { step_fraction: 1.0, proposed_degrees: 0.0, improved: true, rejections: 0, unmoved: 0 },
+            history: History::default(),
             report: StepReport::at(pose),
+            report_out: None,
             pair,
         };
         estimator.prepare()?;
+        estimator.translate_report();
         Ok(estimator)
     }
 
@@ -184,7 +167,7 @@ impl Estimator {
         while self.report.status == Status::Running && self.report.iteration == iteration {
             self.step_stage();
         }
-        &self.report
+        self.report()
     }
 
     /// Whether the next step is a slice of the initialisation.
@@ -204,7 +187,8 @@ impl Estimator {
         if let Err(error) = outcome {
             self.end(Status::Lost, Some(error.to_string()));
         }
-        &self.report
+        self.translate_report();
+        self.report()
     }
 
     /// One stage of Algorithm 1, and what follows the last of an iteration.
@@ -281,22 +265,37 @@ impl Estimator {
         Ok(())
     }
 
-    /// Light (Eq. 2). What the registration by colours has found together with the pose comes before the fit.
+    /// Light (Eq. 2). What the registration by colours has found together with the pose comes before the fit, and what
+    /// was found together with paint before both.
     fn fit_light(&mut self) -> Result<()> {
-        let fitted = self.light.fit(&self.pair, &self.solution, &self.correspondences)?;
+        self.find_paint();
+        let colours = self.paint.colours(&self.pair);
+        let fitted = self.light.fit(&self.pair, colours, &self.solution, &self.correspondences)?;
         if let Some(light) = fitted {
             self.solution.light.light = light;
         }
         if let Some(found) = self.registration.found_by_colours() {
             (self.solution.light.light, self.solution.light.exposure) = (found.light, found.exposure);
         }
+        if let Some(painted) = self.paint.found() {
+            self.solution.light = painted.light;
+        }
         Ok(())
+    }
+
+    /// Paint, where the pose has come to rest and it has not been looked for yet.
+    fn find_paint(&mut self) {
+        let Solution { pose, .. } = &self.solution;
+        if self.registration.keeps(&self.pair, pose) && !self.paint.knows(&self.pair, pose) {
+            self.light.bring_normals(self.registration.measured_normals(&self.pair), pose, &self.correspondences);
+            self.paint.find(&self.pair, pose, self.light.depth_normals());
+        }
     }
 
     /// Normals of the image (Eq. 6 to 9), and the exposure of a known light unless the registration has found it.
     fn find_normals(&mut self) {
         let exposure_is_free = self.pair.known_light().is_some() && self.registration.found_by_colours().is_none();
-        let inputs = Inputs::of(&self.pair, &self.light, &self.correspondences, self.report.iteration);
+        let inputs = Inputs::of(&self.pair, &self.paint, &self.light, &self.correspondences, self.report.iteration);
         let Solution { light, image, .. } = &mut self.solution;
         self.shape.find_normals(inputs, exposure_is_free, light, &mut image.normals);
     }
@@ -305,7 +304,7 @@ impl Estimator {
     /// a pinhole image's surface.
     fn find_surface(&mut self) -> Result<()> {
         let light = self.solution.light.total();
-        let inputs = Inputs::of(&self.pair, &self.light, &self.correspondences, self.report.iteration);
+        let inputs = Inputs::of(&self.pair, &self.paint, &self.light, &self.correspondences, self.report.iteration);
         self.shape.find_surface(inputs, &light, &mut self.scratch, &mut self.solution.image)?;
         gauge::settle_surface(&self.pair, &self.correspondences, &mut self.scratch.spare, &mut self.solution);
         Ok(())
@@ -317,7 +316,7 @@ impl Estimator {
             return Err(Error::new(ErrorKind::Degenerate, "pose", "puts the object behind the colour camera"));
         }
         let start = self.solution.pose;
-        let inputs = Inputs::of(&self.pair, &self.light, &self.correspondences, self.report.iteration);
+        let inputs = Inputs::of(&self.pair, &self.paint, &self.light, &self.correspondences, self.report.iteration);
         (self.history.proposed_degrees, self.history.improved) = (0.0, true);
         if let Some(registered) = self.registration.register(inputs, &self.solution)? {
             self.history.improved = registered.improved;
@@ -359,7 +358,7 @@ impl Estimator {
 
     /// Normals and depth of the depth view (Eq. 17 to 19).
     fn refine(&mut self) {
-        let inputs = Inputs::of(&self.pair, &self.light, &self.correspondences, self.report.iteration);
+        let inputs = Inputs::of(&self.pair, &self.paint, &self.light, &self.correspondences, self.report.iteration);
         self.refinement.refine(inputs, &self.accepted, &mut self.scratch, &mut self.solution);
     }
 
@@ -400,7 +399,8 @@ impl Estimator {
     /// Objective of the working solution over the evaluation points.
     fn objective(&self) -> Objective {
         let light = self.solution.light.total();
-        objective::evaluate(&self.pair, &self.evaluated, Trial::of(&self.pair, &self.solution, &light))
+        let colours = self.paint.colours(&self.pair);
+        objective::evaluate(&self.pair, &self.evaluated, Trial::of(&self.pair, colours, &self.solution, &light))
     }
 
     /// Goes back to the accepted solution.
@@ -437,8 +437,8 @@ impl Estimator {
 
     /// Overlap, inliers and residuals of the present correspondences.
     fn measure(&mut self) {
-        let Self { pair, solution, correspondences, scratch, .. } = self;
-        let residual = self.residuals.measure(pair, solution, correspondences, &mut scratch.spare);
+        let Self { pair, paint, solution, correspondences, scratch, .. } = self;
+        let residual = self.residuals.measure(pair, paint, solution, correspondences, &mut scratch.spare);
         self.report.residual = residual.unwrap_or(self.report.residual);
         self.report.overlap = correspondences.count() as f64 / pair.depth.valid().max(1) as f64;
         self.report.inliers = correspondences.inliers();
@@ -496,10 +496,12 @@ impl Estimator {
 
     /// What the next refinement looks at, where that is known: then a worker may make it while the other stages run.
     fn prepare_next_refinement(&mut self) {
-        let is_known =
-            self.report.status == Status::Running && self.registration.keeps(&self.pair, &self.solution.pose);
+        // A worker has the image with its paint.
+        let is_known = self.report.status == Status::Running
+            && self.paint.found().is_none()
+            && self.registration.keeps(&self.pair, &self.solution.pose);
         if is_known {
-            let inputs = Inputs::of(&self.pair, &self.light, &self.correspondences, self.report.iteration);
+            let inputs = Inputs::of(&self.pair, &self.paint, &self.light, &self.correspondences, self.report.iteration);
             self.refinement.prepare_next(inputs, &self.solution);
         } else {
             self.refinement.discard_prepared();

@@ -44,6 +44,8 @@ const SMALL_STEP: f64 = 0.25;
 #[derive(Clone, Copy)]
 pub struct Trial<'a> {
     pub pose: &'a Similarity,
+    /// The image without paint.
+    pub colours: &'a ColourView,
     /// Light, exposure included.
     pub light: &'a Light,
     pub solution: &'a Solution,
@@ -53,8 +55,9 @@ pub struct Trial<'a> {
 
 impl<'a> Trial<'a> {
     /// The solution as it is, under `light`, its own.
-    pub fn of(pair: &ViewPair, solution: &'a Solution, light: &'a Light) -> Self {
-        Self { pose: &solution.pose, light, solution, pixel_length: gauge::pixel_length(&pair.image, solution) }
+    pub fn of(pair: &ViewPair, colours: &'a ColourView, solution: &'a Solution, light: &'a Light) -> Self {
+        let pixel_length = gauge::pixel_length(&pair.image, solution);
+        Self { pose: &solution.pose, colours, light, solution, pixel_length }
     }
 }
 
@@ -91,7 +94,7 @@ pub fn evaluate(pair: &ViewPair, evaluated: &[u32], trial: Trial<'_>) -> Objecti
     }
     let share = 1.0 / evaluated.len().max(1) as f64;
     Objective {
-        shading: brightness(&pair.image, trial, &light),
+        shading: brightness(trial.colours, trial, &light),
         prior: share * prior,
         registration: share * distance,
         refinement: share * colour,
@@ -102,7 +105,7 @@ pub fn evaluate(pair: &ViewPair, evaluated: &[u32], trial: Trial<'_>) -> Objecti
 fn point_terms(
     ViewPair { image, depth, .. }: &ViewPair,
     index: usize,
-    Trial { pose, solution, pixel_length, .. }: Trial<'_>,
+    Trial { pose, colours, solution, pixel_length, .. }: Trial<'_>,
     light: &[Polynomial; 3],
 ) -> Option<[f64; 3]> {
     let point = pose.apply(Vector3::from(solution.depth.points.get(index).map(f64::from)));
@@ -112,7 +115,7 @@ fn point_terms(
     let image_normal = Vector3::from(solution.image.normals.get(pixel).map(f64::from));
     let image_point = Vector3::from(solution.image.points.get(pixel).map(f64::from));
     let gap = image_normal.dot(&(image_point - point)) / pixel_length;
-    let log = image.size.each_bilinear(image.log.each_ref().map(Vec::as_slice), column as f32, row as f32);
+    let log = image.size.each_bilinear(colours.log.each_ref().map(Vec::as_slice), column as f32, row as f32);
     let normal_f32 = [normal.x as f32, normal.y as f32, normal.z as f32];
     Some([
         robust((image_normal - normal).norm(), NORMAL_SCALE),
@@ -140,11 +143,20 @@ fn residual(log: [f32; 3], light: &[Polynomial; 3], normal: [f32; 3]) -> f64 {
     f64::from(square_residual(log, light, normal).sqrt())
 }
 
-/// [`residual`] of the pixels from `start` on, each for its own normal.
-pub fn residuals(image: &ColourView, start: usize, light: &[Polynomial; 3], normals: [Lanes; 3]) -> Lanes {
-    let [red, green, blue] = &image.log;
-    let start = start as isize;
-    let log = [Lanes::load(red, start), Lanes::load(green, start), Lanes::load(blue, start)];
+/// [`residual`] of the pixels from `start` on, each for its own normal; `albedo` is taken off the colours.
+pub fn residuals(
+    image: &ColourView,
+    albedo: Option<&[Vec<f32>; 3]>,
+    start: usize,
+    light: &[Polynomial; 3],
+    normals: [Lanes; 3],
+) -> Lanes {
+    let load = |planes: &[Vec<f32>; 3]| [0, 1, 2].map(|channel: usize| Lanes::load(&planes[channel], start as isize));
+    let mut log = load(&image.log);
+    if let Some(albedo) = albedo {
+        let paint = load(albedo);
+        log = [log[0] - paint[0], log[1] - paint[1], log[2] - paint[2]];
+    }
     square_residual(log, light, normals).sqrt()
 }
 

@@ -1,8 +1,10 @@
 //! What a run has found so far, to read.
 
+use std::borrow::Cow;
+
 use nalgebra::Vector3;
 
-use super::Estimator;
+use super::{Estimator, measurement, units};
 use crate::light::Light;
 use crate::report::StepReport;
 use crate::view::{ColourView, DepthView, Normals};
@@ -19,20 +21,22 @@ pub enum Surface {
 impl Estimator {
     /// What the last stage left.
     #[must_use]
-    pub const fn report(&self) -> &StepReport {
-        &self.report
+    pub fn report(&self) -> &StepReport {
+        self.report_out.as_deref().unwrap_or(&self.report)
     }
 
     /// Normals of the image surface, colour view's frame, NaN off the mask.
     #[must_use]
-    pub const fn image_normals(&self) -> &Normals {
-        &self.solution.image.normals
+    pub fn image_normals(&self) -> Cow<'_, Normals> {
+        let own = &self.solution.image.normals;
+        self.pair.way.as_ref().map_or(Cow::Borrowed(own), |way| Cow::Owned(way.carry_normals(own)))
     }
 
     /// Depth of the image surface, NaN off the mask; pixels with median zero for an orthographic image.
     #[must_use]
-    pub fn image_depth(&self) -> &[f32] {
-        &self.solution.image.points.z
+    pub fn image_depth(&self) -> Cow<'_, [f32]> {
+        let own = &self.solution.image.points.z;
+        self.pair.way.as_ref().map_or(Cow::Borrowed(own), |way| Cow::Owned(way.carry(own, way.unit())))
     }
 
     /// Refined normals of the depth view, its own frame.
@@ -49,15 +53,50 @@ impl Estimator {
 
     /// For each image pixel the index of its depth pixel, or -1.
     #[must_use]
-    pub fn correspondence(&self) -> &[i32] {
-        self.correspondences.depth_of_pixel()
+    pub fn correspondence(&self) -> Cow<'_, [i32]> {
+        let own = self.correspondences.depth_of_pixel();
+        self.pair.way.as_ref().map_or(Cow::Borrowed(own), |way| Cow::Owned(way.carry_indices(own)))
     }
 
     /// |log S - predicted| of each image pixel, NaN off the mask: predicted from the measured normal of the depth view
     /// where it reaches, from the image's own normal elsewhere.
     #[must_use]
-    pub fn residual(&self) -> &[f32] {
-        self.residuals.of_pixels()
+    pub fn residual(&self) -> Cow<'_, [f32]> {
+        let own = self.residuals.of_pixels();
+        self.pair.way.as_ref().map_or(Cow::Borrowed(own), |way| Cow::Owned(way.carry(own, 1.0)))
+    }
+
+    /// Log paint of each image pixel, R, G, B interleaved: mean zero over the mask in each channel, NaN off it. Zero
+    /// where one paint explains the colours, and before the pose has come to rest.
+    #[must_use]
+    pub fn albedo(&self) -> Vec<f32> {
+        let mask = &self.pair.image.mask;
+        self.carried(match self.paint.found() {
+            Some(found) => {
+                (0..mask.len()).flat_map(|pixel| [0, 1, 2].map(|channel: usize| found.albedo[channel][pixel])).collect()
+            }
+            None => mask.iter().flat_map(|&inside| [if inside { 0.0 } else { f32::NAN }; 3]).collect(),
+        })
+    }
+
+    /// Log shading of each image pixel, R, G, B interleaved, NaN off the mask: log S less [`albedo`](Self::albedo) and
+    /// this has [`residual`](Self::residual) for its length.
+    #[must_use]
+    pub fn shading(&self) -> Vec<f32> {
+        self.carried(measurement::shading(&self.pair, &self.paint, &self.solution, &self.correspondences))
+    }
+
+    /// The report of the last stage in the caller's units.
+    pub(super) fn translate_report(&mut self) {
+        self.report_out = self.pair.way.as_ref().map(|way| Box::new(units::report_out(way, &self.report)));
+    }
+
+    /// Colours of the working view at the caller's pixels.
+    fn carried(&self, interleaved: Vec<f32>) -> Vec<f32> {
+        match &self.pair.way {
+            Some(way) => way.carry_colours(&interleaved),
+            None => interleaved,
+        }
     }
 
     /// The light, known or estimated. The exposure of a known light is [`exposure`](Self::exposure).
@@ -72,7 +111,7 @@ impl Estimator {
         self.solution.light.exposure
     }
 
-    /// The checked colour view.
+    /// The checked colour view, as it is worked on: of a photograph that is much finer than the depth map, a smaller one.
     #[must_use]
     pub const fn image(&self) -> &ColourView {
         &self.pair.image
@@ -92,13 +131,12 @@ impl Estimator {
             Surface::Depth => &self.solution.depth.points,
         };
         let valid = (0..points.len()).filter(|&index| points.is_valid(index)).map(|index| points.get(index));
-        match surface {
-            Surface::Image => valid.flatten().collect(),
-            Surface::Depth => {
-                let pose = &self.solution.pose;
-                let transformed = |point: [f32; 3]| <[f64; 3]>::from(pose.apply(Vector3::from(point.map(f64::from))));
-                valid.flat_map(|point| transformed(point).map(|value| value as f32)).collect()
-            }
-        }
+        let place = |point: [f32; 3]| {
+            let point = Vector3::from(point.map(f64::from));
+            let point = if surface == Surface::Depth { self.solution.pose.apply(point) } else { point };
+            let point = self.pair.way.as_ref().map_or(point, |way| units::point_out(way, point));
+            <[f64; 3]>::from(point).map(|value| value as f32)
+        };
+        valid.flat_map(place).collect()
     }
 }

@@ -57,11 +57,23 @@ impl Light {
 
     /// The same light at another exposure: log S grows by `offset` everywhere.
     #[must_use]
-    pub fn exposed(mut self, offset: f64) -> Self {
-        for channel in &mut self.0 {
+    pub fn exposed(self, offset: f64) -> Self {
+        self.tinted([offset; 3])
+    }
+
+    /// The same light in another colour: log S of R, G, B grows by the `offsets` everywhere.
+    #[must_use]
+    pub fn tinted(mut self, offsets: [f64; 3]) -> Self {
+        for (channel, offset) in self.0.iter_mut().zip(offsets) {
             channel[0] += offset / C4;
         }
         self
+    }
+
+    /// By how much log S of R, G, B grows from `other`, a light that differs in its colour alone.
+    #[must_use]
+    pub fn offsets_to(&self, other: &Self) -> [f64; 3] {
+        std::array::from_fn(|channel| C4 * (self.0[channel][0] - other.0[channel][0]))
     }
 
     /// log S of the three channels for one normal.

@@ -2,11 +2,14 @@
 
 mod fit;
 mod harmonics;
+mod mixture;
 mod natural;
+mod paint;
 mod prior;
 
 pub use fit::{LightFit, LightFitter};
 pub use harmonics::Light;
 pub(crate) use harmonics::{HARMONICS, Polynomial, basis, basis_gradient};
+pub use paint::{Paint, PaintFitter, PaintOfPixel};
 pub(crate) use prior::Coefficients;
 pub use prior::{COEFFICIENTS, CoefficientMatrix, LightPrior};

@@ -83,23 +83,7 @@ impl ColourView {
     /// [`ErrorKind::Size`] for sizes that disagree, [`ErrorKind::Range`] for bad intrinsics or lenses,
     /// [`ErrorKind::Empty`] where fewer than 16 pixels are usable.
     pub fn new(image: ColourImage) -> Result<Self> {
-        let size = Size::new("image", image.width, image.height)?;
-        if let Some(camera) = &image.camera {
-            camera.validate("image.camera")?;
-        }
-        let object = mask::checked("image.mask", size, image.mask.as_deref())?;
-        let (channels, length) = match &image.samples {
-            ColourSamples::Rgba8(data) => (4, data.len()),
-            ColourSamples::Rgba16(data) => (4, data.len()),
-            ColourSamples::RgbLinear(data) => (3, data.len()),
-        };
-        if length != channels * size.len() {
-            return Err(Error::new(
-                ErrorKind::Size,
-                "image.data",
-                format!("{}x{} pixels need {} samples, not {length}", size.width, size.height, channels * size.len()),
-            ));
-        }
+        let (size, object) = checked(&image)?;
         let transfer = transfer_of(&image);
         let whole = match image.camera {
             Some(_) => WholeFrame {
@@ -138,6 +122,11 @@ impl ColourView {
         // Computed once: every stage's preparation needs them, and they would be a fifth of the search's.
         let (log_spread, log_noise) = (spread_of(&log), noise_of(size, &log));
         Self { size, camera, mask, log, transfer, whole: WholeFrame::default(), log_spread, log_noise }
+    }
+
+    /// The same view of an image that was encoded otherwise.
+    pub(super) fn with_transfer(self, transfer: Transfer) -> Self {
+        Self { transfer, ..self }
     }
 
     /// Mean of log S over the mask and the three channels: what a change of exposure shifts.
@@ -193,6 +182,28 @@ impl ColourView {
     }
 }
 
+/// Size and object of an image whose parts fit each other.
+pub(super) fn checked(image: &ColourImage) -> Result<(Size, Vec<bool>)> {
+    let size = Size::new("image", image.width, image.height)?;
+    if let Some(camera) = &image.camera {
+        camera.validate("image.camera")?;
+    }
+    let object = mask::checked("image.mask", size, image.mask.as_deref())?;
+    let (channels, length) = match &image.samples {
+        ColourSamples::Rgba8(data) => (4, data.len()),
+        ColourSamples::Rgba16(data) => (4, data.len()),
+        ColourSamples::RgbLinear(data) => (3, data.len()),
+    };
+    if length != channels * size.len() {
+        return Err(Error::new(
+            ErrorKind::Size,
+            "image.data",
+            format!("{}x{} pixels need {} samples, not {length}", size.width, size.height, channels * size.len()),
+        ));
+    }
+    Ok((size, object))
+}
+
 fn spread_of(log: &[Vec<f32>; 3]) -> f64 {
     let spread = |channel: &[f32]| {
         let inside = || channel.iter().filter(|log| !log.is_nan()).map(|&log| f64::from(log));
@@ -215,7 +226,7 @@ fn noise_of(size: Size, log: &[Vec<f32>; 3]) -> f64 {
 
 impl ColourSamples {
     /// Linear intensity of a pixel, `None` where it is black, saturated, transparent or not a number.
-    fn linear(&self, index: usize, transfer: Transfer) -> Option<[f32; 3]> {
+    pub(super) fn linear(&self, index: usize, transfer: Transfer) -> Option<[f32; 3]> {
         match self {
             Self::Rgba8(data) => {
                 let pixel = &data[4 * index..4 * index + 4];
@@ -252,7 +263,7 @@ impl ColourSamples {
 }
 
 /// Given, else: floats are linear, 8 bit is sRGB, and 16 bit is sRGB exactly where it was widened from 8 bit.
-fn transfer_of(image: &ColourImage) -> Transfer {
+pub(super) fn transfer_of(image: &ColourImage) -> Transfer {
     /// An 8-bit level widened to 16 bit is a multiple of 257.
     const WIDENED: u16 = 257;
     match (&image.samples, image.transfer) {

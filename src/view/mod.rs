@@ -12,9 +12,11 @@ pub mod normals;
 mod paint;
 mod raster;
 mod vectors;
+mod working_size;
 
 pub use camera::{Camera, Pinhole};
 pub use colour::{ColourImage, ColourSamples, ColourView, Transfer};
 pub use depth::{DepthMap, DepthSamples, DepthView};
 pub use raster::Size;
 pub use vectors::{Normals, Points};
+pub(crate) use working_size::WorkingSize;

@@ -145,7 +145,7 @@ impl Estimator {
 
     #[wasm_bindgen(js_name = "imageDepth")]
     pub fn image_depth(&self) -> Float32Array {
-        Float32Array::from(self.native.image_depth())
+        Float32Array::from(&*self.native.image_depth())
     }
 
     #[wasm_bindgen(js_name = "depthNormals")]
@@ -159,11 +159,19 @@ impl Estimator {
     }
 
     pub fn correspondence(&self) -> Int32Array {
-        Int32Array::from(self.native.correspondence())
+        Int32Array::from(&*self.native.correspondence())
     }
 
     pub fn residual(&self) -> Float32Array {
-        Float32Array::from(self.native.residual())
+        Float32Array::from(&*self.native.residual())
+    }
+
+    pub fn albedo(&self) -> Float32Array {
+        Float32Array::from(self.native.albedo().as_slice())
+    }
+
+    pub fn shading(&self) -> Float32Array {
+        Float32Array::from(self.native.shading().as_slice())
     }
 
     pub fn light(&self) -> Float64Array {

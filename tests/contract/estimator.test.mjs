@@ -16,6 +16,8 @@ const outputs = (made) => ({
   refinedDepth: made.refinedDepth(),
   correspondence: made.correspondence(),
   residual: made.residual(),
+  albedo: made.albedo(),
+  shading: made.shading(),
   light: made.light(),
   image: made.points("image"),
   depth: made.points("depth"),
@@ -52,6 +54,8 @@ test("getters have the contract's types and lengths", () => {
     ["refinedDepth", Float32Array, PIXELS],
     ["correspondence", Int32Array, PIXELS],
     ["residual", Float32Array, PIXELS],
+    ["albedo", Float32Array, 3 * PIXELS],
+    ["shading", Float32Array, 3 * PIXELS],
     ["light", Float64Array, 27],
   ]) {
     assert.ok(all[name] instanceof type, name);
@@ -61,6 +65,52 @@ test("getters have the contract's types and lengths", () => {
     assert.ok(all[view] instanceof Float32Array && all[view].length % 3 === 0 && all[view].length > 0, view);
     assert.ok(all[view].every(Number.isFinite), view);
   }
+});
+
+test("log S is albedo and shading and a remainder of the residual's length", async () => {
+  const { image, depth, pose } = pair({ size: 64, angles: { beta: 0 }, light: "window" });
+  const isPainted = (index) => (Math.floor((index % 64) / 8) + Math.floor(index / 512)) % 2 === 1;
+  const data = image.data.map((value, i) => (isPainted(Math.floor(i / 3)) ? value * [0.4, 0.7, 1.3][i % 3] : value));
+  const made = new Estimator({ ...image, data }, depth, { start: pose, registration: "fixed" });
+  await made.run();
+  const [albedo, shading, residual] = [made.albedo(), made.shading(), made.residual()];
+  const sums = [0, 0, 0];
+  for (let index = 0; index < 64 * 64; index++) {
+    const channels = [0, 1, 2].map((c) => 3 * index + c);
+    if (!image.mask[index]) {
+      assert.ok(channels.every((at) => Number.isNaN(albedo[at]) && Number.isNaN(shading[at])) && Number.isNaN(residual[index]));
+      continue;
+    }
+    const left = channels.map((at) => Math.log(data[at]) - albedo[at] - shading[at]);
+    assert.ok(Math.abs(Math.hypot(...left) - residual[index]) < 1e-4, `${index}: ${left} ${residual[index]}`);
+    channels.forEach((at, c) => (sums[c] += albedo[at]));
+  }
+  assert.ok(sums.every((sum) => Math.abs(sum) < 0.05), `${sums}`);
+  assert.ok(albedo.some((value) => Math.abs(value) > 0.2), "paint is found");
+  made.free();
+});
+
+test("a photograph of twelve megapixels is taken with a small depth map, in its own pixels", () => {
+  const { image, depth } = pair({ size: 64 });
+  const [width, height, side] = [4000, 3000, 40];
+  const [data, mask] = [new Uint8Array(4 * width * height), new Uint8Array(width * height)];
+  const brightest = image.data.reduce((most, value) => (value > most ? value : most), 0);
+  for (let index = 0; index < width * height; index++) {
+    const [column, row] = [index % width, Math.floor(index / width)].map((at) => Math.floor((at - 200) / side));
+    const inside = column >= 0 && row >= 0 && column < 64 && row < 64;
+    const pixel = row * 64 + column;
+    if (!inside || !image.mask[pixel]) continue;
+    mask[index] = 255;
+    for (let c = 0; c < 3; c++) data[4 * index + c] = (250 * image.data[3 * pixel + c]) / brightest;
+    data[4 * index + 3] = 255;
+  }
+  const made = new Estimator({ width, height, data, mask, transfer: "linear" }, depth, { start: "identity" });
+  made.step();
+  assert.equal(made.residual().length, width * height);
+  assert.equal(made.imageNormals().length, 3 * width * height);
+  const { scale } = made.report.pose;
+  assert.ok(scale > 0.8 * side && scale < 1.2 * side, `${scale}`);
+  made.free();
 });
 
 test("outputs are copies", () => {

@@ -9,7 +9,7 @@ import type { Pixel, Probe } from "./probe";
 import type { Scale } from "./scale";
 
 export type Content =
-  | { kind: "picture" }
+  | { kind: "picture"; legend: string }
   | { kind: "normals" }
   /** The view that leads sets the automatic range of a scale that several share. */
   | { kind: "scalar"; scale: Scale; leads: boolean };
@@ -74,7 +74,7 @@ export class View {
     if (content.kind === "normals") {
       return make("div", { class: "legend" }, sphere(), make("span", {}, "right red, up green, near blue"));
     }
-    return make("div", { class: "legend" }, make("span", {}, "as it was given"));
+    return make("div", { class: "legend" }, make("span", {}, content.legend));
   }
 
   #repaint(): void {

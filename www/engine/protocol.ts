@@ -41,7 +41,7 @@ export interface Raster {
   data: Float32Array;
 }
 
-/** The colour image, with what is needed to show it: its white level and whether it is already encoded for a screen. */
+/** Colours, with what is needed to show them: their white level and whether they are already encoded for a screen. */
 export interface Picture extends Raster {
   white: number;
   encoded: boolean;
@@ -53,6 +53,8 @@ export interface Frame {
   reports: StepReport[];
   imageNormals: Raster;
   imageDepth: Raster;
+  albedo: Picture;
+  shading: Picture;
   residual: Raster;
   refinedDepth: Raster;
   depthNormals: Raster;

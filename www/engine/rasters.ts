@@ -82,6 +82,21 @@ export function picture(image: ColorImage, cut: Cut): Picture {
   return { ...drawn, white, encoded };
 }
 
+/** The least white level of log colours: those of one paint, zero everywhere, are a middle grey. */
+const LEAST_WHITE = 2;
+/** Share of the numbers that are no brighter than white: single ones must not darken everything else. */
+const UP_TO_WHITE = 0.99;
+
+/** Logarithms of colours as colours. */
+export function fromLog(log: Float32Array, cut: Cut): Picture {
+  const drawn = gather(cut, 3, (index, out, at) => {
+    for (let c = 0; c < 3; c++) out[at + c] = Math.exp(log[index * 3 + c] ?? NaN);
+  });
+  const sorted = drawn.data.filter(Number.isFinite).sort();
+  const white = Math.max(LEAST_WHITE * (sorted[Math.floor(0.5 * sorted.length)] ?? 0), sorted[Math.floor(UP_TO_WHITE * (sorted.length - 1))] ?? 0);
+  return { ...drawn, white: white || 1, encoded: false };
+}
+
 /** Depth at a pixel in the unit of its view; holes are NaN. */
 function depthAt({ data, points, mask, unit, camera }: DepthMap): (index: number) => number {
   const factor = unit ?? (camera !== undefined && data instanceof Uint16Array ? 0.001 : 1);

@@ -4,7 +4,7 @@ import init, { BimodalError, Estimator, sample, sampleLights, sampleSurfaces, wa
 import type { ColorImage, DepthMap, Options, Pose, StepReport } from "../../pkg/index.js";
 import type { Answer, Calls, Frame, Kind, OwnFiles, Request, LabOptions, Source } from "./protocol";
 import { faultOf } from "./fault";
-import { cutOfDepth, cutOfImage, givenDepth, picture, raster, thinned, type Cut } from "./rasters";
+import { cutOfDepth, cutOfImage, givenDepth, fromLog, picture, raster, thinned, type Cut } from "./rasters";
 
 interface Input {
   image: ColorImage;
@@ -62,6 +62,8 @@ function frame({ estimator, imageCut, depthCut }: OpenInput, reports: StepReport
     reports,
     imageNormals: raster(estimator.imageNormals(), 3, imageCut),
     imageDepth: raster(estimator.imageDepth(), 1, imageCut),
+    albedo: fromLog(estimator.albedo(), imageCut),
+    shading: fromLog(estimator.shading(), imageCut),
     residual: raster(estimator.residual(), 1, imageCut),
     refinedDepth: raster(estimator.refinedDepth(), 1, depthCut),
     depthNormals: raster(estimator.depthNormals(), 3, depthCut),

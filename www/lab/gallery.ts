@@ -1,4 +1,4 @@
-/** All pictures of the Lab: seven canvases, the clouds, and the charts. */
+/** All pictures of the Lab: nine canvases, the clouds, and the charts. */
 
 import type { StepReport } from "../../pkg/index.js";
 import { Painter } from "../draw/painter";
@@ -17,6 +17,8 @@ export class Gallery {
   readonly #picture: View;
   readonly #imageNormals: View;
   readonly #imageDepth: View;
+  readonly #albedo: View;
+  readonly #shading: View;
   readonly #residual: View;
   readonly #given: View;
   readonly #refinedDepth: View;
@@ -39,9 +41,11 @@ export class Gallery {
       this.#place(built.element, parent, title);
       return built;
     };
-    this.#picture = view("image-views", image, "Colour", "the colour image as it was given", { kind: "picture" });
+    this.#picture = view("image-views", image, "Colour", "the colour image as it was given", { kind: "picture", legend: "as it was given" });
     this.#imageNormals = view("image-views", image, "Normals", "normals found from shading in the colour image", { kind: "normals" });
     this.#imageDepth = view("image-views", image, "Depth", "depth of the colour image, integrated from its normals", { kind: "scalar", scale: new Scale("viridis"), leads: true });
+    this.#albedo = view("image-views", image, "Albedo", "paint of the object, the colours without light and shadow", { kind: "picture", legend: "grey if all is one paint" });
+    this.#shading = view("image-views", image, "Shading", "what the light makes of the shape, the colours without paint", { kind: "picture", legend: "light on shape" });
     this.#given = view("depth-views", depth, "Given depth", "the depth map as it was given", { kind: "scalar", scale: depths, leads: false });
     this.#refinedDepth = view("depth-views", depth, "Refined depth", "the depth map after refinement", { kind: "scalar", scale: depths, leads: true });
     this.#depthNormals = view("depth-views", depth, "Refined normals", "normals of the depth map after refinement", { kind: "normals" });
@@ -66,6 +70,8 @@ export class Gallery {
     this.#history = history;
     this.#imageNormals.show(frame.imageNormals);
     this.#imageDepth.show(frame.imageDepth, this.#units.image);
+    this.#albedo.show(frame.albedo);
+    this.#shading.show(frame.shading);
     this.#residual.show(frame.residual, "log");
     this.#refinedDepth.show(frame.refinedDepth, this.#units.depth);
     this.#depthNormals.show(frame.depthNormals);
@@ -102,7 +108,9 @@ export class Gallery {
   #place(figure: HTMLElement, parent: string | undefined, title: string): void {
     this.#figures.push(figure);
     const number = this.#figures.length;
-    const button = make("button", { type: "button", class: "quiet enlarge", "aria-pressed": "false", "aria-label": `Enlarge ${title}`, title: `Enlarge (${number})` }, String(number));
+    // The tenth has the key 0.
+    const key = String(number % 10);
+    const button = make("button", { type: "button", class: "quiet enlarge", "aria-pressed": "false", "aria-label": `Enlarge ${title}`, title: `Enlarge (${key})` }, key);
     button.addEventListener("click", () => this.enlarge(number));
     figure.querySelector("figcaption")?.prepend(button);
     if (parent) byId(parent, HTMLElement).append(figure);

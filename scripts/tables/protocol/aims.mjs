@@ -133,6 +133,17 @@ function pinholeAims(rows = []) {
   ];
 }
 
+function albedoAims(rows = []) {
+  const of = (image, pose) => rows.filter((row) => row.image === image && row.pose === pose);
+  const told = of("lab_diffuse", "told");
+  const plain = of("lab_shading", "told");
+  return [
+    aim("albedo", "photographs, pose told: median correlation with the measured paint", median(told.map(({ correlation }) => correlation)), ">=", 0.85, told.length),
+    aim("albedo", "photographs, pose told: median of error / naive error", median(told.map(({ error, naive }) => error / naive)), "<=", 0.5, told.length),
+    aim("albedo", "shading alone: largest error, log units", worst(plain.map(({ error }) => error)), "<=", 0.02, plain.length),
+  ];
+}
+
 function randomAims(row) {
   if (!row) return [];
   const { cases, found } = row;
@@ -163,6 +174,7 @@ export const aims = (json) =>
     ...(json.photographs ? photographsAims(json.photographs) : []),
     ...(json.rgbd ? rgbdAims(json.rgbd) : []),
     ...(json.pinhole ? pinholeAims(json.pinhole) : []),
+    ...(json.albedo ? albedoAims(json.albedo) : []),
     ...randomAims(json.random),
     ...(json.exposure ? exposureAims(json.exposure) : []),
   ].filter(({ rows }) => rows > 0);

@@ -96,3 +96,43 @@ export async function measurePhotograph(cell, api, library) {
     judged(report, made.pose, milliseconds),
   );
 }
+
+/** Correlation of two fields of log colours and their root mean square difference, each channel less its mean over the pixels. */
+function compared(found, truth, pixels) {
+  const squares = { both: 0, found: 0, truth: 0, off: 0 };
+  const mean = (field, channel) => pixels.reduce((sum, pixel) => sum + field[3 * pixel + channel], 0) / pixels.length;
+  const means = [found, truth].map((field) => [0, 1, 2].map((channel) => mean(field, channel)));
+  for (const pixel of pixels) {
+    for (let channel = 0; channel < 3; channel++) {
+      const [a, b] = [found[3 * pixel + channel] - means[0][channel], truth[3 * pixel + channel] - means[1][channel]];
+      squares.both += a * b;
+      squares.found += a * a;
+      squares.truth += b * b;
+      squares.off += (a - b) ** 2;
+    }
+  }
+  const norm = Math.sqrt(squares.found * squares.truth);
+  return { correlation: norm > 0 ? squares.both / norm : 0, error: Math.sqrt(squares.off / (3 * pixels.length)) };
+}
+
+export async function measureAlbedo(cell, api, library) {
+  const made = api.sample(requestOf(cell.scene, library));
+  const { size, surface } = cell.scene;
+  const image = onto(size, library.photograph(surface, cell.photograph), made);
+  const paint = onto(size, library.photograph(surface, "lab_reflectance"), made);
+  // Of a picture of the shading alone all is one paint.
+  const isPainted = cell.photograph !== "lab_shading";
+  const truth = paint.data.map((value) => (isPainted ? Math.log(value) : 0));
+  return withRun(api, { image, depth: made.depth }, optionsOf(cell.options, made), (report, estimator, milliseconds) => {
+    const albedo = estimator.albedo();
+    const pixels = [...image.mask.keys()].filter((pixel) => paint.mask[pixel] && Number.isFinite(albedo[3 * pixel]));
+    const log = image.data.map((value) => Math.log(value));
+    return {
+      ...compared(albedo, truth, pixels),
+      naive: compared(log, truth, pixels).error,
+      normals: normalDegrees(estimator.imageNormals(), made.truth.imageNormals),
+      ...judged(report, made.pose, milliseconds),
+      error: compared(albedo, truth, pixels).error,
+    };
+  });
+}

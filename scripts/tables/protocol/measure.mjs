@@ -2,8 +2,8 @@
 import { sceneOf } from "./anywhere.mjs";
 import { judged, optionsOf, withRun } from "./runs.mjs";
 import { requestOf } from "./scenes.mjs";
-import { measurePair, measurePhotograph } from "./measure-reals.mjs";
 import { measureCapture, measurePinhole } from "./measure-perspective.mjs";
+import { measureAlbedo, measurePair, measurePhotograph } from "./measure-reals.mjs";
 import { measureIterations, measureRefinement, measureShading } from "./measure-shapes.mjs";
 
 async function measurePose(cell, api, library) {
@@ -62,6 +62,7 @@ const KINDS = {
   photograph: measurePhotograph,
   capture: measureCapture,
   pinhole: measurePinhole,
+  albedo: measureAlbedo,
 };
 
 /** The figures of a cell, as plain JSON; whatever goes wrong is thrown. */

@@ -77,3 +77,26 @@ export const photographs = {
           IMAGES.flatMap((image) => PHOTOGRAPH_BETAS.map((beta) => photographCell(object, image, beta))),
         ),
 };
+
+/** Albedo and shading, cast shadows included; the same shading alone, of which all is one paint; paint under an exact natural light. */
+export const PAINTS = ["lab_diffuse", "lab_shading", "natural_diffuse"];
+
+const albedoCell = (object, image, pose) => ({
+  id: `albedo/${object}/${image}/${pose}`,
+  kind: "albedo",
+  row: { object, image, pose, beta: pose === "told" ? 0 : 20 },
+  scene: { surface: object, light: "A", size: PHOTOGRAPH_SIZE, angles: { beta: pose === "told" ? 0 : 20 } },
+  photograph: image,
+  options: pose === "told" ? { ...FROM_ANYWHERE, start: "truth", registration: "fixed" } : FROM_ANYWHERE,
+});
+
+export const albedo = {
+  name: "albedo",
+  title: "Albedo: log paint beside the measured one, 96x96, each channel up to an offset; naive takes all of log S for paint",
+  cells: ({ painted }, quick) =>
+    quick
+      ? painted.slice(0, 2).map((object) => albedoCell(object, "lab_diffuse", "told"))
+      : painted.flatMap((object) =>
+          PAINTS.flatMap((image) => (image === "lab_diffuse" ? ["told", "found"] : ["told"]).map((pose) => albedoCell(object, image, pose))),
+        ),
+};

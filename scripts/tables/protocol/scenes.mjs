@@ -27,6 +27,8 @@ export const FROM_ANYWHERE = { start: "search", registration: "joint", shading: 
 
 /** Objects of `mit_berkeley`. */
 export const OBJECTS = ["raccoon", "frog2", "squirrel", "turtle"];
+/** Those, and six more of which the measured paint is there as well. */
+export const PAINTED = [...OBJECTS, "deer", "panther", "sun", "paper1", "cup1", "teabag1"];
 export const BUILT_IN = ["bust", "vase", "ripples"];
 
 /**
@@ -35,8 +37,8 @@ export const BUILT_IN = ["bust", "vase", "ripples"];
  */
 export const kit = (complete) =>
   complete
-    ? { complete, main: "mozart", naturals: ["A", "B", "C"], surfaces: ["mozart", ...OBJECTS, ...BUILT_IN], objects: OBJECTS }
-    : { complete, main: "bust", naturals: ["window", "overcast"], surfaces: BUILT_IN, objects: [] };
+    ? { complete, main: "mozart", naturals: ["A", "B", "C"], surfaces: ["mozart", ...OBJECTS, ...BUILT_IN], objects: OBJECTS, painted: PAINTED }
+    : { complete, main: "bust", naturals: ["window", "overcast"], surfaces: BUILT_IN, objects: [], painted: [] };
 
 /** A scene of a cell as a request for `sample`: names become heights and coefficients where the package lacks them. */
 export const requestOf = ({ surface, light, ...rest }, library) => ({

@@ -2,13 +2,14 @@
 
 use nalgebra::Vector3;
 
+use super::paint::PaintStage;
 use crate::error::Result;
 use crate::estimator::pair::ViewPair;
 use crate::estimator::solution::Solution;
 use crate::light::{Light, LightFitter};
-use crate::pose::Correspondences;
+use crate::pose::{Correspondences, Similarity};
 use crate::shape::first_exposure;
-use crate::view::Normals;
+use crate::view::{ColourView, Normals};
 
 /// Median log residual up to which a fitted light counts as explaining the colours: noise and discretisation.
 const EXPLAINED: f64 = 0.07;
@@ -17,6 +18,8 @@ const EXPLAINED: f64 = 0.07;
 #[derive(Clone, Copy)]
 pub struct Inputs<'a> {
     pub pair: &'a ViewPair,
+    /// The image that shape is found from: without paint.
+    pub colours: &'a ColourView,
     /// The light stage, for the depth view's normals at the image's pixels and the variance of the colours.
     pub fitted: &'a LightStage,
     pub correspondences: &'a Correspondences,
@@ -26,13 +29,14 @@ pub struct Inputs<'a> {
 
 impl<'a> Inputs<'a> {
     /// Of an iteration, by its number from zero.
-    pub const fn of(
+    pub fn of(
         pair: &'a ViewPair,
+        paint: &'a PaintStage,
         fitted: &'a LightStage,
         correspondences: &'a Correspondences,
         iteration: u32,
     ) -> Self {
-        Self { pair, fitted, correspondences, is_first: iteration == 0 }
+        Self { pair, colours: paint.colours(pair), fitted, correspondences, is_first: iteration == 0 }
     }
 }
 
@@ -65,28 +69,31 @@ impl LightStage {
         self.first_exposure
     }
 
-    /// Brings the depth view's normals to the image's pixels and fits the light to them; `None` where it is known: its
-    /// exposure follows with the normals.
+    /// Brings the depth view's normals to the image's pixels and fits the light to them and the colours without paint;
+    /// `None` where it is known: its exposure follows with the normals.
     pub fn fit(
         &mut self,
         pair: &ViewPair,
+        colours: &ColourView,
         solution: &Solution,
         correspondences: &Correspondences,
     ) -> Result<Option<Light>> {
-        self.bring_normals(solution, correspondences);
+        self.bring_normals(&solution.depth.normals, &solution.pose, correspondences);
         if pair.known_light().is_some() {
             return Ok(None);
         }
         let weight = pair.options.weights.light;
-        let fit = self.fitter.fit(&self.depth_normals, pair.log(), &pair.prior, weight)?;
+        let fit =
+            self.fitter.fit(&self.depth_normals, colours.log.each_ref().map(Vec::as_slice), &pair.prior, weight)?;
         self.residual = fit.residual;
         Ok(Some(fit.light))
     }
 
-    fn bring_normals(&mut self, solution: &Solution, correspondences: &Correspondences) {
-        let rotation = solution.pose.rotation.cast::<f32>();
+    /// Brings `normals` of the depth view to the image's pixels.
+    pub fn bring_normals(&mut self, normals: &Normals, pose: &Similarity, correspondences: &Correspondences) {
+        let rotation = pose.rotation.cast::<f32>();
         for (pixel, &index) in correspondences.depth_of_pixel().iter().enumerate() {
-            let normal = usize::try_from(index).ok().map(|index| solution.depth.normals.get(index));
+            let normal = usize::try_from(index).ok().map(|index| normals.get(index));
             let rotated = normal.map_or([f32::NAN; 3], |normal| (rotation * Vector3::from(normal)).into());
             self.depth_normals.set(pixel, rotated);
         }

@@ -123,14 +123,14 @@ impl RefinementStage {
     /// Normals and depth of the depth view (Eq. 17 to 19), unless a worker has made them. Writes the depth view's shape
     /// in `solution` and nothing else of it.
     pub fn refine(&mut self, inputs: Inputs<'_>, accepted: &Accepted, scratch: &mut Scratch, solution: &mut Solution) {
-        let Inputs { pair, correspondences, .. } = inputs;
+        let Inputs { pair, colours, correspondences, .. } = inputs;
         if !self.made_by_worker {
             let terms = self.terms.unwrap_or_else(|| terms(inputs, solution));
             let (image_normals, position) = match self.terms {
                 Some(_) => (accepted.image_normals(), self.position.each_ref().map(Vec::as_slice)),
                 None => (&solution.image.normals, correspondences.position()),
             };
-            let problem = RefinementProblem { depth: &pair.depth, image: &pair.image, position, image_normals, terms };
+            let problem = RefinementProblem { depth: &pair.depth, image: colours, position, image_normals, terms };
             scratch.resize(pair.depth.size.len());
             let Shape { normals, points } = &mut solution.depth;
             self.refiner.refine(scratch, problem, normals, &mut points.z);

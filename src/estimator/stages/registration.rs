@@ -8,6 +8,7 @@ use crate::estimator::solution::Solution;
 use crate::light::Light;
 use crate::options::{Registration, Start};
 use crate::pose::{ContrastReport, OutlineReport, PhotometricReport, Similarity, Uncertainty};
+use crate::view::Normals;
 
 use super::colours::ColourRegistration;
 use super::light::Inputs;
@@ -91,6 +92,11 @@ impl RegistrationStage {
     /// What the registration by colours has found, where pose and light are its own to settle.
     pub fn found_by_colours(&self) -> Option<&PhotometricReport> {
         self.colours.as_ref().filter(|colours| !colours.is_coarse()).and_then(ColourRegistration::found)
+    }
+
+    /// The measured normals of the depth view, the best there are.
+    pub fn measured_normals<'a>(&'a self, pair: &'a ViewPair) -> &'a Normals {
+        self.colours.as_ref().map_or(&pair.depth.normals, ColourRegistration::normals)
     }
 
     /// The registration by colours, for the search.

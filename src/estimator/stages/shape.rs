@@ -64,9 +64,9 @@ impl ShapeStage {
     }
 }
 
-fn problem<'a>(Inputs { pair, fitted, .. }: Inputs<'a>, light: &'a Light) -> ImageShapeProblem<'a> {
+fn problem<'a>(Inputs { pair, colours, fitted, .. }: Inputs<'a>, light: &'a Light) -> ImageShapeProblem<'a> {
     ImageShapeProblem {
-        image: &pair.image,
+        image: colours,
         light,
         prior: fitted.depth_normals(),
         prior_weight: pair.options.weights.prior,

@@ -80,13 +80,13 @@ impl SurfaceRegistration {
 /// The better of two poses, and whether it is better than that of the solution. All are compared over the points that
 /// the solution sees.
 fn better(
-    Inputs { pair, correspondences, .. }: Inputs<'_>,
+    Inputs { pair, colours, correspondences, .. }: Inputs<'_>,
     solution: &Solution,
     [agreed, found]: [&Similarity; 2],
 ) -> (Similarity, bool) {
     let evaluated: Vec<u32> = objective::evaluation_points(pair, correspondences).collect();
     let light = solution.light.total();
-    let trial = Trial::of(pair, solution, &light);
+    let trial = Trial::of(pair, colours, solution, &light);
     let objective = |pose: &Similarity| objective::evaluate(pair, &evaluated, Trial { pose, ..trial }).total();
     let pose = if objective(agreed) < objective(found) { agreed } else { found };
     let start = &solution.pose;

@@ -1,0 +1,346 @@
+//! Unlike resolutions of the two views are matched: a photograph that is several times finer than the depth map is
+//! worked on where one of its pixels covers about as much of the object as one of the depth map's (docs/method.md,
+//! section 4).
+//!
+//! A working pixel is the mean of the linear intensities of the usable pixels in a square of the photograph; what is
+//! found is carried back to the photograph's pixels. Normals of a coarse depth map cannot explain finer colours: they
+//! would be noise to the model, and cost memory and time. Where the views are alike nothing is touched. A depth map that
+//! is finer than the image is used as it is: its normals average what an image pixel sees.
+
+use nalgebra::Vector3;
+
+use super::colour::{self, ColourImage, ColourSamples, ColourView};
+use super::{Camera, DepthMap, DepthSamples, Normals, Pinhole, Size};
+use crate::error::Result;
+
+/// Ratios of resolution are rounded down from here: areas of masks, and of views of one object, are not exact.
+const ROUNDING: f64 = 0.25;
+/// Least share of a working pixel that usable pixels of the image cover.
+const COVERED: f64 = 0.5;
+/// Working pixels of air around the object, where the image is cut to its mask.
+const MARGIN: usize = 4;
+
+/// From the caller's image to the one that is worked on, and back.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WorkingSize {
+    full: Size,
+    working: Size,
+    /// Side of a working pixel in the caller's.
+    factor: usize,
+    /// First column and row of the caller's image that is worked on.
+    origin: [usize; 2],
+    is_orthographic: bool,
+    /// The caller's pixels that are usable.
+    mask: Vec<bool>,
+}
+
+impl WorkingSize {
+    /// The view that is worked on, and the way back where it is not the caller's own. It has at most `most` pixels
+    /// where a photograph finer than the depth map can be made so small.
+    ///
+    /// # Errors
+    /// Those of [`ColourView::new`].
+    pub fn of(image: ColourImage, depth: &DepthMap, most: usize) -> Result<(ColourView, Option<Self>)> {
+        let (full, object) = colour::checked(&image)?;
+        let area = Area::of(full, image.mask.is_some().then_some(&object[..]));
+        let own = (depth.width * depth.height).max(1);
+        let mut factor = factor(&image, &object, depth);
+        while area.working(factor).len() > most && area.working(factor).len() > own {
+            factor += 1;
+        }
+        if factor == 1 && full.len() <= most {
+            return Ok((ColourView::new(image)?, None));
+        }
+        let working = area.working(factor);
+        let is_orthographic = image.camera.is_none();
+        let mut way = Self { full, working, factor, origin: area.origin, is_orthographic, mask: object };
+        let transfer = colour::transfer_of(&image);
+        let reduced = way.reduce(&image, transfer);
+        let view = ColourView::new(reduced)?.with_transfer(transfer);
+        Ok((view, Some(way)))
+    }
+
+    /// Means of linear intensity; leaves the usable pixels in the mask.
+    fn reduce(&mut self, image: &ColourImage, transfer: colour::Transfer) -> ColourImage {
+        let Size { width, height } = self.working;
+        let mut samples = vec![0.0; 3 * self.working.len()];
+        let mut mask = vec![0; self.working.len()];
+        for working in 0..self.working.len() {
+            let (mut sum, mut count) = ([0.0_f64; 3], 0);
+            for pixel in self.covered(working) {
+                let linear = if self.mask[pixel] { image.samples.linear(pixel, transfer) } else { None };
+                self.mask[pixel] = linear.is_some();
+                if let Some(linear) = linear {
+                    count += 1;
+                    (0..3).for_each(|channel| sum[channel] += f64::from(linear[channel]));
+                }
+            }
+            if count > 0 && f64::from(count) >= COVERED * (self.factor * self.factor) as f64 {
+                mask[working] = u8::MAX;
+                (0..3).for_each(|c| samples[3 * working + c] = (sum[c] / f64::from(count)) as f32);
+            }
+        }
+        let samples = ColourSamples::RgbLinear(samples);
+        let camera = image.camera.map(|camera| self.camera(camera));
+        ColourImage { width, height, samples, transfer: None, mask: Some(mask), camera }
+    }
+
+    /// The caller's pixels that a working pixel covers.
+    fn covered(&self, working: usize) -> impl Iterator<Item = usize> + use<> {
+        let (column, row) = self.working.position(working);
+        let [left, top] = [self.origin[0] + column * self.factor, self.origin[1] + row * self.factor];
+        let (full, factor) = (self.full, self.factor);
+        let rows = top..(top + factor).min(full.height);
+        rows.flat_map(move |row| (left..(left + factor).min(full.width)).map(move |column| full.index(column, row)))
+    }
+
+    fn camera(&self, Pinhole { fx, fy, cx, cy, distortion }: Pinhole) -> Pinhole {
+        let side = self.factor as f64;
+        let place = |centre: f64, origin: usize| (centre - origin as f64 + 0.5) / side - 0.5;
+        let [cx, cy] = [place(cx, self.origin[0]), place(cy, self.origin[1])];
+        Pinhole { fx: fx / side, fy: fy / side, cx, cy, distortion }
+    }
+
+    /// How long a unit of the working view is in the caller's: both are metres behind a pinhole.
+    #[must_use]
+    pub fn unit(&self) -> f64 {
+        if self.is_orthographic { self.factor as f64 } else { 1.0 }
+    }
+
+    /// Side of a working pixel in the caller's.
+    #[must_use]
+    pub const fn factor(&self) -> usize {
+        self.factor
+    }
+
+    /// Where the origin of the working view lies in the caller's: the middles of two images without a camera differ
+    /// where one is cut.
+    #[must_use]
+    pub fn shift(&self) -> Vector3<f64> {
+        if !self.is_orthographic {
+            return Vector3::zeros();
+        }
+        let middle = |side: usize| 0.5 * (side as f64 - 1.0);
+        let side = self.factor as f64;
+        let shift = |origin: usize, working: usize, full: usize| {
+            origin as f64 + side * middle(working) + 0.5 * (side - 1.0) - middle(full)
+        };
+        let [column, row] = self.origin;
+        Vector3::new(
+            shift(column, self.working.width, self.full.width),
+            shift(row, self.working.height, self.full.height),
+            0.0,
+        )
+    }
+
+    /// Column and row of the working view, continuous, of a pixel of the caller's.
+    fn place(&self, pixel: usize) -> [f32; 2] {
+        let (column, row) = self.full.position(pixel);
+        let place = |at: usize, origin: usize, side: usize| {
+            let place = (at as f64 - origin as f64 + 0.5) / self.factor as f64 - 0.5;
+            place.clamp(0.0, (side - 1) as f64) as f32
+        };
+        [place(column, self.origin[0], self.working.width), place(row, self.origin[1], self.working.height)]
+    }
+
+    /// The working pixels around a position, near ones first by rings.
+    fn around(&self, column: f32, row: f32) -> impl Iterator<Item = usize> + use<> {
+        let size = self.working;
+        let offsets = (1..=2).flat_map(|ring| {
+            (-ring..=ring).flat_map(move |down| (-ring..=ring).map(move |right| [right as f32, down as f32]))
+        });
+        offsets.filter_map(move |[right, down]| size.nearest(column + right, row + down))
+    }
+
+    /// A field at the caller's pixels, times `unit`: bilinear, the nearest value that there is at rims, NaN off the mask.
+    #[must_use]
+    pub fn carry(&self, field: &[f32], unit: f64) -> Vec<f32> {
+        let mut carried = vec![f32::NAN; self.full.len()];
+        for pixel in (0..self.full.len()).filter(|&pixel| self.mask[pixel]) {
+            let [column, row] = self.place(pixel);
+            let mut value = self.working.bilinear_of_known(field, column, row);
+            if value.is_nan() {
+                value = self
+                    .around(column, row)
+                    .map(|beside| field[beside])
+                    .find(|beside| !beside.is_nan())
+                    .unwrap_or(value);
+            }
+            carried[pixel] = unit as f32 * value;
+        }
+        carried
+    }
+
+    /// Normals, of unit length.
+    #[must_use]
+    pub fn carry_normals(&self, normals: &Normals) -> Normals {
+        let [x, y, z] = [&normals.x, &normals.y, &normals.z].map(|axis| self.carry(axis, 1.0));
+        let mut carried = Normals { x, y, z };
+        for pixel in 0..carried.len() {
+            let normal = carried.get(pixel);
+            let length = normal.iter().map(|value| value * value).sum::<f32>().sqrt();
+            carried.set(pixel, normal.map(|value| value / length));
+        }
+        carried
+    }
+
+    /// Three channels, interleaved.
+    #[must_use]
+    pub fn carry_colours(&self, interleaved: &[f32]) -> Vec<f32> {
+        let [x, y, z] = [0, 1, 2].map(|channel| {
+            let plane: Vec<f32> = interleaved.iter().skip(channel).step_by(3).copied().collect();
+            self.carry(&plane, 1.0)
+        });
+        Normals { x, y, z }.interleaved()
+    }
+
+    /// Indices, -1 for none, of the nearest working pixel.
+    #[must_use]
+    pub fn carry_indices(&self, indices: &[i32]) -> Vec<i32> {
+        let nearest = |pixel: usize| {
+            let [column, row] = self.place(pixel);
+            self.working.nearest(column, row).map_or(-1, |working| indices[working])
+        };
+        (0..self.full.len()).map(|pixel| if self.mask[pixel] { nearest(pixel) } else { -1 }).collect()
+    }
+}
+
+/// The part of an image that is worked on.
+struct Area {
+    origin: [usize; 2],
+    size: [usize; 2],
+}
+
+impl Area {
+    /// The box around the mask, or everything.
+    fn of(full: Size, mask: Option<&[bool]>) -> Self {
+        let mut area = Self { origin: [0, 0], size: [full.width, full.height] };
+        let Some(mask) = mask else { return area };
+        let (mut low, mut high) = ([usize::MAX; 2], [0; 2]);
+        for pixel in (0..full.len()).filter(|&pixel| mask[pixel]) {
+            let place = [pixel % full.width, pixel / full.width];
+            for axis in 0..2 {
+                (low[axis], high[axis]) = (low[axis].min(place[axis]), high[axis].max(place[axis]));
+            }
+        }
+        for axis in 0..2 {
+            area.origin[axis] = low[axis].saturating_sub(MARGIN);
+            area.size[axis] = (high[axis] + 1 + MARGIN).min(area.size[axis]) - area.origin[axis];
+        }
+        area
+    }
+
+    fn working(&self, factor: usize) -> Size {
+        let [width, height] = self.size.map(|side| side.div_ceil(factor).max(super::raster::SMALLEST_SIDE));
+        Size { width, height }
+    }
+}
+
+/// How many image pixels a depth pixel is as wide as, at the object: by both focal lengths, else by the areas of both
+/// masks, else by the whole views; never more than by these.
+fn factor(image: &ColourImage, object: &[bool], depth: &DepthMap) -> usize {
+    let count = |inside: &[bool]| inside.iter().filter(|&&inside| inside).count();
+    let frames = ratio(object.len(), depth.width * depth.height);
+    let footprint = match (image.camera, depth.camera) {
+        (Some(fine), Some(coarse)) => {
+            let focal_length = |camera| Camera::Pinhole(camera).focal_length().unwrap_or(1.0);
+            focal_length(fine) / focal_length(coarse)
+        }
+        _ if image.mask.is_some() => ratio(count(object), measured(depth)),
+        _ => frames,
+    };
+    let factor = footprint.min(frames) + ROUNDING;
+    // A ratio that is not a number asks for nothing.
+    if factor >= 2.0 { factor as usize } else { 1 }
+}
+
+/// By which factor the pixels' sides differ.
+fn ratio(fine: usize, coarse: usize) -> f64 {
+    (fine as f64 / coarse.max(1) as f64).sqrt()
+}
+
+/// Pixels of the depth map with a depth.
+fn measured(depth: &DepthMap) -> usize {
+    let inside =
+        |index: usize| depth.mask.as_ref().is_none_or(|mask| mask.get(index).is_some_and(|&inside| inside != 0));
+    let known = |index: usize| match &depth.samples {
+        DepthSamples::Float(data) => data.get(index).is_some_and(|&value| value > 0.0 && value.is_finite()),
+        DepthSamples::Integer(data) => data.get(index).is_some_and(|&value| value > 0),
+        DepthSamples::Cloud(data) => data.get(3 * index + 2).is_some_and(|value| value.is_finite()),
+    };
+    (0..depth.width * depth.height).filter(|&index| inside(index) && known(index)).count()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MOST: usize = 4_000_000;
+
+    fn image(width: usize, height: usize) -> ColourImage {
+        let samples = ColourSamples::RgbLinear((0..3 * width * height).map(|index| 1.0 + (index % 7) as f32).collect());
+        ColourImage { width, height, samples, transfer: None, mask: None, camera: None }
+    }
+
+    fn depth(width: usize, height: usize) -> DepthMap {
+        let samples = DepthSamples::Float(vec![5.0; width * height]);
+        DepthMap { width, height, samples, unit: None, mask: None, camera: None, normals: None }
+    }
+
+    fn camera(focal_length: f64) -> Option<Pinhole> {
+        Some(Pinhole { fx: focal_length, fy: focal_length, cx: 20.0, cy: 20.0, distortion: [0.0; 5] })
+    }
+
+    fn factor_of(image: &ColourImage, depth: &DepthMap, most: usize) -> usize {
+        WorkingSize::of(image.clone(), depth, most).unwrap().1.map_or(1, |way| way.factor())
+    }
+
+    #[test]
+    fn the_factor_is_that_of_the_footprints_and_never_more_than_that_of_the_frames() {
+        for (side, expected) in [(40, 1), (60, 1), (72, 2), (80, 2), (158, 4), (20, 1)] {
+            assert_eq!(factor_of(&image(side, side), &depth(40, 40), MOST), expected, "{side}");
+        }
+        // A tenth of the columns in a frame of the same size is no coarser map.
+        let mut narrow = depth(40, 40);
+        narrow.mask = Some((0..1600).map(|index| u8::from(index % 40 < 4)).collect());
+        let mut whole = image(40, 40);
+        whole.mask = Some(vec![1; 1600]);
+        assert_eq!(factor_of(&whole, &narrow, MOST), 1);
+        // Focal lengths say it before masks do, and a cut frame does not make an image coarser.
+        let (mut metric, mut cut) = (image(120, 120), image(40, 40));
+        (metric.camera, cut.camera) = (camera(300.0), camera(300.0));
+        let mut coarse = depth(40, 40);
+        coarse.camera = camera(100.0);
+        assert_eq!([factor_of(&metric, &coarse, MOST), factor_of(&cut, &coarse, MOST)], [3, 1]);
+        coarse.camera = camera(290.0);
+        assert_eq!(factor_of(&metric, &coarse, MOST), 1);
+        // What does not fit is made smaller as long as it is finer than the depth map.
+        assert_eq!([MOST, 450].map(|most| factor_of(&image(72, 72), &depth(20, 20), most)), [3, 4]);
+    }
+
+    #[test]
+    fn an_object_in_a_corner_keeps_its_place() {
+        let mut fine = image(123, 90);
+        fine.mask = Some((0..123 * 90).map(|index| u8::from(index % 123 > 40 && index / 123 > 30)).collect());
+        let mut coarse = depth(30, 22);
+        coarse.mask = Some((0..30 * 22).map(|index| u8::from(index % 30 > 9 && index / 30 > 6)).collect());
+        let (view, way) = WorkingSize::of(fine, &coarse, MOST).unwrap();
+        let way = way.expect("four times as fine");
+        let full = Size { width: 123, height: 90 };
+        for working in [0, 40, view.size.len() - 1] {
+            // The middle of the pixels that it covers, in the frame of either view.
+            let covered: Vec<_> = way.covered(working).collect();
+            if covered.len() < way.factor() * way.factor() {
+                continue;
+            }
+            let middle = |place: fn((usize, usize)) -> usize| {
+                covered.iter().map(|&pixel| place(full.position(pixel)) as f64).sum::<f64>() / covered.len() as f64
+            };
+            let expected = Camera::Orthographic.ray(full, [middle(|place| place.0), middle(|place| place.1)]);
+            let (column, row) = view.size.position(working);
+            let [x, y] = Camera::Orthographic.ray(view.size, [column as f64, row as f64]);
+            let found = way.unit() * Vector3::new(x, y, 0.0) + way.shift();
+            assert!((found.x - expected[0]).abs() + (found.y - expected[1]).abs() < 1e-9, "{found} {expected:?}");
+        }
+    }
+}
