@@ -1,10 +1,8 @@
 //! Outlines in place of colours that are painted (docs/method.md, section 10): near a told pose, or from anywhere.
 
-use nalgebra::{Matrix3, Vector3};
-
 use crate::estimator::gauge;
 use crate::estimator::pair::ViewPair;
-use crate::pose::{Angles, Outline, OutlinePrior, OutlineProblem, OutlineReport, Similarity};
+use crate::pose::{Angles, Outline, OutlinePrior, OutlineProblem, OutlineReport};
 use crate::view::Normals;
 
 /// Noise that the colours leave above which it is none, but paint and shadow, log units; renders leave 0.010 to 0.018, all

@@ -169,10 +169,10 @@ impl RegistrationStage {
                 let settled = region.settle(pair, colours)?;
                 self.told = Told::Improved(region);
                 match settled {
-                    Settled::ByColours(found) => found,
+                    Settled::ByColours(found) => *found,
                     Settled::ByOutlines(found) => {
                         let registered = Registered::by_outlines(&found);
-                        self.told = Told::Outlined(found);
+                        self.told = Told::Outlined(*found);
                         return Ok(Some(registered));
                     }
                     Settled::Kept => {

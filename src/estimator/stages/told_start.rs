@@ -19,10 +19,7 @@ use crate::estimator::local_optima::LocalOptima;
 use crate::estimator::pair::ViewPair;
 use crate::estimator::workers::task::RegisteredCandidate;
 use crate::options::Start;
-use crate::pose::{
-    ImageGrid, Outline, OutlinePrior, OutlineProblem, OutlineReport, PhotometricReport, Search, SearchProblem,
-    Similarity,
-};
+use crate::pose::{ImageGrid, OutlinePrior, OutlineReport, PhotometricReport, Search, SearchProblem, Similarity};
 
 /// Tolerance of the object's place where none is stated, in object sizes (root mean square distance of its points from
 /// their middle): the object's own width, more or less, and as far as a turn by 8 degrees about a sensor moves what is 0.2
@@ -56,9 +53,9 @@ pub struct TrustRegion {
 
 /// What became of a told start.
 pub enum Settled {
-    ByColours(PhotometricReport),
+    ByColours(Box<PhotometricReport>),
     /// The colours are painted: outlines decide.
-    ByOutlines(OutlineReport),
+    ByOutlines(Box<OutlineReport>),
     /// Nothing better within the tolerance.
     Kept,
 }
@@ -103,7 +100,7 @@ impl TrustRegion {
             && self.holds(&found.pose)
             && explains(pair, found)
         {
-            return Ok(Settled::ByColours(found.clone()));
+            return Ok(Settled::ByColours(Box::new(found.clone())));
         }
         let plain = colours.take_found().map(Box::new);
         let mut optima = LocalOptima::new(MOST_TRIED + 4, pair.image.log_spread(), pair.image.log_noise());
@@ -125,7 +122,7 @@ impl TrustRegion {
             (Some(best), outlined) if best.noise <= LARGEST_PURE_NOISE || outlined.is_none() => {
                 self.by_all_points(pair, colours, *best)
             }
-            (_, Some(outlined)) => Ok(Settled::ByOutlines(outlined)),
+            (_, Some(outlined)) => Ok(Settled::ByOutlines(Box::new(outlined))),
             (..) => Ok(Settled::Kept),
         }
     }
@@ -141,7 +138,7 @@ impl TrustRegion {
         colours.adopt(best);
         let found = colours.register(pair, &pose)?.clone();
         if self.holds(&found.pose) {
-            return Ok(Settled::ByColours(found));
+            return Ok(Settled::ByColours(Box::new(found)));
         }
         colours.take_found();
         Ok(Settled::Kept)
