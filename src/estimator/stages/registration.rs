@@ -10,7 +10,7 @@ use crate::pose::{OutlineReport, PhotometricReport, Similarity, Uncertainty};
 
 use super::colours::ColourRegistration;
 use super::light::Inputs;
-use super::outlines::{self, LARGEST_PURE_NOISE};
+use super::outlines;
 use super::surfaces::{Matched, SurfaceRegistration};
 use super::told_start::{Settled, TrustRegion};
 
@@ -97,7 +97,7 @@ impl RegistrationStage {
         found: Option<PhotometricReport>,
         present: &Similarity,
     ) -> Option<Registered> {
-        let is_painted = found.as_ref().is_none_or(|found| found.noise > LARGEST_PURE_NOISE);
+        let is_painted = found.as_ref().is_none_or(|found| outlines::is_painted(pair, found.noise));
         if is_painted
             && pair.options.registration == Registration::Joint
             && let Some(outlined) = outlines::anywhere(pair, self.colours.as_ref()?.normals())

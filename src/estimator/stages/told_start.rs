@@ -12,7 +12,7 @@
 use nalgebra::Vector3;
 
 use super::colours::ColourRegistration;
-use super::outlines::{self, LARGEST_PURE_NOISE};
+use super::outlines;
 use crate::error::Result;
 use crate::estimator::gauge;
 use crate::estimator::local_optima::LocalOptima;
@@ -119,7 +119,7 @@ impl TrustRegion {
         let best =
             optima.decide().best.filter(|best| best.candidate != STAYING).and_then(|best| best.registered.report);
         match (best, outlined) {
-            (Some(best), outlined) if best.noise <= LARGEST_PURE_NOISE || outlined.is_none() => {
+            (Some(best), outlined) if !outlines::is_painted(pair, best.noise) || outlined.is_none() => {
                 self.by_all_points(pair, colours, *best)
             }
             (_, Some(outlined)) => Ok(Settled::ByOutlines(Box::new(outlined))),
