@@ -40,7 +40,7 @@ function vase({ decodeColour, decodeDepth, decodeMask }) {
   };
 }
 
-/** Every second pixel of a colour image's blocks in one: means. */
+/** A colour image at half its resolution: means of blocks of four pixels. */
 function halved({ width, height, data, ...rest }) {
   const half = { width: width / 2, height: height / 2, data: new data.constructor(data.length / 4) };
   for (let index = 0; index < half.width * half.height; index++) {
@@ -53,10 +53,11 @@ function halved({ width, height, data, ...rest }) {
   return { ...rest, ...half };
 }
 
-/** A colour image twice as large as its depth map, both registered: `android_rgbd` and a lamp of `mitten_rgbd`. */
+/** A colour image and a mask twice as large as the depth map, registered: `android_rgbd` and a lamp of `mitten_rgbd`. */
 function twofold(folder, names, camera, { decodeColour, decodeDepth, decodeMask }) {
   const [colour, depth, mask] = names.map((name) => bytes(folder, name));
-  const shared = { mask: decodeMask(mask).data, camera };
+  const { width, data } = decodeMask(mask);
+  const shared = { mask: data.filter((_, index) => index % 2 === 0 && Math.floor(index / width) % 2 === 0), camera };
   const FIFTH = 0.2 * MILLIMETRE;
   return { image: { ...halved(decodeColour(colour)), ...shared }, depth: { ...decodeDepth(depth), ...shared, unit: FIFTH } };
 }

@@ -47,7 +47,7 @@ mod light;
 #[macro_use]
 mod numeric;
 mod options;
-pub mod pose;
+mod pose;
 mod report;
 pub mod scenes;
 mod shape;

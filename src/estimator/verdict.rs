@@ -5,6 +5,7 @@
 //! or lost. `docs/method.md`, section 16, lists the thresholds with the data they were calibrated on.
 
 use crate::options::{Registration, Shading};
+use crate::pose::{ContrastReport, OutlineReport, PhotometricReport, Uncertainty};
 use crate::report::Status;
 use crate::text::Fixed;
 
@@ -109,6 +110,36 @@ pub struct ContrastEvidence<'a> {
     pub unexplained: f64,
 }
 
+impl<'a> ContrastEvidence<'a> {
+    /// Of a registration by local contrast.
+    pub fn of(found: &'a ContrastReport) -> Self {
+        Self { sigma: largest(&found.uncertainty), weakest: &found.uncertainty.weakest, unexplained: found.objective }
+    }
+}
+
+impl<'a> ColourEvidence<'a> {
+    /// Of a registration, given the spread of the colours.
+    pub fn of(found: &'a PhotometricReport, log_spread: f64) -> Self {
+        Self {
+            sigma: largest(&found.uncertainty),
+            weakest: &found.uncertainty.weakest,
+            unexplained: found.noise / log_spread,
+            inliers: found.inliers,
+        }
+    }
+}
+
+impl<'a> OutlineEvidence<'a> {
+    /// Of a registration by outlines.
+    pub fn of(found: &'a OutlineReport) -> Self {
+        Self { sigma: largest(&found.uncertainty), weakest: &found.uncertainty.weakest, is_unseen: found.unseen }
+    }
+}
+
+fn largest(uncertainty: &Uncertainty) -> f64 {
+    uncertainty.rotation_degrees.into_iter().fold(0.0, f64::max)
+}
+
 /// A status with its reason.
 pub type Verdict = (Status, Option<String>);
 
@@ -165,7 +196,7 @@ fn reason_for_distrust(evidence: &Evidence<'_>) -> Option<Verdict> {
     }
     if let Some(OutlineEvidence { sigma, weakest, is_unseen }) = evidence.outlines {
         let painted = "outlines decide, since the colours are painted";
-        let sigma = (sigma.is_nan() || sigma > DOUBTFUL_SIGMA).then(|| Fixed(sigma, 1));
+        let sigma = (sigma.is_nan() || sigma > DOUBTFUL_SIGMA).then_some(Fixed(sigma, 1));
         let reason = match (is_unseen, sigma) {
             (true, _) => format!("{painted}; they do not show {weakest}: what was told of it is kept"),
             (_, Some(sigma)) => {
@@ -294,8 +325,6 @@ mod tests {
     /// Whether its end is to be relied on.
     fn reliability() -> Vec<Row> {
         let colours = |colours: ColourEvidence<'static>| Evidence { colours: Some(colours), ..SETTLED };
-        let outlines =
-            |outlines: OutlineEvidence<'static>| Evidence { colours: None, outlines: Some(outlines), ..SETTLED };
         let (lost, ambiguous) = (Some(Status::Lost), Some(Status::Ambiguous));
         vec![
             ("little overlap", Evidence { overlap: 0.04, ..MOVING }, lost, "only 4.0 %"),
@@ -312,6 +341,24 @@ mod tests {
             ("colours without spread", colours(ColourEvidence { unexplained: f64::NAN, ..SURE }), lost, "unexplained"),
             ("outliers", colours(ColourEvidence { inliers: 0.3, ..SURE }), lost, "only 30 % of the points"),
             ("a fair sigma", colours(ColourEvidence { sigma: 1.6, ..SURE }), ambiguous, "1.6 degrees (one sigma)"),
+            ("rivals", Evidence { rivals: 2, nearest_rival: 40.2, ..SETTLED }, ambiguous, "2 other poses"),
+            (
+                "rivals of matched surfaces",
+                Evidence { rivals: 1, nearest_rival: 9.0, ..ICP },
+                ambiguous,
+                "9 degrees away",
+            ),
+            ("an end by the cap with rivals", Evidence { iteration: 60, rivals: 1, ..MOVING }, ambiguous, "1 other"),
+            ("what goes on, whatever its rivals", Evidence { rivals: 1, ..MOVING }, None, ""),
+        ]
+    }
+
+    /// Told starts, and what outlines say where colours are painted.
+    fn told_and_outlined() -> Vec<Row> {
+        let outlines =
+            |outlines: OutlineEvidence<'static>| Evidence { colours: None, outlines: Some(outlines), ..SETTLED };
+        let (lost, ambiguous) = (Some(Status::Lost), Some(Status::Ambiguous));
+        vec![
             (
                 "a told start that nothing improves",
                 Evidence { has_kept_start: true, colours: None, ..SETTLED },
@@ -332,21 +379,12 @@ mod tests {
                 "do not show rotation about y",
             ),
             ("a told start that still settles", Evidence { has_kept_start: true, ..MOVING }, None, ""),
-            ("rivals", Evidence { rivals: 2, nearest_rival: 40.2, ..SETTLED }, ambiguous, "2 other poses"),
-            (
-                "rivals of matched surfaces",
-                Evidence { rivals: 1, nearest_rival: 9.0, ..ICP },
-                ambiguous,
-                "9 degrees away",
-            ),
-            ("an end by the cap with rivals", Evidence { iteration: 60, rivals: 1, ..MOVING }, ambiguous, "1 other"),
-            ("what goes on, whatever its rivals", Evidence { rivals: 1, ..MOVING }, None, ""),
         ]
     }
 
     #[test]
     fn each_kind_of_evidence_has_its_verdict() {
-        for (name, evidence, status, word) in ends().into_iter().chain(reliability()) {
+        for (name, evidence, status, word) in ends().into_iter().chain(reliability()).chain(told_and_outlined()) {
             let found = verdict(&evidence);
             assert_eq!(found.as_ref().map(|(status, _)| *status), status, "{name}: {found:?}");
             let message = found.and_then(|(_, message)| message).unwrap_or_default();

@@ -4,6 +4,7 @@
 //! |---|---|---|---|---|
 //! | `search/` | initialisation, before Algorithm 1: poses worth refining when nothing is known | log likelihood over a constant colour | rotation, scale, translation in the image | sweep over all rotations, correlation by FFT, local ascent |
 //! | `photometric/` | registration by colours, beyond the paper | robust residuals of log colours + prior of the light | pose and light | Gauss-Newton, the light eliminated; instrumental variables |
+//! | `outline/` | registration by outlines, beyond the paper, where colours are painted | rims of the depth map on the image's mask and edges | pose without scale, and the loss of outlines | Gauss-Newton |
 //! | `icp` | Eq. 12: the depth points onto the image surface | robust point-to-plane distance | pose | nearest neighbours and Gauss-Newton, alternating |
 //! | `ransac` | Eq. 13 and 14: consensus of pairs over the linear model P -> A P + t | truncated squared distance | the twelve numbers theta | samples of four pairs, then linear least squares |
 //! | `similarity` | Eq. 15: the similarity nearest to A; Eq. 12 for known pairs, in closed form | least squares | s, R, t | Horn's quaternion |
@@ -22,7 +23,7 @@ mod correspondence;
 mod icp;
 mod increment;
 mod neighbours;
-pub mod outline;
+mod outline;
 mod photometric;
 mod ransac;
 mod search;

@@ -123,13 +123,15 @@ function pinholeAims(rows = []) {
       return own !== undefined && degreesBetween(row.rotation, own.rotation) < SAME_END;
     });
   const sure = rows.filter((row) => isFound(row) && row.sigmas);
-  const held = ({ rotationOff, sigmas }) => rotationOff.every((off, axis) => Math.abs(off) <= 3 * sigmas[axis]);
+  const held = (offs, sigmas) => offs.every((off, axis) => Math.abs(off) <= 3 * sigmas[axis]);
+  const [turns, places] = [({ rotationOff, sigmas }) => held(rotationOff, sigmas), (row) => held(row.translationOff, row.translationSigmas)];
   return [
     aim("pinhole", "nothing known: median degrees", middle(searched, "degrees"), "<=", 0.35, searched.length),
     aim("pinhole", "nothing known: median mm", middle(searched, "translation"), "<=", 5.5, searched.length),
     ...[1, 2, 4, 8].map((start) => aim("pinhole", `${start} degrees off: share that ends like the search`, ends(start), ">=", 0.95, of(start).length)),
     aim("pinhole", "share confidently wrong", share(rows, isConfidentlyWrong), "<=", 0, rows.length),
-    aim("pinhole", "found within 3 sigma on all axes", share(sure, held), ">=", 0.93, sure.length),
+    aim("pinhole", "found: rotations within 3 sigma on all axes", share(sure, turns), ">=", 0.93, sure.length),
+    aim("pinhole", "found: translations within 3 sigma on all axes", share(sure, places), ">=", 0.93, sure.length),
   ];
 }
 

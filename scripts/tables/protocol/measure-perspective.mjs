@@ -45,6 +45,7 @@ function run(cell, api, { image, depth, truth }) {
     ...judged(report, truth, milliseconds),
     ...offsets(report.pose, truth, middle),
     told: start && offsets(start, truth, middle),
+    translationOff: report.pose.translation.map((value, axis) => value - truth.translation[axis]),
     translationSigmas: report.uncertainty?.translation ?? null,
   }));
 }

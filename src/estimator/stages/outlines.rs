@@ -1,15 +1,16 @@
 //! Outlines in place of colours that are painted (docs/method.md, section 10): near a told pose, or from anywhere.
 
-use nalgebra::{Matrix3, Vector3};
-
 use crate::estimator::gauge;
 use crate::estimator::pair::ViewPair;
-use crate::pose::{Angles, Outline, OutlinePrior, OutlineProblem, OutlineReport, Similarity};
+use crate::pose::{Angles, Outline, OutlinePrior, OutlineProblem, OutlineReport};
 use crate::view::Normals;
 
-/// Noise that the colours leave above which it is none, but paint and shadow, log units; renders leave 0.010 to 0.018, all
-/// that is real 0.041 to 0.34. Then outlines decide where there are any.
+/// Noise that the colours leave above which it is none, but paint and shadow, log units: renders leave 0.010 to 0.018, all
+/// that is real 0.041 and more.
 pub const LARGEST_PURE_NOISE: f64 = 0.035;
+/// The same as a share of the colours' spread, since noisy normals under strong lights leave as much: renders leave 0.01 to
+/// 0.1, registered captures 0.21 to 0.54.
+const LARGEST_PURE_SHARE: f64 = 0.15;
 /// Outlines of fewer points, or that are farther from the image's in the median, tell nothing; pixels.
 const FEWEST_RIMS: usize = 40;
 const LARGEST_RIM_NOISE: f64 = 6.0;
@@ -22,6 +23,11 @@ const TILTS: [f64; 3] = [0.0, -24.0, 24.0];
 const ANYWHERE_DEGREES: f64 = 25.0;
 const ANYWHERE_ACROSS: f64 = 0.12;
 const ANYWHERE_ALONG: f64 = 0.08;
+
+/// Whether what the colours leave is paint: then outlines decide where there are any.
+pub fn is_painted(pair: &ViewPair, noise: f64) -> bool {
+    noise > LARGEST_PURE_NOISE.max(LARGEST_PURE_SHARE * pair.image.log_spread())
+}
 
 /// The pose near a told one, where outlines like it better.
 pub fn near(pair: &ViewPair, normals: &Normals, told: OutlinePrior) -> Option<OutlineReport> {

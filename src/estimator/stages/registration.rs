@@ -12,7 +12,7 @@ use crate::view::Normals;
 
 use super::colours::ColourRegistration;
 use super::light::Inputs;
-use super::outlines::{self, LARGEST_PURE_NOISE};
+use super::outlines;
 use super::surfaces::{Matched, SurfaceRegistration};
 use super::told_start::{Settled, TrustRegion};
 
@@ -132,7 +132,7 @@ impl RegistrationStage {
         found: Option<PhotometricReport>,
         present: &Similarity,
     ) -> Option<Registered> {
-        let is_painted = found.as_ref().is_none_or(|found| found.noise > LARGEST_PURE_NOISE);
+        let is_painted = found.as_ref().is_none_or(|found| outlines::is_painted(pair, found.noise));
         if is_painted
             && pair.options.registration == Registration::Joint
             && let Some(outlined) = outlines::anywhere(pair, self.colours.as_ref()?.normals())
@@ -212,13 +212,13 @@ impl RegistrationStage {
                 let settled = region.settle(pair, colours)?;
                 self.told = Told::Improved(region);
                 match settled {
-                    Settled::ByColours(found) => found,
+                    Settled::ByColours(found) => *found,
                     Settled::ByOutlines(found) => {
                         let registered = Registered::by_outlines(&found);
-                        self.told = Told::Outlined(found);
+                        self.told = Told::Outlined(*found);
                         return Ok(Some(registered));
                     }
-                    Settled::ByContrast(found) => return Ok(Some(self.adopt_contrast(pair, found, start))),
+                    Settled::ByContrast(found) => return Ok(Some(self.adopt_contrast(pair, *found, start))),
                     Settled::Kept => {
                         self.told = Told::Kept;
                         return Ok(None);

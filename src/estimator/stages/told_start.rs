@@ -12,7 +12,7 @@
 use nalgebra::Vector3;
 
 use super::colours::ColourRegistration;
-use super::outlines::{self, LARGEST_PURE_NOISE};
+use super::outlines;
 use super::painted::{self, Conclusion};
 use crate::error::Result;
 use crate::estimator::gauge;
@@ -56,11 +56,11 @@ pub struct TrustRegion {
 
 /// What became of a told start.
 pub enum Settled {
-    ByColours(PhotometricReport),
+    ByColours(Box<PhotometricReport>),
     /// The colours are painted: outlines decide ..
-    ByOutlines(OutlineReport),
+    ByOutlines(Box<OutlineReport>),
     /// .. or local contrast.
-    ByContrast(ContrastReport),
+    ByContrast(Box<ContrastReport>),
     /// Nothing better within the tolerance.
     Kept,
 }
@@ -105,7 +105,7 @@ impl TrustRegion {
             && self.holds(&found.pose)
             && explains(pair, found)
         {
-            return Ok(Settled::ByColours(found.clone()));
+            return Ok(Settled::ByColours(Box::new(found.clone())));
         }
         let plain = colours.take_found().map(Box::new);
         let mut optima = LocalOptima::new(MOST_TRIED + 4, pair.image.log_spread(), pair.image.log_noise());
@@ -129,19 +129,19 @@ impl TrustRegion {
             match found {
                 Conclusion::ByColours(found) if self.holds(&found.pose) => {
                     colours.adopt(found.clone());
-                    return Ok(Settled::ByColours(found));
+                    return Ok(Settled::ByColours(Box::new(found)));
                 }
                 Conclusion::ByContrast(found) if self.holds(&found.best.pose) => {
-                    return Ok(Settled::ByContrast(found.best));
+                    return Ok(Settled::ByContrast(Box::new(found.best)));
                 }
                 _ => {}
             }
         }
         match (best, outlined) {
-            (Some(best), outlined) if best.noise <= LARGEST_PURE_NOISE || outlined.is_none() => {
+            (Some(best), outlined) if !outlines::is_painted(pair, best.noise) || outlined.is_none() => {
                 self.by_all_points(pair, colours, *best)
             }
-            (_, Some(outlined)) => Ok(Settled::ByOutlines(outlined)),
+            (_, Some(outlined)) => Ok(Settled::ByOutlines(Box::new(outlined))),
             (..) => Ok(Settled::Kept),
         }
     }
@@ -157,7 +157,7 @@ impl TrustRegion {
         colours.adopt(best);
         let found = colours.register(pair, &pose)?.clone();
         if self.holds(&found.pose) {
-            return Ok(Settled::ByColours(found));
+            return Ok(Settled::ByColours(Box::new(found)));
         }
         colours.take_found();
         Ok(Settled::Kept)

@@ -7,7 +7,7 @@
 
 use nalgebra::Vector3;
 
-use super::registration::OutlineProblem;
+use super::problem::OutlineProblem;
 use crate::pose::similarity::Similarity;
 use crate::view::Size;
 
