@@ -13,7 +13,7 @@ use std::ops::Range;
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::heights::{COLOUR_SCALES, Effort, HeightDomain, HeightProblem, LAST_SCALE, Scratch};
+use super::heights::{Bending, COLOUR_SCALES, Effort, HeightDomain, HeightProblem, LAST_SCALE, Scratch};
 use super::integration::{AnchorWeight, Anchors, IntegrationOptions, Integrator, Robustness, find_slopes};
 use super::pixels::{ShadingProblem, ShadingSolver, ShadingWeights};
 use crate::error::Result;
@@ -147,8 +147,10 @@ impl Refiner {
         }
         // Colours that the light does not explain have a larger variance, so that depth weighs more against them.
         let variance_inflation = (problem.terms.colour_error / self.shading_error).max(1.0).powi(2);
-        let unshaded = self.anchor_weight;
-        let shaded = (f64::from(unshaded) * variance_inflation).min(ANCHOR_WEIGHTS[1]) as f32;
+        let shaded = (f64::from(self.anchor_weight) * variance_inflation).min(ANCHOR_WEIGHTS[1]) as f32;
+        // Where the surface is known to resist bending, that weighs against depth without colours as well.
+        let unshaded = if view.noise.is_visible() { shaded } else { self.anchor_weight };
+        let bending = bending(shaded, view);
         self.load_anchors(scratch, view, |has_colour| if has_colour { shaded } else { unshaded });
         find_slopes(view.size, &view.camera, normals, &view.mask, &mut scratch.slopes);
         view.camera.heights_from_depth(depth);
@@ -162,6 +164,7 @@ impl Refiner {
                 rotation: &problem.terms.rotation,
                 slopes: [&scratch.slopes[0], &scratch.slopes[1]],
                 normal_weight: None,
+                bending,
                 anchors: Some(anchors),
                 colour_scale,
                 effort,
@@ -205,7 +208,7 @@ impl Refiner {
 
     /// Anchors at the measured heights.
     fn load_anchors(&self, scratch: &mut Scratch, view: &DepthView, weight: impl Fn(bool) -> f32) {
-        scratch.spare.copy_from_slice(view.depth());
+        scratch.spare.copy_from_slice(view.measured());
         view.camera.heights_from_depth(&mut scratch.spare);
         for (anchor_weight, log) in scratch.weight.iter_mut().zip(&self.log[0]) {
             *anchor_weight = weight(!log.is_nan());
@@ -222,8 +225,20 @@ fn sample_prior(problem: RefinementProblem<'_>, band: &Range<usize>, prior: &mut
     }
 }
 
+/// What the map says of its surface's second differences, against anchors of this weight.
+fn bending(anchor_weight: f32, view: &DepthView) -> Bending {
+    if !view.noise.is_visible() {
+        return Bending::FREE;
+    }
+    let weight = anchor_weight * view.noise.smoothing() as f32;
+    Bending { weight, scale: view.noise.crease() as f32 }
+}
+
 /// (shading error / depth noise)^2: least squares weighs each by its variance.
 fn anchor_weight(shading_error: f64, view: &DepthView) -> f32 {
+    if view.noise.is_visible() {
+        return variance_ratio(shading_error, view.noise.sigma);
+    }
     let Size { width, height } = view.size;
     let reach = noise::NEIGHBOURS - 1;
     let lines = |index: usize| {

@@ -15,9 +15,6 @@ use super::depth_noise::DepthNoise;
 use crate::numeric::conjugate_gradient::{Limits, System, Vectors, solve};
 use crate::numeric::robust;
 
-/// Scale of rho in c, the roughness: by squares alone creases are rounded off. Chosen on five objects of MIT-Berkeley
-/// with quantised depth and a scanned bear (2, 3 and 5 were tried).
-const CREASE: f64 = 2.0;
 /// Rounds after the first, which is by squares.
 const REWEIGHTED: usize = 3;
 /// Of each round; the error is about the square of that of the heights.
@@ -31,7 +28,7 @@ pub fn smooth(size: Size, noise: &DepthNoise, heights: &mut [f32]) {
     let (mut direction, mut product) = (vec![0.0; size.len()], vec![0.0; size.len()]);
     let lambda = noise.smoothing() as f32;
     for round in 0..=REWEIGHTED {
-        plate.weigh(lambda, if round == 0 { f64::INFINITY } else { CREASE * noise.roughness }, &z);
+        plate.weigh(lambda, if round == 0 { f64::INFINITY } else { noise.crease() }, &z);
         plate.apply(&z, &mut residual);
         for (index, residual) in residual.iter_mut().enumerate() {
             *residual = if plate.known[index] { measured[index] - *residual } else { 0.0 };

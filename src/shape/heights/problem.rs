@@ -28,10 +28,27 @@ pub struct HeightProblem<'a> {
     pub normal_weight: Option<&'a [f32]>,
     /// Heights that the surface is drawn to.
     pub anchors: Option<Anchors<'a>>,
+    /// How much the surface resists bending beyond what the solver needs.
+    pub bending: Bending,
     /// Scale of the robust function: the log residual at which a pixel keeps a quarter of its weight.
     pub colour_scale: f32,
     /// Limits of the work.
     pub effort: Effort,
+}
+
+/// What is known of a surface's second differences: weight rho(d^2 z), Geman-McClure, linearised at the heights that a
+/// solve starts from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bending {
+    /// Squared log residual per squared second difference.
+    pub weight: f32,
+    /// Scale of rho in pixels: beyond it is a crease.
+    pub scale: f32,
+}
+
+impl Bending {
+    /// Nothing is known.
+    pub const FREE: Self = Self { weight: 0.0, scale: 1.0 };
 }
 
 /// Limits of the work of a solve.

@@ -16,11 +16,11 @@
 use super::cell_terms::CellTerms;
 use super::domain::{ABOVE, BELOW, CELL, HeightDomain, INSIDE, LEFT, RIGHT};
 use super::normal_operator::NormalOperator;
-use super::problem::{Effort, HeightProblem};
+use super::problem::{Bending, Effort, HeightProblem};
 use super::rasters::{padded, resize};
 use crate::numeric::conjugate_gradient::{self, Limits, System, Vectors};
 use crate::numeric::cosine::CosineSolver;
-use crate::numeric::{LANES, Lanes, Real};
+use crate::numeric::{LANES, Lanes, Real, robust};
 use crate::shape::integration::Edges;
 
 /// kappa, squared log residual per squared second difference in pixels. Chosen on Mozart at 64x64 with 2 % noise under
@@ -203,7 +203,8 @@ impl HeightSolver {
         }
         self.edges_weight = 0.0;
         for (axis, strides) in [[1, 1], [domain.width, domain.size.width]].into_iter().enumerate() {
-            self.edges_weight += self.load_axis(domain, axis, strides.map(|stride| stride as isize), slopes[axis]);
+            let strides = strides.map(|stride| stride as isize);
+            self.edges_weight += self.load_axis(domain, axis, strides, slopes[axis], terms.problem.bending);
         }
     }
 
@@ -215,10 +216,13 @@ impl HeightSolver {
         axis: usize,
         [stride, view_stride]: [isize; 2],
         slopes: &[f32],
+        bending: Bending,
     ) -> f64 {
         let (zero, half) = (Lanes::splat(0.0), Lanes::splat(0.5));
         let halving = Lanes::splat(HALVING_CONFIDENCE);
         let most = Lanes::splat(SMOOTHNESS * HALVING_CONFIDENCE);
+        let known = Lanes::splat(bending.weight);
+        let inverse_square = Lanes::splat(1.0 / (bending.scale * bending.scale));
         let [before, after] = [[LEFT, RIGHT], [ABOVE, BELOW]][axis];
         let mut sum = 0.0;
         for (here, source) in domain.rows() {
@@ -231,8 +235,12 @@ impl HeightSolver {
                 let gradient = half * (Lanes::load(slopes, source) + Lanes::load(slopes, source + view_stride));
                 weight.store(&mut self.edges[axis].weight[index..]);
                 zero.less(weight).select(gradient, zero).store(&mut self.edges[axis].gradient[index..]);
-                // kappa: less where a pixel's colours fix its normal.
-                let kappa = (joined & domain.flagged(index, before)).select(most / (halving + confidence), zero);
+                // kappa: less where a pixel's colours fix its normal, but for what is known of the surface.
+                let (z, here) = (&self.z, Lanes::load(&self.z, place));
+                let second = Lanes::load(z, place + stride) - (here + here) + Lanes::load(z, place - stride);
+                let bend = known * robust::weight(second * second * inverse_square);
+                let inner = joined & domain.flagged(index, before);
+                let kappa = inner.select(most / (halving + confidence) + bend, zero);
                 kappa.store(&mut self.operator.smoothness[axis][index..]);
                 row = row + weight;
             }
@@ -397,6 +405,7 @@ mod tests {
             rotation: &Matrix3::identity(),
             slopes: [&slopes, &slopes],
             normal_weight: None,
+            bending: Bending::FREE,
             anchors: None,
             colour_scale: 0.2,
             effort: Effort { steps: 4, iterations: 10, tolerance: 0.03 },
