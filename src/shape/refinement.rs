@@ -18,8 +18,7 @@ use super::integration::{AnchorWeight, Anchors, IntegrationOptions, Integrator, 
 use super::pixels::{ShadingProblem, ShadingSolver, ShadingWeights};
 use crate::error::Result;
 use crate::light::Light;
-use crate::numeric::noise;
-use crate::view::{ColourView, DepthView, Normals, Size, normals};
+use crate::view::{ColourView, DepthView, Normals, depth_noise, normals};
 
 /// Error of the shading in log units, in standard deviations of the image's own noise, and what discretisation adds as
 /// a share of the colours' spread: 0.05 under colourful light, 0.03 under natural light at 2 % noise. Measured on
@@ -239,20 +238,9 @@ fn anchor_weight(shading_error: f64, view: &DepthView) -> f32 {
     if view.noise.is_visible() {
         return variance_ratio(shading_error, view.noise.sigma);
     }
-    let Size { width, height } = view.size;
-    let reach = noise::NEIGHBOURS - 1;
-    let lines = |index: usize| {
-        let (column, row) = view.size.position(index);
-        [(column + reach < width, 1), (row + reach < height, width)]
-    };
     let mut heights = view.depth().to_vec();
     view.camera.heights_from_depth(&mut heights);
-    let fourth = |index: usize, step: usize| {
-        noise::fourth_difference(std::array::from_fn(|k| f64::from(heights[index + k * step]))) as f32
-    };
-    let fourths = (0..view.size.len())
-        .flat_map(|index| lines(index).into_iter().filter(|(fits, _)| *fits).map(move |(_, step)| fourth(index, step)));
-    variance_ratio(shading_error, noise::of_fourth_differences(fourths, 2 * view.size.len()))
+    variance_ratio(shading_error, depth_noise::white_noise(view.size, &heights))
 }
 
 /// The ratio of the variances, within bounds. Depth without measurable noise gets the largest weight, however exact the

@@ -4,8 +4,8 @@
 use crate::check::positive;
 use crate::error::{Error, ErrorKind, Result};
 use crate::text::Brief;
-use crate::view::flying_pixels;
 use crate::view::depth_noise::DepthNoise;
+use crate::view::flying_pixels;
 use crate::view::mask::{self, FEWEST_PIXELS, components};
 use crate::view::smoothing::smooth;
 use crate::view::{Camera, Normals, Pinhole, Points, Size, normals};
@@ -190,6 +190,16 @@ impl DepthView {
     #[must_use]
     pub fn measured(&self) -> &[f32] {
         if self.measured.is_empty() { self.depth() } else { &self.measured }
+    }
+
+    /// Points at the measured depths.
+    #[must_use]
+    pub fn measured_points(&self) -> Points {
+        let mut points = self.points.clone();
+        if !self.measured.is_empty() {
+            normals::points_of_depth(self.size, &self.camera, &self.measured, &mut points);
+        }
+        points
     }
 
     /// Depth along z without its noise, NaN at holes and off the mask.

@@ -11,7 +11,7 @@
 //! Limits: relief that repeats within a few pixels stops growing as well; what grows too slowly at the first two spans
 //! to be a surface is noise.
 
-use crate::numeric::quantile;
+use crate::numeric::{noise, quantile};
 use crate::view::Size;
 
 /// Spans of the fit in pixels. The noise of a sensor is correlated over two or three pixels, so that the span of one
@@ -32,6 +32,9 @@ const KEPT_VARIANCE: f64 = 0.438;
 const FEWEST: usize = 1000;
 const MOST: usize = 1 << 16;
 
+/// Least share of the noise that the fourth differences of neighbours see of it where it is white (0.75 to 1; of that of
+/// quantised and laterally smoothed maps 0.3 to 0.7, and where steps are as narrow as pixels, which is white, more).
+const LEAST_WHITE: f64 = 0.75;
 /// Scale of the robust second differences in roughnesses: by squares alone creases are rounded off. Chosen on five
 /// objects of MIT-Berkeley with quantised depth and a scanned bear (2, 3 and 5 were tried).
 const CREASE: f64 = 2.0;
@@ -43,6 +46,9 @@ pub struct DepthNoise {
     pub sigma: f64,
     /// Standard deviation by which the surface's slope wanders in a pixel.
     pub roughness: f64,
+    /// Whether neighbours have no noise in common: the staircase of a quantised map and noise that a sensor has smoothed
+    /// sideways are not white.
+    pub is_white: bool,
 }
 
 impl DepthNoise {
@@ -64,10 +70,16 @@ impl DepthNoise {
             (ss, sc, cc, s1, c1) = (ss + s * s, sc + s * c, cc + c * c, s1 + s, c1 + c);
         }
         let determinant = ss * cc - sc * sc;
-        let [noise, wander] = [cc * s1 - sc * c1, ss * c1 - sc * s1].map(|part| part / determinant);
+        let [variance, wander] = [cc * s1 - sc * c1, ss * c1 - sc * s1].map(|part| part / determinant);
         // Also where there are too few spans: the determinant is zero then.
-        let told = noise > 0.0 && wander > 0.0 && noise.is_finite() && wander.is_finite();
-        if told { Self { sigma: noise.sqrt(), roughness: wander.sqrt() } } else { Self::default() }
+        if !(variance > 0.0 && wander > 0.0 && variance.is_finite() && wander.is_finite()) {
+            return Self::default();
+        }
+        let white = white_noise(size, heights);
+        let all = variance.sqrt();
+        let is_white = white > LEAST_WHITE * all;
+        let sigma = if is_white { white } else { all };
+        Self { sigma, roughness: wander.sqrt(), is_white }
     }
 
     /// Whether the map shows noise.
@@ -87,6 +99,21 @@ impl DepthNoise {
     pub fn smoothing(&self) -> f64 {
         if self.is_visible() { (self.sigma / self.roughness).powi(2) } else { 0.0 }
     }
+}
+
+/// Standard deviation of white noise by the fourth differences of neighbours along both axes.
+pub(crate) fn white_noise(size: Size, heights: &[f32]) -> f64 {
+    let reach = noise::NEIGHBOURS - 1;
+    let lines = |index: usize| {
+        let (column, row) = size.position(index);
+        [(column + reach < size.width, 1), (row + reach < size.height, size.width)]
+    };
+    let fourth = |index: usize, step: usize| {
+        noise::fourth_difference(std::array::from_fn(|k| f64::from(heights[index + k * step]))) as f32
+    };
+    let fourths = (0..size.len())
+        .flat_map(|index| lines(index).into_iter().filter(|(fits, _)| *fits).map(move |(_, step)| fourth(index, step)));
+    noise::of_fourth_differences(fourths, 2 * size.len())
 }
 
 /// Variance of the second differences of this span along both axes, without the largest; `None` where there are few.

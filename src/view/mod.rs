@@ -4,7 +4,7 @@ mod camera;
 mod colour;
 pub mod cubic_normals;
 mod depth;
-mod depth_noise;
+pub(crate) mod depth_noise;
 mod flying_pixels;
 mod half_resolution;
 mod heights;

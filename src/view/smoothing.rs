@@ -66,8 +66,7 @@ impl ThinPlate {
             factors: [1.0, -2.0, 1.0, 0.0],
             share: 1.0,
         };
-        let twist =
-            Stencil { offsets: [0, 1, width, width + 1], factors: [1.0, -1.0, -1.0, 1.0], share: 2.0 };
+        let twist = Stencil { offsets: [0, 1, width, width + 1], factors: [1.0, -1.0, -1.0, 1.0], share: 2.0 };
         let stencils = [line(1), line(width), twist];
         let known: Vec<bool> = heights.iter().map(|height| !height.is_nan()).collect();
         // One where the second difference exists, else zero.
