@@ -10,6 +10,7 @@ const KEYS = {
   figure6: ["overlap", "error"],
   figure7: ["name", "holesBefore", "holesAfter", "normalChange"],
   refinement: ["lightName", "before", "after", "holes"],
+  sensors: ["object", "before", "after", "ratio"],
   photographs: ["object", "image", "beta", "degrees", "status"],
   random: [
     ...["cases", "found", "ambiguousOrLost", "confidentlyWrong", "flaggedThoughFound", "medianDegrees"],
@@ -18,7 +19,7 @@ const KEYS = {
   ablation: ["without", "medianDegrees", "found"],
 };
 /** Nothing replaces these where other people's data is absent. */
-const REAL = ["table3", "figure7", "photographs"];
+const REAL = ["table3", "figure7", "sensors", "photographs"];
 
 /** Tables without a row, and keys that a row lacks. A key may be null: not everything has a value. */
 export const missingKeys = (json, { realPairs }) =>

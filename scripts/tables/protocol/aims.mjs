@@ -1,6 +1,7 @@
 // What the project has set out to reach, computed from the rows of the tables and never from anything else.
 import { FOUND_WITHIN, isFlagged, isFound, isFoundOrFlagged } from "./counts.mjs";
 import { IMAGES } from "./reals.mjs";
+import { medianRatio } from "./sensors.mjs";
 import { COLOURFUL } from "./scenes.mjs";
 import { median, share, worst } from "./numbers.mjs";
 
@@ -82,6 +83,21 @@ function refinementAims(rows = []) {
   ];
 }
 
+function sensorsAims(rows = []) {
+  const line = (sensor, limit, half) => {
+    const count = rows.filter((row) => row.sensor === sensor && (!half || row.half === half)).length;
+    const what = `${sensor}${half ? `, ${half}` : ""}: median of error in / out`;
+    return aim("sensors", what, medianRatio(rows, sensor, half), ">=", limit, count);
+  };
+  return [
+    line("mitten", 1.6),
+    line("kinect, photograph", 1.8, "tuned"),
+    line("kinect, photograph", 1.8, "held out"),
+    line("scan, render", 2.5, "tuned"),
+    line("scan, render", 2.5, "held out"),
+  ];
+}
+
 function photographsAims(rows = []) {
   const real = rows.filter(({ image }) => image !== IMAGES.at(-1));
   const unflagged = real.filter((row) => !isFlagged(row));
@@ -118,6 +134,7 @@ export const aims = (json) =>
     ...(json.table2B ? table2BAims(json.table2B) : []),
     ...(json.figure5 ? figure5Aims(json.figure5) : []),
     ...(json.refinement ? refinementAims(json.refinement) : []),
+    ...(json.sensors ? sensorsAims(json.sensors) : []),
     ...(json.photographs ? photographsAims(json.photographs) : []),
     ...randomAims(json.random),
     ...(json.exposure ? exposureAims(json.exposure) : []),

@@ -2,12 +2,13 @@
 import { ablation, exposure, random } from "./anywhere.mjs";
 import { figure6, table1, table2A, table2B } from "./poses.mjs";
 import { figure7, photographs, table3 } from "./reals.mjs";
+import { sensors } from "./sensors.mjs";
 import { figure4, figure5, refinement } from "./shapes.mjs";
 
 /** In the order in which they are printed. */
 export const TABLES = [
   ...[table1, table2A, table2B, table3, figure4, figure5, figure6, figure7],
-  ...[refinement, photographs, random, exposure, ablation],
+  ...[refinement, sensors, photographs, random, exposure, ablation],
 ];
 
 /** The rows of a table as the JSON has them: what the cell says of itself, which nothing measured may overwrite, and the rest. */

@@ -3,6 +3,7 @@ import { sceneOf } from "./anywhere.mjs";
 import { judged, optionsOf, withRun } from "./runs.mjs";
 import { requestOf } from "./scenes.mjs";
 import { measurePair, measurePhotograph } from "./measure-reals.mjs";
+import { measureKinect, measureMitten, measureScan } from "./measure-sensors.mjs";
 import { measureIterations, measureRefinement, measureShading } from "./measure-shapes.mjs";
 
 async function measurePose(cell, api, library) {
@@ -59,6 +60,9 @@ const KINDS = {
   refinement: measureRefinement,
   pair: measurePair,
   photograph: measurePhotograph,
+  mitten: measureMitten,
+  kinect: measureKinect,
+  scan: measureScan,
 };
 
 /** The figures of a cell, as plain JSON; whatever goes wrong is thrown. */
