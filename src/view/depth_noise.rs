@@ -139,3 +139,68 @@ fn variance_of_second_differences(size: Size, heights: &[f32], span: usize, size
     let variance = kept().map(|size| size * size).sum::<f64>() / (kept().count() as f64 * KEPT_VARIANCE);
     (variance > 0.0).then_some(variance)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::numeric::noise::white_noise as normal_numbers;
+
+    const SIZE: Size = Size { width: 96, height: 96 };
+
+    /// A round body with a few waves, heights in pixels.
+    fn body() -> Vec<f32> {
+        let height = |index: usize| {
+            let (column, row) = SIZE.position(index);
+            let [x, y] = [column, row].map(|at| (at as f32 - 47.5) / 48.0);
+            let square = x * x + y * y;
+            if square > 0.9 {
+                f32::NAN
+            } else {
+                -40.0 * (1.0 - square).sqrt() + 2.0 * (7.0 * x).sin() * (5.0 * y).cos()
+            }
+        };
+        (0..SIZE.len()).map(height).collect()
+    }
+
+    #[test]
+    fn a_body_without_flaws_shows_no_noise() {
+        assert_eq!(DepthNoise::of(SIZE, &body()), DepthNoise::default());
+    }
+
+    #[test]
+    fn white_noise_is_told_and_called_white() {
+        let (mut heights, mut normal) = (body(), normal_numbers(4));
+        heights.iter_mut().for_each(|height| *height += 0.3 * normal() as f32);
+        let noise = DepthNoise::of(SIZE, &heights);
+        assert!(noise.is_white && (noise.sigma - 0.3).abs() < 0.03, "{noise:?}");
+    }
+
+    /// Rounding errs by the step over the root of twelve.
+    #[test]
+    fn a_staircase_is_not_free_of_noise() {
+        for step in [0.8_f32, 1.5] {
+            let heights: Vec<f32> = body().iter().map(|height| (height / step).round() * step).collect();
+            let noise = DepthNoise::of(SIZE, &heights);
+            let truth = f64::from(step) / 12.0_f64.sqrt();
+            assert!((0.6..1.7).contains(&(noise.sigma / truth)), "{step}: {noise:?} {truth}");
+        }
+    }
+
+    /// Neighbours that share their noise hide it from differences of neighbours: a box of three by three.
+    #[test]
+    fn noise_smoothed_sideways_keeps_its_size() {
+        let (mut heights, mut normal) = (body(), normal_numbers(9));
+        let white: Vec<f64> = (0..SIZE.len()).map(|_| normal()).collect();
+        for column in 1..SIZE.width - 1 {
+            for row in 1..SIZE.height - 1 {
+                let nine = (0..9).map(|k| white[SIZE.index(column + k % 3 - 1, row + k / 3 - 1)]).sum::<f64>();
+                heights[SIZE.index(column, row)] += (0.5 * nine / 3.0) as f32;
+            }
+        }
+        let noise = DepthNoise::of(SIZE, &heights);
+        assert!(!noise.is_white && (0.35..0.6).contains(&noise.sigma), "{noise:?}");
+        // Fourth differences of a sum of three neighbours are 1, -3, 3, -2, 3, -3, 1 times the noise.
+        let seen = 0.5 * (42.0_f64 / 3.0 / 70.0).sqrt();
+        assert!((white_noise(SIZE, &heights) / seen - 1.0).abs() < 0.1);
+    }
+}

@@ -124,3 +124,34 @@ impl System for ThinPlate {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A roof with a staircase on it: its planes lose the steps, its ridge stays where it was, its hole stays a hole.
+    #[test]
+    fn steps_go_and_a_ridge_stays() {
+        let size = Size { width: 64, height: 64 };
+        let roof = |index: usize| {
+            let (column, row) = size.position(index);
+            0.7 * (column as f32 - 31.5).abs() + 0.11 * row as f32
+        };
+        let mut heights: Vec<f32> = (0..size.len()).map(|index| roof(index).round()).collect();
+        heights[size.index(20, 20)] = f32::NAN;
+        let rms = |heights: &[f32], counts: &dyn Fn(usize) -> bool| {
+            let squares: Vec<f32> = (0..size.len())
+                .filter(|&index| counts(index) && !heights[index].is_nan())
+                .map(|index| (heights[index] - roof(index)).powi(2))
+                .collect();
+            (squares.iter().sum::<f32>() / squares.len() as f32).sqrt()
+        };
+        let ridge = |index: usize| (30..34).contains(&size.position(index).0);
+        let before = rms(&heights, &|_| true);
+        let noise = DepthNoise { sigma: 0.29, roughness: 0.1, is_white: false };
+        smooth(size, &noise, &mut heights);
+        assert!(rms(&heights, &|_| true) < 0.4 * before, "{before} {}", rms(&heights, &|_| true));
+        assert!(rms(&heights, &ridge) < 0.29, "{}", rms(&heights, &ridge));
+        assert!(heights[size.index(20, 20)].is_nan());
+    }
+}
