@@ -13,7 +13,9 @@ use std::ops::Range;
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::heights::{Bending, COLOUR_SCALES, Effort, HeightDomain, HeightProblem, LAST_SCALE, Scratch};
+use super::heights::{
+    Bending, COLOUR_SCALES, Effort, HALVING_CONFIDENCE, HeightDomain, HeightProblem, LAST_SCALE, Scratch,
+};
 use super::integration::{AnchorWeight, Anchors, IntegrationOptions, Integrator, Robustness, find_slopes};
 use super::pixels::{ShadingProblem, ShadingSolver, ShadingWeights};
 use crate::error::Result;
@@ -28,9 +30,6 @@ const DISCRETISATION: f64 = 0.065;
 /// Bounds of the weight of an anchor, squared log residual per squared pixel of height: whatever its noise, depth
 /// neither loses all weight nor overrides the colours.
 const ANCHOR_WEIGHTS: [f64; 2] = [1e-3, 10.0];
-/// The solver's second differences run along rows and columns alone; those of a thin plate in all directions have this
-/// times their energy, averaged over the directions of a wave: 1 over the mean of cos^4 + sin^4.
-const LINES_ONLY: f32 = 4.0 / 3.0;
 /// Work at each scale of the first refinement: noisy depth starts far from its colours.
 const FIRST: Effort = Effort { steps: 6, iterations: 40, tolerance: 0.03 };
 /// Work of a refinement that continues an earlier one, at the last scale alone.
@@ -152,7 +151,7 @@ impl Refiner {
         let shaded = (f64::from(self.anchor_weight) * variance_inflation).min(ANCHOR_WEIGHTS[1]) as f32;
         // Where the surface is known to resist bending, that weighs against depth without colours as well.
         let unshaded = if view.noise.is_visible() { shaded } else { self.anchor_weight };
-        let bending = bending(shaded, view);
+        let bending = bending(shaded, variance_inflation, view);
         self.load_anchors(scratch, view, |has_colour| if has_colour { shaded } else { unshaded });
         find_slopes(view.size, &view.camera, normals, &view.mask, &mut scratch.slopes);
         view.camera.heights_from_depth(depth);
@@ -227,13 +226,14 @@ fn sample_prior(problem: RefinementProblem<'_>, band: &Range<usize>, prior: &mut
     }
 }
 
-/// What the map says of its surface's second differences, against anchors of this weight.
-fn bending(anchor_weight: f32, view: &DepthView) -> Bending {
+/// What the map says of its surface's second differences, against anchors of this weight. It gives way to colours as far
+/// as they can be believed.
+fn bending(anchor_weight: f32, variance_inflation: f64, view: &DepthView) -> Bending {
     if !view.noise.is_visible() {
         return Bending::FREE;
     }
-    let weight = LINES_ONLY * anchor_weight * view.noise.smoothing() as f32;
-    Bending { weight, scale: view.noise.crease() as f32 }
+    let weight = anchor_weight * view.noise.smoothing() as f32;
+    Bending { weight, scale: view.noise.crease() as f32, halving: HALVING_CONFIDENCE * variance_inflation as f32 }
 }
 
 /// (shading error / depth noise)^2: least squares weighs each by its variance.

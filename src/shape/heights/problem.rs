@@ -11,6 +11,10 @@ pub const COLOUR_SCALES: [f32; 3] = [0.5, 0.2, LAST_SCALE];
 /// The robust scale of solves that continue an earlier one.
 pub const LAST_SCALE: f32 = 0.06;
 
+/// Confidence (squared log residual per squared slope) at which the smoothness has lost half its weight: a light whose
+/// colours change by 0.1 for a slope of one.
+pub const HALVING_CONFIDENCE: f32 = 0.01;
+
 /// The data of one surface; all fields are rasters of the view, NaN where unknown.
 #[derive(Clone, Copy)]
 pub struct HeightProblem<'a> {
@@ -44,11 +48,13 @@ pub struct Bending {
     pub weight: f32,
     /// Scale of rho in pixels: beyond it is a crease.
     pub scale: f32,
+    /// Confidence of a pixel's colours at which the bending has lost half its weight.
+    pub halving: f32,
 }
 
 impl Bending {
     /// Nothing is known.
-    pub const FREE: Self = Self { weight: 0.0, scale: 1.0 };
+    pub const FREE: Self = Self { weight: 0.0, scale: 1.0, halving: 1.0 };
 }
 
 /// Limits of the work of a solve.

@@ -16,7 +16,7 @@
 use super::cell_terms::CellTerms;
 use super::domain::{ABOVE, BELOW, CELL, HeightDomain, INSIDE, LEFT, RIGHT};
 use super::normal_operator::NormalOperator;
-use super::problem::{Bending, Effort, HeightProblem};
+use super::problem::{Bending, Effort, HALVING_CONFIDENCE, HeightProblem};
 use super::rasters::{padded, resize};
 use crate::numeric::conjugate_gradient::{self, Limits, System, Vectors};
 use crate::numeric::cosine::CosineSolver;
@@ -26,9 +26,6 @@ use crate::shape::integration::Edges;
 /// kappa, squared log residual per squared second difference in pixels. Chosen on Mozart at 64x64 with 2 % noise under
 /// the lights A, B and C, the light known; docs/accuracy.md tells what larger ones did.
 const SMOOTHNESS: f32 = 1e-3;
-/// Confidence (squared log residual per squared slope) at which the smoothness has lost half its weight: a light whose
-/// colours change by 0.1 for a slope of one.
-const HALVING_CONFIDENCE: f32 = 0.01;
 /// Damping of the first step and its bounds, relative to the mean stiffness of the terms.
 const FIRST_DAMPING: f32 = 0.1;
 const DAMPING: [f32; 2] = [1e-4, 1e4];
@@ -221,7 +218,7 @@ impl HeightSolver {
         let (zero, half) = (Lanes::splat(0.0), Lanes::splat(0.5));
         let halving = Lanes::splat(HALVING_CONFIDENCE);
         let most = Lanes::splat(SMOOTHNESS * HALVING_CONFIDENCE);
-        let known = Lanes::splat(bending.weight);
+        let (known, doubted) = (Lanes::splat(bending.weight * bending.halving), Lanes::splat(bending.halving));
         let inverse_square = Lanes::splat(1.0 / (bending.scale * bending.scale));
         let [before, after] = [[LEFT, RIGHT], [ABOVE, BELOW]][axis];
         let mut sum = 0.0;
@@ -235,10 +232,10 @@ impl HeightSolver {
                 let gradient = half * (Lanes::load(slopes, source) + Lanes::load(slopes, source + view_stride));
                 weight.store(&mut self.edges[axis].weight[index..]);
                 zero.less(weight).select(gradient, zero).store(&mut self.edges[axis].gradient[index..]);
-                // kappa: less where a pixel's colours fix its normal, but for what is known of the surface.
+                // kappa: less where a pixel's colours fix its normal.
                 let (z, here) = (&self.z, Lanes::load(&self.z, place));
                 let second = Lanes::load(z, place + stride) - (here + here) + Lanes::load(z, place - stride);
-                let bend = known * robust::weight(second * second * inverse_square);
+                let bend = known / (doubted + confidence) * robust::weight(second * second * inverse_square);
                 let inner = joined & domain.flagged(index, before);
                 let kappa = inner.select(most / (halving + confidence) + bend, zero);
                 kappa.store(&mut self.operator.smoothness[axis][index..]);
