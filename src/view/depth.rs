@@ -49,11 +49,11 @@ pub struct DepthView {
     pub camera: Camera,
     /// Object pixels, holes included where they touch a depth.
     pub mask: Vec<bool>,
-    /// Points in the depth camera's frame in metres or pixels, NaN at holes and off the mask; without the noise that the
-    /// map shows.
+    /// Points in the depth camera's frame in metres or pixels, NaN at holes and off the mask; without the noise that
+    /// pixels share with their neighbours.
     pub points: Points,
-    /// Depth along z as it was measured; empty where the points' own is.
-    measured: Vec<f32>,
+    /// Depth along z as it was measured; empty where it is the points' own.
+    pub measured_depth: Vec<f32>,
     /// The noise of the measured depth.
     pub noise: DepthNoise,
     /// Unit normals in the depth camera's frame, NaN where there is none.
@@ -105,7 +105,7 @@ impl DepthView {
             mask: object,
             normals: Normals::default(),
             points,
-            measured: Vec::new(),
+            measured_depth: Vec::new(),
             noise: DepthNoise::default(),
             organised,
             normals_given: map.normals.is_some(),
@@ -155,12 +155,13 @@ impl DepthView {
         }
     }
 
-    /// Moves the points along their rays to where they are without the noise of the map.
+    /// Moves the points along their rays to where they are without the noise of the map, unless that is white: cubics and
+    /// registrations average white noise, and miss what smoothing takes from the relief.
     fn remove_noise(&mut self) {
         let mut depth = self.points.z.clone();
         self.camera.heights_from_depth(&mut depth);
         self.noise = DepthNoise::of(self.size, &depth);
-        if !self.noise.is_visible() {
+        if !self.noise.is_visible() || self.noise.is_white {
             return;
         }
         smooth(self.size, &self.noise, &mut depth);
@@ -171,7 +172,7 @@ impl DepthView {
                 (*x, *y) = (*x * depth / z, *y * depth / z);
             }
         }
-        self.measured = std::mem::replace(&mut self.points.z, depth);
+        self.measured_depth = std::mem::replace(&mut self.points.z, depth);
     }
 
     /// Takes those components of the mask that hold no depth at all out of it: nothing tells how far away they are.
@@ -189,20 +190,10 @@ impl DepthView {
     /// Depth along z as it was measured, NaN at holes and off the mask.
     #[must_use]
     pub fn measured(&self) -> &[f32] {
-        if self.measured.is_empty() { self.depth() } else { &self.measured }
+        if self.measured_depth.is_empty() { self.depth() } else { &self.measured_depth }
     }
 
-    /// Points at the measured depths.
-    #[must_use]
-    pub fn measured_points(&self) -> Points {
-        let mut points = self.points.clone();
-        if !self.measured.is_empty() {
-            normals::points_of_depth(self.size, &self.camera, &self.measured, &mut points);
-        }
-        points
-    }
-
-    /// Depth along z without its noise, NaN at holes and off the mask.
+    /// Depth along z of the points, NaN at holes and off the mask.
     #[must_use]
     pub fn depth(&self) -> &[f32] {
         &self.points.z

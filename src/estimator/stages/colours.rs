@@ -4,7 +4,7 @@ use crate::error::Result;
 use crate::estimator::gauge;
 use crate::estimator::pair::ViewPair;
 use crate::pose::{Photometric, PhotometricOptions, PhotometricProblem, PhotometricReport, Similarity};
-use crate::view::{DepthView, Normals, cubic_normals, normals};
+use crate::view::{DepthView, Normals, cubic_normals};
 
 /// Weight of the light's prior in the registration: one, as Bayes' rule has it. `lambda.light` weighs the fit of the
 /// light stage alone, but where it is zero there is no prior here, either.
@@ -54,13 +54,7 @@ impl SharpNormals {
         let mut error = vec![0.0; depth.size.len()];
         let mut noise = 0.0;
         if !depth.normals_given {
-            // Cubics average white noise as well as anything, and bend less; correlated noise misleads them.
-            let measured = depth.noise.is_white.then(|| depth.measured_points());
-            if let Some(points) = &measured {
-                normals::from_points(depth.size, points, normals::Estimate::Differences, &mut normals);
-            }
-            let points = measured.as_ref().unwrap_or(&depth.points);
-            noise = cubic_normals::improve(depth.size, points, &mut normals, &mut error).max(depth.noise.sigma);
+            noise = cubic_normals::improve(depth.size, &depth.points, &mut normals, &mut error).max(depth.noise.sigma);
         }
         Self { normals, error, noise }
     }
