@@ -75,6 +75,6 @@ pub use shape::{
     ShadingProblem, ShadingReport, ShadingSolver, ShadingWeights, exposure_step, first_exposure, gradients,
 };
 pub use view::{
-    Camera, ColourImage, ColourSamples, ColourView, DepthMap, DepthSamples, DepthView, Normals, Pinhole, Points, Size,
-    Transfer, cubic_normals, normals,
+    Camera, ColourImage, ColourSamples, ColourView, DepthMap, DepthNoise, DepthSamples, DepthView, Normals, Pinhole,
+    Points, Size, Transfer, cubic_normals, normals,
 };

@@ -10,6 +10,7 @@ const KEYS = {
   figure6: ["overlap", "error"],
   figure7: ["name", "holesBefore", "holesAfter", "normalChange"],
   refinement: ["lightName", "before", "after", "holes"],
+  sensors: ["object", "before", "after", "ratio"],
   photographs: ["object", "image", "beta", "degrees", "status"],
   rgbd: ["name", "turned", "start", "degrees", "inPlane", "tilt", "lateral", "along", "status"],
   pinhole: ["scene", "start", "degrees", "translation", "status"],
@@ -21,7 +22,7 @@ const KEYS = {
   ablation: ["without", "medianDegrees", "found"],
 };
 /** Nothing replaces these where other people's data is absent. */
-const REAL = ["table3", "figure7", "photographs", "albedo", "rgbd"];
+const REAL = ["table3", "figure7", "sensors", "photographs", "albedo", "rgbd"];
 
 /** Tables without a row, and keys that a row lacks. A key may be null: not everything has a value. */
 export const missingKeys = (json, { realPairs }) =>

@@ -4,7 +4,6 @@ import { join } from "node:path";
 import { PAIRS, capture } from "../real-pairs.mjs";
 import { inRoot } from "../shell.mjs";
 import { readHeights } from "./npy.mjs";
-import { PAINTED } from "./protocol/scenes.mjs";
 
 const DATA = inRoot("../shared/data");
 /** Rows of `natural_lights_114.csv`: the easy, the median and the hard one. */
@@ -80,6 +79,39 @@ function objectOn(raster) {
   return { place, relief: { width: RELIEF_SIDE, height: RELIEF_SIDE, heights: raised } };
 }
 
+/** One frame of the mitten with its own depth, and the median of twenty depths in the same unit. */
+function mitten(files, frame) {
+  const read = (name) => bytes("mitten_rgbd", name);
+  const { colour, depth, depth_unit_m: unit } = JSON.parse(read("calib.json").toString());
+  const camera = ({ fx, fy, cx, cy }) => ({ fx, fy, cx, cy });
+  const { width, height, data: mask } = files.decodeMask(read("mask.png"));
+  const halved = new Uint8Array(depth.width * depth.height);
+  halved.forEach((_, index) => {
+    halved[index] = mask[2 * Math.floor(index / depth.width) * width + 2 * (index % depth.width)];
+  });
+  if (width !== 2 * depth.width || height !== 2 * depth.height) throw new Error("the mitten's mask is not twice its depth");
+  return {
+    image: { ...files.decodeColour(read(`color_${frame}.png`)), mask, camera: camera(colour) },
+    depth: { ...files.decodeDepth(read(`depth_${frame}.png`)), mask: halved, camera: camera(depth), unit },
+    median20: Float64Array.from(files.decodeDepth(read("depth_median20.png")).data),
+  };
+}
+
+/** A scan of DiLiGenT: depth in metres, normals as its photometric stereo gives them, in our frame. */
+function scan(files, name) {
+  const read = (file) => bytes("diligent", name, file);
+  const { width, height, data } = readHeights(read("depth_mm.npy"));
+  const [[fx, , cx], [, fy, cy]] = read("K.txt").toString().trim().split("\n").map((row) => row.trim().split(/\s+/).map(Number));
+  const encoded = files.decodeColour(read("normal_map.png")).data;
+  const normals = new Float32Array(3 * width * height);
+  for (let index = 0; index < width * height; index++) {
+    const normal = [1, -1, -1].map((sign, axis) => sign * (2 * (encoded[4 * index + axis] / 0xffff) - 1));
+    normals.set(normal.map((part) => part / Math.hypot(...normal)), 3 * index);
+  }
+  const mask = files.decodeMask(read("mask.png")).data;
+  return { width, height, metres: Float64Array.from(data, (depth) => depth / 1000), normals, mask, camera: { fx, fy, cx, cy } };
+}
+
 /** `files` is the package's own reader. */
 export function library(files) {
   if (!hasData()) return { surface: (name) => name, light: (name) => name, gaussian: undefined };
@@ -99,10 +131,13 @@ export function library(files) {
     const mask = files.decodeMask(bytes("mit_berkeley", name, "lab_mask.png")).data;
     return { width, height, data: colours, mask, place: object(name).place };
   });
+  const isObject = (name) => existsSync(join(DATA, "mit_berkeley", name, "height.npy"));
   return {
-    surface: (name) => (name === "mozart" ? mozart(name) : PAINTED.includes(name) ? object(name).relief : name),
+    surface: (name) => (name === "mozart" ? mozart(name) : isObject(name) ? object(name).relief : name),
     light: (name) => (name in NATURAL_LIGHTS ? natural(name) : name),
     gaussian: JSON.parse(bytes("lights", "natural_light_gaussian.json").toString()),
+    mitten: (frame) => mitten(files, frame),
+    scan: (name) => scan(files, name),
     pair: (name) => PAIRS[name](files),
     /** Colour and depth of one moment, one frame of their own each. */
     capture: (name, frame) => capture(name, frame, files),

@@ -127,6 +127,14 @@ const refinement = (rows) =>
     ]),
   ]);
 
+const sensors = (rows) =>
+  columns([
+    ["sensor", "object", "half", "before", "after", "ratio", "of means", "status"],
+    ...rows.map(({ sensor, object, half, before, after, ratio, meanRatio, status }) => [
+      ...[sensor, object, half, fixed(before), fixed(after), `x${fixed(ratio, 2)}`, `x${fixed(meanRatio, 2)}`, status],
+    ]),
+  ]);
+
 function photographs(rows) {
   const [betas, images] = [unique(rows.map(({ beta }) => beta)), unique(rows.map(({ image }) => image))];
   const cell = (object, image, beta) => rows.find((row) => row.object === object && row.image === image && row.beta === beta);
@@ -235,7 +243,7 @@ const ablation = (rows) =>
 
 const SHOWS = {
   ...{ table1, table2A, table2B, table3, figure4, figure5, figure6, figure7 },
-  ...{ refinement, photographs, albedo, rgbd, pinhole, random, exposure, ablation },
+  ...{ refinement, sensors, photographs, albedo, rgbd, pinhole, random, exposure, ablation },
 };
 
 /** One table's lines; `open3d` gives the baseline's degrees for a row of Table 2B, where there are any. */

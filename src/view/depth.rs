@@ -4,8 +4,10 @@
 use crate::check::positive;
 use crate::error::{Error, ErrorKind, Result};
 use crate::text::Brief;
+use crate::view::depth_noise::DepthNoise;
 use crate::view::flying_pixels;
 use crate::view::mask::{self, FEWEST_PIXELS, components};
+use crate::view::smoothing::smooth;
 use crate::view::{Camera, Normals, Pinhole, Points, Size, normals};
 
 /// Samples as they come from a sensor or a file.
@@ -47,8 +49,13 @@ pub struct DepthView {
     pub camera: Camera,
     /// Object pixels, holes included where they touch a depth.
     pub mask: Vec<bool>,
-    /// Points in the depth camera's frame in metres or pixels, NaN at holes and off the mask.
+    /// Points in the depth camera's frame in metres or pixels, NaN at holes and off the mask; without the noise that
+    /// pixels share with their neighbours.
     pub points: Points,
+    /// Depth along z as it was measured; empty where it is the points' own.
+    pub measured_depth: Vec<f32>,
+    /// The noise of the measured depth.
+    pub noise: DepthNoise,
     /// Unit normals in the depth camera's frame, NaN where there is none.
     pub normals: Normals,
     /// Whether the input was an organised cloud: no ray of a camera runs through its pixels.
@@ -98,6 +105,8 @@ impl DepthView {
             mask: object,
             normals: Normals::default(),
             points,
+            measured_depth: Vec::new(),
+            noise: DepthNoise::default(),
             organised,
             normals_given: map.normals.is_some(),
             trimmed: 0,
@@ -111,6 +120,9 @@ impl DepthView {
             rays.keep_pixels_with_rays(LENS, size, &view.points.z, &mut view.mask)?;
         }
         view.drop_islands();
+        if !organised {
+            view.remove_noise();
+        }
         view.normals = match &map.normals {
             Some(given) => given_normals(size, given)?,
             None if organised => normals::of_cloud(size, &view.points),
@@ -143,6 +155,26 @@ impl DepthView {
         }
     }
 
+    /// Moves the points along their rays to where they are without the noise of the map, unless that is white: cubics and
+    /// registrations average white noise, and miss what smoothing takes from the relief.
+    fn remove_noise(&mut self) {
+        let mut depth = self.points.z.clone();
+        self.camera.heights_from_depth(&mut depth);
+        self.noise = DepthNoise::of(self.size, &depth);
+        if !self.noise.is_visible() || self.noise.is_white {
+            return;
+        }
+        smooth(self.size, &self.noise, &mut depth);
+        self.camera.depth_from_heights(&mut depth);
+        if !self.camera.is_orthographic() {
+            let Points { x, y, z } = &mut self.points;
+            for ((x, y), (z, depth)) in x.iter_mut().zip(y).zip(z.iter().zip(&depth)) {
+                (*x, *y) = (*x * depth / z, *y * depth / z);
+            }
+        }
+        self.measured_depth = std::mem::replace(&mut self.points.z, depth);
+    }
+
     /// Takes those components of the mask that hold no depth at all out of it: nothing tells how far away they are.
     fn drop_islands(&mut self) {
         let (labels, counts) = components(self.size, |index| self.mask[index], |_, _| true);
@@ -155,7 +187,13 @@ impl DepthView {
         }
     }
 
-    /// Depth along z, NaN at holes and off the mask.
+    /// Depth along z as it was measured, NaN at holes and off the mask.
+    #[must_use]
+    pub fn measured(&self) -> &[f32] {
+        if self.measured_depth.is_empty() { self.depth() } else { &self.measured_depth }
+    }
+
+    /// Depth along z of the points, NaN at holes and off the mask.
     #[must_use]
     pub fn depth(&self) -> &[f32] {
         &self.points.z

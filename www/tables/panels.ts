@@ -164,4 +164,4 @@ export const panels: readonly Panel[] = [
 ];
 
 /** What needs other people's recordings, which the page does not have. */
-export const elsewhere: readonly string[] = ["table3", "figure7", "photographs", "albedo"].map((name) => tableNamed(name).title);
+export const elsewhere: readonly string[] = ["table3", "figure7", "sensors", "photographs", "albedo", "rgbd"].map((name) => tableNamed(name).title);

@@ -1,6 +1,7 @@
 // What the project has set out to reach, computed from the rows of the tables and never from anything else.
 import { FOUND_WITHIN, isConfidentlyWrong, isFlagged, isFound, isFoundOrFlagged } from "./counts.mjs";
 import { IMAGES } from "./reals.mjs";
+import { medianRatio } from "./sensors.mjs";
 import { COLOURFUL } from "./scenes.mjs";
 import { median, quantile, share, worst } from "./numbers.mjs";
 import { degreesBetween } from "./rotations.mjs";
@@ -80,6 +81,21 @@ function refinementAims(rows = []) {
   return [
     aim("refinement", "pose estimated, colourful: error in / out", least(colourful), ">=", 5, colourful.length),
     aim("refinement", "pose estimated, natural: error in / out, least", least(natural), ">=", 2.5, natural.length),
+  ];
+}
+
+function sensorsAims(rows = []) {
+  const line = (sensor, limit, half) => {
+    const count = rows.filter((row) => row.sensor === sensor && (!half || row.half === half)).length;
+    const what = `${sensor}${half ? `, ${half}` : ""}: median of error in / out`;
+    return aim("sensors", what, medianRatio(rows, sensor, half), ">=", limit, count);
+  };
+  return [
+    line("mitten", 1.6),
+    line("kinect, photograph", 1.8, "tuned"),
+    line("kinect, photograph", 1.8, "held out"),
+    line("scan, render", 2.5, "tuned"),
+    line("scan, render", 2.5, "held out"),
   ];
 }
 
@@ -173,6 +189,7 @@ export const aims = (json) =>
     ...(json.table2B ? table2BAims(json.table2B) : []),
     ...(json.figure5 ? figure5Aims(json.figure5) : []),
     ...(json.refinement ? refinementAims(json.refinement) : []),
+    ...(json.sensors ? sensorsAims(json.sensors) : []),
     ...(json.photographs ? photographsAims(json.photographs) : []),
     ...(json.rgbd ? rgbdAims(json.rgbd) : []),
     ...(json.pinhole ? pinholeAims(json.pinhole) : []),

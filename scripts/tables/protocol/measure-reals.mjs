@@ -60,7 +60,7 @@ export async function measurePair(cell, api, library) {
 const COVERED = 0.5;
 
 /** The photograph on the pixels of the made view: means over what each pixel covers. */
-function onto(size, { width, height, data, mask, place }, made) {
+export function onto(size, { width, height, data, mask, place }, made) {
   const colours = new Float32Array(3 * size * size);
   const inside = new Uint8Array(size * size);
   // The relief spans 256 samples, the view `size` pixels; the library says where a sample lies in the photograph.

@@ -4,6 +4,7 @@ import { judged, optionsOf, withRun } from "./runs.mjs";
 import { requestOf } from "./scenes.mjs";
 import { measureCapture, measurePinhole } from "./measure-perspective.mjs";
 import { measureAlbedo, measurePair, measurePhotograph } from "./measure-reals.mjs";
+import { measureKinect, measureMitten, measureScan } from "./measure-sensors.mjs";
 import { measureIterations, measureRefinement, measureShading } from "./measure-shapes.mjs";
 
 async function measurePose(cell, api, library) {
@@ -63,6 +64,9 @@ const KINDS = {
   capture: measureCapture,
   pinhole: measurePinhole,
   albedo: measureAlbedo,
+  mitten: measureMitten,
+  kinect: measureKinect,
+  scan: measureScan,
 };
 
 /** The figures of a cell, as plain JSON; whatever goes wrong is thrown. */

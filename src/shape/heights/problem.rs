@@ -11,6 +11,10 @@ pub const COLOUR_SCALES: [f32; 3] = [0.5, 0.2, LAST_SCALE];
 /// The robust scale of solves that continue an earlier one.
 pub const LAST_SCALE: f32 = 0.06;
 
+/// Confidence (squared log residual per squared slope) at which the smoothness has lost half its weight: a light whose
+/// colours change by 0.1 for a slope of one.
+pub const HALVING_CONFIDENCE: f32 = 0.01;
+
 /// The data of one surface; all fields are rasters of the view, NaN where unknown.
 #[derive(Clone, Copy)]
 pub struct HeightProblem<'a> {
@@ -28,10 +32,29 @@ pub struct HeightProblem<'a> {
     pub normal_weight: Option<&'a [f32]>,
     /// Heights that the surface is drawn to.
     pub anchors: Option<Anchors<'a>>,
+    /// How much the surface resists bending beyond what the solver needs.
+    pub bending: Bending,
     /// Scale of the robust function: the log residual at which a pixel keeps a quarter of its weight.
     pub colour_scale: f32,
     /// Limits of the work.
     pub effort: Effort,
+}
+
+/// What is known of a surface's second differences: weight rho(d^2 z), Geman-McClure, linearised at the heights that a
+/// solve starts from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bending {
+    /// Squared log residual per squared second difference.
+    pub weight: f32,
+    /// Scale of rho in pixels: beyond it is a crease.
+    pub scale: f32,
+    /// Confidence of a pixel's colours at which the bending has lost half its weight.
+    pub halving: f32,
+}
+
+impl Bending {
+    /// Nothing is known.
+    pub const FREE: Self = Self { weight: 0.0, scale: 1.0, halving: 1.0 };
 }
 
 /// Limits of the work of a solve.

@@ -16,19 +16,16 @@
 use super::cell_terms::CellTerms;
 use super::domain::{ABOVE, BELOW, CELL, HeightDomain, INSIDE, LEFT, RIGHT};
 use super::normal_operator::NormalOperator;
-use super::problem::{Effort, HeightProblem};
+use super::problem::{Bending, Effort, HALVING_CONFIDENCE, HeightProblem};
 use super::rasters::{padded, resize};
 use crate::numeric::conjugate_gradient::{self, Limits, System, Vectors};
 use crate::numeric::cosine::CosineSolver;
-use crate::numeric::{LANES, Lanes, Real};
+use crate::numeric::{LANES, Lanes, Real, robust};
 use crate::shape::integration::Edges;
 
 /// kappa, squared log residual per squared second difference in pixels. Chosen on Mozart at 64x64 with 2 % noise under
 /// the lights A, B and C, the light known; docs/accuracy.md tells what larger ones did.
 const SMOOTHNESS: f32 = 1e-3;
-/// Confidence (squared log residual per squared slope) at which the smoothness has lost half its weight: a light whose
-/// colours change by 0.1 for a slope of one.
-const HALVING_CONFIDENCE: f32 = 0.01;
 /// Damping of the first step and its bounds, relative to the mean stiffness of the terms.
 const FIRST_DAMPING: f32 = 0.1;
 const DAMPING: [f32; 2] = [1e-4, 1e4];
@@ -203,7 +200,8 @@ impl HeightSolver {
         }
         self.edges_weight = 0.0;
         for (axis, strides) in [[1, 1], [domain.width, domain.size.width]].into_iter().enumerate() {
-            self.edges_weight += self.load_axis(domain, axis, strides.map(|stride| stride as isize), slopes[axis]);
+            let strides = strides.map(|stride| stride as isize);
+            self.edges_weight += self.load_axis(domain, axis, strides, slopes[axis], terms.problem.bending);
         }
     }
 
@@ -215,10 +213,13 @@ impl HeightSolver {
         axis: usize,
         [stride, view_stride]: [isize; 2],
         slopes: &[f32],
+        bending: Bending,
     ) -> f64 {
         let (zero, half) = (Lanes::splat(0.0), Lanes::splat(0.5));
         let halving = Lanes::splat(HALVING_CONFIDENCE);
         let most = Lanes::splat(SMOOTHNESS * HALVING_CONFIDENCE);
+        let (known, doubted) = (Lanes::splat(bending.weight * bending.halving), Lanes::splat(bending.halving));
+        let inverse_square = Lanes::splat(1.0 / (bending.scale * bending.scale));
         let [before, after] = [[LEFT, RIGHT], [ABOVE, BELOW]][axis];
         let mut sum = 0.0;
         for (here, source) in domain.rows() {
@@ -232,7 +233,11 @@ impl HeightSolver {
                 weight.store(&mut self.edges[axis].weight[index..]);
                 zero.less(weight).select(gradient, zero).store(&mut self.edges[axis].gradient[index..]);
                 // kappa: less where a pixel's colours fix its normal.
-                let kappa = (joined & domain.flagged(index, before)).select(most / (halving + confidence), zero);
+                let (z, here) = (&self.z, Lanes::load(&self.z, place));
+                let second = Lanes::load(z, place + stride) - (here + here) + Lanes::load(z, place - stride);
+                let bend = known / (doubted + confidence) * robust::weight(second * second * inverse_square);
+                let inner = joined & domain.flagged(index, before);
+                let kappa = inner.select(most / (halving + confidence) + bend, zero);
                 kappa.store(&mut self.operator.smoothness[axis][index..]);
                 row = row + weight;
             }
@@ -397,6 +402,7 @@ mod tests {
             rotation: &Matrix3::identity(),
             slopes: [&slopes, &slopes],
             normal_weight: None,
+            bending: Bending::FREE,
             anchors: None,
             colour_scale: 0.2,
             effort: Effort { steps: 4, iterations: 10, tolerance: 0.03 },

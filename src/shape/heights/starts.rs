@@ -3,7 +3,7 @@
 use nalgebra::Matrix3;
 
 use super::domain::HeightDomain;
-use super::problem::{COLOUR_SCALES, Effort, HeightProblem, LAST_SCALE};
+use super::problem::{Bending, COLOUR_SCALES, Effort, HeightProblem, LAST_SCALE};
 use super::solver::HeightSolver;
 use crate::light::Light;
 use crate::view::{ColourView, Size};
@@ -48,6 +48,7 @@ impl<'a> ImageSurfaceProblem<'a> {
             rotation: &Matrix3::identity(),
             slopes: self.slopes,
             normal_weight: Some(self.normal_weight),
+            bending: Bending::FREE,
             anchors: None,
             colour_scale,
             effort,
