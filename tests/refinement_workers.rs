@@ -88,7 +88,7 @@ fn a_pose_that_does_not_move_lets_a_worker_refine() {
 fn an_iteration_that_is_taken_back_takes_its_shape_along() {
     let colourful = light("colourful").unwrap();
     let request =
-        SampleRequest { light: colourful, noise: 0.02, depth_noise: 0.3, holes: 0.1, ..SampleRequest::default() };
+        SampleRequest { light: colourful, noise: 0.05, depth_noise: 0.3, holes: 0.1, ..SampleRequest::default() };
     let sample = sample(&request);
     // A depth view that is trusted too much makes the second iteration worse than the first.
     let options = Options { weights: Weights { prior: 10.0, ..Weights::default() }, ..near(&sample) };
