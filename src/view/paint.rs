@@ -10,12 +10,8 @@
 //! Limits: paint that changes softly stays, and so does what a region's borders do not tell; an edge of the relief looks
 //! like one of paint if it is sharp enough. Regions of a few pixels, mixtures of two paints, leave the mask.
 
-use std::collections::BTreeMap;
-
-use nalgebra::{DMatrix, DVector};
-
 use super::ColourView;
-use crate::numeric::quantile;
+use crate::numeric::{quantile, sort_descending};
 
 /// Differences of neighbours' log colours, hue (what differs from their mean) and all, that no shading of a smooth
 /// surface makes, beside four sigmas of the noise. A sphere of 30 pixels in a hard lamp has 0.1 a pixel at its rim.
@@ -31,7 +27,7 @@ const FEWEST_PAIRS: usize = 3;
 const WIDEST_BORDER: usize = 3;
 /// Share of the pixels outside the largest region from which on there is paint.
 const LEAST_PAINT: f64 = 0.03;
-/// Ties each region to the others' mean, in pairs: only where no border does.
+/// Ties each region to the mean, in pairs: only where no border does.
 const LOOSE_TIE: f64 = 1e-3;
 
 /// Regions whose paints differ by less, in hue (what differs from the mean of the channels) and in brightness, are of one
@@ -40,6 +36,10 @@ const ONE_HUE: f64 = 0.1;
 const ONE_BRIGHTNESS: f64 = 0.4;
 /// Times that paints are joined and compared anew, over all borders between two of them together.
 const PALETTE_ROUNDS: usize = 2;
+
+/// Sweeps over the borders at most, and the change of a log offset that ends them.
+const MOST_SWEEPS: usize = 2000;
+const SETTLED_OFFSET: f64 = 1e-5;
 
 /// No region.
 const NONE: u32 = u32::MAX;
@@ -53,10 +53,10 @@ impl ColourView {
         if regions.sizes.len() < 2 || (painted as f64) < LEAST_PAINT * regions.pixels() as f64 {
             return None;
         }
-        let mut offsets = regions.offsets(self)?;
+        let mut offsets = regions.offsets(self);
         for _ in 0..PALETTE_ROUNDS {
             regions.join(&offsets);
-            offsets = regions.offsets(self)?;
+            offsets = regions.offsets(self);
         }
         let mut log = self.log.clone();
         let mask: Vec<bool> = regions.of_pixel.iter().map(|&region| region != NONE).collect();
@@ -86,6 +86,15 @@ fn is_one_paint(a: &[f64; 3], b: &[f64; 3]) -> bool {
     let off: [f64; 3] = std::array::from_fn(|channel| a[channel] - b[channel]);
     let brightness = off.iter().sum::<f64>() / 3.0;
     brightness.abs() < ONE_BRIGHTNESS && off.iter().all(|value| (value - brightness).abs() < ONE_HUE)
+}
+
+/// Where two paints meet.
+struct Border {
+    regions: [usize; 2],
+    /// Pairs of pixels along it.
+    pairs: f64,
+    /// log paint of the second region less that of the first.
+    step: [f64; 3],
 }
 
 /// Pixels of one paint: connected ones at first.
@@ -120,11 +129,13 @@ impl Regions {
             }
             found.push((pixels, label));
         }
-        found.sort_by(|a, b| b.cmp(a));
+        let labels = found.len();
+        sort_descending(&mut found, |&(pixels, _)| pixels as f64);
         found.truncate(MOST_REGIONS);
         found.retain(|(pixels, _)| *pixels >= SMALLEST_REGION);
-        let names: BTreeMap<u32, u32> = (0..).zip(&found).map(|(name, &(_, label))| (label, name)).collect();
-        of_pixel.iter_mut().for_each(|label| *label = names.get(label).copied().unwrap_or(NONE));
+        let mut names = vec![NONE; labels];
+        (0..).zip(&found).for_each(|(name, &(_, label))| names[label as usize] = name);
+        of_pixel.iter_mut().filter(|label| **label != NONE).for_each(|label| *label = names[*label as usize]);
         Self { of_pixel, sizes: found.into_iter().map(|(pixels, _)| pixels).collect() }
     }
 
@@ -154,41 +165,57 @@ impl Regions {
         self.sizes.iter().sum()
     }
 
-    /// log paint of each region in each channel, zero in the mean over the pixels.
-    fn offsets(&self, view: &ColourView) -> Option<[Vec<f64>; 3]> {
+    /// log paint of each region in each channel, zero in the mean over the pixels: least squares over the borders, each
+    /// region in turn at the mean that its neighbours ask for (Gauss and Seidel).
+    fn offsets(&self, view: &ColourView) -> [Vec<f64>; 3] {
         let borders = self.borders(view);
-        let count = self.sizes.len();
-        let mut matrix = DMatrix::<f64>::identity(count, count) * LOOSE_TIE;
-        let mut sides = [(); 3].map(|()| DVector::<f64>::zeros(count));
-        for ((a, b), mut steps) in borders {
-            let pairs = steps[0].len();
-            if pairs < FEWEST_PAIRS {
-                continue;
+        [0, 1, 2].map(|channel: usize| {
+            let mut offsets = vec![0.0; self.sizes.len()];
+            let mut sums = vec![(0.0, 0.0); self.sizes.len()];
+            for _ in 0..MOST_SWEEPS {
+                sums.fill((0.0, LOOSE_TIE));
+                for &Border { regions: [a, b], pairs, step } in &borders {
+                    sums[a].0 += pairs * (offsets[b] - step[channel]);
+                    sums[b].0 += pairs * (offsets[a] + step[channel]);
+                    sums[a].1 += pairs;
+                    sums[b].1 += pairs;
+                }
+                let mut change = 0.0_f64;
+                for (offset, &(sum, weight)) in offsets.iter_mut().zip(&sums) {
+                    // Half the way: all at once would swing between two regions for ever.
+                    let next = 0.5 * (*offset + sum / weight);
+                    change = change.max((next - *offset).abs());
+                    *offset = next;
+                }
+                if change < SETTLED_OFFSET {
+                    break;
+                }
             }
-            let (a, b, weight) = (a as usize, b as usize, pairs as f64);
-            matrix[(a, a)] += weight;
-            matrix[(b, b)] += weight;
-            matrix[(a, b)] -= weight;
-            matrix[(b, a)] -= weight;
-            for (side, steps) in sides.iter_mut().zip(&mut steps) {
-                let step = weight * f64::from(quantile(steps, 0.5));
-                side[a] -= step;
-                side[b] += step;
-            }
-        }
-        let factor = matrix.cholesky()?;
-        let solved = |side: &DVector<f64>| {
-            let offsets = factor.solve(side);
-            let mean = offsets.iter().zip(&self.sizes).map(|(offset, &size)| offset * size as f64).sum::<f64>()
-                / self.pixels() as f64;
+            let weighted = offsets.iter().zip(&self.sizes).map(|(offset, &size)| offset * size as f64);
+            let mean = weighted.sum::<f64>() / self.pixels() as f64;
             offsets.iter().map(|offset| offset - mean).collect()
-        };
-        Some(sides.each_ref().map(solved))
+        })
+    }
+
+    /// What paints differ by across each border that is long enough.
+    fn borders(&self, view: &ColourView) -> Vec<Border> {
+        let mut steps = self.steps(view);
+        sort_descending(&mut steps, |([a, b], _)| f64::from(*a) * MOST_REGIONS as f64 + f64::from(*b));
+        let long = steps.chunk_by(|a, b| a.0 == b.0).filter(|border| border.len() >= FEWEST_PAIRS);
+        long.map(|border| Border {
+            regions: border[0].0.map(|region| region as usize),
+            pairs: border.len() as f64,
+            step: [0, 1, 2].map(|channel: usize| {
+                let mut values: Vec<f32> = border.iter().map(|(_, step)| step[channel]).collect();
+                f64::from(quantile(&mut values, 0.5))
+            }),
+        })
+        .collect()
     }
 
     /// For each pair of regions what the second one's paint has more than the first one's, at each place of their border.
-    fn borders(&self, view: &ColourView) -> BTreeMap<(u32, u32), [Vec<f32>; 3]> {
-        let mut borders: BTreeMap<(u32, u32), [Vec<f32>; 3]> = BTreeMap::new();
+    fn steps(&self, view: &ColourView) -> Vec<([u32; 2], [f32; 3])> {
+        let mut all = Vec::new();
         let (width, height) = (view.size.width as isize, view.size.height as isize);
         for pixel in 0..self.of_pixel.len() {
             let first = self.of_pixel[pixel];
@@ -210,9 +237,7 @@ impl Regions {
                 let second = self.of_pixel[other];
                 let before = at(-1).filter(|&before| self.of_pixel[before] == first);
                 let after = at(steps + 1).filter(|&after| self.of_pixel[after] == second);
-                let key = (first.min(second), first.max(second));
-                let lists = borders.entry(key).or_default();
-                for (channel, list) in lists.iter_mut().enumerate() {
+                let step = [0, 1, 2].map(|channel: usize| {
                     let log = &view.log[channel];
                     let here = before.map(|before| log[pixel] - log[before]);
                     let there = after.map(|after| log[after] - log[other]);
@@ -221,11 +246,12 @@ impl Regions {
                         (one, two) => one.or(two).unwrap_or(0.0),
                     };
                     let step = log[other] - log[pixel] - steps as f32 * slope;
-                    list.push(if first < second { step } else { -step });
-                }
+                    if first < second { step } else { -step }
+                });
+                all.push(([first.min(second), first.max(second)], step));
             }
         }
-        borders
+        all
     }
 }
 

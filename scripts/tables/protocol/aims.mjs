@@ -100,11 +100,16 @@ function sensorsAims(rows = []) {
 }
 
 function photographsAims(rows = []) {
-  const real = rows.filter(({ image }) => image !== IMAGES.at(-1));
-  const unflagged = real.filter((row) => !isFlagged(row));
+  const of = (wanted) => rows.filter(({ image }) => image === wanted);
+  const [painted, shaded, rendered] = IMAGES.map(of);
+  const unflagged = painted.filter((row) => !isFlagged(row));
+  const middle = (members) => median(members.map(({ degrees }) => degrees));
   return [
-    aim("photographs", "median degrees", median(real.map(({ degrees }) => degrees)), "<=", 1.5, real.length),
+    aim("photographs", "median degrees", middle(painted), "<=", 1.2, painted.length),
+    aim("photographs", `share under ${FOUND_WITHIN} degrees`, share(painted, isFound), ">=", 0.75, painted.length),
     aim("photographs", "worst degrees of those not flagged", worst(unflagged.map(({ degrees }) => degrees)), "<=", 4, unflagged.length),
+    aim("photographs", "shading alone: median degrees", middle(shaded), "<=", 0.8, shaded.length),
+    aim("photographs", "renders: worst degrees", worst(rendered.map(({ degrees }) => degrees)), "<=", 1, rendered.length),
   ];
 }
 
@@ -177,6 +182,17 @@ function randomAims(row) {
   ];
 }
 
+function paintedAims(row) {
+  if (!row) return [];
+  const { cases, found } = row;
+  return [
+    aim("painted", `share under ${FOUND_WITHIN} degrees`, found / cases, ">=", 0.9, cases),
+    aim("painted", "median degrees of those", row.medianDegrees, "<=", 0.5, found),
+    aim("painted", "share confidently wrong", row.confidentlyWrong / cases, "<=", 0.01, cases),
+    aim("painted", "found within 3 sigma on all axes", row.coverage3, ">=", 0.93, found),
+  ];
+}
+
 const exposureAims = (rows = []) => [
   aim("exposure", "largest move of a pose, degrees", worst(rows.map(({ degreesMoved }) => degreesMoved)), "<=", 0.01, rows.length),
 ];
@@ -195,5 +211,6 @@ export const aims = (json) =>
     ...(json.pinhole ? pinholeAims(json.pinhole) : []),
     ...(json.albedo ? albedoAims(json.albedo) : []),
     ...randomAims(json.random),
+    ...paintedAims(json.painted),
     ...(json.exposure ? exposureAims(json.exposure) : []),
   ].filter(({ rows }) => rows > 0);

@@ -2,6 +2,7 @@
 import { sceneOf } from "./anywhere.mjs";
 import { judged, optionsOf, withRun } from "./runs.mjs";
 import { requestOf } from "./scenes.mjs";
+import { measurePainted } from "./painted.mjs";
 import { measureCapture, measurePinhole } from "./measure-perspective.mjs";
 import { measureAlbedo, measurePair, measurePhotograph } from "./measure-reals.mjs";
 import { measureKinect, measureMitten, measureScan } from "./measure-sensors.mjs";
@@ -64,6 +65,7 @@ const KINDS = {
   capture: measureCapture,
   pinhole: measurePinhole,
   albedo: measureAlbedo,
+  painted: measurePainted,
   mitten: measureMitten,
   kinect: measureKinect,
   scan: measureScan,

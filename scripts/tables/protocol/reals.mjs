@@ -56,7 +56,7 @@ const PHOTOGRAPH_SIZE = 96;
  * differences are what each of them costs.
  */
 export const IMAGES = ["lab_diffuse", "lab_shading", "render"];
-const PHOTOGRAPH_BETAS = [0, 20, 40];
+const PHOTOGRAPH_BETAS = [0, 20, 40, 60];
 
 const photographCell = (object, image, beta) => ({
   id: `photographs/${object}/${image}/${beta}`,
@@ -70,10 +70,10 @@ const photographCell = (object, image, beta) => ({
 export const photographs = {
   name: "photographs",
   title: "Photographs: real images of scanned objects, 96x96, nothing known",
-  cells: ({ objects }, quick) =>
+  cells: ({ painted }, quick) =>
     quick
-      ? objects.slice(0, 1).map((object) => photographCell(object, "lab_diffuse", 20))
-      : objects.flatMap((object) =>
+      ? painted.slice(0, 1).map((object) => photographCell(object, "lab_diffuse", 20))
+      : painted.flatMap((object) =>
           IMAGES.flatMap((image) => PHOTOGRAPH_BETAS.map((beta) => photographCell(object, image, beta))),
         ),
 };

@@ -7,6 +7,7 @@
 
 use super::problem::{ContrastProblem, ContrastReport};
 use super::registration::{ContrastEffort, ContrastRegistration};
+use crate::numeric::sort_descending;
 use crate::pose::similarity::Similarity;
 
 /// A stage: samples, what a registration may take, how many ends go on and how far apart they are, degrees.
@@ -104,7 +105,7 @@ impl ContrastSearch {
     }
 
     fn begin_next_stage(&mut self, problem: &ContrastProblem<'_>, done: &Stage) {
-        self.ends.sort_by(|a, b| a.0.total_cmp(&b.0));
+        sort_descending(&mut self.ends, |(value, _)| -value);
         let mut kept: Vec<End> = Vec::with_capacity(done.kept);
         for end in &self.ends {
             let is_apart = |other: &End| other.1.degrees_to(&end.1) >= done.apart;
