@@ -17,6 +17,7 @@
 //! | `shape/refinement` | the depth view's own normals and depth, through `heights` | Eq. 17 to 19 |
 //! | `pose/search` ([`Search`]) | where to start when nothing is known: all rotations, translations and scales, coarsely | before Algorithm 1 |
 //! | `pose/photometric` ([`Photometric`]) | the pose straight from the colours, the light projected out | beyond the paper |
+//! | `pose/contrast` ([`ContrastSearch`]) | the pose of a painted object, by local contrast and its outline | beyond the paper |
 //! | `pose/icp`, `pose/ransac` ([`Icp`], [`ransac`]) | the pose from both surfaces | Eq. 12 to 14 |
 //! | `pose/similarity`, `pose/angles` ([`Similarity`], [`Angles`]) | s, R, t and the angles, in closed form; the least-squares fit of Eq. 16 is a test, `tests/pose_angles.rs` | Eq. 15, 16, 20 |
 //! | `pose/correspondence` ([`Correspondences`]) | which depth point is which pixel, and what hides it | the 1-pixel rule |

@@ -5,14 +5,14 @@ use bimodal_stereo::{
     Angles, ColourImage, ColourSamples, Estimator, Options, Result, Similarity, Size, Start, Status, StepReport,
 };
 
-/// A scene whose image is painted in four hues, in squares of so many pixels (none for zero).
+/// A scene whose image is painted in four hues, in squares of so many pixels, or not at all.
 struct Painted {
     image: ColourImage,
     depth: bimodal_stereo::DepthMap,
     truth: Similarity,
 }
 
-fn painted(name: &str, beta: f64, square: usize) -> Result<Painted> {
+fn painted(name: &str, beta: f64, square: Option<usize>) -> Result<Painted> {
     let request = SampleRequest {
         light: light("window")?,
         size: Size { width: 72, height: 72 },
@@ -26,7 +26,7 @@ fn painted(name: &str, beta: f64, square: usize) -> Result<Painted> {
     if let ColourSamples::RgbLinear(data) = &mut image.samples {
         for (pixel, colour) in data.chunks_mut(3).enumerate() {
             let (column, row) = (pixel % image.width, pixel / image.width);
-            let hue = if square == 0 { 0 } else { (column / square + 3 * (row / square)) % 4 };
+            let hue = square.map_or(0, |square| (column / square + 3 * (row / square)) % 4);
             colour.iter_mut().zip(hues[hue]).for_each(|(value, share)| *value *= share);
         }
     }
@@ -44,7 +44,7 @@ fn run(scene: &Painted, options: Options) -> Result<StepReport> {
 #[test]
 fn a_painted_object_is_found_from_nothing() -> Result<()> {
     for (name, beta) in [("bust", 25.0), ("vase", -20.0)] {
-        let scene = painted(name, beta, 11)?;
+        let scene = painted(name, beta, Some(11))?;
         let report = run(&scene, Options::default())?;
         let off = report.pose.degrees_to(&scene.truth);
         assert!(off < 3.0, "{name}: {off} degrees, {:?} {:?}", report.status, report.message);
@@ -57,7 +57,7 @@ fn a_painted_object_is_found_from_nothing() -> Result<()> {
 
 #[test]
 fn paint_does_not_pull_a_told_start_away() -> Result<()> {
-    let scene = painted("bust", 20.0, 9)?;
+    let scene = painted("bust", 20.0, Some(9))?;
     let told = Angles { alpha: 3.0, beta: 15.0, gamma: -2.0 }.rotation();
     let start = Start::Pose { rotation: told, scale: Some(1.0), translation: None };
     let report = run(&scene, Options { start, ..Options::default() })?;
@@ -68,7 +68,7 @@ fn paint_does_not_pull_a_told_start_away() -> Result<()> {
 
 #[test]
 fn without_paint_the_colours_themselves_decide() -> Result<()> {
-    let scene = painted("bust", 25.0, 0)?;
+    let scene = painted("bust", 25.0, None)?;
     let report = run(&scene, Options::default())?;
     let off = report.pose.degrees_to(&scene.truth);
     // A third of what contrast alone would leave.

@@ -250,10 +250,8 @@ impl Initialisation {
             return Advance::Ongoing(1.0 - CONTRAST_SHARE * (1.0 - search.share()), COMPARING_CONTRAST);
         }
         Advance::Done(match painted::conclude(pair, colours, canvas, search) {
-            Some(Conclusion::ByColours(best)) => Outcome { best: Some(Box::new(best)), ..Outcome::default() },
-            Some(Conclusion::ByContrast(contrast)) => {
-                Outcome { contrast: Some(Box::new(contrast)), ..std::mem::take(outcome) }
-            }
+            Some(Conclusion::ByColours(best)) => Outcome { best: Some(best), ..Outcome::default() },
+            Some(Conclusion::ByContrast(contrast)) => Outcome { contrast: Some(contrast), ..std::mem::take(outcome) },
             None => std::mem::take(outcome),
         })
     }

@@ -5,6 +5,7 @@
 //! | `search/` | initialisation, before Algorithm 1: poses worth refining when nothing is known | log likelihood over a constant colour | rotation, scale, translation in the image | sweep over all rotations, correlation by FFT, local ascent |
 //! | `photometric/` | registration by colours, beyond the paper | robust residuals of log colours + prior of the light | pose and light | Gauss-Newton, the light eliminated; instrumental variables |
 //! | `outline/` | registration by outlines, beyond the paper, where colours are painted | rims of the depth map on the image's mask and edges | pose without scale, and the loss of outlines | Gauss-Newton |
+//! | `contrast/` | registration by local contrast, for painted objects | robust residuals with local means removed, outline | pose and light | Gauss-Newton, the light eliminated; many starts |
 //! | `icp` | Eq. 12: the depth points onto the image surface | robust point-to-plane distance | pose | nearest neighbours and Gauss-Newton, alternating |
 //! | `ransac` | Eq. 13 and 14: consensus of pairs over the linear model P -> A P + t | truncated squared distance | the twelve numbers theta | samples of four pairs, then linear least squares |
 //! | `similarity` | Eq. 15: the similarity nearest to A; Eq. 12 for known pairs, in closed form | least squares | s, R, t | Horn's quaternion |
@@ -12,6 +13,7 @@
 //! | `correspondence`, `visibility` | which depth point is which pixel, with occlusion in both directions: the 1-pixel rule | | | z-buffers |
 //! | `increment` | a Gauss-Newton step of a similarity: seven unknowns | | | |
 //! | `uncertainty` | one sigma of each number of a pose, from the information of matched surfaces | | | |
+//! | `spline_image`, `silhouette` | log S between pixels; distance to the mask | | | |
 //! | `neighbours` | nearest points | | | k-d tree |
 //!
 //! The error of Eq. 20, the spectral norm of R - R_g, is 2 sin(a / 2) of the angle a that [`Similarity::degrees_to`]

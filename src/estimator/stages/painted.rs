@@ -72,15 +72,15 @@ pub fn conclude(
     let contrast = search.outcome(&colours.contrast_problem(pair, image))?;
     let plain = colours.register_in(pair, image, &contrast.best.pose);
     Some(match plain {
-        Some(plain) if is_plain(pair, &plain, &contrast) => Conclusion::ByColours(plain),
-        _ => Conclusion::ByContrast(contrast),
+        Some(plain) if is_plain(pair, &plain, &contrast) => Conclusion::ByColours(Box::new(plain)),
+        _ => Conclusion::ByContrast(Box::new(contrast)),
     })
 }
 
 /// Which of the two has the pose.
 pub enum Conclusion {
-    ByColours(PhotometricReport),
-    ByContrast(ContrastOutcome),
+    ByColours(Box<PhotometricReport>),
+    ByContrast(Box<ContrastOutcome>),
 }
 
 /// The pose around a told one.

@@ -128,8 +128,8 @@ impl TrustRegion {
         {
             match found {
                 Conclusion::ByColours(found) if self.holds(&found.pose) => {
-                    colours.adopt(found.clone());
-                    return Ok(Settled::ByColours(Box::new(found)));
+                    colours.adopt((*found).clone());
+                    return Ok(Settled::ByColours(found));
                 }
                 Conclusion::ByContrast(found) if self.holds(&found.best.pose) => {
                     return Ok(Settled::ByContrast(Box::new(found.best)));

@@ -124,7 +124,7 @@ mod tests {
     fn constants_go_slopes_go_inside_and_edges_stay() {
         let mut means = LocalMeans::new(WIDTH, WIDTH * WIDTH, 2.0);
         // Pixels without weight, however wild, count for nothing.
-        let hole = |k: usize| k % 7 == 0;
+        let hole = |k: usize| k.is_multiple_of(7);
         let weights: Vec<f32> = (0..WIDTH * WIDTH).map(|k| if hole(k) { 0.0 } else { 0.5 }).collect();
         means.weigh(&weights);
         let mut constant = values(|_, _| [4.0, -3.0]);
