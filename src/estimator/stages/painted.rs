@@ -11,8 +11,10 @@ use crate::options::Registration;
 use crate::pose::{ContrastOutcome, ContrastSearch, PhotometricReport, Similarity};
 use crate::view::ColourView;
 
-/// Colours whose noise is at most so many times that of the image itself are noisy, not painted.
+/// Colours whose noise is at most so many times that of the image itself are noisy, not painted, unless it is more than
+/// any camera's, log units: texture passes for an image's noise as well.
 const NOISY: f64 = 1.25;
+const LARGEST_IMAGE_NOISE: f64 = 0.06;
 /// Both registrations have found one pose where their ends are this near, degrees: contrast may be off by a few.
 const SAME_POSE: f64 = 8.0;
 /// Around a told pose starts are turned by so many degrees about the axes and diagonals: half the basin of a start.
@@ -30,7 +32,7 @@ pub fn is_called_for(pair: &ViewPair, plain: Option<&PhotometricReport>) -> bool
 /// Whether a registration by colours from where contrast ended leaves no more than noise: then there is no paint, and its
 /// pose is the better one.
 fn is_plain(pair: &ViewPair, plain: &PhotometricReport, contrast: &ContrastOutcome) -> bool {
-    plain.noise <= LARGEST_PURE_NOISE.max(NOISY * pair.image.log_noise())
+    plain.noise <= LARGEST_PURE_NOISE.max((NOISY * pair.image.log_noise()).min(LARGEST_IMAGE_NOISE))
         && plain.pose.degrees_to(&contrast.best.pose) < SAME_POSE
 }
 
@@ -49,16 +51,23 @@ impl Canvas {
     }
 }
 
-/// A search from these poses, at the scale that the units give where it is free.
+/// Sizes that starts have where the scale is free, relative to the units' scale: a registration finds home from 10 % off,
+/// and the search promises 0.7 to 1.4.
+const SIZES: [f64; 3] = [0.84, 1.0, 1.19];
+
+/// A search from these poses, at some sizes where the scale is free.
 pub fn search(pair: &ViewPair, colours: &ColourRegistration, canvas: &Canvas, poses: &[Similarity]) -> ContrastSearch {
     let middle = pair.depth.points.centroid();
-    let scale = gauge::held_scale(pair).unwrap_or_else(|| gauge::unit_scale(pair));
-    let rescaled = |pose: &Similarity| Similarity {
+    let held = gauge::held_scale(pair);
+    let unit = gauge::unit_scale(pair);
+    let scales = held.map_or_else(|| SIZES.map(|size| size * unit).to_vec(), |held| vec![held]);
+    let rescaled = |pose: &Similarity, scale: f64| Similarity {
         scale,
         rotation: pose.rotation,
         translation: pose.apply(middle) - scale * (pose.rotation * middle),
     };
-    ContrastSearch::new(&colours.contrast_problem(pair, canvas.image(pair)), poses.iter().map(rescaled).collect())
+    let starts = poses.iter().flat_map(|pose| scales.iter().map(move |&scale| rescaled(pose, scale))).collect();
+    ContrastSearch::new(&colours.contrast_problem(pair, canvas.image(pair)), starts)
 }
 
 /// The outcome of a search that is done: contrast's, or that of the colours from there, where that leaves nothing more.

@@ -25,8 +25,11 @@ const BESIDE_SCALE: f64 = 3.0;
 /// the object hides another, are no part of the outline.
 const LIMB_WEIGHT: f64 = 1.0;
 const LIMB_SCALE: f64 = 1.5;
-/// Weight of log^2 of the apparent size over that of the units: 20 % more costs as much as a fifth of the contrast.
+/// Weight of log^2 of the apparent size over that of the start: 20 % more costs as much as a fifth of the contrast. Without
+/// it a registration slides to where the object is small.
 const SIZE_WEIGHT: f64 = 5.0;
+/// The same over that of the units, where poses are compared: a view may be a quarter larger or smaller than they say.
+const UNIT_WEIGHT: f64 = 1.0;
 /// Median of the squared residuals of three channels of unit normal noise: that of chi squared with three degrees of
 /// freedom.
 const MEDIAN_OF_SQUARES: f64 = 2.366;
@@ -78,7 +81,7 @@ pub(super) struct Objective {
     beside: f64,
     /// The robust scale, squared.
     scale: f64,
-    /// Apparent size that the units give.
+    /// Apparent size of the start.
     size: f64,
     unit: f64,
 }
@@ -106,12 +109,9 @@ impl Objective {
         }
     }
 
-    /// What the apparent size is compared with.
+    /// The apparent size of a start is what is held to.
     pub fn expect_size(&mut self, problem: &ContrastProblem<'_>, start: &Similarity) {
-        self.size = match problem.is_metric() || problem.scale_is_held {
-            true => self.apparent_size(problem, start),
-            false => problem.unit_scale,
-        };
+        self.size = self.apparent_size(problem, start);
     }
 
     /// s, or s / z behind a pinhole.
@@ -247,6 +247,14 @@ impl Objective {
         self.values.copy_from_slice(&self.seen_values);
         level.means.remove(&mut self.values);
         self.unexplained(&state.light) + self.outlines(problem, &state.pose) + self.size_term(problem, &state.pose)
+    }
+
+    /// E with the apparent size held to what the units give, where they give one: what poses are compared by.
+    pub fn compared(&mut self, problem: &ContrastProblem<'_>, level: &mut Level, state: &State) -> f64 {
+        self.expect_size(problem, &state.pose);
+        let growth = (state.pose.scale / problem.unit_scale).ln();
+        let units = if problem.is_metric() || problem.scale_is_held { 0.0 } else { UNIT_WEIGHT * growth * growth };
+        self.value(problem, level, state) + units
     }
 
     fn size_term(&self, problem: &ContrastProblem<'_>, pose: &Similarity) -> f64 {

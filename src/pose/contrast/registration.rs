@@ -181,7 +181,7 @@ impl ContrastRegistration {
     pub fn evaluate(&mut self, problem: &ContrastProblem<'_>, pose: &Similarity, noise: f64) -> Option<f64> {
         let mut state = State { pose: *pose, light: Lights::default() };
         self.look(problem, &mut state, Some(noise))?;
-        Some(self.objective.value(problem, &mut self.levels[0], &state))
+        Some(self.objective.compared(problem, &mut self.levels[0], &state))
     }
 
     fn look(&mut self, problem: &ContrastProblem<'_>, state: &mut State, noise: Option<f64>) -> Option<Frame> {

@@ -18,8 +18,9 @@ struct Stage {
     apart: f64,
 }
 
-const STAGES: [Stage; 3] = [
-    Stage { samples: 350.0, effort: ContrastEffort { rounds: 2, ..ContrastEffort::GLANCE }, kept: 12, apart: 6.0 },
+const STAGES: [Stage; 4] = [
+    Stage { samples: 350.0, effort: ContrastEffort { rounds: 1, ..ContrastEffort::GLANCE }, kept: 48, apart: 6.0 },
+    Stage { samples: 350.0, effort: ContrastEffort::GLANCE, kept: 12, apart: 6.0 },
     Stage {
         samples: 1400.0,
         effort: ContrastEffort { rounds: 5, ..ContrastEffort::FULL },
