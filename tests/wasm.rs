@@ -41,7 +41,7 @@ fn two_runs_agree_to_the_last_bit() -> Result<(), Error> {
     // As bits, because missing pixels are NaN, which equals nothing.
     let bits = |values: &[f32]| values.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
     assert_eq!(bits(first.refined_depth()), bits(second.refined_depth()));
-    assert_eq!(bits(first.image_depth()), bits(second.image_depth()));
+    assert_eq!(bits(&first.image_depth()), bits(&second.image_depth()));
     Ok(())
 }
 

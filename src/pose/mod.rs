@@ -13,7 +13,7 @@
 //! | `correspondence`, `visibility` | which depth point is which pixel, with occlusion in both directions: the 1-pixel rule | | | z-buffers |
 //! | `increment` | a Gauss-Newton step of a similarity: seven unknowns | | | |
 //! | `uncertainty` | one sigma of each number of a pose, from the information of matched surfaces | | | |
-//! | `spline_image`, `silhouette` | log S between pixels; distance to the mask | | | |
+//! | `spline_image`, `silhouette`, `distance_transform` | log S between pixels; distance to the mask | | | |
 //! | `neighbours` | nearest points | | | k-d tree |
 //!
 //! The error of Eq. 20, the spectral norm of R - R_g, is 2 sin(a / 2) of the angle a that [`Similarity::degrees_to`]
@@ -22,6 +22,7 @@
 mod angles;
 mod contrast;
 mod correspondence;
+mod distance_transform;
 mod icp;
 mod increment;
 mod neighbours;

@@ -1,6 +1,6 @@
-//! How far a place lies off an image's mask: its exact Euclidean distance to the nearest pixel of the mask
-//! (P. Felzenszwalb, D. Huttenlocher: "Distance transforms of sampled functions", Theory of Computing 8, 2012).
+//! How far a place lies off an image's mask: the distance to the nearest pixel of the mask, bilinear between pixels.
 
+use super::distance_transform::squared_distances;
 use crate::view::Size;
 
 /// Distances to one mask, pixels: zero on it.
@@ -13,9 +13,7 @@ pub(super) struct Silhouette {
 
 impl Silhouette {
     pub fn new(size: Size, mask: &[bool]) -> Self {
-        let distance = distances(size, mask);
-        let other: Vec<bool> = mask.iter().map(|inside| !inside).collect();
-        let inside = distances(size, &other);
+        let [distance, inside] = [true, false].map(|kind| distances(size, |index| mask[index] == kind));
         // Centres of pixels on either side of a border are half a pixel off it.
         let signed =
             distance.iter().zip(&inside).map(|(out, inn)| if *out > 0.0 { out - 0.5 } else { 0.5 - inn }).collect();
@@ -52,47 +50,9 @@ impl Silhouette {
     }
 }
 
-/// Distance of each pixel to the nearest one of the mask.
-fn distances(size: Size, mask: &[bool]) -> Vec<f32> {
-    // Farther than any pixel, and its square exact.
-    let far = (size.width + size.height) as f32;
-    let mut squared: Vec<f32> = mask.iter().map(|&inside| if inside { 0.0 } else { far * far }).collect();
-    let mut line = vec![0.0; size.width.max(size.height)];
-    for row in 0..size.height {
-        lower_envelope(&mut squared, row * size.width, 1, &mut line[..size.width]);
-    }
-    for column in 0..size.width {
-        lower_envelope(&mut squared, column, size.width, &mut line[..size.height]);
-    }
-    squared.into_iter().map(f32::sqrt).collect()
-}
-
-/// One pass: min over q of (p - q)^2 + squared[q] along a line, by the lower envelope of its parabolas.
-fn lower_envelope(squared: &mut [f32], start: usize, step: usize, line: &mut [f32]) {
-    let at = |k: usize| start + k * step;
-    line.iter_mut().enumerate().for_each(|(k, value)| *value = squared[at(k)]);
-    // Parabolas of the envelope, and where each begins.
-    let mut parabolas: Vec<(usize, f32)> = Vec::with_capacity(line.len());
-    for q in 0..line.len() {
-        let begins = loop {
-            let Some(&(p, begin)) = parabolas.last() else { break f32::NEG_INFINITY };
-            let (p_square, q_square) = ((p * p) as f32, (q * q) as f32);
-            let meet = (line[q] + q_square - line[p] - p_square) / (2.0 * (q - p) as f32);
-            if meet > begin {
-                break meet;
-            }
-            parabolas.pop();
-        };
-        parabolas.push((q, begins));
-    }
-    let mut next = 0;
-    for k in 0..line.len() {
-        while parabolas.get(next + 1).is_some_and(|&(_, begin)| begin < k as f32) {
-            next += 1;
-        }
-        let q = parabolas[next].0;
-        squared[at(k)] = k.abs_diff(q).pow(2) as f32 + line[q];
-    }
+/// Distance of each pixel to the nearest one of a kind.
+fn distances(size: Size, is_of_kind: impl Fn(usize) -> bool) -> Vec<f32> {
+    squared_distances(size, is_of_kind).into_iter().map(|squared| squared.sqrt() as f32).collect()
 }
 
 #[cfg(test)]
