@@ -198,11 +198,12 @@ test("depths where a folding lens lets no ray through are left out", () => {
   assert.ok(made.refinedDepth().some(Number.isFinite));
 });
 
-test("a start of an absurd scale is lost, and the number that is named is a ratio", () => {
-  const made = estimator({ start: { scale: 1e-9 }, scale: "free" });
-  const { status, message } = made.step();
+test("a start of an absurd scale is kept and lost", async () => {
+  const { status, message, pose, uncertainty } = await estimator({ start: { scale: 1e-9 }, scale: "free" }).run();
   assert.equal(status, "lost");
-  assert.match(message, /their ratio must stay between 0\.5 and 2 \(got [\d.]+\)$/);
+  assert.match(message, /startTolerance/);
+  assert.equal(pose.scale, 1e-9);
+  assert.equal(uncertainty, undefined);
 });
 
 test("stepFor does at least one step and stops at the end", () => {
