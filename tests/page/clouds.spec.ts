@@ -1,6 +1,6 @@
 /** Both surfaces, drawn by a thread of their own where the browser lets one. */
 
-import type { Locator } from "@playwright/test";
+import type { Locator, Page } from "@playwright/test";
 import { decode } from "fast-png";
 import { expect, test } from "./lab";
 
@@ -18,6 +18,9 @@ async function covered(clouds: Locator): Promise<number> {
   return count / (width * height);
 }
 
+/** The clouds are loaded once a visitor comes near them: below all views, on a laptop. */
+const goToClouds = (page: Page) => page.locator("#clouds-box").scrollIntoViewIfNeeded();
+
 /** Longest wait, milliseconds, of one attempt of several. */
 const BRIEFLY = { timeout: 5_000 };
 
@@ -33,6 +36,7 @@ for (const [where, script] of [["in a thread", ""], ["on the page where threads 
     await page.addInitScript(script);
     const threads = () => page.workers().filter((worker) => worker.url().includes("stage-thread")).length;
     await lab.open();
+    await goToClouds(page);
     await page.keyboard.press("s");
     await expect(lab.iteration).toHaveText("1");
     const clouds = page.locator("#clouds-canvas");
@@ -62,6 +66,7 @@ test("without WebGL the page says so and computes all the same", async ({ lab, p
   // three.js complains on the console before it gives up; nothing else may.
   await page.addInitScript(NO_WEBGL);
   await lab.open();
+  await goToClouds(page);
   await expect(page.locator("#clouds-note")).toHaveText(/no WebGL/);
   await page.keyboard.press("s");
   await expect(lab.iteration).toHaveText("1");
@@ -76,6 +81,7 @@ test("points are as large on a dense screen", async ({ browser, baseURL }) => {
     const page = await context.newPage();
     await page.goto(`${baseURL}#start=truth`);
     await expect(page.locator("#status")).toHaveAttribute("data-state", "ready");
+    await goToClouds(page);
     const clouds = page.locator("#clouds-canvas");
     await expect(page.locator("#clouds-note")).toBeHidden();
     // Before the first step there is the depth map's cloud alone, so that no other can come late.
