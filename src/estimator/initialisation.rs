@@ -90,7 +90,7 @@ pub fn search(pair: &ViewPair, grid: ImageGrid, colours: &ColourRegistration) ->
 }
 
 impl Initialisation {
-    pub fn new(pair: &ViewPair, search: Search) -> Self {
+    pub fn new(pair: &ViewPair, colours: &ColourRegistration, search: Search) -> Self {
         Self {
             search,
             registrations: TaskResults::new(0),
@@ -98,7 +98,7 @@ impl Initialisation {
             tried: 0,
             optima: LocalOptima::new(MOST_TRIED, pair.image.log_spread(), pair.image.log_noise()),
             begun: None,
-            may_be_painted: painted::is_called_for(pair, None),
+            may_be_painted: painted::is_called_for(pair, colours, None),
             decision: None,
             contrast: None,
         }
@@ -229,7 +229,7 @@ impl Initialisation {
 
     /// The outcome, or the search by contrast where the colours are painted: from all that was looked at so far.
     fn finish(&mut self, pair: &ViewPair, colours: &ColourRegistration, outcome: Outcome) -> Advance {
-        if !painted::is_called_for(pair, outcome.best.as_deref()) {
+        if !painted::is_called_for(pair, colours, outcome.best.as_deref()) {
             return Advance::Done(outcome);
         }
         let mut poses = self.search.swept_poses();

@@ -219,7 +219,7 @@ impl Estimator {
             (None, _) => Run::Preparing(Some(Box::new(ImageGrid::new(&pair.image)?))),
             (Some(grid), Some(colours)) => {
                 let search = initialisation::search(pair, *grid, colours)?;
-                Run::Searching(Box::new(Initialisation::new(pair, search)))
+                Run::Searching(Box::new(Initialisation::new(pair, colours, search)))
             }
             (Some(_), None) => return Err(initialisation::no_registration()),
         };

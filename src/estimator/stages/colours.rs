@@ -119,6 +119,11 @@ impl ColourRegistration {
         self.is_coarse
     }
 
+    /// Whether the depth is clean enough for its normals to tell paint: noisy ones leave as much of the colours.
+    pub fn has_clean_normals(&self) -> bool {
+        self.sharp.noise <= LARGEST_NOISE
+    }
+
     /// The last registration; none before the first.
     pub const fn found(&self) -> Option<&PhotometricReport> {
         self.found.as_ref()

@@ -21,9 +21,11 @@ const SAME_POSE: f64 = 8.0;
 const TURN: f64 = 6.0;
 
 /// Whether colours that leave so much have something else to be asked: paint, in an image whose object has an outline.
-/// Behind a pinhole outlines in space decide.
-pub fn is_called_for(pair: &ViewPair, plain: Option<&PhotometricReport>) -> bool {
+/// Behind a pinhole outlines in space decide; under a known light surfaces settle what noisy normals leave.
+pub fn is_called_for(pair: &ViewPair, colours: &ColourRegistration, plain: Option<&PhotometricReport>) -> bool {
     pair.options.registration == Registration::Joint
+        && pair.known_light().is_none()
+        && colours.has_clean_normals()
         && pair.image.camera.is_orthographic()
         && pair.image.mask.contains(&false)
         && plain.is_none_or(|plain| plain.noise > LARGEST_PURE_NOISE)

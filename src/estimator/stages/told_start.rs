@@ -123,7 +123,7 @@ impl TrustRegion {
         }
         let best =
             optima.decide().best.filter(|best| best.candidate != STAYING).and_then(|best| best.registered.report);
-        if painted::is_called_for(pair, best.as_deref())
+        if painted::is_called_for(pair, colours, best.as_deref())
             && let Some(found) = painted::near(pair, colours, &self.told)
         {
             match found {
