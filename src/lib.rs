@@ -17,7 +17,7 @@
 //! | `shape/refinement` | the depth view's own normals and depth, through `heights` | Eq. 17 to 19 |
 //! | `pose/search` ([`Search`]) | where to start when nothing is known: all rotations, translations and scales, coarsely | before Algorithm 1 |
 //! | `pose/photometric` ([`Photometric`]) | the pose straight from the colours, the light projected out | beyond the paper |
-//! | `pose/contrast` ([`ContrastSearch`]) | the pose of a painted object, by local contrast and its outline | beyond the paper |
+//! | `pose/contrast` | the pose of a painted object, by local contrast and its outline | beyond the paper |
 //! | `pose/icp`, `pose/ransac` ([`Icp`], [`ransac`]) | the pose from both surfaces | Eq. 12 to 14 |
 //! | `pose/similarity`, `pose/angles` ([`Similarity`], [`Angles`]) | s, R, t and the angles, in closed form; the least-squares fit of Eq. 16 is a test, `tests/pose_angles.rs` | Eq. 15, 16, 20 |
 //! | `pose/correspondence` ([`Correspondences`]) | which depth point is which pixel, and what hides it | the 1-pixel rule |
@@ -59,13 +59,10 @@ mod wasm;
 
 pub use error::{Error, ErrorKind, Result};
 pub use estimator::{Estimator, Finding, RefinementTask, Surface, Task, Worker};
-pub use light::{
-    COEFFICIENTS, CoefficientMatrix, Light, LightFit, LightFitter, LightPrior, Paint, PaintFitter, PaintOfPixel,
-};
+pub use light::{COEFFICIENTS, CoefficientMatrix, Light, LightFit, LightFitter, LightPrior};
 pub use options::{LightSource, Options, Registration, Shading, Start, StartTolerance, Weights};
 pub use pose::{
-    Angles, Candidate, ContrastEffort, ContrastOutcome, ContrastProblem, ContrastRegistration, ContrastReport,
-    ContrastSearch, CorrespondenceProblem, Correspondences, Icp, IcpOptions, IcpProblem, IcpReport, IcpTermination,
+    Angles, Candidate, CorrespondenceProblem, Correspondences, Icp, IcpOptions, IcpProblem, IcpReport, IcpTermination,
     Information, Metric, Pair, Photometric, PhotometricOptions, PhotometricProblem, PhotometricReport,
     PhotometricTermination, Progress, RansacOptions, RansacReport, Search, SearchProblem, Similarity, Uncertainty,
     ransac,

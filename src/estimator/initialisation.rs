@@ -13,7 +13,7 @@ use crate::pose::{
 use super::gauge;
 use super::local_optima::{Decision, LocalOptima};
 use super::pair::ViewPair;
-use super::stages::painted::{self, Canvas, Conclusion};
+use super::stages::painted::{self, CleanedImage, Conclusion};
 use super::stages::{Attempt, ColourRegistration};
 use super::workers::task::{Finding, Found, RegisteredCandidate, Task, Work};
 
@@ -71,7 +71,7 @@ pub struct Initialisation {
 struct ByContrast {
     /// What the colours said.
     colours: Outcome,
-    canvas: Canvas,
+    cleaned: CleanedImage,
     search: Box<ContrastSearch>,
 }
 
@@ -235,21 +235,21 @@ impl Initialisation {
         let mut poses = self.search.swept_poses();
         poses.extend(self.search.candidates().iter().map(|candidate| candidate.pose));
         poses.extend(outcome.best.iter().map(|best| best.pose).chain(outcome.rivals.iter().copied()));
-        let canvas = Canvas::new(pair);
-        let search = Box::new(painted::search(pair, colours, &canvas, &poses));
-        self.contrast = Some(ByContrast { colours: outcome, canvas, search });
+        let cleaned = CleanedImage::new(pair);
+        let search = Box::new(painted::search(pair, colours, &cleaned, &poses));
+        self.contrast = Some(ByContrast { colours: outcome, cleaned, search });
         Advance::Ongoing(1.0 - CONTRAST_SHARE, COMPARING_CONTRAST)
     }
 
     /// A slice of the search by contrast.
     fn search_by_contrast(&mut self, pair: &ViewPair, colours: &ColourRegistration) -> Advance {
-        let Some(ByContrast { colours: outcome, canvas, search }) = &mut self.contrast else {
+        let Some(ByContrast { colours: outcome, cleaned, search }) = &mut self.contrast else {
             return Advance::Done(Outcome::default());
         };
-        if !search.advance(&colours.contrast_problem(pair, canvas.image(pair))) {
+        if !search.advance(&colours.contrast_problem(pair, cleaned.image(pair))) {
             return Advance::Ongoing(1.0 - CONTRAST_SHARE * (1.0 - search.share()), COMPARING_CONTRAST);
         }
-        Advance::Done(match painted::conclude(pair, colours, canvas, search) {
+        Advance::Done(match painted::conclude(pair, colours, cleaned, search) {
             Some(Conclusion::ByColours(best)) => Outcome { best: Some(best), ..Outcome::default() },
             Some(Conclusion::ByContrast(contrast)) => Outcome { contrast: Some(contrast), ..std::mem::take(outcome) },
             None => std::mem::take(outcome),

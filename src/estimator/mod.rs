@@ -245,9 +245,9 @@ impl Estimator {
 
     /// Starts the loop from what the initialisation found.
     fn start_from(&mut self, outcome: Outcome) -> Result<()> {
-        let (registered, rivals) = self.registration.adopt(&self.pair, outcome, &self.solution.pose);
+        let registered = self.registration.adopt(&self.pair, outcome, &self.solution.pose);
         self.adopt(registered.ok_or_else(|| initialisation::nothing_found(&self.pair))?);
-        self.report.message = Some(match rivals.len() {
+        self.report.message = Some(match self.report.rivals.len() {
             0 if self.registration.found_by_outlines().is_some() => {
                 "100 %: the colours are painted; outlines tell the pose".into()
             }
@@ -257,7 +257,6 @@ impl Estimator {
             0 => "100 %: one pose explains the colours best".into(),
             count => format!("100 %: {count} other poses explain the colours as well"),
         });
-        self.report.rivals = rivals;
         self.report.pose = self.solution.pose;
         self.find_correspondences();
         self.accepted.accept(&self.solution);
@@ -331,12 +330,13 @@ impl Estimator {
         Ok(())
     }
 
-    /// Takes over a pose, its uncertainty, and the light where it was found with the pose.
+    /// Takes over a pose, its uncertainty and rivals, and the light where it was found with the pose.
     fn adopt(&mut self, found: Registered) {
         self.solution.pose = found.pose;
         self.solution.light.light = found.light.unwrap_or(self.solution.light.light);
         self.solution.light.exposure = found.exposure.unwrap_or(self.solution.light.exposure);
         self.report.uncertainty = found.uncertainty.or(self.report.uncertainty.take());
+        self.report.rivals = found.rivals.unwrap_or_else(|| std::mem::take(&mut self.report.rivals));
     }
 
     /// Of a match of surfaces only a fraction is taken after rejections. Behind a pinhole image the pose keeps its

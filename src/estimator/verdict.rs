@@ -35,8 +35,9 @@ const LARGEST_SIGMA: f64 = 5.0;
 const DOUBTFUL_SIGMA: f64 = 1.5;
 /// Share of the colours' spread that a trusted pose may leave unexplained. Renders leave 0.01 to 0.1.
 const LARGEST_UNEXPLAINED: f64 = 0.3;
-/// Share of the local contrast that a trusted pose may leave unexplained, at the noise that contrast is compared at.
-/// Photographs of painted objects that are found leave 0.13 to 0.51, print on a flat bag 0.58 or more wherever it is put.
+/// What contrast and outline may leave unexplained of a trusted pose. Before paint was taken out at its edges, found
+/// photographs left 0.13 to 0.51 and print on a flat bag 0.58 or more; since then the bag leaves 0.26, so that this catches
+/// what has no edges alone.
 const LARGEST_UNEXPLAINED_CONTRAST: f64 = 0.56;
 /// Share of the points within the robust scale that a trusted pose has at least.
 const FEWEST_INLIERS: f64 = 0.4;

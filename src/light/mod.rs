@@ -10,6 +10,6 @@ mod prior;
 pub use fit::{LightFit, LightFitter};
 pub use harmonics::Light;
 pub(crate) use harmonics::{HARMONICS, Polynomial, basis, basis_gradient};
-pub use paint::{Paint, PaintFitter, PaintOfPixel};
+pub use paint::{Paint, PaintFitter};
 pub(crate) use prior::Coefficients;
 pub use prior::{COEFFICIENTS, CoefficientMatrix, LightPrior};

@@ -178,7 +178,7 @@ fn count_of(normals: &Normals, log: &[f32]) -> usize {
 
 impl Paint {
     /// Number of paints, two or more.
-    #[must_use]
+    #[cfg(test)]
     pub const fn regions(&self) -> usize {
         self.mixture.regions
     }
@@ -187,11 +187,6 @@ impl Paint {
     #[must_use]
     pub fn light(&self) -> Light {
         self.known.unwrap_or_else(|| self.mixture.light(&self.axes)).tinted(self.centre)
-    }
-
-    /// Log offsets of the paints (R, G, B) and the share of the pixels that have each.
-    pub fn palette(&self) -> impl Iterator<Item = ([f64; 3], f64)> {
-        (0..self.regions()).map(|k| (self.axes.back(self.mixture.offsets[k]), self.mixture.shares[k]))
     }
 
     /// The paint of a pixel by its log colour and its shading under [`light`](Self::light); without a shading by its

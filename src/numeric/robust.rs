@@ -10,6 +10,10 @@ use super::Real;
 /// sigma = 1.4826 median |x| of normal x: the median absolute deviation as a standard deviation.
 pub(crate) const SIGMA_OF_MEDIAN: f64 = 1.4826;
 
+/// Median of |r| over three channels of unit normal noise: the root of the median of chi squared with three degrees of
+/// freedom.
+pub(crate) const MEDIAN_OF_THREE: f64 = 1.538_172_253_6;
+
 /// 1 / (1 + u): rho is r^2 times this, and the weight in least squares is the square of this.
 #[inline(always)]
 pub(crate) fn attenuation<T: Real>(u: T) -> T {

@@ -37,9 +37,7 @@ mod uncertainty;
 mod visibility;
 
 pub use angles::Angles;
-pub use contrast::{
-    ContrastEffort, ContrastOutcome, ContrastProblem, ContrastRegistration, ContrastReport, ContrastSearch,
-};
+pub(crate) use contrast::{ContrastOutcome, ContrastProblem, ContrastReport, ContrastSearch};
 pub use correspondence::{CorrespondenceProblem, Correspondences};
 pub use icp::{Icp, IcpOptions, IcpProblem, IcpReport, IcpTermination, Metric, Pair};
 pub(crate) use outline::{Outline, OutlinePrior, OutlineProblem, OutlineReport};

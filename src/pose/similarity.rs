@@ -90,6 +90,12 @@ impl Similarity {
         }
     }
 
+    /// This pose with another scale and rotation, which leaves `point` of the depth view where this one puts it.
+    #[must_use]
+    pub(crate) fn turned_about(&self, point: Vector3<f64>, scale: f64, rotation: Matrix3<f64>) -> Self {
+        Self { scale, rotation, translation: self.apply(point) - scale * (rotation * point) }
+    }
+
     /// The pose a `share` of the way from this one (0) to `other` (1): constant rotation, constant growth, and a
     /// straight path for `centre`, a point of the depth view. With the centroid there the object does not swing about a
     /// far origin half-way, as it would were the translations interpolated.

@@ -25,7 +25,7 @@ const LARGEST_SIGMA: f64 = 180.0;
 /// A second direction is named where it has at least this share of the first one's part.
 const WORTH_NAMING: f64 = 0.6;
 /// Cap on the rounds of the 7x7 eigenvalue iteration, which ends after about 20.
-const MOST_EIGEN_ROUNDS: usize = 500;
+pub(super) const MOST_EIGEN_ROUNDS: usize = 500;
 
 /// Uncertainty of the pose, one sigma.
 #[derive(Clone, Debug, PartialEq)]
@@ -160,6 +160,14 @@ pub(super) fn describe(
         scale: (!fixed[1]).then(|| pose.scale * covariance[(SCALE, SCALE)].sqrt()),
         weakest,
     }
+}
+
+/// The least certain direction of a covariance, in words.
+pub(super) fn weakest_of(covariance: &PoseMatrix) -> String {
+    SymmetricEigen::try_new(*covariance, f64::EPSILON, MOST_EIGEN_ROUNDS).map_or_else(
+        || "unknown".to_owned(),
+        |eigen| in_words(&eigen.eigenvectors.column(eigen.eigenvalues.imax()).into_owned()),
+    )
 }
 
 /// The one or two largest parts of a direction.

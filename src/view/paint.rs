@@ -14,7 +14,7 @@ use super::ColourView;
 use crate::numeric::{quantile, sort_descending};
 
 /// Differences of neighbours' log colours, hue (what differs from their mean) and all, that no shading of a smooth
-/// surface makes, beside four sigmas of the noise. A sphere of 30 pixels in a hard lamp has 0.1 a pixel at its rim.
+/// surface makes, beside four sigmas of the noise; set once, and not varied since.
 const HUE_STEP: f32 = 0.06;
 const LOG_STEP: f32 = 0.22;
 /// Pixels of a region, at least.

@@ -17,7 +17,8 @@ const NOISY: f64 = 1.25;
 const LARGEST_IMAGE_NOISE: f64 = 0.06;
 /// Both registrations have found one pose where their ends are this near, degrees: contrast may be off by a few.
 const SAME_POSE: f64 = 8.0;
-/// Around a told pose starts are turned by so many degrees about the axes and diagonals: half the basin of a start.
+/// Around a told pose starts are turned by so many degrees about the axes and diagonals: from 8 degrees off registrations
+/// of photographs mostly come home.
 const TURN: f64 = 6.0;
 
 /// Whether colours that leave so much have something else to be asked: paint, in an image whose object has an outline.
@@ -39,9 +40,9 @@ fn is_plain(pair: &ViewPair, plain: &PhotometricReport, contrast: &ContrastOutco
 }
 
 /// What contrast is compared in: the image without the paint that shows at its edges, or as it is.
-pub struct Canvas(Option<Box<ColourView>>);
+pub struct CleanedImage(Option<Box<ColourView>>);
 
-impl Canvas {
+impl CleanedImage {
     /// Of a pair's image.
     pub fn new(pair: &ViewPair) -> Self {
         Self(pair.image.without_paint().map(Box::new))
@@ -53,33 +54,34 @@ impl Canvas {
     }
 }
 
-/// Sizes that starts have where the scale is free, relative to the units' scale: a registration finds home from 10 % off,
-/// and the search promises 0.7 to 1.4.
+/// Sizes that starts have where the scale is free, relative to the units' scale. With the middle one alone, of 60 painted
+/// renders all that were 16 % larger or smaller were lost; with three, two are.
 const SIZES: [f64; 3] = [0.84, 1.0, 1.19];
 
 /// A search from these poses, at some sizes where the scale is free.
-pub fn search(pair: &ViewPair, colours: &ColourRegistration, canvas: &Canvas, poses: &[Similarity]) -> ContrastSearch {
+pub fn search(
+    pair: &ViewPair,
+    colours: &ColourRegistration,
+    cleaned: &CleanedImage,
+    poses: &[Similarity],
+) -> ContrastSearch {
     let middle = pair.depth.points.centroid();
     let held = gauge::held_scale(pair);
     let unit = gauge::unit_scale(pair);
     let scales = held.map_or_else(|| SIZES.map(|size| size * unit).to_vec(), |held| vec![held]);
-    let rescaled = |pose: &Similarity, scale: f64| Similarity {
-        scale,
-        rotation: pose.rotation,
-        translation: pose.apply(middle) - scale * (pose.rotation * middle),
-    };
+    let rescaled = |pose: &Similarity, scale: f64| pose.turned_about(middle, scale, pose.rotation);
     let starts = poses.iter().flat_map(|pose| scales.iter().map(move |&scale| rescaled(pose, scale))).collect();
-    ContrastSearch::new(&colours.contrast_problem(pair, canvas.image(pair)), starts)
+    ContrastSearch::new(&colours.contrast_problem(pair, cleaned.image(pair)), starts)
 }
 
 /// The outcome of a search that is done: contrast's, or that of the colours from there, where that leaves nothing more.
 pub fn conclude(
     pair: &ViewPair,
     colours: &ColourRegistration,
-    canvas: &Canvas,
+    cleaned: &CleanedImage,
     search: &mut ContrastSearch,
 ) -> Option<Conclusion> {
-    let image = canvas.image(pair);
+    let image = cleaned.image(pair);
     let contrast = search.outcome(&colours.contrast_problem(pair, image))?;
     let plain = colours.register_in(pair, image, &contrast.best.pose);
     Some(match plain {
@@ -96,18 +98,16 @@ pub enum Conclusion {
 
 /// The pose around a told one.
 pub fn near(pair: &ViewPair, colours: &ColourRegistration, told: &Similarity) -> Option<Conclusion> {
-    let canvas = Canvas::new(pair);
+    let cleaned = CleanedImage::new(pair);
     let middle = pair.depth.points.centroid();
-    let turned = |turn: Vector3<f64>| {
-        let rotation = Rotation3::new(turn).into_inner() * told.rotation;
-        Similarity { rotation, translation: told.apply(middle) - told.scale * (rotation * middle), ..*told }
-    };
+    let turned =
+        |turn: Vector3<f64>| told.turned_about(middle, told.scale, Rotation3::new(turn).into_inner() * told.rotation);
     let sides = [-1.0, 0.0, 1.0];
     let turns = sides.iter().flat_map(|&x| sides.iter().flat_map(move |&y| sides.map(|z| Vector3::new(x, y, z))));
     let length = |turn: &Vector3<f64>| TURN.to_radians() / turn.norm().max(1.0);
     let starts = turns.map(|turn| turned(turn * length(&turn))).collect();
-    let problem = colours.contrast_problem(pair, canvas.image(pair));
+    let problem = colours.contrast_problem(pair, cleaned.image(pair));
     let mut search = ContrastSearch::new(&problem, starts);
     while !search.advance(&problem) {}
-    conclude(pair, colours, &canvas, &mut search)
+    conclude(pair, colours, &cleaned, &mut search)
 }

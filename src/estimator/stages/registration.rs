@@ -7,7 +7,7 @@ use crate::estimator::pair::ViewPair;
 use crate::estimator::solution::Solution;
 use crate::light::Light;
 use crate::options::{Registration, Start};
-use crate::pose::{ContrastReport, OutlineReport, PhotometricReport, Similarity, Uncertainty};
+use crate::pose::{ContrastOutcome, ContrastReport, OutlineReport, PhotometricReport, Similarity, Uncertainty};
 use crate::view::Normals;
 
 use super::colours::ColourRegistration;
@@ -31,17 +31,14 @@ pub struct Registered {
     pub uncertainty: Option<Uncertainty>,
     /// Whether the pose is better than its start.
     pub improved: bool,
+    /// Other poses that the data can't tell from it, where they were looked for.
+    pub rivals: Option<Vec<Similarity>>,
 }
 
 impl Registered {
     fn by_outlines(found: &OutlineReport) -> Self {
         let uncertainty = Some(found.uncertainty.clone());
-        Self { pose: found.pose, light: None, exposure: None, uncertainty, improved: true }
-    }
-
-    fn by_contrast(pair: &ViewPair, found: &ContrastReport, present: &Similarity) -> Self {
-        let pose = with_gauge_of(pair, found.pose, present);
-        Self { pose, light: None, exposure: None, uncertainty: Some(found.uncertainty.clone()), improved: true }
+        Self { pose: found.pose, light: None, exposure: None, uncertainty, improved: true, rivals: None }
     }
 }
 
@@ -104,26 +101,23 @@ impl RegistrationStage {
         self.colours.as_mut()
     }
 
-    /// Takes over what the search has found, if anything, with its rivals; what contrast or outlines say where the
-    /// colours are painted.
-    pub fn adopt(
-        &mut self,
-        pair: &ViewPair,
-        outcome: Outcome,
-        present: &Similarity,
-    ) -> (Option<Registered>, Vec<Similarity>) {
+    /// Takes over what the search has found, if anything; what contrast or outlines say where the colours are painted.
+    pub fn adopt(&mut self, pair: &ViewPair, outcome: Outcome, present: &Similarity) -> Option<Registered> {
         let Outcome { best, rivals, contrast } = outcome;
         if let Some(contrast) = contrast {
-            return (Some(self.adopt_contrast(pair, contrast.best, present)), contrast.rivals);
+            return Some(self.adopt_contrast(pair, *contrast, present));
         }
-        let registered = self.adopt_colours(pair, best.map(|best| *best), present);
-        (registered, if self.found_by_outlines().is_some() { Vec::new() } else { rivals })
+        let registered = self.adopt_colours(pair, best.map(|best| *best), present)?;
+        let rivals = if self.found_by_outlines().is_some() { Vec::new() } else { rivals };
+        Some(Registered { rivals: Some(rivals), ..registered })
     }
 
-    fn adopt_contrast(&mut self, pair: &ViewPair, found: ContrastReport, present: &Similarity) -> Registered {
-        let registered = Registered::by_contrast(pair, &found, present);
-        self.told = Told::Contrasted(found);
-        registered
+    fn adopt_contrast(&mut self, pair: &ViewPair, found: ContrastOutcome, present: &Similarity) -> Registered {
+        let ContrastOutcome { best, rivals } = found;
+        let pose = with_gauge_of(pair, best.pose, present);
+        let uncertainty = Some(best.uncertainty.clone());
+        self.told = Told::Contrasted(best);
+        Registered { pose, light: None, exposure: None, uncertainty, improved: true, rivals: Some(rivals) }
     }
 
     fn adopt_colours(
@@ -195,7 +189,7 @@ impl RegistrationStage {
                     (pose, improved) = (solution.pose, false);
                 }
                 let uncertainty = improved.then_some(uncertainty);
-                Ok(Some(Registered { pose, light: None, exposure: None, uncertainty, improved }))
+                Ok(Some(Registered { pose, light: None, exposure: None, uncertainty, improved, rivals: None }))
             }
         }
     }
@@ -248,6 +242,7 @@ impl RegistrationStage {
             exposure: (!is_coarse).then_some(found.exposure),
             uncertainty: Some(found.uncertainty.clone()),
             improved: true,
+            rivals: None,
         }
     }
 }

@@ -21,7 +21,7 @@ use crate::estimator::pair::ViewPair;
 use crate::estimator::workers::task::RegisteredCandidate;
 use crate::options::Start;
 use crate::pose::{
-    ContrastReport, ImageGrid, OutlinePrior, OutlineReport, PhotometricReport, Search, SearchProblem, Similarity,
+    ContrastOutcome, ImageGrid, OutlinePrior, OutlineReport, PhotometricReport, Search, SearchProblem, Similarity,
 };
 
 /// Tolerance of the object's place where none is stated, in object sizes (root mean square distance of its points from
@@ -60,7 +60,7 @@ pub enum Settled {
     /// The colours are painted: outlines decide ..
     ByOutlines(Box<OutlineReport>),
     /// .. or local contrast.
-    ByContrast(Box<ContrastReport>),
+    ByContrast(Box<ContrastOutcome>),
     /// Nothing better within the tolerance.
     Kept,
 }
@@ -132,7 +132,7 @@ impl TrustRegion {
                     return Ok(Settled::ByColours(found));
                 }
                 Conclusion::ByContrast(found) if self.holds(&found.best.pose) => {
-                    return Ok(Settled::ByContrast(Box::new(found.best)));
+                    return Ok(Settled::ByContrast(found));
                 }
                 _ => {}
             }

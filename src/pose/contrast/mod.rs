@@ -19,7 +19,7 @@
 //! |---|---|
 //! | `problem` | what goes in, what comes out |
 //! | `search` | many starts, coarse to fine, one pose and its rivals |
-//! | `registration` | the rounds: [`ContrastRegistration`] |
+//! | `registration` | the rounds |
 //! | `objective` | E, its gradient, and what a round fixes |
 //! | `samples` | the depth view on a grid, with its harmonics |
 //! | `seen` | visible samples and the contour generator |
@@ -41,5 +41,4 @@ mod seen;
 mod uncertainty;
 
 pub use problem::{ContrastProblem, ContrastReport};
-pub use registration::{ContrastEffort, ContrastRegistration};
 pub use search::{ContrastOutcome, ContrastSearch};

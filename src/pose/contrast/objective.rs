@@ -30,9 +30,8 @@ const LIMB_SCALE: f64 = 1.5;
 const SIZE_WEIGHT: f64 = 5.0;
 /// The same over that of the units, where poses are compared: a view may be a quarter larger or smaller than they say.
 const UNIT_WEIGHT: f64 = 1.0;
-/// Median of the squared residuals of three channels of unit normal noise: that of chi squared with three degrees of
-/// freedom.
-const MEDIAN_OF_SQUARES: f64 = 2.366;
+/// The robust scale over the noise: three sigmas of three channels.
+const SCALE_OVER_NOISE: f64 = 5.196_152_422_706_632;
 /// Noise that is always allowed for, log units.
 const LEAST_NOISE: f64 = 0.002;
 /// The least share of its weight that a sample keeps in the local means: one that has none would have no mean.
@@ -119,9 +118,9 @@ impl Objective {
         if problem.is_metric() { pose.scale / pose.apply(self.samples.centre).z } else { pose.scale }
     }
 
-    /// Takes tau, in units of log intensity.
-    pub fn set_scale(&mut self, tau: f64) {
-        self.scale = tau * tau;
+    /// Takes the robust scale of a noise, log units.
+    pub fn set_noise(&mut self, noise: f64) {
+        self.scale = (SCALE_OVER_NOISE * noise).powi(2);
     }
 
     /// Fixes what is seen from a pose and fits its light; `None` where too little is seen.
@@ -159,7 +158,8 @@ impl Objective {
         for _ in 0..LIGHT_FITS {
             self.take_means(level);
             self.relight(state);
-            self.scale = 27.0 * self.noise(&state.light).powi(2);
+            let noise = self.noise(&state.light);
+            self.set_noise(noise);
             self.relight(state);
             for sample in &self.samples.list {
                 let cell = sample.cell;
@@ -219,16 +219,11 @@ impl Objective {
         squares.extend(self.cells().map(|cell| self.square(cell, light) as f32));
         let median = if squares.is_empty() { 0.0 } else { quantile(&mut squares, 0.5) };
         self.squares = squares;
-        (f64::from(median) / MEDIAN_OF_SQUARES).sqrt().max(LEAST_NOISE)
-    }
-
-    /// Samples that take part.
-    pub fn count(&self) -> usize {
-        self.cells().count()
+        (f64::from(median).sqrt() / robust::MEDIAN_OF_THREE).max(LEAST_NOISE)
     }
 
     /// The contrast's share of E: 0 where shading explains all, 1 where nothing.
-    pub fn unexplained(&self, light: &Lights) -> f64 {
+    fn unexplained(&self, light: &Lights) -> f64 {
         let cost =
             |cell| f64::from(self.samples.weight[cell]) * robust::saturated(self.square(cell, light) / self.scale);
         (self.beside + self.cells().map(cost).sum::<f64>()) / self.all
@@ -296,14 +291,9 @@ impl Objective {
         self.values.copy_from_slice(&self.seen_values);
         level.means.remove(&mut self.values);
         level.means.remove(&mut self.derivatives);
-        for cell in self.cells() {
-            let residual = self.residual(cell, &state.light);
-            let square: f64 = residual.iter().map(|r| r * r).sum();
-            let own = f64::from(self.samples.weight[cell]) / (self.scale * self.all);
-            let (rows, _) = self.derivatives[cell].as_chunks::<UNKNOWNS>();
-            let weight = own * robust::weight(square / self.scale);
+        self.for_each_score(&state.light, |cell, residual, weight, rows| {
             equations.add(&self.shades[cell], residual, rows, weight);
-        }
+        });
         let mut row = PoseVector::zeros();
         row[SCALE] = 1.0;
         if problem.is_metric() {

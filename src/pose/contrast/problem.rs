@@ -49,14 +49,9 @@ impl ContrastProblem<'_> {
 pub struct ContrastReport {
     /// The pose; its t_z is that of the start for an orthographic image.
     pub pose: Similarity,
-    /// E: at the robust scale of its own noise, or of a search at that of all of its ends.
+    /// E, as all ends of the search are compared by it: 0 where shading and outline explain all, about 1 where shading
+    /// explains nothing.
     pub objective: f64,
-    /// The contrast's share of it: 0 where shading explains all, 1 where nothing.
-    pub unexplained: f64,
-    /// Robust standard deviation of a channel's residuals, log units.
-    pub noise: f64,
-    /// Number of samples that the image shows.
-    pub visible: usize,
     /// One sigma of the pose's own numbers.
     pub uncertainty: Uncertainty,
 }

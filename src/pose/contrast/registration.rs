@@ -3,7 +3,7 @@
 use super::equations::Lights;
 use super::local_means::LocalMeans;
 use super::objective::{Level, Objective, State};
-use super::problem::{ContrastProblem, ContrastReport};
+use super::problem::ContrastProblem;
 use super::samples::Samples;
 use super::seen::Seen;
 use super::uncertainty::{covariance, described};
@@ -11,6 +11,7 @@ use crate::pose::increment::Frame;
 use crate::pose::silhouette::Silhouette;
 use crate::pose::similarity::Similarity;
 use crate::pose::spline_image::SplineImage;
+use crate::pose::uncertainty::Uncertainty;
 
 /// Sharp, and blurred: by so many pixels ..
 const LEVELS: usize = 2;
@@ -24,9 +25,7 @@ const MEASURED_SIDE: f64 = 64.0;
 const BLUR_OF_STRIDE: f64 = 0.4;
 /// v = log(I + 0.1 median I).
 const LIFT: f32 = 0.1;
-/// The robust scale over the noise: three sigmas of three channels. The first is twice as large, and shrinks by 0.6 a
-/// round.
-const SCALE_OVER_NOISE: f64 = 5.196_152_422_706_632;
+/// The noise whose robust scale a registration starts with, over that of the residuals; it shrinks by 0.6 a round.
 const FIRST_SCALE: f64 = 2.0;
 const SHRINKING: f64 = 0.6;
 /// Gauss-Newton steps of a round, and attempts to find the damping of each.
@@ -56,8 +55,8 @@ pub struct ContrastEffort {
 impl ContrastEffort {
     /// Down to the sharp image.
     pub const FULL: Self = Self { first_level: 1, last_level: 0, rounds: 14 };
-    /// Enough to see whether a start is worth more.
-    pub const GLANCE: Self = Self { first_level: 1, last_level: 1, rounds: 3 };
+    /// On the blurred image alone: enough to see whether a start is worth more.
+    pub const COARSE: Self = Self { first_level: 1, last_level: 1, rounds: 3 };
 }
 
 /// A registration under way.
@@ -66,7 +65,8 @@ struct Course {
     effort: ContrastEffort,
     level: usize,
     round: usize,
-    tau: f64,
+    /// Whose robust scale the present round has; infinite before the first.
+    noise: f64,
 }
 
 /// Registers one depth view to one image again and again; owns all memory.
@@ -100,24 +100,11 @@ impl ContrastRegistration {
         Self { levels, objective: Objective::new(problem, samples, silhouette, seen, unit), course: None }
     }
 
-    /// The best pose near `start`: [`begin`](Self::begin), [`step`](Self::step) to the end; `None` where too little of
-    /// the object is seen.
-    pub fn register(
-        &mut self,
-        problem: &ContrastProblem<'_>,
-        start: &Similarity,
-        effort: ContrastEffort,
-    ) -> Option<ContrastReport> {
-        self.begin(problem, start, effort);
-        while !self.step(problem) {}
-        self.report(problem)
-    }
-
     /// Starts anew.
     pub fn begin(&mut self, problem: &ContrastProblem<'_>, start: &Similarity, effort: ContrastEffort) {
         self.objective.expect_size(problem, start);
         let state = State { pose: *start, light: Lights::default() };
-        self.course = Some(Course { state, effort, level: effort.first_level, round: 0, tau: f64::INFINITY });
+        self.course = Some(Course { state, effort, level: effort.first_level, round: 0, noise: f64::INFINITY });
     }
 
     /// One round; whether it was the last.
@@ -128,15 +115,15 @@ impl ContrastRegistration {
         let Some(frame) = self.objective.begin(problem, &mut self.levels[level], &mut course.state) else {
             return true;
         };
-        let target = SCALE_OVER_NOISE * self.objective.noise(&course.state.light);
-        course.tau = match course.tau.is_finite() {
-            true => (SHRINKING * course.tau).max(target),
+        let target = self.objective.noise(&course.state.light);
+        course.noise = match course.noise.is_finite() {
+            true => (SHRINKING * course.noise).max(target),
             false => FIRST_SCALE * target,
         };
-        self.objective.set_scale(course.tau);
+        self.objective.set_noise(course.noise);
         self.descend(problem, level, &frame, &mut course.state);
         course.round += 1;
-        let settled = course.tau <= target && before.degrees_to(&course.state.pose) < SETTLED_ROUND[level];
+        let settled = course.noise <= target && before.degrees_to(&course.state.pose) < SETTLED_ROUND[level];
         let ends = settled || course.round >= effort.rounds;
         let last = ends && level <= effort.last_level;
         if ends && !last {
@@ -152,29 +139,14 @@ impl ContrastRegistration {
         self.course.as_ref().map(|course| course.state.pose)
     }
 
-    /// What was found.
-    pub fn report(&mut self, problem: &ContrastProblem<'_>) -> Option<ContrastReport> {
-        let pose = self.pose()?;
-        self.judge(problem, &pose)
-    }
-
-    /// What the contrast says of a pose as it is.
-    pub fn judge(&mut self, problem: &ContrastProblem<'_>, pose: &Similarity) -> Option<ContrastReport> {
+    /// One sigma of a pose, by what its contrast leaves; `None` where too little is seen.
+    pub fn uncertainty(&mut self, problem: &ContrastProblem<'_>, pose: &Similarity) -> Option<Uncertainty> {
         let mut state = State { pose: *pose, light: Lights::default() };
         self.objective.expect_size(problem, pose);
         let frame = self.look(problem, &mut state, None)?;
-        let noise = self.objective.noise(&state.light);
-        let value = self.objective.value(problem, &mut self.levels[0], &state);
         let reduced = self.objective.linearise(problem, &mut self.levels[0], &frame, &state)?;
         let covariance = covariance(&self.objective, &state.light, &reduced, &problem.held());
-        Some(ContrastReport {
-            pose: state.pose,
-            objective: value,
-            unexplained: self.objective.unexplained(&state.light),
-            noise,
-            visible: self.objective.count(),
-            uncertainty: described(problem, &covariance, &frame, &state.pose),
-        })
+        Some(described(problem, &covariance, &frame, pose))
     }
 
     /// E of a pose on the sharp image at the robust scale of a noise, its light at its best.
@@ -187,7 +159,7 @@ impl ContrastRegistration {
     fn look(&mut self, problem: &ContrastProblem<'_>, state: &mut State, noise: Option<f64>) -> Option<Frame> {
         let frame = self.objective.begin(problem, &mut self.levels[0], state)?;
         let noise = noise.unwrap_or_else(|| self.objective.noise(&state.light));
-        self.objective.set_scale(SCALE_OVER_NOISE * noise);
+        self.objective.set_noise(noise);
         Some(frame)
     }
 

@@ -1,9 +1,9 @@
-//! From many starts to one pose and its rivals, coarse to fine, in slices: a glance at all of them by few samples, then
-//! the best by more, at last by as many as there are.
+//! From many starts to one pose and its rivals, coarse to fine, in slices: few samples and rounds for all of them, then
+//! more for the best, at last by as many as there are.
 //!
 //! At each stage the ends are ranked by E on the sharp image at one robust scale, so that they can be compared. On ten
-//! photographed objects seen from 0 to 60 degrees off the right end was first after the glance wherever it was found at
-//! all, and rivals of right ends were worse by 0.05 or more.
+//! photographed objects seen from 0 to 60 degrees off an end near the right one was among the first eight after the first
+//! stages wherever it was found at all.
 
 use super::problem::{ContrastProblem, ContrastReport};
 use super::registration::{ContrastEffort, ContrastRegistration};
@@ -19,8 +19,8 @@ struct Stage {
 }
 
 const STAGES: [Stage; 4] = [
-    Stage { samples: 350.0, effort: ContrastEffort { rounds: 1, ..ContrastEffort::GLANCE }, kept: 48, apart: 6.0 },
-    Stage { samples: 350.0, effort: ContrastEffort::GLANCE, kept: 12, apart: 6.0 },
+    Stage { samples: 350.0, effort: ContrastEffort { rounds: 1, ..ContrastEffort::COARSE }, kept: 48, apart: 6.0 },
+    Stage { samples: 350.0, effort: ContrastEffort::COARSE, kept: 12, apart: 6.0 },
     Stage {
         samples: 1400.0,
         effort: ContrastEffort { rounds: 5, ..ContrastEffort::FULL },
@@ -37,7 +37,8 @@ const STAGES: [Stage; 4] = [
 /// Noise, in log units, whose robust scale ends are ranked at: sharper than photographs leave, so that the details
 /// decide, and far above that of renders.
 const RANKING_NOISE: f64 = 0.05;
-/// An end whose E is larger by less than this is a rival: of found poses none is, where lost ones nearly always have one.
+/// An end whose E is larger by less than this is a rival: found poses of photographs have none but for one or two, lost ones
+/// mostly have one.
 const RIVAL_MARGIN: f64 = 0.03;
 /// A rival is at least so far away, degrees.
 const RIVAL_APART: f64 = 3.0;
@@ -99,12 +100,6 @@ impl ContrastSearch {
         ((self.stage as f64 + within) / STAGES.len() as f64).min(1.0)
     }
 
-    /// The best pose so far, if any.
-    #[must_use]
-    pub fn best(&self) -> Option<&Similarity> {
-        self.ends.iter().min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, pose)| pose).or(self.starts.first())
-    }
-
     fn begin_next_stage(&mut self, problem: &ContrastProblem<'_>, done: &Stage) {
         sort_descending(&mut self.ends, |(value, _)| -value);
         let mut kept: Vec<End> = Vec::with_capacity(done.kept);
@@ -127,8 +122,8 @@ impl ContrastSearch {
     /// What was found, once all is done; `None` where no registration saw enough of the object.
     pub fn outcome(&mut self, problem: &ContrastProblem<'_>) -> Option<ContrastOutcome> {
         let &(value, pose) = self.ends.first()?;
-        let mut best = self.registration.judge(problem, &pose)?;
-        best.objective = value;
+        let uncertainty = self.registration.uncertainty(problem, &pose)?;
+        let best = ContrastReport { pose, objective: value, uncertainty };
         let is_rival = |(other, _): &&End| *other <= value + RIVAL_MARGIN;
         let rivals = self.ends[1..].iter().filter(is_rival).map(|(_, pose)| *pose).collect();
         Some(ContrastOutcome { best, rivals })

@@ -21,6 +21,7 @@ use super::equations::{ReducedSystem, SquareSums, add_product, folded, no_sums, 
 use super::evaluation::Evaluation;
 use crate::numeric::{Doubles, Real};
 use crate::pose::increment::{Frame, PoseMatrix, PoseVector, clear_unknowns, fix_unknowns};
+use crate::pose::uncertainty::MOST_EIGEN_ROUNDS;
 use crate::view::Size;
 
 /// Side of the tiles of the depth map whose scores count as one observation, pixels: twice the reach of normals and
@@ -46,8 +47,6 @@ const GRADIENT_COVARIANCE: f64 = 0.144;
 const LEAST_SIGNAL: f64 = 1e-3;
 /// Sigma of a direction that nothing is known about, radians or object sizes.
 const UNKNOWN: f64 = 1e3;
-/// Cap on the rounds of the eigenvalue iteration, which ends after about 20.
-pub(super) const MOST_EIGEN_ROUNDS: usize = 500;
 
 /// Standard deviations per channel, log units.
 #[derive(Clone, Copy)]

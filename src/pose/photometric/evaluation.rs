@@ -14,9 +14,6 @@ use crate::pose::increment::Frame;
 /// Points whose weight is below this are left out of the noise: their residuals come from their normals, not from the
 /// image.
 const LEAST_WEIGHT_FOR_NOISE: f64 = 0.25;
-/// Median of |r| over three channels of unit normal noise: the root of the median of chi squared with three degrees of
-/// freedom.
-const MEDIAN_OF_THREE: f64 = 1.538_172_253_6;
 
 /// The residuals of some points at one state, on one level of the image.
 pub(super) struct Evaluation<'a> {
@@ -70,7 +67,7 @@ impl Evaluation<'_> {
         if scratch.is_empty() {
             return f64::INFINITY;
         }
-        f64::from(quantile(scratch, 0.5)) / MEDIAN_OF_THREE
+        f64::from(quantile(scratch, 0.5)) / robust::MEDIAN_OF_THREE
     }
 
     /// The equations of the pose, the light eliminated; `None` where the points do not determine the light.

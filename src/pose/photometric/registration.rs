@@ -1,8 +1,6 @@
 //! The rounds of a photometric registration: annealing, then instrumental variables.
 
-use nalgebra::SymmetricEigen;
-
-use super::covariance::{MOST_EIGEN_ROUNDS, Noise, Tiles};
+use super::covariance::{Noise, Tiles};
 use super::equations::ReducedSystem;
 use super::evaluation::Evaluation;
 use super::points::{Sampling, VisiblePoints};
@@ -14,7 +12,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::pose::increment::{Frame, PoseMatrix, SCALE, TRANSLATION_Z, clear_unknowns};
 use crate::pose::similarity::Similarity;
 use crate::pose::spline_image::SplineImage;
-use crate::pose::uncertainty::{describe, in_words};
+use crate::pose::uncertainty::{describe, weakest_of};
 use crate::view::Size;
 
 /// Gaussian blur of each level's image, pixels; a level takes every 2^level-th point.
@@ -248,10 +246,7 @@ impl Photometric {
         let mut information =
             0.5 * (reduced.matrix + reduced.matrix.transpose()) / (self.noise.residuals * self.noise.residuals);
         clear_unknowns(&mut information, &held);
-        let weakest = SymmetricEigen::try_new(covariance, f64::EPSILON, MOST_EIGEN_ROUNDS).map_or_else(
-            || "unknown".to_owned(),
-            |eigen| in_words(&eigen.eigenvectors.column(eigen.eigenvalues.imax()).into_owned()),
-        );
+        let weakest = weakest_of(&covariance);
         let evaluation = self.evaluation(problem, 0, &self.state);
         let largest = self.weighting.robust_scale * self.weighting.robust_scale * self.points.weight();
         Ok(PhotometricReport {
