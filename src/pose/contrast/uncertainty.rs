@@ -16,7 +16,7 @@ const TILE: usize = 9;
 /// painted objects (0 to 60 degrees off, 96x96) found poses are off by 0 to 8 sigmas of the tiles alone (with the 2.1 of
 /// the registration by colours) about an axis, mostly 2 to 5. With 5.5, three sigmas hold 92 % of the axes there, and all
 /// three axes of 80 % of the poses: still too little.
-const SIGMA_INFLATION: f64 = 5.5;
+const SIGMA_INFLATION: f64 = 3.0;
 /// Sigma of a direction that nothing is known about, radians or object sizes.
 const UNKNOWN: f64 = 1e3;
 
