@@ -85,7 +85,12 @@ pub fn conclude(
     let contrast = search.outcome(&colours.contrast_problem(pair, image))?;
     let plain = colours.register_in(pair, image, &contrast.best.pose);
     Some(match plain {
-        Some(plain) if is_plain(pair, &plain, &contrast) => Conclusion::ByColours(Box::new(plain)),
+        Some(plain)
+            if is_plain(pair, &plain, &contrast)
+                && search.is_explained_by(&colours.contrast_problem(pair, image), &plain.pose) =>
+        {
+            Conclusion::ByColours(Box::new(plain))
+        }
         _ => Conclusion::ByContrast(Box::new(contrast)),
     })
 }

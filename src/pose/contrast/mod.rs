@@ -13,7 +13,8 @@
 //!
 //! Method: rounds of damped Gauss-Newton with the light eliminated. A round fixes what is seen and the weights within H;
 //! weights that move with the pose would reward sliding to where there is little weight. The robust scale shrinks from
-//! twice to once three sigmas of what is left. [`ContrastSearch`] runs it from many starts, coarse to fine.
+//! twice to once three sigmas of what is left. At the end rounds of instrumental variables: the gradient of the predicted
+//! shading takes the place of the image's, whose shadows and paint would bias the pose. [`ContrastSearch`] runs it from many starts, coarse to fine.
 //!
 //! | file | what it holds |
 //! |---|---|
@@ -21,6 +22,7 @@
 //! | `search` | many starts, coarse to fine, one pose and its rivals |
 //! | `registration` | the rounds |
 //! | `objective` | E, its gradient, and what a round fixes |
+//! | `prediction` | the predicted shading and its gradient, instruments of the last rounds |
 //! | `samples` | the depth view on a grid, with its harmonics |
 //! | `seen` | visible samples and the contour generator |
 //! | `local_means` | H |
@@ -33,6 +35,7 @@
 mod equations;
 mod local_means;
 mod objective;
+mod prediction;
 mod problem;
 mod registration;
 mod samples;

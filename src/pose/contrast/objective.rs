@@ -7,6 +7,7 @@ use nalgebra::Vector3;
 
 use super::equations::{Equations, Lights, Reduced, SHADES};
 use super::local_means::LocalMeans;
+use super::prediction::Prediction;
 use super::problem::ContrastProblem;
 use super::samples::Samples;
 use super::seen::Seen;
@@ -25,6 +26,9 @@ const BESIDE_SCALE: f64 = 3.0;
 /// the object hides another, are no part of the outline.
 const LIMB_WEIGHT: f64 = 1.0;
 const LIMB_SCALE: f64 = 1.5;
+/// The same once instruments settle the pose: outlines bring it home, but they are off by part of a pixel to one side,
+/// and pulled photographs by half a degree.
+const SETTLING_LIMB_WEIGHT: f64 = 0.1;
 /// Weight of log^2 of the apparent size over that of the start: 20 % more costs as much as a fifth of the contrast. Without
 /// it a registration slides to where the object is small.
 const SIZE_WEIGHT: f64 = 5.0;
@@ -74,6 +78,9 @@ pub(super) struct Objective {
     seen_values: Vec<[f32; CHANNELS]>,
     values: Vec<[f32; CHANNELS]>,
     derivatives: Vec<[f32; DERIVATIVES]>,
+    prediction: Prediction,
+    /// Whether derivatives are those of the prediction, and the shading settles the pose rather than the outline.
+    settles: bool,
     squares: Vec<f32>,
     /// Sum of the weights of samples on and beside the mask, and of those beside it.
     all: f64,
@@ -98,6 +105,8 @@ impl Objective {
             seen_values: vec![[0.0; CHANNELS]; length],
             values: vec![[0.0; CHANNELS]; length],
             derivatives: vec![[0.0; DERIVATIVES]; length],
+            prediction: Prediction::new(length),
+            settles: false,
             squares: Vec::with_capacity(samples.list.len()),
             all: 0.0,
             beside: 0.0,
@@ -116,6 +125,11 @@ impl Objective {
     /// s, or s / z behind a pinhole.
     fn apparent_size(&self, problem: &ContrastProblem<'_>, pose: &Similarity) -> f64 {
         if problem.is_metric() { pose.scale / pose.apply(self.samples.centre).z } else { pose.scale }
+    }
+
+    /// Whether the equations have the gradient of the prediction as instruments in place of that of the image.
+    pub fn settle(&mut self, settles: bool) {
+        self.settles = settles;
     }
 
     /// Takes the robust scale of a noise, log units.
@@ -274,7 +288,8 @@ impl Objective {
 
     /// Weight of one limb: there are as many more of them as samples lie closer.
     fn limb_weight(&self) -> f64 {
-        LIMB_WEIGHT * self.samples.stride as f64 / self.border
+        let weight = if self.settles { SETTLING_LIMB_WEIGHT } else { LIMB_WEIGHT };
+        weight * self.samples.stride as f64 / self.border
     }
 
     /// The equations of a step, the light eliminated.
@@ -286,6 +301,10 @@ impl Objective {
         state: &State,
     ) -> Option<Reduced> {
         let mut equations = Equations::new();
+        if self.settles {
+            let (samples, visible) = (&self.samples, &self.seen.visible);
+            self.prediction.predict(problem, samples, visible, &level.shades, (&state.pose, &state.light));
+        }
         self.enter_samples(problem, level, frame, state, &mut equations);
         self.enter_limbs(problem, frame, &state.pose, &mut equations);
         self.values.copy_from_slice(&self.seen_values);
@@ -331,7 +350,8 @@ impl Objective {
             let Some(colours) = level.image.at(place) else { continue };
             self.seen_values[cell] = colours.log.map(|log| log as f32);
             let (rows, _) = self.derivatives[cell].as_chunks_mut::<UNKNOWNS>();
-            for (row, [by_column, by_row]) in rows.iter_mut().zip(colours.gradient) {
+            let gradient = if self.settles { self.prediction.gradient(cell) } else { colours.gradient };
+            for (row, [by_column, by_row]) in rows.iter_mut().zip(gradient) {
                 let derivative = by_column * by_pose[0] + by_row * by_pose[1];
                 row.iter_mut().zip(&derivative).for_each(|(out, value)| *out = *value as f32);
             }

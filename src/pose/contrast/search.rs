@@ -23,13 +23,13 @@ const STAGES: [Stage; 4] = [
     Stage { samples: 350.0, effort: ContrastEffort::COARSE, kept: 12, apart: 6.0 },
     Stage {
         samples: 1400.0,
-        effort: ContrastEffort { rounds: 5, ..ContrastEffort::FULL },
+        effort: ContrastEffort { rounds: 5, instrument_rounds: 6, ..ContrastEffort::FULL },
         kept: 6,
         apart: RIVAL_APART,
     },
     Stage {
         samples: 10_000.0,
-        effort: ContrastEffort { first_level: 0, rounds: 6, ..ContrastEffort::FULL },
+        effort: ContrastEffort { first_level: 0, rounds: 6, instrument_rounds: 20, ..ContrastEffort::FULL },
         kept: 6,
         apart: RIVAL_APART,
     },
@@ -42,6 +42,9 @@ const RANKING_NOISE: f64 = 0.05;
 const RIVAL_MARGIN: f64 = 0.03;
 /// A rival is at least so far away, degrees.
 const RIVAL_APART: f64 = 3.0;
+/// Ends of one rotation and unlike sizes are two: so much in log size, half a step between the sizes of the starts. A wrong
+/// size that looks better at first would hide the right one.
+const SIZE_APART: f64 = 0.1;
 
 /// An end of a registration with its E.
 type End = (f64, Similarity);
@@ -104,7 +107,9 @@ impl ContrastSearch {
         sort_descending(&mut self.ends, |(value, _)| -value);
         let mut kept: Vec<End> = Vec::with_capacity(done.kept);
         for end in &self.ends {
-            let is_apart = |other: &End| other.1.degrees_to(&end.1) >= done.apart;
+            let is_apart = |(_, other): &End| {
+                other.degrees_to(&end.1) >= done.apart || (other.scale / end.1.scale).ln().abs() > SIZE_APART
+            };
             if kept.len() < done.kept && kept.iter().all(is_apart) {
                 kept.push(*end);
             }
@@ -119,12 +124,18 @@ impl ContrastSearch {
         }
     }
 
+    /// Whether another pose explains the contrast as well as the best end.
+    pub fn is_explained_by(&mut self, problem: &ContrastProblem<'_>, pose: &Similarity) -> bool {
+        let value = self.registration.evaluate(problem, pose, RANKING_NOISE);
+        self.ends.first().is_some_and(|(best, _)| value.is_some_and(|value| value <= best + RIVAL_MARGIN))
+    }
+
     /// What was found, once all is done; `None` where no registration saw enough of the object.
     pub fn outcome(&mut self, problem: &ContrastProblem<'_>) -> Option<ContrastOutcome> {
         let &(value, pose) = self.ends.first()?;
         let uncertainty = self.registration.uncertainty(problem, &pose)?;
         let best = ContrastReport { pose, objective: value, uncertainty };
-        let is_rival = |(other, _): &&End| *other <= value + RIVAL_MARGIN;
+        let is_rival = |end: &&End| end.0 <= value + RIVAL_MARGIN && end.1.degrees_to(&pose) >= RIVAL_APART;
         let rivals = self.ends[1..].iter().filter(is_rival).map(|(_, pose)| *pose).collect();
         Some(ContrastOutcome { best, rivals })
     }
