@@ -12,6 +12,7 @@ const KEYS = {
   refinement: ["lightName", "before", "after", "holes"],
   sensors: ["object", "before", "after", "ratio"],
   photographs: ["object", "image", "beta", "degrees", "status"],
+  conditions: ["object", "condition", "beta", "degrees", "status"],
   rgbd: ["name", "turned", "start", "degrees", "inPlane", "tilt", "lateral", "along", "status"],
   pinhole: ["scene", "start", "degrees", "translation", "status"],
   albedo: ["object", "image", "pose", "beta", "correlation", "error", "naive", "degrees", "status"],
@@ -26,7 +27,7 @@ const KEYS = {
   ablation: ["without", "medianDegrees", "found"],
 };
 /** Nothing replaces these where other people's data is absent. */
-const REAL = ["table3", "figure7", "sensors", "photographs", "albedo", "rgbd"];
+const REAL = ["table3", "figure7", "sensors", "photographs", "conditions", "albedo", "rgbd"];
 
 /** Tables without a row, and keys that a row lacks. A key may be null: not everything has a value. */
 export const missingKeys = (json, { realPairs }) =>

@@ -1,6 +1,6 @@
 // The tables as text.
-import { isConfidentlyWrong, isFlagged } from "./protocol/counts.mjs";
-import { median, worst } from "./protocol/numbers.mjs";
+import { coverage3, isConfidentlyWrong, isFlagged, isFound } from "./protocol/counts.mjs";
+import { mean, median, share, worst } from "./protocol/numbers.mjs";
 import { paperDegrees } from "./protocol/rotations.mjs";
 import { PAPER_TABLE_1, PAPER_TABLE_3 } from "./protocol/scenes.mjs";
 
@@ -152,6 +152,32 @@ function photographs(rows) {
       ["median", "", ...betas.map((beta) => fixed(median(rows.filter((row) => row.beta === beta).map(({ degrees }) => degrees)), 2))],
     ]),
     ...costs,
+    ...columns([SUMMED, ...images.map((image) => summed(image, rows.filter((row) => row.image === image)))]),
+  ];
+}
+
+/** Rows of one kind: what they come to. */
+const summed = (name, rows) => {
+  const degrees = rows.map((row) => row.degrees);
+  return [name, rows.length, fixed(median(degrees), 2), fixed(mean(degrees), 2), percent(share(rows, isFound)), rows.filter(isConfidentlyWrong).length, percent(coverage3(rows))];
+};
+const SUMMED = ["", "cells", "median", "mean", "under 3", "confidently wrong", "found within 3 sigma"];
+
+function conditions(rows) {
+  const [betas, kinds] = [unique(rows.map(({ beta }) => beta)), unique(rows.map(({ condition }) => condition))];
+  const of = (condition) => rows.filter((row) => row.condition === condition);
+  const show = (row) => (row ? fixed(row.degrees, 2) + mark(row) : "");
+  return [
+    ...kinds.flatMap((condition) =>
+      columns([
+        [condition, ...betas.map((beta) => `beta ${beta}`)],
+        ...unique(of(condition).map(({ object }) => object)).map((object) => [
+          object,
+          ...betas.map((beta) => show(of(condition).find((row) => row.object === object && row.beta === beta))),
+        ]),
+      ]),
+    ),
+    ...columns([SUMMED, ...kinds.map((condition) => summed(condition, of(condition)))]),
   ];
 }
 
@@ -243,7 +269,7 @@ const ablation = (rows) =>
 
 const SHOWS = {
   ...{ table1, table2A, table2B, table3, figure4, figure5, figure6, figure7 },
-  ...{ refinement, sensors, photographs, albedo, rgbd, pinhole, random, painted: random, exposure, ablation },
+  ...{ refinement, sensors, photographs, conditions, albedo, rgbd, pinhole, random, painted: random, exposure, ablation },
 };
 
 /** One table's lines; `open3d` gives the baseline's degrees for a row of Table 2B, where there are any. */

@@ -69,7 +69,7 @@ describe("definitions", () => {
 
   test("the full tables have the protocol's number of cells", () => {
     const count = (name) => TABLES.find((table) => table.name === name).cells(kit(true), false).length;
-    assert.deepEqual(["table1", "table2A", "table2B", "figure5", "sensors", "photographs", "random"].map(count), [4, 30, 480, 72, 27, 120, 300]);
+    assert.deepEqual(["table1", "table2A", "table2B", "figure5", "sensors", "photographs", "conditions", "random"].map(count), [4, 30, 480, 72, 27, 120, 136, 300]);
   });
 
   test("random scenes keep to their limits and to their seed", () => {

@@ -1,9 +1,10 @@
 // What the project has set out to reach, computed from the rows of the tables and never from anything else.
-import { FOUND_WITHIN, isConfidentlyWrong, isFlagged, isFound, isFoundOrFlagged } from "./counts.mjs";
+import { FOUND_WITHIN, coverage3, isConfidentlyWrong, isFlagged, isFound, isFoundOrFlagged } from "./counts.mjs";
 import { IMAGES } from "./reals.mjs";
+import { CONDITIONS } from "./conditions.mjs";
 import { medianRatio } from "./sensors.mjs";
 import { COLOURFUL } from "./scenes.mjs";
-import { median, quantile, share, worst } from "./numbers.mjs";
+import { mean, median, quantile, share, worst } from "./numbers.mjs";
 import { degreesBetween } from "./rotations.mjs";
 
 const least = (values) => (values.length === 0 ? null : Math.min(...values));
@@ -99,6 +100,9 @@ function sensorsAims(rows = []) {
   ];
 }
 
+const coverageAim = (table, kind, rows) =>
+  aim(table, `${kind}: found within 3 sigma on all axes`, coverage3(rows), ">=", 0.93, rows.filter(isFound).length);
+
 function photographsAims(rows = []) {
   const of = (wanted) => rows.filter(({ image }) => image === wanted);
   const [painted, shaded, rendered] = IMAGES.map(of);
@@ -110,8 +114,28 @@ function photographsAims(rows = []) {
     aim("photographs", "worst degrees of those not flagged", worst(unflagged.map(({ degrees }) => degrees)), "<=", 4, unflagged.length),
     aim("photographs", "shading alone: median degrees", middle(shaded), "<=", 0.8, shaded.length),
     aim("photographs", "renders: worst degrees", worst(rendered.map(({ degrees }) => degrees)), "<=", 1, rendered.length),
+    ...IMAGES.map((image) => coverageAim("photographs", image, of(image))),
   ];
 }
+
+/** Limits of each condition. */
+const LIMITS = { told: { median: 1, found: 0.8 }, lamps: { median: 0.8 }, natural: { median: 0.4, mean: 1 }, large: { median: 1.2, found: 0.75, worst: 4 } };
+
+const conditionsAims = (rows = []) =>
+  CONDITIONS.flatMap(({ condition, kind }) => {
+    const members = rows.filter((row) => row.condition === condition);
+    const [limits, degrees] = [LIMITS[kind], members.map((row) => row.degrees)];
+    const unflagged = members.filter((row) => !isFlagged(row)).map((row) => row.degrees);
+    const line = (what, measured, sense, limit, count = members.length) =>
+      limit === undefined ? [] : [aim("conditions", `${condition}: ${what}`, measured, sense, limit, count)];
+    return [
+      ...line("median degrees", median(degrees), "<=", limits.median),
+      ...line("mean degrees", mean(degrees), "<=", limits.mean),
+      ...line(`share under ${FOUND_WITHIN} degrees`, share(members, isFound), ">=", limits.found),
+      ...line("worst degrees of those not flagged", worst(unflagged), "<=", limits.worst, unflagged.length),
+      coverageAim("conditions", condition, members),
+    ];
+  });
 
 function rgbdAims(rows = []) {
   const told = rows.filter(({ start }) => start === "told");
@@ -207,6 +231,7 @@ export const aims = (json) =>
     ...(json.refinement ? refinementAims(json.refinement) : []),
     ...(json.sensors ? sensorsAims(json.sensors) : []),
     ...(json.photographs ? photographsAims(json.photographs) : []),
+    ...(json.conditions ? conditionsAims(json.conditions) : []),
     ...(json.rgbd ? rgbdAims(json.rgbd) : []),
     ...(json.pinhole ? pinholeAims(json.pinhole) : []),
     ...(json.albedo ? albedoAims(json.albedo) : []),

@@ -14,7 +14,7 @@ const LEAST_OVERLAP = 0.4;
 const SIZE = 96;
 
 /** A direction, evenly over the sphere. */
-function direction({ gaussian }) {
+export function direction({ gaussian }) {
   const vector = [gaussian(), gaussian(), gaussian()];
   const length = Math.hypot(...vector);
   return vector.map((part) => part / length);

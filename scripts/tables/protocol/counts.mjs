@@ -18,6 +18,9 @@ const AXES = [0, 1, 2];
 const within = ({ rotationOff, sigmas }, count) =>
   sigmas && AXES.map((axis) => Math.abs(rotationOff[axis]) <= count * sigmas[axis]);
 
+/** Share of the found whose rotation is within three sigma on all axes; one without sigmas is not. */
+export const coverage3 = (rows) => share(rows.filter(isFound), (row) => Boolean(row.sigmas) && within(row, 3).every(Boolean));
+
 /** The row of the random scenes: counts; coverages are shares of the found. */
 export function randomRow(rows) {
   const found = rows.filter(isFound);
@@ -33,8 +36,7 @@ export function randomRow(rows) {
     /** Single axes within one sigma, all of them and each by itself. */
     coverage1: share(within1.flat(), Boolean),
     coverage1PerAxis: AXES.map((axis) => share(within1, (axes) => axes[axis])),
-    /** Rotations with all three axes within three sigma; a found pose without sigmas has none. */
-    coverage3: found.length === 0 ? null : measured.filter((row) => within(row, 3).every(Boolean)).length / found.length,
+    coverage3: coverage3(rows),
     withoutSigmas: found.length - measured.length,
     meanMilliseconds: mean(rows.map(({ milliseconds }) => milliseconds)),
     scenes: rows,

@@ -1,5 +1,7 @@
 // Real pairs and photographs: what a library hands over, turned, resampled and run.
-import { aboutY, degreesBetween, transpose, turn } from "./rotations.mjs";
+import { direction } from "./anywhere.mjs";
+import { chance, seedOf } from "./numbers.mjs";
+import { aboutAxis, aboutY, degreesBetween, product, transpose, turn } from "./rotations.mjs";
 import { requestOf } from "./scenes.mjs";
 import { judged, optionsOf, withRun } from "./runs.mjs";
 import { normalDegrees } from "./measure-shapes.mjs";
@@ -88,13 +90,39 @@ export function onto(size, { width, height, data, mask, place }, made) {
   return { width: size, height: size, data: colours, mask: inside };
 }
 
+/** Luminance of linear R, G, B. */
+const LUMINANCE = [0.2126, 0.7152, 0.0722];
+
+/** Photographs under one lamp each as the channels of one image. */
+function channels(photographs) {
+  const grey = ({ data }, index) => LUMINANCE.reduce((sum, weight, channel) => sum + weight * data[3 * index + channel], 0);
+  const data = photographs[0].data.map((_, at) => grey(photographs[at % 3], Math.floor(at / 3)));
+  return { ...photographs[0], data };
+}
+
+/** A start turned by so many degrees about the object's middle; chance follows from the cell's name. */
+function startOff({ rotation, scale, translation }, depth, degrees, name) {
+  const [middle, { width, height }] = [[0, 0, 0], depth];
+  let count = 0;
+  for (const [index, z] of depth.data.entries()) {
+    if (!(z > 0)) continue;
+    count++;
+    [(index % width) - (width - 1) / 2, Math.floor(index / width) - (height - 1) / 2, z].forEach((value, axis) => (middle[axis] += value));
+  }
+  const turned = product(aboutAxis(direction(chance(seedOf(name))), degrees), rotation);
+  const [from, to] = [rotation, turned].map((matrix) => turn(matrix, middle).map((value) => (scale * value) / count));
+  return { scale, rotation: turned, translation: translation.map((value, axis) => value + from[axis] - to[axis]) };
+}
+
 export async function measurePhotograph(cell, api, library) {
+  const { size, surface } = cell.scene;
   const made = api.sample(requestOf(cell.scene, library));
-  const photograph = cell.photograph && library.photograph(cell.scene.surface, cell.photograph);
-  const image = photograph ? onto(cell.scene.size, photograph, made) : made.image;
-  return withRun(api, { image, depth: made.depth }, optionsOf(cell.options, made), (report, _, milliseconds) =>
-    judged(report, made.pose, milliseconds),
-  );
+  const read = (name) => library.photograph(surface, name);
+  const photograph = cell.lamps ? channels(cell.lamps.map(read)) : cell.photograph && read(cell.photograph);
+  const image = photograph ? onto(size, photograph, made) : made.image;
+  const start = cell.off ? { start: startOff(made.pose, made.depth, cell.off, cell.id) } : {};
+  const options = { ...optionsOf(cell.options, made), ...start };
+  return withRun(api, { image, depth: made.depth }, options, (report, _, milliseconds) => judged(report, made.pose, milliseconds));
 }
 
 /** Correlation of two fields of log colours and their root mean square difference, each channel less its mean over the pixels. */

@@ -50,13 +50,13 @@ export const figure7 = {
     })),
 };
 
-const PHOTOGRAPH_SIZE = 96;
+export const PHOTOGRAPH_SIZE = 96;
 /**
  * `lab_diffuse` has albedo and cast shadows, `lab_shading` cast shadows alone, `render` neither (natural light A): the
  * differences are what each of them costs.
  */
 export const IMAGES = ["lab_diffuse", "lab_shading", "render"];
-const PHOTOGRAPH_BETAS = [0, 20, 40, 60];
+export const PHOTOGRAPH_BETAS = [0, 20, 40, 60];
 
 const photographCell = (object, image, beta) => ({
   id: `photographs/${object}/${image}/${beta}`,

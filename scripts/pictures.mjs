@@ -1,0 +1,142 @@
+// node scripts/pictures.mjs FOLDER: contact sheets to look at, of the data beside the project and of a scene of our own.
+//   photographs-N.png   image, albedo, shading and residual of each photographed object, 20 degrees off, nothing known
+//   depth-N.png         depth as it is and refined, shaded, of each registered capture, its pose known
+//   painted.png         the first of these for the built-in bust, painted
+import { mkdirSync, writeFileSync } from "node:fs";
+import { join, resolve } from "node:path";
+import { encode } from "fast-png";
+import { build } from "./build.mjs";
+import { setup } from "./setup.mjs";
+import { Failure, say, script } from "./shell.mjs";
+import { hasData, library } from "./tables/library.mjs";
+import { onto } from "./tables/protocol/measure-reals.mjs";
+import { quantile } from "./tables/protocol/numbers.mjs";
+import { withRun } from "./tables/protocol/runs.mjs";
+import { PAINTED, requestOf } from "./tables/protocol/scenes.mjs";
+
+/** Captures, the frame of each, and objects of a sheet. */
+const CAPTURES = [["coffee_mug_1", 1], ["bowl_1", 1], ["cap_1", 1], ["cereal_box_1", 1], ["vase_rgbd", 1], ["android_rgbd", 1], ["mitten_rgbd", 1]];
+const ON_A_SHEET = 5;
+const SIZE = 96;
+/** Pixels of a sheet for one of a small view, and between pictures. */
+const MAGNIFIED = 2;
+const GAP = 6;
+/** Log units from black to white around the middle, and of a residual from black to white. */
+const LOG_RANGE = 3;
+const RESIDUAL_RANGE = 0.6;
+/** Steps of a picture's share of light to its bytes. */
+const asBytes = (share) => 255 * Math.min(1, Math.max(0, share)) ** (1 / 2.2);
+
+/** A picture of a raster's part where `pixel` gives R, G, B, 0 to 1 linear; black elsewhere. */
+function picture({ width, height }, pixel, magnified = MAGNIFIED) {
+  const inside = Array.from({ length: width * height }, (_, index) => pixel(index));
+  const filled = [...inside.keys()].filter((index) => inside[index]);
+  const [left, top] = [Math.min(...filled.map((index) => index % width)), Math.floor(filled[0] / width)];
+  const [right, bottom] = [Math.max(...filled.map((index) => index % width)), Math.floor(filled.at(-1) / width)];
+  const size = { width: magnified * (right - left + 1), height: magnified * (bottom - top + 1) };
+  const data = new Uint8Array(3 * size.width * size.height);
+  for (let index = 0; index < size.width * size.height; index++) {
+    const [column, row] = [index % size.width, Math.floor(index / size.width)].map((at) => Math.floor(at / magnified));
+    data.set((inside[(row + top) * width + column + left] || [0, 0, 0]).map(asBytes), 3 * index);
+  }
+  return { ...size, data };
+}
+
+/** Rows of pictures as one. */
+function sheet(rows) {
+  const columns = rows[0].map((_, column) => Math.max(...rows.map((row) => row[column].width)));
+  const heights = rows.map((row) => Math.max(...row.map(({ height }) => height)));
+  const ends = (sizes) => sizes.reduce((all, size) => [...all, all.at(-1) + size + GAP], [GAP]);
+  const [lefts, tops] = [ends(columns), ends(heights)];
+  const [width, height] = [lefts.at(-1), tops.at(-1)];
+  const data = new Uint8Array(3 * width * height);
+  rows.forEach((row, r) =>
+    row.forEach((part, c) => {
+      for (let y = 0; y < part.height; y++) {
+        data.set(part.data.subarray(3 * y * part.width, 3 * (y + 1) * part.width), 3 * ((tops[r] + y) * width + lefts[c]));
+      }
+    }),
+  );
+  return encode({ width, height, data, channels: 3, depth: 8 });
+}
+
+const triple = (raster, index) => [...raster.subarray(3 * index, 3 * index + 3)];
+
+/** R, G, B of log colours, as bright in the middle as the others. */
+function exposed(log) {
+  const middle = quantile([...log].filter(Number.isFinite), 0.5);
+  return (index) => Number.isFinite(log[3 * index]) && triple(log, index).map((value) => 0.3 * Math.exp(Math.max(-LOG_RANGE, value - middle)));
+}
+
+/** Image, albedo, shading and residual of a run that knows nothing. */
+const taken = (api, image, depth) =>
+  withRun(api, { image, depth }, {}, (report, estimator) => {
+    const residual = estimator.residual();
+    const log = Float32Array.from(image.data, (value, at) => (image.mask[Math.floor(at / 3)] ? Math.log(value) : NaN));
+    const grey = (index) => Number.isFinite(residual[index]) && Array(3).fill(residual[index] / RESIDUAL_RANGE);
+    const parts = [exposed(log), exposed(estimator.albedo()), exposed(estimator.shading()), grey];
+    return { report, row: parts.map((part) => picture(image, part)) };
+  });
+
+/** A depth map under a lamp beside the camera. */
+function shaded({ width, height, camera }, metres) {
+  const point = (column, row) => {
+    const z = metres[row * width + column];
+    return [((column - camera.cx) * z) / camera.fx, ((row - camera.cy) * z) / camera.fy, z];
+  };
+  return (index) => {
+    const [column, row] = [index % width, Math.floor(index / width)];
+    if (column + 1 >= width || row + 1 >= height) return undefined;
+    const [here, right, below] = [point(column, row), point(column + 1, row), point(column, row + 1)];
+    const [u, v] = [right, below].map((other) => other.map((value, axis) => value - here[axis]));
+    const normal = [u[2] * v[1] - u[1] * v[2], u[0] * v[2] - u[2] * v[0], u[1] * v[0] - u[0] * v[1]];
+    const light = (0.5 * normal[0] + 0.5 * normal[1] + 0.7 * normal[2]) / Math.hypot(...normal);
+    return Number.isFinite(light) ? Array(3).fill(0.05 + 0.9 * Math.max(0, light)) : undefined;
+  };
+}
+
+const refined = (api, { image, depth }) =>
+  withRun(api, { image, depth }, { start: "identity", registration: "fixed", scale: 1 }, (report, estimator) => {
+    const raw = Float64Array.from(depth.data, (value, index) => (depth.mask[index] && value > 0 ? value * depth.unit : NaN));
+    return { report, row: [raw, estimator.refinedDepth()].map((metres) => picture(depth, shaded(depth, metres), 1)) };
+  });
+
+/** The built-in bust in window light, in squares of four paints. */
+function painted(api) {
+  const { image, depth } = api.sample({ surface: "bust", light: "window", size: SIZE, angles: { beta: 25 }, noise: 0.01 });
+  const paints = [[1, 1, 1], [0.9, 0.35, 0.3], [0.3, 0.7, 0.4], [0.35, 0.4, 0.85]];
+  const side = Math.round(SIZE / 8);
+  const data = image.data.map((value, at) => {
+    const index = Math.floor(at / 3);
+    const [column, row] = [index % image.width, Math.floor(index / image.width)].map((place) => Math.floor(place / side));
+    return value * paints[(column + 3 * row) % 4][at % 3];
+  });
+  return taken(api, { ...image, data }, depth);
+}
+
+const inSheets = (rows) => Array.from({ length: Math.ceil(rows.length / ON_A_SHEET) }, (_, at) => rows.slice(at * ON_A_SHEET, (at + 1) * ON_A_SHEET));
+
+await script(async () => {
+  const [folder] = process.argv.slice(2);
+  if (!folder) throw new Failure("node scripts/pictures.mjs FOLDER");
+  await setup();
+  await build();
+  const api = await import("../pkg/index.js");
+  await api.default();
+  mkdirSync(folder, { recursive: true });
+  const save = (name, rows) => {
+    writeFileSync(join(folder, `${name}.png`), sheet(rows));
+    say(`wrote ${resolve(folder, name)}.png`);
+  };
+  save("painted", [(await painted(api)).row]);
+  if (!hasData()) return;
+  const data = library(await import("../pkg/files.js"));
+  const [photographs, captures] = [[], []];
+  for (const surface of PAINTED) {
+    const made = api.sample(requestOf({ surface, light: "A", size: SIZE, angles: { beta: 20 } }, data));
+    photographs.push((await taken(api, onto(SIZE, data.photograph(surface, "lab_diffuse"), made), made.depth)).row);
+  }
+  for (const [name, frame] of CAPTURES) captures.push((await refined(api, data.capture(name, frame))).row);
+  inSheets(photographs).forEach((rows, at) => save(`photographs-${at + 1}`, rows));
+  inSheets(captures).forEach((rows, at) => save(`depth-${at + 1}`, rows));
+});
