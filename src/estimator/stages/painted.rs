@@ -41,12 +41,12 @@ pub fn is_called_for(pair: &ViewPair, colours: &ColourRegistration, plain: Optio
 fn is_plain(pair: &ViewPair, plain: &PhotometricReport, contrast: &ContrastOutcome) -> bool {
     plain.noise <= LARGEST_PURE_NOISE.max((NOISY * pair.image.log_noise()).min(LARGEST_IMAGE_NOISE))
         && plain.pose.degrees_to(&contrast.best.pose) < SAME_POSE
-        && largest_sigma(&plain.uncertainty) <= largest_sigma(&contrast.best.uncertainty)
 }
 
-/// Sigma of the rotation about the least certain axis, degrees.
-fn largest_sigma(uncertainty: &Uncertainty) -> f64 {
-    uncertainty.rotation_degrees.into_iter().fold(0.0, f64::max)
+/// Whether the first is less uncertain about its least certain axis.
+fn is_surer(first: &Uncertainty, second: &Uncertainty) -> bool {
+    let largest = |uncertainty: &Uncertainty| uncertainty.rotation_degrees.into_iter().fold(0.0, f64::max);
+    largest(first) <= largest(second)
 }
 
 /// What contrast is compared in: the image without the paint that shows at its edges, or as it is.
@@ -100,11 +100,16 @@ pub fn conclude(
     let image = cleaned.image(pair);
     let mut contrast = search.outcome(&colours.contrast_problem(pair, image))?;
     let plain = colours.register_in(pair, image, &contrast.best.pose);
-    if cleaned.was_soft || !colours.has_clean_normals() {
+    let is_coarse = cleaned.was_soft || !colours.has_clean_normals();
+    if is_coarse {
         doubt(&mut contrast, plain.as_ref());
     }
+    let is_believed = |plain: &PhotometricReport| {
+        let is_surer = !is_coarse || is_surer(&plain.uncertainty, &contrast.best.uncertainty);
+        is_surer && is_plain(pair, plain, &contrast)
+    };
     Some(match plain {
-        Some(plain) if is_plain(pair, &plain, &contrast) => Conclusion::ByColours(Box::new(plain)),
+        Some(plain) if is_believed(&plain) => Conclusion::ByColours(Box::new(plain)),
         _ => Conclusion::ByContrast(Box::new(contrast)),
     })
 }
