@@ -24,6 +24,10 @@ const KEYS = {
     ...["cases", "found", "ambiguousOrLost", "confidentlyWrong", "flaggedThoughFound", "medianDegrees"],
     ...["coverage1", "coverage3"],
   ],
+  stress: [
+    ...["cases", "found", "ambiguousOrLost", "confidentlyWrong", "flaggedThoughFound", "medianDegrees"],
+    ...["coverage1", "coverage3", "kinds"],
+  ],
   ablation: ["without", "medianDegrees", "found"],
 };
 /** Nothing replaces these where other people's data is absent. */

@@ -245,6 +245,16 @@ const random = (row) => [
   ),
 ];
 
+const stress = (row) => [
+  ...random(row),
+  ...columns([
+    ["kind", "found", "median degrees", "confidently wrong", "flagged though found", "within 3 sigma"],
+    ...row.kinds.map(({ kind, cases, found, medianDegrees, confidentlyWrong, flaggedThoughFound, coverage3 }) => [
+      ...[kind, `${found} of ${cases}`, fixed(medianDegrees), confidentlyWrong, flaggedThoughFound, percent(coverage3)],
+    ]),
+  ]),
+];
+
 function exposure(rows) {
   const factors = unique(rows.map(({ factor }) => factor));
   const moved = (factor) => rows.filter((row) => row.factor === factor).map(({ degreesMoved }) => degreesMoved);
@@ -269,7 +279,7 @@ const ablation = (rows) =>
 
 const SHOWS = {
   ...{ table1, table2A, table2B, table3, figure4, figure5, figure6, figure7 },
-  ...{ refinement, sensors, photographs, conditions, albedo, rgbd, pinhole, random, painted: random, exposure, ablation },
+  ...{ refinement, sensors, photographs, conditions, albedo, rgbd, pinhole, random, painted: random, stress, exposure, ablation },
 };
 
 /** One table's lines; `open3d` gives the baseline's degrees for a row of Table 2B, where there are any. */

@@ -40,6 +40,16 @@ pub struct Uncertainty {
     pub weakest: String,
 }
 
+impl Uncertainty {
+    /// All sigmas times `factor`.
+    pub(crate) fn widen(&mut self, factor: f64) {
+        let translation = self.translation.iter_mut().flatten();
+        let all = self.rotation_degrees.iter_mut().chain(translation).chain(&mut self.scale);
+        all.for_each(|sigma| *sigma *= factor);
+        self.rotation_degrees = self.rotation_degrees.map(|sigma| sigma.min(LARGEST_SIGMA));
+    }
+}
+
 /// Information of a registration about its seven unknowns: rotation about x, y, z (radians), translation along x, y, z
 /// (in object sizes) and the logarithm of the scale, all in the colour view's frame around the centroid of the points.
 #[derive(Clone, Debug, PartialEq)]

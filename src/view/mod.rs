@@ -1,6 +1,7 @@
 //! What comes in: sizes, masks, cameras, one colour image and one depth map, checked once (docs/method.md, section 4).
 
 mod camera;
+mod chroma;
 mod colour;
 pub mod cubic_normals;
 mod depth;

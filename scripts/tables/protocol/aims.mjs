@@ -206,14 +206,14 @@ function randomAims(row) {
   ];
 }
 
-function paintedAims(row) {
+function paintedAims(table, row) {
   if (!row) return [];
   const { cases, found } = row;
   return [
-    aim("painted", `share under ${FOUND_WITHIN} degrees`, found / cases, ">=", 0.9, cases),
-    aim("painted", "median degrees of those", row.medianDegrees, "<=", 0.5, found),
-    aim("painted", "share confidently wrong", row.confidentlyWrong / cases, "<=", 0.01, cases),
-    aim("painted", "found within 3 sigma on all axes", row.coverage3, ">=", 0.93, found),
+    aim(table, `share under ${FOUND_WITHIN} degrees`, found / cases, ">=", 0.9, cases),
+    aim(table, "median degrees of those", row.medianDegrees, "<=", 0.5, found),
+    aim(table, "share confidently wrong", row.confidentlyWrong / cases, "<=", 0.01, cases),
+    aim(table, "found within 3 sigma on all axes", row.coverage3, ">=", 0.93, found),
   ];
 }
 
@@ -236,6 +236,7 @@ export const aims = (json) =>
     ...(json.pinhole ? pinholeAims(json.pinhole) : []),
     ...(json.albedo ? albedoAims(json.albedo) : []),
     ...randomAims(json.random),
-    ...paintedAims(json.painted),
+    ...paintedAims("painted", json.painted),
+    ...paintedAims("stress", json.stress),
     ...(json.exposure ? exposureAims(json.exposure) : []),
   ].filter(({ rows }) => rows > 0);

@@ -6,12 +6,13 @@ import { pinhole, rgbd } from "./perspectives.mjs";
 import { figure6, table1, table2A, table2B } from "./poses.mjs";
 import { albedo, figure7, photographs, table3 } from "./reals.mjs";
 import { sensors } from "./sensors.mjs";
+import { stress } from "./stress.mjs";
 import { figure4, figure5, refinement } from "./shapes.mjs";
 
 /** In the order in which they are printed. */
 export const TABLES = [
   ...[table1, table2A, table2B, table3, figure4, figure5, figure6, figure7],
-  ...[refinement, sensors, photographs, conditions, albedo, rgbd, pinhole, random, painted, exposure, ablation],
+  ...[refinement, sensors, photographs, conditions, albedo, rgbd, pinhole, random, painted, stress, exposure, ablation],
 ];
 
 /** The rows of a table as the JSON has them: what the cell says of itself, which nothing measured may overwrite, and the rest. */

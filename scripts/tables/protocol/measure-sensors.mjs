@@ -5,7 +5,7 @@ import { requestOf } from "./scenes.mjs";
 import { optionsOf, withRun } from "./runs.mjs";
 
 /** A structured-light sensor: focal length in pixels, baseline in metres, steps of its disparity in a pixel. */
-const SENSOR = { focalLength: 580, baseline: 0.075, steps: 8 };
+export const SENSOR = { focalLength: 580, baseline: 0.075, steps: 8 };
 /** Width and distance of the objects before it, metres; the objects span so much of their view. */
 const OBJECT = { width: 0.2, distance: 0.8, span: 230 / 256 };
 /** Noise of the scans in pixel lengths, how far it is smoothed sideways and its steps; and the noise of log S. */
@@ -18,7 +18,7 @@ const [C1, C2, C3, C4, C5] = [0.429043, 0.511664, 0.743125, 0.886227, 0.247708];
 const IDENTITY = { scale: 1, rotation: [1, 0, 0, 0, 1, 0, 0, 0, 1], translation: [0, 0, 0] };
 
 /** Means with Gaussian weights over the pixels that have a value, along rows, then along columns. */
-function blurred({ width, height, data }, sigma) {
+export function blurred({ width, height, data }, sigma) {
   const reach = Math.ceil(3 * sigma);
   const weights = Array.from({ length: 2 * reach + 1 }, (_, k) => Math.exp(-0.5 * ((k - reach) / sigma) ** 2));
   let values = Float64Array.from(data, (value) => (Number.isFinite(value) ? value : 0));

@@ -3,6 +3,7 @@ import { sceneOf } from "./anywhere.mjs";
 import { judged, optionsOf, withRun } from "./runs.mjs";
 import { requestOf } from "./scenes.mjs";
 import { measurePainted } from "./painted.mjs";
+import { measureStress } from "./stress.mjs";
 import { measureCapture, measurePinhole } from "./measure-perspective.mjs";
 import { measureAlbedo, measurePair, measurePhotograph } from "./measure-reals.mjs";
 import { measureKinect, measureMitten, measureScan } from "./measure-sensors.mjs";
@@ -66,6 +67,7 @@ const KINDS = {
   pinhole: measurePinhole,
   albedo: measureAlbedo,
   painted: measurePainted,
+  stress: measureStress,
   mitten: measureMitten,
   kinect: measureKinect,
   scan: measureScan,
