@@ -45,7 +45,7 @@ fn register(views: &Views, light: Option<&Light>, start: &Similarity) -> Result<
     let prior = LightPrior::natural();
     let problem = PhotometricProblem {
         image: &views.image,
-        depth: &views.depth,
+        depth_size: views.depth.size,
         points: &views.depth.points,
         normals: &views.depth.normals,
         normal_error: Some(&views.error),

@@ -6,15 +6,14 @@
 //! the same to the bit.
 
 use crate::error::{Error, ErrorKind, Result};
-use crate::pose::{
-    ContrastOutcome, ContrastSearch, ImageGrid, PhotometricReport, Search, SearchProblem, Similarity, TaskResults,
-};
+use crate::pose::{ContrastSearch, ImageGrid, Search, SearchProblem, Similarity, TaskResults};
 
 use super::gauge;
 use super::local_optima::{Decision, LocalOptima};
+use super::opening::Opening;
 use super::pair::ViewPair;
 use super::stages::painted::{self, CleanedImage, Conclusion};
-use super::stages::{Attempt, ColourRegistration};
+use super::stages::{Attempt, ColourRegistration, Outcome, RegistrationStage};
 use super::workers::task::{Finding, Found, RegisteredCandidate, Task, Work};
 
 /// Registrations after which an optimum that convinces is believed, and registrations at most.
@@ -38,19 +37,10 @@ pub enum Advance {
     Done(Outcome),
 }
 
-/// What the initialisation found.
-#[derive(Default)]
-pub struct Outcome {
-    /// The best pose by colours, if any could be registered.
-    pub best: Option<Box<PhotometricReport>>,
-    /// Poses that the data can't tell from the best, best first.
-    pub rivals: Vec<Similarity>,
-    /// What local contrast says, where the colours are painted.
-    pub contrast: Option<Box<ContrastOutcome>>,
-}
-
 /// The initialisation in slices; owns its memory.
 pub struct Initialisation {
+    /// The pair that is searched, and whose candidates are registered, in place of the views where these are large.
+    opening: Option<Box<Opening>>,
     search: Search,
     /// What became of each candidate; `None` where it could not be registered.
     registrations: TaskResults<Option<RegisteredCandidate>>,
@@ -76,6 +66,7 @@ struct ByContrast {
 }
 
 /// The search of a pair, by the normals that registrations go by.
+#[inline(never)]
 pub fn search(pair: &ViewPair, grid: ImageGrid, colours: &ColourRegistration) -> Result<Search> {
     let problem = SearchProblem {
         image: &pair.image,
@@ -90,9 +81,19 @@ pub fn search(pair: &ViewPair, grid: ImageGrid, colours: &ColourRegistration) ->
 }
 
 impl Initialisation {
-    pub fn new(pair: &ViewPair, colours: &ColourRegistration, search: Search) -> Self {
-        Self {
-            search,
+    /// Of a pair and the registration by its colours; or of its opening.
+    pub fn new(
+        pair: &ViewPair,
+        registration: &mut RegistrationStage,
+        opening: Option<Box<Opening>>,
+        grid: ImageGrid,
+    ) -> Result<Self> {
+        let (pair, colours) = match &opening {
+            Some(opening) => (&opening.pair, &opening.colours),
+            None => (pair, &*registration.prepare(pair)),
+        };
+        Ok(Self {
+            search: search(pair, grid, colours)?,
             registrations: TaskResults::new(0),
             next: 0,
             tried: 0,
@@ -101,7 +102,14 @@ impl Initialisation {
             may_be_painted: painted::is_called_for(pair, colours, None),
             decision: None,
             contrast: None,
-        }
+            opening,
+        })
+    }
+
+    /// The best pose so far: that of a registration, or else of the search.
+    pub fn best_pose(&self) -> Option<Similarity> {
+        let best = self.optima.best().or_else(|| self.search.best().map(|best| best.pose))?;
+        Some(self.opening.as_ref().map_or(best, |opening| opening.pose_out(&best)))
     }
 
     /// A task for a worker; `None` while none can be begun.
@@ -129,10 +137,27 @@ impl Initialisation {
     }
 
     /// One slice: a part of the search, or a step of a registration.
-    pub fn advance(&mut self, pair: &ViewPair, colours: &mut ColourRegistration) -> Advance {
+    pub fn advance(&mut self, pair: &ViewPair, registration: &mut RegistrationStage) -> Advance {
         if self.contrast.is_some() {
-            return self.search_by_contrast(pair, colours);
+            return self.search_by_contrast(pair, registration.prepare(pair));
         }
+        let mut opening = self.opening.take();
+        let step = match &mut opening {
+            Some(opening) => self.advance_in(&opening.pair, &mut opening.colours),
+            None => self.advance_in(pair, registration.prepare(pair)),
+        };
+        match step {
+            Advance::Done(outcome) => self.finish(pair, registration.prepare(pair), outcome, opening.as_deref()),
+            ongoing => {
+                self.opening = opening;
+                ongoing
+            }
+        }
+    }
+
+    /// A slice of the search by colours of the pair that it goes by.
+    #[inline(never)]
+    fn advance_in(&mut self, pair: &ViewPair, colours: &mut ColourRegistration) -> Advance {
         if self.is_searching() {
             self.search.advance();
             self.count();
@@ -213,7 +238,7 @@ impl Initialisation {
     /// The outcome, once the best one's whole report is here: a worker brings only what tells one optimum from another.
     fn conclude(&mut self, pair: &ViewPair, colours: &mut ColourRegistration, decision: Decision) -> Advance {
         let Decision { best: Some(mut best), rivals } = decision else {
-            return self.finish(pair, colours, Outcome::default());
+            return Advance::Done(Outcome::default());
         };
         if best.registered.report.is_none() {
             match self.step_candidate(pair, colours, best.candidate) {
@@ -224,16 +249,30 @@ impl Initialisation {
                 }
             }
         }
-        self.finish(pair, colours, Outcome { best: best.registered.report, rivals, contrast: None })
+        Advance::Done(Outcome { best: best.registered.report, rivals, contrast: None })
     }
 
-    /// The outcome, or the search by contrast where the colours are painted: from all that was looked at so far.
-    fn finish(&mut self, pair: &ViewPair, colours: &ColourRegistration, outcome: Outcome) -> Advance {
+    /// The outcome for the views, or the search by contrast where the colours are painted: from all that was looked at so
+    /// far.
+    fn finish(
+        &mut self,
+        pair: &ViewPair,
+        colours: &ColourRegistration,
+        mut outcome: Outcome,
+        opening: Option<&Opening>,
+    ) -> Advance {
+        let pose_out = |pose: &Similarity| opening.map_or(*pose, |opening| opening.pose_out(pose));
+        outcome.rivals.iter_mut().for_each(|rival| *rival = pose_out(rival));
+        outcome.best = match opening {
+            Some(opening) => outcome.best.map(|best| opening.report_out(best)),
+            None => outcome.best,
+        };
         if !painted::is_called_for(pair, colours, outcome.best.as_deref()) {
             return Advance::Done(outcome);
         }
         let mut poses = self.search.swept_poses();
         poses.extend(self.search.candidates().iter().map(|candidate| candidate.pose));
+        poses.iter_mut().for_each(|pose| *pose = pose_out(pose));
         poses.extend(outcome.best.iter().map(|best| best.pose).chain(outcome.rivals.iter().copied()));
         let cleaned = CleanedImage::new(pair);
         let search = Box::new(painted::search(pair, colours, &cleaned, &poses));
@@ -273,11 +312,6 @@ pub fn nothing_found(pair: &ViewPair) -> Error {
              `scale` or `start.scale` takes another one"
         }
     })
-}
-
-/// A search is asked for, and nothing that could register its candidates is there.
-pub fn no_registration() -> Error {
-    no_start("the search has no registration")
 }
 
 fn no_start(message: &'static str) -> Error {

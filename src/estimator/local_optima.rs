@@ -98,6 +98,11 @@ impl LocalOptima {
         }
     }
 
+    /// The pose of the best optimum so far.
+    pub fn best(&self) -> Option<Similarity> {
+        self.optima.iter().max_by(|a, b| a.gain.total_cmp(&b.gain)).map(|best| best.registered.pose)
+    }
+
     /// Whether a candidate lies next to an optimum that has support enough.
     pub fn is_known(&self, pose: &Similarity) -> bool {
         let near = |known: &LocalOptimum| {

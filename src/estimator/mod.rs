@@ -18,9 +18,11 @@ mod local_optima;
 mod measurement;
 mod memory;
 mod objective;
+mod opening;
 mod outputs;
 mod pair;
 mod run;
+mod searching;
 mod solution;
 mod stages;
 mod units;
@@ -29,14 +31,14 @@ mod workers;
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::options::{Options, Registration, Start};
-use crate::pose::{Correspondences, ImageGrid, Similarity};
+use crate::pose::{Correspondences, Similarity};
 use crate::report::{Objective, Stage, Status, StepReport};
 use crate::shape::Scratch;
 use crate::text::Fixed;
 use crate::view::{ColourImage, DepthMap};
-use initialisation::{Advance, Initialisation, Outcome};
 use measurement::Residuals;
 use objective::Trial;
+use opening::Opening;
 pub use outputs::Surface;
 use pair::ViewPair;
 use run::{History, Run};
@@ -99,7 +101,7 @@ impl Estimator {
         let pose = gauge::first_pose(&pair);
         let light = pair.known_light().copied().unwrap_or_else(|| pair.prior.mean());
         // First what needs much more memory while it is made than afterwards.
-        let registration = RegistrationStage::new(&pair);
+        let registration = RegistrationStage::new(&pair, Opening::is_called_for(&pair));
         let refinement = RefinementStage::new(&pair)?;
         let shape = ShapeStage::new(&pair)?;
         let [pixels, points] = pair.lengths();
@@ -198,7 +200,7 @@ impl Estimator {
         match stage {
             Stage::Search => {}
             Stage::Light => self.fit_light()?,
-            Stage::Shading => self.find_normals(),
+            Stage::Shading => self.find_normals()?,
             Stage::Surface => self.find_surface()?,
             Stage::Registration => self.register()?,
             Stage::Refinement => {
@@ -206,61 +208,6 @@ impl Estimator {
                 self.finish_iteration();
             }
         }
-        Ok(())
-    }
-
-    /// What the search needs of one of the views.
-    fn prepare_search(&mut self) -> Result<()> {
-        self.report.stage = Stage::Search;
-        self.report.message = Some("0 %: preparing the search".into());
-        let Run::Preparing(grid) = std::mem::replace(&mut self.run, Run::Preparing(None)) else { return Ok(()) };
-        let pair = &self.pair;
-        self.run = match (grid, self.registration.colours()) {
-            (None, _) => Run::Preparing(Some(Box::new(ImageGrid::new(&pair.image)?))),
-            (Some(grid), Some(colours)) => {
-                let search = initialisation::search(pair, *grid, colours)?;
-                Run::Searching(Box::new(Initialisation::new(pair, colours, search)))
-            }
-            (Some(_), None) => return Err(initialisation::no_registration()),
-        };
-        Ok(())
-    }
-
-    /// A slice of the initialisation.
-    fn search(&mut self) -> Result<()> {
-        let (Run::Searching(initialisation), Some(colours)) = (&mut self.run, self.registration.colours()) else {
-            return Ok(());
-        };
-        match initialisation.advance(&self.pair, colours) {
-            Advance::Ongoing(share, what) => {
-                self.report.message = Some(format!("{} %: {what}", Fixed(100.0 * share, 0)));
-                Ok(())
-            }
-            Advance::Done(outcome) => {
-                self.run = Run::Iterating(Stage::Light);
-                self.start_from(outcome)
-            }
-        }
-    }
-
-    /// Starts the loop from what the initialisation found.
-    fn start_from(&mut self, outcome: Outcome) -> Result<()> {
-        let registered = self.registration.adopt(&self.pair, outcome, &self.solution.pose);
-        self.adopt(registered.ok_or_else(|| initialisation::nothing_found(&self.pair))?);
-        self.report.message = Some(match self.report.rivals.len() {
-            0 if self.registration.found_by_outlines().is_some() => {
-                "100 %: the colours are painted; outlines tell the pose".into()
-            }
-            0 if self.registration.found_by_contrast().is_some() => {
-                "100 %: the colours are painted; local contrast tells the pose".into()
-            }
-            0 => "100 %: one pose explains the colours best".into(),
-            count => format!("100 %: {count} other poses explain the colours as well"),
-        });
-        self.report.pose = self.solution.pose;
-        self.find_correspondences();
-        self.accepted.accept(&self.solution);
-        self.measure();
         Ok(())
     }
 
@@ -292,11 +239,11 @@ impl Estimator {
     }
 
     /// Normals of the image (Eq. 6 to 9), and the exposure of a known light unless the registration has found it.
-    fn find_normals(&mut self) {
+    fn find_normals(&mut self) -> Result<()> {
         let exposure_is_free = self.pair.known_light().is_some() && self.registration.found_by_colours().is_none();
         let inputs = Inputs::of(&self.pair, &self.paint, &self.light, &self.correspondences, self.report.iteration);
-        let Solution { light, image, .. } = &mut self.solution;
-        self.shape.find_normals(inputs, exposure_is_free, light, &mut image.normals);
+        let Solution { pose, light, image, .. } = &mut self.solution;
+        self.shape.find_normals(inputs, exposure_is_free, pose, light, &mut self.scratch, &mut image.normals)
     }
 
     /// Heights of the image, then the gauges that neither view can tell: t_z of an orthographic image, the distance of
@@ -423,6 +370,10 @@ impl Estimator {
         self.history.rejections = if self.history.improved { 0 } else { self.history.rejections + 1 };
         let stayed = || "the registration found no pose better than the present one".into();
         self.report.message = (!self.history.improved).then(stayed);
+        self.history.image_moved = match self.refinement.is_settled() {
+            true => self.accepted.image_moved(&self.solution.image.normals, &self.correspondences),
+            false => 0.0,
+        };
         self.accepted.accept(&self.solution);
         self.choose_evaluation_points();
         // Over the new evaluation points, as the next iteration will be.
@@ -489,7 +440,7 @@ impl Estimator {
             && self.registration.keeps(&self.pair, &self.solution.pose);
         if is_known {
             let inputs = Inputs::of(&self.pair, &self.paint, &self.light, &self.correspondences, self.report.iteration);
-            self.refinement.prepare_next(inputs, &self.solution);
+            self.refinement.prepare_next(inputs, &self.solution, self.history.image_moved);
         } else {
             self.refinement.discard_prepared();
         }

@@ -1,13 +1,15 @@
 //! Where a run stands, and what it remembers of its iterations.
 
 use super::initialisation::Initialisation;
+use super::opening::Opening;
 use crate::pose::ImageGrid;
 use crate::report::Stage;
 
 /// Where the run stands: what the next step does.
 pub enum Run {
-    /// Prepares the image's grid for the search, then the search of the depth view in it: a slice each.
-    Preparing(Option<Box<ImageGrid>>),
+    /// Prepares the image's grid for the search, with the coarse views where these are large, then the search of the
+    /// depth view in it: a slice each.
+    Preparing(Option<Box<(ImageGrid, Option<Box<Opening>>)>>),
     /// A slice of the initialisation.
     Searching(Box<Initialisation>),
     /// A stage of an iteration.
@@ -28,10 +30,13 @@ pub struct History {
     pub rejections: u32,
     /// Iterations in a row whose registration proposed less than `stop_degrees`.
     pub unmoved: u32,
+    /// How far the last iteration that was kept moved the image's normals where the depth view reaches, root mean square
+    /// in radians; zero where nobody asks.
+    pub image_moved: f64,
 }
 
 impl Default for History {
     fn default() -> Self {
-        Self { step_fraction: 1.0, proposed_degrees: 0.0, improved: true, rejections: 0, unmoved: 0 }
+        Self { step_fraction: 1.0, proposed_degrees: 0.0, improved: true, rejections: 0, unmoved: 0, image_moved: 0.0 }
     }
 }

@@ -1,6 +1,8 @@
 //! Views at half the resolution: a pixel is the mean of those of the 2x2 pixels it covers that have a value.
 
-use super::{Camera, ColourView, Pinhole, Size};
+use nalgebra::Vector3;
+
+use super::{Camera, ColourView, DepthNoise, DepthView, Normals, Pinhole, Points, Size};
 
 impl Size {
     /// Half as many columns and rows, rounded up.
@@ -26,6 +28,7 @@ impl Size {
     }
 
     /// Means of the known values of `fine` over each pixel of the halved view; NaN where all are unknown.
+    #[inline(never)]
     pub(crate) fn halve(self, fine: &[f32], coarse: &mut [f32]) {
         self.for_each_block(|index, covered| {
             let known = covered.iter().map(|&pixel| fine[pixel]).filter(|value| !value.is_nan());
@@ -61,16 +64,86 @@ impl Camera {
 
 impl ColourView {
     /// The view at half the resolution; an object pixel is one that covers any.
+    #[inline(never)]
     pub(crate) fn halved(&self) -> Self {
         let size = self.size.halved();
-        let mut mask = vec![false; size.len()];
-        self.size.for_each_block(|index, covered| mask[index] = covered.iter().any(|&pixel| self.mask[pixel]));
         let log = self.log.each_ref().map(|fine| {
             let mut coarse = vec![0.0; size.len()];
             self.size.halve(fine, &mut coarse);
             coarse
         });
+        // Colours are known where the object is.
+        let mask = log[0].iter().map(|log| !log.is_nan()).collect();
         Self::of(size, self.camera.halved(), mask, log, self.transfer)
+    }
+}
+
+/// Where the middle of the halved raster lies from that of its view, in the view's pixels; `None` where the unit of the
+/// view's frame is no pixel.
+fn half_origin(size: Size, unit_is_pixel: bool) -> Option<Vector3<f64>> {
+    let shift = |side: usize| if side.is_multiple_of(2) { 0.0 } else { 0.5 };
+    unit_is_pixel.then(|| Vector3::new(shift(size.width), shift(size.height), 0.0))
+}
+
+impl ColourView {
+    /// The origin of the halved view's frame in this one's, whose unit is half as long; `None` where they are the same.
+    pub(crate) fn half_origin(&self) -> Option<Vector3<f64>> {
+        half_origin(self.size, self.camera.is_orthographic())
+    }
+}
+
+impl Normals {
+    /// Means of the vectors over each pixel of the halved raster.
+    #[inline(never)]
+    fn halved(&self, size: Size) -> Self {
+        let mut coarse = Self::missing(size.halved().len());
+        for (fine, coarse) in [(&self.x, &mut coarse.x), (&self.y, &mut coarse.y), (&self.z, &mut coarse.z)] {
+            size.halve(fine, coarse);
+        }
+        coarse
+    }
+
+    /// Directions of these means.
+    #[inline(never)]
+    pub(crate) fn halved_directions(&self, size: Size) -> Self {
+        let mut coarse = self.halved(size);
+        for index in 0..coarse.len() {
+            let [x, y, z] = coarse.get(index);
+            let length = (x * x + y * y + z * z).sqrt();
+            // Opposite ones have no direction, and zero by zero is missing.
+            coarse.set(index, [x / length, y / length, z / length]);
+        }
+        coarse
+    }
+}
+
+impl DepthView {
+    /// The same of a depth view. The frame of an organised cloud is its own.
+    pub(crate) fn half_origin(&self) -> Option<Vector3<f64>> {
+        half_origin(self.size, self.camera.is_orthographic() && !self.organised)
+    }
+
+    /// The view at half the resolution, its holes left out: means of the points, directions of the mean normals.
+    pub(crate) fn halved(&self) -> Self {
+        let size = self.size.halved();
+        let mut points: Points = self.points.halved(self.size);
+        if let Some(origin) = self.half_origin() {
+            for (values, middle) in [&mut points.x, &mut points.y, &mut points.z].into_iter().zip(&origin) {
+                values.iter_mut().for_each(|value| *value = 0.5 * (*value - *middle as f32));
+            }
+        }
+        Self {
+            size,
+            camera: self.camera.halved(),
+            mask: points.z.iter().map(|depth| !depth.is_nan()).collect(),
+            points,
+            measured_depth: Vec::new(),
+            noise: DepthNoise { sigma: 0.5 * self.noise.sigma, ..self.noise },
+            normals: self.normals.halved_directions(self.size),
+            organised: self.organised,
+            normals_given: self.normals_given,
+            trimmed: 0,
+        }
     }
 }
 

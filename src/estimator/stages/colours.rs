@@ -64,7 +64,7 @@ impl SharpNormals {
     fn problem<'a>(&'a self, pair: &'a ViewPair, scale_is_held: bool) -> PhotometricProblem<'a> {
         PhotometricProblem {
             image: &pair.image,
-            depth: &pair.depth,
+            depth_size: pair.depth.size,
             points: &pair.depth.points,
             normals: &self.normals,
             normal_error: Some(&self.error),
@@ -77,6 +77,7 @@ impl SharpNormals {
 }
 
 impl ColourRegistration {
+    #[inline(never)]
     pub fn new(pair: &ViewPair) -> Self {
         let sharp = SharpNormals::new(&pair.depth);
         Self {

@@ -21,5 +21,5 @@ pub use correspondences::correspondence_problem;
 pub use light::{Inputs, LightStage};
 pub use paint::PaintStage;
 pub use refinement::{RefinementStage, RefinementTask, terms_from_numbers};
-pub use registration::{Registered, RegistrationStage};
+pub use registration::{Outcome, Registered, RegistrationStage};
 pub use shape::ShapeStage;

@@ -2,7 +2,6 @@
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::estimator::gauge;
-use crate::estimator::initialisation::Outcome;
 use crate::estimator::pair::ViewPair;
 use crate::estimator::solution::Solution;
 use crate::light::Light;
@@ -19,6 +18,17 @@ use super::told_start::{Settled, TrustRegion};
 /// Growth of the apparent size beyond which, or below whose inverse, a registration has collapsed: shrunk onto a few pixels
 /// a cloud is easily explained. The search looks from 0.7 to 1.4.
 const LARGEST_GROWTH: f64 = 2.0;
+
+/// What the initialisation found.
+#[derive(Default)]
+pub struct Outcome {
+    /// The best pose by colours, if any could be registered.
+    pub best: Option<Box<PhotometricReport>>,
+    /// Poses that the data can't tell from the best, best first.
+    pub rivals: Vec<Similarity>,
+    /// What local contrast says, where the colours are painted.
+    pub contrast: Option<Box<ContrastOutcome>>,
+}
 
 /// What a registration found: a pose, and what came with it.
 pub struct Registered {
@@ -66,8 +76,10 @@ enum Told {
 }
 
 impl RegistrationStage {
-    pub fn new(pair: &ViewPair) -> Self {
+    /// Without the registration by colours where `colours_wait` for the search to end: [`prepare`](Self::prepare).
+    pub fn new(pair: &ViewPair, colours_wait: bool) -> Self {
         let by_colours = pair.options.start == Start::Search || pair.options.registration == Registration::Joint;
+        let by_colours = by_colours && !colours_wait;
         let is_joint = pair.options.registration == Registration::Joint;
         let region = is_joint.then(|| TrustRegion::new(pair)).flatten();
         Self {
@@ -75,6 +87,12 @@ impl RegistrationStage {
             surfaces: SurfaceRegistration::new(),
             told: region.map_or(Told::Nothing, Told::Untried),
         }
+    }
+
+    /// The registration by colours, made now where it is not there yet.
+    #[inline(never)]
+    pub fn prepare(&mut self, pair: &ViewPair) -> &mut ColourRegistration {
+        self.colours.get_or_insert_with(|| ColourRegistration::new(pair))
     }
 
     /// The registration that this pair asks for now: noisy depth is found by its colours and settled by its surface.
@@ -94,11 +112,6 @@ impl RegistrationStage {
     /// The measured normals of the depth view, the best there are.
     pub fn measured_normals<'a>(&'a self, pair: &'a ViewPair) -> &'a Normals {
         self.colours.as_ref().map_or(&pair.depth.normals, ColourRegistration::normals)
-    }
-
-    /// The registration by colours, for the search.
-    pub fn colours(&mut self) -> Option<&mut ColourRegistration> {
-        self.colours.as_mut()
     }
 
     /// Takes over what the search has found, if anything; what contrast or outlines say where the colours are painted.

@@ -2,6 +2,7 @@
 
 use crate::error::Result;
 use crate::estimator::initialisation::search;
+use crate::estimator::opening::Opening;
 use crate::estimator::pair::ViewPair;
 use crate::estimator::stages::{Attempt, ColourRegistration};
 use crate::options::Options;
@@ -11,12 +12,35 @@ use crate::view::{ColourImage, DepthMap};
 use super::refinement::RefinementWorker;
 use super::task::{Finding, Found, RegisteredCandidate, Task, Work};
 
+/// What is searched, and whose candidates are registered.
+enum Searched {
+    Views(Box<ColourRegistration>),
+    Opening(Box<Opening>),
+}
+
+impl Searched {
+    fn of(pair: &ViewPair) -> Self {
+        match Opening::of(pair) {
+            Some(opening) => Self::Opening(Box::new(opening)),
+            None => Self::Views(Box::new(ColourRegistration::new(pair))),
+        }
+    }
+
+    /// The pair and the registration by its colours.
+    fn parts<'a>(&'a mut self, pair: &'a ViewPair) -> (&'a ViewPair, &'a mut ColourRegistration) {
+        match self {
+            Self::Views(colours) => (pair, colours),
+            Self::Opening(opening) => (&opening.pair, &mut opening.colours),
+        }
+    }
+}
+
 /// Does tasks of the initialisation, and later refinements, for an [`Estimator`](crate::Estimator) of the same pair and
 /// options. What it finds does not depend on what it did before, but for the shape that its last refinement has left.
 pub struct Worker {
     pair: ViewPair,
     /// Memory of the initialisation and of refinements: each is given back before the other is taken.
-    initialisation: Option<(ColourRegistration, Search)>,
+    initialisation: Option<(Searched, Search)>,
     refinement: Option<RefinementWorker>,
 }
 
@@ -36,14 +60,16 @@ impl Worker {
     pub fn perform(&mut self, task: &Task) -> Result<Finding> {
         let Self { pair, initialisation, refinement } = self;
         *refinement = None;
-        let (colours, search) = match initialisation {
+        let (searched, search) = match initialisation {
             Some(memory) => memory,
             none => {
-                let colours = ColourRegistration::new(pair);
-                let search = search(pair, ImageGrid::new(&pair.image)?, &colours)?;
-                none.insert((colours, search))
+                let mut searched = Searched::of(pair);
+                let (pair, colours) = searched.parts(pair);
+                let search = search(pair, ImageGrid::new(&pair.image)?, colours)?;
+                none.insert((searched, search))
             }
         };
+        let (pair, colours) = searched.parts(pair);
         Ok(Finding(match &task.0 {
             Work::Search(task) => Found::Search(search.perform(task)),
             Work::Register(index, start) => {

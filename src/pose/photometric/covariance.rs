@@ -122,7 +122,7 @@ impl Tiles {
         // Three channels.
         let gradient_variance = 3.0 * GRADIENT_COVARIANCE * noise.image.powi(2);
         let mut noise_information = no_sums();
-        let size = evaluation.problem.depth.size;
+        let size = evaluation.problem.depth_size;
         let across = size.width.div_ceil(TILE);
         self.0.fill(PoseVector::zeros());
         evaluation.for_each_linearised(frame, |indices, points, weight| {

@@ -87,7 +87,7 @@ impl VisiblePoints {
                 break;
             }
         }
-        self.thin(problem.depth.size, sampling.most);
+        self.thin(problem.depth_size, sampling.most);
     }
 
     /// Whether the points are a sample of those that are visible.
@@ -122,7 +122,7 @@ impl VisiblePoints {
         self.weights.clear();
         let Visibility { column: columns, row: rows, .. } = &self.visible;
         for index in 0..columns.len() {
-            let (column, row) = problem.depth.size.position(index);
+            let (column, row) = problem.depth_size.position(index);
             let position = [f64::from(columns[index]), f64::from(rows[index])];
             if column % stride != 0 || row % stride != 0 || !problem.normals.is_valid(index) {
                 continue;

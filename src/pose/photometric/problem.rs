@@ -9,7 +9,7 @@ use crate::numeric::{DOUBLE_LANES, Doubles, Real, dot};
 use crate::pose::increment::{PoseMatrix, UNKNOWNS};
 use crate::pose::similarity::Similarity;
 use crate::pose::uncertainty::Uncertainty;
-use crate::view::{ColourView, DepthView, Normals, Points, Size};
+use crate::view::{ColourView, Normals, Points, Size};
 
 /// The coarsest level of the image.
 pub(super) const COARSEST: usize = 2;
@@ -22,9 +22,9 @@ pub(super) type Indices = [u32; DOUBLE_LANES];
 pub struct PhotometricProblem<'a> {
     /// The colour view.
     pub image: &'a ColourView,
-    /// The depth view.
-    pub depth: &'a DepthView,
-    /// Points of the depth view, measured or refined.
+    /// Size of the depth view.
+    pub depth_size: Size,
+    /// Its points, measured or refined.
     pub points: &'a Points,
     /// Their normals.
     pub normals: &'a Normals,
@@ -63,14 +63,14 @@ impl PhotometricProblem<'_> {
     }
 
     pub(super) fn check(&self, sizes: [Size; 2]) -> Result<()> {
-        if [self.image.size, self.depth.size] != sizes {
+        if [self.image.size, self.depth_size] != sizes {
             return Err(Error::new(
                 ErrorKind::Size,
                 "image",
                 "both views must have the sizes that memory was made for",
             ));
         }
-        let length = self.depth.size.len();
+        let length = self.depth_size.len();
         let errors = self.normal_error.map_or(length, <[f32]>::len);
         if [self.points.len(), self.normals.len(), errors] != [length; 3] {
             return Err(Error::new(

@@ -9,7 +9,7 @@ use super::residual::{ColourModel, Samples};
 use super::state::State;
 use super::weighting::{Weighting, final_robust_scale, prior_weight};
 use crate::error::{Error, ErrorKind, Result};
-use crate::pose::increment::{Frame, PoseMatrix, SCALE, TRANSLATION_Z, clear_unknowns};
+use crate::pose::increment::{Frame, PoseMatrix, PoseVector, SCALE, TRANSLATION_Z, clear_unknowns};
 use crate::pose::similarity::Similarity;
 use crate::pose::spline_image::SplineImage;
 use crate::pose::uncertainty::{describe, weakest_of};
@@ -51,6 +51,9 @@ const MOST_FINE_ROUNDS: usize = 4;
 /// Rounds with instrumental variables: the visible points follow in the first, and stay in the others.
 const INSTRUMENTAL_ROUNDS: usize = 3;
 const MOST_INSTRUMENTAL_STEPS: usize = 12;
+/// Where there are more points than annealing needs, these rounds go first with the points of the annealing and then with
+/// all of them, and end when no unknown moves by more than this share of its sigma: steps halve, so that as much is left.
+const SETTLED_SIGMAS: f64 = 0.02;
 /// These rounds are undone when they raise the objective by more than this share: they should only trade noise.
 const LARGEST_RISE: f64 = 0.1;
 /// Fewest points: two for each unknown of the pose.
@@ -119,6 +122,10 @@ pub struct Photometric {
     annealed_points: usize,
     annealing: bool,
     iterations: usize,
+    /// Whether the rounds with instrumental variables are those of the annealing's points, of which there are more.
+    thinned: bool,
+    /// Steps, for each unknown, that change nothing that matters; where there are so many points.
+    settled_step: Option<PoseVector>,
 }
 
 impl Photometric {
@@ -133,13 +140,13 @@ impl Photometric {
         levels.extend((1..=coarsest(problem)).map(|level| instruments.blurred(problem.image, BLURS[level])));
         let points = VisiblePoints::new(problem);
         Self {
-            sizes: [problem.image.size, problem.depth.size],
+            sizes: [problem.image.size, problem.depth_size],
             instruments,
             levels,
             samples: Vec::new(),
             magnitudes: Vec::with_capacity(points.capacity()),
             points,
-            tiles: Tiles::new(problem.depth.size),
+            tiles: Tiles::new(problem.depth_size),
             state,
             annealed: state,
             noise: Noise { residuals: f64::INFINITY, image: problem.image.log_noise().max(LEAST_NOISE) },
@@ -151,6 +158,8 @@ impl Photometric {
             annealed_points: usize::MAX,
             annealing: true,
             iterations: 0,
+            thinned: false,
+            settled_step: None,
         }
     }
 
@@ -193,6 +202,7 @@ impl Photometric {
         self.most_rounds = options.most_rounds.max(1);
         (self.most_points, self.annealing) = (options.most_points, options.annealing);
         self.annealed_points = options.annealed_points.min(options.most_points);
+        (self.thinned, self.settled_step) = (false, None);
         self.choose_points(problem, Sampling { level, most: self.annealed_points })?;
         self.weighting = Weighting::FIRST;
         self.fit_light(problem, level)?;
@@ -320,6 +330,7 @@ impl Photometric {
         match level {
             0 if at_noise && (change < FINE_SETTLED || fine_rounds >= MOST_FINE_ROUNDS) => {
                 self.annealed = self.state;
+                self.thinned = self.points.are_sampled() && self.annealed_points < self.most_points;
                 Phase::InstrumentalRound { round: 0 }
             }
             0 => Phase::AnnealingRound { level, fine_rounds: fine_rounds + usize::from(at_noise) },
@@ -334,9 +345,14 @@ impl Photometric {
     fn begin_instrumental(&mut self, problem: &PhotometricProblem<'_>, round: usize) -> Result<Phase> {
         self.rounds += 1;
         let frame = match round {
-            0 => self.choose_points(problem, Sampling { level: 0, most: self.most_points })?,
+            0 if !self.thinned => self.choose_points(problem, Sampling { level: 0, most: self.most_points })?,
             _ => self.points.frame(problem, &self.state.pose),
         };
+        if self.thinned {
+            let reduced = self.reduce_by_instruments(problem, &frame)?;
+            let variances = self.covariance(problem, &frame, &reduced).diagonal();
+            self.settled_step = Some(variances.map(|variance| SETTLED_SIGMAS * variance.sqrt()));
+        }
         Ok(Phase::InstrumentalStep { round, frame, steps: 0 })
     }
 
@@ -353,7 +369,10 @@ impl Photometric {
         let mut settled = false;
         if let Some(step) = reduced.step(0.0, &problem.held()) {
             self.state = self.state.stepped(frame, &step, problem.light.is_some());
-            settled = step.pose.norm() < SETTLED_STEP;
+            settled = match &self.settled_step {
+                Some(least) => step.pose.iter().zip(least).all(|(step, least)| step.abs() <= *least),
+                None => step.pose.norm() < SETTLED_STEP,
+            };
             if !settled && steps + 1 < MOST_INSTRUMENTAL_STEPS {
                 return Ok(Phase::InstrumentalStep { round, frame: *frame, steps: steps + 1 });
             }
@@ -364,7 +383,10 @@ impl Photometric {
             self.state = self.annealed;
             return Ok(Phase::Done(PhotometricTermination::Annealed));
         }
-        let last = round + 1 >= INSTRUMENTAL_ROUNDS || (settled && round > 0);
+        if std::mem::take(&mut self.thinned) {
+            return Ok(Phase::InstrumentalRound { round });
+        }
+        let last = round + 1 >= INSTRUMENTAL_ROUNDS || (settled && (round > 0 || self.settled_step.is_some()));
         Ok(if last {
             Phase::Done(PhotometricTermination::Settled)
         } else {

@@ -32,6 +32,8 @@ pub struct Search {
     starts: Vec<Hypothesis>,
     ascents: TaskResults<Candidate>,
     candidates: Vec<Candidate>,
+    /// The best of all hypotheses so far.
+    best: Option<Candidate>,
 }
 
 /// A slice of the search, which needs nothing but the search's own problem: whoever has the same can do it.
@@ -72,6 +74,7 @@ impl Search {
             starts: Vec::new(),
             ascents: TaskResults::new(MOST_ASCENTS),
             candidates: Vec::new(),
+            best: None,
             matcher,
             sweep,
         })
@@ -138,8 +141,14 @@ impl Search {
     pub(crate) fn accept(&mut self, finding: SearchFinding) {
         let sweeping = !self.swept.is_complete();
         match finding {
-            SearchFinding::Swept(slice, hypotheses) => self.swept.put(slice, hypotheses),
-            SearchFinding::Ascended(index, candidate) => self.ascents.put(index, candidate),
+            SearchFinding::Swept(slice, hypotheses) => {
+                hypotheses.iter().for_each(|hypothesis| self.compare(self.matcher.candidate(hypothesis)));
+                self.swept.put(slice, hypotheses);
+            }
+            SearchFinding::Ascended(index, candidate) => {
+                self.compare(candidate);
+                self.ascents.put(index, candidate);
+            }
         }
         if sweeping && self.swept.is_complete() {
             self.choose_starts();
@@ -147,6 +156,18 @@ impl Search {
         if self.is_done() && self.candidates.is_empty() {
             self.choose_candidates();
         }
+    }
+
+    /// Remembers a hypothesis that is better than all before.
+    fn compare(&mut self, candidate: Candidate) {
+        if candidate.score.is_finite() && self.best.is_none_or(|best| candidate.score > best.score) {
+            self.best = Some(candidate);
+        }
+    }
+
+    /// The best hypothesis so far.
+    pub(crate) const fn best(&self) -> Option<&Candidate> {
+        self.best.as_ref()
     }
 
     /// Whether the candidates are ready.

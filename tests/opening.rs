@@ -1,0 +1,129 @@
+//! Large views: the search and the first shapes work on coarse ones, and the end is that of all pixels.
+
+use bimodal_stereo::scenes::{Sample, SampleRequest, Scene, light, surface};
+use bimodal_stereo::{Angles, Camera, Estimator, Options, Pinhole, Size, Stage, Start, Status, StepReport, Worker};
+
+/// More object pixels than a frame of 128x128, odd sides, part of the depth map missing.
+fn large(camera: Camera) -> Sample {
+    let scale = if camera.is_orthographic() { 1.1 } else { 1.0 };
+    large_at(camera, Angles { alpha: 5.0, beta: 25.0, gamma: 10.0 }, scale)
+}
+
+fn large_at(camera: Camera, angles: Angles, scale: f64) -> Sample {
+    let request = SampleRequest {
+        size: Size { width: 235, height: 219 },
+        light: light("window").unwrap(),
+        rotation: angles.rotation(),
+        scale,
+        overlap: 0.8,
+        noise: 0.01,
+        image_camera: camera,
+        depth_camera: camera,
+        ..Default::default()
+    };
+    let sample = Scene::new(&surface("bust").unwrap()).unwrap().sample(&request).unwrap();
+    assert!(sample.image.mask.iter().filter(|&&inside| inside).count() > 128 * 128);
+    sample
+}
+
+fn pinhole() -> Camera {
+    Camera::Pinhole(Pinhole { fx: 300.0, fy: 310.0, cx: 118.3, cy: 107.6, distortion: [0.0; 5] })
+}
+
+/// Runs to the end; the reports of the search on the way.
+fn run(sample: &Sample, start: Start) -> (Estimator, Vec<StepReport>) {
+    let options = Options { start, ..Options::default() };
+    let mut estimator = Estimator::new(sample.colour_image(), &sample.depth_map(), options).unwrap();
+    let mut search = Vec::new();
+    while estimator.report().status == Status::Running {
+        let report = estimator.step();
+        if report.stage == Stage::Search {
+            search.push(report.clone());
+        }
+    }
+    (estimator, search)
+}
+
+#[test]
+fn a_search_on_coarse_views_ends_where_all_pixels_say() {
+    for camera in [Camera::Orthographic, pinhole()] {
+        let sample = large(camera);
+        let (found, search) = run(&sample, Start::Search);
+        let pose = sample.pose;
+        let truth =
+            Start::Pose { rotation: pose.rotation, scale: Some(pose.scale), translation: Some(pose.translation) };
+        let (near, _) = run(&sample, truth);
+        let [found, near] = [&found, &near].map(Estimator::report);
+        assert_eq!([found.status, near.status], [Status::Converged; 2], "{found:?}");
+        // Both are the same registration by all points, whatever it started from.
+        let sigma = near.uncertainty.as_ref().unwrap().rotation_degrees;
+        let apart = found.pose.degrees_to(&near.pose);
+        assert!(apart < 0.3 * sigma.iter().map(|s| s * s).sum::<f64>().sqrt(), "{camera:?}: {apart} {sigma:?}");
+        assert!((found.pose.scale / near.pose.scale - 1.0).abs() < 1e-3);
+        let middle = sample.depth_map_middle();
+        let off = found.pose.apply(middle) - near.pose.apply(middle);
+        let pixel = camera.focal_length().map_or(1.0, |focal_length| near.pose.apply(middle).z / focal_length);
+        assert!(off.xy().norm() < 0.1 * pixel, "{camera:?}: {off}");
+        // The best candidate is reported while the search goes on, in the units of the views.
+        let halfway = &search[search.len() / 2];
+        assert!(halfway.pose.degrees_to(&pose) < 16.0, "{}", halfway.pose.degrees_to(&pose));
+        let off = halfway.pose.apply(middle) - pose.apply(middle);
+        assert!(off.xy().norm() < 25.0 * pixel, "{camera:?}: {off}");
+    }
+}
+
+trait Middle {
+    fn depth_map_middle(&self) -> nalgebra::Vector3<f64>;
+}
+
+impl Middle for Sample {
+    fn depth_map_middle(&self) -> nalgebra::Vector3<f64> {
+        let estimator = Estimator::new(self.colour_image(), &self.depth_map(), Options::paper()).unwrap();
+        estimator.depth().points.centroid()
+    }
+}
+
+#[test]
+fn a_worker_searches_the_same_coarse_views() {
+    let sample = large(Camera::Orthographic);
+    let (alone, _) = run(&sample, Start::Search);
+    let options = Options::default();
+    let mut estimator = Estimator::new(sample.colour_image(), &sample.depth_map(), options.clone()).unwrap();
+    let mut worker = Worker::new(sample.colour_image(), &sample.depth_map(), options).unwrap();
+    let mut done = 0;
+    while estimator.report().status == Status::Running {
+        if let Some(task) = estimator.take_task() {
+            estimator.accept_finding(worker.perform(&task).unwrap());
+            done += 1;
+        }
+        estimator.step();
+    }
+    assert!(done > 100, "{done}");
+    let [one, two] = [&alone, &estimator].map(Estimator::report);
+    assert_eq!((one.pose, one.iteration, &one.message), (two.pose, two.iteration, &two.message));
+    let bits = |estimator: &Estimator| -> Vec<u32> { estimator.refined_depth().iter().map(|z| z.to_bits()).collect() };
+    assert!(bits(&alone) == bits(&estimator));
+}
+
+#[test]
+fn the_shape_of_a_large_image_follows_the_light_of_the_right_pose() {
+    let sample = large_at(Camera::Orthographic, Angles { beta: 20.0, ..Angles::default() }, 1.0);
+    let pose = sample.pose;
+    // Turned by 8 degrees about the object's middle: the light that is fitted there is another one.
+    let turn = Angles { alpha: 5.0, beta: -5.0, gamma: 3.0 }.rotation();
+    let told = Start::Pose { rotation: turn * pose.rotation, scale: Some(pose.scale), translation: None };
+    let (told, _) = run(&sample, told);
+    let (found, _) = run(&sample, Start::Search);
+    let error = |estimator: &Estimator| {
+        let (normals, truth) = (estimator.image_normals(), &sample.truth.image_normals);
+        let both = (0..normals.len()).filter(|&index| normals.is_valid(index) && truth.is_valid(index));
+        let off = |index: usize| {
+            let (a, b) = (normals.get(index), truth.get(index));
+            f64::from(a[0] * b[0] + a[1] * b[1] + a[2] * b[2]).clamp(-1.0, 1.0).acos().to_degrees()
+        };
+        let errors: Vec<f64> = both.map(off).collect();
+        errors.iter().sum::<f64>() / errors.len() as f64
+    };
+    let errors = [&told, &found].map(error);
+    assert!(errors[0] < 1.3 * errors[1] && errors[1] < 3.0, "{errors:?}");
+}
