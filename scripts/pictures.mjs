@@ -90,7 +90,7 @@ function shaded({ width, height, camera }, metres) {
     const [here, right, below] = [point(column, row), point(column + 1, row), point(column, row + 1)];
     const [u, v] = [right, below].map((other) => other.map((value, axis) => value - here[axis]));
     const normal = [u[2] * v[1] - u[1] * v[2], u[0] * v[2] - u[2] * v[0], u[1] * v[0] - u[0] * v[1]];
-    const light = (0.5 * normal[0] + 0.5 * normal[1] + 0.7 * normal[2]) / Math.hypot(...normal);
+    const light = (-0.5 * normal[0] - 0.5 * normal[1] - 0.7 * normal[2]) / Math.hypot(...normal);
     return Number.isFinite(light) ? Array(3).fill(0.05 + 0.9 * Math.max(0, light)) : undefined;
   };
 }
