@@ -124,7 +124,7 @@ impl NormalEquations {
         for k in 0..UNKNOWNS {
             matrix[(k, k)] += damping * self.weight;
         }
-        let step = matrix.cholesky()?.solve(&gradient);
+        let step = solve(matrix, &gradient)?;
         let rotation: Vector3<f64> = step.fixed_rows::<3>(0).into();
         let shift: Vector3<f64> = step.fixed_rows::<3>(3).into();
         if !step.norm().is_finite() {
@@ -134,6 +134,25 @@ impl NormalEquations {
         let size = rotation.norm().max(shift.norm()).max(step[SCALE].abs());
         Some(Increment { change, size })
     }
+}
+
+/// The solution of symmetric equations; `None` where they are not positive definite. One copy of it and of the next two:
+/// visitors download each.
+#[inline(never)]
+pub(crate) fn solve(matrix: PoseMatrix, gradient: &PoseVector) -> Option<PoseVector> {
+    Some(matrix.cholesky()?.solve(gradient))
+}
+
+/// A product, which would be unrolled wherever it is written.
+#[inline(never)]
+pub(crate) fn product(left: &PoseMatrix, right: &PoseMatrix) -> PoseMatrix {
+    left * right
+}
+
+/// The inverse, `None` where there is none.
+#[inline(never)]
+pub(crate) fn inverse(matrix: &PoseMatrix) -> Option<PoseMatrix> {
+    matrix.try_inverse()
 }
 
 #[cfg(test)]

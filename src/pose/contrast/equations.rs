@@ -2,7 +2,7 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use crate::pose::increment::{PoseMatrix, PoseVector, UNKNOWNS, fix_unknowns};
+use crate::pose::increment::{PoseMatrix, PoseVector, UNKNOWNS, fix_unknowns, solve};
 
 /// Harmonics of order one and two: the constant one has no contrast.
 pub(super) const SHADES: usize = 8;
@@ -101,7 +101,7 @@ impl Equations {
         let sums = &self.channels[0].sums;
         let gram = Gram::from_fn(|row, column| sums[UNKNOWNS + row][UNKNOWNS + column]);
         let ridge = Gram::identity() * (RIDGE * gram.trace() / SHADES as f64);
-        (gram + ridge).try_inverse()
+        Some((gram + ridge).cholesky()?.inverse())
     }
 
     fn shade_gradients(&self) -> Lights {
@@ -154,7 +154,7 @@ impl Reduced {
             }
         }
         fix_unknowns(&mut matrix, held);
-        let step = -matrix.cholesky()?.solve(&gradient);
+        let step = -solve(matrix, &gradient)?;
         if !step.norm().is_finite() {
             return None;
         }

@@ -4,7 +4,7 @@ use super::equations::{Lights, Reduced};
 use super::objective::Objective;
 use super::problem::ContrastProblem;
 use crate::pose::increment::{
-    Frame, PoseMatrix, PoseVector, SCALE, TRANSLATION_Z, UNKNOWNS, clear_unknowns, fix_unknowns,
+    Frame, PoseMatrix, PoseVector, SCALE, TRANSLATION_Z, UNKNOWNS, clear_unknowns, fix_unknowns, inverse, product,
 };
 use crate::pose::similarity::Similarity;
 use crate::pose::uncertainty::{Uncertainty, describe, weakest_of};
@@ -42,9 +42,10 @@ pub(super) fn covariance(
     let free = held.iter().filter(|&&held| !held).count() as f64;
     let mut matrix = reduced.matrix;
     fix_unknowns(&mut matrix, held);
-    let mut covariance = match matrix.try_inverse() {
+    let mut covariance = match inverse(&matrix) {
         Some(inverse) if count > free => {
-            inverse * spread * inverse.transpose() * (SIGMA_INFLATION.powi(2) * count / (count - free))
+            product(&product(&inverse, &spread), &inverse.transpose())
+                * (SIGMA_INFLATION.powi(2) * count / (count - free))
         }
         _ => PoseMatrix::identity() * UNKNOWN.powi(2),
     };

@@ -8,7 +8,7 @@ use super::problem::{OutlinePrior, OutlineProblem, OutlineReport};
 use super::rims::Rims;
 use super::sums::{Row, Sums};
 use crate::numeric::{quantile, robust};
-use crate::pose::increment::{Frame, PoseMatrix, PoseVector, SCALE, UNKNOWNS, clear_unknowns};
+use crate::pose::increment::{Frame, PoseMatrix, PoseVector, SCALE, UNKNOWNS, clear_unknowns, inverse, solve};
 use crate::pose::similarity::Similarity;
 use crate::pose::uncertainty::{describe, in_words};
 
@@ -120,7 +120,7 @@ impl Outline {
                     for k in 0..UNKNOWNS {
                         matrix[(k, k)] *= 1.0 + DAMPING;
                     }
-                    let Some(step) = matrix.cholesky().map(|factor| -factor.solve(&sums.gradient)) else { break };
+                    let Some(step) = solve(matrix, &sums.gradient).map(|step| -step) else { break };
                     loss += step[LOSS];
                     let mut change = step;
                     change[SCALE] = 0.0;
@@ -300,7 +300,7 @@ impl Outline {
         information += prior.matrix / PRIOR;
         information.fill_upper_triangle_with_lower_triangle();
         let frame = self.frame(&pose);
-        let mut covariance = information.try_inverse().unwrap_or_else(|| PoseMatrix::identity() * UNKNOWN.powi(2));
+        let mut covariance = inverse(&information).unwrap_or_else(|| PoseMatrix::identity() * UNKNOWN.powi(2));
         clear_unknowns(&mut covariance, &std::array::from_fn(|k| k == LOSS));
         let (weakest, share) = weakest_turn(&covariance, problem.prior.rotation);
         OutlineReport {

@@ -20,7 +20,7 @@ use nalgebra::SymmetricEigen;
 use super::equations::{ReducedSystem, SquareSums, add_product, folded, no_sums, scaled};
 use super::evaluation::Evaluation;
 use crate::numeric::{Doubles, Real};
-use crate::pose::increment::{Frame, PoseMatrix, PoseVector, clear_unknowns, fix_unknowns};
+use crate::pose::increment::{Frame, PoseMatrix, PoseVector, clear_unknowns, fix_unknowns, inverse, product};
 use crate::pose::uncertainty::MOST_EIGEN_ROUNDS;
 use crate::view::Size;
 
@@ -95,7 +95,7 @@ impl Tiles {
         let mut matrix = reduced.matrix;
         fix_unknowns(&mut matrix, &held);
         fix_unknowns(&mut noise_information, &held);
-        let mut covariance = match matrix.try_inverse().zip(sigma_growth(&matrix, &noise_information)) {
+        let mut covariance = match inverse(&matrix).zip(sigma_growth(&matrix, &noise_information)) {
             // Fewer tiles than unknowns say nothing about the spread.
             Some((inverse, growth)) if count > free => {
                 let gain = product(&growth, &inverse);
@@ -144,7 +144,7 @@ impl Tiles {
 /// `None` where the points do not move in every direction.
 fn sigma_growth(matrix: &PoseMatrix, noise_information: &PoseMatrix) -> Option<PoseMatrix> {
     let root = noise_information.cholesky()?.l();
-    let inverse = root.try_inverse()?;
+    let inverse = inverse(&root)?;
     let symmetric = 0.5 * (matrix + matrix.transpose());
     let whitened = product(&product(&inverse, &symmetric), &inverse.transpose());
     let SymmetricEigen { eigenvalues, eigenvectors } =
@@ -154,12 +154,6 @@ fn sigma_growth(matrix: &PoseMatrix, noise_information: &PoseMatrix) -> Option<P
         row *= value.max(1.0) / (value - 1.0).max(LEAST_SIGNAL);
     }
     Some(product(&product(&inverse.transpose(), &eigenvectors), &along))
-}
-
-/// One copy of a product that would be unrolled wherever it is written: visitors download each.
-#[inline(never)]
-fn product(left: &PoseMatrix, right: &PoseMatrix) -> PoseMatrix {
-    left * right
 }
 
 #[cfg(test)]
