@@ -72,7 +72,7 @@ async function numerics({ file, target, flags }) {
   // Level "s" gives the last 0.7 kB; speed is LLVM's work. Binaryen would put functions of one caller into it, whatever their size:
   // engines replace a function by its optimised code at its next call only, and what is one long loop would run slowly to its end.
   const apart = ["--one-caller-inline-max-function-size", "50"];
-  const smaller = ["-Os", "--converge", ...apart, "--strip-producers", "--strip-target-features"];
+  const smaller = ["-Os", "--converge", ...apart, "--strip-producers", "--strip-target-features", "--low-memory-unused"];
   await node("binaryen/bin/wasm-opt", ...smaller, `${target}/wasm-bindgen/${MODULE}_bg.wasm`, "-o", `pkg/${file}`);
 }
 

@@ -200,7 +200,7 @@ impl Estimator {
         match stage {
             Stage::Search => {}
             Stage::Light => self.fit_light()?,
-            Stage::Shading => self.find_normals()?,
+            Stage::Shading => self.find_normals(),
             Stage::Surface => self.find_surface()?,
             Stage::Registration => self.register()?,
             Stage::Refinement => {
@@ -239,11 +239,11 @@ impl Estimator {
     }
 
     /// Normals of the image (Eq. 6 to 9), and the exposure of a known light unless the registration has found it.
-    fn find_normals(&mut self) -> Result<()> {
+    fn find_normals(&mut self) {
         let exposure_is_free = self.pair.known_light().is_some() && self.registration.found_by_colours().is_none();
         let inputs = Inputs::of(&self.pair, &self.paint, &self.light, &self.correspondences, self.report.iteration);
-        let Solution { pose, light, image, .. } = &mut self.solution;
-        self.shape.find_normals(inputs, exposure_is_free, pose, light, &mut self.scratch, &mut image.normals)
+        let Solution { light, image, .. } = &mut self.solution;
+        self.shape.find_normals(inputs, exposure_is_free, light, &mut image.normals);
     }
 
     /// Heights of the image, then the gauges that neither view can tell: t_z of an orthographic image, the distance of
@@ -370,10 +370,6 @@ impl Estimator {
         self.history.rejections = if self.history.improved { 0 } else { self.history.rejections + 1 };
         let stayed = || "the registration found no pose better than the present one".into();
         self.report.message = (!self.history.improved).then(stayed);
-        self.history.image_moved = match self.refinement.is_settled() {
-            true => self.accepted.image_moved(&self.solution.image.normals, &self.correspondences),
-            false => 0.0,
-        };
         self.accepted.accept(&self.solution);
         self.choose_evaluation_points();
         // Over the new evaluation points, as the next iteration will be.
@@ -440,7 +436,7 @@ impl Estimator {
             && self.registration.keeps(&self.pair, &self.solution.pose);
         if is_known {
             let inputs = Inputs::of(&self.pair, &self.paint, &self.light, &self.correspondences, self.report.iteration);
-            self.refinement.prepare_next(inputs, &self.solution, self.history.image_moved);
+            self.refinement.prepare_next(inputs, &self.solution);
         } else {
             self.refinement.discard_prepared();
         }

@@ -30,13 +30,10 @@ pub struct History {
     pub rejections: u32,
     /// Iterations in a row whose registration proposed less than `stop_degrees`.
     pub unmoved: u32,
-    /// How far the last iteration that was kept moved the image's normals where the depth view reaches, root mean square
-    /// in radians; zero where nobody asks.
-    pub image_moved: f64,
 }
 
 impl Default for History {
     fn default() -> Self {
-        Self { step_fraction: 1.0, proposed_degrees: 0.0, improved: true, rejections: 0, unmoved: 0, image_moved: 0.0 }
+        Self { step_fraction: 1.0, proposed_degrees: 0.0, improved: true, rejections: 0, unmoved: 0 }
     }
 }

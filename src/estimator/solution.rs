@@ -3,7 +3,7 @@
 use super::pair::ViewPair;
 use crate::light::Light;
 use crate::numeric::quantile;
-use crate::pose::{Correspondences, Similarity};
+use crate::pose::Similarity;
 use crate::view::{Camera, ColourView, DepthView, Normals, Points, Size};
 
 /// Pose, light and both shapes.
@@ -143,38 +143,6 @@ impl Accepted {
     /// Normals of the image surface, those of the working solution until its iteration finds others.
     pub const fn image_normals(&self) -> &Normals {
         &self.image_normals
-    }
-
-    /// Whether a shape of the depth view is the accepted one.
-    #[inline(never)]
-    pub fn holds_depth(&self, shape: &Shape) -> bool {
-        let (accepted, normals) = (&self.depth_normals, &shape.normals);
-        let rasters = [
-            (&self.refined_depth, &shape.points.z),
-            (&accepted.x, &normals.x),
-            (&accepted.y, &normals.y),
-            (&accepted.z, &normals.z),
-        ];
-        rasters.iter().all(|(one, two)| {
-            one.len() == two.len() && one.iter().zip(*two).all(|(one, two)| one.to_bits() == two.to_bits())
-        })
-    }
-
-    /// How far the image's normals have moved from the accepted ones where the depth view reaches, root mean square.
-    #[inline(never)]
-    pub fn image_moved(&self, normals: &Normals, correspondences: &Correspondences) -> f64 {
-        let reached = correspondences.depth_of_pixel().iter().enumerate().filter(|(_, index)| **index >= 0);
-        let accepted = &self.image_normals;
-        let (mut sum, mut count) = (0.0, 0.0);
-        for (pixel, _) in reached.filter(|(pixel, _)| *pixel < accepted.len()) {
-            let (before, after) = (accepted.get(pixel), normals.get(pixel));
-            let off = [0, 1, 2].map(|axis: usize| f64::from(after[axis] - before[axis]));
-            let square = off[0] * off[0] + off[1] * off[1] + off[2] * off[2];
-            if square.is_finite() {
-                (sum, count) = (sum + square, count + 1.0);
-            }
-        }
-        if count > 0.0 { (sum / f64::max(count, 1.0)).sqrt() } else { f64::INFINITY }
     }
 
     /// Accepts `solution`; allocates the first time.

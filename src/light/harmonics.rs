@@ -82,20 +82,6 @@ impl Light {
         self.of_basis(&basis(normal))
     }
 
-    /// By how much what two lights predict differs, root mean square over the colours of a few visible normals.
-    #[must_use]
-    #[inline(never)]
-    pub(crate) fn distance(&self, other: &Self) -> f64 {
-        const NORMALS: [[f64; 3]; 5] =
-            [[0.0, 0.0, -1.0], [0.8, 0.0, -0.6], [-0.8, 0.0, -0.6], [0.0, 0.8, -0.6], [0.0, -0.8, -0.6]];
-        let mut sum = 0.0;
-        for normal in NORMALS {
-            let [own, others] = [self, other].map(|light| light.shade(normal));
-            sum += own.iter().zip(others).map(|(own, other)| (own - other).powi(2)).sum::<f64>();
-        }
-        (sum / (3 * NORMALS.len()) as f64).sqrt()
-    }
-
     /// log S of a normal by its harmonics.
     #[must_use]
     pub(crate) fn of_basis(&self, basis: &[f64; HARMONICS]) -> [f64; 3] {

@@ -2,10 +2,9 @@
 //! surface for a prior (docs/method.md, sections 5 to 7).
 //!
 //! The surface is found in one of two ways: by integration alone, as the paper does, or as a whole, heights from
-//! shading, for which the integrated surface is one of several starts. The shape of a large image is found at a coarse
-//! level first, from nothing and in as many calls as there are starts, and goes up from there.
+//! shading, for which the integrated surface is one of several starts.
 
-use super::heights::{HeightDomain, ImageSurfaceProblem, ImageSurfaceSolver, STARTS, Scratch};
+use super::heights::{HeightDomain, ImageSurfaceProblem, ImageSurfaceSolver, Scratch};
 use super::integration::{IntegrationOptions, Integrator, Robustness, find_slopes};
 use super::pixels::{self, ShadingProblem, ShadingSolver, ShadingWeights};
 use crate::error::Result;
@@ -49,34 +48,24 @@ impl<'a> ImageShapeProblem<'a> {
 /// Solves one image again and again. Owns what lasts from call to call; rasters in between are those of a [`Scratch`].
 pub struct ImageShapeSolver {
     pixels: ShadingSolver,
-    /// Made by the first integration, where the surface is integrated alone.
+    /// Made by the first integration; kept where there will be another one.
     integrator: Option<Integrator>,
     /// Where the surface is solved as a whole.
     surface: Option<ImageSurfaceSolver>,
-    /// Of a large image that is solved so.
-    coarse: Option<Box<CoarseShape>>,
-}
-
-/// A large image at its smallest level.
-struct CoarseShape {
-    image: ColourView,
 }
 
 impl ImageShapeSolver {
     /// A solver that integrates the pixels' normals.
     pub fn by_integration() -> Self {
-        Self { pixels: ShadingSolver::new(), integrator: None, surface: None, coarse: None }
+        Self { pixels: ShadingSolver::new(), integrator: None, surface: None }
     }
 
     /// A solver that finds the surface as a whole.
     ///
     /// # Errors
     /// [`crate::ErrorKind::Empty`] where the view's mask is empty.
-    #[inline(never)]
     pub fn as_a_whole(image: &ColourView) -> Result<Self> {
-        let (surface, smallest) = ImageSurfaceSolver::new(image)?;
-        let coarse = smallest.map(|image| Box::new(CoarseShape { image }));
-        Ok(Self { surface: Some(surface), coarse, ..Self::by_integration() })
+        Ok(Self { surface: Some(ImageSurfaceSolver::new(image)?), ..Self::by_integration() })
     }
 
     /// The largest domain of heights, for [`Scratch::new`].
@@ -84,34 +73,7 @@ impl ImageShapeSolver {
         self.surface.as_ref().map(ImageSurfaceSolver::domain)
     }
 
-    /// Finds the shape of a large image at its smallest level, from nothing; the normals of all pixels become those of its
-    /// surface. Does nothing with a small image.
-    ///
-    /// # Errors
-    /// Those of the integration.
-    #[inline(never)]
-    pub fn open(
-        &mut self,
-        scratch: &mut Scratch,
-        problem: &ImageShapeProblem<'_>,
-        normals: &mut Normals,
-    ) -> Result<()> {
-        let (Some(surface), Some(coarse)) = (&mut self.surface, &self.coarse) else { return Ok(()) };
-        let mut heights = coarse.solve(scratch, problem)?;
-        coarse.image.camera.heights_from_depth(&mut heights);
-        let image = problem.image;
-        scratch.resize(image.size.len());
-        scratch.spare.copy_from_slice(surface.start_from(heights, image));
-        image.camera.depth_from_heights(&mut scratch.spare);
-        normals::of_depth_into(image.size, image.camera, &scratch.spare, normals);
-        for pixel in (0..normals.len()).filter(|&pixel| !image.mask[pixel]) {
-            normals.set(pixel, [f32::NAN; 3]);
-        }
-        Ok(())
-    }
-
     /// Normals of the pixels, each for itself (Eq. 6 to 9), from the present ones.
-    #[inline(never)]
     pub fn solve_normals(&mut self, problem: &ImageShapeProblem<'_>, normals: &mut Normals) {
         self.pixels.solve(problem.shading(), problem.weights(problem.prior_weight), normals);
     }
@@ -127,7 +89,6 @@ impl ImageShapeSolver {
     ///
     /// # Errors
     /// Those of the integration.
-    #[inline(never)]
     pub fn solve_surface(
         &mut self,
         scratch: &mut Scratch,
@@ -138,11 +99,10 @@ impl ImageShapeSolver {
         let image = problem.image;
         scratch.resize(image.size.len());
         find_slopes(image.size, &image.camera, normals, &image.mask, &mut scratch.slopes);
-        if self.surface.is_some() {
-            self.solve_heights(scratch, problem, depth)?;
-        } else {
+        if self.surface.as_ref().is_none_or(ImageSurfaceSolver::needs_integrated) {
             self.integrate(scratch, image, depth)?;
         }
+        self.solve_heights(scratch, problem, depth);
         image.camera.depth_from_heights(depth);
         if self.surface.is_some() {
             self.solve_normals_again(scratch, problem, normals, depth);
@@ -159,25 +119,21 @@ impl ImageShapeSolver {
         let options = IntegrationOptions { robustness: Robustness::Estimated, ..IntegrationOptions::default() };
         let [p, q] = &scratch.slopes;
         integrator.integrate(p, q, None, &options, heights)?;
-        self.integrator = Some(integrator);
+        // A surface that is solved as a whole starts from it once.
+        self.integrator = self.surface.is_none().then_some(integrator);
         Ok(())
     }
 
-    /// Heights of the surface as a whole.
-    fn solve_heights(
-        &mut self,
-        scratch: &mut Scratch,
-        problem: &ImageShapeProblem<'_>,
-        heights: &mut [f32],
-    ) -> Result<()> {
-        let Some(surface) = &mut self.surface else { return Ok(()) };
+    /// Heights of the surface as a whole, at first from the integrated one.
+    fn solve_heights(&mut self, scratch: &mut Scratch, problem: &ImageShapeProblem<'_>, heights: &mut [f32]) {
+        let Some(surface) = &mut self.surface else { return };
         let prior = problem.weights(problem.prior_weight).prior;
         let Scratch { slopes: [p, q], weight: normal_weight, heights: solver, .. } = scratch;
         for (pixel, weight) in normal_weight.iter_mut().enumerate() {
             *weight = if problem.prior.is_valid(pixel) { prior } else { 0.0 };
         }
         let problem = ImageSurfaceProblem { image: problem.image, light: problem.light, slopes: [p, q], normal_weight };
-        surface.solve(solver, problem, heights)
+        surface.solve(solver, problem, heights);
     }
 
     /// Normals of the pixels once more. Their prior is the depth view's normal, where that weighs anything, or else
@@ -204,24 +160,5 @@ impl ImageShapeSolver {
             self.pixels.solve(ShadingProblem { log, prior, light: problem.light }, weights, found);
             normals.copy_range(band.start, found, &(0..band.len()));
         }
-    }
-}
-
-impl CoarseShape {
-    /// Depth of this level, found from nothing.
-    fn solve(&self, scratch: &mut Scratch, fine: &ImageShapeProblem<'_>) -> Result<Vec<f32>> {
-        let Self { image, .. } = self;
-        let (mut prior, mut size) = (fine.prior.halved_directions(fine.image.size), fine.image.size.halved());
-        while size != image.size {
-            (prior, size) = (prior.halved_directions(size), size.halved());
-        }
-        let problem = ImageShapeProblem { image, prior: &prior, ..*fine };
-        let mut solver = ImageShapeSolver::as_a_whole(image)?;
-        let (mut normals, mut depth) = (Normals::missing(size.len()), vec![f32::NAN; size.len()]);
-        for _ in 0..STARTS {
-            solver.solve_normals(&problem, &mut normals);
-            solver.solve_surface(scratch, &problem, &mut normals, &mut depth)?;
-        }
-        Ok(depth)
     }
 }

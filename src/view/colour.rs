@@ -124,24 +124,6 @@ impl ColourView {
         Self { size, camera, mask, log, transfer, whole: WholeFrame::default(), log_spread, log_noise }
     }
 
-    /// The hues of this view, log S of each channel less the mean of all three, times so much that they differ as the colours of
-    /// `other` do; with the factor. `None` where they differ by less than `least` of that.
-    #[must_use]
-    pub(crate) fn hues_like(&self, other: &Self, least: f64) -> Option<(Self, f64)> {
-        let mut log = self.log.clone();
-        for index in (0..self.size.len()).filter(|&index| self.mask[index]) {
-            let mean = self.log.iter().map(|channel| channel[index]).sum::<f32>() / 3.0;
-            log.iter_mut().for_each(|channel| channel[index] -= mean);
-        }
-        let spread = spread_of(&log);
-        if spread <= least * other.log_spread {
-            return None;
-        }
-        let factor = other.log_spread / spread;
-        log.iter_mut().flatten().for_each(|log| *log *= factor as f32);
-        Some((Self::of(self.size, self.camera, self.mask.clone(), log, self.transfer), factor))
-    }
-
     /// The same view of an image that was encoded otherwise.
     pub(super) fn with_transfer(self, transfer: Transfer) -> Self {
         Self { transfer, ..self }

@@ -1,7 +1,5 @@
 //! The loop for JavaScript.
 
-use std::collections::BTreeMap;
-
 use js_sys::{Array, Float32Array, Float64Array, Int32Array};
 use wasm_bindgen::JsCast;
 use wasm_bindgen::prelude::wasm_bindgen;
@@ -34,7 +32,7 @@ type Result<T> = std::result::Result<T, Thrown>;
 pub struct Estimator {
     native: Native,
     options: Options,
-    milliseconds: BTreeMap<&'static str, f64>,
+    milliseconds: Vec<(&'static str, f64)>,
     /// Whether an iteration has been begun by `step_halfway`: the next step finishes it and adds to these times.
     halfway: bool,
 }
@@ -45,7 +43,7 @@ impl Estimator {
     pub fn new(image: &JsImage, depth: &JsDepth, options: &JsOptions) -> Result<Self> {
         let options = input::options(options)?;
         let native = Native::new(input::image(image)?, &input::depth(depth)?, options.clone())?;
-        Ok(Self { native, options, milliseconds: BTreeMap::new(), halfway: false })
+        Ok(Self { native, options, milliseconds: Vec::new(), halfway: false })
     }
 
     pub fn step(&mut self) -> JsReport {
@@ -103,7 +101,11 @@ impl Estimator {
     fn timed_stage(&mut self) {
         let start = now();
         let stage = self.native.step_stage().stage.name();
-        *self.milliseconds.entry(stage).or_default() += now() - start;
+        let spent = now() - start;
+        match self.milliseconds.iter_mut().find(|(name, _)| *name == stage) {
+            Some((_, sum)) => *sum += spent,
+            None => self.milliseconds.push((stage, spent)),
+        }
     }
 
     pub fn report(&self) -> JsReport {

@@ -1,9 +1,7 @@
 //! From native reports and rasters to the objects of the JavaScript contract.
 
-use std::collections::BTreeMap;
-
 use js_sys::{Float32Array, Object, Reflect, Uint8Array};
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 use wasm_bindgen::{JsValue, UnwrapThrowExt};
 
 use crate::pose::{Angles, Similarity};
@@ -66,7 +64,12 @@ struct PlainReport<'a> {
     rivals: Vec<PlainPose>,
     #[serde(skip_serializing_if = "Option::is_none")]
     uncertainty: Option<PlainUncertainty<'a>>,
-    milliseconds: &'a BTreeMap<&'static str, f64>,
+    #[serde(serialize_with = "as_map")]
+    milliseconds: &'a [(&'static str, f64)],
+}
+
+fn as_map<S: Serializer>(entries: &[(&'static str, f64)], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(entries.iter().copied())
 }
 
 fn plain(value: &impl Serialize) -> JsValue {
@@ -88,7 +91,7 @@ pub fn pose(pose: &Similarity) -> JsValue {
     plain(&plain_pose(pose))
 }
 
-pub fn report(report: &StepReport, milliseconds: &BTreeMap<&'static str, f64>) -> JsValue {
+pub fn report(report: &StepReport, milliseconds: &[(&'static str, f64)]) -> JsValue {
     let objective = &report.objective;
     plain(&PlainReport {
         iteration: report.iteration,

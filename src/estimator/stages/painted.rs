@@ -8,7 +8,7 @@ use super::outlines::LARGEST_PURE_NOISE;
 use crate::estimator::gauge;
 use crate::estimator::pair::ViewPair;
 use crate::options::Registration;
-use crate::pose::{ContrastOutcome, ContrastReport, ContrastSearch, PhotometricReport, Similarity, Uncertainty};
+use crate::pose::{ContrastOutcome, ContrastSearch, PhotometricReport, Similarity, Uncertainty};
 use crate::view::ColourView;
 
 /// Colours whose noise is at most so many times that of the image itself are noisy, not painted, unless it is more than
@@ -17,11 +17,6 @@ const NOISY: f64 = 1.25;
 const LARGEST_IMAGE_NOISE: f64 = 0.06;
 /// Both registrations have found one pose where their ends are this near, degrees: contrast may be off by a few.
 const SAME_POSE: f64 = 8.0;
-/// Hues are asked where they differ by this share of what the colours do, and decide where the contrast that they leave
-/// unexplained is at most this share of what the colours leave: under three lamps 0.17 to 0.80 of it, in other photographs
-/// 0.84 and more but for one frog.
-const LEAST_HUES: f64 = 0.25;
-const HUES_LEAVE: f64 = 0.8;
 /// Sigmas of contrast by blurred hues or noisy normals over what they are otherwise. Of 18 found scenes with both (JPEG, depth
 /// in noisy steps) the largest errors about an axis are 1 to 5 of the sigmas before, one 9.
 const COARSE_INFLATION: f64 = 2.0;
@@ -43,9 +38,9 @@ pub fn is_called_for(pair: &ViewPair, colours: &ColourRegistration, plain: Optio
 
 /// Whether a registration by colours from where contrast ended leaves no more than noise: then there is no paint, and its
 /// pose is the better one.
-fn is_plain(pair: &ViewPair, noise: f64, pose: &Similarity, contrast: &ContrastOutcome) -> bool {
-    noise <= LARGEST_PURE_NOISE.max((NOISY * pair.image.log_noise()).min(LARGEST_IMAGE_NOISE))
-        && pose.degrees_to(&contrast.best.pose) < SAME_POSE
+fn is_plain(pair: &ViewPair, plain: &PhotometricReport, contrast: &ContrastOutcome) -> bool {
+    plain.noise <= LARGEST_PURE_NOISE.max((NOISY * pair.image.log_noise()).min(LARGEST_IMAGE_NOISE))
+        && plain.pose.degrees_to(&contrast.best.pose) < SAME_POSE
 }
 
 /// Whether the first is less uncertain about its least certain axis.
@@ -95,8 +90,7 @@ pub fn search(
     ContrastSearch::new(&colours.contrast_problem(pair, cleaned.image(pair)), starts)
 }
 
-/// The outcome of a search that is done: that of the colours from there, where they leave nothing more; contrast's; or that of
-/// the hues, where they are explained better.
+/// The outcome of a search that is done: contrast's, or that of the colours from there, where they leave nothing more.
 pub fn conclude(
     pair: &ViewPair,
     colours: &ColourRegistration,
@@ -112,53 +106,14 @@ pub fn conclude(
         doubt(&mut contrast, plain.as_ref());
     }
     let is_believed = |plain: &PhotometricReport, search: &mut ContrastSearch| {
-        is_plain(pair, plain.noise, &plain.pose, &contrast)
+        is_plain(pair, plain, &contrast)
             && search.is_explained_by(&problem, &plain.pose)
             && (!is_coarse || is_surer(&plain.uncertainty, &contrast.best.uncertainty))
     };
     Some(match plain {
         Some(plain) if is_believed(&plain, search) => Conclusion::ByColours(Box::new(plain)),
-        _ => {
-            let hues = by_hues(pair, colours, image, search)
-                .filter(|hues| hues.best.objective < HUES_LEAVE * contrast.best.objective)
-                .map(|mut hues| {
-                    if is_coarse {
-                        doubt(&mut hues, None);
-                    }
-                    hues
-                });
-            Conclusion::ByContrast(Box::new(hues.unwrap_or(contrast)))
-        }
+        _ => Conclusion::ByContrast(Box::new(contrast)),
     })
-}
-
-/// Contrast of the hues alone, from where that of the colours and registrations by hues from there have ended. Lamps of several
-/// colours shade in hue, and paint that is brighter or darker has no part in that.
-fn by_hues(
-    pair: &ViewPair,
-    colours: &ColourRegistration,
-    image: &ColourView,
-    search: &ContrastSearch,
-) -> Option<ContrastOutcome> {
-    let (hues, factor) = pair.image.hues_like(image, LEAST_HUES)?;
-    let middle = pair.depth.points.centroid();
-    let scale = gauge::held_scale(pair).unwrap_or_else(|| gauge::unit_scale(pair));
-    let starts = search.ends().flat_map(|end| {
-        let resized = end.turned_about(middle, scale, end.rotation);
-        let registered = colours.register_in(pair, &hues, &resized).map(|found| found.pose);
-        [*end, resized].into_iter().chain(registered)
-    });
-    let problem = colours.contrast_problem(pair, &hues);
-    let mut search = ContrastSearch::new(&problem, starts.collect());
-    while !search.advance(&problem) {}
-    let mut outcome = search.outcome(&problem)?;
-    if let Some(plain) = colours.register_in(pair, &hues, &outcome.best.pose)
-        && is_plain(pair, plain.noise / factor, &plain.pose, &outcome)
-    {
-        outcome.best = ContrastReport { pose: plain.pose, uncertainty: plain.uncertainty, ..outcome.best };
-        outcome.rivals.clear();
-    }
-    Some(outcome)
 }
 
 /// Contrast of blurred hues or noisy normals is less to be believed: its sigmas are wider, and where the colours without

@@ -5,9 +5,6 @@
 //! of the iteration, and a [`Worker`](crate::Worker) may make it while they run: the same to the bit. Both surfaces
 //! settle as before, only that one of them sees the other an iteration late. Where the registration may still move the
 //! pose, the refinement comes after it and looks at what its own iteration found.
-//!
-//! A refinement that has left its shape as it was is not repeated while what it looks at stays the same: light, pose and
-//! places to the bit, and the image's normals, whose weight is small, but for less than noise moves them.
 
 use nalgebra::Matrix3;
 
@@ -20,10 +17,6 @@ use crate::shape::{HeightDomain, RefinementProblem, RefinementTerms, Refiner, Sc
 use crate::view::Normals;
 
 use super::light::Inputs;
-
-/// Movement of the image's normals where the depth view reaches, root mean square, radians, that a settled refinement
-/// does not look at: what 0.5 % of noise in log S does to a normal, a few times less than 1 to 2 % of a good camera.
-const UNMOVED: f64 = 0.005;
 
 /// A refinement for a [`Worker`](crate::Worker).
 pub struct RefinementTask<'a> {
@@ -46,11 +39,6 @@ pub struct RefinementStage {
     position: [Vec<f32>; 2],
     /// Whether a worker has made the next refinement.
     made_by_worker: bool,
-    /// What a refinement looked at that has left its shape as it was, and how far the image's normals have moved since.
-    settled: Option<RefinementTerms>,
-    moved: f64,
-    /// Whether the next refinement would do so again.
-    keeps: bool,
     /// Refined shapes so far, those that were taken back included.
     shapes: u32,
 }
@@ -63,9 +51,6 @@ impl RefinementStage {
             terms: None,
             position: [0, 1].map(|_| Vec::with_capacity(points)),
             made_by_worker: false,
-            settled: None,
-            moved: 0.0,
-            keeps: false,
             shapes: 0,
         })
     }
@@ -84,39 +69,22 @@ impl RefinementStage {
     }
 
     /// At the end of an iteration after which the pose will not move: keeps what the next refinement looks at.
-    /// `moved` is how far the iteration has moved the image's normals where the depth view reaches.
-    pub fn prepare_next(&mut self, inputs: Inputs<'_>, solution: &Solution, moved: f64) {
-        let terms = terms(inputs, solution);
-        self.moved += moved;
-        let is_same = |(kept, found): (&Vec<f32>, &[f32])| {
-            kept.len() == found.len() && kept.iter().zip(found).all(|(kept, found)| kept.to_bits() == found.to_bits())
-        };
-        self.keeps = self.settled == Some(terms)
-            && self.moved < UNMOVED
-            && self.position.iter().zip(inputs.correspondences.position()).all(is_same);
-        if self.keeps {
-            return;
-        }
+    pub fn prepare_next(&mut self, inputs: Inputs<'_>, solution: &Solution) {
         for (kept, found) in self.position.iter_mut().zip(inputs.correspondences.position()) {
             kept.clear();
             kept.extend_from_slice(found);
         }
-        self.terms = Some(terms);
+        self.terms = Some(terms(inputs, solution));
     }
 
     /// The next refinement looks at what its own iteration finds.
     pub const fn discard_prepared(&mut self) {
-        (self.terms, self.keeps) = (None, false);
-    }
-
-    /// Whether the last refinement has left its shape as it was.
-    pub const fn is_settled(&self) -> bool {
-        self.settled.is_some()
+        self.terms = None;
     }
 
     /// To be called when the refined shape is replaced: what was prepared belongs to the one before.
     pub const fn shape_changed(&mut self) {
-        (self.terms, self.made_by_worker, self.settled, self.keeps) = (None, false, None, false);
+        (self.terms, self.made_by_worker) = (None, false);
         self.shapes = self.shapes.wrapping_add(1);
     }
 
@@ -155,11 +123,7 @@ impl RefinementStage {
     /// Normals and depth of the depth view (Eq. 17 to 19), unless a worker has made them. Writes the depth view's shape
     /// in `solution` and nothing else of it.
     pub fn refine(&mut self, inputs: Inputs<'_>, accepted: &Accepted, scratch: &mut Scratch, solution: &mut Solution) {
-        if self.keeps {
-            return;
-        }
         let Inputs { pair, colours, correspondences, .. } = inputs;
-        let prepared = self.terms;
         if !self.made_by_worker {
             let terms = self.terms.unwrap_or_else(|| terms(inputs, solution));
             let (image_normals, position) = match self.terms {
@@ -172,8 +136,6 @@ impl RefinementStage {
             self.refiner.refine(scratch, problem, normals, &mut points.z);
         }
         self.shape_changed();
-        // The movement that the next decision adds to is that of the iteration which ends here.
-        (self.settled, self.moved) = (prepared.filter(|_| accepted.holds_depth(&solution.depth)), 0.0);
         solution.depth.place_depth_points(&pair.depth);
     }
 }
@@ -212,55 +174,4 @@ pub fn terms_from_numbers(numbers: &[f64]) -> Result<RefinementTerms> {
 
 fn components(normals: &Normals) -> [&[f32]; 3] {
     [&normals.x, &normals.y, &normals.z]
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::estimator::Estimator;
-    use crate::estimator::Run;
-    use crate::options::{Options, Start};
-    use crate::pose::Similarity;
-    use crate::report::{Stage, Status};
-    use crate::scenes::{SampleRequest, Scene, light, surface};
-    use crate::view::Size;
-
-    /// Whoever refines again where the stage keeps its shape gets the same within a tenth of what the refined depth is
-    /// off (0.002 pixels).
-    #[test]
-    fn a_shape_that_is_kept_is_that_of_the_full_solve() {
-        let request = SampleRequest {
-            size: Size { width: 96, height: 96 },
-            light: light("overcast").expect("a light"),
-            overlap: 0.6,
-            noise: 0.01,
-            ..Default::default()
-        };
-        let scene = Scene::new(&surface("ripples").expect("a surface")).expect("a scene");
-        let sample = scene.sample(&request).expect("a sample");
-        let Similarity { rotation, scale, translation } = sample.pose;
-        let start = Start::Pose { rotation, scale: Some(scale), translation: Some(translation) };
-        let options = Options { start, ..Options::default() };
-        let mut estimator = Estimator::new(sample.colour_image(), &sample.depth_map(), options).expect("a pair");
-        let mut kept = 0;
-        // Beyond the end, for as long as shapes need to settle.
-        for _ in 0..20 {
-            estimator.step();
-            (estimator.report.status, estimator.run) = (Status::Running, Run::Iterating(Stage::Light));
-            estimator.prepare_next_refinement();
-            if estimator.refinement.keeps {
-                kept += 1;
-                let mut solution = estimator.solution.clone();
-                let Estimator { pair, paint, light, correspondences, accepted, scratch, refinement, .. } =
-                    &mut estimator;
-                refinement.keeps = false;
-                let inputs = Inputs::of(pair, paint, light, correspondences, 1);
-                refinement.refine(inputs, accepted, scratch, &mut solution);
-                let again = estimator.solution.depth.points.z.iter().zip(&solution.depth.points.z);
-                let farthest = again.map(|(one, two)| (one - two).abs()).fold(0.0, f32::max);
-                assert!(farthest < 0.1 * 0.002, "{farthest}");
-            }
-        }
-        assert!(kept > 0);
-    }
 }

@@ -127,6 +127,11 @@ impl Objective {
         if problem.is_metric() { pose.scale / pose.apply(self.samples.centre).z } else { pose.scale }
     }
 
+    /// Length that distances are counted in, pixels.
+    pub const fn unit(&self) -> f64 {
+        self.unit
+    }
+
     /// Whether the equations have the gradient of the prediction as instruments in place of that of the image.
     pub fn settle(&mut self, settles: bool) {
         self.settles = settles;

@@ -130,11 +130,6 @@ impl ContrastSearch {
         self.ends.first().is_some_and(|(best, _)| value.is_some_and(|value| value <= best + RIVAL_MARGIN))
     }
 
-    /// Where the registrations of the last stage have ended, best first.
-    pub fn ends(&self) -> impl Iterator<Item = &Similarity> {
-        self.ends.iter().map(|(_, pose)| pose)
-    }
-
     /// What was found, once all is done; `None` where no registration saw enough of the object.
     pub fn outcome(&mut self, problem: &ContrastProblem<'_>) -> Option<ContrastOutcome> {
         let &(value, pose) = self.ends.first()?;

@@ -10,8 +10,8 @@ use crate::pose::similarity::Similarity;
 use crate::pose::uncertainty::{Uncertainty, describe, weakest_of};
 
 /// Side of the tiles of the depth map whose scores count as one observation, depth pixels: three sigmas of the local
-/// means.
-const TILE: usize = 9;
+/// means, and as they larger on larger objects.
+const TILE: f64 = 9.0;
 /// Errors that leave no residual, such as shadows that move with the relief, over those that do. Of sixteen found poses of
 /// five photographed objects (raccoon, panther, deer, sun, bag, 0 to 60 degrees off, 96x96) the worst wants 2.8, the
 /// median .7; the five others had no part in it.
@@ -27,7 +27,7 @@ pub(super) fn covariance(
     held: &[bool; UNKNOWNS],
 ) -> PoseMatrix {
     let samples = &objective.samples;
-    let tile = TILE.div_ceil(samples.stride);
+    let tile = ((TILE * objective.unit()).ceil() as usize).div_ceil(samples.stride);
     let across = samples.grid.width.div_ceil(tile);
     let mut scores = vec![PoseVector::zeros(); across * samples.grid.height.div_ceil(tile)];
     objective.for_each_score(light, |cell, residual, weight, rows| {

@@ -35,7 +35,6 @@ impl HeightDomain {
     ///
     /// # Errors
     /// [`ErrorKind::Empty`] where the mask holds no pixel.
-    #[inline(never)]
     pub fn new(size: Size, camera: Camera, mask: &[bool]) -> Result<Self> {
         let inside_view = || (0..size.len()).filter(|&index| mask[index]).map(|index| size.position(index));
         let bounds = |values: &mut dyn Iterator<Item = usize>| {

@@ -8,10 +8,9 @@
 //! and C), so that one is taken. Each call tries one start more, so that none lasts long, and goes on from the best
 //! surface so far.
 //!
-//! A large image is halved until a level is small. There its shape is found as that of a small image is
-//! (`image_shape`), and this surface goes up from level to level, a few steps at each. Limits: orthographic or pinhole
-//! alike, but parts of the mask that are not joined are solved on their own, each at any level; detail whose shading is
-//! ambiguous is decided where it is coarse.
+//! A large image is halved until a level is small: the starts are tried there, and the best surface goes up from
+//! level to level, a few steps at each. Limits: orthographic or pinhole alike, but parts of the mask that are not
+//! joined are solved on their own, each at any level; detail whose shading is ambiguous is decided where it is coarse.
 
 use super::domain::HeightDomain;
 use super::problem::LAST_SCALE;
@@ -19,56 +18,50 @@ use super::solver::HeightSolver;
 use super::starts::{EVERY_CALL, INTERMEDIATE, ImageSurfaceProblem, MultiStart};
 use crate::error::Result;
 use crate::light::Light;
-use crate::view::ColourView;
+use crate::view::{ColourView, Size};
 
 /// Object pixels up to which all starts are tried at full resolution: an object that fills half of 96x96 is solved as
 /// it is.
 const MOST_PIXELS: usize = 6000;
 
-/// Object pixels up to which the finest level gets as much work as those between when a surface arrives there: on half of
-/// 640x480 five steps take 0.15 to 0.4 s, for 0.1 degrees of the normals that the depth view does not reach.
-const MOST_INTERMEDIATE: usize = 1 << 16;
-
 /// Solves one image again and again. Owns what lasts from call to call; the memory of a solve is the caller's.
 pub struct ImageSurfaceSolver {
     domain: HeightDomain,
-    /// Where the starts compete: of a small image.
-    starts: Option<MultiStart>,
-    /// Of a large image its heights, and those of the smallest level where they are not yet worked on.
+    /// Heights of a large image; those of a small one are in `starts`.
     surface: Vec<f32>,
-    smallest: Option<Vec<f32>>,
-    /// The levels between a large image and its smallest one.
-    between: Vec<Level>,
+    /// The image halved again and again, the smallest last; empty for a small image.
+    coarser: Vec<Level>,
+    /// The starts compete at the smallest level.
+    starts: MultiStart,
 }
 
 impl ImageSurfaceSolver {
-    /// A solver for one colour view; with a large one comes its smallest level, from whose surface it
-    /// [starts](Self::start_from).
+    /// A solver for one colour view.
     ///
     /// # Errors
     /// [`crate::ErrorKind::Empty`] where the view's mask is empty.
-    pub fn new(image: &ColourView) -> Result<(Self, Option<ColourView>)> {
-        let mut between = Vec::new();
-        let mut smallest: Option<ColourView> = None;
+    pub fn new(image: &ColourView) -> Result<Self> {
+        let mut coarser: Vec<Level> = Vec::new();
         loop {
-            let finest = smallest.as_ref().unwrap_or(image);
+            let finest = coarser.last().map_or(image, |level| &level.view.image);
             if finest.mask.iter().filter(|&&inside| inside).count() <= MOST_PIXELS {
                 break;
             }
-            let halved = finest.halved();
-            if let Some(view) = smallest.replace(halved) {
-                between.push(Level::new(view)?);
-            }
+            let level = Level::new(finest.halved())?;
+            coarser.push(level);
         }
-        let is_large = smallest.is_some();
-        let solver = Self {
-            starts: (!is_large).then(|| MultiStart::new(image.size, &image.mask)),
+        let smallest = coarser.last().map_or(image, |level| &level.view.image);
+        Ok(Self {
+            starts: MultiStart::new(smallest.size, &smallest.mask),
             domain: HeightDomain::new(image.size, image.camera, &image.mask)?,
-            surface: if is_large { vec![0.0; image.size.len()] } else { Vec::new() },
-            smallest: None,
-            between,
-        };
-        Ok((solver, smallest))
+            surface: if coarser.is_empty() { Vec::new() } else { vec![0.0; image.size.len()] },
+            coarser,
+        })
+    }
+
+    /// Whether the next call starts from the integrated surface; later ones do not look at it.
+    pub const fn needs_integrated(&self) -> bool {
+        self.starts.needs_integrated()
     }
 
     /// The largest domain.
@@ -76,64 +69,61 @@ impl ImageSurfaceSolver {
         &self.domain
     }
 
-    /// Goes on from the heights of the smallest level, NaN off its mask; the same over the pixels of `image`, zero off
-    /// its mask.
-    pub fn start_from(&mut self, smallest: Vec<f32>, image: &ColourView) -> &[f32] {
-        let mut below = &smallest;
-        for Level { view, surface, .. } in self.between.iter_mut().rev() {
-            upsample(below, &view.image, surface);
-            below = surface;
-        }
-        upsample(below, image, &mut self.surface);
-        self.smallest = Some(smallest);
-        &self.surface
-    }
-
-    /// Heights (pixels, or f log Z) of the image surface, NaN off the mask.
-    ///
-    /// # Errors
-    /// Those of the integration, from whose surface the first call starts.
-    pub fn solve(
-        &mut self,
-        solver: &mut HeightSolver,
-        problem: ImageSurfaceProblem<'_>,
-        heights: &mut [f32],
-    ) -> Result<()> {
-        let surface = if let Some(starts) = &mut self.starts {
-            if starts.needs_integrated() {
-                problem.integrate(heights)?;
-            }
-            starts.advance(solver, &mut self.domain, problem, heights);
-            starts.surface()
+    /// Heights (pixels, or f log Z) of the image surface, NaN off the mask. Where an integrated surface is
+    /// [needed](Self::needs_integrated), `heights` holds it: it is one of the starts.
+    pub fn solve(&mut self, solver: &mut HeightSolver, problem: ImageSurfaceProblem<'_>, heights: &mut [f32]) {
+        let surface = if self.coarser.is_empty() {
+            self.starts.advance(solver, &mut self.domain, problem, heights);
+            self.starts.surface()
         } else {
-            let mut effort = EVERY_CALL;
-            if let Some(smallest) = self.smallest.take() {
-                self.climb(solver, problem, &smallest);
-                // What reaches far is settled below; what is fine is settled by the calls that follow.
-                effort = if self.domain.pixels > MOST_INTERMEDIATE { EVERY_CALL } else { INTERMEDIATE };
-            }
+            let is_new = self.starts.has_next() && self.solve_coarse(solver, problem, heights);
+            let effort = if is_new { INTERMEDIATE } else { EVERY_CALL };
             problem.improve(solver, &mut self.domain, (LAST_SCALE, effort), &mut self.surface);
             &self.surface
         };
         for ((height, &surface), &inside) in heights.iter_mut().zip(surface).zip(&problem.image.mask) {
             *height = if inside { surface } else { f32::NAN };
         }
-        Ok(())
     }
 
-    /// Goes up from the smallest level.
-    fn climb(&mut self, solver: &mut HeightSolver, problem: ImageSurfaceProblem<'_>, smallest: &[f32]) {
-        for index in 0..self.between.len() {
-            let (finer, level) = self.between.split_at_mut(index);
-            level[0].view.load(finer.last().map_or(problem, |finer| finer.view.problem(problem.light)));
+    /// The next start at the smallest level; if it is the best so far, its surface goes up. Whether it did.
+    fn solve_coarse(
+        &mut self,
+        solver: &mut HeightSolver,
+        problem: ImageSurfaceProblem<'_>,
+        integrated: &[f32],
+    ) -> bool {
+        self.load_coarser(problem, integrated);
+        let Some((smallest, between)) = self.coarser.split_last_mut() else { return false };
+        let Level { view, domain, surface } = smallest;
+        if !self.starts.advance(solver, domain, view.problem(problem.light), surface) {
+            return false;
         }
-        let mut below = smallest;
-        for level in self.between.iter_mut().rev() {
-            upsample(below, &level.view.image, &mut level.surface);
+        surface.copy_from_slice(self.starts.surface());
+        let mut below = &*smallest;
+        for level in between.iter_mut().rev() {
+            upsample(&below.surface, &level.view.image, &mut level.surface);
             level.improve(solver, problem.light);
-            below = &level.surface;
+            below = level;
         }
-        upsample(below, problem.image, &mut self.surface);
+        upsample(&below.surface, problem.image, &mut self.surface);
+        true
+    }
+
+    /// Halves the problem from level to level, and the integrated surface where it is needed.
+    fn load_coarser(&mut self, problem: ImageSurfaceProblem<'_>, integrated: &[f32]) {
+        let needs_integrated = self.needs_integrated();
+        for index in 0..self.coarser.len() {
+            let (finer, level) = self.coarser.split_at_mut(index);
+            let (finer, surface) = match finer.last() {
+                None => (problem, integrated),
+                Some(finer) => (finer.view.problem(problem.light), &finer.surface[..]),
+            };
+            level[0].view.load(finer);
+            if needs_integrated {
+                downsample(surface, finer.image.size, &mut level[0].surface);
+            }
+        }
     }
 }
 
@@ -177,6 +167,12 @@ impl HalvedProblem {
         let [p, q] = &self.slopes;
         ImageSurfaceProblem { image: &self.image, light, slopes: [p, q], normal_weight: &self.normal_weight }
     }
+}
+
+/// A surface of `size` at half the resolution: heights are in pixels, so they halve, too.
+fn downsample(fine: &[f32], size: Size, coarse: &mut [f32]) {
+    size.halve(fine, coarse);
+    coarse.iter_mut().for_each(|height| *height *= 0.5);
 }
 
 /// A surface of half the resolution over the pixels of `image`, zero off its mask.

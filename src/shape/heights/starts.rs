@@ -5,9 +5,7 @@ use nalgebra::Matrix3;
 use super::domain::HeightDomain;
 use super::problem::{Bending, COLOUR_SCALES, Effort, HeightProblem, LAST_SCALE};
 use super::solver::HeightSolver;
-use crate::error::Result;
 use crate::light::Light;
-use crate::shape::integration::{IntegrationOptions, Integrator, Robustness};
 use crate::view::{ColourView, Size};
 
 /// Work on a start at each scale.
@@ -35,17 +33,6 @@ pub struct ImageSurfaceProblem<'a> {
 }
 
 impl<'a> ImageSurfaceProblem<'a> {
-    /// Heights that have the slopes, as far as heights can.
-    ///
-    /// # Errors
-    /// Those of the integration.
-    #[inline(never)]
-    pub fn integrate(&self, heights: &mut [f32]) -> Result<()> {
-        let [p, q] = self.slopes;
-        let options = IntegrationOptions { robustness: Robustness::Estimated, ..IntegrationOptions::default() };
-        Integrator::new(self.image.size, &self.image.mask)?.integrate(p, q, None, &options, heights).map(|_| ())
-    }
-
     /// Improves the heights `z`; their objective.
     #[inline(never)]
     pub fn improve(
