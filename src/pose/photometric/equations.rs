@@ -153,7 +153,8 @@ impl Equations {
     }
 
     /// Enters points.
-    #[inline(always)]
+    // One copy of it: visitors download each.
+    #[inline(never)]
     pub fn add(&mut self, points: &LinearisedPoints, weight: Doubles) {
         self.light.add(&points.basis, &points.residual, weight);
         let is_known = self.light.is_known;
