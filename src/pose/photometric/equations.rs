@@ -153,8 +153,7 @@ impl Equations {
     }
 
     /// Enters points.
-    // One copy of it: visitors download each.
-    #[inline(never)]
+    #[inline(always)]
     pub fn add(&mut self, points: &LinearisedPoints, weight: Doubles) {
         self.light.add(&points.basis, &points.residual, weight);
         let is_known = self.light.is_known;

@@ -25,11 +25,6 @@ pub(super) struct Evaluation<'a> {
     pub weighting: Weighting,
 }
 
-/// Variance of a normal along each of two tangents over the square of the error that its cubic claims: the error is that
-/// of both together, and counts the Gaussian weights of a window as if they were inverse variances. That makes it 1 / 0.62 of the
-/// variance that white noise leaves (0.617 to 0.634 for windows of 2 to 8 pixels, by summation).
-const NOISE_VARIANCE: f64 = 0.31;
-
 impl Evaluation<'_> {
     /// Sum of w rho + prior.
     pub fn objective(&self) -> f64 {
@@ -77,31 +72,8 @@ impl Evaluation<'_> {
 
     /// The equations of the pose, the light eliminated; `None` where the points do not determine the light.
     pub fn reduced_system(&self, frame: &Frame) -> Option<ReducedSystem> {
-        self.reduced_system_without(None, frame)
-    }
-
-    /// The same by instrumental variables, without what white noise of the normals adds to sums of products of their
-    /// functions: sum w var (f_a g_a + f_b g_b) along both tangents a and b. Otherwise normals that are off bend the light
-    /// towards less contrast, and the pose follows. With it where what is left would not determine the light.
-    pub fn unbiased_system(&self, frame: &Frame) -> Option<ReducedSystem> {
-        let noise = self.problem.depth_noise;
-        let errors = self.problem.normal_error.filter(|_| noise.is_white && noise.is_visible());
-        let unbiased = errors.and_then(|_| self.reduced_system_without(errors, frame));
-        unbiased.or_else(|| self.reduced_system(frame))
-    }
-
-    fn reduced_system_without(&self, errors: Option<&[f32]>, frame: &Frame) -> Option<ReducedSystem> {
-        let (problem, pose) = (self.problem, &self.state.pose);
-        let mut equations = Equations::new(problem.light.is_some(), self.model.has_instruments());
-        self.for_each_linearised(frame, |indices, points, weight| {
-            equations.add(points, weight);
-            let Some(errors) = errors else { return };
-            let error = Doubles::from(indices.map(|index| f64::from(errors[index as usize])));
-            let taken = Doubles::splat(-NOISE_VARIANCE) * error * error * weight;
-            for change in &self.model.along_tangents(problem.normals(pose, indices)) {
-                equations.add(change, taken);
-            }
-        });
+        let mut equations = Equations::new(self.problem.light.is_some(), self.model.has_instruments());
+        self.for_each_linearised(frame, |_, points, weight| equations.add(points, weight));
         equations.add_prior(self.problem.prior, self.weighting.prior, &self.off_the_mean_light());
         equations.reduce()
     }

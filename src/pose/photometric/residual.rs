@@ -9,7 +9,7 @@ use crate::light::{HARMONICS, Light, Polynomial, basis};
 use crate::numeric::{DOUBLE_LANES, Doubles, Real, dot};
 use crate::pose::increment::{Frame, UNKNOWNS};
 use crate::pose::spline_image::{ImagePoint, SplineImage};
-use crate::view::{Camera, cubic_normals};
+use crate::view::Camera;
 
 /// A derivative by the unknowns of the pose.
 pub(super) type Derivative = [Doubles; UNKNOWNS];
@@ -34,7 +34,6 @@ pub(super) struct Samples {
 }
 
 /// Residuals of points side by side with what the equations need of them.
-#[derive(Clone, Copy)]
 pub(super) struct LinearisedPoints {
     pub shown: Doubles,
     /// One for each channel.
@@ -118,47 +117,6 @@ impl<'a> ColourModel<'a> {
             residual,
             jacobian: rows(&sampled.gradient),
             instruments: self.instruments.map(|_| rows(&sampled.instruments)),
-            pixel_derivatives,
-            basis: basis(normals),
-        }
-    }
-
-    /// How r and its derivatives change with the normals along two tangents, for each radian.
-    pub fn along_tangents(&self, normals: [Doubles; 3]) -> [LinearisedPoints; 2] {
-        cubic_normals::tangents(normals).map(|tangent| {
-            // Everything is quadratic in the normal at most, so that differences over a whole unit are derivatives.
-            let [ahead, behind] = [0.5, -0.5].map(|share| {
-                self.by_normals([0, 1, 2].map(|axis: usize| normals[axis] + Doubles::splat(share) * tangent[axis]))
-            });
-            let mut change = ahead;
-            for channel in 0..3 {
-                change.residual[channel] = ahead.residual[channel] - behind.residual[channel];
-                for axis in 0..3 {
-                    change.jacobian[channel][axis] = ahead.jacobian[channel][axis] - behind.jacobian[channel][axis];
-                }
-            }
-            change.instruments = self.instruments.map(|_| change.jacobian);
-            change.basis.iter_mut().zip(&behind.basis).for_each(|(change, &behind)| *change = *change - behind);
-            change
-        })
-    }
-
-    /// What r and its derivatives owe to the normals alone.
-    #[inline(never)]
-    fn by_normals(&self, normals: [Doubles; 3]) -> LinearisedPoints {
-        let zero = Doubles::splat(0.0);
-        let (mut residual, mut jacobian) = ([zero; 3], [[zero; UNKNOWNS]; 3]);
-        for (channel, light) in self.light.iter().enumerate() {
-            let (shade, by_normal) = light.expand(normals);
-            residual[channel] = zero - shade;
-            jacobian[channel][..3].copy_from_slice(&cross(by_normal, normals));
-        }
-        let pixel_derivatives = [[zero; UNKNOWNS]; 2];
-        LinearisedPoints {
-            shown: zero,
-            residual,
-            jacobian,
-            instruments: None,
             pixel_derivatives,
             basis: basis(normals),
         }
