@@ -6,14 +6,10 @@ use bimodal_stereo::{Angles, Camera, Estimator, Options, Pinhole, Size, Stage, S
 /// More object pixels than a frame of 128x128, odd sides, part of the depth map missing.
 fn large(camera: Camera) -> Sample {
     let scale = if camera.is_orthographic() { 1.1 } else { 1.0 };
-    large_at(camera, Angles { alpha: 5.0, beta: 25.0, gamma: 10.0 }, scale)
-}
-
-fn large_at(camera: Camera, angles: Angles, scale: f64) -> Sample {
     let request = SampleRequest {
         size: Size { width: 235, height: 219 },
         light: light("window").unwrap(),
-        rotation: angles.rotation(),
+        rotation: Angles { alpha: 5.0, beta: 25.0, gamma: 10.0 }.rotation(),
         scale,
         overlap: 0.8,
         noise: 0.01,

@@ -13,7 +13,7 @@ use super::residual::{Derivative, LinearisedPoints};
 use super::state::Step;
 use crate::light::{COEFFICIENTS, CoefficientMatrix, Coefficients, HARMONICS, LightPrior};
 use crate::numeric::{Doubles, Real};
-use crate::pose::increment::{PoseMatrix, PoseVector, UNKNOWNS, fix_unknowns};
+use crate::pose::increment::{PoseMatrix, PoseVector, UNKNOWNS, fix_unknowns, inverse};
 
 /// A row for each unknown of the pose, a column for each of the light.
 type PoseByLight = SMatrix<f64, UNKNOWNS, COEFFICIENTS>;
@@ -207,7 +207,7 @@ impl ReducedSystem {
             score[k] = if held[k] { 0.0 } else { score[k] };
         }
         fix_unknowns(&mut matrix, held);
-        let pose = -matrix.lu().solve(&score)?;
+        let pose = -inverse(&matrix)? * score;
         let light = -(self.light + self.light_by_pose * pose);
         (pose.norm().is_finite() && light.norm().is_finite()).then_some(Step { pose, light })
     }
