@@ -57,7 +57,7 @@ function manifest() {
 }
 
 async function numerics({ file, target, flags }) {
-  // Messages of panics name files: without where they lie on this machine, which is nobody's business and 0.2 kB.
+  // Messages of panics name files: without where they lie on this machine, which is nobody's business.
   const registry = `${process.env.CARGO_HOME ?? `${homedir()}/.cargo`}/registry/src/`;
   const config = `target.${WASM}.rustflags=${JSON.stringify([...flags, `--remap-path-prefix=${registry}=`])}`;
   // Level 3 unrolls and inlines for a tenth of speed and a sixth of size; see .cargo/config.toml.

@@ -1,4 +1,4 @@
-//! Large views: the search and the first shapes work on coarse ones, and the end is that of all pixels.
+//! Large views: the search works on coarse ones, and the end is that of all pixels.
 
 use bimodal_stereo::scenes::{Sample, SampleRequest, Scene, light, surface};
 use bimodal_stereo::{Angles, Camera, Estimator, Options, Pinhole, Size, Stage, Start, Status, StepReport, Worker};
@@ -56,7 +56,7 @@ fn a_search_on_coarse_views_ends_where_all_pixels_say() {
         let apart = found.pose.degrees_to(&near.pose);
         assert!(apart < 0.3 * sigma.iter().map(|s| s * s).sum::<f64>().sqrt(), "{camera:?}: {apart} {sigma:?}");
         assert!((found.pose.scale / near.pose.scale - 1.0).abs() < 1e-3);
-        let middle = sample.depth_map_middle();
+        let middle = middle_of_depth(&sample);
         let off = found.pose.apply(middle) - near.pose.apply(middle);
         let pixel = camera.focal_length().map_or(1.0, |focal_length| near.pose.apply(middle).z / focal_length);
         assert!(off.xy().norm() < 0.1 * pixel, "{camera:?}: {off}");
@@ -68,15 +68,9 @@ fn a_search_on_coarse_views_ends_where_all_pixels_say() {
     }
 }
 
-trait Middle {
-    fn depth_map_middle(&self) -> nalgebra::Vector3<f64>;
-}
-
-impl Middle for Sample {
-    fn depth_map_middle(&self) -> nalgebra::Vector3<f64> {
-        let estimator = Estimator::new(self.colour_image(), &self.depth_map(), Options::paper()).unwrap();
-        estimator.depth().points.centroid()
-    }
+fn middle_of_depth(sample: &Sample) -> nalgebra::Vector3<f64> {
+    let estimator = Estimator::new(sample.colour_image(), &sample.depth_map(), Options::paper()).unwrap();
+    estimator.depth().points.centroid()
 }
 
 #[test]

@@ -14,7 +14,8 @@
 //! Method: rounds of damped Gauss-Newton with the light eliminated. A round fixes what is seen and the weights within H;
 //! weights that move with the pose would reward sliding to where there is little weight. The robust scale shrinks from
 //! twice to once three sigmas of what is left. At the end rounds of instrumental variables: the gradient of the predicted
-//! shading takes the place of the image's, whose shadows and paint would bias the pose. [`ContrastSearch`] runs it from many starts, coarse to fine.
+//! shading takes the place of the image's, whose shadows and paint would bias the pose. [`ContrastSearch`] runs it from
+//! many starts, coarse to fine.
 //!
 //! | file | what it holds |
 //! |---|---|

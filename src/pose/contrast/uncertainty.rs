@@ -12,9 +12,9 @@ use crate::pose::uncertainty::{Uncertainty, describe, weakest_of};
 /// Side of the tiles of the depth map whose scores count as one observation, depth pixels: three sigmas of the local
 /// means, and as they larger on larger objects.
 const TILE: f64 = 9.0;
-/// Errors that leave no residual, such as shadows that move with the relief, over those that do. Of sixteen found poses of
-/// five photographed objects (raccoon, panther, deer, sun, bag, 0 to 60 degrees off, 96x96) the worst wants 2.8, the
-/// median .7; the five others had no part in it.
+/// Errors that leave no residual, such as shadows that move with the relief, over those that do. Of thirteen poses by
+/// contrast of five photographed objects (raccoon, panther, deer, sun, bag, 0 to 60 degrees off, 96x96) the worst wants 2.8,
+/// the median 0.7; the five others had no part in it.
 const SIGMA_INFLATION: f64 = 3.0;
 /// Sigma of a direction that nothing is known about, radians or object sizes.
 const UNKNOWN: f64 = 1e3;
