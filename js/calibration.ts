@@ -1,9 +1,9 @@
 import { unsupported } from "./check.js";
-import type { CalibrationPair, CheckOptions, CheckReport, Pose } from "./types.js";
+import type { CheckFrame, CheckOptions, CheckReport, Pose } from "./types.js";
 
-/** Which of some candidate calibrations the pairs agree with. */
+/** Which of some candidate calibrations the frames agree with. */
 export async function checkCalibration(
-  _pairs: CalibrationPair[],
+  _frames: CheckFrame[],
   _candidates: Record<string, Pose>,
   _options?: CheckOptions,
 ): Promise<CheckReport> {

@@ -177,28 +177,71 @@ export interface RunOptions {
   onStep?: (report: StepReport) => void;
 }
 
-/** One frame of a rig whose calibration is in question. */
-export interface CalibrationPair {
-  image: ColorImage;
-  depth: DepthMap;
+/**
+ * A camera of a rig. Distortion as OpenCV has it: of the model "brown" (the default) 4, 5 or 8 numbers, k1 k2 p1 p2 [k3 [k4 k5 k6]];
+ * of the model "fisheye" (Kannala-Brandt) the 4 numbers k1 k2 k3 k4. Units: pixels; pixel centres are whole numbers.
+ */
+export interface RigCamera extends Omit<Pinhole, "distortion"> {
+  model?: "brown" | "fisheye";
+  distortion?: ArrayLike<number>;
 }
 
+/** One pair of a rig whose calibration is in question: the whole frames; masks are optional. Depth is metric. */
+export interface CheckFrame {
+  /** Without a camera the focal length is estimated, the principal point being the middle of the image. */
+  image: Omit<ColorImage, "camera"> & { camera?: RigCamera };
+  /** A depth map with its camera, or an organised cloud in metres. */
+  depth: Omit<DepthMap, "camera" | "normals"> & { camera?: RigCamera };
+  /** How the report calls it; "frame 1" and so on without it. */
+  name?: string;
+}
+
+/** What of a frame bears on the calibration. */
+export type CheckCue = "shading" | "edges" | "information" | "silhouette";
+
 export interface CheckOptions {
+  /** The cues to use; all without it. */
+  cues?: CheckCue[];
+  /** Threads, this one included: 1 to 16, default 1. The result is the same for any number of them. */
+  workers?: number;
   signal?: AbortSignal;
+  /** Share of the work done, 0 .. 1, and what is being done. */
   onProgress?: (share: number, message: string) => void;
 }
 
-export interface CheckReport {
-  verdict: "consistent" | "off" | "undecided";
+export type CheckVerdict = "consistent" | "off" | "undecided";
+
+export interface CandidateReport {
+  verdict: CheckVerdict;
+  /** The verdict in a sentence with its numbers. */
   reason: string;
-  decidedBy: "shading" | "edges" | "information";
+  /** How far the candidate is from the estimate: turn in degrees, and shift at the scene's middle in millimetres. */
+  offDegrees: number;
+  offMillimetres: number;
+  /** Expected reprojection error of the candidate at the scene's depth, pixels of the colour image, and its 95 % interval. */
+  pixels: number;
+  interval: [number, number];
+  /** Probability of a distance from the estimate as large as this, were the candidate right. */
+  probability: number;
+}
+
+/** What a check of a calibration found. The first candidate is the one in question. */
+export interface CheckReport {
+  verdict: CheckVerdict;
+  reason: string;
+  /** What was guessed or looks wrong, in words; any of them keeps the verdict from being better than the files are. */
+  warnings: string[];
+  /** The extrinsics that fit best, scale 1: P_colour = R P_depth + t, metres. */
   estimate: Pose;
-  uncertainty: StepReport["uncertainty"];
-  candidates: Record<
-    string,
-    { verdict: string; offDegrees: number; offMillimetres: number; shading: number; edges: number; information: number }
-  >;
-  sensitivity: { cue: string; axis: string; offsets: number[]; values: number[] }[];
+  /** 36 numbers, row-major: a rotation vector in rad about the scene's middle, then a translation in m, in the colour frame. */
+  covariance: number[];
+  health: { pixels: number; interval: [number, number] };
+  candidates: Record<string, CandidateReport>;
+  /** Each cue's share of the answer, 0 .. 1, and how sharp it is: one over its sigma in pixels of the colour image. */
+  cues: Record<string, { share: number; sharpness: number }>;
+  frames: { name: string; share: number; note?: string }[];
+  /** How the log likelihood of each cue falls about the estimate: offsets in degrees (rx ry rz) or millimetres (tx ty tz). */
+  sensitivity: { cue: string; axis: "rx" | "ry" | "rz" | "tx" | "ty" | "tz"; offsets: number[]; values: number[] }[];
 }
 
 /** A mask read from a file: 255 where the object is, else 0. */
