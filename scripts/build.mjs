@@ -7,8 +7,11 @@ import { withoutFeature } from "./wasm-features.mjs";
 import { Failure, inRoot, must, say, script, seconds, stamp } from "./shell.mjs";
 
 const COPIED = ["README.md", "CHANGELOG.md", "LICENSE-MIT", "LICENSE-APACHE"];
-const SOURCES = ["src", "js", "Cargo.toml", "Cargo.lock", "rust-toolchain.toml", ".cargo", "package-lock.json"];
+/** What the .wasm files are made of; the rest of the sources is bundled in a second. */
+const NUMERICS = ["src", "Cargo.toml", "Cargo.lock", "rust-toolchain.toml", ".cargo", "scripts/build.mjs", "scripts/wasm-features.mjs"];
+const SOURCES = [...NUMERICS, "js", "package-lock.json"];
 const MARK = "pkg/.stamp";
+const NUMERICS_MARK = "target/.numerics-stamp";
 const MODULE = "bimodal_stereo";
 /**
  * Where it may, wasm-bindgen lets exports return references. Node 20 aborts as a whole when it throws away optimised code that is
@@ -78,7 +81,20 @@ async function numerics({ file, target, flags }) {
   // Nothing reads or writes the first kilobyte but the stack, if it overflows: so offsets fold into addresses.
   const smaller = ["-Oz", "--gufa", "--converge", "--coalesce-locals-learning", "--low-memory-unused"];
   const bare = ["--strip-producers", "--strip-target-features"];
-  await node("binaryen/bin/wasm-opt", ...smaller, ...apart, ...bare, `${target}/wasm-bindgen/${MODULE}_bg.wasm`, "-o", `pkg/${file}`);
+  await node("binaryen/bin/wasm-opt", ...smaller, ...apart, ...bare, `${target}/wasm-bindgen/${MODULE}_bg.wasm`, "-o", `target/${file}`);
+}
+
+/** Builds the .wasm files where their sources have changed. */
+async function allNumerics() {
+  const wanted = stamp(NUMERICS);
+  const made = FLAVOURS.flatMap(({ file, target }) => [`target/${file}`, `${target}/wasm-bindgen/${MODULE}.js`]);
+  const isMade = [NUMERICS_MARK, ...made].every((path) => existsSync(inRoot(path)));
+  if (isMade && readFileSync(inRoot(NUMERICS_MARK), "utf8") === wanted) return;
+  rmSync(inRoot(NUMERICS_MARK), { force: true });
+  // Side by side: the last and longest crate of each keeps one processor busy.
+  await Promise.all(FLAVOURS.map(numerics));
+  checkGlue();
+  writeFileSync(inRoot(NUMERICS_MARK), wanted);
 }
 
 /** One glue loads either file, so both must have been given the same: its imports, and what is exported with which types. */
@@ -108,16 +124,15 @@ async function facade() {
 }
 
 export async function build() {
-  const wanted = stamp([...SOURCES, ...COPIED, "scripts/build.mjs", "scripts/wasm-features.mjs"]);
+  const wanted = stamp([...SOURCES, ...COPIED]);
   const complete = [MARK, `target/wasm-bindgen/${MODULE}.d.ts`].every((path) => existsSync(inRoot(path)));
   if (complete && readFileSync(inRoot(MARK), "utf8") === wanted) return say("pkg/ is up to date");
   const start = performance.now();
   say("building pkg/");
   rmSync(inRoot("pkg"), { recursive: true, force: true });
   mkdirSync(inRoot("pkg"));
-  // Side by side: the last and longest crate of each keeps one processor busy.
-  await Promise.all(FLAVOURS.map(numerics));
-  checkGlue();
+  await allNumerics();
+  for (const { file } of FLAVOURS) cpSync(inRoot(`target/${file}`), inRoot("pkg", file));
   await facade();
   for (const file of COPIED) cpSync(inRoot(file), inRoot("pkg", file));
   writeFileSync(inRoot("pkg/package.json"), `${JSON.stringify(manifest(), null, 2)}\n`);
