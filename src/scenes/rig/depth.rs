@@ -25,7 +25,7 @@ const LATERAL: f64 = 0.5;
 const DISPARITY: f64 = 580.0 * 0.075;
 const DISPARITY_STEP: f64 = 0.125;
 /// Cosine between surface and line of sight below which nothing comes back, and that where everything does.
-const GRAZING: [f64; 2] = [0.12, 0.25];
+const GRAZING: [f64; 2] = [0.08, 0.18];
 /// A jump of depth between neighbours, as a share of it, that is a rim.
 const RIM: f64 = 0.03;
 /// Shares of the pixels at rims that are lost, and that lie between both surfaces.
@@ -34,8 +34,8 @@ const FLYING: f64 = 0.15;
 /// A point lies in the projector's shadow of what is nearer by this share.
 const SHADOW_BIAS: f64 = 0.008;
 /// Samples of the projector's view for each pixel of the camera, and how much wider it looks.
-const PROJECTOR_SAMPLES: f64 = 2.0;
-const PROJECTOR_REACH: f64 = 1.5;
+const PROJECTOR_SAMPLES: f64 = 1.5;
+const PROJECTOR_REACH: f64 = 1.3;
 
 /// What the depth camera would see without flaws.
 pub struct Seen {

@@ -33,6 +33,8 @@ pub struct Rays {
     pub size: Size,
     /// x / z and y / z; NaN where the lens lets no ray through.
     slopes: Vec<[f32; 2]>,
+    /// Least and largest of either slope: what lies beyond is not seen, wherever the lens model would put it.
+    bounds: [[f64; 2]; 2],
 }
 
 /// What the rays of a camera meet first.
@@ -56,7 +58,9 @@ pub struct Hit {
 impl Rays {
     pub fn new(camera: &RigCamera, size: Size, samples: usize) -> Self {
         let size = Size { width: size.width * samples, height: size.height * samples };
-        let mut rays = Self { camera: *camera, samples: samples as f64, size, slopes: Vec::with_capacity(size.len()) };
+        let nowhere = [f64::INFINITY, f64::NEG_INFINITY];
+        let slopes = Vec::with_capacity(size.len());
+        let mut rays = Self { camera: *camera, samples: samples as f64, size, slopes, bounds: [nowhere; 2] };
         let count = size.width.div_ceil(NODES) + 3;
         let mut nodes = vec![[0.0; 2]; count];
         for row in 0..size.height {
@@ -70,6 +74,12 @@ impl Rays {
                 let near = &nodes[column / NODES..column / NODES + 4];
                 let weights = cubic(share);
                 rays.slopes.push([0, 1].map(|axis| (0..4).map(|k| weights[k] * near[k][axis]).sum::<f64>() as f32));
+            }
+        }
+        for (axis, [least, largest]) in rays.bounds.iter_mut().enumerate() {
+            // The least of a number and NaN is the number.
+            for slope in rays.slopes.iter().map(|slopes| f64::from(slopes[axis])) {
+                (*least, *largest) = (least.min(slope), largest.max(slope));
             }
         }
         rays
@@ -113,22 +123,32 @@ impl Rays {
     }
 
     fn draw(&self, corners: [&Corner; 3], triangle: u32, hits: &mut Hits) {
+        if (0..2).any(|axis| {
+            let [a, b, c] = corners.map(|corner| corner.slopes[axis]);
+            let [least, largest] = self.bounds[axis];
+            a.max(b).max(c) < least || a.min(b).min(c) > largest
+        }) {
+            return;
+        }
         let Some([first, second, third]) = barycentric(corners.map(|corner| corner.slopes)) else { return };
         let inverse: [f64; 3] = std::array::from_fn(|k| {
             first[k] * corners[0].inverse + second[k] * corners[1].inverse + third[k] * corners[2].inverse
         });
         let columns = span(corners.map(|corner| corner.position[0]), self.size.width);
+        if columns.is_empty() {
+            return;
+        }
+        let at = |plane: &[f64; 3], [x, y]: [f64; 2]| plane[0] * x + plane[1] * y + plane[2];
         for row in span(corners.map(|corner| corner.position[1]), self.size.height) {
-            for column in columns.clone() {
-                let index = self.size.index(column, row);
-                let [x, y] = self.slopes[index].map(f64::from);
-                let at = |plane: &[f64; 3]| plane[0] * x + plane[1] * y + plane[2];
-                let inside = at(&first) >= -EDGE_TOLERANCE && at(&second) >= -EDGE_TOLERANCE;
-                if inside && at(&third) >= -EDGE_TOLERANCE {
-                    let depth = (1.0 / at(&inverse)) as f32;
-                    if depth < hits.depth[index] {
-                        hits.depth[index] = depth;
-                        hits.triangles[index] = triangle;
+            let line = self.size.index(columns.start, row)..self.size.index(columns.end, row);
+            let found = hits.depth[line.clone()].iter_mut().zip(&mut hits.triangles[line.clone()]);
+            for (slopes, (depth, seen)) in self.slopes[line].iter().zip(found) {
+                let slopes = slopes.map(f64::from);
+                let least = at(&first, slopes).min(at(&second, slopes)).min(at(&third, slopes));
+                if least >= -EDGE_TOLERANCE {
+                    let met = (1.0 / at(&inverse, slopes)) as f32;
+                    if met < *depth {
+                        (*depth, *seen) = (met, triangle);
                     }
                 }
             }
@@ -195,6 +215,7 @@ fn span(coordinates: [f64; 3], length: usize) -> std::ops::Range<usize> {
     let [a, b, c] = coordinates;
     let (low, high) = (a.min(b).min(c), a.max(b).max(c));
     let margin = MARGIN + MARGIN_SHARE * (high - low);
-    // A cast to an integer saturates: what lies left of the view ends at sample 0 and is empty.
-    (low - margin).ceil().max(0.0) as usize..((high + margin).floor() as usize + 1).min(length)
+    // Before the casts, which would saturate.
+    let within = |position: f64| position.clamp(0.0, length as f64) as usize;
+    within((low - margin).ceil())..within((high + margin).floor() + 1.0)
 }

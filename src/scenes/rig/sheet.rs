@@ -8,12 +8,12 @@ use crate::scenes::flaws::Chance;
 /// Cells along the longer side: 4 mm of a sheet of 0.8 m.
 const CELLS: usize = 192;
 /// Creases of crumpled paper, at least and at most.
-const CREASES: [f64; 2] = [10.0, 22.0];
+const CREASES: [f64; 2] = [16.0, 32.0];
 /// Bend at a crease, radians at most.
-const BEND: f64 = 0.7;
+const BEND: f64 = 1.2;
 /// Folds of a cloth, at least and at most, and their depth in metres at most.
-const FOLDS: [f64; 2] = [4.0, 8.0];
-const FOLD_DEPTH: f64 = 0.035;
+const FOLDS: [f64; 2] = [5.0, 10.0];
+const FOLD_DEPTH: f64 = 0.05;
 /// Depth of either in metres at most: more would reach the background.
 const DEPTH: f64 = 0.16;
 
