@@ -27,10 +27,19 @@ const FLAVOURS = [
   { file: `${MODULE}_bg.wasm`, target: "target", flags: ["-C", `target-feature=-${REFERENCES}`] },
   { file: `${MODULE}_scalar_bg.wasm`, target: "target/scalar", flags: ["-C", `target-feature=-${REFERENCES},-simd128`] },
 ];
+/** The calibration check: bindings of its own, loaded on demand, for machines with SIMD and without. */
+const CHECK = {
+  file: `${MODULE}_check_bg.wasm`,
+  target: "target/check",
+  flags: ["-C", `target-feature=-${REFERENCES},-simd128`],
+  features: ["--features", "calibration"],
+  name: `${MODULE}_check`,
+};
+const ALL = [...FLAVOURS, CHECK];
 /** One for programs, one for what reads files, one for the page's fields, and one for the threads of workers. */
 const ENTRIES = { index: "index", files: "files", options: "options", thread: "workers/thread" };
 /** Declarations that no entry mentions; one of them names the generated bindings, which stay inside. */
-const INTERNAL = ["check.d.ts", "engine.d.ts", "node.d.ts", "npy.d.ts", "plain.d.ts", "workers"];
+const INTERNAL = ["breathe.d.ts", "check.d.ts", "calibration/check.d.ts", "calibration/run.d.ts", "engine.d.ts", "node.d.ts", "npy.d.ts", "plain.d.ts", "workers"];
 
 const node = (module, ...args) => must(process.execPath, [inRoot("node_modules", module), ...args]);
 
@@ -51,20 +60,20 @@ function manifest() {
     exports: {
       ".": { types: "./index.d.ts", default: "./index.js" },
       "./files": { types: "./files.d.ts", default: "./files.js" },
-      ...Object.fromEntries(FLAVOURS.map(({ file }) => [`./${file}`, `./${file}`])),
+      ...Object.fromEntries(ALL.map(({ file }) => [`./${file}`, `./${file}`])),
       "./package.json": "./package.json",
     },
     types: "./index.d.ts",
-    files: ["*.js", "*.d.ts", "*.wasm", ...COPIED],
+    files: ["*.js", "*.d.ts", "calibration", "*.wasm", ...COPIED],
   };
 }
 
-async function numerics({ file, target, flags }) {
+async function numerics({ file, target, flags, features = [], name = MODULE }) {
   // Messages of panics name files: without where they lie on this machine, which is nobody's business.
   const registry = `${process.env.CARGO_HOME ?? `${homedir()}/.cargo`}/registry/src/`;
   const config = `target.${WASM}.rustflags=${JSON.stringify([...flags, `--remap-path-prefix=${registry}=`])}`;
   // Level 3 unrolls and inlines for a tenth of speed and a sixth of size; see .cargo/config.toml.
-  await must("cargo", ["build", "--release", "--lib", "--target", WASM, "--target-dir", target, "--config", config], {
+  await must("cargo", ["build", "--release", "--lib", ...features, "--target", WASM, "--target-dir", target, "--config", config], {
     env: { CARGO_PROFILE_RELEASE_OPT_LEVEL: "2" },
   });
   // The standard library was compiled with references, and the linker says so of the whole.
@@ -72,7 +81,7 @@ async function numerics({ file, target, flags }) {
   const compiled = readFileSync(inRoot(`${target}/${WASM}/release/${MODULE}.wasm`));
   writeFileSync(linked, withoutFeature(compiled, REFERENCES));
   await must(tool("wasm-bindgen"), [
-    ...["--target", "web", "--omit-default-module-path", "--out-dir", `${target}/wasm-bindgen`],
+    ...["--target", "web", "--omit-default-module-path", "--out-dir", `${target}/wasm-bindgen`, "--out-name", name],
     linked,
   ]);
   // Level "z" gives the last kilobyte; speed is LLVM's work. Binaryen would put functions of one caller into it, whatever their size:
@@ -81,18 +90,18 @@ async function numerics({ file, target, flags }) {
   // Nothing reads or writes the first kilobyte but the stack, if it overflows: so offsets fold into addresses.
   const smaller = ["-Oz", "--gufa", "--converge", "--coalesce-locals-learning", "--low-memory-unused"];
   const bare = ["--strip-producers", "--strip-target-features"];
-  await node("binaryen/bin/wasm-opt", ...smaller, ...apart, ...bare, `${target}/wasm-bindgen/${MODULE}_bg.wasm`, "-o", `target/${file}`);
+  await node("binaryen/bin/wasm-opt", ...smaller, ...apart, ...bare, `${target}/wasm-bindgen/${name}_bg.wasm`, "-o", `target/${file}`);
 }
 
 /** Builds the .wasm files where their sources have changed. */
 async function allNumerics() {
   const wanted = stamp(NUMERICS);
-  const made = FLAVOURS.flatMap(({ file, target }) => [`target/${file}`, `${target}/wasm-bindgen/${MODULE}.js`]);
+  const made = ALL.flatMap(({ file, target, name = MODULE }) => [`target/${file}`, `${target}/wasm-bindgen/${name}.js`]);
   const isMade = [NUMERICS_MARK, ...made].every((path) => existsSync(inRoot(path)));
   if (isMade && readFileSync(inRoot(NUMERICS_MARK), "utf8") === wanted) return;
   rmSync(inRoot(NUMERICS_MARK), { force: true });
   // Side by side: the last and longest crate of each keeps one processor busy.
-  await Promise.all(FLAVOURS.map(numerics));
+  await Promise.all(ALL.map(numerics));
   checkGlue();
   writeFileSync(inRoot(NUMERICS_MARK), wanted);
 }
@@ -132,7 +141,7 @@ export async function build() {
   rmSync(inRoot("pkg"), { recursive: true, force: true });
   mkdirSync(inRoot("pkg"));
   await allNumerics();
-  for (const { file } of FLAVOURS) cpSync(inRoot(`target/${file}`), inRoot("pkg", file));
+  for (const { file } of ALL) cpSync(inRoot(`target/${file}`), inRoot("pkg", file));
   await facade();
   for (const file of COPIED) cpSync(inRoot(file), inRoot("pkg", file));
   writeFileSync(inRoot("pkg/package.json"), `${JSON.stringify(manifest(), null, 2)}\n`);
@@ -140,7 +149,7 @@ export async function build() {
 
   const kilobytes = (bytes) => `${(bytes / 1000).toFixed(0)} kB`;
   say(`built pkg/ (${seconds(start)})`);
-  for (const { file } of FLAVOURS) {
+  for (const { file } of ALL) {
     const bytes = readFileSync(inRoot("pkg", file));
     say(`${file}: ${kilobytes(bytes.length)}, ${kilobytes(gzipSync(bytes).length)} gzipped`);
   }

@@ -59,7 +59,10 @@ mod view;
 #[cfg(target_arch = "wasm32")]
 mod wasm;
 
-pub use calibration::{Lens, RigCamera};
+pub use calibration::{
+    CalibrationCheck, CandidateReport, CheckReport, CheckVerdict, Cue, CueReport, FrameReport, Health, Lens, Overlay,
+    RigCamera, RigView, Sensitivity, overlay,
+};
 pub use error::{Error, ErrorKind, Result};
 pub use estimator::{Estimator, Finding, RefinementTask, Surface, Task, Worker};
 pub use light::{COEFFICIENTS, CoefficientMatrix, Light, LightFit, LightFitter, LightPrior};
