@@ -1,0 +1,79 @@
+/** Extrinsics as OpenCV's FileStorage and Kalibr's chain of cameras have them, both YAML. */
+import { list } from "./numbers.js";
+import { type Camera, type Rig, padded, reaches, rows } from "./rig.js";
+
+const SAYS = "P_colour = R P_depth + t, metres.";
+
+function matrix(name: string, height: number, width: number, values: readonly number[]): string[] {
+  return [`${name}: !!opencv-matrix`, `   rows: ${height}`, `   cols: ${width}`, "   dt: d", `   data: [ ${list(values)} ]`];
+}
+
+/** The names that OpenCV's stereo_calib sample uses for its two cameras; it leaves out size and model, whose words are those of ROS. */
+function opencvCamera(camera: Camera | undefined, index: 1 | 2): string[] {
+  if (camera === undefined) return [];
+  const { fx, fy, cx, cy, distortion, model, size } = camera;
+  const coefficients = distortion.length > 0 ? distortion : padded([], 5);
+  return [
+    ...(size ? [`image_size${index}: [ ${size.width}, ${size.height} ]`] : []),
+    `distortion_model${index}: "${model === "fisheye" ? model : coefficients.length === 8 ? "rational_polynomial" : "plumb_bob"}"`,
+    ...matrix(`M${index}`, 3, 3, [fx, 0, cx, 0, fy, cy, 0, 0, 1]),
+    ...matrix(`D${index}`, 1, coefficients.length, coefficients),
+  ];
+}
+
+/** As `cv::stereoCalibrate` has it: R and T carry points of the first camera into the second one's frame. */
+export function opencvYaml(rig: Rig): string {
+  return [
+    "%YAML:1.0",
+    "---",
+    `# ${SAYS} Camera 1 is the depth camera, camera 2 the colour camera.`,
+    ...matrix("R", 3, 3, rig.rotation),
+    ...matrix("T", 3, 1, rig.translation),
+    ...opencvCamera(rig.depth, 1),
+    ...opencvCamera(rig.colour, 2),
+    "",
+  ].join("\n");
+}
+
+/** Kalibr's words for a distortion, and its numbers; nothing where Kalibr has no such model. */
+function kalibrDistortion({ model, distortion }: Camera): { word: string; coefficients: number[] } | undefined {
+  if (model === "fisheye") return { word: "equidistant", coefficients: distortion };
+  if (reaches(distortion, 4)) return undefined;
+  return { word: "radtan", coefficients: padded(distortion, 4) };
+}
+
+function kalibrCamera(camera: Camera | undefined, name: string, notes: string[]): string[] {
+  const leftOut = (why: string): string[] => {
+    notes.push(why);
+    return [`  # ${why}`];
+  };
+  if (camera === undefined) return leftOut(`the ${name} camera's intrinsics are not known`);
+  const distortion = kalibrDistortion(camera);
+  const { fx, fy, cx, cy, size } = camera;
+  return [
+    "  camera_model: pinhole",
+    ...(distortion
+      ? [`  distortion_coeffs: [${list(distortion.coefficients)}]`, `  distortion_model: ${distortion.word}`]
+      : leftOut(`the ${name} camera's distortion is left out: Kalibr's radtan has k1 k2 p1 p2 alone, and this one has more`)),
+    `  intrinsics: [${list([fx, fy, cx, cy])}]`,
+    ...(size ? [`  resolution: [${size.width}, ${size.height}]`] : leftOut(`the ${name} camera's resolution is not known`)),
+  ];
+}
+
+/** T_cn_cnm1 of the second camera carries points of the first one into its frame. */
+export function kalibrYaml(rig: Rig, notes: string[]): string {
+  return [
+    `# ${SAYS} cam0 is the depth camera, cam1 the colour camera, and T_cn_cnm1 is (R t).`,
+    "cam0:",
+    "  cam_overlaps: [1]",
+    ...kalibrCamera(rig.depth, "depth", notes),
+    "  rostopic: /cam0/image_raw",
+    "cam1:",
+    "  T_cn_cnm1:",
+    ...rows(rig).map((values) => `  - [${list(values)}]`),
+    "  cam_overlaps: [0]",
+    ...kalibrCamera(rig.colour, "colour", notes),
+    "  rostopic: /cam1/image_raw",
+    "",
+  ].join("\n");
+}
