@@ -18,7 +18,7 @@ function rotation(x, y, z, w) {
 }
 
 const pose = (turn, translation) => ({ scale: 1, rotation: rotation(...turn), translation, angles: { alpha: 0, beta: 0, gamma: 0 } });
-const vga = { width: 640, height: 480 };
+const vga = [640, 480];
 
 export const RIGS = {
   /** A depth sensor without distortion beside a colour camera with it. */
@@ -27,7 +27,7 @@ export const RIGS = {
     context: {
       depth: { fx: 580.6, fy: 581.1, cx: 313.45, cy: 238.4, distortion: [0, 0, 0, 0, 0] },
       colour: { fx: 517.306408, fy: 516.469215, cx: 318.643040, cy: 255.313989, distortion: [0.262383, -0.953104, -0.005358, 0.002628, 1.163314] },
-      sizes: { depth: vga, colour: { width: 1280, height: 960 } },
+      sizes: { depth: vga, colour: [1280, 960] },
     },
   },
   /** Nearly half a turn, tiny and round numbers, the models with fewest and most numbers. */
@@ -36,7 +36,7 @@ export const RIGS = {
     context: {
       depth: { model: "fisheye", fx: 300, fy: 300.5, cx: 320, cy: 240, distortion: [0.01, -1e-7, 0, 0.25] },
       colour: { fx: 1000, fy: 1001, cx: 640, cy: 360, distortion: [0.1, 0.2, 0.001, 0.002, 0.3, 0.4, 0.5, 0.6] },
-      sizes: { depth: vga, colour: { width: 1280, height: 720 } },
+      sizes: { depth: vga, colour: [1280, 720] },
       frames: { depth: "tof_optical_frame", colour: "rig/colour" },
     },
   },

@@ -7,10 +7,10 @@ const columns = (matrix: readonly (readonly number[])[]): number[] =>
   (matrix[0] ?? []).flatMap((_, column) => matrix.map((row) => row[column] ?? NaN));
 
 /** What Open3D itself writes for intrinsics that nobody has set. */
-const UNSET = { width: -1, height: -1 };
+const UNSET = [-1, -1] as const;
 
 function open3dIntrinsic(camera: Camera | undefined, notes: string[]): string[] {
-  const { width, height } = camera?.size ?? UNSET;
+  const [width, height] = camera?.size ?? UNSET;
   if (camera === undefined) notes.push("the colour camera's intrinsics are not known: the file says 1 0 0, 0 1 0, 0 0 1");
   else if (camera.size === undefined) notes.push("the colour camera's size is not known: the file says -1");
   if (camera && reaches(camera.distortion, 0)) {
@@ -64,7 +64,7 @@ function realsenseCamera(camera: Camera | undefined, key: string, name: string, 
     notes.push(`the ${name} camera's distortion is left out: librealsense has k1 k2 p1 p2 k3 alone, and this one has more`);
   }
   const lines = [
-    ...(size ? [`    "width": ${size.width}`, `    "height": ${size.height}`] : []),
+    ...(size ? [`    "width": ${size[0]}`, `    "height": ${size[1]}`] : []),
     ...Object.entries({ ppx: cx, ppy: cy, fx, fy }).map(([member, value]) => `    "${member}": ${list([value])}`),
     ...(distortion ? [`    "model": "${distortion.model}"`, `    "coeffs": [${list(distortion.coeffs)}]`] : []),
   ];

@@ -5,16 +5,14 @@
 import { BimodalError } from "../../errors.js";
 import type { Pose, RigCamera } from "../../types.js";
 
-export interface Size {
-  width: number;
-  height: number;
-}
+/** Width and height in pixels. */
+export type Size = readonly [width: number, height: number];
 
 /** What is known of the rig beside the pose; a format that has a place for it holds it. */
 export interface RigContext {
   colour?: RigCamera | undefined;
   depth?: RigCamera | undefined;
-  /** Pixels of both cameras' pictures. */
+  /** Of both cameras' pictures. */
   sizes?: { colour?: Size | undefined; depth?: Size | undefined } | undefined;
   /** ROS names of both cameras' optical frames; by default those of the RealSense driver. */
   frames?: { colour?: string | undefined; depth?: string | undefined } | undefined;
@@ -67,10 +65,10 @@ function checkRotation(r: readonly number[]): void {
 
 function size(value: Size | undefined, field: string): Size | undefined {
   if (value === undefined) return undefined;
-  const { width, height } = value;
+  const [width, height] = value;
   const isSize = [width, height].every((side) => Number.isSafeInteger(side) && side > 0);
   if (!isSize) throw new BimodalError("size", `${field}: must be whole numbers above zero (got ${width} x ${height})`, field);
-  return { width, height };
+  return [width, height];
 }
 
 function camera(given: RigCamera | undefined, pixels: Size | undefined, name: "colour" | "depth"): Camera | undefined {

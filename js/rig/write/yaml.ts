@@ -14,7 +14,7 @@ function opencvCamera(camera: Camera | undefined, index: 1 | 2): string[] {
   const { fx, fy, cx, cy, distortion, model, size } = camera;
   const coefficients = distortion.length > 0 ? distortion : padded([], 5);
   return [
-    ...(size ? [`image_size${index}: [ ${size.width}, ${size.height} ]`] : []),
+    ...(size ? [`image_size${index}: [ ${size.join(", ")} ]`] : []),
     `distortion_model${index}: "${model === "fisheye" ? model : coefficients.length === 8 ? "rational_polynomial" : "plumb_bob"}"`,
     ...matrix(`M${index}`, 3, 3, [fx, 0, cx, 0, fy, cy, 0, 0, 1]),
     ...matrix(`D${index}`, 1, coefficients.length, coefficients),
@@ -56,7 +56,7 @@ function kalibrCamera(camera: Camera | undefined, name: string, notes: string[])
       ? [`  distortion_coeffs: [${list(distortion.coefficients)}]`, `  distortion_model: ${distortion.word}`]
       : leftOut(`the ${name} camera's distortion is left out: Kalibr's radtan has k1 k2 p1 p2 alone, and this one has more`)),
     `  intrinsics: [${list([fx, fy, cx, cy])}]`,
-    ...(size ? [`  resolution: [${size.width}, ${size.height}]`] : leftOut(`the ${name} camera's resolution is not known`)),
+    ...(size ? [`  resolution: [${size.join(", ")}]`] : leftOut(`the ${name} camera's resolution is not known`)),
   ];
 }
 

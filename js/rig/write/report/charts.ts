@@ -2,7 +2,7 @@
 import type { CheckReport } from "../../../types.js";
 import { type Curve, SIGMAS_95, curve } from "./curves.js";
 import { type Markup, html } from "./markup.js";
-import { digits, measure } from "./numbers.js";
+import { brief, digits, measure } from "./numbers.js";
 
 type Axis = CheckReport["sensitivity"][number]["axis"];
 
@@ -39,7 +39,7 @@ function ticks(from: number, to: number): number[] {
 }
 
 /** Lengths in units of the drawing. */
-const INTERVALS = { width: 640, left: 150, right: 20, line: 28, axis: 34 };
+const INTERVALS = { width: 400, left: 120, right: 14, line: 24, axis: 34 };
 
 export interface Interval {
   name: string;
@@ -63,12 +63,12 @@ export function intervals(all: readonly Interval[]): Markup | undefined {
   const base = known.length * line + 6;
   const said = known.map(({ name, value, interval }) => `${name}: ${digits(value)} (${digits(interval[0])} to ${digits(interval[1])})`).join("; ");
   return html`<svg class="intervals" viewBox="0 0 ${width} ${height}" role="img" aria-label="Expected reprojection error in pixels, with its 95 % interval. ${said}">
-${ticks(0, end).map((tick) => html`<path class="grid" d="M${x(tick)} 0V${base}"/><text class="tick" x="${x(tick)}" y="${base + 13}" text-anchor="middle">${digits(tick, 2)}</text>`)}
+${ticks(0, end).map((tick) => html`<path class="grid" d="M${x(tick)} 0V${base}"/><text class="tick" x="${x(tick)}" y="${base + 13}" text-anchor="middle">${brief(tick)}</text>`)}
 <text class="tick" x="${(left + width - right) / 2}" y="${height - 1}" text-anchor="middle">expected reprojection error, pixels</text>
 ${known.map(({ name, value, interval, isEstimate }, index) => {
   const y = (index + 0.5) * line;
   const kind = isEstimate ? "estimate" : "candidate";
-  return html`<text class="label" x="${left - 10}" y="${y + 4}" text-anchor="end">${short(name, 20)}</text><path class="whisker ${kind}" d="M${x(interval[0])} ${y}H${x(interval[1])}M${x(interval[0])} ${y - 5}v10M${x(interval[1])} ${y - 5}v10"/><circle class="${kind}" cx="${x(value)}" cy="${y}" r="5"/>`;
+  return html`<text class="label" x="${left - 10}" y="${y + 4}" text-anchor="end">${short(name, 17)}</text><path class="whisker ${kind}" d="M${x(interval[0])} ${y}H${x(interval[1])}M${x(interval[0])} ${y - 5}v10M${x(interval[1])} ${y - 5}v10"/><circle class="${kind}" cx="${x(value)}" cy="${y}" r="5"/>`;
 })}
 </svg>`;
 }
@@ -80,52 +80,53 @@ interface Line {
 }
 
 /** Lengths in units of the drawing. */
-const PANEL = { width: 320, height: 190, left: 26, right: 10, top: 10, bottom: 30, mark: 5 };
+const PANEL = { width: 320, height: 200, left: 26, right: 10, top: 10, bottom: 40, mark: 5, between: 3, tick: 32 };
 
-/** The part of a line that a panel shows, cut where it leaves it. */
+/** The part of a line that a panel shows, cut where it leaves it; one stroke as long as it stays, so that dashes run on. */
 function path({ points }: Curve, x: (offset: number) => string, y: (height: number) => string): string {
-  const drawn: string[] = [];
-  points.forEach((to, index) => {
+  type Point = (typeof points)[number];
+  const place = ({ offset, height }: Point) => `${x(offset)} ${y(height)}`;
+  const cut = (inside: Point, outside: Point) => {
+    const part = (MOST_SIGMAS - inside.height) / (outside.height - inside.height);
+    return { offset: inside.offset + part * (outside.offset - inside.offset), height: MOST_SIGMAS };
+  };
+  const isOut = ({ height }: Point) => height > MOST_SIGMAS;
+  const strokes = points.map((to, index) => {
     const from = points[index - 1];
-    if (from === undefined || (from.height > MOST_SIGMAS && to.height > MOST_SIGMAS)) return;
-    const cut = (inside: typeof to, outside: typeof to) => {
-      if (outside.height <= MOST_SIGMAS) return outside;
-      const part = (MOST_SIGMAS - inside.height) / (outside.height - inside.height);
-      return { offset: inside.offset + part * (outside.offset - inside.offset), height: MOST_SIGMAS };
-    };
-    const [a, b] = [cut(to, from), cut(from, to)];
-    drawn.push(`M${x(a.offset)} ${y(a.height)}L${x(b.offset)} ${y(b.height)}`);
+    if (from === undefined) return isOut(to) ? "" : `M${place(to)}`;
+    if (isOut(from)) return isOut(to) ? "" : `M${place(cut(to, from))}L${place(to)}`;
+    return `L${place(isOut(to) ? cut(from, to) : to)}`;
   });
-  return drawn.join("");
+  return strokes.join("");
 }
 
-/** In words, as far as the curve's range tells. */
-function says({ best, from, to }: Curve, unit: string, reach: number): string {
-  if (from === undefined && to === undefined) return `cannot tell within ±${measure(reach, unit)}`;
-  const below = from === undefined ? "beyond the left end" : digits(from, 2);
-  const above = to === undefined ? "beyond the right end" : digits(to, 2);
-  return `best at ${measure(best, unit, 2)}, 95${"\u202f"}% from ${below} to ${above}`;
+/** Best offset and 95 % interval in words, as far as the curve's range tells. */
+function says({ points, best, from, to }: Curve, unit: string): string {
+  const [first = NaN, last = NaN] = [points[0]?.offset, points.at(-1)?.offset];
+  if (from === undefined && to === undefined) return `cannot tell from ${brief(first)} to ${brief(last)}${unit === "°" ? unit : ` ${unit}`}`;
+  const least = from === undefined ? `below ${brief(first)}` : digits(from, 2);
+  const most = to === undefined ? `above ${brief(last)}` : digits(to, 2);
+  return `${measure(best, unit, 2)} (${least} to ${most})`;
 }
 
 function panel(title: string, unit: string, lines: readonly Line[]): Markup {
-  const { width, height, left, right, top, bottom, mark } = PANEL;
+  const { width, height, left, right, top, bottom, mark, between, tick: under } = PANEL;
   const all = lines.flatMap((line) => line.curve.points.map(({ offset }) => offset));
   const [first, last] = [Math.min(...all), Math.max(...all)];
   const x = (offset: number) => at(left + ((offset - first) / (last - first || 1)) * (width - left - right));
   const y = (sigmas: number) => at(height - bottom - (sigmas / MOST_SIGMAS) * (height - top - bottom));
-  const reach = Math.max(Math.abs(first), Math.abs(last));
-  const words = lines.map(({ cue, series, curve: found }) => ({ cue, series, text: says(found, unit, reach) }));
+  const words = lines.map(({ cue, series, curve: found }) => ({ cue, series, text: says(found, unit) }));
   return html`<figure class="panel"><figcaption>${title} <span class="soft">(${unit})</span></figcaption>
 <svg viewBox="0 0 ${width} ${height}" role="img" aria-label="${title}: ${words.map(({ cue, text }) => `${cue} ${text}`).join("; ")}">
 ${[0, 2, 4, 6, 8].map((sigmas) => html`<path class="grid" d="M${left} ${y(sigmas)}H${width - right}"/><text class="tick" x="${left - 5}" y="${Number(y(sigmas)) + 4}" text-anchor="end">${sigmas}</text>`)}
-${ticks(first, last).map((tick) => html`<path class="grid" d="M${x(tick)} ${top}V${y(0)}"/><text class="tick" x="${x(tick)}" y="${height - bottom + 15}" text-anchor="middle">${digits(tick, 2)}</text>`)}
+${ticks(first, last).map((tick) => html`<path class="grid" d="M${x(tick)} ${top}V${y(0)}"/><text class="tick" x="${x(tick)}" y="${height - bottom + under}" text-anchor="middle">${brief(tick)}</text>`)}
 <path class="level" d="M${left} ${y(SIGMAS_95)}H${width - right}"/>
 ${lines.map(({ series, curve: found }) => html`<path class="series s${series}" d="${path(found, x, y)}"/>`)}
 ${lines.map(({ series, curve: { best, from, to } }) => {
   if (from === undefined && to === undefined) return undefined;
   // One below the other, under the axis, so that none hides another.
-  const under = Number(y(0)) + 3 + series;
-  return html`<path class="width s${series}" d="M${x(from ?? first)} ${under}H${x(to ?? last)}"/><path class="best s${series}" d="M${x(best)} ${y(0)}l-${mark} -${2 * mark}h${2 * mark}z"/>`;
+  const level = Number(y(0)) + 2 + between * series;
+  return html`<path class="width s${series}" d="M${x(from ?? first)} ${level}H${x(to ?? last)}"/><path class="best s${series}" d="M${x(best)} ${y(0)}l-${mark} -${2 * mark}h${2 * mark}z"/>`;
 })}
 </svg>
 <ul class="says">${words.map(({ cue, series, text }) => html`<li><svg class="key" viewBox="0 0 24 8" aria-hidden="true"><path class="series s${series}" d="M0 4H24"/></svg> ${cue}: ${text}</li>`)}</ul></figure>`;

@@ -14,6 +14,9 @@ export function digits(value: number, count = 3): string {
   return value.toFixed(decimals).replace("-", "\u2212");
 }
 
+/** A round number, as at an axis. */
+export const brief = (value: number): string => digits(value, 2).replace(/\.0$/, "");
+
 /** With its unit; degrees stand close to their sign. */
 export function measure(value: number, unit: string, count = 3): string {
   const text = digits(value, count);

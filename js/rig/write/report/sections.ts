@@ -55,10 +55,11 @@ const CANDIDATE_COLUMNS = ["Calibration", "Verdict", "Turned by", "Shifted by", 
 
 function candidateRow(name: string, found: CandidateReport): Markup {
   const verdict = verdictOf(found.verdict);
+  const number = (text: string) => html`<span class="number">${text}</span>`;
   const values = [
     html`<strong class="word ${verdict}">${WORDS[verdict]}</strong>`,
-    ...[measure(found.offDegrees, "°"), measure(found.offMillimetres, "mm"), measure(found.pixels, "px")],
-    ...[span(found.interval, "px"), probability(found.probability), found.reason],
+    ...[measure(found.offDegrees, "°"), measure(found.offMillimetres, "mm"), measure(found.pixels, "px")].map(number),
+    ...[number(span(found.interval, "px")), number(probability(found.probability)), found.reason],
   ];
   return html`<tr><th scope="row">${name}</th>${values.map((value, index) => cell(CANDIDATE_COLUMNS[index + 1] ?? "", value))}</tr>`;
 }
@@ -96,15 +97,18 @@ function worst(values: readonly number[]): string | undefined {
   return Number.isFinite(most) ? AXES[values.indexOf(most)] : undefined;
 }
 
+/** All digits, to be copied. */
+const exact = (value: number): string => (Number.isFinite(value) ? String(value) : "?");
+
 const COVARIANCE = ["turn x", "turn y", "turn z", "shift x", "shift y", "shift z"];
 
 export function estimateSection({ estimate, covariance }: CheckReport): Markup {
   const { rotation: r, translation: t, angles } = estimate;
   const known = sigmas(covariance);
   const [turn, shift] = [known.slice(0, 3), known.slice(3)];
-  const [about, along] = [worst(turn), worst(shift)];
-  const weakest = about && along ? `Least certain: the turn about ${about} and the shift along ${along}.` : "";
-  const rows = [0, 1, 2].map((i) => [...r.slice(3 * i, 3 * i + 3), t[i] ?? NaN].map(String).join("  "));
+  const [axis, along] = [worst(turn), worst(shift)];
+  const weakest = axis && along ? `Least certain: the turn about ${axis} and the shift along ${along}.` : "";
+  const rows = [0, 1, 2].map((i) => [...r.slice(3 * i, 3 * i + 3), t[i] ?? NaN].map(exact).join("  "));
   return section(
     "The best fit",
     html`<dl class="facts">${fact("Translation", t.map((metres) => measure(MILLIMETRES * metres, "mm")).join(", "))}${fact(
@@ -122,22 +126,22 @@ export function estimateSection({ estimate, covariance }: CheckReport): Markup {
   );
 }
 
-/** What the cues are called in words. */
-const CUES: Readonly<Record<string, string>> = {
-  shading: "Shading",
-  edges: "Depth edges on image edges",
-  information: "Information shared by colour and shape",
-  silhouette: "Silhouettes",
+/** What the cues are called, and what they are. */
+const CUES: Readonly<Record<string, readonly [name: string, more: string]>> = {
+  shading: ["Shading", "light on the surface's slopes"],
+  edges: ["Edges", "depth edges on image edges"],
+  information: ["Information", "shared by colour and shape"],
+  silhouette: ["Silhouettes", "outlines in both views"],
 };
 
-export const cueName = (cue: string): string => (Object.hasOwn(CUES, cue) ? (CUES[cue] ?? cue) : cue);
+const about = (cue: string): readonly [name: string, more: string] => (Object.hasOwn(CUES, cue) ? CUES[cue] : undefined) ?? [cue, ""];
 
 const sharpness = (value: number): string => (value > 0 ? `to ${measure(1 / value, "px")}` : "not at all");
 
 export function cueTable({ cues }: CheckReport): Markup | undefined {
   const rows = Object.entries(cues).map(
     ([cue, { share, sharpness: sharp }]) =>
-      html`<tr><th scope="row">${cueName(cue)}</th><td>${percent(share)}</td><td class="bars">${bar(share)}</td><td>${sharpness(sharp)}</td></tr>`,
+      html`<tr><th scope="row">${about(cue)[0]} <span class="soft">${about(cue)[1]}</span></th><td class="number">${percent(share)}</td><td class="bars">${bar(share)}</td>${cell("Tells the pose", sharpness(sharp))}</tr>`,
   );
   return rows.length === 0 ? undefined : section("What the answer rests on", table("shares", ["Cue", "Share", "", "Tells the pose"], rows));
 }
@@ -145,19 +149,19 @@ export function cueTable({ cues }: CheckReport): Markup | undefined {
 export function frameTable({ frames }: CheckReport): Markup | undefined {
   const rows = frames.map(
     ({ name, share, note }) =>
-      html`<tr><th scope="row">${name}</th><td>${percent(share)}</td><td class="bars">${bar(share)}</td><td>${note}</td></tr>`,
+      html`<tr><th scope="row">${name}</th><td class="number">${percent(share)}</td><td class="bars">${bar(share)}</td><td>${note}</td></tr>`,
   );
   return rows.length === 0 ? undefined : section("Frames", table("shares", ["Frame", "Share", "", "Note"], rows));
 }
 
 export function sensitivitySection({ sensitivity }: CheckReport): Markup | undefined {
-  const panels = sensitivities(sensitivity.map((row) => ({ ...row, cue: cueName(row.cue) })));
+  const panels = sensitivities(sensitivity.map((row) => ({ ...row, cue: about(row.cue)[0] })));
   if (panels.length === 0) return undefined;
   return section(
     "Sensitivity",
     html`<p class="soft">How much worse each cue finds the best fit when it is moved along one axis and held along the others. Height: sigmas, the square
 root of twice the fall of the log likelihood, drawn up to 8. Triangles mark where a cue is best, bars under the axis its 95 % interval,
-where a curve is below the dashed line.</p><div class="panels">${panels}</div>`,
+where its curve is below the dashed line; both are written below each drawing.</p><div class="panels">${panels}</div>`,
   );
 }
 

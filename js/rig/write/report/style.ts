@@ -20,7 +20,7 @@ figure{margin:0}
 .card{display:flex;gap:1rem;border-width:2px}
 .card>div{flex:1;min-width:0}
 .verdict{font-size:1.5rem;font-weight:700;line-height:1.2;margin:0}
-.name{display:block;font-size:1rem;font-weight:400}
+.verdict .name{display:block;font-size:1rem;font-weight:400;color:var(--ink)}
 .consistent .verdict,.word.consistent{color:var(--good)}.off .verdict,.word.off{color:var(--wrong)}.undecided .verdict,.word.undecided{color:var(--open)}
 .card.consistent{border-color:var(--good)}.card.off{border-color:var(--wrong)}.card.undecided{border-color:var(--open)}
 .sign{flex:none;width:3.5rem;height:3.5rem;fill:none;stroke-width:3;stroke-linecap:round;stroke-linejoin:round}
@@ -30,16 +30,18 @@ dt{color:var(--soft);font-size:.8125rem}
 dd{margin:0;font-variant-numeric:tabular-nums}
 .warnings{margin:0;padding-left:1.25rem}.warnings li{margin:.25rem 0}.warnings li::marker{content:"! ";color:var(--wrong);font-weight:700}
 table{border-collapse:collapse;width:100%;font-variant-numeric:tabular-nums}
+.number,.word{white-space:nowrap;overflow-wrap:normal}
 th,td{text-align:left;vertical-align:top;padding:.375rem .75rem .375rem 0;border-top:1px solid var(--line)}
-thead th{border-top:0;color:var(--soft);font-size:.8125rem;font-weight:400}
+thead th{overflow-wrap:normal;border-top:0;color:var(--soft);font-size:.8125rem;font-weight:400}
 tbody th{font-weight:600}
-.shares th{width:18rem}.shares td{width:9rem}.shares td:nth-child(2){width:4rem}.shares td:last-child{width:auto}
+.shares th:first-child{width:40%}.shares td.number{width:4rem}.shares .bars{width:9rem}.shares th .soft{font-weight:400}
+.candidates th:first-child{min-width:7rem}.inputs th:first-child{min-width:9rem}
 .matrix{font-size:.8125rem;white-space:nowrap;overflow-wrap:normal}.scroll{overflow-x:auto}
 pre{overflow-x:auto;background:var(--sunk);border-radius:.25rem;padding:.75rem;margin:.75rem 0;font-size:.8125rem}
 code{font-size:.75rem}
 svg{display:block;width:100%;height:auto;font:11px system-ui,sans-serif}
 .bar{height:.625rem;margin-top:.4rem}.track{fill:var(--sunk)}.fill{fill:var(--c3)}
-.intervals{max-width:40rem;margin-top:1rem}
+.intervals{max-width:34rem;margin-top:1rem}
 .grid{stroke:var(--line);fill:none}.tick{fill:var(--soft)}.label{fill:var(--ink);font-size:12px}
 .whisker{fill:none;stroke-width:2}.whisker.candidate{stroke:var(--c1)}.whisker.estimate{stroke:var(--c3)}
 circle.candidate{fill:var(--c1)}circle.estimate{fill:var(--c3)}
@@ -59,7 +61,9 @@ circle.candidate{fill:var(--c1)}circle.estimate{fill:var(--c3)}
 .stacks thead{display:none}.stacks tr{display:block;border-top:1px solid var(--line);padding:.5rem 0}
 .stacks th,.stacks td{display:block;border:0;padding:.125rem 0}
 .stacks td::before{content:attr(data-column) ": ";color:var(--soft)}
-.shares th{width:auto}.shares td{width:auto}.bars{min-width:4rem}
+.shares thead{display:none}.shares tr{display:grid;grid-template-columns:1fr auto;gap:0 1rem;border-top:1px solid var(--line);padding:.5rem 0}
+.shares th,.shares td{border:0;padding:0}.shares th:first-child,.shares td,.shares td.number,.shares .bars{width:auto}.shares td:nth-child(n+3){grid-column:1/-1}
+.shares td[data-column]::before{content:attr(data-column) " ";color:var(--soft)}
 .card{flex-direction:column;gap:.5rem}
 }
 @media print{
@@ -67,10 +71,10 @@ circle.candidate{fill:var(--c1)}circle.estimate{fill:var(--c3)}
 body{max-width:none;padding:0;font-size:10pt;print-color-adjust:exact;-webkit-print-color-adjust:exact}
 section{border-color:#bbb;margin:.5rem 0}
 figure,tr,.card,.intervals,pre{break-inside:avoid}h2,h3{break-after:avoid}
-.panels{grid-template-columns:repeat(3,1fr)}
+.panels{grid-template-columns:repeat(3,1fr);gap:.75rem}.candidates,.says{font-size:8pt}
 .scroll,pre{overflow:visible}pre{white-space:pre-wrap}.matrix{font-size:7pt}
 }
 `;
 
 /** Of STYLE, base64; a test holds it, and says the right one. */
-export const STYLE_SHA256 = "H3KFRbMkcmS/FjR8gHYpLg+lH8MmwvUg3fkP+N/cg78=";
+export const STYLE_SHA256 = "UARUGkUGIRBVsOKkDxI8IqBtq5foee6vJ7jGtgybxR8=";

@@ -1,0 +1,187 @@
+// Files of a rig: the very ones that readers of others have read, and what these found in them.
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { describe, test } from "node:test";
+import { BimodalError as WriteError, poseFormats, writeClouds, writePose } from "../../pkg/rig-write.js";
+import { CLOUDS, FOLDER, RIGS, files } from "../../scripts/reference/rig-files.mjs";
+import { inRoot } from "../../scripts/shell.mjs";
+import { BimodalError, refused } from "./support.mjs";
+
+const read = JSON.parse(readFileSync(inRoot(FOLDER, "read.json"), "utf8"));
+const found = (rig, format) => read[`${rig}/${writePose(RIGS[rig].pose, format, RIGS[rig].context).name}`];
+const NO_POSE = { scale: 1, rotation: [1, 0, 0, 0, 1, 0, 0, 0, 1], translation: [0, 0, 0], angles: { alpha: 0, beta: 0, gamma: 0 } };
+
+test("both modules throw the same class", () => assert.equal(WriteError, BimodalError));
+
+test("every file is written again, byte for byte", () => {
+  const made = files();
+  assert.deepEqual(Object.keys(made).sort(), Object.keys(read).sort());
+  for (const [name, bytes] of Object.entries(made)) assert.deepEqual(Buffer.from(bytes), readFileSync(inRoot(FOLDER, name)), name);
+});
+
+describe("what others read is what was written", () => {
+  for (const [rig, { pose }] of Object.entries(RIGS)) {
+    for (const format of poseFormats) {
+      test(`${rig}: the pose from ${format}`, () => {
+        const { rotation: r, translation: t } = pose;
+        const expected = [0, 1, 2].map((i) => [...r.slice(3 * i, 3 * i + 3), t[i]]);
+        // A quaternion keeps a rotation to its rounding; all else is the same number.
+        const tolerance = format === "ros2" ? 1e-12 : 0;
+        const { matrix } = found(rig, format);
+        assert.deepEqual(matrix[3], [0, 0, 0, 1]);
+        expected.forEach((row, i) => row.forEach((value, j) => assert.ok(Math.abs(matrix[i][j] - value) <= tolerance, `${i} ${j}: ${matrix[i][j]}, not ${value}`)));
+      });
+    }
+  }
+
+  /** What a reader found of a camera, beside what was given; zeros at the end of a distortion say nothing. */
+  function same(camera, given, size, { distortion = true } = {}) {
+    const { fx, fy, cx, cy } = given;
+    assert.deepEqual([camera.fx, camera.fy, camera.cx, camera.cy], [fx, fy, cx, cy]);
+    assert.deepEqual(camera.size, size ?? null);
+    if (!distortion) return assert.ok(!camera.distortion);
+    const length = Math.max(camera.distortion.length, given.distortion?.length ?? 0);
+    const padded = (values) => Array.from({ length }, (_, k) => values?.[k] ?? 0);
+    assert.deepEqual(padded(camera.distortion), padded(given.distortion));
+  }
+
+  const each = (format, check) => {
+    for (const [rig, { context }] of Object.entries(RIGS)) {
+      for (const name of ["depth", "colour"]) if (context[name]) check(found(rig, format)[name], context[name], context.sizes?.[name], `${rig} ${name}`);
+    }
+  };
+
+  test("cameras from OpenCV's", () =>
+    each("opencv", (camera, given, size) => {
+      same(camera, given, size);
+      assert.equal(camera.model, given.model ?? (given.distortion?.length === 8 ? "rational_polynomial" : "plumb_bob"));
+    }));
+
+  test("cameras from Kalibr's, whose radtan has four numbers", () =>
+    each("kalibr", (camera, given, size) => {
+      const fits = given.model === "fisheye" || !given.distortion?.slice(4).some(Boolean);
+      same(camera, given, size, { distortion: fits });
+      assert.equal(camera.model, !fits ? null : given.model === "fisheye" ? "equidistant" : "radtan");
+      if (fits) assert.equal(camera.distortion.length, 4);
+    }));
+
+  test("cameras from RealSense's, which has five", () =>
+    each("realsense", (camera, given, size) => {
+      const fits = !given.distortion?.slice(5).some(Boolean);
+      same(camera, given, size, { distortion: fits });
+      const brown = given.distortion?.some(Boolean) ? "Brown Conrady" : "None";
+      assert.equal(camera.model, !fits ? null : given.model === "fisheye" ? "Kannala Brandt4" : brown);
+    }));
+
+  test("the colour camera from Open3D's, which has no distortion", () => {
+    for (const [rig, { context }] of Object.entries(RIGS)) {
+      const none = { fx: 1, fy: 1, cx: 0, cy: 0 };
+      same(found(rig, "open3d").colour, context.colour ?? none, context.sizes?.colour ?? [-1, -1], { distortion: false });
+    }
+  });
+
+  test("ROS's parent is the colour camera", () => {
+    const frames = ({ parent, child }) => [parent, child];
+    assert.deepEqual(frames(found("usual", "ros2")), ["camera_color_optical_frame", "camera_depth_optical_frame"]);
+    assert.deepEqual(frames(found("turned", "ros2")), ["rig/colour", "tof_optical_frame"]);
+  });
+
+  test("clouds, without what is missing", () => {
+    const there = [0, 1, 2, 6, 7, 8];
+    const [first, second] = CLOUDS;
+    const rows = (values) => Array.from({ length: values.length / 3 }, (_, k) => [...values.slice(3 * k, 3 * k + 3)]);
+    const points = rows(there.map((k) => first.points[k]));
+    const colours = rows(there.map((k) => first.colours[k]));
+    assert.deepEqual(read["cloud.ply"], { points, colours, label: null });
+    assert.deepEqual(read["clouds.ply"], {
+      points: [...points, ...rows(second.points)],
+      colours: [...colours, [128, 128, 128]],
+      label: [0, 0, 1],
+    });
+  });
+});
+
+describe("what a format has no place for is said", () => {
+  const notes = (format, rig) => writePose(RIGS[rig].pose, format, RIGS[rig].context).notes.join("; ");
+
+  test("in notes", () => {
+    assert.match(notes("kalibr", "usual"), /colour camera's distortion is left out: .*radtan/);
+    assert.match(notes("open3d", "usual"), /distortion is left out/);
+    assert.match(notes("realsense", "turned"), /colour camera's distortion is left out/);
+    assert.match(notes("kalibr", "radial"), /depth camera's resolution is not known; the colour camera's resolution/);
+    assert.match(notes("realsense", "bare"), /intrinsics are not known/);
+    for (const format of poseFormats) if (!["kalibr", "open3d"].includes(format)) assert.equal(notes(format, "usual"), "", format);
+  });
+
+  test("and in comments, where the format has them", () => {
+    const { text, notes } = writePose(RIGS.usual.pose, "kalibr", RIGS.usual.context);
+    for (const note of notes) assert.ok(text.includes(`# ${note}`), note);
+  });
+});
+
+test("any number keeps its digits", () => {
+  for (const value of [0.1 + 0.2, -5e-324, 1.7976931348623157e308, 123456789012345680000, 1e21, 1e-7, -0]) {
+    const { text } = writePose({ ...NO_POSE, translation: [value, 0, 0] }, "matrix");
+    const written = text.split(/\s+/)[3];
+    assert.equal(Number(written), value === 0 ? 0 : value);
+    assert.match(written, /^-?\d+\.\d+(e[+-]\d+)?$/, "what YAML 1.1 takes for a number");
+  }
+});
+
+test("quaternions of every quadrant", () => {
+  // Half and other turns, so that each of the four is the largest once.
+  for (const [x, y, z, w] of [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0.1, 0.2, 0.3, 0.9], [0.9, 0.3, -0.2, 0.1], [-0.2, 0.9, 0.1, -0.3], [0.1, -0.2, 0.9, -0.3]]) {
+    const n = Math.hypot(x, y, z, w);
+    const s = 2 / n ** 2;
+    const rotation = [
+      ...[1 - s * (y * y + z * z), s * (x * y - w * z), s * (x * z + w * y)],
+      ...[s * (x * y + w * z), 1 - s * (x * x + z * z), s * (y * z - w * x)],
+      ...[s * (x * z - w * y), s * (y * z + w * x), 1 - s * (x * x + y * y)],
+    ];
+    const { text } = writePose({ ...NO_POSE, rotation }, "ros2");
+    const written = ["x", "y", "z", "w"].map((part) => Number(new RegExp(`--q${part} (\\S+)`).exec(text)[1]));
+    const sign = w < 0 ? -1 : 1;
+    [x, y, z, w].forEach((value, k) => assert.ok(Math.abs(written[k] - (sign * value) / n) < 1e-15, `${[x, y, z, w]}: ${written}`));
+  }
+});
+
+describe("refused", () => {
+  const write = (pose, format = "matrix", context = {}) => () => writePose({ ...NO_POSE, ...pose }, format, context);
+
+  test("poses that are no rig's", () => {
+    refused(write({ scale: 1.2 }), "range", "pose.scale");
+    refused(write({ translation: [0, NaN, 0] }), "range", "pose.translation");
+    refused(write({ translation: [0, 0] }), "size", "pose.translation");
+    refused(write({ rotation: [1, 0, 0, 0, 1, 0, 0, 0, -1] }), "range", "pose.rotation");
+    refused(write({ rotation: [1, 0.001, 0, 0, 1, 0, 0, 0, 1] }), "range", "pose.rotation");
+  });
+
+  test("words, cameras, sizes and names that nobody could read", () => {
+    const camera = { fx: 500, fy: 500, cx: 320, cy: 240 };
+    refused(write({}, "urdf"), "option", "format");
+    refused(write({}, "constructor"), "option", "format");
+    refused(write({}, "opencv", { colour: { ...camera, fx: 0 } }), "range", "context.colour");
+    refused(write({}, "opencv", { colour: { ...camera, cx: Infinity } }), "range", "context.colour");
+    refused(write({}, "opencv", { depth: { ...camera, distortion: [1, 2, 3] } }), "size", "context.depth.distortion");
+    refused(write({}, "opencv", { depth: { ...camera, model: "fisheye", distortion: [1, 2, 3, 4, 5] } }), "size", "context.depth.distortion");
+    refused(write({}, "opencv", { depth: { ...camera, model: "omni" } }), "option", "context.depth.model");
+    refused(write({}, "kalibr", { depth: camera, sizes: { depth: [640, 0.5] } }), "size", "context.sizes.depth");
+    for (const name of ["a; rm -rf .", "$(x)", "", "/slash", "new\nline", "--frame-id"]) {
+      refused(write({}, "ros2", { frames: { colour: name } }), "range", "context.frames.colour");
+    }
+    refused(write({}, "ros2", { frames: { colour: "camera_depth_optical_frame" } }), "range", "context.frames");
+  });
+
+  test("clouds of the wrong length", () => {
+    refused(() => writeClouds([]), "size", "clouds");
+    refused(() => writeClouds([{ points: new Float32Array(4) }]), "size", "clouds[0].points");
+    refused(() => writeClouds([{ points: [1, 2, 3] }]), "type", "clouds[0].points");
+    refused(() => writeClouds([{ points: new Float32Array(3) }, { points: new Float32Array(3), colours: new Uint8Array(4) }]), "size", "clouds[1].colours");
+  });
+});
+
+test("a cloud's name cannot end its line", () => {
+  const text = Buffer.from(writeClouds([{ points: new Float32Array(3), name: "a\nend_header\nµ" }])).toString("latin1");
+  assert.match(text, /^comment a\?end_header\?\?$/m);
+  assert.equal(text.match(/^end_header$/gm).length, 1);
+});
