@@ -49,6 +49,9 @@ export const RIGS = {
   bare: { pose: pose([0, 0, 0, 1], [0, -0.05, 0]), context: {} },
 };
 
+/** Open3D has no extrinsics without intrinsics. */
+export const formatsOf = (rig) => poseFormats.filter((format) => format !== "open3d" || RIGS[rig].context.colour);
+
 /** Two small clouds, points missing in the first, the second without colours. */
 export const CLOUDS = [
   { name: "depth", points: new Float32Array([0, 0.1, 1, NaN, NaN, NaN, -0.2, 1 / 3, 2.5]), colours: new Uint8Array([255, 0, 7, 1, 2, 3, 10, 20, 30]) },
@@ -59,7 +62,7 @@ export const CLOUDS = [
 export function files() {
   const made = {};
   for (const [rig, { pose, context }] of Object.entries(RIGS)) {
-    for (const format of poseFormats) {
+    for (const format of formatsOf(rig)) {
       const { name, text } = writePose(pose, format, context);
       made[`${rig}/${name}`] = new TextEncoder().encode(text);
     }

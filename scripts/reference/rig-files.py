@@ -45,15 +45,16 @@ def matrix(path):
 def opencv(path):
     storage = cv2.FileStorage(str(path), cv2.FILE_STORAGE_READ)
     read = {"matrix": homogeneous(storage.getNode("R").mat(), storage.getNode("T").mat())}
-    for index, name in ((1, "depth"), (2, "colour")):
-        if storage.getNode(f"M{index}").empty():
+    for name in ("depth", "colour"):
+        node = storage.getNode(name)
+        if node.empty():
             continue
-        size = storage.getNode(f"image_size{index}")
+        size = [node.getNode(f"image_{side}") for side in ("width", "height")]
         read[name] = pinhole(
-            storage.getNode(f"M{index}").mat(),
-            distortion=storage.getNode(f"D{index}").mat().ravel(),
-            model=storage.getNode(f"distortion_model{index}").string(),
-            size=None if size.empty() else [int(size.at(k).real()) for k in range(2)],
+            node.getNode("camera_matrix").mat(),
+            distortion=node.getNode("distortion_coefficients").mat().ravel(),
+            model=node.getNode("distortion_model").string(),
+            size=None if size[0].empty() else [int(side.real()) for side in size],
         )
     storage.release()
     return read
@@ -69,8 +70,8 @@ def kalibr(path):
         assert camera["camera_model"] == "pinhole"
         read[name] = {
             **dict(zip(("fx", "fy", "cx", "cy"), camera["intrinsics"], strict=True)),
-            "distortion": camera.get("distortion_coeffs"),
-            "model": camera.get("distortion_model"),
+            "distortion": camera["distortion_coeffs"],
+            "model": camera["distortion_model"],
             "size": camera.get("resolution"),
         }
     return read
@@ -110,7 +111,7 @@ def realsense(path):
         size = [camera["width"], camera["height"]] if "width" in camera else None
         read[name] = {
             **{"fx": camera["fx"], "fy": camera["fy"], "cx": camera["ppx"], "cy": camera["ppy"]},
-            **{"distortion": camera.get("coeffs"), "model": camera.get("model"), "size": size},
+            **{"distortion": camera["coeffs"], "model": camera["model"], "size": size},
         }
     return read
 

@@ -1,4 +1,5 @@
 /** Extrinsics as Open3D's PinholeCameraParameters and as librealsense's structures have them, both JSON. */
+import { BimodalError } from "../../errors.js";
 import { list } from "./numbers.js";
 import { type Camera, type Rig, padded, reaches, rows } from "./rig.js";
 
@@ -6,17 +7,15 @@ import { type Camera, type Rig, padded, reaches, rows } from "./rig.js";
 const columns = (matrix: readonly (readonly number[])[]): number[] =>
   (matrix[0] ?? []).flatMap((_, column) => matrix.map((row) => row[column] ?? NaN));
 
-/** What Open3D itself writes for intrinsics that nobody has set. */
-const UNSET = [-1, -1] as const;
-
 function open3dIntrinsic(camera: Camera | undefined, notes: string[]): string[] {
-  const [width, height] = camera?.size ?? UNSET;
-  if (camera === undefined) notes.push("the colour camera's intrinsics are not known: the file says 1 0 0, 0 1 0, 0 0 1");
-  else if (camera.size === undefined) notes.push("the colour camera's size is not known: the file says -1");
-  if (camera && reaches(camera.distortion, 0)) {
-    notes.push("the colour camera's distortion is left out: Open3D takes pictures whose distortion was removed");
+  if (camera === undefined) {
+    const field = "context.colour";
+    throw new BimodalError("missing", `${field}: is required, since Open3D reads no extrinsics without the camera's intrinsics`, field);
   }
-  const { fx, fy, cx, cy } = camera ?? { fx: 1, fy: 1, cx: 0, cy: 0 };
+  const { fx, fy, cx, cy, size, distortion } = camera;
+  const [width, height] = size ?? [0, 0];
+  if (size === undefined) notes.push("the colour camera's size is not known: the file says 0");
+  if (reaches(distortion, 0)) notes.push("the colour camera's distortion is left out: Open3D takes pictures whose distortion was removed");
   const matrix = columns([
     [fx, 0, cx],
     [0, fy, cy],
@@ -52,6 +51,7 @@ function realsenseDistortion({ model, distortion }: Camera): { model: string; co
   return { model: reaches(distortion, 0) ? "Brown Conrady" : "None", coeffs: padded(distortion, 5) };
 }
 
+/** Intrinsics without their distortion would be read as a camera that has none: both or neither. */
 function realsenseCamera(camera: Camera | undefined, key: string, name: string, notes: string[]): string[] {
   if (camera === undefined) {
     notes.push(`the ${name} camera's intrinsics are not known`);
@@ -59,14 +59,16 @@ function realsenseCamera(camera: Camera | undefined, key: string, name: string, 
   }
   const { fx, fy, cx, cy, size } = camera;
   const distortion = realsenseDistortion(camera);
-  if (size === undefined) notes.push(`the ${name} camera's size is not known`);
   if (distortion === undefined) {
-    notes.push(`the ${name} camera's distortion is left out: librealsense has k1 k2 p1 p2 k3 alone, and this one has more`);
+    notes.push(`the ${name} camera's intrinsics are left out: librealsense has k1 k2 p1 p2 k3 alone, and its distortion has more`);
+    return [];
   }
+  if (size === undefined) notes.push(`the ${name} camera's size is not known`);
   const lines = [
     ...(size ? [`    "width": ${size[0]}`, `    "height": ${size[1]}`] : []),
     ...Object.entries({ ppx: cx, ppy: cy, fx, fy }).map(([member, value]) => `    "${member}": ${list([value])}`),
-    ...(distortion ? [`    "model": "${distortion.model}"`, `    "coeffs": [${list(distortion.coeffs)}]`] : []),
+    `    "model": "${distortion.model}"`,
+    `    "coeffs": [${list(distortion.coeffs)}]`,
   ];
   return [`  "${key}": {`, lines.join(",\n"), "  },"];
 }

@@ -8,29 +8,30 @@ function matrix(name: string, height: number, width: number, values: readonly nu
   return [`${name}: !!opencv-matrix`, `   rows: ${height}`, `   cols: ${width}`, "   dt: d", `   data: [ ${list(values)} ]`];
 }
 
-/** The names that OpenCV's stereo_calib sample uses for its two cameras; it leaves out size and model, whose words are those of ROS. */
-function opencvCamera(camera: Camera | undefined, index: 1 | 2): string[] {
+/** By the names of OpenCV's calibration sample; the words for the model, which it leaves out, are those of ROS. */
+function opencvCamera(camera: Camera | undefined, name: string): string[] {
   if (camera === undefined) return [];
   const { fx, fy, cx, cy, distortion, model, size } = camera;
   const coefficients = distortion.length > 0 ? distortion : padded([], 5);
-  return [
-    ...(size ? [`image_size${index}: [ ${size.join(", ")} ]`] : []),
-    `distortion_model${index}: "${model === "fisheye" ? model : coefficients.length === 8 ? "rational_polynomial" : "plumb_bob"}"`,
-    ...matrix(`M${index}`, 3, 3, [fx, 0, cx, 0, fy, cy, 0, 0, 1]),
-    ...matrix(`D${index}`, 1, coefficients.length, coefficients),
+  const lines = [
+    ...(size ? [`image_width: ${size[0]}`, `image_height: ${size[1]}`] : []),
+    ...matrix("camera_matrix", 3, 3, [fx, 0, cx, 0, fy, cy, 0, 0, 1]),
+    `distortion_model: "${model === "fisheye" ? model : coefficients.length === 8 ? "rational_polynomial" : "plumb_bob"}"`,
+    ...matrix("distortion_coefficients", 1, coefficients.length, coefficients),
   ];
+  return [`${name}:`, ...lines.map((line) => `   ${line}`)];
 }
 
-/** As `cv::stereoCalibrate` has it: R and T carry points of the first camera into the second one's frame. */
+/** As `cv::stereoCalibrate` has it for a first and a second camera: R and T carry points of the first one into the second one's frame. */
 export function opencvYaml(rig: Rig): string {
   return [
     "%YAML:1.0",
     "---",
-    `# ${SAYS} Camera 1 is the depth camera, camera 2 the colour camera.`,
+    `# ${SAYS} To cv::stereoCalibrate the depth camera is the first, the colour camera the second.`,
     ...matrix("R", 3, 3, rig.rotation),
     ...matrix("T", 3, 1, rig.translation),
-    ...opencvCamera(rig.depth, 1),
-    ...opencvCamera(rig.colour, 2),
+    ...opencvCamera(rig.depth, "depth"),
+    ...opencvCamera(rig.colour, "colour"),
     "",
   ].join("\n");
 }
@@ -42,6 +43,7 @@ function kalibrDistortion({ model, distortion }: Camera): { word: string; coeffi
   return { word: "radtan", coefficients: padded(distortion, 4) };
 }
 
+/** Intrinsics without their distortion would be read as a camera that has none: both or neither. */
 function kalibrCamera(camera: Camera | undefined, name: string, notes: string[]): string[] {
   const leftOut = (why: string): string[] => {
     notes.push(why);
@@ -50,11 +52,13 @@ function kalibrCamera(camera: Camera | undefined, name: string, notes: string[])
   if (camera === undefined) return leftOut(`the ${name} camera's intrinsics are not known`);
   const distortion = kalibrDistortion(camera);
   const { fx, fy, cx, cy, size } = camera;
+  if (distortion === undefined) {
+    return leftOut(`the ${name} camera's intrinsics are left out: Kalibr's radtan has k1 k2 p1 p2 alone, and its distortion has more`);
+  }
   return [
     "  camera_model: pinhole",
-    ...(distortion
-      ? [`  distortion_coeffs: [${list(distortion.coefficients)}]`, `  distortion_model: ${distortion.word}`]
-      : leftOut(`the ${name} camera's distortion is left out: Kalibr's radtan has k1 k2 p1 p2 alone, and this one has more`)),
+    `  distortion_coeffs: [${list(distortion.coefficients)}]`,
+    `  distortion_model: ${distortion.word}`,
     `  intrinsics: [${list([fx, fy, cx, cy])}]`,
     ...(size ? [`  resolution: [${size.join(", ")}]`] : leftOut(`the ${name} camera's resolution is not known`)),
   ];
@@ -67,13 +71,13 @@ export function kalibrYaml(rig: Rig, notes: string[]): string {
     "cam0:",
     "  cam_overlaps: [1]",
     ...kalibrCamera(rig.depth, "depth", notes),
-    "  rostopic: /cam0/image_raw",
+    "  rostopic: /depth/image_raw",
     "cam1:",
     "  T_cn_cnm1:",
     ...rows(rig).map((values) => `  - [${list(values)}]`),
     "  cam_overlaps: [0]",
     ...kalibrCamera(rig.colour, "colour", notes),
-    "  rostopic: /cam1/image_raw",
+    "  rostopic: /color/image_raw",
     "",
   ].join("\n");
 }
