@@ -130,7 +130,7 @@ function progress(stream) {
     const percent = `${Math.floor(100 * bounded)}`.padStart(3);
     if (stream.isTTY) {
       const full = Math.round(bounded * width);
-      const room = Math.max(0, (stream.columns ?? 80) - width - 12);
+      const room = Math.max(0, (stream.columns || 80) - width - 12);
       stream.write(`\r[${"#".repeat(full)}${"-".repeat(width - full)}] ${percent} %  ${message.slice(0, room)}\x1b[K`);
     } else if (Math.floor(10 * bounded) > tenth) {
       tenth = Math.floor(10 * bounded);

@@ -1,6 +1,6 @@
 // Files of a rig: the very ones that readers of others have read, and what these found in them.
 import assert from "node:assert/strict";
-import { readFileSync } from "node:fs";
+import { existsSync, readFileSync } from "node:fs";
 import { describe, test } from "node:test";
 import { BimodalError as WriteError, poseFormats, writeClouds, writePose } from "../../pkg/rig-write.js";
 import { CLOUDS, FOLDER, RIGS, files, formatsOf } from "../../scripts/reference/rig-files.mjs";
@@ -102,6 +102,28 @@ describe("what others read is what was written", () => {
       label: [0, 0, 1],
     });
   });
+});
+
+/** The package's own readers, where it was built with them. */
+const readers = existsSync(inRoot("pkg/rig.js")) ? await import("../../pkg/rig.js") : undefined;
+const skip = readers ? false : "this build has no readers";
+
+describe("the package reads what it writes", () => {
+  for (const [rig, { pose, context }] of Object.entries(RIGS)) {
+    for (const format of formatsOf(rig)) {
+      test(`${rig}: ${format}`, { skip }, async () => {
+        const { name, text } = writePose(pose, format, context);
+        const { poses, cameras = [], warnings } = await readers.readRigFile({ name, bytes: new TextEncoder().encode(text) });
+        assert.deepEqual(warnings, []);
+        assert.equal(poses.length, 1);
+        const off = (key) => Math.max(...poses[0].pose[key].map((value, k) => Math.abs(value - pose[key][k])));
+        assert.ok(off("rotation") < 1e-12 && off("translation") < 1e-12);
+        const numbers = ({ fx, fy, cx, cy, model = "brown" }) => [fx, fy, cx, cy, model];
+        const given = new Set([context.depth, context.colour].filter(Boolean).map((camera) => numbers(camera).join()));
+        for (const { camera } of cameras) assert.ok(format === "open3d" || given.has(numbers(camera).join()), JSON.stringify(camera));
+      });
+    }
+  }
 });
 
 describe("what a format has no place for is said", () => {

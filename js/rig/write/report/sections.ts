@@ -51,7 +51,7 @@ const cell = (column: string, value: Part): Markup => html`<td data-column="${co
 const table = (kind: string, columns: readonly string[], rows: Part): Markup =>
   html`<table class="${kind}"><thead><tr>${columns.map((column) => html`<th scope="col">${column}</th>`)}</tr></thead><tbody>${rows}</tbody></table>`;
 
-const CANDIDATE_COLUMNS = ["Calibration", "Verdict", "Turned by", "Shifted by", "Expected error", "95 % interval", "Probability", "Reason"];
+const CANDIDATE_COLUMNS = ["Calibration", "Verdict", "Turned by", "Shifted by", "Expected error", "95\u202f% interval", "Probability", "Reason"];
 
 function candidateRow(name: string, found: CandidateReport): Markup {
   const verdict = verdictOf(found.verdict);
@@ -160,7 +160,7 @@ export function sensitivitySection({ sensitivity }: CheckReport): Markup | undef
   return section(
     "Sensitivity",
     html`<p class="soft">How much worse each cue finds the best fit when it is moved along one axis and held along the others. Height: sigmas, the square
-root of twice the fall of the log likelihood, drawn up to 8. Triangles mark where a cue is best, bars under the axis its 95 % interval,
+root of twice the fall of the log likelihood, drawn up to 8. Triangles mark where a cue is best, bars under the axis its 95 % interval,
 where its curve is below the dashed line; both are written below each drawing.</p><div class="panels">${panels}</div>`,
   );
 }
