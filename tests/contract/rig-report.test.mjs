@@ -100,7 +100,7 @@ describe("what comes from files is escaped", () => {
     const { text } = harmless(page);
     assert.ok(!page.includes("<script"));
     assert.ok(text.split("&lt;script&gt;alert(1)").length > 10, "it is shown as it is");
-    assert.ok(text.includes("&amp;amp;"));
+    assert.ok(text.includes("&quot;&#39;&amp;amp;"));
   });
 
   test("words of the contract that are none of them", () => {

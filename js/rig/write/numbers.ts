@@ -3,8 +3,7 @@
  * a word and readers in C++ take 1 for an integer. JSON, YAML, C++ and Python all read what comes out.
  */
 export function real(value: number): string {
-  // Minus zero is no other number, and looks like a mistake.
-  const text = String(value === 0 ? 0 : value);
+  const text = String(value);
   return text.includes(".") ? text : text.replace(/(?=e|$)/, ".0");
 }
 
