@@ -68,6 +68,7 @@ impl SharpNormals {
             points: &pair.depth.points,
             normals: &self.normals,
             normal_error: Some(&self.error),
+            depth_noise: pair.depth.noise,
             light: pair.known_light(),
             prior: &pair.prior,
             prior_weight: if pair.options.weights.light > 0.0 { PRIOR_WEIGHT } else { 0.0 },
