@@ -26,7 +26,7 @@ fn views(sample: Sample, gain: f32) -> Views {
     let mut depth = DepthView::new(&sample.depth_map(), false).unwrap();
     let mut error = vec![0.0; depth.size.len()];
     if !depth.normals_given {
-        cubic_normals::improve(depth.size, &depth.points, &mut depth.normals, &mut error);
+        cubic_normals::improve(depth.size, &depth.points, &mut depth.normals, &mut error, depth.noise.is_white);
     }
     Views { image: ColourView::new(image).unwrap(), depth, error, sample }
 }

@@ -56,7 +56,8 @@ impl SharpNormals {
         let mut error = vec![0.0; depth.size.len()];
         let mut noise = 0.0;
         if !depth.normals_given {
-            noise = cubic_normals::improve(depth.size, &depth.points, &mut normals, &mut error).max(depth.noise.sigma);
+            noise = cubic_normals::improve(depth.size, &depth.points, &mut normals, &mut error, depth.noise.is_white)
+                .max(depth.noise.sigma);
         }
         Self { normals, error, noise }
     }
