@@ -15,13 +15,11 @@
 //! P. Huber: "The behavior of maximum likelihood estimates under nonstandard conditions", Proc. 5th Berkeley Symposium,
 //! 1967. K.-Y. Liang, S. Zeger: "Longitudinal data analysis using generalized linear models", Biometrika 73, 1986.
 
-use nalgebra::SymmetricEigen;
-
 use super::equations::{ReducedSystem, SquareSums, add_product, folded, no_sums, scaled};
 use super::evaluation::Evaluation;
+use crate::numeric::eigen::{Eigen, symmetric_eigen};
 use crate::numeric::{Doubles, Real};
 use crate::pose::increment::{Frame, PoseMatrix, PoseVector, clear_unknowns, fix_unknowns, inverse, product};
-use crate::pose::uncertainty::MOST_EIGEN_ROUNDS;
 use crate::view::Size;
 
 /// Side of the tiles of the depth map whose scores count as one observation, pixels: twice the reach of normals and
@@ -147,13 +145,12 @@ fn sigma_growth(matrix: &PoseMatrix, noise_information: &PoseMatrix) -> Option<P
     let inverse = inverse(&root)?;
     let symmetric = 0.5 * (matrix + matrix.transpose());
     let whitened = product(&product(&inverse, &symmetric), &inverse.transpose());
-    let SymmetricEigen { eigenvalues, eigenvectors } =
-        SymmetricEigen::try_new(whitened, f64::EPSILON, MOST_EIGEN_ROUNDS)?;
-    let mut along = product(&root, &eigenvectors).transpose();
-    for (mut row, value) in along.row_iter_mut().zip(&eigenvalues) {
+    let Eigen { values, vectors } = symmetric_eigen(&whitened)?;
+    let mut along = product(&root, &vectors).transpose();
+    for (mut row, value) in along.row_iter_mut().zip(&values) {
         row *= value.max(1.0) / (value - 1.0).max(LEAST_SIGNAL);
     }
-    Some(product(&product(&inverse.transpose(), &eigenvectors), &along))
+    Some(product(&product(&inverse.transpose(), &vectors), &along))
 }
 
 #[cfg(test)]

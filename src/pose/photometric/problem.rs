@@ -9,7 +9,7 @@ use crate::numeric::{DOUBLE_LANES, Doubles, Real, dot};
 use crate::pose::increment::{PoseMatrix, UNKNOWNS};
 use crate::pose::similarity::Similarity;
 use crate::pose::uncertainty::Uncertainty;
-use crate::view::{ColourView, Normals, Points, Size};
+use crate::view::{ColourView, DepthNoise, Normals, Points, Size};
 
 /// The coarsest level of the image.
 pub(super) const COARSEST: usize = 2;
@@ -31,6 +31,8 @@ pub struct PhotometricProblem<'a> {
     /// One sigma of each normal in radians, see [`crate::cubic_normals`]; NaN leaves the point out. `None`: all are
     /// exact.
     pub normal_error: Option<&'a [f32]>,
+    /// The noise of the depth that the normals follow from.
+    pub depth_noise: DepthNoise,
     /// The light where it is known, but for its exposure.
     pub light: Option<&'a Light>,
     /// Prior of an unknown light.

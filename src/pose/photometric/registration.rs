@@ -443,7 +443,7 @@ impl Photometric {
     }
 
     fn reduce_by_instruments(&self, problem: &PhotometricProblem<'_>, frame: &Frame) -> Result<ReducedSystem> {
-        self.evaluation_by_instruments(problem).reduced_system(frame).ok_or_else(undetermined_light)
+        self.evaluation_by_instruments(problem).unbiased_system(frame).ok_or_else(undetermined_light)
     }
 
     fn covariance(&mut self, problem: &PhotometricProblem<'_>, frame: &Frame, reduced: &ReducedSystem) -> PoseMatrix {
