@@ -66,14 +66,25 @@ impl Noise {
     }
 }
 
-/// The scores of a depth map's tiles; owns its memory.
+/// Sums over the points of a tile: scores, and residuals with their weights.
+#[derive(Clone, Copy, Default)]
+struct Tile {
+    score: PoseVector,
+    residual: [f64; 3],
+    weight: f64,
+}
+
+/// The tiles of a depth map; owns its memory.
 #[derive(Default)]
-pub(super) struct Tiles(Vec<PoseVector>);
+pub(super) struct Tiles {
+    tiles: Vec<Tile>,
+    structure: f64,
+}
 
 impl Tiles {
     /// Memory for the tiles of a depth map.
     pub fn new(depth: Size) -> Self {
-        Self(vec![PoseVector::zeros(); depth.width.div_ceil(TILE) * depth.height.div_ceil(TILE)])
+        Self { tiles: vec![Tile::default(); depth.width.div_ceil(TILE) * depth.height.div_ceil(TILE)], structure: 0.0 }
     }
 
     /// Covariance of the pose's unknowns; held ones have none.
@@ -86,7 +97,7 @@ impl Tiles {
     ) -> PoseMatrix {
         let mut noise_information = folded(&self.sum_scores(evaluation, frame, reduced, noise));
         let (mut spread, mut count) = (PoseMatrix::zeros(), 0.0);
-        for score in self.0.iter().filter(|score| score.norm() > 0.0) {
+        for Tile { score, .. } in self.tiles.iter().filter(|tile| tile.score.norm() > 0.0) {
             spread.ger(1.0, score, score, 1.0);
             count += 1.0;
         }
@@ -111,7 +122,13 @@ impl Tiles {
         covariance
     }
 
-    /// Sums the scores of each tile, and F.
+    /// Root mean covariance of residuals of one tile, log units, by the last sums: what the model leaves out reaches over
+    /// neighbours, white noise does not.
+    pub const fn structure(&self) -> f64 {
+        self.structure
+    }
+
+    /// Sums the scores and residuals of each tile, and F.
     fn sum_scores(
         &mut self,
         evaluation: &Evaluation<'_>,
@@ -124,18 +141,34 @@ impl Tiles {
         let mut noise_information = no_sums();
         let size = evaluation.problem.depth_size;
         let across = size.width.div_ceil(TILE);
-        self.0.fill(PoseVector::zeros());
+        self.tiles.fill(Tile::default());
+        // Products of a point with itself, which are no pairs.
+        let (mut squares, mut weights) = (0.0, 0.0);
         evaluation.for_each_linearised(frame, |indices, points, weight| {
             let score = scaled(&reduced.score(points), weight).map(Doubles::array);
+            let (weight_of, residual) = (weight.array(), points.residual.map(|residual| (weight * residual).array()));
             for (lane, &index) in indices.iter().enumerate() {
                 let (column, row) = size.position(index as usize);
-                self.0[row / TILE * across + column / TILE] += PoseVector::from(score.map(|score| score[lane]));
+                let tile = &mut self.tiles[row / TILE * across + column / TILE];
+                tile.score += PoseVector::from(score.map(|score| score[lane]));
+                tile.weight += weight_of[lane];
+                weights += weight_of[lane].powi(2);
+                for (sum, residual) in tile.residual.iter_mut().zip(&residual) {
+                    *sum += residual[lane];
+                    squares += residual[lane].powi(2);
+                }
             }
             for row in &points.pixel_derivatives {
                 let row_variance = scaled(row, weight * Doubles::splat(gradient_variance));
                 add_product(&mut noise_information, &row_variance, row);
             }
         });
+        for tile in &self.tiles {
+            squares -= tile.residual.iter().map(|sum| sum * sum).sum::<f64>();
+            weights -= tile.weight * tile.weight;
+        }
+        // Both negative by now; 0 / 0 where no tile has a pair.
+        self.structure = (squares / (3.0 * weights)).max(0.0).sqrt();
         noise_information
     }
 }
