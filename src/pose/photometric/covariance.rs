@@ -19,7 +19,7 @@ use nalgebra::SymmetricEigen;
 
 use super::equations::{ReducedSystem, SquareSums, add_product, folded, no_sums, scaled};
 use super::evaluation::Evaluation;
-use crate::numeric::{Doubles, Real};
+use crate::numeric::{Doubles, Real, dot};
 use crate::pose::increment::{Frame, PoseMatrix, PoseVector, clear_unknowns, fix_unknowns, inverse, product};
 use crate::pose::uncertainty::MOST_EIGEN_ROUNDS;
 use crate::view::Size;
@@ -66,12 +66,12 @@ impl Noise {
     }
 }
 
-/// Sums over the points of a tile: scores, and residuals with their weights.
+/// Sums over the points of a tile.
 #[derive(Clone, Copy, Default)]
 struct Tile {
     score: PoseVector,
-    residual: [f64; 3],
-    weight: f64,
+    /// Weighted residuals of the three channels, and the weights.
+    shared: [f64; 4],
 }
 
 /// The tiles of a depth map; owns its memory.
@@ -142,33 +142,31 @@ impl Tiles {
         let size = evaluation.problem.depth_size;
         let across = size.width.div_ceil(TILE);
         self.tiles.fill(Tile::default());
-        // Products of a point with itself, which are no pairs.
-        let (mut squares, mut weights) = (0.0, 0.0);
+        // Products of a point with itself, which are no pairs: of residuals, of weights.
+        let mut own = [Doubles::splat(0.0); 2];
         evaluation.for_each_linearised(frame, |indices, points, weight| {
             let score = scaled(&reduced.score(points), weight).map(Doubles::array);
-            let (weight_of, residual) = (weight.array(), points.residual.map(|residual| (weight * residual).array()));
+            let residual = points.residual.map(|residual| weight * residual);
+            own = [own[0] + dot(residual, residual), own[1] + weight * weight];
+            let shared = [residual[0], residual[1], residual[2], weight].map(Doubles::array);
             for (lane, &index) in indices.iter().enumerate() {
                 let (column, row) = size.position(index as usize);
                 let tile = &mut self.tiles[row / TILE * across + column / TILE];
                 tile.score += PoseVector::from(score.map(|score| score[lane]));
-                tile.weight += weight_of[lane];
-                weights += weight_of[lane].powi(2);
-                for (sum, residual) in tile.residual.iter_mut().zip(&residual) {
-                    *sum += residual[lane];
-                    squares += residual[lane].powi(2);
-                }
+                tile.shared.iter_mut().zip(&shared).for_each(|(sum, numbers)| *sum += numbers[lane]);
             }
             for row in &points.pixel_derivatives {
                 let row_variance = scaled(row, weight * Doubles::splat(gradient_variance));
                 add_product(&mut noise_information, &row_variance, row);
             }
         });
-        for tile in &self.tiles {
-            squares -= tile.residual.iter().map(|sum| sum * sum).sum::<f64>();
-            weights -= tile.weight * tile.weight;
+        let [mut residuals, mut weights] = own.map(|own| -own.sum());
+        for Tile { shared: [red, green, blue, weight], .. } in &self.tiles {
+            residuals += red * red + green * green + blue * blue;
+            weights += weight * weight;
         }
-        // Both negative by now; 0 / 0 where no tile has a pair.
-        self.structure = (squares / (3.0 * weights)).max(0.0).sqrt();
+        // 0 / 0 where no tile has a pair.
+        self.structure = (residuals / (3.0 * weights)).max(0.0).sqrt();
         noise_information
     }
 }
