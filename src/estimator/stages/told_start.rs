@@ -105,9 +105,7 @@ impl TrustRegion {
             && self.holds(&found.pose)
             && explains(pair, found)
         {
-            let found = found.clone();
-            let compared = self.by_contrast(pair, colours, (&found.pose, Some(&found)));
-            return Ok(compared.unwrap_or_else(|| Settled::ByColours(Box::new(found))));
+            return Ok(Settled::ByColours(Box::new(found.clone())));
         }
         let plain = colours.take_found().map(Box::new);
         let mut optima = LocalOptima::new(MOST_TRIED + 4, pair.image.log_spread(), pair.image.log_noise());
@@ -125,8 +123,19 @@ impl TrustRegion {
         }
         let best =
             optima.decide().best.filter(|best| best.candidate != STAYING).and_then(|best| best.registered.report);
-        if let Some(settled) = self.by_contrast(pair, colours, (&self.told, best.as_deref())) {
-            return Ok(settled);
+        if painted::is_called_for(pair, colours, best.as_deref())
+            && let Some(found) = painted::near(pair, colours, &self.told)
+        {
+            match found {
+                Conclusion::ByColours(found) if self.holds(&found.pose) => {
+                    colours.adopt((*found).clone());
+                    return Ok(Settled::ByColours(found));
+                }
+                Conclusion::ByContrast(found) if self.holds(&found.best.pose) => {
+                    return Ok(Settled::ByContrast(found));
+                }
+                _ => {}
+            }
         }
         match (best, outlined) {
             (Some(best), outlined) if !outlines::is_painted(pair, best.noise) || outlined.is_none() => {
@@ -134,29 +143,6 @@ impl TrustRegion {
             }
             (_, Some(outlined)) => Ok(Settled::ByOutlines(Box::new(outlined))),
             (..) => Ok(Settled::Kept),
-        }
-    }
-
-    /// What local contrast finds about a pose, where what the colours leave is no noise.
-    fn by_contrast(
-        &self,
-        pair: &ViewPair,
-        colours: &mut ColourRegistration,
-        (about, plain): (&Similarity, Option<&PhotometricReport>),
-    ) -> Option<Settled> {
-        if !painted::is_called_for(pair, colours, plain) {
-            return None;
-        }
-        match painted::near(pair, colours, about)? {
-            Conclusion::ByColours(found) if self.holds(&found.pose) => {
-                colours.adopt((*found).clone());
-                Some(Settled::ByColours(found))
-            }
-            Conclusion::ByContrast(found) if self.holds(&found.best.pose) => {
-                colours.take_found();
-                Some(Settled::ByContrast(found))
-            }
-            _ => None,
         }
     }
 
