@@ -32,11 +32,15 @@ fn views(sample: Sample, gain: f32) -> Views {
 }
 
 fn bust(beta: f64, side: usize, light: Light) -> Sample {
+    bust_with_noise(beta, side, light, 0.01)
+}
+
+fn bust_with_noise(beta: f64, side: usize, light: Light, noise: f64) -> Sample {
     let request = scenes::SampleRequest {
         light,
         size: Size { width: side, height: side },
         rotation: Angles { beta, ..Angles::default() }.rotation(),
-        noise: 0.01,
+        noise,
         ..Default::default()
     };
     scenes::Scene::new(&scenes::surface("bust").unwrap()).unwrap().sample(&request).unwrap()
@@ -189,3 +193,30 @@ fn what_noisy_normals_add_to_the_equations_is_taken_off() {
 
 /// Maps that differ in their noise: means are known to a third of one's error.
 const SEEDS: u64 = 10;
+
+#[test]
+fn neighbours_share_what_the_model_leaves_out_and_no_noise() {
+    let structure = |noise: f64, shadow: f64| {
+        let mut sample = bust_with_noise(30.0, 96, scenes::lights::WINDOW, noise);
+        for (index, colour) in sample.image.colours.chunks_mut(3).enumerate() {
+            // A shadow over a part of the object, as no harmonics of its normals are.
+            let [x, y] = [index % 96, index / 96].map(|at| at as f64);
+            let share = shadow * (0.35 * x).sin() * (0.35 * y).sin();
+            colour.iter_mut().for_each(|value| *value *= share.exp() as f32);
+        }
+        let views = views(sample, 1.0);
+        let report = register(&views, None, &views.sample.pose).unwrap();
+        (report.structure, report.noise)
+    };
+    for noise in [0.0, 0.01, 0.03] {
+        let (structure, noise) = structure(noise, 0.0);
+        assert!(structure < 0.15 * noise, "{structure} of {noise}");
+    }
+    // Of a wave of this length the mean over a tile of 8 pixels keeps sin(u) / u along each axis; the light takes a little.
+    let kept = (4.0 * 0.35_f64).sin() / (4.0 * 0.35);
+    for noise in [0.0, 0.03] {
+        let (structure, _) = structure(noise, 0.04);
+        let expected = 0.02 * kept * kept;
+        assert!(structure > 0.6 * expected && structure < 1.1 * expected, "{structure} of {expected}");
+    }
+}

@@ -162,6 +162,9 @@ pub struct PhotometricReport {
     pub objective: f64,
     /// Robust standard deviation of a channel's residuals, log units.
     pub noise: f64,
+    /// What residuals of neighbours have in common: root mean covariance within tiles of the depth map, log units. Shadows, paint
+    /// and light from other parts of the object have some, white noise of any size none.
+    pub structure: f64,
     /// Number of visible points.
     pub visible: usize,
     /// Whether these are a sample only, see [`PhotometricOptions::most_points`].
