@@ -15,15 +15,15 @@ use super::gauge;
 use super::pair::ViewPair;
 use super::solution::{Accepted, Shape, Solution};
 use crate::light::Light;
-use crate::numeric::{evenly_spread, quantile};
-use crate::view::Normals;
+use crate::numeric::quantile;
+use crate::view::{Normals, Size};
 
 /// Movement that is none, sigmas.
 pub const TOLERANCE: f64 = 0.1;
 /// Sigma of a height, pixel lengths: surfaces from shading at 1 % noise are that well known at best.
 const HEIGHT_SIGMA: f64 = 0.05;
-/// Pixels of each view that are compared at most: their mean square is then right to a few percent.
-const MOST_PIXELS: usize = 2500;
+/// Pixels of each frame that are compared at most, on a square grid: their mean square is then right to a few percent.
+const MOST_PIXELS: usize = 4000;
 
 /// How far both shapes are from rest.
 pub struct Settling {
@@ -40,10 +40,12 @@ struct Movement {
     own: f64,
     /// Of the other one's normals since then.
     input: f64,
+    /// Whether both are none, so that the next iteration keeps the shape.
+    is_kept: bool,
 }
 
 /// Nothing is known: whatever is unsolved has not settled.
-const UNKNOWN: Movement = Movement { own: f64::INFINITY, input: f64::INFINITY };
+const UNKNOWN: Movement = Movement { own: f64::INFINITY, input: f64::INFINITY, is_kept: false };
 
 impl Settling {
     pub const fn new(tolerance: f64) -> Self {
@@ -52,12 +54,12 @@ impl Settling {
 
     /// Whether the next iteration keeps the image's shape.
     pub const fn keeps_image(&self) -> bool {
-        self.image.is_within(self.tolerance)
+        self.image.is_kept
     }
 
     /// Whether the next iteration keeps the depth view's shape.
     pub const fn keeps_depth(&self) -> bool {
-        self.depth.is_within(self.tolerance)
+        self.depth.is_kept
     }
 
     /// Whether the next iteration changes nothing.
@@ -72,24 +74,19 @@ impl Settling {
 
     /// Takes in by how much the last iteration has moved the shapes.
     pub fn advance(&mut self, [image, depth]: [Moved; 2]) {
-        let (keeps_image, keeps_depth) = (self.keeps_image(), self.keeps_depth());
-        self.image.advance(keeps_image, image, depth);
-        self.depth.advance(keeps_depth, depth, image);
+        self.image.advance(self.tolerance, image, depth);
+        self.depth.advance(self.tolerance, depth, image);
     }
 }
 
 impl Movement {
-    const fn is_within(self, tolerance: f64) -> bool {
-        self.own <= tolerance && self.input <= tolerance
-    }
-
     /// An iteration has kept this shape, or solved it before the other one moved.
-    fn advance(&mut self, is_kept: bool, this: Moved, other: Moved) {
-        *self = if is_kept {
-            Self { input: self.input + other.normals, ..*self }
-        } else {
-            Self { own: this.normals.max(this.heights), input: other.normals }
-        };
+    fn advance(&mut self, tolerance: f64, this: Moved, other: Moved) {
+        if !self.is_kept {
+            (self.own, self.input) = (this.normals.max(this.heights), 0.0);
+        }
+        self.input += other.normals;
+        self.is_kept = self.own <= tolerance && self.input <= tolerance;
     }
 }
 
@@ -102,42 +99,56 @@ pub struct Moved {
 
 /// By how much the shapes of the image and of the depth view have moved since the `accepted` iteration, under one pose.
 pub fn movements(pair: &ViewPair, accepted: &Accepted, solution: &Solution, spare: &mut Vec<f32>) -> [Moved; 2] {
+    let Solution { pose, image, depth, .. } = solution;
     let lights = [accepted.light.total(), solution.light.total()];
-    let pose = &solution.pose;
-    let (pixel, noise) = (gauge::pixel_length(&pair.image, solution), pair.image.log_noise().max(f64::MIN_POSITIVE));
-    let mut moved = |before: (&Normals, &[f32]), after: &Shape, rotation: &Matrix3<f64>, pixel: f64| {
-        let normals = change(&lights, [before.0, &after.normals], rotation) / noise;
-        Moved { normals, heights: median_change([before.1, &after.points.z], spare) / (HEIGHT_SIGMA * pixel) }
-    };
-    [
-        moved(accepted.image(), &solution.image, &Matrix3::identity(), pixel),
-        moved(accepted.depth(), &solution.depth, &pose.rotation, pixel / pose.scale),
-    ]
+    let pixel = gauge::pixel_length(&pair.image, solution);
+    let own = Matrix3::identity();
+    let views = [
+        (pair.image.size, accepted.image(), image, &own, pixel),
+        (pair.depth.size, accepted.depth(), depth, &pose.rotation, pixel / pose.scale),
+    ];
+    views.map(|(size, before, after, rotation, pixel)| {
+        let [colours, depth] = change(size, &lights, before, after, rotation, spare);
+        let normals = colours / pair.image.log_noise().max(f64::MIN_POSITIVE);
+        Moved { normals, heights: depth / (HEIGHT_SIGMA * pixel) }
+    })
 }
 
-/// Root mean square change of the colours in one channel, from the first of the lights and normals to the second.
-fn change(lights: &[Light; 2], normals: [&Normals; 2], rotation: &Matrix3<f64>) -> f64 {
-    let valid = || (0..normals[0].len()).filter(|&index| normals.iter().all(|normals| normals.is_valid(index)));
-    let (mut sum, mut count) = (0.0, 0.0);
-    for index in evenly_spread(MOST_PIXELS, valid) {
-        let shade = |which: usize| {
-            let normal = rotation * Vector3::from(normals[which].get(index).map(f64::from));
-            lights[which].shade(normal.into())
-        };
-        let [before, after] = [0, 1].map(shade);
-        sum += (0..3).map(|channel| (after[channel] - before[channel]).powi(2)).sum::<f64>();
-        count += 3.0;
-    }
-    (sum / f64::max(count, 1.0)).sqrt()
-}
-
-/// Median change of the depths.
-fn median_change(depths: [&[f32]; 2], spare: &mut Vec<f32>) -> f64 {
-    let change = |index: usize| (depths[1][index] - depths[0][index]).abs();
-    let known = || (0..depths[0].len()).filter(|&index| !change(index).is_nan());
+/// Root mean square change of the predicted colours in one channel, from the first of the lights to the second, and
+/// median change of the depths. Infinite where there is nothing to compare.
+#[inline(never)]
+fn change(
+    size: Size,
+    lights: &[Light; 2],
+    (normals, depths): (&Normals, &[f32]),
+    after: &Shape,
+    rotation: &Matrix3<f64>,
+    spare: &mut Vec<f32>,
+) -> [f64; 2] {
+    let step = (size.len() / MOST_PIXELS).isqrt() + 1;
     spare.clear();
-    spare.extend(evenly_spread(MOST_PIXELS, known).map(change));
-    if spare.is_empty() { 0.0 } else { f64::from(quantile(spare, 0.5)) }
+    let mut sum = 0.0;
+    for row in (0..size.height).step_by(step) {
+        for index in (row * size.width..(row + 1) * size.width).step_by(step) {
+            let moved = (after.points.z[index] - depths[index]).abs();
+            if moved.is_nan() || !normals.is_valid(index) || !after.normals.is_valid(index) {
+                continue;
+            }
+            let mut off = [0.0; 3];
+            for (sign, light, normals) in [(-1.0, &lights[0], normals), (1.0, &lights[1], &after.normals)] {
+                let normal = rotation * Vector3::from(normals.get(index).map(f64::from));
+                let shade = light.shade(normal.into());
+                (0..3).for_each(|channel| off[channel] += sign * shade[channel]);
+            }
+            sum += off[0] * off[0] + off[1] * off[1] + off[2] * off[2];
+            spare.push(moved);
+        }
+    }
+    if spare.is_empty() {
+        return [f64::INFINITY; 2];
+    }
+    let mean_square = sum / (3.0 * spare.len() as f64);
+    [mean_square.sqrt(), f64::from(quantile(spare, 0.5))]
 }
 
 #[cfg(test)]
@@ -148,7 +159,7 @@ mod tests {
     use crate::pose::Angles;
     use crate::report::Status;
     use crate::scenes::{Sample, SampleRequest, Scene, light, surface};
-    use crate::view::{Camera, Pinhole, Size};
+    use crate::view::{Camera, Pinhole};
 
     /// A pair of `side` pixels, turned by `beta`.
     fn sample(name: &str, lamps: &str, side: usize, beta: f64, depth_noise: f64, is_pinhole: bool) -> Sample {
@@ -261,10 +272,10 @@ mod tests {
         settling.advance([moved(0.01), moved(0.04)]);
         assert!(settling.keeps_image() && settling.keeps_depth());
         // The image is kept, what it was found from goes on.
-        settling.depth.own = 1.0;
+        settling.depth.is_kept = false;
         settling.advance([moved(0.0), moved(0.04)]);
         assert!(settling.keeps_image());
-        settling.depth.own = 1.0;
+        settling.depth.is_kept = false;
         settling.advance([moved(0.0), moved(0.04)]);
         assert!(!settling.keeps_image());
         settling.advance([Moved { normals: 0.0, heights: 0.2 }, moved(0.0)]);
