@@ -130,7 +130,8 @@ pub struct RigFrame {
 /// As [`RigRequest::validate`].
 pub fn render(request: &RigRequest) -> Result<RigFrame> {
     request.validate()?;
-    let Views { rig, linear, seen, .. } = Views::of(request);
+    let Views { rig, stage, view, light, rays, hits, seen } = Views::of(request);
+    let linear = radiance(&stage, &light, &view, &rays, &hits, rig.colour_size);
     Ok(RigFrame {
         kind: request.kind,
         colour: develop(&linear, request.noise, &mut request.of_frame(Stream::Image)),
@@ -147,20 +148,13 @@ pub fn render(request: &RigRequest) -> Result<RigFrame> {
 /// Both views before their sensors, and what they are views of.
 struct Views {
     rig: Rig,
-    #[cfg_attr(not(test), expect(dead_code, reason = "tests look at what was seen"))]
-    scene: Scene,
-    linear: Vec<f32>,
-    seen: Seen,
-}
-
-#[cfg_attr(not(test), expect(dead_code, reason = "tests look at what was seen"))]
-struct Scene {
     stage: Stage,
     /// From the world to the colour camera.
     view: Similarity,
     light: Illumination,
     rays: Rays,
     hits: Hits,
+    seen: Seen,
 }
 
 impl Views {
@@ -170,9 +164,8 @@ impl Views {
         let light = Illumination::random(&stage, target, &mut request.of_frame(Stream::Light));
         let rays = Rays::new(&rig.colour, rig.colour_size, SAMPLES);
         let hits = rays.meet(&stage, &view);
-        let linear = radiance(&stage, &light, &view, &rays, &hits, rig.colour_size);
         let seen = look(&stage, &rig.pose.inverse().after(&view), &rig);
-        Self { rig, scene: Scene { stage, view, light, rays, hits }, linear, seen }
+        Self { rig, stage, view, light, rays, hits, seen }
     }
 }
 
@@ -189,7 +182,8 @@ mod tests {
         for (kind, seed) in RigKind::ALL.into_iter().zip(3..) {
             let size = Some(Size { width: 640, height: 480 });
             let request = RigRequest { colour_size: size, depth_size: size, ..RigRequest::new(kind, seed, 0) };
-            let Views { rig, scene: Scene { stage, view, light, rays, hits }, linear, seen } = Views::of(&request);
+            let Views { rig, stage, view, light, rays, hits, seen } = Views::of(&request);
+            let linear = radiance(&stage, &light, &view, &rays, &hits, rig.colour_size);
             let turned = nalgebra::Rotation3::new(Vector3::new(0.0, 0.035, 0.0)).into_inner() * rig.pose.rotation;
             let [true_pose, off] = [rig.pose, Similarity { rotation: turned, ..rig.pose }];
             let agreement = |pose: &Similarity| {
