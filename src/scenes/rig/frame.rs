@@ -4,7 +4,7 @@ use super::cameras::Rig;
 use super::colour::{SAMPLES, develop, radiance};
 use super::depth::{Seen, look, measure};
 use super::illumination::Illumination;
-use super::layout::{Layout, layout};
+use super::layout::{Layout, RigKind, layout};
 use super::raster::{Hits, Rays};
 use super::stage::Stage;
 use crate::calibration::RigCamera;
@@ -25,35 +25,6 @@ enum Stream {
 }
 const STREAMS: u64 = 4;
 const RIG_STREAM: u64 = 1 << 40;
-
-/// What is seen.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum RigKind {
-    /// Three to six bodies of 8 to 25 cm at 0.6 to 1.2 m, a wall 0.3 m or more behind them.
-    Objects,
-    /// A crumpled sheet or a draped cloth before a wall.
-    Sheet,
-    /// Boxes on a table, some on top of others.
-    Boxes,
-    /// Walls, a floor and furniture at 1.5 to 4 m.
-    Room,
-}
-
-impl RigKind {
-    /// All of them.
-    pub const ALL: [Self; 4] = [Self::Objects, Self::Sheet, Self::Boxes, Self::Room];
-
-    /// Lower-case name.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Objects => "objects",
-            Self::Sheet => "sheet",
-            Self::Boxes => "boxes",
-            Self::Room => "room",
-        }
-    }
-}
 
 /// Which frame of which rig to make.
 #[derive(Clone, Debug, PartialEq)]

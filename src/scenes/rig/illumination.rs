@@ -129,8 +129,7 @@ mod tests {
     use nalgebra::Matrix3;
 
     use super::*;
-    use crate::scenes::rig::frame::RigKind;
-    use crate::scenes::rig::layout::{Layout, layout};
+    use crate::scenes::rig::layout::{Layout, RigKind, layout};
 
     fn is_blocked(stage: &Stage, from: Vector3<f64>, to: Vector3<f64>) -> bool {
         stage.triangles.iter().any(|triangle| {

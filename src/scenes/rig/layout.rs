@@ -4,7 +4,6 @@ use std::f64::consts::PI;
 
 use nalgebra::{Rotation3, Unit, Vector3};
 
-use super::frame::RigKind;
 use super::paint::Paint;
 use super::sheet::sheet;
 use super::solids::{Solid, icosahedron, prism, torus};
@@ -23,6 +22,35 @@ const BACKGROUND: [f64; 2] = [0.3, 0.7];
 const ASIDE: f64 = 0.62;
 /// Attempts at a free place for an object.
 const ATTEMPTS: usize = 40;
+
+/// What is seen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RigKind {
+    /// Three to six bodies of 8 to 25 cm at 0.6 to 1.2 m, a wall 0.3 m or more behind them.
+    Objects,
+    /// A crumpled sheet or a draped cloth before a wall.
+    Sheet,
+    /// Boxes on a table, some on top of others.
+    Boxes,
+    /// Walls, a floor and furniture at 1.5 to 4 m.
+    Room,
+}
+
+impl RigKind {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Objects, Self::Sheet, Self::Boxes, Self::Room];
+
+    /// Lower-case name.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Objects => "objects",
+            Self::Sheet => "sheet",
+            Self::Boxes => "boxes",
+            Self::Room => "room",
+        }
+    }
+}
 
 /// A stage, the rig's place in it and the scene's middle.
 pub struct Layout {
