@@ -28,8 +28,7 @@ impl Chance {
         Self::of_stream(seed, purpose as u64)
     }
 
-    /// One of a seed's independent streams. Inlined, so that constant streams cost no bytes.
-    #[inline(always)]
+    /// One of a seed's independent streams.
     pub(super) fn of_stream(seed: u64, stream: u64) -> Self {
         let mut generator = ChaCha8Rng::seed_from_u64(seed);
         generator.set_stream(stream);
