@@ -27,10 +27,13 @@ const FLAVOURS = [
   { file: `${MODULE}_bg.wasm`, target: "target", flags: ["-C", `target-feature=-${REFERENCES}`] },
   { file: `${MODULE}_scalar_bg.wasm`, target: "target/scalar", flags: ["-C", `target-feature=-${REFERENCES},-simd128`] },
 ];
-/** One for programs, one for what reads files, one for the page's fields, and one for the threads of workers. */
-const ENTRIES = { index: "index", files: "files", options: "options", thread: "workers/thread" };
+/** One for programs, two for what reads files, one for the page's fields, and one for the threads of workers. */
+const ENTRIES = { index: "index", files: "files", rig: "rig/index", options: "options", thread: "workers/thread" };
 /** Declarations that no entry mentions; one of them names the generated bindings, which stay inside. */
-const INTERNAL = ["check.d.ts", "engine.d.ts", "node.d.ts", "npy.d.ts", "plain.d.ts", "workers"];
+const INTERNAL = [
+  ...["rig/colour.d.ts", "rig/depth.d.ts", "rig/formats"],
+  ...["check.d.ts", "engine.d.ts", "inflate.d.ts", "node.d.ts", "npy.d.ts", "plain.d.ts", "png.d.ts", "raster.d.ts", "workers"],
+];
 
 const node = (module, ...args) => must(process.execPath, [inRoot("node_modules", module), ...args]);
 
@@ -51,11 +54,12 @@ function manifest() {
     exports: {
       ".": { types: "./index.d.ts", default: "./index.js" },
       "./files": { types: "./files.d.ts", default: "./files.js" },
+      "./rig": { types: "./rig/index.d.ts", default: "./rig.js" },
       ...Object.fromEntries(FLAVOURS.map(({ file }) => [`./${file}`, `./${file}`])),
       "./package.json": "./package.json",
     },
     types: "./index.d.ts",
-    files: ["*.js", "*.d.ts", "*.wasm", ...COPIED],
+    files: ["*.js", "*.d.ts", "*.wasm", "rig", ...COPIED],
   };
 }
 

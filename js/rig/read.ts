@@ -1,0 +1,78 @@
+/**
+ * Any file of a rig, recognised by its content, as what the check takes.
+ *
+ * Whatever is wrong with a file comes out as one BimodalError of code "file" that names the file and the reason.
+ */
+import { BimodalError, badFile } from "../errors.js";
+import { isNpy, readNpy } from "../npy.js";
+import { isPng } from "../png.js";
+import { looksLikeDepth, looksLikeMask, pictureColour, pictureMask } from "./colour.js";
+import { isGrey, pictureDepth } from "./depth.js";
+import { MOST_BYTES, checkSize } from "./formats/limits.js";
+import type { Picture } from "./formats/picture.js";
+import { pngPicture } from "./formats/png.js";
+import type { NamedFile, ReadOptions, RigReading } from "./types.js";
+
+type Unnamed<T> = T extends unknown ? Omit<T, "name"> : never;
+type Content = Unnamed<RigReading>;
+
+function npyPicture(bytes: Uint8Array): Picture {
+  const raster = readNpy(bytes, { columns: true });
+  checkSize(raster.width, raster.height);
+  return { ...raster, format: "npy", bits: 8 * raster.data.BYTES_PER_ELEMENT, notes: [], warnings: [] };
+}
+
+const isColourful = (picture: Picture): boolean => picture.channels >= 3 && !isGrey(picture);
+
+/** What a picture is where nobody said: by its content, and where both would do, by the name of its file. */
+function guessedKind(name: string, picture: Picture): "colour" | "depth" | "mask" {
+  if (looksLikeMask(picture)) return "mask";
+  if (picture.data instanceof Float32Array && picture.channels === 3) return picture.format === "npy" ? "depth" : "colour";
+  if (isColourful(picture)) return "colour";
+  const file = name.toLowerCase();
+  if (/depth|dist|disp|range/.test(file)) return "depth";
+  if (/rgb|colou?r|grey|gray|image|photo/.test(file)) return "colour";
+  return looksLikeDepth(picture) ? "depth" : "colour";
+}
+
+function ofPicture(name: string, picture: Picture, options: ReadOptions): Content {
+  const kind = options.as ?? guessedKind(name, picture);
+  if (kind === "colour") return pictureColour(picture);
+  if (kind === "depth") return pictureDepth(picture, options);
+  if (kind === "mask") return pictureMask(picture);
+  throw badFile(`it is a picture (${picture.format}) where ${kind} were asked for`);
+}
+
+
+async function content({ name, bytes }: NamedFile, options: ReadOptions): Promise<Content> {
+  if (bytes.length === 0) throw badFile("it is empty");
+  if (bytes.length > MOST_BYTES) throw badFile(`it is ${(bytes.length / 2 ** 20).toFixed(0)} MB large; up to ${MOST_BYTES / 2 ** 20} MB are read`);
+  if (isPng(bytes)) return ofPicture(name, pngPicture(bytes), options);
+  if (isNpy(bytes)) return ofPicture(name, npyPicture(bytes), options);
+  throw badFile("it is of no kind that is read here");
+}
+
+/** The error with the file's name in it. */
+function named(name: string, error: unknown): BimodalError {
+  if (error instanceof BimodalError && error.code !== "file") return error;
+  const reason =
+    error instanceof BimodalError ? error.message.replace(/^file: /, "") : `it is damaged or cut off (${error instanceof Error ? error.message : String(error)})`;
+  return badFile(`${name}: ${reason}`, error instanceof BimodalError ? error.cause : error);
+}
+
+function checked(file: NamedFile, { as, unit }: ReadOptions): void {
+  if (typeof file?.name !== "string" || !(file.bytes instanceof Uint8Array)) throw new BimodalError("type", "file: { name: string, bytes: Uint8Array } is needed", "file");
+  const kinds = ["colour", "depth", "mask", "cameras", "poses"];
+  if (as !== undefined && !kinds.includes(as)) throw new BimodalError("option", `options.as: one of ${kinds.join(", ")} is needed`, "options.as");
+  if (unit !== undefined && !(typeof unit === "number" && unit > 0 && Number.isFinite(unit))) throw new BimodalError("option", "options.unit: metres per stored unit, above zero, are needed", "options.unit");
+}
+
+/** Reads one file. What was guessed, or looks wrong, is in `warnings`. */
+export async function readRigFile(file: NamedFile, options: ReadOptions = {}): Promise<RigReading> {
+  checked(file, options);
+  try {
+    return { name: file.name, ...(await content(file, options)) };
+  } catch (error) {
+    throw named(file.name, error);
+  }
+}
