@@ -31,7 +31,7 @@ const FLAVOURS = [
 const ENTRIES = { index: "index", files: "files", rig: "rig/index", options: "options", thread: "workers/thread" };
 /** Declarations that no entry mentions; one of them names the generated bindings, which stay inside. */
 const INTERNAL = [
-  ...["rig/colour.d.ts", "rig/depth.d.ts", "rig/formats"],
+  ...["rig/colour.d.ts", "rig/assign.d.ts", "rig/depth.d.ts", "rig/formats", "rig/words.d.ts"],
   ...["check.d.ts", "engine.d.ts", "inflate.d.ts", "node.d.ts", "npy.d.ts", "plain.d.ts", "png.d.ts", "raster.d.ts", "workers"],
 ];
 

@@ -4,14 +4,22 @@
  * Whatever is wrong with a file comes out as one BimodalError of code "file" that names the file and the reason.
  */
 import { BimodalError, badFile } from "../errors.js";
-import { isNpy, readNpy } from "../npy.js";
-import { isPng } from "../png.js";
+import { readNpy } from "../npy.js";
 import { looksLikeDepth, looksLikeMask, pictureColour, pictureMask } from "./colour.js";
-import { isGrey, pictureDepth } from "./depth.js";
+import { cloudDepth, isGrey, pictureDepth } from "./depth.js";
+import { readExr } from "./formats/exr.js";
+import { readJpeg, readWebp } from "./formats/jpeg.js";
+import { type Kind, kindOf } from "./formats/kinds.js";
 import { MOST_BYTES, checkSize } from "./formats/limits.js";
-import type { Picture } from "./formats/picture.js";
+import { readPcd } from "./formats/pcd.js";
+import type { Cloud, Picture } from "./formats/picture.js";
+import { readPly } from "./formats/ply.js";
 import { pngPicture } from "./formats/png.js";
+import { readPfm, readPnm } from "./formats/pnm.js";
+import { readText, textOf } from "./formats/text.js";
+import { readTiff } from "./formats/tiff.js";
 import type { NamedFile, ReadOptions, RigReading } from "./types.js";
+import { inWords, strange } from "./words.js";
 
 type Unnamed<T> = T extends unknown ? Omit<T, "name"> : never;
 type Content = Unnamed<RigReading>;
@@ -21,6 +29,20 @@ function npyPicture(bytes: Uint8Array): Picture {
   checkSize(raster.width, raster.height);
   return { ...raster, format: "npy", bits: 8 * raster.data.BYTES_PER_ELEMENT, notes: [], warnings: [] };
 }
+
+const PICTURES: Record<Exclude<Kind, "ply" | "pcd">, (bytes: Uint8Array, options: ReadOptions) => Picture | Promise<Picture>> = {
+  png: pngPicture,
+  jpeg: readJpeg,
+  webp: readWebp,
+  tiff: readTiff,
+  exr: (bytes, { as }) => readExr(bytes, as === "depth"),
+  pfm: readPfm,
+  pnm: readPnm,
+  npy: npyPicture,
+};
+
+/** Whether it is a file of pixels or points, and no text of cameras and poses. */
+export const isRasterFile = (bytes: Uint8Array): boolean => kindOf(bytes) !== undefined;
 
 const isColourful = (picture: Picture): boolean => picture.channels >= 3 && !isGrey(picture);
 
@@ -44,12 +66,30 @@ function ofPicture(name: string, picture: Picture, options: ReadOptions): Conten
 }
 
 
+function ofCloud(cloud: Cloud, options: ReadOptions): Content {
+  if (options.as !== undefined && options.as !== "depth") throw badFile(`it is a cloud of points (${cloud.format}) where ${options.as} was asked for`);
+  return cloudDepth(cloud, options);
+}
+
+function ofText(text: string, { as }: ReadOptions): Content {
+  if (as === "colour" || as === "depth" || as === "mask") throw badFile(`it is a text where a ${as === "depth" ? "depth map" : `${as} image`} was asked for`);
+  const { cameras, poses, warnings, format } = readText(text);
+  const reading = { says: `${format}: ${inWords(cameras, poses)}`, warnings: [...new Set(warnings)] };
+  if (as === "cameras" && cameras.length === 0) throw badFile(`it holds ${inWords(cameras, poses)}, but no camera`);
+  if (as === "poses" && poses.length === 0) throw badFile(`it holds ${inWords(cameras, poses)}, but no motion`);
+  return cameras.length > 0 && as !== "poses" ? { kind: "cameras", cameras, poses, ...reading } : { kind: "poses", poses, ...reading };
+}
+
 async function content({ name, bytes }: NamedFile, options: ReadOptions): Promise<Content> {
   if (bytes.length === 0) throw badFile("it is empty");
   if (bytes.length > MOST_BYTES) throw badFile(`it is ${(bytes.length / 2 ** 20).toFixed(0)} MB large; up to ${MOST_BYTES / 2 ** 20} MB are read`);
-  if (isPng(bytes)) return ofPicture(name, pngPicture(bytes), options);
-  if (isNpy(bytes)) return ofPicture(name, npyPicture(bytes), options);
-  throw badFile("it is of no kind that is read here");
+  const kind = kindOf(bytes);
+  if (kind === "ply") return ofCloud(readPly(bytes), options);
+  if (kind === "pcd") return ofCloud(readPcd(bytes), options);
+  if (kind !== undefined) return ofPicture(name, await PICTURES[kind](bytes, options), options);
+  const text = textOf(bytes);
+  if (text === undefined) throw badFile(strange(bytes));
+  return ofText(text, options);
 }
 
 /** The error with the file's name in it. */
