@@ -25,6 +25,8 @@ const USUAL = 8;
 const NEARLY_ALL = 0.99;
 /** .. and of SUN RGB-D's, where depths beyond 8.19 m wrap into the low bits. */
 const MOSTLY = 0.9;
+/** Fewer different depths are a scene made by hand, whose round numbers say nothing of the unit. */
+const MANY_VALUES = 16;
 /** What a 16-bit sensor says where it is blind. */
 const SATURATED = 0xffff;
 /** The Kinect's 11-bit disparity where it is blind. */
@@ -65,9 +67,11 @@ function sampled(values: ArrayLike<number>, step = 1, offset = 0): Float64Array 
 const quantile = (sorted: Float64Array, share: number): number => sorted[Math.floor(share * (sorted.length - 1))] ?? NaN;
 const shareOf = (values: Float64Array, rule: (value: number) => boolean): number => values.reduce((sum, value) => sum + (rule(value) ? 1 : 0), 0) / values.length;
 
+const isVaried = (values: Float64Array): boolean => new Set(values).size >= MANY_VALUES;
+
 /** The unit of whole numbers: of TUM's files all are multiples of 5, since they are fives of a Kinect's millimetres. */
 function unitOfIntegers(values: Float64Array): Unit {
-  const fives = values.length > 1 && shareOf(values, (value) => value % 5 === 0) >= NEARLY_ALL && quantile(values, 0.5) > 1000 * NEAREST * 5;
+  const fives = isVaried(values) && shareOf(values, (value) => value % 5 === 0) >= NEARLY_ALL && quantile(values, 0.5) > 1000 * NEAREST * 5;
   if (fives) return { metres: 0.0002, says: `${name(0.0002)} (guessed: all values are multiples of 5)`, isGuessed: true };
   if (quantile(values, 0.5) > 1000 * USUAL) return { metres: 0.0002, says: `${name(0.0002)} (guessed: too far for millimetres)`, isGuessed: true };
   return { metres: 0.001, says: `${name(0.001)} (guessed)`, isGuessed: true };
@@ -120,7 +124,7 @@ const nothing = () => badFile("no pixel of it holds a depth: all are zero, negat
 
 /** SUN RGB-D turns the bits of its millimetres by three, so that most values are multiples of 8. */
 const isTurned = (values: Float64Array): boolean =>
-  values.length >= 64 && shareOf(values, (value) => value % 8 === 0) >= MOSTLY && new Set(values.map((value) => value / 8)).size > 8 && quantile(values, 0.5) > 1000;
+  isVaried(values) && shareOf(values, (value) => value % 8 === 0) >= MOSTLY && quantile(values, 0.5) > 1000;
 const turnedBack = (data: Uint16Array): Uint16Array => data.map((value) => (value >> 3) | (value << 13));
 
 /** Mean change between neighbours in a row where both are valid; bytes in the wrong order make it a hundredfold. */

@@ -218,7 +218,7 @@ export async function readRigFolder(files: NamedFile[], options: FolderOptions =
   for (const file of kept) {
     if (isRasterFile(file.bytes) || LISTS.test(file.name)) continue;
     // A pose that is called as a frame is where the camera stood then, and relates no two cameras.
-    if (names.has(key(file.name).replace(/ ?\bpose\b/, "")) && /pose/i.test(file.name)) continue;
+    if (/pose/i.test(file.name) && names.has(key(file.name.replace(/pose/gi, "")))) continue;
     const text = await reader.read(file, {});
     if (text?.kind === "cameras") folder.cameras.push(...text.cameras.map((each) => ({ ...each, name: each.name ?? stem(file.name) })));
     if (text?.kind === "cameras" || text?.kind === "poses") folder.poses.push(...text.poses.filter(({ from, to }) => from !== "world" && to !== "world"));

@@ -92,12 +92,17 @@ async function content({ name, bytes }: NamedFile, options: ReadOptions): Promis
   return ofText(text, options);
 }
 
+function reasonOf(error: unknown): string {
+  if (error instanceof BimodalError) return error.message.replace(/^file: /, "");
+  // Readers look at bytes through views that refuse what lies beyond their end.
+  if (error instanceof RangeError) return "it is cut off or damaged: it points beyond its own end";
+  return `it is damaged or cut off (${error instanceof Error ? error.message : String(error)})`;
+}
+
 /** The error with the file's name in it. */
 function named(name: string, error: unknown): BimodalError {
   if (error instanceof BimodalError && error.code !== "file") return error;
-  const reason =
-    error instanceof BimodalError ? error.message.replace(/^file: /, "") : `it is damaged or cut off (${error instanceof Error ? error.message : String(error)})`;
-  return badFile(`${name}: ${reason}`, error instanceof BimodalError ? error.cause : error);
+  return badFile(`${name}: ${reasonOf(error)}`, error instanceof BimodalError ? error.cause : error);
 }
 
 function checked(file: NamedFile, { as, unit }: ReadOptions): void {

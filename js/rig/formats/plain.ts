@@ -78,7 +78,8 @@ export function readNumbers(text: string): Found | undefined {
   if (rows.length % 5 === 0 && rows.every((row, index) => row.length === (index % 5 === 0 ? 3 : 4))) return log(rows);
   if (widths.size === 1 && (width === 8 || width === 7) && rows.length >= 1) return trajectory(rows);
   const size = rows[0]?.length === 2 && values.length === 11 ? values.slice(0, 2) : [];
-  if (values.length - size.length === 9) return nine(values.slice(size.length), size);
+  const isLine = rows.length === 1 && !near(values[8], 1);
+  if (values.length - size.length === 9 && !isLine) return nine(values.slice(size.length), size);
   if (values.length === 12 || values.length === 16) {
     const warnings: string[] = [];
     return { cameras: [], poses: [motionOfMatrix(values, {}, warnings)], warnings, format: "a matrix of a motion" };

@@ -56,6 +56,7 @@ interface Layout {
   isSigned: boolean;
   compression: number;
   predictor: number;
+  isTiled: boolean;
   /** Of a tile; a strip is one as wide as the picture. */
   tileWidth: number;
   tileHeight: number;
@@ -86,7 +87,7 @@ function layout(tags: Tags): Layout {
   const rest = { isFloat, isSigned: format === 2, compression: one(Tag.Compression, 1), predictor: one(Tag.Predictor, 1) };
   // Tiles at the edges are padded: together they may not be much more than the picture.
   if (isTiled && needed * tileWidth * tileHeight > 4 * width * height + 4 * tileWidth * tileHeight) throw badFile("this TIFF has tiles much larger than its picture");
-  return { width, height, samples, bits, ...rest, tileWidth, tileHeight, offsets, counts };
+  return { width, height, samples, bits, ...rest, isTiled, tileWidth, tileHeight, offsets, counts };
 }
 
 const COMPRESSIONS: Record<number, string> = { 2: "CCITT", 3: "CCITT", 4: "CCITT", 6: "JPEG", 7: "JPEG", 34925: "LZMA", 50000: "ZSTD", 34887: "LERC", 50001: "WebP" };
@@ -106,13 +107,13 @@ function expanded(bytes: Uint8Array, { compression }: Layout, length: number): U
 
 /** All samples, as bytes in this machine's order. */
 function pixels(bytes: Uint8Array, found: Layout, little: boolean): Uint8Array {
-  const { width, height, samples, bits, tileWidth, tileHeight, offsets, counts, predictor } = found;
+  const { width, height, samples, bits, isTiled, tileWidth, tileHeight, offsets, counts, predictor } = found;
   const size = (bits / 8) * samples;
   const out = new Uint8Array(width * height * size);
   const across = Math.ceil(width / tileWidth);
   for (let row = 0; row < height; row += tileHeight) {
     // The last strip has no more rows than there are; the last tile is padded.
-    const rows = tileWidth === width ? Math.min(tileHeight, height - row) : tileHeight;
+    const rows = isTiled ? tileHeight : Math.min(tileHeight, height - row);
     for (let column = 0; column < width; column += tileWidth) {
       const index = Math.floor(row / tileHeight) * across + Math.floor(column / tileWidth);
       const from = offsets[index] ?? 0;

@@ -87,8 +87,12 @@ class Search implements Calibration {
       return;
     }
     const node = value as Node;
+    const before = this.cameras.length;
     this.#cameraOf(node, name);
-    const inner = this.#framesOf(node) ?? frames;
+    const [first, second, ...more] = this.cameras.slice(before);
+    // OpenCV's stereo calibration: R and T carry points of the first camera into the second.
+    const stereo = first?.name !== undefined && second?.name !== undefined && more.length === 0 ? { from: first.name, to: second.name } : frames;
+    const inner = this.#framesOf(node) ?? stereo;
     this.#motionsOf(node, name, inner);
     for (const key of Object.keys(node)) if (matrixOf(node[key]) === undefined) this.walk(node[key], nameOf(key, name), inner, depth + 1);
   }
