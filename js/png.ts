@@ -21,6 +21,8 @@ export interface PngRemarks {
 const SIGNATURE = 8;
 /** Length, type and checksum. */
 const FRAME = 12;
+/** Bytes by which careless encoders exceed what they were given. */
+const SPARE = 65_536;
 const KEPT = ["IHDR", "PLTE", "tRNS"];
 const REMARKS = ["iCCP", "sRGB", "gAMA", "cHRM", "cICP", "eXIf"];
 
@@ -150,6 +152,8 @@ export function readPng(bytes: Uint8Array, checkSize?: (width: number, height: n
   const found = parts(bytes);
   const { width, height, bits, inflated } = header(found);
   checkSize?.(width, height);
+  // What deflate cannot make shorter it keeps, with five bytes for 65535.
+  if (found.pixels.length > inflated + inflated / 1000 + SPARE) throw badFile("this PNG is damaged: its pixels are longer compressed than not");
   inflateExactly(found.pixels, inflated, "this PNG");
   try {
     return { ...pixelsOf(bare(found)), bits, chunks: found.remarks };

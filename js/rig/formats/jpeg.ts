@@ -13,6 +13,8 @@ import type { Picture } from "./picture.js";
 /** Progressive files have ten or so; each costs a pass over all blocks. */
 const MOST_SCANS = 64;
 const MEMORY = 512;
+/** Tables, remarks and scans; a camera's file has a few dozen. */
+const MOST_SEGMENTS = 5000;
 /** A block of 8x8 takes two bits at least: one for its mean, one for the end. */
 const BITS_OF_BLOCK = 2;
 const MOST_PROFILE = 2 ** 22;
@@ -45,7 +47,7 @@ function frame(body: Uint8Array, kind: number, length: number): { width: number;
 
 /** What stands between the pixels. */
 function marked(bytes: Uint8Array): Marked {
-  let [at, scans, orientation] = [2, 0, 1];
+  let [at, scans, segments, orientation] = [2, 0, 0, 1];
   let size: { width: number; height: number } | undefined;
   const profile: Uint8Array[] = [];
   while (at + 4 <= bytes.length) {
@@ -60,6 +62,7 @@ function marked(bytes: Uint8Array): Marked {
       at += kind === 0xff ? 1 : 2;
       continue;
     }
+    if (++segments > MOST_SEGMENTS) throw badFile(`this JPEG is damaged: it has more than ${MOST_SEGMENTS} parts`);
     const length = ((bytes[at + 2] ?? 0) << 8) | (bytes[at + 3] ?? 0);
     const body = bytes.subarray(at + 4, at + 2 + length);
     if (kind >= 0xc0 && kind <= 0xcf && ![0xc4, 0xc8, 0xcc].includes(kind)) {

@@ -13,7 +13,7 @@ import { plainXml, readXml } from "./xml.js";
  */
 
 /** Characters of YAML: calibrations have a few thousand. */
-const MOST_YAML = 2 ** 19;
+const MOST_YAML = 2 ** 18;
 const YAML_LIMITS = { maxDepth: 32, maxAliases: 64 };
 
 /** The text of a file, or nothing where its bytes are none. */

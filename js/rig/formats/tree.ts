@@ -18,9 +18,14 @@ export interface Calibration {
 }
 
 const MOST_NODES = 50_000;
+const MOST_MEMBERS = 200_000;
+/** Members of one object that is a camera or a motion; larger ones may hold some. */
+const MOST_OWN = 300;
 const MOST_DEPTH = 24;
 /** Cameras and poses of a file. */
-const MOST_FOUND = 20_000;
+const MOST_FOUND = 5000;
+/** Letters of a name that means anything here. */
+const LONGEST_NAME = 80;
 
 const INTRINSICS = [["camera", "matrix"], ["intrinsic", "matrix"], ["camera", "intrinsics"], ["intrinsics"], ["intrinsic"], ["mtx"], ["k"], ["m"]];
 const LENS = [["distortion", "coefficients"], ["distortion", "coeffs"], ["dist", "coeffs"], ["dist", "coeff"], ["distortion"], ["dist"], ["coeffs"], ["d"]];
@@ -31,29 +36,54 @@ const NO_MOTION = [["p"], ["q"], ["projection", "matrix"], ["projection"], ["dis
 
 /** The words of a name. */
 function wordsOf(name: string): string[] {
-  return name.slice(0, 80).replace(/([a-z])([A-Z])/g, "$1 $2").replace(/([A-Za-z])(\d)/g, "$1 $2").toLowerCase().split(/[^a-z0-9]+/).filter((word) => word !== "");
+  if (name.length > LONGEST_NAME) return [];
+  return name.replace(/([a-z])([A-Z])/g, "$1 $2").replace(/([A-Za-z])(\d)/g, "$1 $2").toLowerCase().split(/[^a-z0-9]+/).filter((word) => word !== "");
+}
+
+/** Names come again and again: what `of` says of one is kept, for as many names as a file may have. */
+function remembered<T>(of: (name: string) => T): (name: string) => T {
+  const known = new Map<string, T>();
+  return (name) => {
+    const found = known.get(name);
+    if (found !== undefined || known.has(name)) return found as T;
+    if (known.size > MOST_FOUND) known.clear();
+    const value = of(name);
+    known.set(name, value);
+    return value;
+  };
 }
 
 /** What is left of a name without one of some phrases at its beginning or end; nothing where it has none. */
-function besides(name: string, phrases: string[][]): string | undefined {
-  const words = wordsOf(name);
-  for (const phrase of phrases) {
-    const [first, last] = [words.slice(0, phrase.length), words.slice(-phrase.length)];
-    if (first.join(" ") === phrase.join(" ")) return words.slice(phrase.length).join(" ");
-    if (last.join(" ") === phrase.join(" ")) return words.slice(0, -phrase.length).join(" ");
-  }
-  return undefined;
+function leftover(phrases: string[][]): (name: string) => string | undefined {
+  return remembered((name) => {
+    const words = wordsOf(name);
+    for (const phrase of phrases) {
+      const is = (some: string[]) => some.length === phrase.length && some.every((word, at) => word === phrase[at]);
+      if (is(words.slice(0, phrase.length))) return words.slice(phrase.length).join(" ");
+      if (is(words.slice(-phrase.length))) return words.slice(0, -phrase.length).join(" ");
+    }
+    return undefined;
+  });
 }
+
+const isIntrinsics = leftover(INTRINSICS);
+const isRotation = leftover(ROTATION);
+const isNoMotion = leftover(NO_MOTION);
+const lensNames = LENS.map((phrase) => leftover([phrase]));
+const translationNames = TRANSLATION.map((phrase) => leftover([phrase]));
+const isLens = leftover(LENS);
+
+const bare = remembered((name) => (name.length > LONGEST_NAME ? "" : name.toLowerCase().replace(/[^a-z0-9]/g, "")));
 
 /** A member by one of its names, without regard to case and punctuation. */
 function member(node: Node, ...names: string[]): unknown {
-  for (const key of Object.keys(node)) if (names.includes(key.toLowerCase().replace(/[^a-z0-9]/g, ""))) return node[key];
+  for (const key in node) if (names.includes(bare(key))) return node[key];
   return undefined;
 }
 
 /** The member whose name is one of some phrases and this label. */
-function labelled(node: Node, phrases: string[][], label: string): { key: string; value: unknown } | undefined {
-  for (const phrase of phrases) for (const key of Object.keys(node)) if (besides(key, [phrase]) === label) return { key, value: node[key] };
+function labelled(node: Node, names: ((name: string) => string | undefined)[], label: string): { key: string; value: unknown } | undefined {
+  for (const besides of names) for (const key of Object.keys(node)) if (besides(key) === label) return { key, value: node[key] };
   return undefined;
 }
 
@@ -70,13 +100,19 @@ function intrinsics(matrix: Matrix | undefined): Numbers | undefined {
   return isTriangle(turned) ? turned : undefined;
 }
 
+interface Frames {
+  from?: string;
+  to?: string;
+}
+
 class Search implements Calibration {
   readonly cameras: NamedCamera[] = [];
   readonly poses: NamedPose[] = [];
   readonly warnings: string[] = [];
   #nodes = 0;
+  #members = 0;
 
-  walk(value: unknown, name: string, frames: { from?: string; to?: string }, depth: number): void {
+  walk(value: unknown, name: string, frames: Frames, depth: number): void {
     if (typeof value !== "object" || value === null) return;
     if (++this.#nodes > MOST_NODES) throw badFile(`it holds more than ${MOST_NODES} lists and objects`);
     if (depth > MOST_DEPTH) throw badFile(`it is nested deeper than ${MOST_DEPTH}`);
@@ -87,6 +123,15 @@ class Search implements Calibration {
       return;
     }
     const node = value as Node;
+    const keys = Object.keys(node);
+    this.#members += keys.length;
+    if (this.#members > MOST_MEMBERS) throw badFile(`its objects have more than ${MOST_MEMBERS} members`);
+    const inner = keys.length > MOST_OWN ? frames : this.#read(node, name, frames);
+    for (const key of keys) if (matrixOf(node[key]) === undefined) this.walk(node[key], nameOf(key, name), inner, depth + 1);
+  }
+
+  /** The cameras and motions that are members of this object, and the frames that it names. */
+  #read(node: Node, name: string, frames: Frames): Frames {
     const before = this.cameras.length;
     this.#cameraOf(node, name);
     const [first, second, ...more] = this.cameras.slice(before);
@@ -94,7 +139,7 @@ class Search implements Calibration {
     const stereo = first?.name !== undefined && second?.name !== undefined && more.length === 0 ? { from: first.name, to: second.name } : frames;
     const inner = this.#framesOf(node) ?? stereo;
     this.#motionsOf(node, name, inner);
-    for (const key of Object.keys(node)) if (matrixOf(node[key]) === undefined) this.walk(node[key], nameOf(key, name), inner, depth + 1);
+    return inner;
   }
 
   #add(raw: RawCamera): void {
@@ -120,7 +165,7 @@ class Search implements Calibration {
   }
 
   #cameraOfMatrix(node: Node, key: string, parent: string | undefined): void {
-    const label = besides(key, INTRINSICS);
+    const label = isIntrinsics(key);
     if (label === undefined) return;
     const matrix = matrixOf(node[key]);
     const k = intrinsics(matrix);
@@ -134,7 +179,7 @@ class Search implements Calibration {
 
   /** Distortion, model and size of the camera with this label. */
   #rest(node: Node, label: string): Pick<RawCamera, "distortion" | "model" | "width" | "height"> {
-    const written = labelled(node, LENS, label)?.value ?? member(node, "distk1k2p1p2k3");
+    const written = labelled(node, lensNames, label)?.value ?? member(node, "distk1k2p1p2k3");
     const singles = ["k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"].map((key) => numberOf(member(node, key)));
     const isFisheye = numberOf(member(node, "fisheyemodel")) === 1 || member(node, "fisheye") === true;
     const model = isFisheye ? "fisheye" : (textOf(member(node, "distortionmodel", "lensmodel", "lens")) ?? textOf(member(node, "model")));
@@ -149,16 +194,16 @@ class Search implements Calibration {
   }
 
   /** ROS: the transform carries points of the child frame into the parent. */
-  #framesOf(node: Node): { from?: string; to?: string } | undefined {
+  #framesOf(node: Node): Frames | undefined {
     const child = textOf(member(node, "childframeid", "childframe"));
     const header = member(node, "header");
     const parent = textOf(member(isNode(header) ? header : node, "frameid", "parentframe"));
     return child === undefined ? undefined : { from: child, ...(parent !== undefined && { to: parent }) };
   }
 
-  #motionsOf(node: Node, parent: string, frames: { from?: string; to?: string }): void {
+  #motionsOf(node: Node, parent: string, frames: Frames): void {
     for (const key of Object.keys(node)) {
-      const label = besides(key, ROTATION);
+      const label = isRotation(key);
       if (label !== undefined) this.#motionOfPair(node, key, label, parent, frames);
       this.#motionOfMatrix(node, key, parent, frames);
     }
@@ -169,8 +214,8 @@ class Search implements Calibration {
     }
   }
 
-  #motionOfPair(node: Node, key: string, label: string, parent: string, frames: { from?: string; to?: string }): void {
-    const other = labelled(node, TRANSLATION, label);
+  #motionOfPair(node: Node, key: string, label: string, parent: string, frames: Frames): void {
+    const other = labelled(node, translationNames, label);
     if (other === undefined) return;
     const [r, t] = [parts(node[key], ["x", "y", "z", "w"]), parts(other.value, ["x", "y", "z"])];
     if (r === undefined || t === undefined) return;
@@ -185,11 +230,11 @@ class Search implements Calibration {
     else throw badFile(`its ${key} has ${r.values.length} numbers: 9 of a matrix, 4 of a quaternion or 3 of a vector are needed`);
   }
 
-  #motionOfMatrix(node: Node, key: string, parent: string, frames: { from?: string; to?: string }): void {
-    if (besides(key, NO_MOTION) !== undefined) return;
+  #motionOfMatrix(node: Node, key: string, parent: string, frames: Frames): void {
+    if (isNoMotion(key) !== undefined) return;
     const matrix = matrixOf(node[key]);
     const length = matrix?.values.length;
-    if (matrix === undefined || (length !== 16 && length !== 12) || besides(key, LENS) === "") return;
+    if (matrix === undefined || (length !== 16 && length !== 12) || isLens(key) === "") return;
     if (length === 12 && matrix.rows !== 3) return;
     const isOpen3D = key === "extrinsic" || key === "pose";
     const names = isOpen3D ? named(parent, key === "extrinsic" ? { from: "world", to: "camera" } : { from: "camera", to: "world" }) : this.#kalibr(key, parent) ?? named(key, frames);
@@ -242,7 +287,7 @@ function sizeOf(node: Node, label: string): { width?: number; height?: number } 
 }
 
 /** Frames from a name: "depth_to_color", "color_from_depth", "T_color_depth". */
-function named(name: string, frames: { from?: string; to?: string }): Omit<NamedPose, "pose"> {
+function named(name: string, frames: Frames): Omit<NamedPose, "pose"> {
   if (frames.from !== undefined || frames.to !== undefined) return { ...(name !== "" && { name }), ...frames };
   if (name === "") return {};
   const towards = /^(?:T_)?([a-z0-9]+)_?(?:_to_|2(?=[a-z]))_?([a-z0-9]+)$/i.exec(name);

@@ -15,6 +15,8 @@ export interface Element {
 /** Deeper nesting than this is no calibration. */
 const MOST_DEPTH = 32;
 const MOST_ELEMENTS = 100_000;
+/** Characters of a tag with its attributes. */
+const MOST_TAG = 4096;
 
 const ENTITIES: Record<string, string> = { lt: "<", gt: ">", amp: "&", quot: '"', apos: "'" };
 const plain = (text: string): string => text.replace(/&(lt|gt|amp|quot|apos);/g, (_, name: string) => ENTITIES[name] ?? "");
@@ -36,6 +38,7 @@ function after(text: string, what: string, from: number): number {
 function tagEnd(text: string, from: number): number {
   let quote = "";
   for (let at = from; at < text.length; at++) {
+    if (at - from > MOST_TAG) throw badFile(`this XML has a tag of more than ${MOST_TAG} characters`);
     const letter = text[at] ?? "";
     if (quote !== "") quote = letter === quote ? "" : quote;
     else if (letter === '"' || letter === "'") quote = letter;
