@@ -57,7 +57,9 @@ def pictures():
     for orientation in range(1, 9):
         exif = Image.Exif()
         exif[0x0112] = orientation
-        image.save(OUT / f"turned-{orientation}.tiff", exif=exif) if orientation == 6 else None
+        if orientation == 6:
+            image.save(OUT / "turned-6.tiff", exif=exif)
+            image.save(OUT / "turned-6.jpg", exif=exif, quality=100, subsampling=0)
         image.save(OUT / f"turned-{orientation}.png", exif=exif)
 
 

@@ -168,14 +168,15 @@ describe("colour images", () => {
   test("upright as EXIF says, which is said", async () => {
     const turned = { 1: (x, y) => [x, y], 2: (x, y) => [W - 1 - x, y], 3: (x, y) => [W - 1 - x, H - 1 - y], 4: (x, y) => [x, H - 1 - y], 5: (x, y) => [y, x], 6: (x, y) => [y, H - 1 - x], 7: (x, y) => [W - 1 - y, H - 1 - x], 8: (x, y) => [W - 1 - y, x] };
     for (const [orientation, from] of Object.entries(turned)) {
-      for (const extension of orientation === "6" ? ["png", "tiff"] : ["png"]) {
+      for (const extension of orientation === "6" ? ["png", "tiff", "jpg"] : ["png"]) {
         const reading = await readFixture(`turned-${orientation}.${extension}`);
         const { width, height } = reading.image;
         assert.deepEqual([width, height], orientation >= 5 ? [H, W] : [W, H]);
         const found = colours(reading);
         for (let at = 0; at < found.length; at++) {
           const [x, y] = from(at % width, Math.floor(at / width));
-          assert.deepEqual(found[at], rgb[y * W + x], `${orientation} at ${at}`);
+          // JPEG rounds; the others may not.
+          close(found[at], rgb[y * W + x], extension === "jpg" ? 5 : 0, `${orientation} at ${at}`);
         }
         assert.equal(reading.warnings.length, orientation === "1" ? 0 : 1);
       }

@@ -187,7 +187,7 @@ const FILES = [
   ["promises.pcd", pcd({ WIDTH: "2048", HEIGHT: "2048", POINTS: String(2 ** 22), DATA: "binary_compressed" }, bytes(u32(4, 12 * 2 ** 22), [0, 1, 2, 3])), /compressed points/],
 
   ["head.jpg", new Uint8Array([0xff, 0xd8, 0xff, 0xe0]), /no pixels/],
-  ["cut.jpg", cut("colour.jpg", 700), /JPEG is damaged or cut off/],
+  ["cut.jpg", cut("colour.jpg", 700), /JPEG is cut off: its end is missing/],
   ["promises.jpg", jpeg(4096, 4096), /cannot hold 4096x4096/],
   ["wide.jpg", jpeg(60_000, 10), /60000x10 pixels large/],
   ["cmyk.jpg", fixture("colour-cmyk.jpg"), /CMYK/],

@@ -49,14 +49,18 @@ function frame(body: Uint8Array, kind: number, length: number): { width: number;
 function marked(bytes: Uint8Array): Marked {
   let [at, scans, segments, orientation] = [2, 0, 0, 1];
   let size: { width: number; height: number } | undefined;
+  let ended = false;
   const profile: Uint8Array[] = [];
-  while (at + 4 <= bytes.length) {
+  while (at + 2 <= bytes.length) {
     if (bytes[at] !== 0xff) {
       at++;
       continue;
     }
     const kind = bytes[at + 1] ?? 0;
-    if (kind === 0xd9) break;
+    if (kind === 0xd9) {
+      ended = true;
+      break;
+    }
     // Stuffed, filled, restarted: no segment follows.
     if (kind === 0 || kind === 0xff || kind === 1 || (kind >= 0xd0 && kind <= 0xd8)) {
       at += kind === 0xff ? 1 : 2;
@@ -75,6 +79,8 @@ function marked(bytes: Uint8Array): Marked {
     at += 2 + length;
   }
   if (!size || scans === 0) throw badFile("this JPEG is cut off: it has no pixels");
+  // Browsers show grey for what is missing.
+  if (!ended) throw badFile("this JPEG is cut off: its end is missing");
   const total = profile.reduce((sum, part) => sum + part.length, 0);
   if (total === 0 || total > MOST_PROFILE) return { ...size, orientation };
   const joined = new Uint8Array(total);
