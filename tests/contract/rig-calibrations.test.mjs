@@ -112,6 +112,26 @@ describe("as other programs write them", () => {
     await refusedFile(read("rs.json", file("Ftheta", [1, 0, 0, 0, 0])), "rs.json", /lens model "Ftheta"/);
   });
 
+  test("RealSense's rs-enumerate-devices -c, whose rotations are printed row by row", async () => {
+    const rows = [0, 1, 2].map((i) => `   ${rotation.slice(3 * i, 3 * i + 3).join("        ")}`).join("\n");
+    const printed = `Intrinsic Parameters:\n\n Intrinsic of "Color" / 640x480 / {YUYV/RGB8}\n  Width:      \t640\n  Height:     \t480\n  PPX:        \t325.5\n  PPY:        \t253.75\n  Fx:         \t518.5\n  Fy:         \t519.25\n  Distortion: \tBrown Conrady\n  Coeffs:     \t${distortion.join("  \t")}  \n  FOV (deg):  \t63.4 x 49.6\n\nExtrinsic Parameters:\n\nExtrinsic from "Depth"\t  To\t  "Color" :\n Rotation Matrix:\n${rows}\n\n Translation Vector: ${translation.join("  ")}  \n\n`;
+    const { cameras, poses } = await read("rs.txt", printed);
+    sameCamera(only(cameras), K);
+    assert.deepEqual([cameras[0].name, cameras[0].width, ...cameras[0].camera.distortion], ["Color", 640, ...distortion]);
+    samePose(only(poses));
+    assert.deepEqual([poses[0].from, poses[0].to], ["Depth", "Color"]);
+  });
+
+  test("ORB-SLAM's settings, settings with equals signs, and members that name their camera", async () => {
+    const slam = await read("TUM1.yaml", "%YAML:1.0\n# comment\nCamera.fx: 518.5\nCamera.fy: 519.25\nCamera.cx: 325.5\nCamera.cy: 253.75\nCamera.k1: 0.2\nCamera.k2: -0.5\nCamera.p1: 0.001\nCamera.p2: -0.002\nCamera.k3: 0.3\nCamera.width: 640\nCamera.height: 480\nDepthMapFactor: 5000.0\n");
+    sameCamera(only(slam.cameras), K);
+    assert.deepEqual([slam.cameras[0].width, ...slam.cameras[0].camera.distortion], [640, ...distortion]);
+    sameCamera(only((await read("k.cfg", "fx = 518.5\nfy = 519.25\ncx = 325.5\ncy = 253.75\n")).cameras), K);
+    const { cameras, poses } = await read("rig.yaml", "K_rgb: [[518.5, 0, 325.5], [0, 519.25, 253.75], [0, 0, 1]]\nK_depth: [400, 0, 320, 0, 400, 240, 0, 0, 1]\nD_rgb: [0.2, -0.5, 0.001, -0.002, 0.3]\nR_depth_to_rgb: [[1, 0, 0], [0, 1, 0], [0, 0, 1]]\nT_depth_to_rgb: [0.1, 0, 0]\n");
+    assert.deepEqual(cameras.map(({ name, camera }) => [name, camera.distortion?.length]), [["rgb", 5], ["depth", undefined]]);
+    assert.deepEqual([poses[0].from, poses[0].to], ["depth", "rgb"]);
+  });
+
   test("COLMAP's cameras, whose pixels begin half a pixel earlier", async () => {
     const file = ["# comment", "1 PINHOLE 640 480 518.5 519.25 326 254.25", "2 SIMPLE_PINHOLE 640 480 500 320 240", "3 SIMPLE_RADIAL 640 480 500 320 240 0.1", "4 RADIAL 640 480 500 320 240 0.1 0.2", "5 OPENCV 640 480 500 501 320 240 0.1 0.2 0.3 0.4", "6 FULL_OPENCV 640 480 500 501 320 240 1 2 3 4 5 6 7 8", "7 OPENCV_FISHEYE 640 480 500 501 320 240 0.1 0.2 0.3 0.4"];
     const { cameras } = await read("cameras.txt", file.join("\n"));
@@ -144,6 +164,11 @@ describe("ROS's static transforms: from the child into the parent", () => {
       assert.deepEqual([pose.from, pose.to], ["depth", "color"]);
     });
   }
+});
+
+test("ROS's tf_echo", async () => {
+  const printed = `At time 0.0\n- Translation: [${translation.join(", ")}]\n- Rotation: in Quaternion [0.009998420, -0.014997630, 0.024996049, 0.999525042]\n            in RPY (radian) [0.0, 0.0, 0.0]\n`;
+  samePose(only((await read("tf.txt", printed)).poses), undefined, undefined, 1e-7);
 });
 
 describe("motions are checked", () => {

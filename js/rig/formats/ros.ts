@@ -63,3 +63,19 @@ export function readPublishers(text: string): Calibration {
   if (found.length === 0) throw badFile(`it names ${NAME}, but no numbers follow`);
   return { cameras: [], poses: found.map((words) => (words.some((word) => word.startsWith("--")) ? ofFlags : ofPlaces)(words, warnings)), warnings };
 }
+
+const TRIPLE = /Translation:\s*\[([^\]\n]{1,200})\]/;
+const QUATERNION = /Quaternion\s*(?:\(xyzw\)\s*)?\[([^\]\n]{1,200})\]/;
+
+export const isEcho = (text: string): boolean => TRIPLE.test(text.slice(0, REACH)) && QUATERNION.test(text.slice(0, REACH));
+
+/** What tf_echo prints, the first of it; which frames it asked for is not in there. */
+export function readEcho(text: string): Calibration {
+  const warnings: string[] = [];
+  const numbers = (pattern: RegExp, count: number): Numbers => {
+    const found = (pattern.exec(text.slice(0, REACH))?.[1] ?? "").split(",").map((part) => numberOf(part) ?? NaN);
+    if (found.length !== count || found.some(Number.isNaN)) throw badFile(`its transform has not ${count} numbers where they are needed`);
+    return found;
+  };
+  return { cameras: [], poses: [motion(ofQuaternion(numbers(QUATERNION, 4), warnings), numbers(TRIPLE, 3), {}, warnings)], warnings };
+}

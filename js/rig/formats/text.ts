@@ -4,7 +4,8 @@ import { badFile } from "../../errors.js";
 import { readColmap, isColmap } from "./colmap.js";
 import { MOST_TEXT } from "./limits.js";
 import { readNumbers } from "./plain.js";
-import { isPublisher, readPublishers } from "./ros.js";
+import { isEnumeration, readEnumeration } from "./realsense.js";
+import { isEcho, isPublisher, readEcho, readPublishers } from "./ros.js";
 import { type Calibration, searchTree } from "./tree.js";
 import { plainXml, readXml } from "./xml.js";
 
@@ -43,10 +44,13 @@ function readJson(text: string): unknown {
 const plainYaml = (text: string): string =>
   text.replace(/^%YAML.*$/m, "").replace(/!!(?:opencv-[\w-]+|python\/[\w:./]+)/g, "").replace(/^\t+/gm, (tabs) => "  ".repeat(tabs.length));
 
+/** Settings as "fx = 500", line by line, are YAML but for the sign. */
+const withColons = (text: string): string => (/^[ \t]*[\w.]{1,80}[ \t]*:/m.test(text) ? text : text.replace(/^([ \t]*[\w.]{1,80})[ \t]*=[ \t]*/gm, "$1: "));
+
 function readYaml(text: string): unknown {
   if (text.length > MOST_YAML) throw badFile(`it is text of ${text.length} characters, in none of the forms that are read here`);
   try {
-    return loadAll(plainYaml(text), YAML_LIMITS);
+    return loadAll(withColons(plainYaml(text)), YAML_LIMITS);
   } catch (error) {
     const reason = error instanceof Error ? (error.message.split("\n")[0] ?? "") : String(error);
     throw badFile(`it is a text in none of the forms that are read here, or damaged (as YAML: ${reason})`, error);
@@ -68,6 +72,8 @@ export function readText(text: string): Calibration & { format: string } {
   const trimmed = text.replace(/^\ufeff/, "").trim();
   if (trimmed === "") throw badFile("it is empty: there is nothing in it but spaces");
   if (isPublisher(trimmed)) return { ...readPublishers(trimmed), format: "a static transform of ROS" };
+  if (isEcho(trimmed)) return { ...readEcho(trimmed), format: "a transform of ROS" };
+  if (isEnumeration(trimmed)) return { ...readEnumeration(trimmed), format: "RealSense's streams" };
   if (trimmed.startsWith("<")) return searched(plainXml(readXml(trimmed)), "XML");
   if (isColmap(trimmed)) return { ...readColmap(trimmed), format: "COLMAP's cameras" };
   const numbers = readNumbers(trimmed);

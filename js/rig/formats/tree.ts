@@ -127,6 +127,7 @@ class Search implements Calibration {
     this.#members += keys.length;
     if (this.#members > MOST_MEMBERS) throw badFile(`its objects have more than ${MOST_MEMBERS} members`);
     const inner = keys.length > MOST_OWN ? frames : this.#read(node, name, frames);
+    for (const [group, members] of dotted(node, keys)) this.walk(members, group, frames, depth + 1);
     for (const key of keys) if (matrixOf(node[key]) === undefined) this.walk(node[key], nameOf(key, name), inner, depth + 1);
   }
 
@@ -135,8 +136,8 @@ class Search implements Calibration {
     const before = this.cameras.length;
     this.#cameraOf(node, name);
     const [first, second, ...more] = this.cameras.slice(before);
-    // OpenCV's stereo calibration: R and T carry points of the first camera into the second.
-    const stereo = first?.name !== undefined && second?.name !== undefined && more.length === 0 ? { from: first.name, to: second.name } : frames;
+    // OpenCV's stereo calibration: R and T carry points of camera 1 into camera 2. Of other names the order says nothing.
+    const stereo = first?.name === "1" && second?.name === "2" && more.length === 0 ? { from: "1", to: "2" } : frames;
     const inner = this.#framesOf(node) ?? stereo;
     this.#motionsOf(node, name, inner);
     return inner;
@@ -220,7 +221,9 @@ class Search implements Calibration {
     const [r, t] = [parts(node[key], ["x", "y", "z", "w"]), parts(other.value, ["x", "y", "z"])];
     if (r === undefined || t === undefined) return;
     const name = label === "" ? parent : label;
-    const say = (rotation: Numbers, names = named(name, frames)) => this.poses.push(motion(rotation, t.values, names, this.warnings));
+    const own = named(label.replace(/ /g, "_"), {});
+    const names = own.from === undefined ? named(name, frames) : own;
+    const say = (rotation: Numbers) => this.poses.push(motion(rotation, t.values, names, this.warnings));
     if (t.values.length !== 3) throw badFile(`its ${other.key} has ${t.values.length} numbers, not three`);
     // RealSense writes these two names, flat, and its rotations column by column.
     const isRealSense = key === "rotation" && r.rows === undefined && r.values.length === 9;
@@ -266,8 +269,20 @@ class Search implements Calibration {
   }
 }
 
+/** Members that are named "Camera.fx", as ORB-SLAM writes them, by what stands before the dot. */
+function dotted(node: Node, keys: string[]): Map<string, Node> {
+  const groups = new Map<string, Node>();
+  for (const key of keys) {
+    const [, group, name] = /^(\w{1,40})\.(\w{1,40})$/.exec(key) ?? [];
+    if (group === undefined || name === undefined) continue;
+    groups.set(group, { ...groups.get(group), [name]: node[key] });
+    if (groups.size > MOST_OWN) break;
+  }
+  return groups;
+}
+
 /** What a member's cameras and poses are called: members that only say what they are take their parent's name. */
-const nameOf = (key: string, parent: string): string => (/^(transforms?|intrinsics?|pose|opencv_storage|launch|parameters|nodes)$/.test(key) ? parent : key);
+const nameOf = (key: string, parent: string): string => (/^(transforms?|intrinsics?|pose|opencv_storage|launch|parameters|ros__parameters|nodes)$/.test(key) ? parent : key);
 
 const isEmpty = (value: unknown): boolean => value === null || value === "" || (Array.isArray(value) && value.length === 0);
 

@@ -91,11 +91,13 @@ export function readXml(text: string): Element {
 export function plainXml(element: Element): unknown {
   if (element.children.length === 0) return element.text;
   if (element.children.every((child) => child.tag === "_")) return element.children.map(plainXml);
-  const found: Record<string, unknown> = Object.create(null);
+  const all = new Map<string, unknown[]>();
   for (const child of element.children) {
-    const value = plainXml(child);
-    const earlier = found[child.tag];
-    found[child.tag] = earlier === undefined ? value : Array.isArray(earlier) ? [...earlier, value] : [earlier, value];
+    const values = all.get(child.tag);
+    if (values) values.push(plainXml(child));
+    else all.set(child.tag, [plainXml(child)]);
   }
+  const found: Record<string, unknown> = Object.create(null);
+  for (const [tag, values] of all) found[tag] = values.length === 1 ? values[0] : values;
   return found;
 }
