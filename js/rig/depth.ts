@@ -29,6 +29,9 @@ const MOSTLY = 0.9;
 const MANY_VALUES = 16;
 /** What a 16-bit sensor says where it is blind. */
 const SATURATED = 0xffff;
+/** Renderers write 1e10 where they saw nothing, and half floats their largest number. */
+const BEYOND = 1e9;
+const LARGEST_HALF = 65_504;
 /** The Kinect's 11-bit disparity where it is blind. */
 const BLIND_DISPARITY = 2047;
 
@@ -176,7 +179,9 @@ function ofIntegers(picture: Picture, integers: Uint8Array | Uint16Array, unit: 
 }
 const DISPARITY = "The largest value is 2047, and common: this looks like a Kinect's raw disparity, which is not depth (z = 351.3 / (1092.5 - d) m or so).";
 
-function ofFloats(picture: Picture, data: Float32Array, unit: number | undefined): Found<Depth> {
+function ofFloats(picture: Picture, stored: Float32Array, unit: number | undefined): Found<Depth> {
+  const beyond = picture.bits === 16 ? LARGEST_HALF : BEYOND;
+  const data = stored.some((value) => value >= beyond) ? stored.map((value) => (value >= beyond ? 0 : value)) : stored;
   const sample = sampled(data);
   if (sample.length === 0) throw nothing();
   const known = unit ?? picture.unit;

@@ -100,6 +100,8 @@ describe("units", () => {
     const unit = async (values) => (await read("d.npy", npy({ descr: "<f4", shape: [1, values.length], data: new Float32Array(values) }))).depth.unit;
     assert.equal(await unit([0.5, 2, 7]), 1);
     assert.equal(await unit([500, 2000, 7000]), 0.001);
+    const rendered = await read("d.npy", npy({ descr: "<f4", shape: [1, 4], data: new Float32Array([1, 2, 1e10, Infinity]) }));
+    assert.match(rendered.says, /50.0 % valid, 1.00 to 2.00 m/);
   });
 });
 
