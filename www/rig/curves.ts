@@ -1,0 +1,124 @@
+/** How sharply each cue tells each axis: the log likelihood that is lost when the calibration found is moved. Loaded with the first verdict. */
+
+import uPlot from "uplot";
+import "uplot/dist/uPlot.min.css";
+import type { CheckReport } from "../../pkg/index.js";
+import { ink, make } from "../dom";
+import { short } from "../draw/numbers";
+
+type Sensitivity = CheckReport["sensitivity"][number];
+type Axis = Sensitivity["axis"];
+
+const axes: Record<Axis, { title: string; unit: string }> = {
+  rx: { title: "Turn about x (up and down)", unit: "°" },
+  ry: { title: "Turn about y (left and right)", unit: "°" },
+  rz: { title: "Turn about z (in the picture)", unit: "°" },
+  tx: { title: "Shift along x (sideways)", unit: "mm" },
+  ty: { title: "Shift along y (up and down)", unit: "mm" },
+  tz: { title: "Shift along z (to and fro)", unit: "mm" },
+};
+const tokens: Record<string, string> = { shading: "series-1", edges: "series-3", information: "series-2", silhouette: "series-4" };
+/** Half the 95 % quantile of chi squared with one degree of freedom: what may be lost within the 95 % interval. */
+const WITHIN = 1.92;
+
+export class SensitivityCharts {
+  readonly element = make("div", { class: "rig-curves" });
+  #plots: uPlot[] = [];
+  #observers: ResizeObserver[] = [];
+  #shown: readonly Sensitivity[] = [];
+
+  show(sensitivity: readonly Sensitivity[]): void {
+    if (this.#shown === sensitivity) return;
+    this.#shown = sensitivity;
+    this.#build();
+  }
+
+  /** A canvas has to be told the theme's colours anew. */
+  recolour(): void {
+    this.#build();
+  }
+
+  #build(): void {
+    for (const plot of this.#plots) plot.destroy();
+    for (const observer of this.#observers) observer.disconnect();
+    this.#plots = [];
+    this.#observers = [];
+    this.element.replaceChildren();
+    for (const axis of Object.keys(axes) as Axis[]) {
+      const curves = this.#shown.filter((each) => each.axis === axis && each.offsets.length > 1);
+      if (curves.length > 0) this.#chart(axis, curves);
+    }
+  }
+
+  #chart(axis: Axis, curves: readonly Sensitivity[]): void {
+    const { title, unit } = axes[axis];
+    const { xs, lines, total } = lossesOf(curves);
+    const best = total.indexOf(Math.min(...total));
+    const inside = xs.filter((_, i) => (total[i] ?? Infinity) <= WITHIN);
+    const place = xs[best] ?? 0;
+    const width = inside.length > 1 ? `${short(Math.min(...inside))} to ${short(Math.max(...inside))} ${unit}` : `narrower than ${short((xs[1] ?? 0) - (xs[0] ?? 0))} ${unit}`;
+    const box = make("div", { class: "chart" });
+    const words = `Least at ${short(place)} ${unit}; 95 % within ${width}.`;
+    this.element.append(make("figure", {}, make("figcaption", {}, make("strong", {}, title), make("span", { class: "soft" }, words)), box));
+    const line = { stroke: ink("line"), width: 1 };
+    const style: uPlot.Axis = { stroke: ink("ink-soft"), font: "11px system-ui, sans-serif", grid: line, ticks: { ...line, size: 4 } };
+    const size = () => ({ width: Math.max(120, box.clientWidth), height: 150 });
+    const plot = new uPlot(
+      {
+        ...size(),
+        padding: [8, 8, 0, 0],
+        cursor: { y: false, drag: { x: false, y: false } },
+        scales: { x: { time: false }, y: { range: (_plot, _min, max) => [0, Math.max(max ?? 1, 2 * WITHIN)] } },
+        axes: [{ ...style, size: 26, values: (_, splits) => splits.map((value) => `${value}`) }, { ...style, size: 44, values: (_, splits) => splits.map((value) => short(value)) }],
+        series: [
+          { label: unit, value: (_, value: number | null) => (value === null ? "–" : short(value)) },
+          ...lines.map(({ cue }) => ({ label: cue, stroke: ink(tokens[cue] ?? "ink-soft"), width: 1.5, points: { show: false }, value: (_: uPlot, value: number | null) => (value === null ? "–" : short(value)) })),
+          { label: "together", stroke: ink("ink"), width: 2, points: { show: false }, value: (_: uPlot, value: number | null) => (value === null ? "–" : short(value)) },
+        ],
+        hooks: { drawClear: [(plot) => band(plot, inside)], draw: [(plot) => mark(plot, place, total[best] ?? 0)] },
+      },
+      [xs, ...lines.map(({ losses }) => losses), total],
+      box,
+    );
+    const observer = new ResizeObserver(() => plot.setSize(size()));
+    observer.observe(box);
+    this.#plots.push(plot);
+    this.#observers.push(observer);
+  }
+}
+
+/** All cues at the offsets of the first; what is lost against the best of each. */
+function lossesOf(curves: readonly Sensitivity[]): { xs: number[]; lines: { cue: string; losses: number[] }[]; total: number[] } {
+  const xs = curves[0]?.offsets ?? [];
+  const same = curves.filter(({ offsets, values }) => offsets.length === xs.length && values.length === xs.length);
+  const sum = xs.map((_, i) => same.reduce((total, { values }) => total + (values[i] ?? 0), 0));
+  const lost = (values: readonly number[]) => {
+    const most = Math.max(...values);
+    return values.map((value) => most - value);
+  };
+  return { xs, lines: same.map(({ cue, values }) => ({ cue, losses: lost(values) })), total: lost(sum) };
+}
+
+function band({ ctx, bbox, valToPos }: uPlot, inside: readonly number[]): void {
+  if (inside.length === 0) return;
+  const [left, right] = [valToPos(Math.min(...inside), "x", true), valToPos(Math.max(...inside), "x", true)];
+  ctx.fillStyle = ink("sunk");
+  ctx.fillRect(left - 1, bbox.top, Math.max(2, right - left + 2), bbox.height);
+}
+
+function mark({ ctx, bbox, valToPos }: uPlot, x: number, y: number): void {
+  const [column, row] = [valToPos(x, "x", true), valToPos(y, "y", true)];
+  ctx.save();
+  ctx.strokeStyle = ink("accent");
+  ctx.fillStyle = ink("accent");
+  ctx.lineWidth = devicePixelRatio;
+  ctx.setLineDash([4 * devicePixelRatio, 3 * devicePixelRatio]);
+  ctx.beginPath();
+  ctx.moveTo(column, bbox.top);
+  ctx.lineTo(column, bbox.top + bbox.height);
+  ctx.stroke();
+  ctx.beginPath();
+  ctx.arc(column, row, 4 * devicePixelRatio, 0, 7);
+  ctx.fill();
+  ctx.restore();
+}
