@@ -4,7 +4,8 @@ import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
 import type { CheckReport } from "../../pkg/index.js";
 import { ink, make } from "../dom";
-import { short } from "../draw/numbers";
+import { decimals, short } from "../draw/numbers";
+import { CUES } from "./verdict";
 
 type Sensitivity = CheckReport["sensitivity"][number];
 type Axis = Sensitivity["axis"];
@@ -22,7 +23,9 @@ const tokens: Record<string, string> = { shading: "series-1", edges: "series-3",
 const WITHIN = 1.92;
 
 export class SensitivityCharts {
-  readonly element = make("div", { class: "rig-curves" });
+  readonly #keys = make("p", { class: "rig-curve-keys" });
+  readonly #figures = make("div", { class: "rig-curves" });
+  readonly element = make("div", { class: "rig-column" }, this.#keys, this.#figures);
   #plots: uPlot[] = [];
   #observers: ResizeObserver[] = [];
   #shown: readonly Sensitivity[] = [];
@@ -43,7 +46,10 @@ export class SensitivityCharts {
     for (const observer of this.#observers) observer.disconnect();
     this.#plots = [];
     this.#observers = [];
-    this.element.replaceChildren();
+    const key = (token: string, words: string) => make("span", { style: `--key: var(--${token})` }, words);
+    const cues = [...new Set(this.#shown.map(({ cue }) => cue))];
+    this.#keys.replaceChildren(...cues.map((cue) => key(tokens[cue] ?? "ink-soft", CUES[cue] ?? cue)), key("ink", "all together"));
+    this.#figures.replaceChildren();
     for (const axis of Object.keys(axes) as Axis[]) {
       const curves = this.#shown.filter((each) => each.axis === axis && each.offsets.length > 1);
       if (curves.length > 0) this.#chart(axis, curves);
@@ -54,12 +60,13 @@ export class SensitivityCharts {
     const { title, unit } = axes[axis];
     const { xs, lines, total } = lossesOf(curves);
     const best = total.indexOf(Math.min(...total));
-    const inside = xs.filter((_, i) => (total[i] ?? Infinity) <= WITHIN);
+    const inside = intervalOf(xs, total, best);
     const place = xs[best] ?? 0;
-    const width = inside.length > 1 ? `${short(Math.min(...inside))} to ${short(Math.max(...inside))} ${unit}` : `narrower than ${short((xs[1] ?? 0) - (xs[0] ?? 0))} ${unit}`;
+    const digits = unit === "mm" ? 1 : 2;
+    const width = `${decimals(inside[0], digits)} to ${decimals(inside[1], digits)}`;
     const box = make("div", { class: "chart" });
-    const words = `Least at ${short(place)} ${unit}; 95 % within ${width}.`;
-    this.element.append(make("figure", {}, make("figcaption", {}, make("strong", {}, title), make("span", { class: "soft" }, words)), box));
+    const words = `Least at ${decimals(place, digits)} ${unit}; 95 %: ${width} ${unit}.`;
+    this.#figures.append(make("figure", {}, make("figcaption", {}, make("strong", {}, title), make("span", { class: "soft" }, words)), box));
     const line = { stroke: ink("line"), width: 1 };
     const style: uPlot.Axis = { stroke: ink("ink-soft"), font: "11px system-ui, sans-serif", grid: line, ticks: { ...line, size: 4 } };
     const size = () => ({ width: Math.max(120, box.clientWidth), height: 150 });
@@ -69,11 +76,12 @@ export class SensitivityCharts {
         padding: [8, 8, 0, 0],
         cursor: { y: false, drag: { x: false, y: false } },
         scales: { x: { time: false }, y: { range: (_plot, _min, max) => [0, Math.max(max ?? 1, 2 * WITHIN)] } },
-        axes: [{ ...style, size: 26, values: (_, splits) => splits.map((value) => `${value}`) }, { ...style, size: 44, values: (_, splits) => splits.map((value) => short(value)) }],
+        axes: [{ ...style, size: 26, values: (_, splits) => splits.map((value) => `${value}`) }, { ...style, size: 44, values: (_, splits) => splits.map((value) => (value >= 1e4 ? short(value) : `${value}`)) }],
+        legend: { show: false },
         series: [
-          { label: unit, value: (_, value: number | null) => (value === null ? "–" : short(value)) },
-          ...lines.map(({ cue }) => ({ label: cue, stroke: ink(tokens[cue] ?? "ink-soft"), width: 1.5, points: { show: false }, value: (_: uPlot, value: number | null) => (value === null ? "–" : short(value)) })),
-          { label: "together", stroke: ink("ink"), width: 2, points: { show: false }, value: (_: uPlot, value: number | null) => (value === null ? "–" : short(value)) },
+          {},
+          ...lines.map(({ cue }) => ({ stroke: ink(tokens[cue] ?? "ink-soft"), width: 1.5, points: { show: false } })),
+          { stroke: ink("ink"), width: 2, points: { show: false } },
         ],
         hooks: { drawClear: [(plot) => band(plot, inside)], draw: [(plot) => mark(plot, place, total[best] ?? 0)] },
       },
@@ -99,9 +107,21 @@ function lossesOf(curves: readonly Sensitivity[]): { xs: number[]; lines: { cue:
   return { xs, lines: same.map(({ cue, values }) => ({ cue, losses: lost(values) })), total: lost(sum) };
 }
 
-function band({ ctx, bbox, valToPos }: uPlot, inside: readonly number[]): void {
-  if (inside.length === 0) return;
-  const [left, right] = [valToPos(Math.min(...inside), "x", true), valToPos(Math.max(...inside), "x", true)];
+/** Where the loss passes the limit on either side of its least, between two offsets along a line. */
+function intervalOf(xs: readonly number[], total: readonly number[], best: number): [number, number] {
+  const side = (step: 1 | -1): number => {
+    for (let i = best; i + step >= 0 && i + step < xs.length; i += step) {
+      const [here, there] = [total[i] ?? 0, total[i + step] ?? 0];
+      if (there <= WITHIN) continue;
+      return (xs[i] ?? 0) + ((xs[i + step] ?? 0) - (xs[i] ?? 0)) * Math.min(1, (WITHIN - here) / (there - here));
+    }
+    return (step < 0 ? xs[0] : xs.at(-1)) ?? 0;
+  };
+  return [side(-1), side(1)];
+}
+
+function band({ ctx, bbox, valToPos }: uPlot, inside: readonly [number, number]): void {
+  const [left, right] = [valToPos(inside[0], "x", true), valToPos(inside[1], "x", true)];
   ctx.fillStyle = ink("sunk");
   ctx.fillRect(left - 1, bbox.top, Math.max(2, right - left + 2), bbox.height);
 }

@@ -35,7 +35,7 @@ async function dropped(data: DataTransfer): Promise<{ files: Named[]; isFolder: 
   return { files, isFolder: true };
 }
 
-export function dropTarget(words: { title: string; hint: string; files: string }, onFiles: (files: Named[], isFolder: boolean) => void): HTMLElement {
+export function dropTarget(words: { title: string; hint: string; files: string; folder?: string }, onFiles: (files: Named[], isFolder: boolean) => void): HTMLElement {
   const id = freshId("drop");
   const picker = make("input", { id, type: "file", multiple: true, class: "visually-hidden", "aria-describedby": `${id}-hint` });
   const folder = make("input", { id: `${id}-folder`, type: "file", multiple: true, webkitdirectory: true, class: "visually-hidden" });
@@ -44,7 +44,7 @@ export function dropTarget(words: { title: string; hint: string; files: string }
     { class: "rig-drop" },
     make("strong", {}, words.title),
     make("span", { class: "soft", id: `${id}-hint` }, words.hint),
-    make("div", { class: "rig-row" }, picker, make("label", { for: id, class: "rig-button" }, words.files), folder, make("label", { for: `${id}-folder`, class: "rig-button" }, "Choose a folder")),
+    make("div", { class: "rig-row" }, picker, make("label", { for: id, class: "rig-button" }, words.files), ...(words.folder ? [folder, make("label", { for: `${id}-folder`, class: "rig-button" }, words.folder)] : [])),
   );
   for (const [input, isFolder] of [[picker, false], [folder, true]] as const) {
     input.addEventListener("change", () => {

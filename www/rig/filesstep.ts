@@ -10,8 +10,12 @@ import type { MaskTool } from "./masktool";
 import { press } from "./parts";
 import { messageOf, type Rig } from "./rig";
 
-/** What tells that a folder is a recording, which is read as a whole: its frames are matched by time, not by name. */
-const RECORDING = /(^|\/)(associations?|rgb|depth|groundtruth)\.(txt|csv)$|(^|\/)(rgb|color|colour|image)s?\/[^/]+\.(png|jpe?g)$/i;
+/** What tells that a folder is a recording, which is read as a whole: its frames are matched by time, and a few of them taken. */
+const LISTS = /(^|\/)(rgb|depth|associat\w*)\.txt$/i;
+/** More files than anyone looks over one by one. */
+const MANY = 16;
+/** What lies in folders beside the files of a rig. */
+const BESIDE = /(^|\/)(\.|readme|licen[cs]e|source\.txt|thumbs\.db)|\.(md|html?|py)$/i;
 
 export class FilesStep {
   readonly element = make("div", { class: "rig-step rig-files-step" });
@@ -27,7 +31,7 @@ export class FilesStep {
   readonly #missing = make("p", { class: "rig-missing" });
   readonly #next: HTMLButtonElement;
   readonly #framesCard: HTMLElement;
-  readonly #filesCard: HTMLElement;
+  readonly #filesCard: HTMLDetailsElement;
   #tool: Promise<MaskTool> | undefined;
 
   constructor(rig: Rig, goOn: () => void) {
@@ -37,22 +41,22 @@ export class FilesStep {
     this.#cameras = [new CameraForm(rig, "colour"), new CameraForm(rig, "depth")];
     this.#next = press("Next: your calibration", goOn, { class: "primary" });
     const drop = dropTarget(
-      { title: "Drop files or a folder here", hint: "Colour images, depth maps, masks, camera numbers, a calibration: they are told apart by what is in them. Nothing leaves this machine.", files: "Choose files" },
+      { title: "Drop files or a folder here", hint: "Colour images, depth maps, masks, camera numbers, a calibration: they are told apart by what is in them. Nothing leaves this machine.", files: "Choose files", folder: "Choose a folder" },
       (files, isFolder) => void this.#take(files, isFolder),
     );
-    this.#filesCard = make("section", { class: "rig-card" }, make("h3", {}, "Files"), this.#notes, this.#files.element);
+    this.#filesCard = make("details", { class: "rig-card rig-files-card" }, make("summary", {}, make("h3", {}, "Files")), this.#notes, this.#files.element);
     this.#framesCard = make("section", { class: "rig-card" }, make("h3", {}, "Frames"), make("p", { class: "soft" }, "Each frame is a colour image and a depth map of the same moment. Add more one by one: the answer sharpens."), this.#frames.element);
     this.element.append(
+      make("section", { class: "rig-card" }, drop, make("div", { class: "rig-row" }, this.#example, this.#clear, this.#status), this.#alert),
+      make("aside", { class: "rig-aside" }, advice(), formats()),
       make(
         "div",
         { class: "rig-main" },
-        make("section", { class: "rig-card" }, drop, make("div", { class: "rig-row" }, this.#example, this.#clear, this.#status), this.#alert),
         this.#filesCard,
         this.#framesCard,
         make("section", { class: "rig-card" }, make("h3", {}, "Cameras"), make("div", { class: "rig-cameras" }, ...this.#cameras.map(({ element }) => element))),
         make("div", { class: "rig-row rig-foot" }, this.#missing, this.#next),
       ),
-      make("aside", { class: "rig-aside" }, advice(), formats()),
     );
   }
 
@@ -72,12 +76,16 @@ export class FilesStep {
     this.#next.disabled = missing.length > 0;
   }
 
+  /** What came one by one is there to be looked over; a recording or the example stays folded. */
   async #take(files: Named[], isFolder: boolean): Promise<void> {
     this.#complain("");
-    const isRecording = isFolder && files.some(({ name }) => RECORDING.test(name));
+    const isRecording = isFolder && (files.length > MANY || files.some(({ name }) => LISTS.test(name)));
     try {
       if (isRecording) await this.#rig.addFolder(files);
-      else await this.#rig.add(files);
+      else {
+        this.#filesCard.open = true;
+        await this.#rig.add(isFolder ? files.filter(({ name }) => !BESIDE.test(name)) : files);
+      }
     } catch (error) {
       this.#complain(messageOf(error));
     }

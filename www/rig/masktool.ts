@@ -21,6 +21,7 @@ export class MaskTool {
   #tool: Tool = "rectangle";
   #use = true;
   #radius = 16;
+  #radiusInput: HTMLInputElement | undefined;
   #step = 5;
   #box: Box = { left: 0, top: 0, width: 0, height: 0 };
   #range: [number, number] = [NaN, NaN];
@@ -54,7 +55,8 @@ export class MaskTool {
     draw(this.#image, picture);
     this.#layer.width = picture.width;
     this.#layer.height = picture.height;
-    this.#radius = Math.round(picture.width / 40);
+    this.#radius = Math.max(2, Math.round(picture.width / 40));
+    if (this.#radiusInput) this.#radiusInput.value = String(this.#radius);
     this.#depth.hidden = depth === undefined;
     show(this.#near.input, this.#range[0]);
     show(this.#far.input, this.#range[1]);
@@ -67,7 +69,7 @@ export class MaskTool {
     const tool = choose([{ value: "rectangle", label: "rectangle" }, { value: "brush", label: "brush" }], this.#tool, (value) => (this.#tool = value as Tool));
     const use = choose([{ value: "use", label: "use what I draw" }, { value: "leave", label: "leave it out" }], "use", (value) => (this.#use = value === "use"));
     const radius = numberField("Brush radius", "px", (value) => (this.#radius = value > 0 ? value : this.#radius));
-    radius.input.placeholder = "a fortieth of the width";
+    this.#radiusInput = radius.input;
     return make("fieldset", {}, make("legend", {}, "Draw"), labelled("Tool", tool), labelled("It means", use), radius.element);
   }
 

@@ -20,6 +20,8 @@ interface Stop {
 const WAY = 20;
 /** Told apart from every colour of the depths, and from most things. */
 const EDGE = [255, 60, 190] as const;
+/** So much larger than their mean distance are points drawn, so that they close up where they lie farther apart. */
+const OVERLAP = 1.2;
 /** Pictures of the report are at most so wide, px. */
 const REPORT_WIDTH = 1280;
 
@@ -194,7 +196,7 @@ function paint(layer: HTMLCanvasElement, { points, edges }: Projection, what: Wh
   };
   if (what !== "edges") {
     const ramp = Uint32Array.from({ length: 256 }, (_, i) => packed(colourAt("viridis", i / 255)));
-    const size = Math.max(1, Math.min(8, Math.round(Math.sqrt((width * height) / Math.max(1, points.length / 3)))));
+    const size = Math.max(1, Math.min(8, Math.ceil(OVERLAP * Math.sqrt((width * height) / Math.max(1, points.length / 3)))));
     const factor = max > min ? 255 / (max - min) : 0;
     for (let i = 0; i + 2 < points.length; i += 3) {
       const share = Math.max(0, Math.min(255, Math.round(((points[i + 2] ?? 0) - min) * factor)));

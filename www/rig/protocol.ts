@@ -38,9 +38,11 @@ export interface FramePlan {
 
 /** Several files that belong together: a folder, or the example. */
 export interface Assembly {
+  /** Where its poses come from, in words. */
+  origin: string;
   items: { file: number; name: string; summary: Summary }[];
   frames: { name: string; colour: number; depth: number }[];
-  cameras: { colour?: RigCamera; depth?: RigCamera };
+  cameras: NamedCamera[];
   poses: NamedPose[];
   warnings: string[];
 }

@@ -238,15 +238,15 @@ export class Rig {
     return first;
   }
 
-  #join({ items, frames, cameras, poses, warnings }: Assembly): void {
+  #join({ origin, items, frames, cameras, poses, warnings }: Assembly): void {
     for (const { file, name, summary } of items) this.items.push({ id: file, name, state: "read", summary });
     for (const { name, colour, depth } of frames) this.frames.push({ id: this.freshId(), name, colour, depth });
-    for (const side of ["colour", "depth"] as const) {
-      const camera = cameras[side];
-      if (!camera) continue;
-      this.cameras[side] = { source: "typed", chosen: true, typed: typedFrom(camera) };
+    // Cameras of a folder's own files, beside those that its frames were given.
+    if (cameras.length > 0) {
+      const summary: Summary = { kind: "cameras", says: `${cameras.length} cameras`, warnings: [], guessed: [], cameras, poses: [] };
+      this.items.push({ id: this.freshId(), name: origin, state: "read", summary });
     }
-    for (const pose of poses) this.addPose(pose, pose.name ?? "given");
+    for (const pose of poses) this.addPose(pose, origin);
     this.notes.push(...warnings);
     this.#chooseCameras();
     this.changed();

@@ -101,7 +101,7 @@ export function candidatesTable({ report, estimateOnly }: Run): HTMLElement {
   const list = Object.entries(report.candidates);
   const most = 1.05 * Math.max(health.interval[1], ...list.map(([, { interval }]) => interval[1]), 1e-6);
   const row = (name: string, words: (Node | string)[], off: string, shift: string, pixels: number, range: [number, number], reason: string) => [
-    make("tr", {}, make("th", { scope: "row" }, name), make("td", {}, ...words), make("td", {}, off), make("td", {}, shift), make("td", { class: "rig-pixels" }, make("span", {}, `${px(pixels)} (${interval(range)})`), whisker(pixels, range, most))),
+    make("tr", {}, make("th", { scope: "row" }, name), make("td", {}, ...words), make("td", { "data-label": "turned by" }, off), make("td", { "data-label": "shifted by" }, shift), make("td", { class: "rig-pixels" }, px(pixels), make("span", { class: "soft" }, interval(range)), whisker(pixels, range, most))),
     ...(reason ? [make("tr", { class: "rig-reason" }, make("td", { colspan: 5 }, reason))] : []),
   ];
   const candidate = ([name, { verdict, reason, offDegrees, offMillimetres, pixels, interval: range, probability }]: [string, CandidateReport]) => {
@@ -115,7 +115,7 @@ export function candidatesTable({ report, estimateOnly }: Run): HTMLElement {
     { class: "rig-card" },
     make("h3", {}, "Calibrations"),
     make("p", { class: "soft" }, "Turn and shift are measured from the calibration found, at the scene's middle; the error is what to expect at the scene's depth, in pixels of the colour image."),
-    make("div", { class: "rig-scroll" }, make("table", { class: "rig-table" }, make("thead", {}, make("tr", {}, ...head)), make("tbody", {}, ...row("found", ["the best fit"], "–", "–", health.pixels, health.interval, ""), ...(estimateOnly ? [] : list.flatMap(candidate))))),
+    make("div", { class: "rig-scroll" }, make("table", { class: "rig-table rig-calibrations" }, make("thead", {}, make("tr", {}, ...head)), make("tbody", {}, ...row("found", ["the best fit"], "–", "–", health.pixels, health.interval, ""), ...(estimateOnly ? [] : list.flatMap(candidate))))),
   );
 }
 
@@ -123,7 +123,7 @@ const bar = (share: number): HTMLElement => make("span", { class: "rig-bar", "ar
 const percent = (share: number): string => `${(100 * share).toFixed(0)} %`;
 
 export function sharesCard({ report }: Run, history: readonly { frames: number; pixels: number; interval: [number, number] }[]): HTMLElement {
-  const frame = ({ name, share, note }: CheckReport["frames"][number]) => make("tr", {}, make("th", { scope: "row" }, name), make("td", {}, bar(share)), make("td", {}, percent(share)), make("td", {}, note ?? ""));
+  const frame = ({ name, share, note }: CheckReport["frames"][number]) => make("tr", {}, make("th", { scope: "row" }, name), make("td", {}, bar(share)), make("td", {}, percent(share)), make("td", { class: "rig-note" }, note ?? ""));
   const cue = ([name, { share, sharpness }]: [string, { share: number; sharpness: number }]) => make("tr", {}, make("th", { scope: "row" }, CUES[name] ?? name), make("td", {}, bar(share)), make("td", {}, percent(share)), make("td", {}, sharpness > 0 ? `± ${decimals(1 / sharpness, 2)} px` : "tells nothing"));
   const table = (caption: string, last: string, rows: HTMLElement[]) => make("table", { class: "rig-table rig-shares" }, make("caption", {}, caption), make("thead", { class: "visually-hidden" }, make("tr", {}, ...["Name", "", "Share", last].map((words) => make("th", { scope: "col" }, words)))), make("tbody", {}, ...rows));
   const runs = history.map(({ frames, pixels, interval: range }) => make("li", {}, `${frames} ${frames === 1 ? "frame" : "frames"}: ${px(pixels)} (${interval(range)})`));

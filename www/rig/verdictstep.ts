@@ -31,7 +31,9 @@ export class VerdictStep {
   readonly #stale = make("p", { class: "rig-stale", hidden: true }, "Files, cameras or calibrations have changed since this verdict: run the check again.");
   readonly #card = make("div", { class: "rig-card rig-verdict-box", hidden: true });
   readonly #results = make("div", { class: "rig-results", hidden: true });
-  readonly #tables = make("div", { class: "rig-column" });
+  /** In the order of reading; on wide screens the pictures stand beside both. */
+  readonly #first = make("div", { class: "rig-column" });
+  readonly #last = make("div", { class: "rig-column" });
   readonly #overlay: Overlay;
   readonly #curvesBox = make("section", { class: "rig-card" });
   #curves: SensitivityCharts | undefined;
@@ -44,9 +46,9 @@ export class VerdictStep {
     this.#run = press("Run the check", () => void this.start(), { class: "primary" });
     this.#cancel = press("Cancel", () => rig.session.cancel());
     this.#curvesBox.append(make("h3", {}, "How sharply this scene tells each axis"), make("p", { class: "soft" }, "Log likelihood lost when the calibration found is moved: a narrow valley is a sure answer, a flat one says that this scene can't tell. The dot is the least, the band the 95 % interval."));
-    this.#results.append(make("div", { class: "rig-column" }, this.#overlay.element, this.#curvesBox), this.#tables);
+    this.#results.append(this.#first, make("div", { class: "rig-column rig-pictures" }, this.#overlay.element, this.#curvesBox), this.#last);
     this.element.append(
-      make("section", { class: "rig-card rig-run" }, make("div", { class: "rig-row" }, press("Back", goBack), this.#run, this.#cancel, this.#progress, this.#status), this.#cueChoice(), this.#alert, this.#stale),
+      make("section", { class: "rig-card rig-run" }, make("div", { class: "rig-row" }, press("Back", goBack), this.#run, this.#cancel, this.#status, this.#progress), this.#cueChoice(), this.#alert, this.#stale),
       this.#card,
       this.#results,
     );
@@ -113,7 +115,8 @@ export class VerdictStep {
   #showRun(run: Run): void {
     this.#card.replaceChildren(card(run));
     this.#overlay.show(run);
-    this.#tables.replaceChildren(candidatesTable(run), sharesCard(run, this.#rig.history), nextCard(run), this.#out(run));
+    this.#first.replaceChildren(candidatesTable(run), nextCard(run));
+    this.#last.replaceChildren(sharesCard(run, this.#rig.history), this.#out(run));
     void this.#showCurves(run);
   }
 

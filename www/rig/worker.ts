@@ -47,21 +47,22 @@ function readingOf<K extends RigReading["kind"]>(file: number, kind: K): Extract
   return reading as Extract<RigReading, { kind: K }>;
 }
 
-/** Keeps pairs that came together as files of their own. */
-function assemble(first: number, pairs: CheckFrame[], cameras: Assembly["cameras"], poses: Assembly["poses"], warnings: string[]): Assembly {
+/** Keeps pairs that came together as files of their own; their cameras, which all have, are told once. */
+function assemble(origin: string, first: number, pairs: CheckFrame[], rest: Pick<Assembly, "cameras" | "poses" | "warnings">): Assembly {
   const items: Assembly["items"] = [];
   const keep = (reading: RigReading): number => {
     const file = first + items.length;
+    const summary = summaryOf(reading);
     readings.set(file, reading);
-    items.push({ file, name: reading.name, summary: summaryOf(reading) });
+    items.push({ file, name: reading.name, summary: items.length < 2 ? summary : { ...summary, cameras: [] } });
     return file;
   };
-  const list = pairs.map(({ image, depth, name = "frame" }) => ({
+  const frames = pairs.map(({ image, depth, name = "frame" }) => ({
     name,
     colour: keep({ kind: "colour", name: `${name}, colour`, says: `${image.width}x${image.height}`, warnings: [], image }),
     depth: keep({ kind: "depth", name: `${name}, depth`, says: `${depth.width}x${depth.height}`, warnings: [], guessed: [], depth }),
   }));
-  return { items, frames: list, cameras, poses, warnings };
+  return { origin, items, frames, ...rest };
 }
 
 const bytesOf = async (blob: Blob): Promise<Uint8Array> => new Uint8Array(await blob.arrayBuffer());
@@ -89,13 +90,11 @@ const handlers: Handlers = {
   async folder({ first, files }) {
     const named = await Promise.all(files.map(async ({ name, blob }) => ({ name, bytes: await bytesOf(blob) })));
     const folder = await readRigFolder(named);
-    return assemble(first, folder.frames, {}, folder.poses, folder.warnings);
+    return assemble("the folder", first, folder.frames, folder);
   },
   async example({ first }) {
     const { frames, poses } = await loadExample();
-    const [one] = frames;
-    const cameras = { ...(one?.image.camera ? { colour: one.image.camera } : {}), ...(one?.depth.camera ? { depth: one.depth.camera } : {}) };
-    return assemble(first, frames, cameras, poses, []);
+    return assemble("the example", first, frames, { cameras: [], poses, warnings: [] });
   },
   async forget({ file }) {
     readings.delete(file);
