@@ -62,10 +62,10 @@ export class SensitivityCharts {
     const best = total.indexOf(Math.min(...total));
     const inside = intervalOf(xs, total, best);
     const place = xs[best] ?? 0;
-    const digits = unit === "mm" ? 1 : 2;
+    const [digits, gap] = unit === "mm" ? [1, " "] : [2, ""];
     const width = `${decimals(inside[0], digits)} to ${decimals(inside[1], digits)}`;
     const box = make("div", { class: "chart" });
-    const words = `Least at ${decimals(place, digits)} ${unit}; 95 %: ${width} ${unit}.`;
+    const words = `Least at ${decimals(place, digits)}${gap}${unit}; 95 %: ${width}${gap}${unit}.`;
     this.#figures.append(make("figure", {}, make("figcaption", {}, make("strong", {}, title), make("span", { class: "soft" }, words)), box));
     const line = { stroke: ink("line"), width: 1 };
     const style: uPlot.Axis = { stroke: ink("ink-soft"), font: "11px system-ui, sans-serif", grid: line, ticks: { ...line, size: 4 } };

@@ -9,9 +9,9 @@ export interface Example {
   poses: NamedPose[];
 }
 
-const [WIDTH, HEIGHT] = [320, 240];
-const colour: RigCamera = { fx: 300, fy: 300, cx: 159.5, cy: 119.5 };
-const depth: RigCamera = { fx: 280, fy: 280, cx: 159.5, cy: 119.5 };
+const [WIDTH, HEIGHT] = [160, 120];
+const colour: RigCamera = { fx: 150, fy: 150, cx: 79.5, cy: 59.5 };
+const depth: RigCamera = { fx: 140, fy: 140, cx: 79.5, cy: 59.5 };
 const truth = poseOf(fromEuler(0.4, -0.6, 0.3, "xyz"), [0.05, 0.002, -0.003]);
 const told = poseOf(fromEuler(0.4, 1.4, 0.3, "xyz"), [0.05, 0.002, -0.003]);
 
@@ -23,7 +23,7 @@ function surface(x: number, y: number, turn: number): number {
 
 /** Where a ray of the depth camera, or of the colour camera moved by the truth, meets the surface. */
 function meet(origin: readonly number[], ray: readonly number[], turn: number): [number, number, number] {
-  for (let far = 0.8; far < 1.6; far += 0.002) {
+  for (let far = 0.8; far < 1.6; far += 0.004) {
     const [x = 0, y = 0, z = 0] = origin.map((value, i) => value + far * (ray[i] ?? 0));
     if (z >= surface(x, y, turn)) return [x, y, z];
   }
