@@ -98,7 +98,7 @@ export class CalibrationStep {
   }
 
   #fromFile(): HTMLElement {
-    const drop = dropTarget({ title: "From a file", hint: "4x4 text, Kalibr, ROS tf, Open3D, OpenCV, RealSense", files: "Choose a file" }, (files) => void this.#add(files));
+    const drop = dropTarget({ title: "From a file", hint: "4x4 text, Kalibr, ROS tf, Open3D, OpenCV, RealSense", files: "Choose a file" }, (files) => void this.#add(files), this.element);
     return make("section", { class: "rig-card" }, drop);
   }
 

@@ -78,10 +78,11 @@ export class CameraForm {
     const { given, cameras } = this.#rig;
     const { source, typed } = cameras[this.#side];
     const unknown = this.#side === "colour" ? "Unknown: estimate its focal length" : "Not given yet";
-    fill(this.#source, [{ value: "", label: unknown }, ...given.map((each) => ({ value: each.source, label: each.label })), { value: "typed", label: "Type them in" }], source);
+    const same = this.#side === "depth" ? [{ value: "same", label: "The colour camera's (depth aligned to colour)" }] : [];
+    fill(this.#source, [{ value: "", label: unknown }, ...same, ...given.map((each) => ({ value: each.source, label: each.label })), { value: "typed", label: "Type them in" }], source);
     this.#form.hidden = source !== "typed";
     const camera = this.#rig.cameraOf(this.#side);
-    const isFile = source !== "" && source !== "typed";
+    const isFile = source !== "" && source !== "typed" && camera !== undefined;
     this.#edit.hidden = !isFile;
     this.#numbers.textContent = camera ? words(camera, this.#remark()) : source === "typed" ? "Some numbers are missing." : "";
     this.#by.value = typed.by;

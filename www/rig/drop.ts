@@ -35,7 +35,7 @@ async function dropped(data: DataTransfer): Promise<{ files: Named[]; isFolder: 
   return { files, isFolder: true };
 }
 
-export function dropTarget(words: { title: string; hint: string; files: string; folder?: string }, onFiles: (files: Named[], isFolder: boolean) => void): HTMLElement {
+export function dropTarget(words: { title: string; hint: string; files: string; folder?: string }, onFiles: (files: Named[], isFolder: boolean) => void, area?: HTMLElement): HTMLElement {
   const id = freshId("drop");
   const picker = make("input", { id, type: "file", multiple: true, class: "visually-hidden", "aria-describedby": `${id}-hint` });
   const folder = make("input", { id: `${id}-folder`, type: "file", multiple: true, webkitdirectory: true, class: "visually-hidden" });
@@ -53,14 +53,16 @@ export function dropTarget(words: { title: string; hint: string; files: string; 
       if (files.length > 0) onFiles(files, isFolder);
     });
   }
-  zone.addEventListener("dragover", (event) => {
+  // What is dropped beside the target is meant for it, too.
+  const all = area ?? zone;
+  all.addEventListener("dragover", (event) => {
     event.preventDefault();
     zone.toggleAttribute("data-over", true);
   });
-  zone.addEventListener("dragleave", (event) => {
-    if (!(event.relatedTarget instanceof Node && zone.contains(event.relatedTarget))) zone.removeAttribute("data-over");
+  all.addEventListener("dragleave", (event) => {
+    if (!(event.relatedTarget instanceof Node && all.contains(event.relatedTarget))) zone.removeAttribute("data-over");
   });
-  zone.addEventListener("drop", (event) => {
+  all.addEventListener("drop", (event) => {
     event.preventDefault();
     zone.removeAttribute("data-over");
     if (!event.dataTransfer) return;

@@ -43,6 +43,7 @@ export class FilesStep {
     const drop = dropTarget(
       { title: "Drop files or a folder here", hint: "Colour images, depth maps, masks, camera numbers, a calibration: they are told apart by what is in them. Nothing leaves this machine.", files: "Choose files", folder: "Choose a folder" },
       (files, isFolder) => void this.#take(files, isFolder),
+      this.element,
     );
     this.#filesCard = make("details", { class: "rig-card rig-files-card" }, make("summary", {}, make("h3", {}, "Files")), this.#notes, this.#files.element);
     this.#framesCard = make("section", { class: "rig-card" }, make("h3", {}, "Frames"), make("p", { class: "soft" }, "Each frame is a colour image and a depth map of the same moment. Add more one by one: the answer sharpens."), this.#frames.element);

@@ -66,9 +66,10 @@ export interface Calls {
   frames: { ask: { frames: FramePlan[] }; answer: null };
   check: { ask: { candidates: Record<string, Pose>; cues: CheckCue[] }; answer: CheckReport };
   overlay: { ask: { frame: number; pose: Pose }; answer: Projection };
-  pose: { ask: { pose: Pose; format: PoseFormat }; answer: { name: string; text: string } };
-  clouds: { ask: { frame: number; pose: Pose }; answer: Uint8Array };
-  report: { ask: { pictures: { title: string; dataUrl: string }[] }; answer: string };
+  pose: { ask: { pose: Pose; format: PoseFormat }; answer: { name: string; text: string; notes: string[] } };
+  /** One cloud of the frame for each pose, in the colour camera's frame. */
+  clouds: { ask: { frame: number; poses: { name: string; pose: Pose }[] }; answer: Uint8Array };
+  report: { ask: { pictures: { title: string; dataUrl: string }[]; inputs: { name: string; says: string }[] }; answer: string };
 }
 
 export type CallKind = keyof Calls;

@@ -44,7 +44,7 @@ export interface TypedCamera {
 }
 
 export interface CameraChoice {
-  /** "", "typed", or the camera's place among those of the files, "3:0". */
+  /** "", "typed", "same" as the colour camera, or the camera's place among those of the files, "3:0". */
   source: string;
   /** Whether the visitor has chosen it; else it follows the files. */
   chosen: boolean;
@@ -267,7 +267,7 @@ export class Rig {
     const { given } = this;
     for (const side of ["colour", "depth"] as const) {
       const mine = this.cameras[side];
-      const isThere = mine.source === "" || mine.source === "typed" || given.some(({ source }) => source === mine.source);
+      const isThere = ["", "typed", "same"].includes(mine.source) || given.some(({ source }) => source === mine.source);
       if (mine.chosen && isThere) continue;
       const [own, other] = side === "colour" ? [COLOUR, DEPTH] : [DEPTH, COLOUR];
       const named = given.find(({ label }) => own.test(label) && !other.test(label)) ?? given.find(({ camera }) => own.test(camera.name ?? ""));
@@ -286,6 +286,7 @@ export class Rig {
 
   cameraOf(side: Side): RigCamera | undefined {
     const { source, typed } = this.cameras[side];
+    if (source === "same") return this.cameraOf("colour");
     if (source === "typed") return fromTyped(typed, this.sizeOf(side));
     return this.given.find((each) => each.source === source)?.camera.camera;
   }

@@ -143,8 +143,9 @@ export class VerdictStep {
 
   #out(run: Run): HTMLElement {
     const note = make("p", { class: "rig-error", role: "alert" });
+    const remark = make("p", { class: "soft", role: "status" });
     const attempt = (action: () => Promise<void>) => async () => {
-      note.textContent = "";
+      note.textContent = remark.textContent = "";
       await action().catch((error: unknown) => (note.textContent = `It could not be written: ${messageOf(error)}`));
     };
     const poses = [{ value: "", label: "found" }, ...Object.keys(run.candidates).map((name) => ({ value: name, label: name }))];
@@ -154,16 +155,20 @@ export class VerdictStep {
     const pose = () => run.candidates[which.value] ?? run.report.estimate;
     const { session } = this.#rig;
     const save = press("Save calibration", attempt(async () => {
-      const { name, text } = await session.call("pose", { pose: pose(), format: format.value as PoseFormat });
+      const { name, text, notes } = await session.call("pose", { pose: pose(), format: format.value as PoseFormat });
       saveFile(name, text, "text/plain");
+      remark.textContent = notes.join(" ");
     }), { class: "primary" });
     const clouds = press("Save clouds (PLY)", attempt(async () => {
       const index = Number(frame.value);
-      saveFile(`${run.plans[index]?.name ?? "frame"}.ply`.replaceAll(" ", "-"), (await session.call("clouds", { frame: index, pose: pose() })) as BlobPart, "application/octet-stream");
+      const both = Object.entries(run.candidates).slice(0, run.estimateOnly ? 0 : 1).map(([name, pose]) => ({ name, pose }));
+      const poses = [{ name: "found", pose: run.report.estimate }, ...both];
+      saveFile(`${run.plans[index]?.name ?? "frame"}.ply`.replaceAll(/[^\w.-]+/g, "-"), (await session.call("clouds", { frame: index, poses })) as BlobPart, "application/octet-stream");
     }));
     const html = press("Save report (HTML)", attempt(async () => {
       const pictures = await this.#overlay.pictures();
-      saveFile("rig-check.html", await session.call("report", { pictures }), "text/html");
+      const inputs = this.#rig.items.map(({ name, summary }) => ({ name, says: summary?.says ?? "not read" }));
+      saveFile("rig-check.html", await session.call("report", { pictures, inputs }), "text/html");
     }));
     return make(
       "section",
@@ -172,6 +177,7 @@ export class VerdictStep {
       make("div", { class: "rig-row rig-bottom" }, labelled("Calibration", which), labelled("Format", format), save),
       make("div", { class: "rig-row rig-bottom" }, labelled("Frame", frame), clouds, html, press("Save numbers (JSON)", () => this.download())),
       note,
+      remark,
     );
   }
 

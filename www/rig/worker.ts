@@ -133,14 +133,16 @@ const handlers: Handlers = {
     const size = (of: { width: number; height: number }): [number, number] => [of.width, of.height];
     return writePose(pose, format, { ...cameras, ...(image && depth ? { sizes: { colour: size(image), depth: size(depth) } } : {}) });
   },
-  async clouds({ frame, pose }) {
-    const { writeClouds } = await import("./write");
-    return writeClouds(frameAt(frame), pose);
+  async clouds({ frame, poses }) {
+    const [{ writeClouds }, { cloudOf }] = await Promise.all([import("./write"), import("./cloud")]);
+    const clouds = [];
+    for (const { name, pose } of poses) clouds.push({ name, ...(await cloudOf(frameAt(frame), pose)) });
+    return writeClouds(clouds);
   },
-  async report({ pictures }) {
+  async report({ pictures, inputs }) {
     const { reportHtml } = await import("./write");
     if (!report) throw new Error("There is no report yet.");
-    return reportHtml(report, frames, pictures);
+    return reportHtml(report, pictures, { made: new Date(), inputs });
   },
 };
 
