@@ -198,7 +198,7 @@ test("without a calibration there is an estimate only, and what was guessed is s
   await openPair(page);
   await run(page);
   await expect(page.locator(".rig-word")).toHaveText("Estimated");
-  await expect(page.locator(".rig-verdict")).toContainText("The unit of depth_0001.png was guessed.");
+  await expect(page.locator(".rig-verdict")).toContainText("Guessed: the unit of depth_0001.png.");
   await page.getByRole("button", { name: "Back" }).click();
   await page.getByLabel("Or paste it, in any of these forms").fill("1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1");
   await page.getByRole("button", { name: "Add what I pasted" }).click();

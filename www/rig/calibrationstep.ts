@@ -1,6 +1,7 @@
 /** Step 2: the calibration in question, and others to compare it with. */
 
 import { make } from "../dom";
+import { decimals } from "../draw/numbers";
 import { dropTarget } from "./drop";
 import { choose, Keyed, labelled, numberField, press } from "./parts";
 import { fromEuler, fromQuaternion, inWords, inverse, matrixText, poseOf, type EulerOrder } from "./poses";
@@ -9,6 +10,9 @@ import { messageOf, type Candidate, type Rig } from "./rig";
 type By = "quaternion" | EulerOrder;
 
 const TURNS: Record<By, readonly string[]> = { quaternion: ["qx", "qy", "qz", "qw"], rpy: ["roll", "pitch", "yaw"], xyz: ["about x", "about y", "about z"] };
+
+/** Metres between two cameras from which on a wrong unit, or a place in a room, is likelier than a rig. */
+const FAR = 0.5;
 
 export class CalibrationStep {
   readonly element = make("div", { class: "rig-step" });
@@ -56,6 +60,7 @@ export class CalibrationStep {
     });
     const words = make("p", { class: "rig-words" });
     const origin = make("p", { class: "soft" });
+    const far = make("ul", { class: "rig-notes" });
     const matrix = make("pre", {});
     const rank = make("span", { class: "rig-rank" });
     const invert = press("Invert", () => {
@@ -76,6 +81,7 @@ export class CalibrationStep {
       { class: "rig-candidate" },
       make("div", { class: "rig-row" }, rank, labelled("Name", name, note)),
       words,
+      far,
       origin,
       make("details", {}, make("summary", {}, "Matrix"), matrix),
       make("div", { class: "rig-row" }, invert, first, remove),
@@ -86,6 +92,8 @@ export class CalibrationStep {
       show: () => {
         if (document.activeElement !== name) name.value = candidate.name;
         words.textContent = inWords(candidate.pose);
+        const apart = Math.hypot(...candidate.pose.translation);
+        far.replaceChildren(...(apart > FAR ? [make("li", {}, `${decimals(apart, apart > 10 ? 0 : 2)} m apart is a lot for one rig. Is it in metres, and does it lead from one camera to the other?`)] : []));
         origin.textContent = `From ${candidate.origin}.`;
         matrix.textContent = matrixText(candidate.pose);
         const isFirst = rig.candidates[0] === candidate;

@@ -1,7 +1,7 @@
 /** The files as they were read, in plain words, with what can be corrected. */
 
 import { make } from "../dom";
-import { choose, draw, fill, Keyed, press } from "./parts";
+import { choose, draw, fill, Keyed, press, THUMB } from "./parts";
 import type { Kind } from "./protocol";
 import type { Item, Rig } from "./rig";
 
@@ -48,7 +48,7 @@ export class FileList {
     });
     const unit = choose([], "", (value) => {
       item.unit = Number(value);
-      void this.#rig.reread(item);
+      void (item.blob ? this.#rig.reread(item) : this.#rig.setUnits(item.unit));
     });
     const kindBox = make("label", { class: "rig-choice" }, make("span", {}, "Kind"), kind);
     const unitBox = make("label", { class: "rig-choice" }, make("span", {}, "Unit"), unit);
@@ -63,11 +63,12 @@ export class FileList {
         says.textContent = state === "reading" ? "reading" : (summary?.says ?? "");
         error.textContent = item.error ?? "";
         error.hidden = state !== "failed";
-        const guessed = (summary?.guessed ?? []).map((what) => `The ${what} was guessed: correct it here if it is wrong, or choose it to confirm it.`);
+        const said = (summary?.warnings ?? []).some((words) => /guess/i.test(words));
+        const guessed = (said ? [] : (summary?.guessed ?? [])).map((what) => `The ${what} was guessed: correct it here if it is wrong, or choose it to confirm it.`);
         notes.replaceChildren(...[...(summary?.warnings ?? []), ...guessed].map((words) => make("li", {}, words)));
         kindBox.hidden = !item.blob;
         fill(kind, summary ? kinds : [{ value: "", label: "not recognised" }, ...kinds], item.as ?? summary?.kind ?? "");
-        unitBox.hidden = !item.blob || summary?.kind !== "depth" || summary.organised === true;
+        unitBox.hidden = summary?.kind !== "depth" || summary.organised === true;
         const now = String(item.unit ?? summary?.unit ?? 1);
         const listed = units.some(({ value }) => Number(value) === Number(now)) ? units : [...units, { value: now, label: `${now} m` }];
         const isGuess = summary?.guessed.includes("unit");
@@ -76,7 +77,7 @@ export class FileList {
         if (wanted === drawn) return;
         drawn = wanted;
         canvas.hidden = wanted === "";
-        if (wanted) void this.#rig.session.call("picture", { file: item.id }).then((bitmap) => draw(canvas, bitmap), () => (canvas.hidden = true));
+        if (wanted) void this.#rig.session.call("picture", { file: item.id, width: THUMB }).then((bitmap) => draw(canvas, bitmap), () => (canvas.hidden = true));
       },
     };
   }

@@ -10,13 +10,6 @@ import type { MaskTool } from "./masktool";
 import { press } from "./parts";
 import { messageOf, type Rig } from "./rig";
 
-/** What tells that a folder is a recording, which is read as a whole: its frames are matched by time, and a few of them taken. */
-const LISTS = /(^|\/)(rgb|depth|associat\w*)\.txt$/i;
-/** More files than anyone looks over one by one. */
-const MANY = 16;
-/** What lies in folders beside the files of a rig. */
-const BESIDE = /(^|\/)(\.|readme|licen[cs]e|source\.txt|thumbs\.db)|\.(md|html?|py)$/i;
-
 export class FilesStep {
   readonly element = make("div", { class: "rig-step rig-files-step" });
   readonly #rig: Rig;
@@ -72,21 +65,18 @@ export class FilesStep {
     this.#clear.hidden = items.length === 0;
     const reading = items.filter(({ state }) => state === "reading").length;
     const failed = items.filter(({ state }) => state === "failed").length;
-    this.#status.textContent = items.length === 0 ? "" : reading > 0 ? `Reading ${reading} of ${items.length} files` : `${items.length} files read${failed > 0 ? `, ${failed} of them not understood` : ""}`;
+    this.#status.textContent = this.#rig.busy ? this.#rig.busy : items.length === 0 ? "" : reading > 0 ? `Reading ${reading} of ${items.length} files` : `${items.length} files read${failed > 0 ? `, ${failed} of them not understood` : ""}`;
     this.#missing.textContent = missing.length === 0 ? "" : `Still missing: ${missing.join("; ")}.`;
     this.#next.disabled = missing.length > 0;
   }
 
-  /** What came one by one is there to be looked over; a recording or the example stays folded. */
+  /** A folder is read as a whole, since its frames may be matched by time; what came one by one is there to be looked over. */
   async #take(files: Named[], isFolder: boolean): Promise<void> {
     this.#complain("");
-    const isRecording = isFolder && (files.length > MANY || files.some(({ name }) => LISTS.test(name)));
+    this.#filesCard.open ||= !isFolder;
     try {
-      if (isRecording) await this.#rig.addFolder(files);
-      else {
-        this.#filesCard.open = true;
-        await this.#rig.add(isFolder ? files.filter(({ name }) => !BESIDE.test(name)) : files);
-      }
+      if (isFolder) await this.#rig.addFolder(files);
+      else await this.#rig.add(files);
     } catch (error) {
       this.#complain(messageOf(error));
     }

@@ -1,7 +1,7 @@
 /** Frames: which colour image and which depth map were taken at the same moment, and what of them is used. */
 
 import { make } from "../dom";
-import { choose, draw, fill, Keyed, press } from "./parts";
+import { choose, draw, fill, Keyed, press, THUMB } from "./parts";
 import type { MaskTool } from "./masktool";
 import type { Frame, Item, Rig } from "./rig";
 
@@ -69,7 +69,7 @@ export class FrameList {
     if (drawn[role] === wanted) return;
     drawn[role] = wanted;
     canvas.getContext("2d")?.clearRect(0, 0, canvas.width, canvas.height);
-    if (item && wanted) void this.#rig.session.call("picture", { file: item.id }).then((bitmap) => drawn[role] === wanted && draw(canvas, bitmap), () => {});
+    if (item && wanted) void this.#rig.session.call("picture", { file: item.id, width: THUMB }).then((bitmap) => drawn[role] === wanted && draw(canvas, bitmap), () => {});
   }
 }
 

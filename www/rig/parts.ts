@@ -2,6 +2,9 @@
 
 import { freshId, make } from "../dom";
 
+/** Small pictures in lists, px: twice as fine as they are shown. */
+export const THUMB = 360;
+
 const SVG = "http://www.w3.org/2000/svg";
 
 /** An element of a drawing. */

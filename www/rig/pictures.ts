@@ -39,17 +39,22 @@ function depth(map: CheckFrame["depth"], range: readonly [number, number] | unde
   return image;
 }
 
-export function picture(reading: RigReading, range?: readonly [number, number]): Promise<ImageBitmap> {
+export function picture(reading: RigReading, range?: readonly [number, number], width?: number): Promise<ImageBitmap> {
+  const made = pixels(reading, range);
+  return createImageBitmap(made, width !== undefined && width < made.width ? { resizeWidth: width, resizeQuality: "medium" } : {});
+}
+
+function pixels(reading: RigReading, range: readonly [number, number] | undefined): ImageData {
   switch (reading.kind) {
     case "colour":
-      return createImageBitmap(colour(reading.image));
+      return colour(reading.image);
     case "depth":
-      return createImageBitmap(depth(reading.depth, range));
+      return depth(reading.depth, range);
     case "mask": {
       const { width, height, data } = reading.mask;
       const out = new ImageData(width, height);
       for (let i = 0; i < data.length; i++) out.data.set(data[i] ? [255, 255, 255, 255] : [0, 0, 0, 255], 4 * i);
-      return createImageBitmap(out);
+      return out;
     }
     default:
       throw new Error(`${reading.name} is no picture.`);

@@ -58,10 +58,13 @@ export type PoseFormat = "matrix" | "opencv" | "kalibr" | "ros2" | "open3d" | "r
 /** Each kind of request, what it carries and what it is answered with. */
 export interface Calls {
   read: { ask: { file: number; name: string; blob: Blob; as?: Kind; unit?: number }; answer: Summary };
+  /** Metres per stored unit of a depth map that came with others. */
+  unit: { ask: { file: number; unit: number }; answer: Summary };
   folder: { ask: { first: number; files: { name: string; blob: Blob }[] }; answer: Assembly };
   example: { ask: { first: number }; answer: Assembly };
   forget: { ask: { file: number }; answer: null };
-  picture: { ask: { file: number; range?: [number, number] }; answer: ImageBitmap };
+  /** As a whole, or at most so wide; depths outside the range are grey. */
+  picture: { ask: { file: number; range?: [number, number]; width?: number }; answer: ImageBitmap };
   /** The frames that what follows is about. */
   frames: { ask: { frames: FramePlan[] }; answer: null };
   check: { ask: { candidates: Record<string, Pose>; cues: CheckCue[] }; answer: CheckReport };
@@ -69,7 +72,7 @@ export interface Calls {
   pose: { ask: { pose: Pose; format: PoseFormat }; answer: { name: string; text: string; notes: string[] } };
   /** One cloud of the frame for each pose, in the colour camera's frame. */
   clouds: { ask: { frame: number; poses: { name: string; pose: Pose }[] }; answer: Uint8Array };
-  report: { ask: { pictures: { title: string; dataUrl: string }[]; inputs: { name: string; says: string }[] }; answer: string };
+  report: { ask: { report: CheckReport; pictures: { title: string; dataUrl: string }[]; inputs: { name: string; says: string }[] }; answer: string };
 }
 
 export type CallKind = keyof Calls;

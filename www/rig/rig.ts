@@ -4,7 +4,7 @@ import type { CheckCue, CheckReport, Pose, RigCamera } from "../../pkg/index.js"
 import { pairUp } from "./pairing";
 import { identity, inverse } from "./poses";
 import type { Assembly, FramePlan, Kind, NamedCamera, Summary } from "./protocol";
-import { RigError, Session } from "./session";
+import { Session } from "./session";
 
 export type Side = "colour" | "depth";
 
@@ -82,6 +82,8 @@ export class Rig {
   candidates: Candidate[] = [];
   cues: CheckCue[] = [];
   notes: string[] = [];
+  /** What is being read as a whole, in words. */
+  busy = "";
   run: Run | undefined;
   /** How sharp the answer has been, run by run, with how many frames. */
   history: { frames: number; pixels: number; interval: [number, number] }[] = [];
@@ -134,6 +136,15 @@ export class Rig {
     if (!this.items.includes(item)) return;
     this.#unlink(item);
     this.frames = pairUp(this);
+    this.changed();
+  }
+
+  /** Depth maps that came together have one unit. */
+  async setUnits(unit: number): Promise<void> {
+    for (const item of this.of("depth").filter(({ blob }) => !blob)) {
+      item.unit = unit;
+      item.summary = await this.session.call("unit", { file: item.id, unit });
+    }
     this.changed();
   }
 
@@ -221,8 +232,15 @@ export class Rig {
   }
 
   async addFolder(files: { name: string; blob: Blob }[]): Promise<void> {
-    const first = this.#reserve(3 * files.length);
-    this.#join(await this.session.call("folder", { first, files }));
+    const first = this.#reserve(2 * files.length);
+    this.busy = `Reading a folder of ${files.length} files`;
+    this.changed();
+    try {
+      this.#join(await this.session.call("folder", { first, files }));
+    } finally {
+      this.busy = "";
+      this.changed();
+    }
   }
 
   async loadExample(): Promise<void> {
@@ -307,8 +325,8 @@ export class Rig {
 
   get guessed(): string[] {
     const files = new Set(this.complete.map(({ depth }) => depth));
-    const units = this.items.filter(({ id, summary }) => files.has(id) && summary?.guessed.includes("unit")).map(({ name }) => `the unit of ${name} was guessed`);
-    const colour = this.complete.length > 0 && !this.cameraOf("colour") ? ["the colour camera is not known, its focal length was estimated"] : [];
+    const units = this.items.filter(({ id, summary }) => files.has(id) && summary?.guessed.includes("unit")).map(({ name }) => `the unit of ${name}`);
+    const colour = this.complete.length > 0 && !this.cameraOf("colour") ? ["the colour camera's focal length"] : [];
     return [...units, ...colour];
   }
 
@@ -345,7 +363,8 @@ export class Rig {
 export const COLOUR = /colou?r|rgb|image|left|cam0/i;
 export const DEPTH = /depth|\bir\b|infra|tof|disp|cloud/i;
 
-export const messageOf = (error: unknown): string => (error instanceof RigError || error instanceof Error ? error.message : String(error));
+/** Without the field at fault, which every message of a file begins with. */
+export const messageOf = (error: unknown): string => (error instanceof Error ? error.message : String(error)).replace(/^file: /, "");
 
 function fromTyped({ by, model, fx, fy, cx, cy, view, distortion }: TypedCamera, size: { width: number; height: number } | undefined): RigCamera | undefined {
   const lens = distortion.length > 0 ? { model, distortion } : {};

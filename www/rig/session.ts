@@ -60,9 +60,10 @@ export class Session {
   }
 
   #remember(kind: CallKind, ask: object): void {
-    const key = "file" in ask ? `file ${ask.file}` : "first" in ask ? `files from ${ask.first}` : kind;
+    // Said of a file that came with others, which are remembered under their first.
+    const key = kind === "unit" && "file" in ask ? `unit ${ask.file}` : "file" in ask ? `file ${ask.file}` : "first" in ask ? `files from ${ask.first}` : kind;
     if (kind === "forget") return void this.#known.delete(key);
-    if (kind !== "read" && kind !== "folder" && kind !== "example" && kind !== "frames") return;
+    if (kind !== "read" && kind !== "folder" && kind !== "example" && kind !== "unit" && kind !== "frames") return;
     // What is said again comes last, after the files that it may be about.
     this.#known.delete(key);
     this.#known.set(key, { kind, ask });

@@ -54,7 +54,7 @@ export function advise({ report, plans, estimateOnly, guessed, candidates }: Run
   const said = [report.reason, ...report.warnings].join(" ");
   const name = Object.keys(candidates)[0] ?? "";
   if (/invert/i.test(said)) list.push("Invert the calibration in step 2 and check again: it seems to lead the other way.");
-  if (guessed.length > 0) list.push(`Confirm what was guessed: ${guessed.join("; ")}.`);
+  if (guessed.length > 0) list.push(`Say in step 1 what was guessed: ${guessed.join("; ")}.`);
   if (!estimateOnly && report.verdict === "off") list.push("Save the calibration found here, use it in place of yours, and check it against fresh frames.");
   if (estimateOnly) list.push("Save what was found, or add your own calibration in step 2 to have it judged.");
   if (plans.length < 3) list.push(plans.length === 1 ? "Add two more frames, with the thing turned by about 30° each time." : "Add another frame, with the thing turned by about 30°.");
@@ -81,7 +81,7 @@ function weakest({ covariance }: CheckReport): string {
 export function card(run: Run): HTMLElement {
   const { word, tone, sentence } = headline(run);
   const [next = ""] = advise(run);
-  const all = [...run.guessed.map((what) => `${what[0]?.toUpperCase()}${what.slice(1)}.`), ...run.report.warnings];
+  const all = [...run.guessed.map((what) => `Guessed: ${what}.`), ...run.report.warnings];
   return make(
     "div",
     { class: `rig-verdict ${tone}`, "data-verdict": run.estimateOnly ? "estimate" : run.report.verdict },

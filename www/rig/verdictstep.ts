@@ -1,6 +1,6 @@
 /** Step 3: the check runs, and says what it found. */
 
-import type { CheckCue } from "../../pkg/index.js";
+import type { CheckCue, CheckReport } from "../../pkg/index.js";
 import { make } from "../dom";
 import { saveJson } from "../save";
 import type { SensitivityCharts } from "./curves";
@@ -102,7 +102,7 @@ export class VerdictStep {
 
   download(): void {
     const { run } = this.#rig;
-    if (run) saveJson("rig-check.json", { format: "bimodal-stereo check", version: 1, ...run.report });
+    if (run) saveJson("rig-check.json", { format: "bimodal-stereo check", version: 1, ...whole(run) });
     else this.#complain("There is no verdict to export yet.");
   }
 
@@ -157,7 +157,7 @@ export class VerdictStep {
     const save = press("Save calibration", attempt(async () => {
       const { name, text, notes } = await session.call("pose", { pose: pose(), format: format.value as PoseFormat });
       saveFile(name, text, "text/plain");
-      remark.textContent = notes.join(" ");
+      remark.textContent = notes.length > 0 ? `Mind: ${notes.join("; ")}.` : `Saved as ${name}.`;
     }), { class: "primary" });
     const clouds = press("Save clouds (PLY)", attempt(async () => {
       const index = Number(frame.value);
@@ -168,7 +168,7 @@ export class VerdictStep {
     const html = press("Save report (HTML)", attempt(async () => {
       const pictures = await this.#overlay.pictures();
       const inputs = this.#rig.items.map(({ name, summary }) => ({ name, says: summary?.says ?? "not read" }));
-      saveFile("rig-check.html", await session.call("report", { pictures, inputs }), "text/html");
+      saveFile("rig-check.html", await session.call("report", { report: whole(run), pictures, inputs }), "text/html");
     }));
     return make(
       "section",
@@ -186,6 +186,9 @@ export class VerdictStep {
     this.#alert.hidden = message === "";
   }
 }
+
+/** The report with what the page knows to be guessed. */
+const whole = ({ report, guessed }: Run): CheckReport => ({ ...report, warnings: [...guessed.map((what) => `Guessed: ${what}.`), ...report.warnings] });
 
 /** Whether the verdict is of what there is now. */
 function isSame(run: Run, rig: Rig): boolean {

@@ -1,6 +1,6 @@
 /** The thread that reads files and runs the check. It keeps all pixels; the page gets summaries, pictures and numbers. */
 
-import { checkCalibration, type CheckFrame, type CheckReport } from "../../pkg/index.js";
+import { checkCalibration, type CheckFrame } from "../../pkg/index.js";
 import { faultOf } from "../engine/fault";
 import { restrictDepth, restrictImage } from "./restrict";
 import { loadExample } from "./example";
@@ -14,7 +14,6 @@ const MOST_WORKERS = 4;
 const readings = new Map<number, RigReading>();
 /** As they were last checked: the overlay and the files out are of these. */
 let frames: CheckFrame[] = [];
-let report: CheckReport | undefined;
 let running: AbortController | undefined;
 
 function post(answer: Answer, transfer: Transferable[] = []): void {
@@ -48,8 +47,9 @@ function readingOf<K extends RigReading["kind"]>(file: number, kind: K): Extract
 }
 
 /** Keeps pairs that came together as files of their own; their cameras, which all have, are told once. */
-function assemble(origin: string, first: number, pairs: CheckFrame[], rest: Pick<Assembly, "cameras" | "poses" | "warnings">): Assembly {
+function assemble(origin: string, first: number, pairs: CheckFrame[], { cameras, poses, warnings }: Pick<Assembly, "cameras" | "poses" | "warnings">): Assembly {
   const items: Assembly["items"] = [];
+  const guessed: "unit"[] = warnings.some((words) => /unit .*guessed/i.test(words)) ? ["unit"] : [];
   const keep = (reading: RigReading): number => {
     const file = first + items.length;
     const summary = summaryOf(reading);
@@ -60,9 +60,9 @@ function assemble(origin: string, first: number, pairs: CheckFrame[], rest: Pick
   const frames = pairs.map(({ image, depth, name = "frame" }) => ({
     name,
     colour: keep({ kind: "colour", name: `${name}, colour`, says: `${image.width}x${image.height}`, warnings: [], image }),
-    depth: keep({ kind: "depth", name: `${name}, depth`, says: `${depth.width}x${depth.height}`, warnings: [], guessed: [], depth }),
+    depth: keep({ kind: "depth", name: `${name}, depth`, says: `${depth.width}x${depth.height}`, warnings: [], guessed, depth }),
   }));
-  return { origin, items, frames, ...rest };
+  return { origin, items, frames, cameras, poses, warnings };
 }
 
 const bytesOf = async (blob: Blob): Promise<Uint8Array> => new Uint8Array(await blob.arrayBuffer());
@@ -87,6 +87,13 @@ const handlers: Handlers = {
     readings.set(file, reading);
     return summaryOf(reading);
   },
+  async unit({ file, unit }) {
+    const reading = readingOf(file, "depth");
+    const { width, height } = reading.depth;
+    const kept: RigReading = { ...reading, says: `${width}x${height}`, guessed: [], depth: { ...reading.depth, unit } };
+    readings.set(file, kept);
+    return summaryOf(kept);
+  },
   async folder({ first, files }) {
     const named = await Promise.all(files.map(async ({ name, blob }) => ({ name, bytes: await bytesOf(blob) })));
     const folder = await readRigFolder(named);
@@ -100,10 +107,10 @@ const handlers: Handlers = {
     readings.delete(file);
     return null;
   },
-  async picture({ file, range }) {
+  async picture({ file, range, width }) {
     const reading = readings.get(file);
     if (!reading) throw new Error(`File ${file} has not been read.`);
-    return picture(reading, range);
+    return picture(reading, range, width);
   },
   async frames({ frames: plans }) {
     frames = plans.map(frameOf);
@@ -115,9 +122,7 @@ const handlers: Handlers = {
     try {
       const workers = Math.max(1, Math.min(navigator.hardwareConcurrency || 1, MOST_WORKERS));
       const onProgress = (share: number, message: string) => post({ id, share, message });
-      const result = await checkCalibration(frames, candidates, { signal, onProgress, workers, ...(cues.length > 0 ? { cues } : {}) });
-      report = result;
-      return result;
+      return await checkCalibration(frames, candidates, { signal, onProgress, workers, ...(cues.length > 0 ? { cues } : {}) });
     } finally {
       running = undefined;
     }
@@ -139,9 +144,8 @@ const handlers: Handlers = {
     for (const { name, pose } of poses) clouds.push({ name, ...(await cloudOf(frameAt(frame), pose)) });
     return writeClouds(clouds);
   },
-  async report({ pictures, inputs }) {
+  async report({ report, pictures, inputs }) {
     const { reportHtml } = await import("./write");
-    if (!report) throw new Error("There is no report yet.");
     return reportHtml(report, pictures, { made: new Date(), inputs });
   },
 };
