@@ -35,7 +35,16 @@ export interface ReadOptions {
   unit?: number;
 }
 
-export async function readRigFile({ name, bytes }: NamedFile, { as, unit }: ReadOptions = {}): Promise<RigReading> {
+export async function readRigFile(file: NamedFile, options: ReadOptions = {}): Promise<RigReading> {
+  try {
+    return read(file, options);
+  } catch (error) {
+    const reason = error instanceof Error ? error.message.replace(/^file: /, "") : String(error);
+    throw new BimodalError("file", reason.startsWith(file.name) ? reason : `${file.name}: ${reason}`, "file");
+  }
+}
+
+function read({ name, bytes }: NamedFile, { as, unit }: ReadOptions): RigReading {
   const fail = (reason: string) => new BimodalError("file", `${name}: ${reason}`, "file");
   if (bytes.length === 0) throw fail("it is empty");
   const isPng = bytes[0] === 0x89 && bytes[1] === 0x50;
