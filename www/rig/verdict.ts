@@ -86,7 +86,23 @@ export function card(run: Run): HTMLElement {
     "div",
     { class: `rig-verdict ${tone}`, "data-verdict": run.estimateOnly ? "estimate" : run.report.verdict },
     icon(tone) as unknown as HTMLElement,
-    make("div", {}, make("h3", { class: "rig-word", tabindex: "-1" }, word), make("p", {}, sentence), make("p", { class: "rig-next" }, make("strong", {}, "Next: "), next), ...(all.length > 0 ? [make("ul", { class: "rig-notes" }, ...all.map((words) => make("li", {}, words)))] : [])),
+    make("div", {}, make("h3", { class: "rig-word", tabindex: "-1" }, word), make("p", {}, sentence), figures(run), make("p", { class: "rig-next" }, make("strong", {}, "Next: "), next), ...(all.length > 0 ? [make("ul", { class: "rig-notes" }, ...all.map((words) => make("li", {}, words)))] : [])),
+  );
+}
+
+/** The numbers of the one in question, to be seen at a glance. */
+function figures({ report, estimateOnly }: Run): HTMLElement {
+  const { health } = report;
+  const [first] = Object.values(report.candidates);
+  const figure = (value: string, words: string) => make("div", {}, make("dt", {}, words), make("dd", {}, value));
+  const found = figure(px(health.pixels), `expected error of the best fit (95 %: ${interval(health.interval)})`);
+  if (estimateOnly || !first) return make("dl", { class: "rig-figures-row" }, found);
+  return make(
+    "dl",
+    { class: "rig-figures-row" },
+    figure(`${decimals(first.offDegrees, 2)}° and ${decimals(first.offMillimetres, 1)} mm`, "from the best fit"),
+    figure(px(first.pixels), `expected error of yours (95 %: ${interval(first.interval)})`),
+    found,
   );
 }
 
