@@ -13,6 +13,9 @@ const fields = [
   { key: "view", label: "Horizontal field of view", unit: "°" },
 ] as const;
 
+/** A principal point farther from the middle than this share of the picture's side is likelier another size's. */
+const OFF_CENTRE = 0.2;
+
 export class CameraForm {
   readonly element: HTMLElement;
   readonly #rig: Rig;
@@ -105,8 +108,11 @@ export class CameraForm {
   #remark(): string {
     const file = this.#rig.given.find(({ source }) => source === this.#rig.cameras[this.#side].source)?.camera;
     const size = this.#rig.sizeOf(this.#side);
-    if (!file?.width || !file.height || !size || (file.width === size.width && file.height === size.height)) return "";
-    return ` Mind: these are for ${file.width}×${file.height} px, the files have ${size.width}×${size.height} px.`;
+    if (!size) return "";
+    if (file?.width && file.height && (file.width !== size.width || file.height !== size.height)) return ` Mind: these are for ${file.width}×${file.height} px, the files have ${size.width}×${size.height} px.`;
+    const camera = this.#rig.cameraOf(this.#side);
+    const isOff = (centre: number, length: number) => Math.abs(centre / length - 0.5) > OFF_CENTRE;
+    return camera && (isOff(camera.cx, size.width) || isOff(camera.cy, size.height)) ? ` Mind: the centre is far from the middle of ${size.width}×${size.height} px; are these for another size?` : "";
   }
 }
 
