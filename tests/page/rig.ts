@@ -58,20 +58,26 @@ export function reportOf(verdict: CheckReport["verdict"], candidates: string[], 
   };
 }
 
-/** The check answers with this report, after some progress; everything else is the worker's own. "never" keeps it waiting. */
-export async function answerChecks(page: Page, verdict: CheckReport["verdict"] | "never"): Promise<void> {
+/**
+ * The check answers with this report, after some progress; everything else is the worker's own. "never" keeps it waiting, "dead" is a
+ * worker that hears nothing any more once it has been asked for a check.
+ */
+export async function answerChecks(page: Page, verdict: CheckReport["verdict"] | "never" | "dead"): Promise<void> {
   const source = `${reportOf.toString()}`;
   await page.addInitScript(
     ({ source, verdict, axes }) => {
       const report = new Function("AXES", `return ${source}`)(axes) as (verdict: string, candidates: string[], frames: string[]) => unknown;
       const send = Worker.prototype.postMessage;
       let frames: string[] = [];
+      let dead: Worker | undefined;
       Worker.prototype.postMessage = function (this: Worker, message: { kind?: string; id?: number; candidates?: object; frames?: { name: string }[] }, options?: StructuredSerializeOptions | Transferable[]) {
+        if (this === dead) return;
+        if (message.kind === "check" && verdict === "dead") dead = this;
         if (message.kind === "frames" && message.frames) frames = message.frames.map(({ name }) => name);
         if (message.kind !== "check") return send.call(this, message, options as StructuredSerializeOptions);
         const say = (data: object) => this.dispatchEvent(new MessageEvent("message", { data: { id: message.id, ...data } }));
         setTimeout(() => say({ share: 0.4, message: "aligning depth edges" }));
-        if (verdict !== "never") setTimeout(() => say({ answer: report(verdict, Object.keys(message.candidates ?? {}), frames) }), 20);
+        if (verdict !== "never" && verdict !== "dead") setTimeout(() => say({ answer: report(verdict, Object.keys(message.candidates ?? {}), frames) }), 20);
       };
     },
     { source, verdict, axes: [...AXES] },

@@ -40,7 +40,7 @@ export class FrameList {
       });
     const selects: Record<Role, HTMLSelectElement> = { colour: select("colour"), depth: select("depth"), mask: select("mask") };
     const boxes = (Object.keys(selects) as Role[]).map((role) => make("label", { class: "rig-choice", "data-role": role }, make("span", {}, titles[role]), selects[role]));
-    const restrict = press("Restrict what is used", () => void this.#tool().then((tool) => tool.open(frame)), { "aria-haspopup": "dialog" });
+    const restrict = press("Restrict what is used", () => void this.#tool().then((tool) => tool.open(frame), () => {}), { "aria-haspopup": "dialog" });
     const remove = press("×", () => {
       rig.frames = rig.frames.filter((each) => each !== frame);
       rig.changed();

@@ -19,6 +19,7 @@ export const wasCancelled = (error: unknown): boolean => error instanceof RigErr
 
 interface Waiting {
   kind: CallKind;
+  ask: object;
   resolve(answer: never): void;
   reject(error: unknown): void;
   onProgress?: ((share: number, message: string) => void) | undefined;
@@ -36,7 +37,7 @@ export class Session {
     const worker = this.#thread();
     const id = this.#next++;
     return new Promise<Calls[K]["answer"]>((resolve, reject) => {
-      this.#waiting.set(id, { kind, resolve, reject, onProgress });
+      this.#waiting.set(id, { kind, ask, resolve, reject, onProgress });
       worker.postMessage({ ...ask, id, kind } as Request);
     });
   }
@@ -53,9 +54,9 @@ export class Session {
     worker?.postMessage({ kind: "cancel" } satisfies Request);
     // It answers whatever it is asked once the check has ended.
     const id = this.#next++;
-    const late = setTimeout(() => worker === this.#worker && this.#restart("The check was cancelled."), PATIENCE);
+    const late = setTimeout(() => worker === this.#worker && this.#replace(), PATIENCE);
     const ended = () => clearTimeout(late);
-    this.#waiting.set(id, { kind: "forget", resolve: ended, reject: ended });
+    this.#waiting.set(id, { kind: "forget", ask: { file: -1 }, resolve: ended, reject: ended });
     worker?.postMessage({ id, kind: "forget", file: -1 } satisfies Request);
   }
 
@@ -93,6 +94,14 @@ export class Session {
     waiting.reject(new RigError(data.fault));
     // Numerics that broke off are suspect from then on.
     if (data.fault.fatal) this.#restart(data.fault.message);
+  }
+
+  /** Another worker takes over what the old one was asked. */
+  #replace(): void {
+    this.#worker?.terminate();
+    this.#worker = undefined;
+    const worker = this.#thread();
+    for (const [id, { kind, ask }] of this.#waiting) worker.postMessage({ ...ask, id, kind } as Request);
   }
 
   #restart(message: string): void {
