@@ -7,10 +7,10 @@ import { OPTIONS, RENDERED_ALONE, SAMPLE } from "./options.js";
 import type { NumberRow, Row, Rows, WordRow } from "./rows.js";
 
 /** Checks one value; `field` is its path in the contract. */
-type Check = (value: unknown, field: string) => void;
+export type Check = (value: unknown, field: string) => void;
 type Shape = Readonly<Record<string, Check>>;
 
-const isObject = (value: unknown): value is object => typeof value === "object" && value !== null;
+export const isObject = (value: unknown): value is object => typeof value === "object" && value !== null;
 
 function kind(value: unknown): string {
   if (value === null) return "null";
@@ -18,10 +18,10 @@ function kind(value: unknown): string {
   return typeof value;
 }
 
-const wrong = (field: string, expected: string, value: unknown) =>
+export const wrong = (field: string, expected: string, value: unknown) =>
   new BimodalError("type", `${field}: must be ${expected}, not ${kind(value)}`, field);
 
-const number: Check = (value, field) => {
+export const number: Check = (value, field) => {
   if (typeof value !== "number") throw wrong(field, "a number", value);
 };
 
@@ -42,7 +42,7 @@ function range({ kind, min, above, max, below, unit = "" }: NumberRow): string {
 }
 
 /** A number in its range. JavaScript has one type for all numbers, the numerics have none for halves and infinities. */
-const ranged = (row: NumberRow): Check => (value, field) => {
+export const ranged = (row: NumberRow): Check => (value, field) => {
   if (typeof value !== "number") throw wrong(field, "a number", value);
   const { kind, min = -Infinity, above = -Infinity, max = Infinity, below = Infinity } = row;
   const isWhole = Number.isInteger(value);
@@ -53,7 +53,7 @@ const ranged = (row: NumberRow): Check => (value, field) => {
 };
 
 /** A list of so many numbers, typed arrays included. Its length comes first: what claims to be longer is not copied. */
-const numbers = (count: number): Check => (value, field) => {
+export const numbers = (count: number): Check => (value, field) => {
   const length = isObject(value) && "length" in value ? value.length : undefined;
   if (typeof length !== "number") throw wrong(field, "a list of numbers", value);
   if (length !== count) throw new BimodalError("size", `${field}: needs ${count} numbers, not ${length}`, field);
@@ -71,7 +71,7 @@ const array = (...types: readonly ArrayType[]): Check => (value, field) => {
 };
 
 /** One of some words. */
-const word = (...words: readonly string[]): Check => (value, field) => {
+export const word = (...words: readonly string[]): Check => (value, field) => {
   if (typeof value !== "string") throw wrong(field, words.map((w) => `"${w}"`).join(" or "), value);
   if (!words.includes(value)) {
     throw new BimodalError("option", `${field}: "${value}" is unknown${hint(value, words)}`, field);
@@ -113,7 +113,7 @@ function hint(given: string, known: readonly string[]): string {
 }
 
 /** An object with these keys and no others; `undefined` counts as absent. */
-const object = (shape: Shape, required: readonly string[] = []): Check => (value, field) => {
+export const object = (shape: Shape, required: readonly string[] = []): Check => (value, field) => {
   if (!isObject(value) || Array.isArray(value) || ArrayBuffer.isView(value)) throw wrong(field, "an object", value);
   for (const [key, member] of Object.entries(value)) {
     const check = Object.hasOwn(shape, key) ? shape[key] : undefined;
@@ -135,31 +135,25 @@ const object = (shape: Shape, required: readonly string[] = []): Check => (value
 const side = ranged({ kind: "side", min: 0, max: 2 ** 32 - 1 });
 const camera = object({ fx: number, fy: number, cx: number, cy: number, distortion: numbers(5) }, ["fx", "fy", "cx", "cy"]);
 
-const image = object(
-  {
-    width: side,
-    height: side,
-    mask: array(Uint8Array),
-    camera,
-    transfer: word("srgb", "linear"),
-    data: array(Uint8Array, Uint8ClampedArray, Uint16Array, Float32Array),
-  },
-  ["width", "height", "data"],
-);
+/** An image and a depth map but for their cameras. */
+export const IMAGE = {
+  width: side,
+  height: side,
+  mask: array(Uint8Array),
+  transfer: word("srgb", "linear"),
+  data: array(Uint8Array, Uint8ClampedArray, Uint16Array, Float32Array),
+};
+export const DEPTH = {
+  width: side,
+  height: side,
+  mask: array(Uint8Array),
+  unit: number,
+  data: array(Float32Array, Uint16Array),
+  points: array(Float32Array),
+};
 
-const depth = object(
-  {
-    width: side,
-    height: side,
-    mask: array(Uint8Array),
-    camera,
-    unit: number,
-    data: array(Float32Array, Uint16Array),
-    points: array(Float32Array),
-    normals: array(Float32Array),
-  },
-  ["width", "height"],
-);
+const image = object({ ...IMAGE, camera }, ["width", "height", "data"]);
+const depth = object({ ...DEPTH, camera, normals: array(Float32Array) }, ["width", "height"]);
 
 /** The check of a value that is no word, and what it takes, with an article. */
 function valueOf(row: Exclude<Row, WordRow>): readonly [check: Check, what: string] {
@@ -194,10 +188,10 @@ const nameOr = (other: Check): Check => (value, field) => {
 };
 const sample = object({ surface: nameOr(relief), light: nameOr(light), ...shapeOf(SAMPLE) }, ["surface", "light"]);
 
-const signal: Check = (value, field) => {
+export const signal: Check = (value, field) => {
   if (!(value instanceof AbortSignal)) throw wrong(field, "an AbortSignal", value);
 };
-const callback: Check = (value, field) => {
+export const callback: Check = (value, field) => {
   if (typeof value !== "function") throw wrong(field, "a function", value);
 };
 const run = object({ maxIterations: ranged({ kind: "whole", min: 1 }), signal, onStep: callback });

@@ -13,7 +13,7 @@ function fromDisk(wasm: string | URL | Request | Response): Promise<BufferSource
   return address.startsWith("file:") ? nodeModule("node:fs/promises")?.readFile(new URL(address)) : undefined;
 }
 
-async function compile(wasm: WasmSource): Promise<WebAssembly.Module> {
+export async function compile(wasm: WasmSource): Promise<WebAssembly.Module> {
   if (wasm instanceof WebAssembly.Module) return wasm;
   if (ArrayBuffer.isView(wasm) || wasm instanceof ArrayBuffer) return WebAssembly.compile(wasm);
   const file = fromDisk(wasm);

@@ -1,4 +1,5 @@
 import type { Estimator as Raw } from "../target/wasm-bindgen/bimodal_stereo.js";
+import { breathe } from "./breathe.js";
 import { checkDepth, checkImage, checkOptions, checkRun, unsupported } from "./check.js";
 import { across, bindings } from "./engine.js";
 import { BimodalError, isPanic, translate } from "./errors.js";
@@ -6,19 +7,6 @@ import { copyOf, plainDepth, plainImage, plainOptions } from "./plain.js";
 import type { ColorImage, DepthMap, Options, RunOptions, StepReport } from "./types.js";
 import { RefinementWorker, type Refinement } from "./workers/refinement.js";
 import { SearchWorkers } from "./workers/search.js";
-
-/** Lets events, timers and drawing happen. A message instead of a timer: timers wait 4 ms, hidden pages 1 s. */
-function breathe(): Promise<void> {
-  return new Promise((resume) => {
-    const { port1, port2 } = new MessageChannel();
-    port1.onmessage = () => {
-      // An open port would keep Node from ending.
-      port1.close();
-      resume();
-    };
-    port2.postMessage(null);
-  });
-}
 
 /** Pixels of the depth view from which on a refinement worker is worth its messages: a refinement then takes some milliseconds. */
 const LEAST_SHARED = 96 * 96;

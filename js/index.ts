@@ -3,7 +3,7 @@ import { load } from "./engine.js";
 import type { WasmSource } from "./types.js";
 import { wasmUrl } from "./wasm.js";
 
-export { checkCalibration } from "./calibration.js";
+export { checkCalibration, projectFrame, sampleRig } from "./calibration/index.js";
 export { BimodalError } from "./errors.js";
 export { Estimator } from "./estimator.js";
 export { sample, sampleBound, sampleLights, sampleSurfaces } from "./samples.js";

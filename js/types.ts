@@ -233,8 +233,13 @@ export interface CheckReport {
   warnings: string[];
   /** The extrinsics that fit best, scale 1: P_colour = R P_depth + t, metres. */
   estimate: Pose;
+  /** The scene's middle in the colour frame, metres. */
+  middle: [number, number, number];
   /** 36 numbers, row-major: a rotation vector in rad about the scene's middle, then a translation in m, in the colour frame. */
   covariance: number[];
+  /** Factor of the assumed focal length and the logarithm's sigma, where the colour camera was not given. */
+  focal?: [number, number];
+  /** Expected reprojection error of the estimate at the scene's depth, pixels of the colour image, and its 95 % interval. */
   health: { pixels: number; interval: [number, number] };
   candidates: Record<string, CandidateReport>;
   /** Each cue's share of the answer, 0 .. 1, and how sharp it is: one over its sigma in pixels of the colour image. */
@@ -242,6 +247,31 @@ export interface CheckReport {
   frames: { name: string; share: number; note?: string }[];
   /** How the log likelihood of each cue falls about the estimate: offsets in degrees (rx ry rz) or millimetres (tx ty tz). */
   sensitivity: { cue: string; axis: "rx" | "ry" | "rz" | "tx" | "ty" | "tz"; offsets: number[]; values: number[] }[];
+}
+
+/** Which frame of which rendered rig to make: two cameras with lenses, sensors' noise, and a known answer. */
+export interface RigRequest {
+  kind: "objects" | "sheet" | "boxes" | "room";
+  /** Of the rig: cameras, lenses, extrinsics; default 0. */
+  seed?: number;
+  /** Frames of one seed share the rig, and show other things; default 0. */
+  frame?: number;
+  /** Factor of both sensors' noise; default 1. */
+  noise?: number;
+}
+
+export interface RigSample extends CheckFrame {
+  name: string;
+  /** The extrinsics to be found. */
+  pose: Pose;
+}
+
+/** A frame as a pose lays it over its image. */
+export interface FrameOverlay {
+  /** Column, row, metres of each visible depth point. */
+  points: Float32Array;
+  /** Column, row of each point of a depth edge. */
+  edges: Float32Array;
 }
 
 /** A mask read from a file: 255 where the object is, else 0. */

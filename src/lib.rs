@@ -21,9 +21,10 @@
 //! | `pose/icp`, `pose/ransac` ([`Icp`], [`ransac`]) | the pose from both surfaces | Eq. 12 to 14 |
 //! | `pose/similarity`, `pose/angles` ([`Similarity`], [`Angles`]) | s, R, t and the angles, in closed form; the least-squares fit of Eq. 16 is a test, `tests/pose_angles.rs` | Eq. 15, 16, 20 |
 //! | `pose/correspondence` ([`Correspondences`]) | which depth point is which pixel, and what hides it | the 1-pixel rule |
+//! | `calibration` ([`RigCamera`]) | the cameras of a rig whose calibration is in question, and their lenses | |
 //! | `options`, `report` ([`Options`], [`StepReport`]) | what the loop can be told, what it says | |
 //! | `estimator` ([`Estimator`]) | Algorithm 1 stage by stage, its `objective`, its `verdict`; the `initialisation` before it; its [`Worker`]s | Eq. 1, Algorithm 1 |
-//! | [`scenes`] | surfaces, lights and a renderer with a known answer; stands on `view`, `light`, `pose` | the experiments |
+//! | [`scenes`] | surfaces, lights and a renderer with a known answer; stands on `view`, `light`, `pose`, `calibration` | the experiments |
 //! | `wasm` | bindings without mathematics, wasm32 only | |
 //!
 //! `docs/method.md` has the objective, unknowns, solver, cost and limits of each stage.
@@ -41,6 +42,7 @@
 #[doc = include_str!("../README.md")]
 struct Readme;
 
+mod calibration;
 mod check;
 mod error;
 mod estimator;
@@ -57,6 +59,10 @@ mod view;
 #[cfg(target_arch = "wasm32")]
 mod wasm;
 
+pub use calibration::{
+    CalibrationCheck, CandidateReport, CheckReport, CheckVerdict, Cue, CueReport, FrameReport, Health, Lens, Overlay,
+    RigCamera, RigView, Sensitivity, overlay,
+};
 pub use error::{Error, ErrorKind, Result};
 pub use estimator::{Estimator, Finding, RefinementTask, Surface, Task, Worker};
 pub use light::{COEFFICIENTS, CoefficientMatrix, Light, LightFit, LightFitter, LightPrior};

@@ -8,7 +8,7 @@ use crate::view::Size;
 const NOWHERE: f64 = 1e12;
 
 /// The squared distance of each pixel to the nearest one of a kind.
-pub(super) fn squared_distances(size: Size, is_of_kind: impl Fn(usize) -> bool) -> Vec<f64> {
+pub(crate) fn squared_distances(size: Size, is_of_kind: impl Fn(usize) -> bool) -> Vec<f64> {
     let mut values: Vec<f64> = (0..size.len()).map(|index| if is_of_kind(index) { 0.0 } else { NOWHERE }).collect();
     let longest = size.width.max(size.height);
     let (mut line, mut result) = (Vec::with_capacity(longest), vec![0.0; longest]);

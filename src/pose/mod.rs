@@ -39,6 +39,7 @@ mod visibility;
 pub use angles::Angles;
 pub(crate) use contrast::{ContrastOutcome, ContrastProblem, ContrastReport, ContrastSearch};
 pub use correspondence::{CorrespondenceProblem, Correspondences};
+pub(crate) use distance_transform::squared_distances;
 pub use icp::{Icp, IcpOptions, IcpProblem, IcpReport, IcpTermination, Metric, Pair};
 pub(crate) use outline::{Outline, OutlinePrior, OutlineProblem, OutlineReport};
 pub use photometric::{Photometric, PhotometricOptions, PhotometricProblem, PhotometricReport, PhotometricTermination};

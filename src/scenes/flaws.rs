@@ -25,18 +25,28 @@ pub(super) enum Purpose {
 
 impl Chance {
     pub(super) fn new(seed: u64, purpose: Purpose) -> Self {
+        Self::of_stream(seed, purpose as u64)
+    }
+
+    /// One of a seed's independent streams.
+    pub(super) fn of_stream(seed: u64, stream: u64) -> Self {
         let mut generator = ChaCha8Rng::seed_from_u64(seed);
-        generator.set_stream(purpose as u64);
+        generator.set_stream(stream);
         Self(generator)
     }
 
     /// Evenly over [0, 1), with 53 bits.
-    fn uniform(&mut self) -> f64 {
+    pub(super) fn uniform(&mut self) -> f64 {
         (self.0.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
+    /// Evenly between two bounds.
+    pub(super) fn between(&mut self, [low, high]: [f64; 2]) -> f64 {
+        low + (high - low) * self.uniform()
+    }
+
     /// A whole number below `count`.
-    fn below(&mut self, count: usize) -> usize {
+    pub(super) fn below(&mut self, count: usize) -> usize {
         // The bias of the product is count / 2^53.
         (self.uniform() * count as f64) as usize
     }

@@ -12,6 +12,7 @@ mod mesh;
 mod profiles;
 mod relief;
 mod render;
+pub mod rig;
 mod sample;
 pub mod surfaces;
 

@@ -17,36 +17,36 @@ extern "C" {
     #[wasm_bindgen(typescript_type = "ColorImage")]
     pub type JsImage;
     #[wasm_bindgen(method, getter)]
-    fn width(this: &JsImage) -> f64;
+    pub fn width(this: &JsImage) -> f64;
     #[wasm_bindgen(method, getter)]
-    fn height(this: &JsImage) -> f64;
+    pub fn height(this: &JsImage) -> f64;
     #[wasm_bindgen(method, getter)]
-    fn mask(this: &JsImage) -> Option<Uint8Array>;
+    pub fn mask(this: &JsImage) -> Option<Uint8Array>;
     #[wasm_bindgen(method, getter)]
-    fn camera(this: &JsImage) -> Option<JsPinhole>;
+    pub fn camera(this: &JsImage) -> Option<JsPinhole>;
     #[wasm_bindgen(method, getter)]
-    fn transfer(this: &JsImage) -> Option<String>;
+    pub fn transfer(this: &JsImage) -> Option<String>;
     #[wasm_bindgen(method, getter)]
-    fn data(this: &JsImage) -> JsValue;
+    pub fn data(this: &JsImage) -> JsValue;
 
     #[wasm_bindgen(typescript_type = "DepthMap")]
     pub type JsDepth;
     #[wasm_bindgen(method, getter)]
-    fn width(this: &JsDepth) -> f64;
+    pub fn width(this: &JsDepth) -> f64;
     #[wasm_bindgen(method, getter)]
-    fn height(this: &JsDepth) -> f64;
+    pub fn height(this: &JsDepth) -> f64;
     #[wasm_bindgen(method, getter)]
-    fn mask(this: &JsDepth) -> Option<Uint8Array>;
+    pub fn mask(this: &JsDepth) -> Option<Uint8Array>;
     #[wasm_bindgen(method, getter)]
-    fn camera(this: &JsDepth) -> Option<JsPinhole>;
+    pub fn camera(this: &JsDepth) -> Option<JsPinhole>;
     #[wasm_bindgen(method, getter)]
-    fn unit(this: &JsDepth) -> Option<f64>;
+    pub fn unit(this: &JsDepth) -> Option<f64>;
     #[wasm_bindgen(method, getter)]
-    fn data(this: &JsDepth) -> JsValue;
+    pub fn data(this: &JsDepth) -> JsValue;
     #[wasm_bindgen(method, getter)]
-    fn points(this: &JsDepth) -> Option<Float32Array>;
+    pub fn points(this: &JsDepth) -> Option<Float32Array>;
     #[wasm_bindgen(method, getter)]
-    fn normals(this: &JsDepth) -> Option<Float32Array>;
+    pub fn normals(this: &JsDepth) -> Option<Float32Array>;
 
     pub type JsPinhole;
     #[wasm_bindgen(method, getter)]
@@ -136,9 +136,9 @@ fn exactly<const N: usize>(field: &'static str, value: &JsValue) -> Result<Optio
     values.try_into().map(Some).map_err(|_| wrong())
 }
 
-pub fn image(js: &JsImage) -> Result<ColourImage> {
+pub fn samples_of_image(js: &JsImage) -> ColourSamples {
     let data = js.data();
-    let samples = if let Some(linear) = data.dyn_ref::<Float32Array>() {
+    if let Some(linear) = data.dyn_ref::<Float32Array>() {
         ColourSamples::RgbLinear(linear.to_vec())
     } else if let Some(words) = data.dyn_ref::<Uint16Array>() {
         ColourSamples::Rgba16(words.to_vec())
@@ -146,34 +146,40 @@ pub fn image(js: &JsImage) -> Result<ColourImage> {
         ColourSamples::Rgba8(clamped.to_vec())
     } else {
         ColourSamples::Rgba8(Uint8Array::new(&data).to_vec())
-    };
+    }
+}
+
+pub fn image(js: &JsImage) -> Result<ColourImage> {
     Ok(ColourImage {
         width: js.width() as usize,
         height: js.height() as usize,
-        samples,
+        samples: samples_of_image(js),
         transfer: js.transfer().map(|name| if name == "linear" { Transfer::Linear } else { Transfer::Srgb }),
         mask: js.mask().map(|mask| mask.to_vec()),
         camera: js.camera().map(|camera| pinhole("image.camera.distortion", &camera)).transpose()?,
     })
 }
 
-pub fn depth(js: &JsDepth) -> Result<DepthMap> {
+pub fn samples_of_depth(js: &JsDepth) -> Result<DepthSamples> {
     let data = js.data();
-    let samples = match (js.points(), data.is_undefined()) {
+    match (js.points(), data.is_undefined()) {
         (Some(_), false) => {
-            return Err(Error::new(ErrorKind::Missing, "depth.points", "excludes depth.data: give one of the two"));
+            Err(Error::new(ErrorKind::Missing, "depth.points", "excludes depth.data: give one of the two"))
         }
-        (None, true) => return Err(Error::new(ErrorKind::Missing, "depth.data", "or depth.points is required")),
-        (Some(points), true) => DepthSamples::Cloud(points.to_vec()),
-        (None, false) => match data.dyn_ref::<Uint16Array>() {
+        (None, true) => Err(Error::new(ErrorKind::Missing, "depth.data", "or depth.points is required")),
+        (Some(points), true) => Ok(DepthSamples::Cloud(points.to_vec())),
+        (None, false) => Ok(match data.dyn_ref::<Uint16Array>() {
             Some(words) => DepthSamples::Integer(words.to_vec()),
             None => DepthSamples::Float(Float32Array::new(&data).to_vec()),
-        },
-    };
+        }),
+    }
+}
+
+pub fn depth(js: &JsDepth) -> Result<DepthMap> {
     Ok(DepthMap {
         width: js.width() as usize,
         height: js.height() as usize,
-        samples,
+        samples: samples_of_depth(js)?,
         unit: js.unit(),
         mask: js.mask().map(|mask| mask.to_vec()),
         camera: js.camera().map(|camera| pinhole("depth.camera.distortion", &camera)).transpose()?,

@@ -4,17 +4,33 @@
 //! as for every other caller. Arrays are copied both ways, because a view on wasm memory dies when that memory grows.
 
 mod error;
-mod estimator;
+#[cfg_attr(feature = "calibration", allow(dead_code, reason = "options are the loop's"))]
 mod input;
+#[cfg_attr(feature = "calibration", allow(dead_code, reason = "so are its reports"))]
 mod output;
+
+// A file of its own for each: visitors who don't check a rig don't download the check, and the other way round.
+#[cfg(feature = "calibration")]
+mod calibration;
+#[cfg(not(feature = "calibration"))]
+mod estimator;
+#[cfg(not(feature = "calibration"))]
 mod sample;
+#[cfg(not(feature = "calibration"))]
 mod worker;
 
 use wasm_bindgen::prelude::wasm_bindgen;
 
+#[cfg(not(feature = "calibration"))]
 #[wasm_bindgen(typescript_custom_section)]
 const TYPES: &str = r#"
 import type { ColorImage, DepthMap, Options, Sample, SampleRequest, StepReport } from "../../js/types.js";
+"#;
+
+#[cfg(feature = "calibration")]
+#[wasm_bindgen(typescript_custom_section)]
+const TYPES: &str = r#"
+import type { CheckFrame, CheckReport, ColorImage, DepthMap, Options, RigRequest, RigSample } from "../../../js/types.js";
 "#;
 
 /// Runs once, when the module has been loaded: a panic then says in the console where it happened.

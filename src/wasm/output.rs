@@ -14,7 +14,7 @@ pub fn set(object: &Object, key: &str, value: impl Into<JsValue>) {
 }
 
 #[derive(Serialize)]
-struct PlainPose {
+pub struct PlainPose {
     scale: f64,
     rotation: Vec<f64>,
     translation: [f64; 3],
@@ -72,12 +72,12 @@ fn as_map<S: Serializer>(entries: &[(&'static str, f64)], serializer: S) -> Resu
     serializer.collect_map(entries.iter().copied())
 }
 
-fn plain(value: &impl Serialize) -> JsValue {
+pub fn plain(value: &impl Serialize) -> JsValue {
     // Maps become objects, and a sigma that does not exist becomes null, as the contract says.
     value.serialize(&serde_wasm_bindgen::Serializer::json_compatible()).unwrap_throw()
 }
 
-fn plain_pose(pose: &Similarity) -> PlainPose {
+pub fn plain_pose(pose: &Similarity) -> PlainPose {
     let angles = Angles::of(&pose.rotation);
     PlainPose {
         scale: pose.scale,

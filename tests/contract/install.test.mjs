@@ -77,6 +77,11 @@ test("the files module loads by itself", () => {
   assert.equal(run(process.execPath, ["--input-type=module", "-e", code]).trim(), "function");
 });
 
+test("the writers load by themselves", () => {
+  const code = 'import { poseFormats } from "bimodal-stereo/rig-write"; console.log(...poseFormats);';
+  assert.match(run(process.execPath, ["--input-type=module", "-e", code]), /matrix opencv kalibr/);
+});
+
 test("types resolve for Node and for bundlers, without help from other type packages", () => {
   mkdirSync(join(folder, "typed"), { recursive: true });
   writeFileSync(join(folder, "typed/readme.ts"), examples("ts").join("\n"));
@@ -85,6 +90,13 @@ test("types resolve for Node and for bundlers, without help from other type pack
     `import init, { BimodalError, Estimator, checkCalibration, sample, wasmUrl } from "bimodal-stereo";
      import type { CheckReport, ColorImage, DepthMap, Options, Pose, Stage, StepReport } from "bimodal-stereo";
      import { decodeColour, decodeDepth, decodeMask } from "bimodal-stereo/files";
+     import { type RigContext, type WrittenPose, reportHtml, writeClouds, writePose } from "bimodal-stereo/rig-write";
+     const context: RigContext = { colour: { fx: 1, fy: 1, cx: 0, cy: 0, model: "fisheye" }, sizes: { depth: [640, 480] } };
+     export const written = (report: CheckReport): WrittenPose => writePose(report.estimate, "kalibr", context);
+     export const page = (report: CheckReport): string => reportHtml(report, [{ title: "", dataUrl: "" }], { made: new Date(0) });
+     export const ply: Uint8Array = writeClouds([{ points: new Float32Array(3) }]);
+     // @ts-expect-error a format that is none
+     export const none = (report: CheckReport): WrittenPose => writePose(report.estimate, "urdf");
      const image: ColorImage = decodeColour(new Uint8Array());
      const depth: DepthMap = { ...decodeDepth(new ArrayBuffer(0)), mask: decodeMask(new Uint8Array()).data };
      const start: Partial<Pose> = { angles: { alpha: 0, beta: 20, gamma: 0 } };

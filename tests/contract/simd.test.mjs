@@ -36,7 +36,7 @@ describe("instructions", () => {
     assert.doesNotMatch(text, /\bv128\b/);
   });
 
-  /** Node 20 aborts when optimised code that is inside such a call is thrown away: see scripts/build.mjs. */
+  /** Node 20 aborts when optimised code that is inside such a call is thrown away: see scripts/numerics.mjs. */
   test("no function takes or returns a reference", () => {
     for (const file of Object.values(FILES)) assert.doesNotMatch(decoded(file), /externref/, file);
   });

@@ -10,7 +10,7 @@ use std::path::PathBuf;
 use house::House;
 
 /// From the ground up: a room looks only into rooms before it.
-const ROOMS: [&str; 13] = [
+const ROOMS: [&str; 14] = [
     "text",
     "error",
     "check",
@@ -19,6 +19,7 @@ const ROOMS: [&str; 13] = [
     "light",
     "shape",
     "pose",
+    "calibration",
     "options",
     "report",
     "estimator",
@@ -26,7 +27,7 @@ const ROOMS: [&str; 13] = [
     "wasm",
 ];
 /// What scenes with a known answer stand on: they are made with the means of the inputs, not with those of the method.
-const BELOW_SCENES: [&str; 6] = ["text", "error", "check", "view", "light", "pose"];
+const BELOW_SCENES: [&str; 7] = ["text", "error", "check", "view", "light", "pose", "calibration"];
 /// Crates that only bindings may name.
 const BINDINGS: [&str; 6] =
     ["wasm_bindgen", "js_sys", "web_sys", "serde", "serde_wasm_bindgen", "console_error_panic_hook"];

@@ -1,0 +1,27 @@
+/** The check of a calibration: a .wasm file of its own, loaded with the first call. */
+import type { CheckFrame, CheckOptions, CheckReport, FrameOverlay, Pose, RigRequest, RigSample } from "../types.js";
+
+/**
+ * Whether the frames agree with some candidates for the extrinsics of a rig, P_colour = R P_depth + t in metres; the first
+ * candidate is the one in question. Needs no `init()`. Runs in slices, so that events and drawing go on, or call it in a worker.
+ */
+export async function checkCalibration(
+  frames: CheckFrame[],
+  candidates: Record<string, Pose>,
+  options: CheckOptions = {},
+): Promise<CheckReport> {
+  const { check } = await import("./run.js");
+  return check(frames, candidates, options);
+}
+
+/** Where a pose puts the depth points and depth edges of a frame on its image. */
+export async function projectFrame(frame: CheckFrame, pose: Pose): Promise<FrameOverlay> {
+  const { project } = await import("./run.js");
+  return project(frame, pose);
+}
+
+/** One frame of a rendered rig whose extrinsics are known. */
+export async function sampleRig(request: RigRequest): Promise<RigSample> {
+  const { rig } = await import("./run.js");
+  return rig(request);
+}

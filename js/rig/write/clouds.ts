@@ -1,0 +1,79 @@
+/** Clouds as a binary PLY with a colour for each point. */
+import { BimodalError } from "../../errors.js";
+
+export interface Cloud {
+  /** 3 numbers for each point, interleaved, metres; points that are not finite are left out. */
+  points: Float32Array;
+  /** Red, green and blue of each point, 0 .. 255; grey without it. */
+  colours?: Uint8Array | Uint8ClampedArray | undefined;
+  /** What the file calls it. */
+  name?: string | undefined;
+}
+
+const GREY = 128;
+/** Bytes of x, y and z, of red, green and blue, and of the label. */
+const [PLACE, COLOUR, LABEL] = [12, 3, 1];
+const MOST_CLOUDS = 256;
+
+const isThere = (points: Float32Array, at: number): boolean =>
+  Number.isFinite(points[at]) && Number.isFinite(points[at + 1]) && Number.isFinite(points[at + 2]);
+
+function check({ points, colours }: Cloud, index: number): void {
+  const field = `clouds[${index}]`;
+  if (!(points instanceof Float32Array)) throw new BimodalError("type", `${field}.points: must be a Float32Array`, `${field}.points`);
+  if (points.length % 3 !== 0) {
+    throw new BimodalError("size", `${field}.points: needs 3 numbers for each point, not ${points.length}`, `${field}.points`);
+  }
+  if (colours !== undefined && colours.length !== points.length) {
+    throw new BimodalError("size", `${field}.colours: needs ${points.length} numbers, not ${colours.length}`, `${field}.colours`);
+  }
+}
+
+/** A comment is one line of ASCII. */
+const comment = (name: string): string => name.replace(/[^\x20-\x7e]/g, "?");
+
+function header(clouds: readonly Cloud[], count: number): string {
+  const labels = clouds.length > 1;
+  return [
+    "ply",
+    "format binary_little_endian 1.0",
+    "comment metres; x right, y down, z forward",
+    ...clouds.map(({ name }, index) => `comment ${labels ? `label ${index}: ` : ""}${comment(name ?? `cloud ${index + 1}`)}`),
+    `element vertex ${count}`,
+    ...["x", "y", "z"].map((axis) => `property float ${axis}`),
+    ...["red", "green", "blue"].map((colour) => `property uchar ${colour}`),
+    ...(labels ? ["property uchar label"] : []),
+    "end_header",
+    "",
+  ].join("\n");
+}
+
+/**
+ * One file that holds all clouds, which are in one frame; where there are several, the property `label` tells them apart, 0 for the first.
+ */
+export function writeClouds(clouds: readonly Cloud[]): Uint8Array<ArrayBuffer> {
+  if (clouds.length === 0 || clouds.length > MOST_CLOUDS) {
+    throw new BimodalError("size", `clouds: needs 1 to ${MOST_CLOUDS} of them, not ${clouds.length}`, "clouds");
+  }
+  clouds.forEach(check);
+  let count = 0;
+  for (const { points } of clouds) for (let at = 0; at < points.length; at += 3) if (isThere(points, at)) count++;
+  const head = new TextEncoder().encode(header(clouds, count));
+  const stride = PLACE + COLOUR + (clouds.length > 1 ? LABEL : 0);
+  const file = new Uint8Array(head.length + count * stride);
+  file.set(head);
+  const view = new DataView(file.buffer);
+  let to = head.length;
+  clouds.forEach(({ points, colours }, label) => {
+    for (let at = 0; at < points.length; at += 3) {
+      if (!isThere(points, at)) continue;
+      for (let k = 0; k < 3; k++) {
+        view.setFloat32(to + 4 * k, points[at + k] ?? NaN, true);
+        file[to + PLACE + k] = colours?.[at + k] ?? GREY;
+      }
+      if (clouds.length > 1) file[to + PLACE + COLOUR] = label;
+      to += stride;
+    }
+  });
+  return file;
+}

@@ -1,0 +1,90 @@
+/** Extrinsics as Open3D's PinholeCameraParameters and as librealsense's structures have them, both JSON. */
+import { BimodalError } from "../../errors.js";
+import { list } from "./numbers.js";
+import { type Camera, type Rig, padded, reaches, rows } from "./rig.js";
+
+/** Entry by entry down the columns. */
+const columns = (matrix: readonly (readonly number[])[]): number[] =>
+  (matrix[0] ?? []).flatMap((_, column) => matrix.map((row) => row[column] ?? NaN));
+
+function open3dIntrinsic(camera: Camera | undefined, notes: string[]): string[] {
+  if (camera === undefined) {
+    const field = "context.colour";
+    throw new BimodalError("missing", `${field}: is required, since Open3D reads no extrinsics without the camera's intrinsics`, field);
+  }
+  const { fx, fy, cx, cy, size, distortion } = camera;
+  const [width, height] = size ?? [0, 0];
+  if (size === undefined) notes.push("the colour camera's size is not known: the file says 0");
+  if (reaches(distortion, 0)) notes.push("the colour camera's distortion is left out: Open3D takes pictures whose distortion was removed");
+  const matrix = columns([
+    [fx, 0, cx],
+    [0, fy, cy],
+    [0, 0, 1],
+  ]);
+  return [
+    `    "height": ${height},`,
+    `    "intrinsic_matrix": [${list(matrix)}],`,
+    `    "width": ${width}`,
+  ];
+}
+
+/** The extrinsic carries the world, which is the depth camera's frame here, into the camera's, and lies column by column. */
+export function open3dJson(rig: Rig, notes: string[]): string {
+  return [
+    "{",
+    '  "class_name": "PinholeCameraParameters",',
+    `  "extrinsic": [${list(columns(rows(rig)))}],`,
+    '  "intrinsic": {',
+    ...open3dIntrinsic(rig.colour, notes),
+    "  },",
+    '  "version_major": 1,',
+    '  "version_minor": 0',
+    "}",
+    "",
+  ].join("\n");
+}
+
+/** librealsense's names of its models, and its five coefficients; nothing where it has no such model. */
+function realsenseDistortion({ model, distortion }: Camera): { model: string; coeffs: number[] } | undefined {
+  if (model === "fisheye") return { model: "Kannala Brandt4", coeffs: padded(distortion, 5) };
+  if (reaches(distortion, 5)) return undefined;
+  return { model: reaches(distortion, 0) ? "Brown Conrady" : "None", coeffs: padded(distortion, 5) };
+}
+
+/** Intrinsics without their distortion would be read as a camera that has none: both or neither. */
+function realsenseCamera(camera: Camera | undefined, key: string, name: string, notes: string[]): string[] {
+  if (camera === undefined) {
+    notes.push(`the ${name} camera's intrinsics are not known`);
+    return [];
+  }
+  const { fx, fy, cx, cy, size } = camera;
+  const distortion = realsenseDistortion(camera);
+  if (distortion === undefined) {
+    notes.push(`the ${name} camera's intrinsics are left out: librealsense has k1 k2 p1 p2 k3 alone, and its distortion has more`);
+    return [];
+  }
+  if (size === undefined) notes.push(`the ${name} camera's size is not known`);
+  const lines = [
+    ...(size ? [`    "width": ${size[0]}`, `    "height": ${size[1]}`] : []),
+    ...Object.entries({ ppx: cx, ppy: cy, fx, fy }).map(([member, value]) => `    "${member}": ${list([value])}`),
+    `    "model": "${distortion.model}"`,
+    `    "coeffs": [${list(distortion.coeffs)}]`,
+  ];
+  return [`  "${key}": {`, lines.join(",\n"), "  },"];
+}
+
+/** As `rs2_extrinsics` has it: the rotation column by column, the translation in metres, from the depth to the colour stream. */
+export function realsenseJson(rig: Rig, notes: string[]): string {
+  const rotation = columns([0, 3, 6].map((at) => rig.rotation.slice(at, at + 3)));
+  return [
+    "{",
+    ...realsenseCamera(rig.depth, "depth", "depth", notes),
+    ...realsenseCamera(rig.colour, "color", "colour", notes),
+    '  "depth_to_color": {',
+    `    "rotation": [${list(rotation)}],`,
+    `    "translation": [${list(rig.translation)}]`,
+    "  }",
+    "}",
+    "",
+  ].join("\n");
+}

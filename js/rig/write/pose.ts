@@ -1,0 +1,49 @@
+/**
+ * Extrinsics in the files of those who use them. All hold P_colour = R P_depth + t in metres, each in its format's own
+ * words, and every number reads back as the very same one.
+ */
+import { BimodalError } from "../../errors.js";
+import type { Pose } from "../../types.js";
+import { open3dJson, realsenseJson } from "./json.js";
+import { matrixText, ros2Line } from "./plain.js";
+import { type Rig, type RigContext, rigOf } from "./rig.js";
+import { kalibrYaml, opencvYaml } from "./yaml.js";
+
+export type { RigContext, Size } from "./rig.js";
+
+export type PoseFormat = "matrix" | "opencv" | "kalibr" | "ros2" | "open3d" | "realsense";
+
+export interface WrittenPose {
+  /** A file name that says the direction. */
+  name: string;
+  text: string;
+  /** In words, what of the cameras the format has no place for, or what it wants and is not known. */
+  notes: string[];
+}
+
+interface Format {
+  name: string;
+  write: (rig: Rig, notes: string[], context: RigContext) => string;
+}
+
+const FORMATS: Readonly<Record<PoseFormat, Format>> = {
+  matrix: { name: "depth_to_colour.txt", write: matrixText },
+  opencv: { name: "depth_to_colour.opencv.yaml", write: opencvYaml },
+  kalibr: { name: "camchain.yaml", write: kalibrYaml },
+  ros2: { name: "depth_to_colour.ros2.sh", write: (rig, _, context) => ros2Line(rig, context) },
+  open3d: { name: "depth_to_colour.open3d.json", write: open3dJson },
+  realsense: { name: "depth_to_colour.realsense.json", write: realsenseJson },
+};
+
+export const poseFormats: readonly PoseFormat[] = Object.freeze(Object.keys(FORMATS) as PoseFormat[]);
+
+/** One pose of a rig as a file; `context` fills in what the format can hold beside it. */
+export function writePose(pose: Pose, format: PoseFormat, context: RigContext = {}): WrittenPose {
+  if (!Object.hasOwn(FORMATS, format)) {
+    throw new BimodalError("option", `format: "${format}" is unknown; known: ${poseFormats.join(", ")}`, "format");
+  }
+  const { name, write } = FORMATS[format];
+  const notes: string[] = [];
+  const text = write(rigOf(pose, context), notes, context);
+  return { name, text, notes };
+}

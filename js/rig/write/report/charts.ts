@@ -1,0 +1,145 @@
+/** The report's drawings as inline SVG: bars, intervals, and small multiples of the sensitivity curves. */
+import type { CheckReport } from "../../../types.js";
+import { type Curve, SIGMAS_95, curve } from "./curves.js";
+import { type Markup, html } from "./markup.js";
+import { brief, digits, measure } from "./numbers.js";
+
+type Axis = CheckReport["sensitivity"][number]["axis"];
+
+const AXES: readonly { axis: Axis; title: string; unit: string }[] = [
+  { axis: "rx", title: "Turn about x", unit: "°" },
+  { axis: "ry", title: "Turn about y", unit: "°" },
+  { axis: "rz", title: "Turn about z", unit: "°" },
+  { axis: "tx", title: "Shift along x", unit: "mm" },
+  { axis: "ty", title: "Shift along y", unit: "mm" },
+  { axis: "tz", title: "Shift along z", unit: "mm" },
+];
+
+/** Sigmas that a panel shows: what is further off is ruled out, whatever its height. */
+export const MOST_SIGMAS = 8;
+
+/** Kinds of lines that the style sheet tells apart. */
+const SERIES = 5;
+
+/** A share of a whole, 0 .. 1. */
+export const bar = (share: number): Markup =>
+  html`<svg class="bar" viewBox="0 0 100 8" preserveAspectRatio="none" aria-hidden="true"><rect class="track" width="100" height="8"/><rect class="fill" width="${Math.min(100, Math.max(0, 100 * share)) || 0}" height="8"/></svg>`;
+
+/** A step of 1, 2 or 5 times a power of ten that divides a range into at most five. */
+function step(range: number): number {
+  const power = 10 ** Math.floor(Math.log10(range / 5));
+  return ([1, 2, 5].find((times) => range / (times * power) <= 5) ?? 10) * power;
+}
+
+function ticks(from: number, to: number): number[] {
+  const by = step(to - from);
+  const first = Math.ceil(from / by - 1e-9);
+  const count = Math.floor(to / by + 1e-9) - first + 1;
+  return Array.from({ length: Math.max(0, count) }, (_, k) => (first + k) * by);
+}
+
+/** Lengths in units of the drawing. */
+const INTERVALS = { width: 400, left: 120, right: 14, line: 24, axis: 34 };
+
+export interface Interval {
+  name: string;
+  value: number;
+  interval: readonly [number, number];
+  isEstimate: boolean;
+}
+
+const short = (name: string, most: number): string => (name.length > most ? `${name.slice(0, most - 1)}…` : name);
+const at = (value: number): string => value.toFixed(2);
+
+/** A dot and its 95 % interval for each, on one scale of pixels from zero. */
+export function intervals(all: readonly Interval[]): Markup | undefined {
+  const known = all.filter(({ value, interval }) => [value, ...interval].every((number) => Number.isFinite(number) && number >= 0));
+  const most = Math.max(...known.map(({ value, interval }) => Math.max(value, interval[1])));
+  if (known.length === 0 || most <= 0) return undefined;
+  const { width, left, right, line, axis } = INTERVALS;
+  const height = known.length * line + axis;
+  const end = 1.05 * most;
+  const x = (pixels: number) => at(left + (pixels / end) * (width - left - right));
+  const base = known.length * line + 6;
+  const said = known.map(({ name, value, interval }) => `${name}: ${digits(value)} (${digits(interval[0])} to ${digits(interval[1])})`).join("; ");
+  return html`<svg class="intervals" viewBox="0 0 ${width} ${height}" role="img" aria-label="Expected reprojection error in pixels, with its 95 % interval. ${said}">
+${ticks(0, end).map((tick) => html`<path class="grid" d="M${x(tick)} 0V${base}"/><text class="tick" x="${x(tick)}" y="${base + 13}" text-anchor="middle">${brief(tick)}</text>`)}
+<text class="tick" x="${(left + width - right) / 2}" y="${height - 1}" text-anchor="middle">expected reprojection error, pixels</text>
+${known.map(({ name, value, interval, isEstimate }, index) => {
+  const y = (index + 0.5) * line;
+  const kind = isEstimate ? "estimate" : "candidate";
+  return html`<text class="label" x="${left - 10}" y="${y + 4}" text-anchor="end">${short(name, 17)}</text><path class="whisker ${kind}" d="M${x(interval[0])} ${y}H${x(interval[1])}M${x(interval[0])} ${y - 5}v10M${x(interval[1])} ${y - 5}v10"/><circle class="${kind}" cx="${x(value)}" cy="${y}" r="5"/>`;
+})}
+</svg>`;
+}
+
+interface Line {
+  cue: string;
+  series: number;
+  curve: Curve;
+}
+
+/** Lengths in units of the drawing. */
+const PANEL = { width: 320, height: 200, left: 26, right: 10, top: 10, bottom: 40, mark: 5, between: 3, tick: 32 };
+
+/** The part of a line that a panel shows, cut where it leaves it; one stroke as long as it stays, so that dashes run on. */
+function path({ points }: Curve, x: (offset: number) => string, y: (height: number) => string): string {
+  type Point = (typeof points)[number];
+  const place = ({ offset, height }: Point) => `${x(offset)} ${y(height)}`;
+  const cut = (inside: Point, outside: Point) => {
+    const part = (MOST_SIGMAS - inside.height) / (outside.height - inside.height);
+    return { offset: inside.offset + part * (outside.offset - inside.offset), height: MOST_SIGMAS };
+  };
+  const isOut = ({ height }: Point) => height > MOST_SIGMAS;
+  const strokes = points.map((to, index) => {
+    const from = points[index - 1];
+    if (from === undefined) return isOut(to) ? "" : `M${place(to)}`;
+    if (isOut(from)) return isOut(to) ? "" : `M${place(cut(to, from))}L${place(to)}`;
+    return `L${place(isOut(to) ? cut(from, to) : to)}`;
+  });
+  return strokes.join("");
+}
+
+/** Best offset and 95 % interval in words, as far as the curve's range tells. */
+function says({ points, best, from, to }: Curve, unit: string): string {
+  const [first = NaN, last = NaN] = [points[0]?.offset, points.at(-1)?.offset];
+  if (from === undefined && to === undefined) return `cannot tell from ${brief(first)} to ${brief(last)}${unit === "°" ? unit : ` ${unit}`}`;
+  const least = from === undefined ? `below ${brief(first)}` : digits(from, 2);
+  const most = to === undefined ? `above ${brief(last)}` : digits(to, 2);
+  return `${measure(best, unit, 2)} (${least} to ${most})`;
+}
+
+function panel(title: string, unit: string, lines: readonly Line[]): Markup {
+  const { width, height, left, right, top, bottom, mark, between, tick: under } = PANEL;
+  const all = lines.flatMap((line) => line.curve.points.map(({ offset }) => offset));
+  const [first, last] = [Math.min(...all), Math.max(...all)];
+  const x = (offset: number) => at(left + ((offset - first) / (last - first || 1)) * (width - left - right));
+  const y = (sigmas: number) => at(height - bottom - (sigmas / MOST_SIGMAS) * (height - top - bottom));
+  const words = lines.map(({ cue, series, curve: found }) => ({ cue, series, text: says(found, unit) }));
+  return html`<figure class="panel"><figcaption>${title} <span class="soft">(${unit})</span></figcaption>
+<svg viewBox="0 0 ${width} ${height}" role="img" aria-label="${title}: ${words.map(({ cue, text }) => `${cue} ${text}`).join("; ")}">
+${[0, 2, 4, 6, 8].map((sigmas) => html`<path class="grid" d="M${left} ${y(sigmas)}H${width - right}"/><text class="tick" x="${left - 5}" y="${Number(y(sigmas)) + 4}" text-anchor="end">${sigmas}</text>`)}
+${ticks(first, last).map((tick) => html`<path class="grid" d="M${x(tick)} ${top}V${y(0)}"/><text class="tick" x="${x(tick)}" y="${height - bottom + under}" text-anchor="middle">${brief(tick)}</text>`)}
+<path class="level" d="M${left} ${y(SIGMAS_95)}H${width - right}"/>
+${lines.map(({ series, curve: found }) => html`<path class="series s${series}" d="${path(found, x, y)}"/>`)}
+${lines.map(({ series, curve: { best, from, to } }) => {
+  if (from === undefined && to === undefined) return undefined;
+  // One below the other, under the axis, so that none hides another.
+  const level = Number(y(0)) + 2 + between * series;
+  return html`<path class="width s${series}" d="M${x(from ?? first)} ${level}H${x(to ?? last)}"/><path class="best s${series}" d="M${x(best)} ${y(0)}l-${mark} -${2 * mark}h${2 * mark}z"/>`;
+})}
+</svg>
+<ul class="says">${words.map(({ cue, series, text }) => html`<li><svg class="key" viewBox="0 0 24 8" aria-hidden="true"><path class="series s${series}" d="M0 4H24"/></svg> ${cue}: ${text}</li>`)}</ul></figure>`;
+}
+
+/** One panel for each axis that has curves, one line for each cue; a cue has the same line in all of them. */
+export function sensitivities(sensitivity: CheckReport["sensitivity"]): Markup[] {
+  const cues = [...new Set(sensitivity.map(({ cue }) => cue))];
+  return AXES.flatMap(({ axis, title, unit }) => {
+    const lines = sensitivity.flatMap((row) => {
+      const found = row.axis === axis ? curve(row.offsets, row.values) : undefined;
+      return found ? [{ cue: row.cue, series: (cues.indexOf(row.cue) % SERIES) + 1, curve: found }] : [];
+    });
+    return lines.length > 0 ? [panel(title, unit, lines)] : [];
+  });
+}

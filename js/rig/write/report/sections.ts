@@ -1,0 +1,180 @@
+/** The parts of a report, each a section of HTML or nothing. */
+import type { CandidateReport, CheckReport, CheckVerdict } from "../../../types.js";
+import { bar, intervals, sensitivities } from "./charts.js";
+import type { Picture, ReportInput } from "./contents.js";
+import { type Markup, type Part, html } from "./markup.js";
+import { digits, measure, percent, probability, span } from "./numbers.js";
+
+const WORDS: Readonly<Record<CheckVerdict, string>> = { consistent: "Consistent", off: "Off", undecided: "Undecided" };
+
+/** A tick, a cross or a question mark: colour alone tells nobody anything on paper. */
+const SIGNS: Readonly<Record<CheckVerdict, string>> = {
+  consistent: "M9 20.5l7 7 15-16",
+  off: "M12 12l16 16M28 12l-16 16",
+  undecided: "M13.5 15.5a6.5 6.5 0 1 1 9.5 5.8c-2 1.1-3 2-3 4.2M20 30.5v.5",
+};
+
+const verdictOf = (verdict: CheckVerdict): CheckVerdict => (Object.hasOwn(WORDS, verdict) ? verdict : "undecided");
+
+const sign = (verdict: CheckVerdict): Markup =>
+  html`<svg class="sign" viewBox="0 0 40 40" aria-hidden="true"><circle cx="20" cy="20" r="18"/><path d="${SIGNS[verdict]}"/></svg>`;
+
+const section = (title: string, ...parts: Part[]): Markup => html`<section><h2>${title}</h2>${parts}</section>`;
+
+const fact = (name: string, value: string, more?: string): Markup =>
+  html`<div><dt>${name}</dt><dd>${value}${more === undefined ? undefined : html` <span class="soft">${more}</span>`}</dd></div>`;
+
+const within = (interval: readonly [number, number]): string => `95\u202f%: ${span(interval, "px")}`;
+
+export function verdictCard({ verdict: given, reason, candidates, health }: CheckReport): Markup {
+  const verdict = verdictOf(given);
+  const [first] = Object.entries(candidates);
+  const [name, candidate] = first ?? [];
+  return html`<section class="card ${verdict}">${sign(verdict)}<div><p class="verdict">${WORDS[verdict]}${name === undefined ? undefined : html`<span class="name">${name}</span>`}</p>
+<p>${reason}</p><dl class="facts">${candidate && [
+    fact("Off from the best fit by", `${measure(candidate.offDegrees, "°")}, ${measure(candidate.offMillimetres, "mm")}`),
+    fact("Its expected reprojection error", measure(candidate.pixels, "px"), within(candidate.interval)),
+  ]}${fact("That of the best fit", measure(health.pixels, "px"), within(health.interval))}</dl></div></section>`;
+}
+
+export const warningList = ({ warnings }: CheckReport): Markup =>
+  section(
+    "Warnings",
+    warnings.length === 0
+      ? html`<p>None: nothing was guessed, and nothing looks wrong.</p>`
+      : html`<ul class="warnings">${warnings.map((warning) => html`<li>${warning}</li>`)}</ul>`,
+  );
+
+/** A cell that tells its column by itself, on narrow screens where the table's head is hidden. */
+const cell = (column: string, value: Part): Markup => html`<td data-column="${column}">${value}</td>`;
+
+const table = (kind: string, columns: readonly string[], rows: Part): Markup =>
+  html`<table class="${kind}"><thead><tr>${columns.map((column) => html`<th scope="col">${column}</th>`)}</tr></thead><tbody>${rows}</tbody></table>`;
+
+const CANDIDATE_COLUMNS = ["Calibration", "Verdict", "Turned by", "Shifted by", "Expected error", "95\u202f% interval", "Probability", "Reason"];
+
+function candidateRow(name: string, found: CandidateReport): Markup {
+  const verdict = verdictOf(found.verdict);
+  const number = (text: string) => html`<span class="number">${text}</span>`;
+  const values = [
+    html`<strong class="word ${verdict}">${WORDS[verdict]}</strong>`,
+    ...[measure(found.offDegrees, "°"), measure(found.offMillimetres, "mm"), measure(found.pixels, "px")].map(number),
+    ...[number(span(found.interval, "px")), number(probability(found.probability)), found.reason],
+  ];
+  return html`<tr><th scope="row">${name}</th>${values.map((value, index) => cell(CANDIDATE_COLUMNS[index + 1] ?? "", value))}</tr>`;
+}
+
+export function candidateTable({ candidates, health }: CheckReport): Markup {
+  const rows = Object.entries(candidates);
+  const drawn = [
+    ...rows.map(([name, { pixels, interval }]) => ({ name, value: pixels, interval, isEstimate: false })),
+    { name: "best fit", value: health.pixels, interval: health.interval, isEstimate: true },
+  ];
+  return section(
+    "Calibrations compared",
+    rows.length > 0 ? table("candidates stacks", CANDIDATE_COLUMNS, rows.map(([name, found]) => candidateRow(name, found))) : undefined,
+    intervals(drawn),
+    html`<p class="soft">Turned and shifted: from the best fit, the shift at the scene's middle. Expected error: the distance in the colour
+image between where a point of the scene falls and where it belongs, at the scene's depth. Probability: that of being as far from the best fit,
+were the calibration right.</p>`,
+  );
+}
+
+const AXES = ["x", "y", "z"];
+const DEGREES = 180 / Math.PI;
+const MILLIMETRES = 1000;
+
+/** One sigma of each unknown: degrees, then millimetres. */
+function sigmas(covariance: readonly number[]): number[] {
+  return Array.from({ length: 6 }, (_, k) => Math.sqrt(covariance[7 * k] ?? NaN) * (k < 3 ? DEGREES : MILLIMETRES));
+}
+
+const named = (values: readonly number[], unit: string, about: string): string =>
+  values.map((value, axis) => `${measure(value, unit)} ${about} ${AXES[axis]}`).join(", ");
+
+function worst(values: readonly number[]): string | undefined {
+  const most = Math.max(...values);
+  return Number.isFinite(most) ? AXES[values.indexOf(most)] : undefined;
+}
+
+/** All digits, to be copied. */
+const exact = (value: number): string => (Number.isFinite(value) ? String(value) : "?");
+
+const COVARIANCE = ["turn x", "turn y", "turn z", "shift x", "shift y", "shift z"];
+
+export function estimateSection({ estimate, covariance }: CheckReport): Markup {
+  const { rotation: r, translation: t, angles } = estimate;
+  const known = sigmas(covariance);
+  const [turn, shift] = [known.slice(0, 3), known.slice(3)];
+  const [axis, along] = [worst(turn), worst(shift)];
+  const weakest = axis && along ? `Least certain: the turn about ${axis} and the shift along ${along}.` : "";
+  const rows = [0, 1, 2].map((i) => [...r.slice(3 * i, 3 * i + 3), t[i] ?? NaN].map(exact).join("  "));
+  return section(
+    "The best fit",
+    html`<dl class="facts">${fact("Translation", t.map((metres) => measure(MILLIMETRES * metres, "mm")).join(", "))}${fact(
+      "Angles of R = Rx Ry Rz",
+      [angles.alpha, angles.beta, angles.gamma].map((angle) => measure(angle, "°")).join(", "),
+    )}</dl>`,
+    html`<p>Known to one sigma of ${named(turn, "°", "about")}; and of ${named(shift, "mm", "along")}. ${weakest}</p>`,
+    html`<pre tabindex="0">${[...rows, "0  0  0  1"].join("\n")}</pre>`,
+    html`<p class="soft">P_colour = R P_depth + t, metres; x right, y down, z forward.</p>`,
+    html`<h3>Covariance</h3><div class="scroll" tabindex="0">${table(
+      "matrix",
+      ["", ...COVARIANCE],
+      COVARIANCE.map((name, i) => html`<tr><th scope="row">${name}</th>${COVARIANCE.map((_, j) => html`<td>${digits(covariance[6 * i + j] ?? NaN)}</td>`)}</tr>`),
+    )}</div><p class="soft">Of a rotation vector in rad about the scene's middle, then a translation in m, in the colour camera's frame.</p>`,
+  );
+}
+
+/** What the cues are called, and what they are. */
+const CUES: Readonly<Record<string, readonly [name: string, more: string]>> = {
+  shading: ["Shading", "light on the surface's slopes"],
+  edges: ["Edges", "depth edges on image edges"],
+  information: ["Information", "shared by colour and shape"],
+  silhouette: ["Silhouettes", "outlines in both views"],
+};
+
+const about = (cue: string): readonly [name: string, more: string] => (Object.hasOwn(CUES, cue) ? CUES[cue] : undefined) ?? [cue, ""];
+
+const sharpness = (value: number): string => (value > 0 ? `to ${measure(1 / value, "px")}` : "not at all");
+
+export function cueTable({ cues }: CheckReport): Markup | undefined {
+  const rows = Object.entries(cues).map(
+    ([cue, { share, sharpness: sharp }]) =>
+      html`<tr><th scope="row">${about(cue)[0]} <span class="soft">${about(cue)[1]}</span></th><td class="number">${percent(share)}</td><td class="bars">${bar(share)}</td>${cell("Tells the pose", sharpness(sharp))}</tr>`,
+  );
+  return rows.length === 0 ? undefined : section("What the answer rests on", table("shares", ["Cue", "Share", "", "Tells the pose"], rows));
+}
+
+export function frameTable({ frames }: CheckReport): Markup | undefined {
+  const rows = frames.map(
+    ({ name, share, note }) =>
+      html`<tr><th scope="row">${name}</th><td class="number">${percent(share)}</td><td class="bars">${bar(share)}</td><td>${note}</td></tr>`,
+  );
+  return rows.length === 0 ? undefined : section("Frames", table("shares", ["Frame", "Share", "", "Note"], rows));
+}
+
+export function sensitivitySection({ sensitivity }: CheckReport): Markup | undefined {
+  const panels = sensitivities(sensitivity.map((row) => ({ ...row, cue: about(row.cue)[0] })));
+  if (panels.length === 0) return undefined;
+  return section(
+    "Sensitivity",
+    html`<p class="soft">How much worse each cue finds the best fit when it is moved along one axis and held along the others. Height: sigmas, the square
+root of twice the fall of the log likelihood, drawn up to 8. Triangles mark where a cue is best, bars under the axis its 95 % interval,
+where its curve is below the dashed line; both are written below each drawing.</p><div class="panels">${panels}</div>`,
+  );
+}
+
+export function pictureSection(pictures: readonly Picture[]): Markup | undefined {
+  if (pictures.length === 0) return undefined;
+  const figures = pictures.map(({ title, dataUrl }) => html`<figure><img src="${dataUrl}" alt="${title}"><figcaption>${title}</figcaption></figure>`);
+  return section("Pictures", html`<div class="pictures">${figures}</div>`);
+}
+
+export function inputTable(inputs: readonly ReportInput[]): Markup | undefined {
+  const rows = inputs.map(
+    ({ name, says, sha256 }) =>
+      html`<tr><th scope="row">${name}</th>${cell("Read as", says ?? "")}${cell("SHA-256", html`<code>${sha256 ?? "not taken"}</code>`)}</tr>`,
+  );
+  return rows.length === 0 ? undefined : section("Files", table("inputs stacks", ["File", "Read as", "SHA-256"], rows));
+}

@@ -1,0 +1,80 @@
+/** The report's style sheet, and the hash of it by which the report's own policy allows it and no other. */
+
+const LIGHT =
+  "--page:#f5f6f7;--card:#fff;--sunk:#eceef0;--line:#d8dcdf;--ink:#1a1e22;--soft:#565e66;--good:#1c7240;--wrong:#b3261e;--open:#8a5a00;--c1:#c7641a;--c2:#7a4fb0;--c3:#0b62b8;--c4:#1c7240";
+const DARK =
+  "--page:#14171a;--card:#1c2024;--sunk:#111315;--line:#33393f;--ink:#e8eaec;--soft:#a3abb3;--good:#74cf98;--wrong:#ff8f85;--open:#f0c05e;--c1:#f0a25e;--c2:#b79ae6;--c3:#6cb2f7;--c4:#74cf98";
+
+export const STYLE = `
+:root{color-scheme:light dark;${LIGHT}}
+@media (prefers-color-scheme:dark){:root{${DARK}}}
+*{box-sizing:border-box}
+body{margin:0 auto;max-width:72rem;padding:1.5rem 1rem 3rem;font:15px/1.5 system-ui,sans-serif;color:var(--ink);background:var(--page);overflow-wrap:anywhere}
+h1{font-size:1.5rem;line-height:1.25;margin:0 0 .25rem}
+h2{font-size:1.125rem;margin:0 0 .5rem}
+h3{font-size:1rem;margin:1rem 0 .5rem}
+p{margin:.5rem 0;max-width:52rem}
+section{background:var(--card);border:1px solid var(--line);border-radius:.5rem;padding:1rem;margin:1rem 0}
+figure{margin:0}
+.soft,footer{color:var(--soft);font-size:.8125rem}
+.card{display:flex;gap:1rem;border-width:2px}
+.card>div{flex:1;min-width:0}
+.verdict{font-size:1.5rem;font-weight:700;line-height:1.2;margin:0}
+.verdict .name{display:block;font-size:1rem;font-weight:400;color:var(--ink)}
+.consistent .verdict,.word.consistent{color:var(--good)}.off .verdict,.word.off{color:var(--wrong)}.undecided .verdict,.word.undecided{color:var(--open)}
+.card.consistent{border-color:var(--good)}.card.off{border-color:var(--wrong)}.card.undecided{border-color:var(--open)}
+.sign{flex:none;width:3.5rem;height:3.5rem;fill:none;stroke-width:3;stroke-linecap:round;stroke-linejoin:round}
+.consistent .sign{stroke:var(--good)}.off .sign{stroke:var(--wrong)}.undecided .sign{stroke:var(--open)}
+.facts{display:flex;flex-wrap:wrap;gap:.5rem 2rem;margin:.75rem 0 0}
+dt{color:var(--soft);font-size:.8125rem}
+dd{margin:0;font-variant-numeric:tabular-nums}
+.warnings{margin:0;padding-left:1.25rem}.warnings li{margin:.25rem 0}.warnings li::marker{content:"! ";color:var(--wrong);font-weight:700}
+table{border-collapse:collapse;width:100%;font-variant-numeric:tabular-nums}
+.number,.word{white-space:nowrap;overflow-wrap:normal}
+th,td{text-align:left;vertical-align:top;padding:.375rem .75rem .375rem 0;border-top:1px solid var(--line)}
+thead th{overflow-wrap:normal;border-top:0;color:var(--soft);font-size:.8125rem;font-weight:400}
+tbody th{font-weight:600}
+.shares th:first-child{width:40%}.shares td.number{width:4rem}.shares .bars{width:9rem}.shares th .soft{font-weight:400}
+.candidates th:first-child{min-width:7rem}.inputs th:first-child{min-width:12rem}
+.matrix{font-size:.8125rem;white-space:nowrap;overflow-wrap:normal}.scroll{overflow-x:auto}
+pre{overflow-x:auto;background:var(--sunk);border-radius:.25rem;padding:.75rem;margin:.75rem 0;font-size:.8125rem}
+code{font-size:.75rem}
+svg{display:block;width:100%;height:auto;font:11px system-ui,sans-serif}
+.bar{height:.625rem;margin-top:.4rem}.track{fill:var(--sunk)}.fill{fill:var(--c3)}
+.intervals{max-width:34rem;margin-top:1rem}
+.grid{stroke:var(--line);fill:none}.tick{fill:var(--soft)}.label{fill:var(--ink);font-size:12px}
+.whisker{fill:none;stroke-width:2}.whisker.candidate{stroke:var(--c1)}.whisker.estimate{stroke:var(--c3)}
+circle.candidate{fill:var(--c1)}circle.estimate{fill:var(--c3)}
+.panels{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(100%,19rem),1fr));gap:1.25rem;margin-top:1rem}
+.panel figcaption{font-weight:600}
+.level{fill:none;stroke:var(--ink);stroke-dasharray:3 3;opacity:.6}
+.series{fill:none;stroke-width:2;stroke-linejoin:round}
+.s1{stroke:var(--c1)}.s2{stroke:var(--c2);stroke-dasharray:7 3}.s3{stroke:var(--c3);stroke-dasharray:2 2}.s4{stroke:var(--c4);stroke-dasharray:8 3 2 3}.s5{stroke:var(--ink)}
+.width{fill:none;stroke-width:1.5;stroke-dasharray:none}
+.best{stroke:none}.best.s1{fill:var(--c1)}.best.s2{fill:var(--c2)}.best.s3{fill:var(--c3)}.best.s4{fill:var(--c4)}.best.s5{fill:var(--ink)}
+.says{list-style:none;margin:.25rem 0 0;padding:0;font-size:.8125rem;color:var(--soft)}
+.key{display:inline-block;width:1.5rem;height:.5rem;vertical-align:middle}
+.pictures{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(100%,24rem),1fr));gap:1rem}
+.pictures img{display:block;width:100%;height:auto;border-radius:.25rem}
+.pictures figcaption{color:var(--soft);font-size:.8125rem}
+@media screen and (max-width:48rem){
+.stacks thead{display:none}.stacks tr{display:block;border-top:1px solid var(--line);padding:.5rem 0}
+.stacks th,.stacks td{display:block;border:0;padding:.125rem 0}
+.stacks td::before{content:attr(data-column) ": ";color:var(--soft)}
+.shares thead{display:none}.shares tr{display:grid;grid-template-columns:1fr auto;gap:0 1rem;border-top:1px solid var(--line);padding:.5rem 0}
+.shares th,.shares td{border:0;padding:0}.shares th:first-child,.shares td,.shares td.number,.shares .bars{width:auto}.shares td:nth-child(n+3){grid-column:1/-1}
+.shares td[data-column]::before{content:attr(data-column) " ";color:var(--soft)}
+.card{flex-direction:column;gap:.5rem}
+}
+@media print{
+:root{color-scheme:light;${LIGHT};--page:#fff}
+body{max-width:none;padding:0;font-size:10pt;print-color-adjust:exact;-webkit-print-color-adjust:exact}
+section{border-color:#bbb;margin:.5rem 0}
+figure,tr,.card,.intervals,pre{break-inside:avoid}h2,h3{break-after:avoid}
+.panels{grid-template-columns:repeat(3,1fr);gap:.75rem}.candidates,.says{font-size:8pt}
+.scroll,pre{overflow:visible}pre{white-space:pre-wrap}.matrix{font-size:7pt}
+}
+`;
+
+/** Of STYLE, base64; a test holds it, and says the right one. */
+export const STYLE_SHA256 = "5Pw9al9hUdcWStJYypm76CD3QIvBK1Yxi2IXBr2BZeI=";

@@ -1,0 +1,114 @@
+/**
+ * What the writers of extrinsics take, checked: a file that holds a number which is none, a sheared rotation or a scale
+ * would be believed by whoever reads it.
+ */
+import { BimodalError } from "../../errors.js";
+import type { Pose, RigCamera } from "../../types.js";
+
+/** Width and height in pixels. */
+export type Size = readonly [width: number, height: number];
+
+/** What is known of the rig beside the pose; a format that has a place for it holds it. */
+export interface RigContext {
+  colour?: RigCamera | undefined;
+  depth?: RigCamera | undefined;
+  /** Of both cameras' pictures. */
+  sizes?: { colour?: Size | undefined; depth?: Size | undefined } | undefined;
+  /** ROS names of both cameras' optical frames; by default those of the RealSense driver. */
+  frames?: { colour?: string | undefined; depth?: string | undefined } | undefined;
+}
+
+/** A camera with its distortion as OpenCV has it: none at all, or 4, 5 or 8 numbers; fisheye always 4. */
+export interface Camera {
+  model: "brown" | "fisheye";
+  fx: number;
+  fy: number;
+  cx: number;
+  cy: number;
+  distortion: number[];
+  size: Size | undefined;
+}
+
+/** A rig whose numbers are sound: P_colour = rotation P_depth + translation, metres, row-major. */
+export interface Rig {
+  rotation: number[];
+  translation: number[];
+  colour: Camera | undefined;
+  depth: Camera | undefined;
+}
+
+const LENGTHS = { brown: [0, 4, 5, 8], fisheye: [4] } as const;
+/** Most that an entry of R Rᵀ may differ from the identity's: what sixteen printed digits lose is far less, a shear or a file in single precision about as much. */
+const MOST_SHEAR = 1e-6;
+
+function numbers(values: ArrayLike<number>, lengths: readonly number[], field: string): number[] {
+  const copy = Array.from(values);
+  if (!lengths.includes(copy.length)) {
+    throw new BimodalError("size", `${field}: needs ${lengths.join(" or ")} numbers, not ${copy.length}`, field);
+  }
+  const wrong = copy.find((value) => !Number.isFinite(value));
+  if (wrong !== undefined) throw new BimodalError("range", `${field}: must be finite numbers (got ${wrong})`, field);
+  return copy;
+}
+
+function checkRotation(r: readonly number[]): void {
+  const at = (row: number, column: number) => r[3 * row + (column % 3)] ?? NaN;
+  const dot = (i: number, j: number) => at(i, 0) * at(j, 0) + at(i, 1) * at(j, 1) + at(i, 2) * at(j, 2);
+  const minor = (column: number) => at(1, column + 1) * at(2, column + 2) - at(1, column + 2) * at(2, column + 1);
+  const determinant = at(0, 0) * minor(0) + at(0, 1) * minor(1) + at(0, 2) * minor(2);
+  const each = [0, 1, 2];
+  const shear = Math.max(...each.flatMap((i) => each.map((j) => Math.abs(dot(i, j) - (i === j ? 1 : 0)))));
+  if (shear <= MOST_SHEAR && determinant > 0) return;
+  const what = determinant > 0 ? `R Rᵀ differs from the identity by ${shear.toPrecision(2)}` : "it mirrors";
+  throw new BimodalError("range", `pose.rotation: is no rotation, ${what}`, "pose.rotation");
+}
+
+function size(value: Size | undefined, field: string): Size | undefined {
+  if (value === undefined) return undefined;
+  const [width, height] = value;
+  const isSize = [width, height].every((side) => Number.isSafeInteger(side) && side > 0);
+  if (!isSize) throw new BimodalError("size", `${field}: must be whole numbers above zero (got ${width} x ${height})`, field);
+  return [width, height];
+}
+
+function camera(given: RigCamera | undefined, pixels: Size | undefined, name: "colour" | "depth"): Camera | undefined {
+  const known = size(pixels, `context.sizes.${name}`);
+  if (given === undefined) return undefined;
+  const { model = "brown", fx, fy, cx, cy } = given;
+  if (!Object.hasOwn(LENGTHS, model)) {
+    throw new BimodalError("option", `context.${name}.model: "${model}" is unknown; known: brown, fisheye`, `context.${name}.model`);
+  }
+  numbers([fx, fy, cx, cy], [4], `context.${name}`);
+  if (fx <= 0 || fy <= 0) throw new BimodalError("range", `context.${name}: focal lengths must be above zero`, `context.${name}`);
+  const none = model === "fisheye" ? [0, 0, 0, 0] : [];
+  const distortion = numbers(given.distortion ?? none, LENGTHS[model], `context.${name}.distortion`);
+  return { model, fx, fy, cx, cy, distortion, size: known };
+}
+
+/** The rig that a pose and what is known beside it make. */
+export function rigOf(pose: Pose, context: RigContext): Rig {
+  if (pose.scale !== 1) {
+    throw new BimodalError("range", `pose.scale: extrinsics of a rig have the scale 1 (got ${pose.scale})`, "pose.scale");
+  }
+  const rotation = numbers(pose.rotation, [9], "pose.rotation");
+  checkRotation(rotation);
+  return {
+    rotation,
+    translation: numbers(pose.translation, [3], "pose.translation"),
+    colour: camera(context.colour, context.sizes?.colour, "colour"),
+    depth: camera(context.depth, context.sizes?.depth, "depth"),
+  };
+}
+
+/** Row `i` of the 3x4 matrix (R t). */
+export const row = ({ rotation, translation }: Rig, i: number): number[] => [...rotation.slice(3 * i, 3 * i + 3), translation[i] ?? 0];
+
+/** The four rows of the 4x4 matrix that carries points of the depth camera into the colour camera's frame. */
+export const rows = (rig: Rig): number[][] => [...[0, 1, 2].map((i) => row(rig, i)), [0, 0, 0, 1]];
+
+/** Whether any number is not zero from the given one on. */
+export const reaches = (distortion: readonly number[], from: number): boolean => distortion.slice(from).some((value) => value !== 0);
+
+/** So many numbers of a distortion, zeros where it has fewer. */
+export const padded = (distortion: readonly number[], length: number): number[] =>
+  Array.from({ length }, (_, k) => distortion[k] ?? 0);

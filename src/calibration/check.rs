@@ -1,0 +1,449 @@
+//! The check from frames to report, slice by slice.
+//!
+//! Starts (the candidates, their inverses, and what the coarse search finds beside the first) are each brought to rest by
+//! edges alone; the best by its score is settled with all cues; then the candidates are judged by its covariance.
+
+use nalgebra::{SMatrix, Vector3};
+
+use super::evidence::Tiles;
+use super::frame::{Frame, Projection};
+use super::input::RigView;
+use super::planes::Planes;
+use super::registration::{ARRIVED, Findings, MOST_SETTLING, ROUNDS, Round, SIGMAS, Scene};
+use super::search;
+use super::sensitivity::{AXES, Sensitivity, curve};
+use super::unknowns::{Matrix, POSE, State};
+use super::verdict::{CandidateReport, CheckVerdict, Health, Judge};
+use crate::error::{Error, ErrorKind, Result};
+use crate::pose::Similarity;
+use crate::text::Fixed;
+
+/// Most frames of one check: their images fill the memory of a page.
+const MOST_FRAMES: usize = 24;
+/// Most candidates.
+const MOST_CANDIDATES: usize = 16;
+/// The coarse search's prior, pixels of an image 640 wide: four degrees.
+const SEARCH_SIGMA: f64 = 40.0;
+/// Two starts whose scenes are within so many pixels are one.
+const SAME_START: f64 = 3.0;
+/// Factor of the covariance that makes intervals hold what they say; see docs/method.md, section 16.
+const INFLATION: f64 = 2.0;
+/// What all frames share and no tile tells, pixels: half of what a depth camera's rims and an image's edges differ by.
+const COMMON_ERROR: f64 = 0.25;
+
+/// What of a frame bears on the calibration.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Cue {
+    /// Colours within patches follow their normals.
+    Shading,
+    /// Depth edges on image edges.
+    Edges,
+    /// Mutual information of colours and patches.
+    Information,
+    /// The masked object on the image's mask.
+    Silhouette,
+}
+
+impl Cue {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Shading, Self::Edges, Self::Information, Self::Silhouette];
+
+    /// Its name.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Shading => "shading",
+            Self::Edges => "edges",
+            Self::Information => "information",
+            Self::Silhouette => "silhouette",
+        }
+    }
+}
+
+/// What one cue contributed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CueReport {
+    /// Which.
+    pub cue: Cue,
+    /// Of the answer's information, 0 .. 1.
+    pub share: f64,
+    /// One over its sigma, pixels of the colour image.
+    pub sharpness: f64,
+}
+
+/// What one frame contributed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FrameReport {
+    /// Its name.
+    pub name: String,
+    /// Of the answer's information, 0 .. 1.
+    pub share: f64,
+    /// What should be known about it.
+    pub note: Option<String>,
+}
+
+/// What a check found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CheckReport {
+    /// Of the first candidate; undecided without one.
+    pub verdict: CheckVerdict,
+    /// In a sentence.
+    pub reason: String,
+    /// What was guessed or looks wrong.
+    pub warnings: Vec<String>,
+    /// The extrinsics that fit best.
+    pub estimate: Similarity,
+    /// The scene's middle, colour frame, metres.
+    pub middle: [f64; 3],
+    /// Rotation vector in rad about the scene's middle, then translation in m; colour frame.
+    pub covariance: SMatrix<f64, POSE, POSE>,
+    /// Factor of the colour camera's focal length, and its sigma, where it was looked for.
+    pub focal: Option<[f64; 2]>,
+    /// Of the estimate.
+    pub health: Health,
+    /// In the order given.
+    pub candidates: Vec<CandidateReport>,
+    /// Each that was asked for.
+    pub cues: Vec<CueReport>,
+    /// In the order given.
+    pub frames: Vec<FrameReport>,
+    /// By cue and axis.
+    pub sensitivity: Vec<Sensitivity>,
+}
+
+/// A frame as a calibration lays it over its image.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Overlay {
+    /// Column, row, metres of each visible point.
+    pub points: Vec<f32>,
+    /// Column, row of each point of a depth edge.
+    pub edges: Vec<f32>,
+}
+
+enum Stage {
+    Starting,
+    Approaching { round: Round, done: usize, planes: Vec<Planes> },
+    Settling { done: usize, planes: Vec<Planes> },
+    Judging { planes: Vec<Planes> },
+    Curves { planes: Vec<Planes>, findings: Box<Findings>, done: usize },
+    Done,
+}
+
+/// A check under way.
+pub struct CalibrationCheck {
+    scene: Scene,
+    candidates: Vec<(String, State)>,
+    warnings: Vec<String>,
+    /// Width of the first image as it was given.
+    width: f64,
+    starts: Vec<State>,
+    next: usize,
+    ends: Vec<(f64, Round)>,
+    best: Round,
+    stage: Stage,
+    report: Option<CheckReport>,
+}
+
+impl CalibrationCheck {
+    /// # Errors
+    /// Naming the frame's or candidate's member at fault.
+    pub fn new(views: Vec<RigView>, candidates: Vec<(String, Similarity)>, cues: &[Cue]) -> Result<Self> {
+        if views.is_empty() || views.len() > MOST_FRAMES {
+            let message = format!("needs 1 to {MOST_FRAMES} frames");
+            return Err(Error::new(ErrorKind::Size, "frames", message).value(views.len() as f64));
+        }
+        if candidates.len() > MOST_CANDIDATES {
+            let message = format!("takes up to {MOST_CANDIDATES}");
+            return Err(Error::new(ErrorKind::Size, "candidates", message).value(candidates.len() as f64));
+        }
+        for (name, pose) in &candidates {
+            pose.validate("pose").map_err(|error| error.below(&format!("candidates.{name}")))?;
+            if (pose.scale - 1.0).abs() > 1e-6 {
+                let error = Error::new(ErrorKind::Range, "scale", "must be 1: extrinsics do not change sizes");
+                return Err(error.value(pose.scale).below(&format!("candidates.{name}")));
+            }
+        }
+        let width = views[0].image_size[0] as f64;
+        let (mut warnings, mut frames, mut is_guessed) = (vec![], vec![], false);
+        for (index, view) in views.into_iter().enumerate() {
+            let (frame, guessed) =
+                view.prepare(&mut warnings).map_err(|error| error.below(&format!("frames[{index}]")))?;
+            is_guessed |= guessed;
+            frames.push(frame);
+        }
+        let cues = if cues.is_empty() { Cue::ALL.to_vec() } else { cues.to_vec() };
+        let candidates: Vec<(String, State)> =
+            candidates.into_iter().map(|(name, pose)| (name, State::at(pose.orthonormal()))).collect();
+        let told = candidates.first().map_or_else(|| State::at(Similarity::identity()), |candidate| candidate.1);
+        let best = Round { state: told, told, sigma: 0.0 };
+        let scene = Scene::new(frames, cues, is_guessed);
+        warn_of_translations(&candidates, &mut warnings);
+        Ok(Self {
+            scene,
+            candidates,
+            warnings,
+            width,
+            starts: vec![],
+            next: 0,
+            ends: vec![],
+            best,
+            stage: Stage::Starting,
+            report: None,
+        })
+    }
+
+    /// Share of the work that is done, and what comes next.
+    #[must_use]
+    pub fn progress(&self) -> (f64, &'static str) {
+        let rounds = (SIGMAS.len() * ROUNDS) as f64;
+        match &self.stage {
+            Stage::Starting => (0.0, "looking for depth edges in the image"),
+            Stage::Approaching { done, .. } => {
+                let starts = self.starts.len().max(1) as f64;
+                (
+                    0.1 + 0.6 * (self.next as f64 - 1.0 + *done as f64 / rounds) / starts,
+                    "bringing depth edges onto image edges",
+                )
+            }
+            Stage::Settling { done, .. } => {
+                (0.7 + 0.15 * *done as f64 / MOST_SETTLING as f64, "refining with all cues")
+            }
+            Stage::Judging { .. } => (0.85, "judging the candidates"),
+            Stage::Curves { done, .. } => {
+                (0.88 + 0.12 * *done as f64 / (POSE * self.scene.cues.len()) as f64, "measuring sensitivity")
+            }
+            Stage::Done => (1.0, "done"),
+        }
+    }
+
+    /// The report, once it is there.
+    #[must_use]
+    pub const fn report(&self) -> Option<&CheckReport> {
+        self.report.as_ref()
+    }
+
+    /// One slice of the work; whether the report is there.
+    pub fn step(&mut self) -> bool {
+        self.stage = match std::mem::replace(&mut self.stage, Stage::Done) {
+            Stage::Starting => {
+                self.find_starts();
+                self.approach_next()
+            }
+            Stage::Approaching { round, done, planes } => self.approach(round, done, planes),
+            Stage::Settling { done, planes } => {
+                let moved = self.scene.settle(&mut self.best, &planes);
+                if moved < ARRIVED || done + 1 >= MOST_SETTLING {
+                    Stage::Judging { planes }
+                } else {
+                    Stage::Settling { done: done + 1, planes }
+                }
+            }
+            Stage::Judging { planes } => {
+                let findings = self.scene.findings(&self.best, &planes);
+                self.report = Some(self.judge(&findings));
+                Stage::Curves { planes, findings: Box::new(findings), done: 0 }
+            }
+            Stage::Curves { planes, findings, done } => {
+                let (cue, _, weight) = &findings.cues[done / POSE];
+                let curve = curve(&self.scene, &self.best, &findings.units, &planes, (*cue, *weight), done % POSE);
+                if let Some(report) = &mut self.report {
+                    report.sensitivity.push(curve);
+                }
+                if done + 1 < findings.cues.len() * AXES.len() {
+                    Stage::Curves { planes, findings, done: done + 1 }
+                } else {
+                    Stage::Done
+                }
+            }
+            Stage::Done => Stage::Done,
+        };
+        matches!(self.stage, Stage::Done)
+    }
+
+    /// The candidates, what the coarse search finds beside the first, and the inverses.
+    fn find_starts(&mut self) {
+        let told = self.best.told;
+        let units = self.scene.units(&told);
+        let sigma = SEARCH_SIGMA * self.scene.scale;
+        let found =
+            search::starts(&self.scene.frames, &told, &units, self.scene.scale, sigma, self.scene.focal_is_free);
+        let others = self.candidates.iter().skip(1).map(|candidate| candidate.1);
+        let inverse = State::at(told.pose.inverse());
+        for start in found.into_iter().chain(others).chain([inverse]) {
+            let is_new = self.starts.iter().all(|other| {
+                let step = units.between(other, &start);
+                step.norm() > SAME_START * self.scene.scale
+            });
+            if is_new {
+                self.starts.push(start);
+            }
+        }
+    }
+
+    fn approach_next(&mut self) -> Stage {
+        let Some(&state) = self.starts.get(self.next) else { return self.choose() };
+        self.next += 1;
+        let sigma = SIGMAS[0] * self.scene.scale;
+        let round = Round { state, told: self.best.told, sigma };
+        Stage::Approaching { round, done: 0, planes: self.scene.planes(sigma) }
+    }
+
+    fn approach(&mut self, mut round: Round, done: usize, mut planes: Vec<Planes>) -> Stage {
+        let sigma = SIGMAS[done / ROUNDS] * self.scene.scale;
+        if sigma != round.sigma {
+            planes = self.scene.planes(sigma);
+            round.sigma = sigma;
+        }
+        self.scene.approach(&mut round, &planes);
+        if done + 1 < SIGMAS.len() * ROUNDS {
+            return Stage::Approaching { round, done: done + 1, planes };
+        }
+        self.ends.push((self.scene.score(&round, &planes), round));
+        self.approach_next()
+    }
+
+    fn choose(&mut self) -> Stage {
+        if let Some((_, best)) = self.ends.iter().max_by(|a, b| a.0.total_cmp(&b.0)) {
+            self.best = *best;
+        }
+        let planes = self.scene.planes(self.best.sigma);
+        Stage::Settling { done: 0, planes }
+    }
+
+    fn judge(&self, findings: &Findings) -> CheckReport {
+        let (units, state) = (findings.units, self.best.state);
+        let (covariance, tiles) = findings.total.covariance(&findings.prior).unwrap_or((Matrix::identity(), 0));
+        let covariance = covariance * INFLATION + Matrix::identity() * (COMMON_ERROR * COMMON_ERROR);
+        let frame = &self.scene.frames[0];
+        let cloud: Vec<Vector3<f64>> = self.scene.frames.iter().flat_map(|frame| frame.cloud(&state, 2000)).collect();
+        let judge =
+            Judge::new(units, &state.camera(&frame.camera), &cloud, &covariance, tiles, frame.pixel, self.width);
+        let weakest = judge.weakest(&covariance);
+        let candidates: Vec<CandidateReport> =
+            self.candidates.iter().map(|(name, candidate)| judge.judge(name, &state, candidate, weakest)).collect();
+        let mut warnings = self.warnings.clone();
+        self.warn_of_inverses(&judge, &mut warnings);
+        let health = judge.estimate();
+        let (mut verdict, mut reason) = match candidates.first() {
+            Some(first) => (first.verdict, first.reason.clone()),
+            None => (
+                CheckVerdict::Undecided,
+                format!("No candidate was given; the estimate is good to {} px.", Fixed(health.pixels, 1)),
+            ),
+        };
+        if !warnings.is_empty() && verdict == CheckVerdict::Consistent {
+            verdict = CheckVerdict::Undecided;
+            reason = format!("Settled, but check: {} {reason}", warnings[0]);
+        }
+        let scaled = Matrix::from_diagonal(&units.of);
+        let metric = scaled * covariance * scaled;
+        CheckReport {
+            verdict,
+            reason,
+            warnings,
+            estimate: state.pose,
+            middle: units.middle.into(),
+            covariance: metric.fixed_view::<POSE, POSE>(0, 0).into(),
+            focal: self.scene.focal_is_free.then(|| [state.focal, metric[(7, 7)].sqrt()]),
+            health,
+            candidates,
+            cues: cue_reports(findings, frame.pixel),
+            frames: self.frame_reports(findings),
+            sensitivity: vec![],
+        }
+    }
+
+    /// The commonest mistake: P_depth = R P_colour + t.
+    fn warn_of_inverses(&self, judge: &Judge, warnings: &mut Vec<String>) {
+        for (name, candidate) in &self.candidates {
+            let inverse = State::at(candidate.pose.inverse());
+            let [as_it_is, inverted] =
+                [candidate, &inverse].map(|state| judge.judge(name, &self.best.state, state, None));
+            let fits = inverted.verdict != CheckVerdict::Off && as_it_is.verdict != CheckVerdict::Consistent;
+            if fits && 3.0 * inverted.health.pixels < as_it_is.health.pixels {
+                warnings.push(format!(
+                    "{name}: fits inverted ({} px instead of {}): it seems to map colour to depth, P_depth = R P_colour + t; invert it.",
+                    Fixed(inverted.health.pixels, 1),
+                    Fixed(as_it_is.health.pixels, 1)
+                ));
+            }
+        }
+    }
+
+    fn frame_reports(&self, findings: &Findings) -> Vec<FrameReport> {
+        let mut start = 0;
+        let traces: Vec<f64> = self
+            .scene
+            .frames
+            .iter()
+            .map(|frame| {
+                let count = Tiles::new(frame.planes.size).count();
+                let shares = findings.total.shares.iter().skip(start).take(count);
+                start += count;
+                shares.map(|share| share.curvature.trace()).sum()
+            })
+            .collect();
+        let total = traces.iter().sum::<f64>().max(f64::MIN_POSITIVE);
+        let fair = 1.0 / traces.len() as f64;
+        let report = |(frame, trace): (&Frame, &f64)| {
+            let share = trace / total;
+            let note =
+                (share < 0.25 * fair).then(|| "adds little: few of its depth edges have image edges nearby".to_owned());
+            FrameReport { name: frame.name.clone(), share, note }
+        };
+        self.scene.frames.iter().zip(&traces).map(report).collect()
+    }
+}
+
+/// A frame as a pose lays it over its image, in the image's own pixels.
+///
+/// # Errors
+/// As [`CalibrationCheck::new`].
+pub fn overlay(view: RigView, pose: &Similarity) -> Result<Overlay> {
+    let (frame, _) = view.prepare(&mut vec![])?;
+    let state = State::at(*pose);
+    let projection = Projection::new(&frame, &state);
+    // Back from halves of pixels.
+    let original = |value: f64| ((value + 0.5) * frame.pixel - 0.5) as f32;
+    let seen =
+        (0..frame.points.len()).filter(|&index| !projection.is_hidden[index] && !projection.pixels[index][0].is_nan());
+    let points = seen.flat_map(|index| {
+        let [column, row] = projection.pixels[index].map(f64::from);
+        [original(column), original(row), projection.positions[index][2]]
+    });
+    let edges = super::rims::find(&frame, &projection);
+    Ok(Overlay { points: points.collect(), edges: edges.iter().flat_map(|rim| rim.pixel.map(original)).collect() })
+}
+
+fn cue_reports(findings: &Findings, pixel: f64) -> Vec<CueReport> {
+    let informations: Vec<f64> = findings
+        .cues
+        .iter()
+        .map(|(_, evidence, weight)| {
+            let curvature = evidence.curvature();
+            weight * (0..POSE).map(|k| curvature[(k, k)]).sum::<f64>() / POSE as f64
+        })
+        .collect();
+    let total = informations.iter().sum::<f64>().max(f64::MIN_POSITIVE);
+    let report = |((cue, ..), information): (&(Cue, super::evidence::Evidence, f64), &f64)| CueReport {
+        cue: *cue,
+        share: information / total,
+        sharpness: information.max(0.0).sqrt() / pixel,
+    };
+    findings.cues.iter().zip(&informations).map(report).collect()
+}
+
+/// Millimetres where metres were asked for.
+fn warn_of_translations(candidates: &[(String, State)], warnings: &mut Vec<String>) {
+    /// Metres: farther apart than any rig.
+    const FARTHEST_APART: f64 = 10.0;
+    for (name, candidate) in candidates {
+        let length = candidate.pose.translation.norm();
+        if length > FARTHEST_APART {
+            warnings.push(format!(
+                "{name}: its cameras are {} m apart; is the translation in millimetres?",
+                Fixed(length, 1)
+            ));
+        }
+    }
+}

@@ -1,0 +1,118 @@
+//! Log likelihood with its derivatives, and how sure it is of them.
+//!
+//! Neighbouring rims and pixels share their errors, so a sum over them is a composite likelihood: its maximum is right,
+//! its curvature is not. What a scene can say is estimated from the scene: the sum is split into tiles of the image, whose
+//! errors are independent. A cue is weighed by trace(H) / trace(J), the curvature H over J = sum over tiles g g^T, which
+//! would be one for a true likelihood (Pauli, Racugno and Ventura 2011); the covariance of the estimate is the jackknife
+//! over tiles (Efron 1982), which unlike H^-1 J H^-1 stays honest where a few tiles carry it.
+
+use super::unknowns::{Matrix, UNKNOWNS, Vector};
+use crate::view::Size;
+
+/// Tiles along the longer side of an image: wide enough that errors of different tiles are independent, many enough to
+/// tell their scatter.
+const TILES_ACROSS: usize = 10;
+
+/// A partition of an image.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Tiles {
+    side: f64,
+    columns: u32,
+    rows: u32,
+}
+
+impl Tiles {
+    pub fn new(size: Size) -> Self {
+        let side = size.width.max(size.height) as f64 / TILES_ACROSS as f64;
+        let along = |length: usize| (length as f64 / side).ceil() as u32;
+        Self { side, columns: along(size.width), rows: along(size.height) }
+    }
+
+    pub fn of(&self, [column, row]: [f64; 2]) -> u32 {
+        let place = |value: f64, count: u32| ((value / self.side).max(0.0) as u32).min(count - 1);
+        place(row, self.rows) * self.columns + place(column, self.columns)
+    }
+
+    pub fn count(&self) -> usize {
+        (self.columns * self.rows) as usize
+    }
+}
+
+/// The share of one tile in a log likelihood: value, gradient, and minus its second derivative.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Share {
+    pub value: f64,
+    pub gradient: Vector,
+    pub curvature: Matrix,
+}
+
+impl Share {
+    pub fn none() -> Self {
+        Self { value: 0.0, gradient: Vector::zeros(), curvature: Matrix::zeros() }
+    }
+}
+
+/// A log likelihood over all frames, tile by tile.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Evidence {
+    pub shares: Vec<Share>,
+}
+
+impl Evidence {
+    pub fn value(&self) -> f64 {
+        self.shares.iter().map(|share| share.value).sum()
+    }
+    pub fn gradient(&self) -> Vector {
+        self.shares.iter().map(|share| share.gradient).sum()
+    }
+    pub fn curvature(&self) -> Matrix {
+        self.shares.iter().map(|share| share.curvature).sum()
+    }
+
+    /// trace(H) / trace(J) with the tiles' gradients where the whole's would vanish; at most one.
+    pub fn weight(&self) -> f64 {
+        let curvature = self.curvature();
+        let ridge = 1e-3 * curvature.trace().abs() / UNKNOWNS as f64 + f64::MIN_POSITIVE;
+        let step =
+            (curvature + Matrix::identity() * ridge).cholesky().map_or(Vector::zeros(), |c| c.solve(&self.gradient()));
+        let scatter: f64 =
+            self.shares.iter().map(|share| (share.gradient - share.curvature * step).norm_squared()).sum();
+        let trace = curvature.trace();
+        if trace <= 0.0 || scatter <= 0.0 { 0.0 } else { (trace / scatter).min(1.0) }
+    }
+
+    /// This log likelihood times `weight`, added to another over the same tiles.
+    pub fn add_to(&self, total: &mut Self, weight: f64) {
+        total.shares.resize(total.shares.len().max(self.shares.len()), Share::none());
+        for (sum, share) in total.shares.iter_mut().zip(&self.shares) {
+            sum.value += weight * share.value;
+            sum.gradient += share.gradient * weight;
+            sum.curvature += share.curvature * weight;
+        }
+    }
+
+    /// Covariance of the maximum of this log likelihood with a prior, by leaving out one tile after the other, and how
+    /// many tiles have a say.
+    pub fn covariance(&self, prior: &Matrix) -> Option<(Matrix, usize)> {
+        let curvature = self.curvature() + prior;
+        let whole = curvature.cholesky()?.inverse();
+        let gradient = self.gradient();
+        let used: Vec<&Share> = self.shares.iter().filter(|share| share.gradient.norm() > 0.0).collect();
+        // What is told is off by as much as it says.
+        let mut covariance = whole * prior * whole;
+        for share in &used {
+            // Nothing of the sum is left over at the maximum; what is left of it before belongs to all.
+            let own = share.gradient - share.curvature * (whole * gradient);
+            let step = (curvature - share.curvature).cholesky().map_or(whole * own, |c| c.solve(&own));
+            covariance += step * step.transpose();
+        }
+        Some((covariance, used.len()))
+    }
+}
+
+/// The nearest matrix without negative eigenvalues.
+pub(super) fn positive(matrix: &Matrix) -> Matrix {
+    let mut eigen = matrix.symmetric_eigen();
+    eigen.eigenvalues.iter_mut().for_each(|value| *value = value.max(0.0));
+    eigen.recompose()
+}

@@ -1,0 +1,129 @@
+//! One pair of frames as the check works on it.
+
+use nalgebra::Vector3;
+
+use super::lens::RigCamera;
+use super::planes::Planes;
+use super::unknowns::State;
+use crate::view::Size;
+
+/// Points behind the nearest one by more than this are hidden, as a share of their distance: twice the step of a Kinect
+/// at three metres.
+const HIDDEN_SHARE: f64 = 0.02;
+/// .. and at least this, metres: flying pixels and noise of a near object.
+const HIDDEN_LEAST: f64 = 0.015;
+
+/// How far behind something has to lie to count as behind it, metres.
+pub(super) fn clear_gap(distance: f64) -> f64 {
+    HIDDEN_LEAST.max(HIDDEN_SHARE * distance)
+}
+
+/// Colours, points, and what is known of the colour camera.
+#[derive(Clone, Debug)]
+pub(super) struct Frame {
+    pub name: String,
+    pub planes: Planes,
+    pub camera: RigCamera,
+    /// Where the object is on the image, if it was told.
+    pub image_mask: Option<Vec<bool>>,
+    /// Raster of the depth map.
+    pub grid: Size,
+    /// In the depth camera's frame, metres; NaN where missing or not asked for.
+    pub points: Vec<[f32; 3]>,
+    pub has_depth_mask: bool,
+    /// Pixels of the image as given in one of `planes`.
+    pub pixel: f64,
+}
+
+impl Frame {
+    /// Works on an image of half the size; an odd last row or column is left out.
+    pub fn halve(&mut self) {
+        let (from, to) = (self.planes.size, self.planes.halved());
+        self.image_mask = self.image_mask.take().map(|mask| {
+            (0..to.size.len())
+                .map(|index| to.size.position(index))
+                .map(|(column, row)| mask[from.index(2 * column, 2 * row)])
+                .collect()
+        });
+        let RigCamera { fx, fy, cx, cy, lens } = self.camera;
+        // The middle of two pixels lies between them.
+        self.camera = RigCamera { fx: fx / 2.0, fy: fy / 2.0, cx: (cx - 0.5) / 2.0, cy: (cy - 0.5) / 2.0, lens };
+        self.planes = to;
+        self.pixel *= 2.0;
+    }
+
+    pub fn point(&self, index: usize) -> Option<Vector3<f64>> {
+        let [x, y, z] = self.points[index].map(f64::from);
+        (!z.is_nan()).then(|| Vector3::new(x, y, z))
+    }
+
+    /// Valid points in the colour camera's frame, thinned to about `most`.
+    pub fn cloud(&self, state: &State, most: usize) -> Vec<Vector3<f64>> {
+        let valid = (0..self.points.len()).filter(|&index| !self.points[index][2].is_nan()).count();
+        let stride = valid.div_ceil(most).max(1);
+        let points = (0..self.points.len()).filter_map(|index| self.point(index));
+        points.step_by(stride).map(|point| state.pose.apply(point)).collect()
+    }
+}
+
+/// The cloud as the colour camera sees it: where each point falls, and what is hidden.
+pub(super) struct Projection {
+    /// Colour camera's frame; NaN where missing.
+    pub positions: Vec<[f32; 3]>,
+    /// Column and row, NaN where missing or off the image.
+    pub pixels: Vec<[f32; 2]>,
+    pub is_hidden: Vec<bool>,
+}
+
+impl Projection {
+    pub fn new(frame: &Frame, state: &State) -> Self {
+        let camera = state.camera(&frame.camera);
+        let count = frame.points.len();
+        let (mut positions, mut pixels) = (vec![[f32::NAN; 3]; count], vec![[f32::NAN; 2]; count]);
+        for index in 0..count {
+            let Some(point) = frame.point(index) else { continue };
+            let point = state.pose.apply(point);
+            positions[index] = [point.x as f32, point.y as f32, point.z as f32];
+            if let Some(pixel) = camera.project([point.x, point.y, point.z]) {
+                pixels[index] = pixel.map(|value| value as f32);
+            }
+        }
+        let is_hidden = hidden(frame, &positions, &pixels);
+        Self { positions, pixels, is_hidden }
+    }
+}
+
+/// A z-buffer whose cells are wide enough to be hit by neighbours of one surface.
+fn hidden(frame: &Frame, positions: &[[f32; 3]], pixels: &[[f32; 2]]) -> Vec<bool> {
+    let cell = 2.0 * spacing(frame.grid, pixels).max(1.0);
+    let size = frame.planes.size;
+    let (columns, rows) = ((size.width as f32 / cell).ceil() as usize, (size.height as f32 / cell).ceil() as usize);
+    let place = |[column, row]: [f32; 2]| {
+        let (i, j) = (((column + 0.5) / cell).floor(), ((row + 0.5) / cell).floor());
+        let inside = i >= 0.0 && j >= 0.0 && (i as usize) < columns && (j as usize) < rows;
+        inside.then(|| j as usize * columns + i as usize)
+    };
+    let mut nearest = vec![f32::INFINITY; columns * rows];
+    for (position, pixel) in positions.iter().zip(pixels) {
+        if let Some(at) = place(*pixel) {
+            nearest[at] = nearest[at].min(position[2]);
+        }
+    }
+    let is_behind = |(position, pixel): (&[f32; 3], &[f32; 2])| {
+        place(*pixel).is_none_or(|at| position[2] > nearest[at] + clear_gap(f64::from(nearest[at])) as f32)
+    };
+    positions.iter().zip(pixels).map(is_behind).collect()
+}
+
+/// Median distance of neighbours on the image, pixels.
+pub(super) fn spacing(grid: Size, pixels: &[[f32; 2]]) -> f32 {
+    const SAMPLES: usize = 2000;
+    let stride = (grid.len() / SAMPLES).max(1);
+    let mut distances: Vec<f32> = (0..grid.len() - 1)
+        .step_by(stride)
+        .filter(|index| index % grid.width != grid.width - 1)
+        .map(|index| (pixels[index + 1][0] - pixels[index][0]).hypot(pixels[index + 1][1] - pixels[index][1]))
+        .filter(|distance| distance.is_finite())
+        .collect();
+    if distances.is_empty() { 1.0 } else { crate::numeric::quantile(&mut distances, 0.5) }
+}

@@ -1,0 +1,67 @@
+//! Mutual information of colours and surface patches (Viola and Wells 1997, with patches in place of a second image).
+//!
+//! The depth map is split into patches of like normal and place. Under the right pose a patch shows few colours, since a
+//! surface is painted and lit more evenly than a scene; under a wrong one its colours mix with its neighbours'. The
+//! log likelihood is that of colours given patches over that of colours alone, sum over points and channels of
+//! log p(c | patch) / p(c), with both densities read off the image under the same pose.
+//!
+//! Method: histograms with linear weights, so that derivatives by differences are smooth.
+
+use super::patches::{PATCHES, Patches, Sight};
+use super::unknowns::State;
+
+/// Levels of a channel.
+const BINS: usize = 16;
+/// Pixels that a bin holds before any: keeps the logarithm of an empty one finite.
+const FLOOR: f64 = 0.5;
+
+/// The cue over the patches of one frame.
+pub(super) struct Information<'a>(pub &'a Patches);
+
+impl Information<'_> {
+    /// The log likelihood at a state, tile by tile.
+    pub fn evaluate(&self, sight: &Sight, state: &State, out: &mut [f64]) {
+        out.fill(0.0);
+        let features: Vec<[f32; 3]> =
+            self.0.colours(sight, state).map(|colour| colour.map_or([f32::NAN; 3], features)).collect();
+        let mut joint = vec![[FLOOR; BINS]; PATCHES];
+        for channel in 0..3 {
+            joint.iter_mut().for_each(|bins| bins.fill(FLOOR));
+            for (level, &patch) in features.iter().zip(&self.0.patches) {
+                if let Some((bin, share)) = split(level[channel]) {
+                    joint[patch as usize][bin] += 1.0 - share;
+                    joint[patch as usize][bin + 1] += share;
+                }
+            }
+            let marginal: [f64; BINS] = std::array::from_fn(|bin| joint.iter().map(|bins| bins[bin]).sum());
+            let total: f64 = marginal.iter().sum();
+            let logs: Vec<[f64; BINS]> = joint
+                .iter()
+                .map(|bins| {
+                    let own: f64 = bins.iter().sum();
+                    std::array::from_fn(|bin| (bins[bin] / own / (marginal[bin] / total)).ln())
+                })
+                .collect();
+            for ((level, &patch), &tile) in features.iter().zip(&self.0.patches).zip(&self.0.tiles) {
+                if let Some((bin, share)) = split(level[channel]) {
+                    let logs = &logs[patch as usize];
+                    out[tile as usize] += (1.0 - share) * logs[bin] + share * logs[bin + 1];
+                }
+            }
+        }
+    }
+}
+
+/// Lightness and two differences of colours, each about 0 .. 1.
+fn features([r, g, b]: [f32; 3]) -> [f32; 3] {
+    [(r + g + b) / 3.0, 0.5 + (r - g), 0.5 + (0.5 * (r + g) - b)]
+}
+
+fn split(level: f32) -> Option<(usize, f64)> {
+    if level.is_nan() {
+        return None;
+    }
+    let place = f64::from(level.clamp(0.0, 1.0)) * (BINS - 1) as f64;
+    let bin = (place as usize).min(BINS - 2);
+    Some((bin, place - bin as f64))
+}

@@ -1,0 +1,231 @@
+//! What comes in, checked once: frames with their cameras, and what looks wrong about them.
+
+use super::frame::Frame;
+use super::lens::RigCamera;
+use super::planes::Planes;
+use crate::check::positive;
+use crate::error::{Error, ErrorKind, Result};
+use crate::view::{ColourSamples, DepthSamples, Size, Transfer};
+
+/// Widest image that is worked on as it is: beyond, halves say as much as a depth map can.
+const WIDEST: usize = 1000;
+/// Metres within which depth cameras measure.
+const NEAREST: f32 = 0.1;
+const FARTHEST: f32 = 20.0;
+/// Above this share of missing depths a map says so.
+const MANY_HOLES: f64 = 0.4;
+/// More distinct levels than this are not 8 bits.
+const LEVELS_OF_A_BYTE: u16 = 255;
+/// Above this share of neighbours that jump by a tenth of their depth, a depth map is something else.
+const ROUGH_SHARE: f64 = 0.25;
+const ROUGH_JUMP: f32 = 0.1;
+/// Fewest depths that a frame needs.
+const FEWEST_DEPTHS: usize = 200;
+/// Focal length over width where nothing is known: 62 degrees from side to side.
+const USUAL_FOCAL: f64 = 0.83;
+
+/// One pair of frames, not yet checked.
+#[derive(Clone, Debug)]
+pub struct RigView {
+    /// How the report calls it.
+    pub name: String,
+    /// Columns and rows of the colour image.
+    pub image_size: [usize; 2],
+    /// Its samples.
+    pub image: ColourSamples,
+    /// Encoding of integer samples; `None`: that of a display.
+    pub transfer: Option<Transfer>,
+    /// Non-zero where the object is.
+    pub image_mask: Option<Vec<u8>>,
+    /// `None`: its focal length is looked for.
+    pub image_camera: Option<RigCamera>,
+    /// Columns and rows of the depth map.
+    pub depth_size: [usize; 2],
+    /// Its samples; a cloud needs no camera.
+    pub depth: DepthSamples,
+    /// Metres of a stored unit; `None`: 1, and 0.001 for integers.
+    pub unit: Option<f64>,
+    /// Non-zero where the depth map is to be used.
+    pub depth_mask: Option<Vec<u8>>,
+    /// Needed unless the depth map is a cloud.
+    pub depth_camera: Option<RigCamera>,
+}
+
+impl RigView {
+    /// The frame as the check works on it, and warnings in words.
+    ///
+    /// # Errors
+    /// Naming the member at fault below `frames`.
+    pub(super) fn prepare(self, warnings: &mut Vec<String>) -> Result<(Frame, bool)> {
+        let size = Size::new("image", self.image_size[0], self.image_size[1])?;
+        let grid = Size::new("depth", self.depth_size[0], self.depth_size[1])?;
+        for (field, mask, size) in [("image.mask", &self.image_mask, size), ("depth.mask", &self.depth_mask, grid)] {
+            if let Some(mask) = mask {
+                must_be(field, mask.len(), size.len())?;
+            }
+        }
+        let planes = Planes { size, pixels: encoded(&self.image, self.transfer, size)? };
+        let points = points(&self, grid)?;
+        let known = points.iter().filter(|point| !point[2].is_nan()).count();
+        if known < FEWEST_DEPTHS {
+            let message =
+                format!("holds {known} depths inside its mask; {FEWEST_DEPTHS} are the fewest that say anything");
+            return Err(Error::new(ErrorKind::Empty, "depth", message));
+        }
+        warn(&self, grid, &points, warnings);
+        let is_guessed = self.image_camera.is_none();
+        if is_guessed {
+            warnings.push(format!(
+                "{}: the colour camera's intrinsics are not given; its focal length is estimated.",
+                self.name
+            ));
+        }
+        let camera = self.image_camera.unwrap_or_else(|| {
+            let focal = USUAL_FOCAL * size.width.max(size.height) as f64;
+            let [cx, cy] = [size.width, size.height].map(|side| (side as f64 - 1.0) / 2.0);
+            RigCamera { fx: focal, fy: focal, cx, cy, lens: super::Lens::None }
+        });
+        camera.validate("image.camera")?;
+        let mut frame = Frame {
+            name: self.name,
+            planes,
+            camera,
+            image_mask: self.image_mask.map(|mask| mask.into_iter().map(|value| value != 0).collect()),
+            grid,
+            points,
+            has_depth_mask: self.depth_mask.is_some(),
+            pixel: 1.0,
+        };
+        while frame.planes.size.width.max(frame.planes.size.height) > WIDEST {
+            frame.halve();
+        }
+        Ok((frame, is_guessed))
+    }
+}
+
+fn must_be(field: &'static str, length: usize, needed: usize) -> Result<()> {
+    if length == needed {
+        return Ok(());
+    }
+    Err(Error::new(ErrorKind::Size, field, format!("needs {needed} values, not {length}")))
+}
+
+/// Intensities in the encoding of a display, 0 .. 1.
+fn encoded(samples: &ColourSamples, transfer: Option<Transfer>, size: Size) -> Result<Vec<[f32; 3]>> {
+    let encode = |value: f32| match transfer {
+        Some(Transfer::Linear) => to_srgb(value),
+        _ => value,
+    };
+    Ok(match samples {
+        ColourSamples::Rgba8(data) => {
+            must_be("image.data", data.len(), 4 * size.len())?;
+            data.chunks_exact(4).map(|p| [0, 1, 2].map(|k| encode(f32::from(p[k]) / 255.0))).collect()
+        }
+        ColourSamples::Rgba16(data) => {
+            must_be("image.data", data.len(), 4 * size.len())?;
+            data.chunks_exact(4).map(|p| [0, 1, 2].map(|k| encode(f32::from(p[k]) / 65535.0))).collect()
+        }
+        ColourSamples::RgbLinear(data) => {
+            must_be("image.data", data.len(), 3 * size.len())?;
+            let brightest =
+                data.iter().copied().filter(|value| value.is_finite()).fold(0.0, f32::max).max(f32::MIN_POSITIVE);
+            let value = |value: f32| if value.is_finite() { to_srgb((value / brightest).max(0.0)) } else { 0.0 };
+            data.chunks_exact(3).map(|p| [0, 1, 2].map(|k| value(p[k]))).collect()
+        }
+    })
+}
+
+fn to_srgb(value: f32) -> f32 {
+    if value <= 0.003_130_8 { 12.92 * value } else { (1.055 * f64::from(value).powf(1.0 / 2.4) - 0.055) as f32 }
+}
+
+/// Points in metres, NaN where missing, outside the mask, or where the lens has no ray.
+fn points(view: &RigView, grid: Size) -> Result<Vec<[f32; 3]>> {
+    let default = if matches!(view.depth, DepthSamples::Integer(_)) { 0.001 } else { 1.0 };
+    let unit = view.unit.unwrap_or(default);
+    positive("depth.unit", unit)?;
+    let is_asked = |index: usize| view.depth_mask.as_ref().is_none_or(|mask| mask[index] != 0);
+    const MISSING: [f32; 3] = [f32::NAN; 3];
+    if let DepthSamples::Cloud(data) = &view.depth {
+        must_be("depth.points", data.len(), 3 * grid.len())?;
+        let point = |(index, p): (usize, &[f32])| {
+            let point = [0, 1, 2].map(|k| (f64::from(p[k]) * unit) as f32);
+            let is_known = is_asked(index) && point.iter().all(|value| value.is_finite()) && point != [0.0; 3];
+            if is_known { point } else { MISSING }
+        };
+        return Ok(data.chunks_exact(3).enumerate().map(point).collect());
+    }
+    let camera = view.depth_camera.ok_or_else(|| {
+        Error::new(ErrorKind::Missing, "depth.camera", "is required: without intrinsics a depth map has no points")
+    })?;
+    camera.validate("depth.camera")?;
+    let depth = |index: usize| match &view.depth {
+        DepthSamples::Float(data) => f64::from(data[index]),
+        // The largest number of 16 bits stands for "nothing" in several cameras.
+        DepthSamples::Integer(data) => {
+            if data[index] == u16::MAX {
+                0.0
+            } else {
+                f64::from(data[index])
+            }
+        }
+        DepthSamples::Cloud(_) => 0.0,
+    };
+    match &view.depth {
+        DepthSamples::Float(data) => must_be("depth.data", data.len(), grid.len())?,
+        DepthSamples::Integer(data) => must_be("depth.data", data.len(), grid.len())?,
+        DepthSamples::Cloud(_) => {}
+    }
+    Ok((0..grid.len())
+        .map(|index| {
+            let z = depth(index) * unit;
+            let (column, row) = grid.position(index);
+            if !(z > 0.0 && z.is_finite() && is_asked(index)) {
+                return MISSING;
+            }
+            match camera.ray([column as f64, row as f64]) {
+                Some([x, y, along]) if along > 0.0 => [x / along * z, y / along * z, z].map(|value| value as f32),
+                _ => MISSING,
+            }
+        })
+        .collect())
+}
+
+/// Guards before green: what is probably not what it was taken for.
+fn warn(view: &RigView, grid: Size, points: &[[f32; 3]], warnings: &mut Vec<String>) {
+    let name = &view.name;
+    let mut depths: Vec<f32> = points.iter().map(|point| point[2]).filter(|depth| !depth.is_nan()).collect();
+    let holes = 1.0 - depths.len() as f64 / points.len() as f64;
+    let percent = (100.0 * holes).round();
+    if holes > MANY_HOLES && view.depth_mask.is_none() {
+        warnings.push(format!("{name}: {percent} % of the depth map are holes."));
+    }
+    if let DepthSamples::Integer(data) = &view.depth
+        && data.iter().all(|&level| level <= LEVELS_OF_A_BYTE)
+    {
+        warnings.push(format!("{name}: the depth map has 8 bits; steps of a 256th are no measurement."));
+    }
+    let median = crate::numeric::quantile(&mut depths, 0.5);
+    if !(NEAREST..=FARTHEST).contains(&median) {
+        let metres = crate::text::Brief(f64::from(median));
+        let hint = if median > 100.0 {
+            ": is it in millimetres?"
+        } else if median < 0.02 {
+            ": is its unit a thousand times larger?"
+        } else {
+            ""
+        };
+        warnings.push(format!("{name}: depths are {metres} m at the median, outside {NEAREST} to {FARTHEST} m{hint}"));
+    }
+    let pairs = (0..points.len() - 1)
+        .filter(|index| index % grid.width != grid.width - 1)
+        .map(|index| (points[index][2], points[index + 1][2]));
+    let (mut jumps, mut count) = (0, 0);
+    for (a, b) in pairs.filter(|(a, b)| !a.is_nan() && !b.is_nan()) {
+        count += 1;
+        jumps += usize::from((a - b).abs() > ROUGH_JUMP * a.abs());
+    }
+    if jumps as f64 > ROUGH_SHARE * f64::from(count.max(1)) {
+        warnings.push(format!("{name}: the depth map is as rough as a photograph; are the two files swapped?"));
+    }
+}

@@ -1,0 +1,41 @@
+//! Whether a calibration between a colour camera and a depth camera is right (docs/method.md, section 19).
+//!
+//! Frames of a rig and some candidates for its extrinsics go in; an estimate with its covariance and a verdict on each
+//! candidate come out. Whole frames are looked at, because what stands before a background carries most of the answer.
+//!
+//! | file | what it holds |
+//! |---|---|
+//! | `lens` | cameras of a rig |
+//! | `input`, `frame`, `planes` | what comes in, guards, the colour camera's view of the depth points |
+//! | `rims`, `edges` | depth edges, and their log likelihood on image edges |
+//! | `surface`, `patches` | samples of the depth map with normals, grouped |
+//! | `information`, `shading`, `silhouette`, `differences` | cues over samples, derivatives by differences |
+//! | `unknowns`, `evidence` | the unknowns in pixels; log likelihoods by tiles, weights, covariance |
+//! | `search`, `registration` | starts, rounds |
+//! | `sensitivity`, `verdict`, `check` | curves, words, and the order of it all |
+
+mod check;
+mod differences;
+mod edges;
+mod evidence;
+mod frame;
+mod information;
+mod input;
+mod lens;
+mod patches;
+mod planes;
+mod registration;
+mod rims;
+mod search;
+mod sensitivity;
+mod shading;
+mod silhouette;
+mod surface;
+mod unknowns;
+mod verdict;
+
+pub use check::{CalibrationCheck, CheckReport, Cue, CueReport, FrameReport, Overlay, overlay};
+pub use input::RigView;
+pub use lens::{Lens, RigCamera};
+pub use sensitivity::Sensitivity;
+pub use verdict::{CandidateReport, CheckVerdict, Health};

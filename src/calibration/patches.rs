@@ -1,0 +1,93 @@
+//! Patches of the depth map's surface, and the colours that the image shows on them.
+
+use nalgebra::Vector3;
+
+use super::evidence::Tiles;
+use super::frame::{Frame, Projection};
+use super::planes::Planes;
+use super::surface::Sample;
+use super::unknowns::State;
+
+/// Patches of a frame: some ten for each thing of a scene.
+pub(super) const PATCHES: usize = 48;
+/// Rounds of k-means.
+const ROUNDS: usize = 6;
+/// A right angle between normals counts as much as this share of the cloud's spread.
+const NORMAL_WEIGHT: f64 = 0.7;
+
+/// An image and its camera.
+pub(super) struct Sight<'a> {
+    pub frame: &'a Frame,
+    pub planes: &'a Planes,
+}
+
+/// Visible samples of a frame, in patches of like place and normal.
+pub(super) struct Patches {
+    pub points: Vec<Vector3<f64>>,
+    pub normals: Vec<Vector3<f64>>,
+    pub patches: Vec<u8>,
+    pub tiles: Vec<u32>,
+}
+
+impl Patches {
+    /// Those of the samples that are visible under a projection.
+    pub fn new(samples: &[Sample], projection: &Projection, frame: &Frame) -> Self {
+        let tiling = Tiles::new(frame.planes.size);
+        let is_seen =
+            |sample: &&Sample| !projection.is_hidden[sample.index] && !projection.pixels[sample.index][0].is_nan();
+        let visible: Vec<&Sample> = samples.iter().filter(is_seen).collect();
+        Self {
+            points: visible.iter().map(|sample| sample.point).collect(),
+            normals: visible.iter().map(|sample| sample.normal).collect(),
+            tiles: visible.iter().map(|sample| tiling.of(projection.pixels[sample.index].map(f64::from))).collect(),
+            patches: group(&visible),
+        }
+    }
+
+    /// The image's colour at each sample, `None` off the image.
+    pub fn colours<'a>(&'a self, sight: &'a Sight, state: &'a State) -> impl Iterator<Item = Option<[f32; 3]>> + 'a {
+        let camera = state.camera(&sight.frame.camera);
+        self.points.iter().map(move |point| {
+            let [x, y, z] = state.pose.apply(*point).into();
+            camera.project([x, y, z]).and_then(|pixel| sight.planes.at(pixel))
+        })
+    }
+}
+
+/// k-means of place and normal; starts from samples far from each other.
+fn group(samples: &[&Sample]) -> Vec<u8> {
+    if samples.is_empty() {
+        return vec![];
+    }
+    let mean = samples.iter().map(|sample| sample.point).sum::<Vector3<f64>>() / samples.len() as f64;
+    let spread = (samples.iter().map(|s| (s.point - mean).norm_squared()).sum::<f64>() / samples.len() as f64).sqrt();
+    let feature = |sample: &Sample| {
+        let place = (sample.point - mean) / spread.max(1e-9);
+        let normal = NORMAL_WEIGHT * sample.normal;
+        [place.x, place.y, place.z, normal.x, normal.y, normal.z]
+    };
+    let features: Vec<[f64; 6]> = samples.iter().map(|sample| feature(sample)).collect();
+    let square = |a: &[f64; 6], b: &[f64; 6]| (0..6).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>();
+    let mut centres = vec![features[0]];
+    let mut far: Vec<f64> = features.iter().map(|f| square(f, &centres[0])).collect();
+    while centres.len() < PATCHES.min(features.len()) {
+        let next = (0..far.len()).max_by(|&a, &b| far[a].total_cmp(&far[b])).unwrap_or(0);
+        centres.push(features[next]);
+        far.iter_mut().zip(&features).for_each(|(far, f)| *far = far.min(square(f, &features[next])));
+    }
+    let mut patches = vec![0_u8; features.len()];
+    for _ in 0..ROUNDS {
+        let (mut sums, mut counts) = (vec![[0.0; 6]; centres.len()], vec![0.0; centres.len()]);
+        for (feature, patch) in features.iter().zip(&mut patches) {
+            let nearest = (0..centres.len())
+                .min_by(|&a, &b| square(feature, &centres[a]).total_cmp(&square(feature, &centres[b])));
+            *patch = nearest.unwrap_or(0) as u8;
+            counts[*patch as usize] += 1.0;
+            (0..6).for_each(|k| sums[*patch as usize][k] += feature[k]);
+        }
+        for (k, centre) in centres.iter_mut().enumerate().filter(|&(k, _)| counts[k] > 0.0) {
+            *centre = sums[k].map(|sum| sum / counts[k]);
+        }
+    }
+    patches
+}

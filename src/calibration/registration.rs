@@ -1,0 +1,221 @@
+//! One round of the registration: all cues over all frames at one state, and the step that they ask for.
+//!
+//! Unknowns: [`super::unknowns`]. Objective: sum of the cues' log likelihoods, each weighed by how far its curvature goes
+//! with its tiles' scatter ([`Evidence::weight`]), and the prior about the candidate. Solver: Gauss-Newton with the
+//! bound of expectation maximisation for edges; the other cues by differences, in the last rounds only, because they
+//! have no basin to speak of.
+
+use super::check::Cue;
+use super::differences::differences;
+use super::edges::EdgeField;
+use super::evidence::{Evidence, Share, Tiles};
+use super::frame::{Frame, Projection};
+use super::information::Information;
+use super::patches::{Patches, Sight};
+use super::planes::Planes;
+use super::shading::Shading;
+use super::silhouette::Silhouette;
+use super::surface::{self, Sample};
+use super::unknowns::{FOCAL, LOSS, Matrix, State, UNKNOWNS, Units, Vector};
+
+/// sigma of edges along the way, pixels of an image 640 wide: from what is left of a few degrees after the coarse search
+/// to what an image resolves. Half as wide each other time.
+pub(super) const SIGMAS: [f64; 5] = [5.0, 3.5, 2.5, 1.8, 1.3];
+/// Rounds at each.
+pub(super) const ROUNDS: usize = 2;
+/// Of the last rounds, all cues.
+pub(super) const MOST_SETTLING: usize = 8;
+/// A step that moves the scene by less has arrived, pixels.
+pub(super) const ARRIVED: f64 = 0.02;
+/// Longest step of a settling round, pixels: beyond it derivatives by differences mean nothing.
+const LONGEST: f64 = 3.0;
+/// Blur of the image over sigma, and the least, pixels.
+const BLUR: f64 = 0.35;
+const LEAST_BLUR: f64 = 0.7;
+/// Blur for the cues of surfaces: that of a depth map's own pixel.
+const SURFACE_BLUR: f32 = 1.2;
+/// Rims and samples of all frames together.
+const MOST_RIMS: usize = 6000;
+const MOST_RIMS_OF_ONE: usize = 1500;
+const MOST_SAMPLES: usize = 24000;
+const MOST_SAMPLES_OF_ONE: usize = 8000;
+
+/// How far a candidate is believed, one sigma each: its turn about the colour camera, degrees, and its shift, metres.
+/// Hand-measured rigs are off by so much; what is off by more is found all the same where the scene says so.
+const PRIOR_DEGREES: f64 = 4.0;
+const PRIOR_METRES: f64 = 0.05;
+/// Of the loss of outlines, pixels, and of ln f where it is unknown.
+const PRIOR_LOSS: f64 = 1.0;
+const PRIOR_FOCAL: f64 = 0.15;
+
+/// All frames, and what of them does not change with the state.
+pub(super) struct Scene {
+    pub frames: Vec<Frame>,
+    pub samples: Vec<Vec<Sample>>,
+    pub surface_planes: Vec<Planes>,
+    pub cues: Vec<Cue>,
+    /// Whether the focal length is looked for.
+    pub focal_is_free: bool,
+    /// The first image's width over 640, at least one.
+    pub scale: f64,
+}
+
+/// A state, what it was told, and the sigma of its edges.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Round {
+    pub state: State,
+    pub told: State,
+    pub sigma: f64,
+}
+
+/// What the cues say at a state.
+pub(super) struct Findings {
+    pub units: Units,
+    pub prior: Matrix,
+    /// By cue, each with its weight.
+    pub cues: Vec<(Cue, Evidence, f64)>,
+    pub total: Evidence,
+    /// From the state to the told one.
+    pub back: Vector,
+}
+
+impl Scene {
+    pub fn new(frames: Vec<Frame>, cues: Vec<Cue>, focal_is_free: bool) -> Self {
+        let scale = (frames[0].planes.size.width as f64 / 640.0).max(1.0);
+        let most = MOST_SAMPLES_OF_ONE.min(MOST_SAMPLES / frames.len());
+        let samples = frames.iter().map(|frame| surface::samples(frame, most)).collect();
+        let surface_planes = frames.iter().map(|frame| frame.planes.blurred(SURFACE_BLUR)).collect();
+        Self { frames, samples, surface_planes, cues, focal_is_free, scale }
+    }
+
+    pub fn units(&self, state: &State) -> Units {
+        const POINTS: usize = 3000;
+        let cloud: Vec<_> =
+            self.frames.iter().flat_map(|frame| frame.cloud(state, POINTS / self.frames.len())).collect();
+        Units::new(&cloud, &state.camera(&self.frames[0].camera))
+    }
+
+    /// The images as edges of this sigma want them.
+    pub fn planes(&self, sigma: f64) -> Vec<Planes> {
+        self.frames.iter().map(|frame| frame.planes.blurred(blur(sigma) as f32)).collect()
+    }
+
+    /// Information of what was told: w and t of the candidate are off by their sigmas, and t = v + c x w.
+    pub fn prior(&self, units: &Units) -> Matrix {
+        let cross = units.middle.cross_matrix();
+        let mut rows = Matrix::zeros();
+        for k in 0..3 {
+            rows[(k, k)] = 1.0 / PRIOR_DEGREES.to_radians();
+            rows[(3 + k, 3 + k)] = 1.0 / PRIOR_METRES;
+            (0..3).for_each(|j| rows[(3 + k, j)] = cross[(k, j)] / PRIOR_METRES);
+        }
+        rows[(LOSS, LOSS)] = 1.0 / PRIOR_LOSS;
+        // Held where it is known: a millionth.
+        rows[(FOCAL, FOCAL)] = if self.focal_is_free { 1.0 / PRIOR_FOCAL } else { 1e6 };
+        let rows = rows * Matrix::from_diagonal(&units.of);
+        rows.transpose() * rows
+    }
+
+    /// Edges alone: log likelihood by tiles, with the bound's curvature, and its mean over rims.
+    pub fn edges(&self, round: &Round, units: &Units, planes: &[Planes]) -> (Evidence, f64) {
+        let most = MOST_RIMS_OF_ONE.min(MOST_RIMS / self.frames.len());
+        let (mut evidence, mut rims) = (Evidence::default(), 0);
+        for (frame, planes) in self.frames.iter().zip(planes) {
+            let found = EdgeField::rims(frame, &round.state, most);
+            let field = EdgeField::new(frame, planes, &found, &round.state, units, round.sigma, blur(round.sigma));
+            let mut shares = vec![Share::none(); Tiles::new(planes.size).count()];
+            field.evidence(round.sigma, &mut shares);
+            evidence.shares.extend(shares);
+            rims += field.len();
+        }
+        let mean = evidence.value() / rims.max(1) as f64;
+        (evidence, mean)
+    }
+
+    /// One of the cues that look at surfaces.
+    fn surfaces(&self, cue: Cue, state: &State, units: &Units) -> Evidence {
+        let mut evidence = Evidence::default();
+        for ((frame, planes), samples) in self.frames.iter().zip(&self.surface_planes).zip(&self.samples) {
+            let sight = Sight { frame, planes };
+            let patches = Patches::new(samples, &Projection::new(frame, state), frame);
+            let count = Tiles::new(planes.size).count();
+            evidence.shares.extend(match cue {
+                Cue::Information => {
+                    let cue = Information(&patches);
+                    differences(units, state, count, |state, out| cue.evaluate(&sight, state, out))
+                }
+                Cue::Shading => {
+                    let cue = Shading::new(&patches, &sight, state);
+                    differences(units, state, count, |state, out| cue.evaluate(&sight, state, out))
+                }
+                Cue::Silhouette => match Silhouette::new(&patches, &sight) {
+                    Some(cue) => differences(units, state, count, |state, out| cue.evaluate(&sight, state, out)),
+                    None => vec![Share::none(); count],
+                },
+                Cue::Edges => vec![Share::none(); count],
+            });
+        }
+        evidence
+    }
+
+    /// All cues.
+    pub fn findings(&self, round: &Round, planes: &[Planes]) -> Findings {
+        let units = self.units(&round.state);
+        let mut total = Evidence::default();
+        let mut cues = vec![];
+        for &cue in &self.cues {
+            let evidence = match cue {
+                Cue::Edges => self.edges(round, &units, planes).0,
+                _ => self.surfaces(cue, &round.state, &units),
+            };
+            let weight = evidence.weight();
+            evidence.add_to(&mut total, weight);
+            cues.push((cue, evidence, weight));
+        }
+        let back = units.between(&round.told, &round.state);
+        Findings { prior: self.prior(&units), units, cues, total, back }
+    }
+
+    /// A round by edges alone, and the mean log likelihood of a rim before it.
+    pub fn approach(&self, round: &mut Round, planes: &[Planes]) -> f64 {
+        let units = self.units(&round.state);
+        let (evidence, mean) = self.edges(round, &units, planes);
+        let mut total = Evidence::default();
+        evidence.add_to(&mut total, evidence.weight());
+        let back = units.between(&round.told, &round.state);
+        let step = step(&total, &self.prior(&units), &back);
+        round.state = units.step(&round.state, &step);
+        mean
+    }
+
+    /// A round by all cues; how far it went, pixels.
+    pub fn settle(&self, round: &mut Round, planes: &[Planes]) -> f64 {
+        let findings = self.findings(round, planes);
+        let step = step(&findings.total, &findings.prior, &findings.back);
+        round.state = findings.units.step(&round.state, &(step * (LONGEST / step.norm()).min(1.0)));
+        step.norm()
+    }
+
+    /// What a state is worth beside others: mean log likelihood of a rim, less the prior's share.
+    pub fn score(&self, round: &Round, planes: &[Planes]) -> f64 {
+        let units = self.units(&round.state);
+        let (_, mean) = self.edges(round, &units, planes);
+        let back = units.between(&round.told, &round.state);
+        mean - 0.5 * SCORE_PRIOR * back.dot(&(self.prior(&units) * back))
+    }
+}
+
+/// What a sigma of the prior is worth in mean log likelihood of a rim: neighbouring rims are one, so that some hundred
+/// of a scene's thousands are independent.
+const SCORE_PRIOR: f64 = 0.01;
+
+pub(super) fn blur(sigma: f64) -> f64 {
+    (BLUR * sigma).max(LEAST_BLUR)
+}
+
+fn step(total: &Evidence, prior: &Matrix, back: &Vector) -> Vector {
+    let gradient = total.gradient() - prior * back;
+    (total.curvature() + prior).cholesky().map_or(SVectorZero::zeros(), |c| c.solve(&gradient))
+}
+
+type SVectorZero = nalgebra::SVector<f64, UNKNOWNS>;

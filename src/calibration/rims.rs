@@ -1,0 +1,116 @@
+//! Rims: where a near surface ends before a farther one, as the colour camera would see it.
+//!
+//! A pixel of the depth map is on a rim if the next one that has a depth, along its row or column, lies clearly farther
+//! from the colour camera. Next ones are looked for across holes: a depth camera that is offset from its projector or its
+//! own colours has a shadow of missing depth on one side of all that is near. Far sides of rims are not used; they start
+//! wherever that shadow ends.
+
+use super::frame::{Frame, Projection, clear_gap};
+use crate::view::Size;
+
+/// Holes up to this many pixels wide are looked across: the shadow of 0.5 m before 2 m at a baseline of 75 mm is 60 pixels
+/// of a Kinect wide, that of an object 0.3 m before its wall 15 to 30.
+const WIDEST_HOLE: usize = 40;
+/// Neighbours to each side that say how rim and image lie to each other.
+const REACH: isize = 2;
+/// Least cosine between line of sight and surface at a rim before it counts as soft; see [`Rim::weight`].
+const FEWEST_NEIGHBOURS: usize = 4;
+
+/// A point of a rim.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Rim {
+    /// Index of the near pixel in the depth map.
+    pub index: usize,
+    /// Where the near surface ends on the image: half a depth pixel beyond the near pixel.
+    pub pixel: [f64; 2],
+    /// Unit normal of the rim on the image, away from the near surface.
+    pub normal: [f64; 2],
+}
+
+/// All rims that the colour camera sees.
+pub(super) fn find(frame: &Frame, projection: &Projection) -> Vec<Rim> {
+    let near = |index: usize| {
+        let depth = projection.positions[index][2];
+        !depth.is_nan() && !projection.is_hidden[index] && ends_before_farther(frame.grid, projection, index)
+    };
+    (0..frame.grid.len()).filter(|&index| near(index)).filter_map(|index| rim(frame.grid, projection, index)).collect()
+}
+
+fn depth(projection: &Projection, index: usize) -> f64 {
+    f64::from(projection.positions[index][2])
+}
+
+/// Whether any of the next pixels with a depth is clearly farther than the surface goes on.
+fn ends_before_farther(grid: Size, projection: &Projection, index: usize) -> bool {
+    let (column, row) = grid.position(index);
+    let here = depth(projection, index);
+    [(1_isize, 0_isize), (-1, 0), (0, 1), (0, -1)].into_iter().any(|(right, down)| {
+        let at = |k: isize| {
+            let (column, row) = (column as isize + k * right, row as isize + k * down);
+            let inside = column >= 0 && row >= 0 && (column as usize) < grid.width && (row as usize) < grid.height;
+            inside.then(|| grid.index(column as usize, row as usize))
+        };
+        let next = (1..=WIDEST_HOLE as isize)
+            .map_while(|k| at(k).map(|index| (k, index)))
+            .find(|&(_, index)| !depth(projection, index).is_nan());
+        let Some((steps, next)) = next else { return false };
+        // How steeply the surface falls away already, over the two pixels before.
+        let before = at(-2).map_or(f64::NAN, |index| depth(projection, index));
+        let slope = if before.is_nan() { 0.0 } else { ((here - before) / 2.0).max(0.0) };
+        depth(projection, next) - here - slope.min(clear_gap(here)) * steps as f64 > clear_gap(here)
+    })
+}
+
+/// Position and normal of the rim at a near pixel: the map from raster to image is fitted to the near neighbours.
+fn rim(grid: Size, projection: &Projection, index: usize) -> Option<Rim> {
+    let (column, row) = grid.position(index);
+    let here = depth(projection, index);
+    let centre = projection.pixels[index];
+    if centre[0].is_nan() {
+        return None;
+    }
+    // Of the raster: away from the near pixels of the neighbourhood.
+    let mut away = [0.0; 2];
+    // Sums of the least squares: offsets on the raster by offsets on the image.
+    let (mut xx, mut xy, mut yy, mut by_image, mut count) = (0.0, 0.0, 0.0, [[0.0; 2]; 2], 0);
+    for down in -REACH..=REACH {
+        for right in -REACH..=REACH {
+            let (column, row) = (column as isize + right, row as isize + down);
+            if column < 0 || row < 0 || column as usize >= grid.width || row as usize >= grid.height {
+                continue;
+            }
+            let other = grid.index(column as usize, row as usize);
+            let is_near = (depth(projection, other) - here).abs() <= clear_gap(here);
+            let (x, y) = (right as f64, down as f64);
+            // Nearer ones belong to something before the rim.
+            let side = if is_near || depth(projection, other) < here { -1.0 } else { 1.0 };
+            away = [away[0] + side * x, away[1] + side * y];
+            if is_near && !projection.pixels[other][0].is_nan() {
+                let offset = [0, 1].map(|k| f64::from(projection.pixels[other][k] - centre[k]));
+                (xx, xy, yy) = (xx + x * x, xy + x * y, yy + y * y);
+                (0..2).for_each(|k| by_image[k] = [by_image[k][0] + offset[k] * x, by_image[k][1] + offset[k] * y]);
+                count += 1;
+            }
+        }
+    }
+    let length = away[0].hypot(away[1]);
+    let determinant = xx * yy - xy * xy;
+    if count < FEWEST_NEIGHBOURS || length < 1.0 || determinant < 1e-6 * xx * yy {
+        return None;
+    }
+    let away = away.map(|value| value / length);
+    // d image / d raster, row by row.
+    let map = by_image.map(|[x, y]| [(x * yy - y * xy) / determinant, (y * xx - x * xy) / determinant]);
+    let (a, b, c, d) = (map[0][0], map[0][1], map[1][0], map[1][1]);
+    // Normals go by the inverse transpose.
+    let sign = (a * d - b * c).signum();
+    let normal = [sign * (d * away[0] - c * away[1]), sign * (a * away[1] - b * away[0])];
+    let length = normal[0].hypot(normal[1]);
+    let normal = normal.map(|value| value / length);
+    let outwards = (a * away[0] + b * away[1]) * normal[0] + (c * away[0] + d * away[1]) * normal[1];
+    if !(outwards > 0.0) {
+        return None;
+    }
+    let pixel = [0, 1].map(|k| f64::from(centre[k]) + 0.5 * outwards * normal[k]);
+    Some(Rim { index, pixel, normal })
+}

@@ -1,0 +1,90 @@
+//! Shading: log colours within a patch follow the nine harmonics of the normal (Eq. 3).
+//!
+//! Under order-2 light log S is a quadratic of the normal, whatever the pose; the light is unknown and fitted. Paint and
+//! shadow are taken as constant on a patch: means over patches are removed from colours and harmonics alike. The log
+//! likelihood is that of residuals under Cauchy's density, whose scale is measured at the pose that the cue is asked about
+//! first. Limits: print within a patch is noise to it.
+
+use nalgebra::{SMatrix, SVector, Vector3};
+
+use super::patches::{PATCHES, Patches, Sight};
+use super::unknowns::State;
+
+const HARMONICS: usize = 9;
+type Harmonics = SVector<f64, HARMONICS>;
+
+/// Added before a logarithm: the noise of a dark pixel of 8 bits.
+const DARKEST: f32 = 0.02;
+/// A ridge on the fit of the light, as a share of its largest term: a patchwork of planes determines no light.
+const RIDGE: f64 = 1e-3;
+/// The median of |x| of Cauchy's density is its scale.
+const LEAST_SCALE: f64 = 0.005;
+
+/// The cue over the patches of one frame.
+pub(super) struct Shading<'a> {
+    patches: &'a Patches,
+    harmonics: Vec<Harmonics>,
+    scale: f64,
+}
+
+impl<'a> Shading<'a> {
+    pub fn new(patches: &'a Patches, sight: &Sight, state: &State) -> Self {
+        let mut harmonics: Vec<Harmonics> = patches.normals.iter().map(basis).collect();
+        remove_means(&patches.patches, &mut harmonics, |_| true);
+        let mut cue = Self { patches, harmonics, scale: 1.0 };
+        let mut sizes: Vec<f32> = cue.residuals(sight, state).into_iter().flatten().map(|r| r.norm() as f32).collect();
+        if !sizes.is_empty() {
+            cue.scale = f64::from(crate::numeric::quantile(&mut sizes, 0.5)).max(LEAST_SCALE);
+        }
+        cue
+    }
+
+    /// The log likelihood at a state, tile by tile.
+    pub fn evaluate(&self, sight: &Sight, state: &State, out: &mut [f64]) {
+        out.fill(0.0);
+        for (residual, &tile) in self.residuals(sight, state).iter().zip(&self.patches.tiles) {
+            if let Some(residual) = residual {
+                out[tile as usize] -= (1.0 + residual.norm_squared() / (self.scale * self.scale)).ln();
+            }
+        }
+    }
+
+    /// Log colours less their patches' means and the fitted light.
+    fn residuals(&self, sight: &Sight, state: &State) -> Vec<Option<Vector3<f64>>> {
+        let log = |colour: [f32; 3]| Vector3::from(colour.map(|value| f64::from((value + DARKEST).ln())));
+        let known: Vec<Option<Vector3<f64>>> =
+            self.patches.colours(sight, state).map(|colour| colour.map(log)).collect();
+        let mut logs: Vec<Vector3<f64>> = known.iter().map(|log| log.unwrap_or_default()).collect();
+        remove_means(&self.patches.patches, &mut logs, |index| known[index].is_some());
+        let mut matrix = SMatrix::<f64, HARMONICS, HARMONICS>::zeros();
+        let mut sums = SMatrix::<f64, HARMONICS, 3>::zeros();
+        for (index, harmonics) in self.harmonics.iter().enumerate().filter(|&(index, _)| known[index].is_some()) {
+            matrix += harmonics * harmonics.transpose();
+            sums += harmonics * logs[index].transpose();
+        }
+        let ridge = RIDGE * matrix.diagonal().max() + f64::MIN_POSITIVE;
+        (0..HARMONICS).for_each(|k| matrix[(k, k)] += ridge);
+        let light = matrix.cholesky().map_or(SMatrix::zeros(), |c| c.solve(&sums));
+        let residual = |index: usize| known[index].map(|_| logs[index] - light.transpose() * self.harmonics[index]);
+        (0..known.len()).map(residual).collect()
+    }
+}
+
+/// 1, the normal and its products.
+fn basis(n: &Vector3<f64>) -> Harmonics {
+    Harmonics::from([n.x, n.y, n.z, n.x * n.x, n.y * n.y, n.x * n.y, n.x * n.z, n.y * n.z, 1.0])
+}
+
+/// Takes from each value the mean over its patch.
+fn remove_means<const N: usize>(patches: &[u8], values: &mut [SVector<f64, N>], is_known: impl Fn(usize) -> bool) {
+    let mut sums = vec![(SVector::<f64, N>::zeros(), 0.0); PATCHES];
+    for (index, value) in values.iter().enumerate().filter(|&(index, _)| is_known(index)) {
+        let (sum, count) = &mut sums[patches[index] as usize];
+        *sum += value;
+        *count += 1.0;
+    }
+    for (value, &patch) in values.iter_mut().zip(patches) {
+        let (sum, count) = &sums[patch as usize];
+        *value -= sum / f64::max(*count, 1.0);
+    }
+}

@@ -1,0 +1,56 @@
+//! Samples of the depth map with their normals: what shading and information look at.
+
+use nalgebra::{Matrix3, SymmetricEigen, Vector3};
+
+use super::frame::{Frame, clear_gap};
+
+/// Neighbours to each side of a plane's fit: wide enough for the steps of a quantised map.
+const REACH: usize = 3;
+/// Fewest neighbours that determine a plane.
+const FEWEST: usize = 12;
+
+/// A point of the depth map with its normal, depth camera's frame.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sample {
+    pub index: usize,
+    pub point: Vector3<f64>,
+    pub normal: Vector3<f64>,
+}
+
+/// About `most` samples, evenly spread over the map.
+pub(super) fn samples(frame: &Frame, most: usize) -> Vec<Sample> {
+    let valid = frame.points.iter().filter(|point| !point[2].is_nan()).count();
+    let stride = ((valid as f64 / most as f64).sqrt().ceil() as usize).max(1);
+    let grid = frame.grid;
+    let rows = (stride / 2..grid.height).step_by(stride);
+    let places = rows.flat_map(|row| (stride / 2..grid.width).step_by(stride).map(move |column| (column, row)));
+    places.filter_map(|(column, row)| sample(frame, column, row)).collect()
+}
+
+fn sample(frame: &Frame, column: usize, row: usize) -> Option<Sample> {
+    let grid = frame.grid;
+    let index = grid.index(column, row);
+    let point = frame.point(index)?;
+    let gap = clear_gap(point.norm());
+    let (mut count, mut sum, mut squares) = (0_usize, Vector3::zeros(), Matrix3::zeros());
+    for row in row.saturating_sub(REACH)..=(row + REACH).min(grid.height - 1) {
+        for column in column.saturating_sub(REACH)..=(column + REACH).min(grid.width - 1) {
+            let Some(other) = frame.point(grid.index(column, row)) else { continue };
+            let offset = other - point;
+            if (other.norm() - point.norm()).abs() > gap {
+                continue;
+            }
+            count += 1;
+            sum += offset;
+            squares += offset * offset.transpose();
+        }
+    }
+    if count < FEWEST {
+        return None;
+    }
+    let mean = sum / count as f64;
+    let eigen = SymmetricEigen::new(squares / count as f64 - mean * mean.transpose());
+    let normal: Vector3<f64> = eigen.eigenvectors.column(eigen.eigenvalues.imin()).into();
+    let normal = if normal.dot(&point) > 0.0 { -normal } else { normal };
+    Some(Sample { index, point, normal })
+}

@@ -1,0 +1,118 @@
+//! The unknowns of a check, and how a point's pixel moves with each.
+//!
+//! P -> c + exp([w]) (P - c) + v about the scene's middle c, in the colour camera's frame; the loss d of depth outlines in
+//! pixels (a depth camera loses or adds a rim of constant width, one number for a device), and ln f of the colour camera
+//! where it is not known. Each is measured in a unit that moves the scene's pixels by one pixel at the root mean square,
+//! so that all of them are alike and steps, derivatives and tolerances have one size.
+
+use nalgebra::{Rotation3, SMatrix, SVector, Vector3};
+
+use super::lens::RigCamera;
+use crate::pose::Similarity;
+
+/// w (3), v (3), d, ln f.
+pub(super) const UNKNOWNS: usize = 8;
+/// The first six are the pose.
+pub(super) const POSE: usize = 6;
+pub(super) const LOSS: usize = 6;
+pub(super) const FOCAL: usize = 7;
+
+pub(super) type Vector = SVector<f64, UNKNOWNS>;
+pub(super) type Matrix = SMatrix<f64, UNKNOWNS, UNKNOWNS>;
+
+/// What a check looks for: extrinsics, and what goes with them.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct State {
+    pub pose: Similarity,
+    /// d in pixels of the colour image.
+    pub loss: f64,
+    /// Factor of the colour camera's focal length.
+    pub focal: f64,
+}
+
+impl State {
+    pub fn at(pose: Similarity) -> Self {
+        Self { pose, loss: 0.0, focal: 1.0 }
+    }
+
+    pub fn camera(&self, camera: &RigCamera) -> RigCamera {
+        RigCamera { fx: camera.fx * self.focal, fy: camera.fy * self.focal, ..*camera }
+    }
+}
+
+/// The middle c and the units.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Units {
+    /// In the colour camera's frame, metres.
+    pub middle: Vector3<f64>,
+    /// Radians, metres, pixels, and ln f of one unit of each unknown.
+    pub of: Vector,
+}
+
+impl Units {
+    /// The units at which a cloud moves by one pixel; points in the colour camera's frame.
+    pub fn new(points: &[Vector3<f64>], camera: &RigCamera) -> Self {
+        let mut depths: Vec<f32> = points.iter().map(|point| point.z as f32).collect();
+        let mean = points.iter().sum::<Vector3<f64>>() / points.len().max(1) as f64;
+        let depth = if depths.is_empty() { 1.0 } else { f64::from(crate::numeric::quantile(&mut depths, 0.5)) };
+        let middle = Vector3::new(mean.x, mean.y, depth);
+        let mut units = Self { middle, of: Vector::repeat(1.0) };
+        let mut squares = Vector::zeros();
+        let mut count = 0.0;
+        for point in points {
+            if let Some((_, rows)) = units.rows(point, camera) {
+                squares += rows[0].component_mul(&rows[0]) + rows[1].component_mul(&rows[1]);
+                count += 1.0;
+            }
+        }
+        for k in (0..UNKNOWNS).filter(|&k| k != LOSS) {
+            units.of[k] = 1.0 / (squares[k] / f64::max(count, 1.0)).sqrt().max(f64::MIN_POSITIVE.sqrt());
+        }
+        units
+    }
+
+    /// Pixel of a point in the colour camera's frame, and how its column and row move with each unknown.
+    pub fn rows(&self, point: &Vector3<f64>, camera: &RigCamera) -> Option<([f64; 2], [Vector; 2])> {
+        let (pixel, gradient) = camera.project_with_gradient([point.x, point.y, point.z])?;
+        let arm = point - self.middle;
+        let from_centre = [pixel[0] - camera.cx, pixel[1] - camera.cy];
+        let rows = [0, 1].map(|axis| {
+            let direction = Vector3::from(gradient[axis]);
+            let turn = arm.cross(&direction);
+            Vector::from([turn.x, turn.y, turn.z, direction.x, direction.y, direction.z, 0.0, from_centre[axis]])
+                .component_mul(&self.of)
+        });
+        Some((pixel, rows))
+    }
+
+    /// The state after a step.
+    pub fn step(&self, state: &State, step: &Vector) -> State {
+        let step = step.component_mul(&self.of);
+        let rotation = Rotation3::new(step.fixed_rows::<3>(0).into_owned()).into_inner();
+        let shift: Vector3<f64> = step.fixed_rows::<3>(3).into();
+        let translation = self.middle + shift - rotation * self.middle;
+        State {
+            pose: Similarity { scale: 1.0, rotation, translation }.after(&state.pose).orthonormal(),
+            loss: state.loss + step[LOSS],
+            focal: state.focal * step[FOCAL].exp(),
+        }
+    }
+
+    /// The step from one state to another (the inverse of [`step`](Self::step)).
+    pub fn between(&self, from: &State, to: &State) -> Vector {
+        let turn = Rotation3::from_matrix_unchecked(to.pose.rotation * from.pose.rotation.transpose());
+        let rotation = turn.scaled_axis();
+        let moved = to.pose.apply(from.pose.inverse().apply(self.middle)) - self.middle;
+        Vector::from([
+            rotation.x,
+            rotation.y,
+            rotation.z,
+            moved.x,
+            moved.y,
+            moved.z,
+            to.loss - from.loss,
+            (to.focal / from.focal).ln(),
+        ])
+        .component_div(&self.of)
+    }
+}

@@ -1,0 +1,208 @@
+//! What is said of a candidate, with numbers.
+//!
+//! A calibration is worth what its reprojection error at the scene's depth is: a turn and a shift that cancel there do no
+//! harm there. The error of a candidate is the distance of its pixels from those of the estimate, root mean square over
+//! the scene, and uncertain as the estimate is: its interval holds 95 % of Student's distribution about the estimate, with
+//! as many degrees of freedom as tiles have a say beyond the unknowns. If all of the interval is below the tolerance,
+//! the candidate is consistent; if all of it is above, it is off; else the scene can't tell. So both words are false in
+//! at most one case of forty where the covariance is right.
+
+use nalgebra::{SMatrix, SVector, Vector3};
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
+
+use super::unknowns::{Matrix, POSE, State, Units};
+use crate::text::Fixed;
+
+/// Reprojection error that passes, pixels of an image 640 wide: a third of a degree at a usual focal length, what a
+/// careful calibration by hand reaches and colours of points at rims need.
+pub(super) const TOLERANCE: f64 = 3.0;
+/// Draws from the estimate's distribution; its quantiles are then certain to a twentieth of their sigma.
+const DRAWS: usize = 2000;
+const SEED: u64 = 1;
+/// Share of draws inside an interval.
+const INSIDE: f64 = 0.95;
+/// Degrees of freedom at the least: fewer have no variance.
+const FEWEST_DEGREES: f64 = 3.0;
+/// Above this an axis is not seen by a scene: three sigmas of the prior's turn, or shift.
+const UNSEEN_DEGREES: f64 = 2.0;
+const UNSEEN_METRES: f64 = 0.03;
+
+type PoseVector = SVector<f64, POSE>;
+type PoseMatrix = SMatrix<f64, POSE, POSE>;
+
+/// What can be said.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CheckVerdict {
+    /// Within the tolerance.
+    Consistent,
+    /// Beyond it.
+    Off,
+    /// The scene can't tell.
+    Undecided,
+}
+
+/// Expected reprojection error, pixels of the colour image, and its 95 % interval.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Health {
+    /// Root mean square.
+    pub pixels: f64,
+    /// From, to.
+    pub interval: [f64; 2],
+}
+
+/// What is said of one candidate.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CandidateReport {
+    /// Its name.
+    pub name: String,
+    /// The word.
+    pub verdict: CheckVerdict,
+    /// The sentence.
+    pub reason: String,
+    /// Turn from the estimate.
+    pub off_degrees: f64,
+    /// Shift of the scene's middle from the estimate's.
+    pub off_millimetres: f64,
+    /// Its reprojection error.
+    pub health: Health,
+    /// Probability of a distance as large, were it right.
+    pub probability: f64,
+}
+
+/// The estimate's distribution in pixels of the scene.
+pub(super) struct Judge {
+    units: Units,
+    /// Mean squared motion of the scene's pixels, original pixels.
+    motion: PoseMatrix,
+    inverse: PoseMatrix,
+    draws: Vec<PoseVector>,
+    tolerance: f64,
+}
+
+impl Judge {
+    /// `cloud` in the colour camera's frame; `pixel` of the original image in one worked on; `width` of the original.
+    pub fn new(
+        units: Units,
+        camera: &super::RigCamera,
+        cloud: &[Vector3<f64>],
+        covariance: &Matrix,
+        tiles: usize,
+        pixel: f64,
+        width: f64,
+    ) -> Self {
+        let mut motion = PoseMatrix::zeros();
+        let mut count = 0.0;
+        for (_, rows) in cloud.iter().filter_map(|point| units.rows(point, camera)) {
+            for row in rows {
+                let row: PoseVector = row.fixed_rows::<POSE>(0).into();
+                motion += row * row.transpose();
+            }
+            count += 1.0;
+        }
+        motion *= pixel * pixel / f64::max(count, 1.0);
+        let covariance: PoseMatrix = covariance.fixed_view::<POSE, POSE>(0, 0).into();
+        let root = covariance.cholesky().map_or_else(PoseMatrix::zeros, |c| c.l());
+        let freedom = (tiles as f64 - POSE as f64).max(FEWEST_DEGREES);
+        let mut random = ChaCha8Rng::seed_from_u64(SEED);
+        let mut normal = || (0..12).map(|_| f64::from(random.next_u32()) / f64::from(u32::MAX)).sum::<f64>() - 6.0;
+        let draws = (0..DRAWS)
+            .map(|_| {
+                // Student's: a normal over the root of a mean square; chi-square by Wilson and Hilferty (1931).
+                let h = 2.0 / (9.0 * freedom);
+                let mean_square = (1.0 - h + h.sqrt() * normal()).powi(3).max(1e-3);
+                root * PoseVector::from_fn(|_, _| normal()) / mean_square.sqrt()
+            })
+            .collect();
+        let inverse = covariance.try_inverse().unwrap_or_else(PoseMatrix::zeros);
+        Self { units, motion, inverse, draws, tolerance: TOLERANCE * (width / 640.0).max(1.0) }
+    }
+
+    /// The error of a state that is `offset` from the estimate.
+    fn health(&self, offset: &PoseVector) -> Health {
+        let mut errors: Vec<f32> = self
+            .draws
+            .iter()
+            .map(|draw| {
+                let off = offset + draw;
+                off.dot(&(self.motion * off)).max(0.0).sqrt() as f32
+            })
+            .collect();
+        let mean = errors.iter().map(|error| f64::from(*error).powi(2)).sum::<f64>() / errors.len() as f64;
+        let mut at = |share: f64| f64::from(crate::numeric::quantile(&mut errors, share));
+        let tail = (1.0 - INSIDE) / 2.0;
+        Health { pixels: mean.sqrt(), interval: [at(tail), at(1.0 - tail)] }
+    }
+
+    /// The estimate's own.
+    pub fn estimate(&self) -> Health {
+        self.health(&PoseVector::zeros())
+    }
+
+    /// Sigmas of a pose: degrees about x, y, z, millimetres along them.
+    pub fn weakest(&self, covariance: &Matrix) -> Option<&'static str> {
+        const NAMES: [&str; POSE] =
+            ["turns about x", "turns about y", "turns about z", "shifts along x", "shifts along y", "shifts along z"];
+        let worst = |k: usize| {
+            let sigma = covariance[(k, k)].sqrt() * self.units.of[k];
+            sigma / if k < 3 { UNSEEN_DEGREES.to_radians() } else { UNSEEN_METRES }
+        };
+        let k = (0..POSE).max_by(|&a, &b| worst(a).total_cmp(&worst(b)))?;
+        (worst(k) > 1.0).then_some(NAMES[k])
+    }
+
+    /// The verdict on a candidate.
+    pub fn judge(&self, name: &str, estimate: &State, candidate: &State, weakest: Option<&str>) -> CandidateReport {
+        let between = self.units.between(estimate, candidate);
+        let offset: PoseVector = between.fixed_rows::<POSE>(0).into();
+        let metric = between.component_mul(&self.units.of);
+        let turn = metric.fixed_rows::<3>(0).norm().to_degrees();
+        let shift = metric.fixed_rows::<3>(3).norm() * 1000.0;
+        let health = self.health(&offset);
+        let distance = offset.dot(&(self.inverse * offset));
+        let farther = self.draws.iter().filter(|draw| draw.dot(&(self.inverse * **draw)) > distance).count();
+        let [low, high] = health.interval;
+        let verdict = if high <= self.tolerance {
+            CheckVerdict::Consistent
+        } else if low > self.tolerance {
+            CheckVerdict::Off
+        } else {
+            CheckVerdict::Undecided
+        };
+        let pixels = format!(
+            "{} px at the scene's depth (95 %: {} to {})",
+            Fixed(health.pixels, 1),
+            Fixed(low, 1),
+            Fixed(high, 1)
+        );
+        let passes = Fixed(self.tolerance, 1);
+        let axis = |rows: [f64; 3]| {
+            ["x", "y", "z"][(0..3).max_by(|&a, &b| rows[a].abs().total_cmp(&rows[b].abs())).unwrap_or(0)]
+        };
+        let (about, along) = (axis([metric[0], metric[1], metric[2]]), axis([metric[3], metric[4], metric[5]]));
+        let off = format!(
+            "{} degrees, most of it about {about}, and {} mm, most of it along {along}",
+            Fixed(turn, 2),
+            Fixed(shift, 1)
+        );
+        let reason = match verdict {
+            CheckVerdict::Consistent => format!("Consistent: {pixels} off; up to {passes} px pass."),
+            CheckVerdict::Off => format!("Off by about {off}: {pixels}; up to {passes} px pass."),
+            CheckVerdict::Undecided => match weakest {
+                Some(weakest) => format!(
+                    "This scene can't tell, because it hardly sees {weakest}: {pixels}, around the {passes} px that pass."
+                ),
+                None => format!("This scene can't tell: {pixels}, around the {passes} px that pass."),
+            },
+        };
+        CandidateReport {
+            name: name.to_owned(),
+            verdict,
+            reason,
+            off_degrees: turn,
+            off_millimetres: shift,
+            health,
+            probability: farther as f64 / self.draws.len() as f64,
+        }
+    }
+}

@@ -1,0 +1,125 @@
+//! The light of a frame: a natural light of order 2, or a part of it and one or two lamps with cast shadows.
+
+use nalgebra::{Matrix3, Rotation3, Vector3};
+
+use super::raster::{Hits, Rays};
+use super::stage::Stage;
+use crate::light::Light;
+use crate::pose::Similarity;
+use crate::scenes::flaws::Chance;
+use crate::scenes::lights;
+use crate::view::Size;
+
+/// Share of frames with lamps.
+const LAMP_SHARE: f64 = 0.5;
+/// What is left of the natural light beside lamps.
+const AMBIENT: [f64; 2] = [0.15, 0.4];
+/// Samples of a side of a shadow map, and the tangent of half the angle that it covers.
+const MAP_SIDE: usize = 1536;
+const MAP_REACH: f64 = 1.2;
+/// A point is in the shadow of what is nearer to the lamp by this share of its distance ..
+const SHADOW_BIAS: f64 = 0.004;
+/// .. after a step of so many metres off its surface.
+const SURFACE_STEP: f64 = 0.004;
+
+/// What lights the stage.
+pub struct Illumination {
+    sky: Light,
+    /// From normals of the world to those of the natural light.
+    turn: Matrix3<f64>,
+    sky_share: f64,
+    lamps: Vec<Lamp>,
+}
+
+struct Lamp {
+    position: Vector3<f64>,
+    /// At the distance of the scene's middle.
+    colour: [f64; 3],
+    distance: f64,
+    placement: Similarity,
+    rays: Rays,
+    nearest: Hits,
+}
+
+impl Illumination {
+    /// A light for a stage whose middle is `target`.
+    pub fn random(stage: &Stage, target: Vector3<f64>, chance: &mut Chance) -> Self {
+        let sky = [lights::COLOURFUL, lights::WINDOW, lights::OVERCAST][chance.below(3)];
+        // Coloured lamps at half their saturation: whole scenes are rarely so colourful.
+        let sky = if sky == lights::COLOURFUL { towards_grey(&sky) } else { sky };
+        let turn = Rotation3::from_axis_angle(&Vector3::y_axis(), chance.between([-1.0, 1.0])).into_inner();
+        let lamps = if chance.uniform() < LAMP_SHARE { 1 + chance.below(2) } else { 0 };
+        let sky_share = if lamps > 0 { chance.between(AMBIENT) } else { 1.0 };
+        let lamps = (0..lamps).map(|_| Lamp::random(stage, target, chance)).collect();
+        Self { sky, turn, sky_share, lamps }
+    }
+
+    /// Light of the sky by the normal.
+    pub fn sky(&self, normal: Vector3<f64>) -> [f64; 3] {
+        self.sky.shade((self.turn * normal).into()).map(|log| self.sky_share * log.exp())
+    }
+
+    /// Adds the light of the lamps at a point.
+    pub fn add_lamps(&self, point: Vector3<f64>, normal: Vector3<f64>, light: &mut [f64; 3]) {
+        for lamp in &self.lamps {
+            let share = lamp.share(point, normal);
+            light.iter_mut().zip(lamp.colour).for_each(|(sum, colour)| *sum += share * colour);
+        }
+    }
+
+    /// Whether a point lies in the shadow of each lamp.
+    #[cfg(test)]
+    pub fn shadows(&self, point: Vector3<f64>, normal: Vector3<f64>) -> Vec<bool> {
+        self.lamps.iter().map(|lamp| lamp.share(point, normal) <= 0.0).collect()
+    }
+
+    #[cfg(test)]
+    pub fn lamp_positions(&self) -> Vec<Vector3<f64>> {
+        self.lamps.iter().map(|lamp| lamp.position).collect()
+    }
+}
+
+impl Lamp {
+    /// Above and beside the rig, or behind it.
+    fn random(stage: &Stage, target: Vector3<f64>, chance: &mut Chance) -> Self {
+        let side = if chance.uniform() < 0.5 { -1.0 } else { 1.0 };
+        let reach = target.norm();
+        let position = Vector3::new(
+            side * chance.between([0.2, 0.9]) * reach,
+            -chance.between([0.2, 0.6]) * reach.min(1.6),
+            chance.between([-0.4, 0.3]) * reach,
+        );
+        let forward = (target - position).normalize();
+        let rotation = Rotation3::face_towards(&forward, &Vector3::y()).inverse().into_inner();
+        let placement = Similarity { scale: 1.0, rotation, translation: -(rotation * position) };
+        let size = Size { width: MAP_SIDE, height: MAP_SIDE };
+        let rays = Rays::straight(0.5 * MAP_SIDE as f64 / MAP_REACH, size);
+        let nearest = rays.meet(stage, &placement);
+        let warmth = chance.between([-0.15, 0.15]);
+        let colour = [1.0 + warmth, 1.0, 1.0 - warmth].map(|part| 0.8 * part);
+        Self { position, colour, distance: (target - position).norm(), placement, rays, nearest }
+    }
+
+    /// Light that arrives, relative to a surface that faces the lamp in the scene's middle.
+    fn share(&self, point: Vector3<f64>, normal: Vector3<f64>) -> f64 {
+        let to_lamp = self.position - point;
+        let cosine = normal.dot(&to_lamp) / to_lamp.norm();
+        if cosine <= 0.0 || self.hides(point + SURFACE_STEP * normal) {
+            return 0.0;
+        }
+        cosine * self.distance * self.distance / to_lamp.norm_squared()
+    }
+
+    fn hides(&self, point: Vector3<f64>) -> bool {
+        let point = self.placement.apply(point);
+        let Some([column, row]) = self.rays.position(point) else { return false };
+        let Some(index) = self.rays.size.nearest(column as f32, row as f32) else { return false };
+        f64::from(self.nearest.depth[index]) < point.z * (1.0 - SHADOW_BIAS)
+    }
+}
+
+/// Half way to the mean of its channels.
+fn towards_grey(light: &Light) -> Light {
+    let [r, g, b] = light.0;
+    Light(light.0.map(|channel| std::array::from_fn(|k| 0.5 * channel[k] + (r[k] + g[k] + b[k]) / 6.0)))
+}

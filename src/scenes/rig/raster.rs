@@ -1,0 +1,221 @@
+//! Which triangle each ray of a camera meets first: a z-buffer in the plane of the rays' slopes, where straight lines
+//! stay straight whatever the lens does.
+//!
+//! Limits: triangles that reach behind the near plane or beyond the fold of the lens are not seen, so that surfaces
+//! around the camera are cut into small ones (`solids`).
+
+use nalgebra::Vector3;
+
+use super::stage::Stage;
+use crate::calibration::{Lens, RigCamera};
+use crate::pose::Similarity;
+use crate::view::Size;
+
+/// Nearest depth that is drawn, metres.
+const NEAR: f64 = 0.1;
+/// How far outside a triangle a ray may pass, in barycentric coordinates: rounding must not open a crack between two
+/// triangles.
+const EDGE_TOLERANCE: f64 = 1e-9;
+/// Rays are found exactly at every so many samples of a row, and by cubic polynomials in between: 1e-5 pixels off.
+const NODES: usize = 16;
+/// Samples around the corners of a triangle in which it may show: a constant for rounding, and a share of its size for
+/// the bend of its edges behind a lens.
+const MARGIN: f64 = 0.5;
+const MARGIN_SHARE: f64 = 0.05;
+/// A ray that meets nothing.
+pub const NOTHING: u32 = u32::MAX;
+
+/// The rays of a camera, `samples` x `samples` for each pixel.
+pub struct Rays {
+    camera: RigCamera,
+    samples: f64,
+    /// Of the samples.
+    pub size: Size,
+    /// x / z and y / z; NaN where the lens lets no ray through.
+    slopes: Vec<[f32; 2]>,
+    /// Least and largest of either slope: what lies beyond is not seen, wherever the lens model would put it.
+    bounds: [[f64; 2]; 2],
+}
+
+/// What the rays of a camera meet first.
+pub struct Hits {
+    /// Index of the triangle, or [`NOTHING`].
+    pub triangles: Vec<u32>,
+    /// Depth along z in metres, infinite where there is nothing.
+    pub depth: Vec<f32>,
+}
+
+/// A point that a ray meets, in the frame of the stage.
+pub struct Hit {
+    pub triangle: usize,
+    pub point: Vector3<f64>,
+    /// Unit, facing the camera.
+    pub normal: Vector3<f64>,
+    /// Of the angle between normal and line of sight.
+    pub cosine: f64,
+}
+
+impl Rays {
+    pub fn new(camera: &RigCamera, size: Size, samples: usize) -> Self {
+        let size = Size { width: size.width * samples, height: size.height * samples };
+        let nowhere = [f64::INFINITY, f64::NEG_INFINITY];
+        let slopes = Vec::with_capacity(size.len());
+        let mut rays = Self { camera: *camera, samples: samples as f64, size, slopes, bounds: [nowhere; 2] };
+        let count = size.width.div_ceil(NODES) + 3;
+        let mut nodes = vec![[0.0; 2]; count];
+        for row in 0..size.height {
+            // One node before the first sample, two beyond the last.
+            for (k, node) in nodes.iter_mut().enumerate() {
+                let column = NODES as f64 * (k as f64 - 1.0);
+                *node = rays.slopes_at([column, row as f64]).unwrap_or([f64::NAN; 2]);
+            }
+            for column in 0..size.width {
+                let share = (column % NODES) as f64 / NODES as f64;
+                let near = &nodes[column / NODES..column / NODES + 4];
+                let weights = cubic(share);
+                rays.slopes.push([0, 1].map(|axis| (0..4).map(|k| weights[k] * near[k][axis]).sum::<f64>() as f32));
+            }
+        }
+        for (axis, [least, largest]) in rays.bounds.iter_mut().enumerate() {
+            // The least of a number and NaN is the number.
+            for slope in rays.slopes.iter().map(|slopes| f64::from(slopes[axis])) {
+                (*least, *largest) = (least.min(slope), largest.max(slope));
+            }
+        }
+        rays
+    }
+
+    /// A view without a lens, of one sample a pixel: that of a lamp or a projector.
+    pub fn straight(focal_length: f64, size: Size) -> Self {
+        let [cx, cy] = [size.width, size.height].map(|side| 0.5 * (side as f64 - 1.0));
+        Self::new(&RigCamera { fx: focal_length, fy: focal_length, cx, cy, lens: Lens::None }, size, 1)
+    }
+
+    /// Slopes of the ray through a position among the samples.
+    fn slopes_at(&self, position: [f64; 2]) -> Option<[f64; 2]> {
+        let pixel = position.map(|part| (part + 0.5) / self.samples - 0.5);
+        let [x, y, z] = self.camera.ray(pixel)?;
+        (z > 0.0).then(|| [x / z, y / z])
+    }
+
+    /// Where among the samples a point of the camera's frame is seen.
+    pub fn position(&self, point: Vector3<f64>) -> Option<[f64; 2]> {
+        let pixel = self.camera.project(point.into()).filter(|_| point.z > NEAR)?;
+        Some(pixel.map(|part| (part + 0.5) * self.samples - 0.5))
+    }
+
+    /// What is seen of a stage that `placement` puts into the camera's frame.
+    pub fn meet(&self, stage: &Stage, placement: &Similarity) -> Hits {
+        let mut hits = Hits { triangles: vec![NOTHING; self.size.len()], depth: vec![f32::INFINITY; self.size.len()] };
+        let corners: Vec<Option<Corner>> = stage.points.iter().map(|&p| self.corner(placement.apply(p))).collect();
+        for (index, triangle) in stage.triangles.iter().enumerate() {
+            if let [Some(a), Some(b), Some(c)] = triangle.corners.map(|corner| corners[corner as usize].as_ref()) {
+                self.draw([a, b, c], index as u32, &mut hits);
+            }
+        }
+        hits
+    }
+
+    fn corner(&self, point: Vector3<f64>) -> Option<Corner> {
+        let position = self.position(point)?;
+        let inverse = 1.0 / point.z;
+        Some(Corner { slopes: [point.x * inverse, point.y * inverse], inverse, position })
+    }
+
+    fn draw(&self, corners: [&Corner; 3], triangle: u32, hits: &mut Hits) {
+        if (0..2).any(|axis| {
+            let [a, b, c] = corners.map(|corner| corner.slopes[axis]);
+            let [least, largest] = self.bounds[axis];
+            a.max(b).max(c) < least || a.min(b).min(c) > largest
+        }) {
+            return;
+        }
+        let Some([first, second, third]) = barycentric(corners.map(|corner| corner.slopes)) else { return };
+        let inverse: [f64; 3] = std::array::from_fn(|k| {
+            first[k] * corners[0].inverse + second[k] * corners[1].inverse + third[k] * corners[2].inverse
+        });
+        let columns = span(corners.map(|corner| corner.position[0]), self.size.width);
+        if columns.is_empty() {
+            return;
+        }
+        let at = |plane: &[f64; 3], [x, y]: [f64; 2]| plane[0] * x + plane[1] * y + plane[2];
+        for row in span(corners.map(|corner| corner.position[1]), self.size.height) {
+            let line = self.size.index(columns.start, row)..self.size.index(columns.end, row);
+            let found = hits.depth[line.clone()].iter_mut().zip(&mut hits.triangles[line.clone()]);
+            for (slopes, (depth, seen)) in self.slopes[line].iter().zip(found) {
+                let slopes = slopes.map(f64::from);
+                let least = at(&first, slopes).min(at(&second, slopes)).min(at(&third, slopes));
+                if least >= -EDGE_TOLERANCE {
+                    let met = (1.0 / at(&inverse, slopes)) as f32;
+                    if met < *depth {
+                        (*depth, *seen) = (met, triangle);
+                    }
+                }
+            }
+        }
+    }
+
+    /// The point that sample `index` sees, by what `meet` found with the same placement.
+    pub fn hit(&self, stage: &Stage, placement: &Similarity, hits: &Hits, index: usize) -> Option<Hit> {
+        let triangle = hits.triangles[index];
+        if triangle == NOTHING {
+            return None;
+        }
+        let [x, y] = self.slopes[index].map(f64::from);
+        let back = placement.inverse();
+        let sight = Vector3::new(x, y, 1.0);
+        let point = back.apply(f64::from(hits.depth[index]) * sight);
+        let corners = stage.triangles[triangle as usize].corners.map(|corner| corner as usize);
+        let normal = normal_at(corners.map(|k| stage.points[k]), corners.map(|k| stage.normals[k]), point);
+        let cosine = -normal.dot(&(back.rotation * sight)) / sight.norm();
+        Some(Hit { triangle: triangle as usize, point, normal: normal * cosine.signum(), cosine: cosine.abs() })
+    }
+}
+
+/// A corner of a triangle in the camera's frame.
+struct Corner {
+    slopes: [f64; 2],
+    /// 1 / z, which is linear over the slopes.
+    inverse: f64,
+    /// Among the samples.
+    position: [f64; 2],
+}
+
+/// The barycentric coordinates of a triangle as linear functions a x + b y + c; `None` where it is seen edge on.
+fn barycentric([a, b, c]: [[f64; 2]; 3]) -> Option<[[f64; 3]; 3]> {
+    let area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+    let side = |from: [f64; 2], to: [f64; 2]| {
+        [(from[1] - to[1]) / area, (to[0] - from[0]) / area, (from[0] * to[1] - from[1] * to[0]) / area]
+    };
+    (area.abs() > f64::MIN_POSITIVE).then(|| [side(b, c), side(c, a), side(a, b)])
+}
+
+/// The interpolated unit normal at a point of a triangle.
+fn normal_at([a, b, c]: [Vector3<f64>; 3], normals: [Vector3<f64>; 3], point: Vector3<f64>) -> Vector3<f64> {
+    let across = (b - a).cross(&(c - a));
+    let area = across.norm_squared().max(f64::MIN_POSITIVE);
+    let second = (point - a).cross(&(c - a)).dot(&across) / area;
+    let third = (b - a).cross(&(point - a)).dot(&across) / area;
+    let normal = (1.0 - second - third) * normals[0] + second * normals[1] + third * normals[2];
+    normal.try_normalize(0.0).unwrap_or_else(|| normals[0])
+}
+
+/// Weights of Lagrange's cubic through values at -1, 0, 1, 2.
+fn cubic(t: f64) -> [f64; 4] {
+    [
+        -t * (t - 1.0) * (t - 2.0) / 6.0,
+        (t + 1.0) * (t - 1.0) * (t - 2.0) / 2.0,
+        -(t + 1.0) * t * (t - 2.0) / 2.0,
+        (t + 1.0) * t * (t - 1.0) / 6.0,
+    ]
+}
+
+/// Samples of a side of `length` that a triangle with these coordinates may cover.
+fn span(coordinates: [f64; 3], length: usize) -> std::ops::Range<usize> {
+    let [a, b, c] = coordinates;
+    let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+    let margin = MARGIN + MARGIN_SHARE * (high - low);
+    // Before the casts, which would saturate.
+    let within = |position: f64| position.clamp(0.0, length as f64) as usize;
+    within((low - margin).ceil())..within((high + margin).floor() + 1.0)
+}

@@ -1,0 +1,3 @@
+import type { CheckReport } from "../../pkg/index.js";
+
+export function report(): CheckReport;
