@@ -19,7 +19,8 @@ export function poseOf(rotation: readonly number[], translation: readonly number
 
 export const identity: Pose = poseOf([1, 0, 0, 0, 1, 0, 0, 0, 1], [0, 0, 0]);
 
-const times = (a: readonly number[], b: readonly number[]): number[] =>
+/** The product of two rotations. */
+export const times = (a: readonly number[], b: readonly number[]): number[] =>
   Array.from({ length: 9 }, (_, i) => [0, 1, 2].reduce((sum, k) => sum + at(a, 3 * Math.floor(i / 3) + k) * at(b, 3 * k + (i % 3)), 0));
 const transposed = (a: readonly number[]): number[] => Array.from({ length: 9 }, (_, i) => at(a, 3 * (i % 3) + Math.floor(i / 3)));
 const turned = (a: readonly number[], v: readonly number[]): number[] => [0, 1, 2].map((row) => [0, 1, 2].reduce((sum, k) => sum + at(a, 3 * row + k) * at(v, k), 0));

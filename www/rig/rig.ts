@@ -325,9 +325,9 @@ export class Rig {
 
   get guessed(): string[] {
     const files = new Set(this.complete.map(({ depth }) => depth));
+    // Of a colour camera that is not known the check itself warns.
     const units = this.items.filter(({ id, summary }) => files.has(id) && summary?.guessed.includes("unit")).map(({ name }) => `the unit of ${name}`);
-    const colour = this.complete.length > 0 && !this.cameraOf("colour") ? ["the colour camera's focal length"] : [];
-    return [...units, ...colour];
+    return units;
   }
 
   plans(): FramePlan[] {

@@ -33,9 +33,12 @@ export function headline({ report, estimateOnly, guessed }: Run): { word: string
   const { pixels, interval: range } = report.health;
   if (estimateOnly) return { word: "Estimated", tone: "open", sentence: `A calibration was found; expected reprojection error ${px(pixels)} (95 %: ${interval(range)}) at the scene's depth.` };
   const { word, tone } = WORDS[report.verdict];
+  const [own] = Object.values(report.candidates);
   const isOpen = guessed.length > 0 || report.warnings.length > 0;
-  if (!isOpen || report.verdict === "undecided") return { word, tone, sentence: report.reason };
-  return { word: report.verdict === "consistent" ? "Settled, but check" : "Off, but check", tone: report.verdict === "off" ? "wrong" : "open", sentence: report.reason };
+  // The check itself calls a consistent candidate undecided where it warns.
+  if (isOpen && own?.verdict === "consistent") return { word: "Settled, but check", tone: "open", sentence: own.reason };
+  if (isOpen && report.verdict === "off") return { word: "Off, but check", tone, sentence: report.reason };
+  return { word, tone, sentence: report.reason };
 }
 
 const AXES = ["left or right", "up or down", "to or fro"];

@@ -1,12 +1,11 @@
 /** The thread that reads files and runs the check. It keeps all pixels; the page gets summaries, pictures and numbers. */
 
-import { checkCalibration, type CheckFrame } from "../../pkg/index.js";
+import { checkCalibration, projectFrame, type CheckFrame } from "../../pkg/index.js";
 import { faultOf } from "../engine/fault";
 import { restrictDepth, restrictImage } from "./restrict";
 import { loadExample } from "./example";
 import { readRigFile, readRigFolder, type RigReading } from "./files";
 import { picture } from "./pictures";
-import { projectFrame } from "./project";
 import type { Answer, Assembly, CallKind, Calls, FramePlan, Request, Summary } from "./protocol";
 
 const MOST_WORKERS = 4;
