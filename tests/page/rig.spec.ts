@@ -169,7 +169,7 @@ test("a verdict comes with its numbers, curves, shares and advice", async ({ lab
   await expect(page.locator(".rig-calibrations")).toContainText("1.2 mm");
   await expect(page.locator(".rig-calibrations")).toContainText("10.70 px");
   await expect(page.locator(".rig-curves figure")).toHaveCount(6);
-  await expect(page.locator(".rig-curves")).toContainText(/Least at −?\d+\.\d+°; 95 %: /);
+  await expect(page.locator(".rig-curves")).toContainText(/Least at −?\d+\.\d+°; found to ± \d+\.\d+° \(95 %\)\./);
   await expect(page.getByRole("row", { name: /frame 1 50 %/ })).toBeVisible();
   expect(lab.complaints).toEqual([]);
 });
@@ -270,6 +270,8 @@ test("the example is checked by the package itself", async ({ lab, page }) => {
   // It was made 2 degrees off.
   expect(degrees).toBeGreaterThan(1);
   expect(degrees).toBeLessThan(3);
+  const rendered = page.locator(".rig-calibrations tbody tr").filter({ has: page.getByRole("rowheader", { name: "as rendered" }) });
+  await expect(rendered).not.toContainText("Off");
   await expect(page.locator(".rig-curves figure")).toHaveCount(6);
   expect(lab.complaints).toEqual([]);
 });

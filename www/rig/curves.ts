@@ -19,8 +19,10 @@ const axes: Record<Axis, { title: string; unit: string }> = {
   tz: { title: "Shift along z (to and fro)", unit: "mm" },
 };
 const tokens: Record<string, string> = { shading: "series-1", edges: "series-3", information: "series-2", silhouette: "series-4" };
-/** Half the 95 % quantile of chi squared with one degree of freedom: what may be lost within the 95 % interval. */
-const WITHIN = 1.92;
+/** A curve that loses less than this is shown as flat as it is. */
+const FLAT = 4;
+/** Sigmas to each side of a 95 % interval. */
+const WITHIN = 1.96;
 
 export class SensitivityCharts {
   readonly #keys = make("p", { class: "rig-curve-keys" });
@@ -29,10 +31,12 @@ export class SensitivityCharts {
   #plots: uPlot[] = [];
   #observers: ResizeObserver[] = [];
   #shown: readonly Sensitivity[] = [];
+  #covariance: readonly number[] = [];
 
-  show(sensitivity: readonly Sensitivity[]): void {
+  show({ sensitivity, covariance }: CheckReport): void {
     if (this.#shown === sensitivity) return;
     this.#shown = sensitivity;
+    this.#covariance = covariance;
     this.#build();
   }
 
@@ -60,12 +64,12 @@ export class SensitivityCharts {
     const { title, unit } = axes[axis];
     const { xs, lines, total } = lossesOf(curves);
     const best = total.indexOf(Math.min(...total));
-    const inside = intervalOf(xs, total, best);
     const place = xs[best] ?? 0;
+    const reach = certainty(this.#covariance, axis);
+    const inside: [number, number] = [Math.max(xs[0] ?? 0, -reach), Math.min(xs.at(-1) ?? 0, reach)];
     const [digits, gap] = unit === "mm" ? [1, " "] : [2, ""];
-    const width = `${decimals(inside[0], digits)} to ${decimals(inside[1], digits)}`;
     const box = make("div", { class: "chart" });
-    const words = `Least at ${decimals(place, digits)}${gap}${unit}; 95 %: ${width}${gap}${unit}.`;
+    const words = `Least at ${decimals(place, digits)}${gap}${unit}; found to ± ${decimals(reach, digits)}${gap}${unit} (95 %).`;
     this.#figures.append(make("figure", {}, make("figcaption", {}, make("strong", {}, title), make("span", { class: "soft" }, words)), box));
     const line = { stroke: ink("line"), width: 1 };
     const style: uPlot.Axis = { stroke: ink("ink-soft"), font: "11px system-ui, sans-serif", grid: line, ticks: { ...line, size: 4 } };
@@ -75,7 +79,7 @@ export class SensitivityCharts {
         ...size(),
         padding: [8, 8, 0, 0],
         cursor: { y: false, drag: { x: false, y: false } },
-        scales: { x: { time: false }, y: { range: (_plot, _min, max) => [0, Math.max(max ?? 1, 2 * WITHIN)] } },
+        scales: { x: { time: false }, y: { range: (_plot, _min, max) => [0, Math.max(max ?? 1, FLAT)] } },
         axes: [{ ...style, size: 26, values: (_, splits) => splits.map((value) => `${value}`) }, { ...style, size: 44, values: (_, splits) => splits.map((value) => (value >= 1e4 ? short(value) : `${value}`)) }],
         legend: { show: false },
         series: [
@@ -107,17 +111,11 @@ function lossesOf(curves: readonly Sensitivity[]): { xs: number[]; lines: { cue:
   return { xs, lines: same.map(({ cue, values }) => ({ cue, losses: lost(values) })), total: lost(sum) };
 }
 
-/** Where the loss passes the limit on either side of its least, between two offsets along a line. */
-function intervalOf(xs: readonly number[], total: readonly number[], best: number): [number, number] {
-  const side = (step: 1 | -1): number => {
-    for (let i = best; i + step >= 0 && i + step < xs.length; i += step) {
-      const [here, there] = [total[i] ?? 0, total[i + step] ?? 0];
-      if (there <= WITHIN) continue;
-      return (xs[i] ?? 0) + ((xs[i + step] ?? 0) - (xs[i] ?? 0)) * Math.min(1, (WITHIN - here) / (there - here));
-    }
-    return (step < 0 ? xs[0] : xs.at(-1)) ?? 0;
-  };
-  return [side(-1), side(1)];
+/** How far to each side of the estimate 95 % reach, in degrees or millimetres: of the covariance, which knows what the cues share. */
+function certainty(covariance: readonly number[], axis: Axis): number {
+  const index = (Object.keys(axes) as Axis[]).indexOf(axis);
+  const sigma = Math.sqrt(Math.max(0, covariance[7 * index] ?? 0));
+  return WITHIN * sigma * (index < 3 ? 180 / Math.PI : 1000);
 }
 
 function band({ ctx, bbox, valToPos }: uPlot, inside: readonly [number, number]): void {

@@ -134,7 +134,7 @@ export function candidatesTable({ report, estimateOnly }: Run): HTMLElement {
     { class: "rig-card" },
     make("h3", {}, "Calibrations"),
     make("p", { class: "soft" }, "Turn and shift are measured from the calibration found, at the scene's middle; the error is what to expect at the scene's depth, in pixels of the colour image."),
-    make("div", { class: "rig-scroll" }, make("table", { class: "rig-table rig-calibrations" }, make("thead", {}, make("tr", {}, ...head)), make("tbody", {}, ...row("found", ["the best fit"], "–", "–", health.pixels, health.interval, ""), ...(estimateOnly ? [] : list.flatMap(candidate))))),
+    make("div", { class: "rig-scroll rig-calibrations-card" }, make("table", { class: "rig-table rig-calibrations" }, make("thead", {}, make("tr", {}, ...head)), make("tbody", {}, ...row("found", ["the best fit"], "–", "–", health.pixels, health.interval, ""), ...(estimateOnly ? [] : list.flatMap(candidate))))),
   );
 }
 

@@ -45,7 +45,7 @@ export class VerdictStep {
     this.#overlay = new Overlay(rig);
     this.#run = press("Run the check", () => void this.start(), { class: "primary" });
     this.#cancel = press("Cancel", () => rig.session.cancel());
-    this.#curvesBox.append(make("h3", {}, "How sharply this scene tells each axis"), make("p", { class: "soft" }, "Log likelihood lost when the calibration found is moved: a narrow valley is a sure answer, a flat one says that this scene can't tell. The dot is the least, the band the 95 % interval."));
+    this.#curvesBox.append(make("h3", {}, "How sharply this scene tells each axis"), make("p", { class: "soft" }, "Log likelihood lost when the calibration found is moved: a narrow valley is a sure answer, a flat one says that this scene can't tell. The dot is the least of all cues together, the band what the answer is certain to (95 %)."));
     this.#results.append(this.#first, make("div", { class: "rig-column rig-pictures" }, this.#overlay.element, this.#curvesBox), this.#last);
     this.element.append(
       make("section", { class: "rig-card rig-run" }, make("div", { class: "rig-row" }, press("Back", goBack), this.#run, this.#cancel, this.#status, this.#progress), this.#cueChoice(), this.#alert, this.#stale),
@@ -124,7 +124,7 @@ export class VerdictStep {
     const { SensitivityCharts } = await import("./curves");
     if (!this.#curves) this.#curvesBox.append((this.#curves = new SensitivityCharts()).element);
     this.#curvesBox.hidden = run.report.sensitivity.length === 0;
-    this.#curves.show(run.report.sensitivity);
+    this.#curves.show(run.report);
   }
 
   #cueChoice(): HTMLElement {
