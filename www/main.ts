@@ -7,7 +7,7 @@ import { paces } from "./lab/player";
 import { defaults, fromLink, toLink, type Origin } from "./lab/settings";
 import { writeAddress } from "./lab/share";
 import { asksToPlay, placeOf, type Place } from "./place";
-import type { TablesPage } from "./tables/page";
+
 import { themeToggle } from "./theme";
 
 const button = (id: string, action: () => void): void => byId(id, HTMLButtonElement).addEventListener("click", action);
@@ -15,7 +15,23 @@ const button = (id: string, action: () => void): void => byId(id, HTMLButtonElem
 const lab = new Lab(placeOf(location.hash) === "lab" ? fromLink(location.hash) : defaults);
 const { player, store, gallery } = lab;
 const help = byId("help", HTMLDialogElement);
-let tables: TablesPage | undefined;
+
+/** A place beside the Lab. */
+interface Elsewhere {
+  open(hash: string): void;
+  leave(): void;
+  recolour(): void;
+  download(): void;
+}
+type OtherPlace = Exclude<Place, "lab">;
+
+/** Loaded when first asked for. */
+const loaders: Record<OtherPlace, () => Promise<new (main: HTMLElement) => Elsewhere>> = {
+  tables: async () => (await import("./tables/page")).TablesPage,
+  rig: async () => (await import("./rig/page")).RigPage,
+};
+const others: Partial<Record<OtherPlace, Elsewhere>> = {};
+
 const phone = matchMedia("(max-width: 45rem)");
 
 const openHelp = () => help.showModal();
@@ -30,12 +46,17 @@ button("stage-step", stage);
 button("reset", reset);
 button("undo", undo);
 button("defaults", () => store.resetToDefaults());
-button("export", () => (placeOf(location.hash) === "tables" ? tables?.download() : lab.download()));
+button("export", () => {
+  const place = placeOf(location.hash);
+  if (place === "lab") lab.download();
+  else others[place]?.download();
+});
 button("help-button", openHelp);
 button("link", () => void copyLink());
 themeToggle(byId("theme", HTMLButtonElement), () => {
   gallery.recolour();
-  tables?.recolour();
+  others.tables?.recolour();
+  others.rig?.recolour();
 });
 
 const pace = byId("pace", HTMLSelectElement);
@@ -68,6 +89,7 @@ async function copyLink(): Promise<void> {
 const places: Record<Place, { main: HTMLElement; link: HTMLAnchorElement; title: string }> = {
   lab: { main: byId("lab", HTMLElement), link: byId("to-lab", HTMLAnchorElement), title: "bimodal-stereo" },
   tables: { main: byId("tables", HTMLElement), link: byId("to-tables", HTMLAnchorElement), title: "Tables, bimodal-stereo" },
+  rig: { main: byId("rig", HTMLElement), link: byId("to-rig", HTMLAnchorElement), title: "Check a rig, bimodal-stereo" },
 };
 /** What belongs to the Lab outside its own part of the page. */
 const labOnly = [byId("bar", HTMLElement), byId("help-button", HTMLElement)];
@@ -89,14 +111,15 @@ function show(place: Place): void {
 async function arrive(): Promise<void> {
   const place = placeOf(location.hash);
   show(place);
-  if (place === "tables") {
+  if (place !== "tables") others.tables?.leave();
+  if (place !== "rig") others.rig?.leave();
+  if (place !== "lab") {
     lab.leave();
     // Never without the #, which would load the page anew.
     places.lab.link.href = `#${toLink(store.settings)}`;
-    await openTables();
+    await open(place);
     return;
   }
-  tables?.leave();
   const settings = fromLink(location.hash);
   if (!asksToPlay(location.hash)) return lab.enter(settings);
   if (byId("files-panel", HTMLElement).hidden === false) choose("sample");
@@ -105,19 +128,16 @@ async function arrive(): Promise<void> {
   await started;
 }
 
-/** Loaded when first asked for. */
-async function openTables(): Promise<void> {
-  const { main } = places.tables;
-  const loaded = await import("./tables/page").catch((error: unknown) => {
-    main.textContent = `The tables could not be loaded: ${error instanceof Error ? error.message : String(error)}`;
+async function open(place: OtherPlace): Promise<void> {
+  const { main, link } = places[place];
+  const loaded = await loaders[place]().catch((error: unknown) => {
+    main.textContent = `${link.textContent} could not be loaded: ${error instanceof Error ? error.message : String(error)}`;
   });
   // A visitor who has gone on in the meantime is not called back.
-  if (!loaded || placeOf(location.hash) !== "tables") return;
-  if (!tables) {
-    main.replaceChildren();
-    tables = new loaded.TablesPage(main);
-  }
-  tables.open(location.hash);
+  if (!loaded || placeOf(location.hash) !== place) return;
+  if (!others[place]) main.replaceChildren();
+  others[place] ??= new loaded(main);
+  others[place].open(location.hash);
 }
 
 // Where one is already there is nothing to go to, and nothing set there is to be lost.

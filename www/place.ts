@@ -1,10 +1,10 @@
 /** Which place of the page an address asks for. The Lab's own settings need no name: they have the address to themselves. */
 
-export type Place = "lab" | "tables";
+export type Place = "lab" | "tables" | "rig";
 
-const TABLES = /^#tables(?=&|$)/;
+const NAMED = /^#(tables|rig)(?=&|$)/;
 
-export const placeOf = (hash: string): Place => (TABLES.test(hash) ? "tables" : "lab");
+export const placeOf = (hash: string): Place => (NAMED.exec(hash)?.[1] as Place | undefined) ?? "lab";
 
 /** Beside its settings an address may ask that the run begins; once it has begun the word is taken out. */
 export const asksToPlay = (hash: string): boolean => new URLSearchParams(hash.replace(/^#/, "")).has("play");

@@ -1,0 +1,142 @@
+/** How sharply each cue tells each axis: the log likelihood that is lost when the calibration found is moved. Loaded with the first verdict. */
+
+import uPlot from "uplot";
+import "uplot/dist/uPlot.min.css";
+import type { CheckReport } from "../../pkg/index.js";
+import { ink, make } from "../dom";
+import { decimals, short } from "../draw/numbers";
+import { CUES } from "./verdict";
+
+type Sensitivity = CheckReport["sensitivity"][number];
+type Axis = Sensitivity["axis"];
+
+const axes: Record<Axis, { title: string; unit: string }> = {
+  rx: { title: "Turn about x (up and down)", unit: "°" },
+  ry: { title: "Turn about y (left and right)", unit: "°" },
+  rz: { title: "Turn about z (in the picture)", unit: "°" },
+  tx: { title: "Shift along x (sideways)", unit: "mm" },
+  ty: { title: "Shift along y (up and down)", unit: "mm" },
+  tz: { title: "Shift along z (to and fro)", unit: "mm" },
+};
+const tokens: Record<string, string> = { shading: "series-1", edges: "series-3", information: "series-2", silhouette: "series-4" };
+/** A curve that loses less than this is shown as flat as it is. */
+const FLAT = 4;
+/** Sigmas to each side of a 95 % interval. */
+const WITHIN = 1.96;
+
+export class SensitivityCharts {
+  readonly #keys = make("p", { class: "rig-curve-keys" });
+  readonly #figures = make("div", { class: "rig-curves" });
+  readonly element = make("div", { class: "rig-column" }, this.#keys, this.#figures);
+  #plots: uPlot[] = [];
+  #observers: ResizeObserver[] = [];
+  #shown: readonly Sensitivity[] = [];
+  #covariance: readonly number[] = [];
+
+  show({ sensitivity, covariance }: CheckReport): void {
+    if (this.#shown === sensitivity) return;
+    this.#shown = sensitivity;
+    this.#covariance = covariance;
+    this.#build();
+  }
+
+  /** A canvas has to be told the theme's colours anew. */
+  recolour(): void {
+    this.#build();
+  }
+
+  #build(): void {
+    for (const plot of this.#plots) plot.destroy();
+    for (const observer of this.#observers) observer.disconnect();
+    this.#plots = [];
+    this.#observers = [];
+    const key = (token: string, words: string) => make("span", { style: `--key: var(--${token})` }, words);
+    const cues = [...new Set(this.#shown.map(({ cue }) => cue))];
+    this.#keys.replaceChildren(...cues.map((cue) => key(tokens[cue] ?? "ink-soft", CUES[cue] ?? cue)), key("ink", "all together"));
+    this.#figures.replaceChildren();
+    for (const axis of Object.keys(axes) as Axis[]) {
+      const curves = this.#shown.filter((each) => each.axis === axis && each.offsets.length > 1);
+      if (curves.length > 0) this.#chart(axis, curves);
+    }
+  }
+
+  #chart(axis: Axis, curves: readonly Sensitivity[]): void {
+    const { title, unit } = axes[axis];
+    const { xs, lines, total } = lossesOf(curves);
+    const best = total.indexOf(Math.min(...total));
+    const place = xs[best] ?? 0;
+    const reach = certainty(this.#covariance, axis);
+    const inside: [number, number] = [Math.max(xs[0] ?? 0, -reach), Math.min(xs.at(-1) ?? 0, reach)];
+    const [digits, gap] = unit === "mm" ? [1, " "] : [2, ""];
+    const box = make("div", { class: "chart" });
+    const words = `Least at ${decimals(place, digits)}${gap}${unit}; found to ± ${decimals(reach, digits)}${gap}${unit} (95 %).`;
+    this.#figures.append(make("figure", {}, make("figcaption", {}, make("strong", {}, title), make("span", { class: "soft" }, words)), box));
+    const line = { stroke: ink("line"), width: 1 };
+    const style: uPlot.Axis = { stroke: ink("ink-soft"), font: "11px system-ui, sans-serif", grid: line, ticks: { ...line, size: 4 } };
+    const size = () => ({ width: Math.max(120, box.clientWidth), height: 150 });
+    const plot = new uPlot(
+      {
+        ...size(),
+        padding: [8, 8, 0, 0],
+        cursor: { y: false, drag: { x: false, y: false } },
+        scales: { x: { time: false }, y: { range: (_plot, _min, max) => [0, Math.max(max ?? 1, FLAT)] } },
+        axes: [{ ...style, size: 26, values: (_, splits) => splits.map((value) => `${value}`) }, { ...style, size: 44, values: (_, splits) => splits.map((value) => (value >= 1e4 ? short(value) : `${value}`)) }],
+        legend: { show: false },
+        series: [
+          {},
+          ...lines.map(({ cue }) => ({ stroke: ink(tokens[cue] ?? "ink-soft"), width: 1.5, points: { show: false } })),
+          { stroke: ink("ink"), width: 2, points: { show: false } },
+        ],
+        hooks: { drawClear: [(plot) => band(plot, inside)], draw: [(plot) => mark(plot, place, total[best] ?? 0)] },
+      },
+      [xs, ...lines.map(({ losses }) => losses), total],
+      box,
+    );
+    const observer = new ResizeObserver(() => plot.setSize(size()));
+    observer.observe(box);
+    this.#plots.push(plot);
+    this.#observers.push(observer);
+  }
+}
+
+/** All cues at the offsets of the first; what is lost against the best of each. */
+function lossesOf(curves: readonly Sensitivity[]): { xs: number[]; lines: { cue: string; losses: number[] }[]; total: number[] } {
+  const xs = curves[0]?.offsets ?? [];
+  const same = curves.filter(({ offsets, values }) => offsets.length === xs.length && values.length === xs.length);
+  const sum = xs.map((_, i) => same.reduce((total, { values }) => total + (values[i] ?? 0), 0));
+  const lost = (values: readonly number[]) => {
+    const most = Math.max(...values);
+    return values.map((value) => most - value);
+  };
+  return { xs, lines: same.map(({ cue, values }) => ({ cue, losses: lost(values) })), total: lost(sum) };
+}
+
+/** How far to each side of the estimate 95 % reach, in degrees or millimetres: of the covariance, which knows what the cues share. */
+function certainty(covariance: readonly number[], axis: Axis): number {
+  const index = (Object.keys(axes) as Axis[]).indexOf(axis);
+  const sigma = Math.sqrt(Math.max(0, covariance[7 * index] ?? 0));
+  return WITHIN * sigma * (index < 3 ? 180 / Math.PI : 1000);
+}
+
+function band({ ctx, bbox, valToPos }: uPlot, inside: readonly [number, number]): void {
+  const [left, right] = [valToPos(inside[0], "x", true), valToPos(inside[1], "x", true)];
+  ctx.fillStyle = ink("sunk");
+  ctx.fillRect(left - 1, bbox.top, Math.max(2, right - left + 2), bbox.height);
+}
+
+function mark({ ctx, bbox, valToPos }: uPlot, x: number, y: number): void {
+  const [column, row] = [valToPos(x, "x", true), valToPos(y, "y", true)];
+  ctx.save();
+  ctx.strokeStyle = ink("accent");
+  ctx.fillStyle = ink("accent");
+  ctx.lineWidth = devicePixelRatio;
+  ctx.setLineDash([4 * devicePixelRatio, 3 * devicePixelRatio]);
+  ctx.beginPath();
+  ctx.moveTo(column, bbox.top);
+  ctx.lineTo(column, bbox.top + bbox.height);
+  ctx.stroke();
+  ctx.beginPath();
+  ctx.arc(column, row, 4 * devicePixelRatio, 0, 7);
+  ctx.fill();
+  ctx.restore();
+}

@@ -1,0 +1,114 @@
+/** Step 1: files, frames, cameras. */
+
+import { make } from "../dom";
+import { advice } from "./advice";
+import { CameraForm } from "./cameralist";
+import { dropTarget, type Named } from "./drop";
+import { FileList } from "./filelist";
+import { FrameList } from "./framelist";
+import type { MaskTool } from "./masktool";
+import { press } from "./parts";
+import { messageOf, type Rig } from "./rig";
+
+export class FilesStep {
+  readonly element = make("div", { class: "rig-step rig-files-step" });
+  readonly #rig: Rig;
+  readonly #files: FileList;
+  readonly #frames: FrameList;
+  readonly #cameras: readonly CameraForm[];
+  readonly #status = make("p", { class: "rig-status soft", role: "status" });
+  readonly #alert = make("p", { class: "rig-error", role: "alert", hidden: true });
+  readonly #notes = make("ul", { class: "rig-notes" });
+  readonly #example = press("Load an example", () => void this.#loadExample());
+  readonly #clear = press("Start over", () => this.#rig.clear());
+  readonly #missing = make("p", { class: "rig-missing" });
+  readonly #next: HTMLButtonElement;
+  readonly #framesCard: HTMLElement;
+  readonly #filesCard: HTMLDetailsElement;
+  #tool: Promise<MaskTool> | undefined;
+
+  constructor(rig: Rig, goOn: () => void) {
+    this.#rig = rig;
+    this.#files = new FileList(rig);
+    this.#frames = new FrameList(rig, () => (this.#tool ??= import("./masktool").then(({ MaskTool }) => new MaskTool(rig))));
+    this.#cameras = [new CameraForm(rig, "colour"), new CameraForm(rig, "depth")];
+    this.#next = press("Next: your calibration", goOn, { class: "primary" });
+    const drop = dropTarget(
+      { title: "Drop files or a folder here", hint: "Colour images, depth maps, masks, camera numbers, a calibration: they are told apart by what is in them. Nothing leaves this machine.", files: "Choose files", folder: "Choose a folder" },
+      (files, isFolder) => void this.#take(files, isFolder),
+      this.element,
+    );
+    this.#filesCard = make("details", { class: "rig-card rig-files-card" }, make("summary", {}, make("h3", {}, "Files")), this.#notes, this.#files.element);
+    this.#framesCard = make("section", { class: "rig-card" }, make("h3", {}, "Frames"), make("p", { class: "soft" }, "Each frame is a colour image and a depth map of the same moment. Add more one by one: the answer sharpens."), this.#frames.element);
+    this.element.append(
+      make("section", { class: "rig-card" }, drop, make("div", { class: "rig-row" }, this.#example, this.#clear, this.#status), this.#alert),
+      make("aside", { class: "rig-aside" }, advice(), formats()),
+      make(
+        "div",
+        { class: "rig-main" },
+        this.#filesCard,
+        this.#framesCard,
+        make("section", { class: "rig-card" }, make("h3", {}, "Cameras"), make("div", { class: "rig-cameras" }, ...this.#cameras.map(({ element }) => element))),
+        make("div", { class: "rig-row rig-foot" }, this.#missing, this.#next),
+      ),
+    );
+  }
+
+  show(): void {
+    this.#files.show();
+    this.#frames.show();
+    for (const camera of this.#cameras) camera.show();
+    const { items, notes, missing } = this.#rig;
+    this.#filesCard.hidden = items.length === 0;
+    this.#framesCard.hidden = this.#rig.frames.length === 0;
+    this.#notes.replaceChildren(...notes.map((words) => make("li", {}, words)));
+    this.#clear.hidden = items.length === 0;
+    const reading = items.filter(({ state }) => state === "reading").length;
+    const failed = items.filter(({ state }) => state === "failed").length;
+    this.#status.textContent = this.#rig.busy ? this.#rig.busy : items.length === 0 ? "" : reading > 0 ? `Reading ${reading} of ${items.length} files` : `${items.length} files read${failed > 0 ? `, ${failed} of them not understood` : ""}`;
+    this.#missing.textContent = missing.length === 0 ? "" : `Still missing: ${missing.join("; ")}.`;
+    this.#next.disabled = missing.length > 0;
+  }
+
+  /** A folder is read as a whole, since its frames may be matched by time; what came one by one is there to be looked over. */
+  async #take(files: Named[], isFolder: boolean): Promise<void> {
+    this.#complain("");
+    this.#filesCard.open ||= !isFolder;
+    try {
+      if (isFolder) await this.#rig.addFolder(files);
+      else await this.#rig.add(files);
+    } catch (error) {
+      this.#complain(messageOf(error));
+    }
+  }
+
+  async #loadExample(): Promise<void> {
+    this.#complain("");
+    this.#example.disabled = true;
+    this.#status.textContent = "Making the example";
+    try {
+      await this.#rig.loadExample();
+    } catch (error) {
+      this.#complain(`The example could not be made: ${messageOf(error)}`);
+    } finally {
+      this.#example.disabled = false;
+      this.show();
+    }
+  }
+
+  #complain(message: string): void {
+    this.#alert.textContent = message;
+    this.#alert.hidden = message === "";
+  }
+}
+
+const known: readonly [string, string][] = [
+  ["Depth", "16-bit PNG (mm, TUM, SUN, any unit), PFM, PGM, TIFF, .npy, organised PLY and PCD"],
+  ["Colour", "PNG, JPEG, WebP, PPM; 8 and 16 bit"],
+  ["Cameras", "ROS camera_info, OpenCV YAML or XML, Open3D, Kalibr, RealSense, COLMAP, K.txt; or type them in"],
+  ["Calibration", "4x4 text, Kalibr, ROS tf, Open3D, OpenCV R and T, RealSense; or type it in"],
+  ["Folders", "TUM RGB-D, Redwood, or pairs with like names"],
+];
+
+const formats = (): HTMLElement =>
+  make("details", { class: "rig-card" }, make("summary", {}, "Which files are understood"), make("dl", { class: "rig-formats" }, ...known.flatMap(([what, list]) => [make("dt", {}, what), make("dd", {}, list)])));

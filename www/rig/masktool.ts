@@ -1,0 +1,209 @@
+/** A dialog that restricts what of a frame is used: a rectangle, a brush, a range of depths, growing and shrinking. */
+
+import { make } from "../dom";
+import { choose, draw, labelled, numberField, press, show } from "./parts";
+import { Paint, type Box } from "./paint";
+import type { Frame, Rig } from "./rig";
+
+type Tool = "rectangle" | "brush";
+
+export class MaskTool {
+  readonly element = make("dialog", { class: "rig-mask", "aria-labelledby": "rig-mask-title" });
+  readonly #rig: Rig;
+  readonly #title = make("h2", { id: "rig-mask-title" });
+  readonly #image = make("canvas");
+  readonly #layer = make("canvas", { class: "rig-mask-layer", role: "img", "aria-label": "What is used of the colour image. Draw with the pointer, or type a rectangle's numbers." });
+  readonly #frameBox = make("div", { class: "rig-mask-band", hidden: true });
+  readonly #depth = make("canvas", { class: "rig-mask-depth", role: "img", "aria-label": "Depth map; grey depths are not used." });
+  readonly #share = make("p", { role: "status", class: "soft" });
+  readonly #near: { element: HTMLElement; input: HTMLInputElement };
+  readonly #far: { element: HTMLElement; input: HTMLInputElement };
+  #tool: Tool = "rectangle";
+  #use = true;
+  #radius = 16;
+  #radiusInput: HTMLInputElement | undefined;
+  #step = 5;
+  #box: Box = { left: 0, top: 0, width: 0, height: 0 };
+  #range: [number, number] = [NaN, NaN];
+  #paint = new Paint(1, 1);
+  #frame: Frame | undefined;
+  #late = 0;
+
+  constructor(rig: Rig) {
+    this.#rig = rig;
+    this.#near = numberField("Nearest depth", "m", (value) => this.#changeRange([value, this.#range[1]]));
+    this.#far = numberField("Farthest depth", "m", (value) => this.#changeRange([this.#range[0], value]));
+    const board = make("div", { class: "rig-mask-board" }, make("div", { class: "rig-mask-picture" }, this.#image, this.#layer, this.#frameBox));
+    this.element.append(
+      make("div", { class: "rig-mask-head" }, this.#title, make("p", { class: "soft" }, "Restrict it to what you trust: a thing and the background behind it, without screens, mirrors, glass or people who moved.")),
+      board,
+      make("div", { class: "rig-mask-side" }, this.#tools(), this.#typed(), this.#growing(), make("fieldset", {}, make("legend", {}, "Depths"), make("div", { class: "rig-row" }, this.#near.element, this.#far.element), this.#depth)),
+      make("div", { class: "rig-row rig-mask-foot" }, this.#share, press("Use everything", () => this.#reset()), press("Cancel", () => this.element.close()), press("Done", () => this.#done(), { class: "primary" })),
+    );
+    this.#listen();
+    document.body.append(this.element);
+  }
+
+  async open(frame: Frame): Promise<void> {
+    const { colour, depth } = frame;
+    if (colour === undefined) return;
+    const picture = await this.#rig.session.call("picture", { file: colour });
+    this.#frame = frame;
+    this.#paint = new Paint(picture.width, picture.height, frame.paint);
+    this.#range = frame.range ? [...frame.range] : [NaN, NaN];
+    this.#title.textContent = `What is used of ${frame.name}`;
+    draw(this.#image, picture);
+    this.#layer.width = picture.width;
+    this.#layer.height = picture.height;
+    this.#radius = Math.max(2, Math.round(picture.width / 40));
+    if (this.#radiusInput) this.#radiusInput.value = String(this.#radius);
+    this.#depth.hidden = depth === undefined;
+    show(this.#near.input, this.#range[0]);
+    show(this.#far.input, this.#range[1]);
+    this.#showAll();
+    this.#showDepth();
+    this.element.showModal();
+  }
+
+  #tools(): HTMLElement {
+    const tool = choose([{ value: "rectangle", label: "rectangle" }, { value: "brush", label: "brush" }], this.#tool, (value) => (this.#tool = value as Tool));
+    const use = choose([{ value: "use", label: "use what I draw" }, { value: "leave", label: "leave it out" }], "use", (value) => (this.#use = value === "use"));
+    const radius = numberField("Brush radius", "px", (value) => (this.#radius = value > 0 ? value : this.#radius));
+    this.#radiusInput = radius.input;
+    return make("fieldset", {}, make("legend", {}, "Draw"), labelled("Tool", tool), labelled("It means", use), radius.element);
+  }
+
+  #typed(): HTMLElement {
+    const sides = (["left", "top", "width", "height"] as const).map((side) => numberField(side, "px", (value) => (this.#box = { ...this.#box, [side]: Number.isFinite(value) ? value : 0 })).element);
+    const apply = press("Apply", () => {
+      this.#paint.rectangle(this.#box, this.#use);
+      this.#showAll();
+    });
+    return make("details", {}, make("summary", {}, "Rectangle by numbers"), make("div", { class: "rig-four" }, ...sides), apply);
+  }
+
+  #growing(): HTMLElement {
+    const step = numberField("By", "px", (value) => (this.#step = value > 0 ? Math.min(200, Math.round(value)) : this.#step));
+    step.input.value = String(this.#step);
+    const by = (sign: number) => () => {
+      this.#paint.grow(sign * this.#step);
+      this.#showAll();
+    };
+    return make("fieldset", {}, make("legend", {}, "Grow what is used"), make("div", { class: "rig-row rig-bottom" }, step.element, press("Grow", by(1)), press("Shrink", by(-1))));
+  }
+
+  #listen(): void {
+    let from: { x: number; y: number } | undefined;
+    const place = (event: PointerEvent) => {
+      const { left, top, width, height } = this.#layer.getBoundingClientRect();
+      return { x: ((event.clientX - left) / width) * this.#paint.width, y: ((event.clientY - top) / height) * this.#paint.height };
+    };
+    this.#layer.addEventListener("pointerdown", (event) => {
+      this.#layer.setPointerCapture(event.pointerId);
+      from = place(event);
+      if (this.#tool === "brush") this.#dab(from);
+      event.preventDefault();
+    });
+    this.#layer.addEventListener("pointermove", (event) => {
+      if (!from) return;
+      const to = place(event);
+      if (this.#tool === "brush") {
+        const steps = Math.max(1, Math.ceil(Math.hypot(to.x - from.x, to.y - from.y) / Math.max(1, this.#radius / 2)));
+        for (let i = 1; i <= steps; i++) this.#dab({ x: from.x + ((to.x - from.x) * i) / steps, y: from.y + ((to.y - from.y) * i) / steps });
+        from = to;
+      } else {
+        this.#showBand(boxOf(from, to));
+      }
+    });
+    const end = (event: PointerEvent) => {
+      if (!from) return;
+      const box = boxOf(from, place(event));
+      from = undefined;
+      this.#frameBox.hidden = true;
+      if (this.#tool === "rectangle" && box.width > 1 && box.height > 1 && event.type === "pointerup") this.#showPart(this.#paint.rectangle(box, this.#use), true);
+      this.#showShare();
+    };
+    this.#layer.addEventListener("pointerup", end);
+    this.#layer.addEventListener("pointercancel", end);
+  }
+
+  #dab({ x, y }: { x: number; y: number }): void {
+    const isFirst = this.#paint.data === undefined;
+    const box = this.#paint.disc(x, y, this.#radius, this.#use);
+    this.#showPart(box, isFirst);
+  }
+
+  #showBand({ left, top, width, height }: Box): void {
+    const percent = (value: number, of: number) => `${(100 * value) / of}%`;
+    this.#frameBox.hidden = false;
+    Object.assign(this.#frameBox.style, { left: percent(left, this.#paint.width), top: percent(top, this.#paint.height), width: percent(width, this.#paint.width), height: percent(height, this.#paint.height) });
+  }
+
+  #showAll(): void {
+    this.#showPart({ left: 0, top: 0, width: this.#paint.width, height: this.#paint.height });
+    this.#showShare();
+  }
+
+  /** What is not used is darkened. */
+  #showPart(part: Box, all = false): void {
+    const { width, height, data } = this.#paint;
+    const box = all ? { left: 0, top: 0, width, height } : part;
+    const context = this.#layer.getContext("2d");
+    if (!context || box.width < 1 || box.height < 1) return;
+    const image = new ImageData(box.width, box.height);
+    if (data) {
+      for (let row = 0; row < box.height; row++) {
+        for (let column = 0; column < box.width; column++) {
+          if (!data[(box.top + row) * width + box.left + column]) image.data[4 * (row * box.width + column) + 3] = 190;
+        }
+      }
+    }
+    context.putImageData(image, box.left, box.top);
+  }
+
+  #showShare(): void {
+    this.#share.textContent = `${(100 * this.#paint.share).toFixed(0)} % of the image is used.`;
+  }
+
+  #changeRange(range: [number, number]): void {
+    this.#range = range;
+    clearTimeout(this.#late);
+    this.#late = window.setTimeout(() => this.#showDepth(), 150);
+  }
+
+  get #wholeRange(): [number, number] | undefined {
+    const [near, far] = this.#range;
+    return Number.isFinite(near) || Number.isFinite(far) ? [Number.isFinite(near) ? near : 0, Number.isFinite(far) ? far : 1000] : undefined;
+  }
+
+  #showDepth(): void {
+    const file = this.#frame?.depth;
+    const range = this.#wholeRange;
+    if (file === undefined) return;
+    void this.#rig.session.call("picture", { file, ...(range ? { range } : {}) }).then((bitmap) => draw(this.#depth, bitmap), () => {});
+  }
+
+  #reset(): void {
+    this.#paint.data = undefined;
+    this.#range = [NaN, NaN];
+    this.#near.input.value = "";
+    this.#far.input.value = "";
+    this.#showAll();
+    this.#showDepth();
+  }
+
+  #done(): void {
+    const frame = this.#frame;
+    if (frame) {
+      if (this.#paint.data) frame.paint = this.#paint.data;
+      else delete frame.paint;
+      const range = this.#wholeRange;
+      if (range) frame.range = range;
+      else delete frame.range;
+      this.#rig.changed();
+    }
+    this.element.close();
+  }
+}
+
+const boxOf = (a: { x: number; y: number }, b: { x: number; y: number }): Box => ({ left: Math.min(a.x, b.x), top: Math.min(a.y, b.y), width: Math.abs(a.x - b.x), height: Math.abs(a.y - b.y) });

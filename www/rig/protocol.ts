@@ -1,0 +1,83 @@
+/** What the page and its worker say to each other. The worker keeps all pixels; what crosses is summaries, pictures and numbers. */
+
+import type { CheckCue, CheckReport, Pose, RigCamera } from "../../pkg/index.js";
+import type { Fault } from "../engine/protocol";
+import type { NamedPose, Reading, RigReading } from "./files";
+
+export type Kind = RigReading["kind"];
+export type NamedCamera = { name?: string; camera: RigCamera; width?: number; height?: number };
+
+/** A file as read, without its pixels. */
+export interface Summary extends Omit<Reading, "name"> {
+  kind: Kind;
+  /** What the reader had to guess, such as the unit of a depth map. */
+  guessed: string[];
+  width?: number;
+  height?: number;
+  /** Metres per stored unit of a depth map. */
+  unit?: number;
+  /** Whether it is an organised cloud, which needs no camera. */
+  organised?: boolean;
+  cameras: NamedCamera[];
+  poses: NamedPose[];
+}
+
+/** One pair to check: files by their numbers, and what restricts them. */
+export interface FramePlan {
+  name: string;
+  colour: number;
+  depth: number;
+  mask?: number;
+  /** Painted on the colour image, at its size; non-zero is used. */
+  paint?: Uint8Array;
+  /** Nearest and farthest depth that is used, metres. */
+  range?: [number, number];
+  colourCamera?: RigCamera;
+  depthCamera?: RigCamera;
+}
+
+/** Several files that belong together: a folder, or the example. */
+export interface Assembly {
+  /** Where its poses come from, in words. */
+  origin: string;
+  items: { file: number; name: string; summary: Summary }[];
+  frames: { name: string; colour: number; depth: number }[];
+  cameras: NamedCamera[];
+  poses: NamedPose[];
+  warnings: string[];
+}
+
+/** Columns, rows and depths in metres of the points, columns and rows of the depth edges, in the colour image. */
+export interface Projection {
+  points: Float32Array;
+  edges: Float32Array;
+}
+
+export type PoseFormat = "matrix" | "opencv" | "kalibr" | "ros2" | "open3d" | "realsense";
+
+/** Each kind of request, what it carries and what it is answered with. */
+export interface Calls {
+  read: { ask: { file: number; name: string; blob: Blob; as?: Kind; unit?: number }; answer: Summary };
+  /** Metres per stored unit of a depth map that came with others. */
+  unit: { ask: { file: number; unit: number }; answer: Summary };
+  folder: { ask: { first: number; files: { name: string; blob: Blob }[] }; answer: Assembly };
+  example: { ask: { first: number }; answer: Assembly };
+  forget: { ask: { file: number }; answer: null };
+  /** As a whole, or at most so wide; depths outside the range are grey. */
+  picture: { ask: { file: number; range?: [number, number]; width?: number }; answer: ImageBitmap };
+  /** The frames that what follows is about. */
+  frames: { ask: { frames: FramePlan[] }; answer: null };
+  check: { ask: { candidates: Record<string, Pose>; cues: CheckCue[] }; answer: CheckReport };
+  overlay: { ask: { frame: number; pose: Pose }; answer: Projection };
+  pose: { ask: { pose: Pose; format: PoseFormat }; answer: { name: string; text: string; notes: string[] } };
+  /** One cloud of the frame for each pose, in the colour camera's frame. */
+  clouds: { ask: { frame: number; poses: { name: string; pose: Pose }[] }; answer: Uint8Array };
+  report: { ask: { report: CheckReport; pictures: { title: string; dataUrl: string }[]; inputs: { name: string; says: string }[] }; answer: string };
+}
+
+export type CallKind = keyof Calls;
+export type Request = { [K in CallKind]: { id: number; kind: K } & Calls[K]["ask"] }[CallKind] | { kind: "cancel" };
+export type Answer =
+  | { id: number; answer: Calls[CallKind]["answer"] }
+  | { id: number; fault: Fault }
+  | { id: number; share: number; message: string };

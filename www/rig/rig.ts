@@ -1,0 +1,379 @@
+/** What the visitor has brought and chosen: files, frames, cameras, candidates, and what the check said of them. */
+
+import type { CheckCue, CheckReport, Pose, RigCamera } from "../../pkg/index.js";
+import { pairUp } from "./pairing";
+import { identity, inverse } from "./poses";
+import type { Assembly, FramePlan, Kind, NamedCamera, Summary } from "./protocol";
+import { Session } from "./session";
+
+export type Side = "colour" | "depth";
+
+export interface Item {
+  id: number;
+  name: string;
+  /** Absent where it came with others, as a folder or the example: then nothing of it can be read another way. */
+  blob?: Blob;
+  state: "reading" | "read" | "failed";
+  summary?: Summary;
+  error?: string;
+  as?: Kind;
+  unit?: number;
+}
+
+export interface Frame {
+  id: number;
+  name: string;
+  colour?: number;
+  depth?: number;
+  mask?: number;
+  paint?: Uint8Array;
+  range?: [number, number];
+}
+
+/** Typed in; empty fields are NaN. */
+export interface TypedCamera {
+  by: "focal" | "view";
+  model: "brown" | "fisheye";
+  fx: number;
+  fy: number;
+  cx: number;
+  cy: number;
+  /** Horizontal, degrees. */
+  view: number;
+  distortion: number[];
+}
+
+export interface CameraChoice {
+  /** "", "typed", "same" as the colour camera, or the camera's place among those of the files, "3:0". */
+  source: string;
+  /** Whether the visitor has chosen it; else it follows the files. */
+  chosen: boolean;
+  typed: TypedCamera;
+}
+
+export interface Candidate {
+  id: number;
+  name: string;
+  /** Where it comes from, in words. */
+  origin: string;
+  pose: Pose;
+  /** The file it came from; it goes with it. */
+  file?: number;
+}
+
+export interface Run {
+  report: CheckReport;
+  plans: FramePlan[];
+  candidates: Record<string, Pose>;
+  /** Whether no calibration was given and the identity stood in. */
+  estimateOnly: boolean;
+  /** What had been guessed when it ran, in words. */
+  guessed: string[];
+}
+
+const emptyCamera = (): TypedCamera => ({ by: "focal", model: "brown", fx: NaN, fy: NaN, cx: NaN, cy: NaN, view: NaN, distortion: [] });
+const choice = (): CameraChoice => ({ source: "", chosen: false, typed: emptyCamera() });
+
+export class Rig {
+  readonly session = new Session();
+  items: Item[] = [];
+  frames: Frame[] = [];
+  readonly cameras: Record<Side, CameraChoice> = { colour: choice(), depth: choice() };
+  candidates: Candidate[] = [];
+  cues: CheckCue[] = [];
+  notes: string[] = [];
+  /** What is being read as a whole, in words. */
+  busy = "";
+  run: Run | undefined;
+  /** How sharp the answer has been, run by run, with how many frames. */
+  history: { frames: number; pixels: number; interval: [number, number] }[] = [];
+  #last = 0;
+  #listeners: (() => void)[] = [];
+  #told = false;
+
+  freshId(): number {
+    return ++this.#last;
+  }
+
+  listen(listener: () => void): void {
+    this.#listeners.push(listener);
+  }
+
+  /** Tells those who show it, once for however much has changed. */
+  changed(): void {
+    if (this.#told) return;
+    this.#told = true;
+    queueMicrotask(() => {
+      this.#told = false;
+      for (const listener of this.#listeners) listener();
+    });
+  }
+
+  item(id: number | undefined): Item | undefined {
+    return this.items.find((item) => item.id === id);
+  }
+
+  kindOf(item: Item): Kind | undefined {
+    return item.summary?.kind;
+  }
+
+  of(kind: Kind): Item[] {
+    return this.items.filter(({ state, summary }) => state === "read" && summary?.kind === kind);
+  }
+
+  async add(files: readonly { name: string; blob: Blob }[]): Promise<void> {
+    const items = files.map(({ name, blob }): Item => ({ id: this.freshId(), name, blob, state: "reading" }));
+    this.items.push(...items);
+    this.changed();
+    await Promise.all(items.map((item) => this.#read(item)));
+    this.frames = pairUp(this);
+    this.changed();
+  }
+
+  /** Reads a file once more, as something else or in another unit. */
+  async reread(item: Item): Promise<void> {
+    await this.#read(item);
+    if (!this.items.includes(item)) return;
+    this.#unlink(item);
+    this.frames = pairUp(this);
+    this.changed();
+  }
+
+  /** Depth maps that came together have one unit. */
+  async setUnits(unit: number): Promise<void> {
+    for (const item of this.of("depth").filter(({ blob }) => !blob)) {
+      item.unit = unit;
+      item.summary = await this.session.call("unit", { file: item.id, unit });
+    }
+    this.changed();
+  }
+
+  async #read(item: Item): Promise<void> {
+    const { id, name, blob, as, unit } = item;
+    if (!blob) return;
+    item.state = "reading";
+    this.changed();
+    try {
+      const summary = await this.session.call("read", { file: id, name, blob, ...(as ? { as } : {}), ...(unit === undefined ? {} : { unit }) });
+      if (!this.items.includes(item)) return;
+      Object.assign(item, { state: "read", summary });
+      delete item.error;
+      this.#take(item, summary);
+    } catch (error) {
+      item.state = "failed";
+      delete item.summary;
+      item.error = messageOf(error);
+    }
+    this.changed();
+  }
+
+  /** Cameras and poses of a file go to where they are used. */
+  #take(item: Item, summary: Summary): void {
+    this.candidates = this.candidates.filter(({ file }) => file !== item.id);
+    for (const each of summary.poses) this.addPose(each, item.name, item.id);
+    this.#chooseCameras();
+  }
+
+  /** A pose that says it leads from colour to depth is turned round. */
+  addPose({ name, pose, from, to }: Summary["poses"][number], origin: string, file?: number): void {
+    const isBackward = (from !== undefined && COLOUR.test(from)) || (to !== undefined && DEPTH.test(to));
+    const direction = isBackward ? ", given from colour to depth and inverted here" : from && to ? `, from ${from} to ${to}` : "";
+    const candidate: Candidate = {
+      id: this.freshId(),
+      name: this.#freshName(name || origin.replace(/\.\w+$/, "").replace(/^.*\//, "")),
+      origin: `${origin}${direction}`,
+      pose: isBackward ? inverse(pose) : pose,
+    };
+    this.candidates.push(file === undefined ? candidate : { ...candidate, file });
+    this.changed();
+  }
+
+  #freshName(wanted: string): string {
+    const names = new Set(this.candidates.map(({ name }) => name));
+    for (let i = 1; ; i++) {
+      const name = i === 1 ? wanted : `${wanted} ${i}`;
+      if (!names.has(name)) return name;
+    }
+  }
+
+  remove(item: Item): void {
+    this.items = this.items.filter((each) => each !== item);
+    this.candidates = this.candidates.filter(({ file }) => file !== item.id);
+    this.#unlink(item);
+    this.#chooseCameras();
+    this.frames = pairUp(this);
+    void this.session.call("forget", { file: item.id }).catch(() => {});
+    this.changed();
+  }
+
+  /** Frames forget a file that is gone, or is something else now. */
+  #unlink({ id }: Item): void {
+    for (const frame of this.frames) {
+      for (const role of ["colour", "depth", "mask"] as const) {
+        if (frame[role] === id && !this.of(role).some((item) => item.id === id)) {
+          delete frame[role];
+          if (role === "colour") delete frame.paint;
+        }
+      }
+    }
+    this.frames = this.frames.filter(({ colour, depth }) => colour !== undefined || depth !== undefined);
+  }
+
+  clear(): void {
+    for (const item of [...this.items]) this.remove(item);
+    this.frames = [];
+    this.candidates = [];
+    this.cameras.colour = choice();
+    this.cameras.depth = choice();
+    this.notes = [];
+    this.run = undefined;
+    this.history = [];
+    this.changed();
+  }
+
+  async addFolder(files: { name: string; blob: Blob }[]): Promise<void> {
+    const first = this.#reserve(2 * files.length);
+    this.busy = `Reading a folder of ${files.length} files`;
+    this.changed();
+    try {
+      this.#join(await this.session.call("folder", { first, files }));
+    } finally {
+      this.busy = "";
+      this.changed();
+    }
+  }
+
+  async loadExample(): Promise<void> {
+    const first = this.#reserve(64);
+    const assembly = await this.session.call("example", { first });
+    this.clear();
+    this.#join(assembly);
+  }
+
+  #reserve(count: number): number {
+    const first = this.#last + 1;
+    this.#last += count;
+    return first;
+  }
+
+  #join({ origin, items, frames, cameras, poses, warnings }: Assembly): void {
+    for (const { file, name, summary } of items) this.items.push({ id: file, name, state: "read", summary });
+    for (const { name, colour, depth } of frames) this.frames.push({ id: this.freshId(), name, colour, depth });
+    // Cameras of a folder's own files, beside those that its frames were given.
+    if (cameras.length > 0) {
+      const summary: Summary = { kind: "cameras", says: `${cameras.length} cameras`, warnings: [], guessed: [], cameras, poses: [] };
+      this.items.push({ id: this.freshId(), name: origin, state: "read", summary });
+    }
+    for (const pose of poses) this.addPose(pose, origin);
+    this.notes.push(...warnings);
+    this.#chooseCameras();
+    this.changed();
+  }
+
+  /** All cameras that files gave, each with its place. */
+  get given(): { source: string; label: string; camera: NamedCamera }[] {
+    return this.items.flatMap((item) =>
+      (item.summary?.cameras ?? []).map((camera, i) => {
+        const size = camera.width && camera.height ? `, ${camera.width}×${camera.height}` : "";
+        return { source: `${item.id}:${i}`, label: `${item.name}${camera.name ? `: ${camera.name}` : ""}${size}`, camera };
+      }),
+    );
+  }
+
+  /** Where names or sizes tell which camera is which, nobody has to choose. */
+  #chooseCameras(): void {
+    const { given } = this;
+    for (const side of ["colour", "depth"] as const) {
+      const mine = this.cameras[side];
+      const isThere = ["", "typed", "same"].includes(mine.source) || given.some(({ source }) => source === mine.source);
+      if (mine.chosen && isThere) continue;
+      const [own, other] = side === "colour" ? [COLOUR, DEPTH] : [DEPTH, COLOUR];
+      const named = given.find(({ label }) => own.test(label) && !other.test(label)) ?? given.find(({ camera }) => own.test(camera.name ?? ""));
+      const left = given.filter(({ label, camera }) => !other.test(camera.name ?? "") && (own.test(label) || !other.test(label)));
+      const byOrder = given.length === 2 ? given[side === "colour" ? 0 : 1] : left.length === 1 ? left[0] : undefined;
+      mine.source = (named ?? byOrder)?.source ?? "";
+      mine.chosen = false;
+    }
+  }
+
+  sizeOf(side: Side): { width: number; height: number } | undefined {
+    const frame = this.frames.find((each) => each[side] !== undefined);
+    const summary = this.item(frame?.[side])?.summary ?? this.of(side)[0]?.summary;
+    return summary?.width && summary.height ? { width: summary.width, height: summary.height } : undefined;
+  }
+
+  cameraOf(side: Side): RigCamera | undefined {
+    const { source, typed } = this.cameras[side];
+    if (source === "same") return this.cameraOf("colour");
+    if (source === "typed") return fromTyped(typed, this.sizeOf(side));
+    return this.given.find((each) => each.source === source)?.camera.camera;
+  }
+
+  get complete(): Frame[] {
+    return this.frames.filter(({ colour, depth }) => colour !== undefined && depth !== undefined);
+  }
+
+  /** What stands in the way of a check, in words; nothing where it can run. */
+  get missing(): string[] {
+    const missing: string[] = [];
+    if (this.complete.length === 0) missing.push("a colour image and a depth map of the same moment");
+    const depths = this.complete.map(({ depth }) => this.item(depth)?.summary);
+    if (depths.some((summary) => summary?.organised === false) && !this.cameraOf("depth")) missing.push("the depth camera's numbers (or its field of view)");
+    if (this.cameras.colour.source === "typed" && !this.cameraOf("colour")) missing.push("all numbers of the colour camera, or “Unknown”");
+    return missing;
+  }
+
+  get guessed(): string[] {
+    const files = new Set(this.complete.map(({ depth }) => depth));
+    // Of a colour camera that is not known the check itself warns.
+    const units = this.items.filter(({ id, summary }) => files.has(id) && summary?.guessed.includes("unit")).map(({ name }) => `the unit of ${name}`);
+    return units;
+  }
+
+  plans(): FramePlan[] {
+    const colourCamera = this.cameraOf("colour");
+    const depthCamera = this.cameraOf("depth");
+    return this.complete.flatMap(({ name, colour, depth, mask, paint, range }) => {
+      if (colour === undefined || depth === undefined) return [];
+      const organised = this.item(depth)?.summary?.organised;
+      return {
+        name, colour, depth,
+        ...(mask === undefined ? {} : { mask }),
+        ...(paint ? { paint } : {}),
+        ...(range ? { range } : {}),
+        ...(colourCamera ? { colourCamera } : {}),
+        ...(depthCamera && !organised ? { depthCamera } : {}),
+      };
+    });
+  }
+
+  async check(onProgress: (share: number, message: string) => void): Promise<void> {
+    const plans = this.plans();
+    const { guessed, cues } = this;
+    const estimateOnly = this.candidates.length === 0;
+    const candidates = estimateOnly ? { "no calibration": identity } : Object.fromEntries(this.candidates.map(({ name, pose }) => [name, pose]));
+    await this.session.call("frames", { frames: plans });
+    const report = await this.session.call("check", { candidates, cues }, onProgress);
+    this.run = { report, plans, candidates, estimateOnly, guessed };
+    this.history.push({ frames: plans.length, ...report.health });
+    this.changed();
+  }
+}
+
+export const COLOUR = /colou?r|rgb|image|left|cam0/i;
+export const DEPTH = /depth|\bir\b|infra|tof|disp|cloud/i;
+
+/** Without the field at fault, which every message of a file begins with. */
+export const messageOf = (error: unknown): string => (error instanceof Error ? error.message : String(error)).replace(/^file: /, "");
+
+function fromTyped({ by, model, fx, fy, cx, cy, view, distortion }: TypedCamera, size: { width: number; height: number } | undefined): RigCamera | undefined {
+  const lens = distortion.length > 0 ? { model, distortion } : {};
+  if (by === "focal") return [fx, fy, cx, cy].every(Number.isFinite) ? { fx, fy, cx, cy, ...lens } : undefined;
+  if (!size || !(view > 0 && view < 180)) return undefined;
+  const focal = size.width / 2 / Math.tan((view * Math.PI) / 360);
+  return { fx: focal, fy: focal, cx: (size.width - 1) / 2, cy: (size.height - 1) / 2, ...lens };
+}
+
+export function typedFrom({ fx, fy, cx, cy, model, distortion }: RigCamera): TypedCamera {
+  return { ...emptyCamera(), fx, fy, cx, cy, model: model ?? "brown", distortion: Array.from(distortion ?? []) };
+}

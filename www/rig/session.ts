@@ -1,0 +1,114 @@
+/** The page's side of the worker: requests as promises, one progress at a time, and a worker that can be replaced. */
+
+import type { Fault } from "../engine/protocol";
+import type { Answer, CallKind, Calls, Request } from "./protocol";
+
+/** Milliseconds that a cancelled check has to end by itself before its worker is ended. */
+const PATIENCE = 1500;
+
+/** What went wrong in the worker. */
+export class RigError extends Error {
+  readonly fault: Fault;
+  constructor(fault: Fault) {
+    super(fault.message);
+    this.fault = fault;
+  }
+}
+
+export const wasCancelled = (error: unknown): boolean => error instanceof RigError && error.fault.code === "aborted";
+
+interface Waiting {
+  kind: CallKind;
+  ask: object;
+  resolve(answer: never): void;
+  reject(error: unknown): void;
+  onProgress?: ((share: number, message: string) => void) | undefined;
+}
+
+export class Session {
+  #worker: Worker | undefined;
+  #next = 1;
+  #waiting = new Map<number, Waiting>();
+  /** What a new worker is told first: everything that the old one had read. */
+  #known = new Map<string, { kind: CallKind; ask: object }>();
+
+  call<K extends CallKind>(kind: K, ask: Calls[K]["ask"], onProgress?: (share: number, message: string) => void): Promise<Calls[K]["answer"]> {
+    this.#remember(kind, ask);
+    const worker = this.#thread();
+    const id = this.#next++;
+    return new Promise<Calls[K]["answer"]>((resolve, reject) => {
+      this.#waiting.set(id, { kind, ask, resolve, reject, onProgress });
+      worker.postMessage({ ...ask, id, kind } as Request);
+    });
+  }
+
+  /** Ends the check that runs. A worker that does not listen is replaced, and reads its files again. */
+  cancel(): void {
+    const checks = [...this.#waiting].filter(([, { kind }]) => kind === "check");
+    if (checks.length === 0) return;
+    for (const [id, { reject }] of checks) {
+      this.#waiting.delete(id);
+      reject(new RigError({ code: "aborted", message: "The check was cancelled.", fatal: false }));
+    }
+    const worker = this.#worker;
+    worker?.postMessage({ kind: "cancel" } satisfies Request);
+    // It answers whatever it is asked once the check has ended.
+    const id = this.#next++;
+    const late = setTimeout(() => worker === this.#worker && this.#replace(), PATIENCE);
+    const ended = () => clearTimeout(late);
+    this.#waiting.set(id, { kind: "forget", ask: { file: -1 }, resolve: ended, reject: ended });
+    worker?.postMessage({ id, kind: "forget", file: -1 } satisfies Request);
+  }
+
+  #remember(kind: CallKind, ask: object): void {
+    // Said of a file that came with others, which are remembered under their first.
+    const key = kind === "unit" && "file" in ask ? `unit ${ask.file}` : "file" in ask ? `file ${ask.file}` : "first" in ask ? `files from ${ask.first}` : kind;
+    if (kind === "forget") return void this.#known.delete(key);
+    if (kind !== "read" && kind !== "folder" && kind !== "example" && kind !== "unit" && kind !== "frames") return;
+    // What is said again comes last, after the files that it may be about.
+    this.#known.delete(key);
+    this.#known.set(key, { kind, ask });
+  }
+
+  #thread(): Worker {
+    if (this.#worker) return this.#worker;
+    const worker = new Worker(new URL("./worker.ts", import.meta.url), { type: "module" });
+    worker.onmessage = ({ data }: MessageEvent<Answer>) => {
+      if (worker === this.#worker) this.#receive(data);
+    };
+    worker.onerror = (event) => {
+      event.preventDefault();
+      if (worker === this.#worker) this.#restart(event.message || "The check's worker could not be loaded.");
+    };
+    this.#worker = worker;
+    for (const { kind, ask } of this.#known.values()) worker.postMessage({ ...ask, id: 0, kind } as Request);
+    return worker;
+  }
+
+  #receive(data: Answer): void {
+    const waiting = this.#waiting.get(data.id);
+    if (!waiting) return;
+    if ("share" in data) return waiting.onProgress?.(data.share, data.message);
+    this.#waiting.delete(data.id);
+    if ("answer" in data) return waiting.resolve(data.answer as never);
+    waiting.reject(new RigError(data.fault));
+    // Numerics that broke off are suspect from then on.
+    if (data.fault.fatal) this.#restart(data.fault.message);
+  }
+
+  /** Another worker takes over what the old one was asked. */
+  #replace(): void {
+    this.#worker?.terminate();
+    this.#worker = undefined;
+    const worker = this.#thread();
+    for (const [id, { kind, ask }] of this.#waiting) worker.postMessage({ ...ask, id, kind } as Request);
+  }
+
+  #restart(message: string): void {
+    this.#worker?.terminate();
+    this.#worker = undefined;
+    const left = [...this.#waiting.values()];
+    this.#waiting.clear();
+    for (const { reject } of left) reject(new RigError({ code: "internal", message, fatal: true }));
+  }
+}

@@ -1,0 +1,163 @@
+/** What the check said, in words: the card, what to do next, the tables. */
+
+import type { CandidateReport, CheckReport } from "../../pkg/index.js";
+import { decimals } from "../draw/numbers";
+import { make } from "../dom";
+import { svg } from "./parts";
+import type { Run } from "./rig";
+
+export type Tone = "good" | "wrong" | "open";
+
+const SHAPES: Record<Tone, readonly string[]> = {
+  good: ["M7 12.5l3.5 3.5L17.5 8.5"],
+  wrong: ["M8 8l8 8M16 8l-8 8"],
+  open: ["M9 9.2a3 3 0 1 1 4.2 2.8c-.9.4-1.2 1-1.2 1.9", "M12 17v.2"],
+};
+
+/** Told apart by shape, not by colour alone. */
+export function icon(tone: Tone): SVGElement {
+  return svg("svg", { viewBox: "0 0 24 24", class: `rig-icon ${tone}`, "aria-hidden": "true" }, svg(tone === "good" ? "circle" : "rect", tone === "good" ? { cx: 12, cy: 12, r: 10 } : { x: 2, y: 2, width: 20, height: 20, rx: tone === "open" ? 10 : 4 }), ...SHAPES[tone].map((d) => svg("path", { d })));
+}
+
+const WORDS: Record<CheckReport["verdict"], { word: string; tone: Tone }> = {
+  consistent: { word: "Consistent", tone: "good" },
+  off: { word: "Off", tone: "wrong" },
+  undecided: { word: "This scene can't tell", tone: "open" },
+};
+
+const px = (value: number): string => `${decimals(value, 2)} px`;
+const interval = ([low, high]: [number, number]): string => `${decimals(low, 2)} to ${decimals(high, 2)} px`;
+
+/** Whatever was guessed keeps a verdict from being better than the files are. */
+export function headline({ report, estimateOnly, guessed }: Run): { word: string; tone: Tone; sentence: string } {
+  const { pixels, interval: range } = report.health;
+  if (estimateOnly) return { word: "Estimated", tone: "open", sentence: `A calibration was found; expected reprojection error ${px(pixels)} (95 %: ${interval(range)}) at the scene's depth.` };
+  const { word, tone } = WORDS[report.verdict];
+  const [own] = Object.values(report.candidates);
+  const isOpen = guessed.length > 0 || report.warnings.length > 0;
+  // The check itself calls a consistent candidate undecided where it warns.
+  if (isOpen && own?.verdict === "consistent") return { word: "Settled, but check", tone: "open", sentence: own.reason };
+  if (isOpen && report.verdict === "off") return { word: "Off, but check", tone, sentence: report.reason };
+  return { word, tone, sentence: report.reason };
+}
+
+const AXES = ["left or right", "up or down", "to or fro"];
+const FOR_SHIFT = [
+  "show upright edges with free space behind them, such as the sides of a box or a chair's legs",
+  "show level edges with free space behind them, such as the top of a box",
+  "put things at different distances, one of them near, in front of the wall",
+];
+const FOR_TURN = ["show more of the picture's top and bottom", "show more of the picture's left and right", "show outlines far from the picture's middle"];
+/** A share below this adds little, of the frames' mean share. */
+const LITTLE = 0.3;
+
+/** What to do next, the most useful first. */
+export function advise({ report, plans, estimateOnly, guessed, candidates }: Run): string[] {
+  const list: string[] = [];
+  const said = [report.reason, ...report.warnings].join(" ");
+  const name = Object.keys(candidates)[0] ?? "";
+  if (/invert/i.test(said)) list.push("Invert the calibration in step 2 and check again: it seems to lead the other way.");
+  if (guessed.length > 0) list.push(`Say in step 1 what was guessed: ${guessed.join("; ")}.`);
+  if (!estimateOnly && report.verdict === "off") list.push("Save the calibration found here, use it in place of yours, and check it against fresh frames.");
+  if (estimateOnly) list.push("Save what was found, or add your own calibration in step 2 to have it judged.");
+  if (plans.length < 3) list.push(plans.length === 1 ? "Add two more frames, with the thing turned by about 30° each time." : "Add another frame, with the thing turned by about 30°.");
+  list.push(weakest(report));
+  const mean = 1 / Math.max(1, report.frames.length);
+  for (const { name, share, note } of report.frames) if (report.frames.length > 1 && share < LITTLE * mean) list.push(`Take ${name} anew: it adds little (${(100 * share).toFixed(0)} %)${note ? `, ${note}` : ""}.`);
+  if (!estimateOnly && report.verdict === "consistent") list.push(`Keep “${name}”, and check again after the rig was moved, knocked or heated.`);
+  return report.verdict === "consistent" && !estimateOnly && guessed.length === 0 ? [...list.slice(-1), ...list.slice(0, -1)] : list;
+}
+
+/** The least certain turn and shift, one sigma, and what would tell them. */
+function weakest({ covariance }: CheckReport): string {
+  const sigma = (i: number) => Math.sqrt(Math.max(0, covariance[7 * i] ?? 0));
+  const turns = [0, 1, 2].map((i) => (180 / Math.PI) * sigma(i));
+  const shifts = [3, 4, 5].map((i) => 1000 * sigma(i));
+  const most = (values: number[]) => values.indexOf(Math.max(...values));
+  const [turn, shift] = [most(turns), most(shifts)];
+  const isTurn = (turns[turn] ?? 0) * 15 > (shifts[shift] ?? 0);
+  return isTurn
+    ? `Least certain is the turn about ${"xyz"[turn]} (± ${decimals(turns[turn], 2)}°, one sigma): ${FOR_TURN[turn]}.`
+    : `Least certain is how far it is shifted ${AXES[shift]} (± ${decimals(shifts[shift], 1)} mm, one sigma): ${FOR_SHIFT[shift]}.`;
+}
+
+export function card(run: Run): HTMLElement {
+  const { word, tone, sentence } = headline(run);
+  const [next = ""] = advise(run);
+  const all = [...run.guessed.map((what) => `Guessed: ${what}.`), ...run.report.warnings];
+  return make(
+    "div",
+    { class: `rig-verdict ${tone}`, "data-verdict": run.estimateOnly ? "estimate" : run.report.verdict },
+    icon(tone) as unknown as HTMLElement,
+    make("div", {}, make("h3", { class: "rig-word", tabindex: "-1" }, word), make("p", {}, sentence), figures(run), make("p", { class: "rig-next" }, make("strong", {}, "Next: "), next), ...(all.length > 0 ? [make("ul", { class: "rig-notes" }, ...all.map((words) => make("li", {}, words)))] : [])),
+  );
+}
+
+/** The numbers of the one in question, to be seen at a glance. */
+function figures({ report, estimateOnly }: Run): HTMLElement {
+  const { health } = report;
+  const [first] = Object.values(report.candidates);
+  const figure = (value: string, words: string) => make("div", {}, make("dt", {}, words), make("dd", {}, value));
+  const found = figure(px(health.pixels), `expected error of the best fit (95 %: ${interval(health.interval)})`);
+  if (estimateOnly || !first) return make("dl", { class: "rig-figures-row" }, found);
+  return make(
+    "dl",
+    { class: "rig-figures-row" },
+    figure(`${decimals(first.offDegrees, 2)}° and ${decimals(first.offMillimetres, 1)} mm`, "from the best fit"),
+    figure(px(first.pixels), `expected error of yours (95 %: ${interval(first.interval)})`),
+    found,
+  );
+}
+
+/** All intervals on one scale, so that they can be compared at a glance. */
+function whisker(value: number, [low, high]: [number, number], most: number): HTMLElement {
+  const at = (x: number) => `${(100 * Math.min(1, x / most)).toFixed(1)}%`;
+  return make("span", { class: "rig-whisker", "aria-hidden": "true" }, make("span", { class: "rig-range", style: `inset-inline: ${at(low)} calc(100% - ${at(high)})` }), make("span", { class: "rig-dot", style: `inset-inline-start: ${at(value)}` }));
+}
+
+export function candidatesTable({ report, estimateOnly }: Run): HTMLElement {
+  const { health } = report;
+  const list = Object.entries(report.candidates);
+  const most = 1.05 * Math.max(health.interval[1], ...list.map(([, { interval }]) => interval[1]), 1e-6);
+  const row = (name: string, words: (Node | string)[], off: string, shift: string, pixels: number, range: [number, number], reason: string) => [
+    make("tr", {}, make("th", { scope: "row" }, name), make("td", {}, ...words), make("td", { "data-label": "turned by" }, off), make("td", { "data-label": "shifted by" }, shift), make("td", { class: "rig-pixels" }, px(pixels), make("span", { class: "soft" }, interval(range)), whisker(pixels, range, most))),
+    ...(reason ? [make("tr", { class: "rig-reason" }, make("td", { colspan: 5 }, reason))] : []),
+  ];
+  const candidate = ([name, { verdict, reason, offDegrees, offMillimetres, pixels, interval: range, probability }]: [string, CandidateReport]) => {
+    const { word, tone } = WORDS[verdict];
+    const chance = `Were it right, one this far from the estimate would come up in ${probability < 0.001 ? "less than 0.1" : decimals(100 * probability, 1)} % of checks.`;
+    return row(name, [icon(tone) as unknown as HTMLElement, word], `${decimals(offDegrees, 2)}°`, `${decimals(offMillimetres, 1)} mm`, pixels, range, `${reason} ${chance}`);
+  };
+  const head = ["Calibration", "Verdict", "Turned by", "Shifted by", "Reprojection error, 95 %"].map((words) => make("th", { scope: "col" }, words));
+  return make(
+    "section",
+    { class: "rig-card" },
+    make("h3", {}, "Calibrations"),
+    make("p", { class: "soft" }, "Turn and shift are measured from the calibration found, at the scene's middle; the error is what to expect at the scene's depth, in pixels of the colour image."),
+    make("div", { class: "rig-scroll rig-calibrations-card" }, make("table", { class: "rig-table rig-calibrations" }, make("thead", {}, make("tr", {}, ...head)), make("tbody", {}, ...row("found", ["the best fit"], "–", "–", health.pixels, health.interval, ""), ...(estimateOnly ? [] : list.flatMap(candidate))))),
+  );
+}
+
+const bar = (share: number): HTMLElement => make("span", { class: "rig-bar", "aria-hidden": "true" }, make("span", { style: `width: ${(100 * Math.max(0, Math.min(1, share))).toFixed(1)}%` }));
+const percent = (share: number): string => `${(100 * share).toFixed(0)} %`;
+
+export function sharesCard({ report }: Run, history: readonly { frames: number; pixels: number; interval: [number, number] }[]): HTMLElement {
+  const frame = ({ name, share, note }: CheckReport["frames"][number]) => make("tr", {}, make("th", { scope: "row" }, name), make("td", {}, bar(share)), make("td", {}, percent(share)), make("td", { class: "rig-note" }, note ?? ""));
+  const cue = ([name, { share, sharpness }]: [string, { share: number; sharpness: number }]) => make("tr", {}, make("th", { scope: "row" }, CUES[name] ?? name), make("td", {}, bar(share)), make("td", {}, percent(share)), make("td", {}, sharpness > 0 ? `± ${decimals(1 / sharpness, 2)} px` : "tells nothing"));
+  const table = (caption: string, last: string, rows: HTMLElement[]) => make("table", { class: "rig-table rig-shares" }, make("caption", {}, caption), make("thead", { class: "visually-hidden" }, make("tr", {}, ...["Name", "", "Share", last].map((words) => make("th", { scope: "col" }, words)))), make("tbody", {}, ...rows));
+  const runs = history.map(({ frames, pixels, interval: range }) => make("li", {}, `${frames} ${frames === 1 ? "frame" : "frames"}: ${px(pixels)} (${interval(range)})`));
+  return make(
+    "section",
+    { class: "rig-card" },
+    make("h3", {}, "What told it"),
+    table("Each frame's share of the answer", "Note", report.frames.map(frame)),
+    table("Each cue's share, and its sigma", "Sigma", Object.entries(report.cues).map(cue)),
+    ...(runs.length > 1 ? [make("h4", {}, "Checks so far, with the expected error"), make("ol", { class: "rig-history" }, ...runs)] : []),
+  );
+}
+
+export const CUES: Record<string, string> = { shading: "shading", edges: "depth edges on image edges", information: "shared information", silhouette: "silhouettes" };
+
+export function nextCard(run: Run): HTMLElement {
+  return make("section", { class: "rig-card" }, make("h3", {}, "What to do next"), make("ol", { class: "rig-advice-list" }, ...advise(run).map((words) => make("li", {}, words))));
+}

@@ -1,0 +1,203 @@
+/** Step 3: the check runs, and says what it found. */
+
+import type { CheckCue, CheckReport } from "../../pkg/index.js";
+import { make } from "../dom";
+import { saveJson } from "../save";
+import type { SensitivityCharts } from "./curves";
+import { Overlay } from "./overlay";
+import { choose, labelled, press, saveFile } from "./parts";
+import type { PoseFormat } from "./protocol";
+import { messageOf, type Rig, type Run } from "./rig";
+import { wasCancelled } from "./session";
+import { candidatesTable, card, CUES, headline, nextCard, sharesCard } from "./verdict";
+
+const formats: readonly { value: PoseFormat; label: string }[] = [
+  { value: "matrix", label: "4x4 text" },
+  { value: "opencv", label: "OpenCV YAML" },
+  { value: "kalibr", label: "Kalibr camchain" },
+  { value: "ros2", label: "ROS 2 static_transform_publisher" },
+  { value: "open3d", label: "Open3D JSON" },
+  { value: "realsense", label: "RealSense JSON" },
+];
+
+export class VerdictStep {
+  readonly element = make("div", { class: "rig-step rig-verdict-step" });
+  readonly #rig: Rig;
+  readonly #run: HTMLButtonElement;
+  readonly #cancel: HTMLButtonElement;
+  readonly #progress = make("progress", { max: 1, value: 0, "aria-label": "Progress of the check" });
+  readonly #status = make("p", { class: "rig-status", role: "status" });
+  readonly #alert = make("p", { class: "rig-error", role: "alert", hidden: true });
+  readonly #stale = make("p", { class: "rig-stale", hidden: true }, "Files, cameras or calibrations have changed since this verdict: run the check again.");
+  readonly #card = make("div", { class: "rig-card rig-verdict-box", hidden: true });
+  readonly #results = make("div", { class: "rig-results", hidden: true });
+  /** In the order of reading; on wide screens the pictures stand beside both. */
+  readonly #first = make("div", { class: "rig-column" });
+  readonly #last = make("div", { class: "rig-column" });
+  readonly #overlay: Overlay;
+  readonly #curvesBox = make("section", { class: "rig-card" });
+  #curves: SensitivityCharts | undefined;
+  #shown: Run | undefined;
+  #busy = false;
+
+  constructor(rig: Rig, goBack: () => void) {
+    this.#rig = rig;
+    this.#overlay = new Overlay(rig);
+    this.#run = press("Run the check", () => void this.start(), { class: "primary" });
+    this.#cancel = press("Cancel", () => rig.session.cancel());
+    this.#curvesBox.append(make("h3", {}, "How sharply this scene tells each axis"), make("p", { class: "soft" }, "Log likelihood lost when the calibration found is moved: a narrow valley is a sure answer, a flat one says that this scene can't tell. The dot is the least of all cues together, the band what the answer is certain to (95 %)."));
+    this.#results.append(this.#first, make("div", { class: "rig-column rig-pictures" }, this.#overlay.element, this.#curvesBox), this.#last);
+    this.element.append(
+      make("section", { class: "rig-card rig-run" }, make("div", { class: "rig-row" }, press("Back", goBack), this.#run, this.#cancel, this.#status, this.#progress), this.#cueChoice(), this.#alert, this.#stale),
+      this.#card,
+      this.#results,
+    );
+  }
+
+  get busy(): boolean {
+    return this.#busy;
+  }
+
+  show(): void {
+    const { run, missing } = this.#rig;
+    this.#run.disabled = this.#busy || missing.length > 0;
+    this.#run.textContent = run ? "Run again" : "Run the check";
+    this.#cancel.disabled = !this.#busy;
+    this.#progress.toggleAttribute("data-idle", !this.#busy);
+    this.#stale.hidden = !run || this.#busy || isSame(run, this.#rig);
+    this.#card.hidden = this.#results.hidden = !run;
+    if (run && run !== this.#shown) this.#showRun(run);
+    this.#shown = run;
+  }
+
+  recolour(): void {
+    this.#curves?.recolour();
+  }
+
+  leave(): void {
+    if (this.#busy) this.#rig.session.cancel();
+  }
+
+  async start(): Promise<void> {
+    if (this.#busy || this.#rig.missing.length > 0) return;
+    this.#busy = true;
+    this.#complain("");
+    this.#tell(0, "starting");
+    this.show();
+    try {
+      await this.#rig.check((share, message) => this.#tell(share, message));
+      this.#busy = false;
+      this.show();
+      const run = this.#rig.run;
+      this.#status.textContent = run ? `Done: ${headline(run).word}.` : "";
+      this.#card.querySelector<HTMLElement>(".rig-word")?.focus({ preventScroll: true });
+    } catch (error) {
+      this.#status.textContent = wasCancelled(error) ? "Cancelled. Nothing was lost." : "";
+      if (!wasCancelled(error)) this.#complain(`The check could not be done: ${messageOf(error)}`);
+    } finally {
+      this.#busy = false;
+      this.show();
+    }
+  }
+
+  download(): void {
+    const { run } = this.#rig;
+    if (run) saveJson("rig-check.json", { format: "bimodal-stereo check", version: 1, ...whole(run) });
+    else this.#complain("There is no verdict to export yet.");
+  }
+
+  #tell(share: number, message: string): void {
+    this.#progress.value = share;
+    // Read out when it changes, which a share does all the time.
+    if (this.#status.textContent !== message) this.#status.textContent = message;
+  }
+
+  #showRun(run: Run): void {
+    this.#card.replaceChildren(card(run));
+    this.#overlay.show(run);
+    this.#first.replaceChildren(candidatesTable(run), nextCard(run));
+    this.#last.replaceChildren(sharesCard(run, this.#rig.history), this.#out(run));
+    void this.#showCurves(run);
+  }
+
+  async #showCurves(run: Run): Promise<void> {
+    const { SensitivityCharts } = await import("./curves");
+    if (!this.#curves) this.#curvesBox.append((this.#curves = new SensitivityCharts()).element);
+    this.#curvesBox.hidden = run.report.sensitivity.length === 0;
+    this.#curves.show(run.report);
+  }
+
+  #cueChoice(): HTMLElement {
+    const boxes = Object.entries(CUES).map(([cue, words]) => {
+      const box = make("input", { type: "checkbox", checked: true, value: cue });
+      box.addEventListener("change", () => {
+        const on = [...this.element.querySelectorAll<HTMLInputElement>(".rig-cues input:checked")].map(({ value }) => value as CheckCue);
+        // Of no cue at all nothing can be said.
+        if (on.length === 0) box.checked = true;
+        else this.#rig.cues = on.length === Object.keys(CUES).length ? [] : on;
+      });
+      return make("label", {}, box, words);
+    });
+    return make("details", { class: "rig-cues" }, make("summary", {}, "Cues to use"), make("div", { class: "rig-row" }, ...boxes));
+  }
+
+  #out(run: Run): HTMLElement {
+    const note = make("p", { class: "rig-error", role: "alert" });
+    const remark = make("p", { class: "soft", role: "status" });
+    const attempt = (action: () => Promise<void>) => async () => {
+      note.textContent = remark.textContent = "";
+      await action().catch((error: unknown) => (note.textContent = `It could not be written: ${messageOf(error)}`));
+    };
+    const poses = [{ value: "", label: "found" }, ...Object.keys(run.candidates).map((name) => ({ value: name, label: name }))];
+    const which = choose(poses, "", () => {});
+    const format = choose(formats, "matrix", () => {});
+    const frame = choose(run.plans.map(({ name }, i) => ({ value: String(i), label: name })), "0", () => {});
+    const pose = () => run.candidates[which.value] ?? run.report.estimate;
+    const { session } = this.#rig;
+    const save = press("Save calibration", attempt(async () => {
+      const { name, text, notes } = await session.call("pose", { pose: pose(), format: format.value as PoseFormat });
+      saveFile(name, text, "text/plain");
+      remark.textContent = notes.length > 0 ? `Mind: ${notes.join("; ")}.` : `Saved as ${name}.`;
+    }), { class: "primary" });
+    const clouds = press("Save clouds (PLY)", attempt(async () => {
+      const index = Number(frame.value);
+      const both = Object.entries(run.candidates).slice(0, run.estimateOnly ? 0 : 1).map(([name, pose]) => ({ name, pose }));
+      const poses = [{ name: "found", pose: run.report.estimate }, ...both];
+      saveFile(`${run.plans[index]?.name ?? "frame"}.ply`.replaceAll(/[^\w.-]+/g, "-"), (await session.call("clouds", { frame: index, poses })) as BlobPart, "application/octet-stream");
+    }));
+    const html = press("Save report (HTML)", attempt(async () => {
+      const pictures = await this.#overlay.pictures();
+      const inputs = this.#rig.items.map(({ name, summary }) => ({ name, says: summary?.says ?? "not read" }));
+      saveFile("rig-check.html", await session.call("report", { report: whole(run), pictures, inputs }), "text/html");
+    }));
+    return make(
+      "section",
+      { class: "rig-card" },
+      make("h3", {}, "Files out"),
+      make("div", { class: "rig-row rig-bottom" }, labelled("Calibration", which), labelled("Format", format), save),
+      make("div", { class: "rig-row rig-bottom" }, labelled("Frame", frame), clouds, html, press("Save numbers (JSON)", () => this.download())),
+      note,
+      remark,
+    );
+  }
+
+  #complain(message: string): void {
+    this.#alert.textContent = message;
+    this.#alert.hidden = message === "";
+  }
+}
+
+/** The report with what the page knows to be guessed. */
+const whole = ({ report, guessed }: Run): CheckReport => ({ ...report, warnings: [...guessed.map((what) => `Guessed: ${what}.`), ...report.warnings] });
+
+/** Whether the verdict is of what there is now. */
+function isSame(run: Run, rig: Rig): boolean {
+  const now = rig.plans();
+  const plain = (plans: Run["plans"]) => JSON.stringify(plans.map(({ paint: _, ...rest }) => rest));
+  const given = run.estimateOnly ? {} : run.candidates;
+  return (
+    plain(now) === plain(run.plans) &&
+    now.every(({ paint }, i) => paint === run.plans[i]?.paint) &&
+    JSON.stringify(Object.entries(given)) === JSON.stringify(rig.candidates.map(({ name, pose }) => [name, pose]))
+  );
+}

@@ -1,0 +1,172 @@
+/** The thread that reads files and runs the check. It keeps all pixels; the page gets summaries, pictures and numbers. */
+
+import { checkCalibration, projectFrame, type CheckFrame } from "../../pkg/index.js";
+import { faultOf } from "../engine/fault";
+import { restrictDepth, restrictImage } from "./restrict";
+import { loadExample } from "./example";
+import { readRigFile, readRigFolder, type RigReading } from "./files";
+import { picture } from "./pictures";
+import type { Answer, Assembly, CallKind, Calls, FramePlan, Request, Summary } from "./protocol";
+
+const MOST_WORKERS = 4;
+
+const readings = new Map<number, RigReading>();
+/** As they were last checked: the overlay and the files out are of these. */
+let frames: CheckFrame[] = [];
+let running: AbortController | undefined;
+
+function post(answer: Answer, transfer: Transferable[] = []): void {
+  self.postMessage(answer, { transfer });
+}
+
+function summaryOf(reading: RigReading): Summary {
+  const { says, warnings, kind } = reading;
+  const plain = { says, warnings, kind, guessed: [], cameras: [], poses: [] };
+  switch (reading.kind) {
+    case "colour":
+      return { ...plain, width: reading.image.width, height: reading.image.height, cameras: reading.image.camera ? [{ camera: reading.image.camera }] : [] };
+    case "depth": {
+      const { width, height, unit, points, camera } = reading.depth;
+      const rest = { width, height, organised: points !== undefined, cameras: camera ? [{ camera }] : [] };
+      return { ...plain, ...rest, guessed: reading.guessed, ...(unit === undefined ? {} : { unit }) };
+    }
+    case "mask":
+      return { ...plain, width: reading.mask.width, height: reading.mask.height };
+    case "cameras":
+      return { ...plain, cameras: reading.cameras, poses: reading.poses };
+    case "poses":
+      return { ...plain, poses: reading.poses };
+  }
+}
+
+function readingOf<K extends RigReading["kind"]>(file: number, kind: K): Extract<RigReading, { kind: K }> {
+  const reading = readings.get(file);
+  if (reading?.kind !== kind) throw new Error(`File ${file} has not been read as ${kind}.`);
+  return reading as Extract<RigReading, { kind: K }>;
+}
+
+/** Keeps pairs that came together as files of their own; their cameras, which all have, are told once. */
+function assemble(origin: string, first: number, pairs: CheckFrame[], { cameras, poses, warnings }: Pick<Assembly, "cameras" | "poses" | "warnings">): Assembly {
+  const items: Assembly["items"] = [];
+  const guessed: "unit"[] = warnings.some((words) => /unit .*guessed/i.test(words)) ? ["unit"] : [];
+  const keep = (reading: RigReading): number => {
+    const file = first + items.length;
+    const summary = summaryOf(reading);
+    readings.set(file, reading);
+    items.push({ file, name: reading.name, summary: items.length < 2 ? summary : { ...summary, cameras: [] } });
+    return file;
+  };
+  const frames = pairs.map(({ image, depth, name = "frame" }) => ({
+    name,
+    colour: keep({ kind: "colour", name: `${name}, colour`, says: `${image.width}x${image.height}`, warnings: [], image }),
+    depth: keep({ kind: "depth", name: `${name}, depth`, says: `${depth.width}x${depth.height}`, warnings: [], guessed, depth }),
+  }));
+  return { origin, items, frames, cameras, poses, warnings };
+}
+
+const bytesOf = async (blob: Blob): Promise<Uint8Array> => new Uint8Array(await blob.arrayBuffer());
+
+function frameOf({ name, colour, depth, mask, paint, range, colourCamera, depthCamera }: FramePlan): CheckFrame {
+  const image = restrictImage(readingOf(colour, "colour").image, [mask === undefined ? undefined : readingOf(mask, "mask").mask.data, paint]);
+  const map = restrictDepth(readingOf(depth, "depth").depth, range);
+  return { name, image: { ...image, ...(colourCamera ? { camera: colourCamera } : {}) }, depth: { ...map, ...(depthCamera ? { camera: depthCamera } : {}) } };
+}
+
+const frameAt = (index: number): CheckFrame => {
+  const frame = frames[index];
+  if (!frame) throw new Error(`There is no frame ${index}.`);
+  return frame;
+};
+
+type Handlers = { [K in CallKind]: (ask: Calls[K]["ask"], id: number) => Promise<Calls[K]["answer"]> };
+
+const handlers: Handlers = {
+  async read({ file, name, blob, as, unit }) {
+    const reading = await readRigFile({ name, bytes: await bytesOf(blob) }, { ...(as ? { as } : {}), ...(unit === undefined ? {} : { unit }) });
+    readings.set(file, reading);
+    return summaryOf(reading);
+  },
+  async unit({ file, unit }) {
+    const reading = readingOf(file, "depth");
+    const { width, height } = reading.depth;
+    const kept: RigReading = { ...reading, says: `${width}x${height}`, guessed: [], depth: { ...reading.depth, unit } };
+    readings.set(file, kept);
+    return summaryOf(kept);
+  },
+  async folder({ first, files }) {
+    const named = await Promise.all(files.map(async ({ name, blob }) => ({ name, bytes: await bytesOf(blob) })));
+    const folder = await readRigFolder(named);
+    return assemble("the folder", first, folder.frames, folder);
+  },
+  async example({ first }) {
+    const { frames, poses } = await loadExample();
+    return assemble("the example", first, frames, { cameras: [], poses, warnings: [] });
+  },
+  async forget({ file }) {
+    readings.delete(file);
+    return null;
+  },
+  async picture({ file, range, width }) {
+    const reading = readings.get(file);
+    if (!reading) throw new Error(`File ${file} has not been read.`);
+    return picture(reading, range, width);
+  },
+  async frames({ frames: plans }) {
+    frames = plans.map(frameOf);
+    return null;
+  },
+  async check({ candidates, cues }, id) {
+    running = new AbortController();
+    const { signal } = running;
+    try {
+      const workers = Math.max(1, Math.min(navigator.hardwareConcurrency || 1, MOST_WORKERS));
+      const onProgress = (share: number, message: string) => post({ id, share, message });
+      return await checkCalibration(frames, candidates, { signal, onProgress, workers, ...(cues.length > 0 ? { cues } : {}) });
+    } finally {
+      running = undefined;
+    }
+  },
+  async overlay({ frame, pose }) {
+    return projectFrame(frameAt(frame), pose);
+  },
+  async pose({ pose, format }) {
+    const { writePose } = await import("./write");
+    const [frame] = frames;
+    const { image, depth } = frame ?? {};
+    const cameras = { ...(image?.camera ? { colour: image.camera } : {}), ...(depth?.camera ? { depth: depth.camera } : {}) };
+    const size = (of: { width: number; height: number }): [number, number] => [of.width, of.height];
+    return writePose(pose, format, { ...cameras, ...(image && depth ? { sizes: { colour: size(image), depth: size(depth) } } : {}) });
+  },
+  async clouds({ frame, poses }) {
+    const [{ writeClouds }, { cloudOf }] = await Promise.all([import("./write"), import("./cloud")]);
+    const clouds = [];
+    for (const { name, pose } of poses) clouds.push({ name, ...(await cloudOf(frameAt(frame), pose)) });
+    return writeClouds(clouds);
+  },
+  async report({ report, pictures, inputs }) {
+    const { reportHtml } = await import("./write");
+    return reportHtml(report, pictures, { made: new Date(), inputs });
+  },
+};
+
+/** What may go over without a copy; everything else stays the worker's own. */
+function transferable(answer: unknown): Transferable[] {
+  if (answer instanceof ImageBitmap) return [answer];
+  if (answer instanceof Uint8Array) return [answer.buffer as ArrayBuffer];
+  if (typeof answer === "object" && answer !== null && "edges" in answer && "points" in answer) {
+    const { points, edges } = answer as Calls["overlay"]["answer"];
+    return [...new Set([points.buffer as ArrayBuffer, edges.buffer as ArrayBuffer])];
+  }
+  return [];
+}
+
+self.onmessage = async ({ data }: MessageEvent<Request>) => {
+  if (data.kind === "cancel") return running?.abort();
+  const { id, kind } = data;
+  try {
+    const answer = await (handlers[kind] as (ask: unknown, id: number) => Promise<Calls[CallKind]["answer"]>)(data, id);
+    post({ id, answer }, transferable(answer));
+  } catch (error) {
+    post({ id, fault: faultOf(error, true) });
+  }
+};

@@ -1,0 +1,8 @@
+/** The package's writers, under the types that it declares for them. Loaded when something is saved. */
+
+import * as write from "../../pkg/rig-write.js";
+import type * as Write from "../../pkg/rig/write/index.js";
+
+export const writePose = write.writePose as typeof Write.writePose;
+export const writeClouds = write.writeClouds as typeof Write.writeClouds;
+export const reportHtml = write.reportHtml as typeof Write.reportHtml;
