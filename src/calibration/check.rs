@@ -9,7 +9,9 @@ use super::evidence::Tiles;
 use super::frame::{Frame, Projection};
 use super::input::RigView;
 use super::planes::Planes;
-use super::registration::{ARRIVED, Findings, MOST_SETTLING, ROUNDS, Round, SIGMAS, Scene};
+use super::registration::{
+    ARRIVED, Findings, MOST_RIMS_OF_STARTS, MOST_SETTLING, Round, SIGMAS, SURVIVORS, Scene, Start,
+};
 use super::search;
 use super::sensitivity::{AXES, Sensitivity, curve};
 use super::unknowns::{Matrix, POSE, State};
@@ -27,7 +29,7 @@ const SEARCH_SIGMA: f64 = 40.0;
 /// Two starts whose scenes are within so many pixels are one.
 const SAME_START: f64 = 3.0;
 /// Factor of the covariance that makes intervals hold what they say; see docs/method.md, section 16.
-const INFLATION: f64 = 2.0;
+const INFLATION: f64 = 6.0;
 /// What all frames share and no tile tells, pixels: half of what a depth camera's rims and an image's edges differ by.
 const COMMON_ERROR: f64 = 0.25;
 
@@ -120,9 +122,12 @@ pub struct Overlay {
     pub edges: Vec<f32>,
 }
 
+/// How far an entry of a rotation may be from the nearest rotation's: trackers write matrices that have drifted by 1e-3.
+const ROTATION_TOLERANCE: f64 = 0.01;
+
 enum Stage {
     Starting,
-    Approaching { round: Round, done: usize, planes: Vec<Planes> },
+    Approaching { level: usize, index: usize, planes: Vec<Planes> },
     Settling { done: usize, planes: Vec<Planes> },
     Judging { planes: Vec<Planes> },
     Curves { planes: Vec<Planes>, findings: Box<Findings>, done: usize },
@@ -136,9 +141,8 @@ pub struct CalibrationCheck {
     warnings: Vec<String>,
     /// Width of the first image as it was given.
     width: f64,
-    starts: Vec<State>,
-    next: usize,
-    ends: Vec<(f64, Round)>,
+    /// Best first once they have arrived.
+    starts: Vec<Start>,
     best: Round,
     stage: Stage,
     report: Option<CheckReport>,
@@ -156,13 +160,7 @@ impl CalibrationCheck {
             let message = format!("takes up to {MOST_CANDIDATES}");
             return Err(Error::new(ErrorKind::Size, "candidates", message).value(candidates.len() as f64));
         }
-        for (name, pose) in &candidates {
-            pose.validate("pose").map_err(|error| error.below(&format!("candidates.{name}")))?;
-            if (pose.scale - 1.0).abs() > 1e-6 {
-                let error = Error::new(ErrorKind::Range, "scale", "must be 1: extrinsics do not change sizes");
-                return Err(error.value(pose.scale).below(&format!("candidates.{name}")));
-            }
-        }
+        let candidates = candidates.into_iter().map(candidate).collect::<Result<Vec<_>>>()?;
         let width = views[0].image_size[0] as f64;
         let (mut warnings, mut frames, mut is_guessed) = (vec![], vec![], false);
         for (index, view) in views.into_iter().enumerate() {
@@ -172,38 +170,22 @@ impl CalibrationCheck {
             frames.push(frame);
         }
         let cues = if cues.is_empty() { Cue::ALL.to_vec() } else { cues.to_vec() };
-        let candidates: Vec<(String, State)> =
-            candidates.into_iter().map(|(name, pose)| (name, State::at(pose.orthonormal()))).collect();
         let told = candidates.first().map_or_else(|| State::at(Similarity::identity()), |candidate| candidate.1);
         let best = Round { state: told, told, sigma: 0.0 };
         let scene = Scene::new(frames, cues, is_guessed);
         warn_of_translations(&candidates, &mut warnings);
-        Ok(Self {
-            scene,
-            candidates,
-            warnings,
-            width,
-            starts: vec![],
-            next: 0,
-            ends: vec![],
-            best,
-            stage: Stage::Starting,
-            report: None,
-        })
+        Ok(Self { scene, candidates, warnings, width, starts: vec![], best, stage: Stage::Starting, report: None })
     }
 
     /// Share of the work that is done, and what comes next.
     #[must_use]
     pub fn progress(&self) -> (f64, &'static str) {
-        let rounds = (SIGMAS.len() * ROUNDS) as f64;
         match &self.stage {
             Stage::Starting => (0.0, "looking for depth edges in the image"),
-            Stage::Approaching { done, .. } => {
-                let starts = self.starts.len().max(1) as f64;
-                (
-                    0.1 + 0.6 * (self.next as f64 - 1.0 + *done as f64 / rounds) / starts,
-                    "bringing depth edges onto image edges",
-                )
+            Stage::Approaching { level, index, .. } => {
+                let of_level = *index as f64 / self.starts.len().max(1) as f64;
+                let share = (*level as f64 + of_level) / SIGMAS.len() as f64;
+                (0.1 + 0.6 * share, "bringing depth edges onto image edges")
             }
             Stage::Settling { done, .. } => {
                 (0.7 + 0.15 * *done as f64 / MOST_SETTLING as f64, "refining with all cues")
@@ -227,9 +209,9 @@ impl CalibrationCheck {
         self.stage = match std::mem::replace(&mut self.stage, Stage::Done) {
             Stage::Starting => {
                 self.find_starts();
-                self.approach_next()
+                Stage::Approaching { level: 0, index: 0, planes: self.planes_of(0) }
             }
-            Stage::Approaching { round, done, planes } => self.approach(round, done, planes),
+            Stage::Approaching { level, index, planes } => self.approach(level, index, planes),
             Stage::Settling { done, planes } => {
                 let moved = self.scene.settle(&mut self.best, &planes);
                 if moved < ARRIVED || done + 1 >= MOST_SETTLING {
@@ -260,53 +242,45 @@ impl CalibrationCheck {
         matches!(self.stage, Stage::Done)
     }
 
-    /// The candidates, what the coarse search finds beside the first, and the inverses.
+    /// The candidates, what the coarse search finds beside the first, and its inverse.
     fn find_starts(&mut self) {
         let told = self.best.told;
         let units = self.scene.units(&told);
         let sigma = SEARCH_SIGMA * self.scene.scale;
-        let found =
-            search::starts(&self.scene.frames, &told, &units, self.scene.scale, sigma, self.scene.focal_is_free);
+        let found = search::starts(&self.scene.frames, &told, &units, self.scene.scale, sigma);
         let others = self.candidates.iter().skip(1).map(|candidate| candidate.1);
         let inverse = State::at(told.pose.inverse());
-        for start in found.into_iter().chain(others).chain([inverse]) {
-            let is_new = self.starts.iter().all(|other| {
-                let step = units.between(other, &start);
-                step.norm() > SAME_START * self.scene.scale
-            });
-            if is_new {
-                self.starts.push(start);
+        for state in found.into_iter().chain(others).chain([inverse]) {
+            let is_near =
+                |other: &Start| units.between(&other.round.state, &state).norm() <= SAME_START * self.scene.scale;
+            if self.starts.iter().any(is_near) {
+                continue;
             }
+            let round = Round { state, told, sigma: 0.0 };
+            self.starts.push(Start { round, found: state, rims: vec![], score: f64::NEG_INFINITY });
         }
     }
 
-    fn approach_next(&mut self) -> Stage {
-        let Some(&state) = self.starts.get(self.next) else { return self.choose() };
-        self.next += 1;
-        let sigma = SIGMAS[0] * self.scene.scale;
-        let round = Round { state, told: self.best.told, sigma };
-        Stage::Approaching { round, done: 0, planes: self.scene.planes(sigma) }
+    fn planes_of(&self, level: usize) -> Vec<Planes> {
+        self.scene.planes(SIGMAS[level] * self.scene.scale)
     }
 
-    fn approach(&mut self, mut round: Round, done: usize, mut planes: Vec<Planes>) -> Stage {
-        let sigma = SIGMAS[done / ROUNDS] * self.scene.scale;
-        if sigma != round.sigma {
-            planes = self.scene.planes(sigma);
-            round.sigma = sigma;
+    /// One start at one level; after the last start the next level, with the best of them.
+    fn approach(&mut self, level: usize, index: usize, planes: Vec<Planes>) -> Stage {
+        if let Some(start) = self.starts.get_mut(index) {
+            if level % 2 == 0 {
+                start.found = start.round.state;
+                start.rims = self.scene.rims(&start.found, MOST_RIMS_OF_STARTS);
+            }
+            self.scene.approach(start, SIGMAS[level] * self.scene.scale, &planes);
+            return Stage::Approaching { level, index: index + 1, planes };
         }
-        self.scene.approach(&mut round, &planes);
-        if done + 1 < SIGMAS.len() * ROUNDS {
-            return Stage::Approaching { round, done: done + 1, planes };
+        self.starts.sort_by(|a, b| b.score.total_cmp(&a.score));
+        self.starts.truncate(SURVIVORS[level]);
+        if level + 1 < SIGMAS.len() {
+            return Stage::Approaching { level: level + 1, index: 0, planes: self.planes_of(level + 1) };
         }
-        self.ends.push((self.scene.score(&round, &planes), round));
-        self.approach_next()
-    }
-
-    fn choose(&mut self) -> Stage {
-        if let Some((_, best)) = self.ends.iter().max_by(|a, b| a.0.total_cmp(&b.0)) {
-            self.best = *best;
-        }
-        let planes = self.scene.planes(self.best.sigma);
+        self.best = self.starts[0].round;
         Stage::Settling { done: 0, planes }
     }
 
@@ -431,6 +405,22 @@ fn cue_reports(findings: &Findings, pixel: f64) -> Vec<CueReport> {
         sharpness: information.max(0.0).sqrt() / pixel,
     };
     findings.cues.iter().zip(&informations).map(report).collect()
+}
+
+/// A candidate with the rotation nearest to the matrix that was given.
+fn candidate((name, pose): (String, Similarity)) -> Result<(String, State)> {
+    let field = format!("candidates.{name}");
+    let wrong = |member, message: &str| Error::new(ErrorKind::Range, member, message.to_owned()).below(&field);
+    if (pose.scale - 1.0).abs() > ROTATION_TOLERANCE {
+        return Err(wrong("scale", "must be 1: extrinsics do not change sizes").value(pose.scale));
+    }
+    if pose.translation.iter().any(|value| !value.is_finite()) {
+        return Err(wrong("translation", "must be finite"));
+    }
+    let nearest = Similarity::nearest(&pose.rotation, pose.translation).ok();
+    let nearest = nearest.filter(|nearest| (nearest.rotation - pose.rotation).abs().max() < ROTATION_TOLERANCE);
+    let Some(nearest) = nearest else { return Err(wrong("rotation", "must be orthonormal with determinant one")) };
+    Ok((name, State::at(Similarity { scale: 1.0, ..nearest })))
 }
 
 /// Millimetres where metres were asked for.

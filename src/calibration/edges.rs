@@ -50,7 +50,21 @@ impl EdgeField {
         all.into_iter().step_by(stride).collect()
     }
 
-    /// The edges beside rims that were found at `state`.
+    /// Rims that were found at one state where another one puts them.
+    pub fn moved(frame: &Frame, rims: &[Rim], found: &State, state: &State) -> Vec<Rim> {
+        let camera = state.camera(&frame.camera);
+        let place = |state: &State, rim: &Rim| {
+            let [x, y, z] = state.pose.apply(frame.point(rim.index)?).into();
+            camera.project([x, y, z])
+        };
+        let moved = |rim: &Rim| {
+            let (to, from) = (place(state, rim)?, place(found, rim)?);
+            Some(Rim { pixel: [0, 1].map(|k| rim.pixel[k] + to[k] - from[k]), ..*rim })
+        };
+        rims.iter().filter_map(moved).collect()
+    }
+
+    /// The edges beside rims as `state` sees them.
     pub fn new(
         frame: &Frame,
         planes: &Planes,

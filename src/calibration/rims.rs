@@ -108,7 +108,7 @@ fn rim(grid: Size, projection: &Projection, index: usize) -> Option<Rim> {
     let length = normal[0].hypot(normal[1]);
     let normal = normal.map(|value| value / length);
     let outwards = (a * away[0] + b * away[1]) * normal[0] + (c * away[0] + d * away[1]) * normal[1];
-    if !(outwards > 0.0) {
+    if outwards.is_nan() || outwards <= 0.0 {
         return None;
     }
     let pixel = [0, 1].map(|k| f64::from(centre[k]) + 0.5 * outwards * normal[k]);

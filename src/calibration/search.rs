@@ -20,7 +20,7 @@ const TURNS: [f64; 5] = [0.0, -1.5, 1.5, -3.0, 3.0];
 /// Rims of a frame that are laid onto its edges.
 const MOST_RIMS: usize = 500;
 /// Starts beside the candidate.
-const STARTS: usize = 3;
+const STARTS: usize = 16;
 /// Two starts differ by this much, pixels.
 const APART: f64 = 8.0;
 /// Blur of the image, pixels of an image 640 wide: half the pace of the search and some.
@@ -69,15 +69,7 @@ impl EdgeMap {
 }
 
 /// The candidate and other starts near it, best first after it. `sigma` is the prior's, pixels.
-pub(super) fn starts(
-    frames: &[Frame],
-    state: &State,
-    units: &Units,
-    scale: f64,
-    sigma: f64,
-    focal_is_free: bool,
-) -> Vec<State> {
-    let _ = focal_is_free;
+pub(super) fn starts(frames: &[Frame], state: &State, units: &Units, scale: f64, sigma: f64) -> Vec<State> {
     let maps: Vec<EdgeMap> = frames.iter().map(|frame| EdgeMap::new(&frame.planes, scale)).collect();
     let mut best: Vec<(f64, [f64; 3])> = vec![];
     for turn in TURNS {
@@ -115,7 +107,10 @@ pub(super) fn starts(
     crate::numeric::sort_descending(&mut best, |entry| entry.0);
     let mut chosen: Vec<[f64; 3]> = vec![];
     for (_, place) in best {
-        let is_new = chosen.iter().all(|other| (place[0] - other[0]).hypot(place[1] - other[1]) > APART * scale);
+        let is_apart = |other: &[f64; 3]| {
+            (place[0] - other[0]).hypot(place[1] - other[1]) > APART * scale || (place[2] - other[2]).abs() > 1e-9
+        };
+        let is_new = chosen.iter().all(is_apart);
         if is_new {
             chosen.push(place);
         }

@@ -80,21 +80,9 @@ fn along(
 ) -> Vec<f64> {
     let frame = &scene.frames[index];
     if cue == Cue::Edges {
-        let camera = round.state.camera(&frame.camera);
-        let place = |state: &State, rim: &super::rims::Rim| {
-            let [x, y, z] = state.pose.apply(frame.point(rim.index)?).into();
-            camera.project([x, y, z])
-        };
         let rims = EdgeField::rims(frame, &round.state, MOST_RIMS);
         let value = |state: &State| {
-            let moved: Vec<_> = rims
-                .iter()
-                .filter_map(|rim| {
-                    let (to, from) = (place(state, rim)?, place(&round.state, rim)?);
-                    let pixel = [0, 1].map(|k| rim.pixel[k] + to[k] - from[k]);
-                    Some(super::rims::Rim { pixel, ..*rim })
-                })
-                .collect();
+            let moved = EdgeField::moved(frame, &rims, &round.state, state);
             let field = EdgeField::new(
                 frame,
                 planes,

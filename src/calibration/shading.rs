@@ -77,7 +77,7 @@ fn basis(n: &Vector3<f64>) -> Harmonics {
 
 /// Takes from each value the mean over its patch.
 fn remove_means<const N: usize>(patches: &[u8], values: &mut [SVector<f64, N>], is_known: impl Fn(usize) -> bool) {
-    let mut sums = vec![(SVector::<f64, N>::zeros(), 0.0); PATCHES];
+    let mut sums = [(SVector::<f64, N>::zeros(), 0.0); PATCHES];
     for (index, value) in values.iter().enumerate().filter(|&(index, _)| is_known(index)) {
         let (sum, count) = &mut sums[patches[index] as usize];
         *sum += value;

@@ -1,8 +1,8 @@
 //! The masked object on the image's mask, both ways where both views have one.
 //!
-//! Points of the object lie on the mask, and the mask's outline is where some point ends: the log likelihood is
-//! - 1/2 sum over points u^2 / (1 + u^2 / U^2), u = how far a point falls outside the mask beyond a tolerance. That alone
-//! would shrink the object into its mask, so rims of the object are drawn to the outline from inside by the edges' cue.
+//! Points of the object lie on the mask. The log likelihood is the negative half of the sum over points of
+//! u^2 / (1 + u^2 / U^2), u being how far a point falls outside the mask beyond a tolerance. That alone would shrink the
+//! object into its mask; the edges' cue draws its rims to the outline from inside.
 
 use super::evidence::Tiles;
 use super::patches::{Patches, Sight};

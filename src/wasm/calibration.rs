@@ -9,7 +9,8 @@ use super::error::Thrown;
 use super::input::{JsDepth, JsImage, numbers, samples_of_depth, samples_of_image};
 use super::output::{numbers as values, object, set};
 use crate::calibration::{
-    self, CandidateReport, CheckReport, CheckVerdict, Cue, CueReport, FrameReport, Health, Lens, RigCamera, RigView, Sensitivity,
+    self, CandidateReport, CheckReport, CheckVerdict, Cue, CueReport, FrameReport, Health, Lens, RigCamera, RigView,
+    Sensitivity,
 };
 use crate::error::{Error, ErrorKind, Result};
 use crate::pose::Similarity;
