@@ -14,6 +14,10 @@ export class BimodalError extends Error {
   }
 }
 
+/** What is wrong with a file. */
+export const badFile = (message: string, cause?: unknown) =>
+  new BimodalError("file", `file: ${message}`, "file", cause === undefined ? undefined : { cause });
+
 /** How errors cross from wasm: plain data. */
 interface Crossing {
   code: string;

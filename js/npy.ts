@@ -4,7 +4,7 @@
  * Written here because npyjs (1.2) checks neither the length against the shape nor the order of axes, fails on data that
  * are not aligned, and brings a fetch library along.
  */
-import { BimodalError } from "./errors.js";
+import { badFile as bad } from "./errors.js";
 
 /** Raster data with its channels interleaved. */
 export interface Raster<T> {
@@ -21,8 +21,6 @@ const SHORTEST = 10;
 /** Red, green, blue and alpha. */
 const MOST_CHANNELS = 4;
 
-const bad = (message: string) => new BimodalError("file", `file: ${message}`, "file");
-
 export const isNpy = (bytes: Uint8Array): boolean => [...MAGIC].every((letter, i) => bytes[i] === letter.charCodeAt(0));
 
 /** Bytes for each element, and how `count` of them are read from aligned little-endian memory. */
@@ -37,8 +35,24 @@ const KINDS = {
 
 const isKind = (name: string): name is keyof typeof KINDS => Object.hasOwn(KINDS, name);
 
-/** Reads rows x columns, or rows x columns x channels; 64-bit floats and 32-bit integers become 32-bit floats. */
-export function readNpy(bytes: Uint8Array): Raster<Float32Array | Uint16Array | Uint8Array> {
+/** Data in column order (the first index runs fastest) in row order. */
+function inRows<T extends Float32Array | Uint16Array | Uint8Array>(data: T, height: number, width: number, channels: number): T {
+  const rows = data.slice() as T;
+  for (let row = 0; row < height; row++) {
+    for (let column = 0; column < width; column++) {
+      for (let channel = 0; channel < channels; channel++) {
+        rows[(row * width + column) * channels + channel] = data[row + height * (column + width * channel)] ?? 0;
+      }
+    }
+  }
+  return rows;
+}
+
+/**
+ * Reads rows x columns, or rows x columns x channels; 64-bit floats and 32-bit integers become 32-bit floats. Column order is
+ * read where `columns` says so.
+ */
+export function readNpy(bytes: Uint8Array, { columns = false } = {}): Raster<Float32Array | Uint16Array | Uint8Array> {
   if (bytes.length < SHORTEST) throw bad("this .npy file is cut off in its header");
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
   const short = view.getUint8(6) === 1;
@@ -51,7 +65,8 @@ export function readNpy(bytes: Uint8Array): Raster<Float32Array | Uint16Array | 
   if (!isKind(kind)) {
     throw bad(`a .npy file of type "${kind}" is not read here; save it as float32, float64, uint16, uint8 or int32`);
   }
-  if (!header.includes("'fortran_order': False")) {
+  const inColumns = !header.includes("'fortran_order': False");
+  if (inColumns && !(columns && header.includes("'fortran_order': True"))) {
     throw bad("this .npy file is in column order; save it with numpy.ascontiguousarray");
   }
   const listed = /'shape': \(([^)]*)\)/.exec(header)?.[1] ?? "";
@@ -70,5 +85,6 @@ export function readNpy(bytes: Uint8Array): Raster<Float32Array | Uint16Array | 
   const body = bytes.subarray(until);
   if (body.length < count * size) throw bad(`this .npy file is cut off: ${body.length} of ${count * size} bytes`);
   // A copy, because typed arrays want aligned memory.
-  return { width, height, channels, data: read(body.slice(0, count * size).buffer, count) };
+  const data = read(body.slice(0, count * size).buffer, count);
+  return { width, height, channels, data: inColumns ? inRows(data, height, width, channels) : data };
 }

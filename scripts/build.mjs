@@ -8,14 +8,23 @@ import { inRoot, must, say, script, seconds, stamp } from "./shell.mjs";
 const COPIED = ["README.md", "CHANGELOG.md", "LICENSE-MIT", "LICENSE-APACHE"];
 const SOURCES = [...NUMERICS, "js", "package-lock.json", "scripts/build.mjs"];
 const MARK = "pkg/.stamp";
-/** One for programs, one for what reads files, one for what writes a rig's, one for the page's fields, and one for the threads of workers. */
-const ENTRIES = { index: "index", files: "files", options: "options", "rig-write": "rig/write/index", thread: "workers/thread" };
+/** One for programs, one for images and depth maps, two for what reads and writes a rig's files, one for the page's fields, and one for the threads of workers. */
+const ENTRIES = {
+  index: "index",
+  files: "files",
+  rig: "rig/index",
+  "rig-write": "rig/write/index",
+  options: "options",
+  thread: "workers/thread",
+};
 /** Declarations that no entry mentions; one of them names the generated bindings, which stay inside. */
 const INTERNAL = [
-  ...["breathe.d.ts", "check.d.ts", "engine.d.ts", "node.d.ts", "npy.d.ts", "plain.d.ts", "workers"],
+  ...["breathe", "check", "engine", "inflate", "node", "npy", "plain", "png", "raster"].map((name) => `${name}.d.ts`),
   ...["check", "run"].map((name) => `calibration/${name}.d.ts`),
+  ...["assign", "colour", "depth", "words"].map((name) => `rig/${name}.d.ts`),
   ...["json", "numbers", "plain", "yaml"].map((name) => `rig/write/${name}.d.ts`),
   ...["charts", "curves", "markup", "numbers", "sections", "style"].map((name) => `rig/write/report/${name}.d.ts`),
+  ...["rig/formats", "workers"],
 ];
 
 /** What the package says about itself; name, version and licence come from Cargo.toml alone. */
@@ -35,6 +44,7 @@ function manifest() {
     exports: {
       ".": { types: "./index.d.ts", default: "./index.js" },
       "./files": { types: "./files.d.ts", default: "./files.js" },
+      "./rig": { types: "./rig/index.d.ts", default: "./rig.js" },
       "./rig-write": { types: "./rig/write/index.d.ts", default: "./rig-write.js" },
       ...Object.fromEntries(ALL.map(({ file }) => [`./${file}`, `./${file}`])),
       "./package.json": "./package.json",

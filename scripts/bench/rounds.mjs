@@ -22,10 +22,12 @@ const sum = (values) => values.reduce((total, value) => total + value, 0);
 /**
  * Samples of every stage at one size on one side. The registration computes once in a run, in its first iteration; later ones
  * find that the pose no longer moves and repeat nothing. A step is therefore put together: the other stages of a steady iteration and a
- * registration that did compute. "standing step" is the steady iteration as it was, its pose no longer moving.
+ * registration that did compute. "standing step" is the steady iteration as it was, its pose no longer moving; "last step" is the last one
+ * of a loop, whose shapes have mostly settled and are kept. It counts as steady only where there is no other one.
  */
 class Samples {
   #steady = [];
+  #last = [];
   #registrations = [];
   #preparations = [];
 
@@ -38,7 +40,9 @@ class Samples {
   }
 
   addSteady(run) {
-    this.#steady.push(...steadyIterations(run));
+    const steady = steadyIterations(run);
+    this.#last.push(steady.at(-1));
+    this.#steady.push(...steady.slice(0, Math.max(1, steady.length - 1)));
   }
 
   /** Only from a run that does not begin with a search, whose registrations the first iteration repeats just as little. */
@@ -59,7 +63,7 @@ class Samples {
       ["preparation", this.#preparations],
       ...[["light", of("light")], ["shading", of("shading")], ["surface", of("surface")]],
       ...[["registration", registrations], ["refinement", of("refinement")], ["step", steps]],
-      ["standing step", this.#steady.map((stages) => sum(Object.values(stages)))],
+      ...[["standing step", this.#steady], ["last step", this.#last]].map(([name, steps]) => [name, steps.map((stages) => sum(Object.values(stages)))]),
     ];
   }
 }

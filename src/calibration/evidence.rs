@@ -7,6 +7,7 @@
 //! over tiles (Efron 1982), which unlike H^-1 J H^-1 stays honest where a few tiles carry it.
 
 use super::unknowns::{Matrix, UNKNOWNS, Vector};
+use crate::numeric::eigen::{Eigen, symmetric_eigen};
 use crate::view::Size;
 
 /// Tiles along the longer side of an image: wide enough that errors of different tiles are independent, many enough to
@@ -112,7 +113,6 @@ impl Evidence {
 
 /// The nearest matrix without negative eigenvalues.
 pub(super) fn positive(matrix: &Matrix) -> Matrix {
-    let mut eigen = matrix.symmetric_eigen();
-    eigen.eigenvalues.iter_mut().for_each(|value| *value = value.max(0.0));
-    eigen.recompose()
+    let Some(Eigen { values, vectors }) = symmetric_eigen(matrix) else { return Matrix::zeros() };
+    vectors * Matrix::from_diagonal(&values.map(|value| value.max(0.0))) * vectors.transpose()
 }

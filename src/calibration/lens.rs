@@ -41,6 +41,8 @@ pub struct RigCamera {
 const MOST_ROUNDS: usize = 60;
 /// A ray has been found when its pixel is this near, in pixels: a hundredth of the step between coordinates in f32.
 const RETURN_DISTANCE: f64 = 1e-7;
+/// .. or so near relative to its distance from the middle: what 64 bits leave of pixels millions beyond the picture.
+const ROUNDING: f64 = 1e-13;
 /// Largest slope of a ray behind Brown's lens, 89.4 degrees off the axis: the model knows no ray at 90.
 const LARGEST_SLOPE: f64 = 100.0;
 /// Radii at which the growth of the distorted radius is asked, evenly spread in their squares.
@@ -137,7 +139,7 @@ impl RigCamera {
         for _ in 0..MOST_ROUNDS {
             let (distorted, gradient) = brown(coefficients, ray);
             let [right, down] = [target[0] - distorted[0], target[1] - distorted[1]];
-            if self.pixels([right, down]) < RETURN_DISTANCE {
+            if self.pixels([right, down]) < RETURN_DISTANCE + ROUNDING * self.pixels(target) {
                 return is_unfolded(coefficients, ray, gradient).then_some([ray[0], ray[1], 1.0]);
             }
             let [[a, b], [c, d]] = gradient;
@@ -382,7 +384,8 @@ mod tests {
                 let [u, v, w] = camera.ray(pixel).unwrap();
                 // A pixel of a millionth may be far in space where the lens is about to fold: there the pixel counts.
                 let back = camera.project([u, v, w]).unwrap();
-                prop_assert!((back[0] - pixel[0]).hypot(back[1] - pixel[1]) < 2.0 * RETURN_DISTANCE);
+                let far = pixel[0].hypot(pixel[1]);
+                prop_assert!((back[0] - pixel[0]).hypot(back[1] - pixel[1]) < 2.0 * RETURN_DISTANCE + 1e-11 * far);
                 prop_assert!(w > 0.0 || (u * u + v * v + w * w - 1.0).abs() < 1e-12);
                 let (_, [a, b]) = camera.project_with_gradient([x, y, z]).unwrap();
                 let across = [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];

@@ -1,6 +1,8 @@
 //! Samples of the depth map with their normals: what shading and information look at.
 
-use nalgebra::{Matrix3, SymmetricEigen, Vector3};
+use nalgebra::{Matrix3, Vector3};
+
+use crate::numeric::eigen::symmetric_eigen;
 
 use super::frame::{Frame, clear_gap};
 
@@ -49,8 +51,8 @@ fn sample(frame: &Frame, column: usize, row: usize) -> Option<Sample> {
         return None;
     }
     let mean = sum / count as f64;
-    let eigen = SymmetricEigen::new(squares / count as f64 - mean * mean.transpose());
-    let normal: Vector3<f64> = eigen.eigenvectors.column(eigen.eigenvalues.imin()).into();
+    let eigen = symmetric_eigen(&(squares / count as f64 - mean * mean.transpose()))?;
+    let normal: Vector3<f64> = eigen.vectors.column(eigen.values.imin()).into();
     let normal = if normal.dot(&point) > 0.0 { -normal } else { normal };
     Some(Sample { index, point, normal })
 }

@@ -8,10 +8,9 @@
 //! at most one case of forty where the covariance is right.
 
 use nalgebra::{SMatrix, SVector, Vector3};
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{Rng, SeedableRng};
 
 use super::unknowns::{Matrix, POSE, State, Units};
+use crate::numeric::random::Random;
 use crate::text::Fixed;
 
 /// Reprojection error that passes, pixels of an image 640 wide: a third of a degree at a usual focal length, what a
@@ -104,8 +103,8 @@ impl Judge {
         let covariance: PoseMatrix = covariance.fixed_view::<POSE, POSE>(0, 0).into();
         let root = covariance.cholesky().map_or_else(PoseMatrix::zeros, |c| c.l());
         let freedom = (tiles as f64 - POSE as f64).max(FEWEST_DEGREES);
-        let mut random = ChaCha8Rng::seed_from_u64(SEED);
-        let mut normal = || (0..12).map(|_| f64::from(random.next_u32()) / f64::from(u32::MAX)).sum::<f64>() - 6.0;
+        let mut random = Random::new(SEED, 0);
+        let mut normal = || (0..12).map(|_| random.uniform()).sum::<f64>() - 6.0;
         let draws = (0..DRAWS)
             .map(|_| {
                 // Student's: a normal over the root of a mean square; chi-square by Wilson and Hilferty (1931).

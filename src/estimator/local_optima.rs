@@ -9,7 +9,7 @@
 //! leave 1.25 times their noise or more, so a pose that leaves nothing but the noise of the image comes before one that
 //! sees more but leaves so much.
 
-use crate::numeric::sort_descending;
+use crate::numeric::{power, sort_descending};
 use crate::pose::Similarity;
 
 use super::workers::task::RegisteredCandidate;
@@ -82,7 +82,7 @@ impl LocalOptima {
 
     /// Enters where a registration ended: the better of two that are one.
     pub fn enter(&mut self, candidate: usize, registered: RegisteredCandidate) {
-        let gain = registered.visible.powf(THIRD) * (self.spread / registered.noise).ln();
+        let gain = power(registered.visible, THIRD) * (self.spread / registered.noise).ln();
         if !gain.is_finite() {
             return;
         }

@@ -23,6 +23,7 @@ mod outputs;
 mod pair;
 mod run;
 mod searching;
+mod settling;
 mod solution;
 mod stages;
 mod units;
@@ -42,6 +43,7 @@ use opening::Opening;
 pub use outputs::Surface;
 use pair::ViewPair;
 use run::{History, Run};
+use settling::Settling;
 use solution::{Accepted, Solution};
 pub use stages::RefinementTask;
 use stages::{Inputs, LightStage, PaintStage, RefinementStage, Registered, RegistrationStage, ShapeStage};
@@ -83,6 +85,8 @@ pub struct Estimator {
     accepted: Accepted,
     evaluated: Vec<u32>,
     history: History,
+    /// Which shapes have settled, so that they are kept.
+    settling: Settling,
     report: StepReport,
     /// The same in the caller's units, where they are others.
     report_out: Option<Box<StepReport>>,
@@ -122,6 +126,7 @@ impl Estimator {
             solution,
             evaluated: Vec::with_capacity(objective::MOST_POINTS),
             history: History::default(),
+            settling: Settling::new(settling::TOLERANCE),
             report: StepReport::at(pose),
             report_out: None,
             pair,
@@ -193,18 +198,21 @@ impl Estimator {
         self.report()
     }
 
-    /// One stage of Algorithm 1, and what follows the last of an iteration.
+    /// One stage of Algorithm 1, and what follows the last of an iteration. Shapes that have settled are kept.
     fn iterate(&mut self, stage: Stage) -> Result<()> {
         self.report.stage = stage;
         self.run = Run::Iterating(stage.next());
         match stage {
             Stage::Search => {}
-            Stage::Light => self.fit_light()?,
-            Stage::Shading => self.find_normals(),
-            Stage::Surface => self.find_surface()?,
+            Stage::Light if !self.settling.keeps_all() => self.fit_light()?,
+            Stage::Shading if !self.settling.keeps_image() => self.find_normals(),
+            Stage::Surface if !self.settling.keeps_image() => self.find_surface()?,
+            Stage::Light | Stage::Shading | Stage::Surface => {}
             Stage::Registration => self.register()?,
             Stage::Refinement => {
-                self.refine();
+                if !self.settling.keeps_depth() {
+                    self.refine();
+                }
                 self.finish_iteration();
             }
         }
@@ -272,8 +280,10 @@ impl Estimator {
                 self.shorten_step(&start);
             }
         }
-        gauge::settle_depth(&self.pair, &self.correspondences, &mut self.scratch.spare, &mut self.solution);
-        self.find_correspondences();
+        if !self.settling.keeps_all() {
+            gauge::settle_depth(&self.pair, &self.correspondences, &mut self.scratch.spare, &mut self.solution);
+            self.find_correspondences();
+        }
         Ok(())
     }
 
@@ -323,7 +333,8 @@ impl Estimator {
             self.choose_evaluation_points();
         }
         let before = (!is_first).then_some(self.report.objective);
-        let after = self.objective();
+        let is_new = !self.settling.keeps_all();
+        let after = if is_new { self.objective() } else { self.report.objective };
         let change = self.accepted.pose.degrees_to(&self.solution.pose);
         // The registration by colours has an objective of its own: a pose that it moves is not for this one to take
         // back.
@@ -336,7 +347,9 @@ impl Estimator {
             None => self.accept(change),
         }
         self.report.pose = self.accepted.pose;
-        self.measure();
+        if is_new {
+            self.measure();
+        }
         self.conclude(worse_than.is_some(), before);
         let History { step_fraction, .. } = &mut self.history;
         *step_fraction = if worse_than.is_some() { 0.5 * *step_fraction } else { (2.0 * *step_fraction).min(1.0) };
@@ -353,6 +366,7 @@ impl Estimator {
     /// Goes back to the accepted solution.
     fn take_back(&mut self, before: Objective, after: Objective) {
         self.history.rejections += 1;
+        self.settling.restart();
         self.solution.restore(&self.accepted, &self.pair);
         self.refinement.shape_changed();
         self.find_correspondences();
@@ -370,10 +384,26 @@ impl Estimator {
         self.history.rejections = if self.history.improved { 0 } else { self.history.rejections + 1 };
         let stayed = || "the registration found no pose better than the present one".into();
         self.report.message = (!self.history.improved).then(stayed);
+        if self.settling.keeps_all() {
+            return;
+        }
+        self.settle();
         self.accepted.accept(&self.solution);
         self.choose_evaluation_points();
         // Over the new evaluation points, as the next iteration will be.
         self.report.objective = self.objective();
+    }
+
+    /// Decides which shapes the next iteration keeps: none before the surface has tried its starts, and none after one
+    /// that has changed the pose.
+    fn settle(&mut self) {
+        let Self { pair, paint, registration, accepted, solution, scratch, settling, report, .. } = self;
+        let stands = registration.keeps(pair, &solution.pose) && paint.knows(pair, &solution.pose);
+        if stands && report.iteration >= crate::shape::STARTS {
+            settling.advance(settling::movements(pair, accepted, solution, &mut scratch.spare));
+        } else {
+            settling.restart();
+        }
     }
 
     /// The evaluation points of the next comparison, from the present correspondences.
@@ -432,6 +462,7 @@ impl Estimator {
     fn prepare_next_refinement(&mut self) {
         // A worker has the image with its paint.
         let is_known = self.report.status == Status::Running
+            && !self.settling.keeps_depth()
             && self.paint.found().is_none()
             && self.registration.keeps(&self.pair, &self.solution.pose);
         if is_known {

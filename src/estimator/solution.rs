@@ -120,7 +120,7 @@ fn place(size: Size, camera: &Camera, points: &mut Points) {
 /// from their depths.
 pub struct Accepted {
     pub pose: Similarity,
-    light: ExposedLight,
+    pub light: ExposedLight,
     image_normals: Normals,
     image_depth: Vec<f32>,
     depth_normals: Normals,
@@ -143,6 +143,16 @@ impl Accepted {
     /// Normals of the image surface, those of the working solution until its iteration finds others.
     pub const fn image_normals(&self) -> &Normals {
         &self.image_normals
+    }
+
+    /// Normals and depths of the image surface.
+    pub fn image(&self) -> (&Normals, &[f32]) {
+        (&self.image_normals, &self.image_depth)
+    }
+
+    /// Normals and depths of the refined depth view.
+    pub fn depth(&self) -> (&Normals, &[f32]) {
+        (&self.depth_normals, &self.refined_depth)
     }
 
     /// Accepts `solution`; allocates the first time.

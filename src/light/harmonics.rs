@@ -108,18 +108,32 @@ pub(crate) fn basis<T: Real>([x, y, z]: [T; 3]) -> [T; HARMONICS] {
 }
 
 /// d basis / d normal.
+#[inline]
 #[must_use]
-pub fn basis_gradient([x, y, z]: [f64; 3]) -> [[f64; 3]; HARMONICS] {
+pub(crate) fn basis_gradient<T: Real>([x, y, z]: [T; 3]) -> [[T; 3]; HARMONICS] {
+    let [zero, linear, quadratic] = [0.0, 2.0 * C2, 2.0 * C1].map(T::constant);
     [
-        [0.0; 3],
-        [0.0, 2.0 * C2, 0.0],
-        [0.0, 0.0, 2.0 * C2],
-        [2.0 * C2, 0.0, 0.0],
-        [2.0 * C1 * y, 2.0 * C1 * x, 0.0],
-        [0.0, 2.0 * C1 * z, 2.0 * C1 * y],
-        [0.0, 0.0, 2.0 * C3 * z],
-        [2.0 * C1 * z, 0.0, 2.0 * C1 * x],
-        [2.0 * C1 * x, -2.0 * C1 * y, 0.0],
+        [zero; 3],
+        [zero, linear, zero],
+        [zero, zero, linear],
+        [linear, zero, zero],
+        [quadratic * y, quadratic * x, zero],
+        [zero, quadratic * z, quadratic * y],
+        [zero, zero, T::constant(2.0 * C3) * z],
+        [quadratic * z, zero, quadratic * x],
+        [quadratic * x, T::constant(-2.0 * C1) * y, zero],
+    ]
+}
+
+/// How one channel's log S falls when normals turn about x, y and z, per radian: the coefficients of grad log S x n, since
+/// harmonics of either order turn into each other.
+pub(crate) fn falling_by_turns(l: &[f64; HARMONICS]) -> [[f64; HARMONICS]; 3] {
+    // The ratio C3 / C1, twice.
+    let root = 3.0_f64.sqrt();
+    [
+        [0.0, -l[2], l[1], 0.0, -l[7], -l[8] - root * l[6], root * l[5], l[4], l[5]],
+        [0.0, 0.0, -l[3], l[2], l[5], -l[4], -root * l[7], root * l[6] - l[8], l[7]],
+        [0.0, l[3], 0.0, -l[1], 2.0 * l[8], l[7], 0.0, -l[5], -2.0 * l[4]],
     ]
 }
 
@@ -191,7 +205,7 @@ impl<S: Real<Scalar = S>> Polynomial<S> {
 mod tests {
     use super::*;
     use crate::numeric::Lanes;
-    use nalgebra::{Matrix4, Vector4};
+    use nalgebra::{Matrix4, Vector3, Vector4};
 
     fn light() -> Light {
         Light([
@@ -243,7 +257,7 @@ mod tests {
 
     #[test]
     fn the_gradient_of_the_basis_is_the_difference_quotient() {
-        let normal = [0.36, -0.48, -0.8];
+        let normal = [0.36_f64, -0.48, -0.8];
         let gradient = basis_gradient(normal);
         for axis in 0..3 {
             let (mut up, mut down) = (normal, normal);
@@ -251,6 +265,19 @@ mod tests {
             down[axis] -= 1e-5;
             for (k, (up, down)) in basis(up).into_iter().zip(basis(down)).enumerate() {
                 assert!((gradient[k][axis] - (up - down) / 2e-5).abs() < 1e-9);
+            }
+        }
+    }
+
+    #[test]
+    fn turns_of_harmonics_are_harmonics() {
+        for normal in [[0.36, -0.48, -0.8], [0.6, 0.64, 0.48], [0.0, -0.6, -0.8]] {
+            for (l, polynomial) in light().0.iter().zip(Polynomial::<f64>::of(&light())) {
+                let slope = Vector3::from(polynomial.gradient(normal)).cross(&Vector3::from(normal));
+                for (axis, turned) in falling_by_turns(l).iter().enumerate() {
+                    let found: f64 = turned.iter().zip(basis(normal)).map(|(l, b)| l * b).sum();
+                    assert!((found - slope[axis]).abs() < 1e-5, "{axis}: {found} {}", slope[axis]);
+                }
             }
         }
     }

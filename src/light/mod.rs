@@ -9,7 +9,7 @@ mod prior;
 
 pub use fit::{LightFit, LightFitter};
 pub use harmonics::Light;
-pub(crate) use harmonics::{HARMONICS, Polynomial, basis, basis_gradient};
+pub(crate) use harmonics::{HARMONICS, Polynomial, basis, basis_gradient, falling_by_turns};
 pub use paint::{Paint, PaintFitter};
 pub(crate) use prior::Coefficients;
 pub use prior::{COEFFICIENTS, CoefficientMatrix, LightPrior};

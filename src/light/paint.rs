@@ -209,16 +209,14 @@ impl Paint {
 
 #[cfg(test)]
 mod tests {
-    use rand_chacha::ChaCha8Rng;
-    use rand_chacha::rand_core::{Rng, SeedableRng};
-
     use super::*;
+    use crate::numeric::random::Random;
 
     /// Normals of a dome, 60x60, and their log colours under `light`, with `noise` and the paint of each pixel.
     fn dome(light: &Light, noise: f64, paint: impl Fn(usize, usize) -> [f64; 3]) -> (Normals, [Vec<f32>; 3]) {
         let side = 60;
-        let mut random = ChaCha8Rng::seed_from_u64(3);
-        let mut gaussian = || (0..12).map(|_| random.next_u32() as f64 / u32::MAX as f64).sum::<f64>() - 6.0;
+        let mut random = Random::new(3, 0);
+        let mut gaussian = || (0..12).map(|_| random.word() as f64 / u32::MAX as f64).sum::<f64>() - 6.0;
         let mut normals = Normals::missing(side * side);
         let mut log = [(); 3].map(|()| vec![f32::NAN; side * side]);
         for index in 0..side * side {

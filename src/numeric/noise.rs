@@ -35,9 +35,8 @@ pub fn of_fourth_differences(sizes: impl Iterator<Item = f32>, most: usize) -> f
 /// White noise of variance one for tests: sums of twelve uniform numbers are nearly normal.
 #[cfg(test)]
 pub fn white_noise(seed: u64) -> impl FnMut() -> f64 {
-    use rand_chacha::rand_core::{Rng, SeedableRng};
-    let mut random = rand_chacha::ChaCha8Rng::seed_from_u64(seed);
-    move || (0..12).map(|_| f64::from(random.next_u32()) / f64::from(u32::MAX)).sum::<f64>() - 6.0
+    let mut random = super::random::Random::new(seed, 0);
+    move || (0..12).map(|_| f64::from(random.word()) / f64::from(u32::MAX)).sum::<f64>() - 6.0
 }
 
 #[cfg(test)]

@@ -8,13 +8,13 @@
 //! The linear model shears and stretches, so on nearly flat parts it follows noise where a similarity would not: it
 //! only decides which pairs the similarity is first fitted to.
 
-use nalgebra::{Matrix3, SymmetricEigen, Vector3};
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{Rng, SeedableRng};
+use nalgebra::{Matrix3, Vector3};
 
 use super::similarity::{FEWEST_PAIRS, Similarity};
 use crate::check::positive;
 use crate::error::{Error, ErrorKind, Result};
+use crate::numeric::eigen::symmetric_eigen;
+use crate::numeric::random::Random;
 
 /// Number of pairs that determine the twelve parameters.
 const SAMPLE: usize = 4;
@@ -28,8 +28,6 @@ const LEAST_VOLUME: f64 = 1e-2;
 const LEAST_THICKNESS: f64 = 1e-4;
 /// Rounds of least squares and new inliers; two or three change nothing any more.
 const MOST_REFITS: usize = 10;
-/// Cap on the rounds of the 3x3 eigenvalue iteration, which ends after about 5.
-const MOST_EIGEN_ROUNDS: usize = 200;
 
 /// How to sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -105,7 +103,7 @@ pub fn ransac(depth: &[Vector3<f64>], image: &[Vector3<f64>], options: &RansacOp
 /// The model of the best sample, and how many samples were drawn.
 fn best_of_samples(pairs: &Pairs<'_>, options: &RansacOptions) -> Result<(AffineModel, u32)> {
     let Pairs { depth, image, threshold } = *pairs;
-    let mut generator = ChaCha8Rng::seed_from_u64(options.seed);
+    let mut generator = Random::new(options.seed, 0);
     let mut best: Option<(f64, AffineModel)> = None;
     let (mut iterations, mut needed) = (0, options.most_iterations.max(1));
     while iterations < needed {
@@ -213,11 +211,11 @@ fn refine_similarity(
 }
 
 /// Four different numbers below `count`, which is at least four.
-fn draw(generator: &mut ChaCha8Rng, count: u32) -> [usize; SAMPLE] {
+fn draw(generator: &mut Random, count: u32) -> [usize; SAMPLE] {
     let mut sample = [0; SAMPLE];
     for k in 0..SAMPLE {
         // One of the numbers not taken yet: a draw among the rest, moved up past those taken, which are in order.
-        let mut number = generator.next_u32() % (count - k as u32);
+        let mut number = generator.word() % (count - k as u32);
         let mut place = 0;
         while place < k && number >= sample[place] {
             number += 1;
@@ -239,8 +237,8 @@ fn samples_needed(share: f64) -> u32 {
 
 /// Smallest over largest eigenvalue of a covariance.
 fn thickness(covariance: &Matrix3<f64>) -> f64 {
-    match SymmetricEigen::try_new(*covariance, f64::EPSILON, MOST_EIGEN_ROUNDS) {
-        Some(eigen) if eigen.eigenvalues.max() > 0.0 => eigen.eigenvalues.min() / eigen.eigenvalues.max(),
+    match symmetric_eigen(covariance) {
+        Some(eigen) if eigen.values.max() > 0.0 => eigen.values.min() / eigen.values.max(),
         _ => 0.0,
     }
 }
@@ -275,7 +273,7 @@ mod tests {
 
     #[test]
     fn samples_are_four_different_numbers() {
-        let mut generator = ChaCha8Rng::seed_from_u64(3);
+        let mut generator = Random::new(3, 0);
         let mut seen = [0; 5];
         for _ in 0..2000 {
             let sample = draw(&mut generator, 5);

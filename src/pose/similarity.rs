@@ -1,9 +1,11 @@
 //! P_colour = s R P_depth + t: the pose (Eq. 12 with known pairs, Eq. 15; docs/method.md, sections 1 and 11).
 
-use nalgebra::{Matrix3, Matrix4, Quaternion, Rotation3, SymmetricEigen, UnitQuaternion, Vector3};
+use nalgebra::{Matrix3, Matrix4, Quaternion, Rotation3, UnitQuaternion, Vector3};
 
 use crate::check::positive;
 use crate::error::{Error, ErrorKind, Result};
+use crate::numeric::eigen::symmetric_eigen;
+use crate::numeric::power;
 
 /// How far R^T R may be from one: rotations typed with five digits pass, anything else is a mistake.
 const ROTATION_TOLERANCE: f64 = 1e-4;
@@ -11,9 +13,6 @@ const ROTATION_TOLERANCE: f64 = 1e-4;
 /// A rotation is undetermined where the second of three singular values is below this share of the first: points on a
 /// line. Rounding in f32 coordinates leaves 1e-7 squared at most, real objects are above 1e-4.
 const RANK_TOLERANCE: f64 = 1e-9;
-
-/// Cap on the rounds of the 4x4 eigenvalue iteration, which ends after about ten.
-const MOST_EIGEN_ROUNDS: usize = 200;
 
 /// Fewest pairs that determine a similarity: three are fitted so well that no residual shows a mistake.
 pub(crate) const FEWEST_PAIRS: usize = 4;
@@ -103,7 +102,7 @@ impl Similarity {
     pub fn towards(&self, other: &Self, share: f64, centre: Vector3<f64>) -> Self {
         let change = quaternion(&(other.rotation * self.rotation.transpose())).powf(share);
         let rotation = change.to_rotation_matrix().into_inner() * self.rotation;
-        let scale = self.scale * (other.scale / self.scale).powf(share);
+        let scale = self.scale * power(other.scale / self.scale, share);
         let target = self.apply(centre).lerp(&other.apply(centre), share);
         Self { scale, rotation, translation: target - scale * (rotation * centre) }
     }
@@ -198,13 +197,13 @@ fn nearest_rotation(matrix: &Matrix3<f64>) -> Result<Matrix3<f64>> {
     horn.fixed_view_mut::<3, 1>(1, 0).copy_from(&skew);
     horn.fixed_view_mut::<1, 3>(0, 1).copy_from(&skew.transpose());
     horn.fixed_view_mut::<3, 3>(1, 1).copy_from(&(m + m.transpose() - Matrix3::identity() * trace));
-    let eigen = SymmetricEigen::try_new(horn, f64::EPSILON, MOST_EIGEN_ROUNDS).ok_or_else(degenerate)?;
-    let largest = eigen.eigenvalues.imax();
-    let second = (0..4).filter(|&k| k != largest).map(|k| eigen.eigenvalues[k]).fold(f64::MIN, f64::max);
+    let eigen = symmetric_eigen(&horn).ok_or_else(degenerate)?;
+    let largest = eigen.values.imax();
+    let second = (0..4).filter(|&k| k != largest).map(|k| eigen.values[k]).fold(f64::MIN, f64::max);
     // The gap is twice the sum of the second and the signed third singular value: zero for points on a line.
-    if eigen.eigenvalues[largest] - second <= RANK_TOLERANCE {
+    if eigen.values[largest] - second <= RANK_TOLERANCE {
         return Err(degenerate());
     }
-    let q = eigen.eigenvectors.column(largest);
+    let q = eigen.vectors.column(largest);
     Ok(UnitQuaternion::from_quaternion(Quaternion::new(q[0], q[1], q[2], q[3])).to_rotation_matrix().into_inner())
 }

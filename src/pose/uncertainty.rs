@@ -8,10 +8,11 @@
 //! One sigma covers what the residuals show, correlated ones included; an error that leaves no residual (a surface that
 //! is tilted as a whole, another local optimum that fits as well) is not seen by it. See docs/method.md, section 14.
 
-use nalgebra::{SymmetricEigen, Vector3};
+use nalgebra::Vector3;
 
 use super::increment::{Frame, PoseMatrix, PoseVector, SCALE, TRANSLATION_Z, UNKNOWNS, clear_unknowns, fix_unknowns};
 use super::similarity::Similarity;
+use crate::numeric::eigen::{Eigen, symmetric_eigen};
 use crate::view::Camera;
 
 /// Eigenvalues of the information, divided by its weight, below this count as zero. Free of units: the squared cosine
@@ -24,8 +25,6 @@ const UNKNOWN: f64 = 1e3;
 const LARGEST_SIGMA: f64 = 180.0;
 /// A second direction is named where it has at least this share of the first one's part.
 const WORTH_NAMING: f64 = 0.6;
-/// Cap on the rounds of the 7x7 eigenvalue iteration, which ends after about 20.
-pub(super) const MOST_EIGEN_ROUNDS: usize = 500;
 
 /// Uncertainty of the pose, one sigma.
 #[derive(Clone, Debug, PartialEq)]
@@ -76,7 +75,7 @@ impl Information {
     /// The smallest eigenvalue over the weight: what the worst determined direction has, 0 .. 1/3.
     #[must_use]
     pub fn weakest(&self) -> f64 {
-        self.eigen(false).map_or(0.0, |eigen| eigen.eigenvalues.min())
+        self.eigen(false).map_or(0.0, |eigen| eigen.values.min())
     }
 
     /// Whether some direction has no information: the geometry does not determine the pose.
@@ -103,22 +102,22 @@ impl Information {
         };
         let floor = self.floor();
         let mut covariance = PoseMatrix::zeros();
-        for (k, &value) in eigen.eigenvalues.iter().enumerate() {
+        for (k, &value) in eigen.values.iter().enumerate() {
             let variance = if value > floor {
                 ((sigma / self.length).powi(2) / (value * self.weight * self.independent)).min(UNKNOWN.powi(2))
             } else {
                 UNKNOWN.powi(2)
             };
-            let direction = eigen.eigenvectors.column(k);
+            let direction = eigen.vectors.column(k);
             covariance += variance * direction * direction.transpose();
         }
         clear_unknowns(&mut covariance, &self.without_variance(gauge));
-        (covariance, in_words(&eigen.eigenvectors.column(eigen.eigenvalues.imin()).into_owned()))
+        (covariance, in_words(&eigen.vectors.column(eigen.values.imin()).into_owned()))
     }
 
     /// Eigenvalues over the weight. The gauge is projected out. What is not estimated gets the eigenvalue one, so that
     /// it is never the weakest direction: those of the three translations sum to one.
-    fn eigen(&self, gauge: bool) -> Option<SymmetricEigen<f64, nalgebra::Const<UNKNOWNS>>> {
+    fn eigen(&self, gauge: bool) -> Option<Eigen<UNKNOWNS>> {
         let mut matrix = self.matrix / self.weight;
         if gauge && matrix[(TRANSLATION_Z, TRANSLATION_Z)] > 0.0 {
             let column = matrix.column(TRANSLATION_Z).into_owned();
@@ -128,7 +127,7 @@ impl Information {
         if !matrix.norm().is_finite() {
             return None;
         }
-        SymmetricEigen::try_new(matrix, f64::EPSILON, MOST_EIGEN_ROUNDS)
+        symmetric_eigen(&matrix)
     }
 
     /// Which of the seven are not estimated: the gauge, a scale that is held.
@@ -174,10 +173,8 @@ pub(super) fn describe(
 
 /// The least certain direction of a covariance, in words.
 pub(super) fn weakest_of(covariance: &PoseMatrix) -> String {
-    SymmetricEigen::try_new(*covariance, f64::EPSILON, MOST_EIGEN_ROUNDS).map_or_else(
-        || "unknown".to_owned(),
-        |eigen| in_words(&eigen.eigenvectors.column(eigen.eigenvalues.imax()).into_owned()),
-    )
+    symmetric_eigen(covariance)
+        .map_or_else(|| "unknown".to_owned(), |eigen| in_words(&eigen.vectors.column(eigen.values.imax()).into_owned()))
 }
 
 /// The one or two largest parts of a direction.

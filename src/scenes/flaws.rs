@@ -2,9 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{Rng, SeedableRng};
-
+use crate::numeric::random::Random;
 use crate::view::Size;
 
 /// Share of the lost pixels that go in blobs, as dark or shiny spots do; the others go one by one.
@@ -13,7 +11,7 @@ const BLOB_SHARE: f64 = 0.5;
 const LARGEST_BLOB: f64 = 1.0 / 16.0;
 
 /// A stream of random numbers, the same on every platform.
-pub(super) struct Chance(ChaCha8Rng);
+pub(super) struct Chance(Random);
 
 /// Purposes with a stream of their own, so that switching one on does not change the others.
 #[derive(Clone, Copy)]
@@ -30,14 +28,12 @@ impl Chance {
 
     /// One of a seed's independent streams.
     pub(super) fn of_stream(seed: u64, stream: u64) -> Self {
-        let mut generator = ChaCha8Rng::seed_from_u64(seed);
-        generator.set_stream(stream);
-        Self(generator)
+        Self(Random::new(seed, stream))
     }
 
     /// Evenly over [0, 1), with 53 bits.
     pub(super) fn uniform(&mut self) -> f64 {
-        (self.0.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
+        self.0.uniform()
     }
 
     /// Evenly between two bounds.
@@ -54,8 +50,8 @@ impl Chance {
     /// Standard normal, by the method of Box and Muller: exact, and it needs no tables.
     pub(super) fn gaussian(&mut self) -> f64 {
         // 1 - u lies in (0, 1], where the logarithm is finite.
-        let radius = (-2.0 * (1.0 - self.uniform()).ln()).sqrt();
-        radius * (TAU * self.uniform()).cos()
+        let radius = (-2.0 * (1.0 - self.0.uniform()).ln()).sqrt();
+        radius * (TAU * self.0.uniform()).cos()
     }
 }
 
@@ -78,7 +74,7 @@ pub(super) fn punch_holes(values: &mut [f32], size: Size, share: f64, chance: &m
     let singles = left - (BLOB_SHARE * left as f64) as usize;
     let largest = size.width.min(size.height) as f64 * LARGEST_BLOB;
     while left > singles {
-        let radius = 1.0 + chance.uniform() * (largest - 1.0).max(0.0);
+        let radius = 1.0 + chance.0.uniform() * (largest - 1.0).max(0.0);
         let centre = valid[chance.below(valid.len())];
         for index in disc(size, centre, radius) {
             if left > singles && !values[index].is_nan() {

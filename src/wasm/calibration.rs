@@ -2,15 +2,15 @@
 
 use js_sys::{Array, Float32Array, Object, Uint8Array, Uint16Array};
 use nalgebra::{Matrix3, Vector3};
-use serde::Serialize;
-use std::collections::BTreeMap;
 use wasm_bindgen::prelude::wasm_bindgen;
 use wasm_bindgen::{JsCast, JsValue};
 
 use super::error::Thrown;
 use super::input::{JsDepth, JsImage, numbers, samples_of_depth, samples_of_image};
-use super::output::{PlainPose, plain, plain_pose, set};
-use crate::calibration::{self, CheckReport, CheckVerdict, Cue, Lens, RigCamera, RigView};
+use super::output::{numbers as values, object, set};
+use crate::calibration::{
+    self, CandidateReport, CheckReport, CheckVerdict, Cue, CueReport, FrameReport, Health, Lens, RigCamera, RigView, Sensitivity,
+};
 use crate::error::{Error, ErrorKind, Result};
 use crate::pose::Similarity;
 use crate::scenes::rig::{RigKind, RigRequest, render};
@@ -214,63 +214,6 @@ fn rig_camera(js: &JsCamera, field: &str) -> Result<RigCamera> {
     Ok(RigCamera { fx: js.fx(), fy: js.fy(), cx: js.cx(), cy: js.cy(), lens })
 }
 
-#[derive(Serialize)]
-#[serde(rename_all = "camelCase")]
-struct PlainCandidate {
-    verdict: &'static str,
-    reason: String,
-    off_degrees: f64,
-    off_millimetres: f64,
-    pixels: f64,
-    interval: [f64; 2],
-    probability: f64,
-}
-
-#[derive(Serialize)]
-struct PlainHealth {
-    pixels: f64,
-    interval: [f64; 2],
-}
-
-#[derive(Serialize)]
-struct PlainCue {
-    share: f64,
-    sharpness: f64,
-}
-
-#[derive(Serialize)]
-struct PlainFrame<'a> {
-    name: &'a str,
-    share: f64,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    note: Option<&'a str>,
-}
-
-#[derive(Serialize)]
-struct PlainCurve<'a> {
-    cue: &'a str,
-    axis: &'a str,
-    offsets: &'a [f64],
-    values: &'a [f64],
-}
-
-#[derive(Serialize)]
-struct PlainReport<'a> {
-    verdict: &'a str,
-    reason: &'a str,
-    warnings: &'a [String],
-    estimate: PlainPose,
-    middle: [f64; 3],
-    covariance: Vec<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    focal: Option<[f64; 2]>,
-    health: PlainHealth,
-    candidates: BTreeMap<&'a str, PlainCandidate>,
-    cues: BTreeMap<&'a str, PlainCue>,
-    frames: Vec<PlainFrame<'a>>,
-    sensitivity: Vec<PlainCurve<'a>>,
-}
-
 const fn word(verdict: CheckVerdict) -> &'static str {
     match verdict {
         CheckVerdict::Consistent => "consistent",
@@ -279,45 +222,68 @@ const fn word(verdict: CheckVerdict) -> &'static str {
     }
 }
 
-fn plain_report(report: &CheckReport) -> JsValue {
-    let candidate = |one: &'_ calibration::CandidateReport| PlainCandidate {
-        verdict: word(one.verdict),
-        reason: one.reason.clone(),
-        off_degrees: one.off_degrees,
-        off_millimetres: one.off_millimetres,
-        pixels: one.health.pixels,
-        interval: one.health.interval,
-        probability: one.probability,
-    };
-    plain(&PlainReport {
-        verdict: word(report.verdict),
-        reason: &report.reason,
-        warnings: &report.warnings,
-        estimate: plain_pose(&report.estimate),
-        middle: report.middle,
-        covariance: report.covariance.transpose().as_slice().to_vec(),
-        focal: report.focal,
-        health: PlainHealth { pixels: report.health.pixels, interval: report.health.interval },
-        candidates: report.candidates.iter().map(|one| (one.name.as_str(), candidate(one))).collect(),
-        cues: report
-            .cues
-            .iter()
-            .map(|cue| (cue.cue.name(), PlainCue { share: cue.share, sharpness: cue.sharpness }))
-            .collect(),
-        frames: report
-            .frames
-            .iter()
-            .map(|frame| PlainFrame { name: &frame.name, share: frame.share, note: frame.note.as_deref() })
-            .collect(),
-        sensitivity: report
-            .sensitivity
-            .iter()
-            .map(|curve| PlainCurve {
-                cue: curve.cue.name(),
-                axis: curve.axis,
-                offsets: &curve.offsets,
-                values: &curve.values,
-            })
-            .collect(),
-    })
+/// An object of named things.
+fn by_name<'a>(entries: impl Iterator<Item = (&'a str, Object)>) -> JsValue {
+    let all = Object::new();
+    entries.for_each(|(name, one)| set(&all, name, one));
+    all.into()
+}
+
+fn list(entries: impl Iterator<Item = Object>) -> JsValue {
+    entries.collect::<Array>().into()
+}
+
+fn plain_health(health: &Health) -> [(&'static str, JsValue); 2] {
+    [("pixels", health.pixels.into()), ("interval", values(health.interval))]
+}
+
+fn plain_candidate(one: &CandidateReport) -> Object {
+    let [pixels, interval] = plain_health(&one.health);
+    object([
+        ("verdict", word(one.verdict).into()),
+        ("reason", one.reason.as_str().into()),
+        ("offDegrees", one.off_degrees.into()),
+        ("offMillimetres", one.off_millimetres.into()),
+        pixels,
+        interval,
+        ("probability", one.probability.into()),
+    ])
+}
+
+fn plain_frame(frame: &FrameReport) -> Object {
+    let plain = object([("name", frame.name.as_str().into()), ("share", frame.share.into())]);
+    if let Some(note) = &frame.note {
+        set(&plain, "note", note.as_str());
+    }
+    plain
+}
+
+fn plain_curve(curve: &Sensitivity) -> Object {
+    object([
+        ("cue", curve.cue.name().into()),
+        ("axis", curve.axis.into()),
+        ("offsets", values(curve.offsets.iter().copied())),
+        ("values", values(curve.values.iter().copied())),
+    ])
+}
+
+fn plain_report(report: &CheckReport) -> Object {
+    let cue = |cue: &CueReport| object([("share", cue.share.into()), ("sharpness", cue.sharpness.into())]);
+    let plain = object([
+        ("verdict", word(report.verdict).into()),
+        ("reason", report.reason.as_str().into()),
+        ("warnings", report.warnings.iter().map(JsValue::from).collect::<Array>().into()),
+        ("estimate", super::output::pose(&report.estimate)),
+        ("middle", values(report.middle)),
+        ("covariance", values(report.covariance.transpose().iter().copied())),
+        ("health", object(plain_health(&report.health)).into()),
+        ("candidates", by_name(report.candidates.iter().map(|one| (one.name.as_str(), plain_candidate(one))))),
+        ("cues", by_name(report.cues.iter().map(|one| (one.cue.name(), cue(one))))),
+        ("frames", list(report.frames.iter().map(plain_frame))),
+        ("sensitivity", list(report.sensitivity.iter().map(plain_curve))),
+    ]);
+    if let Some(focal) = report.focal {
+        set(&plain, "focal", values(focal));
+    }
+    plain
 }

@@ -1,11 +1,10 @@
 //! From native reports and rasters to the objects of the JavaScript contract.
 
-use js_sys::{Float32Array, Object, Reflect, Uint8Array};
-use serde::{Serialize, Serializer};
+use js_sys::{Array, Float32Array, Object, Reflect, Uint8Array};
 use wasm_bindgen::{JsValue, UnwrapThrowExt};
 
-use crate::pose::{Angles, Similarity};
-use crate::report::StepReport;
+use crate::pose::{Angles, Similarity, Uncertainty};
+use crate::report::{Objective, StepReport};
 use crate::view::{Camera, Pinhole};
 
 /// Sets a property of a plain object, which can't fail.
@@ -13,112 +12,76 @@ pub fn set(object: &Object, key: &str, value: impl Into<JsValue>) {
     Reflect::set(object, &key.into(), &value.into()).unwrap_throw();
 }
 
-#[derive(Serialize)]
-pub struct PlainPose {
-    scale: f64,
-    rotation: Vec<f64>,
-    translation: [f64; 3],
-    angles: PlainAngles,
+/// A plain object of these properties, in this order.
+pub fn object<const COUNT: usize>(properties: [(&str, JsValue); COUNT]) -> Object {
+    let object = Object::new();
+    properties.into_iter().for_each(|(key, value)| set(&object, key, value));
+    object
 }
 
-#[derive(Serialize)]
-struct PlainAngles {
-    alpha: f64,
-    beta: f64,
-    gamma: f64,
-}
-
-#[derive(Serialize)]
-struct PlainEnergy {
-    shading: f64,
-    prior: f64,
-    registration: f64,
-    refinement: f64,
-    total: f64,
-}
-
-#[derive(Serialize)]
-#[serde(rename_all = "camelCase")]
-struct PlainUncertainty<'a> {
-    rotation_degrees: [f64; 3],
-    translation: [Option<f64>; 3],
-    scale: Option<f64>,
-    weakest: &'a str,
-}
-
-#[derive(Serialize)]
-#[serde(rename_all = "camelCase")]
-struct PlainReport<'a> {
-    iteration: u32,
-    stage: &'a str,
-    pose: PlainPose,
-    rotation_change: f64,
-    energy: PlainEnergy,
-    overlap: f64,
-    inliers: f64,
-    residual: f64,
-    status: &'a str,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    message: Option<&'a str>,
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    rivals: Vec<PlainPose>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    uncertainty: Option<PlainUncertainty<'a>>,
-    #[serde(serialize_with = "as_map")]
-    milliseconds: &'a [(&'static str, f64)],
-}
-
-fn as_map<S: Serializer>(entries: &[(&'static str, f64)], serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.collect_map(entries.iter().copied())
-}
-
-pub fn plain(value: &impl Serialize) -> JsValue {
-    // Maps become objects, and a sigma that does not exist becomes null, as the contract says.
-    value.serialize(&serde_wasm_bindgen::Serializer::json_compatible()).unwrap_throw()
-}
-
-pub fn plain_pose(pose: &Similarity) -> PlainPose {
-    let angles = Angles::of(&pose.rotation);
-    PlainPose {
-        scale: pose.scale,
-        rotation: pose.rotation.transpose().as_slice().to_vec(),
-        translation: pose.translation.into(),
-        angles: PlainAngles { alpha: angles.alpha, beta: angles.beta, gamma: angles.gamma },
-    }
+pub fn numbers(values: impl IntoIterator<Item = f64>) -> JsValue {
+    values.into_iter().map(JsValue::from_f64).collect::<Array>().into()
 }
 
 pub fn pose(pose: &Similarity) -> JsValue {
-    plain(&plain_pose(pose))
+    let Angles { alpha, beta, gamma } = Angles::of(&pose.rotation);
+    object([
+        ("scale", pose.scale.into()),
+        ("rotation", numbers(pose.rotation.transpose().iter().copied())),
+        ("translation", numbers(pose.translation.iter().copied())),
+        ("angles", object([("alpha", alpha.into()), ("beta", beta.into()), ("gamma", gamma.into())]).into()),
+    ])
+    .into()
+}
+
+fn objective(terms: &Objective) -> JsValue {
+    object([
+        ("shading", terms.shading.into()),
+        ("prior", terms.prior.into()),
+        ("registration", terms.registration.into()),
+        ("refinement", terms.refinement.into()),
+        ("total", terms.total().into()),
+    ])
+    .into()
+}
+
+/// A sigma that does not exist is null, as the contract says.
+fn uncertainty(sigma: &Uncertainty) -> JsValue {
+    let known = |value: Option<f64>| value.map_or(JsValue::NULL, JsValue::from_f64);
+    object([
+        ("rotationDegrees", numbers(sigma.rotation_degrees)),
+        ("translation", sigma.translation.map(known).into_iter().collect::<Array>().into()),
+        ("scale", known(sigma.scale)),
+        ("weakest", sigma.weakest.as_str().into()),
+    ])
+    .into()
 }
 
 pub fn report(report: &StepReport, milliseconds: &[(&'static str, f64)]) -> JsValue {
-    let objective = &report.objective;
-    plain(&PlainReport {
-        iteration: report.iteration,
-        stage: report.stage.name(),
-        pose: plain_pose(&report.pose),
-        rotation_change: report.rotation_change,
-        energy: PlainEnergy {
-            shading: objective.shading,
-            prior: objective.prior,
-            registration: objective.registration,
-            refinement: objective.refinement,
-            total: objective.total(),
-        },
-        overlap: report.overlap,
-        inliers: report.inliers,
-        residual: report.residual,
-        status: report.status.name(),
-        message: report.message.as_deref(),
-        rivals: report.rivals.iter().map(plain_pose).collect(),
-        uncertainty: report.uncertainty.as_ref().map(|sigma| PlainUncertainty {
-            rotation_degrees: sigma.rotation_degrees,
-            translation: sigma.translation,
-            scale: sigma.scale,
-            weakest: &sigma.weakest,
-        }),
-        milliseconds,
-    })
+    let plain = object([
+        ("iteration", report.iteration.into()),
+        ("stage", report.stage.name().into()),
+        ("pose", pose(&report.pose)),
+        ("rotationChange", report.rotation_change.into()),
+        ("energy", objective(&report.objective)),
+        ("overlap", report.overlap.into()),
+        ("inliers", report.inliers.into()),
+        ("residual", report.residual.into()),
+        ("status", report.status.name().into()),
+    ]);
+    if let Some(message) = &report.message {
+        set(&plain, "message", message.as_str());
+    }
+    if !report.rivals.is_empty() {
+        set(&plain, "rivals", report.rivals.iter().map(pose).collect::<Array>());
+    }
+    if let Some(sigma) = &report.uncertainty {
+        set(&plain, "uncertainty", uncertainty(sigma));
+    }
+    let times = Object::new();
+    milliseconds.iter().for_each(|&(stage, time)| set(&times, stage, time));
+    set(&plain, "milliseconds", times);
+    plain.into()
 }
 
 /// A camera of the contract; an orthographic one is the absence of one.
@@ -128,7 +91,7 @@ pub fn camera(camera: &Camera) -> JsValue {
     for (key, value) in [("fx", fx), ("fy", fy), ("cx", cx), ("cy", cy)] {
         set(&object, key, *value);
     }
-    set(&object, "distortion", plain(distortion));
+    set(&object, "distortion", numbers(*distortion));
     object.into()
 }
 

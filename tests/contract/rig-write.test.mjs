@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { existsSync, readFileSync } from "node:fs";
 import { describe, test } from "node:test";
 import { BimodalError as WriteError, poseFormats, writeClouds, writePose } from "../../pkg/rig-write.js";
-import { CLOUDS, FOLDER, RIGS, files, formatsOf } from "../../scripts/reference/rig-files.mjs";
+import { CLOUDS, FOLDER, RIGS, files, formatsOf } from "../../scripts/reference/rig-written.mjs";
 import { inRoot } from "../../scripts/shell.mjs";
 import { BimodalError, refused } from "./support.mjs";
 

@@ -29,8 +29,7 @@ const ROOMS: [&str; 14] = [
 /// What scenes with a known answer stand on: they are made with the means of the inputs, not with those of the method.
 const BELOW_SCENES: [&str; 7] = ["text", "error", "check", "view", "light", "pose", "calibration"];
 /// Crates that only bindings may name.
-const BINDINGS: [&str; 6] =
-    ["wasm_bindgen", "js_sys", "web_sys", "serde", "serde_wasm_bindgen", "console_error_panic_hook"];
+const BINDINGS: [&str; 4] = ["wasm_bindgen", "js_sys", "web_sys", "console_error_panic_hook"];
 
 fn source() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("src")

@@ -56,7 +56,8 @@ impl SharpNormals {
         let mut error = vec![0.0; depth.size.len()];
         let mut noise = 0.0;
         if !depth.normals_given {
-            noise = cubic_normals::improve(depth.size, &depth.points, &mut normals, &mut error).max(depth.noise.sigma);
+            noise = cubic_normals::improve(depth.size, &depth.points, &mut normals, &mut error, depth.noise.is_white)
+                .max(depth.noise.sigma);
         }
         Self { normals, error, noise }
     }
@@ -68,6 +69,7 @@ impl SharpNormals {
             points: &pair.depth.points,
             normals: &self.normals,
             normal_error: Some(&self.error),
+            depth_noise: pair.depth.noise,
             light: pair.known_light(),
             prior: &pair.prior,
             prior_weight: if pair.options.weights.light > 0.0 { PRIOR_WEIGHT } else { 0.0 },

@@ -7,7 +7,7 @@ use crate::view::Normals;
 
 /// Noise that the colours leave above which it is none, but paint and shadow, log units: renders leave 0.010 to 0.018, all
 /// that is real 0.041 and more.
-pub const LARGEST_PURE_NOISE: f64 = 0.035;
+const LARGEST_PURE_NOISE: f64 = 0.035;
 /// The same as a share of the colours' spread, since noisy normals under strong lights leave as much: renders leave 0.01 to
 /// 0.1, registered captures 0.21 to 0.54.
 const LARGEST_PURE_SHARE: f64 = 0.15;

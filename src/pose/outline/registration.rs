@@ -1,12 +1,13 @@
 //! The rounds of a registration by outlines.
 
-use nalgebra::{Matrix3, SymmetricEigen, Vector3};
+use nalgebra::{Matrix3, Vector3};
 
 use super::edges::{Edge, Edges, LEVELS};
 use super::mask_distance::MaskDistance;
 use super::problem::{OutlinePrior, OutlineProblem, OutlineReport};
 use super::rims::Rims;
 use super::sums::{Row, Sums};
+use crate::numeric::eigen::symmetric_eigen;
 use crate::numeric::{quantile, robust};
 use crate::pose::increment::{Frame, PoseMatrix, PoseVector, SCALE, UNKNOWNS, clear_unknowns, inverse, solve};
 use crate::pose::similarity::Similarity;
@@ -48,7 +49,6 @@ const LEAST_NOISE: f64 = 0.3;
 const UNKNOWN: f64 = 1e3;
 /// Variance of a rotation as a share of the prior's above which outlines do not see it.
 const UNSEEN: f64 = 0.8;
-const MOST_EIGEN_ROUNDS: usize = 100;
 
 /// The unknowns: those of a pose without its scale, and the loss in the scale's place.
 const LOSS: usize = SCALE;
@@ -334,11 +334,11 @@ impl Outline {
 /// The rotation that is known least, in words, and its variance as a share of the prior's.
 fn weakest_turn(covariance: &PoseMatrix, prior: f64) -> (String, f64) {
     let turns: Matrix3<f64> = covariance.fixed_view::<3, 3>(0, 0).into();
-    let Some(eigen) = SymmetricEigen::try_new(turns, f64::EPSILON, MOST_EIGEN_ROUNDS) else {
+    let Some(eigen) = symmetric_eigen(&turns) else {
         return ("unknown".to_owned(), 1.0);
     };
-    let weakest = eigen.eigenvalues.imax();
+    let weakest = eigen.values.imax();
     let mut direction = PoseVector::zeros();
-    direction.fixed_rows_mut::<3>(0).copy_from(&eigen.eigenvectors.column(weakest));
-    (in_words(&direction), eigen.eigenvalues[weakest] / (prior * prior))
+    direction.fixed_rows_mut::<3>(0).copy_from(&eigen.vectors.column(weakest));
+    (in_words(&direction), eigen.values[weakest] / (prior * prior))
 }

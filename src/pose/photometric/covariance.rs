@@ -15,13 +15,11 @@
 //! P. Huber: "The behavior of maximum likelihood estimates under nonstandard conditions", Proc. 5th Berkeley Symposium,
 //! 1967. K.-Y. Liang, S. Zeger: "Longitudinal data analysis using generalized linear models", Biometrika 73, 1986.
 
-use nalgebra::SymmetricEigen;
-
 use super::equations::{ReducedSystem, SquareSums, add_product, folded, no_sums, scaled};
 use super::evaluation::Evaluation;
-use crate::numeric::{Doubles, Real};
+use crate::numeric::eigen::{Eigen, symmetric_eigen};
+use crate::numeric::{Doubles, Real, dot};
 use crate::pose::increment::{Frame, PoseMatrix, PoseVector, clear_unknowns, fix_unknowns, inverse, product};
-use crate::pose::uncertainty::MOST_EIGEN_ROUNDS;
 use crate::view::Size;
 
 /// Side of the tiles of the depth map whose scores count as one observation, pixels: twice the reach of normals and
@@ -66,14 +64,25 @@ impl Noise {
     }
 }
 
-/// The scores of a depth map's tiles; owns its memory.
+/// Sums over the points of a tile.
+#[derive(Clone, Copy, Default)]
+struct Tile {
+    score: PoseVector,
+    /// Weighted residuals of the three channels, and the weights.
+    shared: [f64; 4],
+}
+
+/// The tiles of a depth map; owns its memory.
 #[derive(Default)]
-pub(super) struct Tiles(Vec<PoseVector>);
+pub(super) struct Tiles {
+    tiles: Vec<Tile>,
+    structure: f64,
+}
 
 impl Tiles {
     /// Memory for the tiles of a depth map.
     pub fn new(depth: Size) -> Self {
-        Self(vec![PoseVector::zeros(); depth.width.div_ceil(TILE) * depth.height.div_ceil(TILE)])
+        Self { tiles: vec![Tile::default(); depth.width.div_ceil(TILE) * depth.height.div_ceil(TILE)], structure: 0.0 }
     }
 
     /// Covariance of the pose's unknowns; held ones have none.
@@ -86,7 +95,7 @@ impl Tiles {
     ) -> PoseMatrix {
         let mut noise_information = folded(&self.sum_scores(evaluation, frame, reduced, noise));
         let (mut spread, mut count) = (PoseMatrix::zeros(), 0.0);
-        for score in self.0.iter().filter(|score| score.norm() > 0.0) {
+        for Tile { score, .. } in self.tiles.iter().filter(|tile| tile.score.norm() > 0.0) {
             spread.ger(1.0, score, score, 1.0);
             count += 1.0;
         }
@@ -111,7 +120,13 @@ impl Tiles {
         covariance
     }
 
-    /// Sums the scores of each tile, and F.
+    /// Root mean covariance of residuals of one tile, log units, by the last sums: what the model leaves out reaches over
+    /// neighbours, white noise does not.
+    pub const fn structure(&self) -> f64 {
+        self.structure
+    }
+
+    /// Sums the scores and residuals of each tile, and F.
     fn sum_scores(
         &mut self,
         evaluation: &Evaluation<'_>,
@@ -124,18 +139,32 @@ impl Tiles {
         let mut noise_information = no_sums();
         let size = evaluation.problem.depth_size;
         let across = size.width.div_ceil(TILE);
-        self.0.fill(PoseVector::zeros());
+        self.tiles.fill(Tile::default());
+        // Products of a point with itself, which are no pairs: of residuals, of weights.
+        let mut own = [Doubles::splat(0.0); 2];
         evaluation.for_each_linearised(frame, |indices, points, weight| {
             let score = scaled(&reduced.score(points), weight).map(Doubles::array);
+            let residual = points.residual.map(|residual| weight * residual);
+            own = [own[0] + dot(residual, residual), own[1] + weight * weight];
+            let shared = [residual[0], residual[1], residual[2], weight].map(Doubles::array);
             for (lane, &index) in indices.iter().enumerate() {
                 let (column, row) = size.position(index as usize);
-                self.0[row / TILE * across + column / TILE] += PoseVector::from(score.map(|score| score[lane]));
+                let tile = &mut self.tiles[row / TILE * across + column / TILE];
+                tile.score += PoseVector::from(score.map(|score| score[lane]));
+                tile.shared.iter_mut().zip(&shared).for_each(|(sum, numbers)| *sum += numbers[lane]);
             }
             for row in &points.pixel_derivatives {
                 let row_variance = scaled(row, weight * Doubles::splat(gradient_variance));
                 add_product(&mut noise_information, &row_variance, row);
             }
         });
+        let [mut residuals, mut weights] = own.map(|own| -own.sum());
+        for Tile { shared: [red, green, blue, weight], .. } in &self.tiles {
+            residuals += red * red + green * green + blue * blue;
+            weights += weight * weight;
+        }
+        // 0 / 0 where no tile has a pair.
+        self.structure = (residuals / (3.0 * weights)).max(0.0).sqrt();
         noise_information
     }
 }
@@ -147,13 +176,12 @@ fn sigma_growth(matrix: &PoseMatrix, noise_information: &PoseMatrix) -> Option<P
     let inverse = inverse(&root)?;
     let symmetric = 0.5 * (matrix + matrix.transpose());
     let whitened = product(&product(&inverse, &symmetric), &inverse.transpose());
-    let SymmetricEigen { eigenvalues, eigenvectors } =
-        SymmetricEigen::try_new(whitened, f64::EPSILON, MOST_EIGEN_ROUNDS)?;
-    let mut along = product(&root, &eigenvectors).transpose();
-    for (mut row, value) in along.row_iter_mut().zip(&eigenvalues) {
+    let Eigen { values, vectors } = symmetric_eigen(&whitened)?;
+    let mut along = product(&root, &vectors).transpose();
+    for (mut row, value) in along.row_iter_mut().zip(&values) {
         row *= value.max(1.0) / (value - 1.0).max(LEAST_SIGNAL);
     }
-    Some(product(&product(&inverse.transpose(), &eigenvectors), &along))
+    Some(product(&product(&inverse.transpose(), &vectors), &along))
 }
 
 #[cfg(test)]

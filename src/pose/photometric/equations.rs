@@ -11,7 +11,7 @@ use nalgebra::{Cholesky, Const, SMatrix};
 
 use super::residual::{Derivative, LinearisedPoints};
 use super::state::Step;
-use crate::light::{COEFFICIENTS, CoefficientMatrix, Coefficients, HARMONICS, LightPrior};
+use crate::light::{COEFFICIENTS, CoefficientMatrix, Coefficients, HARMONICS, Light, LightPrior, falling_by_turns};
 use crate::numeric::{Doubles, Real};
 use crate::pose::increment::{PoseMatrix, PoseVector, UNKNOWNS, fix_unknowns, inverse};
 
@@ -173,6 +173,40 @@ impl Equations {
     /// Enters the prior of an unknown light, see [`LightEquations::add_prior`].
     pub fn add_prior(&mut self, prior: &LightPrior, weight: f64, off: &Coefficients) {
         self.light.add_prior(prior, weight, off);
+    }
+
+    /// Takes off what the noise of normals added: `noise` is that of products of harmonics, and shading, its turns and K
+    /// are their sums under this light.
+    #[inline(never)]
+    pub fn take_off(&mut self, noise: SMatrix<f64, HARMONICS, HARMONICS>, light: &Light) {
+        // In one of the lanes.
+        let once = |value: f64| Doubles::from(std::array::from_fn(|lane| if lane == 0 { value } else { 0.0 }));
+        for (channel, coefficients) in light.0.iter().enumerate() {
+            let shade = SMatrix::<f64, HARMONICS, 1>::from(*coefficients);
+            let turns = SMatrix::<f64, HARMONICS, 3>::from(falling_by_turns(coefficients));
+            let (of_shade, of_turns) = (noise * shade, noise * turns);
+            let (products, scores) = (turns.transpose() * of_turns, turns.transpose() * of_shade);
+            for row in 0..3 {
+                self.score[row] = self.score[row] + once(scores[row]);
+                for column in 0..3 {
+                    self.pose[row][column] = self.pose[row][column] - once(products[(row, column)]);
+                }
+            }
+            if self.light.is_known {
+                continue;
+            }
+            for k in 0..HARMONICS {
+                let gradient = &mut self.light.point_gradient[channel][k];
+                *gradient = *gradient - once(of_shade[k]);
+                for sums in std::iter::once(&mut self.cross).chain(&mut self.instrument_cross) {
+                    let sums = &mut sums[channel * HARMONICS + k];
+                    (0..3).for_each(|axis| sums[axis] = sums[axis] + once(of_turns[(k, axis)]));
+                }
+            }
+        }
+        for (row, sums) in self.light.gram.iter_mut().enumerate().filter(|_| !self.light.is_known) {
+            (0..=row).for_each(|column| sums[column] = sums[column] - once(noise[(row, column)]));
+        }
     }
 
     /// Eliminates the light; `None` where the points do not determine it.

@@ -36,6 +36,7 @@
 //! | `weighting` | robust scale and weight of the prior |
 //! | `evaluation` | sums over the points: objective, equations, noise, inliers |
 //! | `equations` | the linear system, the light eliminated |
+//! | `normal_noise` | what noisy normals add to it |
 //! | `covariance` | one sigma of the pose |
 //!
 //! Limits: Lambertian, one albedo; starts beyond some 20 to 30 degrees may end elsewhere; behind a pinhole image the
@@ -44,6 +45,7 @@
 mod covariance;
 mod equations;
 mod evaluation;
+mod normal_noise;
 mod points;
 mod problem;
 mod registration;

@@ -9,7 +9,7 @@ use crate::numeric::{DOUBLE_LANES, Doubles, Real, dot};
 use crate::pose::increment::{PoseMatrix, UNKNOWNS};
 use crate::pose::similarity::Similarity;
 use crate::pose::uncertainty::Uncertainty;
-use crate::view::{ColourView, Normals, Points, Size};
+use crate::view::{ColourView, DepthNoise, Normals, Points, Size};
 
 /// The coarsest level of the image.
 pub(super) const COARSEST: usize = 2;
@@ -31,6 +31,8 @@ pub struct PhotometricProblem<'a> {
     /// One sigma of each normal in radians, see [`crate::cubic_normals`]; NaN leaves the point out. `None`: all are
     /// exact.
     pub normal_error: Option<&'a [f32]>,
+    /// The noise of the depth that the normals follow from.
+    pub depth_noise: DepthNoise,
     /// The light where it is known, but for its exposure.
     pub light: Option<&'a Light>,
     /// Prior of an unknown light.
@@ -160,6 +162,9 @@ pub struct PhotometricReport {
     pub objective: f64,
     /// Robust standard deviation of a channel's residuals, log units.
     pub noise: f64,
+    /// What residuals of neighbours have in common: root mean covariance within tiles of the depth map, log units. Shadows, paint
+    /// and light from other parts of the object have some, white noise of any size none.
+    pub structure: f64,
     /// Number of visible points.
     pub visible: usize,
     /// Whether these are a sample only, see [`PhotometricOptions::most_points`].

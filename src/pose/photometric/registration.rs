@@ -265,6 +265,7 @@ impl Photometric {
             exposure: self.state.exposure,
             objective: evaluation.data_term() / largest,
             noise: self.noise.residuals,
+            structure: self.tiles.structure(),
             visible: self.points.len(),
             sampled: self.points.are_sampled(),
             inliers: evaluation.inlier_share(),
@@ -443,7 +444,7 @@ impl Photometric {
     }
 
     fn reduce_by_instruments(&self, problem: &PhotometricProblem<'_>, frame: &Frame) -> Result<ReducedSystem> {
-        self.evaluation_by_instruments(problem).reduced_system(frame).ok_or_else(undetermined_light)
+        self.evaluation_by_instruments(problem).unbiased_system(frame).ok_or_else(undetermined_light)
     }
 
     fn covariance(&mut self, problem: &PhotometricProblem<'_>, frame: &Frame, reduced: &ReducedSystem) -> PoseMatrix {

@@ -11,8 +11,8 @@
 use std::f64::consts::{PI, SQRT_2, TAU};
 
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{Rng, SeedableRng};
+
+use crate::numeric::random::Random;
 
 /// Largest tilt between both lines of sight in degrees: beyond a right angle views of a relief share almost nothing.
 const LARGEST_TILT: f64 = 100.0;
@@ -25,8 +25,8 @@ const PSI: f64 = 1.533_751_168_755_204_3;
 
 /// The rotations of the domain, about `spacing` degrees apart.
 pub fn spread(spacing: f64, seed: u64) -> Vec<Matrix3<f64>> {
-    let mut generator = ChaCha8Rng::seed_from_u64(seed);
-    let mut uniform = || (generator.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
+    let mut random = Random::new(seed, 0);
+    let mut uniform = || random.uniform();
     // Shoemake's uniform rotation has the form of the spiral's members.
     let drawn = member(uniform(), TAU * uniform(), TAU * uniform());
     // All rotations together measure 8 pi^2 cubic radians.

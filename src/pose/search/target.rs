@@ -6,9 +6,10 @@
 //!
 //! Limits: the grid spans the mask. Where the mask is the whole frame, an object that is small in it has few cells.
 
-use nalgebra::{Matrix3, SymmetricEigen, Vector3};
+use nalgebra::{Matrix3, Vector3};
 
 use crate::error::{Error, ErrorKind, Result};
+use crate::numeric::eigen::symmetric_eigen;
 use crate::numeric::fourier::planes::{Field, PlaneFourier};
 use crate::view::ColourView;
 
@@ -25,8 +26,6 @@ const ACROSS: f64 = 18.0;
 const LEAST_COVER: f32 = 0.05;
 /// Standard deviation in log units below which a colour axis is not amplified further: noise of a good camera, twice.
 const NOISE: f64 = 0.02;
-/// Cap on the rounds of the 3x3 eigenvalue iteration, which ends after about five.
-const MOST_EIGEN_ROUNDS: usize = 200;
 
 /// The colour view on a square grid. Empty cells hold zeros.
 pub struct Target {
@@ -151,12 +150,12 @@ fn flat() -> Error {
 
 /// W: principal axes over the fourth root of their variance, the first of them scaled to variance one.
 fn balance(covariance: &Matrix3<f64>) -> Result<Matrix3<f64>> {
-    let eigen = SymmetricEigen::try_new(*covariance, f64::EPSILON, MOST_EIGEN_ROUNDS).ok_or_else(flat)?;
-    let largest = eigen.eigenvalues.max();
+    let eigen = symmetric_eigen(covariance).ok_or_else(flat)?;
+    let largest = eigen.values.max();
     if largest.is_nan() || largest <= f64::from(f32::EPSILON).powi(2) {
         return Err(flat());
     }
-    let shares = eigen.eigenvalues.map(|value| (value.max(0.0) + NOISE * NOISE) / largest);
-    let gains = shares.map(|share| share.powf(-0.25) / largest.sqrt());
-    Ok(Matrix3::from_diagonal(&gains) * eigen.eigenvectors.transpose())
+    let shares = eigen.values.map(|value| (value.max(0.0) + NOISE * NOISE) / largest);
+    let gains = shares.map(|share| 1.0 / (share.sqrt().sqrt() * largest.sqrt()));
+    Ok(Matrix3::from_diagonal(&gains) * eigen.vectors.transpose())
 }

@@ -153,3 +153,100 @@ fn smooth_noise(size: Size, chance: &mut Chance) -> Vec<f64> {
     };
     along(&along(&white, [1, 0]), [0, 1])
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::calibration::{Lens, RigCamera};
+    use crate::scenes::rig::paint::Paint;
+    use crate::scenes::rig::solids::Solid;
+
+    const SIZE: Size = Size { width: 200, height: 150 };
+
+    fn flat(depth: f32) -> Seen {
+        Seen { depth: vec![depth; SIZE.len()], cosine: vec![1.0; SIZE.len()], is_lit: vec![true; SIZE.len()] }
+    }
+
+    #[test]
+    fn noise_grows_with_depth_as_it_says_and_neighbours_share_it() {
+        for depth in [0.6_f32, 1.2, 3.5] {
+            let z = f64::from(depth);
+            let measured = measure(&flat(depth), SIZE, 1.0, &mut Chance::of_stream(5, 0));
+            let off: Vec<f64> = measured.iter().map(|&value| f64::from(value) / 1000.0 - z).collect();
+            let mean = off.iter().sum::<f64>() / off.len() as f64;
+            let variance = |by: usize| {
+                let pairs = off.iter().zip(&off[by..]);
+                pairs.map(|(a, b)| (a - mean) * (b - mean)).sum::<f64>() / (off.len() - by) as f64
+            };
+            let sigma = SIGMA[0] + SIGMA[1] * (z - SIGMA[2]).powi(2);
+            // Steps add a twelfth of their square, the steps of disparity and those of a millimetre.
+            let step = z * z * DISPARITY_STEP / DISPARITY;
+            let expected = (sigma * sigma + (step * step + 1e-6) / 12.0).sqrt();
+            assert!((variance(0).sqrt() / expected - 1.0).abs() < 0.1, "{depth}: {} {expected}", variance(0).sqrt());
+            assert!(mean.abs() < 0.1 * expected + 0.5 * step * step / z, "{depth}: {mean}");
+            // Two Gaussians of that sigma, a pixel apart: exp(-1 / (4 sigma^2)) of the smooth part.
+            let shared = (-0.25 / (NOISE_SMOOTHING * NOISE_SMOOTHING)).exp() * sigma * sigma;
+            assert!((variance(1) - shared).abs() < 0.1 * variance(0), "{depth}: {} {shared}", variance(1));
+            assert!(variance(10).abs() < 0.05 * variance(0));
+            let mut steps: Vec<u16> = measured.clone();
+            steps.sort_unstable();
+            steps.dedup();
+            let gap = f64::from(steps[steps.len() / 2 + 1] - steps[steps.len() / 2]) / 1000.0;
+            assert!((gap - step).abs() < 0.0021, "{depth}: {gap} {step}");
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_measured_is_a_hole() {
+        let mut seen = flat(1.0);
+        seen.depth[..100].fill(f32::NAN);
+        seen.depth[100..200].fill(0.2);
+        seen.depth[200..300].fill(9.0);
+        seen.cosine[300..400].fill(0.05);
+        seen.is_lit[400..500].fill(false);
+        let measured = measure(&seen, SIZE, 0.0, &mut Chance::of_stream(1, 0));
+        assert!(measured[..500].iter().all(|&value| value == 0));
+        assert!(measured[500..].iter().all(|&value| value == 1000));
+    }
+
+    #[test]
+    fn rims_lose_pixels_and_have_some_between_both_surfaces() {
+        let mut seen = flat(1.0);
+        (0..SIZE.len()).filter(|index| SIZE.position(*index).0 >= 100).for_each(|index| seen.depth[index] = 1.5);
+        let measured = measure(&seen, SIZE, 1.0, &mut Chance::of_stream(2, 0));
+        let at = |column: usize| (0..SIZE.height).map(move |row| SIZE.index(column, row)).map(|index| measured[index]);
+        let rim = || at(99).chain(at(100));
+        let share = |count: usize| count as f64 / (2 * SIZE.height) as f64;
+        let lost = share(rim().filter(|&value| value == 0).count());
+        let flying = share(rim().filter(|value| (1050..1450).contains(value)).count());
+        // Where rims waver, a pixel beside one may be measured in a column off it.
+        assert!((lost / LOST - 0.8).abs() < 0.4 && (flying / FLYING - 0.7).abs() < 0.5, "{lost} {flying}");
+        assert!(at(50).chain(at(150)).all(|value| (950..1050).contains(&value) || (1450..1550).contains(&value)));
+    }
+
+    /// A square at 0.8 m before a wall at 1.6 m: its shadow on the wall is f b (1 / 0.8 - 1 / 1.6) pixels wide, on the
+    /// side away from the projector.
+    #[test]
+    fn the_shadow_of_the_projector_lies_where_geometry_says() {
+        for projector in [0.06, -0.08] {
+            let camera = RigCamera { fx: 180.0, fy: 180.0, cx: 99.5, cy: 74.5, lens: Lens::None };
+            let mut rig = Rig::random(Some(SIZE), Some(SIZE), &mut Chance::of_stream(1, 1));
+            (rig.depth, rig.projector) = (camera, projector);
+            let mut stage = Stage::default();
+            let still = Similarity::identity();
+            for (half, z) in [(2.0, 1.6), (0.15, 0.8)] {
+                let face =
+                    Solid::face(Vector3::new(-half, -half, z), 2.0 * half * Vector3::x(), 2.0 * half * Vector3::y());
+                stage.put(&face, &still, Paint::plain(&still, &mut Chance::of_stream(1, 2)));
+            }
+            let seen = look(&stage, &still, &rig);
+            let dark: Vec<usize> = (0..SIZE.width).filter(|&column| !seen.is_lit[SIZE.index(column, 75)]).collect();
+            let width = camera.fx * projector.abs() * (1.0 / 0.8 - 1.0 / 1.6);
+            assert!((dark.len() as f64 - width).abs() <= 2.0, "{dark:?} {width}");
+            // The square's own rims are 33.75 pixels from the middle.
+            let rim = 99.5 - f64::signum(projector) * 33.75;
+            assert!(dark.iter().all(|&column| (column as f64 - rim) * -projector.signum() > -1.0), "{dark:?}");
+            assert!(dark.iter().all(|&column| (column as f64 - rim).abs() < width + 2.0), "{dark:?}");
+        }
+    }
+}

@@ -4,8 +4,9 @@ use super::cameras::Rig;
 use super::colour::{SAMPLES, develop, radiance};
 use super::depth::{Seen, look, measure};
 use super::illumination::Illumination;
-use super::layout::{Layout, layout};
-use super::raster::Rays;
+use super::layout::{Layout, RigKind, layout};
+use super::raster::{Hits, Rays};
+use super::stage::Stage;
 use crate::calibration::RigCamera;
 use crate::check::not_negative;
 use crate::error::{Error, ErrorKind, Result};
@@ -14,38 +15,16 @@ use crate::scenes::flaws::Chance;
 use crate::scenes::{LARGEST_VIEW, SMALLEST_VIEW};
 use crate::view::Size;
 
-/// Streams of random numbers: one for the rig, and so many for each frame.
-const RIG_STREAM: u64 = 1 << 32;
+/// Streams of random numbers of each frame; the rig has one of its own, beyond those of any frame.
+#[derive(Clone, Copy)]
+enum Stream {
+    Layout,
+    Light,
+    Image,
+    Sensor,
+}
 const STREAMS: u64 = 4;
-
-/// What is seen.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum RigKind {
-    /// Three to six bodies of 8 to 25 cm at 0.6 to 1.2 m, a wall 0.3 m or more behind them.
-    Objects,
-    /// A crumpled sheet or a draped cloth before a wall.
-    Sheet,
-    /// Boxes on a table, some on top of others.
-    Boxes,
-    /// Walls, a floor and furniture at 1.5 to 4 m.
-    Room,
-}
-
-impl RigKind {
-    /// All of them.
-    pub const ALL: [Self; 4] = [Self::Objects, Self::Sheet, Self::Boxes, Self::Room];
-
-    /// Lower-case name.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Objects => "objects",
-            Self::Sheet => "sheet",
-            Self::Boxes => "boxes",
-            Self::Room => "room",
-        }
-    }
-}
+const RIG_STREAM: u64 = 1 << 40;
 
 /// Which frame of which rig to make.
 #[derive(Clone, Debug, PartialEq)]
@@ -84,8 +63,12 @@ impl RigRequest {
         not_negative("noise", self.noise)
     }
 
-    fn chance(&self, stream: u64) -> Chance {
-        Chance::of_stream(self.seed, RIG_STREAM + stream)
+    fn of_rig(&self) -> Chance {
+        Chance::of_stream(self.seed, RIG_STREAM)
+    }
+
+    fn of_frame(&self, stream: Stream) -> Chance {
+        Chance::of_stream(self.seed, STREAMS * u64::from(self.frame) + stream as u64)
     }
 }
 
@@ -118,25 +101,106 @@ pub struct RigFrame {
 /// As [`RigRequest::validate`].
 pub fn render(request: &RigRequest) -> Result<RigFrame> {
     request.validate()?;
-    let rig = Rig::random(request.colour_size, request.depth_size, &mut request.chance(0));
-    let [mut scene, mut light, mut image, mut sensor] =
-        [1, 2, 3, 4].map(|stream| request.chance(STREAMS * u64::from(request.frame) + stream));
-    let Layout { stage, view, target } = layout(request.kind, &mut scene);
-    let light = Illumination::random(&stage, target, &mut light);
-
-    let rays = Rays::new(&rig.colour, rig.colour_size, SAMPLES);
-    let hits = rays.meet(&stage, &view);
+    let Views { rig, stage, view, light, rays, hits, seen } = Views::of(request);
     let linear = radiance(&stage, &light, &view, &rays, &hits, rig.colour_size);
-    let seen: Seen = look(&stage, &rig.pose.inverse().after(&view), &rig);
     Ok(RigFrame {
         kind: request.kind,
-        colour: develop(&linear, request.noise, &mut image),
+        colour: develop(&linear, request.noise, &mut request.of_frame(Stream::Image)),
         colour_size: rig.colour_size,
         colour_camera: rig.colour,
-        depth: measure(&seen, rig.depth_size, request.noise, &mut sensor),
+        depth: measure(&seen, rig.depth_size, request.noise, &mut request.of_frame(Stream::Sensor)),
         depth_size: rig.depth_size,
         depth_camera: rig.depth,
         pose: rig.pose,
         true_depth: seen.depth,
     })
+}
+
+/// Both views before their sensors, and what they are views of.
+struct Views {
+    rig: Rig,
+    stage: Stage,
+    /// From the world to the colour camera.
+    view: Similarity,
+    light: Illumination,
+    rays: Rays,
+    hits: Hits,
+    seen: Seen,
+}
+
+impl Views {
+    fn of(request: &RigRequest) -> Self {
+        let rig = Rig::random(request.colour_size, request.depth_size, &mut request.of_rig());
+        let Layout { stage, view, target } = layout(request.kind, &mut request.of_frame(Stream::Layout));
+        let light = Illumination::random(&stage, target, &mut request.of_frame(Stream::Light));
+        let rays = Rays::new(&rig.colour, rig.colour_size, SAMPLES);
+        let hits = rays.meet(&stage, &view);
+        let seen = look(&stage, &rig.pose.inverse().after(&view), &rig);
+        Self { rig, stage, view, light, rays, hits, seen }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Vector3;
+
+    use super::*;
+
+    /// Points of the depth camera, carried by the true pose into the colour image, have the colours that paint and
+    /// light give them there; by a pose two degrees off they have not.
+    #[test]
+    fn both_views_agree_under_the_true_pose_alone() {
+        for (kind, seed) in RigKind::ALL.into_iter().zip(3..) {
+            let size = Some(Size { width: 640, height: 480 });
+            let request = RigRequest { colour_size: size, depth_size: size, ..RigRequest::new(kind, seed, 0) };
+            let Views { rig, stage, view, light, rays, hits, seen } = Views::of(&request);
+            let linear = radiance(&stage, &light, &view, &rays, &hits, rig.colour_size);
+            let turned = nalgebra::Rotation3::new(Vector3::new(0.0, 0.035, 0.0)).into_inner() * rig.pose.rotation;
+            let [true_pose, off] = [rig.pose, Similarity { rotation: turned, ..rig.pose }];
+            let agreement = |pose: &Similarity| {
+                let (mut same, mut all) = (0, 0);
+                for index in (0..rig.depth_size.len()).step_by(37) {
+                    let (column, row) = rig.depth_size.position(index);
+                    let depth = f64::from(seen.depth[index]);
+                    let Some([x, y, _]) = rig.depth.ray([column as f64, row as f64]) else { continue };
+                    let point = depth * Vector3::new(x, y, 1.0);
+                    let carried = pose.apply(point);
+                    let Some([right, down]) = rig.colour.project(carried.into()) else { continue };
+                    let Some(pixel) = rig.colour_size.nearest(right as f32, down as f32) else { continue };
+                    let Some([sample, line]) = rays.position(carried) else { continue };
+                    let Some(sample) = rays.size.nearest(sample as f32, line as f32) else { continue };
+                    // What is hidden from the colour camera is not there.
+                    if f64::from(hits.depth[sample]) < 0.99 * carried.z {
+                        continue;
+                    }
+                    let world = view.inverse().apply(carried);
+                    let Some(hit) = rays.hit(&stage, &view, &hits, sample) else { continue };
+                    let mut expected = light.sky(hit.normal);
+                    light.add_lamps(world, hit.normal, &mut expected);
+                    let albedo = stage.paints[stage.triangles[hit.triangle].paint as usize].albedo(world);
+                    let close = (0..3).all(|k| {
+                        let (found, expected) = (f64::from(linear[3 * pixel + k]), expected[k] * albedo[k]);
+                        (found - expected).abs() < 0.03 * expected
+                    }) && (f64::from(hits.depth[sample]) / carried.z - 1.0).abs() < 0.01;
+                    same += usize::from(close);
+                    all += 1;
+                }
+                same as f64 / f64::from(all.max(1))
+            };
+            let [right, wrong] = [agreement(&true_pose), agreement(&off)];
+            // What is left are pixels that paints or things share.
+            assert!(right > 0.93 && wrong < right - 0.04, "{kind:?}: {right} {wrong}");
+        }
+    }
+
+    #[test]
+    fn the_curve_of_srgb_is_undone_by_its_inverse() {
+        let linear: Vec<f32> = (0..300).map(|k| k as f32 / 300.0).collect();
+        let bytes = develop(&linear, 0.0, &mut Chance::of_stream(0, 0));
+        assert_eq!(bytes.len(), 400);
+        assert!(bytes.iter().skip(3).step_by(4).all(|&alpha| alpha == 255));
+        // The 97th percentile of the greens lies at 0.8 of white: 0.8^(1 / 2.4) on the curve.
+        let greens: Vec<u8> = bytes.iter().skip(1).step_by(4).copied().collect();
+        assert!((f64::from(greens[97]) - 230.8).abs() < 4.0, "{}", greens[97]);
+    }
 }

@@ -123,3 +123,48 @@ fn towards_grey(light: &Light) -> Light {
     let [r, g, b] = light.0;
     Light(light.0.map(|channel| std::array::from_fn(|k| 0.5 * channel[k] + (r[k] + g[k] + b[k]) / 6.0)))
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Matrix3;
+
+    use super::*;
+    use crate::scenes::rig::layout::{Layout, RigKind, layout};
+
+    fn is_blocked(stage: &Stage, from: Vector3<f64>, to: Vector3<f64>) -> bool {
+        stage.triangles.iter().any(|triangle| {
+            let [a, b, c] = triangle.corners.map(|corner| stage.points[corner as usize]);
+            let solution = Matrix3::from_columns(&[to - from, a - b, a - c]).lu().solve(&(a - from));
+            solution.is_some_and(|solution| {
+                let [t, u, v] = solution.into();
+                t > 1e-6 && t < 1.0 - 1e-6 && u >= 0.0 && v >= 0.0 && u + v <= 1.0
+            })
+        })
+    }
+
+    /// Shadow maps against rays to the lamp through every triangle.
+    #[test]
+    fn shadows_lie_where_something_is_in_the_way() {
+        let (mut same, mut dark, mut all) = (0, 0, 0);
+        for seed in 0..6 {
+            let Layout { stage, view, target } = layout(RigKind::Boxes, &mut Chance::of_stream(seed, 1));
+            let light = Illumination::random(&stage, target, &mut Chance::of_stream(seed, 2));
+            let rays = Rays::straight(30.0, Size { width: 40, height: 30 });
+            let hits = rays.meet(&stage, &view);
+            for index in (0..rays.size.len()).step_by(7) {
+                let Some(hit) = rays.hit(&stage, &view, &hits, index) else { continue };
+                let start = hit.point + 2.0 * SURFACE_STEP * hit.normal;
+                for (position, found) in light.lamp_positions().into_iter().zip(light.shadows(hit.point, hit.normal)) {
+                    let expected =
+                        hit.normal.dot(&(position - hit.point)) <= 0.0 || is_blocked(&stage, start, position);
+                    same += usize::from(found == expected);
+                    dark += usize::from(expected);
+                    all += 1;
+                }
+            }
+        }
+        // Rims of shadows differ by the step off the surface and the map's samples.
+        assert!(all > 500 && dark > all / 20 && dark < all / 2, "{dark} of {all}");
+        assert!(same as f64 > 0.97 * all as f64, "{same} of {all}");
+    }
+}

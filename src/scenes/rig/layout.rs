@@ -4,7 +4,6 @@ use std::f64::consts::PI;
 
 use nalgebra::{Rotation3, Unit, Vector3};
 
-use super::frame::RigKind;
 use super::paint::Paint;
 use super::sheet::sheet;
 use super::solids::{Solid, icosahedron, prism, torus};
@@ -19,8 +18,39 @@ const OBJECT_SIZE: [f64; 2] = [0.08, 0.25];
 const OBJECT_DISTANCE: [f64; 2] = [0.6, 1.2];
 /// Distance from the farthest object to the wall behind it, metres.
 const BACKGROUND: [f64; 2] = [0.3, 0.7];
+/// How far aside of the middle objects reach, metres.
+const ASIDE: f64 = 0.62;
 /// Attempts at a free place for an object.
 const ATTEMPTS: usize = 40;
+
+/// What is seen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RigKind {
+    /// Three to six bodies of 8 to 25 cm at 0.6 to 1.2 m, a wall 0.3 m or more behind them.
+    Objects,
+    /// A crumpled sheet or a draped cloth before a wall.
+    Sheet,
+    /// Boxes on a table, some on top of others.
+    Boxes,
+    /// Walls, a floor and furniture at 1.5 to 4 m.
+    Room,
+}
+
+impl RigKind {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Objects, Self::Sheet, Self::Boxes, Self::Room];
+
+    /// Lower-case name.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Objects => "objects",
+            Self::Sheet => "sheet",
+            Self::Boxes => "boxes",
+            Self::Room => "room",
+        }
+    }
+}
 
 /// A stage, the rig's place in it and the scene's middle.
 pub struct Layout {
@@ -165,8 +195,8 @@ fn objects(chance: &mut Chance) -> Layout {
     }
     let farthest = placed.iter().map(|(place, radius)| place.z + radius).fold(0.0, f64::max);
     let angle = chance.between([-0.35, 0.35]);
-    // The wall comes nearer on one side, over the half metre where objects are.
-    let distance = farthest + chance.between(BACKGROUND) + 0.5 * angle.abs().tan();
+    // The wall comes nearer on one side, over the part where objects are.
+    let distance = farthest + chance.between(BACKGROUND) + ASIDE * angle.abs().tan();
     stage.put_wall(distance, angle, chance);
     let pitch = match table {
         Some(below) => {
@@ -198,7 +228,7 @@ fn crumpled(chance: &mut Chance) -> Layout {
     stage.put(&solid, &placement, paint);
     let angle = chance.between([-0.35, 0.35]);
     let farthest = stage.points.iter().map(|point| point.z).fold(0.0, f64::max);
-    stage.put_wall(farthest + chance.between(BACKGROUND) + 0.4 * angle.abs().tan(), angle, chance);
+    stage.put_wall(farthest + chance.between(BACKGROUND) + ASIDE * angle.abs().tan(), angle, chance);
     Layout { stage, view: view(chance.between([-0.1, 0.1]), chance), target }
 }
 
@@ -262,4 +292,35 @@ fn room(chance: &mut Chance) -> Layout {
         stage.put_painted(&thing, size, &put(top, yaw(chance.between([0.0, PI]))), chance);
     }
     Layout { stage, view: view(chance.between([0.1, 0.35]), chance), target: Vector3::new(0.0, 0.5, 2.5) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Least distance along z from what stands before the wall to the wall, and how many things do.
+    fn clearance(stage: &Stage) -> (f64, usize) {
+        let corners = |paint: usize| {
+            let own = stage.triangles.iter().filter(move |triangle| triangle.paint as usize == paint);
+            own.flat_map(|triangle| triangle.corners).map(|corner| corner as usize)
+        };
+        let reaches = |paint: usize, axis: usize| corners(paint).any(|corner| stage.points[corner][axis] < -2.5);
+        let wall = (0..stage.paints.len()).find(|&paint| reaches(paint, 1)).expect("a wall");
+        let first = corners(wall).next().expect("a corner");
+        let (point, normal) = (stage.points[first], stage.normals[first]);
+        let things: Vec<usize> = (0..stage.paints.len()).filter(|&paint| !reaches(paint, 0)).collect();
+        let gap = |corner: usize| normal.dot(&(point - stage.points[corner])) / normal.z;
+        let least = things.iter().flat_map(|&paint| corners(paint)).map(gap).fold(f64::INFINITY, f64::min);
+        (least, things.len())
+    }
+
+    #[test]
+    fn things_stand_off_the_wall() {
+        for seed in 0..40 {
+            let (gap, things) = clearance(&objects(&mut Chance::of_stream(seed, 0)).stage);
+            assert!(gap >= BACKGROUND[0] && (3..=6).contains(&things), "{seed}: {gap} {things}");
+            let (gap, things) = clearance(&crumpled(&mut Chance::of_stream(seed, 0)).stage);
+            assert!(gap >= BACKGROUND[0] && things == 1, "{seed}: {gap} {things}");
+        }
+    }
 }

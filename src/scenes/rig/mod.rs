@@ -16,4 +16,5 @@ mod sheet;
 mod solids;
 mod stage;
 
-pub use frame::{RigFrame, RigKind, RigRequest, render};
+pub use frame::{RigFrame, RigRequest, render};
+pub use layout::RigKind;

@@ -7,10 +7,14 @@ use crate::scenes::flaws::Chance;
 
 /// Cells along the longer side: 4 mm of a sheet of 0.8 m.
 const CELLS: usize = 192;
-/// Creases of crumpled paper, at least and at most.
-const CREASES: [f64; 2] = [16.0, 32.0];
-/// Bend at a crease, radians at most.
-const BEND: f64 = 1.2;
+/// Long creases of crumpled paper, at least and at most, and the bend at one in radians at most.
+const CREASES: [f64; 2] = [4.0, 10.0];
+const BEND: f64 = 0.5;
+/// Facets between its short creases: their size in metres, and the height of their corners relative to it at most.
+const FACET: [f64; 2] = [0.05, 0.11];
+const STEEPNESS: [f64; 2] = [0.15, 0.35];
+/// Corners along a side of the lattice that repeats.
+const CORNERS: usize = 32;
 /// Folds of a cloth, at least and at most, and their depth in metres at most.
 const FOLDS: [f64; 2] = [5.0, 10.0];
 const FOLD_DEPTH: f64 = 0.05;
@@ -38,16 +42,46 @@ pub fn sheet(sides: [f64; 2], chance: &mut Chance) -> Solid {
     solid.stretched(Vector3::new(1.0, 1.0, shrink))
 }
 
-/// Facets between straight creases: the sum of bends a |n.p - c|, mountains and valleys.
+/// Flat facets between short creases, over long ones: the sum of bends a |n.p - c|, mountains and valleys.
 fn crumpled(sides: [f64; 2], chance: &mut Chance) -> impl Fn(Vector2<f64>) -> f64 + use<> {
     let reach = 0.5 * sides[0].hypot(sides[1]);
+    let facets = [1.0, 0.45].map(|share| facets(share * chance.between(FACET), chance));
     let creases: Vec<(Vector2<f64>, f64, f64)> = (0..chance.between(CREASES) as usize)
         .map(|_| {
             let (sin, cos) = chance.between([0.0, std::f64::consts::PI]).sin_cos();
             (Vector2::new(cos, sin), chance.between([-reach, reach]), 0.5 * chance.between([-BEND, BEND]))
         })
         .collect();
-    move |place| creases.iter().map(|(normal, offset, bend)| bend * (normal.dot(&place) - offset).abs()).sum()
+    move |place| {
+        let long: f64 = creases.iter().map(|(normal, offset, bend)| bend * (normal.dot(&place) - offset).abs()).sum();
+        long + facets.iter().map(|facets| facets(place)).sum::<f64>()
+    }
+}
+
+/// Triangles between the corners of a lattice that is turned and bent, their heights random.
+fn facets(cell: f64, chance: &mut Chance) -> impl Fn(Vector2<f64>) -> f64 + use<> {
+    let (sin, cos) = chance.between([0.0, 1.5]).sin_cos();
+    let phase = chance.between([0.0, 6.0]);
+    let steepness = cell * chance.between(STEEPNESS);
+    let heights: Vec<f64> = (0..CORNERS * CORNERS).map(|_| chance.between([-steepness, steepness])).collect();
+    move |place| {
+        let [x, y] = [(cos * place.x + sin * place.y) / cell, (cos * place.y - sin * place.x) / cell];
+        let [x, y] = [x + 0.35 * (1.7 * y + phase).sin(), y + 0.35 * (1.3 * x - phase).sin()];
+        let [column, row] = [x.floor(), y.floor()];
+        let [u, v] = [x - column, y - row];
+        let corner = |right: i64, down: i64| {
+            let at = |part: f64, by: i64| (part as i64 + by).rem_euclid(CORNERS as i64) as usize;
+            heights[CORNERS * at(row, down) + at(column, right)]
+        };
+        let [a, b, c, d] = [corner(0, 0), corner(1, 0), corner(0, 1), corner(1, 1)];
+        if (column as i64 + row as i64) & 1 == 0 {
+            if u > v { a + u * (b - a) + v * (d - b) } else { a + v * (c - a) + u * (d - c) }
+        } else if u + v < 1.0 {
+            a + u * (b - a) + v * (c - a)
+        } else {
+            d + (1.0 - u) * (c - d) + (1.0 - v) * (b - d)
+        }
+    }
 }
 
 /// Round folds that run mostly downwards and open on their way.

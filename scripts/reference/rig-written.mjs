@@ -1,6 +1,6 @@
-// The files of a few made rigs, for readers that were not written here (rig-files.py) and for tests/contract/rig-write.test.mjs.
+// The files of a few made rigs, for readers that were not written here (rig-written.py) and for tests/contract/rig-write.test.mjs.
 //
-// npm run build && node scripts/reference/rig-files.mjs     writes tests/fixtures/rig/
+// npm run build && node scripts/reference/rig-written.mjs     writes tests/fixtures/rig/
 import { mkdirSync, realpathSync, writeFileSync } from "node:fs";
 import { poseFormats, writeClouds, writePose } from "../../pkg/rig-write.js";
 import { inRoot } from "../shell.mjs";

@@ -1,0 +1,36 @@
+/** What was compressed by zlib, never more of it than is expected: memory and time are bounded by what the file declares. */
+import { Unzlib } from "fflate";
+import { badFile } from "./errors.js";
+
+/** Bytes given to the decoder at a time. */
+const PIECE = 16_384;
+/** Deflate makes so many bytes of one at most. */
+const MOST_OF_ONE = 1032;
+
+class TooLong extends Error {}
+
+/** Up to `most` bytes of what `bytes` inflate to, or why that cannot be had. */
+export function inflateUpTo(bytes: Uint8Array, most: number, what: string): Uint8Array {
+  const out = new Uint8Array(most);
+  let length = 0;
+  const stream = new Unzlib((piece) => {
+    if (length + piece.length > most) throw new TooLong();
+    out.set(piece, length);
+    length += piece.length;
+  });
+  try {
+    for (let at = 0; at < bytes.length; at += PIECE) stream.push(bytes.subarray(at, at + PIECE), at + PIECE >= bytes.length);
+  } catch (error) {
+    if (error instanceof TooLong) throw badFile(`${what} is damaged: it inflates to more than the ${most} bytes that it declares`);
+    throw badFile(`${what} is damaged or cut off (${error instanceof Error ? error.message : String(error)})`, error);
+  }
+  return out.subarray(0, length);
+}
+
+/** .. where it has to be exactly so many. */
+export function inflateExactly(bytes: Uint8Array, length: number, what: string): Uint8Array {
+  if (length > MOST_OF_ONE * bytes.length) throw badFile(`${what} is cut off: ${bytes.length} bytes cannot inflate to the ${length} that it declares`);
+  const out = inflateUpTo(bytes, length, what);
+  if (out.length < length) throw badFile(`${what} is cut off: it inflates to ${out.length} of ${length} bytes`);
+  return out;
+}

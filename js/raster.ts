@@ -1,0 +1,75 @@
+/** Rasters of any number of channels as the contract has them: colours, one channel, masks. */
+import { badFile } from "./errors.js";
+import type { Raster } from "./npy.js";
+import type { ColorImage, Mask } from "./types.js";
+
+export type Pixels = Uint8Array | Uint16Array | Float32Array;
+
+export const hasColour = (channels: number): boolean => channels >= 3;
+const hasAlpha = (channels: number): boolean => channels === 2 || channels === 4;
+
+/** Copies pixels into another number of channels; grey is repeated. */
+function spread<T extends Pixels>(from: Raster<Pixels>, to: T, channels: number, opaque: number): T {
+  const pixels = from.width * from.height;
+  const last = from.channels - 1;
+  for (let pixel = 0; pixel < pixels; pixel++) {
+    const at = pixel * from.channels;
+    for (let channel = 0; channel < 3; channel++) {
+      to[pixel * channels + channel] = from.data[at + (hasColour(from.channels) ? channel : 0)] ?? 0;
+    }
+    if (channels === 4) to[pixel * 4 + 3] = hasAlpha(from.channels) ? (from.data[at + last] ?? 0) : opaque;
+  }
+  return to;
+}
+
+/** 255 where a pixel is at least half opaque; nothing where there is no alpha or all of it is. */
+function alphaMask({ width, height, channels, data }: Raster<Pixels>): Uint8Array | undefined {
+  if (!hasAlpha(channels) || data instanceof Float32Array) return undefined;
+  const half = data instanceof Uint16Array ? 0x8000 : 0x80;
+  const mask = new Uint8Array(width * height);
+  for (let pixel = 0; pixel < mask.length; pixel++) {
+    mask[pixel] = (data[pixel * channels + channels - 1] ?? 0) >= half ? 255 : 0;
+  }
+  return mask.includes(0) ? mask : undefined;
+}
+
+/** A colour image; floats are linear. */
+export function toColour(raster: Raster<Pixels>): ColorImage {
+  const { width, height, data } = raster;
+  const pixels = width * height;
+  if (data instanceof Float32Array) return { width, height, data: spread(raster, new Float32Array(3 * pixels), 3, 1) };
+  const rgba =
+    data instanceof Uint16Array
+      ? spread(raster, new Uint16Array(4 * pixels), 4, 0xffff)
+      : spread(raster, new Uint8Array(4 * pixels), 4, 0xff);
+  return { width, height, data: rgba };
+}
+
+/** The one channel of a depth map, also where a program has saved it as grey RGB. */
+export function single({ width, height, channels, data }: Raster<Pixels>): Pixels {
+  if (channels === 1) return data;
+  const levels = data instanceof Uint16Array ? new Uint16Array(width * height) : new Uint8Array(width * height);
+  for (let pixel = 0; pixel < levels.length; pixel++) {
+    const at = pixel * channels;
+    const level = data[at] ?? 0;
+    if (hasColour(channels) && (data[at + 1] !== level || data[at + 2] !== level)) {
+      throw badFile("a depth map has one value for each pixel, and this picture is coloured; is it a rendering of the depth?");
+    }
+    levels[pixel] = level;
+  }
+  return levels;
+}
+
+/** Whatever is neither zero nor transparent belongs to the object. */
+export function toMask(raster: Raster<Pixels>): Mask {
+  const { width, height, channels, data } = raster;
+  const opaque = alphaMask(raster);
+  const visible = hasColour(channels) ? 3 : 1;
+  const mask = new Uint8Array(width * height);
+  for (let pixel = 0; pixel < mask.length; pixel++) {
+    const at = pixel * channels;
+    const lit = data.subarray(at, at + visible).some((value) => value > 0);
+    mask[pixel] = lit && opaque?.[pixel] !== 0 ? 255 : 0;
+  }
+  return { width, height, data: mask };
+}

@@ -1,0 +1,230 @@
+/**
+ * A raster or a cloud as a depth map in metres: its unit, told, in the file or guessed from the values; what of it is valid, and whether
+ * that looks like what a depth camera sees.
+ *
+ * Limits: millimetres and fifths of them (TUM) cannot always be told apart by values alone, so that every guess is said.
+ */
+import { badFile } from "../errors.js";
+import { hasColour, single } from "../raster.js";
+import type { Cloud, Picture } from "./formats/picture.js";
+import type { ReadOptions, RigReading } from "./types.js";
+
+type Depth = Extract<RigReading, { kind: "depth" }>;
+export type Found<T> = Omit<T, "name">;
+
+/** Depths of which a rig's camera is expected to see, metres. */
+const NEAREST = 0.1;
+const FARTHEST = 20;
+/** More holes than this are worth a word. */
+const MANY_HOLES = 0.4;
+/** A few stray depths say nothing of the unit: of those beyond the range so many may be. */
+const STRAY = 0.01;
+/** Half of what indoor sensors with integer depths see lies nearer, metres; beyond it the unit is not the millimetre. */
+const USUAL = 8;
+/** Share of values that a rule about their last digits has to hold for. */
+const NEARLY_ALL = 0.99;
+/** .. and of SUN RGB-D's, where depths beyond 8.19 m wrap into the low bits. */
+const MOSTLY = 0.9;
+/** Fewer different depths are a scene made by hand, whose round numbers say nothing of the unit. */
+const MANY_VALUES = 16;
+/** What a 16-bit sensor says where it is blind. */
+const SATURATED = 0xffff;
+/** Renderers write 1e10 where they saw nothing, and half floats their largest number. */
+const BEYOND = 1e9;
+const LARGEST_HALF = 65_504;
+/** The Kinect's 11-bit disparity where it is blind. */
+const BLIND_DISPARITY = 2047;
+
+interface Unit {
+  /** Metres per stored unit. */
+  metres: number;
+  says: string;
+  isGuessed: boolean;
+}
+
+const NAMED: [number, string][] = [
+  [1, "metres"],
+  [0.001, "millimetres"],
+  [0.01, "centimetres"],
+  [0.0002, "fifths of a millimetre, 5000 to the metre"],
+  [0.0001, "tenths of a millimetre"],
+];
+const name = (metres: number): string =>
+  NAMED.find(([unit]) => Math.abs(metres / unit - 1) < 1e-6)?.[1] ?? `units of ${Number((1000 * metres).toPrecision(4))} mm`;
+
+const isThere = (value: number): boolean => value > 0 && value < 1e12;
+
+/** The valid values in order, at most so many of them: quantiles need no more. */
+const SAMPLE = 65_536;
+function sampled(values: ArrayLike<number>, step = 1, offset = 0): Float64Array {
+  const count = Math.floor((values.length - offset + step - 1) / step);
+  const stride = step * Math.max(1, Math.ceil(count / SAMPLE));
+  const found: number[] = [];
+  for (let at = offset; at < values.length; at += stride) {
+    const value = values[at] ?? 0;
+    if (isThere(value)) found.push(value);
+  }
+  return Float64Array.from(found).sort();
+}
+
+const quantile = (sorted: Float64Array, share: number): number => sorted[Math.floor(share * (sorted.length - 1))] ?? NaN;
+const shareOf = (values: Float64Array, rule: (value: number) => boolean): number => values.reduce((sum, value) => sum + (rule(value) ? 1 : 0), 0) / values.length;
+
+const isVaried = (values: Float64Array): boolean => new Set(values).size >= MANY_VALUES;
+
+/** The unit of whole numbers: of TUM's files all are multiples of 5, since they are fives of a Kinect's millimetres. */
+function unitOfIntegers(values: Float64Array): Unit {
+  const fives = isVaried(values) && shareOf(values, (value) => value % 5 === 0) >= NEARLY_ALL && quantile(values, 0.5) > 1000 * NEAREST * 5;
+  if (fives) return { metres: 0.0002, says: `${name(0.0002)} (guessed: all values are multiples of 5)`, isGuessed: true };
+  if (quantile(values, 0.5) > 1000 * USUAL) return { metres: 0.0002, says: `${name(0.0002)} (guessed: too far for millimetres)`, isGuessed: true };
+  return { metres: 0.001, says: `${name(0.001)} (guessed)`, isGuessed: true };
+}
+
+/** The unit of floats: millimetres if half of them lay beyond what metres would reach. */
+function unitOfFloats(values: Float64Array): Unit {
+  const metres = quantile(values, 0.5) > FARTHEST ? 0.001 : 1;
+  return { metres, says: `${name(metres)} (guessed)`, isGuessed: true };
+}
+
+const told = (metres: number): Unit => ({ metres, says: name(metres), isGuessed: false });
+const percent = (share: number): string => `${(100 * share).toFixed(1)} %`;
+const metresText = (value: number): string => (value < 0.01 || value >= 1000 ? value.toPrecision(3) : value.toFixed(2));
+
+interface Seen {
+  count: number;
+  nearest: number;
+  farthest: number;
+}
+
+/** Of `values[offset + i * step]`. */
+function seen(values: ArrayLike<number>, step = 1, offset = 0): Seen {
+  const found: Seen = { count: 0, nearest: Infinity, farthest: 0 };
+  for (let at = offset; at < values.length; at += step) {
+    const value = values[at] ?? 0;
+    if (!isThere(value)) continue;
+    found.count++;
+    if (value < found.nearest) found.nearest = value;
+    if (value > found.farthest) found.farthest = value;
+  }
+  return found;
+}
+
+/** What is said of any depth map, and what looks wrong about it. */
+function judged(size: { width: number; height: number }, stored: string, values: ArrayLike<number>, unit: Unit, step = 1, offset = 0): { says: string; warnings: string[] } {
+  const { count, nearest, farthest } = seen(values, step, offset);
+  const valid = count / (size.width * size.height);
+  const sample = sampled(values, step, offset);
+  const range = `${metresText(nearest * unit.metres)} to ${metresText(farthest * unit.metres)} m`;
+  const warnings: string[] = [];
+  if (unit.isGuessed) warnings.push(`The unit is not in the file and was guessed: read as ${name(unit.metres)}, depths are ${range}. Say the unit if that is wrong.`);
+  const beyond = shareOf(sample, (value) => value * unit.metres < NEAREST || value * unit.metres > FARTHEST);
+  if (beyond > STRAY) warnings.push(`${percent(beyond)} of the depths are outside ${NEAREST} to ${FARTHEST} m (${range}): is the unit right?`);
+  if (1 - valid > MANY_HOLES) warnings.push(`${percent(1 - valid)} of the depth map are holes.`);
+  return { says: `${size.width}x${size.height}, ${stored}, read as ${unit.says}, ${percent(valid)} valid, ${range}`, warnings };
+}
+
+const nothing = () => badFile("no pixel of it holds a depth: all are zero, negative or not a number");
+
+/** SUN RGB-D turns the bits of its millimetres by three, so that most values are multiples of 8. */
+const isTurned = (values: Float64Array): boolean =>
+  isVaried(values) && shareOf(values, (value) => value % 8 === 0) >= MOSTLY && quantile(values, 0.5) > 1000;
+const turnedBack = (data: Uint16Array): Uint16Array => data.map((value) => (value >> 3) | (value << 13));
+
+/** Mean change between neighbours in a row where both are valid; bytes in the wrong order make it a hundredfold. */
+function roughness(data: Uint16Array, width: number, swap: boolean): number {
+  let [sum, count] = [0, 0];
+  for (let at = 1; at < data.length; at++) {
+    let [one, other] = [data[at - 1] ?? 0, data[at] ?? 0];
+    if (at % width === 0 || one === 0 || other === 0) continue;
+    if (swap) [one, other] = [(one >> 8) | ((one & 255) << 8), (other >> 8) | ((other & 255) << 8)];
+    sum += Math.abs(one - other);
+    count++;
+  }
+  return count === 0 ? 0 : sum / count;
+}
+
+/** How much smoother the other order of bytes has to be before it is believed. */
+const CLEARLY = 8;
+
+/** 16-bit PGM are high byte first; some programs write them the other way round. */
+function inOrder(picture: Picture, data: Uint16Array, warnings: string[]): Uint16Array {
+  if (picture.format !== "PGM" || picture.bits !== 16) return data;
+  if (roughness(data, picture.width, false) <= CLEARLY * roughness(data, picture.width, true)) return data;
+  warnings.push("Its bytes lie low byte first, against the format's rule, and were swapped.");
+  return data.map((value) => (value >> 8) | ((value & 255) << 8));
+}
+
+function ofIntegers(picture: Picture, integers: Uint8Array | Uint16Array, unit: number | undefined): Found<Depth> {
+  const warnings = [...picture.warnings];
+  let data = inOrder(picture, integers instanceof Uint16Array ? integers : new Uint16Array(integers), warnings);
+  const notes = [...picture.notes];
+  if (data.includes(SATURATED)) {
+    data = data.map((value) => (value === SATURATED ? 0 : value));
+    notes.push("65535 taken for holes");
+  }
+  let sample = sampled(data);
+  if (sample.length === 0) throw nothing();
+  let found = unit === undefined ? undefined : told(unit);
+  if (found === undefined && picture.unit === undefined && picture.bits > 8 && isTurned(sample)) {
+    data = turnedBack(data);
+    sample = sampled(data);
+    found = { metres: 0.001, says: "millimetres with their bits turned by three (SUN RGB-D; guessed)", isGuessed: true };
+  }
+  found ??= picture.unit === undefined ? unitOfIntegers(sample) : told(picture.unit);
+  const depth = { width: picture.width, height: picture.height, data, unit: found.metres };
+  const { says, warnings: more } = judged(picture, `${picture.bits}-bit`, data, found);
+  if (picture.bits <= 8) warnings.push("Depths of 8 bits are too coarse to calibrate by, and are often a picture of the depth, not the depth.");
+  if (quantile(sample, 1) === BLIND_DISPARITY && shareOf(sample, (value) => value === BLIND_DISPARITY) > STRAY) warnings.push(DISPARITY);
+  return { kind: "depth", depth, guessed: found.isGuessed ? ["unit"] : [], says: [says, ...notes].join(", "), warnings: [...warnings, ...more] };
+}
+const DISPARITY = "The largest value is 2047, and common: this looks like a Kinect's raw disparity, which is not depth (z = 351.3 / (1092.5 - d) m or so).";
+
+function ofFloats(picture: Picture, stored: Float32Array, unit: number | undefined): Found<Depth> {
+  const beyond = picture.bits === 16 ? LARGEST_HALF : BEYOND;
+  const data = stored.some((value) => value >= beyond) ? stored.map((value) => (value >= beyond ? 0 : value)) : stored;
+  const sample = sampled(data);
+  if (sample.length === 0) throw nothing();
+  const known = unit ?? picture.unit;
+  const found = known === undefined ? unitOfFloats(sample) : told(known);
+  const depth = { width: picture.width, height: picture.height, data, unit: found.metres };
+  const { says, warnings } = judged(picture, `${picture.bits}-bit float`, data, found);
+  return { kind: "depth", depth, guessed: found.isGuessed ? ["unit"] : [], says: [says, ...picture.notes].join(", "), warnings: [...picture.warnings, ...warnings] };
+}
+
+/** An organised cloud; its points are brought to metres, NaN where there is none. */
+export function cloudDepth(cloud: Cloud, { unit }: ReadOptions): Found<Depth> {
+  const points = cloud.points;
+  const behind = sampled(points.map((value) => -value), 3, 2).length;
+  const sample = sampled(points, 3, 2);
+  if (sample.length === 0 && behind === 0) throw nothing();
+  if (behind > sample.length) throw badFile("its points lie behind the camera (z is negative): turn them so that z looks forward, y down");
+  const found = unit === undefined ? unitOfFloats(sample) : told(unit);
+  const { says, warnings } = judged(cloud, "an organised cloud", points, found, 3, 2);
+  for (let at = 0; at < points.length; at += 3) {
+    const there = isThere(points[at + 2] ?? NaN) && Number.isFinite(points[at]) && Number.isFinite(points[at + 1]);
+    for (let axis = 0; axis < 3; axis++) points[at + axis] = there ? (points[at + axis] ?? NaN) * found.metres : NaN;
+  }
+  const depth = { width: cloud.width, height: cloud.height, points };
+  return { kind: "depth", depth, guessed: found.isGuessed ? ["unit"] : [], says: [says, ...cloud.notes].join(", "), warnings: [...cloud.warnings, ...warnings] };
+}
+
+/** A picture as a depth map; a float one of three channels is a cloud, as .npy has it. */
+export function pictureDepth(picture: Picture, options: ReadOptions): Found<Depth> {
+  const { data, channels } = picture;
+  if (data instanceof Float32Array) {
+    if (channels === 3) return cloudDepth({ ...picture, points: data }, options);
+    if (channels !== 1) throw badFile(`a depth map has 1 channel and a cloud 3, not ${channels}`);
+    return ofFloats(picture, data, options.unit);
+  }
+  if (hasColour(channels) && !isGrey(picture)) throw badFile("it is a colour picture where a depth map was asked for: were the files swapped, or is it a rendering of the depth?");
+  const one = single(picture);
+  if (one instanceof Float32Array) throw badFile("a depth map has 1 channel");
+  return ofIntegers(picture, one, options.unit);
+}
+
+/** Whether all pixels are grey. */
+export function isGrey({ channels, data }: Picture): boolean {
+  if (!hasColour(channels)) return true;
+  for (let at = 0; at < data.length; at += channels) if (data[at] !== data[at + 1] || data[at] !== data[at + 2]) return false;
+  return true;
+}

@@ -1,0 +1,233 @@
+/**
+ * Whole folders: frames paired by time stamps (TUM RGB-D) or by like names (Redwood's and Open3D's color/ and depth/, 7-Scenes' and other
+ * name schemes), with the cameras and poses that lie beside them.
+ *
+ * A file that cannot be read costs its frame, not the folder: it is named in `warnings`.
+ */
+import { BimodalError, badFile } from "../errors.js";
+import { addCameras } from "./assign.js";
+import { textOf } from "./formats/text.js";
+import { isRasterFile, readRigFile } from "./read.js";
+import type { CheckFrame, Mask, NamedFile, ReadOptions, Reading, RigFolder, RigReading } from "./types.js";
+
+export interface FolderOptions {
+  /** Metres per stored unit of all depth maps. */
+  unit?: number;
+  /** At most so many pairs are read, evenly spread over the folder; default 20. */
+  frames?: number;
+}
+
+const FRAMES = 20;
+/** Time stamps farther apart than this, in seconds, are no pair; TUM's own tool has the same. */
+const APART = 0.02;
+const TUM_UNIT = 1 / 5000;
+/** Lines of a list of frames. */
+const MOST_LINES = 200_000;
+
+const DEPTH = /depth|dpt|range(?![a-z])|disp/i;
+const MASK = /mask|segm/i;
+const COLOUR = /colou?r|rgb|image|img/i;
+const IGNORED = /(^|\/)(\.|__MACOSX|thumbs\.db|readme|licen[cs]e|copying|source\.txt|changelog)|\.(md|html?|py|mjs|js|csv|bag|mp4|avi|klg)$/i;
+const LISTS = /(^|\/)(rgb|depth|associat\w*|accelerometer|groundtruth|times?(tamps)?)\.(txt|csv)$/i;
+
+const base = (name: string): string => name.slice(name.lastIndexOf("/") + 1);
+const stem = (name: string): string => base(name).replace(/\.[a-z0-9]{1,5}$/i, "");
+
+interface Pair {
+  name: string;
+  colour: NamedFile;
+  depth: NamedFile;
+  mask?: NamedFile;
+}
+
+interface Pairs {
+  pairs: Pair[];
+  unit?: number;
+  says: string;
+}
+
+/** What two files of one frame have in common: their name without what says which of the two it is; numbers without leading zeros. */
+function key(name: string): string {
+  const left = stem(name).replace(/depth|dpt|colou?r|rgb|image|img|mask|crop|registered|aligned/gi, " ").toLowerCase();
+  const words = left.split(/[^a-z0-9.]+/).map((word) => word.replace(/^\.+|\.+$/g, "").replace(/^0+(?=\d)/, ""));
+  return words.filter((word) => word !== "" && word !== "mm").join(" ");
+}
+
+/** TUM's lists: a time stamp and a path on each line. */
+function listed(file: NamedFile): { time: number; path: string }[] {
+  const lines = (textOf(file.bytes) ?? "").split(/\r?\n/).filter((line) => line.trim() !== "" && !line.trim().startsWith("#"));
+  if (lines.length > MOST_LINES) throw badFile(`${file.name}: it lists more than ${MOST_LINES} frames`);
+  return lines.map((line) => {
+    const [time = "", path = ""] = line.trim().split(/\s+/);
+    if (path === "" || !Number.isFinite(Number(time))) throw badFile(`${file.name}: it lists time stamps and files, and ${JSON.stringify(line.slice(0, 60))} is neither`);
+    return { time: Number(time), path };
+  });
+}
+
+/** Of two lists in order of time, those nearest to each other. */
+function byTime(colours: { time: number; path: string }[], depths: { time: number; path: string }[]): [string, string, number][] {
+  const order = [...depths].sort((a, b) => a.time - b.time);
+  const found: [string, string, number][] = [];
+  let from = 0;
+  for (const { time, path } of [...colours].sort((a, b) => a.time - b.time)) {
+    while (from + 1 < order.length && Math.abs((order[from + 1]?.time ?? 0) - time) <= Math.abs((order[from]?.time ?? 0) - time)) from++;
+    const nearest = order[from];
+    if (nearest === undefined || Math.abs(nearest.time - time) > APART) continue;
+    found.push([path, nearest.path, time]);
+    from++;
+  }
+  return found;
+}
+
+function tum(files: NamedFile[], warnings: string[]): Pairs | undefined {
+  const list = (name: string) => files.find((file) => base(file.name).toLowerCase() === name);
+  const [colours, depths] = [list("rgb.txt"), list("depth.txt")];
+  if (colours === undefined || depths === undefined) return undefined;
+  const found = byTime(listed(colours), listed(depths));
+  const byPath = new Map(files.map((file) => [file.name, file]));
+  const root = colours.name.slice(0, colours.name.length - base(colours.name).length);
+  const pairs: Pair[] = [];
+  let missing = 0;
+  for (const [colourPath, depthPath, time] of found) {
+    const [colour, depth] = [byPath.get(root + colourPath), byPath.get(root + depthPath)];
+    if (colour && depth) pairs.push({ name: String(time), colour, depth });
+    else missing++;
+  }
+  if (missing > 0) warnings.push(`${missing} of the ${found.length} pairs that rgb.txt and depth.txt list are not in the folder.`);
+  if (found.length === 0) throw badFile(`${colours.name}: no time stamp of it lies within ${1000 * APART} ms of one of ${depths.name}`);
+  return { pairs, unit: TUM_UNIT, says: `TUM RGB-D, ${pairs.length} pairs within ${1000 * APART} ms` };
+}
+
+/** By like names; where those differ throughout, in their order. */
+function byNames(pictures: NamedFile[], warnings: string[]): Pairs {
+  const isDepth = (file: NamedFile) => DEPTH.test(base(file.name)) || (DEPTH.test(file.name) && !COLOUR.test(base(file.name)));
+  const masks = pictures.filter((file) => MASK.test(file.name));
+  const others = pictures.filter((file) => !MASK.test(file.name));
+  const depths = others.filter(isDepth);
+  const colours = others.filter((file) => !isDepth(file));
+  const byKey = new Map(colours.map((file) => [key(file.name), file]));
+  const maskOf = (name: string) => masks.find((mask) => key(mask.name) === name) ?? (masks.length === 1 && key(masks[0]?.name ?? "") === "" ? masks[0] : undefined);
+  const pair = (name: string, colour: NamedFile, depth: NamedFile): Pair => {
+    const mask = maskOf(name);
+    return { name, colour, depth, ...(mask && { mask }) };
+  };
+  const pairs = depths.flatMap((depth) => {
+    const colour = byKey.get(key(depth.name));
+    return colour === undefined ? [] : [pair(key(depth.name), colour, depth)];
+  });
+  if (pairs.length > 0) return { pairs, says: `${pairs.length} pairs by their names` };
+  if (depths.length === 0 || depths.length !== colours.length) return { pairs: [], says: "" };
+  const inOrder = (files: NamedFile[]) => [...files].sort((a, b) => a.name.localeCompare(b.name, "en", { numeric: true }));
+  if (depths.length > 1) warnings.push(`No name of a depth map is like one of a colour image: the ${depths.length} of each were paired in the order of their names.`);
+  const ordered = inOrder(colours);
+  return { pairs: inOrder(depths).flatMap((depth, index) => (ordered[index] ? [pair(key(depth.name), ordered[index], depth)] : [])), says: `${depths.length} pairs in their order` };
+}
+
+/** Evenly spread, the first and the last among them. */
+function spread<T>(all: T[], most: number): T[] {
+  if (all.length <= most) return all;
+  return Array.from({ length: most }, (_, index) => all[most === 1 ? 0 : Math.round((index * (all.length - 1)) / (most - 1))] as T);
+}
+
+class FolderReader {
+  readonly readings: Reading[] = [];
+  readonly warnings: string[] = [];
+
+  /** The file's content, or nothing with a warning. */
+  async read(file: NamedFile, options: ReadOptions): Promise<RigReading | undefined> {
+    try {
+      const found = await readRigFile(file, options);
+      this.readings.push({ name: found.name, says: found.says, warnings: found.warnings });
+      for (const warning of found.warnings) this.warnings.push(`${file.name}: ${warning}`);
+      return found;
+    } catch (error) {
+      if (!(error instanceof BimodalError)) throw error;
+      this.warnings.push(`${error.message.replace(/^file: /, "")} (left out)`);
+      return undefined;
+    }
+  }
+
+  async frame({ name, colour, depth, mask }: Pair, unit: number | undefined): Promise<CheckFrame | undefined> {
+    const image = await this.read(colour, { as: "colour" });
+    const map = await this.read(depth, { as: "depth", ...(unit !== undefined && { unit }) });
+    if (image?.kind !== "colour" || map?.kind !== "depth") return undefined;
+    const masked = mask && (await this.read(mask, { as: "mask" }));
+    const frame = { image: image.image, depth: map.depth, name: name === "" ? stem(colour.name) : name };
+    if (masked?.kind === "mask") this.#mask(frame, masked.mask, masked.name);
+    return frame;
+  }
+
+  #mask({ image, depth }: CheckFrame, { width, height, data }: Mask, name: string): void {
+    if (image.width === width && image.height === height) image.mask = data;
+    else if (depth.width === width && depth.height === height) depth.mask = data;
+    else this.warnings.push(`${name}: the mask is ${width}x${height}, which is the size of neither picture (left out).`);
+  }
+}
+
+/** What is said of many files alike, numbers aside, is said once. */
+function grouped(warnings: string[]): string[] {
+  const alike = new Map<string, string[]>();
+  for (const warning of warnings) {
+    const about = warning.slice(warning.indexOf(": ") + 1).replace(/\d+(\.\d+)?/g, "#");
+    alike.set(about, [...(alike.get(about) ?? []), warning]);
+  }
+  return [...alike.values()].map(([first = "", ...others]) => {
+    const more = new Set(others).size;
+    return more === 0 || others.every((other) => other === first) ? first : `${first} (and ${more} more alike)`;
+  });
+}
+
+/** Guessed for each depth map by itself, units have to agree. */
+function checkUnits(frames: CheckFrame[], warnings: string[]): void {
+  const units = new Set(frames.map(({ depth }) => depth.unit));
+  if (units.size > 1) warnings.push(`Depth maps of this folder were read with different units (${[...units].map((unit) => `${1000 * (unit ?? 1)} mm`).join(", ")}): say the unit.`);
+}
+
+/** Where no name says which picture is which, what they hold does. */
+async function byContent(pictures: NamedFile[], reader: FolderReader): Promise<Pairs> {
+  const kinds = new Map<string, NamedFile[]>();
+  for (const file of pictures.slice(0, 2 * FRAMES)) {
+    const found = await readRigFile(file).catch(() => undefined);
+    if (found) kinds.set(found.kind, [...(kinds.get(found.kind) ?? []), file]);
+  }
+  const [colours, depths, masks] = [kinds.get("colour") ?? [], kinds.get("depth") ?? [], kinds.get("mask") ?? []];
+  if (colours.length === 0 || colours.length !== depths.length) return { pairs: [], says: "" };
+  if (depths.length > 1) reader.warnings.push("No name says which files are depth maps: they were told by what they hold, and paired in their order.");
+  const mask = masks.length === 1 ? masks[0] : undefined;
+  return { pairs: colours.flatMap((colour, index) => (depths[index] ? [{ name: stem(colour.name), colour, depth: depths[index], ...(mask && { mask }) }] : [])), says: `${depths.length} pairs by what they hold` };
+}
+
+/** Reads all files of a folder: frames with their cameras, and the poses that relate these. */
+export async function readRigFolder(files: NamedFile[], options: FolderOptions = {}): Promise<RigFolder> {
+  const { unit, frames: most = FRAMES } = options;
+  if (!(Number.isInteger(most) && most > 0)) throw new BimodalError("option", "options.frames: a whole number above zero is needed", "options.frames");
+  const kept = files.map(({ name, bytes }) => ({ name: name.replace(/\\/g, "/").replace(/^\.\//, ""), bytes })).filter(({ name }) => !IGNORED.test(name));
+  const reader = new FolderReader();
+  const pictures = kept.filter(({ bytes }) => isRasterFile(bytes));
+  let found = tum(kept, reader.warnings) ?? byNames(pictures, reader.warnings);
+  if (found.pairs.length === 0) found = await byContent(pictures, reader);
+  const chosen = spread(found.pairs, most);
+  if (chosen.length < found.pairs.length) reader.warnings.push(`Of ${found.pairs.length} pairs ${chosen.length} are read, evenly spread.`);
+  const frames: CheckFrame[] = [];
+  for (const pair of chosen) {
+    const frame = await reader.frame(pair, unit ?? found.unit);
+    if (frame) frames.push(frame);
+  }
+  const folder: RigFolder = { frames, cameras: [], poses: [], readings: reader.readings, warnings: reader.warnings };
+  const names = new Set(found.pairs.map(({ name }) => name));
+  for (const file of kept) {
+    if (isRasterFile(file.bytes) || LISTS.test(file.name)) continue;
+    // A pose that is called as a frame is where the camera stood then, and relates no two cameras.
+    if (/pose/i.test(file.name) && names.has(key(file.name.replace(/pose/gi, "")))) continue;
+    const text = await reader.read(file, {});
+    if (text?.kind === "cameras") folder.cameras.push(...text.cameras.map((each) => ({ ...each, name: each.name ?? stem(file.name) })));
+    if (text?.kind === "cameras" || text?.kind === "poses") folder.poses.push(...text.poses.filter(({ from, to }) => from !== "world" && to !== "world"));
+  }
+  addCameras(folder);
+  checkUnits(frames, folder.warnings);
+  folder.warnings = grouped(folder.warnings);
+  if (frames.length + folder.cameras.length + folder.poses.length === 0) {
+    throw badFile(`no pair of a colour image and a depth map was found among ${files.length} files${folder.warnings.length > 0 ? `: ${folder.warnings[0]}` : ""}`);
+  }
+  return folder;
+}

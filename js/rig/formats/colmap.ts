@@ -1,0 +1,50 @@
+/** COLMAP's cameras.txt: a line for each camera, "ID MODEL WIDTH HEIGHT PARAMS[]". */
+import { badFile } from "../../errors.js";
+import { type RawCamera, cameraOf } from "./cameras.js";
+import { type Numbers, numberOf } from "./numbers.js";
+import type { Calibration } from "./tree.js";
+
+const LINE = /^\s*(\d+)\s+([A-Z][A-Z_]+)\s+(\d+)\s+(\d+)((?:\s+\S+)*)\s*$/;
+/** COLMAP's principal points count from the corner of the first pixel, ours from its centre. */
+const CORNER = 0.5;
+
+interface Model {
+  focals: 1 | 2;
+  /** Parameters beyond focal lengths and principal point, and where they stand among OpenCV's. */
+  lens: number[];
+  fisheye?: true;
+}
+const MODELS: Record<string, Model> = {
+  SIMPLE_PINHOLE: { focals: 1, lens: [] },
+  PINHOLE: { focals: 2, lens: [] },
+  SIMPLE_RADIAL: { focals: 1, lens: [0] },
+  RADIAL: { focals: 1, lens: [0, 1] },
+  OPENCV: { focals: 2, lens: [0, 1, 2, 3] },
+  FULL_OPENCV: { focals: 2, lens: [0, 1, 2, 3, 4, 5, 6, 7] },
+  OPENCV_FISHEYE: { focals: 2, lens: [0, 1, 2, 3], fisheye: true },
+  SIMPLE_RADIAL_FISHEYE: { focals: 1, lens: [0], fisheye: true },
+  RADIAL_FISHEYE: { focals: 1, lens: [0, 1], fisheye: true },
+};
+
+const linesOf = (text: string): string[] => text.split(/\r?\n/).filter((line) => line.trim() !== "" && !line.trim().startsWith("#"));
+
+export const isColmap = (text: string): boolean => LINE.test(linesOf(text.slice(0, 4096))[0] ?? "");
+
+function readLine(line: string): RawCamera {
+  const [, id = "", name = "", width, height, rest = ""] = LINE.exec(line) ?? [];
+  const model = Object.hasOwn(MODELS, name) ? MODELS[name] : undefined;
+  if (model === undefined) throw badFile(id === "" ? `it has a line that is no camera: ${line.slice(0, 60)}` : `its camera ${id} is of the model ${name}, which is not known here`);
+  const values: (number | undefined)[] = rest.trim().split(/\s+/).filter((part) => part !== "").map(numberOf);
+  const needed = model.focals + 2 + model.lens.length;
+  if (values.length !== needed || values.includes(undefined)) throw badFile(`its camera ${id} (${name}) needs ${needed} numbers, and has ${values.length}`);
+  const numbers = values as Numbers;
+  const distortion = new Array<number>(model.lens.length).fill(0);
+  model.lens.forEach((place, index) => (distortion[place] = numbers[model.focals + 2 + index] ?? 0));
+  const centre = numbers.slice(model.focals, model.focals + 2).map((value) => value - CORNER);
+  return { name: id, focal: numbers.slice(0, model.focals), centre, distortion, model: model.fisheye ? "fisheye" : "opencv", width: Number(width), height: Number(height) };
+}
+
+export function readColmap(text: string): Calibration {
+  const warnings: string[] = [];
+  return { cameras: linesOf(text).map((line) => cameraOf(readLine(line), warnings)), poses: [], warnings };
+}

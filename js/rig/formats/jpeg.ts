@@ -1,0 +1,164 @@
+/**
+ * JPEG and WebP. Browsers decode them, turn them as EXIF says and bring their colours to sRGB; Node has jpeg-js for JPEG.
+ *
+ * jpeg-js (0.4, 8 kB gzipped, loaded on demand) and not sharp, which is a binary of megabytes for each system, or mozjpeg as wasm, 100 kB.
+ * It takes what a file declares: so sizes, channels and the number of scans are looked at first.
+ */
+import { BimodalError, badFile } from "../../errors.js";
+import { exifOrientation, turnedBy, turnedWords } from "./exif.js";
+import { inSrgb } from "./icc.js";
+import { checkSize } from "./limits.js";
+import type { Picture } from "./picture.js";
+
+/** Progressive files have ten or so; each costs a pass over all blocks. */
+const MOST_SCANS = 64;
+const MEMORY = 512;
+/** Tables, remarks and scans; a camera's file has a few dozen. */
+const MOST_SEGMENTS = 5000;
+/** A block of 8x8 takes two bits at least: one for its mean, one for the end. */
+const BITS_OF_BLOCK = 2;
+const MOST_PROFILE = 2 ** 22;
+
+interface Marked {
+  width: number;
+  height: number;
+  orientation: number;
+  profile?: Uint8Array;
+}
+
+const text = (bytes: Uint8Array, from: number, length: number): string => String.fromCharCode(...bytes.subarray(from, from + length));
+
+/** SOF's sizes, channels and sampling. */
+function frame(body: Uint8Array, kind: number, length: number): { width: number; height: number } {
+  const [bits = 0, h1 = 0, h0 = 0, w1 = 0, w0 = 0, channels = 0] = body;
+  const [width, height] = [(w1 << 8) | w0, (h1 << 8) | h0];
+  if (![0xc0, 0xc1, 0xc2].includes(kind)) throw badFile("this JPEG is lossless, hierarchical or arithmetic, which is not read here; save it as an ordinary one");
+  checkSize(width, height);
+  if (bits !== 8) throw badFile(`this JPEG has ${bits} bits, which is not read here; 8 are`);
+  if (channels !== 1 && channels !== 3) throw badFile(`this JPEG has ${channels} channels${channels === 4 ? " (CMYK, for print)" : ""}; grey and RGB are read`);
+  const factors = Array.from({ length: channels }, (_, index) => body[7 + 3 * index] ?? 0);
+  if (factors.some((factor) => factor >> 4 < 1 || factor >> 4 > 4 || (factor & 15) < 1 || (factor & 15) > 4)) throw badFile("this JPEG is damaged: its sampling factors are none");
+  const full = Math.max(...factors.map((factor) => (factor >> 4) * (factor & 15)));
+  const share = factors.reduce((sum, factor) => sum + ((factor >> 4) * (factor & 15)) / full, 0);
+  const least = ((width * height * share) / 64) * (kind === 0xc2 ? 1 : BITS_OF_BLOCK);
+  if (8 * length < least) throw badFile(`this JPEG is cut off: ${length} bytes cannot hold ${width}x${height} pixels`);
+  return { width, height };
+}
+
+/** What stands between the pixels. */
+function marked(bytes: Uint8Array): Marked {
+  let [at, scans, segments, orientation] = [2, 0, 0, 1];
+  let size: { width: number; height: number } | undefined;
+  let ended = false;
+  const profile: Uint8Array[] = [];
+  while (at + 2 <= bytes.length) {
+    if (bytes[at] !== 0xff) {
+      at++;
+      continue;
+    }
+    const kind = bytes[at + 1] ?? 0;
+    if (kind === 0xd9) {
+      ended = true;
+      break;
+    }
+    // Stuffed, filled, restarted: no segment follows.
+    if (kind === 0 || kind === 0xff || kind === 1 || (kind >= 0xd0 && kind <= 0xd8)) {
+      at += kind === 0xff ? 1 : 2;
+      continue;
+    }
+    if (++segments > MOST_SEGMENTS) throw badFile(`this JPEG is damaged: it has more than ${MOST_SEGMENTS} parts`);
+    const length = ((bytes[at + 2] ?? 0) << 8) | (bytes[at + 3] ?? 0);
+    const body = bytes.subarray(at + 4, at + 2 + length);
+    if (kind >= 0xc0 && kind <= 0xcf && ![0xc4, 0xc8, 0xcc].includes(kind)) {
+      if (size) throw badFile("this JPEG is damaged: it has two pictures in one");
+      size = frame(body, kind, bytes.length);
+    }
+    if (kind === 0xda && ++scans > MOST_SCANS) throw badFile(`this JPEG has more than ${MOST_SCANS} scans`);
+    if (kind === 0xe1 && text(body, 0, 6) === "Exif\0\0") orientation = exifOrientation(body.subarray(6));
+    if (kind === 0xe2 && text(body, 0, 12) === "ICC_PROFILE\0") profile.push(body.subarray(14));
+    at += 2 + length;
+  }
+  if (!size || scans === 0) throw badFile("this JPEG is cut off: it has no pixels");
+  // Browsers show grey for what is missing.
+  if (!ended) throw badFile("this JPEG is cut off: its end is missing");
+  const total = profile.reduce((sum, part) => sum + part.length, 0);
+  if (total === 0 || total > MOST_PROFILE) return { ...size, orientation };
+  const joined = new Uint8Array(total);
+  profile.reduce((from, part) => (joined.set(part, from), from + part.length), 0);
+  return { ...size, orientation, profile: joined };
+}
+
+/** By the browser, which needs no more than the bytes. */
+async function byBrowser(bytes: Uint8Array, format: string): Promise<Picture> {
+  let bitmap: ImageBitmap;
+  try {
+    bitmap = await createImageBitmap(new Blob([bytes as Uint8Array<ArrayBuffer>]), { premultiplyAlpha: "none" });
+  } catch (error) {
+    throw badFile(`this ${format} is damaged or cut off`, error);
+  }
+  try {
+    const { width, height } = bitmap;
+    checkSize(width, height);
+    const context = new OffscreenCanvas(width, height).getContext("2d", { willReadFrequently: true });
+    if (!context) throw badFile(`this browser gives no canvas of ${width}x${height} to decode it on`);
+    context.drawImage(bitmap, 0, 0);
+    const data = new Uint8Array(context.getImageData(0, 0, width, height).data);
+    return { width, height, channels: 4, data, format, bits: 8, transfer: "srgb", notes: [], warnings: [] };
+  } finally {
+    bitmap.close();
+  }
+}
+
+const hasBrowser = (): boolean => typeof createImageBitmap === "function" && typeof OffscreenCanvas === "function";
+
+/** Three channels of four; all is opaque. */
+function withoutAlpha(picture: Picture): Picture {
+  const { width, height, data } = picture;
+  const out = new Uint8Array(3 * width * height);
+  for (let from = 0, to = 0; to < out.length; from += 4, to += 3) {
+    out[to] = data[from] ?? 0;
+    out[to + 1] = data[from + 1] ?? 0;
+    out[to + 2] = data[from + 2] ?? 0;
+  }
+  return { ...picture, channels: 3, data: out };
+}
+
+export async function readJpeg(bytes: Uint8Array): Promise<Picture> {
+  const { width, height, orientation, profile } = marked(bytes);
+  if (hasBrowser()) {
+    const picture = withoutAlpha(await byBrowser(bytes, "JPEG"));
+    if (orientation < 2 || orientation > 8) return picture;
+    const { note, warning } = turnedWords(orientation, "EXIF says");
+    return { ...picture, notes: [note], warnings: [warning] };
+  }
+  // The file itself and not the package's front door, which brings the encoder along.
+  const { default: decode } = await import("jpeg-js/lib/decoder.js");
+  let data: Uint8Array;
+  try {
+    data = decode(bytes, { useTArray: true, formatAsRGBA: false, tolerantDecoding: false, maxMemoryUsageInMB: MEMORY }).data;
+  } catch (error) {
+    throw badFile(`this JPEG is damaged or cut off (${error instanceof Error ? error.message : String(error)})`, error);
+  }
+  if (data.length !== 3 * width * height) throw badFile("this JPEG is damaged: it has not as many pixels as it says");
+  const picture: Picture = { width, height, channels: 3, data, format: "JPEG", bits: 8, notes: [], warnings: [] };
+  return turnedBy(profile ? inSrgb(picture, profile) : picture, orientation, "EXIF says");
+}
+
+/** The size in a WebP's first part. */
+function webpSize(bytes: Uint8Array): void {
+  if (bytes.length < 30) throw badFile("this WebP is cut off");
+  const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
+  const kind = text(bytes, 12, 4);
+  const packed = view.getUint32(21, true);
+  if (kind === "VP8X") checkSize(1 + (view.getUint32(24, true) & 0xffffff), 1 + (view.getUint32(26, true) >>> 8));
+  else if (kind === "VP8L") checkSize(1 + (packed & 0x3fff), 1 + ((packed >>> 14) & 0x3fff));
+  else if (kind === "VP8 ") checkSize(view.getUint16(26, true) & 0x3fff, view.getUint16(28, true) & 0x3fff);
+  else throw badFile("this WebP is damaged: its first part is of no known kind");
+  if (view.getUint32(4, true) + 8 > bytes.length) throw badFile(`this WebP is cut off: ${bytes.length} of ${view.getUint32(4, true) + 8} bytes`);
+}
+
+export async function readWebp(bytes: Uint8Array): Promise<Picture> {
+  webpSize(bytes);
+  if (!hasBrowser()) throw new BimodalError("file", "file: WebP is read in browsers only; convert it to PNG first (dwebp in.webp -o out.png)", "file");
+  return byBrowser(bytes, "WebP");
+}

@@ -1,0 +1,162 @@
+/** PCD of the point cloud library, organised: ASCII, binary, and binary_compressed (LZF, field after field). */
+import { badFile } from "../../errors.js";
+import { checkGrid, checkPoints, sizeOfCount } from "./grid.js";
+import { checkBytes } from "./limits.js";
+import type { Cloud } from "./picture.js";
+import { Words } from "./tokens.js";
+
+interface Field {
+  name: string;
+  size: number;
+  type: string;
+  count: number;
+  /** Bytes before it in a point. */
+  offset: number;
+}
+
+interface Header {
+  fields: Field[];
+  /** Bytes of a point. */
+  stride: number;
+  width: number;
+  height: number;
+  points: number;
+  data: string;
+  end: number;
+}
+
+const MOST_LINES = 100;
+const MOST_FIELDS = 64;
+const MOST_STRIDE = 4096;
+
+function header(bytes: Uint8Array): Header {
+  const words = new Words(bytes);
+  const entries = new Map<string, string[]>();
+  for (let number = 0; !entries.has("DATA"); number++) {
+    const line = words.line();
+    if (line === undefined || number > MOST_LINES) throw badFile("this PCD is cut off: its header has no DATA");
+    const [key = "", ...rest] = line.trim().split(/\s+/);
+    if (key !== "" && !key.startsWith("#")) entries.set(key, rest);
+  }
+  const one = (key: string): number => {
+    const text = entries.get(key)?.[0] ?? "";
+    if (!/^\d{1,9}$/.test(text)) throw badFile(`this PCD has the ${key} ${JSON.stringify(text.slice(0, 20))}`);
+    return Number(text);
+  };
+  const fields = fieldsOf(entries);
+  const stride = fields.reduce((sum, { size, count }) => sum + size * count, 0);
+  if (stride > MOST_STRIDE) throw badFile(`this PCD has points of ${stride} bytes`);
+  const [width, height] = [one("WIDTH"), one("HEIGHT")];
+  const points = entries.has("POINTS") ? one("POINTS") : width * height;
+  if (points !== width * height) throw badFile(`this PCD says that it has ${points} points in ${width}x${height} rows and columns`);
+  return { fields, stride, width, height, points, data: entries.get("DATA")?.[0] ?? "", end: words.at };
+}
+
+function fieldsOf(entries: Map<string, string[]>): Field[] {
+  const names = entries.get("FIELDS") ?? entries.get("COLUMNS") ?? [];
+  const [sizes = [], types = []] = [entries.get("SIZE"), entries.get("TYPE")];
+  const counts = entries.get("COUNT") ?? names.map(() => "1");
+  if (names.length === 0 || names.length > MOST_FIELDS) throw badFile(`this PCD has ${names.length} fields`);
+  if (sizes.length !== names.length || types.length !== names.length || counts.length !== names.length) throw badFile("this PCD has not a size, a type and a count for each field");
+  let offset = 0;
+  return names.map((name, index) => {
+    const [size, count, type] = [Number(sizes[index]), Number(counts[index]), types[index] ?? ""];
+    if (![1, 2, 4, 8].includes(size) || !Number.isInteger(count) || count < 0 || count > MOST_STRIDE) throw badFile(`this PCD has the field ${name.slice(0, 20)} of ${sizes[index]} bytes, ${counts[index]} times`);
+    const field = { name, size, type, count, offset };
+    offset += size * count;
+    return field;
+  });
+}
+
+function axesOf({ fields }: Header): Field[] {
+  return ["x", "y", "z"].map((axis) => {
+    const field = fields.find(({ name }) => name === axis);
+    if (field?.type !== "F" || field.count !== 1 || field.size < 4) throw badFile(`this PCD has no ${axis} of floats`);
+    return field;
+  });
+}
+
+/** LZF: runs of literals, and references up to 8 kB back. */
+function lzf(bytes: Uint8Array, length: number): Uint8Array {
+  const out = new Uint8Array(length);
+  const damaged = () => badFile("this PCD is damaged or cut off in its compressed points");
+  let made = 0;
+  for (let at = 0; at < bytes.length; ) {
+    const head = bytes[at++] ?? 0;
+    if (head < 32) {
+      if (at + head + 1 > bytes.length || made + head + 1 > length) throw damaged();
+      out.set(bytes.subarray(at, at + head + 1), made);
+      at += head + 1;
+      made += head + 1;
+      continue;
+    }
+    let count = head >> 5;
+    if (count === 7) count += bytes[at++] ?? 0;
+    let from = made - ((head & 31) << 8) - (bytes[at++] ?? 0) - 1;
+    if (from < 0 || at > bytes.length || made + count + 2 > length) throw damaged();
+    for (let left = count + 2; left > 0; left--) out[made++] = out[from++] ?? 0;
+  }
+  if (made !== length) throw damaged();
+  return out;
+}
+
+function ofBinary(body: Uint8Array, head: Header, isApart: boolean): Float32Array {
+  const { points, stride } = head;
+  checkBytes(points * stride, body.length, "this PCD");
+  const view = new DataView(body.buffer, body.byteOffset, body.byteLength);
+  const out = new Float32Array(3 * points);
+  axesOf(head).forEach(({ size, offset }, axis) => {
+    const [first, step] = isApart ? [offset * points, size] : [offset, stride];
+    for (let point = 0; point < points; point++) {
+      const at = first + point * step;
+      out[3 * point + axis] = size === 8 ? view.getFloat64(at, true) : view.getFloat32(at, true);
+    }
+  });
+  return out;
+}
+
+function ofText(body: Uint8Array, head: Header): Float32Array {
+  const words = new Words(body);
+  const axes = axesOf(head);
+  const perPoint = head.fields.reduce((sum, { count }) => sum + count, 0);
+  checkBytes(2 * head.points * perPoint - 1, body.length, "this PCD");
+  const places: number[] = [];
+  for (const field of head.fields) for (let each = 0; each < field.count; each++) places.push(axes.indexOf(field));
+  const out = new Float32Array(3 * head.points);
+  for (let point = 0; point < head.points; point++) {
+    for (const axis of places) {
+      const word = words.next();
+      if (word === "") throw badFile(`this PCD is cut off: ${point} of ${head.points} points`);
+      if (axis < 0) continue;
+      const value = /^[-+]?(?:nan|inf)/i.test(word) ? NaN : Number(word);
+      if (Number.isNaN(value) && !/nan|inf/i.test(word)) throw badFile(`this PCD has ${JSON.stringify(word.slice(0, 20))} where a number is needed`);
+      out[3 * point + axis] = value;
+    }
+  }
+  return out;
+}
+
+function pointsOf(body: Uint8Array, head: Header): Float32Array {
+  if (head.data === "ascii") return ofText(body, head);
+  if (head.data === "binary") return ofBinary(body, head, false);
+  if (head.data !== "binary_compressed") throw badFile(`this PCD has DATA ${JSON.stringify(head.data.slice(0, 20))}; ascii, binary and binary_compressed are read`);
+  checkBytes(8, body.length, "this PCD");
+  const view = new DataView(body.buffer, body.byteOffset, body.byteLength);
+  const [packed, length] = [view.getUint32(0, true), view.getUint32(4, true)];
+  if (length !== head.points * head.stride) throw badFile(`this PCD says that its points are ${length} bytes long, and ${head.points * head.stride} are needed`);
+  checkBytes(8 + packed, body.length, "this PCD");
+  return ofBinary(lzf(body.subarray(8, 8 + packed), length), head, true);
+}
+
+/** Bytes of points, which a few bytes of LZF may declare. */
+const MOST_BYTES = 2 ** 28;
+
+export function readPcd(bytes: Uint8Array): Cloud {
+  const head = header(bytes);
+  checkPoints(head.points);
+  if (head.points * head.stride > MOST_BYTES) throw badFile(`this PCD says that its points are ${head.points * head.stride} bytes long, which is too much`);
+  const warnings: string[] = [];
+  const size = head.height === 1 ? sizeOfCount(head.points, warnings) : { width: head.width, height: head.height };
+  checkGrid(size.width, size.height, head.points);
+  return { format: "PCD", ...size, points: pointsOf(bytes.subarray(head.end), head), notes: [], warnings };
+}

@@ -1,0 +1,90 @@
+/** Files of nothing but numbers: K.txt, matrices of motions, and trajectories of the TUM and Redwood kind. */
+import { badFile } from "../../errors.js";
+import { cameraOf } from "./cameras.js";
+import { type Numbers, numberOf } from "./numbers.js";
+import { motion, motionOfMatrix, ofQuaternion } from "./poses.js";
+import type { Calibration } from "./tree.js";
+
+type Found = Calibration & { format: string };
+
+const MOST_NUMBERS = 200_000;
+const near = (value: number | undefined, to: number): boolean => value !== undefined && Math.abs(value - to) < 1e-9;
+
+/** Rows of numbers, without comments and brackets; nothing where there is anything else. */
+function rowsOf(text: string): Numbers[] | undefined {
+  const rows: Numbers[] = [];
+  let count = 0;
+  for (const line of text.split(/\r?\n/)) {
+    const parts = line.replace(/(?:#|\/\/|%).*$/, "").split(/[\s,;[\]()]+/).filter((part) => part !== "");
+    if (parts.length === 0) continue;
+    const numbers: Numbers = [];
+    for (const part of parts) {
+      const number = /^[-+]?(?:nan|inf(?:inity)?)$/i.test(part) ? NaN : numberOf(part);
+      if (number === undefined) return undefined;
+      numbers.push(number);
+    }
+    count += numbers.length;
+    if (count > MOST_NUMBERS) throw badFile(`it holds more than ${MOST_NUMBERS} numbers: no camera and no motion`);
+    rows.push(numbers);
+  }
+  return rows;
+}
+
+const camera = (k: Numbers, size: Numbers, distortion: Numbers = []): Found => {
+  const warnings: string[] = [];
+  const [fx = NaN, skew = 0, cx = NaN, , fy = NaN, cy = NaN] = k;
+  const raw = { focal: [fx, fy], centre: [cx, cy], skew, distortion, width: size[0], height: size[1] };
+  return { cameras: [cameraOf(raw, warnings)], poses: [], warnings, format: "a matrix of intrinsics" };
+};
+
+/** Nine numbers: a matrix of intrinsics, or a rotation without its translation. */
+function nine(values: Numbers, size: Numbers): Found {
+  if (near(values[3], 0) && near(values[6], 0) && near(values[7], 0) && near(values[8], 1)) return camera(values, size);
+  if (near(values[1], 0) && near(values[2], 0) && near(values[5], 0) && near(values[8], 1)) {
+    throw badFile("its matrix of intrinsics is transposed: fx 0 cx / 0 fy cy / 0 0 1 are needed");
+  }
+  throw badFile("its nine numbers are no matrix of intrinsics, fx 0 cx / 0 fy cy / 0 0 1; a rotation needs its translation beside it");
+}
+
+/** TUM: time stamp, translation, quaternion x y z w, of the camera in the world. */
+function trajectory(rows: Numbers[]): Found {
+  const warnings: string[] = [];
+  const poses = rows.map((row) => {
+    const [x = NaN, y = NaN, z = NaN, ...quaternion] = row.slice(-7);
+    const names = row.length === 8 ? { name: String(row[0]), from: "camera", to: "world" } : {};
+    return motion(ofQuaternion(quaternion, warnings), [x, y, z], names, warnings, row.length === 7);
+  });
+  return { cameras: [], poses, warnings: [...new Set(warnings)].slice(0, 4), format: rows.length === 1 ? "a shift and a quaternion" : "a trajectory" };
+}
+
+/** Redwood: three whole numbers, then 4x4 of the camera in the world. */
+function log(rows: Numbers[]): Found {
+  const warnings: string[] = [];
+  const poses = Array.from({ length: rows.length / 5 }, (_, index) => {
+    const names = { name: String(rows[5 * index]?.[0]), from: "camera", to: "world" };
+    return motionOfMatrix(rows.slice(5 * index + 1, 5 * index + 5).flat(), names, warnings, false);
+  });
+  return { cameras: [], poses, warnings: [...new Set(warnings)].slice(0, 4), format: "a trajectory" };
+}
+
+/** What a text of numbers holds; nothing where it has words. */
+export function readNumbers(text: string): Found | undefined {
+  const rows = rowsOf(text);
+  if (rows === undefined || rows.length === 0) return undefined;
+  const values = rows.flat();
+  if (values.some(Number.isNaN)) throw badFile("it holds numbers that are none (nan, inf)");
+  const widths = new Set(rows.map((row) => row.length));
+  const [width] = widths;
+  if (rows.length % 5 === 0 && rows.every((row, index) => row.length === (index % 5 === 0 ? 3 : 4))) return log(rows);
+  if (widths.size === 1 && (width === 8 || width === 7) && rows.length >= 1) return trajectory(rows);
+  const size = rows[0]?.length === 2 && values.length === 11 ? values.slice(0, 2) : [];
+  const isLine = rows.length === 1 && !near(values[8], 1);
+  if (values.length - size.length === 9 && !isLine) return nine(values.slice(size.length), size);
+  if (values.length === 12 || values.length === 16) {
+    const warnings: string[] = [];
+    return { cameras: [], poses: [motionOfMatrix(values, {}, warnings)], warnings, format: "a matrix of a motion" };
+  }
+  const [fx = 0, fy = 0, cx = 0, cy = 0, ...lens] = values;
+  if (rows.length === 1 && [4, 9, 12].includes(values.length) && fx > 10 && fy > 10) return camera([fx, 0, cx, 0, fy, cy, 0, 0, 1], [], lens);
+  throw badFile(`it holds ${values.length} numbers in ${rows.length} rows: 3x3 of intrinsics, 3x4 or 4x4 of a motion, or rows of a trajectory are read`);
+}

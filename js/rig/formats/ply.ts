@@ -1,0 +1,188 @@
+/**
+ * PLY of points in rows and columns, as text or binary: Stanford's range grids, or a size in a comment.
+ */
+import { badFile } from "../../errors.js";
+import { checkGrid, checkPoints, sizeOfCount } from "./grid.js";
+import { checkBytes } from "./limits.js";
+import type { Cloud } from "./picture.js";
+import { Words } from "./tokens.js";
+
+type Read = (view: DataView, at: number, little: boolean) => number;
+const TYPES: Record<string, { size: number; read: Read }> = {};
+for (const [names, size, read] of [
+  ["char int8", 1, (view, at) => view.getInt8(at)],
+  ["uchar uint8", 1, (view, at) => view.getUint8(at)],
+  ["short int16", 2, (view, at, little) => view.getInt16(at, little)],
+  ["ushort uint16", 2, (view, at, little) => view.getUint16(at, little)],
+  ["int int32", 4, (view, at, little) => view.getInt32(at, little)],
+  ["uint uint32", 4, (view, at, little) => view.getUint32(at, little)],
+  ["float float32", 4, (view, at, little) => view.getFloat32(at, little)],
+  ["double float64", 8, (view, at, little) => view.getFloat64(at, little)],
+] as [string, number, Read][]) {
+  for (const name of names.split(" ")) TYPES[name] = { size, read };
+}
+const typeOf = (name = "") => {
+  const type = Object.hasOwn(TYPES, name) ? TYPES[name] : undefined;
+  if (type === undefined) throw badFile(`this PLY has a property of the type "${name.slice(0, 20)}", which there is not`);
+  return type;
+};
+
+interface Property {
+  name: string;
+  size: number;
+  read: Read;
+  /** Of a list: how its length is written. */
+  count?: { size: number; read: Read };
+}
+
+interface Element {
+  name: string;
+  count: number;
+  properties: Property[];
+}
+
+interface Header {
+  format: string;
+  elements: Element[];
+  columns?: number;
+  rows?: number;
+  end: number;
+}
+
+const MOST_LINES = 500;
+
+function header(bytes: Uint8Array): Header {
+  const words = new Words(bytes);
+  const found: Header = { format: "", elements: [], end: 0 };
+  for (let number = 0; ; number++) {
+    const line = words.line();
+    if (line === undefined || number > MOST_LINES) throw badFile("this PLY is cut off: its header has no end");
+    const [key, ...rest] = line.trim().split(/\s+/);
+    if (key === "end_header") break;
+    if (key === "format") found.format = rest[0] ?? "";
+    if (key === "element") found.elements.push({ name: rest[0] ?? "", count: countOf(rest[1]), properties: [] });
+    if (key === "property") property(found.elements.at(-1), rest);
+    if (key === "obj_info" || key === "comment") {
+      const columns = /\b(?:num_cols|width)\s*[:=]?\s*(\d{1,6})\b/i.exec(line)?.[1];
+      const rows = /\b(?:num_rows|height)\s*[:=]?\s*(\d{1,6})\b/i.exec(line)?.[1];
+      if (columns !== undefined) found.columns = Number(columns);
+      if (rows !== undefined) found.rows = Number(rows);
+    }
+  }
+  found.end = words.at;
+  return found;
+}
+
+function countOf(text = ""): number {
+  if (!/^\d{1,9}$/.test(text)) throw badFile(`this PLY says that it has ${JSON.stringify(text.slice(0, 20))} of something`);
+  return Number(text);
+}
+
+function property(element: Element | undefined, [type, ...rest]: string[]): void {
+  if (element === undefined) throw badFile("this PLY has a property of nothing");
+  if (type === "list") element.properties.push({ name: rest[2] ?? "", ...typeOf(rest[1]), count: typeOf(rest[0]) });
+  else element.properties.push({ name: rest[0] ?? "", ...typeOf(type) });
+  if (element.properties.length > 100) throw badFile("this PLY has more than 100 properties");
+}
+
+/** One number after the other. */
+interface Source {
+  next(type: { size: number; read: Read }): number;
+}
+
+class TextSource implements Source {
+  readonly #words: Words;
+  constructor(bytes: Uint8Array) {
+    this.#words = new Words(bytes);
+  }
+  next(): number {
+    const word = this.#words.next();
+    if (word === "") throw badFile("this PLY is cut off: it has fewer numbers than it says");
+    const value = /^[-+]?(?:nan|inf)/i.test(word) ? NaN : Number(word);
+    if (Number.isNaN(value) && !/nan|inf/i.test(word)) throw badFile(`this PLY has ${JSON.stringify(word.slice(0, 20))} where a number is needed`);
+    return value;
+  }
+}
+
+class BinarySource implements Source {
+  #at = 0;
+  readonly #view: DataView;
+  readonly #little: boolean;
+  constructor(bytes: Uint8Array, little: boolean) {
+    this.#view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
+    this.#little = little;
+  }
+  next({ size, read }: { size: number; read: Read }): number {
+    checkBytes(this.#at + size, this.#view.byteLength, "this PLY");
+    const value = read(this.#view, this.#at, this.#little);
+    this.#at += size;
+    return value;
+  }
+}
+
+/** Longest list of a mesh's faces or a grid's cell. */
+const MOST_LIST = 1000;
+
+function listOf(source: Source, property: Property): number[] {
+  const count = property.count ? source.next(property.count) : 1;
+  if (!(count >= 0 && count <= MOST_LIST)) throw badFile(`this PLY has a list of ${count} numbers`);
+  return Array.from({ length: count }, () => source.next(property));
+}
+
+function points(source: Source, { count, properties }: Element): Float32Array {
+  const axes = ["x", "y", "z"].map((axis) => properties.findIndex(({ name, count: list }) => name === axis && list === undefined));
+  if (axes.includes(-1)) throw badFile("this PLY has no x, y and z");
+  if (properties.some((each) => each.count)) throw badFile("this PLY has lists at its points");
+  const out = new Float32Array(3 * count);
+  const places = properties.map((_, index) => axes.indexOf(index));
+  for (let at = 0; at < out.length; at += 3) {
+    for (let index = 0; index < properties.length; index++) {
+      const value = source.next(properties[index] as Property);
+      const axis = places[index] ?? -1;
+      if (axis >= 0) out[at + axis] = value;
+    }
+  }
+  return out;
+}
+
+/** A grid's cells, each with the number of its point or with none. */
+function inCells(source: Source, grid: Element, cloud: Float32Array): Float32Array {
+  const out = new Float32Array(3 * grid.count).fill(NaN);
+  for (let cell = 0; cell < grid.count; cell++) {
+    for (const each of grid.properties) {
+      const [point] = listOf(source, each);
+      if (each.name !== "vertex_indices" || point === undefined) continue;
+      if (!(Number.isInteger(point) && point >= 0 && 3 * point < cloud.length)) throw badFile(`this PLY's grid names the point ${point} of ${cloud.length / 3}`);
+      out.set(cloud.subarray(3 * point, 3 * point + 3), 3 * cell);
+    }
+  }
+  return out;
+}
+
+export function readPly(bytes: Uint8Array): Cloud {
+  const { format, elements, columns, rows, end } = header(bytes);
+  if (!["ascii", "binary_little_endian", "binary_big_endian"].includes(format)) throw badFile(`this PLY is of the format "${format.slice(0, 30)}", which there is not`);
+  const [vertices, ...others] = elements;
+  if (vertices?.name !== "vertex") throw badFile("this PLY does not begin with points");
+  checkPoints(vertices.count);
+  const warnings: string[] = [];
+  const grid = others[0]?.name === "range_grid" ? others[0] : undefined;
+  const body = bytes.subarray(end);
+  // A number as text has a digit and a space at least.
+  const least = vertices.count * vertices.properties.reduce((sum, { size }) => sum + (format === "ascii" ? 2 : size), 0) - 1;
+  checkBytes(least, body.length, "this PLY");
+  if (grid) {
+    checkPoints(grid.count);
+    checkGrid(columns ?? 0, rows ?? 0, grid.count);
+    checkBytes(grid.count, body.length - least, "this PLY's grid");
+  }
+  const source = format === "ascii" ? new TextSource(body) : new BinarySource(body, format === "binary_little_endian");
+  const cloud = points(source, vertices);
+  if (grid) return { format: "PLY", width: columns ?? 0, height: rows ?? 0, points: inCells(source, grid, cloud), notes: [], warnings };
+  if (others.some(({ name, count }) => name === "face" && count > 0)) warnings.push("The file is a mesh; its faces are left out.");
+  if (columns !== undefined && rows !== undefined && columns * rows === vertices.count) {
+    checkGrid(columns, rows, vertices.count);
+    return { format: "PLY", width: columns, height: rows, points: cloud, notes: [], warnings };
+  }
+  return { format: "PLY", ...sizeOfCount(vertices.count, warnings), points: cloud, notes: [], warnings };
+}

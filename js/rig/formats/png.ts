@@ -1,0 +1,41 @@
+/** PNG upright and in sRGB, as far as it says what it is. */
+import { readPng } from "../../png.js";
+import { exifOrientation, turnedBy } from "./exif.js";
+import { inSrgb, pngProfile } from "./icc.js";
+import { checkSize } from "./limits.js";
+import type { Picture } from "./picture.js";
+
+/** gAMA of a linear picture and of sRGB, and how far off they may be. */
+const LINEAR = 100_000;
+const SRGB = 45_455;
+const SAME = 0.02;
+
+function withGamma(picture: Picture, chunk: Uint8Array): Picture {
+  const gamma = chunk.length >= 4 ? new DataView(chunk.buffer, chunk.byteOffset).getUint32(0) : 0;
+  const is = (other: number) => Math.abs(gamma / other - 1) < SAME;
+  if (is(LINEAR)) return { ...picture, transfer: "linear", notes: [...picture.notes, "linear"] };
+  if (is(SRGB) || gamma === 0) return picture;
+  return { ...picture, warnings: [...picture.warnings, `Its gamma of ${(gamma / LINEAR).toFixed(3)} is left out: colours are taken for sRGB.`] };
+}
+
+function inColour(picture: Picture, chunks: Map<string, Uint8Array>): Picture {
+  const [profile, gamma] = [chunks.get("iCCP"), chunks.get("gAMA")];
+  if (chunks.has("sRGB")) return { ...picture, transfer: "srgb", notes: ["sRGB"] };
+  if (profile) {
+    try {
+      return inSrgb(picture, pngProfile(profile));
+    } catch {
+      return { ...picture, warnings: ["Its colour profile is damaged and left out: colours are taken for sRGB."] };
+    }
+  }
+  return gamma ? withGamma(picture, gamma) : picture;
+}
+
+export function pngPicture(bytes: Uint8Array): Picture {
+  const { chunks, ...raster } = readPng(bytes, checkSize);
+  const picture: Picture = { ...raster, format: "PNG", notes: [], warnings: [] };
+  // What it says of its colours is nothing to depths.
+  const coloured = picture.channels >= 3 ? inColour(picture, chunks) : picture;
+  const exif = chunks.get("eXIf");
+  return exif ? turnedBy(coloured, exifOrientation(exif), "EXIF says") : coloured;
+}

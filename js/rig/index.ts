@@ -1,0 +1,9 @@
+/**
+ * The files of a rig: frames, cameras and calibrations of the kinds that tools and cameras write. A module of its own, to be loaded when
+ * the first file comes in.
+ */
+export { BimodalError } from "../errors.js";
+export { cameraFromFieldOfView } from "./camera.js";
+export { type FolderOptions, readRigFolder } from "./folder.js";
+export { readRigFile } from "./read.js";
+export type { NamedCamera, NamedFile, NamedPose, ReadOptions, Reading, RigFolder, RigReading } from "./types.js";

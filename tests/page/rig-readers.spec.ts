@@ -1,0 +1,73 @@
+/** What a rig's readers leave to browsers: JPEG and WebP, turned and in sRGB. */
+
+import { readFile } from "node:fs/promises";
+import { expect, test } from "@playwright/test";
+
+const ORIGIN = "http://rig.test/";
+const [W, H] = [16, 12];
+
+interface Read {
+  width: number;
+  height: number;
+  data: number[];
+  says: string;
+  warnings: string[];
+}
+
+test.beforeEach(async ({ page }) => {
+  await page.route(`${ORIGIN}**`, async (route) => {
+    const path = new URL(route.request().url()).pathname;
+    if (path === "/") return route.fulfill({ contentType: "text/html", body: "<!doctype html><title>rig</title>" });
+    const folder = path.startsWith("/pkg/") ? "../.." : "../fixtures/rig";
+    const contentType = path.endsWith(".js") ? "text/javascript" : "application/octet-stream";
+    return route.fulfill({ contentType, body: await readFile(new URL(`${folder}${path}`, import.meta.url)) });
+  });
+  await page.goto(ORIGIN);
+});
+
+const read = (page: import("@playwright/test").Page, name: string): Promise<Read> =>
+  page.evaluate(async (file) => {
+    const module = "/pkg/rig.js";
+    const { readRigFile } = await import(module);
+    const bytes = new Uint8Array(await (await fetch(`/${file}`)).arrayBuffer());
+    const { image, says, warnings } = await readRigFile({ name: file, bytes });
+    return { width: image.width, height: image.height, data: [...image.data], says, warnings };
+  }, name);
+
+/** The largest difference from the fixtures' formula; `from` says which of its pixels is expected where. */
+function off({ width, data }: Read, from = (x: number, y: number): [number, number] => [x, y]): number {
+  return Math.max(...Array.from({ length: W * H }, (_, at) => {
+    const [x, y] = from(at % width, Math.floor(at / width));
+    return Math.max(...[16 * x, 20 * y, 8 * (x + y)].map((value, channel) => Math.abs((data[4 * at + channel] ?? 0) - value)));
+  }));
+}
+
+test("WebP without loss, JPEG, and JPEG that EXIF turns", async ({ page }) => {
+  const webp = await read(page, "colour.webp");
+  expect([webp.width, webp.height, off(webp)]).toEqual([W, H, 0]);
+  const jpeg = await read(page, "colour.jpg");
+  expect(off(jpeg)).toBeLessThanOrEqual(12);
+  const turned = await read(page, "turned-6.jpg");
+  expect([turned.width, turned.height]).toEqual([H, W]);
+  expect(off(turned, (x, y) => [y, H - 1 - x])).toBeLessThanOrEqual(5);
+  expect(turned.says).toContain("turned by 90 degrees as EXIF says");
+  expect(turned.warnings).toHaveLength(1);
+});
+
+test("a JPEG's colour profile is applied, as ours is to PNG", async ({ page }) => {
+  const jpeg = await read(page, "colour-wide.jpg");
+  const truth = await read(page, "colour-wide-by-lcms.png");
+  expect(Math.max(...truth.data.map((value, at) => Math.abs(value - (jpeg.data[at] ?? 0))))).toBeLessThanOrEqual(12);
+});
+
+test("a WebP or JPEG that is cut off is an error that names it", async ({ page }) => {
+  const message = (name: string, length: number) =>
+    page.evaluate(async ([file, end]) => {
+      const module = "/pkg/rig.js";
+      const { readRigFile } = await import(module);
+      const bytes = new Uint8Array(await (await fetch(`/${file}`)).arrayBuffer()).slice(0, end as number);
+      return readRigFile({ name: file, bytes }).then(() => "read", (error: Error & { code: string }) => `${error.code} ${error.message}`);
+    }, [name, length] as const);
+  expect(await message("colour.webp", 40)).toMatch(/^file file: colour\.webp: this WebP is cut off/);
+  expect(await message("colour.jpg", 500)).toMatch(/^file file: colour\.jpg: this JPEG is/);
+});
