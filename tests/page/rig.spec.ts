@@ -169,7 +169,7 @@ test("a verdict comes with its numbers, curves, shares and advice", async ({ lab
   await expect(page.locator(".rig-calibrations")).toContainText("1.2 mm");
   await expect(page.locator(".rig-calibrations")).toContainText("10.70 px");
   await expect(page.locator(".rig-curves figure")).toHaveCount(6);
-  await expect(page.locator(".rig-curves")).toContainText(/Least at −?\d+\.\d+°; found to ± \d+\.\d+° \(95 %\)\./);
+  await expect(page.locator(".rig-curves")).toContainText(/Least at −?\d+\.\d+°; ± \d+\.\d+° \(95 %\)/);
   await expect(page.getByRole("row", { name: /frame 1 50 %/ })).toBeVisible();
   expect(lab.complaints).toEqual([]);
 });
