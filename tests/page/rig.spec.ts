@@ -1,4 +1,4 @@
-/** Check a rig: files in, calibrations, verdict. What the check itself says is tested with the package. */
+/** Check a rig: files in, calibrations, verdict. Where the page alone is looked at, the test answers in place of the check. */
 
 import type { Page } from "@playwright/test";
 import { expect, test } from "./lab";
@@ -261,9 +261,6 @@ test("files dropped beside the target are taken, too", async ({ lab, page }) => 
 test("the example is checked by the package itself", async ({ lab, page }) => {
   await openExample(page);
   await run(page);
-  const refused = page.locator(".rig-run").getByRole("alert");
-  await expect(page.locator(".rig-word").or(refused.filter({ hasText: "The check could not be done" }))).toBeVisible();
-  test.skip(await refused.isVisible(), "the package has no check of calibrations yet");
   await expect(page.locator(".rig-word")).toHaveText("Off");
   const told = page.locator(".rig-calibrations tbody tr").nth(1);
   const degrees = Number.parseFloat((await told.locator("td").nth(1).textContent()) ?? "");
