@@ -110,7 +110,7 @@ test("bad files are named in words and nothing is lost", async ({ lab, page }) =
   await put(lab, "Depth map", depthNpy());
   await put(lab, "Colour image", { ...whole, name: "cut.png", buffer: whole.buffer.subarray(0, whole.buffer.length / 2) });
   await lab.reaches("error");
-  await expect(page.locator(".slot").first()).toContainText("cut.png: this PNG is damaged or cut off");
+  await expect(page.locator(".slot").first()).toContainText("cut.png: this PNG is cut off or damaged");
 
   await put(lab, "Colour image", { name: "notes.txt", mimeType: "text/plain", buffer: Buffer.from("a list of things") });
   await expect(page.locator(".slot").first()).toContainText("notes.txt");

@@ -1,4 +1,4 @@
-/** Check a rig: files in, calibrations, verdict. What the check itself says is tested with the package. */
+/** Check a rig: files in, calibrations, verdict. Where the page alone is looked at, the test answers in place of the check. */
 
 import type { Page } from "@playwright/test";
 import { expect, test } from "./lab";
@@ -169,7 +169,7 @@ test("a verdict comes with its numbers, curves, shares and advice", async ({ lab
   await expect(page.locator(".rig-calibrations")).toContainText("1.2 mm");
   await expect(page.locator(".rig-calibrations")).toContainText("10.70 px");
   await expect(page.locator(".rig-curves figure")).toHaveCount(6);
-  await expect(page.locator(".rig-curves")).toContainText(/Least at −?\d+\.\d+°; found to ± \d+\.\d+° \(95 %\)\./);
+  await expect(page.locator(".rig-curves")).toContainText(/Least at −?\d+\.\d+°; ± \d+\.\d+° \(95 %\)/);
   await expect(page.getByRole("row", { name: /frame 1 50 %/ })).toBeVisible();
   expect(lab.complaints).toEqual([]);
 });
@@ -261,9 +261,6 @@ test("files dropped beside the target are taken, too", async ({ lab, page }) => 
 test("the example is checked by the package itself", async ({ lab, page }) => {
   await openExample(page);
   await run(page);
-  const refused = page.locator(".rig-run").getByRole("alert");
-  await expect(page.locator(".rig-word").or(refused.filter({ hasText: "The check could not be done" }))).toBeVisible();
-  test.skip(await refused.isVisible(), "the package has no check of calibrations yet");
   await expect(page.locator(".rig-word")).toHaveText("Off");
   const told = page.locator(".rig-calibrations tbody tr").nth(1);
   const degrees = Number.parseFloat((await told.locator("td").nth(1).textContent()) ?? "");

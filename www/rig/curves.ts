@@ -69,7 +69,7 @@ export class SensitivityCharts {
     const inside: [number, number] = [Math.max(xs[0] ?? 0, -reach), Math.min(xs.at(-1) ?? 0, reach)];
     const [digits, gap] = unit === "mm" ? [1, " "] : [2, ""];
     const box = make("div", { class: "chart" });
-    const words = `Least at ${decimals(place, digits)}${gap}${unit}; found to ± ${decimals(reach, digits)}${gap}${unit} (95 %).`;
+    const words = `Least at ${decimals(place, digits)}${gap}${unit}; ± ${decimals(reach, digits)}${gap}${unit} (95 %)`;
     this.#figures.append(make("figure", {}, make("figcaption", {}, make("strong", {}, title), make("span", { class: "soft" }, words)), box));
     const line = { stroke: ink("line"), width: 1 };
     const style: uPlot.Axis = { stroke: ink("ink-soft"), font: "11px system-ui, sans-serif", grid: line, ticks: { ...line, size: 4 } };

@@ -36,10 +36,16 @@ export function headline({ report, estimateOnly, guessed }: Run): { word: string
   const [own] = Object.values(report.candidates);
   const isOpen = guessed.length > 0 || report.warnings.length > 0;
   // The check itself calls a consistent candidate undecided where it warns.
-  if (isOpen && own?.verdict === "consistent") return { word: "Settled, but check", tone: "open", sentence: own.reason };
+  if (isOpen && own?.verdict === "consistent") return { word: "Settled, but check", tone: "open", sentence: afterWord(own.reason) };
   if (isOpen && report.verdict === "off") return { word: "Off, but check", tone, sentence: report.reason };
-  return { word, tone, sentence: report.reason };
+  return { word, tone, sentence: afterWord(report.reason) };
 }
+
+/** The card says the word already. */
+const afterWord = (reason: string): string => {
+  const rest = reason.replace(/^(Consistent|This scene can't tell)[:,] /, "");
+  return `${rest[0]?.toUpperCase() ?? ""}${rest.slice(1)}`;
+};
 
 const AXES = ["left or right", "up or down", "to or fro"];
 const FOR_SHIFT = [
@@ -57,11 +63,13 @@ export function advise({ report, plans, estimateOnly, guessed, candidates }: Run
   const said = [report.reason, ...report.warnings].join(" ");
   const name = Object.keys(candidates)[0] ?? "";
   if (/invert/i.test(said)) list.push("Invert the calibration in step 2 and check again: it seems to lead the other way.");
-  if (guessed.length > 0) list.push(`Say in step 1 what was guessed: ${guessed.join("; ")}.`);
+  const isOpen = report.verdict === "undecided" && Object.values(report.candidates)[0]?.verdict === "undecided";
+  const confirm = guessed.length > 0 ? [`Say in step 1 what was guessed: ${guessed.join("; ")}.`] : [];
+  if (!isOpen) list.push(...confirm);
   if (!estimateOnly && report.verdict === "off") list.push("Save the calibration found here, use it in place of yours, and check it against fresh frames.");
   if (estimateOnly) list.push("Save what was found, or add your own calibration in step 2 to have it judged.");
   if (plans.length < 3) list.push(plans.length === 1 ? "Add two more frames, with the thing turned by about 30° each time." : "Add another frame, with the thing turned by about 30°.");
-  list.push(weakest(report));
+  list.push(weakest(report), ...(isOpen ? confirm : []));
   const mean = 1 / Math.max(1, report.frames.length);
   for (const { name, share, note } of report.frames) if (report.frames.length > 1 && share < LITTLE * mean) list.push(`Take ${name} anew: it adds little (${(100 * share).toFixed(0)} %)${note ? `, ${note}` : ""}.`);
   if (!estimateOnly && report.verdict === "consistent") list.push(`Keep “${name}”, and check again after the rig was moved, knocked or heated.`);

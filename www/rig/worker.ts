@@ -160,11 +160,18 @@ function transferable(answer: unknown): Transferable[] {
   return [];
 }
 
+/** What is read at the moment: whatever is asked later may be about it. */
+let reads: Promise<unknown> = Promise.resolve();
+
 self.onmessage = async ({ data }: MessageEvent<Request>) => {
   if (data.kind === "cancel") return running?.abort();
   const { id, kind } = data;
+  const isRead = kind === "read" || kind === "folder" || kind === "example";
+  const handle = () => (handlers[kind] as (ask: unknown, id: number) => Promise<Calls[CallKind]["answer"]>)(data, id);
   try {
-    const answer = await (handlers[kind] as (ask: unknown, id: number) => Promise<Calls[CallKind]["answer"]>)(data, id);
+    const result = isRead ? handle() : reads.then(handle);
+    if (isRead) reads = Promise.allSettled([reads, result]);
+    const answer = await result;
     post({ id, answer }, transferable(answer));
   } catch (error) {
     post({ id, fault: faultOf(error, true) });
