@@ -1,5 +1,6 @@
 /** A dialog that restricts what of a frame is used: a rectangle, a brush, a range of depths, growing and shrinking. */
 
+import "../style/rig-mask.css";
 import { make } from "../dom";
 import { choose, draw, labelled, numberField, press, show } from "./parts";
 import { Paint, type Box } from "./paint";

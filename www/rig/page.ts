@@ -1,7 +1,9 @@
 /** Check a rig: is the calibration between a colour camera and a depth camera right? Three steps on one page. */
 
 import "../style/rig.css";
+import "../style/rig-steps.css";
 import "../style/rig-verdict.css";
+import "../style/rig-narrow.css";
 import { make } from "../dom";
 import { CalibrationStep } from "./calibrationstep";
 import { FilesStep } from "./filesstep";
