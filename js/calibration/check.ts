@@ -54,11 +54,20 @@ export function checkFrames(value: unknown): void {
   value.forEach((one, index) => frame(one, `frames[${index}]`));
 }
 
-export function checkCandidates(value: unknown): void {
-  if (!isObject(value) || Array.isArray(value)) throw wrong("candidates", "an object of poses by name", value);
-  for (const [name, pose] of Object.entries(value)) rigPose(pose, `candidates.${name}`);
+/** What a product of rotations with rounding leaves of a scale of one. */
+const SCALE_TOLERANCE = 0.01;
+
+export function checkPose(value: unknown, field = "pose"): void {
+  rigPose(value, field);
+  const scale = isObject(value) && "scale" in value ? value.scale : undefined;
+  if (typeof scale !== "number" || Math.abs(scale - 1) <= SCALE_TOLERANCE) return;
+  throw new BimodalError("range", `${field}.scale: must be 1: extrinsics do not change sizes (got ${scale})`, `${field}.scale`);
 }
 
-export const checkPose = (value: unknown): void => rigPose(value, "pose");
+export function checkCandidates(value: unknown): void {
+  if (!isObject(value) || Array.isArray(value)) throw wrong("candidates", "an object of poses by name", value);
+  for (const [name, pose] of Object.entries(value)) checkPose(pose, `candidates.${name}`);
+}
+
 export const checkCheckOptions = (value: unknown): void => options(value, "options");
 export const checkRigRequest = (value: unknown): void => rigRequest(value, "request");

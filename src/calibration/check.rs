@@ -5,6 +5,7 @@
 
 use nalgebra::{SMatrix, Vector3};
 
+use super::distortion;
 use super::evidence::Tiles;
 use super::frame::{Frame, Projection};
 use super::input::RigView;
@@ -12,7 +13,7 @@ use super::planes::Planes;
 use super::registration::{
     ARRIVED, Findings, MOST_RIMS_OF_STARTS, MOST_SETTLING, Round, SIGMAS, SURVIVORS, Scene, Start,
 };
-use super::search;
+use super::search::{self, Found};
 use super::sensitivity::{AXES, Sensitivity, curve};
 use super::unknowns::{Matrix, POSE, State};
 use super::verdict::{CandidateReport, CheckVerdict, Health, Judge};
@@ -28,8 +29,12 @@ const MOST_CANDIDATES: usize = 16;
 const SEARCH_SIGMA: f64 = 40.0;
 /// Two starts whose scenes are within so many pixels are one.
 const SAME_START: f64 = 3.0;
+/// Levels at which rims are looked for anew: their visibility changes little in between.
+const FINDING_ANEW: [usize; 2] = [2, 4];
+/// The level at which candidates come in once more, with windows of some pixels.
+const ENTERING: usize = 3;
 /// Factor of the covariance that makes intervals hold what they say; see docs/method.md, section 16.
-const INFLATION: f64 = 6.0;
+const INFLATION: f64 = 5.0;
 /// What all frames share and no tile tells, pixels: half of what a depth camera's rims and an image's edges differ by.
 const COMMON_ERROR: f64 = 0.25;
 
@@ -145,6 +150,8 @@ pub struct CalibrationCheck {
     starts: Vec<Start>,
     best: Round,
     stage: Stage,
+    /// A distortion that seems to have been left out.
+    lens: Option<f64>,
     report: Option<CheckReport>,
 }
 
@@ -174,7 +181,17 @@ impl CalibrationCheck {
         let best = Round { state: told, told, sigma: 0.0 };
         let scene = Scene::new(frames, cues, is_guessed);
         warn_of_translations(&candidates, &mut warnings);
-        Ok(Self { scene, candidates, warnings, width, starts: vec![], best, stage: Stage::Starting, report: None })
+        Ok(Self {
+            scene,
+            candidates,
+            warnings,
+            width,
+            starts: vec![],
+            best,
+            stage: Stage::Starting,
+            lens: None,
+            report: None,
+        })
     }
 
     /// Share of the work that is done, and what comes next.
@@ -221,6 +238,7 @@ impl CalibrationCheck {
                 }
             }
             Stage::Judging { planes } => {
+                self.lens = distortion::left_out(&mut self.scene, &self.best);
                 let findings = self.scene.findings(&self.best, &planes);
                 self.report = Some(self.judge(&findings));
                 Stage::Curves { planes, findings: Box::new(findings), done: 0 }
@@ -248,17 +266,39 @@ impl CalibrationCheck {
         let units = self.scene.units(&told);
         let sigma = SEARCH_SIGMA * self.scene.scale;
         let found = search::starts(&self.scene.frames, &told, &units, self.scene.scale, sigma);
+        let mut starts: Vec<Start> = found
+            .into_iter()
+            .map(|Found { state, from, rims }| Start {
+                round: Round { state, told, sigma: 0.0 },
+                found: from,
+                rims,
+                score: 0.0,
+            })
+            .collect();
         let others = self.candidates.iter().skip(1).map(|candidate| candidate.1);
-        let inverse = State::at(told.pose.inverse());
-        for state in found.into_iter().chain(others).chain([inverse]) {
+        for state in others.chain([State::at(told.pose.inverse())]) {
             let is_near =
                 |other: &Start| units.between(&other.round.state, &state).norm() <= SAME_START * self.scene.scale;
-            if self.starts.iter().any(is_near) {
-                continue;
+            if !starts.iter().any(is_near) {
+                let rims = self.scene.rims(&state, MOST_RIMS_OF_STARTS);
+                starts.push(Start { round: Round { state, told, sigma: 0.0 }, found: state, rims, score: 0.0 });
             }
-            let round = Round { state, told, sigma: 0.0 };
-            self.starts.push(Start { round, found: state, rims: vec![], score: f64::NEG_INFINITY });
         }
+        self.starts = starts;
+    }
+
+    /// Candidates that are nearly right come in late once more: among texture wide windows would lead them away.
+    fn enter_candidates(&mut self) {
+        let told = self.best.told;
+        let states = self.candidates.iter().map(|candidate| candidate.1);
+        let entering = states.map(|state| Start {
+            round: Round { state, told, sigma: 0.0 },
+            found: state,
+            rims: self.scene.rims(&state, MOST_RIMS_OF_STARTS),
+            score: 0.0,
+        });
+        let entering: Vec<Start> = entering.collect();
+        self.starts.extend(entering);
     }
 
     fn planes_of(&self, level: usize) -> Vec<Planes> {
@@ -268,7 +308,7 @@ impl CalibrationCheck {
     /// One start at one level; after the last start the next level, with the best of them.
     fn approach(&mut self, level: usize, index: usize, planes: Vec<Planes>) -> Stage {
         if let Some(start) = self.starts.get_mut(index) {
-            if level % 2 == 0 {
+            if FINDING_ANEW.contains(&level) {
                 start.found = start.round.state;
                 start.rims = self.scene.rims(&start.found, MOST_RIMS_OF_STARTS);
             }
@@ -277,6 +317,9 @@ impl CalibrationCheck {
         }
         self.starts.sort_by(|a, b| b.score.total_cmp(&a.score));
         self.starts.truncate(SURVIVORS[level]);
+        if level + 1 == ENTERING {
+            self.enter_candidates();
+        }
         if level + 1 < SIGMAS.len() {
             return Stage::Approaching { level: level + 1, index: 0, planes: self.planes_of(level + 1) };
         }
@@ -297,6 +340,12 @@ impl CalibrationCheck {
             self.candidates.iter().map(|(name, candidate)| judge.judge(name, &state, candidate, weakest)).collect();
         let mut warnings = self.warnings.clone();
         self.warn_of_inverses(&judge, &mut warnings);
+        if let Some(term) = self.lens {
+            warnings.push(format!(
+                "Depth edges fit the image's clearly better behind a lens of k1 about {}: was the colour camera's distortion left out?",
+                Fixed(term, 2)
+            ));
+        }
         let health = judge.estimate();
         let (mut verdict, mut reason) = match candidates.first() {
             Some(first) => (first.verdict, first.reason.clone()),
@@ -379,8 +428,12 @@ pub fn overlay(view: RigView, pose: &Similarity) -> Result<Overlay> {
     let projection = Projection::new(&frame, &state);
     // Back from halves of pixels.
     let original = |value: f64| ((value + 0.5) * frame.pixel - 0.5) as f32;
-    let seen =
-        (0..frame.points.len()).filter(|&index| !projection.is_hidden[index] && !projection.pixels[index][0].is_nan());
+    let size = frame.planes.size;
+    let is_seen = |index: &usize| {
+        let [column, row] = projection.pixels[*index];
+        !projection.is_hidden[*index] && size.nearest(column, row).is_some()
+    };
+    let seen = (0..frame.points.len()).filter(is_seen);
     let points = seen.flat_map(|index| {
         let [column, row] = projection.pixels[index].map(f64::from);
         [original(column), original(row), projection.positions[index][2]]

@@ -43,9 +43,9 @@ pub(super) struct EdgeField {
 }
 
 impl EdgeField {
-    /// The rims that the colour camera sees at a state, at most so many.
-    pub fn rims(frame: &Frame, state: &State, most: usize) -> Vec<Rim> {
-        let all = rims::find(frame, &Projection::new(frame, state));
+    /// The rims that the colour camera sees, at most so many.
+    pub fn rims(frame: &Frame, projection: &Projection, most: usize) -> Vec<Rim> {
+        let all = rims::find(frame, projection);
         let stride = all.len().div_ceil(most).max(1);
         all.into_iter().step_by(stride).collect()
     }

@@ -12,10 +12,12 @@
 //! | `information`, `shading`, `silhouette`, `differences` | cues over samples, derivatives by differences |
 //! | `unknowns`, `evidence` | the unknowns in pixels; log likelihoods by tiles, weights, covariance |
 //! | `search`, `registration` | starts, rounds |
+//! | `distortion` | whether a lens was left out |
 //! | `sensitivity`, `verdict`, `check` | curves, words, and the order of it all |
 
 mod check;
 mod differences;
+mod distortion;
 mod edges;
 mod evidence;
 mod frame;

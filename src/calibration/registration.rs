@@ -23,7 +23,7 @@ use super::unknowns::{FOCAL, LOSS, Matrix, State, Units, Vector};
 /// to what an image resolves. Half as wide each other time.
 pub(super) const SIGMAS: [f64; 6] = [7.0, 5.0, 3.5, 2.5, 1.8, 1.3];
 /// How many starts go on after each, the best by score.
-pub(super) const SURVIVORS: [usize; 6] = [16, 10, 6, 4, 3, 3];
+pub(super) const SURVIVORS: [usize; 6] = [16, 10, 6, 6, 4, 3];
 /// Rims of all frames that starts are judged by.
 pub(super) const MOST_RIMS_OF_STARTS: usize = 1200;
 /// Rounds at each.
@@ -130,11 +130,11 @@ impl Scene {
     }
 
     /// Edges alone: log likelihood by tiles.
-    fn edges(&self, round: &Round, units: &Units, planes: &[Planes]) -> Evidence {
+    fn edges(&self, round: &Round, units: &Units, planes: &[Planes], projections: &[Projection]) -> Evidence {
         let most = MOST_RIMS_OF_ONE.min(MOST_RIMS / self.frames.len());
         let mut evidence = Evidence::default();
-        for (frame, planes) in self.frames.iter().zip(planes) {
-            let found = EdgeField::rims(frame, &round.state, most);
+        for ((frame, planes), projection) in self.frames.iter().zip(planes).zip(projections) {
+            let found = EdgeField::rims(frame, projection, most);
             self.add_edges(frame, planes, &found, round, units, &mut evidence);
         }
         evidence
@@ -157,22 +157,21 @@ impl Scene {
     }
 
     /// One of the cues that look at surfaces.
-    fn surfaces(&self, cue: Cue, state: &State, units: &Units) -> Evidence {
+    fn surfaces(&self, cue: Cue, state: &State, units: &Units, patches: &[Patches]) -> Evidence {
         let mut evidence = Evidence::default();
-        for ((frame, planes), samples) in self.frames.iter().zip(&self.surface_planes).zip(&self.samples) {
+        for ((frame, planes), patches) in self.frames.iter().zip(&self.surface_planes).zip(patches) {
             let sight = Sight { frame, planes };
-            let patches = Patches::new(samples, &Projection::new(frame, state), frame);
             let count = Tiles::new(planes.size).count();
             evidence.shares.extend(match cue {
                 Cue::Information => {
-                    let cue = Information(&patches);
+                    let cue = Information(patches);
                     differences(units, state, count, |state, out| cue.evaluate(&sight, state, out))
                 }
                 Cue::Shading => {
-                    let cue = Shading::new(&patches, &sight, state);
+                    let cue = Shading::new(patches, &sight, state);
                     differences(units, state, count, |state, out| cue.evaluate(&sight, state, out))
                 }
-                Cue::Silhouette => match Silhouette::new(&patches, &sight) {
+                Cue::Silhouette => match Silhouette::new(patches, &sight) {
                     Some(cue) => differences(units, state, count, |state, out| cue.evaluate(&sight, state, out)),
                     None => vec![Share::none(); count],
                 },
@@ -185,12 +184,16 @@ impl Scene {
     /// All cues.
     pub fn findings(&self, round: &Round, planes: &[Planes]) -> Findings {
         let units = self.units(&round.state);
+        let projections: Vec<_> = self.frames.iter().map(|frame| Projection::new(frame, &round.state)).collect();
+        let seen = self.samples.iter().zip(&projections).zip(&self.frames);
+        let patches: Vec<_> =
+            seen.map(|((samples, projection), frame)| Patches::new(samples, projection, frame)).collect();
         let mut total = Evidence::default();
         let mut cues = vec![];
         for &cue in &self.cues {
             let evidence = match cue {
-                Cue::Edges => self.edges(round, &units, planes),
-                _ => self.surfaces(cue, &round.state, &units),
+                Cue::Edges => self.edges(round, &units, planes, &projections),
+                _ => self.surfaces(cue, &round.state, &units, &patches),
             };
             let trust = if cue == Cue::Edges { 1.0 } else { SURFACE_TRUST };
             let weight = trust * evidence.weight();
@@ -224,7 +227,10 @@ impl Scene {
 
     /// Rims of all frames as a state sees them.
     pub fn rims(&self, state: &State, most: usize) -> Vec<Vec<Rim>> {
-        self.frames.iter().map(|frame| EdgeField::rims(frame, state, most / self.frames.len())).collect()
+        self.frames
+            .iter()
+            .map(|frame| EdgeField::rims(frame, &Projection::new(frame, state), most / self.frames.len()))
+            .collect()
     }
 
     /// A round by all cues; how far it went, pixels.

@@ -15,7 +15,7 @@ use super::unknowns::{State, Units, Vector};
 /// Shifts to each side and their pace, pixels of an image 640 wide.
 const REACH: f64 = 48.0;
 const PACE: f64 = 2.0;
-/// Turns about the optical axis, degrees.
+/// Turns about the optical axis, degrees; none first.
 const TURNS: [f64; 5] = [0.0, -1.5, 1.5, -3.0, 3.0];
 /// Rims of a frame that are laid onto its edges.
 const MOST_RIMS: usize = 500;
@@ -68,10 +68,18 @@ impl EdgeMap {
     }
 }
 
+/// A start, with the rims of a state that differs from it by a shift alone.
+pub(super) struct Found {
+    pub state: State,
+    pub from: State,
+    pub rims: Vec<Vec<rims::Rim>>,
+}
+
 /// The candidate and other starts near it, best first after it. `sigma` is the prior's, pixels.
-pub(super) fn starts(frames: &[Frame], state: &State, units: &Units, scale: f64, sigma: f64) -> Vec<State> {
+pub(super) fn starts(frames: &[Frame], state: &State, units: &Units, scale: f64, sigma: f64) -> Vec<Found> {
     let maps: Vec<EdgeMap> = frames.iter().map(|frame| EdgeMap::new(&frame.planes, scale)).collect();
-    let mut best: Vec<(f64, [f64; 3])> = vec![];
+    let mut best: Vec<(f64, [f64; 2], usize)> = vec![];
+    let mut views: Vec<(State, Vec<Vec<rims::Rim>>)> = vec![];
     for turn in TURNS {
         // About the scene's middle, which a shift then moves.
         let mut step = Vector::zeros();
@@ -100,29 +108,29 @@ pub(super) fn starts(frames: &[Frame], state: &State, units: &Units, scale: f64,
                     })
                     .sum();
                 let far = (shift[0].powi(2) + shift[1].powi(2)) / (sigma * sigma) + (turn / 2.0).powi(2);
-                best.push((score / count.max(1) as f64 - 0.5 * PRIOR_WEIGHT * far, [shift[0], shift[1], step[2]]));
+                best.push((score / count.max(1) as f64 - 0.5 * PRIOR_WEIGHT * far, shift, views.len()));
             }
         }
+        views.push((turned, rims));
     }
     crate::numeric::sort_descending(&mut best, |entry| entry.0);
-    let mut chosen: Vec<[f64; 3]> = vec![];
-    for (_, place) in best {
-        let is_apart = |other: &[f64; 3]| {
-            (place[0] - other[0]).hypot(place[1] - other[1]) > APART * scale || (place[2] - other[2]).abs() > 1e-9
+    let mut chosen: Vec<([f64; 2], usize)> = vec![([0.0; 2], 0)];
+    for (_, place, view) in best {
+        let is_apart = |other: &([f64; 2], usize)| {
+            (place[0] - other.0[0]).hypot(place[1] - other.0[1]) > APART * scale || view != other.1
         };
-        let is_new = chosen.iter().all(is_apart);
-        if is_new {
-            chosen.push(place);
+        if chosen.iter().all(is_apart) {
+            chosen.push((place, view));
         }
-        if chosen.len() == STARTS {
+        if chosen.len() > STARTS {
             break;
         }
     }
-    let moved = chosen.into_iter().map(|[right, down, turn]| {
+    let found = |(shift, view): ([f64; 2], usize)| {
+        let (from, rims) = &views[view];
         let mut step = Vector::zeros();
-        step[2] = turn;
-        (step[3], step[4]) = (right, down);
-        units.step(state, &step)
-    });
-    std::iter::once(*state).chain(moved).collect()
+        (step[3], step[4]) = (shift[0], shift[1]);
+        Found { state: units.step(from, &step), from: *from, rims: rims.clone() }
+    };
+    chosen.into_iter().map(found).collect()
 }

@@ -80,7 +80,7 @@ fn along(
 ) -> Vec<f64> {
     let frame = &scene.frames[index];
     if cue == Cue::Edges {
-        let rims = EdgeField::rims(frame, &round.state, MOST_RIMS);
+        let rims = EdgeField::rims(frame, &Projection::new(frame, &round.state), MOST_RIMS);
         let value = |state: &State| {
             let moved = EdgeField::moved(frame, &rims, &round.state, state);
             let field = EdgeField::new(

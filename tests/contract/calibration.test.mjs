@@ -1,0 +1,172 @@
+// checkCalibration on rendered rigs, whose extrinsics are known, and on a real one if other people's data are here.
+import assert from "node:assert/strict";
+import { existsSync, readFileSync } from "node:fs";
+import { before, describe, test } from "node:test";
+import { projectFrame, sampleRig } from "../../pkg/index.js";
+import { decodeColour, decodeDepth } from "../../pkg/files.js";
+import { BimodalError, checkCalibration } from "./support.mjs";
+
+const multiply = (a, b) =>
+  Array.from({ length: 9 }, (_, i) => [0, 1, 2].reduce((sum, k) => sum + a[3 * Math.floor(i / 3) + k] * b[3 * k + (i % 3)], 0));
+const apply = (r, v) => [0, 1, 2].map((i) => [0, 1, 2].reduce((sum, k) => sum + r[3 * i + k] * v[k], 0));
+const transpose = (r) => [0, 3, 6, 1, 4, 7, 2, 5, 8].map((k) => r[k]);
+
+/** Rodrigues' formula. */
+function turn(axis, degrees) {
+  const [x, y, z] = axis.map((value) => value / Math.hypot(...axis));
+  const [c, s] = [Math.cos((degrees * Math.PI) / 180), Math.sin((degrees * Math.PI) / 180)];
+  const t = 1 - c;
+  return [t * x * x + c, t * x * y - s * z, t * x * z + s * y, t * x * y + s * z, t * y * y + c, t * y * z - s * x, t * x * z - s * y, t * y * z + s * x, t * z * z + c];
+}
+
+/** A pose after an error about the camera, degrees and metres. */
+const wrong = (pose, axis, degrees, shift = [0, 0, 0]) => {
+  const rotation = turn(axis, degrees);
+  const translation = apply(rotation, pose.translation).map((value, k) => value + shift[k]);
+  return { ...pose, rotation: multiply(rotation, pose.rotation), translation };
+};
+const inverse = (pose) => {
+  const rotation = transpose(pose.rotation);
+  return { ...pose, rotation, translation: apply(rotation, pose.translation).map((value) => -value) };
+};
+const degreesBetween = (a, b) => {
+  const chord = Math.hypot(...a.rotation.map((value, k) => value - b.rotation[k])) / Math.sqrt(8);
+  return (2 * Math.asin(Math.min(1, chord)) * 180) / Math.PI;
+};
+/** How far two poses put a point from each other, millimetres. */
+const millimetresBetween = (a, b, point) => {
+  const [p, q] = [a, b].map((pose) => apply(pose.rotation, point).map((value, k) => value + pose.translation[k]));
+  return 1000 * Math.hypot(...p.map((value, k) => value - q[k]));
+};
+
+describe("a rig before boxes", () => {
+  let frame, truth;
+  before(async () => {
+    frame = await sampleRig({ kind: "boxes", seed: 2 });
+    truth = frame.pose;
+  });
+
+  test("the right calibration is consistent, one that is off is off, and both by the same estimate", async () => {
+    const messages = [];
+    const candidates = { told: wrong(truth, [1, -2, 1], 1.5, [0.01, 0, -0.01]), factory: truth };
+    const report = await checkCalibration([frame], candidates, { onProgress: (share, message) => messages.push([share, message]) });
+    assert.equal(report.verdict, "off");
+    assert.deepEqual(Object.keys(report.candidates), ["told", "factory"]);
+    assert.equal(report.candidates.told.verdict, "off");
+    assert.equal(report.candidates.factory.verdict, "consistent");
+    assert.match(report.reason, /Off by about .* px/);
+    assert.ok(degreesBetween(report.estimate, truth) < 0.3, `${degreesBetween(report.estimate, truth)} degrees`);
+    assert.ok(millimetresBetween(report.estimate, truth, report.middle) < 6);
+    assert.ok(Math.abs(report.candidates.told.offDegrees - 1.5) < 0.3);
+    const { covariance, health, cues, frames, sensitivity } = report;
+    assert.equal(covariance.length, 36);
+    for (let i = 0; i < 6; i++) {
+      assert.ok(covariance[7 * i] > 0);
+      for (let j = 0; j < 6; j++) assert.ok(Math.abs(covariance[6 * i + j] - covariance[6 * j + i]) < 1e-12);
+    }
+    assert.ok(health.interval[0] < health.pixels && health.pixels < health.interval[1]);
+    const total = Object.values(cues).reduce((sum, { share }) => sum + share, 0);
+    assert.ok(Math.abs(total - 1) < 1e-9);
+    assert.deepEqual(frames.map(({ name, share }) => [name, share]), [["boxes 1", 1]]);
+    assert.equal(sensitivity.length, 24);
+    const edges = sensitivity.find(({ cue, axis }) => cue === "edges" && axis === "ry");
+    // A degree and more away edges say less than at the estimate.
+    edges.offsets.forEach((offset, k) => Math.abs(offset) > 1 && assert.ok(edges.values[k] < 0, `${offset}: ${edges.values[k]}`));
+    const shares = messages.map(([share]) => share);
+    assert.ok(shares.length > 5 && shares.every((share, k) => share >= (shares[k - 1] ?? 0)), String(shares));
+  });
+
+  test("the same input gives the same bits", async () => {
+    const told = wrong(truth, [0, 1, 0], 0.5);
+    const [a, b] = [await checkCalibration([frame], { told }, { cues: ["edges"] }), await checkCalibration([frame], { told }, { cues: ["edges"] })];
+    assert.deepEqual(a, b);
+    assert.deepEqual(Object.keys(a.cues), ["edges"]);
+  });
+
+  test("an inverted direction is named", async () => {
+    const { verdict, warnings } = await checkCalibration([frame], { told: inverse(truth) });
+    assert.equal(verdict, "off");
+    assert.match(warnings.join(), /told: fits inverted .* invert it/);
+  });
+
+  test("a distortion that was left out is named", async () => {
+    const { distortion, ...camera } = frame.image.camera;
+    assert.ok(distortion.some((value) => value !== 0));
+    const { warnings } = await checkCalibration([{ ...frame, image: { ...frame.image, camera } }], { told: truth });
+    assert.match(warnings.join(), /distortion left out/);
+    const right = await checkCalibration([frame], { told: truth });
+    assert.deepEqual(right.warnings, []);
+  });
+
+  test("a wrong unit, a depth map of eight bits and a picture in its place are named, and keep the verdict from green", async () => {
+    const { depth } = frame;
+    const said = async (changes) => checkCalibration([{ ...frame, depth: { ...depth, ...changes } }], { told: truth }, { cues: ["edges"] });
+    const metres = await said({ unit: 1 });
+    assert.match(metres.warnings.join(), /in millimetres\?/);
+    assert.notEqual(metres.verdict, "consistent");
+    const far = 8000;
+    const coarse = await said({ unit: 0.032, data: depth.data.map((level) => Math.min(255, Math.round((level / far) * 255))) });
+    assert.match(coarse.warnings.join(), /8 bits/);
+    assert.notEqual(coarse.verdict, "consistent");
+    const rough = await said({ data: depth.data.map((_, k) => 500 + ((k * 2654435761) % 4001)) });
+    assert.match(rough.warnings.join(), /swapped\?/);
+  });
+
+  test("a frame is laid over its image", async () => {
+    const { points, edges } = await projectFrame(frame, truth);
+    assert.ok(points.length > 30_000 && points.length % 3 === 0 && edges.length > 500 && edges.length % 2 === 0);
+    const { width, height } = frame.image;
+    for (let k = 0; k < points.length; k += 3) {
+      assert.ok(points[k] >= -1 && points[k] <= width && points[k + 1] >= -1 && points[k + 1] <= height && points[k + 2] > 0);
+    }
+  });
+
+  test("it can be broken off", async () => {
+    const stop = new AbortController();
+    const onProgress = (share) => share > 0.2 && stop.abort();
+    await assert.rejects(checkCalibration([frame], { told: truth }, { signal: stop.signal, onProgress }), { name: "AbortError" });
+    await assert.rejects(checkCalibration([frame], { told: truth }, { signal: AbortSignal.abort() }), { name: "AbortError" });
+  });
+
+  test("what is wrong is named", async () => {
+    const refused = (call, code, field) =>
+      assert.rejects(call, (error) => {
+        assert.ok(error instanceof BimodalError, String(error));
+        assert.deepEqual([error.code, error.field], [code, field], error.message);
+        return true;
+      });
+    const { image, depth } = frame;
+    const check = (one, candidates = { told: truth }, options) => checkCalibration([one], candidates, options);
+    await refused(checkCalibration([], { told: truth }), "size", "frames");
+    await refused(checkCalibration("none", {}), "type", "frames");
+    await refused(check({ image }), "missing", "frames[0].depth");
+    await refused(check({ image, depth: { ...depth, camera: undefined } }), "missing", "frames[0].depth.camera");
+    await refused(check({ image: { ...image, data: image.data.subarray(4) }, depth }), "size", "frames[0].image.data");
+    await refused(check({ image, depth: { ...depth, data: new Uint16Array(depth.data.length) } }), "empty", "frames[0].depth");
+    await refused(check({ image, depth: { ...depth, unit: -1 } }), "range", "frames[0].depth.unit");
+    const lens = (distortion) => ({ image: { ...image, camera: { ...image.camera, distortion } }, depth });
+    await refused(check(lens([1, 2, 3])), "size", "frames[0].image.camera.distortion");
+    await refused(check(lens([NaN, 0, 0, 0, 0])), "range", "frames[0].image.camera.distortion");
+    await refused(check(frame, { told: { ...truth, rotation: [1, 0, 0, 0, 1, 0, 0, 0, -1] } }), "range", "candidates.told.rotation");
+    await refused(check(frame, { told: { ...truth, translation: [0, NaN, 0] } }), "range", "candidates.told.translation");
+    await refused(check(frame, { told: { ...truth, scale: 2 } }), "range", "candidates.told.scale");
+    await refused(check(frame, { told: truth }, { cues: ["colour"] }), "option", "options.cues[0]");
+    await refused(check(frame, { told: truth }, { workers: 0 }), "range", "options.workers");
+  });
+});
+
+const NYU = new URL("../../../shared/data/nyu_raw_pair/", import.meta.url);
+test("a raw Kinect: calibrations that are off are off, and the estimate is near its makers'", { skip: !existsSync(NYU) && "other people's data are not here" }, async () => {
+  const read = (name) => readFileSync(new URL(name, NYU));
+  const calib = JSON.parse(read("calib.json").toString());
+  const camera = ({ fx, fy, cx, cy, dist_k1k2p1p2k3: distortion }) => ({ fx, fy, cx, cy, distortion });
+  const frame = {
+    image: { ...decodeColour(read("color_raw.png")), camera: camera(calib.rgb) },
+    depth: { ...decodeDepth(read("depth_raw_mm.png")), camera: camera(calib.depth), unit: 0.001 },
+  };
+  const truth = { scale: 1, rotation: calib.R.flat(), translation: calib.t, angles: { alpha: 0, beta: 0, gamma: 0 } };
+  const report = await checkCalibration([frame], { told: wrong(truth, [1, 2, -1], 2, [0.02, -0.02, 0]) });
+  assert.equal(report.verdict, "off");
+  assert.ok(degreesBetween(report.estimate, truth) < 0.5);
+  assert.ok(millimetresBetween(report.estimate, truth, [0, 0, 2.5]) < 40);
+});
