@@ -5,6 +5,7 @@
 
 use nalgebra::{SMatrix, Vector3};
 
+use super::cue::Cue;
 use super::distortion;
 use super::evidence::Tiles;
 use super::frame::{Frame, Projection};
@@ -37,35 +38,6 @@ const ENTERING: usize = 3;
 const INFLATION: f64 = 5.0;
 /// What all frames share and no tile tells, pixels: half of what a depth camera's rims and an image's edges differ by.
 const COMMON_ERROR: f64 = 0.25;
-
-/// What of a frame bears on the calibration.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Cue {
-    /// Colours within patches follow their normals.
-    Shading,
-    /// Depth edges on image edges.
-    Edges,
-    /// Mutual information of colours and patches.
-    Information,
-    /// The masked object on the image's mask.
-    Silhouette,
-}
-
-impl Cue {
-    /// All of them.
-    pub const ALL: [Self; 4] = [Self::Shading, Self::Edges, Self::Information, Self::Silhouette];
-
-    /// Its name.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Shading => "shading",
-            Self::Edges => "edges",
-            Self::Information => "information",
-            Self::Silhouette => "silhouette",
-        }
-    }
-}
 
 /// What one cue contributed.
 #[derive(Clone, Copy, Debug, PartialEq)]

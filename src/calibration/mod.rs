@@ -5,7 +5,7 @@
 //!
 //! | file | what it holds |
 //! |---|---|
-//! | `lens` | cameras of a rig |
+//! | `lens`, `cue` | cameras of a rig; names of the cues |
 //! | `input`, `frame`, `planes` | what comes in, guards, the colour camera's view of the depth points |
 //! | `rims`, `edges` | depth edges, and their log likelihood on image edges |
 //! | `surface`, `patches` | samples of the depth map with normals, grouped |
@@ -16,6 +16,7 @@
 //! | `sensitivity`, `verdict`, `check` | curves, words, and the order of it all |
 
 mod check;
+mod cue;
 mod differences;
 mod distortion;
 mod edges;
@@ -36,7 +37,8 @@ mod surface;
 mod unknowns;
 mod verdict;
 
-pub use check::{CalibrationCheck, CheckReport, Cue, CueReport, FrameReport, Overlay, overlay};
+pub use check::{CalibrationCheck, CheckReport, CueReport, FrameReport, Overlay, overlay};
+pub use cue::Cue;
 pub use input::RigView;
 pub use lens::{Lens, RigCamera};
 pub use sensitivity::Sensitivity;

@@ -5,7 +5,7 @@
 //! bound of expectation maximisation for edges; the other cues by differences, in the last rounds only, because they
 //! have no basin to speak of.
 
-use super::check::Cue;
+use super::cue::Cue;
 use super::differences::differences;
 use super::edges::EdgeField;
 use super::evidence::{Evidence, Share, Tiles};

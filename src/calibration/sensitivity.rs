@@ -1,6 +1,6 @@
 //! How each cue falls as the calibration is moved away from the estimate, axis by axis.
 
-use super::check::Cue;
+use super::cue::Cue;
 use super::edges::EdgeField;
 use super::evidence::{Share, Tiles};
 use super::frame::Projection;

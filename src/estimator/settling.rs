@@ -238,7 +238,8 @@ mod tests {
             }
             left_out += kept;
         }
-        assert!(left_out >= 10, "{left_out}");
+        // One for each of the scenes at the least: else this compares full solves with themselves.
+        assert!(left_out >= 7, "{left_out}");
     }
 
     #[test]

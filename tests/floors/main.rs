@@ -26,8 +26,9 @@ const ROOMS: [&str; 14] = [
     "scenes",
     "wasm",
 ];
-/// What scenes with a known answer stand on: they are made with the means of the inputs, not with those of the method.
-const BELOW_SCENES: [&str; 7] = ["text", "error", "check", "view", "light", "pose", "calibration"];
+/// What scenes with a known answer stand on: they are made with the means of the inputs and with random numbers, not with
+/// those of the method.
+const BELOW_SCENES: [&str; 8] = ["text", "error", "check", "numeric", "view", "light", "pose", "calibration"];
 /// Crates that only bindings may name.
 const BINDINGS: [&str; 4] = ["wasm_bindgen", "js_sys", "web_sys", "console_error_panic_hook"];
 
