@@ -202,7 +202,7 @@ export type CheckCue = "shading" | "edges" | "information" | "silhouette";
 export interface CheckOptions {
   /** The cues to use; all without it. */
   cues?: CheckCue[];
-  /** Threads, this one included: 1 to 16, default 1. The result is the same for any number of them. */
+  /** Threads that may be used, 1 to 16; one is used so far. The result does not depend on it. */
   workers?: number;
   signal?: AbortSignal;
   /** Share of the work done, 0 .. 1, and what is being done. */

@@ -1,0 +1,153 @@
+// npm run rigs: how often the check of a calibration is right, on rendered rigs whose extrinsics are known.
+//
+// --rigs N     rigs of each kind (default 5), seeds from --from (default 100; seeds below 20 had a part in choosing constants)
+// --frames K   frames of a rig (default 1 and 3)
+// --kinds A,B  of objects, sheet, boxes, room
+// --json FILE  one row for each check
+import { writeFileSync } from "node:fs";
+import { parseArgs } from "node:util";
+import { build } from "./build.mjs";
+import { Failure, inRoot, say, script, seconds } from "./shell.mjs";
+
+/** Candidates: degrees about a random axis through the colour camera, millimetres in a random direction. */
+const ERRORS = [
+  { degrees: 0, millimetres: 0 },
+  { degrees: 0.5, millimetres: 5 },
+  { degrees: 1, millimetres: 10 },
+  { degrees: 2, millimetres: 20 },
+  { degrees: 4, millimetres: 60 },
+];
+const KINDS = ["objects", "sheet", "boxes", "room"];
+/** The 95 % quantile of chi square with six degrees of freedom. */
+const CHI_SQUARE = 12.59;
+
+/** Numbers that follow from a seed (Steele and Vigna's splitmix32), normal by Box and Muller. */
+function chance(seed) {
+  let state = seed >>> 0;
+  const uniform = () => {
+    state = (state + 0x9e3779b9) >>> 0;
+    let z = state;
+    z = Math.imul(z ^ (z >>> 16), 0x21f0aaad);
+    z = Math.imul(z ^ (z >>> 15), 0x735a2d97);
+    return ((z ^ (z >>> 15)) >>> 0) / 2 ** 32;
+  };
+  const normal = () => Math.sqrt(-2 * Math.log(1 - uniform())) * Math.cos(2 * Math.PI * uniform());
+  return () => {
+    const vector = [normal(), normal(), normal()];
+    return vector.map((value) => value / Math.hypot(...vector));
+  };
+}
+
+const multiply = (a, b) =>
+  Array.from({ length: 9 }, (_, i) => [0, 1, 2].reduce((sum, k) => sum + a[3 * Math.floor(i / 3) + k] * b[3 * k + (i % 3)], 0));
+const apply = (r, v) => [0, 1, 2].map((i) => [0, 1, 2].reduce((sum, k) => sum + r[3 * i + k] * v[k], 0));
+const transpose = (r) => [0, 3, 6, 1, 4, 7, 2, 5, 8].map((k) => r[k]);
+
+/** Rodrigues' formula. */
+function turn([x, y, z], degrees) {
+  const [c, s] = [Math.cos((degrees * Math.PI) / 180), Math.sin((degrees * Math.PI) / 180)];
+  const t = 1 - c;
+  const rows = [t * x * x + c, t * x * y - s * z, t * x * z + s * y, t * x * y + s * z, t * y * y + c, t * y * z - s * x];
+  return [...rows, t * x * z - s * y, t * y * z + s * x, t * z * z + c];
+}
+
+function wrong(pose, { degrees, millimetres }, direction) {
+  const rotation = turn(direction(), degrees);
+  const shift = direction().map((value) => (value * millimetres) / 1000);
+  const translation = apply(rotation, pose.translation).map((value, k) => value + shift[k]);
+  return { ...pose, rotation: multiply(rotation, pose.rotation), translation };
+}
+
+/** Rotation vector and shift of the scene's middle from the estimate to the truth. */
+function offset({ estimate, middle }, truth) {
+  const r = multiply(truth.rotation, transpose(estimate.rotation));
+  const axis = [r[7] - r[5], r[2] - r[6], r[3] - r[1]].map((value) => value / 2);
+  const sine = Math.hypot(...axis);
+  const angle = Math.atan2(sine, (r[0] + r[4] + r[8] - 1) / 2);
+  const w = axis.map((value) => (sine > 0 ? (value * angle) / sine : 0));
+  const inDepth = apply(transpose(estimate.rotation), middle.map((value, k) => value - estimate.translation[k]));
+  const v = apply(truth.rotation, inDepth).map((value, k) => value + truth.translation[k] - middle[k]);
+  return [...w, ...v];
+}
+
+/** d^T C^-1 d by elimination. */
+function mahalanobis(covariance, d) {
+  const rows = d.map((value, i) => [...covariance.slice(6 * i, 6 * i + 6), value]);
+  for (let k = 0; k < 6; k++) {
+    for (let i = k + 1; i < 6; i++) {
+      const factor = rows[i][k] / rows[k][k];
+      for (let j = k; j < 7; j++) rows[i][j] -= factor * rows[k][j];
+    }
+  }
+  const x = Array(6).fill(0);
+  for (let i = 5; i >= 0; i--) x[i] = (rows[i][6] - rows[i].slice(i + 1, 6).reduce((sum, value, j) => sum + value * x[i + 1 + j], 0)) / rows[i][i];
+  return d.reduce((sum, value, i) => sum + value * x[i], 0);
+}
+
+const quantile = (values, share) => [...values].sort((a, b) => a - b)[Math.min(values.length - 1, Math.floor(values.length * share))] ?? NaN;
+const percent = (some, all) => (all === 0 ? "-" : `${Math.round((100 * some) / all)} %`);
+
+function print(rows) {
+  console.log("kind     frames  off by          off  undecided  consistent  degrees, mm: median   90 %          within 95 %");
+  const keys = [...new Set(rows.map(({ kind, frames, error }) => JSON.stringify([kind, frames, error])))];
+  for (const key of keys) {
+    const some = rows.filter(({ kind, frames, error }) => JSON.stringify([kind, frames, error]) === key);
+    const [kind, frames, error] = JSON.parse(key);
+    const share = (verdict) => percent(some.filter((row) => row.verdict === verdict).length, some.length).padStart(5);
+    const [degrees, millimetres] = [some.map((row) => row.degrees), some.map((row) => row.millimetres)];
+    const at = (part) => `${quantile(degrees, part).toFixed(2)}, ${quantile(millimetres, part).toFixed(1)}`.padEnd(13);
+    const covered = percent(some.filter((row) => row.chiSquare < CHI_SQUARE).length, some.length);
+    const off = `${error.degrees} deg, ${error.millimetres} mm`.padEnd(13);
+    console.log(`${kind.padEnd(8)} ${String(frames).padEnd(6)}  ${off} ${share("off")}  ${share("undecided")}      ${share("consistent")}       ${at(0.5)}        ${at(0.9)} ${covered}`);
+  }
+}
+
+await script(async () => {
+  const { values } = parseArgs({
+    options: {
+      rigs: { type: "string", default: "5" },
+      from: { type: "string", default: "100" },
+      frames: { type: "string", default: "1,3" },
+      kinds: { type: "string", default: KINDS.join(",") },
+      json: { type: "string" },
+    },
+  });
+  const [rigs, from] = [values.rigs, values.from].map(Number);
+  const kinds = values.kinds.split(",");
+  const counts = values.frames.split(",").map(Number);
+  if (!(rigs >= 1) || !Number.isInteger(from) || counts.some((count) => !(count >= 1))) throw new Failure("--rigs, --from and --frames take whole numbers.");
+  const unknown = kinds.find((kind) => !KINDS.includes(kind));
+  if (unknown !== undefined) throw new Failure(`There is no kind "${unknown}"; there are ${KINDS.join(", ")}.`);
+  await build();
+  const { checkCalibration, sampleRig } = await import(inRoot("pkg/index.js"));
+  const start = performance.now();
+  const rows = [];
+  for (const kind of kinds) {
+    for (let seed = from; seed < from + rigs; seed++) {
+      const all = [];
+      for (let frame = 0; frame < Math.max(...counts); frame++) all.push(await sampleRig({ kind, seed, frame }));
+      const truth = all[0].pose;
+      for (const frames of counts) {
+        for (const [index, error] of ERRORS.entries()) {
+          const told = wrong(truth, error, chance(1000 * seed + 10 * index + KINDS.indexOf(kind)));
+          const report = await checkCalibration(all.slice(0, frames), { told });
+          const d = offset(report, truth);
+          rows.push({
+            kind,
+            seed,
+            frames,
+            error,
+            verdict: report.verdict,
+            degrees: (Math.hypot(...d.slice(0, 3)) * 180) / Math.PI,
+            millimetres: 1000 * Math.hypot(...d.slice(3)),
+            chiSquare: mahalanobis(report.covariance, d),
+            pixels: report.health.pixels,
+          });
+        }
+      }
+      say(`${kind} ${seed - from + 1} of ${rigs} (${seconds(start)})`);
+    }
+  }
+  print(rows);
+  if (values.json) writeFileSync(values.json, `${JSON.stringify(rows, null, 1)}\n`);
+});
