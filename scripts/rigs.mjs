@@ -8,6 +8,7 @@ import { writeFileSync } from "node:fs";
 import { parseArgs } from "node:util";
 import { build } from "./build.mjs";
 import { Failure, inRoot, say, script, seconds } from "./shell.mjs";
+import { aboutAxis, offBy, product, transpose, turn } from "./tables/protocol/rotations.mjs";
 
 /** Candidates: degrees about a random axis through the colour camera, millimetres in a random direction. */
 const ERRORS = [
@@ -38,35 +39,18 @@ function chance(seed) {
   };
 }
 
-const multiply = (a, b) =>
-  Array.from({ length: 9 }, (_, i) => [0, 1, 2].reduce((sum, k) => sum + a[3 * Math.floor(i / 3) + k] * b[3 * k + (i % 3)], 0));
-const apply = (r, v) => [0, 1, 2].map((i) => [0, 1, 2].reduce((sum, k) => sum + r[3 * i + k] * v[k], 0));
-const transpose = (r) => [0, 3, 6, 1, 4, 7, 2, 5, 8].map((k) => r[k]);
-
-/** Rodrigues' formula. */
-function turn([x, y, z], degrees) {
-  const [c, s] = [Math.cos((degrees * Math.PI) / 180), Math.sin((degrees * Math.PI) / 180)];
-  const t = 1 - c;
-  const rows = [t * x * x + c, t * x * y - s * z, t * x * z + s * y, t * x * y + s * z, t * y * y + c, t * y * z - s * x];
-  return [...rows, t * x * z - s * y, t * y * z + s * x, t * z * z + c];
-}
-
 function wrong(pose, { degrees, millimetres }, direction) {
-  const rotation = turn(direction(), degrees);
+  const rotation = aboutAxis(direction(), degrees);
   const shift = direction().map((value) => (value * millimetres) / 1000);
-  const translation = apply(rotation, pose.translation).map((value, k) => value + shift[k]);
-  return { ...pose, rotation: multiply(rotation, pose.rotation), translation };
+  const translation = turn(rotation, pose.translation).map((value, k) => value + shift[k]);
+  return { ...pose, rotation: product(rotation, pose.rotation), translation };
 }
 
 /** Rotation vector and shift of the scene's middle from the estimate to the truth. */
 function offset({ estimate, middle }, truth) {
-  const r = multiply(truth.rotation, transpose(estimate.rotation));
-  const axis = [r[7] - r[5], r[2] - r[6], r[3] - r[1]].map((value) => value / 2);
-  const sine = Math.hypot(...axis);
-  const angle = Math.atan2(sine, (r[0] + r[4] + r[8] - 1) / 2);
-  const w = axis.map((value) => (sine > 0 ? (value * angle) / sine : 0));
-  const inDepth = apply(transpose(estimate.rotation), middle.map((value, k) => value - estimate.translation[k]));
-  const v = apply(truth.rotation, inDepth).map((value, k) => value + truth.translation[k] - middle[k]);
+  const w = offBy(truth.rotation, estimate.rotation).map((degrees) => (degrees * Math.PI) / 180);
+  const inDepth = turn(transpose(estimate.rotation), middle.map((value, k) => value - estimate.translation[k]));
+  const v = turn(truth.rotation, inDepth).map((value, k) => value + truth.translation[k] - middle[k]);
   return [...w, ...v];
 }
 

@@ -15,7 +15,7 @@ use super::registration::{
     ARRIVED, Findings, MOST_RIMS_OF_STARTS, MOST_SETTLING, Round, SIGMAS, SURVIVORS, Scene, Start,
 };
 use super::search::{self, Found};
-use super::sensitivity::{AXES, Sensitivity, curve};
+use super::sensitivity::{Sensitivity, curves};
 use super::unknowns::{Matrix, POSE, State};
 use super::verdict::{CandidateReport, CheckVerdict, Health, Judge};
 use crate::error::{Error, ErrorKind, Result};
@@ -36,7 +36,9 @@ const FINDING_ANEW: [usize; 2] = [2, 4];
 const ENTERING: usize = 3;
 /// Factor of the covariance that makes intervals hold what they say; see docs/method.md, section 16.
 const INFLATION: f64 = 5.0;
-/// What all frames share and no tile tells, pixels: half of what a depth camera's rims and an image's edges differ by.
+/// Variance where nothing at all is known, squared pixels.
+const FARTHEST: f64 = 1e6;
+/// What all frames share and no tile tells, pixels: assumed, a quarter of the colour image's raster.
 const COMMON_ERROR: f64 = 0.25;
 
 /// What one cue contributed.
@@ -181,7 +183,7 @@ impl CalibrationCheck {
             }
             Stage::Judging { .. } => (0.85, "judging the candidates"),
             Stage::Curves { done, .. } => {
-                (0.88 + 0.12 * *done as f64 / (POSE * self.scene.cues.len()) as f64, "measuring sensitivity")
+                (0.88 + 0.12 * *done as f64 / self.scene.cues.len() as f64, "measuring sensitivity")
             }
             Stage::Done => (1.0, "done"),
         }
@@ -216,12 +218,12 @@ impl CalibrationCheck {
                 Stage::Curves { planes, findings: Box::new(findings), done: 0 }
             }
             Stage::Curves { planes, findings, done } => {
-                let (cue, _, weight) = &findings.cues[done / POSE];
-                let curve = curve(&self.scene, &self.best, &findings.units, &planes, (*cue, *weight), done % POSE);
+                let (cue, _, weight) = &findings.cues[done];
+                let curves = curves(&self.scene, &self.best, &findings.units, &planes, (*cue, *weight));
                 if let Some(report) = &mut self.report {
-                    report.sensitivity.push(curve);
+                    report.sensitivity.extend(curves);
                 }
-                if done + 1 < findings.cues.len() * AXES.len() {
+                if done + 1 < findings.cues.len() {
                     Stage::Curves { planes, findings, done: done + 1 }
                 } else {
                     Stage::Done
@@ -301,7 +303,7 @@ impl CalibrationCheck {
 
     fn judge(&self, findings: &Findings) -> CheckReport {
         let (units, state) = (findings.units, self.best.state);
-        let (covariance, tiles) = findings.total.covariance(&findings.prior).unwrap_or((Matrix::identity(), 0));
+        let (covariance, tiles) = self.covariance(findings);
         let covariance = covariance * INFLATION + Matrix::identity() * (COMMON_ERROR * COMMON_ERROR);
         let frame = &self.scene.frames[0];
         let cloud: Vec<Vector3<f64>> = self.scene.frames.iter().flat_map(|frame| frame.cloud(&state, 2000)).collect();
@@ -346,6 +348,12 @@ impl CalibrationCheck {
             frames: self.frame_reports(findings),
             sensitivity: vec![],
         }
+    }
+
+    /// Of the estimate, and how many tiles have a say; where sums are beyond rounding nothing is known but what was told.
+    fn covariance(&self, findings: &Findings) -> (Matrix, usize) {
+        let told = || (findings.prior.cholesky().map_or(Matrix::identity() * FARTHEST, |c| c.inverse()), 0);
+        findings.total.covariance(&findings.prior).unwrap_or_else(told)
     }
 
     /// The commonest mistake: P_depth = R P_colour + t.

@@ -114,7 +114,8 @@ impl EdgeField {
             share.gradient += profile.row * slope;
             share.curvature += profile.row * profile.row.transpose() * bound;
         }
-        let left = (own / bounds).clamp(LEAST_LEFT, 1.0);
+        // Without any rim there is no curvature of which something could be left.
+        let left = if bounds > 0.0 { (own / bounds).clamp(LEAST_LEFT, 1.0) } else { 1.0 };
         shares.iter_mut().for_each(|share| share.curvature *= left);
     }
 
@@ -122,7 +123,8 @@ impl EdgeField {
         self.profiles.len()
     }
 }
-/// Offsets and shares of the strongest edges along a normal; `None` where the window leaves the image.
+
+/// Offsets and shares of the strongest edges along a normal; `None` where the rim is off the image.
 fn edges(planes: &Planes, start: [f64; 2], normal: [f64; 2], window: f64, blur: f64) -> Option<Vec<(f64, f64)>> {
     // Samples at half the blur, so that a parabola through three of them finds the top of an edge.
     let pace = (0.5 * blur).max(0.5);

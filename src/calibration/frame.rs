@@ -70,7 +70,7 @@ impl Frame {
 pub(super) struct Projection {
     /// Colour camera's frame; NaN where missing.
     pub positions: Vec<[f32; 3]>,
-    /// Column and row, NaN where missing or off the image.
+    /// Column and row, perhaps off the image; NaN where missing or behind the camera.
     pub pixels: Vec<[f32; 2]>,
     pub is_hidden: Vec<bool>,
 }

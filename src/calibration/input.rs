@@ -5,7 +5,8 @@ use super::lens::RigCamera;
 use super::planes::Planes;
 use crate::check::positive;
 use crate::error::{Error, ErrorKind, Result};
-use crate::view::{ColourSamples, DepthSamples, Size, Transfer};
+use crate::text::Fixed;
+use crate::view::{ColourSamples, DepthSamples, Size, Transfer, to_srgb};
 
 /// Widest image that is worked on as it is: beyond, halves say as much as a depth map can.
 const WIDEST: usize = 1000;
@@ -113,7 +114,7 @@ fn must_be(field: &'static str, length: usize, needed: usize) -> Result<()> {
 /// Intensities in the encoding of a display, 0 .. 1.
 fn encoded(samples: &ColourSamples, transfer: Option<Transfer>, size: Size) -> Result<Vec<[f32; 3]>> {
     let encode = |value: f32| match transfer {
-        Some(Transfer::Linear) => to_srgb(value),
+        Some(Transfer::Linear) => to_srgb(f64::from(value)) as f32,
         _ => value,
     };
     Ok(match samples {
@@ -129,14 +130,12 @@ fn encoded(samples: &ColourSamples, transfer: Option<Transfer>, size: Size) -> R
             must_be("image.data", data.len(), 3 * size.len())?;
             let brightest =
                 data.iter().copied().filter(|value| value.is_finite()).fold(0.0, f32::max).max(f32::MIN_POSITIVE);
-            let value = |value: f32| if value.is_finite() { to_srgb((value / brightest).max(0.0)) } else { 0.0 };
+            let value = |value: f32| {
+                if value.is_finite() { to_srgb(f64::from((value / brightest).max(0.0))) as f32 } else { 0.0 }
+            };
             data.chunks_exact(3).map(|p| [0, 1, 2].map(|k| value(p[k]))).collect()
         }
     })
-}
-
-fn to_srgb(value: f32) -> f32 {
-    if value <= 0.003_130_8 { 12.92 * value } else { (1.055 * f64::from(value).powf(1.0 / 2.4) - 0.055) as f32 }
 }
 
 /// Points in metres, NaN where missing, outside the mask, or where the lens has no ray.
@@ -196,9 +195,8 @@ fn warn(view: &RigView, grid: Size, points: &[[f32; 3]], warnings: &mut Vec<Stri
     let name = &view.name;
     let mut depths: Vec<f32> = points.iter().map(|point| point[2]).filter(|depth| !depth.is_nan()).collect();
     let holes = 1.0 - depths.len() as f64 / points.len() as f64;
-    let percent = (100.0 * holes).round();
     if holes > MANY_HOLES && view.depth_mask.is_none() {
-        warnings.push(format!("{name}: {percent} % of the depth map are holes."));
+        warnings.push(format!("{name}: {} % of the depth map are holes.", Fixed(100.0 * holes, 0)));
     }
     if let DepthSamples::Integer(data) = &view.depth
         && data.iter().all(|&level| level <= LEVELS_OF_A_BYTE)

@@ -370,7 +370,7 @@ mod tests {
         fn a_ray_returns_to_its_pixel(lens in lenses(), column in 0.0..639.0, row in 0.0..479.0) {
             let camera = camera(lens);
             let ray = camera.ray([column, row]);
-            // Some in ten thousand fold within the picture; pixels beyond have no ray.
+            // A few of these lenses fold within the picture; pixels beyond have no ray.
             prop_assume!(ray.is_some());
             let [x, y, z] = ray.unwrap();
             prop_assert_eq!(z, 1.0);

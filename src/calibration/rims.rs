@@ -8,12 +8,12 @@
 use super::frame::{Frame, Projection, clear_gap};
 use crate::view::Size;
 
-/// Holes up to this many pixels wide are looked across: the shadow of 0.5 m before 2 m at a baseline of 75 mm is 60 pixels
-/// of a Kinect wide, that of an object 0.3 m before its wall 15 to 30.
+/// Holes up to this many pixels wide are looked across: the shadow of an object 0.3 m before its wall is 15 to 30 pixels of a
+/// Kinect (baseline 75 mm) wide. One half a metre away before a wall at two has 60, and loses that side of its rims.
 const WIDEST_HOLE: usize = 40;
 /// Neighbours to each side that say how rim and image lie to each other.
 const REACH: isize = 2;
-/// Least cosine between line of sight and surface at a rim before it counts as soft; see [`Rim::weight`].
+/// Near pixels that determine the map from raster to image at a rim.
 const FEWEST_NEIGHBOURS: usize = 4;
 
 /// A point of a rim.

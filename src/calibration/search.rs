@@ -7,9 +7,10 @@
 //! score = mean over rims of s, s = |n . grad I| / (|grad I| + mean of |grad I| around), less half the squared shift in
 //! sigmas of the prior.
 
+use super::edges::EdgeField;
 use super::frame::{Frame, Projection};
 use super::planes::Planes;
-use super::rims;
+use super::rims::Rim;
 use super::unknowns::{State, Units, Vector};
 
 /// Shifts to each side and their pace, pixels of an image 640 wide.
@@ -25,8 +26,12 @@ const STARTS: usize = 16;
 const APART: f64 = 8.0;
 /// Blur of the image, pixels of an image 640 wide: half the pace of the search and some.
 const BLUR: f64 = 1.6;
-/// What counts as around: a box of this reach, in the same pixels.
-const AROUND: f64 = 12.0;
+/// sigma of what counts as around, in the same pixels.
+const AROUND: f64 = 6.0;
+/// Gradients weaker than this are noise: sum of three encoded channels over two pixels.
+const FAINTEST: f32 = 0.03;
+/// sigma of a candidate's turn about the axis, degrees: half of the others', which a turn about the axis cannot hide.
+const TURN_SIGMA: f64 = 2.0;
 /// Weight of the prior against the mean score: a shift of one sigma costs what one rim of fifty on an edge is worth.
 const PRIOR_WEIGHT: f64 = 0.02;
 
@@ -50,9 +55,9 @@ impl EdgeMap {
             }
         }
         let size: Vec<[f32; 3]> = gradient.iter().map(|[x, y]| [x.hypot(*y), 0.0, 0.0]).collect();
-        let around = Planes { size: planes.size, pixels: size.clone() }.blurred((AROUND * scale / 2.0) as f32);
+        let around = Planes { size: planes.size, pixels: size.clone() }.blurred((AROUND * scale) as f32);
         for (index, gradient) in gradient.iter_mut().enumerate() {
-            let total = size[index][0] + around.pixels[index][0] + 0.03;
+            let total = size[index][0] + around.pixels[index][0] + FAINTEST;
             *gradient = gradient.map(|value| value / total);
         }
         Self { width, height, gradient }
@@ -72,27 +77,21 @@ impl EdgeMap {
 pub(super) struct Found {
     pub state: State,
     pub from: State,
-    pub rims: Vec<Vec<rims::Rim>>,
+    pub rims: Vec<Vec<Rim>>,
 }
 
 /// The candidate and other starts near it, best first after it. `sigma` is the prior's, pixels.
 pub(super) fn starts(frames: &[Frame], state: &State, units: &Units, scale: f64, sigma: f64) -> Vec<Found> {
     let maps: Vec<EdgeMap> = frames.iter().map(|frame| EdgeMap::new(&frame.planes, scale)).collect();
     let mut best: Vec<(f64, [f64; 2], usize)> = vec![];
-    let mut views: Vec<(State, Vec<Vec<rims::Rim>>)> = vec![];
+    let mut views: Vec<(State, Vec<Vec<Rim>>)> = vec![];
     for turn in TURNS {
         // About the scene's middle, which a shift then moves.
         let mut step = Vector::zeros();
         step[2] = turn.to_radians() / units.of[2];
         let turned = units.step(state, &step);
-        let rims: Vec<Vec<rims::Rim>> = frames
-            .iter()
-            .map(|frame| {
-                let all = rims::find(frame, &Projection::new(frame, &turned));
-                let stride = all.len().div_ceil(MOST_RIMS).max(1);
-                all.into_iter().step_by(stride).collect()
-            })
-            .collect();
+        let rims: Vec<Vec<Rim>> =
+            frames.iter().map(|frame| EdgeField::rims(frame, &Projection::new(frame, &turned), MOST_RIMS)).collect();
         let count: usize = rims.iter().map(Vec::len).sum();
         let side = (REACH / PACE) as isize;
         for down in -side..=side {
@@ -107,7 +106,7 @@ pub(super) fn starts(frames: &[Frame], state: &State, units: &Units, scale: f64,
                             .sum::<f64>()
                     })
                     .sum();
-                let far = (shift[0].powi(2) + shift[1].powi(2)) / (sigma * sigma) + (turn / 2.0).powi(2);
+                let far = (shift[0].powi(2) + shift[1].powi(2)) / (sigma * sigma) + (turn / TURN_SIGMA).powi(2);
                 best.push((score / count.max(1) as f64 - 0.5 * PRIOR_WEIGHT * far, shift, views.len()));
             }
         }

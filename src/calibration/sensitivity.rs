@@ -21,7 +21,7 @@ const OFFSETS: i32 = 8;
 const MOST_RIMS: usize = 400;
 
 /// Names of the axes in the order of the unknowns.
-pub(super) const AXES: [&str; POSE] = ["rx", "ry", "rz", "tx", "ty", "tz"];
+const AXES: [&str; POSE] = ["rx", "ry", "rz", "tx", "ty", "tz"];
 
 /// One curve.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,36 +36,42 @@ pub struct Sensitivity {
     pub values: Vec<f64>,
 }
 
-/// The curves of one cue along one axis.
-pub(super) fn curve(
+/// The curves of one cue along all axes.
+pub(super) fn curves(
     scene: &Scene,
     round: &Round,
     units: &Units,
     planes: &[Planes],
     (cue, weight): (Cue, f64),
-    axis: usize,
-) -> Sensitivity {
-    let (farthest, unit) =
-        if axis < 3 { (FARTHEST_DEGREES, 1.0_f64.to_radians()) } else { (FARTHEST_MILLIMETRES, 1e-3) };
+) -> Vec<Sensitivity> {
     // Evenly spread in the square root: a minimum is narrow.
-    let offsets: Vec<f64> =
-        (-OFFSETS..=OFFSETS).map(|k| f64::from(k * k.abs()) / f64::from(OFFSETS * OFFSETS) * farthest).collect();
-    let states: Vec<State> = offsets
-        .iter()
-        .map(|offset| {
+    let shares = (-OFFSETS..=OFFSETS).map(|k| f64::from(k * k.abs()) / f64::from(OFFSETS * OFFSETS));
+    let shares: Vec<f64> = shares.collect();
+    let states: Vec<State> = (0..POSE)
+        .flat_map(|axis| shares.iter().map(move |share| (axis, share)))
+        .map(|(axis, share)| {
+            let farthest = if axis < 3 { FARTHEST_DEGREES.to_radians() } else { FARTHEST_MILLIMETRES * 1e-3 };
             let mut step = Vector::zeros();
-            step[axis] = offset * unit / units.of[axis];
+            step[axis] = share * farthest / units.of[axis];
             units.step(&round.state, &step)
         })
         .collect();
-    let mut values = vec![0.0; offsets.len()];
-    for frame in 0..scene.frames.len() {
-        let of_frame = along(scene, round, units, &planes[frame], cue, frame, &states);
+    let mut values = vec![0.0; states.len()];
+    for (frame, planes) in planes.iter().enumerate() {
+        let of_frame = along(scene, round, units, planes, cue, frame, &states);
         values.iter_mut().zip(of_frame).for_each(|(value, more)| *value += weight * more);
     }
-    let middle = values[OFFSETS as usize];
-    values.iter_mut().for_each(|value| *value -= middle);
-    Sensitivity { cue, axis: AXES[axis], offsets, values }
+    let curve = |(axis, values): (usize, &[f64])| {
+        let farthest = if axis < 3 { FARTHEST_DEGREES } else { FARTHEST_MILLIMETRES };
+        let middle = values[OFFSETS as usize];
+        Sensitivity {
+            cue,
+            axis: AXES[axis],
+            offsets: shares.iter().map(|share| share * farthest).collect(),
+            values: values.iter().map(|value| value - middle).collect(),
+        }
+    };
+    values.chunks(shares.len()).enumerate().map(curve).collect()
 }
 
 /// The log likelihood of one frame at some states.

@@ -1,4 +1,4 @@
-//! The masked object on the image's mask, both ways where both views have one.
+//! The masked object on the image's mask, where both views have one.
 //!
 //! Points of the object lie on the mask. The log likelihood is the negative half of the sum over points of
 //! u^2 / (1 + u^2 / U^2), u being how far a point falls outside the mask beyond a tolerance. That alone would shrink the

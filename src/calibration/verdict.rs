@@ -4,8 +4,10 @@
 //! harm there. The error of a candidate is the distance of its pixels from those of the estimate, root mean square over
 //! the scene, and uncertain as the estimate is: its interval holds 95 % of Student's distribution about the estimate, with
 //! as many degrees of freedom as tiles have a say beyond the unknowns. If all of the interval is below the tolerance,
-//! the candidate is consistent; if all of it is above, it is off; else the scene can't tell. So both words are false in
-//! at most one case of forty where the covariance is right.
+//! the candidate is consistent; if all of it is above and the candidate is farther from the estimate than the estimate
+//! from the truth in 95 % of cases, it is off; else the scene can't tell. The second condition is for scenes that say
+//! little: with six unknowns open, hardly any draw is near the candidate, wherever it is. Where the covariance is right,
+//! "consistent" is false in at most one case of forty, and "off" is said of the truth in at most one of twenty.
 
 use nalgebra::{SMatrix, SVector, Vector3};
 
@@ -16,14 +18,14 @@ use crate::text::Fixed;
 /// Reprojection error that passes, pixels of an image 640 wide: 0.4 degrees at a usual focal length, what a
 /// careful calibration by hand reaches and colours of points at rims need.
 pub(super) const TOLERANCE: f64 = 3.5;
-/// Draws from the estimate's distribution; its quantiles are then certain to a twentieth of their sigma.
+/// Draws from the estimate's distribution; its quantiles are then certain to about a twentieth of their sigma.
 const DRAWS: usize = 2000;
 const SEED: u64 = 1;
 /// Share of draws inside an interval.
 const INSIDE: f64 = 0.95;
 /// Degrees of freedom at the least: fewer have no variance.
 const FEWEST_DEGREES: f64 = 3.0;
-/// Above this an axis is not seen by a scene: three sigmas of the prior's turn, or shift.
+/// Above this sigma an axis is not seen by a scene: about half of what the prior alone leaves open.
 const UNSEEN_DEGREES: f64 = 2.0;
 const UNSEEN_METRES: f64 = 0.03;
 
@@ -161,9 +163,10 @@ impl Judge {
         let distance = offset.dot(&(self.inverse * offset));
         let farther = self.draws.iter().filter(|draw| draw.dot(&(self.inverse * **draw)) > distance).count();
         let [low, high] = health.interval;
+        let probability = farther as f64 / self.draws.len() as f64;
         let verdict = if high <= self.tolerance {
             CheckVerdict::Consistent
-        } else if low > self.tolerance {
+        } else if low > self.tolerance && probability < 1.0 - INSIDE {
             CheckVerdict::Off
         } else {
             CheckVerdict::Undecided
@@ -201,7 +204,7 @@ impl Judge {
             off_degrees: turn,
             off_millimetres: shift,
             health,
-            probability: farther as f64 / self.draws.len() as f64,
+            probability,
         }
     }
 }

@@ -284,6 +284,11 @@ fn decode(value: f32, transfer: Transfer) -> f32 {
     }
 }
 
+/// Linear intensity to the encoding of a display: the curve of IEC 61966-2-1, the other way round.
+pub(crate) fn to_srgb(linear: f64) -> f64 {
+    if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

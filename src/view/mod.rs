@@ -18,6 +18,7 @@ mod vectors;
 mod working_size;
 
 pub use camera::{Camera, Pinhole};
+pub(crate) use colour::to_srgb;
 pub use colour::{ColourImage, ColourSamples, ColourView, Transfer};
 pub use depth::{DepthMap, DepthSamples, DepthView};
 pub use depth_noise::DepthNoise;

@@ -4,38 +4,23 @@ import { existsSync, readFileSync } from "node:fs";
 import { before, describe, test } from "node:test";
 import { projectFrame, sampleRig } from "../../pkg/index.js";
 import { decodeColour, decodeDepth } from "../../pkg/files.js";
+import { aboutAxis, degreesBetween as degreesOf, product, transpose, turn } from "../../scripts/tables/protocol/rotations.mjs";
 import { BimodalError, checkCalibration } from "./support.mjs";
-
-const multiply = (a, b) =>
-  Array.from({ length: 9 }, (_, i) => [0, 1, 2].reduce((sum, k) => sum + a[3 * Math.floor(i / 3) + k] * b[3 * k + (i % 3)], 0));
-const apply = (r, v) => [0, 1, 2].map((i) => [0, 1, 2].reduce((sum, k) => sum + r[3 * i + k] * v[k], 0));
-const transpose = (r) => [0, 3, 6, 1, 4, 7, 2, 5, 8].map((k) => r[k]);
-
-/** Rodrigues' formula. */
-function turn(axis, degrees) {
-  const [x, y, z] = axis.map((value) => value / Math.hypot(...axis));
-  const [c, s] = [Math.cos((degrees * Math.PI) / 180), Math.sin((degrees * Math.PI) / 180)];
-  const t = 1 - c;
-  return [t * x * x + c, t * x * y - s * z, t * x * z + s * y, t * x * y + s * z, t * y * y + c, t * y * z - s * x, t * x * z - s * y, t * y * z + s * x, t * z * z + c];
-}
 
 /** A pose after an error about the camera, degrees and metres. */
 const wrong = (pose, axis, degrees, shift = [0, 0, 0]) => {
-  const rotation = turn(axis, degrees);
-  const translation = apply(rotation, pose.translation).map((value, k) => value + shift[k]);
-  return { ...pose, rotation: multiply(rotation, pose.rotation), translation };
+  const rotation = aboutAxis(axis.map((value) => value / Math.hypot(...axis)), degrees);
+  const translation = turn(rotation, pose.translation).map((value, k) => value + shift[k]);
+  return { ...pose, rotation: product(rotation, pose.rotation), translation };
 };
 const inverse = (pose) => {
   const rotation = transpose(pose.rotation);
-  return { ...pose, rotation, translation: apply(rotation, pose.translation).map((value) => -value) };
+  return { ...pose, rotation, translation: turn(rotation, pose.translation).map((value) => -value) };
 };
-const degreesBetween = (a, b) => {
-  const chord = Math.hypot(...a.rotation.map((value, k) => value - b.rotation[k])) / Math.sqrt(8);
-  return (2 * Math.asin(Math.min(1, chord)) * 180) / Math.PI;
-};
+const degreesBetween = (a, b) => degreesOf(a.rotation, b.rotation);
 /** How far two poses put a point from each other, millimetres. */
 const millimetresBetween = (a, b, point) => {
-  const [p, q] = [a, b].map((pose) => apply(pose.rotation, point).map((value, k) => value + pose.translation[k]));
+  const [p, q] = [a, b].map((pose) => turn(pose.rotation, point).map((value, k) => value + pose.translation[k]));
   return 1000 * Math.hypot(...p.map((value, k) => value - q[k]));
 };
 
@@ -110,6 +95,16 @@ describe("a rig before boxes", () => {
     assert.notEqual(coarse.verdict, "consistent");
     const rough = await said({ data: depth.data.map((_, k) => 500 + ((k * 2654435761) % 4001)) });
     assert.match(rough.warnings.join(), /swapped\?/);
+  });
+
+  test("a wall alone can't tell, and says so", async () => {
+    // No depth edge at all: what was told is all that is known.
+    const data = new Uint16Array(frame.depth.data.length).fill(1500);
+    for (const cues of [["edges"], undefined]) {
+      const { verdict, estimate, health } = await checkCalibration([{ ...frame, depth: { ...frame.depth, data } }], { told: truth }, cues && { cues });
+      assert.equal(verdict, "undecided");
+      assert.ok(estimate.translation.every(Number.isFinite) && health.pixels > 3, String(health.pixels));
+    }
   });
 
   test("a frame is laid over its image", async () => {

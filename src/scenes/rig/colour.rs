@@ -5,7 +5,7 @@ use super::raster::{Hits, NOTHING, Rays};
 use super::stage::Stage;
 use crate::pose::Similarity;
 use crate::scenes::flaws::Chance;
-use crate::view::Size;
+use crate::view::{Size, to_srgb};
 
 /// Rays along a side of a pixel.
 pub const SAMPLES: usize = 2;
@@ -67,14 +67,9 @@ pub fn develop(radiance: &[f32], noise: f64, chance: &mut Chance) -> Vec<u8> {
             let value = gain * f64::from(value);
             let sigma = noise * (READ * READ + SHOT * SHOT * value).sqrt();
             let measured = if sigma > 0.0 { value + sigma * chance.gaussian() } else { value };
-            bytes.push((255.0 * srgb(measured.clamp(0.0, 1.0))).round() as u8);
+            bytes.push((255.0 * to_srgb(measured.clamp(0.0, 1.0))).round() as u8);
         }
         bytes.push(u8::MAX);
     }
     bytes
-}
-
-/// The curve of IEC 61966-2-1.
-fn srgb(linear: f64) -> f64 {
-    if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
 }
