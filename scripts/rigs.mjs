@@ -13,15 +13,13 @@ import { aboutAxis, offBy, product, transpose, turn } from "./tables/protocol/ro
 /** Candidates: degrees about a random axis through the colour camera, millimetres in a random direction. */
 const ERRORS = [
   { degrees: 0, millimetres: 0 },
+  { degrees: 0.25, millimetres: 2.5 },
   { degrees: 0.5, millimetres: 5 },
   { degrees: 1, millimetres: 10 },
   { degrees: 2, millimetres: 20 },
   { degrees: 4, millimetres: 60 },
 ];
 const KINDS = ["objects", "sheet", "boxes", "room"];
-/** The 95 % quantile of chi square with six degrees of freedom. */
-const CHI_SQUARE = 12.59;
-
 /** Numbers that follow from a seed (Steele and Vigna's splitmix32), normal by Box and Muller. */
 function chance(seed) {
   let state = seed >>> 0;
@@ -54,35 +52,42 @@ function offset({ estimate, middle }, truth) {
   return [...w, ...v];
 }
 
-/** d^T C^-1 d by elimination. */
-function mahalanobis(covariance, d) {
-  const rows = d.map((value, i) => [...covariance.slice(6 * i, 6 * i + 6), value]);
-  for (let k = 0; k < 6; k++) {
-    for (let i = k + 1; i < 6; i++) {
-      const factor = rows[i][k] / rows[k][k];
-      for (let j = k; j < 7; j++) rows[i][j] -= factor * rows[k][j];
-    }
-  }
-  const x = Array(6).fill(0);
-  for (let i = 5; i >= 0; i--) x[i] = (rows[i][6] - rows[i].slice(i + 1, 6).reduce((sum, value, j) => sum + value * x[i + 1 + j], 0)) / rows[i][i];
-  return d.reduce((sum, value, i) => sum + value * x[i], 0);
-}
-
 const quantile = (values, share) => [...values].sort((a, b) => a - b)[Math.min(values.length - 1, Math.floor(values.length * share))] ?? NaN;
 const percent = (some, all) => (all === 0 ? "-" : `${Math.round((100 * some) / all)} %`);
 
 function print(rows) {
-  console.log("kind     frames  off by          off  undecided  consistent  degrees, mm: median   90 %          within 95 %");
-  const keys = [...new Set(rows.map(({ kind, frames, error }) => JSON.stringify([kind, frames, error])))];
-  for (const key of keys) {
-    const some = rows.filter(({ kind, frames, error }) => JSON.stringify([kind, frames, error]) === key);
-    const [kind, frames, error] = JSON.parse(key);
-    const share = (verdict) => percent(some.filter((row) => row.verdict === verdict).length, some.length).padStart(5);
-    const [degrees, millimetres] = [some.map((row) => row.degrees), some.map((row) => row.millimetres)];
-    const at = (part) => `${quantile(degrees, part).toFixed(2)}, ${quantile(millimetres, part).toFixed(1)}`.padEnd(13);
-    const covered = percent(some.filter((row) => row.chiSquare < CHI_SQUARE).length, some.length);
-    const off = `${error.degrees} deg, ${error.millimetres} mm`.padEnd(13);
-    console.log(`${kind.padEnd(8)} ${String(frames).padEnd(6)}  ${off} ${share("off")}  ${share("undecided")}      ${share("consistent")}       ${at(0.5)}        ${at(0.9)} ${covered}`);
+  const kinds = [...new Set(rows.map(({ kind }) => kind)), "all"];
+  const frames = [...new Set(rows.map((row) => row.frames))];
+  const among = (kind, count) => rows.filter((row) => (kind === "all" || row.kind === kind) && row.frames === count);
+  const of = (kind, count, error) => among(kind, count).filter((row) => row.error.degrees === error.degrees);
+  console.log("The estimate of calibrations that are off, against the truth; of right ones: whether their error lies in the 95 % interval,");
+  console.log("whether the truth lies within 95 % of the distribution, and what is said of them.");
+  console.log("kind     frames  rigs  degrees, mm: median   90 %          interval  distribution  consistent  undecided  off");
+  for (const kind of kinds) {
+    for (const count of frames) {
+      const right = of(kind, count, ERRORS[0]);
+      const wrong = among(kind, count).filter((row) => row.error.degrees > 0);
+      const at = (part) => `${quantile(wrong.map((row) => row.degrees), part).toFixed(2)}, ${quantile(wrong.map((row) => row.millimetres), part).toFixed(1)}`.padEnd(13);
+      const share = (is) => percent(right.filter(is).length, right.length).padStart(6);
+      const inside = share(({ own, interval }) => own >= interval[0] && own <= interval[1]);
+      const within = share(({ probability }) => probability >= 0.05);
+      const said = ["consistent", "undecided", "off"].map((verdict) => share((row) => row.verdict === verdict));
+      console.log(`${kind.padEnd(8)} ${String(count).padEnd(6)} ${String(wrong.length).padStart(5)}  ${at(0.5)}         ${at(0.9)} ${inside}    ${within}        ${said[0]}     ${said[1]}  ${said[2]}`);
+    }
+  }
+  console.log("\nShare of calibrations that are off by so much: said to be off; found by the lower bound of their interval at 5 % false alarms (and at 1 %).");
+  console.log(`kind     frames  ${ERRORS.slice(1).map(({ degrees, millimetres }) => `${degrees} deg, ${millimetres} mm`.padEnd(22)).join("")}`);
+  for (const kind of kinds) {
+    for (const count of frames) {
+      const bounds = of(kind, count, ERRORS[0]).map((row) => row.bounds[0]);
+      const cells = ERRORS.slice(1).map((error) => {
+        const some = of(kind, count, error);
+        const said = percent(some.filter((row) => row.verdict === "off").length, some.length);
+        const [five, one] = [0.95, 0.99].map((part) => percent(some.filter((row) => row.bounds[0] > quantile(bounds, part)).length, some.length));
+        return `${said}; ${five} (${one})`.padEnd(22);
+      });
+      console.log(`${kind.padEnd(8)} ${String(count).padEnd(6)}  ${cells.join("")}`);
+    }
   }
 }
 
@@ -112,7 +117,9 @@ await script(async () => {
       for (let frame = 0; frame < Math.max(...counts); frame++) all.push(await sampleRig({ kind, seed, frame }));
       const truth = all[0].pose;
       for (const frames of counts) {
-        for (const [index, error] of ERRORS.entries()) {
+        // The right one, and one that is off, each time by another size.
+        for (const index of [0, 1 + (seed % (ERRORS.length - 1))]) {
+          const error = ERRORS[index];
           const told = wrong(truth, error, chance(1000 * seed + 10 * index + KINDS.indexOf(kind)));
           const report = await checkCalibration(all.slice(0, frames), { told });
           const d = offset(report, truth);
@@ -122,9 +129,13 @@ await script(async () => {
             frames,
             error,
             verdict: report.verdict,
+            probability: report.candidates.told.probability,
+            interval: report.health.interval,
+            bounds: report.candidates.told.interval,
+            // Mean squares add up: of a right candidate what is left is the estimate's own error, pixels.
+            own: Math.sqrt(Math.max(0, report.candidates.told.pixels ** 2 - report.health.pixels ** 2)),
             degrees: (Math.hypot(...d.slice(0, 3)) * 180) / Math.PI,
             millimetres: 1000 * Math.hypot(...d.slice(3)),
-            chiSquare: mahalanobis(report.covariance, d),
             pixels: report.health.pixels,
           });
         }

@@ -93,21 +93,23 @@ impl Evidence {
     }
 
     /// Covariance of the maximum of this log likelihood with a prior, by leaving out one tile after the other, and how
-    /// many tiles have a say.
-    pub fn covariance(&self, prior: &Matrix) -> Option<(Matrix, usize)> {
+    /// many tiles of equal say would tell it as well (Kish 1965): where a few carry it, it is itself uncertain.
+    pub fn covariance(&self, prior: &Matrix) -> Option<(Matrix, f64)> {
         let curvature = self.curvature() + prior;
         let whole = curvature.cholesky()?.inverse();
         let gradient = self.gradient();
-        let used: Vec<&Share> = self.shares.iter().filter(|share| share.gradient.norm() > 0.0).collect();
         // What is told is off by as much as it says.
         let mut covariance = whole * prior * whole;
-        for share in &used {
+        let (mut sum, mut squares) = (0.0, 0.0);
+        for share in self.shares.iter().filter(|share| share.gradient.norm() > 0.0) {
             // Nothing of the sum is left over at the maximum; what is left of it before belongs to all.
             let own = share.gradient - share.curvature * (whole * gradient);
             let step = (curvature - share.curvature).cholesky().map_or(whole * own, |c| c.solve(&own));
             covariance += step * step.transpose();
+            let say = step.norm_squared();
+            (sum, squares) = (sum + say, squares + say * say);
         }
-        Some((covariance, used.len()))
+        Some((covariance, if squares > 0.0 { sum * sum / squares } else { 0.0 }))
     }
 }
 

@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use super::lens::RigCamera;
 use super::planes::Planes;
 use super::unknowns::State;
-use crate::view::Size;
+use crate::view::{Size, depth_noise};
 
 /// Points behind the nearest one by more than this are hidden, as a share of their distance: twice the step of a Kinect
 /// at three metres.
@@ -13,10 +13,9 @@ const HIDDEN_SHARE: f64 = 0.02;
 /// .. and at least this, metres: flying pixels and noise of a near object.
 const HIDDEN_LEAST: f64 = 0.015;
 
-/// How far behind something has to lie to count as behind it, metres.
-pub(super) fn clear_gap(distance: f64) -> f64 {
-    HIDDEN_LEAST.max(HIDDEN_SHARE * distance)
-}
+/// .. and at least so many sigmas of the map's own noise: a rim compares a depth with one that is continued from two
+/// others, which is off by 1.9 sigma; three of these. At five sigmas in all a receding floor is full of rims.
+const NOISE_SIGMAS: f64 = 6.0;
 
 /// Colours, points, and what is known of the colour camera.
 #[derive(Clone, Debug)]
@@ -33,9 +32,28 @@ pub(super) struct Frame {
     pub has_depth_mask: bool,
     /// Pixels of the image as given in one of `planes`.
     pub pixel: f64,
+    /// Standard deviation of 1 / z, which is about the same at all depths for what measures disparities; 1 / m.
+    noise: f64,
+}
+
+/// Noise of 1 / z of a raster of points: planes are planes in it, whatever their slope.
+fn noise(grid: Size, points: &[[f32; 3]]) -> f64 {
+    let inverses: Vec<f32> = points.iter().map(|point| 1.0 / point[2]).collect();
+    depth_noise::most(grid, &inverses)
 }
 
 impl Frame {
+    /// `points` in the depth camera's frame, metres.
+    pub fn new(name: String, planes: Planes, camera: RigCamera, grid: Size, points: Vec<[f32; 3]>) -> Self {
+        let noise = noise(grid, &points);
+        Self { name, planes, camera, image_mask: None, grid, points, has_depth_mask: false, pixel: 1.0, noise }
+    }
+
+    /// How far behind something has to lie to count as behind it, metres.
+    pub fn clear_gap(&self, distance: f64) -> f64 {
+        HIDDEN_LEAST.max(HIDDEN_SHARE * distance).max(NOISE_SIGMAS * self.noise * distance * distance)
+    }
+
     /// Works on an image of half the size; an odd last row or column is left out.
     pub fn halve(&mut self) {
         let (from, to) = (self.planes.size, self.planes.halved());
@@ -57,12 +75,11 @@ impl Frame {
         (!z.is_nan()).then(|| Vector3::new(x, y, z))
     }
 
-    /// Valid points in the colour camera's frame, thinned to about `most`.
-    pub fn cloud(&self, state: &State, most: usize) -> Vec<Vector3<f64>> {
-        let valid = (0..self.points.len()).filter(|&index| !self.points[index][2].is_nan()).count();
+    /// Valid points, thinned to about `most`.
+    pub fn sparse(&self, most: usize) -> Vec<Vector3<f64>> {
+        let valid = self.points.iter().filter(|point| !point[2].is_nan()).count();
         let stride = valid.div_ceil(most).max(1);
-        let points = (0..self.points.len()).filter_map(|index| self.point(index));
-        points.step_by(stride).map(|point| state.pose.apply(point)).collect()
+        (0..self.points.len()).filter_map(|index| self.point(index)).step_by(stride).collect()
     }
 }
 
@@ -110,7 +127,7 @@ fn hidden(frame: &Frame, positions: &[[f32; 3]], pixels: &[[f32; 2]]) -> Vec<boo
         }
     }
     let is_behind = |(position, pixel): (&[f32; 3], &[f32; 2])| {
-        place(*pixel).is_none_or(|at| position[2] > nearest[at] + clear_gap(f64::from(nearest[at])) as f32)
+        place(*pixel).is_none_or(|at| position[2] > nearest[at] + frame.clear_gap(f64::from(nearest[at])) as f32)
     };
     positions.iter().zip(pixels).map(is_behind).collect()
 }

@@ -87,16 +87,9 @@ impl RigView {
             RigCamera { fx: focal, fy: focal, cx, cy, lens: super::Lens::None }
         });
         camera.validate("image.camera")?;
-        let mut frame = Frame {
-            name: self.name,
-            planes,
-            camera,
-            image_mask: self.image_mask.map(|mask| mask.into_iter().map(|value| value != 0).collect()),
-            grid,
-            points,
-            has_depth_mask: self.depth_mask.is_some(),
-            pixel: 1.0,
-        };
+        let mut frame = Frame::new(self.name, planes, camera, grid, points);
+        frame.image_mask = self.image_mask.map(|mask| mask.into_iter().map(|value| value != 0).collect());
+        frame.has_depth_mask = self.depth_mask.is_some();
         while frame.planes.size.width.max(frame.planes.size.height) > WIDEST {
             frame.halve();
         }
@@ -213,7 +206,11 @@ fn warn(view: &RigView, grid: Size, points: &[[f32; 3]], warnings: &mut Vec<Stri
         } else {
             ""
         };
-        warnings.push(format!("{name}: depths are {metres} m at the median, outside {NEAREST} to {FARTHEST} m{hint}"));
+        warnings.push(format!(
+            "{name}: depths are {metres} m at the median, outside {} to {} m{hint}",
+            crate::text::Brief(f64::from(NEAREST)),
+            crate::text::Brief(f64::from(FARTHEST))
+        ));
     }
     let pairs = (0..points.len() - 1)
         .filter(|index| index % grid.width != grid.width - 1)

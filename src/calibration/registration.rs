@@ -5,6 +5,8 @@
 //! bound of expectation maximisation for edges; the other cues by differences, in the last rounds only, because they
 //! have no basin to speak of.
 
+use nalgebra::Vector3;
+
 use super::cue::Cue;
 use super::differences::differences;
 use super::edges::EdgeField;
@@ -21,9 +23,9 @@ use super::unknowns::{FOCAL, LOSS, Matrix, State, Units, Vector};
 
 /// sigma of edges along the way, pixels of an image 640 wide: from what is left of a few degrees after the coarse search
 /// to what an image resolves. Half as wide each other time.
-pub(super) const SIGMAS: [f64; 6] = [7.0, 5.0, 3.5, 2.5, 1.8, 1.3];
+pub(super) const SIGMAS: [f64; 4] = [4.0, 2.8, 1.9, 1.3];
 /// How many starts go on after each, the best by score.
-pub(super) const SURVIVORS: [usize; 6] = [16, 10, 6, 6, 4, 3];
+pub(super) const SURVIVORS: [usize; 4] = [10, 6, 4, 3];
 /// Rims of all frames that starts are judged by.
 pub(super) const MOST_RIMS_OF_STARTS: usize = 1200;
 /// Rounds at each.
@@ -44,6 +46,8 @@ const MOST_RIMS: usize = 6000;
 const MOST_RIMS_OF_ONE: usize = 1500;
 const MOST_SAMPLES: usize = 24000;
 const MOST_SAMPLES_OF_ONE: usize = 8000;
+/// Points of all frames together that stand for the scene's extent.
+const MOST_POINTS: usize = 3000;
 
 /// How far a candidate is believed, one sigma each: its turn about the colour camera, degrees, and its shift, metres.
 /// Hand-measured rigs are off by so much; what is off by more is found all the same where the scene says so.
@@ -57,6 +61,8 @@ const PRIOR_FOCAL: f64 = 0.15;
 pub(super) struct Scene {
     pub frames: Vec<Frame>,
     pub samples: Vec<Vec<Sample>>,
+    /// Some points of all frames, which stand for the scene where its extent matters.
+    sparse: Vec<Vector3<f64>>,
     pub surface_planes: Vec<Planes>,
     pub cues: Vec<Cue>,
     /// Whether the focal length is looked for.
@@ -98,14 +104,17 @@ impl Scene {
         let most = MOST_SAMPLES_OF_ONE.min(MOST_SAMPLES / frames.len());
         let samples = frames.iter().map(|frame| surface::samples(frame, most)).collect();
         let surface_planes = frames.iter().map(|frame| frame.planes.blurred(SURFACE_BLUR)).collect();
-        Self { frames, samples, surface_planes, cues, focal_is_free, scale }
+        let sparse = frames.iter().flat_map(|frame| frame.sparse(MOST_POINTS / frames.len())).collect();
+        Self { frames, samples, sparse, surface_planes, cues, focal_is_free, scale }
+    }
+
+    /// Some points of all frames in the colour camera's frame.
+    pub fn cloud(&self, state: &State) -> Vec<Vector3<f64>> {
+        self.sparse.iter().map(|point| state.pose.apply(*point)).collect()
     }
 
     pub fn units(&self, state: &State) -> Units {
-        const POINTS: usize = 3000;
-        let cloud: Vec<_> =
-            self.frames.iter().flat_map(|frame| frame.cloud(state, POINTS / self.frames.len())).collect();
-        Units::new(&cloud, &state.camera(&self.frames[0].camera))
+        Units::new(&self.cloud(state), &state.camera(&self.frames[0].camera))
     }
 
     /// The images as edges of this sigma want them.

@@ -5,8 +5,7 @@
 //! own colours has a shadow of missing depth on one side of all that is near. Far sides of rims are not used; they start
 //! wherever that shadow ends.
 
-use super::frame::{Frame, Projection, clear_gap};
-use crate::view::Size;
+use super::frame::{Frame, Projection};
 
 /// Holes up to this many pixels wide are looked across: the shadow of an object 0.3 m before its wall is 15 to 30 pixels of a
 /// Kinect (baseline 75 mm) wide. One half a metre away before a wall at two has 60, and loses that side of its rims.
@@ -31,9 +30,9 @@ pub(super) struct Rim {
 pub(super) fn find(frame: &Frame, projection: &Projection) -> Vec<Rim> {
     let near = |index: usize| {
         let depth = projection.positions[index][2];
-        !depth.is_nan() && !projection.is_hidden[index] && ends_before_farther(frame.grid, projection, index)
+        !depth.is_nan() && !projection.is_hidden[index] && ends_before_farther(frame, projection, index)
     };
-    (0..frame.grid.len()).filter(|&index| near(index)).filter_map(|index| rim(frame.grid, projection, index)).collect()
+    (0..frame.grid.len()).filter(|&index| near(index)).filter_map(|index| rim(frame, projection, index)).collect()
 }
 
 fn depth(projection: &Projection, index: usize) -> f64 {
@@ -41,9 +40,11 @@ fn depth(projection: &Projection, index: usize) -> f64 {
 }
 
 /// Whether any of the next pixels with a depth is clearly farther than the surface goes on.
-fn ends_before_farther(grid: Size, projection: &Projection, index: usize) -> bool {
+fn ends_before_farther(frame: &Frame, projection: &Projection, index: usize) -> bool {
+    let grid = frame.grid;
     let (column, row) = grid.position(index);
     let here = depth(projection, index);
+    let gap = frame.clear_gap(here);
     [(1_isize, 0_isize), (-1, 0), (0, 1), (0, -1)].into_iter().any(|(right, down)| {
         let at = |k: isize| {
             let (column, row) = (column as isize + k * right, row as isize + k * down);
@@ -57,14 +58,16 @@ fn ends_before_farther(grid: Size, projection: &Projection, index: usize) -> boo
         // How steeply the surface falls away already, over the two pixels before.
         let before = at(-2).map_or(f64::NAN, |index| depth(projection, index));
         let slope = if before.is_nan() { 0.0 } else { ((here - before) / 2.0).max(0.0) };
-        depth(projection, next) - here - slope.min(clear_gap(here)) * steps as f64 > clear_gap(here)
+        depth(projection, next) - here - slope.min(gap) * steps as f64 > gap
     })
 }
 
 /// Position and normal of the rim at a near pixel: the map from raster to image is fitted to the near neighbours.
-fn rim(grid: Size, projection: &Projection, index: usize) -> Option<Rim> {
+fn rim(frame: &Frame, projection: &Projection, index: usize) -> Option<Rim> {
+    let grid = frame.grid;
     let (column, row) = grid.position(index);
     let here = depth(projection, index);
+    let gap = frame.clear_gap(here);
     let centre = projection.pixels[index];
     if centre[0].is_nan() {
         return None;
@@ -80,7 +83,7 @@ fn rim(grid: Size, projection: &Projection, index: usize) -> Option<Rim> {
                 continue;
             }
             let other = grid.index(column as usize, row as usize);
-            let is_near = (depth(projection, other) - here).abs() <= clear_gap(here);
+            let is_near = (depth(projection, other) - here).abs() <= gap;
             let (x, y) = (right as f64, down as f64);
             // Nearer ones belong to something before the rim.
             let side = if is_near || depth(projection, other) < here { -1.0 } else { 1.0 };

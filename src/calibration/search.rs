@@ -1,37 +1,38 @@
-//! Where to start: the image shifts and turns that bring rims onto edges.
+//! Where to start: what may be wrong with a candidate, tried on a lattice.
 //!
-//! What a wrong calibration does to an image is mostly a shift, for a turn of the camera about its x and y as for a
-//! shift of it, and a turn about the optical axis. Rims are laid onto the image's edges at all of them within reach, and
-//! the best few that are no neighbours are starts for the registration, beside the candidate itself.
+//! The prior says how far a candidate may be off. In the directions along which it moves the scene's pixels the most
+//! (eigenvectors of J^T J in sigmas of the prior, J being how rims move) that is tens of pixels for two of them, which
+//! are shifts of the image, some for a turn about the optical axis, a shift along it and an unknown focal length, and few
+//! for turns and shifts that cancel at one depth but not at another. A lattice of one pace in pixels covers all of them;
+//! rims move along straight lines on it. The best few that are no neighbours are starts for the registration.
 //!
-//! score = mean over rims of s, s = |n . grad I| / (|grad I| + mean of |grad I| around), less half the squared shift in
-//! sigmas of the prior.
+//! score = mean over rims of s, s = |n . grad I| / (|grad I| + mean of |grad I| around), less half the squared sigmas.
 
-use super::edges::EdgeField;
-use super::frame::{Frame, Projection};
+use super::frame::Frame;
 use super::planes::Planes;
+use super::registration::Scene;
 use super::rims::Rim;
-use super::unknowns::{State, Units, Vector};
+use super::unknowns::{Matrix, State, UNKNOWNS, Units, Vector};
+use crate::numeric::eigen::symmetric_eigen;
 
-/// Shifts to each side and their pace, pixels of an image 640 wide.
-const REACH: f64 = 48.0;
-const PACE: f64 = 2.0;
-/// Turns about the optical axis, degrees; none first.
-const TURNS: [f64; 5] = [0.0, -1.5, 1.5, -3.0, 3.0];
-/// Rims of a frame that are laid onto its edges.
-const MOST_RIMS: usize = 500;
-/// Starts beside the candidate.
+/// Pace of the lattice, root mean square over rims, pixels of an image 640 wide.
+const PACE: f64 = 4.0;
+/// How far it reaches, sigmas of the prior.
+const REACH: f64 = 1.5;
+/// Places of the lattice at most, some tenths of a second of work; the pace grows until so many are enough.
+const MOST_PLACES: f64 = 6e4;
+/// Rims of all frames that are laid onto edges.
+const MOST_RIMS: usize = 400;
+/// Starts.
 const STARTS: usize = 16;
-/// Two starts differ by this much, pixels.
-const APART: f64 = 8.0;
-/// Blur of the image, pixels of an image 640 wide: half the pace of the search and some.
-const BLUR: f64 = 1.6;
-/// sigma of what counts as around, in the same pixels.
-const AROUND: f64 = 6.0;
+/// Two starts differ by this much, paces.
+const APART: f64 = 1.5;
+/// Blur of the image, paces: an edge is seen from half a pace away.
+const BLUR: f64 = 0.5;
+/// sigma of what counts as around, paces.
+const AROUND: f64 = 2.0;
 /// Gradients weaker than this are noise: sum of three encoded channels over two pixels.
 const FAINTEST: f32 = 0.03;
-/// sigma of a candidate's turn about the axis, degrees: half of the others', which a turn about the axis cannot hide.
-const TURN_SIGMA: f64 = 2.0;
 /// Weight of the prior against the mean score: a shift of one sigma costs what one rim of fifty on an edge is worth.
 const PRIOR_WEIGHT: f64 = 0.02;
 
@@ -43,8 +44,8 @@ struct EdgeMap {
 }
 
 impl EdgeMap {
-    fn new(planes: &Planes, scale: f64) -> Self {
-        let smooth = planes.blurred((BLUR * scale) as f32);
+    fn new(planes: &Planes, pace: f64) -> Self {
+        let smooth = planes.blurred((BLUR * pace) as f32);
         let (width, height) = (planes.size.width, planes.size.height);
         let light: Vec<f32> = smooth.pixels.iter().map(|p| p[0] + p[1] + p[2]).collect();
         let mut gradient = vec![[0.0_f32; 2]; light.len()];
@@ -55,7 +56,7 @@ impl EdgeMap {
             }
         }
         let size: Vec<[f32; 3]> = gradient.iter().map(|[x, y]| [x.hypot(*y), 0.0, 0.0]).collect();
-        let around = Planes { size: planes.size, pixels: size.clone() }.blurred((AROUND * scale) as f32);
+        let around = Planes { size: planes.size, pixels: size.clone() }.blurred((AROUND * pace) as f32);
         for (index, gradient) in gradient.iter_mut().enumerate() {
             let total = size[index][0] + around.pixels[index][0] + FAINTEST;
             *gradient = gradient.map(|value| value / total);
@@ -63,73 +64,143 @@ impl EdgeMap {
         Self { width, height, gradient }
     }
 
-    fn at(&self, [column, row]: [f64; 2], normal: [f64; 2]) -> f64 {
-        let (column, row) = (column.round(), row.round());
-        if column < 0.0 || row < 0.0 || column >= self.width as f64 || row >= self.height as f64 {
+    fn at(&self, [column, row]: [f32; 2], normal: [f32; 2]) -> f32 {
+        // The nearest pixel: what is below zero rounds to zero as a whole number.
+        let (column, row) = (column + 0.5, row + 0.5);
+        if column < 0.0 || row < 0.0 || column >= self.width as f32 || row >= self.height as f32 {
             return 0.0;
         }
-        let [x, y] = self.gradient[row as usize * self.width + column as usize].map(f64::from);
+        let [x, y] = self.gradient[row as usize * self.width + column as usize];
         (x * normal[0] + y * normal[1]).abs()
     }
 }
 
-/// A start, with the rims of a state that differs from it by a shift alone.
-pub(super) struct Found {
-    pub state: State,
-    pub from: State,
-    pub rims: Vec<Vec<Rim>>,
+/// A rim where the candidate puts it, and how it moves with a pace along each direction.
+struct Mark {
+    frame: usize,
+    pixel: [f32; 2],
+    normal: [f32; 2],
+    motion: [[f32; 2]; UNKNOWNS],
 }
 
-/// The candidate and other starts near it, best first after it. `sigma` is the prior's, pixels.
-pub(super) fn starts(frames: &[Frame], state: &State, units: &Units, scale: f64, sigma: f64) -> Vec<Found> {
-    let maps: Vec<EdgeMap> = frames.iter().map(|frame| EdgeMap::new(&frame.planes, scale)).collect();
-    let mut best: Vec<(f64, [f64; 2], usize)> = vec![];
-    let mut views: Vec<(State, Vec<Vec<Rim>>)> = vec![];
-    for turn in TURNS {
-        // About the scene's middle, which a shift then moves.
-        let mut step = Vector::zeros();
-        step[2] = turn.to_radians() / units.of[2];
-        let turned = units.step(state, &step);
-        let rims: Vec<Vec<Rim>> =
-            frames.iter().map(|frame| EdgeField::rims(frame, &Projection::new(frame, &turned), MOST_RIMS)).collect();
-        let count: usize = rims.iter().map(Vec::len).sum();
-        let side = (REACH / PACE) as isize;
-        for down in -side..=side {
-            for right in -side..=side {
-                let shift = [right, down].map(|k| k as f64 * PACE * scale);
-                let score: f64 = maps
-                    .iter()
-                    .zip(&rims)
-                    .map(|(map, rims)| {
-                        rims.iter()
-                            .map(|rim| map.at([rim.pixel[0] + shift[0], rim.pixel[1] + shift[1]], rim.normal))
-                            .sum::<f64>()
-                    })
-                    .sum();
-                let far = (shift[0].powi(2) + shift[1].powi(2)) / (sigma * sigma) + (turn / TURN_SIGMA).powi(2);
-                best.push((score / count.max(1) as f64 - 0.5 * PRIOR_WEIGHT * far, shift, views.len()));
+/// Places k_0 .. k_7, each from -reach to reach, paces along directions that move rims the most first.
+struct Lattice {
+    /// A step of one pace along each.
+    steps: [Vector; UNKNOWNS],
+    /// Sigmas of a pace along each.
+    sigmas: [f64; UNKNOWNS],
+    reach: [i8; UNKNOWNS],
+}
+
+type Place = [i8; UNKNOWNS];
+
+/// The rims as `state` sees them, and starts near it, itself the first.
+pub(super) fn starts(scene: &Scene, state: &State) -> (Vec<Vec<Rim>>, Vec<State>) {
+    let units = scene.units(state);
+    let rims = scene.rims(state, MOST_RIMS);
+    let rows: Vec<(usize, Rim, [Vector; 2])> = rows(&scene.frames, state, &units, &rims);
+    let mut pace = PACE * scene.scale;
+    let Some(lattice) = Lattice::new(&rows, &scene.prior(&units), &mut pace) else { return (rims, vec![*state]) };
+    let marks: Vec<Mark> = rows.iter().map(|row| lattice.mark(row)).collect();
+    let maps: Vec<EdgeMap> = scene.frames.iter().map(|frame| EdgeMap::new(&frame.planes, pace)).collect();
+    let step = |place: &Place| {
+        let parts = place.iter().zip(&lattice.steps).map(|(&k, step)| step * f64::from(k));
+        units.step(state, &parts.sum())
+    };
+    let states = lattice.best(&maps, &marks).iter().map(step).collect();
+    (rims, states)
+}
+
+/// How the pixel of each rim moves with the unknowns.
+fn rows(frames: &[Frame], state: &State, units: &Units, rims: &[Vec<Rim>]) -> Vec<(usize, Rim, [Vector; 2])> {
+    let of_frame = |(index, (frame, rims)): (usize, (&Frame, &Vec<Rim>))| -> Vec<_> {
+        let camera = state.camera(&frame.camera);
+        let row = |rim: &Rim| {
+            let (_, rows) = units.rows(&state.pose.apply(frame.point(rim.index)?), &camera)?;
+            Some((index, *rim, rows))
+        };
+        rims.iter().filter_map(row).collect()
+    };
+    frames.iter().zip(rims).enumerate().flat_map(of_frame).collect()
+}
+
+impl Lattice {
+    /// `pace` in pixels, wider where the lattice would have too many places.
+    fn new(rows: &[(usize, Rim, [Vector; 2])], prior: &Matrix, pace: &mut f64) -> Option<Self> {
+        let squares: Matrix = rows.iter().flat_map(|(_, _, rows)| rows).map(|row| row * row.transpose()).sum();
+        let motion = squares / (rows.len() as f64).max(1.0);
+        let told = symmetric_eigen(prior)?;
+        let inverse_roots = told.values.map(|value| 1.0 / value.max(f64::MIN_POSITIVE).sqrt());
+        let root = told.vectors * Matrix::from_diagonal(&inverse_roots) * told.vectors.transpose();
+        let eigen = symmetric_eigen(&(root * motion * root))?;
+        let mut order: [usize; UNKNOWNS] = std::array::from_fn(|k| k);
+        order.sort_unstable_by(|&a, &b| eigen.values[b].total_cmp(&eigen.values[a]));
+        // Pixels of a sigma along each.
+        let lengths = order.map(|k| eigen.values[k].max(f64::MIN_POSITIVE).sqrt());
+        let reach = |pace: f64| lengths.map(|length| (REACH * length / pace).min(f64::from(i8::MAX)) as i8);
+        while reach(*pace).iter().map(|&k| 2.0 * f64::from(k) + 1.0).product::<f64>() > MOST_PLACES {
+            *pace *= 1.1;
+        }
+        let sigmas = lengths.map(|length| *pace / length);
+        let steps = std::array::from_fn(|k| root * eigen.vectors.column(order[k]) * sigmas[k]);
+        Some(Self { steps, sigmas, reach: reach(*pace) })
+    }
+
+    fn mark(&self, (frame, rim, rows): &(usize, Rim, [Vector; 2])) -> Mark {
+        let narrow = |pair: [f64; 2]| pair.map(|value| value as f32);
+        let motion = std::array::from_fn(|k| [0, 1].map(|axis| rows[axis].dot(&self.steps[k]) as f32));
+        Mark { frame: *frame, pixel: narrow(rim.pixel), normal: narrow(rim.normal), motion }
+    }
+
+    /// The best places that are no neighbours, after the middle.
+    fn best(&self, maps: &[EdgeMap], marks: &[Mark]) -> Vec<Place> {
+        let mut scores: Vec<(f64, Place)> = vec![];
+        let mut pixels = vec![[0.0; 2]; marks.len()];
+        let mut place = self.reach.map(|k| -k);
+        loop {
+            // All but the first two are the same for a whole plane of places.
+            for (pixel, mark) in pixels.iter_mut().zip(marks) {
+                *pixel = (2..UNKNOWNS).fold(mark.pixel, |at, k| moved(at, mark.motion[k], place[k]));
+            }
+            for across in -self.reach[0]..=self.reach[0] {
+                for down in -self.reach[1]..=self.reach[1] {
+                    (place[0], place[1]) = (across, down);
+                    scores.push((self.score(maps, marks, &pixels, &place), place));
+                }
+            }
+            let Some(next) = (2..UNKNOWNS).find(|&k| place[k] < self.reach[k]) else { break };
+            place[next] += 1;
+            (2..next).for_each(|k| place[k] = -self.reach[k]);
+        }
+        crate::numeric::sort_descending(&mut scores, |entry| entry.0);
+        let mut chosen = vec![[0; UNKNOWNS]];
+        for (_, place) in scores {
+            if chosen.iter().all(|other| squared_distance(other, &place) > APART * APART) {
+                chosen.push(place);
+            }
+            if chosen.len() > STARTS {
+                break;
             }
         }
-        views.push((turned, rims));
+        chosen
     }
-    crate::numeric::sort_descending(&mut best, |entry| entry.0);
-    let mut chosen: Vec<([f64; 2], usize)> = vec![([0.0; 2], 0)];
-    for (_, place, view) in best {
-        let is_apart = |other: &([f64; 2], usize)| {
-            (place[0] - other.0[0]).hypot(place[1] - other.0[1]) > APART * scale || view != other.1
+
+    /// Of a place, its marks lying where all but its first two directions put them.
+    fn score(&self, maps: &[EdgeMap], marks: &[Mark], pixels: &[[f32; 2]], place: &Place) -> f64 {
+        let at = |(mark, pixel): (&Mark, &[f32; 2])| {
+            let pixel = moved(moved(*pixel, mark.motion[0], place[0]), mark.motion[1], place[1]);
+            maps[mark.frame].at(pixel, mark.normal)
         };
-        if chosen.iter().all(is_apart) {
-            chosen.push((place, view));
-        }
-        if chosen.len() > STARTS {
-            break;
-        }
+        let sum: f32 = marks.iter().zip(pixels).map(at).sum();
+        let far: f64 = place.iter().zip(&self.sigmas).map(|(&k, sigma)| (f64::from(k) * sigma).powi(2)).sum();
+        f64::from(sum) / (marks.len() as f64).max(1.0) - 0.5 * PRIOR_WEIGHT * far
     }
-    let found = |(shift, view): ([f64; 2], usize)| {
-        let (from, rims) = &views[view];
-        let mut step = Vector::zeros();
-        (step[3], step[4]) = (shift[0], shift[1]);
-        Found { state: units.step(from, &step), from: *from, rims: rims.clone() }
-    };
-    chosen.into_iter().map(found).collect()
+}
+
+fn moved(pixel: [f32; 2], motion: [f32; 2], paces: i8) -> [f32; 2] {
+    [0, 1].map(|axis| pixel[axis] + f32::from(paces) * motion[axis])
+}
+
+fn squared_distance(a: &Place, b: &Place) -> f64 {
+    a.iter().zip(b).map(|(&a, &b)| (f64::from(a) - f64::from(b)).powi(2)).sum()
 }

@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::numeric::eigen::symmetric_eigen;
 
-use super::frame::{Frame, clear_gap};
+use super::frame::Frame;
 
 /// Neighbours to each side of a plane's fit: wide enough for the steps of a quantised map.
 const REACH: usize = 3;
@@ -33,7 +33,7 @@ fn sample(frame: &Frame, column: usize, row: usize) -> Option<Sample> {
     let grid = frame.grid;
     let index = grid.index(column, row);
     let point = frame.point(index)?;
-    let gap = clear_gap(point.norm());
+    let gap = frame.clear_gap(point.norm());
     let (mut count, mut sum, mut squares) = (0_usize, Vector3::zeros(), Matrix3::zeros());
     for row in row.saturating_sub(REACH)..=(row + REACH).min(grid.height - 1) {
         for column in column.saturating_sub(REACH)..=(column + REACH).min(grid.width - 1) {

@@ -3,7 +3,7 @@
 //! A calibration is worth what its reprojection error at the scene's depth is: a turn and a shift that cancel there do no
 //! harm there. The error of a candidate is the distance of its pixels from those of the estimate, root mean square over
 //! the scene, and uncertain as the estimate is: its interval holds 95 % of Student's distribution about the estimate, with
-//! as many degrees of freedom as tiles have a say beyond the unknowns. If all of the interval is below the tolerance,
+//! as many degrees of freedom as tiles have a say in its covariance. If all of the interval is below the tolerance,
 //! the candidate is consistent; if all of it is above and the candidate is farther from the estimate than the estimate
 //! from the truth in 95 % of cases, it is off; else the scene can't tell. The second condition is for scenes that say
 //! little: with six unknowns open, hardly any draw is near the candidate, wherever it is. Where the covariance is right,
@@ -88,7 +88,7 @@ impl Judge {
         camera: &super::RigCamera,
         cloud: &[Vector3<f64>],
         covariance: &Matrix,
-        tiles: usize,
+        tiles: f64,
         pixel: f64,
         width: f64,
     ) -> Self {
@@ -104,7 +104,7 @@ impl Judge {
         motion *= pixel * pixel / f64::max(count, 1.0);
         let covariance: PoseMatrix = covariance.fixed_view::<POSE, POSE>(0, 0).into();
         let root = covariance.cholesky().map_or_else(PoseMatrix::zeros, |c| c.l());
-        let freedom = (tiles as f64 - POSE as f64).max(FEWEST_DEGREES);
+        let freedom = tiles.max(FEWEST_DEGREES);
         let mut random = Random::new(SEED, 0);
         let mut normal = || (0..12).map(|_| random.uniform()).sum::<f64>() - 6.0;
         let draws = (0..DRAWS)

@@ -121,6 +121,11 @@ pub(crate) fn white_noise(size: Size, heights: &[f32]) -> f64 {
     noise::of_fourth_differences(fourths, 2 * size.len())
 }
 
+/// An upper bound of the noise of a raster: what there is of relief within two pixels passes for noise.
+pub(crate) fn most(size: Size, values: &[f32]) -> f64 {
+    variance_of_second_differences(size, values, SPANS[0], &mut vec![]).map_or(0.0, |variance| (variance / 6.0).sqrt())
+}
+
 /// Variance of the second differences of this span along both axes, without the largest; `None` where there are few.
 fn variance_of_second_differences(size: Size, heights: &[f32], span: usize, sizes: &mut Vec<f32>) -> Option<f64> {
     sizes.clear();
