@@ -7,8 +7,8 @@
 import { writeFileSync } from "node:fs";
 import { parseArgs } from "node:util";
 import { build } from "./build.mjs";
+import { CHI_SQUARE, chance, mahalanobis, offset, percent, quantile, sizes, wrong } from "./rigs/draws.mjs";
 import { Failure, inRoot, say, script, seconds } from "./shell.mjs";
-import { aboutAxis, offBy, product, transpose, turn } from "./tables/protocol/rotations.mjs";
 
 /** Candidates: degrees about a random axis through the colour camera, millimetres in a random direction. */
 const ERRORS = [
@@ -19,58 +19,6 @@ const ERRORS = [
   { degrees: 4, millimetres: 60 },
 ];
 const KINDS = ["objects", "sheet", "boxes", "room"];
-/** The 95 % quantile of chi square with six degrees of freedom. */
-const CHI_SQUARE = 12.59;
-
-/** Numbers that follow from a seed (Steele and Vigna's splitmix32), normal by Box and Muller. */
-function chance(seed) {
-  let state = seed >>> 0;
-  const uniform = () => {
-    state = (state + 0x9e3779b9) >>> 0;
-    let z = state;
-    z = Math.imul(z ^ (z >>> 16), 0x21f0aaad);
-    z = Math.imul(z ^ (z >>> 15), 0x735a2d97);
-    return ((z ^ (z >>> 15)) >>> 0) / 2 ** 32;
-  };
-  const normal = () => Math.sqrt(-2 * Math.log(1 - uniform())) * Math.cos(2 * Math.PI * uniform());
-  return () => {
-    const vector = [normal(), normal(), normal()];
-    return vector.map((value) => value / Math.hypot(...vector));
-  };
-}
-
-function wrong(pose, { degrees, millimetres }, direction) {
-  const rotation = aboutAxis(direction(), degrees);
-  const shift = direction().map((value) => (value * millimetres) / 1000);
-  const translation = turn(rotation, pose.translation).map((value, k) => value + shift[k]);
-  return { ...pose, rotation: product(rotation, pose.rotation), translation };
-}
-
-/** Rotation vector and shift of the scene's middle from the estimate to the truth. */
-function offset({ estimate, middle }, truth) {
-  const w = offBy(truth.rotation, estimate.rotation).map((degrees) => (degrees * Math.PI) / 180);
-  const inDepth = turn(transpose(estimate.rotation), middle.map((value, k) => value - estimate.translation[k]));
-  const v = turn(truth.rotation, inDepth).map((value, k) => value + truth.translation[k] - middle[k]);
-  return [...w, ...v];
-}
-
-/** d^T C^-1 d by elimination. */
-function mahalanobis(covariance, d) {
-  const rows = d.map((value, i) => [...covariance.slice(6 * i, 6 * i + 6), value]);
-  for (let k = 0; k < 6; k++) {
-    for (let i = k + 1; i < 6; i++) {
-      const factor = rows[i][k] / rows[k][k];
-      for (let j = k; j < 7; j++) rows[i][j] -= factor * rows[k][j];
-    }
-  }
-  const x = Array(6).fill(0);
-  for (let i = 5; i >= 0; i--) x[i] = (rows[i][6] - rows[i].slice(i + 1, 6).reduce((sum, value, j) => sum + value * x[i + 1 + j], 0)) / rows[i][i];
-  return d.reduce((sum, value, i) => sum + value * x[i], 0);
-}
-
-const quantile = (values, share) => [...values].sort((a, b) => a - b)[Math.min(values.length - 1, Math.floor(values.length * share))] ?? NaN;
-const percent = (some, all) => (all === 0 ? "-" : `${Math.round((100 * some) / all)} %`);
-
 function print(rows) {
   console.log("kind     frames  off by          off  undecided  consistent  degrees, mm: median   90 %          within 95 %");
   const keys = [...new Set(rows.map(({ kind, frames, error }) => JSON.stringify([kind, frames, error])))];
@@ -113,17 +61,16 @@ await script(async () => {
       const truth = all[0].pose;
       for (const frames of counts) {
         for (const [index, error] of ERRORS.entries()) {
-          const told = wrong(truth, error, chance(1000 * seed + 10 * index + KINDS.indexOf(kind)));
+          const told = wrong(truth, error, chance(1000 * seed + 10 * index + KINDS.indexOf(kind)).direction);
           const report = await checkCalibration(all.slice(0, frames), { told });
-          const d = offset(report, truth);
+          const d = offset(report.estimate, truth, report.middle);
           rows.push({
             kind,
             seed,
             frames,
             error,
             verdict: report.verdict,
-            degrees: (Math.hypot(...d.slice(0, 3)) * 180) / Math.PI,
-            millimetres: 1000 * Math.hypot(...d.slice(3)),
+            ...sizes(d),
             chiSquare: mahalanobis(report.covariance, d),
             pixels: report.health.pixels,
           });
