@@ -46,7 +46,7 @@ const grey = ({ width, height, data }) => {
 };
 
 /** Cosine between normal and ray of each point, the depth camera at `eye`. */
-function shading(points, { width, height }, eye) {
+export function shading(points, { width, height }, eye) {
   const values = new Float32Array(width * height).fill(NaN);
   for (let row = REACH; row < height - REACH; row++) {
     for (let column = REACH; column < width - REACH; column++) {

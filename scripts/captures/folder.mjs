@@ -13,5 +13,7 @@ export async function folderOf({ readRigFile, readRigFolder }, folder, calibrati
   if (poses.length === 0) throw new Failure(`${calibration} holds no extrinsics.`);
   const blind = frames.find(({ image, depth }) => !image.camera || !(depth.camera || depth.points));
   if (blind) throw new Failure(`${blind.name}: both cameras' intrinsics are needed.`);
+  const bent = ({ camera }) => camera && (camera.model === "fisheye" || camera.distortion?.length > 5);
+  if (frames.some(({ image, depth }) => bent(image) || bent(depth))) throw new Failure("Only Brown's lens with up to five coefficients is turned here.");
   return frames.map((frame) => rigSight(frame, poses[0].pose));
 }

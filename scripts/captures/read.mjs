@@ -47,7 +47,10 @@ export function sevenScenes(from, to, { decodeColour, decodeDepth }) {
 }
 
 /** A frame of a rig that was read from files. */
-export const rigSight = ({ name, image, depth }, truth) => sight(name, { image, depth: { ...depth, unit: depth.unit ?? MILLIMETRE } }, truth);
+export function rigSight({ name, image, depth }, truth) {
+  const unit = depth.unit ?? (depth.data instanceof Uint16Array ? MILLIMETRE : 1);
+  return sight(name, { image, depth: { ...depth, unit } }, truth);
+}
 
 const numbers = (text) =>
   text.toString().split("\n").filter((line) => line.trim() !== "").map((line) => line.trim().split(/\s+/).map(Number));
