@@ -1,4 +1,4 @@
-// Real pairs from the data beside the project, and how the loop fares on them; shared by `pairs.mjs` and the tests.
+// Real pairs from the data beside the project, and how the loop fares on them; shared by `pairs.mjs`, `captures.mjs` and the tests.
 import { existsSync, readFileSync } from "node:fs";
 import { join } from "node:path";
 import { inRoot } from "./shell.mjs";
@@ -7,13 +7,13 @@ import { inRoot } from "./shell.mjs";
 const DATA = inRoot("../shared/data");
 
 /** Kinect v1, the nominal values of the data set's authors. */
-const KINECT = { fx: 525, fy: 525, cx: 319.5, cy: 239.5 };
+export const KINECT = { fx: 525, fy: 525, cx: 319.5, cy: 239.5 };
 const MILLIMETRE = 0.001;
 
 export const hasData = () => existsSync(DATA);
 export const MISSING = `no data in ${DATA}`;
 
-const bytes = (...path) => readFileSync(join(DATA, ...path));
+export const bytes = (...path) => readFileSync(join(DATA, ...path));
 
 /** Colour of one frame and depth of another one, which the same camera took a moment later, or of the same. */
 function frames(object, [first, second], { decodeColour, decodeDepth, decodeMask }) {

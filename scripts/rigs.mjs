@@ -7,8 +7,8 @@
 import { writeFileSync } from "node:fs";
 import { parseArgs } from "node:util";
 import { build } from "./build.mjs";
+import { chance, offset, percent, quantile, sizes, wrong } from "./rigs/draws.mjs";
 import { Failure, inRoot, say, script, seconds } from "./shell.mjs";
-import { aboutAxis, offBy, product, transpose, turn } from "./tables/protocol/rotations.mjs";
 
 /** Candidates: degrees about a random axis through the colour camera, millimetres in a random direction. */
 const ERRORS = [
@@ -20,40 +20,6 @@ const ERRORS = [
   { degrees: 4, millimetres: 60 },
 ];
 const KINDS = ["objects", "sheet", "boxes", "room"];
-/** Numbers that follow from a seed (Steele and Vigna's splitmix32), normal by Box and Muller. */
-function chance(seed) {
-  let state = seed >>> 0;
-  const uniform = () => {
-    state = (state + 0x9e3779b9) >>> 0;
-    let z = state;
-    z = Math.imul(z ^ (z >>> 16), 0x21f0aaad);
-    z = Math.imul(z ^ (z >>> 15), 0x735a2d97);
-    return ((z ^ (z >>> 15)) >>> 0) / 2 ** 32;
-  };
-  const normal = () => Math.sqrt(-2 * Math.log(1 - uniform())) * Math.cos(2 * Math.PI * uniform());
-  return () => {
-    const vector = [normal(), normal(), normal()];
-    return vector.map((value) => value / Math.hypot(...vector));
-  };
-}
-
-function wrong(pose, { degrees, millimetres }, direction) {
-  const rotation = aboutAxis(direction(), degrees);
-  const shift = direction().map((value) => (value * millimetres) / 1000);
-  const translation = turn(rotation, pose.translation).map((value, k) => value + shift[k]);
-  return { ...pose, rotation: product(rotation, pose.rotation), translation };
-}
-
-/** Rotation vector and shift of the scene's middle from the estimate to the truth. */
-function offset({ estimate, middle }, truth) {
-  const w = offBy(truth.rotation, estimate.rotation).map((degrees) => (degrees * Math.PI) / 180);
-  const inDepth = turn(transpose(estimate.rotation), middle.map((value, k) => value - estimate.translation[k]));
-  const v = turn(truth.rotation, inDepth).map((value, k) => value + truth.translation[k] - middle[k]);
-  return [...w, ...v];
-}
-
-const quantile = (values, share) => [...values].sort((a, b) => a - b)[Math.min(values.length - 1, Math.floor(values.length * share))] ?? NaN;
-const percent = (some, all) => (all === 0 ? "-" : `${Math.round((100 * some) / all)} %`);
 
 function print(rows) {
   const kinds = [...new Set(rows.map(({ kind }) => kind)), "all"];
@@ -120,9 +86,9 @@ await script(async () => {
         // The right one, and one that is off, each time by another size.
         for (const index of [0, 1 + (seed % (ERRORS.length - 1))]) {
           const error = ERRORS[index];
-          const told = wrong(truth, error, chance(1000 * seed + 10 * index + KINDS.indexOf(kind)));
+          const told = wrong(truth, error, chance(1000 * seed + 10 * index + KINDS.indexOf(kind)).direction);
           const report = await checkCalibration(all.slice(0, frames), { told });
-          const d = offset(report, truth);
+          const d = offset(report.estimate, truth, report.middle);
           rows.push({
             kind,
             seed,
@@ -134,8 +100,7 @@ await script(async () => {
             bounds: report.candidates.told.interval,
             // Mean squares add up: of a right candidate what is left is the estimate's own error, pixels.
             own: Math.sqrt(Math.max(0, report.candidates.told.pixels ** 2 - report.health.pixels ** 2)),
-            degrees: (Math.hypot(...d.slice(0, 3)) * 180) / Math.PI,
-            millimetres: 1000 * Math.hypot(...d.slice(3)),
+            ...sizes(d),
             pixels: report.health.pixels,
           });
         }
