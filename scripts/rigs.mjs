@@ -19,6 +19,7 @@ const ERRORS = [
   { degrees: 4, millimetres: 60 },
 ];
 const KINDS = ["objects", "sheet", "boxes", "room"];
+
 function print(rows) {
   console.log("kind     frames  off by          off  undecided  consistent  degrees, mm: median   90 %          within 95 %");
   const keys = [...new Set(rows.map(({ kind, frames, error }) => JSON.stringify([kind, frames, error])))];
