@@ -46,14 +46,12 @@ export class FileList {
       delete item.unit;
       void this.#rig.reread(item);
     });
-    const unit = choose([], "", (value) => {
-      item.unit = Number(value);
-      void (item.blob ? this.#rig.reread(item) : this.#rig.setUnits(item.unit));
-    });
+    const unit = choose([], "", (value) => void this.#rig.setUnit(item, Number(value)));
+    const confirm = press("", () => void this.#rig.setUnit(item, item.summary?.unit ?? 1));
     const kindBox = make("label", { class: "rig-choice" }, make("span", {}, "Kind"), kind);
     const unitBox = make("label", { class: "rig-choice" }, make("span", {}, "Unit"), unit);
     const remove = press("×", () => this.#rig.remove(item), { class: "icon", "aria-label": `Remove ${item.name}` });
-    const element = make("li", { class: "rig-file" }, canvas, make("div", { class: "rig-file-words" }, make("strong", {}, item.name), says, error, notes), make("div", { class: "rig-row rig-corrections" }, kindBox, unitBox, remove));
+    const element = make("li", { class: "rig-file" }, canvas, make("div", { class: "rig-file-words" }, make("strong", {}, item.name), says, error, notes, confirm), make("div", { class: "rig-row rig-corrections" }, kindBox, unitBox, remove));
     let drawn = "";
     return {
       element,
@@ -71,7 +69,9 @@ export class FileList {
         unitBox.hidden = summary?.kind !== "depth" || summary.organised === true;
         const now = String(item.unit ?? summary?.unit ?? 1);
         const listed = units.some(({ value }) => Number(value) === Number(now)) ? units : [...units, { value: now, label: `${now} m` }];
-        const isGuess = summary?.guessed.includes("unit");
+        const isGuess = summary?.guessed.includes("unit") ?? false;
+        confirm.hidden = !isGuess;
+        confirm.textContent = isGuess ? `Yes, ${listed.find(({ value }) => Number(value) === Number(now))?.label}` : "";
         fill(unit, isGuess ? [{ value: "", label: `guessed: ${listed.find(({ value }) => Number(value) === Number(now))?.label}` }, ...listed] : listed, isGuess ? "" : (listed.find(({ value }) => Number(value) === Number(now))?.value ?? now));
         const wanted = state === "read" && summary?.width ? `${summary.kind} ${summary.says}` : "";
         if (wanted === drawn) return;

@@ -188,7 +188,7 @@ export class VerdictStep {
 }
 
 /** The report with what the page knows to be guessed. */
-const whole = ({ report, guessed }: Run): CheckReport => ({ ...report, warnings: [...guessed.map((what) => `Guessed: ${what}.`), ...report.warnings] });
+const whole = ({ report, guessed, doubts }: Run): CheckReport => ({ ...report, warnings: [...guessed.map((what) => `Guessed: ${what}.`), ...doubts, ...report.warnings] });
 
 /** Whether the verdict is of what there is now. */
 function isSame(run: Run, rig: Rig): boolean {
