@@ -2,6 +2,9 @@
 
 import type { Page } from "@playwright/test";
 import { expect, test } from "./lab";
+import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
 import { encode } from "fast-png";
 import { answerChecks, colourPng, depthPng, matrixFile, pair } from "./rig";
 
@@ -166,6 +169,7 @@ test("a verdict comes with its numbers, curves, shares and advice", async ({ lab
   await expect(page.locator(".rig-word")).toBeFocused();
   await expect(page.locator(".rig-run").getByRole("status")).toHaveText("Done: Off.");
   await expect(page.locator(".rig-next")).toContainText("Save the calibration found here");
+  await expect(page.getByLabel("Calibration", { exact: true })).toHaveValue("");
   await expect(page.locator(".rig-calibrations")).toContainText("2.04°");
   await expect(page.locator(".rig-calibrations")).toContainText("1.2 mm");
   await expect(page.locator(".rig-calibrations")).toContainText("10.70 px");
@@ -207,6 +211,8 @@ test("without a calibration there is an estimate only, and what was guessed is s
   await expect(page.getByText("have changed since this verdict")).toBeVisible();
   await page.getByRole("button", { name: "Run again" }).click();
   await expect(page.locator(".rig-word")).toHaveText("Settled, but check");
+  // Who was right keeps what is there.
+  await expect(page.getByLabel("Calibration", { exact: true })).toHaveValue("pasted");
   await expect(page.getByText("have changed since this verdict")).toBeHidden();
   await expect(page.locator(".rig-history li")).toHaveCount(2);
   expect(lab.complaints).toEqual([]);
@@ -315,12 +321,41 @@ test("a guessed unit is confirmed at one press, for all depth maps", async ({ la
   await open(page);
   await put(page, [...pair(), ...pair("0002")]);
   await expect(page.locator(".rig-frame")).toHaveCount(2);
-  const confirm = page.locator(".rig-file").getByRole("button", { name: "Yes, millimetres" });
-  await expect(confirm).toHaveCount(2);
-  await confirm.first().click();
-  await expect(confirm.locator("visible=true")).toHaveCount(0);
+  const guess = page.getByRole("group", { name: "Units" });
+  await expect(guess).toContainText("The unit of 2 depth maps was guessed: millimetres.");
+  await guess.getByRole("button", { name: "Yes, that is right" }).click();
+  await expect(guess).toBeHidden();
   await expect(page.locator(".rig-files")).not.toContainText("was guessed");
   for (const name of ["depth_0001.png", "depth_0002.png"]) await expect(page.locator(".rig-file").filter({ hasText: name }).getByLabel("Unit")).toHaveValue("0.001");
+  expect(lab.complaints).toEqual([]);
+});
+
+test("a folder comes in order, with its masks to be seen and left out, and its guesses in view", async ({ lab, page }) => {
+  await answerChecks(page, "consistent");
+  await open(page);
+  const folder = mkdtempSync(join(tmpdir(), "rig-"));
+  const mask = Buffer.from(encode({ width: 160, height: 120, channels: 1, data: Uint8Array.from({ length: 160 * 120 }, (_, i) => (i % 160 < 80 ? 255 : 0)) }));
+  for (const name of ["10", "9"]) for (const { name: file, buffer } of pair(name)) writeFileSync(join(folder, file), buffer);
+  writeFileSync(join(folder, "mask_9.png"), mask);
+  writeFileSync(join(folder, "K.txt"), "150 0 80\n0 150 60\n0 0 1\n");
+  await page.locator("#rig input[webkitdirectory]").first().setInputFiles(folder);
+  const frames = page.locator(".rig-frame");
+  await expect(frames).toHaveCount(2);
+  await expect(frames.first()).toContainText("used: the mask's file.");
+  await frames.first().getByLabel("Mask").selectOption("");
+  await expect(frames.first()).toContainText("all of it is used.");
+  await expect(page.locator(".rig-notes").first()).toContainText("One camera's intrinsics are there");
+  await page.getByRole("group", { name: "Units" }).getByRole("button").click();
+  await expect(page.getByRole("group", { name: "Units" })).toBeHidden();
+  await expect(page.locator(".rig-notes").first()).not.toContainText("unit");
+  await page.getByRole("button", { name: "Next: your calibration" }).click();
+  await page.getByLabel("Or paste it, in any of these forms").fill("1 0 0 0.02\n0 1 0 0\n0 0 1 0\n0 0 0 1");
+  await page.getByRole("button", { name: "Add what I pasted" }).click();
+  await page.getByRole("button", { name: "Run the check" }).locator("visible=true").click();
+  await expect(page.locator(".rig-word")).toHaveText("Settled, but check");
+  await expect(page.locator(".rig-verdict")).toContainText("they were taken for both");
+  await expect(page.locator(".rig-verdict")).not.toContainText("Guessed");
+  rmSync(folder, { recursive: true });
   expect(lab.complaints).toEqual([]);
 });
 

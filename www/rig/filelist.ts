@@ -21,6 +21,8 @@ const units = [
   { value: "0.01", label: "centimetres" },
 ];
 
+export const unitName = (metres: number): string => units.find(({ value }) => Number(value) === metres)?.label ?? `${metres} m`;
+
 export class FileList {
   readonly element = make("ul", { class: "rig-files", "aria-label": "Files" });
   readonly #rig: Rig;
@@ -47,11 +49,10 @@ export class FileList {
       void this.#rig.reread(item);
     });
     const unit = choose([], "", (value) => void this.#rig.setUnit(item, Number(value)));
-    const confirm = press("", () => void this.#rig.setUnit(item, item.summary?.unit ?? 1));
     const kindBox = make("label", { class: "rig-choice" }, make("span", {}, "Kind"), kind);
     const unitBox = make("label", { class: "rig-choice" }, make("span", {}, "Unit"), unit);
     const remove = press("×", () => this.#rig.remove(item), { class: "icon", "aria-label": `Remove ${item.name}` });
-    const element = make("li", { class: "rig-file" }, canvas, make("div", { class: "rig-file-words" }, make("strong", {}, item.name), says, error, notes, confirm), make("div", { class: "rig-row rig-corrections" }, kindBox, unitBox, remove));
+    const element = make("li", { class: "rig-file" }, canvas, make("div", { class: "rig-file-words" }, make("strong", {}, item.name), says, error, notes), make("div", { class: "rig-row rig-corrections" }, kindBox, unitBox, remove));
     let drawn = "";
     return {
       element,
@@ -70,8 +71,6 @@ export class FileList {
         const now = String(item.unit ?? summary?.unit ?? 1);
         const listed = units.some(({ value }) => Number(value) === Number(now)) ? units : [...units, { value: now, label: `${now} m` }];
         const isGuess = summary?.guessed.includes("unit") ?? false;
-        confirm.hidden = !isGuess;
-        confirm.textContent = isGuess ? `Yes, ${listed.find(({ value }) => Number(value) === Number(now))?.label}` : "";
         fill(unit, isGuess ? [{ value: "", label: `guessed: ${listed.find(({ value }) => Number(value) === Number(now))?.label}` }, ...listed] : listed, isGuess ? "" : (listed.find(({ value }) => Number(value) === Number(now))?.value ?? now));
         const wanted = state === "read" && summary?.width ? `${summary.kind} ${summary.says}` : "";
         if (wanted === drawn) return;

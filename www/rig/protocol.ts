@@ -41,7 +41,7 @@ export interface Assembly {
   /** Where its poses come from, in words. */
   origin: string;
   items: { file: number; name: string; summary: Summary }[];
-  frames: { name: string; colour: number; depth: number }[];
+  frames: { name: string; colour: number; depth: number; mask?: number }[];
   cameras: NamedCamera[];
   poses: NamedPose[];
   warnings: string[];

@@ -147,20 +147,29 @@ export class Rig {
     this.changed();
   }
 
-  /** A rig has one depth camera: all depth maps whose unit is still a guess take it. */
-  async setUnit(item: Item, unit: number): Promise<void> {
-    const open = this.of("depth").filter((each) => each !== item && each.blob && each.summary?.guessed.includes("unit"));
-    const all = item.blob ? [item, ...open] : open;
-    for (const each of all) each.unit = unit;
-    await Promise.all([...all.map((each) => this.reread(each)), ...(item.blob ? [] : [this.setUnits(unit)])]);
+  /** Depth maps whose unit is a guess. */
+  get unitsGuessed(): Item[] {
+    return this.of("depth").filter(({ summary }) => summary?.guessed.includes("unit"));
   }
 
-  /** Depth maps that came together have one unit. */
-  async setUnits(unit: number): Promise<void> {
-    for (const item of this.of("depth").filter(({ blob }) => !blob)) {
+  /** A rig has one depth camera: depth maps whose unit is still a guess take it as well. */
+  async setUnit(item: Item, unit: number): Promise<void> {
+    const together = item.blob ? [] : this.of("depth").filter(({ blob }) => !blob);
+    await this.#giveUnits(new Map([item, ...together, ...this.unitsGuessed].map((each) => [each, unit])));
+  }
+
+  /** All guesses were right. */
+  async confirmUnits(): Promise<void> {
+    await this.#giveUnits(new Map(this.unitsGuessed.map((item) => [item, item.summary?.unit ?? 1])));
+  }
+
+  async #giveUnits(units: ReadonlyMap<Item, number>): Promise<void> {
+    for (const [item, unit] of units) {
       item.unit = unit;
-      item.summary = await this.session.call("unit", { file: item.id, unit });
+      if (item.blob) await this.reread(item);
+      else item.summary = await this.session.call("unit", { file: item.id, unit });
     }
+    if (this.unitsGuessed.length === 0) this.notes = this.notes.filter((words) => !/unit .*guess/i.test(words));
     this.changed();
   }
 
@@ -264,7 +273,7 @@ export class Rig {
   }
 
   async addFolder(files: { name: string; blob: Blob }[]): Promise<void> {
-    const first = this.#reserve(2 * files.length);
+    const first = this.#reserve(3 * files.length);
     this.busy = `Reading a folder of ${files.length} files`;
     this.changed();
     try {
@@ -290,7 +299,7 @@ export class Rig {
 
   #join({ origin, items, frames, cameras, poses, warnings }: Assembly): void {
     for (const { file, name, summary } of items) this.items.push({ id: file, name, state: "read", summary });
-    for (const { name, colour, depth } of frames) this.frames.push({ id: this.freshId(), name, colour, depth });
+    for (const frame of frames) this.frames.push({ id: this.freshId(), ...frame });
     // Cameras of a folder's own files, beside those that its frames were given.
     if (cameras.length > 0) {
       const summary: Summary = { kind: "cameras", says: `${cameras.length} cameras`, warnings: [], guessed: [], cameras, poses: [] };

@@ -149,7 +149,9 @@ export class VerdictStep {
       await action().catch((error: unknown) => (note.textContent = `It could not be written: ${messageOf(error)}`));
     };
     const poses = [{ value: "", label: "found" }, ...Object.keys(run.candidates).map((name) => ({ value: name, label: name }))];
-    const which = choose(poses, "", () => {});
+    // Who was right keeps what is there.
+    const isKept = !run.estimateOnly && Object.values(run.report.candidates)[0]?.verdict === "consistent";
+    const which = choose(poses, isKept ? (Object.keys(run.candidates)[0] ?? "") : "", () => {});
     const format = choose(formats, "matrix", () => {});
     const frame = choose(run.plans.map(({ name }, i) => ({ value: String(i), label: name })), "0", () => {});
     const pose = () => run.candidates[which.value] ?? run.report.estimate;
