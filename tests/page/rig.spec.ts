@@ -2,7 +2,8 @@
 
 import type { Page } from "@playwright/test";
 import { expect, test } from "./lab";
-import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
+import { createHash } from "node:crypto";
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { encode } from "fast-png";
@@ -213,6 +214,12 @@ test("without a calibration there is an estimate only, and what was guessed is s
   await expect(page.locator(".rig-word")).toHaveText("Settled, but check");
   // Who was right keeps what is there.
   await expect(page.getByLabel("Calibration", { exact: true })).toHaveValue("pasted");
+  const download = page.waitForEvent("download");
+  await page.getByRole("button", { name: "Save report (HTML)" }).click();
+  const report = readFileSync(await (await download).path(), "utf8");
+  expect(report).toContain("Guessed: the unit of depth_0001.png.");
+  // Files are told later by their hashes.
+  expect(report).toContain(createHash("sha256").update(colourPng()).digest("hex"));
   await expect(page.getByText("have changed since this verdict")).toBeHidden();
   await expect(page.locator(".rig-history li")).toHaveCount(2);
   expect(lab.complaints).toEqual([]);

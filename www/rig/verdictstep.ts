@@ -169,7 +169,7 @@ export class VerdictStep {
     }));
     const html = press("Save report (HTML)", attempt(async () => {
       const pictures = await this.#overlay.pictures();
-      const inputs = this.#rig.items.map(({ name, summary }) => ({ name, says: summary?.says ?? "not read" }));
+      const inputs = await Promise.all(this.#rig.items.map(async ({ name, summary, blob }) => ({ name, says: summary?.says ?? "not read", ...(blob ? { sha256: await sha256(blob) } : {}) })));
       saveFile("rig-check.html", await session.call("report", { report: whole(run), pictures, inputs }), "text/html");
     }));
     return make(
@@ -187,6 +187,12 @@ export class VerdictStep {
     this.#alert.textContent = message;
     this.#alert.hidden = message === "";
   }
+}
+
+/** By which the file can be told later. */
+async function sha256(blob: Blob): Promise<string> {
+  const bytes = new Uint8Array(await crypto.subtle.digest("SHA-256", await blob.arrayBuffer()));
+  return Array.from(bytes, (byte) => byte.toString(16).padStart(2, "0")).join("");
 }
 
 /** The report with what the page knows to be guessed. */
