@@ -150,6 +150,12 @@ function table(rows) {
   return rows.map((row) => row.map((cell, column) => cell.padEnd(widths[column])).join("  ").trimEnd());
 }
 
+/** The verdict, whose reason may open with the same word; what was guessed or looks wrong keeps it from being the last word. */
+function headline({ verdict, reason, warnings }) {
+  const line = `${verdict.toUpperCase()}: ${reason.replace(/^consistent: /i, "")}`;
+  return verdict === "consistent" && warnings.length > 0 ? [line, "Settled, but check the warnings below."] : [line];
+}
+
 /** The report for a terminal. */
 function text(report) {
   const { estimate: { rotation: r, translation: t } } = report;
@@ -158,7 +164,7 @@ function text(report) {
     ...[pixels(found), short(found.probability)],
   ]);
   return [
-    `${report.verdict.toUpperCase()}: ${report.reason}`,
+    ...headline(report),
     "",
     ...table([
       ["calibration", "verdict", "turned by", "shifted by", "error, pixels (95 %)", "probability"],

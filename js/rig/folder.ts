@@ -203,7 +203,8 @@ export async function readRigFolder(files: NamedFile[], options: FolderOptions =
   if (!(Number.isInteger(most) && most > 0)) throw new BimodalError("option", "options.frames: a whole number above zero is needed", "options.frames");
   const kept = files.map(({ name, bytes }) => ({ name: name.replace(/\\/g, "/").replace(/^\.\//, ""), bytes })).filter(({ name }) => !IGNORED.test(name));
   const reader = new FolderReader();
-  const pictures = kept.filter(({ bytes }) => isRasterFile(bytes));
+  // Browsers hand folders over in any order.
+  const pictures = kept.filter(({ bytes }) => isRasterFile(bytes)).sort((a, b) => a.name.localeCompare(b.name, "en", { numeric: true }));
   let found = tum(kept, reader.warnings) ?? byNames(pictures, reader.warnings);
   if (found.pairs.length === 0) found = await byContent(pictures, reader);
   const chosen = spread(found.pairs, most);

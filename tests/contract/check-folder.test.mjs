@@ -35,7 +35,7 @@ export async function checkCalibration(frames, candidates, { signal, onProgress,
   for (let k = 0; k <= 100; k++) onProgress(k / 100, "edges of " + frames.length);
   while (verdict === "wait") { await new Promise((go) => setTimeout(go, 10)); signal.throwIfAborted(); }
   if (verdict === "broken") throw new TypeError("a bug");
-  return { ...report(), verdict, reason: JSON.stringify({ candidates, options }), warnings: ["one of the check's"] };
+  return { ...report(), verdict, reason: (verdict === "consistent" ? "Consistent: " : "") + JSON.stringify({ candidates, options }), warnings: ["one of the check's"] };
 }`;
 
 mkdirSync(join(root, "pkg"));
@@ -76,6 +76,13 @@ describe("exit codes", () => {
       assert.match(stdout, new RegExp(`^${folder.toUpperCase()}: `));
     });
   }
+
+  test("a consistent one with warnings is to be checked, and its word is said once", () => {
+    const { status, stdout } = check("consistent", "--calibration", "one.json");
+    assert.equal(status, 0);
+    assert.match(stdout, /^CONSISTENT: (?!Consistent)[^\n]*\nSettled, but check the warnings below\.\n/);
+    assert.doesNotMatch(check("off", "--calibration", "one.json").stdout, /Settled/);
+  });
 
   test("3 for what is wrong with the input, said in one line", () => {
     const wrong = {

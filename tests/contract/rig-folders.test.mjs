@@ -43,6 +43,11 @@ describe("TUM RGB-D", () => {
 });
 
 describe("pairs by like names", () => {
+  test("in the order of their numbers, however the folder was handed over", async () => {
+    const files = Object.fromEntries([10, 9, 100].flatMap((number) => [[`depth/${number}.png`, depth(1000 + number)], [`color/${number}.png`, colour(number)]]));
+    assert.deepEqual(marks(await folder(files)), [[9, 1009], [10, 1010], [100, 1100]]);
+  });
+
   const schemes = {
     Redwood: ["color/00001.png", "depth/1.png"],
     Open3D: ["dataset/color/000012.png", "dataset/depth/000012.png"],

@@ -2,7 +2,12 @@
 
 import type { Page } from "@playwright/test";
 import { expect, test } from "./lab";
-import { answerChecks, colourPng, matrixFile, pair } from "./rig";
+import { createHash } from "node:crypto";
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { encode } from "fast-png";
+import { answerChecks, colourPng, depthPng, matrixFile, pair } from "./rig";
 
 const step = (page: Page, name: string) => page.getByRole("navigation", { name: "Steps" }).getByRole("button", { name });
 const heading = (page: Page, name: string) => page.getByRole("heading", { level: 2, name });
@@ -165,6 +170,7 @@ test("a verdict comes with its numbers, curves, shares and advice", async ({ lab
   await expect(page.locator(".rig-word")).toBeFocused();
   await expect(page.locator(".rig-run").getByRole("status")).toHaveText("Done: Off.");
   await expect(page.locator(".rig-next")).toContainText("Save the calibration found here");
+  await expect(page.getByLabel("Calibration", { exact: true })).toHaveValue("");
   await expect(page.locator(".rig-calibrations")).toContainText("2.04°");
   await expect(page.locator(".rig-calibrations")).toContainText("1.2 mm");
   await expect(page.locator(".rig-calibrations")).toContainText("10.70 px");
@@ -206,6 +212,14 @@ test("without a calibration there is an estimate only, and what was guessed is s
   await expect(page.getByText("have changed since this verdict")).toBeVisible();
   await page.getByRole("button", { name: "Run again" }).click();
   await expect(page.locator(".rig-word")).toHaveText("Settled, but check");
+  // Who was right keeps what is there.
+  await expect(page.getByLabel("Calibration", { exact: true })).toHaveValue("pasted");
+  const download = page.waitForEvent("download");
+  await page.getByRole("button", { name: "Save report (HTML)" }).click();
+  const report = readFileSync(await (await download).path(), "utf8");
+  expect(report).toContain("Guessed: the unit of depth_0001.png.");
+  // Files are told later by their hashes.
+  expect(report).toContain(createHash("sha256").update(colourPng()).digest("hex"));
   await expect(page.getByText("have changed since this verdict")).toBeHidden();
   await expect(page.locator(".rig-history li")).toHaveCount(2);
   expect(lab.complaints).toEqual([]);
@@ -291,12 +305,134 @@ test("what is used of a frame can be restricted, with the pointer and with numbe
   for (const [label, value] of [["left, px", "0"], ["top, px", "0"], ["width, px", "160"], ["height, px", "30"]] as const) await dialog.getByLabel(label).fill(value);
   await dialog.getByRole("button", { name: "Apply" }).click();
   await expect(share).toHaveText("25 % of the image is used.");
+  // A stroke is taken back, one at a time.
+  await dialog.getByRole("button", { name: "Undo stroke" }).click();
+  await expect(share).toHaveText("100 % of the image is used.");
+  await dialog.getByRole("button", { name: "Undo stroke" }).click();
+  await expect(share).toHaveText(/^(49|50) % of the image is used\.$/);
+  await dialog.getByRole("button", { name: "Undo stroke" }).click();
+  await expect(share).toHaveText("100 % of the image is used.");
+  await expect(dialog.getByRole("button", { name: "Undo stroke" })).toBeDisabled();
+  await dialog.getByRole("button", { name: "Apply" }).click();
+  await expect(share).toHaveText("25 % of the image is used.");
   await dialog.getByLabel("By, px").fill("6");
   await dialog.getByRole("button", { name: "Grow" }).click();
   await expect(share).toHaveText("30 % of the image is used.");
   await dialog.getByLabel("Farthest depth, m").fill("1.2");
   await dialog.getByRole("button", { name: "Done" }).click();
   await expect(page.locator(".rig-frame")).toContainText("used: 30 % of the image, as painted, depths from 0 to 1.2 m.");
+  expect(lab.complaints).toEqual([]);
+});
+
+test("a guessed unit is confirmed at one press, for all depth maps", async ({ lab, page }) => {
+  await open(page);
+  await put(page, [...pair(), ...pair("0002")]);
+  await expect(page.locator(".rig-frame")).toHaveCount(2);
+  const guess = page.getByRole("group", { name: "Units" });
+  await expect(guess).toContainText("The unit of 2 depth maps was guessed: millimetres.");
+  await guess.getByRole("button", { name: "Yes, that is right" }).click();
+  await expect(guess).toBeHidden();
+  await expect(page.locator(".rig-files")).not.toContainText("was guessed");
+  for (const name of ["depth_0001.png", "depth_0002.png"]) await expect(page.locator(".rig-file").filter({ hasText: name }).getByLabel("Unit")).toHaveValue("0.001");
+  expect(lab.complaints).toEqual([]);
+});
+
+test("a folder comes in order, with its masks to be seen and left out, and its guesses in view", async ({ lab, page }) => {
+  await answerChecks(page, "consistent");
+  await open(page);
+  const folder = mkdtempSync(join(tmpdir(), "rig-"));
+  const mask = Buffer.from(encode({ width: 160, height: 120, channels: 1, data: Uint8Array.from({ length: 160 * 120 }, (_, i) => (i % 160 < 80 ? 255 : 0)) }));
+  for (const name of ["10", "9"]) for (const { name: file, buffer } of pair(name)) writeFileSync(join(folder, file), buffer);
+  writeFileSync(join(folder, "mask_9.png"), mask);
+  writeFileSync(join(folder, "K.txt"), "150 0 80\n0 150 60\n0 0 1\n");
+  await page.locator("#rig input[webkitdirectory]").first().setInputFiles(folder);
+  const frames = page.locator(".rig-frame");
+  await expect(frames).toHaveCount(2);
+  await expect(frames.first()).toContainText("used: the mask's file.");
+  await frames.first().getByLabel("Mask").selectOption("");
+  await expect(frames.first()).toContainText("all of it is used.");
+  await expect(page.locator(".rig-notes").first()).toContainText("One camera's intrinsics are there");
+  await page.getByRole("group", { name: "Units" }).getByRole("button").click();
+  await expect(page.getByRole("group", { name: "Units" })).toBeHidden();
+  await expect(page.locator(".rig-notes").first()).not.toContainText("unit");
+  await page.getByRole("button", { name: "Next: your calibration" }).click();
+  await page.getByLabel("Or paste it, in any of these forms").fill("1 0 0 0.02\n0 1 0 0\n0 0 1 0\n0 0 0 1");
+  await page.getByRole("button", { name: "Add what I pasted" }).click();
+  await page.getByRole("button", { name: "Run the check" }).locator("visible=true").click();
+  await expect(page.locator(".rig-word")).toHaveText("Settled, but check");
+  await expect(page.locator(".rig-verdict")).toContainText("they were taken for both");
+  await expect(page.locator(".rig-verdict")).not.toContainText("Guessed");
+  rmSync(folder, { recursive: true });
+  expect(lab.complaints).toEqual([]);
+});
+
+test("a frame that was removed stays away when files are added, and comes back undone", async ({ lab, page }) => {
+  await open(page);
+  const frames = page.locator(".rig-frame");
+  await put(page, [...pair(), ...pair("0002")]);
+  await expect(frames).toHaveCount(2);
+  await expect(page.getByRole("button", { name: /^Undo/ })).toBeHidden();
+  await page.getByRole("button", { name: "Remove frame 1" }).click();
+  await expect(frames).toHaveCount(1);
+  await put(page, [matrixFile("factory.txt", 0.025), ...pair("0003")]);
+  await expect(page.locator(".rig-file")).toHaveCount(7);
+  await expect(frames).toHaveCount(2);
+  await expect(frames.first()).toContainText("frame 2");
+  await page.getByRole("button", { name: "Undo removing frame 1" }).click();
+  // What was added since is still there.
+  await expect(frames).toHaveCount(3);
+  await expect(page.locator(".rig-file")).toHaveCount(7);
+  await expect(page.getByRole("button", { name: /^Undo/ })).toBeHidden();
+  await page.getByRole("button", { name: "Remove color_0003.png" }).click();
+  await expect(frames.filter({ hasText: "A colour image is missing." })).toHaveCount(1);
+  await page.getByRole("button", { name: "Undo removing color_0003.png" }).click();
+  await expect(frames.filter({ hasText: "A colour image is missing." })).toHaveCount(0);
+  expect(lab.complaints).toEqual([]);
+});
+
+test("starting over ends the check that runs, and undone it brings everything back", async ({ lab, page }) => {
+  await answerChecks(page, "never");
+  await openExample(page);
+  await run(page);
+  await expect(page.locator(".rig-run").getByRole("status")).toHaveText("aligning depth edges");
+  await step(page, "Files and cameras").click();
+  await page.getByRole("button", { name: "Start over" }).click();
+  await expect(page.locator(".rig-frame")).toHaveCount(0);
+  await expect(step(page, "Verdict")).toBeDisabled();
+  await page.getByRole("button", { name: "Undo starting over" }).click();
+  await expect(page.locator(".rig-frame")).toHaveCount(3);
+  await expect(page.getByRole("group", { name: "Depth camera" }).locator(".rig-camera-numbers")).toHaveText(/^fx/);
+  await step(page, "Verdict").click();
+  await expect(page.locator(".rig-run").getByRole("status")).toHaveText("Cancelled. Nothing was lost.");
+  await step(page, "Your calibration").click();
+  await expect(page.locator(".rig-candidate")).toHaveCount(2);
+  expect(lab.complaints).toEqual([]);
+});
+
+test("what a reader warned of caps the verdict, and is what to do next", async ({ lab, page }) => {
+  await answerChecks(page, "consistent");
+  await open(page);
+  // A colour picture's grey levels as depths, of 8 bits, and a second frame of another size.
+  const grey = Buffer.from(encode({ width: 160, height: 120, channels: 1, data: Uint8Array.from({ length: 160 * 120 }, (_, i) => 100 + (i % 100)) }));
+  await put(page, [{ name: "color_0001.png", mimeType: "image/png", buffer: colourPng() }, { name: "depth_0001.png", mimeType: "image/png", buffer: grey }]);
+  await put(page, [{ name: "color_0002.png", mimeType: "image/png", buffer: colourPng(80, 60) }, { name: "depth_0002.png", mimeType: "image/png", buffer: depthPng(80, 60) }]);
+  await expect(page.locator(".rig-frame")).toHaveCount(2);
+  const colour = page.getByRole("group", { name: "Colour camera" });
+  const depth = page.getByRole("group", { name: "Depth camera" });
+  await depth.getByLabel("Where its numbers come from").selectOption("same");
+  await expect(page.locator(".rig-missing")).toContainText("the colour camera's numbers, which the depth camera shares");
+  await colour.getByLabel("Where its numbers come from").selectOption("typed");
+  for (const [label, value] of [["fx, px", "150"], ["fy, px", "150"], ["cx, px", "20"], ["cy, px", "60"]] as const) await colour.getByLabel(label).fill(value);
+  await page.getByRole("button", { name: "Next: your calibration" }).click();
+  await page.getByLabel("Or paste it, in any of these forms").fill("1 0 0 0.02\n0 1 0 0\n0 0 1 0\n0 0 0 1");
+  await page.getByRole("button", { name: "Add what I pasted" }).click();
+  await page.getByRole("button", { name: "Run the check" }).locator("visible=true").click();
+  await expect(page.locator(".rig-word")).toHaveText("Settled, but check");
+  const card = page.locator(".rig-verdict");
+  await expect(card).toContainText("depth_0001.png: Depths of 8 bits");
+  await expect(card).toContainText("frame 2: its depth map is 80×60 px, not 160×120 px");
+  await expect(card).toContainText("The colour camera's numbers: the centre is far from the middle of 160×120 px");
+  await expect(page.locator(".rig-next")).toContainText("with 16 bits");
   expect(lab.complaints).toEqual([]);
 });
 

@@ -3,6 +3,7 @@
 import { make } from "../dom";
 import { decimals } from "../draw/numbers";
 import { choose, fill, labelled, numberField, press, show, toNumber } from "./parts";
+import { cameraDoubt } from "./doubts";
 import { typedFrom, type Rig, type Side, type TypedCamera } from "./rig";
 
 const fields = [
@@ -12,9 +13,6 @@ const fields = [
   { key: "cy", label: "cy", unit: "px" },
   { key: "view", label: "Horizontal field of view", unit: "°" },
 ] as const;
-
-/** A principal point farther from the middle than this share of the picture's side is likelier another size's. */
-const OFF_CENTRE = 0.2;
 
 export class CameraForm {
   readonly element: HTMLElement;
@@ -87,7 +85,7 @@ export class CameraForm {
     const camera = this.#rig.cameraOf(this.#side);
     const isFile = source !== "" && source !== "typed" && camera !== undefined;
     this.#edit.hidden = !isFile;
-    this.#numbers.textContent = camera ? words(camera, this.#remark()) : source === "typed" ? "Some numbers are missing." : "";
+    this.#numbers.textContent = camera ? words(camera, cameraDoubt(this.#rig, this.#side)) : source === "typed" ? "Some numbers are missing." : "";
     this.#by.value = typed.by;
     this.#model.value = typed.model;
     for (const { key } of fields) {
@@ -103,22 +101,11 @@ export class CameraForm {
     this.#distortion.toggleAttribute("aria-invalid", isWrong);
     this.#distortionNote.textContent = typed.model === "brown" ? "k1 k2 p1 p2 [k3 [k4 k5 k6]]: 4, 5 or 8 numbers, or none" : "k1 k2 k3 k4: 4 numbers, or none";
   }
-
-  /** Numbers for another size of image are the second commonest mistake. */
-  #remark(): string {
-    const file = this.#rig.given.find(({ source }) => source === this.#rig.cameras[this.#side].source)?.camera;
-    const size = this.#rig.sizeOf(this.#side);
-    if (!size) return "";
-    if (file?.width && file.height && (file.width !== size.width || file.height !== size.height)) return ` Mind: these are for ${file.width}×${file.height} px, the files have ${size.width}×${size.height} px.`;
-    const camera = this.#rig.cameraOf(this.#side);
-    const isOff = (centre: number, length: number) => Math.abs(centre / length - 0.5) > OFF_CENTRE;
-    return camera && (isOff(camera.cx, size.width) || isOff(camera.cy, size.height)) ? ` Mind: the centre is far from the middle of ${size.width}×${size.height} px; are these for another size?` : "";
-  }
 }
 
 function words(camera: { fx: number; fy: number; cx: number; cy: number; model?: string; distortion?: ArrayLike<number> }, remark: string): string {
   const { fx, fy, cx, cy, model = "brown", distortion } = camera;
   const px = (value: number) => decimals(value, 2);
   const lens = distortion && distortion.length > 0 ? `${model === "brown" ? "Brown" : "fisheye"} distortion ${Array.from(distortion, (value) => decimals(value, 4)).join(" ")}` : "no distortion";
-  return `fx ${px(fx)}, fy ${px(fy)}, cx ${px(cx)}, cy ${px(cy)} px; ${lens}.${remark}`;
+  return `fx ${px(fx)}, fy ${px(fy)}, cx ${px(cx)}, cy ${px(cy)} px; ${lens}.${remark && ` Mind: ${remark}`}`;
 }

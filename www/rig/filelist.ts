@@ -21,6 +21,8 @@ const units = [
   { value: "0.01", label: "centimetres" },
 ];
 
+export const unitName = (metres: number): string => units.find(({ value }) => Number(value) === metres)?.label ?? `${metres} m`;
+
 export class FileList {
   readonly element = make("ul", { class: "rig-files", "aria-label": "Files" });
   readonly #rig: Rig;
@@ -46,10 +48,7 @@ export class FileList {
       delete item.unit;
       void this.#rig.reread(item);
     });
-    const unit = choose([], "", (value) => {
-      item.unit = Number(value);
-      void (item.blob ? this.#rig.reread(item) : this.#rig.setUnits(item.unit));
-    });
+    const unit = choose([], "", (value) => void this.#rig.setUnit(item, Number(value)));
     const kindBox = make("label", { class: "rig-choice" }, make("span", {}, "Kind"), kind);
     const unitBox = make("label", { class: "rig-choice" }, make("span", {}, "Unit"), unit);
     const remove = press("×", () => this.#rig.remove(item), { class: "icon", "aria-label": `Remove ${item.name}` });
@@ -71,7 +70,7 @@ export class FileList {
         unitBox.hidden = summary?.kind !== "depth" || summary.organised === true;
         const now = String(item.unit ?? summary?.unit ?? 1);
         const listed = units.some(({ value }) => Number(value) === Number(now)) ? units : [...units, { value: now, label: `${now} m` }];
-        const isGuess = summary?.guessed.includes("unit");
+        const isGuess = summary?.guessed.includes("unit") ?? false;
         fill(unit, isGuess ? [{ value: "", label: `guessed: ${listed.find(({ value }) => Number(value) === Number(now))?.label}` }, ...listed] : listed, isGuess ? "" : (listed.find(({ value }) => Number(value) === Number(now))?.value ?? now));
         const wanted = state === "read" && summary?.width ? `${summary.kind} ${summary.says}` : "";
         if (wanted === drawn) return;

@@ -4,7 +4,7 @@ import { make } from "../dom";
 import { advice } from "./advice";
 import { CameraForm } from "./cameralist";
 import { dropTarget, type Named } from "./drop";
-import { FileList } from "./filelist";
+import { FileList, unitName } from "./filelist";
 import { FrameList } from "./framelist";
 import type { MaskTool } from "./masktool";
 import { press } from "./parts";
@@ -18,6 +18,8 @@ export class FilesStep {
   readonly #cameras: readonly CameraForm[];
   readonly #status = make("p", { class: "rig-status soft", role: "status" });
   readonly #alert = make("p", { class: "rig-error", role: "alert", hidden: true });
+  readonly #guess = make("div", { class: "rig-row rig-guess", role: "group", "aria-label": "Units", hidden: true });
+  readonly #guessWords = make("p");
   readonly #notes = make("ul", { class: "rig-notes" });
   readonly #example = press("Load an example", () => void this.#loadExample());
   readonly #clear = press("Start over", () => this.#rig.clear());
@@ -38,10 +40,11 @@ export class FilesStep {
       (files, isFolder) => void this.#take(files, isFolder),
       this.element,
     );
-    this.#filesCard = make("details", { class: "rig-card rig-files-card" }, make("summary", {}, make("h3", {}, "Files")), this.#notes, this.#files.element);
+    this.#guess.append(this.#guessWords, press("Yes, that is right", () => void this.#rig.confirmUnits()));
+    this.#filesCard = make("details", { class: "rig-card rig-files-card" }, make("summary", {}, make("h3", {}, "Files")), this.#files.element);
     this.#framesCard = make("section", { class: "rig-card" }, make("h3", {}, "Frames"), make("p", { class: "soft" }, "Each frame is a colour image and a depth map of the same moment. Add more one by one: the answer sharpens."), this.#frames.element);
     this.element.append(
-      make("section", { class: "rig-card" }, drop, make("div", { class: "rig-row" }, this.#example, this.#clear, this.#status), this.#alert),
+      make("section", { class: "rig-card" }, drop, make("div", { class: "rig-row" }, this.#example, this.#clear, this.#status), this.#alert, this.#guess, this.#notes),
       make("aside", { class: "rig-aside" }, advice(), formats()),
       make(
         "div",
@@ -62,6 +65,10 @@ export class FilesStep {
     this.#filesCard.hidden = items.length === 0;
     this.#framesCard.hidden = this.#rig.frames.length === 0;
     this.#notes.replaceChildren(...notes.map((words) => make("li", {}, words)));
+    const guessed = this.#rig.unitsGuessed;
+    const names = [...new Set(guessed.map(({ summary }) => unitName(summary?.unit ?? 1)))];
+    this.#guess.hidden = guessed.length === 0;
+    this.#guessWords.textContent = guessed.length === 0 ? "" : `The unit of ${guessed.length === 1 ? guessed[0]?.name : `${guessed.length} depth maps`} was guessed: ${names.join(" and ")}.`;
     this.#clear.hidden = items.length === 0;
     const reading = items.filter(({ state }) => state === "reading").length;
     const failed = items.filter(({ state }) => state === "failed").length;

@@ -41,10 +41,7 @@ export class FrameList {
     const selects: Record<Role, HTMLSelectElement> = { colour: select("colour"), depth: select("depth"), mask: select("mask") };
     const boxes = (Object.keys(selects) as Role[]).map((role) => make("label", { class: "rig-choice", "data-role": role }, make("span", {}, titles[role]), selects[role]));
     const restrict = press("Restrict what is used", () => void this.#tool().then((tool) => tool.open(frame), () => {}), { "aria-haspopup": "dialog" });
-    const remove = press("×", () => {
-      rig.frames = rig.frames.filter((each) => each !== frame);
-      rig.changed();
-    }, { class: "icon", "aria-label": `Remove ${frame.name}` });
+    const remove = press("×", () => rig.removeFrame(frame), { class: "icon", "aria-label": `Remove ${frame.name}` });
     const element = make("li", { class: "rig-frame" }, make("div", { class: "rig-pair" }, canvases.colour, canvases.depth), make("div", { class: "rig-frame-words" }, name, state), make("div", { class: "rig-row rig-corrections" }, ...boxes, restrict, remove));
     const drawn = { colour: "", depth: "" };
     return {

@@ -8,6 +8,10 @@ import type { Frame, Rig } from "./rig";
 
 type Tool = "rectangle" | "brush";
 
+/** Strokes that can be taken back, and what they may hold in memory together, bytes. */
+const MOST_STROKES = 30;
+const MOST_BYTES = 128e6;
+
 export class MaskTool {
   readonly element = make("dialog", { class: "rig-mask", "aria-labelledby": "rig-mask-title" });
   readonly #rig: Rig;
@@ -27,6 +31,8 @@ export class MaskTool {
   #box: Box = { left: 0, top: 0, width: 0, height: 0 };
   #range: [number, number] = [NaN, NaN];
   #paint = new Paint(1, 1);
+  #past: (Uint8Array | undefined)[] = [];
+  readonly #undo = press("Undo stroke", () => this.#back(), { disabled: true });
   #frame: Frame | undefined;
   #late = 0;
 
@@ -39,7 +45,7 @@ export class MaskTool {
       make("div", { class: "rig-mask-head" }, this.#title, make("p", { class: "soft" }, "Restrict it to what you trust: a thing and the background behind it, without screens, mirrors, glass or people who moved.")),
       board,
       make("div", { class: "rig-mask-side" }, this.#tools(), this.#typed(), this.#growing(), make("fieldset", {}, make("legend", {}, "Depths"), make("div", { class: "rig-row" }, this.#near.element, this.#far.element), this.#depth)),
-      make("div", { class: "rig-row rig-mask-foot" }, this.#share, press("Use everything", () => this.#reset()), press("Cancel", () => this.element.close()), press("Done", () => this.#done(), { class: "primary" })),
+      make("div", { class: "rig-row rig-mask-foot" }, this.#share, this.#undo, press("Use everything", () => this.#reset()), press("Cancel", () => this.element.close()), press("Done", () => this.#done(), { class: "primary" })),
     );
     this.#listen();
     document.body.append(this.element);
@@ -51,6 +57,8 @@ export class MaskTool {
     const picture = await this.#rig.session.call("picture", { file: colour });
     this.#frame = frame;
     this.#paint = new Paint(picture.width, picture.height, frame.paint);
+    this.#past = [];
+    this.#undo.disabled = true;
     this.#range = frame.range ? [...frame.range] : [NaN, NaN];
     this.#title.textContent = `What is used of ${frame.name}`;
     draw(this.#image, picture);
@@ -77,6 +85,7 @@ export class MaskTool {
   #typed(): HTMLElement {
     const sides = (["left", "top", "width", "height"] as const).map((side) => numberField(side, "px", (value) => (this.#box = { ...this.#box, [side]: Number.isFinite(value) ? value : 0 })).element);
     const apply = press("Apply", () => {
+      this.#keep();
       this.#paint.rectangle(this.#box, this.#use);
       this.#showAll();
     });
@@ -87,6 +96,7 @@ export class MaskTool {
     const step = numberField("By", "px", (value) => (this.#step = value > 0 ? Math.min(200, Math.round(value)) : this.#step));
     step.input.value = String(this.#step);
     const by = (sign: number) => () => {
+      this.#keep();
       this.#paint.grow(sign * this.#step);
       this.#showAll();
     };
@@ -102,6 +112,7 @@ export class MaskTool {
     this.#layer.addEventListener("pointerdown", (event) => {
       this.#layer.setPointerCapture(event.pointerId);
       from = place(event);
+      this.#keep();
       if (this.#tool === "brush") this.#dab(from);
       event.preventDefault();
     });
@@ -126,6 +137,21 @@ export class MaskTool {
     };
     this.#layer.addEventListener("pointerup", end);
     this.#layer.addEventListener("pointercancel", end);
+  }
+
+  /** Before each stroke. */
+  #keep(): void {
+    const { data, width, height } = this.#paint;
+    this.#past.push(data?.slice());
+    while (this.#past.length > Math.min(MOST_STROKES, Math.max(1, MOST_BYTES / (width * height)))) this.#past.shift();
+    this.#undo.disabled = false;
+  }
+
+  #back(): void {
+    if (this.#past.length === 0) return;
+    this.#paint.data = this.#past.pop();
+    this.#undo.disabled = this.#past.length === 0;
+    this.#showAll();
   }
 
   #dab({ x, y }: { x: number; y: number }): void {
@@ -185,6 +211,7 @@ export class MaskTool {
   }
 
   #reset(): void {
+    this.#keep();
     this.#paint.data = undefined;
     this.#range = [NaN, NaN];
     this.#near.input.value = "";
@@ -196,6 +223,7 @@ export class MaskTool {
   #done(): void {
     const frame = this.#frame;
     if (frame) {
+      this.#rig.undo.keep(`restricting ${frame.name}`);
       if (this.#paint.data) frame.paint = this.#paint.data;
       else delete frame.paint;
       const range = this.#wholeRange;

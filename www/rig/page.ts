@@ -7,6 +7,7 @@ import "../style/rig-narrow.css";
 import { make } from "../dom";
 import { CalibrationStep } from "./calibrationstep";
 import { FilesStep } from "./filesstep";
+import { press } from "./parts";
 import { Rig } from "./rig";
 import { VerdictStep } from "./verdictstep";
 
@@ -22,6 +23,7 @@ export class RigPage {
   readonly #links = new Map<Step, HTMLButtonElement>();
   readonly #body = make("div", { class: "rig-body" });
   readonly #heading = make("h2", { tabindex: "-1" });
+  readonly #undo = press("Undo", () => this.#rig.undo.back(), { class: "rig-undo" });
   #step: Step = "files";
 
   constructor(parent: HTMLElement) {
@@ -34,7 +36,7 @@ export class RigPage {
     this.#body.append(...STEPS.map((step) => this.#steps[step].element));
     parent.append(
       make("div", { class: "rig-intro" }, make("p", {}, "A colour camera and a depth camera, and extrinsics that a tool or a factory gave: are they right? Drop a few frames and get an answer with its evidence."), this.#stepper()),
-      this.#heading,
+      make("div", { class: "rig-title" }, this.#heading, this.#undo),
       this.#body,
     );
     rig.listen(() => this.#show());
@@ -105,6 +107,9 @@ export class RigPage {
       else link?.removeAttribute("aria-current");
       if (link) link.disabled = !this.#may(step);
     }
+    const { words } = this.#rig.undo;
+    this.#undo.hidden = words === undefined;
+    this.#undo.textContent = words === undefined ? "" : `Undo ${words}`;
     this.#heading.textContent = `${STEPS.indexOf(this.#step) + 1}. ${titles[this.#step]}`;
     this.#steps[this.#step].show();
   }

@@ -17,7 +17,7 @@ export function keyOf(name: string): string {
 export function pairUp(rig: Rig): Frame[] {
   const frames = rig.frames.map((frame) => frame);
   const used = (role: "colour" | "depth" | "mask") => new Set(frames.map((frame) => frame[role]));
-  const left = (role: "colour" | "depth" | "mask") => rig.of(role).filter(({ id }) => !used(role).has(id));
+  const left = (role: "colour" | "depth" | "mask") => rig.of(role).filter(({ id, aside }) => !aside && !used(role).has(id));
 
   for (const role of ["colour", "depth"] as const) {
     const other = role === "colour" ? "depth" : "colour";

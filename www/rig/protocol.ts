@@ -41,7 +41,7 @@ export interface Assembly {
   /** Where its poses come from, in words. */
   origin: string;
   items: { file: number; name: string; summary: Summary }[];
-  frames: { name: string; colour: number; depth: number }[];
+  frames: { name: string; colour: number; depth: number; mask?: number }[];
   cameras: NamedCamera[];
   poses: NamedPose[];
   warnings: string[];
@@ -72,7 +72,7 @@ export interface Calls {
   pose: { ask: { pose: Pose; format: PoseFormat }; answer: { name: string; text: string; notes: string[] } };
   /** One cloud of the frame for each pose, in the colour camera's frame. */
   clouds: { ask: { frame: number; poses: { name: string; pose: Pose }[] }; answer: Uint8Array };
-  report: { ask: { report: CheckReport; pictures: { title: string; dataUrl: string }[]; inputs: { name: string; says: string }[] }; answer: string };
+  report: { ask: { report: CheckReport; pictures: { title: string; dataUrl: string }[]; inputs: { name: string; says: string; sha256?: string }[] }; answer: string };
 }
 
 export type CallKind = keyof Calls;

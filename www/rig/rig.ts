@@ -2,9 +2,11 @@
 
 import type { CheckCue, CheckReport, Pose, RigCamera } from "../../pkg/index.js";
 import { pairUp } from "./pairing";
+import { doubtsOf } from "./doubts";
 import { identity, inverse } from "./poses";
 import type { Assembly, FramePlan, Kind, NamedCamera, Summary } from "./protocol";
 import { Session } from "./session";
+import { Undo } from "./undo";
 
 export type Side = "colour" | "depth";
 
@@ -18,6 +20,8 @@ export interface Item {
   error?: string;
   as?: Kind;
   unit?: number;
+  /** Its frame was taken away: it makes no new one by itself. */
+  aside?: true;
 }
 
 export interface Frame {
@@ -69,6 +73,8 @@ export interface Run {
   estimateOnly: boolean;
   /** What had been guessed when it ran, in words. */
   guessed: string[];
+  /** What else was doubtful about files and cameras. */
+  doubts: string[];
 }
 
 const emptyCamera = (): TypedCamera => ({ by: "focal", model: "brown", fx: NaN, fy: NaN, cx: NaN, cy: NaN, view: NaN, distortion: [] });
@@ -76,6 +82,7 @@ const choice = (): CameraChoice => ({ source: "", chosen: false, typed: emptyCam
 
 export class Rig {
   readonly session = new Session();
+  readonly undo = new Undo(this);
   items: Item[] = [];
   frames: Frame[] = [];
   readonly cameras: Record<Side, CameraChoice> = { colour: choice(), depth: choice() };
@@ -134,17 +141,35 @@ export class Rig {
   async reread(item: Item): Promise<void> {
     await this.#read(item);
     if (!this.items.includes(item)) return;
+    delete item.aside;
     this.#unlink(item);
     this.frames = pairUp(this);
     this.changed();
   }
 
-  /** Depth maps that came together have one unit. */
-  async setUnits(unit: number): Promise<void> {
-    for (const item of this.of("depth").filter(({ blob }) => !blob)) {
+  /** Depth maps whose unit is a guess. */
+  get unitsGuessed(): Item[] {
+    return this.of("depth").filter(({ summary }) => summary?.guessed.includes("unit"));
+  }
+
+  /** A rig has one depth camera: depth maps whose unit is still a guess take it as well. */
+  async setUnit(item: Item, unit: number): Promise<void> {
+    const together = item.blob ? [] : this.of("depth").filter(({ blob }) => !blob);
+    await this.#giveUnits(new Map([item, ...together, ...this.unitsGuessed].map((each) => [each, unit])));
+  }
+
+  /** All guesses were right. */
+  async confirmUnits(): Promise<void> {
+    await this.#giveUnits(new Map(this.unitsGuessed.map((item) => [item, item.summary?.unit ?? 1])));
+  }
+
+  async #giveUnits(units: ReadonlyMap<Item, number>): Promise<void> {
+    for (const [item, unit] of units) {
       item.unit = unit;
-      item.summary = await this.session.call("unit", { file: item.id, unit });
+      if (item.blob) await this.reread(item);
+      else item.summary = await this.session.call("unit", { file: item.id, unit });
     }
+    if (this.unitsGuessed.length === 0) this.notes = this.notes.filter((words) => !/unit .*guess/i.test(words));
     this.changed();
   }
 
@@ -196,13 +221,23 @@ export class Rig {
     }
   }
 
+  removeFrame(frame: Frame): void {
+    this.undo.keep(`removing ${frame.name}`);
+    this.frames = this.frames.filter((each) => each !== frame);
+    for (const role of ["colour", "depth"] as const) {
+      const item = this.item(frame[role]);
+      if (item && !this.frames.some((each) => each[role] === item.id)) item.aside = true;
+    }
+    this.changed();
+  }
+
   remove(item: Item): void {
+    this.undo.keep(`removing ${item.name}`);
     this.items = this.items.filter((each) => each !== item);
     this.candidates = this.candidates.filter(({ file }) => file !== item.id);
     this.#unlink(item);
     this.#chooseCameras();
     this.frames = pairUp(this);
-    void this.session.call("forget", { file: item.id }).catch(() => {});
     this.changed();
   }
 
@@ -219,12 +254,18 @@ export class Rig {
     this.frames = this.frames.filter(({ colour, depth }) => colour !== undefined || depth !== undefined);
   }
 
+  /** A check that runs is of what is gone then. */
   clear(): void {
-    for (const item of [...this.items]) this.remove(item);
+    this.session.cancel();
+    if (this.items.length + this.frames.length + this.candidates.length > 0) this.undo.keep("starting over", true);
+    this.items = [];
     this.frames = [];
     this.candidates = [];
-    this.cameras.colour = choice();
-    this.cameras.depth = choice();
+    // The forms of the page are about these objects.
+    for (const side of ["colour", "depth"] as const) {
+      Object.assign(this.cameras[side], { source: "", chosen: false });
+      Object.assign(this.cameras[side].typed, emptyCamera());
+    }
     this.notes = [];
     this.run = undefined;
     this.history = [];
@@ -232,7 +273,7 @@ export class Rig {
   }
 
   async addFolder(files: { name: string; blob: Blob }[]): Promise<void> {
-    const first = this.#reserve(2 * files.length);
+    const first = this.#reserve(3 * files.length);
     this.busy = `Reading a folder of ${files.length} files`;
     this.changed();
     try {
@@ -258,7 +299,7 @@ export class Rig {
 
   #join({ origin, items, frames, cameras, poses, warnings }: Assembly): void {
     for (const { file, name, summary } of items) this.items.push({ id: file, name, state: "read", summary });
-    for (const { name, colour, depth } of frames) this.frames.push({ id: this.freshId(), name, colour, depth });
+    for (const frame of frames) this.frames.push({ id: this.freshId(), ...frame });
     // Cameras of a folder's own files, beside those that its frames were given.
     if (cameras.length > 0) {
       const summary: Summary = { kind: "cameras", says: `${cameras.length} cameras`, warnings: [], guessed: [], cameras, poses: [] };
@@ -318,7 +359,8 @@ export class Rig {
     const missing: string[] = [];
     if (this.complete.length === 0) missing.push("a colour image and a depth map of the same moment");
     const depths = this.complete.map(({ depth }) => this.item(depth)?.summary);
-    if (depths.some((summary) => summary?.organised === false) && !this.cameraOf("depth")) missing.push("the depth camera's numbers (or its field of view)");
+    const isShared = this.cameras.depth.source === "same";
+    if (depths.some((summary) => summary?.organised === false) && !this.cameraOf("depth")) missing.push(isShared ? "the colour camera's numbers, which the depth camera shares" : "the depth camera's numbers (or its field of view)");
     if (this.cameras.colour.source === "typed" && !this.cameraOf("colour")) missing.push("all numbers of the colour camera, or “Unknown”");
     return missing;
   }
@@ -326,8 +368,8 @@ export class Rig {
   get guessed(): string[] {
     const files = new Set(this.complete.map(({ depth }) => depth));
     // Of a colour camera that is not known the check itself warns.
-    const units = this.items.filter(({ id, summary }) => files.has(id) && summary?.guessed.includes("unit")).map(({ name }) => `the unit of ${name}`);
-    return units;
+    const units = this.items.filter(({ id, summary }) => files.has(id) && summary?.guessed.includes("unit")).map(({ name }) => name);
+    return units.length > 2 ? [`the unit of ${units.length} depth maps`] : units.map((name) => `the unit of ${name}`);
   }
 
   plans(): FramePlan[] {
@@ -350,11 +392,12 @@ export class Rig {
   async check(onProgress: (share: number, message: string) => void): Promise<void> {
     const plans = this.plans();
     const { guessed, cues } = this;
+    const doubts = doubtsOf(this);
     const estimateOnly = this.candidates.length === 0;
     const candidates = estimateOnly ? { "no calibration": identity } : Object.fromEntries(this.candidates.map(({ name, pose }) => [name, pose]));
     await this.session.call("frames", { frames: plans });
     const report = await this.session.call("check", { candidates, cues }, onProgress);
-    this.run = { report, plans, candidates, estimateOnly, guessed };
+    this.run = { report, plans, candidates, estimateOnly, guessed, doubts };
     this.history.push({ frames: plans.length, ...report.health });
     this.changed();
   }

@@ -29,12 +29,12 @@ const px = (value: number): string => `${decimals(value, 2)} px`;
 const interval = ([low, high]: [number, number]): string => `${decimals(low, 2)} to ${decimals(high, 2)} px`;
 
 /** Whatever was guessed keeps a verdict from being better than the files are. */
-export function headline({ report, estimateOnly, guessed }: Run): { word: string; tone: Tone; sentence: string } {
+export function headline({ report, estimateOnly, guessed, doubts }: Run): { word: string; tone: Tone; sentence: string } {
   const { pixels, interval: range } = report.health;
   if (estimateOnly) return { word: "Estimated", tone: "open", sentence: `A calibration was found; expected reprojection error ${px(pixels)} (95 %: ${interval(range)}) at the scene's depth.` };
   const { word, tone } = WORDS[report.verdict];
   const [own] = Object.values(report.candidates);
-  const isOpen = guessed.length > 0 || report.warnings.length > 0;
+  const isOpen = guessed.length + doubts.length + report.warnings.length > 0;
   // The check itself calls a consistent candidate undecided where it warns.
   if (isOpen && own?.verdict === "consistent") return { word: "Settled, but check", tone: "open", sentence: afterWord(own.reason) };
   if (isOpen && report.verdict === "off") return { word: "Off, but check", tone, sentence: report.reason };
@@ -58,11 +58,14 @@ const FOR_TURN = ["show more of the picture's top and bottom", "show more of the
 const LITTLE = 0.3;
 
 /** What to do next, the most useful first. */
-export function advise({ report, plans, estimateOnly, guessed, candidates }: Run): string[] {
+export function advise({ report, plans, estimateOnly, guessed, doubts, candidates }: Run): string[] {
   const list: string[] = [];
-  const said = [report.reason, ...report.warnings].join(" ");
+  const said = [report.reason, ...doubts, ...report.warnings].join(" ");
   const name = Object.keys(candidates)[0] ?? "";
   if (/invert/i.test(said)) list.push("Invert the calibration in step 2 and check again: it seems to lead the other way.");
+  if (/\b8 bits/.test(said)) list.push("Record the depth map itself, with 16 bits: a picture of the depth tells no calibration.");
+  if (/swapped/i.test(said)) list.push("Look at step 1 again: colour image and depth map seem to be swapped.");
+  if (doubts.some((words) => /another size|these are for|for one size/.test(words))) list.push("Use the cameras' numbers for the size that the files have.");
   const isOpen = report.verdict === "undecided" && Object.values(report.candidates)[0]?.verdict === "undecided";
   const confirm = guessed.length > 0 ? [`Say in step 1 what was guessed: ${guessed.join("; ")}.`] : [];
   if (!isOpen) list.push(...confirm);
@@ -73,7 +76,7 @@ export function advise({ report, plans, estimateOnly, guessed, candidates }: Run
   const mean = 1 / Math.max(1, report.frames.length);
   for (const { name, share, note } of report.frames) if (report.frames.length > 1 && share < LITTLE * mean) list.push(`Take ${name} anew: it adds little (${(100 * share).toFixed(0)} %)${note ? `, ${note}` : ""}.`);
   if (!estimateOnly && report.verdict === "consistent") list.push(`Keep “${name}”, and check again after the rig was moved, knocked or heated.`);
-  return report.verdict === "consistent" && !estimateOnly && guessed.length === 0 ? [...list.slice(-1), ...list.slice(0, -1)] : list;
+  return report.verdict === "consistent" && !estimateOnly && guessed.length + doubts.length === 0 ? [...list.slice(-1), ...list.slice(0, -1)] : list;
 }
 
 /** The least certain turn and shift, one sigma, and what would tell them. */
@@ -92,7 +95,7 @@ function weakest({ covariance }: CheckReport): string {
 export function card(run: Run): HTMLElement {
   const { word, tone, sentence } = headline(run);
   const [next = ""] = advise(run);
-  const all = [...run.guessed.map((what) => `Guessed: ${what}.`), ...run.report.warnings];
+  const all = [...run.guessed.map((what) => `Guessed: ${what}.`), ...run.doubts, ...run.report.warnings];
   return make(
     "div",
     { class: `rig-verdict ${tone}`, "data-verdict": run.estimateOnly ? "estimate" : run.report.verdict },

@@ -149,7 +149,9 @@ export class VerdictStep {
       await action().catch((error: unknown) => (note.textContent = `It could not be written: ${messageOf(error)}`));
     };
     const poses = [{ value: "", label: "found" }, ...Object.keys(run.candidates).map((name) => ({ value: name, label: name }))];
-    const which = choose(poses, "", () => {});
+    // Who was right keeps what is there.
+    const isKept = !run.estimateOnly && Object.values(run.report.candidates)[0]?.verdict === "consistent";
+    const which = choose(poses, isKept ? (Object.keys(run.candidates)[0] ?? "") : "", () => {});
     const format = choose(formats, "matrix", () => {});
     const frame = choose(run.plans.map(({ name }, i) => ({ value: String(i), label: name })), "0", () => {});
     const pose = () => run.candidates[which.value] ?? run.report.estimate;
@@ -167,7 +169,7 @@ export class VerdictStep {
     }));
     const html = press("Save report (HTML)", attempt(async () => {
       const pictures = await this.#overlay.pictures();
-      const inputs = this.#rig.items.map(({ name, summary }) => ({ name, says: summary?.says ?? "not read" }));
+      const inputs = await Promise.all(this.#rig.items.map(async ({ name, summary, blob }) => ({ name, says: summary?.says ?? "not read", ...(blob ? { sha256: await sha256(blob) } : {}) })));
       saveFile("rig-check.html", await session.call("report", { report: whole(run), pictures, inputs }), "text/html");
     }));
     return make(
@@ -187,8 +189,14 @@ export class VerdictStep {
   }
 }
 
+/** By which the file can be told later. */
+async function sha256(blob: Blob): Promise<string> {
+  const bytes = new Uint8Array(await crypto.subtle.digest("SHA-256", await blob.arrayBuffer()));
+  return Array.from(bytes, (byte) => byte.toString(16).padStart(2, "0")).join("");
+}
+
 /** The report with what the page knows to be guessed. */
-const whole = ({ report, guessed }: Run): CheckReport => ({ ...report, warnings: [...guessed.map((what) => `Guessed: ${what}.`), ...report.warnings] });
+const whole = ({ report, guessed, doubts }: Run): CheckReport => ({ ...report, warnings: [...guessed.map((what) => `Guessed: ${what}.`), ...doubts, ...report.warnings] });
 
 /** Whether the verdict is of what there is now. */
 function isSame(run: Run, rig: Rig): boolean {

@@ -56,11 +56,16 @@ function assemble(origin: string, first: number, pairs: CheckFrame[], { cameras,
     items.push({ file, name: reading.name, summary: items.length < 2 ? summary : { ...summary, cameras: [] } });
     return file;
   };
-  const frames = pairs.map(({ image, depth, name = "frame" }) => ({
-    name,
-    colour: keep({ kind: "colour", name: `${name}, colour`, says: `${image.width}x${image.height}`, warnings: [], image }),
-    depth: keep({ kind: "depth", name: `${name}, depth`, says: `${depth.width}x${depth.height}`, warnings: [], guessed, depth }),
-  }));
+  const frames = pairs.map(({ image: { mask, ...image }, depth, name = "frame" }) => {
+    const { width, height } = image;
+    return {
+      name,
+      colour: keep({ kind: "colour", name: `${name}, colour`, says: `${width}x${height}`, warnings: [], image }),
+      depth: keep({ kind: "depth", name: `${name}, depth`, says: `${depth.width}x${depth.height}`, warnings: [], guessed, depth }),
+      // A file of its own, so that it is seen and can be left out: the background tells much.
+      ...(mask ? { mask: keep({ kind: "mask", name: `${name}, mask`, says: `${width}x${height}`, warnings: [], mask: { width, height, data: mask } }) } : {}),
+    };
+  });
   return { origin, items, frames, cameras, poses, warnings };
 }
 

@@ -1,0 +1,82 @@
+/** Steps back: what there was before something was taken away or changed at one press. */
+
+import type { Rig } from "./rig";
+
+/** More steps than anyone goes back; what they hold is kept in memory. */
+const MOST_STEPS = 20;
+
+/** An object as it was; lists hold the objects themselves, which rows of the page are about. */
+interface Kept {
+  thing: object;
+  copy: object;
+}
+
+interface Step {
+  words: string;
+  /** What came later has higher numbers. */
+  last: number;
+  /** Everything went: whatever came later is another rig's. */
+  isWhole: boolean;
+  lists: Pick<Rig, "items" | "frames" | "candidates">;
+  rest: Pick<Rig, "notes" | "history" | "run">;
+  kept: Kept[];
+}
+
+export class Undo {
+  readonly #rig: Rig;
+  #steps: Step[] = [];
+  /** Files that the worker holds, by what was seen of them here. */
+  #known = new Set<number>();
+
+  constructor(rig: Rig) {
+    this.#rig = rig;
+  }
+
+  /** What the next step back takes back, in words; nothing where there is none. */
+  get words(): string | undefined {
+    return this.#steps.at(-1)?.words;
+  }
+
+  /** To be called before the change. */
+  keep(words: string, isWhole = false): void {
+    const { items, frames, candidates, notes, history, cameras, run } = this.#rig;
+    const things = [...items, ...frames, ...candidates, cameras.colour, cameras.depth, cameras.colour.typed, cameras.depth.typed];
+    this.#steps.push({
+      words,
+      last: this.#rig.freshId(),
+      isWhole,
+      lists: { items: [...items], frames: [...frames], candidates: [...candidates] },
+      rest: { notes, history, run },
+      kept: things.map((thing) => ({ thing, copy: { ...thing } })),
+    });
+    if (this.#steps.length > MOST_STEPS) this.#steps.shift();
+    this.#forget();
+  }
+
+  back(): void {
+    const step = this.#steps.pop();
+    if (!step) return;
+    for (const { thing, copy } of step.kept) {
+      for (const key of Object.keys(thing)) if (!(key in copy)) Reflect.deleteProperty(thing, key);
+      Object.assign(thing, copy);
+    }
+    const { items, frames, candidates } = this.#rig;
+    const later = <T extends { id: number }>(list: T[]): T[] => (step.isWhole ? [] : list.filter(({ id }) => id > step.last));
+    Object.assign(this.#rig, {
+      items: [...step.lists.items, ...later(items)],
+      frames: [...step.lists.frames, ...later(frames)],
+      candidates: [...step.lists.candidates, ...later(candidates)],
+      ...(step.isWhole ? step.rest : {}),
+    });
+    for (const { id } of items) this.#known.add(id);
+    this.#forget();
+    this.#rig.changed();
+  }
+
+  /** Files are forgotten once no step leads back to them. */
+  #forget(): void {
+    const needed = new Set([...this.#rig.items, ...this.#steps.flatMap(({ lists }) => lists.items)].map(({ id }) => id));
+    for (const id of this.#known) if (!needed.has(id)) void this.#rig.session.call("forget", { file: id }).catch(() => {});
+    this.#known = needed;
+  }
+}
