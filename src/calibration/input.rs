@@ -6,7 +6,7 @@ use super::planes::Planes;
 use crate::check::positive;
 use crate::error::{Error, ErrorKind, Result};
 use crate::text::Fixed;
-use crate::view::{ColourSamples, DepthSamples, Size, Transfer, to_srgb};
+use crate::view::{ColourSamples, DepthSamples, Size, Transfer, to_srgb, transfer_of};
 
 /// Widest image that is worked on as it is: beyond, halves say as much as a depth map can.
 const WIDEST: usize = 1000;
@@ -106,9 +106,9 @@ fn must_be(field: &'static str, length: usize, needed: usize) -> Result<()> {
 
 /// Intensities in the encoding of a display, 0 .. 1.
 fn encoded(samples: &ColourSamples, transfer: Option<Transfer>, size: Size) -> Result<Vec<[f32; 3]>> {
-    let encode = |value: f32| match transfer {
-        Some(Transfer::Linear) => to_srgb(f64::from(value)) as f32,
-        _ => value,
+    let encode = match transfer_of(samples, transfer) {
+        Transfer::Linear => |value: f32| to_srgb(f64::from(value)) as f32,
+        Transfer::Srgb => |value: f32| value,
     };
     Ok(match samples {
         ColourSamples::Rgba8(data) => {

@@ -84,7 +84,7 @@ impl ColourView {
     /// [`ErrorKind::Empty`] where fewer than 16 pixels are usable.
     pub fn new(image: ColourImage) -> Result<Self> {
         let (size, object) = checked(&image)?;
-        let transfer = transfer_of(&image);
+        let transfer = transfer_of(&image.samples, image.transfer);
         let whole = match image.camera {
             Some(_) => WholeFrame {
                 object: object.clone(),
@@ -263,10 +263,10 @@ impl ColourSamples {
 }
 
 /// Given, else: floats are linear, 8 bit is sRGB, and 16 bit is sRGB exactly where it was widened from 8 bit.
-pub(super) fn transfer_of(image: &ColourImage) -> Transfer {
+pub(crate) fn transfer_of(samples: &ColourSamples, told: Option<Transfer>) -> Transfer {
     /// An 8-bit level widened to 16 bit is a multiple of 257.
     const WIDENED: u16 = 257;
-    match (&image.samples, image.transfer) {
+    match (samples, told) {
         (ColourSamples::RgbLinear(_), _) => Transfer::Linear,
         (_, Some(transfer)) => transfer,
         (ColourSamples::Rgba8(_), None) => Transfer::Srgb,

@@ -18,8 +18,8 @@ mod vectors;
 mod working_size;
 
 pub use camera::{Camera, Pinhole};
-pub(crate) use colour::to_srgb;
 pub use colour::{ColourImage, ColourSamples, ColourView, Transfer};
+pub(crate) use colour::{to_srgb, transfer_of};
 pub use depth::{DepthMap, DepthSamples, DepthView};
 pub use depth_noise::DepthNoise;
 pub use raster::Size;

@@ -54,7 +54,7 @@ impl WorkingSize {
         let working = area.working(factor);
         let is_orthographic = image.camera.is_none();
         let mut way = Self { full, working, factor, origin: area.origin, is_orthographic, mask: object };
-        let transfer = colour::transfer_of(&image);
+        let transfer = colour::transfer_of(&image.samples, image.transfer);
         let reduced = way.reduce(&image, transfer);
         let view = ColourView::new(reduced)?.with_transfer(transfer);
         Ok((view, Some(way)))
