@@ -39,7 +39,7 @@ const STAGES: [Stage; 4] = [
 const RANKING_NOISE: f64 = 0.05;
 /// An end whose E is larger by less than this is a rival: found poses of photographs have none but for one or two, lost ones
 /// mostly have one.
-const RIVAL_MARGIN: f64 = 0.03;
+const RIVAL_MARGIN: f64 = 0.1;
 /// A rival is at least so far away, degrees.
 const RIVAL_APART: f64 = 3.0;
 /// Ends of one rotation and unlike sizes are two: so much in log size, half a step between the sizes of the starts. A wrong
@@ -89,7 +89,7 @@ impl ContrastSearch {
         }
         if self.registration.step(problem) {
             let pose = self.registration.pose();
-            let end = pose.and_then(|pose| Some((self.registration.evaluate(problem, &pose, RANKING_NOISE)?, pose)));
+            let end = pose.and_then(|pose| Some((self.registration.rank(problem, &pose, RANKING_NOISE)?, pose)));
             self.ends.extend(end.filter(|(value, _)| value.is_finite()));
             (self.next, self.under_way) = (self.next + 1, false);
         }
@@ -126,15 +126,16 @@ impl ContrastSearch {
 
     /// Whether another pose explains the contrast as well as the best end.
     pub fn is_explained_by(&mut self, problem: &ContrastProblem<'_>, pose: &Similarity) -> bool {
-        let value = self.registration.evaluate(problem, pose, RANKING_NOISE);
+        let value = self.registration.rank(problem, pose, RANKING_NOISE);
         self.ends.first().is_some_and(|(best, _)| value.is_some_and(|value| value <= best + RIVAL_MARGIN))
     }
 
     /// What was found, once all is done; `None` where no registration saw enough of the object.
     pub fn outcome(&mut self, problem: &ContrastProblem<'_>) -> Option<ContrastOutcome> {
         let &(value, pose) = self.ends.first()?;
+        let objective = self.registration.evaluate(problem, &pose, RANKING_NOISE)?;
         let uncertainty = self.registration.uncertainty(problem, &pose)?;
-        let best = ContrastReport { pose, objective: value, uncertainty };
+        let best = ContrastReport { pose, objective, uncertainty };
         let is_rival = |end: &&End| end.0 <= value + RIVAL_MARGIN && end.1.degrees_to(&pose) >= RIVAL_APART;
         let rivals = self.ends[1..].iter().filter(is_rival).map(|(_, pose)| *pose).collect();
         Some(ContrastOutcome { best, rivals })
