@@ -263,12 +263,20 @@ impl Objective {
         self.unexplained(&state.light) + self.outlines(problem, &state.pose) + self.size_term(problem, &state.pose)
     }
 
-    /// E with the apparent size held to what the units give, where they give one: what poses are compared by.
+    /// E with the apparent size held to what the units give, where they give one.
     pub fn compared(&mut self, problem: &ContrastProblem<'_>, level: &mut Level, state: &State) -> f64 {
         self.expect_size(problem, &state.pose);
-        let growth = (state.pose.scale / problem.unit_scale).ln();
-        let units = if problem.is_metric() || problem.scale_is_held { 0.0 } else { UNIT_WEIGHT * growth * growth };
-        self.value(problem, level, state) + units
+        self.value(problem, level, state) + units_term(problem, &state.pose)
+    }
+
+    /// The same with what shading leaves of the contrast taken as a share of what there is without any shading: what poses
+    /// are ranked by. By E alone a cloud gains that shrinks to where the image has little contrast, though no light explains
+    /// any of it there.
+    pub fn ranked(&mut self, problem: &ContrastProblem<'_>, level: &mut Level, state: &State) -> f64 {
+        let value = self.compared(problem, level, state);
+        let left = self.unexplained(&state.light);
+        let all = self.unexplained(&Lights::default());
+        if all > 0.0 { value - left + left / all } else { f64::INFINITY }
     }
 
     fn size_term(&self, problem: &ContrastProblem<'_>, pose: &Similarity) -> f64 {
@@ -392,6 +400,12 @@ impl Objective {
     pub fn shades(&self, cell: usize) -> &[f32; SHADES] {
         &self.shades[cell]
     }
+}
+
+/// The cost of a size that is not that of the units, where poses are compared.
+fn units_term(problem: &ContrastProblem<'_>, pose: &Similarity) -> f64 {
+    let growth = (pose.scale / problem.unit_scale).ln();
+    if problem.is_metric() || problem.scale_is_held { 0.0 } else { UNIT_WEIGHT * growth * growth }
 }
 
 /// Where a point of the colour view is seen, and how that place moves with each unknown.

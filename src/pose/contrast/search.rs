@@ -1,9 +1,9 @@
 //! From many starts to one pose and its rivals, coarse to fine, in slices: few samples and rounds for all of them, then
 //! more for the best, at last by as many as there are.
 //!
-//! At each stage the ends are ranked by E on the sharp image at one robust scale, so that they can be compared. On ten
-//! photographed objects seen from 0 to 60 degrees off an end near the right one was among the first eight after the first
-//! stages wherever it was found at all.
+//! At each stage the ends are ranked by E on the sharp image at one robust scale, the contrast's part of it as a share of
+//! what there is without light, so that they can be compared. On ten photographed objects seen from 0 to 60 degrees off an
+//! end near the right one was among the first eight after the first stages wherever it was found at all.
 
 use super::problem::{ContrastProblem, ContrastReport};
 use super::registration::{ContrastEffort, ContrastRegistration};
@@ -37,16 +37,16 @@ const STAGES: [Stage; 4] = [
 /// Noise, in log units, whose robust scale ends are ranked at: sharper than photographs leave, so that the details
 /// decide, and far above that of renders.
 const RANKING_NOISE: f64 = 0.05;
-/// An end whose E is larger by less than this is a rival: found poses of photographs have none but for one or two, lost ones
-/// mostly have one.
-const RIVAL_MARGIN: f64 = 0.03;
+/// An end whose rank is larger by less than this is a rival: 0.03 of E, by which found poses of photographs had none but for
+/// one or two and lost ones mostly one, over a contrast of 0.3 without light.
+const RIVAL_MARGIN: f64 = 0.1;
 /// A rival is at least so far away, degrees.
 const RIVAL_APART: f64 = 3.0;
 /// Ends of one rotation and unlike sizes are two: so much in log size, half a step between the sizes of the starts. A wrong
 /// size that looks better at first would hide the right one.
 const SIZE_APART: f64 = 0.1;
 
-/// An end of a registration with its E.
+/// An end of a registration with its rank.
 type End = (f64, Similarity);
 
 /// The pose found and those that E hardly tells from it, best first.
@@ -89,7 +89,7 @@ impl ContrastSearch {
         }
         if self.registration.step(problem) {
             let pose = self.registration.pose();
-            let end = pose.and_then(|pose| Some((self.registration.evaluate(problem, &pose, RANKING_NOISE)?, pose)));
+            let end = pose.and_then(|pose| Some((self.registration.rank(problem, &pose, RANKING_NOISE)?, pose)));
             self.ends.extend(end.filter(|(value, _)| value.is_finite()));
             (self.next, self.under_way) = (self.next + 1, false);
         }
@@ -126,15 +126,16 @@ impl ContrastSearch {
 
     /// Whether another pose explains the contrast as well as the best end.
     pub fn is_explained_by(&mut self, problem: &ContrastProblem<'_>, pose: &Similarity) -> bool {
-        let value = self.registration.evaluate(problem, pose, RANKING_NOISE);
+        let value = self.registration.rank(problem, pose, RANKING_NOISE);
         self.ends.first().is_some_and(|(best, _)| value.is_some_and(|value| value <= best + RIVAL_MARGIN))
     }
 
     /// What was found, once all is done; `None` where no registration saw enough of the object.
     pub fn outcome(&mut self, problem: &ContrastProblem<'_>) -> Option<ContrastOutcome> {
         let &(value, pose) = self.ends.first()?;
+        let objective = self.registration.evaluate(problem, &pose, RANKING_NOISE)?;
         let uncertainty = self.registration.uncertainty(problem, &pose)?;
-        let best = ContrastReport { pose, objective: value, uncertainty };
+        let best = ContrastReport { pose, objective, uncertainty };
         let is_rival = |end: &&End| end.0 <= value + RIVAL_MARGIN && end.1.degrees_to(&pose) >= RIVAL_APART;
         let rivals = self.ends[1..].iter().filter(is_rival).map(|(_, pose)| *pose).collect();
         Some(ContrastOutcome { best, rivals })
