@@ -99,7 +99,7 @@ impl Initialisation {
             tried: 0,
             optima: LocalOptima::new(MOST_TRIED, pair.image.log_spread(), pair.image.log_noise()),
             begun: None,
-            may_be_painted: painted::is_called_for(pair, colours, None),
+            may_be_painted: painted::is_called_for(pair, colours),
             decision: None,
             contrast: None,
             opening,
@@ -267,14 +267,13 @@ impl Initialisation {
             Some(opening) => outcome.best.map(|best| opening.report_out(best)),
             None => outcome.best,
         };
-        if !painted::is_called_for(pair, colours, outcome.best.as_deref()) {
+        let Some(cleaned) = painted::cleaned(pair, colours, outcome.best.as_deref()) else {
             return Advance::Done(outcome);
-        }
+        };
         let mut poses = self.search.swept_poses();
         poses.extend(self.search.candidates().iter().map(|candidate| candidate.pose));
         poses.iter_mut().for_each(|pose| *pose = pose_out(pose));
         poses.extend(outcome.best.iter().map(|best| best.pose).chain(outcome.rivals.iter().copied()));
-        let cleaned = CleanedImage::new(pair);
         let search = Box::new(painted::search(pair, colours, &cleaned, &poses));
         self.contrast = Some(ByContrast { colours: outcome, cleaned, search });
         Advance::Ongoing(1.0 - CONTRAST_SHARE, COMPARING_CONTRAST)

@@ -27,13 +27,27 @@ const TURN: f64 = 6.0;
 /// has an outline.
 /// Behind a pinhole outlines in space decide; under a known light surfaces settle what noisy normals leave. Noisy normals
 /// leave as much as paint does, so there the image itself has to show edges of paint.
-pub fn is_called_for(pair: &ViewPair, colours: &ColourRegistration, plain: Option<&PhotometricReport>) -> bool {
+pub fn is_called_for(pair: &ViewPair, colours: &ColourRegistration) -> bool {
+    is_open(pair, None) && (colours.has_clean_normals() || CleanedImage::new(pair).image.is_some())
+}
+
+/// The image that contrast is compared in, where the best registration by colours calls for it likewise.
+pub fn cleaned(
+    pair: &ViewPair,
+    colours: &ColourRegistration,
+    plain: Option<&PhotometricReport>,
+) -> Option<CleanedImage> {
+    let cleaned = is_open(pair, plain).then(|| CleanedImage::new(pair))?;
+    Some(cleaned).filter(|cleaned| colours.has_clean_normals() || cleaned.image.is_some())
+}
+
+/// Whether pair and colours leave room for paint.
+fn is_open(pair: &ViewPair, plain: Option<&PhotometricReport>) -> bool {
     pair.options.registration == Registration::Joint
         && pair.known_light().is_none()
         && pair.image.camera.is_orthographic()
         && pair.image.mask.contains(&false)
         && plain.is_none_or(|plain| plain.structure > LARGEST_STRUCTURE)
-        && (colours.has_clean_normals() || CleanedImage::new(pair).image.is_some())
 }
 
 /// Whether a registration by colours from where contrast ended leaves no more than noise: then there is no paint, and its
@@ -130,8 +144,12 @@ pub enum Conclusion {
 }
 
 /// The pose around a told one.
-pub fn near(pair: &ViewPair, colours: &ColourRegistration, told: &Similarity) -> Option<Conclusion> {
-    let cleaned = CleanedImage::new(pair);
+pub fn near(
+    pair: &ViewPair,
+    colours: &ColourRegistration,
+    cleaned: &CleanedImage,
+    told: &Similarity,
+) -> Option<Conclusion> {
     let middle = pair.depth.points.centroid();
     let turned =
         |turn: Vector3<f64>| told.turned_about(middle, told.scale, Rotation3::new(turn).into_inner() * told.rotation);
@@ -142,5 +160,5 @@ pub fn near(pair: &ViewPair, colours: &ColourRegistration, told: &Similarity) ->
     let problem = colours.contrast_problem(pair, cleaned.image(pair));
     let mut search = ContrastSearch::new(&problem, starts);
     while !search.advance(&problem) {}
-    conclude(pair, colours, &cleaned, &mut search)
+    conclude(pair, colours, cleaned, &mut search)
 }

@@ -123,8 +123,8 @@ impl TrustRegion {
         }
         let best =
             optima.decide().best.filter(|best| best.candidate != STAYING).and_then(|best| best.registered.report);
-        if painted::is_called_for(pair, colours, best.as_deref())
-            && let Some(found) = painted::near(pair, colours, &self.told)
+        if let Some(cleaned) = painted::cleaned(pair, colours, best.as_deref())
+            && let Some(found) = painted::near(pair, colours, &cleaned, &self.told)
         {
             match found {
                 Conclusion::ByColours(found) if self.holds(&found.pose) => {
