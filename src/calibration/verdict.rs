@@ -3,11 +3,13 @@
 //! A calibration is worth what its reprojection error at the scene's depth is: a turn and a shift that cancel there do no
 //! harm there. The error of a candidate is the distance of its pixels from those of the estimate, root mean square over
 //! the scene, and uncertain as the estimate is: its interval holds 95 % of Student's distribution about the estimate, with
-//! as many degrees of freedom as tiles have a say in its covariance. If all of the interval is below the tolerance,
-//! the candidate is consistent; if all of it is above and the candidate is farther from the estimate than the estimate
-//! from the truth in 95 % of cases, it is off; else the scene can't tell. The second condition is for scenes that say
-//! little: with six unknowns open, hardly any draw is near the candidate, wherever it is. Where the covariance is right,
-//! "consistent" is false in at most one case of forty, and "off" is said of the truth in at most one of twenty.
+//! as many degrees of freedom as tiles have a say in its covariance.
+//!
+//! Consistent: all of the interval is below the tolerance; or nothing speaks against the candidate (the estimate is farther from
+//! the truth than from it in 5 % of cases and more), and the scene would show an error that counts (the estimate's own
+//! interval is below the tolerance). Off: all of the interval is above the tolerance, and the candidate is farther from the
+//! estimate than the truth is in 95 % of cases; with six unknowns open hardly any draw is near a candidate, wherever it is.
+//! Else the scene can't tell.
 
 use nalgebra::{SMatrix, SVector, Vector3};
 
@@ -79,6 +81,8 @@ pub(super) struct Judge {
     inverse: PoseMatrix,
     draws: Vec<PoseVector>,
     tolerance: f64,
+    /// Of the estimate.
+    own: Health,
 }
 
 impl Judge {
@@ -116,7 +120,10 @@ impl Judge {
             })
             .collect();
         let inverse = covariance.try_inverse().unwrap_or_else(PoseMatrix::zeros);
-        Self { units, motion, inverse, draws, tolerance: TOLERANCE * (width / 640.0).max(1.0) }
+        let own = Health { pixels: 0.0, interval: [0.0; 2] };
+        let mut judge = Self { units, motion, inverse, draws, tolerance: TOLERANCE * (width / 640.0).max(1.0), own };
+        judge.own = judge.health(&PoseVector::zeros());
+        judge
     }
 
     /// The error of a state that is `offset` from the estimate.
@@ -136,8 +143,8 @@ impl Judge {
     }
 
     /// The estimate's own.
-    pub fn estimate(&self) -> Health {
-        self.health(&PoseVector::zeros())
+    pub const fn estimate(&self) -> Health {
+        self.own
     }
 
     /// Sigmas of a pose: degrees about x, y, z, millimetres along them.
@@ -164,9 +171,11 @@ impl Judge {
         let farther = self.draws.iter().filter(|draw| draw.dot(&(self.inverse * **draw)) > distance).count();
         let [low, high] = health.interval;
         let probability = farther as f64 / self.draws.len() as f64;
-        let verdict = if high <= self.tolerance {
+        let is_likely = probability >= 1.0 - INSIDE;
+        let would_show = self.own.interval[1] <= self.tolerance;
+        let verdict = if high <= self.tolerance || (is_likely && would_show) {
             CheckVerdict::Consistent
-        } else if low > self.tolerance && probability < 1.0 - INSIDE {
+        } else if low > self.tolerance && !is_likely {
             CheckVerdict::Off
         } else {
             CheckVerdict::Undecided
@@ -188,7 +197,13 @@ impl Judge {
             Fixed(shift, 1)
         );
         let reason = match verdict {
-            CheckVerdict::Consistent => format!("Consistent: {pixels} off; up to {passes} px pass."),
+            CheckVerdict::Consistent if high <= self.tolerance => {
+                format!("Consistent: its error is {pixels}; up to {passes} px pass.")
+            }
+            CheckVerdict::Consistent => format!(
+                "Consistent: nothing speaks against it, and this scene shows errors beyond {} px; its error is {pixels}; up to {passes} px pass.",
+                Fixed(self.own.interval[1], 1)
+            ),
             CheckVerdict::Off => format!("Off by about {off}: {pixels}; up to {passes} px pass."),
             CheckVerdict::Undecided => match weakest {
                 Some(weakest) => format!(
