@@ -213,10 +213,9 @@ impl Scene {
         Findings { prior: self.prior(&units), units, cues, total, back }
     }
 
-    /// Brings a start nearer by edges alone, its rims staying what they are; what it is then worth, also tile by tile.
-    pub fn approach(&self, start: &mut Start, sigma: f64, planes: &[Planes]) -> Vec<f64> {
+    /// Brings a start nearer by edges alone, its rims staying what they are; what it is then worth.
+    pub fn approach(&self, start: &mut Start, sigma: f64, planes: &[Planes]) {
         start.round.sigma = sigma;
-        let mut values = vec![];
         for _ in 0..ROUNDS {
             let state = start.round.state;
             let units = self.units(&state);
@@ -225,7 +224,6 @@ impl Scene {
                 let moved = EdgeField::moved(frame, rims, &start.found, &state);
                 count += self.add_edges(frame, planes, &moved, &start.round, &units, &mut evidence);
             }
-            values = evidence.shares.iter().map(|share| share.value).collect();
             let mean = evidence.value() / count.max(1) as f64;
             let mut total = Evidence::default();
             evidence.add_to(&mut total, evidence.weight());
@@ -234,7 +232,6 @@ impl Scene {
             start.score = mean - 0.5 * SCORE_PRIOR * back.dot(&(prior * back));
             start.round.state = units.step(&state, &step(&total, &prior, &back));
         }
-        values
     }
 
     /// Rims of all frames as a state sees them.
