@@ -32,15 +32,8 @@ const SAME_START: f64 = 1.5;
 const FINDING_ANEW: [usize; 2] = [1, 3];
 /// The level at which candidates come in once more, with windows of some pixels.
 const ENTERING: usize = 2;
-/// Factor of the covariance that makes intervals hold what they say: with it the truth is within 95 % of the distribution in 95 %
-/// of 96 checks of one and of three frames (docs/method.md, section 16). Tiles do not see what all of an outline shares.
-const INFLATION: f64 = 5.0;
 /// Variance where nothing at all is known, squared pixels.
 const FARTHEST: f64 = 1e6;
-/// What all frames share and no tile tells, pixels in each unknown: assumed, a tenth of the colour image's raster. A quarter of it would
-/// be more than the whole error of boxes in three frames, .14 pixels at the median.
-const COMMON_ERROR: f64 = 0.1;
-
 /// What one cue contributed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CueReport {
@@ -311,12 +304,11 @@ impl CalibrationCheck {
 
     fn judge(&self, findings: &Findings) -> CheckReport {
         let (units, state) = (findings.units, self.best.state);
-        let (covariance, tiles) = self.covariance(findings);
-        let covariance = covariance * INFLATION + Matrix::identity() * (COMMON_ERROR * COMMON_ERROR);
+        let scale = self.scale(findings);
+        let covariance = scale * Judge::VARIANCE;
         let frame = &self.scene.frames[0];
         let cloud = self.scene.cloud(&state);
-        let judge =
-            Judge::new(units, &state.camera(&frame.camera), &cloud, &covariance, tiles, frame.pixel, self.width);
+        let judge = Judge::new(units, &state.camera(&frame.camera), &cloud, &scale, frame.pixel, self.width);
         let weakest = judge.weakest(&covariance);
         let candidates: Vec<CandidateReport> =
             self.candidates.iter().map(|(name, candidate)| judge.judge(name, &state, candidate, weakest)).collect();
@@ -358,9 +350,9 @@ impl CalibrationCheck {
         }
     }
 
-    /// Of the estimate, and how many tiles have a say in it; where sums are beyond rounding nothing is known but what was told.
-    fn covariance(&self, findings: &Findings) -> (Matrix, f64) {
-        let told = || (findings.prior.cholesky().map_or(Matrix::identity() * FARTHEST, |c| c.inverse()), 0.0);
+    /// Of the estimate's distribution; where sums are beyond rounding nothing is known but what was told.
+    fn scale(&self, findings: &Findings) -> Matrix {
+        let told = || findings.prior.cholesky().map_or(Matrix::identity() * FARTHEST, |c| c.inverse());
         findings.total.covariance(&findings.prior).unwrap_or_else(told)
     }
 

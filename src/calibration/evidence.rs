@@ -3,7 +3,7 @@
 //! Neighbouring rims and pixels share their errors, so a sum over them is a composite likelihood: its maximum is right,
 //! its curvature is not. What a scene can say is estimated from the scene: the sum is split into tiles of the image, whose
 //! errors are independent. A cue is weighed by trace(H) / trace(J), the curvature H over J = sum over tiles g g^T, which
-//! would be one for a true likelihood (Pauli, Racugno and Ventura 2011); the covariance of the estimate is the jackknife
+//! would be one for a true likelihood (Pauli, Racugno and Ventura 2011); the covariance of the estimate is H^-1 and the jackknife
 //! over tiles (Efron 1982), which unlike H^-1 J H^-1 stays honest where a few tiles carry it.
 
 use super::unknowns::{Matrix, UNKNOWNS, Vector};
@@ -92,24 +92,20 @@ impl Evidence {
         }
     }
 
-    /// Covariance of the maximum of this log likelihood with a prior, by leaving out one tile after the other, and how
-    /// many tiles of equal say would tell it as well (Kish 1965): where a few carry it, it is itself uncertain.
-    pub fn covariance(&self, prior: &Matrix) -> Option<(Matrix, f64)> {
+    /// Covariance of the maximum of this log likelihood with a prior: what the likelihood itself leaves open, and what its tiles
+    /// disagree by beyond that, by leaving out one after the other.
+    pub fn covariance(&self, prior: &Matrix) -> Option<Matrix> {
         let curvature = self.curvature() + prior;
         let whole = curvature.cholesky()?.inverse();
         let gradient = self.gradient();
-        // What is told is off by as much as it says.
-        let mut covariance = whole * prior * whole;
-        let (mut sum, mut squares) = (0.0, 0.0);
+        let mut covariance = whole;
         for share in self.shares.iter().filter(|share| share.gradient.norm() > 0.0) {
             // Nothing of the sum is left over at the maximum; what is left of it before belongs to all.
             let own = share.gradient - share.curvature * (whole * gradient);
             let step = (curvature - share.curvature).cholesky().map_or(whole * own, |c| c.solve(&own));
             covariance += step * step.transpose();
-            let say = step.norm_squared();
-            (sum, squares) = (sum + say, squares + say * say);
         }
-        Some((covariance, if squares > 0.0 { sum * sum / squares } else { 0.0 }))
+        Some(covariance)
     }
 }
 

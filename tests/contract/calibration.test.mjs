@@ -156,15 +156,27 @@ async function found(kind, seed, count) {
   const frames = [];
   for (let frame = 0; frame < count; frame++) frames.push(await sampleRig({ kind, seed, frame }));
   const truth = frames[0].pose;
-  const report = await checkCalibration(frames, { told: wrong(truth, [1, -2, 2], 2, [0.01, -0.014, 0.01]) }, { cues: ["edges"] });
+  const told = wrong(truth, [1, -2, 2], 2, [0.01, -0.014, 0.01]);
+  const report = await checkCalibration(frames, { told, truth }, { cues: ["edges"] });
   assert.equal(report.verdict, "off");
-  return { degrees: degreesBetween(report.estimate, truth), millimetres: millimetresBetween(report.estimate, truth, report.middle) };
+  const { health, candidates } = report;
+  // Mean squares add up: of a right candidate what is left is the estimate's own error.
+  const own = Math.sqrt(Math.max(0, candidates.truth.pixels ** 2 - health.pixels ** 2));
+  return { own, health, degrees: degreesBetween(report.estimate, truth), millimetres: millimetresBetween(report.estimate, truth, report.middle) };
 }
 
 test("noise of a receding floor is no rim", async () => {
   // Rims of noise drew to the line between floor and wall: 0.34 degrees and 6 mm.
   const { degrees, millimetres } = await found("objects", 2, 3);
   assert.ok(degrees < 0.15 && millimetres < 3, `${degrees} degrees, ${millimetres} mm`);
+});
+
+test("the health number's interval holds the estimate's error, not one several times as large", async () => {
+  // A covariance of one inflation for all scenes said 0.15 to 0.8 pixels of errors of 0.1.
+  for (const seed of [3, 4]) {
+    const { own, health } = await found("boxes", seed, 3);
+    assert.ok(health.interval[0] < own && own < health.interval[1], `${own} px, said to be ${health.interval.join(" to ")}`);
+  }
 });
 
 test("one frame is found where wide windows lead elsewhere", async () => {
@@ -182,8 +194,9 @@ test("a raw Kinect: calibrations that are off are off, and the estimate is near 
     depth: { ...decodeDepth(read("depth_raw_mm.png")), camera: camera(calib.depth), unit: 0.001 },
   };
   const truth = { scale: 1, rotation: calib.R.flat(), translation: calib.t, angles: { alpha: 0, beta: 0, gamma: 0 } };
-  const report = await checkCalibration([frame], { told: wrong(truth, [1, 2, -1], 2, [0.02, -0.02, 0]) });
+  const report = await checkCalibration([frame], { told: wrong(truth, [1, 2, -1], 2, [0.02, -0.02, 0]), makers: truth });
   assert.equal(report.verdict, "off");
+  assert.equal(report.candidates.makers.verdict, "consistent", report.candidates.makers.reason);
   assert.ok(degreesBetween(report.estimate, truth) < 0.5);
   assert.ok(millimetresBetween(report.estimate, truth, [0, 0, 2.5]) < 40);
 });
