@@ -9,6 +9,7 @@ use super::cue::Cue;
 use super::distortion;
 use super::evidence::Tiles;
 use super::frame::{Frame, Projection};
+use super::guessed;
 use super::input::RigView;
 use super::planes::Planes;
 use super::registration::{
@@ -304,11 +305,12 @@ impl CalibrationCheck {
 
     fn judge(&self, findings: &Findings) -> CheckReport {
         let (units, state) = (findings.units, self.best.state);
-        let scale = self.scale(findings);
+        let scale = self.scale(findings, &state);
         let covariance = scale * Judge::VARIANCE;
         let frame = &self.scene.frames[0];
         let cloud = self.scene.cloud(&state);
-        let judge = Judge::new(units, &state.camera(&frame.camera), &cloud, &scale, frame.pixel, self.width);
+        let judge = Judge::new(units, &state.camera(&frame.camera), &cloud, &scale, frame.pixel, self.width)
+            .explaining(if self.scene.focal_is_free { guessed::explains(self.width) } else { 0.0 });
         let weakest = judge.weakest(&covariance);
         let candidates: Vec<CandidateReport> =
             self.candidates.iter().map(|(name, candidate)| judge.judge(name, &state, candidate, weakest)).collect();
@@ -351,9 +353,15 @@ impl CalibrationCheck {
     }
 
     /// Of the estimate's distribution; where sums are beyond rounding nothing is known but what was told.
-    fn scale(&self, findings: &Findings) -> Matrix {
+    fn scale(&self, findings: &Findings, state: &State) -> Matrix {
         let told = || findings.prior.cholesky().map_or(Matrix::identity() * FARTHEST, |c| c.inverse());
-        findings.total.covariance(&findings.prior).unwrap_or_else(told)
+        let scale = findings.total.covariance(&findings.prior).unwrap_or_else(told);
+        if !self.scene.focal_is_free {
+            return scale;
+        }
+        let frame = &self.scene.frames[0];
+        let (camera, width) = (state.camera(&frame.camera), frame.planes.size.width as f64);
+        scale + guessed::covariance(&findings.units, &camera, &self.scene.cloud(state), width, &findings.prior)
     }
 
     /// The commonest mistake: P_depth = R P_colour + t.

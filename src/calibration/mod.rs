@@ -12,7 +12,7 @@
 //! | `information`, `shading`, `silhouette`, `differences` | cues over samples, derivatives by differences |
 //! | `unknowns`, `evidence` | the unknowns in pixels; log likelihoods by tiles, weights, covariance |
 //! | `search`, `registration` | starts, rounds |
-//! | `distortion` | whether a lens was left out |
+//! | `distortion`, `guessed` | whether a lens was left out; what a guessed camera leaves open |
 //! | `sensitivity`, `verdict`, `check` | curves, words, and the order of it all |
 
 mod check;
@@ -22,6 +22,7 @@ mod distortion;
 mod edges;
 mod evidence;
 mod frame;
+mod guessed;
 mod information;
 mod input;
 mod lens;

@@ -8,6 +8,7 @@
 //! the truth than from it in 5 % of cases and more), and the scene would show an error that counts (the estimate's own
 //! error is below the tolerance in 95 % of cases). Off: all of the interval is above the tolerance, and the candidate is farther from the
 //! estimate than the truth is in 95 % of cases; with six unknowns open hardly any draw is near a candidate, wherever it is.
+//! Where the colour camera was guessed, all of the interval has to be above what that explains.
 //! Else the scene can't tell.
 
 use nalgebra::{SMatrix, SVector, Vector3};
@@ -83,6 +84,8 @@ pub(super) struct Judge {
     inverse: PoseMatrix,
     draws: Vec<PoseVector>,
     tolerance: f64,
+    /// Errors below these pixels have another explanation than a wrong candidate.
+    explained: f64,
     /// Of the estimate.
     own: Health,
     /// What the estimate's error stays below in 95 % of cases.
@@ -126,11 +129,24 @@ impl Judge {
             .collect();
         let inverse = scale.try_inverse().unwrap_or_else(PoseMatrix::zeros);
         let own = Health { pixels: 0.0, interval: [0.0; 2] };
-        let mut judge =
-            Self { units, motion, inverse, draws, tolerance: TOLERANCE * (width / 640.0).max(1.0), own, reach: 0.0 };
+        let mut judge = Self {
+            units,
+            motion,
+            inverse,
+            draws,
+            tolerance: TOLERANCE * (width / 640.0).max(1.0),
+            explained: 0.0,
+            own,
+            reach: 0.0,
+        };
         judge.own = judge.health(&PoseVector::zeros());
         judge.reach = f64::from(quantile(&mut judge.errors(&PoseVector::zeros()), INSIDE));
         judge
+    }
+
+    /// The same where errors below these pixels have another explanation.
+    pub fn explaining(self, pixels: f64) -> Self {
+        Self { explained: pixels, ..self }
     }
 
     /// Errors of a state that is `offset` from the estimate, one for each draw.
@@ -184,7 +200,7 @@ impl Judge {
         let would_show = self.reach <= self.tolerance;
         let verdict = if high <= self.tolerance || (is_likely && would_show) {
             CheckVerdict::Consistent
-        } else if low > self.tolerance && !is_likely {
+        } else if low > self.tolerance.max(self.explained) && !is_likely {
             CheckVerdict::Off
         } else {
             CheckVerdict::Undecided
@@ -214,6 +230,10 @@ impl Judge {
                 Fixed(self.reach, 1)
             ),
             CheckVerdict::Off => format!("Off by about {off}: {pixels}; up to {passes} px pass."),
+            CheckVerdict::Undecided if low > self.tolerance && !is_likely => format!(
+                "This check can't tell, because the colour camera was guessed: {pixels}; up to {} px may come of that.",
+                Fixed(self.explained, 0)
+            ),
             CheckVerdict::Undecided => match weakest {
                 Some(weakest) => format!(
                     "This scene can't tell, because it hardly sees {weakest}: {pixels}, around the {passes} px that pass."

@@ -97,6 +97,18 @@ describe("a rig before boxes", () => {
     assert.match(rough.warnings.join(), /swapped\?/);
   });
 
+  test("behind a camera that is not given a right calibration is never off, and what is far off still is", async () => {
+    const image = { ...frame.image };
+    delete image.camera;
+    const report = await checkCalibration([{ ...frame, image }], { truth, told: wrong(truth, [1, 2, 1], 9, [0.05, 0, 0]) });
+    assert.equal(report.candidates.truth.verdict, "undecided", report.candidates.truth.reason);
+    assert.equal(report.candidates.told.verdict, "off", report.candidates.told.reason);
+    assert.ok(report.warnings.some((warning) => /intrinsics are not given/.test(warning)));
+    // Its principal point and its lens are as unknown: of the scene's middle by a hundredth of the width at the least.
+    const across = Math.sqrt(report.covariance[21]) / report.middle[2];
+    assert.ok(across > (0.01 * frame.image.width) / frame.image.camera.fx, String(across));
+  });
+
   test("a wall alone can't tell, and says so", async () => {
     // No depth edge at all: what was told is all that is known.
     const data = new Uint16Array(frame.depth.data.length).fill(1500);

@@ -1,0 +1,75 @@
+//! What a guessed colour camera leaves open.
+//!
+//! Where no intrinsics are given the focal length is looked for. The principal point and the lens are not: one frame hardly
+//! tells them from a turn, a shift, and the focal length. The estimate makes up for their errors instead, by as much as least
+//! squares over the scene's points do, which its covariance has to hold (consider parameters; Bierman 1977, chapter 8).
+
+use nalgebra::Vector3;
+
+use super::lens::RigCamera;
+use super::unknowns::{Matrix, Units, Vector};
+
+/// Sigma of either coordinate of the principal point, shares of the image's width: cameras as made are off its middle by one
+/// to three hundredths.
+const PRINCIPAL_POINT: f64 = 0.02;
+/// Sigma of Brown's k1: webcams and depth cameras' own colour cameras have up to a tenth or two.
+const LENS: f64 = 0.1;
+const PARAMETERS: usize = 3;
+
+/// Pixels by which a camera that was guessed moves a scene, two sigmas of its principal point: a calibration that is off by less
+/// can't be told from one that is right.
+pub(super) fn explains(width: f64) -> f64 {
+    2.0 * PRINCIPAL_POINT * width
+}
+
+/// Covariance of the estimate by an unknown principal point and lens. `cloud` in the colour camera's frame, `width` of the
+/// image in pixels of the units; `prior` is the information of what was told.
+pub(super) fn covariance(
+    units: &Units,
+    camera: &RigCamera,
+    cloud: &[Vector3<f64>],
+    width: f64,
+    prior: &Matrix,
+) -> Matrix {
+    let mut information = *prior;
+    let mut pulls = [Vector::zeros(); PARAMETERS];
+    let shift = PRINCIPAL_POINT * width;
+    for (point, (pixel, rows)) in cloud.iter().filter_map(|point| Some((point, units.rows(point, camera)?))) {
+        let [x, y] = [point.x / point.z, point.y / point.z];
+        let bend = LENS * (x * x + y * y);
+        let moved = [[shift, 0.0], [0.0, shift], [bend * (pixel[0] - camera.cx), bend * (pixel[1] - camera.cy)]];
+        for (axis, row) in rows.iter().enumerate() {
+            information += row * row.transpose();
+            for (pull, moved) in pulls.iter_mut().zip(moved) {
+                *pull += row * moved[axis];
+            }
+        }
+    }
+    let Some(factors) = information.cholesky() else { return Matrix::zeros() };
+    let steps = pulls.map(|pull| factors.solve(&pull));
+    steps.iter().map(|step| step * step.transpose()).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::calibration::Lens;
+
+    #[test]
+    fn before_one_depth_a_principal_point_is_a_shift() {
+        let camera = RigCamera { fx: 500.0, fy: 500.0, cx: 320.0, cy: 240.0, lens: Lens::None };
+        let cloud: Vec<_> = (0..400)
+            .map(|k| Vector3::new((k % 20) as f64 / 100.0 - 0.095, (k / 20) as f64 / 100.0 - 0.095, 1.0))
+            .collect();
+        let units = Units::new(&cloud, &camera);
+        // Turns about the middle and shifts along the axis are held, so that shifts across it alone can make up for it.
+        let mut prior = Matrix::identity() * 1e12;
+        [3, 4].map(|k| prior[(k, k)] = 1e-6);
+        let found = covariance(&units, &camera, &cloud, 640.0, &prior);
+        let sigma = |k: usize| found[(k, k)].sqrt() * units.of[k];
+        let expected = PRINCIPAL_POINT * 640.0 / 500.0;
+        assert!((sigma(3) - expected).abs() < 0.02 * expected, "{} for {expected}", sigma(3));
+        assert!((sigma(4) - expected).abs() < 0.02 * expected);
+        assert!(sigma(5) < 0.01 * expected);
+    }
+}
