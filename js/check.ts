@@ -1,14 +1,13 @@
 /**
- * What is checked before wasm sees it: names and types, because a misspelt key or a string for a number would pass in
- * silence or fail without a name, and whatever the rows of the options say. What lies in rasters is checked in Rust.
+ * How names and types are checked before wasm sees them, because a misspelt key or a string for a number would pass in
+ * silence or fail without a name. What lies in rasters is checked in Rust.
  */
 import { BimodalError } from "./errors.js";
-import { OPTIONS, RENDERED_ALONE, SAMPLE } from "./options.js";
-import type { NumberRow, Row, Rows, WordRow } from "./rows.js";
+import type { NumberRow } from "./rows.js";
 
 /** Checks one value; `field` is its path in the contract. */
 export type Check = (value: unknown, field: string) => void;
-type Shape = Readonly<Record<string, Check>>;
+export type Shape = Readonly<Record<string, Check>>;
 
 export const isObject = (value: unknown): value is object => typeof value === "object" && value !== null;
 
@@ -25,7 +24,7 @@ export const number: Check = (value, field) => {
   if (typeof value !== "number") throw wrong(field, "a number", value);
 };
 
-const flag: Check = (value, field) => {
+export const flag: Check = (value, field) => {
   if (typeof value !== "boolean") throw wrong(field, "true or false", value);
 };
 
@@ -64,7 +63,7 @@ export const numbers = (count: number): Check => (value, field) => {
 type ArrayType = { readonly name: string; new (length: number): ArrayBufferView };
 
 /** A typed array of one of the given kinds. */
-const array = (...types: readonly ArrayType[]): Check => (value, field) => {
+export const array = (...types: readonly ArrayType[]): Check => (value, field) => {
   if (!types.some((type) => value instanceof type)) {
     throw wrong(field, types.map((type) => `a ${type.name}`).join(" or "), value);
   }
@@ -76,14 +75,6 @@ export const word = (...words: readonly string[]): Check => (value, field) => {
   if (!words.includes(value)) {
     throw new BimodalError("option", `${field}: "${value}" is unknown${hint(value, words)}`, field);
   }
-};
-
-/** A word, or else something that is no word. */
-const wordOr = (words: readonly string[], other: Check, orElse: string): Check => (value, field) => {
-  if (typeof value !== "string") return other(value, field);
-  if (words.includes(value)) return;
-  const allowed = words.map((known) => `"${known}"`).join(", ");
-  throw new BimodalError("option", `${field}: "${value}" is unknown; known: ${allowed} or ${orElse}`, field);
 };
 
 /** Edits that turn one word into the other (Levenshtein). */
@@ -132,8 +123,7 @@ export const object = (shape: Shape, required: readonly string[] = []): Check =>
 };
 
 /** Beyond it the numerics, which count in 32 bits, would take another number for it; their own limits are far below. */
-const side = ranged({ kind: "side", min: 0, max: 2 ** 32 - 1 });
-const camera = object({ fx: number, fy: number, cx: number, cy: number, distortion: numbers(5) }, ["fx", "fy", "cx", "cy"]);
+export const side = ranged({ kind: "side", min: 0, max: 2 ** 32 - 1 });
 
 /** An image and a depth map but for their cameras. */
 export const IMAGE = {
@@ -152,66 +142,9 @@ export const DEPTH = {
   points: array(Float32Array),
 };
 
-const image = object({ ...IMAGE, camera }, ["width", "height", "data"]);
-const depth = object({ ...DEPTH, camera, normals: array(Float32Array) }, ["width", "height"]);
-
-/** The check of a value that is no word, and what it takes, with an article. */
-function valueOf(row: Exclude<Row, WordRow>): readonly [check: Check, what: string] {
-  switch (row.kind) {
-    case "flag":
-      return [flag, "a flag"];
-    case "list":
-      return [numbers(row.length), `${row.length} numbers`];
-    case "object":
-      return [object(shapeOf(row.members)), row.noun];
-    default:
-      return [ranged(row), "a number"];
-  }
-}
-
-function checkOf(row: Row): Check {
-  const words = Object.keys(row.words ?? {});
-  if (row.kind === "word") return word(...words);
-  const [check, what] = valueOf(row);
-  return words.length === 0 ? check : wordOr(words, check, what);
-}
-
-const shapeOf = (rows: Rows): Shape => Object.fromEntries(Object.entries(rows).map(([name, row]) => [name, checkOf(row)]));
-
-const options = object(shapeOf(OPTIONS));
-
-const light = checkOf(OPTIONS.light);
-const relief = object({ width: side, height: side, heights: array(Float32Array) }, ["width", "height", "heights"]);
-/** A name, which the numerics judge, or something that is none. */
-const nameOr = (other: Check): Check => (value, field) => {
-  if (typeof value !== "string") other(value, field);
-};
-const sample = object({ surface: nameOr(relief), light: nameOr(light), ...shapeOf(SAMPLE) }, ["surface", "light"]);
-
 export const signal: Check = (value, field) => {
   if (!(value instanceof AbortSignal)) throw wrong(field, "an AbortSignal", value);
 };
 export const callback: Check = (value, field) => {
   if (typeof value !== "function") throw wrong(field, "a function", value);
 };
-const run = object({ maxIterations: ranged({ kind: "whole", min: 1 }), signal, onStep: callback });
-
-export const unsupported = (field: string, what: string): BimodalError =>
-  new BimodalError("unsupported", `${field}: ${what} is not part of this version yet`, field);
-
-export const checkImage = (value: unknown): void => image(value, "image");
-export const checkDepth = (value: unknown): void => depth(value, "depth");
-export const checkOptions = (value: unknown): void => options(value, "options");
-export const checkRun = (value: unknown): void => run(value, "run");
-
-export function checkSample(value: unknown): void {
-  sample(value, "sample");
-  if (!isObject(value)) return;
-  const given = new Map<string, unknown>(Object.entries(value));
-  if (given.get("protocol") !== "grid") return;
-  const surplus = RENDERED_ALONE.find((key) => given.get(key) !== undefined);
-  if (surplus === undefined) return;
-  throw new BimodalError("option", `sample.${surplus}: the grid protocol has no such thing`, `sample.${surplus}`);
-}
-
-export const checkLightIsKnown = (value: unknown): void => flag(value, "lightIsKnown");

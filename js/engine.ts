@@ -1,29 +1,11 @@
-/** The one wasm module behind all estimators of a page, and the border every call crosses. */
+/** The one wasm module behind all estimators of a page. */
 import start, * as glue from "../target/wasm-bindgen/bimodal_stereo.js";
-import { BimodalError, translate } from "./errors.js";
-import { nodeModule } from "./node.js";
+import { compile } from "./border.js";
+import { BimodalError } from "./errors.js";
 import type { WasmSource } from "./types.js";
 
 let loading: Promise<void> | undefined;
 let module: WebAssembly.Module | undefined;
-
-/** The bytes of a file in Node, whose fetch reads none; nothing where the address is no file's. */
-function fromDisk(wasm: string | URL | Request | Response): Promise<BufferSource> | undefined {
-  const address = typeof wasm === "string" || wasm instanceof URL ? String(wasm) : "";
-  return address.startsWith("file:") ? nodeModule("node:fs/promises")?.readFile(new URL(address)) : undefined;
-}
-
-export async function compile(wasm: WasmSource): Promise<WebAssembly.Module> {
-  if (wasm instanceof WebAssembly.Module) return wasm;
-  if (ArrayBuffer.isView(wasm) || wasm instanceof ArrayBuffer) return WebAssembly.compile(wasm);
-  const file = fromDisk(wasm);
-  if (file) return WebAssembly.compile(await file);
-  const response = wasm instanceof Response ? wasm : await fetch(wasm);
-  if (!response.ok) throw new Error(`status ${response.status}`);
-  // Only what is declared as wasm may be compiled while it arrives.
-  const isDeclared = response.headers.get("Content-Type")?.startsWith("application/wasm");
-  return isDeclared ? WebAssembly.compileStreaming(response) : WebAssembly.compile(await response.arrayBuffer());
-}
 
 async function loadOnce(wasm: WasmSource): Promise<void> {
   try {
@@ -53,13 +35,4 @@ export function compiled(): WebAssembly.Module {
 export function bindings(): typeof glue {
   compiled();
   return glue;
-}
-
-/** Runs a call into wasm; its errors come out as `BimodalError`. */
-export function across<T>(call: () => T): T {
-  try {
-    return call();
-  } catch (error) {
-    throw translate(error);
-  }
 }

@@ -1,8 +1,9 @@
 import type { Estimator as Raw } from "../target/wasm-bindgen/bimodal_stereo.js";
 import { breathe } from "./breathe.js";
-import { checkDepth, checkImage, checkOptions, checkRun, unsupported } from "./check.js";
-import { across, bindings } from "./engine.js";
+import { across } from "./border.js";
+import { bindings } from "./engine.js";
 import { BimodalError, isPanic, translate } from "./errors.js";
+import { checkDepth, checkImage, checkOptions, checkRun, unsupported } from "./inputs.js";
 import { copyOf, plainDepth, plainImage, plainOptions } from "./plain.js";
 import type { ColorImage, DepthMap, Options, RunOptions, StepReport } from "./types.js";
 import { RefinementWorker, type Refinement } from "./workers/refinement.js";

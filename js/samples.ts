@@ -1,6 +1,7 @@
 /** Made scenes with a known answer, for tests, pages and first steps. */
-import { checkLightIsKnown, checkSample } from "./check.js";
-import { across, bindings } from "./engine.js";
+import { across } from "./border.js";
+import { bindings } from "./engine.js";
+import { checkLightIsKnown, checkSample } from "./inputs.js";
 import type { Sample, SampleRequest } from "./types.js";
 
 /** Renders a colour image and a depth map of a built-in (or your own) surface. */

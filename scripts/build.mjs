@@ -19,8 +19,8 @@ const ENTRIES = {
 };
 /** Declarations that no entry mentions; one of them names the generated bindings, which stay inside. */
 const INTERNAL = [
-  ...["breathe", "check", "engine", "inflate", "node", "npy", "plain", "png", "raster"].map((name) => `${name}.d.ts`),
-  ...["check", "run"].map((name) => `calibration/${name}.d.ts`),
+  ...["border", "breathe", "check", "engine", "inflate", "inputs", "node", "npy", "plain", "png", "raster"].map((name) => `${name}.d.ts`),
+  ...["check", "rigs", "run"].map((name) => `calibration/${name}.d.ts`),
   ...["assign", "colour", "depth", "words"].map((name) => `rig/${name}.d.ts`),
   ...["json", "numbers", "plain", "yaml"].map((name) => `rig/write/${name}.d.ts`),
   ...["charts", "curves", "markup", "numbers", "sections", "style"].map((name) => `rig/write/report/${name}.d.ts`),

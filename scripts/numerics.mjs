@@ -31,8 +31,10 @@ const CHECK = {
   features: ["--features", "calibration"],
   name: `${MODULE}_check`,
 };
+/** The rendered rigs of its tests and of the page's example, which nobody else downloads. */
+const RIGS = { ...CHECK, file: `${MODULE}_rigs_bg.wasm`, target: "target/rigs", features: ["--features", "rigs"], name: `${MODULE}_rigs` };
 /** All files of the package. */
-export const ALL = [...FLAVOURS, CHECK];
+export const ALL = [...FLAVOURS, CHECK, RIGS];
 
 /** What the facade's types come from. */
 export const GLUE = ALL.map(({ target, name = MODULE }) => `${target}/wasm-bindgen/${name}.d.ts`);

@@ -1,5 +1,5 @@
 // How much a visitor downloads, and how much it may be.
-import { existsSync, readFileSync } from "node:fs";
+import { existsSync, readFileSync, readdirSync } from "node:fs";
 import { gzipSync } from "node:zlib";
 import { Failure, inRoot } from "./shell.mjs";
 
@@ -7,27 +7,52 @@ import { Failure, inRoot } from "./shell.mjs";
 export const WASM_BUDGET = 320_000;
 /** Bytes of the page's scripts, gzipped, before anything is seen, stay below this: half a second there. */
 export const FIRST_PAINT_BUDGET = 60_000;
+/** .. and of all that the check of a rig, its readers and its writers add to the Lab, gzipped. */
+export const CHECK_BUDGET = 150_000;
 
 const WASM = "pkg/bimodal_stereo_bg.wasm";
 const SCALAR = "pkg/bimodal_stereo_scalar_bg.wasm";
 const PAGE = "www/dist";
 const zipped = (path) => gzipSync(readFileSync(path)).length;
 
-/** Scripts that the page asks for before its first paint: those it names, and what these import at once. */
-function firstScripts(folder) {
-  const page = readFileSync(inRoot(folder, "index.html"), "utf8");
-  const named = [...page.matchAll(/<(?:script|link)[^>]+(?:src|href)="\.\/([^"]+\.js)"/g)].map((match) => match[1]);
+/** What the page imports at once from another file, and what it imports when it is asked for or names as a file of numerics. */
+const AT_ONCE = /(?:^|[;}])(?:import|export)\b(?:[^"';()]*from)?\s*["']\.\/([^"']+\.js)["']/g;
+const ON_DEMAND = /import\(\s*["'`]\.\/([^"'`]+\.js)["'`]|new URL\(\s*["'`]([^"'`]+\.wasm)["'`]/g;
+
+/** All files that these lead to by imports of the kinds that the patterns find. */
+function reached(first, patterns, isLeftOut = () => false) {
   const found = new Set();
-  const waiting = [...named];
+  const waiting = [...first];
   while (waiting.length > 0) {
     const path = waiting.pop();
-    if (found.has(path)) continue;
+    if (found.has(path) || isLeftOut(path)) continue;
     found.add(path);
-    const text = readFileSync(inRoot(folder, path), "utf8");
-    const imports = [...text.matchAll(/(?:^|[;}])(?:import|export)\b(?:[^"';()]*from)?\s*["']\.\/([^"']+\.js)["']/g)];
-    waiting.push(...imports.map((match) => path.replace(/[^/]+$/, match[1])));
+    if (!path.endsWith(".js")) continue;
+    const text = readFileSync(inRoot(PAGE, path), "utf8");
+    for (const pattern of patterns) for (const [, script, file] of text.matchAll(pattern)) waiting.push(path.replace(/[^/]+$/, script ?? file));
   }
   return [...found].sort();
+}
+
+/** Scripts that the page asks for before its first paint: those it names, and what these import at once. */
+function firstScripts() {
+  const page = readFileSync(inRoot(PAGE, "index.html"), "utf8");
+  return reached([...page.matchAll(/<(?:script|link)[^>]+(?:src|href)="\.\/([^"]+\.js)"/g)].map((match) => match[1]), [AT_ONCE]);
+}
+
+const CHECK_WASM = /bimodal_stereo_check_bg/;
+/** The rendered example, which is loaded when it is asked for, and the decoder of JPEG, which browsers have. */
+const EXAMPLE = /\/(?:rigs-|bimodal_stereo_rigs_bg)/;
+const OTHERS = /\/decoder-/;
+
+/** What runs a check, reads its files and writes them, all of it on demand; and what the example takes besides. */
+function checkFiles() {
+  const scripts = readdirSync(inRoot(PAGE, "assets")).filter((name) => name.endsWith(".js")).map((name) => `assets/${name}`);
+  const first = scripts.filter((path) => CHECK_WASM.test(readFileSync(inRoot(PAGE, path), "utf8")));
+  if (first.length === 0) throw new Failure("No script of the page loads the check's .wasm.");
+  const all = reached(first, [AT_ONCE, ON_DEMAND], (path) => OTHERS.test(path));
+  const example = all.filter((path) => EXAMPLE.test(path));
+  return { check: all.filter((path) => !example.includes(path)), example };
 }
 
 /** Builds the page that is measured. */
@@ -39,26 +64,33 @@ export async function buildPage() {
 /** Bytes of the built package and the built page. */
 export function sizes() {
   for (const path of [WASM, SCALAR, `${PAGE}/index.html`]) if (!existsSync(inRoot(path))) throw new Failure(`${path} has not been built.`);
-  const scripts = firstScripts(PAGE);
+  const scripts = firstScripts();
+  const { check, example } = checkFiles();
+  const total = (paths) => paths.reduce((sum, path) => sum + zipped(inRoot(PAGE, path)), 0);
   return {
     wasmBytes: readFileSync(inRoot(WASM)).length,
     wasmGzipBytes: zipped(inRoot(WASM)),
     scalarBytes: readFileSync(inRoot(SCALAR)).length,
     scalarGzipBytes: zipped(inRoot(SCALAR)),
-    jsGzipBytes: scripts.reduce((total, path) => total + zipped(inRoot(PAGE, path)), 0),
+    jsGzipBytes: total(scripts),
     scripts,
+    checkGzipBytes: total(check),
+    exampleGzipBytes: total(example),
+    check,
   };
 }
 
 /** The sizes beside their budgets, one line each, and whether all are kept. */
-export function judgeSizes({ wasmGzipBytes, scalarGzipBytes, jsGzipBytes }) {
+export function judgeSizes({ wasmGzipBytes, scalarGzipBytes, jsGzipBytes, checkGzipBytes, exampleGzipBytes }) {
   const line = (name, bytes, kept, budget) =>
     `${name}: ${(bytes / 1000).toFixed(1)} kB gzipped, ${kept ? "within" : "OVER"} the budget of ${budget / 1000} kB`;
-  const kept = [wasmGzipBytes <= WASM_BUDGET, scalarGzipBytes <= WASM_BUDGET, jsGzipBytes < FIRST_PAINT_BUDGET];
+  const kept = [wasmGzipBytes <= WASM_BUDGET, scalarGzipBytes <= WASM_BUDGET, jsGzipBytes < FIRST_PAINT_BUDGET, checkGzipBytes <= CHECK_BUDGET];
   const lines = [
     line("size of the wasm", wasmGzipBytes, kept[0], WASM_BUDGET),
     line("size of the wasm without SIMD", scalarGzipBytes, kept[1], WASM_BUDGET),
     line("size of the page's first scripts", jsGzipBytes, kept[2], FIRST_PAINT_BUDGET),
+    line("size of the check with its readers and writers", checkGzipBytes, kept[3], CHECK_BUDGET),
+    `size of the rendered example, on demand: ${(exampleGzipBytes / 1000).toFixed(1)} kB gzipped`,
   ];
   return { lines, kept: kept.every(Boolean) };
 }

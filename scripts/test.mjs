@@ -102,8 +102,9 @@ const PARTS = [
   { name: "format", run: cargo("fmt", "--check") },
   { name: "clippy", run: cargo("clippy", "--all-targets", ...DENY), closing: CARGO },
   { name: "clippy-wasm", run: cargo("clippy", "--target", WASM, "--all-targets", ...DENY), closing: CARGO },
-  // The bindings of the calibration check, which is a file of its own.
+  // The bindings of the calibration check and of its rendered rigs, which are files of their own.
   { name: "clippy-check", run: cargo("clippy", "--target", WASM, "--lib", "--features", "calibration", ...DENY), closing: CARGO },
+  { name: "clippy-rigs", run: cargo("clippy", "--target", WASM, "--lib", "--features", "rigs", ...DENY), closing: CARGO },
   { name: "rust", run: rust, closing: CARGO },
   { name: "wasm-node", run: wasmIn(), closing: CARGO },
   { name: "wasm-browser", run: wasmIn("WASM_BINDGEN_USE_BROWSER"), closing: CARGO },

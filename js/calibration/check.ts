@@ -39,15 +39,6 @@ const cues: Check = (value, field) => {
 };
 const MOST_WORKERS = 16;
 const options = object({ cues, workers: ranged({ kind: "whole", min: 1, max: MOST_WORKERS }), signal, onProgress: callback });
-const rigRequest = object(
-  {
-    kind: word("objects", "sheet", "boxes", "room"),
-    seed: ranged({ kind: "whole", min: 0 }),
-    frame: ranged({ kind: "whole", min: 0, max: 2 ** 31 }),
-    noise: ranged({ kind: "number", min: 0 }),
-  },
-  ["kind"],
-);
 
 export function checkFrames(value: unknown): void {
   if (!Array.isArray(value)) throw wrong("frames", "a list of frames", value);
@@ -70,4 +61,3 @@ export function checkCandidates(value: unknown): void {
 }
 
 export const checkCheckOptions = (value: unknown): void => options(value, "options");
-export const checkRigRequest = (value: unknown): void => rigRequest(value, "request");

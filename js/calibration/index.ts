@@ -1,4 +1,4 @@
-/** The check of a calibration: a .wasm file of its own, loaded with the first call. */
+/** The check of a calibration and the rigs that it is tested on: a .wasm file of its own for each, loaded with the first call. */
 import type { CheckFrame, CheckOptions, CheckReport, FrameOverlay, Pose, RigRequest, RigSample } from "../types.js";
 
 /**
@@ -22,6 +22,6 @@ export async function projectFrame(frame: CheckFrame, pose: Pose): Promise<Frame
 
 /** One frame of a rendered rig whose extrinsics are known. */
 export async function sampleRig(request: RigRequest): Promise<RigSample> {
-  const { rig } = await import("./run.js");
-  return rig(request);
+  const { render } = await import("./rigs.js");
+  return render(request);
 }

@@ -1,30 +1,16 @@
 /** Runs the check: its module, its inputs' names and types, its slices. */
-import start, * as glue from "../../target/check/wasm-bindgen/bimodal_stereo_check.js";
-import { checkCandidates, checkCheckOptions, checkFrames, checkPose, checkRigRequest } from "./check.js";
-import { across, compile } from "../engine.js";
+import start, { CalibrationCheck, overlay } from "../../target/check/wasm-bindgen/bimodal_stereo_check.js";
+import { checkCandidates, checkCheckOptions, checkFrames, checkPose } from "./check.js";
+import { across, compile, lazily } from "../border.js";
 import { BimodalError } from "../errors.js";
 import { breathe } from "../breathe.js";
-import type { CheckFrame, CheckOptions, CheckReport, FrameOverlay, Pose, RigRequest, RigSample } from "../types.js";
+import type { CheckFrame, CheckOptions, CheckReport, FrameOverlay, Pose } from "../types.js";
 
 /** Milliseconds between two breaths: a page stays responsive, and a message costs a hundredth of it. */
 const SLICE = 30;
 
-let loading: Promise<unknown> | undefined;
-
-async function load(): Promise<typeof glue> {
-  // In one piece: bundlers look for exactly this to carry the file along.
-  loading ??= compile(new URL("./bimodal_stereo_check_bg.wasm", import.meta.url)).then((module) =>
-    start({ module_or_path: module }),
-  );
-  try {
-    await loading;
-  } catch (error) {
-    loading = undefined;
-    const reason = error instanceof Error ? error.message : String(error);
-    throw new BimodalError("init", `checkCalibration: its .wasm could not be loaded (${reason})`, "wasm", { cause: error });
-  }
-  return glue;
-}
+// In one piece: bundlers look for exactly this to carry the file along.
+const load = lazily("checkCalibration", async () => start({ module_or_path: await compile(new URL("./bimodal_stereo_check_bg.wasm", import.meta.url)) }));
 
 const twelve = ({ rotation, translation }: Pose): number[] => [...rotation, ...translation];
 
@@ -38,7 +24,7 @@ export async function check(
   checkCheckOptions(options);
   const { cues, signal, onProgress } = options;
   signal?.throwIfAborted();
-  const { CalibrationCheck } = await load();
+  await load();
   const names = Object.keys(candidates);
   const poses = Float64Array.from(names.flatMap((name) => twelve(candidates[name] as Pose)));
   onProgress?.(0, "reading the frames");
@@ -66,12 +52,6 @@ export async function check(
 export async function project(frame: CheckFrame, pose: Pose): Promise<FrameOverlay> {
   checkFrames([frame]);
   checkPose(pose);
-  const { overlay } = await load();
+  await load();
   return across(() => overlay(frame, Float64Array.from(twelve(pose)))) as FrameOverlay;
-}
-
-export async function rig(request: RigRequest): Promise<RigSample> {
-  checkRigRequest(request);
-  const { sampleRig } = await load();
-  return across(() => sampleRig(request));
 }

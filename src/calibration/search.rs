@@ -133,10 +133,9 @@ impl Lattice {
         let inverse_roots = told.values.map(|value| 1.0 / value.max(f64::MIN_POSITIVE).sqrt());
         let root = told.vectors * Matrix::from_diagonal(&inverse_roots) * told.vectors.transpose();
         let eigen = symmetric_eigen(&(root * motion * root))?;
-        let mut order: [usize; UNKNOWNS] = std::array::from_fn(|k| k);
-        order.sort_unstable_by(|&a, &b| eigen.values[b].total_cmp(&eigen.values[a]));
+        let order = crate::numeric::descending(eigen.values.as_slice());
         // Pixels of a sigma along each.
-        let lengths = order.map(|k| eigen.values[k].max(f64::MIN_POSITIVE).sqrt());
+        let lengths: [f64; UNKNOWNS] = std::array::from_fn(|k| eigen.values[order[k]].max(f64::MIN_POSITIVE).sqrt());
         let reach = |pace: f64| lengths.map(|length| (REACH * length / pace).min(f64::from(i8::MAX)) as i8);
         while reach(*pace).iter().map(|&k| 2.0 * f64::from(k) + 1.0).product::<f64>() > MOST_PLACES {
             *pace *= 1.1;

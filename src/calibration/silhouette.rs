@@ -39,7 +39,9 @@ impl<'a> Silhouette<'a> {
         for (point, &tile) in self.patches.points.iter().zip(&self.patches.tiles) {
             let [x, y, z] = state.pose.apply(*point).into();
             let Some([column, row]) = camera.project([x, y, z]) else { continue };
-            let clamped = [column.clamp(0.0, (size.width - 1) as f64), row.clamp(0.0, (size.height - 1) as f64)];
+            // `clamp` can panic with both limits in words, which takes 8 kB of code for floats.
+            let within = |value: f64, length: usize| value.max(0.0).min((length - 1) as f64);
+            let clamped = [within(column, size.width), within(row, size.height)];
             let beyond = (column - clamped[0]).hypot(row - clamped[1]);
             let distance = f64::from(size.bilinear(&self.outside, clamped[0] as f32, clamped[1] as f32)) + beyond;
             let u = (distance - TOLERANCE).max(0.0);

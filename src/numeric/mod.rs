@@ -23,4 +23,4 @@ pub(crate) mod vector;
 pub(crate) use doubles::{DOUBLE_LANES, Doubles};
 pub(crate) use functions::power;
 pub(crate) use lanes::{LANES, Lanes, Mask, Real, dot};
-pub(crate) use order::{evenly_spread, quantile, sort_descending, thin};
+pub(crate) use order::{descending, evenly_spread, quantile, sort_descending, thin};

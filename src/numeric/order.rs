@@ -27,12 +27,14 @@ pub(crate) fn thin(elements: &mut Vec<usize>, most: usize) {
 
 /// Largest key first. Sorts numbers, not the things themselves: sorting is a lot of code for each type there is, and
 /// all of it is downloaded.
-pub(crate) fn sort_descending<T: Clone>(list: &mut Vec<T>, key: impl Fn(&T) -> f64) {
+pub(crate) fn sort_descending<T>(list: &mut Vec<T>, key: impl Fn(&T) -> f64) {
     let order = descending(&list.iter().map(key).collect::<Vec<_>>());
-    *list = order.into_iter().map(|index| list[index].clone()).collect();
+    let mut things: Vec<Option<T>> = list.drain(..).map(Some).collect();
+    list.extend(order.into_iter().filter_map(|index| things[index].take()));
 }
 
-fn descending(keys: &[f64]) -> Vec<usize> {
+/// Indices of the keys, that of the largest key first.
+pub(crate) fn descending(keys: &[f64]) -> Vec<usize> {
     // Bits of positive numbers are in their order, those of negative ones in the opposite (IEEE 754). A heap, because
     // the library's sort is four times as much code; by index where equal, so that the order is the same everywhere.
     let rank = |value: f64| {

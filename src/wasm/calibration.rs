@@ -1,6 +1,6 @@
-//! The calibration check and its rendered rigs for JavaScript.
+//! The calibration check for JavaScript.
 
-use js_sys::{Array, Float32Array, Object, Uint8Array, Uint16Array};
+use js_sys::{Array, Float32Array, Object};
 use nalgebra::{Matrix3, Vector3};
 use wasm_bindgen::prelude::wasm_bindgen;
 use wasm_bindgen::{JsCast, JsValue};
@@ -14,8 +14,7 @@ use crate::calibration::{
 };
 use crate::error::{Error, ErrorKind, Result};
 use crate::pose::Similarity;
-use crate::scenes::rig::{RigKind, RigRequest, render};
-use crate::view::{Size, Transfer};
+use crate::view::Transfer;
 
 #[wasm_bindgen]
 extern "C" {
@@ -44,18 +43,6 @@ extern "C" {
 
     #[wasm_bindgen(typescript_type = "CheckReport")]
     pub type JsReport;
-    #[wasm_bindgen(typescript_type = "RigRequest")]
-    pub type JsRigRequest;
-    #[wasm_bindgen(method, getter)]
-    fn kind(this: &JsRigRequest) -> String;
-    #[wasm_bindgen(method, getter)]
-    fn seed(this: &JsRigRequest) -> Option<f64>;
-    #[wasm_bindgen(method, getter)]
-    fn frame(this: &JsRigRequest) -> Option<f64>;
-    #[wasm_bindgen(method, getter)]
-    fn noise(this: &JsRigRequest) -> Option<f64>;
-    #[wasm_bindgen(typescript_type = "RigSample")]
-    pub type JsRigSample;
 }
 
 /// A check under way.
@@ -117,52 +104,6 @@ pub fn overlay(frame: &JsFrame, numbers: &[f64]) -> std::result::Result<Object, 
     set(&object, "points", Float32Array::from(overlay.points.as_slice()));
     set(&object, "edges", Float32Array::from(overlay.edges.as_slice()));
     Ok(object)
-}
-
-/// One frame of a rendered rig.
-///
-/// # Errors
-/// As the native renderer.
-#[wasm_bindgen(js_name = "sampleRig")]
-pub fn sample_rig(request: &JsRigRequest) -> std::result::Result<JsRigSample, Thrown> {
-    let name = request.kind();
-    let kind = RigKind::ALL.into_iter().find(|kind| kind.name() == name);
-    let Some(kind) = kind else {
-        let known = RigKind::ALL.map(RigKind::name).join(", ");
-        return Err(Error::new(ErrorKind::Missing, "kind", format!("\"{name}\" is unknown; known: {known}")).into());
-    };
-    let mut native =
-        RigRequest::new(kind, request.seed().unwrap_or_default() as u64, request.frame().unwrap_or_default() as u32);
-    native.noise = request.noise().unwrap_or(native.noise);
-    let frame = render(&native)?;
-    let (image, depth, object) = (Object::new(), Object::new(), Object::new());
-    size(&image, frame.colour_size);
-    set(&image, "camera", camera_object(&frame.colour_camera));
-    set(&image, "data", Uint8Array::from(frame.colour.as_slice()));
-    size(&depth, frame.depth_size);
-    set(&depth, "camera", camera_object(&frame.depth_camera));
-    set(&depth, "unit", 0.001);
-    set(&depth, "data", Uint16Array::from(frame.depth.as_slice()));
-    set(&object, "name", format!("{name} {}", native.frame + 1));
-    set(&object, "image", image);
-    set(&object, "depth", depth);
-    set(&object, "pose", super::output::pose(&frame.pose));
-    Ok(object.unchecked_into())
-}
-
-fn size(object: &Object, size: Size) {
-    set(object, "width", size.width as f64);
-    set(object, "height", size.height as f64);
-}
-
-fn camera_object(camera: &RigCamera) -> Object {
-    let object = Object::new();
-    for (key, value) in [("fx", camera.fx), ("fy", camera.fy), ("cx", camera.cx), ("cy", camera.cy)] {
-        set(&object, key, value);
-    }
-    set(&object, "model", if matches!(camera.lens, Lens::Fisheye(_)) { "fisheye" } else { "brown" });
-    set(&object, "distortion", camera.lens.coefficients().iter().map(|value| JsValue::from(*value)).collect::<Array>());
-    object
 }
 
 fn pose(numbers: &[f64]) -> Similarity {

@@ -4,24 +4,27 @@
 //! as for every other caller. Arrays are copied both ways, because a view on wasm memory dies when that memory grows.
 
 mod error;
+#[cfg(not(feature = "rigs"))]
 #[cfg_attr(feature = "calibration", allow(dead_code, reason = "options are the loop's"))]
 mod input;
-#[cfg_attr(feature = "calibration", allow(dead_code, reason = "so are its reports"))]
+#[cfg_attr(any(feature = "calibration", feature = "rigs"), allow(dead_code, reason = "so are its reports"))]
 mod output;
 
 // A file of its own for each: visitors who don't check a rig don't download the check, and the other way round.
 #[cfg(feature = "calibration")]
 mod calibration;
-#[cfg(not(feature = "calibration"))]
+#[cfg(not(any(feature = "calibration", feature = "rigs")))]
 mod estimator;
-#[cfg(not(feature = "calibration"))]
+#[cfg(feature = "rigs")]
+mod rigs;
+#[cfg(not(any(feature = "calibration", feature = "rigs")))]
 mod sample;
-#[cfg(not(feature = "calibration"))]
+#[cfg(not(any(feature = "calibration", feature = "rigs")))]
 mod worker;
 
 use wasm_bindgen::prelude::wasm_bindgen;
 
-#[cfg(not(feature = "calibration"))]
+#[cfg(not(any(feature = "calibration", feature = "rigs")))]
 #[wasm_bindgen(typescript_custom_section)]
 const TYPES: &str = r#"
 import type { ColorImage, DepthMap, Options, Sample, SampleRequest, StepReport } from "../../js/types.js";
@@ -30,7 +33,13 @@ import type { ColorImage, DepthMap, Options, Sample, SampleRequest, StepReport }
 #[cfg(feature = "calibration")]
 #[wasm_bindgen(typescript_custom_section)]
 const TYPES: &str = r#"
-import type { CheckFrame, CheckReport, ColorImage, DepthMap, Options, RigRequest, RigSample } from "../../../js/types.js";
+import type { CheckFrame, CheckReport, ColorImage, DepthMap, Options } from "../../../js/types.js";
+"#;
+
+#[cfg(feature = "rigs")]
+#[wasm_bindgen(typescript_custom_section)]
+const TYPES: &str = r#"
+import type { RigSample } from "../../../js/types.js";
 "#;
 
 /// Runs once, when the module has been loaded: a panic then says in the console where it happened.

@@ -1,5 +1,4 @@
 /** Text files: what they are is told from their words, and what they hold comes out as cameras and poses. */
-import { loadAll } from "js-yaml";
 import { badFile } from "../../errors.js";
 import { readColmap, isColmap } from "./colmap.js";
 import { MOST_TEXT } from "./limits.js";
@@ -8,14 +7,10 @@ import { isEnumeration, readEnumeration } from "./realsense.js";
 import { isEcho, isPublisher, readEcho, readPublishers } from "./ros.js";
 import { type Calibration, searchTree } from "./tree.js";
 import { plainXml, readXml } from "./xml.js";
-
-/*
- * js-yaml (5.5, 13 kB gzipped) and not yaml (2.9, 30 kB): both are kept well and bound aliases; nothing here needs yaml's syntax tree.
- */
+import { readDocuments } from "./yaml.js";
 
 /** Characters of YAML: calibrations have a few thousand. */
 const MOST_YAML = 2 ** 18;
-const YAML_LIMITS = { maxDepth: 32, maxAliases: 64 };
 
 /** The text of a file, or nothing where its bytes are none. */
 export function textOf(bytes: Uint8Array): string | undefined {
@@ -50,7 +45,7 @@ const withColons = (text: string): string => (/^[ \t]*[\w.]{1,80}[ \t]*:/m.test(
 function readYaml(text: string): unknown {
   if (text.length > MOST_YAML) throw badFile(`it is text of ${text.length} characters, in none of the forms that are read here`);
   try {
-    return loadAll(withColons(plainYaml(text)), YAML_LIMITS);
+    return readDocuments(withColons(plainYaml(text)));
   } catch (error) {
     const reason = error instanceof Error ? (error.message.split("\n")[0] ?? "") : String(error);
     throw badFile(`it is a text in none of the forms that are read here, or damaged (as YAML: ${reason})`, error);

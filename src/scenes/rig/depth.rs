@@ -113,7 +113,7 @@ fn millimetres(depth: f64) -> u16 {
 /// The pixel so many columns and rows beside, within the view.
 fn displaced(size: Size, index: usize, jitter: [f64; 2]) -> usize {
     let (column, row) = size.position(index);
-    let move_by = |at: usize, by: f64, length: usize| (at as f64 + by).round().clamp(0.0, length as f64 - 1.0) as usize;
+    let move_by = |at: usize, by: f64, length: usize| ((at as f64 + by).round().max(0.0) as usize).min(length - 1);
     size.index(move_by(column, jitter[0], size.width), move_by(row, jitter[1], size.height))
 }
 

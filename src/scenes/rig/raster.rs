@@ -216,7 +216,7 @@ fn span(coordinates: [f64; 3], length: usize) -> std::ops::Range<usize> {
     let (low, high) = (a.min(b).min(c), a.max(b).max(c));
     let margin = MARGIN + MARGIN_SHARE * (high - low);
     // Before the casts, which would saturate.
-    let within = |position: f64| position.clamp(0.0, length as f64) as usize;
+    let within = |position: f64| position.max(0.0).min(length as f64) as usize;
     within((low - margin).ceil())..within((high + margin).floor() + 1.0)
 }
 

@@ -1,0 +1,76 @@
+/** What the loop's inputs must look like: names and types, and whatever the rows of the options say. */
+import { type Check, DEPTH, IMAGE, type Shape, array, callback, flag, isObject, number, numbers, object, ranged, side, signal, word } from "./check.js";
+import { BimodalError } from "./errors.js";
+import { OPTIONS, RENDERED_ALONE, SAMPLE } from "./options.js";
+import type { Row, Rows, WordRow } from "./rows.js";
+
+/** A word, or else something that is no word. */
+const wordOr = (words: readonly string[], other: Check, orElse: string): Check => (value, field) => {
+  if (typeof value !== "string") return other(value, field);
+  if (words.includes(value)) return;
+  const allowed = words.map((known) => `"${known}"`).join(", ");
+  throw new BimodalError("option", `${field}: "${value}" is unknown; known: ${allowed} or ${orElse}`, field);
+};
+
+/** The check of a value that is no word, and what it takes, with an article. */
+function valueOf(row: Exclude<Row, WordRow>): readonly [check: Check, what: string] {
+  switch (row.kind) {
+    case "flag":
+      return [flag, "a flag"];
+    case "list":
+      return [numbers(row.length), `${row.length} numbers`];
+    case "object":
+      return [object(shapeOf(row.members)), row.noun];
+    default:
+      return [ranged(row), "a number"];
+  }
+}
+
+function checkOf(row: Row): Check {
+  const words = Object.keys(row.words ?? {});
+  if (row.kind === "word") return word(...words);
+  const [check, what] = valueOf(row);
+  return words.length === 0 ? check : wordOr(words, check, what);
+}
+
+const shapeOf = (rows: Rows): Shape => Object.fromEntries(Object.entries(rows).map(([name, row]) => [name, checkOf(row)]));
+
+/** A name, which the numerics judge, or something that is none. */
+const nameOr = (other: Check): Check => (value, field) => {
+  if (typeof value !== "string") other(value, field);
+};
+
+function inputs() {
+  const camera = object({ fx: number, fy: number, cx: number, cy: number, distortion: numbers(5) }, ["fx", "fy", "cx", "cy"]);
+  const relief = object({ width: side, height: side, heights: array(Float32Array) }, ["width", "height", "heights"]);
+  return {
+    image: object({ ...IMAGE, camera }, ["width", "height", "data"]),
+    depth: object({ ...DEPTH, camera, normals: array(Float32Array) }, ["width", "height"]),
+    options: object(shapeOf(OPTIONS)),
+    sample: object({ surface: nameOr(relief), light: nameOr(checkOf(OPTIONS.light)), ...shapeOf(SAMPLE) }, ["surface", "light"]),
+    run: object({ maxIterations: ranged({ kind: "whole", min: 1 }), signal, onStep: callback }),
+  };
+}
+let made: ReturnType<typeof inputs> | undefined;
+/** Made when first asked for, so that bundlers leave them out of what only checks a rig. */
+const checks = (): ReturnType<typeof inputs> => (made ??= inputs());
+
+export const unsupported = (field: string, what: string): BimodalError =>
+  new BimodalError("unsupported", `${field}: ${what} is not part of this version yet`, field);
+
+export const checkImage = (value: unknown): void => checks().image(value, "image");
+export const checkDepth = (value: unknown): void => checks().depth(value, "depth");
+export const checkOptions = (value: unknown): void => checks().options(value, "options");
+export const checkRun = (value: unknown): void => checks().run(value, "run");
+
+export function checkSample(value: unknown): void {
+  checks().sample(value, "sample");
+  if (!isObject(value)) return;
+  const given = new Map<string, unknown>(Object.entries(value));
+  if (given.get("protocol") !== "grid") return;
+  const surplus = RENDERED_ALONE.find((key) => given.get(key) !== undefined);
+  if (surplus === undefined) return;
+  throw new BimodalError("option", `sample.${surplus}: the grid protocol has no such thing`, `sample.${surplus}`);
+}
+
+export const checkLightIsKnown = (value: unknown): void => flag(value, "lightIsKnown");
