@@ -210,8 +210,12 @@ fn through_slopes(point: [f64; 3], distort: impl Fn([f64; 2]) -> Option<Distorte
 /// Factor of the radius by its square, and the derivative of that.
 fn radial([k1, k2, _, _, k3, k4, k5, k6]: &[f64; 8], square: f64) -> [f64; 2] {
     let above = 1.0 + square * (k1 + square * (k2 + square * k3));
-    let below = 1.0 + square * (k4 + square * (k5 + square * k6));
     let above_slope = k1 + square * (2.0 * k2 + 3.0 * square * k3);
+    // The usual five coefficients need no division, which takes as long as all the rest.
+    if *k4 == 0.0 && *k5 == 0.0 && *k6 == 0.0 {
+        return [above, above_slope];
+    }
+    let below = 1.0 + square * (k4 + square * (k5 + square * k6));
     let below_slope = k4 + square * (2.0 * k5 + 3.0 * square * k6);
     let factor = above / below;
     [factor, (above_slope - factor * below_slope) / below]

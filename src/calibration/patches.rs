@@ -79,9 +79,13 @@ fn group(samples: &[&Sample]) -> Vec<u8> {
     for _ in 0..ROUNDS {
         let (mut sums, mut counts) = (vec![[0.0; 6]; centres.len()], vec![0.0; centres.len()]);
         for (feature, patch) in features.iter().zip(&mut patches) {
-            let nearest = (0..centres.len())
-                .min_by(|&a, &b| square(feature, &centres[a]).total_cmp(&square(feature, &centres[b])));
-            *patch = nearest.unwrap_or(0) as u8;
+            let mut least = f64::INFINITY;
+            for (k, centre) in centres.iter().enumerate() {
+                let distance = square(feature, centre);
+                if distance < least {
+                    (least, *patch) = (distance, k as u8);
+                }
+            }
             counts[*patch as usize] += 1.0;
             (0..6).for_each(|k| sums[*patch as usize][k] += feature[k]);
         }

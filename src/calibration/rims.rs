@@ -45,20 +45,26 @@ fn ends_before_farther(frame: &Frame, projection: &Projection, index: usize) -> 
     let (column, row) = grid.position(index);
     let here = depth(projection, index);
     let gap = frame.clear_gap(here);
-    [(1_isize, 0_isize), (-1, 0), (0, 1), (0, -1)].into_iter().any(|(right, down)| {
-        let at = |k: isize| {
-            let (column, row) = (column as isize + k * right, row as isize + k * down);
-            let inside = column >= 0 && row >= 0 && (column as usize) < grid.width && (row as usize) < grid.height;
-            inside.then(|| grid.index(column as usize, row as usize))
-        };
-        let next = (1..=WIDEST_HOLE as isize)
-            .map_while(|k| at(k).map(|index| (k, index)))
-            .find(|&(_, index)| !depth(projection, index).is_nan());
-        let Some((steps, next)) = next else { return false };
+    // Distance of neighbours in memory, pixels from here to the raster's end, and to its other end.
+    let ways = [
+        (1, grid.width - 1 - column, column),
+        (-1, column, grid.width - 1 - column),
+        (grid.width as isize, grid.height - 1 - row, row),
+        (-(grid.width as isize), row, grid.height - 1 - row),
+    ];
+    ways.into_iter().any(|(stride, ahead, behind)| {
+        let at = |steps: isize| depth(projection, index.wrapping_add_signed(stride * steps));
+        let mut steps = 1..=ahead.min(WIDEST_HOLE) as isize;
+        let Some(steps) = steps.find(|&steps| !at(steps).is_nan()) else { return false };
+        let farther = at(steps) - here;
+        // Of all pixels but a few hundred this is enough: a surface that falls away makes it less.
+        if farther <= gap {
+            return false;
+        }
         // How steeply the surface falls away already, over the two pixels before.
-        let before = at(-2).map_or(f64::NAN, |index| depth(projection, index));
+        let before = if behind < 2 { f64::NAN } else { at(-2) };
         let slope = if before.is_nan() { 0.0 } else { ((here - before) / 2.0).max(0.0) };
-        depth(projection, next) - here - slope.min(gap) * steps as f64 > gap
+        farther - slope.min(gap) * steps as f64 > gap
     })
 }
 

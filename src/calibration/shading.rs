@@ -59,7 +59,10 @@ impl<'a> Shading<'a> {
         let mut matrix = SMatrix::<f64, HARMONICS, HARMONICS>::zeros();
         let mut sums = SMatrix::<f64, HARMONICS, 3>::zeros();
         for (index, harmonics) in self.harmonics.iter().enumerate().filter(|&(index, _)| known[index].is_some()) {
-            matrix += harmonics * harmonics.transpose();
+            // The lower half, which is all that the factorisation reads.
+            for column in 0..HARMONICS {
+                (column..HARMONICS).for_each(|row| matrix[(row, column)] += harmonics[row] * harmonics[column]);
+            }
             sums += harmonics * logs[index].transpose();
         }
         let ridge = RIDGE * matrix.diagonal().max() + f64::MIN_POSITIVE;
