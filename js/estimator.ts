@@ -3,14 +3,20 @@ import { breathe } from "./breathe.js";
 import { across } from "./border.js";
 import { bindings } from "./engine.js";
 import { BimodalError, isPanic, translate } from "./errors.js";
-import { checkDepth, checkImage, checkOptions, checkRun, unsupported } from "./inputs.js";
+import { checkDepth, checkDraw, checkImage, checkLayer, checkOptions, checkRun, unsupported } from "./inputs.js";
 import { copyOf, plainDepth, plainImage, plainOptions } from "./plain.js";
-import type { ColorImage, DepthMap, Options, RunOptions, StepReport } from "./types.js";
+import type { ColorImage, DepthMap, DrawOptions, Layer, Options, RunOptions, StepReport } from "./types.js";
 import { RefinementWorker, type Refinement } from "./workers/refinement.js";
 import { SearchWorkers } from "./workers/search.js";
 
 /** Pixels of the depth view from which on a refinement worker is worth its messages: a refinement then takes some milliseconds. */
 const LEAST_SHARED = 96 * 96;
+
+/** Whether the canvas is the page's or a worker's; where there are no canvases there is no context either. */
+function isContext(value: unknown): boolean {
+  const { CanvasRenderingContext2D: Own, OffscreenCanvasRenderingContext2D: Offscreen } = globalThis;
+  return (Own !== undefined && value instanceof Own) || (Offscreen !== undefined && value instanceof Offscreen);
+}
 
 /** An input made plain; checked before, for keys that are unknown, and after, for members that are inherited. */
 function checked<T>(check: (value: unknown) => void, plain: (input: T) => T, input: T): T {
@@ -157,6 +163,18 @@ export class Estimator {
    */
   shading(): Float32Array {
     return this.#call((raw) => raw.shading());
+  }
+
+  /**
+   * Paints a layer into the top left corner of a canvas, a pixel for each of its view's; what has no value stays clear. Nothing but its
+   * colours leaves the module. The canvas keeps its size: give it the view's.
+   */
+  draw(context: CanvasRenderingContext2D | OffscreenCanvasRenderingContext2D, layer: Layer, options: DrawOptions = {}): void {
+    if (!isContext(context)) throw new BimodalError("type", "context: must be the 2D context of a canvas", "context");
+    checkLayer(layer);
+    checkDraw(options);
+    const { range, map = "viridis" } = options;
+    this.#call((raw) => raw.draw(context, layer, range && Float64Array.from(range), map));
   }
 
   /** The 27 coefficients of the light: R1..9, G1..9, B1..9. */

@@ -48,6 +48,7 @@ function inputs() {
     depth: object({ ...DEPTH, camera, normals: array(Float32Array) }, ["width", "height"]),
     options: object(shapeOf(OPTIONS)),
     sample: object({ surface: nameOr(relief), light: nameOr(checkOf(OPTIONS.light)), ...shapeOf(SAMPLE) }, ["surface", "light"]),
+    draw: object({ range: numbers(2), map: word("viridis", "magma") }),
     run: object({ maxIterations: ranged({ kind: "whole", min: 1 }), signal, onStep: callback }),
   };
 }
@@ -61,6 +62,8 @@ export const unsupported = (field: string, what: string): BimodalError =>
 export const checkImage = (value: unknown): void => checks().image(value, "image");
 export const checkDepth = (value: unknown): void => checks().depth(value, "depth");
 export const checkOptions = (value: unknown): void => checks().options(value, "options");
+export const checkDraw = (value: unknown): void => checks().draw(value, "options");
+export const checkLayer: (value: unknown) => void = (value) => word("normals", "depth", "residual", "refined", "refinedNormals")(value, "layer");
 export const checkRun = (value: unknown): void => checks().run(value, "run");
 
 export function checkSample(value: unknown): void {

@@ -266,6 +266,17 @@ export interface RigSample extends CheckFrame {
   pose: Pose;
 }
 
+/** What `Estimator.draw` can show: of the image view its normals, depth and residual, of the depth view what was refined. */
+export type Layer = "normals" | "depth" | "residual" | "refined" | "refinedNormals";
+
+/** How `Estimator.draw` turns numbers into colours; normals have theirs. */
+export interface DrawOptions {
+  /** The numbers at the map's ends; default: all of the layer's but a hundredth at either end. */
+  range?: readonly [number, number];
+  /** Default "viridis". */
+  map?: "viridis" | "magma";
+}
+
 /** A frame as a pose lays it over its image. */
 export interface FrameOverlay {
   /** Column, row, metres of each visible depth point. */

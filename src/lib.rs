@@ -23,6 +23,7 @@
 //! | `pose/correspondence` ([`Correspondences`]) | which depth point is which pixel, and what hides it | the 1-pixel rule |
 //! | `calibration` ([`RigCamera`]) | the cameras of a rig whose calibration is in question, and their lenses | |
 //! | `options`, `report` ([`Options`], [`StepReport`]) | what the loop can be told, what it says | |
+//! | `picture` ([`Layer`]) | results as pixels of a screen | |
 //! | `estimator` ([`Estimator`]) | Algorithm 1 stage by stage, its `objective`, its `verdict`; the `initialisation` before it; its [`Worker`]s | Eq. 1, Algorithm 1 |
 //! | [`scenes`] | surfaces, lights and a renderer with a known answer; stands on `view`, `light`, `pose`, `calibration` | the experiments |
 //! | `wasm` | bindings without mathematics, wasm32 only | |
@@ -50,6 +51,7 @@ mod light;
 #[macro_use]
 mod numeric;
 mod options;
+mod picture;
 mod pose;
 mod report;
 pub mod scenes;
@@ -67,6 +69,7 @@ pub use error::{Error, ErrorKind, Result};
 pub use estimator::{Estimator, Finding, RefinementTask, Surface, Task, Worker};
 pub use light::{COEFFICIENTS, CoefficientMatrix, Light, LightFit, LightFitter, LightPrior};
 pub use options::{LightSource, Options, Registration, Shading, Start, StartTolerance, Weights};
+pub use picture::{ColourMap, Layer};
 pub use pose::{
     Angles, Candidate, CorrespondenceProblem, Correspondences, Icp, IcpOptions, IcpProblem, IcpReport, IcpTermination,
     Information, Metric, Pair, Photometric, PhotometricOptions, PhotometricProblem, PhotometricReport,

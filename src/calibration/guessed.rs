@@ -64,7 +64,7 @@ mod tests {
         let units = Units::new(&cloud, &camera);
         // Turns about the middle and shifts along the axis are held, so that shifts across it alone can make up for it.
         let mut prior = Matrix::identity() * 1e12;
-        [3, 4].map(|k| prior[(k, k)] = 1e-6);
+        (3..5).for_each(|k| prior[(k, k)] = 1e-6);
         let found = covariance(&units, &camera, &cloud, 640.0, &prior);
         let sigma = |k: usize| found[(k, k)].sqrt() * units.of[k];
         let expected = PRINCIPAL_POINT * 640.0 / 500.0;

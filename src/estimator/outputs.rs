@@ -5,9 +5,11 @@ use std::borrow::Cow;
 use nalgebra::Vector3;
 
 use super::{Estimator, measurement, units};
+use crate::error::Result;
 use crate::light::Light;
+use crate::picture::{self, ColourMap, Layer};
 use crate::report::StepReport;
-use crate::view::{ColourView, DepthView, Normals};
+use crate::view::{ColourView, DepthView, Normals, Size, WorkingSize};
 
 /// Which surface [`Estimator::points`] returns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,6 +51,25 @@ impl Estimator {
     #[must_use]
     pub fn refined_depth(&self) -> &[f32] {
         &self.solution.depth.points.z
+    }
+
+    /// A result as pixels of a screen, row by row, in place of what `rgba` held; numbers by `range` and `map`, which normals pass over.
+    ///
+    /// # Errors
+    /// A range without a width, or not of finite numbers.
+    pub fn draw(&self, layer: Layer, range: Option<[f64; 2]>, map: ColourMap, rgba: &mut Vec<u8>) -> Result<Size> {
+        match layer {
+            Layer::Normals => picture::paint_normals(&self.image_normals(), rgba),
+            Layer::RefinedNormals => picture::paint_normals(self.depth_normals(), rgba),
+            Layer::Depth => picture::paint_numbers(&self.image_depth(), range, map, rgba)?,
+            Layer::Residual => picture::paint_numbers(&self.residual(), range, map, rgba)?,
+            Layer::Refined => picture::paint_numbers(self.refined_depth(), range, map, rgba)?,
+        }
+        let image = || self.pair.way.as_ref().map_or(self.image().size, WorkingSize::full);
+        Ok(match layer {
+            Layer::Normals | Layer::Depth | Layer::Residual => image(),
+            Layer::Refined | Layer::RefinedNormals => self.depth().size,
+        })
     }
 
     /// For each image pixel the index of its depth pixel, or -1.

@@ -107,6 +107,12 @@ impl WorkingSize {
         if self.is_orthographic { self.factor as f64 } else { 1.0 }
     }
 
+    /// Size of the image as it was given.
+    #[must_use]
+    pub const fn full(&self) -> Size {
+        self.full
+    }
+
     /// Side of a working pixel in the caller's.
     #[must_use]
     pub const fn factor(&self) -> usize {

@@ -1,14 +1,16 @@
 //! The loop for JavaScript.
 
 use js_sys::{Array, Float32Array, Float64Array, Int32Array};
-use wasm_bindgen::JsCast;
 use wasm_bindgen::prelude::wasm_bindgen;
+use wasm_bindgen::{Clamped, JsCast, UnwrapThrowExt};
+use web_sys::{CanvasRenderingContext2d, ImageData, OffscreenCanvasRenderingContext2d};
 
 use super::error::Thrown;
 use super::input::{self, JsDepth, JsImage, JsOptions};
 use super::output;
 use crate::estimator::{Estimator as Native, Finding, RefinementTask, Surface};
 use crate::options::Options;
+use crate::picture::{ColourMap, Layer};
 use crate::report::Status;
 
 #[wasm_bindgen]
@@ -22,6 +24,9 @@ extern "C" {
     /// Number of the shape that it starts from, numbers, planes one after the other.
     #[wasm_bindgen(typescript_type = "[number, Float64Array, Float32Array]")]
     pub type JsRefinementTask;
+
+    #[wasm_bindgen(typescript_type = "CanvasRenderingContext2D | OffscreenCanvasRenderingContext2D")]
+    pub type JsContext;
 }
 
 type Result<T> = std::result::Result<T, Thrown>;
@@ -35,6 +40,8 @@ pub struct Estimator {
     milliseconds: Vec<(&'static str, f64)>,
     /// Whether an iteration has been begun by `step_halfway`: the next step finishes it and adds to these times.
     halfway: bool,
+    /// Pixels of the last picture.
+    rgba: Vec<u8>,
 }
 
 #[wasm_bindgen]
@@ -43,7 +50,7 @@ impl Estimator {
     pub fn new(image: &JsImage, depth: &JsDepth, options: &JsOptions) -> Result<Self> {
         let options = input::options(options)?;
         let native = Native::new(input::image(image)?, &input::depth(depth)?, options.clone())?;
-        Ok(Self { native, options, milliseconds: Vec::new(), halfway: false })
+        Ok(Self { native, options, milliseconds: Vec::new(), halfway: false, rgba: Vec::new() })
     }
 
     pub fn step(&mut self) -> JsReport {
@@ -174,6 +181,23 @@ impl Estimator {
 
     pub fn shading(&self) -> Float32Array {
         Float32Array::from(self.native.shading().as_slice())
+    }
+
+    /// Paints a layer into the top left corner of a canvas; the facade has checked the words and the context.
+    pub fn draw(&mut self, context: &JsContext, layer: &str, range: Option<Vec<f64>>, map: &str) -> Result<()> {
+        let layer = Layer::ALL.into_iter().find(|known| known.name() == layer).unwrap_or(Layer::Depth);
+        let map = ColourMap::ALL.into_iter().find(|known| known.name() == map).unwrap_or_default();
+        let range = range.and_then(|range| range.try_into().ok());
+        let size = self.native.draw(layer, range, map, &mut self.rgba)?;
+        let (pixels, width, height) = (Clamped(self.rgba.as_slice()), size.width as u32, size.height as u32);
+        // Sides and number of pixels agree, so neither fails.
+        let picture = ImageData::new_with_u8_clamped_array_and_sh(pixels, width, height).unwrap_throw();
+        match context.dyn_ref::<OffscreenCanvasRenderingContext2d>() {
+            Some(context) => context.put_image_data(&picture, 0.0, 0.0),
+            None => context.unchecked_ref::<CanvasRenderingContext2d>().put_image_data(&picture, 0.0, 0.0),
+        }
+        .unwrap_throw();
+        Ok(())
     }
 
     pub fn light(&self) -> Float64Array {

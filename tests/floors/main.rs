@@ -10,7 +10,7 @@ use std::path::PathBuf;
 use house::House;
 
 /// From the ground up: a room looks only into rooms before it.
-const ROOMS: [&str; 14] = [
+const ROOMS: [&str; 15] = [
     "text",
     "error",
     "check",
@@ -22,6 +22,7 @@ const ROOMS: [&str; 14] = [
     "calibration",
     "options",
     "report",
+    "picture",
     "estimator",
     "scenes",
     "wasm",

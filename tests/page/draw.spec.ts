@@ -1,0 +1,95 @@
+/** What the module paints itself, compared with its numbers. */
+
+import { fileURLToPath } from "node:url";
+import { expect, test } from "@playwright/test";
+
+const PACKAGE = fileURLToPath(new URL("../../pkg/", import.meta.url));
+
+/** matplotlib's viridis at 0, 1/4 .. 1 (cm.viridis, matplotlib 3.10). */
+const VIRIDIS = [
+  [68, 1, 84],
+  [59, 82, 139],
+  [33, 145, 140],
+  [94, 201, 98],
+  [253, 231, 37],
+];
+
+test("layers are painted from the module's memory onto either kind of canvas", async ({ page }) => {
+  await page.route("**/pkg/**", (route) => route.fulfill({ path: PACKAGE + route.request().url().split("/pkg/")[1] }));
+  await page.goto("./shortest.html");
+  const found = await page.evaluate(async () => {
+    const { default: init, Estimator, sample } = (await import(new URL("/pkg/index.js", location.href).href)) as typeof import("../../pkg/index.js");
+    await init();
+    const { image, depth, light } = sample({ surface: "bust", light: "colourful", width: 48, height: 40, angles: { beta: 20 } });
+    const estimator = new Estimator(image, depth, { light, start: "identity" });
+    await estimator.run({ maxIterations: 3 });
+    const { width, height } = image;
+    const own = Object.assign(document.createElement("canvas"), { width, height }).getContext("2d")!;
+    const offscreen = new OffscreenCanvas(width, height).getContext("2d")!;
+    const pixels = (context: typeof own | typeof offscreen) => [...context.getImageData(0, 0, width, height).data];
+
+    const numbers = estimator.imageDepth();
+    const finite = numbers.filter(Number.isFinite).sort();
+    const range = [finite[0]!, finite.at(-1)!] as const;
+    estimator.draw(own, "depth", { range });
+    estimator.draw(offscreen, "depth", { range });
+    const drawn = { own: pixels(own), offscreen: pixels(offscreen) };
+    estimator.draw(own, "normals");
+    const normals = { drawn: pixels(own), numbers: [...estimator.imageNormals()] };
+    const refusals = [
+      () => estimator.draw({} as CanvasRenderingContext2D, "depth"),
+      () => estimator.draw(own, "deep" as "depth"),
+      () => estimator.draw(own, "depth", { range: [1, 1] }),
+      () => estimator.draw(own, "depth", { map: "jet" as "magma" }),
+    ].map((call) => {
+      try {
+        return String(call());
+      } catch (error) {
+        return (error as Error).message;
+      }
+    });
+    // The view's other layers are painted as well.
+    const shares = (["residual", "refined", "refinedNormals"] as const).map((layer) => {
+      own.clearRect(0, 0, width, height);
+      estimator.draw(own, layer, { map: "magma" });
+      return pixels(own).filter((value, index) => index % 4 === 3 && value === 255).length / (width * height);
+    });
+    estimator.free();
+    return { numbers: [...numbers], range, drawn, normals, refusals, shares };
+  });
+
+  const { numbers, range, drawn, normals, refusals, shares } = found;
+  expect(drawn.offscreen).toEqual(drawn.own);
+  let compared = 0;
+  numbers.forEach((value, index) => {
+    const [r, g, b, opacity] = drawn.own.slice(4 * index, 4 * index + 4);
+    expect(opacity).toBe(Number.isNaN(value) ? 0 : 255);
+    const quarter = (4 * (value - range[0])) / (range[1] - range[0]);
+    if (!(Math.abs(quarter - Math.round(quarter)) < 0.008)) return;
+    VIRIDIS[Math.round(quarter)]!.forEach((wanted, channel) => expect(Math.abs([r, g, b][channel]! - wanted)).toBeLessThanOrEqual(4));
+    compared++;
+  });
+  expect(compared).toBeGreaterThan(4);
+  normals.numbers.forEach((value, index) => {
+    const [pixel, axis] = [Math.floor(index / 3), index % 3];
+    if (Number.isNaN(value)) return expect(normals.drawn[4 * pixel + 3]).toBe(0);
+    expect(Math.abs(normals.drawn[4 * pixel + axis]! - 127.5 * (1 + (axis === 0 ? value : -value)))).toBeLessThanOrEqual(1);
+  });
+  expect(refusals[0]).toContain("context: must be the 2D context of a canvas");
+  expect(refusals[1]).toContain("layer");
+  expect(refusals[2]).toContain("options.range");
+  expect(refusals[3]).toContain("options.map");
+  for (const share of shares) expect(share).toBeGreaterThan(0.2);
+});
+
+test("the shortest page shows normals and depth", async ({ page }) => {
+  await page.goto("./shortest.html");
+  await expect(page.locator("#out")).toContainText("converged");
+  for (const id of ["normals", "depth"]) {
+    const colours = await page.locator(`#${id}`).evaluate((canvas: HTMLCanvasElement) => {
+      const { data } = canvas.getContext("2d")!.getImageData(0, 0, canvas.width, canvas.height);
+      return new Set(new Uint32Array(data.buffer)).size;
+    });
+    expect(colours).toBeGreaterThan(50);
+  }
+});
