@@ -318,8 +318,8 @@ impl Objective {
             let (samples, visible) = (&self.samples, &self.seen.visible);
             self.prediction.predict(problem, samples, visible, &level.shades, (&state.pose, &state.light));
         }
-        self.enter_samples(problem, level, frame, state, &mut equations);
-        self.enter_limbs(problem, frame, &state.pose, &mut equations);
+        self.enter_samples(problem, level, frame, state);
+        self.for_each_outline(problem, frame, &state.pose, |_, row, off, weight| equations.add_row(row, off, weight));
         self.values.copy_from_slice(&self.seen_values);
         level.means.remove(&mut self.values);
         level.means.remove(&mut self.derivatives);
@@ -336,25 +336,11 @@ impl Objective {
         equations.reduced()
     }
 
-    /// v and its derivatives, and points beside the mask.
-    fn enter_samples(
-        &mut self,
-        problem: &ContrastProblem<'_>,
-        level: &Level,
-        frame: &Frame,
-        state: &State,
-        equations: &mut Equations,
-    ) {
-        let beside = BESIDE_WEIGHT / self.samples.list.len() as f64;
+    /// v and its derivatives.
+    fn enter_samples(&mut self, problem: &ContrastProblem<'_>, level: &Level, frame: &Frame, state: &State) {
         for sample in &self.samples.list {
             let point = state.pose.apply(sample.point);
             let Some((place, by_pose)) = by_pose(problem, &point, frame) else { continue };
-            let (distance, slope) = self.silhouette.at(place);
-            if distance > SLACK {
-                let off = (distance - SLACK) / self.unit;
-                let row = (slope[0] * by_pose[0] + slope[1] * by_pose[1]) / self.unit;
-                equations.add_row(&row, off, beside * robust::weight((off / BESIDE_SCALE).powi(2)));
-            }
             let cell = sample.cell;
             if self.weights[cell] == 0.0 {
                 continue;
@@ -371,13 +357,30 @@ impl Objective {
         }
     }
 
-    fn enter_limbs(&self, problem: &ContrastProblem<'_>, frame: &Frame, pose: &Similarity, equations: &mut Equations) {
-        for limb in &self.seen.limbs {
-            let Some((place, by_pose)) = by_pose(problem, &pose.apply(*limb), frame) else { continue };
+    /// Calls `visit` with the place, derivative, residual and weight of each point beside the mask and of each limb.
+    pub fn for_each_outline(
+        &self,
+        problem: &ContrastProblem<'_>,
+        frame: &Frame,
+        pose: &Similarity,
+        mut visit: impl FnMut([f64; 2], &PoseVector, f64, f64),
+    ) {
+        let (beside, limb) = (BESIDE_WEIGHT / self.samples.list.len() as f64, self.limb_weight());
+        for sample in &self.samples.list {
+            let Some((place, by_pose)) = by_pose(problem, &pose.apply(sample.point), frame) else { continue };
+            let (distance, slope) = self.silhouette.at(place);
+            if distance > SLACK {
+                let off = (distance - SLACK) / self.unit;
+                let row = (slope[0] * by_pose[0] + slope[1] * by_pose[1]) / self.unit;
+                visit(place, &row, off, beside * robust::weight((off / BESIDE_SCALE).powi(2)));
+            }
+        }
+        for point in &self.seen.limbs {
+            let Some((place, by_pose)) = by_pose(problem, &pose.apply(*point), frame) else { continue };
             let (distance, slope) = self.silhouette.signed_at(place);
             let off = distance / self.unit;
             let row = (slope[0] * by_pose[0] + slope[1] * by_pose[1]) / self.unit;
-            equations.add_row(&row, off, self.limb_weight() * robust::weight((off / LIMB_SCALE).powi(2)));
+            visit(place, &row, off, limb * robust::weight((off / LIMB_SCALE).powi(2)));
         }
     }
 

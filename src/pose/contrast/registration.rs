@@ -6,7 +6,7 @@ use super::objective::{Level, Objective, State};
 use super::problem::ContrastProblem;
 use super::samples::Samples;
 use super::seen::Seen;
-use super::uncertainty::{covariance, described};
+use super::uncertainty::{Linearised, described};
 use crate::pose::increment::Frame;
 use crate::pose::silhouette::Silhouette;
 use crate::pose::similarity::Similarity;
@@ -213,9 +213,13 @@ impl ContrastRegistration {
         let mut state = State { pose: *pose, light: Lights::default() };
         self.objective.expect_size(problem, pose);
         let frame = self.look(problem, &mut state, None)?;
-        let reduced = self.linearise_by_instruments(problem, &frame, &state)?;
-        let covariance = covariance(&self.objective, &state.light, &reduced, &problem.held());
-        Some(described(problem, &covariance, &frame, pose))
+        self.objective.settle(true);
+        let reduced = self.objective.linearise(problem, &mut self.levels[0], &frame, &state);
+        let (objective, frame, state) = (&self.objective, &frame, &state);
+        let uncertainty =
+            reduced.map(|reduced| described(&Linearised { problem, objective, reduced: &reduced, frame, state }));
+        self.objective.settle(false);
+        uncertainty
     }
 
     /// E of a pose on the sharp image at the robust scale of a noise, its light at its best.
@@ -364,6 +368,36 @@ mod tests {
         let mean = |rounds| scenes.iter().map(|scene| off(scene, rounds)).sum::<f64>() / scenes.len() as f64;
         let (descent, instruments) = (mean(0), mean(20));
         assert!(instruments < 0.8 * descent, "{instruments} instead of {descent}");
+    }
+
+    /// One sigma of the rotation about each axis at the true pose, with the mask as given.
+    fn sigmas((image, depth): &(ColourView, DepthView), object: &[bool]) -> [f64; 3] {
+        let normal_error = vec![0.0; depth.size.len()];
+        let problem = ContrastProblem {
+            image,
+            object,
+            depth,
+            normals: &depth.normals,
+            normal_error: &normal_error,
+            unit_scale: 1.0,
+            scale_is_held: false,
+        };
+        let mut registration = ContrastRegistration::new(&problem, 1);
+        registration.uncertainty(&problem, &Similarity::identity()).unwrap().rotation_degrees
+    }
+
+    #[test]
+    fn an_outline_that_does_not_fit_widens_sigmas() {
+        let views = views(&texture(9, 0.03));
+        let mask = &views.0.mask;
+        // Sides that are cut off the mask alone, by four pixels each: their pulls cancel, and the image is the same.
+        let cut = |index: usize| (index % SIDE).abs_diff(SIDE / 2) > 22;
+        let frayed: Vec<bool> = (0..mask.len()).map(|index| mask[index] && !cut(index)).collect();
+        let [clean, frayed] = [mask, &frayed].map(|object| sigmas(&views, object));
+        for axis in 0..3 {
+            assert!(frayed[axis] > clean[axis], "{clean:?} {frayed:?}");
+        }
+        assert!(frayed.iter().sum::<f64>() > 1.2 * clean.iter().sum::<f64>(), "{clean:?} {frayed:?}");
     }
 
     #[test]

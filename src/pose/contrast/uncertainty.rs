@@ -1,46 +1,73 @@
 //! Covariance of a pose from contrast: the sandwich over tiles (docs/method.md, section 14).
 
-use super::equations::{Lights, Reduced};
-use super::objective::Objective;
+use super::equations::Reduced;
+use super::objective::{Objective, State};
 use super::problem::ContrastProblem;
 use crate::pose::increment::{
     Frame, PoseMatrix, PoseVector, SCALE, TRANSLATION_Z, UNKNOWNS, clear_unknowns, fix_unknowns, inverse, product,
 };
-use crate::pose::similarity::Similarity;
 use crate::pose::uncertainty::{Uncertainty, describe, weakest_of};
+use crate::view::Size;
 
 /// Side of the tiles of the depth map whose scores count as one observation, depth pixels: three sigmas of the local
-/// means, and as they larger on larger objects.
+/// means, and as they larger on larger objects. So are the outline's, by tiles of the image.
 const TILE: f64 = 9.0;
-/// Errors that leave no residual, such as shadows that move with the relief, over those that do. Of thirteen poses by
-/// contrast of five photographed objects (raccoon, panther, deer, sun, bag, 0 to 60 degrees off, 96x96) the worst wants 2.8,
-/// the median 0.7; the five others had no part in it.
-const SIGMA_INFLATION: f64 = 3.0;
+/// Errors that leave no residual, such as shadows that move with the relief, over those that do. With 3, 29 found poses of
+/// four photographed objects and their shading (deer, frog2, panther, paper1, 0 to 60 degrees, 96x96) are 1.33 sigmas off
+/// about their worst axis at the median, Gaussian errors 1.22, and 93 % of them within 3.4: either asks for 3.3 to 3.4.
+const SIGMA_INFLATION: f64 = 3.5;
 /// Sigma of a direction that nothing is known about, radians or object sizes.
 const UNKNOWN: f64 = 1e3;
 
-/// Of the linearisation that the objective holds; held unknowns have none.
-pub(super) fn covariance(
-    objective: &Objective,
-    light: &Lights,
-    reduced: &Reduced,
-    held: &[bool; UNKNOWNS],
-) -> PoseMatrix {
-    let samples = &objective.samples;
-    let tile = ((TILE * objective.unit()).ceil() as usize).div_ceil(samples.stride);
-    let across = samples.grid.width.div_ceil(tile);
-    let mut scores = vec![PoseVector::zeros(); across * samples.grid.height.div_ceil(tile)];
-    objective.for_each_score(light, |cell, residual, weight, rows| {
-        let (column, row) = samples.grid.position(cell);
-        scores[row / tile * across + column / tile] += reduced.score(objective.shades(cell), residual, rows) * weight;
-    });
-    let (mut spread, mut count) = (PoseMatrix::zeros(), 0.0);
-    for score in scores.iter().filter(|score| score.norm() > 0.0) {
+/// What a covariance is taken of.
+pub(super) struct Linearised<'a> {
+    pub problem: &'a ContrastProblem<'a>,
+    pub objective: &'a Objective,
+    pub reduced: &'a Reduced,
+    pub frame: &'a Frame,
+    pub state: &'a State,
+}
+
+impl Linearised<'_> {
+    /// Sums of the scores of each tile: contrast's on the depth map, the outline's on the image.
+    fn tiles(&self) -> [Vec<PoseVector>; 2] {
+        let (samples, size) = (&self.objective.samples, self.problem.image.size);
+        let tile = ((TILE * self.objective.unit()).ceil() as usize).div_ceil(samples.stride);
+        let tiles = |size: Size, tile: usize| {
+            (
+                size.width.div_ceil(tile),
+                vec![PoseVector::zeros(); size.width.div_ceil(tile) * size.height.div_ceil(tile)],
+            )
+        };
+        let (across, mut contrast) = tiles(samples.grid, tile);
+        self.objective.for_each_score(&self.state.light, |cell, residual, weight, rows| {
+            let (column, row) = samples.grid.position(cell);
+            let score = self.reduced.score(self.objective.shades(cell), residual, rows) * weight;
+            contrast[row / tile * across + column / tile] += score;
+        });
+        let tile = tile * samples.stride;
+        let (across, mut outline) = tiles(size, tile);
+        let inside = |place: f64, length: usize| (place.round().max(0.0) as usize).min(length - 1) / tile;
+        self.objective.for_each_outline(self.problem, self.frame, &self.state.pose, |place, row, off, weight| {
+            let at = inside(place[1], size.height) * across + inside(place[0], size.width);
+            outline[at].axpy(weight * off, row, 1.0);
+        });
+        [contrast, outline]
+    }
+}
+
+/// Of the linearisation that the objective holds; held unknowns have none. The outline is as little free of errors as the
+/// contrast: what it adds to the information it adds to the scores as well.
+fn covariance(linearised: &Linearised<'_>, held: &[bool; UNKNOWNS]) -> PoseMatrix {
+    let [contrast, outline] = linearised.tiles();
+    let is_taken = |score: &&PoseVector| score.norm() > 0.0;
+    let count = contrast.iter().filter(is_taken).count() as f64;
+    let mut spread = PoseMatrix::zeros();
+    for score in contrast.iter().chain(&outline).filter(is_taken) {
         spread.ger(1.0, score, score, 1.0);
-        count += 1.0;
     }
     let free = held.iter().filter(|&&held| !held).count() as f64;
-    let mut matrix = reduced.matrix;
+    let mut matrix = linearised.reduced.matrix;
     fix_unknowns(&mut matrix, held);
     let mut covariance = match inverse(&matrix) {
         Some(inverse) if count > free => {
@@ -57,12 +84,14 @@ pub(super) fn covariance(
 }
 
 /// One sigma of the pose's own numbers.
-pub(super) fn described(
-    problem: &ContrastProblem<'_>,
-    covariance: &PoseMatrix,
-    frame: &Frame,
-    pose: &Similarity,
-) -> Uncertainty {
-    let held = problem.held();
-    describe(covariance, frame, pose, [held[TRANSLATION_Z], held[SCALE]], weakest_of(covariance))
+pub(super) fn described(linearised: &Linearised<'_>) -> Uncertainty {
+    let held = linearised.problem.held();
+    let covariance = &covariance(linearised, &held);
+    describe(
+        covariance,
+        linearised.frame,
+        &linearised.state.pose,
+        [held[TRANSLATION_Z], held[SCALE]],
+        weakest_of(covariance),
+    )
 }
