@@ -1,10 +1,12 @@
 /** Brings the page to life: its places, the Lab, and the controls around it. */
 
 import { byId, make } from "./dom";
+import { isFirstVisit } from "./first-visit";
 import { listenToKeys } from "./keys";
 import { Lab } from "./lab/lab";
 import { paces } from "./lab/player";
-import { defaults, fromLink, toLink, type Origin } from "./lab/settings";
+import { Presets } from "./lab/presets";
+import { defaults, fromLink, toLink, type Origin, type Settings } from "./lab/settings";
 import { writeAddress } from "./lab/share";
 import { asksToPlay, placeOf, type Place } from "./place";
 
@@ -32,19 +34,19 @@ const loaders: Record<OtherPlace, () => Promise<new (main: HTMLElement) => Elsew
 };
 const others: Partial<Record<OtherPlace, Elsewhere>> = {};
 
-const phone = matchMedia("(max-width: 45rem)");
-
 const openHelp = () => help.showModal();
 const step = () => void player.step("step");
 const stage = () => void player.step("stage");
 const reset = () => void lab.restart();
 const undo = () => store.undo();
+const redo = () => store.redo();
 
 button("play", () => player.toggle());
 button("step", step);
 button("stage-step", stage);
 button("reset", reset);
 button("undo", undo);
+button("redo", redo);
 button("defaults", () => store.resetToDefaults());
 button("export", () => {
   const place = placeOf(location.hash);
@@ -70,7 +72,21 @@ function choose(origin: Origin): void {
     byId(`${each}-panel`, HTMLElement).hidden = each !== origin;
   }
   lab.choose(origin);
+  showExample();
 }
+const isSample = (): boolean => byId("files-panel", HTMLElement).hidden !== false;
+const examples = new Presets(byId("presets", HTMLElement), (settings) => {
+  if (!isSample()) choose("sample");
+  void start(settings);
+});
+const showExample = () => examples.show(store.settings, isSample());
+store.listen(showExample);
+showExample();
+
+const still = matchMedia("(prefers-reduced-motion: reduce)");
+/** The run of these settings, which plays by itself unless motion is unwelcome. */
+const start = (settings: Settings): Promise<void> => (still.matches ? lab.enter(settings) : lab.watch(settings));
+
 button("origin-sample", () => choose("sample"));
 button("origin-files", () => choose("files"));
 
@@ -121,8 +137,8 @@ async function arrive(): Promise<void> {
     return;
   }
   const settings = fromLink(location.hash);
-  if (!asksToPlay(location.hash)) return lab.enter(settings);
-  if (byId("files-panel", HTMLElement).hidden === false) choose("sample");
+  if (!asksToPlay(location.hash)) return location.hash === "" && isFirstVisit() ? start(settings) : lab.enter(settings);
+  if (!isSample()) choose("sample");
   const started = lab.watch(settings);
   writeAddress(store.settings);
   await started;
@@ -147,13 +163,14 @@ for (const [name, { link }] of Object.entries(places)) {
   });
 }
 
-const views = Array.from({ length: gallery.count }, (_, i): [string, () => void] => [String((i + 1) % 10), () => gallery.enlarge(i + 1)]);
+const views = Array.from({ length: Math.min(10, gallery.count) }, (_, i): [string, () => void] => [String((i + 1) % 10), () => gallery.enlarge(i + 1)]);
 listenToKeys(() => placeOf(location.hash) === "lab", {
   " ": () => player.toggle(),
   s: step,
   t: stage,
   r: reset,
   u: undo,
+  y: redo,
   "?": openHelp,
   Escape: () => gallery.enlarge(null),
   ...Object.fromEntries(views),
@@ -162,7 +179,13 @@ listenToKeys(() => placeOf(location.hash) === "lab", {
 // A file dropped beside its slot must not replace the page.
 for (const type of ["dragover", "drop"]) document.addEventListener(type, (event) => event.preventDefault());
 
-byId("input", HTMLDetailsElement).open = !phone.matches;
+const drawer = byId("input", HTMLDetailsElement);
+drawer.addEventListener("keydown", (event) => {
+  if (event.key !== "Escape" || !drawer.open) return;
+  event.stopPropagation();
+  drawer.open = false;
+  drawer.querySelector("summary")?.focus();
+});
 // A link opened in this very tab changes nothing but the part after #.
 addEventListener("hashchange", () => void arrive());
 void arrive();

@@ -18,7 +18,7 @@ async function covered(clouds: Locator): Promise<number> {
   return count / (width * height);
 }
 
-/** The clouds are loaded once a visitor comes near them: below all views, on a laptop. */
+/** The clouds are loaded once a visitor comes near them; on a laptop they are there at once. */
 const goToClouds = (page: Page) => page.locator("#clouds-box").scrollIntoViewIfNeeded();
 
 /** Longest wait, milliseconds, of one attempt of several. */
@@ -83,6 +83,7 @@ test("points are as large on a dense screen", async ({ browser, baseURL }) => {
     await expect(page.locator("#status")).toHaveAttribute("data-state", "ready");
     await goToClouds(page);
     const clouds = page.locator("#clouds-canvas");
+    await page.getByLabel("Drawn as").selectOption("points");
     await expect(page.locator("#clouds-note")).toBeHidden();
     // Before the first step there is the depth map's cloud alone, so that no other can come late.
     await expect.poll(() => covered(clouds)).toBeGreaterThan(DRAWN);

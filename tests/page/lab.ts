@@ -29,6 +29,11 @@ export class Lab {
     await this.reaches("ready");
   }
 
+  /** Unfolds the settings, which lie over the left of the page. */
+  async unfold(): Promise<void> {
+    if (!(await this.page.locator("#input").evaluate((drawer: HTMLDetailsElement) => drawer.open))) await this.page.locator("#input > summary").click();
+  }
+
   async reaches(state: string): Promise<void> {
     await expect(this.page.locator("#status")).toHaveAttribute("data-state", state);
   }

@@ -1,16 +1,20 @@
 /** The thread that owns the estimator. It answers one request at a time and sends copies, never views on its memory. */
 
-import init, { BimodalError, Estimator, sample, sampleLights, sampleSurfaces, wasmUrl } from "../../pkg/index.js";
-import type { ColorImage, DepthMap, Options, Pose, StepReport } from "../../pkg/index.js";
-import type { Answer, Calls, Frame, Kind, OwnFiles, Request, LabOptions, Source } from "./protocol";
+import init, { BimodalError, Estimator, sample, sampleLights, sampleSurfaces, turnLight, wasmUrl } from "../../pkg/index.js";
+import type { ColorImage, DepthMap, Options, Pose, Sample, SampleRequest, StepReport } from "../../pkg/index.js";
+import type { Answer, Calls, Frame, Kind, OwnFiles, Request, LabOptions, Preview, SampleSource } from "./protocol";
+import { errorMaps } from "./errors";
 import { faultOf } from "./fault";
-import { cutOfDepth, cutOfImage, givenDepth, fromLog, picture, raster, thinned, type Cut } from "./rasters";
+import { cutOfDepth, cutOfImage, givenDepth, fromLog, picture, raster, surface, type Cut } from "./rasters";
+import { lit, ratio } from "./sphere";
 
 interface Input {
   image: ColorImage;
   depth: DepthMap;
   light?: ArrayLike<number>;
   truth: Pose | null;
+  /** What a sample is measured against. */
+  shapes?: Sample["truth"];
 }
 
 interface OpenInput extends Input {
@@ -57,18 +61,21 @@ function resolve({ light, start, ...rest }: LabOptions, input: Input): Options {
   };
 }
 
-function frame({ estimator, imageCut, depthCut }: OpenInput, reports: StepReport[]): Frame {
+function frame({ estimator, imageCut, depthCut, light, shapes }: OpenInput, reports: StepReport[]): Frame {
+  const [imageDepth, refinedDepth, found] = [estimator.imageDepth(), estimator.refinedDepth(), estimator.light()];
   return {
     reports,
     imageNormals: raster(estimator.imageNormals(), 3, imageCut),
-    imageDepth: raster(estimator.imageDepth(), 1, imageCut),
+    imageDepth: raster(imageDepth, 1, imageCut),
     albedo: fromLog(estimator.albedo(), imageCut),
     shading: fromLog(estimator.shading(), imageCut),
     residual: raster(estimator.residual(), 1, imageCut),
-    refinedDepth: raster(estimator.refinedDepth(), 1, depthCut),
+    refinedDepth: raster(refinedDepth, 1, depthCut),
     depthNormals: raster(estimator.depthNormals(), 3, depthCut),
-    imagePoints: thinned(estimator.points("image")),
-    depthPoints: thinned(estimator.points("depth")),
+    imageSurface: surface(estimator.points("image"), imageDepth, imageCut),
+    depthSurface: surface(estimator.points("depth"), refinedDepth, depthCut),
+    light: { found: lit(found), difference: light ? ratio(found, light) : null },
+    errors: shapes ? errorMaps(estimator, shapes, imageCut, depthCut) : null,
   };
 }
 
@@ -86,15 +93,26 @@ async function open({ source, options }: Calls["open"]["request"]): Promise<Call
     units: { image: opened.image.camera ? "m" : "px", depth: opened.depth.camera ? "m" : "px" },
     notes: opened.notes,
     truth: opened.truth,
+    trueLight: opened.light ? lit(opened.light) : null,
     frame: frame(experiment, [estimator.report]),
   };
 }
 
 type Prepared = Input & Pick<Calls["open"]["reply"], "notes">;
 
-function fromSample({ request }: Extract<Source, { kind: "sample" }>): Prepared {
-  const { image, depth, light, pose } = sample(request);
-  return { image, depth, light, truth: pose, notes: {} };
+/** What is asked of the library: its own light, or that one turned. */
+function requestOf({ request, turn }: SampleSource): SampleRequest {
+  return turn.alpha === 0 && turn.beta === 0 ? request : { ...request, light: turnLight(request.light, turn) };
+}
+
+function fromSample(source: SampleSource): Prepared {
+  const { image, depth, light, pose, truth } = sample(requestOf(source));
+  return { image, depth, light, truth: pose, shapes: truth, notes: {} };
+}
+
+function preview({ source }: Calls["preview"]["request"]): Preview {
+  const { image, light } = sample(requestOf(source));
+  return { picture: picture(image, cutOfImage(image)), trueLight: lit(light) };
 }
 
 /** The decoders are large and only needed here, so they load with the first file. */
@@ -146,6 +164,8 @@ function answer(request: Request): Promise<Calls[Kind]["reply"]> | Calls[Kind]["
       return catalogue();
     case "open":
       return open(request);
+    case "preview":
+      return preview(request);
     case "reset":
       return reset(request);
     case "advance":

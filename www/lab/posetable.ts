@@ -33,7 +33,7 @@ export class PoseTable {
   }
 
   show(report: StepReport, start: Pose | undefined, truth: Pose | null, length: "px" | "m"): void {
-    const { pose, uncertainty } = report;
+    const { pose, uncertainty, status } = report;
     rows.forEach(({ index, decimals: count, read, unit = length }, i) => {
       const cells = this.#cells[i];
       if (!cells) return;
@@ -56,7 +56,8 @@ export class PoseTable {
       ...pair("Inliers", `${decimals(100 * report.inliers, 0)} %`),
       ...pair("Colour residual", decimals(report.residual, 4)),
       ...pair("Rotation change", `${decimals(report.rotationChange, 4)}°`),
-      ...(uncertainty ? certainty(uncertainty, length) : []),
+      // A sigma says how sharp a pose is, not whether it is the right one: beside a lost one it would mislead.
+      ...(uncertainty && status !== "lost" ? certainty(uncertainty, length) : []),
     );
   }
 }

@@ -95,12 +95,19 @@ const distortion = (side: "colour" | "depth"): ListField => ({
   kind: "list", key: `${side}.distortion`, label: "distortion", initial: "", empty: "none", group: side,
   hint: "Five numbers in OpenCV's order: k1 k2 p1 p2 k3.", path: `${side === "colour" ? "image" : "depth"}.camera.distortion`,
 });
+/** Turns of a sample's light about the colour view's axes. */
+const lightTurn = (key: "lightTilt" | "lightTurn", angle: "alpha" | "beta", label: string, hint: string): NumberField => ({
+  ...{ kind: "number", key, label, hint, initial: 0, empty: "0", unit: "deg", group: "sample", path: `angles.${angle}` },
+  slider: { min: -180, max: 180, step: 5 },
+});
 const ESTIMATED = "Estimated along with the pose.";
 
 export const fields: readonly Field[] = [
   { kind: "choice", key: "surface", label: "Surface", initial: "bust", group: "sample", path: "sample.surface" },
   { kind: "choice", key: "light", label: "Light", initial: "colourful", group: "sample", path: "sample.light" },
-  { kind: "choice", key: "size", label: "Size", hint: "Of both views: a side, or a camera's whole frame.", initial: String(SAMPLE.size.default), group: "sample", path: "sample.size", when: rendered,
+  lightTurn("lightTurn", "beta", "Light turned", "About the vertical axis, as dragging the ball under the light does."),
+  lightTurn("lightTilt", "alpha", "Light tilted", "About the horizontal axis."),
+  { kind: "choice", key: "size", label: "Size", hint: "Of both views: a side, or a camera's whole frame.", initial: "128", group: "sample", path: "sample.size", when: rendered,
     choices: [["32", "32 px"], ["64", "64 px"], ["96", "96 px"], ["128", "128 px"], ["256", "256 px"], ["640x480", "640×480"]] },
   ...sampleFields,
 
@@ -164,6 +171,9 @@ export function sampleRequest(settings: Settings): SampleRequest {
     ...(rendered(settings) ? size(settings) : {}),
   };
 }
+
+/** By how much the sample's light is turned. */
+export const turnOf = (settings: Settings): { alpha: number; beta: number } => ({ alpha: number(settings, "lightTilt") ?? 0, beta: number(settings, "lightTurn") ?? 0 });
 
 /** "64" is a square. */
 function size(settings: Settings): Pick<SampleRequest, "size" | "height"> {

@@ -4,16 +4,10 @@ import type { Stage, StepReport } from "../../pkg/index.js";
 import { decimals } from "../draw/numbers";
 import { byId, make } from "../dom";
 import { stages, type StageText } from "./stages";
-import type { Verdict } from "./verdict";
-
-/** What else than the loop the status can tell of. */
-export type Notice = "loading" | "waiting" | "error";
 
 export class Strip {
   readonly #buttons = new Map<Stage, { button: HTMLButtonElement; time: HTMLElement }>();
   readonly #count = byId("iteration", HTMLElement);
-  readonly #status = byId("status", HTMLElement);
-  readonly #verdict = byId("verdict", HTMLElement);
   readonly #explanation = byId("explanation", HTMLElement);
 
   #last: Stage | undefined;
@@ -29,8 +23,7 @@ export class Strip {
     }
   }
 
-  /** `idle` is what the page itself does while the loop rests. */
-  show(report: StepReport, idle: "ready" | "paused" | "playing", end: Verdict | undefined): void {
+  show(report: StepReport): void {
     const begun = report.iteration > 0 || report.milliseconds[report.stage] !== undefined;
     this.#last = begun ? report.stage : undefined;
     for (const [name, { button, time }] of this.#buttons) {
@@ -43,10 +36,6 @@ export class Strip {
       else if (!begun) time.textContent = "";
     }
     this.#count.textContent = String(report.iteration);
-    this.#status.dataset.state = end ? report.status : idle;
-    this.#status.dataset.tone = end?.tone ?? "open";
-    this.#status.textContent = end?.status ?? idle;
-    this.#verdict.textContent = end?.words ?? "";
   }
 
   /** A stage is under way: the one after the last; a search is many stages. */
@@ -55,14 +44,6 @@ export class Strip {
     const names = [...this.#buttons.keys()];
     const next = names[this.#last ? (names.indexOf(this.#last) + 1) % names.length : 0];
     for (const [name, { button }] of this.#buttons) button.toggleAttribute("data-lit", name === next);
-  }
-
-  /** Something other than the loop is going on, or has gone wrong. */
-  announce(state: Notice, words: string): void {
-    this.#status.dataset.state = state;
-    this.#status.dataset.tone = state === "error" ? "wrong" : "open";
-    this.#status.textContent = words;
-    this.#verdict.textContent = "";
   }
 
   #explain({ title, equation, words, source }: StageText): void {
