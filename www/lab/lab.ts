@@ -4,6 +4,7 @@ import { byId } from "../dom";
 import { Engine, EngineError } from "../engine/engine";
 import type { Calls, Frame, Opened, Source } from "../engine/protocol";
 import type { Pose, StepReport } from "../../pkg/index.js";
+import { Explanations } from "./ask";
 import { Form } from "./form";
 import { Gallery } from "./gallery";
 import { Intake } from "./intake";
@@ -11,7 +12,7 @@ import { LightPanel, type Turn } from "./light";
 import { Player } from "./player";
 import { PoseTable } from "./posetable";
 import { Rivals } from "./rivals";
-import { fields, inputGroups, runOptions, turnOf, type Origin, type Settings } from "./settings";
+import { fields, inputGroups, methodOf, runOptions, turnOf, type Origin, type Settings } from "./settings";
 import { download, writeAddress } from "./share";
 import { sourceOf } from "./source";
 import { Store } from "./store";
@@ -27,8 +28,9 @@ export class Lab {
   readonly #form: Form;
   readonly #intake = new Intake(() => void this.#reopen());
   readonly #status = new Status();
-  readonly #strip = new Strip(byId("stages", HTMLElement));
-  readonly #pose = new PoseTable(byId("pose", HTMLTableElement));
+  readonly #explanations = new Explanations(() => methodOf(this.store.settings, this.#origin));
+  readonly #strip = new Strip(byId("stages", HTMLElement), this.#explanations);
+  readonly #pose = new PoseTable(byId("pose", HTMLTableElement), this.#explanations);
   readonly #rivals: Rivals;
   readonly #light: LightPanel;
   /** The turn of the light to be looked at next, while one is being looked at. */
@@ -83,6 +85,7 @@ export class Lab {
     for (const group of ["sample", "colour", "depth", "method", "weights", "loop"] as const) {
       this.#form.mount(group, byId(`fields-${group}`, HTMLElement));
     }
+    byId("objective-title", HTMLElement).append(this.#explanations.button("objective", "Objective"));
     byId("slots", HTMLElement).append(this.#intake.element);
     this.store.listen((settings, changed, live) => this.#settingsChanged(settings, changed, live));
     this.#form.adapt(this.store.settings, this.#origin);

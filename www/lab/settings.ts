@@ -7,6 +7,7 @@
 import type { SampleRequest } from "../../pkg/index.js";
 import { OPTIONS, RENDERED_ALONE, SAMPLE, paths, type PageField, type Rows, type ShownRow } from "../../pkg/options.js";
 import type { LabOptions, OwnCamera } from "../engine/protocol";
+import type { Method } from "./explain";
 
 /** Where the pair comes from: made by the crate, or the visitor's own. */
 export type Origin = "sample" | "files";
@@ -203,6 +204,12 @@ export function runOptions(settings: Settings, source: Origin): LabOptions {
     light: lightOption(settings, source),
     start: startOption(settings),
   };
+}
+
+/** What the explanations have to know of a run. */
+export function methodOf(settings: Settings, source: Origin): Method {
+  const { light, start, registration = "joint", shading = "surface" } = runOptions(settings, source);
+  return { lightIsKnown: light !== "estimate", searches: start === "search", registration, shading };
 }
 
 const lensKeys = ["fx", "fy", "cx", "cy"] as const;

@@ -3,22 +3,22 @@
 import type { Stage, StepReport } from "../../pkg/index.js";
 import { decimals } from "../draw/numbers";
 import { byId, make } from "../dom";
-import { stages, type StageText } from "./stages";
+import type { Explanations } from "./ask";
+
+/** The search, and the five stages of one iteration. */
+const stages: readonly Stage[] = ["search", "light", "shading", "surface", "registration", "refinement"];
 
 export class Strip {
   readonly #buttons = new Map<Stage, { button: HTMLButtonElement; time: HTMLElement }>();
   readonly #count = byId("iteration", HTMLElement);
-  readonly #explanation = byId("explanation", HTMLElement);
-
   #last: Stage | undefined;
-  readonly #bar = byId("bar", HTMLElement);
 
-  constructor(list: HTMLElement) {
-    for (const stage of stages) {
+  constructor(list: HTMLElement, explanations: Explanations) {
+    for (const name of stages) {
       const time = make("span", { class: "time" });
-      const button = make("button", { type: "button", class: "stage", "aria-haspopup": "dialog" }, make("span", {}, stage.name), time);
-      button.addEventListener("click", () => this.#explain(stage));
-      this.#buttons.set(stage.name, { button, time });
+      const button = make("button", { type: "button", class: "stage", "aria-haspopup": "dialog" }, make("span", {}, name), time);
+      button.addEventListener("click", () => void explanations.open({ stage: name }));
+      this.#buttons.set(name, { button, time });
       list.append(make("li", {}, button));
     }
   }
@@ -44,17 +44,5 @@ export class Strip {
     const names = [...this.#buttons.keys()];
     const next = names[this.#last ? (names.indexOf(this.#last) + 1) % names.length : 0];
     for (const [name, { button }] of this.#buttons) button.toggleAttribute("data-lit", name === next);
-  }
-
-  #explain({ title, equation, words, source }: StageText): void {
-    this.#explanation.replaceChildren(
-      make("h2", {}, title),
-      make("p", { class: "equation" }, equation),
-      make("p", {}, words),
-      make("p", { class: "soft" }, source),
-    );
-    // Above the bar, whose height depends on how it wraps.
-    this.#explanation.style.bottom = `${innerHeight - this.#bar.getBoundingClientRect().top + 8}px`;
-    this.#explanation.showPopover();
   }
 }
