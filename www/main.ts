@@ -2,10 +2,11 @@
 
 import { byId, make } from "./dom";
 import { isFirstVisit } from "./first-visit";
-import { listenToKeys } from "./keys";
+import { areKeysOn, listenToKeys, rememberKeys } from "./keys";
 import { Lab } from "./lab/lab";
 import { paces } from "./lab/player";
 import { Presets } from "./lab/presets";
+import { kinds } from "./lab/kinds";
 import { defaults, fromLink, toLink, type Origin, type Settings } from "./lab/settings";
 import { writeAddress } from "./lab/share";
 import { asksToPlay, placeOf, type Place } from "./place";
@@ -41,6 +42,11 @@ const reset = () => void lab.restart();
 const undo = () => store.undo();
 const redo = () => store.redo();
 
+// The address is the settings', so the link itself leads nowhere.
+byId("skip", HTMLAnchorElement).addEventListener("click", (event) => {
+  event.preventDefault();
+  byId("play", HTMLButtonElement).focus();
+});
 button("play", () => player.toggle());
 button("step", step);
 button("stage-step", stage);
@@ -108,7 +114,7 @@ const places: Record<Place, { main: HTMLElement; link: HTMLAnchorElement; title:
   rig: { main: byId("rig", HTMLElement), link: byId("to-rig", HTMLAnchorElement), title: "Check a rig, bimodal-stereo" },
 };
 /** What belongs to the Lab outside its own part of the page. */
-const labOnly = [byId("bar", HTMLElement), byId("help-button", HTMLElement)];
+const labOnly = [byId("bar", HTMLElement), byId("help-button", HTMLElement), byId("skip", HTMLElement)];
 
 function show(place: Place): void {
   for (const [name, { main, link, title }] of Object.entries(places)) {
@@ -123,9 +129,13 @@ function show(place: Place): void {
   for (const element of labOnly) element.hidden = place !== "lab";
 }
 
+let arrived = false;
 /** The address says which place is asked for, and how it is set. */
 async function arrive(): Promise<void> {
   const place = placeOf(location.hash);
+  // Who comes from another place of the page, or by a link to some settings, looks for something else than a show.
+  const opensFirst = !arrived && location.hash === "" && isFirstVisit();
+  arrived = true;
   show(place);
   if (place !== "tables") others.tables?.leave();
   if (place !== "rig") others.rig?.leave();
@@ -137,7 +147,7 @@ async function arrive(): Promise<void> {
     return;
   }
   const settings = fromLink(location.hash);
-  if (!asksToPlay(location.hash)) return location.hash === "" && isFirstVisit() ? start(settings) : lab.enter(settings);
+  if (!asksToPlay(location.hash)) return opensFirst ? start(settings) : lab.enter(settings);
   if (!isSample()) choose("sample");
   const started = lab.watch(settings);
   writeAddress(store.settings);
@@ -164,7 +174,10 @@ for (const [name, { link }] of Object.entries(places)) {
 }
 
 const views = Array.from({ length: Math.min(10, gallery.count) }, (_, i): [string, () => void] => [String((i + 1) % 10), () => gallery.enlarge(i + 1)]);
-listenToKeys(() => placeOf(location.hash) === "lab", {
+const keys = byId("keys-on", HTMLInputElement);
+keys.checked = areKeysOn();
+keys.addEventListener("change", () => rememberKeys(keys.checked));
+listenToKeys(() => keys.checked && placeOf(location.hash) === "lab", {
   " ": () => player.toggle(),
   s: step,
   t: stage,
@@ -176,8 +189,21 @@ listenToKeys(() => placeOf(location.hash) === "lab", {
   ...Object.fromEntries(views),
 });
 
-// A file dropped beside its slot must not replace the page.
-for (const type of ["dragover", "drop"]) document.addEventListener(type, (event) => event.preventDefault());
+// A file must not replace the page; dropped anywhere on the Lab it goes where its content belongs.
+document.addEventListener("dragover", (event) => event.preventDefault());
+document.addEventListener("drop", (event) => {
+  event.preventDefault();
+  const files = [...(event.dataTransfer?.files ?? [])];
+  if (files.length === 0 || placeOf(location.hash) !== "lab") return;
+  drawer.open = true;
+  if (isSample()) choose("files");
+  void lab.drop(files);
+});
+
+for (const each of document.querySelectorAll<HTMLButtonElement>("#takeaway button")) {
+  const kind = kinds.find((kind) => kind === each.value);
+  if (kind) each.addEventListener("click", () => void lab.take(kind));
+}
 
 const drawer = byId("input", HTMLDetailsElement);
 drawer.addEventListener("keydown", (event) => {

@@ -4,6 +4,7 @@ import { test as base, expect, type Locator, type Page } from "@playwright/test"
 
 export { expect };
 
+
 const PAPER = "lighting=known&start=identity&registration=icp&shading=pixel";
 
 export class Lab {

@@ -110,10 +110,24 @@ export interface Catalogue {
   lights: string[];
 }
 
+/** What can be taken away, in full. */
+export interface Taken {
+  pose: Pose;
+  /** Of the colour view. */
+  unit: "px" | "m";
+  light: Float64Array;
+  imagePoints: Float32Array;
+  depthPoints: Float32Array;
+  width: number;
+  height: number;
+  refinedDepth: Float32Array<ArrayBuffer>;
+}
+
 /** Each request with its reply. */
 export interface Calls {
   catalogue: { request: Record<never, never>; reply: Catalogue };
   open: { request: { source: Source; options: LabOptions }; reply: Opened };
+  take: { request: Record<never, never>; reply: Taken };
   preview: { request: { source: SampleSource }; reply: Preview };
   reset: { request: { options: LabOptions }; reply: Frame };
   /** Steps until the time is up, at least one; a stage is always a single one. */

@@ -110,6 +110,20 @@ function fromSample(source: SampleSource): Prepared {
   return { image, depth, light, truth: pose, shapes: truth, notes: {} };
 }
 
+function take(): Calls["take"]["reply"] {
+  const { estimator, image, depth } = opened();
+  return {
+    pose: estimator.report.pose,
+    unit: image.camera ? "m" : "px",
+    light: estimator.light(),
+    imagePoints: estimator.points("image"),
+    depthPoints: estimator.points("depth"),
+    width: depth.width,
+    height: depth.height,
+    refinedDepth: new Float32Array(estimator.refinedDepth()),
+  };
+}
+
 function preview({ source }: Calls["preview"]["request"]): Preview {
   const { image, light } = sample(requestOf(source));
   return { picture: picture(image, cutOfImage(image)), trueLight: lit(light) };
@@ -164,6 +178,8 @@ function answer(request: Request): Promise<Calls[Kind]["reply"]> | Calls[Kind]["
       return catalogue();
     case "open":
       return open(request);
+    case "take":
+      return take();
     case "preview":
       return preview(request);
     case "reset":

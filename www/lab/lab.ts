@@ -8,6 +8,7 @@ import { Explanations } from "./ask";
 import { Form } from "./form";
 import { Gallery } from "./gallery";
 import { Intake } from "./intake";
+import { sorted } from "./kind";
 import { LightPanel, type Turn } from "./light";
 import { Player } from "./player";
 import { PoseTable } from "./posetable";
@@ -15,9 +16,11 @@ import { Rivals } from "./rivals";
 import { fields, inputGroups, methodOf, runOptions, turnOf, type Origin, type Settings } from "./settings";
 import { download, writeAddress } from "./share";
 import { sourceOf } from "./source";
+import { saveBlob } from "../save";
 import { Store } from "./store";
 import { Status, type Notice } from "./status";
 import { Strip } from "./strip";
+import type { Kind } from "./kinds";
 import { verdict } from "./verdict";
 
 export class Lab {
@@ -131,6 +134,25 @@ export class Lab {
     if (!this.#good || !this.#report) return;
     const { source, settings } = this.#good;
     download({ source: source.kind, settings, truth: this.#truth, report: this.#report, history: this.#history });
+  }
+
+  /** Hands over one of the results, in full. */
+  async take(kind: Kind): Promise<void> {
+    if (!this.#good || !this.#report) return;
+    try {
+      const [{ fileOfKind }, taken] = await Promise.all([import("./takeaway"), this.#engine.call("take", {})]);
+      const { name, blob } = fileOfKind(kind, taken);
+      saveBlob(name, blob);
+    } catch (error) {
+      // What was asked for next has broken it off, and speaks for itself.
+      if (!(error instanceof EngineError) || error.code !== "interrupted") await this.#fail(error);
+    }
+  }
+
+  /** Files dropped anywhere, each into the slot that its content is of. */
+  async drop(files: readonly File[]): Promise<void> {
+    const slots = await sorted(files, (slot) => this.#intake.files[slot] !== undefined);
+    this.#intake.putAll(slots);
   }
 
   #settingsChanged(settings: Settings, changed: readonly string[], live: boolean): void {
