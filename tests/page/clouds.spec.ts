@@ -94,3 +94,35 @@ test("points are as large on a dense screen", async ({ browser, baseURL }) => {
   expect(dense / plain).toBeGreaterThan(0.8);
   expect(dense / plain).toBeLessThan(1.25);
 });
+
+test("while the search looks around, the surface stands where its best candidate puts it", async ({ lab, page }) => {
+  await page.emulateMedia({ reducedMotion: "reduce" });
+  await lab.visit("size=64&light=window&beta=50");
+  const clouds = page.locator("#clouds-canvas");
+  await expect(page.locator("#clouds-note")).toBeHidden();
+  await expect.poll(() => covered(clouds)).toBeGreaterThan(DRAWN);
+  const start = await clouds.screenshot();
+  await expect(async () => {
+    // No iteration has run: only the search can have moved it.
+    await page.keyboard.press("s");
+    expect((await clouds.screenshot()).equals(start)).toBe(false);
+  }).toPass();
+  await expect(lab.iteration).toHaveText("0");
+});
+
+test("surfaces and points, and the colours on them, are a choice", async ({ lab, page }) => {
+  await lab.open("size=64");
+  await page.keyboard.press("s");
+  await expect(lab.iteration).toHaveText("1");
+  const clouds = page.locator("#clouds-canvas");
+  await expect(page.locator("#clouds-note")).toBeHidden();
+  const seen: Buffer[] = [];
+  for (const [name, value] of [["Drawn as", "points"], ["Drawn as", "surfaces"], ["Coloured by", "picture"], ["Coloured by", "normals"], ["Coloured by", "residual"]] as const) {
+    await page.getByLabel(name).selectOption(value);
+    await expect.poll(async () => {
+      const now = await clouds.screenshot();
+      return seen.some((before) => before.equals(now));
+    }).toBe(false);
+    seen.push(await clouds.screenshot());
+  }
+});

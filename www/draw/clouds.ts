@@ -53,8 +53,11 @@ export class Clouds {
     this.recolour();
   }
 
-  /** `fresh` looks at the new surfaces from the front; otherwise the visitor's viewpoint stays, and the depth map swings to its pose. */
-  show(image: Drawn, depth: Drawn, pose: Pose, fresh: boolean): void {
+  /**
+   * `fresh` looks at the new surfaces from the front; otherwise the visitor's viewpoint stays. The depth map's points
+   * come under one `pose` and are `seen` under another, to which they swing.
+   */
+  show(image: Drawn, depth: Drawn, pose: Pose, seen: Pose, fresh: boolean): void {
     this.#shown = { image, depth };
     if (fresh) this.home();
     const before = this.#pose;
@@ -62,13 +65,17 @@ export class Clouds {
     // From where it stood, in terms of the new points.
     const from = before && !fresh ? this.#standing.clone().multiply(before).multiply(this.#pose.clone().invert()) : NOWHERE.clone();
     this.#change({ surfaces: this.#shown });
-    void this.#swing(from, NOWHERE);
+    void this.#swing(from, this.#apart(seen));
+  }
+
+  /** How a pose differs from the one that the points come under. */
+  #apart(pose: Pose): Matrix4 {
+    return this.#pose ? matrixOf(pose).multiply(this.#pose.clone().invert()) : NOWHERE;
   }
 
   /** Shows the depth map under another pose than its own, or its own again. */
   pretend(pose: Pose | undefined): void {
-    if (!this.#pose) return;
-    void this.#swing(this.#standing, pose ? matrixOf(pose).multiply(this.#pose.clone().invert()) : NOWHERE);
+    void this.#swing(this.#standing, pose ? this.#apart(pose) : NOWHERE);
   }
 
   setStyle(style: "points" | "surfaces"): void {

@@ -78,6 +78,8 @@ export interface Frame {
   depthNormals: Raster;
   imageSurface: Surface;
   depthSurface: Surface;
+  /** The pose that the depth map's points stand under: while the search looks at others, that of the start. */
+  depthPose: Pose;
   /** A ball under the light that was found, and by what factors it differs from the true one. */
   light: { found: Picture; difference: Picture | null };
   /** Of a sample, whose truth is known. */

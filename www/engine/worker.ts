@@ -19,6 +19,8 @@ interface Input {
 
 interface OpenInput extends Input {
   estimator: Estimator;
+  /** The pose of the start, and where it puts the first point of the depth map. */
+  start: { pose: Pose; first: readonly number[] };
   imageCut: Cut;
   depthCut: Cut;
 }
@@ -61,7 +63,13 @@ function resolve({ light, start, ...rest }: LabOptions, input: Input): Options {
   };
 }
 
-function frame({ estimator, imageCut, depthCut, light, shapes }: OpenInput, reports: StepReport[]): Frame {
+const firstOf = (points: Float32Array): number[] => [...points.subarray(0, 3)];
+
+const startOf = (estimator: Estimator): OpenInput["start"] => ({ pose: estimator.report.pose, first: firstOf(estimator.points("depth")) });
+
+function frame({ estimator, imageCut, depthCut, light, shapes, start }: OpenInput, reports: StepReport[]): Frame {
+  const depthPoints = estimator.points("depth");
+  const isAtStart = firstOf(depthPoints).every((value, i) => value === start.first[i]);
   const [imageDepth, refinedDepth, found] = [estimator.imageDepth(), estimator.refinedDepth(), estimator.light()];
   return {
     reports,
@@ -73,7 +81,8 @@ function frame({ estimator, imageCut, depthCut, light, shapes }: OpenInput, repo
     refinedDepth: raster(refinedDepth, 1, depthCut),
     depthNormals: raster(estimator.depthNormals(), 3, depthCut),
     imageSurface: surface(estimator.points("image"), imageDepth, imageCut),
-    depthSurface: surface(estimator.points("depth"), refinedDepth, depthCut),
+    depthSurface: surface(depthPoints, refinedDepth, depthCut),
+    depthPose: isAtStart ? start.pose : estimator.report.pose,
     light: { found: lit(found), difference: light ? ratio(found, light) : null },
     errors: shapes ? errorMaps(estimator, shapes, imageCut, depthCut) : null,
   };
@@ -86,7 +95,7 @@ async function open({ source, options }: Calls["open"]["request"]): Promise<Call
   experiment?.estimator.free();
   const imageCut = cutOfImage(opened.image);
   const depthCut = cutOfDepth(opened.depth);
-  experiment = { ...opened, estimator, imageCut, depthCut };
+  experiment = { ...opened, estimator, start: startOf(estimator), imageCut, depthCut };
   return {
     picture: picture(opened.image, imageCut),
     given: givenDepth(opened.depth, depthCut),
@@ -138,6 +147,7 @@ async function fromFiles(files: OwnFiles): Promise<Prepared> {
 function reset({ options }: Calls["reset"]["request"]): Frame {
   const current = opened();
   current.estimator.reset(resolve(options, current));
+  current.start = startOf(current.estimator);
   return frame(current, [current.estimator.report]);
 }
 

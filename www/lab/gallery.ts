@@ -164,7 +164,7 @@ export class Gallery {
     const fresh = this.#fresh;
     this.#painter.request(clouds, () => {
       const { image, depth } = textured(frame, picture, this.#texture);
-      clouds.show(image, depth, report.pose, fresh);
+      clouds.show(image, depth, frame.depthPose, report.pose, fresh);
     });
     this.#fresh = false;
   }
