@@ -85,8 +85,9 @@ describe("lights", () => {
   test("shade normals as the numbers of a sample say", () => {
     for (const name of sampleLights()) {
       const coefficients = turnLight(name);
-      assert.deepEqual(coefficients, sample({ surface: "bust", light: name }).light);
-      const [shaded, again] = [name, coefficients].map((light) => shadeNormals(light, NORMALS));
+      const { light } = sample({ surface: "bust", light: name });
+      light.forEach((own, at) => assert.ok(Math.abs(coefficients[at] - own) < 1e-12, `${name} ${at}`));
+      const [shaded, again] = [name, light].map((light) => shadeNormals(light, NORMALS));
       assert.deepEqual(shaded, again);
       // Towards the camera: the constant, the term along z and the second of z.
       const [l1, , l3, , , , l7] = coefficients;

@@ -60,7 +60,7 @@ export class Gallery {
     this.#errors = {
       imageNormals: error("Error of normals", image, "angle between the colour view's normals and the true ones"),
       imageDepth: error("Error of depth", image, "distance of the colour view's depth from the true one, both about their middles"),
-      refinedDepth: error("Error of refined depth", depth, "distance of the refined depth from the true one"),
+      refinedDepth: error("Refinement error", depth, "distance of the refined depth from the true one"),
     };
     void this.#loadCharts();
     this.#loadCloudsWhenSeen();
