@@ -1,7 +1,7 @@
 /** What the loop's inputs must look like: names and types, and whatever the rows of the options say. */
 import { type Check, DEPTH, IMAGE, type Shape, array, callback, flag, isObject, number, numbers, object, ranged, side, signal, word } from "./check.js";
 import { BimodalError } from "./errors.js";
-import { OPTIONS, RENDERED_ALONE, SAMPLE } from "./options.js";
+import { OPTIONS, POSE, RENDERED_ALONE, SAMPLE } from "./options.js";
 import type { Row, Rows, WordRow } from "./rows.js";
 
 /** A word, or else something that is no word. */
@@ -77,3 +77,12 @@ export function checkSample(value: unknown): void {
 }
 
 export const checkLightIsKnown = (value: unknown): void => flag(value, "lightIsKnown");
+/** Of a light to turn or to shade with: a name, or 27 numbers. */
+export const checkLight = (value: unknown): void => nameOr(numbers(27))(value, "light");
+export const checkAngles = (value: unknown): void => checkOf(POSE.angles)(value, "angles");
+/** Whole normals. */
+export const checkNormals = (value: unknown): void => {
+  array(Float32Array)(value, "normals");
+  const { length } = value as Float32Array;
+  if (length % 3 !== 0) throw new BimodalError("size", `normals: needs three numbers for each normal, not ${length} in all`, "normals");
+};

@@ -18,7 +18,7 @@ const weight = { kind: "number", min: 0, max: 1e6 } as const;
 const seed = { kind: "whole", min: 0, max: Number.MAX_SAFE_INTEGER, default: 1 } as const;
 const side = { kind: "side", min: 16, max: 1024, unit: "px" } as const;
 
-const POSE: RowsOf<Partial<Pose>> = {
+export const POSE: RowsOf<Partial<Pose>> = {
   scale: { kind: "number", above: 0 },
   rotation: { kind: "list", length: 9 },
   translation: { kind: "list", length: 3 },
@@ -73,15 +73,15 @@ export const OPTIONS: RowsOf<Options> = {
       prior: {
         ...weight,
         default: 0.05,
-        page: { group: "weights", label: "λ shape prior", hint: "How strongly a normal follows the other view's." },
+        page: { group: "weights", label: "λ shape prior", hint: "How strongly a normal follows the other view's.", slider: { min: -4, max: 2, step: 0.1, log: true } },
       },
       unit: { ...weight, default: 1, page: { group: "weights", label: "λ unit length", link: "unitLength" } },
       light: {
         ...weight,
         default: 1e-6,
-        page: { group: "weights", label: "λ light", link: "lightPrior", hint: "How strongly the light follows natural lights." },
+        page: { group: "weights", label: "λ light", link: "lightPrior", hint: "How strongly the light follows natural lights.", slider: { min: -8, max: 0, step: 0.2, log: true } },
       },
-      refinement: { ...weight, default: 0.01, page: { group: "weights", label: "λ refinement" } },
+      refinement: { ...weight, default: 0.01, page: { group: "weights", label: "λ refinement", slider: { min: -4, max: 1, step: 0.1, log: true } } },
     },
   },
   stopDegrees: {

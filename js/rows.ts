@@ -12,8 +12,8 @@ export interface PageField {
   readonly initial?: number;
   /** What an empty field means, where neither a number nor a word is the default. */
   readonly empty?: string;
-  /** The part of the range that a slider spans. */
-  readonly slider?: { readonly min: number; readonly max: number; readonly step: number };
+  /** The part of the range that a slider spans; powers of ten where it is logarithmic. */
+  readonly slider?: { readonly min: number; readonly max: number; readonly step: number; readonly log?: boolean };
 }
 
 interface Common {

@@ -1,8 +1,8 @@
 /** Made scenes with a known answer, for tests, pages and first steps. */
 import { across } from "./border.js";
 import { bindings } from "./engine.js";
-import { checkLightIsKnown, checkSample } from "./inputs.js";
-import type { Sample, SampleRequest } from "./types.js";
+import { checkAngles, checkLight, checkLightIsKnown, checkNormals, checkSample } from "./inputs.js";
+import type { Pose, Sample, SampleRequest } from "./types.js";
 
 /** Renders a colour image and a depth map of a built-in (or your own) surface. */
 export function sample(request: SampleRequest): Sample {
@@ -27,3 +27,19 @@ export const sampleSurfaces = (): string[] => bindings().sampleSurfaces();
 
 /** Names of the built-in lights. */
 export const sampleLights = (): string[] => bindings().sampleLights();
+
+/** The 27 coefficients of a light, built in or given, turned by angles: what fell on a normal n falls on R n. */
+export function turnLight(light: SampleRequest["light"], angles: Partial<Pose["angles"]> = {}): Float64Array {
+  checkLight(light);
+  checkAngles(angles);
+  const { turnLight: turn } = bindings();
+  return across(() => turn(light, angles));
+}
+
+/** log S of each of some unit normals under a light: three numbers for three, R, G, B for x, y, z. */
+export function shadeNormals(light: SampleRequest["light"], normals: Float32Array): Float32Array {
+  checkLight(light);
+  checkNormals(normals);
+  const { shadeNormals: shade } = bindings();
+  return across(() => shade(light, normals));
+}

@@ -5,6 +5,25 @@ const typing = "input:not([type=checkbox], [type=range], [type=file]), select, t
 /** Elements that a space or an enter already means something to. */
 const pressable = "button, a, summary, label, input";
 
+const KEY = "bimodal-stereo.keys";
+
+/** Whether the visitor wants them: single keys get in the way of speech input. */
+export function areKeysOn(): boolean {
+  try {
+    return localStorage.getItem(KEY) !== "off";
+  } catch {
+    return true;
+  }
+}
+
+export function rememberKeys(on: boolean): void {
+  try {
+    localStorage.setItem(KEY, on ? "on" : "off");
+  } catch {
+    // Private windows may refuse storage; the choice then lasts as long as the page.
+  }
+}
+
 export function listenToKeys(isOn: () => boolean, actions: Record<string, () => void>): void {
   document.addEventListener("keydown", (event) => {
     if (!isOn() || event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey) return;

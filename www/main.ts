@@ -1,10 +1,13 @@
 /** Brings the page to life: its places, the Lab, and the controls around it. */
 
 import { byId, make } from "./dom";
-import { listenToKeys } from "./keys";
+import { isFirstVisit } from "./first-visit";
+import { areKeysOn, listenToKeys, rememberKeys } from "./keys";
 import { Lab } from "./lab/lab";
 import { paces } from "./lab/player";
-import { defaults, fromLink, toLink, type Origin } from "./lab/settings";
+import { Presets } from "./lab/presets";
+import { kinds } from "./lab/kinds";
+import { defaults, fromLink, toLink, type Origin, type Settings } from "./lab/settings";
 import { writeAddress } from "./lab/share";
 import { asksToPlay, placeOf, type Place } from "./place";
 
@@ -32,19 +35,24 @@ const loaders: Record<OtherPlace, () => Promise<new (main: HTMLElement) => Elsew
 };
 const others: Partial<Record<OtherPlace, Elsewhere>> = {};
 
-const phone = matchMedia("(max-width: 45rem)");
-
 const openHelp = () => help.showModal();
 const step = () => void player.step("step");
 const stage = () => void player.step("stage");
 const reset = () => void lab.restart();
 const undo = () => store.undo();
+const redo = () => store.redo();
 
+// The address is the settings', so the link itself leads nowhere.
+byId("skip", HTMLAnchorElement).addEventListener("click", (event) => {
+  event.preventDefault();
+  byId("play", HTMLButtonElement).focus();
+});
 button("play", () => player.toggle());
 button("step", step);
 button("stage-step", stage);
 button("reset", reset);
 button("undo", undo);
+button("redo", redo);
 button("defaults", () => store.resetToDefaults());
 button("export", () => {
   const place = placeOf(location.hash);
@@ -70,7 +78,21 @@ function choose(origin: Origin): void {
     byId(`${each}-panel`, HTMLElement).hidden = each !== origin;
   }
   lab.choose(origin);
+  showExample();
 }
+const isSample = (): boolean => byId("files-panel", HTMLElement).hidden !== false;
+const examples = new Presets(byId("presets", HTMLElement), (settings) => {
+  if (!isSample()) choose("sample");
+  void start(settings);
+});
+const showExample = () => examples.show(store.settings, isSample());
+store.listen(showExample);
+showExample();
+
+const still = matchMedia("(prefers-reduced-motion: reduce)");
+/** The run of these settings, which plays by itself unless motion is unwelcome. */
+const start = (settings: Settings): Promise<void> => (still.matches ? lab.enter(settings) : lab.watch(settings));
+
 button("origin-sample", () => choose("sample"));
 button("origin-files", () => choose("files"));
 
@@ -92,7 +114,7 @@ const places: Record<Place, { main: HTMLElement; link: HTMLAnchorElement; title:
   rig: { main: byId("rig", HTMLElement), link: byId("to-rig", HTMLAnchorElement), title: "Check a rig, bimodal-stereo" },
 };
 /** What belongs to the Lab outside its own part of the page. */
-const labOnly = [byId("bar", HTMLElement), byId("help-button", HTMLElement)];
+const labOnly = [byId("bar", HTMLElement), byId("help-button", HTMLElement), byId("skip", HTMLElement)];
 
 function show(place: Place): void {
   for (const [name, { main, link, title }] of Object.entries(places)) {
@@ -107,9 +129,13 @@ function show(place: Place): void {
   for (const element of labOnly) element.hidden = place !== "lab";
 }
 
+let arrived = false;
 /** The address says which place is asked for, and how it is set. */
 async function arrive(): Promise<void> {
   const place = placeOf(location.hash);
+  // Who comes from another place of the page, or by a link to some settings, looks for something else than a show.
+  const opensFirst = !arrived && location.hash === "" && isFirstVisit();
+  arrived = true;
   show(place);
   if (place !== "tables") others.tables?.leave();
   if (place !== "rig") others.rig?.leave();
@@ -121,8 +147,8 @@ async function arrive(): Promise<void> {
     return;
   }
   const settings = fromLink(location.hash);
-  if (!asksToPlay(location.hash)) return lab.enter(settings);
-  if (byId("files-panel", HTMLElement).hidden === false) choose("sample");
+  if (!asksToPlay(location.hash)) return opensFirst ? start(settings) : lab.enter(settings);
+  if (!isSample()) choose("sample");
   const started = lab.watch(settings);
   writeAddress(store.settings);
   await started;
@@ -147,22 +173,45 @@ for (const [name, { link }] of Object.entries(places)) {
   });
 }
 
-const views = Array.from({ length: gallery.count }, (_, i): [string, () => void] => [String((i + 1) % 10), () => gallery.enlarge(i + 1)]);
-listenToKeys(() => placeOf(location.hash) === "lab", {
+const views = Array.from({ length: Math.min(10, gallery.count) }, (_, i): [string, () => void] => [String((i + 1) % 10), () => gallery.enlarge(i + 1)]);
+const keys = byId("keys-on", HTMLInputElement);
+keys.checked = areKeysOn();
+keys.addEventListener("change", () => rememberKeys(keys.checked));
+listenToKeys(() => keys.checked && placeOf(location.hash) === "lab", {
   " ": () => player.toggle(),
   s: step,
   t: stage,
   r: reset,
   u: undo,
+  y: redo,
   "?": openHelp,
   Escape: () => gallery.enlarge(null),
   ...Object.fromEntries(views),
 });
 
-// A file dropped beside its slot must not replace the page.
-for (const type of ["dragover", "drop"]) document.addEventListener(type, (event) => event.preventDefault());
+// A file must not replace the page; dropped anywhere on the Lab it goes where its content belongs.
+document.addEventListener("dragover", (event) => event.preventDefault());
+document.addEventListener("drop", (event) => {
+  event.preventDefault();
+  const files = [...(event.dataTransfer?.files ?? [])];
+  if (files.length === 0 || placeOf(location.hash) !== "lab") return;
+  drawer.open = true;
+  if (isSample()) choose("files");
+  void lab.drop(files);
+});
 
-byId("input", HTMLDetailsElement).open = !phone.matches;
+for (const each of document.querySelectorAll<HTMLButtonElement>("#takeaway button")) {
+  const kind = kinds.find((kind) => kind === each.value);
+  if (kind) each.addEventListener("click", () => void lab.take(kind));
+}
+
+const drawer = byId("input", HTMLDetailsElement);
+drawer.addEventListener("keydown", (event) => {
+  if (event.key !== "Escape" || !drawer.open) return;
+  event.stopPropagation();
+  drawer.open = false;
+  drawer.querySelector("summary")?.focus();
+});
 // A link opened in this very tab changes nothing but the part after #.
 addEventListener("hashchange", () => void arrive());
 void arrive();

@@ -1,7 +1,9 @@
 /** Hands a file to the visitor. */
 
-export function saveJson(name: string, value: unknown): void {
-  const url = URL.createObjectURL(new Blob([JSON.stringify(value, null, 2)], { type: "application/json" }));
+export const saveJson = (name: string, value: unknown): void => saveBlob(name, new Blob([JSON.stringify(value, null, 2)], { type: "application/json" }));
+
+export function saveBlob(name: string, blob: Blob): void {
+  const url = URL.createObjectURL(blob);
   const link = document.createElement("a");
   link.href = url;
   link.download = name;

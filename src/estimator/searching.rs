@@ -60,6 +60,7 @@ impl Estimator {
                 "100 %: the colours are painted; local contrast tells the pose".into()
             }
             0 => "100 %: one pose explains the colours best".into(),
+            1 => "100 %: one other pose explains the colours as well".into(),
             count => format!("100 %: {count} other poses explain the colours as well"),
         });
         self.report.pose = self.solution.pose;

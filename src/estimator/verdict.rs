@@ -222,7 +222,10 @@ fn reason_for_distrust(evidence: &Evidence<'_>) -> Option<Verdict> {
         (0, _) => return None,
         (count, _) => {
             let nearest = Fixed(evidence.nearest_rival, 0);
-            format!("{count} other poses explain the colours as well, the nearest {nearest} degrees away")
+            match count {
+                1 => format!("one other pose explains the colours as well, {nearest} degrees away"),
+                _ => format!("{count} other poses explain the colours as well, the nearest {nearest} degrees away"),
+            }
         }
     };
     Some((Status::Ambiguous, Some(reason)))

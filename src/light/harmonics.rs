@@ -1,5 +1,7 @@
 //! log S = n^T M n with n = [n_x n_y n_z 1]: second-order spherical harmonics (Eq. 3, 5; docs/method.md, section 2).
 
+use nalgebra::{Matrix3, Vector3};
+
 use crate::error::{Error, ErrorKind, Result};
 use crate::numeric::Real;
 use crate::text::Brief;
@@ -68,6 +70,31 @@ impl Light {
             channel[0] += offset / C4;
         }
         self
+    }
+
+    /// The same light turned by a rotation: what fell on n falls on R n. Orders 0, 1 and 2 each turn within themselves; the second is
+    /// a symmetric form without trace, because n has length one.
+    #[must_use]
+    pub fn turned(&self, rotation: &Matrix3<f64>) -> Self {
+        Self(self.0.map(|l| {
+            let linear = rotation * Vector3::new(l[3], l[1], l[2]);
+            let zz = C5 * l[6];
+            #[rustfmt::skip]
+            let form = Matrix3::new(
+                C1 * l[8] - zz, C1 * l[4],       C1 * l[7],
+                C1 * l[4],      -C1 * l[8] - zz, C1 * l[5],
+                C1 * l[7],      C1 * l[5],       2.0 * zz,
+            );
+            let form = rotation * form * rotation.transpose();
+            let second = [
+                form.m12 / C1,
+                form.m23 / C1,
+                form.m33 / (2.0 * C5),
+                form.m13 / C1,
+                (form.m11 - form.m22) / (2.0 * C1),
+            ];
+            [l[0], linear.y, linear.z, linear.x, second[0], second[1], second[2], second[3], second[4]]
+        }))
     }
 
     /// By how much log S of R, G, B grows from `other`, a light that differs in its colour alone.
@@ -205,7 +232,7 @@ impl<S: Real<Scalar = S>> Polynomial<S> {
 mod tests {
     use super::*;
     use crate::numeric::Lanes;
-    use nalgebra::{Matrix4, Vector3, Vector4};
+    use nalgebra::{Matrix4, Rotation3, Vector4};
 
     fn light() -> Light {
         Light([
@@ -245,6 +272,22 @@ mod tests {
                 let difference = (polynomial.shade(up) - polynomial.shade(down)) / 0.02;
                 assert!((polynomial.gradient(normal)[axis] - difference).abs() < 2e-5);
             }
+        }
+    }
+
+    #[test]
+    fn a_turned_light_falls_on_turned_normals_as_it_did_before() {
+        let rotation = Rotation3::from_euler_angles(0.4, -1.1, 2.3).into_inner();
+        let turned = light().turned(&rotation);
+        for normal in [[0.36, -0.48, -0.8], [0.6, 0.64, 0.48], [0.0, -0.6, -0.8], [0.0, 0.0, -1.0]] {
+            let there = rotation * Vector3::from(normal);
+            for (found, expected) in turned.shade(there.into()).into_iter().zip(light().shade(normal)) {
+                // The constants of the published model are rounded to six digits.
+                assert!((found - expected).abs() < 1e-5, "{found} {expected}");
+            }
+        }
+        for (back, own) in turned.turned(&rotation.transpose()).flat().into_iter().zip(light().flat()) {
+            assert!((back - own).abs() < 1e-5);
         }
     }
 

@@ -81,6 +81,29 @@ pub fn sample_bound(request: &JsRequest, light_is_known: bool) -> std::result::R
     Ok(bound(&made, light_is_known, request.noise().unwrap_or_default()))
 }
 
+/// The 27 coefficients of a light that is named or given, turned by angles.
+#[wasm_bindgen(js_name = "turnLight")]
+pub fn turn_light(given: &JsValue, turn: &JsAngles) -> std::result::Result<Float64Array, Thrown> {
+    Ok(Float64Array::from(light(given)?.turned(&angles(turn).rotation()).flat().as_slice()))
+}
+
+/// log S of each of some normals, three numbers after three.
+#[wasm_bindgen(js_name = "shadeNormals")]
+pub fn shade_normals(given: &JsValue, normals: &Float32Array) -> std::result::Result<Float32Array, Thrown> {
+    let light = light(given)?;
+    let normals = normals.to_vec();
+    let shade = |normal: &[f32; 3]| light.shade(normal.map(f64::from)).map(|log| log as f32);
+    let shaded: Vec<f32> = normals.as_chunks().0.iter().flat_map(shade).collect();
+    Ok(floats(&shaded))
+}
+
+fn light(js: &JsValue) -> Result<Light> {
+    match numbers(js) {
+        Some(values) => Light::from_slice("light", &values),
+        None => lights::light(&js.as_string().unwrap_or_default()),
+    }
+}
+
 fn make(js: &JsRequest) -> Result<Sample> {
     let relief = relief(&js.surface())?;
     let request = request(js)?;
@@ -103,10 +126,7 @@ fn request(js: &JsRequest) -> Result<SampleRequest> {
     let width = js.size().map_or(default.size.width, |size| size as usize);
     let height = js.height().map_or(width, |height| height as usize);
     Ok(SampleRequest {
-        light: match numbers(&js.light()) {
-            Some(values) => Light::from_slice("light", &values)?,
-            None => lights::light(&js.light().as_string().unwrap_or_default())?,
-        },
+        light: light(&js.light())?,
         size: Size { width, height },
         rotation: js.angles().map_or(default.rotation, |given| angles(&given).rotation()),
         scale: js.scale().unwrap_or(default.scale),

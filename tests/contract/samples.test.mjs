@@ -1,7 +1,7 @@
 // What made scenes offer beyond the plain pair: the paper's bare grid, a scale, and the physical limit.
 import assert from "node:assert/strict";
 import { before, describe, test } from "node:test";
-import { Estimator, init, refused, sample, sampleBound } from "./support.mjs";
+import { Estimator, init, refused, sample, sampleBound, sampleLights, shadeNormals, turnLight } from "./support.mjs";
 
 const BUST = { surface: "bust", light: "colourful" };
 const NOISY = { ...BUST, noise: 0.01 };
@@ -76,5 +76,38 @@ describe("sampleBound", () => {
     refused(() => sampleBound(NOISY), "type", "lightIsKnown");
     refused(() => sampleBound({ ...NOISY, noise: -1 }, true), "range", "sample.noise");
     refused(() => sampleBound({ ...NOISY, sise: 2 }, true), "option", "sample.sise");
+  });
+});
+
+describe("lights", () => {
+  const NORMALS = Float32Array.of(0, 0, -1, 0.6, 0, -0.8, 0.36, -0.48, -0.8);
+
+  test("shade normals as the numbers of a sample say", () => {
+    for (const name of sampleLights()) {
+      const coefficients = turnLight(name);
+      const { light } = sample({ surface: "bust", light: name });
+      light.forEach((own, at) => assert.ok(Math.abs(coefficients[at] - own) < 1e-12, `${name} ${at}`));
+      const [shaded, again] = [name, light].map((light) => shadeNormals(light, NORMALS));
+      assert.deepEqual(shaded, again);
+      // Towards the camera: the constant, the term along z and the second of z.
+      const [l1, , l3, , , , l7] = coefficients;
+      assert.ok(Math.abs(shaded[0] - (0.886227 * l1 - 2 * 0.511664 * l3 + (0.743125 - 0.247708) * l7)) < 1e-6);
+    }
+  });
+
+  test("turned by an angle fall where they fell before", () => {
+    const turned = turnLight("window", { beta: 90 });
+    // A quarter of a turn about y takes x to -z, and z to x.
+    const there = shadeNormals(turned, Float32Array.of(-1, 0, 0, -0.8, 0, -0.6));
+    const before = shadeNormals("window", NORMALS);
+    for (const at of [0, 1, 2, 3, 4, 5]) assert.ok(Math.abs(there[at] - before[at]) < 1e-5, `${at}`);
+  });
+
+  test("that are none are refused", () => {
+    refused(() => turnLight("moon"), "range", "light");
+    refused(() => turnLight([1, 2, 3]), "size", "light");
+    refused(() => turnLight("window", { delta: 3 }), "option", "angles.delta");
+    refused(() => shadeNormals("window", [0, 0, -1]), "type", "normals");
+    refused(() => shadeNormals("window", new Float32Array(4)), "size", "normals");
   });
 });

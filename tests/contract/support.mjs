@@ -4,7 +4,7 @@ import { crc32, deflateSync } from "node:zlib";
 import init, * as package_ from "../../pkg/index.js";
 
 export { init };
-export const { BimodalError, Estimator, checkCalibration, sample, sampleBound, sampleLights, sampleSurfaces } = package_;
+export const { BimodalError, Estimator, checkCalibration, sample, sampleBound, sampleLights, sampleSurfaces, shadeNormals, turnLight } = package_;
 
 /** A pair with a known answer, quick to work on. */
 export const pair = (request = {}) => sample({ surface: "bust", light: "colourful", size: 32, ...request });

@@ -18,7 +18,7 @@ async function covered(clouds: Locator): Promise<number> {
   return count / (width * height);
 }
 
-/** The clouds are loaded once a visitor comes near them: below all views, on a laptop. */
+/** The clouds are loaded once a visitor comes near them; on a laptop they are there at once. */
 const goToClouds = (page: Page) => page.locator("#clouds-box").scrollIntoViewIfNeeded();
 
 /** Longest wait, milliseconds, of one attempt of several. */
@@ -83,6 +83,7 @@ test("points are as large on a dense screen", async ({ browser, baseURL }) => {
     await expect(page.locator("#status")).toHaveAttribute("data-state", "ready");
     await goToClouds(page);
     const clouds = page.locator("#clouds-canvas");
+    await page.getByLabel("Drawn as").selectOption("points");
     await expect(page.locator("#clouds-note")).toBeHidden();
     // Before the first step there is the depth map's cloud alone, so that no other can come late.
     await expect.poll(() => covered(clouds)).toBeGreaterThan(DRAWN);
@@ -92,4 +93,36 @@ test("points are as large on a dense screen", async ({ browser, baseURL }) => {
   const [plain = 0, dense = 0] = shares;
   expect(dense / plain).toBeGreaterThan(0.8);
   expect(dense / plain).toBeLessThan(1.25);
+});
+
+test("while the search looks around, the surface stands where its best candidate puts it", async ({ lab, page }) => {
+  await page.emulateMedia({ reducedMotion: "reduce" });
+  await lab.visit("size=64&light=window&beta=50");
+  const clouds = page.locator("#clouds-canvas");
+  await expect(page.locator("#clouds-note")).toBeHidden();
+  await expect.poll(() => covered(clouds)).toBeGreaterThan(DRAWN);
+  const start = await clouds.screenshot();
+  await expect(async () => {
+    // No iteration has run: only the search can have moved it.
+    await page.keyboard.press("s");
+    expect((await clouds.screenshot()).equals(start)).toBe(false);
+  }).toPass();
+  await expect(lab.iteration).toHaveText("0");
+});
+
+test("surfaces and points, and the colours on them, are a choice", async ({ lab, page }) => {
+  await lab.open("size=64");
+  await page.keyboard.press("s");
+  await expect(lab.iteration).toHaveText("1");
+  const clouds = page.locator("#clouds-canvas");
+  await expect(page.locator("#clouds-note")).toBeHidden();
+  const seen: Buffer[] = [];
+  for (const [name, value] of [["Drawn as", "points"], ["Drawn as", "surfaces"], ["Coloured by", "picture"], ["Coloured by", "normals"], ["Coloured by", "residual"]] as const) {
+    await page.getByLabel(name).selectOption(value);
+    await expect.poll(async () => {
+      const now = await clouds.screenshot();
+      return seen.some((before) => before.equals(now));
+    }).toBe(false);
+    seen.push(await clouds.screenshot());
+  }
 });

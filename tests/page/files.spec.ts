@@ -54,7 +54,8 @@ async function put(lab: Lab, slot: string, file: Upload): Promise<void> {
 }
 
 async function openFiles(lab: Lab): Promise<void> {
-  await lab.open();
+  await lab.open("size=64");
+  await lab.unfold();
   await lab.page.getByRole("button", { name: "Own files" }).click();
   await lab.reaches("waiting");
 }
@@ -92,7 +93,8 @@ test("a colour and a depth PNG of 16 bits run to convergence", async ({ lab, pag
 });
 
 test("a .npy depth map gives the same picture as the sample it was made of", async ({ lab }) => {
-  await lab.open("beta=12");
+  await lab.open("size=64&beta=12");
+  await lab.unfold();
   const truth = await lab.fingerprint("Given depth");
   await lab.page.getByRole("button", { name: "Own files" }).click();
   await put(lab, "Colour image", colourPng());
@@ -104,6 +106,7 @@ test("a .npy depth map gives the same picture as the sample it was made of", asy
 
 test("bad files are named in words and nothing is lost", async ({ lab, page }) => {
   await lab.open();
+  await lab.unfold();
   const shown = await lab.fingerprint("Given depth");
   await page.getByRole("button", { name: "Own files" }).click();
   const whole = colourPng();
@@ -135,8 +138,9 @@ test("a number out of range is refused beside its field", async ({ lab, page }) 
   await lab.open();
   await page.keyboard.press("s");
   await expect(lab.iteration).toHaveText("1");
+  await lab.unfold();
   await page.getByText("Weights", { exact: true }).click();
-  const prior = page.getByLabel("λ shape prior", { exact: true });
+  const prior = page.getByLabel("λ shape prior", { exact: true }).first();
   await prior.fill("-1");
   await prior.press("Enter");
   await expect(page.locator(".field", { has: prior })).toContainText("must be a finite number, zero or above");

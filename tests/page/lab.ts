@@ -4,6 +4,7 @@ import { test as base, expect, type Locator, type Page } from "@playwright/test"
 
 export { expect };
 
+
 const PAPER = "lighting=known&start=identity&registration=icp&shading=pixel";
 
 export class Lab {
@@ -27,6 +28,11 @@ export class Lab {
   async visit(settings = ""): Promise<void> {
     await this.page.goto(`./${settings ? `#${settings}` : ""}`);
     await this.reaches("ready");
+  }
+
+  /** Unfolds the settings, which lie over the left of the page. */
+  async unfold(): Promise<void> {
+    if (!(await this.page.locator("#input").evaluate((drawer: HTMLDetailsElement) => drawer.open))) await this.page.locator("#input > summary").click();
   }
 
   async reaches(state: string): Promise<void> {

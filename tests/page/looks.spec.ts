@@ -2,7 +2,7 @@
 
 import { expect, test } from "./lab";
 
-for (const width of [390, 1280, 1600]) {
+for (const width of [320, 390, 1280, 1600, 2560]) {
   test(`nothing sticks out at ${width} px`, async ({ lab, page }) => {
     await page.setViewportSize({ width, height: 844 });
     await lab.open();
@@ -16,7 +16,7 @@ test("on a phone the input is folded and the views can be swiped", async ({ lab,
   await page.setViewportSize({ width: 390, height: 844 });
   await lab.open();
   await expect(page.getByLabel("Surface", { exact: true })).toBeHidden();
-  await page.getByText("Input", { exact: true }).click();
+  await page.getByText("Settings and own files", { exact: true }).click();
   await expect(page.getByLabel("Surface", { exact: true })).toBeVisible();
   const swiped = await page.locator("#image-views").evaluate((row) => row.scrollWidth > row.clientWidth);
   expect(swiped).toBe(true);
@@ -91,6 +91,7 @@ test("a view without values has no range of earlier ones", async ({ lab, page })
   await expect(lab.iteration).toHaveText("1");
   const lowest = page.getByLabel("Depth: lowest value shown", { exact: true });
   await expect(lowest).not.toHaveValue("0");
+  await lab.unfold();
   await page.getByLabel("Surface", { exact: true }).selectOption("vase");
   await lab.reaches("ready");
   await expect(lab.iteration).toHaveText("0");

@@ -21,6 +21,7 @@ test("a painted object is shown as its paint and its shading", async ({ lab, pag
   const depths = Uint16Array.from(depth.data ?? [], (value) => (value > 0 ? Math.round(100 * value) : 0));
 
   await lab.visit("lighting=estimate&start=identity&registration=fixed");
+  await lab.unfold();
   await page.getByRole("button", { name: "Own files" }).click();
   await lab.reaches("waiting");
   await page.getByText("Depth camera", { exact: true }).click();

@@ -23,6 +23,7 @@ test("another input replaces one that is being worked on", async ({ lab, page })
   const ripples = await lab.fingerprint("Colour");
   await page.goto("about:blank");
   await lab.open("surface=bust");
+  await lab.unfold();
   await messages.hold("advance");
   await page.keyboard.press("s");
   await expect.poll(() => messages.count("advance")).toBe(1);
@@ -41,6 +42,7 @@ test("of several requests the last one counts", async ({ lab, page }) => {
   const vase = await lab.fingerprint("Colour");
   await page.goto("about:blank");
   await lab.open("surface=bust");
+  await lab.unfold();
   const surface = page.getByLabel("Surface", { exact: true });
   const start = page.getByLabel("Start", { exact: true });
   // All of them are made before the worker receives the first.
@@ -85,7 +87,7 @@ test("where every frame is late the search still ends", async ({ lab, page }) =>
   });
   // Frames so late are played stage by stage, and a search has hundreds of slices.
   const messages = await Messages.of(page, 400);
-  await lab.visit("light=colourful");
+  await lab.visit("size=64&light=colourful");
   await page.getByRole("button", { name: "Play" }).click();
   await expect(lab.iteration).not.toHaveText("0");
   expect(await messages.count("advance")).toBeLessThan(MOST_FRAMES);

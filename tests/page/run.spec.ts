@@ -85,12 +85,16 @@ test("a range can be fixed and let go", async ({ lab, page }) => {
 
 test("settings live in the address, can be undone and go back to their defaults", async ({ lab, page }) => {
   await lab.open("surface=vase&beta=35");
+  await lab.unfold();
   await expect(page.getByLabel("Surface", { exact: true })).toHaveValue("vase");
   await expect(page.locator("#pose tbody tr").nth(2).locator("td").nth(1)).toHaveText("35.00");
   await page.getByLabel("Surface", { exact: true }).selectOption("ripples");
   await expect(page).toHaveURL(/surface=ripples/);
   await page.getByRole("button", { name: "Undo" }).click();
   await expect(page.getByLabel("Surface", { exact: true })).toHaveValue("vase");
+  await page.getByRole("button", { name: "Redo" }).click();
+  await expect(page.getByLabel("Surface", { exact: true })).toHaveValue("ripples");
+  await expect(page.getByRole("button", { name: "Redo" })).toBeDisabled();
   await page.getByRole("button", { name: "Defaults" }).click();
   await expect(page.getByLabel("Surface", { exact: true })).toHaveValue("bust");
   await expect(page).not.toHaveURL(/surface/);
@@ -141,17 +145,20 @@ test("after a panic a new worker takes the same input up again", async ({ lab, p
 });
 
 test("a run that misses the pose does not look like a success", async ({ lab, page }) => {
-  await lab.open("lighting=estimate&iterations=2");
+  await lab.open("size=64&lighting=estimate&iterations=2");
+  await lab.unfold();
   await expect(page.getByText("Estimated along with the pose.").filter({ visible: true })).toHaveCount(1);
   await page.getByRole("button", { name: "Play" }).click();
   await lab.reaches("max-iterations");
   await expect(page.locator("#status")).toHaveText(/^stopped, \d+\.\d+° off$/);
   await expect(page.locator("#status")).not.toHaveAttribute("data-tone", "good");
   await expect(page.locator("#verdict")).toContainText("The cap of 2 iterations was reached.");
+  await expect(page.locator("#next")).not.toBeEmpty();
 });
 
 test("a hint unfolds at a tap", async ({ lab, page }) => {
   await lab.open();
+  await lab.unfold();
   const hint = page.getByText("Of both views: a side, or a camera's whole frame.");
   await expect(hint).toBeHidden();
   await page.getByRole("button", { name: 'What is "Size"?' }).click();
@@ -162,7 +169,7 @@ test("a hint unfolds at a tap", async ({ lab, page }) => {
 const AT_START = /[\d.]+° at the start/;
 
 test("nothing known: the search comes first, says how far it is, and the loop converges", async ({ lab, page }) => {
-  await lab.visit("light=window&beta=50&gamma=15&overlap=0.7&noise=0.01");
+  await lab.visit("size=64&light=window&beta=50&gamma=15&overlap=0.7&noise=0.01");
   const search = page.getByRole("button", { name: /^search/ });
   // A look now and then may miss the search, so all that its chip says while it is lit is written down.
   const said = await search.evaluateHandle((chip) => {

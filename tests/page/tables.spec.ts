@@ -79,6 +79,8 @@ test("the bare grid of Table 2A is exact, here and in the Lab", async ({ lab, pa
   await page.getByRole("link", { name: "Watch this run" }).click();
   await expect(page.locator("#status")).toHaveAttribute("data-state", "converged");
   await expect(page.getByLabel("Protocol", { exact: true })).toHaveValue("grid");
+  await lab.unfold();
+  await expect(page.getByLabel("Protocol", { exact: true })).toBeVisible();
   await expect(page.getByLabel("Size", { exact: true })).toBeHidden();
   expect(await lab.errorDegrees()).toBeLessThan(1e-4);
 });

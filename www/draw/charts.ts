@@ -23,22 +23,28 @@ const objectiveTerms: readonly Line[] = [
   { label: "registration", token: "series-3", value: ({ energy }) => energy.registration },
   { label: "refinement", token: "series-4", value: ({ energy }) => energy.refinement },
 ];
-/** Degrees. A rotation that no longer moves changes by zero, for which a logarithm has no place. */
-const LEAST_CHANGE = 1e-6;
-const rotation: readonly Line[] = [{ label: "change, deg (1e-6: none)", token: "accent", value: ({ rotationChange }) => Math.max(rotationChange, LEAST_CHANGE) }];
+/** Degrees. A rotation that does not move changes by zero: for that a logarithm has no place, and the curve a gap. */
+const rotation: readonly Line[] = [{ label: "change, deg", token: "accent", value: ({ rotationChange }) => rotationChange }];
 
 export class Charts {
-  readonly #charts: readonly { plot: Plot; lines: readonly Line[] }[];
+  readonly #charts: readonly { box: HTMLElement; name: string; plot: Plot; lines: readonly Line[] }[];
 
   constructor(objectiveBox: HTMLElement, rotationBox: HTMLElement) {
-    const chart = (box: HTMLElement, lines: readonly Line[]) => ({ plot: new Plot(box, { xLabel: "iteration", curves: lines, whole: true }), lines });
-    this.#charts = [chart(objectiveBox, objectiveTerms), chart(rotationBox, rotation)];
+    const chart = (box: HTMLElement, name: string, lines: readonly Line[]) => {
+      box.setAttribute("role", "group");
+      return { box, name, plot: new Plot(box, { xLabel: "iteration", curves: lines, whole: true }), lines };
+    };
+    this.#charts = [chart(objectiveBox, "Objective", objectiveTerms), chart(rotationBox, "Rotation change", rotation)];
   }
 
   show(history: readonly StepReport[]): void {
     const steps = history.filter(({ iteration }) => iteration > 0);
     const iterations = steps.map(({ iteration }) => iteration);
-    for (const { plot, lines } of this.#charts) plot.show(iterations, lines.map(({ value }) => steps.map(value)));
+    for (const { box, name, plot, lines } of this.#charts) {
+      const curves = lines.map(({ value }) => steps.map(value));
+      plot.show(iterations, curves);
+      box.setAttribute("aria-label", inWords(name, lines, curves));
+    }
   }
 
   /** uPlot draws on a canvas and has to be told the theme's colours anew. */
@@ -47,11 +53,24 @@ export class Charts {
   }
 }
 
+/** A chart for those who cannot see it: where each curve began and where it is. */
+function inWords(name: string, lines: readonly Line[], curves: readonly number[][]): string {
+  const said = lines.map(({ label }, i) => {
+    const values = (curves[i] ?? []).filter((value) => value > 0);
+    const [first, last] = [values[0], values.at(-1)];
+    return first === undefined || last === undefined ? `${label}: none yet` : `${label}: from ${short(first)} to ${short(last)}`;
+  });
+  return `${name} over the iterations. ${said.join("; ")}.`;
+}
+
 const isPower = (value: number): boolean => Number.isInteger(Math.log10(value));
 
 /** Over many decades the lines in between would be a grey mass. */
 const MOST_LINES = 30;
 const sparse = (_: uPlot, splits: number[]): (number | null)[] => (splits.length > MOST_LINES ? splits.map((value) => (isPower(value) ? value : null)) : splits);
+
+/** Numbers that have a dot each. */
+const FEW = 12;
 
 export interface PlotOptions {
   xLabel: string;
@@ -79,7 +98,10 @@ export class Plot {
   /** A logarithm has no place for zero and below, so such values are gaps. */
   show(xs: number[], ys: readonly (number | null)[][]): void {
     const positive = (value: number | null) => (value !== null && value > 0 && Number.isFinite(value) ? value : null);
-    this.#data = [xs, ...ys.map((values) => values.map(positive))];
+    const curves = ys.map((values) => values.map(positive));
+    // A count begins where there is something to see.
+    const first = this.#options.whole ? Math.max(0, xs.findIndex((_, i) => curves.some((values) => values[i] != null))) : 0;
+    this.#data = [xs.slice(first), ...curves.map((values) => values.slice(first))];
     this.#plot?.setData(this.#data);
   }
 
@@ -92,7 +114,7 @@ export class Plot {
       ticks: { stroke: ink("line"), width: 1, size: 4 },
     };
     const { xLabel, curves, whole } = this.#options;
-    const counted: Pick<uPlot.Scale, "range"> = { range: (_plot, _min, max) => [1, Math.max(max ?? 2, 2)] };
+    const counted: Pick<uPlot.Scale, "range"> = { range: (_plot, min, max) => [min ?? 1, Math.max(max ?? 2, (min ?? 1) + 1)] };
     this.#plot = new uPlot(
       {
         ...this.#size(),
@@ -111,8 +133,8 @@ export class Plot {
             stroke: ink(token),
             width: 1.5,
             spanGaps: !whole,
-            // A line needs two points; until then, dots. Where there are few, each was measured and deserves one.
-            points: { show: ({ data }: uPlot) => !whole || data[0].length < 2 },
+            // Where there are few, each was measured and deserves a dot; a line alone needs two.
+            points: { show: ({ data }: uPlot) => !whole || data[0].length < FEW },
             // The newest value, until the pointer asks for another.
             value: ({ data }: uPlot, value: number | null | undefined, index: number, at: number | null) => {
               const shown = at === null ? Array.from(data[index] ?? []).findLast((each) => typeof each === "number") : value;

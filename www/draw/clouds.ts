@@ -1,12 +1,26 @@
 /** Both surfaces in the colour view's frame, to be turned by hand. Loaded when first seen: three.js outweighs all the rest. */
 
-import { OrthographicCamera, Sphere, Vector3 } from "three";
+import { Matrix4, OrthographicCamera, Quaternion, Sphere, Vector3 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { ink } from "../dom";
-import type { Change } from "./stage";
+import type { Pose } from "../../pkg/index.js";
+import type { Change, Drawn } from "./stage";
 
 /** Draws, and resolves when that is done. */
 type Draw = (change: Change) => Promise<void>;
+
+/** How long, in milliseconds, the depth map takes from one pose to the next. */
+const SWING = 220;
+
+const still = matchMedia("(prefers-reduced-motion: reduce)");
+const NOWHERE = new Matrix4();
+
+/** P -> s R P + t. */
+function matrixOf({ scale, rotation, translation }: Pose): Matrix4 {
+  const [a = 0, b = 0, c = 0, d = 0, e = 0, f = 0, g = 0, h = 0, i = 0] = rotation.map((value) => scale * value);
+  const [x = 0, y = 0, z = 0] = translation;
+  return new Matrix4().set(a, b, c, x, d, e, f, y, g, h, i, z, 0, 0, 0, 1);
+}
 
 export class Clouds {
   readonly #camera = new OrthographicCamera();
@@ -16,7 +30,11 @@ export class Clouds {
   /** What has changed since the drawing under way began. */
   #next: Change | undefined;
   #drawing = false;
-  #shown: Change["clouds"];
+  #shown: Change["surfaces"];
+  /** The pose that the depth map's points come with, and where they stand now. */
+  #pose: Matrix4 | undefined;
+  #standing = NOWHERE.clone();
+  #swings = 0;
   #bounds = new Sphere(new Vector3(), 1);
 
   /** Rejects where the browser has no WebGL. */
@@ -35,11 +53,55 @@ export class Clouds {
     this.recolour();
   }
 
-  /** `fresh` looks at the new clouds from the front; otherwise the visitor's viewpoint stays. */
-  show(image: Float32Array, depth: Float32Array, fresh: boolean): void {
+  /**
+   * `fresh` looks at the new surfaces from the front; otherwise the visitor's viewpoint stays. The depth map's points
+   * come under one `pose` and are `seen` under another, to which they swing.
+   */
+  show(image: Drawn, depth: Drawn, pose: Pose, seen: Pose, fresh: boolean): void {
     this.#shown = { image, depth };
     if (fresh) this.home();
-    this.#change({ clouds: this.#shown });
+    const before = this.#pose;
+    this.#pose = matrixOf(pose);
+    // From where it stood, in terms of the new points.
+    const from = before && !fresh ? this.#standing.clone().multiply(before).multiply(this.#pose.clone().invert()) : NOWHERE.clone();
+    this.#change({ surfaces: this.#shown });
+    void this.#swing(from, this.#apart(seen));
+  }
+
+  /** How a pose differs from the one that the points come under. */
+  #apart(pose: Pose): Matrix4 {
+    return this.#pose ? matrixOf(pose).multiply(this.#pose.clone().invert()) : NOWHERE;
+  }
+
+  /** Shows the depth map under another pose than its own, or its own again. */
+  pretend(pose: Pose | undefined): void {
+    void this.#swing(this.#standing, pose ? this.#apart(pose) : NOWHERE);
+  }
+
+  setStyle(style: "points" | "surfaces"): void {
+    this.#change({ style });
+  }
+
+  async #swing(from: Matrix4, to: Matrix4): Promise<void> {
+    const turn = ++this.#swings;
+    const [start, end] = [from, to].map(partsOf);
+    if (!start || !end) return;
+    const far = [...from.elements].some((value, i) => Math.abs(value - (to.elements[i] ?? 0)) > 1e-4);
+    const began = performance.now();
+    let share = still.matches || !far ? 1 : 0;
+    for (;;) {
+      const eased = share * share * (3 - 2 * share);
+      this.#standing = new Matrix4().compose(
+        start.place.clone().lerp(end.place, eased),
+        start.turn.clone().slerp(end.turn, eased),
+        start.size.clone().lerp(end.size, eased),
+      );
+      this.#change({ swing: this.#standing.toArray() });
+      if (share >= 1) return;
+      await new Promise(requestAnimationFrame);
+      if (turn !== this.#swings) return;
+      share = Math.min(1, (performance.now() - began) / SWING);
+    }
   }
 
   /**
@@ -47,7 +109,7 @@ export class Clouds {
    * measured, whereas the image's surface can be anything before the loop has settled.
    */
   home(): void {
-    const bounds = this.#shown && (extent(this.#shown.depth) ?? extent(this.#shown.image));
+    const bounds = this.#shown && (extent(this.#shown.depth.points) ?? extent(this.#shown.image.points));
     if (!bounds) return;
     this.#bounds = bounds;
     const { center, radius } = bounds;
@@ -78,7 +140,7 @@ export class Clouds {
   #resize(): void {
     const { clientWidth: width, clientHeight: height } = this.#box;
     if (width === 0 || height === 0) return;
-    const reach = 1.05 * this.#bounds.radius;
+    const reach = 0.95 * this.#bounds.radius;
     const [across, down] = width > height ? [(reach * width) / height, reach] : [reach, (reach * height) / width];
     Object.assign(this.#camera, { left: -across, right: across, top: down, bottom: -down });
     this.#camera.updateProjectionMatrix();
@@ -108,6 +170,18 @@ export class Clouds {
     }
     this.#drawing = false;
   }
+}
+
+interface Parts {
+  place: Vector3;
+  turn: Quaternion;
+  size: Vector3;
+}
+
+function partsOf(matrix: Matrix4): Parts {
+  const parts = { place: new Vector3(), turn: new Quaternion(), size: new Vector3() };
+  matrix.decompose(parts.place, parts.turn, parts.size);
+  return parts;
 }
 
 /** Whether a thread can have the canvas and WebGL as well: older Safaris draw in two dimensions there. */

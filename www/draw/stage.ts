@@ -1,10 +1,14 @@
-/** Draws both clouds. It needs no page, so that a thread of its own can do it. */
+/** Draws both surfaces, as points or shaded. It needs no page, so that a thread of its own can do it. */
 
-import { BufferAttribute, BufferGeometry, Camera, Points, PointsMaterial, Scene, WebGLRenderer, type WebGLRendererParameters } from "three";
+import { AmbientLight, BufferAttribute, BufferGeometry, Camera, DirectionalLight, DoubleSide, Group, Matrix4, Mesh, MeshLambertMaterial, Points, PointsMaterial, Scene, WebGLRenderer, type WebGLRendererParameters } from "three";
+import type { Surface } from "../engine/protocol";
 
 /** Sizes of a point on the screen, in CSS pixels: near enough to the next to make a surface, small enough to see two. */
 const SMALLEST = 1.5;
 const LARGEST = 6;
+
+/** Times the middle distance of neighbours: what is farther apart has an edge between, and no surface. */
+const LONGEST_STEP = 6;
 
 /** From where both are seen, and how large: CSS pixels, matrices as three.js has them. */
 export interface Sight {
@@ -15,42 +19,52 @@ export interface Sight {
   projection: number[];
 }
 
+/** A surface, with a colour for each of its points (RGB bytes) where it is not of one colour. */
+export interface Drawn extends Surface {
+  colours: Uint8Array | null;
+}
+
 /** What is drawn anew; the rest stays as it was. */
 export interface Change {
-  /** xyz interleaved, NaN where there is none. */
-  clouds?: { image: Float32Array; depth: Float32Array };
+  surfaces?: { image: Drawn; depth: Drawn };
   sight?: Sight;
   inks?: { image: string; depth: string };
+  style?: "points" | "surfaces";
+  /** Where the depth map's surface stands beside its own pose, column by column. */
+  swing?: number[];
 }
 
 export class CloudStage {
   readonly #renderer: WebGLRenderer;
   readonly #scene = new Scene();
   readonly #camera = new Camera();
-  readonly #image = cloud();
-  readonly #depth = cloud();
+  readonly #lamp = new DirectionalLight(0xffffff, 2.4);
+  readonly #image = new Sheet(1);
+  readonly #depth = new Sheet(0.85);
   #sight: Sight | undefined;
 
   /** Throws where the browser has no WebGL. */
   constructor(canvas: NonNullable<WebGLRendererParameters["canvas"]>) {
     // Points are squares: smoothing their edges costs a browser without a graphics card half of its time.
     this.#renderer = new WebGLRenderer({ canvas, alpha: true });
-    this.#scene.add(this.#image, this.#depth);
+    this.#scene.add(this.#image.group, this.#depth.group, this.#lamp, this.#lamp.target, new AmbientLight(0xffffff, 0.9));
     this.#camera.matrixWorldAutoUpdate = false;
   }
 
-  show({ clouds, sight, inks }: Change): void {
+  show({ surfaces, sight, inks, style, swing }: Change): void {
     if (inks) {
-      this.#image.material.color.set(inks.image);
-      this.#depth.material.color.set(inks.depth);
+      this.#image.ink(inks.image);
+      this.#depth.ink(inks.depth);
     }
-    if (clouds) {
-      fill(this.#image, clouds.image);
-      fill(this.#depth, clouds.depth);
+    if (style) for (const sheet of [this.#image, this.#depth]) sheet.setStyle(style);
+    if (surfaces) {
+      this.#image.fill(surfaces.image);
+      this.#depth.fill(surfaces.depth);
     }
+    if (swing) this.#depth.place(swing);
     if (sight) this.#look(sight);
     if (!this.#sight) return;
-    this.#resizePoints(this.#sight);
+    for (const sheet of [this.#image, this.#depth]) sheet.resizePoints(this.#sight);
     this.#renderer.render(this.#scene, this.#camera);
   }
 
@@ -65,41 +79,135 @@ export class CloudStage {
     this.#camera.matrixWorldInverse.copy(this.#camera.matrixWorld).invert();
     this.#camera.projectionMatrix.fromArray(projection);
     this.#camera.projectionMatrixInverse.copy(this.#camera.projectionMatrix).invert();
+    // A lamp above the eye's left shoulder: shapes are read best by it.
+    this.#lamp.position.set(-0.5, 0.7, 1).transformDirection(this.#camera.matrixWorld);
     this.#sight = sight;
   }
+}
 
-  #resizePoints({ width, height }: Sight): void {
-    for (const { geometry, material } of [this.#image, this.#depth]) {
-      const apart = Math.min(width, height) / Math.sqrt(Math.max(1, geometry.getAttribute("position")?.count ?? 1));
-      material.size = Math.max(SMALLEST, Math.min(LARGEST, 0.6 * apart));
+/** One surface both ways. */
+class Sheet {
+  readonly group = new Group();
+  readonly #points: Points<BufferGeometry, PointsMaterial>;
+  readonly #mesh: Mesh<BufferGeometry, MeshLambertMaterial>;
+  #ink = "#888";
+  #last: Drawn | undefined;
+  #style: "points" | "surfaces" = "surfaces";
+
+  constructor(opacity: number) {
+    this.#points = new Points(new BufferGeometry(), new PointsMaterial({ sizeAttenuation: false, transparent: true, opacity: 0.75 }));
+    this.#mesh = new Mesh(new BufferGeometry(), new MeshLambertMaterial({ side: DoubleSide, transparent: opacity < 1, opacity }));
+    this.group.matrixAutoUpdate = false;
+    for (const each of [this.#points, this.#mesh]) {
+      each.frustumCulled = false;
+      this.group.add(each);
+    }
+  }
+
+  ink(colour: string): void {
+    this.#ink = colour;
+    this.#tint();
+  }
+
+  setStyle(style: "points" | "surfaces"): void {
+    this.#style = style;
+    if (this.#last) this.fill(this.#last);
+  }
+
+  place(matrix: number[]): void {
+    this.group.matrix.copy(new Matrix4().fromArray(matrix));
+    this.group.matrixWorldNeedsUpdate = true;
+  }
+
+  fill(drawn: Drawn): void {
+    this.#last = drawn;
+    const kept = finite(drawn);
+    const isMesh = this.#style === "surfaces" && drawn.width > 1;
+    this.#mesh.visible = isMesh;
+    this.#points.visible = !isMesh;
+    const geometry = (isMesh ? this.#mesh : this.#points).geometry;
+    set(geometry, "position", kept.points);
+    if (kept.colours) set(geometry, "color", Float32Array.from(kept.colours, linear));
+    else geometry.deleteAttribute("color");
+    if (isMesh) {
+      const triangles = triangulate(drawn, kept.at);
+      geometry.setIndex(new BufferAttribute(triangles, 1));
+      geometry.computeVertexNormals();
+    }
+    this.#tint();
+  }
+
+  resizePoints({ width, height }: Sight): void {
+    const apart = Math.min(width, height) / Math.sqrt(Math.max(1, this.#points.geometry.getAttribute("position")?.count ?? 1));
+    this.#points.material.size = Math.max(SMALLEST, Math.min(LARGEST, 0.6 * apart));
+  }
+
+  #tint(): void {
+    const coloured = this.#last?.colours != null;
+    for (const { material } of [this.#points, this.#mesh]) {
+      if (material.vertexColors !== coloured) {
+        material.vertexColors = coloured;
+        material.needsUpdate = true;
+      }
+      material.color.set(coloured ? "#fff" : this.#ink);
     }
   }
 }
 
-function cloud(): Points<BufferGeometry, PointsMaterial> {
-  const material = new PointsMaterial({ sizeAttenuation: false, transparent: true, opacity: 0.75 });
-  const points = new Points(new BufferGeometry(), material);
-  points.frustumCulled = false;
-  return points;
-}
+/** A byte for the screen as light. */
+const linear = (byte: number): number => (byte / 255) ** 2.2;
 
-function fill({ geometry }: Points<BufferGeometry, PointsMaterial>, positions: Float32Array): void {
-  const finite = positions.every((value) => !Number.isNaN(value)) ? positions : withoutHoles(positions);
-  const old = geometry.getAttribute("position");
-  if (old instanceof BufferAttribute && old.array.length === finite.length) {
-    old.copyArray(finite);
+/** Sets an attribute in place where it has the same length. */
+function set(geometry: BufferGeometry, name: string, values: Float32Array): void {
+  const old = geometry.getAttribute(name);
+  if (old instanceof BufferAttribute && old.array.length === values.length) {
+    old.copyArray(values);
     old.needsUpdate = true;
-  } else {
-    geometry.dispose();
-    geometry.setAttribute("position", new BufferAttribute(finite, 3));
+    return;
   }
+  // Attributes of other lengths belong to another geometry.
+  if (name === "position") geometry.dispose();
+  geometry.setAttribute(name, new BufferAttribute(values, 3));
 }
 
-function withoutHoles(positions: Float32Array): Float32Array {
-  const kept: number[] = [];
-  for (let i = 0; i + 2 < positions.length; i += 3) {
-    const point = positions.subarray(i, i + 3);
-    if (point.every(Number.isFinite)) kept.push(...point);
+/** The points that are there, with their colours, and where each pixel's point is now. */
+function finite({ points, colours }: Drawn): { points: Float32Array; colours: Uint8Array | null; at: Int32Array } {
+  const count = points.length / 3;
+  const at = new Int32Array(count).fill(-1);
+  const kept = new Float32Array(points.length);
+  const tints = colours && new Uint8Array(points.length);
+  let to = 0;
+  for (let i = 0; i < count; i++) {
+    if (!Number.isFinite((points[3 * i] ?? NaN) + (points[3 * i + 1] ?? NaN) + (points[3 * i + 2] ?? NaN))) continue;
+    kept.set(points.subarray(3 * i, 3 * i + 3), 3 * to);
+    if (colours) tints?.set(colours.subarray(3 * i, 3 * i + 3), 3 * to);
+    at[i] = to++;
   }
-  return new Float32Array(kept);
+  return { points: kept.slice(0, 3 * to), colours: tints && tints.slice(0, 3 * to), at };
+}
+
+/** Two triangles for each four neighbours that are not torn apart. */
+function triangulate({ width, height, points }: Surface, at: Int32Array): Uint32Array {
+  const squared = (a: number, b: number): number => {
+    let sum = 0;
+    for (let c = 0; c < 3; c++) sum += ((points[3 * a + c] ?? NaN) - (points[3 * b + c] ?? NaN)) ** 2;
+    return sum;
+  };
+  const steps: number[] = [];
+  for (let i = 0; i + 1 < at.length; i += 7) if ((i + 1) % width !== 0 && (at[i] ?? -1) >= 0 && (at[i + 1] ?? -1) >= 0) steps.push(squared(i, i + 1));
+  const longest = LONGEST_STEP ** 2 * (steps.sort((a, b) => a - b)[Math.floor(steps.length / 2)] ?? 0);
+  const found: number[] = [];
+  const add = (a: number, b: number, c: number): void => {
+    const corners = [at[a] ?? -1, at[b] ?? -1, at[c] ?? -1];
+    if (corners.some((corner) => corner < 0) || squared(a, b) > longest || squared(b, c) > longest || squared(c, a) > longest) return;
+    found.push(...corners);
+  };
+  for (let row = 0; row + 1 < height; row++) {
+    for (let column = 0; column + 1 < width; column++) {
+      const i = row * width + column;
+      add(i, i + width, i + 1);
+      add(i + 1, i + width, i + width + 1);
+    }
+  }
+  return Uint32Array.from(found);
 }

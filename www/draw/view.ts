@@ -40,8 +40,8 @@ export class View {
     this.#canvas = make("canvas", { width: 64, height: 64, tabindex: 0, role: "img", "aria-label": `${title}: ${description}. Arrow keys move the probe.` });
     this.#readout = make("output", { class: "readout" });
     this.#dot = make("span", { class: "dot", hidden: true });
-    const caption = make("figcaption", {}, make("span", { class: "view-title" }, title), this.#readout);
-    this.#box = make("div", { class: "canvas" }, this.#canvas, this.#dot);
+    const caption = make("figcaption", {}, make("span", { class: "view-title" }, title));
+    this.#box = make("div", { class: "canvas" }, this.#canvas, this.#dot, this.#readout);
     this.element = make("figure", { class: "view" }, caption, this.#box, this.#legend());
 
     probe.listen(() => this.#showProbe());

@@ -19,7 +19,9 @@ export interface OwnFiles {
   transfer?: "srgb" | "linear";
 }
 
-export type Source = { kind: "sample"; request: SampleRequest } | { kind: "files"; files: OwnFiles };
+/** A sample's light may be turned, degrees about the colour view's x and y. */
+export type SampleSource = { kind: "sample"; request: SampleRequest; turn: { alpha: number; beta: number } };
+export type Source = SampleSource | { kind: "files"; files: OwnFiles };
 
 /** Options whose light may also be "known" and whose start "truth": those of the sample, which only the worker holds. */
 export type LabOptions = Omit<Options, "light" | "start"> & {
@@ -47,6 +49,22 @@ export interface Picture extends Raster {
   encoded: boolean;
 }
 
+/** Points of one view where its pixels are: every `step`-th of a drawn raster in both directions, NaN where there is none. Without a width they are a mere list. */
+export interface Surface {
+  width: number;
+  height: number;
+  step: number;
+  /** xyz interleaved, in the colour view's frame. */
+  points: Float32Array;
+}
+
+/** How far normals (degrees) and depths (their view's unit) are from the truth. */
+export interface ErrorMaps {
+  imageNormals: Raster;
+  imageDepth: Raster;
+  refinedDepth: Raster;
+}
+
 /** Everything that changes with a step. */
 export interface Frame {
   /** One for each step since the last frame, the newest last. */
@@ -58,9 +76,14 @@ export interface Frame {
   residual: Raster;
   refinedDepth: Raster;
   depthNormals: Raster;
-  /** xyz interleaved, both in the colour view's frame. */
-  imagePoints: Float32Array;
-  depthPoints: Float32Array;
+  imageSurface: Surface;
+  depthSurface: Surface;
+  /** The pose that the depth map's points stand under: while the search looks at others, that of the start. */
+  depthPose: Pose;
+  /** A ball under the light that was found, and by what factors it differs from the true one. */
+  light: { found: Picture; difference: Picture | null };
+  /** Of a sample, whose truth is known. */
+  errors: ErrorMaps | null;
 }
 
 /** Everything that changes with the input. */
@@ -73,7 +96,15 @@ export interface Opened {
   notes: Record<string, string>;
   /** The pose to find, where the input is a sample. */
   truth: Pose | null;
+  /** A ball under its light. */
+  trueLight: Picture | null;
   frame: Frame;
+}
+
+/** What a sample would look like, before it is opened. */
+export interface Preview {
+  picture: Picture;
+  trueLight: Picture;
 }
 
 export interface Catalogue {
@@ -81,10 +112,25 @@ export interface Catalogue {
   lights: string[];
 }
 
+/** What can be taken away, in full. */
+export interface Taken {
+  pose: Pose;
+  /** Of the colour view. */
+  unit: "px" | "m";
+  light: Float64Array;
+  imagePoints: Float32Array;
+  depthPoints: Float32Array;
+  width: number;
+  height: number;
+  refinedDepth: Float32Array<ArrayBuffer>;
+}
+
 /** Each request with its reply. */
 export interface Calls {
   catalogue: { request: Record<never, never>; reply: Catalogue };
   open: { request: { source: Source; options: LabOptions }; reply: Opened };
+  take: { request: Record<never, never>; reply: Taken };
+  preview: { request: { source: SampleSource }; reply: Preview };
   reset: { request: { options: LabOptions }; reply: Frame };
   /** Steps until the time is up, at least one; a stage is always a single one. */
   advance: { request: { by: "step" | "stage"; milliseconds: number }; reply: Frame };

@@ -1,7 +1,7 @@
 /** Copies of the library's arrays, cut and thinned to what a screen can show. Runs in the worker. */
 
 import type { ColorImage, DepthMap } from "../../pkg/index.js";
-import type { Picture, Raster } from "./protocol";
+import type { Picture, Raster, Surface } from "./protocol";
 
 /** Longest side of a drawn view in pixels: all canvases together are painted within one frame. */
 const LONGEST = 512;
@@ -41,10 +41,12 @@ export function cutOf(width: number, height: number, inside: (index: number) => 
   return { fullWidth: width, left, top, width: right - left + 1, height: bottom - top + 1 };
 }
 
+const strideOf = ({ width, height }: Cut): number => Math.max(1, Math.ceil(Math.max(width, height) / LONGEST));
+
 /** `pick(index)` fills one pixel of `channels` numbers into `out` at `at`. */
 function gather(cut: Cut, channels: 1 | 3, pick: (index: number, out: Float32Array, at: number) => void): Raster {
   const { fullWidth, left, top, width, height } = cut;
-  const stride = Math.max(1, Math.ceil(Math.max(width, height) / LONGEST));
+  const stride = strideOf(cut);
   const columns = Math.ceil(width / stride);
   const rows = Math.ceil(height / stride);
   const data = new Float32Array(columns * rows * channels);
@@ -119,8 +121,8 @@ export function givenDepth(depth: DepthMap, cut: Cut): Raster {
   return gather(cut, 1, (index, out, to) => (out[to] = at(index)));
 }
 
-/** Every n-th point of a cloud. */
-export function thinned(points: Float32Array): Float32Array {
+/** Every n-th point of a list. */
+function thinned(points: Float32Array): Float32Array {
   const count = points.length / 3;
   const every = Math.ceil(count / MOST_POINTS);
   if (every <= 1) return points;
@@ -129,6 +131,28 @@ export function thinned(points: Float32Array): Float32Array {
     kept.set(points.subarray(3 * from, 3 * from + 3), 3 * to);
   }
   return kept;
+}
+
+/** The points back at the pixels that they come from: those with a depth, in their order. Where these are others, a list. */
+export function surface(points: Float32Array, depth: Float32Array, cut: Cut): Surface {
+  const place = new Int32Array(depth.length).fill(-1);
+  let count = 0;
+  for (let i = 0; i < depth.length; i++) if (Number.isFinite(depth[i])) place[i] = count++;
+  if (3 * count !== points.length || count === 0) return { width: 0, height: 0, step: 1, points: thinned(points) };
+  const stride = strideOf(cut);
+  const step = Math.ceil(Math.sqrt((cut.width * cut.height) / stride ** 2 / MOST_POINTS));
+  const grid = gather(cut, 3, (index, out, at) => {
+    const from = place[index] ?? -1;
+    for (let c = 0; c < 3; c++) out[at + c] = from < 0 ? NaN : (points[3 * from + c] ?? NaN);
+  });
+  if (step <= 1) return { width: grid.width, height: grid.height, step: 1, points: grid.data };
+  const [width, height] = [Math.ceil(grid.width / step), Math.ceil(grid.height / step)];
+  const kept = new Float32Array(3 * width * height);
+  for (let to = 0; to < width * height; to++) {
+    const from = Math.floor(to / width) * step * grid.width + (to % width) * step;
+    kept.set(grid.data.subarray(3 * from, 3 * from + 3), 3 * to);
+  }
+  return { width, height, step, points: kept };
 }
 
 function brightest(values: Float32Array): number {

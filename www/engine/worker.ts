@@ -1,20 +1,26 @@
 /** The thread that owns the estimator. It answers one request at a time and sends copies, never views on its memory. */
 
-import init, { BimodalError, Estimator, sample, sampleLights, sampleSurfaces, wasmUrl } from "../../pkg/index.js";
-import type { ColorImage, DepthMap, Options, Pose, StepReport } from "../../pkg/index.js";
-import type { Answer, Calls, Frame, Kind, OwnFiles, Request, LabOptions, Source } from "./protocol";
+import init, { BimodalError, Estimator, sample, sampleLights, sampleSurfaces, turnLight, wasmUrl } from "../../pkg/index.js";
+import type { ColorImage, DepthMap, Options, Pose, Sample, SampleRequest, StepReport } from "../../pkg/index.js";
+import type { Answer, Calls, Frame, Kind, OwnFiles, Request, LabOptions, Preview, SampleSource } from "./protocol";
+import { errorMaps } from "./errors";
 import { faultOf } from "./fault";
-import { cutOfDepth, cutOfImage, givenDepth, fromLog, picture, raster, thinned, type Cut } from "./rasters";
+import { cutOfDepth, cutOfImage, givenDepth, fromLog, picture, raster, surface, type Cut } from "./rasters";
+import { lit, ratio } from "./sphere";
 
 interface Input {
   image: ColorImage;
   depth: DepthMap;
   light?: ArrayLike<number>;
   truth: Pose | null;
+  /** What a sample is measured against. */
+  shapes?: Sample["truth"];
 }
 
 interface OpenInput extends Input {
   estimator: Estimator;
+  /** The pose of the start, and where it puts the first point of the depth map. */
+  start: { pose: Pose; first: readonly number[] };
   imageCut: Cut;
   depthCut: Cut;
 }
@@ -57,18 +63,28 @@ function resolve({ light, start, ...rest }: LabOptions, input: Input): Options {
   };
 }
 
-function frame({ estimator, imageCut, depthCut }: OpenInput, reports: StepReport[]): Frame {
+const firstOf = (points: Float32Array): number[] => [...points.subarray(0, 3)];
+
+const startOf = (estimator: Estimator): OpenInput["start"] => ({ pose: estimator.report.pose, first: firstOf(estimator.points("depth")) });
+
+function frame({ estimator, imageCut, depthCut, light, shapes, start }: OpenInput, reports: StepReport[]): Frame {
+  const depthPoints = estimator.points("depth");
+  const isAtStart = firstOf(depthPoints).every((value, i) => value === start.first[i]);
+  const [imageDepth, refinedDepth, found] = [estimator.imageDepth(), estimator.refinedDepth(), estimator.light()];
   return {
     reports,
     imageNormals: raster(estimator.imageNormals(), 3, imageCut),
-    imageDepth: raster(estimator.imageDepth(), 1, imageCut),
+    imageDepth: raster(imageDepth, 1, imageCut),
     albedo: fromLog(estimator.albedo(), imageCut),
     shading: fromLog(estimator.shading(), imageCut),
     residual: raster(estimator.residual(), 1, imageCut),
-    refinedDepth: raster(estimator.refinedDepth(), 1, depthCut),
+    refinedDepth: raster(refinedDepth, 1, depthCut),
     depthNormals: raster(estimator.depthNormals(), 3, depthCut),
-    imagePoints: thinned(estimator.points("image")),
-    depthPoints: thinned(estimator.points("depth")),
+    imageSurface: surface(estimator.points("image"), imageDepth, imageCut),
+    depthSurface: surface(depthPoints, refinedDepth, depthCut),
+    depthPose: isAtStart ? start.pose : estimator.report.pose,
+    light: { found: lit(found), difference: light ? ratio(found, light) : null },
+    errors: shapes ? errorMaps(estimator, shapes, imageCut, depthCut) : null,
   };
 }
 
@@ -79,22 +95,47 @@ async function open({ source, options }: Calls["open"]["request"]): Promise<Call
   experiment?.estimator.free();
   const imageCut = cutOfImage(opened.image);
   const depthCut = cutOfDepth(opened.depth);
-  experiment = { ...opened, estimator, imageCut, depthCut };
+  experiment = { ...opened, estimator, start: startOf(estimator), imageCut, depthCut };
   return {
     picture: picture(opened.image, imageCut),
     given: givenDepth(opened.depth, depthCut),
     units: { image: opened.image.camera ? "m" : "px", depth: opened.depth.camera ? "m" : "px" },
     notes: opened.notes,
     truth: opened.truth,
+    trueLight: opened.light ? lit(opened.light) : null,
     frame: frame(experiment, [estimator.report]),
   };
 }
 
 type Prepared = Input & Pick<Calls["open"]["reply"], "notes">;
 
-function fromSample({ request }: Extract<Source, { kind: "sample" }>): Prepared {
-  const { image, depth, light, pose } = sample(request);
-  return { image, depth, light, truth: pose, notes: {} };
+/** What is asked of the library: its own light, or that one turned. */
+function requestOf({ request, turn }: SampleSource): SampleRequest {
+  return turn.alpha === 0 && turn.beta === 0 ? request : { ...request, light: turnLight(request.light, turn) };
+}
+
+function fromSample(source: SampleSource): Prepared {
+  const { image, depth, light, pose, truth } = sample(requestOf(source));
+  return { image, depth, light, truth: pose, shapes: truth, notes: {} };
+}
+
+function take(): Calls["take"]["reply"] {
+  const { estimator, image, depth } = opened();
+  return {
+    pose: estimator.report.pose,
+    unit: image.camera ? "m" : "px",
+    light: estimator.light(),
+    imagePoints: estimator.points("image"),
+    depthPoints: estimator.points("depth"),
+    width: depth.width,
+    height: depth.height,
+    refinedDepth: new Float32Array(estimator.refinedDepth()),
+  };
+}
+
+function preview({ source }: Calls["preview"]["request"]): Preview {
+  const { image, light } = sample(requestOf(source));
+  return { picture: picture(image, cutOfImage(image)), trueLight: lit(light) };
 }
 
 /** The decoders are large and only needed here, so they load with the first file. */
@@ -106,6 +147,7 @@ async function fromFiles(files: OwnFiles): Promise<Prepared> {
 function reset({ options }: Calls["reset"]["request"]): Frame {
   const current = opened();
   current.estimator.reset(resolve(options, current));
+  current.start = startOf(current.estimator);
   return frame(current, [current.estimator.report]);
 }
 
@@ -146,6 +188,10 @@ function answer(request: Request): Promise<Calls[Kind]["reply"]> | Calls[Kind]["
       return catalogue();
     case "open":
       return open(request);
+    case "take":
+      return take();
+    case "preview":
+      return preview(request);
     case "reset":
       return reset(request);
     case "advance":

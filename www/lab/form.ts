@@ -76,7 +76,7 @@ export class Form {
   #build(field: Field): Control {
     const id = freshId("field");
     const note = make("p", { class: "note", id: `${id}-note`, hidden: true });
-    const change = (value: Value) => this.#store.change({ [field.key]: value });
+    const change = (value: Value, live = false) => this.#store.change({ [field.key]: value }, live);
     const built = build(field, id, change);
     const remark = make("p", { class: "note" });
     const heading = make("span", { class: "heading" }, make("label", { for: id }, field.label));
@@ -111,9 +111,11 @@ function mark({ note, inputs }: Control, message: string, tone: "error" | "note"
   for (const input of inputs) input.toggleAttribute("aria-invalid", tone === "error" && message !== "");
 }
 
+/** Tells of a value; `live` where it comes from a control on the move. */
+type Change = (value: Value, live?: boolean) => void;
 type Built = Pick<Control, "inputs" | "show">;
 
-function build(field: Field, id: string, change: (value: Value) => void): Built {
+function build(field: Field, id: string, change: Change): Built {
   switch (field.kind) {
     case "number":
       return numbers(field, id, change);
@@ -126,25 +128,40 @@ function build(field: Field, id: string, change: (value: Value) => void): Built 
   }
 }
 
-function numbers(field: NumberField, id: string, change: (value: Value) => void): Built {
+/** How long, in milliseconds, a slider has to rest before what it says is done. */
+const REST = 200;
+
+function numbers(field: NumberField, id: string, change: Change): Built {
   // The library judges the numbers, in words that a browser's bubble does not have; so no limits here.
   const exact = make("input", { id, type: "number", step: "any", inputmode: "decimal", placeholder: field.empty });
   const read = (input: HTMLInputElement) => change(input.value === "" ? null : input.valueAsNumber);
   exact.addEventListener("change", () => read(exact));
   if (!field.slider) return { inputs: [exact], show: (value) => (exact.value = value === null ? "" : String(value)) };
-  const slider = make("input", { type: "range", ...field.slider, "aria-label": field.label });
-  slider.addEventListener("input", () => (exact.value = slider.value));
-  slider.addEventListener("change", () => read(slider));
+  const { log = false, ...range } = field.slider;
+  const slider = make("input", { type: "range", ...range, "aria-label": field.label });
+  // A slider over many decades counts powers of ten.
+  const valueOf = () => (log ? Number((10 ** slider.valueAsNumber).toPrecision(2)) : slider.valueAsNumber);
+  let resting: ReturnType<typeof setTimeout> | undefined;
+  const rest = () => {
+    clearTimeout(resting);
+    change(valueOf(), true);
+  };
+  slider.addEventListener("input", () => {
+    exact.value = String(valueOf());
+    clearTimeout(resting);
+    resting = setTimeout(rest, REST);
+  });
+  slider.addEventListener("change", rest);
   return {
     inputs: [exact, slider],
     show(value) {
       exact.value = value === null ? "" : String(value);
-      slider.value = exact.value;
+      slider.value = log ? String(Math.log10(Number(value ?? field.initial ?? 1))) : exact.value;
     },
   };
 }
 
-function choice(field: ChoiceField, id: string, change: (value: Value) => void): Built {
+function choice(field: ChoiceField, id: string, change: Change): Built {
   const options = field.choices ?? [[field.initial, field.initial]];
   const select = make("select", { id }, ...options.map(([value, label]) => make("option", { value }, label)));
   select.addEventListener("change", () => change(select.value));
@@ -158,13 +175,13 @@ function choice(field: ChoiceField, id: string, change: (value: Value) => void):
   };
 }
 
-function list(field: ListField, id: string, change: (value: Value) => void): Built {
+function list(field: ListField, id: string, change: Change): Built {
   const line = make("input", { id, type: "text", placeholder: field.empty, spellcheck: "false", autocomplete: "off" });
   line.addEventListener("change", () => change(line.value.trim()));
   return { inputs: [line], show: (value) => (line.value = String(value ?? "")) };
 }
 
-function flag(id: string, change: (value: Value) => void): Built {
+function flag(id: string, change: Change): Built {
   const box = make("input", { id, type: "checkbox" });
   box.addEventListener("change", () => change(box.checked));
   return { inputs: [box], show: (value) => (box.checked = value === true) };

@@ -1,18 +1,19 @@
-/** All pictures of the Lab: nine canvases, the clouds, and the charts. */
+/** All pictures of the Lab: its canvases, the surfaces, and the charts. */
 
-import type { StepReport } from "../../pkg/index.js";
+import type { Pose, StepReport } from "../../pkg/index.js";
 import { Painter } from "../draw/painter";
 import { Probe } from "../draw/probe";
 import { Scale } from "../draw/scale";
 import { View, type Content } from "../draw/view";
 import { byId, make } from "../dom";
+import { textured, textures, type Texture } from "../draw/texture";
 import type { Charts } from "../draw/charts";
 import type { Clouds } from "../draw/clouds";
-import type { Frame, Opened } from "../engine/protocol";
+import type { Frame, Opened, Picture } from "../engine/protocol";
 
 export class Gallery {
   readonly #painter = new Painter();
-  readonly #box = byId("views", HTMLElement);
+  readonly #box = byId("lab", HTMLElement);
   readonly #figures: HTMLElement[] = [];
   readonly #picture: View;
   readonly #imageNormals: View;
@@ -23,12 +24,15 @@ export class Gallery {
   readonly #given: View;
   readonly #refinedDepth: View;
   readonly #depthNormals: View;
+  readonly #errors: Readonly<Record<keyof NonNullable<Frame["errors"]>, View>>;
+  #texture: Texture = "view";
+  #colours: Picture | undefined;
   #units: Opened["units"] = { image: "px", depth: "px" };
   #clouds: Clouds | undefined;
   #charts: Charts | undefined;
   #frame: Frame | undefined;
   #history: readonly StepReport[] = [];
-  /** Whether the clouds are to be looked at anew: a new input, or its first real surface. */
+  /** Whether the surfaces are to be looked at anew. */
   #fresh = true;
 
   constructor() {
@@ -41,27 +45,58 @@ export class Gallery {
       this.#place(built.element, parent, title);
       return built;
     };
-    this.#picture = view("image-views", image, "Colour", "the colour image as it was given", { kind: "picture", legend: "as it was given" });
+    this.#picture = view("inputs-views", image, "Colour", "the colour image as it was given", { kind: "picture", legend: "as it was given" });
     this.#imageNormals = view("image-views", image, "Normals", "normals found from shading in the colour image", { kind: "normals" });
     this.#imageDepth = view("image-views", image, "Depth", "depth of the colour image, integrated from its normals", { kind: "scalar", scale: new Scale("viridis"), leads: true });
     this.#albedo = view("image-views", image, "Albedo", "paint of the object, the colours without light and shadow", { kind: "picture", legend: "grey if all is one paint" });
     this.#shading = view("image-views", image, "Shading", "what the light makes of the shape, the colours without paint", { kind: "picture", legend: "light on shape" });
-    this.#given = view("depth-views", depth, "Given depth", "the depth map as it was given", { kind: "scalar", scale: depths, leads: false });
+    this.#given = view("inputs-views", depth, "Given depth", "the depth map as it was given", { kind: "scalar", scale: depths, leads: false });
     this.#refinedDepth = view("depth-views", depth, "Refined depth", "the depth map after refinement", { kind: "scalar", scale: depths, leads: true });
     this.#depthNormals = view("depth-views", depth, "Refined normals", "normals of the depth map after refinement", { kind: "normals" });
     this.#place(byId("clouds", HTMLElement), undefined, "Both surfaces");
-    this.#residual = view("joint-views", image, "Colour residual", "how far the predicted colours are from the image", { kind: "scalar", scale: new Scale("magma", true), leads: true });
+    this.#residual = view("image-views", image, "Colour residual", "how far the predicted colours are from the image", { kind: "scalar", scale: new Scale("magma", true), leads: true });
+    const error = (title: string, probe: Probe, description: string): View =>
+      view("error-views", probe, title, description, { kind: "scalar", scale: new Scale("magma", true), leads: true });
+    this.#errors = {
+      imageNormals: error("Error of normals", image, "angle between the colour view's normals and the true ones"),
+      imageDepth: error("Error of depth", image, "distance of the colour view's depth from the true one, both about their middles"),
+      refinedDepth: error("Refinement error", depth, "distance of the refined depth from the true one"),
+    };
     void this.#loadCharts();
     this.#loadCloudsWhenSeen();
+    this.#buildChoices();
   }
 
-  /** Resolves when the new input is on the screen. */
-  open({ picture, given, units, frame }: Opened): Promise<void> {
+  /** How the surfaces are drawn, and what they are coloured by. */
+  #buildChoices(): void {
+    const style = byId("clouds-style", HTMLSelectElement);
+    style.addEventListener("change", () => this.#clouds?.setStyle(style.value === "points" ? "points" : "surfaces"));
+    const texture = byId("clouds-texture", HTMLSelectElement);
+    texture.addEventListener("change", () => {
+      this.#texture = textures.find((each) => each === texture.value) ?? "view";
+      this.#showClouds();
+    });
+  }
+
+  /** Resolves when the new input is on the screen; `fresh` looks at its surfaces from the front. */
+  open({ picture, given, units, frame }: Opened, fresh: boolean): Promise<void> {
     this.#units = units;
-    this.#fresh = true;
-    this.#picture.show(picture);
+    this.#fresh ||= fresh;
+    this.preview(picture);
     this.#given.show(given, units.depth);
+    byId("errors", HTMLElement).hidden = frame.errors === null;
     return this.show(frame, []);
+  }
+
+  /** Another picture, of which nothing has been computed yet. */
+  preview(picture: Picture): void {
+    this.#colours = picture;
+    this.#picture.show(picture);
+  }
+
+  /** The depth map's surface under another pose than its own, or its own again. */
+  pretend(pose: Pose | undefined): void {
+    this.#clouds?.pretend(pose);
   }
 
   /** Resolves when the frame is on the screen, which is when the next one may be asked for. */
@@ -75,6 +110,11 @@ export class Gallery {
     this.#residual.show(frame.residual, "log");
     this.#refinedDepth.show(frame.refinedDepth, this.#units.depth);
     this.#depthNormals.show(frame.depthNormals);
+    if (frame.errors) {
+      this.#errors.imageNormals.show(frame.errors.imageNormals, "°");
+      this.#errors.imageDepth.show(frame.errors.imageDepth, this.#units.image);
+      this.#errors.refinedDepth.show(frame.errors.refinedDepth, this.#units.depth);
+    }
     this.#showClouds();
     this.#showCharts();
     return this.#painter.drawn();
@@ -108,22 +148,25 @@ export class Gallery {
   #place(figure: HTMLElement, parent: string | undefined, title: string): void {
     this.#figures.push(figure);
     const number = this.#figures.length;
-    // The tenth has the key 0.
-    const key = String(number % 10);
-    const button = make("button", { type: "button", class: "quiet enlarge", "aria-pressed": "false", "aria-label": `Enlarge ${title}`, title: `Enlarge (${key})` }, key);
+    // The tenth has the key 0; those after it have none.
+    const key = number > 10 ? "+" : String(number % 10);
+    const hint = number > 10 ? "Enlarge" : `Enlarge (${key})`;
+    const button = make("button", { type: "button", class: "quiet enlarge", "aria-pressed": "false", "aria-label": `Enlarge ${title}`, title: hint }, key);
     button.addEventListener("click", () => this.enlarge(number));
     figure.querySelector("figcaption")?.prepend(button);
     if (parent) byId(parent, HTMLElement).append(figure);
   }
 
   #showClouds(): void {
-    const frame = this.#frame;
-    if (!frame || !this.#clouds) return;
-    const iteration = frame.reports.at(-1)?.iteration ?? 0;
-    const clouds = this.#clouds;
+    const [frame, clouds, picture] = [this.#frame, this.#clouds, this.#colours];
+    const report = frame?.reports.at(-1);
+    if (!frame || !report || !clouds || !picture) return;
     const fresh = this.#fresh;
-    this.#painter.request(clouds, () => clouds.show(frame.imagePoints, frame.depthPoints, fresh));
-    this.#fresh = fresh && iteration < 1;
+    this.#painter.request(clouds, () => {
+      const { image, depth } = textured(frame, picture, this.#texture);
+      clouds.show(image, depth, frame.depthPose, report.pose, fresh);
+    });
+    this.#fresh = false;
   }
 
   #showCharts(): void {
@@ -162,6 +205,7 @@ export class Gallery {
         clouds.turn(turn[0] ?? 0, turn[1] ?? 0);
       });
       byId("clouds-home", HTMLButtonElement).addEventListener("click", () => clouds.home());
+      clouds.setStyle(byId("clouds-style", HTMLSelectElement).value === "points" ? "points" : "surfaces");
       this.#showClouds();
     } catch {
       fallback.textContent = "This browser offers no WebGL, so the clouds cannot be turned here.";

@@ -86,13 +86,25 @@ export class Intake {
     zone.addEventListener("dragleave", () => zone.removeAttribute("data-over"));
     zone.addEventListener("drop", (event) => {
       event.preventDefault();
+      event.stopPropagation();
       zone.removeAttribute("data-over");
       const file = event.dataTransfer?.files[0];
       if (file) this.#put(slot, file);
     });
   }
 
+  /** Several files at once, which are looked at together. */
+  putAll(files: ReadonlyMap<Slot, File>): void {
+    for (const [slot, file] of files) this.#set(slot, file);
+    this.#onChange();
+  }
+
   #put(slot: Slot, file: File | undefined): void {
+    this.#set(slot, file);
+    this.#onChange();
+  }
+
+  #set(slot: Slot, file: File | undefined): void {
     const entry = this.#entries.get(slot);
     if (!entry) return;
     if (file) this.#files[slot] = file;
@@ -101,7 +113,6 @@ export class Intake {
     entry.name.textContent = file ? `${file.name} (${size(file.size)})` : hint;
     entry.zone.toggleAttribute("data-filled", file !== undefined);
     entry.clear.hidden = file === undefined;
-    this.#onChange();
   }
 }
 

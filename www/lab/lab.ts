@@ -4,16 +4,23 @@ import { byId } from "../dom";
 import { Engine, EngineError } from "../engine/engine";
 import type { Calls, Frame, Opened, Source } from "../engine/protocol";
 import type { Pose, StepReport } from "../../pkg/index.js";
+import { Explanations } from "./ask";
 import { Form } from "./form";
 import { Gallery } from "./gallery";
 import { Intake } from "./intake";
+import { sorted } from "./kind";
+import { LightPanel, type Turn } from "./light";
 import { Player } from "./player";
 import { PoseTable } from "./posetable";
-import { fields, inputGroups, runOptions, type Origin, type Settings } from "./settings";
+import { Rivals } from "./rivals";
+import { fields, inputGroups, methodOf, runOptions, turnOf, type Origin, type Settings } from "./settings";
 import { download, writeAddress } from "./share";
 import { sourceOf } from "./source";
+import { saveBlob } from "../save";
 import { Store } from "./store";
-import { Strip, type Notice } from "./strip";
+import { Status, type Notice } from "./status";
+import { Strip } from "./strip";
+import type { Kind } from "./kinds";
 import { verdict } from "./verdict";
 
 export class Lab {
@@ -23,9 +30,15 @@ export class Lab {
   readonly #engine: Engine;
   readonly #form: Form;
   readonly #intake = new Intake(() => void this.#reopen());
-  readonly #strip = new Strip(byId("stages", HTMLElement));
-  readonly #pose = new PoseTable(byId("pose", HTMLTableElement));
-  readonly #message = byId("message", HTMLElement);
+  readonly #status = new Status();
+  readonly #explanations = new Explanations(() => methodOf(this.store.settings, this.#origin));
+  readonly #strip = new Strip(byId("stages", HTMLElement), this.#explanations);
+  readonly #pose = new PoseTable(byId("pose", HTMLTableElement), this.#explanations);
+  readonly #rivals: Rivals;
+  readonly #light: LightPanel;
+  /** The turn of the light to be looked at next, while one is being looked at. */
+  #turning: Turn | undefined;
+  #previewing = false;
   readonly #alert = byId("alert", HTMLElement);
   #origin: Origin = "sample";
   #truth: Opened["truth"] = null;
@@ -48,6 +61,8 @@ export class Lab {
   #turn = 0;
   /** The beginning under way, which steps wait for. */
   #beginning: Promise<void> = Promise.resolve();
+  /** The object that the surfaces on the screen are of. */
+  #seen = "";
   #offered = false;
   /** The run that is to play once its input is there, if the visitor still waits for it. */
   #watched: Settings | undefined;
@@ -68,11 +83,14 @@ export class Lab {
       onChange: () => this.#showState(),
       onError: (error) => void this.#enter(this.#fail(error)),
     });
+    this.#rivals = new Rivals({ onLook: (pose) => this.gallery.pretend(pose), onStart: (pose) => this.#startFrom(pose) });
+    this.#light = new LightPanel({ turn: () => turnOf(this.store.settings), onTurn: (turn, done) => this.#turnLight(turn, done) });
     for (const group of ["sample", "colour", "depth", "method", "weights", "loop"] as const) {
       this.#form.mount(group, byId(`fields-${group}`, HTMLElement));
     }
+    byId("objective-title", HTMLElement).append(this.#explanations.button("objective", "Objective"));
     byId("slots", HTMLElement).append(this.#intake.element);
-    this.store.listen((settings, changed) => this.#settingsChanged(settings, changed));
+    this.store.listen((settings, changed, live) => this.#settingsChanged(settings, changed, live));
     this.#form.adapt(this.store.settings, this.#origin);
   }
 
@@ -118,12 +136,73 @@ export class Lab {
     download({ source: source.kind, settings, truth: this.#truth, report: this.#report, history: this.#history });
   }
 
-  #settingsChanged(settings: Settings, changed: readonly string[]): void {
+  /** Hands over one of the results, in full. */
+  async take(kind: Kind): Promise<void> {
+    if (!this.#good || !this.#report) return;
+    try {
+      const [{ fileOfKind }, taken] = await Promise.all([import("./takeaway"), this.#engine.call("take", {})]);
+      const { name, blob } = fileOfKind(kind, taken);
+      saveBlob(name, blob);
+    } catch (error) {
+      // What was asked for next has broken it off, and speaks for itself.
+      if (!(error instanceof EngineError) || error.code !== "interrupted") await this.#fail(error);
+    }
+  }
+
+  /** Files dropped anywhere, each into the slot that its content is of. */
+  async drop(files: readonly File[]): Promise<void> {
+    const slots = await sorted(files, (slot) => this.#intake.files[slot] !== undefined);
+    this.#intake.putAll(slots);
+  }
+
+  #settingsChanged(settings: Settings, changed: readonly string[], live: boolean): void {
     writeAddress(settings);
     byId("undo", HTMLButtonElement).disabled = !this.store.canUndo;
+    byId("redo", HTMLButtonElement).disabled = !this.store.canRedo;
     this.#form.adapt(settings, this.#origin);
+    // A slider shows what it does: what was playing, or had been played to its end, plays again.
+    const again = live && (this.player.playing || this.#isFinished());
     const input = fields.some(({ key, group }) => inputGroups.includes(group) && changed.includes(key));
-    void (input ? this.#reopen() : this.restart());
+    const begun = input ? this.#reopen() : this.restart();
+    if (again) void this.#playOnce(begun);
+  }
+
+  /** The picture follows the light while it is dragged; a run follows once it rests. */
+  #turnLight(turn: Turn, done: boolean): void {
+    if (done) {
+      this.#turning = undefined;
+      this.store.change({ lightTurn: turn.beta, lightTilt: turn.alpha }, true);
+      return;
+    }
+    this.#turning = turn;
+    if (!this.#previewing) void this.#preview();
+  }
+
+  async #preview(): Promise<void> {
+    this.#previewing = true;
+    const before = this.#turn;
+    for (let turn = this.#turning; turn; turn = this.#turning) {
+      this.#turning = undefined;
+      const source = sourceOf("sample", this.store.settings, {});
+      if (typeof source === "string" || source.kind !== "sample" || this.#origin !== "sample") break;
+      const seen = await this.#engine.call("preview", { source: { ...source, turn } }).catch(() => undefined);
+      if (!seen || this.#turn !== before) break;
+      this.gallery.preview(seen.picture);
+      this.#light.showTruth(seen.trueLight);
+    }
+    this.#previewing = false;
+  }
+
+  #startFrom({ angles }: Pose): void {
+    const rounded = (degrees: number) => Math.round(10 * degrees) / 10;
+    this.store.change({ start: "near", "start.alpha": rounded(angles.alpha), "start.beta": rounded(angles.beta), "start.gamma": rounded(angles.gamma) }, true);
+  }
+
+  /** Plays a run once it has begun, unless something newer has by then. */
+  async #playOnce(begun: Promise<void>): Promise<void> {
+    const turn = this.#turn;
+    await begun;
+    if (this.#turn === turn && !this.player.playing && !this.#notice) this.player.toggle();
   }
 
   #reopen(): Promise<void> {
@@ -185,12 +264,22 @@ export class Lab {
   async #present(opened: Opened): Promise<void> {
     this.#truth = opened.truth;
     this.#length = opened.units.image;
+    this.#light.showTruth(opened.trueLight);
     this.#forget();
     this.#notes = opened.notes;
     this.#showNotes();
-    const drawn = this.gallery.open(opened);
+    const drawn = this.gallery.open(opened, this.#looksOther());
     this.#take(opened.frame);
     await drawn;
+  }
+
+  /** Whether another object has come: the view of one whose light or noise has changed stays. */
+  #looksOther(): boolean {
+    const { surface, size, protocol } = this.store.settings;
+    const seen = typeof this.#wanted === "string" || this.#wanted.kind !== "sample" ? "" : [surface, size, protocol].join(" ");
+    const other = seen === "" || seen !== this.#seen;
+    this.#seen = seen;
+    return other;
   }
 
   async #advance(request: Calls["advance"]["request"]): Promise<boolean> {
@@ -227,7 +316,8 @@ export class Lab {
     return this.gallery.show(frame, this.#history);
   }
 
-  #take({ reports }: Frame): void {
+  #take({ reports, light }: Frame): void {
+    this.#light.show(light);
     for (const report of reports) {
       // The first of a run: a search has found its pose before the first iteration.
       this.#from ??= report.pose;
@@ -254,10 +344,11 @@ export class Lab {
     if (report) {
       const end = verdict(report, this.#from, this.#truth);
       this.#pose.show(report, this.#from, this.#truth, this.#length);
-      this.#message.textContent = (!end && report.message) || "";
-      this.#strip.show(report, playing ? "playing" : report.iteration > 0 ? "paused" : "ready", end);
+      this.#rivals.show(report);
+      this.#strip.show(report);
+      this.#status.show(report, playing ? "playing" : report.iteration > 0 ? "paused" : "ready", end);
     }
-    if (this.#notice) this.#strip.announce(this.#notice.state, this.#notice.words);
+    if (this.#notice) this.#status.announce(this.#notice.state, this.#notice.words);
     const play = byId("play", HTMLButtonElement);
     play.setAttribute("aria-pressed", String(playing));
     play.setAttribute("aria-label", playing ? "Pause" : "Play");

@@ -26,7 +26,7 @@ export interface PlayerHooks {
 }
 
 export class Player {
-  pace = 2;
+  pace = 1;
   #playing = false;
   #turn = 0;
   #waiting = false;
@@ -72,7 +72,7 @@ export class Player {
     if (isOn() && this.#hooks.isFinished()) await this.#hooks.restart();
     let by: Advance["by"] = "step";
     while (isOn()) {
-      const { pause, milliseconds } = paces[this.pace] ?? paces[2];
+      const { pause, milliseconds } = paces[this.pace] ?? paces[1];
       const began = performance.now();
       const more = await this.#once({ by, milliseconds });
       if (!more) break;

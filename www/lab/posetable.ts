@@ -3,6 +3,8 @@
 import type { Pose, StepReport } from "../../pkg/index.js";
 import { decimals } from "../draw/numbers";
 import { byId, make } from "../dom";
+import type { Explanations } from "./ask";
+import type { Term } from "./explain";
 import { angleBetween } from "./verdict";
 
 /** Rows; those without a unit of their own are lengths in the colour view's unit. */
@@ -19,11 +21,13 @@ const rows: readonly { name: string; index?: string; unit?: string; decimals: nu
 export class PoseTable {
   readonly #cells = rows.map(() => ({ found: make("td"), truth: make("td"), unit: make("span", { class: "unit" }) }));
   readonly #error = byId("pose-error", HTMLElement);
-  readonly #extra = byId("pose-extra", HTMLElement);
+  readonly #extras: readonly { dt: HTMLElement; dd: HTMLElement; read: Extra["read"] }[];
   readonly #table: HTMLTableElement;
 
-  constructor(table: HTMLTableElement) {
+  constructor(table: HTMLTableElement, explanations: Explanations) {
     this.#table = table;
+    this.#extras = extras.map(({ term, name, read }) => ({ dt: make("dt", {}, name, explanations.button(term, name)), dd: make("dd"), read }));
+    byId("pose-extra", HTMLElement).append(...this.#extras.flatMap(({ dt, dd }) => [dt, dd]));
     const lines = this.#cells.map(({ found, truth, unit }, i) => {
       const { name, index } = rows[i] ?? { name: "" };
       const heading = make("th", { scope: "row" }, name, ...(index ? [make("sub", {}, index)] : []), " ", unit);
@@ -33,7 +37,7 @@ export class PoseTable {
   }
 
   show(report: StepReport, start: Pose | undefined, truth: Pose | null, length: "px" | "m"): void {
-    const { pose, uncertainty } = report;
+    const { pose } = report;
     rows.forEach(({ index, decimals: count, read, unit = length }, i) => {
       const cells = this.#cells[i];
       if (!cells) return;
@@ -51,29 +55,42 @@ export class PoseTable {
       const before = start ? `; ${decimals(angleBetween(start.rotation, truth.rotation), 1)}° at the start` : "";
       this.#error.replaceChildren(make("strong", {}, `${decimals(degrees, 2)}° off`), ` the true rotation${before}`);
     }
-    this.#extra.replaceChildren(
-      ...pair("Overlap", `${decimals(100 * report.overlap, 0)} %`),
-      ...pair("Inliers", `${decimals(100 * report.inliers, 0)} %`),
-      ...pair("Colour residual", decimals(report.residual, 4)),
-      ...pair("Rotation change", `${decimals(report.rotationChange, 4)}°`),
-      ...(uncertainty ? certainty(uncertainty, length) : []),
-    );
+    this.#extras.forEach(({ dt, dd, read }) => {
+      const value = read(report, length);
+      dt.hidden = dd.hidden = value === undefined;
+      dd.textContent = value ?? "";
+    });
   }
 }
 
-/** One sigma of each part of the pose; what is held or cannot be seen has none. */
-function certainty({ rotationDegrees, translation, scale, weakest }: NonNullable<StepReport["uncertainty"]>, length: string): HTMLElement[] {
-  const known = translation.map((value) => (value === null ? "free" : decimals(value, 3))).join(", ");
-  return [
-    ...pair("σ about x, y, z", sigmas(rotationDegrees)),
-    ...pair("σ of t", `${known} ${length}`),
-    ...(scale === null ? [] : pair("σ of s", decimals(scale, 4))),
-    ...pair("Weakest", weakest),
-  ];
+interface Extra {
+  term: Term;
+  name: string;
+  /** Nothing where there is no such number. */
+  read(report: StepReport, length: string): string | undefined;
 }
+
+/** A sigma says how sharp a pose is, not whether it is the right one: beside a lost one it would mislead. */
+const sure = ({ status, uncertainty }: StepReport): StepReport["uncertainty"] => (status === "lost" ? undefined : uncertainty);
+
+/** One sigma of each part of the pose; what is held or cannot be seen has none. */
+const extras: readonly Extra[] = [
+  { term: "overlap", name: "Overlap", read: ({ overlap }) => `${decimals(100 * overlap, 0)} %` },
+  { term: "inliers", name: "Inliers", read: ({ inliers }) => `${decimals(100 * inliers, 0)} %` },
+  { term: "residual", name: "Colour residual", read: ({ residual }) => decimals(residual, 4) },
+  { term: "change", name: "Rotation change", read: ({ rotationChange }) => `${decimals(rotationChange, 4)}°` },
+  { term: "sigma", name: "σ about x, y, z", read: (report) => optional(sure(report), ({ rotationDegrees }) => sigmas(rotationDegrees)) },
+  {
+    term: "sigma",
+    name: "σ of t",
+    read: (report, length) => optional(sure(report), ({ translation }) => `${translation.map((value) => (value === null ? "free" : decimals(value, 3))).join(", ")} ${length}`),
+  },
+  { term: "sigma", name: "σ of s", read: (report) => optional(sure(report)?.scale ?? undefined, (scale) => decimals(scale, 4)) },
+  { term: "weakest", name: "Weakest", read: (report) => sure(report)?.weakest },
+];
+
+const optional = <T>(value: T | undefined, show: (value: T) => string): string | undefined => (value === undefined ? undefined : show(value));
 
 /** Half a turn of uncertainty is no knowledge at all. */
 const sigmas = (degrees: readonly number[]): string =>
   degrees.every((value) => value >= 180) ? "unknown" : `${degrees.map((value) => (value >= 180 ? "any" : decimals(value, 2))).join(", ")}°`;
-
-const pair = (term: string, value: string): HTMLElement[] => [make("dt", {}, term), make("dd", {}, value)];

@@ -7,6 +7,7 @@
 import type { SampleRequest } from "../../pkg/index.js";
 import { OPTIONS, RENDERED_ALONE, SAMPLE, paths, type PageField, type Rows, type ShownRow } from "../../pkg/options.js";
 import type { LabOptions, OwnCamera } from "../engine/protocol";
+import type { Method } from "./explain";
 
 /** Where the pair comes from: made by the crate, or the visitor's own. */
 export type Origin = "sample" | "files";
@@ -95,12 +96,19 @@ const distortion = (side: "colour" | "depth"): ListField => ({
   kind: "list", key: `${side}.distortion`, label: "distortion", initial: "", empty: "none", group: side,
   hint: "Five numbers in OpenCV's order: k1 k2 p1 p2 k3.", path: `${side === "colour" ? "image" : "depth"}.camera.distortion`,
 });
+/** Turns of a sample's light about the colour view's axes. */
+const lightTurn = (key: "lightTilt" | "lightTurn", angle: "alpha" | "beta", label: string, hint: string): NumberField => ({
+  ...{ kind: "number", key, label, hint, initial: 0, empty: "0", unit: "deg", group: "sample", path: `angles.${angle}` },
+  slider: { min: -180, max: 180, step: 5 },
+});
 const ESTIMATED = "Estimated along with the pose.";
 
 export const fields: readonly Field[] = [
   { kind: "choice", key: "surface", label: "Surface", initial: "bust", group: "sample", path: "sample.surface" },
   { kind: "choice", key: "light", label: "Light", initial: "colourful", group: "sample", path: "sample.light" },
-  { kind: "choice", key: "size", label: "Size", hint: "Of both views: a side, or a camera's whole frame.", initial: String(SAMPLE.size.default), group: "sample", path: "sample.size", when: rendered,
+  lightTurn("lightTurn", "beta", "Light turned", "About the vertical axis, as dragging the ball under the light does."),
+  lightTurn("lightTilt", "alpha", "Light tilted", "About the horizontal axis."),
+  { kind: "choice", key: "size", label: "Size", hint: "Of both views: a side, or a camera's whole frame.", initial: "128", group: "sample", path: "sample.size", when: rendered,
     choices: [["32", "32 px"], ["64", "64 px"], ["96", "96 px"], ["128", "128 px"], ["256", "256 px"], ["640x480", "640×480"]] },
   ...sampleFields,
 
@@ -165,6 +173,9 @@ export function sampleRequest(settings: Settings): SampleRequest {
   };
 }
 
+/** By how much the sample's light is turned. */
+export const turnOf = (settings: Settings): { alpha: number; beta: number } => ({ alpha: number(settings, "lightTilt") ?? 0, beta: number(settings, "lightTurn") ?? 0 });
+
 /** "64" is a square. */
 function size(settings: Settings): Pick<SampleRequest, "size" | "height"> {
   const [width = 0, height = width] = text(settings, "size").split("x").map(Number);
@@ -193,6 +204,12 @@ export function runOptions(settings: Settings, source: Origin): LabOptions {
     light: lightOption(settings, source),
     start: startOption(settings),
   };
+}
+
+/** What the explanations have to know of a run. */
+export function methodOf(settings: Settings, source: Origin): Method {
+  const { light, start, registration = "joint", shading = "surface" } = runOptions(settings, source);
+  return { lightIsKnown: light !== "estimate", searches: start === "search", registration, shading };
 }
 
 const lensKeys = ["fx", "fy", "cx", "cy"] as const;

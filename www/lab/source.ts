@@ -2,11 +2,11 @@
 
 import type { OwnFiles, Source } from "../engine/protocol";
 import type { Slot } from "./intake";
-import { camera, sampleRequest, type Origin, type Settings } from "./settings";
+import { camera, sampleRequest, turnOf, type Origin, type Settings } from "./settings";
 
 /** Or in words what it still lacks. */
 export function sourceOf(origin: Origin, settings: Settings, { colour, depth, ...masks }: Partial<Record<Slot, File>>): Source | string {
-  if (origin === "sample") return { kind: "sample", request: sampleRequest(settings) };
+  if (origin === "sample") return { kind: "sample", request: sampleRequest(settings), turn: turnOf(settings) };
   if (!colour || !depth) return colour ? "waiting for a depth map" : depth ? "waiting for a colour image" : "waiting for both files";
   const files: OwnFiles = { colour, depth, ...masks };
   for (const side of ["colour", "depth"] as const) {

@@ -2,13 +2,15 @@
 
 import { defaults, type Settings, type Value } from "./settings";
 
-export type Listener = (settings: Settings, changed: readonly string[]) => void;
+/** `live` is a change by a control that is still being moved, or has just been let go. */
+export type Listener = (settings: Settings, changed: readonly string[], live: boolean) => void;
 
 const differing = (a: Settings, b: Settings): string[] => Object.keys(a).filter((key) => a[key] !== b[key]);
 
 export class Store {
   #now: Settings;
   #past: Settings[] = [];
+  #undone: Settings[] = [];
   #listeners: Listener[] = [];
 
   constructor(initial: Settings) {
@@ -23,15 +25,20 @@ export class Store {
     return this.#past.length > 0;
   }
 
+  get canRedo(): boolean {
+    return this.#undone.length > 0;
+  }
+
   listen(listener: Listener): void {
     this.#listeners.push(listener);
   }
 
-  change(patch: Record<string, Value>): void {
+  change(patch: Record<string, Value>, live = false): void {
     const next = { ...this.#now, ...patch };
     if (differing(next, this.#now).length === 0) return;
     this.#past.push(this.#now);
-    this.#become(next);
+    this.#undone = [];
+    this.#become(next, live);
   }
 
   resetToDefaults(): void {
@@ -40,12 +47,21 @@ export class Store {
 
   undo(): void {
     const before = this.#past.pop();
-    if (before) this.#become(before);
+    if (!before) return;
+    this.#undone.push(this.#now);
+    this.#become(before, false);
   }
 
-  #become(next: Settings): void {
+  redo(): void {
+    const after = this.#undone.pop();
+    if (!after) return;
+    this.#past.push(this.#now);
+    this.#become(after, false);
+  }
+
+  #become(next: Settings, live: boolean): void {
     const changed = differing(next, this.#now);
     this.#now = next;
-    for (const listener of this.#listeners) listener(next, changed);
+    for (const listener of this.#listeners) listener(next, changed, live);
   }
 }

@@ -3,34 +3,27 @@
 import type { Stage, StepReport } from "../../pkg/index.js";
 import { decimals } from "../draw/numbers";
 import { byId, make } from "../dom";
-import { stages, type StageText } from "./stages";
-import type { Verdict } from "./verdict";
+import type { Explanations } from "./ask";
 
-/** What else than the loop the status can tell of. */
-export type Notice = "loading" | "waiting" | "error";
+/** The search, and the five stages of one iteration. */
+const stages: readonly Stage[] = ["search", "light", "shading", "surface", "registration", "refinement"];
 
 export class Strip {
   readonly #buttons = new Map<Stage, { button: HTMLButtonElement; time: HTMLElement }>();
   readonly #count = byId("iteration", HTMLElement);
-  readonly #status = byId("status", HTMLElement);
-  readonly #verdict = byId("verdict", HTMLElement);
-  readonly #explanation = byId("explanation", HTMLElement);
-
   #last: Stage | undefined;
-  readonly #bar = byId("bar", HTMLElement);
 
-  constructor(list: HTMLElement) {
-    for (const stage of stages) {
+  constructor(list: HTMLElement, explanations: Explanations) {
+    for (const name of stages) {
       const time = make("span", { class: "time" });
-      const button = make("button", { type: "button", class: "stage", "aria-haspopup": "dialog" }, make("span", {}, stage.name), time);
-      button.addEventListener("click", () => this.#explain(stage));
-      this.#buttons.set(stage.name, { button, time });
+      const button = make("button", { type: "button", class: "stage", "aria-haspopup": "dialog" }, make("span", {}, name), time);
+      button.addEventListener("click", () => void explanations.open({ stage: name }));
+      this.#buttons.set(name, { button, time });
       list.append(make("li", {}, button));
     }
   }
 
-  /** `idle` is what the page itself does while the loop rests. */
-  show(report: StepReport, idle: "ready" | "paused" | "playing", end: Verdict | undefined): void {
+  show(report: StepReport): void {
     const begun = report.iteration > 0 || report.milliseconds[report.stage] !== undefined;
     this.#last = begun ? report.stage : undefined;
     for (const [name, { button, time }] of this.#buttons) {
@@ -43,10 +36,6 @@ export class Strip {
       else if (!begun) time.textContent = "";
     }
     this.#count.textContent = String(report.iteration);
-    this.#status.dataset.state = end ? report.status : idle;
-    this.#status.dataset.tone = end?.tone ?? "open";
-    this.#status.textContent = end?.status ?? idle;
-    this.#verdict.textContent = end?.words ?? "";
   }
 
   /** A stage is under way: the one after the last; a search is many stages. */
@@ -55,25 +44,5 @@ export class Strip {
     const names = [...this.#buttons.keys()];
     const next = names[this.#last ? (names.indexOf(this.#last) + 1) % names.length : 0];
     for (const [name, { button }] of this.#buttons) button.toggleAttribute("data-lit", name === next);
-  }
-
-  /** Something other than the loop is going on, or has gone wrong. */
-  announce(state: Notice, words: string): void {
-    this.#status.dataset.state = state;
-    this.#status.dataset.tone = state === "error" ? "wrong" : "open";
-    this.#status.textContent = words;
-    this.#verdict.textContent = "";
-  }
-
-  #explain({ title, equation, words, source }: StageText): void {
-    this.#explanation.replaceChildren(
-      make("h2", {}, title),
-      make("p", { class: "equation" }, equation),
-      make("p", {}, words),
-      make("p", { class: "soft" }, source),
-    );
-    // Above the bar, whose height depends on how it wraps.
-    this.#explanation.style.bottom = `${innerHeight - this.#bar.getBoundingClientRect().top + 8}px`;
-    this.#explanation.showPopover();
   }
 }

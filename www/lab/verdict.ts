@@ -8,6 +8,8 @@ export interface Verdict {
   tone: "good" | "open" | "wrong";
   status: string;
   words: string;
+  /** What may help; empty where nothing has to. */
+  next: string;
 }
 
 /** Degrees within which a pose counts as found, and beyond which it counts as missed. */
@@ -30,22 +32,42 @@ const ends: Record<Exclude<StepReport["status"], "running">, string> = {
   lost: "lost",
 };
 
+/** What may help against what a run says of itself: the first that its words bear out. */
+const remedies: readonly (readonly [said: RegExp, remedy: string])[] = [
+  [/not observable|uncertain by|do not show/, "A larger image, less noise, or a light with more colours would show it."],
+  [/counterpart/, "Views that share more of the object would help: more overlap, or a smaller rotation."],
+  [/painted/, "A start that is roughly known would help: Settings, Start, near."],
+  [/unexplained/, "Less noise, or an object of one paint, would help."],
+  [/points agree/, "Masks that leave out the background would help, and a start that is roughly known."],
+  [/other poses?/, "Choose one of the poses below to see it; a start that is roughly known decides."],
+  [/cap of/, "Settings, Loop, Iterations lets it go on for longer."],
+  [/apparent size/, "A scale that is known would help: Settings, Scale."],
+];
+/** Where all went well there is more to try. */
+const HARDER = "Turn the surfaces, drag the light, or make it harder: Noise, Half hidden.";
+const GENERAL = "Another start may find it: Settings, Start, near.";
+
+const remedy = (said: string): string => remedies.find(([pattern]) => pattern.test(said))?.[1] ?? GENERAL;
+
 /** How a finished loop is to be taken; nothing while it runs. */
 export function verdict({ status, message, pose }: StepReport, start: Pose | undefined, truth: Pose | null): Verdict | undefined {
   if (status === "running") return undefined;
   const said = message ? [sentence(message)] : [];
+  const help = remedy(message ?? "");
   if (truth) {
     const off = angleBetween(pose.rotation, truth.rotation);
-    const tone = off > MISSED ? "wrong" : status === "converged" && off <= FOUND ? "good" : "open";
-    const missed = off > MISSED ? ["The true pose was not found."] : [];
-    return { tone, status: `${ends[status]}, ${decimals(off, off < 10 ? 2 : 1)}° off`, words: [...said, ...missed].join(" ") };
+    const tone = off > MISSED && status !== "ambiguous" ? "wrong" : status === "converged" && off <= FOUND ? "good" : "open";
+    const missed = off > MISSED ? ["The true pose was not found."] : tone === "good" && !message ? ["The true pose was found."] : [];
+    const next = tone === "good" ? HARDER : off <= FOUND && status === "lost" ? `The pose is right all the same. ${help}` : help;
+    return { tone, status: `${ends[status]}, ${decimals(off, off < 10 ? 2 : 1)}° off`, words: [...said, ...missed].join(" "), next };
   }
   if (status === "converged") {
-    return { tone: "good", status: ends[status], words: [...said, "The pose has settled; there is no true one to compare it with."].join(" ") };
+    return { tone: "good", status: ends[status], words: [...said, "The pose has settled; there is no true one to compare it with."].join(" "), next: "" };
   }
+  if (status === "ambiguous") return { tone: "open", status: ends[status], words: said.join(" "), next: help };
   const stayed = start !== undefined && angleBetween(pose.rotation, start.rotation) < STAYED;
   const caution = stayed ? "The rotation is still that of the start, which does not confirm it." : "The pose has not settled: do not build on it.";
-  return { tone: "wrong", status: stayed ? "start kept" : ends[status], words: [...said, caution].join(" ") };
+  return { tone: "wrong", status: stayed ? "start kept" : ends[status], words: [...said, caution].join(" "), next: help };
 }
 
 const sentence = (words: string): string => `${words.charAt(0).toUpperCase()}${words.slice(1)}${/[.!?]$/.test(words) ? "" : "."}`;

@@ -3,19 +3,20 @@
 import { short } from "../draw/numbers";
 import { make } from "../dom";
 import type { Axis, Panel } from "./panels";
-import { isConfidentlyWrong, type Cell } from "./protocol";
+import { isConfidentlyWrong, isFound, type Cell } from "./protocol";
 import { colourOf, wantsBlack } from "./ramp";
 import type { State } from "./runner";
 
 /** What a result says of itself: a shape to see, and the same in words. */
 export interface Mark {
-  kind: "ambiguous" | "lost" | "stopped" | "wrong";
+  kind: "ambiguous" | "doubted" | "lost" | "stopped" | "wrong";
   glyph: string;
   words: string;
 }
 
 export const marks: readonly Mark[] = [
   { kind: "ambiguous", glyph: "?", words: "ambiguous: other poses explain it as well" },
+  { kind: "doubted", glyph: "~", words: "within 3°, though the run does not trust it" },
   { kind: "lost", glyph: "×", words: "lost, and flagged as such" },
   { kind: "stopped", glyph: "=", words: "stopped at the cap of iterations" },
   { kind: "wrong", glyph: "!", words: "over 3° off, and not flagged" },
@@ -27,7 +28,7 @@ export function markOf(state: State | undefined): Mark | undefined {
   const { result } = state;
   // Where no pose was looked for, it is neither right nor wrong, and a loop without an aim always ends at its cap.
   if (!("rivals" in result)) return undefined;
-  const kind = isConfidentlyWrong(result) ? "wrong" : result.status === "max-iterations" ? "stopped" : result.status;
+  const kind = isConfidentlyWrong(result) ? "wrong" : result.status === "max-iterations" ? "stopped" : result.status === "lost" && isFound(result) ? "doubted" : result.status;
   return marks.find((mark) => mark.kind === kind);
 }
 

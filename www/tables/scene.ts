@@ -1,5 +1,6 @@
 /** A cell as settings of the Lab, which then shows that very run. */
 
+import { SAMPLE } from "../../pkg/options.js";
 import { defaults, toLink, type Settings, type Value } from "../lab/settings";
 import { short } from "../draw/numbers";
 import { sceneOf, type Cell } from "./protocol";
@@ -33,7 +34,7 @@ export function described(cell: Cell): string {
   ].join(", ");
 }
 
-/** What is not named here is at the Lab's default, which is the library's. */
+/** What is not named here is at the Lab's default, which is the library's but for the size. */
 export function settingsOf(cell: Cell): Settings | undefined {
   const scene = sceneOf(cell);
   if (!scene || obstacle(cell)) return undefined;
@@ -43,7 +44,8 @@ export function settingsOf(cell: Cell): Settings | undefined {
     surface,
     light,
     protocol,
-    size: size === undefined ? undefined : String(size),
+    // The Lab's own pictures are larger than the library's.
+    size: String(size ?? SAMPLE.size.default),
     alpha: angles?.alpha ?? 0,
     beta: angles?.beta ?? 0,
     gamma: angles?.gamma ?? 0,

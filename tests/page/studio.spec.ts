@@ -1,0 +1,362 @@
+/** The Lab as a newcomer meets it: examples, the light, what a run has come to, and a page that stands still. */
+
+import { expect, test, type Lab } from "./lab";
+
+const panelHeight = (lab: Lab) => lab.page.locator("#panel").evaluate((panel) => panel.getBoundingClientRect().height);
+
+test("a first visit plays once by itself, a second one waits", async ({ lab, page }) => {
+  await page.goto("./");
+  await lab.reaches("converged");
+  await expect(page.locator("#status")).toHaveAttribute("data-tone", "good");
+  expect(await lab.errorDegrees()).toBeLessThan(1);
+  await page.reload();
+  await lab.reaches("ready");
+  await expect(lab.iteration).toHaveText("0");
+});
+
+test("where motion is unwelcome nothing plays by itself", async ({ lab, page }) => {
+  await page.emulateMedia({ reducedMotion: "reduce" });
+  await page.goto("./");
+  await lab.reaches("ready");
+  await expect(page.locator("#pose-error")).toBeVisible();
+  await expect(lab.iteration).toHaveText("0");
+  await page.getByRole("button", { name: "Noise", exact: true }).click();
+  await lab.reaches("ready");
+  await expect(page).toHaveURL(/noise=0\.05/);
+});
+
+for (const [width, height] of [[1280, 800], [1600, 900], [2560, 1300]] as const) {
+  test(`the surfaces are most of the first screen at ${width} px`, async ({ lab, page }) => {
+    await page.setViewportSize({ width, height });
+    await lab.open();
+    const box = await page.locator("#clouds-box").boundingBox();
+    const bar = await page.locator("#bar").boundingBox();
+    expect(box && box.width / width).toBeGreaterThan(0.45);
+    expect(box && bar && box.y + box.height).toBeLessThanOrEqual(bar?.y ?? 0);
+    // In their reading order: what goes in, the surfaces, what comes out.
+    const lefts = await page.locator("#inputs, #hero, #outcome").evaluateAll((parts) => parts.map((part) => part.getBoundingClientRect().left));
+    expect([...lefts].sort((a, b) => a - b)).toEqual(lefts);
+  });
+}
+
+test("an example is a press: it sets everything and plays", async ({ lab, page }) => {
+  await lab.open("surface=vase&size=64");
+  const examples = page.getByRole("group", { name: "Examples" });
+  await expect(examples.locator('[aria-pressed="true"]')).toHaveCount(0);
+  await examples.getByRole("button", { name: "The paper's loop" }).click();
+  await lab.reaches("converged");
+  await expect(examples.locator('[aria-pressed="true"]')).toHaveText("The paper's loop");
+  await expect(page).toHaveURL(/registration=icp/);
+  await expect(page).not.toHaveURL(/vase/);
+  await lab.unfold();
+  await page.getByRole("button", { name: "Undo" }).click();
+  await expect(page).toHaveURL(/surface=vase/);
+});
+
+test("the light is shown as found and true, and the true one can be dragged: the picture follows", async ({ lab, page }) => {
+  await lab.open("size=64");
+  const before = await lab.fingerprint("Colour");
+  const balls = page.locator("#light .ball");
+  await expect(balls).toHaveCount(3);
+  const truth = page.getByRole("img", { name: /^A ball under the true light/ });
+  const ball = await truth.boundingBox();
+  if (!ball) throw new Error("the ball is on the page");
+  await page.mouse.move(ball.x + ball.width / 2, ball.y + ball.height / 2);
+  await page.mouse.down();
+  await page.mouse.move(ball.x + ball.width / 2 + 20, ball.y + ball.height / 2 + 8, { steps: 4 });
+  await expect.poll(() => lab.fingerprint("Colour")).not.toBe(before);
+  await page.mouse.up();
+  await expect(page).toHaveURL(/lightTurn=-\d+/);
+  await lab.reaches("ready");
+  const turned = await lab.fingerprint("Colour");
+  expect(turned).not.toBe(before);
+  await lab.unfold();
+  await page.getByRole("button", { name: "Undo" }).click();
+  await expect.poll(() => lab.fingerprint("Colour")).toBe(before);
+  await page.getByRole("button", { name: "Redo" }).click();
+  await expect.poll(() => lab.fingerprint("Colour")).toBe(turned);
+});
+
+test("the arrow keys turn the light toward where they point", async ({ lab, page }) => {
+  await lab.open("size=64&light=window");
+  /** Where the ball is bright: its middle of brightness, columns. */
+  const column = () => page.getByRole("img", { name: /^A ball under the true light/ }).evaluate((canvas: HTMLCanvasElement) => {
+    const { data, width } = canvas.getContext("2d")?.getImageData(0, 0, canvas.width, canvas.height) ?? new ImageData(1, 1);
+    let [sum, weighted] = [0, 0];
+    for (let i = 0; i < data.length; i += 4) {
+      if (!data[i + 3]) continue;
+      sum += data[i] ?? 0;
+      weighted += (data[i] ?? 0) * ((i / 4) % width);
+    }
+    return weighted / sum;
+  });
+  await page.getByRole("img", { name: /^A ball under the true light/ }).focus();
+  const start = await column();
+  for (let press = 0; press < 6; press++) await page.keyboard.press("ArrowRight");
+  await expect(page).toHaveURL(/lightTurn=-30/);
+  await lab.reaches("ready");
+  expect(await column()).toBeGreaterThan(start + 0.3);
+});
+
+test("a slider acts when it rests, and what had been played plays again", async ({ lab, page }) => {
+  await lab.visit("size=64");
+  await page.getByRole("button", { name: "Play" }).click();
+  await lab.reaches("converged");
+  await lab.unfold();
+  const noise = page.locator("#fields-sample").getByRole("slider", { name: "Colour noise" });
+  const exact = page.locator("#fields-sample").getByRole("spinbutton", { name: "Colour noise" });
+  const before = await lab.fingerprint("Colour");
+  await noise.evaluate((slider: HTMLInputElement) => {
+    slider.value = "0.05";
+    slider.dispatchEvent(new Event("input", { bubbles: true }));
+  });
+  await expect(exact).toHaveValue("0.05");
+  await expect.poll(() => lab.fingerprint("Colour")).not.toBe(before);
+  await expect(page).toHaveURL(/noise=0\.05/);
+  await lab.reaches("converged");
+  // One step back, however many values the slider passed.
+  await page.getByRole("button", { name: "Undo" }).click();
+  await expect.poll(() => lab.fingerprint("Colour")).toBe(before);
+});
+
+test("a weight over many decades has a slider of powers of ten", async ({ lab, page }) => {
+  await lab.open("size=64");
+  await lab.unfold();
+  await page.getByText("Weights", { exact: true }).click();
+  const weights = page.locator("#fields-weights");
+  await weights.getByRole("slider", { name: "λ light" }).fill("-3");
+  await expect(weights.getByRole("spinbutton", { name: "λ light" })).toHaveValue("0.001");
+  await expect(page).toHaveURL(/lightPrior=0\.001/);
+  await expect(weights.getByRole("slider", { name: "λ light" })).toHaveValue("-3");
+});
+
+test("a pose with a rival says so, and the rival can be seen and chosen", async ({ lab, page }) => {
+  await lab.visit("surface=vase&light=window&beta=30&size=64&noise=0.08");
+  const height = await panelHeight(lab);
+  await expect(page.locator("#rivals")).toBeHidden();
+  await page.getByLabel("Speed").selectOption({ label: "fastest" });
+  await page.getByRole("button", { name: "Play" }).click();
+  await lab.reaches("ambiguous");
+  await expect(page.locator("#verdict")).toContainText("One other pose explains the colours as well");
+  await expect(page.locator("#status-icon")).toHaveText("?");
+  await expect(page.locator("#next")).toContainText("poses below");
+  expect(await panelHeight(lab)).toBe(height);
+  const rivals = page.locator("#rivals");
+  await expect(rivals.getByRole("button", { name: "the one found" })).toHaveAttribute("aria-pressed", "true");
+  const rival = rivals.getByRole("button", { name: /^rival, \d+° away$/ });
+  await rival.click();
+  await expect(rival).toHaveAttribute("aria-pressed", "true");
+  await rivals.getByRole("button", { name: "Start from it" }).click();
+  await expect(page).toHaveURL(/start=near/);
+});
+
+test("a lost pose has one cause, one remedy, and no sigmas", async ({ lab, page }) => {
+  await lab.visit("light=overcast&size=32&noise=0.2&beta=60&overlap=0.2");
+  const height = await panelHeight(lab);
+  await page.getByLabel("Speed").selectOption({ label: "fastest" });
+  await page.getByRole("button", { name: "Play" }).click();
+  await lab.reaches("lost");
+  await expect(page.locator("#verdict")).not.toBeEmpty();
+  await expect(page.locator("#next")).toHaveText(/would|may find it/);
+  expect(await panelHeight(lab)).toBe(height);
+  await expect(page.locator("#pose-extra dt", { hasText: "Overlap" })).toBeVisible();
+  for (const sigma of await page.locator("#pose-extra dt", { hasText: "σ" }).all()) await expect(sigma).toBeHidden();
+});
+
+test("nothing moves under the pointer", async ({ lab, page }) => {
+  await lab.open("size=64");
+  await page.keyboard.press("s");
+  await expect(lab.iteration).toHaveText("1");
+  const boxes = () => page.locator("#lab figure, #bar, #panel").evaluateAll((parts) => parts.map((part) => JSON.stringify(part.getBoundingClientRect())));
+  await page.mouse.move(2, 2);
+  const before = await boxes();
+  const colour = await page.getByRole("img", { name: /^Colour:/ }).boundingBox();
+  if (!colour) throw new Error("the picture is on the page");
+  await page.mouse.move(colour.x + colour.width / 2, colour.y + colour.height / 2);
+  await expect(page.locator("#inputs-views .readout").first()).toHaveText(/^\d+, \d+: /);
+  expect(await boxes()).toEqual(before);
+});
+
+for (const [settings, stage, words] of [
+  ["", "registration", "Equations 12 to 16"],
+  ["registration=joint", "registration", "until its normals predict the colours"],
+  ["registration=fixed", "registration", "The pose is kept as it was at the start"],
+  ["", "surface", "Normals are slopes"],
+  ["shading=surface", "surface", "The unknowns are the heights themselves"],
+  ["lighting=estimate", "light", "fitted by robust least squares"],
+  ["", "light", "only the exposure of the picture"],
+] as const) {
+  test(`${stage} explains the method that runs: ${settings || "the paper's"}`, async ({ lab, page }) => {
+    await lab.page.goto(`./#lighting=known&start=identity&registration=icp&shading=pixel&size=32${settings && "&"}${settings}`);
+    await lab.reaches("ready");
+    // Of two settings of one name the first counts: those of the paper are changed by hand.
+    if (settings) await page.goto(`./#size=32&start=identity&${settings}${settings.includes("lighting") ? "" : "&lighting=known"}`);
+    await lab.reaches("ready");
+    await page.getByRole("button", { name: new RegExp(`^${stage}`) }).click();
+    await expect(page.locator("#explanation")).toContainText(words);
+    await expect(page.locator("#explanation math")).toHaveCount(settings === "registration=fixed" ? 0 : 1);
+  });
+}
+
+test("each number has its explanation", async ({ lab, page }) => {
+  await lab.open("size=32");
+  for (const name of ["Overlap", "Inliers", "Colour residual", "Rotation change", "Objective"]) {
+    await page.getByRole("button", { name: `What is "${name}"?` }).last().click();
+    await expect(page.locator("#explanation h2")).toBeVisible();
+    expect((await page.locator("#explanation p").first().textContent())?.length).toBeGreaterThan(40);
+    await page.keyboard.press("Escape");
+  }
+});
+
+test("errors are mapped where the truth is known, and nowhere else", async ({ lab, page }) => {
+  await lab.open("size=64");
+  await expect(page.locator("#errors")).toBeVisible();
+  const before = await lab.fingerprint("Error of normals");
+  await page.keyboard.press("s");
+  await expect(lab.iteration).toHaveText("1");
+  await expect.poll(() => lab.fingerprint("Error of normals")).not.toBe(before);
+});
+
+test("charts say in words what they show, and begin with the first iteration", async ({ lab, page }) => {
+  await lab.open("size=32");
+  await expect(page.locator("#objective-chart")).toHaveAttribute("aria-label", /total: none yet/);
+  await page.keyboard.press("s");
+  await expect(lab.iteration).toHaveText("1");
+  await expect(page.locator("#objective-chart")).toHaveAttribute("aria-label", /total: from \d/);
+});
+
+test("at 400 % zoom nothing sticks out, and the bar leaves the window to the page", async ({ lab, page }) => {
+  // What 1280 x 800 at four times the size leaves.
+  await page.setViewportSize({ width: 320, height: 200 });
+  await lab.open("size=32");
+  expect(await page.evaluate(() => document.documentElement.scrollWidth)).toBeLessThanOrEqual(320);
+  expect(await page.locator("#bar").evaluate((bar) => getComputedStyle(bar).position)).toBe("static");
+});
+
+test("the bar is one row of one height", async ({ lab, page }) => {
+  for (const width of [320, 768, 1280, 2560]) {
+    await page.setViewportSize({ width, height: 800 });
+    await lab.open("size=32");
+    expect(await page.locator("#bar").evaluate((bar) => bar.getBoundingClientRect().height)).toBe(60);
+  }
+});
+
+test("what is focused is never behind the bar", async ({ lab, page }) => {
+  await lab.open("size=32");
+  const bar = (await page.locator("#bar").boundingBox())?.y ?? 0;
+  for (let press = 0; press < 70; press++) {
+    await page.keyboard.press("Tab");
+    const hidden = await page.evaluate((bar) => {
+      const focused = document.activeElement;
+      if (!focused || focused.closest("#bar") || focused === document.body) return false;
+      const { top, height } = focused.getBoundingClientRect();
+      return top + Math.min(height, 24) > bar;
+    }, bar);
+    expect(hidden).toBe(false);
+  }
+});
+
+/** The bytes of a file that a press hands over. */
+async function handed(lab: Lab, name: string): Promise<Buffer> {
+  const waiting = lab.page.waitForEvent("download");
+  await lab.page.getByRole("group", { name: "Take away" }).getByRole("button", { name }).click();
+  const chunks: Buffer[] = [];
+  for await (const chunk of await (await waiting).createReadStream()) chunks.push(Buffer.from(chunk as Uint8Array));
+  return Buffer.concat(chunks);
+}
+
+test("results can be taken away in files of common formats", async ({ lab, page }) => {
+  await lab.open("size=32");
+  await page.keyboard.press("s");
+  await expect(lab.iteration).toHaveText("1");
+  const pose = JSON.parse((await handed(lab, "Pose, JSON")).toString()) as { unit: string; scale: number; rotation: number[]; translation: number[] };
+  expect(pose).toMatchObject({ unit: "px" });
+  expect(pose.rotation).toHaveLength(9);
+  const rows = (await handed(lab, "Pose, 4×4")).toString().trim().split("\n").map((line) => line.split(" ").map(Number));
+  expect(rows).toHaveLength(4);
+  expect(rows[1]).toEqual([...pose.rotation.slice(3, 6).map((value) => pose.scale * value), pose.translation[1]]);
+
+  const ply = (await handed(lab, "Clouds, PLY")).toString().split("\n");
+  const count = Number(ply.find((line) => line.startsWith("element vertex"))?.split(" ")[2]);
+  const vertices = ply.slice(ply.indexOf("end_header") + 1, -1);
+  expect(count).toBeGreaterThan(400);
+  expect(vertices).toHaveLength(count);
+  expect(vertices.every((line) => line.split(" ").length === 6 && line.split(" ").every((word) => Number.isFinite(Number(word))))).toBe(true);
+
+  const { decodeDepth } = await import("../../pkg/files.js");
+  const depth = decodeDepth(await handed(lab, "Refined depth, .npy"));
+  expect([depth.width, depth.height]).toEqual([32, 32]);
+  expect(Math.max(...[...(depth.data ?? [])].filter(Number.isFinite))).toBeGreaterThan(1);
+
+  const light = (await handed(lab, "Light, CSV")).toString().trim().split("\n");
+  expect(light).toHaveLength(4);
+  expect(light[0]).toBe("channel,L1,L2,L3,L4,L5,L6,L7,L8,L9");
+});
+
+test("files dropped anywhere go where their content belongs", async ({ lab, page }) => {
+  await lab.open("size=32");
+  const { encode } = await import("fast-png");
+  const side = 48;
+  const disc = (inside: number) => (_: unknown, i: number) => (Math.hypot((i % side) - 23.5, Math.floor(i / side) - 23.5) < 20 ? inside : 0);
+  const colour = encode({ width: side, height: side, depth: 8, channels: 3, data: Uint8Array.from({ length: 3 * side * side }, (_, i) => 60 + ((5 * i) % 120)) });
+  const depth = encode({ width: side, height: side, depth: 16, channels: 1, data: Uint16Array.from({ length: side * side }, disc(90)) });
+  const mask = encode({ width: side, height: side, depth: 8, channels: 1, data: Uint8Array.from({ length: side * side }, disc(255)) });
+  const files = [["a.png", depth], ["b.png", mask], ["c.png", colour]] as const;
+  const carried = await page.evaluateHandle((files) => {
+    const transfer = new DataTransfer();
+    for (const [name, bytes] of files) transfer.items.add(new File([new Uint8Array(bytes)], name, { type: "image/png" }));
+    return transfer;
+  }, files.map(([name, bytes]) => [name, [...bytes]] as const));
+  await page.locator("#hero").dispatchEvent("drop", { dataTransfer: carried });
+  const slots = page.locator(".slot");
+  await expect(slots.nth(0)).toContainText("c.png");
+  await expect(slots.nth(1)).toContainText("a.png");
+  await expect(slots.nth(2)).toContainText("b.png");
+  await lab.reaches("ready");
+  // Nothing of the sample's truth is left standing.
+  await expect(page.locator("#errors")).toBeHidden();
+  await expect(page.locator("#pose-error")).toBeHidden();
+  await expect(page.locator("#light .ball").filter({ visible: true })).toHaveCount(1);
+});
+
+test("the keyboard alone leads from the load to a pose", async ({ lab, page }) => {
+  await lab.open("size=32");
+  await page.keyboard.press("Tab");
+  await expect(page.getByRole("link", { name: "Skip to Play" })).toBeFocused();
+  await page.keyboard.press("Enter");
+  await expect(page.getByRole("button", { name: "Play" })).toBeFocused();
+  await page.keyboard.press("Enter");
+  await lab.reaches("converged");
+  const waiting = page.waitForEvent("download");
+  await page.getByRole("button", { name: "Pose, JSON" }).focus();
+  await page.keyboard.press("Enter");
+  expect((await waiting).suggestedFilename()).toBe("pose.json");
+});
+
+test("single keys can be switched off", async ({ lab, page }) => {
+  await lab.open("size=32");
+  await page.keyboard.press("?");
+  await page.getByLabel("Single keys are on").uncheck();
+  await page.getByRole("button", { name: "Close" }).click();
+  await page.locator("#clouds-canvas").focus();
+  await page.keyboard.press("s");
+  await page.getByRole("button", { name: "Step", exact: true }).click();
+  await expect(lab.iteration).toHaveText("1");
+  await page.reload();
+  await lab.reaches("ready");
+  await page.keyboard.press("s");
+  await page.keyboard.press("?");
+  await expect(page.getByRole("dialog", { name: "The Lab" })).toBeHidden();
+});
+
+test("fingers have targets of 44 px", async ({ browser, baseURL }) => {
+  const context = await browser.newContext({ hasTouch: true, isMobile: true, viewport: { width: 390, height: 844 } });
+  const page = await context.newPage();
+  await page.goto(`${baseURL}#size=32&start=identity`);
+  await expect(page.locator("#status")).toHaveAttribute("data-state", "ready");
+  const small = await page.locator("#presets button, .transport button, #pace, #input > summary, .top button, #clouds select, #clouds-home, #takeaway button").evaluateAll((targets) =>
+    targets.filter((target) => target.getBoundingClientRect().height < 44 || target.getBoundingClientRect().width < 44).map((target) => target.outerHTML.slice(0, 80)),
+  );
+  expect(small).toEqual([]);
+  await context.close();
+});

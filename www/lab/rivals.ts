@@ -1,0 +1,46 @@
+/** Poses that explain the colours as well: each can be looked at, and be where a new run starts. */
+
+import type { Pose, StepReport } from "../../pkg/index.js";
+import { decimals } from "../draw/numbers";
+import { byId, make } from "../dom";
+import { angleBetween } from "./verdict";
+
+export interface RivalHooks {
+  /** Shows the depth map under this pose, or under its own again. */
+  onLook(pose: Pose | undefined): void;
+  onStart(pose: Pose): void;
+}
+
+/** More would not be told apart. */
+const MOST = 4;
+
+export class Rivals {
+  readonly #box = byId("rivals", HTMLElement);
+  readonly #hooks: RivalHooks;
+  #shown = "";
+
+  constructor(hooks: RivalHooks) {
+    this.#hooks = hooks;
+  }
+
+  show({ rivals = [], pose, status }: StepReport): void {
+    const poses = status === "running" ? [] : rivals.slice(0, MOST);
+    const key = JSON.stringify([poses, poses.length > 0 && pose]);
+    if (key === this.#shown) return;
+    this.#shown = key;
+    this.#box.hidden = poses.length === 0;
+    const start = make("button", { type: "button", hidden: true }, "Start from it");
+    const choices = [undefined, ...poses].map((rival) => {
+      const away = rival && decimals(angleBetween(rival.rotation, pose.rotation), 0);
+      const button = make("button", { type: "button", "aria-pressed": String(!rival) }, rival ? `rival, ${away}° away` : "the one found");
+      button.addEventListener("click", () => {
+        for (const choice of choices) choice.setAttribute("aria-pressed", String(choice === button));
+        start.hidden = !rival;
+        start.onclick = () => rival && this.#hooks.onStart(rival);
+        this.#hooks.onLook(rival);
+      });
+      return button;
+    });
+    this.#box.replaceChildren(...(poses.length > 0 ? [...choices, start] : []));
+  }
+}

@@ -1,0 +1,51 @@
+/** How the run stands, in a panel that never changes its height: a mark, a word, one cause, and what may help. */
+
+import type { StepReport } from "../../pkg/index.js";
+import { byId } from "../dom";
+import type { Verdict } from "./verdict";
+
+/** What else than the loop the status can tell of. */
+export type Notice = "loading" | "waiting" | "error";
+
+/** The marks of the Tables, and those of what is not over. */
+const glyphs: Readonly<Record<string, string>> = {
+  ready: "○", paused: "‖", playing: "▸", loading: "…", waiting: "…", error: "!",
+  converged: "✓", "max-iterations": "=", ambiguous: "?", lost: "×",
+};
+
+export class Status {
+  readonly #panel = byId("panel", HTMLElement);
+  readonly #icon = byId("status-icon", HTMLElement);
+  readonly #word = byId("status", HTMLElement);
+  readonly #cause = byId("verdict", HTMLElement);
+  readonly #message = byId("message", HTMLElement);
+  readonly #next = byId("next", HTMLElement);
+
+  /** `idle` is what the page itself does while the loop rests. */
+  show(report: StepReport, idle: "ready" | "paused" | "playing", end: Verdict | undefined): void {
+    this.#say(end ? report.status : idle, end?.tone ?? "open", end?.status ?? idle);
+    this.#put(this.#cause, end?.words ?? "");
+    this.#put(this.#next, end?.next ?? (idle === "ready" ? "Press play, or choose another example." : ""));
+    this.#put(this.#message, end ? "" : (report.message ?? ""));
+  }
+
+  /** Something other than the loop is going on, or has gone wrong. */
+  announce(state: Notice, words: string): void {
+    this.#say(state, state === "error" ? "wrong" : "open", words);
+    for (const line of [this.#cause, this.#next, this.#message]) this.#put(line, "");
+  }
+
+  #say(state: string, tone: string, word: string): void {
+    this.#panel.dataset.tone = tone;
+    this.#word.dataset.state = state;
+    this.#word.dataset.tone = tone;
+    this.#icon.dataset.mark = state === "max-iterations" ? "stopped" : state;
+    this.#put(this.#icon, glyphs[state] ?? "");
+    this.#put(this.#word, word);
+  }
+
+  /** The same words again would be read aloud again. */
+  #put(element: HTMLElement, words: string): void {
+    if (element.textContent !== words) element.textContent = words;
+  }
+}
