@@ -25,7 +25,7 @@ export const number: Check = (value, field) => {
   if (typeof value !== "number") throw wrong(field, "a number", value);
 };
 
-const flag: Check = (value, field) => {
+export const flag: Check = (value, field) => {
   if (typeof value !== "boolean") throw wrong(field, "true or false", value);
 };
 
@@ -64,7 +64,7 @@ export const numbers = (count: number): Check => (value, field) => {
 type ArrayType = { readonly name: string; new (length: number): ArrayBufferView };
 
 /** A typed array of one of the given kinds. */
-const array = (...types: readonly ArrayType[]): Check => (value, field) => {
+export const array = (...types: readonly ArrayType[]): Check => (value, field) => {
   if (!types.some((type) => value instanceof type)) {
     throw wrong(field, types.map((type) => `a ${type.name}`).join(" or "), value);
   }

@@ -1,5 +1,7 @@
 //! log S = n^T M n with n = [n_x n_y n_z 1]: second-order spherical harmonics (Eq. 3, 5; docs/method.md, section 2).
 
+use nalgebra::{Matrix3, Vector3};
+
 use crate::error::{Error, ErrorKind, Result};
 use crate::numeric::Real;
 use crate::text::Brief;
@@ -68,6 +70,29 @@ impl Light {
             channel[0] += offset / C4;
         }
         self
+    }
+
+    /// The same light after its lamps were turned: a turned normal has the colour that the normal had before.
+    #[must_use]
+    pub fn turned(&self, rotation: &Matrix3<f64>) -> Self {
+        Self(self.0.map(|l| {
+            // The quadratic form of the normal alone; its zz carries what the unit length moves to the constant.
+            let (xx, zz) = (C1 * l[8], C3 * l[6]);
+            #[rustfmt::skip]
+            let form = Matrix3::new(
+                xx, C1 * l[4], C1 * l[7],
+                C1 * l[4], -xx, C1 * l[5],
+                C1 * l[7], C1 * l[5], zz,
+            );
+            let form = rotation * form * rotation.transpose();
+            let linear = rotation * Vector3::new(l[3], l[1], l[2]);
+            // x^2 + y^2 = 1 - z^2 on unit normals, so the mean of xx and yy is a constant less as much of z^2.
+            let mean = (form[(0, 0)] + form[(1, 1)]) / 2.0;
+            let zz = (form[(2, 2)] - mean) / C3;
+            let one = (C4 * l[0] - C5 * l[6] + mean + C5 * zz) / C4;
+            let [xy, yz, xz] = [(0, 1), (1, 2), (0, 2)].map(|place| form[place] / C1);
+            [one, linear.y, linear.z, linear.x, xy, yz, zz, xz, (form[(0, 0)] - mean) / C1]
+        }))
     }
 
     /// By how much log S of R, G, B grows from `other`, a light that differs in its colour alone.
@@ -205,7 +230,7 @@ impl<S: Real<Scalar = S>> Polynomial<S> {
 mod tests {
     use super::*;
     use crate::numeric::Lanes;
-    use nalgebra::{Matrix4, Vector3, Vector4};
+    use nalgebra::{Matrix4, Rotation3, Vector4};
 
     fn light() -> Light {
         Light([
@@ -279,6 +304,16 @@ mod tests {
                     assert!((found - slope[axis]).abs() < 1e-5, "{axis}: {found} {}", slope[axis]);
                 }
             }
+        }
+    }
+
+    #[test]
+    fn a_turned_light_shades_turned_normals_alike() {
+        let rotation = Rotation3::from_euler_angles(0.4, -0.9, 2.1).into_inner();
+        for normal in [[0.36, -0.48, -0.8], [0.6, 0.64, 0.48], [0.0, -0.6, -0.8], [1.0, 0.0, 0.0]] {
+            let turned = rotation * Vector3::from(normal);
+            let (before, after) = (light().shade(normal), light().turned(&rotation).shade(turned.into()));
+            assert!(before.iter().zip(after).all(|(before, after)| (before - after).abs() < 1e-12));
         }
     }
 

@@ -15,6 +15,8 @@ mod calibration;
 #[cfg(not(feature = "calibration"))]
 mod estimator;
 #[cfg(not(feature = "calibration"))]
+mod lessons;
+#[cfg(not(feature = "calibration"))]
 mod sample;
 #[cfg(not(feature = "calibration"))]
 mod worker;
