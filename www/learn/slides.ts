@@ -29,8 +29,8 @@ export class Slides {
   }
 
   open(article: HTMLElement, title: string): void {
-    this.take(article, title);
     this.element.showModal();
+    this.take(article, title);
   }
 
   take(article: HTMLElement, title: string): void {
@@ -38,7 +38,7 @@ export class Slides {
     this.#holder.replaceChildren(article);
     this.#holder.scrollTop = 0;
     // A control that is gone takes the focus with it, and the keys would reach nobody.
-    if (this.element.open) article.querySelector("h2")?.focus();
+    article.querySelector("h2")?.focus();
   }
 
   close(): void {

@@ -11,7 +11,7 @@ const SIZE = 64;
 /** Side of the disc's grid of heights. */
 const DISC = 128;
 /** Shares of the depth map's columns: the least of the slider, and that of the turned one. */
-const LEAST_OVERLAP = 0.05;
+const LEAST_OVERLAP = 0.08;
 const NARROW = 0.2;
 
 /** A disc of rings, round but for a nose. */

@@ -3,7 +3,7 @@
 import type { Sample } from "../../../pkg/index.js";
 import type { Drawing, Values } from "../protocol";
 import { pictureOf, scalarOf } from "./draw";
-import { correlation, degreesBetween, meanOf, normalDegrees } from "./measure";
+import { correlation, meanOf, normalDegrees } from "./measure";
 import { numberOf, running, scene } from "./scenes";
 
 const SIZE = 96;
@@ -45,7 +45,7 @@ export function* paint(values: Values): Generator<Drawing> {
   const { pair, paint, shadow } = painted(made, strength, darkness);
   const grid = made.image;
   const exp = (log: Float32Array) => log.map(Math.exp);
-  for (const estimator of running(pair, { start: made.pose, scale: 1, registration: values.pose === "held" ? "fixed" : "joint" }, 12)) {
+  for (const estimator of running(pair, { start: made.pose, scale: 1, registration: "fixed" }, 12)) {
     const { report } = estimator;
     const [albedo, shading, residual] = [estimator.albedo(), estimator.shading(), estimator.residual()];
     const isShadow = (index: number) => shadow[index] === 1;
@@ -62,7 +62,6 @@ export function* paint(values: Values): Generator<Drawing> {
         lit: meanOf(residual, (index) => !isShadow(index)),
         shaded: darkness > 0 ? meanOf(residual, isShadow) : NaN,
         degrees: normalDegrees(estimator.imageNormals(), made.truth.imageNormals),
-        error: degreesBetween(report.pose.rotation, made.pose.rotation),
       },
       words: { status: report.status === "running" ? `iteration ${report.iteration}` : [report.status, report.message].filter(Boolean).join(": ") },
     };
