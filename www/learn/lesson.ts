@@ -61,7 +61,7 @@ export interface Lesson {
   more: string;
 }
 
-export const LIGHTS = [["colourful", "three coloured lamps"], ["window", "a room with a window"], ["overcast", "a yard under clouds"]] as const;
+export const LIGHTS = [["colourful", "coloured lamps"], ["window", "window"], ["overcast", "cloudy yard"]] as const;
 
 export const initialValues = ({ controls }: Lesson): Values => Object.fromEntries(controls.map(({ key, initial }) => [key, initial]));
 

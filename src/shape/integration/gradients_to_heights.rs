@@ -132,7 +132,6 @@ impl Integrator {
     ///
     /// # Errors
     /// [`ErrorKind::Size`] where the mask is not as long as the raster, [`ErrorKind::Empty`] where it holds no pixel.
-    #[inline(never)]
     pub fn new(size: Size, mask: &[bool]) -> Result<Self> {
         same_length("mask", size, mask.len())?;
         let Some(([left, top], [right, bottom])) = bounding_box(size, mask) else {

@@ -94,7 +94,6 @@ impl Default for ShadingSolver {
 impl ShadingSolver {
     /// A solver with its directions spread evenly (a Fibonacci spiral) over the visible hemisphere.
     #[must_use]
-    #[inline(never)]
     pub fn new() -> Self {
         let golden = std::f64::consts::PI * (3.0 - 5.0_f64.sqrt());
         let rim = f64::from(RIM);

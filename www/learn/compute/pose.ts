@@ -75,7 +75,7 @@ export function* pose(values: Values): Generator<Drawing> {
     }
     return;
   }
-  const options: Options = run === "search" ? { light: made.light, scale: 1 } : told(made, offset, "joint");
+  const options: Options = run === "search" ? { scale: 1 } : told(made, offset, "joint");
   for (const { estimator, status } of watched(made, options)) {
     state = stateOf(estimator, status);
     yield draw();

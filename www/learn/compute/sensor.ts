@@ -9,11 +9,11 @@ import { numberOf, running, scene } from "./scenes";
 const SIZE = 64;
 const STEPS = 6;
 
-const options = (made: Sample, refinement: number) => ({ light: made.light, start: made.pose, scale: 1, registration: "fixed", lambda: { refinement } }) as const;
+const options = (made: Sample) => ({ light: made.light, start: made.pose, scale: 1, registration: "fixed" }) as const;
 
 /** Normals as the sensor's depth has them, before anything was refined. */
 function rawNormals(made: Sample): Float32Array {
-  const estimator = new Estimator(made.image, made.depth, options(made, 1));
+  const estimator = new Estimator(made.image, made.depth, options(made));
   try {
     return estimator.depthNormals();
   } finally {
@@ -23,7 +23,7 @@ function rawNormals(made: Sample): Float32Array {
 
 export function* sensor(values: Values): Generator<Drawing> {
   const [noise, holes] = [numberOf(values, "noise"), numberOf(values, "holes")];
-  const made = scene({ surface: "bust", light: String(values.light), size: SIZE, angles: { beta: 15 }, noise: 0.005, depthNoise: noise, holes: holes / 100, seed: 3 });
+  const made = scene({ surface: "bust", light: String(values.light), size: SIZE, angles: { beta: 15 }, noise: numberOf(values, "picture"), depthNoise: noise, holes: holes / 100, seed: 3 });
   const grid = made.depth;
   const measured = made.depth.data as Float32Array;
   const inside = (depth: ArrayLike<number>) => Array.from(depth, (value, index) => (made.depth.mask?.[index] ? value : NaN));
@@ -31,7 +31,7 @@ export function* sensor(values: Values): Generator<Drawing> {
   const middle = meanOf(made.truth.depth);
   const row = Math.round(0.45 * grid.height);
   const holesAt = (index: number) => Boolean(made.depth.mask?.[index]) && !Number.isFinite(measured[index]);
-  for (const estimator of running(made, options(made, numberOf(values, "weight")), STEPS)) {
+  for (const estimator of running(made, options(made), STEPS)) {
     const refined = estimator.refinedDepth();
     const normals = estimator.depthNormals();
     const measuredOnly = refined.map((value, index) => (Number.isFinite(measured[index]) ? value : NaN));

@@ -47,9 +47,9 @@ export const grey: Lesson = {
   formula: () => block(logS(), mo("="), predicted(), mo(","), mi("j"), mo("="), mn("1")),
   formulaWords: "One equation for one colour. The unit normal has two unknowns.",
   text: [
-    "A normal has two degrees of freedom. Grey light gives one equation. So the normals that explain one pixel form a curve; in the map of costs on the right it is the dark line. Nothing in the pixel says where on that line the true normal lies.",
+    "A normal has two degrees of freedom. Grey light gives one equation. So the normals that explain one pixel form a curve; in the map of costs it is the dark line. Nothing in the pixel says where on that line the true normal lies.",
     "For a picture as a whole there is more trouble. Turn every normal by half a turn about the line of sight: a bump becomes a dent. Turn the lamp likewise, and every pixel keeps its brightness. This is why craters in photographs sometimes look like hills.",
-    "The rule behind it: lights of order 2 turned by any rotation are again lights of order 2. If the light is unknown, colour does not help against this; a known light, or a depth map, does.",
+    "The rule behind it: lights of order 2 turned by any rotation are again lights of order 2. If the light is unknown, colour does not help against this; only a known light, or a depth map, does.",
   ],
   tasks: ["Move the lamp of the dent from 0° to 180°. At 180° the two pictures are the same, and the difference falls to almost zero.", "Make the bump flat. Then there is nothing to tell apart.", "Drag the pixel on the bump and watch how the dark curve moves."],
   controls: [
@@ -77,7 +77,7 @@ export const colours: Lesson = {
     "A quadratic form in three colours can still have several valleys. So the solver first compares 600 directions all over the hemisphere and then walks downhill from the best one. The dots are all valleys, the larger the more starts end there.",
     "Natural light is nearly white. Its three curves almost coincide, and the valley becomes long and flat: a little noise moves the lowest point by tens of degrees. Then a pixel alone is lost.",
   ],
-  tasks: ["Drag the colour from 0 to 1. The dark curve shrinks to a few spots and the error of the normals falls.", "Choose the room with a window at full colour: the curve stays long.", "Add noise and compare how much each light suffers."],
+  tasks: ["Drag the colour from 0 to 1. The dark curve shrinks to a few spots and the error of the normals falls.", "Choose the window at full colour: the curve stays long.", "Add noise and compare how much each light suffers."],
   controls: [
     { kind: "slider", key: "colour", label: "Colour of the light", min: 0, max: 1, step: 0.02, initial: 0.3, hint: "0: the mean of its three colours for all; 1: the light as it is" },
     { kind: "choice", key: "light", label: "Light", choices: LIGHTS, initial: "colourful" },

@@ -14,8 +14,8 @@ export const pose: Lesson = {
   formulaWords: "The cost of the colours plus lambda times the squared distance between the normal and the depth map's normal turned by the pose.",
   text: [
     "A photograph and a depth map look nothing alike, so there are no features to match. What links them is the image model: turn the depth map's normals {m} by the pose's rotation {R}, and they must explain the colours. Under a wrong pose they do not, and a residual is left. The curve shows it for wrong turns about the vertical axis.",
-    "Joint registration walks down this residual, with light and pose moving together. It needs a start within reach, some 20 to 30 degrees. If nothing is known, a search comes first: it scores rotations from all over the sphere coarsely and hands the best to the registration.",
-    "The map on the right is the cost of one pixel over all its normals, with the prior from the depth map under the present pose: a ring for the prior, dots for the valleys, a line for the steps of the solver from the prior. A small {lambda} leaves several valleys. Make it larger and they merge into one, near the prior. That is help if the pose is right, and harm if it is wrong. The robust prior is a compromise: one that is far off loses its hold.",
+    "Joint registration walks down this residual, and light and pose move together where the light is unknown. It needs a start within reach, some 20 to 30 degrees. If nothing is known, a search comes first: it scores rotations from all over the sphere coarsely and hands the best to the registration.",
+    "The last map is the cost of one pixel over all its normals, with the prior from the depth map under the present pose: a ring for the prior, dots for the valleys, a line for the steps of the solver from the prior. A small {lambda} leaves several valleys. Make it larger and they merge into one, near the prior. That is help if the pose is right, and harm if it is wrong. The robust prior is a compromise: one that is far off loses its hold.",
   ],
   tasks: ["Turn the pose away from 0° and watch the residual rise and the two surfaces part.", "Drag λ to the right until the valleys of the pixel have merged. Repeat with the pose 20° wrong.", "Let it register from 20° away, then from 40°: the second time it says that it is lost.", "Let it search from nothing."],
   controls: [
@@ -43,18 +43,18 @@ export const sensor: Lesson = {
   id: "sensor",
   title: "Refining the sensor",
   gist: "The picture sees fine shape that the sensor's noise hides. With the pose known, it cleans the depth map.",
-  formula: () => block(norm(row(symbol("z"), mo("−"), symbol("d"))), mo("+"), mi("μ"), sum(mi("j")), sup(row(mo("("), mi("log"), symbol("S"), mo("−"), sup(sub(symbol("n"), symbol("z")), mi("⊤")), symbol("M"), sub(symbol("n"), symbol("z")), mo(")")), mn("2"))),
-  formulaWords: "The squared distance between the refined and the measured depth, plus a weight times the cost of the colours for the normals of the refined depth.",
+  formula: () => block(mi("μ"), norm(row(symbol("z"), mo("−"), symbol("d"))), mo("+"), sum(mi("j")), sup(row(mo("("), mi("log"), symbol("S"), mo("−"), sup(sub(symbol("n"), symbol("z")), mi("⊤")), symbol("M"), sub(symbol("n"), symbol("z")), mo(")")), mn("2")), mo(","), mi("μ"), mo("="), sup(row(mo("("), sub(mi("σ"), mi("S")), mo("/"), sub(mi("σ"), symbol("d")), mo(")")), mn("2"))),
+  formulaWords: "A weight mu times the squared distance between the refined and the measured depth, plus the cost of the colours for the normals of the refined depth. Mu is the variance of the shading over that of the sensor.",
   text: [
     "A depth sensor is right on the large scale and noisy on the small one. Shading is the other way round: it tells slopes from pixel to pixel and drifts over long distances. The two fit together.",
-    "Once the pose is known, the refinement looks for a depth {z} that stays near the measured depth {d} and whose normals explain the colours. Holes are filled where the colour camera sees the place. Normals gain most, for they are differences of neighbours, in which noise is largest.",
+    "Once the pose is known, the refinement looks for a depth {z} that stays near the measured depth {d} and whose normals explain the colours. Nobody sets the weight μ between the two: it is the variance of the shading over that of the sensor, both measured from the data. Holes are filled where the colour camera sees the place. Normals gain most, for they are differences of neighbours, in which noise is largest.",
     "What the picture does not see stays as it was measured: the side that is turned away, and what lies in shadow.",
   ],
-  tasks: ["Raise the noise of the sensor. The measured normals turn to confetti; the refined ones hold.", "Cut holes into the depth map and watch the share that is filled.", "Lower the weight of the refinement: the result returns to the measured depth."],
+  tasks: ["Raise the noise of the sensor. The measured normals turn to confetti; the refined ones hold.", "Cut holes into the depth map and watch the share that is filled.", "Raise the noise of the picture: it has less to give, and the refined depth gets worse."],
   controls: [
-    { kind: "slider", key: "noise", label: "Noise of the sensor", min: 0.02, max: 1, step: 0.02, initial: 0.3, unit: "px" },
+    { kind: "slider", key: "noise", label: "Noise of the sensor", min: 0.02, max: 1, step: 0.02, initial: 0.4, unit: "px" },
     { kind: "slider", key: "holes", label: "Holes", min: 0, max: 40, step: 1, initial: 5, unit: "%" },
-    { kind: "slider", key: "weight", label: "Weight of the refinement", min: -3, max: 1, step: 0.1, initial: 0, logarithmic: true },
+    { kind: "slider", key: "picture", label: "Noise of the picture", min: 0, max: 0.2, step: 0.005, initial: 0.005 },
     { kind: "choice", key: "light", label: "Light", choices: LIGHTS, initial: "colourful" },
   ],
   readouts: [
