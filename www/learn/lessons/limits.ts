@@ -12,10 +12,10 @@ export const paint: Lesson = {
   formulaWords: "Log intensity is log albedo plus shading plus what is left over.",
   text: [
     "Print is not shape. A model with one albedo would read every painted edge as a fold. So once the pose has come to rest, the module asks whether a few paints explain the picture better: each pixel has the shading of its measured normal, plus one of a few offsets {a}. How many paints there are follows from the evidence.",
-    "Hue decides: coloured paint changes red, green and blue by different amounts, while shading under whitish light changes them nearly alike. Grey paint, and any paint under light of all colours, is much harder to tell.",
+    "Hue decides: coloured paint changes red, green and blue by different amounts, while shading under whitish light changes them nearly alike. Grey paint is much harder to tell, and so is any paint under light of all colours.",
     "A cast shadow breaks the model: there the light is another one. Robust weights count such pixels less, so that they pull light and pose little. A hard shadow edge can still pass for paint, and its inside stays in the remainder {e}.",
   ],
-  tasks: ["Raise the paint. It appears in the albedo and leaves the shading.", "Remove the paint and raise the shadow. See where it goes: some into the albedo, the rest into what is left over.", "Choose the three coloured lamps: now hue says little, and shading takes up the paint."],
+  tasks: ["Raise the paint. It appears in the albedo and leaves the shading.", "Remove the paint and raise the shadow. See where it goes: some into the albedo, the rest into what is left over.", "Choose the coloured lamps: now hue says less, and the normals get worse."],
   controls: [
     { kind: "slider", key: "paint", label: "Strength of the paint", min: 0, max: 1, step: 0.05, initial: 0.8 },
     { kind: "slider", key: "shadow", label: "Depth of the shadow", min: 0, max: 0.95, step: 0.05, initial: 0 },

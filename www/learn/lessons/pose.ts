@@ -50,7 +50,7 @@ export const sensor: Lesson = {
     "Once the pose is known, the refinement looks for a depth {z} that stays near the measured depth {d} and whose normals explain the colours. Nobody sets the weight μ between the two: it is the variance of the shading over that of the sensor, both measured from the data. Holes are filled where the colour camera sees the place. Normals gain most, for they are differences of neighbours, in which noise is largest.",
     "What the picture does not see stays as it was measured: the side that is turned away, and what lies in shadow.",
   ],
-  tasks: ["Raise the noise of the sensor. The measured normals turn to confetti; the refined ones hold.", "Cut holes into the depth map and watch the share that is filled.", "Raise the noise of the picture: it has less to give, and the refined depth gets worse."],
+  tasks: ["Raise the noise of the sensor. The measured normals get rough; the refined ones hold.", "Cut holes into the depth map and watch the share that is filled.", "Raise the noise of the picture: it has less to give, and the refined depth gets worse."],
   controls: [
     { kind: "slider", key: "noise", label: "Noise of the sensor", min: 0.02, max: 1, step: 0.02, initial: 0.4, unit: "px" },
     { kind: "slider", key: "holes", label: "Holes", min: 0, max: 40, step: 1, initial: 5, unit: "%" },

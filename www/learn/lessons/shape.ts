@@ -42,10 +42,10 @@ export const prior: Lesson = {
   formulaWords: "The cost of the colours plus lambda times the squared distance between the normal and the one that the depth map gives.",
   text: [
     "A second camera measures depth. If its pose is known, each of its points lands on a pixel and brings a normal {m}. It enters the cost as a prior with the weight {lambda}: of all normals that explain the colours, take one near {m}.",
-    "This is the paper's Figure 5. The light is known, the picture has 2 % noise, and a share of the pixels, chosen at random, is given the true normal. All others have their colours alone. With more of them the surface improves, and more than in proportion: integration carries what a few pixels know to their neighbours.",
+    "This is the paper's Figure 5. The light is known, the picture has 2 % noise, and a share of the pixels, chosen at random, is given the true normal. All others have their colours alone. With more of them the surface improves, at first more than in proportion: pixels without a prior gain, too, for all pixels share the exposure of the picture, and a few given normals fix it.",
     "Too small a weight and the prior is ignored; a very large one copies the depth map and throws the picture away. Here the prior is perfect, so large does no harm. A real depth map is noisy and has no fine detail.",
   ],
-  tasks: ["Move the share from 0 to 100 %. The curve is computed while you watch.", "Choose the three coloured lamps: the prior is hardly needed.", "Set λ to 0: the given normals are there and change nothing."],
+  tasks: ["Move the share from 0 to 100 %. The curve is computed while you watch.", "Choose the coloured lamps: the prior is hardly needed.", "Set λ to 0: the given normals are there and change nothing."],
   controls: [
     { kind: "slider", key: "share", label: "Pixels with a prior", min: 0, max: 100, step: 1, initial: 20, unit: "%" },
     { kind: "slider", key: "weight", label: "Weight λ of the prior", min: -4, max: 1, step: 0.1, initial: -1.3, logarithmic: true },
