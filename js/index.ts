@@ -6,6 +6,7 @@ import { wasmUrl } from "./wasm.js";
 export { checkCalibration, projectFrame, sampleRig } from "./calibration/index.js";
 export { BimodalError } from "./errors.js";
 export { Estimator } from "./estimator.js";
+export { integrateNormals, pixelLandscape } from "./lessons.js";
 export { sample, sampleBound, sampleLights, sampleSurfaces, shadeNormals, turnLight } from "./samples.js";
 export type * from "./types.js";
 export { wasmUrl } from "./wasm.js";

@@ -78,8 +78,9 @@ pub use pose::{
 };
 pub use report::{Objective, Stage, Status, StepReport};
 pub use shape::{
-    AnchorWeight, Anchors, IntegrationOptions, IntegrationReport, IntegrationTermination, Integrator, Robustness,
-    ShadingProblem, ShadingReport, ShadingSolver, ShadingWeights, exposure_step, first_exposure, gradients,
+    AnchorWeight, Anchors, IntegrationOptions, IntegrationReport, IntegrationTermination, Integrator, Minimum,
+    PixelLandscape, Robustness, ShadingProblem, ShadingReport, ShadingSolver, ShadingWeights, exposure_step,
+    first_exposure, gradients, surface_of_normals,
 };
 pub use view::{
     Camera, ColourImage, ColourSamples, ColourView, DepthMap, DepthNoise, DepthSamples, DepthView, Normals, Pinhole,

@@ -30,6 +30,7 @@ type OtherPlace = Exclude<Place, "lab">;
 
 /** Loaded when first asked for. */
 const loaders: Record<OtherPlace, () => Promise<new (main: HTMLElement) => Elsewhere>> = {
+  learn: async () => (await import("./learn/page")).LearnPage,
   tables: async () => (await import("./tables/page")).TablesPage,
   rig: async () => (await import("./rig/page")).RigPage,
 };
@@ -63,6 +64,7 @@ button("help-button", openHelp);
 button("link", () => void copyLink());
 themeToggle(byId("theme", HTMLButtonElement), () => {
   gallery.recolour();
+  others.learn?.recolour();
   others.tables?.recolour();
   others.rig?.recolour();
 });
@@ -110,6 +112,7 @@ async function copyLink(): Promise<void> {
 
 const places: Record<Place, { main: HTMLElement; link: HTMLAnchorElement; title: string }> = {
   lab: { main: byId("lab", HTMLElement), link: byId("to-lab", HTMLAnchorElement), title: "bimodal-stereo" },
+  learn: { main: byId("learn", HTMLElement), link: byId("to-learn", HTMLAnchorElement), title: "Learn, bimodal-stereo" },
   tables: { main: byId("tables", HTMLElement), link: byId("to-tables", HTMLAnchorElement), title: "Tables, bimodal-stereo" },
   rig: { main: byId("rig", HTMLElement), link: byId("to-rig", HTMLAnchorElement), title: "Check a rig, bimodal-stereo" },
 };
@@ -137,6 +140,7 @@ async function arrive(): Promise<void> {
   const opensFirst = !arrived && location.hash === "" && isFirstVisit();
   arrived = true;
   show(place);
+  if (place !== "learn") others.learn?.leave();
   if (place !== "tables") others.tables?.leave();
   if (place !== "rig") others.rig?.leave();
   if (place !== "lab") {

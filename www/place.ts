@@ -1,8 +1,8 @@
 /** Which place of the page an address asks for. The Lab's own settings need no name: they have the address to themselves. */
 
-export type Place = "lab" | "tables" | "rig";
+export type Place = "lab" | "learn" | "tables" | "rig";
 
-const NAMED = /^#(tables|rig)(?=&|$)/;
+const NAMED = /^#(learn|tables|rig)(?=&|$)/;
 
 export const placeOf = (hash: string): Place => (NAMED.exec(hash)?.[1] as Place | undefined) ?? "lab";
 

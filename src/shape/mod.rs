@@ -13,8 +13,10 @@
 //! | equation | file |
 //! |---|---|
 //! | Eq. 6 to 9 (17 and 18 for the depth view): terms and derivatives of one pixel | `pixels/shading` |
+//! | the objective of one pixel over the hemisphere, to look at | `pixels/landscape` |
 //! | the exposure of a known light | `pixels/exposure` |
 //! | gradients and slopes of normals | `integration/normals_to_gradients` |
+//! | a surface straight from given normals | `integration/surface_of_normals` |
 //! | robust weights of gradients | `integration/gradients_to_heights` |
 //! | the weighted Poisson equation and its preconditioner | `integration/poisson` |
 //! | brightness of a cell as a function of its slopes | `heights/cell_terms`, the rays' part in `heights/ray_frames` |
@@ -38,7 +40,10 @@ pub use heights::{HeightDomain, STARTS, Scratch};
 pub use image_shape::{ImageShapeProblem, ImageShapeSolver};
 pub use integration::{
     AnchorWeight, Anchors, IntegrationOptions, IntegrationReport, IntegrationTermination, Integrator, Robustness,
-    gradients,
+    gradients, surface_of_normals,
 };
-pub use pixels::{ShadingProblem, ShadingReport, ShadingSolver, ShadingWeights, exposure_step, first_exposure};
+pub use pixels::{
+    Minimum, PixelLandscape, ShadingProblem, ShadingReport, ShadingSolver, ShadingWeights, exposure_step,
+    first_exposure,
+};
 pub use refinement::{RefinementProblem, RefinementTerms, Refiner};

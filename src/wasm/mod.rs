@@ -15,6 +15,8 @@ mod output;
 mod calibration;
 #[cfg(not(any(feature = "calibration", feature = "rigs")))]
 mod estimator;
+#[cfg(not(any(feature = "calibration", feature = "rigs")))]
+mod lessons;
 #[cfg(feature = "rigs")]
 mod rigs;
 #[cfg(not(any(feature = "calibration", feature = "rigs")))]

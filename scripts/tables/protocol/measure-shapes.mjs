@@ -8,7 +8,7 @@ import { judged, optionsOf, withRun } from "./runs.mjs";
 const ANYWHERE = 1e6;
 
 /** Depth error, root mean square, up to the constant that parallel rays cannot see. */
-function depthRmse(found, truth) {
+export function depthRmse(found, truth) {
   const off = [...truth.keys()].map((index) => found[index] - truth[index]).filter(Number.isFinite);
   const middle = median(off);
   return rms(off.map((value) => value - middle));
@@ -48,7 +48,7 @@ export async function measureIterations(cell, { sample, Estimator }, library) {
 }
 
 /** The same pixels come first for every share, so that more of them is never less. */
-function chosenPixels(mask, share, seed) {
+export function chosenPixels(mask, share, seed) {
   const dice = chance(seed);
   const order = [...mask.keys()].filter((index) => mask[index]).map((index) => [dice.uniform(), index]);
   order.sort(([a], [b]) => a - b);

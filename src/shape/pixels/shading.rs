@@ -64,16 +64,16 @@ pub struct ShadingReport {
 /// Solver with its table of directions; holds no pixel.
 #[derive(Clone, Debug)]
 pub struct ShadingSolver {
-    directions: Vec<[f32; 3]>,
+    pub(super) directions: Vec<[f32; 3]>,
     shades: Vec<[f32; 3]>,
 }
 
 /// Directions on the hemisphere that are compared: 5 degrees apart, well inside the basin of the local solve.
 const DIRECTIONS: usize = 600;
 /// n_z of the flattest of them: nearer the rim a surface is too steep to be seen in a pixel.
-const RIM: f32 = -0.05;
+pub(super) const RIM: f32 = -0.05;
 /// Trials of one pixel in one solve; the paper allows 1000 and needs 300, Gauss-Newton needs about five.
-const MOST_STEPS: usize = 30;
+pub(super) const MOST_STEPS: usize = 30;
 /// A step that short (in units of a unit normal, 0.06 degrees) is the last one: it is taken, and leaves a tenth of
 /// itself at most, a hundredth of the best normals' error.
 const SMALLEST_STEP: f32 = 1e-3;
@@ -130,7 +130,7 @@ impl ShadingSolver {
             if (red.finite() | prior.finite()).any() {
                 let pixels = Pixels::new(problem, index, weights, &polynomials);
                 let (start, here, known) = self.start(&pixels, normals.lanes(index));
-                solved = known.select3(normalise(pixels.descend(start, here, known, &mut counts)), solved);
+                solved = known.select3(normalise(pixels.descend(start, here, known, MOST_STEPS, &mut counts)), solved);
             }
             solved[0].store(&mut normals.x[index..]);
             solved[1].store(&mut normals.y[index..]);
@@ -223,7 +223,7 @@ impl<'a> Pixels<'a> {
         robust::rho(self.prior_weight * squared, squared * self.inverse_square_scale)
     }
 
-    fn objective(&self, normal: [Lanes; 3]) -> Lanes {
+    pub(super) fn objective(&self, normal: [Lanes; 3]) -> Lanes {
         let unit = dot(normal, normal) - Lanes::splat(1.0);
         let residuals = self.residuals(normal);
         self.colour_weight * dot(residuals, residuals) + self.prior_term(normal) + self.unit_weight * unit * unit
@@ -254,11 +254,13 @@ impl<'a> Pixels<'a> {
 
     /// Damped Gauss-Newton; a step to a normal that faces away from the camera counts as no descent. The loop goes on
     /// until the last of the four has converged, the others keep their normals.
-    fn descend(
+    #[inline(never)]
+    pub(super) fn descend(
         &self,
         start: [Lanes; 3],
         mut here: LinearisedPixels,
         known: Mask,
+        most_steps: usize,
         counts: &mut ShadingReport,
     ) -> [Lanes; 3] {
         let (zero, tenth, ten) = (Lanes::splat(0.0), Lanes::splat(0.1), Lanes::splat(10.0));
@@ -266,7 +268,7 @@ impl<'a> Pixels<'a> {
         let mut normal = start;
         let mut damping = Lanes::splat(FIRST_DAMPING);
         let mut moving = known;
-        for _ in 0..MOST_STEPS {
+        for _ in 0..most_steps {
             let step = solve_damped(&here, damping);
             let trial = [normal[0] - step[0], normal[1] - step[1], normal[2] - step[2]];
             let converged = moving & dot(step, step).less(shortest);
@@ -350,7 +352,7 @@ fn squared_distance(a: [Lanes; 3], b: [Lanes; 3]) -> Lanes {
     dot(off, off)
 }
 
-fn normalise(vector: [Lanes; 3]) -> [Lanes; 3] {
+pub(super) fn normalise(vector: [Lanes; 3]) -> [Lanes; 3] {
     let inverse = Lanes::splat(1.0) / dot(vector, vector).sqrt();
     [vector[0] * inverse, vector[1] * inverse, vector[2] * inverse]
 }

@@ -1,0 +1,45 @@
+/** Single parts of the method, to look at: what lessons are made of. */
+import { array, flag, numbers, object, ranged } from "./check.js";
+import { across } from "./border.js";
+import { bindings } from "./engine.js";
+import type { PixelLandscape, PixelLandscapeRequest } from "./types.js";
+
+const light = numbers(27);
+const normal = numbers(3);
+const side = ranged({ kind: "side", min: 1, max: 4096 });
+const weight = ranged({ kind: "number", min: 0 });
+const normals = array(Float32Array);
+const landscape = object(
+  { log: normal, light, prior: normal, weight, robust: flag, start: normal, side: ranged({ kind: "side", min: 0, max: 512 }) },
+  ["log", "light"],
+);
+
+/** From x, y, z of each normal to all x, all y, all z, as the numerics have them. */
+function planes(interleaved: Float32Array): Float32Array {
+  normals(interleaved, "normals");
+  const count = Math.floor(interleaved.length / 3);
+  return new Float32Array(3 * count).map((_, at) => interleaved[3 * (at % count) + Math.floor(at / count)] ?? NaN);
+}
+
+/**
+ * Depth, in pixels, of the surface that has these normals (3*w*h interleaved, NaN where there is none) before an orthographic camera:
+ * in the least-squares sense, or `robust`, with what crosses a discontinuity cut. Mean zero in each connected part.
+ */
+export function integrateNormals(unitNormals: Float32Array, width: number, height: number, robust = true): Float32Array {
+  side(width, "width");
+  side(height, "height");
+  flag(robust, "robust");
+  return across(() => bindings().integrateNormals(planes(unitNormals), width, height, robust));
+}
+
+const NONE = [NaN, NaN, NaN];
+const FACING = [0, 0, -1];
+
+/** The objective of one pixel over all normals that a camera can see, its minima, and the steps of one descent. */
+export function pixelLandscape(request: PixelLandscapeRequest): PixelLandscape {
+  landscape(request, "landscape");
+  const { log, prior = NONE, start = FACING, weight = 0, robust = true, side = 96 } = request;
+  const row = Float64Array.of(...[log, prior, start].flatMap((vector) => Array.from(vector)), weight);
+  const [objective, minima, path] = across(() => bindings().pixelLandscape(Float64Array.from(request.light), row, robust, side));
+  return { objective, minima, path };
+}

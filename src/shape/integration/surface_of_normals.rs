@@ -1,0 +1,55 @@
+//! The surface of given normals, in one call: for those who want to see what integration does to them, and for lessons.
+//!
+//! Limits: an orthographic view. Without anchors the parts of the surface that no edge joins have mean zero each.
+
+use super::gradients_to_heights::{IntegrationOptions, Integrator, Robustness};
+use super::normals_to_gradients::find_slopes;
+use crate::error::Result;
+use crate::view::{Camera, Normals, Size};
+
+/// Depth in pixels of the surface that has these normals in the least-squares sense, NaN where there is none; `robust`
+/// cuts what crosses a discontinuity, as the loop does.
+///
+/// # Errors
+/// [`ErrorKind::Size`](crate::ErrorKind::Size) where there are not as many normals as pixels,
+/// [`ErrorKind::Empty`](crate::ErrorKind::Empty) where there is none at all.
+pub fn surface_of_normals(size: Size, normals: &Normals, robust: bool) -> Result<Vec<f32>> {
+    let mask: Vec<bool> = (0..normals.len()).map(|index| normals.is_valid(index)).collect();
+    let mut slopes = [(); 2].map(|()| vec![f32::NAN; size.len()]);
+    let mut depth = slopes[0].clone();
+    let mut integrator = Integrator::new(size, &mask)?;
+    find_slopes(size, &Camera::Orthographic, normals, &mask, &mut slopes);
+    let robustness = if robust { Robustness::Estimated } else { Robustness::Off };
+    integrator.integrate(
+        &slopes[0],
+        &slopes[1],
+        None,
+        &IntegrationOptions { robustness, ..Default::default() },
+        &mut depth,
+    )?;
+    Ok(depth)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_slope_comes_back() {
+        let size = Size { width: 24, height: 16 };
+        let mut normals = Normals::missing(size.len());
+        let length = (1.0_f32 + 0.3 * 0.3).sqrt();
+        for index in 0..size.len() {
+            normals.set(index, [0.3 / length, 0.0, -1.0 / length]);
+        }
+        for robust in [false, true] {
+            let depth = surface_of_normals(size, &normals, robust).unwrap();
+            for index in 0..size.len() {
+                let expected = 0.3 * (size.position(index).0 as f32 - 11.5);
+                assert!((depth[index] - expected).abs() < 1e-3, "{robust}: {} {expected}", depth[index]);
+            }
+        }
+        assert!(surface_of_normals(size, &Normals::missing(3), false).is_err());
+        assert!(surface_of_normals(size, &Normals::missing(size.len()), false).is_err());
+    }
+}

@@ -1,0 +1,283 @@
+/** Learn: each lesson's figure answers to its control, links open their state, slides turn by keys. */
+
+import type { Locator, Page } from "@playwright/test";
+import { expect, test } from "./lab";
+
+const figure = (page: Page): Locator => page.locator(".learn-figure");
+
+async function open(page: Page, state = ""): Promise<void> {
+  await page.goto(`./#learn${state ? `&${state}` : ""}`);
+  await settled(page);
+}
+
+/** The last drawing for the values as they are. */
+async function settled(page: Page): Promise<void> {
+  await expect(figure(page)).toHaveAttribute("aria-busy", "false");
+}
+
+async function number(page: Page, key: string): Promise<number> {
+  await settled(page);
+  return Number((await page.locator(`[data-number="${key}"]`).getAttribute("data-value")) ?? NaN);
+}
+
+/** Moves a slider as a hand does: the page hears of it by the input event, and is busy from then on. */
+async function slide(page: Page, name: string, value: number): Promise<void> {
+  const slider = page.locator(`.learn-controls input[name="${name}"]`);
+  await slider.fill(String(value));
+  await expect(slider).toHaveValue(String(value));
+}
+
+function fingerprint(page: Page, panel: string): Promise<number> {
+  return page.locator(`[data-panel="${panel}"] canvas`).evaluate((canvas: HTMLCanvasElement) => {
+    const data = canvas.getContext("2d")?.getImageData(0, 0, canvas.width, canvas.height).data ?? new Uint8ClampedArray();
+    return data.reduce((sum, value) => (sum * 31 + value) % 1_000_003, 7);
+  });
+}
+
+test("the Lab alone loads nothing of Learn, and Learn leaves the Lab alone", async ({ lab, page }) => {
+  const asked: string[] = [];
+  page.on("request", (request) => asked.push(new URL(request.url()).pathname));
+  await lab.open();
+  const before = asked.filter((path) => /\.(js|css)$/.test(path)).length;
+  await page.getByRole("link", { name: "Learn", exact: true }).click();
+  await expect(page.getByRole("heading", { name: "1. What a pixel knows" })).toBeVisible();
+  await settled(page);
+  expect(asked.filter((path) => /\.(js|css)$/.test(path)).length).toBeGreaterThan(before);
+  await expect(page.getByRole("button", { name: "Play" })).toBeHidden();
+  await page.getByRole("link", { name: "Lab", exact: true }).click();
+  await lab.reaches("ready");
+});
+
+test("1: the light and the albedo change the predicted colour, and a drag chooses the normal", async ({ lab, page }) => {
+  await open(page, "at=pixel");
+  const red = await number(page, "red");
+  await slide(page, "albedo", 0.5);
+  expect((await number(page, "red")) - red).toBeCloseTo(Math.log(0.5), 5);
+  const bust = await fingerprint(page, "bust");
+  await slide(page, "beta", 60);
+  await settled(page);
+  expect(await fingerprint(page, "bust")).not.toBe(bust);
+  // The orders add up to the whole, but for the albedo.
+  const parts = (await number(page, "order0")) + (await number(page, "order1")) + (await number(page, "order2"));
+  expect(parts + Math.log(0.5)).toBeCloseTo(await number(page, "green"), 4);
+
+  const ball = await page.locator('[data-panel="ball"] .learn-canvas').boundingBox();
+  if (!ball) throw new Error("There is no ball.");
+  await page.mouse.move(ball.x + ball.width / 2, ball.y + ball.height / 2);
+  await page.mouse.down();
+  await page.mouse.move(ball.x + 0.2 * ball.width, ball.y + 0.5 * ball.height, { steps: 4 });
+  await page.mouse.up();
+  await expect(page).toHaveURL(/nx=-0\.5\d/);
+  expect(lab.complaints).toEqual([]);
+});
+
+test("2: a dent under the turned lamp is the bump's picture", async ({ lab, page }) => {
+  await open(page, "at=grey&turn=60");
+  const apart = await number(page, "difference");
+  expect(apart).toBeGreaterThan(0.05);
+  await slide(page, "turn", 180);
+  expect(await number(page, "difference")).toBeLessThan(1e-3);
+  // Flat, there is no difference under any lamp that is told from another by slopes alone.
+  await slide(page, "height", 0);
+  expect(await number(page, "difference")).toBeLessThan(apart);
+  expect(lab.complaints).toEqual([]);
+});
+
+test("3: colour makes the curve short and the normals right; noise does not", async ({ lab, page }) => {
+  await open(page, "at=colours&colour=0&noise=0.01");
+  const [grey, curve] = [await number(page, "degrees"), await number(page, "explained")];
+  await slide(page, "colour", 1);
+  const coloured = await number(page, "degrees");
+  expect(coloured).toBeLessThan(0.2 * grey);
+  expect(await number(page, "explained")).toBeLessThan(0.3 * curve);
+  await slide(page, "noise", 0.1);
+  expect(await number(page, "degrees")).toBeGreaterThan(2 * coloured);
+  await figure(page).getByLabel("Light", { exact: true }).selectOption("window");
+  await slide(page, "noise", 0.01);
+  expect(await number(page, "degrees")).toBeGreaterThan(2 * coloured);
+  expect(lab.complaints).toEqual([]);
+});
+
+test("4: a step leaves no trace, robust weights bring it back where a way leads around it", async ({ lab, page }) => {
+  await open(page, "at=surface&step=0");
+  expect(await number(page, "error")).toBeLessThan(0.2);
+  await slide(page, "step", 8);
+  const robust = [await number(page, "error"), await number(page, "jump")];
+  await page.getByLabel("Robust weights").uncheck();
+  const plain = [await number(page, "error"), await number(page, "jump")];
+  expect(plain[0]).toBeGreaterThan(1.5 * (robust[0] ?? NaN));
+  expect(plain[1]).toBeLessThan(robust[1] ?? NaN);
+  await page.getByLabel("Robust weights").check();
+  await page.getByLabel("The step cuts the plate in two").check();
+  expect(await number(page, "error")).toBeGreaterThan(2 * (robust[0] ?? NaN));
+  expect(lab.complaints).toEqual([]);
+});
+
+test("5: more prior, better normals; none at all where its weight is zero", async ({ lab, page }) => {
+  await open(page, "at=prior&share=0");
+  const none = await number(page, "degrees");
+  await slide(page, "share", 50);
+  const half = await number(page, "degrees");
+  expect(half).toBeLessThan(0.7 * none);
+  await slide(page, "share", 100);
+  expect(await number(page, "degrees")).toBeLessThan(half);
+  // Eight shares, computed one after the other.
+  await expect(page.locator('[data-panel="figure5"] circle')).toHaveCount(8);
+  await slide(page, "weight", -4);
+  await expect(page.getByLabel("Weight λ of the prior")).toHaveAttribute("aria-valuetext", "0");
+  expect(await number(page, "degrees")).toBeCloseTo(none, 1);
+  expect(lab.complaints).toEqual([]);
+});
+
+test("6: a wrong pose leaves a residual, valleys merge, and registration comes home", async ({ lab, page }) => {
+  await open(page, "at=pose&offset=0");
+  const right = await number(page, "residual");
+  const valleys = await number(page, "minima");
+  expect(valleys).toBeGreaterThan(1);
+  await slide(page, "weight", 0);
+  expect(await number(page, "minima")).toBe(1);
+  expect(await number(page, "end")).toBeLessThan(10);
+  await slide(page, "offset", 20);
+  expect(await number(page, "residual")).toBeGreaterThan(3 * right);
+  expect(await number(page, "error")).toBeCloseTo(20, 3);
+  await page.getByLabel("What happens").selectOption("register");
+  expect(await number(page, "error")).toBeLessThan(1);
+  await expect(page.locator('[data-number="status"]')).toHaveText("converged");
+  await page.getByLabel("What happens").selectOption("search");
+  await expect(page.locator('[data-number="status"]')).toHaveText(/^search/);
+  expect(await number(page, "error")).toBeLessThan(1);
+  expect(lab.complaints).toEqual([]);
+});
+
+test("7: the refined depth is better than the measured one, as far as the picture is good", async ({ lab, page }) => {
+  await open(page, "at=sensor&noise=0.3&holes=10");
+  const before = await number(page, "before");
+  expect(await number(page, "after")).toBeLessThan(0.7 * before);
+  expect(await number(page, "normalsAfter")).toBeLessThan(0.7 * (await number(page, "normalsBefore")));
+  expect(await number(page, "filled")).toBeGreaterThan(50);
+  const after = await number(page, "after");
+  await slide(page, "picture", 0.2);
+  expect(await number(page, "after")).toBeGreaterThan(1.1 * after);
+  expect(await number(page, "before")).toBeCloseTo(before, 6);
+  await slide(page, "noise", 0.8);
+  expect(await number(page, "before")).toBeGreaterThan(2 * before);
+  expect(lab.complaints).toEqual([]);
+});
+
+test("8: paint goes into the albedo, a shadow into what is left over", async ({ lab, page }) => {
+  await open(page, "at=paint&paint=0.8");
+  expect(await number(page, "likeness")).toBeGreaterThan(0.7);
+  const lit = await number(page, "lit");
+  await slide(page, "paint", 0);
+  await slide(page, "shadow", 0.9);
+  expect(await number(page, "shaded")).toBeGreaterThan(3 * lit);
+  expect(await number(page, "shaded")).toBeGreaterThan(3 * (await number(page, "lit")));
+  expect(lab.complaints).toEqual([]);
+});
+
+test("9: what can't be seen is said", async ({ lab, page }) => {
+  await open(page, "at=failure&case=overlap&amount=0");
+  await expect(page.locator('[data-number="status"]')).toHaveText("converged");
+  expect(await number(page, "error")).toBeLessThan(1);
+  const sigma = await number(page, "sigma");
+  await slide(page, "amount", 100);
+  expect(await number(page, "sigma")).toBeGreaterThan(3 * sigma);
+  await expect(page.locator('[data-number="status"]')).toHaveText(/^(ambiguous|lost)/);
+  await page.getByLabel("What goes wrong").selectOption("symmetry");
+  await expect(page.locator('[data-number="status"]')).toHaveText(/rotation about z is not observable/);
+  expect(lab.complaints).toEqual([]);
+});
+
+test("links of the exercises open the state they speak of", async ({ lab, page }) => {
+  await page.goto("./#learn&at=exercises");
+  const exercises = page.locator(".learn-exercises > ol > li");
+  await expect(exercises).toHaveCount(5);
+  for (const answer of await page.locator(".learn-exercises details").all()) await expect(answer).not.toHaveAttribute("open", "");
+  const links = await page.locator(".learn-links a").evaluateAll((all) => all.map((link) => link.getAttribute("href") ?? ""));
+  expect(links.length).toBeGreaterThanOrEqual(5);
+  for (const link of links.filter((address) => address.startsWith("#learn"))) {
+    await page.goto(`./${link}`);
+    const asked = new URLSearchParams(link.slice(1));
+    await expect(page.locator(`.learn-lesson[data-lesson="${asked.get("at")}"]`)).toBeVisible();
+    for (const [key, value] of asked) {
+      if (key === "learn" || key === "at") continue;
+      const control = page.locator(`.learn-controls [name="${key}"]`);
+      if ((await control.getAttribute("type")) === "checkbox") expect(await control.isChecked()).toBe(value === "1");
+      else await expect(control).toHaveValue(value);
+    }
+  }
+  const lab_ = links.find((address) => !address.startsWith("#learn")) ?? "";
+  await page.goto(`./${lab_.replace("&play", "")}`);
+  await lab.reaches("ready");
+  await expect(page.getByLabel("Surface", { exact: true })).toHaveValue("bust");
+});
+
+test("an address brings a lesson back, and what is no value of a control is passed over", async ({ lab, page }) => {
+  await open(page, "at=colours&colour=0.5&noise=7&light=moon&px=abc");
+  await expect(page.locator('.learn-controls input[name="colour"]')).toHaveValue("0.5");
+  await expect(page.locator('.learn-controls input[name="noise"]')).toHaveValue("0.1");
+  await expect(figure(page).getByLabel("Light", { exact: true })).toHaveValue("colourful");
+  await page.reload();
+  await settled(page);
+  await expect(page.locator('.learn-controls input[name="colour"]')).toHaveValue("0.5");
+  // Another lesson and back: what was set stays.
+  await page.getByRole("navigation", { name: "Lessons" }).getByRole("link", { name: "Refining the sensor" }).click();
+  await expect(page.getByRole("heading", { name: "7. Refining the sensor" })).toBeVisible();
+  await page.getByRole("navigation", { name: "Lessons" }).getByRole("link", { name: "Three colours" }).click();
+  await expect(page.locator('.learn-controls input[name="colour"]')).toHaveValue("0.5");
+  expect(lab.complaints).toEqual([]);
+});
+
+test("slides turn by keys, leave the sliders theirs, and end by escape", async ({ lab, page }) => {
+  await open(page, "at=grey");
+  await page.getByRole("button", { name: "Slides" }).press("Enter");
+  const slides = page.locator("dialog.learn-slides");
+  await expect(slides).toBeVisible();
+  await expect(slides.getByRole("heading", { name: "2. One grey light is not enough" })).toBeVisible();
+  await expect(slides.getByText("A normal has two degrees of freedom")).toBeHidden();
+  await page.keyboard.press("ArrowRight");
+  await expect(slides.getByRole("heading", { name: "3. Three colours" })).toBeVisible();
+  await expect(page).toHaveURL(/at=colours.*&slides$/);
+  // A slider keeps its arrows.
+  const slider = slides.locator('input[name="colour"]');
+  await slider.focus();
+  await page.keyboard.press("ArrowRight");
+  await expect(slider).toHaveValue("0.32");
+  await page.keyboard.press("PageUp");
+  await expect(slides.getByRole("heading", { name: "2. One grey light is not enough" })).toBeVisible();
+  await page.keyboard.press("ArrowLeft");
+  await page.keyboard.press("ArrowLeft");
+  await expect(slides.getByRole("heading", { name: "1. What a pixel knows" })).toBeVisible();
+  await page.keyboard.press("Escape");
+  await expect(slides).toBeHidden();
+  await expect(page.getByRole("heading", { name: "1. What a pixel knows" })).toBeVisible();
+  await expect(page.getByText("The surface is matte")).toBeVisible();
+  await expect(page).not.toHaveURL(/slides/);
+  expect(lab.complaints).toEqual([]);
+});
+
+test("every control has a name and every picture words", async ({ page }) => {
+  for (const id of ["pixel", "grey", "colours", "surface", "prior", "pose", "sensor", "paint"]) {
+    await open(page, `at=${id}`);
+    const unnamed = await page.locator("#learn :is(input, select)").evaluateAll((all) =>
+      all.filter((control) => (control as HTMLInputElement).labels?.length === 0).length);
+    expect(unnamed).toBe(0);
+    const silent = await page.locator("#learn :is(canvas, svg.learn-plot)").evaluateAll((all) => all.filter((picture) => !picture.getAttribute("aria-label")).length);
+    expect(silent).toBe(0);
+  }
+});
+
+for (const width of [320, 390, 1280, 1600, 2560]) {
+  test(`no lesson sticks out at ${width} px`, async ({ page }) => {
+    await page.setViewportSize({ width, height: 800 });
+    for (const id of ["pixel", "grey", "colours", "surface", "prior", "pose", "sensor", "paint", "exercises"]) {
+      await page.goto(`./#learn&at=${id}`);
+      if (id !== "exercises") await settled(page);
+      await expect(page.locator(id === "exercises" ? ".learn-exercises" : `[data-lesson="${id}"]`)).toBeVisible();
+      expect(await page.evaluate(() => document.documentElement.scrollWidth), id).toBeLessThanOrEqual(width);
+    }
+    await page.goto("./#learn&at=pose&slides");
+    await settled(page);
+    expect(await page.locator(".learn-slide").evaluate((slide) => slide.scrollWidth - slide.clientWidth)).toBe(0);
+  });
+}

@@ -1,0 +1,72 @@
+/** Points of both surfaces, seen from a side that a slider sets. */
+
+import { freshId, ink, make } from "../dom";
+import type { CloudPanel, Panel } from "./protocol";
+
+const SIDE = 320;
+/** Where the view starts: half way between front and side, so that depth shows. */
+const FIRST_TURN = 50;
+
+export class Cloud {
+  readonly element: HTMLElement;
+  readonly #title = make("figcaption", {});
+  readonly #canvas = make("canvas", { width: SIDE, height: SIDE, role: "img" });
+  readonly #turn: HTMLInputElement;
+  readonly #legend = make("p", { class: "learn-legend learn-keys" });
+  #panel: CloudPanel | undefined;
+
+  constructor() {
+    const id = freshId("learn-turn");
+    this.#turn = make("input", { id, type: "range", min: -90, max: 90, step: 5, value: FIRST_TURN });
+    this.#turn.addEventListener("input", () => this.#draw());
+    const turn = make("div", { class: "learn-turn" }, make("label", { for: id }, "Turn the view"), this.#turn);
+    this.element = make("figure", { class: "learn-panel" }, this.#title, make("div", { class: "learn-canvas plain" }, this.#canvas), turn, this.#legend);
+  }
+
+  show(panel: Panel): void {
+    if (panel.kind !== "cloud") return;
+    this.element.dataset.panel = panel.key;
+    this.#panel = panel;
+    this.#title.textContent = panel.title;
+    this.#canvas.setAttribute("aria-label", panel.alt);
+    this.#legend.replaceChildren(...panel.sets.map(({ name, ink }) => make("span", { class: `learn-key learn-ink-${ink}` }, name)));
+    this.#draw();
+  }
+
+  #draw(): void {
+    const context = this.#canvas.getContext("2d");
+    const panel = this.#panel;
+    if (!context || !panel) return;
+    const [first] = panel.sets;
+    if (!first) return;
+    context.clearRect(0, 0, SIDE, SIDE);
+    const { middle, reach } = extent(first.points);
+    const angle = (this.#turn.valueAsNumber * Math.PI) / 180;
+    const [c, s] = [Math.cos(angle), Math.sin(angle)];
+    const scale = (0.46 * SIDE) / reach;
+    for (const { ink: name, points } of panel.sets) {
+      context.fillStyle = ink(`learn-${name}`);
+      context.globalAlpha = 0.75;
+      for (let at = 0; at < points.length; at += 3) {
+        const [x, y, z] = [0, 1, 2].map((axis) => (points[at + axis] ?? NaN) - (middle[axis] ?? 0)) as [number, number, number];
+        const [u, v] = [c * x + s * z, y];
+        if (Number.isFinite(u + v)) context.fillRect(SIDE / 2 + scale * u - 1, SIDE / 2 + scale * v - 1, 2, 2);
+      }
+    }
+    context.globalAlpha = 1;
+  }
+}
+
+/** Middle of a cloud's box and half of its longest side. */
+function extent(points: Float32Array): { middle: number[]; reach: number } {
+  const boxes = [0, 1, 2].map((axis) => {
+    let [least, most] = [Infinity, -Infinity];
+    for (let at = axis; at < points.length; at += 3) {
+      const value = points[at] ?? NaN;
+      if (value < least) least = value;
+      if (value > most) most = value;
+    }
+    return most >= least ? [(least + most) / 2, (most - least) / 2] : [0, 1];
+  });
+  return { middle: boxes.map(([middle]) => middle ?? 0), reach: Math.max(...boxes.map(([, half]) => half ?? 1), 1e-6) };
+}

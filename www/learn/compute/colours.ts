@@ -1,0 +1,29 @@
+/** Three colours: each cuts a curve out of the hemisphere, and where the curves meet are the normals that are left. */
+
+import type { Drawing, Values } from "../protocol";
+import { atPixel, normalsOf, pictureOf } from "./draw";
+import { landscapeOf } from "./landscape";
+import { normalDegrees } from "./measure";
+import { after, lightNamed, logAt, numberOf, pixelAt, saturated, scene, vectorAt } from "./scenes";
+
+const SIZE = 64;
+
+export function* colours(values: Values): Generator<Drawing> {
+  const light = saturated(lightNamed(String(values.light)), numberOf(values, "colour"));
+  const made = scene({ surface: "bust", light, size: SIZE, angles: { beta: 0 }, noise: numberOf(values, "noise") });
+  const grid = made.image;
+  const chosen = pixelAt(grid.mask, grid.width, grid.height, numberOf(values, "px"), numberOf(values, "py"));
+  const truth = vectorAt(made.truth.imageNormals, chosen);
+  const landscape = landscapeOf({ log: logAt(made, chosen), light, start: [0, 0, -1] }, { truth });
+  const found = after(made, { light, start: made.pose, registration: "fixed", shading: "pixel", lambda: { prior: 0 } }, 1, (estimator) => estimator.imageNormals());
+  const ring = [{ ink: "pixel", shape: "ring", points: atPixel(chosen, grid), size: 3 } as const];
+  yield {
+    panels: [
+      pictureOf({ key: "picture", title: "The picture", alt: "A bust under the light of the slider.", legend: "drag to choose a pixel" }, grid, made.image.data as Float32Array, ring),
+      landscape.panel,
+      normalsOf({ key: "found", title: "Normals, each pixel alone", alt: "Normals that single pixels find without any prior." }, grid, found, ring),
+      normalsOf({ key: "truth", title: "True normals", alt: "The true normals of the bust." }, grid, made.truth.imageNormals, ring),
+    ],
+    numbers: { explained: landscape.explained, good: landscape.good, degrees: normalDegrees(found, made.truth.imageNormals) },
+  };
+}

@@ -1,0 +1,85 @@
+/** The objective of one pixel as a panel: values, minima, prior, and the steps of one descent. */
+
+import { pixelLandscape, type PixelLandscape, type PixelLandscapeRequest } from "../../../pkg/index.js";
+import type { ImagePanel, Mark } from "../protocol";
+import { onDisc, scalarOf } from "./draw";
+
+const SIDE = 128;
+/** Distance in log colour up to which a normal counts as an explanation: two percent of brightness, the noise of a good camera. */
+export const NOISE = 0.02;
+/** Distance at which the picture's colours end. */
+const MOST_SHOWN = 1;
+
+export interface Landscape {
+  panel: ImagePanel;
+  /** Share of the hemisphere's picture whose colour is the pixel's up to noise, percent. */
+  explained: number;
+  /** Minima as good as the best, within the noise. */
+  good: number;
+  /** All minima. */
+  minima: number;
+  lowest: [number, number, number];
+  end: [number, number, number];
+}
+
+const COLUMNS = 5;
+
+export function landscapeOf(request: PixelLandscapeRequest, words: { key?: string; title?: string; truth?: ArrayLike<number> } = {}): Landscape {
+  const found = pixelLandscape({ side: SIDE, ...request });
+  const distances = found.objective.map((value) => Math.sqrt(value));
+  const inside = distances.filter(Number.isFinite);
+  // Of three channels together.
+  const reach = NOISE * Math.sqrt(3);
+  const explained = (100 * inside.filter((value) => value < reach).length) / inside.length;
+  const minima = minimaOf(found);
+  const best = minima[0]?.objective ?? 0;
+  const end = found.path.subarray(-3);
+  const panel = scalarOf(
+    {
+      key: words.key ?? "landscape",
+      title: words.title ?? "Cost of every normal of that pixel",
+      alt: `The hemisphere of all visible normals seen from the front; dark is cheap. It has ${minima.length} minima.`,
+      legend: "dark: this normal explains the pixel; bright: it does not",
+    },
+    { width: SIDE, height: SIDE },
+    distances,
+    { min: 0, max: MOST_SHOWN },
+    "viridis",
+    marksOf(found, minima, request, words.truth),
+  );
+  return {
+    panel,
+    explained,
+    good: minima.filter(({ objective }) => objective < best + reach * reach).length,
+    minima: minima.length,
+    lowest: minima[0]?.normal ?? [NaN, NaN, NaN],
+    end: [end[0] ?? NaN, end[1] ?? NaN, end[2] ?? NaN],
+  };
+}
+
+interface Minimum {
+  normal: [number, number, number];
+  objective: number;
+  share: number;
+}
+
+/** Least share of the directions that makes a minimum worth a mark: single descents that stall are none. */
+const LEAST_SHARE = 0.004;
+
+function minimaOf({ minima }: PixelLandscape): Minimum[] {
+  return Array.from({ length: minima.length / COLUMNS }, (_, i) => {
+    const [x = NaN, y = NaN, z = NaN, objective = NaN, share = NaN] = minima.subarray(COLUMNS * i, COLUMNS * (i + 1));
+    return { normal: [x, y, z] as [number, number, number], objective, share };
+  }).filter(({ share }) => share > LEAST_SHARE);
+}
+
+function marksOf({ path }: PixelLandscape, minima: Minimum[], { prior, weight }: PixelLandscapeRequest, truth?: ArrayLike<number>): Mark[] {
+  const steps = Array.from({ length: path.length / 3 }, (_, i) => onDisc(path.subarray(3 * i, 3 * i + 3)));
+  return [
+    { ink: "path", shape: "line", points: steps.flat() },
+    { ink: "path", shape: "dot", points: steps.flat(), size: 0.9 },
+    ...(truth ? [{ ink: "truth", shape: "cross", points: onDisc(truth), size: 3 } as const] : []),
+    ...minima.map(({ normal, share }) => ({ ink: "minimum", shape: "dot", points: onDisc(normal), size: 1.2 + 3 * Math.sqrt(share) }) as const),
+    ...(prior && (weight ?? 0) > 0 ? [{ ink: "prior", shape: "ring", points: onDisc(prior), size: 3.5 } as const] : []),
+  ];
+}

@@ -1,0 +1,69 @@
+/** Shadows, paint, and what the model does about them. */
+
+import type { Sample } from "../../../pkg/index.js";
+import type { Drawing, Values } from "../protocol";
+import { pictureOf, scalarOf } from "./draw";
+import { correlation, meanOf, normalDegrees } from "./measure";
+import { numberOf, running, scene } from "./scenes";
+
+const SIZE = 96;
+/** Log colours of the paints at full strength, and the side of a square of paint, pixels. */
+const PAINTS = [[0, -0.7, -0.9], [-0.8, -0.2, -0.1], [-0.1, -0.1, -0.8]] as const;
+const SQUARE = 16;
+/** The shadow falls on a slanting band. */
+const BAND = [0.42, 0.58] as const;
+
+interface Painted {
+  pair: Pick<Sample, "image" | "depth">;
+  /** What was painted, log, mean taken off as the module does. */
+  paint: Float32Array;
+  shadow: Uint8Array;
+}
+
+function painted(made: Sample, strength: number, darkness: number): Painted {
+  const { width, mask } = made.image;
+  const colours = (made.image.data as Float32Array).slice();
+  const paint = new Float32Array(colours.length).fill(NaN);
+  const shadow = new Uint8Array(colours.length / 3);
+  for (let index = 0; index < shadow.length; index++) {
+    const [column, row] = [index % width, Math.floor(index / width)];
+    const hue = PAINTS[(Math.floor(column / SQUARE) + Math.floor(row / SQUARE)) % PAINTS.length] ?? PAINTS[0];
+    const along = (column + 0.5 * row) / (1.5 * width);
+    shadow[index] = darkness > 0 && along > BAND[0] && along < BAND[1] ? 1 : 0;
+    for (const [channel, offset] of hue.entries()) {
+      if (mask?.[index]) paint[3 * index + channel] = strength * offset;
+      const at = 3 * index + channel;
+      colours[at] = (colours[at] ?? NaN) * Math.exp(strength * offset) * (shadow[index] ? 1 - darkness : 1);
+    }
+  }
+  return { pair: { image: { ...made.image, data: colours }, depth: made.depth }, paint, shadow };
+}
+
+export function* paint(values: Values): Generator<Drawing> {
+  const made = scene({ surface: "bust", light: String(values.light), size: SIZE, angles: { beta: 20 }, noise: 0.005 });
+  const [strength, darkness] = [numberOf(values, "paint"), numberOf(values, "shadow")];
+  const { pair, paint, shadow } = painted(made, strength, darkness);
+  const grid = made.image;
+  const exp = (log: Float32Array) => log.map(Math.exp);
+  for (const estimator of running(pair, { start: made.pose, scale: 1, registration: "fixed" }, 12)) {
+    const { report } = estimator;
+    const [albedo, shading, residual] = [estimator.albedo(), estimator.shading(), estimator.residual()];
+    const isShadow = (index: number) => shadow[index] === 1;
+    const hasPaint = albedo.some((value) => Number.isFinite(value) && value !== 0);
+    yield {
+      panels: [
+        pictureOf({ key: "picture", title: "The picture", alt: "A painted bust with a cast shadow across it." }, grid, pair.image.data as Float32Array),
+        pictureOf({ key: "albedo", title: "Albedo: the paint found", alt: "The paint that the module tells apart from the light." }, grid, exp(albedo), [], 1.6),
+        pictureOf({ key: "shading", title: "Shading: what the light does", alt: "The picture without its paint." }, grid, exp(shading)),
+        scalarOf({ key: "residual", title: "Left over", alt: "What neither paint nor shading explains.", legend: "dark: explained; bright: off by 1 and more" }, grid, residual, { min: 0, max: 1 }, "magma"),
+      ],
+      numbers: {
+        likeness: strength > 0 && hasPaint ? correlation(albedo, paint) : NaN,
+        lit: meanOf(residual, (index) => !isShadow(index)),
+        shaded: darkness > 0 ? meanOf(residual, isShadow) : NaN,
+        degrees: normalDegrees(estimator.imageNormals(), made.truth.imageNormals),
+      },
+      words: { status: report.status === "running" ? `iteration ${report.iteration}` : [report.status, report.message].filter(Boolean).join(": ") },
+    };
+  }
+}

@@ -1,0 +1,110 @@
+/** Finding the pose: the residual tells a wrong one, registration and search find the right one, a pixel's prior follows it. */
+
+import type { Estimator, Options, Sample } from "../../../pkg/index.js";
+import type { CloudPanel, Drawing, Values } from "../protocol";
+import { atPixel, pictureOf, plot, scalarOf } from "./draw";
+import { cloudsOf } from "./clouds";
+import { landscapeOf } from "./landscape";
+import { aboutY, angleBetween, degreesBetween, meanOf, product, turned } from "./measure";
+import { afterStages, isOn, logAt, numberOf, pixelAt, scene, vectorAt, watched } from "./scenes";
+
+const SIZE = 64;
+/** The pose to be found. */
+const BETA = 20;
+const OFFSETS = [-40, -30, -20, -14, -8, -4, 0, 4, 8, 14, 20, 30, 40];
+/** Stages of an iteration up to the light, whose fit leaves the residual, and up to the image's surface. */
+const [TO_LIGHT, TO_SURFACE] = [1, 3];
+
+const picture = (values: Values): Sample => scene({ surface: "bust", light: String(values.light), size: SIZE, angles: { beta: BETA }, noise: 0.01 });
+
+const middles = new WeakMap<Sample, number[]>();
+/** The middle of the depth map's points in the camera's frame, under the true pose. */
+function middleOf(made: Sample): number[] {
+  const known = middles.get(made);
+  if (known) return known;
+  const points = afterStages(made, { light: made.light, start: made.pose, scale: 1, registration: "fixed" }, 0, (estimator) => estimator.points("depth"));
+  const middle = [0, 1, 2].map((axis) => meanOf(points, (at) => at % 3 === axis));
+  middles.set(made, middle);
+  return middle;
+}
+
+/** The true pose, turned about the object's middle. */
+function told(made: Sample, degrees: number, registration: "fixed" | "joint"): Options {
+  const middle = middleOf(made);
+  const turn = aboutY(degrees);
+  const arm = made.pose.translation.map((value, axis) => value - (middle[axis] ?? 0));
+  const translation = turned(turn, arm).map((value, axis) => value + (middle[axis] ?? 0));
+  return { light: made.light, start: { rotation: product(turn, made.pose.rotation), translation }, scale: 1, registration, shading: "pixel" };
+}
+
+interface State {
+  panel: CloudPanel;
+  residual: Float32Array;
+  rotation: readonly number[];
+  correspondence: Int32Array;
+  normals: Float32Array;
+  explained: number;
+  status: string;
+}
+
+const stateOf = (estimator: Estimator, status = ""): State => {
+  const residual = estimator.residual();
+  return {
+    panel: cloudsOf(estimator),
+    residual,
+    rotation: estimator.report.pose.rotation,
+    correspondence: estimator.correspondence(),
+    normals: estimator.depthNormals(),
+    explained: estimator.report.residual,
+    status,
+  };
+};
+
+export function* pose(values: Values): Generator<Drawing> {
+  const made = picture(values);
+  const offset = numberOf(values, "offset");
+  const curve: number[] = [];
+  let state = afterStages(made, told(made, offset, "fixed"), TO_SURFACE, (estimator) => stateOf(estimator, "held where you put it"));
+  const draw = (): Drawing => drawing(values, made, state, curve);
+  yield draw();
+  const run = String(values.run);
+  if (run === "hold") {
+    for (const each of OFFSETS) {
+      curve.push(each, afterStages(made, told(made, each, "fixed"), TO_LIGHT, (estimator) => estimator.report.residual));
+      yield draw();
+    }
+    return;
+  }
+  const options: Options = run === "search" ? { scale: 1 } : told(made, offset, "joint");
+  for (const { estimator, status } of watched(made, options)) {
+    state = stateOf(estimator, status);
+    yield draw();
+  }
+}
+
+function drawing(values: Values, made: Sample, state: State, curve: number[]): Drawing {
+  const grid = made.image;
+  const chosen = pixelAt(grid.mask, grid.width, grid.height, numberOf(values, "px"), numberOf(values, "py"));
+  const truth = vectorAt(made.truth.imageNormals, chosen);
+  const seen = state.correspondence[chosen] ?? -1;
+  const prior = seen < 0 ? undefined : turned(state.rotation, vectorAt(state.normals, seen));
+  const known = prior?.every(Number.isFinite) ? prior : undefined;
+  const weight = numberOf(values, "weight");
+  const landscape = landscapeOf({ log: logAt(made, chosen), light: made.light, weight: known ? weight : 0, robust: isOn(values, "robust"), start: known ?? [0, 0, -1], ...(known ? { prior: known } : {}) }, { truth });
+  const ring = [{ ink: "pixel", shape: "ring", points: atPixel(chosen, grid), size: 3 } as const];
+  const error = degreesBetween(state.rotation, made.pose.rotation);
+  const panels: Drawing["panels"] = [
+    pictureOf({ key: "picture", title: "The picture", alt: "A bust; the ring is the pixel of the cost map.", legend: "drag to choose a pixel" }, grid, made.image.data as Float32Array, ring),
+    state.panel,
+    scalarOf({ key: "residual", title: "Colours left unexplained", alt: "Residual of every pixel under this pose: dark where the colours are explained.", legend: "dark: explained; bright: off by 0.5 and more" }, grid, state.residual, { min: 0, max: 0.5 }, "magma", ring),
+    landscape.panel,
+  ];
+  if (String(values.run) === "hold") {
+    panels.push(plot({ key: "curve", title: "Residual against the error of the pose", alt: "The residual is least where the pose is right." }, "pose wrong by, °", "residual", [{ name: "residual", ink: "pose", points: [...curve], dots: true }], { at: numberOf(values, "offset"), range: [0, 0.2] }));
+  }
+  return {
+    panels,
+    numbers: { error, residual: meanOf([state.explained]), minima: landscape.minima, off: known ? angleBetween(known, truth) : NaN, end: angleBetween(landscape.end, truth) },
+    words: { status: state.status },
+  };
+}

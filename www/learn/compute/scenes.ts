@@ -1,0 +1,146 @@
+/** Scenes of the lessons, made by the module and kept as long as they are looked at. */
+
+import { Estimator, shadeNormals, sample, type Options, type Sample, type SampleRequest } from "../../../pkg/index.js";
+import type { Values } from "../protocol";
+
+/** The last few scenes: dragging a control that is no part of the scene must not render it anew. */
+const MOST_KEPT = 8;
+const kept = new Map<string, Sample>();
+
+export function scene(request: SampleRequest, key = ""): Sample {
+  const name = key + JSON.stringify({ ...request, surface: typeof request.surface === "string" ? request.surface : "own", light: Array.from(request.light as never) });
+  const known = kept.get(name);
+  if (known) return known;
+  const made = sample(request);
+  kept.set(name, made);
+  const oldest = kept.keys().next().value;
+  if (kept.size > MOST_KEPT && oldest !== undefined) kept.delete(oldest);
+  return made;
+}
+
+export const numberOf = (values: Values, name: string): number => Number(values[name] ?? 0);
+export const isOn = (values: Values, name: string): boolean => numberOf(values, name) === 1;
+
+const lights = new Map<string, Float64Array>();
+/** The 27 coefficients of a built-in light. */
+export function lightNamed(name: string): Float64Array {
+  const known = lights.get(name) ?? sample({ surface: "bust", light: name, size: 16 }).light;
+  lights.set(name, known);
+  return known;
+}
+
+/** Coefficients of one channel. */
+const ORDERS = 9;
+
+/** The light with its three colours moved toward their mean: 0 is grey, 1 the light itself. */
+export function saturated(light: Float64Array, share: number): Float64Array {
+  return light.map((value, index) => {
+    const k = index % ORDERS;
+    const mean = ((light[k] ?? 0) + (light[k + ORDERS] ?? 0) + (light[k + 2 * ORDERS] ?? 0)) / 3;
+    return mean + share * (value - mean);
+  });
+}
+
+/** The part of a light that is of one order in the normal: 0, 1 or 2. */
+export function ofOrder(light: Float64Array, order: 0 | 1 | 2): Float64Array {
+  const [first, end] = ([[0, 1], [1, 4], [4, ORDERS]] as const)[order];
+  return light.map((value, index) => (index % ORDERS >= first && index % ORDERS < end ? value : 0));
+}
+
+/** Unit normals of a ball that fills a square, NaN outside. */
+export function ballNormals(side: number): Float32Array {
+  const normals = new Float32Array(3 * side * side).fill(NaN);
+  for (let index = 0; index < side * side; index++) {
+    const [x, y] = [index % side, Math.floor(index / side)].map((place) => (2 * place + 1) / side - 1) as [number, number];
+    const rest = 1 - x * x - y * y;
+    if (rest > 0.002) normals.set([x, y, -Math.sqrt(rest)], 3 * index);
+  }
+  return normals;
+}
+
+/** The normal that a visitor points at; one beyond the edge is drawn back to it. */
+export function normalAt(x: number, y: number): [number, number, number] {
+  const length = Math.hypot(x, y);
+  const shrink = length > 0.98 ? 0.98 / length : 1;
+  const [a, b] = [x * shrink, y * shrink];
+  return [a, b, -Math.sqrt(1 - a * a - b * b)];
+}
+
+/** The pixel of a mask that is nearest to a place given as shares of the sides. */
+export function pixelAt(mask: Uint8Array | undefined, width: number, height: number, x: number, y: number): number {
+  let [best, least] = [0, Infinity];
+  for (let index = 0; index < width * height; index++) {
+    if (mask && !mask[index]) continue;
+    const distance = Math.hypot((index % width) + 0.5 - x * width, Math.floor(index / width) + 0.5 - y * height);
+    if (distance < least) [best, least] = [index, distance];
+  }
+  return best;
+}
+
+export const vectorAt = (field: ArrayLike<number>, index: number): [number, number, number] => [field[3 * index] ?? NaN, field[3 * index + 1] ?? NaN, field[3 * index + 2] ?? NaN];
+
+/** The logarithm of a pixel's colour. */
+export const logAt = ({ image }: Sample, index: number): [number, number, number] => vectorAt(image.data, index).map((value) => Math.log(value)) as [number, number, number];
+
+/** Linear colours that the image model predicts for these normals, all darker or brighter by e^albedo. */
+export function predicted(light: ArrayLike<number>, normals: Float32Array, albedo = 0): Float32Array {
+  return shadeNormals(light, normals).map((value) => Math.exp(value + albedo));
+}
+
+/** Runs a loop to its end, or so many steps, and frees it whatever happens. */
+export function* running(made: Pick<Sample, "image" | "depth">, options: Options, steps = Infinity): Generator<Estimator> {
+  const estimator = new Estimator(made.image, made.depth, options);
+  try {
+    for (let step = 0; step < steps && estimator.report.status === "running"; step++) {
+      estimator.step();
+      yield estimator;
+    }
+  } finally {
+    estimator.free();
+  }
+}
+
+/** What is asked of an estimator after so many stages of its first iteration. */
+export function afterStages<T>(made: Pick<Sample, "image" | "depth">, options: Options, stages: number, ask: (estimator: Estimator) => T): T {
+  const estimator = new Estimator(made.image, made.depth, options);
+  try {
+    for (let stage = 0; stage < stages; stage++) estimator.stepStage();
+    return ask(estimator);
+  } finally {
+    estimator.free();
+  }
+}
+
+/** What is asked of an estimator after so many steps. */
+export function after<T>(made: Pick<Sample, "image" | "depth">, options: Options, steps: number, ask: (estimator: Estimator) => T): T {
+  const estimator = new Estimator(made.image, made.depth, options);
+  try {
+    for (let step = 0; step < steps && estimator.report.status === "running"; step++) estimator.step();
+    return ask(estimator);
+  } finally {
+    estimator.free();
+  }
+}
+
+/** Milliseconds between two pictures of a run: drawing must not slow the search down by much. */
+const PICTURE_EVERY = 150;
+/** Slices and iterations after which a run is broken off; the longest searches of such scenes take five thousand. */
+const MOST_STEPS = 12_000;
+
+/** A whole run from search to verdict, shown now and then, and at its end with what it says of itself. */
+export function* watched(made: Pick<Sample, "image" | "depth">, options: Options): Generator<{ estimator: Estimator; status: string; done: boolean }> {
+  const estimator = new Estimator(made.image, made.depth, options);
+  try {
+    let shown = -Infinity;
+    for (let step = 0; step < MOST_STEPS && estimator.report.status === "running"; step++) {
+      const { stage, message, iteration } = estimator.step();
+      if (performance.now() - shown < PICTURE_EVERY) continue;
+      yield { estimator, status: stage === "search" ? `search, ${message ?? ""}` : `iteration ${iteration}`, done: false };
+      shown = performance.now();
+    }
+    const { status, message } = estimator.report;
+    yield { estimator, status: [status, message].filter(Boolean).join(": "), done: true };
+  } finally {
+    estimator.free();
+  }
+}

@@ -1,0 +1,89 @@
+/** The controls of a lesson: native inputs with their values beside them. */
+
+import { freshId, make } from "../dom";
+import { shown, type Control, type Lesson } from "./lesson";
+import type { Values } from "./protocol";
+
+interface Field {
+  control: Control;
+  element: HTMLElement;
+  show(value: number | string): void;
+}
+
+export class Controls {
+  readonly element: HTMLElement;
+  #values: Values;
+  readonly #fields: Field[];
+  readonly #onChange: (values: Values) => void;
+
+  constructor(lesson: Lesson, values: Values, onChange: (values: Values) => void) {
+    this.#values = values;
+    this.#onChange = onChange;
+    this.#fields = lesson.controls.map((control) => this.#field(control));
+    this.element = make("div", { class: "learn-controls", role: "group", "aria-label": "Controls of the figure" }, ...this.#fields.map(({ element }) => element));
+    this.show(values);
+  }
+
+  get values(): Values {
+    return this.#values;
+  }
+
+  /** Sets several at once, as a drag does. */
+  set(changed: Values): void {
+    this.show({ ...this.#values, ...changed });
+    this.#onChange(this.#values);
+  }
+
+  show(values: Values): void {
+    this.#values = values;
+    for (const { control, element, show } of this.#fields) {
+      show(values[control.key] ?? control.initial);
+      element.hidden = control.when?.(values) === false;
+    }
+  }
+
+  #field(control: Control): Field {
+    switch (control.kind) {
+      case "slider":
+        return this.#slider(control);
+      case "choice":
+        return this.#choice(control);
+      case "box":
+        return this.#box(control);
+    }
+  }
+
+  #slider(control: Extract<Control, { kind: "slider" }>): Field {
+    const id = freshId("learn");
+    const { min, max, step } = control;
+    const input = make("input", { id, type: "range", min, max, step, name: control.key });
+    const output = make("output", { for: id });
+    input.addEventListener("input", () => this.set({ [control.key]: input.valueAsNumber }));
+    const show = (value: number | string) => {
+      input.value = String(value);
+      output.textContent = shown(control, Number(value));
+      input.setAttribute("aria-valuetext", output.textContent);
+    };
+    return { control, element: make("div", { class: "learn-slider" }, make("label", { for: id }, control.label), output, input, ...hint(control, input)), show };
+  }
+
+  #choice(control: Extract<Control, { kind: "choice" }>): Field {
+    const id = freshId("learn");
+    const select = make("select", { id, name: control.key }, ...control.choices.map(([value, label]) => make("option", { value }, label)));
+    select.addEventListener("change", () => this.set({ [control.key]: select.value }));
+    return { control, element: make("div", { class: "learn-choice" }, make("label", { for: id }, control.label), select, ...hint(control, select)), show: (value) => (select.value = String(value)) };
+  }
+
+  #box(control: Extract<Control, { kind: "box" }>): Field {
+    const box = make("input", { type: "checkbox", name: control.key });
+    box.addEventListener("change", () => this.set({ [control.key]: box.checked ? 1 : 0 }));
+    return { control, element: make("div", { class: "learn-box" }, make("label", {}, box, control.label), ...hint(control, box)), show: (value) => (box.checked = value === 1) };
+  }
+}
+
+function hint({ hint }: Control, input: HTMLElement): HTMLElement[] {
+  if (!hint) return [];
+  const id = freshId("learn-hint");
+  input.setAttribute("aria-describedby", id);
+  return [make("p", { class: "soft learn-hint", id }, hint)];
+}

@@ -1,0 +1,120 @@
+/** The live figure of a lesson: its panels, each made once and drawn again whenever the worker answers. */
+
+import { make } from "../dom";
+import { Cloud } from "./cloud";
+import type { Drawing, ImagePanel, Mark, Panel } from "./protocol";
+import { Plot } from "./plot";
+import { svg } from "./svg";
+
+interface Widget {
+  element: HTMLElement;
+  show(panel: Panel): void;
+}
+
+/** A drag on a panel, as shares of its sides. */
+export type OnDrag = (key: string, x: number, y: number) => void;
+
+export class Figure {
+  readonly element = make("div", { class: "learn-panels" });
+  readonly #widgets = new Map<string, Widget>();
+  readonly #drags: ReadonlySet<string>;
+  readonly #onDrag: OnDrag;
+
+  constructor(drags: ReadonlySet<string>, onDrag: OnDrag) {
+    this.#drags = drags;
+    this.#onDrag = onDrag;
+  }
+
+  show({ panels }: Drawing): void {
+    const keys = new Set(panels.map(({ key }) => key));
+    for (const [key, { element }] of this.#widgets) {
+      if (keys.has(key)) continue;
+      element.remove();
+      this.#widgets.delete(key);
+    }
+    for (const panel of panels) {
+      let widget = this.#widgets.get(panel.key);
+      if (!widget) {
+        widget = this.#make(panel);
+        this.#widgets.set(panel.key, widget);
+        this.element.append(widget.element);
+      }
+      widget.show(panel);
+    }
+  }
+
+  #make(panel: Panel): Widget {
+    switch (panel.kind) {
+      case "image":
+        return new Picture(panel.key, this.#drags.has(panel.key) ? this.#onDrag : undefined);
+      case "plot":
+        return new Plot();
+      case "cloud":
+        return new Cloud();
+    }
+  }
+}
+
+/** Pixels with marks over them. */
+class Picture implements Widget {
+  readonly element: HTMLElement;
+  readonly #canvas = make("canvas", { width: 1, height: 1, role: "img" });
+  readonly #marks = svg("svg", { viewBox: "0 0 100 100", preserveAspectRatio: "none", "aria-hidden": "true" });
+  readonly #title = make("figcaption", {});
+  readonly #legend = make("p", { class: "soft learn-legend" });
+
+  constructor(key: string, onDrag: OnDrag | undefined) {
+    const box = make("div", { class: "learn-canvas" }, this.#canvas, this.#marks);
+    if (onDrag) draggable(box, (x, y) => onDrag(key, x, y));
+    this.element = make("figure", { class: "learn-panel", "data-panel": key }, this.#title, box, this.#legend);
+  }
+
+  show(panel: Panel): void {
+    if (panel.kind !== "image") return;
+    this.#title.textContent = panel.title;
+    this.#legend.textContent = panel.legend ?? "";
+    this.#canvas.setAttribute("aria-label", panel.alt);
+    this.#paint(panel);
+    this.#marks.replaceChildren(...(panel.marks ?? []).flatMap(drawn));
+  }
+
+  #paint({ width, height, pixels }: ImagePanel): void {
+    if (this.#canvas.width !== width) this.#canvas.width = width;
+    if (this.#canvas.height !== height) this.#canvas.height = height;
+    const image = new ImageData(width, height);
+    image.data.set(pixels);
+    this.#canvas.getContext("2d")?.putImageData(image, 0, 0);
+  }
+}
+
+function drawn({ ink, shape, points, size = 2 }: Mark): SVGElement[] {
+  const at = (i: number): [number, number] => [100 * (points[2 * i] ?? NaN), 100 * (points[2 * i + 1] ?? NaN)];
+  const all = Array.from({ length: points.length / 2 }, (_, i) => at(i)).filter(([x, y]) => Number.isFinite(x) && Number.isFinite(y));
+  const name = `learn-mark learn-ink-${ink}`;
+  if (shape === "line") return [svg("polyline", { class: `${name} halo`, points: all.join(" ") }), svg("polyline", { class: name, points: all.join(" ") })];
+  return all.flatMap(([x, y]) => {
+    if (shape === "dot") return [svg("circle", { class: `${name} filled`, cx: x, cy: y, r: size })];
+    const form = (kind: string) =>
+      shape === "ring" ? svg("circle", { class: kind, cx: x, cy: y, r: size }) : svg("path", { class: kind, d: `M${x - size} ${y - size}l${2 * size} ${2 * size}m0 ${-2 * size}l${-2 * size} ${2 * size}` });
+    return [form(`${name} halo`), form(name)];
+  });
+}
+
+/** Reports where in an element the pointer is while it is held down. The keyboard has the sliders. */
+function draggable(box: HTMLElement, onMove: (x: number, y: number) => void): void {
+  box.classList.add("learn-draggable");
+  const tell = (event: PointerEvent) => {
+    const { left, top, width, height } = box.getBoundingClientRect();
+    const within = (value: number) => Math.min(1, Math.max(0, value));
+    onMove(within((event.clientX - left) / width), within((event.clientY - top) / height));
+  };
+  box.addEventListener("pointerdown", (event) => {
+    if (event.button !== 0) return;
+    event.preventDefault();
+    box.setPointerCapture(event.pointerId);
+    tell(event);
+  });
+  box.addEventListener("pointermove", (event) => {
+    if (box.hasPointerCapture(event.pointerId)) tell(event);
+  });
+}

@@ -1,0 +1,105 @@
+/** What a lesson is made of. */
+
+import { make } from "../dom";
+import { decimals } from "../draw/numbers";
+import type { Ink, LessonId, Values } from "./protocol";
+
+interface CommonControl {
+  key: string;
+  label: string;
+  hint?: string;
+  /** Shown only while this holds. */
+  when?: (values: Values) => boolean;
+}
+export interface SliderControl extends CommonControl {
+  kind: "slider";
+  min: number;
+  max: number;
+  step: number;
+  initial: number;
+  unit?: string;
+  /** The slider runs over the logarithm: from 10^min to 10^max. */
+  logarithmic?: boolean;
+}
+export interface ChoiceControl extends CommonControl {
+  kind: "choice";
+  choices: readonly (readonly [value: string, label: string])[];
+  initial: string;
+}
+export interface BoxControl extends CommonControl {
+  kind: "box";
+  initial: 0 | 1;
+}
+export type Control = SliderControl | ChoiceControl | BoxControl;
+
+export interface Readout {
+  key: string;
+  label: string;
+  unit?: string;
+  digits?: number;
+  ink?: Ink;
+  /** What it means, in a sentence. */
+  hint?: string;
+}
+
+export interface Lesson {
+  id: LessonId;
+  title: string;
+  /** The lesson in one sentence, which the slides show. */
+  gist: string;
+  formula(): Element;
+  /** What the formula says, in words. */
+  formulaWords: string;
+  text: readonly string[];
+  /** What to do with the figure. */
+  tasks: readonly string[];
+  controls: readonly Control[];
+  readouts: readonly Readout[];
+  /** Panels on which a drag sets two sliders. */
+  drags: Readonly<Record<string, { x: string; y: string }>>;
+  /** Where the method is written down. */
+  more: string;
+}
+
+export const LIGHTS = [["colourful", "coloured lamps"], ["window", "window"], ["overcast", "cloudy yard"]] as const;
+
+export const initialValues = ({ controls }: Lesson): Values => Object.fromEntries(controls.map(({ key, initial }) => [key, initial]));
+
+/** The values as they are computed with: a logarithmic slider's are powers of ten, and zero at its lower end. */
+export function computed({ controls }: Lesson, values: Values): Values {
+  return Object.fromEntries(
+    controls.map((control) => {
+      const value = values[control.key] ?? control.initial;
+      return [control.key, control.kind === "slider" && control.logarithmic ? amount(control, Number(value)) : value];
+    }),
+  );
+}
+
+export const amount = ({ logarithmic, min }: SliderControl, value: number): number => (!logarithmic ? value : value <= min ? 0 : 10 ** value);
+
+/** The value of a control as people read it. */
+export function shown(control: SliderControl, value: number): string {
+  const number = amount(control, value);
+  const digits = control.logarithmic ? (number === 0 ? 0 : Math.max(0, 2 - Math.floor(Math.log10(number)))) : Math.max(0, -Math.floor(Math.log10(control.step) + 1e-9));
+  const unit = control.unit === undefined ? "" : control.unit === "°" || control.unit === "%" ? control.unit : ` ${control.unit}`;
+  return `${decimals(number, digits)}${unit}`;
+}
+
+/** Takes over what an address says, as far as it is something the control can be. */
+export function valuesFrom(lesson: Lesson, asked: URLSearchParams): Values {
+  const values: Record<string, number | string> = { ...initialValues(lesson) };
+  for (const control of lesson.controls) {
+    const given = asked.get(control.key);
+    if (given === null) continue;
+    if (control.kind === "choice") {
+      if (control.choices.some(([value]) => value === given)) values[control.key] = given;
+    } else if (control.kind === "box") {
+      values[control.key] = given === "1" ? 1 : 0;
+    } else if (given.trim() !== "" && Number.isFinite(Number(given))) {
+      values[control.key] = Math.min(control.max, Math.max(control.min, Number(given)));
+    }
+  }
+  return values;
+}
+
+export const list = (kind: "ul" | "ol", items: readonly (Node | string)[][]): HTMLElement => make(kind, {}, ...items.map((item) => make("li", {}, ...item)));

@@ -1,0 +1,19 @@
+/** All lessons in their order. */
+
+import type { Lesson } from "../lesson";
+import type { LessonId } from "../protocol";
+import { colours, grey, pixel } from "./light";
+import { failure, paint } from "./limits";
+import { pose, sensor } from "./pose";
+import { prior, surface } from "./shape";
+
+export const lessons: readonly Lesson[] = [pixel, grey, colours, surface, prior, pose, sensor, paint, failure];
+
+export function lessonNamed(name: string | null): Lesson | undefined {
+  return lessons.find(({ id }) => id === name);
+}
+
+/** A lesson follows another one in a circle that ends at both ends. */
+export function beside(id: LessonId, by: 1 | -1): Lesson | undefined {
+  return lessons[lessons.findIndex((lesson) => lesson.id === id) + by];
+}

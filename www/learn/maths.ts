@@ -1,0 +1,71 @@
+/** Formulas in MathML whose symbols have the colours of the figure, and sentences with such symbols in them. */
+
+import { make } from "../dom";
+import type { Ink } from "./protocol";
+
+const SPACE = "http://www.w3.org/1998/Math/MathML";
+
+/** A MathML element; strings become its text. */
+export function math(tag: string, attributes: Record<string, string>, ...children: (Element | string)[]): Element {
+  const element = document.createElementNS(SPACE, tag);
+  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
+  element.append(...children);
+  return element;
+}
+
+const text = (tag: "mi" | "mn" | "mo", content: string, variant?: string) => math(tag, variant ? { mathvariant: variant } : {}, content);
+export const mi = (content: string): Element => text("mi", content);
+export const mn = (content: string): Element => text("mn", content);
+export const mo = (content: string): Element => text("mo", content);
+export const row = (...children: Element[]): Element => math("mrow", {}, ...children);
+export const sub = (base: Element, index: Element): Element => math("msub", {}, base, index);
+export const sup = (base: Element, exponent: Element): Element => math("msup", {}, base, exponent);
+export const frac = (up: Element, down: Element): Element => math("mfrac", {}, up, down);
+export const sum = (below: Element): Element => math("munder", {}, mo("∑"), below);
+export const norm = (inside: Element): Element => sup(row(mo("‖"), inside, mo("‖")), mn("2"));
+
+interface Symbol {
+  make(): Element;
+  ink: Ink;
+  /** What it stands for, said where the pointer rests on it. */
+  name: string;
+}
+
+const bold = (letter: string) => math("mi", { mathvariant: "bold", class: "learn-bold" }, letter);
+
+/** Every symbol of the lessons, once. */
+const SYMBOLS = {
+  n: { make: () => bold("n"), ink: "normal", name: "unit normal of the surface" },
+  m: { make: () => bold("m"), ink: "prior", name: "normal that the depth map has there" },
+  M: { make: () => sub(bold("M"), mi("j")), ink: "light", name: "light of colour j, a 4 by 4 matrix of 9 numbers" },
+  L: { make: () => mi("L"), ink: "light", name: "light, 27 numbers" },
+  a: { make: () => mi("a"), ink: "albedo", name: "logarithm of the albedo" },
+  S: { make: () => sub(mi("S"), mi("j")), ink: "colour", name: "intensity of colour j" },
+  lambda: { make: () => mi("λ"), ink: "prior", name: "weight of the prior" },
+  R: { make: () => bold("R"), ink: "pose", name: "rotation of the pose" },
+  z: { make: () => mi("z"), ink: "truth", name: "depth" },
+  d: { make: () => mi("d"), ink: "sensor", name: "depth that the sensor measured" },
+  e: { make: () => mi("e"), ink: "error", name: "what the model leaves over" },
+} as const satisfies Record<string, Symbol>;
+
+export type SymbolName = keyof typeof SYMBOLS;
+
+/** A symbol in the colour that it has in the figure. */
+export function symbol(name: SymbolName): Element {
+  const { make: draw, ink, name: words } = SYMBOLS[name];
+  return math("mrow", { class: `learn-ink-${ink}`, title: words }, draw());
+}
+
+export const inline = (...children: Element[]): Element => math("math", {}, row(...children));
+export const block = (...children: Element[]): Element => math("math", { display: "block" }, row(...children));
+
+/** A sentence; {n} is the symbol n, and {link|address} leads elsewhere. */
+export function sentence(words: string): (Node | string)[] {
+  return words.split(/(\{[^}]+\})/).map((part) => {
+    if (!part.startsWith("{")) return part;
+    const inside = part.slice(1, -1);
+    const [label = "", address] = inside.split("|");
+    if (address !== undefined) return make("a", { href: address }, label);
+    return inside in SYMBOLS ? inline(symbol(inside as SymbolName)) : inside;
+  });
+}

@@ -1,0 +1,228 @@
+/** Learn: nine lessons, each a short text beside a live figure, with exercises and slides. */
+
+import "../style/learn.css";
+import { make } from "../dom";
+import { saveJson } from "../save";
+import { Controls } from "./controls";
+import { exerciseList } from "./exercises";
+import { Figure } from "./figure";
+import { computed, list, valuesFrom, initialValues, type Lesson } from "./lesson";
+import { beside, lessonNamed, lessons } from "./lessons";
+import { sentence } from "./maths";
+import type { Drawing, LessonId, Values } from "./protocol";
+import { Readouts } from "./readouts";
+import { Session } from "./session";
+import { Slides } from "./slides";
+
+const first = lessons[0] as Lesson;
+
+/** A lesson on the page; its values stay when another one is opened. */
+interface Shown {
+  lesson: Lesson;
+  article: HTMLElement;
+  figure: Figure;
+  controls: Controls;
+  readouts: Readouts;
+  box: HTMLElement;
+  alert: HTMLElement;
+  drawing: Drawing | undefined;
+}
+
+export class LearnPage {
+  readonly #session = new Session({ onDrawing: (drawing, done) => this.#draw(drawing, done), onFault: ({ message }) => this.#complain(message) });
+  readonly #kept = new Map<LessonId, Values>();
+  readonly #links = new Map<LessonId, HTMLAnchorElement>();
+  readonly #contents = make("ol", {});
+  readonly #main = make("div", { class: "learn-main" });
+  readonly #exercises = exerciseList();
+  readonly #exerciseLink = make("a", { href: "#learn&at=exercises" }, "Exercises");
+  readonly #slides: Slides;
+  #shown: Shown | undefined;
+  #isOpen = false;
+
+  constructor(parent: HTMLElement) {
+    for (const { id, title } of lessons) {
+      const link = make("a", { href: `#learn&at=${id}` }, title);
+      this.#links.set(id, link);
+      this.#contents.append(make("li", {}, link));
+    }
+    const nav = make("nav", { class: "learn-contents", "aria-label": "Lessons" }, this.#contents, make("p", {}, this.#exerciseLink));
+    this.#slides = new Slides((by) => this.#go(by), () => this.#endSlides());
+    parent.append(nav, this.#main, this.#slides.element);
+  }
+
+  /** Shows the lesson that the address asks for, set as it says; without one, what was last seen. */
+  open(hash: string): void {
+    this.#isOpen = true;
+    const asked = new URLSearchParams(hash.replace(/^#/, ""));
+    if (asked.get("at") === "exercises") return this.#showExercises();
+    const lesson = lessonNamed(asked.get("at")) ?? this.#shown?.lesson ?? first;
+    const isTold = lesson.controls.some(({ key }) => asked.has(key));
+    const values = isTold ? valuesFrom(lesson, asked) : (this.#kept.get(lesson.id) ?? initialValues(lesson));
+    this.#show(lesson, values);
+    if (asked.has("slides")) this.#startSlides();
+    this.#writeAddress();
+  }
+
+  /** Nothing is computed for a page that is not shown. */
+  leave(): void {
+    if (!this.#isOpen) return;
+    this.#isOpen = false;
+    this.#session.end();
+    this.#slides.close();
+  }
+
+  recolour(): void {
+    if (this.#shown?.drawing) this.#shown.figure.show(this.#shown.drawing);
+  }
+
+  /** What the figure shows in numbers, with the values that made it. */
+  download(): void {
+    if (!this.#shown) return;
+    const { lesson, controls, drawing } = this.#shown;
+    saveJson(`bimodal-stereo-lesson-${lesson.id}.json`, { format: "bimodal-stereo lesson", version: 1, lesson: lesson.id, values: controls.values, numbers: drawing?.numbers, words: drawing?.words });
+  }
+
+  #show(lesson: Lesson, values: Values): void {
+    if (this.#shown?.lesson === lesson) {
+      this.#shown.controls.show(values);
+      if (!this.#shown.article.isConnected) this.#main.replaceChildren(this.#shown.article);
+    } else {
+      this.#shown = this.#make(lesson, values);
+      if (this.#slides.isOpen) this.#slides.take(this.#shown.article, lesson.title);
+      else this.#main.replaceChildren(this.#shown.article);
+    }
+    this.#mark(lesson.id);
+    this.#ask();
+  }
+
+  #showExercises(): void {
+    this.#session.end();
+    this.#slides.close();
+    this.#main.replaceChildren(this.#exercises);
+    this.#mark(undefined);
+  }
+
+  #mark(id: LessonId | undefined): void {
+    for (const [each, link] of [...this.#links, [undefined, this.#exerciseLink] as const]) {
+      if (each === id) link.setAttribute("aria-current", "true");
+      else link.removeAttribute("aria-current");
+    }
+    // On small screens the contents are a row to be swiped; the page itself must not move.
+    const link = id ? this.#links.get(id) : this.#exerciseLink;
+    const nav = this.#contents.parentElement;
+    if (link && nav) nav.scrollLeft = link.offsetLeft - nav.offsetLeft - nav.clientWidth / 4;
+  }
+
+  #make(lesson: Lesson, values: Values): Shown {
+    const figure = new Figure(new Set(Object.keys(lesson.drags)), (key, x, y) => this.#drag(key, x, y));
+    const controls = new Controls(lesson, values, () => this.#ask());
+    const readouts = new Readouts(lesson.readouts);
+    const alert = make("p", { class: "alert", role: "alert", hidden: true });
+    const number = lessons.indexOf(lesson) + 1;
+    const formula = make("div", { class: "learn-formula", role: "group", "aria-label": lesson.formulaWords }, lesson.formula());
+    const box = make("section", { class: "learn-figure", "aria-label": "Figure", "aria-busy": "true" }, alert, controls.element, readouts.element, figure.element);
+    const slides = make("button", { type: "button", class: "learn-slides-button" }, "Slides");
+    slides.addEventListener("click", () => this.#startSlides());
+    const article = make(
+      "article",
+      { class: "learn-lesson", "data-lesson": lesson.id },
+      make(
+        "div",
+        { class: "learn-text" },
+        make("div", { class: "learn-head" }, make("h2", { tabindex: "-1" }, `${number}. ${lesson.title}`), slides),
+        make("p", { class: "learn-gist" }, lesson.gist),
+        formula,
+        ...lesson.text.map((words) => make("p", {}, ...sentence(words))),
+        make("h3", {}, "Try"),
+        list("ul", lesson.tasks.map(sentence)),
+        make("p", { class: "soft learn-more" }, `More: ${lesson.more}`),
+        this.#ends(lesson),
+      ),
+      box,
+    );
+    return { lesson, article, figure, controls, readouts, box, alert, drawing: undefined };
+  }
+
+  #ends({ id }: Lesson): HTMLElement {
+    const [before, after] = [beside(id, -1), beside(id, 1)];
+    return make(
+      "p",
+      { class: "learn-ends" },
+      ...(before ? [make("a", { href: `#learn&at=${before.id}` }, `← ${before.title}`)] : []),
+      after ? make("a", { href: `#learn&at=${after.id}` }, `${after.title} →`) : make("a", { href: "#learn&at=exercises" }, "Exercises →"),
+    );
+  }
+
+  /** A place on a panel, as shares of its sides, sets the two sliders of its axes. */
+  #drag(key: string, x: number, y: number): void {
+    const shown = this.#shown;
+    const axes = shown?.lesson.drags[key];
+    if (!shown || !axes) return;
+    const along = (name: string, share: number): [string, number][] => {
+      const control = shown.lesson.controls.find((each) => each.key === name);
+      if (control?.kind !== "slider") return [];
+      const value = control.min + share * (control.max - control.min);
+      return [[name, Number((Math.round(value / control.step) * control.step).toFixed(6))]];
+    };
+    shown.controls.set(Object.fromEntries([...along(axes.x, x), ...along(axes.y, y)]));
+  }
+
+  #ask(): void {
+    const shown = this.#shown;
+    if (!shown) return;
+    this.#kept.set(shown.lesson.id, shown.controls.values);
+    shown.box.setAttribute("aria-busy", "true");
+    this.#session.ask(shown.lesson.id, computed(shown.lesson, shown.controls.values));
+    this.#writeAddress();
+  }
+
+  #draw(drawing: Drawing, done: boolean): void {
+    const shown = this.#shown;
+    if (!shown) return;
+    shown.drawing = drawing;
+    shown.alert.hidden = true;
+    shown.figure.show(drawing);
+    shown.readouts.show(drawing);
+    shown.box.setAttribute("aria-busy", String(!done));
+  }
+
+  #complain(message: string): void {
+    const shown = this.#shown;
+    if (!shown) return;
+    shown.alert.textContent = message;
+    shown.alert.hidden = false;
+    shown.box.setAttribute("aria-busy", "false");
+  }
+
+  #go(by: 1 | -1): void {
+    const next = this.#shown && beside(this.#shown.lesson.id, by);
+    if (!next) return;
+    this.#show(next, this.#kept.get(next.id) ?? initialValues(next));
+    this.#writeAddress();
+  }
+
+  #startSlides(): void {
+    if (!this.#shown || this.#slides.isOpen) return;
+    this.#slides.open(this.#shown.article, this.#shown.lesson.title);
+    this.#writeAddress();
+  }
+
+  #endSlides(): void {
+    const shown = this.#shown;
+    if (!shown || !this.#isOpen) return;
+    this.#main.replaceChildren(shown.article);
+    shown.article.querySelector("h2")?.focus();
+    this.#writeAddress();
+  }
+
+  #writeAddress(): void {
+    const shown = this.#shown;
+    if (!shown || !this.#isOpen) return;
+    const start = initialValues(shown.lesson);
+    const changed = Object.entries(shown.controls.values).filter(([key, value]) => value !== start[key]);
+    const state = new URLSearchParams({ at: shown.lesson.id, ...Object.fromEntries(changed.map(([key, value]) => [key, String(value)])) });
+    history.replaceState(null, "", `#learn&${state}${this.#slides.isOpen ? "&slides" : ""}`);
+  }
+}
+

@@ -1,0 +1,82 @@
+/** What the lessons and their worker say to each other. Both sides import this file and nothing else of one another. */
+
+import type { Fault } from "../engine/protocol";
+
+/** The controls of a lesson by name; a box that is ticked is 1. */
+export type Values = Readonly<Record<string, number | string>>;
+
+export const LESSONS = ["pixel", "grey", "colours", "surface", "prior", "pose", "sensor", "paint", "failure"] as const;
+export type LessonId = (typeof LESSONS)[number];
+
+/** What is drawn over a picture; the style sheet gives each its colour, the same as that of its symbol in the text. */
+export type Ink = "normal" | "light" | "albedo" | "prior" | "colour" | "pose" | "sensor" | "minimum" | "path" | "truth" | "error" | "red" | "green" | "blue" | "pixel";
+
+/** Points of a picture, x and y in turn, from 0 at the left and the top to 1. */
+export interface Mark {
+  ink: Ink;
+  shape: "dot" | "ring" | "cross" | "line";
+  points: number[];
+  /** Radius of dots and rings in hundredths of the picture. */
+  size?: number;
+}
+
+interface Common {
+  /** Stays the same while values change. */
+  key: string;
+  title: string;
+  /** What it shows, for those who cannot see it. */
+  alt: string;
+}
+
+export interface ImagePanel extends Common {
+  kind: "image";
+  width: number;
+  height: number;
+  pixels: Uint8ClampedArray;
+  marks?: Mark[];
+  /** What the colours mean, in a line. */
+  legend?: string;
+}
+
+export interface Series {
+  name: string;
+  ink: Ink;
+  /** x and y in turn; NaN leaves a gap. */
+  points: number[];
+  dots?: boolean;
+}
+
+export interface PlotPanel extends Common {
+  kind: "plot";
+  x: string;
+  y: string;
+  series: Series[];
+  /** Where the control stands now. */
+  at?: number;
+  /** Least range of y, so that noise does not fill the picture. */
+  range?: [number, number];
+}
+
+export interface CloudPanel extends Common {
+  kind: "cloud";
+  sets: { name: string; ink: Ink; points: Float32Array }[];
+}
+
+export type Panel = ImagePanel | PlotPanel | CloudPanel;
+
+/** All that a figure shows for one set of values. */
+export interface Drawing {
+  panels: Panel[];
+  numbers: Record<string, number>;
+  /** Numbers that are words, such as the status of a run. */
+  words?: Record<string, string>;
+}
+
+export interface Request {
+  id: number;
+  lesson: LessonId;
+  values: Values;
+}
+
+/** A lesson may draw several times on its way to the last drawing. */
+export type Answer = { id: number; drawing: Drawing; done: boolean } | { id: number; fault: Fault };

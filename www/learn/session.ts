@@ -1,0 +1,54 @@
+/** The page's side of the worker: only the newest request counts, and a worker that broke off is replaced. */
+
+import type { Fault } from "../engine/protocol";
+import type { Answer, Drawing, LessonId, Request, Values } from "./protocol";
+
+export interface Hooks {
+  onDrawing(drawing: Drawing, done: boolean): void;
+  onFault(fault: Fault): void;
+}
+
+export class Session {
+  #worker: Worker | undefined;
+  #next = 0;
+  readonly #hooks: Hooks;
+
+  constructor(hooks: Hooks) {
+    this.#hooks = hooks;
+  }
+
+  ask(lesson: LessonId, values: Values): void {
+    this.#worker ??= this.#spawn();
+    const request: Request = { id: ++this.#next, lesson, values };
+    this.#worker.postMessage(request);
+  }
+
+  /** What is under way is of no use any more. */
+  end(): void {
+    this.#worker?.terminate();
+    this.#worker = undefined;
+  }
+
+  #spawn(): Worker {
+    const worker = new Worker(new URL("./worker.ts", import.meta.url), { type: "module" });
+    worker.onmessage = (event: MessageEvent<Answer>) => {
+      // What was asked before the newest request is out of date.
+      if (worker === this.#worker && event.data.id === this.#next) this.#receive(event.data);
+    };
+    worker.onerror = (event) => {
+      event.preventDefault();
+      if (worker === this.#worker) this.#fail({ code: "panic", message: event.message || "The worker could not be loaded.", fatal: true });
+    };
+    return worker;
+  }
+
+  #receive(answer: Answer): void {
+    if ("fault" in answer) this.#fail(answer.fault);
+    else this.#hooks.onDrawing(answer.drawing, answer.done);
+  }
+
+  #fail(fault: Fault): void {
+    if (fault.fatal) this.end();
+    this.#hooks.onFault(fault);
+  }
+}

@@ -1,0 +1,57 @@
+/** One figure at a time in large type, turned by the arrow keys, for those who stand before a class. */
+
+import { make } from "../dom";
+
+/** What the arrow keys already mean something to. */
+const MOVED_BY_ARROWS = "input, select, textarea";
+
+export class Slides {
+  readonly element: HTMLDialogElement;
+  readonly #holder = make("div", { class: "learn-slide" });
+  readonly #onTurn: (by: 1 | -1) => void;
+
+  constructor(onTurn: (by: 1 | -1) => void, onClose: () => void) {
+    this.#onTurn = onTurn;
+    const turn = (words: string, by: 1 | -1, sign: string) => {
+      const button = make("button", { type: "button", "aria-label": words }, sign);
+      button.addEventListener("click", () => this.#onTurn(by));
+      return button;
+    };
+    const close = make("button", { type: "button" }, "Close (Esc)");
+    close.addEventListener("click", () => this.close());
+    this.element = make("dialog", { class: "learn-slides" }, this.#holder, make("div", { class: "learn-slide-bar" }, turn("Previous lesson", -1, "←"), turn("Next lesson", 1, "→"), close));
+    this.element.addEventListener("keydown", (event) => this.#key(event));
+    this.element.addEventListener("close", onClose);
+  }
+
+  get isOpen(): boolean {
+    return this.element.open;
+  }
+
+  open(article: HTMLElement, title: string): void {
+    this.element.showModal();
+    this.take(article, title);
+  }
+
+  take(article: HTMLElement, title: string): void {
+    this.element.setAttribute("aria-label", `Slide: ${title}`);
+    this.#holder.replaceChildren(article);
+    this.#holder.scrollTop = 0;
+    // A control that is gone takes the focus with it, and the keys would reach nobody.
+    article.querySelector("h2")?.focus();
+  }
+
+  close(): void {
+    if (this.element.open) this.element.close();
+  }
+
+  #key(event: KeyboardEvent): void {
+    if (event.altKey || event.ctrlKey || event.metaKey) return;
+    const by = { ArrowRight: 1, PageDown: 1, ArrowLeft: -1, PageUp: -1 }[event.key] as 1 | -1 | undefined;
+    if (by === undefined) return;
+    const isArrow = event.key.startsWith("Arrow");
+    if (isArrow && event.target instanceof Element && event.target.closest(MOVED_BY_ARROWS)) return;
+    event.preventDefault();
+    this.#onTurn(by);
+  }
+}

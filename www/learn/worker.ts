@@ -1,0 +1,69 @@
+/** The thread that computes what the lessons show. A newer request ends the one under way. */
+
+import init from "../../pkg/index.js";
+import { faultOf } from "../engine/fault";
+import { colours } from "./compute/colours";
+import { failure } from "./compute/failure";
+import { grey } from "./compute/grey";
+import { paint } from "./compute/paint";
+import { pixel } from "./compute/pixel";
+import { pose } from "./compute/pose";
+import { prior } from "./compute/prior";
+import { sensor } from "./compute/sensor";
+import { surface } from "./compute/surface";
+import type { Answer, Drawing, LessonId, Request, Values } from "./protocol";
+
+type Compute = (values: Values) => Generator<Drawing>;
+const lessons: Record<LessonId, Compute> = { pixel, grey, colours, surface, prior, pose, sensor, paint, failure };
+
+let isLoaded = false;
+const ready = init().then(() => (isLoaded = true));
+// Each request waits for it and reports a failure; before the first request its rejection must not count as unhandled.
+ready.catch(() => {});
+
+let newest: Request | undefined;
+let isBusy = false;
+
+const post = (message: Answer): void => self.postMessage(message);
+/** Lets messages in; a timer of zero would wait four milliseconds each time. */
+const channel = new MessageChannel();
+let wake: (() => void) | undefined;
+channel.port1.onmessage = () => wake?.();
+const breathe = (): Promise<void> =>
+  new Promise((resolve) => {
+    wake = resolve;
+    channel.port2.postMessage(null);
+  });
+
+async function answer({ id, lesson, values }: Request): Promise<void> {
+  try {
+    await ready;
+    const drawings = lessons[lesson](values);
+    let last: Drawing | undefined;
+    for (const drawing of drawings) {
+      if (last) post({ id, drawing: last, done: false });
+      last = drawing;
+      await breathe();
+      if (newest?.id !== id) {
+        // Ends the generator, which frees its estimators.
+        drawings.return(undefined);
+        return;
+      }
+    }
+    if (last) post({ id, drawing: last, done: true });
+  } catch (error) {
+    post({ id, fault: faultOf(error, isLoaded) });
+  }
+}
+
+self.onmessage = async (event: MessageEvent<Request>) => {
+  newest = event.data;
+  if (isBusy) return;
+  isBusy = true;
+  let done = -1;
+  while (newest.id !== done) {
+    done = newest.id;
+    await answer(newest);
+  }
+  isBusy = false;
+};
