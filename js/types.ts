@@ -270,6 +270,8 @@ export interface RigSample extends CheckFrame {
 export interface FrameOverlay {
   /** Column, row, metres of each visible depth point. */
   points: Float32Array;
+  /** x, y, z of the same points in the colour camera's frame, metres. */
+  positions: Float32Array;
   /** Column, row of each point of a depth edge. */
   edges: Float32Array;
 }
