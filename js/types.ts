@@ -281,6 +281,8 @@ export interface DrawOptions {
 export interface FrameOverlay {
   /** Column, row, metres of each visible depth point. */
   points: Float32Array;
+  /** x, y, z of the same points in the colour camera's frame, metres. */
+  positions: Float32Array;
   /** Column, row of each point of a depth edge. */
   edges: Float32Array;
 }

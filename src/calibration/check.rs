@@ -91,6 +91,8 @@ pub struct CheckReport {
 pub struct Overlay {
     /// Column, row, metres of each visible point.
     pub points: Vec<f32>,
+    /// x, y, z of the same points in the colour camera's frame, metres.
+    pub positions: Vec<f32>,
     /// Column, row of each point of a depth edge.
     pub edges: Vec<f32>,
 }
@@ -421,13 +423,14 @@ pub fn overlay(view: RigView, pose: &Similarity) -> Result<Overlay> {
         let [column, row] = projection.pixels[*index];
         !projection.is_hidden[*index] && size.nearest(column, row).is_some()
     };
-    let seen = (0..frame.points.len()).filter(is_seen);
-    let points = seen.flat_map(|index| {
+    let (mut points, mut positions) = (vec![], vec![]);
+    for index in (0..frame.points.len()).filter(is_seen) {
         let [column, row] = projection.pixels[index].map(f64::from);
-        [original(column), original(row), projection.positions[index][2]]
-    });
+        points.extend([original(column), original(row), projection.positions[index][2]]);
+        positions.extend(projection.positions[index]);
+    }
     let edges = super::rims::find(&frame, &projection);
-    Ok(Overlay { points: points.collect(), edges: edges.iter().flat_map(|rim| rim.pixel.map(original)).collect() })
+    Ok(Overlay { points, positions, edges: edges.iter().flat_map(|rim| rim.pixel.map(original)).collect() })
 }
 
 fn cue_reports(findings: &Findings, pixel: f64) -> Vec<CueReport> {

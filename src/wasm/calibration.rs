@@ -93,7 +93,7 @@ impl Check {
     }
 }
 
-/// Visible points and depth edges of a frame on its image: `{ points, edges }`.
+/// Visible points and depth edges of a frame on its image: `{ points, positions, edges }`.
 ///
 /// # Errors
 /// As the constructor of [`Check`].
@@ -102,6 +102,7 @@ pub fn overlay(frame: &JsFrame, numbers: &[f64]) -> std::result::Result<Object, 
     let overlay = calibration::overlay(view(0, frame)?, &pose(numbers))?;
     let object = Object::new();
     set(&object, "points", Float32Array::from(overlay.points.as_slice()));
+    set(&object, "positions", Float32Array::from(overlay.positions.as_slice()));
     set(&object, "edges", Float32Array::from(overlay.edges.as_slice()));
     Ok(object)
 }

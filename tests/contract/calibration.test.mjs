@@ -128,6 +128,17 @@ describe("a rig before boxes", () => {
     }
   });
 
+  test("its points stand where a camera without a lens sees them", async () => {
+    const { fx, fy, cx, cy } = frame.image.camera;
+    const { points, positions } = await projectFrame({ ...frame, image: { ...frame.image, camera: { fx, fy, cx, cy } } }, truth);
+    assert.equal(positions.length, points.length);
+    for (let k = 0; k < points.length; k += 3) {
+      const [x, y, z] = positions.subarray(k, k + 3);
+      assert.equal(z, points[k + 2]);
+      assert.ok(Math.hypot((fx * x) / z + cx - points[k], (fy * y) / z + cy - points[k + 1]) < 1e-3, `point ${k / 3}`);
+    }
+  });
+
   test("it can be broken off", async () => {
     const stop = new AbortController();
     const onProgress = (share) => share > 0.2 && stop.abort();

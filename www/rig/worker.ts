@@ -132,7 +132,8 @@ const handlers: Handlers = {
     }
   },
   async overlay({ frame, pose }) {
-    return projectFrame(frameAt(frame), pose);
+    const { points, edges } = await projectFrame(frameAt(frame), pose);
+    return { points, edges };
   },
   async pose({ pose, format }) {
     const { writePose } = await import("./write");
