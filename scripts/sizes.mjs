@@ -41,6 +41,8 @@ function firstScripts() {
 }
 
 const CHECK_WASM = /bimodal_stereo_check_bg/;
+/** A word that only those know who read or write a rig's files: Kalibr's name of its extrinsics. */
+const RIG_FILES = /T_cn_cnm1/;
 /** The rendered example, which is loaded when it is asked for, and the decoder of JPEG, which browsers have. */
 const EXAMPLE = /\/(?:rigs-|bimodal_stereo_rigs_bg)/;
 const OTHERS = /\/decoder-/;
@@ -48,8 +50,9 @@ const OTHERS = /\/decoder-/;
 /** What runs a check, reads its files and writes them, all of it on demand; and what the example takes besides. */
 function checkFiles() {
   const scripts = readdirSync(inRoot(PAGE, "assets")).filter((name) => name.endsWith(".js")).map((name) => `assets/${name}`);
-  const first = scripts.filter((path) => CHECK_WASM.test(readFileSync(inRoot(PAGE, path), "utf8")));
-  if (first.length === 0) throw new Failure("No script of the page loads the check's .wasm.");
+  const knows = (path, word) => word.test(readFileSync(inRoot(PAGE, path), "utf8"));
+  for (const word of [CHECK_WASM, RIG_FILES]) if (!scripts.some((path) => knows(path, word))) throw new Failure(`No script of the page names ${word.source}.`);
+  const first = scripts.filter((path) => knows(path, CHECK_WASM) || knows(path, RIG_FILES));
   const all = reached(first, [AT_ONCE, ON_DEMAND], (path) => OTHERS.test(path));
   const example = all.filter((path) => EXAMPLE.test(path));
   return { check: all.filter((path) => !example.includes(path)), example };

@@ -20,7 +20,7 @@ test("layers are painted from the module's memory onto either kind of canvas", a
   const found = await page.evaluate(async () => {
     const { default: init, Estimator, sample } = (await import(new URL("/pkg/index.js", location.href).href)) as typeof import("../../pkg/index.js");
     await init();
-    const { image, depth, light } = sample({ surface: "bust", light: "colourful", width: 48, height: 40, angles: { beta: 20 } });
+    const { image, depth, light } = sample({ surface: "bust", light: "colourful", size: 48, height: 40, angles: { beta: 20 } });
     const estimator = new Estimator(image, depth, { light, start: "identity" });
     await estimator.run({ maxIterations: 3 });
     const { width, height } = image;
