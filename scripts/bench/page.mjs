@@ -22,12 +22,13 @@ export async function startUps(chromium, address, scene, times) {
   return found;
 }
 
-/** All arrays of a frame in full size: copied out of the module's memory, and sent to the page. */
+/** All arrays of a frame in full size: copied out of the module's memory, and sent to the page; four of its views painted by the module. */
 export async function transfers(side, times) {
-  const found = { copying: [], travelling: [] };
+  const found = { copying: [], painting: [], travelling: [] };
   for (let round = 0; round < times; round++) {
-    const { copying, travelling } = await side.ask({ kind: "frame" });
+    const { copying, painting, travelling } = await side.ask({ kind: "frame" });
     found.copying.push(copying);
+    found.painting.push(painting);
     found.travelling.push(travelling);
   }
   return found;

@@ -46,6 +46,7 @@ function otherTable({ startUp, transfer, drawing, playing, memory }) {
   const lines = [];
   if (startUp) lines.push(["init to first report", startUp.size, spread(startUp.milliseconds)]);
   if (transfer) lines.push(["transfer: copying out, every array", transfer.size, spread(transfer.copying)]);
+  if (transfer?.painting) lines.push(["transfer: four views painted by the module instead", transfer.size, spread(transfer.painting)]);
   if (transfer) lines.push(["transfer: from worker to page", transfer.size, spread(transfer.travelling)]);
   if (drawing) lines.push(["page: cutting, copying, sending", drawing.size, spread(drawing.delivery)]);
   if (drawing) lines.push(["page: drawing", drawing.size, spread(drawing.drawing)]);
