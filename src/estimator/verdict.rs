@@ -352,7 +352,12 @@ mod tests {
                 ambiguous,
                 "9 degrees away",
             ),
-            ("an end by the cap with rivals", Evidence { iteration: 60, rivals: 1, ..MOVING }, ambiguous, "1 other"),
+            (
+                "an end by the cap with a rival",
+                Evidence { iteration: 60, rivals: 1, nearest_rival: 12.0, ..MOVING },
+                ambiguous,
+                "one other pose explains the colours as well, 12 degrees away",
+            ),
             ("what goes on, whatever its rivals", Evidence { rivals: 1, ..MOVING }, None, ""),
         ]
     }
