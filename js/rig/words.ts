@@ -39,7 +39,7 @@ const STRANGE: [RegExp, string][] = [
   [/^BM/, "a BMP; save it as PNG"],
   [/^PK\x03\x04/, "a ZIP archive (.npz is one); unpack it first"],
   [/^\x1f\x8b/, "compressed by gzip; unpack it first"],
-  [/^\x89HDF/, "HDF5 (MATLAB's v7.3 is it); save the array as .npy"],
+  [/^\x89HDF/, "HDF5; save the array as .npy"],
   [/^MATLAB/, "a .mat file of MATLAB; save the array as .npy, or as 16-bit PNG"],
   [/^.{4}ftyp(?:heic|heix|mif1|avif)/s, "HEIC or AVIF; save it as PNG or JPEG"],
   [/^(?:.{4}ftyp|RIFF.{4}AVI )/s, "a video; save its frames as PNG"],

@@ -100,6 +100,13 @@ pub struct Overlay {
 /// How far an entry of a rotation may be from the nearest rotation's: trackers write matrices that have drifted by 1e-3.
 const ROTATION_TOLERANCE: f64 = 0.01;
 
+/// What the search begins at: the first candidate that puts points onto the image.
+fn told(scene: &Scene, candidates: &[(String, State)]) -> State {
+    let seen = candidates.iter().find(|candidate| scene.is_seen(&candidate.1));
+    let first = || candidates.first().map_or_else(|| State::at(Similarity::identity()), |candidate| candidate.1);
+    seen.map_or_else(first, |candidate| candidate.1)
+}
+
 enum Stage {
     Starting,
     Approaching { level: usize, index: usize, planes: Vec<Planes> },
@@ -147,9 +154,9 @@ impl CalibrationCheck {
             frames.push(frame);
         }
         let cues = if cues.is_empty() { Cue::ALL.to_vec() } else { cues.to_vec() };
-        let told = candidates.first().map_or_else(|| State::at(Similarity::identity()), |candidate| candidate.1);
-        let best = Round { state: told, told, sigma: 0.0 };
         let scene = Scene::new(frames, cues, is_guessed);
+        let told = told(&scene, &candidates);
+        let best = Round { state: told, told, sigma: 0.0 };
         warn_of_translations(&candidates, &mut warnings);
         Ok(Self {
             scene,
@@ -314,8 +321,15 @@ impl CalibrationCheck {
         let judge = Judge::new(units, &state.camera(&frame.camera), &cloud, &scale, frame.pixel, self.width)
             .explaining(if self.scene.focal_is_free { guessed::explains(self.width) } else { 0.0 });
         let weakest = judge.weakest(&covariance);
-        let candidates: Vec<CandidateReport> =
-            self.candidates.iter().map(|(name, candidate)| judge.judge(name, &state, candidate, weakest)).collect();
+        let is_seen = self.scene.is_seen(&state);
+        let report = |(name, candidate): &(String, State)| {
+            let mut report = judge.judge(name, &state, candidate, weakest);
+            if !is_seen || !self.scene.is_seen(candidate) {
+                report.without_points(is_seen, self.width);
+            }
+            report
+        };
+        let candidates: Vec<CandidateReport> = self.candidates.iter().map(report).collect();
         let mut warnings = self.warnings.clone();
         self.warn_of_inverses(&judge, &mut warnings);
         if let Some(term) = self.lens {
@@ -324,7 +338,7 @@ impl CalibrationCheck {
                 Fixed(term, 2)
             ));
         }
-        let health = judge.estimate();
+        let health = if is_seen { judge.estimate() } else { Judge::blind(self.width) };
         let (mut verdict, mut reason) = match candidates.first() {
             Some(first) => (first.verdict, first.reason.clone()),
             None => (

@@ -46,8 +46,12 @@ pub(super) fn covariance(
         }
     }
     let Some(factors) = information.cholesky() else { return Matrix::zeros() };
-    let steps = pulls.map(|pull| factors.solve(&pull));
-    steps.iter().map(|step| step * step.transpose()).sum()
+    let mut covariance = Matrix::zeros();
+    for pull in &pulls {
+        let step = factors.solve(pull);
+        covariance += step * step.transpose();
+    }
+    covariance
 }
 
 #[cfg(test)]

@@ -53,6 +53,8 @@ const MOST_POINTS: usize = 3000;
 /// Hand-measured rigs are off by so much; what is off by more is found all the same where the scene says so.
 const PRIOR_DEGREES: f64 = 4.0;
 const PRIOR_METRES: f64 = 0.05;
+/// Share of the scene's points on the image below which nothing can be said: what fields of view that hardly overlap still have.
+const LEAST_SEEN: f64 = 0.02;
 /// Of the loss of outlines, pixels, and of ln f where it is unknown.
 const PRIOR_LOSS: f64 = 1.0;
 const PRIOR_FOCAL: f64 = 0.15;
@@ -111,6 +113,20 @@ impl Scene {
     /// Some points of all frames in the colour camera's frame.
     pub fn cloud(&self, state: &State) -> Vec<Vector3<f64>> {
         self.sparse.iter().map(|point| state.pose.apply(*point)).collect()
+    }
+
+    /// Whether a state puts enough of the scene's points in front of the colour camera and onto its image to say anything.
+    pub fn is_seen(&self, state: &State) -> bool {
+        let frame = &self.frames[0];
+        let camera = state.camera(&frame.camera);
+        let seen = self.sparse.iter().filter(|point| {
+            let pixel = camera.project(state.pose.apply(**point).into());
+            pixel.is_some_and(|[x, y]| {
+                let size = frame.planes.size;
+                x >= 0.0 && y >= 0.0 && x < size.width as f64 && y < size.height as f64
+            })
+        });
+        seen.count() as f64 >= LEAST_SEEN * self.sparse.len() as f64
     }
 
     pub fn units(&self, state: &State) -> Units {

@@ -20,6 +20,9 @@ pub(super) const FOCAL: usize = 7;
 pub(super) type Vector = SVector<f64, UNKNOWNS>;
 pub(super) type Matrix = SMatrix<f64, UNKNOWNS, UNKNOWNS>;
 
+/// Pixels that a radian or a metre moves the scene by at the least, so that what is not on the image has finite units.
+const LEAST_MOTION: f64 = 1e-6;
+
 /// What a check looks for: extrinsics, and what goes with them.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct State {
@@ -66,7 +69,7 @@ impl Units {
             }
         }
         for k in (0..UNKNOWNS).filter(|&k| k != LOSS) {
-            units.of[k] = 1.0 / (squares[k] / f64::max(count, 1.0)).sqrt().max(f64::MIN_POSITIVE.sqrt());
+            units.of[k] = 1.0 / (squares[k] / f64::max(count, 1.0)).sqrt().max(LEAST_MOTION);
         }
         units
     }

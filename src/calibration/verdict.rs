@@ -184,6 +184,11 @@ impl Judge {
         (worst(k) > 1.0).then_some(NAMES[k])
     }
 
+    /// Nothing is known of a pose that puts hardly any point onto the image.
+    pub fn blind(width: f64) -> Health {
+        Health { pixels: width, interval: [0.0, width] }
+    }
+
     /// The verdict on a candidate.
     pub fn judge(&self, name: &str, estimate: &State, candidate: &State, weakest: Option<&str>) -> CandidateReport {
         let between = self.units.between(estimate, candidate);
@@ -231,7 +236,7 @@ impl Judge {
             ),
             CheckVerdict::Off => format!("Off by about {off}: {pixels}; up to {passes} px pass."),
             CheckVerdict::Undecided if low > self.tolerance && !is_likely => format!(
-                "This check can't tell, because the colour camera was guessed: {pixels}; up to {} px may come of that.",
+                "This scene can't tell behind a guessed camera: {pixels}, around the {} px that pass.",
                 Fixed(self.explained, 0)
             ),
             CheckVerdict::Undecided => match weakest {
@@ -250,5 +255,18 @@ impl Judge {
             health,
             probability,
         }
+    }
+}
+
+impl CandidateReport {
+    /// What is said where the check's end or the candidate puts hardly any point onto the image.
+    #[inline(never)]
+    pub(super) fn without_points(&mut self, is_end_seen: bool, width: f64) {
+        (self.verdict, self.reason, self.probability) = if is_end_seen {
+            (CheckVerdict::Off, "Off: it puts no points onto the image.".into(), 0.0)
+        } else {
+            self.health = Judge::blind(width);
+            (CheckVerdict::Undecided, "This scene can't tell: no pose puts its points onto the image.".into(), 1.0)
+        };
     }
 }

@@ -139,6 +139,20 @@ describe("a rig before boxes", () => {
     }
   });
 
+  test("a pose that puts no depth point onto the image is never consistent, and takes no other candidate with it", async () => {
+    const turned = (axis, degrees) => ({ ...truth, rotation: product(aboutAxis(axis, degrees), truth.rotation) });
+    const behind = { ...truth, translation: [truth.translation[0], truth.translation[1], truth.translation[2] - 9] };
+    for (const bad of [turned([1, 0, 0], 180), turned([0, 1, 0], 120), behind]) {
+      const alone = await checkCalibration([frame], { bad });
+      assert.equal(alone.verdict, "undecided", alone.reason);
+      assert.match(alone.reason, /no pose puts its points onto the image/);
+      assert.ok(alone.covariance.every(Number.isFinite) && alone.health.pixels > 100);
+      const { candidates } = await checkCalibration([frame], { bad, truth });
+      assert.equal(candidates.bad.verdict, "off", candidates.bad.reason);
+      assert.equal(candidates.truth.verdict, "consistent", candidates.truth.reason);
+    }
+  });
+
   test("it can be broken off", async () => {
     const stop = new AbortController();
     const onProgress = (share) => share > 0.2 && stop.abort();

@@ -41,7 +41,7 @@ function summaryOf(reading: RigReading): Summary {
 
 function readingOf<K extends RigReading["kind"]>(file: number, kind: K): Extract<RigReading, { kind: K }> {
   const reading = readings.get(file);
-  if (reading?.kind !== kind) throw new Error(`File ${file} has not been read as ${kind}.`);
+  if (reading?.kind !== kind) throw new Error(`File ${file} is no ${kind}.`);
   return reading as Extract<RigReading, { kind: K }>;
 }
 
