@@ -23,7 +23,7 @@ XML of OpenCV, Kalibr's camchain, a static transform of ROS, or JSON of Open3D o
   --report OUT.html   writes the report as a page that can be read and printed anywhere
   --help
 
-Exit code: 0 consistent, 1 off, 2 undecided, 3 the input is bad or the check could not run, 130 interrupted.
+Exit code: 0 consistent, 1 off, 2 undecided or settled with a warning, 3 the input is bad or the check could not run, 130 interrupted.
 `;
 
 const CODES = { consistent: 0, off: 1, undecided: 2 };
@@ -150,11 +150,14 @@ function table(rows) {
   return rows.map((row) => row.map((cell, column) => cell.padEnd(widths[column])).join("  ").trimEnd());
 }
 
-/** The verdict, whose reason may open with the same word; what was guessed or looks wrong keeps it from being the last word. */
-function headline({ verdict, reason, warnings }) {
-  const line = `${verdict.toUpperCase()}: ${reason.replace(/^consistent: /i, "")}`;
-  return verdict === "consistent" && warnings.length > 0 ? [line, "Settled, but check the warnings below."] : [line];
+/** The report with what the readers guessed, which keeps its verdict from green as the check's own warnings do. */
+function capped(report, warnings) {
+  if (report.verdict !== "consistent" || warnings.length === 0) return { ...report, warnings };
+  return { ...report, warnings, verdict: "undecided", reason: `Settled, but check: ${warnings[0]} ${report.reason}` };
 }
+
+/** The verdict, whose reason may open with the same word. */
+const headline = ({ verdict, reason }) => `${verdict.toUpperCase()}: ${reason.replace(/^consistent: /i, "")}`;
 
 /** The report for a terminal. */
 function text(report) {
@@ -164,7 +167,7 @@ function text(report) {
     ...[pixels(found), short(found.probability)],
   ]);
   return [
-    ...headline(report),
+    headline(report),
     "",
     ...table([
       ["calibration", "verdict", "turned by", "shifted by", "error, pixels (95 %)", "probability"],
@@ -230,7 +233,7 @@ async function run(args) {
     process.removeListener("SIGINT", interrupt);
   }
 
-  const whole = { ...report, warnings: [...new Set([...report.warnings, ...warnings, ...read.warnings])] };
+  const whole = capped(report, [...new Set([...report.warnings, ...warnings, ...read.warnings])]);
   const inputs = inputsOf([...found, ...(read.readings ?? [])], [...calibrations, ...cameras, ...files]);
   const json = () => `${JSON.stringify({ ...whole, inputs }, null, 2)}\n`;
   if (values.json !== undefined && values.json !== "-") writeFileSync(values.json, json());
@@ -239,7 +242,7 @@ async function run(args) {
   }
   (values.json === "-" ? process.stderr : process.stdout).write(text(whole));
   if (values.json === "-") process.stdout.write(json());
-  process.exitCode = CODES[report.verdict] ?? BAD;
+  process.exitCode = CODES[whole.verdict] ?? BAD;
 }
 
 try {

@@ -190,6 +190,14 @@ export class Estimator {
     return this.#call((raw) => raw.points(view));
   }
 
+  /**
+   * What the search has tried so far, 4*n: alpha, beta, gamma in degrees of each rotation, and its score, which is higher where the pose
+   * explains more of the colours. Empty before the search and after it.
+   */
+  searchScores(): Float32Array {
+    return this.#call((raw) => raw.searchScores());
+  }
+
   /** Not part of this version yet: throws a `BimodalError` of code "unsupported". */
   save(): Uint8Array {
     throw unsupported("save", "saving an estimator");

@@ -225,7 +225,7 @@ export interface CandidateReport {
   probability: number;
 }
 
-/** What a check of a calibration found. The first candidate is the one in question. */
+/** What a check of a calibration found. The first candidate is the one in question (JavaScript puts names like "7" before all others). */
 export interface CheckReport {
   verdict: CheckVerdict;
   reason: string;

@@ -3,7 +3,7 @@
 //! Starts (the candidates, their inverses, and what the coarse search finds beside the first) are each brought to rest by
 //! edges alone; the best by its score is settled with all cues; then the candidates are judged by its covariance.
 
-use nalgebra::SMatrix;
+use nalgebra::{SMatrix, Vector3};
 
 use super::cue::Cue;
 use super::distortion;
@@ -35,6 +35,7 @@ const FINDING_ANEW: [usize; 2] = [1, 3];
 const ENTERING: usize = 2;
 /// Variance where nothing at all is known, squared pixels.
 const FARTHEST: f64 = 1e6;
+
 /// What one cue contributed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CueReport {
@@ -103,8 +104,7 @@ const ROTATION_TOLERANCE: f64 = 0.01;
 /// What the search begins at: the first candidate that puts points onto the image.
 fn told(scene: &Scene, candidates: &[(String, State)]) -> State {
     let seen = candidates.iter().find(|candidate| scene.is_seen(&candidate.1));
-    let first = || candidates.first().map_or_else(|| State::at(Similarity::identity()), |candidate| candidate.1);
-    seen.map_or_else(first, |candidate| candidate.1)
+    seen.or(candidates.first()).map_or_else(|| State::at(Similarity::identity()), |candidate| candidate.1)
 }
 
 enum Stage {
@@ -144,7 +144,11 @@ impl CalibrationCheck {
             let message = format!("takes up to {MOST_CANDIDATES}");
             return Err(Error::new(ErrorKind::Size, "candidates", message).value(candidates.len() as f64));
         }
-        let candidates = candidates.into_iter().map(candidate).collect::<Result<Vec<_>>>()?;
+        let rigid = |(name, pose): (String, Similarity)| match rigid(&pose) {
+            Ok(state) => Ok((name, state)),
+            Err(error) => Err(error.below(&format!("candidates.{name}"))),
+        };
+        let candidates = candidates.into_iter().map(rigid).collect::<Result<Vec<_>>>()?;
         let width = views[0].image_size[0] as f64;
         let (mut warnings, mut frames, mut is_guessed) = (vec![], vec![], false);
         for (index, view) in views.into_iter().enumerate() {
@@ -314,10 +318,10 @@ impl CalibrationCheck {
 
     fn judge(&self, findings: &Findings) -> CheckReport {
         let (units, state) = (findings.units, self.best.state);
-        let scale = self.scale(findings, &state);
-        let covariance = scale * Judge::VARIANCE;
         let frame = &self.scene.frames[0];
         let cloud = self.scene.cloud(&state);
+        let scale = self.scale(findings, &state, &cloud);
+        let covariance = scale * Judge::VARIANCE;
         let judge = Judge::new(units, &state.camera(&frame.camera), &cloud, &scale, frame.pixel, self.width)
             .explaining(if self.scene.focal_is_free { guessed::explains(self.width) } else { 0.0 });
         let weakest = judge.weakest(&covariance);
@@ -369,7 +373,7 @@ impl CalibrationCheck {
     }
 
     /// Of the estimate's distribution; where sums are beyond rounding nothing is known but what was told.
-    fn scale(&self, findings: &Findings, state: &State) -> Matrix {
+    fn scale(&self, findings: &Findings, state: &State, cloud: &[Vector3<f64>]) -> Matrix {
         let told = || findings.prior.cholesky().map_or(Matrix::identity() * FARTHEST, |c| c.inverse());
         let scale = findings.total.covariance(&findings.prior).unwrap_or_else(told);
         if !self.scene.focal_is_free {
@@ -377,7 +381,7 @@ impl CalibrationCheck {
         }
         let frame = &self.scene.frames[0];
         let (camera, width) = (state.camera(&frame.camera), frame.planes.size.width as f64);
-        scale + guessed::covariance(&findings.units, &camera, &self.scene.cloud(state), width, &findings.prior)
+        scale + guessed::covariance(&findings.units, &camera, cloud, width, &findings.prior)
     }
 
     /// The commonest mistake: P_depth = R P_colour + t.
@@ -415,7 +419,7 @@ impl CalibrationCheck {
         let report = |(frame, trace): (&Frame, &f64)| {
             let share = trace / total;
             let note =
-                (share < 0.25 * fair).then(|| "adds little: few of its depth edges have image edges nearby".to_owned());
+                (share < 0.25 * fair).then(|| "adds little: its depth and its image have little in common".to_owned());
             FrameReport { name: frame.name.clone(), share, note }
         };
         self.scene.frames.iter().zip(&traces).map(report).collect()
@@ -428,7 +432,7 @@ impl CalibrationCheck {
 /// As [`CalibrationCheck::new`].
 pub fn overlay(view: RigView, pose: &Similarity) -> Result<Overlay> {
     let (frame, _) = view.prepare(&mut vec![])?;
-    let state = State::at(*pose);
+    let state = rigid(pose).map_err(|error| error.below("pose"))?;
     let projection = Projection::new(&frame, &state);
     // Back from halves of pixels.
     let original = |value: f64| ((value + 0.5) * frame.pixel - 0.5) as f32;
@@ -465,10 +469,9 @@ fn cue_reports(findings: &Findings, pixel: f64) -> Vec<CueReport> {
     findings.cues.iter().zip(&informations).map(report).collect()
 }
 
-/// A candidate with the rotation nearest to the matrix that was given.
-fn candidate((name, pose): (String, Similarity)) -> Result<(String, State)> {
-    let field = format!("candidates.{name}");
-    let wrong = |member, message: &str| Error::new(ErrorKind::Range, member, message.to_owned()).below(&field);
+/// A pose with the rotation nearest to the matrix that was given.
+fn rigid(pose: &Similarity) -> Result<State> {
+    let wrong = |member, message: &str| Error::new(ErrorKind::Range, member, message.to_owned());
     if (pose.scale - 1.0).abs() > ROTATION_TOLERANCE {
         return Err(wrong("scale", "must be 1: extrinsics do not change sizes").value(pose.scale));
     }
@@ -478,7 +481,7 @@ fn candidate((name, pose): (String, Similarity)) -> Result<(String, State)> {
     let nearest = Similarity::nearest(&pose.rotation, pose.translation).ok();
     let nearest = nearest.filter(|nearest| (nearest.rotation - pose.rotation).abs().max() < ROTATION_TOLERANCE);
     let Some(nearest) = nearest else { return Err(wrong("rotation", "must be orthonormal with determinant one")) };
-    Ok((name, State::at(Similarity { scale: 1.0, ..nearest })))
+    Ok(State::at(Similarity { scale: 1.0, ..nearest }))
 }
 
 /// Millimetres where metres were asked for.

@@ -13,7 +13,7 @@ use super::evidence::{Share, Tiles};
 use super::frame::{Frame, Projection};
 use super::planes::Planes;
 use super::rims::{self, Rim};
-use super::unknowns::{LOSS, State, Units, Vector};
+use super::unknowns::{LOSS, State, Units, Vector, add_square};
 
 /// Share of rims whose edge the image does not show.
 const MISSING: f64 = 0.3;
@@ -112,7 +112,7 @@ impl EdgeField {
             let share = &mut shares[profile.tile as usize];
             share.value += (whole / background).ln();
             share.gradient += profile.row * slope;
-            share.curvature += profile.row * profile.row.transpose() * bound;
+            add_square(&mut share.curvature, &profile.row, bound);
         }
         // Without any rim there is no curvature of which something could be left.
         let left = if bounds > 0.0 { (own / bounds).clamp(LEAST_LEFT, 1.0) } else { 1.0 };

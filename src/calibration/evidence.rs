@@ -6,8 +6,8 @@
 //! would be one for a true likelihood (Pauli, Racugno and Ventura 2011); the covariance of the estimate is H^-1 and the jackknife
 //! over tiles (Efron 1982), which unlike H^-1 J H^-1 stays honest where a few tiles carry it.
 
-use super::unknowns::{Matrix, UNKNOWNS, Vector};
-use crate::numeric::eigen::{Eigen, symmetric_eigen};
+use super::unknowns::{Matrix, UNKNOWNS, Vector, add_square, solve, spectral};
+use crate::numeric::eigen::symmetric_eigen;
 use crate::view::Size;
 
 /// Tiles along the longer side of an image: wide enough that errors of different tiles are independent, many enough to
@@ -74,8 +74,7 @@ impl Evidence {
     pub fn weight(&self) -> f64 {
         let curvature = self.curvature();
         let ridge = 1e-3 * curvature.trace().abs() / UNKNOWNS as f64 + f64::MIN_POSITIVE;
-        let step =
-            (curvature + Matrix::identity() * ridge).cholesky().map_or(Vector::zeros(), |c| c.solve(&self.gradient()));
+        let step = solve(&(curvature + Matrix::identity() * ridge), &self.gradient()).unwrap_or_else(Vector::zeros);
         let scatter: f64 =
             self.shares.iter().map(|share| (share.gradient - share.curvature * step).norm_squared()).sum();
         let trace = curvature.trace();
@@ -102,8 +101,8 @@ impl Evidence {
         for share in self.shares.iter().filter(|share| share.gradient.norm() > 0.0) {
             // Nothing of the sum is left over at the maximum; what is left of it before belongs to all.
             let own = share.gradient - share.curvature * (whole * gradient);
-            let step = (curvature - share.curvature).cholesky().map_or(whole * own, |c| c.solve(&own));
-            covariance += step * step.transpose();
+            let step = solve(&(curvature - share.curvature), &own).unwrap_or_else(|| whole * own);
+            add_square(&mut covariance, &step, 1.0);
         }
         Some(covariance)
     }
@@ -111,6 +110,5 @@ impl Evidence {
 
 /// The nearest matrix without negative eigenvalues.
 pub(super) fn positive(matrix: &Matrix) -> Matrix {
-    let Some(Eigen { values, vectors }) = symmetric_eigen(matrix) else { return Matrix::zeros() };
-    vectors * Matrix::from_diagonal(&values.map(|value| value.max(0.0))) * vectors.transpose()
+    symmetric_eigen(matrix).map_or(Matrix::zeros(), |eigen| spectral(&eigen, |value| value.max(0.0)))
 }

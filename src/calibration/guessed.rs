@@ -7,7 +7,7 @@
 use nalgebra::Vector3;
 
 use super::lens::RigCamera;
-use super::unknowns::{Matrix, Units, Vector};
+use super::unknowns::{Matrix, Units, Vector, add_square, solve};
 
 /// Sigma of either coordinate of the principal point, shares of the image's width: cameras as made are off its middle by one
 /// to three hundredths.
@@ -39,17 +39,15 @@ pub(super) fn covariance(
         let bend = LENS * (x * x + y * y);
         let moved = [[shift, 0.0], [0.0, shift], [bend * (pixel[0] - camera.cx), bend * (pixel[1] - camera.cy)]];
         for (axis, row) in rows.iter().enumerate() {
-            information += row * row.transpose();
+            add_square(&mut information, row, 1.0);
             for (pull, moved) in pulls.iter_mut().zip(moved) {
                 *pull += row * moved[axis];
             }
         }
     }
-    let Some(factors) = information.cholesky() else { return Matrix::zeros() };
     let mut covariance = Matrix::zeros();
-    for pull in &pulls {
-        let step = factors.solve(pull);
-        covariance += step * step.transpose();
+    for step in pulls.iter().filter_map(|pull| solve(&information, pull)) {
+        add_square(&mut covariance, &step, 1.0);
     }
     covariance
 }

@@ -20,6 +20,8 @@ const LEVELS_OF_A_BYTE: u16 = 255;
 /// Above this share of neighbours that jump by a tenth of their depth, a depth map is something else.
 const ROUGH_SHARE: f64 = 0.25;
 const ROUGH_JUMP: f32 = 0.1;
+/// An image whose intensities differ by less, of 1, shows nothing.
+const BLANK: f32 = 0.02;
 /// Fewest depths that a frame needs.
 const FEWEST_DEPTHS: usize = 200;
 /// Focal length over width where nothing is known: 62 degrees from side to side.
@@ -66,6 +68,9 @@ impl RigView {
             }
         }
         let planes = Planes { size, pixels: encoded(&self.image, self.transfer, size)? };
+        if planes.pixels.iter().flatten().all(|value| (value - planes.pixels[0][0]).abs() < BLANK) {
+            warnings.push(format!("{}: the image is blank.", self.name));
+        }
         let points = points(&self, grid)?;
         let known = points.iter().filter(|point| !point[2].is_nan()).count();
         if known < FEWEST_DEPTHS {
@@ -86,7 +91,7 @@ impl RigView {
             let [cx, cy] = [size.width, size.height].map(|side| (side as f64 - 1.0) / 2.0);
             RigCamera { fx: focal, fy: focal, cx, cy, lens: super::Lens::None }
         });
-        camera.validate("image.camera")?;
+        validate(&camera, size, "image.camera")?;
         let mut frame = Frame::new(self.name, planes, camera, grid, points);
         frame.image_mask = self.image_mask.map(|mask| mask.into_iter().map(|value| value != 0).collect());
         frame.has_depth_mask = self.depth_mask.is_some();
@@ -95,6 +100,27 @@ impl RigView {
         }
         Ok((frame, is_guessed))
     }
+}
+
+/// A camera whose lens is one over most of its image: of coefficients with a slipped decimal point it folds near the middle, or
+/// sees next to nothing.
+fn validate(camera: &RigCamera, size: Size, field: &str) -> Result<()> {
+    /// Rows and columns of pixels that are tried.
+    const TRIED: usize = 9;
+    /// Of the slope of a ray without a lens; the strongest pincushions leave two thirds.
+    const LEAST_SLOPE: f64 = 0.25;
+    camera.validate(field)?;
+    let at = |k: usize, side: usize| (k as f64 + 0.5) / TRIED as f64 * side as f64;
+    let is_seen = |k: &usize| {
+        let pixel = [at(k % TRIED, size.width), at(k / TRIED, size.height)];
+        let straight = ((pixel[0] - camera.cx) / camera.fx).hypot((pixel[1] - camera.cy) / camera.fy);
+        camera.ray(pixel).is_some_and(|[x, y, z]| x.hypot(y) >= LEAST_SLOPE * straight * z)
+    };
+    if 2 * (0..TRIED * TRIED).filter(is_seen).count() > TRIED * TRIED {
+        return Ok(());
+    }
+    let message = "is no lens over this image: it folds, or hardly lets a ray through, at half of its pixels and more";
+    Err(Error::new(ErrorKind::Range, "distortion", message).below(field))
 }
 
 fn must_be(field: &'static str, length: usize, needed: usize) -> Result<()> {
@@ -150,7 +176,7 @@ fn points(view: &RigView, grid: Size) -> Result<Vec<[f32; 3]>> {
     let camera = view.depth_camera.ok_or_else(|| {
         Error::new(ErrorKind::Missing, "depth.camera", "is required: without intrinsics a depth map has no points")
     })?;
-    camera.validate("depth.camera")?;
+    validate(&camera, grid, "depth.camera")?;
     let depth = |index: usize| match &view.depth {
         DepthSamples::Float(data) => f64::from(data[index]),
         // The largest number of 16 bits stands for "nothing" in several cameras.
@@ -222,5 +248,30 @@ fn warn(view: &RigView, grid: Size, points: &[[f32; 3]], warnings: &mut Vec<Stri
     }
     if jumps as f64 > ROUGH_SHARE * f64::from(count.max(1)) {
         warnings.push(format!("{name}: the depth map is as rough as a photograph; are the two files swapped?"));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::calibration::Lens;
+
+    #[test]
+    fn slipped_decimal_points_are_no_lens() {
+        let size = Size::new("image", 640, 480).unwrap();
+        let with = |lens| RigCamera { fx: 525.0, fy: 525.0, cx: 319.5, cy: 239.5, lens };
+        let brown = |k1| Lens::Brown([k1, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+        for lens in [Lens::None, brown(-0.4), brown(0.5), Lens::Fisheye([0.1, -0.05, 0.0, 0.0])] {
+            assert_eq!(validate(&with(lens), size, "camera"), Ok(()));
+        }
+        // Wide: a fisheye whose rim looks aside.
+        let wide = RigCamera { fx: 200.0, fy: 200.0, ..with(Lens::Fisheye([0.0; 4])) };
+        assert_eq!(validate(&wide, size, "camera"), Ok(()));
+        for lens in
+            [brown(-40.0), brown(1e6), Lens::Fisheye([-60.0, 0.0, 0.0, 0.0]), Lens::Fisheye([1e6, 0.0, 0.0, 0.0])]
+        {
+            let error = validate(&with(lens), size, "camera").unwrap_err();
+            assert_eq!((error.kind(), error.field()), (ErrorKind::Range, "camera.distortion"));
+        }
     }
 }

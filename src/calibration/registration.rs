@@ -19,7 +19,7 @@ use super::rims::Rim;
 use super::shading::Shading;
 use super::silhouette::Silhouette;
 use super::surface::{self, Sample};
-use super::unknowns::{FOCAL, LOSS, Matrix, State, Units, Vector};
+use super::unknowns::{FOCAL, LOSS, Matrix, State, Units, Vector, solve};
 
 /// sigma of edges along the way, pixels of an image 640 wide: from what is left of a few degrees after the coarse search
 /// to what an image resolves. Half as wide each other time.
@@ -282,5 +282,5 @@ pub(super) fn blur(sigma: f64) -> f64 {
 
 fn step(total: &Evidence, prior: &Matrix, back: &Vector) -> Vector {
     let gradient = total.gradient() - prior * back;
-    (total.curvature() + prior).cholesky().map_or(Vector::zeros(), |c| c.solve(&gradient))
+    solve(&(total.curvature() + prior), &gradient).unwrap_or_else(Vector::zeros)
 }

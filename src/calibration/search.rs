@@ -12,7 +12,7 @@ use super::frame::Frame;
 use super::planes::Planes;
 use super::registration::Scene;
 use super::rims::Rim;
-use super::unknowns::{Matrix, State, UNKNOWNS, Units, Vector};
+use super::unknowns::{Matrix, State, UNKNOWNS, Units, Vector, add_square, spectral};
 use crate::numeric::eigen::symmetric_eigen;
 
 /// Pace of the lattice, root mean square over rims, pixels of an image 640 wide.
@@ -127,11 +127,10 @@ fn rows(frames: &[Frame], state: &State, units: &Units, rims: &[Vec<Rim>]) -> Ve
 impl Lattice {
     /// `pace` in pixels, wider where the lattice would have too many places.
     fn new(rows: &[(usize, Rim, [Vector; 2])], prior: &Matrix, pace: &mut f64) -> Option<Self> {
-        let squares: Matrix = rows.iter().flat_map(|(_, _, rows)| rows).map(|row| row * row.transpose()).sum();
+        let mut squares = Matrix::zeros();
+        rows.iter().flat_map(|(_, _, rows)| rows).for_each(|row| add_square(&mut squares, row, 1.0));
         let motion = squares / (rows.len() as f64).max(1.0);
-        let told = symmetric_eigen(prior)?;
-        let inverse_roots = told.values.map(|value| 1.0 / value.max(f64::MIN_POSITIVE).sqrt());
-        let root = told.vectors * Matrix::from_diagonal(&inverse_roots) * told.vectors.transpose();
+        let root = spectral(&symmetric_eigen(prior)?, |value| 1.0 / value.max(f64::MIN_POSITIVE).sqrt());
         let eigen = symmetric_eigen(&(root * motion * root))?;
         let order = crate::numeric::descending(eigen.values.as_slice());
         // Pixels of a sigma along each.

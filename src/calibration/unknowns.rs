@@ -8,6 +8,7 @@
 use nalgebra::{Rotation3, SMatrix, SVector, Vector3};
 
 use super::lens::RigCamera;
+use crate::numeric::eigen::Eigen;
 use crate::pose::Similarity;
 
 /// w (3), v (3), d, ln f.
@@ -19,6 +20,28 @@ pub(super) const FOCAL: usize = 7;
 
 pub(super) type Vector = SVector<f64, UNKNOWNS>;
 pub(super) type Matrix = SMatrix<f64, UNKNOWNS, UNKNOWNS>;
+
+/// `matrix` with a row's square added. Here and in the next two not inlined: each place's own copy would be a kilobyte to download.
+#[inline(never)]
+pub(super) fn add_square(matrix: &mut Matrix, row: &Vector, weight: f64) {
+    for k in 0..UNKNOWNS {
+        for j in 0..UNKNOWNS {
+            matrix[(j, k)] += row[j] * row[k] * weight;
+        }
+    }
+}
+
+/// The solution of a positive definite system.
+#[inline(never)]
+pub(super) fn solve(matrix: &Matrix, right: &Vector) -> Option<Vector> {
+    matrix.cholesky().map(|factors| factors.solve(right))
+}
+
+/// V f(L) V^T of a symmetric matrix V L V^T, of which only this is known.
+#[inline(never)]
+pub(super) fn spectral(eigen: &Eigen<UNKNOWNS>, of: fn(f64) -> f64) -> Matrix {
+    eigen.vectors * Matrix::from_diagonal(&eigen.values.map(of)) * eigen.vectors.transpose()
+}
 
 /// Pixels that a radian or a metre moves the scene by at the least, so that what is not on the image has finite units.
 const LEAST_MOTION: f64 = 1e-6;

@@ -8,7 +8,8 @@
 //! the truth than from it in 5 % of cases and more), and the scene would show an error that counts (the estimate's own
 //! error is below the tolerance in 95 % of cases). Off: all of the interval is above the tolerance, and the candidate is farther from the
 //! estimate than the truth is in 95 % of cases; with six unknowns open hardly any draw is near a candidate, wherever it is.
-//! Where the colour camera was guessed, all of the interval has to be above what that explains.
+//! Where the colour camera was guessed, all of the interval has to be above what that explains. An estimate that would itself be
+//! off by its own interval speaks against nobody.
 //! Else the scene can't tell.
 
 use nalgebra::{SMatrix, SVector, Vector3};
@@ -203,9 +204,10 @@ impl Judge {
         let probability = farther as f64 / self.draws.len() as f64;
         let is_likely = probability >= 1.0 - INSIDE;
         let would_show = self.reach <= self.tolerance;
+        let bound = self.tolerance.max(self.explained);
         let verdict = if high <= self.tolerance || (is_likely && would_show) {
             CheckVerdict::Consistent
-        } else if low > self.tolerance.max(self.explained) && !is_likely {
+        } else if low > bound && self.own.interval[0] <= bound && !is_likely {
             CheckVerdict::Off
         } else {
             CheckVerdict::Undecided
@@ -235,7 +237,7 @@ impl Judge {
                 Fixed(self.reach, 1)
             ),
             CheckVerdict::Off => format!("Off by about {off}: {pixels}; up to {passes} px pass."),
-            CheckVerdict::Undecided if low > self.tolerance && !is_likely => format!(
+            CheckVerdict::Undecided if low > self.tolerance && low <= bound && !is_likely => format!(
                 "This scene can't tell behind a guessed camera: {pixels}, around the {} px that pass.",
                 Fixed(self.explained, 0)
             ),

@@ -5,6 +5,8 @@
 //! ([`Worker`](super::Worker)). What they find counts in the order of the tasks, however it comes in: the outcome is
 //! the same to the bit.
 
+use nalgebra::Matrix3;
+
 use crate::error::{Error, ErrorKind, Result};
 use crate::pose::{ContrastSearch, ImageGrid, Search, SearchProblem, Similarity, TaskResults};
 
@@ -110,6 +112,11 @@ impl Initialisation {
     pub fn best_pose(&self) -> Option<Similarity> {
         let best = self.optima.best().or_else(|| self.search.best().map(|best| best.pose))?;
         Some(self.opening.as_ref().map_or(best, |opening| opening.pose_out(&best)))
+    }
+
+    /// Each rotation that was tried so far, and its score.
+    pub fn scores(&self) -> Vec<(Matrix3<f64>, f64)> {
+        self.search.scores()
     }
 
     /// A task for a worker; `None` while none can be begun.

@@ -1,12 +1,14 @@
 //! The initialisation as a part of the run: its slices, what is said meanwhile, and the loop's start from what it finds.
 
+use nalgebra::Matrix3;
+
 use super::Estimator;
 use super::initialisation::{self, Advance, Initialisation};
 use super::opening::Opening;
 use super::run::Run;
 use super::stages::Outcome;
 use crate::error::Result;
-use crate::pose::ImageGrid;
+use crate::pose::{Angles, ImageGrid};
 use crate::report::Stage;
 use crate::text::Fixed;
 
@@ -46,6 +48,18 @@ impl Estimator {
                 self.start_from(outcome)
             }
         }
+    }
+
+    /// What the search has tried so far: alpha, beta, gamma in degrees of each rotation, and its score: the gain of log likelihood over
+    /// a constant colour, in cells of the search's grid, at the best translation and size. Empty before and after the search.
+    #[must_use]
+    pub fn search_scores(&self) -> Vec<[f32; 4]> {
+        let Run::Searching(initialisation) = &self.run else { return vec![] };
+        let row = |(rotation, score): (Matrix3<f64>, f64)| {
+            let Angles { alpha, beta, gamma } = Angles::of(&rotation);
+            [alpha, beta, gamma, score].map(|value| value as f32)
+        };
+        initialisation.scores().into_iter().filter(|(_, score)| score.is_finite()).map(row).collect()
     }
 
     /// Starts the loop from what the initialisation found.

@@ -205,6 +205,11 @@ impl Estimator {
     }
 
     /// Points of the "image" or the "depth" view; the facade has checked the word.
+    #[wasm_bindgen(js_name = "searchScores")]
+    pub fn search_scores(&self) -> Float32Array {
+        Float32Array::from(self.native.search_scores().as_flattened())
+    }
+
     pub fn points(&self, view: &str) -> Float32Array {
         let surface = if view == "depth" { Surface::Depth } else { Surface::Image };
         Float32Array::from(self.native.points(surface).as_slice())

@@ -109,6 +109,13 @@ describe("a rig before boxes", () => {
     assert.ok(across > (0.01 * frame.image.width) / frame.image.camera.fx, String(across));
   });
 
+  test("a blank image is named, and speaks against nobody", async () => {
+    const data = new Uint8ClampedArray(frame.image.data.length).fill(255);
+    const report = await checkCalibration([{ ...frame, image: { ...frame.image, data } }], { told: wrong(truth, [1, 2, 1], 3, [0.02, 0, 0]) });
+    assert.match(report.warnings.join(), /boxes 1: the image is blank/);
+    assert.equal(report.verdict, "undecided", report.reason);
+  });
+
   test("a wall alone can't tell, and says so", async () => {
     // No depth edge at all: what was told is all that is known.
     const data = new Uint16Array(frame.depth.data.length).fill(1500);
@@ -179,6 +186,11 @@ describe("a rig before boxes", () => {
     const lens = (distortion) => ({ image: { ...image, camera: { ...image.camera, distortion } }, depth });
     await refused(check(lens([1, 2, 3])), "size", "frames[0].image.camera.distortion");
     await refused(check(lens([NaN, 0, 0, 0, 0])), "range", "frames[0].image.camera.distortion");
+    // Of a slipped decimal point: it folds near the image's middle.
+    await refused(check(lens([1e6, 0, 0, 0, 0])), "range", "frames[0].image.camera.distortion");
+    await refused(check({ image, depth: { ...depth, camera: { ...depth.camera, distortion: [-40, 0, 0, 0, 0] } } }), "range", "frames[0].depth.camera.distortion");
+    await refused(projectFrame(frame, { ...truth, rotation: new Array(9).fill(0) }), "range", "pose.rotation");
+    await refused(projectFrame(frame, { ...truth, translation: [0, NaN, 0] }), "range", "pose.translation");
     await refused(check(frame, { told: { ...truth, rotation: [1, 0, 0, 0, 1, 0, 0, 0, -1] } }), "range", "candidates.told.rotation");
     await refused(check(frame, { told: { ...truth, translation: [0, NaN, 0] } }), "range", "candidates.told.translation");
     await refused(check(frame, { told: { ...truth, scale: 2 } }), "range", "candidates.told.scale");

@@ -24,18 +24,18 @@ export async function readRigFolder(files, options) {
   const readings = [];
   for (const file of files) readings.push(await readRigFile(file));
   const frames = readings.filter(({ kind }) => kind === "frame");
-  return { frames, cameras: [], poses: [], readings, warnings: ["read " + files.map(({ name }) => name.split("/").pop()) + " " + JSON.stringify(options)] };
+  return { frames, cameras: [], poses: [], readings, warnings: frames[0]?.sure ? [] : ["read " + files.map(({ name }) => name.split("/").pop()) + " " + JSON.stringify(options)] };
 }`;
 /** The verdict is the first frame's; "wait" goes on until it is aborted. */
 const INDEX = `
 import { report } from ${JSON.stringify(new URL("rig-sample.mjs", import.meta.url).href)};
 export default async () => {};
 export async function checkCalibration(frames, candidates, { signal, onProgress, ...options }) {
-  const { verdict } = frames[0];
+  const { verdict, sure } = frames[0];
   for (let k = 0; k <= 100; k++) onProgress(k / 100, "edges of " + frames.length);
   while (verdict === "wait") { await new Promise((go) => setTimeout(go, 10)); signal.throwIfAborted(); }
   if (verdict === "broken") throw new TypeError("a bug");
-  return { ...report(), verdict, reason: (verdict === "consistent" ? "Consistent: " : "") + JSON.stringify({ candidates, options }), warnings: ["one of the check's"] };
+  return { ...report(), verdict, reason: (verdict === "consistent" ? "Consistent: " : "") + JSON.stringify({ candidates, options }), warnings: sure ? [] : ["one of the check's"] };
 }`;
 
 mkdirSync(join(root, "pkg"));
@@ -51,7 +51,9 @@ const write = (path, content) => {
   writeFileSync(join(root, path), JSON.stringify(content));
 };
 const pose = (x) => ({ scale: 1, rotation: [0, -1, 0, 1, 0, 0, 0, 0, 1], translation: [x, 0, 0], angles: { alpha: 0, beta: 0, gamma: 90 } });
-for (const verdict of ["consistent", "off", "undecided", "wait", "broken", "odd"]) write(`${verdict}/deep/0001.json`, { kind: "frame", verdict });
+write("consistent/deep/0001.json", { kind: "frame", verdict: "consistent", sure: true });
+write("guessed/deep/0001.json", { kind: "frame", verdict: "consistent" });
+for (const verdict of ["off", "undecided", "wait", "broken", "odd"]) write(`${verdict}/deep/0001.json`, { kind: "frame", verdict });
 write("none/0001.json", { kind: "other" });
 write("off/.hidden/0002.json", { kind: "frame", verdict: "consistent" });
 write("one.json", { kind: "poses", poses: [{ pose: pose(1) }] });
@@ -77,10 +79,14 @@ describe("exit codes", () => {
     });
   }
 
-  test("a consistent one with warnings is to be checked, and its word is said once", () => {
-    const { status, stdout } = check("consistent", "--calibration", "one.json");
-    assert.equal(status, 0);
-    assert.match(stdout, /^CONSISTENT: (?!Consistent)[^\n]*\nSettled, but check the warnings below\.\n/);
+  test("2 where it is consistent but for what the readers guessed, and its word is said once", () => {
+    assert.match(check("consistent", "--calibration", "one.json").stdout, /^CONSISTENT: (?!Consistent)/);
+    for (const args of [["guessed", "--calibration", "one.json"], ["consistent", "--calibration", "two.json"]]) {
+      const { status, stdout } = check(...args, "--json", "guessed.json");
+      assert.equal(status, 2);
+      assert.match(stdout, /^UNDECIDED: Settled, but check: (one of the check's|two.json: a guess) /);
+      assert.equal(JSON.parse(readFileSync(join(root, "guessed.json"), "utf8")).verdict, "undecided");
+    }
     assert.doesNotMatch(check("off", "--calibration", "one.json").stdout, /Settled/);
   });
 
@@ -126,7 +132,7 @@ describe("exit codes", () => {
   test("0 for --help, which names every code", () => {
     const { status, stdout } = check("--help");
     assert.equal(status, 0);
-    assert.match(stdout, /0 consistent, 1 off, 2 undecided, 3 /);
+    assert.match(stdout, /0 consistent, 1 off, 2 undecided or settled with a warning, 3 /);
   });
 
   test("3 where the package has no readers", () => {
@@ -168,8 +174,8 @@ describe("what is checked", () => {
   });
 
   test("a calibration that lies in the folder is read once", () => {
-    write("consistent/deep/rig.json", { kind: "cameras", poses: [{ pose: pose(1) }] });
-    const { stdout } = check("consistent", "--calibration", "consistent/deep/rig.json");
+    write("guessed/deep/rig.json", { kind: "cameras", poses: [{ pose: pose(1) }] });
+    const { stdout } = check("guessed", "--calibration", "guessed/deep/rig.json");
     assert.ok(stdout.includes("warning: read rig.json,0001.json {}"), stdout);
   });
 });

@@ -2,9 +2,14 @@
 import assert from "node:assert/strict";
 import { before, describe, test } from "node:test";
 import { Estimator, init, sample } from "./support.mjs";
+import { aboutAxis, product } from "../../scripts/tables/protocol/rotations.mjs";
 
 const REQUEST = { surface: "bust", light: "window", size: 64, angles: { alpha: 10, beta: 50, gamma: 15 }, overlap: 0.7, noise: 0.01 };
 const degrees = (a, b) => (2 * Math.asin(Math.hypot(...a.map((value, i) => value - b[i])) / Math.SQRT2 / 2) * 180) / Math.PI;
+
+/** R = Rx(alpha) Ry(beta) Rz(gamma). */
+const rotationOf = ([alpha, beta, gamma]) =>
+  product(product(aboutAxis([1, 0, 0], alpha), aboutAxis([0, 1, 0], beta)), aboutAxis([0, 0, 1], gamma));
 
 /** Runs to the end; every report on the way. */
 function reports({ image, depth }, gain = 1, options = {}) {
@@ -31,6 +36,26 @@ describe("search", () => {
     assert.equal(last.rivals, undefined);
     assert.ok(degrees(last.pose.rotation, pair.pose.rotation) < 1);
     assert.equal(last.uncertainty.rotationDegrees.length, 3);
+  });
+
+  test("what was tried can be looked at while it fills, and the truth is where it is highest", () => {
+    const pair = sample(REQUEST);
+    const estimator = new Estimator(pair.image, pair.depth);
+    assert.equal(estimator.searchScores().length, 0);
+    let [count, best] = [0, [0, 0, 0, -Infinity]];
+    while (estimator.step().stage === "search") {
+      const scores = estimator.searchScores();
+      if (scores.length === 0) continue;
+      assert.ok(scores.length % 4 === 0 && scores.length >= count && scores.every(Number.isFinite));
+      count = scores.length;
+      for (let row = 0; row < count; row += 4) if (scores[row + 3] > best[3]) best = [...scores.subarray(row, row + 4)];
+    }
+    assert.ok(count > 4 * 300, `${count / 4} rotations`);
+    // Rotations lie 16 degrees apart; registration does the rest.
+    assert.ok(degrees(rotationOf(best), pair.pose.rotation) < 15, String(best));
+    while (estimator.step().status === "running");
+    assert.equal(estimator.searchScores().length, 0);
+    estimator.free();
   });
 
   test("the exposure changes nothing", () => {

@@ -184,14 +184,25 @@ impl Search {
     /// The poses of the sweep, each rotation once, before any ascent: the better of its sizes.
     #[must_use]
     pub fn swept_poses(&self) -> Vec<Similarity> {
-        let mut poses: Vec<Hypothesis> = Vec::new();
+        self.swept_rotations().iter().map(|hypothesis| self.matcher.candidate(hypothesis).pose).collect()
+    }
+
+    /// Every rotation so far, of the sweep and of the ends of ascents, and its score.
+    pub(crate) fn scores(&self) -> Vec<(Matrix3<f64>, f64)> {
+        let swept = self.swept_rotations().into_iter().map(|hypothesis| (hypothesis.rotation, hypothesis.score));
+        swept.chain(self.ascents.results().map(|end| (end.pose.rotation, end.score))).collect()
+    }
+
+    /// The hypotheses of the sweep, each rotation once: the better of its sizes.
+    fn swept_rotations(&self) -> Vec<Hypothesis> {
+        let mut rotations: Vec<Hypothesis> = Vec::new();
         for hypothesis in self.swept.results().flatten() {
-            match poses.last_mut().filter(|last| last.rotation == hypothesis.rotation) {
+            match rotations.last_mut().filter(|last| last.rotation == hypothesis.rotation) {
                 Some(last) => *last = last.better(*hypothesis),
-                None => poses.push(*hypothesis),
+                None => rotations.push(*hypothesis),
             }
         }
-        poses.iter().map(|hypothesis| self.matcher.candidate(hypothesis).pose).collect()
+        rotations
     }
 
     /// For each pair of a slice the best translation.
