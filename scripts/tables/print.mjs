@@ -245,7 +245,7 @@ const random = (row) => [
   ),
 ];
 
-const stress = (row) => [
+const byKind = (row) => [
   ...random(row),
   ...columns([
     ["kind", "found", "median degrees", "confidently wrong", "flagged though found", "within 3 sigma"],
@@ -279,7 +279,7 @@ const ablation = (rows) =>
 
 const SHOWS = {
   ...{ table1, table2A, table2B, table3, figure4, figure5, figure6, figure7 },
-  ...{ refinement, sensors, photographs, conditions, albedo, rgbd, pinhole, random, painted: random, stress, exposure, ablation },
+  ...{ refinement, sensors, photographs, conditions, albedo, rgbd, pinhole, random, cameras: byKind, painted: random, stress: byKind, exposure, ablation },
 };
 
 /** One table's lines; `open3d` gives the baseline's degrees for a row of Table 2B, where there are any. */

@@ -236,6 +236,7 @@ export const aims = (json) =>
     ...(json.pinhole ? pinholeAims(json.pinhole) : []),
     ...(json.albedo ? albedoAims(json.albedo) : []),
     ...randomAims(json.random),
+    ...paintedAims("cameras", json.cameras),
     ...paintedAims("painted", json.painted),
     ...paintedAims("stress", json.stress),
     ...(json.exposure ? exposureAims(json.exposure) : []),

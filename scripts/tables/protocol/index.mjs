@@ -1,5 +1,6 @@
 // All tables and figures. Pure definitions: what imports them (the command, a page) brings the package and the data.
 import { ablation, exposure, random } from "./anywhere.mjs";
+import { cameras } from "./cameras.mjs";
 import { conditions } from "./conditions.mjs";
 import { painted } from "./painted.mjs";
 import { pinhole, rgbd } from "./perspectives.mjs";
@@ -12,7 +13,7 @@ import { figure4, figure5, refinement } from "./shapes.mjs";
 /** In the order in which they are printed. */
 export const TABLES = [
   ...[table1, table2A, table2B, table3, figure4, figure5, figure6, figure7],
-  ...[refinement, sensors, photographs, conditions, albedo, rgbd, pinhole, random, painted, stress, exposure, ablation],
+  ...[refinement, sensors, photographs, conditions, albedo, rgbd, pinhole, random, cameras, painted, stress, exposure, ablation],
 ];
 
 /** The rows of a table as the JSON has them: what the cell says of itself, which nothing measured may overwrite, and the rest. */

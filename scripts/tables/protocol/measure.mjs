@@ -2,6 +2,7 @@
 import { sceneOf } from "./anywhere.mjs";
 import { judged, optionsOf, withRun } from "./runs.mjs";
 import { requestOf } from "./scenes.mjs";
+import { measureCamera } from "./cameras.mjs";
 import { measurePainted } from "./painted.mjs";
 import { measureStress } from "./stress.mjs";
 import { measureCapture, measurePinhole } from "./measure-perspective.mjs";
@@ -66,6 +67,7 @@ const KINDS = {
   capture: measureCapture,
   pinhole: measurePinhole,
   albedo: measureAlbedo,
+  camera: measureCamera,
   painted: measurePainted,
   stress: measureStress,
   mitten: measureMitten,
