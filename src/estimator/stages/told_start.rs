@@ -138,7 +138,7 @@ impl TrustRegion {
             }
         }
         match (best, outlined) {
-            (Some(best), outlined) if !outlines::is_painted(pair, best.noise) || outlined.is_none() => {
+            (Some(best), outlined) if !outlines::is_painted(&best) || outlined.is_none() => {
                 self.by_all_points(pair, colours, *best)
             }
             (_, Some(outlined)) => Ok(Settled::ByOutlines(Box::new(outlined))),
@@ -229,10 +229,11 @@ impl TrustRegion {
     }
 }
 
-/// Whether hardly more than the image's own noise is left of the colours.
+/// Whether hardly more than the image's own noise is left of the colours. Fine print is noise to an image, but not to neighbours.
 fn explains(pair: &ViewPair, found: &PhotometricReport) -> bool {
     let image = &pair.image;
-    found.noise <= (EXPLAINED_NOISE * image.log_noise()).max(EXPLAINED_SHARE * image.log_spread())
+    let least = (EXPLAINED_NOISE * image.log_noise()).max(EXPLAINED_SHARE * image.log_spread());
+    found.noise <= least && !outlines::is_painted(found)
 }
 
 /// Root mean square distance of the depth points from their middle.
