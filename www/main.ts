@@ -9,7 +9,8 @@ import { Presets } from "./lab/presets";
 import { kinds } from "./lab/kinds";
 import { defaults, fromLink, toLink, type Origin, type Settings } from "./lab/settings";
 import { writeAddress } from "./lab/share";
-import { asksToPlay, placeOf, type Place } from "./place";
+import { wasOwn } from "./lab/source";
+import { asksToPlay, isEmbedded, placeOf, type Place } from "./place";
 
 import { themeToggle } from "./theme";
 
@@ -139,6 +140,7 @@ async function arrive(): Promise<void> {
   // Who comes from another place of the page, or by a link to some settings, looks for something else than a show.
   const opensFirst = !arrived && location.hash === "" && isFirstVisit();
   arrived = true;
+  document.documentElement.toggleAttribute("data-embed", isEmbedded(location.hash));
   show(place);
   if (place !== "learn") others.learn?.leave();
   if (place !== "tables") others.tables?.leave();
@@ -194,7 +196,15 @@ listenToKeys(() => keys.checked && placeOf(location.hash) === "lab", {
 });
 
 // A file must not replace the page; dropped anywhere on the Lab it goes where its content belongs.
-document.addEventListener("dragover", (event) => event.preventDefault());
+const showDrag = (isOver: boolean) => byId("lab", HTMLElement).toggleAttribute("data-over", isOver);
+document.addEventListener("dragover", (event) => {
+  event.preventDefault();
+  showDrag(event.dataTransfer?.types.includes("Files") ?? false);
+});
+document.addEventListener("dragleave", (event) => {
+  if (event.relatedTarget === null) showDrag(false);
+});
+document.addEventListener("drop", () => showDrag(false), { capture: true });
 document.addEventListener("drop", (event) => {
   event.preventDefault();
   const files = [...(event.dataTransfer?.files ?? [])];
@@ -216,6 +226,11 @@ drawer.addEventListener("keydown", (event) => {
   drawer.open = false;
   drawer.querySelector("summary")?.focus();
 });
+// A reload comes back to the visitor's own files.
+if (placeOf(location.hash) === "lab" && wasOwn() && !asksToPlay(location.hash)) {
+  arrived = true;
+  choose("files");
+}
 // A link opened in this very tab changes nothing but the part after #.
 addEventListener("hashchange", () => void arrive());
 void arrive();

@@ -1,21 +1,21 @@
 /** The Lab: settings in, frames out. It joins the parts and holds the state of one experiment. */
 
-import { byId } from "../dom";
+import { byId, make } from "../dom";
 import { Engine, EngineError } from "../engine/engine";
 import type { Calls, Frame, Opened, Source } from "../engine/protocol";
 import type { Pose, StepReport } from "../../pkg/index.js";
 import { Explanations } from "./ask";
 import { Form } from "./form";
 import { Gallery } from "./gallery";
-import { Intake } from "./intake";
-import { sorted } from "./kind";
+import { Intake, type Slot } from "./intake";
 import { LightPanel, type Turn } from "./light";
 import { Player } from "./player";
+import { shownIn } from "./pictures";
 import { PoseTable } from "./posetable";
 import { Rivals } from "./rivals";
 import { fields, inputGroups, methodOf, runOptions, turnOf, type Origin, type Settings } from "./settings";
-import { download, writeAddress } from "./share";
-import { sourceOf } from "./source";
+import { download, linkTo, writeAddress } from "./share";
+import { rememberOrigin, sourceOf } from "./source";
 import { saveBlob } from "../save";
 import { Store } from "./store";
 import { Status, type Notice } from "./status";
@@ -29,7 +29,11 @@ export class Lab {
   readonly player: Player;
   readonly #engine: Engine;
   readonly #form: Form;
-  readonly #intake = new Intake(() => void this.#reopen());
+  readonly #intake = new Intake({ onChange: () => this.#filesChanged(), onForget: () => void this.#forgetFiles() });
+  /** The files of what is on the screen; none of a sample. */
+  #pair: readonly (File | undefined)[] = [];
+  /** Whether the files of last time have been asked for. */
+  #restored = false;
   readonly #status = new Status();
   readonly #explanations = new Explanations(() => methodOf(this.store.settings, this.#origin));
   readonly #strip = new Strip(byId("stages", HTMLElement), this.#explanations);
@@ -90,6 +94,7 @@ export class Lab {
     }
     byId("objective-title", HTMLElement).append(this.#explanations.button("objective", "Objective"));
     byId("slots", HTMLElement).append(this.#intake.element);
+    byId("take-picture", HTMLSelectElement).addEventListener("focus", () => this.#offerPictures());
     this.store.listen((settings, changed, live) => this.#settingsChanged(settings, changed, live));
     this.#form.adapt(this.store.settings, this.#origin);
   }
@@ -121,8 +126,10 @@ export class Lab {
   /** Samples or own files; the last input stays on the screen until there is a new one. */
   choose(origin: Origin): void {
     this.#origin = origin;
+    rememberOrigin(origin);
     this.#form.adapt(this.store.settings, origin);
     void this.#reopen();
+    if (origin === "files" && !this.#restored) void this.#restoreFiles();
   }
 
   restart(): Promise<void> {
@@ -140,9 +147,14 @@ export class Lab {
   async take(kind: Kind): Promise<void> {
     if (!this.#good || !this.#report) return;
     try {
+      const { source, settings } = this.#good;
       const [{ fileOfKind }, taken] = await Promise.all([import("./takeaway"), this.#engine.call("take", {})]);
-      const { name, blob } = fileOfKind(kind, taken);
+      const report = this.#report;
+      const run = { taken, report, end: verdict(report, this.#from, this.#truth), truth: this.#truth, origin: source.kind, settings };
+      const files = source.kind === "files" ? this.#intake.said : [];
+      const { name, blob, says } = await fileOfKind(kind, { ...run, files, link: linkTo(settings) });
       saveBlob(name, blob);
+      byId("taken", HTMLElement).textContent = says ? `Saved ${name}: ${says}.` : `Saved ${name}.`;
     } catch (error) {
       // What was asked for next has broken it off, and speaks for itself.
       if (!(error instanceof EngineError) || error.code !== "interrupted") await this.#fail(error);
@@ -151,8 +163,70 @@ export class Lab {
 
   /** Files dropped anywhere, each into the slot that its content is of. */
   async drop(files: readonly File[]): Promise<void> {
-    const slots = await sorted(files, (slot) => this.#intake.files[slot] !== undefined);
-    this.#intake.putAll(slots);
+    this.#restored = true;
+    const { sorted } = await import("./own");
+    const { slots, settings, remarks } = await sorted(files, this.#intake.files);
+    this.#intake.remarks(remarks);
+    if (Object.keys(settings).length > 0) this.store.change(settings);
+    if (slots.size > 0) this.#intake.putAll(slots);
+  }
+
+  #filesChanged(): void {
+    this.#restored = true;
+    void this.#reopen();
+    void this.#lookAtFiles();
+    void this.#keepFiles();
+  }
+
+  /** Shows what each file is, and asks where one seems to be in the wrong place. */
+  async #lookAtFiles(): Promise<void> {
+    const files = { ...this.#intake.files };
+    this.#intake.offer(undefined);
+    const { lookAt, offerFor } = await import("./own");
+    const looks = Object.entries(files).map(async ([slot, file]) => this.#intake.show(slot as Slot, file, await lookAt(file)));
+    await Promise.all(looks);
+    const offer = await offerFor(files);
+    const now = this.#intake.files;
+    if (Object.keys({ ...files, ...now }).every((slot) => files[slot as Slot] === now[slot as Slot])) this.#intake.offer(offer);
+  }
+
+  async #keepFiles(): Promise<void> {
+    const files = { ...this.#intake.files };
+    const count = Object.keys(files).length;
+    if (count === 0) return this.#forgetFiles();
+    const { keep, reasonOf } = await import("./shelf");
+    try {
+      await keep(files);
+      this.#intake.keeping("These files are kept in this browser, on this machine, until you forget them; a reload brings them back.", true);
+    } catch (error) {
+      this.#intake.keeping(`This browser does not keep the files (${reasonOf(error)}): they work all the same, and are gone with a reload.`, true);
+    }
+  }
+
+  async #forgetFiles(): Promise<void> {
+    const { forget } = await import("./shelf");
+    await forget().catch(() => {});
+    if (Object.keys(this.#intake.files).length === 0) this.#intake.keeping("Nothing is kept in this browser.", false);
+  }
+
+  /** The files of last time, unless there are others by now. */
+  async #restoreFiles(): Promise<void> {
+    this.#restored = true;
+    const { kept } = await import("./shelf");
+    const files = await kept().catch(() => new Map<string, File>());
+    if (files.size > 0 && Object.keys(this.#intake.files).length === 0) this.#intake.putAll(files as Map<Slot, File>);
+  }
+
+  /** Nothing of a pair that is not the one asked for stays on the screen: neither its pictures nor its true values. */
+  #vacate(): void {
+    this.#good = undefined;
+    this.#report = undefined;
+    this.#truth = null;
+    this.#notes = {};
+    this.#pair = [];
+    this.#forget();
+    byId("iteration", HTMLElement).textContent = "0";
+    byId("lab", HTMLElement).toggleAttribute("data-vacant", true);
   }
 
   #settingsChanged(settings: Settings, changed: readonly string[], live: boolean): void {
@@ -207,6 +281,9 @@ export class Lab {
 
   #reopen(): Promise<void> {
     this.player.pause();
+    const { colour, depth } = this.#intake.files;
+    const wanted = this.#origin === "files" ? [colour, depth] : [];
+    if (wanted.length !== this.#pair.length || wanted.some((file, i) => file !== this.#pair[i])) this.#vacate();
     return this.#start(sourceOf(this.#origin, this.store.settings, this.#intake.files));
   }
 
@@ -243,6 +320,7 @@ export class Lab {
         const opened = await this.#engine.call("open", { source, options });
         this.#held = source;
         if (turn !== this.#turn) return;
+        this.#pair = source.kind === "files" ? [source.files.colour, source.files.depth] : [];
         await this.#present(opened);
       }
       this.#good = { source, settings };
@@ -262,6 +340,7 @@ export class Lab {
   }
 
   async #present(opened: Opened): Promise<void> {
+    byId("lab", HTMLElement).removeAttribute("data-vacant");
     this.#truth = opened.truth;
     this.#length = opened.units.image;
     this.#light.showTruth(opened.trueLight);
@@ -271,6 +350,17 @@ export class Lab {
     const drawn = this.gallery.open(opened, this.#looksOther());
     this.#take(opened.frame);
     await drawn;
+    this.#offerPictures();
+  }
+
+  /** What can be saved as a picture now. */
+  #offerPictures(): void {
+    const select = byId("take-picture", HTMLSelectElement);
+    const titles = shownIn(byId("lab", HTMLElement)).map(({ title }) => title);
+    const before = select.value;
+    if (titles.join("\n") === [...select.options].map(({ value }) => value).join("\n")) return;
+    select.replaceChildren(...titles.map((title) => make("option", { value: title }, title)));
+    if (titles.includes(before)) select.value = before;
   }
 
   /** Whether another object has come: the view of one whose light or noise has changed stays. */
