@@ -77,9 +77,9 @@ export function readNpy(bytes: Uint8Array): Raster<Float32Array | Uint16Array | 
   if (channels > MOST_CHANNELS) throw bad(`this .npy file has ${channels} channels; 1 to ${MOST_CHANNELS} are read here`);
   const count = height * width * channels;
   const { size, read } = KINDS[kind];
-  const body = bytes.subarray(until);
-  if (body.length < count * size) throw bad(`this .npy file is cut off: ${body.length} of ${count * size} bytes`);
-  // A copy, because typed arrays want aligned memory.
-  const data = read(body.slice(0, count * size).buffer, count);
+  // A copy, because typed arrays want aligned memory; Node's Buffer would not make one by its own slice.
+  const body = new Uint8Array(bytes.subarray(until)).buffer;
+  if (body.byteLength < count * size) throw bad(`this .npy file is cut off: ${body.byteLength} of ${count * size} bytes`);
+  const data = read(body, count);
   return { width, height, channels, data: order === "True" ? inRows(data, height, width, channels) : data };
 }

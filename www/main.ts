@@ -7,8 +7,8 @@ import { Lab } from "./lab/lab";
 import { paces } from "./lab/player";
 import { Presets } from "./lab/presets";
 import { kinds } from "./lab/kinds";
-import { defaults, fromLink, toLink, type Origin, type Settings } from "./lab/settings";
-import { writeAddress } from "./lab/share";
+import { defaults, fromLink, type Origin, type Settings } from "./lab/settings";
+import { linkTo, onLook, showLooks, writeAddress } from "./lab/share";
 import { wasOwn } from "./lab/source";
 import { asksToPlay, isEmbedded, placeOf, type Place } from "./place";
 
@@ -104,7 +104,7 @@ async function copyLink(): Promise<void> {
   const target = byId("link", HTMLButtonElement);
   try {
     await navigator.clipboard.writeText(location.href);
-    target.textContent = "Copied";
+    target.textContent = placeOf(location.hash) === "lab" && !isSample() ? "Copied, no files" : "Copied";
   } catch {
     target.textContent = "See address bar";
   }
@@ -148,12 +148,17 @@ async function arrive(): Promise<void> {
   if (place !== "lab") {
     lab.leave();
     // Never without the #, which would load the page anew.
-    places.lab.link.href = `#${toLink(store.settings)}`;
+    places.lab.link.href = new URL(linkTo(store.settings)).hash || "#";
     await open(place);
     return;
   }
   const settings = fromLink(location.hash);
-  if (!asksToPlay(location.hash)) return opensFirst ? start(settings) : lab.enter(settings);
+  const { hash } = location;
+  if (!asksToPlay(hash)) {
+    const entered = opensFirst ? start(settings) : lab.enter(settings);
+    showLooks(hash);
+    return entered;
+  }
   if (!isSample()) choose("sample");
   const started = lab.watch(settings);
   writeAddress(store.settings);
@@ -231,6 +236,7 @@ if (placeOf(location.hash) === "lab" && wasOwn() && !asksToPlay(location.hash)) 
   arrived = true;
   choose("files");
 }
+onLook(() => writeAddress(store.settings));
 // A link opened in this very tab changes nothing but the part after #.
 addEventListener("hashchange", () => void arrive());
 void arrive();

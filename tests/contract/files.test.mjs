@@ -78,6 +78,12 @@ describe(".npy", () => {
     assert.deepEqual(decoded("<f4", new Float32Array([1, 2, 3]), { align: 1 }), new Float32Array([1, 2, 3]), "unaligned");
   });
 
+  test("from a part of one of Node's shared buffers", () => {
+    const file = npy({ descr: "<f4", shape: [1, 3], data: new Float32Array([1, 2, 3]) });
+    const shared = Buffer.concat([Buffer.alloc(64, 255), file]).subarray(64);
+    assert.deepEqual(decodeDepth(shared).data, new Float32Array([1, 2, 3]));
+  });
+
   test("a cloud, colours and masks", () => {
     const data = new Float32Array([1, 2, 3, 4, 5, 6]);
     assert.deepEqual(decodeDepth(npy({ descr: "<f4", shape: [1, 2, 3], data })), { width: 2, height: 1, points: data });
