@@ -68,6 +68,11 @@ test("depth as 16 bits says its step and agrees with the .npy, and normals are o
     seen += Number(a[i]) > 0 ? 1 : 0;
   }
   expect(seen).toBeGreaterThan(200);
+  const button = page.getByRole("button", { name: "Normals, PNG", exact: true });
+  await button.click();
+  await expect(page.locator("#taken")).toContainText("there are no normals yet");
+  await page.getByRole("button", { name: "Step", exact: true }).click();
+  await expect(lab.iteration).toHaveText("1");
   for (const name of ["Normals, PNG", "Refined normals, PNG"]) {
     const { width, height, channels, depth, data } = decode(await handed(lab, name));
     expect([width, height, channels, depth]).toEqual([32, 32, 3, 16]);

@@ -157,7 +157,11 @@ export class Lab {
       byId("taken", HTMLElement).textContent = says ? `Saved ${name}: ${says}.` : `Saved ${name}.`;
     } catch (error) {
       // What was asked for next has broken it off, and speaks for itself.
-      if (!(error instanceof EngineError) || error.code !== "interrupted") await this.#fail(error);
+      if (error instanceof EngineError) {
+        if (error.code !== "interrupted") await this.#fail(error);
+      } else {
+        byId("taken", HTMLElement).textContent = `Nothing saved: ${error instanceof Error ? error.message : String(error)}`;
+      }
     }
   }
 

@@ -44,6 +44,12 @@ function ply({ imagePoints, depthPoints, unit }: Taken): Uint8Array<ArrayBuffer>
   return writeClouds(clouds, unit === "m" ? "metres" : "pixels");
 }
 
+/** Normals are found by the first iteration: before it there are none to save. */
+async function normals(name: string, given: { width: number; height: number; normals: Float32Array }): Promise<Made> {
+  if (!given.normals.some((value) => Number.isFinite(value) && value !== 0)) throw new Error("there are no normals yet; press Step or Play first.");
+  return made(name, "image/png", await normalsPng({ ...given, data: given.normals }), "(n + 1) / 2 of white, x right, y up, z near");
+}
+
 /** A file's name of a title. */
 const slug = (title: string): string => title.toLowerCase().replace(/[^a-z0-9]+/g, "-").replace(/^-|-$/g, "") || "picture";
 
@@ -87,9 +93,9 @@ export async function fileOfKind(kind: Kind, run: Run): Promise<Made> {
     case "depth":
       return made("refined-depth.npy", "application/octet-stream", writeNpy({ width: depth.width, height: depth.height, channels: 1, data: depth.refined }), length(depthUnit));
     case "normals":
-      return made("normals.png", "image/png", await normalsPng({ ...image, data: image.normals }), "(n + 1) / 2, x right, y up, z near");
+      return normals("normals.png", image);
     case "depthNormals":
-      return made("refined-normals.png", "image/png", await normalsPng({ ...depth, data: depth.normals }), "(n + 1) / 2, x right, y up, z near");
+      return normals("refined-normals.png", depth);
     case "light":
       return made("light.csv", "text/csv", lightCsv(light));
     case "picture":
