@@ -25,18 +25,21 @@ function chunk(type: string, body: Uint8Array): Uint8Array<ArrayBuffer> {
 
 /** High bytes first, each row behind its filter. */
 function filtered({ width, height, channels, data }: Raster<Uint8Array | Uint16Array>): Uint8Array<ArrayBuffer> {
-  const bytes = data.BYTES_PER_ELEMENT;
-  const length = width * channels * bytes;
-  const out = new Uint8Array(height * (length + 1));
-  const byteAt = (row: number, at: number): number => {
-    if (row < 0) return 0;
-    const value = data[row * width * channels + Math.floor(at / bytes)] ?? 0;
-    return bytes === 1 ? value : at % 2 === 0 ? value >> 8 : value & 255;
-  };
-  for (let row = 0; row < height; row++) {
-    const to = row * (length + 1);
-    out[to] = UP;
-    for (let at = 0; at < length; at++) out[to + 1 + at] = byteAt(row, at) - byteAt(row - 1, at);
+  const [samples, bytes] = [width * channels, data.BYTES_PER_ELEMENT];
+  const stride = 1 + samples * bytes;
+  const out = new Uint8Array(height * stride);
+  for (let row = 0, from = 0; row < height; row++) {
+    let to = row * stride;
+    out[to++] = UP;
+    for (let i = 0; i < samples; i++) {
+      const value = data[from++] ?? 0;
+      if (bytes === 2) out[to++] = value >> 8;
+      out[to++] = value;
+    }
+  }
+  // From below, so that the row above is still what it was.
+  for (let row = height - 1; row > 0; row--) {
+    for (let at = row * stride + 1; at < (row + 1) * stride; at++) out[at] = (out[at] ?? 0) - (out[at - stride] ?? 0);
   }
   return out;
 }

@@ -64,7 +64,11 @@ export async function depthPng(depth: Extent & { data: Float32Array }, unit: Uni
   let farthest = 0;
   for (const value of data) if (isThere(value) && value > farthest) farthest = value;
   const [step, says] = STEPS[unit].find(([each]) => farthest / each <= LARGEST) ?? STEPS[unit].at(-1) ?? [1, ""];
-  const stored = Uint16Array.from(data, (value) => (isThere(value) ? Math.min(LARGEST, Math.max(1, Math.round(value / step))) : 0));
+  const stored = new Uint16Array(data.length);
+  for (let i = 0; i < data.length; i++) {
+    const value = data[i] ?? NaN;
+    if (isThere(value)) stored[i] = Math.min(LARGEST, Math.max(1, Math.round(value / step)));
+  }
   const bytes = await writePng({ width, height, channels: 1, data: stored }, { Unit: `${says} per stored number; 0 is no depth`, Software: "bimodal-stereo" });
   return { bytes, step, says };
 }
@@ -78,9 +82,12 @@ export async function normalsPng({ width, height, data }: Extent & { data: Float
   const stored = new Uint16Array(data.length);
   const level = (value: number) => Math.round((LARGEST * (Math.min(1, Math.max(-1, value)) + 1)) / 2);
   for (let at = 0; at < data.length; at += 3) {
-    const [x = NaN, y = NaN, z = NaN] = data.subarray(at, at + 3);
+    const [x, y, z] = [data[at] ?? NaN, data[at + 1] ?? NaN, data[at + 2] ?? NaN];
+    if (!Number.isFinite(x + y + z) || (x === 0 && y === 0 && z === 0)) continue;
+    stored[at] = level(x);
     // y points down and z forward in a camera's frame.
-    if (Number.isFinite(x + y + z) && (x !== 0 || y !== 0 || z !== 0)) stored.set([level(x), level(-y), level(-z)], at);
+    stored[at + 1] = level(-y);
+    stored[at + 2] = level(-z);
   }
   const texts = { Description: "Normals: (n + 1) / 2 of 65535 for x right, y up, z towards the viewer; black is none", Software: "bimodal-stereo" };
   return writePng({ width, height, channels: 3, data: stored }, texts);

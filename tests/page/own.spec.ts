@@ -142,6 +142,44 @@ test("a reload keeps the files, until they are forgotten; a link alone does not 
   }))).toBe(0);
 });
 
+test("a pair that comes whole leaves no mask of the last, and files of last time come back for nobody who brings others", async ({ lab, page }) => {
+  await lab.open("size=32");
+  await drop(page, "body", [colourPng("one.png"), depthPng("two.png"), maskPng("three.png")]);
+  await expect(slot(lab, 2)).toContainText("three.png");
+  await lab.reaches("ready");
+  await drop(page, "#hero", [depthPng("five.png"), colourPng("four.png", 9)]);
+  await expect(slot(lab, 0)).toContainText("four.png");
+  await expect(slot(lab, 1)).toContainText("five.png");
+  await expect(slot(lab, 2)).not.toContainText("three.png");
+  await lab.reaches("ready");
+  await expect(page.locator(".keeping")).toContainText("kept in this browser");
+  await page.getByRole("button", { name: "Sample", exact: true }).click();
+  await lab.reaches("ready");
+  await page.reload();
+  await lab.reaches("ready");
+  await drop(page, "body", [maskPng("six.png")]);
+  await expect(slot(lab, 2)).toContainText("six.png");
+  await lab.reaches("waiting");
+  await expect(slot(lab, 0)).not.toContainText("four.png");
+});
+
+test("where storage is full, older files do not come back in the place of those that could not be kept", async ({ lab, page }) => {
+  await own(lab);
+  await put(lab, "Colour image", colourPng("old.png"));
+  await put(lab, "Depth map", depthPng("old-depth.png"));
+  await expect(page.locator(".keeping")).toContainText("kept in this browser");
+  await page.evaluate(() => {
+    IDBObjectStore.prototype.put = () => {
+      throw new DOMException("no", "QuotaExceededError");
+    };
+  });
+  await put(lab, "Colour image", colourPng("new.png", 20));
+  await expect(page.locator(".keeping")).toContainText("its storage is full");
+  await page.reload();
+  await lab.reaches("waiting");
+  await expect(slot(lab, 0)).not.toContainText("old.png");
+});
+
 for (const [name, words] of [["QuotaExceededError", "its storage is full"], ["SecurityError", "its storage is closed to this page"]] as const) {
   test(`files work where they can't be kept: ${name}`, async ({ lab, page }) => {
     await page.addInitScript((name) => {

@@ -34,6 +34,8 @@ export class Lab {
   #pair: readonly (File | undefined)[] = [];
   /** Whether the files of last time have been asked for. */
   #restored = false;
+  /** How often files have come by hand: those of last time come too late after the first. */
+  #hands = 0;
   readonly #status = new Status();
   readonly #explanations = new Explanations(() => methodOf(this.store.settings, this.#origin));
   readonly #strip = new Strip(byId("stages", HTMLElement), this.#explanations);
@@ -168,15 +170,18 @@ export class Lab {
   /** Files dropped anywhere, each into the slot that its content is of. */
   async drop(files: readonly File[]): Promise<void> {
     this.#restored = true;
+    this.#hands++;
     const { sorted } = await import("./own");
     const { slots, settings, remarks } = await sorted(files, this.#intake.files);
     this.#intake.remarks(remarks);
     if (Object.keys(settings).length > 0) this.store.change(settings);
-    if (slots.size > 0) this.#intake.putAll(slots);
+    if (slots.has("colour") && slots.has("depth")) this.#intake.replaceAll(Object.fromEntries(slots));
+    else if (slots.size > 0) this.#intake.putAll(slots);
   }
 
   #filesChanged(): void {
     this.#restored = true;
+    this.#hands++;
     void this.#reopen();
     void this.#lookAtFiles();
     void this.#keepFiles();
@@ -198,11 +203,13 @@ export class Lab {
     const files = { ...this.#intake.files };
     const count = Object.keys(files).length;
     if (count === 0) return this.#forgetFiles();
-    const { keep, reasonOf } = await import("./shelf");
+    const { forget, keep, reasonOf } = await import("./shelf");
     try {
       await keep(files);
       this.#intake.keeping("These files are kept in this browser, on this machine, until you forget them; a reload brings them back.", true);
     } catch (error) {
+      // Those of another time must not come back in their place.
+      await forget().catch(() => {});
       this.#intake.keeping(`This browser does not keep the files (${reasonOf(error)}): they work all the same, and are gone with a reload.`, true);
     }
   }
@@ -216,9 +223,10 @@ export class Lab {
   /** The files of last time, unless there are others by now. */
   async #restoreFiles(): Promise<void> {
     this.#restored = true;
+    const before = this.#hands;
     const { kept } = await import("./shelf");
     const files = await kept().catch(() => new Map<string, File>());
-    if (files.size > 0 && Object.keys(this.#intake.files).length === 0) this.#intake.putAll(files as Map<Slot, File>);
+    if (files.size > 0 && this.#hands === before) this.#intake.putAll(files as Map<Slot, File>);
   }
 
   /** Nothing of a pair that is not the one asked for stays on the screen: neither its pictures nor its true values. */

@@ -56,7 +56,9 @@ async function look(file: File): Promise<Look> {
 }
 
 const inWords = ({ kind, says }: Summary): string =>
-  kind === "depth" ? says.replace(/read as metres, /, "").replace(/(\S+) to (\S+) m\b/, "stored numbers $1 to $2").replace(/\.00\b/g, "") : says;
+  kind === "depth"
+    ? says.replace(/read as metres, /, "").replace(/(\S+) to (\S+) m\b/, (_, from: string, to: string) => `stored numbers ${Number(from)} to ${Number(to)}`)
+    : says;
 
 /** What these readers do not take the Lab may still: larger pictures, which it scales down, and whatever else the browser decodes. */
 async function unread(file: File, fault: string): Promise<Look> {
@@ -88,7 +90,7 @@ function odd(pair: readonly [Seen, Seen], isOther: (name: string) => boolean): S
   return pair.find(({ file }) => isOther(file.name)) ?? pair.find(({ look }) => /grey/.test(look.says)) ?? pair[1];
 }
 
-/** The newest of each kind; `there` are the files that the slots already hold. */
+/** One of each kind; `there` are the files that the slots already hold. */
 export async function sorted(files: readonly File[], there: Files): Promise<Sorted> {
   const seen = await Promise.all(files.map(async (file): Promise<Seen> => ({ file, look: await lookAt(file) })));
   const of = (kind: Look["kind"]) => seen.filter(({ look }) => look.kind === kind);
@@ -108,7 +110,9 @@ export async function sorted(files: readonly File[], there: Files): Promise<Sort
     if (first) result.slots.set(slot, first.file);
     for (const { file } of more) say(`${file.name}: another ${slot === "colour" ? "colour image" : "depth map"}; the Lab takes one.`);
   }
-  const after: Files = { ...there, ...Object.fromEntries(result.slots) };
+  // A pair that comes whole is another one, to which the masks of the last do not belong.
+  const isPair = result.slots.has("colour") && result.slots.has("depth");
+  const after: Files = { ...(isPair ? {} : there), ...Object.fromEntries(result.slots) };
   const sizeOf = async (slot: "colour" | "depth") => {
     const file = after[slot];
     return file && (await lookAt(file));

@@ -4,6 +4,8 @@ import { ink } from "../dom";
 
 export interface Shown {
   title: string;
+  /** What the curves of a chart are, whose names stand beside its canvas. */
+  words: string | undefined;
   canvas: HTMLCanvasElement;
 }
 
@@ -18,7 +20,7 @@ function titleOf(canvas: HTMLCanvasElement): string {
 /** All that are on the page now, in its order. */
 export function shownIn(root: HTMLElement): Shown[] {
   const all = [...root.querySelectorAll("canvas")].filter((canvas) => canvas.getAttribute("aria-hidden") !== "true" && !canvas.closest(".drawer") && canvas.width > 1 && canvas.checkVisibility({ visibilityProperty: true }));
-  return all.map((canvas) => ({ title: titleOf(canvas), canvas }));
+  return all.map((canvas) => ({ title: titleOf(canvas), words: canvas.closest(".chart")?.getAttribute("aria-label") ?? undefined, canvas }));
 }
 
 /** As it is shown, on the colour of the page: curves would be lost on another one. */

@@ -223,7 +223,8 @@ const valueInWords = (field: Field, value: Value): string => {
 export function optionsInWords(settings: Settings, source: Origin): [name: string, value: string][] {
   const groups: Partial<Record<Group, string>> = source === "sample" ? { sample: "Sample: " } : { colour: "Colour camera: ", depth: "Depth camera: " };
   const asked = fields.filter(({ group, when }) => (groups[group] !== undefined || !(inputGroups.includes(group))) && (when?.(settings, source) ?? true));
-  return asked.map((field) => [`${groups[field.group] ?? ""}${field.label}`, valueInWords(field, settings[field.key] ?? null)]);
+  const isTold = ({ key, group }: Field) => (group !== "colour" && group !== "depth") || (settings[key] !== null && settings[key] !== "");
+  return asked.filter(isTold).map((field) => [`${groups[field.group] ?? ""}${field.label}`, valueInWords(field, settings[field.key] ?? null)]);
 }
 
 const lensKeys = ["fx", "fy", "cx", "cy"] as const;

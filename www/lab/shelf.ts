@@ -27,6 +27,7 @@ async function change(work: (store: IDBObjectStore) => void): Promise<void> {
       transaction.oncomplete = () => resolve();
       transaction.onabort = transaction.onerror = () => reject(transaction.error ?? new Error("the browser's storage failed"));
     });
+    end.catch(() => {}); // told once, whichever of both comes first
     work(transaction.objectStore(STORE));
     await end;
   } finally {

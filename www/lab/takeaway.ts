@@ -70,7 +70,7 @@ async function report(run: Run): Promise<Made> {
     ...{ pose: taken.pose, truth, unit: taken.unit, light: taken.light },
     numbers: [["Iterations", String(report.iteration)], ...numbersOf(report, taken.unit)],
     options: optionsInWords(settings, origin),
-    pictures: shownIn(byId("lab", HTMLElement)).map(({ title, canvas }) => ({ title, dataUrl: dataUrlOf(canvas) })),
+    pictures: shownIn(byId("lab", HTMLElement)).map(({ title, words, canvas }) => ({ title: words ?? title, dataUrl: dataUrlOf(canvas) })),
     ...{ inputs, link, made: new Date() },
   });
   return made("bimodal-stereo-report.html", "text/html", html);
