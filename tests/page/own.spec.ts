@@ -32,12 +32,12 @@ test("four files and a camera dropped anywhere go where their content belongs, e
   await lab.reaches("ready");
   // Registered pictures of one camera: its numbers are those of both.
   for (const side of ["colour", "depth"]) {
-    await expect(page.locator(`#fields-${side} input`).first()).toHaveValue("61");
+    await expect(page.locator(`#fields-${side}`).getByLabel("fx", { exact: true })).toHaveValue("61");
     await expect(page.locator(".remarks")).toContainText(`2.json: the ${side} camera`);
   }
   await expect(page).toHaveURL(/colour\.fx=61.*depth\.fx=61/);
   await page.getByRole("button", { name: "Undo" }).click();
-  await expect(page.locator("#fields-colour input").first()).toHaveValue("");
+  await expect(page.locator("#fields-colour").getByLabel("fx", { exact: true })).toHaveValue("");
 });
 
 test("a .npy in column order is the same picture as the PNG it was made of", async ({ lab }) => {
