@@ -194,6 +194,7 @@ for (const [name, words] of [["QuotaExceededError", "its storage is full"], ["Se
     await expect(page.locator(".keeping")).toContainText(words);
     await page.getByRole("button", { name: "Forget my files" }).click();
     await lab.reaches("waiting");
+    await expect(page.locator(".keeping")).toContainText("storage does not answer");
   });
 }
 

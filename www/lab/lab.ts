@@ -7,7 +7,7 @@ import type { Pose, StepReport } from "../../pkg/index.js";
 import { Explanations } from "./ask";
 import { Form } from "./form";
 import { Gallery } from "./gallery";
-import { Intake, type Slot } from "./intake";
+import { OwnFiles } from "./ownfiles";
 import { LightPanel, type Turn } from "./light";
 import { Player } from "./player";
 import { shownIn } from "./pictures";
@@ -29,13 +29,9 @@ export class Lab {
   readonly player: Player;
   readonly #engine: Engine;
   readonly #form: Form;
-  readonly #intake = new Intake({ onChange: () => this.#filesChanged(), onForget: () => void this.#forgetFiles() });
+  readonly #own = new OwnFiles({ onChange: () => void this.#reopen(), onCameras: (fields) => this.store.change(fields) });
   /** The files of what is on the screen; none of a sample. */
   #pair: readonly (File | undefined)[] = [];
-  /** Whether the files of last time have been asked for. */
-  #restored = false;
-  /** How often files have come by hand: those of last time come too late after the first. */
-  #hands = 0;
   readonly #status = new Status();
   readonly #explanations = new Explanations(() => methodOf(this.store.settings, this.#origin));
   readonly #strip = new Strip(byId("stages", HTMLElement), this.#explanations);
@@ -95,7 +91,7 @@ export class Lab {
       this.#form.mount(group, byId(`fields-${group}`, HTMLElement));
     }
     byId("objective-title", HTMLElement).append(this.#explanations.button("objective", "Objective"));
-    byId("slots", HTMLElement).append(this.#intake.element);
+    byId("slots", HTMLElement).append(this.#own.intake.element);
     byId("take-picture", HTMLSelectElement).addEventListener("focus", () => this.#offerPictures());
     this.store.listen((settings, changed, live) => this.#settingsChanged(settings, changed, live));
     this.#form.adapt(this.store.settings, this.#origin);
@@ -131,7 +127,7 @@ export class Lab {
     rememberOrigin(origin);
     this.#form.adapt(this.store.settings, origin);
     void this.#reopen();
-    if (origin === "files" && !this.#restored) void this.#restoreFiles();
+    if (origin === "files") void this.#own.restore();
   }
 
   restart(): Promise<void> {
@@ -153,7 +149,7 @@ export class Lab {
       const [{ fileOfKind }, taken] = await Promise.all([import("./takeaway"), this.#engine.call("take", {})]);
       const report = this.#report;
       const run = { taken, report, end: verdict(report, this.#from, this.#truth), truth: this.#truth, origin: source.kind, settings };
-      const files = source.kind === "files" ? this.#intake.said : [];
+      const files = source.kind === "files" ? this.#own.intake.said : [];
       const { name, blob, says } = await fileOfKind(kind, { ...run, files, link: linkTo(settings) });
       saveBlob(name, blob);
       byId("taken", HTMLElement).textContent = says ? `Saved ${name}: ${says}.` : `Saved ${name}.`;
@@ -168,65 +164,8 @@ export class Lab {
   }
 
   /** Files dropped anywhere, each into the slot that its content is of. */
-  async drop(files: readonly File[]): Promise<void> {
-    this.#restored = true;
-    this.#hands++;
-    const { sorted } = await import("./own");
-    const { slots, settings, remarks } = await sorted(files, this.#intake.files);
-    this.#intake.remarks(remarks);
-    if (Object.keys(settings).length > 0) this.store.change(settings);
-    if (slots.has("colour") && slots.has("depth")) this.#intake.replaceAll(Object.fromEntries(slots));
-    else if (slots.size > 0) this.#intake.putAll(slots);
-  }
-
-  #filesChanged(): void {
-    this.#restored = true;
-    this.#hands++;
-    void this.#reopen();
-    void this.#lookAtFiles();
-    void this.#keepFiles();
-  }
-
-  /** Shows what each file is, and asks where one seems to be in the wrong place. */
-  async #lookAtFiles(): Promise<void> {
-    const files = { ...this.#intake.files };
-    this.#intake.offer(undefined);
-    const { lookAt, offerFor } = await import("./own");
-    const looks = Object.entries(files).map(async ([slot, file]) => this.#intake.show(slot as Slot, file, await lookAt(file)));
-    await Promise.all(looks);
-    const offer = await offerFor(files);
-    const now = this.#intake.files;
-    if (Object.keys({ ...files, ...now }).every((slot) => files[slot as Slot] === now[slot as Slot])) this.#intake.offer(offer);
-  }
-
-  async #keepFiles(): Promise<void> {
-    const files = { ...this.#intake.files };
-    const count = Object.keys(files).length;
-    if (count === 0) return this.#forgetFiles();
-    const { forget, keep, reasonOf } = await import("./shelf");
-    try {
-      await keep(files);
-      this.#intake.keeping("These files are kept in this browser, on this machine, until you forget them; a reload brings them back.", true);
-    } catch (error) {
-      // Those of another time must not come back in their place.
-      await forget().catch(() => {});
-      this.#intake.keeping(`This browser does not keep the files (${reasonOf(error)}): they work all the same, and are gone with a reload.`, true);
-    }
-  }
-
-  async #forgetFiles(): Promise<void> {
-    const { forget } = await import("./shelf");
-    await forget().catch(() => {});
-    if (Object.keys(this.#intake.files).length === 0) this.#intake.keeping("Nothing is kept in this browser.", false);
-  }
-
-  /** The files of last time, unless there are others by now. */
-  async #restoreFiles(): Promise<void> {
-    this.#restored = true;
-    const before = this.#hands;
-    const { kept } = await import("./shelf");
-    const files = await kept().catch(() => new Map<string, File>());
-    if (files.size > 0 && this.#hands === before) this.#intake.putAll(files as Map<Slot, File>);
+  drop(files: readonly File[]): Promise<void> {
+    return this.#own.drop(files);
   }
 
   /** Nothing of a pair that is not the one asked for stays on the screen: neither its pictures nor its true values. */
@@ -293,10 +232,10 @@ export class Lab {
 
   #reopen(): Promise<void> {
     this.player.pause();
-    const { colour, depth } = this.#intake.files;
+    const { colour, depth } = this.#own.intake.files;
     const wanted = this.#origin === "files" ? [colour, depth] : [];
     if (wanted.length !== this.#pair.length || wanted.some((file, i) => file !== this.#pair[i])) this.#vacate();
-    return this.#start(sourceOf(this.#origin, this.store.settings, this.#intake.files));
+    return this.#start(sourceOf(this.#origin, this.store.settings, this.#own.intake.files));
   }
 
   /** The loop from its beginning, on an input that the worker may already hold. */
@@ -464,9 +403,9 @@ export class Lab {
   /** What was guessed about the input stays beside the fields; errors go. */
   #showNotes(): void {
     this.#form.clearMessages();
-    this.#intake.clearMessages();
+    this.#own.intake.clearMessages();
     for (const [path, note] of Object.entries(this.#notes)) {
-      if (!this.#intake.remark(path, note)) this.#form.remark(path, note);
+      if (!this.#own.intake.remark(path, note)) this.#form.remark(path, note);
     }
   }
 
@@ -485,7 +424,7 @@ export class Lab {
   /** Beside its field a message need not repeat the field's name. */
   #complain(field: string, message: string): boolean {
     const words = message.startsWith(`${field}: `) ? message.slice(field.length + 2) : message;
-    return this.#intake.complain(field, words) || this.#form.complain(field, words);
+    return this.#own.intake.complain(field, words) || this.#form.complain(field, words);
   }
 
   /** The worker has lost what is on the screen, as after a panic: the same input again, from its beginning. */
