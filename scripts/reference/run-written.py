@@ -5,6 +5,10 @@ npm run build && node scripts/reference/run-written.mjs && python3 scripts/refer
 numpy, Pillow, OpenCV and Open3D (pip install numpy pillow opencv-python-headless open3d). PLY by Open3D, PNG by Pillow and OpenCV, .npy
 and the pose's matrix by numpy, the pose also by json, and applied to points by Open3D. Writes tests/fixtures/run/read.json with what was
 found, and columns-*.npy there, whose numbers in row order it holds, too. Fails where two readers disagree.
+
+With a folder of files that the Lab's "Take away" has saved, all of them, it reads those and says what is in them:
+
+python3 scripts/reference/run-written.py FOLDER
 """
 
 import json
@@ -18,7 +22,7 @@ import numpy as np
 import open3d as o3d
 from PIL import Image
 
-FOLDER = Path("tests/fixtures/run")
+FOLDER = Path(sys.argv[1] if len(sys.argv) > 1 else "tests/fixtures/run")
 o3d.utility.set_verbosity_level(o3d.utility.VerbosityLevel.Error)
 
 
@@ -80,14 +84,42 @@ def columns():
     return {name: raster(values) for name, values in made.items()}
 
 
-found = {
-    **{path.name: png(path.name) for path in sorted(FOLDER.glob("*.png"))},
-    **{path.name: cloud(path.name) for path in sorted(FOLDER.glob("*.ply"))},
-    **{path.name: raster(np.load(path)) for path in sorted(FOLDER.glob("*.npy")) if not path.name.startswith("columns")},
-    "light.csv": {"values": plain(np.loadtxt(FOLDER / "light.csv", delimiter=",", skiprows=1, usecols=range(1, 10)))},
-    "pose": pose(),
-    **columns(),
-}
-lines = [f"{json.dumps(name)}: {json.dumps(each)}" for name, each in found.items()]
-(FOLDER / "read.json").write_text("{\n" + ",\n".join(lines) + "\n}\n")
-print(f"{len(found)} files read")
+def saved():
+    """What the Lab has saved, held against each other."""
+    matrix = np.array(pose()["matrix"])
+    print("pose: JSON and 4x4 agree, determinant of the turn and scale", np.linalg.det(matrix[:3, :3]))
+    points = np.array(cloud("clouds.ply")["points"]).reshape(-1, 3)
+    labels = np.array(cloud("clouds.ply")["labels"])
+    print("clouds:", [int((labels == each).sum()) for each in (0, 1)], "points, all finite:", bool(np.isfinite(points).all()))
+    stored, exact = png("refined-depth.png"), np.load(FOLDER / "refined-depth.npy")
+    number, unit = stored["texts"]["Unit"].split(" ")[:2]
+    step = float(number) * (0.001 if unit == "mm" else 1)
+    depth = np.array(stored["values"]).reshape(stored["shape"]) * step
+    there = np.isfinite(exact) & (exact > 0)
+    assert np.array_equal(depth > 0, there)
+    print(f"depth: {there.sum()} pixels of {exact.shape}, PNG and .npy differ by {np.abs(depth - exact)[there].max() / step:.3f} of a step of {number} {unit}")
+    for name in ("normals.png", "refined-normals.png"):
+        read = png(name)
+        levels = np.array(read["values"]).reshape(read["shape"])
+        normals = 2 * levels[levels.any(axis=2)] / 65535 - 1
+        lengths = np.linalg.norm(normals, axis=1)
+        assert np.abs(lengths - 1).max() < 1e-4 and (normals[:, 2] >= -1e-4).all()
+        print(f"{name}: {len(normals)} of unit length, towards the viewer")
+    print("light:", np.loadtxt(FOLDER / "light.csv", delimiter=",", skiprows=1, usecols=range(1, 10)).shape)
+
+
+def fixtures():
+    found = {
+        **{path.name: png(path.name) for path in sorted(FOLDER.glob("*.png"))},
+        **{path.name: cloud(path.name) for path in sorted(FOLDER.glob("*.ply"))},
+        **{path.name: raster(np.load(path)) for path in sorted(FOLDER.glob("*.npy")) if not path.name.startswith("columns")},
+        "light.csv": {"values": plain(np.loadtxt(FOLDER / "light.csv", delimiter=",", skiprows=1, usecols=range(1, 10)))},
+        "pose": pose(),
+        **columns(),
+    }
+    lines = [f"{json.dumps(name)}: {json.dumps(each)}" for name, each in found.items()]
+    (FOLDER / "read.json").write_text("{\n" + ",\n".join(lines) + "\n}\n")
+    print(f"{len(found)} files read")
+
+
+saved() if len(sys.argv) > 1 else fixtures()

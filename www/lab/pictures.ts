@@ -40,4 +40,13 @@ export function pngOf(canvas: HTMLCanvasElement): Promise<Blob> {
   return new Promise((resolve, reject) => flat(canvas).toBlob((blob) => (blob ? resolve(blob) : reject(new Error("This browser made no picture."))), "image/png"));
 }
 
-export const dataUrlOf = (canvas: HTMLCanvasElement): string => flat(canvas).toDataURL("image/png");
+/** By way of a blob, which the browser packs in a thread of its own. */
+export async function dataUrlOf(canvas: HTMLCanvasElement): Promise<string> {
+  const blob = await pngOf(canvas);
+  return new Promise((resolve, reject) => {
+    const reader = new FileReader();
+    reader.onload = () => resolve(String(reader.result));
+    reader.onerror = () => reject(reader.error ?? new Error("This browser made no picture."));
+    reader.readAsDataURL(blob);
+  });
+}

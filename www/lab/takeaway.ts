@@ -5,11 +5,12 @@ import { byId } from "../dom";
 import type { Taken } from "../engine/protocol";
 import { sha256 } from "../hash";
 import type { Kind } from "./kinds";
+import type { PackAnswer, PackRequest, Packed } from "./packer";
 import { dataUrlOf, pngOf, shownIn } from "./pictures";
 import { numbersOf } from "./posetable";
 import { optionsInWords, type Origin, type Settings } from "./settings";
 import type { Verdict } from "./verdict";
-import { depthPng, lightCsv, matrixText, normalsPng, poseJson, runReportHtml, writeClouds, writeNpy } from "./write";
+import { lightCsv, matrixText, poseJson, runReportHtml } from "./write";
 
 /** A run as the page knows it. */
 export interface Run {
@@ -34,21 +35,31 @@ export interface Made {
 
 const made = (name: string, type: string, part: BlobPart, says?: string): Made => ({ name, blob: new Blob([part], { type }), ...(says === undefined ? {} : { says }) });
 
-/** The clouds' inks on the page. */
-const [ORANGE, BLUE] = [[199, 100, 26], [11, 98, 184]];
-
-/** Both clouds in the colour view's frame. */
-function ply({ imagePoints, depthPoints, unit }: Taken): Uint8Array<ArrayBuffer> {
-  const tinted = (name: string, points: Float32Array, ink: readonly number[]) => ({ name, points, colours: Uint8Array.from(points, (_, i) => ink[i % 3] ?? 0) });
-  const clouds = [tinted("shape from the picture", imagePoints, ORANGE), tinted("depth map, moved by the pose", depthPoints, BLUE)];
-  return writeClouds(clouds, unit === "m" ? "metres" : "pixels");
+/** Made in a thread of its own. */
+function packed(kind: Packed, taken: Taken): Promise<Extract<PackAnswer, { bytes: Uint8Array }>> {
+  const worker = new Worker(new URL("./packer.ts", import.meta.url), { type: "module" });
+  const answer = new Promise<Extract<PackAnswer, { bytes: Uint8Array }>>((resolve, reject) => {
+    worker.onmessage = ({ data }: MessageEvent<PackAnswer>) => ("fault" in data ? reject(new Error(data.fault.message)) : resolve(data));
+    worker.onerror = (event) => {
+      event.preventDefault();
+      reject(new Error(event.message || "what makes the file could not be loaded."));
+    };
+  });
+  const { imagePoints, depthPoints, image, depth } = taken;
+  const arrays = [imagePoints, depthPoints, image.normals, depth.refined, depth.normals];
+  worker.postMessage({ kind, taken } satisfies PackRequest, [...new Set(arrays.map(({ buffer }) => buffer as ArrayBuffer))]);
+  return answer.finally(() => worker.terminate());
 }
 
-/** Normals are found by the first iteration: before it there are none to save. */
-async function normals(name: string, given: { width: number; height: number; normals: Float32Array }): Promise<Made> {
-  if (!given.normals.some((value) => Number.isFinite(value) && value !== 0)) throw new Error("there are no normals yet; press Step or Play first.");
-  return made(name, "image/png", await normalsPng({ ...given, data: given.normals }), "(n + 1) / 2 of white, x right, y up, z near");
-}
+const hasNormals = (normals: Float32Array): boolean => normals.some((value) => Number.isFinite(value) && value !== 0);
+
+const FILES: Readonly<Record<Packed, { name: string; type: string }>> = {
+  clouds: { name: "clouds.ply", type: "application/octet-stream" },
+  depth: { name: "refined-depth.npy", type: "application/octet-stream" },
+  depthPng: { name: "refined-depth.png", type: "image/png" },
+  normals: { name: "normals.png", type: "image/png" },
+  depthNormals: { name: "refined-normals.png", type: "image/png" },
+};
 
 /** A file's name of a title. */
 const slug = (title: string): string => title.toLowerCase().replace(/[^a-z0-9]+/g, "-").replace(/^-|-$/g, "") || "picture";
@@ -64,43 +75,39 @@ async function picture(): Promise<Made> {
 async function report(run: Run): Promise<Made> {
   const { taken, report, end, truth, origin, settings, files, link } = run;
   const inputs = await Promise.all(files.map(async ({ file, says }) => ({ name: file.name, says, sha256: await sha256(file) })));
+  const shown = shownIn(byId("lab", HTMLElement));
+  const pictures = await Promise.all(shown.map(async ({ title, words, canvas }) => ({ title: words ?? title, dataUrl: await dataUrlOf(canvas) })));
   const words = [end?.words ?? report.message ?? "", end?.next ?? ""].filter(Boolean);
   const html = runReportHtml({
     ...{ tone: end?.tone ?? "open", status: end?.status ?? `not over: iteration ${report.iteration}`, words },
     ...{ pose: taken.pose, truth, unit: taken.unit, light: taken.light },
     numbers: [["Iterations", String(report.iteration)], ...numbersOf(report, taken.unit)],
     options: optionsInWords(settings, origin),
-    pictures: shownIn(byId("lab", HTMLElement)).map(({ title, words, canvas }) => ({ title: words ?? title, dataUrl: dataUrlOf(canvas) })),
+    pictures,
     ...{ inputs, link, made: new Date() },
   });
   return made("bimodal-stereo-report.html", "text/html", html);
 }
 
 export async function fileOfKind(kind: Kind, run: Run): Promise<Made> {
-  const { pose, unit, depthUnit, light, depth, image } = run.taken;
-  const length = (of: "m" | "px") => (of === "m" ? "metres" : "pixels");
+  const { pose, unit, light, depth, image } = run.taken;
   switch (kind) {
     case "pose":
       return made("pose.json", "application/json", poseJson(pose, unit));
     case "matrix":
-      return made("depth_to_colour.txt", "text/plain", matrixText(pose), `lengths in ${length(unit)}`);
-    case "clouds":
-      return made("clouds.ply", "application/octet-stream", ply(run.taken), length(unit));
-    case "depthPng": {
-      const { bytes, says } = await depthPng({ ...depth, data: depth.refined }, depthUnit);
-      return made("refined-depth.png", "image/png", bytes, `${says} per stored number, 0 is no depth`);
-    }
-    case "depth":
-      return made("refined-depth.npy", "application/octet-stream", writeNpy({ width: depth.width, height: depth.height, channels: 1, data: depth.refined }), length(depthUnit));
-    case "normals":
-      return normals("normals.png", image);
-    case "depthNormals":
-      return normals("refined-normals.png", depth);
+      return made("depth_to_colour.txt", "text/plain", matrixText(pose), `lengths in ${unit === "m" ? "metres" : "pixels"}`);
     case "light":
       return made("light.csv", "text/csv", lightCsv(light));
     case "picture":
       return picture();
     case "report":
       return report(run);
+    default: {
+      // The first iteration finds them.
+      const normals = { normals: image.normals, depthNormals: depth.normals, clouds: undefined, depth: undefined, depthPng: undefined }[kind];
+      if (normals && !hasNormals(normals)) throw new Error("there are no normals yet; press Step or Play first.");
+      const { bytes, says } = await packed(kind, run.taken);
+      return made(FILES[kind].name, FILES[kind].type, bytes, says);
+    }
   }
 }

@@ -9,7 +9,7 @@ export class Embed {
   readonly button = make("button", { type: "button", class: "learn-embed-button", "aria-expanded": "false" }, "Embed");
   readonly element: HTMLElement;
   readonly source: HTMLElement;
-  readonly #line = make("input", { type: "text", readonly: true, "aria-label": "Line for another page" });
+  readonly #line = make("input", { type: "text", readonly: true });
   readonly #link = make("a", { target: "_blank", rel: "noopener" });
   readonly #title: string;
 
@@ -19,7 +19,7 @@ export class Embed {
     copy.addEventListener("click", () => void this.#copy(copy));
     this.#link.append(`${title}: text and exercises`);
     this.source = make("p", { class: "learn-source" }, this.#link);
-    this.element = make("div", { class: "learn-embed", hidden: true }, make("p", { class: "soft" }, "This line puts the figure, as it is set now, into another page:"), this.#line, copy);
+    this.element = make("div", { class: "learn-embed", hidden: true }, make("label", {}, "Line for another page, which shows the figure as it is set now", this.#line), copy);
     this.button.addEventListener("click", () => {
       this.element.hidden = !this.element.hidden;
       this.button.setAttribute("aria-expanded", String(!this.element.hidden));
