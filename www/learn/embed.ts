@@ -2,7 +2,7 @@
 
 import { make } from "../dom";
 
-/** Pixels that every figure has room in. */
+/** Pixels of the frame; a figure that is higher scrolls in it. */
 const [WIDTH, HEIGHT] = [800, 720];
 
 export class Embed {
