@@ -48,11 +48,8 @@ function inRows<T extends Float32Array | Uint16Array | Uint8Array>(data: T, heig
   return rows;
 }
 
-/**
- * Reads rows x columns, or rows x columns x channels; 64-bit floats and 32-bit integers become 32-bit floats. Column order is
- * read where `columns` says so.
- */
-export function readNpy(bytes: Uint8Array, { columns = false } = {}): Raster<Float32Array | Uint16Array | Uint8Array> {
+/** Reads rows x columns, or rows x columns x channels, in either order; 64-bit floats and 32-bit integers become 32-bit floats. */
+export function readNpy(bytes: Uint8Array): Raster<Float32Array | Uint16Array | Uint8Array> {
   if (bytes.length < SHORTEST) throw bad("this .npy file is cut off in its header");
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
   const short = view.getUint8(6) === 1;
@@ -65,10 +62,8 @@ export function readNpy(bytes: Uint8Array, { columns = false } = {}): Raster<Flo
   if (!isKind(kind)) {
     throw bad(`a .npy file of type "${kind}" is not read here; save it as float32, float64, uint16, uint8 or int32`);
   }
-  const inColumns = !header.includes("'fortran_order': False");
-  if (inColumns && !(columns && header.includes("'fortran_order': True"))) {
-    throw bad("this .npy file is in column order; save it with numpy.ascontiguousarray");
-  }
+  const order = /'fortran_order': (True|False)/.exec(header)?.[1];
+  if (!order) throw bad("this .npy file has no fortran_order");
   const listed = /'shape': \(([^)]*)\)/.exec(header)?.[1] ?? "";
   const axes = listed.split(",").map((part) => part.trim()).filter((part) => part !== "");
   if (axes.length < 2 || axes.length > 3) {
@@ -82,9 +77,9 @@ export function readNpy(bytes: Uint8Array, { columns = false } = {}): Raster<Flo
   if (channels > MOST_CHANNELS) throw bad(`this .npy file has ${channels} channels; 1 to ${MOST_CHANNELS} are read here`);
   const count = height * width * channels;
   const { size, read } = KINDS[kind];
-  const body = bytes.subarray(until);
-  if (body.length < count * size) throw bad(`this .npy file is cut off: ${body.length} of ${count * size} bytes`);
-  // A copy, because typed arrays want aligned memory.
-  const data = read(body.slice(0, count * size).buffer, count);
-  return { width, height, channels, data: inColumns ? inRows(data, height, width, channels) : data };
+  // A copy, because typed arrays want aligned memory; Node's Buffer would not make one by its own slice.
+  const body = new Uint8Array(bytes.subarray(until)).buffer;
+  if (body.byteLength < count * size) throw bad(`this .npy file is cut off: ${body.byteLength} of ${count * size} bytes`);
+  const data = read(body, count);
+  return { width, height, channels, data: order === "True" ? inRows(data, height, width, channels) : data };
 }

@@ -4,6 +4,7 @@
  * By hand and not by fast-png (8.0, 7 kB gzipped), which inflates whatever there is, so that all of these checks and one more inflation
  * had to come before it; the tests compare with it.
  */
+import { crc32 } from "./crc.js";
 import { badFile } from "./errors.js";
 import { inflateExactly } from "./inflate.js";
 import type { Raster } from "./npy.js";
@@ -26,18 +27,6 @@ const FRAME = 12;
 const SPARE = 65_536;
 const KEPT = ["IHDR", "PLTE", "tRNS"];
 const REMARKS = ["iCCP", "sRGB", "gAMA", "cHRM", "cICP", "eXIf"];
-
-const TABLE = Uint32Array.from({ length: 256 }, (_, byte) => {
-  let value = byte;
-  for (let bit = 0; bit < 8; bit++) value = value & 1 ? 0xedb88320 ^ (value >>> 1) : value >>> 1;
-  return value;
-});
-
-function crc32(bytes: Uint8Array): number {
-  let value = 0xffffffff;
-  for (let at = 0; at < bytes.length; at++) value = (TABLE[(value ^ (bytes[at] ?? 0)) & 255] ?? 0) ^ (value >>> 8);
-  return ~value >>> 0;
-}
 
 interface Parts {
   kept: Map<string, Uint8Array>;

@@ -8,22 +8,23 @@ import { inRoot, must, say, script, seconds, stamp } from "./shell.mjs";
 const COPIED = ["README.md", "CHANGELOG.md", "LICENSE-MIT", "LICENSE-APACHE"];
 const SOURCES = [...NUMERICS, "js", "package-lock.json", "scripts/build.mjs"];
 const MARK = "pkg/.stamp";
-/** One for programs, one for images and depth maps, two for what reads and writes a rig's files, one for the page's fields, and one for the threads of workers. */
+/** One for programs, one for images and depth maps, two for what reads and writes a rig's files, one for what writes a run's, one for the page's fields, and one for the threads of workers. */
 const ENTRIES = {
   index: "index",
   files: "files",
   rig: "rig/index",
   "rig-write": "rig/write/index",
+  write: "write/index",
   options: "options",
   thread: "workers/thread",
 };
 /** Declarations that no entry mentions; one of them names the generated bindings, which stay inside. */
 const INTERNAL = [
-  ...["border", "breathe", "check", "engine", "inflate", "inputs", "node", "npy", "plain", "png", "raster"].map((name) => `${name}.d.ts`),
+  ...["border", "breathe", "check", "crc", "engine", "inflate", "inputs", "node", "plain", "png", "raster"].map((name) => `${name}.d.ts`),
   ...["check", "rigs", "run"].map((name) => `calibration/${name}.d.ts`),
   ...["assign", "colour", "depth", "words"].map((name) => `rig/${name}.d.ts`),
   ...["json", "numbers", "plain", "yaml"].map((name) => `rig/write/${name}.d.ts`),
-  ...["charts", "curves", "markup", "numbers", "sections", "style"].map((name) => `rig/write/report/${name}.d.ts`),
+  ...["charts", "curves", "markup", "numbers", "page", "parts", "sections", "style"].map((name) => `rig/write/report/${name}.d.ts`),
   ...["rig/formats", "workers"],
 ];
 
@@ -45,12 +46,13 @@ function manifest() {
       ".": { types: "./index.d.ts", default: "./index.js" },
       "./files": { types: "./files.d.ts", default: "./files.js" },
       "./rig": { types: "./rig/index.d.ts", default: "./rig.js" },
+      "./write": { types: "./write/index.d.ts", default: "./write.js" },
       "./rig-write": { types: "./rig/write/index.d.ts", default: "./rig-write.js" },
       ...Object.fromEntries(ALL.map(({ file }) => [`./${file}`, `./${file}`])),
       "./package.json": "./package.json",
     },
     types: "./index.d.ts",
-    files: ["*.js", "*.d.ts", "calibration", "rig", "*.wasm", ...COPIED],
+    files: ["*.js", "*.d.ts", "calibration", "rig", "write", "*.wasm", ...COPIED],
   };
 }
 

@@ -7,9 +7,10 @@ import { Lab } from "./lab/lab";
 import { paces } from "./lab/player";
 import { Presets } from "./lab/presets";
 import { kinds } from "./lab/kinds";
-import { defaults, fromLink, toLink, type Origin, type Settings } from "./lab/settings";
-import { writeAddress } from "./lab/share";
-import { asksToPlay, placeOf, type Place } from "./place";
+import { defaults, fromLink, type Origin, type Settings } from "./lab/settings";
+import { linkTo, onLook, showLooks, writeAddress } from "./lab/share";
+import { wasOwn } from "./lab/source";
+import { asksToPlay, isEmbedded, placeOf, type Place } from "./place";
 
 import { themeToggle } from "./theme";
 
@@ -103,7 +104,7 @@ async function copyLink(): Promise<void> {
   const target = byId("link", HTMLButtonElement);
   try {
     await navigator.clipboard.writeText(location.href);
-    target.textContent = "Copied";
+    target.textContent = placeOf(location.hash) === "lab" && !isSample() ? "Copied, no files" : "Copied";
   } catch {
     target.textContent = "See address bar";
   }
@@ -139,6 +140,7 @@ async function arrive(): Promise<void> {
   // Who comes from another place of the page, or by a link to some settings, looks for something else than a show.
   const opensFirst = !arrived && location.hash === "" && isFirstVisit();
   arrived = true;
+  document.documentElement.toggleAttribute("data-embed", isEmbedded(location.hash));
   show(place);
   if (place !== "learn") others.learn?.leave();
   if (place !== "tables") others.tables?.leave();
@@ -146,12 +148,17 @@ async function arrive(): Promise<void> {
   if (place !== "lab") {
     lab.leave();
     // Never without the #, which would load the page anew.
-    places.lab.link.href = `#${toLink(store.settings)}`;
+    places.lab.link.href = new URL(linkTo(store.settings)).hash || "#";
     await open(place);
     return;
   }
   const settings = fromLink(location.hash);
-  if (!asksToPlay(location.hash)) return opensFirst ? start(settings) : lab.enter(settings);
+  const { hash } = location;
+  if (!asksToPlay(hash)) {
+    const entered = opensFirst ? start(settings) : lab.enter(settings);
+    showLooks(hash);
+    return entered;
+  }
   if (!isSample()) choose("sample");
   const started = lab.watch(settings);
   writeAddress(store.settings);
@@ -194,7 +201,15 @@ listenToKeys(() => keys.checked && placeOf(location.hash) === "lab", {
 });
 
 // A file must not replace the page; dropped anywhere on the Lab it goes where its content belongs.
-document.addEventListener("dragover", (event) => event.preventDefault());
+const showDrag = (isOver: boolean) => byId("lab", HTMLElement).toggleAttribute("data-over", isOver);
+document.addEventListener("dragover", (event) => {
+  event.preventDefault();
+  showDrag(event.dataTransfer?.types.includes("Files") ?? false);
+});
+document.addEventListener("dragleave", (event) => {
+  if (event.relatedTarget === null) showDrag(false);
+});
+document.addEventListener("drop", () => showDrag(false), { capture: true });
 document.addEventListener("drop", (event) => {
   event.preventDefault();
   const files = [...(event.dataTransfer?.files ?? [])];
@@ -216,6 +231,12 @@ drawer.addEventListener("keydown", (event) => {
   drawer.open = false;
   drawer.querySelector("summary")?.focus();
 });
+// A reload comes back to the visitor's own files.
+if (placeOf(location.hash) === "lab" && wasOwn() && !asksToPlay(location.hash)) {
+  arrived = true;
+  choose("files");
+}
+onLook(() => writeAddress(store.settings));
 // A link opened in this very tab changes nothing but the part after #.
 addEventListener("hashchange", () => void arrive());
 void arrive();

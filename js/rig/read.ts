@@ -25,7 +25,7 @@ type Unnamed<T> = T extends unknown ? Omit<T, "name"> : never;
 type Content = Unnamed<RigReading>;
 
 function npyPicture(bytes: Uint8Array): Picture {
-  const raster = readNpy(bytes, { columns: true });
+  const raster = readNpy(bytes);
   checkSize(raster.width, raster.height);
   return { ...raster, format: "npy", bits: 8 * raster.data.BYTES_PER_ELEMENT, notes: [], warnings: [] };
 }

@@ -40,12 +40,12 @@ const STRANGE: [RegExp, string][] = [
   [/^PK\x03\x04/, "a ZIP archive (.npz is one); unpack it first"],
   [/^\x1f\x8b/, "compressed by gzip; unpack it first"],
   [/^\x89HDF/, "HDF5; save the array as .npy"],
-  [/^MATLAB/, "a .mat file of MATLAB; save the array as .npy, or as 16-bit PNG"],
+  [/^MATLAB/, "a .mat file of MATLAB; save the array as .npy or 16-bit PNG"],
   [/^.{4}ftyp(?:heic|heix|mif1|avif)/s, "HEIC or AVIF; save it as PNG or JPEG"],
   [/^(?:.{4}ftyp|RIFF.{4}AVI )/s, "a video; save its frames as PNG"],
   [/^#ROSBAG|^SQLite format|^\x89MCAP/, "a recording of ROS; export its images and camera_info first"],
   [/^%PDF/, "a PDF"],
-  [/^\x80[\x02-\x05]/, "a pickle of Python, which may run code and is not opened; save the array by numpy.save"],
+  [/^\x80[\x02-\x05]/, "a pickle of Python, which may run code; save the array by numpy.save"],
   [/^\xff\x4f\xff\x51|^.{4}jP {2}/s, "JPEG 2000; save it as PNG"],
 ];
 

@@ -1,7 +1,10 @@
 // PNG and .npy, right and wrong.
 import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
 import { describe, test } from "node:test";
 import { BimodalError as FilesError, decodeColour, decodeDepth, decodeMask } from "../../pkg/files.js";
+import { FOLDER as RUN } from "../../scripts/reference/run-written.mjs";
+import { inRoot } from "../../scripts/shell.mjs";
 import { BimodalError, npy, png, refused } from "./support.mjs";
 
 const GREY = 0, RGB = 2, PALETTE = 3, GREY_ALPHA = 4, RGBA = 6;
@@ -75,12 +78,37 @@ describe(".npy", () => {
     assert.deepEqual(decoded("<f4", new Float32Array([1, 2, 3]), { align: 1 }), new Float32Array([1, 2, 3]), "unaligned");
   });
 
+  test("from a part of one of Node's shared buffers", () => {
+    const file = npy({ descr: "<f4", shape: [1, 3], data: new Float32Array([1, 2, 3]) });
+    const shared = Buffer.concat([Buffer.alloc(64, 255), file]).subarray(64);
+    assert.deepEqual(decodeDepth(shared).data, new Float32Array([1, 2, 3]));
+  });
+
   test("a cloud, colours and masks", () => {
     const data = new Float32Array([1, 2, 3, 4, 5, 6]);
     assert.deepEqual(decodeDepth(npy({ descr: "<f4", shape: [1, 2, 3], data })), { width: 2, height: 1, points: data });
     assert.deepEqual(decodeColour(npy({ descr: "<f4", shape: [2, 1, 3], data })), { width: 1, height: 2, data });
     assert.deepEqual([...decodeColour(npy({ descr: "|u1", shape: [1, 1, 3], data: new Uint8Array([1, 2, 3]) })).data], [1, 2, 3, 255]);
     assert.deepEqual([...decodeMask(npy({ descr: "|b1", shape: [1, 2], data: new Uint8Array([0, 1]) })).data], [0, 255]);
+  });
+
+  test("column order as numpy writes it, of every kind, is read in row order", () => {
+    const read = JSON.parse(readFileSync(inRoot(RUN, "read.json"), "utf8"));
+    const file = (name) => new Uint8Array(readFileSync(inRoot(RUN, `columns-${name}.npy`)));
+    const expected = (name) => read[`columns-${name}.npy`];
+    for (const name of ["depth", "double", "levels"]) {
+      const { width, height, data } = decodeDepth(file(name));
+      assert.deepEqual([height, width], expected(name).shape);
+      assert.deepEqual([...data], [...expected(name).values].map(name === "levels" ? Number : Math.fround));
+    }
+    const { width, height, points } = decodeDepth(file("cloud"));
+    assert.deepEqual([height, width, 3], expected("cloud").shape);
+    assert.deepEqual([...points], expected("cloud").values);
+    const colour = decodeColour(file("colour"));
+    assert.deepEqual([...colour.data].filter((_, i) => i % 4 < 3), expected("colour").values);
+    const mask = decodeMask(file("mask"));
+    assert.deepEqual([mask.height, mask.width], expected("mask").shape);
+    assert.deepEqual([...mask.data], expected("mask").values.map((value) => 255 * value));
   });
 
   test("wrong ones are named", () => {
@@ -90,7 +118,6 @@ describe(".npy", () => {
       { descr: "<c8" },
       { descr: ">f4" },
       { descr: "<i8" },
-      { fortran: true },
       { shape: [6] },
       { shape: [1, 1, 2, 3] },
       { shape: [1, 3, 2] },
@@ -106,6 +133,9 @@ describe(".npy", () => {
       refused(wrong(changes), "file", "file");
     }
     assert.throws(wrong({ descr: "<c8" }), /type "<c8"/);
+    const told = npy({ descr: "<f4", shape: [2, 3], data });
+    const untold = Uint8Array.from(Buffer.from(Buffer.from(told).toString("latin1").replace("'fortran_order': False", "'fortran_order': 0    "), "latin1"));
+    assert.throws(() => decodeDepth(untold), /fortran_order/);
     const five = npy({ descr: "|u1", shape: [1, 1, 5], data: new Uint8Array(5) });
     for (const decode of [decodeColour, decodeDepth, decodeMask]) refused(() => decode(five), "file", "file");
     const whole = npy({ descr: "<f4", shape: [2, 3], data });

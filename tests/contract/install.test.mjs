@@ -94,6 +94,10 @@ test("types resolve for Node and for bundlers, without help from other type pack
      import type { CheckReport, ColorImage, DepthMap, Options, Pose, Stage, StepReport } from "bimodal-stereo";
      import { decodeColour, decodeDepth, decodeMask } from "bimodal-stereo/files";
      import { type RigContext, type WrittenPose, reportHtml, writeClouds, writePose } from "bimodal-stereo/rig-write";
+     import { type RunReport, depthPng, runReportHtml, writeNpy } from "bimodal-stereo/write";
+     export const run = (report: RunReport): string => runReportHtml(report);
+     export const step = async (data: Float32Array): Promise<number> => (await depthPng({ width: 1, height: 1, data }, "m")).step;
+     export const array: Uint8Array = writeNpy({ width: 1, height: 1, channels: 1, data: new Uint16Array(1) });
      const context: RigContext = { colour: { fx: 1, fy: 1, cx: 0, cy: 0, model: "fisheye" }, sizes: { depth: [640, 480] } };
      export const written = (report: CheckReport): WrittenPose => writePose(report.estimate, "kalibr", context);
      export const page = (report: CheckReport): string => reportHtml(report, [{ title: "", dataUrl: "" }], { made: new Date(0) });

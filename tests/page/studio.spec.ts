@@ -256,43 +256,6 @@ test("what is focused is never behind the bar", async ({ lab, page }) => {
   }
 });
 
-/** The bytes of a file that a press hands over. */
-async function handed(lab: Lab, name: string): Promise<Buffer> {
-  const waiting = lab.page.waitForEvent("download");
-  await lab.page.getByRole("group", { name: "Take away" }).getByRole("button", { name }).click();
-  const chunks: Buffer[] = [];
-  for await (const chunk of await (await waiting).createReadStream()) chunks.push(Buffer.from(chunk as Uint8Array));
-  return Buffer.concat(chunks);
-}
-
-test("results can be taken away in files of common formats", async ({ lab, page }) => {
-  await lab.open("size=32");
-  await page.keyboard.press("s");
-  await expect(lab.iteration).toHaveText("1");
-  const pose = JSON.parse((await handed(lab, "Pose, JSON")).toString()) as { unit: string; scale: number; rotation: number[]; translation: number[] };
-  expect(pose).toMatchObject({ unit: "px" });
-  expect(pose.rotation).toHaveLength(9);
-  const rows = (await handed(lab, "Pose, 4×4")).toString().trim().split("\n").map((line) => line.split(" ").map(Number));
-  expect(rows).toHaveLength(4);
-  expect(rows[1]).toEqual([...pose.rotation.slice(3, 6).map((value) => pose.scale * value), pose.translation[1]]);
-
-  const ply = (await handed(lab, "Clouds, PLY")).toString().split("\n");
-  const count = Number(ply.find((line) => line.startsWith("element vertex"))?.split(" ")[2]);
-  const vertices = ply.slice(ply.indexOf("end_header") + 1, -1);
-  expect(count).toBeGreaterThan(400);
-  expect(vertices).toHaveLength(count);
-  expect(vertices.every((line) => line.split(" ").length === 6 && line.split(" ").every((word) => Number.isFinite(Number(word))))).toBe(true);
-
-  const { decodeDepth } = await import("../../pkg/files.js");
-  const depth = decodeDepth(await handed(lab, "Refined depth, .npy"));
-  expect([depth.width, depth.height]).toEqual([32, 32]);
-  expect(Math.max(...[...(depth.data ?? [])].filter(Number.isFinite))).toBeGreaterThan(1);
-
-  const light = (await handed(lab, "Light, CSV")).toString().trim().split("\n");
-  expect(light).toHaveLength(4);
-  expect(light[0]).toBe("channel,L1,L2,L3,L4,L5,L6,L7,L8,L9");
-});
-
 test("files dropped anywhere go where their content belongs", async ({ lab, page }) => {
   await lab.open("size=32");
   const { encode } = await import("fast-png");

@@ -115,14 +115,14 @@ export interface Catalogue {
 /** What can be taken away, in full. */
 export interface Taken {
   pose: Pose;
-  /** Of the colour view. */
+  /** Of the colour view and of the depth view. */
   unit: "px" | "m";
+  depthUnit: "px" | "m";
   light: Float64Array;
   imagePoints: Float32Array;
   depthPoints: Float32Array;
-  width: number;
-  height: number;
-  refinedDepth: Float32Array<ArrayBuffer>;
+  image: { width: number; height: number; normals: Float32Array };
+  depth: { width: number; height: number; refined: Float32Array; normals: Float32Array };
 }
 
 /** Each request with its reply. */

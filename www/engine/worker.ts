@@ -124,12 +124,12 @@ function take(): Calls["take"]["reply"] {
   return {
     pose: estimator.report.pose,
     unit: image.camera ? "m" : "px",
+    depthUnit: depth.camera ? "m" : "px",
     light: estimator.light(),
     imagePoints: estimator.points("image"),
     depthPoints: estimator.points("depth"),
-    width: depth.width,
-    height: depth.height,
-    refinedDepth: new Float32Array(estimator.refinedDepth()),
+    image: { width: image.width, height: image.height, normals: estimator.imageNormals() },
+    depth: { width: depth.width, height: depth.height, refined: estimator.refinedDepth(), normals: estimator.depthNormals() },
   };
 }
 

@@ -1,6 +1,7 @@
-/** Four slots for the visitor's own files: dropped anywhere on them, or picked. */
+/** Four slots for the visitor's own files: dropped anywhere, or picked. What is in a file is told by `own.ts`, which loads with the first. */
 
 import { freshId, make } from "../dom";
+import type { Look, Offer } from "./own";
 
 export type Slot = "colour" | "depth" | "colourMask" | "depthMask";
 
@@ -16,23 +17,84 @@ interface Entry {
   name: HTMLElement;
   note: HTMLElement;
   clear: HTMLButtonElement;
+  thumb: HTMLCanvasElement;
+  says: HTMLElement;
   paths: readonly string[];
+}
+
+export interface IntakeHooks {
+  /** Other files than before. */
+  onChange(): void;
+  onForget(): void;
 }
 
 export class Intake {
   readonly element: HTMLElement;
   #files: Partial<Record<Slot, File>> = {};
   #entries = new Map<Slot, Entry>();
-  readonly #onChange: () => void;
+  readonly #hooks: IntakeHooks;
+  readonly #offer = make("p", { class: "offer", role: "status" });
+  readonly #remarks = make("ul", { class: "remarks", hidden: true });
+  readonly #keeping = make("span", {});
+  readonly #forget = make("button", { type: "button", hidden: true }, "Forget my files");
 
-  constructor(onChange: () => void) {
-    this.#onChange = onChange;
-    this.element = make("div", { class: "intake" });
+  constructor(hooks: IntakeHooks) {
+    this.#hooks = hooks;
+    this.element = make("div", { class: "intake" }, this.#remarks, this.#offer);
     for (const each of slots) this.#build(each);
+    this.#forget.addEventListener("click", () => {
+      this.replaceAll({});
+      this.remarks([]);
+      this.#hooks.onForget();
+    });
+    this.element.append(make("p", { class: "note keeping", role: "status" }, this.#keeping), this.#forget);
   }
 
   get files(): Partial<Record<Slot, File>> {
     return this.#files;
+  }
+
+  /** The files with what they were read as. */
+  get said(): { file: File; says: string }[] {
+    return slots.flatMap(({ slot, label }) => {
+      const [file, entry] = [this.#files[slot], this.#entries.get(slot)];
+      return file && entry ? [{ file, says: [label, entry.says.textContent].filter(Boolean).join(": ") }] : [];
+    });
+  }
+
+  /** Shows what a file is, unless another has taken its place. */
+  show(slot: Slot, file: File, { says, warnings, fault, picture }: Look): void {
+    const entry = this.#entries.get(slot);
+    if (!entry || this.#files[slot] !== file) return;
+    entry.says.textContent = [says, ...warnings].join(". ");
+    entry.says.classList.toggle("error", fault !== undefined);
+    entry.thumb.hidden = !picture;
+    if (!picture) return;
+    entry.thumb.width = picture.width;
+    entry.thumb.height = picture.height;
+    entry.thumb.getContext("2d")?.drawImage(picture, 0, 0);
+    entry.thumb.setAttribute("aria-label", `Preview of ${file.name}`);
+  }
+
+  /** Asks whether files are to change places; nothing where all are where they belong. */
+  offer(offer: Offer | undefined): void {
+    this.#offer.replaceChildren();
+    if (!offer) return;
+    const button = make("button", { type: "button" }, offer.button);
+    button.addEventListener("click", () => this.replaceAll(offer.slots));
+    this.#offer.append(offer.words, " ", button);
+  }
+
+  /** What is to be said of files that are in no slot. */
+  remarks(all: readonly { words: string; wrong: boolean }[]): void {
+    this.#remarks.hidden = all.length === 0;
+    this.#remarks.replaceChildren(...all.map(({ words, wrong }) => make("li", { class: wrong ? "note error" : "note" }, words)));
+  }
+
+  /** Where the files are while the page is closed, in words, and whether there is something to forget. */
+  keeping(words: string, canForget: boolean): void {
+    this.#keeping.textContent = words;
+    this.#forget.hidden = !canForget;
   }
 
   /** Puts an error beside the slot that the library's path belongs to; false when none does. */
@@ -70,8 +132,11 @@ export class Intake {
     const zone = make("label", { class: "drop", for: id }, make("strong", {}, label), name);
     const clear = make("button", { type: "button", class: "quiet", "aria-label": `Remove ${label.toLowerCase()}`, hidden: true }, "×");
     const note = make("p", { class: "note", id: `${id}-note`, hidden: true });
-    this.#entries.set(slot, { zone, name, note, clear, paths });
-    this.element.append(make("div", { class: "slot" }, picker, zone, clear, note));
+    const thumb = make("canvas", { class: "thumb", role: "img", width: 1, height: 1, hidden: true });
+    const says = make("p", { class: "note says" });
+    this.#entries.set(slot, { zone, name, note, clear, thumb, says, paths });
+    zone.append(thumb);
+    this.element.append(make("div", { class: "slot" }, picker, zone, clear, says, note));
 
     picker.addEventListener("change", () => {
       const file = picker.files?.[0];
@@ -86,27 +151,39 @@ export class Intake {
     zone.addEventListener("dragleave", () => zone.removeAttribute("data-over"));
     zone.addEventListener("drop", (event) => {
       event.preventDefault();
-      event.stopPropagation();
       zone.removeAttribute("data-over");
-      const file = event.dataTransfer?.files[0];
-      if (file) this.#put(slot, file);
+      const files = event.dataTransfer?.files ?? [];
+      // Several are sorted as anywhere else on the page.
+      if (files.length > 1) return;
+      event.stopPropagation();
+      if (files[0]) this.#put(slot, files[0]);
     });
   }
 
   /** Several files at once, which are looked at together. */
   putAll(files: ReadonlyMap<Slot, File>): void {
     for (const [slot, file] of files) this.#set(slot, file);
-    this.#onChange();
+    this.#hooks.onChange();
+  }
+
+  /** These files and no others. */
+  replaceAll(files: Partial<Record<Slot, File>>): void {
+    for (const { slot } of slots) this.#set(slot, files[slot]);
+    this.#hooks.onChange();
   }
 
   #put(slot: Slot, file: File | undefined): void {
     this.#set(slot, file);
-    this.#onChange();
+    this.#hooks.onChange();
   }
 
   #set(slot: Slot, file: File | undefined): void {
     const entry = this.#entries.get(slot);
     if (!entry) return;
+    if (this.#files[slot] !== file) {
+      entry.says.textContent = "";
+      entry.thumb.hidden = true;
+    }
     if (file) this.#files[slot] = file;
     else delete this.#files[slot];
     const hint = slots.find((each) => each.slot === slot)?.hint ?? "";

@@ -1,6 +1,4 @@
-/** What a file is for, told by its first bytes: depth maps have one channel of 16 bits or are arrays, masks one of 8. */
-
-import type { Slot } from "./intake";
+/** What a file is for, told by its first bytes alone: depth maps have one channel of 16 bits or are arrays, masks one of 8. */
 
 const PNG = [0x89, 0x50, 0x4e, 0x47];
 const NPY = [0x93, 0x4e, 0x55, 0x4d];
@@ -9,20 +7,9 @@ const [BITS, COLOUR, END] = [24, 25, 26];
 
 const begins = (bytes: Uint8Array, magic: readonly number[]): boolean => magic.every((byte, i) => bytes[i] === byte);
 
-export async function kindOf(file: File): Promise<"colour" | "depth" | "mask"> {
+export async function sniffed(file: File): Promise<"colour" | "depth" | "mask"> {
   const bytes = new Uint8Array(await file.slice(0, END).arrayBuffer());
   if (begins(bytes, NPY)) return "depth";
   if (!begins(bytes, PNG) || bytes[COLOUR] !== 0) return "colour";
   return bytes[BITS] === 16 ? "depth" : "mask";
-}
-
-/** The slot of each file, in their order: the first mask is the picture's, the second the depth map's. */
-export async function sorted(files: readonly File[], taken: (slot: Slot) => boolean): Promise<Map<Slot, File>> {
-  const slots = new Map<Slot, File>();
-  for (const file of files) {
-    const kind = await kindOf(file);
-    const isFree = !slots.has("colourMask") && !taken("colourMask");
-    slots.set(kind === "mask" ? (isFree ? "colourMask" : "depthMask") : kind, file);
-  }
-  return slots;
 }

@@ -1,21 +1,21 @@
 /** The Lab: settings in, frames out. It joins the parts and holds the state of one experiment. */
 
-import { byId } from "../dom";
+import { byId, make } from "../dom";
 import { Engine, EngineError } from "../engine/engine";
 import type { Calls, Frame, Opened, Source } from "../engine/protocol";
 import type { Pose, StepReport } from "../../pkg/index.js";
 import { Explanations } from "./ask";
 import { Form } from "./form";
 import { Gallery } from "./gallery";
-import { Intake } from "./intake";
-import { sorted } from "./kind";
+import { OwnFiles } from "./ownfiles";
 import { LightPanel, type Turn } from "./light";
 import { Player } from "./player";
+import { shownIn } from "./pictures";
 import { PoseTable } from "./posetable";
 import { Rivals } from "./rivals";
 import { fields, inputGroups, methodOf, runOptions, turnOf, type Origin, type Settings } from "./settings";
-import { download, writeAddress } from "./share";
-import { sourceOf } from "./source";
+import { download, linkTo, writeAddress } from "./share";
+import { rememberOrigin, sourceOf } from "./source";
 import { saveBlob } from "../save";
 import { Store } from "./store";
 import { Status, type Notice } from "./status";
@@ -29,7 +29,9 @@ export class Lab {
   readonly player: Player;
   readonly #engine: Engine;
   readonly #form: Form;
-  readonly #intake = new Intake(() => void this.#reopen());
+  readonly #own = new OwnFiles({ onChange: () => void this.#reopen(), onCameras: (fields) => this.store.change(fields) });
+  /** The files of what is on the screen; none of a sample. */
+  #pair: readonly (File | undefined)[] = [];
   readonly #status = new Status();
   readonly #explanations = new Explanations(() => methodOf(this.store.settings, this.#origin));
   readonly #strip = new Strip(byId("stages", HTMLElement), this.#explanations);
@@ -89,7 +91,8 @@ export class Lab {
       this.#form.mount(group, byId(`fields-${group}`, HTMLElement));
     }
     byId("objective-title", HTMLElement).append(this.#explanations.button("objective", "Objective"));
-    byId("slots", HTMLElement).append(this.#intake.element);
+    byId("slots", HTMLElement).append(this.#own.intake.element);
+    byId("take-picture", HTMLSelectElement).addEventListener("focus", () => this.#offerPictures());
     this.store.listen((settings, changed, live) => this.#settingsChanged(settings, changed, live));
     this.#form.adapt(this.store.settings, this.#origin);
   }
@@ -121,8 +124,10 @@ export class Lab {
   /** Samples or own files; the last input stays on the screen until there is a new one. */
   choose(origin: Origin): void {
     this.#origin = origin;
+    rememberOrigin(origin);
     this.#form.adapt(this.store.settings, origin);
     void this.#reopen();
+    if (origin === "files") void this.#own.restore();
   }
 
   restart(): Promise<void> {
@@ -140,19 +145,39 @@ export class Lab {
   async take(kind: Kind): Promise<void> {
     if (!this.#good || !this.#report) return;
     try {
+      const { source, settings } = this.#good;
       const [{ fileOfKind }, taken] = await Promise.all([import("./takeaway"), this.#engine.call("take", {})]);
-      const { name, blob } = fileOfKind(kind, taken);
+      const report = this.#report;
+      const run = { taken, report, end: verdict(report, this.#from, this.#truth), truth: this.#truth, origin: source.kind, settings };
+      const files = source.kind === "files" ? this.#own.intake.said : [];
+      const { name, blob, says } = await fileOfKind(kind, { ...run, files, link: linkTo(settings) });
       saveBlob(name, blob);
+      byId("taken", HTMLElement).textContent = says ? `Saved ${name}: ${says}.` : `Saved ${name}.`;
     } catch (error) {
       // What was asked for next has broken it off, and speaks for itself.
-      if (!(error instanceof EngineError) || error.code !== "interrupted") await this.#fail(error);
+      if (error instanceof EngineError) {
+        if (error.code !== "interrupted") await this.#fail(error);
+      } else {
+        byId("taken", HTMLElement).textContent = `Nothing saved: ${error instanceof Error ? error.message : String(error)}`;
+      }
     }
   }
 
   /** Files dropped anywhere, each into the slot that its content is of. */
-  async drop(files: readonly File[]): Promise<void> {
-    const slots = await sorted(files, (slot) => this.#intake.files[slot] !== undefined);
-    this.#intake.putAll(slots);
+  drop(files: readonly File[]): Promise<void> {
+    return this.#own.drop(files);
+  }
+
+  /** Nothing of a pair that is not the one asked for stays on the screen: neither its pictures nor its true values. */
+  #vacate(): void {
+    this.#good = undefined;
+    this.#report = undefined;
+    this.#truth = null;
+    this.#notes = {};
+    this.#pair = [];
+    this.#forget();
+    byId("iteration", HTMLElement).textContent = "0";
+    byId("lab", HTMLElement).toggleAttribute("data-vacant", true);
   }
 
   #settingsChanged(settings: Settings, changed: readonly string[], live: boolean): void {
@@ -207,7 +232,10 @@ export class Lab {
 
   #reopen(): Promise<void> {
     this.player.pause();
-    return this.#start(sourceOf(this.#origin, this.store.settings, this.#intake.files));
+    const { colour, depth } = this.#own.intake.files;
+    const wanted = this.#origin === "files" ? [colour, depth] : [];
+    if (wanted.length !== this.#pair.length || wanted.some((file, i) => file !== this.#pair[i])) this.#vacate();
+    return this.#start(sourceOf(this.#origin, this.store.settings, this.#own.intake.files));
   }
 
   /** The loop from its beginning, on an input that the worker may already hold. */
@@ -243,6 +271,7 @@ export class Lab {
         const opened = await this.#engine.call("open", { source, options });
         this.#held = source;
         if (turn !== this.#turn) return;
+        this.#pair = source.kind === "files" ? [source.files.colour, source.files.depth] : [];
         await this.#present(opened);
       }
       this.#good = { source, settings };
@@ -262,6 +291,7 @@ export class Lab {
   }
 
   async #present(opened: Opened): Promise<void> {
+    byId("lab", HTMLElement).removeAttribute("data-vacant");
     this.#truth = opened.truth;
     this.#length = opened.units.image;
     this.#light.showTruth(opened.trueLight);
@@ -271,6 +301,17 @@ export class Lab {
     const drawn = this.gallery.open(opened, this.#looksOther());
     this.#take(opened.frame);
     await drawn;
+    this.#offerPictures();
+  }
+
+  /** What can be saved as a picture now. */
+  #offerPictures(): void {
+    const select = byId("take-picture", HTMLSelectElement);
+    const titles = shownIn(byId("lab", HTMLElement)).map(({ title }) => title);
+    const before = select.value;
+    if (titles.join("\n") === [...select.options].map(({ value }) => value).join("\n")) return;
+    select.replaceChildren(...titles.map((title) => make("option", { value: title }, title)));
+    if (titles.includes(before)) select.value = before;
   }
 
   /** Whether another object has come: the view of one whose light or noise has changed stays. */
@@ -362,9 +403,9 @@ export class Lab {
   /** What was guessed about the input stays beside the fields; errors go. */
   #showNotes(): void {
     this.#form.clearMessages();
-    this.#intake.clearMessages();
+    this.#own.intake.clearMessages();
     for (const [path, note] of Object.entries(this.#notes)) {
-      if (!this.#intake.remark(path, note)) this.#form.remark(path, note);
+      if (!this.#own.intake.remark(path, note)) this.#form.remark(path, note);
     }
   }
 
@@ -383,7 +424,7 @@ export class Lab {
   /** Beside its field a message need not repeat the field's name. */
   #complain(field: string, message: string): boolean {
     const words = message.startsWith(`${field}: `) ? message.slice(field.length + 2) : message;
-    return this.#intake.complain(field, words) || this.#form.complain(field, words);
+    return this.#own.intake.complain(field, words) || this.#form.complain(field, words);
   }
 
   /** The worker has lost what is on the screen, as after a panic: the same input again, from its beginning. */

@@ -70,6 +70,14 @@ interface Extra {
   read(report: StepReport, length: string): string | undefined;
 }
 
+/** The numbers beside the pose, as they are shown. */
+export function numbersOf(report: StepReport, length: string): [name: string, value: string][] {
+  return extras.flatMap(({ name, read }): [string, string][] => {
+    const value = read(report, length);
+    return value === undefined ? [] : [[name, value]];
+  });
+}
+
 /** A sigma says how sharp a pose is, not whether it is the right one: beside a lost one it would mislead. */
 const sure = ({ status, uncertainty }: StepReport): StepReport["uncertainty"] => (status === "lost" ? undefined : uncertainty);
 

@@ -212,6 +212,21 @@ export function methodOf(settings: Settings, source: Origin): Method {
   return { lightIsKnown: light !== "estimate", searches: start === "search", registration, shading };
 }
 
+const valueInWords = (field: Field, value: Value): string => {
+  if (field.kind === "flag") return value === true ? "yes" : "no";
+  if (field.kind === "choice") return field.choices?.find(([word]) => word === value)?.[1] ?? String(value);
+  if (value === null || value === "") return field.empty;
+  return field.kind === "number" && field.unit ? `${value} ${field.unit}` : String(value);
+};
+
+/** All that a run was told, as the form shows it. */
+export function optionsInWords(settings: Settings, source: Origin): [name: string, value: string][] {
+  const groups: Partial<Record<Group, string>> = source === "sample" ? { sample: "Sample: " } : { colour: "Colour camera: ", depth: "Depth camera: " };
+  const asked = fields.filter(({ group, when }) => (groups[group] !== undefined || !(inputGroups.includes(group))) && (when?.(settings, source) ?? true));
+  const isTold = ({ key, group }: Field) => (group !== "colour" && group !== "depth") || (settings[key] !== null && settings[key] !== "");
+  return asked.filter(isTold).map((field) => [`${groups[field.group] ?? ""}${field.label}`, valueInWords(field, settings[field.key] ?? null)]);
+}
+
 const lensKeys = ["fx", "fy", "cx", "cy"] as const;
 
 /** A camera once all of its four numbers are given; none where none is; the name of what is missing in between. */

@@ -1,13 +1,36 @@
 /** What can be taken away: a link that brings the same experiment back, and the report as a file. */
 
 import type { Pose, StepReport } from "../../pkg/index.js";
+import { byId } from "../dom";
 import { saveJson } from "../save";
 import { toLink, type Origin, type Settings } from "./settings";
 import { angleBetween } from "./verdict";
 
+/** What is seen, not what is computed: choices of the page by their ids, with what they are at first. */
+const looks = { "clouds-style": "surfaces", "clouds-texture": "view", pace: "1" } as const;
+
+const selects = () => Object.entries(looks).map(([id, initial]) => ({ id, initial, select: byId(id, HTMLSelectElement) }));
+
+/** Takes over what an address says of them; of what it does not say, nothing changes. */
+export function showLooks(hash: string): void {
+  const given = new URLSearchParams(hash.replace(/^#/, ""));
+  for (const { id, select } of selects()) {
+    const value = given.get(id);
+    if (value === null || value === select.value || ![...select.options].some((option) => option.value === value)) continue;
+    select.value = value;
+    select.dispatchEvent(new Event("change"));
+  }
+}
+
+export function onLook(act: () => void): void {
+  for (const { select } of selects()) select.addEventListener("change", act);
+}
+
+/** Settings and looks; of the visitor's files nothing. */
 export function linkTo(settings: Settings): string {
   const url = new URL(location.href);
-  url.hash = toLink(settings);
+  const other = selects().filter(({ initial, select }) => select.value !== initial);
+  url.hash = [toLink(settings), new URLSearchParams(other.map(({ id, select }) => [id, select.value])).toString()].filter(Boolean).join("&");
   return url.href;
 }
 

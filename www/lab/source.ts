@@ -1,8 +1,28 @@
-/** The input that the settings describe. */
+/** The input that the settings describe, and whether it was the visitor's own before a reload. */
 
 import type { OwnFiles, Source } from "../engine/protocol";
 import type { Slot } from "./intake";
 import { camera, sampleRequest, turnOf, type Origin, type Settings } from "./settings";
+
+const OWN = "own-files";
+
+/** For this tab alone: a link that is opened anew shows what it says. */
+export function rememberOrigin(origin: Origin): void {
+  try {
+    if (origin === "files") sessionStorage.setItem(OWN, "1");
+    else sessionStorage.removeItem(OWN);
+  } catch {
+    // A browser that keeps nothing asks for the files again.
+  }
+}
+
+export function wasOwn(): boolean {
+  try {
+    return sessionStorage.getItem(OWN) !== null;
+  } catch {
+    return false;
+  }
+}
 
 /** Or in words what it still lacks. */
 export function sourceOf(origin: Origin, settings: Settings, { colour, depth, ...masks }: Partial<Record<Slot, File>>): Source | string {

@@ -1,67 +1,113 @@
 /** Results as files of common formats. Loaded when the first is asked for. */
 
-import type { Pose } from "../../pkg/index.js";
+import type { Pose, StepReport } from "../../pkg/index.js";
+import { byId } from "../dom";
 import type { Taken } from "../engine/protocol";
+import { sha256 } from "../hash";
 import type { Kind } from "./kinds";
+import type { PackAnswer, PackRequest, Packed } from "./packer";
+import { dataUrlOf, pngOf, shownIn } from "./pictures";
+import { numbersOf } from "./posetable";
+import { optionsInWords, type Origin, type Settings } from "./settings";
+import type { Verdict } from "./verdict";
+import { lightCsv, matrixText, poseJson, runReportHtml } from "./write";
 
+/** A run as the page knows it. */
+export interface Run {
+  taken: Taken;
+  report: StepReport;
+  /** Nothing while it is not over. */
+  end: Verdict | undefined;
+  truth: Pose | null;
+  origin: Origin;
+  settings: Settings;
+  /** The visitor's own, with what they were read as. */
+  files: readonly { file: File; says: string }[];
+  link: string;
+}
 
-interface File {
+export interface Made {
   name: string;
-  type: string;
-  parts: BlobPart[];
+  blob: Blob;
+  /** What one has to know to read it, such as the unit. */
+  says?: string;
 }
 
-/** The 4x4 matrix that carries the depth map's points into the colour view. */
-function matrix({ scale, rotation, translation }: Pose): string {
-  const row = (i: number) => [...rotation.slice(3 * i, 3 * i + 3).map((value) => scale * value), translation[i] ?? 0].join(" ");
-  return `${[row(0), row(1), row(2), "0 0 0 1"].join("\n")}\n`;
+const made = (name: string, type: string, part: BlobPart, says?: string): Made => ({ name, blob: new Blob([part], { type }), ...(says === undefined ? {} : { says }) });
+
+/** Made in a thread of its own. */
+function packed(kind: Packed, taken: Taken): Promise<Extract<PackAnswer, { bytes: Uint8Array }>> {
+  const worker = new Worker(new URL("./packer.ts", import.meta.url), { type: "module" });
+  const answer = new Promise<Extract<PackAnswer, { bytes: Uint8Array }>>((resolve, reject) => {
+    worker.onmessage = ({ data }: MessageEvent<PackAnswer>) => ("fault" in data ? reject(new Error(data.fault.message)) : resolve(data));
+    worker.onerror = (event) => {
+      event.preventDefault();
+      reject(new Error(event.message || "what makes the file could not be loaded."));
+    };
+  });
+  const { imagePoints, depthPoints, image, depth } = taken;
+  const arrays = [imagePoints, depthPoints, image.normals, depth.refined, depth.normals];
+  worker.postMessage({ kind, taken } satisfies PackRequest, [...new Set(arrays.map(({ buffer }) => buffer as ArrayBuffer))]);
+  return answer.finally(() => worker.terminate());
 }
 
-/** Both clouds in the colour view's frame: orange the picture's, blue the depth map's. */
-function ply({ imagePoints, depthPoints, unit }: Taken): string {
-  const lines = (points: Float32Array, colour: string) =>
-    Array.from({ length: points.length / 3 }, (_, i) => [...points.subarray(3 * i, 3 * i + 3)].join(" ") + colour).filter((line) => !line.includes("NaN"));
-  const vertices = [...lines(imagePoints, " 199 100 26"), ...lines(depthPoints, " 11 98 184")];
-  const properties = [...["x", "y", "z"].map((axis) => `property float ${axis}`), ...["red", "green", "blue"].map((colour) => `property uchar ${colour}`)];
-  const unitName = unit === "m" ? "metres" : "pixels";
-  const head = ["ply", "format ascii 1.0", `comment ${unitName}; x right, y down, z forward, in the colour view's frame`, `element vertex ${vertices.length}`, ...properties, "end_header"];
-  return `${[...head, ...vertices].join("\n")}\n`;
+const hasNormals = (normals: Float32Array): boolean => normals.some((value) => Number.isFinite(value) && value !== 0);
+
+const FILES: Readonly<Record<Packed, { name: string; type: string }>> = {
+  clouds: { name: "clouds.ply", type: "application/octet-stream" },
+  depth: { name: "refined-depth.npy", type: "application/octet-stream" },
+  depthPng: { name: "refined-depth.png", type: "image/png" },
+  normals: { name: "normals.png", type: "image/png" },
+  depthNormals: { name: "refined-normals.png", type: "image/png" },
+};
+
+/** A file's name of a title. */
+const slug = (title: string): string => title.toLowerCase().replace(/[^a-z0-9]+/g, "-").replace(/^-|-$/g, "") || "picture";
+
+/** The picture that is chosen beside the button. */
+async function picture(): Promise<Made> {
+  const wanted = byId("take-picture", HTMLSelectElement).value;
+  const shown = shownIn(byId("lab", HTMLElement)).find(({ title }) => title === wanted);
+  if (!shown) throw new Error(`"${wanted}" is not shown at the moment.`);
+  return { name: `${slug(shown.title)}.png`, blob: await pngOf(shown.canvas) };
 }
 
-/** Numpy's format, version 1: a header that fills whole blocks of 64 bytes, then the numbers. */
-function npy(data: Float32Array<ArrayBuffer>, width: number, height: number): BlobPart[] {
-  const said = `{'descr': '<f4', 'fortran_order': False, 'shape': (${height}, ${width}), }`;
-  const total = Math.ceil((10 + said.length + 1) / 64) * 64;
-  const head = `${said.padEnd(total - 11, " ")}\n`;
-  const lead = new Uint8Array([0x93, 0x4e, 0x55, 0x4d, 0x50, 0x59, 1, 0, head.length & 255, head.length >> 8]);
-  return [lead, head, data];
+async function report(run: Run): Promise<Made> {
+  const { taken, report, end, truth, origin, settings, files, link } = run;
+  const inputs = await Promise.all(files.map(async ({ file, says }) => ({ name: file.name, says, sha256: await sha256(file) })));
+  const shown = shownIn(byId("lab", HTMLElement));
+  const pictures = await Promise.all(shown.map(async ({ title, words, canvas }) => ({ title: words ?? title, dataUrl: await dataUrlOf(canvas) })));
+  const words = [end?.words ?? report.message ?? "", end?.next ?? ""].filter(Boolean);
+  const html = runReportHtml({
+    ...{ tone: end?.tone ?? "open", status: end?.status ?? `not over: iteration ${report.iteration}`, words },
+    ...{ pose: taken.pose, truth, unit: taken.unit, light: taken.light },
+    numbers: [["Iterations", String(report.iteration)], ...numbersOf(report, taken.unit)],
+    options: optionsInWords(settings, origin),
+    pictures,
+    ...{ inputs, link, made: new Date() },
+  });
+  return made("bimodal-stereo-report.html", "text/html", html);
 }
 
-const CHANNELS = ["R", "G", "B"];
-
-/** One channel a line. */
-function csv(light: Float64Array): string {
-  const names = Array.from({ length: 9 }, (_, k) => `L${k + 1}`);
-  const line = (channel: string, c: number) => [channel, ...light.subarray(9 * c, 9 * c + 9)].join(",");
-  return `${[["channel", ...names].join(","), ...CHANNELS.map(line)].join("\n")}\n`;
-}
-
-function fileOf(kind: Kind, taken: Taken): File {
+export async function fileOfKind(kind: Kind, run: Run): Promise<Made> {
+  const { pose, unit, light, depth, image } = run.taken;
   switch (kind) {
     case "pose":
-      return { name: "pose.json", type: "application/json", parts: [JSON.stringify({ ...taken.pose, unit: taken.unit }, null, 2)] };
+      return made("pose.json", "application/json", poseJson(pose, unit));
     case "matrix":
-      return { name: "depth_to_colour.txt", type: "text/plain", parts: [matrix(taken.pose)] };
-    case "clouds":
-      return { name: "clouds.ply", type: "application/octet-stream", parts: [ply(taken)] };
-    case "depth":
-      return { name: "refined-depth.npy", type: "application/octet-stream", parts: npy(taken.refinedDepth, taken.width, taken.height) };
+      return made("depth_to_colour.txt", "text/plain", matrixText(pose), `lengths in ${unit === "m" ? "metres" : "pixels"}`);
     case "light":
-      return { name: "light.csv", type: "text/csv", parts: [csv(taken.light)] };
+      return made("light.csv", "text/csv", lightCsv(light));
+    case "picture":
+      return picture();
+    case "report":
+      return report(run);
+    default: {
+      // The first iteration finds them.
+      const normals = { normals: image.normals, depthNormals: depth.normals, clouds: undefined, depth: undefined, depthPng: undefined }[kind];
+      if (normals && !hasNormals(normals)) throw new Error("there are no normals yet; press Step or Play first.");
+      const { bytes, says } = await packed(kind, run.taken);
+      return made(FILES[kind].name, FILES[kind].type, bytes, says);
+    }
   }
-}
-
-export function fileOfKind(kind: Kind, taken: Taken): { name: string; blob: Blob } {
-  const { name, type, parts } = fileOf(kind, taken);
-  return { name, blob: new Blob(parts, { type }) };
 }

@@ -1,9 +1,11 @@
 /** Learn: nine lessons, each a short text beside a live figure, with exercises and slides. */
 
 import "../style/learn.css";
+import "../style/embed.css";
 import { make } from "../dom";
 import { saveJson } from "../save";
 import { Controls } from "./controls";
+import { Embed } from "./embed";
 import { exerciseList } from "./exercises";
 import { Figure } from "./figure";
 import { computed, list, valuesFrom, initialValues, type Lesson } from "./lesson";
@@ -25,6 +27,7 @@ interface Shown {
   readouts: Readouts;
   box: HTMLElement;
   alert: HTMLElement;
+  embed: Embed;
   drawing: Drawing | undefined;
 }
 
@@ -39,6 +42,8 @@ export class LearnPage {
   readonly #slides: Slides;
   #shown: Shown | undefined;
   #isOpen = false;
+  /** The figure alone, in a frame of another page. */
+  #isEmbedded = false;
 
   constructor(parent: HTMLElement) {
     for (const { id, title } of lessons) {
@@ -55,6 +60,7 @@ export class LearnPage {
   open(hash: string): void {
     this.#isOpen = true;
     const asked = new URLSearchParams(hash.replace(/^#/, ""));
+    this.#isEmbedded = asked.has("embed");
     if (asked.get("at") === "exercises") return this.#showExercises();
     const lesson = lessonNamed(asked.get("at")) ?? this.#shown?.lesson ?? first;
     const isTold = lesson.controls.some(({ key }) => asked.has(key));
@@ -122,6 +128,8 @@ export class LearnPage {
     const number = lessons.indexOf(lesson) + 1;
     const formula = make("div", { class: "learn-formula", role: "group", "aria-label": lesson.formulaWords }, lesson.formula());
     const box = make("section", { class: "learn-figure", "aria-label": "Figure", "aria-busy": "true" }, alert, controls.element, readouts.element, figure.element);
+    const embed = new Embed(`${number}. ${lesson.title}`);
+    box.append(embed.source);
     const slides = make("button", { type: "button", class: "learn-slides-button" }, "Slides");
     slides.addEventListener("click", () => this.#startSlides());
     const article = make(
@@ -130,7 +138,8 @@ export class LearnPage {
       make(
         "div",
         { class: "learn-text" },
-        make("div", { class: "learn-head" }, make("h2", { tabindex: "-1" }, `${number}. ${lesson.title}`), slides),
+        make("div", { class: "learn-head" }, make("h2", { tabindex: "-1" }, `${number}. ${lesson.title}`), embed.button, slides),
+        embed.element,
         make("p", { class: "learn-gist" }, lesson.gist),
         formula,
         ...lesson.text.map((words) => make("p", {}, ...sentence(words))),
@@ -141,7 +150,7 @@ export class LearnPage {
       ),
       box,
     );
-    return { lesson, article, figure, controls, readouts, box, alert, drawing: undefined };
+    return { lesson, article, figure, controls, readouts, box, alert, embed, drawing: undefined };
   }
 
   #ends({ id }: Lesson): HTMLElement {
@@ -222,7 +231,8 @@ export class LearnPage {
     const start = initialValues(shown.lesson);
     const changed = Object.entries(shown.controls.values).filter(([key, value]) => value !== start[key]);
     const state = new URLSearchParams({ at: shown.lesson.id, ...Object.fromEntries(changed.map(([key, value]) => [key, String(value)])) });
-    history.replaceState(null, "", `#learn&${state}${this.#slides.isOpen ? "&slides" : ""}`);
+    shown.embed.show(`#learn&${state}`);
+    history.replaceState(null, "", `#learn&${state}${this.#slides.isOpen ? "&slides" : ""}${this.#isEmbedded ? "&embed" : ""}`);
   }
 }
 

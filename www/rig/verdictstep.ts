@@ -2,6 +2,7 @@
 
 import type { CheckCue, CheckReport } from "../../pkg/index.js";
 import { make } from "../dom";
+import { sha256 } from "../hash";
 import { saveJson } from "../save";
 import type { SensitivityCharts } from "./curves";
 import { Overlay } from "./overlay";
@@ -169,7 +170,10 @@ export class VerdictStep {
     }));
     const html = press("Save report (HTML)", attempt(async () => {
       const pictures = await this.#overlay.pictures();
-      const inputs = await Promise.all(this.#rig.items.map(async ({ name, summary, blob }) => ({ name, says: summary?.says ?? "not read", ...(blob ? { sha256: await sha256(blob) } : {}) })));
+      const inputs = await Promise.all(this.#rig.items.map(async ({ name, summary, blob }) => {
+        const hash = blob && (await sha256(blob));
+        return { name, says: summary?.says ?? "not read", ...(hash ? { sha256: hash } : {}) };
+      }));
       saveFile("rig-check.html", await session.call("report", { report: whole(run), pictures, inputs }), "text/html");
     }));
     return make(
@@ -187,12 +191,6 @@ export class VerdictStep {
     this.#alert.textContent = message;
     this.#alert.hidden = message === "";
   }
-}
-
-/** By which the file can be told later. */
-async function sha256(blob: Blob): Promise<string> {
-  const bytes = new Uint8Array(await crypto.subtle.digest("SHA-256", await blob.arrayBuffer()));
-  return Array.from(bytes, (byte) => byte.toString(16).padStart(2, "0")).join("");
 }
 
 /** The report with what the page knows to be guessed. */

@@ -32,12 +32,12 @@ function check({ points, colours }: Cloud, index: number): void {
 /** A comment is one line of ASCII. */
 const comment = (name: string): string => name.replace(/[^\x20-\x7e]/g, "?");
 
-function header(clouds: readonly Cloud[], count: number): string {
+function header(clouds: readonly Cloud[], count: number, unit: string): string {
   const labels = clouds.length > 1;
   return [
     "ply",
     "format binary_little_endian 1.0",
-    "comment metres; x right, y down, z forward",
+    `comment ${unit}; x right, y down, z forward`,
     ...clouds.map(({ name }, index) => `comment ${labels ? `label ${index}: ` : ""}${comment(name ?? `cloud ${index + 1}`)}`),
     `element vertex ${count}`,
     ...["x", "y", "z"].map((axis) => `property float ${axis}`),
@@ -50,15 +50,16 @@ function header(clouds: readonly Cloud[], count: number): string {
 
 /**
  * One file that holds all clouds, which are in one frame; where there are several, the property `label` tells them apart, 0 for the first.
+ * The unit is told in a comment.
  */
-export function writeClouds(clouds: readonly Cloud[]): Uint8Array<ArrayBuffer> {
+export function writeClouds(clouds: readonly Cloud[], unit: "metres" | "pixels" = "metres"): Uint8Array<ArrayBuffer> {
   if (clouds.length === 0 || clouds.length > MOST_CLOUDS) {
     throw new BimodalError("size", `clouds: needs 1 to ${MOST_CLOUDS} of them, not ${clouds.length}`, "clouds");
   }
   clouds.forEach(check);
   let count = 0;
   for (const { points } of clouds) for (let at = 0; at < points.length; at += 3) if (isThere(points, at)) count++;
-  const head = new TextEncoder().encode(header(clouds, count));
+  const head = new TextEncoder().encode(header(clouds, count, unit));
   const stride = PLACE + COLOUR + (clouds.length > 1 ? LABEL : 0);
   const file = new Uint8Array(head.length + count * stride);
   file.set(head);

@@ -1,28 +1,13 @@
 /** The parts of a report, each a section of HTML or nothing. */
 import type { CandidateReport, CheckReport, CheckVerdict } from "../../../types.js";
 import { bar, intervals, sensitivities } from "./charts.js";
-import type { Picture, ReportInput } from "./contents.js";
-import { type Markup, type Part, html } from "./markup.js";
+import { type Markup, html } from "./markup.js";
 import { digits, measure, percent, probability, span } from "./numbers.js";
+import { cell, fact, section, sign, table } from "./parts.js";
 
 const WORDS: Readonly<Record<CheckVerdict, string>> = { consistent: "Consistent", off: "Off", undecided: "Undecided" };
 
-/** A tick, a cross or a question mark: colour alone tells nobody anything on paper. */
-const SIGNS: Readonly<Record<CheckVerdict, string>> = {
-  consistent: "M9 20.5l7 7 15-16",
-  off: "M12 12l16 16M28 12l-16 16",
-  undecided: "M13.5 15.5a6.5 6.5 0 1 1 9.5 5.8c-2 1.1-3 2-3 4.2M20 30.5v.5",
-};
-
 const verdictOf = (verdict: CheckVerdict): CheckVerdict => (Object.hasOwn(WORDS, verdict) ? verdict : "undecided");
-
-const sign = (verdict: CheckVerdict): Markup =>
-  html`<svg class="sign" viewBox="0 0 40 40" aria-hidden="true"><circle cx="20" cy="20" r="18"/><path d="${SIGNS[verdict]}"/></svg>`;
-
-const section = (title: string, ...parts: Part[]): Markup => html`<section><h2>${title}</h2>${parts}</section>`;
-
-const fact = (name: string, value: string, more?: string): Markup =>
-  html`<div><dt>${name}</dt><dd>${value}${more === undefined ? undefined : html` <span class="soft">${more}</span>`}</dd></div>`;
 
 const within = (interval: readonly [number, number]): string => `95\u202f%: ${span(interval, "px")}`;
 
@@ -44,12 +29,6 @@ export const warningList = ({ warnings }: CheckReport): Markup =>
       ? html`<p>None: nothing was guessed, and nothing looks wrong.</p>`
       : html`<ul class="warnings">${warnings.map((warning) => html`<li>${warning}</li>`)}</ul>`,
   );
-
-/** A cell that tells its column by itself, on narrow screens where the table's head is hidden. */
-const cell = (column: string, value: Part): Markup => html`<td data-column="${column}">${value}</td>`;
-
-const table = (kind: string, columns: readonly string[], rows: Part): Markup =>
-  html`<table class="${kind}"><thead><tr>${columns.map((column) => html`<th scope="col">${column}</th>`)}</tr></thead><tbody>${rows}</tbody></table>`;
 
 const CANDIDATE_COLUMNS = ["Calibration", "Verdict", "Turned by", "Shifted by", "Expected error", "95\u202f% interval", "Probability", "Reason"];
 
@@ -161,20 +140,6 @@ export function sensitivitySection({ sensitivity }: CheckReport): Markup | undef
     "Sensitivity",
     html`<p class="soft">How much worse each cue finds the best fit when it is moved along one axis and held along the others. Height: sigmas, the square
 root of twice the fall of the log likelihood, drawn up to 8. Triangles mark where a cue is best, bars under the axis its 95 % interval,
-where its curve is below the dashed line; both are written below each drawing.</p><div class="panels">${panels}</div>`,
+where its curve is below the dashed line.</p><div class="panels">${panels}</div>`,
   );
-}
-
-export function pictureSection(pictures: readonly Picture[]): Markup | undefined {
-  if (pictures.length === 0) return undefined;
-  const figures = pictures.map(({ title, dataUrl }) => html`<figure><img src="${dataUrl}" alt="${title}"><figcaption>${title}</figcaption></figure>`);
-  return section("Pictures", html`<div class="pictures">${figures}</div>`);
-}
-
-export function inputTable(inputs: readonly ReportInput[]): Markup | undefined {
-  const rows = inputs.map(
-    ({ name, says, sha256 }) =>
-      html`<tr><th scope="row">${name}</th>${cell("Read as", says ?? "")}${cell("SHA-256", html`<code>${sha256 ?? "not taken"}</code>`)}</tr>`,
-  );
-  return rows.length === 0 ? undefined : section("Files", table("inputs stacks", ["File", "Read as", "SHA-256"], rows));
 }

@@ -16,7 +16,7 @@ h3{font-size:1rem;margin:1rem 0 .5rem}
 p{margin:.5rem 0;max-width:52rem}
 section{background:var(--card);border:1px solid var(--line);border-radius:.5rem;padding:1rem;margin:1rem 0}
 figure{margin:0}
-.soft,footer{color:var(--soft);font-size:.8125rem}
+.soft,footer,dt,.says,.pictures figcaption{color:var(--soft);font-size:.8125rem}
 .card{display:flex;gap:1rem;border-width:2px}
 .card>div{flex:1;min-width:0}
 .verdict{font-size:1.5rem;font-weight:700;line-height:1.2;margin:0}
@@ -26,7 +26,6 @@ figure{margin:0}
 .sign{flex:none;width:3.5rem;height:3.5rem;fill:none;stroke-width:3;stroke-linecap:round;stroke-linejoin:round}
 .consistent .sign{stroke:var(--good)}.off .sign{stroke:var(--wrong)}.undecided .sign{stroke:var(--open)}
 .facts{display:flex;flex-wrap:wrap;gap:.5rem 2rem;margin:.75rem 0 0}
-dt{color:var(--soft);font-size:.8125rem}
 dd{margin:0;font-variant-numeric:tabular-nums}
 .warnings{margin:0;padding-left:1.25rem}.warnings li{margin:.25rem 0}.warnings li::marker{content:"! ";color:var(--wrong);font-weight:700}
 table{border-collapse:collapse;width:100%;font-variant-numeric:tabular-nums}
@@ -52,11 +51,10 @@ circle.candidate{fill:var(--c1)}circle.estimate{fill:var(--c3)}
 .s1{stroke:var(--c1)}.s2{stroke:var(--c2);stroke-dasharray:7 3}.s3{stroke:var(--c3);stroke-dasharray:2 2}.s4{stroke:var(--c4);stroke-dasharray:8 3 2 3}.s5{stroke:var(--ink)}
 .width{fill:none;stroke-width:1.5;stroke-dasharray:none}
 .best{stroke:none}.best.s1{fill:var(--c1)}.best.s2{fill:var(--c2)}.best.s3{fill:var(--c3)}.best.s4{fill:var(--c4)}.best.s5{fill:var(--ink)}
-.says{list-style:none;margin:.25rem 0 0;padding:0;font-size:.8125rem;color:var(--soft)}
+.says{list-style:none;margin:.25rem 0 0;padding:0}
 .key{display:inline-block;width:1.5rem;height:.5rem;vertical-align:middle}
 .pictures{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(100%,24rem),1fr));gap:1rem}
 .pictures img{display:block;width:100%;height:auto;border-radius:.25rem}
-.pictures figcaption{color:var(--soft);font-size:.8125rem}
 @media screen and (max-width:48rem){
 .stacks thead{display:none}.stacks tr{display:block;border-top:1px solid var(--line);padding:.5rem 0}
 .stacks th,.stacks td{display:block;border:0;padding:.125rem 0}
@@ -77,4 +75,4 @@ figure,tr,.card,.intervals,pre{break-inside:avoid}h2,h3{break-after:avoid}
 `;
 
 /** Of STYLE, base64; a test holds it, and says the right one. */
-export const STYLE_SHA256 = "5Pw9al9hUdcWStJYypm76CD3QIvBK1Yxi2IXBr2BZeI=";
+export const STYLE_SHA256 = "iKzyzrat2Hpk4/rONYiywTRpl954vWSOS9BBtyMSmL4=";

@@ -1,0 +1,29 @@
+/** The page that every report is put into: it has no script, and its policy allows none. */
+import { Markup, type Part, html } from "./markup.js";
+import { STYLE, STYLE_SHA256 } from "./style.js";
+
+const POLICY = `default-src 'none'; img-src data:; style-src 'sha256-${STYLE_SHA256}'; base-uri 'none'; form-action 'none'`;
+
+export function reportPage(title: string, made: Date | undefined, body: Part): string {
+  const date = made && `${made.toISOString().slice(0, 16).replace("T", " ")} UTC`;
+  const page = html`<!doctype html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta http-equiv="Content-Security-Policy" content="${POLICY}">
+<meta name="referrer" content="no-referrer">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<title>${title}</title>
+<style>${new Markup(STYLE)}</style>
+</head>
+<body>
+<header><h1>${title}</h1>${date === undefined ? undefined : html`<p class="soft">${date}</p>`}</header>
+<main>
+${body}
+</main>
+<footer>Made by bimodal-stereo. This file holds everything it shows.</footer>
+</body>
+</html>
+`;
+  return String(page);
+}

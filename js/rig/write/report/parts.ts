@@ -1,0 +1,49 @@
+/** Parts that any report is made of. */
+import { BimodalError } from "../../../errors.js";
+import type { CheckVerdict } from "../../../types.js";
+import type { Picture, ReportInput } from "./contents.js";
+import { type Markup, type Part, html } from "./markup.js";
+
+/** A tick, a cross or a question mark: colour alone tells nobody anything on paper. */
+const SIGNS: Readonly<Record<CheckVerdict, string>> = {
+  consistent: "M9 20.5l7 7 15-16",
+  off: "M12 12l16 16M28 12l-16 16",
+  undecided: "M13.5 15.5a6.5 6.5 0 1 1 9.5 5.8c-2 1.1-3 2-3 4.2M20 30.5v.5",
+};
+
+export const sign = (verdict: CheckVerdict): Markup =>
+  html`<svg class="sign" viewBox="0 0 40 40" aria-hidden="true"><circle cx="20" cy="20" r="18"/><path d="${SIGNS[verdict]}"/></svg>`;
+
+export const section = (title: string, ...parts: Part[]): Markup => html`<section><h2>${title}</h2>${parts}</section>`;
+
+export const fact = (name: string, value: string, more?: string): Markup =>
+  html`<div><dt>${name}</dt><dd>${value}${more === undefined ? undefined : html` <span class="soft">${more}</span>`}</dd></div>`;
+
+/** A cell that tells its column by itself, on narrow screens where the table's head is hidden. */
+export const cell = (column: string, value: Part): Markup => html`<td data-column="${column}">${value}</td>`;
+
+export const table = (kind: string, columns: readonly string[], rows: Part): Markup =>
+  html`<table class="${kind}"><thead><tr>${columns.map((column) => html`<th scope="col">${column}</th>`)}</tr></thead><tbody>${rows}</tbody></table>`;
+
+/** Pixels in the file itself; SVG may ask for other files. */
+const PICTURE = /^data:image\/(?:png|jpeg|webp|avif|gif);base64,[A-Za-z0-9+/]+={0,2}$/;
+
+function checkPicture({ dataUrl }: Picture, index: number): void {
+  const field = `pictures[${index}].dataUrl`;
+  if (!PICTURE.test(dataUrl)) throw new BimodalError("type", `${field}: must be a data URL of a PNG, JPEG, WebP, AVIF or GIF`, field);
+}
+
+export function pictureSection(pictures: readonly Picture[]): Markup | undefined {
+  pictures.forEach(checkPicture);
+  if (pictures.length === 0) return undefined;
+  const figures = pictures.map(({ title, dataUrl }) => html`<figure><img src="${dataUrl}" alt="${title}"><figcaption>${title}</figcaption></figure>`);
+  return section("Pictures", html`<div class="pictures">${figures}</div>`);
+}
+
+export function inputTable(inputs: readonly ReportInput[]): Markup | undefined {
+  const rows = inputs.map(
+    ({ name, says, sha256 }) =>
+      html`<tr><th scope="row">${name}</th>${cell("Read as", says ?? "")}${cell("SHA-256", html`<code>${sha256 ?? "not taken"}</code>`)}</tr>`,
+  );
+  return rows.length === 0 ? undefined : section("Files", table("inputs stacks", ["File", "Read as", "SHA-256"], rows));
+}

@@ -1,0 +1,7 @@
+/** What a run found as files: a module of its own, to be loaded when something is saved. */
+export { BimodalError } from "../errors.js";
+export { type Cloud, writeClouds } from "../rig/write/clouds.js";
+export { type NpyData, writeNpy } from "./npy.js";
+export { writePng } from "./png.js";
+export { type Entry, type Picture, type ReportInput, type RunReport, runReportHtml } from "./report.js";
+export { type DepthPng, type Extent, type Unit, depthPng, lightCsv, matrixText, normalsPng, poseJson } from "./results.js";

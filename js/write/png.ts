@@ -1,0 +1,76 @@
+/**
+ * PNG of 8 or 16 bits, grey or RGB. A canvas would write 8 bits alone. Compressed by the platform's own deflate, so that no second one
+ * has to be downloaded; rows are stored as differences to the row above, which suits smooth depths and normals.
+ */
+import { crc32 } from "../crc.js";
+import { BimodalError } from "../errors.js";
+import type { Raster } from "../npy.js";
+import { checkRaster } from "./npy.js";
+
+const SIGNATURE = [0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a];
+/** The filter of rows as differences to the row above. */
+const UP = 2;
+/** Colour types by the number of channels: grey and RGB. */
+const TYPES: Readonly<Record<number, number>> = { 1: 0, 3: 2 };
+
+function chunk(type: string, body: Uint8Array): Uint8Array<ArrayBuffer> {
+  const part = new Uint8Array(body.length + 12);
+  const view = new DataView(part.buffer);
+  view.setUint32(0, body.length);
+  for (let i = 0; i < 4; i++) part[4 + i] = type.charCodeAt(i);
+  part.set(body, 8);
+  view.setUint32(8 + body.length, crc32(part.subarray(4, 8 + body.length)));
+  return part;
+}
+
+/** High bytes first, each row behind its filter. */
+function filtered({ width, height, channels, data }: Raster<Uint8Array | Uint16Array>): Uint8Array<ArrayBuffer> {
+  const [samples, bytes] = [width * channels, data.BYTES_PER_ELEMENT];
+  const stride = 1 + samples * bytes;
+  const out = new Uint8Array(height * stride);
+  for (let row = 0, from = 0; row < height; row++) {
+    let to = row * stride;
+    out[to++] = UP;
+    for (let i = 0; i < samples; i++) {
+      const value = data[from++] ?? 0;
+      if (bytes === 2) out[to++] = value >> 8;
+      out[to++] = value;
+    }
+  }
+  // From below, so that the row above is still what it was.
+  for (let row = height - 1; row > 0; row--) {
+    for (let at = row * stride + 1; at < (row + 1) * stride; at++) out[at] = (out[at] ?? 0) - (out[at - stride] ?? 0);
+  }
+  return out;
+}
+
+async function deflated(bytes: Uint8Array<ArrayBuffer>): Promise<Uint8Array> {
+  const stream = new Blob([bytes]).stream().pipeThrough(new CompressionStream("deflate"));
+  return new Uint8Array(await new Response(stream).arrayBuffer());
+}
+
+/** `texts` are remarks in English, such as the unit, which readers hand out by their names ("Description", "Unit"). */
+export async function writePng(raster: Raster<Uint8Array | Uint16Array>, texts: Readonly<Record<string, string>> = {}): Promise<Uint8Array<ArrayBuffer>> {
+  checkRaster(raster, "raster");
+  const { width, height, channels, data } = raster;
+  const type = TYPES[channels];
+  if (type === undefined) throw new BimodalError("unsupported", `raster.channels: 1 or 3 are written, not ${channels}`, "raster.channels");
+  const head = new Uint8Array(13);
+  const view = new DataView(head.buffer);
+  view.setUint32(0, width);
+  view.setUint32(4, height);
+  head.set([8 * data.BYTES_PER_ELEMENT, type], 8);
+  // Latin-1 and no zero but the one behind the name: what else there is becomes a question mark.
+  const remarks = Object.entries(texts).map(([name, words]) => {
+    const plain = (text: string) => text.replace(/[^\x20-\x7e]/g, "?");
+    return chunk("tEXt", new TextEncoder().encode(`${plain(name)}\0${plain(words)}`));
+  });
+  const parts = [new Uint8Array(SIGNATURE), chunk("IHDR", head), ...remarks, chunk("IDAT", await deflated(filtered(raster))), chunk("IEND", new Uint8Array())];
+  const file = new Uint8Array(parts.reduce((sum, { length }) => sum + length, 0));
+  let at = 0;
+  for (const part of parts) {
+    file.set(part, at);
+    at += part.length;
+  }
+  return file;
+}

@@ -1,0 +1,86 @@
+/** A run on a pair as one HTML file that asks for nothing else: pictures, numbers, options and the inputs' hashes, to be kept and printed. */
+import type { Pose } from "../types.js";
+import type { Picture, ReportInput } from "../rig/write/report/contents.js";
+import { type Markup, html } from "../rig/write/report/markup.js";
+import { digits, measure } from "../rig/write/report/numbers.js";
+import { reportPage } from "../rig/write/report/page.js";
+import { cell, fact, inputTable, pictureSection, section, sign, table } from "../rig/write/report/parts.js";
+import { type Unit, lightCsv, matrixText } from "./results.js";
+
+export type { Picture, ReportInput };
+
+/** A name and what it is. */
+export type Entry = readonly [name: string, value: string];
+
+export interface RunReport {
+  /** How the outcome is to be taken: "open" where nothing speaks for or against it. */
+  tone: "good" | "open" | "wrong";
+  /** In a word or two: "converged". */
+  status: string;
+  /** In a sentence or some. */
+  words: readonly string[];
+  pose: Pose;
+  /** Where it is known. */
+  truth?: Pose | null | undefined;
+  /** Of the colour view's lengths. */
+  unit: Unit;
+  light: ArrayLike<number>;
+  numbers: readonly Entry[];
+  options: readonly Entry[];
+  pictures?: readonly Picture[];
+  inputs?: readonly ReportInput[];
+  title?: string;
+  /** No date without it. */
+  made?: Date;
+  /** The page's address with the state of the run. */
+  link?: string;
+}
+
+/** The style sheet's kinds of cards. */
+const CARDS = { good: "consistent", open: "undecided", wrong: "off" } as const;
+
+function card({ tone, status, words, numbers }: RunReport): Markup {
+  const kind = CARDS[tone];
+  return html`<section class="card ${kind}">${sign(kind)}<div><p class="verdict">${status}</p>${words.map((each) => html`<p>${each}</p>`)}
+<dl class="facts">${numbers.map(([name, value]) => fact(name, value))}</dl></div></section>`;
+}
+
+const COLUMNS = ["", "Found", "True"];
+
+function poseSection({ pose, truth, unit }: RunReport): Markup {
+  const rows: [string, (pose: Pose) => string][] = [
+    ["Scale", ({ scale }) => digits(scale, 5)],
+    ...(["alpha", "beta", "gamma"] as const).map((name): [string, (pose: Pose) => string] => [name, ({ angles }) => measure(angles[name], "°", 4)]),
+    ...["x", "y", "z"].map((axis, i): [string, (pose: Pose) => string] => [`Translation ${axis}`, ({ translation }) => measure(translation[i] ?? NaN, unit, 4)]),
+  ];
+  const columns = truth ? COLUMNS : COLUMNS.slice(0, 2);
+  // An orthographic image cannot see how far away the object is: any number does, so none is the true one.
+  const isFree = (name: string) => unit === "px" && name === "Translation z";
+  const line = ([name, read]: (typeof rows)[number]) =>
+    html`<tr><th scope="row">${name}</th>${cell("Found", read(pose))}${truth ? cell("True", isFree(name) ? "free" : read(truth)) : undefined}</tr>`;
+  return section(
+    "Pose",
+    table("pose", columns, rows.map(line)),
+    html`<pre tabindex="0">${matrixText(pose)}</pre>`,
+    html`<p class="soft">P_colour = scale R P_depth + t, R = Rx Ry Rz; ${unit === "m" ? "metres" : "pixels"}; x right, y down, z forward. The matrix holds scale R and t.</p>`,
+  );
+}
+
+const COEFFICIENTS = 9;
+
+function lightSection({ light }: RunReport): Markup {
+  const names = ["", ...Array.from({ length: COEFFICIENTS }, (_, k) => `L${k + 1}`)];
+  const rows = ["Red", "Green", "Blue"].map((channel, c) => html`<tr><th scope="row">${channel}</th>${names.slice(1).map((_, k) => html`<td>${digits(light[COEFFICIENTS * c + k] ?? NaN)}</td>`)}</tr>`);
+  return section("Light", html`<div class="scroll" tabindex="0">${table("matrix", names, rows)}</div>`, html`<pre tabindex="0">${lightCsv(light)}</pre>`);
+}
+
+function optionSection({ options, link }: RunReport): Markup | undefined {
+  const rows = options.map(([name, value]) => html`<tr><th scope="row">${name}</th>${cell("Set to", value)}</tr>`);
+  if (rows.length === 0 && link === undefined) return undefined;
+  return section("Options", rows.length > 0 ? table("options", ["Option", "Set to"], rows) : undefined, link === undefined ? undefined : html`<p class="soft">The same state as an address, without files:</p><pre tabindex="0">${link}</pre>`);
+}
+
+export function runReportHtml(report: RunReport): string {
+  const { pictures = [], inputs = [], title = "A run of bimodal stereo", made } = report;
+  return reportPage(title, made, [card(report), poseSection(report), pictureSection(pictures), lightSection(report), optionSection(report), inputTable(inputs)]);
+}

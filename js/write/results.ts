@@ -1,0 +1,94 @@
+/** What an estimator found, in files that other programs read: pose, light, depth and normals. */
+import { BimodalError } from "../errors.js";
+import type { Pose } from "../types.js";
+import { real } from "../rig/write/numbers.js";
+import { checkRaster } from "./npy.js";
+import { writePng } from "./png.js";
+
+/** Of lengths: metres where the view has a camera, pixels where it is orthographic. */
+export type Unit = "m" | "px";
+
+export interface Extent {
+  width: number;
+  height: number;
+}
+
+/** The 4x4 matrix that carries the depth map's points into the colour view, scale included; `numpy.loadtxt` reads it. */
+export function matrixText({ scale, rotation, translation }: Pose): string {
+  const row = (i: number) => [...rotation.slice(3 * i, 3 * i + 3).map((value) => scale * value), translation[i] ?? NaN];
+  const rows = [row(0), row(1), row(2), [0, 0, 0, 1]];
+  if (rows.some((values) => values.length !== 4 || !values.every(Number.isFinite))) {
+    throw new BimodalError("range", "pose: needs a scale, nine numbers of a rotation and three of a translation, all finite", "pose");
+  }
+  return rows.map((values) => `${values.map(real).join(" ")}\n`).join("");
+}
+
+/** The pose with its matrix, and in words what it means. */
+export function poseJson(pose: Pose, unit: Unit): string {
+  const matrix = matrixText(pose).trim().split("\n").map((line) => line.split(" ").map(Number));
+  const about = `P_colour = scale * rotation * P_depth + translation; rotation row by row; angles in degrees; lengths in ${unit === "m" ? "metres" : "pixels"}`;
+  return `${JSON.stringify({ about, unit, ...pose, matrix }, null, 2)}\n`;
+}
+
+const CHANNELS = ["R", "G", "B"];
+const COEFFICIENTS = 9;
+
+/** Nine coefficients of red, of green and of blue, one channel a line. */
+export function lightCsv(light: ArrayLike<number>): string {
+  if (light.length !== CHANNELS.length * COEFFICIENTS) throw new BimodalError("size", `light: needs 27 numbers, not ${light.length}`, "light");
+  const names = Array.from({ length: COEFFICIENTS }, (_, k) => `L${k + 1}`);
+  const line = (channel: string, c: number) => [channel, ...Array.from({ length: COEFFICIENTS }, (_, k) => real(light[COEFFICIENTS * c + k] ?? NaN))].join(",");
+  return `${[["channel", ...names].join(","), ...CHANNELS.map(line)].join("\n")}\n`;
+}
+
+const LARGEST = 65_535;
+/** Steps of a stored depth, the finest first; the first that reaches the farthest depth is taken. */
+const STEPS: Readonly<Record<Unit, readonly (readonly [step: number, words: string])[]>> = {
+  m: [[0.0001, "0.1 mm"], [0.001, "1 mm"], [0.01, "10 mm"], [1, "1 m"]],
+  px: [[0.001, "0.001 px"], [0.01, "0.01 px"], [0.1, "0.1 px"], [1, "1 px"]],
+};
+
+export interface DepthPng {
+  bytes: Uint8Array<ArrayBuffer>;
+  /** Units (metres or pixels) per stored number. */
+  step: number;
+  /** The same in words: "0.1 mm". */
+  says: string;
+}
+
+/** Depth as a PNG of 16 bits; 0 is no depth. The step is told here and in the file's remark "Unit". */
+export async function depthPng(depth: Extent & { data: Float32Array }, unit: Unit): Promise<DepthPng> {
+  const { width, height, data } = depth;
+  checkRaster({ ...depth, channels: 1 }, "depth");
+  const isThere = (value: number) => value > 0 && Number.isFinite(value);
+  let farthest = 0;
+  for (const value of data) if (isThere(value) && value > farthest) farthest = value;
+  const [step, says] = STEPS[unit].find(([each]) => farthest / each <= LARGEST) ?? STEPS[unit].at(-1) ?? [1, ""];
+  const stored = new Uint16Array(data.length);
+  for (let i = 0; i < data.length; i++) {
+    const value = data[i] ?? NaN;
+    if (isThere(value)) stored[i] = Math.min(LARGEST, Math.max(1, Math.round(value / step)));
+  }
+  const bytes = await writePng({ width, height, channels: 1, data: stored }, { Unit: `${says} per stored number; 0 is no depth`, Software: "bimodal-stereo" });
+  return { bytes, step, says };
+}
+
+/**
+ * Normals as a PNG of 16 bits: red, green and blue are (n + 1) / 2 of full white, for x to the right, y up and z towards the viewer, as
+ * normal maps have them; black is no normal.
+ */
+export async function normalsPng({ width, height, data }: Extent & { data: Float32Array }): Promise<Uint8Array<ArrayBuffer>> {
+  checkRaster({ width, height, channels: 3, data }, "normals");
+  const stored = new Uint16Array(data.length);
+  const level = (value: number) => Math.round((LARGEST * (Math.min(1, Math.max(-1, value)) + 1)) / 2);
+  for (let at = 0; at < data.length; at += 3) {
+    const [x, y, z] = [data[at] ?? NaN, data[at + 1] ?? NaN, data[at + 2] ?? NaN];
+    if (!Number.isFinite(x + y + z) || (x === 0 && y === 0 && z === 0)) continue;
+    stored[at] = level(x);
+    // y points down and z forward in a camera's frame.
+    stored[at + 1] = level(-y);
+    stored[at + 2] = level(-z);
+  }
+  const texts = { Description: "Normals: (n + 1) / 2 of 65535 for x right, y up, z towards the viewer; black is none", Software: "bimodal-stereo" };
+  return writePng({ width, height, channels: 3, data: stored }, texts);
+}

@@ -1,0 +1,246 @@
+/** The visitor's own files: dropped anywhere, told apart, shown at once, kept over a reload, and never beside another pair's pictures. */
+
+import { encode } from "fast-png";
+import { expect, test, type Lab } from "./lab";
+import { SIDE, cameraJson, colourPng, columnNpy, depthPng, drop, maskPng, type Upload } from "./uploads";
+
+const slot = (lab: Lab, index: number) => lab.page.locator(".slot").nth(index);
+
+async function put(lab: Lab, label: string, file: Upload): Promise<void> {
+  await lab.page.getByLabel(label, { exact: true }).setInputFiles(file);
+}
+
+async function own(lab: Lab): Promise<void> {
+  await lab.open("size=32");
+  await lab.unfold();
+  await lab.page.getByRole("button", { name: "Own files" }).click();
+  await lab.reaches("waiting");
+}
+
+test("four files and a camera dropped anywhere go where their content belongs, each shown at once", async ({ lab, page }) => {
+  await lab.open("size=32");
+  await drop(page, "body", [maskPng("1.png"), cameraJson("2.json"), columnNpy("3.npy"), colourPng("4.png")]);
+  await expect(slot(lab, 0)).toContainText("4.png");
+  await expect(slot(lab, 0)).toContainText("48x48, 8-bit RGB");
+  await expect(slot(lab, 1)).toContainText("3.npy");
+  await expect(slot(lab, 1)).toContainText(/48x48, 16-bit, 5\d\.\d % valid, stored numbers 100 to/);
+  await expect(slot(lab, 2)).toContainText("1.png");
+  await expect(slot(lab, 2)).toContainText("a mask of 5");
+  for (const [index, name] of [[0, "4.png"], [1, "3.npy"], [2, "1.png"]] as const) {
+    await expect(slot(lab, index).getByRole("img", { name: `Preview of ${name}` })).toHaveAttribute("width", String(SIDE));
+  }
+  await lab.reaches("ready");
+  // Registered pictures of one camera: its numbers are those of both.
+  for (const side of ["colour", "depth"]) {
+    await expect(page.locator(`#fields-${side}`).getByLabel("fx", { exact: true })).toHaveValue("61");
+    await expect(page.locator(".remarks")).toContainText(`2.json: the ${side} camera`);
+  }
+  await expect(page).toHaveURL(/colour\.fx=61.*depth\.fx=61/);
+  await page.getByRole("button", { name: "Undo" }).click();
+  await expect(page.locator("#fields-colour").getByLabel("fx", { exact: true })).toHaveValue("");
+});
+
+test("a .npy in column order is the same picture as the PNG it was made of", async ({ lab }) => {
+  await own(lab);
+  await put(lab, "Colour image", colourPng());
+  await put(lab, "Depth map", depthPng());
+  await lab.reaches("ready");
+  const rows = await lab.fingerprint("Given depth");
+  await put(lab, "Depth map", columnNpy());
+  await expect(slot(lab, 1)).toContainText("d.npy");
+  await lab.reaches("ready");
+  expect(await lab.fingerprint("Given depth")).toBe(rows);
+});
+
+test("swapped files are offered to be swapped, and then run", async ({ lab, page }) => {
+  await own(lab);
+  await put(lab, "Colour image", depthPng("first.png"));
+  await put(lab, "Depth map", colourPng("second.png"));
+  await expect(page.locator(".offer")).toContainText("Colour and depth seem to be swapped.");
+  await lab.reaches("error");
+  await page.getByRole("button", { name: "Swap them" }).click();
+  await expect(slot(lab, 0)).toContainText("second.png");
+  await expect(slot(lab, 1)).toContainText("first.png");
+  await lab.reaches("ready");
+  await expect(page.locator(".offer")).toBeEmpty();
+});
+
+test("a file in the wrong place is offered its own", async ({ lab, page }) => {
+  await own(lab);
+  await put(lab, "Colour image", depthPng("far.png"));
+  await expect(page.locator(".offer")).toContainText("far.png looks like a depth map");
+  await page.getByRole("button", { name: "Move it to Depth map" }).click();
+  await expect(slot(lab, 1)).toContainText("far.png");
+  await expect(slot(lab, 0)).not.toContainText("far.png");
+  await put(lab, "Depth mask", colourPng("near.png"));
+  await page.getByRole("button", { name: "Move it to Colour image" }).click();
+  await expect(slot(lab, 0)).toContainText("near.png");
+  await lab.reaches("ready");
+});
+
+test("nothing of another pair stays: no picture, no true value, nothing to save", async ({ lab, page }) => {
+  await lab.open("size=32");
+  await expect(page.locator("#pose-error")).toBeVisible();
+  await lab.unfold();
+  await page.getByRole("button", { name: "Own files" }).click();
+  const gone = async () => {
+    for (const name of ["Colour", "Given depth", "Normals", "Refined depth"]) await expect(page.locator(`canvas[aria-label^="${name}:"]`)).toBeHidden();
+    for (const box of ["#clouds-canvas", "#pose tbody tr >> nth=0", "#pose-error", "#light canvas >> nth=0", "#takeaway button >> nth=0"]) await expect(page.locator(box)).toBeHidden();
+  };
+  await gone();
+  await put(lab, "Colour image", colourPng());
+  await expect(page.getByRole("img", { name: "Preview of a.png" })).toBeVisible();
+  await gone();
+  await put(lab, "Depth map", depthPng());
+  await lab.reaches("ready");
+  await expect(page.locator('canvas[aria-label^="Colour:"]')).toBeVisible();
+  await expect(page.locator("#pose-error")).toBeHidden();
+  await expect(page.locator("#pose tbody tr").first().locator("td").nth(1)).toBeEmpty();
+  // Another picture that can't be read leaves nothing of the one before it.
+  await put(lab, "Colour image", { ...colourPng("cut.png"), buffer: colourPng().buffer.subarray(0, 90) });
+  await lab.reaches("error");
+  await gone();
+  await page.getByRole("button", { name: "Sample", exact: true }).click();
+  await lab.reaches("ready");
+  await expect(page.locator("#pose-error")).toBeVisible();
+  await expect(page.locator('canvas[aria-label^="Colour:"]')).toBeVisible();
+});
+
+test("a reload keeps the files, until they are forgotten; a link alone does not show them", async ({ lab, page, context }) => {
+  await own(lab);
+  await put(lab, "Colour image", colourPng("mine.png"));
+  await put(lab, "Depth map", depthPng("deep.png"));
+  await lab.reaches("ready");
+  await expect(page.locator(".keeping")).toContainText("kept in this browser");
+  const shown = await lab.fingerprint("Colour");
+  await page.reload();
+  await lab.reaches("ready");
+  await expect(slot(lab, 0)).toContainText("mine.png");
+  expect(await lab.fingerprint("Colour")).toBe(shown);
+  await expect(page.locator("#pose-error")).toBeHidden();
+
+  const other = await context.newPage();
+  await other.goto(page.url());
+  await expect(other.locator("#status")).toHaveAttribute("data-state", "ready");
+  await expect(other.locator("#pose-error")).toBeVisible();
+  await expect(other.locator("#origin-sample")).toHaveAttribute("aria-pressed", "true");
+  await other.close();
+
+  await lab.unfold();
+  await page.getByRole("button", { name: "Forget my files" }).click();
+  await lab.reaches("waiting");
+  await expect(page.locator(".keeping")).toContainText("Nothing is kept");
+  await expect(slot(lab, 0)).not.toContainText("mine.png");
+  await page.reload();
+  await lab.reaches("waiting");
+  expect(await page.evaluate(() => new Promise((resolve) => {
+    const request = indexedDB.open("bimodal-stereo");
+    request.onsuccess = () => {
+      const all = request.result.transaction("own-files").objectStore("own-files").count();
+      all.onsuccess = () => resolve(all.result);
+    };
+  }))).toBe(0);
+});
+
+test("a pair that comes whole leaves no mask of the last, and files of last time come back for nobody who brings others", async ({ lab, page }) => {
+  await lab.open("size=32");
+  await drop(page, "body", [colourPng("one.png"), depthPng("two.png"), maskPng("three.png")]);
+  await expect(slot(lab, 2)).toContainText("three.png");
+  await lab.reaches("ready");
+  await drop(page, "#hero", [depthPng("five.png"), colourPng("four.png", 9)]);
+  await expect(slot(lab, 0)).toContainText("four.png");
+  await expect(slot(lab, 1)).toContainText("five.png");
+  await expect(slot(lab, 2)).not.toContainText("three.png");
+  await lab.reaches("ready");
+  await expect(page.locator(".keeping")).toContainText("kept in this browser");
+  await page.getByRole("button", { name: "Sample", exact: true }).click();
+  await lab.reaches("ready");
+  await page.reload();
+  await lab.reaches("ready");
+  await drop(page, "body", [maskPng("six.png")]);
+  await expect(slot(lab, 2)).toContainText("six.png");
+  await lab.reaches("waiting");
+  await expect(slot(lab, 0)).not.toContainText("four.png");
+});
+
+test("where storage is full, older files do not come back in the place of those that could not be kept", async ({ lab, page }) => {
+  await own(lab);
+  await put(lab, "Colour image", colourPng("old.png"));
+  await put(lab, "Depth map", depthPng("old-depth.png"));
+  await expect(page.locator(".keeping")).toContainText("kept in this browser");
+  await page.evaluate(() => {
+    IDBObjectStore.prototype.put = () => {
+      throw new DOMException("no", "QuotaExceededError");
+    };
+  });
+  await put(lab, "Colour image", colourPng("new.png", 20));
+  await expect(page.locator(".keeping")).toContainText("its storage is full");
+  await page.reload();
+  await lab.reaches("waiting");
+  await expect(slot(lab, 0)).not.toContainText("old.png");
+});
+
+for (const [name, words] of [["QuotaExceededError", "its storage is full"], ["SecurityError", "its storage is closed to this page"]] as const) {
+  test(`files work where they can't be kept: ${name}`, async ({ lab, page }) => {
+    await page.addInitScript((name) => {
+      IDBFactory.prototype.open = () => {
+        throw new DOMException("no", name);
+      };
+    }, name);
+    await own(lab);
+    await put(lab, "Colour image", colourPng());
+    await put(lab, "Depth map", depthPng());
+    await lab.reaches("ready");
+    await expect(page.locator(".keeping")).toContainText(words);
+    await page.getByRole("button", { name: "Forget my files" }).click();
+    await lab.reaches("waiting");
+    await expect(page.locator(".keeping")).toContainText("storage does not answer");
+  });
+}
+
+test("what a file is called, and what is in it, stays text", async ({ lab, page }) => {
+  await lab.open("size=32");
+  const evil = "<img src=x onerror=document.title='owned'>";
+  const camera = { ...cameraJson(`${evil}.json`), buffer: Buffer.from(JSON.stringify({ camera_name: evil, fx: 61, fy: 62, cx: 23.5, cy: 23.25 })) };
+  await drop(page, "body", [colourPng(`${evil}.png`), depthPng(`${evil}2.png`), camera, { name: `${evil}.txt`, mimeType: "text/plain", buffer: Buffer.from(evil) }]);
+  await expect(slot(lab, 0)).toContainText(`${evil}.png`);
+  await expect(page.locator(".remarks")).toContainText(`${evil}.txt`);
+  await expect(page.locator(".remarks")).toContainText(`${evil}.json`);
+  await expect(page.locator("#lab img")).toHaveCount(0);
+  await expect(page).toHaveTitle("bimodal-stereo");
+});
+
+test("what can't be used is said: a recording, a fisheye, a second depth map, a pose", async ({ lab, page }) => {
+  await lab.open("size=32");
+  const fisheye = { ...cameraJson("eye.json"), buffer: Buffer.from("camera_model: pinhole\ndistortion_model: equidistant\nimage_width: 48\nimage_height: 48\ncamera_matrix: {rows: 3, cols: 3, data: [61, 0, 23.5, 0, 62, 23.5, 0, 0, 1]}\ndistortion_coefficients: {rows: 1, cols: 4, data: [0.1, 0, 0, 0]}\n") };
+  const pose = { name: "T.txt", mimeType: "text/plain", buffer: Buffer.from("1 0 0 0.1\n0 1 0 0\n0 0 1 0\n0 0 0 1\n") };
+  const zip = { name: "all.zip", mimeType: "application/zip", buffer: Buffer.from("PK\x03\x04rest") };
+  await drop(page, "body", [colourPng(), depthPng("one.png"), depthPng("two.png"), fisheye, pose, zip]);
+  const remarks = page.locator(".remarks");
+  await expect(remarks).toContainText("two.png: another depth map; the Lab takes one.");
+  await expect(remarks).toContainText("eye.json: the colour camera is a fisheye");
+  await expect(remarks).toContainText("T.txt: a pose");
+  await expect(remarks).toContainText("all.zip: it is a ZIP archive");
+  await lab.reaches("ready");
+});
+
+test("of two grey pictures the one called depth is the depth map", async ({ lab, page }) => {
+  await lab.open("size=32");
+  const grey = (name: string): Upload => ({ name, mimeType: "image/png", buffer: Buffer.from(encode({ width: SIDE, height: SIDE, channels: 1, depth: 8, data: Uint8Array.from({ length: SIDE * SIDE }, (_, i) => 40 + ((7 * i) % 190)) })) });
+  await drop(page, "body", [grey("depth.png"), grey("photo.png")]);
+  await expect(slot(lab, 0)).toContainText("photo.png");
+  await expect(slot(lab, 1)).toContainText("depth.png");
+});
+
+test("while files are dragged over the page it says what may be dropped", async ({ lab, page }) => {
+  await lab.open("size=32");
+  const carried = await page.evaluateHandle(() => {
+    const transfer = new DataTransfer();
+    transfer.items.add(new File([], "a.png"));
+    return transfer;
+  });
+  await page.locator("#hero").dispatchEvent("dragover", { dataTransfer: carried });
+  await expect(page.locator("#lab")).toHaveAttribute("data-over", "");
+  await page.locator("#hero").dispatchEvent("dragleave", { dataTransfer: carried });
+  await expect(page.locator("#lab")).not.toHaveAttribute("data-over");
+});

@@ -1,0 +1,218 @@
+/**
+ * The visitor's files, told apart by what is in them: each is read by the package's readers of a rig, in their own thread, shown at once,
+ * and put where it belongs. Loaded with the first file.
+ */
+
+import type { RigCamera } from "../../pkg/index.js";
+import type { Summary } from "../rig/protocol";
+import { Session } from "../rig/session";
+import type { Slot } from "./intake";
+import { sniffed } from "./kind";
+import type { Value } from "./settings";
+import type { Files } from "./shelf";
+
+/** What a file turned out to be. */
+export interface Look {
+  kind: Summary["kind"] | undefined;
+  says: string;
+  /** Why it could not be read here; the browser may still read it. */
+  fault?: string;
+  warnings: string[];
+  width?: number;
+  height?: number;
+  cameras: Summary["cameras"];
+  picture?: ImageBitmap;
+}
+
+/** Pixels of a preview's width. */
+const PREVIEW = 192;
+
+const session = new Session();
+const looks = new WeakMap<File, Promise<Look>>();
+let next = 1;
+
+/** Looks at a file once. */
+export function lookAt(file: File): Promise<Look> {
+  const known = looks.get(file) ?? look(file);
+  looks.set(file, known);
+  return known;
+}
+
+async function look(file: File): Promise<Look> {
+  const number = next++;
+  try {
+    // In stored numbers: what a unit would be, the Lab's own fields say.
+    const read = await session.call("read", { file: number, name: file.name, blob: file, unit: 1 });
+    const isPicture = read.kind !== "cameras" && read.kind !== "poses";
+    const picture = isPicture ? await session.call("picture", { file: number, width: PREVIEW }) : undefined;
+    void session.call("forget", { file: number });
+    const { kind, width, height, cameras } = read;
+    // An object before nothing has holes around it.
+    const warnings = kind === "depth" ? read.warnings.filter((words) => !/unit|are holes/.test(words)) : read.warnings;
+    return { kind, says: inWords(read), warnings, cameras, ...(width && height ? { width, height } : {}), ...(picture ? { picture } : {}) };
+  } catch (error) {
+    return unread(file, error instanceof Error ? error.message.replace(/^file: /, "").replace(`${file.name}: `, "") : String(error));
+  }
+}
+
+const inWords = ({ kind, says }: Summary): string =>
+  kind === "depth"
+    ? says.replace(/read as metres, /, "").replace(/(\S+) to (\S+) m\b/, (_, from: string, to: string) => `stored numbers ${Number(from)} to ${Number(to)}`)
+    : says;
+
+/** What these readers do not take the Lab may still: larger pictures, which it scales down, and whatever else the browser decodes. */
+async function unread(file: File, fault: string): Promise<Look> {
+  const none = { warnings: [], cameras: [] };
+  if (/pixels large|MB large/.test(fault)) return { ...none, kind: await sniffed(file), says: "too large for a preview" };
+  const picture = /save it as PNG/.test(fault) ? await createImageBitmap(file).catch(() => undefined) : undefined;
+  if (!picture) return { ...none, kind: undefined, says: fault, fault };
+  const { width, height } = picture;
+  return { ...none, kind: "colour", says: `${width}x${height}, read by the browser`, width, height, picture };
+}
+
+/** Where files go, and what is to be said of those that go nowhere. */
+export interface Sorted {
+  slots: Map<Slot, File>;
+  settings: Record<string, Value>;
+  remarks: { words: string; wrong: boolean }[];
+}
+
+const isDepthName = (name: string): boolean => /depth|dpt|\bir\b|infra|tof/i.test(name.replace(/[_.-]+/g, " "));
+const isColourName = (name: string): boolean => /colou?r|rgb/i.test(name.replace(/[_.-]+/g, " "));
+
+interface Seen {
+  file: File;
+  look: Look;
+}
+
+/** Of two pictures that claim the same place, the one that rather belongs into the other: by its name, or the grey one. */
+function odd(pair: readonly [Seen, Seen], isOther: (name: string) => boolean): Seen {
+  return pair.find(({ file }) => isOther(file.name)) ?? pair.find(({ look }) => /grey/.test(look.says)) ?? pair[1];
+}
+
+/** One of each kind; `there` are the files that the slots already hold. */
+export async function sorted(files: readonly File[], there: Files): Promise<Sorted> {
+  const seen = await Promise.all(files.map(async (file): Promise<Seen> => ({ file, look: await lookAt(file) })));
+  const of = (kind: Look["kind"]) => seen.filter(({ look }) => look.kind === kind);
+  const result: Sorted = { slots: new Map(), settings: {}, remarks: [] };
+  const say = (words: string, wrong = false) => result.remarks.push({ words, wrong });
+  let [colours, depths] = [of("colour"), of("depth")];
+  const [one, two] = colours.length > 0 ? colours : depths;
+  if (one && two && depths.length === 0 && !there.depth) {
+    const moved = odd([one, two], isDepthName);
+    [colours, depths] = [colours.filter((each) => each !== moved), [moved]];
+  } else if (one && two && colours.length === 0 && !there.colour) {
+    const moved = odd([one, two], isColourName);
+    [colours, depths] = [[moved], depths.filter((each) => each !== moved)];
+  }
+  for (const [slot, all] of [["colour", colours], ["depth", depths]] as const) {
+    const [first, ...more] = all;
+    if (first) result.slots.set(slot, first.file);
+    for (const { file } of more) say(`${file.name}: another ${slot === "colour" ? "colour image" : "depth map"}; the Lab takes one.`);
+  }
+  // A pair that comes whole is another one, to which the masks of the last do not belong.
+  const isPair = result.slots.has("colour") && result.slots.has("depth");
+  const after: Files = { ...(isPair ? {} : there), ...Object.fromEntries(result.slots) };
+  const sizeOf = async (slot: "colour" | "depth") => {
+    const file = after[slot];
+    return file && (await lookAt(file));
+  };
+  const [colour, depth] = [await sizeOf("colour"), await sizeOf("depth")];
+  const fits = (look: Pick<Look, "width" | "height">, other: Look | undefined) => other !== undefined && look.width === other.width && look.height === other.height;
+  for (const { file, look } of of("mask")) {
+    const [isColours, isDepths] = [fits(look, colour), fits(look, depth)];
+    const free = after.colourMask === undefined ? "colourMask" : "depthMask";
+    const bySize = isColours === isDepths ? undefined : isColours ? "colourMask" : "depthMask";
+    const slot = isDepthName(file.name) ? "depthMask" : isColourName(file.name) ? "colourMask" : (bySize ?? free);
+    result.slots.set(slot, file);
+    after[slot] = file;
+  }
+  const cameras = of("cameras").flatMap(({ file, look }) => look.cameras.map((camera) => ({ file: file.name, ...camera })));
+  addCameras(cameras, { colour, depth }, result);
+  for (const { file } of of("poses")) say(`${file.name}: a pose, which the Lab finds by itself; Settings, Start, near takes its angles.`);
+  for (const { file, look } of seen) if (look.kind === undefined) say(`${file.name}: ${look.says}`, true);
+  return result;
+}
+
+type Side = "colour" | "depth";
+type Given = Summary["cameras"][number] & { file: string };
+
+/** By names, then by the size of the pictures; a single one that fits both is taken for both, as of pictures registered to each other. */
+function addCameras(cameras: readonly Given[], sizes: Partial<Record<Side, Look | undefined>>, result: Sorted): void {
+  const named = (isSide: (name: string) => boolean, isOther: (name: string) => boolean) =>
+    cameras.find(({ name = "", file }) => (isSide(name) && !isOther(name)) || (cameras.length === 1 && isSide(file) && !isOther(file)));
+  const fits = ({ width, height }: Given, side: Side) => width !== undefined && width === sizes[side]?.width && height === sizes[side]?.height;
+  let [colour, depth] = [named(isColourName, isDepthName), named(isDepthName, isColourName)];
+  const free = () => cameras.filter((each) => each !== colour && each !== depth);
+  colour ??= free().find((each) => fits(each, "colour") && !fits(each, "depth"));
+  depth ??= free().find((each) => fits(each, "depth") && !fits(each, "colour"));
+  const [only, ...others] = cameras;
+  if (only && others.length === 0 && !colour && !depth) [colour, depth] = [only, only];
+  colour ??= depth && cameras.length === 1 ? undefined : free()[0];
+  depth ??= colour && cameras.length === 1 ? undefined : free()[0];
+  for (const [side, given] of [["colour", colour], ["depth", depth]] as const) {
+    if (!given) continue;
+    const numbers = fieldsOf(side, given.camera);
+    const words = `${given.file}: the ${side} camera`;
+    if (typeof numbers === "string") result.remarks.push({ words: `${words} ${numbers}`, wrong: true });
+    else {
+      Object.assign(result.settings, numbers);
+      result.remarks.push({ words: `${words}${only === given && colour === depth ? ", as of both" : ""}; its numbers are in the fields below, Undo takes them back.`, wrong: false });
+    }
+  }
+}
+
+/** OpenCV's five numbers: k1 k2 p1 p2 k3. */
+const DISTORTION = 5;
+
+function fieldsOf(side: Side, { model, fx, fy, cx, cy, distortion: given = [] }: RigCamera): Record<string, Value> | string {
+  const distortion = Array.from(given);
+  if (model === "fisheye") return "is a fisheye, which the Lab does not know";
+  const [five, rest] = [Array.from({ length: DISTORTION }, (_, k) => distortion[k] ?? 0), distortion.slice(DISTORTION)];
+  if (rest.some((value) => value !== 0)) return `has ${distortion.length} numbers of distortion; the Lab takes ${DISTORTION}`;
+  const bent = five.some((value) => value !== 0) ? five.join(" ") : "";
+  return { [`${side}.fx`]: fx, [`${side}.fy`]: fy, [`${side}.cx`]: cx, [`${side}.cy`]: cy, [`${side}.distortion`]: bent };
+}
+
+/** A change of places that seems due, in words. */
+export interface Offer {
+  words: string;
+  button: string;
+  slots: Files;
+}
+
+const called: Readonly<Record<Slot, string>> = { colour: "Colour image", depth: "Depth map", colourMask: "Colour mask", depthMask: "Depth mask" };
+const sorts: Readonly<Record<string, string>> = { colour: "a colour image", depth: "a depth map", mask: "a mask" };
+
+/** What of the files seems to be in the wrong place. */
+export async function offerFor(files: Files): Promise<Offer | undefined> {
+  const look = async (slot: Slot) => {
+    const file = files[slot];
+    return file && (await lookAt(file));
+  };
+  const [colour, depth, colourMask, depthMask] = await Promise.all([look("colour"), look("depth"), look("colourMask"), look("depthMask")]);
+  const seems = (there: Look | undefined, kind: Look["kind"]) => there?.kind === kind;
+  const isCoarse = seems(depth, "colour") && !/\bRGB/.test(depth?.says ?? "");
+  if (files.colour && files.depth && ((seems(colour, "depth") && !seems(depth, "depth")) || (seems(depth, "colour") && !isCoarse && !seems(colour, "colour")))) {
+    return { words: "Colour and depth seem to be swapped.", button: "Swap them", slots: { ...files, colour: files.depth, depth: files.colour } };
+  }
+  // A mask may have soft edges, and a coarse depth map 8 bits of grey: that alone proves nothing.
+  const wrong: [Slot, Look | undefined, boolean][] = [
+    ["colour", colour, seems(colour, "depth") || seems(colour, "mask")],
+    ["depth", depth, (seems(depth, "colour") && !isCoarse) || seems(depth, "mask")],
+    ["colourMask", colourMask, seems(colourMask, "depth") || /\bRGB/.test(colourMask?.says ?? "")],
+    ["depthMask", depthMask, seems(depthMask, "depth") || /\bRGB/.test(depthMask?.says ?? "")],
+  ];
+  for (const [slot, there, isWrong] of wrong) {
+    const file = files[slot];
+    if (!isWrong || !there?.kind || !file) continue;
+    const words = `${file.name} looks like ${sorts[there.kind]}, and is in the place of the ${called[slot].toLowerCase()}.`;
+    const masks: Slot[] = slot === "depth" ? ["depthMask", "colourMask"] : ["colourMask", "depthMask"];
+    const targets: Slot[] = there.kind === "mask" ? masks : there.kind === "depth" ? ["depth"] : ["colour"];
+    const to = targets.find((each) => files[each] === undefined);
+    const { [slot]: _, ...rest } = files;
+    if (to) return { words, button: `Move it to ${called[to]}`, slots: { ...rest, [to]: file } };
+    return { words, button: "Take it out", slots: rest };
+  }
+  return undefined;
+}

@@ -1,0 +1,89 @@
+/** The visitor's files: what they are, where they belong, and that the browser keeps them. */
+
+import { Intake, type Slot } from "./intake";
+import type { Value } from "./settings";
+import type { Files } from "./shelf";
+
+export interface OwnFilesHooks {
+  /** Other files than before. */
+  onChange(): void;
+  /** Fields that a camera's file has filled. */
+  onCameras(fields: Record<string, Value>): void;
+}
+
+export class OwnFiles {
+  readonly intake = new Intake({ onChange: () => this.#changed(), onForget: () => void this.#forget() });
+  readonly #hooks: OwnFilesHooks;
+  /** Whether the files of last time have been asked for. */
+  #restored = false;
+  /** How often files have come by hand: those of last time come too late after the first. */
+  #hands = 0;
+
+  constructor(hooks: OwnFilesHooks) {
+    this.#hooks = hooks;
+  }
+
+  /** Any number of them, each into the slot that its content is of. */
+  async drop(files: readonly File[]): Promise<void> {
+    this.#restored = true;
+    this.#hands++;
+    const { sorted } = await import("./own");
+    const { slots, settings, remarks } = await sorted(files, this.intake.files);
+    this.intake.remarks(remarks);
+    if (Object.keys(settings).length > 0) this.#hooks.onCameras(settings);
+    if (slots.has("colour") && slots.has("depth")) this.intake.replaceAll(Object.fromEntries(slots));
+    else if (slots.size > 0) this.intake.putAll(slots);
+  }
+
+  /** The files of last time, once, unless there are others by then. */
+  async restore(): Promise<void> {
+    if (this.#restored) return;
+    this.#restored = true;
+    const before = this.#hands;
+    const { kept } = await import("./shelf");
+    const files = await kept().catch(() => new Map<string, File>());
+    if (files.size > 0 && this.#hands === before) this.intake.putAll(files as Map<Slot, File>);
+  }
+
+  #changed(): void {
+    this.#restored = true;
+    this.#hands++;
+    this.#hooks.onChange();
+    void this.#look();
+    void this.#keep();
+  }
+
+  /** Shows what each file is, and asks where one seems to be in the wrong place. */
+  async #look(): Promise<void> {
+    const files: Files = { ...this.intake.files };
+    this.intake.offer(undefined);
+    if (Object.keys(files).length === 0) return;
+    const { lookAt, offerFor } = await import("./own");
+    await Promise.all(Object.entries(files).map(async ([slot, file]) => this.intake.show(slot as Slot, file, await lookAt(file))));
+    const offer = await offerFor(files);
+    const now = this.intake.files;
+    const isSame = Object.keys({ ...files, ...now }).every((slot) => files[slot as Slot] === now[slot as Slot]);
+    if (isSame) this.intake.offer(offer);
+  }
+
+  async #keep(): Promise<void> {
+    const files: Files = { ...this.intake.files };
+    if (Object.keys(files).length === 0) return this.#forget();
+    const { forget, keep, reasonOf } = await import("./shelf");
+    try {
+      await keep(files);
+      this.intake.keeping("These files are kept in this browser, on this machine, until you forget them; a reload brings them back.", true);
+    } catch (error) {
+      // Those of another time must not come back in their place.
+      await forget().catch(() => {});
+      this.intake.keeping(`This browser does not keep the files (${reasonOf(error)}): they work all the same, and are gone with a reload.`, true);
+    }
+  }
+
+  async #forget(): Promise<void> {
+    const { forget } = await import("./shelf");
+    const isDone = await forget().then(() => true, () => false);
+    if (Object.keys(this.intake.files).length > 0) return;
+    this.intake.keeping(isDone ? "Nothing is kept in this browser." : "The browser's storage does not answer: what it may hold of this page, its own settings clear.", false);
+  }
+}

@@ -1,0 +1,59 @@
+/** The thread that makes large files: a page that packs a cloud answers no press meanwhile. One request and it is done. */
+
+import { faultOf } from "../engine/fault";
+import type { Fault, Taken } from "../engine/protocol";
+import { depthPng, normalsPng, writeClouds, writeNpy } from "./write";
+
+/** The kinds that are made here. */
+export type Packed = "clouds" | "depth" | "depthPng" | "normals" | "depthNormals";
+
+export interface PackRequest {
+  kind: Packed;
+  taken: Taken;
+}
+export type PackAnswer = { bytes: Uint8Array<ArrayBuffer>; says: string } | { fault: Fault };
+
+/** The clouds' inks on the page. */
+const [ORANGE, BLUE] = [[199, 100, 26], [11, 98, 184]];
+const NORMALS = "(n + 1) / 2 of white, x right, y up, z near";
+
+const lengthOf = (unit: "m" | "px"): "metres" | "pixels" => (unit === "m" ? "metres" : "pixels");
+
+function tinted(name: string, points: Float32Array, [red = 0, green = 0, blue = 0]: readonly number[]): { name: string; points: Float32Array; colours: Uint8Array } {
+  const colours = new Uint8Array(points.length);
+  for (let at = 0; at < points.length; at += 3) {
+    colours[at] = red;
+    colours[at + 1] = green;
+    colours[at + 2] = blue;
+  }
+  return { name, points, colours };
+}
+
+async function pack({ kind, taken }: PackRequest): Promise<{ bytes: Uint8Array<ArrayBuffer>; says: string }> {
+  const { unit, depthUnit, image, depth, imagePoints, depthPoints } = taken;
+  switch (kind) {
+    case "clouds": {
+      const clouds = [tinted("shape from the picture", imagePoints, ORANGE), tinted("depth map, moved by the pose", depthPoints, BLUE)];
+      return { bytes: writeClouds(clouds, lengthOf(unit)), says: lengthOf(unit) };
+    }
+    case "depth":
+      return { bytes: writeNpy({ ...depth, channels: 1, data: depth.refined }), says: lengthOf(depthUnit) };
+    case "depthPng": {
+      const { bytes, says } = await depthPng({ ...depth, data: depth.refined }, depthUnit);
+      return { bytes, says: `${says} per stored number, 0 is no depth` };
+    }
+    case "normals":
+      return { bytes: await normalsPng({ ...image, data: image.normals }), says: NORMALS };
+    case "depthNormals":
+      return { bytes: await normalsPng({ ...depth, data: depth.normals }), says: NORMALS };
+  }
+}
+
+self.onmessage = async ({ data }: MessageEvent<PackRequest>) => {
+  try {
+    const made = await pack(data);
+    self.postMessage(made satisfies PackAnswer, { transfer: [made.bytes.buffer] });
+  } catch (error) {
+    self.postMessage({ fault: faultOf(error, true) } satisfies PackAnswer);
+  }
+};

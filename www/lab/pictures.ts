@@ -1,0 +1,52 @@
+/** What the page shows on canvases, as pictures to keep: whoever draws them, a thread of its own included. */
+
+import { ink } from "../dom";
+
+export interface Shown {
+  title: string;
+  /** What the curves of a chart are, whose names stand beside its canvas. */
+  words: string | undefined;
+  canvas: HTMLCanvasElement;
+}
+
+/** A title as it is read: of the figure, of the section, or the first words for those who cannot see it. */
+function titleOf(canvas: HTMLCanvasElement): string {
+  const said = canvas.getAttribute("aria-label")?.split(/[:.]/)[0];
+  const figure = canvas.closest("figure")?.querySelector(".view-title")?.textContent;
+  const section = canvas.closest("section")?.querySelector("h2")?.firstChild?.textContent;
+  return (figure || said || section || "Picture").trim();
+}
+
+/** All that are on the page now, in its order. */
+export function shownIn(root: HTMLElement): Shown[] {
+  const all = [...root.querySelectorAll("canvas")].filter((canvas) => canvas.getAttribute("aria-hidden") !== "true" && !canvas.closest(".drawer") && canvas.width > 1 && canvas.checkVisibility({ visibilityProperty: true }));
+  return all.map((canvas) => ({ title: titleOf(canvas), words: canvas.closest(".chart")?.getAttribute("aria-label") ?? undefined, canvas }));
+}
+
+/** As it is shown, on the colour of the page: curves would be lost on another one. */
+function flat(canvas: HTMLCanvasElement): HTMLCanvasElement {
+  const copy = document.createElement("canvas");
+  copy.width = canvas.width;
+  copy.height = canvas.height;
+  const context = copy.getContext("2d");
+  if (!context) throw new Error("This browser gives no canvas to make the picture with.");
+  context.fillStyle = ink("card");
+  context.fillRect(0, 0, copy.width, copy.height);
+  context.drawImage(canvas, 0, 0, copy.width, copy.height);
+  return copy;
+}
+
+export function pngOf(canvas: HTMLCanvasElement): Promise<Blob> {
+  return new Promise((resolve, reject) => flat(canvas).toBlob((blob) => (blob ? resolve(blob) : reject(new Error("This browser made no picture."))), "image/png"));
+}
+
+/** By way of a blob, which the browser packs in a thread of its own. */
+export async function dataUrlOf(canvas: HTMLCanvasElement): Promise<string> {
+  const blob = await pngOf(canvas);
+  return new Promise((resolve, reject) => {
+    const reader = new FileReader();
+    reader.onload = () => resolve(String(reader.result));
+    reader.onerror = () => reject(reader.error ?? new Error("This browser made no picture."));
+    reader.readAsDataURL(blob);
+  });
+}

@@ -1,0 +1,62 @@
+/** The visitor's files in the browser's own database, so that a reload keeps them. Everything may fail: storage is full, or forbidden. */
+
+import type { Slot } from "./intake";
+
+export type Files = Partial<Record<Slot, File>>;
+
+const [NAME, STORE] = ["bimodal-stereo", "own-files"];
+
+const done = <T>(request: IDBRequest<T>): Promise<T> =>
+  new Promise((resolve, reject) => {
+    request.onsuccess = () => resolve(request.result);
+    request.onerror = () => reject(request.error ?? new Error("the browser's storage failed"));
+  });
+
+function opened(): Promise<IDBDatabase> {
+  const request = indexedDB.open(NAME, 1);
+  request.onupgradeneeded = () => request.result.createObjectStore(STORE);
+  return done(request);
+}
+
+/** One change, whole or not at all. */
+async function change(work: (store: IDBObjectStore) => void): Promise<void> {
+  const database = await opened();
+  try {
+    const transaction = database.transaction(STORE, "readwrite");
+    const end = new Promise<void>((resolve, reject) => {
+      transaction.oncomplete = () => resolve();
+      transaction.onabort = transaction.onerror = () => reject(transaction.error ?? new Error("the browser's storage failed"));
+    });
+    end.catch(() => {}); // told once, whichever of both comes first
+    work(transaction.objectStore(STORE));
+    await end;
+  } finally {
+    database.close();
+  }
+}
+
+/** These files and no others. */
+export const keep = (files: Files): Promise<void> =>
+  change((store) => {
+    store.clear();
+    for (const [slot, file] of Object.entries(files)) store.put(file, slot);
+  });
+
+export const forget = (): Promise<void> => change((store) => store.clear());
+
+export async function kept(): Promise<Map<string, File>> {
+  const database = await opened();
+  try {
+    const store = database.transaction(STORE).objectStore(STORE);
+    const [keys, values] = await Promise.all([done(store.getAllKeys()), done(store.getAll())]);
+    return new Map(keys.flatMap((key, i): [string, File][] => (values[i] instanceof File ? [[String(key), values[i]]] : [])));
+  } finally {
+    database.close();
+  }
+}
+
+/** Why files are not kept, in words. */
+export function reasonOf(error: unknown): string {
+  const name = error instanceof DOMException ? error.name : "";
+  return name === "QuotaExceededError" ? "its storage is full" : "its storage is closed to this page";
+}

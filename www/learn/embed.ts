@@ -1,0 +1,49 @@
+/** The line that shows a lesson's figure, as it is set now, in a page elsewhere; and in such a frame the way back to the lesson. */
+
+import { make } from "../dom";
+
+/** Pixels of the frame; a figure that is higher scrolls in it. */
+const [WIDTH, HEIGHT] = [800, 720];
+
+export class Embed {
+  readonly button = make("button", { type: "button", class: "learn-embed-button", "aria-expanded": "false" }, "Embed");
+  readonly element: HTMLElement;
+  readonly source: HTMLElement;
+  readonly #line = make("input", { type: "text", readonly: true });
+  readonly #link = make("a", { target: "_blank", rel: "noopener" });
+  readonly #title: string;
+
+  constructor(title: string) {
+    this.#title = title;
+    const copy = make("button", { type: "button" }, "Copy");
+    copy.addEventListener("click", () => void this.#copy(copy));
+    this.#link.append(`${title}: text and exercises`);
+    this.source = make("p", { class: "learn-source" }, this.#link);
+    this.element = make("div", { class: "learn-embed", hidden: true }, make("label", {}, "Line for another page, which shows the figure as it is set now", this.#line), copy);
+    this.button.addEventListener("click", () => {
+      this.element.hidden = !this.element.hidden;
+      this.button.setAttribute("aria-expanded", String(!this.element.hidden));
+      if (!this.element.hidden) this.#line.select();
+    });
+  }
+
+  /** The figure's state as an address. */
+  show(hash: string): void {
+    const url = new URL(location.href);
+    url.hash = hash;
+    this.#link.href = hash;
+    // The browser's own way to write it, so that nothing in it can end an attribute.
+    this.#line.value = make("iframe", { src: `${url.href}&embed`, title: this.#title, width: WIDTH, height: HEIGHT, loading: "lazy" }).outerHTML;
+  }
+
+  async #copy(button: HTMLButtonElement): Promise<void> {
+    try {
+      await navigator.clipboard.writeText(this.#line.value);
+      button.textContent = "Copied";
+    } catch {
+      this.#line.select();
+      button.textContent = "Press Ctrl+C";
+    }
+    setTimeout(() => (button.textContent = "Copy"), 2000);
+  }
+}
