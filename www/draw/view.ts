@@ -47,8 +47,16 @@ export class View {
     const point = (event: PointerEvent) => this.#point(this.#pixelAt(event));
     this.#canvas.addEventListener("pointermove", point);
     this.#canvas.addEventListener("pointerdown", point);
-    this.#canvas.addEventListener("pointerleave", () => this.#point(null));
-    this.#canvas.addEventListener("blur", () => this.#point(null));
+    this.#canvas.addEventListener("pointerleave", ({ pointerType }) => {
+      // A finger has to leave for what it has touched to be read.
+      if (pointerType !== "touch") this.#point(null);
+    });
+    // Whoever moves it by keys hears what it says; a pointer would make it talk without end.
+    this.#canvas.addEventListener("focus", () => this.#readout.setAttribute("role", "status"));
+    this.#canvas.addEventListener("blur", () => {
+      this.#readout.removeAttribute("role");
+      this.#point(null);
+    });
     this.#canvas.addEventListener("keydown", (event) => this.#move(event));
   }
 
@@ -127,7 +135,8 @@ export class View {
     const pixel = this.#options.probe.at(this.#side);
     const { hidden, column, row } = this.#placeOf(pixel);
     this.#dot.hidden = hidden;
-    this.#readout.textContent = pixel ? this.#describe(pixel) : "";
+    if (!pixel) this.#readout.textContent = "";
+    else if (this.#isAnswered(pixel)) this.#readout.textContent = this.#describe(pixel);
     this.#dot.style.left = `${column}%`;
     this.#dot.style.top = `${row}%`;
   }
@@ -142,12 +151,16 @@ export class View {
     return { hidden, column: (100 * (column + 0.5)) / width, row: (100 * (row + 0.5)) / height };
   }
 
+  /** Numbers of another pixel must not stand beside this one. */
+  #isAnswered({ column, row }: Pixel): boolean {
+    const answered = this.#options.probe.answer?.pixels[this.#side];
+    return answered?.column === column && answered.row === row;
+  }
+
   #describe({ column, row }: Pixel): string {
     const { name, content, probe } = this.#options;
-    const answered = probe.answer;
-    const values = answered?.values[name];
+    const values = probe.answer?.values[name];
     const where = `${column}, ${row}`;
-    if (!answered) return where;
     if (!values || values.length === 0) return `${where}: none`;
     if (content.kind === "normals") return `${where}: ${values.map((value) => decimals(value, 2)).join(" ")}`;
     return `${where}: ${values.map(short).join(" ")}${this.#unit ? ` ${this.#unit}` : ""}`;
