@@ -112,7 +112,13 @@ const SAMPLES = 4096;
 /** Some of the finite values, in their order of size. */
 export function someSorted(values: Float32Array): Float32Array {
   const every = Math.max(1, Math.floor(values.length / SAMPLES));
-  return Float32Array.from({ length: Math.ceil(values.length / every) }, (_, i) => values[i * every] ?? NaN).filter(Number.isFinite).sort();
+  const some = new Float32Array(Math.ceil(values.length / every));
+  let count = 0;
+  for (let i = 0; i < values.length; i += every) {
+    const value = values[i] ?? NaN;
+    if (value - value === 0) some[count++] = value;
+  }
+  return some.subarray(0, count).sort();
 }
 
 export const quantile = (sorted: Float32Array, share: number): number | undefined => sorted[Math.round(share * (sorted.length - 1))];

@@ -102,6 +102,8 @@ export class Gallery {
   open({ units, measured, frame }: Opened, fresh: boolean): Promise<void> {
     this.#units = this.#card.units = units;
     this.#fresh ||= fresh;
+    // Its pixels are others.
+    if (fresh) this.#probe.point(null);
     byId("errors", HTMLElement).hidden = !measured;
     return this.show(frame, []);
   }
