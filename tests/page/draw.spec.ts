@@ -1,7 +1,7 @@
 /** What the module paints itself, compared with its numbers. */
 
 import { fileURLToPath } from "node:url";
-import { expect, test } from "@playwright/test";
+import { expect, test } from "./lab";
 
 const PACKAGE = fileURLToPath(new URL("../../pkg/", import.meta.url));
 
@@ -92,4 +92,49 @@ test("the shortest page shows normals and depth", async ({ page }) => {
     });
     expect(colours).toBeGreaterThan(50);
   }
+});
+
+test("the Lab's pictures are the module's own, pixel by pixel", async ({ lab, page }) => {
+  await page.route("**/pkg/**", (route) => route.fulfill({ path: PACKAGE + route.request().url().split("/pkg/")[1] }));
+  await lab.open("size=64&beta=20");
+  await page.keyboard.press("s");
+  await expect(lab.iteration).toHaveText("1");
+  for (const [name, value] of [["Depth: lowest", "-9"], ["Depth: highest", "7.5"], ["Refined depth: lowest", "30"], ["Refined depth: highest", "60"], ["Colour residual: highest", "0.25"]] as const) {
+    await page.getByLabel(`${name} value shown`, { exact: true }).fill(value);
+    await page.keyboard.press("Enter");
+  }
+  const differences = () => page.evaluate(async () => {
+    const { default: init, Estimator, sample } = (await import(new URL("/pkg/index.js", location.href).href)) as typeof import("../../pkg/index.js");
+    await init();
+    const { image, depth, light } = sample({ surface: "bust", light: "colourful", size: 64, angles: { beta: 20 } });
+    const estimator = new Estimator(image, depth, { light, start: "identity", registration: "icp", shading: "pixel" });
+    estimator.step();
+    const layers = [["Normals", image, "normals", {}], ["Depth", image, "depth", { range: [-9, 7.5] }], ["Refined depth", depth, "refined", { range: [30, 60] }], ["Refined normals", depth, "refinedNormals", {}], ["Colour residual", image, "residual", { range: [0, 0.25], map: "magma" }]] as const;
+    const found = layers.map(([title, { width, height, mask }, layer, options]) => {
+      const context = Object.assign(document.createElement("canvas"), { width, height }).getContext("2d")!;
+      estimator.draw(context, layer, options);
+      // The Lab shows the part with the object and two pixels around it.
+      const inside = Array.from(mask ?? []).flatMap((value, i) => (value ? [[i % width, Math.floor(i / width)] as const] : []));
+      const [left, top] = [0, 1].map((axis) => Math.max(0, Math.min(...inside.map((pixel) => pixel[axis]!)) - 2)) as [number, number];
+      const shown = document.querySelector<HTMLCanvasElement>(`canvas[aria-label^="${title}:"]`)!;
+      const mine = context.getImageData(left, top, shown.width, shown.height).data;
+      const theirs = shown.getContext("2d")!.getImageData(0, 0, shown.width, shown.height).data;
+      return [title, mine.filter((value, i) => value !== theirs[i]).length, new Set(new Uint32Array(mine.buffer)).size > 20] as const;
+    });
+    estimator.free();
+    return found;
+  });
+  await expect.poll(differences).toEqual(["Normals", "Depth", "Refined depth", "Refined normals", "Colour residual"].map((title) => [title, 0, true]));
+});
+
+test("the page's own colours, for what the module has no layer for, are the module's", async ({ lab }) => {
+  // Before the first step the refined depth, which the module paints, is the given one, which the page paints, on one scale.
+  await lab.open("size=64");
+  const [given, refined] = await Promise.all(["Given depth", "Refined depth"].map((title) =>
+    lab.page.locator(`canvas[aria-label^="${title}:"]`).evaluate((canvas: HTMLCanvasElement) => [...canvas.getContext("2d")!.getImageData(0, 0, canvas.width, canvas.height).data]),
+  ));
+  const both = given!.flatMap((value, i) => (given![i | 3] && refined![i | 3] ? [Math.abs(value - refined![i]!)] : []));
+  expect(both.length).toBeGreaterThan(4000);
+  both.sort((a, b) => a - b);
+  expect(both[Math.floor(0.98 * both.length)]).toBeLessThanOrEqual(6);
 });

@@ -317,7 +317,9 @@ test("fingers have targets of 44 px", async ({ browser, baseURL }) => {
   const page = await context.newPage();
   await page.goto(`${baseURL}#size=32&start=identity`);
   await expect(page.locator("#status")).toHaveAttribute("data-state", "ready");
-  const small = await page.locator("#presets button, .transport button, #pace, #input > summary, .top button, #clouds select, #clouds-home, #takeaway button").evaluateAll((targets) =>
+  // On a phone the wipe comes with a run to be wiped.
+  await page.getByRole("button", { name: "Pin this run" }).click();
+  const small = await page.locator("#presets button, .transport button, #pace, #input > summary, .top button, #clouds select, #clouds-home, #takeaway button, #pin, #wipe, #coefficients > summary").evaluateAll((targets) =>
     targets.filter((target) => target.getBoundingClientRect().height < 44 || target.getBoundingClientRect().width < 44).map((target) => target.outerHTML.slice(0, 80)),
   );
   expect(small).toEqual([]);

@@ -9,6 +9,8 @@ import { short } from "./numbers";
 export interface Curve {
   label: string;
   token: string;
+  /** Dashed, and without a line in the legend. */
+  isPinned?: boolean;
 }
 
 interface Line extends Curve {
@@ -32,18 +34,19 @@ export class Charts {
   constructor(objectiveBox: HTMLElement, rotationBox: HTMLElement) {
     const chart = (box: HTMLElement, name: string, lines: readonly Line[]) => {
       box.setAttribute("role", "group");
-      return { box, name, plot: new Plot(box, { xLabel: "iteration", curves: lines, whole: true }), lines };
+      return { box, name, plot: new Plot(box, { xLabel: "iteration", curves: [...lines, ...lines.map((line) => ({ ...line, isPinned: true }))], whole: true }), lines };
     };
     this.#charts = [chart(objectiveBox, "Objective", objectiveTerms), chart(rotationBox, "Rotation change", rotation)];
   }
 
-  show(history: readonly StepReport[]): void {
-    const steps = history.filter(({ iteration }) => iteration > 0);
-    const iterations = steps.map(({ iteration }) => iteration);
+  /** The run that is pinned is dashed. */
+  show(history: readonly StepReport[], pinned: readonly StepReport[] = []): void {
+    const runs = [history, pinned].map((run) => new Map(run.map((report) => [report.iteration, report])));
+    const iterations = Array.from({ length: Math.max(0, ...runs.flatMap((run) => [...run.keys()])) }, (_, i) => i + 1);
     for (const { box, name, plot, lines } of this.#charts) {
-      const curves = lines.map(({ value }) => steps.map(value));
-      plot.show(iterations, curves);
-      box.setAttribute("aria-label", inWords(name, lines, curves));
+      const [curves = [], dashed = []] = runs.map((run) => lines.map(({ value }) => iterations.map((iteration) => optional(run.get(iteration), value))));
+      plot.show(iterations, [...curves, ...dashed]);
+      box.setAttribute("aria-label", [inWords(name, lines, curves), ...(pinned.length > 0 ? [inWords(`Pinned: ${name.toLowerCase()}`, lines, dashed)] : [])].join(" "));
     }
   }
 
@@ -53,10 +56,12 @@ export class Charts {
   }
 }
 
+const optional = <T>(given: T | undefined, value: (given: T) => number): number | null => (given === undefined ? null : value(given));
+
 /** A chart for those who cannot see it: where each curve began and where it is. */
-function inWords(name: string, lines: readonly Line[], curves: readonly number[][]): string {
+function inWords(name: string, lines: readonly Line[], curves: readonly (readonly (number | null)[])[]): string {
   const said = lines.map(({ label }, i) => {
-    const values = (curves[i] ?? []).filter((value) => value > 0);
+    const values = (curves[i] ?? []).filter((value): value is number => value !== null && value > 0);
     const [first, last] = [values[0], values.at(-1)];
     return first === undefined || last === undefined ? `${label}: none yet` : `${label}: from ${short(first)} to ${short(last)}`;
   });
@@ -128,9 +133,10 @@ export class Plot {
         ],
         series: [
           { label: xLabel },
-          ...curves.map(({ label, token }) => ({
-            label,
+          ...curves.map(({ label, token, isPinned = false }) => ({
+            label: isPinned ? `${label}, pinned` : label,
             stroke: ink(token),
+            ...(isPinned ? { dash: [5, 4], class: "pinned-curve" } : {}),
             width: 1.5,
             spanGaps: !whole,
             // Where there are few, each was measured and deserves a dot; a line alone needs two.

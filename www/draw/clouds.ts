@@ -2,15 +2,23 @@
 
 import { Matrix4, OrthographicCamera, Quaternion, Sphere, Vector3 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
-import { ink } from "../dom";
 import type { Pose } from "../../pkg/index.js";
-import type { Change, Drawn } from "./stage";
+import type { Side, Surface } from "../engine/protocol";
+import { ink, make } from "../dom";
+import type { Asked } from "./probe";
+import type { Change } from "./stage";
 
 /** Draws, and resolves when that is done. */
 type Draw = (change: Change) => Promise<void>;
 
 /** How long, in milliseconds, the depth map takes from one pose to the next. */
 const SWING = 220;
+
+const SIDES = ["image", "depth"] as const;
+/** How near, in CSS pixels, a point has to be to be pointed at. */
+const REACH = 10;
+/** What is nearer by a tenth of the depth that is drawn is taken before what is nearer on the screen. */
+const IN_FRONT = 5;
 
 const still = matchMedia("(prefers-reduced-motion: reduce)");
 const NOWHERE = new Matrix4();
@@ -36,6 +44,8 @@ export class Clouds {
   #standing = NOWHERE.clone();
   #swings = 0;
   #bounds = new Sphere(new Vector3(), 1);
+  #marked: Record<Side, readonly number[] | null> = { image: null, depth: null };
+  readonly #marks: Record<Side, HTMLElement>;
 
   /** Rejects where the browser has no WebGL. */
   static async open(canvas: HTMLCanvasElement, box: HTMLElement): Promise<Clouds> {
@@ -46,6 +56,8 @@ export class Clouds {
     this.#box = box;
     this.#draw = draw;
     this.#controls = new OrbitControls(this.#camera, canvas);
+    this.#marks = { image: make("span", { class: "dot image", hidden: true }), depth: make("span", { class: "dot depth", hidden: true }) };
+    box.append(this.#marks.image, this.#marks.depth);
     // A finger that moves up or down scrolls the page; across it turns the clouds.
     canvas.style.touchAction = "pan-y";
     this.#controls.addEventListener("change", () => this.#look());
@@ -57,8 +69,8 @@ export class Clouds {
    * `fresh` looks at the new surfaces from the front; otherwise the visitor's viewpoint stays. The depth map's points
    * come under one `pose` and are `seen` under another, to which they swing.
    */
-  show(image: Drawn, depth: Drawn, pose: Pose, seen: Pose, fresh: boolean): void {
-    this.#shown = { image, depth };
+  show(surfaces: Record<Side, Surface>, pose: Pose, seen: Pose, fresh: boolean): void {
+    this.#shown = surfaces;
     if (fresh) this.home();
     const before = this.#pose;
     this.#pose = matrixOf(pose);
@@ -76,6 +88,57 @@ export class Clouds {
   /** Shows the depth map under another pose than its own, or its own again. */
   pretend(pose: Pose | undefined): void {
     void this.#swing(this.#standing, pose ? this.#apart(pose) : NOWHERE);
+  }
+
+  /** A mark at a point of each surface, where there is one. */
+  mark(points: Record<Side, readonly number[] | null>): void {
+    this.#marked = points;
+    this.#placeMarks();
+  }
+
+  #placeMarks(): void {
+    for (const side of SIDES) {
+      const point = this.#marked[side];
+      const mark = this.#marks[side];
+      mark.hidden = !point;
+      if (!point) continue;
+      const { x, y } = new Vector3(...point).applyMatrix4(this.#toScreen(side));
+      mark.style.left = `${50 * (1 + x)}%`;
+      mark.style.top = `${50 * (1 - y)}%`;
+    }
+  }
+
+  /** From a surface's points to the screen, -1 to 1. */
+  #toScreen(side: Side): Matrix4 {
+    const camera = this.#camera.projectionMatrix.clone().multiply(this.#camera.matrixWorld.clone().invert());
+    return side === "depth" ? camera.multiply(this.#standing) : camera;
+  }
+
+  /** The pixel whose point is seen at a place of the box, CSS pixels. */
+  pick(x: number, y: number): Asked | null {
+    const { clientWidth: width, clientHeight: height } = this.#box;
+    let found: Asked | null = null;
+    let least = Infinity;
+    for (const side of SIDES) {
+      const surface = this.#shown?.[side];
+      if (!surface || surface.width === 0) continue;
+      const m = this.#toScreen(side).elements;
+      const { points } = surface;
+      for (let i = 0; 3 * i < points.length; i++) {
+        const [a, b, c] = [points[3 * i] ?? NaN, points[3 * i + 1] ?? NaN, points[3 * i + 2] ?? NaN];
+        const across = 0.5 * width * (1 + (m[0] ?? 0) * a + (m[4] ?? 0) * b + (m[8] ?? 0) * c + (m[12] ?? 0)) - x;
+        const down = 0.5 * height * (1 - (m[1] ?? 0) * a - (m[5] ?? 0) * b - (m[9] ?? 0) * c - (m[13] ?? 0)) - y;
+        const squared = (across * across + down * down) / REACH ** 2;
+        if (!(squared < 1)) continue;
+        const depth = (m[2] ?? 0) * a + (m[6] ?? 0) * b + (m[10] ?? 0) * c + (m[14] ?? 0);
+        const cost = squared + IN_FRONT * depth;
+        if (cost >= least) continue;
+        least = cost;
+        const { left, top, stride } = surface;
+        found = { side, pixel: { column: left + stride * (i % surface.width), row: top + stride * Math.floor(i / surface.width) } };
+      }
+    }
+    return found;
   }
 
   setStyle(style: "points" | "surfaces"): void {
@@ -97,6 +160,7 @@ export class Clouds {
         start.size.clone().lerp(end.size, eased),
       );
       this.#change({ swing: this.#standing.toArray() });
+      this.#placeMarks();
       if (share >= 1) return;
       await new Promise(requestAnimationFrame);
       if (turn !== this.#swings) return;
@@ -153,6 +217,7 @@ export class Clouds {
     this.#camera.updateMatrixWorld();
     const [world, projection] = [this.#camera.matrixWorld.toArray(), this.#camera.projectionMatrix.toArray()];
     this.#change({ sight: { width, height, pixelRatio: Math.min(2, devicePixelRatio), world, projection } });
+    this.#placeMarks();
   }
 
   /** Draws one thing after the other; what comes faster than it can be drawn is passed over. */

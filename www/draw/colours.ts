@@ -1,49 +1,27 @@
-/** From numbers to pixels: three ways to paint a raster, and nothing else. */
+/** From numbers to pixels, for what `Estimator.draw` has no layer for: inputs, colours, errors, the lessons' own fields. */
 
-import type { Picture, Raster } from "../engine/protocol";
-
-export interface Range {
-  min: number;
-  max: number;
-}
+import type { Picture, Range, Raster } from "../engine/protocol";
 
 export type MapName = "viridis" | "magma";
 
-/** Coefficients of sixth-degree fits to the matplotlib colour maps (Matt Zucker, public domain), one row for each power. */
-const fits: Record<MapName, readonly (readonly [number, number, number])[]> = {
-  viridis: [
-    [0.2777273, 0.0054073, 0.3340998],
-    [0.105093, 1.4046135, 1.3845902],
-    [-0.3308618, 0.2148476, 0.0950952],
-    [-4.6342305, -5.799101, -19.332441],
-    [6.2282699, 14.1799334, 56.6905526],
-    [4.776385, -13.7451454, -65.3530326],
-    [-5.4354559, 4.6458526, 26.3124352],
-  ],
-  magma: [
-    [-0.0021365, -0.0007497, -0.0053861],
-    [0.2516605, 0.6775232, 2.4940266],
-    [8.3537173, -3.5777195, 0.314468],
-    [-27.6687331, 14.2647308, -13.6492132],
-    [52.1761398, -27.9436061, 12.9441694],
-    [-50.7685254, 29.0465828, 4.234153],
-    [18.6557051, -11.4897735, -5.6019615],
-  ],
+/** Every fifteenth of the 256 colours that the module paints with (matplotlib's maps); straight lines in between are within five levels. */
+const STOPS: Record<MapName, readonly string[]> = {
+  viridis: "440154 481769 472a7a 433d84 3d4e8a 355e8d 2e6d8e 297b8e 23898e 1f978b 21a585 2eb37c 46c06f 65cb5e 89d548 b0dd2f d8e219 fde725".split(" "),
+  magma: "000004 090720 1a1042 311165 4a1079 621980 792282 912b81 aa337d c23b75 d9466b ec5860 f7725c fc8e64 feaa74 fec68a fde2a3 fcfdbf".split(" "),
 };
+const BETWEEN = 15;
 
-const toByte = (value: number): number => Math.max(0, Math.min(255, Math.round(255 * value)));
-
-function tabulate(fit: (typeof fits)[MapName]): Uint8ClampedArray {
-  const table = new Uint8ClampedArray(3 * 256);
-  for (let i = 0; i < 256; i++) {
-    for (let c = 0; c < 3; c++) {
-      table[3 * i + c] = toByte(fit.reduceRight((sum, row) => sum * (i / 255) + (row[c] ?? 0), 0));
-    }
-  }
-  return table;
+function tabulate(stops: readonly string[]): Uint8ClampedArray {
+  const known = stops.map((stop) => [1, 2, 3].map((c) => parseInt(stop.slice(2 * c - 2, 2 * c), 16)));
+  return Uint8ClampedArray.from({ length: 3 * 256 }, (_, at) => {
+    const [i, c] = [Math.floor(at / 3), at % 3];
+    const from = known[Math.floor(i / BETWEEN)]?.[c] ?? 0;
+    const to = known[Math.ceil(i / BETWEEN)]?.[c] ?? 0;
+    return from + ((i % BETWEEN) / BETWEEN) * (to - from);
+  });
 }
 
-const tables: Record<MapName, Uint8ClampedArray> = { viridis: tabulate(fits.viridis), magma: tabulate(fits.magma) };
+const tables: Record<MapName, Uint8ClampedArray> = { viridis: tabulate(STOPS.viridis), magma: tabulate(STOPS.magma) };
 
 /** The map's colour at a share of its way, in bytes. */
 export function colourAt(map: MapName, share: number): [number, number, number] {
@@ -53,28 +31,24 @@ export function colourAt(map: MapName, share: number): [number, number, number] 
 }
 
 /** The map as a CSS gradient, for legends. */
-export function gradient(map: MapName): string {
-  const table = tables[map];
-  const stops = Array.from({ length: 9 }, (_, i) => {
-    const at = 3 * Math.round((i * 255) / 8);
-    return `rgb(${table[at]} ${table[at + 1]} ${table[at + 2]})`;
-  });
-  return `linear-gradient(to right, ${stops.join(", ")})`;
-}
+export const gradient = (map: MapName): string => `linear-gradient(to right, ${STOPS[map].map((stop) => `#${stop}`).join(", ")})`;
+
+/** The same as whole pixels, in the byte order of all machines that browsers run on. */
+const whole = (table: Uint8ClampedArray): Uint32Array =>
+  Uint32Array.from({ length: 256 }, (_, i) => ((255 << 24) | ((table[3 * i + 2] ?? 0) << 16) | ((table[3 * i + 1] ?? 0) << 8) | (table[3 * i] ?? 0)) >>> 0);
+const pixels: Record<MapName, Uint32Array> = { viridis: whole(tables.viridis), magma: whole(tables.magma) };
 
 /** Values outside the range take its end colours; NaN stays clear, so that the hatching behind shows. */
-export function paintScalar(raster: Raster, { min, max }: Range, map: MapName): ImageData {
-  const table = tables[map];
+export function paintScalar({ width, height, data }: Raster, { min, max }: Range, map: MapName): ImageData {
+  const table = pixels[map];
   const factor = max > min ? 255 / (max - min) : 0;
-  return paint(raster, (data, i, out) => {
+  const image = new ImageData(width, height);
+  const out = new Uint32Array(image.data.buffer);
+  for (let i = 0; i < out.length; i++) {
     const value = data[i] ?? NaN;
-    if (Number.isNaN(value)) return false;
-    const at = 3 * Math.max(0, Math.min(255, Math.round((value - min) * factor)));
-    out[4 * i] = table[at] ?? 0;
-    out[4 * i + 1] = table[at + 1] ?? 0;
-    out[4 * i + 2] = table[at + 2] ?? 0;
-    return true;
-  });
+    if (value === value) out[i] = table[Math.max(0, Math.min(255, Math.round((value - min) * factor)))] ?? 0;
+  }
+  return image;
 }
 
 /** Right is red, up is green, toward the camera is blue; the frame's y points down and its z away. */
@@ -104,6 +78,25 @@ export function paintPicture(raster: Picture): ImageData {
   });
 }
 
+/** Levels of the table for logarithms, and how far below white it reaches: what is darker is black. */
+const STEPS = 4096;
+const REACH = 14;
+const ofLog = Uint8ClampedArray.from({ length: STEPS }, (_, step) => 255 * Math.exp((-REACH * step) / (STEPS - 1) / 2.2));
+
+/** Logarithms of linear colours; `white` is one as well. */
+export function paintLog({ width, height, data }: Raster, white: number): ImageData {
+  const factor = (STEPS - 1) / REACH;
+  const image = new ImageData(width, height);
+  const out = image.data;
+  for (let i = 0; 3 * i < data.length; i++) {
+    const first = data[3 * i] ?? NaN;
+    if (first !== first) continue;
+    for (let c = 0; c < 3; c++) out[4 * i + c] = ofLog[Math.max(0, Math.min(STEPS - 1, Math.round(factor * (white - (data[3 * i + c] ?? 0)))))] ?? 0;
+    out[4 * i + 3] = 255;
+  }
+  return image;
+}
+
 function paint(raster: Raster, pixel: (data: Float32Array, i: number, out: Uint8ClampedArray) => boolean): ImageData {
   const image = new ImageData(raster.width, raster.height);
   const out = image.data;
@@ -116,16 +109,23 @@ function paint(raster: Raster, pixel: (data: Float32Array, i: number, out: Uint8
 /** Most values looked at for an automatic range. */
 const SAMPLES = 4096;
 
-/** The range of the middle 98 % of the finite values: single outliers must not flatten everything else. */
-export function automaticRange(raster: Raster): Range | undefined {
-  const every = Math.max(1, Math.floor(raster.data.length / SAMPLES));
-  const finite: number[] = [];
-  for (let i = 0; i < raster.data.length; i += every) {
-    const value = raster.data[i] ?? NaN;
-    if (Number.isFinite(value)) finite.push(value);
+/** Some of the finite values, in their order of size. */
+export function someSorted(values: Float32Array): Float32Array {
+  const every = Math.max(1, Math.floor(values.length / SAMPLES));
+  const some = new Float32Array(Math.ceil(values.length / every));
+  let count = 0;
+  for (let i = 0; i < values.length; i += every) {
+    const value = values[i] ?? NaN;
+    if (value - value === 0) some[count++] = value;
   }
-  if (finite.length === 0) return undefined;
-  finite.sort((a, b) => a - b);
-  const at = (share: number) => finite[Math.round(share * (finite.length - 1))] ?? 0;
-  return { min: at(0.01), max: at(0.99) };
+  return some.subarray(0, count).sort();
+}
+
+export const quantile = (sorted: Float32Array, share: number): number | undefined => sorted[Math.round(share * (sorted.length - 1))];
+
+/** The range of the middle 98 % of the finite values, as the module has it, which does not say which: single outliers must not flatten everything else. */
+export function automaticRange({ data }: Pick<Raster, "data">): Range | undefined {
+  const sorted = someSorted(data);
+  const [min, max] = [quantile(sorted, 0.01), quantile(sorted, 0.99)];
+  return min === undefined || max === undefined ? undefined : { min, max };
 }

@@ -1,24 +1,73 @@
-/** The pixel that is being looked at, shared by all views of one camera. */
+/** The pixel that is being looked at, and its counterpart in the other view. Shared by all pictures and the surfaces. */
 
-export interface Pixel {
-  column: number;
-  row: number;
+import type { Pixel, Probed, Side } from "../engine/protocol";
+
+export interface Asked {
+  side: Side;
+  pixel: Pixel;
 }
 
-export class Probe {
-  #pixel: Pixel | null = null;
-  #listeners: (() => void)[] = [];
+/** Answers, or nothing where there is none to be had. */
+type Ask = (asked: Asked) => Promise<Probed | undefined>;
 
-  get pixel(): Pixel | null {
-    return this.#pixel;
+const isSame = (a: Asked | null, b: Asked | null): boolean => a === b || (a?.side === b?.side && a?.pixel.column === b?.pixel.column && a?.pixel.row === b?.pixel.row);
+
+export class Probe {
+  #asked: Asked | null = null;
+  #answer: Probed | null = null;
+  #isBusy = false;
+  #isStale = false;
+  readonly #ask: Ask;
+  readonly #listeners: (() => void)[] = [];
+
+  constructor(ask: Ask) {
+    this.#ask = ask;
+  }
+
+  /** What the answer says is of a moment ago while the next is under way. */
+  get answer(): Probed | null {
+    return this.#answer;
+  }
+
+  /** Where it stands in a view: where it is asked for at once, in the other one as the answer says. */
+  at(side: Side): Pixel | null {
+    if (!this.#asked) return null;
+    return this.#asked.side === side ? this.#asked.pixel : (this.#answer?.pixels[side] ?? null);
   }
 
   listen(listener: () => void): void {
     this.#listeners.push(listener);
   }
 
-  point(pixel: Pixel | null): void {
-    this.#pixel = pixel;
+  point(asked: Asked | null): void {
+    if (isSame(asked, this.#asked)) return;
+    this.#asked = asked;
+    if (!asked) this.#answer = null;
+    this.#tell();
+    if (asked) void this.#follow();
+  }
+
+  /** The same place again, whose numbers have changed. */
+  refresh(): void {
+    if (this.#asked) void this.#follow();
+  }
+
+  /** One question at a time; of those that come meanwhile the last counts. */
+  async #follow(): Promise<void> {
+    this.#isStale = true;
+    if (this.#isBusy) return;
+    this.#isBusy = true;
+    while (this.#isStale && this.#asked) {
+      this.#isStale = false;
+      const answer = await this.#ask(this.#asked);
+      if (!this.#asked) break;
+      this.#answer = answer ?? null;
+      this.#tell();
+    }
+    this.#isBusy = false;
+  }
+
+  #tell(): void {
     for (const listener of this.#listeners) listener();
   }
 }

@@ -1,41 +1,33 @@
 /** The range of values that one or more views share, automatic or fixed by the visitor, with its legend. */
 
 import { make } from "../dom";
-import type { Raster } from "../engine/protocol";
-import { automaticRange, gradient, type MapName, type Range } from "./colours";
+import type { Range } from "../engine/protocol";
+import { gradient, type MapName } from "./colours";
 import { short } from "./numbers";
 
-/** The range of a view that has no values yet. */
-const NOTHING: Range = { min: 0, max: 1 };
-
 export class Scale {
-  readonly map: MapName;
-  #automatic = NOTHING;
-  #fixed: Range | null = null;
-  #listeners: (() => void)[] = [];
+  readonly #map: MapName;
+  #range: Range = { min: 0, max: 1 };
+  #isFixed = false;
+  readonly #onChange: () => void;
   #legends: { min: HTMLInputElement; max: HTMLInputElement; auto: HTMLButtonElement; unit: HTMLElement }[] = [];
-  /** Zero as a fixed lower end suits quantities that cannot be negative. */
-  readonly #fromZero: boolean;
 
-  constructor(map: MapName, fromZero = false) {
-    this.map = map;
-    this.#fromZero = fromZero;
+  /** `onChange` is called when every view on this scale has to be painted again. */
+  constructor(map: MapName, onChange: () => void) {
+    this.#map = map;
+    this.#onChange = onChange;
   }
 
-  /** Calls back when every view on this scale has to be painted again. */
-  listen(listener: () => void): void {
-    this.#listeners.push(listener);
+  /** What the visitor has fixed. */
+  get fixed(): Range | undefined {
+    return this.#isFixed ? this.#range : undefined;
   }
 
-  get range(): Range {
-    return this.#fixed ?? this.#automatic;
-  }
-
-  /** Takes the automatic range from these values. */
-  follow(raster: Raster): void {
-    const range = automaticRange(raster) ?? NOTHING;
-    this.#automatic = this.#fromZero ? { min: 0, max: range.max } : range;
-    if (!this.#fixed) this.#tell();
+  /** The range that was painted with. */
+  follow(range: Range): void {
+    if (this.#isFixed) return;
+    this.#range = range;
+    this.#show();
   }
 
   /** A legend for one view; `name` tells screen readers which. */
@@ -43,7 +35,10 @@ export class Scale {
     const end = (which: "min" | "max") => {
       const input = make("input", { type: "number", step: "any", "aria-label": `${name}: ${which === "min" ? "lowest" : "highest"} value shown` });
       input.addEventListener("change", () => {
-        if (Number.isFinite(input.valueAsNumber)) this.#fixed = { ...this.range, [which]: input.valueAsNumber };
+        if (Number.isFinite(input.valueAsNumber)) {
+          this.#range = { ...this.#range, [which]: input.valueAsNumber };
+          this.#isFixed = true;
+        }
         this.#tell();
       });
       return input;
@@ -53,10 +48,11 @@ export class Scale {
     const unit = make("span", { class: "unit" });
     const auto = make("button", { type: "button", class: "quiet", "aria-pressed": "true", "aria-label": `${name}: range follows the values` }, "auto");
     auto.addEventListener("click", () => {
-      this.#fixed = this.#fixed ? null : this.#automatic;
+      this.#isFixed = !this.#isFixed;
       this.#tell();
     });
-    const bar = make("span", { class: "bar", style: `background: ${gradient(this.map)}` });
+    const bar = make("span", { class: "bar" });
+    bar.style.background = gradient(this.#map);
     this.#legends.push({ min, max, auto, unit });
     this.#show();
     return {
@@ -67,14 +63,14 @@ export class Scale {
 
   #tell(): void {
     this.#show();
-    for (const listener of this.#listeners) listener();
+    this.#onChange();
   }
 
   #show(): void {
     for (const { min, max, auto } of this.#legends) {
-      min.value = short(this.range.min);
-      max.value = short(this.range.max);
-      auto.setAttribute("aria-pressed", String(this.#fixed === null));
+      min.value = short(this.#range.min);
+      max.value = short(this.#range.max);
+      auto.setAttribute("aria-pressed", String(!this.#isFixed));
     }
   }
 }

@@ -1,7 +1,7 @@
 /** Draws both surfaces, as points or shaded. It needs no page, so that a thread of its own can do it. */
 
 import { AmbientLight, BufferAttribute, BufferGeometry, Camera, DirectionalLight, DoubleSide, Group, Matrix4, Mesh, MeshLambertMaterial, Points, PointsMaterial, Scene, WebGLRenderer, type WebGLRendererParameters } from "three";
-import type { Surface } from "../engine/protocol";
+import type { Side, Surface } from "../engine/protocol";
 
 /** Sizes of a point on the screen, in CSS pixels: near enough to the next to make a surface, small enough to see two. */
 const SMALLEST = 1.5;
@@ -19,14 +19,9 @@ export interface Sight {
   projection: number[];
 }
 
-/** A surface, with a colour for each of its points (RGB bytes) where it is not of one colour. */
-export interface Drawn extends Surface {
-  colours: Uint8Array | null;
-}
-
 /** What is drawn anew; the rest stays as it was. */
 export interface Change {
-  surfaces?: { image: Drawn; depth: Drawn };
+  surfaces?: Record<Side, Surface>;
   sight?: Sight;
   inks?: { image: string; depth: string };
   style?: "points" | "surfaces";
@@ -91,7 +86,7 @@ class Sheet {
   readonly #points: Points<BufferGeometry, PointsMaterial>;
   readonly #mesh: Mesh<BufferGeometry, MeshLambertMaterial>;
   #ink = "#888";
-  #last: Drawn | undefined;
+  #last: Surface | undefined;
   #style: "points" | "surfaces" = "surfaces";
 
   constructor(opacity: number) {
@@ -119,7 +114,7 @@ class Sheet {
     this.group.matrixWorldNeedsUpdate = true;
   }
 
-  fill(drawn: Drawn): void {
+  fill(drawn: Surface): void {
     this.#last = drawn;
     const kept = finite(drawn);
     const isMesh = this.#style === "surfaces" && drawn.width > 1;
@@ -171,7 +166,7 @@ function set(geometry: BufferGeometry, name: string, values: Float32Array): void
 }
 
 /** The points that are there, with their colours, and where each pixel's point is now. */
-function finite({ points, colours }: Drawn): { points: Float32Array; colours: Uint8Array | null; at: Int32Array } {
+function finite({ points, colours }: Surface): { points: Float32Array; colours: Uint8Array | null; at: Int32Array } {
   const count = points.length / 3;
   const at = new Int32Array(count).fill(-1);
   const kept = new Float32Array(points.length);

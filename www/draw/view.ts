@@ -1,20 +1,18 @@
-/** One canvas with its caption, legend and the value under the pointer. */
+/** One canvas with its caption, legend and the value under the pointer. What it shows comes painted. */
 
 import { make } from "../dom";
-import type { Picture, Raster } from "../engine/protocol";
-import { normalColour, paintNormals, paintPicture, paintScalar } from "./colours";
+import { VIEWS, type Painted, type Pixel, type Side, type ViewName } from "../engine/protocol";
+import { normalColour } from "./colours";
 import { decimals, short } from "./numbers";
 import type { Painter } from "./painter";
-import type { Pixel, Probe } from "./probe";
+import { Pinned } from "./pinned";
+import type { Probe } from "./probe";
 import type { Scale } from "./scale";
 
-export type Content =
-  | { kind: "picture"; legend: string }
-  | { kind: "normals" }
-  /** The view that leads sets the automatic range of a scale that several share. */
-  | { kind: "scalar"; scale: Scale; leads: boolean };
+export type Content = { kind: "picture"; legend: string } | { kind: "normals" } | { kind: "scalar"; scale: Scale };
 
 export interface ViewOptions {
+  name: ViewName;
   title: string;
   /** What the picture shows, for those who cannot see it. */
   description: string;
@@ -26,42 +24,69 @@ export interface ViewOptions {
 export class View {
   readonly element: HTMLElement;
   readonly #options: ViewOptions;
+  readonly #side: Side;
   readonly #canvas: HTMLCanvasElement;
-  readonly #readout: HTMLOutputElement;
-  readonly #dot: HTMLElement;
+  readonly #readout = make("span", { class: "readout" });
+  readonly #dot = make("span", { class: "dot", hidden: true });
   readonly #box: HTMLElement;
+  readonly #pinned: Pinned;
   #setUnit: (unit: string) => void = () => {};
   #unit = "";
-  #raster: Raster | Picture | undefined;
+  #painted: Painted | undefined;
 
   constructor(options: ViewOptions) {
     this.#options = options;
-    const { title, description, content, probe } = options;
+    const { name, title, description, probe } = options;
+    this.#side = VIEWS[name];
     this.#canvas = make("canvas", { width: 64, height: 64, tabindex: 0, role: "img", "aria-label": `${title}: ${description}. Arrow keys move the probe.` });
-    this.#readout = make("output", { class: "readout" });
-    this.#dot = make("span", { class: "dot", hidden: true });
-    const caption = make("figcaption", {}, make("span", { class: "view-title" }, title));
     this.#box = make("div", { class: "canvas" }, this.#canvas, this.#dot, this.#readout);
-    this.element = make("figure", { class: "view" }, caption, this.#box, this.#legend());
+    this.#pinned = new Pinned(this.#canvas);
+    this.element = make("figure", { class: "view" }, make("figcaption", {}, make("span", { class: "view-title" }, title)), this.#box, this.#legend());
 
     probe.listen(() => this.#showProbe());
-    if (content.kind === "scalar") content.scale.listen(() => this.#repaint());
-    this.#canvas.addEventListener("pointermove", (event) => probe.point(this.#pixelAt(event)));
-    this.#canvas.addEventListener("pointerdown", (event) => probe.point(this.#pixelAt(event)));
-    this.#canvas.addEventListener("pointerleave", () => probe.point(null));
-    this.#canvas.addEventListener("blur", () => probe.point(null));
+    const point = (event: PointerEvent) => this.#point(this.#pixelAt(event));
+    this.#canvas.addEventListener("pointermove", point);
+    this.#canvas.addEventListener("pointerdown", point);
+    this.#canvas.addEventListener("pointerleave", ({ pointerType }) => {
+      // A finger has to leave for what it has touched to be read.
+      if (pointerType !== "touch") this.#point(null);
+    });
+    // Whoever moves it by keys hears what it says; a pointer would make it talk without end.
+    this.#canvas.addEventListener("focus", () => this.#readout.setAttribute("role", "status"));
+    this.#canvas.addEventListener("blur", () => {
+      this.#readout.removeAttribute("role");
+      this.#point(null);
+    });
     this.#canvas.addEventListener("keydown", (event) => this.#move(event));
   }
 
-  show(raster: Raster | Picture, unit = ""): void {
-    this.#raster = raster;
-    this.#unit = unit;
-    this.#setUnit(unit);
-    this.#box.style.setProperty("--ratio", String(raster.width / raster.height));
-    const { content } = this.#options;
-    if (content.kind === "scalar" && content.leads) content.scale.follow(raster);
-    this.#repaint();
+  show(painted: Painted, unit?: string): void {
+    // One that was overtaken before it could be drawn.
+    this.#painted?.bitmap.close();
+    this.#painted = painted;
+    if (unit !== undefined) {
+      this.#unit = unit;
+      this.#setUnit(unit);
+    }
+    const { width, height, bitmap } = painted;
+    this.#box.style.setProperty("--ratio", String(width / height));
+    this.#options.painter.request(this, () => {
+      this.#canvas.width = width;
+      this.#canvas.height = height;
+      this.#canvas.getContext("2d")?.drawImage(bitmap, 0, 0);
+      bitmap.close();
+      this.#pinned.place(painted);
+    });
     this.#showProbe();
+  }
+
+  /** Keeps what is shown, to be wiped over what comes. */
+  pin(): void {
+    if (this.#painted) this.#pinned.keep(this.#painted);
+  }
+
+  unpin(): void {
+    this.#pinned.drop();
   }
 
   #legend(): HTMLElement {
@@ -77,73 +102,69 @@ export class View {
     return make("div", { class: "legend" }, make("span", {}, content.legend));
   }
 
-  #repaint(): void {
-    const raster = this.#raster;
-    if (!raster) return;
-    this.#options.painter.request(this, () => {
-      this.#canvas.width = raster.width;
-      this.#canvas.height = raster.height;
-      this.#canvas.getContext("2d")?.putImageData(this.#paint(raster), 0, 0);
-    });
-  }
-
-  #paint(raster: Raster | Picture): ImageData {
-    const { content } = this.#options;
-    if (content.kind === "normals") return paintNormals(raster);
-    if (content.kind === "scalar") return paintScalar(raster, content.scale.range, content.scale.map);
-    return "white" in raster ? paintPicture(raster) : new ImageData(raster.width, raster.height);
+  #point(pixel: Pixel | null): void {
+    this.#options.probe.point(pixel && { side: this.#side, pixel });
   }
 
   #pixelAt(event: PointerEvent): Pixel | null {
-    const raster = this.#raster;
-    if (!raster) return null;
+    const painted = this.#painted;
+    if (!painted) return null;
+    const { left, top, width, height, stride } = painted;
     const box = this.#canvas.getBoundingClientRect();
-    const column = Math.floor(((event.clientX - box.left) / box.width) * raster.width);
-    const row = Math.floor(((event.clientY - box.top) / box.height) * raster.height);
-    if (column < 0 || row < 0 || column >= raster.width || row >= raster.height) return null;
-    return { column: raster.left + column * raster.stride, row: raster.top + row * raster.stride };
+    const column = Math.floor(((event.clientX - box.left) / box.width) * width);
+    const row = Math.floor(((event.clientY - box.top) / box.height) * height);
+    if (column < 0 || row < 0 || column >= width || row >= height) return null;
+    return { column: left + column * stride, row: top + row * stride };
   }
 
   #move(event: KeyboardEvent): void {
-    const raster = this.#raster;
     const step = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }[event.key];
-    if (!raster || !step || event.altKey || event.ctrlKey || event.metaKey) return;
+    if (!this.#painted || !step || event.altKey || event.ctrlKey || event.metaKey) return;
     event.preventDefault();
-    const { left, top, stride, width, height } = raster;
+    const { left, top, stride, width, height } = this.#painted;
     const middle = { column: left + stride * Math.floor(width / 2), row: top + stride * Math.floor(height / 2) };
-    const from = this.#options.probe.pixel ?? middle;
+    const from = this.#options.probe.at(this.#side) ?? middle;
     const within = (value: number, first: number, count: number) => Math.max(first, Math.min(first + (count - 1) * stride, value));
-    this.#options.probe.point({
+    this.#point({
       column: within(from.column + stride * (step[0] ?? 0), left, width),
       row: within(from.row + stride * (step[1] ?? 0), top, height),
     });
   }
 
   #showProbe(): void {
-    const raster = this.#raster;
-    const pixel = this.#options.probe.pixel;
-    this.#dot.hidden = !raster || !pixel;
-    this.#readout.textContent = raster && pixel ? this.#describe(raster, pixel) : "";
-    if (!raster || !pixel) return;
-    const { column, row } = drawn(raster, pixel);
-    this.#dot.style.left = `${(100 * (column + 0.5)) / raster.width}%`;
-    this.#dot.style.top = `${(100 * (row + 0.5)) / raster.height}%`;
+    const pixel = this.#options.probe.at(this.#side);
+    const { hidden, column, row } = this.#placeOf(pixel);
+    this.#dot.hidden = hidden;
+    if (!pixel) this.#readout.textContent = "";
+    else if (this.#isAnswered(pixel)) this.#readout.textContent = this.#describe(pixel);
+    this.#dot.style.left = `${column}%`;
+    this.#dot.style.top = `${row}%`;
   }
 
-  #describe(raster: Raster, pixel: Pixel): string {
-    const { column, row } = drawn(raster, pixel);
-    const index = row * raster.width + column;
-    const values = raster.data.subarray(index * raster.channels, (index + 1) * raster.channels);
-    const where = `${pixel.column}, ${pixel.row}`;
-    if (values.length === 0 || Number.isNaN(values[0])) return `${where}: none`;
-    if (this.#options.content.kind === "normals") return `${where}: ${[...values].map((value) => decimals(value, 2)).join(" ")}`;
-    return `${where}: ${[...values].map(short).join(" ")}${this.#unit ? ` ${this.#unit}` : ""}`;
+  /** Where a pixel lies in the box, percent; the other view's counterpart may lie beside what is drawn. */
+  #placeOf(pixel: Pixel | null): { hidden: boolean; column: number; row: number } {
+    const painted = this.#painted;
+    if (!painted || !pixel) return { hidden: true, column: 0, row: 0 };
+    const { left, top, width, height, stride } = painted;
+    const [column, row] = [Math.floor((pixel.column - left) / stride), Math.floor((pixel.row - top) / stride)];
+    const hidden = column < 0 || row < 0 || column >= width || row >= height;
+    return { hidden, column: (100 * (column + 0.5)) / width, row: (100 * (row + 0.5)) / height };
   }
-}
 
-/** Where a pixel of the full grid lies among the drawn ones. */
-function drawn({ left, top, stride }: Raster, { column, row }: Pixel): Pixel {
-  return { column: Math.floor((column - left) / stride), row: Math.floor((row - top) / stride) };
+  /** Numbers of another pixel must not stand beside this one. */
+  #isAnswered({ column, row }: Pixel): boolean {
+    const answered = this.#options.probe.answer?.pixels[this.#side];
+    return answered?.column === column && answered.row === row;
+  }
+
+  #describe({ column, row }: Pixel): string {
+    const { name, content, probe } = this.#options;
+    const values = probe.answer?.values[name];
+    const where = `${column}, ${row}`;
+    if (!values || values.length === 0) return `${where}: none`;
+    if (content.kind === "normals") return `${where}: ${values.map((value) => decimals(value, 2)).join(" ")}`;
+    return `${where}: ${values.map(short).join(" ")}${this.#unit ? ` ${this.#unit}` : ""}`;
+  }
 }
 
 /** A ball seen from the front: every colour a normal can have. */

@@ -49,62 +49,126 @@ export interface Picture extends Raster {
   encoded: boolean;
 }
 
-/** Points of one view where its pixels are: every `step`-th of a drawn raster in both directions, NaN where there is none. Without a width they are a mere list. */
+/** Points of one view where its pixels are: every `stride`-th of the full grid from `left`, `top` on, NaN where there is none. Without a width they are a mere list. */
 export interface Surface {
+  left: number;
+  top: number;
   width: number;
   height: number;
-  step: number;
+  stride: number;
   /** xyz interleaved, in the colour view's frame. */
   points: Float32Array;
+  /** RGB of each point where it is not of one colour. */
+  colours: Uint8Array | null;
 }
 
-/** How far normals (degrees) and depths (their view's unit) are from the truth. */
-export interface ErrorMaps {
-  imageNormals: Raster;
-  imageDepth: Raster;
-  refinedDepth: Raster;
+/** The pictures of the Lab, and whose pixels they show. */
+export const VIEWS = {
+  picture: "image",
+  imageNormals: "image",
+  imageDepth: "image",
+  albedo: "image",
+  shading: "image",
+  residual: "image",
+  given: "depth",
+  refinedDepth: "depth",
+  depthNormals: "depth",
+  normalError: "image",
+  depthError: "image",
+  refinementError: "depth",
+} as const;
+export type ViewName = keyof typeof VIEWS;
+export type Side = (typeof VIEWS)[ViewName];
+
+/** Ranges of colours; the given depth shares that of the refined one. */
+export const SCALES = ["imageDepth", "refinedDepth", "residual", "normalError", "depthError", "refinementError"] as const;
+export type ScaleName = (typeof SCALES)[number];
+
+export interface Range {
+  min: number;
+  max: number;
+}
+
+/** What the surfaces are coloured by; a view has its own colour where it has no such raster. */
+export const TEXTURES = ["view", "picture", "normals", "residual"] as const;
+export type Texture = (typeof TEXTURES)[number];
+
+/** How a visitor wants to see what there is. */
+export interface Look {
+  /** Those that are held; the others follow the values. */
+  ranges: Partial<Record<ScaleName, Range>>;
+  texture: Texture;
+}
+
+/** Pixels of a view from `left`, `top` on, every `stride`-th of the full grid. */
+export interface Painted extends Pick<Raster, "left" | "top" | "width" | "height" | "stride"> {
+  full: { width: number; height: number };
+  bitmap: ImageBitmap;
+}
+
+/** All that is drawn, but for what does not change with a step. */
+export interface Sights {
+  views: Partial<Record<ViewName, Painted>>;
+  ranges: Record<ScaleName, Range>;
+  surfaces: Record<Side, Surface>;
+  /** The pose that the depth map's points stand under (while the search looks at others, that of the start), and the one to be shown. */
+  poses: { points: Pose; seen: Pose };
 }
 
 /** Everything that changes with a step. */
-export interface Frame {
+export interface Frame extends Sights {
   /** One for each step since the last frame, the newest last. */
   reports: StepReport[];
-  imageNormals: Raster;
-  imageDepth: Raster;
-  albedo: Picture;
-  shading: Picture;
-  residual: Raster;
-  refinedDepth: Raster;
-  depthNormals: Raster;
-  imageSurface: Surface;
-  depthSurface: Surface;
-  /** The pose that the depth map's points stand under: while the search looks at others, that of the start. */
-  depthPose: Pose;
   /** A ball under the light that was found, and by what factors it differs from the true one. */
-  light: { found: Picture; difference: Picture | null };
-  /** Of a sample, whose truth is known. */
-  errors: ErrorMaps | null;
+  light: { found: ImageBitmap; difference: ImageBitmap | null };
+}
+
+/** A light whose numbers are known. */
+export interface KnownLight {
+  ball: ImageBitmap;
+  /** All 27. */
+  coefficients: Float64Array;
 }
 
 /** Everything that changes with the input. */
 export interface Opened {
-  picture: Picture;
-  given: Raster;
   /** Unit of the image's depth and of the depth view's. */
   units: { image: "px" | "m"; depth: "px" | "m" };
   /** What was guessed or changed on the way in, in words, keyed by the field it belongs to. */
   notes: Record<string, string>;
   /** The pose to find, where the input is a sample. */
   truth: Pose | null;
-  /** A ball under its light. */
-  trueLight: Picture | null;
+  /** The light that it was made under. */
+  trueLight: KnownLight | null;
+  /** Whether there is a truth to compare shapes with. */
+  measured: boolean;
   frame: Frame;
 }
 
 /** What a sample would look like, before it is opened. */
 export interface Preview {
-  picture: Picture;
-  trueLight: Picture;
+  picture: Painted;
+  trueLight: KnownLight;
+}
+
+/** A pixel of a view, in its full grid. */
+export interface Pixel {
+  column: number;
+  row: number;
+}
+
+/** What is known of a pixel and of the one in the other view that sees the same point. */
+export interface Probed {
+  pixels: Record<Side, Pixel | null>;
+  /** Where they lie, in the colour view's frame. */
+  points: Record<Side, number[] | null>;
+  /** What each picture shows there; nothing where it has no value. */
+  values: Partial<Record<ViewName, number[]>>;
+  /** Natural logarithms of the linear colours, as they are and as albedo and shading predict them. */
+  log: number[] | null;
+  predicted: number[] | null;
+  /** The depth map's normal there, turned into the colour view. */
+  prior: number[] | null;
 }
 
 export interface Catalogue {
@@ -128,12 +192,14 @@ export interface Taken {
 /** Each request with its reply. */
 export interface Calls {
   catalogue: { request: Record<never, never>; reply: Catalogue };
-  open: { request: { source: Source; options: LabOptions }; reply: Opened };
+  open: { request: { source: Source; options: LabOptions; look: Look }; reply: Opened };
   take: { request: Record<never, never>; reply: Taken };
   preview: { request: { source: SampleSource }; reply: Preview };
-  reset: { request: { options: LabOptions }; reply: Frame };
+  reset: { request: { options: LabOptions; look: Look }; reply: Frame };
+  look: { request: { look: Look }; reply: Sights };
+  probe: { request: { side: Side; pixel: Pixel }; reply: Probed };
   /** Steps until the time is up, at least one; a stage is always a single one. */
-  advance: { request: { by: "step" | "stage"; milliseconds: number }; reply: Frame };
+  advance: { request: { by: "step" | "stage"; milliseconds: number; look: Look }; reply: Frame };
 }
 
 export type Kind = keyof Calls;

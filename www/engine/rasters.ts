@@ -1,6 +1,7 @@
-/** Copies of the library's arrays, cut and thinned to what a screen can show. Runs in the worker. */
+/** The library's arrays, cut and thinned to what a screen can show. Runs in the worker. */
 
 import type { ColorImage, DepthMap } from "../../pkg/index.js";
+import { quantile, someSorted } from "../draw/colours";
 import type { Picture, Raster, Surface } from "./protocol";
 
 /** Longest side of a drawn view in pixels: all canvases together are painted within one frame. */
@@ -15,6 +16,7 @@ const MARGIN = 2;
 /** The part of a view that is drawn. */
 export interface Cut {
   fullWidth: number;
+  fullHeight: number;
   left: number;
   top: number;
   width: number;
@@ -33,34 +35,51 @@ export function cutOf(width: number, height: number, inside: (index: number) => 
       bottom = row;
     }
   }
-  if (bottom < 0) return { fullWidth: width, left: 0, top: 0, width, height };
+  if (bottom < 0) return { fullWidth: width, fullHeight: height, left: 0, top: 0, width, height };
   left = Math.max(0, left - MARGIN);
   top = Math.max(0, top - MARGIN);
   right = Math.min(width - 1, right + MARGIN);
   bottom = Math.min(height - 1, bottom + MARGIN);
-  return { fullWidth: width, left, top, width: right - left + 1, height: bottom - top + 1 };
+  return { fullWidth: width, fullHeight: height, left, top, width: right - left + 1, height: bottom - top + 1 };
 }
 
 const strideOf = ({ width, height }: Cut): number => Math.max(1, Math.ceil(Math.max(width, height) / LONGEST));
 
+/** The grid of the drawn pixels, or of every `step`-th of them. */
+export function gridOf(cut: Cut, step = 1): Pick<Raster, "left" | "top" | "width" | "height" | "stride"> {
+  const stride = step * strideOf(cut);
+  return { left: cut.left, top: cut.top, width: Math.ceil(cut.width / stride), height: Math.ceil(cut.height / stride), stride };
+}
+
 /** `pick(index)` fills one pixel of `channels` numbers into `out` at `at`. */
-function gather(cut: Cut, channels: 1 | 3, pick: (index: number, out: Float32Array, at: number) => void): Raster {
-  const { fullWidth, left, top, width, height } = cut;
-  const stride = strideOf(cut);
-  const columns = Math.ceil(width / stride);
-  const rows = Math.ceil(height / stride);
-  const data = new Float32Array(columns * rows * channels);
+function gather(cut: Cut, channels: 1 | 3, pick: (index: number, out: Float32Array, at: number) => void, step = 1): Raster {
+  const grid = gridOf(cut, step);
+  const { left, top, width, height, stride } = grid;
+  const data = new Float32Array(width * height * channels);
   let at = 0;
-  for (let row = 0; row < rows; row++) {
-    for (let column = 0; column < columns; column++, at += channels) {
-      pick((top + row * stride) * fullWidth + left + column * stride, data, at);
+  for (let row = 0; row < height; row++) {
+    for (let column = 0; column < width; column++, at += channels) {
+      pick((top + row * stride) * cut.fullWidth + left + column * stride, data, at);
     }
   }
-  return { left, top, width: columns, height: rows, stride, channels, data };
+  return { ...grid, channels, data };
 }
+
+/** One number for each drawn pixel. */
+export const measured = (cut: Cut, measure: (index: number) => number): Raster => gather(cut, 1, (index, out, at) => (out[at] = measure(index)));
 
 /** A view of the library as it is drawn. */
 export function raster(data: Float32Array, channels: 1 | 3, cut: Cut): Raster {
+  const grid = gridOf(cut);
+  if (grid.stride === 1) {
+    const part = new Float32Array(grid.width * grid.height * channels);
+    const along = grid.width * channels;
+    for (let row = 0; row < grid.height; row++) {
+      const from = channels * ((grid.top + row) * cut.fullWidth + grid.left);
+      part.set(data.subarray(from, from + along), row * along);
+    }
+    return { ...grid, channels, data: part };
+  }
   return gather(cut, channels, (index, out, at) => {
     for (let c = 0; c < channels; c++) out[at + c] = data[index * channels + c] ?? NaN;
   });
@@ -84,23 +103,19 @@ export function picture(image: ColorImage, cut: Cut): Picture {
   return { ...drawn, white, encoded };
 }
 
-/** The least white level of log colours: those of one paint, zero everywhere, are a middle grey. */
-const LEAST_WHITE = 2;
+/** How far white is above the middle of log colours, at least: those of one paint, zero everywhere, are a middle grey. */
+const LEAST_WHITE = Math.LN2;
 /** Share of the numbers that are no brighter than white: single ones must not darken everything else. */
 const UP_TO_WHITE = 0.99;
 
-/** Logarithms of colours as colours. */
-export function fromLog(log: Float32Array, cut: Cut): Picture {
-  const drawn = gather(cut, 3, (index, out, at) => {
-    for (let c = 0; c < 3; c++) out[at + c] = Math.exp(log[index * 3 + c] ?? NaN);
-  });
-  const sorted = drawn.data.filter(Number.isFinite).sort();
-  const white = Math.max(LEAST_WHITE * (sorted[Math.floor(0.5 * sorted.length)] ?? 0), sorted[Math.floor(UP_TO_WHITE * (sorted.length - 1))] ?? 0);
-  return { ...drawn, white: white || 1, encoded: false };
+/** The white level of logarithms of colours. */
+export function whiteOf({ data }: Raster): number {
+  const sorted = someSorted(data);
+  return Math.max(LEAST_WHITE + (quantile(sorted, 0.5) ?? 0), quantile(sorted, UP_TO_WHITE) ?? 0);
 }
 
 /** Depth at a pixel in the unit of its view; holes are NaN. */
-function depthAt({ data, points, mask, unit, camera }: DepthMap): (index: number) => number {
+export function depthAt({ data, points, mask, unit, camera }: DepthMap): (index: number) => number {
   const factor = unit ?? (camera !== undefined && data instanceof Uint16Array ? 0.001 : 1);
   return (index) => {
     const stored = points ? (points[3 * index + 2] ?? NaN) : (data?.[index] ?? NaN);
@@ -116,16 +131,11 @@ export function cutOfDepth(depth: DepthMap): Cut {
   return cutOf(width, height, (index) => (mask ? mask[index] !== 0 : !Number.isNaN(at(index))));
 }
 
-export function givenDepth(depth: DepthMap, cut: Cut): Raster {
-  const at = depthAt(depth);
-  return gather(cut, 1, (index, out, to) => (out[to] = at(index)));
-}
-
 /** Every n-th point of a list. */
 function thinned(points: Float32Array): Float32Array {
   const count = points.length / 3;
   const every = Math.ceil(count / MOST_POINTS);
-  if (every <= 1) return points;
+  if (every <= 1) return points.slice();
   const kept = new Float32Array(3 * Math.ceil(count / every));
   for (let from = 0, to = 0; from < count; from += every, to++) {
     kept.set(points.subarray(3 * from, 3 * from + 3), 3 * to);
@@ -133,26 +143,33 @@ function thinned(points: Float32Array): Float32Array {
   return kept;
 }
 
-/** The points back at the pixels that they come from: those with a depth, in their order. Where these are others, a list. */
-export function surface(points: Float32Array, depth: Float32Array, cut: Cut): Surface {
-  const place = new Int32Array(depth.length).fill(-1);
+/** The place of each pixel's point in the list of those with a depth, -1 for the others. */
+export function placesOf(depth: Float32Array): { places: Int32Array; count: number } {
+  const places = new Int32Array(depth.length).fill(-1);
   let count = 0;
-  for (let i = 0; i < depth.length; i++) if (Number.isFinite(depth[i])) place[i] = count++;
-  if (3 * count !== points.length || count === 0) return { width: 0, height: 0, step: 1, points: thinned(points) };
-  const stride = strideOf(cut);
-  const step = Math.ceil(Math.sqrt((cut.width * cut.height) / stride ** 2 / MOST_POINTS));
-  const grid = gather(cut, 3, (index, out, at) => {
-    const from = place[index] ?? -1;
-    for (let c = 0; c < 3; c++) out[at + c] = from < 0 ? NaN : (points[3 * from + c] ?? NaN);
-  });
-  if (step <= 1) return { width: grid.width, height: grid.height, step: 1, points: grid.data };
-  const [width, height] = [Math.ceil(grid.width / step), Math.ceil(grid.height / step)];
-  const kept = new Float32Array(3 * width * height);
-  for (let to = 0; to < width * height; to++) {
-    const from = Math.floor(to / width) * step * grid.width + (to % width) * step;
-    kept.set(grid.data.subarray(3 * from, 3 * from + 3), 3 * to);
+  for (let i = 0; i < depth.length; i++) {
+    const value = depth[i] ?? NaN;
+    if (value - value === 0) places[i] = count++;
   }
-  return { width, height, step, points: kept };
+  return { places, count };
+}
+
+/** The points back at the pixels that they come from: those with a depth, in their order. Where these are others, a list. */
+export function surface(points: Float32Array, depth: Float32Array, cut: Cut): Omit<Surface, "colours"> {
+  const { places, count } = placesOf(depth);
+  if (3 * count !== points.length || count === 0) return { left: 0, top: 0, width: 0, height: 0, stride: 1, points: thinned(points) };
+  const { width, height } = gridOf(cut);
+  const step = Math.max(1, Math.ceil(Math.sqrt((width * height) / MOST_POINTS)));
+  const { data, channels: _, ...grid } = gather(
+    cut,
+    3,
+    (index, out, at) => {
+      const from = 3 * (places[index] ?? -1);
+      for (let c = 0; c < 3; c++) out[at + c] = from < 0 ? NaN : (points[from + c] ?? NaN);
+    },
+    step,
+  );
+  return { ...grid, points: data };
 }
 
 function brightest(values: Float32Array): number {

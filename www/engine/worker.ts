@@ -1,28 +1,24 @@
 /** The thread that owns the estimator. It answers one request at a time and sends copies, never views on its memory. */
 
 import init, { BimodalError, Estimator, sample, sampleLights, sampleSurfaces, turnLight, wasmUrl } from "../../pkg/index.js";
-import type { ColorImage, DepthMap, Options, Pose, Sample, SampleRequest, StepReport } from "../../pkg/index.js";
-import type { Answer, Calls, Frame, Kind, OwnFiles, Request, LabOptions, Preview, SampleSource } from "./protocol";
-import { errorMaps } from "./errors";
+import type { Options, Pose, Sample, SampleRequest, StepReport } from "../../pkg/index.js";
+import type { Answer, Calls, Frame, Kind, KnownLight, Look, OwnFiles, Request, LabOptions, Preview, SampleSource, Sights } from "./protocol";
 import { faultOf } from "./fault";
-import { cutOfDepth, cutOfImage, givenDepth, fromLog, picture, raster, surface, type Cut } from "./rasters";
+import { Numbers } from "./numbers";
+import { probe } from "./probe";
+import { Scenery, type Run } from "./sights";
 import { lit, ratio } from "./sphere";
 
-interface Input {
-  image: ColorImage;
-  depth: DepthMap;
-  light?: ArrayLike<number>;
+interface Input extends Pick<Run, "image" | "depth"> {
+  light?: Float64Array;
   truth: Pose | null;
   /** What a sample is measured against. */
   shapes?: Sample["truth"];
 }
 
-interface OpenInput extends Input {
-  estimator: Estimator;
+interface OpenInput extends Input, Run {
   /** The pose of the start, and where it puts the first point of the depth map. */
   start: { pose: Pose; first: readonly number[] };
-  imageCut: Cut;
-  depthCut: Cut;
 }
 
 let experiment: OpenInput | undefined;
@@ -65,45 +61,36 @@ function resolve({ light, start, ...rest }: LabOptions, input: Input): Options {
 
 const firstOf = (points: Float32Array): number[] => [...points.subarray(0, 3)];
 
-const startOf = (estimator: Estimator): OpenInput["start"] => ({ pose: estimator.report.pose, first: firstOf(estimator.points("depth")) });
+const startOf = (estimator: Estimator, numbers: Numbers): OpenInput["start"] => ({ pose: estimator.report.pose, first: firstOf(numbers.points("depth")) });
 
-function frame({ estimator, imageCut, depthCut, light, shapes, start }: OpenInput, reports: StepReport[]): Frame {
-  const depthPoints = estimator.points("depth");
-  const isAtStart = firstOf(depthPoints).every((value, i) => value === start.first[i]);
-  const [imageDepth, refinedDepth, found] = [estimator.imageDepth(), estimator.refinedDepth(), estimator.light()];
-  return {
-    reports,
-    imageNormals: raster(estimator.imageNormals(), 3, imageCut),
-    imageDepth: raster(imageDepth, 1, imageCut),
-    albedo: fromLog(estimator.albedo(), imageCut),
-    shading: fromLog(estimator.shading(), imageCut),
-    residual: raster(estimator.residual(), 1, imageCut),
-    refinedDepth: raster(refinedDepth, 1, depthCut),
-    depthNormals: raster(estimator.depthNormals(), 3, depthCut),
-    imageSurface: surface(estimator.points("image"), imageDepth, imageCut),
-    depthSurface: surface(depthPoints, refinedDepth, depthCut),
-    depthPose: isAtStart ? start.pose : estimator.report.pose,
-    light: { found: lit(found), difference: light ? ratio(found, light) : null },
-    errors: shapes ? errorMaps(estimator, shapes, imageCut, depthCut) : null,
-  };
+function sights(run: OpenInput, look: Look, anew = false): Sights {
+  const { estimator, numbers, scenery, start } = run;
+  const { pose } = estimator.report;
+  const isAtStart = firstOf(numbers.points("depth")).every((value, i) => value === start.first[i]);
+  return scenery.show(run, look, { points: isAtStart ? start.pose : pose, seen: pose }, anew);
 }
 
+function frame(run: OpenInput, look: Look, reports: StepReport[], anew = false): Frame {
+  const found = run.estimator.light();
+  return { ...sights(run, look, anew), reports, light: { found: lit(found), difference: run.light ? ratio(found, run.light) : null } };
+}
+
+const known = (light: Float64Array): KnownLight => ({ ball: lit(light), coefficients: light.slice() });
+
 /** The new input replaces the old one only when it has been accepted, so a refusal loses nothing. */
-async function open({ source, options }: Calls["open"]["request"]): Promise<Calls["open"]["reply"]> {
+async function open({ source, options, look }: Calls["open"]["request"]): Promise<Calls["open"]["reply"]> {
   const opened = source.kind === "sample" ? fromSample(source) : await fromFiles(source.files);
   const estimator = new Estimator(opened.image, opened.depth, resolve(options, opened));
   experiment?.estimator.free();
-  const imageCut = cutOfImage(opened.image);
-  const depthCut = cutOfDepth(opened.depth);
-  experiment = { ...opened, estimator, start: startOf(estimator), imageCut, depthCut };
+  const numbers = new Numbers(estimator);
+  experiment = { ...opened, estimator, numbers, start: startOf(estimator, numbers), scenery: new Scenery(opened, opened.shapes) };
   return {
-    picture: picture(opened.image, imageCut),
-    given: givenDepth(opened.depth, depthCut),
     units: { image: opened.image.camera ? "m" : "px", depth: opened.depth.camera ? "m" : "px" },
     notes: opened.notes,
     truth: opened.truth,
-    trueLight: opened.light ? lit(opened.light) : null,
-    frame: frame(experiment, [estimator.report]),
+    trueLight: opened.light ? known(opened.light) : null,
+    measured: opened.shapes !== undefined,
+    frame: frame(experiment, look, [estimator.report], true),
   };
 }
 
@@ -134,8 +121,8 @@ function take(): Calls["take"]["reply"] {
 }
 
 function preview({ source }: Calls["preview"]["request"]): Preview {
-  const { image, light } = sample(requestOf(source));
-  return { picture: picture(image, cutOfImage(image)), trueLight: lit(light) };
+  const { image, depth, light } = sample(requestOf(source));
+  return { picture: new Scenery({ image, depth }).given(), trueLight: known(light) };
 }
 
 /** The decoders are large and only needed here, so they load with the first file. */
@@ -144,18 +131,19 @@ async function fromFiles(files: OwnFiles): Promise<Prepared> {
   return { ...(await readPair(files)), truth: null };
 }
 
-function reset({ options }: Calls["reset"]["request"]): Frame {
+function reset({ options, look }: Calls["reset"]["request"]): Frame {
   const current = opened();
   current.estimator.reset(resolve(options, current));
-  current.start = startOf(current.estimator);
-  return frame(current, [current.estimator.report]);
+  current.numbers.forget();
+  current.start = startOf(current.estimator, current.numbers);
+  return frame(current, look, [current.estimator.report]);
 }
 
 /** Least and most time spent on one frame of the search, in milliseconds: a pause must still take effect at once. */
 const SEARCHING = [30, 250] as const;
 let answered = Infinity;
 
-async function advance({ by, milliseconds }: Calls["advance"]["request"]): Promise<Frame> {
+async function advance({ by, milliseconds, look }: Calls["advance"]["request"]): Promise<Frame> {
   const current = opened();
   const { estimator } = current;
   const began = performance.now();
@@ -164,13 +152,17 @@ async function advance({ by, milliseconds }: Calls["advance"]["request"]): Promi
   // A slice of the search is too little to look at: some of them make a frame, which has the report of the last one. Where drawing is
   // slow the search takes as long as the page does, and so at least half of all the time.
   const searching = Math.min(Math.max(began - answered, SEARCHING[0]), SEARCHING[1]);
-  do {
-    if (isSearch()) reports.pop();
-    // Unlike `step` this lets the messages of the other threads through.
-    reports.push(by === "stage" ? estimator.stepStage() : await estimator.run({ maxIterations: 1 }));
-  } while (performance.now() - began < (isSearch() ? searching : milliseconds) && estimator.report.status === "running");
+  try {
+    do {
+      if (isSearch()) reports.pop();
+      // Unlike `step` this lets the messages of the other threads through.
+      reports.push(by === "stage" ? estimator.stepStage() : await estimator.run({ maxIterations: 1 }));
+    } while (performance.now() - began < (isSearch() ? searching : milliseconds) && estimator.report.status === "running");
+  } finally {
+    current.numbers.forget();
+  }
   answered = performance.now();
-  return frame(current, reports);
+  return frame(current, look, reports);
 }
 
 function opened(): OpenInput {
@@ -194,17 +186,22 @@ function answer(request: Request): Promise<Calls[Kind]["reply"]> | Calls[Kind]["
       return preview(request);
     case "reset":
       return reset(request);
+    case "look":
+      return sights(opened(), request.look, true);
+    case "probe":
+      return probe(opened(), request.side, request.pixel);
     case "advance":
       return advance(request);
   }
 }
 
-/** Every array of a reply is a copy of its own, so all of them may be transferred. */
-function buffers(value: unknown, found = new Set<ArrayBuffer>()): Set<ArrayBuffer> {
-  if (ArrayBuffer.isView(value)) {
+/** Every array and picture of a reply is a copy of its own, so all of them may be transferred. */
+function belongings(value: unknown, found = new Set<Transferable>()): Set<Transferable> {
+  if (value instanceof ImageBitmap) found.add(value);
+  else if (ArrayBuffer.isView(value)) {
     if (value.buffer instanceof ArrayBuffer) found.add(value.buffer);
   } else if (typeof value === "object" && value !== null) {
-    for (const inner of Object.values(value)) buffers(inner, found);
+    for (const inner of Object.values(value)) belongings(inner, found);
   }
   return found;
 }
@@ -218,7 +215,7 @@ async function handle(request: Request): Promise<void> {
   try {
     await ready;
     const reply = await answer(request);
-    post({ id, ok: true, reply }, [...buffers(reply)]);
+    post({ id, ok: true, reply }, [...belongings(reply)]);
   } catch (error) {
     post({ id, ok: false, fault: faultOf(error, isLoaded) }, []);
   }

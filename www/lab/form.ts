@@ -1,7 +1,7 @@
 /** Fields made from the settings' description, each with its label, unit, hint and a place for its error. */
 
 import { freshId, make } from "../dom";
-import { fields, type ChoiceField, type Field, type Group, type ListField, type NumberField, type Origin, type Settings, type Value } from "./settings";
+import { fields, isLightText, type ChoiceField, type Field, type Group, type ListField, type NumberField, type Origin, type Settings, type Value } from "./settings";
 import type { Store } from "./store";
 
 interface Control {
@@ -42,10 +42,11 @@ export class Form {
 
   /** The choices that only the library knows. */
   offer(key: string, values: readonly string[]): void {
-    const select = this.#controls.get(key)?.inputs[0];
-    if (!(select instanceof HTMLSelectElement)) return;
+    const control = this.#controls.get(key);
+    const select = control?.inputs[0];
+    if (!control || !(select instanceof HTMLSelectElement)) return;
     select.replaceChildren(...values.map((value) => make("option", { value }, value)));
-    select.value = String(this.#store.settings[key]);
+    control.show(this.#store.settings[key] ?? null);
   }
 
   /** Puts an error beside the field it names; false when no field answers to that path. */
@@ -169,7 +170,7 @@ function choice(field: ChoiceField, id: string, change: Change): Built {
     inputs: [select],
     show(value) {
       const wanted = String(value);
-      if (![...select.options].some((option) => option.value === wanted)) select.append(make("option", { value: wanted }, wanted));
+      if (![...select.options].some((option) => option.value === wanted)) select.append(make("option", { value: wanted }, isLightText(wanted) ? "own coefficients" : wanted));
       select.value = wanted;
     },
   };

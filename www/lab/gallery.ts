@@ -1,70 +1,90 @@
 /** All pictures of the Lab: its canvases, the surfaces, and the charts. */
 
 import type { Pose, StepReport } from "../../pkg/index.js";
+import { Card } from "../draw/card";
+import type { Charts } from "../draw/charts";
+import type { Clouds } from "../draw/clouds";
 import { Painter } from "../draw/painter";
-import { Probe } from "../draw/probe";
+import { Probe, type Asked } from "../draw/probe";
 import { Scale } from "../draw/scale";
 import { View, type Content } from "../draw/view";
 import { byId, make } from "../dom";
-import { textured, textures, type Texture } from "../draw/texture";
-import type { Charts } from "../draw/charts";
-import type { Clouds } from "../draw/clouds";
-import type { Frame, Opened, Picture } from "../engine/protocol";
+import { SCALES, TEXTURES, type Frame, type Look, type Opened, type Painted, type Probed, type ScaleName, type Sights, type Texture, type ViewName } from "../engine/protocol";
+
+/** What the pictures need of the worker; nothing comes of it where there is nothing to be seen. */
+export interface GalleryHooks {
+  look(look: Look): Promise<Sights | undefined>;
+  probe(asked: Asked): Promise<Probed | undefined>;
+}
 
 export class Gallery {
+  readonly #hooks: GalleryHooks;
   readonly #painter = new Painter();
   readonly #box = byId("lab", HTMLElement);
   readonly #figures: HTMLElement[] = [];
-  readonly #picture: View;
-  readonly #imageNormals: View;
-  readonly #imageDepth: View;
-  readonly #albedo: View;
-  readonly #shading: View;
-  readonly #residual: View;
-  readonly #given: View;
-  readonly #refinedDepth: View;
-  readonly #depthNormals: View;
-  readonly #errors: Readonly<Record<keyof NonNullable<Frame["errors"]>, View>>;
+  readonly #probe = new Probe((asked) => this.#hooks.probe(asked));
+  readonly #card = new Card(this.#probe);
+  readonly #scales: Readonly<Record<ScaleName, Scale>>;
+  readonly #views: Readonly<Record<ViewName, View>>;
   #texture: Texture = "view";
-  #colours: Picture | undefined;
   #units: Opened["units"] = { image: "px", depth: "px" };
   #clouds: Clouds | undefined;
   #charts: Charts | undefined;
-  #frame: Frame | undefined;
+  #sights: Sights | undefined;
   #history: readonly StepReport[] = [];
+  #pinned: readonly StepReport[] = [];
   /** Whether the surfaces are to be looked at anew. */
   #fresh = true;
+  #isLooking = false;
+  #looksAgain = false;
 
-  constructor() {
-    const image = new Probe();
-    const depth = new Probe();
-    // Led by the refined depth, from which flying pixels are trimmed: they would stretch the range.
-    const depths = new Scale("viridis");
-    const view = (parent: string, probe: Probe, title: string, description: string, content: Content): View => {
-      const built = new View({ title, description, content, probe, painter: this.#painter });
+  constructor(hooks: GalleryHooks) {
+    this.#hooks = hooks;
+    const isError = (scale: ScaleName): boolean => scale === "residual" || scale.endsWith("Error");
+    this.#scales = Object.fromEntries(SCALES.map((name) => [name, new Scale(isError(name) ? "magma" : "viridis", () => void this.#look())])) as Record<ScaleName, Scale>;
+    const view = (parent: string, name: ViewName, title: string, description: string, content: Content): View => {
+      const built = new View({ name, title, description, content, probe: this.#probe, painter: this.#painter });
       this.#place(built.element, parent, title);
       return built;
     };
-    this.#picture = view("inputs-views", image, "Colour", "the colour image as it was given", { kind: "picture", legend: "as it was given" });
-    this.#imageNormals = view("image-views", image, "Normals", "normals found from shading in the colour image", { kind: "normals" });
-    this.#imageDepth = view("image-views", image, "Depth", "depth of the colour image, integrated from its normals", { kind: "scalar", scale: new Scale("viridis"), leads: true });
-    this.#albedo = view("image-views", image, "Albedo", "paint of the object, the colours without light and shadow", { kind: "picture", legend: "grey if all is one paint" });
-    this.#shading = view("image-views", image, "Shading", "what the light makes of the shape, the colours without paint", { kind: "picture", legend: "light on shape" });
-    this.#given = view("inputs-views", depth, "Given depth", "the depth map as it was given", { kind: "scalar", scale: depths, leads: false });
-    this.#refinedDepth = view("depth-views", depth, "Refined depth", "the depth map after refinement", { kind: "scalar", scale: depths, leads: true });
-    this.#depthNormals = view("depth-views", depth, "Refined normals", "normals of the depth map after refinement", { kind: "normals" });
+    const scalar = (scale: ScaleName): Content => ({ kind: "scalar", scale: this.#scales[scale] });
+    const picture = view("inputs-views", "picture", "Colour", "the colour image as it was given", { kind: "picture", legend: "as it was given" });
+    const imageNormals = view("image-views", "imageNormals", "Normals", "normals found from shading in the colour image", { kind: "normals" });
+    const imageDepth = view("image-views", "imageDepth", "Depth", "depth of the colour image, integrated from its normals", scalar("imageDepth"));
+    const albedo = view("image-views", "albedo", "Albedo", "paint of the object, the colours without light and shadow", { kind: "picture", legend: "grey if all is one paint" });
+    const shading = view("image-views", "shading", "Shading", "what the light makes of the shape, the colours without paint", { kind: "picture", legend: "light on shape" });
+    const given = view("inputs-views", "given", "Given depth", "the depth map as it was given", scalar("refinedDepth"));
+    const refinedDepth = view("depth-views", "refinedDepth", "Refined depth", "the depth map after refinement", scalar("refinedDepth"));
+    const depthNormals = view("depth-views", "depthNormals", "Refined normals", "normals of the depth map after refinement", { kind: "normals" });
     this.#place(byId("clouds", HTMLElement), undefined, "Both surfaces");
-    this.#residual = view("image-views", image, "Colour residual", "how far the predicted colours are from the image", { kind: "scalar", scale: new Scale("magma", true), leads: true });
-    const error = (title: string, probe: Probe, description: string): View =>
-      view("error-views", probe, title, description, { kind: "scalar", scale: new Scale("magma", true), leads: true });
-    this.#errors = {
-      imageNormals: error("Error of normals", image, "angle between the colour view's normals and the true ones"),
-      imageDepth: error("Error of depth", image, "distance of the colour view's depth from the true one, both about their middles"),
-      refinedDepth: error("Refinement error", depth, "distance of the refined depth from the true one"),
-    };
+    const residual = view("image-views", "residual", "Colour residual", "how far the predicted colours are from the image", scalar("residual"));
+    const normalError = view("error-views", "normalError", "Error of normals", "angle between the colour view's normals and the true ones", scalar("normalError"));
+    const depthError = view("error-views", "depthError", "Error of depth", "distance of the colour view's depth from the true one, both about their middles", scalar("depthError"));
+    const refinementError = view("error-views", "refinementError", "Refinement error", "distance of the refined depth from the true one", scalar("refinementError"));
+    this.#views = { picture, imageNormals, imageDepth, albedo, shading, residual, given, refinedDepth, depthNormals, normalError, depthError, refinementError };
+    this.#probe.listen(() => this.#clouds?.mark(this.#probe.answer?.points ?? { image: null, depth: null }));
     void this.#loadCharts();
     this.#loadCloudsWhenSeen();
     this.#buildChoices();
+  }
+
+  /** How a visitor wants to see what there is. */
+  get look(): Look {
+    const fixed = SCALES.flatMap((name) => (this.#scales[name].fixed ? [[name, this.#scales[name].fixed]] : []));
+    return { ranges: Object.fromEntries(fixed) as Look["ranges"], texture: this.#texture };
+  }
+
+  /** Has everything painted again; of what is asked for meanwhile the last counts. */
+  async #look(): Promise<void> {
+    this.#looksAgain = true;
+    if (this.#isLooking) return;
+    this.#isLooking = true;
+    while (this.#looksAgain) {
+      this.#looksAgain = false;
+      const sights = await this.#hooks.look(this.look);
+      if (sights) this.#see(sights);
+    }
+    this.#isLooking = false;
   }
 
   /** How the surfaces are drawn, and what they are coloured by. */
@@ -73,25 +93,24 @@ export class Gallery {
     style.addEventListener("change", () => this.#clouds?.setStyle(style.value === "points" ? "points" : "surfaces"));
     const texture = byId("clouds-texture", HTMLSelectElement);
     texture.addEventListener("change", () => {
-      this.#texture = textures.find((each) => each === texture.value) ?? "view";
-      this.#showClouds();
+      this.#texture = TEXTURES.find((each) => each === texture.value) ?? "view";
+      void this.#look();
     });
   }
 
   /** Resolves when the new input is on the screen; `fresh` looks at its surfaces from the front. */
-  open({ picture, given, units, frame }: Opened, fresh: boolean): Promise<void> {
-    this.#units = units;
+  open({ units, measured, frame }: Opened, fresh: boolean): Promise<void> {
+    this.#units = this.#card.units = units;
     this.#fresh ||= fresh;
-    this.preview(picture);
-    this.#given.show(given, units.depth);
-    byId("errors", HTMLElement).hidden = frame.errors === null;
+    // Its pixels are others.
+    if (fresh) this.#probe.point(null);
+    byId("errors", HTMLElement).hidden = !measured;
     return this.show(frame, []);
   }
 
   /** Another picture, of which nothing has been computed yet. */
-  preview(picture: Picture): void {
-    this.#colours = picture;
-    this.#picture.show(picture);
+  preview(picture: Painted): void {
+    this.#views.picture.show(picture);
   }
 
   /** The depth map's surface under another pose than its own, or its own again. */
@@ -101,23 +120,33 @@ export class Gallery {
 
   /** Resolves when the frame is on the screen, which is when the next one may be asked for. */
   show(frame: Frame, history: readonly StepReport[]): Promise<void> {
-    this.#frame = frame;
     this.#history = history;
-    this.#imageNormals.show(frame.imageNormals);
-    this.#imageDepth.show(frame.imageDepth, this.#units.image);
-    this.#albedo.show(frame.albedo);
-    this.#shading.show(frame.shading);
-    this.#residual.show(frame.residual, "log");
-    this.#refinedDepth.show(frame.refinedDepth, this.#units.depth);
-    this.#depthNormals.show(frame.depthNormals);
-    if (frame.errors) {
-      this.#errors.imageNormals.show(frame.errors.imageNormals, "°");
-      this.#errors.imageDepth.show(frame.errors.imageDepth, this.#units.image);
-      this.#errors.refinedDepth.show(frame.errors.refinedDepth, this.#units.depth);
-    }
-    this.#showClouds();
+    this.#see(frame);
     this.#showCharts();
+    this.#probe.refresh();
     return this.#painter.drawn();
+  }
+
+  #see(sights: Sights): void {
+    this.#sights = sights;
+    const { image, depth } = this.#units;
+    const units: Partial<Record<ViewName, string>> = { imageDepth: image, residual: "log", given: depth, refinedDepth: depth, normalError: "°", depthError: image, refinementError: depth };
+    for (const name of SCALES) this.#scales[name].follow(sights.ranges[name]);
+    for (const [name, painted] of Object.entries(sights.views) as [ViewName, Painted][]) this.#views[name].show(painted, units[name]);
+    this.#showClouds();
+  }
+
+  /** Keeps this run's pictures and curves beside those of the runs to come. */
+  pin(history: readonly StepReport[]): void {
+    for (const view of Object.values(this.#views)) view.pin();
+    this.#pinned = [...history];
+    this.#showCharts();
+  }
+
+  unpin(): void {
+    for (const view of Object.values(this.#views)) view.unpin();
+    this.#pinned = [];
+    this.#showCharts();
   }
 
   recolour(): void {
@@ -158,20 +187,16 @@ export class Gallery {
   }
 
   #showClouds(): void {
-    const [frame, clouds, picture] = [this.#frame, this.#clouds, this.#colours];
-    const report = frame?.reports.at(-1);
-    if (!frame || !report || !clouds || !picture) return;
+    const [sights, clouds] = [this.#sights, this.#clouds];
+    if (!sights || !clouds) return;
     const fresh = this.#fresh;
-    this.#painter.request(clouds, () => {
-      const { image, depth } = textured(frame, picture, this.#texture);
-      clouds.show(image, depth, frame.depthPose, report.pose, fresh);
-    });
+    this.#painter.request(clouds, () => clouds.show(sights.surfaces, sights.poses.points, sights.poses.seen, fresh));
     this.#fresh = false;
   }
 
   #showCharts(): void {
     const charts = this.#charts;
-    if (charts) this.#painter.request(charts, () => charts.show(this.#history));
+    if (charts) this.#painter.request(charts, () => charts.show(this.#history, this.#pinned));
   }
 
   async #loadCharts(): Promise<void> {
@@ -198,6 +223,8 @@ export class Gallery {
       const clouds = await Clouds.open(canvas, box);
       this.#clouds = clouds;
       fallback.hidden = true;
+      canvas.addEventListener("pointermove", ({ offsetX, offsetY, buttons }) => this.#probe.point(buttons === 0 ? clouds.pick(offsetX, offsetY) : null));
+      canvas.addEventListener("pointerleave", () => this.#probe.point(null));
       canvas.addEventListener("keydown", (event) => {
         const turn = { ArrowLeft: [-10, 0], ArrowRight: [10, 0], ArrowUp: [0, -10], ArrowDown: [0, 10] }[event.key];
         if (!turn) return;

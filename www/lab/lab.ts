@@ -2,14 +2,15 @@
 
 import { byId, make } from "../dom";
 import { Engine, EngineError } from "../engine/engine";
-import type { Calls, Frame, Opened, Source } from "../engine/protocol";
+import type { Frame, Opened, Source } from "../engine/protocol";
 import type { Pose, StepReport } from "../../pkg/index.js";
 import { Explanations } from "./ask";
 import { Form } from "./form";
 import { Gallery } from "./gallery";
 import { OwnFiles } from "./ownfiles";
-import { LightPanel, type Turn } from "./light";
-import { Player } from "./player";
+import { Compare } from "./compare";
+import { LightPanel } from "./light";
+import { Player, type Advance } from "./player";
 import { shownIn } from "./pictures";
 import { PoseTable } from "./posetable";
 import { Rivals } from "./rivals";
@@ -21,11 +22,11 @@ import { Store } from "./store";
 import { Status, type Notice } from "./status";
 import { Strip } from "./strip";
 import type { Kind } from "./kinds";
-import { verdict } from "./verdict";
+import { verdict, wordsOf } from "./verdict";
 
 export class Lab {
   readonly store: Store;
-  readonly gallery = new Gallery();
+  readonly gallery: Gallery;
   readonly player: Player;
   readonly #engine: Engine;
   readonly #form: Form;
@@ -38,8 +39,9 @@ export class Lab {
   readonly #pose = new PoseTable(byId("pose", HTMLTableElement), this.#explanations);
   readonly #rivals: Rivals;
   readonly #light: LightPanel;
-  /** The turn of the light to be looked at next, while one is being looked at. */
-  #turning: Turn | undefined;
+  readonly #compare: Compare;
+  /** The light to be looked at next, while one is being looked at: what it changes in the settings. */
+  #trying: Settings | undefined;
   #previewing = false;
   readonly #alert = byId("alert", HTMLElement);
   #origin: Origin = "sample";
@@ -78,6 +80,12 @@ export class Lab {
       },
       onLost: () => (this.#held = undefined),
     });
+    const unlessGone = (): undefined => undefined;
+    this.gallery = new Gallery({
+      look: (look) => this.#engine.call("look", { look }).catch(unlessGone),
+      probe: (asked) => this.#engine.call("probe", asked).catch(unlessGone),
+    });
+    this.#compare = new Compare({ onPin: () => this.#pin(), onUnpin: () => this.gallery.unpin() });
     this.player = new Player({
       advance: (request) => this.#advance(request),
       restart: () => this.#start(this.#wanted),
@@ -86,7 +94,7 @@ export class Lab {
       onError: (error) => void this.#enter(this.#fail(error)),
     });
     this.#rivals = new Rivals({ onLook: (pose) => this.gallery.pretend(pose), onStart: (pose) => this.#startFrom(pose) });
-    this.#light = new LightPanel({ turn: () => turnOf(this.store.settings), onTurn: (turn, done) => this.#turnLight(turn, done) });
+    this.#light = new LightPanel({ turn: () => turnOf(this.store.settings), onLight: (patch, done) => this.#changeLight(patch, done) });
     for (const group of ["sample", "colour", "depth", "method", "weights", "loop"] as const) {
       this.#form.mount(group, byId(`fields-${group}`, HTMLElement));
     }
@@ -175,6 +183,7 @@ export class Lab {
     this.#truth = null;
     this.#notes = {};
     this.#pair = [];
+    this.#compare.release();
     this.#forget();
     byId("iteration", HTMLElement).textContent = "0";
     byId("lab", HTMLElement).toggleAttribute("data-vacant", true);
@@ -192,30 +201,35 @@ export class Lab {
     if (again) void this.#playOnce(begun);
   }
 
-  /** The picture follows the light while it is dragged; a run follows once it rests. */
-  #turnLight(turn: Turn, done: boolean): void {
+  /** The picture follows the light while it is moved; a run follows once it rests. */
+  #changeLight(patch: Settings, done: boolean): void {
     if (done) {
-      this.#turning = undefined;
-      this.store.change({ lightTurn: turn.beta, lightTilt: turn.alpha }, true);
+      this.#trying = undefined;
+      this.store.change(patch, true);
       return;
     }
-    this.#turning = turn;
+    this.#trying = patch;
     if (!this.#previewing) void this.#preview();
   }
 
   async #preview(): Promise<void> {
     this.#previewing = true;
     const before = this.#turn;
-    for (let turn = this.#turning; turn; turn = this.#turning) {
-      this.#turning = undefined;
-      const source = sourceOf("sample", this.store.settings, {});
+    for (let patch = this.#trying; patch; patch = this.#trying) {
+      this.#trying = undefined;
+      const source = sourceOf("sample", { ...this.store.settings, ...patch }, {});
       if (typeof source === "string" || source.kind !== "sample" || this.#origin !== "sample") break;
-      const seen = await this.#engine.call("preview", { source: { ...source, turn } }).catch(() => undefined);
+      const seen = await this.#engine.call("preview", { source }).catch(() => undefined);
       if (!seen || this.#turn !== before) break;
       this.gallery.preview(seen.picture);
       this.#light.showTruth(seen.trueLight);
     }
     this.#previewing = false;
+  }
+
+  #pin(): void {
+    this.gallery.pin(this.#history);
+    this.#compare.say(this.#report ? `pinned: ${wordsOf(this.#report, this.#truth)}` : "");
   }
 
   #startFrom({ angles }: Pose): void {
@@ -263,12 +277,12 @@ export class Lab {
       await this.#engine.interrupt();
       if (turn !== this.#turn) return;
       if (this.#held === source && source === this.#good?.source) {
-        const frame = await this.#engine.call("reset", { options });
+        const frame = await this.#engine.call("reset", { options, look: this.gallery.look });
         if (turn !== this.#turn) return;
         this.#forget();
         await this.#show(frame);
       } else {
-        const opened = await this.#engine.call("open", { source, options });
+        const opened = await this.#engine.call("open", { source, options, look: this.gallery.look });
         this.#held = source;
         if (turn !== this.#turn) return;
         this.#pair = source.kind === "files" ? [source.files.colour, source.files.depth] : [];
@@ -323,14 +337,14 @@ export class Lab {
     return other;
   }
 
-  async #advance(request: Calls["advance"]["request"]): Promise<boolean> {
+  async #advance(request: Advance): Promise<boolean> {
     await this.#beginning;
     // While files are awaited, the pair on the screen is not the one asked for.
     if (!this.#good || typeof this.#wanted === "string" || this.#isFinished()) return false;
     const turn = this.#turn;
     if (request.by === "stage") this.#strip.run();
     try {
-      const frame = await this.#engine.call("advance", request);
+      const frame = await this.#engine.call("advance", { ...request, look: this.gallery.look });
       if (turn !== this.#turn) return false;
       await this.#show(frame);
     } catch (error) {
@@ -432,7 +446,7 @@ export class Lab {
     this.#good = undefined; // should it fail once more, the page waits for another input
     const turn = ++this.#turn;
     try {
-      const opened = await this.#engine.call("open", { source, options: runOptions(settings, source.kind) });
+      const opened = await this.#engine.call("open", { source, options: runOptions(settings, source.kind), look: this.gallery.look });
       this.#held = source;
       if (turn !== this.#turn) return;
       await this.#present(opened);

@@ -1,8 +1,9 @@
-/** The light as a ball that it falls on: found, true, and what differs. The true one of a sample can be dragged. */
+/** The light as a ball that it falls on: found, true, and what differs. The true one of a sample can be dragged, and its numbers set. */
 
 import { byId, make } from "../dom";
-import { paintPicture } from "../draw/colours";
-import type { Picture } from "../engine/protocol";
+import type { Frame, KnownLight } from "../engine/protocol";
+import { Coefficients } from "./coefficients";
+import type { Settings } from "./settings";
 
 export interface Turn {
   alpha: number;
@@ -12,8 +13,8 @@ export interface Turn {
 export interface LightHooks {
   /** How the light is turned before a drag. */
   turn(): Turn;
-  /** Told while it is dragged, and once more when it has been let go. */
-  onTurn(turn: Turn, done: boolean): void;
+  /** Told what it changes in the settings while it is moved, and once more when it has been let go. */
+  onLight(patch: Settings, done: boolean): void;
 }
 
 /** Degrees of a press of an arrow key. */
@@ -23,10 +24,13 @@ const REST = 200;
 
 const within = (degrees: number): number => Math.round(((((degrees + 180) % 360) + 360) % 360) - 180);
 
+const patchOf = ({ alpha, beta }: Turn): Settings => ({ lightTurn: beta, lightTilt: alpha });
+
 export class LightPanel {
   readonly #found: Ball;
   readonly #truth: Ball;
   readonly #difference: Ball;
+  readonly #coefficients: Coefficients;
   readonly #box = byId("light", HTMLElement);
   #resting: ReturnType<typeof setTimeout> | undefined;
   /** Turned as the pointer says, and not yet as the settings do. */
@@ -38,17 +42,20 @@ export class LightPanel {
     this.#found = new Ball("found", "A ball under the light that was found");
     this.#truth = new Ball("true: drag it", "A ball under the true light. Drag it or use the arrow keys to turn the light.");
     this.#difference = new Ball("difference", "The light that was found over the true one: grey where both are equal");
+    this.#coefficients = new Coefficients(hooks);
     this.#box.append(this.#found.element, this.#truth.element, this.#difference.element);
+    this.#box.after(this.#coefficients.element);
     this.#listen(this.#truth.canvas);
   }
 
-  show({ found, difference }: { found: Picture; difference: Picture | null }): void {
+  show({ found, difference }: Frame["light"]): void {
     this.#found.show(found);
     this.#difference.show(difference);
   }
 
-  showTruth(picture: Picture | null): void {
-    this.#truth.show(picture);
+  showTruth(light: KnownLight | null): void {
+    this.#truth.show(light?.ball ?? null);
+    this.#coefficients.show(light?.coefficients ?? null);
   }
 
   #listen(canvas: HTMLCanvasElement): void {
@@ -85,7 +92,7 @@ export class LightPanel {
 
   #to(turn: Turn): void {
     this.#turn = turn;
-    this.#hooks.onTurn(turn, false);
+    this.#hooks.onLight(patchOf(turn), false);
     clearTimeout(this.#resting);
     this.#resting = setTimeout(() => this.#finish(), REST);
   }
@@ -94,7 +101,7 @@ export class LightPanel {
     clearTimeout(this.#resting);
     const turn = this.#turn;
     this.#turn = undefined;
-    if (turn) this.#hooks.onTurn(turn, true);
+    if (turn) this.#hooks.onLight(patchOf(turn), true);
   }
 }
 
@@ -107,11 +114,12 @@ class Ball {
     this.element = make("figure", { class: "ball" }, this.canvas, make("figcaption", {}, title));
   }
 
-  show(picture: Picture | null): void {
-    this.element.hidden = picture === null;
-    if (!picture) return;
-    this.canvas.width = picture.width;
-    this.canvas.height = picture.height;
-    this.canvas.getContext("2d")?.putImageData(paintPicture(picture), 0, 0);
+  show(bitmap: ImageBitmap | null): void {
+    this.element.hidden = bitmap === null;
+    if (!bitmap) return;
+    this.canvas.width = bitmap.width;
+    this.canvas.height = bitmap.height;
+    this.canvas.getContext("2d")?.drawImage(bitmap, 0, 0);
+    bitmap.close();
   }
 }

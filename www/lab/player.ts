@@ -2,7 +2,7 @@
 
 import type { Calls } from "../engine/protocol";
 
-type Advance = Calls["advance"]["request"];
+export type Advance = Omit<Calls["advance"]["request"], "look">;
 
 /** Paces of play, slow to fast: the least time between two frames and how long the worker may compute for one. */
 export const paces = [

@@ -165,13 +165,20 @@ export function sampleRequest(settings: Settings): SampleRequest {
   const request = told<SampleRequest>(sampleFields, settings, "sample");
   return {
     surface: text(settings, "surface"),
-    light: text(settings, "light"),
+    light: lightOf(text(settings, "light")),
     ...request,
     // Each empty angle is zero; the library takes its own where it is told of none at all.
     angles: { ...request.angles },
     ...(rendered(settings) ? size(settings) : {}),
   };
 }
+
+/** A light's name, or its 27 numbers as `lightText` writes them. */
+export const lightOf = (text: string): string | number[] => (isLightText(text) ? text.split(" ").map(Number) : text);
+export const isLightText = (text: string): boolean => text.includes(" ");
+
+/** Coefficients for an address: four digits are finer than any eye, and than the sliders. */
+export const lightText = (coefficients: readonly number[]): string => coefficients.map((value) => String(Number(value.toPrecision(4)))).join(" ");
 
 /** By how much the sample's light is turned. */
 export const turnOf = (settings: Settings): { alpha: number; beta: number } => ({ alpha: number(settings, "lightTilt") ?? 0, beta: number(settings, "lightTurn") ?? 0 });

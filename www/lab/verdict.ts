@@ -12,6 +12,12 @@ export interface Verdict {
   next: string;
 }
 
+/** How far a run is, in a few words. */
+export function wordsOf({ status, iteration, pose }: StepReport, truth: Pose | null): string {
+  const off = truth ? `, ${decimals(angleBetween(pose.rotation, truth.rotation), 2)}° off` : "";
+  return `${status === "running" ? `iteration ${iteration}` : ends[status]}${off}`;
+}
+
 /** Degrees within which a pose counts as found, and beyond which it counts as missed. */
 const FOUND = 1;
 const MISSED = 5;

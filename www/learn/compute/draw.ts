@@ -1,6 +1,7 @@
 /** From numbers to the pixels and points of a panel. */
 
-import { paintNormals, paintPicture, paintScalar, type MapName, type Range } from "../../draw/colours";
+import { paintNormals, paintPicture, paintScalar, type MapName } from "../../draw/colours";
+import type { Range } from "../../engine/protocol";
 import type { ImagePanel, Mark, PlotPanel } from "../protocol";
 
 interface Words {

@@ -3,7 +3,8 @@
 import { shadeNormals, turnLight } from "../../../pkg/index.js";
 import type { Drawing, Ink, Values } from "../protocol";
 import { onDisc, pictureOf, plot } from "./draw";
-import { ballNormals, lightNamed, normalAt, numberOf, ofOrder, predicted, scene } from "./scenes";
+import { ballNormals, predicted } from "../../engine/ball";
+import { lightNamed, normalAt, numberOf, ofOrder, scene } from "./scenes";
 
 const BALL = { width: 96, height: 96 };
 const normals = ballNormals(BALL.width);

@@ -1,6 +1,6 @@
 /** Scenes of the lessons, made by the module and kept as long as they are looked at. */
 
-import { Estimator, shadeNormals, sample, type Options, type Sample, type SampleRequest } from "../../../pkg/index.js";
+import { Estimator, sample, type Options, type Sample, type SampleRequest } from "../../../pkg/index.js";
 import type { Values } from "../protocol";
 
 /** The last few scenes: dragging a control that is no part of the scene must not render it anew. */
@@ -47,17 +47,6 @@ export function ofOrder(light: Float64Array, order: 0 | 1 | 2): Float64Array {
   return light.map((value, index) => (index % ORDERS >= first && index % ORDERS < end ? value : 0));
 }
 
-/** Unit normals of a ball that fills a square, NaN outside. */
-export function ballNormals(side: number): Float32Array {
-  const normals = new Float32Array(3 * side * side).fill(NaN);
-  for (let index = 0; index < side * side; index++) {
-    const [x, y] = [index % side, Math.floor(index / side)].map((place) => (2 * place + 1) / side - 1) as [number, number];
-    const rest = 1 - x * x - y * y;
-    if (rest > 0.002) normals.set([x, y, -Math.sqrt(rest)], 3 * index);
-  }
-  return normals;
-}
-
 /** The normal that a visitor points at; one beyond the edge is drawn back to it. */
 export function normalAt(x: number, y: number): [number, number, number] {
   const length = Math.hypot(x, y);
@@ -81,11 +70,6 @@ export const vectorAt = (field: ArrayLike<number>, index: number): [number, numb
 
 /** The logarithm of a pixel's colour. */
 export const logAt = ({ image }: Sample, index: number): [number, number, number] => vectorAt(image.data, index).map((value) => Math.log(value)) as [number, number, number];
-
-/** Linear colours that the image model predicts for these normals, all darker or brighter by e^albedo. */
-export function predicted(light: ArrayLike<number>, normals: Float32Array, albedo = 0): Float32Array {
-  return shadeNormals(light, normals).map((value) => Math.exp(value + albedo));
-}
 
 /** Runs a loop to its end, or so many steps, and frees it whatever happens. */
 export function* running(made: Pick<Sample, "image" | "depth">, options: Options, steps = Infinity): Generator<Estimator> {

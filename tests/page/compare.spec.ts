@@ -1,0 +1,129 @@
+/** A pinned run beside the next one, and a light set number by number. */
+
+import type { Locator } from "@playwright/test";
+import { decode } from "fast-png";
+import { expect, test, type Lab } from "./lab";
+
+const boxOf = (lab: Lab, title: string): Locator => lab.page.locator("figure.view > .canvas", { has: lab.page.locator(`canvas[aria-label^="${title}:"]`) });
+
+/** Share of the pixels of two screenshots that differ, but for the wipe's own line at the right edge. */
+async function differing(box: Locator, before: Buffer): Promise<number> {
+  const [a, b] = [decode(before), decode(await box.screenshot())];
+  expect([b.width, b.height]).toEqual([a.width, a.height]);
+  let count = 0;
+  for (let i = 0; i < a.width * a.height; i++) {
+    if (i % a.width >= a.width - 4) continue;
+    if ([0, 1, 2].some((c) => Math.abs((a.data[i * a.channels + c] ?? 0) - (b.data[i * b.channels + c] ?? 0)) > 8)) count++;
+  }
+  return count / (a.width * a.height);
+}
+
+test("a pinned run stays in the charts, and in the pictures left of the wipe", async ({ lab, page }) => {
+  await lab.open("size=64");
+  await expect(page.getByLabel("wipe")).toBeDisabled();
+  for (const count of ["1", "2"]) {
+    await page.keyboard.press("s");
+    await expect(lab.iteration).toHaveText(count);
+  }
+  const colour = boxOf(lab, "Colour");
+  await page.mouse.move(2, 2);
+  const before = await colour.screenshot();
+  await page.getByRole("button", { name: "Pin this run" }).click();
+  await expect(page.locator("#pinned-words")).toHaveText(/^pinned: iteration 2, \d+\.\d\d° off$/);
+  await expect(page.locator("#objective-chart")).toHaveAttribute("aria-label", /Pinned: objective .*total: from \d/);
+
+  await lab.unfold();
+  await page.getByLabel("Light", { exact: true }).first().selectOption("overcast");
+  await lab.reaches("ready");
+  await page.locator("#input > summary").click();
+  await expect(lab.iteration).toHaveText("0");
+  // Nothing has run since, and yet there are curves: those of the pinned run.
+  await expect(page.locator("#objective-chart")).toHaveAttribute("aria-label", /^Objective over the iterations\. total: none yet.*Pinned: objective .*total: from \d/);
+  await expect(page.locator("#objective-chart .pinned-curve").first()).toBeHidden();
+  const drawn = () => page.locator("#objective-chart canvas").evaluate((canvas: HTMLCanvasElement) => {
+    const { data } = canvas.getContext("2d")?.getImageData(0, 0, canvas.width, canvas.height) ?? new ImageData(1, 1);
+    let coloured = 0;
+    for (let i = 0; i < data.length; i += 4) if ((data[i + 3] ?? 0) > 128 && Math.max(data[i] ?? 0, data[i + 1] ?? 0, data[i + 2] ?? 0) - Math.min(data[i] ?? 0, data[i + 1] ?? 0, data[i + 2] ?? 0) > 60) coloured++;
+    return coloured;
+  });
+  await expect.poll(drawn).toBeGreaterThan(50);
+
+  const wipe = page.getByLabel("wipe");
+  await page.mouse.move(2, 2);
+  await wipe.fill("100");
+  await expect.poll(() => differing(colour, before)).toBeLessThan(0.005);
+  await wipe.fill("0");
+  await expect.poll(() => differing(colour, before)).toBeGreaterThan(0.2);
+  const present = await colour.screenshot();
+  await wipe.fill("50");
+  await expect.poll(() => differing(colour, before)).toBeGreaterThan(0.1);
+  await expect.poll(() => differing(colour, present)).toBeGreaterThan(0.1);
+
+  await page.getByRole("button", { name: "Unpin" }).click();
+  await expect(page.locator(".pinned")).toHaveCount(0);
+  await expect.poll(drawn).toBe(0);
+});
+
+test("a pinned picture of another size lies where its pixels belong", async ({ lab, page }) => {
+  await lab.open("size=128");
+  const colour = boxOf(lab, "Colour");
+  await page.mouse.move(2, 2);
+  await page.getByRole("button", { name: "Pin this run" }).click();
+  await lab.unfold();
+  await page.getByLabel("Size", { exact: true }).selectOption("64");
+  await lab.reaches("ready");
+  await page.locator("#input > summary").click();
+  const wipe = page.getByLabel("wipe");
+  await wipe.fill("0");
+  await page.mouse.move(2, 2);
+  const small = await colour.screenshot();
+  await wipe.fill("100");
+  // The same object under the same light: only its edges and the finer shading differ.
+  await expect.poll(() => differing(colour, small)).toBeLessThan(0.5);
+  expect(await differing(colour, small)).toBeGreaterThan(0.001);
+});
+
+test("each number of the light has a slider: the picture follows, and undo brings it back", async ({ lab, page }) => {
+  await lab.open("size=64");
+  const before = await lab.fingerprint("Colour");
+  await page.getByText("All 27 coefficients").click();
+  const sliders = page.locator("#coefficients").getByRole("slider");
+  await expect(sliders).toHaveCount(27);
+  const slider = page.getByRole("slider", { name: "red, x", exact: true });
+  // That of the built-in light.
+  await expect(slider).toHaveValue("0.7");
+  await slider.evaluate((input: HTMLInputElement) => {
+    input.value = "-0.5";
+    input.dispatchEvent(new Event("input", { bubbles: true }));
+  });
+  await expect.poll(() => lab.fingerprint("Colour")).not.toBe(before);
+  await expect(page).toHaveURL(/light=-1\.2\+0\.1\+-0\.9\+-0\.5\+/);
+  await lab.reaches("ready");
+  await expect(slider).toHaveValue("-0.5");
+  const changed = await lab.fingerprint("Colour");
+  await lab.unfold();
+  await expect(page.getByLabel("Light", { exact: true }).first()).toHaveValue(/^-1\.2 0\.1 /);
+  await page.getByRole("button", { name: "Undo" }).click();
+  await expect.poll(() => lab.fingerprint("Colour")).toBe(before);
+  await expect(slider).toHaveValue("0.7");
+  await page.getByRole("button", { name: "Redo" }).click();
+  await expect.poll(() => lab.fingerprint("Colour")).toBe(changed);
+  // A link brings it back.
+  const link = page.url();
+  await page.goto("about:blank");
+  await page.goto(link);
+  await lab.reaches("ready");
+  expect(await lab.fingerprint("Colour")).toBe(changed);
+  // And a light by name takes its place.
+  await lab.unfold();
+  await page.getByLabel("Light", { exact: true }).first().selectOption("colourful");
+  await expect.poll(() => lab.fingerprint("Colour")).toBe(before);
+});
+
+test("a slider that is focused says its number", async ({ lab, page }) => {
+  await lab.open("size=32&lighting=estimate");
+  await expect(page.getByText("All 27 coefficients")).toBeVisible();
+  await page.getByText("All 27 coefficients").click();
+  await page.locator("#coefficients").getByRole("slider", { name: "green, z²", exact: true }).focus();
+  await expect(page.locator("#coefficients output")).toHaveText("green, z²: −0.10");
+});

@@ -1,0 +1,42 @@
+/** What a view showed in the pinned run, over what it shows now: the style sheet cuts it where the wipe stands. */
+
+import { make } from "../dom";
+import type { Painted } from "../engine/protocol";
+
+type Place = Omit<Painted, "bitmap">;
+
+export class Pinned {
+  readonly #shown: HTMLCanvasElement;
+  #kept: { canvas: HTMLCanvasElement; place: Place } | undefined;
+
+  constructor(shown: HTMLCanvasElement) {
+    this.#shown = shown;
+  }
+
+  keep({ bitmap: _, ...place }: Painted): void {
+    this.drop();
+    const { width, height } = this.#shown;
+    const canvas = make("canvas", { width, height });
+    canvas.getContext("2d")?.drawImage(this.#shown, 0, 0);
+    this.#shown.after(make("div", { class: "pinned", "aria-hidden": "true" }, canvas));
+    this.#kept = { canvas, place };
+    this.place(place);
+  }
+
+  drop(): void {
+    this.#kept?.canvas.parentElement?.remove();
+    this.#kept = undefined;
+  }
+
+  /** Lays it where its pixels belong among those that are shown: both are parts of a view, by shares of its sides. */
+  place(now: Place): void {
+    if (!this.#kept) return;
+    const { canvas, place } = this.#kept;
+    for (const [edge, side, first] of [["left", "width", "left"], ["top", "height", "top"]] as const) {
+      const share = (value: number, { full }: Place) => value / full[side];
+      const span = share(now[side] * now.stride, now);
+      canvas.style[edge] = `${(100 * (share(place[first], place) - share(now[first], now))) / span}%`;
+      canvas.style[side] = `${(100 * share(place[side] * place.stride, place)) / span}%`;
+    }
+  }
+}

@@ -1,0 +1,61 @@
+/** Paints one view: the module's layers by the module, what it has no layer for by the page. What is painted leaves the worker as a bitmap. */
+
+import type { DrawOptions, Estimator, Layer } from "../../pkg/index.js";
+import type { Painted, Surface } from "./protocol";
+import { gridOf, type Cut } from "./rasters";
+
+export function contextOf(width: number, height: number): OffscreenCanvasRenderingContext2D {
+  // It is written to and read from pixel by pixel, which a graphics card is bad at.
+  const context = new OffscreenCanvas(width, height).getContext("2d", { willReadFrequently: true });
+  if (!context) throw new Error("This browser draws nothing in a worker.");
+  return context;
+}
+
+export class Easel {
+  readonly #frame: Omit<Painted, "bitmap">;
+  /** The drawn part, and all of the view, for the module to paint. */
+  readonly #part: OffscreenCanvasRenderingContext2D;
+  #whole: OffscreenCanvasRenderingContext2D | undefined;
+
+  constructor(cut: Cut) {
+    const { fullWidth, fullHeight } = cut;
+    this.#frame = { ...gridOf(cut), full: { width: fullWidth, height: fullHeight } };
+    this.#part = contextOf(this.#frame.width, this.#frame.height);
+    // Each drawn pixel is one of the view's, and no mean of several.
+    this.#part.imageSmoothingEnabled = false;
+  }
+
+  /** A layer of the module. */
+  layer(estimator: Estimator, layer: Layer, options: DrawOptions = {}): this {
+    const { left, top, width, height, stride, full } = this.#frame;
+    this.#whole ??= contextOf(full.width, full.height);
+    estimator.draw(this.#whole, layer, options);
+    // A pixel is picked in the middle of each block, which has to be the first of a stride.
+    const before = (stride - 1) / 2;
+    this.#part.drawImage(this.#whole.canvas, left - before, top - before, width * stride, height * stride, 0, 0, width, height);
+    return this;
+  }
+
+  picture(pixels: ImageData): this {
+    this.#part.putImageData(pixels, 0, 0);
+    return this;
+  }
+
+  /** RGB of what stands on the easel at a surface's points; what is clear there is grey. */
+  colours({ width, height, stride }: Omit<Surface, "colours">): Uint8Array | null {
+    if (width === 0) return null;
+    const step = stride / this.#frame.stride;
+    const { data } = this.#part.getImageData(0, 0, this.#frame.width, this.#frame.height);
+    const colours = new Uint8Array(3 * width * height).fill(128);
+    for (let to = 0; to < width * height; to++) {
+      const from = 4 * step * (Math.floor(to / width) * this.#frame.width + (to % width));
+      if (data[from + 3]) colours.set(data.subarray(from, from + 3), 3 * to);
+    }
+    return colours;
+  }
+
+  /** Takes it off; the easel is then empty. */
+  take(): Painted {
+    return { ...this.#frame, bitmap: this.#part.canvas.transferToImageBitmap() };
+  }
+}

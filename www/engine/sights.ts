@@ -1,0 +1,114 @@
+/** All that is seen of one experiment: its pictures and its surfaces. Runs in the worker. */
+
+import type { ColorImage, DepthMap, Estimator, Layer, Pose, Sample } from "../../pkg/index.js";
+import { automaticRange, paintLog, paintPicture, paintScalar, type MapName } from "../draw/colours";
+import { Easel } from "./easel";
+import { Errors, type ErrorName } from "./errors";
+import type { Numbers } from "./numbers";
+import { SCALES, VIEWS, type Look, type Painted, type Range, type Raster, type ScaleName, type Side, type Sights, type Surface, type Texture, type ViewName } from "./protocol";
+import { cutOfDepth, cutOfImage, depthAt, measured, picture, raster, surface, whiteOf, type Cut } from "./rasters";
+
+/** The range of a view that has no values. */
+const NOTHING: Range = { min: 0, max: 1 };
+/** What cannot be negative, and should be zero. */
+const isError = (scale: ScaleName): boolean => scale === "residual" || scale.endsWith("Error");
+const mapOf = (scale: ScaleName): MapName => (isError(scale) ? "magma" : "viridis");
+
+/** Never without a width. */
+const wide = ({ min, max }: Range): Range => (max > min ? { min, max } : { min: min - 0.5, max: min + 0.5 });
+
+/** Which picture colours which surface. */
+const TEXTURE_OF: Record<Texture, Partial<Record<Side, ViewName>>> = {
+  view: {},
+  picture: { image: "picture" },
+  normals: { image: "imageNormals", depth: "depthNormals" },
+  residual: { image: "residual" },
+};
+
+/** The input of a run, and what comes out of it. */
+export interface Run {
+  image: ColorImage;
+  depth: DepthMap;
+  estimator: Estimator;
+  numbers: Numbers;
+  scenery: Scenery;
+}
+
+export class Scenery {
+  readonly #cuts: Record<Side, Cut>;
+  readonly #easels: Record<Side, Easel>;
+  readonly #picture: ImageData;
+  readonly #errors: Errors | undefined;
+  /** Those that were painted last. */
+  errors: Partial<Record<ErrorName, Raster>> = {};
+  /** How the given depth was painted last: it is the same until its range changes. */
+  #given: Range | undefined;
+
+  /** `truth` is what a sample is measured against. */
+  constructor({ image, depth }: Pick<Run, "image" | "depth">, truth?: Sample["truth"]) {
+    this.#cuts = { image: cutOfImage(image), depth: cutOfDepth(depth) };
+    this.#easels = { image: new Easel(this.#cuts.image), depth: new Easel(this.#cuts.depth) };
+    this.#errors = truth && new Errors(truth, this.#cuts);
+    this.#picture = paintPicture(picture(image, this.#cuts.image));
+  }
+
+  /** The colour image as it came. */
+  given(): Painted {
+    return this.#easels.image.picture(this.#picture).take();
+  }
+
+  /** Everything, but for what stays as it was unless it is asked for `anew`. */
+  show(run: Run, look: Look, poses: { points: Pose; seen: Pose }, anew: boolean): Sights {
+    const { estimator, numbers, depth } = run;
+    const [imageDepth, refined] = [numbers.of("imageDepth"), numbers.of("refinedDepth")];
+    const surfaces: Record<Side, Surface> = {
+      image: { ...surface(numbers.points("image"), imageDepth, this.#cuts.image), colours: null },
+      depth: { ...surface(numbers.points("depth"), refined, this.#cuts.depth), colours: null },
+    };
+    const ranges = Object.fromEntries(SCALES.map((scale) => [scale, wide(look.ranges[scale] ?? NOTHING)])) as Record<ScaleName, Range>;
+    const fit = (scale: ScaleName, data: () => Float32Array): Range => {
+      const found = look.ranges[scale] ? undefined : automaticRange({ data: data() });
+      if (found) ranges[scale] = wide(isError(scale) ? { min: 0, max: found.max } : found);
+      return ranges[scale];
+    };
+    const views: Sights["views"] = {};
+    const show = (name: ViewName, paint: (easel: Easel) => Easel): void => {
+      const side = VIEWS[name];
+      const easel = paint(this.#easels[side]);
+      if (TEXTURE_OF[look.texture][side] === name) surfaces[side].colours = easel.colours(surfaces[side]);
+      views[name] = easel.take();
+    };
+    const layer = (name: ViewName, layer: Layer, scale?: ScaleName): void => {
+      const options = scale && { range: [ranges[scale].min, ranges[scale].max] as const, map: mapOf(scale) };
+      show(name, (easel) => easel.layer(estimator, layer, options));
+    };
+    fit("imageDepth", () => imageDepth);
+    fit("refinedDepth", () => refined);
+    fit("residual", () => numbers.of("residual"));
+
+    if (anew || look.texture === "picture") show("picture", (easel) => easel.picture(this.#picture));
+    layer("imageNormals", "normals");
+    layer("imageDepth", "depth", "imageDepth");
+    layer("residual", "residual", "residual");
+    layer("refinedDepth", "refined", "refinedDepth");
+    layer("depthNormals", "refinedNormals");
+    for (const name of ["albedo", "shading"] as const) {
+      const log = raster(numbers.of(name), 3, this.#cuts.image);
+      show(name, (easel) => easel.picture(paintLog(log, whiteOf(log))));
+    }
+    // Led by the refined depth, from which flying pixels are trimmed: they would stretch the range.
+    const range = ranges.refinedDepth;
+    if (anew || range.min !== this.#given?.min || range.max !== this.#given.max) {
+      this.#given = range;
+      const at = measured(this.#cuts.depth, depthAt(depth));
+      show("given", (easel) => easel.picture(paintScalar(at, range, mapOf("refinedDepth"))));
+    }
+    if (this.#errors) {
+      this.errors = this.#errors.of(numbers);
+      for (const [name, error] of Object.entries(this.errors) as [ErrorName, Raster][]) {
+        show(name, (easel) => easel.picture(paintScalar(error, fit(name, () => error.data), mapOf(name))));
+      }
+    }
+    return { views, ranges, surfaces, poses };
+  }
+}
