@@ -119,6 +119,8 @@ export interface Sights {
 export interface Frame extends Sights {
   /** One for each step since the last frame, the newest last. */
   reports: StepReport[];
+  /** While the search goes on: alpha, beta, gamma and score of each rotation so far. */
+  scores: Float32Array;
   /** A ball under the light that was found, and by what factors it differs from the true one. */
   light: { found: ImageBitmap; difference: ImageBitmap | null };
 }

@@ -72,7 +72,7 @@ function sights(run: OpenInput, look: Look, anew = false): Sights {
 
 function frame(run: OpenInput, look: Look, reports: StepReport[], anew = false): Frame {
   const found = run.estimator.light();
-  return { ...sights(run, look, anew), reports, light: { found: lit(found), difference: run.light ? ratio(found, run.light) : null } };
+  return { ...sights(run, look, anew), reports, scores: run.estimator.searchScores(), light: { found: lit(found), difference: run.light ? ratio(found, run.light) : null } };
 }
 
 const known = (light: Float64Array): KnownLight => ({ ball: lit(light), coefficients: light.slice() });

@@ -16,6 +16,7 @@ import { PoseTable } from "./posetable";
 import { Rivals } from "./rivals";
 import { fields, inputGroups, methodOf, runOptions, turnOf, type Origin, type Settings } from "./settings";
 import { download, linkTo, writeAddress } from "./share";
+import { ScoreMap } from "./scoremap";
 import { rememberOrigin, sourceOf } from "./source";
 import { saveBlob } from "../save";
 import { Store } from "./store";
@@ -40,6 +41,7 @@ export class Lab {
   readonly #rivals: Rivals;
   readonly #light: LightPanel;
   readonly #compare: Compare;
+  readonly #scores = new ScoreMap();
   /** The light to be looked at next, while one is being looked at: what it changes in the settings. */
   #trying: Settings | undefined;
   #previewing = false;
@@ -360,6 +362,7 @@ export class Lab {
   #forget(): void {
     this.#history = [];
     this.#from = undefined;
+    this.#scores.clear();
   }
 
   #isFinished(): boolean {
@@ -371,8 +374,9 @@ export class Lab {
     return this.gallery.show(frame, this.#history);
   }
 
-  #take({ reports, light }: Frame): void {
+  #take({ reports, light, scores }: Frame): void {
     this.#light.show(light);
+    this.#scores.show(scores, this.#truth);
     for (const report of reports) {
       // The first of a run: a search has found its pose before the first iteration.
       this.#from ??= report.pose;
