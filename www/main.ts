@@ -11,6 +11,7 @@ import { defaults, fromLink, toLink, type Origin, type Settings } from "./lab/se
 import { writeAddress } from "./lab/share";
 import { asksToPlay, placeOf, type Place } from "./place";
 
+import { keepForOffline } from "./offline/offline";
 import { themeToggle } from "./theme";
 
 const button = (id: string, action: () => void): void => byId(id, HTMLButtonElement).addEventListener("click", action);
@@ -219,3 +220,4 @@ drawer.addEventListener("keydown", (event) => {
 // A link opened in this very tab changes nothing but the part after #.
 addEventListener("hashchange", () => void arrive());
 void arrive();
+void keepForOffline(byId("offline", HTMLElement));
