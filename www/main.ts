@@ -211,12 +211,17 @@ for (const each of document.querySelectorAll<HTMLButtonElement>("#takeaway butto
 }
 
 const drawer = byId("input", HTMLDetailsElement);
+function closeDrawer(): void {
+  drawer.open = false;
+  drawer.querySelector("summary")?.focus();
+}
 drawer.addEventListener("keydown", (event) => {
   if (event.key !== "Escape" || !drawer.open) return;
   event.stopPropagation();
-  drawer.open = false;
-  drawer.querySelector("summary")?.focus();
+  closeDrawer();
 });
+// On small screens the settings lie over what has opened them.
+button("close-settings", closeDrawer);
 // A link opened in this very tab changes nothing but the part after #.
 addEventListener("hashchange", () => void arrive());
 void arrive();

@@ -16,12 +16,12 @@ function fileOf(url, below, folder) {
   return existsSync(path) && statSync(path).isFile() ? path : undefined;
 }
 
-/** Serves the folder, and says at which address; port 0 is any that is free. */
-export function serveSite({ port, below, folder = inRoot(SITE) }) {
+/** Serves the folder, and says at which address; port 0 is any that is free. Headers are for those who try what a host may add. */
+export function serveSite({ port, below, folder = inRoot(SITE), headers = {} }) {
   const server = createServer(({ url }, response) => {
     const path = fileOf(url, below, folder);
     if (!path) return response.writeHead(404).end();
-    response.writeHead(200, { "Content-Type": TYPES[extname(path)] ?? "application/octet-stream", "Content-Length": statSync(path).size });
+    response.writeHead(200, { ...headers, "Content-Type": TYPES[extname(path)] ?? "application/octet-stream", "Content-Length": statSync(path).size });
     createReadStream(path).pipe(response);
   });
   return new Promise((done, failed) => {

@@ -5,6 +5,7 @@ import { cpSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:f
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import type { BrowserContext, Page } from "@playwright/test";
+import { POLICY } from "../../scripts/site/build.mjs";
 import { serveSite } from "../../scripts/site/serve.mjs";
 import { expect, test } from "./lab";
 import { answerChecks } from "./rig";
@@ -140,6 +141,25 @@ test("a newer version is told of, taken at the next visit, and nothing of the ol
   } finally {
     close();
     rmSync(folder, { recursive: true });
+  }
+});
+
+test("under the headers that docs/hosting.md suggests it runs as well, isolated", async ({ lab, page }) => {
+  expect(readFileSync(new URL("../../docs/hosting.md", import.meta.url), "utf8")).toContain(`Content-Security-Policy "${POLICY}"`);
+  const headers = { "Content-Security-Policy": POLICY, "Cross-Origin-Opener-Policy": "same-origin", "Cross-Origin-Embedder-Policy": "require-corp", "X-Content-Type-Options": "nosniff" };
+  const { address, close } = await serveSite({ port: 0, below: "/", headers });
+  try {
+    const refused = await refusals(page);
+    for (const [place, lives] of PLACES) {
+      await page.goto("about:blank");
+      await page.goto(new URL(place, address).href);
+      expect(await page.evaluate(() => crossOriginIsolated)).toBe(true);
+      await lives(page);
+    }
+    expect(refused).toEqual([]);
+    expect(lab.complaints).toEqual([]);
+  } finally {
+    close();
   }
 });
 

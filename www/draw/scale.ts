@@ -51,7 +51,7 @@ export class Scale {
     const min = end("min");
     const max = end("max");
     const unit = make("span", { class: "unit" });
-    const auto = make("button", { type: "button", class: "quiet", "aria-pressed": "true", "aria-label": `${name}: range follows the values` }, "auto");
+    const auto = make("button", { type: "button", class: "quiet", "aria-pressed": "true", "aria-label": `${name}: range follows the values, auto` }, "auto");
     auto.addEventListener("click", () => {
       this.#fixed = this.#fixed ? null : this.#automatic;
       this.#tell();
