@@ -40,13 +40,17 @@ async function lab(lab: Lab, page: Page): Promise<void> {
   await lab.unfold();
   for (const summary of await page.locator("#input details > summary").all()) if (await summary.isVisible()) await summary.click();
   await clean(page, "settings");
-  await page.locator("#fields-method .hint:visible").first().click();
-  await expect(page.locator("#explanation")).toBeVisible();
-  await clean(page, "an explanation");
-  await page.keyboard.press("Escape");
+  const hint = page.locator("#fields-method .hint:visible").first();
+  await hint.click();
+  await expect(hint).toHaveAttribute("aria-expanded", "true");
+  await clean(page, "a field explained");
   await page.getByRole("button", { name: "Own files" }).click();
   await clean(page, "own files");
-  await page.locator("#input > summary").click();
+  await page.getByRole("button", { name: "Close settings" }).click();
+  await page.locator("#stages button").first().click();
+  await expect(page.locator("#explanation")).toBeVisible();
+  await clean(page, "a stage explained");
+  await page.keyboard.press("Escape");
   await page.locator("#help-button").click();
   await clean(page, "help");
 }

@@ -115,7 +115,7 @@ export class Heat {
     const paper = this.#panel.paper?.(cell);
     button.replaceChildren(
       make("span", { class: "heat-value" }, caption(state, value)),
-      ...(paper === undefined ? [] : [make("span", { class: "heat-paper" }, short(paper))]),
+      ...(paper === undefined ? [] : [make("span", { class: "heat-paper", "data-shown": short(paper) })]),
       ...(mark ? [make("span", { class: "mark", "data-mark": mark.kind, "aria-hidden": "true" }, mark.glyph)] : []),
     );
     const where = whereIs(this.#panel, cell);
