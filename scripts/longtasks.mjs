@@ -10,7 +10,7 @@ import { serveSite } from "./site/serve.mjs";
 
 const SCENES = [
   { name: "128 x 128", state: "size=128" },
-  { name: "640 x 480", state: "size=640&height=480&start=truth&lighting=known" },
+  { name: "640 x 480", state: "size=640x480&start=truth&lighting=known" },
 ];
 /** Steps of a run that are watched; those of a large view take long. */
 const STEPS = 6;
