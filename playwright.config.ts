@@ -4,6 +4,9 @@ import { defineConfig } from "@playwright/test";
 /** `npm test` names a free port, so that two checkouts can be tested at once. */
 const PORT = Number(process.env.PAGE_PORT ?? 4199);
 
+/** The built page, as a host may have it: below some folder of its own. */
+const FOLDER = "/some/folder/";
+
 /** Playwright's own browsers come from elsewhere; the system's serves as well. */
 const chromium = process.env.CHROMIUM ?? ["/usr/bin/chromium", "/usr/bin/google-chrome"].find((path) => existsSync(path));
 
@@ -17,7 +20,9 @@ export default defineConfig({
   timeout: 300_000,
   expect: { timeout: 100_000, toPass: { timeout: 200_000 } },
   use: {
-    baseURL: `http://127.0.0.1:${PORT}/`,
+    baseURL: `http://127.0.0.1:${PORT}${FOLDER}`,
+    // What a service worker answers, tests that stand in for a server could not; tests/page/site.spec.ts lets it in.
+    serviceWorkers: "block",
     viewport: { width: 1280, height: 800 },
     launchOptions: {
       ...(chromium ? { executablePath: chromium } : {}),
@@ -26,8 +31,8 @@ export default defineConfig({
     },
   },
   webServer: {
-    command: `npx vite build www && npx vite preview www --host 127.0.0.1 --port ${PORT} --strictPort`,
-    url: `http://127.0.0.1:${PORT}/`,
+    command: `node scripts/site/serve.mjs ${PORT} ${FOLDER}`,
+    url: `http://127.0.0.1:${PORT}${FOLDER}`,
     reuseExistingServer: false,
     timeout: 300_000,
   },

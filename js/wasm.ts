@@ -8,10 +8,13 @@ const PROBE = Uint8Array.of(
   ...[0x0a, 0x0a, 0x01, 0x08, 0x00, 0x41, 0x00, 0xfd, 0x0f, 0xfd, 0x62, 0x0b], // i32.const 0, i8x16.splat, i8x16.popcnt
 );
 
+/** Whether this machine has 128-bit SIMD. */
+export const hasSimd = (): boolean => WebAssembly.validate(PROBE);
+
 /** Where the .wasm is that `init()` loads: the one with 128-bit SIMD if this machine has it, else the scalar one. */
 export function wasmUrl(): URL {
   // Each written out in one piece: bundlers look for exactly this to carry the files along.
-  return WebAssembly.validate(PROBE)
+  return hasSimd()
     ? new URL("./bimodal_stereo_bg.wasm", import.meta.url)
     : new URL("./bimodal_stereo_scalar_bg.wasm", import.meta.url);
 }

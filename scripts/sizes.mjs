@@ -2,6 +2,7 @@
 import { existsSync, readFileSync, readdirSync } from "node:fs";
 import { gzipSync } from "node:zlib";
 import { Failure, inRoot } from "./shell.mjs";
+import { SITE, buildSite } from "./site/build.mjs";
 
 /** Most bytes of either wasm, gzipped; a visitor downloads one of them: two and a half seconds on a slow phone's 1 Mbit/s. */
 export const WASM_BUDGET = 320_000;
@@ -12,7 +13,7 @@ export const CHECK_BUDGET = 150_000;
 
 const WASM = "pkg/bimodal_stereo_bg.wasm";
 const SCALAR = "pkg/bimodal_stereo_scalar_bg.wasm";
-const PAGE = "www/dist";
+const PAGE = SITE;
 const zipped = (path) => gzipSync(readFileSync(path)).length;
 
 /** What the page imports at once from another file, and what it imports when it is asked for or names as a file of numerics. */
@@ -59,10 +60,7 @@ function checkFiles() {
 }
 
 /** Builds the page that is measured. */
-export async function buildPage() {
-  const { build } = await import("vite");
-  await build({ root: inRoot("www"), configFile: inRoot("www/vite.config.ts"), logLevel: "warn" });
-}
+export const buildPage = buildSite;
 
 /** Bytes of the built package and the built page. */
 export function sizes() {

@@ -12,6 +12,7 @@ import { linkTo, onLook, showLooks, writeAddress } from "./lab/share";
 import { wasOwn } from "./lab/source";
 import { asksToPlay, isEmbedded, placeOf, type Place } from "./place";
 
+import { keepForOffline } from "./offline/offline";
 import { themeToggle } from "./theme";
 
 const button = (id: string, action: () => void): void => byId(id, HTMLButtonElement).addEventListener("click", action);
@@ -225,11 +226,14 @@ for (const each of document.querySelectorAll<HTMLButtonElement>("#takeaway butto
 }
 
 const drawer = byId("input", HTMLDetailsElement);
+function closeDrawer(): void {
+  drawer.open = false;
+  drawer.querySelector("summary")?.focus();
+}
 drawer.addEventListener("keydown", (event) => {
   if (event.key !== "Escape" || !drawer.open) return;
   event.stopPropagation();
-  drawer.open = false;
-  drawer.querySelector("summary")?.focus();
+  closeDrawer();
 });
 // A reload comes back to the visitor's own files.
 if (placeOf(location.hash) === "lab" && wasOwn() && !asksToPlay(location.hash)) {
@@ -237,6 +241,9 @@ if (placeOf(location.hash) === "lab" && wasOwn() && !asksToPlay(location.hash)) 
   choose("files");
 }
 onLook(() => writeAddress(store.settings));
+// On small screens the settings lie over what has opened them.
+button("close-settings", closeDrawer);
 // A link opened in this very tab changes nothing but the part after #.
 addEventListener("hashchange", () => void arrive());
 void arrive();
+void keepForOffline(byId("offline", HTMLElement));

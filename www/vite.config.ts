@@ -12,5 +12,5 @@ export default defineConfig({
   // The package lies beside this folder, where the development server would not look.
   server: { fs: { allow: [".."] } },
   // three.js is one such chunk, and loads only when the clouds come into view.
-  build: { target: "es2023", chunkSizeWarningLimit: 600, rollupOptions: { input: [page("index.html"), page("shortest.html")] } },
+  build: { outDir: "../site", emptyOutDir: true, target: "es2023", chunkSizeWarningLimit: 600, rollupOptions: { input: [page("index.html"), page("shortest.html")] } },
 });

@@ -88,10 +88,10 @@ function watch() {
 
 /** How smoothly the page runs while it plays. */
 export async function playing(chromium, address) {
-  const context = await chromium.newContext({ viewport: { width: 1280, height: 800 } });
+  const context = await chromium.newContext({ viewport: { width: 1280, height: 800 }, serviceWorkers: "block" });
   const page = await context.newPage();
   await page.addInitScript(watch);
-  await page.goto(`${address}/www/dist/#size=${PLAYED_SIZE}`);
+  await page.goto(`${address}/site/#size=${PLAYED_SIZE}`);
   await page.waitForSelector('#status[data-state="ready"]', { timeout: 60_000 });
   // What loads late is there by then.
   await page.waitForTimeout(2000);
@@ -110,10 +110,10 @@ export async function playing(chromium, address) {
  * copying and sending. `drawing`: what its animation frames kept the main thread busy with, all canvases, clouds and charts.
  */
 export async function drawings(chromium, address, times) {
-  const context = await chromium.newContext({ viewport: { width: 1280, height: 800 } });
+  const context = await chromium.newContext({ viewport: { width: 1280, height: 800 }, serviceWorkers: "block" });
   const page = await context.newPage();
   await page.addInitScript(recordFrames);
-  await page.goto(`${address}/www/dist/#${DRAWN}`);
+  await page.goto(`${address}/site/#${DRAWN}`);
   const status = () => page.evaluate(() => document.querySelector("#status").dataset.state);
   const ready = () => page.waitForSelector('#status[data-state="ready"]');
   await ready();

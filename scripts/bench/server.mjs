@@ -7,7 +7,7 @@ import { inRoot } from "../shell.mjs";
 const TYPES = { ".html": "text/html", ".js": "text/javascript", ".css": "text/css", ".wasm": "application/wasm", ".svg": "image/svg+xml" };
 const ISOLATED = { "Cross-Origin-Opener-Policy": "same-origin", "Cross-Origin-Embedder-Policy": "require-corp" };
 /** Folders that a bench has business in. */
-const SERVED = /^\/(pkg|scripts\/bench\/page|target\/bench|www\/dist)\//;
+const SERVED = /^\/(pkg|scripts\/bench\/page|target\/bench|site)\//;
 
 /** Its address, and how to end it. */
 export function serve() {

@@ -46,7 +46,7 @@ export class Scale {
     const min = end("min");
     const max = end("max");
     const unit = make("span", { class: "unit" });
-    const auto = make("button", { type: "button", class: "quiet", "aria-pressed": "true", "aria-label": `${name}: range follows the values` }, "auto");
+    const auto = make("button", { type: "button", class: "quiet", "aria-pressed": "true", "aria-label": `${name}: range follows the values, auto` }, "auto");
     auto.addEventListener("click", () => {
       this.#isFixed = !this.#isFixed;
       this.#tell();

@@ -180,7 +180,7 @@ export class Gallery {
     // The tenth has the key 0; those after it have none.
     const key = number > 10 ? "+" : String(number % 10);
     const hint = number > 10 ? "Enlarge" : `Enlarge (${key})`;
-    const button = make("button", { type: "button", class: "quiet enlarge", "aria-pressed": "false", "aria-label": `Enlarge ${title}`, title: hint }, key);
+    const button = make("button", { type: "button", class: "quiet enlarge", "aria-pressed": "false", "aria-label": number > 10 ? `Enlarge ${title}` : `Enlarge ${title}, key ${key}`, title: hint }, key);
     button.addEventListener("click", () => this.enlarge(number));
     figure.querySelector("figcaption")?.prepend(button);
     if (parent) byId(parent, HTMLElement).append(figure);

@@ -2,6 +2,8 @@
 
 import "../style/learn.css";
 import "../style/embed.css";
+import "../style/learn-figure.css";
+import "../style/learn-slides.css";
 import { make } from "../dom";
 import { saveJson } from "../save";
 import { Controls } from "./controls";
@@ -126,8 +128,8 @@ export class LearnPage {
     const readouts = new Readouts(lesson.readouts);
     const alert = make("p", { class: "alert", role: "alert", hidden: true });
     const number = lessons.indexOf(lesson) + 1;
-    const formula = make("div", { class: "learn-formula", role: "group", "aria-label": lesson.formulaWords }, lesson.formula());
-    const box = make("section", { class: "learn-figure", "aria-label": "Figure", "aria-busy": "true" }, alert, controls.element, readouts.element, figure.element);
+    const formula = make("div", { class: "learn-formula", role: "group", tabindex: "0", "aria-label": lesson.formulaWords }, lesson.formula());
+    const box = make("section", { class: "card learn-figure", "aria-label": "Figure", "aria-busy": "true" }, alert, controls.element, readouts.element, figure.element);
     const embed = new Embed(`${number}. ${lesson.title}`);
     box.append(embed.source);
     const slides = make("button", { type: "button", class: "learn-slides-button" }, "Slides");

@@ -29,7 +29,7 @@ export class Overlay {
   readonly element = make("section", { class: "rig-card rig-overlay", "aria-label": "Overlay" });
   readonly #rig: Rig;
   readonly #image = make("canvas", { "aria-hidden": "true" });
-  readonly #layer = make("canvas", { role: "img", class: "rig-overlay-layer" });
+  readonly #layer = make("canvas", { role: "img", class: "rig-overlay-layer", "aria-label": "Depth map on the colour image, not drawn yet" });
   readonly #board = make("div", { class: "rig-overlay-board", tabindex: "0", role: "group", "aria-label": "Picture, scrolls when enlarged" });
   readonly #picture = make("div", { class: "rig-overlay-picture" });
   readonly #frame: HTMLSelectElement;

@@ -155,7 +155,7 @@ const percent = (share: number): string => `${(100 * share).toFixed(0)} %`;
 export function sharesCard({ report }: Run, history: readonly { frames: number; pixels: number; interval: [number, number] }[]): HTMLElement {
   const frame = ({ name, share, note }: CheckReport["frames"][number]) => make("tr", {}, make("th", { scope: "row" }, name), make("td", {}, bar(share)), make("td", {}, percent(share)), make("td", { class: "rig-note" }, note ?? ""));
   const cue = ([name, { share, sharpness }]: [string, { share: number; sharpness: number }]) => make("tr", {}, make("th", { scope: "row" }, CUES[name] ?? name), make("td", {}, bar(share)), make("td", {}, percent(share)), make("td", {}, sharpness > 0 ? `± ${decimals(1 / sharpness, 2)} px` : "tells nothing"));
-  const table = (caption: string, last: string, rows: HTMLElement[]) => make("table", { class: "rig-table rig-shares" }, make("caption", {}, caption), make("thead", { class: "visually-hidden" }, make("tr", {}, ...["Name", "", "Share", last].map((words) => make("th", { scope: "col" }, words)))), make("tbody", {}, ...rows));
+  const table = (caption: string, last: string, rows: HTMLElement[]) => make("table", { class: "rig-table rig-shares" }, make("caption", {}, caption), make("thead", { class: "visually-hidden" }, make("tr", {}, ...["Name", "As a bar", "Share", last].map((words) => make("th", { scope: "col" }, words)))), make("tbody", {}, ...rows));
   const runs = history.map(({ frames, pixels, interval: range }) => make("li", {}, `${frames} ${frames === 1 ? "frame" : "frames"}: ${px(pixels)} (${interval(range)})`));
   return make(
     "section",

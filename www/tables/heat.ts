@@ -46,7 +46,7 @@ export function inWords(panel: Panel, state: State | undefined): string {
     case "done": {
       const value = panel.value(state.result);
       const mark = markOf(state);
-      return `${value === undefined ? "no value" : `${short(value)}${panel.unit}`}${mark ? `, ${mark.words}` : ""}`;
+      return `${value === undefined ? "no value" : `${brief(value)}${panel.unit}`}${mark ? `, ${mark.words}` : ""}`;
     }
   }
 }
@@ -115,7 +115,7 @@ export class Heat {
     const paper = this.#panel.paper?.(cell);
     button.replaceChildren(
       make("span", { class: "heat-value" }, caption(state, value)),
-      ...(paper === undefined ? [] : [make("span", { class: "heat-paper" }, short(paper))]),
+      ...(paper === undefined ? [] : [make("span", { class: "heat-paper", "data-shown": short(paper) })]),
       ...(mark ? [make("span", { class: "mark", "data-mark": mark.kind, "aria-hidden": "true" }, mark.glyph)] : []),
     );
     const where = whereIs(this.#panel, cell);
@@ -157,6 +157,9 @@ export class Heat {
 }
 
 /** Nothing yet is a dash, never a zero. */
+/** In the narrow cells of a phone an exponent has room for one digit; what is said agrees with what is seen. */
+const brief = (value: number): string => (value > 0 && value < 1e-3 ? value.toExponential(0) : short(value));
+
 function caption(state: State | undefined, value: number | undefined): string {
   switch (state?.kind) {
     case "waiting":
@@ -166,8 +169,7 @@ function caption(state: State | undefined, value: number | undefined): string {
     case "failed":
       return "failed";
     case "done":
-      // In the narrow cells of a phone an exponent has room for one digit.
-      return value === undefined ? "none" : value > 0 && value < 1e-3 ? value.toExponential(0) : short(value);
+      return value === undefined ? "none" : brief(value);
     case undefined:
       return "–";
   }

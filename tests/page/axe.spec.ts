@@ -1,0 +1,125 @@
+/** What axe-core finds on every screen, in dark and in light: nothing. */
+
+import { readFileSync } from "node:fs";
+import { createRequire } from "node:module";
+import type { Page } from "@playwright/test";
+import { expect, test, type Lab } from "./lab";
+import { answerChecks } from "./rig";
+
+const AXE = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
+
+interface Axe {
+  run(context: Document): Promise<{ violations: { id: string; help: string; nodes: { target: string[]; failureSummary: string }[] }[] }>;
+}
+
+/** All rules, those of good practice included, with the places that break them. */
+async function findings(page: Page): Promise<string[]> {
+  // Over the tools' own line: a policy without eval lets no document do this to itself.
+  await page.evaluate(AXE);
+  return page.evaluate(async () => {
+    const { violations } = await (window as unknown as { axe: Axe }).axe.run(document);
+    return violations.flatMap(({ id, nodes }) => nodes.map(({ target, failureSummary }) => `${id}: ${target.join(" ")}: ${failureSummary.replace(/\s+/g, " ")}`));
+  });
+}
+
+const ENDS = /^(converged|ambiguous|lost|max-iterations)$/;
+
+/** Soft: one screen's findings do not hide the next one's. */
+const clean = async (page: Page, screen: string): Promise<void> => expect.soft(await findings(page), screen).toEqual([]);
+
+async function lab(lab: Lab, page: Page): Promise<void> {
+  await lab.visit("size=64");
+  await expect(page.locator("#clouds-note")).toBeHidden();
+  await expect(page.locator("#objective-chart canvas")).toBeVisible();
+  await clean(page, "before a run");
+  await page.getByRole("button", { name: "Play" }).click();
+  await expect(lab.iteration).not.toHaveText("0");
+  await clean(page, "while it runs");
+  await expect(page.locator("#status")).toHaveAttribute("data-state", ENDS);
+  await clean(page, "after a run");
+  await lab.unfold();
+  for (const summary of await page.locator("#input details > summary").all()) if (await summary.isVisible()) await summary.click();
+  await clean(page, "settings");
+  const hint = page.locator("#fields-method .hint:visible").first();
+  await hint.click();
+  await expect(hint).toHaveAttribute("aria-expanded", "true");
+  await clean(page, "a field explained");
+  await page.getByRole("button", { name: "Own files" }).click();
+  await clean(page, "own files");
+  await page.getByRole("button", { name: "Close settings" }).click();
+  await page.locator("#stages button").first().click();
+  await expect(page.locator("#explanation")).toBeVisible();
+  await clean(page, "a stage explained");
+  await page.keyboard.press("Escape");
+  await page.locator("#help-button").click();
+  await clean(page, "help");
+}
+
+async function poseLost(lab: Lab, page: Page): Promise<void> {
+  await lab.visit("light=overcast&size=32&noise=0.2&beta=60&overlap=0.2");
+  await page.getByLabel("Speed").selectOption({ label: "fastest" });
+  await page.getByRole("button", { name: "Play" }).click();
+  await lab.reaches("lost");
+  await clean(page, "a pose that is lost");
+}
+
+const settled = (page: Page) => expect(page.locator(".learn-figure")).toHaveAttribute("aria-busy", "false");
+
+async function learn(page: Page): Promise<void> {
+  await page.goto("./#learn");
+  await settled(page);
+  const links = await page.locator(".learn-contents a").evaluateAll((all) => all.map((link) => link.getAttribute("href") ?? ""));
+  expect(links).toHaveLength(10);
+  for (const link of links) {
+    await page.goto(`./${link}`);
+    if (!link.endsWith("exercises")) await settled(page);
+    else await expect(page.locator(".learn-exercises")).toBeVisible();
+    await clean(page, link);
+  }
+  await page.goto("./#learn&at=pose&slides");
+  await settled(page);
+  await clean(page, "slides");
+}
+
+async function tables(page: Page): Promise<void> {
+  await page.goto("./#tables");
+  await expect(page.getByRole("heading", { name: "Table 1" }).first()).toBeVisible();
+  await clean(page, "before anything has run");
+  await page.locator(".heat-cell").first().click();
+  await expect(page.locator("#tables .heat-cell[data-value]").first()).toBeVisible();
+  await clean(page, "one cell");
+}
+
+async function rig(page: Page): Promise<void> {
+  await answerChecks(page, "off");
+  await page.goto("./#rig");
+  await clean(page, "files, none yet");
+  await page.getByRole("button", { name: "Load an example" }).click();
+  await expect(page.locator(".rig-frame")).toHaveCount(3);
+  await clean(page, "files");
+  await page.getByRole("button", { name: "Next: your calibration" }).click();
+  await clean(page, "calibrations");
+  await page.getByRole("button", { name: "Run the check" }).click();
+  await expect(page.locator(".rig-bar").first()).toBeVisible();
+  await clean(page, "verdict");
+}
+
+async function rivals(lab: Lab, page: Page): Promise<void> {
+  await lab.visit("surface=vase&light=window&beta=30&size=64&noise=0.08");
+  await page.getByLabel("Speed").selectOption({ label: "fastest" });
+  await page.getByRole("button", { name: "Play" }).click();
+  await lab.reaches("ambiguous");
+  await clean(page, "a pose with a rival");
+}
+
+for (const colorScheme of ["dark", "light"] as const) {
+  test.describe(`in ${colorScheme} colours`, () => {
+    test.use({ colorScheme, contextOptions: { reducedMotion: "reduce" } });
+    test("the Lab before, while and after a run, with its settings and help", ({ lab: opened, page }) => lab(opened, page));
+    test("a Lab whose pose is lost", ({ lab: opened, page }) => poseLost(opened, page));
+    test("a Lab whose pose has a rival", ({ lab: opened, page }) => rivals(opened, page));
+    test("every lesson, the exercises and a slide", ({ page }) => learn(page));
+    test("the Tables, and a cell of theirs", ({ page }) => tables(page));
+    test("the three steps of Check a rig", ({ page }) => rig(page));
+  });
+}

@@ -1,0 +1,104 @@
+/** Fingers, keys, and whoever wants less motion. */
+
+import type { Page } from "@playwright/test";
+import { expect, test } from "./lab";
+import { answerChecks } from "./rig";
+
+/** The least side of what a finger has to hit, px (WCAG 2.5.5); half a pixel is rounding. */
+const TARGET = 43.5;
+
+/** Controls that are smaller; links within a sentence are as high as its line, and a box to be ticked is hit by its label. */
+const small = (page: Page): Promise<string[]> =>
+  page.evaluate((least) => {
+    const controls = [...document.querySelectorAll<HTMLElement>("a[href], button, select, summary, input, [tabindex='0']")];
+    return controls.flatMap((control) => {
+      const isBox = control.matches("[type=checkbox], [type=radio], [type=file]");
+      const target = (isBox && (control as HTMLInputElement).labels?.[0]) || control;
+      const { width, height } = target.getBoundingClientRect();
+      const isSeen = control.checkVisibility({ visibilityProperty: true }) && width > 0 && control.id !== "skip";
+      const isInSentence = control.matches("p a, li a") && getComputedStyle(control).display === "inline";
+      if (!isSeen || isInSentence || (width >= least && height >= least)) return [];
+      return [`${control.tagName} ${control.id || control.className} ${control.textContent?.trim()}: ${Math.round(width)}x${Math.round(height)}`];
+    });
+  }, TARGET);
+
+test.describe("by touch", () => {
+  test.use({ hasTouch: true, isMobile: true, viewport: { width: 390, height: 844 } });
+
+  test("whatever is to be pressed is as large as a finger", async ({ lab, page }) => {
+    await lab.visit("size=48");
+    expect(await page.evaluate(() => matchMedia("(pointer: coarse)").matches)).toBe(true);
+    expect(await small(page), "the Lab").toEqual([]);
+    await page.locator("#input > summary").tap();
+    for (const summary of await page.locator("#input details > summary").all()) if (await summary.isVisible()) await summary.tap();
+    expect(await small(page), "settings").toEqual([]);
+    // They lie over the button that has opened them.
+    await page.getByRole("button", { name: "Close settings" }).tap();
+    await expect(page.getByRole("button", { name: "Close settings" })).toBeHidden();
+    for (const id of ["pixel", "pose", "paint", "exercises"]) {
+      await page.goto(`./#learn&at=${id}`);
+      await expect(page.locator(id === "exercises" ? ".learn-exercises" : `[data-lesson="${id}"]`)).toBeVisible();
+      expect(await small(page), id).toEqual([]);
+    }
+    await page.goto("./#tables");
+    await expect(page.locator(".heat-cell").first()).toBeVisible();
+    expect(await small(page), "the Tables").toEqual([]);
+  });
+
+  test("so it is where a rig is checked", async ({ page }) => {
+    await answerChecks(page, "off");
+    await page.goto("./#rig");
+    await page.getByRole("button", { name: "Load an example" }).tap();
+    await expect(page.locator(".rig-frame")).toHaveCount(3);
+    expect(await small(page), "files").toEqual([]);
+    await page.getByRole("button", { name: "Next: your calibration" }).tap();
+    expect(await small(page), "calibrations").toEqual([]);
+    await page.getByRole("button", { name: "Run the check" }).tap();
+    await expect(page.locator(".rig-bar").first()).toBeVisible();
+    expect(await small(page), "verdict").toEqual([]);
+  });
+});
+
+test("single keys are switched off for good, where that is asked for", async ({ lab, page }) => {
+  await lab.open("size=32");
+  await page.locator("#help-button").click();
+  await page.getByLabel("Single keys are on").uncheck();
+  await page.reload();
+  await lab.reaches("ready");
+  await page.keyboard.press("?");
+  await expect(page.getByRole("dialog")).toBeHidden();
+  await page.locator("#help-button").click();
+  await expect(page.getByLabel("Single keys are on")).not.toBeChecked();
+});
+
+test("the tab key goes through the page as it is used: places, examples, settings, inputs, surfaces, outcome, numbers, player", async ({ lab, page }) => {
+  await lab.open("size=32");
+  const parts = ["#skip", ".top", ".lead", "#inputs", "#hero", "#outcome", "#views", "#numbers", "#bar"];
+  const met: string[] = [];
+  for (let press = 0; press < 120 && met.at(-1) !== "#bar"; press++) {
+    await page.keyboard.press("Tab");
+    const part = await page.evaluate((parts) => parts.find((part) => document.activeElement?.closest(part)), parts);
+    if (part && met.at(-1) !== part) met.push(part);
+  }
+  expect(met).toEqual(parts);
+});
+
+test("who wants less motion gets no show, and surfaces that do not swing", async ({ lab, page }) => {
+  await page.emulateMedia({ reducedMotion: "reduce" });
+  await page.goto("./");
+  await lab.reaches("ready");
+  await expect(lab.iteration).toHaveText("0");
+  expect(await page.evaluate(() => document.getAnimations().length)).toBe(0);
+});
+
+for (const width of [320, 390, 1280, 1600, 2560]) {
+  test(`neither the Tables nor Check a rig stick out at ${width} px, nor the page's last line`, async ({ page }) => {
+    await page.setViewportSize({ width, height: 800 });
+    for (const place of ["tables", "rig"]) {
+      await page.goto(`./#${place}`);
+      await expect(page.locator(`#${place} h2`).first()).toBeVisible();
+      expect(await page.evaluate(() => document.documentElement.scrollWidth), place).toBeLessThanOrEqual(width);
+      await expect(page.getByText("there are no analytics")).toBeVisible();
+    }
+  });
+}

@@ -1,0 +1,20 @@
+/** Has the page's files kept for a visit without a network, and says how that stands. The development server has no such files. */
+
+export async function keepForOffline(line: HTMLElement): Promise<void> {
+  if (!import.meta.env.PROD || !("serviceWorker" in navigator)) return;
+  // The first run comes first.
+  if (document.readyState !== "complete") await new Promise((loaded) => addEventListener("load", loaded, { once: true }));
+  try {
+    const registration = await navigator.serviceWorker.register("./sw.js");
+    const tell = (): void => {
+      if (registration.waiting) line.textContent = "A newer version is ready: close every tab of this page, and open it again.";
+      else if (registration.active) line.textContent = "It works offline.";
+    };
+    const follow = (worker: ServiceWorker | null): void => worker?.addEventListener("statechange", tell);
+    follow(registration.installing);
+    registration.addEventListener("updatefound", () => follow(registration.installing));
+    tell();
+  } catch {
+    // Private windows, and pages that are not served over https, have none: the page then needs its network.
+  }
+}
