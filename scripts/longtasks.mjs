@@ -1,7 +1,7 @@
 // npm run longtasks: the longest tasks of the page's main thread in the Lab, in a headless browser, on site/ as it is built from pkg/.
 //   Tasks over 50 ms are printed, with when they began. Nothing is judged: a busy machine makes them longer, so that no test is made of it.
 // Told apart: the page's own start (its scripts are evaluated, three.js and uPlot among them, loaded after the first paint), and what
-// follows: a run at the default pace, a step at the fastest, and a slider.
+// follows: steps, a run at the default pace, one view alone, the other colours.
 import { chromium } from "@playwright/test";
 import { browser } from "./browser.mjs";
 import { script, say } from "./shell.mjs";
@@ -14,6 +14,8 @@ const SCENES = [
 ];
 /** Steps of a run that are watched; those of a large view take long. */
 const STEPS = 6;
+/** How long a run is watched, ms. */
+const PLAYED = 8000;
 
 function watch() {
   window.tasks = [];
@@ -47,6 +49,9 @@ await script(async () => {
       await page.waitForTimeout(1500);
     }
     say(`${name}, ${STEPS} steps: ${words(await taken(page))}`);
+    await page.keyboard.press(" ");
+    await page.waitForTimeout(PLAYED);
+    say(`${name}, played: ${words(await taken(page))}`);
     await page.keyboard.press("1");
     await page.waitForTimeout(500);
     await page.keyboard.press("1");

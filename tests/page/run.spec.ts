@@ -200,3 +200,28 @@ test("other threads share the search where the machine has them", async ({ lab, 
   test.skip(threads < 2, "needs two processors");
   await expect.poll(() => workers.length).toBe(Math.min(threads, 4) - 1);
 });
+
+test("the search fills a map of scores, whose best rotation is near the true one; a new run empties it", async ({ lab, page }) => {
+  await lab.visit("surface=bust&light=colourful&size=64&beta=30");
+  const map = page.locator("#score-map");
+  await expect(map).toBeHidden();
+  await page.getByLabel("Speed").selectOption({ label: "fastest" });
+  await page.getByRole("button", { name: "Play" }).click();
+  await expect(map).toBeVisible();
+  await lab.reaches("converged");
+  await expect(page.locator("#score-words")).toHaveText(/: \d{3} tried; white: best, orange: true/);
+  const canvas = page.getByRole("img", { name: /^Scores of \d+ rotations; the best turns by/ });
+  const [, about] = /by (−?\d+) degrees about the vertical/.exec((await canvas.getAttribute("aria-label")) ?? "") ?? [];
+  // Rotations lie 16 degrees apart.
+  expect(Math.abs(Number(about?.replace("−", "-")) - 30)).toBeLessThanOrEqual(16);
+  // At the true turn the map is yellow, at its corner nothing was tried.
+  const colours = await canvas.evaluate((element: HTMLCanvasElement) => {
+    const at = (x: number, y: number) => [...(element.getContext("2d")?.getImageData(x, y, 1, 1).data ?? [])];
+    return { truth: at(Math.round(((30 + 105) / 210) * element.width), element.height / 2), corner: at(1, 1) };
+  });
+  expect(colours.truth[0]).toBeGreaterThan(100);
+  expect(colours.truth[1]).toBeGreaterThan(150);
+  expect(colours.corner[3]).toBe(0);
+  await page.getByRole("button", { name: "Reset" }).click();
+  await expect(map).toBeHidden();
+});
