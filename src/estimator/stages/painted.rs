@@ -133,8 +133,13 @@ pub fn conclude(
 /// paint point elsewhere the two are rivals.
 fn doubt(contrast: &mut ContrastOutcome, plain: Option<&PhotometricReport>) {
     contrast.best.uncertainty.widen(COARSE_INFLATION);
-    let other = plain.filter(|plain| plain.pose.degrees_to(&contrast.best.pose) >= SAME_POSE);
-    contrast.rivals.extend(other.map(|other| other.pose));
+    rival(contrast, plain.map(|plain| plain.pose));
+}
+
+/// A pose by the colours, if it is another one, beside contrast's.
+pub fn rival(contrast: &mut ContrastOutcome, by_colours: Option<Similarity>) {
+    let best = contrast.best.pose;
+    contrast.rivals.extend(by_colours.filter(|pose| pose.degrees_to(&best) >= SAME_POSE));
 }
 
 /// Which of the two has the pose.

@@ -139,7 +139,7 @@ impl RegistrationStage {
         found: Option<PhotometricReport>,
         present: &Similarity,
     ) -> Option<Registered> {
-        let is_painted = found.as_ref().is_none_or(|found| outlines::is_painted(found));
+        let is_painted = found.as_ref().is_none_or(|found| outlines::is_painted(pair, found));
         if is_painted
             && pair.options.registration == Registration::Joint
             && let Some(outlined) = outlines::anywhere(pair, self.colours.as_ref()?.normals())

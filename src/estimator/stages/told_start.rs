@@ -107,12 +107,13 @@ impl TrustRegion {
         {
             return Ok(Settled::ByColours(Box::new(found.clone())));
         }
-        let plain = colours.take_found().map(Box::new);
+        let plain = colours.take_found().map(Box::new).filter(|found| self.holds(&found.pose));
+        let noisy = plain.as_deref().filter(|found| leaves_noise(pair, found)).map(|found| found.pose);
         let mut optima = LocalOptima::new(MOST_TRIED + 4, pair.image.log_spread(), pair.image.log_noise());
         if let Some(staying) = colours.judge(pair, &self.told) {
             optima.enter(STAYING, RegisteredCandidate::of(staying));
         }
-        if let Some(plain) = plain.filter(|found| self.holds(&found.pose)) {
+        if let Some(plain) = plain {
             optima.enter(0, RegisteredCandidate::of(plain));
         }
         let outlined = self.by_outlines(pair, colours);
@@ -131,14 +132,16 @@ impl TrustRegion {
                     colours.adopt((*found).clone());
                     return Ok(Settled::ByColours(found));
                 }
-                Conclusion::ByContrast(found) if self.holds(&found.best.pose) => {
+                Conclusion::ByContrast(mut found) if self.holds(&found.best.pose) => {
+                    // What leaves no more than the image's own noise is a rival, however much of it neighbours share.
+                    painted::rival(&mut found, noisy);
                     return Ok(Settled::ByContrast(found));
                 }
                 _ => {}
             }
         }
         match (best, outlined) {
-            (Some(best), outlined) if !outlines::is_painted(&best) || outlined.is_none() => {
+            (Some(best), outlined) if !outlines::is_painted(pair, &best) || outlined.is_none() => {
                 self.by_all_points(pair, colours, *best)
             }
             (_, Some(outlined)) => Ok(Settled::ByOutlines(Box::new(outlined))),
@@ -229,11 +232,15 @@ impl TrustRegion {
     }
 }
 
-/// Whether hardly more than the image's own noise is left of the colours. Fine print is noise to an image, but not to neighbours.
+/// Whether a pose explains the colours: fine print is noise to an image, but not to neighbours.
 fn explains(pair: &ViewPair, found: &PhotometricReport) -> bool {
+    leaves_noise(pair, found) && !outlines::is_painted(pair, found)
+}
+
+/// Whether hardly more than the image's own noise is left of the colours.
+fn leaves_noise(pair: &ViewPair, found: &PhotometricReport) -> bool {
     let image = &pair.image;
-    let least = (EXPLAINED_NOISE * image.log_noise()).max(EXPLAINED_SHARE * image.log_spread());
-    found.noise <= least && !outlines::is_painted(found)
+    found.noise <= (EXPLAINED_NOISE * image.log_noise()).max(EXPLAINED_SHARE * image.log_spread())
 }
 
 /// Root mean square distance of the depth points from their middle.
