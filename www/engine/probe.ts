@@ -3,7 +3,7 @@
 import type { ColorImage } from "../../pkg/index.js";
 import type { Pixel, Probed, Raster, Side } from "./protocol";
 import { depthAt, placesOf } from "./rasters";
-import type { Run } from "./sights";
+import type { Run } from "./drawings";
 
 /** How far, in pixels of the depth map, the counterpart of one of its pixels may lie from it: not each is hit by a pixel of the image. */
 const NEAR = 2;
@@ -72,7 +72,7 @@ function pointOf(points: Float32Array, depth: Float32Array, index: number): numb
 }
 
 export function probe(run: Run, side: Side, pixel: Pixel): Probed {
-  const { image, depth, numbers, estimator, scenery } = run;
+  const { image, depth, numbers, estimator, painter } = run;
   const at = indices(run, side, pixel);
   const [mine, theirs] = [at.image, at.depth];
   const [albedo, shading] = [three(numbers.of("albedo"), mine), three(numbers.of("shading"), mine)];
@@ -93,7 +93,7 @@ export function probe(run: Run, side: Side, pixel: Pixel): Probed {
     values.depthNormals = depthNormal ?? [];
   }
   const pixels = { image: mine < 0 ? null : pixelOf(mine, image.width), depth: theirs < 0 ? null : pixelOf(theirs, depth.width) };
-  const { normalError, depthError, refinementError } = scenery.errors;
+  const { normalError, depthError, refinementError } = painter.errors;
   values.normalError = one(drawnAt(normalError, pixels.image));
   values.depthError = one(drawnAt(depthError, pixels.image));
   values.refinementError = one(drawnAt(refinementError, pixels.depth));

@@ -107,7 +107,7 @@ export interface Painted extends Pick<Raster, "left" | "top" | "width" | "height
 }
 
 /** All that is drawn, but for what does not change with a step. */
-export interface Sights {
+export interface Drawings {
   views: Partial<Record<ViewName, Painted>>;
   ranges: Record<ScaleName, Range>;
   surfaces: Record<Side, Surface>;
@@ -116,7 +116,7 @@ export interface Sights {
 }
 
 /** Everything that changes with a step. */
-export interface Frame extends Sights {
+export interface Frame extends Drawings {
   /** One for each step since the last frame, the newest last. */
   reports: StepReport[];
   /** While the search goes on: alpha, beta, gamma and score of each rotation so far. */
@@ -198,7 +198,7 @@ export interface Calls {
   take: { request: Record<never, never>; reply: Taken };
   preview: { request: { source: SampleSource }; reply: Preview };
   reset: { request: { options: LabOptions; look: Look }; reply: Frame };
-  look: { request: { look: Look }; reply: Sights };
+  look: { request: { look: Look }; reply: Drawings };
   probe: { request: { side: Side; pixel: Pixel }; reply: Probed };
   /** Steps until the time is up, at least one; a stage is always a single one. */
   advance: { request: { by: "step" | "stage"; milliseconds: number; look: Look }; reply: Frame };

@@ -3,7 +3,7 @@
 import { shadeNormals } from "../../pkg/index.js";
 import { paintLog } from "../draw/colours";
 import { ballNormals } from "./ball";
-import { contextOf } from "./easel";
+import { contextOf } from "./canvas";
 
 /** Pixels across the ball's picture. */
 const SIDE = 72;

@@ -2,11 +2,11 @@
 
 import init, { BimodalError, Estimator, sample, sampleLights, sampleSurfaces, turnLight, wasmUrl } from "../../pkg/index.js";
 import type { Options, Pose, Sample, SampleRequest, StepReport } from "../../pkg/index.js";
-import type { Answer, Calls, Frame, Kind, KnownLight, Look, OwnFiles, Request, LabOptions, Preview, SampleSource, Sights } from "./protocol";
+import type { Answer, Calls, Frame, Kind, KnownLight, Look, OwnFiles, Request, LabOptions, Preview, SampleSource, Drawings } from "./protocol";
 import { faultOf } from "./fault";
 import { Numbers } from "./numbers";
 import { probe } from "./probe";
-import { Scenery, type Run } from "./sights";
+import { ViewPainter, type Run } from "./drawings";
 import { lit, ratio } from "./sphere";
 
 interface Input extends Pick<Run, "image" | "depth"> {
@@ -63,16 +63,16 @@ const firstOf = (points: Float32Array): number[] => [...points.subarray(0, 3)];
 
 const startOf = (estimator: Estimator, numbers: Numbers): OpenInput["start"] => ({ pose: estimator.report.pose, first: firstOf(numbers.points("depth")) });
 
-function sights(run: OpenInput, look: Look, anew = false): Sights {
-  const { estimator, numbers, scenery, start } = run;
+function drawings(run: OpenInput, look: Look, anew = false): Drawings {
+  const { estimator, numbers, painter, start } = run;
   const { pose } = estimator.report;
   const isAtStart = firstOf(numbers.points("depth")).every((value, i) => value === start.first[i]);
-  return scenery.show(run, look, { points: isAtStart ? start.pose : pose, seen: pose }, anew);
+  return painter.show(run, look, { points: isAtStart ? start.pose : pose, seen: pose }, anew);
 }
 
 function frame(run: OpenInput, look: Look, reports: StepReport[], anew = false): Frame {
   const found = run.estimator.light();
-  return { ...sights(run, look, anew), reports, scores: run.estimator.searchScores(), light: { found: lit(found), difference: run.light ? ratio(found, run.light) : null } };
+  return { ...drawings(run, look, anew), reports, scores: run.estimator.searchScores(), light: { found: lit(found), difference: run.light ? ratio(found, run.light) : null } };
 }
 
 const known = (light: Float64Array): KnownLight => ({ ball: lit(light), coefficients: light.slice() });
@@ -83,7 +83,7 @@ async function open({ source, options, look }: Calls["open"]["request"]): Promis
   const estimator = new Estimator(opened.image, opened.depth, resolve(options, opened));
   experiment?.estimator.free();
   const numbers = new Numbers(estimator);
-  experiment = { ...opened, estimator, numbers, start: startOf(estimator, numbers), scenery: new Scenery(opened, opened.shapes) };
+  experiment = { ...opened, estimator, numbers, start: startOf(estimator, numbers), painter: new ViewPainter(opened, opened.shapes) };
   return {
     units: { image: opened.image.camera ? "m" : "px", depth: opened.depth.camera ? "m" : "px" },
     notes: opened.notes,
@@ -122,7 +122,7 @@ function take(): Calls["take"]["reply"] {
 
 function preview({ source }: Calls["preview"]["request"]): Preview {
   const { image, depth, light } = sample(requestOf(source));
-  return { picture: new Scenery({ image, depth }).given(), trueLight: known(light) };
+  return { picture: new ViewPainter({ image, depth }).given(), trueLight: known(light) };
 }
 
 /** The decoders are large and only needed here, so they load with the first file. */
@@ -187,7 +187,7 @@ function answer(request: Request): Promise<Calls[Kind]["reply"]> | Calls[Kind]["
     case "reset":
       return reset(request);
     case "look":
-      return sights(opened(), request.look, true);
+      return drawings(opened(), request.look, true);
     case "probe":
       return probe(opened(), request.side, request.pixel);
     case "advance":

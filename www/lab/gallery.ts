@@ -9,11 +9,11 @@ import { Probe, type Asked } from "../draw/probe";
 import { Scale } from "../draw/scale";
 import { View, type Content } from "../draw/view";
 import { byId, make } from "../dom";
-import { SCALES, TEXTURES, type Frame, type Look, type Opened, type Painted, type Probed, type ScaleName, type Sights, type Texture, type ViewName } from "../engine/protocol";
+import { SCALES, TEXTURES, type Frame, type Look, type Opened, type Painted, type Probed, type ScaleName, type Drawings, type Texture, type ViewName } from "../engine/protocol";
 
 /** What the pictures need of the worker; nothing comes of it where there is nothing to be seen. */
 export interface GalleryHooks {
-  look(look: Look): Promise<Sights | undefined>;
+  look(look: Look): Promise<Drawings | undefined>;
   probe(asked: Asked): Promise<Probed | undefined>;
 }
 
@@ -30,7 +30,7 @@ export class Gallery {
   #units: Opened["units"] = { image: "px", depth: "px" };
   #clouds: Clouds | undefined;
   #charts: Charts | undefined;
-  #sights: Sights | undefined;
+  #drawings: Drawings | undefined;
   #history: readonly StepReport[] = [];
   #pinned: readonly StepReport[] = [];
   /** Whether the surfaces are to be looked at anew. */
@@ -81,8 +81,8 @@ export class Gallery {
     this.#isLooking = true;
     while (this.#looksAgain) {
       this.#looksAgain = false;
-      const sights = await this.#hooks.look(this.look);
-      if (sights) this.#see(sights);
+      const drawings = await this.#hooks.look(this.look);
+      if (drawings) this.#see(drawings);
     }
     this.#isLooking = false;
   }
@@ -127,12 +127,12 @@ export class Gallery {
     return this.#painter.drawn();
   }
 
-  #see(sights: Sights): void {
-    this.#sights = sights;
+  #see(drawings: Drawings): void {
+    this.#drawings = drawings;
     const { image, depth } = this.#units;
     const units: Partial<Record<ViewName, string>> = { imageDepth: image, residual: "log", given: depth, refinedDepth: depth, normalError: "°", depthError: image, refinementError: depth };
-    for (const name of SCALES) this.#scales[name].follow(sights.ranges[name]);
-    for (const [name, painted] of Object.entries(sights.views) as [ViewName, Painted][]) this.#views[name].show(painted, units[name]);
+    for (const name of SCALES) this.#scales[name].follow(drawings.ranges[name]);
+    for (const [name, painted] of Object.entries(drawings.views) as [ViewName, Painted][]) this.#views[name].show(painted, units[name]);
     this.#showClouds();
   }
 
@@ -187,10 +187,10 @@ export class Gallery {
   }
 
   #showClouds(): void {
-    const [sights, clouds] = [this.#sights, this.#clouds];
-    if (!sights || !clouds) return;
+    const [drawings, clouds] = [this.#drawings, this.#clouds];
+    if (!drawings || !clouds) return;
     const fresh = this.#fresh;
-    this.#painter.request(clouds, () => clouds.show(sights.surfaces, sights.poses.points, sights.poses.seen, fresh));
+    this.#painter.request(clouds, () => clouds.show(drawings.surfaces, drawings.poses.points, drawings.poses.seen, fresh));
     this.#fresh = false;
   }
 

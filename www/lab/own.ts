@@ -9,7 +9,7 @@ import { Session } from "../rig/session";
 import type { Slot } from "./intake";
 import { sniffed } from "./kind";
 import type { Value } from "./settings";
-import type { Files } from "./shelf";
+import type { Files } from "./storage";
 
 /** What a file turned out to be. */
 export interface Look {

@@ -2,7 +2,7 @@
 
 import { Intake, type Slot } from "./intake";
 import type { Value } from "./settings";
-import type { Files } from "./shelf";
+import type { Files } from "./storage";
 
 export interface OwnFilesHooks {
   /** Other files than before. */
@@ -40,7 +40,7 @@ export class OwnFiles {
     if (this.#restored) return;
     this.#restored = true;
     const before = this.#hands;
-    const { kept } = await import("./shelf");
+    const { kept } = await import("./storage");
     const files = await kept().catch(() => new Map<string, File>());
     if (files.size > 0 && this.#hands === before) this.intake.putAll(files as Map<Slot, File>);
   }
@@ -69,7 +69,7 @@ export class OwnFiles {
   async #keep(): Promise<void> {
     const files: Files = { ...this.intake.files };
     if (Object.keys(files).length === 0) return this.#forget();
-    const { forget, keep, reasonOf } = await import("./shelf");
+    const { forget, keep, reasonOf } = await import("./storage");
     try {
       await keep(files);
       this.intake.keeping("These files are kept in this browser, on this machine, until you forget them; a reload brings them back.", true);
@@ -81,7 +81,7 @@ export class OwnFiles {
   }
 
   async #forget(): Promise<void> {
-    const { forget } = await import("./shelf");
+    const { forget } = await import("./storage");
     const isDone = await forget().then(() => true, () => false);
     if (Object.keys(this.intake.files).length > 0) return;
     this.intake.keeping(isDone ? "Nothing is kept in this browser." : "The browser's storage does not answer: what it may hold of this page, its own settings clear.", false);

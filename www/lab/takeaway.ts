@@ -5,7 +5,7 @@ import { byId } from "../dom";
 import type { Taken } from "../engine/protocol";
 import { sha256 } from "../hash";
 import type { Kind } from "./kinds";
-import type { PackAnswer, PackRequest, Packed } from "./packer";
+import type { FileAnswer, FileRequest, LargeKind } from "./files-thread";
 import { dataUrlOf, pngOf, shownIn } from "./pictures";
 import { numbersOf } from "./posetable";
 import { optionsInWords, type Origin, type Settings } from "./settings";
@@ -36,10 +36,10 @@ export interface Made {
 const made = (name: string, type: string, part: BlobPart, says?: string): Made => ({ name, blob: new Blob([part], { type }), ...(says === undefined ? {} : { says }) });
 
 /** Made in a thread of its own. */
-function packed(kind: Packed, taken: Taken): Promise<Extract<PackAnswer, { bytes: Uint8Array }>> {
-  const worker = new Worker(new URL("./packer.ts", import.meta.url), { type: "module" });
-  const answer = new Promise<Extract<PackAnswer, { bytes: Uint8Array }>>((resolve, reject) => {
-    worker.onmessage = ({ data }: MessageEvent<PackAnswer>) => ("fault" in data ? reject(new Error(data.fault.message)) : resolve(data));
+function madeApart(kind: LargeKind, taken: Taken): Promise<Extract<FileAnswer, { bytes: Uint8Array }>> {
+  const worker = new Worker(new URL("./files-thread.ts", import.meta.url), { type: "module" });
+  const answer = new Promise<Extract<FileAnswer, { bytes: Uint8Array }>>((resolve, reject) => {
+    worker.onmessage = ({ data }: MessageEvent<FileAnswer>) => ("fault" in data ? reject(new Error(data.fault.message)) : resolve(data));
     worker.onerror = (event) => {
       event.preventDefault();
       reject(new Error(event.message || "what makes the file could not be loaded."));
@@ -47,13 +47,13 @@ function packed(kind: Packed, taken: Taken): Promise<Extract<PackAnswer, { bytes
   });
   const { imagePoints, depthPoints, image, depth } = taken;
   const arrays = [imagePoints, depthPoints, image.normals, depth.refined, depth.normals];
-  worker.postMessage({ kind, taken } satisfies PackRequest, [...new Set(arrays.map(({ buffer }) => buffer as ArrayBuffer))]);
+  worker.postMessage({ kind, taken } satisfies FileRequest, [...new Set(arrays.map(({ buffer }) => buffer as ArrayBuffer))]);
   return answer.finally(() => worker.terminate());
 }
 
 const hasNormals = (normals: Float32Array): boolean => normals.some((value) => Number.isFinite(value) && value !== 0);
 
-const FILES: Readonly<Record<Packed, { name: string; type: string }>> = {
+const FILES: Readonly<Record<LargeKind, { name: string; type: string }>> = {
   clouds: { name: "clouds.ply", type: "application/octet-stream" },
   depth: { name: "refined-depth.npy", type: "application/octet-stream" },
   depthPng: { name: "refined-depth.png", type: "image/png" },
@@ -106,7 +106,7 @@ export async function fileOfKind(kind: Kind, run: Run): Promise<Made> {
       // The first iteration finds them.
       const normals = { normals: image.normals, depthNormals: depth.normals, clouds: undefined, depth: undefined, depthPng: undefined }[kind];
       if (normals && !hasNormals(normals)) throw new Error("there are no normals yet; press Step or Play first.");
-      const { bytes, says } = await packed(kind, run.taken);
+      const { bytes, says } = await madeApart(kind, run.taken);
       return made(FILES[kind].name, FILES[kind].type, bytes, says);
     }
   }

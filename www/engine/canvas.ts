@@ -11,7 +11,7 @@ export function contextOf(width: number, height: number): OffscreenCanvasRenderi
   return context;
 }
 
-export class Easel {
+export class ViewCanvas {
   readonly #frame: Omit<Painted, "bitmap">;
   /** The drawn part, and all of the view, for the module to paint. */
   readonly #part: OffscreenCanvasRenderingContext2D;
@@ -41,7 +41,7 @@ export class Easel {
     return this;
   }
 
-  /** RGB of what stands on the easel at a surface's points; what is clear there is grey. */
+  /** RGB of what stands on the canvas at a surface's points; what is clear there is grey. */
   colours({ width, height, stride }: Omit<Surface, "colours">): Uint8Array | null {
     if (width === 0) return null;
     const step = stride / this.#frame.stride;
@@ -54,7 +54,7 @@ export class Easel {
     return colours;
   }
 
-  /** Takes it off; the easel is then empty. */
+  /** Takes it off; the canvas is then empty. */
   take(): Painted {
     return { ...this.#frame, bitmap: this.#part.canvas.transferToImageBitmap() };
   }

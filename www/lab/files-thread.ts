@@ -1,17 +1,17 @@
-/** The thread that makes large files: a page that packs a cloud answers no press meanwhile. One request and it is done. */
+/** The thread that makes large files: while it writes a cloud a page answers no press. One request and it is done. */
 
 import { faultOf } from "../engine/fault";
 import type { Fault, Taken } from "../engine/protocol";
 import { depthPng, normalsPng, writeClouds, writeNpy } from "./write";
 
 /** The kinds that are made here. */
-export type Packed = "clouds" | "depth" | "depthPng" | "normals" | "depthNormals";
+export type LargeKind = "clouds" | "depth" | "depthPng" | "normals" | "depthNormals";
 
-export interface PackRequest {
-  kind: Packed;
+export interface FileRequest {
+  kind: LargeKind;
   taken: Taken;
 }
-export type PackAnswer = { bytes: Uint8Array<ArrayBuffer>; says: string } | { fault: Fault };
+export type FileAnswer = { bytes: Uint8Array<ArrayBuffer>; says: string } | { fault: Fault };
 
 /** The clouds' inks on the page. */
 const [ORANGE, BLUE] = [[199, 100, 26], [11, 98, 184]];
@@ -29,7 +29,7 @@ function tinted(name: string, points: Float32Array, [red = 0, green = 0, blue = 
   return { name, points, colours };
 }
 
-async function pack({ kind, taken }: PackRequest): Promise<{ bytes: Uint8Array<ArrayBuffer>; says: string }> {
+async function pack({ kind, taken }: FileRequest): Promise<{ bytes: Uint8Array<ArrayBuffer>; says: string }> {
   const { unit, depthUnit, image, depth, imagePoints, depthPoints } = taken;
   switch (kind) {
     case "clouds": {
@@ -49,11 +49,11 @@ async function pack({ kind, taken }: PackRequest): Promise<{ bytes: Uint8Array<A
   }
 }
 
-self.onmessage = async ({ data }: MessageEvent<PackRequest>) => {
+self.onmessage = async ({ data }: MessageEvent<FileRequest>) => {
   try {
     const made = await pack(data);
-    self.postMessage(made satisfies PackAnswer, { transfer: [made.bytes.buffer] });
+    self.postMessage(made satisfies FileAnswer, { transfer: [made.bytes.buffer] });
   } catch (error) {
-    self.postMessage({ fault: faultOf(error, true) } satisfies PackAnswer);
+    self.postMessage({ fault: faultOf(error, true) } satisfies FileAnswer);
   }
 };

@@ -2,10 +2,10 @@
 
 import type { ColorImage, DepthMap, Estimator, Layer, Pose, Sample } from "../../pkg/index.js";
 import { automaticRange, paintLog, paintPicture, paintScalar, type MapName } from "../draw/colours";
-import { Easel } from "./easel";
+import { ViewCanvas } from "./canvas";
 import { Errors, type ErrorName } from "./errors";
 import type { Numbers } from "./numbers";
-import { SCALES, VIEWS, type Look, type Painted, type Range, type Raster, type ScaleName, type Side, type Sights, type Surface, type Texture, type ViewName } from "./protocol";
+import { SCALES, VIEWS, type Look, type Painted, type Range, type Raster, type ScaleName, type Side, type Drawings, type Surface, type Texture, type ViewName } from "./protocol";
 import { cutOfDepth, cutOfImage, depthAt, measured, picture, raster, surface, whiteOf, type Cut } from "./rasters";
 
 /** The range of a view that has no values. */
@@ -31,12 +31,12 @@ export interface Run {
   depth: DepthMap;
   estimator: Estimator;
   numbers: Numbers;
-  scenery: Scenery;
+  painter: ViewPainter;
 }
 
-export class Scenery {
+export class ViewPainter {
   readonly #cuts: Record<Side, Cut>;
-  readonly #easels: Record<Side, Easel>;
+  readonly #canvases: Record<Side, ViewCanvas>;
   readonly #picture: ImageData;
   readonly #errors: Errors | undefined;
   /** Those that were painted last. */
@@ -47,18 +47,18 @@ export class Scenery {
   /** `truth` is what a sample is measured against. */
   constructor({ image, depth }: Pick<Run, "image" | "depth">, truth?: Sample["truth"]) {
     this.#cuts = { image: cutOfImage(image), depth: cutOfDepth(depth) };
-    this.#easels = { image: new Easel(this.#cuts.image), depth: new Easel(this.#cuts.depth) };
+    this.#canvases = { image: new ViewCanvas(this.#cuts.image), depth: new ViewCanvas(this.#cuts.depth) };
     this.#errors = truth && new Errors(truth, this.#cuts);
     this.#picture = paintPicture(picture(image, this.#cuts.image));
   }
 
   /** The colour image as it came. */
   given(): Painted {
-    return this.#easels.image.picture(this.#picture).take();
+    return this.#canvases.image.picture(this.#picture).take();
   }
 
   /** Everything, but for what stays as it was unless it is asked for `anew`. */
-  show(run: Run, look: Look, poses: { points: Pose; seen: Pose }, anew: boolean): Sights {
+  show(run: Run, look: Look, poses: { points: Pose; seen: Pose }, anew: boolean): Drawings {
     const { estimator, numbers, depth } = run;
     const [imageDepth, refined] = [numbers.of("imageDepth"), numbers.of("refinedDepth")];
     const surfaces: Record<Side, Surface> = {
@@ -71,22 +71,22 @@ export class Scenery {
       if (found) ranges[scale] = wide(isError(scale) ? { min: 0, max: found.max } : found);
       return ranges[scale];
     };
-    const views: Sights["views"] = {};
-    const show = (name: ViewName, paint: (easel: Easel) => Easel): void => {
+    const views: Drawings["views"] = {};
+    const show = (name: ViewName, paint: (canvas: ViewCanvas) => ViewCanvas): void => {
       const side = VIEWS[name];
-      const easel = paint(this.#easels[side]);
-      if (TEXTURE_OF[look.texture][side] === name) surfaces[side].colours = easel.colours(surfaces[side]);
-      views[name] = easel.take();
+      const canvas = paint(this.#canvases[side]);
+      if (TEXTURE_OF[look.texture][side] === name) surfaces[side].colours = canvas.colours(surfaces[side]);
+      views[name] = canvas.take();
     };
     const layer = (name: ViewName, layer: Layer, scale?: ScaleName): void => {
       const options = scale && { range: [ranges[scale].min, ranges[scale].max] as const, map: mapOf(scale) };
-      show(name, (easel) => easel.layer(estimator, layer, options));
+      show(name, (canvas) => canvas.layer(estimator, layer, options));
     };
     fit("imageDepth", () => imageDepth);
     fit("refinedDepth", () => refined);
     fit("residual", () => numbers.of("residual"));
 
-    if (anew || look.texture === "picture") show("picture", (easel) => easel.picture(this.#picture));
+    if (anew || look.texture === "picture") show("picture", (canvas) => canvas.picture(this.#picture));
     layer("imageNormals", "normals");
     layer("imageDepth", "depth", "imageDepth");
     layer("residual", "residual", "residual");
@@ -94,19 +94,19 @@ export class Scenery {
     layer("depthNormals", "refinedNormals");
     for (const name of ["albedo", "shading"] as const) {
       const log = raster(numbers.of(name), 3, this.#cuts.image);
-      show(name, (easel) => easel.picture(paintLog(log, whiteOf(log))));
+      show(name, (canvas) => canvas.picture(paintLog(log, whiteOf(log))));
     }
     // Led by the refined depth, from which flying pixels are trimmed: they would stretch the range.
     const range = ranges.refinedDepth;
     if (anew || range.min !== this.#given?.min || range.max !== this.#given.max) {
       this.#given = range;
       const at = measured(this.#cuts.depth, depthAt(depth));
-      show("given", (easel) => easel.picture(paintScalar(at, range, mapOf("refinedDepth"))));
+      show("given", (canvas) => canvas.picture(paintScalar(at, range, mapOf("refinedDepth"))));
     }
     if (this.#errors) {
       this.errors = this.#errors.of(numbers);
       for (const [name, error] of Object.entries(this.errors) as [ErrorName, Raster][]) {
-        show(name, (easel) => easel.picture(paintScalar(error, fit(name, () => error.data), mapOf(name))));
+        show(name, (canvas) => canvas.picture(paintScalar(error, fit(name, () => error.data), mapOf(name))));
       }
     }
     return { views, ranges, surfaces, poses };
