@@ -38,3 +38,6 @@ export function ink(token: string): string {
 let counter = 0;
 /** An id that nothing else on the page has. */
 export const freshId = (stem: string): string => `${stem}-${++counter}`;
+
+/** Lets the browser paint and answer what was pressed before what follows. */
+export const nextTask = (): Promise<void> => new Promise((go) => setTimeout(go));

@@ -1,6 +1,6 @@
 /** Brings the page to life: its places, the Lab, and the controls around it. */
 
-import { byId, make } from "./dom";
+import { byId, make, nextTask } from "./dom";
 import { isFirstVisit } from "./first-visit";
 import { areKeysOn, listenToKeys, rememberKeys } from "./keys";
 import { Lab } from "./lab/lab";
@@ -17,8 +17,11 @@ import { themeToggle } from "./theme";
 
 const button = (id: string, action: () => void): void => byId(id, HTMLButtonElement).addEventListener("click", action);
 
+// The Lab, the controls around it and the first picture are tasks of their own: no press waits for all of the start.
+await nextTask();
 const lab = new Lab(placeOf(location.hash) === "lab" ? fromLink(location.hash) : defaults);
 const { player, store, gallery } = lab;
+await nextTask();
 const help = byId("help", HTMLDialogElement);
 
 /** A place beside the Lab. */
@@ -245,5 +248,6 @@ onLook(() => writeAddress(store.settings));
 button("close-settings", closeDrawer);
 // A link opened in this very tab changes nothing but the part after #.
 addEventListener("hashchange", () => void arrive());
+await nextTask();
 void arrive();
 void keepForOffline(byId("offline", HTMLElement));

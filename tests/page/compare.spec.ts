@@ -29,7 +29,7 @@ test("a pinned run stays in the charts, and in the pictures left of the wipe", a
   await page.mouse.move(2, 2);
   const before = await colour.screenshot();
   await page.getByRole("button", { name: "Pin this run" }).click();
-  await expect(page.locator("#pinned-words")).toHaveText(/^pinned: iteration 2, \d+\.\d\d° off$/);
+  await expect(page.locator("#pinned-words")).toHaveText(/^iteration 2, \d+\.\d\d° off$/);
   await expect(page.locator("#objective-chart")).toHaveAttribute("aria-label", /Pinned: objective .*total: from \d/);
 
   await lab.unfold();
@@ -62,6 +62,26 @@ test("a pinned run stays in the charts, and in the pictures left of the wipe", a
   await page.getByRole("button", { name: "Unpin" }).click();
   await expect(page.locator(".pinned")).toHaveCount(0);
   await expect.poll(drawn).toBe(0);
+});
+
+test("pinning moves nothing, whatever the screen's width", async ({ lab, page }) => {
+  await lab.open("size=64");
+  await page.keyboard.press("s");
+  await expect(lab.iteration).toHaveText("1");
+  const places = () => page.evaluate(() => ["#presets", "#input", "#pin", "#hero"].map((each) => {
+    const { x, y } = document.querySelector(each)?.getBoundingClientRect() ?? new DOMRect();
+    return [each, Math.round(x + scrollX), Math.round(y + scrollY)];
+  }));
+  const areWordsWhole = () => page.locator("#pinned-words").evaluate((words) => words.scrollHeight <= words.clientHeight && words.scrollWidth <= words.clientWidth);
+  for (const width of [390, 768, 1024, 1280, 1600]) {
+    await page.setViewportSize({ width, height: 800 });
+    const before = await places();
+    await page.getByRole("button", { name: "Pin this run" }).click();
+    await expect(page.locator("#pinned-words")).toHaveText(/^iteration 1, /);
+    expect(await places(), `at ${width} pixels`).toEqual(before);
+    expect(await areWordsWhole(), `at ${width} pixels the words are whole`).toBe(true);
+    await page.getByRole("button", { name: "Unpin" }).click();
+  }
 });
 
 test("a pinned picture of another size lies where its pixels belong", async ({ lab, page }) => {

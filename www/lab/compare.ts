@@ -38,6 +38,7 @@ export class Compare {
   /** What the pinned run had come to. */
   say(words: string): void {
     this.#words.textContent = words;
+    this.#words.title = words && `pinned: ${words}`;
   }
 
   #show(): void {

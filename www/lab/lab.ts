@@ -231,7 +231,7 @@ export class Lab {
 
   #pin(): void {
     this.gallery.pin(this.#history);
-    this.#compare.say(this.#report ? `pinned: ${wordsOf(this.#report, this.#truth)}` : "");
+    this.#compare.say(this.#report ? wordsOf(this.#report, this.#truth) : "");
   }
 
   #startFrom({ angles }: Pose): void {
