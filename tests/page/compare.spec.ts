@@ -1,6 +1,6 @@
 /** A pinned run beside the next one, and a light set number by number. */
 
-import type { Locator } from "@playwright/test";
+import type { Locator, Page } from "@playwright/test";
 import { decode } from "fast-png";
 import { expect, test, type Lab } from "./lab";
 
@@ -64,7 +64,7 @@ test("a pinned run stays in the charts, and in the pictures left of the wipe", a
   await expect.poll(drawn).toBe(0);
 });
 
-test("pinning moves nothing, whatever the screen's width", async ({ lab, page }) => {
+const pinningMovesNothing = async ({ lab, page }: { lab: Lab; page: Page }): Promise<void> => {
   await lab.open("size=64");
   await page.keyboard.press("s");
   await expect(lab.iteration).toHaveText("1");
@@ -82,6 +82,13 @@ test("pinning moves nothing, whatever the screen's width", async ({ lab, page })
     expect(await areWordsWhole(), `at ${width} pixels the words are whole`).toBe(true);
     await page.getByRole("button", { name: "Unpin" }).click();
   }
+};
+
+test("pinning moves nothing, whatever the screen's width", pinningMovesNothing);
+
+test.describe("by touch", () => {
+  test.use({ hasTouch: true, isMobile: true });
+  test("pinning moves nothing either", pinningMovesNothing);
 });
 
 test("a pinned picture of another size lies where its pixels belong", async ({ lab, page }) => {
