@@ -26,6 +26,7 @@
 //! | `picture` ([`Layer`]) | results as pixels of a screen | |
 //! | `estimator` ([`Estimator`]) | Algorithm 1 stage by stage, its `objective`, its `verdict`; the `initialisation` before it; its [`Worker`]s | Eq. 1, Algorithm 1 |
 //! | [`scenes`] | surfaces, lights and a renderer with a known answer; stands on `view`, `light`, `pose`, `calibration` | the experiments |
+//! | `tutorial` | the method in eight chapters, each with an example that runs; documentation alone | all of it |
 //! | `wasm` | bindings without mathematics, wasm32 only | |
 //!
 //! `docs/method.md` has the objective, unknowns, solver, cost and limits of each stage.
@@ -37,6 +38,8 @@
 //! Where we read the paper differently: it writes the two prior terms of Eq. 6 without a square and lambda_3 linear; a
 //! least-squares solver squares them, so do we. The norm of Eq. 20 is not named; its tables fit the spectral norm.
 //! Refined normals explain any colour under any pose, so the objective of an iteration asks the measured ones.
+
+#![deny(unsafe_code)]
 
 /// The README's Rust examples, compiled and run with the documentation's.
 #[cfg(doctest)]
@@ -57,8 +60,11 @@ mod report;
 pub mod scenes;
 mod shape;
 mod text;
+#[cfg(any(doc, doctest))]
+pub mod tutorial;
 mod view;
-#[cfg(target_arch = "wasm32")]
+#[cfg(all(target_arch = "wasm32", target_os = "unknown"))]
+#[allow(unsafe_code, reason = "of what wasm-bindgen generates; the files themselves have none")]
 mod wasm;
 
 pub use calibration::{

@@ -119,3 +119,16 @@ fn degenerate_pairs_are_errors() {
     assert_eq!(fit(&vec![Vector3::repeat(1.0); 100]), Err(ErrorKind::Degenerate));
     assert_eq!(fit(&vec![Vector3::repeat(f64::NAN); 9]), Err(ErrorKind::Range));
 }
+
+/// Found by the fuzzer: the largest of several numbers passes over those that are none.
+#[test]
+fn a_rotation_with_entries_that_are_no_numbers_is_none() {
+    for (first, second) in (0..81).map(|pair| (pair / 9, pair % 9)) {
+        let mut pose = Similarity::identity();
+        (pose.rotation[first], pose.rotation[second]) = (f64::NAN, f64::NAN);
+        assert_eq!(pose.validate("pose").map_err(|error| error.kind()), Err(ErrorKind::Range), "{first}, {second}");
+    }
+    let mut pose = Similarity::identity();
+    pose.rotation.fixed_columns_mut::<2>(0).fill(f64::NAN);
+    assert_eq!(pose.validate("pose").map_err(|error| error.kind()), Err(ErrorKind::Range));
+}

@@ -40,3 +40,16 @@ fn pixels_agree_with_opencv() {
     }
     assert_eq!(cameras, 18);
 }
+
+/// Found by the fuzzer: rays with infinite slopes.
+#[test]
+fn slopes_beyond_all_numbers_are_no_rays() {
+    for lens in [Lens::None, Lens::Brown([0.0; 8]), Lens::Fisheye([0.0; 4])] {
+        let camera = RigCamera { fx: 500.0, fy: 500.0, cx: 320.0, cy: 240.0, lens };
+        for beyond in [f64::INFINITY, f64::NEG_INFINITY, f64::NAN] {
+            assert_eq!((camera.ray([beyond, 0.0]), camera.ray([0.0, beyond])), (None, None), "{lens:?}");
+        }
+        let sharp = RigCamera { fx: 5e-324, ..camera };
+        assert_eq!(sharp.ray([0.0, 0.0]), None, "{lens:?}");
+    }
+}

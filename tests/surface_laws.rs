@@ -75,4 +75,25 @@ proptest! {
         integrator.integrate(&p, &q, None, &options, &mut cold).expect("sizes agree");
         close(&warm, &cold, 1e-3)?;
     }
+
+    /// A surface of second order has gradients that trapezoids sum up exactly, whatever the mask cuts out of it.
+    #[test]
+    fn the_gradient_of_a_surface_gives_it_back(
+        mask in mask(), a in -2.0_f32..2.0, b in -2.0_f32..2.0, curvature in prop::array::uniform3(-0.2_f32..0.2),
+    ) {
+        let [c, d, e] = curvature;
+        let at = |value: &dyn Fn(f32, f32) -> f32| -> Vec<f32> {
+            (0..PIXELS).map(|index| SIZE.position(index)).map(|(x, y)| value(x as f32 - 6.0, y as f32 - 5.0)).collect()
+        };
+        let surface = at(&|x, y| a * x + b * y + c * x * x + d * x * y + e * y * y);
+        let (p, q) = (at(&|x, y| a + 2.0 * c * x + d * y), at(&|x, y| b + d * x + 2.0 * e * y));
+        let z = integrate(&mask, &p, &q, None);
+        // Each part of the surface has a level of its own: neighbours tell.
+        for index in (0..PIXELS).filter(|&index| mask[index]) {
+            for other in SIZE.neighbours(index).filter(|&other| mask[other]) {
+                let (found, expected) = (z[other] - z[index], surface[other] - surface[index]);
+                prop_assert!((found - expected).abs() < 2e-3, "{found} instead of {expected}");
+            }
+        }
+    }
 }

@@ -3,6 +3,9 @@
 
 #![cfg(target_arch = "wasm32")]
 
+#[path = "common/agreement.rs"]
+mod agreement;
+
 use bimodal_stereo::scenes::{self, Sample, SampleRequest, Scene};
 use bimodal_stereo::{Error, Estimator, LightSource, Options, Status};
 use wasm_bindgen_test::wasm_bindgen_test;
@@ -52,4 +55,9 @@ fn a_bad_option_is_an_error_and_no_panic() -> Result<(), Error> {
     let error = Estimator::new(sample.colour_image(), &sample.depth_map(), options).err();
     assert_eq!(error.map(|error| error.field().to_owned()).as_deref(), Some("options.scale"));
     Ok(())
+}
+
+#[wasm_bindgen_test]
+fn this_build_ends_where_the_native_one_does() {
+    agreement::check();
 }

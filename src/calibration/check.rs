@@ -475,8 +475,9 @@ fn rigid(pose: &Similarity) -> Result<State> {
     if (pose.scale - 1.0).abs() > ROTATION_TOLERANCE {
         return Err(wrong("scale", "must be 1: extrinsics do not change sizes").value(pose.scale));
     }
-    if pose.translation.iter().any(|value| !value.is_finite()) {
-        return Err(wrong("translation", "must be finite"));
+    // Written so that NaN is refused.
+    if !pose.translation.iter().all(|value| value.abs() < crate::view::FARTHEST) {
+        return Err(wrong("translation", "must be finite, and below 1e12 m"));
     }
     let nearest = Similarity::nearest(&pose.rotation, pose.translation).ok();
     let nearest = nearest.filter(|nearest| (nearest.rotation - pose.rotation).abs().max() < ROTATION_TOLERANCE);

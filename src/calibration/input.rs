@@ -13,6 +13,8 @@ const WIDEST: usize = 1000;
 /// Metres within which depth cameras measure.
 const NEAREST: f32 = 0.1;
 const FARTHEST: f32 = 20.0;
+/// Metres from which on a depth is missing, as in all depth maps: of its square f32 holds none.
+const BEYOND: f32 = crate::view::FARTHEST as f32;
 /// Above this share of missing depths a map says so.
 const MANY_HOLES: f64 = 0.4;
 /// More distinct levels than this are not 8 bits.
@@ -157,6 +159,11 @@ fn encoded(samples: &ColourSamples, transfer: Option<Transfer>, size: Size) -> R
     })
 }
 
+/// Whether all of a point's coordinates are numbers to compute with.
+fn is_near(point: &[f32; 3]) -> bool {
+    point.iter().all(|value| value.abs() < BEYOND)
+}
+
 /// Points in metres, NaN where missing, outside the mask, or where the lens has no ray.
 fn points(view: &RigView, grid: Size) -> Result<Vec<[f32; 3]>> {
     let default = if matches!(view.depth, DepthSamples::Integer(_)) { 0.001 } else { 1.0 };
@@ -168,7 +175,7 @@ fn points(view: &RigView, grid: Size) -> Result<Vec<[f32; 3]>> {
         must_be("depth.points", data.len(), 3 * grid.len())?;
         let point = |(index, p): (usize, &[f32])| {
             let point = [0, 1, 2].map(|k| (f64::from(p[k]) * unit) as f32);
-            let is_known = is_asked(index) && point.iter().all(|value| value.is_finite()) && point != [0.0; 3];
+            let is_known = is_asked(index) && is_near(&point) && point != [0.0; 3];
             if is_known { point } else { MISSING }
         };
         return Ok(data.chunks_exact(3).enumerate().map(point).collect());
@@ -202,7 +209,10 @@ fn points(view: &RigView, grid: Size) -> Result<Vec<[f32; 3]>> {
                 return MISSING;
             }
             match camera.ray([column as f64, row as f64]) {
-                Some([x, y, along]) if along > 0.0 => [x / along * z, y / along * z, z].map(|value| value as f32),
+                Some([x, y, along]) if along > 0.0 => {
+                    let point = [x / along * z, y / along * z, z].map(|value| value as f32);
+                    if is_near(&point) { point } else { MISSING }
+                }
                 _ => MISSING,
             }
         })
@@ -255,6 +265,33 @@ fn warn(view: &RigView, grid: Size, points: &[[f32; 3]], warnings: &mut Vec<Stri
 mod tests {
     use super::*;
     use crate::calibration::Lens;
+
+    /// Found by the fuzzer: a focal length of almost nothing put points at infinity, and the estimate with them.
+    #[test]
+    fn points_beyond_all_distances_are_missing() {
+        let camera = RigCamera { fx: 1e-45, fy: 20.0, cx: 10.5, cy: 8.0, lens: Lens::None };
+        let size = [16, 16];
+        let grid = Size::new("depth", 16, 16).unwrap();
+        let view = |depth| RigView {
+            name: String::new(),
+            image_size: size,
+            image: ColourSamples::Rgba8(vec![]),
+            transfer: None,
+            image_mask: None,
+            image_camera: None,
+            depth_size: size,
+            depth,
+            unit: None,
+            depth_mask: None,
+            depth_camera: Some(camera),
+        };
+        for far in [1.0, 1e12, 3e38, f32::INFINITY] {
+            for depth in [DepthSamples::Float(vec![far; 256]), DepthSamples::Cloud(vec![far; 3 * 256])] {
+                let points = points(&view(depth), grid).unwrap_or_default();
+                assert!(points.iter().flatten().all(|value| value.is_nan() || value.abs() < BEYOND), "{far}");
+            }
+        }
+    }
 
     #[test]
     fn slipped_decimal_points_are_no_lens() {

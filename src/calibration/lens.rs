@@ -109,10 +109,14 @@ impl RigCamera {
     }
 
     /// Direction of the ray through a pixel: with z = 1 where it runs ahead, so that depth times it is the point; a
-    /// unit vector (z below 0.01) where a fisheye looks aside or back. `None` where the lens lets no ray through.
+    /// unit vector (z below 0.01) where a fisheye looks aside or back. `None` where the lens lets no ray through, and where
+    /// its slope is beyond all numbers.
     #[must_use]
     pub fn ray(&self, [column, row]: [f64; 2]) -> Option<[f64; 3]> {
         let target = [(column - self.cx) / self.fx, (row - self.cy) / self.fy];
+        if !target.iter().all(|slope| slope.is_finite()) {
+            return None;
+        }
         match &self.lens {
             Lens::None => Some([target[0], target[1], 1.0]),
             Lens::Brown(coefficients) => self.brown_ray(coefficients, target),

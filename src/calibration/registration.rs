@@ -282,5 +282,7 @@ pub(super) fn blur(sigma: f64) -> f64 {
 
 fn step(total: &Evidence, prior: &Matrix, back: &Vector) -> Vector {
     let gradient = total.gradient() - prior * back;
-    solve(&(total.curvature() + prior), &gradient).unwrap_or_else(Vector::zeros)
+    // Where sums are beyond all numbers there is no way to go.
+    let solution = solve(&(total.curvature() + prior), &gradient).filter(|step| step.norm().is_finite());
+    solution.unwrap_or_else(Vector::zeros)
 }

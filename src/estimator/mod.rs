@@ -443,6 +443,7 @@ impl Estimator {
             colours: self.registration.found_by_colours().map(|it| ColourEvidence::of(it, pair.image.log_spread())),
             outlines: self.registration.found_by_outlines().map(OutlineEvidence::of),
             contrast: self.registration.found_by_contrast().map(ContrastEvidence::of),
+            is_hollow: history.is_hollow,
             has_kept_start: self.registration.has_kept_start(),
             rivals: report.rivals.len(),
             nearest_rival: nearest,

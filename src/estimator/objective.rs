@@ -172,3 +172,73 @@ pub fn worsens(before: f64, after: f64, degrees: f64) -> bool {
     let slack = if degrees < SMALL_STEP { SLACK } else { 0.0 };
     after > before * (1.0 + slack)
 }
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::estimator::Estimator;
+    use crate::options::{LightSource, Options};
+    use crate::pose::Angles;
+    use crate::report::{Stage, Status};
+    use crate::scenes::{Sample, SampleRequest, Scene, light, surface};
+    use crate::view::Size;
+
+    prop_compose! {
+        fn sample()(
+            alpha in -15.0..15.0, beta in 5.0..40.0, noise in 0.0..0.02, depth_noise in 0.0..0.2, seed in 1_u64..1000,
+            name in prop::sample::select(vec!["colourful", "window"]),
+        ) -> Sample {
+            let request = SampleRequest {
+                light: light(name).unwrap(),
+                size: Size { width: 32, height: 32 },
+                rotation: Angles { alpha, beta, gamma: 0.0 }.rotation(),
+                noise,
+                depth_noise,
+                seed,
+                ..Default::default()
+            };
+            Scene::new(&surface("bust").unwrap()).unwrap().sample(&request).unwrap()
+        }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { cases: 8, failure_persistence: None, ..ProptestConfig::default() })]
+
+        /// The loop's own law, from its outside: over the points of the last solution the new one is no worse, or it is
+        /// taken back and its pose with it.
+        #[test]
+        fn no_accepted_step_raises_the_objective(sample in sample(), known: bool) {
+            let light = if known { LightSource::Known(sample.light) } else { LightSource::Estimate };
+            let options = Options { light, max_iterations: 12, ..Options::paper() };
+            let mut estimator = Estimator::new(sample.colour_image(), &sample.depth_map(), options).unwrap();
+            while estimator.report.status == Status::Running {
+                while estimator.report.stage != Stage::Registration && estimator.report.status == Status::Running {
+                    estimator.step_stage();
+                }
+                if estimator.report.status != Status::Running || estimator.report.iteration == 0 {
+                    estimator.step();
+                    continue;
+                }
+                // What the last stage does, with a look in between.
+                let (before, pose) = (estimator.report.objective.total(), estimator.accepted.pose);
+                estimator.report.stage = Stage::Refinement;
+                estimator.refine();
+                let after = estimator.objective().total();
+                let degrees = pose.degrees_to(&estimator.solution.pose);
+                estimator.run = crate::estimator::Run::Iterating(Stage::Light);
+                let whole = estimator.history.step_fraction;
+                estimator.finish_iteration();
+                // The step of what is taken back is halved, and of nothing else.
+                if estimator.history.step_fraction < whole {
+                    prop_assert!(after > before, "{before} would have come to {after}");
+                    prop_assert_eq!(estimator.report.pose, pose);
+                } else {
+                    prop_assert!(after <= before * (1.0 + SLACK), "{before} rose to {after}");
+                    prop_assert!(degrees < SMALL_STEP || after <= before, "{before} rose to {after} over {degrees} degrees");
+                }
+            }
+        }
+    }
+}

@@ -30,10 +30,12 @@ pub struct History {
     pub rejections: u32,
     /// Iterations in a row whose registration proposed less than `stop_degrees`.
     pub unmoved: u32,
+    /// Whether the depth map was found to be hollow when the search began.
+    pub is_hollow: bool,
 }
 
 impl Default for History {
     fn default() -> Self {
-        Self { step_fraction: 1.0, proposed_degrees: 0.0, improved: true, rejections: 0, unmoved: 0 }
+        Self { step_fraction: 1.0, proposed_degrees: 0.0, improved: true, rejections: 0, unmoved: 0, is_hollow: false }
     }
 }

@@ -11,6 +11,7 @@ use crate::error::Result;
 use crate::pose::{Angles, ImageGrid};
 use crate::report::Stage;
 use crate::text::Fixed;
+use crate::view::is_hollow;
 
 impl Estimator {
     /// What the search needs of one of the views.
@@ -20,6 +21,8 @@ impl Estimator {
         let Run::Preparing(prepared) = std::mem::replace(&mut self.run, Run::Preparing(None)) else { return Ok(()) };
         self.run = match prepared {
             None => {
+                let depth = &self.pair.depth;
+                self.history.is_hollow = is_hollow(depth.size, &depth.points.z, &depth.normals);
                 let opening = Opening::of(&self.pair).map(Box::new);
                 let image = opening.as_ref().map_or(&self.pair.image, |opening| &opening.pair.image);
                 Run::Preparing(Some(Box::new((ImageGrid::new(image)?, opening))))

@@ -74,6 +74,8 @@ pub struct Evidence<'a> {
     pub contrast: Option<ContrastEvidence<'a>>,
     /// Whether nothing near a told start explains the colours better, so that it was kept.
     pub has_kept_start: bool,
+    /// Whether a pose was searched for a depth map that looks hollow: mirrored, it has another pose that is as good.
+    pub is_hollow: bool,
     /// Number of rivals, and the degrees to the nearest.
     pub rivals: usize,
     pub nearest_rival: f64,
@@ -213,6 +215,12 @@ fn reason_for_distrust(evidence: &Evidence<'_>) -> Option<Verdict> {
     if let Some(reason) = evidence.colours.and_then(|colours| reason_to_be_lost(&colours)) {
         return Some((Status::Lost, Some(reason)));
     }
+    if evidence.is_hollow {
+        let hollow =
+            "the depth map's limbs come towards the camera: it shows something hollow, or larger means nearer in it";
+        let rival = "mirrored in depth it explains the colours as well, from another pose";
+        return Some((Status::Ambiguous, Some(format!("{hollow}; {rival}"))));
+    }
     let certainty = evidence.colours.map(|colours| (colours.sigma, colours.weakest));
     let certainty = certainty.or(evidence.contrast.map(|contrast| (contrast.sigma, contrast.weakest)));
     let reason = match (evidence.rivals, certainty) {
@@ -279,6 +287,7 @@ mod tests {
         outlines: None,
         contrast: None,
         has_kept_start: false,
+        is_hollow: false,
         rivals: 0,
         nearest_rival: f64::INFINITY,
     };
@@ -345,6 +354,7 @@ mod tests {
             ("colours without spread", colours(ColourEvidence { unexplained: f64::NAN, ..SURE }), lost, "unexplained"),
             ("outliers", colours(ColourEvidence { inliers: 0.3, ..SURE }), lost, "only 30 % of the points"),
             ("a fair sigma", colours(ColourEvidence { sigma: 1.6, ..SURE }), ambiguous, "1.6 degrees (one sigma)"),
+            ("a hollow depth map", Evidence { is_hollow: true, ..SETTLED }, ambiguous, "larger means nearer"),
             ("rivals", Evidence { rivals: 2, nearest_rival: 40.2, ..SETTLED }, ambiguous, "2 other poses"),
             (
                 "rivals of matched surfaces",

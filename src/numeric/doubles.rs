@@ -148,15 +148,13 @@ mod arch {
 
     #[inline(always)]
     pub fn two(values: [f64; 2]) -> v128 {
-        // SAFETY: both are sixteen bytes of which every pattern is valid. Lane by lane the compiler would load and
-        // insert each by itself.
-        unsafe { std::mem::transmute(values) }
+        // As one, for the reason given in lanes.rs.
+        bytemuck::cast(values)
     }
 
     #[inline(always)]
     pub fn array(two: v128) -> [f64; 2] {
-        // SAFETY: as above.
-        unsafe { std::mem::transmute(two) }
+        bytemuck::cast(two)
     }
 
     #[inline(always)]

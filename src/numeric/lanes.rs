@@ -253,15 +253,13 @@ mod arch {
 
     #[inline(always)]
     pub fn four(values: [f32; 4]) -> v128 {
-        // SAFETY: both are sixteen bytes of which every pattern is valid. Lane by lane the compiler would load and
-        // insert each by itself.
-        unsafe { std::mem::transmute(values) }
+        // Lane by lane the compiler would load and insert each by itself.
+        bytemuck::cast(values)
     }
 
     #[inline(always)]
     pub fn array(four: v128) -> [f32; 4] {
-        // SAFETY: as above.
-        unsafe { std::mem::transmute(four) }
+        bytemuck::cast(four)
     }
 
     #[inline(always)]

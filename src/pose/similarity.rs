@@ -43,7 +43,8 @@ impl Similarity {
             return Err(Error::new(ErrorKind::Range, "translation", "must be finite").at(index).below(field));
         }
         let off = (self.rotation.transpose() * self.rotation - Matrix3::identity()).abs().max();
-        if off.is_nan() || off > ROTATION_TOLERANCE || self.rotation.determinant() < 0.0 {
+        // The largest entry passes over those that are NaN; the determinant is NaN where one is.
+        if off > ROTATION_TOLERANCE || !(0.5..2.0).contains(&self.rotation.determinant()) {
             return Err(
                 Error::new(ErrorKind::Range, "rotation", "must be orthonormal with determinant one").below(field)
             );

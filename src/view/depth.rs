@@ -72,7 +72,7 @@ const LENS: &str = "depth.camera.distortion";
 const MILLIMETRE: f64 = 0.001;
 /// Metres or pixels from which on a depth, or a coordinate of a cloud, counts as missing: some formats write their
 /// largest number for a hole, and f32 cannot hold its square.
-const FARTHEST: f64 = 1e12;
+pub const FARTHEST: f64 = 1e12;
 /// Without a mask, a gap in the depth that the object encloses belongs to it up to this share of its pixels (data not
 /// recorded).
 const LARGEST_HOLE: f64 = 0.02;
@@ -238,7 +238,8 @@ impl DepthMap {
             };
             let (column, row) = size.position(index);
             let point = camera.point(size, [column as f64, row as f64], depth * unit).map(|value| value as f32);
-            if point[2] > 0.0 && point[2] < FARTHEST as f32 {
+            // Aside as well: behind a focal length of next to nothing.
+            if point[2] > 0.0 && !point.iter().any(|value| value.abs() >= FARTHEST as f32) {
                 points.set(index, point);
             }
         }

@@ -10,7 +10,7 @@ use std::path::PathBuf;
 use house::House;
 
 /// From the ground up: a room looks only into rooms before it.
-const ROOMS: [&str; 15] = [
+const ROOMS: [&str; 16] = [
     "text",
     "error",
     "check",
@@ -25,6 +25,7 @@ const ROOMS: [&str; 15] = [
     "picture",
     "estimator",
     "scenes",
+    "tutorial",
     "wasm",
 ];
 /// What scenes with a known answer stand on: they are made with the means of the inputs and with random numbers, not with

@@ -149,7 +149,11 @@ impl Photometric {
             tiles: Tiles::new(problem.depth_size),
             state,
             annealed: state,
-            noise: Noise { residuals: f64::INFINITY, image: problem.image.log_noise().max(LEAST_NOISE) },
+            noise: Noise {
+                residuals: f64::INFINITY,
+                image: problem.image.log_noise().max(LEAST_NOISE),
+                depth: problem.depth_noise.sigma,
+            },
             weighting: Weighting::FIRST,
             phase: Phase::Done(PhotometricTermination::MostRounds),
             rounds: 0,

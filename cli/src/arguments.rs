@@ -1,0 +1,209 @@
+//! What may be asked for. Names and defaults are those of the library's options.
+
+use std::path::PathBuf;
+
+use bimodal_stereo::{Angles, LightSource, Options, Pinhole, Registration, Shading, Start, Transfer};
+use clap::Parser;
+
+use crate::estimate::Files;
+use crate::problem::{Problem, Result};
+use crate::read;
+
+const USAGE: &str = "bimodal-stereo [OPTIONS] IMAGE DEPTH
+       bimodal-stereo [OPTIONS] FOLDER";
+
+const AFTER: &str = "\
+A folder holds pairs with like names (rgb_1.png and depth_1.png, color/0001.jpg and depth/0001.png), masks among them, or TUM RGB-D's
+rgb.txt and depth.txt. Each pair is one line, or one line of JSON.
+
+Exit code: 0 converged, 1 lost or ambiguous, 2 undecided (the cap on iterations came first), 3 the input is bad. Of a folder the worst:
+3 before 1 before 2 before 0.
+
+The pose carries depth points into the colour view: P_colour = s R P_depth + t, R = Rx(alpha) Ry(beta) Rz(gamma); x right, y down, z
+forward. A view without a camera is orthographic and measured in pixels, one with a camera in metres.";
+
+/// Finds the pose between a colour image and a depth map of the same object, taken from different places.
+#[derive(Debug, Parser)]
+#[command(name = "bimodal-stereo", version, override_usage = USAGE, after_help = AFTER, max_term_width = 132)]
+pub struct Arguments {
+    /// A colour image (PNG, JPEG, .npy) and a depth map (PNG of 16 bits, .npy), or a folder of such pairs
+    #[arg(required = true, num_args = 1..=2, value_names = ["IMAGE|FOLDER", "DEPTH"])]
+    input: Vec<PathBuf>,
+
+    /// Writes clouds (PLY), refined depth (16-bit PNG and .npy), pose, light and report into FOLDER, which is made
+    #[arg(long, value_name = "FOLDER")]
+    pub out: Option<PathBuf>,
+
+    /// Prints JSON: the names of the JavaScript contract's report, one line for each pair of a folder
+    #[arg(long)]
+    pub json: bool,
+
+    /// Intrinsics of the colour camera in pixels: fx,fy,cx,cy and if need be OpenCV's k1,k2,p1,p2,k3
+    #[arg(long, value_name = "FX,FY,CX,CY[,K1..]", value_parser = camera)]
+    pub image_camera: Option<Pinhole>,
+
+    /// Intrinsics of the depth camera
+    #[arg(long, value_name = "FX,FY,CX,CY[,K1..]", value_parser = camera)]
+    pub depth_camera: Option<Pinhole>,
+
+    /// Metres for each stored number of the depth map, 0.001 for millimetres; pixels where it has no camera [default: guessed, 1]
+    #[arg(long, value_name = "UNIT", value_parser = positive)]
+    pub depth_unit: Option<f64>,
+
+    /// A picture of the image's size: what is neither black nor transparent is the object
+    #[arg(long, value_name = "FILE")]
+    image_mask: Option<PathBuf>,
+
+    /// The same for the depth map
+    #[arg(long, value_name = "FILE")]
+    depth_mask: Option<PathBuf>,
+
+    /// How the image's numbers encode intensity: srgb or linear [default: as the file says, else guessed]
+    #[arg(long, value_name = "CURVE", value_parser = transfer)]
+    pub transfer: Option<Transfer>,
+
+    /// Where the pose starts: search (everywhere), identity, or ALPHA,BETA,GAMMA in degrees
+    #[arg(long, value_name = "START", default_value = "search", value_parser = start, allow_hyphen_values = true)]
+    start: Start,
+
+    /// A known light: a text of 27 numbers, nine for each of R, G, B, such as the light.csv that --out writes
+    #[arg(long, value_name = "FILE")]
+    light: Option<PathBuf>,
+
+    /// Holds the scale s at this number [default: found]
+    #[arg(long, value_name = "S", value_parser = positive)]
+    scale: Option<f64>,
+
+    /// How the pose is refined: joint (straight from the colours), icp (as in the paper) or fixed (the start is kept)
+    #[arg(long, value_name = "WAY", default_value = "joint", value_parser = registration)]
+    registration: Registration,
+
+    /// How the shape of the image is found: surface (as a whole) or pixel (each on its own, as in the paper)
+    #[arg(long, value_name = "WAY", default_value = "surface", value_parser = shading)]
+    shading: Shading,
+
+    /// Ends after so many iterations
+    #[arg(long, value_name = "N", default_value_t = Options::default().max_iterations)]
+    pub max_iterations: u32,
+
+    /// Of everything random
+    #[arg(long, value_name = "N", default_value_t = Options::default().seed)]
+    seed: u64,
+}
+
+/// What is to be read.
+pub enum Input {
+    Pair(Files),
+    Folder(PathBuf),
+}
+
+impl Arguments {
+    /// A pair or a folder; of a folder the masks lie in it.
+    pub fn input(&self) -> Result<Input> {
+        match self.input.as_slice() {
+            [folder] if folder.is_dir() => {
+                if self.image_mask.is_some() || self.depth_mask.is_some() {
+                    return Err(Problem::option(
+                        "--image-mask, --depth-mask",
+                        "belong to one pair; a folder's masks lie in it",
+                    ));
+                }
+                Ok(Input::Folder(folder.clone()))
+            }
+            [one] if one.exists() => {
+                Err(Problem::file(one, "is no folder; of a pair both the image and the depth map are needed"))
+            }
+            [one] => Err(Problem::file(one, "there is no such folder")),
+            [image, depth, ..] => Ok(Input::Pair(Files {
+                image: image.clone(),
+                depth: depth.clone(),
+                image_mask: self.image_mask.clone(),
+                depth_mask: self.depth_mask.clone(),
+                any_mask: None,
+                unit: None,
+            })),
+            [] => Err(Problem::option("IMAGE", "is needed")),
+        }
+    }
+
+    /// What the loop is told.
+    pub fn options(&self) -> Result<Options> {
+        let light = match &self.light {
+            Some(path) => LightSource::Known(read::light(path)?),
+            None => LightSource::Estimate,
+        };
+        Ok(Options {
+            light,
+            start: self.start,
+            scale: self.scale,
+            registration: self.registration,
+            shading: self.shading,
+            max_iterations: self.max_iterations,
+            seed: self.seed,
+            ..Options::default()
+        })
+    }
+}
+
+fn numbers(text: &str) -> std::result::Result<Vec<f64>, String> {
+    text.split(',').map(|part| part.trim().parse().map_err(|_| format!("{part:?} is no number"))).collect()
+}
+
+fn camera(text: &str) -> std::result::Result<Pinhole, String> {
+    let numbers = numbers(text)?;
+    let (&[fx, fy, cx, cy], lens) = numbers.split_first_chunk().ok_or("needs fx,fy,cx,cy")?;
+    let mut distortion = [0.0; 5];
+    if lens.len() > distortion.len() {
+        return Err("has more than k1,k2,p1,p2,k3 behind fx,fy,cx,cy".into());
+    }
+    distortion[..lens.len()].copy_from_slice(lens);
+    let camera = Pinhole { fx, fy, cx, cy, distortion };
+    camera.validate("camera").map_err(|error| error.to_string())?;
+    Ok(camera)
+}
+
+fn positive(text: &str) -> std::result::Result<f64, String> {
+    match text.parse() {
+        Ok(number) if f64::is_finite(number) && number > 0.0 => Ok(number),
+        _ => Err("needs a number above zero".into()),
+    }
+}
+
+fn transfer(text: &str) -> std::result::Result<Transfer, String> {
+    match text {
+        "srgb" => Ok(Transfer::Srgb),
+        "linear" => Ok(Transfer::Linear),
+        _ => Err("is srgb or linear".into()),
+    }
+}
+
+fn start(text: &str) -> std::result::Result<Start, String> {
+    match text {
+        "search" => Ok(Start::Search),
+        "identity" => Ok(Start::Identity),
+        _ => match numbers(text).as_deref() {
+            Ok(&[alpha, beta, gamma]) if [alpha, beta, gamma].iter().all(|angle| angle.is_finite()) => {
+                let rotation = Angles { alpha, beta, gamma }.rotation();
+                Ok(Start::Pose { rotation, scale: None, translation: None })
+            }
+            _ => Err("is search, identity or three angles in degrees".into()),
+        },
+    }
+}
+
+fn registration(text: &str) -> std::result::Result<Registration, String> {
+    match text {
+        "joint" => Ok(Registration::Joint),
+        "icp" => Ok(Registration::Icp),
+        "fixed" => Ok(Registration::Fixed),
+        _ => Err("is joint, icp or fixed".into()),
+    }
+}
+
+fn shading(text: &str) -> std::result::Result<Shading, String> {
+    match text {
+        "surface" => Ok(Shading::Surface),
+        "pixel" => Ok(Shading::Pixel),
+        _ => Err("is surface or pixel".into()),
+    }
+}

@@ -1,0 +1,89 @@
+//! One pair from its files to its answer.
+
+use std::path::PathBuf;
+
+use bimodal_stereo::{Estimator, Options, Status};
+
+use crate::arguments::Arguments;
+use crate::code::Code;
+use crate::problem::{Problem, Result};
+use crate::progress::Progress;
+use crate::views;
+
+/// The files of a pair.
+#[derive(Clone, Debug)]
+pub struct Files {
+    pub image: PathBuf,
+    pub depth: PathBuf,
+    pub image_mask: Option<PathBuf>,
+    pub depth_mask: Option<PathBuf>,
+    /// Belongs to the view whose size it has.
+    pub any_mask: Option<PathBuf>,
+    /// Metres for each stored number, where the folder tells.
+    pub unit: Option<f64>,
+}
+
+/// Of lengths.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Length {
+    Metres,
+    Pixels,
+}
+
+impl Length {
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Metres => "metres",
+            Self::Pixels => "pixels",
+        }
+    }
+
+    /// As in the files of the page.
+    pub fn symbol(self) -> &'static str {
+        match self {
+            Self::Metres => "m",
+            Self::Pixels => "px",
+        }
+    }
+}
+
+/// What came out.
+pub struct Outcome {
+    pub files: Files,
+    pub estimator: Estimator,
+    /// Of the colour view and the pose, of the depth view.
+    pub image_length: Length,
+    pub depth_length: Length,
+    /// How the files were read.
+    pub notes: Vec<String>,
+    pub warnings: Vec<String>,
+    /// The files of results.
+    pub written: Vec<String>,
+}
+
+impl Outcome {
+    pub fn code(&self) -> Code {
+        Code::of(self.estimator.report().status)
+    }
+}
+
+/// Reads both views and runs the loop to its end.
+pub fn estimate(files: &Files, arguments: &Arguments, options: &Options, progress: &Progress) -> Result<Outcome> {
+    let views = views::read(files, arguments)?;
+    let length = |has_camera| if has_camera { Length::Metres } else { Length::Pixels };
+    let [image_length, depth_length] = [views.image.camera.is_some(), views.depth.camera.is_some()].map(length);
+    let mut estimator = Estimator::new(views.image, &views.depth, options.clone())
+        .map_err(|error| Problem::of_pair(&error, &files.image, &files.depth))?;
+    while estimator.report().status == Status::Running {
+        progress.show(estimator.step());
+    }
+    Ok(Outcome {
+        files: files.clone(),
+        estimator,
+        image_length,
+        depth_length,
+        notes: views.notes,
+        warnings: views.warnings,
+        written: Vec::new(),
+    })
+}

@@ -1,0 +1,278 @@
+//! The pairs of a folder, told as js/rig/folder.ts tells them: by time stamps (TUM RGB-D), by like names, or in their order.
+//!
+//! Limits: pictures whose names do not say which is which are not looked into, and at least one of a pair has to be called a depth map.
+
+use std::collections::{HashMap, HashSet};
+use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
+
+use regex_lite::Regex;
+
+use crate::estimate::Files;
+use crate::problem::{Problem, Result, shown};
+use crate::read;
+
+/// Time stamps farther apart than this, in seconds, are no pair; TUM's own tool has the same.
+const APART: f64 = 0.02;
+const TUM_UNIT: f64 = 1.0 / 5000.0;
+/// Folders below folders.
+const DEEPEST: usize = 8;
+const MOST_FILES: usize = 200_000;
+/// First bytes, by which pictures are told.
+const HEAD: u64 = 16;
+/// Bytes of a list of frames.
+const MOST_LIST: u64 = 64 << 20;
+
+fn pattern(text: &str) -> Regex {
+    Regex::new(text).expect("is a constant")
+}
+static DEPTH: LazyLock<Regex> = LazyLock::new(|| pattern("(?i)depth|dpt|range([^a-z]|$)|disp"));
+static MASK: LazyLock<Regex> = LazyLock::new(|| pattern("(?i)mask|segm"));
+static COLOUR: LazyLock<Regex> = LazyLock::new(|| pattern("(?i)colou?r|rgb|image|img"));
+static KINDS: LazyLock<Regex> =
+    LazyLock::new(|| pattern("(?i)depth|dpt|colou?r|rgb|image|img|mask|crop|registered|aligned"));
+static ENDING: LazyLock<Regex> = LazyLock::new(|| pattern(r"(?i)\.[a-z0-9]{1,5}$"));
+
+/// One pair and what its files have in common.
+#[derive(Clone, Debug)]
+pub struct Pair {
+    pub name: String,
+    pub files: Files,
+}
+
+impl Pair {
+    /// Of the folder for its results.
+    pub fn folder_name(&self) -> String {
+        let safe = |letter: char| if letter.is_ascii_alphanumeric() || "-_.".contains(letter) { letter } else { '_' };
+        let name: String = self.name.chars().map(safe).collect();
+        if name.trim_matches('.').is_empty() { "pair".into() } else { name }
+    }
+}
+
+#[derive(Debug)]
+pub struct Pairs {
+    pub pairs: Vec<Pair>,
+    pub warnings: Vec<String>,
+}
+
+/// All pairs in the order of their names; what lies below `except`, results of an earlier run, is none of them.
+pub fn pairs(folder: &Path, except: Option<&Path>) -> Result<Pairs> {
+    let mut files = Vec::new();
+    below(folder, DEEPEST, except.and_then(|path| path.canonicalize().ok()).as_deref(), &mut files)?;
+    files.sort_by_cached_key(|path| natural(&name_in(folder, path)));
+    let mut warnings = Vec::new();
+    let found = match tum(folder, &files, &mut warnings)? {
+        Some(pairs) => pairs,
+        None => by_names(folder, &files, &mut warnings),
+    };
+    if found.is_empty() {
+        let words = format!(
+            "no pair of a colour image and a depth map was found among its {} files; names have to say which is which",
+            files.len()
+        );
+        return Err(Problem::file(folder, words));
+    }
+    Ok(Pairs { pairs: unique(found), warnings })
+}
+
+/// The files below a folder, hidden ones and links to folders left out.
+fn below(folder: &Path, deepest: usize, except: Option<&Path>, files: &mut Vec<PathBuf>) -> Result<()> {
+    let entries = std::fs::read_dir(folder).map_err(|error| Problem::file(folder, error))?;
+    for entry in entries {
+        let entry = entry.map_err(|error| Problem::file(folder, error))?;
+        let kind = entry.file_type().map_err(|error| Problem::file(&entry.path(), error))?;
+        if entry.file_name().to_string_lossy().starts_with('.') {
+            continue;
+        }
+        if kind.is_dir() && deepest > 0 {
+            if except.is_none() || entry.path().canonicalize().ok().as_deref() != except {
+                below(&entry.path(), deepest - 1, except, files)?;
+            }
+        } else if !kind.is_dir() && entry.path().is_file() {
+            files.push(entry.path());
+        }
+        if files.len() > MOST_FILES {
+            return Err(Problem::file(folder, format!("it holds more than {MOST_FILES} files")));
+        }
+    }
+    Ok(())
+}
+
+/// The path below the folder.
+fn name_in(folder: &Path, path: &Path) -> String {
+    path.strip_prefix(folder).unwrap_or(path).to_string_lossy().replace('\\', "/")
+}
+
+/// The name itself.
+fn base(name: &str) -> &str {
+    name.rsplit('/').next().unwrap_or(name)
+}
+
+/// Numbers in names by their value.
+fn natural(name: &str) -> Vec<(String, u64, String)> {
+    static PIECES: LazyLock<Regex> = LazyLock::new(|| pattern("[0-9]{1,18}|[^0-9]+"));
+    let piece = |piece: &str| match piece.parse() {
+        Ok(number) => (String::new(), number, piece.to_owned()),
+        Err(_) => (piece.to_lowercase(), 0, piece.to_owned()),
+    };
+    PIECES.find_iter(name).map(|found| piece(found.as_str())).collect()
+}
+
+/// What two files of one frame have in common: their name without what says which of the two it is; numbers without leading zeros.
+fn key(name: &str) -> String {
+    let stem = ENDING.replace(base(name), "").into_owned();
+    let left = KINDS.replace_all(&stem, " ").to_lowercase();
+    let words = left.split(|letter: char| !letter.is_ascii_alphanumeric() && letter != '.').map(|word| {
+        let word = word.trim_matches('.');
+        let digits = word.bytes().take_while(|&letter| letter == b'0').count();
+        let follows = word.as_bytes().get(digits).is_some_and(u8::is_ascii_digit);
+        // The last zero of a number that is zero stays.
+        &word[if follows { digits } else { digits.saturating_sub(1) }..]
+    });
+    words.filter(|word| !word.is_empty() && *word != "mm").collect::<Vec<_>>().join(" ")
+}
+
+/// TUM's lists: a time stamp and a path on each line.
+fn listed(path: &Path) -> Result<Vec<(f64, String)>> {
+    let bytes = read::head(path, MOST_LIST).map_err(|error| Problem::file(path, error))?;
+    let text = String::from_utf8_lossy(&bytes);
+    let lines = text.lines().map(str::trim).filter(|line| !line.is_empty() && !line.starts_with('#'));
+    lines
+        .map(|line| {
+            let (time, file) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
+            match (time.parse::<f64>(), file.trim()) {
+                (Ok(time), file) if time.is_finite() && !file.is_empty() => Ok((time, file.to_owned())),
+                _ => Err(Problem::file(path, format!("it lists time stamps and files, and {line:.60?} is neither"))),
+            }
+        })
+        .collect()
+}
+
+/// The pairs of rgb.txt and depth.txt, where both are there.
+fn tum(folder: &Path, files: &[PathBuf], warnings: &mut Vec<String>) -> Result<Option<Vec<Pair>>> {
+    let list = |name: &str| files.iter().find(|path| base(&name_in(folder, path)).eq_ignore_ascii_case(name));
+    let (Some(colours), Some(depths)) = (list("rgb.txt"), list("depth.txt")) else { return Ok(None) };
+    let root = colours.parent().unwrap_or(folder);
+    let found = by_time(listed(colours)?, listed(depths)?);
+    if found.is_empty() {
+        let words = format!("no time stamp of it lies within {} ms of one of {}", 1000.0 * APART, shown(depths));
+        return Err(Problem::file(colours, words));
+    }
+    let (count, there) = (found.len(), files.iter().collect::<HashSet<_>>());
+    let pairs: Vec<Pair> = found
+        .into_iter()
+        .map(|(time, colour, depth)| {
+            pair(time.to_string(), &root.join(colour), &root.join(depth), None, Some(TUM_UNIT))
+        })
+        .filter(|pair| there.contains(&pair.files.image) && there.contains(&pair.files.depth))
+        .collect();
+    if pairs.len() < count {
+        let missing = count - pairs.len();
+        warnings.push(format!("{missing} of the {count} pairs that rgb.txt and depth.txt list are not in the folder."));
+    }
+    Ok(Some(pairs))
+}
+
+/// Of two lists in order of time, those nearest to each other.
+fn by_time(mut colours: Vec<(f64, String)>, mut depths: Vec<(f64, String)>) -> Vec<(f64, String, String)> {
+    colours.sort_by(|a, b| a.0.total_cmp(&b.0));
+    depths.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut from = 0;
+    let mut found = Vec::new();
+    for (time, colour) in colours {
+        let apart = |index: usize| depths.get(index).map_or(f64::INFINITY, |(other, _)| (other - time).abs());
+        while from + 1 < depths.len() && apart(from + 1) <= apart(from) {
+            from += 1;
+        }
+        if apart(from) <= APART {
+            found.push((time, colour, depths[from].1.clone()));
+            from += 1;
+        }
+    }
+    found
+}
+
+/// By like names; where those differ throughout, in their order.
+fn by_names(folder: &Path, files: &[PathBuf], warnings: &mut Vec<String>) -> Vec<Pair> {
+    let is_picture = |path: &&PathBuf| read::head(path, HEAD).is_ok_and(|bytes| read::kind_of(&bytes).is_some());
+    let named = |path: &PathBuf| (name_in(folder, path), path.clone());
+    let (masks, others): (Vec<_>, Vec<_>) =
+        files.iter().filter(is_picture).map(named).partition(|(name, _)| MASK.is_match(name));
+    let (depths, colours): (Vec<_>, Vec<_>) = others
+        .into_iter()
+        .partition(|(name, _)| DEPTH.is_match(base(name)) || (DEPTH.is_match(name) && !COLOUR.is_match(base(name))));
+    let mask_of = |wanted: &str| {
+        let only = || masks.first().filter(|(name, _)| masks.len() == 1 && key(name).is_empty());
+        masks.iter().find(|(name, _)| key(name) == wanted).or_else(only).map(|(_, path)| path.clone())
+    };
+    let by_key: HashMap<String, &PathBuf> = colours.iter().map(|(name, path)| (key(name), path)).collect();
+    let of = |name: String, colour: &Path, depth: &Path| pair(name.clone(), colour, depth, mask_of(&name), None);
+    let like = |(name, depth): &(String, PathBuf)| {
+        let name = key(name);
+        by_key.get(&name).map(|colour| of(name, colour, depth))
+    };
+    let pairs: Vec<Pair> = depths.iter().filter_map(like).collect();
+    if !pairs.is_empty() || depths.len() != colours.len() {
+        return pairs;
+    }
+    if depths.len() > 1 {
+        let count = depths.len();
+        warnings.push(format!(
+            "No name of a depth map is like one of a colour image: the {count} of each were paired in the order of their names."
+        ));
+    }
+    depths.iter().zip(&colours).map(|((name, depth), (_, colour))| of(key(name), colour, depth)).collect()
+}
+
+fn pair(name: String, image: &Path, depth: &Path, any_mask: Option<PathBuf>, unit: Option<f64>) -> Pair {
+    let stem = || image.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
+    let files = Files { image: image.into(), depth: depth.into(), image_mask: None, depth_mask: None, any_mask, unit };
+    Pair { name: if name.is_empty() { stem() } else { name }, files }
+}
+
+/// Two pairs of one name get a number each, so that neither writes over the other's results.
+fn unique(mut pairs: Vec<Pair>) -> Vec<Pair> {
+    let mut seen: HashMap<String, usize> = HashMap::new();
+    for pair in &mut pairs {
+        let count = seen.entry(pair.folder_name()).or_default();
+        *count += 1;
+        if *count > 1 {
+            pair.name = format!("{} ({count})", pair.name);
+        }
+    }
+    pairs
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn files_of_a_frame_have_a_key_in_common() {
+        for (one, other) in [
+            ("rgb_1.png", "depth_1.png"),
+            ("color/000012.jpg", "depth/12.png"),
+            ("frame-000000.color.png", "frame-000000.depth.png"),
+            ("Bust Image.PNG", "bust_depth_mm.npy"),
+        ] {
+            assert_eq!(key(one), key(other), "{one} {other}");
+        }
+        assert_eq!(key("rgb_0.png"), "0");
+        assert_ne!(key("rgb_1.png"), key("depth_10.png"));
+    }
+
+    #[test]
+    fn numbers_in_names_count_by_value() {
+        let mut names = ["depth_10.png", "depth_9.png", "depth_1.png"];
+        names.sort_by_cached_key(|name| natural(name));
+        assert_eq!(names, ["depth_1.png", "depth_9.png", "depth_10.png"]);
+    }
+
+    #[test]
+    fn nearest_time_stamps_are_pairs_once() {
+        let list = |times: &[f64]| times.iter().map(|&time| (time, time.to_string())).collect::<Vec<_>>();
+        let found = by_time(list(&[1.0, 1.03, 2.0]), list(&[1.01, 1.035, 1.5]));
+        let pairs: Vec<_> = found.iter().map(|(_, colour, depth)| (colour.as_str(), depth.as_str())).collect();
+        assert_eq!(pairs, [("1", "1.01"), ("1.03", "1.035")]);
+    }
+}

@@ -1,0 +1,126 @@
+//! The pose between a colour image and a depth map, from their files, for a shell and for scripts.
+//!
+//! `arguments` says what may be asked, `read` turns files into rasters and `views` these into what the library takes, `folder` finds pairs,
+//! `estimate` runs the loop under a progress bar, `report` and `write` say and save what came out. Nothing here computes.
+
+mod arguments;
+mod code;
+mod estimate;
+mod folder;
+mod problem;
+mod progress;
+mod read;
+mod report;
+mod unit;
+mod views;
+mod write;
+
+use std::io::{self, ErrorKind, Write};
+use std::path::Path;
+use std::process::ExitCode;
+
+use arguments::{Arguments, Input};
+use bimodal_stereo::Options;
+use clap::Parser;
+use code::Code;
+use estimate::{Files, estimate};
+use problem::{Problem, Result};
+use progress::Progress;
+
+fn main() -> ExitCode {
+    let code = match Arguments::try_parse() {
+        Ok(arguments) => run(arguments).unwrap_or_else(|problem| {
+            eprintln!("{problem}");
+            Code::BadInput
+        }),
+        // Help and the version are no mistakes, and clap's own code for these would say "undecided".
+        Err(said) => {
+            let code = if said.use_stderr() { Code::BadInput } else { Code::Converged };
+            said.print().map_or(Code::BadInput, |()| code)
+        }
+    };
+    code.into()
+}
+
+/// What was asked for.
+struct Task {
+    arguments: Arguments,
+    options: Options,
+}
+
+fn run(arguments: Arguments) -> Result<Code> {
+    let options = arguments.options()?;
+    let task = Task { arguments, options };
+    match task.arguments.input()? {
+        Input::Pair(files) => task.one(&files),
+        Input::Folder(folder) => task.many(&folder),
+    }
+}
+
+impl Task {
+    /// One pair: everything that is known about it.
+    fn one(&self, files: &Files) -> Result<Code> {
+        let arguments = &self.arguments;
+        let outcome = self.finish(files, arguments.out.as_deref(), &Progress::new(None, arguments.max_iterations));
+        match (outcome, arguments.json) {
+            (Ok(found), true) => print(&report::json(&found, report::Layout::Lines)).map(|()| found.code()),
+            (Ok(found), false) => {
+                found.warnings.iter().for_each(|warning| eprintln!("warning: {warning}"));
+                print(&report::words(&found)).map(|()| found.code())
+            }
+            (Err(problem), true) => {
+                print(&report::json_of_problem(None, files, &problem, report::Layout::Lines))?;
+                Err(problem)
+            }
+            (Err(problem), false) => Err(problem),
+        }
+    }
+
+    /// A folder: one line for each pair. A pair that cannot be read costs itself, not the others.
+    fn many(&self, folder: &Path) -> Result<Code> {
+        let arguments = &self.arguments;
+        let found = folder::pairs(folder, arguments.out.as_deref())?;
+        found.warnings.iter().for_each(|warning| eprintln!("warning: {warning}"));
+        let mut worst = Code::Converged;
+        for (index, pair) in found.pairs.iter().enumerate() {
+            let progress = Progress::new(Some((index, found.pairs.len(), &pair.name)), arguments.max_iterations);
+            let out = arguments.out.as_ref().map(|out| out.join(pair.folder_name()));
+            let outcome = self.finish(&pair.files, out.as_deref(), &progress);
+            let (line, code) = match &outcome {
+                Ok(found) if arguments.json => (report::json_line(&pair.name, found), found.code()),
+                Ok(found) => (report::line(&pair.name, found), found.code()),
+                Err(problem) if arguments.json => (
+                    report::json_of_problem(Some(&pair.name), &pair.files, problem, report::Layout::OneLine),
+                    Code::BadInput,
+                ),
+                Err(problem) => (format!("{}: {problem}\n", pair.name), Code::BadInput),
+            };
+            print(&line)?;
+            if let (Ok(found), false) = (&outcome, arguments.json) {
+                found.warnings.iter().for_each(|warning| eprintln!("warning: {}: {warning}", pair.name));
+            }
+            worst = worst.max(code);
+        }
+        Ok(worst)
+    }
+
+    /// Runs one pair and writes its files.
+    fn finish(&self, files: &Files, out: Option<&Path>, progress: &Progress) -> Result<estimate::Outcome> {
+        let outcome = estimate(files, &self.arguments, &self.options, progress);
+        progress.end();
+        let mut outcome = outcome?;
+        if let Some(out) = out {
+            outcome.written = write::results(out, &outcome)?;
+        }
+        Ok(outcome)
+    }
+}
+
+/// To the standard output. A reader that has seen enough (`head`) is no fault.
+fn print(text: &str) -> Result<()> {
+    let mut out = io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(Problem::file(Path::new("standard output"), error)),
+        _ => Ok(()),
+    }
+}

@@ -1,0 +1,53 @@
+//! What is wrong with an input: the file and the reason, as a value.
+
+use std::fmt;
+use std::path::Path;
+
+pub type Result<T> = std::result::Result<T, Problem>;
+
+/// The message names the file; `code` and `field` are those of the JavaScript contract.
+#[derive(Debug)]
+pub struct Problem {
+    pub code: &'static str,
+    pub field: String,
+    message: String,
+}
+
+impl Problem {
+    /// A file that cannot be read, written or understood.
+    pub fn file(path: &Path, reason: impl fmt::Display) -> Self {
+        Self { code: "file", field: "file".into(), message: format!("{}: {reason}", shown(path)) }
+    }
+
+    /// An argument, or the arguments together.
+    pub fn option(field: &str, reason: impl fmt::Display) -> Self {
+        Self { code: "option", field: field.into(), message: format!("{field}: {reason}") }
+    }
+
+    /// What the library says of a pair, with the file of the view at fault.
+    pub fn of_pair(error: &bimodal_stereo::Error, image: &Path, depth: &Path) -> Self {
+        let path = match error.field() {
+            field if field.starts_with("image") => Some(image),
+            field if field.starts_with("depth") => Some(depth),
+            _ => None,
+        };
+        let message = path.map_or_else(|| error.to_string(), |path| format!("{}: {error}", shown(path)));
+        Self { code: error.kind().code(), field: error.field().into(), message }
+    }
+}
+
+impl fmt::Display for Problem {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.message)
+    }
+}
+
+/// A path for a terminal, which would obey control characters in a file's name.
+pub fn shown(path: &Path) -> String {
+    plain(&path.display().to_string())
+}
+
+/// The same of any text.
+pub fn plain(text: &str) -> String {
+    text.chars().map(|letter| if letter.is_control() { '\u{fffd}' } else { letter }).collect()
+}

@@ -1,0 +1,147 @@
+//! Files as rasters: PNG and JPEG through `image`, `.npy` by hand. What they hold is told by their first bytes.
+
+mod npy;
+mod picture;
+
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+use bimodal_stereo::Light;
+
+use crate::problem::{Problem, Result};
+pub use npy::bytes as npy_bytes;
+
+/// Largest file that is read, as in js/rig/formats/limits.ts; what is no file (/dev/zero) ends there too.
+const MOST_BYTES: u64 = 64 << 20;
+/// Pixels on a side, as for all images of the library.
+const MOST_SIDE: usize = 4096;
+
+#[derive(Clone, Debug, PartialEq)]
+pub enum Samples {
+    U8(Vec<u8>),
+    U16(Vec<u16>),
+    F32(Vec<f32>),
+}
+
+/// Samples with their channels interleaved, and what the file says of itself.
+#[derive(Clone, Debug)]
+pub struct Raster {
+    pub width: usize,
+    pub height: usize,
+    pub channels: usize,
+    pub samples: Samples,
+    /// Bits of a channel.
+    pub bits: u32,
+    /// Whether its format keeps less than it was given (JPEG).
+    pub is_lossy: bool,
+    /// Whether the file says that its numbers are proportional to intensity; `None` where it says nothing.
+    pub linear: Option<bool>,
+    pub notes: Vec<String>,
+    pub warnings: Vec<String>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    Png,
+    Jpeg,
+    Npy,
+}
+
+/// The kind of a file by its first bytes.
+pub fn kind_of(bytes: &[u8]) -> Option<Kind> {
+    let first: [(&[u8], Kind); 3] =
+        [(b"\x89PNG\r\n\x1a\n", Kind::Png), (b"\xff\xd8\xff", Kind::Jpeg), (b"\x93NUMPY", Kind::Npy)];
+    first.into_iter().find(|(start, _)| bytes.starts_with(start)).map(|(_, kind)| kind)
+}
+
+/// Up to `most` bytes of a file.
+pub fn head(path: &Path, most: u64) -> std::io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    File::open(path)?.take(most).read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
+fn whole(path: &Path) -> Result<Vec<u8>> {
+    let bytes = head(path, MOST_BYTES + 1).map_err(|error| Problem::file(path, error))?;
+    match bytes.len() as u64 {
+        0 => Err(Problem::file(path, "it is empty")),
+        length if length > MOST_BYTES => {
+            Err(Problem::file(path, format!("it is larger than {} MB, which is all that is read", MOST_BYTES >> 20)))
+        }
+        _ => Ok(bytes),
+    }
+}
+
+/// A picture or an array.
+pub fn raster(path: &Path) -> Result<Raster> {
+    let bytes = whole(path)?;
+    let read = match kind_of(&bytes) {
+        Some(Kind::Png) => picture::png(&bytes),
+        Some(Kind::Jpeg) => picture::jpeg(&bytes),
+        Some(Kind::Npy) => npy::read(&bytes),
+        None => Err("it is neither a PNG nor a JPEG nor a .npy file".into()),
+    };
+    read.map_err(|reason| Problem::file(path, reason))
+}
+
+/// Refuses what is too large before anything is made of it.
+fn check_size(width: usize, height: usize) -> std::result::Result<(), String> {
+    if width.max(height) > MOST_SIDE {
+        return Err(format!("it says that it is {width}x{height} pixels large; up to {MOST_SIDE} on a side are read"));
+    }
+    Ok(())
+}
+
+/// 27 numbers in a text, whatever lies between them: names of channels and coefficients are passed over.
+pub fn light(path: &Path) -> Result<Light> {
+    /// A light has half a kilobyte.
+    const MOST_TEXT: u64 = 1 << 16;
+    let bytes = head(path, MOST_TEXT).map_err(|error| Problem::file(path, error))?;
+    let text = String::from_utf8(bytes).map_err(|_| Problem::file(path, "it is no text"))?;
+    let numbers: Vec<f64> = text
+        .split(|letter: char| letter.is_whitespace() || ",;[]".contains(letter))
+        .filter_map(|word| word.parse().ok())
+        .collect();
+    let light = Light::from_slice("light", &numbers).map_err(|error| Problem::file(path, error))?;
+    light.validate("light").map_err(|error| Problem::file(path, error))?;
+    Ok(light)
+}
+
+impl Raster {
+    /// Whether a pixel has red, green and blue.
+    pub fn has_colour(&self) -> bool {
+        self.channels >= 3
+    }
+
+    /// Whether the last channel is the opacity.
+    pub fn has_alpha(&self) -> bool {
+        self.channels == 2 || self.channels == 4
+    }
+
+    /// Whether red, green and blue are the same in all pixels.
+    pub fn is_grey(&self) -> bool {
+        fn grey<T: PartialEq>(data: &[T], channels: usize) -> bool {
+            data.chunks_exact(channels).all(|pixel| pixel[0] == pixel[1] && pixel[0] == pixel[2])
+        }
+        !self.has_colour()
+            || match &self.samples {
+                Samples::U8(data) => grey(data, self.channels),
+                Samples::U16(data) => grey(data, self.channels),
+                Samples::F32(data) => grey(data, self.channels),
+            }
+    }
+
+    /// Each pixel of integers as `pick` has it.
+    pub fn map_pixels<T>(&self, pick: impl Fn(&[u16]) -> T) -> Vec<T> {
+        let wide = |data: &mut dyn Iterator<Item = u16>| {
+            let all: Vec<u16> = data.collect();
+            all.chunks_exact(self.channels).map(&pick).collect()
+        };
+        match &self.samples {
+            Samples::U8(data) => wide(&mut data.iter().map(|&level| level.into())),
+            Samples::U16(data) => wide(&mut data.iter().copied()),
+            Samples::F32(data) => wide(&mut data.iter().map(|&value| u16::from(value > 0.0))),
+        }
+    }
+}

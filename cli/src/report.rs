@@ -1,0 +1,307 @@
+//! What came out: in words with units, as one line, and as JSON with the names of the JavaScript contract's `StepReport`.
+
+use std::fmt::Write;
+
+use bimodal_stereo::{Angles, Similarity, StepReport, Uncertainty};
+use serde::Serialize;
+
+use crate::estimate::{Files, Length, Outcome};
+use crate::problem::{Problem, plain, shown};
+
+/// Digits of lengths, sigmas and shares.
+const DIGITS: i32 = 4;
+
+/// A number with so many digits, without an exponent.
+fn digits(value: f64, digits: i32) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return value.to_string();
+    }
+    let decimals = (digits - 1 - value.abs().log10().floor() as i32).clamp(0, 12);
+    format!("{value:.*}", decimals as usize)
+}
+
+fn list(values: impl IntoIterator<Item = String>) -> String {
+    values.into_iter().collect::<Vec<_>>().join(", ")
+}
+
+/// Text that cannot fail to be written.
+macro_rules! line {
+    ($text:expr, $($words:tt)*) => {
+        let _ = writeln!($text, $($words)*);
+    };
+}
+
+/// Everything, for people.
+pub fn words(found: &Outcome) -> String {
+    let report = found.estimator.report();
+    let length = found.image_length.word();
+    let mut text = String::new();
+    line!(text, "{} after {}", report.status.name(), iterations(report));
+    if let Some(message) = &report.message {
+        line!(text, "{}", plain(message));
+    }
+    line!(text, "\npose: P_colour = s R P_depth + t, R = Rx(alpha) Ry(beta) Rz(gamma); x right, y down, z forward");
+    pose_words(&mut text, &report.pose, length);
+    if let Some(sigma) = &report.uncertainty {
+        sigma_words(&mut text, sigma, length);
+    }
+    line!(
+        text,
+        "\noverlap {:.0} % of the depth points, {:.0} % of these inliers; {} of log colour is left unexplained",
+        100.0 * report.overlap,
+        100.0 * report.inliers,
+        digits(report.residual, 3)
+    );
+    for rival in &report.rivals {
+        let Angles { alpha, beta, gamma } = Angles::of(&rival.rotation);
+        let off = rival.degrees_to(&report.pose);
+        line!(
+            text,
+            "another pose explains the colours as well: {alpha:.2}, {beta:.2}, {gamma:.2} degrees, {off:.1} degrees away"
+        );
+    }
+    found.notes.iter().for_each(|note| {
+        line!(text, "{note}");
+    });
+    found.written.iter().for_each(|file| {
+        line!(text, "wrote {file}");
+    });
+    text
+}
+
+fn iterations(report: &StepReport) -> String {
+    format!("{} iteration{}", report.iteration, if report.iteration == 1 { "" } else { "s" })
+}
+
+fn pose_words(text: &mut String, pose: &Similarity, length: &str) {
+    let Angles { alpha, beta, gamma } = Angles::of(&pose.rotation);
+    line!(text, "  s      {}", digits(pose.scale, 6));
+    for (name, angle) in [("alpha", alpha), ("beta ", beta), ("gamma", gamma)] {
+        line!(text, "  {name}  {angle:.4} degrees");
+    }
+    line!(text, "  t      {} {length}", list(pose.translation.iter().map(|&value| digits(value, 5))));
+}
+
+fn sigma_words(text: &mut String, sigma: &Uncertainty, length: &str) {
+    let seen = |value: Option<f64>| {
+        value.map_or_else(|| "not seen".into(), |value| format!("{} {length}", digits(value, DIGITS)))
+    };
+    line!(text, "\none sigma, in the colour view's frame");
+    line!(
+        text,
+        "  rotation about x, y, z     {} degrees",
+        list(sigma.rotation_degrees.map(|value| digits(value, DIGITS)))
+    );
+    line!(text, "  translation along x, y, z  {}", list(sigma.translation.map(seen)));
+    line!(text, "  s                          {}", sigma.scale.map_or("held".into(), |scale| digits(scale, DIGITS)));
+    line!(text, "  weakest: {}", plain(&sigma.weakest));
+}
+
+/// A pair of a folder.
+pub fn line(name: &str, found: &Outcome) -> String {
+    let report = found.estimator.report();
+    let Similarity { scale, rotation, translation } = &report.pose;
+    let Angles { alpha, beta, gamma } = Angles::of(rotation);
+    let sigma = report.uncertainty.as_ref().map_or_else(String::new, |sigma| {
+        let largest = sigma.rotation_degrees.into_iter().fold(0.0, f64::max);
+        format!(", sigma up to {} degrees", digits(largest, 2))
+    });
+    format!(
+        "{}: {}, alpha {alpha:.3}, beta {beta:.3}, gamma {gamma:.3} degrees, s {}, t {} {}{sigma}\n",
+        plain(name),
+        report.status.name(),
+        digits(*scale, 5),
+        list(translation.iter().map(|&value| digits(value, DIGITS))),
+        found.image_length.word(),
+    )
+}
+
+/// How JSON is laid out: for reading, or in one line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Layout {
+    Lines,
+    OneLine,
+}
+
+#[derive(Serialize)]
+#[serde(rename_all = "camelCase")]
+struct Report<'a> {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    name: Option<&'a str>,
+    image: String,
+    depth: String,
+    status: &'static str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    message: Option<&'a str>,
+    iteration: u32,
+    pose: Pose,
+    /// Of lengths: "px" or "m".
+    unit: &'static str,
+    depth_unit: &'static str,
+    uncertainty: Option<Sigma<'a>>,
+    rivals: Vec<Pose>,
+    overlap: f64,
+    inliers: f64,
+    residual: f64,
+    /// R1..9, G1..9, B1..9.
+    light: Vec<f64>,
+    exposure: f64,
+    notes: &'a [String],
+    warnings: &'a [String],
+    written: &'a [String],
+}
+
+#[derive(Serialize)]
+struct Pose {
+    scale: f64,
+    /// Row by row.
+    rotation: [f64; 9],
+    translation: [f64; 3],
+    angles: InDegrees,
+}
+
+#[derive(Serialize)]
+struct InDegrees {
+    alpha: f64,
+    beta: f64,
+    gamma: f64,
+}
+
+#[derive(Serialize)]
+#[serde(rename_all = "camelCase")]
+struct Sigma<'a> {
+    rotation_degrees: [f64; 3],
+    translation: [Option<f64>; 3],
+    scale: Option<f64>,
+    weakest: &'a str,
+}
+
+#[derive(Serialize)]
+struct Failed<'a> {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    name: Option<&'a str>,
+    image: String,
+    depth: String,
+    error: Fault<'a>,
+}
+
+#[derive(Serialize)]
+struct Fault<'a> {
+    code: &'a str,
+    field: &'a str,
+    message: String,
+}
+
+impl From<&Similarity> for Pose {
+    fn from(pose: &Similarity) -> Self {
+        let Angles { alpha, beta, gamma } = Angles::of(&pose.rotation);
+        let rotation = std::array::from_fn(|at| pose.rotation[(at / 3, at % 3)]);
+        Self {
+            scale: pose.scale,
+            rotation,
+            translation: pose.translation.into(),
+            angles: InDegrees { alpha, beta, gamma },
+        }
+    }
+}
+
+impl<'a> Report<'a> {
+    fn of(name: Option<&'a str>, found: &'a Outcome) -> Self {
+        let report = found.estimator.report();
+        let sigma = |sigma: &'a Uncertainty| Sigma {
+            rotation_degrees: sigma.rotation_degrees,
+            translation: sigma.translation,
+            scale: sigma.scale,
+            weakest: &sigma.weakest,
+        };
+        Self {
+            name,
+            image: found.files.image.display().to_string(),
+            depth: found.files.depth.display().to_string(),
+            status: report.status.name(),
+            message: report.message.as_deref(),
+            iteration: report.iteration,
+            pose: (&report.pose).into(),
+            unit: found.image_length.symbol(),
+            depth_unit: found.depth_length.symbol(),
+            uncertainty: report.uncertainty.as_ref().map(sigma),
+            rivals: report.rivals.iter().map(Pose::from).collect(),
+            overlap: report.overlap,
+            inliers: report.inliers,
+            residual: report.residual,
+            light: found.estimator.light().flat().to_vec(),
+            exposure: found.estimator.exposure(),
+            notes: &found.notes,
+            warnings: &found.warnings,
+            written: &found.written,
+        }
+    }
+}
+
+/// Numbers that are none become null.
+fn text(value: &impl Serialize, layout: Layout) -> String {
+    let made = match layout {
+        Layout::Lines => serde_json::to_string_pretty(value),
+        Layout::OneLine => serde_json::to_string(value),
+    };
+    // Strings and numbers alone, whose keys are names.
+    made.expect("can be written") + "\n"
+}
+
+/// The report of a pair.
+pub fn json(found: &Outcome, layout: Layout) -> String {
+    text(&Report::of(None, found), layout)
+}
+
+/// .. of one in a folder.
+pub fn json_line(name: &str, found: &Outcome) -> String {
+    text(&Report::of(Some(name), found), Layout::OneLine)
+}
+
+/// Why there is no report.
+pub fn json_of_problem(name: Option<&str>, files: &Files, problem: &Problem, layout: Layout) -> String {
+    let (image, depth) = (shown(&files.image), shown(&files.depth));
+    let error = Fault { code: problem.code, field: &problem.field, message: problem.to_string() };
+    text(&Failed { name, image, depth, error }, layout)
+}
+
+/// The pose for other programs: as in js/write/results.ts.
+pub fn pose_json(pose: &Similarity, length: Length) -> String {
+    #[derive(Serialize)]
+    struct Told {
+        about: String,
+        unit: &'static str,
+        #[serde(flatten)]
+        pose: Pose,
+        matrix: [[f64; 4]; 4],
+    }
+    let about = format!(
+        "P_colour = scale * rotation * P_depth + translation; rotation row by row; angles in degrees; lengths in {}",
+        length.word()
+    );
+    text(&Told { about, unit: length.symbol(), pose: pose.into(), matrix: matrix(pose) }, Layout::Lines)
+}
+
+/// Scale and rotation in one, and the translation.
+pub fn matrix(pose: &Similarity) -> [[f64; 4]; 4] {
+    let place = |row: usize, column: usize| match (row, column) {
+        (3, 3) => 1.0,
+        (3, _) => 0.0,
+        (_, 3) => pose.translation[row],
+        _ => pose.scale * pose.rotation[(row, column)],
+    };
+    std::array::from_fn(|row| std::array::from_fn(|column| place(row, column)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::digits;
+
+    #[test]
+    fn digits_are_those_that_count() {
+        let texts = [(0.012_345, "0.01235"), (-12.345, "-12.35"), (123_456.0, "123456"), (0.0, "0"), (9.99, "9.990")];
+        for (value, text) in texts {
+            assert_eq!(digits(value, 4), text);
+        }
+    }
+}

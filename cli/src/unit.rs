@@ -1,0 +1,130 @@
+//! The unit of a depth map in metres, guessed from its values by the rules of js/rig/depth.ts, and what looks wrong about it.
+//!
+//! Limits: millimetres and fifths of them (TUM) cannot always be told apart by values alone, so that every guess is said.
+
+use std::collections::HashSet;
+
+/// Depths of which a camera is expected to see, metres.
+const NEAREST: f64 = 0.1;
+const FARTHEST: f64 = 20.0;
+/// A few stray depths say nothing of the unit: of those beyond the range so many may be.
+const STRAY: f64 = 0.01;
+/// Half of what indoor sensors with integer depths see lies nearer, metres; beyond it the unit is not the millimetre.
+const USUAL: f64 = 8.0;
+/// Share of values that a rule about their last digits has to hold for.
+const NEARLY_ALL: f64 = 0.99;
+/// .. and of SUN RGB-D's, where depths beyond 8.19 m wrap into the low bits.
+const MOSTLY: f64 = 0.9;
+/// Fewer different depths are a scene made by hand, whose round numbers say nothing of the unit.
+const MANY_VALUES: usize = 16;
+/// Values from which on nothing was seen.
+const LARGEST: f64 = 1e12;
+/// Quantiles need no more values than these.
+const SAMPLE: usize = 65_536;
+
+/// Metres for each stored number, and why.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Unit {
+    pub metres: f64,
+    pub says: String,
+}
+
+/// The valid values in order, at most [`SAMPLE`] of them.
+pub struct Sample(Vec<f64>);
+
+impl Sample {
+    pub fn of(values: impl ExactSizeIterator<Item = f64>) -> Self {
+        let stride = values.len().div_ceil(SAMPLE).max(1);
+        let mut sorted: Vec<f64> = values.step_by(stride).filter(|&value| value > 0.0 && value < LARGEST).collect();
+        sorted.sort_by(f64::total_cmp);
+        Self(sorted)
+    }
+
+    fn median(&self) -> f64 {
+        self.0.get((self.0.len().max(1) - 1) / 2).copied().unwrap_or(f64::NAN)
+    }
+
+    fn share(&self, rule: impl Fn(f64) -> bool) -> f64 {
+        self.0.iter().filter(|&&value| rule(value)).count() as f64 / self.0.len() as f64
+    }
+
+    fn is_varied(&self) -> bool {
+        self.0.iter().map(|value| value.to_bits()).collect::<HashSet<_>>().len() >= MANY_VALUES
+    }
+
+    /// SUN RGB-D turns the bits of its millimetres by three, so that most values are multiples of 8.
+    pub fn is_turned(&self) -> bool {
+        self.is_varied() && self.share(|value| value % 8.0 == 0.0) >= MOSTLY && self.median() > 1000.0
+    }
+
+    /// The unit of whole numbers: of TUM's files all are multiples of 5, since they are fives of a Kinect's millimetres.
+    pub fn unit_of_integers(&self) -> Unit {
+        let fives = self.is_varied()
+            && self.share(|value| value % 5.0 == 0.0) >= NEARLY_ALL
+            && self.median() > 1000.0 * NEAREST * 5.0;
+        let (metres, why) = match () {
+            () if fives => (0.0002, "fifths of a millimetre, as all are multiples of 5"),
+            () if self.median() > 1000.0 * USUAL => {
+                (0.0002, "fifths of a millimetre, as they are too far for millimetres")
+            }
+            () => (0.001, "millimetres"),
+        };
+        Unit { metres, says: why.into() }
+    }
+
+    /// The unit of floats: millimetres if half of them lay beyond what metres would reach.
+    pub fn unit_of_floats(&self) -> Unit {
+        if self.median() > FARTHEST {
+            Unit { metres: 0.001, says: "millimetres".into() }
+        } else {
+            Unit { metres: 1.0, says: "metres".into() }
+        }
+    }
+
+    /// What is wrong with depths of that unit.
+    pub fn warning(&self, metres: f64) -> Option<String> {
+        let beyond = self.share(|value| value * metres < NEAREST || value * metres > FARTHEST);
+        let says =
+            format!("{:.1} % of the depths are outside {NEAREST} to {FARTHEST} m: is the unit right?", 100.0 * beyond);
+        (beyond > STRAY).then_some(says)
+    }
+}
+
+/// SUN RGB-D's numbers as millimetres.
+pub fn turned_back(data: &[u16]) -> Vec<u16> {
+    data.iter().map(|value| value.rotate_right(3)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn unit(values: impl Iterator<Item = u32>) -> f64 {
+        let values: Vec<f64> = values.map(f64::from).collect();
+        Sample::of(values.into_iter()).unit_of_integers().metres
+    }
+
+    #[test]
+    fn whole_numbers_are_millimetres_but_for_multiples_of_five_and_what_is_too_far() {
+        assert_eq!(unit(700..900), 0.001);
+        assert_eq!(unit((700..900).map(|value| 5 * value)), 0.0002);
+        assert_eq!(unit(9001..9300), 0.0002);
+        // Few values, made by hand: round numbers say nothing.
+        assert_eq!(unit([1000, 1005, 1010].into_iter()), 0.001);
+    }
+
+    #[test]
+    fn floats_are_metres_unless_that_is_too_far() {
+        let of = |value: f64| Sample::of([value; 4].into_iter()).unit_of_floats().metres;
+        assert_eq!((of(1.2), of(1200.0)), (1.0, 0.001));
+    }
+
+    #[test]
+    fn turned_bits_are_found_and_turned_back() {
+        let millimetres: Vec<u16> = (1500..1700).collect();
+        let stored: Vec<u16> = millimetres.iter().map(|value| value.rotate_left(3)).collect();
+        let sample = |data: &[u16]| Sample::of(data.iter().map(|&value| f64::from(value)));
+        assert!(sample(&stored).is_turned() && !sample(&millimetres).is_turned());
+        assert_eq!(turned_back(&stored), millimetres);
+    }
+}

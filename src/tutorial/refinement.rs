@@ -1,0 +1,44 @@
+//! Chapter 7. What do the colours tell the depth map?
+//!
+//! With the pose known the image shades the depth map's surface as well. Its normals follow the colours that fall onto them (Eq. 17),
+//!
+//! > g(n_R) = Σ_j ( (R n_R)ᵀ M_j (R n_R) − log S_j )² + λ_g2 |n_R − n_R⁰|²
+//!
+//! the mirror image of chapter 3, and its depth follows these normals and the measurement, each as far as it can be trusted (Eq. 18, 19).
+//! Noise goes down, holes are filled. [`Estimator::refined_depth`](crate::Estimator::refined_depth) and
+//! [`Estimator::depth_normals`](crate::Estimator::depth_normals) are the outcome.
+//!
+//! ```
+//! use bimodal_stereo::{Estimator, LightSource, Options, Start, Status, scenes};
+//! use scenes::DepthData;
+//!
+//! let request = scenes::SampleRequest { depth_noise: 0.3, holes: 0.05, ..Default::default() };
+//! let sample = scenes::Scene::new(&scenes::surface("bust")?)?.sample(&request)?;
+//! let options = Options {
+//!     light: LightSource::Known(sample.light),
+//!     start: Start::Identity,
+//!     scale: Some(1.0),
+//!     max_iterations: 6,
+//!     ..Options::default()
+//! };
+//! let mut estimator = Estimator::new(sample.colour_image(), &sample.depth_map(), options)?;
+//! while estimator.report().status == Status::Running {
+//!     estimator.step();
+//! }
+//!
+//! // Median distance to the truth, where there was a measurement.
+//! let DepthData::Map(measured) = &sample.depth.data else { unreachable!("an orthographic map is no cloud") };
+//! let median_error = |depth: &[f32]| {
+//!     let errors = depth.iter().zip(&sample.truth.depth).zip(measured);
+//!     let mut errors: Vec<f32> =
+//!         errors.map(|((a, b), there)| (a - b + 0.0 * there).abs()).filter(|error| error.is_finite()).collect();
+//!     errors.sort_by(f32::total_cmp);
+//!     errors[errors.len() / 2]
+//! };
+//! assert!(median_error(estimator.refined_depth()) < 0.7 * median_error(measured));
+//!
+//! // Holes are filled.
+//! let known = |depth: &[f32]| depth.iter().filter(|value| value.is_finite()).count();
+//! assert!(known(estimator.refined_depth()) > known(measured));
+//! # Ok::<(), bimodal_stereo::Error>(())
+//! ```
