@@ -9,16 +9,36 @@ function fromDisk(wasm: string | URL | Request | Response): Promise<BufferSource
   return address.startsWith("file:") ? nodeModule("node:fs/promises")?.readFile(new URL(address)) : undefined;
 }
 
-export async function compile(wasm: WasmSource): Promise<WebAssembly.Module> {
+/** What helps where a bundler has left a .wasm behind. */
+const ADVICE =
+  "Bundlers that do not follow new URL(.., import.meta.url) leave the package's .wasm files behind: copy them beside the bundle, " +
+  "which has to be an ES module, or tell init(url) where they are. Its README has the line for each bundler";
+
+const leftBehind = (what: string, cause?: unknown): Error => new Error(`${what}. ${ADVICE}`, { cause });
+
+function sourceOf(where: () => WasmSource): WasmSource {
+  try {
+    return where();
+  } catch (error) {
+    // Scripts that are no ES modules have no import.meta.url.
+    throw leftBehind("this bundle does not know its own address", error);
+  }
+}
+
+/** The code of a .wasm; where it is may be unknown, so it is asked here. */
+export async function compile(where: () => WasmSource): Promise<WebAssembly.Module> {
+  const wasm = sourceOf(where);
   if (wasm instanceof WebAssembly.Module) return wasm;
   if (ArrayBuffer.isView(wasm) || wasm instanceof ArrayBuffer) return WebAssembly.compile(wasm);
   const file = fromDisk(wasm);
   if (file) return WebAssembly.compile(await file);
   const response = wasm instanceof Response ? wasm : await fetch(wasm);
-  if (!response.ok) throw new Error(`status ${response.status}`);
+  const type = response.headers.get("Content-Type") ?? "";
+  if (!response.ok) throw leftBehind(`status ${response.status} at ${response.url}`);
+  // Servers of single-page applications answer any address that they do not know with their page.
+  if (type.startsWith("text/html")) throw leftBehind(`a page of HTML is at ${response.url}`);
   // Only what is declared as wasm may be compiled while it arrives.
-  const isDeclared = response.headers.get("Content-Type")?.startsWith("application/wasm");
-  return isDeclared ? WebAssembly.compileStreaming(response) : WebAssembly.compile(await response.arrayBuffer());
+  return type.startsWith("application/wasm") ? WebAssembly.compileStreaming(response) : WebAssembly.compile(await response.arrayBuffer());
 }
 
 /** Runs a call into wasm; its errors come out as `BimodalError`. */

@@ -7,9 +7,9 @@ import type { WasmSource } from "./types.js";
 let loading: Promise<void> | undefined;
 let module: WebAssembly.Module | undefined;
 
-async function loadOnce(wasm: WasmSource): Promise<void> {
+async function loadOnce(where: () => WasmSource): Promise<void> {
   try {
-    const compiled = await compile(wasm);
+    const compiled = await compile(where);
     await start({ module_or_path: compiled });
     module = compiled;
   } catch (error) {
@@ -20,8 +20,8 @@ async function loadOnce(wasm: WasmSource): Promise<void> {
 }
 
 /** Loads the module once; later calls share the first one, and a failed one may be repeated. */
-export function load(wasm: WasmSource): Promise<void> {
-  loading ??= loadOnce(wasm);
+export function load(where: () => WasmSource): Promise<void> {
+  loading ??= loadOnce(where);
   return loading;
 }
 

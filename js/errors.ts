@@ -1,7 +1,7 @@
 /** Everything that goes wrong here for a reason the caller can name. */
 export class BimodalError extends Error {
   override readonly name = "BimodalError";
-  /** Stable, for programs: "size", "range", "missing", "empty", "option", "type", "unsupported", "freed", "panic", ... */
+  /** Stable, for programs: "size", "range", "missing", "empty", "option", "type", "unsupported", "freed", "state", "panic", "poisoned", ... */
   readonly code: string;
   /** The input at fault, as a path in the contract, e.g. "depth.camera.fx". */
   declare readonly field?: string;

@@ -3,9 +3,11 @@ import { breathe } from "./breathe.js";
 import { across } from "./border.js";
 import { bindings } from "./engine.js";
 import { BimodalError, isPanic, translate } from "./errors.js";
-import { checkDepth, checkDraw, checkImage, checkLayer, checkOptions, checkRun, unsupported } from "./inputs.js";
+import { checkDepth, checkDraw, checkImage, checkLayer, checkOptions, checkRun } from "./inputs.js";
 import { copyOf, plainDepth, plainImage, plainOptions } from "./plain.js";
+import { type Reached, checksumOf, opened, otherNumbers, saved, unusable } from "./saved.js";
 import type { ColorImage, DepthMap, DrawOptions, Layer, Options, RunOptions, StepReport } from "./types.js";
+import type { Views } from "./workers/messages.js";
 import { RefinementWorker, type Refinement } from "./workers/refinement.js";
 import { SearchWorkers } from "./workers/search.js";
 
@@ -37,6 +39,11 @@ export class Estimator {
   #broken = false;
   /** Those of the loop that is under way. */
   #options: Options;
+  /** Copies: their owner may change the pair before it is saved or a worker asks for it. */
+  readonly #pair: Views;
+  /** Whether anything has been run since the start, and how many slices of the search this thread has done. */
+  #begun = false;
+  #slices = 0;
   readonly #searchWorkers: SearchWorkers | undefined;
   readonly #refinementWorker: RefinementWorker | undefined;
 
@@ -47,14 +54,13 @@ export class Estimator {
     const { Estimator: Binding } = bindings();
     this.#raw = across(() => new Binding(ownImage, ownDepth, own));
     const workers = Math.min((own.workers ?? 1) - 1, this.#raw.workersAfforded());
+    this.#pair = { image: copyOf(ownImage, []), depth: copyOf(ownDepth, []) };
     if (workers > 0) {
-      // Its owner may change the pair before it is asked for again.
-      const pair = { image: copyOf(ownImage, []), depth: copyOf(ownDepth, []) };
-      this.#searchWorkers = new SearchWorkers(workers, pair, {
+      this.#searchWorkers = new SearchWorkers(workers, this.#pair, {
         take: () => this.#call((raw) => raw.takeTask()),
         accept: (result) => this.#call((raw) => raw.accept(result)),
       });
-      if (pair.depth.width * pair.depth.height >= LEAST_SHARED) this.#refinementWorker = new RefinementWorker(pair);
+      if (depth.width * depth.height >= LEAST_SHARED) this.#refinementWorker = new RefinementWorker(this.#pair);
       this.#begin();
     }
   }
@@ -111,6 +117,7 @@ export class Estimator {
     }
     this.#call((raw) => raw.reset(own));
     if (own) this.#options = { ...own, workers };
+    [this.#begun, this.#slices] = [false, 0];
     this.#begin();
   }
 
@@ -198,14 +205,40 @@ export class Estimator {
     return this.#call((raw) => raw.searchScores());
   }
 
-  /** Not part of this version yet: throws a `BimodalError` of code "unsupported". */
-  save(): Uint8Array {
-    throw unsupported("save", "saving an estimator");
+  /** What it was given, as copies: both views, and the options of the last `reset`. */
+  get given(): { image: ColorImage; depth: DepthMap; options: Options } {
+    return structuredClone({ ...this.#pair, options: this.#options });
   }
 
-  /** Not part of this version yet: throws a `BimodalError` of code "unsupported". */
-  static restore(_state: Uint8Array): Estimator {
-    throw unsupported("restore", "restoring an estimator");
+  /**
+   * The run as bytes: both views, the options and how far it has come. A run is the same to the bit whenever it is run again, and that is
+   * how `restore` goes on with it.
+   */
+  save(): Uint8Array {
+    const { stage, iteration, status } = this.report;
+    const reached = { begun: this.#begun, stage, iteration, slices: this.#slices, ended: status !== "running" };
+    return saved({ ...this.#pair, options: this.#options, reached, found: checksumOf(this) });
+  }
+
+  /**
+   * An estimator that stands where the saved one stood, to the bit, and goes on as that one would have. It takes as long as the run had
+   * taken. A search that was broken off may stand elsewhere, if threads shared it, and ends in the same pose.
+   *
+   * @throws BimodalError of code "state": no saved run, a damaged one, one of another format, or one whose numbers this build does not repeat.
+   */
+  static restore(state: Uint8Array): Estimator {
+    const { image, depth, options, reached, found } = opened(state);
+    const estimator = unusable(() => new Estimator(image, depth, options));
+    try {
+      estimator.#repeat(reached);
+      // How far a search has come in so many slices depends on how many threads share it.
+      const isWithinSearch = reached.stage === "search" && !reached.ended;
+      if (!isWithinSearch && checksumOf(estimator) !== found) throw otherNumbers();
+      return estimator;
+    } catch (error) {
+      estimator.free();
+      throw error;
+    }
   }
 
   /** Gives the memory back. The second call does nothing. */
@@ -238,6 +271,15 @@ export class Estimator {
     if (this.#options.registration !== "icp") this.#refinementWorker?.begin(this.#options);
   }
 
+  /** Runs as many stages as another run has, with the same views and options. */
+  #repeat({ begun, stage, iteration, slices, ended }: Reached): void {
+    if (!begun) return;
+    let report: StepReport;
+    const isThere = () => !ended && report.stage === stage && report.iteration === iteration && this.#slices >= slices;
+    do report = this.#after(this.#call((raw) => raw.stepStage()));
+    while (report.status === "running" && !isThere());
+  }
+
   /** A step that waits for the refinement worker, if it is busy. */
   async #stepTogether(): Promise<StepReport> {
     if (!this.#refinementWorker?.isBusy) return this.step();
@@ -258,6 +300,8 @@ export class Estimator {
 
   /** Gives the workers what comes next, or ends them. */
   #after(report: StepReport): StepReport {
+    this.#begun = true;
+    if (report.stage === "search") this.#slices++;
     if (report.status !== "running") {
       this.#searchWorkers?.end();
       this.#refinementWorker?.end();
@@ -274,7 +318,7 @@ export class Estimator {
   #call<T>(method: (raw: Raw) => T): T {
     if (this.#raw === undefined) throw new BimodalError("freed", "this estimator has been freed");
     if (this.#broken) {
-      throw new BimodalError("panic", "this estimator broke off in an earlier call; free it and make another one");
+      throw new BimodalError("poisoned", "this estimator broke off in an earlier call; free it and make another one");
     }
     try {
       return method(this.#raw);

@@ -2,6 +2,7 @@
  * Image and depth files without a canvas, which would throw away the lower byte of 16 bits and premultiply alpha: PNG of
  * 8 and 16 bits, and NumPy's .npy. A module of its own, to be loaded when the first file comes in.
  */
+import { wrong } from "./check.js";
 import { BimodalError, badFile } from "./errors.js";
 import { type Raster, isNpy, readNpy } from "./npy.js";
 import { isPng, readPng } from "./png.js";
@@ -12,12 +13,24 @@ export { BimodalError };
 
 type Bytes = Uint8Array | ArrayBuffer;
 
+/** Pixels of a PNG. A photograph of 12000 x 9000 has 108 million; of what claims more, few bytes would take all memory. */
+const MOST_PIXELS = 2 ** 27;
+
+function checkSize(width: number, height: number): void {
+  if (width * height > MOST_PIXELS) throw badFile(`this PNG says that it is ${width}x${height} pixels large; up to ${MOST_PIXELS} pixels are read`);
+}
+
 function read(file: Bytes): Raster<Pixels> {
+  if (!(file instanceof Uint8Array || file instanceof ArrayBuffer)) throw wrong("file", "a Uint8Array or an ArrayBuffer", file);
   const bytes = file instanceof Uint8Array ? file : new Uint8Array(file);
   if (bytes.length === 0) throw badFile("it is empty");
-  const raster = isNpy(bytes) ? readNpy(bytes) : isPng(bytes) ? readPng(bytes) : undefined;
-  if (raster === undefined) throw badFile("it is neither a PNG nor a .npy file");
-  return raster;
+  if (!isNpy(bytes) && !isPng(bytes)) throw badFile("it is neither a PNG nor a .npy file");
+  try {
+    return isNpy(bytes) ? readNpy(bytes) : readPng(bytes, checkSize);
+  } catch (error) {
+    if (error instanceof RangeError) throw badFile("there is not enough memory for it", error);
+    throw error;
+  }
 }
 
 /** A colour image: PNG, or .npy of rows x columns (x 3 or 4), floats being linear. */

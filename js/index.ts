@@ -12,6 +12,6 @@ export type * from "./types.js";
 export { wasmUrl } from "./wasm.js";
 
 /** Loads the numerics; without an argument from the .wasm file beside this module that `wasmUrl` names, in Node from disk. */
-export default function init(wasm: WasmSource = wasmUrl()): Promise<void> {
-  return load(wasm);
+export default function init(wasm?: WasmSource): Promise<void> {
+  return load(() => wasm ?? wasmUrl());
 }

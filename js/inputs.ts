@@ -56,9 +56,6 @@ let made: ReturnType<typeof inputs> | undefined;
 /** Made when first asked for, so that bundlers leave them out of what only checks a rig. */
 const checks = (): ReturnType<typeof inputs> => (made ??= inputs());
 
-export const unsupported = (field: string, what: string): BimodalError =>
-  new BimodalError("unsupported", `${field}: ${what} is not part of this version yet`, field);
-
 export const checkImage = (value: unknown): void => checks().image(value, "image");
 export const checkDepth = (value: unknown): void => checks().depth(value, "depth");
 export const checkOptions = (value: unknown): void => checks().options(value, "options");

@@ -2,6 +2,7 @@
 //   --quick          fewer sizes and samples, under a minute
 //   --sizes a,b      these sizes alone, as 64x64,640x480
 //   --json FILE      the numbers as JSON
+//   --docs           medians and aims into the marked region of docs/performance.md
 //   --browser-only, --native-only
 import { writeFileSync } from "node:fs";
 import { cpus, loadavg } from "node:os";
@@ -16,6 +17,7 @@ import { browserSide, launch, nativeSide } from "./bench/sides.mjs";
 import { aims, pixelsOf, summary } from "./bench/summary.mjs";
 import { browser } from "./browser.mjs";
 import { build } from "./build.mjs";
+import { fill, benchLines } from "./docs.mjs";
 import { setup } from "./setup.mjs";
 import { Failure, must, say, script, seconds } from "./shell.mjs";
 import { buildPage, sizes as measureSizes } from "./sizes.mjs";
@@ -38,15 +40,15 @@ const QUICK = { sizes: ["32x32", "64x64"], samples: 5, again: 1, randomSizes: ["
 
 function parsed() {
   const flag = { type: "boolean", default: false };
-  const options = { quick: flag, "browser-only": flag, "native-only": flag, json: { type: "string" }, sizes: { type: "string" } };
+  const options = { quick: flag, docs: flag, "browser-only": flag, "native-only": flag, json: { type: "string" }, sizes: { type: "string" } };
   try {
-    const { quick, json, sizes: named, ...only } = parseArgs({ options }).values;
+    const { quick, docs, json, sizes: named, ...only } = parseArgs({ options }).values;
     const plan = quick ? QUICK : FULL;
     const sizes = named?.split(",") ?? plan.sizes;
     const unknown = sizes.find((size) => !SIZES.includes(size));
     if (unknown) throw new Error(`There is no size "${unknown}"; there are ${SIZES.join(", ")}.`);
     const randomSizes = plan.randomSizes.filter((size) => sizes.includes(size));
-    return { json, quick, plan: { ...plan, sizes, randomSizes }, native: !only["browser-only"], inBrowser: !only["native-only"] };
+    return { json, quick, docs, plan: { ...plan, sizes, randomSizes }, native: !only["browser-only"], inBrowser: !only["native-only"] };
   } catch (error) {
     throw new Failure(error.message);
   }
@@ -94,7 +96,7 @@ async function around(chromium, address, side, made, plan) {
 }
 
 await script(async () => {
-  const { json: file, quick, plan, native, inBrowser } = parsed();
+  const { json: file, quick, docs, plan, native, inBrowser } = parsed();
   const start = performance.now();
   await setup();
   await build();
@@ -125,6 +127,7 @@ await script(async () => {
       writeFileSync(resolve(file), `${JSON.stringify({ ...result, aims: list }, null, 1)}\n`);
       say(`wrote ${file}`);
     }
+    if (docs) fill("docs/performance.md", "bench", benchLines({ ...result, aims: list }));
   } finally {
     for (const side of sides) await side.close();
     await chromium?.close();

@@ -26,6 +26,12 @@ function find() {
   return { chromium, chromedriver };
 }
 
+/** Debian's Firefox and its driver; the second engine is looked for and not installed. */
+export const firefox = () => ({
+  firefox: named("FIREFOX") ?? ["firefox-esr", "firefox"].map(inPath).find(Boolean),
+  geckodriver: named("GECKODRIVER") ?? inPath("geckodriver"),
+});
+
 /** Paths of both, installed by Debian's own means where that is possible without asking for more rights. */
 export async function browser() {
   let found = find();

@@ -1,11 +1,13 @@
 // npm run build: leaves the installable package in pkg/.
-import { cpSync, existsSync, mkdirSync, readFileSync, realpathSync, rmSync, writeFileSync } from "node:fs";
+import { cpSync, existsSync, mkdirSync, readFileSync, realpathSync, rmSync, symlinkSync, writeFileSync } from "node:fs";
 import { gzipSync } from "node:zlib";
 import { ALL, GLUE, NUMERICS, allNumerics, node } from "./numerics.mjs";
 import { setup } from "./setup.mjs";
 import { inRoot, must, say, script, seconds, stamp } from "./shell.mjs";
 
-const COPIED = ["README.md", "CHANGELOG.md", "LICENSE-MIT", "LICENSE-APACHE"];
+/** The package's own; the project's speaks to those who work on it. */
+const README = "js/README.md";
+const COPIED = ["CHANGELOG.md", "LICENSE-MIT", "LICENSE-APACHE"];
 const SOURCES = [...NUMERICS, "js", "package-lock.json", "scripts/build.mjs"];
 const MARK = "pkg/.stamp";
 /** One for programs, one for images and depth maps, two for what reads and writes a rig's files, one for what writes a run's, one for the page's fields, and one for the threads of workers. */
@@ -20,7 +22,7 @@ const ENTRIES = {
 };
 /** Declarations that no entry mentions; one of them names the generated bindings, which stay inside. */
 const INTERNAL = [
-  ...["border", "breathe", "check", "crc", "engine", "inflate", "inputs", "node", "plain", "png", "raster"].map((name) => `${name}.d.ts`),
+  ...["border", "breathe", "check", "crc", "engine", "inflate", "inputs", "node", "plain", "png", "raster", "saved"].map((name) => `${name}.d.ts`),
   ...["check", "rigs", "run"].map((name) => `calibration/${name}.d.ts`),
   ...["assign", "colour", "depth", "words"].map((name) => `rig/${name}.d.ts`),
   ...["json", "numbers", "plain", "yaml"].map((name) => `rig/write/${name}.d.ts`),
@@ -28,17 +30,22 @@ const INTERNAL = [
   ...["rig/formats", "workers"],
 ];
 
-/** What the package says about itself; name, version and licence come from Cargo.toml alone. */
+/** What the package says about itself; name, version, licence, authors and addresses come from Cargo.toml alone. */
 function manifest() {
   const cargo = readFileSync(inRoot("Cargo.toml"), "utf8");
   const field = (name) => new RegExp(`^${name} = "(.+)"$`, "m").exec(cargo)[1];
-  const keywords = /^keywords = \[(.+)\]$/m.exec(cargo)[1];
+  const list = (name) => JSON.parse(`[${new RegExp(`^${name} = \\[(.+)\\]$`, "m").exec(cargo)[1]}]`);
+  const repository = field("repository");
   return {
     name: field("name"),
     version: field("version"),
     description: field("description"),
-    keywords: JSON.parse(`[${keywords}]`),
+    keywords: list("keywords"),
     license: `(${field("license")})`,
+    author: list("authors").join(", "),
+    homepage: `${repository}#readme`,
+    repository: { type: "git", url: `git+${repository}.git` },
+    bugs: { url: `${repository}/issues` },
     type: "module",
     engines: { node: "^20.19.0 || >=22.12.0" },
     sideEffects: false,
@@ -48,11 +55,12 @@ function manifest() {
       "./rig": { types: "./rig/index.d.ts", default: "./rig.js" },
       "./write": { types: "./write/index.d.ts", default: "./write.js" },
       "./rig-write": { types: "./rig/write/index.d.ts", default: "./rig-write.js" },
-      ...Object.fromEntries(ALL.map(({ file }) => [`./${file}`, `./${file}`])),
+      // By path, for bundlers that have to be told of them.
+      ...Object.fromEntries(["thread.js", ...ALL.map(({ file }) => file)].map((file) => [`./${file}`, `./${file}`])),
       "./package.json": "./package.json",
     },
     types: "./index.d.ts",
-    files: ["*.js", "*.d.ts", "calibration", "rig", "write", "*.wasm", ...COPIED],
+    files: ["*.js", "*.d.ts", "calibration", "rig", "write", "*.wasm", "README.md", ...COPIED],
   };
 }
 
@@ -65,13 +73,35 @@ async function facade() {
     platform: "neutral",
     resolve: { mainFields: ["module", "main"] },
   });
-  await bundle.write({ dir: inRoot("pkg"), format: "esm", chunkFileNames: "[name].js" });
+  // In a file of its own: who only checks a rig downloads nothing of the loop's bindings, which share it.
+  const codeSplitting = { groups: [{ name: "border", test: /js\/(border|breathe|node)\.ts$/ }], includeDependenciesRecursively: false };
+  await bundle.write({ dir: inRoot("pkg"), format: "esm", chunkFileNames: "[name].js", codeSplitting });
   await bundle.close();
   await node("typescript/bin/tsc", "-p", "js/tsconfig.json");
   for (const name of INTERNAL) rmSync(inRoot("pkg", name), { recursive: true });
 }
 
+const kilobytes = (bytes) => `${(bytes / 1000).toFixed(0)} kB`;
+const sizes = (file) => {
+  const bytes = readFileSync(inRoot("pkg", file));
+  return [bytes.length, gzipSync(bytes).length].map(kilobytes);
+};
+
+/** Sizes are filled in, so that they are this build's. */
+function readme() {
+  const text = readFileSync(inRoot(README), "utf8");
+  return text.replaceAll(/\{size of (.+?)\}/g, (_, file) => sizes(file)[0]).replaceAll(/\{gzipped size of (.+?)\}/g, (_, file) => sizes(file)[1]);
+}
+
+/** The examples import the package by its name, as they would anywhere else; npm knows nothing of it. */
+function link() {
+  const at = inRoot("node_modules/bimodal-stereo");
+  rmSync(at, { recursive: true, force: true });
+  symlinkSync("../pkg", at, "dir");
+}
+
 export async function build() {
+  link();
   const wanted = stamp([...SOURCES, ...COPIED]);
   const complete = [MARK, ...GLUE].every((path) => existsSync(inRoot(path)));
   if (complete && readFileSync(inRoot(MARK), "utf8") === wanted) return say("pkg/ is up to date");
@@ -83,14 +113,14 @@ export async function build() {
   for (const { file } of ALL) cpSync(inRoot(`target/${file}`), inRoot("pkg", file));
   await facade();
   for (const file of COPIED) cpSync(inRoot(file), inRoot("pkg", file));
+  writeFileSync(inRoot("pkg/README.md"), readme());
   writeFileSync(inRoot("pkg/package.json"), `${JSON.stringify(manifest(), null, 2)}\n`);
   writeFileSync(inRoot(MARK), wanted);
 
-  const kilobytes = (bytes) => `${(bytes / 1000).toFixed(0)} kB`;
   say(`built pkg/ (${seconds(start)})`);
   for (const { file } of ALL) {
-    const bytes = readFileSync(inRoot("pkg", file));
-    say(`${file}: ${kilobytes(bytes.length)}, ${kilobytes(gzipSync(bytes).length)} gzipped`);
+    const [whole, gzipped] = sizes(file);
+    say(`${file}: ${whole}, ${gzipped} gzipped`);
   }
 }
 

@@ -46,7 +46,7 @@ async function numerics({ file, target, flags, features = [], name = MODULE }) {
   const registry = `${process.env.CARGO_HOME ?? `${homedir()}/.cargo`}/registry/src/`;
   const config = `target.${WASM}.rustflags=${JSON.stringify([...flags, `--remap-path-prefix=${registry}=`])}`;
   // Level 3 unrolls and inlines for a tenth of speed and a sixth of size; see .cargo/config.toml.
-  await must("cargo", ["build", "--release", "--lib", ...features, "--target", WASM, "--target-dir", target, "--config", config], {
+  await must("cargo", ["build", "--release", "-p", "bimodal-stereo", "--lib", ...features, "--target", WASM, "--target-dir", target, "--config", config], {
     env: { CARGO_PROFILE_RELEASE_OPT_LEVEL: "2" },
   });
   // The standard library was compiled with references, and the linker says so of the whole.

@@ -2,12 +2,14 @@
 //   --quick          a subset, a few minutes at most
 //   --only a,b       these tables alone
 //   --json FILE      the rows as JSON
+//   --docs           the aims and their verdicts into the marked region of docs/accuracy.md
 //   --workers N      processes; the results do not depend on it
 import { writeFileSync } from "node:fs";
 import { availableParallelism } from "node:os";
 import { resolve } from "node:path";
 import { parseArgs } from "node:util";
 import { build } from "./build.mjs";
+import { fill, tablesLines } from "./docs.mjs";
 import { setup } from "./setup.mjs";
 import { Failure, say, script, seconds } from "./shell.mjs";
 import { collect } from "./tables/collect.mjs";
@@ -25,19 +27,20 @@ function chosen(names) {
 }
 
 function parsed() {
-  const options = { quick: { type: "boolean" }, only: { type: "string" }, json: { type: "string" }, workers: { type: "string" } };
+  const options = { quick: { type: "boolean" }, docs: { type: "boolean" }, only: { type: "string" }, json: { type: "string" }, workers: { type: "string" } };
   try {
-    const { quick = false, only, json, workers } = parseArgs({ options }).values;
+    const { quick = false, docs = false, only, json, workers } = parseArgs({ options }).values;
     const count = workers === undefined ? Math.min(2, availableParallelism()) : Number(workers);
     if (!(Number.isInteger(count) && count > 0)) throw new Error(`--workers must be a whole number above zero, not "${workers}"`);
-    return { quick, tables: chosen(only), json, workers: count };
+    if (docs && only !== undefined) throw new Error("--docs is of all tables: leave --only out");
+    return { quick, docs, tables: chosen(only), json, workers: count };
   } catch (error) {
     throw error instanceof Failure ? error : new Failure(error.message);
   }
 }
 
 await script(async () => {
-  const { quick, tables, json: file, workers } = parsed();
+  const { quick, docs, tables, json: file, workers } = parsed();
   const start = performance.now();
   await setup();
   await build();
@@ -55,6 +58,7 @@ await script(async () => {
     writeFileSync(resolve(file), `${JSON.stringify({ ...json, aims: list, quick, data: hasData() }, null, 1)}\n`);
     say(`wrote ${file}`);
   }
+  if (docs && failures.length === 0) fill("docs/accuracy.md", "tables", tablesLines({ aims: list, quick, data: hasData() }));
   say(`${tables.length} tables in ${seconds(start)}`);
   if (failures.length > 0) {
     const lines = failures.slice(0, 20).map(({ id, failure }) => `  ${id}: ${failure.code ?? failure.name}: ${failure.message}`);

@@ -1,10 +1,12 @@
 // npm test: sets up, builds and runs everything. `npm test -- contract page` runs these parts alone.
 import { readFileSync, rmSync } from "node:fs";
 import { createServer } from "node:net";
-import { browser } from "./browser.mjs";
+import { availableParallelism } from "node:os";
+import { browser, firefox } from "./browser.mjs";
 import { build } from "./build.mjs";
+import { python } from "./python.mjs";
 import { WASM, setup } from "./setup.mjs";
-import { Failure, inRoot, matching, say, script, seconds, watch } from "./shell.mjs";
+import { Failure, ask, inRoot, matching, say, script, seconds, watch } from "./shell.mjs";
 import { buildPage, judgeSizes, sizes } from "./sizes.mjs";
 import { hasData } from "./tables/library.mjs";
 import { missingKeys } from "./tables/keys.mjs";
@@ -12,17 +14,19 @@ import { missingKeys } from "./tables/keys.mjs";
 const DENY = ["--", "-D", "warnings"];
 const modules = (path) => inRoot("node_modules", path);
 const cargo = (...args) => () => watch("cargo", args);
+/** What runs in browsers is the library; the command line in cli/ is not built for them. */
+const LIBRARY = ["-p", "bimodal-stereo"];
 /** The wasm tests; without a variable they run in Node. */
 const wasmIn = (variable) => async () => {
   const where = variable ? { [variable]: "1", CHROMEDRIVER: (await browser()).chromedriver } : {};
-  return watch("cargo", ["test", "--target", WASM, "--test", "wasm"], { env: where });
+  return watch("cargo", ["test", ...LIBRARY, "--target", WASM, "--test", "wasm"], { env: where });
 };
 
-/** Every TypeScript project: the facade, the page, its worker, the tests. */
+/** Every TypeScript project: the facade, the page, its worker, the tests, the example in React. */
 async function types() {
   let output = "";
   let code = 0;
-  for (const project of matching(["js", "www", "tests"], /^tsconfig(\..+)?\.json$/)) {
+  for (const project of matching(["js", "www", "tests", "examples"], /^tsconfig(\..+)?\.json$/)) {
     say(`tsc -p ${project}`);
     const result = await watch(process.execPath, [modules("typescript/bin/tsc"), "-p", project, "--noEmit", "--emitDeclarationOnly", "false"]);
     code ||= result.code;
@@ -41,17 +45,46 @@ function freePort() {
   });
 }
 
+/** The documentation as docs.rs builds it: a link that leads nowhere fails. Its examples run with the tests. */
+const docs = () => watch("cargo", ["doc", ...LIBRARY, "--no-deps"], { env: { RUSTDOCFLAGS: "-D warnings" } });
+
 async function page() {
   const { chromium } = await browser();
   const env = { CHROMIUM: chromium, PAGE_PORT: String(await freePort()) };
   return watch(process.execPath, [modules("@playwright/test/cli.js"), "test"], { env });
 }
 
+/** What is optional and not there is named among what was not run. */
+function without(what, reason) {
+  const output = `skipped: ${what} # ${reason}\n`;
+  console.log(output);
+  return { code: 0, output };
+}
+
+/** The second engine, where it is installed: a smoke of every place by Playwright, and the wasm tests by geckodriver. */
+async function secondEngine() {
+  const found = firefox();
+  if (!found.firefox) return without("the page in Firefox", "needs firefox-esr (apt-get install firefox-esr)");
+  const env = { FIREFOX: found.firefox, PAGE_PORT: String(await freePort()) };
+  const page = await watch(process.execPath, [modules("@playwright/test/cli.js"), "test", "-c", "playwright.firefox.config.ts"], { env });
+  const wasm = found.geckodriver
+    ? await watch("cargo", ["test", "--target", WASM, "--test", "wasm"], { env: { WASM_BINDGEN_USE_BROWSER: "1", GECKODRIVER: found.geckodriver } })
+    : without("the wasm tests in Firefox", "needs geckodriver (cargo install geckodriver)");
+  return { code: page.code || wasm.code, output: `${page.output}\n${wasm.output}` };
+}
+
+/** Licenses, doubles and sources of all crates, which needs no network. */
+function deny() {
+  if (!ask("cargo", ["deny", "--version"])) return without("licenses and sources of the crates", "needs cargo-deny (cargo install cargo-deny)");
+  return watch("cargo", ["deny", "--offline", "check", "licenses", "bans", "sources"]);
+}
+
 /** No test is about time: the limit, in milliseconds, ends what hangs. */
 const HANGS = 1_800_000;
 const contract = () => {
   const files = matching(["tests/contract"], /\.test\.mjs$/);
-  return watch(process.execPath, ["--test", "--test-reporter=spec", `--test-timeout=${HANGS}`, ...files]);
+  // Two files at once: Node's own default is one on two processors.
+  return watch(process.execPath, ["--test", "--test-reporter=spec", `--test-concurrency=${Math.max(2, availableParallelism() - 1)}`, `--test-timeout=${HANGS}`, ...files]);
 };
 
 /** Tests that need the data beside the project are marked as ignored, with that reason, and asked for where the data are there. */
@@ -81,8 +114,9 @@ async function downloads() {
 /** What a runner says last; these lines are repeated at the end. */
 const CARGO = /^(test result: .*|error: test failed.*|error: could not compile.*)$/gm;
 const NODE = /^(?:# |ℹ )((?:tests|pass|fail|skipped) .*)$/gm;
+const PYTHON = /^(\d+ (?:passed|failed).* in .*|Found \d+ errors? .*)$/gm;
 
-/** How cargo, Node and the page's reporter (or `tables`) name a test that did not run: its name, and the reason. */
+/** How cargo, Node, pytest and the page's reporter (or `tables`) name a test that did not run: its name, and the reason. */
 const NOT_RUN = [
   /^test (?<name>.+) \.\.\. ignored(?:, (?<reason>.+))?$/gm,
   /^ *﹣ (?<name>.+) \([\d.]+ms\) # (?<reason>.+)$/gm,
@@ -101,10 +135,12 @@ function notRun(output) {
 const PARTS = [
   { name: "format", run: cargo("fmt", "--check") },
   { name: "clippy", run: cargo("clippy", "--all-targets", ...DENY), closing: CARGO },
-  { name: "clippy-wasm", run: cargo("clippy", "--target", WASM, "--all-targets", ...DENY), closing: CARGO },
+  { name: "clippy-wasm", run: cargo("clippy", ...LIBRARY, "--target", WASM, "--all-targets", ...DENY), closing: CARGO },
   // The bindings of the calibration check and of its rendered rigs, which are files of their own.
-  { name: "clippy-check", run: cargo("clippy", "--target", WASM, "--lib", "--features", "calibration", ...DENY), closing: CARGO },
-  { name: "clippy-rigs", run: cargo("clippy", "--target", WASM, "--lib", "--features", "rigs", ...DENY), closing: CARGO },
+  { name: "clippy-check", run: cargo("clippy", ...LIBRARY, "--target", WASM, "--lib", "--features", "calibration", ...DENY), closing: CARGO },
+  { name: "clippy-rigs", run: cargo("clippy", ...LIBRARY, "--target", WASM, "--lib", "--features", "rigs", ...DENY), closing: CARGO },
+  { name: "docs", run: docs, closing: CARGO },
+  { name: "deny", run: deny, closing: /^.*bans \w+, .*$/gm },
   { name: "rust", run: rust, closing: CARGO },
   { name: "wasm-node", run: wasmIn(), closing: CARGO },
   { name: "wasm-browser", run: wasmIn("WASM_BINDGEN_USE_BROWSER"), closing: CARGO },
@@ -112,8 +148,10 @@ const PARTS = [
   { name: "types", run: types, needsBuild: true, closing: /^tsc .*$/gm },
   { name: "sizes", run: downloads, needsBuild: true, closing: /^size of .*$/gm },
   { name: "contract", run: contract, needsBuild: true, closing: NODE },
+  { name: "python", run: python, needsBuild: true, closing: PYTHON },
   { name: "tables", run: tables, needsBuild: true, closing: /^(?:.* (?:ok|MISSED)$|.* cells failed:|tables: .*)$/gm },
   { name: "page", run: page, needsBuild: true, closing: /^ +(?:\d+ (?:passed|failed|skipped|flaky|did not run)| {3}tests\/page\/).*$/gm },
+  { name: "firefox", run: secondEngine, needsBuild: true, closing: /^(?: +\d+ (?:passed|failed|skipped|flaky)|test result: ).*$/gm },
 ];
 
 function chosen(names) {

@@ -42,7 +42,8 @@ const options = object({ cues, workers: ranged({ kind: "whole", min: 1, max: MOS
 
 export function checkFrames(value: unknown): void {
   if (!Array.isArray(value)) throw wrong("frames", "a list of frames", value);
-  value.forEach((one, index) => frame(one, `frames[${index}]`));
+  // `forEach` would pass over holes.
+  for (const [index, one] of value.entries()) frame(one, `frames[${index}]`);
 }
 
 /** What a product of rotations with rounding leaves of a scale of one. */

@@ -10,7 +10,7 @@ import type { CheckFrame, CheckOptions, CheckReport, FrameOverlay, Pose } from "
 const SLICE = 30;
 
 // In one piece: bundlers look for exactly this to carry the file along.
-const load = lazily("checkCalibration", async () => start({ module_or_path: await compile(new URL("./bimodal_stereo_check_bg.wasm", import.meta.url)) }));
+const load = lazily("checkCalibration", async () => start({ module_or_path: await compile(() => new URL("./bimodal_stereo_check_bg.wasm", import.meta.url)) }));
 
 const twelve = ({ rotation, translation }: Pose): number[] => [...rotation, ...translation];
 

@@ -1,4 +1,5 @@
 /** Cameras by hand. */
+import { number } from "../check.js";
 import { BimodalError } from "../errors.js";
 import type { RigCamera } from "./types.js";
 
@@ -6,6 +7,7 @@ import type { RigCamera } from "./types.js";
 export function cameraFromFieldOfView(width: number, height: number, degrees: number): RigCamera {
   const isSize = (value: number) => Number.isInteger(value) && value > 0;
   if (!isSize(width) || !isSize(height)) throw new BimodalError("size", "width: whole numbers of pixels above zero are needed", "width");
+  number(degrees, "degrees");
   if (!(degrees > 0 && degrees < 180)) throw new BimodalError("range", `degrees: ${degrees} is no field of view; more than 0 and less than 180 are needed`, "degrees");
   const focal = width / 2 / Math.tan((degrees * Math.PI) / 360);
   // Pixel centres are whole numbers, so that the image reaches from -1/2 to width - 1/2.

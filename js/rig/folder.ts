@@ -4,10 +4,11 @@
  *
  * A file that cannot be read costs its frame, not the folder: it is named in `warnings`.
  */
+import { isObject, wrong } from "../check.js";
 import { BimodalError, badFile } from "../errors.js";
 import { addCameras } from "./assign.js";
 import { textOf } from "./formats/text.js";
-import { isRasterFile, readRigFile } from "./read.js";
+import { checkNamed, isRasterFile, readRigFile } from "./read.js";
 import type { CheckFrame, Mask, NamedFile, ReadOptions, Reading, RigFolder, RigReading } from "./types.js";
 
 export interface FolderOptions {
@@ -199,6 +200,9 @@ async function byContent(pictures: NamedFile[], reader: FolderReader): Promise<P
 
 /** Reads all files of a folder: frames with their cameras, and the poses that relate these. */
 export async function readRigFolder(files: NamedFile[], options: FolderOptions = {}): Promise<RigFolder> {
+  if (!Array.isArray(files)) throw wrong("files", "a list of files", files);
+  for (const [index, file] of files.entries()) checkNamed(file, `files[${index}]`);
+  if (!isObject(options)) throw wrong("options", "an object", options);
   const { unit, frames: most = FRAMES } = options;
   if (!(Number.isInteger(most) && most > 0)) throw new BimodalError("option", "options.frames: a whole number above zero is needed", "options.frames");
   const kept = files.map(({ name, bytes }) => ({ name: name.replace(/\\/g, "/").replace(/^\.\//, ""), bytes })).filter(({ name }) => !IGNORED.test(name));

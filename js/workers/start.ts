@@ -3,6 +3,7 @@ import { compiled } from "../engine.js";
 import { nodeModule } from "../node.js";
 import { copyOf } from "../plain.js";
 import type { Options } from "../types.js";
+import { wasmUrl } from "../wasm.js";
 import type { Views, WorkerHandle } from "./messages.js";
 
 /**
@@ -44,10 +45,11 @@ function spawnInBrowser(): WorkerHandle {
 }
 
 function spawnInNode({ Worker }: typeof import("node:worker_threads")): WorkerHandle {
-  // Not the URL above once more: bundlers would include the file twice.
-  const file = import.meta.url.replace(/[^/]*$/, "thread.js");
+  // Not the URL above once more: bundlers would include the file twice. Nor import.meta.url by itself: webpack writes the path on the
+  // machine that bundles in its place.
+  const file = new URL("thread.js", wasmUrl());
   // Without the program's own flags: with `node -e TEXT` the worker would be started with the same flag and run TEXT.
-  const worker = new Worker(new URL(file), { execArgv: [] });
+  const worker = new Worker(file, { execArgv: [] });
   return {
     post: (order, transfer) => worker.postMessage(order, transfer),
     onAnswer: (handler) => {

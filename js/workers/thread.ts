@@ -10,7 +10,7 @@ function serve(answer: (answer: WorkerAnswer, transfer: ArrayBuffer[]) => void):
   async function handle(order: Order): Promise<void> {
     switch (order.kind) {
       case "pair":
-        await load(order.module);
+        await load(() => order.module);
         native = new (bindings().Worker)(order.image, order.depth, order.options);
         return answer(READY, []);
       case "task":

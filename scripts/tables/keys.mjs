@@ -32,6 +32,10 @@ const KEYS = {
     ...["cases", "found", "ambiguousOrLost", "confidentlyWrong", "flaggedThoughFound", "medianDegrees"],
     ...["coverage1", "coverage3", "kinds"],
   ],
+  honesty: [
+    ...["cases", "found", "ambiguousOrLost", "confidentlyWrong", "flaggedThoughFound", "medianDegrees"],
+    ...["coverage1", "coverage3", "kinds"],
+  ],
   ablation: ["without", "medianDegrees", "found"],
 };
 /** Nothing replaces these where other people's data is absent. */

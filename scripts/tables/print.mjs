@@ -279,7 +279,7 @@ const ablation = (rows) =>
 
 const SHOWS = {
   ...{ table1, table2A, table2B, table3, figure4, figure5, figure6, figure7 },
-  ...{ refinement, sensors, photographs, conditions, albedo, rgbd, pinhole, random, cameras: byKind, painted: random, stress: byKind, exposure, ablation },
+  ...{ refinement, sensors, photographs, conditions, albedo, rgbd, pinhole, random, cameras: byKind, painted: random, stress: byKind, honesty: byKind, exposure, ablation },
 };
 
 /** One table's lines; `open3d` gives the baseline's degrees for a row of Table 2B, where there are any. */

@@ -134,12 +134,6 @@ describe("after init", () => {
     refused(withOptions({ registration: 3 }), "type", "options.registration");
   });
 
-  test("what belongs to later versions", () => {
-    refused(() => Estimator.restore(new Uint8Array(4)), "unsupported", "restore");
-    const made = estimator();
-    refused(() => made.save(), "unsupported", "save");
-  });
-
   test("samples", () => {
     const request = (changes) => () => sample({ surface: "bust", light: "colourful", ...changes });
     refused(request({ surface: "teapot" }), "range", "sample.surface");

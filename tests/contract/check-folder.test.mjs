@@ -41,7 +41,7 @@ export async function checkCalibration(frames, candidates, { signal, onProgress,
 mkdirSync(join(root, "pkg"));
 mkdirSync(join(root, "examples"));
 writeFileSync(join(root, "package.json"), '{ "type": "module" }');
-cpSync(inRoot("examples/check-folder.mjs"), join(root, "examples/check-folder.mjs"));
+for (const file of ["check-folder.mjs", "progress.mjs"]) cpSync(inRoot("examples", file), join(root, "examples", file));
 writeFileSync(join(root, "pkg/rig.js"), RIG);
 writeFileSync(join(root, "pkg/index.js"), INDEX);
 writeFileSync(join(root, "pkg/rig-write.js"), `export * from ${JSON.stringify(new URL("../../pkg/rig-write.js", import.meta.url).href)};`);

@@ -1,32 +1,17 @@
 // What `npm run build` leaves can be installed: into an empty folder, with types, and README's examples are true.
 import assert from "node:assert/strict";
-import { spawnSync } from "node:child_process";
-import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
-import { tmpdir } from "node:os";
+import { existsSync, mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
-import { after, before, test } from "node:test";
-import { fileURLToPath, pathToFileURL } from "node:url";
+import { test } from "node:test";
+import { pathToFileURL } from "node:url";
 import { build } from "vite";
+import { inRoot } from "../../scripts/shell.mjs";
+import * as fresh from "./fresh.mjs";
 
-const root = fileURLToPath(new URL("../..", import.meta.url));
-const folder = mkdtempSync(join(tmpdir(), "bimodal-stereo-"));
-after(() => rmSync(folder, { recursive: true, force: true }));
-
-function run(program, args, cwd = folder) {
-  const { status, stdout, stderr } = spawnSync(program, args, { cwd, encoding: "utf8" });
-  assert.equal(status, 0, `${program} ${args.join(" ")}\n${stdout}${stderr}`);
-  return stdout;
-}
-
+const folder = fresh.freshProject();
+const run = (program, args) => fresh.run(program, args, folder);
 /** The README's fenced examples of one language. */
-const examples = (language) =>
-  [...readFileSync(join(root, "README.md"), "utf8").matchAll(new RegExp("^```" + language + "\\n([\\s\\S]*?)^```", "gm"))].map((m) => m[1]);
-
-before(() => {
-  writeFileSync(join(folder, "package.json"), JSON.stringify({ name: "empty", private: true, type: "module" }));
-  const [{ filename }] = JSON.parse(run("npm", ["pack", join(root, "pkg"), "--json", "--pack-destination", folder], root));
-  run("npm", ["install", "--offline", "--no-audit", "--no-fund", join(folder, filename)]);
-});
+const examples = (language) => fresh.examples(inRoot("README.md"), language);
 
 test("the README's example runs in Node", () => {
   const [example] = examples("ts");
@@ -64,7 +49,8 @@ test("bundled for browsers it carries its files along, and asks for nothing of N
   const logger = { info() {}, warn, warnOnce: warn, error: warn, clearScreen() {}, hasErrorLogged: () => false, hasWarned: false };
   const { output } = await build({
     ...{ root: folder, configFile: false, logLevel: "warn", customLogger: logger, worker: { format: "es" } },
-    build: { write: false, rollupOptions: { input: join(folder, "page.js") } },
+    // A remark on how long plugins took depends on how busy the machine is.
+    build: { write: false, rollupOptions: { input: join(folder, "page.js"), checks: { bundlerTimings: false } } },
   });
   assert.deepEqual(warnings, []);
   const bundled = output.map(({ fileName }) => fileName.replace(/^assets\/|-[\w-]{8}(?=\.)/g, "")).sort();
@@ -131,14 +117,34 @@ test("types resolve for Node and for bundlers, without help from other type pack
   for (const module of ["nodenext", "bundler"]) {
     const resolution = module === "bundler" ? ["--module", "esnext", "--moduleResolution", "bundler"] : ["--module", "nodenext"];
     run(process.execPath, [
-      ...[join(root, "node_modules/typescript/bin/tsc"), "--noEmit", "--strict", "--target", "es2022", "--types", ""],
+      ...[inRoot("node_modules/typescript/bin/tsc"), "--noEmit", "--strict", "--target", "es2022", "--types", ""],
       ...["--lib", "es2022,dom,esnext.disposable", ...resolution, "typed/readme.ts", "typed/contract.ts"],
     ]);
   }
 });
 
-test("nothing of the workshop is packed", () => {
-  const { files, dependencies } = JSON.parse(readFileSync(join(folder, "node_modules/bimodal-stereo/package.json"), "utf8"));
+test("nothing of the workshop is packed, and the package says where it comes from", () => {
+  const installed = join(folder, "node_modules/bimodal-stereo");
+  const { files, dependencies, exports, version, author, repository, homepage, bugs } = JSON.parse(readFileSync(join(installed, "package.json"), "utf8"));
   assert.ok(files.includes("*.wasm"));
   assert.equal(dependencies, undefined);
+  const cargo = readFileSync(inRoot("Cargo.toml"), "utf8");
+  const [, address] = /^repository = "(https:.+)"$/m.exec(cargo);
+  assert.ok(cargo.includes(`\nversion = "${version}"\n`));
+  assert.match(author, /contributors/);
+  assert.deepEqual([repository.url, homepage, bugs.url], [`git+${address}.git`, `${address}#readme`, `${address}/issues`]);
+  for (const licence of ["LICENSE-MIT", "LICENSE-APACHE"]) assert.ok(readFileSync(join(installed, licence)).equals(readFileSync(inRoot(licence))));
+  // Whatever has a path of its own is there.
+  for (const target of Object.values(exports).flatMap((each) => (typeof each === "string" ? each : Object.values(each)))) {
+    assert.ok(existsSync(join(installed, target)), target);
+  }
+});
+
+test("the package's README speaks of the package alone, with the sizes of its files", () => {
+  const installed = join(folder, "node_modules/bimodal-stereo");
+  const text = readFileSync(join(installed, "README.md"), "utf8");
+  assert.doesNotMatch(text, /\]\((?!https:)|npm (run|start|test)|cargo|docs\/|\{[a-z ]*size/);
+  const rows = [...text.matchAll(/^\| `(\S+\.wasm)` \| .+ \| (\d+) kB \| (\d+) kB \|$/gm)];
+  assert.equal(rows.length, 4);
+  for (const [, file, kilobytes] of rows) assert.equal(Math.round(readFileSync(join(installed, file)).length / 1000), Number(kilobytes));
 });

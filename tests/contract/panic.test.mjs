@@ -22,7 +22,7 @@ test("a panic poisons its own estimator alone", async () => {
   assert.equal(broken.report.iteration, 0);
   refused(() => broken.stepStage(), "panic", undefined);
   for (const call of [() => broken.report, () => broken.step(), () => broken.refinedDepth(), () => broken.reset()]) {
-    refused(call, "panic", undefined);
+    refused(call, "poisoned", undefined);
   }
   assert.doesNotThrow(() => broken.free());
   refused(() => broken.report, "freed", undefined);

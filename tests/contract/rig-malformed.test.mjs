@@ -208,6 +208,7 @@ const FILES = [
   ["many.json", text(`[${'{"a":{}},'.repeat(60_000)}{}]`), /more than 50000/],
   ["focal.json", text('{"fx": -500, "fy": 500, "cx": 320, "cy": 240}'), /focal lengths -500 and 500/],
   ["half.json", text('{"fx": 500, "cx": 320}'), /without fy and cy/],
+  ["side.yaml", text("image_width: 640\ncamera_matrix: {rows: 3, cols: 3, data: [500, 0, 320, 0, 500, 240, 0, 0, 1]}\n"), /only one side of its images: a width of 640/],
   ["rotation.json", text('{"R": [[1,0,0],[0,1,0],[0,0,2]], "t": [0,0,0]}'), /its rotation is none/],
   ["translation.json", text('{"R": [[1,0,0],[0,1,0],[0,0,1]], "t": [0,0]}'), /its t has 2 numbers/],
   ["quaternion.json", text('{"rotation": {"x":0,"y":0,"z":0,"w":2}, "translation": {"x":0,"y":0,"z":0}}'), /quaternion has the length 2/],

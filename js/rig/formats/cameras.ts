@@ -36,10 +36,11 @@ function brown(values: Numbers): Numbers | undefined {
 
 function sizeOf({ width, height }: RawCamera): { width: number; height: number } | undefined {
   if (width === undefined && height === undefined) return undefined;
-  const isSide = (side: number | undefined) => side !== undefined && Number.isInteger(side) && side > 0 && side <= 4 * MOST_SIDE;
+  const isSide = (side: number) => Number.isInteger(side) && side > 0 && side <= 4 * MOST_SIDE;
   if (width === 0 && height === 0) return undefined;
+  if (width === undefined || height === undefined) throw badFile(`its camera says only one side of its images: a ${width === undefined ? "height" : "width"} of ${width ?? height}`);
   if (!isSide(width) || !isSide(height)) throw badFile(`its camera says that images are ${width}x${height} pixels large`);
-  return { width: width ?? 0, height: height ?? 0 };
+  return { width, height };
 }
 
 /** The camera, or why it is none. */

@@ -88,6 +88,12 @@ function marked(bytes: Uint8Array): Marked {
   return { ...size, orientation, profile: joined };
 }
 
+/** The decoder's own words, but for those in which it stumbles over what it does not find. */
+function reasonOf(error: unknown): string {
+  if (error instanceof TypeError || error instanceof RangeError) return "its parts do not fit together";
+  return error instanceof Error ? error.message : String(error);
+}
+
 /** By the browser, which needs no more than the bytes. */
 async function byBrowser(bytes: Uint8Array, format: string): Promise<Picture> {
   let bitmap: ImageBitmap;
@@ -137,7 +143,7 @@ export async function readJpeg(bytes: Uint8Array): Promise<Picture> {
   try {
     data = decode(bytes, { useTArray: true, formatAsRGBA: false, tolerantDecoding: false, maxMemoryUsageInMB: MEMORY }).data;
   } catch (error) {
-    throw badFile(`this JPEG is damaged or cut off (${error instanceof Error ? error.message : String(error)})`, error);
+    throw badFile(`this JPEG is damaged or cut off (${reasonOf(error)})`, error);
   }
   if (data.length !== 3 * width * height) throw badFile("this JPEG is damaged: it has not as many pixels as it says");
   const picture: Picture = { width, height, channels: 3, data, format: "JPEG", bits: 8, notes: [], warnings: [] };

@@ -217,6 +217,17 @@ function paintedAims(table, row) {
   ];
 }
 
+/** Of the whole and of each kind; those that are found have sigmas to be judged by. */
+function honestyAims(row) {
+  if (!row) return [];
+  const each = row.kinds.filter(({ cases }) => cases > 0);
+  return [
+    aim("honesty", "share confidently wrong", row.confidentlyWrong / row.cases, "<=", 0.005, row.cases),
+    aim("honesty", "share confidently wrong, the worst kind", worst(each.map(({ confidentlyWrong, cases }) => confidentlyWrong / cases)), "<=", 0.02, row.cases),
+    aim("honesty", "found within 3 sigma on all axes, the worst kind", least(each.map(({ coverage3 }) => coverage3).filter((value) => value !== null)), ">=", 0.95, row.found),
+  ];
+}
+
 const exposureAims = (rows = []) => [
   aim("exposure", "largest move of a pose, degrees", worst(rows.map(({ degreesMoved }) => degreesMoved)), "<=", 0.01, rows.length),
 ];
@@ -239,5 +250,6 @@ export const aims = (json) =>
     ...paintedAims("cameras", json.cameras),
     ...paintedAims("painted", json.painted),
     ...paintedAims("stress", json.stress),
+    ...honestyAims(json.honesty),
     ...(json.exposure ? exposureAims(json.exposure) : []),
   ].filter(({ rows }) => rows > 0);

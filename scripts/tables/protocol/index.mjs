@@ -2,6 +2,7 @@
 import { ablation, exposure, random } from "./anywhere.mjs";
 import { cameras } from "./cameras.mjs";
 import { conditions } from "./conditions.mjs";
+import { honesty } from "./honesty.mjs";
 import { painted } from "./painted.mjs";
 import { pinhole, rgbd } from "./perspectives.mjs";
 import { figure6, table1, table2A, table2B } from "./poses.mjs";
@@ -13,7 +14,7 @@ import { figure4, figure5, refinement } from "./shapes.mjs";
 /** In the order in which they are printed. */
 export const TABLES = [
   ...[table1, table2A, table2B, table3, figure4, figure5, figure6, figure7],
-  ...[refinement, sensors, photographs, conditions, albedo, rgbd, pinhole, random, cameras, painted, stress, exposure, ablation],
+  ...[refinement, sensors, photographs, conditions, albedo, rgbd, pinhole, random, cameras, painted, stress, honesty, exposure, ablation],
 ];
 
 /** The rows of a table as the JSON has them: what the cell says of itself, which nothing measured may overwrite, and the rest. */

@@ -83,7 +83,8 @@ function doubled({ width, height, data }, size) {
   });
 }
 
-const encoded = (linear) => 255 * (linear <= 0.0031308 ? 12.92 * linear : 1.055 * linear ** (1 / 2.4) - 0.055);
+/** A linear level, 0 .. 1, as sRGB of 255 levels. */
+export const encoded = (linear) => 255 * (linear <= 0.0031308 ? 12.92 * linear : 1.055 * linear ** (1 / 2.4) - 0.055);
 
 /** Linear RGB, 0 .. 1, as the R, G, B, A of a decoded JPEG of this quality. */
 export function throughJpeg({ width, height, data }, quality) {

@@ -81,6 +81,13 @@ function meshOfSurface(api, library, surface, height) {
   return meshOf(RASTER, centred, RELIEF_JUMP * metres);
 }
 
+/** What the files say of two cameras, one of which has another focal length by a share between two. */
+function misstated(camera, [least, most], dice) {
+  const factor = 1 + (dice.below(2) === 1 ? 1 : -1) * dice.uniform(least, most);
+  const other = { ...camera, fx: factor * camera.fx, fy: factor * camera.fy };
+  return dice.below(2) === 1 ? [other, camera] : [camera, other];
+}
+
 export async function measurePinhole(cell, api, library) {
   const { size, height, distance, noise, depthNoise, kit } = cell;
   const dice = chance(cell.seed);
@@ -105,9 +112,10 @@ export async function measurePinhole(cell, api, library) {
   }
   const mask = Uint8Array.from(view.depth, (_, index) => Number(isSeen(index)));
   const data = other.depth.map((z) => z + depthNoise * dice.gaussian());
+  const [said, saidOfDepth] = cell.focalOff ? misstated(camera, cell.focalOff, dice) : [camera, camera];
   return run(cell, api, {
-    image: { ...size, data: colours, mask, camera },
-    depth: { ...size, data, camera, mask: Uint8Array.from(other.depth, (z) => Number(z > 0)) },
+    image: { ...size, data: colours, mask, camera: said },
+    depth: { ...size, data, camera: saidOfDepth, mask: Uint8Array.from(other.depth, (z) => Number(z > 0)) },
     truth: { scale: 1, ...about(place, rotation) },
   });
 }

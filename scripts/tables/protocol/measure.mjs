@@ -4,6 +4,7 @@ import { judged, optionsOf, withRun } from "./runs.mjs";
 import { requestOf } from "./scenes.mjs";
 import { measureCamera } from "./cameras.mjs";
 import { measurePainted } from "./painted.mjs";
+import { measureHonesty } from "./honesty.mjs";
 import { measureStress } from "./stress.mjs";
 import { measureCapture, measurePinhole } from "./measure-perspective.mjs";
 import { measureAlbedo, measurePair, measurePhotograph } from "./measure-reals.mjs";
@@ -70,6 +71,7 @@ const KINDS = {
   camera: measureCamera,
   painted: measurePainted,
   stress: measureStress,
+  honesty: measureHonesty,
   mitten: measureMitten,
   kinect: measureKinect,
   scan: measureScan,

@@ -45,13 +45,16 @@ const DISTANCE = 0.8;
 const DEPTH_NOISE = 0.0005;
 const SIZE = { width: 160, height: 120 };
 
+/** A scene of two pinhole cameras, but for its seed. */
+export const PINHOLE = { size: SIZE, height: HEIGHT, distance: DISTANCE, noise: NOISE, depthNoise: DEPTH_NOISE };
+
 const pinholeCell = (kit, seed, degrees) => ({
   id: `pinhole/${seed}/${degrees ?? "search"}`,
   kind: "pinhole",
   row: { scene: seed, start: degrees ?? "search" },
   kit,
   seed,
-  ...{ size: SIZE, height: HEIGHT, distance: DISTANCE, noise: NOISE, depthNoise: DEPTH_NOISE },
+  ...PINHOLE,
   off: degrees === null ? null : { degrees, metres: 0 },
   options: FROM_ANYWHERE,
 });

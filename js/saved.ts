@@ -1,0 +1,181 @@
+/**
+ * A run as bytes, for `Estimator.save` and `restore`. A run follows from its views, its options and how many stages have been run, to the
+ * bit, however the steps were sliced and whatever the number of threads. So these are what is kept, with a checksum of what had been found
+ * to tell whether it was found again. That costs the time of the run and saves a format that would change with every stage.
+ *
+ * Sixteen bytes of name and format, the header's length (32 bits, little-endian), the header (JSON), the arrays one after the other, CRC-32
+ * of all that.
+ */
+import { array, flag, isObject, object, ranged, word, wrong, type Check } from "./check.js";
+import { crc32 } from "./crc.js";
+import { BimodalError } from "./errors.js";
+import type { Estimator } from "./estimator.js";
+import type { ColorImage, DepthMap, Options, Stage } from "./types.js";
+
+/** How far a run has come. */
+export interface Reached {
+  /** Whether anything has been run; before that the report has no stage of its own. */
+  begun: boolean;
+  stage: Stage;
+  iteration: number;
+  /** Of the search. */
+  slices: number;
+  /** Whether the status is no longer "running". */
+  ended: boolean;
+}
+
+export interface Saved {
+  image: ColorImage;
+  depth: DepthMap;
+  options: Options;
+  reached: Reached;
+  /** What had been found, as `checksumOf` sums it up. */
+  found: number;
+}
+
+const NAME = "bimodal-stereo\n";
+const FORMAT = 1;
+/** Name and format. */
+const MARK = NAME.length + 1;
+/** A 32-bit number: the header's length, the checksum. */
+const WORD = 4;
+/** Bytes of a header: options hold some hundred numbers at most. */
+const LONGEST_HEADER = 65_536;
+/** Bytes in all: both views of 4096 pixels on a side with everything they may have are 0.7 GB. */
+const MOST_BYTES = 2 ** 30;
+
+const TYPES = { Uint8Array, Uint8ClampedArray, Uint16Array, Float32Array } as const;
+type Kind = keyof typeof TYPES;
+const KINDS = Object.keys(TYPES) as Kind[];
+const VIEWS = ["image", "depth"] as const;
+const MEMBERS = ["data", "mask", "points", "normals"] as const;
+const STAGES: readonly Stage[] = ["search", "light", "shading", "surface", "registration", "refinement"];
+
+/** Where an array of a view belongs. */
+interface Entry {
+  view: (typeof VIEWS)[number];
+  member: (typeof MEMBERS)[number];
+  type: Kind;
+  length: number;
+}
+
+interface Header extends Omit<Saved, "image" | "depth"> {
+  /** The views without their arrays. */
+  image: object;
+  depth: object;
+  arrays: Entry[];
+}
+
+const bad = (what: string, cause?: unknown) => new BimodalError("state", `state: ${what}`, "state", cause === undefined ? undefined : { cause });
+
+export const otherNumbers = () =>
+  bad("was saved by a version or a build of this package that comes to other numbers; run the pair again instead");
+
+/** Whatever is refused of what was saved is refused as a state. */
+export function unusable<T>(call: () => T): T {
+  try {
+    return call();
+  } catch (error) {
+    if (!(error instanceof BimodalError) || error.code === "init") throw error;
+    throw bad(`holds what can't be run (${error.message})`, error);
+  }
+}
+
+const bytesOf = ({ buffer, byteOffset, byteLength }: ArrayBufferView) => new Uint8Array(buffer, byteOffset, byteLength);
+
+/** All that a run says and has found, but for the times. */
+export function checksumOf(estimator: Estimator): number {
+  const { milliseconds: _, ...report } = estimator.report;
+  const found = [new TextEncoder().encode(JSON.stringify(report)), estimator.light(), estimator.imageDepth(), estimator.refinedDepth()];
+  return crc32(joined(found));
+}
+
+function joined(parts: readonly ArrayBufferView[]): Uint8Array {
+  const all = new Uint8Array(parts.reduce((sum, { byteLength }) => sum + byteLength, 0));
+  let at = 0;
+  for (const part of parts) {
+    all.set(bytesOf(part), at);
+    at += part.byteLength;
+  }
+  return all;
+}
+
+const inBytes = (value: number) => new Uint8Array(new Uint32Array([value]).buffer);
+const numberAt = (bytes: Uint8Array, at: number) => new DataView(bytes.buffer, bytes.byteOffset).getUint32(at, true);
+
+export function saved({ image, depth, ...run }: Saved): Uint8Array {
+  const arrays: Entry[] = [];
+  const data: ArrayBufferView[] = [];
+  const without = (view: Entry["view"], raster: ColorImage | DepthMap): object =>
+    Object.fromEntries(
+      Object.entries(raster).filter(([name, value]) => {
+        const type = KINDS.find((kind) => value instanceof TYPES[kind]);
+        const member = MEMBERS.find((known) => known === name);
+        if (type === undefined || member === undefined) return true;
+        arrays.push({ view, member, type, length: value.length });
+        data.push(value);
+        return false;
+      }),
+    );
+  const header: Header = { image: without("image", image), depth: without("depth", depth), ...run, arrays };
+  const text = new TextEncoder().encode(JSON.stringify(header));
+  const all = joined([new TextEncoder().encode(NAME), new Uint8Array([FORMAT]), inBytes(text.length), text, ...data]);
+  return joined([all, inBytes(crc32(all))]);
+}
+
+const whole = ranged({ kind: "whole", min: 0 });
+const record: Check = (value, field) => {
+  if (!isObject(value) || Array.isArray(value)) throw wrong(field, "an object", value);
+};
+const list: Check = (value, field) => {
+  if (!Array.isArray(value)) throw wrong(field, "a list", value);
+  const entry = object(ENTRY, Object.keys(ENTRY));
+  for (const [index, each] of value.entries()) entry(each, `${field}[${index}]`);
+};
+const REACHED = { begun: flag, stage: word(...STAGES), iteration: whole, slices: whole, ended: flag };
+const ENTRY = { view: word(...VIEWS), member: word(...MEMBERS), type: word(...KINDS), length: whole };
+const HEADER = { image: record, depth: record, options: record, reached: object(REACHED, Object.keys(REACHED)), found: whole, arrays: list };
+
+/** What a file holds, once it is known to be one of ours and whole; what the views and options are worth, the estimator judges. */
+export function opened(state: unknown): Saved {
+  array(Uint8Array)(state, "state");
+  const bytes = state as Uint8Array;
+  const { header, end } = readHeader(bytes);
+  const { image, depth, arrays, ...run } = header;
+  const views: Record<Entry["view"], object> = { image, depth };
+  let at = end;
+  for (const { view, member, type, length } of arrays) {
+    const size = length * TYPES[type].BYTES_PER_ELEMENT;
+    if (size > bytes.length - WORD - at) throw bad("is cut off");
+    const values = new TYPES[type](bytes.slice(at, at + size).buffer);
+    views[view] = { ...views[view], [member]: values };
+    at += size;
+  }
+  if (at !== bytes.length - WORD) throw bad("has more in it than it says");
+  return { ...run, image: views.image as ColorImage, depth: views.depth as DepthMap };
+}
+
+function readHeader(bytes: Uint8Array): { header: Header; end: number } {
+  const name = new TextDecoder("latin1").decode(bytes.subarray(0, NAME.length));
+  if (name !== NAME) throw bad("is no saved run");
+  if (bytes.length < MARK + 2 * WORD) throw bad("is cut off");
+  if (bytes[NAME.length] !== FORMAT) throw bad(`is of format ${bytes[NAME.length]}; this version reads format ${FORMAT}`);
+  if (bytes.length > MOST_BYTES) throw bad(`has ${bytes.length} bytes; ${MOST_BYTES} are the most`);
+  const end = bytes.length - WORD;
+  if (numberAt(bytes, end) !== crc32(bytes.subarray(0, end))) throw bad("is damaged or cut off: its checksum is another");
+  const length = numberAt(bytes, MARK);
+  if (length > Math.min(LONGEST_HEADER, end - MARK - WORD)) throw bad("has a header that is too long");
+  const text = bytes.subarray(MARK + WORD, MARK + WORD + length);
+  return { header: unusable(() => checkedHeader(new TextDecoder().decode(text))), end: MARK + WORD + length };
+}
+
+function checkedHeader(text: string): Header {
+  let header: unknown;
+  try {
+    header = JSON.parse(text);
+  } catch (error) {
+    throw bad("has a header that can't be read", error);
+  }
+  object(HEADER, Object.keys(HEADER))(header, "header");
+  return header as Header;
+}

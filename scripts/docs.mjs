@@ -1,0 +1,55 @@
+// The regions of docs/*.md that commands fill: `npm run tables -- --docs` and `npm run bench -- --docs`.
+//
+// A region lies between two comments, and whatever stands there is replaced as a whole; its figures are of one run, as its first line says.
+import { readFileSync, writeFileSync } from "node:fs";
+import { Failure, inRoot, say } from "./shell.mjs";
+import { fixed } from "./tables/print.mjs";
+
+const begin = (name) => `<!-- begin: ${name} (written by npm run ${name} -- --docs) -->`;
+const end = (name) => `<!-- end: ${name} -->`;
+
+/** A text with its region filled. */
+export function filled(text, name, lines) {
+  const [from, to] = [text.indexOf(begin(name)), text.indexOf(end(name))];
+  if (from < 0 || to < from) throw new Failure(`There is no region between "${begin(name)}" and "${end(name)}".`);
+  return `${text.slice(0, from)}${[begin(name), "", ...lines, "", ""].join("\n")}${text.slice(to)}`;
+}
+
+export function fill(path, name, lines) {
+  writeFileSync(inRoot(path), filled(readFileSync(inRoot(path), "utf8"), name, lines));
+  say(`wrote the region "${name}" of ${path}`);
+}
+
+/** Rows of words; numbers stand to the right. */
+function table(head, alignments, rows) {
+  const line = (cells) => `| ${cells.map((cell) => String(cell).replaceAll("|", "\\|")).join(" | ")} |`;
+  return [line(head), `|${alignments.map((right) => (right ? "---:" : "---")).join("|")}|`, ...rows.map(line)];
+}
+
+const version = () => /^version = "(.+)"$/m.exec(readFileSync(inRoot("Cargo.toml"), "utf8"))[1];
+const small = (value) => (value !== 0 && Math.abs(value) < 1e-3 ? value.toExponential(1) : fixed(value));
+const verdict = (ok) => (ok === null ? "not measured" : ok ? "ok" : "missed");
+
+/** The aims of the tables, from their JSON. */
+export function tablesLines({ aims, quick, data }) {
+  const from = `Version ${version()}, ${quick ? "the quick selection of cells (`--quick`), which is less than what is aimed at" : "all cells"}${data ? "" : "; built-in surfaces and lights, without the data beside the project"}.`;
+  const rows = aims.map(({ table: name, what, rows, measured, sense, limit, ok }) => [name, what, rows, measured === null ? "-" : small(measured), `${sense} ${limit}`, verdict(ok)]);
+  return [from, "", ...table(["table", "what", "rows", "measured", "aim", ""], [false, false, true, true, true, false], rows)];
+}
+
+const milliseconds = (value) => fixed(value, value < 10 ? 2 : value < 100 ? 1 : 0);
+const unique = (values) => [...new Set(values)];
+
+/** Medians of the stages and the aims, from the JSON of the benches. */
+export function benchLines({ rows, aims, machine, surface, lightName, quick }) {
+  const from = `Version ${version()}${quick ? ", the quick selection (`--quick`)" : ""}; ${surface}, light ${lightName}; ${machine}. Milliseconds, medians.`;
+  const sizes = unique(rows.map(({ size }) => size));
+  const kinds = unique(rows.map(({ stage, where }) => `${stage}\n${where}`)).map((kind) => kind.split("\n"));
+  const cell = (stage, where, size) => rows.find((row) => row.stage === stage && row.where === where && row.size === size)?.milliseconds.median;
+  const times = kinds.map(([stage, where]) => [stage, where, ...sizes.map((size) => milliseconds(cell(stage, where, size)))]);
+  const judged = aims.map(({ what, value, unit, limit, met }) => [what, value === null ? "-" : `${milliseconds(value)} ${unit}`.trim(), `${Number(limit.toFixed(1))} ${unit}`.trim(), verdict(met)]);
+  return [
+    ...[from, "", ...table(["stage", "where", ...sizes], [false, false, ...sizes.map(() => true)], times)],
+    ...["", ...table(["aim", "measured", "at most", ""], [false, true, true, false], judged)],
+  ];
+}

@@ -1,0 +1,75 @@
+// The Python package of the checkout, installed into an environment of its own below target/, and its tests.
+import { existsSync, mkdirSync, rmSync, writeFileSync } from "node:fs";
+import { ask, inRoot, must, readIfThere, say, stamp, watch } from "./shell.mjs";
+
+const VENV = "target/python/venv";
+const inVenv = (name) => inRoot(VENV, "bin", name);
+/** What the tests' pinned numpy asks for; the package itself takes older ones. */
+const OLDEST = [3, 11];
+const REQUIREMENTS = "python/tests/requirements.txt";
+const PACKAGE = ["python/src", "python/bimodal_stereo", "python/README.md", "python/Cargo.toml", "python/Cargo.lock"];
+const SOURCES = ["src", "Cargo.toml", "rust-toolchain.toml", "pyproject.toml", ...PACKAGE];
+
+/** Why Python can't be asked here; nothing where it can. */
+function missing() {
+  const version = ask("python3", ["-c", "import venv, ensurepip, sys; print(*sys.version_info[:2])"]);
+  if (version === undefined) return "needs python3 with its module venv (Debian: apt-get install python3-venv)";
+  const [major, minor] = version.split(" ").map(Number);
+  const isOld = major < OLDEST[0] || (major === OLDEST[0] && minor < OLDEST[1]);
+  return isOld ? `needs Python ${OLDEST.join(".")}, this is ${version.replace(" ", ".")}` : undefined;
+}
+
+/** Runs a step of the set-up where its stamp has changed; a step that breaks off leaves no mark. */
+async function once(mark, wanted, step) {
+  const path = inRoot("target/python", mark);
+  if (readIfThere(path) === wanted && existsSync(inVenv("python"))) return;
+  rmSync(path, { force: true });
+  await step();
+  writeFileSync(path, wanted);
+}
+
+async function install() {
+  mkdirSync(inRoot("target/python"), { recursive: true });
+  const pip = (...args) => must(inVenv("python"), ["-m", "pip", "--disable-pip-version-check", "install", "--quiet", ...args]);
+  const interpreter = ask("python3", ["-c", "import sys; print(sys.version, sys.prefix)"]);
+  await once(".venv-stamp", `${stamp([REQUIREMENTS])} ${interpreter}`, async () => {
+    say("Python: an environment for its tests");
+    await must("python3", ["-m", "venv", "--clear", inRoot(VENV)]);
+    await pip("--requirement", REQUIREMENTS);
+  });
+  await once(".package-stamp", stamp([...SOURCES, REQUIREMENTS]), async () => {
+    say("Python: pip install .");
+    // As its README says; what cargo has made stays in python/target.
+    await pip("--force-reinstall", "--no-deps", ".");
+  });
+}
+
+/** Format, lints, types and tests; the first that fails ends it. */
+export async function python() {
+  const reason = missing();
+  if (reason !== undefined) {
+    const output = `skipped: the Python package # ${reason}\n`;
+    console.log(output.trimEnd());
+    return { code: 0, output };
+  }
+  await install();
+  const manifest = ["--manifest-path", "python/Cargo.toml"];
+  const guard = inRoot("target/python/guard");
+  const steps = [
+    ["cargo", "fmt", "--check", ...manifest],
+    // The release's profile, whose macros pip has compiled.
+    ["cargo", "clippy", "--release", "--locked", ...manifest, "--", "-D", "warnings"],
+    // Of the standard library alone, so that nothing links Python.
+    ["rustc", "--edition", "2024", "--test", "python/src/guard.rs", "-o", guard],
+    [guard],
+    [inVenv("mypy"), "--strict", "--cache-dir", "target/python/mypy", "python/bimodal_stereo", "python/tests/typed.py"],
+    [inVenv("pytest")],
+  ];
+  let output = "";
+  for (const [program, ...args] of steps) {
+    const result = await watch(program, args);
+    output += result.output;
+    if (result.code !== 0) return { code: result.code, output };
+  }
+  return { code: 0, output };
+}

@@ -1,0 +1,132 @@
+// Every export, given what it never asked for: no call breaks the numerics off, runs away with memory, or leaves anything changed.
+import assert from "node:assert/strict";
+import { after, before, describe, test } from "node:test";
+import * as files from "../../pkg/files.js";
+import * as package_ from "../../pkg/index.js";
+import * as rig from "../../pkg/rig.js";
+import * as rigWrite from "../../pkg/rig-write.js";
+import * as write from "../../pkg/write.js";
+import { BimodalError, Estimator, estimator, init, outcome, pair } from "./support.mjs";
+
+const MODULES = { index: package_, files, rig, "rig-write": rigWrite, write };
+/** What takes what a user brings: these have to name what is wrong. The others take what the package itself has made. */
+const NAMING = new Set(["index", "files", "rig"]);
+/** These have effects of their own: `init` loads, a class is made with `new`. */
+const APART = new Set(["default", "BimodalError", "Estimator"]);
+
+const circle = {};
+circle.self = circle;
+/** Throws from wherever it is looked at. */
+const trap = new Proxy({}, { get: () => { throw new Error("a getter that throws"); }, ownKeys: () => { throw new Error("keys that throw"); } });
+const HOSTILE = {
+  nothing: undefined,
+  null: null,
+  NaN: NaN,
+  infinity: -Infinity,
+  zero: 0,
+  huge: 1e308,
+  "a large whole number": 2 ** 53,
+  bigint: 10n,
+  true: true,
+  "an empty word": "",
+  "a word": "__proto__",
+  markup: "<img src=x onerror=alert(1)>",
+  symbol: Symbol("s"),
+  "an empty object": {},
+  "an empty list": [],
+  "a list of nothing": new Array(27),
+  "a function": () => NaN,
+  "a date": new Date(NaN),
+  "a map": new Map([["width", 4]]),
+  circle,
+  "no bytes": new Uint8Array(0),
+  "random bytes": Uint8Array.from({ length: 999 }, (_, i) => (i * 7919) % 251),
+  "floats that are none": new Float32Array(27).fill(NaN),
+  doubles: new Float64Array(27).fill(Infinity),
+  "a length without an end": { length: 2 ** 32 },
+  "sizes without data": { width: 4096, height: 4096 },
+  "sizes that overflow": { width: 2 ** 32 + 1, height: 2 ** 31, data: new Uint8Array(4) },
+  "a view on nothing": new DataView(new ArrayBuffer(0)),
+};
+const NAMES = Object.keys(HOSTILE);
+/** Arguments: one hostile value in each place, the same one in all places, and two neighbours. */
+function* given(count) {
+  for (const [index, name] of NAMES.entries()) {
+    yield [name, Array(count).fill(HOSTILE[name])];
+    for (let place = 0; place < count; place++) yield [`${name}, ${place}`, Array.from({ length: count }, (_, i) => (i === place ? HOSTILE[name] : {}))];
+    yield [`${name} and the next`, Array.from({ length: count }, (_, i) => HOSTILE[NAMES[(index + i) % NAMES.length]])];
+  }
+}
+
+/** What a call may end in: an answer, or an error that is no break-off. */
+async function tried(what, call, isNaming) {
+  try {
+    const answer = await call();
+    if (answer instanceof Estimator) answer.free();
+  } catch (error) {
+    assert.ok(!(error instanceof WebAssembly.RuntimeError) && !["panic", "poisoned"].includes(error?.code), `${what} broke the numerics off: ${error?.stack}`);
+    assert.ok(!/call stack|allocation|array length|out of memory/i.test(String(error?.message)), `${what} ran away: ${error?.stack}`);
+    if (isNaming) assert.ok(error instanceof BimodalError && error.code.length > 0, `${what} does not say what is wrong: ${error?.stack ?? error}`);
+  }
+}
+
+describe("every export", () => {
+  let bystander, expected;
+  before(async () => {
+    await init();
+    bystander = estimator();
+    bystander.step();
+    expected = outcome(bystander);
+  });
+  after(() => bystander.free());
+
+  for (const [module, exports] of Object.entries(MODULES)) {
+    for (const [name, value] of Object.entries(exports)) {
+      if (typeof value !== "function" || APART.has(name)) continue;
+      test(`${module}: ${name}`, async () => {
+        for (const [words, values] of given(value.length + 1)) await tried(`${name}(${words})`, () => value(...values), NAMING.has(module));
+      });
+    }
+  }
+
+  test("a new Estimator", async () => {
+    const { image, depth } = pair();
+    for (const [words, [first, second, third]] of given(3)) {
+      await tried(`new Estimator(${words})`, () => new Estimator(first, second, third), true);
+      await tried(`with an image of ${words}`, () => new Estimator({ ...image, data: first }, depth), true);
+      await tried(`with a camera of ${words}`, () => new Estimator({ ...image, camera: first }, { ...depth, mask: second }), true);
+      await tried(`with options of ${words}`, () => new Estimator(image, depth, { light: first, start: second, lambda: third }), true);
+    }
+  });
+
+  test("every member of an estimator", async () => {
+    const members = Object.getOwnPropertyNames(Estimator.prototype).filter((name) => !["constructor", "free", "reset"].includes(name));
+    assert.ok(members.includes("step") && members.includes("draw") && members.includes("save"));
+    const moving = ["step", "stepStage", "stepFor", "run"];
+    for (const name of members.filter((name) => typeof bystander[name] === "function" && !moving.includes(name))) {
+      for (const [words, values] of given(2)) await tried(`estimator.${name}(${words})`, () => bystander[name](...values), true);
+    }
+    // One that has ended: what is accepted costs nothing.
+    const ended = estimator({ maxIterations: 1 });
+    ended.step();
+    for (const [words, values] of given(2)) {
+      for (const name of moving) await tried(`estimator.${name}(${words})`, () => ended[name](...values), true);
+    }
+    for (const [words, [value]] of given(1)) await tried(`estimator.reset(${words})`, () => ended.reset(value), true);
+    ended.free();
+    for (const [words, [state]] of given(1)) await tried(`restore(${words})`, () => Estimator.restore(state), true);
+  });
+
+  test("what throws when it is looked at throws its own error, and nothing else", () => {
+    assert.throws(() => new Estimator(trap, trap), /that throw/);
+    assert.throws(() => package_.sample(trap), /that throw/);
+  });
+
+  test("and nothing has changed", () => {
+    assert.deepEqual(outcome(bystander), expected);
+    const other = estimator();
+    other.step();
+    assert.deepEqual(outcome(other), expected);
+    other.free();
+  });
+});
