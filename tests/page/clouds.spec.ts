@@ -1,30 +1,11 @@
 /** Both surfaces, drawn by a thread of their own where the browser lets one. */
 
-import type { Locator, Page } from "@playwright/test";
-import { decode } from "fast-png";
+import { DRAWN, NO_OFFSCREEN, covered, goToClouds } from "./clouds";
 import { expect, test } from "./lab";
-
-/** Share of the picture that two clouds cover, at least. */
-const DRAWN = 0.02;
-
-/** Share of the pixels of the clouds' picture that are not of its ground, which its corner shows. */
-async function covered(clouds: Locator): Promise<number> {
-  const { data, channels, width, height } = decode(await clouds.screenshot());
-  const ground = data.subarray(0, 3);
-  let count = 0;
-  for (let i = 0; i < width * height; i++) {
-    if (ground.some((value, c) => Math.abs(value - (data[i * channels + c] ?? 0)) > 24)) count++;
-  }
-  return count / (width * height);
-}
-
-/** The clouds are loaded once a visitor comes near them; on a laptop they are there at once. */
-const goToClouds = (page: Page) => page.locator("#clouds-box").scrollIntoViewIfNeeded();
 
 /** Longest wait, milliseconds, of one attempt of several. */
 const BRIEFLY = { timeout: 5_000 };
 
-const NO_OFFSCREEN = "delete HTMLCanvasElement.prototype.transferControlToOffscreen;";
 const NO_WEBGL = `
   for (const { prototype } of [HTMLCanvasElement, OffscreenCanvas]) {
     const original = prototype.getContext;

@@ -154,3 +154,16 @@ test("of many moves the last counts, and the worker is asked one thing at a time
   await expect.poll(() => messages.count("probe")).toBe(before + 2);
   await expect.poll(() => pixelOf(lab, "Depth")).toEqual(last);
 });
+
+test.describe("by touch", () => {
+  test.use({ hasTouch: true, viewport: { width: 390, height: 844 } });
+
+  test("the card goes when anything else is touched", async ({ lab, page }) => {
+    await lab.open("size=32");
+    const card = page.locator("#probe");
+    await page.locator("canvas[aria-label^='Colour:']").tap();
+    await expect(card).toBeVisible();
+    await page.locator("#lead").tap();
+    await expect(card).toBeHidden();
+  });
+});

@@ -1,6 +1,6 @@
 /** What tests of "Check a rig" need: files made here, and a check whose answer is the test's own. */
 
-import type { Page } from "@playwright/test";
+import { type Page, expect } from "@playwright/test";
 import { encode } from "fast-png";
 import type { CheckReport } from "../../pkg/index.js";
 
@@ -28,6 +28,16 @@ export const pair = (name = "0001") => [
   { name: `color_${name}.png`, mimeType: "image/png", buffer: colourPng() },
   { name: `depth_${name}.png`, mimeType: "image/png", buffer: depthPng() },
 ];
+
+/** Gives the page files, and the depth camera that they do not name by its field of view. */
+export async function giveFiles(page: Page, files: readonly { name: string; mimeType: string; buffer: Buffer }[]): Promise<void> {
+  await page.locator("#rig input[type=file]:not([webkitdirectory])").first().setInputFiles([...files]);
+  await expect(page.locator(".rig-frame")).toHaveCount(1);
+  const depth = page.getByRole("group", { name: "Depth camera" });
+  await depth.getByLabel("Where its numbers come from").selectOption("typed");
+  await depth.getByLabel("Given as").selectOption("view");
+  await depth.getByLabel("Horizontal field of view, °").fill("60");
+}
 
 export const matrixFile = (name: string, tx: number) => ({ name, mimeType: "text/plain", buffer: Buffer.from(`1 0 0 ${tx}\n0 1 0 0\n0 0 1 0\n0 0 0 1\n`) });
 

@@ -4,11 +4,12 @@ import { createHash } from "node:crypto";
 import { cpSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
-import type { BrowserContext, Page } from "@playwright/test";
+import type { Page } from "@playwright/test";
 import { POLICY } from "../../scripts/site/build.mjs";
 import { serveSite } from "../../scripts/site/serve.mjs";
 import { expect, test } from "./lab";
 import { answerChecks } from "./rig";
+import { refusals, requests } from "./visit";
 
 test.use({ serviceWorkers: "allow" });
 
@@ -29,27 +30,6 @@ const PLACES: [string, (page: Page) => Promise<void>][] = [
     await expect(page.locator(".rig-frame")).toHaveCount(3);
   }],
 ];
-
-/** What the policy has refused in any document of the page. */
-async function refusals(page: Page): Promise<string[]> {
-  const found: string[] = [];
-  await page.exposeFunction("refused", (what: string) => void found.push(what));
-  await page.addInitScript(() => {
-    document.addEventListener("securitypolicyviolation", ({ violatedDirective, blockedURI, sample }) => {
-      (window as unknown as { refused(what: string): void }).refused(`${violatedDirective}: ${blockedURI} ${sample}`);
-    });
-  });
-  return found;
-}
-
-/** Addresses that were asked for, the service worker's included; what a document holds itself is not asked for. */
-function requests(context: BrowserContext): string[] {
-  const found: string[] = [];
-  context.on("request", (request) => {
-    if (!/^(data|blob):/.test(request.url())) found.push(request.url());
-  });
-  return found;
-}
 
 test("its policy refuses nothing that the page does, and nothing comes from elsewhere", async ({ lab, page, context, baseURL }) => {
   const refused = await refusals(page);

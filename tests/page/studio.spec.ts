@@ -325,3 +325,13 @@ test("fingers have targets of 44 px", async ({ browser, baseURL }) => {
   expect(small).toEqual([]);
   await context.close();
 });
+
+test("what a failure says can be read to its end, whatever it says", async ({ lab, page }) => {
+  await page.setViewportSize({ width: 1280, height: 800 });
+  await lab.visit("size=32&noise=0.1&overlap=0.4");
+  await page.keyboard.press(" ");
+  await expect(page.locator("#status")).toHaveAttribute("data-state", /lost|ambiguous/);
+  await expect(page.locator("#next")).not.toBeEmpty();
+  const panel = await page.locator("#panel").evaluate(({ scrollHeight, clientHeight }) => ({ scrollHeight, clientHeight }));
+  expect(panel.scrollHeight).toBeLessThanOrEqual(panel.clientHeight);
+});

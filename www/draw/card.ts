@@ -42,6 +42,11 @@ export class Card {
     probe.listen(() => this.#show());
     // Away from what is looked at, so that it never lies over it.
     document.addEventListener("pointermove", ({ clientX, clientY }) => this.#moveAway(clientX, clientY));
+    // Fingers leave nothing when they go, and scroll where they have begun on a picture.
+    document.addEventListener("pointercancel", () => probe.point(null));
+    document.addEventListener("pointerdown", ({ target }) => {
+      if (!(target instanceof HTMLCanvasElement)) probe.point(null);
+    });
     document.addEventListener("focusin", ({ target }) => {
       if (!(target instanceof HTMLCanvasElement)) return;
       const { left, top, width, height } = target.getBoundingClientRect();

@@ -6,10 +6,8 @@ import type { Pose } from "../../pkg/index.js";
 import type { Side, Surface } from "../engine/protocol";
 import { ink, make } from "../dom";
 import type { Asked } from "./probe";
+import { type CloudsHooks, type Renderer, rendererFor } from "./renderer";
 import type { Change } from "./stage";
-
-/** Draws, and resolves when that is done. */
-type Draw = (change: Change) => Promise<void>;
 
 /** How long, in milliseconds, the depth map takes from one pose to the next. */
 const SWING = 220;
@@ -34,7 +32,8 @@ export class Clouds {
   readonly #camera = new OrthographicCamera();
   readonly #controls: OrbitControls;
   readonly #box: HTMLElement;
-  readonly #draw: Draw;
+  readonly #renderer: Renderer;
+  readonly #resized = new ResizeObserver(() => this.#resize());
   /** What has changed since the drawing under way began. */
   #next: Change | undefined;
   #drawing = false;
@@ -48,21 +47,30 @@ export class Clouds {
   readonly #marks: Record<Side, HTMLElement>;
 
   /** Rejects where the browser has no WebGL. */
-  static async open(canvas: HTMLCanvasElement, box: HTMLElement): Promise<Clouds> {
-    return new Clouds(canvas, box, await (drawsElsewhere(canvas) ? elsewhere(canvas) : here(canvas)));
+  static async open(canvas: HTMLCanvasElement, box: HTMLElement, hooks: CloudsHooks): Promise<Clouds> {
+    return new Clouds(canvas, box, await rendererFor(canvas, hooks));
   }
 
-  private constructor(canvas: HTMLCanvasElement, box: HTMLElement, draw: Draw) {
+  private constructor(canvas: HTMLCanvasElement, box: HTMLElement, renderer: Renderer) {
     this.#box = box;
-    this.#draw = draw;
+    this.#renderer = renderer;
     this.#controls = new OrbitControls(this.#camera, canvas);
     this.#marks = { image: make("span", { class: "dot image", hidden: true }), depth: make("span", { class: "dot depth", hidden: true }) };
     box.append(this.#marks.image, this.#marks.depth);
     // A finger that moves up or down scrolls the page; across it turns the clouds.
     canvas.style.touchAction = "pan-y";
     this.#controls.addEventListener("change", () => this.#look());
-    new ResizeObserver(() => this.#resize()).observe(box);
+    this.#resized.observe(box);
     this.recolour();
+  }
+
+  /** Leaves the box to others. */
+  end(): void {
+    this.#swings++;
+    this.#renderer.end();
+    this.#resized.disconnect();
+    this.#controls.dispose();
+    for (const side of SIDES) this.#marks[side].remove();
   }
 
   /**
@@ -231,7 +239,7 @@ export class Clouds {
     while (this.#next) {
       const next = this.#next;
       this.#next = undefined;
-      await this.#draw(next);
+      await this.#renderer.draw(next);
     }
     this.#drawing = false;
   }
@@ -247,36 +255,6 @@ function partsOf(matrix: Matrix4): Parts {
   const parts = { place: new Vector3(), turn: new Quaternion(), size: new Vector3() };
   matrix.decompose(parts.place, parts.turn, parts.size);
   return parts;
-}
-
-/** Whether a thread can have the canvas and WebGL as well: older Safaris draw in two dimensions there. */
-function drawsElsewhere(canvas: HTMLCanvasElement): boolean {
-  return "transferControlToOffscreen" in canvas && new OffscreenCanvas(1, 1).getContext("webgl2") !== null;
-}
-
-async function elsewhere(canvas: HTMLCanvasElement): Promise<Draw> {
-  const thread = new Worker(new URL("./stage-thread.ts", import.meta.url), { type: "module" });
-  const ask = (message: OffscreenCanvas | Change, transfer: Transferable[] = []) =>
-    new Promise<boolean>((resolve, reject) => {
-      thread.onmessage = ({ data }: MessageEvent<boolean>) => resolve(data);
-      thread.onerror = reject;
-      thread.postMessage(message, transfer);
-    });
-  const offscreen = canvas.transferControlToOffscreen();
-  if (!(await ask(offscreen, [offscreen]))) {
-    thread.terminate();
-    throw new Error("no WebGL in a thread");
-  }
-  return async (change) => void (await ask(change));
-}
-
-async function here(canvas: HTMLCanvasElement): Promise<Draw> {
-  const { CloudStage } = await import("./stage");
-  const stage = new CloudStage(canvas);
-  return async (change) => {
-    await new Promise(requestAnimationFrame);
-    stage.show(change);
-  };
 }
 
 /** A sphere about the bulk of the points: a few flying ones must not shrink the rest to a dot. */

@@ -1,22 +1,24 @@
 /** The thread that draws the clouds: a page that waits for its own WebGL drawing answers no press meanwhile. */
 
-import { CloudStage, type Change } from "./stage";
+import "../engine/hold";
+import { CloudStage, type Change, type Told } from "./stage";
 
 let stage: CloudStage | undefined;
+const tell = (told: Told): void => self.postMessage(told);
 
-/** First the canvas, then changes; each is answered once it is drawn, the canvas by whether there is WebGL. */
+/** First the canvas, then changes. */
 self.onmessage = ({ data }: MessageEvent<OffscreenCanvas | Change>) => {
   if (data instanceof OffscreenCanvas) {
     try {
-      stage = new CloudStage(data);
-      self.postMessage(true);
+      stage = new CloudStage(data, (lost) => tell({ lost }));
+      tell(true);
     } catch {
-      self.postMessage(false);
+      tell(false);
     }
     return;
   }
   self.requestAnimationFrame(() => {
     stage?.show(data);
-    self.postMessage(true);
+    tell(true);
   });
 };

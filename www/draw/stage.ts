@@ -29,6 +29,9 @@ export interface Change {
   swing?: number[];
 }
 
+/** What a thread says that draws: whether it has the canvas, then after each change that it is drawn; and in between whether WebGL was lost. */
+export type Told = boolean | { lost: boolean };
+
 export class CloudStage {
   readonly #renderer: WebGLRenderer;
   readonly #scene = new Scene();
@@ -38,10 +41,16 @@ export class CloudStage {
   readonly #depth = new Sheet(0.85);
   #sight: Sight | undefined;
 
-  /** Throws where the browser has no WebGL. */
-  constructor(canvas: NonNullable<WebGLRendererParameters["canvas"]>) {
+  /** Throws where the browser has no WebGL. A browser may take it away for a while, which is told; what there was is drawn again afterwards. */
+  constructor(canvas: NonNullable<WebGLRendererParameters["canvas"]>, onLost: (lost: boolean) => void) {
     // Points are squares: smoothing their edges costs a browser without a graphics card half of its time.
     this.#renderer = new WebGLRenderer({ canvas, alpha: true });
+    // Heard after the renderer, which asks for the context back and makes itself anew.
+    canvas.addEventListener("webglcontextlost", () => onLost(true));
+    canvas.addEventListener("webglcontextrestored", () => {
+      this.show({});
+      onLost(false);
+    });
     this.#scene.add(this.#image.group, this.#depth.group, this.#lamp, this.#lamp.target, new AmbientLight(0xffffff, 0.9));
     this.#camera.matrixWorldAutoUpdate = false;
   }

@@ -1,5 +1,6 @@
 /** The page's side of the worker: calls that return promises, and a fresh worker when one has panicked or is too busy. */
 
+import { GONE, onGone } from "./alive";
 import type { Answer, Calls, Fault, Kind } from "./protocol";
 
 /** A refusal or failure of the library, as the page sees it. */
@@ -20,6 +21,9 @@ export class EngineError extends Error {
 /** How long, in milliseconds, a new request waits for the reply to an old one before the worker is replaced. */
 const LONGEST_WAIT = 400;
 
+/** The code of a worker that has ended without a word. */
+export const LOST = "lost";
+
 interface Pending {
   resolve(reply: Calls[Kind]["reply"]): void;
   reject(error: EngineError): void;
@@ -28,8 +32,8 @@ interface Pending {
 export interface EngineHooks {
   /** Told how many bytes of the module have arrived. */
   onLoad(bytes: number): void;
-  /** The worker is gone, and with it the input that it held. */
-  onLost(): void;
+  /** The worker is gone, and with it the input that it held; calls under way are rejected with the same error. */
+  onLost(error: EngineError): void;
 }
 
 export class Engine {
@@ -68,13 +72,16 @@ export class Engine {
 
   #spawn(): Worker {
     const worker = new Worker(new URL("./worker.ts", import.meta.url), { type: "module" });
+    onGone(worker, () => {
+      if (worker === this.#worker) this.#drop({ code: LOST, message: `The run broke off: ${GONE}.`, fatal: true });
+    });
     // What a worker said before its end may arrive after it.
     worker.onmessage = (event: MessageEvent<Answer>) => {
       if (worker === this.#worker) this.#receive(event.data);
     };
     worker.onerror = (event) => {
       event.preventDefault();
-      this.#drop(panic(event.message || "The worker could not be loaded."));
+      if (worker === this.#worker) this.#drop(panic(event.message || "The worker could not be loaded."));
     };
     return worker;
   }
@@ -111,10 +118,11 @@ export class Engine {
     this.#worker?.terminate();
     this.#worker = undefined;
     this.#loaded = false;
-    this.#hooks.onLost();
+    const error = new EngineError(fault);
+    this.#hooks.onLost(error);
     const waiting = [...this.#pending.values()];
     this.#pending.clear();
-    for (const { reject } of waiting) reject(new EngineError(fault));
+    for (const { reject } of waiting) reject(error);
     this.#restIfIdle();
   }
 }

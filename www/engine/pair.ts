@@ -11,6 +11,8 @@ import type { OwnCamera, OwnFiles } from "./protocol";
 
 /** Longest side the library takes. */
 const LONGEST = 4096;
+/** Pixels of what the browser decodes, as of a PNG: a canvas of more takes all memory. */
+const MOST_PIXELS = 2 ** 27;
 
 export interface Pair {
   image: ColorImage;
@@ -79,6 +81,10 @@ async function decodePhoto(file: File): Promise<ColorImage> {
     throw new BimodalError("file", "this is no picture that can be read here; use PNG, JPEG or .npy", "image");
   });
   const { width, height } = bitmap;
+  if (width * height > MOST_PIXELS) {
+    bitmap.close();
+    throw new BimodalError("file", `it is ${width} × ${height} px large; up to ${MOST_PIXELS} pixels are read`, "image");
+  }
   const canvas = new OffscreenCanvas(width, height);
   const context = canvas.getContext("2d");
   if (!context) throw new BimodalError("file", "this browser gives no canvas to decode it with", "image");

@@ -21,7 +21,8 @@ export interface OwnFiles {
 
 /** A sample's light may be turned, degrees about the colour view's x and y. */
 export type SampleSource = { kind: "sample"; request: SampleRequest; turn: { alpha: number; beta: number } };
-export type Source = SampleSource | { kind: "files"; files: OwnFiles };
+/** A saved run goes on where it stood. */
+export type Source = SampleSource | { kind: "files"; files: OwnFiles } | { kind: "saved"; file: File };
 
 /** Options whose light may also be "known" and whose start "truth": those of the sample, which only the worker holds. */
 export type LabOptions = Omit<Options, "light" | "start"> & {
@@ -144,6 +145,8 @@ export interface Opened {
   trueLight: KnownLight | null;
   /** Whether there is a truth to compare shapes with. */
   measured: boolean;
+  /** What a saved run had been told. */
+  options: Options | null;
   frame: Frame;
 }
 
@@ -196,6 +199,8 @@ export interface Calls {
   catalogue: { request: Record<never, never>; reply: Catalogue };
   open: { request: { source: Source; options: LabOptions; look: Look }; reply: Opened };
   take: { request: Record<never, never>; reply: Taken };
+  /** The run as bytes that `open` takes as a saved one. */
+  save: { request: Record<never, never>; reply: Uint8Array };
   preview: { request: { source: SampleSource }; reply: Preview };
   reset: { request: { options: LabOptions; look: Look }; reply: Frame };
   look: { request: { look: Look }; reply: Drawings };

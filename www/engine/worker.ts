@@ -1,8 +1,9 @@
 /** The thread that owns the estimator. It answers one request at a time and sends copies, never views on its memory. */
 
+import "./hold";
 import init, { BimodalError, Estimator, sample, sampleLights, sampleSurfaces, turnLight, wasmUrl } from "../../pkg/index.js";
 import type { Options, Pose, Sample, SampleRequest, StepReport } from "../../pkg/index.js";
-import type { Answer, Calls, Frame, Kind, KnownLight, Look, OwnFiles, Request, LabOptions, Preview, SampleSource, Drawings } from "./protocol";
+import type { Answer, Calls, Frame, Kind, KnownLight, Look, OwnFiles, Request, LabOptions, Preview, SampleSource, Source, Drawings } from "./protocol";
 import { faultOf } from "./fault";
 import { Numbers } from "./numbers";
 import { probe } from "./probe";
@@ -79,8 +80,7 @@ const known = (light: Float64Array): KnownLight => ({ ball: lit(light), coeffici
 
 /** The new input replaces the old one only when it has been accepted, so a refusal loses nothing. */
 async function open({ source, options, look }: Calls["open"]["request"]): Promise<Calls["open"]["reply"]> {
-  const opened = source.kind === "sample" ? fromSample(source) : await fromFiles(source.files);
-  const estimator = new Estimator(opened.image, opened.depth, resolve(options, opened));
+  const { estimator, ...opened } = source.kind === "saved" ? await fromSaved(source.file) : await prepared(source, options);
   experiment?.estimator.free();
   const numbers = new Numbers(estimator);
   experiment = { ...opened, estimator, numbers, start: startOf(estimator, numbers), painter: new ViewPainter(opened, opened.shapes) };
@@ -90,11 +90,24 @@ async function open({ source, options, look }: Calls["open"]["request"]): Promis
     truth: opened.truth,
     trueLight: opened.light ? known(opened.light) : null,
     measured: opened.shapes !== undefined,
+    options: source.kind === "saved" ? estimator.given.options : null,
     frame: frame(experiment, look, [estimator.report], true),
   };
 }
 
 type Prepared = Input & Pick<Calls["open"]["reply"], "notes">;
+
+async function prepared(source: Exclude<Source, { kind: "saved" }>, options: LabOptions): Promise<Prepared & { estimator: Estimator }> {
+  const input = source.kind === "sample" ? fromSample(source) : await fromFiles(source.files);
+  return { ...input, estimator: new Estimator(input.image, input.depth, resolve(options, input)) };
+}
+
+/** It is run again as far as it had come. */
+async function fromSaved(file: File): Promise<Prepared & { estimator: Estimator }> {
+  const estimator = Estimator.restore(new Uint8Array(await file.arrayBuffer()));
+  const { image, depth } = estimator.given;
+  return { image, depth, estimator, truth: null, notes: {} };
+}
 
 /** What is asked of the library: its own light, or that one turned. */
 function requestOf({ request, turn }: SampleSource): SampleRequest {
@@ -182,6 +195,8 @@ function answer(request: Request): Promise<Calls[Kind]["reply"]> | Calls[Kind]["
       return open(request);
     case "take":
       return take();
+    case "save":
+      return opened().estimator.save();
     case "preview":
       return preview(request);
     case "reset":

@@ -1,5 +1,6 @@
 /** The thread that makes large files: while it writes a cloud a page answers no press. One request and it is done. */
 
+import "../engine/hold";
 import { faultOf } from "../engine/fault";
 import type { Fault, Taken } from "../engine/protocol";
 import { depthPng, normalsPng, writeClouds, writeNpy } from "./write";

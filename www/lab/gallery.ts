@@ -3,12 +3,12 @@
 import type { Pose, StepReport } from "../../pkg/index.js";
 import { Card } from "../draw/card";
 import type { Charts } from "../draw/charts";
-import type { Clouds } from "../draw/clouds";
 import { Painter } from "../draw/painter";
 import { Probe, type Asked } from "../draw/probe";
 import { Scale } from "../draw/scale";
 import { View, type Content } from "../draw/view";
 import { byId, make } from "../dom";
+import { CloudPanel } from "./cloudpanel";
 import { SCALES, TEXTURES, type Frame, type Look, type Opened, type Painted, type Probed, type ScaleName, type Drawings, type Texture, type ViewName } from "../engine/protocol";
 
 /** What the pictures need of the worker; nothing comes of it where there is nothing to be seen. */
@@ -28,13 +28,10 @@ export class Gallery {
   readonly #views: Readonly<Record<ViewName, View>>;
   #texture: Texture = "view";
   #units: Opened["units"] = { image: "px", depth: "px" };
-  #clouds: Clouds | undefined;
+  readonly #clouds: CloudPanel;
   #charts: Charts | undefined;
-  #drawings: Drawings | undefined;
   #history: readonly StepReport[] = [];
   #pinned: readonly StepReport[] = [];
-  /** Whether the surfaces are to be looked at anew. */
-  #fresh = true;
   #isLooking = false;
   #looksAgain = false;
 
@@ -62,10 +59,13 @@ export class Gallery {
     const depthError = view("error-views", "depthError", "Error of depth", "distance of the colour view's depth from the true one, both about their middles", scalar("depthError"));
     const refinementError = view("error-views", "refinementError", "Refinement error", "distance of the refined depth from the true one", scalar("refinementError"));
     this.#views = { picture, imageNormals, imageDepth, albedo, shading, residual, given, refinedDepth, depthNormals, normalError, depthError, refinementError };
-    this.#probe.listen(() => this.#clouds?.mark(this.#probe.answer?.points ?? { image: null, depth: null }));
+    this.#clouds = new CloudPanel(this.#painter, this.#probe);
     void this.#loadCharts();
-    this.#loadCloudsWhenSeen();
-    this.#buildChoices();
+    const texture = byId("clouds-texture", HTMLSelectElement);
+    texture.addEventListener("change", () => {
+      this.#texture = TEXTURES.find((each) => each === texture.value) ?? "view";
+      void this.#look();
+    });
   }
 
   /** How a visitor wants to see what there is. */
@@ -87,21 +87,10 @@ export class Gallery {
     this.#isLooking = false;
   }
 
-  /** How the surfaces are drawn, and what they are coloured by. */
-  #buildChoices(): void {
-    const style = byId("clouds-style", HTMLSelectElement);
-    style.addEventListener("change", () => this.#clouds?.setStyle(style.value === "points" ? "points" : "surfaces"));
-    const texture = byId("clouds-texture", HTMLSelectElement);
-    texture.addEventListener("change", () => {
-      this.#texture = TEXTURES.find((each) => each === texture.value) ?? "view";
-      void this.#look();
-    });
-  }
-
   /** Resolves when the new input is on the screen; `fresh` looks at its surfaces from the front. */
   open({ units, measured, frame }: Opened, fresh: boolean): Promise<void> {
     this.#units = this.#card.units = units;
-    this.#fresh ||= fresh;
+    if (fresh) this.#clouds.lookAnew();
     // Its pixels are others.
     if (fresh) this.#probe.point(null);
     byId("errors", HTMLElement).hidden = !measured;
@@ -115,7 +104,7 @@ export class Gallery {
 
   /** The depth map's surface under another pose than its own, or its own again. */
   pretend(pose: Pose | undefined): void {
-    this.#clouds?.pretend(pose);
+    this.#clouds.pretend(pose);
   }
 
   /** Resolves when the frame is on the screen, which is when the next one may be asked for. */
@@ -128,12 +117,11 @@ export class Gallery {
   }
 
   #see(drawings: Drawings): void {
-    this.#drawings = drawings;
     const { image, depth } = this.#units;
     const units: Partial<Record<ViewName, string>> = { imageDepth: image, residual: "log", given: depth, refinedDepth: depth, normalError: "°", depthError: image, refinementError: depth };
     for (const name of SCALES) this.#scales[name].follow(drawings.ranges[name]);
     for (const [name, painted] of Object.entries(drawings.views) as [ViewName, Painted][]) this.#views[name].show(painted, units[name]);
-    this.#showClouds();
+    this.#clouds.show(drawings);
   }
 
   /** Keeps this run's pictures and curves beside those of the runs to come. */
@@ -150,7 +138,7 @@ export class Gallery {
   }
 
   recolour(): void {
-    this.#clouds?.recolour();
+    this.#clouds.recolour();
     this.#charts?.recolour();
   }
 
@@ -186,14 +174,6 @@ export class Gallery {
     if (parent) byId(parent, HTMLElement).append(figure);
   }
 
-  #showClouds(): void {
-    const [drawings, clouds] = [this.#drawings, this.#clouds];
-    if (!drawings || !clouds) return;
-    const fresh = this.#fresh;
-    this.#painter.request(clouds, () => clouds.show(drawings.surfaces, drawings.poses.points, drawings.poses.seen, fresh));
-    this.#fresh = false;
-  }
-
   #showCharts(): void {
     const charts = this.#charts;
     if (charts) this.#painter.request(charts, () => charts.show(this.#history, this.#pinned));
@@ -203,39 +183,5 @@ export class Gallery {
     const { Charts } = await import("../draw/charts");
     this.#charts = new Charts(byId("objective-chart", HTMLElement), byId("rotation-chart", HTMLElement));
     this.#showCharts();
-  }
-
-  #loadCloudsWhenSeen(): void {
-    const box = byId("clouds-box", HTMLElement);
-    const seen = new IntersectionObserver((entries) => {
-      if (!entries.some((entry) => entry.isIntersecting)) return;
-      seen.disconnect();
-      void this.#loadClouds(box);
-    }, { rootMargin: "200px" });
-    seen.observe(box);
-  }
-
-  async #loadClouds(box: HTMLElement): Promise<void> {
-    const canvas = byId("clouds-canvas", HTMLCanvasElement);
-    const fallback = byId("clouds-note", HTMLElement);
-    try {
-      const { Clouds } = await import("../draw/clouds");
-      const clouds = await Clouds.open(canvas, box);
-      this.#clouds = clouds;
-      fallback.hidden = true;
-      canvas.addEventListener("pointermove", ({ offsetX, offsetY, buttons }) => this.#probe.point(buttons === 0 ? clouds.pick(offsetX, offsetY) : null));
-      canvas.addEventListener("pointerleave", () => this.#probe.point(null));
-      canvas.addEventListener("keydown", (event) => {
-        const turn = { ArrowLeft: [-10, 0], ArrowRight: [10, 0], ArrowUp: [0, -10], ArrowDown: [0, 10] }[event.key];
-        if (!turn) return;
-        event.preventDefault();
-        clouds.turn(turn[0] ?? 0, turn[1] ?? 0);
-      });
-      byId("clouds-home", HTMLButtonElement).addEventListener("click", () => clouds.home());
-      clouds.setStyle(byId("clouds-style", HTMLSelectElement).value === "points" ? "points" : "surfaces");
-      this.#showClouds();
-    } catch {
-      fallback.textContent = "This browser offers no WebGL, so the clouds cannot be turned here.";
-    }
   }
 }

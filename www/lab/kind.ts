@@ -7,6 +7,14 @@ const [BITS, COLOUR, END] = [24, 25, 26];
 
 const begins = (bytes: Uint8Array, magic: readonly number[]): boolean => magic.every((byte, i) => bytes[i] === byte);
 
+/** How a saved run begins. */
+const RUN = new TextEncoder().encode("bimodal-stereo\n");
+
+export async function runAmong(files: readonly File[]): Promise<File | undefined> {
+  for (const file of files) if (begins(new Uint8Array(await file.slice(0, RUN.length).arrayBuffer()), [...RUN])) return file;
+  return undefined;
+}
+
 export async function sniffed(file: File): Promise<"colour" | "depth" | "mask"> {
   const bytes = new Uint8Array(await file.slice(0, END).arrayBuffer());
   if (begins(bytes, NPY)) return "depth";

@@ -1,7 +1,7 @@
 /** The Lab: settings in, frames out. It joins the parts and holds the state of one experiment. */
 
 import { byId, make } from "../dom";
-import { Engine, EngineError } from "../engine/engine";
+import { Engine, EngineError, LOST } from "../engine/engine";
 import type { Frame, Opened, Source } from "../engine/protocol";
 import type { Pose, StepReport } from "../../pkg/index.js";
 import { Explanations } from "./ask";
@@ -14,15 +14,16 @@ import { Player, type Advance } from "./player";
 import { shownIn } from "./pictures";
 import { PoseTable } from "./posetable";
 import { Rivals } from "./rivals";
-import { fields, inputGroups, methodOf, runOptions, turnOf, type Origin, type Settings } from "./settings";
+import { fields, inputGroups, methodOf, runOptions, settingsOf, turnOf, type Origin, type Settings } from "./settings";
 import { download, linkTo, writeAddress } from "./share";
 import { ScoreMap } from "./scoremap";
-import { rememberOrigin, sourceOf } from "./source";
+import { originOf, rememberOrigin, sourceOf } from "./source";
 import { saveBlob } from "../save";
 import { Store } from "./store";
 import { Status, type Notice } from "./status";
 import { Strip } from "./strip";
 import type { Kind } from "./kinds";
+import { Messages } from "./messages";
 import { verdict, wordsOf } from "./verdict";
 
 export class Lab {
@@ -31,7 +32,16 @@ export class Lab {
   readonly player: Player;
   readonly #engine: Engine;
   readonly #form: Form;
-  readonly #own = new OwnFiles({ onChange: () => void this.#reopen(), onCameras: (fields) => this.store.change(fields) });
+  readonly #own = new OwnFiles({
+    onChange: () => {
+      this.#saved = undefined;
+      void this.#reopen();
+    },
+    onCameras: (fields) => this.store.change(fields),
+    onRun: (file) => this.#goOnWith(file),
+  });
+  /** The saved run that has come in place of a pair of files, until a pair comes. */
+  #saved: Source | undefined;
   /** The files of what is on the screen; none of a sample. */
   #pair: readonly (File | undefined)[] = [];
   readonly #status = new Status();
@@ -45,10 +55,9 @@ export class Lab {
   /** The light to be looked at next, while one is being looked at: what it changes in the settings. */
   #trying: Settings | undefined;
   #previewing = false;
-  readonly #alert = byId("alert", HTMLElement);
+  readonly #messages: Messages;
   #origin: Origin = "sample";
   #truth: Opened["truth"] = null;
-  #notes: Opened["notes"] = {};
   #length: Opened["units"]["image"] = "px";
   #report: StepReport | undefined;
   /** Where the loop began. */
@@ -70,17 +79,20 @@ export class Lab {
   /** The object that the surfaces on the screen are of. */
   #seen = "";
   #offered = false;
+  /** Whether the run has been played again because its worker was gone. */
+  #resumed = false;
   /** The run that is to play once its input is there, if the visitor still waits for it. */
   #watched: Settings | undefined;
 
   constructor(settings: Settings) {
     this.store = new Store(settings);
     this.#form = new Form(this.store);
+    this.#messages = new Messages(this.#form, this.#own.intake);
     this.#engine = new Engine({
       onLoad: (bytes) => {
         if (!this.#report) this.#announce("loading", `loading the numerics, ${Math.round(bytes / 1000)} kB`);
       },
-      onLost: () => (this.#held = undefined),
+      onLost: (error) => this.#lose(error),
     });
     const unlessGone = (): undefined => undefined;
     this.gallery = new Gallery({
@@ -93,7 +105,7 @@ export class Lab {
       restart: () => this.#start(this.#wanted),
       isFinished: () => this.#isFinished(),
       onChange: () => this.#showState(),
-      onError: (error) => void this.#enter(this.#fail(error)),
+      onError: (error, playing) => void this.#breakOff(error, playing),
     });
     this.#rivals = new Rivals({ onLook: (pose) => this.gallery.pretend(pose), onStart: (pose) => this.#startFrom(pose) });
     this.#light = new LightPanel({ turn: () => turnOf(this.store.settings), onLight: (patch, done) => this.#changeLight(patch, done) });
@@ -148,7 +160,7 @@ export class Lab {
   download(): void {
     if (!this.#good || !this.#report) return;
     const { source, settings } = this.#good;
-    download({ source: source.kind, settings, truth: this.#truth, report: this.#report, history: this.#history });
+    download({ source: originOf(source), settings, truth: this.#truth, report: this.#report, history: this.#history });
   }
 
   /** Hands over one of the results, in full. */
@@ -156,9 +168,10 @@ export class Lab {
     if (!this.#good || !this.#report) return;
     try {
       const { source, settings } = this.#good;
+      if (kind === "run") return await this.#saveRun();
       const [{ fileOfKind }, taken] = await Promise.all([import("./takeaway"), this.#engine.call("take", {})]);
       const report = this.#report;
-      const run = { taken, report, end: verdict(report, this.#from, this.#truth), truth: this.#truth, origin: source.kind, settings };
+      const run = { taken, report, end: verdict(report, this.#from, this.#truth), truth: this.#truth, origin: originOf(source), settings };
       const files = source.kind === "files" ? this.#own.intake.said : [];
       const { name, blob, says } = await fileOfKind(kind, { ...run, files, link: linkTo(settings) });
       saveBlob(name, blob);
@@ -173,6 +186,22 @@ export class Lab {
     }
   }
 
+  /** The run itself, to go on with later. */
+  async #saveRun(): Promise<void> {
+    const name = "run.bimodal";
+    saveBlob(name, new Blob([(await this.#engine.call("save", {})) as Uint8Array<ArrayBuffer>]));
+    byId("taken", HTMLElement).textContent = `Saved ${name}: drop it on this page to go on from here; it holds both views and the options.`;
+  }
+
+  /** A saved run, which is run again as far as it had come. */
+  #goOnWith(file: File): void {
+    this.player.pause();
+    this.#saved = { kind: "saved", file };
+    this.#own.intake.remarks([{ words: `${file.name}: a saved run, from where it stood; its options are in the fields.`, wrong: false }]);
+    this.#vacate();
+    void this.#start(this.#saved);
+  }
+
   /** Files dropped anywhere, each into the slot that its content is of. */
   drop(files: readonly File[]): Promise<void> {
     return this.#own.drop(files);
@@ -183,7 +212,7 @@ export class Lab {
     this.#good = undefined;
     this.#report = undefined;
     this.#truth = null;
-    this.#notes = {};
+    this.#messages.note({});
     this.#pair = [];
     this.#compare.release();
     this.#forget();
@@ -196,6 +225,8 @@ export class Lab {
     byId("undo", HTMLButtonElement).disabled = !this.store.canUndo;
     byId("redo", HTMLButtonElement).disabled = !this.store.canRedo;
     this.#form.adapt(settings, this.#origin);
+    // Those of a run that is there already.
+    if (changed.length === 0) return;
     // A slider shows what it does: what was playing, or had been played to its end, plays again.
     const again = live && (this.player.playing || this.#isFinished());
     const input = fields.some(({ key, group }) => inputGroups.includes(group) && changed.includes(key));
@@ -249,9 +280,9 @@ export class Lab {
   #reopen(): Promise<void> {
     this.player.pause();
     const { colour, depth } = this.#own.intake.files;
-    const wanted = this.#origin === "files" ? [colour, depth] : [];
+    const wanted = this.#origin === "files" && !this.#saved ? [colour, depth] : [];
     if (wanted.length !== this.#pair.length || wanted.some((file, i) => file !== this.#pair[i])) this.#vacate();
-    return this.#start(sourceOf(this.#origin, this.store.settings, this.#own.intake.files));
+    return this.#start(this.#origin === "files" && this.#saved ? this.#saved : sourceOf(this.#origin, this.store.settings, this.#own.intake.files));
   }
 
   /** The loop from its beginning, on an input that the worker may already hold. */
@@ -266,13 +297,14 @@ export class Lab {
 
   async #attempt(source: Source | string, turn: number): Promise<void> {
     this.#wanted = source;
-    this.#clearMessages();
+    this.#resumed = false;
+    this.#messages.clear();
     if (typeof source === "string") {
       this.#announce("waiting", source);
       return;
     }
     const settings = this.store.settings;
-    const options = runOptions(settings, source.kind);
+    const options = runOptions(settings, originOf(source));
     this.#announce("loading", source === this.#good?.source ? "starting over" : "reading the input");
     try {
       await this.#offerChoices();
@@ -290,7 +322,7 @@ export class Lab {
         this.#pair = source.kind === "files" ? [source.files.colour, source.files.depth] : [];
         await this.#present(opened);
       }
-      this.#good = { source, settings };
+      this.#good = { source, settings: source.kind === "saved" ? this.store.settings : settings };
       if (turn === this.#turn) this.#settle();
     } catch (error) {
       if (turn === this.#turn) await this.#fail(error);
@@ -312,8 +344,8 @@ export class Lab {
     this.#length = opened.units.image;
     this.#light.showTruth(opened.trueLight);
     this.#forget();
-    this.#notes = opened.notes;
-    this.#showNotes();
+    if (opened.options) this.store.adopt(settingsOf(opened.options));
+    this.#messages.note(opened.notes);
     const drawn = this.gallery.open(opened, this.#looksOther());
     this.#take(opened.frame);
     await drawn;
@@ -342,7 +374,9 @@ export class Lab {
   async #advance(request: Advance): Promise<boolean> {
     await this.#beginning;
     // While files are awaited, the pair on the screen is not the one asked for.
-    if (!this.#good || typeof this.#wanted === "string" || this.#isFinished()) return false;
+    if (typeof this.#wanted === "string") return false;
+    if (!this.#good) await this.#start(this.#wanted);
+    if (!this.#good || this.#isFinished()) return false;
     const turn = this.#turn;
     if (request.by === "stage") this.#strip.run();
     try {
@@ -413,36 +447,33 @@ export class Lab {
     play.setAttribute("aria-label", playing ? "Pause" : "Play");
   }
 
-  #clearMessages(): void {
-    this.#alert.hidden = true;
-    this.#showNotes();
-  }
-
-  /** What was guessed about the input stays beside the fields; errors go. */
-  #showNotes(): void {
-    this.#form.clearMessages();
-    this.#own.intake.clearMessages();
-    for (const [path, note] of Object.entries(this.#notes)) {
-      if (!this.#own.intake.remark(path, note)) this.#form.remark(path, note);
-    }
-  }
-
   /** Says what is wrong beside the field it concerns; what was on the screen stays, and stays usable. */
   async #fail(error: unknown): Promise<void> {
     this.player.pause();
-    const message = error instanceof Error ? error.message : String(error);
-    const field = error instanceof EngineError ? error.field : undefined;
-    const placed = field !== undefined && this.#complain(field, message);
-    this.#alert.textContent = message;
-    this.#alert.hidden = placed;
+    const placed = this.#messages.fail(error);
     this.#announce("error", placed ? "see the marked field" : "see the message");
     if (this.#good && this.#held !== this.#good.source) await this.#recover(this.#good);
   }
 
-  /** Beside its field a message need not repeat the field's name. */
-  #complain(field: string, message: string): boolean {
-    const words = message.startsWith(`${field}: `) ? message.slice(field.length + 2) : message;
-    return this.#own.intake.complain(field, words) || this.#form.complain(field, words);
+  /**
+   * What the worker held is lost. Whoever waited for its answer tells of that; where nobody did, as while the page rested, it is told here, once
+   * all rejections have been heard.
+   */
+  #lose(error: EngineError): void {
+    this.#held = undefined;
+    const turn = this.#turn;
+    if (error.fatal) setTimeout(() => turn === this.#turn && this.#good && !this.#held && void this.#enter(this.#fail(error)));
+  }
+
+  /** A run whose worker was ended plays again, to the same numbers; once, because what it does may be what ends it. */
+  async #breakOff(error: unknown, playing: boolean): Promise<void> {
+    const failed = this.#enter(this.#fail(error));
+    const turn = this.#turn;
+    await failed;
+    const isLost = error instanceof EngineError && error.code === LOST;
+    if (!playing || !isLost || this.#resumed || turn !== this.#turn || !this.#good || this.player.playing) return;
+    this.#resumed = true;
+    this.player.toggle();
   }
 
   /** The worker has lost what is on the screen, as after a panic: the same input again, from its beginning. */
@@ -450,15 +481,15 @@ export class Lab {
     this.#good = undefined; // should it fail once more, the page waits for another input
     const turn = ++this.#turn;
     try {
-      const opened = await this.#engine.call("open", { source, options: runOptions(settings, source.kind), look: this.gallery.look });
+      const opened = await this.#engine.call("open", { source, options: runOptions(settings, originOf(source)), look: this.gallery.look });
       this.#held = source;
       if (turn !== this.#turn) return;
       await this.#present(opened);
       this.#good = { source, settings };
+      this.#messages.add("The input is kept, and the run begins anew.");
     } catch (error) {
       if (turn !== this.#turn) return;
-      this.#alert.textContent = `${this.#alert.textContent} ${error instanceof Error ? error.message : String(error)}`;
-      this.#alert.hidden = false;
+      this.#messages.add(error instanceof Error ? error.message : String(error), true);
     }
   }
 }

@@ -64,9 +64,11 @@ const inWords = ({ kind, says }: Summary): string =>
 async function unread(file: File, fault: string): Promise<Look> {
   const none = { warnings: [], cameras: [] };
   if (/pixels large|MB large/.test(fault)) return { ...none, kind: await sniffed(file), says: "too large for a preview" };
-  const picture = /save it as PNG/.test(fault) ? await createImageBitmap(file).catch(() => undefined) : undefined;
-  if (!picture) return { ...none, kind: undefined, says: fault, fault };
-  const { width, height } = picture;
+  const whole = /save it as PNG/.test(fault) ? await createImageBitmap(file).catch(() => undefined) : undefined;
+  if (!whole) return { ...none, kind: undefined, says: fault, fault };
+  const { width, height } = whole;
+  const picture = await createImageBitmap(whole, { resizeWidth: Math.min(PREVIEW, width), resizeQuality: "medium" });
+  whole.close();
   return { ...none, kind: "colour", says: `${width}x${height}, read by the browser`, width, height, picture };
 }
 

@@ -1,12 +1,15 @@
 /** The visitor's files: what they are, where they belong, and that the browser keeps them. */
 
 import { Intake, type Slot } from "./intake";
+import { runAmong } from "./kind";
 import type { Value } from "./settings";
 import type { Files } from "./storage";
 
 export interface OwnFilesHooks {
   /** Other files than before. */
   onChange(): void;
+  /** A saved run in place of a pair. */
+  onRun(file: File): void;
   /** Fields that a camera's file has filled. */
   onCameras(fields: Record<string, Value>): void;
 }
@@ -27,6 +30,8 @@ export class OwnFiles {
   async drop(files: readonly File[]): Promise<void> {
     this.#restored = true;
     this.#hands++;
+    const run = await runAmong(files);
+    if (run) return this.#hooks.onRun(run);
     const { sorted } = await import("./own");
     const { slots, settings, remarks } = await sorted(files, this.intake.files);
     this.intake.remarks(remarks);
@@ -69,7 +74,8 @@ export class OwnFiles {
   async #keep(): Promise<void> {
     const files: Files = { ...this.intake.files };
     if (Object.keys(files).length === 0) return this.#forget();
-    const { forget, keep, reasonOf } = await import("./storage");
+    const { forget, hearOthers, keep, reasonOf } = await import("./storage");
+    hearOthers(() => this.intake.files, (isEmpty) => this.#overtaken(isEmpty));
     try {
       await keep(files);
       this.intake.keeping("These files are kept in this browser, on this machine, until you forget them; a reload brings them back.", true);
@@ -78,6 +84,13 @@ export class OwnFiles {
       await forget().catch(() => {});
       this.intake.keeping(`This browser does not keep the files (${reasonOf(error)}): they work all the same, and are gone with a reload.`, true);
     }
+  }
+
+  /** Another tab has put its files in the place of these, or has had them forgotten. */
+  #overtaken(isEmpty: boolean): void {
+    if (Object.keys(this.intake.files).length === 0) return;
+    const words = isEmpty ? "Another tab of this page has had the kept files forgotten: these are gone with a reload." : "Another tab of this page keeps its files now: a reload brings those, not these.";
+    this.intake.keeping(words, true);
   }
 
   async #forget(): Promise<void> {

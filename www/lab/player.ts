@@ -22,7 +22,8 @@ export interface PlayerHooks {
   restart(): Promise<void>;
   isFinished(): boolean;
   onChange(): void;
-  onError(error: unknown): void;
+  /** What went wrong, and whether it was while the run played. */
+  onError(error: unknown, playing: boolean): void;
 }
 
 export class Player {
@@ -94,8 +95,9 @@ export class Player {
     try {
       return await this.#hooks.advance(request);
     } catch (error) {
+      const playing = this.#playing;
       this.#playing = false;
-      this.#hooks.onError(error);
+      this.#hooks.onError(error, playing);
       return false;
     } finally {
       this.#hooks.onChange();

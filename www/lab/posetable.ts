@@ -18,6 +18,9 @@ const rows: readonly { name: string; index?: string; unit?: string; decimals: nu
   { name: "t", index: "z", decimals: 3, read: ({ translation }) => translation[2] },
 ];
 
+/** Degrees of β from which on α and γ turn about nearly one axis, so that single ones may differ where the rotation does not. */
+const POLE = 85;
+
 export class PoseTable {
   readonly #cells = rows.map(() => ({ found: make("td"), truth: make("td"), unit: make("span", { class: "unit" }) }));
   readonly #error = byId("pose-error", HTMLElement);
@@ -54,6 +57,8 @@ export class PoseTable {
       this.#error.dataset.degrees = String(degrees);
       const before = start ? `; ${decimals(angleBetween(start.rotation, truth.rotation), 1)}° at the start` : "";
       this.#error.replaceChildren(make("strong", {}, `${decimals(degrees, 2)}° off`), ` the true rotation${before}`);
+      // By the truth, so that nothing moves while the search looks around.
+      if (Math.abs(truth.angles.beta) > POLE) this.#error.append(". So near β = 90° only α and γ together tell the rotation.");
     }
     this.#extras.forEach(({ dt, dd, read }) => {
       const value = read(report, length);

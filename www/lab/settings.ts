@@ -4,7 +4,7 @@
  * several, or of files. An empty number is absent, and so the library's default.
  */
 
-import type { SampleRequest } from "../../pkg/index.js";
+import type { Options, SampleRequest } from "../../pkg/index.js";
 import { OPTIONS, RENDERED_ALONE, SAMPLE, paths, type PageField, type Rows, type ShownRow } from "../../pkg/options.js";
 import type { LabOptions, OwnCamera } from "../engine/protocol";
 import type { Method } from "./explain";
@@ -210,6 +210,27 @@ export function runOptions(settings: Settings, source: Origin): LabOptions {
     ...told<LabOptions>(optionFields, settings, source),
     light: lightOption(settings, source),
     start: startOption(settings),
+  };
+}
+
+/** The value at a path below what its first name stands for. */
+const valueAt = (root: unknown, path: string): unknown => path.split(".").slice(1).reduce<unknown>((inner, name) => (inner as Record<string, unknown> | undefined)?.[name], root);
+
+/** The fields as a saved run had been told them; of a start the angles alone, which is all that fields have. */
+export function settingsOf(options: Options): Settings {
+  const own = optionFields.map((field): [string, Value] => {
+    const value = valueAt(options, field.path);
+    if (field.kind === "number") return [field.key, typeof value === "number" ? value : null];
+    return [field.key, typeof value === "string" || typeof value === "boolean" ? value : field.initial];
+  });
+  const { light, start = "search" } = options;
+  const angles = typeof start === "string" ? undefined : start.angles;
+  const near = angles && Object.entries(angles).map(([name, value]): [string, Value] => [`start.${name}`, value]);
+  return {
+    ...Object.fromEntries(own),
+    coefficients: typeof light === "string" || light === undefined ? "" : Array.from(light).join(" "),
+    start: typeof start === "string" ? start : "near",
+    ...Object.fromEntries(near ?? []),
   };
 }
 

@@ -24,6 +24,9 @@ export function wasOwn(): boolean {
   }
 }
 
+/** Which fields a source has to do with. */
+export const originOf = (source: Source): Origin => (source.kind === "sample" ? "sample" : "files");
+
 /** Or in words what it still lacks. */
 export function sourceOf(origin: Origin, settings: Settings, { colour, depth, ...masks }: Partial<Record<Slot, File>>): Source | string {
   if (origin === "sample") return { kind: "sample", request: sampleRequest(settings), turn: turnOf(settings) };

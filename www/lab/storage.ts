@@ -35,14 +35,39 @@ async function change(work: (store: IDBObjectStore) => void): Promise<void> {
   }
 }
 
+/** All tabs of the page keep files in the same place, and tell each other what lies there now. */
+const tabs = channel();
+
+function channel(): BroadcastChannel | undefined {
+  try {
+    return new BroadcastChannel(`${NAME} ${STORE}`);
+  } catch {
+    // Closed as storage is; then nothing is kept either.
+    return undefined;
+  }
+}
+
+/** What tells files from others without reading them. */
+const namesOf = (files: Files): string => JSON.stringify(Object.entries(files).map(([slot, { name, size, lastModified }]) => [slot, name, size, lastModified]).sort());
+
+/** Has it told what another tab has put there, or that it has put nothing there. */
+export function hearOthers(here: () => Files, tell: (isEmpty: boolean) => void): void {
+  if (!tabs) return;
+  tabs.onmessage = ({ data }: MessageEvent<string>) => {
+    if (data !== namesOf(here())) tell(data === namesOf({}));
+  };
+}
+
 /** These files and no others. */
-export const keep = (files: Files): Promise<void> =>
-  change((store) => {
+export async function keep(files: Files): Promise<void> {
+  await change((store) => {
     store.clear();
     for (const [slot, file] of Object.entries(files)) store.put(file, slot);
   });
+  tabs?.postMessage(namesOf(files));
+}
 
-export const forget = (): Promise<void> => change((store) => store.clear());
+export const forget = (): Promise<void> => keep({});
 
 export async function kept(): Promise<Map<string, File>> {
   const database = await opened();

@@ -41,6 +41,16 @@ export class Store {
     this.#become(next, live);
   }
 
+  /** Settings of a run that is there already: shown, and nothing has to be run for them. */
+  adopt(patch: Settings): void {
+    const next = { ...this.#now, ...patch };
+    if (differing(next, this.#now).length === 0) return;
+    this.#past.push(this.#now);
+    this.#undone = [];
+    this.#now = next;
+    for (const listener of this.#listeners) listener(next, [], false);
+  }
+
   resetToDefaults(): void {
     this.change(defaults);
   }

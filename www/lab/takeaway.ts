@@ -2,6 +2,7 @@
 
 import type { Pose, StepReport } from "../../pkg/index.js";
 import { byId } from "../dom";
+import { GONE, onGone } from "../engine/alive";
 import type { Taken } from "../engine/protocol";
 import { sha256 } from "../hash";
 import type { Kind } from "./kinds";
@@ -39,6 +40,7 @@ const made = (name: string, type: string, part: BlobPart, says?: string): Made =
 function madeApart(kind: LargeKind, taken: Taken): Promise<Extract<FileAnswer, { bytes: Uint8Array }>> {
   const worker = new Worker(new URL("./files-thread.ts", import.meta.url), { type: "module" });
   const answer = new Promise<Extract<FileAnswer, { bytes: Uint8Array }>>((resolve, reject) => {
+    onGone(worker, () => reject(new Error(GONE)));
     worker.onmessage = ({ data }: MessageEvent<FileAnswer>) => ("fault" in data ? reject(new Error(data.fault.message)) : resolve(data));
     worker.onerror = (event) => {
       event.preventDefault();
@@ -89,7 +91,7 @@ async function report(run: Run): Promise<Made> {
   return made("bimodal-stereo-report.html", "text/html", html);
 }
 
-export async function fileOfKind(kind: Kind, run: Run): Promise<Made> {
+export async function fileOfKind(kind: Exclude<Kind, "run">, run: Run): Promise<Made> {
   const { pose, unit, light, depth, image } = run.taken;
   switch (kind) {
     case "pose":

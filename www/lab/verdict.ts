@@ -50,7 +50,7 @@ const remedies: readonly (readonly [said: RegExp, remedy: string])[] = [
   [/apparent size/, "A scale that is known would help: Settings, Scale."],
 ];
 /** Where all went well there is more to try. */
-const HARDER = "Turn the surfaces, drag the light, or make it harder: Noise, Half hidden.";
+const HARDER = "Turn the surfaces, drag the light, or make it harder: Noise, Half hidden. What can't be found, Learn's last lesson shows.";
 const GENERAL = "Another start may find it: Settings, Start, near.";
 
 const remedy = (said: string): string => remedies.find(([pattern]) => pattern.test(said))?.[1] ?? GENERAL;

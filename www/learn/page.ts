@@ -201,7 +201,9 @@ export class LearnPage {
   #complain(message: string): void {
     const shown = this.#shown;
     if (!shown) return;
-    shown.alert.textContent = message;
+    const again = make("button", { type: "button" }, "Compute again");
+    again.addEventListener("click", () => this.#ask());
+    shown.alert.replaceChildren(message, " ", again);
     shown.alert.hidden = false;
     shown.box.setAttribute("aria-busy", "false");
   }

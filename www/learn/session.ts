@@ -1,5 +1,6 @@
 /** The page's side of the worker: only the newest request counts, and a worker that broke off is replaced. */
 
+import { GONE, onGone } from "../engine/alive";
 import type { Fault } from "../engine/protocol";
 import type { Answer, Drawing, LessonId, Request, Values } from "./protocol";
 
@@ -31,6 +32,9 @@ export class Session {
 
   #spawn(): Worker {
     const worker = new Worker(new URL("./worker.ts", import.meta.url), { type: "module" });
+    onGone(worker, () => {
+      if (worker === this.#worker) this.#fail({ code: "lost", message: `This figure broke off: ${GONE}.`, fatal: true });
+    });
     worker.onmessage = (event: MessageEvent<Answer>) => {
       // What was asked before the newest request is out of date.
       if (worker === this.#worker && event.data.id === this.#next) this.#receive(event.data);

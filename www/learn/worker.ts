@@ -1,5 +1,6 @@
 /** The thread that computes what the lessons show. A newer request ends the one under way. */
 
+import "../engine/hold";
 import init from "../../pkg/index.js";
 import { faultOf } from "../engine/fault";
 import { colours } from "./compute/colours";

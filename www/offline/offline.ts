@@ -10,7 +10,12 @@ export async function keepForOffline(line: HTMLElement): Promise<void> {
       if (registration.waiting) line.textContent = "A newer version is ready: close every tab of this page, and open it again.";
       else if (registration.active) line.textContent = "It works offline.";
     };
-    const follow = (worker: ServiceWorker | null): void => worker?.addEventListener("statechange", tell);
+    const follow = (worker: ServiceWorker | null): void =>
+      worker?.addEventListener("statechange", () => {
+        tell();
+        const isRefused = worker.state === "redundant" && !registration.active && !registration.waiting;
+        if (isRefused) line.textContent = "This browser keeps no copy of the page (its storage may be full): it needs its network.";
+      });
     follow(registration.installing);
     registration.addEventListener("updatefound", () => follow(registration.installing));
     tell();

@@ -1,5 +1,6 @@
 /** The page's side of the worker: requests as promises, one progress at a time, and a worker that can be replaced. */
 
+import { GONE, onGone } from "../engine/alive";
 import type { Fault } from "../engine/protocol";
 import type { Answer, CallKind, Calls, Request } from "./protocol";
 
@@ -23,6 +24,12 @@ interface Waiting {
   resolve(answer: never): void;
   reject(error: unknown): void;
   onProgress?: ((share: number, message: string) => void) | undefined;
+}
+
+/** A file that came with others has a unit of its own; they are remembered under the first of them. */
+function keyOf(kind: CallKind, ask: object): string {
+  if (kind === "unit" && "file" in ask) return `unit ${ask.file}`;
+  return "file" in ask ? `file ${ask.file}` : "first" in ask ? `files from ${ask.first}` : kind;
 }
 
 export class Session {
@@ -61,8 +68,7 @@ export class Session {
   }
 
   #remember(kind: CallKind, ask: object): void {
-    // Said of a file that came with others, which are remembered under their first.
-    const key = kind === "unit" && "file" in ask ? `unit ${ask.file}` : "file" in ask ? `file ${ask.file}` : "first" in ask ? `files from ${ask.first}` : kind;
+    const key = keyOf(kind, ask);
     if (kind === "forget") return void this.#known.delete(key);
     if (kind !== "read" && kind !== "folder" && kind !== "example" && kind !== "unit" && kind !== "frames") return;
     // What is said again comes last, after the files that it may be about.
@@ -73,6 +79,9 @@ export class Session {
   #thread(): Worker {
     if (this.#worker) return this.#worker;
     const worker = new Worker(new URL("./worker.ts", import.meta.url), { type: "module" });
+    onGone(worker, () => {
+      if (worker === this.#worker) this.#restart(GONE);
+    });
     worker.onmessage = ({ data }: MessageEvent<Answer>) => {
       if (worker === this.#worker) this.#receive(data);
     };
@@ -109,6 +118,8 @@ export class Session {
     this.#worker = undefined;
     const left = [...this.#waiting.values()];
     this.#waiting.clear();
+    // What was being read may be what ended it: no other worker is told to.
+    for (const { kind, ask } of left) if (kind === "read" || kind === "folder" || kind === "example") this.#known.delete(keyOf(kind, ask));
     for (const { reject } of left) reject(new RigError({ code: "internal", message, fatal: true }));
   }
 }

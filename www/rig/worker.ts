@@ -1,5 +1,6 @@
 /** The thread that reads files and runs the check. It keeps all pixels; the page gets summaries, pictures and numbers. */
 
+import "../engine/hold";
 import { checkCalibration, projectFrame, type CheckFrame } from "../../pkg/index.js";
 import { faultOf } from "../engine/fault";
 import { restrictDepth, restrictImage } from "./restrict";

@@ -1,5 +1,6 @@
 /** Runs cells one after the other in a worker of its own, and keeps what came out for as long as the page lives. */
 
+import { GONE, onGone } from "../engine/alive";
 import type { CellAnswer, Task } from "./messages";
 import type { Cell, Result } from "./protocol";
 
@@ -102,6 +103,9 @@ export class Runner {
 
   #spawn(): Worker {
     const worker = new Worker(new URL("./worker.ts", import.meta.url), { type: "module" });
+    onGone(worker, () => {
+      if (worker === this.#worker) this.#breakDown(GONE);
+    });
     // What a worker said before its end may arrive after it.
     worker.onmessage = (event: MessageEvent<CellAnswer>) => {
       if (worker === this.#worker) this.#receive(event.data);

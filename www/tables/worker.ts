@@ -1,5 +1,6 @@
 /** The thread that measures cells, one after the other. What is measured and how is the protocol's alone. */
 
+import "../engine/hold";
 import init, { Estimator, sample, sampleBound } from "../../pkg/index.js";
 import type { RunOptions, StepReport } from "../../pkg/index.js";
 import { measure } from "../../scripts/tables/protocol/measure.mjs";

@@ -1,0 +1,17 @@
+import { fileURLToPath } from "node:url";
+import { defineConfig } from "@playwright/test";
+import page from "./playwright.config";
+
+/** A second engine: Debian's Firefox, which Playwright drives by WebDriver BiDi. Chromium's flags are none of its. */
+export default defineConfig(page, {
+  testDir: "tests/firefox",
+  outputDir: "target/playwright-firefox",
+  workers: 1,
+  use: {
+    browserName: "firefox",
+    channel: "moz-firefox",
+    // What Chromium lets a context have, Firefox does not know by this protocol.
+    serviceWorkers: "allow",
+    launchOptions: { executablePath: fileURLToPath(new URL("tests/firefox/launcher.mjs", import.meta.url)), args: [] },
+  },
+});

@@ -1,0 +1,191 @@
+/** Workers that end, break off or trap in the middle of something: the page says so, keeps what it was given, and goes on. */
+
+import { readFileSync } from "node:fs";
+import type { Page } from "@playwright/test";
+import binaryen from "binaryen";
+import { breakable, endAll, endAt, ended, endSoon } from "./broken";
+import { expect, test, type Lab } from "./lab";
+import { answerChecks, giveFiles, pair } from "./rig";
+
+const FAST = "size=48";
+const alert = (page: Page) => page.locator("#alert");
+
+async function play(lab: Lab): Promise<void> {
+  await lab.page.getByLabel("Speed").selectOption({ label: "one per frame" });
+  await lab.page.getByRole("button", { name: "Play" }).click();
+}
+
+/** What a run has come to. */
+const end = async (lab: Lab): Promise<string[]> => [await lab.iteration.innerText(), await lab.page.locator("#pose").innerText(), await lab.page.locator("#verdict").innerText()];
+
+test.describe("in the Lab", () => {
+  test.beforeEach(({ page }) => breakable(page));
+
+  test("a worker ended in the middle of a step: said, and the run plays again to the same numbers", async ({ lab, page }) => {
+    await lab.open(FAST);
+    await play(lab);
+    await lab.reaches("converged");
+    const undisturbed = await end(lab);
+    await page.keyboard.press("r");
+    await lab.reaches("ready");
+    await endAt(page, { kind: "advance" }, 3);
+    await play(lab);
+    await expect(alert(page)).toContainText("The run broke off: the thread that computed was ended");
+    await expect(alert(page)).toContainText("The input is kept");
+    await lab.reaches("converged");
+    await expect(alert(page)).toBeVisible();
+    expect(await end(lab)).toEqual(undisturbed);
+    await page.keyboard.press("r");
+    await lab.reaches("ready");
+    await expect(alert(page)).toBeHidden();
+  });
+
+  test("one that is ended each time does not go round in circles, and Play goes on once it lives", async ({ lab, page }) => {
+    await lab.open(FAST);
+    await endAt(page, { kind: "advance" }, 1, 2);
+    await play(lab);
+    await expect.poll(() => ended(page)).toBe(2);
+    await expect(page.getByRole("button", { name: "Play" })).toHaveAttribute("aria-pressed", "false");
+    await lab.reaches("error");
+    await expect(lab.iteration).toHaveText("0");
+    await play(lab);
+    await lab.reaches("converged");
+  });
+
+  test("one that is ended while its input is opened again leaves a Play that opens it", async ({ lab, page }) => {
+    await endSoon(page, /\/worker-[^/]*\.js$/, 2);
+    await lab.open(FAST);
+    await endAt(page, { kind: "advance" });
+    await page.keyboard.press("s");
+    await expect(alert(page)).toContainText(/broke off.*broke off/);
+    await page.keyboard.press("s");
+    await expect(lab.iteration).toHaveText("1");
+  });
+
+  test("one that is ended while the page rests is told of at once, and the next step works", async ({ lab, page }) => {
+    await lab.open(FAST);
+    await endAll(page, "/worker-");
+    await expect(alert(page)).toContainText("was ended");
+    await page.keyboard.press("s");
+    await expect(lab.iteration).toHaveText("1");
+  });
+
+  test("an uncaught error in the worker", async ({ lab, page }) => {
+    await page.route(/\/worker-[^/]*\.js$/, async (route) => {
+      const response = await route.fetch();
+      const fault = `let count = 0; addEventListener("message", ({ data }) => { if (data.kind === "advance" && ++count === 2) throw new Error("out of order"); });`;
+      await route.fulfill({ response, body: `${fault}\n${await response.text()}` });
+    });
+    await lab.open(FAST);
+    await page.keyboard.press("s");
+    await expect(lab.iteration).toHaveText("1");
+    await page.keyboard.press("s");
+    await lab.reaches("error");
+    await expect(alert(page)).toContainText("out of order");
+    await expect(lab.iteration).toHaveText("0");
+    await page.keyboard.press("s");
+    await expect(lab.iteration).toHaveText("1");
+  });
+
+  test("a trap in the module", async ({ lab, page }) => {
+    await page.route(/bimodal_stereo_bg[^/]*\.wasm$/, async (route) => {
+      const module = binaryen.readBinary(readFileSync(new URL("../../pkg/bimodal_stereo_bg.wasm", import.meta.url)));
+      const inner = binaryen.getExportInfo(module.getExport("estimator_stepStage")).value;
+      // Its types leave this out.
+      const { Function: functions } = binaryen as unknown as { Function: { setBody(of: number, body: number): void } };
+      functions.setBody(module.getFunction(inner), module.unreachable());
+      await route.fulfill({ contentType: "application/wasm", body: Buffer.from(module.emitBinary()) });
+      module.dispose();
+    });
+    await lab.open(FAST);
+    await page.keyboard.press("t");
+    await lab.reaches("error");
+    await expect(alert(page)).toContainText("The input is kept, and the run begins anew.");
+    await page.keyboard.press("s");
+    await expect(lab.iteration).toHaveText("1");
+  });
+
+  test("the thread that makes a file: said, nothing saved, and the next press saves", async ({ lab, page }) => {
+    await endSoon(page, /files-thread[^/]*\.js$/, 1);
+    await lab.open(FAST);
+    const clouds = page.getByRole("group", { name: "Take away" }).getByRole("button", { name: "Clouds, PLY" });
+    await clouds.click();
+    await expect(page.locator("#taken")).toContainText("Nothing saved: the thread that computed was ended");
+    const download = page.waitForEvent("download");
+    await clouds.click();
+    expect((await download).suggestedFilename()).toBe("clouds.ply");
+  });
+});
+
+test("in Learn: said, the values stay, and the figure is computed again", async ({ lab, page }) => {
+  await breakable(page);
+  await page.goto("./#learn&at=pixel");
+  const figure = page.locator(".learn-figure");
+  await expect(figure).toHaveAttribute("aria-busy", "false");
+  await endAt(page, { lesson: "pixel" });
+  const beta = page.locator('.learn-controls input[name="beta"]');
+  await beta.fill("55");
+  await expect(figure.getByRole("alert")).toContainText("This figure broke off: the thread that computed was ended");
+  await expect(beta).toHaveValue("55");
+  await page.getByRole("button", { name: "Compute again" }).click();
+  await expect(figure).toHaveAttribute("aria-busy", "false");
+  await expect(figure.getByRole("alert")).toBeHidden();
+  expect(lab.complaints).toEqual([]);
+});
+
+test("in the Tables: the cell says so, those after it are measured, and it can be pressed again", async ({ lab, page }) => {
+  await breakable(page);
+  // The second cell's worker is ended.
+  await page.addInitScript(() => {
+    const send = Worker.prototype.postMessage;
+    let cells = 0;
+    Worker.prototype.postMessage = function (this: Worker, message: { cell?: object }, ...rest: []) {
+      send.call(this, message, ...rest);
+      if (message.cell && ++cells === 2) this.terminate();
+    };
+  });
+  await page.goto("./#tables");
+  const cells = page.locator("#tables .heat-cell");
+  for (const index of [0, 1, 2]) await cells.nth(index).click();
+  // What is pressed last comes next.
+  await expect(cells.nth(0)).toHaveAttribute("data-value");
+  await expect(cells.nth(2)).toHaveAttribute("title", /failed: the thread that computed was ended/);
+  await expect(cells.nth(1)).toHaveAttribute("data-value");
+  await cells.nth(2).click();
+  await expect(cells.nth(2)).toHaveAttribute("data-value");
+  expect(lab.complaints).toEqual([]);
+});
+
+test.describe("in Check a rig", () => {
+  const put = (page: Page, files: ReturnType<typeof pair>) => page.locator("#rig input[type=file]:not([webkitdirectory])").first().setInputFiles(files);
+
+  test("a worker ended in the middle of a check: said, the files stay, and the check runs again", async ({ lab, page }) => {
+    await answerChecks(page, "off");
+    await breakable(page);
+    await page.goto("./#rig");
+    await giveFiles(page, pair());
+    await page.getByRole("button", { name: "Next: your calibration" }).click();
+    await endAt(page, { kind: "check" });
+    const run = page.getByRole("button", { name: /^(Run the check|Estimate a calibration)$/ });
+    await run.first().click();
+    await expect(page.locator("#rig").getByRole("alert")).toContainText("The check could not be done: the thread that computed was ended");
+    await page.getByRole("button", { name: "Run the check" }).click();
+    await expect(page.locator(".rig-bar").first()).toBeVisible();
+    expect(lab.complaints).toEqual([]);
+  });
+
+  test("a file whose reading ends the worker is named, and those that come later are read", async ({ lab, page }) => {
+    await breakable(page);
+    await page.goto("./#rig");
+    await put(page, pair("first"));
+    await expect(page.locator(".rig-frame")).toHaveCount(1);
+    const [deadly] = pair("deadly");
+    if (!deadly) throw new Error("a pair has files");
+    await endAt(page, { name: deadly.name }, 1, 9);
+    await put(page, [deadly]);
+    await expect(page.locator("#rig")).toContainText("the thread that computed was ended");
+    await put(page, pair("second"));
+    await expect(page.locator(".rig-frame")).toHaveCount(2);
+    expect(lab.complaints).toEqual([]);
+  });
+});

@@ -1,0 +1,84 @@
+/** What draws the clouds: a thread of its own where the browser lets one, or else the page. */
+
+import { onGone } from "../engine/alive";
+import type { Change, Told } from "./stage";
+
+export interface Renderer {
+  /** Resolves when that is done. */
+  draw(change: Change): Promise<void>;
+  end(): void;
+}
+
+export interface CloudsHooks {
+  /** WebGL was taken away, or is back. */
+  onLost(lost: boolean): void;
+  /** Nothing will be drawn any more. */
+  onGone(): void;
+}
+
+/** Rejects where the browser has no WebGL. */
+export const rendererFor = (canvas: HTMLCanvasElement, hooks: CloudsHooks): Promise<Renderer> => (drawsElsewhere(canvas) ? elsewhere(canvas, hooks) : here(canvas, hooks));
+
+/** Whether a thread can have the canvas and WebGL as well: older Safaris draw in two dimensions there. */
+function drawsElsewhere(canvas: HTMLCanvasElement): boolean {
+  return "transferControlToOffscreen" in canvas && new OffscreenCanvas(1, 1).getContext("webgl2") !== null;
+}
+
+async function elsewhere(canvas: HTMLCanvasElement, hooks: CloudsHooks): Promise<Renderer> {
+  const thread = new Thread(hooks);
+  const offscreen = canvas.transferControlToOffscreen();
+  if (await thread.ask(offscreen, [offscreen])) return thread;
+  thread.end();
+  throw new Error("no WebGL in a thread");
+}
+
+/** It answers whatever it is sent; once it is over nothing is drawn, and nobody is kept waiting for it. */
+class Thread implements Renderer {
+  readonly #worker = new Worker(new URL("./stage-thread.ts", import.meta.url), { type: "module" });
+  #isOver = false;
+  #answer: ((isDone: boolean) => void) | undefined;
+
+  constructor({ onLost, onGone: tell }: CloudsHooks) {
+    const breakOff = (): void => {
+      if (this.#isOver) return;
+      this.end();
+      tell();
+    };
+    onGone(this.#worker, breakOff);
+    this.#worker.onmessage = ({ data }: MessageEvent<Told>) => (typeof data === "boolean" ? this.#answer?.(data) : onLost(data.lost));
+    this.#worker.onerror = (event) => {
+      event.preventDefault();
+      breakOff();
+    };
+  }
+
+  ask(message: OffscreenCanvas | Change, transfer: Transferable[] = []): Promise<boolean> {
+    if (this.#isOver) return Promise.resolve(false);
+    return new Promise((resolve) => {
+      this.#answer = resolve;
+      this.#worker.postMessage(message, transfer);
+    });
+  }
+
+  async draw(change: Change): Promise<void> {
+    await this.ask(change);
+  }
+
+  end(): void {
+    this.#isOver = true;
+    this.#worker.terminate();
+    this.#answer?.(false);
+  }
+}
+
+async function here(canvas: HTMLCanvasElement, { onLost }: CloudsHooks): Promise<Renderer> {
+  const { CloudStage } = await import("./stage");
+  const stage = new CloudStage(canvas, onLost);
+  return {
+    async draw(change) {
+      await new Promise(requestAnimationFrame);
+      stage.show(change);
+    },
+    end() {},
+  };
+}

@@ -1,0 +1,12 @@
+/** Imported first by the page's workers: the lock by which the page knows that they live (`alive.ts`). */
+
+import type { Holding } from "./alive";
+
+/** Another one for each worker of all tabs. */
+const name = `bimodal-stereo ${performance.timeOrigin} ${Math.random()}`;
+
+// Where there are none the page does without.
+navigator.locks?.request(name, () => {
+  self.postMessage({ holds: name } satisfies Holding);
+  return new Promise(() => {});
+}).catch(() => {});

@@ -1,0 +1,121 @@
+/** The panel of both surfaces: what draws them is loaded when they are first seen; where it can't draw, the panel says why. */
+
+import type { Pose } from "../../pkg/index.js";
+import type { Clouds } from "../draw/clouds";
+import type { Painter } from "../draw/painter";
+import type { Probe } from "../draw/probe";
+import { byId, make } from "../dom";
+import type { Drawings } from "../engine/protocol";
+
+const NONE = "This browser offers no WebGL, so the clouds cannot be turned here.";
+const LOST = "The browser has taken the graphics away (WebGL), so the clouds stand still until it gives them back. All else goes on.";
+const GONE = "What draws the clouds was ended twice; a reload of the page brings them back. All else goes on.";
+
+export class CloudPanel {
+  readonly #box = byId("clouds-box", HTMLElement);
+  readonly #note = byId("clouds-note", HTMLElement);
+  readonly #style = byId("clouds-style", HTMLSelectElement);
+  readonly #painter: Painter;
+  readonly #probe: Probe;
+  #clouds: Clouds | undefined;
+  #drawings: Drawings | undefined;
+  /** Whether the surfaces are to be looked at anew. */
+  #fresh = true;
+  #opened = 0;
+
+  constructor(painter: Painter, probe: Probe) {
+    this.#painter = painter;
+    this.#probe = probe;
+    probe.listen(() => this.#mark());
+    this.#style.addEventListener("change", () => this.#applyStyle());
+    byId("clouds-home", HTMLButtonElement).addEventListener("click", () => this.#clouds?.home());
+    const seen = new IntersectionObserver((entries) => {
+      if (!entries.some((entry) => entry.isIntersecting)) return;
+      seen.disconnect();
+      void this.#open(byId("clouds-canvas", HTMLCanvasElement));
+    }, { rootMargin: "200px" });
+    seen.observe(this.#box);
+  }
+
+  /** The next surfaces are of another object. */
+  lookAnew(): void {
+    this.#fresh = true;
+  }
+
+  show(drawings: Drawings): void {
+    this.#drawings = drawings;
+    this.#showAll();
+  }
+
+  /** The depth map's surface under another pose than its own, or its own again. */
+  pretend(pose: Pose | undefined): void {
+    this.#clouds?.pretend(pose);
+  }
+
+  recolour(): void {
+    this.#clouds?.recolour();
+  }
+
+  #showAll(): void {
+    const [drawings, clouds] = [this.#drawings, this.#clouds];
+    if (!drawings || !clouds) return;
+    const fresh = this.#fresh;
+    this.#painter.request(clouds, () => clouds.show(drawings.surfaces, drawings.poses.points, drawings.poses.seen, fresh));
+    this.#fresh = false;
+  }
+
+  #mark(): void {
+    this.#clouds?.mark(this.#probe.answer?.points ?? { image: null, depth: null });
+  }
+
+  #applyStyle(): void {
+    this.#clouds?.setStyle(this.#style.value === "points" ? "points" : "surfaces");
+  }
+
+  #say(words: string): void {
+    this.#note.textContent = words;
+    this.#note.hidden = words === "";
+  }
+
+  async #open(canvas: HTMLCanvasElement): Promise<void> {
+    this.#opened++;
+    try {
+      const { Clouds } = await import("../draw/clouds");
+      const hooks = { onLost: (lost: boolean) => this.#say(lost ? LOST : ""), onGone: () => this.#reopen() };
+      const clouds = await Clouds.open(canvas, this.#box, hooks);
+      this.#clouds = clouds;
+      this.#say("");
+      this.#listen(canvas, clouds);
+      this.#applyStyle();
+      this.#showAll();
+    } catch {
+      this.#say(NONE);
+    }
+  }
+
+  #listen(canvas: HTMLCanvasElement, clouds: Clouds): void {
+    canvas.addEventListener("pointermove", ({ offsetX, offsetY, buttons }) => this.#probe.point(buttons === 0 ? clouds.pick(offsetX, offsetY) : null));
+    canvas.addEventListener("pointerleave", () => this.#probe.point(null));
+    canvas.addEventListener("keydown", (event) => {
+      const turn = { ArrowLeft: [-10, 0], ArrowRight: [10, 0], ArrowUp: [0, -10], ArrowDown: [0, 10] }[event.key];
+      if (!turn) return;
+      event.preventDefault();
+      clouds.turn(turn[0] ?? 0, turn[1] ?? 0);
+    });
+  }
+
+  /** A canvas that a thread has drawn on is that thread's for ever: another one takes its place, once. */
+  #reopen(): void {
+    const clouds = this.#clouds;
+    if (!clouds) return;
+    clouds.end();
+    this.#clouds = undefined;
+    if (this.#opened > 1) return this.#say(GONE);
+    const old = byId("clouds-canvas", HTMLCanvasElement);
+    const { id, tabIndex } = old;
+    const canvas = make("canvas", { id, tabindex: tabIndex, role: "img", "aria-label": old.getAttribute("aria-label") ?? "" });
+    old.replaceWith(canvas);
+    this.#fresh = true;
+    void this.#open(canvas);
+  }
+}

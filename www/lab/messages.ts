@@ -1,0 +1,57 @@
+/** What is wrong, or was guessed, beside the field or the file that it concerns; what belongs to none stands above all. */
+
+import { byId } from "../dom";
+import { EngineError } from "../engine/engine";
+import type { Opened } from "../engine/protocol";
+import type { Form } from "./form";
+import type { Intake } from "./intake";
+
+export class Messages {
+  readonly #alert = byId("alert", HTMLElement);
+  readonly #form: Form;
+  readonly #intake: Intake;
+  #notes: Opened["notes"] = {};
+
+  constructor(form: Form, intake: Intake) {
+    this.#form = form;
+    this.#intake = intake;
+  }
+
+  /** Errors go; what was guessed about the input stays beside the fields. */
+  clear(): void {
+    this.#alert.hidden = true;
+    this.note(this.#notes);
+  }
+
+  /** What was guessed about the input. */
+  note(notes: Opened["notes"]): void {
+    this.#notes = notes;
+    this.#form.clearMessages();
+    this.#intake.clearMessages();
+    for (const [path, note] of Object.entries(notes)) {
+      if (!this.#intake.remark(path, note)) this.#form.remark(path, note);
+    }
+  }
+
+  /** Says what is wrong; true where it stands beside a field. */
+  fail(error: unknown): boolean {
+    const message = error instanceof Error ? error.message : String(error);
+    const field = error instanceof EngineError ? error.field : undefined;
+    const placed = field !== undefined && this.#complain(field, message);
+    this.#alert.textContent = message;
+    this.#alert.hidden = placed;
+    return placed;
+  }
+
+  /** A sentence more about what is wrong; `shown` where it has to be seen. */
+  add(words: string, shown = false): void {
+    this.#alert.textContent = `${this.#alert.textContent.replace(/\.?$/, ".")} ${words}`;
+    if (shown) this.#alert.hidden = false;
+  }
+
+  /** Beside its field a message need not repeat the field's name. */
+  #complain(field: string, message: string): boolean {
+    const words = message.startsWith(`${field}: `) ? message.slice(field.length + 2) : message;
+    return this.#intake.complain(field, words) || this.#form.complain(field, words);
+  }
+}
