@@ -1,0 +1,54 @@
+"""Shape, light and camera pose from one colour image and one depth map of the same object, taken from different places.
+
+One frame everywhere: x right, y down, z forward; normals face the camera; depth is along z. Without intrinsics a view is
+orthographic, its unit is the pixel, and x and y are counted from the raster's middle; with them it is metric. The pose carries
+depth points into the colour view: P_colour = scale * rotation @ P_depth + translation. Arrays are row by row, (h, w) or
+(h, w, 3), and come out as copies.
+
+    from bimodal_stereo import Estimator, sample
+
+    scene = sample("bust", "window", angles={"beta": 50}, noise=0.01)
+    report = Estimator(scene.image, scene.depth).run()
+    print(report.status, report.pose.angles.beta)
+"""
+
+from ._calibration import CandidateReport, CheckFrame, CheckReport, CueReport, FrameReport, RigSample, Sensitivity
+from ._calibration import check_calibration, sample_rig
+from ._errors import BimodalError
+from ._estimator import Estimator
+from ._inputs import Options, StartTolerance, Weights
+from ._native import VERSION as __version__
+from ._samples import Sample, Truth, sample, sample_lights, sample_surfaces
+from ._types import Angles, ColorImage, DepthMap, Energy, Pinhole, Pose, RigCamera, StepReport, Uncertainty
+
+__all__ = [
+    "Angles",
+    "BimodalError",
+    "CandidateReport",
+    "CheckFrame",
+    "CheckReport",
+    "ColorImage",
+    "CueReport",
+    "DepthMap",
+    "Energy",
+    "Estimator",
+    "FrameReport",
+    "Options",
+    "Pinhole",
+    "Pose",
+    "RigCamera",
+    "RigSample",
+    "Sample",
+    "Sensitivity",
+    "StartTolerance",
+    "StepReport",
+    "Truth",
+    "Uncertainty",
+    "Weights",
+    "__version__",
+    "check_calibration",
+    "sample",
+    "sample_lights",
+    "sample_rig",
+    "sample_surfaces",
+]

@@ -1,0 +1,155 @@
+"""Whether the calibration between a colour camera and a depth camera is right."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Callable, Mapping, NamedTuple, Optional, Sequence, Union
+
+from . import _inputs, _native
+from ._errors import BimodalError
+from ._types import ColorImage, DepthMap, Pose, RigCamera
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from ._types import Floats
+
+
+@dataclass(frozen=True, eq=False)
+class CheckFrame:
+    """One pair of a rig whose calibration is in question: the whole frames; masks are optional.
+
+    Without a camera of the image its focal length is estimated. ``depth`` is a depth map with its camera, or an organised cloud
+    in metres. ``name``: how the report calls it.
+    """
+
+    image: Union[ColorImage, ArrayLike]
+    depth: Union[DepthMap, ArrayLike]
+    name: Optional[str] = None
+
+
+@dataclass(frozen=True, eq=False)
+class RigSample(CheckFrame):
+    """A frame of a rendered rig with the extrinsics to be found."""
+
+    pose: Optional[Pose] = None
+
+
+@dataclass(frozen=True)
+class CandidateReport:
+    """What is said of one candidate: "consistent", "off" or "undecided", and the reason with its numbers.
+
+    ``off_degrees``, ``off_millimetres``: turn from the estimate, and shift at the scene's middle. ``pixels``, ``interval``: expected reprojection
+    error at the scene's depth, pixels of the colour image, and its 95 % interval. ``probability``: of a distance as large, were it right.
+    """
+
+    verdict: str
+    reason: str
+    off_degrees: float
+    off_millimetres: float
+    pixels: float
+    interval: tuple[float, float]
+    probability: float
+
+
+class CueReport(NamedTuple):
+    """A cue's share of the answer, 0 .. 1, and how sharp it is: one over its sigma in pixels of the colour image."""
+
+    share: float
+    sharpness: float
+
+
+class FrameReport(NamedTuple):
+    """A frame's share of the answer, 0 .. 1, and what should be known about it."""
+
+    name: str
+    share: float
+    note: Optional[str]
+
+
+class Sensitivity(NamedTuple):
+    """How the log likelihood of a cue falls about the estimate: offsets in degrees (rx ry rz) or millimetres (tx ty tz)."""
+
+    cue: str
+    axis: str
+    offsets: Floats
+    values: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class CheckReport:
+    """What a check found. The first candidate is the one in question: ``verdict`` and ``reason`` are its own.
+
+    ``warnings``: what was guessed or looks wrong. ``estimate``: the extrinsics that fit best, P_colour = rotation @ P_depth + translation,
+    metres. ``middle``: (3,), the scene's, in the colour frame, metres. ``covariance``: (6, 6), of a rotation vector in rad about the middle,
+    then a translation in m. ``focal``: factor of the assumed focal length and the logarithm's sigma, where the colour camera was
+    not given. ``pixels``, ``interval``: expected reprojection error of the estimate, and its 95 % interval.
+    """
+
+    verdict: str
+    reason: str
+    warnings: Sequence[str]
+    estimate: Pose
+    middle: Floats
+    covariance: Floats
+    focal: Optional[tuple[float, float]]
+    pixels: float
+    interval: tuple[float, float]
+    candidates: Mapping[str, CandidateReport]
+    cues: Mapping[str, CueReport]
+    frames: Sequence[FrameReport]
+    sensitivity: Sequence[Sensitivity]
+
+
+def check_calibration(
+    frames: Sequence[CheckFrame],
+    candidates: Mapping[str, Union[Pose, Mapping[str, Any]]],
+    *,
+    cues: Optional[Sequence[str]] = None,
+    on_progress: Optional[Callable[[float, str], Any]] = None,
+) -> CheckReport:
+    """Whether frames agree with some candidates for the extrinsics of a rig, P_colour = rotation @ P_depth + translation in metres.
+
+    candidates: poses by name, with ``rotation`` (3, 3) and ``translation`` (3,); the first one is in question. cues: of "shading", "edges",
+    "information" and "silhouette"; all without it. on_progress: called with the share of the work done, 0 .. 1, and what is being done.
+    """
+    if not isinstance(candidates, Mapping):
+        raise BimodalError("type", "candidates: must be a dictionary of poses by name", "candidates")
+    if cues is not None and (isinstance(cues, str) or not all(isinstance(cue, str) for cue in cues)):
+        raise BimodalError("type", "cues: must be a list of words", "cues")
+    if cues is not None and len(cues) == 0:
+        raise BimodalError("size", "cues: needs at least one cue", "cues")
+    if isinstance(frames, CheckFrame):
+        raise BimodalError("type", "frames: must be a list of frames", "frames")
+    named = [(str(name), _inputs.plain(pose)) for name, pose in candidates.items()]
+    given = [rig_frame(frame, index) for index, frame in enumerate(frames)]
+    raw = _native.check_calibration(given, named, list(cues or []), on_progress)
+    made = {
+        "estimate": Pose._of(raw["estimate"]),
+        "candidates": {name: CandidateReport(**one) for name, one in raw["candidates"].items()},
+        "cues": {name: CueReport(*one) for name, one in raw["cues"].items()},
+        "frames": [FrameReport(**one) for one in raw["frames"]],
+        "sensitivity": [Sensitivity(**one) for one in raw["sensitivity"]],
+    }
+    return CheckReport(**{**raw, **made})
+
+
+def rig_frame(frame: CheckFrame, index: int) -> dict[str, Any]:
+    path = f"frames[{index}]"
+    if not isinstance(frame, CheckFrame):
+        raise BimodalError("type", f"{path}: must be a CheckFrame, not {type(frame).__name__}", path)
+    image = _inputs.image(frame.image, f"{path}.image")
+    return {"image": image, "depth": _inputs.depth(frame.depth, f"{path}.depth"), "name": frame.name}
+
+
+def sample_rig(
+    kind: str, *, seed: Optional[int] = None, frame: Optional[int] = None, noise: Optional[float] = None
+) -> RigSample:
+    """One frame of a rendered rig whose extrinsics are known.
+
+    kind: "objects", "sheet", "boxes" or "room". seed: of the rig; 0. frame: frames of one seed share the rig, and show other things; 0.
+    noise: factor of both sensors' noise; 1.
+    """
+    raw = _native.sample_rig({"kind": kind, "seed": seed, "frame": frame, "noise": noise})
+    image, depth = ({**raw[view], "camera": RigCamera(**raw[view]["camera"])} for view in ("image", "depth"))
+    return RigSample(ColorImage(**image), DepthMap(**depth), raw["name"], Pose._of(raw["pose"]))

@@ -1,0 +1,111 @@
+"""The loop."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Callable, Optional, Union
+
+from . import _inputs, _native
+from ._errors import BimodalError
+from ._types import ColorImage, DepthMap, StepReport
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import ArrayLike, NDArray
+    from typing_extensions import Unpack
+
+    from ._inputs import Options
+    from ._types import Floats, Singles
+
+
+class Estimator:
+    """Shape, light and pose from one colour image and one depth map, one iteration after the other.
+
+    ``image`` is a ``ColorImage`` or an array (h, w, 3 or 4), ``depth`` a ``DepthMap`` or an array, (h, w) of depths or (h, w, 3) of an
+    organised cloud. ``options`` are those of ``Options``, each with a default: nothing needs to be known. Every array that
+    comes out is a copy. Other threads of Python run while a step does; threads that share an estimator wait for each other.
+    """
+
+    def __init__(
+        self, image: Union[ColorImage, ArrayLike], depth: Union[DepthMap, ArrayLike], **options: Unpack[Options]
+    ) -> None:
+        self._own = _native.Estimator(_inputs.image(image), _inputs.depth(depth), _inputs.keywords(options))
+
+    def step(self) -> StepReport:
+        """One iteration, or one slice of the search while the loop is still there."""
+        return StepReport._of(self._own.step())
+
+    def step_stage(self) -> StepReport:
+        """One stage of an iteration, or one slice of the search; the report says which."""
+        return StepReport._of(self._own.step_stage())
+
+    def run(
+        self, max_iterations: Optional[int] = None, on_step: Optional[Callable[[StepReport], Any]] = None
+    ) -> StepReport:
+        """Steps until the loop ends, at most ``max_iterations`` times, slices of the search included.
+
+        ``on_step`` is called with the report of each step. An interrupt, or whatever ``on_step`` raises, ends it between two steps; the
+        estimator stays as the last step left it.
+        """
+        most = None if max_iterations is None else _inputs.whole(max_iterations, "max_iterations", 1)
+        report = self.report
+        done = 0
+        while report.status == "running" and done != most:
+            report = self.step()
+            done += 1
+            if on_step is not None:
+                on_step(report)
+        return report
+
+    def reset(self, **options: Unpack[Options]) -> None:
+        """Back to the start with the same views, and with these options, if any are given, in place of all earlier ones."""
+        self._own.reset(_inputs.keywords(options) if options else None)
+
+    @property
+    def report(self) -> StepReport:
+        """The report of the last step; before the first one, that of the start."""
+        return StepReport._of(self._own.report())
+
+    def image_normals(self) -> Singles:
+        """Normals of the image view, (h, w, 3) float32, NaN outside the mask."""
+        return self._own.image_normals()
+
+    def image_depth(self) -> Singles:
+        """Depth of the image view, (h, w) float32, NaN outside the mask; median zero, in pixels, where the view is orthographic."""
+        return self._own.image_depth()
+
+    def depth_normals(self) -> Singles:
+        """Refined normals of the depth view, in its own frame, (h, w, 3) float32, NaN outside the mask."""
+        return self._own.depth_normals()
+
+    def refined_depth(self) -> Singles:
+        """Refined depth of the depth view, holes filled, (h, w) float32: metres, or pixels where it is orthographic."""
+        return self._own.refined_depth()
+
+    def correspondence(self) -> NDArray[np.int32]:
+        """For each image pixel the index of its depth pixel, row * width + column, or -1: (h, w) int32."""
+        return self._own.correspondence()
+
+    def residual(self) -> Singles:
+        """abs(log S - predicted) of each image pixel, (h, w) float32, NaN outside the mask: the length of log S - albedo - shading."""
+        return self._own.residual()
+
+    def albedo(self) -> Singles:
+        """Log paint of the image view (natural logarithm), (h, w, 3) float32, mean 0 over the mask in each channel, NaN outside it.
+
+        Zero where one paint explains the colours, with ``registration="icp"``, and before the pose has come to rest.
+        """
+        return self._own.albedo()
+
+    def shading(self) -> Singles:
+        """Log shading of the image view, (h, w, 3) float32, NaN outside the mask and where there is no normal yet."""
+        return self._own.shading()
+
+    def light(self) -> Floats:
+        """The coefficients of the light, (3, 9) float64: nine of red, of green, of blue."""
+        return self._own.light()
+
+    def points(self, view: str) -> Singles:
+        """Points of one view, "image" or "depth", (n, 3) float32, both in the colour view's frame and units."""
+        if view not in ("image", "depth"):
+            raise BimodalError("option", 'view: must be "image" or "depth"', "view")
+        return self._own.points(view == "depth")

@@ -1,0 +1,209 @@
+"""From arrays and objects of the caller to contiguous arrays and dictionaries for the bindings."""
+
+from __future__ import annotations
+
+from dataclasses import fields, is_dataclass
+from operator import index
+from typing import TYPE_CHECKING, Any, Mapping, Optional, Sequence, TypedDict, Union
+
+import numpy as np
+
+from ._errors import BimodalError
+from ._types import ColorImage, DepthMap, Pose
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+# Largest level of 16 bits, in which integers are stored.
+LARGEST_LEVEL = 65535
+
+
+class StartTolerance(TypedDict, total=False):
+    """How far from a told start the answer may lie.
+
+    degrees: of the rotation; default 30. distance: of the object's middle in units of the colour view; default: the object's own width.
+    """
+
+    degrees: float
+    distance: float
+
+
+class Weights(TypedDict, total=False):
+    """Weights of the terms of the objective, 0 .. 1e6.
+
+    prior: shape prior, 0.05; unit: unit length, 1; light: natural lights, 1e-6; refinement: shape prior of the depth view, 0.01.
+    """
+
+    prior: float
+    unit: float
+    light: float
+    refinement: float
+
+
+class Options(TypedDict, total=False):
+    """What may be chosen; all of it may be left out.
+
+    light: "estimate", or 27 coefficients, (3, 9) or flat. start: "search", "identity", or a pose with the parts that are known.
+    start_tolerance: how far from a told start the answer may lie. registration: "joint", "icp" or "fixed". shading: "surface" or "pixel".
+    scale: "free", or the number to hold. trim: whether flying pixels and background inside the mask are left out; True. annealing:
+    whether the registration starts tolerant; True. lambda\\_: weights. stop_degrees: change of the rotation that counts as
+    settled; 0.01. max_iterations: 1 .. 100000; 60. correspondence_distance: accepted distance in image pixels; follows the data.
+    seed: of everything random; 1.
+    """
+
+    light: Union[str, ArrayLike]
+    start: Union[str, Pose, Mapping[str, Any]]
+    start_tolerance: StartTolerance
+    registration: str
+    shading: str
+    scale: Union[str, float]
+    trim: bool
+    annealing: bool
+    lambda_: Weights
+    stop_degrees: float
+    max_iterations: int
+    correspondence_distance: float
+    seed: int
+
+
+def plain(value: Any) -> Any:
+    """Objects as dictionaries, and numbers of numpy's as Python's."""
+    if is_dataclass(value) and not isinstance(value, type):
+        return {field.name: plain(getattr(value, field.name)) for field in fields(value)}
+    if isinstance(value, Mapping):
+        return {key: plain(member) for key, member in value.items()}
+    return value
+
+
+def keywords(given: Mapping[str, Any]) -> dict[str, Any]:
+    """Arguments with objects made plain and a light as numbers."""
+    made: dict[str, Any] = plain(given)
+    light = made.get("light")
+    if light is not None and not isinstance(light, str):
+        made["light"] = array(light, "light", "numbers").astype(np.float64).ravel()
+    return made
+
+
+def whole(value: Any, field: str, least: int) -> int:
+    """A whole number, numpy's included."""
+    try:
+        made = index(value)
+    except TypeError as error:
+        raise BimodalError("type", f"{field}: must be a whole number", field) from error
+    if made < least:
+        raise BimodalError("range", f"{field}: must be {least} or above, not {made}", field)
+    return made
+
+
+def array(value: ArrayLike, field: str, what: str) -> NDArray[Any]:
+    """An array of numbers."""
+    try:
+        made = np.asarray(value)
+    except (TypeError, ValueError) as error:
+        raise BimodalError("type", f"{field}: must be an array of {what}", field) from error
+    if made.dtype.kind not in "buif":
+        raise BimodalError("type", f"{field}: must be an array of {what}, not of {made.dtype}", field)
+    return made
+
+
+def shaped(made: NDArray[Any], field: str, *shapes: Sequence[Optional[int]]) -> NDArray[Any]:
+    """The array, if it has one of the shapes; ``None`` is any length."""
+    for shape in shapes:
+        if made.ndim == len(shape) and all(want in (None, has) for want, has in zip(shape, made.shape)):
+            return made
+    spelled = " or ".join("(" + ", ".join(name(side, axis) for axis, side in enumerate(shape)) + ")" for shape in shapes)
+    raise BimodalError("size", f"{field}: must have the shape {spelled}, not {made.shape}", field)
+
+
+def name(side: Optional[int], axis: int) -> str:
+    return "hw"[axis] if side is None else str(side)
+
+
+def packed(made: NDArray[Any], kind: Any) -> NDArray[Any]:
+    """The numbers as the bindings read them: row by row, aligned, in this machine's order of bytes."""
+    return np.require(made, kind, ["C_CONTIGUOUS", "ALIGNED"])
+
+
+def singles(made: NDArray[Any]) -> NDArray[np.float32]:
+    # Numbers beyond 32 bits become infinite, which is a hole or no colour.
+    with np.errstate(over="ignore"):
+        return packed(made, np.float32)
+
+
+def mask(value: Optional[ArrayLike], field: str, shape: tuple[int, ...]) -> Optional[NDArray[np.uint8]]:
+    if value is None:
+        return None
+    return packed(shaped(array(value, field, "flags"), field, shape[:2]) != 0, np.uint8)
+
+
+def camera(view: Union[ColorImage, DepthMap]) -> Any:
+    return plain(view.camera)
+
+
+def image(given: Union[ColorImage, ArrayLike], path: str = "image") -> dict[str, Any]:
+    """A colour image, or an array of one, for the bindings."""
+    own = given if isinstance(given, ColorImage) else ColorImage(given)
+    field = f"{path}.data"
+    data = shaped(array(own.data, field, "uint8, uint16 or float32"), field, (None, None, 3), (None, None, 4))
+    if own.transfer == "srgb" and data.dtype.kind == "f":
+        raise BimodalError("option", f"{path}.transfer: floats are linear; give integers, or decode them first", f"{path}.transfer")
+    return {
+        **size(data),
+        "data": colours(data, field),
+        "mask": mask(own.mask, f"{path}.mask", data.shape),
+        "camera": camera(own),
+        "transfer": own.transfer,
+    }
+
+
+def size(data: NDArray[Any]) -> dict[str, int]:
+    return {"width": data.shape[1], "height": data.shape[0]}
+
+
+def colours(data: NDArray[Any], field: str) -> NDArray[Any]:
+    """RGBA of integers, RGB of floats, in which transparent pixels are no colour."""
+    if data.dtype.kind == "f":
+        rgb = singles(data[..., :3])
+        return rgb if data.shape[2] == 3 else singles(np.where(data[..., 3:] > 0, rgb, 0))
+    if data.dtype.kind != "u" or data.dtype.itemsize > 2:
+        raise BimodalError("type", f"{field}: must be uint8, uint16 or float32, not {data.dtype}", field)
+    kind = np.uint8 if data.dtype.itemsize == 1 else np.uint16
+    opaque = np.full((*data.shape[:2], 1), np.iinfo(kind).max, kind)
+    return packed(data if data.shape[2] == 4 else np.concatenate([data, opaque], axis=2), kind)
+
+
+def depth(given: Union[DepthMap, ArrayLike], path: str = "depth") -> dict[str, Any]:
+    """A depth map, or an array of one or of an organised cloud, for the bindings."""
+    own = given if isinstance(given, DepthMap) else of_array(given, path)
+    if (own.data is None) == (own.points is None):
+        said = "or depth.points is required" if own.data is None else "excludes depth.points: give one of the two"
+        raise BimodalError("missing", f"{path}.data: {said}", f"{path}.data")
+    if own.data is not None:
+        data = shaped(array(own.data, f"{path}.data", "float32 or uint16"), f"{path}.data", (None, None))
+        rasters = {**size(data), "data": depths(data, f"{path}.data")}
+    else:
+        data = cloud(own.points, f"{path}.points", (None, None, 3))
+        rasters = {**size(data), "points": data}
+    normals = None if own.normals is None else cloud(own.normals, f"{path}.normals", (*data.shape[:2], 3))
+    extras = {"mask": mask(own.mask, f"{path}.mask", data.shape), "camera": camera(own), "unit": own.unit}
+    return {**rasters, **extras, "normals": normals}
+
+
+def of_array(given: ArrayLike, path: str) -> DepthMap:
+    made = shaped(array(given, path, "depths or points"), path, (None, None), (None, None, 3))
+    return DepthMap(data=made) if made.ndim == 2 else DepthMap(points=made)
+
+
+def cloud(value: Any, field: str, shape: Sequence[Optional[int]]) -> NDArray[np.float32]:
+    return singles(shaped(array(value, field, "float32"), field, shape))
+
+
+def depths(data: NDArray[Any], field: str) -> NDArray[Any]:
+    """Floats as 32 bits, integers as 16 bits: some readers give the levels of a 16-bit file as 32."""
+    if data.dtype.kind == "f":
+        return singles(data)
+    if data.dtype.kind == "b":
+        raise BimodalError("type", f"{field}: must be float32 or uint16, not bool", field)
+    if data.size > 0 and not (0 <= data.min() and data.max() <= LARGEST_LEVEL):
+        raise BimodalError("range", f"{field}: integers must lie within 0 .. {LARGEST_LEVEL}; give others as floats", field)
+    return packed(data, np.uint16)

@@ -1,0 +1,98 @@
+"""Made scenes with a known answer."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Mapping, Optional, Union
+
+from . import _inputs, _native
+from ._types import Angles, ColorImage, DepthMap, Pinhole, Pose
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from ._types import Floats, Singles
+
+
+@dataclass(frozen=True, eq=False)
+class Truth:
+    """The truth to measure against, NaN outside the masks: normals (h, w, 3) and depths (h, w) of both views, float32."""
+
+    image_normals: Singles
+    image_depth: Singles
+    depth_normals: Singles
+    depth: Singles
+
+
+@dataclass(frozen=True, eq=False)
+class Sample:
+    """Two views of one surface, its ``light`` (3, 9) and the ``pose`` to find."""
+
+    image: ColorImage
+    depth: DepthMap
+    light: Floats
+    pose: Pose
+    truth: Truth
+
+
+def sample(
+    surface: Union[str, ArrayLike],
+    light: Union[str, ArrayLike],
+    *,
+    size: Optional[int] = None,
+    height: Optional[int] = None,
+    protocol: Optional[str] = None,
+    angles: Union[None, Angles, Mapping[str, float]] = None,
+    scale: Optional[float] = None,
+    overlap: Optional[float] = None,
+    noise: Optional[float] = None,
+    depth_noise: Optional[float] = None,
+    holes: Optional[float] = None,
+    seed: Optional[int] = None,
+) -> Sample:
+    """Renders a colour image and a depth map of a surface.
+
+    surface: a name of ``sample_surfaces()``, or heights (h, w), 64 .. 512 on a side: larger is nearer, zero or NaN is background.
+    light: a name of ``sample_lights()``, or 27 coefficients. size: side of both views in pixels, 16 .. 1024; 64. height: where it
+    differs from that. protocol: "rendered", or "grid", the paper's bare grid. angles: the pose to find, degrees; beta = 20.
+    scale: of the pose to find; 1. overlap: share of the depth map's columns that is kept; 1. noise: sigma on the logarithm of the
+    colours; 0. depth_noise: sigma in pixels; 0. holes: share of the depth pixels that is lost; 0. seed: 1.
+    """
+    if not isinstance(surface, str):
+        surface = _inputs.singles(_inputs.array(surface, "surface", "heights"))
+    given = {
+        "surface": surface,
+        "light": light,
+        "size": size,
+        "height": height,
+        "protocol": protocol,
+        "angles": angles,
+        "scale": scale,
+        "overlap": overlap,
+        "noise": noise,
+        "depth_noise": depth_noise,
+        "holes": holes,
+        "seed": seed,
+    }
+    raw = _native.sample(_inputs.keywords(given))
+    return Sample(
+        image=ColorImage(**with_pinhole(raw["image"])),
+        depth=DepthMap(**with_pinhole(raw["depth"])),
+        light=raw["light"],
+        pose=Pose._of(raw["pose"]),
+        truth=Truth(**raw["truth"]),
+    )
+
+
+def with_pinhole(view: Mapping[str, Any]) -> Mapping[str, Any]:
+    return {**view, "camera": Pinhole(**view["camera"])} if "camera" in view else view
+
+
+def sample_surfaces() -> list[str]:
+    """Names of the built-in surfaces."""
+    return _native.sample_surfaces()
+
+
+def sample_lights() -> list[str]:
+    """Names of the built-in lights."""
+    return _native.sample_lights()

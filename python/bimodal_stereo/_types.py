@@ -1,0 +1,161 @@
+"""What goes in and what comes out, as plain objects."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Mapping, Optional, Sequence, Union
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import ArrayLike, NDArray
+
+    Floats = NDArray[np.float64]
+    Singles = NDArray[np.float32]
+
+
+@dataclass(frozen=True)
+class Pinhole:
+    """A pinhole camera, in pixels; pixel centres are whole numbers. ``distortion`` is k1 k2 p1 p2 k3 (OpenCV)."""
+
+    fx: float
+    fy: float
+    cx: float
+    cy: float
+    distortion: Sequence[float] = (0.0, 0.0, 0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True)
+class RigCamera:
+    """A camera of a rig, in pixels; pixel centres are whole numbers.
+
+    ``distortion`` as OpenCV has it: of the model "brown" 4, 5 or 8 numbers, k1 k2 p1 p2 [k3 [k4 k5 k6]]; of the model "fisheye"
+    (Kannala-Brandt) the 4 numbers k1 k2 k3 k4.
+    """
+
+    fx: float
+    fy: float
+    cx: float
+    cy: float
+    model: str = "brown"
+    distortion: Sequence[float] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class ColorImage:
+    """One colour image of the object, up to 4096 pixels on a side.
+
+    ``data``: (h, w, 3) or (h, w, 4), R G B and perhaps A. uint8 and uint16 are encoded by ``transfer``, "srgb" or "linear": 8 bits
+    default to "srgb", of 16 bits it is guessed. Floats are linear intensities above 0. Black, saturated and transparent
+    pixels are left out. ``mask``: (h, w), non-zero where the object is; all pixels without it. Without a ``camera`` the view
+    is orthographic.
+    """
+
+    data: ArrayLike
+    mask: Optional[ArrayLike] = None
+    camera: Optional[Union[Pinhole, RigCamera]] = None
+    transfer: Optional[str] = None
+
+
+@dataclass(frozen=True, eq=False)
+class DepthMap:
+    """One depth map of the same object from another view: ``data`` or ``points``, exactly one of the two.
+
+    ``data``: (h, w), depth along z. Zero, negative, NaN, and 1e12 or more are holes. ``points``: (h, w, 3), an organised cloud, NaN
+    where missing. ``unit``: metres (or pixels, orthographic) of a stored unit; default 1, and 0.001 for integers with a
+    camera. ``mask``: (h, w), non-zero where the object is. ``normals``: (h, w, 3), unit normals that override our own.
+    Without a ``camera`` the view is orthographic.
+    """
+
+    data: Optional[ArrayLike] = None
+    points: Optional[ArrayLike] = None
+    mask: Optional[ArrayLike] = None
+    camera: Optional[Union[Pinhole, RigCamera]] = None
+    unit: Optional[float] = None
+    normals: Optional[ArrayLike] = None
+
+
+@dataclass(frozen=True)
+class Angles:
+    """Degrees of R = Rx(alpha) Ry(beta) Rz(gamma). A reported beta lies within -90 .. 90."""
+
+    alpha: float = 0.0
+    beta: float = 0.0
+    gamma: float = 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class Pose:
+    """P_colour = scale * rotation @ P_depth + translation, in units of the colour view.
+
+    ``rotation`` is (3, 3), ``translation`` (3,). As a start any part may be left out, and ``angles`` may stand for the rotation.
+    """
+
+    scale: float
+    rotation: Floats
+    translation: Floats
+    angles: Angles
+
+    @classmethod
+    def _of(cls, raw: Mapping[str, Any]) -> Pose:
+        return cls(**{**raw, "angles": Angles(**raw["angles"])})
+
+
+@dataclass(frozen=True)
+class Energy:
+    """The terms of the objective, each a robust mean, and their sum."""
+
+    shading: float
+    prior: float
+    registration: float
+    refinement: float
+    total: float
+
+
+@dataclass(frozen=True, eq=False)
+class Uncertainty:
+    """One sigma of the pose: the truth is (a small turn) times the estimate, about the axes of the colour view.
+
+    ``rotation_degrees``: (3,), about x, y, z, degrees. ``translation``: (3,), along them in the view's units, NaN where the views cannot
+    see it. ``scale``: of the scale itself, ``None`` where it is held. ``weakest``: the least certain direction in words.
+    """
+
+    rotation_degrees: Floats
+    translation: Floats
+    scale: Optional[float]
+    weakest: str
+
+
+@dataclass(frozen=True, eq=False)
+class StepReport:
+    """State of the loop after a step.
+
+    ``stage``: "search", "light", "shading", "surface", "registration" or "refinement", the one that ran last. ``status``: "running",
+    "converged", "max-iterations", "ambiguous" (``rivals`` explain the colours as well) or "lost" (``message`` says why).
+    ``rotation_change``: degrees. ``overlap``: share of valid depth pixels with a correspondence, ``inliers``: share of those within the
+    robust scale. ``residual``: robust mean of the log-colour residual. ``milliseconds``: wall time of each stage in the last step.
+    """
+
+    iteration: int
+    stage: str
+    pose: Pose
+    rotation_change: float
+    energy: Energy
+    overlap: float
+    inliers: float
+    residual: float
+    status: str
+    message: Optional[str]
+    rivals: Sequence[Pose]
+    uncertainty: Optional[Uncertainty]
+    milliseconds: Mapping[str, float]
+
+    @classmethod
+    def _of(cls, raw: Mapping[str, Any]) -> StepReport:
+        sigma = raw["uncertainty"]
+        made = {
+            "pose": Pose._of(raw["pose"]),
+            "energy": Energy(**raw["energy"]),
+            "rivals": [Pose._of(rival) for rival in raw["rivals"]],
+            "uncertainty": None if sigma is None else Uncertainty(**sigma),
+        }
+        return cls(**{**raw, **made})

@@ -1,0 +1,186 @@
+//! The check of a calibration for Python, and the rendered rigs that it is tried on.
+
+use bimodal_stereo::scenes::rig::{RigKind, RigRequest, render};
+use bimodal_stereo::{
+    CalibrationCheck, CandidateReport, CheckReport, CheckVerdict, Cue, FrameReport, Lens, RigCamera, RigView,
+    Sensitivity, Size,
+};
+use pyo3::prelude::*;
+use pyo3::types::{IntoPyDict, PyDict};
+
+use crate::arrays::array;
+use crate::error::{failure, outcome, unbroken};
+use crate::guard::{Guarded, guarded};
+use crate::input::{Raster, extrinsics, intrinsics};
+use crate::members::{Members, unknown};
+use crate::report;
+
+type Dict<'py> = PyResult<Bound<'py, PyDict>>;
+
+/// Runs the check, calling `on_progress(share, message)` between its slices, where the interpreter's signals are seen as well.
+#[pyfunction]
+pub fn check_calibration<'py>(
+    py: Python<'py>,
+    frames: Vec<Bound<'py, PyAny>>,
+    candidates: Vec<(String, Bound<'py, PyAny>)>,
+    cues: Vec<String>,
+    on_progress: Option<Bound<'py, PyAny>>,
+) -> Dict<'py> {
+    let views = frames.iter().enumerate().map(|(index, frame)| view(index, frame)).collect::<PyResult<Vec<_>>>()?;
+    let pose = |(name, pose): (String, Bound<'py, PyAny>)| {
+        let own = extrinsics(&pose, &format!("candidates.{name}"))?;
+        Ok::<_, PyErr>((name, own))
+    };
+    let candidates = candidates.into_iter().map(pose).collect::<PyResult<Vec<_>>>()?;
+    let cues = cues.iter().map(|name| cue(name)).collect::<PyResult<Vec<_>>>()?;
+    let check = Guarded::new(outcome(py.detach(|| guarded(|| CalibrationCheck::new(views, candidates, &cues))))?);
+    loop {
+        py.check_signals()?;
+        let (is_done, progress) = unbroken(py.detach(|| check.call(|check| (check.step(), check.progress()))))?;
+        if let Some(tell) = &on_progress {
+            tell.call1(progress)?;
+        }
+        if is_done {
+            break;
+        }
+    }
+    let report = unbroken(check.call(|check| check.report().cloned()))?;
+    plain(py, &report.ok_or_else(|| failure("internal", "check_calibration", "ended without a report"))?)
+}
+
+fn cue(name: &str) -> PyResult<Cue> {
+    let found = Cue::ALL.into_iter().find(|cue| cue.name() == name);
+    found.ok_or_else(|| unknown("cues", name, Cue::ALL.iter().map(|cue| cue.name())))
+}
+
+fn view(index: usize, frame: &Bound<'_, PyAny>) -> PyResult<RigView> {
+    let path = format!("frames[{index}]");
+    let frame = Members::new(frame, &path, &["image", "depth", "name"])?;
+    let member = |name| frame.needed(name, frame.get(name)?);
+    let image = Raster::image(&member("image")?, &frame.at("image"))?;
+    let depth = Raster::depth(&member("depth")?, &frame.at("depth"))?;
+    if depth.members.get("normals")?.is_some() {
+        return Err(failure("option", &depth.members.at("normals"), "a check has no use for normals"));
+    }
+    Ok(RigView {
+        name: frame.text("name")?.unwrap_or_else(|| format!("frame {}", index + 1)),
+        image_size: image.size,
+        image: image.colours()?,
+        transfer: image.transfer()?,
+        image_camera: camera(&image.members)?,
+        image_mask: image.mask,
+        depth_size: depth.size,
+        depth: depth.depths()?,
+        unit: depth.members.number("unit")?,
+        depth_camera: camera(&depth.members)?,
+        depth_mask: depth.mask,
+    })
+}
+
+fn camera(raster: &Members<'_>) -> PyResult<Option<RigCamera>> {
+    let names = ["fx", "fy", "cx", "cy", "model", "distortion"];
+    let Some(camera) = raster.below("camera", &names)? else { return Ok(None) };
+    let [fx, fy, cx, cy] = intrinsics(&camera)?;
+    let is_fisheye = camera.word("model", &[("brown", false), ("fisheye", true)])?.unwrap_or(false);
+    let given = camera.list("distortion")?.unwrap_or_default();
+    let lens = match (is_fisheye, given.len()) {
+        (true, _) => Lens::Fisheye(camera.numbers("distortion")?.unwrap_or_default()),
+        (false, _) if given.iter().all(|value| *value == 0.0) => Lens::None,
+        (false, 4 | 5 | 8) => {
+            let mut all = [0.0; 8];
+            all[..given.len()].copy_from_slice(&given);
+            Lens::Brown(all)
+        }
+        (false, count) => {
+            let message = format!("needs 4, 5 or 8 numbers, not {count}");
+            return Err(failure("size", &camera.at("distortion"), &message));
+        }
+    };
+    Ok(Some(RigCamera { fx, fy, cx, cy, lens }))
+}
+
+const fn word(verdict: CheckVerdict) -> &'static str {
+    match verdict {
+        CheckVerdict::Consistent => "consistent",
+        CheckVerdict::Off => "off",
+        CheckVerdict::Undecided => "undecided",
+    }
+}
+
+fn plain<'py>(py: Python<'py>, report: &CheckReport) -> Dict<'py> {
+    let dict = PyDict::new(py);
+    dict.set_item("verdict", word(report.verdict))?;
+    dict.set_item("reason", &report.reason)?;
+    dict.set_item("warnings", &report.warnings)?;
+    dict.set_item("estimate", report::pose(py, &report.estimate)?)?;
+    dict.set_item("middle", array(py, report.middle.to_vec(), [3])?)?;
+    dict.set_item("covariance", array(py, report.covariance.transpose().as_slice().to_vec(), [6, 6])?)?;
+    dict.set_item("focal", report.focal.map(|[factor, sigma]| (factor, sigma)))?;
+    dict.set_item("pixels", report.health.pixels)?;
+    dict.set_item("interval", <(f64, f64)>::from(report.health.interval))?;
+    let named = |one| Ok::<_, PyErr>((one, candidate(py, one)?));
+    let candidates = report.candidates.iter().map(named).collect::<PyResult<Vec<_>>>()?;
+    dict.set_item("candidates", candidates.into_iter().map(|(one, plain)| (&one.name, plain)).into_py_dict(py)?)?;
+    let cues = report.cues.iter().map(|one| (one.cue.name(), (one.share, one.sharpness)));
+    dict.set_item("cues", cues.into_py_dict(py)?)?;
+    dict.set_item("frames", report.frames.iter().map(|one| frame(py, one)).collect::<PyResult<Vec<_>>>()?)?;
+    dict.set_item("sensitivity", report.sensitivity.iter().map(|one| curve(py, one)).collect::<PyResult<Vec<_>>>()?)?;
+    Ok(dict)
+}
+
+fn candidate<'py>(py: Python<'py>, one: &CandidateReport) -> Dict<'py> {
+    let dict = PyDict::new(py);
+    dict.set_item("verdict", word(one.verdict))?;
+    dict.set_item("reason", &one.reason)?;
+    dict.set_item("off_degrees", one.off_degrees)?;
+    dict.set_item("off_millimetres", one.off_millimetres)?;
+    dict.set_item("pixels", one.health.pixels)?;
+    dict.set_item("interval", <(f64, f64)>::from(one.health.interval))?;
+    dict.set_item("probability", one.probability)?;
+    Ok(dict)
+}
+
+fn frame<'py>(py: Python<'py>, one: &FrameReport) -> Dict<'py> {
+    let dict = PyDict::new(py);
+    dict.set_item("name", &one.name)?;
+    dict.set_item("share", one.share)?;
+    dict.set_item("note", &one.note)?;
+    Ok(dict)
+}
+
+fn curve<'py>(py: Python<'py>, one: &Sensitivity) -> Dict<'py> {
+    let dict = PyDict::new(py);
+    dict.set_item("cue", one.cue.name())?;
+    dict.set_item("axis", one.axis)?;
+    dict.set_item("offsets", array(py, one.offsets.to_vec(), [one.offsets.len()])?)?;
+    dict.set_item("values", array(py, one.values.to_vec(), [one.values.len()])?)?;
+    Ok(dict)
+}
+
+/// One frame of a rendered rig.
+#[pyfunction]
+pub fn sample_rig<'py>(py: Python<'py>, keywords: &Bound<'py, PyAny>) -> Dict<'py> {
+    let given = Members::new(keywords, "", &["kind", "seed", "frame", "noise"])?;
+    let kind = given.needed("kind", given.word("kind", &RigKind::ALL.map(|kind| (kind.name(), kind)))?)?;
+    let mut request =
+        RigRequest::new(kind, given.whole("seed")?.unwrap_or_default(), given.whole("frame")?.unwrap_or_default());
+    request.noise = given.number("noise")?.unwrap_or(request.noise);
+    let made = outcome(py.detach(|| guarded(|| render(&request))))?;
+    let image = raster(py, &made.colour_camera)?;
+    let Size { width, height } = made.colour_size;
+    image.set_item("data", array(py, made.colour, [height, width, 4])?)?;
+    let depth = raster(py, &made.depth_camera)?;
+    let Size { width, height } = made.depth_size;
+    depth.set_item("data", array(py, made.depth, [height, width])?)?;
+    depth.set_item("unit", 0.001)?;
+    let dict = [("image", image), ("depth", depth), ("pose", report::pose(py, &made.pose)?)].into_py_dict(py)?;
+    dict.set_item("name", format!("{} {}", kind.name(), u64::from(request.frame) + 1))?;
+    Ok(dict)
+}
+
+fn raster<'py>(py: Python<'py>, camera: &RigCamera) -> Dict<'py> {
+    let own = [("fx", camera.fx), ("fy", camera.fy), ("cx", camera.cx), ("cy", camera.cy)].into_py_dict(py)?;
+    own.set_item("model", if matches!(camera.lens, Lens::Fisheye(_)) { "fisheye" } else { "brown" })?;
+    own.set_item("distortion", camera.lens.coefficients().to_vec())?;
+    [("camera", own)].into_py_dict(py)
+}

@@ -1,0 +1,180 @@
+//! The loop for Python.
+
+use std::time::Instant;
+
+use bimodal_stereo::{Estimator as Native, Options, Status, StepReport, Surface};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::arrays::{array, triples};
+use crate::error::{outcome, unbroken};
+use crate::guard::{Guarded, guarded};
+use crate::{input, options, report};
+
+/// An estimator, the options a reset without options goes back to, and the wall time of the stages that ran last: the
+/// numerics have no clock.
+struct Loop {
+    native: Native,
+    options: Options,
+    milliseconds: Vec<(&'static str, f64)>,
+}
+
+impl Loop {
+    fn step(&mut self) {
+        self.milliseconds.clear();
+        let before = self.native.report().iteration;
+        loop {
+            let is_searching = self.native.is_searching();
+            self.timed_stage();
+            let report = self.native.report();
+            if is_searching || report.iteration != before || report.status != Status::Running {
+                return;
+            }
+        }
+    }
+
+    fn step_stage(&mut self) {
+        self.milliseconds.clear();
+        self.timed_stage();
+    }
+
+    fn timed_stage(&mut self) {
+        let start = Instant::now();
+        let stage = self.native.step_stage().stage.name();
+        let spent = 1000.0 * start.elapsed().as_secs_f64();
+        match self.milliseconds.iter_mut().find(|(name, _)| *name == stage) {
+            Some((_, sum)) => *sum += spent,
+            None => self.milliseconds.push((stage, spent)),
+        }
+    }
+
+    fn reset(&mut self, options: Option<Options>) -> bimodal_stereo::Result<()> {
+        let options = options.unwrap_or_else(|| self.options.clone());
+        self.native.reset(options.clone())?;
+        self.options = options;
+        self.milliseconds.clear();
+        Ok(())
+    }
+
+    fn state(&self) -> (StepReport, Vec<(&'static str, f64)>) {
+        (self.native.report().clone(), self.milliseconds.clone())
+    }
+}
+
+/// The loop. Threads that call it at the same time wait for each other, none of them with the interpreter's lock.
+#[pyclass(frozen, module = "bimodal_stereo._native")]
+pub struct Estimator {
+    own: Guarded<Loop>,
+    /// Rows and columns of both views.
+    image: [usize; 2],
+    depth: [usize; 2],
+}
+
+type Array<'py> = PyResult<Bound<'py, PyAny>>;
+
+impl Estimator {
+    fn call<R: Send>(&self, py: Python<'_>, work: impl FnOnce(&mut Loop) -> R + Send) -> PyResult<R> {
+        unbroken(py.detach(|| self.own.call(work)))
+    }
+
+    /// The report after some work.
+    fn after<'py>(&self, py: Python<'py>, work: fn(&mut Loop)) -> PyResult<Bound<'py, PyDict>> {
+        let (state, milliseconds) = self.call(py, |own| {
+            work(own);
+            own.state()
+        })?;
+        report::step(py, &state, &milliseconds)
+    }
+
+    /// A raster of one view, with so many numbers for each pixel.
+    fn raster<'py, T: numpy::Element + Send>(
+        &self,
+        py: Python<'py>,
+        [height, width]: [usize; 2],
+        read: impl FnOnce(&Native) -> Vec<T> + Send,
+    ) -> Array<'py> {
+        let values = self.call(py, |own| read(&own.native))?;
+        if values.len() == height * width {
+            array(py, values, [height, width])
+        } else {
+            array(py, values, [height, width, 3])
+        }
+    }
+}
+
+#[pymethods]
+impl Estimator {
+    #[new]
+    fn new(
+        py: Python<'_>,
+        image: &Bound<'_, PyAny>,
+        depth: &Bound<'_, PyAny>,
+        keywords: &Bound<'_, PyAny>,
+    ) -> PyResult<Self> {
+        let (image, depth, options) = (input::image(image)?, input::depth(depth)?, options::options(keywords)?);
+        let sizes = [[image.height, image.width], [depth.height, depth.width]];
+        let kept = options.clone();
+        let native = outcome(py.detach(|| guarded(|| Native::new(image, &depth, options))))?;
+        let own = Guarded::new(Loop { native, options: kept, milliseconds: Vec::new() });
+        Ok(Self { own, image: sizes[0], depth: sizes[1] })
+    }
+
+    fn step<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        self.after(py, Loop::step)
+    }
+
+    fn step_stage<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        self.after(py, Loop::step_stage)
+    }
+
+    fn report<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        self.after(py, |_| ())
+    }
+
+    fn reset(&self, py: Python<'_>, keywords: Option<&Bound<'_, PyAny>>) -> PyResult<()> {
+        let options = keywords.map(options::options).transpose()?;
+        outcome(py.detach(|| self.own.call(|own| own.reset(options))))
+    }
+
+    fn image_normals<'py>(&self, py: Python<'py>) -> Array<'py> {
+        self.raster(py, self.image, |native| native.image_normals().interleaved())
+    }
+
+    fn image_depth<'py>(&self, py: Python<'py>) -> Array<'py> {
+        self.raster(py, self.image, |native| native.image_depth().into_owned())
+    }
+
+    fn depth_normals<'py>(&self, py: Python<'py>) -> Array<'py> {
+        self.raster(py, self.depth, |native| native.depth_normals().interleaved())
+    }
+
+    fn refined_depth<'py>(&self, py: Python<'py>) -> Array<'py> {
+        self.raster(py, self.depth, |native| native.refined_depth().to_vec())
+    }
+
+    fn correspondence<'py>(&self, py: Python<'py>) -> Array<'py> {
+        self.raster(py, self.image, |native| native.correspondence().into_owned())
+    }
+
+    fn residual<'py>(&self, py: Python<'py>) -> Array<'py> {
+        self.raster(py, self.image, |native| native.residual().into_owned())
+    }
+
+    fn albedo<'py>(&self, py: Python<'py>) -> Array<'py> {
+        self.raster(py, self.image, Native::albedo)
+    }
+
+    fn shading<'py>(&self, py: Python<'py>) -> Array<'py> {
+        self.raster(py, self.image, Native::shading)
+    }
+
+    fn light<'py>(&self, py: Python<'py>) -> Array<'py> {
+        array(py, self.call(py, |own| own.native.light().flat().to_vec())?, [3, 9])
+    }
+
+    /// Of the depth view, or else of the image; the package has checked the word.
+    fn points<'py>(&self, py: Python<'py>, of_depth: bool) -> Array<'py> {
+        let surface = if of_depth { Surface::Depth } else { Surface::Image };
+        triples(py, self.call(py, |own| own.native.points(surface))?)
+    }
+}

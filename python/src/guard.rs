@@ -1,0 +1,62 @@
+//! A value that a panic can't hurt twice. Needs nothing but the standard library, so that its tests run without Python.
+
+use std::any::Any;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Mutex;
+
+/// Why a call gave nothing back.
+#[derive(Debug, PartialEq)]
+pub enum BrokenOff {
+    /// It panicked, saying this.
+    Now(String),
+    /// An earlier call did: what it left is suspect.
+    Earlier,
+}
+
+/// Runs what should never panic.
+pub fn guarded<R>(work: impl FnOnce() -> R) -> Result<R, BrokenOff> {
+    // Nothing that the work has touched is looked at afterwards: it is dropped, or behind a lock that is poisoned.
+    catch_unwind(AssertUnwindSafe(work)).map_err(|payload| BrokenOff::Now(text(&*payload)))
+}
+
+fn text(payload: &(dyn Any + Send)) -> String {
+    let literal = payload.downcast_ref::<&str>().map(|text| (*text).to_owned());
+    literal.or_else(|| payload.downcast_ref().cloned()).unwrap_or_default()
+}
+
+/// One value for several threads, which wait for each other.
+pub struct Guarded<T>(Mutex<T>);
+
+impl<T> Guarded<T> {
+    pub const fn new(value: T) -> Self {
+        Self(Mutex::new(value))
+    }
+
+    /// Works on the value. The lock is taken inside, so that a panic poisons it.
+    pub fn call<R>(&self, work: impl FnOnce(&mut T) -> R) -> Result<R, BrokenOff> {
+        guarded(|| {
+            let mut value = self.0.lock().map_err(|_| BrokenOff::Earlier)?;
+            Ok(work(&mut value))
+        })?
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_panic_is_told_once_and_remembered() {
+        let value = Guarded::new(1);
+        assert_eq!(value.call(|value| *value + 1), Ok(2));
+        assert_eq!(value.call(|_| panic!("index {}", 3)), Err::<(), _>(BrokenOff::Now("index 3".to_owned())));
+        assert_eq!(value.call(|value| *value), Err(BrokenOff::Earlier));
+        assert_eq!(Guarded::new(1).call(|value| *value), Ok(1));
+    }
+
+    #[test]
+    fn a_panic_without_a_value_is_an_error_as_well() {
+        assert_eq!(guarded(|| panic!("told")), Err::<(), _>(BrokenOff::Now("told".to_owned())));
+        assert_eq!(guarded(|| 5), Ok(5));
+    }
+}

@@ -1,0 +1,30 @@
+//! Bindings for Python: thin, without mathematics, private to the package `bimodal_stereo` beside them.
+//!
+//! The package has turned arrays into contiguous ones of the types asked for here, and objects into dictionaries; names and
+//! types of single members are checked here ([`members`]), values by the crate, as for every other caller. Arrays are copied
+//! both ways. Whatever takes time runs without the interpreter's lock, and a panic comes back as an error ([`guard`]).
+
+mod arrays;
+mod calibration;
+mod error;
+mod estimator;
+mod guard;
+mod input;
+mod members;
+mod options;
+mod report;
+mod samples;
+
+#[pyo3::pymodule]
+mod _native {
+    #[pymodule_export]
+    use super::calibration::{check_calibration, sample_rig};
+    #[pymodule_export]
+    use super::estimator::Estimator;
+    #[pymodule_export]
+    use super::samples::{sample, sample_lights, sample_surfaces};
+
+    /// Version of the bindings, which is the package's.
+    #[pymodule_export]
+    const VERSION: &str = env!("CARGO_PKG_VERSION");
+}

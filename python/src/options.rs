@@ -1,0 +1,103 @@
+//! From keyword arguments to the crate's options, over its defaults.
+
+use bimodal_stereo::{Light, LightSource, Options, Registration, Shading, Start, StartTolerance, Weights};
+use pyo3::prelude::*;
+
+use crate::error::refused;
+use crate::input::{POSE, rotation, translation};
+use crate::members::{Members, unknown};
+
+const NAMES: [&str; 13] = [
+    "light",
+    "start",
+    "start_tolerance",
+    "registration",
+    "shading",
+    "scale",
+    "trim",
+    "annealing",
+    "lambda_",
+    "stop_degrees",
+    "max_iterations",
+    "correspondence_distance",
+    "seed",
+];
+
+/// The options that these keyword arguments name; the others are the defaults'.
+pub fn options(keywords: &Bound<'_, PyAny>) -> PyResult<Options> {
+    let given = Members::new(keywords, "", &NAMES)?;
+    let default = Options::default();
+    Ok(Options {
+        light: light(&given)?,
+        start: start(&given)?.unwrap_or(default.start),
+        start_tolerance: tolerance(&given, default.start_tolerance)?,
+        scale: scale(&given)?,
+        registration: given.word("registration", &REGISTRATIONS)?.unwrap_or(default.registration),
+        shading: given.word("shading", &SHADINGS)?.unwrap_or(default.shading),
+        weights: weights(&given, default.weights)?,
+        stop_degrees: given.number("stop_degrees")?.unwrap_or(default.stop_degrees),
+        correspondence_distance: given.number("correspondence_distance")?,
+        max_iterations: given.whole("max_iterations")?.unwrap_or(default.max_iterations),
+        seed: given.whole("seed")?.unwrap_or(default.seed),
+        annealing: given.flag("annealing")?.unwrap_or(default.annealing),
+        trim: given.flag("trim")?.unwrap_or(default.trim),
+    })
+}
+
+const REGISTRATIONS: [(&str, Registration); 3] =
+    [("joint", Registration::Joint), ("icp", Registration::Icp), ("fixed", Registration::Fixed)];
+const SHADINGS: [(&str, Shading); 2] = [("surface", Shading::Surface), ("pixel", Shading::Pixel)];
+
+/// A word in the place of something else.
+fn word_of(given: &Members<'_>, name: &str) -> PyResult<Option<String>> {
+    Ok(given.get(name)?.and_then(|value| value.extract().ok()))
+}
+
+fn light(given: &Members<'_>) -> PyResult<LightSource> {
+    match word_of(given, "light")?.as_deref() {
+        Some("estimate") => return Ok(LightSource::Estimate),
+        Some(word) => return Err(unknown("light", word, ["estimate", "or 27 numbers"].iter())),
+        None => {}
+    }
+    let Some(values) = given.list("light")? else { return Ok(LightSource::Estimate) };
+    Light::from_slice("light", &values).map(LightSource::Known).map_err(|error| refused(&error))
+}
+
+fn start(given: &Members<'_>) -> PyResult<Option<Start>> {
+    match word_of(given, "start")?.as_deref() {
+        Some("search") => return Ok(Some(Start::Search)),
+        Some("identity") => return Ok(Some(Start::Identity)),
+        Some(word) => return Err(unknown("start", word, ["search", "identity", "or a pose"].iter())),
+        None => {}
+    }
+    let Some(pose) = given.below("start", &POSE)? else { return Ok(None) };
+    let rotation = rotation(&pose)?.unwrap_or_else(nalgebra::Matrix3::identity);
+    Ok(Some(Start::Pose { rotation, scale: pose.number("scale")?, translation: translation(&pose)? }))
+}
+
+fn tolerance(given: &Members<'_>, default: StartTolerance) -> PyResult<StartTolerance> {
+    let Some(tolerance) = given.below("start_tolerance", &["degrees", "distance"])? else { return Ok(default) };
+    Ok(StartTolerance {
+        degrees: tolerance.number("degrees")?.unwrap_or(default.degrees),
+        distance: tolerance.number("distance")?,
+    })
+}
+
+fn scale(given: &Members<'_>) -> PyResult<Option<f64>> {
+    match word_of(given, "scale")?.as_deref() {
+        Some("free") => Ok(None),
+        Some(word) => Err(unknown("scale", word, ["free", "or a number"].iter())),
+        None => given.number("scale"),
+    }
+}
+
+fn weights(given: &Members<'_>, default: Weights) -> PyResult<Weights> {
+    let Some(lambda) = given.below("lambda_", &["prior", "unit", "light", "refinement"])? else { return Ok(default) };
+    let weight = |name, default| Ok::<_, PyErr>(lambda.number(name)?.unwrap_or(default));
+    Ok(Weights {
+        prior: weight("prior", default.prior)?,
+        unit: weight("unit", default.unit)?,
+        light: weight("light", default.light)?,
+        refinement: weight("refinement", default.refinement)?,
+    })
+}

@@ -1,0 +1,100 @@
+"""The names and ranges of the JavaScript package, in Python's spelling."""
+
+import inspect
+import json
+import re
+import shutil
+import subprocess
+from dataclasses import fields
+from pathlib import Path
+
+import pytest
+
+import bimodal_stereo as bimodal
+
+ROOT = Path(__file__).parents[2]
+NODE = shutil.which("node")
+
+# What has no place here, and why.
+LEFT_OUT = {
+    "workers": "threads of its own make no copy of the pair here",
+    "width": "arrays have a shape",
+    "height": "likewise",
+    "draw": "paints on a canvas",
+    "stepFor": "keeps a page alive",
+    "searchScores": "the page's picture of the search",
+    "save": "a run from the same arrays ends with the same bits",
+    "given": "what a restored run was made of",
+    "free": "memory is given back by itself",
+}
+
+
+def spelled(name):
+    return {"lambda": "lambda_"}.get(name, re.sub("[A-Z]", lambda letter: f"_{letter[0].lower()}", name))
+
+
+def members(interface):
+    """The members of an interface of js/types.ts."""
+    body = re.search(rf"export interface {interface}\b[^{{]*{{\n(.*?)\n}}", (ROOT / "js/types.ts").read_text(), re.DOTALL)
+    return re.findall(r"^  (\w+)\??:", body[1], re.MULTILINE)
+
+
+def kept(names):
+    return {spelled(name) for name in names if name not in LEFT_OUT}
+
+
+@pytest.mark.parametrize("name", ["Pinhole", "ColorImage", "DepthMap", "Pose", "Uncertainty", "StepReport", "Sample", "CandidateReport"])
+def test_objects_have_the_same_members(name):
+    interface = members(name)
+    assert len(interface) > 3
+    assert {field.name for field in fields(getattr(bimodal, name))} == kept(interface)
+
+
+def test_options_have_the_same_names():
+    assert set(bimodal.Options.__annotations__) == kept(members("Options"))
+
+
+def test_a_sample_is_asked_for_by_the_same_names():
+    request = kept(members("SampleRequest")) | {"height"}
+    assert set(inspect.signature(bimodal.sample).parameters) == request
+
+
+def test_an_estimator_has_the_same_methods():
+    source = (ROOT / "js/estimator.ts").read_text().split("export class Estimator {")[1].split("\n}\n")[0]
+    names = re.findall(r"^  (?:async |get )?([a-z]\w*)\(", source, re.MULTILINE)
+    assert {"stepStage", "report", "points"} <= set(names)
+    own = {name for name in vars(bimodal.Estimator) if not name.startswith("_")}
+    assert own == kept(set(names) - {"constructor"})
+
+
+ROWS = """import { OPTIONS, paths } from "./pkg/options.js"; console.log(JSON.stringify([...paths(OPTIONS, "options")]))"""
+
+
+@pytest.mark.skipif(NODE is None or not (ROOT / "pkg/options.js").exists(), reason="needs Node and the package in pkg/ (npm run build)")
+def test_options_have_the_same_ranges_and_words(near):
+    found = subprocess.run([NODE, "--input-type=module", "-e", ROWS], cwd=ROOT, check=True, capture_output=True)
+    rows = [(path.split(".")[1:], row) for path, row in json.loads(found.stdout)]
+    assert len(rows) > 20
+    for path, row in rows:
+        for value, is_inside in judged(row) if path[0] not in LEFT_OUT else []:
+            inner = value
+            for name in reversed(path[1:]):
+                inner = {spelled(name): inner}
+            try:
+                near(**{spelled(path[0]): inner})
+                assert is_inside, (path, value)
+            except bimodal.BimodalError as error:
+                assert not is_inside and error.field == ".".join(map(spelled, path)), (path, value, str(error))
+
+
+def judged(row):
+    """Values with whether a row takes them: its words, and both sides of its ends."""
+    yield from ((word, True) for word in row.get("words", {}))
+    if row["kind"] not in ("number", "whole"):
+        return
+    step = 1 if row["kind"] == "whole" else 1e-9
+    for end, outward, inclusive in [("min", -1, True), ("max", 1, True), ("above", -1, False), ("below", 1, False)]:
+        # Beyond this a step is lost in rounding, and a seed has 64 bits here.
+        if abs(row.get(end, 1e9)) < 1e9:
+            yield row[end], inclusive
+            yield row[end] + outward * step * max(1, abs(row[end])) * (1 if inclusive else -1), not inclusive
