@@ -1,11 +1,11 @@
-//! The noise of a raster by the fourth differences of its rows (docs/method.md, section 4).
+//! The noise of a raster by the fourth differences of neighbours (docs/method.md, section 4).
 //!
 //! Fourth differences of a cubic vanish, so what a cubic through five neighbours does not follow counts as noise.
 //! Limits: so does texture as fine as that.
 
 use super::quantile;
 
-/// Neighbours in a row that a fourth difference takes.
+/// Neighbours in a line that a fourth difference takes.
 pub const NEIGHBOURS: usize = 5;
 /// Standard deviation of the fourth differences of white noise of variance one: 70^(1/2), as 1 + 16 + 36 + 16 + 1 = 70.
 const FOURTH_DIFFERENCE: f64 = 8.366_600_265_340_756;
@@ -13,11 +13,11 @@ const FOURTH_DIFFERENCE: f64 = 8.366_600_265_340_756;
 const MEDIAN_ABSOLUTE: f64 = 0.674_489_750_196_082;
 
 /// The fourth difference of five neighbours.
-pub fn fourth_difference<T>(row: [T; NEIGHBOURS]) -> T
+pub fn fourth_difference<T>(line: [T; NEIGHBOURS]) -> T
 where
     T: std::ops::Mul<f64, Output = T> + std::ops::Add<Output = T>,
 {
-    let [a, b, c, d, e] = row;
+    let [a, b, c, d, e] = line;
     a + b * -4.0 + c * 6.0 + d * -4.0 + e
 }
 

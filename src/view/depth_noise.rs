@@ -108,17 +108,9 @@ impl DepthNoise {
 
 /// Standard deviation of white noise by the fourth differences of neighbours along both axes.
 pub(crate) fn white_noise(size: Size, heights: &[f32]) -> f64 {
-    let reach = noise::NEIGHBOURS - 1;
-    let lines = |index: usize| {
-        let (column, row) = size.position(index);
-        [(column + reach < size.width, 1), (row + reach < size.height, size.width)]
-    };
-    let fourth = |index: usize, step: usize| {
-        noise::fourth_difference(std::array::from_fn(|k| f64::from(heights[index + k * step]))) as f32
-    };
-    let fourths = (0..size.len())
-        .flat_map(|index| lines(index).into_iter().filter(|(fits, _)| *fits).map(move |(_, step)| fourth(index, step)));
-    noise::of_fourth_differences(fourths, 2 * size.len())
+    let fourth =
+        |run: [usize; noise::NEIGHBOURS]| noise::fourth_difference(run.map(|index| f64::from(heights[index]))) as f32;
+    noise::of_fourth_differences(size.runs().map(fourth), 2 * size.len())
 }
 
 /// An upper bound of the noise of a raster: what there is of relief within two pixels passes for noise.

@@ -60,6 +60,18 @@ impl Size {
         .flatten()
     }
 
+    /// All runs of `N` neighbours, along the rows and down the columns: nothing that is measured by them depends on how a
+    /// view is held.
+    pub(crate) fn runs<const N: usize>(self) -> impl Iterator<Item = [usize; N]> {
+        let along = move |index: usize| {
+            let (column, row) = self.position(index);
+            [(column + N <= self.width, 1), (row + N <= self.height, self.width)]
+        };
+        let fitting =
+            move |index: usize| along(index).into_iter().filter(|(fits, _)| *fits).map(move |(_, step)| (index, step));
+        (0..self.len()).flat_map(fitting).map(|(index, step)| std::array::from_fn(|k| index + k * step))
+    }
+
     /// Index of the pixel nearest to a continuous position, `None` outside the raster.
     #[must_use]
     pub fn nearest(self, column: f32, row: f32) -> Option<usize> {
@@ -159,6 +171,15 @@ fn weighted_mean_of_known(field: &[f32], corners: &Corners) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn runs_go_along_rows_and_down_columns() {
+        let size = Size { width: 3, height: 2 };
+        let runs: Vec<[usize; 2]> = size.runs().collect();
+        assert_eq!(runs, [[0, 1], [0, 3], [1, 2], [1, 4], [2, 5], [3, 4], [4, 5]]);
+        assert_eq!(size.runs::<3>().collect::<Vec<_>>(), [[0, 1, 2], [3, 4, 5]]);
+        assert_eq!(size.runs::<4>().count(), 0);
+    }
 
     #[test]
     fn the_rim_has_the_colours_of_its_known_neighbours() {

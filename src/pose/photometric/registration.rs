@@ -78,6 +78,8 @@ enum Phase {
         round: usize,
         frame: Frame,
         steps: usize,
+        /// Length of the step before.
+        last: f64,
     },
     Done(PhotometricTermination),
 }
@@ -223,8 +225,8 @@ impl Photometric {
     pub fn step(&mut self, problem: &PhotometricProblem<'_>) -> Result<bool> {
         self.phase = match self.phase {
             Phase::AnnealingStep(descent) => self.descend(problem, descent)?,
-            Phase::InstrumentalStep { round, frame, steps } => {
-                self.step_by_instruments(problem, round, &frame, steps)?
+            Phase::InstrumentalStep { round, frame, steps, last } => {
+                self.step_by_instruments(problem, round, &frame, steps, last)?
             }
             Phase::Done(_) => self.phase,
             _ if self.rounds >= self.most_rounds => Phase::Done(PhotometricTermination::MostRounds),
@@ -358,28 +360,30 @@ impl Photometric {
             let variances = self.covariance(problem, &frame, &reduced).diagonal();
             self.settled_step = Some(variances.map(|variance| SETTLED_SIGMAS * variance.sqrt()));
         }
-        Ok(Phase::InstrumentalStep { round, frame, steps: 0 })
+        Ok(Phase::InstrumentalStep { round, frame, steps: 0, last: f64::INFINITY })
     }
 
-    /// A step of such a round: undamped, for there is no objective that it has to lower.
+    /// A step of such a round: undamped, for there is no objective that it has to lower. A step longer than the one before
+    /// is not taken: the pose sought may repel what rounding puts beside it, by a third with each step.
     fn step_by_instruments(
         &mut self,
         problem: &PhotometricProblem<'_>,
         round: usize,
         frame: &Frame,
         steps: usize,
+        last: f64,
     ) -> Result<Phase> {
         self.iterations += 1;
         let reduced = self.reduce_by_instruments(problem, frame)?;
-        let mut settled = false;
-        if let Some(step) = reduced.step(0.0, &problem.held()) {
+        let mut settled = true;
+        if let Some(step) = reduced.step(0.0, &problem.held()).filter(|step| step.pose.norm() <= last) {
             self.state = self.state.stepped(frame, &step, problem.light.is_some());
             settled = match &self.settled_step {
                 Some(least) => step.pose.iter().zip(least).all(|(step, least)| step.abs() <= *least),
                 None => step.pose.norm() < SETTLED_STEP,
             };
             if !settled && steps + 1 < MOST_INSTRUMENTAL_STEPS {
-                return Ok(Phase::InstrumentalStep { round, frame: *frame, steps: steps + 1 });
+                return Ok(Phase::InstrumentalStep { round, frame: *frame, steps: steps + 1, last: step.pose.norm() });
             }
         }
         let objective = |state: &State| self.evaluation(problem, 0, state).objective();
