@@ -217,8 +217,8 @@ fn noise_of(size: Size, log: &[Vec<f32>; 3]) -> f64 {
     let fourth = |channel: &[f32], run: [usize; noise::NEIGHBOURS]| {
         noise::fourth_difference(run.map(|index| f64::from(channel[index]))) as f32
     };
-    let fourths = log.iter().flat_map(|channel| size.runs().map(|run| fourth(channel, run)));
-    noise::of_fourth_differences(fourths, 6 * size.len())
+    let mut fourths = log.iter().flat_map(|channel| size.runs().map(|run| fourth(channel, run)));
+    noise::of_fourth_differences(&mut fourths, 6 * size.len())
 }
 
 impl ColourSamples {

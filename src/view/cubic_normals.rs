@@ -143,12 +143,12 @@ struct Window {
 
 /// Standard deviation of the points, pixel lengths.
 fn noise_of(size: Size, points: &Points) -> f64 {
-    let fourths = size.runs().map(|run: [usize; noise::NEIGHBOURS]| {
+    let mut fourths = size.runs().map(|run: [usize; noise::NEIGHBOURS]| {
         let points = run.map(|index| Vector3::from(points.get(index).map(f64::from)));
         let unit = (points[run.len() - 1] - points[0]).norm() / (run.len() - 1) as f64;
         (noise::fourth_difference(points).norm() / unit) as f32
     });
-    noise::of_fourth_differences(fourths, 2 * size.len())
+    noise::of_fourth_differences(&mut fourths, 2 * size.len())
 }
 
 /// Median of the numbers; infinite without any.

@@ -110,7 +110,7 @@ impl DepthNoise {
 pub(crate) fn white_noise(size: Size, heights: &[f32]) -> f64 {
     let fourth =
         |run: [usize; noise::NEIGHBOURS]| noise::fourth_difference(run.map(|index| f64::from(heights[index]))) as f32;
-    noise::of_fourth_differences(size.runs().map(fourth), 2 * size.len())
+    noise::of_fourth_differences(&mut size.runs().map(fourth), 2 * size.len())
 }
 
 /// An upper bound of the noise of a raster: what there is of relief within two pixels passes for noise.

@@ -63,13 +63,12 @@ impl Size {
     /// All runs of `N` neighbours, along the rows and down the columns: nothing that is measured by them depends on how a
     /// view is held.
     pub(crate) fn runs<const N: usize>(self) -> impl Iterator<Item = [usize; N]> {
-        let along = move |index: usize| {
+        (0..2 * self.len()).filter_map(move |number| {
+            let (index, is_across) = (number / 2, number % 2 == 0);
             let (column, row) = self.position(index);
-            [(column + N <= self.width, 1), (row + N <= self.height, self.width)]
-        };
-        let fitting =
-            move |index: usize| along(index).into_iter().filter(|(fits, _)| *fits).map(move |(_, step)| (index, step));
-        (0..self.len()).flat_map(fitting).map(|(index, step)| std::array::from_fn(|k| index + k * step))
+            let (at, side, step) = if is_across { (column, self.width, 1) } else { (row, self.height, self.width) };
+            (at + N <= side).then(|| std::array::from_fn(|k| index + k * step))
+        })
     }
 
     /// Index of the pixel nearest to a continuous position, `None` outside the raster.
