@@ -19,7 +19,7 @@
 //! | `pose/photometric` ([`Photometric`]) | the pose straight from the colours, the light projected out | beyond the paper |
 //! | `pose/contrast` | the pose of a painted object, by local contrast and its outline | beyond the paper |
 //! | `pose/icp`, `pose/ransac` ([`Icp`], [`ransac`]) | the pose from both surfaces | Eq. 12 to 14 |
-//! | `pose/similarity`, `pose/angles` ([`Similarity`], [`Angles`]) | s, R, t and the angles, in closed form; the least-squares fit of Eq. 16 is a test, `tests/pose_angles.rs` | Eq. 15, 16, 20 |
+//! | `pose/similarity`, `pose/angles` ([`Similarity`], [`Angles`]) | s, R, t and the angles, in closed form; the least-squares fit of Eq. 16 is a test, `tests/library/pose_angles.rs` | Eq. 15, 16, 20 |
 //! | `pose/correspondence` ([`Correspondences`]) | which depth point is which pixel, and what hides it | the 1-pixel rule |
 //! | `calibration` ([`RigCamera`]) | the cameras of a rig whose calibration is in question, and their lenses | |
 //! | `options`, `report` ([`Options`], [`StepReport`]) | what the loop can be told, what it says | |

@@ -1,5 +1,5 @@
 //! What the fuzz targets do with a fuzzer's bytes: they make inputs of them, call the library, and check what must hold
-//! whatever the input. The targets of this crate and `tests/fuzz_corpus.rs`, which replays the committed corpus, share it.
+//! whatever the input. The targets of this crate and `tests/library/fuzz_corpus.rs`, which replays the committed corpus, share it.
 //!
 //! Bytes that have run out read as zeros, and zero is the plainest choice everywhere: an empty input is a good pair of
 //! views with the default options, and each byte makes it stranger.

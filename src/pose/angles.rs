@@ -3,7 +3,7 @@
 //! Eq. 16 asks for the scale and the angles that bring s Rx Ry Rz next to a 3x3 matrix A in least squares, which the
 //! paper finds by Levenberg-Marquardt. They have a closed form: over all rotations at once the minimum is the polar
 //! factor of A ([`Similarity::nearest`](super::Similarity::nearest)), and the angles of that rotation leave nothing of
-//! it over. `tests/pose_angles.rs` solves Eq. 16 as the paper does and finds the same.
+//! it over. `tests/library/pose_angles.rs` solves Eq. 16 as the paper does and finds the same.
 
 use nalgebra::Matrix3;
 

@@ -1,11 +1,9 @@
 //! The image model against renders that others made (MIT-Berkeley Intrinsic Images under natural lights).
 
-mod common;
-
 use std::path::Path;
 
+use crate::common::{data_dir, median, read_csv, read_npy_f32, read_png};
 use bimodal_stereo::{Light, Size};
-use common::{data_dir, median, read_csv, read_npy_f32, read_png};
 
 /// Bound for central differences, natural logarithm. They miss because of the slopes alone.
 const CENTRAL_BOUND: f64 = 0.004;

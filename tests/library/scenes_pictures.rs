@@ -1,10 +1,8 @@
 //! Pictures to look at, in target/tmp: no test can say whether a face looks like one.
 
-mod common;
-
+use crate::common::{beside, colour_bytes, data_dir, depth_bytes, normal_bytes, write_png};
 use bimodal_stereo::scenes::{DepthData, Relief, SampleRequest, Scene, bare_grid, light, lights, surface, surfaces};
 use bimodal_stereo::{Angles, Size};
-use common::{beside, colour_bytes, data_dir, depth_bytes, normal_bytes, write_png};
 
 fn draw(name: &str, relief: &Relief, light_name: &str, side: usize) {
     let scene = Scene::new(relief).expect("a surface");
@@ -38,7 +36,7 @@ fn built_in_surfaces_under_built_in_lights() {
 #[ignore = "needs ../shared/data"]
 fn mozart() {
     let data = data_dir();
-    let relief = common::mozart(&data);
+    let relief = crate::common::mozart(&data);
     for side in [32, 64, 128] {
         draw("mozart", &relief, "colourful", side);
     }

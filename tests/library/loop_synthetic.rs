@@ -1,12 +1,10 @@
 //! The whole loop on scenes with a known answer: the aims that the project has set itself, never softened.
 
-mod common;
-
+use crate::common::{angles_between, data_dir, mean, mozart, natural_light};
 use bimodal_stereo::scenes::{DepthData, Sample, SampleRequest, Scene, bare_grid, light, lights, surface};
 use bimodal_stereo::{
     Angles, Camera, Estimator, Light, LightSource, Options, Pinhole, Registration, Size, Start, Status,
 };
-use common::{angles_between, data_dir, mean, mozart, natural_light};
 use nalgebra::{Matrix3, Vector3};
 
 /// Aims for the bust: error of the rotation and mean error of the image's normals, degrees.

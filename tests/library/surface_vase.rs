@@ -1,9 +1,7 @@
 //! Integration of a published vase whose gradients carry spikes of +-10 at its discontinuities.
 
-mod common;
-
+use crate::common::{data_dir, median, read_npy_f32};
 use bimodal_stereo::{IntegrationOptions, IntegrationTermination, Integrator, Robustness, Size};
-use common::{data_dir, median, read_npy_f32};
 
 struct Vase {
     size: Size,

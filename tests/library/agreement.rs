@@ -1,6 +1,6 @@
 //! The native build against the numbers that the .wasm is held against as well.
 
-#[path = "common/agreement.rs"]
+#[path = "../common/agreement.rs"]
 mod agreement;
 
 #[test]

@@ -1,7 +1,5 @@
 //! Helpers that several tests share: the data beside the project, and pictures.
 
-#![allow(dead_code, reason = "each test uses a part of them")]
-
 use std::fs::File;
 use std::io::{BufReader, BufWriter};
 use std::path::{Path, PathBuf};

@@ -1,10 +1,8 @@
 //! Normals of depth maps: analytic shapes, holes and jumps, noise, a scanned object.
 
-mod common;
-
+use crate::common::{data_dir, read_npy_f32, read_png};
 use bimodal_stereo::normals::{self, Estimate};
 use bimodal_stereo::{Camera, Normals, Pinhole, Points, Size};
-use common::{data_dir, read_npy_f32, read_png};
 
 fn size(width: usize, height: usize) -> Size {
     Size { width, height }

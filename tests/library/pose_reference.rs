@@ -3,7 +3,7 @@
 use bimodal_stereo::{Angles, Similarity};
 use nalgebra::{Matrix3, Vector3};
 
-const REFERENCE: &str = include_str!("../scripts/reference/pose.csv");
+const REFERENCE: &str = include_str!("../../scripts/reference/pose.csv");
 
 fn cases(name: &str) -> Vec<Vec<f64>> {
     let prefix = format!("{name},");

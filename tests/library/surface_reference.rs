@@ -2,7 +2,7 @@
 
 use bimodal_stereo::{AnchorWeight, Anchors, IntegrationOptions, IntegrationTermination, Integrator, Size};
 
-const FIXTURE: &str = include_str!("fixtures/integration.txt");
+const FIXTURE: &str = include_str!("../fixtures/integration.txt");
 /// Largest accepted difference in heights of some ten pixels.
 const TOLERANCE: f32 = 1e-4;
 

@@ -1,7 +1,5 @@
 //! Paint is told from shading, and what is given out adds up.
 
-mod common;
-
 use bimodal_stereo::scenes::{Sample, SampleRequest, Scene, light, surface};
 use bimodal_stereo::{ColourSamples, Estimator, LightSource, Options, Registration, Size, Start, Status};
 
@@ -79,8 +77,8 @@ fn two_paints_are_found_under_each_light() {
         for channel in 0..3 {
             let off: Vec<f64> =
                 inside.iter().map(|&index| f64::from(albedo[3 * index + channel]) - chequers(index)[channel]).collect();
-            let mean = common::mean(&off);
-            let error = common::mean(&off.iter().map(|value| (value - mean).powi(2)).collect::<Vec<_>>()).sqrt();
+            let mean = crate::common::mean(&off);
+            let error = crate::common::mean(&off.iter().map(|value| (value - mean).powi(2)).collect::<Vec<_>>()).sqrt();
             // A tenth of the contrast between the paints.
             assert!(error < 0.07, "{name}, known: {known}, channel {channel}: {error}");
         }
@@ -104,7 +102,7 @@ fn print_is_no_relief() {
         let estimator = run("window", 0.3, false, paint);
         let off =
             estimator.refined_depth().iter().zip(&truth.depth).map(|(found, truth)| f64::from(found - truth).powi(2));
-        common::mean(&off.filter(|square| !square.is_nan()).collect::<Vec<_>>()).sqrt()
+        crate::common::mean(&off.filter(|square| !square.is_nan()).collect::<Vec<_>>()).sqrt()
     };
     let [painted, plain] = [error(chequers), error(|_| [0.0; 3])];
     // A tenth for the rims of the squares, where paint is neither one nor the other.

@@ -1,7 +1,5 @@
 //! The pose straight from the colours, on scenes whose pose is known.
 
-mod common;
-
 use bimodal_stereo::{
     Angles, ColourView, DepthNoise, DepthView, ErrorKind, Light, LightPrior, Photometric, PhotometricOptions,
     PhotometricProblem, PhotometricReport, PhotometricTermination, Points, Result, Similarity, Size, cubic_normals,
@@ -122,7 +120,7 @@ fn exact_views_of_the_bust_give_the_pose_to_rounding() {
 #[test]
 #[ignore = "needs ../shared/data"]
 fn exact_views_of_mozart_give_the_pose_to_rounding() {
-    exact_views_give_the_pose_to_rounding(&common::mozart(&common::data_dir()));
+    exact_views_give_the_pose_to_rounding(&crate::common::mozart(&crate::common::data_dir()));
 }
 
 #[test]
@@ -140,8 +138,8 @@ fn what_cannot_be_registered_is_an_error() {
 #[test]
 #[ignore = "needs ../shared/data"]
 fn the_bound_is_that_of_the_prototype() {
-    let folder = common::data_dir();
-    let scene = scenes::Scene::new(&common::mozart(&folder)).unwrap();
+    let folder = crate::common::data_dir();
+    let scene = scenes::Scene::new(&crate::common::mozart(&folder)).unwrap();
     for (side, beta, known, expected) in [
         (128, 20.0, true, 0.007),
         (128, 60.0, true, 0.009),

@@ -2,7 +2,7 @@
 
 use bimodal_stereo::{Lens, RigCamera};
 
-const REFERENCE: &str = include_str!("../scripts/reference/lens.csv");
+const REFERENCE: &str = include_str!("../../scripts/reference/lens.csv");
 /// Agreement in pixels: both compute in 64 bits.
 const SAME_PIXEL: f64 = 1e-9;
 

@@ -1,0 +1,35 @@
+//! Tests of the library's public face, a file a subject. One program: each test program more is compiled and linked with all of the
+//! library, and runs alone.
+
+mod agreement;
+mod common;
+mod fuzz_corpus;
+mod image_model;
+mod initialisation;
+mod loop_laws;
+mod loop_synthetic;
+mod normals;
+mod opening;
+mod paint;
+mod painted;
+mod pose_angles;
+mod pose_correspondence;
+mod pose_icp;
+mod pose_laws;
+mod pose_photometric;
+mod pose_reference;
+mod pose_search;
+mod refinement_workers;
+mod resolutions;
+mod rig_cameras;
+mod rig_frames;
+mod scene_laws;
+mod scenes_geometry;
+mod scenes_pictures;
+mod scenes_samples;
+mod surface;
+mod surface_laws;
+mod surface_reference;
+mod surface_vase;
+mod told_start;
+mod uncertainty;
