@@ -3,6 +3,8 @@
 import { byId, make, nextTask } from "./dom";
 import { isFirstVisit } from "./first-visit";
 import { areKeysOn, listenToKeys, rememberKeys } from "./keys";
+import { Form } from "./lab/form";
+import { Gallery } from "./lab/gallery";
 import { Lab } from "./lab/lab";
 import { paces } from "./lab/player";
 import { Presets } from "./lab/presets";
@@ -10,6 +12,7 @@ import { kinds } from "./lab/kinds";
 import { defaults, fromLink, type Origin, type Settings } from "./lab/settings";
 import { linkTo, onLook, showLooks, writeAddress } from "./lab/share";
 import { wasOwn } from "./lab/source";
+import { Store } from "./lab/store";
 import { asksToPlay, isEmbedded, placeOf, type Place } from "./place";
 
 import { keepForOffline } from "./offline/offline";
@@ -19,8 +22,14 @@ const button = (id: string, action: () => void): void => byId(id, HTMLButtonElem
 
 // The Lab, the controls around it and the first picture are tasks of their own: no press waits for all of the start.
 await nextTask();
-const lab = new Lab(placeOf(location.hash) === "lab" ? fromLink(location.hash) : defaults);
-const { player, store, gallery } = lab;
+const store = new Store(placeOf(location.hash) === "lab" ? fromLink(location.hash) : defaults);
+const form = new Form(store);
+form.mount();
+await nextTask();
+const gallery = new Gallery();
+await nextTask();
+const lab = new Lab({ store, form, gallery });
+const { player } = lab;
 await nextTask();
 const help = byId("help", HTMLDialogElement);
 
