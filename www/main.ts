@@ -50,7 +50,14 @@ const loaders: Record<OtherPlace, () => Promise<new (main: HTMLElement) => Elsew
 };
 const others: Partial<Record<OtherPlace, Elsewhere>> = {};
 
-const openHelp = () => help.showModal();
+/** What the place that is open is about. */
+function openHelp(): void {
+  const place = placeOf(location.hash);
+  byId("help-title", HTMLElement).textContent = place === "lab" ? "The Lab" : places[place].link.textContent;
+  for (const part of help.querySelectorAll<HTMLElement>("[data-place]")) part.hidden = part.dataset.place !== place;
+  help.showModal();
+}
+
 const step = () => void player.step("step");
 const stage = () => void player.step("stage");
 const reset = () => void lab.restart();
@@ -99,6 +106,8 @@ function choose(origin: Origin): void {
 const isSample = (): boolean => byId("files-panel", HTMLElement).hidden !== false;
 const examples = new Presets(byId("presets", HTMLElement), (settings) => {
   if (!isSample()) choose("sample");
+  // Another example begins where all is seen, however the last one was turned.
+  gallery.lookAnew();
   void start(settings);
 });
 const showExample = () => examples.show(store.settings, isSample());
@@ -131,7 +140,7 @@ const places: Record<Place, { main: HTMLElement; link: HTMLAnchorElement; title:
   rig: { main: byId("rig", HTMLElement), link: byId("to-rig", HTMLAnchorElement), title: "Check a rig, bimodal-stereo" },
 };
 /** What belongs to the Lab outside its own part of the page. */
-const labOnly = [byId("bar", HTMLElement), byId("help-button", HTMLElement), byId("skip", HTMLElement)];
+const labOnly = [byId("bar", HTMLElement), byId("skip", HTMLElement)];
 
 function show(place: Place): void {
   for (const [name, { main, link, title }] of Object.entries(places)) {
@@ -173,6 +182,7 @@ async function arrive(): Promise<void> {
     return entered;
   }
   if (!isSample()) choose("sample");
+  gallery.lookAnew();
   const started = lab.watch(settings);
   writeAddress(store.settings);
   await started;

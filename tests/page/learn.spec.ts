@@ -228,6 +228,17 @@ test("an address brings a lesson back, and what is no value of a control is pass
   expect(lab.complaints).toEqual([]);
 });
 
+test("a slide uses a beamer's screen, and no figure is below its edge", async ({ lab, page }) => {
+  await page.setViewportSize({ width: 1920, height: 1080 });
+  await page.goto("./#learn&at=pose&slides");
+  const slide = page.locator(".learn-slide");
+  await expect(slide.locator(".learn-panel").first()).toBeVisible();
+  expect((await slide.locator(".learn-figure").boundingBox())?.width).toBeGreaterThan(0.9 * 1920);
+  expect(await slide.locator("h2").evaluate((title) => Number.parseFloat(getComputedStyle(title).fontSize))).toBeGreaterThan(48);
+  expect(await slide.evaluate(({ scrollHeight, clientHeight }) => scrollHeight - clientHeight)).toBeLessThanOrEqual(0);
+  expect(lab.complaints).toEqual([]);
+});
+
 test("slides turn by keys, leave the sliders theirs, and end by escape", async ({ lab, page }) => {
   await open(page, "at=grey");
   await page.getByRole("button", { name: "Slides" }).press("Enter");

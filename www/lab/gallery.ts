@@ -72,6 +72,11 @@ export class Gallery {
     void this.#loadCharts();
   }
 
+  /** The next surfaces are seen from the front. */
+  lookAnew(): void {
+    this.#clouds.lookAnew();
+  }
+
   /** How a visitor wants to see what there is. */
   get look(): Look {
     const fixed = SCALES.flatMap((name) => (this.#scales[name].fixed ? [[name, this.#scales[name].fixed]] : []));

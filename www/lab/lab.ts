@@ -24,7 +24,7 @@ import { Status, type Notice } from "./status";
 import { Strip } from "./strip";
 import type { Kind } from "./kinds";
 import { Messages } from "./messages";
-import { verdict, wordsOf } from "./verdict";
+import { isSearching, verdict, wordsOf } from "./verdict";
 
 export class Lab {
   readonly store: Store;
@@ -407,7 +407,7 @@ export class Lab {
   }
 
   #take({ reports, light, scores }: Frame): void {
-    this.#light.show(light);
+    this.#light.show(light, reports.some(isSearching));
     this.#scores.show(scores, this.#truth);
     for (const report of reports) {
       // The first of a run: a search has found its pose before the first iteration.
