@@ -16,9 +16,11 @@ import { Store } from "./lab/store";
 import { asksToPlay, isEmbedded, placeOf, type Place } from "./place";
 
 import { keepForOffline } from "./offline/offline";
-import { themeToggle } from "./theme";
+import { themeToggle, wearTheme } from "./theme";
 
 const button = (id: string, action: () => void): void => byId(id, HTMLButtonElement).addEventListener("click", action);
+
+wearTheme();
 
 // The Lab, the controls around it and the first picture are tasks of their own: no press waits for all of the start.
 await nextTask();
