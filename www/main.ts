@@ -3,6 +3,8 @@
 import { byId, make, nextTask } from "./dom";
 import { isFirstVisit } from "./first-visit";
 import { areKeysOn, listenToKeys, rememberKeys } from "./keys";
+import { Form } from "./lab/form";
+import { Gallery } from "./lab/gallery";
 import { Lab } from "./lab/lab";
 import { paces } from "./lab/player";
 import { Presets } from "./lab/presets";
@@ -10,17 +12,26 @@ import { kinds } from "./lab/kinds";
 import { defaults, fromLink, type Origin, type Settings } from "./lab/settings";
 import { linkTo, onLook, showLooks, writeAddress } from "./lab/share";
 import { wasOwn } from "./lab/source";
+import { Store } from "./lab/store";
 import { asksToPlay, isEmbedded, placeOf, type Place } from "./place";
 
 import { keepForOffline } from "./offline/offline";
-import { themeToggle } from "./theme";
+import { themeToggle, wearTheme } from "./theme";
 
 const button = (id: string, action: () => void): void => byId(id, HTMLButtonElement).addEventListener("click", action);
 
+wearTheme();
+
 // The Lab, the controls around it and the first picture are tasks of their own: no press waits for all of the start.
 await nextTask();
-const lab = new Lab(placeOf(location.hash) === "lab" ? fromLink(location.hash) : defaults);
-const { player, store, gallery } = lab;
+const store = new Store(placeOf(location.hash) === "lab" ? fromLink(location.hash) : defaults);
+const form = new Form(store);
+form.mount();
+await nextTask();
+const gallery = new Gallery();
+await nextTask();
+const lab = new Lab({ store, form, gallery });
+const { player } = lab;
 await nextTask();
 const help = byId("help", HTMLDialogElement);
 
@@ -41,7 +52,14 @@ const loaders: Record<OtherPlace, () => Promise<new (main: HTMLElement) => Elsew
 };
 const others: Partial<Record<OtherPlace, Elsewhere>> = {};
 
-const openHelp = () => help.showModal();
+/** What the place that is open is about. */
+function openHelp(): void {
+  const place = placeOf(location.hash);
+  byId("help-title", HTMLElement).textContent = place === "lab" ? "The Lab" : places[place].link.textContent;
+  for (const part of help.querySelectorAll<HTMLElement>("[data-place]")) part.hidden = part.dataset.place !== place;
+  help.showModal();
+}
+
 const step = () => void player.step("step");
 const stage = () => void player.step("stage");
 const reset = () => void lab.restart();
@@ -90,6 +108,8 @@ function choose(origin: Origin): void {
 const isSample = (): boolean => byId("files-panel", HTMLElement).hidden !== false;
 const examples = new Presets(byId("presets", HTMLElement), (settings) => {
   if (!isSample()) choose("sample");
+  // Another example begins where all is seen, however the last one was turned.
+  gallery.lookAnew();
   void start(settings);
 });
 const showExample = () => examples.show(store.settings, isSample());
@@ -122,7 +142,7 @@ const places: Record<Place, { main: HTMLElement; link: HTMLAnchorElement; title:
   rig: { main: byId("rig", HTMLElement), link: byId("to-rig", HTMLAnchorElement), title: "Check a rig, bimodal-stereo" },
 };
 /** What belongs to the Lab outside its own part of the page. */
-const labOnly = [byId("bar", HTMLElement), byId("help-button", HTMLElement), byId("skip", HTMLElement)];
+const labOnly = [byId("bar", HTMLElement), byId("skip", HTMLElement)];
 
 function show(place: Place): void {
   for (const [name, { main, link, title }] of Object.entries(places)) {
@@ -164,6 +184,7 @@ async function arrive(): Promise<void> {
     return entered;
   }
   if (!isSample()) choose("sample");
+  gallery.lookAnew();
   const started = lab.watch(settings);
   writeAddress(store.settings);
   await started;

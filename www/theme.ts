@@ -19,10 +19,14 @@ function remember(theme: string): void {
   }
 }
 
-export function themeToggle(button: HTMLButtonElement, onChange: () => void): void {
-  const dark = matchMedia("(prefers-color-scheme: dark)");
+/** To be called before anything is waited for: a page that was left dark would come back with a flash. */
+export function wearTheme(): void {
   const chosen = remembered();
   if (chosen === "dark" || chosen === "light") document.documentElement.dataset.theme = chosen;
+}
+
+export function themeToggle(button: HTMLButtonElement, onChange: () => void): void {
+  const dark = matchMedia("(prefers-color-scheme: dark)");
   const current = () => document.documentElement.dataset.theme ?? (dark.matches ? "dark" : "light");
   const label = () => button.setAttribute("aria-label", `Switch to ${current() === "dark" ? "light" : "dark"} colours`);
   label();

@@ -43,6 +43,32 @@ for (const [where, script] of [["in a thread", ""], ["on the page where threads 
   });
 }
 
+test("another example is seen from the front, however the last one was turned", async ({ lab, page }) => {
+  // Nothing plays by itself, and nothing swings.
+  await page.emulateMedia({ reducedMotion: "reduce" });
+  await lab.visit();
+  await goToClouds(page);
+  const clouds = page.locator("#clouds-canvas");
+  await expect(page.locator("#clouds-note")).toBeHidden();
+  const choose = async (name: string) => {
+    await page.getByRole("button", { name, exact: true }).click();
+    await lab.reaches("ready");
+    await clouds.focus();
+  };
+  await expect(async () => {
+    await choose("Window light");
+    await choose("Easy bust");
+    await expect.poll(() => covered(clouds), BRIEFLY).toBeGreaterThan(DRAWN);
+    const front = await clouds.screenshot();
+    const isFront = async () => (await clouds.screenshot()).equals(front);
+    await page.keyboard.press("ArrowLeft");
+    await expect.poll(isFront, BRIEFLY).toBe(false);
+    await choose("Window light");
+    await choose("Easy bust");
+    await expect.poll(isFront, BRIEFLY).toBe(true);
+  }).toPass();
+});
+
 test("without WebGL the page says so and computes all the same", async ({ lab, page }) => {
   // three.js complains on the console before it gives up; nothing else may.
   await page.addInitScript(NO_WEBGL);

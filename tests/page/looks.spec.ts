@@ -97,3 +97,36 @@ test("a view without values has no range of earlier ones", async ({ lab, page })
   await expect(lab.iteration).toHaveText("0");
   await expect(lowest).toHaveValue("0");
 });
+
+test("on a phone the verdict is on the first screen, below the surfaces", async ({ lab, page }) => {
+  await page.setViewportSize({ width: 390, height: 844 });
+  await lab.visit("size=64");
+  const [verdict, bar, hero] = await Promise.all(["#status", "#bar", "#hero"].map((box) => page.locator(box).boundingBox()));
+  expect((verdict?.y ?? 0) + (verdict?.height ?? 0)).toBeLessThan(bar?.y ?? 0);
+  expect(verdict?.y).toBeGreaterThan((hero?.y ?? 0) + (hero?.height ?? 0));
+});
+
+test("open settings hide no input, and what has opened them stays under the pointer", async ({ lab, page }) => {
+  await page.setViewportSize({ width: 1280, height: 800 });
+  await lab.visit("size=64");
+  const summary = page.locator("#input > summary");
+  const before = await summary.boundingBox();
+  await summary.click();
+  const sheet = await page.locator("#input > .sheet").boundingBox();
+  for (const box of ["#inputs", "#hero", "#outcome"]) expect((await page.locator(box).boundingBox())?.x).toBeGreaterThan((sheet?.x ?? 0) + (sheet?.width ?? 0));
+  expect(await summary.boundingBox()).toEqual(before);
+  await summary.click();
+  await expect(page.locator("#inputs")).toBeInViewport({ ratio: 0.5 });
+});
+
+test("each place has its own help", async ({ lab, page }) => {
+  await lab.visit("size=64");
+  for (const [link, title, words] of [["#to-learn", "Learn", "Nine lessons"], ["#to-tables", "Tables", "beside the paper's number"], ["#to-rig", "Check a rig", "Load an example"], ["#to-lab", "The Lab", "Choose a pair"]] as const) {
+    await page.locator(link).click();
+    await page.locator("#help-button").click();
+    const help = page.getByRole("dialog", { name: title, exact: true });
+    await expect(help).toContainText(words);
+    await expect(help.locator("[data-place]:visible")).toHaveCount(1);
+    await page.keyboard.press("Escape");
+  }
+});

@@ -40,6 +40,18 @@ test("four files and a camera dropped anywhere go where their content belongs, e
   await expect(page.locator("#fields-colour").getByLabel("fx", { exact: true })).toHaveValue("");
 });
 
+test("a slot that is filled keeps its height, and moves no other", async ({ lab, page }) => {
+  await lab.open();
+  await lab.unfold();
+  await page.locator("#origin-files").click();
+  const places = () => page.locator(".slot .drop").evaluateAll((zones) => zones.map((zone) => { const { top, height } = zone.getBoundingClientRect(); return [top, height]; }));
+  const before = await places();
+  await drop(page, "#lab", [colourPng("with-a-name-that-is-longer-than-its-slot-is-wide.png"), depthPng(), cameraJson()]);
+  await expect(slot(lab, 1).getByRole("img")).toBeVisible();
+  await expect(slot(lab, 1)).toContainText("% valid");
+  expect(await places()).toEqual(before);
+});
+
 test("a .npy in column order is the same picture as the PNG it was made of", async ({ lab }) => {
   await own(lab);
   await put(lab, "Colour image", colourPng());

@@ -225,6 +225,43 @@ test("without a calibration there is an estimate only, and what was guessed is s
   expect(lab.complaints).toEqual([]);
 });
 
+test("what is chosen to be written stays chosen when the check runs again", async ({ lab, page }) => {
+  await answerChecks(page, "consistent");
+  await openExample(page);
+  await run(page);
+  const out = page.locator(".rig-card", { hasText: "Files out" });
+  const [which, format] = [out.getByLabel("Calibration"), out.getByLabel("Format")];
+  // Who was right keeps what is there, until the visitor says otherwise.
+  await expect(which).not.toHaveValue("");
+  await which.selectOption("found");
+  await format.selectOption("kalibr");
+  const status = page.locator(".rig-run").getByRole("status");
+  await expect(status).toHaveText(/^Done/);
+  await page.getByRole("button", { name: "Run again" }).click();
+  await expect(status).toHaveText(/^Done/);
+  await expect(format).toHaveValue("kalibr");
+  await expect(which).toHaveValue("");
+  expect(lab.complaints).toEqual([]);
+});
+
+test("a removed calibration can be taken back where it was, until it is there again", async ({ lab, page }) => {
+  await openPair(page);
+  await page.getByRole("button", { name: "Next: your calibration" }).click();
+  const give = () => page.locator("#rig .rig-step:not([hidden]) input[type=file]").setInputFiles(matrixFile("factory.txt", 0.025));
+  const undo = page.getByRole("button", { name: /^Undo/ });
+  await give();
+  await page.getByRole("button", { name: "Remove factory" }).click();
+  await expect(undo).toHaveText("Undo removing factory");
+  await step(page, "Files and cameras").click();
+  await expect(undo).toBeHidden();
+  await step(page, "Your calibration").click();
+  await expect(undo).toBeVisible();
+  await give();
+  await expect(page.locator(".rig-candidate")).toHaveCount(1);
+  await expect(undo).toBeHidden();
+  expect(lab.complaints).toEqual([]);
+});
+
 test("a check can be cancelled, and run again", async ({ lab, page }) => {
   await answerChecks(page, "never");
   await openExample(page);

@@ -192,6 +192,21 @@ test("nothing known: the search comes first, says how far it is, and the loop co
   await expect(search).toContainText("100 %");
 });
 
+test("what a search tries is a candidate, and the pose has the words of the messages", async ({ lab, page }) => {
+  await lab.visit("size=64");
+  await page.keyboard.press("s");
+  await expect(page.locator("#message")).toContainText("%");
+  await expect(page.locator("#pose-found")).toHaveText("candidate");
+  await expect(page.locator("#light figcaption").first()).toHaveText("candidate");
+  await page.locator("#pace").selectOption({ label: "fastest" });
+  await page.keyboard.press(" ");
+  await lab.reaches("converged");
+  await expect(page.locator("#pose-found")).toHaveText("found");
+  await expect(page.locator("#light figcaption").first()).toHaveText("found");
+  const weakest = await page.locator("#pose-extra dd").last().innerText();
+  await expect(page.locator("#pose th", { hasText: weakest.split(" with ")[0] ?? "" })).toHaveCount(1);
+});
+
 test("other threads share the search where the machine has them", async ({ lab, page }) => {
   const workers: string[] = [];
   page.context().on("request", (request) => /\/thread-[^/]*\.js$/.test(request.url()) && workers.push(request.url()));

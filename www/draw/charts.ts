@@ -28,31 +28,42 @@ const objectiveTerms: readonly Line[] = [
 /** Degrees. A rotation that does not move changes by zero: for that a logarithm has no place, and the curve a gap. */
 const rotation: readonly Line[] = [{ label: "change, deg", token: "accent", value: ({ rotationChange }) => rotationChange }];
 
-export class Charts {
-  readonly #charts: readonly { box: HTMLElement; name: string; plot: Plot; lines: readonly Line[] }[];
+/** One of the Lab's charts. */
+export class Chart {
+  readonly #box: HTMLElement;
+  readonly #name: string;
+  readonly #lines: readonly Line[];
+  readonly #plot: Plot;
 
-  constructor(objectiveBox: HTMLElement, rotationBox: HTMLElement) {
-    const chart = (box: HTMLElement, name: string, lines: readonly Line[]) => {
-      box.setAttribute("role", "group");
-      return { box, name, plot: new Plot(box, { xLabel: "iteration", curves: [...lines, ...lines.map((line) => ({ ...line, isPinned: true }))], whole: true }), lines };
-    };
-    this.#charts = [chart(objectiveBox, "Objective", objectiveTerms), chart(rotationBox, "Rotation change", rotation)];
+  private constructor(box: HTMLElement, name: string, lines: readonly Line[]) {
+    box.setAttribute("role", "group");
+    this.#box = box;
+    this.#name = name;
+    this.#lines = lines;
+    this.#plot = new Plot(box, { xLabel: "iteration", curves: [...lines, ...lines.map((line) => ({ ...line, isPinned: true }))], whole: true });
+  }
+
+  static objective(box: HTMLElement): Chart {
+    return new Chart(box, "Objective", objectiveTerms);
+  }
+
+  static rotation(box: HTMLElement): Chart {
+    return new Chart(box, "Rotation change", rotation);
   }
 
   /** The run that is pinned is dashed. */
   show(history: readonly StepReport[], pinned: readonly StepReport[] = []): void {
+    const [name, lines] = [this.#name, this.#lines];
     const runs = [history, pinned].map((run) => new Map(run.map((report) => [report.iteration, report])));
     const iterations = Array.from({ length: Math.max(0, ...runs.flatMap((run) => [...run.keys()])) }, (_, i) => i + 1);
-    for (const { box, name, plot, lines } of this.#charts) {
-      const [curves = [], dashed = []] = runs.map((run) => lines.map(({ value }) => iterations.map((iteration) => optional(run.get(iteration), value))));
-      plot.show(iterations, [...curves, ...dashed]);
-      box.setAttribute("aria-label", [inWords(name, lines, curves), ...(pinned.length > 0 ? [inWords(`Pinned: ${name.toLowerCase()}`, lines, dashed)] : [])].join(" "));
-    }
+    const [curves = [], dashed = []] = runs.map((run) => lines.map(({ value }) => iterations.map((iteration) => optional(run.get(iteration), value))));
+    this.#plot.show(iterations, [...curves, ...dashed]);
+    this.#box.setAttribute("aria-label", [inWords(name, lines, curves), ...(pinned.length > 0 ? [inWords(`Pinned: ${name.toLowerCase()}`, lines, dashed)] : [])].join(" "));
   }
 
   /** uPlot draws on a canvas and has to be told the theme's colours anew. */
   recolour(): void {
-    for (const { plot } of this.#charts) plot.build();
+    this.#plot.build();
   }
 }
 
@@ -107,7 +118,8 @@ export class Plot {
     // A count begins where there is something to see.
     const first = this.#options.whole ? Math.max(0, xs.findIndex((_, i) => curves.some((values) => values[i] != null))) : 0;
     this.#data = [xs.slice(first), ...curves.map((values) => values.slice(first))];
-    this.#plot?.setData(this.#data);
+    // At once: what uPlot puts off to the end of the task is drawing that no painter can see the time of.
+    this.#plot?.batch(() => this.#plot?.setData(this.#data));
   }
 
   build(): void {

@@ -1,7 +1,7 @@
 /** Work for the screen, done in animation frames and never more of it than fits: what does not fit waits for the next. */
 
 /** Milliseconds of a frame that drawing may take; the rest belongs to the browser and the visitor. */
-const BUDGET = 8;
+const BUDGET = 5;
 
 type Job = () => void;
 

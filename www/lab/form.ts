@@ -1,8 +1,10 @@
 /** Fields made from the settings' description, each with its label, unit, hint and a place for its error. */
 
-import { freshId, make } from "../dom";
+import { byId, freshId, make } from "../dom";
 import { fields, isLightText, type ChoiceField, type Field, type Group, type ListField, type NumberField, type Origin, type Settings, type Value } from "./settings";
 import type { Store } from "./store";
+
+const groups: readonly Group[] = ["sample", "colour", "depth", "method", "weights", "loop"];
 
 interface Control {
   field: Field;
@@ -22,8 +24,12 @@ export class Form {
     store.listen((settings) => this.#showAll(settings));
   }
 
-  /** Builds the fields of a group into `parent`. */
-  mount(group: Group, parent: HTMLElement): void {
+  /** Builds the fields into the boxes of their groups. */
+  mount(): void {
+    for (const group of groups) this.#mount(group, byId(`fields-${group}`, HTMLElement));
+  }
+
+  #mount(group: Group, parent: HTMLElement): void {
     for (const field of fields.filter((each) => each.group === group)) {
       const control = this.#build(field);
       this.#controls.set(field.key, control);

@@ -2,12 +2,12 @@
 
 import type { Pose, StepReport } from "../../pkg/index.js";
 import { Card } from "../draw/card";
-import type { Charts } from "../draw/charts";
+import type { Chart } from "../draw/charts";
 import { Painter } from "../draw/painter";
 import { Probe, type Asked } from "../draw/probe";
 import { Scale } from "../draw/scale";
 import { View, type Content } from "../draw/view";
-import { byId, make } from "../dom";
+import { byId, make, nextTask } from "../dom";
 import { CloudPanel } from "./cloudpanel";
 import { SCALES, TEXTURES, type Frame, type Look, type Opened, type Painted, type Probed, type ScaleName, type Drawings, type Texture, type ViewName } from "../engine/protocol";
 
@@ -18,7 +18,7 @@ export interface GalleryHooks {
 }
 
 export class Gallery {
-  readonly #hooks: GalleryHooks;
+  #hooks: GalleryHooks = { look: () => Promise.resolve(undefined), probe: () => Promise.resolve(undefined) };
   readonly #painter = new Painter();
   readonly #box = byId("lab", HTMLElement);
   readonly #figures: HTMLElement[] = [];
@@ -29,14 +29,13 @@ export class Gallery {
   #texture: Texture = "view";
   #units: Opened["units"] = { image: "px", depth: "px" };
   readonly #clouds: CloudPanel;
-  #charts: Charts | undefined;
+  #charts: readonly Chart[] = [];
   #history: readonly StepReport[] = [];
   #pinned: readonly StepReport[] = [];
   #isLooking = false;
   #looksAgain = false;
 
-  constructor(hooks: GalleryHooks) {
-    this.#hooks = hooks;
+  constructor() {
     const isError = (scale: ScaleName): boolean => scale === "residual" || scale.endsWith("Error");
     this.#scales = Object.fromEntries(SCALES.map((name) => [name, new Scale(isError(name) ? "magma" : "viridis", () => void this.#look())])) as Record<ScaleName, Scale>;
     const view = (parent: string, name: ViewName, title: string, description: string, content: Content): View => {
@@ -60,12 +59,22 @@ export class Gallery {
     const refinementError = view("error-views", "refinementError", "Refinement error", "distance of the refined depth from the true one", scalar("refinementError"));
     this.#views = { picture, imageNormals, imageDepth, albedo, shading, residual, given, refinedDepth, depthNormals, normalError, depthError, refinementError };
     this.#clouds = new CloudPanel(this.#painter, this.#probe);
-    void this.#loadCharts();
     const texture = byId("clouds-texture", HTMLSelectElement);
     texture.addEventListener("change", () => {
       this.#texture = TEXTURES.find((each) => each === texture.value) ?? "view";
       void this.#look();
     });
+  }
+
+  /** From now on what it asks for is answered. */
+  serve(hooks: GalleryHooks): void {
+    this.#hooks = hooks;
+    void this.#loadCharts();
+  }
+
+  /** The next surfaces are seen from the front. */
+  lookAnew(): void {
+    this.#clouds.lookAnew();
   }
 
   /** How a visitor wants to see what there is. */
@@ -139,7 +148,7 @@ export class Gallery {
 
   recolour(): void {
     this.#clouds.recolour();
-    this.#charts?.recolour();
+    for (const chart of this.#charts) this.#painter.request(chart, () => chart.recolour());
   }
 
   /** One view alone and large, or all again. Views count from 1. */
@@ -175,13 +184,17 @@ export class Gallery {
   }
 
   #showCharts(): void {
-    const charts = this.#charts;
-    if (charts) this.#painter.request(charts, () => charts.show(this.#history, this.#pinned));
+    for (const chart of this.#charts) this.#painter.request(chart, () => chart.show(this.#history, this.#pinned));
   }
 
+  /** After the views are on the page, and each a task of its own: no press waits for all of them. */
   async #loadCharts(): Promise<void> {
-    const { Charts } = await import("../draw/charts");
-    this.#charts = new Charts(byId("objective-chart", HTMLElement), byId("rotation-chart", HTMLElement));
+    await nextTask();
+    const { Chart } = await import("../draw/charts");
+    await nextTask();
+    const objective = Chart.objective(byId("objective-chart", HTMLElement));
+    await nextTask();
+    this.#charts = [objective, Chart.rotation(byId("rotation-chart", HTMLElement))];
     this.#showCharts();
   }
 }

@@ -40,14 +40,15 @@ export class Intake {
 
   constructor(hooks: IntakeHooks) {
     this.#hooks = hooks;
-    this.element = make("div", { class: "intake" }, this.#remarks, this.#offer);
+    this.element = make("div", { class: "intake" });
     for (const each of slots) this.#build(each);
     this.#forget.addEventListener("click", () => {
       this.replaceAll({});
       this.remarks([]);
       this.#hooks.onForget();
     });
-    this.element.append(make("p", { class: "note keeping", role: "status" }, this.#keeping), this.#forget);
+    // Below the slots, which stay where they are whatever is said of them.
+    this.element.append(this.#offer, this.#remarks, make("p", { class: "note keeping", role: "status" }, this.#keeping), this.#forget);
   }
 
   get files(): Partial<Record<Slot, File>> {
@@ -133,10 +134,10 @@ export class Intake {
     const clear = make("button", { type: "button", class: "quiet", "aria-label": `Remove ${label.toLowerCase()}`, hidden: true }, "×");
     const note = make("p", { class: "note", id: `${id}-note`, hidden: true });
     const thumb = make("canvas", { class: "thumb", role: "img", width: 1, height: 1, hidden: true });
-    const says = make("p", { class: "note says" });
+    const says = make("span", { class: "note says" });
     this.#entries.set(slot, { zone, name, note, clear, thumb, says, paths });
-    zone.append(thumb);
-    this.element.append(make("div", { class: "slot" }, picker, zone, clear, says, note));
+    zone.append(says, thumb);
+    this.element.append(make("div", { class: "slot" }, picker, zone, clear, note));
 
     picker.addEventListener("change", () => {
       const file = picker.files?.[0];
@@ -187,7 +188,7 @@ export class Intake {
     if (file) this.#files[slot] = file;
     else delete this.#files[slot];
     const hint = slots.find((each) => each.slot === slot)?.hint ?? "";
-    entry.name.textContent = file ? `${file.name} (${size(file.size)})` : hint;
+    entry.name.textContent = entry.name.title = file ? `${file.name} (${size(file.size)})` : hint;
     entry.zone.toggleAttribute("data-filled", file !== undefined);
     entry.clear.hidden = file === undefined;
   }

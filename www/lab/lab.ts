@@ -5,8 +5,8 @@ import { Engine, EngineError, LOST } from "../engine/engine";
 import type { Frame, Opened, Source } from "../engine/protocol";
 import type { Pose, StepReport } from "../../pkg/index.js";
 import { Explanations } from "./ask";
-import { Form } from "./form";
-import { Gallery } from "./gallery";
+import type { Form } from "./form";
+import type { Gallery } from "./gallery";
 import { OwnFiles } from "./ownfiles";
 import { Compare } from "./compare";
 import { LightPanel } from "./light";
@@ -19,12 +19,12 @@ import { download, linkTo, writeAddress } from "./share";
 import { ScoreMap } from "./scoremap";
 import { originOf, rememberOrigin, sourceOf } from "./source";
 import { saveBlob } from "../save";
-import { Store } from "./store";
+import type { Store } from "./store";
 import { Status, type Notice } from "./status";
 import { Strip } from "./strip";
 import type { Kind } from "./kinds";
 import { Messages } from "./messages";
-import { verdict, wordsOf } from "./verdict";
+import { isSearching, verdict, wordsOf } from "./verdict";
 
 export class Lab {
   readonly store: Store;
@@ -84,9 +84,10 @@ export class Lab {
   /** The run that is to play once its input is there, if the visitor still waits for it. */
   #watched: Settings | undefined;
 
-  constructor(settings: Settings) {
-    this.store = new Store(settings);
-    this.#form = new Form(this.store);
+  constructor({ store, form, gallery }: { store: Store; form: Form; gallery: Gallery }) {
+    this.store = store;
+    this.#form = form;
+    this.gallery = gallery;
     this.#messages = new Messages(this.#form, this.#own.intake);
     this.#engine = new Engine({
       onLoad: (bytes) => {
@@ -95,7 +96,7 @@ export class Lab {
       onLost: (error) => this.#lose(error),
     });
     const unlessGone = (): undefined => undefined;
-    this.gallery = new Gallery({
+    gallery.serve({
       look: (look) => this.#engine.call("look", { look }).catch(unlessGone),
       probe: (asked) => this.#engine.call("probe", asked).catch(unlessGone),
     });
@@ -109,9 +110,6 @@ export class Lab {
     });
     this.#rivals = new Rivals({ onLook: (pose) => this.gallery.pretend(pose), onStart: (pose) => this.#startFrom(pose) });
     this.#light = new LightPanel({ turn: () => turnOf(this.store.settings), onLight: (patch, done) => this.#changeLight(patch, done) });
-    for (const group of ["sample", "colour", "depth", "method", "weights", "loop"] as const) {
-      this.#form.mount(group, byId(`fields-${group}`, HTMLElement));
-    }
     byId("objective-title", HTMLElement).append(this.#explanations.button("objective", "Objective"));
     byId("slots", HTMLElement).append(this.#own.intake.element);
     byId("take-picture", HTMLSelectElement).addEventListener("focus", () => this.#offerPictures());
@@ -409,7 +407,7 @@ export class Lab {
   }
 
   #take({ reports, light, scores }: Frame): void {
-    this.#light.show(light);
+    this.#light.show(light, reports.some(isSearching));
     this.#scores.show(scores, this.#truth);
     for (const report of reports) {
       // The first of a run: a search has found its pose before the first iteration.

@@ -48,7 +48,9 @@ export class LightPanel {
     this.#listen(this.#truth.canvas);
   }
 
-  show({ found, difference }: Frame["light"]): void {
+  /** While a search tries poses, the light is that of the best candidate. */
+  show({ found, difference }: Frame["light"], isSearching: boolean): void {
+    this.#found.say(isSearching ? "candidate" : "found");
     this.#found.show(found);
     this.#difference.show(difference);
   }
@@ -108,10 +110,16 @@ export class LightPanel {
 class Ball {
   readonly canvas: HTMLCanvasElement;
   readonly element: HTMLElement;
+  readonly #title: HTMLElement;
 
   constructor(title: string, description: string) {
     this.canvas = make("canvas", { width: 72, height: 72, role: "img", "aria-label": description });
-    this.element = make("figure", { class: "ball" }, this.canvas, make("figcaption", {}, title));
+    this.#title = make("figcaption", {}, title);
+    this.element = make("figure", { class: "ball" }, this.canvas, this.#title);
+  }
+
+  say(title: string): void {
+    if (this.#title.textContent !== title) this.#title.textContent = title;
   }
 
   show(bitmap: ImageBitmap | null): void {

@@ -5,17 +5,17 @@ import { decimals } from "../draw/numbers";
 import { byId, make } from "../dom";
 import type { Explanations } from "./ask";
 import type { Term } from "./explain";
-import { angleBetween } from "./verdict";
+import { angleBetween, isSearching } from "./verdict";
 
-/** Rows; those without a unit of their own are lengths in the colour view's unit. */
-const rows: readonly { name: string; index?: string; unit?: string; decimals: number; read(pose: Pose): number | undefined }[] = [
-  { name: "s", unit: "", decimals: 4, read: ({ scale }) => scale },
-  { name: "α", unit: "°", decimals: 2, read: ({ angles }) => angles.alpha },
-  { name: "β", unit: "°", decimals: 2, read: ({ angles }) => angles.beta },
-  { name: "γ", unit: "°", decimals: 2, read: ({ angles }) => angles.gamma },
-  { name: "t", index: "x", decimals: 3, read: ({ translation }) => translation[0] },
-  { name: "t", index: "y", decimals: 3, read: ({ translation }) => translation[1] },
-  { name: "t", index: "z", decimals: 3, read: ({ translation }) => translation[2] },
+/** Rows, in the words of the run's messages; those without a unit of their own are lengths in the colour view's unit. */
+const rows: readonly { words: string; name: string; index?: string; unit?: string; decimals: number; read(pose: Pose): number | undefined }[] = [
+  { words: "scale", name: "s", unit: "", decimals: 4, read: ({ scale }) => scale },
+  { words: "rotation about x", name: "α", unit: "°", decimals: 2, read: ({ angles }) => angles.alpha },
+  { words: "rotation about y", name: "β", unit: "°", decimals: 2, read: ({ angles }) => angles.beta },
+  { words: "rotation about z", name: "γ", unit: "°", decimals: 2, read: ({ angles }) => angles.gamma },
+  { words: "translation along x", name: "t", index: "x", decimals: 3, read: ({ translation }) => translation[0] },
+  { words: "translation along y", name: "t", index: "y", decimals: 3, read: ({ translation }) => translation[1] },
+  { words: "translation along z", name: "t", index: "z", decimals: 3, read: ({ translation }) => translation[2] },
 ];
 
 /** Degrees of β from which on α and γ turn about nearly one axis, so that single ones may differ where the rotation does not. */
@@ -26,14 +26,16 @@ export class PoseTable {
   readonly #error = byId("pose-error", HTMLElement);
   readonly #extras: readonly { dt: HTMLElement; dd: HTMLElement; read: Extra["read"] }[];
   readonly #table: HTMLTableElement;
+  readonly #heading = byId("pose-found", HTMLTableCellElement);
 
   constructor(table: HTMLTableElement, explanations: Explanations) {
     this.#table = table;
     this.#extras = extras.map(({ term, name, read }) => ({ dt: make("dt", {}, name, explanations.button(term, name)), dd: make("dd"), read }));
     byId("pose-extra", HTMLElement).append(...this.#extras.flatMap(({ dt, dd }) => [dt, dd]));
     const lines = this.#cells.map(({ found, truth, unit }, i) => {
-      const { name, index } = rows[i] ?? { name: "" };
-      const heading = make("th", { scope: "row" }, name, ...(index ? [make("sub", {}, index)] : []), " ", unit);
+      const { words, name, index } = rows[i] ?? { words: "", name: "" };
+      const symbol = make("span", { class: "symbol" }, name, ...(index ? [make("sub", {}, index)] : []), " ", unit);
+      const heading = make("th", { scope: "row" }, words, " ", symbol);
       return make("tr", {}, heading, found, truth);
     });
     table.tBodies[0]?.append(...lines);
@@ -41,6 +43,8 @@ export class PoseTable {
 
   show(report: StepReport, start: Pose | undefined, truth: Pose | null, length: "px" | "m"): void {
     const { pose } = report;
+    // A search only tries poses: none is found before it is over.
+    this.#heading.textContent = isSearching(report) ? "candidate" : "found";
     rows.forEach(({ index, decimals: count, read, unit = length }, i) => {
       const cells = this.#cells[i];
       if (!cells) return;

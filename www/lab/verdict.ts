@@ -12,6 +12,9 @@ export interface Verdict {
   next: string;
 }
 
+/** Whether poses are still being tried. */
+export const isSearching = ({ status, stage, iteration }: StepReport): boolean => status === "running" && stage === "search" && iteration === 0;
+
 /** How far a run is, in a few words. */
 export function wordsOf({ status, iteration, pose }: StepReport, truth: Pose | null): string {
   const off = truth ? `, ${decimals(angleBetween(pose.rotation, truth.rotation), 2)}° off` : "";

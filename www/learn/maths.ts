@@ -58,6 +58,8 @@ export function symbol(name: SymbolName): Element {
 
 export const inline = (...children: Element[]): Element => math("math", {}, row(...children));
 export const block = (...children: Element[]): Element => math("math", { display: "block" }, row(...children));
+/** One below the other, where one line would be wider than the text of a small window. */
+export const lines = (...blocks: Element[]): Element => make("div", {}, ...blocks);
 
 /** A sentence; {n} is the symbol n, and {link|address} leads elsewhere. */
 export function sentence(words: string): (Node | string)[] {

@@ -69,7 +69,7 @@ export class CalibrationStep {
       rig.changed();
     });
     const remove = press("×", () => {
-      rig.undo.keep(`removing ${candidate.name}`);
+      rig.undo.keep(`removing ${candidate.name}`, { where: "calibration", isMoot: () => rig.candidates.some(({ name }) => name === candidate.name) });
       rig.candidates = rig.candidates.filter((each) => each !== candidate);
       rig.changed();
     }, { class: "icon" });

@@ -49,7 +49,7 @@ export class Overlay {
   constructor(rig: Rig) {
     this.#rig = rig;
     this.#frame = choose([], "0", (value) => void this.#chooseFrame(Number(value)));
-    const what = choose([{ value: "both", label: "points and depth edges" }, { value: "points", label: "points" }, { value: "edges", label: "depth edges" }], "both", (value) => {
+    const what = choose([{ value: "both", label: "points and edges" }, { value: "points", label: "points" }, { value: "edges", label: "depth edges" }], "both", (value) => {
       this.#what = value as What;
       this.#paint();
     });

@@ -107,7 +107,7 @@ export class RigPage {
       else link?.removeAttribute("aria-current");
       if (link) link.disabled = !this.#may(step);
     }
-    const { words } = this.#rig.undo;
+    const words = this.#rig.undo.wordsAt(this.#step);
     this.#undo.hidden = words === undefined;
     this.#undo.textContent = words === undefined ? "" : `Undo ${words}`;
     this.#heading.textContent = `${STEPS.indexOf(this.#step) + 1}. ${titles[this.#step]}`;

@@ -232,7 +232,7 @@ export class Rig {
   }
 
   remove(item: Item): void {
-    this.undo.keep(`removing ${item.name}`);
+    this.undo.keep(`removing ${item.name}`, { isMoot: () => this.items.some(({ id, name }) => name === item.name && id > item.id) });
     this.items = this.items.filter((each) => each !== item);
     this.candidates = this.candidates.filter(({ file }) => file !== item.id);
     this.#unlink(item);
@@ -257,7 +257,7 @@ export class Rig {
   /** A check that runs is of what is gone then. */
   clear(): void {
     this.session.cancel();
-    if (this.items.length + this.frames.length + this.candidates.length > 0) this.undo.keep("starting over", true);
+    if (this.items.length + this.frames.length + this.candidates.length > 0) this.undo.keep("starting over", { isWhole: true });
     this.items = [];
     this.frames = [];
     this.candidates = [];

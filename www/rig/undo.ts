@@ -11,8 +11,14 @@ interface Kept {
   copy: object;
 }
 
+/** The step of the page where what was taken away was to be seen. */
+export type Where = "files" | "calibration";
+
 interface Step {
   words: string;
+  where: Where;
+  /** Whether what was taken away is there again by other means. */
+  isMoot(): boolean;
   /** What came later has higher numbers. */
   last: number;
   /** Everything went: whatever came later is another rig's. */
@@ -32,17 +38,24 @@ export class Undo {
     this.#rig = rig;
   }
 
-  /** What the next step back takes back, in words; nothing where there is none. */
-  get words(): string | undefined {
-    return this.#steps.at(-1)?.words;
+  /** What the next step back takes back, in words; nothing where there is none, or where nobody would see it done. */
+  wordsAt(where: string): string | undefined {
+    if (this.#steps.at(-1)?.isMoot()) {
+      this.#steps = this.#steps.slice(0, this.#steps.findLastIndex((step) => !step.isMoot()) + 1);
+      this.#forget();
+    }
+    const last = this.#steps.at(-1);
+    return last?.where === where ? last.words : undefined;
   }
 
   /** To be called before the change. */
-  keep(words: string, isWhole = false): void {
+  keep(words: string, { where = "files", isWhole = false, isMoot = () => false }: Partial<Pick<Step, "where" | "isWhole" | "isMoot">> = {}): void {
     const { items, frames, candidates, notes, history, cameras, run } = this.#rig;
     const things = [...items, ...frames, ...candidates, cameras.colour, cameras.depth, cameras.colour.typed, cameras.depth.typed];
     this.#steps.push({
       words,
+      where,
+      isMoot,
       last: this.#rig.freshId(),
       isWhole,
       lists: { items: [...items], frames: [...frames], candidates: [...candidates] },

@@ -39,6 +39,8 @@ export class VerdictStep {
   readonly #curvesBox = make("section", { class: "rig-card" });
   #curves: SensitivityCharts | undefined;
   #shown: Run | undefined;
+  /** What the visitor has chosen to write stays chosen, run by run. */
+  #wish: { format: PoseFormat; pose?: string; frame?: string } = { format: "matrix" };
   #busy = false;
 
   constructor(rig: Rig, goBack: () => void) {
@@ -152,9 +154,12 @@ export class VerdictStep {
     const poses = [{ value: "", label: "found" }, ...Object.keys(run.candidates).map((name) => ({ value: name, label: name }))];
     // Who was right keeps what is there.
     const isKept = !run.estimateOnly && Object.values(run.report.candidates)[0]?.verdict === "consistent";
-    const which = choose(poses, isKept ? (Object.keys(run.candidates)[0] ?? "") : "", () => {});
-    const format = choose(formats, "matrix", () => {});
-    const frame = choose(run.plans.map(({ name }, i) => ({ value: String(i), label: name })), "0", () => {});
+    const wish = this.#wish;
+    const wished = poses.find(({ value }) => value === wish.pose)?.value;
+    const which = choose(poses, wished ?? (isKept ? (Object.keys(run.candidates)[0] ?? "") : ""), (pose) => (wish.pose = pose));
+    const format = choose(formats, wish.format, (format) => (wish.format = format as PoseFormat));
+    const seen = run.plans.findIndex(({ name }) => name === wish.frame);
+    const frame = choose(run.plans.map(({ name }, i) => ({ value: String(i), label: name })), String(Math.max(0, seen)), (index) => (wish.frame = run.plans[Number(index)]?.name ?? ""));
     const pose = () => run.candidates[which.value] ?? run.report.estimate;
     const { session } = this.#rig;
     const save = press("Save calibration", attempt(async () => {

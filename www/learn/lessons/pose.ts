@@ -2,7 +2,7 @@
 
 import type { Lesson } from "../lesson";
 import { LIGHTS } from "../lesson";
-import { block, mi, mn, mo, norm, row, sub, sum, sup, symbol } from "../maths";
+import { block, lines, mi, mn, mo, norm, row, sub, sum, sup, symbol } from "../maths";
 
 const colourTerm = () => row(sum(mi("j")), sup(row(mo("("), mi("log"), symbol("S"), mo("−"), sup(symbol("n"), mi("⊤")), symbol("M"), symbol("n"), mo(")")), mn("2")));
 
@@ -43,7 +43,7 @@ export const sensor: Lesson = {
   id: "sensor",
   title: "Refining the sensor",
   gist: "The picture sees fine shape that the sensor's noise hides. With the pose known, it cleans the depth map.",
-  formula: () => block(mi("μ"), norm(row(symbol("z"), mo("−"), symbol("d"))), mo("+"), sum(mi("j")), sup(row(mo("("), mi("log"), symbol("S"), mo("−"), sup(sub(symbol("n"), symbol("z")), mi("⊤")), symbol("M"), sub(symbol("n"), symbol("z")), mo(")")), mn("2")), mo(","), mi("μ"), mo("="), sup(row(mo("("), sub(mi("σ"), mi("S")), mo("/"), sub(mi("σ"), symbol("d")), mo(")")), mn("2"))),
+  formula: () => lines(block(mi("μ"), norm(row(symbol("z"), mo("−"), symbol("d"))), mo("+"), sum(mi("j")), sup(row(mo("("), mi("log"), symbol("S"), mo("−"), sup(sub(symbol("n"), symbol("z")), mi("⊤")), symbol("M"), sub(symbol("n"), symbol("z")), mo(")")), mn("2")), mo(",")), block(mi("μ"), mo("="), sup(row(mo("("), sub(mi("σ"), mi("S")), mo("/"), sub(mi("σ"), symbol("d")), mo(")")), mn("2")))),
   formulaWords: "A weight mu times the squared distance between the refined and the measured depth, plus the cost of the colours for the normals of the refined depth. Mu is the variance of the shading over that of the sensor.",
   text: [
     "A depth sensor is right on the large scale and noisy on the small one. Shading is the other way round: it tells slopes from pixel to pixel and drifts over long distances. The two fit together.",
