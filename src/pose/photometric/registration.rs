@@ -363,8 +363,9 @@ impl Photometric {
         Ok(Phase::InstrumentalStep { round, frame, steps: 0, last: f64::INFINITY })
     }
 
-    /// A step of such a round: undamped, for there is no objective that it has to lower. A step longer than the one before
-    /// is not taken: the pose sought may repel what rounding puts beside it, by a third with each step.
+    /// A step of such a round: undamped, for there is no objective that it has to lower. After the first round, whose steps may
+    /// grow on their way, one that is longer than the one before is not taken: the pose sought may repel what rounding puts
+    /// beside it, by a third with each step.
     fn step_by_instruments(
         &mut self,
         problem: &PhotometricProblem<'_>,
@@ -376,7 +377,7 @@ impl Photometric {
         self.iterations += 1;
         let reduced = self.reduce_by_instruments(problem, frame)?;
         let mut settled = true;
-        if let Some(step) = reduced.step(0.0, &problem.held()).filter(|step| step.pose.norm() <= last) {
+        if let Some(step) = reduced.step(0.0, &problem.held()).filter(|step| round == 0 || step.pose.norm() <= last) {
             self.state = self.state.stepped(frame, &step, problem.light.is_some());
             settled = match &self.settled_step {
                 Some(least) => step.pose.iter().zip(least).all(|(step, least)| step.abs() <= *least),
