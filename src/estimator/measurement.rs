@@ -1,6 +1,6 @@
 //! What an iteration leaves unexplained: |log S - predicted| pixel by pixel, and its robust mean.
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Matrix3;
 
 use super::objective;
 use super::pair::ViewPair;
@@ -65,22 +65,20 @@ impl Residuals {
 struct SeenNormals<'a> {
     measured: &'a Normals,
     own: &'a Normals,
-    depth_of_pixel: &'a [i32],
+    correspondences: &'a Correspondences,
     rotation: Matrix3<f32>,
 }
 
 impl<'a> SeenNormals<'a> {
     fn new(pair: &'a ViewPair, solution: &'a Solution, correspondences: &'a Correspondences) -> Self {
         let rotation = solution.pose.rotation.cast::<f32>();
-        let depth_of_pixel = correspondences.depth_of_pixel();
-        Self { measured: &pair.depth.normals, own: &solution.image.normals, depth_of_pixel, rotation }
+        Self { measured: &pair.depth.normals, own: &solution.image.normals, correspondences, rotation }
     }
 
     /// The measured one where the depth view reaches, else the image's own; and which of them it is.
     fn of_pixel(&self, pixel: usize) -> ([f32; 3], bool) {
-        let index = usize::try_from(self.depth_of_pixel[pixel]).ok();
-        match index.filter(|&index| self.measured.is_valid(index)) {
-            Some(index) => ((self.rotation * Vector3::from(self.measured.get(index))).into(), true),
+        match self.correspondences.normal_at(pixel, self.measured) {
+            Some(normal) => ((self.rotation * normal).into(), true),
             None => (self.own.get(pixel), false),
         }
     }

@@ -241,7 +241,8 @@ impl Estimator {
     fn find_paint(&mut self) {
         let Solution { pose, .. } = &self.solution;
         if self.registration.keeps(&self.pair, pose) && !self.paint.knows(&self.pair, pose) {
-            self.light.bring_normals(self.registration.measured_normals(&self.pair), pose, &self.correspondences);
+            let normals = self.registration.measured_normals(&self.pair);
+            self.light.bring_normals(&self.pair, normals, pose, &self.correspondences);
             self.paint.find(&self.pair, pose, self.light.depth_normals());
         }
     }

@@ -7,14 +7,18 @@
 //! distances, never below one pixel: a surface from shading under poor light is off by several pixels although every
 //! pose but one is worse.
 //!
-//! Of several points on one pixel the nearest to its centre is kept. Limits: the z-buffers have the views' resolution,
+//! Of several points on one pixel the nearest to its centre is kept. Where the depth camera sees a surface more obliquely
+//! than the image does, pixels lie between the points: they have no correspondence, but neighbours whose normals they
+//! share ([`Correspondences::normal_at`]). Limits: the z-buffers have the views' resolution,
 //! so parts thinner than two pixels may be wrong; organised clouds have no depth camera and skip the reverse
 //! test.
+
+use nalgebra::Vector3;
 
 use super::similarity::Similarity;
 use super::visibility::{CloudProjection, HIDDEN_BEHIND, Visibility, VisibilityProblem};
 use crate::numeric::{LANES, quantile};
-use crate::view::{ColourView, DepthView, Normals, Points};
+use crate::view::{ColourView, DepthView, Normals, Points, Size};
 
 /// Least accepted distance in image pixels: the paper's threshold.
 const LEAST_DISTANCE: f64 = 1.0;
@@ -23,6 +27,11 @@ const LEAST_DISTANCE: f64 = 1.0;
 const REVERSE_TOLERANCE: f64 = 2.0;
 /// Inliers are within this multiple of the median distance.
 const INLIER_SPREADS: f32 = 3.0;
+/// Pixels between two points of one surface at most. Depth pixels that the image sees three times as wide, as under a turn
+/// of 70 degrees, leave two.
+const WIDEST_GAP: usize = 2;
+/// Points on either side of a gap are of one surface where the depth map has them so near, pixels along either axis.
+const NEIGHBOURS: usize = 2;
 
 /// What decides about correspondences. Points and normals are NaN where missing.
 #[derive(Clone, Copy)]
@@ -52,6 +61,8 @@ pub struct CorrespondenceProblem<'a> {
 /// Correspondences in both directions; owns its memory.
 #[derive(Clone, Debug)]
 pub struct Correspondences {
+    image: Size,
+    depth: Size,
     depth_of_pixel: Vec<i32>,
     visible: Visibility,
     /// A number for each point: the z-buffer of the reverse view, then distances from the image surface.
@@ -68,6 +79,8 @@ impl Correspondences {
     pub fn new(image: &ColourView, depth: &DepthView) -> Self {
         let (pixels, points) = (image.size.len(), depth.size.len());
         Self {
+            image: image.size,
+            depth: depth.size,
             depth_of_pixel: vec![-1; pixels],
             visible: Visibility::new(pixels, points),
             of_point: vec![f32::INFINITY; points],
@@ -81,6 +94,43 @@ impl Correspondences {
     #[must_use]
     pub fn depth_of_pixel(&self) -> &[i32] {
         &self.depth_of_pixel
+    }
+
+    /// The normal that the depth view has at an image pixel, of `normals` in its own frame: that of the pixel's counterpart,
+    /// or between two points of one surface their mean; `None` where it sees nothing.
+    #[must_use]
+    pub fn normal_at(&self, pixel: usize, normals: &Normals) -> Option<Vector3<f32>> {
+        let normal_of = |index: usize| normals.is_valid(index).then(|| Vector3::from(normals.get(index)));
+        match self.depth_at(pixel) {
+            Some(index) => normal_of(index),
+            None => {
+                let [before, after] = self.around(pixel)?;
+                Some((normal_of(before)? + normal_of(after)?).normalize())
+            }
+        }
+    }
+
+    fn depth_at(&self, pixel: usize) -> Option<usize> {
+        usize::try_from(self.depth_of_pixel[pixel]).ok()
+    }
+
+    /// The depth pixels on either side of a gap, across or down.
+    fn around(&self, pixel: usize) -> Option<[usize; 2]> {
+        let (column, row) = self.image.position(pixel);
+        let across = || self.ends(pixel, 1, column, self.image.width);
+        across().or_else(|| self.ends(pixel, self.image.width, row, self.image.height))
+    }
+
+    /// The same along a line of pixels `stride` apart, on which this one is at `place`.
+    fn ends(&self, pixel: usize, stride: usize, place: usize, length: usize) -> Option<[usize; 2]> {
+        let reach = 1..=WIDEST_GAP;
+        let before =
+            reach.clone().filter(|&k| k <= place).find_map(|k| Some((k, self.depth_at(pixel - k * stride)?)))?;
+        let after =
+            reach.filter(|&k| place + k < length).find_map(|k| Some((k, self.depth_at(pixel + k * stride)?)))?;
+        let [from, to] = [before, after].map(|(_, index)| self.depth.position(index));
+        let is_one_surface = from.0.abs_diff(to.0).max(from.1.abs_diff(to.1)) <= NEIGHBOURS;
+        (before.0 + after.0 <= WIDEST_GAP + 1 && is_one_surface).then_some([before.1, after.1])
     }
 
     /// Continuous image column and row of each depth pixel, NaN where it has no counterpart.

@@ -85,6 +85,26 @@ fn two_paints_are_found_under_each_light() {
     }
 }
 
+/// Seen obliquely, depth pixels lie farther apart than the image's: those that no point falls on used to have normals of
+/// their own, dots and lines in shading and albedo.
+#[test]
+fn shading_has_no_dots_between_the_points_of_the_depth_view() {
+    let estimator = run("window", 0.0, false, chequers);
+    let (shading, correspondence) = (estimator.shading(), estimator.correspondence());
+    let is_seen = |pixel: usize| correspondence[pixel] >= 0;
+    let bend = |pixel: usize| {
+        let at = |pixel: usize| shading[3 * pixel + 1];
+        f64::from((at(pixel) - 0.5 * (at(pixel - 1) + at(pixel + 1))).abs())
+    };
+    let of = |between: bool| -> Vec<f64> {
+        let inside = (1..SIDE * SIDE - 1).filter(|&pixel| estimator.image().mask[pixel] && is_seen(pixel) != between);
+        inside.filter(|&pixel| is_seen(pixel - 1) && is_seen(pixel + 1)).map(bend).collect()
+    };
+    let [between, seen] = [of(true), of(false)].map(|bends| (bends.len(), common::mean(&bends)));
+    println!("{between:?} {seen:?}");
+    assert!(between.0 > 50 && between.1 < 1.5 * seen.1, "{between:?} between points, {seen:?} on them");
+}
+
 #[test]
 fn an_object_of_one_paint_has_none() {
     for name in ["window", "overcast", "colourful"] {

@@ -99,3 +99,39 @@ fn nothing_corresponds_to_a_surface_far_behind() {
     pose.translation.x = 1e4;
     assert_eq!(update(&views, &pose, None).count(), 0);
 }
+
+#[test]
+fn between_points_of_one_surface_normals_are_their_mean() {
+    for beta in [20.0, 40.0, -60.0] {
+        let views = views(beta);
+        let (found, rotation) = (update(&views, &views.sample.pose, Some(1.0)), views.sample.pose.rotation);
+        let (mut gaps, mut off) = (0, Vec::new());
+        for (pixel, &index) in found.depth_of_pixel().iter().enumerate() {
+            let normal = found.normal_at(pixel, &views.depth.normals).map(|normal| rotation * normal.cast::<f64>());
+            if let Ok(index) = usize::try_from(index) {
+                assert_eq!(normal, Some(rotation * vector(views.depth.normals.get(index))));
+                continue;
+            }
+            let truth = vector(views.sample.truth.image_normals.get(pixel));
+            let Some(normal) = normal.filter(|_| views.image.mask[pixel]) else { continue };
+            assert!((normal.norm() - 1.0).abs() < 1e-5);
+            gaps += 1;
+            off.push(normal.angle(&truth).to_degrees());
+        }
+        off.sort_by(f64::total_cmp);
+        let [median, most] = [off[off.len() / 2], off[off.len() * 95 / 100]];
+        // Half a pixel of the bust's curvature, and what central differences leave at rims.
+        assert!(gaps > 50 && median < 4.0 && most < 20.0, "{beta}: {gaps} gaps, {median} and {most} degrees off");
+    }
+}
+
+#[test]
+fn what_the_depth_view_does_not_see_has_no_normal() {
+    let views = views(60.0);
+    let found = update(&views, &views.sample.pose, Some(1.0));
+    let unseen = |pixel: &usize| views.image.mask[*pixel] && found.normal_at(*pixel, &views.depth.normals).is_none();
+    let wide = (0..views.image.size.len()).filter(unseen).count();
+    let inside = views.image.mask.iter().filter(|&&inside| inside).count();
+    // At 60 degrees a quarter of the bust and more is turned away from the depth camera.
+    assert!(wide * 5 > inside, "{wide} of {inside}");
+}

@@ -1,7 +1,5 @@
 //! The light stage (Eq. 2): the light from the depth view's normals where the present pose puts them.
 
-use nalgebra::Vector3;
-
 use super::paint::PaintStage;
 use crate::error::Result;
 use crate::estimator::pair::ViewPair;
@@ -43,8 +41,7 @@ impl<'a> Inputs<'a> {
 /// Fits the light, and says how far the normals' other terms can rely on it.
 pub struct LightStage {
     fitter: LightFitter,
-    /// R n_R of Eq. 9: normals of the depth view at the image's pixels, colour view's frame, NaN without
-    /// correspondence.
+    /// R n_R of Eq. 9: normals of the depth view at the image's pixels, colour view's frame, NaN where it sees nothing.
     depth_normals: Normals,
     /// Exposure of a known light by the colours alone, before any normal is known.
     first_exposure: f64,
@@ -78,7 +75,7 @@ impl LightStage {
         solution: &Solution,
         correspondences: &Correspondences,
     ) -> Result<Option<Light>> {
-        self.bring_normals(&solution.depth.normals, &solution.pose, correspondences);
+        self.bring_normals(pair, &solution.depth.normals, &solution.pose, correspondences);
         if pair.known_light().is_some() {
             return Ok(None);
         }
@@ -90,12 +87,17 @@ impl LightStage {
     }
 
     /// Brings `normals` of the depth view to the image's pixels.
-    pub fn bring_normals(&mut self, normals: &Normals, pose: &Similarity, correspondences: &Correspondences) {
+    pub fn bring_normals(
+        &mut self,
+        pair: &ViewPair,
+        normals: &Normals,
+        pose: &Similarity,
+        correspondences: &Correspondences,
+    ) {
         let rotation = pose.rotation.cast::<f32>();
-        for (pixel, &index) in correspondences.depth_of_pixel().iter().enumerate() {
-            let normal = usize::try_from(index).ok().map(|index| normals.get(index));
-            let rotated = normal.map_or([f32::NAN; 3], |normal| (rotation * Vector3::from(normal)).into());
-            self.depth_normals.set(pixel, rotated);
+        for (pixel, &inside) in pair.image.mask.iter().enumerate() {
+            let normal = if inside { correspondences.normal_at(pixel, normals) } else { None };
+            self.depth_normals.set(pixel, normal.map_or([f32::NAN; 3], |normal| (rotation * normal).into()));
         }
     }
 
