@@ -31,8 +31,9 @@ const GAP = 6;
 /** Log units from black to white around the middle, and of a residual from black to white. */
 const LOG_RANGE = 3;
 const RESIDUAL_RANGE = 0.6;
-/** Steps of a picture's share of light to its bytes. */
-const asBytes = (share) => 255 * Math.min(1, Math.max(0, share)) ** (1 / 2.2);
+/** Of sRGB, nearly; shares of light to bytes. */
+const GAMMA = 2.2;
+const asBytes = (share) => 255 * Math.min(1, Math.max(0, share)) ** (1 / GAMMA);
 
 /** A picture of a raster's part where `pixel` gives R, G, B, 0 to 1 linear; black elsewhere. */
 function picture({ width, height }, pixel, magnified = MAGNIFIED) {
@@ -113,12 +114,10 @@ async function photographed(api, data, surface) {
   return (await taken(api, image, made.depth, { start: made.pose, registration: "fixed" })).row;
 }
 
-/** Colours of eight bits as they are, and others that are linear, where the mask holds. */
+/** Colours of a file, 8 or 16 bits in sRGB, where the mask holds. */
 function coloured({ data, mask }) {
-  const channels = data.length / mask.length;
-  const linear = (value) => (value / 255) ** 2.2;
-  const shown = data instanceof Uint8Array || data instanceof Uint8ClampedArray ? linear : (value) => (data instanceof Uint16Array ? linear(value / 257) : value);
-  return (index) => mask[index] && [0, 1, 2].map((channel) => shown(data[channels * index + channel]));
+  const [channels, most] = [data.length / mask.length, 2 ** (8 * data.BYTES_PER_ELEMENT) - 1];
+  return (index) => mask[index] && [0, 1, 2].map((channel) => (data[channels * index + channel] / most) ** GAMMA);
 }
 
 /** Depth as it is and refined, and the colours. */

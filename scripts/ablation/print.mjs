@@ -14,16 +14,17 @@ const ratio = (rows, is) => `${known(rows).filter(is).length} of ${known(rows).l
 /** Rows of a variant by their cell. */
 const byId = ({ rows }) => new Map(rows.map((row) => [row.id, row]));
 
-/** The lines of a set's foot: what is said of it, and the word for a variant's rows. */
+/** The lines of a set's foot: what is said of it, and the word for a variant's rows. Nothing where some are missing. */
 const FOOT = [
   ["median", (rows) => fixed(medianOf(rows), 2)],
   ["worst", (rows) => fixed(worst(known(rows).map(({ degrees }) => degrees)), 1)],
   ["under 3 degrees", (rows) => ratio(rows, isFound)],
   ["wrong and sure of it", (rows) => ratio(rows, isConfidentlyWrong)],
-  ["seconds, median", (rows) => fixed(median(known(rows).map(({ milliseconds }) => milliseconds / 1000)), 1)],
 ];
 
-const kilobytes = (bytes) => (bytes / 1000).toFixed(1);
+const whole = (show) => (rows) => (known(rows).length === rows.length ? show(rows) : "-");
+
+const kilobytes = (bytes) => (bytes / 1000).toFixed(1).replace(/^-(?=0\.0$)/, "");
 
 /** Each set's lines and foot, and the sizes, a column for each variant. */
 export function rowsOf(sets, variants) {
@@ -32,17 +33,18 @@ export function rowsOf(sets, variants) {
   const blocks = sets.map(({ set, lines }) => ({
     set,
     lines: lines.map(({ name, ids }) => [name, ...found.map((rows) => ids.map((id) => degreesOf(rows.get(id))).join(" "))]),
-    foot: FOOT.map(([word, show]) => [`${set}: ${word}`, ...of(lines).map(show)]),
+    foot: FOOT.map(([word, show]) => [`${set}: ${word}`, ...of(lines).map(whole(show))]),
   }));
   const [all] = variants;
   const sizes = [".wasm gzipped, kB", ...variants.map(({ gzipped }, at) => (at === 0 ? kilobytes(gzipped) : kilobytes(gzipped - all.gzipped)))];
   return { head: ["degrees, without:", ...variants.map(({ part }, at) => (at === 0 ? "(all parts)" : part))], blocks, sizes };
 }
 
-/** Cells that a part makes worse, and how many it makes better. */
+/** Cells that a part makes worse, and those that it makes better; what is lost with and without it is neither. */
 export function effects(all, { part, rows }) {
   const off = new Map(rows.map((row) => [row.id, row]));
-  const both = known(all.rows).map((row) => ({ id: row.id, on: row, off: off.get(row.id) })).filter((pair) => known([pair.off]).length > 0);
+  const pairs = known(all.rows).map((row) => ({ id: row.id, on: row, off: off.get(row.id) }));
+  const both = pairs.filter(({ on, off }) => known([off]).length > 0 && (isFound(on) || isFound(off)));
   const worse = both.filter((pair) => pair.on.degrees > pair.off.degrees + MATTERS);
   const better = both.filter((pair) => pair.off.degrees > pair.on.degrees + MATTERS);
   return { part, worse, better };

@@ -1,5 +1,5 @@
 // The .wasm of the method without a part, from a copy of the sources.
-import { mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { dirname, join } from "node:path";
 import { gzipSync } from "node:zlib";
 import { NUMERICS, numericsOf } from "../numerics.mjs";
@@ -28,18 +28,26 @@ function copy(part) {
   }
 }
 
-/** Builds it, where the sources or the part have changed, and says where it is and its size gzipped. */
-export async function variant(part) {
-  const wasm = `${FOLDER}/${part.name}.wasm`;
-  const mark = inRoot(`${FOLDER}/.${part.name}.stamp`);
-  const wanted = stamp(NUMERICS) + JSON.stringify(part.changes);
-  if (readIfThere(mark) !== wanted || readIfThere(inRoot(wasm)) === undefined) {
-    const start = performance.now();
-    rmSync(mark, { force: true });
-    copy(part);
-    await numericsOf({ sources: SOURCES, target: join(FOLDER, "build"), file: wasm.slice("target/".length) });
-    writeFileSync(mark, wanted);
-    say(`built it ${part.name === "all" ? "with all" : `without ${part.name}`} (${seconds(start)})`);
-  }
+const fileOf = (part) => `${FOLDER}/${part.name}.wasm`;
+const markOf = (part) => inRoot(`${FOLDER}/.${part.name}.stamp`);
+const wantedOf = (part) => stamp(NUMERICS) + JSON.stringify(part.changes);
+
+/** Where the .wasm is and its size gzipped, if it is that of the present sources. */
+export function built(part) {
+  const wasm = fileOf(part);
+  if (readIfThere(markOf(part)) !== wantedOf(part) || !existsSync(inRoot(wasm))) return undefined;
   return { wasm, gzipped: gzipSync(readFileSync(inRoot(wasm))).length };
+}
+
+/** The same, built where the sources or the part have changed. */
+export async function variant(part) {
+  if (!built(part)) {
+    const start = performance.now();
+    rmSync(markOf(part), { force: true });
+    copy(part);
+    await numericsOf({ sources: SOURCES, target: join(FOLDER, "build"), file: fileOf(part).slice("target/".length) });
+    writeFileSync(markOf(part), wantedOf(part));
+    say(`built it (${seconds(start)})`);
+  }
+  return built(part);
 }
