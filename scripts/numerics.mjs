@@ -41,12 +41,13 @@ export const GLUE = ALL.map(({ target, name = MODULE }) => `${target}/wasm-bindg
 
 export const node = (module, ...args) => must(process.execPath, [inRoot("node_modules", module), ...args]);
 
-async function numerics({ file, target, flags, features = [], name = MODULE }) {
+async function numerics({ file, target, flags, features = [], name = MODULE, sources = "." }) {
   // Messages of panics name files: without where they lie on this machine, which is nobody's business.
   const registry = `${process.env.CARGO_HOME ?? `${homedir()}/.cargo`}/registry/src/`;
   const config = `target.${WASM}.rustflags=${JSON.stringify([...flags, `--remap-path-prefix=${registry}=`])}`;
   // Level 3 unrolls and inlines for a tenth of speed and a sixth of size; see .cargo/config.toml.
-  await must("cargo", ["build", "--release", "-p", "bimodal-stereo", "--lib", ...features, "--target", WASM, "--target-dir", target, "--config", config], {
+  const crate = ["--manifest-path", `${sources}/Cargo.toml`, "-p", "bimodal-stereo", "--lib", ...features];
+  await must("cargo", ["build", "--release", ...crate, "--target", WASM, "--target-dir", target, "--config", config], {
     env: { CARGO_PROFILE_RELEASE_OPT_LEVEL: "2" },
   });
   // The standard library was compiled with references, and the linker says so of the whole.
@@ -79,10 +80,16 @@ export async function allNumerics() {
   writeFileSync(inRoot(NUMERICS_MARK), wanted);
 }
 
+/** The .wasm with SIMD of other `sources`, as `target/{file}`; the package's own glue must be able to load it. */
+export async function numericsOf({ sources, target, file }) {
+  await numerics({ ...FLAVOURS[0], sources, target, file });
+  checkGlue([FLAVOURS[0], { target }]);
+}
+
 /** One glue loads either file, so both must have been given the same: its imports, and what is exported with which types. */
-function checkGlue() {
+function checkGlue(flavours = FLAVOURS) {
   for (const name of [`${MODULE}.js`, `${MODULE}.d.ts`, `${MODULE}_bg.wasm.d.ts`]) {
-    const paths = FLAVOURS.map(({ target }) => `${target}/wasm-bindgen/${name}`);
+    const paths = flavours.map(({ target }) => `${target}/wasm-bindgen/${name}`);
     const [first, ...others] = paths.map((path) => readFileSync(inRoot(path), "utf8"));
     if (others.some((text) => text !== first)) {
       throw new Failure(`${paths.join(" and ")} differ, so that one package cannot load both: compare them with diff.`);

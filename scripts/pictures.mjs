@@ -1,31 +1,39 @@
-// node scripts/pictures.mjs FOLDER: contact sheets to look at, of the data beside the project and of a scene of our own.
-//   photographs-N.png   image, albedo, shading and residual of each photographed object, 20 degrees off, nothing known
-//   depth-N.png         depth as it is and refined, shaded, of each registered capture, its pose known
-//   painted.png         the first of these for the built-in bust, painted
+// npm run pictures: contact sheets to look at, of the data beside the project and of a scene of our own.
+//   [FOLDER]         target/pictures by default: other people's pictures stay out of the project
+//   --only a,b       these objects alone
+//   photograph-N.png photograph, albedo, shading and residual of an object, seen 20 degrees off with nothing known; where that
+//                    pose is lost the true one is told
+//   depth-N.png      a registered capture: depth as it is, the same refined, both shaded, and its colours; its pose is known
+//   painted.png      the first of these for the built-in bust, painted
 import { mkdirSync, writeFileSync } from "node:fs";
-import { join, resolve } from "node:path";
+import { join, relative, resolve } from "node:path";
+import { parseArgs } from "node:util";
 import { encode } from "fast-png";
 import { build } from "./build.mjs";
 import { setup } from "./setup.mjs";
-import { Failure, say, script } from "./shell.mjs";
+import { Failure, root, say, script } from "./shell.mjs";
 import { hasData, library } from "./tables/library.mjs";
 import { onto } from "./tables/protocol/measure-reals.mjs";
+import { isFlagged, isFound } from "./tables/protocol/counts.mjs";
 import { quantile } from "./tables/protocol/numbers.mjs";
-import { withRun } from "./tables/protocol/runs.mjs";
+import { judged, withRun } from "./tables/protocol/runs.mjs";
 import { PAINTED, requestOf } from "./tables/protocol/scenes.mjs";
 
-/** Captures, the frame of each, and objects of a sheet. */
-const CAPTURES = [["coffee_mug_1", 1], ["bowl_1", 1], ["cap_1", 1], ["cereal_box_1", 1], ["vase_rgbd", 1], ["android_rgbd", 1], ["mitten_rgbd", 1]];
-const ON_A_SHEET = 5;
+/** Captures; the first frame of each. */
+const CAPTURES = ["coffee_mug_1", "bowl_1", "cap_1", "cereal_box_1", "vase_rgbd", "android_rgbd", "mitten_rgbd"];
+const FRAME = 1;
 const SIZE = 96;
-/** Pixels of a sheet for one of a small view, and between pictures. */
-const MAGNIFIED = 2;
+const BETA = 20;
+/** Pixels of a sheet for one of a photograph's view, of a capture's depth map, and between pictures. */
+const MAGNIFIED = 4;
+const OF_DEPTH = 2;
 const GAP = 6;
 /** Log units from black to white around the middle, and of a residual from black to white. */
 const LOG_RANGE = 3;
 const RESIDUAL_RANGE = 0.6;
-/** Steps of a picture's share of light to its bytes. */
-const asBytes = (share) => 255 * Math.min(1, Math.max(0, share)) ** (1 / 2.2);
+/** Of sRGB, nearly; shares of light to bytes. */
+const GAMMA = 2.2;
+const asBytes = (share) => 255 * Math.min(1, Math.max(0, share)) ** (1 / GAMMA);
 
 /** A picture of a raster's part where `pixel` gives R, G, B, 0 to 1 linear; black elsewhere. */
 function picture({ width, height }, pixel, magnified = MAGNIFIED) {
@@ -68,9 +76,9 @@ function exposed(log) {
   return (index) => Number.isFinite(log[3 * index]) && triple(log, index).map((value) => 0.3 * Math.exp(Math.max(-LOG_RANGE, value - middle)));
 }
 
-/** Image, albedo, shading and residual of a run that knows nothing. */
-const taken = (api, image, depth) =>
-  withRun(api, { image, depth }, {}, (report, estimator) => {
+/** Image, albedo, shading and residual of a run, which knows nothing but its options. */
+const taken = (api, image, depth, options = {}) =>
+  withRun(api, { image, depth }, options, (report, estimator) => {
     const residual = estimator.residual();
     const log = Float32Array.from(image.data, (value, at) => (image.mask[Math.floor(at / 3)] ? Math.log(value) : NaN));
     const grey = (index) => Number.isFinite(residual[index]) && Array(3).fill(residual[index] / RESIDUAL_RANGE);
@@ -95,10 +103,29 @@ function shaded({ width, height, camera }, metres) {
   };
 }
 
+/** A photographed object; where its pose is lost the true one is told. */
+async function photographed(api, data, surface) {
+  const made = api.sample(requestOf({ surface, light: "A", size: SIZE, angles: { beta: BETA } }, data));
+  const image = onto(SIZE, data.photograph(surface, "lab_diffuse"), made);
+  const found = await taken(api, image, made.depth);
+  const row = judged(found.report, made.pose);
+  say(`${surface}: ${row.degrees.toFixed(1)} degrees off${isFlagged(row) ? ", flagged" : ""}${isFound(row) ? "" : "; told the truth"}`);
+  if (isFound(row)) return found.row;
+  return (await taken(api, image, made.depth, { start: made.pose, registration: "fixed" })).row;
+}
+
+/** Colours of a file, 8 or 16 bits in sRGB, where the mask holds. */
+function coloured({ data, mask }) {
+  const [channels, most] = [data.length / mask.length, 2 ** (8 * data.BYTES_PER_ELEMENT) - 1];
+  return (index) => mask[index] && [0, 1, 2].map((channel) => (data[channels * index + channel] / most) ** GAMMA);
+}
+
+/** Depth as it is and refined, and the colours. */
 const refined = (api, { image, depth }) =>
-  withRun(api, { image, depth }, { start: "identity", registration: "fixed", scale: 1 }, (report, estimator) => {
+  withRun(api, { image, depth }, { start: "identity", registration: "fixed", scale: 1 }, (_, estimator) => {
     const raw = Float64Array.from(depth.data, (value, index) => (depth.mask[index] && value > 0 ? value * depth.unit : NaN));
-    return { report, row: [raw, estimator.refinedDepth()].map((metres) => picture(depth, shaded(depth, metres), 1)) };
+    const maps = [raw, estimator.refinedDepth()].map((metres) => picture(depth, shaded(depth, metres), OF_DEPTH));
+    return [...maps, picture(image, coloured(image), Math.max(1, Math.round((OF_DEPTH * depth.width) / image.width)))];
   });
 
 /** The built-in bust in window light, in squares of four paints. */
@@ -114,29 +141,31 @@ function painted(api) {
   return taken(api, { ...image, data }, depth);
 }
 
-const inSheets = (rows) => Array.from({ length: Math.ceil(rows.length / ON_A_SHEET) }, (_, at) => rows.slice(at * ON_A_SHEET, (at + 1) * ON_A_SHEET));
+function parsed() {
+  try {
+    const { positionals: [folder = "target/pictures"], values: { only } } = parseArgs({ options: { only: { type: "string" } }, allowPositionals: true });
+    const wanted = only?.split(",");
+    const unknown = wanted?.find((name) => ![...PAINTED, ...CAPTURES].includes(name));
+    if (unknown) throw new Error(`There is no object "${unknown}"; there are ${[...PAINTED, ...CAPTURES].join(", ")}.`);
+    return { folder: resolve(root, folder), of: (names) => names.filter((name) => !wanted || wanted.includes(name)) };
+  } catch (error) {
+    throw new Failure(error.message);
+  }
+}
 
 await script(async () => {
-  const [folder] = process.argv.slice(2);
-  if (!folder) throw new Failure("node scripts/pictures.mjs FOLDER");
+  const { folder, of } = parsed();
   await setup();
   await build();
   const api = await import("../pkg/index.js");
   await api.default();
   mkdirSync(folder, { recursive: true });
-  const save = (name, rows) => {
-    writeFileSync(join(folder, `${name}.png`), sheet(rows));
-    say(`wrote ${resolve(folder, name)}.png`);
-  };
-  save("painted", [(await painted(api)).row]);
-  if (!hasData()) return;
-  const data = library(await import("../pkg/files.js"));
-  const [photographs, captures] = [[], []];
-  for (const surface of PAINTED) {
-    const made = api.sample(requestOf({ surface, light: "A", size: SIZE, angles: { beta: 20 } }, data));
-    photographs.push((await taken(api, onto(SIZE, data.photograph(surface, "lab_diffuse"), made), made.depth)).row);
+  const save = (name, row) => writeFileSync(join(folder, `${name}.png`), sheet([row]));
+  save("painted", (await painted(api)).row);
+  if (hasData()) {
+    const data = library(await import("../pkg/files.js"));
+    for (const name of of(PAINTED)) save(`photograph-${name}`, await photographed(api, data, name));
+    for (const name of of(CAPTURES)) save(`depth-${name}`, await refined(api, data.capture(name, FRAME)));
   }
-  for (const [name, frame] of CAPTURES) captures.push((await refined(api, data.capture(name, frame))).row);
-  inSheets(photographs).forEach((rows, at) => save(`photographs-${at + 1}`, rows));
-  inSheets(captures).forEach((rows, at) => save(`depth-${at + 1}`, rows));
+  say(`the pictures are in ${relative(root, folder) || "."}`);
 });

@@ -1,9 +1,9 @@
 // From tables to their rows: every cell once, what is known from the journal, the rest run now.
-import { say } from "../shell.mjs";
+import { inRoot, say } from "../shell.mjs";
 import { openJournal } from "./journal.mjs";
 import { hasData } from "./library.mjs";
 import { runCells } from "./pool.mjs";
-import { TABLES, rowsOf } from "./protocol/index.mjs";
+import { rowsOf } from "./protocol/index.mjs";
 import { kit } from "./protocol/scenes.mjs";
 
 /** Milliseconds between two progress lines. */
@@ -30,9 +30,10 @@ function interruption() {
   return { signal: abort.signal, done: () => process.off("SIGINT", stop).off("SIGTERM", stop) };
 }
 
-export async function collect(tables, { quick, workers }) {
+/** `wasm` is a file to measure in place of the package's own. */
+export async function collect(tables, { quick, workers, wasm }) {
   const { lists, cells } = cellsOf(tables, quick);
-  const journal = openJournal();
+  const journal = openJournal(wasm);
   const results = new Map(cells.map((cell) => [cell.id, journal.find(cell)]));
   const waiting = cells.filter((cell) => results.get(cell.id) === undefined);
   const kept = cells.length - waiting.length;
@@ -45,6 +46,7 @@ export async function collect(tables, { quick, workers }) {
   await runCells(waiting, {
     workers,
     signal,
+    settings: wasm ? [inRoot(wasm)] : [],
     onResult(id, result) {
       results.set(id, result);
       journal.keep(byId.get(id), result);
@@ -62,7 +64,7 @@ export async function collect(tables, { quick, workers }) {
   const rows = (table) =>
     rowsOf(table, lists.get(table).filter(good).map((cell) => ({ cell, result: results.get(cell.id) })));
   return {
-    json: Object.fromEntries(TABLES.filter((table) => lists.has(table)).map((table) => [table.name, rows(table)])),
+    json: Object.fromEntries(tables.map((table) => [table.name, rows(table)])),
     failures: cells.filter((cell) => results.get(cell.id)?.failure).map((cell) => ({ id: cell.id, ...results.get(cell.id) })),
     complete: cells.every((cell) => results.get(cell.id) !== undefined),
   };

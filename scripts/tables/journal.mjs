@@ -5,9 +5,10 @@ import { inRoot, matching, stamp } from "../shell.mjs";
 import { hasData } from "./library.mjs";
 
 const FOLDER = "target/tables";
-/** What decides about a result: the package, the protocols, and what the names stand for. */
-const decisive = () => [
-  ...matching(["pkg"], /\.(js|wasm)$/),
+/** What decides about a result: the package, or its scripts and a .wasm in place of its own, the protocols, and what the names stand for. */
+const decisive = (wasm) => [
+  ...matching(["pkg"], wasm ? /\.js$/ : /\.(js|wasm)$/),
+  ...(wasm ? [wasm] : []),
   ...["scripts/tables/protocol", "scripts/tables/library.mjs", "scripts/tables/npy.mjs"],
 ];
 
@@ -22,9 +23,9 @@ function parsed(line) {
   }
 }
 
-/** The journal of this very package and these very protocols; another build begins another one. */
-export function openJournal() {
-  const path = inRoot(FOLDER, `${stamp(decisive()).slice(0, 16)}${hasData() ? "" : "-built-in"}.jsonl`);
+/** The journal of this very package and these very protocols; another build begins another one, and so does another .wasm. */
+export function openJournal(wasm) {
+  const path = inRoot(FOLDER, `${stamp(decisive(wasm)).slice(0, 16)}${hasData() ? "" : "-built-in"}.jsonl`);
   mkdirSync(inRoot(FOLDER), { recursive: true });
   const lines = existsSync(path) ? readFileSync(path, "utf8").split("\n").map(parsed).filter(Boolean) : [];
   const results = new Map(lines.map(({ key, result }) => [key, result]));

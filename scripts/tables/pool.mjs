@@ -8,16 +8,16 @@ const MOST_TRIES = 2;
 
 /**
  * Runs all cells; `onResult(id, result, took)` gets each one's as it comes. Resolves when all are done, or, once `signal` is
- * aborted, when those at work have been given up. `program` is what each process runs.
+ * aborted, when those at work have been given up. `program` is what each process runs, `settings` what it is told on its command line.
  */
-export function runCells(cells, { workers, signal, onResult, program = CELLS }) {
+export function runCells(cells, { workers, signal, onResult, program = CELLS, settings = [] }) {
   const waiting = cells.map((cell) => ({ cell, tries: 0 }));
   return new Promise((done) => {
     const children = new Set();
     const finish = () => children.size === 0 && done();
 
     function start() {
-      const child = fork(program, { stdio: ["ignore", "inherit", "inherit", "ipc"] });
+      const child = fork(program, settings, { stdio: ["ignore", "inherit", "inherit", "ipc"] });
       children.add(child);
       let task;
       const next = () => {

@@ -12,7 +12,7 @@ export const fixed = (value, digits = 3) => (typeof value === "number" && Number
 const percent = (value) => (typeof value === "number" ? `${(100 * value).toFixed(0)} %` : DASH);
 const small = (value) => (typeof value === "number" ? (value < 1e-4 ? value.toExponential(1) : value.toFixed(6)) : DASH);
 /** ? flagged as uncertain, ! wrong by more than 3 degrees and not flagged. */
-const mark = (row) => (isFlagged(row) ? "?" : isConfidentlyWrong(row) ? "!" : "");
+export const mark = (row) => (isFlagged(row) ? "?" : isConfidentlyWrong(row) ? "!" : "");
 
 /** Lists of words as columns, the first one flush left. */
 export function columns(rows) {

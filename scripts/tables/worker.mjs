@@ -1,9 +1,12 @@
 // A process of its own for cells: one instance of the package, one cell after the other.
+//   WASM   a file in place of the package's own
+import { pathToFileURL } from "node:url";
 import { library } from "./library.mjs";
 import { measure } from "./protocol/measure.mjs";
 
 const api = await import("../../pkg/index.js");
-await api.default();
+const [wasm] = process.argv.slice(2);
+await api.default(wasm && pathToFileURL(wasm));
 const data = library(await import("../../pkg/files.js"));
 
 /** What is worth keeping of an error. */

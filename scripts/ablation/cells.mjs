@@ -1,0 +1,45 @@
+// What every variant runs: cells of the tables, by their names.
+import { TABLES } from "../tables/protocol/index.mjs";
+import { PAINTED } from "../tables/protocol/scenes.mjs";
+
+const numbers = (count) => Array.from({ length: count }, (_, index) => index + 1);
+
+/** Lines of a set, each with the cells that stand in it. */
+const SETS = [
+  {
+    set: "photographs",
+    lines: PAINTED.map((name) => ({ name, ids: [20, 40].map((beta) => `photographs/${name}/lab_diffuse/${beta}`) })),
+    quick: 2,
+  },
+  { set: "renders of them", lines: PAINTED.map((name) => ({ name: `${name}, render`, ids: [`photographs/${name}/render/40`] })), quick: 0 },
+  { set: "painted renders", lines: numbers(8).map((scene) => ({ name: `painted ${scene}`, ids: [`painted/${scene}`] })), quick: 1 },
+  { set: "plain renders", lines: numbers(8).map((scene) => ({ name: `random ${scene}`, ids: [`random/${scene}`] })), quick: 1 },
+  {
+    // Even ones of `stress`, on whose odd ones constants were set.
+    set: "noisy depth",
+    lines: [
+      ...[2, 4, 6].map((scene) => ({ name: `stress ${scene}`, ids: [`stress/${scene}`] })),
+      ...[1, 2].map((scene) => ({ name: `pinhole ${scene}`, ids: [`pinhole/${scene}/search`] })),
+    ],
+    quick: 0,
+  },
+];
+
+/** The sets with their lines; without other people's data those of our own scenes. */
+export const sets = (quick, complete) =>
+  SETS.map(({ set, lines, quick: few }) => ({ set, lines: quick ? lines.slice(0, few) : lines }))
+    .map(({ set, lines }) => ({ set, lines: complete ? lines : lines.filter(({ ids }) => /^(painted|random|pinhole)/.test(ids[0])) }))
+    .filter(({ lines }) => lines.length > 0);
+
+/** The cells as a table of their own, which is run as the others are. */
+export const table = (chosen) => ({
+  name: "parts",
+  cells(kit) {
+    const ids = chosen.flatMap(({ lines }) => lines.flatMap((line) => line.ids));
+    const cells = new Map(TABLES.flatMap((one) => one.cells(kit, false)).map((cell) => [cell.id, cell]));
+    const missing = ids.find((id) => !cells.has(id));
+    if (missing) throw new Error(`no table has the cell ${missing}`);
+    return ids.map((id) => cells.get(id));
+  },
+  rows: (results) => results.map(({ cell, result: { degrees, status, rivals, milliseconds } }) => ({ id: cell.id, degrees, status, rivals, milliseconds })),
+});

@@ -1,0 +1,84 @@
+// What each part buys, as text and as a table of docs/accuracy.md.
+import { columns, fixed, mark } from "../tables/print.mjs";
+import { isConfidentlyWrong, isFound } from "../tables/protocol/counts.mjs";
+import { median, worst } from "../tables/protocol/numbers.mjs";
+
+/** A cell is worse or better by a part where it moves by so much, degrees: a tenth of what counts as found. */
+const MATTERS = 0.3;
+
+const degreesOf = (row) => (row ? `${fixed(row.degrees, row.degrees < 9.95 ? 1 : 0)}${mark(row)}` : "-");
+const known = (rows) => rows.filter((row) => typeof row?.degrees === "number");
+const medianOf = (rows) => median(known(rows).map(({ degrees }) => degrees));
+const ratio = (rows, is) => `${known(rows).filter(is).length} of ${known(rows).length}`;
+
+/** Rows of a variant by their cell. */
+const byId = ({ rows }) => new Map(rows.map((row) => [row.id, row]));
+
+/** The lines of a set's foot: what is said of it, and the word for a variant's rows. Nothing where some are missing. */
+const FOOT = [
+  ["median", (rows) => fixed(medianOf(rows), 2)],
+  ["worst", (rows) => fixed(worst(known(rows).map(({ degrees }) => degrees)), 1)],
+  ["under 3 degrees", (rows) => ratio(rows, isFound)],
+  ["wrong and sure of it", (rows) => ratio(rows, isConfidentlyWrong)],
+];
+
+const whole = (show) => (rows) => (known(rows).length === rows.length ? show(rows) : "-");
+
+const kilobytes = (bytes) => (bytes / 1000).toFixed(1).replace(/^-(?=0\.0$)/, "");
+
+/** Each set's lines and foot, and the sizes, a column for each variant. */
+export function rowsOf(sets, variants) {
+  const found = variants.map(byId);
+  const of = (lines) => found.map((rows) => lines.flatMap(({ ids }) => ids.map((id) => rows.get(id))));
+  const blocks = sets.map(({ set, lines }) => ({
+    set,
+    lines: lines.map(({ name, ids }) => [name, ...found.map((rows) => ids.map((id) => degreesOf(rows.get(id))).join(" "))]),
+    foot: FOOT.map(([word, show]) => [`${set}: ${word}`, ...of(lines).map(whole(show))]),
+  }));
+  const [all] = variants;
+  const sizes = [".wasm gzipped, kB", ...variants.map(({ gzipped }, at) => (at === 0 ? kilobytes(gzipped) : kilobytes(gzipped - all.gzipped)))];
+  return { head: ["degrees, without:", ...variants.map(({ part }, at) => (at === 0 ? "(all parts)" : part))], blocks, sizes };
+}
+
+/** Cells that a part makes worse, and those that it makes better; what is lost with and without it is neither. */
+export function effects(all, { part, rows }) {
+  const off = new Map(rows.map((row) => [row.id, row]));
+  const pairs = known(all.rows).map((row) => ({ id: row.id, on: row, off: off.get(row.id) }));
+  const both = pairs.filter(({ on, off }) => known([off]).length > 0 && (isFound(on) || isFound(off)));
+  const worse = both.filter((pair) => pair.on.degrees > pair.off.degrees + MATTERS);
+  const better = both.filter((pair) => pair.off.degrees > pair.on.degrees + MATTERS);
+  return { part, worse, better };
+}
+
+const moved = ({ id, on, off }) => `${id} ${degreesOf(off)} -> ${degreesOf(on)}`;
+
+export function text(sets, variants) {
+  const { head, blocks, sizes } = rowsOf(sets, variants);
+  const [all, ...others] = variants;
+  const lists = others.map((variant) => effects(all, variant)).flatMap(({ part, worse, better }) => [
+    `  ${part}: better ${better.length}, worse ${worse.length}${worse.length > 0 ? ":" : ""}`,
+    ...worse.map((pair) => `    ${moved(pair)}`),
+  ]);
+  return [
+    "Degrees off: with all parts, and with one part off each; ? flagged, ! over 3 degrees and not flagged",
+    ...columns([head, ...blocks.flatMap(({ lines, foot }) => [...lines, ...foot, head.map(() => "")]), sizes]),
+    "",
+    `Worse with the part than without, by over ${MATTERS} degrees (without -> with)`,
+    ...lists,
+  ];
+}
+
+/** As Markdown: photographs line by line, the other sets by their feet. */
+export function markdown(sets, variants) {
+  const { head, blocks, sizes } = rowsOf(sets, variants);
+  const [all, ...others] = variants;
+  const line = (cells) => `| ${cells.join(" | ")} |`;
+  const lines = blocks.flatMap(({ set, lines, foot }) => [...(set === "photographs" ? lines : []), ...foot.slice(0, set === "photographs" ? FOOT.length : 3)]);
+  const lists = others.map((variant) => effects(all, variant)).map(
+    ({ part, worse, better }) => `- ${part}: better ${better.length}; worse ${worse.length === 0 ? "none" : worse.map(moved).join(", ")}`,
+  );
+  return [
+    ...[line(head), `|---|${variants.map(() => "---").join("|")}|`, ...[...lines, sizes].map(line)],
+    ...["", `Cells that end better and worse with a part than without it, by over ${MATTERS} degrees (without -> with):`, "", ...lists],
+  ];
+}
