@@ -100,7 +100,7 @@ fn shading_has_no_dots_between_the_points_of_the_depth_view() {
         let inside = (1..SIDE * SIDE - 1).filter(|&pixel| estimator.image().mask[pixel] && is_seen(pixel) != between);
         inside.filter(|&pixel| is_seen(pixel - 1) && is_seen(pixel + 1)).map(bend).collect()
     };
-    let [between, seen] = [of(true), of(false)].map(|bends| (bends.len(), common::mean(&bends)));
+    let [between, seen] = [of(true), of(false)].map(|bends| (bends.len(), crate::common::mean(&bends)));
     println!("{between:?} {seen:?}");
     assert!(between.0 > 50 && between.1 < 1.5 * seen.1, "{between:?} between points, {seen:?} on them");
 }
