@@ -31,7 +31,7 @@ mod verdict;
 mod workers;
 
 use crate::error::{Error, ErrorKind, Result};
-use crate::options::{Options, Registration, Start};
+use crate::options::{Options, Registration, Shading, Start};
 use crate::pose::{Correspondences, Similarity};
 use crate::report::{Objective, Stage, Status, StepReport};
 use crate::shape::Scratch;
@@ -112,6 +112,7 @@ impl Estimator {
         let domains = [refinement.domain(), shape.domain().unwrap_or(refinement.domain())];
         let scratch = Scratch::new(pixels.max(points), &domains);
         let solution = Solution::new(&pair, pose, light);
+        let correspondences = Correspondences::new(&pair.image, &pair.depth);
         let mut estimator = Self {
             run: if pair.options.start == Start::Search { Run::Preparing(None) } else { Run::Iterating(Stage::Light) },
             light: LightStage::new(pixels),
@@ -119,7 +120,10 @@ impl Estimator {
             shape,
             registration,
             refinement,
-            correspondences: Correspondences::new(&pair.image, &pair.depth),
+            correspondences: match pair.options.shading {
+                Shading::Pixel => correspondences.of_points_alone(),
+                Shading::Surface => correspondences,
+            },
             residuals: Residuals::new(pixels),
             scratch,
             accepted: Accepted::new(&solution),

@@ -63,6 +63,7 @@ pub struct CorrespondenceProblem<'a> {
 pub struct Correspondences {
     image: Size,
     depth: Size,
+    widest_gap: usize,
     depth_of_pixel: Vec<i32>,
     visible: Visibility,
     /// A number for each point: the z-buffer of the reverse view, then distances from the image surface.
@@ -81,6 +82,7 @@ impl Correspondences {
         Self {
             image: image.size,
             depth: depth.size,
+            widest_gap: WIDEST_GAP,
             depth_of_pixel: vec![-1; pixels],
             visible: Visibility::new(pixels, points),
             of_point: vec![f32::INFINITY; points],
@@ -94,6 +96,13 @@ impl Correspondences {
     #[must_use]
     pub fn depth_of_pixel(&self) -> &[i32] {
         &self.depth_of_pixel
+    }
+
+    /// The same without normals between points, as the paper has it: its prior holds pixels one by one, and more of them that are
+    /// off hold its loop back (a bust of 48x48 ended 4.6 degrees off instead of 2.2).
+    #[must_use]
+    pub fn of_points_alone(self) -> Self {
+        Self { widest_gap: 0, ..self }
     }
 
     /// The normal that the depth view has at an image pixel, of `normals` in its own frame: that of the pixel's counterpart,
@@ -123,14 +132,14 @@ impl Correspondences {
 
     /// The same along a line of pixels `stride` apart, on which this one is at `place`.
     fn ends(&self, pixel: usize, stride: usize, place: usize, length: usize) -> Option<[usize; 2]> {
-        let reach = 1..=WIDEST_GAP;
+        let reach = 1..=self.widest_gap;
         let before =
             reach.clone().filter(|&k| k <= place).find_map(|k| Some((k, self.depth_at(pixel - k * stride)?)))?;
         let after =
             reach.filter(|&k| place + k < length).find_map(|k| Some((k, self.depth_at(pixel + k * stride)?)))?;
         let [from, to] = [before, after].map(|(_, index)| self.depth.position(index));
         let is_one_surface = from.0.abs_diff(to.0).max(from.1.abs_diff(to.1)) <= NEIGHBOURS;
-        (before.0 + after.0 <= WIDEST_GAP + 1 && is_one_surface).then_some([before.1, after.1])
+        (before.0 + after.0 <= self.widest_gap + 1 && is_one_surface).then_some([before.1, after.1])
     }
 
     /// Continuous image column and row of each depth pixel, NaN where it has no counterpart.

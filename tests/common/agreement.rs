@@ -11,7 +11,7 @@ const DEGREES: f64 = 1e-3;
 /// Of log S, and of the scale.
 const NUMBERS: f64 = 1e-4;
 /// The paper's registration chooses neighbours and inliers, so that a last digit decides about one more of them: its loop
-/// ends elsewhere by a part of what it is off the truth, which is 0.8 degrees (measured: 0.25 degrees, 3e-4).
+/// ends elsewhere by a part of what it is off the truth, which is 2 degrees (measured: 0.25 degrees, 3e-4).
 const CHOSEN_DEGREES: f64 = 0.5;
 const CHOSEN_NUMBERS: f64 = 1e-3;
 
@@ -20,9 +20,9 @@ type End = [f64; 5];
 
 /// By the colours, from a start that is some degrees off; by the paper's own loop; by one that starts nowhere.
 const ENDS: [End; 3] = [
-    [5.384515, 24.565274, -8.004702, 0.997175, 0.043773],
-    [6.226996, 24.211925, -8.313129, 0.993203, 0.040540],
-    [1.801580, 19.504545, -8.107041, 1.0, 0.085279],
+    [5.389257, 24.567132, -8.000880, 0.997166, 0.050250],
+    [6.814023, 23.855644, -8.262041, 0.993810, 0.044229],
+    [2.345583, 26.909903, -7.989706, 1.0, 0.098351],
 ];
 
 fn sample(side: usize) -> Sample {
