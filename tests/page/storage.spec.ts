@@ -55,7 +55,7 @@ test("where every kind of storage is forbidden all places work", async ({ lab, p
 });
 
 test("two Labs in two tabs run at once, each as if it were alone", async ({ lab, context }) => {
-  const settings = ["size=48&iterations=6", "size=32&beta=15&iterations=6"];
+  const settings = ["size=48&start=truth&iterations=6", "size=32&beta=15&start=truth&iterations=6"];
   const end = async ({ page, iteration }: Lab): Promise<string[]> => [await iteration.innerText(), await page.locator("#pose").innerText()];
   const other = new Lab(await context.newPage());
   const labs = [lab, other];
