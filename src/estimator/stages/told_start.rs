@@ -140,30 +140,26 @@ impl TrustRegion {
                 _ => {}
             }
         }
-        match (best, outlined) {
+        Ok(match (best, outlined) {
             (Some(best), outlined) if !outlines::is_painted(pair, &best) || outlined.is_none() => {
                 self.by_all_points(pair, colours, *best)
             }
-            (_, Some(outlined)) => Ok(Settled::ByOutlines(Box::new(outlined))),
-            (..) => Ok(Settled::Kept),
-        }
+            (_, Some(outlined)) => Settled::ByOutlines(Box::new(outlined)),
+            (..) => Settled::Kept,
+        })
     }
 
-    /// All points follow the sample that candidates are registered by.
-    fn by_all_points(
-        &self,
-        pair: &ViewPair,
-        colours: &mut ColourRegistration,
-        best: PhotometricReport,
-    ) -> Result<Settled> {
+    /// All points follow the sample that candidates are registered by; where they do not, the told pose is kept.
+    fn by_all_points(&self, pair: &ViewPair, colours: &mut ColourRegistration, best: PhotometricReport) -> Settled {
         let pose = best.pose;
         colours.adopt(best);
-        let found = colours.register(pair, &pose)?.clone();
-        if self.holds(&found.pose) {
-            return Ok(Settled::ByColours(Box::new(found)));
+        match colours.register(pair, &pose) {
+            Ok(found) if self.holds(&found.pose) => Settled::ByColours(Box::new(found.clone())),
+            _ => {
+                colours.take_found();
+                Settled::Kept
+            }
         }
-        colours.take_found();
-        Ok(Settled::Kept)
     }
 
     /// The pose by outlines, where intrinsics tell of the whole frame, enough is seen of them and they like it better
