@@ -10,24 +10,21 @@ use bimodal_stereo::{Angles, Estimator, LightSource, Options, Registration, Size
 const DEGREES: f64 = 1e-3;
 /// Of log S, and of the scale.
 const NUMBERS: f64 = 1e-4;
-/// The paper's registration chooses neighbours and inliers, so that a last digit decides about one more of them: its loop
-/// ends elsewhere by a part of what it is off the truth, which is 2 degrees (measured: 0.25 degrees, 3e-4).
-const CHOSEN_DEGREES: f64 = 0.5;
-const CHOSEN_NUMBERS: f64 = 1e-3;
 
 /// How a run ended: alpha, beta, gamma in degrees, scale, residual.
 type End = [f64; 5];
 
-/// By the colours, from a start that is some degrees off; by the paper's own loop; by one that starts nowhere.
+/// By the colours, from a start that is some degrees off; by the paper's own loop, under light that tells enough: it chooses
+/// inliers, and under the window's a last digit moves its end by half a degree; by one that starts nowhere.
 const ENDS: [End; 3] = [
     [5.389257, 24.567132, -8.000880, 0.997166, 0.050250],
-    [6.814023, 23.855644, -8.262041, 0.993810, 0.044229],
+    [4.846028, 25.005366, -7.994371, 0.998792, 0.116139],
     [2.345583, 26.909903, -7.989706, 1.0, 0.098351],
 ];
 
-fn sample(side: usize) -> Sample {
+fn sample(side: usize, light: &str) -> Sample {
     let request = SampleRequest {
-        light: scenes::light("window").expect("a built-in light"),
+        light: scenes::light(light).expect("a built-in light"),
         size: Size { width: side, height: side },
         rotation: Angles { alpha: 5.0, beta: 25.0, gamma: -8.0 }.rotation(),
         noise: 0.005,
@@ -49,19 +46,18 @@ fn end(sample: &Sample, options: Options) -> End {
 
 /// Holds this build against the numbers.
 pub fn check() {
-    let (small, usual) = (sample(32), sample(48));
+    let (small, usual, colourful) = (sample(32, "window"), sample(48, "window"), sample(48, "colourful"));
     let light = LightSource::Known(usual.light);
     let rotation = usual.pose.rotation * Angles { alpha: 4.0, beta: -3.0, gamma: 5.0 }.rotation();
     let start = Start::Pose { rotation, scale: None, translation: None };
     let runs = [
-        (&usual, Options { light: light.clone(), start, registration: Registration::Joint, ..Options::default() }),
-        (&usual, Options { light, ..Options::paper() }),
+        (&usual, Options { light, start, registration: Registration::Joint, ..Options::default() }),
+        (&colourful, Options { light: LightSource::Known(colourful.light), ..Options::paper() }),
         (&small, Options { scale: Some(1.0), ..Options::default() }),
     ];
     let found = runs.map(|(sample, options)| end(sample, options));
-    let within = |degrees, numbers| [degrees, degrees, degrees, numbers, numbers];
-    let limits = [within(DEGREES, NUMBERS), within(CHOSEN_DEGREES, CHOSEN_NUMBERS), within(DEGREES, NUMBERS)];
-    for ((found, expected), limits) in found.iter().zip(&ENDS).zip(&limits) {
+    let limits = [DEGREES, DEGREES, DEGREES, NUMBERS, NUMBERS];
+    for (found, expected) in found.iter().zip(&ENDS) {
         let is_near = (0..limits.len()).all(|k| (found[k] - expected[k]).abs() < limits[k]);
         assert!(is_near, "{found:?} instead of {expected:?}");
     }

@@ -219,14 +219,16 @@ impl RegistrationStage {
                 let settled = region.settle(pair, colours)?;
                 self.told = Told::Improved(region);
                 match settled {
-                    Settled::ByColours(found) => *found,
+                    Settled::ByColours(found) if grows_little(pair, &found.pose, start) => *found,
                     Settled::ByOutlines(found) => {
                         let registered = Registered::by_outlines(&found);
                         self.told = Told::Outlined(*found);
                         return Ok(Some(registered));
                     }
                     Settled::ByContrast(found) => return Ok(Some(self.adopt_contrast(pair, *found, start))),
-                    Settled::Kept => {
+                    // A start of an absurd size is kept and "lost", as any other that nothing near it betters.
+                    Settled::ByColours(_) | Settled::Kept => {
+                        colours.take_found();
                         self.told = Told::Kept;
                         return Ok(None);
                     }
@@ -237,9 +239,9 @@ impl RegistrationStage {
                 colours.register(pair, start)?.clone()
             }
         };
-        let growth = gauge::growth(pair, &found.pose, start);
-        if growth > LARGEST_GROWTH.ln() {
+        if !grows_little(pair, &found.pose, start) {
             let message = "the colours pull the apparent size away from the start's by a factor of more than two";
+            let growth = gauge::growth(pair, &found.pose, start);
             return Err(Error::new(ErrorKind::Degenerate, "start", message).value(growth.exp()));
         }
         Ok(Some(self.registered(pair, &found, start)))
@@ -266,4 +268,9 @@ fn with_gauge_of(pair: &ViewPair, mut pose: Similarity, present: &Similarity) ->
         pose.translation.z = present.translation.z;
     }
     pose
+}
+
+/// Whether the apparent size stays within reach of the start's.
+fn grows_little(pair: &ViewPair, pose: &Similarity, start: &Similarity) -> bool {
+    gauge::growth(pair, pose, start) <= LARGEST_GROWTH.ln()
 }
