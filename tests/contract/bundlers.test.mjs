@@ -61,11 +61,11 @@ describe("README's example in", () => {
     const root = join(project, "vite");
     const options = { root, configFile: false, logLevel: "silent", cacheDir: join(root, "cache") };
     await build(options);
-    complete(await visit(await served(join(root, "dist"))));
+    complete(await visit(await served(join(root, "dist")), { threads: 1 }));
     for (const configFile of [false, join(root, "older.config.js")]) {
       const server = await createServer({ ...options, configFile, server: { port: 0, host: "127.0.0.1", fs: { allow: [project] } } });
       await server.listen();
-      complete(await visit(server.resolvedUrls.local[0]));
+      complete(await visit(server.resolvedUrls.local[0], { threads: 1 }));
       await server.close();
     }
   });
@@ -78,7 +78,7 @@ describe("README's example in", () => {
     });
     assert.equal(stats.toString({ all: false, errors: true, warnings: true }), "");
     page("webpack");
-    complete(await visit(await served(path)));
+    complete(await visit(await served(path), { threads: 1 }));
     // Nobody's business: where it was bundled.
     for (const file of readdirSync(path)) assert.ok(!readFileSync(join(path, file), "latin1").includes(project), file);
   });
@@ -86,12 +86,12 @@ describe("README's example in", () => {
   line("esbuild", async (command, script) => {
     run("sh", ["-c", command], project);
     page("dist", script.replace("dist/", ""));
-    complete(await visit(await served(join(project, "dist"))));
+    complete(await visit(await served(join(project, "dist")), { threads: 1 }));
   });
 
   line("no bundler", async (map) => {
     write(project, { "plain.html": html(`${map}<script type="module">${APP}</script>`) });
-    complete(await visit(`${await served(project)}plain.html`));
+    complete(await visit(`${await served(project)}plain.html`, { threads: 1 }));
   });
 
   line("anything else", async (address) => {

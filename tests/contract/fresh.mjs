@@ -89,10 +89,10 @@ export function chrome() {
 }
 
 /**
- * What a page says in its console until it says `last` or fails, the answers of its server that were none, and its threads:
+ * What a page says in its console until it says "end" or fails, the answers of its server that were none, and its threads:
  * whether each of them runs our code.
  */
-export async function visit(address, last = "end") {
+export async function visit(address, { threads = 0 } = {}) {
   const page = await (await chrome()).newPage();
   const seen = { lines: [], missing: [], threads: [] };
   page.on("worker", (worker) => seen.threads.push(worker.evaluate(() => typeof self.onmessage).catch(String)));
@@ -105,7 +105,7 @@ export async function visit(address, last = "end") {
     });
     page.on("console", (message) => {
       seen.lines.push(message.text());
-      if (message.text() === last) done();
+      if (message.text() === "end") done();
     });
     page.on("pageerror", (error) => {
       seen.lines.push(`uncaught ${error.message}`);
@@ -115,6 +115,8 @@ export async function visit(address, last = "end") {
   const late = AbortSignal.timeout(NEVER);
   await page.goto(address);
   await Promise.race([ended, new Promise((_, fail) => late.addEventListener("abort", () => fail(new Error(`${address}: ${seen.lines.join("\n")}`))))]);
+  // The browser may tell of a thread after what its page has said.
+  while (seen.threads.length < threads && !late.aborted) await page.waitForTimeout(50);
   seen.threads = await Promise.all(seen.threads);
   await page.close();
   return seen;
