@@ -16,6 +16,9 @@ use crate::view::{Camera, ColourView, DepthView, Points};
 
 /// Two orthographic masks that overlap less than this (intersection over union) are centred on each other first.
 const LEAST_OVERLAP: f64 = 0.5;
+/// Growth of the apparent size beyond which, or below whose inverse, a registration has collapsed: shrunk onto a few pixels
+/// a cloud is easily explained. The search looks from 0.7 to 1.4.
+const LARGEST_GROWTH: f64 = 2.0;
 
 /// s0: what one unit of the depth view measures in the colour view.
 pub fn unit_scale(pair: &ViewPair) -> f64 {
@@ -45,6 +48,11 @@ pub fn growth(pair: &ViewPair, pose: &Similarity, other: &Similarity) -> f64 {
     let size = |pose: &Similarity| pose.scale / pose.apply(middle).z;
     let growth = (size(pose) / size(other)).ln().abs();
     if growth.is_finite() { growth } else { f64::INFINITY }
+}
+
+/// Whether the apparent size stays within [`LARGEST_GROWTH`] of the other pose's.
+pub fn keeps_size(pair: &ViewPair, pose: &Similarity, other: &Similarity) -> bool {
+    growth(pair, pose, other) <= LARGEST_GROWTH.ln()
 }
 
 /// Length of an image pixel at the object as the pose places it, in units of the colour view.

@@ -14,7 +14,7 @@ const SIDE: usize = 64;
 /// Two runs end alike within this, degrees: each stops where a step changes the rotation by less than 0.01.
 const ALIKE: f64 = 0.02;
 /// Or within this share of the sigma that is claimed: now and then the pose sought repels rounding, which grows until the
-/// steps do (two of 200 scenes were apart by more than [`ALIKE`], by 0.17 degrees at most).
+/// steps do (three of 200 scenes were apart by more than [`ALIKE`], by 0.21 degrees at most).
 const ALIKE_SIGMAS: f64 = 0.5;
 
 prop_compose! {

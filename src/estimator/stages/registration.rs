@@ -15,10 +15,6 @@ use super::outlines;
 use super::surfaces::{Matched, SurfaceRegistration};
 use super::told_start::{Settled, TrustRegion};
 
-/// Growth of the apparent size beyond which, or below whose inverse, a registration has collapsed: shrunk onto a few pixels
-/// a cloud is easily explained. The search looks from 0.7 to 1.4.
-const LARGEST_GROWTH: f64 = 2.0;
-
 /// What the initialisation found.
 #[derive(Default)]
 pub struct Outcome {
@@ -197,7 +193,7 @@ impl RegistrationStage {
             Registration::Icp => {
                 let Matched { mut pose, mut improved, uncertainty } = self.surfaces.register(inputs, solution)?;
                 if let Told::Improved(region) = &self.told
-                    && !region.holds(&pose)
+                    && !region.holds(inputs.pair, &pose)
                 {
                     (pose, improved) = (solution.pose, false);
                 }
@@ -219,16 +215,14 @@ impl RegistrationStage {
                 let settled = region.settle(pair, colours)?;
                 self.told = Told::Improved(region);
                 match settled {
-                    Settled::ByColours(found) if grows_little(pair, &found.pose, start) => *found,
+                    Settled::ByColours(found) => *found,
                     Settled::ByOutlines(found) => {
                         let registered = Registered::by_outlines(&found);
                         self.told = Told::Outlined(*found);
                         return Ok(Some(registered));
                     }
                     Settled::ByContrast(found) => return Ok(Some(self.adopt_contrast(pair, *found, start))),
-                    // A start of an absurd size is kept and "lost", as any other that nothing near it betters.
-                    Settled::ByColours(_) | Settled::Kept => {
-                        colours.take_found();
+                    Settled::Kept => {
                         self.told = Told::Kept;
                         return Ok(None);
                     }
@@ -239,7 +233,7 @@ impl RegistrationStage {
                 colours.register(pair, start)?.clone()
             }
         };
-        if !grows_little(pair, &found.pose, start) {
+        if !gauge::keeps_size(pair, &found.pose, start) {
             let message = "the colours pull the apparent size away from the start's by a factor of more than two";
             let growth = gauge::growth(pair, &found.pose, start);
             return Err(Error::new(ErrorKind::Degenerate, "start", message).value(growth.exp()));
@@ -268,9 +262,4 @@ fn with_gauge_of(pair: &ViewPair, mut pose: Similarity, present: &Similarity) ->
         pose.translation.z = present.translation.z;
     }
     pose
-}
-
-/// Whether the apparent size stays within reach of the start's.
-fn grows_little(pair: &ViewPair, pose: &Similarity, start: &Similarity) -> bool {
-    gauge::growth(pair, pose, start) <= LARGEST_GROWTH.ln()
 }

@@ -87,13 +87,15 @@ impl TrustRegion {
         })
     }
 
-    /// Whether a pose lies within the tolerance.
-    pub fn holds(&self, pose: &Similarity) -> bool {
+    /// Whether a pose lies within the tolerance, and leaves the object its size.
+    pub fn holds(&self, pair: &ViewPair, pose: &Similarity) -> bool {
         let mut moved = pose.apply(self.middle) - self.told.apply(self.middle);
         if !self.sees_depth {
             moved.z = 0.0;
         }
-        pose.degrees_to(&self.told) <= self.degrees && moved.norm() <= self.distance
+        pose.degrees_to(&self.told) <= self.degrees
+            && moved.norm() <= self.distance
+            && gauge::keeps_size(pair, pose, &self.told)
     }
 
     /// The best pose within the tolerance.
@@ -102,12 +104,12 @@ impl TrustRegion {
     /// Those of the search, where the views allow none.
     pub fn settle(&self, pair: &ViewPair, colours: &mut ColourRegistration) -> Result<Settled> {
         if let Ok(found) = colours.register(pair, &self.told)
-            && self.holds(&found.pose)
+            && self.holds(pair, &found.pose)
             && explains(pair, found)
         {
             return Ok(Settled::ByColours(Box::new(found.clone())));
         }
-        let plain = colours.take_found().map(Box::new).filter(|found| self.holds(&found.pose));
+        let plain = colours.take_found().map(Box::new).filter(|found| self.holds(pair, &found.pose));
         let noisy = plain.as_deref().filter(|found| leaves_noise(pair, found)).map(|found| found.pose);
         let mut optima = LocalOptima::new(MOST_TRIED + 4, pair.image.log_spread(), pair.image.log_noise());
         if let Some(staying) = colours.judge(pair, &self.told) {
@@ -128,11 +130,11 @@ impl TrustRegion {
             && let Some(found) = painted::near(pair, colours, &cleaned, &self.told)
         {
             match found {
-                Conclusion::ByColours(found) if self.holds(&found.pose) => {
+                Conclusion::ByColours(found) if self.holds(pair, &found.pose) => {
                     colours.adopt((*found).clone());
                     return Ok(Settled::ByColours(found));
                 }
-                Conclusion::ByContrast(mut found) if self.holds(&found.best.pose) => {
+                Conclusion::ByContrast(mut found) if self.holds(pair, &found.best.pose) => {
                     // What leaves no more than the image's own noise is a rival, however much of it neighbours share.
                     painted::rival(&mut found, noisy);
                     return Ok(Settled::ByContrast(found));
@@ -140,26 +142,30 @@ impl TrustRegion {
                 _ => {}
             }
         }
-        Ok(match (best, outlined) {
+        match (best, outlined) {
             (Some(best), outlined) if !outlines::is_painted(pair, &best) || outlined.is_none() => {
                 self.by_all_points(pair, colours, *best)
             }
-            (_, Some(outlined)) => Settled::ByOutlines(Box::new(outlined)),
-            (..) => Settled::Kept,
-        })
+            (_, Some(outlined)) => Ok(Settled::ByOutlines(Box::new(outlined))),
+            (..) => Ok(Settled::Kept),
+        }
     }
 
-    /// All points follow the sample that candidates are registered by; where they do not, the told pose is kept.
-    fn by_all_points(&self, pair: &ViewPair, colours: &mut ColourRegistration, best: PhotometricReport) -> Settled {
+    /// All points follow the sample that candidates are registered by.
+    fn by_all_points(
+        &self,
+        pair: &ViewPair,
+        colours: &mut ColourRegistration,
+        best: PhotometricReport,
+    ) -> Result<Settled> {
         let pose = best.pose;
         colours.adopt(best);
-        match colours.register(pair, &pose) {
-            Ok(found) if self.holds(&found.pose) => Settled::ByColours(Box::new(found.clone())),
-            _ => {
-                colours.take_found();
-                Settled::Kept
-            }
+        let found = colours.register(pair, &pose)?.clone();
+        if self.holds(pair, &found.pose) {
+            return Ok(Settled::ByColours(Box::new(found)));
         }
+        colours.take_found();
+        Ok(Settled::Kept)
     }
 
     /// The pose by outlines, where intrinsics tell of the whole frame, enough is seen of them and they like it better
@@ -174,7 +180,7 @@ impl TrustRegion {
             across: SIGMA_ACROSS * self.distance,
             along: SIGMA_ALONG * self.distance,
         };
-        outlines::near(pair, colours.normals(), told).filter(|found| self.holds(&found.pose))
+        outlines::near(pair, colours.normals(), told).filter(|found| self.holds(pair, &found.pose))
     }
 
     /// Registers from where mask, colours and projected cloud agree at the told rotation, then from the best of a search
@@ -219,7 +225,7 @@ impl TrustRegion {
         optima: &mut LocalOptima,
         (candidate, start): (usize, &Similarity),
     ) -> bool {
-        let found = colours.register_candidate(pair, start).filter(|found| self.holds(&found.pose));
+        let found = colours.register_candidate(pair, start).filter(|found| self.holds(pair, &found.pose));
         found.is_some_and(|found| {
             let is_explained = explains(pair, &found);
             optima.enter(candidate, RegisteredCandidate::of(found));
