@@ -51,6 +51,9 @@ const FOLD_SAMPLES: usize = 16;
 /// rounding.
 const ON_AXIS: f64 = 1e-8;
 
+/// Pixels and slopes from here on, whose squares f64 cannot hold, have no ray: rounding would send some to infinity and back.
+const FARTHEST: f64 = 1e150;
+
 impl RigCamera {
     /// # Errors
     /// [`ErrorKind::Range`] naming the number at fault below `field`.
@@ -110,11 +113,11 @@ impl RigCamera {
 
     /// Direction of the ray through a pixel: with z = 1 where it runs ahead, so that depth times it is the point; a
     /// unit vector (z below 0.01) where a fisheye looks aside or back. `None` where the lens lets no ray through, and where
-    /// its slope is beyond all numbers.
+    /// the square of pixel or slope is beyond all numbers.
     #[must_use]
     pub fn ray(&self, [column, row]: [f64; 2]) -> Option<[f64; 3]> {
         let target = [(column - self.cx) / self.fx, (row - self.cy) / self.fy];
-        if !target.iter().all(|slope| slope.is_finite()) {
+        if ![column, row, target[0], target[1]].iter().all(|number| number.abs() < FARTHEST) {
             return None;
         }
         match &self.lens {

@@ -22,9 +22,10 @@ impl Planes {
         if sigma <= 0.0 {
             return self.clone();
         }
-        let reach = (REACH * sigma).ceil() as usize;
-        let weights: Vec<f32> = (0..=reach).map(|k| (-0.5 * (k as f32 / sigma).powi(2)).exp()).collect();
         let Size { width, height } = self.size;
+        // A pose that is far off asks for any width.
+        let reach = ((REACH * sigma).ceil() as usize).min(width.max(height));
+        let weights: Vec<f32> = (0..=reach).map(|k| (-0.5 * (k as f32 / sigma).powi(2)).exp()).collect();
         let rows = blur_lines(&self.pixels, &weights, (width, 1), (height, width));
         Self { size: self.size, pixels: blur_lines(&rows, &weights, (height, width), (width, 1)) }
     }
@@ -75,4 +76,20 @@ fn blur_lines(pixels: &[[f32; 3]], weights: &[f32], along: (usize, usize), acros
         }
     }
     blurred
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Found by the fuzzer: candidates that lie far off ask for any width, and its weights would not have fitted into memory.
+    #[test]
+    fn a_blur_of_any_width_is_the_mean() {
+        let size = Size { width: 5, height: 3 };
+        let pixels: Vec<[f32; 3]> = (0..size.len()).map(|k| [k as f32, 1.0, 0.0]).collect();
+        for sigma in [1e4, 1e30, f32::INFINITY] {
+            let blurred = Planes { size, pixels: pixels.clone() }.blurred(sigma);
+            assert!(blurred.pixels.iter().all(|pixel| (pixel[0] - 7.0).abs() < 1e-3 && pixel[1] == 1.0), "{sigma}");
+        }
+    }
 }

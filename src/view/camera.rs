@@ -3,7 +3,7 @@
 use crate::check::positive;
 use crate::error::{Error, ErrorKind, Result};
 use crate::numeric::{Lanes, Real};
-use crate::view::Size;
+use crate::view::{FARTHEST, Size};
 
 /// A pinhole camera with the five distortion coefficients of OpenCV.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,14 +20,18 @@ pub struct Pinhole {
     pub distortion: [f64; 5],
 }
 
+/// Of a ray with a slope that no picture has, and whose points may be beyond all numbers.
+const TOO_STEEP: &str = "must be finite, and below 1e12 focal lengths";
+
 impl Pinhole {
     /// # Errors
     /// [`ErrorKind::Range`] naming the number at fault below `field`.
     pub fn validate(&self, field: &str) -> Result<()> {
         positive("fx", self.fx).and(positive("fy", self.fy)).map_err(|error| error.below(field))?;
-        for (name, value) in [("cx", self.cx), ("cy", self.cy)] {
-            if !value.is_finite() {
-                return Err(Error::new(ErrorKind::Range, name, "must be finite").value(value).below(field));
+        for (name, value, focal_length) in [("cx", self.cx, self.fx), ("cy", self.cy, self.fy)] {
+            // Not a comparison's opposite: NaN is refused as well.
+            if !((1.0 + value.abs()) / focal_length < FARTHEST) {
+                return Err(Error::new(ErrorKind::Range, name, TOO_STEEP).value(value).below(field));
             }
         }
         for (index, value) in self.distortion.into_iter().enumerate() {
@@ -277,6 +281,23 @@ mod tests {
         assert!(middle[size.index(32, 32)] && !middle[size.index(32, 2)]);
         let error = folding.keep_pixels_with_rays("lens", size, &[1.0; 64 * 64], &mut [true; 64 * 64]).unwrap_err();
         assert_eq!((error.kind(), error.field()), (ErrorKind::Range, "lens"));
+    }
+
+    /// Found by the fuzzer: the first pose of such a camera was infinite.
+    #[test]
+    fn rays_as_steep_as_no_picture_has_them_are_refused() {
+        let good = Pinhole { fx: 60.0, fy: 60.0, cx: -500.0, cy: 31.5, distortion: [0.0; 5] };
+        assert_eq!(good.validate("camera"), Ok(()));
+        for (bad, field) in [
+            (Pinhole { cx: 1e308, ..good }, "camera.cx"),
+            (Pinhole { cx: f64::NAN, ..good }, "camera.cx"),
+            (Pinhole { cy: -1e15, ..good }, "camera.cy"),
+            (Pinhole { cx: 0.0, fx: 1e-300, ..good }, "camera.cx"),
+            (Pinhole { fy: f64::INFINITY, ..good }, "camera.fy"),
+        ] {
+            let error = bad.validate("camera").unwrap_err();
+            assert_eq!((error.kind(), error.field()), (ErrorKind::Range, field));
+        }
     }
 
     #[test]

@@ -41,12 +41,12 @@ fn pixels_agree_with_opencv() {
     assert_eq!(cameras, 18);
 }
 
-/// Found by the fuzzer: rays with infinite slopes.
+/// Found by the fuzzer: rays with infinite slopes, and with finite ones whose pixels are infinite.
 #[test]
 fn slopes_beyond_all_numbers_are_no_rays() {
     for lens in [Lens::None, Lens::Brown([0.0; 8]), Lens::Fisheye([0.0; 4])] {
         let camera = RigCamera { fx: 500.0, fy: 500.0, cx: 320.0, cy: 240.0, lens };
-        for beyond in [f64::INFINITY, f64::NEG_INFINITY, f64::NAN] {
+        for beyond in [f64::INFINITY, f64::NEG_INFINITY, f64::NAN, f64::MAX, -1e300] {
             assert_eq!((camera.ray([beyond, 0.0]), camera.ray([0.0, beyond])), (None, None), "{lens:?}");
         }
         let sharp = RigCamera { fx: 5e-324, ..camera };
