@@ -47,7 +47,7 @@ use settling::Settling;
 use solution::{Accepted, Solution};
 pub use stages::RefinementTask;
 use stages::{Inputs, LightStage, PaintStage, RefinementStage, Registered, RegistrationStage, ShapeStage};
-use verdict::{ColourEvidence, ContrastEvidence, Evidence, OutlineEvidence, verdict};
+use verdict::{ColourEvidence, ContrastEvidence, Evidence, OutlineEvidence, Verdict, verdict};
 pub use workers::Worker;
 pub use workers::task::{Finding, Task};
 
@@ -453,9 +453,17 @@ impl Estimator {
             rivals: report.rivals.len(),
             nearest_rival: nearest,
         });
-        if let Some((status, message)) = ended {
+        let doubted = ended.map(|ended| self.doubt_unit(ended));
+        if let Some((status, message)) = doubted {
             self.end(status, message);
         }
+    }
+
+    /// A verdict as it stands, or that of a depth map whose unit the colours contradict.
+    fn doubt_unit(&mut self, ended: Verdict) -> Verdict {
+        let is_good = ended.0 == Status::Converged;
+        let unit = is_good.then(|| self.registration.better_unit(&self.pair, &self.solution.pose)).flatten();
+        unit.map_or(ended, verdict::verdict_of_other_unit)
     }
 
     fn end(&mut self, status: Status, message: Option<String>) {

@@ -163,14 +163,19 @@ pub fn verdict(evidence: &Evidence<'_>) -> Option<Verdict> {
         // With the pose held the next iteration would be this one again.
         (Status::MaxIterations, Some("another iteration would worsen the shapes under this pose".into()))
     } else if rejections >= MOST_REJECTIONS {
-        let none = "none lowers the objective any more";
-        (Status::MaxIterations, Some(format!("{MOST_REJECTIONS} iterations in a row brought no better pose: {none}")))
+        (Status::MaxIterations, Some(format!("{MOST_REJECTIONS} iterations in a row brought no better pose")))
     } else if iteration >= max_iterations {
         (Status::MaxIterations, Some(format!("the cap of {max_iterations} iterations was reached")))
     } else {
         return None;
     };
     Some(reason_for_distrust(evidence).unwrap_or(end))
+}
+
+/// The verdict of an answer that looked good, where relief so many times as deep explains its colours better.
+pub fn verdict_of_other_unit(unit: f32) -> Verdict {
+    let times = Fixed(f64::from(unit), 1);
+    (Status::Ambiguous, Some(format!("relief {times} times as deep explains the colours better: check depth.unit")))
 }
 
 /// Whether another iteration would change nothing that matters.
@@ -216,10 +221,9 @@ fn reason_for_distrust(evidence: &Evidence<'_>) -> Option<Verdict> {
         return Some((Status::Lost, Some(reason)));
     }
     if evidence.is_hollow {
-        let hollow =
-            "the depth map's limbs come towards the camera: it shows something hollow, or larger means nearer in it";
-        let rival = "mirrored in depth it explains the colours as well, from another pose";
-        return Some((Status::Ambiguous, Some(format!("{hollow}; {rival}"))));
+        let reason = "the depth map's limbs come towards the camera: it shows something hollow, or larger means nearer in \
+                      it; mirrored in depth it explains the colours as well";
+        return Some((Status::Ambiguous, Some(reason.into())));
     }
     let certainty = evidence.colours.map(|colours| (colours.sigma, colours.weakest));
     let certainty = certainty.or(evidence.contrast.map(|contrast| (contrast.sigma, contrast.weakest)));
@@ -240,12 +244,17 @@ fn reason_for_distrust(evidence: &Evidence<'_>) -> Option<Verdict> {
 }
 
 fn reason_without_contrast(&ContrastEvidence { sigma, weakest, unexplained }: &ContrastEvidence<'_>) -> Option<String> {
-    if sigma.is_nan() || sigma > LARGEST_SIGMA {
-        return Some(format!("the rotation is uncertain by {} degrees: {weakest}", Fixed(sigma, 0)));
-    }
-    let share = Fixed(100.0 * unexplained, 0);
-    (unexplained.is_nan() || unexplained > LARGEST_UNEXPLAINED_CONTRAST)
-        .then(|| format!("the colours are painted, and shading leaves {share} % of their local contrast unexplained"))
+    let paint = || {
+        let share = Fixed(100.0 * unexplained, 0);
+        format!("the colours are painted, and shading leaves {share} % of their local contrast unexplained")
+    };
+    too_uncertain(sigma, weakest)
+        .or_else(|| (unexplained.is_nan() || unexplained > LARGEST_UNEXPLAINED_CONTRAST).then(paint))
+}
+
+fn too_uncertain(sigma: f64, weakest: &str) -> Option<String> {
+    (sigma.is_nan() || sigma > LARGEST_SIGMA)
+        .then(|| format!("the rotation is uncertain by {} degrees: {weakest}", Fixed(sigma, 0)))
 }
 
 fn reason_to_be_lost(&ColourEvidence { sigma, weakest, unexplained, inliers }: &ColourEvidence<'_>) -> Option<String> {
@@ -254,8 +263,8 @@ fn reason_to_be_lost(&ColourEvidence { sigma, weakest, unexplained, inliers }: &
             "{weakest} is not observable: as far as the noise lets see, changing it changes no colour"
         ));
     }
-    if sigma > LARGEST_SIGMA {
-        return Some(format!("the rotation is uncertain by {} degrees: {weakest}", Fixed(sigma, 0)));
+    if let Some(reason) = too_uncertain(sigma, weakest) {
+        return Some(reason);
     }
     if unexplained.is_nan() || unexplained > LARGEST_UNEXPLAINED {
         let share = Fixed(100.0 * unexplained, 0);

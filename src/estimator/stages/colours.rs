@@ -1,5 +1,6 @@
 //! The registration by colours as a stage of the loop: the photometric registration, its normals, and its last result.
 
+use super::painted::LARGEST_STRUCTURE;
 use crate::error::{Error, ErrorKind, Result};
 use crate::estimator::gauge;
 use crate::estimator::pair::ViewPair;
@@ -24,6 +25,13 @@ const CANDIDATE_POINTS: usize = 2500;
 /// Change of the apparent size (natural logarithm) beyond which a registration has collapsed: shrunk onto a few pixels, a
 /// cloud is easily explained. Candidates of the search lie within 0.1 of a right size.
 const COLLAPSE: f64 = 0.3;
+
+/// Units are mistaken by powers of ten: relief so many times as deep is held against the map's own, the first.
+const UNITS: [f32; 3] = [1.0, 0.1, 10.0];
+/// Another unit explains the colours better where it leaves less than this share of their noise, and no structure. Of 84 random
+/// pairs in a wrong unit seven were found wrong and sure of it; six of them leave 0.41 to 0.71 by the right one. Sixteen
+/// random pairs in the right unit leave 0.88 or more by both others, photographs with paint 0.77, and structure.
+const BETTER_NOISE: f64 = 0.75;
 
 /// How the registration of a candidate stands.
 pub enum Attempt {
@@ -62,6 +70,8 @@ impl SharpNormals {
         Self { normals, error, noise }
     }
 
+    // One copy of it: visitors download each.
+    #[inline(never)]
     fn problem<'a>(&'a self, pair: &'a ViewPair, scale_is_held: bool) -> PhotometricProblem<'a> {
         PhotometricProblem {
             image: &pair.image,
@@ -220,6 +230,38 @@ impl ColourRegistration {
         let problem = self.sharp.problem(pair, is_scale_held(pair));
         self.photometric.begin(&problem, pose, &options).ok()?;
         self.photometric.report(&problem).ok().map(Box::new)
+    }
+
+    /// How many times as deep relief would have to be for colours that it does not explain otherwise: another unit than the
+    /// depth map was given in. Before a parallel projection of the map alone: a pinhole's unit is that of all three axes.
+    pub fn better_unit(&mut self, pair: &ViewPair, pose: &Similarity) -> Option<f32> {
+        if !pair.depth.camera.is_orthographic() {
+            return None;
+        }
+        let options =
+            PhotometricOptions { most_points: CANDIDATE_POINTS, first_level: 0, annealing: false, ..options(pair) };
+        let middle = pair.depth.points.centroid().z as f32;
+        let [mut points, mut normals] = [(); 2].map(|()| Normals::missing(pair.depth.size.len()));
+        // Nothing is better than what could not be registered by its own unit.
+        let mut most = 0.0;
+        for unit in UNITS {
+            for index in 0..points.len() {
+                let [x, y, z] = pair.depth.points.get(index);
+                points.set(index, [x, y, middle + unit * (z - middle)]);
+                let [x, y, z] = self.sharp.normals.get(index);
+                let length = (unit * unit * (x * x + y * y) + z * z).sqrt();
+                normals.set(index, [unit * x, unit * y, z].map(|part| part / length));
+            }
+            let problem = self.sharp.problem(pair, is_scale_held(pair));
+            let problem = PhotometricProblem { points: &points, normals: &normals, ..problem };
+            let Ok(found) = self.photometric.register(&problem, pose, &options) else { continue };
+            if unit == 1.0 {
+                most = BETTER_NOISE * found.noise;
+            } else if found.noise < most && found.structure <= LARGEST_STRUCTURE {
+                return Some(unit);
+            }
+        }
+        None
     }
 
     fn begin(&mut self, pair: &ViewPair, start: &Similarity) -> Result<()> {

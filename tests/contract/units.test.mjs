@@ -1,0 +1,32 @@
+// A depth map in another unit than its own: colours that it explains after a fashion are no answer to be sure of.
+import assert from "node:assert/strict";
+import { before, test } from "node:test";
+import { Estimator, init, pair } from "./support.mjs";
+
+before(() => init());
+
+const found = ({ image, depth }, unit) => {
+  const made = new Estimator(image, { ...depth, unit }, { start: "search" });
+  while (made.report.status === "running") made.step();
+  const { report } = made;
+  made.free();
+  return report;
+};
+
+const DEGREES = 180 / Math.PI;
+const apart = ({ rotation: a }, { rotation: b }) =>
+  DEGREES * Math.acos(Math.min(1, (a.reduce((sum, entry, index) => sum + entry * b[index], 0) - 1) / 2));
+
+// With nothing but sigmas and rivals to judge by, all three ended "converged".
+for (const [surface, light, beta] of [["ripples", "colourful", 10], ["ripples", "window", 30], ["bust", "window", 20]]) {
+  test(`relief ten times as deep as it is, ${surface} under ${light} light`, () => {
+    const made = pair({ surface, light, size: 64, angles: { beta }, noise: 0.01 });
+    const right = found(made, 1);
+    assert.equal(right.status, "converged", right.message);
+    assert.ok(apart(right.pose, made.pose) < 1);
+    const wrong = found(made, 10);
+    assert.ok(apart(wrong.pose, made.pose) > 3, "nothing to be told of");
+    assert.equal(wrong.status, "ambiguous");
+    assert.match(wrong.message, /relief 0\.1 times as deep explains the colours better: check depth\.unit/);
+  });
+}
