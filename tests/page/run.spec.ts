@@ -194,8 +194,10 @@ test("nothing known: the search comes first, says how far it is, and the loop co
 
 test("what a search tries is a candidate, and the pose has the words of the messages", async ({ lab, page }) => {
   await lab.visit("size=64");
+  await expect(page.locator("#pose-found")).toHaveText("start");
   await page.keyboard.press("s");
   await expect(page.locator("#message")).toContainText("%");
+  await lab.reaches("paused");
   await expect(page.locator("#pose-found")).toHaveText("candidate");
   await expect(page.locator("#light figcaption").first()).toHaveText("candidate");
   await page.locator("#pace").selectOption({ label: "fastest" });
@@ -205,6 +207,14 @@ test("what a search tries is a candidate, and the pose has the words of the mess
   await expect(page.locator("#light figcaption").first()).toHaveText("found");
   const weakest = await page.locator("#pose-extra dd").last().innerText();
   await expect(page.locator("#pose th", { hasText: weakest.split(" with ")[0] ?? "" })).toHaveCount(1);
+});
+
+test("a pose that was held is not said to have been sought", async ({ lab, page }) => {
+  await lab.visit("size=64&start=identity&registration=fixed");
+  await page.locator("#pace").selectOption({ label: "fastest" });
+  await page.keyboard.press(" ");
+  await expect(page.locator("#verdict")).toContainText("kept where it started");
+  await expect(page.locator("#next")).toContainText("Registration, joint");
 });
 
 test("other threads share the search where the machine has them", async ({ lab, page }) => {

@@ -101,6 +101,8 @@ export class Plot {
   readonly #observer: ResizeObserver;
   #plot: uPlot | undefined;
   #data: uPlot.AlignedData;
+  /** The newest value of each curve, zero included, which no logarithm shows. */
+  #newest: (number | null)[] = [];
 
   constructor(box: HTMLElement, options: PlotOptions) {
     this.#box = box;
@@ -117,6 +119,7 @@ export class Plot {
     const curves = ys.map((values) => values.map(positive));
     // A count begins where there is something to see.
     const first = this.#options.whole ? Math.max(0, xs.findIndex((_, i) => curves.some((values) => values[i] != null))) : 0;
+    this.#newest = ys.map((values) => values.findLast((value) => value !== null) ?? null);
     this.#data = [xs.slice(first), ...curves.map((values) => values.slice(first))];
     // At once: what uPlot puts off to the end of the task is drawing that no painter can see the time of.
     this.#plot?.batch(() => this.#plot?.setData(this.#data));
@@ -154,8 +157,8 @@ export class Plot {
             // Where there are few, each was measured and deserves a dot; a line alone needs two.
             points: { show: ({ data }: uPlot) => !whole || data[0].length < FEW },
             // The newest value, until the pointer asks for another.
-            value: ({ data }: uPlot, value: number | null | undefined, index: number, at: number | null) => {
-              const shown = at === null ? Array.from(data[index] ?? []).findLast((each) => typeof each === "number") : value;
+            value: (_: uPlot, value: number | null | undefined, index: number, at: number | null) => {
+              const shown = at === null ? this.#newest[index - 1] : value;
               return typeof shown === "number" ? short(shown) : "–";
             },
           })),

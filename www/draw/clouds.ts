@@ -19,6 +19,8 @@ const REACH = 10;
 const IN_FRONT = 5;
 
 const still = matchMedia("(prefers-reduced-motion: reduce)");
+/** Share of their radius by which surfaces leave the middle of the view before it follows: iterations move them by less. */
+const LEFT_THE_MIDDLE = 0.3;
 const NOWHERE = new Matrix4();
 
 /** P -> s R P + t. */
@@ -80,6 +82,7 @@ export class Clouds {
   show(surfaces: Record<Side, Surface>, pose: Pose, seen: Pose, fresh: boolean): void {
     this.#shown = surfaces;
     if (fresh) this.home();
+    else this.#follow();
     const before = this.#pose;
     this.#pose = matrixOf(pose);
     // From where it stood, in terms of the new points.
@@ -193,6 +196,17 @@ export class Clouds {
     this.#controls.target.copy(center);
     this.#controls.update();
     this.#resize();
+  }
+
+  /** Goes along with surfaces that have left the middle, as where the pose settles how far away they are; the viewpoint stays. */
+  #follow(): void {
+    const center = this.#shown && extent(this.#shown.depth.points)?.center;
+    if (!center || center.distanceTo(this.#bounds.center) < LEFT_THE_MIDDLE * this.#bounds.radius) return;
+    const moved = center.clone().sub(this.#bounds.center);
+    this.#bounds.center.copy(center);
+    this.#controls.target.add(moved);
+    this.#camera.position.add(moved);
+    this.#controls.update();
   }
 
   /** Turns the view by hand of the keyboard; degrees about the vertical and the horizontal axis. */

@@ -24,7 +24,7 @@ import { Status, type Notice } from "./status";
 import { Strip } from "./strip";
 import type { Kind } from "./kinds";
 import { Messages } from "./messages";
-import { isSearching, verdict, wordsOf } from "./verdict";
+import { isSearching, standing, verdict, wordsOf, type Verdict } from "./verdict";
 
 export class Lab {
   readonly store: Store;
@@ -169,7 +169,7 @@ export class Lab {
       if (kind === "run") return await this.#saveRun();
       const [{ fileOfKind }, taken] = await Promise.all([import("./takeaway"), this.#engine.call("take", {})]);
       const report = this.#report;
-      const run = { taken, report, end: verdict(report, this.#from, this.#truth), truth: this.#truth, origin: originOf(source), settings };
+      const run = { taken, report, end: this.#verdict(report), truth: this.#truth, origin: originOf(source), settings };
       const files = source.kind === "files" ? this.#own.intake.said : [];
       const { name, blob, says } = await fileOfKind(kind, { ...run, files, link: linkTo(settings) });
       saveBlob(name, blob);
@@ -407,7 +407,8 @@ export class Lab {
   }
 
   #take({ reports, light, scores }: Frame): void {
-    this.#light.show(light, reports.some(isSearching));
+    const newest = reports.at(-1) ?? this.#report;
+    this.#light.show(light, newest ? standing(newest) : "start");
     this.#scores.show(scores, this.#truth);
     for (const report of reports) {
       // The first of a run: a search has found its pose before the first iteration.
@@ -429,15 +430,19 @@ export class Lab {
     this.#showState();
   }
 
+  #verdict(report: StepReport): Verdict | undefined {
+    return verdict(report, this.#from, this.#truth, methodOf(this.store.settings, this.#origin).registration === "fixed");
+  }
+
   #showState(): void {
     const { playing } = this.player;
     const report = this.#report;
     if (report) {
-      const end = verdict(report, this.#from, this.#truth);
+      const end = this.#verdict(report);
       this.#pose.show(report, this.#from, this.#truth, this.#length);
       this.#rivals.show(report);
       this.#strip.show(report);
-      this.#status.show(report, playing ? "playing" : report.iteration > 0 ? "paused" : "ready", end);
+      this.#status.show(report, playing ? "playing" : report.iteration > 0 || isSearching(report) ? "paused" : "ready", end);
     }
     if (this.#notice) this.#status.announce(this.#notice.state, this.#notice.words);
     const play = byId("play", HTMLButtonElement);

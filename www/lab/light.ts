@@ -49,8 +49,8 @@ export class LightPanel {
   }
 
   /** While a search tries poses, the light is that of the best candidate. */
-  show({ found, difference }: Frame["light"], isSearching: boolean): void {
-    this.#found.say(isSearching ? "candidate" : "found");
+  show({ found, difference }: Frame["light"], standing: string): void {
+    this.#found.say(standing);
     this.#found.show(found);
     this.#difference.show(difference);
   }

@@ -5,7 +5,7 @@ import { decimals } from "../draw/numbers";
 import { byId, make } from "../dom";
 import type { Explanations } from "./ask";
 import type { Term } from "./explain";
-import { angleBetween, isSearching } from "./verdict";
+import { angleBetween, standing } from "./verdict";
 
 /** Rows, in the words of the run's messages; those without a unit of their own are lengths in the colour view's unit. */
 const rows: readonly { words: string; name: string; index?: string; unit?: string; decimals: number; read(pose: Pose): number | undefined }[] = [
@@ -44,7 +44,7 @@ export class PoseTable {
   show(report: StepReport, start: Pose | undefined, truth: Pose | null, length: "px" | "m"): void {
     const { pose } = report;
     // A search only tries poses: none is found before it is over.
-    this.#heading.textContent = isSearching(report) ? "candidate" : "found";
+    this.#heading.textContent = standing(report);
     rows.forEach(({ index, decimals: count, read, unit = length }, i) => {
       const cells = this.#cells[i];
       if (!cells) return;

@@ -15,6 +15,10 @@ export interface Verdict {
 /** Whether poses are still being tried. */
 export const isSearching = ({ status, stage, iteration }: StepReport): boolean => status === "running" && stage === "search" && iteration === 0;
 
+/** What a pose and a light are at this moment: before the first step nothing is found. */
+export const standing = (report: StepReport): string =>
+  isSearching(report) ? "candidate" : report.status === "running" && report.iteration === 0 ? "start" : "found";
+
 /** How far a run is, in a few words. */
 export function wordsOf({ status, iteration, pose }: StepReport, truth: Pose | null): string {
   const off = truth ? `, ${decimals(angleBetween(pose.rotation, truth.rotation), 2)}° off` : "";
@@ -44,7 +48,8 @@ const ends: Record<Exclude<StepReport["status"], "running">, string> = {
 /** What may help against what a run says of itself: the first that its words bear out. */
 const remedies: readonly (readonly [said: RegExp, remedy: string])[] = [
   [/not observable|uncertain by|do not show/, "A larger image, less noise, or a light with more colours would show it."],
-  [/counterpart/, "Views that share more of the object would help: more overlap, or a smaller rotation."],
+  [/depth\.unit/, "Settings, Depth camera, Unit says what a stored number stands for."],
+  [/counterpart/, "Views that share more of the object would help: more overlap, a smaller rotation, or for own files the depth map's right unit."],
   [/painted/, "A start that is roughly known would help: Settings, Start, near."],
   [/unexplained/, "Less noise, or an object of one paint, would help."],
   [/points agree/, "Masks that leave out the background would help, and a start that is roughly known."],
@@ -56,13 +61,17 @@ const remedies: readonly (readonly [said: RegExp, remedy: string])[] = [
 const HARDER = "Turn the surfaces, drag the light, or make it harder: Noise, Half hidden. What can't be found, Learn's last lesson shows.";
 const GENERAL = "Another start may find it: Settings, Start, near.";
 
+/** Where the pose is not sought at all. */
+const HELD = "The pose was kept where it started, as the settings ask.";
+const FREE = "Settings, Registration, joint lets it move.";
+
 const remedy = (said: string): string => remedies.find(([pattern]) => pattern.test(said))?.[1] ?? GENERAL;
 
 /** How a finished loop is to be taken; nothing while it runs. */
-export function verdict({ status, message, pose }: StepReport, start: Pose | undefined, truth: Pose | null): Verdict | undefined {
+export function verdict({ status, message, pose }: StepReport, start: Pose | undefined, truth: Pose | null, isHeld = false): Verdict | undefined {
   if (status === "running") return undefined;
-  const said = message ? [sentence(message)] : [];
-  const help = remedy(message ?? "");
+  const said = message ? [sentence(message)] : isHeld ? [HELD] : [];
+  const help = isHeld ? FREE : remedy(message ?? "");
   if (truth) {
     const off = angleBetween(pose.rotation, truth.rotation);
     const tone = off > MISSED && status !== "ambiguous" ? "wrong" : status === "converged" && off <= FOUND ? "good" : "open";
