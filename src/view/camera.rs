@@ -29,8 +29,8 @@ impl Pinhole {
     pub fn validate(&self, field: &str) -> Result<()> {
         positive("fx", self.fx).and(positive("fy", self.fy)).map_err(|error| error.below(field))?;
         for (name, value, focal_length) in [("cx", self.cx, self.fx), ("cy", self.cy, self.fy)] {
-            // Not a comparison's opposite: NaN is refused as well.
-            if !((1.0 + value.abs()) / focal_length < FARTHEST) {
+            let steepest = (1.0 + value.abs()) / focal_length;
+            if steepest.is_nan() || steepest >= FARTHEST {
                 return Err(Error::new(ErrorKind::Range, name, TOO_STEEP).value(value).below(field));
             }
         }

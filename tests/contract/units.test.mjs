@@ -30,3 +30,11 @@ for (const [surface, light, beta] of [["ripples", "colourful", 10], ["ripples", 
     assert.match(wrong.message, /relief 0\.1 times as deep explains the colours better: check depth\.unit/);
   });
 }
+
+test("relief next to flat, by a unit a thousand times too small, is no error and no answer", () => {
+  for (const surface of ["bust", "vase"]) {
+    // The light that its normals ask for at first has coefficients beyond 100.
+    const made = pair({ surface, light: "overcast", angles: { beta: 20 }, noise: 0.01 });
+    assert.notEqual(found(made, 1e-3).status, "converged", surface);
+  }
+});

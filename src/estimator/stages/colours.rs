@@ -257,7 +257,10 @@ impl ColourRegistration {
             let Ok(found) = self.photometric.register(&problem, pose, &options) else { continue };
             if unit == 1.0 {
                 most = BETTER_NOISE * found.noise;
-            } else if found.noise < most && found.structure <= LARGEST_STRUCTURE {
+            } else if found.noise < most
+                && found.structure <= LARGEST_STRUCTURE
+                && gauge::growth(pair, &found.pose, pose) < COLLAPSE
+            {
                 return Some(unit);
             }
         }
