@@ -3,7 +3,7 @@
 use crate::check::positive;
 use crate::error::{Error, ErrorKind, Result};
 use crate::numeric::{Lanes, Real};
-use crate::view::{FARTHEST, Size};
+use crate::view::Size;
 
 /// A pinhole camera with the five distortion coefficients of OpenCV.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,6 +20,9 @@ pub struct Pinhole {
     pub distortion: [f64; 5],
 }
 
+/// Metres or pixels from which on a depth, or a coordinate of a cloud, counts as missing: some formats write their
+/// largest number for a hole, and f32 cannot hold its square.
+pub const FARTHEST: f64 = 1e12;
 /// Of a ray with a slope that no picture has, and whose points may be beyond all numbers.
 const TOO_STEEP: &str = "must be finite, and below 1e12 focal lengths";
 

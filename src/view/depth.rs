@@ -4,6 +4,7 @@
 use crate::check::positive;
 use crate::error::{Error, ErrorKind, Result};
 use crate::text::Brief;
+use crate::view::camera::FARTHEST;
 use crate::view::depth_noise::DepthNoise;
 use crate::view::flying_pixels;
 use crate::view::mask::{self, FEWEST_PIXELS, components};
@@ -70,9 +71,6 @@ pub struct DepthView {
 const LENS: &str = "depth.camera.distortion";
 /// Metres of a stored integer where a camera is known and no unit is given: millimetres, as sensors store them.
 const MILLIMETRE: f64 = 0.001;
-/// Metres or pixels from which on a depth, or a coordinate of a cloud, counts as missing: some formats write their
-/// largest number for a hole, and f32 cannot hold its square.
-pub const FARTHEST: f64 = 1e12;
 /// Without a mask, a gap in the depth that the object encloses belongs to it up to this share of its pixels (data not
 /// recorded).
 const LARGEST_HOLE: f64 = 0.02;

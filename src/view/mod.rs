@@ -18,10 +18,10 @@ mod smoothing;
 mod vectors;
 mod working_size;
 
+pub(crate) use camera::FARTHEST;
 pub use camera::{Camera, Pinhole};
 pub use colour::{ColourImage, ColourSamples, ColourView, Transfer};
 pub(crate) use colour::{to_srgb, transfer_of};
-pub(crate) use depth::FARTHEST;
 pub use depth::{DepthMap, DepthSamples, DepthView};
 pub use depth_noise::DepthNoise;
 pub(crate) use limbs::is_hollow;

@@ -3,17 +3,13 @@
 
 use nalgebra::{Rotation3, Vector3};
 
-use super::colours::ColourRegistration;
+use super::colours::{ColourRegistration, LARGEST_STRUCTURE};
 use crate::estimator::gauge;
 use crate::estimator::pair::ViewPair;
 use crate::options::Registration;
 use crate::pose::{ContrastOutcome, ContrastSearch, PhotometricReport, Similarity, Uncertainty};
 use crate::view::ColourView;
 
-/// What residuals of neighbours may have in common for the colours to be explained, log units. 40 renders of objects and
-/// 15 random ones leave up to 0.0015, 100 random ones with 3 % of noise up to 0.0043, but for one that was lost (0.065);
-/// pictures of shading with cast shadows and light from other parts of the object 0.0084 or more, the cup but 0.002.
-pub(super) const LARGEST_STRUCTURE: f64 = 0.007;
 /// Both registrations have found one pose where their ends are this near, degrees: contrast may be off by a few.
 const SAME_POSE: f64 = 8.0;
 /// Sigmas of contrast by blurred hues or noisy normals over what they are otherwise. Of 18 found scenes with both (JPEG, depth
