@@ -106,6 +106,16 @@ test("on a phone the verdict is on the first screen, below the surfaces", async 
   expect(verdict?.y).toBeGreaterThan((hero?.y ?? 0) + (hero?.height ?? 0));
 });
 
+test("on a tablet the verdict is on the first screen, and stages that do not fit leave the controls where they are", async ({ lab, page }) => {
+  await page.setViewportSize({ width: 820, height: 1180 });
+  await lab.visit("size=64");
+  const [verdict, bar] = await Promise.all(["#status", "#bar"].map((box) => page.locator(box).boundingBox()));
+  expect((verdict?.y ?? 0) + (verdict?.height ?? 0)).toBeLessThan(bar?.y ?? 0);
+  const widths = (box: string) => page.locator(box).evaluate(({ scrollWidth, clientWidth }) => scrollWidth - clientWidth);
+  expect(await widths("#stages")).toBeGreaterThan(0);
+  expect(await widths("#bar")).toBe(0);
+});
+
 test("open settings hide no input, and what has opened them stays under the pointer", async ({ lab, page }) => {
   await page.setViewportSize({ width: 1280, height: 800 });
   await lab.visit("size=64");
