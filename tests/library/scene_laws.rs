@@ -183,6 +183,7 @@ fn points_beyond_all_distances_are_missing() {
         DepthView::new(&map, true).map(|view| view.valid()).map_err(|error| error.kind())
     };
     assert_eq!(with(20.0, 1.0), Ok(144));
-    assert_eq!(with(1e-45, 1.0), Err(ErrorKind::Empty));
+    assert_eq!(with(1e-11, 100.0), Err(ErrorKind::Empty));
+    assert_eq!(with(1e-45, 1.0), Err(ErrorKind::Range), "no picture has such rays");
     assert_eq!(with(20.0, 1e12), Err(ErrorKind::Empty));
 }
