@@ -101,7 +101,7 @@ test("the surfaces show the point, and can be pointed at", async ({ lab, page })
   await page.emulateMedia({ reducedMotion: "reduce" });
   await openAtTruth(lab);
   await expect(page.locator("#clouds-note")).toBeHidden();
-  await page.getByRole("button", { name: "front" }).click();
+  await page.getByRole("button", { name: "Home", exact: true }).click();
   await point(lab, "Colour", 0.45, 0.3);
   const before = await pixelOf(lab, "Colour");
   const marks = page.locator("#clouds-box .dot");
