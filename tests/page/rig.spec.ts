@@ -480,12 +480,8 @@ test("nothing of it sticks out from 320 to 2560 px, and targets are large enough
   await answerChecks(page, "undecided");
   await page.setViewportSize(narrowest);
   await openFrames(page);
-  const small = () =>
-    page.evaluate(() =>
-      [...document.querySelectorAll("#rig :is(button, select, summary, textarea, .rig-button, input[type=text])")]
-        .filter((element) => element.checkVisibility() && element.getBoundingClientRect().height < 43.5)
-        .map((element) => element.textContent ?? ""),
-    );
+  const controls = page.locator("#rig :is(button, select, summary, textarea, .rig-button, input[type=text])");
+  const small = () => controls.evaluateAll((all) => all.filter((each) => each.checkVisibility() && each.getBoundingClientRect().height < 43.5).map((each) => each.textContent ?? ""));
   const isFine = (step: string) =>
     atWidths(page, [320, 390, 1280, 2560], async (width) => {
       expect(await innerWidth(page), `${step} at ${width} px`).toBeLessThanOrEqual(width);
