@@ -100,7 +100,7 @@ export class Lab {
       look: (look) => this.#engine.call("look", { look }).catch(unlessGone),
       probe: (asked) => this.#engine.call("probe", asked).catch(unlessGone),
     });
-    this.#compare = new Compare({ onPin: () => this.#pin(), onUnpin: () => this.gallery.unpin() });
+    this.#compare = new Compare({ onPin: () => this.#pin(), onUnpin: () => this.gallery.unpin(), onWipe: (share) => this.gallery.wipe(share) });
     this.player = new Player({
       advance: (request) => this.#advance(request),
       restart: () => this.#start(this.#wanted),
