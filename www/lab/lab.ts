@@ -17,7 +17,7 @@ import { Rivals } from "./rivals";
 import { fields, inputGroups, methodOf, runOptions, settingsOf, turnOf, type Origin, type Settings } from "./settings";
 import { download, linkTo, writeAddress } from "./share";
 import { ScoreMap } from "./scoremap";
-import { originOf, rememberOrigin, sourceOf } from "./source";
+import { originOf, readable, rememberOrigin, sourceOf } from "./source";
 import { saveBlob } from "../save";
 import type { Store } from "./store";
 import { Status, type Notice } from "./status";
@@ -314,7 +314,7 @@ export class Lab {
         this.#forget();
         await this.#show(frame);
       } else {
-        const opened = await this.#engine.call("open", { source, options, look: this.gallery.look });
+        const opened = await this.#engine.call("open", { source: await readable(source), options, look: this.gallery.look });
         this.#held = source;
         if (turn !== this.#turn) return;
         this.#pair = source.kind === "files" ? [source.files.colour, source.files.depth] : [];
@@ -484,7 +484,7 @@ export class Lab {
     this.#good = undefined; // should it fail once more, the page waits for another input
     const turn = ++this.#turn;
     try {
-      const opened = await this.#engine.call("open", { source, options: runOptions(settings, originOf(source)), look: this.gallery.look });
+      const opened = await this.#engine.call("open", { source: await readable(source), options: runOptions(settings, originOf(source)), look: this.gallery.look });
       this.#held = source;
       if (turn !== this.#turn) return;
       await this.#present(opened);
