@@ -68,7 +68,8 @@ function tasksOf(events) {
 function words(tasks) {
   const long = tasks.filter(({ wall }) => wall > LONG).map(({ at, wall, own }) => `${wall.toFixed(0)} ms (${own.toFixed(0)} of the processor's, at ${(at / 1000).toFixed(1)} s)`);
   const most = Math.max(0, ...tasks.map(({ own }) => own));
-  return `${long.length === 0 ? `none over ${LONG} ms` : long.join(", ")}; at most ${most.toFixed(0)} ms of the processor's time`;
+  const longest = Math.max(0, ...tasks.map(({ wall }) => wall));
+  return `${long.length === 0 ? `none over ${LONG} ms, the longest ${longest.toFixed(0)}` : long.join(", ")}; at most ${most.toFixed(0)} ms of the processor's time`;
 }
 
 await script(async () => {

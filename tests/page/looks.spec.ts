@@ -83,6 +83,10 @@ test("an enlarged view comes into sight", async ({ lab, page }) => {
   expect(await page.evaluate(() => (scrollTo({ top: 5000, behavior: "instant" }), scrollY))).toBeGreaterThan(200);
   await page.keyboard.press("1");
   await expect(page.locator("figure[data-large]")).toBeInViewport({ ratio: 0.9 });
+  // One that shares its row with others has it for itself.
+  await page.keyboard.press("7");
+  const widthOf = async (box: string) => (await page.locator(box).filter({ visible: true }).boundingBox())?.width;
+  expect(await widthOf("#views > section")).toBe(await widthOf("#views"));
 });
 
 test("a view without values has no range of earlier ones", async ({ lab, page }) => {

@@ -78,6 +78,9 @@ test("depth maps in TIFF, PGM and PFM are the same picture as the PNG, wherever 
   await put(lab, "Depth map", await fixture("depth-piz.exr"));
   await expect(slot(lab, 1)).toContainText("compressed by PIZ");
   await lab.reaches("error");
+  await put(lab, "Depth map", await fixture("colour.jpg"));
+  await expect(slot(lab, 1)).toContainText("a colour picture where a depth map was asked for");
+  await lab.reaches("error");
   const cut = depthTiff("cut.tif");
   await put(lab, "Depth map", { ...cut, buffer: cut.buffer.subarray(0, 900) });
   await lab.reaches("error");

@@ -64,7 +64,7 @@ export async function pixelsOf(files: Files): Promise<Read> {
   const found: Read = {};
   for (const [slot, [as, field]] of Object.entries(PLACES) as [Slot, (typeof PLACES)[Slot]][]) {
     const file = files[slot];
-    if (!file || !(await isFurther(file))) continue;
+    if (!file || !(await isFurther(file, slot === "colour"))) continue;
     const number = next++;
     try {
       // In stored numbers: the Lab's own fields say their unit, and its cameras.

@@ -32,8 +32,8 @@ export const originOf = (source: Source): Origin => (source.kind === "sample" ? 
 export async function readable(source: Source): Promise<Source> {
   if (source.kind !== "files") return source;
   const { colour, depth, colourMask, depthMask } = source.files;
-  const files = [colour, depth, colourMask, depthMask].filter((file) => file !== undefined);
-  if (!(await Promise.all(files.map(isFurther))).includes(true)) return source;
+  const isNeeded = [colour, depth, colourMask, depthMask].map((file, i) => file !== undefined && isFurther(file, i === 0));
+  if (!(await Promise.all(isNeeded)).includes(true)) return source;
   const { pixelsOf } = await import("./own");
   return { ...source, files: { ...source.files, read: await pixelsOf(source.files) } };
 }
