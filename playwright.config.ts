@@ -8,7 +8,7 @@ const PORT = Number(process.env.PAGE_PORT ?? 4199);
 const FOLDER = "/some/folder/";
 
 /** Playwright's own browsers come from elsewhere; the system's serves as well. */
-const chromium = process.env.CHROMIUM ?? ["/usr/bin/chromium", "/usr/bin/google-chrome"].find((path) => existsSync(path));
+const chromium = process.env.CHROMIUM ?? ["/usr/bin/chromium-headless-shell", "/usr/bin/chromium", "/usr/bin/google-chrome"].find((path) => existsSync(path));
 
 export default defineConfig({
   testDir: "tests/page",

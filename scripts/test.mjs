@@ -2,7 +2,7 @@
 import { readFileSync, rmSync } from "node:fs";
 import { createServer } from "node:net";
 import { availableParallelism } from "node:os";
-import { browser, firefox } from "./browser.mjs";
+import { browser, firefox, headless } from "./browser.mjs";
 import { build } from "./build.mjs";
 import { python } from "./python.mjs";
 import { WASM, setup } from "./setup.mjs";
@@ -49,8 +49,7 @@ function freePort() {
 const docs = () => watch("cargo", ["doc", ...LIBRARY, "--no-deps"], { env: { RUSTDOCFLAGS: "-D warnings" } });
 
 async function page() {
-  const { chromium } = await browser();
-  const env = { CHROMIUM: chromium, PAGE_PORT: String(await freePort()) };
+  const env = { CHROMIUM: await headless(), PAGE_PORT: String(await freePort()) };
   return watch(process.execPath, [modules("@playwright/test/cli.js"), "test"], { env });
 }
 

@@ -6,7 +6,7 @@ import { tmpdir } from "node:os";
 import { delimiter, dirname, join } from "node:path";
 import { after } from "node:test";
 import { chromium } from "@playwright/test";
-import { browser } from "../../scripts/browser.mjs";
+import { headless } from "../../scripts/browser.mjs";
 import { inRoot } from "../../scripts/shell.mjs";
 import { serveSite } from "../../scripts/site/serve.mjs";
 import { writeNpy, writePng } from "../../pkg/write.js";
@@ -80,8 +80,7 @@ let started;
 /** One browser for all. */
 export function chrome() {
   started ??= (async () => {
-    const { chromium: executablePath } = await browser();
-    const chrome = await chromium.launch({ executablePath, args: ["--no-sandbox", "--disable-background-networking", "--no-first-run"] });
+    const chrome = await chromium.launch({ executablePath: await headless(), args: ["--no-sandbox", "--disable-background-networking", "--no-first-run"] });
     endings.push(() => chrome.close());
     return chrome;
   })();

@@ -4,6 +4,7 @@ import { readFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import type { Page } from "@playwright/test";
 import { expect, test, type Lab } from "./lab";
+import { Messages } from "./messages";
 import { answerChecks } from "./rig";
 
 const AXE = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
@@ -24,17 +25,26 @@ async function findings(page: Page): Promise<string[]> {
 
 const ENDS = /^(converged|ambiguous|lost|max-iterations)$/;
 
-/** Soft: one screen's findings do not hide the next one's. */
-const clean = async (page: Page, screen: string): Promise<void> => expect.soft(await findings(page), screen).toEqual([]);
+/** Of one screen in either colours: what leads to it, a run or a lesson's figure, takes longer than the rules. Soft: its findings do not hide the next one's. */
+async function clean(page: Page, screen: string): Promise<void> {
+  for (const colorScheme of ["dark", "light"] as const) {
+    await page.emulateMedia({ colorScheme });
+    expect.soft(await findings(page), `${screen}, ${colorScheme}`).toEqual([]);
+  }
+}
 
 async function lab(lab: Lab, page: Page): Promise<void> {
+  const messages = await Messages.of(page);
   await lab.visit("size=64");
   await expect(page.locator("#clouds-note")).toBeHidden();
   await expect(page.locator("#objective-chart canvas")).toBeVisible();
   await clean(page, "before a run");
   await page.getByRole("button", { name: "Play" }).click();
   await expect(lab.iteration).not.toHaveText("0");
+  // It runs for as long as it is looked at.
+  await messages.hold("advance");
   await clean(page, "while it runs");
+  await messages.release();
   await expect(page.locator("#status")).toHaveAttribute("data-state", ENDS);
   await clean(page, "after a run");
   await lab.unfold();
@@ -112,14 +122,10 @@ async function rivals(lab: Lab, page: Page): Promise<void> {
   await clean(page, "a pose with a rival");
 }
 
-for (const colorScheme of ["dark", "light"] as const) {
-  test.describe(`in ${colorScheme} colours`, () => {
-    test.use({ colorScheme, contextOptions: { reducedMotion: "reduce" } });
-    test("the Lab before, while and after a run, with its settings and help", ({ lab: opened, page }) => lab(opened, page));
-    test("a Lab whose pose is lost", ({ lab: opened, page }) => poseLost(opened, page));
-    test("a Lab whose pose has a rival", ({ lab: opened, page }) => rivals(opened, page));
-    test("every lesson, the exercises and a slide", ({ page }) => learn(page));
-    test("the Tables, and a cell of theirs", ({ page }) => tables(page));
-    test("the three steps of Check a rig", ({ page }) => rig(page));
-  });
-}
+test.use({ contextOptions: { reducedMotion: "reduce" } });
+test("the Lab before, while and after a run, with its settings and help", ({ lab: opened, page }) => lab(opened, page));
+test("a Lab whose pose is lost", ({ lab: opened, page }) => poseLost(opened, page));
+test("a Lab whose pose has a rival", ({ lab: opened, page }) => rivals(opened, page));
+test("every lesson, the exercises and a slide", ({ page }) => learn(page));
+test("the Tables, and a cell of theirs", ({ page }) => tables(page));
+test("the three steps of Check a rig", ({ page }) => rig(page));

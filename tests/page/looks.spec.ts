@@ -1,16 +1,16 @@
 /** Small and large, dark and light. */
 
 import { expect, test } from "./lab";
+import { atWidths, innerWidth, narrowest } from "./widths";
 
-for (const width of [320, 390, 1280, 1600, 2560]) {
-  test(`nothing sticks out at ${width} px`, async ({ lab, page }) => {
-    await page.setViewportSize({ width, height: 844 });
-    await lab.open();
-    const inner = await page.evaluate(() => document.documentElement.scrollWidth);
-    expect(inner).toBeLessThanOrEqual(width);
+test("nothing sticks out from 320 to 2560 px", async ({ lab, page }) => {
+  await page.setViewportSize(narrowest);
+  await lab.open();
+  await atWidths(page, [320, 390, 1280, 1600, 2560], async (width) => {
+    expect(await innerWidth(page), `at ${width} px`).toBeLessThanOrEqual(width);
     await expect(page.getByRole("button", { name: "Play" })).toBeInViewport();
   });
-}
+});
 
 test("on a phone the input is folded and the views can be swiped", async ({ lab, page }) => {
   await page.setViewportSize({ width: 390, height: 844 });

@@ -29,10 +29,10 @@ export const pair = (name = "0001") => [
   { name: `depth_${name}.png`, mimeType: "image/png", buffer: depthPng() },
 ];
 
-/** Gives the page files, and the depth camera that they do not name by its field of view. */
-export async function giveFiles(page: Page, files: readonly { name: string; mimeType: string; buffer: Buffer }[]): Promise<void> {
+/** Gives the page files of so many frames, and the depth camera that they do not name by its field of view. */
+export async function giveFiles(page: Page, files: readonly { name: string; mimeType: string; buffer: Buffer }[], frames = 1): Promise<void> {
   await page.locator("#rig input[type=file]:not([webkitdirectory])").first().setInputFiles([...files]);
-  await expect(page.locator(".rig-frame")).toHaveCount(1);
+  await expect(page.locator(".rig-frame")).toHaveCount(frames);
   const depth = page.getByRole("group", { name: "Depth camera" });
   await depth.getByLabel("Where its numbers come from").selectOption("typed");
   await depth.getByLabel("Given as").selectOption("view");

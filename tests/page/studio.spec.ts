@@ -1,6 +1,7 @@
 /** The Lab as a newcomer meets it: examples, the light, what a run has come to, and a page that stands still. */
 
 import { expect, test, type Lab } from "./lab";
+import { atWidths } from "./widths";
 
 const panelHeight = (lab: Lab) => lab.page.locator("#panel").evaluate((panel) => panel.getBoundingClientRect().height);
 
@@ -25,19 +26,21 @@ test("where motion is unwelcome nothing plays by itself", async ({ lab, page }) 
   await expect(page).toHaveURL(/noise=0\.05/);
 });
 
-for (const [width, height] of [[1280, 800], [1600, 900], [2560, 1300]] as const) {
-  test(`the surfaces are most of the first screen at ${width} px`, async ({ lab, page }) => {
-    await page.setViewportSize({ width, height });
-    await lab.open();
-    const box = await page.locator("#clouds-box").boundingBox();
-    const bar = await page.locator("#bar").boundingBox();
-    expect(box && box.width / width).toBeGreaterThan(0.45);
-    expect(box && bar && box.y + box.height).toBeLessThanOrEqual(bar?.y ?? 0);
-    // In their reading order: what goes in, the surfaces, what comes out.
-    const lefts = await page.locator("#inputs, #hero, #outcome").evaluateAll((parts) => parts.map((part) => part.getBoundingClientRect().left));
-    expect([...lefts].sort((a, b) => a - b)).toEqual(lefts);
-  });
-}
+test("the surfaces are most of the first screen from 1280 to 2560 px", async ({ lab, page }) => {
+  await page.setViewportSize({ width: 1280, height: 800 });
+  await lab.open();
+  for (const [width, height] of [[1280, 800], [1600, 900], [2560, 1300]] as const) {
+    await atWidths(page, [width], async () => {
+      const box = await page.locator("#clouds-box").boundingBox();
+      const bar = await page.locator("#bar").boundingBox();
+      expect(box && box.width / width).toBeGreaterThan(0.45);
+      expect(box && bar && box.y + box.height).toBeLessThanOrEqual(bar?.y ?? 0);
+      // In their reading order: what goes in, the surfaces, what comes out.
+      const lefts = await page.locator("#inputs, #hero, #outcome").evaluateAll((parts) => parts.map((part) => part.getBoundingClientRect().left));
+      expect([...lefts].sort((a, b) => a - b)).toEqual(lefts);
+    }, height);
+  }
+});
 
 test("an example is a press: it sets everything and plays", async ({ lab, page }) => {
   await lab.open("surface=vase&size=64");
@@ -63,7 +66,8 @@ test("the light is shown as found and true, and the true one can be dragged: the
   if (!ball) throw new Error("the ball is on the page");
   await page.mouse.move(ball.x + ball.width / 2, ball.y + ball.height / 2);
   await page.mouse.down();
-  await page.mouse.move(ball.x + ball.width / 2 + 20, ball.y + ball.height / 2 + 8, { steps: 4 });
+  // In one move: a light that rests on its way, as on a busy machine, counts there, and is a step for Undo of its own.
+  await page.mouse.move(ball.x + ball.width / 2 + 20, ball.y + ball.height / 2 + 8);
   await expect.poll(() => lab.fingerprint("Colour")).not.toBe(before);
   await page.mouse.up();
   await expect(page).toHaveURL(/lightTurn=-\d+/);
@@ -177,26 +181,27 @@ test("nothing moves under the pointer", async ({ lab, page }) => {
   expect(await boxes()).toEqual(before);
 });
 
-for (const [settings, stage, words] of [
-  ["", "registration", "Equations 12 to 16"],
-  ["registration=joint", "registration", "until its normals predict the colours"],
-  ["registration=fixed", "registration", "The pose is kept as it was at the start"],
-  ["", "surface", "Normals are slopes"],
-  ["shading=surface", "surface", "The unknowns are the heights themselves"],
-  ["lighting=estimate", "light", "fitted by robust least squares"],
-  ["", "light", "only the exposure of the picture"],
-] as const) {
-  test(`${stage} explains the method that runs: ${settings || "the paper's"}`, async ({ lab, page }) => {
-    await lab.page.goto(`./#lighting=known&start=identity&registration=icp&shading=pixel&size=32${settings && "&"}${settings}`);
-    await lab.reaches("ready");
-    // Of two settings of one name the first counts: those of the paper are changed by hand.
-    if (settings) await page.goto(`./#size=32&start=identity&${settings}${settings.includes("lighting") ? "" : "&lighting=known"}`);
-    await lab.reaches("ready");
-    await page.getByRole("button", { name: new RegExp(`^${stage}`) }).click();
-    await expect(page.locator("#explanation")).toContainText(words);
+test("a stage explains the method that runs", async ({ lab, page }) => {
+  for (const [settings, stage, words] of [
+    ["", "registration", "Equations 12 to 16"],
+    ["registration=joint", "registration", "until its normals predict the colours"],
+    ["registration=fixed", "registration", "The pose is kept as it was at the start"],
+    ["", "surface", "Normals are slopes"],
+    ["shading=surface", "surface", "The unknowns are the heights themselves"],
+    ["lighting=estimate", "light", "fitted by robust least squares"],
+    ["", "light", "only the exposure of the picture"],
+  ] as const) {
+    // Another address alone: the page hears of it a moment later, so that the first press may come too early.
+    await lab.open(`size=32${settings && "&"}${settings}`);
+    await expect(async () => {
+      await page.keyboard.press("Escape");
+      await page.getByRole("button", { name: new RegExp(`^${stage}`) }).click();
+      await expect(page.locator("#explanation")).toContainText(words, { timeout: 5_000 });
+    }).toPass();
     await expect(page.locator("#explanation math")).toHaveCount(settings === "registration=fixed" ? 0 : 1);
-  });
-}
+    await page.keyboard.press("Escape");
+  }
+});
 
 test("each number has its explanation", async ({ lab, page }) => {
   await lab.open("size=32");
