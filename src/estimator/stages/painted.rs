@@ -16,7 +16,7 @@ const SAME_POSE: f64 = 8.0;
 /// in noisy steps) the largest errors about an axis are 1 to 5 of the sigmas before, one 9.
 const COARSE_INFLATION: f64 = 2.0;
 /// Around a told pose starts are turned by multiples of so many degrees about the axes, up to so many of them: 123 turns. With
-/// 27 by 6 degrees, of forty photographs told 8 degrees off 32 were found, with these 36.
+/// 27 by 6 degrees, of forty photographs told 8 degrees off 32 were found, with these 34.
 const TURN: f64 = 5.0;
 const MOST_TURNS: i32 = 3;
 
