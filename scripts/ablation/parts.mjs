@@ -32,6 +32,11 @@ export const PARTS = [
     ],
   },
   {
+    name: "following",
+    what: "the pose of a painted object following the paint that is found under it",
+    changes: [{ file: "src/estimator/stages/contrasted.rs", from: "const ROUNDS: usize = 3;", to: "const ROUNDS: usize = 0;" }],
+  },
+  {
     name: "contrast",
     what: "the whole way of painted objects: colours of one albedo decide",
     changes: [{ file: PAINTED, from: "pair.options.registration == Registration::Joint", to: "false" }],

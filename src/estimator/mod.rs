@@ -242,10 +242,10 @@ impl Estimator {
         Ok(())
     }
 
-    /// Paint, where the pose has come to rest and it has not been looked for yet.
+    /// Paint, where the pose has come to rest or follows it, and it has not been looked for yet.
     fn find_paint(&mut self) {
         let Solution { pose, .. } = &self.solution;
-        if self.registration.keeps(&self.pair, pose) && !self.paint.knows(&self.pair, pose) {
+        if self.registration.asks_for_paint(&self.pair, pose) && !self.paint.knows(&self.pair, pose) {
             let normals = self.registration.measured_normals(&self.pair);
             self.light.bring_normals(&self.pair, normals, pose, &self.correspondences);
             self.paint.find(&self.pair, pose, self.light.depth_normals());
@@ -278,7 +278,7 @@ impl Estimator {
         let start = self.solution.pose;
         let inputs = Inputs::of(&self.pair, &self.paint, &self.light, &self.correspondences, self.report.iteration);
         (self.history.proposed_degrees, self.history.improved) = (0.0, true);
-        if let Some(registered) = self.registration.register(inputs, &self.solution)? {
+        if let Some(registered) = self.registration.register(inputs, &self.paint, &self.solution)? {
             self.history.improved = registered.improved;
             self.adopt(registered);
             self.history.proposed_degrees = start.degrees_to(&self.solution.pose);

@@ -38,7 +38,7 @@ mod uncertainty;
 mod visibility;
 
 pub use angles::Angles;
-pub(crate) use contrast::{ContrastOutcome, ContrastProblem, ContrastReport, ContrastSearch};
+pub(crate) use contrast::{ContrastOutcome, ContrastProblem, ContrastReport, ContrastSearch, settle};
 pub use correspondence::{CorrespondenceProblem, Correspondences};
 pub(crate) use distance_transform::squared_distances;
 pub use icp::{Icp, IcpOptions, IcpProblem, IcpReport, IcpTermination, Metric, Pair};

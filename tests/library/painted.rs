@@ -121,6 +121,38 @@ fn paint_does_not_pull_a_told_start_away() -> Result<()> {
     Ok(())
 }
 
+/// Two paints that run into one another over several pixels: no edge tells them apart.
+fn softly_painted(name: &str, beta: f64) -> Result<Painted> {
+    let mut scene = painted_at(96, name, beta, None)?;
+    let ColourSamples::RgbLinear(data) = &mut scene.image.samples else { return Ok(scene) };
+    for (pixel, colour) in data.chunks_mut(3).enumerate() {
+        let [x, y] = [pixel % scene.image.width, pixel / scene.image.width].map(|at| at as f32);
+        let share = 1.0 / (1.0 + (-5.0 * ((0.23 * x).sin() + (0.19 * y + 0.07 * x).cos())).exp());
+        colour.iter_mut().zip([-1.2, -0.3, 0.2]).for_each(|(value, paint)| *value *= (share * paint).exp());
+    }
+    Ok(scene)
+}
+
+#[test]
+fn the_pose_follows_soft_paint_that_is_found_under_it() -> Result<()> {
+    let (mut searched, mut followed) = (Vec::new(), Vec::new());
+    for (name, beta) in [("bust", 25.0), ("bust", -40.0), ("vase", -20.0), ("ripples", 20.0)] {
+        let scene = softly_painted(name, beta)?;
+        let mut estimator = Estimator::new(scene.image.clone(), &scene.depth, Options::default())?;
+        while estimator.is_searching() {
+            estimator.step();
+        }
+        searched.push(estimator.report().pose.degrees_to(&scene.truth));
+        while estimator.report().status == Status::Running {
+            estimator.step();
+        }
+        followed.push(estimator.report().pose.degrees_to(&scene.truth));
+    }
+    let mean = |off: &[f64]| off.iter().sum::<f64>() / off.len() as f64;
+    assert!(mean(&followed) < 0.7 * mean(&searched), "{followed:?} instead of {searched:?} degrees");
+    Ok(())
+}
+
 #[test]
 fn without_paint_the_colours_themselves_decide() -> Result<()> {
     let scene = painted("bust", 25.0, None)?;

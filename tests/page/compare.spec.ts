@@ -2,6 +2,7 @@
 
 import type { Locator, Page } from "@playwright/test";
 import { decode } from "fast-png";
+import { DRAWN, covered, goToClouds } from "./clouds";
 import { expect, test, type Lab } from "./lab";
 
 const boxOf = (lab: Lab, title: string): Locator => lab.page.locator("figure.view > .canvas", { has: lab.page.locator(`canvas[aria-label^="${title}:"]`) });
@@ -62,6 +63,37 @@ test("a pinned run stays in the charts, and in the pictures left of the wipe", a
   await page.getByRole("button", { name: "Unpin" }).click();
   await expect(page.locator(".pinned")).toHaveCount(0);
   await expect.poll(drawn).toBe(0);
+});
+
+test("the surfaces of a pinned run are seen left of the wipe, from wherever they are looked at", async ({ lab, page }) => {
+  // Nothing swings.
+  await page.emulateMedia({ reducedMotion: "reduce" });
+  await lab.open("size=64");
+  await goToClouds(page);
+  await page.keyboard.press("s");
+  await expect(lab.iteration).toHaveText("1");
+  const clouds = page.locator("#clouds-box");
+  await expect(page.locator("#clouds-note")).toBeHidden();
+  await expect.poll(() => covered(page.locator("#clouds-canvas"))).toBeGreaterThan(DRAWN);
+  await page.waitForTimeout(300);
+  const before = await clouds.screenshot();
+  await page.getByRole("button", { name: "Pin this run" }).click();
+  await lab.unfold();
+  await page.getByLabel("Surface", { exact: true }).selectOption("vase");
+  await lab.reaches("ready");
+  await page.locator("#input > summary").click();
+  const wipe = page.getByLabel("wipe");
+  await wipe.fill("100");
+  // Brought to where the present object stands, and looked at from where that one is.
+  await expect.poll(() => differing(clouds, before)).toBeLessThan(0.1);
+  const pinned = await clouds.screenshot();
+  await wipe.fill("0");
+  await expect.poll(() => differing(clouds, pinned)).toBeGreaterThan(0.1);
+  const present = await clouds.screenshot();
+  await wipe.fill("50");
+  for (const whole of [pinned, present]) await expect.poll(() => differing(clouds, whole)).toBeGreaterThan(0.04);
+  await page.getByRole("button", { name: "Unpin" }).click();
+  await expect.poll(() => differing(clouds, present)).toBeLessThan(0.005);
 });
 
 const pinningMovesNothing = async ({ lab, page }: { lab: Lab; page: Page }): Promise<void> => {

@@ -56,6 +56,8 @@ test.describe("by touch", () => {
     expect(await small(page), "calibrations").toEqual([]);
     await page.getByRole("button", { name: "Run the check" }).tap();
     await expect(page.locator(".rig-bar").first()).toBeVisible();
+    // Its picture comes a little later.
+    await expect.poll(() => page.locator(".rig-overlay-board").evaluate(({ clientHeight }) => clientHeight)).toBeGreaterThan(TARGET);
     expect(await small(page), "verdict").toEqual([]);
   });
 });

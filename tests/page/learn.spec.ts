@@ -1,5 +1,6 @@
 /** Learn: each lesson's figure answers to its control, links open their state, slides turn by keys. */
 
+import { readFile } from "node:fs/promises";
 import type { Locator, Page } from "@playwright/test";
 import { expect, test } from "./lab";
 import { atWidths, innerWidth, narrowest } from "./widths";
@@ -34,6 +35,33 @@ function fingerprint(page: Page, panel: string): Promise<number> {
     return data.reduce((sum, value) => (sum * 31 + value) % 1_000_003, 7);
   });
 }
+
+test("each lesson says where its method is written down, by links that lead there", async ({ page }) => {
+  const method = await readFile(new URL("../../docs/method.md", import.meta.url), "utf8");
+  const anchors = [...method.matchAll(/^## (.+)$/gm)].map(([, heading = ""]) => heading.toLowerCase().replace(/[^\w\s-]/g, "").replace(/\s/g, "-"));
+  const papers: string[] = [];
+  for (const id of ["pixel", "grey", "colours", "surface", "prior", "pose", "sensor", "paint", "failure"]) {
+    await page.goto(`./#learn&at=${id}`);
+    await expect(page.locator(`[data-lesson="${id}"]`)).toBeVisible();
+    const links = await page.locator(".learn-more a").evaluateAll((all) => all.map((link) => (link as HTMLAnchorElement).href));
+    const sections = links.flatMap((link) => /\/docs\/method\.md#(.+)$/.exec(link)?.[1] ?? []);
+    expect(sections.length).toBeGreaterThan(0);
+    for (const section of sections) expect(anchors).toContain(section);
+    papers.push(...links.filter((link) => !link.includes("/docs/")));
+  }
+  expect(papers.length).toBeGreaterThan(8);
+  for (const link of papers) expect(link).toMatch(/^https:\/\/(arxiv\.org\/abs|doi\.org)\//);
+});
+
+test("on a phone the figure stands below what it is about, and above the long text", async ({ page }) => {
+  await page.setViewportSize({ width: 390, height: 844 });
+  await open(page, "at=pose");
+  const top = async (selector: string) => (await page.locator(selector).first().boundingBox())?.y ?? NaN;
+  expect(await top(".learn-figure")).toBeGreaterThan(await top(".learn-formula"));
+  expect(await top(".learn-figure")).toBeLessThan(await top(".learn-formula ~ p"));
+  await page.getByRole("button", { name: "Slides" }).click();
+  await expect(page.locator(".learn-slide .learn-figure")).toBeVisible();
+});
 
 test("the Lab alone loads nothing of Learn, and Learn leaves the Lab alone", async ({ lab, page }) => {
   const asked: string[] = [];

@@ -83,6 +83,10 @@ test("an enlarged view comes into sight", async ({ lab, page }) => {
   expect(await page.evaluate(() => (scrollTo({ top: 5000, behavior: "instant" }), scrollY))).toBeGreaterThan(200);
   await page.keyboard.press("1");
   await expect(page.locator("figure[data-large]")).toBeInViewport({ ratio: 0.9 });
+  // One that shares its row with others has it for itself.
+  await page.keyboard.press("7");
+  const widthOf = async (box: string) => (await page.locator(box).filter({ visible: true }).boundingBox())?.width;
+  expect(await widthOf("#views > section")).toBe(await widthOf("#views"));
 });
 
 test("a view without values has no range of earlier ones", async ({ lab, page }) => {
@@ -98,12 +102,15 @@ test("a view without values has no range of earlier ones", async ({ lab, page })
   await expect(lowest).toHaveValue("0");
 });
 
-test("on a phone the verdict is on the first screen, below the surfaces", async ({ lab, page }) => {
-  await page.setViewportSize({ width: 390, height: 844 });
-  await lab.visit("size=64");
-  const [verdict, bar, hero] = await Promise.all(["#status", "#bar", "#hero"].map((box) => page.locator(box).boundingBox()));
-  expect((verdict?.y ?? 0) + (verdict?.height ?? 0)).toBeLessThan(bar?.y ?? 0);
-  expect(verdict?.y).toBeGreaterThan((hero?.y ?? 0) + (hero?.height ?? 0));
+test.describe("on a phone", () => {
+  test.use({ hasTouch: true, isMobile: true, viewport: { width: 390, height: 844 } });
+
+  test("all of the verdict is on the first screen, below the surfaces", async ({ lab, page }) => {
+    await lab.visit("size=64");
+    const [verdict, bar, hero] = await Promise.all(["#panel", "#bar", "#hero"].map((box) => page.locator(box).boundingBox()));
+    expect((verdict?.y ?? 0) + (verdict?.height ?? 0)).toBeLessThanOrEqual(bar?.y ?? 0);
+    expect(verdict?.y).toBeGreaterThan((hero?.y ?? 0) + (hero?.height ?? 0));
+  });
 });
 
 test("on a tablet the verdict is on the first screen, and stages that do not fit leave the controls where they are", async ({ lab, page }) => {
@@ -114,7 +121,34 @@ test("on a tablet the verdict is on the first screen, and stages that do not fit
   const widths = (box: string) => page.locator(box).evaluate(({ scrollWidth, clientWidth }) => scrollWidth - clientWidth);
   expect(await widths("#stages")).toBeGreaterThan(0);
   expect(await widths("#bar")).toBe(0);
+  // None of them is broken into lines.
+  const [stages] = await page.locator("#stages").evaluateAll((all) => all.map(({ clientHeight, firstElementChild }) => [clientHeight, firstElementChild?.clientHeight ?? 0]));
+  expect(stages?.[0]).toBe(stages?.[1]);
 });
+
+test("what is focused on the bar scrolls nothing: it is in sight already", async ({ lab, page }) => {
+  await lab.visit("size=64");
+  await page.keyboard.press("Tab");
+  await page.keyboard.press("Enter");
+  for (const id of ["play", "step", "stage-step"]) {
+    await expect(page.locator(`#${id}`)).toBeFocused();
+    expect(await page.evaluate(() => scrollY)).toBe(0);
+    await page.keyboard.press("Tab");
+  }
+});
+
+for (const width of [768, 1024]) {
+  test(`open settings hide neither inputs nor surfaces at ${width} px`, async ({ lab, page }) => {
+    await page.setViewportSize({ width, height: 900 });
+    await lab.visit("size=64");
+    await lab.unfold();
+    const sheet = await page.locator("#input > .sheet").boundingBox();
+    for (const box of ["#inputs", "#hero", "#outcome"]) expect((await page.locator(box).boundingBox())?.x).toBeGreaterThan((sheet?.x ?? 0) + (sheet?.width ?? 0));
+    await expect(page.locator("#inputs")).toBeInViewport({ ratio: 1 });
+    await expect(page.locator("#hero")).toBeInViewport({ ratio: 0.5 });
+    expect(await page.evaluate(() => document.documentElement.scrollWidth)).toBeLessThanOrEqual(width);
+  });
+}
 
 test("open settings hide no input, and what has opened them stays under the pointer", async ({ lab, page }) => {
   await page.setViewportSize({ width: 1280, height: 800 });

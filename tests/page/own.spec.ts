@@ -1,8 +1,9 @@
 /** The visitor's own files: dropped anywhere, told apart, shown at once, kept over a reload, and never beside another pair's pictures. */
 
+import { readFile } from "node:fs/promises";
 import { encode } from "fast-png";
 import { expect, test, type Lab } from "./lab";
-import { SIDE, cameraJson, colourPng, columnNpy, depthPng, drop, maskPng, type Upload } from "./uploads";
+import { SIDE, cameraJson, cloudPly, colourPng, columnNpy, depthPfm, depthPgm, depthPng, depthTiff, drop, maskPng, type Upload } from "./uploads";
 
 const slot = (lab: Lab, index: number) => lab.page.locator(".slot").nth(index);
 
@@ -50,6 +51,40 @@ test("a slot that is filled keeps its height, and moves no other", async ({ lab,
   await expect(slot(lab, 1).getByRole("img")).toBeVisible();
   await expect(slot(lab, 1)).toContainText("% valid");
   expect(await places()).toEqual(before);
+});
+
+test("depth maps in TIFF, PGM and PFM are the same picture as the PNG, wherever they are dropped", async ({ lab, page }) => {
+  await own(lab);
+  await put(lab, "Colour image", colourPng());
+  await put(lab, "Depth map", depthPng());
+  await lab.reaches("ready");
+  const rows = await lab.fingerprint("Given depth");
+  for (const file of [depthTiff(), depthPgm(), depthPfm()]) {
+    await drop(page, "body", [file]);
+    await expect(slot(lab, 1)).toContainText(file.name);
+    await expect(slot(lab, 1)).toContainText(/48x48, .*stored numbers 100 to/);
+    await lab.reaches("ready");
+    expect(await lab.fingerprint("Given depth"), file.name).toBe(rows);
+  }
+  // A colour image of another kind, and a cloud with its own points, run as well.
+  const fixture = async (name: string): Promise<Upload> => ({ name, mimeType: "", buffer: await readFile(new URL(`../fixtures/rig/${name}`, import.meta.url)) });
+  await drop(page, "body", [await fixture("colour.tif")]);
+  await expect(slot(lab, 0)).toContainText("colour.tif");
+  await lab.reaches("ready");
+  await put(lab, "Depth map", cloudPly());
+  await expect(slot(lab, 1)).toContainText("d.ply");
+  await lab.reaches("ready");
+  // What the reader has against a file is said where it lies.
+  await put(lab, "Depth map", await fixture("depth-piz.exr"));
+  await expect(slot(lab, 1)).toContainText("compressed by PIZ");
+  await lab.reaches("error");
+  await put(lab, "Depth map", await fixture("colour.jpg"));
+  await expect(slot(lab, 1)).toContainText("a colour picture where a depth map was asked for");
+  await lab.reaches("error");
+  const cut = depthTiff("cut.tif");
+  await put(lab, "Depth map", { ...cut, buffer: cut.buffer.subarray(0, 900) });
+  await lab.reaches("error");
+  await expect(slot(lab, 1).locator(".note.error").filter({ visible: true }).last()).toContainText(/cut\.tif: .*(cut off|end)/);
 });
 
 test("a .npy in column order is the same picture as the PNG it was made of", async ({ lab }) => {

@@ -215,6 +215,19 @@ test("a pose that was held is not said to have been sought", async ({ lab, page 
   await page.keyboard.press(" ");
   await expect(page.locator("#verdict")).toContainText("kept where it started");
   await expect(page.locator("#next")).toContainText("Registration, joint");
+  // It is 20 degrees off, and in red: a tick would say the contrary.
+  await expect(page.locator("#status")).toHaveAttribute("data-tone", "wrong");
+  await expect(page.locator("#status-icon")).toHaveText("×");
+});
+
+test("the example that is too hard is lost, says why, and what would help", async ({ lab, page }) => {
+  await lab.visit("size=32");
+  await page.locator("#pace").selectOption({ label: "fastest" });
+  await page.getByRole("button", { name: "Too hard", exact: true }).click();
+  await lab.reaches("lost");
+  await expect(page.locator("#verdict")).toContainText(/not observable|uncertain/);
+  await expect(page.locator("#next")).toContainText("less noise");
+  await expect(page.locator("#status-icon")).toHaveText("×");
 });
 
 test("other threads share the search where the machine has them", async ({ lab, page }) => {

@@ -32,6 +32,49 @@ export function columnNpy(name = "d.npy"): Upload {
   return { name, mimeType: "application/octet-stream", buffer: Buffer.concat([head, Buffer.from(data.buffer)]) };
 }
 
+const bytes = (name: string, ...parts: (string | Uint8Array)[]): Upload => ({
+  ...{ name, mimeType: "application/octet-stream", buffer: Buffer.concat(parts.map((part) => (typeof part === "string" ? Buffer.from(part, "latin1") : part))) },
+});
+const depths16 = (isLittle: boolean): Buffer => {
+  const data = Buffer.alloc(2 * SIDE * SIDE);
+  for (let i = 0; i < SIDE * SIDE; i++) data[isLittle ? "writeUInt16LE" : "writeUInt16BE"](depthAt(i), 2 * i);
+  return data;
+};
+
+/** The depth map of `depthPng` as other programs save it. */
+export const depthPgm = (name = "d.pgm"): Upload => bytes(name, `P5\n${SIDE} ${SIDE}\n65535\n`, depths16(false));
+export function depthPfm(name = "d.pfm"): Upload {
+  // From the lowest row up, and low byte first.
+  const rows = Float32Array.from({ length: SIDE * SIDE }, (_, i) => depthAt((SIDE - 1 - Math.floor(i / SIDE)) * SIDE + (i % SIDE)));
+  return bytes(name, `Pf\n${SIDE} ${SIDE}\n-1.0\n`, new Uint8Array(rows.buffer));
+}
+/** One strip of 16 bits, not compressed; its directory lies behind it. */
+export function depthTiff(name = "d.tif"): Upload {
+  const strip = depths16(true);
+  const tags = [[256, SIDE], [257, SIDE], [258, 16], [259, 1], [262, 1], [273, 8], [277, 1], [278, SIDE], [279, strip.length]] as const;
+  const head = Buffer.from([0x49, 0x49, 42, 0, 0, 0, 0, 0]);
+  head.writeUInt32LE(8 + strip.length, 4);
+  const directory = Buffer.alloc(2 + 12 * tags.length + 4);
+  directory.writeUInt16LE(tags.length, 0);
+  tags.forEach(([tag, value], i) => {
+    directory.writeUInt16LE(tag, 2 + 12 * i);
+    directory.writeUInt16LE(4, 4 + 12 * i);
+    directory.writeUInt32LE(1, 6 + 12 * i);
+    directory.writeUInt32LE(value, 10 + 12 * i);
+  });
+  return bytes(name, head, strip, directory);
+}
+
+/** The same as points, rows by columns; where there is no depth there is none. */
+export function cloudPly(name = "d.ply"): Upload {
+  const points = Float32Array.from({ length: 3 * SIDE * SIDE }, (_, at) => {
+    const i = Math.floor(at / 3);
+    return depthAt(i) === 0 ? NaN : [i % SIDE, Math.floor(i / SIDE), depthAt(i) / 10][at % 3] ?? NaN;
+  });
+  const head = ["ply", "format binary_little_endian 1.0", `obj_info num_cols ${SIDE}`, `obj_info num_rows ${SIDE}`, `element vertex ${SIDE * SIDE}`, ...["x", "y", "z"].map((axis) => `property float ${axis}`), "end_header", ""];
+  return bytes(name, head.join("\n"), new Uint8Array(points.buffer));
+}
+
 export const cameraJson = (name = "camera.json", side = SIDE): Upload => ({
   ...{ name, mimeType: "application/json", buffer: Buffer.from(JSON.stringify({ width: side, height: side, fx: 61, fy: 62, cx: 23.5, cy: 23.25 })) },
 });

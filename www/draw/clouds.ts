@@ -7,7 +7,7 @@ import type { Side, Surface } from "../engine/protocol";
 import { ink, make } from "../dom";
 import type { Asked } from "./probe";
 import { type CloudsHooks, type Renderer, rendererFor } from "./renderer";
-import type { Change } from "./stage";
+import type { Change, PinnedSurfaces } from "./stage";
 
 /** How long, in milliseconds, the depth map takes from one pose to the next. */
 const SWING = 220;
@@ -21,6 +21,8 @@ const IN_FRONT = 5;
 const still = matchMedia("(prefers-reduced-motion: reduce)");
 /** Share of their radius by which surfaces leave the middle of the view before it follows: iterations move them by less. */
 const LEFT_THE_MIDDLE = 0.3;
+/** By what factor a pinned run's object is larger or smaller before it counts as one of another resolution. */
+const OTHER_SIZE = 1.5;
 const NOWHERE = new Matrix4();
 
 /** P -> s R P + t. */
@@ -45,6 +47,8 @@ export class Clouds {
   #standing = NOWHERE.clone();
   #swings = 0;
   #bounds = new Sphere(new Vector3(), 1);
+  /** Of the surfaces that are pinned. */
+  #pinned: Sphere | undefined;
   #marked: Record<Side, readonly number[] | null> = { image: null, depth: null };
   readonly #marks: Record<Side, HTMLElement>;
 
@@ -88,7 +92,37 @@ export class Clouds {
     // From where it stood, in terms of the new points.
     const from = before && !fresh ? this.#standing.clone().multiply(before).multiply(this.#pose.clone().invert()) : NOWHERE.clone();
     this.#change({ surfaces: this.#shown });
+    this.#placePinned();
     void this.#swing(from, this.#apart(seen));
+  }
+
+  /** Keeps surfaces as they stand under a pose, to be seen left of the wipe. */
+  pin(surfaces: Record<Side, Surface>, pose: Pose, seen: Pose): void {
+    this.#pinned = boundsOf(surfaces);
+    const pinned: PinnedSurfaces = { surfaces, swing: matrixOf(seen).multiply(matrixOf(pose).invert()).toArray() };
+    this.#change({ pinned });
+    this.#placePinned();
+  }
+
+  unpin(): void {
+    this.#pinned = undefined;
+    this.#change({ pinned: null });
+  }
+
+  /** Share of the width that the pinned run has. */
+  wipe(share: number): void {
+    this.#change({ wipe: share });
+  }
+
+  /** Where the pinned run stands elsewhere, as far away as an image can't see, or in pixels of another size, it is brought here. */
+  #placePinned(): void {
+    const [then, now] = [this.#pinned, this.#pinned && this.#shown && boundsOf(this.#shown)];
+    if (!then || !now) return;
+    const growth = now.radius / then.radius;
+    const size = Math.max(growth, 1 / growth) > OTHER_SIZE ? growth : 1;
+    const isElsewhere = size !== 1 || now.center.distanceTo(then.center) > LEFT_THE_MIDDLE * now.radius;
+    const place = isElsewhere ? new Matrix4().makeScale(size, size, size).setPosition(now.center.clone().addScaledVector(then.center, -size)) : NOWHERE;
+    this.#change({ pinnedPlace: place.toArray() });
   }
 
   /** How a pose differs from the one that the points come under. */
@@ -184,7 +218,7 @@ export class Clouds {
    * measured, whereas the image's surface can be anything before the loop has settled.
    */
   home(): void {
-    const bounds = this.#shown && (extent(this.#shown.depth.points) ?? extent(this.#shown.image.points));
+    const bounds = this.#shown && boundsOf(this.#shown);
     if (!bounds) return;
     this.#bounds = bounds;
     const { center, radius } = bounds;
@@ -270,6 +304,9 @@ function partsOf(matrix: Matrix4): Parts {
   matrix.decompose(parts.place, parts.turn, parts.size);
   return parts;
 }
+
+/** The depth map was measured; the image's surface stands in where there is none. */
+const boundsOf = ({ depth, image }: Record<Side, Surface>): Sphere | undefined => extent(depth.points) ?? extent(image.points);
 
 /** A sphere about the bulk of the points: a few flying ones must not shrink the rest to a dot. */
 function extent(points: Float32Array): Sphere | undefined {

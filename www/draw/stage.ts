@@ -27,6 +27,18 @@ export interface Change {
   style?: "points" | "surfaces";
   /** Where the depth map's surface stands beside its own pose, column by column. */
   swing?: number[];
+  /** Another run's surfaces, which are seen left of the wipe; nothing takes them away. */
+  pinned?: PinnedSurfaces | null;
+  /** How they are brought to where those of the present run stand. */
+  pinnedPlace?: number[];
+  /** Share of the width that the pinned run has. */
+  wipe?: number;
+}
+
+export interface PinnedSurfaces {
+  surfaces: Record<Side, Surface>;
+  /** As `swing` was. */
+  swing: number[];
 }
 
 /** What a thread says that draws: whether it has the canvas, then after each change that it is drawn; and in between whether WebGL was lost. */
@@ -39,6 +51,10 @@ export class CloudStage {
   readonly #lamp = new DirectionalLight(0xffffff, 2.4);
   readonly #image = new Sheet(1);
   readonly #depth = new Sheet(0.85);
+  readonly #pinned = { image: new Sheet(1), depth: new Sheet(0.85), isShown: false };
+  /** All sheets of each run. */
+  readonly #runs = { now: new Group(), pinned: new Group() };
+  #wipe = 0;
   #sight: Sight | undefined;
 
   /** Throws where the browser has no WebGL. A browser may take it away for a while, which is told; what there was is drawn again afterwards. */
@@ -51,25 +67,55 @@ export class CloudStage {
       this.show({});
       onLost(false);
     });
-    this.#scene.add(this.#image.group, this.#depth.group, this.#lamp, this.#lamp.target, new AmbientLight(0xffffff, 0.9));
+    this.#runs.now.add(this.#image.group, this.#depth.group);
+    this.#runs.pinned.add(this.#pinned.image.group, this.#pinned.depth.group);
+    this.#runs.pinned.matrixAutoUpdate = false;
+    this.#scene.add(this.#runs.now, this.#runs.pinned, this.#lamp, this.#lamp.target, new AmbientLight(0xffffff, 0.9));
     this.#camera.matrixWorldAutoUpdate = false;
   }
 
-  show({ surfaces, sight, inks, style, swing }: Change): void {
+  show({ surfaces, sight, inks, style, swing, pinned, pinnedPlace, wipe }: Change): void {
+    const sheets = [this.#image, this.#depth, this.#pinned.image, this.#pinned.depth];
     if (inks) {
-      this.#image.ink(inks.image);
-      this.#depth.ink(inks.depth);
+      for (const { image, depth } of [{ image: this.#image, depth: this.#depth }, this.#pinned]) {
+        image.ink(inks.image);
+        depth.ink(inks.depth);
+      }
     }
-    if (style) for (const sheet of [this.#image, this.#depth]) sheet.setStyle(style);
+    if (style) for (const sheet of sheets) sheet.setStyle(style);
     if (surfaces) {
       this.#image.fill(surfaces.image);
       this.#depth.fill(surfaces.depth);
     }
     if (swing) this.#depth.place(swing);
+    if (pinned !== undefined) this.#pin(pinned);
+    if (pinnedPlace) place(this.#runs.pinned, pinnedPlace);
+    if (wipe !== undefined) this.#wipe = wipe;
     if (sight) this.#look(sight);
     if (!this.#sight) return;
-    for (const sheet of [this.#image, this.#depth]) sheet.resizePoints(this.#sight);
-    this.#renderer.render(this.#scene, this.#camera);
+    for (const sheet of sheets) sheet.resizePoints(this.#sight);
+    this.#render(this.#sight);
+  }
+
+  #pin(pinned: PinnedSurfaces | null): void {
+    this.#pinned.isShown = pinned !== null;
+    if (!pinned) return;
+    this.#pinned.image.fill(pinned.surfaces.image);
+    this.#pinned.depth.fill(pinned.surfaces.depth);
+    this.#pinned.depth.place(pinned.swing);
+  }
+
+  /** Each run on its side of the wipe, from the same place. */
+  #render({ width, height }: Sight): void {
+    const edge = this.#pinned.isShown ? Math.round(this.#wipe * width) : 0;
+    this.#renderer.setScissorTest(edge > 0);
+    for (const [isPinned, from, to] of [[true, 0, edge], [false, edge, width]] as const) {
+      if (from === to) continue;
+      this.#runs.pinned.visible = isPinned;
+      this.#runs.now.visible = !isPinned;
+      this.#renderer.setScissor(from, 0, to - from, height);
+      this.#renderer.render(this.#scene, this.#camera);
+    }
   }
 
   #look(sight: Sight): void {
@@ -87,6 +133,11 @@ export class CloudStage {
     this.#lamp.position.set(-0.5, 0.7, 1).transformDirection(this.#camera.matrixWorld);
     this.#sight = sight;
   }
+}
+
+function place(group: Group, matrix: number[]): void {
+  group.matrix.copy(new Matrix4().fromArray(matrix));
+  group.matrixWorldNeedsUpdate = true;
 }
 
 /** One surface both ways. */
@@ -119,8 +170,7 @@ class Sheet {
   }
 
   place(matrix: number[]): void {
-    this.group.matrix.copy(new Matrix4().fromArray(matrix));
-    this.group.matrixWorldNeedsUpdate = true;
+    place(this.group, matrix);
   }
 
   fill(drawn: Surface): void {

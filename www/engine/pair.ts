@@ -1,7 +1,7 @@
 /**
  * The visitor's files as an image and a depth map. Runs in the worker; the decoders come along with this module.
- * PNG and .npy are read by the library, because a canvas would throw away the lower byte of 16 bits; everything else is
- * the browser's, which also turns phone photos upright.
+ * PNG and .npy are read by the library, because a canvas would throw away the lower byte of 16 bits; photographs are
+ * the browser's, which also turns them upright. What neither knows comes read already.
  */
 
 import { BimodalError } from "../../pkg/index.js";
@@ -29,8 +29,8 @@ export async function readPair(files: OwnFiles): Promise<Pair> {
 
 async function readImage(files: OwnFiles, notes: Record<string, string>): Promise<ColorImage> {
   const { colour, colourMask, colourCamera } = files;
-  const raw = await read(colour, "image", async (bytes) => (isOurs(bytes) ? decodeColour(bytes) : decodePhoto(colour)));
-  const mask = colourMask && (await read(colourMask, "image.mask", (bytes) => decodeMask(bytes)));
+  const raw = files.read?.colour ?? (await read(colour, "image", async (bytes) => (isOurs(bytes) ? decodeColour(bytes) : decodePhoto(colour))));
+  const mask = files.read?.colourMask ?? (colourMask && (await read(colourMask, "image.mask", (bytes) => decodeMask(bytes))));
   const factor = factorFor(raw);
   const image = factor > 1 ? shrink(raw, factor) : raw;
   if (factor > 1) notes.image = `${raw.width} × ${raw.height} px is more than the library takes: scaled down by ${factor}`;
@@ -38,15 +38,16 @@ async function readImage(files: OwnFiles, notes: Record<string, string>): Promis
   // The centre of a block of pixels lies between them.
   if (colourCamera) image.camera = reduced(colourCamera, factor, (factor - 1) / 2);
   if (image.data instanceof Float32Array) return image;
-  image.transfer = files.transfer ?? guessTransfer(image.data);
-  if (!files.transfer) notes["image.transfer"] = `guessed: ${image.transfer === "srgb" ? "sRGB" : "linear"}`;
+  const told = files.transfer ?? image.transfer;
+  image.transfer = told ?? guessTransfer(image.data);
+  if (!told) notes["image.transfer"] = `guessed: ${image.transfer === "srgb" ? "sRGB" : "linear"}`;
   return image;
 }
 
 async function readDepth(files: OwnFiles, notes: Record<string, string>): Promise<DepthMap> {
   const { depth: file, depthMask, depthCamera, unit } = files;
-  const raw = await read(file, "depth", (bytes) => decodeDepth(bytes));
-  const mask = depthMask && (await read(depthMask, "depth.mask", (bytes) => decodeMask(bytes)));
+  const raw = files.read?.depth ?? (await read(file, "depth", (bytes) => decodeDepth(bytes)));
+  const mask = files.read?.depthMask ?? (depthMask && (await read(depthMask, "depth.mask", (bytes) => decodeMask(bytes))));
   const factor = factorFor(raw);
   const depth = factor > 1 ? thin(raw, factor) : raw;
   if (factor > 1) notes.depth = `${raw.width} × ${raw.height} px is more than the library takes: every ${factor}th pixel is used`;
@@ -78,7 +79,7 @@ async function read<T>(file: File, field: string, decode: (bytes: Uint8Array) =>
 /** JPEG, WebP and whatever else this browser knows, turned as the camera was held. */
 async function decodePhoto(file: File): Promise<ColorImage> {
   const bitmap = await createImageBitmap(file, { imageOrientation: "from-image" }).catch(() => {
-    throw new BimodalError("file", "this is no picture that can be read here; use PNG, JPEG or .npy", "image");
+    throw new BimodalError("file", "this is no picture that can be read here; use PNG, JPEG, TIFF, EXR or .npy", "image");
   });
   const { width, height } = bitmap;
   if (width * height > MOST_PIXELS) {

@@ -1,9 +1,17 @@
 /** What the page and its worker say to each other. Both sides import this file and nothing else of one another. */
 
-import type { Options, Pinhole, Pose, SampleRequest, StepReport } from "../../pkg/index.js";
+import type { ColorImage, DepthMap, Mask, Options, Pinhole, Pose, SampleRequest, StepReport } from "../../pkg/index.js";
 
 /** A camera as it was typed in: how many numbers there are the library judges. */
 export type OwnCamera = Omit<Pinhole, "distortion"> & { distortion?: number[] };
+
+/** Files whose pixels have been read already, as the worker's decoders do not know them; depths in stored numbers. */
+export interface Read {
+  colour?: ColorImage;
+  depth?: DepthMap;
+  colourMask?: Mask;
+  depthMask?: Mask;
+}
 
 /** Files as dropped or picked, with what only their owner knows about them. */
 export interface OwnFiles {
@@ -11,6 +19,7 @@ export interface OwnFiles {
   depth: File;
   colourMask?: File;
   depthMask?: File;
+  read?: Read;
   colourCamera?: OwnCamera;
   depthCamera?: OwnCamera;
   /** Metres (or pixels) per stored unit of depth; the library's default without it. */

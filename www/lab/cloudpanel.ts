@@ -19,6 +19,9 @@ export class CloudPanel {
   readonly #probe: Probe;
   #clouds: Clouds | undefined;
   #drawings: Drawings | undefined;
+  /** What a pinned run had come to, and how much of the width is its. */
+  #pinned: Drawings | undefined;
+  #wipe = 0;
   /** Whether the surfaces are to be looked at anew. */
   #fresh = true;
   #opened = 0;
@@ -47,6 +50,24 @@ export class CloudPanel {
     this.#showAll();
   }
 
+  /** Keeps what is shown, to be seen left of the wipe. */
+  pin(): void {
+    this.#pinned = this.#drawings;
+    this.#box.toggleAttribute("data-pinned", true);
+    this.#applyPin();
+  }
+
+  unpin(): void {
+    this.#pinned = undefined;
+    this.#box.removeAttribute("data-pinned");
+    this.#clouds?.unpin();
+  }
+
+  wipe(share: number): void {
+    this.#wipe = share;
+    this.#clouds?.wipe(share);
+  }
+
   /** The depth map's surface under another pose than its own, or its own again. */
   pretend(pose: Pose | undefined): void {
     this.#clouds?.pretend(pose);
@@ -72,6 +93,11 @@ export class CloudPanel {
     this.#clouds?.setStyle(this.#style.value === "points" ? "points" : "surfaces");
   }
 
+  #applyPin(): void {
+    if (this.#pinned) this.#clouds?.pin(this.#pinned.surfaces, this.#pinned.poses.points, this.#pinned.poses.seen);
+    this.#clouds?.wipe(this.#wipe);
+  }
+
   #say(words: string): void {
     this.#note.textContent = words;
     this.#note.hidden = words === "";
@@ -87,6 +113,7 @@ export class CloudPanel {
       this.#say("");
       this.#listen(canvas, clouds);
       this.#applyStyle();
+      this.#applyPin();
       this.#showAll();
     } catch {
       this.#say(NONE);

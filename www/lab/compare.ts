@@ -1,10 +1,12 @@
-/** A run that is pinned, beside those that come after it: its curves are dashed, its pictures lie left of the wipe. */
+/** A run that is pinned, beside those that come after it: its curves are dashed, its pictures and surfaces lie left of the wipe. */
 
 import { byId } from "../dom";
 
 export interface CompareHooks {
   onPin(): void;
   onUnpin(): void;
+  /** Share of the width that is the pinned run's. */
+  onWipe(share: number): void;
 }
 
 export class Compare {
@@ -17,7 +19,7 @@ export class Compare {
   constructor(hooks: CompareHooks) {
     this.#hooks = hooks;
     this.#button.addEventListener("click", () => this.#pin(!this.#isPinned));
-    const place = () => document.documentElement.style.setProperty("--wipe", `${this.#wipe.value}%`);
+    const place = () => this.#hooks.onWipe(Number(this.#wipe.value) / 100);
     this.#wipe.addEventListener("input", place);
     place();
     this.#show();

@@ -136,14 +136,22 @@ export class Gallery {
   /** Keeps this run's pictures and curves beside those of the runs to come. */
   pin(history: readonly StepReport[]): void {
     for (const view of Object.values(this.#views)) view.pin();
+    this.#clouds.pin();
     this.#pinned = [...history];
     this.#showCharts();
   }
 
   unpin(): void {
     for (const view of Object.values(this.#views)) view.unpin();
+    this.#clouds.unpin();
     this.#pinned = [];
     this.#showCharts();
+  }
+
+  /** Share of each picture's width that is the pinned run's. */
+  wipe(share: number): void {
+    document.documentElement.style.setProperty("--wipe", `${100 * share}%`);
+    this.#clouds.wipe(share);
   }
 
   recolour(): void {

@@ -6,10 +6,10 @@ import type { Look, Offer } from "./own";
 export type Slot = "colour" | "depth" | "colourMask" | "depthMask";
 
 const slots: readonly { slot: Slot; label: string; accept: string; hint: string; paths: readonly string[] }[] = [
-  { slot: "colour", label: "Colour image", accept: ".png,.jpg,.jpeg,.webp,image/*", hint: "PNG or JPEG, 8 or 16 bit", paths: ["image", "image.data"] },
-  { slot: "depth", label: "Depth map", accept: ".png,.npy", hint: "16-bit PNG, or .npy of float32 or uint16", paths: ["depth", "depth.data"] },
-  { slot: "colourMask", label: "Colour mask", accept: ".png,image/*", hint: "optional PNG; black is background", paths: ["image.mask"] },
-  { slot: "depthMask", label: "Depth mask", accept: ".png,image/*", hint: "optional PNG; black is background", paths: ["depth.mask"] },
+  { slot: "colour", label: "Colour image", accept: ".png,.npy,.tif,.tiff,.exr,.ppm,image/*", hint: "PNG, JPEG, WebP, TIFF, EXR, PPM, .npy", paths: ["image", "image.data"] },
+  { slot: "depth", label: "Depth map", accept: ".png,.npy,.tif,.tiff,.exr,.pfm,.pgm,.ply,.pcd", hint: "PNG, .npy, TIFF, EXR, PFM, PGM, PLY, PCD", paths: ["depth", "depth.data"] },
+  { slot: "colourMask", label: "Colour mask", accept: ".png,.npy,.tif,.tiff,.pgm,image/*", hint: "optional; black is background", paths: ["image.mask"] },
+  { slot: "depthMask", label: "Depth mask", accept: ".png,.npy,.tif,.tiff,.pgm,image/*", hint: "optional; black is background", paths: ["depth.mask"] },
 ];
 
 interface Entry {

@@ -17,7 +17,7 @@ import { Rivals } from "./rivals";
 import { fields, inputGroups, methodOf, runOptions, settingsOf, turnOf, type Origin, type Settings } from "./settings";
 import { download, linkTo, writeAddress } from "./share";
 import { ScoreMap } from "./scoremap";
-import { originOf, rememberOrigin, sourceOf } from "./source";
+import { originOf, readable, rememberOrigin, sourceOf } from "./source";
 import { saveBlob } from "../save";
 import type { Store } from "./store";
 import { Status, type Notice } from "./status";
@@ -100,7 +100,7 @@ export class Lab {
       look: (look) => this.#engine.call("look", { look }).catch(unlessGone),
       probe: (asked) => this.#engine.call("probe", asked).catch(unlessGone),
     });
-    this.#compare = new Compare({ onPin: () => this.#pin(), onUnpin: () => this.gallery.unpin() });
+    this.#compare = new Compare({ onPin: () => this.#pin(), onUnpin: () => this.gallery.unpin(), onWipe: (share) => this.gallery.wipe(share) });
     this.player = new Player({
       advance: (request) => this.#advance(request),
       restart: () => this.#start(this.#wanted),
@@ -314,7 +314,7 @@ export class Lab {
         this.#forget();
         await this.#show(frame);
       } else {
-        const opened = await this.#engine.call("open", { source, options, look: this.gallery.look });
+        const opened = await this.#engine.call("open", { source: await readable(source), options, look: this.gallery.look });
         this.#held = source;
         if (turn !== this.#turn) return;
         this.#pair = source.kind === "files" ? [source.files.colour, source.files.depth] : [];
@@ -484,7 +484,7 @@ export class Lab {
     this.#good = undefined; // should it fail once more, the page waits for another input
     const turn = ++this.#turn;
     try {
-      const opened = await this.#engine.call("open", { source, options: runOptions(settings, originOf(source)), look: this.gallery.look });
+      const opened = await this.#engine.call("open", { source: await readable(source), options: runOptions(settings, originOf(source)), look: this.gallery.look });
       this.#held = source;
       if (turn !== this.#turn) return;
       await this.#present(opened);

@@ -3,11 +3,13 @@
  * and put where it belongs. Loaded with the first file.
  */
 
-import type { RigCamera } from "../../pkg/index.js";
+import type { ColorImage, DepthMap, RigCamera } from "../../pkg/index.js";
+import { EngineError } from "../engine/engine";
+import type { Read } from "../engine/protocol";
 import type { Summary } from "../rig/protocol";
-import { Session } from "../rig/session";
+import { RigError, Session } from "../rig/session";
 import type { Slot } from "./intake";
-import { sniffed } from "./kind";
+import { isFurther, sniffed } from "./kind";
 import type { Value } from "./settings";
 import type { Files } from "./storage";
 
@@ -53,6 +55,38 @@ async function look(file: File): Promise<Look> {
   } catch (error) {
     return unread(file, error instanceof Error ? error.message.replace(/^file: /, "").replace(`${file.name}: `, "") : String(error));
   }
+}
+
+const PLACES = { colour: ["colour", "image"], depth: ["depth", "depth"], colourMask: ["mask", "image.mask"], depthMask: ["mask", "depth.mask"] } as const;
+
+/** The pixels of files that only these readers know. What is wrong with one is said of its slot. */
+export async function pixelsOf(files: Files): Promise<Read> {
+  const found: Read = {};
+  for (const [slot, [as, field]] of Object.entries(PLACES) as [Slot, (typeof PLACES)[Slot]][]) {
+    const file = files[slot];
+    if (!file || !(await isFurther(file, slot === "colour"))) continue;
+    const number = next++;
+    try {
+      // In stored numbers: the Lab's own fields say their unit, and its cameras.
+      await session.call("read", { file: number, name: file.name, blob: file, as, unit: 1 });
+      const reading = await session.call("reading", { file: number });
+      if (reading.kind === "colour") found.colour = withoutCamera<ColorImage>(reading.image);
+      else if (reading.kind === "depth") {
+        const { unit: _, ...depth } = reading.depth;
+        found.depth = withoutCamera<DepthMap>(depth);
+      } else if (reading.kind === "mask" && (slot === "colourMask" || slot === "depthMask")) found[slot] = reading.mask;
+    } catch (error) {
+      if (!(error instanceof RigError)) throw error;
+      throw new EngineError({ ...error.fault, message: error.message.replace(/^file: /, ""), field, fatal: false });
+    } finally {
+      void session.call("forget", { file: number });
+    }
+  }
+  return found;
+}
+
+function withoutCamera<T>({ camera: _, ...rest }: Omit<T, "camera"> & { camera?: unknown }): T {
+  return rest as T;
 }
 
 const inWords = ({ kind, says }: Summary): string =>

@@ -13,8 +13,13 @@ interface Preset {
 export const presets: readonly Preset[] = [
   { name: "Easy bust", words: "Three coloured lamps, 20 degrees apart, no noise.", set: {} },
   { name: "Window light", words: "Nearly one colour of light, as in a room, and 40 degrees.", set: { light: "window", beta: 40, noise: 0.01 } },
-  { name: "Noise", words: "5 % of noise in the colours, and a noisy depth map.", set: { noise: 0.05, depthNoise: 0.5 } },
-  { name: "Half hidden", words: "The depth map shows the middle half of the object alone.", set: { overlap: 0.5, beta: 30, noise: 0.01 } },
+  { name: "Noise", words: "5 % of noise in the colours, and a noisy depth map; the pose is found all the same.", set: { noise: 0.05, depthNoise: 0.5 } },
+  { name: "Half hidden", words: "The depth map shows the middle half of the object alone; the pose is found all the same.", set: { overlap: 0.5, beta: 30, noise: 0.01 } },
+  {
+    name: "Too hard",
+    words: "A third of the object, nearly one colour of light, and 30 % of noise: no pose can be told from that, and the verdict says so.",
+    set: { size: "64", light: "window", beta: 40, noise: 0.3, overlap: 0.3 },
+  },
   {
     name: "The paper's loop",
     words: "Equations 1 to 19 as published: the light told, each pixel on its own, ICP from where both views coincide.",
@@ -22,7 +27,7 @@ export const presets: readonly Preset[] = [
   },
   {
     // Photographs whose terms let them be shipped are none of the project's; this one says what it is.
-    name: "Sensor-like (made)",
+    name: "Sensor-like",
     words: "No photograph: a made scene as cheap sensors see it, under clouds, with noise in both views, holes and an edge cut off.",
     set: { light: "overcast", beta: 25, alpha: 6, noise: 0.02, depthNoise: 0.7, holes: 0.05, overlap: 0.85 },
   },

@@ -2,6 +2,7 @@
 
 import type { OwnFiles, Source } from "../engine/protocol";
 import type { Slot } from "./intake";
+import { isFurther } from "./kind";
 import { camera, sampleRequest, turnOf, type Origin, type Settings } from "./settings";
 
 const OWN = "own-files";
@@ -26,6 +27,16 @@ export function wasOwn(): boolean {
 
 /** Which fields a source has to do with. */
 export const originOf = (source: Source): Origin => (source.kind === "sample" ? "sample" : "files");
+
+/** With the pixels of the files that the worker's decoders do not know; what does know them loads with the first such file. */
+export async function readable(source: Source): Promise<Source> {
+  if (source.kind !== "files") return source;
+  const { colour, depth, colourMask, depthMask } = source.files;
+  const isNeeded = [colour, depth, colourMask, depthMask].map((file, i) => file !== undefined && isFurther(file, i === 0));
+  if (!(await Promise.all(isNeeded)).includes(true)) return source;
+  const { pixelsOf } = await import("./own");
+  return { ...source, files: { ...source.files, read: await pixelsOf(source.files) } };
+}
 
 /** Or in words what it still lacks. */
 export function sourceOf(origin: Origin, settings: Settings, { colour, depth, ...masks }: Partial<Record<Slot, File>>): Source | string {

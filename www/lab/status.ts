@@ -10,8 +10,11 @@ export type Notice = "loading" | "waiting" | "error";
 /** The marks of the Tables, and those of what is not over. */
 const glyphs: Readonly<Record<string, string>> = {
   ready: "○", paused: "‖", playing: "▸", loading: "…", waiting: "…", error: "!",
-  converged: "✓", "max-iterations": "=", ambiguous: "?", lost: "×",
+  converged: "✓", doubted: "~", "max-iterations": "=", ambiguous: "?", lost: "×",
 };
+
+/** A tick is for what may be built on: one beside a pose that is off would speak against its own words. */
+const markOf = (state: string, tone: Verdict["tone"]): string => (state !== "converged" || tone === "good" ? state : tone === "wrong" ? "lost" : "doubted");
 
 export class Status {
   readonly #panel = byId("panel", HTMLElement);
@@ -35,12 +38,13 @@ export class Status {
     for (const line of [this.#cause, this.#next, this.#message]) this.#put(line, "");
   }
 
-  #say(state: string, tone: string, word: string): void {
+  #say(state: string, tone: Verdict["tone"], word: string): void {
+    const mark = markOf(state, tone);
     this.#panel.dataset.tone = tone;
     this.#word.dataset.state = state;
     this.#word.dataset.tone = tone;
-    this.#icon.dataset.mark = state === "max-iterations" ? "stopped" : state;
-    this.#put(this.#icon, glyphs[state] ?? "");
+    this.#icon.dataset.mark = mark === "max-iterations" ? "stopped" : mark;
+    this.#put(this.#icon, glyphs[mark] ?? "");
     this.#put(this.#word, word);
   }
 

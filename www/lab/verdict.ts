@@ -58,7 +58,9 @@ const remedies: readonly (readonly [said: RegExp, remedy: string])[] = [
   [/apparent size/, "A scale that is known would help: Settings, Scale."],
 ];
 /** Where all went well there is more to try. */
-const HARDER = "Turn the surfaces, drag the light, or make it harder: Noise, Half hidden. What can't be found, Learn's last lesson shows.";
+const HARDER = "Turn the surfaces, drag the light, or try Too hard, which can't be found.";
+/** The right pose, but for what noise does to it. */
+const FINER = "Less noise, or a larger image, brings it closer.";
 const GENERAL = "Another start may find it: Settings, Start, near.";
 
 /** Where the pose is not sought at all. */
@@ -75,8 +77,9 @@ export function verdict({ status, message, pose }: StepReport, start: Pose | und
   if (truth) {
     const off = angleBetween(pose.rotation, truth.rotation);
     const tone = off > MISSED && status !== "ambiguous" ? "wrong" : status === "converged" && off <= FOUND ? "good" : "open";
-    const missed = off > MISSED ? ["The true pose was not found."] : tone === "good" && !message ? ["The true pose was found."] : [];
-    const next = tone === "good" ? HARDER : off <= FOUND && status === "lost" ? `The pose is right all the same. ${help}` : help;
+    const isNear = status === "converged" && !message && !isHeld && off > FOUND && off <= MISSED;
+    const missed = off > MISSED ? ["The true pose was not found."] : tone === "good" && !message ? ["The true pose was found."] : isNear ? ["The true pose was found, though not within a degree."] : [];
+    const next = tone === "good" ? HARDER : isNear ? FINER : off <= FOUND && status === "lost" ? `The pose is right all the same. ${help}` : help;
     return { tone, status: `${ends[status]}, ${decimals(off, off < 10 ? 2 : 1)}° off`, words: [...said, ...missed].join(" "), next };
   }
   if (status === "converged") {

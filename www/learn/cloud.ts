@@ -4,6 +4,8 @@ import { freshId, ink, make } from "../dom";
 import type { CloudPanel, Panel } from "./protocol";
 
 const SIDE = 320;
+/** Side of a point on the canvas, which is shown at half its size: smaller ones are hardly seen on a dark ground. */
+const POINT = 3.5;
 /** Where the view starts: half way between front and side, so that depth shows. */
 const FIRST_TURN = 50;
 
@@ -50,7 +52,7 @@ export class Cloud {
       for (let at = 0; at < points.length; at += 3) {
         const [x, y, z] = [0, 1, 2].map((axis) => (points[at + axis] ?? NaN) - (middle[axis] ?? 0)) as [number, number, number];
         const [u, v] = [c * x + s * z, y];
-        if (Number.isFinite(u + v)) context.fillRect(SIDE / 2 + scale * u - 1, SIDE / 2 + scale * v - 1, 2, 2);
+        if (Number.isFinite(u + v)) context.fillRect((SIDE - POINT) / 2 + scale * u, (SIDE - POINT) / 2 + scale * v, POINT, POINT);
       }
     }
     context.globalAlpha = 1;

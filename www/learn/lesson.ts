@@ -3,6 +3,7 @@
 import { make } from "../dom";
 import { decimals } from "../draw/numbers";
 import type { Ink, LessonId, Values } from "./protocol";
+import type { References } from "./references";
 
 interface CommonControl {
   key: string;
@@ -58,7 +59,7 @@ export interface Lesson {
   /** Panels on which a drag sets two sliders. */
   drags: Readonly<Record<string, { x: string; y: string }>>;
   /** Where the method is written down. */
-  more: string;
+  more: References;
 }
 
 export const LIGHTS = [["colourful", "coloured lamps"], ["window", "window"], ["overcast", "cloudy yard"]] as const;

@@ -15,6 +15,7 @@ import { beside, lessonNamed, lessons } from "./lessons";
 import { sentence } from "./maths";
 import type { Drawing, LessonId, Values } from "./protocol";
 import { Readouts } from "./readouts";
+import { referencesOf } from "./references";
 import { Session } from "./session";
 import { Slides } from "./slides";
 
@@ -147,7 +148,8 @@ export class LearnPage {
         ...lesson.text.map((words) => make("p", {}, ...sentence(words))),
         make("h3", {}, "Try"),
         list("ul", lesson.tasks.map(sentence)),
-        make("p", { class: "soft learn-more" }, `More: ${lesson.more}`),
+        make("h3", {}, "More"),
+        referencesOf(lesson.more),
         this.#ends(lesson),
       ),
       box,

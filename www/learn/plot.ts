@@ -6,7 +6,7 @@ import type { Panel, PlotPanel } from "./protocol";
 import { svg } from "./svg";
 
 const [WIDTH, HEIGHT] = [320, 200];
-const BOX = { left: 40, top: 8, right: 312, bottom: 164 };
+const BOX = { left: 40, top: 8, right: 306, bottom: 164 };
 const TICKS = 4;
 
 interface Span {

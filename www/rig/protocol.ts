@@ -63,6 +63,8 @@ export interface Calls {
   folder: { ask: { first: number; files: { name: string; blob: Blob }[] }; answer: Assembly };
   example: { ask: { first: number }; answer: Assembly };
   forget: { ask: { file: number }; answer: null };
+  /** A file with its pixels. */
+  reading: { ask: { file: number }; answer: RigReading };
   /** As a whole, or at most so wide; depths outside the range are grey. */
   picture: { ask: { file: number; range?: [number, number]; width?: number }; answer: ImageBitmap };
   /** The frames that what follows is about. */

@@ -40,6 +40,12 @@ function summaryOf(reading: RigReading): Summary {
   }
 }
 
+function read(file: number): RigReading {
+  const reading = readings.get(file);
+  if (!reading) throw new Error(`File ${file} has not been read.`);
+  return reading;
+}
+
 function readingOf<K extends RigReading["kind"]>(file: number, kind: K): Extract<RigReading, { kind: K }> {
   const reading = readings.get(file);
   if (reading?.kind !== kind) throw new Error(`File ${file} is no ${kind}.`);
@@ -112,10 +118,11 @@ const handlers: Handlers = {
     readings.delete(file);
     return null;
   },
+  async reading({ file }) {
+    return read(file);
+  },
   async picture({ file, range, width }) {
-    const reading = readings.get(file);
-    if (!reading) throw new Error(`File ${file} has not been read.`);
-    return picture(reading, range, width);
+    return picture(read(file), range, width);
   },
   async frames({ frames: plans }) {
     frames = plans.map(frameOf);

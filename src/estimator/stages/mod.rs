@@ -5,6 +5,7 @@
 //! [`Solution`]: super::solution::Solution
 
 mod colours;
+mod contrasted;
 mod correspondences;
 mod light;
 mod outlines;

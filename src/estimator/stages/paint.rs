@@ -57,6 +57,16 @@ impl PaintStage {
         self.found.as_ref()
     }
 
+    /// The image without all of its paint, where there is any.
+    pub fn without_albedo(&self, pair: &ViewPair) -> Option<ColourView> {
+        let albedo = &self.found.as_ref()?.albedo;
+        let mut image = pair.image.clone();
+        for (log, paint) in image.log.iter_mut().flatten().zip(albedo.iter().flatten()) {
+            *log -= paint;
+        }
+        Some(image)
+    }
+
     /// The image as shape is found from it: without paint.
     pub fn colours<'a>(&'a self, pair: &'a ViewPair) -> &'a ColourView {
         self.found.as_ref().map_or(&pair.image, |found| &found.colours)

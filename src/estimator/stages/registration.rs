@@ -10,8 +10,10 @@ use crate::pose::{ContrastOutcome, ContrastReport, OutlineReport, PhotometricRep
 use crate::view::Normals;
 
 use super::colours::ColourRegistration;
+use super::contrasted::Contrasted;
 use super::light::Inputs;
 use super::outlines;
+use super::paint::PaintStage;
 use super::surfaces::{Matched, SurfaceRegistration};
 use super::told_start::{Settled, TrustRegion};
 
@@ -42,9 +44,13 @@ pub struct Registered {
 }
 
 impl Registered {
+    /// A better pose, and nothing else.
+    const fn without_light(pose: Similarity) -> Self {
+        Self { pose, light: None, exposure: None, uncertainty: None, improved: true, rivals: None }
+    }
+
     fn by_outlines(found: &OutlineReport) -> Self {
-        let uncertainty = Some(found.uncertainty.clone());
-        Self { pose: found.pose, light: None, exposure: None, uncertainty, improved: true, rivals: None }
+        Self { uncertainty: Some(found.uncertainty.clone()), ..Self::without_light(found.pose) }
     }
 }
 
@@ -68,7 +74,7 @@ enum Told {
     /// The colours are painted; the pose is that of the outlines ..
     Outlined(OutlineReport),
     /// .. or that of local contrast.
-    Contrasted(ContrastReport),
+    Contrasted(Contrasted),
 }
 
 impl RegistrationStage {
@@ -120,19 +126,24 @@ impl RegistrationStage {
     pub fn adopt(&mut self, pair: &ViewPair, outcome: Outcome, present: &Similarity) -> Option<Registered> {
         let Outcome { best, rivals, contrast } = outcome;
         if let Some(contrast) = contrast {
-            return Some(self.adopt_contrast(pair, *contrast, present));
+            return Some(self.adopt_contrast(pair, *contrast, None, present));
         }
         let registered = self.adopt_colours(pair, best.map(|best| *best), present)?;
         let rivals = if self.found_by_outlines().is_some() { Vec::new() } else { rivals };
         Some(Registered { rivals: Some(rivals), ..registered })
     }
 
-    fn adopt_contrast(&mut self, pair: &ViewPair, found: ContrastOutcome, present: &Similarity) -> Registered {
+    fn adopt_contrast(
+        &mut self,
+        pair: &ViewPair,
+        found: ContrastOutcome,
+        region: Option<TrustRegion>,
+        present: &Similarity,
+    ) -> Registered {
         let ContrastOutcome { best, rivals } = found;
-        let pose = with_gauge_of(pair, best.pose, present);
-        let uncertainty = Some(best.uncertainty.clone());
-        self.told = Told::Contrasted(best);
-        Registered { pose, light: None, exposure: None, uncertainty, improved: true, rivals: Some(rivals) }
+        let (pose, uncertainty) = (with_gauge_of(pair, best.pose, present), Some(best.uncertainty.clone()));
+        self.told = Told::Contrasted(Contrasted::new(best, region));
+        Registered { uncertainty, rivals: Some(rivals), ..Registered::without_light(pose) }
     }
 
     fn adopt_colours(
@@ -174,7 +185,7 @@ impl RegistrationStage {
     /// What local contrast has found, where it decides.
     pub const fn found_by_contrast(&self) -> Option<&ContrastReport> {
         match &self.told {
-            Told::Contrasted(found) => Some(found),
+            Told::Contrasted(found) => Some(&found.report),
             _ => None,
         }
     }
@@ -184,18 +195,32 @@ impl RegistrationStage {
         match self.kind(pair) {
             Registration::Fixed => true,
             Registration::Joint => {
-                let is_told = matches!(self.told, Told::Kept | Told::Outlined(_) | Told::Contrasted(_));
-                is_told || self.colours.as_ref().is_some_and(|colours| colours.ended_in(pose))
+                let stands = match &self.told {
+                    Told::Kept | Told::Outlined(_) => true,
+                    Told::Contrasted(found) => found.stands(),
+                    _ => false,
+                };
+                stands || self.colours.as_ref().is_some_and(|colours| colours.ended_in(pose))
             }
             Registration::Icp => false,
         }
     }
 
-    /// The pose from the present one; nothing where it is fixed.
-    pub fn register(&mut self, inputs: Inputs<'_>, solution: &Solution) -> Result<Option<Registered>> {
+    /// Whether paint is looked for under `pose`: it stands, or waits for nothing but that.
+    pub fn asks_for_paint(&self, pair: &ViewPair, pose: &Similarity) -> bool {
+        matches!(self.told, Told::Contrasted(_)) || self.keeps(pair, pose)
+    }
+
+    /// The pose from the present one, without the paint that was found under it; nothing where it is fixed.
+    pub fn register(
+        &mut self,
+        inputs: Inputs<'_>,
+        paint: &PaintStage,
+        solution: &Solution,
+    ) -> Result<Option<Registered>> {
         match self.kind(inputs.pair) {
             Registration::Fixed => Ok(None),
-            Registration::Joint => self.register_colours(inputs.pair, &solution.pose),
+            Registration::Joint => self.register_colours(inputs.pair, paint, &solution.pose),
             Registration::Icp => {
                 let Matched { mut pose, mut improved, uncertainty } = self.surfaces.register(inputs, solution)?;
                 if let Told::Improved(region) = &self.told
@@ -210,30 +235,38 @@ impl RegistrationStage {
     }
 
     /// Pose and light together from the colours.
-    fn register_colours(&mut self, pair: &ViewPair, start: &Similarity) -> Result<Option<Registered>> {
+    fn register_colours(
+        &mut self,
+        pair: &ViewPair,
+        paint: &PaintStage,
+        start: &Similarity,
+    ) -> Result<Option<Registered>> {
         let Some(colours) = &mut self.colours else { return Ok(None) };
         let found = match std::mem::replace(&mut self.told, Told::Kept) {
-            told @ (Told::Kept | Told::Outlined(_) | Told::Contrasted(_)) => {
+            told @ (Told::Kept | Told::Outlined(_)) => {
                 self.told = told;
                 return Ok(None);
             }
-            Told::Untried(region) => {
-                let settled = region.settle(pair, colours)?;
-                self.told = Told::Improved(region);
-                match settled {
-                    Settled::ByColours(found) => *found,
-                    Settled::ByOutlines(found) => {
-                        let registered = Registered::by_outlines(&found);
-                        self.told = Told::Outlined(*found);
-                        return Ok(Some(registered));
-                    }
-                    Settled::ByContrast(found) => return Ok(Some(self.adopt_contrast(pair, *found, start))),
-                    Settled::Kept => {
-                        self.told = Told::Kept;
-                        return Ok(None);
-                    }
-                }
+            Told::Contrasted(mut found) => {
+                let pose = found.follow(pair, colours, paint);
+                self.told = Told::Contrasted(found);
+                return Ok(pose.map(|pose| Registered::without_light(with_gauge_of(pair, pose, start))));
             }
+            Told::Untried(region) => match region.settle(pair, colours)? {
+                Settled::ByColours(found) => {
+                    self.told = Told::Improved(region);
+                    *found
+                }
+                Settled::ByOutlines(found) => {
+                    let registered = Registered::by_outlines(&found);
+                    self.told = Told::Outlined(*found);
+                    return Ok(Some(registered));
+                }
+                Settled::ByContrast(found) => {
+                    return Ok(Some(self.adopt_contrast(pair, *found, Some(region), start)));
+                }
+                Settled::Kept => return Ok(None),
+            },
             told => {
                 self.told = told;
                 colours.register(pair, start)?.clone()

@@ -45,4 +45,4 @@ mod seen;
 mod uncertainty;
 
 pub use problem::{ContrastProblem, ContrastReport};
-pub use search::{ContrastOutcome, ContrastSearch};
+pub use search::{ContrastOutcome, ContrastSearch, settle};

@@ -142,7 +142,20 @@ impl ContrastSearch {
     }
 }
 
+/// The end near a pose on another version of the image, as of the last stage, with its E.
+#[must_use]
+pub fn settle(problem: &ContrastProblem<'_>, start: &Similarity) -> Option<(Similarity, f64)> {
+    let last = &STAGES[STAGES.len() - 1];
+    let mut registration = registration(problem, last);
+    registration.begin(problem, start, last.effort);
+    while !registration.step(problem) {}
+    let pose = registration.pose()?;
+    Some((pose, registration.evaluate(problem, &pose, RANKING_NOISE)?))
+}
+
 /// The registration of a stage: by about so many samples.
+// One copy of it: visitors download each.
+#[inline(never)]
 fn registration(problem: &ContrastProblem<'_>, stage: &Stage) -> ContrastRegistration {
     let stride = (problem.depth.valid() as f64 / stage.samples).sqrt().round();
     ContrastRegistration::new(problem, stride as usize)

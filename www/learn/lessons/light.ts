@@ -37,7 +37,11 @@ export const pixel: Lesson = {
     { key: "order2", label: "order 2", digits: 3, ink: "light" },
   ],
   drags: { ball: { x: "nx", y: "ny" }, bust: { x: "beta", y: "alpha" } },
-  more: "Section 2 of docs/method.md; Eq. 3 and 5 of the paper.",
+  more: {
+    paper: "Eq. 3 and 5",
+    sections: [2],
+    others: [["10.1145/383259.383317", "Ramamoorthi and Hanrahan, An efficient representation for irradiance environment maps, 2001"]],
+  },
 };
 
 export const grey: Lesson = {
@@ -63,7 +67,7 @@ export const grey: Lesson = {
     { key: "explained", label: "Normals that explain the pixel within 2 %", unit: "% of the map", digits: 1, ink: "normal" },
   ],
   drags: { hill: { x: "px", y: "py" } },
-  more: "Section 2 of docs/method.md, Limits.",
+  more: { sections: [2], others: [["10.1023/A:1008154927611", "Belhumeur, Kriegman and Yuille, The bas-relief ambiguity, 1999"]] },
 };
 
 export const colours: Lesson = {
@@ -91,6 +95,6 @@ export const colours: Lesson = {
     { key: "good", label: "Valleys as low as the lowest", digits: 0, ink: "minimum" },
   ],
   drags: { picture: { x: "px", y: "py" } },
-  more: "Section 5 of docs/method.md; Eq. 8 of the paper.",
+  more: { paper: "Eq. 8", sections: [5] },
 };
 

@@ -29,7 +29,7 @@ export const paint: Lesson = {
     { key: "status", label: "Status" },
   ],
   drags: {},
-  more: "Section 3 of docs/method.md, Paint.",
+  more: { sections: [3], others: [["10.1109/TPAMI.2014.2377712", "Barron and Malik, Shape, illumination, and reflectance from shading, 2015"]] },
 };
 
 export const failure: Lesson = {
@@ -56,6 +56,6 @@ export const failure: Lesson = {
     { key: "residual", label: "Residual of the colours", digits: 3, ink: "error" },
   ],
   drags: {},
-  more: "Sections 13 and 14 of docs/method.md; docs/accuracy.md.",
+  more: { sections: [13, 14] },
 };
 

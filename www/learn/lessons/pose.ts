@@ -36,7 +36,11 @@ export const pose: Lesson = {
     { key: "status", label: "Status" },
   ],
   drags: { picture: { x: "px", y: "py" } },
-  more: "Sections 5, 9, 10 and 13 of docs/method.md; Eq. 1, 9 and 12 to 16 of the paper.",
+  more: {
+    paper: "Eq. 1, 9 and 12 to 16",
+    sections: [5, 9, 10, 13],
+    others: [["10.1109/34.121791", "Besl and McKay, A method for registration of 3-D shapes, 1992"]],
+  },
 };
 
 export const sensor: Lesson = {
@@ -65,5 +69,5 @@ export const sensor: Lesson = {
     { key: "filled", label: "Holes filled", unit: "%", digits: 0, ink: "sensor" },
   ],
   drags: {},
-  more: "Section 8 of docs/method.md; Eq. 17 to 19 of the paper.",
+  more: { paper: "Eq. 17 to 19", sections: [8] },
 };

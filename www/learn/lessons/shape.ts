@@ -31,7 +31,11 @@ export const surface: Lesson = {
     { key: "kept", label: "Relief of the dome that is kept", unit: "%", digits: 0, ink: "normal" },
   ],
   drags: {},
-  more: "Section 6 of docs/method.md; Eq. 4, 10 and 11 of the paper.",
+  more: {
+    paper: "Eq. 4, 10 and 11",
+    sections: [6],
+    others: [["10.1109/34.3909", "Frankot and Chellappa, A method for enforcing integrability in shape from shading algorithms, 1988"]],
+  },
 };
 
 export const prior: Lesson = {
@@ -57,5 +61,5 @@ export const prior: Lesson = {
     { key: "pixels", label: "Pixels with a prior", digits: 0, ink: "prior" },
   ],
   drags: {},
-  more: "Sections 5 and 15 of docs/method.md; Eq. 6 to 9 and Figure 5 of the paper.",
+  more: { paper: "Eq. 6 to 9 and Figure 5", sections: [5, 15] },
 };
