@@ -104,7 +104,7 @@ function registration({ registration }: Method): Text {
   return {
     title: "Registration by colours",
     formula: math(least(row(i("T"), o(","), i("L"))), term(3, sum, i("ρ"), o("("), o("‖"), logS, o("("), i("π"), o("("), i("T"), sub(bold("P"), i("R")), o(")"), o(")"), o("−"), model(row(R, nR)), o("‖"), o(")"))),
-    words: "The image's own surface is not asked: the depth map is turned until its normals predict the colours at the places where its points fall, the light following along. ρ discards what disagrees; it starts tolerant and becomes strict.",
+    words: "The image's own surface is not asked: the depth map is turned until its normals predict the colours at the places where its points fall, the light following along. ρ discards what disagrees; it starts tolerant and becomes strict. A painted object is compared by the contrast around each place and by its outline instead; then the paint that is found under the pose is taken off, and the pose follows.",
     source: "In the place of Equations 12 to 14; not in the paper",
   };
 }
