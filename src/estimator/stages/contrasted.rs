@@ -12,8 +12,7 @@ use super::told_start::TrustRegion;
 use crate::estimator::pair::ViewPair;
 use crate::pose::{ContrastReport, Similarity, settle};
 
-/// Rounds at most. Of twenty photographs and of 25 renders with real paint under natural light most move by under half a degree in the
-/// second and by nothing in the third.
+/// Rounds at most. Of twenty photographs most stand after the first, since E rises in the second; two go on to the third.
 const ROUNDS: usize = 3;
 
 /// A pose by contrast, and how many rounds it may still follow its paint.
