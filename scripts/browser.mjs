@@ -35,7 +35,7 @@ export const firefox = () => ({
   geckodriver: named("GECKODRIVER") ?? inPath("geckodriver"),
 });
 
-/** Chromium without the windows and menus that no test looks at, for two thirds of the processor's time. Same release, same engine. */
+/** Chromium without the windows and menus that no test looks at, for three fifths of the processor's time. Same release, same engine. */
 const SHELL = "chromium-headless-shell";
 
 /**

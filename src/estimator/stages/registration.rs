@@ -45,12 +45,12 @@ pub struct Registered {
 
 impl Registered {
     /// A better pose, and nothing else.
-    const fn without_light(pose: Similarity) -> Self {
+    const fn of_pose(pose: Similarity) -> Self {
         Self { pose, light: None, exposure: None, uncertainty: None, improved: true, rivals: None }
     }
 
     fn by_outlines(found: &OutlineReport) -> Self {
-        Self { uncertainty: Some(found.uncertainty.clone()), ..Self::without_light(found.pose) }
+        Self { uncertainty: Some(found.uncertainty.clone()), ..Self::of_pose(found.pose) }
     }
 }
 
@@ -143,7 +143,7 @@ impl RegistrationStage {
         let ContrastOutcome { best, rivals } = found;
         let (pose, uncertainty) = (with_gauge_of(pair, best.pose, present), Some(best.uncertainty.clone()));
         self.told = Told::Contrasted(Contrasted::new(best, region));
-        Registered { uncertainty, rivals: Some(rivals), ..Registered::without_light(pose) }
+        Registered { uncertainty, rivals: Some(rivals), ..Registered::of_pose(pose) }
     }
 
     fn adopt_colours(
@@ -250,7 +250,7 @@ impl RegistrationStage {
             Told::Contrasted(mut found) => {
                 let pose = found.follow(pair, colours, paint);
                 self.told = Told::Contrasted(found);
-                return Ok(pose.map(|pose| Registered::without_light(with_gauge_of(pair, pose, start))));
+                return Ok(pose.map(|pose| Registered::of_pose(with_gauge_of(pair, pose, start))));
             }
             Told::Untried(region) => match region.settle(pair, colours)? {
                 Settled::ByColours(found) => {
@@ -265,6 +265,7 @@ impl RegistrationStage {
                 Settled::ByContrast(found) => {
                     return Ok(Some(self.adopt_contrast(pair, *found, Some(region), start)));
                 }
+                // As it stands since the replacement above.
                 Settled::Kept => return Ok(None),
             },
             told => {

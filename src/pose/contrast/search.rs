@@ -142,7 +142,8 @@ impl ContrastSearch {
     }
 }
 
-/// The end near a pose on another version of the image, as of the last stage, with its E.
+/// Registers from `start`, which is near the end already, as the last stage of the search does, by another version of the image; the
+/// pose and its E.
 #[must_use]
 pub fn settle(problem: &ContrastProblem<'_>, start: &Similarity) -> Option<(Similarity, f64)> {
     let last = &STAGES[STAGES.len() - 1];
@@ -154,8 +155,6 @@ pub fn settle(problem: &ContrastProblem<'_>, start: &Similarity) -> Option<(Simi
 }
 
 /// The registration of a stage: by about so many samples.
-// One copy of it: visitors download each.
-#[inline(never)]
 fn registration(problem: &ContrastProblem<'_>, stage: &Stage) -> ContrastRegistration {
     let stride = (problem.depth.valid() as f64 / stage.samples).sqrt().round();
     ContrastRegistration::new(problem, stride as usize)
