@@ -5,7 +5,7 @@
 //! shading, for which the integrated surface is one of several starts.
 
 use super::heights::{HeightDomain, ImageSurfaceProblem, ImageSurfaceSolver, Scratch};
-use super::integration::{IntegrationOptions, Integrator, Robustness, find_slopes};
+use super::integration::{IntegrationOptions, Integrator, find_slopes};
 use super::pixels::{self, ShadingProblem, ShadingSolver, ShadingWeights};
 use crate::error::Result;
 use crate::light::Light;
@@ -99,10 +99,11 @@ impl ImageShapeSolver {
         let image = problem.image;
         scratch.resize(image.size.len());
         find_slopes(image.size, &image.camera, normals, &image.mask, &mut scratch.slopes);
-        if self.surface.as_ref().is_none_or(ImageSurfaceSolver::needs_integrated) {
+        if self.surface.is_some() {
+            self.solve_heights(scratch, problem, depth)?;
+        } else {
             self.integrate(scratch, image, depth)?;
         }
-        self.solve_heights(scratch, problem, depth);
         image.camera.depth_from_heights(depth);
         if self.surface.is_some() {
             self.solve_normals_again(scratch, problem, normals, depth);
@@ -112,28 +113,29 @@ impl ImageShapeSolver {
 
     /// Heights of the surface that has the slopes of the scratch.
     fn integrate(&mut self, scratch: &Scratch, image: &ColourView, heights: &mut [f32]) -> Result<()> {
-        let mut integrator = match self.integrator.take() {
+        let integrator = match &mut self.integrator {
             Some(integrator) => integrator,
-            None => Integrator::new(image.size, &image.mask)?,
+            none => none.insert(Integrator::new(image.size, &image.mask)?),
         };
-        let options = IntegrationOptions { robustness: Robustness::Estimated, ..IntegrationOptions::default() };
         let [p, q] = &scratch.slopes;
-        integrator.integrate(p, q, None, &options, heights)?;
-        // A surface that is solved as a whole starts from it once.
-        self.integrator = self.surface.is_none().then_some(integrator);
-        Ok(())
+        integrator.integrate(p, q, None, &IntegrationOptions::ROBUST, heights).map(|_| ())
     }
 
-    /// Heights of the surface as a whole, at first from the integrated one.
-    fn solve_heights(&mut self, scratch: &mut Scratch, problem: &ImageShapeProblem<'_>, heights: &mut [f32]) {
-        let Some(surface) = &mut self.surface else { return };
+    /// Heights of the surface as a whole.
+    fn solve_heights(
+        &mut self,
+        scratch: &mut Scratch,
+        problem: &ImageShapeProblem<'_>,
+        heights: &mut [f32],
+    ) -> Result<()> {
+        let Some(surface) = &mut self.surface else { return Ok(()) };
         let prior = problem.weights(problem.prior_weight).prior;
         let Scratch { slopes: [p, q], weight: normal_weight, heights: solver, .. } = scratch;
         for (pixel, weight) in normal_weight.iter_mut().enumerate() {
             *weight = if problem.prior.is_valid(pixel) { prior } else { 0.0 };
         }
         let problem = ImageSurfaceProblem { image: problem.image, light: problem.light, slopes: [p, q], normal_weight };
-        surface.solve(solver, problem, heights);
+        surface.solve(solver, problem, heights)
     }
 
     /// Normals of the pixels once more. Their prior is the depth view's normal, where that weighs anything, or else

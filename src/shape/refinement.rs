@@ -14,7 +14,7 @@ use std::ops::Range;
 use nalgebra::{Matrix3, Vector3};
 
 use super::heights::{
-    Bending, COLOUR_SCALES, Effort, HALVING_CONFIDENCE, HeightDomain, HeightProblem, LAST_SCALE, Scratch,
+    Bending, COLOUR_SCALES, Effort, FAR_DAMPING, HALVING_CONFIDENCE, HeightDomain, HeightProblem, LAST_SCALE, Scratch,
 };
 use super::integration::{AnchorWeight, Anchors, IntegrationOptions, Integrator, Robustness, find_slopes};
 use super::pixels::{ShadingProblem, ShadingSolver, ShadingWeights};
@@ -36,9 +36,9 @@ const ANCHOR_WEIGHTS: [f64; 2] = [1e-3, 10.0];
 const EXPLAINED: f64 = 0.07;
 const GIVEN_WAY: f64 = 0.75;
 /// Work at each scale of the first refinement: noisy depth starts far from its colours.
-const FIRST: Effort = Effort { steps: 6, iterations: 40, tolerance: 0.03 };
+const FIRST: Effort = Effort { steps: 6, iterations: 40, tolerance: 0.03, damping: FAR_DAMPING };
 /// Work of a refinement that continues an earlier one, at the last scale alone.
-const LATER: Effort = Effort { steps: 1, iterations: 20, tolerance: 0.03 };
+const LATER: Effort = Effort { steps: 1, iterations: 20, tolerance: 0.03, damping: FAR_DAMPING };
 /// Most sweeps that extend slopes into a hole: its radius in pixels at the most.
 const FILL_SWEEPS: usize = 256;
 

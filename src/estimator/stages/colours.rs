@@ -238,7 +238,9 @@ impl ColourRegistration {
     /// How many times as deep relief would have to be for colours that it does not explain otherwise: another unit than the
     /// depth map was given in. Before a parallel projection of the map alone: a pinhole's unit is that of all three axes.
     pub fn better_unit(&mut self, pair: &ViewPair, pose: &Similarity) -> Option<f32> {
-        if !pair.depth.camera.is_orthographic() {
+        // What is as good as the image's own noise leaves nothing for another unit to explain.
+        let is_explained = |found: &PhotometricReport| BETTER_NOISE * found.noise < pair.image.log_noise();
+        if !pair.depth.camera.is_orthographic() || self.found().is_some_and(is_explained) {
             return None;
         }
         let options =

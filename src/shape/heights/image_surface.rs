@@ -15,10 +15,10 @@
 use super::domain::HeightDomain;
 use super::problem::LAST_SCALE;
 use super::solver::HeightSolver;
-use super::starts::{EVERY_CALL, INTERMEDIATE, ImageSurfaceProblem, MultiStart};
+use super::starts::{EARLY_CALL, EVERY_CALL, INTERMEDIATE, ImageSurfaceProblem, MultiStart};
 use crate::error::Result;
 use crate::light::Light;
-use crate::view::{ColourView, Size};
+use crate::view::ColourView;
 
 /// Object pixels up to which all starts are tried at full resolution: an object that fills half of 96x96 is solved as
 /// it is.
@@ -59,45 +59,49 @@ impl ImageSurfaceSolver {
         })
     }
 
-    /// Whether the next call starts from the integrated surface; later ones do not look at it.
-    pub const fn needs_integrated(&self) -> bool {
-        self.starts.needs_integrated()
-    }
-
     /// The largest domain.
     pub const fn domain(&self) -> &HeightDomain {
         &self.domain
     }
 
-    /// Heights (pixels, or f log Z) of the image surface, NaN off the mask. Where an integrated surface is
-    /// [needed](Self::needs_integrated), `heights` holds it: it is one of the starts.
-    pub fn solve(&mut self, solver: &mut HeightSolver, problem: ImageSurfaceProblem<'_>, heights: &mut [f32]) {
+    /// `heights` (pixels, or f log Z) of the image surface, NaN off the mask.
+    ///
+    /// # Errors
+    /// Those of the integration, whose surface is one of the starts.
+    pub fn solve(
+        &mut self,
+        solver: &mut HeightSolver,
+        problem: ImageSurfaceProblem<'_>,
+        heights: &mut [f32],
+    ) -> Result<()> {
         let surface = if self.coarser.is_empty() {
-            self.starts.advance(solver, &mut self.domain, problem, heights);
+            self.starts.advance(solver, &mut self.domain, problem)?;
             self.starts.surface()
         } else {
-            let is_new = self.starts.has_next() && self.solve_coarse(solver, problem, heights);
-            let effort = if is_new { INTERMEDIATE } else { EVERY_CALL };
+            let effort = match (self.starts.has_next(), self.solve_coarse(solver, problem)?) {
+                (_, true) => INTERMEDIATE,
+                (true, false) => EARLY_CALL,
+                (false, false) => EVERY_CALL,
+            };
             problem.improve(solver, &mut self.domain, (LAST_SCALE, effort), &mut self.surface);
             &self.surface
         };
         for ((height, &surface), &inside) in heights.iter_mut().zip(surface).zip(&problem.image.mask) {
             *height = if inside { surface } else { f32::NAN };
         }
+        Ok(())
     }
 
-    /// The next start at the smallest level; if it is the best so far, its surface goes up. Whether it did.
-    fn solve_coarse(
-        &mut self,
-        solver: &mut HeightSolver,
-        problem: ImageSurfaceProblem<'_>,
-        integrated: &[f32],
-    ) -> bool {
-        self.load_coarser(problem, integrated);
-        let Some((smallest, between)) = self.coarser.split_last_mut() else { return false };
+    /// The next start at the smallest level, if there is one; if it is the best so far, its surface goes up. Whether it did.
+    fn solve_coarse(&mut self, solver: &mut HeightSolver, problem: ImageSurfaceProblem<'_>) -> Result<bool> {
+        if !self.starts.has_next() {
+            return Ok(false);
+        }
+        self.load_coarser(problem);
+        let Some((smallest, between)) = self.coarser.split_last_mut() else { return Ok(false) };
         let Level { view, domain, surface } = smallest;
-        if !self.starts.advance(solver, domain, view.problem(problem.light), surface) {
-            return false;
+        if !self.starts.advance(solver, domain, view.problem(problem.light))? {
+            return Ok(false);
         }
         surface.copy_from_slice(self.starts.surface());
         let mut below = &*smallest;
@@ -107,22 +111,15 @@ impl ImageSurfaceSolver {
             below = level;
         }
         upsample(&below.surface, problem.image, &mut self.surface);
-        true
+        Ok(true)
     }
 
-    /// Halves the problem from level to level, and the integrated surface where it is needed.
-    fn load_coarser(&mut self, problem: ImageSurfaceProblem<'_>, integrated: &[f32]) {
-        let needs_integrated = self.needs_integrated();
+    /// Halves the problem from level to level.
+    fn load_coarser(&mut self, problem: ImageSurfaceProblem<'_>) {
         for index in 0..self.coarser.len() {
             let (finer, level) = self.coarser.split_at_mut(index);
-            let (finer, surface) = match finer.last() {
-                None => (problem, integrated),
-                Some(finer) => (finer.view.problem(problem.light), &finer.surface[..]),
-            };
+            let finer = finer.last().map_or(problem, |finer| finer.view.problem(problem.light));
             level[0].view.load(finer);
-            if needs_integrated {
-                downsample(surface, finer.image.size, &mut level[0].surface);
-            }
         }
     }
 }
@@ -167,12 +164,6 @@ impl HalvedProblem {
         let [p, q] = &self.slopes;
         ImageSurfaceProblem { image: &self.image, light, slopes: [p, q], normal_weight: &self.normal_weight }
     }
-}
-
-/// A surface of `size` at half the resolution: heights are in pixels, so they halve, too.
-fn downsample(fine: &[f32], size: Size, coarse: &mut [f32]) {
-    size.halve(fine, coarse);
-    coarse.iter_mut().for_each(|height| *height *= 0.5);
 }
 
 /// A surface of half the resolution over the pixels of `image`, zero off its mask.

@@ -13,6 +13,6 @@ mod starts;
 
 pub use domain::HeightDomain;
 pub use image_surface::ImageSurfaceSolver;
-pub use problem::{Bending, COLOUR_SCALES, Effort, HALVING_CONFIDENCE, HeightProblem, LAST_SCALE};
+pub use problem::{Bending, COLOUR_SCALES, Effort, FAR_DAMPING, HALVING_CONFIDENCE, HeightProblem, LAST_SCALE};
 pub use scratch::Scratch;
 pub use starts::{ImageSurfaceProblem, STARTS};

@@ -66,4 +66,9 @@ pub struct Effort {
     pub iterations: u32,
     /// Relative residual at which these end. A step is only a direction; digits are wasted on it.
     pub tolerance: f64,
+    /// Damping of the first step, relative to the mean stiffness of the terms.
+    pub damping: f32,
 }
+
+/// Damping from a start that may be far off.
+pub const FAR_DAMPING: f32 = 0.1;

@@ -26,8 +26,7 @@ use crate::shape::integration::Edges;
 /// kappa, squared log residual per squared second difference in pixels. Chosen on Mozart at 64x64 with 2 % noise under
 /// the lights A, B and C, the light known; docs/accuracy.md tells what larger ones did.
 const SMOOTHNESS: f32 = 1e-3;
-/// Damping of the first step and its bounds, relative to the mean stiffness of the terms.
-const FIRST_DAMPING: f32 = 0.1;
+/// Bounds of the damping, relative to the mean stiffness of the terms.
 const DAMPING: [f32; 2] = [1e-4, 1e4];
 /// Divisor of the damping after a step that lowered the objective, and factor after one that did not.
 const DAMPING_DIVISOR: f32 = 5.0;
@@ -113,7 +112,7 @@ impl HeightSolver {
         self.load(domain, problem, z);
         let terms = CellTerms::new(problem, domain.size);
         self.load_edges(domain, &terms);
-        let (mut objective, mut damping) = (0.0, FIRST_DAMPING);
+        let (mut objective, mut damping) = (0.0, problem.effort.damping);
         for step in 0..problem.effort.steps {
             let (here, stiffness) = self.linearise(domain, &terms);
             if step == 0 {
@@ -405,7 +404,7 @@ mod tests {
             bending: Bending::FREE,
             anchors: None,
             colour_scale: 0.2,
-            effort: Effort { steps: 4, iterations: 10, tolerance: 0.03 },
+            effort: Effort { steps: 4, iterations: 10, tolerance: 0.03, damping: 0.1 },
         };
         let anchors = Some(Anchors { height: &far, weight: AnchorWeight::Uniform(5.0) });
         let mut domain = HeightDomain::new(size, Camera::Orthographic, &mask).expect("a mask");

@@ -75,11 +75,15 @@ pub struct IntegrationOptions {
 impl Default for IntegrationOptions {
     /// Least squares to 1e-5 in at most 400 iterations; at most 10 rounds where `robustness` is switched on.
     fn default() -> Self {
-        Self { robustness: Robustness::Off, tolerance: 1e-5, max_iterations: 400, max_rounds: 10 }
+        Self { robustness: Robustness::Off, ..Self::ROBUST }
     }
 }
 
 impl IntegrationOptions {
+    /// Outliers among the gradients cut, at the scale that these have.
+    pub(in crate::shape) const ROBUST: Self =
+        Self { robustness: Robustness::Estimated, tolerance: 1e-5, max_iterations: 400, max_rounds: 10 };
+
     fn validate(&self) -> Result<()> {
         positive("integration.tolerance", self.tolerance)?;
         match self.robustness {
