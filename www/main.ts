@@ -1,6 +1,6 @@
 /** Brings the page to life: its places, the Lab, and the controls around it. */
 
-import { byId, make, nextTask } from "./dom";
+import { byId, make, nextFrame, nextTask } from "./dom";
 import { isFirstVisit } from "./first-visit";
 import { areKeysOn, listenToKeys, rememberKeys } from "./keys";
 import { Form } from "./lab/form";
@@ -22,14 +22,15 @@ const button = (id: string, action: () => void): void => byId(id, HTMLButtonElem
 
 wearTheme();
 
-// The Lab, the controls around it and the first picture are tasks of their own: no press waits for all of the start.
-await nextTask();
+// The Lab, the controls around it and the first picture are tasks of their own, and what they put on the page is laid out by one after the
+// other: no press waits for all of the start.
+await nextFrame();
 const store = new Store(placeOf(location.hash) === "lab" ? fromLink(location.hash) : defaults);
 const form = new Form(store);
 form.mount();
-await nextTask();
+await nextFrame();
 const gallery = new Gallery();
-await nextTask();
+await nextFrame();
 const lab = new Lab({ store, form, gallery });
 const { player } = lab;
 await nextTask();

@@ -7,7 +7,7 @@ import { expect, test } from "./lab";
 const BRIEFLY = { timeout: 5_000 };
 
 const NO_WEBGL = `
-  for (const { prototype } of [HTMLCanvasElement, OffscreenCanvas]) {
+  for (const { prototype } of [globalThis.HTMLCanvasElement, OffscreenCanvas].filter(Boolean)) {
     const original = prototype.getContext;
     prototype.getContext = function (kind, ...rest) { return kind.startsWith("webgl") ? null : original.call(this, kind, ...rest); };
   }`;
@@ -90,6 +90,11 @@ test("surfaces whose distance the pose settles stay in the middle of the view", 
 test("without WebGL the page says so and computes all the same", async ({ lab, page }) => {
   // three.js complains on the console before it gives up; nothing else may.
   await page.addInitScript(NO_WEBGL);
+  // The page's init scripts do not run in a worker, so its own script begins with the lines.
+  await page.route(/stage-thread[^/]*\.js$/, async (route) => {
+    const response = await route.fetch();
+    await route.fulfill({ response, body: `${NO_WEBGL}\n${await response.text()}` });
+  });
   await lab.open();
   await goToClouds(page);
   await expect(page.locator("#clouds-note")).toHaveText(/no WebGL/);

@@ -35,9 +35,14 @@ function matrixOf({ scale, rotation, translation }: Pose): Matrix4 {
 export class Clouds {
   readonly #camera = new OrthographicCamera();
   readonly #controls: OrbitControls;
-  readonly #box: HTMLElement;
   readonly #renderer: Renderer;
-  readonly #resized = new ResizeObserver(() => this.#resize());
+  /** Of the box, as the browser tells it after a layout: to ask for it in between would have the page laid out twice a frame. */
+  #size = { width: 0, height: 0 };
+  readonly #resized = new ResizeObserver((entries) => {
+    const { width, height } = entries.at(-1)?.contentRect ?? this.#size;
+    this.#size = { width, height };
+    this.#resize();
+  });
   /** What has changed since the drawing under way began. */
   #next: Change | undefined;
   #drawing = false;
@@ -58,7 +63,6 @@ export class Clouds {
   }
 
   private constructor(canvas: HTMLCanvasElement, box: HTMLElement, renderer: Renderer) {
-    this.#box = box;
     this.#renderer = renderer;
     this.#controls = new OrbitControls(this.#camera, canvas);
     this.#marks = { image: make("span", { class: "dot image", hidden: true }), depth: make("span", { class: "dot depth", hidden: true }) };
@@ -161,7 +165,7 @@ export class Clouds {
 
   /** The pixel whose point is seen at a place of the box, CSS pixels. */
   pick(x: number, y: number): Asked | null {
-    const { clientWidth: width, clientHeight: height } = this.#box;
+    const { width, height } = this.#size;
     let found: Asked | null = null;
     let least = Infinity;
     for (const side of SIDES) {
@@ -258,7 +262,7 @@ export class Clouds {
   }
 
   #resize(): void {
-    const { clientWidth: width, clientHeight: height } = this.#box;
+    const { width, height } = this.#size;
     if (width === 0 || height === 0) return;
     const reach = 0.95 * this.#bounds.radius;
     const [across, down] = width > height ? [(reach * width) / height, reach] : [reach, (reach * height) / width];
@@ -268,7 +272,7 @@ export class Clouds {
   }
 
   #look(): void {
-    const { clientWidth: width, clientHeight: height } = this.#box;
+    const { width, height } = this.#size;
     if (width === 0 || height === 0) return;
     this.#camera.updateMatrixWorld();
     const [world, projection] = [this.#camera.matrixWorld.toArray(), this.#camera.projectionMatrix.toArray()];

@@ -1,6 +1,6 @@
 /** The Lab: settings in, frames out. It joins the parts and holds the state of one experiment. */
 
-import { byId, make } from "../dom";
+import { byId, nextFrame, nextTask } from "../dom";
 import { Engine, EngineError, LOST } from "../engine/engine";
 import type { Frame, Opened, Source } from "../engine/protocol";
 import type { Pose, StepReport } from "../../pkg/index.js";
@@ -11,7 +11,7 @@ import { OwnFiles } from "./ownfiles";
 import { Compare } from "./compare";
 import { LightPanel } from "./light";
 import { Player, type Advance } from "./player";
-import { shownIn } from "./pictures";
+import { offerPictures } from "./pictures";
 import { PoseTable } from "./posetable";
 import { Rivals } from "./rivals";
 import { fields, inputGroups, methodOf, runOptions, settingsOf, turnOf, type Origin, type Settings } from "./settings";
@@ -112,7 +112,7 @@ export class Lab {
     this.#light = new LightPanel({ turn: () => turnOf(this.store.settings), onLight: (patch, done) => this.#changeLight(patch, done) });
     byId("objective-title", HTMLElement).append(this.#explanations.button("objective", "Objective"));
     byId("slots", HTMLElement).append(this.#own.intake.element);
-    byId("take-picture", HTMLSelectElement).addEventListener("focus", () => this.#offerPictures());
+    byId("take-picture", HTMLSelectElement).addEventListener("focus", () => offerPictures(byId("lab", HTMLElement), byId("take-picture", HTMLSelectElement)));
     this.store.listen((settings, changed, live) => this.#settingsChanged(settings, changed, live));
     this.#form.adapt(this.store.settings, this.#origin);
   }
@@ -330,34 +330,30 @@ export class Lab {
   async #offerChoices(): Promise<void> {
     if (this.#offered) return;
     this.#announce("loading", "loading the numerics");
+    // The page stands still while the worker's thread is made: in a task with nothing else.
+    await nextTask();
     const { surfaces, lights } = await this.#engine.call("catalogue", {});
     this.#form.offer("surface", surfaces);
     this.#form.offer("light", lights);
     this.#offered = true;
   }
 
+  /** Pictures in one frame, numbers in the next: no press waits for the layout of both. */
   async #present(opened: Opened): Promise<void> {
+    const turn = this.#turn;
     byId("lab", HTMLElement).removeAttribute("data-vacant");
+    this.#forget();
+    await this.gallery.open(opened, this.#looksOther());
+    await nextTask();
+    if (turn !== this.#turn) return;
     this.#truth = opened.truth;
     this.#length = opened.units.image;
     this.#light.showTruth(opened.trueLight);
-    this.#forget();
     if (opened.options) this.store.adopt(settingsOf(opened.options));
     this.#messages.note(opened.notes);
-    const drawn = this.gallery.open(opened, this.#looksOther());
     this.#take(opened.frame);
-    await drawn;
-    this.#offerPictures();
-  }
-
-  /** What can be saved as a picture now. */
-  #offerPictures(): void {
-    const select = byId("take-picture", HTMLSelectElement);
-    const titles = shownIn(byId("lab", HTMLElement)).map(({ title }) => title);
-    const before = select.value;
-    if (titles.join("\n") === [...select.options].map(({ value }) => value).join("\n")) return;
-    select.replaceChildren(...titles.map((title) => make("option", { value: title }, title)));
-    if (titles.includes(before)) select.value = before;
+    await nextFrame();
+    offerPictures(byId("lab", HTMLElement), byId("take-picture", HTMLSelectElement));
   }
 
   /** Whether another object has come: the view of one whose light or noise has changed stays. */

@@ -114,9 +114,12 @@ class Ball {
 
   constructor(title: string, description: string) {
     this.canvas = make("canvas", { width: 72, height: 72, role: "img", "aria-label": description });
+  /** As those of the views, asked for before it is on the page. */
+  readonly #context: CanvasRenderingContext2D | null;
     this.#title = make("figcaption", {}, title);
     this.element = make("figure", { class: "ball" }, this.canvas, this.#title);
   }
+    this.#context = this.canvas.getContext("2d");
 
   say(title: string): void {
     if (this.#title.textContent !== title) this.#title.textContent = title;
@@ -127,7 +130,7 @@ class Ball {
     if (!bitmap) return;
     this.canvas.width = bitmap.width;
     this.canvas.height = bitmap.height;
-    this.canvas.getContext("2d")?.drawImage(bitmap, 0, 0);
+    this.#context?.drawImage(bitmap, 0, 0);
     bitmap.close();
   }
 }
