@@ -23,6 +23,11 @@ const still = matchMedia("(prefers-reduced-motion: reduce)");
 const LEFT_THE_MIDDLE = 0.3;
 /** By what factor a pinned run's object is larger or smaller before it counts as one of another resolution. */
 const OTHER_SIZE = 1.5;
+/** How far, in half windows, what is drawn may reach, and how much room is then made: what grows at every step is not to be followed at each. */
+const EDGE = 0.98;
+const ROOM = 1.08;
+/** The image's surface can be anything before the loop has settled: no more room is made than for so many times the depth map's. */
+const MOST_ROOM = 1.8;
 const NOWHERE = new Matrix4();
 
 /** P -> s R P + t. */
@@ -95,6 +100,7 @@ export class Clouds {
     this.#pose = matrixOf(pose);
     // From where it stood, in terms of the new points.
     const from = before && !fresh ? this.#standing.clone().multiply(before).multiply(this.#pose.clone().invert()) : NOWHERE.clone();
+    this.#makeRoom();
     this.#change({ surfaces: this.#shown });
     this.#placePinned();
     void this.#swing(from, this.#apart(seen));
@@ -247,6 +253,19 @@ export class Clouds {
     this.#controls.update();
   }
 
+  /** Looks from farther away where a surface is cut off, as one does whose scale was found to be larger; unless the visitor has chosen how near to be. */
+  #makeRoom(): void {
+    const [shown, size] = [this.#shown, this.#shown && boundsOf(this.#shown)?.radius];
+    const isMoved = this.#camera.zoom !== 1 || this.#controls.target.distanceTo(this.#bounds.center) > 1e-6 * this.#bounds.radius;
+    if (!shown || !size || isMoved || this.#size.width === 0) return;
+    this.#camera.updateMatrixWorld();
+    const camera = this.#toScreen("image");
+    const reach = Math.max(...SIDES.map((side) => reachOf(shown[side].points, camera)));
+    if (!(reach > EDGE)) return;
+    this.#bounds.radius = Math.max(this.#bounds.radius, Math.min(ROOM * reach * this.#bounds.radius, MOST_ROOM * size));
+    this.#resize();
+  }
+
   /** Turns the view by hand of the keyboard; degrees about the vertical and the horizontal axis. */
   turn(across: number, down: number): void {
     const offset = this.#camera.position.clone().sub(this.#controls.target);
@@ -329,4 +348,16 @@ function extent(points: Float32Array): Sphere | undefined {
   const [x, y, z] = spans;
   if (!x || !y || !z) return undefined;
   return new Sphere(new Vector3(x.middle, y.middle, z.middle), Math.hypot(x.half, y.half, z.half) || 1);
+}
+
+/** How far the bulk of the points reaches from the middle of the window, 1 at its edge. */
+function reachOf(points: Float32Array, toScreen: Matrix4): number {
+  const every = Math.max(1, Math.floor(points.length / 3 / 2000));
+  const reaches: number[] = [];
+  const point = new Vector3();
+  for (let i = 0; i + 2 < points.length; i += 3 * every) {
+    const { x, y } = point.fromArray(points, i).applyMatrix4(toScreen);
+    if (Number.isFinite(x + y)) reaches.push(Math.max(Math.abs(x), Math.abs(y)));
+  }
+  return reaches.sort((a, b) => a - b)[Math.ceil(0.99 * reaches.length) - 1] ?? 0;
 }

@@ -24,7 +24,7 @@ import { Status, type Notice } from "./status";
 import { Strip } from "./strip";
 import type { Kind } from "./kinds";
 import { Messages } from "./messages";
-import { isSearching, standing, verdict, wordsOf, type Verdict } from "./verdict";
+import { isSearching, sentence, standing, verdict, wordsOf, type Verdict } from "./verdict";
 
 export class Lab {
   readonly store: Store;
@@ -71,7 +71,7 @@ export class Lab {
   /** What the worker holds, which may be an input that was overtaken before it could be shown. */
   #held: Source | undefined;
   /** What the page does or fails at apart from the loop; the status shows it until the next frame is on the screen. */
-  #notice: { state: Notice; words: string } | undefined;
+  #notice: { state: Notice; words: string; cause: string } | undefined;
   /** Counts beginnings, so that the answer to an overtaken one is dropped. */
   #turn = 0;
   /** The beginning under way, which steps wait for. */
@@ -109,7 +109,7 @@ export class Lab {
       onError: (error, playing) => void this.#breakOff(error, playing),
     });
     this.#rivals = new Rivals({ onLook: (pose) => this.gallery.pretend(pose), onStart: (pose) => this.#startFrom(pose) });
-    this.#light = new LightPanel({ turn: () => turnOf(this.store.settings), onLight: (patch, done) => this.#changeLight(patch, done) });
+    this.#light = new LightPanel({ turn: () => turnOf(this.store.settings), onLight: (patch, done, gesture) => this.#changeLight(patch, done, gesture) });
     byId("objective-title", HTMLElement).append(this.#explanations.button("objective", "Objective"));
     byId("slots", HTMLElement).append(this.#own.intake.element);
     byId("take-picture", HTMLSelectElement).addEventListener("focus", () => offerPictures(byId("lab", HTMLElement), byId("take-picture", HTMLSelectElement)));
@@ -233,10 +233,10 @@ export class Lab {
   }
 
   /** The picture follows the light while it is moved; a run follows once it rests. */
-  #changeLight(patch: Settings, done: boolean): void {
+  #changeLight(patch: Settings, done: boolean, gesture: object): void {
     if (done) {
       this.#trying = undefined;
-      this.store.change(patch, true);
+      this.store.change(patch, true, gesture);
       return;
     }
     this.#trying = patch;
@@ -415,8 +415,8 @@ export class Lab {
     this.#showState();
   }
 
-  #announce(state: Notice, words: string): void {
-    this.#notice = { state, words };
+  #announce(state: Notice, words: string, cause = ""): void {
+    this.#notice = { state, words, cause };
     this.#showState();
   }
 
@@ -440,7 +440,7 @@ export class Lab {
       this.#strip.show(report);
       this.#status.show(report, playing ? "playing" : report.iteration > 0 || isSearching(report) ? "paused" : "ready", end);
     }
-    if (this.#notice) this.#status.announce(this.#notice.state, this.#notice.words);
+    if (this.#notice) this.#status.announce(this.#notice.state, this.#notice.words, this.#notice.cause);
     const play = byId("play", HTMLButtonElement);
     play.setAttribute("aria-pressed", String(playing));
     play.setAttribute("aria-label", playing ? "Pause" : "Play");
@@ -450,7 +450,8 @@ export class Lab {
   async #fail(error: unknown): Promise<void> {
     this.player.pause();
     const placed = this.#messages.fail(error);
-    this.#announce("error", placed ? "see the marked field" : "see the message");
+    if (placed) this.#announce("error", `${placed.field}: not possible`, `${sentence(placed.words)} The field is marked.`);
+    else this.#announce("error", "see the message");
     if (this.#good && this.#held !== this.#good.source) await this.#recover(this.#good);
   }
 
