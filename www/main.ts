@@ -107,12 +107,17 @@ function choose(origin: Origin): void {
   showExample();
 }
 const isSample = (): boolean => byId("files-panel", HTMLElement).hidden !== false;
-const examples = new Presets(byId("presets", HTMLElement), (settings) => {
-  if (!isSample()) choose("sample");
-  // Another example begins where all is seen, however the last one was turned.
-  gallery.lookAnew();
-  void start(settings);
-});
+const examples = new Presets(
+  byId("presets", HTMLElement),
+  (settings) => {
+    if (!isSample()) choose("sample");
+    // Another example begins where all is seen, however the last one was turned.
+    gallery.lookAnew();
+    void start(settings);
+  },
+  // The one that is set has the focus after a press, and there a space is what it is elsewhere: play or pause.
+  () => player.toggle(),
+);
 const showExample = () => examples.show(store.settings, isSample());
 store.listen(showExample);
 showExample();
@@ -268,8 +273,17 @@ if (placeOf(location.hash) === "lab" && wasOwn() && !asksToPlay(location.hash)) 
 onLook(() => writeAddress(store.settings));
 // On small screens the settings lie over what has opened them.
 button("close-settings", closeDrawer);
-// A link opened in this very tab changes nothing but the part after #.
-addEventListener("hashchange", () => void arrive());
+// A link opened in this very tab changes nothing but the part after #. The browser tells of it twice: at once, and again when it has time,
+// by which it may be elsewhere.
+let told = "";
+addEventListener("popstate", () => {
+  told = location.href;
+  void arrive();
+});
+addEventListener("hashchange", ({ newURL }) => {
+  if (newURL !== told) void arrive();
+  told = "";
+});
 await nextTask();
 void arrive();
 void keepForOffline(byId("offline", HTMLElement));
