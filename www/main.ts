@@ -87,7 +87,7 @@ button("export", () => {
 button("help-button", openHelp);
 button("link", () => void copyLink());
 themeToggle(byId("theme", HTMLButtonElement), () => {
-  gallery.recolour();
+  void gallery.recolour();
   others.learn?.recolour();
   others.tables?.recolour();
   others.rig?.recolour();

@@ -154,8 +154,10 @@ export class Gallery {
     this.#clouds.wipe(share);
   }
 
-  recolour(): void {
+  /** The charts once the page has its other colours: both at once would be a long task. */
+  async recolour(): Promise<void> {
     this.#clouds.recolour();
+    await nextFrame();
     for (const chart of this.#charts) this.#painter.request(chart, () => chart.recolour());
   }
 
