@@ -26,14 +26,23 @@ export function byId<T extends HTMLElement>(id: string, type: abstract new () =>
   return element;
 }
 
+/** Colours that have been asked for, until the theme changes: each question may have the browser style the whole page first. */
+const inks = new Map<string, string>();
+/** In the head, where nothing is laid out; it stays there, because coming and going would have the page styled anew. */
+const inkwell = document.head.appendChild(make("i"));
+
 /** A colour token as the browser computes it, for canvases that cannot read custom properties. */
 export function ink(token: string): string {
-  const probe = make("i", { style: `color: var(--${token}); display: none` });
-  document.body.append(probe);
-  const colour = getComputedStyle(probe).color;
-  probe.remove();
-  return colour;
+  const known = inks.get(token);
+  if (known !== undefined) return known;
+  inkwell.style.color = `var(--${token})`;
+  const { color } = getComputedStyle(inkwell);
+  inks.set(token, color);
+  return color;
 }
+
+/** To be called where the theme changes, before anything is drawn in its colours. */
+export const forgetInks = (): void => inks.clear();
 
 let counter = 0;
 /** An id that nothing else on the page has. */
@@ -41,3 +50,6 @@ export const freshId = (stem: string): string => `${stem}-${++counter}`;
 
 /** Lets the browser paint and answer what was pressed before what follows. */
 export const nextTask = (): Promise<void> => new Promise((go) => setTimeout(go));
+
+/** Lets the browser style, lay out and paint what has changed before what follows. */
+export const nextFrame = (): Promise<void> => new Promise((go) => requestAnimationFrame(() => setTimeout(go)));

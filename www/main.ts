@@ -1,6 +1,6 @@
 /** Brings the page to life: its places, the Lab, and the controls around it. */
 
-import { byId, make, nextTask } from "./dom";
+import { byId, make, nextFrame, nextTask } from "./dom";
 import { isFirstVisit } from "./first-visit";
 import { areKeysOn, listenToKeys, rememberKeys } from "./keys";
 import { Form } from "./lab/form";
@@ -22,14 +22,15 @@ const button = (id: string, action: () => void): void => byId(id, HTMLButtonElem
 
 wearTheme();
 
-// The Lab, the controls around it and the first picture are tasks of their own: no press waits for all of the start.
-await nextTask();
+// The Lab, the controls around it and the first picture are tasks of their own, and what they put on the page is laid out by one after the
+// other: no press waits for all of the start.
+await nextFrame();
 const store = new Store(placeOf(location.hash) === "lab" ? fromLink(location.hash) : defaults);
 const form = new Form(store);
 form.mount();
-await nextTask();
+await nextFrame();
 const gallery = new Gallery();
-await nextTask();
+await nextFrame();
 const lab = new Lab({ store, form, gallery });
 const { player } = lab;
 await nextTask();
@@ -86,7 +87,7 @@ button("export", () => {
 button("help-button", openHelp);
 button("link", () => void copyLink());
 themeToggle(byId("theme", HTMLButtonElement), () => {
-  gallery.recolour();
+  void gallery.recolour();
   others.learn?.recolour();
   others.tables?.recolour();
   others.rig?.recolour();
@@ -106,12 +107,17 @@ function choose(origin: Origin): void {
   showExample();
 }
 const isSample = (): boolean => byId("files-panel", HTMLElement).hidden !== false;
-const examples = new Presets(byId("presets", HTMLElement), (settings) => {
-  if (!isSample()) choose("sample");
-  // Another example begins where all is seen, however the last one was turned.
-  gallery.lookAnew();
-  void start(settings);
-});
+const examples = new Presets(
+  byId("presets", HTMLElement),
+  (settings) => {
+    if (!isSample()) choose("sample");
+    // Another example begins where all is seen, however the last one was turned.
+    gallery.lookAnew();
+    void start(settings);
+  },
+  // The one that is set has the focus after a press, and there a space is what it is elsewhere: play or pause.
+  () => player.toggle(),
+);
 const showExample = () => examples.show(store.settings, isSample());
 store.listen(showExample);
 showExample();
@@ -267,8 +273,17 @@ if (placeOf(location.hash) === "lab" && wasOwn() && !asksToPlay(location.hash)) 
 onLook(() => writeAddress(store.settings));
 // On small screens the settings lie over what has opened them.
 button("close-settings", closeDrawer);
-// A link opened in this very tab changes nothing but the part after #.
-addEventListener("hashchange", () => void arrive());
+// A link opened in this very tab changes nothing but the part after #. The browser tells of it twice: at once, and again when it has time,
+// by which it may be elsewhere.
+let told = "";
+addEventListener("popstate", () => {
+  told = location.href;
+  void arrive();
+});
+addEventListener("hashchange", ({ newURL }) => {
+  if (newURL !== told) void arrive();
+  told = "";
+});
 await nextTask();
 void arrive();
 void keepForOffline(byId("offline", HTMLElement));

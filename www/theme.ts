@@ -1,5 +1,7 @@
 /** Dark or light: the system's choice until the visitor makes one. */
 
+import { forgetInks } from "./dom";
+
 const KEY = "bimodal-stereo.theme";
 
 /** Private windows may refuse storage; the choice then lasts as long as the page. */
@@ -29,16 +31,17 @@ export function themeToggle(button: HTMLButtonElement, onChange: () => void): vo
   const dark = matchMedia("(prefers-color-scheme: dark)");
   const current = () => document.documentElement.dataset.theme ?? (dark.matches ? "dark" : "light");
   const label = () => button.setAttribute("aria-label", `Switch to ${current() === "dark" ? "light" : "dark"} colours`);
+  const change = () => {
+    label();
+    forgetInks();
+    onChange();
+  };
   label();
   button.addEventListener("click", () => {
     const next = current() === "dark" ? "light" : "dark";
     document.documentElement.dataset.theme = next;
     remember(next);
-    label();
-    onChange();
+    change();
   });
-  dark.addEventListener("change", () => {
-    label();
-    onChange();
-  });
+  dark.addEventListener("change", change);
 }

@@ -1,13 +1,22 @@
 /** Both surfaces, drawn by a thread of their own where the browser lets one. */
 
+import { decode, type DecodedPng } from "fast-png";
 import { DRAWN, NO_OFFSCREEN, covered, goToClouds } from "./clouds";
 import { expect, test } from "./lab";
+
+/** How many pixels of a row are drawn on: those of another colour than the ground, which is seen near a corner. */
+function drawnIn({ data, channels, width }: DecodedPng, row: number): number {
+  const at = (column: number, row: number) => [0, 1, 2].map((c) => data[(row * width + column) * channels + c] ?? 0);
+  const ground = at(width - 8, 8);
+  // Corners are rounded.
+  return Array.from({ length: width - 16 }, (_, i) => at(i + 8, row)).filter((colour) => colour.some((value, c) => Math.abs(value - (ground[c] ?? 0)) > 24)).length;
+}
 
 /** Longest wait, milliseconds, of one attempt of several. */
 const BRIEFLY = { timeout: 5_000 };
 
 const NO_WEBGL = `
-  for (const { prototype } of [HTMLCanvasElement, OffscreenCanvas]) {
+  for (const { prototype } of [globalThis.HTMLCanvasElement, OffscreenCanvas].filter(Boolean)) {
     const original = prototype.getContext;
     prototype.getContext = function (kind, ...rest) { return kind.startsWith("webgl") ? null : original.call(this, kind, ...rest); };
   }`;
@@ -87,9 +96,31 @@ test("surfaces whose distance the pose settles stay in the middle of the view", 
   expect(Math.abs(kept / (await covered(clouds)) - 1)).toBeLessThan(0.1);
 });
 
+test("no surface is cut off, whatever scale is found", async ({ lab, page }) => {
+  await page.emulateMedia({ reducedMotion: "reduce" });
+  await lab.visit("size=64");
+  await page.getByRole("button", { name: "Too hard", exact: true }).click();
+  await lab.reaches("ready");
+  await page.getByLabel("Speed").selectOption({ label: "fastest" });
+  await page.getByRole("button", { name: "Play" }).click();
+  await lab.reaches("lost");
+  // A surface that reaches the upper or lower edge goes on beyond it.
+  await expect(async () => {
+    const canvas = decode(await page.locator("#clouds-canvas").screenshot());
+    const [top, middle, bottom] = [1, Math.round(canvas.height / 2), canvas.height - 2].map((row) => drawnIn(canvas, row));
+    expect(middle).toBeGreaterThan(20);
+    expect([top, bottom]).toEqual([0, 0]);
+  }).toPass();
+});
+
 test("without WebGL the page says so and computes all the same", async ({ lab, page }) => {
   // three.js complains on the console before it gives up; nothing else may.
   await page.addInitScript(NO_WEBGL);
+  // The page's init scripts do not run in a worker, so its own script begins with the lines.
+  await page.route(/stage-thread[^/]*\.js$/, async (route) => {
+    const response = await route.fetch();
+    await route.fulfill({ response, body: `${NO_WEBGL}\n${await response.text()}` });
+  });
   await lab.open();
   await goToClouds(page);
   await expect(page.locator("#clouds-note")).toHaveText(/no WebGL/);

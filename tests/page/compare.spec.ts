@@ -75,8 +75,13 @@ test("the surfaces of a pinned run are seen left of the wipe, from wherever they
   const clouds = page.locator("#clouds-box");
   await expect(page.locator("#clouds-note")).toBeHidden();
   await expect.poll(() => covered(page.locator("#clouds-canvas"))).toBeGreaterThan(DRAWN);
-  await page.waitForTimeout(300);
-  const before = await clouds.screenshot();
+  // Where two looks at it, frames apart, see the same, it stands still.
+  let before = await clouds.screenshot();
+  await expect(async () => {
+    const earlier = before;
+    before = await clouds.screenshot();
+    expect(before.equals(earlier)).toBe(true);
+  }).toPass();
   await page.getByRole("button", { name: "Pin this run" }).click();
   await lab.unfold();
   await page.getByLabel("Surface", { exact: true }).selectOption("vase");

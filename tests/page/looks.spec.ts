@@ -142,7 +142,7 @@ for (const width of [768, 1024]) {
     await page.setViewportSize({ width, height: 900 });
     await lab.visit("size=64");
     await lab.unfold();
-    const sheet = await page.locator("#input > .sheet").boundingBox();
+    const sheet = await page.locator("#input .sheet").boundingBox();
     for (const box of ["#inputs", "#hero", "#outcome"]) expect((await page.locator(box).boundingBox())?.x).toBeGreaterThan((sheet?.x ?? 0) + (sheet?.width ?? 0));
     await expect(page.locator("#inputs")).toBeInViewport({ ratio: 1 });
     await expect(page.locator("#hero")).toBeInViewport({ ratio: 0.5 });
@@ -156,11 +156,33 @@ test("open settings hide no input, and what has opened them stays under the poin
   const summary = page.locator("#input > summary");
   const before = await summary.boundingBox();
   await summary.click();
-  const sheet = await page.locator("#input > .sheet").boundingBox();
+  const sheet = await page.locator("#input .sheet").boundingBox();
   for (const box of ["#inputs", "#hero", "#outcome"]) expect((await page.locator(box).boundingBox())?.x).toBeGreaterThan((sheet?.x ?? 0) + (sheet?.width ?? 0));
   expect(await summary.boundingBox()).toEqual(before);
+  // Neither what is above: the places, the sentence, the examples.
+  for (const box of [".top", ".lead"]) {
+    const above = await page.locator(box).boundingBox();
+    expect((above?.y ?? Infinity) + (above?.height ?? 0)).toBeLessThanOrEqual(sheet?.y ?? 0);
+  }
+  // All of it can be reached, and it stays beside what is scrolled to.
+  const bar = await page.locator("#bar").boundingBox();
+  expect((sheet?.y ?? 0) + (sheet?.height ?? 0)).toBeLessThanOrEqual(bar?.y ?? 0);
+  await page.locator("#numbers").evaluate((numbers) => numbers.scrollIntoView({ block: "start", behavior: "instant" }));
+  await expect(page.locator("#input .sheet")).toBeInViewport({ ratio: 0.9 });
+  await page.evaluate(() => scrollTo({ top: 0, behavior: "instant" }));
   await summary.click();
   await expect(page.locator("#inputs")).toBeInViewport({ ratio: 0.5 });
+});
+
+test("the footer begins where its place does, on the widest screens too", async ({ lab, page }) => {
+  await page.setViewportSize({ width: 2560, height: 1300 });
+  await lab.visit("size=64");
+  const left = (box: string) => page.locator(box).evaluate((element) => element.getBoundingClientRect().left);
+  for (const [link, place] of [["#to-tables", "#tables"], ["#to-rig", "#rig"], ["#to-learn", "#learn"], ["#to-lab", "#lab"]] as const) {
+    await page.locator(link).click();
+    await expect(page.locator(place)).toBeVisible();
+    expect(await left(".about")).toBe(await left(place));
+  }
 });
 
 test("each place has its own help", async ({ lab, page }) => {

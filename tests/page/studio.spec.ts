@@ -56,6 +56,40 @@ test("an example is a press: it sets everything and plays", async ({ lab, page }
   await expect(page).toHaveURL(/surface=vase/);
 });
 
+test("a press of the example that is set, as a space after it was chosen, pauses and plays on", async ({ lab, page }) => {
+  await lab.open("surface=vase&size=64");
+  const play = page.locator("#play");
+  const example = page.getByRole("button", { name: "Noise", exact: true });
+  await example.click();
+  await expect(lab.iteration).not.toHaveText("0");
+  await expect(example).toBeFocused();
+  await page.keyboard.press(" ");
+  await expect(play).toHaveAttribute("aria-label", "Play");
+  // Not begun anew.
+  await expect(lab.iteration).not.toHaveText("0");
+  await page.keyboard.press(" ");
+  await lab.reaches("converged");
+});
+
+test("a pose that was held and is off has no tick", async ({ lab, page }) => {
+  await lab.visit("size=32&registration=fixed&start=identity&beta=40");
+  await page.getByLabel("Speed").selectOption({ label: "fastest" });
+  await page.getByRole("button", { name: "Play" }).click();
+  await expect(page.locator("#status")).toHaveAttribute("data-tone", "wrong");
+  await expect(page.locator("#status-icon")).not.toHaveText("✓");
+  await expect(page.locator("#status-icon")).not.toHaveAttribute("data-mark", "converged");
+});
+
+test("a link that asks for what can't be says which field is wrong, and how", async ({ lab, page }) => {
+  await page.goto("./#size=32&overlap=7");
+  await lab.reaches("error");
+  await expect(page.locator("#status")).toHaveText("Overlap: not possible");
+  await expect(page.locator("#verdict")).toHaveText(/^Must be .*\d.*\. The field is marked\.$/);
+  const field = page.locator("#fields-sample").getByRole("spinbutton", { name: "Overlap" });
+  await expect(field).toHaveAttribute("aria-invalid");
+  await expect(field).toBeInViewport();
+});
+
 test("the light is shown as found and true, and the true one can be dragged: the picture follows", async ({ lab, page }) => {
   await lab.open("size=64");
   const before = await lab.fingerprint("Colour");
@@ -66,10 +100,14 @@ test("the light is shown as found and true, and the true one can be dragged: the
   if (!ball) throw new Error("the ball is on the page");
   await page.mouse.move(ball.x + ball.width / 2, ball.y + ball.height / 2);
   await page.mouse.down();
-  // In one move: a light that rests on its way, as on a busy machine, counts there, and is a step for Undo of its own.
-  await page.mouse.move(ball.x + ball.width / 2 + 20, ball.y + ball.height / 2 + 8);
+  await page.mouse.move(ball.x + ball.width / 2 + 10, ball.y + ball.height / 2 + 4, { steps: 3 });
   await expect.poll(() => lab.fingerprint("Colour")).not.toBe(before);
+  // Where it rests on its way it counts, and all of the drag is one step for Undo.
+  await expect(page).toHaveURL(/lightTurn=-\d+/);
+  await lab.reaches("ready");
+  await page.mouse.move(ball.x + ball.width / 2 + 20, ball.y + ball.height / 2 + 8, { steps: 3 });
   await page.mouse.up();
+  await expect(page).toHaveURL(/lightTurn=-(4[5-9]|5\d)/);
   await expect(page).toHaveURL(/lightTurn=-\d+/);
   await lab.reaches("ready");
   const turned = await lab.fingerprint("Colour");

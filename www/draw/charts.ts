@@ -40,7 +40,7 @@ export class Chart {
     this.#box = box;
     this.#name = name;
     this.#lines = lines;
-    this.#plot = new Plot(box, { xLabel: "iteration", curves: [...lines, ...lines.map((line) => ({ ...line, isPinned: true }))], whole: true });
+    this.#plot = new Plot(box, { xLabel: "iteration", curves: [...lines, ...lines.map((line) => ({ ...line, isPinned: true }))], whole: true, waits: true });
   }
 
   static objective(box: HTMLElement): Chart {
@@ -64,6 +64,12 @@ export class Chart {
   /** uPlot draws on a canvas and has to be told the theme's colours anew. */
   recolour(): void {
     this.#plot.build();
+    this.#plot.begin();
+  }
+
+  /** Its first drawing, a task of its own: by then the browser has styled and laid out what was built. */
+  begin(): void {
+    this.#plot.begin();
   }
 }
 
@@ -93,6 +99,8 @@ export interface PlotOptions {
   curves: readonly Curve[];
   /** Whether x counts something: then it begins at one and has no ticks in between. */
   whole: boolean;
+  /** Draws nothing before it is told to begin. */
+  waits?: boolean;
 }
 
 export class Plot {
@@ -100,6 +108,7 @@ export class Plot {
   readonly #options: PlotOptions;
   readonly #observer: ResizeObserver;
   #plot: uPlot | undefined;
+  #begin: (() => void) | undefined;
   #data: uPlot.AlignedData;
   /** The newest value of each curve, zero included, which no logarithm shows. */
   #newest: (number | null)[] = [];
@@ -109,8 +118,20 @@ export class Plot {
     this.#options = options;
     this.#data = [[], ...options.curves.map(() => [])];
     this.build();
-    this.#observer = new ResizeObserver(() => this.#plot?.setSize(this.#size()));
+    if (!options.waits) this.begin();
+    this.#observer = new ResizeObserver(() => {
+      const size = this.#size();
+      // The first time it is told what it was built with.
+      if (!this.#begin && size.width !== this.#plot?.width) this.#plot?.setSize(size);
+    });
     this.#observer.observe(box);
+  }
+
+  /** Draws what was built, in another task than that if the builder likes. */
+  begin(): void {
+    const begin = this.#begin;
+    this.#begin = undefined;
+    begin?.();
   }
 
   /** A logarithm has no place for zero and below, so such values are gaps. */
@@ -165,7 +186,10 @@ export class Plot {
         ],
       },
       this.#data,
-      this.#box,
+      (plot, begin) => {
+        this.#box.append(plot.root);
+        this.#begin = () => begin();
+      },
     );
   }
 

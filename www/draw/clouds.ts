@@ -23,6 +23,11 @@ const still = matchMedia("(prefers-reduced-motion: reduce)");
 const LEFT_THE_MIDDLE = 0.3;
 /** By what factor a pinned run's object is larger or smaller before it counts as one of another resolution. */
 const OTHER_SIZE = 1.5;
+/** How far, in half windows, what is drawn may reach, and how much room is then made: what grows at every step is not to be followed at each. */
+const EDGE = 0.98;
+const ROOM = 1.08;
+/** The image's surface can be anything before the loop has settled: no more room is made than for so many times the depth map's. */
+const MOST_ROOM = 1.8;
 const NOWHERE = new Matrix4();
 
 /** P -> s R P + t. */
@@ -35,9 +40,14 @@ function matrixOf({ scale, rotation, translation }: Pose): Matrix4 {
 export class Clouds {
   readonly #camera = new OrthographicCamera();
   readonly #controls: OrbitControls;
-  readonly #box: HTMLElement;
   readonly #renderer: Renderer;
-  readonly #resized = new ResizeObserver(() => this.#resize());
+  /** Of the box, as the browser tells it after a layout: to ask for it in between would have the page laid out twice a frame. */
+  #size = { width: 0, height: 0 };
+  readonly #resized = new ResizeObserver((entries) => {
+    const { width, height } = entries.at(-1)?.contentRect ?? this.#size;
+    this.#size = { width, height };
+    this.#resize();
+  });
   /** What has changed since the drawing under way began. */
   #next: Change | undefined;
   #drawing = false;
@@ -58,7 +68,6 @@ export class Clouds {
   }
 
   private constructor(canvas: HTMLCanvasElement, box: HTMLElement, renderer: Renderer) {
-    this.#box = box;
     this.#renderer = renderer;
     this.#controls = new OrbitControls(this.#camera, canvas);
     this.#marks = { image: make("span", { class: "dot image", hidden: true }), depth: make("span", { class: "dot depth", hidden: true }) };
@@ -91,6 +100,7 @@ export class Clouds {
     this.#pose = matrixOf(pose);
     // From where it stood, in terms of the new points.
     const from = before && !fresh ? this.#standing.clone().multiply(before).multiply(this.#pose.clone().invert()) : NOWHERE.clone();
+    this.#makeRoom();
     this.#change({ surfaces: this.#shown });
     this.#placePinned();
     void this.#swing(from, this.#apart(seen));
@@ -161,7 +171,7 @@ export class Clouds {
 
   /** The pixel whose point is seen at a place of the box, CSS pixels. */
   pick(x: number, y: number): Asked | null {
-    const { clientWidth: width, clientHeight: height } = this.#box;
+    const { width, height } = this.#size;
     let found: Asked | null = null;
     let least = Infinity;
     for (const side of SIDES) {
@@ -243,6 +253,19 @@ export class Clouds {
     this.#controls.update();
   }
 
+  /** Looks from farther away where a surface is cut off, as one does whose scale was found to be larger; unless the visitor has chosen how near to be. */
+  #makeRoom(): void {
+    const [shown, size] = [this.#shown, this.#shown && boundsOf(this.#shown)?.radius];
+    const isMoved = this.#camera.zoom !== 1 || this.#controls.target.distanceTo(this.#bounds.center) > 1e-6 * this.#bounds.radius;
+    if (!shown || !size || isMoved || this.#size.width === 0) return;
+    this.#camera.updateMatrixWorld();
+    const camera = this.#toScreen("image");
+    const reach = Math.max(...SIDES.map((side) => reachOf(shown[side].points, camera)));
+    if (!(reach > EDGE)) return;
+    this.#bounds.radius = Math.max(this.#bounds.radius, Math.min(ROOM * reach * this.#bounds.radius, MOST_ROOM * size));
+    this.#resize();
+  }
+
   /** Turns the view by hand of the keyboard; degrees about the vertical and the horizontal axis. */
   turn(across: number, down: number): void {
     const offset = this.#camera.position.clone().sub(this.#controls.target);
@@ -258,7 +281,7 @@ export class Clouds {
   }
 
   #resize(): void {
-    const { clientWidth: width, clientHeight: height } = this.#box;
+    const { width, height } = this.#size;
     if (width === 0 || height === 0) return;
     const reach = 0.95 * this.#bounds.radius;
     const [across, down] = width > height ? [(reach * width) / height, reach] : [reach, (reach * height) / width];
@@ -268,7 +291,7 @@ export class Clouds {
   }
 
   #look(): void {
-    const { clientWidth: width, clientHeight: height } = this.#box;
+    const { width, height } = this.#size;
     if (width === 0 || height === 0) return;
     this.#camera.updateMatrixWorld();
     const [world, projection] = [this.#camera.matrixWorld.toArray(), this.#camera.projectionMatrix.toArray()];
@@ -325,4 +348,16 @@ function extent(points: Float32Array): Sphere | undefined {
   const [x, y, z] = spans;
   if (!x || !y || !z) return undefined;
   return new Sphere(new Vector3(x.middle, y.middle, z.middle), Math.hypot(x.half, y.half, z.half) || 1);
+}
+
+/** How far the bulk of the points reaches from the middle of the window, 1 at its edge. */
+function reachOf(points: Float32Array, toScreen: Matrix4): number {
+  const every = Math.max(1, Math.floor(points.length / 3 / 2000));
+  const reaches: number[] = [];
+  const point = new Vector3();
+  for (let i = 0; i + 2 < points.length; i += 3 * every) {
+    const { x, y } = point.fromArray(points, i).applyMatrix4(toScreen);
+    if (Number.isFinite(x + y)) reaches.push(Math.max(Math.abs(x), Math.abs(y)));
+  }
+  return reaches.sort((a, b) => a - b)[Math.ceil(0.99 * reaches.length) - 1] ?? 0;
 }

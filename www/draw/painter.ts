@@ -2,17 +2,22 @@
 
 /** Milliseconds of a frame that drawing may take; the rest belongs to the browser and the visitor. */
 const BUDGET = 5;
+/** Pixels of canvases after which a frame has enough: the browser copies them after the scripts, where no clock of theirs sees it. */
+const PIXELS = 400_000;
 
-type Job = () => void;
+interface Job {
+  draw(): void;
+  pixels: number;
+}
 
 export class Painter {
   #jobs = new Map<object, Job>();
   #idle: (() => void)[] = [];
   #scheduled = false;
 
-  /** Queues the painting of `owner`; a newer job replaces one that has not run. */
-  request(owner: object, job: Job): void {
-    this.#jobs.set(owner, job);
+  /** Queues the painting of `owner`, on a canvas of so many pixels; a newer job replaces one that has not run. */
+  request(owner: object, draw: () => void, pixels = 0): void {
+    this.#jobs.set(owner, { draw, pixels });
     this.#schedule();
   }
 
@@ -31,10 +36,12 @@ export class Painter {
   #frame(): void {
     this.#scheduled = false;
     const until = performance.now() + BUDGET;
-    for (const [owner, job] of this.#jobs) {
+    let drawn = 0;
+    for (const [owner, { draw, pixels }] of this.#jobs) {
       this.#jobs.delete(owner);
-      job();
-      if (performance.now() > until) break;
+      draw();
+      drawn += pixels;
+      if (performance.now() > until || drawn > PIXELS) break;
     }
     if (this.#jobs.size > 0) {
       this.#schedule();

@@ -1,7 +1,8 @@
 /** What draws the clouds: a thread of its own where the browser lets one, or else the page. */
 
 import { onGone } from "../engine/alive";
-import type { Change, Told } from "./stage";
+import { nextTask } from "../dom";
+import type { Asked, Change, Told } from "./stage";
 
 export interface Renderer {
   /** Resolves when that is done. */
@@ -17,15 +18,18 @@ export interface CloudsHooks {
 }
 
 /** Rejects where the browser has no WebGL. */
-export const rendererFor = (canvas: HTMLCanvasElement, hooks: CloudsHooks): Promise<Renderer> => (drawsElsewhere(canvas) ? elsewhere(canvas, hooks) : here(canvas, hooks));
-
-/** Whether a thread can have the canvas and WebGL as well: older Safaris draw in two dimensions there. */
-function drawsElsewhere(canvas: HTMLCanvasElement): boolean {
-  return "transferControlToOffscreen" in canvas && new OffscreenCanvas(1, 1).getContext("webgl2") !== null;
+export async function rendererFor(canvas: HTMLCanvasElement, hooks: CloudsHooks): Promise<Renderer> {
+  if (!("transferControlToOffscreen" in canvas)) return here(canvas, hooks);
+  // The page stands still while a thread is made: in a task with nothing else.
+  await nextTask();
+  const thread = new Thread(hooks);
+  // The thread tries, not the page: whoever asks for WebGL waits for the browser's process that draws.
+  if (await thread.ask("can you draw?")) return elsewhere(thread, canvas);
+  thread.end();
+  return here(canvas, hooks);
 }
 
-async function elsewhere(canvas: HTMLCanvasElement, hooks: CloudsHooks): Promise<Renderer> {
-  const thread = new Thread(hooks);
+async function elsewhere(thread: Thread, canvas: HTMLCanvasElement): Promise<Renderer> {
   const offscreen = canvas.transferControlToOffscreen();
   if (await thread.ask(offscreen, [offscreen])) return thread;
   thread.end();
@@ -52,7 +56,7 @@ class Thread implements Renderer {
     };
   }
 
-  ask(message: OffscreenCanvas | Change, transfer: Transferable[] = []): Promise<boolean> {
+  ask(message: Asked, transfer: Transferable[] = []): Promise<boolean> {
     if (this.#isOver) return Promise.resolve(false);
     return new Promise((resolve) => {
       this.#answer = resolve;

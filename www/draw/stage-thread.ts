@@ -1,13 +1,16 @@
 /** The thread that draws the clouds: a page that waits for its own WebGL drawing answers no press meanwhile. */
 
 import "../engine/hold";
-import { CloudStage, type Change, type Told } from "./stage";
+import { CloudStage, type Asked, type Told } from "./stage";
 
 let stage: CloudStage | undefined;
 const tell = (told: Told): void => self.postMessage(told);
 
-/** First the canvas, then changes. */
-self.onmessage = ({ data }: MessageEvent<OffscreenCanvas | Change>) => {
+self.onmessage = ({ data }: MessageEvent<Asked>) => {
+  if (data === "can you draw?") {
+    tell(new OffscreenCanvas(1, 1).getContext("webgl2") !== null);
+    return;
+  }
   if (data instanceof OffscreenCanvas) {
     try {
       stage = new CloudStage(data, (lost) => tell({ lost }));

@@ -26,6 +26,8 @@ export class View {
   readonly #options: ViewOptions;
   readonly #side: Side;
   readonly #canvas: HTMLCanvasElement;
+  /** Asked for before the canvas is on the page: later the browser would style the whole page first, in the midst of a frame. */
+  readonly #context: CanvasRenderingContext2D | null;
   readonly #readout = make("span", { class: "readout" });
   readonly #dot = make("span", { class: "dot", hidden: true });
   readonly #box: HTMLElement;
@@ -39,6 +41,7 @@ export class View {
     const { name, title, description, probe } = options;
     this.#side = VIEWS[name];
     this.#canvas = make("canvas", { width: 64, height: 64, tabindex: 0, role: "img", "aria-label": `${title}: ${description}. Arrow keys move the probe.` });
+    this.#context = this.#canvas.getContext("2d");
     this.#box = make("div", { class: "canvas" }, this.#canvas, this.#dot, this.#readout);
     this.#pinned = new Pinned(this.#canvas);
     this.element = make("figure", { class: "view" }, make("figcaption", {}, make("span", { class: "view-title" }, title)), this.#box, this.#legend());
@@ -73,10 +76,10 @@ export class View {
     this.#options.painter.request(this, () => {
       this.#canvas.width = width;
       this.#canvas.height = height;
-      this.#canvas.getContext("2d")?.drawImage(bitmap, 0, 0);
+      this.#context?.drawImage(bitmap, 0, 0);
       bitmap.close();
       this.#pinned.place(painted);
-    });
+    }, width * height);
     this.#showProbe();
   }
 

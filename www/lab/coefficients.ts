@@ -6,8 +6,8 @@ import type { Settings } from "./settings";
 import { lightText } from "./settings";
 
 export interface CoefficientHooks {
-  /** Told while a slider moves, and once more when it has come to rest. */
-  onLight(patch: Settings, done: boolean): void;
+  /** Told while a slider moves, and once more when it has come to rest; the same `gesture` until it is let go. */
+  onLight(patch: Settings, done: boolean, gesture: object): void;
 }
 
 /** Harmonics of one channel, and what each multiplies: x right, y down, z away. */
@@ -32,6 +32,7 @@ export class Coefficients {
   readonly #readout = make("output", {}, "x right, y down, z away");
   #values: number[] = [];
   #resting: ReturnType<typeof setTimeout> | undefined;
+  #gesture = {};
 
   constructor(hooks: CoefficientHooks) {
     this.#hooks = hooks;
@@ -58,11 +59,14 @@ export class Coefficients {
     slider.addEventListener("input", () => {
       this.#values[index] = slider.valueAsNumber;
       this.#say(name, index);
-      this.#hooks.onLight(this.#patch(), false);
+      this.#hooks.onLight(this.#patch(), false, this.#gesture);
       clearTimeout(this.#resting);
       this.#resting = setTimeout(() => this.#finish(), REST);
     });
-    slider.addEventListener("change", () => this.#finish());
+    slider.addEventListener("change", () => {
+      this.#finish();
+      this.#gesture = {};
+    });
     return slider;
   }
 
@@ -70,7 +74,7 @@ export class Coefficients {
     if (this.#resting === undefined) return;
     clearTimeout(this.#resting);
     this.#resting = undefined;
-    this.#hooks.onLight(this.#patch(), true);
+    this.#hooks.onLight(this.#patch(), true, this.#gesture);
   }
 
   #say(name: string, index: number): void {

@@ -55,15 +55,17 @@ export class Form {
     control.show(this.#store.settings[key] ?? null);
   }
 
-  /** Puts an error beside the field it names; false when no field answers to that path. */
-  complain(path: string, message: string): boolean {
+  /** Puts an error beside the field it names, and says which that is; nothing when no field answers to that path. */
+  complain(path: string, message: string): string | undefined {
     const candidates = [...this.#controls.values()].filter(({ field, row }) => !row.hidden && (path === field.path || path.startsWith(`${field.path}.`)));
     const control = candidates.sort((a, b) => b.field.path.length - a.field.path.length)[0];
-    if (!control) return false;
+    if (!control) return undefined;
     mark(control, message, "error");
     let folded = control.row.closest("details");
     for (; folded; folded = folded.parentElement?.closest("details") ?? null) folded.open = true;
-    return true;
+    // Within the settings, which may be longer than their sheet.
+    control.row.scrollIntoView({ block: "nearest" });
+    return control.field.label;
   }
 
   /** A remark that is no error, such as what was guessed. */
@@ -83,7 +85,7 @@ export class Form {
   #build(field: Field): Control {
     const id = freshId("field");
     const note = make("p", { class: "note", id: `${id}-note`, hidden: true });
-    const change = (value: Value, live = false) => this.#store.change({ [field.key]: value }, live);
+    const change: Change = (value, live = false, gesture) => this.#store.change({ [field.key]: value }, live, gesture);
     const built = build(field, id, change);
     const remark = make("p", { class: "note" });
     const heading = make("span", { class: "heading" }, make("label", { for: id }, field.label));
@@ -118,8 +120,8 @@ function mark({ note, inputs }: Control, message: string, tone: "error" | "note"
   for (const input of inputs) input.toggleAttribute("aria-invalid", tone === "error" && message !== "");
 }
 
-/** Tells of a value; `live` where it comes from a control on the move. */
-type Change = (value: Value, live?: boolean) => void;
+/** Tells of a value; `live` where it comes from a control on the move, and the same `gesture` until that is let go. */
+type Change = (value: Value, live?: boolean, gesture?: object) => void;
 type Built = Pick<Control, "inputs" | "show">;
 
 function build(field: Field, id: string, change: Change): Built {
@@ -149,16 +151,20 @@ function numbers(field: NumberField, id: string, change: Change): Built {
   // A slider over many decades counts powers of ten.
   const valueOf = () => (log ? Number((10 ** slider.valueAsNumber).toPrecision(2)) : slider.valueAsNumber);
   let resting: ReturnType<typeof setTimeout> | undefined;
+  let gesture = {};
   const rest = () => {
     clearTimeout(resting);
-    change(valueOf(), true);
+    change(valueOf(), true, gesture);
   };
   slider.addEventListener("input", () => {
     exact.value = String(valueOf());
     clearTimeout(resting);
     resting = setTimeout(rest, REST);
   });
-  slider.addEventListener("change", rest);
+  slider.addEventListener("change", () => {
+    rest();
+    gesture = {};
+  });
   return {
     inputs: [exact, slider],
     show(value) {

@@ -7,7 +7,7 @@ import { Painter } from "../draw/painter";
 import { Probe, type Asked } from "../draw/probe";
 import { Scale } from "../draw/scale";
 import { View, type Content } from "../draw/view";
-import { byId, make, nextTask } from "../dom";
+import { byId, make, nextFrame, nextTask } from "../dom";
 import { CloudPanel } from "./cloudpanel";
 import { SCALES, TEXTURES, type Frame, type Look, type Opened, type Painted, type Probed, type ScaleName, type Drawings, type Texture, type ViewName } from "../engine/protocol";
 
@@ -154,8 +154,10 @@ export class Gallery {
     this.#clouds.wipe(share);
   }
 
-  recolour(): void {
+  /** The charts once the page has its other colours: both at once would be a long task. */
+  async recolour(): Promise<void> {
     this.#clouds.recolour();
+    await nextFrame();
     for (const chart of this.#charts) this.#painter.request(chart, () => chart.recolour());
   }
 
@@ -199,10 +201,16 @@ export class Gallery {
   async #loadCharts(): Promise<void> {
     await nextTask();
     const { Chart } = await import("../draw/charts");
-    await nextTask();
-    const objective = Chart.objective(byId("objective-chart", HTMLElement));
-    await nextTask();
-    this.#charts = [objective, Chart.rotation(byId("rotation-chart", HTMLElement))];
+    const charts: Chart[] = [];
+    for (const build of [() => Chart.objective(byId("objective-chart", HTMLElement)), () => Chart.rotation(byId("rotation-chart", HTMLElement))]) {
+      await nextTask();
+      charts.push(build());
+    }
+    for (const chart of charts) {
+      await nextFrame();
+      chart.begin();
+    }
+    this.#charts = charts;
     this.#showCharts();
   }
 }

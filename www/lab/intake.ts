@@ -98,14 +98,14 @@ export class Intake {
     this.#forget.hidden = !canForget;
   }
 
-  /** Puts an error beside the slot that the library's path belongs to; false when none does. */
-  complain(path: string, message: string): boolean {
+  /** Puts an error beside the slot that the library's path belongs to, and says which that is; nothing when none does. */
+  complain(path: string, message: string): string | undefined {
     return this.#say(path, message, true);
   }
 
   /** A remark that is no error, such as that the picture was scaled down. */
   remark(path: string, message: string): boolean {
-    return this.#say(path, message, false);
+    return this.#say(path, message, false) !== undefined;
   }
 
   clearMessages(): void {
@@ -116,14 +116,14 @@ export class Intake {
     }
   }
 
-  #say(path: string, message: string, isError: boolean): boolean {
+  #say(path: string, message: string, isError: boolean): string | undefined {
     const entry = [...this.#entries.values()].find(({ paths }) => paths.includes(path));
-    if (!entry) return false;
+    if (!entry) return undefined;
     entry.note.textContent = message;
     entry.note.hidden = false;
     entry.note.classList.toggle("error", isError);
     entry.zone.toggleAttribute("data-invalid", isError);
-    return true;
+    return slots.find(({ paths }) => paths === entry.paths)?.label;
   }
 
   #build({ slot, label, accept, hint, paths }: (typeof slots)[number]): void {

@@ -1,6 +1,6 @@
 /** The Lab: settings in, frames out. It joins the parts and holds the state of one experiment. */
 
-import { byId, make } from "../dom";
+import { byId, nextFrame, nextTask } from "../dom";
 import { Engine, EngineError, LOST } from "../engine/engine";
 import type { Frame, Opened, Source } from "../engine/protocol";
 import type { Pose, StepReport } from "../../pkg/index.js";
@@ -11,7 +11,7 @@ import { OwnFiles } from "./ownfiles";
 import { Compare } from "./compare";
 import { LightPanel } from "./light";
 import { Player, type Advance } from "./player";
-import { shownIn } from "./pictures";
+import { offerPictures } from "./pictures";
 import { PoseTable } from "./posetable";
 import { Rivals } from "./rivals";
 import { fields, inputGroups, methodOf, runOptions, settingsOf, turnOf, type Origin, type Settings } from "./settings";
@@ -24,7 +24,7 @@ import { Status, type Notice } from "./status";
 import { Strip } from "./strip";
 import type { Kind } from "./kinds";
 import { Messages } from "./messages";
-import { isSearching, standing, verdict, wordsOf, type Verdict } from "./verdict";
+import { isSearching, sentence, standing, verdict, wordsOf, type Verdict } from "./verdict";
 
 export class Lab {
   readonly store: Store;
@@ -71,7 +71,7 @@ export class Lab {
   /** What the worker holds, which may be an input that was overtaken before it could be shown. */
   #held: Source | undefined;
   /** What the page does or fails at apart from the loop; the status shows it until the next frame is on the screen. */
-  #notice: { state: Notice; words: string } | undefined;
+  #notice: { state: Notice; words: string; cause: string } | undefined;
   /** Counts beginnings, so that the answer to an overtaken one is dropped. */
   #turn = 0;
   /** The beginning under way, which steps wait for. */
@@ -109,10 +109,10 @@ export class Lab {
       onError: (error, playing) => void this.#breakOff(error, playing),
     });
     this.#rivals = new Rivals({ onLook: (pose) => this.gallery.pretend(pose), onStart: (pose) => this.#startFrom(pose) });
-    this.#light = new LightPanel({ turn: () => turnOf(this.store.settings), onLight: (patch, done) => this.#changeLight(patch, done) });
+    this.#light = new LightPanel({ turn: () => turnOf(this.store.settings), onLight: (patch, done, gesture) => this.#changeLight(patch, done, gesture) });
     byId("objective-title", HTMLElement).append(this.#explanations.button("objective", "Objective"));
     byId("slots", HTMLElement).append(this.#own.intake.element);
-    byId("take-picture", HTMLSelectElement).addEventListener("focus", () => this.#offerPictures());
+    byId("take-picture", HTMLSelectElement).addEventListener("focus", () => offerPictures(byId("lab", HTMLElement), byId("take-picture", HTMLSelectElement)));
     this.store.listen((settings, changed, live) => this.#settingsChanged(settings, changed, live));
     this.#form.adapt(this.store.settings, this.#origin);
   }
@@ -233,10 +233,10 @@ export class Lab {
   }
 
   /** The picture follows the light while it is moved; a run follows once it rests. */
-  #changeLight(patch: Settings, done: boolean): void {
+  #changeLight(patch: Settings, done: boolean, gesture: object): void {
     if (done) {
       this.#trying = undefined;
-      this.store.change(patch, true);
+      this.store.change(patch, true, gesture);
       return;
     }
     this.#trying = patch;
@@ -330,34 +330,30 @@ export class Lab {
   async #offerChoices(): Promise<void> {
     if (this.#offered) return;
     this.#announce("loading", "loading the numerics");
+    // The page stands still while the worker's thread is made: in a task with nothing else.
+    await nextTask();
     const { surfaces, lights } = await this.#engine.call("catalogue", {});
     this.#form.offer("surface", surfaces);
     this.#form.offer("light", lights);
     this.#offered = true;
   }
 
+  /** Pictures in one frame, numbers in the next: no press waits for the layout of both. */
   async #present(opened: Opened): Promise<void> {
+    const turn = this.#turn;
     byId("lab", HTMLElement).removeAttribute("data-vacant");
+    this.#forget();
+    await this.gallery.open(opened, this.#looksOther());
+    await nextTask();
+    if (turn !== this.#turn) return;
     this.#truth = opened.truth;
     this.#length = opened.units.image;
     this.#light.showTruth(opened.trueLight);
-    this.#forget();
     if (opened.options) this.store.adopt(settingsOf(opened.options));
     this.#messages.note(opened.notes);
-    const drawn = this.gallery.open(opened, this.#looksOther());
     this.#take(opened.frame);
-    await drawn;
-    this.#offerPictures();
-  }
-
-  /** What can be saved as a picture now. */
-  #offerPictures(): void {
-    const select = byId("take-picture", HTMLSelectElement);
-    const titles = shownIn(byId("lab", HTMLElement)).map(({ title }) => title);
-    const before = select.value;
-    if (titles.join("\n") === [...select.options].map(({ value }) => value).join("\n")) return;
-    select.replaceChildren(...titles.map((title) => make("option", { value: title }, title)));
-    if (titles.includes(before)) select.value = before;
+    await nextFrame();
+    offerPictures(byId("lab", HTMLElement), byId("take-picture", HTMLSelectElement));
   }
 
   /** Whether another object has come: the view of one whose light or noise has changed stays. */
@@ -419,8 +415,8 @@ export class Lab {
     this.#showState();
   }
 
-  #announce(state: Notice, words: string): void {
-    this.#notice = { state, words };
+  #announce(state: Notice, words: string, cause = ""): void {
+    this.#notice = { state, words, cause };
     this.#showState();
   }
 
@@ -444,7 +440,7 @@ export class Lab {
       this.#strip.show(report);
       this.#status.show(report, playing ? "playing" : report.iteration > 0 || isSearching(report) ? "paused" : "ready", end);
     }
-    if (this.#notice) this.#status.announce(this.#notice.state, this.#notice.words);
+    if (this.#notice) this.#status.announce(this.#notice.state, this.#notice.words, this.#notice.cause);
     const play = byId("play", HTMLButtonElement);
     play.setAttribute("aria-pressed", String(playing));
     play.setAttribute("aria-label", playing ? "Pause" : "Play");
@@ -454,7 +450,8 @@ export class Lab {
   async #fail(error: unknown): Promise<void> {
     this.player.pause();
     const placed = this.#messages.fail(error);
-    this.#announce("error", placed ? "see the marked field" : "see the message");
+    if (placed) this.#announce("error", `${placed.field}: not possible`, `${sentence(placed.words)} The field is marked.`);
+    else this.#announce("error", "see the message");
     if (this.#good && this.#held !== this.#good.source) await this.#recover(this.#good);
   }
 

@@ -13,8 +13,8 @@ export interface Turn {
 export interface LightHooks {
   /** How the light is turned before a drag. */
   turn(): Turn;
-  /** Told what it changes in the settings while it is moved, and once more when it has been let go. */
-  onLight(patch: Settings, done: boolean): void;
+  /** Told what it changes in the settings while it is moved, and once more where it rests or has been let go; the same `gesture` for all of one drag. */
+  onLight(patch: Settings, done: boolean, gesture: object): void;
 }
 
 /** Degrees of a press of an arrow key. */
@@ -35,6 +35,7 @@ export class LightPanel {
   #resting: ReturnType<typeof setTimeout> | undefined;
   /** Turned as the pointer says, and not yet as the settings do. */
   #turn: Turn | undefined;
+  #gesture = {};
   readonly #hooks: LightHooks;
 
   constructor(hooks: LightHooks) {
@@ -65,6 +66,7 @@ export class LightPanel {
     canvas.classList.add("turns");
     let from: { x: number; y: number; turn: Turn } | undefined;
     canvas.addEventListener("pointerdown", (event) => {
+      this.#gesture = {};
       from = { x: event.clientX, y: event.clientY, turn: this.#turn ?? this.#hooks.turn() };
       canvas.setPointerCapture(event.pointerId);
       event.preventDefault();
@@ -80,6 +82,7 @@ export class LightPanel {
     const end = () => {
       if (from && this.#turn) this.#finish();
       from = undefined;
+      this.#gesture = {};
     };
     canvas.addEventListener("pointerup", end);
     canvas.addEventListener("pointercancel", end);
@@ -94,7 +97,7 @@ export class LightPanel {
 
   #to(turn: Turn): void {
     this.#turn = turn;
-    this.#hooks.onLight(patchOf(turn), false);
+    this.#hooks.onLight(patchOf(turn), false, this.#gesture);
     clearTimeout(this.#resting);
     this.#resting = setTimeout(() => this.#finish(), REST);
   }
@@ -103,7 +106,7 @@ export class LightPanel {
     clearTimeout(this.#resting);
     const turn = this.#turn;
     this.#turn = undefined;
-    if (turn) this.#hooks.onLight(patchOf(turn), true);
+    if (turn) this.#hooks.onLight(patchOf(turn), true, this.#gesture);
   }
 }
 
@@ -111,9 +114,12 @@ class Ball {
   readonly canvas: HTMLCanvasElement;
   readonly element: HTMLElement;
   readonly #title: HTMLElement;
+  /** As those of the views, asked for before it is on the page. */
+  readonly #context: CanvasRenderingContext2D | null;
 
   constructor(title: string, description: string) {
     this.canvas = make("canvas", { width: 72, height: 72, role: "img", "aria-label": description });
+    this.#context = this.canvas.getContext("2d");
     this.#title = make("figcaption", {}, title);
     this.element = make("figure", { class: "ball" }, this.canvas, this.#title);
   }
@@ -127,7 +133,7 @@ class Ball {
     if (!bitmap) return;
     this.canvas.width = bitmap.width;
     this.canvas.height = bitmap.height;
-    this.canvas.getContext("2d")?.drawImage(bitmap, 0, 0);
+    this.#context?.drawImage(bitmap, 0, 0);
     bitmap.close();
   }
 }

@@ -33,13 +33,13 @@ export class Messages {
     }
   }
 
-  /** Says what is wrong; true where it stands beside a field. */
-  fail(error: unknown): boolean {
+  /** Says what is wrong; where it stands beside a field, which one and what in short. */
+  fail(error: unknown): { field: string; words: string } | undefined {
     const message = error instanceof Error ? error.message : String(error);
     const field = error instanceof EngineError ? error.field : undefined;
-    const placed = field !== undefined && this.#complain(field, message);
+    const placed = field === undefined ? undefined : this.#complain(field, message);
     this.#alert.textContent = message;
-    this.#alert.hidden = placed;
+    this.#alert.hidden = placed !== undefined;
     return placed;
   }
 
@@ -50,8 +50,9 @@ export class Messages {
   }
 
   /** Beside its field a message need not repeat the field's name. */
-  #complain(field: string, message: string): boolean {
+  #complain(field: string, message: string): { field: string; words: string } | undefined {
     const words = message.startsWith(`${field}: `) ? message.slice(field.length + 2) : message;
-    return this.#intake.complain(field, words) || this.#form.complain(field, words);
+    const label = this.#intake.complain(field, words) ?? this.#form.complain(field, words);
+    return label === undefined ? undefined : { field: label, words };
   }
 }

@@ -1,6 +1,6 @@
 /** What the page shows on canvases, as pictures to keep: whoever draws them, a thread of its own included. */
 
-import { ink } from "../dom";
+import { ink, make } from "../dom";
 
 export interface Shown {
   title: string;
@@ -21,6 +21,15 @@ function titleOf(canvas: HTMLCanvasElement): string {
 export function shownIn(root: HTMLElement): Shown[] {
   const all = [...root.querySelectorAll("canvas")].filter((canvas) => canvas.getAttribute("aria-hidden") !== "true" && !canvas.closest(".drawer") && canvas.width > 1 && canvas.checkVisibility({ visibilityProperty: true }));
   return all.map((canvas) => ({ title: titleOf(canvas), words: canvas.closest(".chart")?.getAttribute("aria-label") ?? undefined, canvas }));
+}
+
+/** What can be saved as a picture now. */
+export function offerPictures(root: HTMLElement, select: HTMLSelectElement): void {
+  const titles = shownIn(root).map(({ title }) => title);
+  const before = select.value;
+  if (titles.join("\n") === [...select.options].map(({ value }) => value).join("\n")) return;
+  select.replaceChildren(...titles.map((title) => make("option", { value: title }, title)));
+  if (titles.includes(before)) select.value = before;
 }
 
 /** As it is shown, on the colour of the page: curves would be lost on another one. */

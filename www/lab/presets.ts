@@ -39,10 +39,11 @@ const settingsOf = ({ set }: Preset): Settings => ({ ...defaults, ...set });
 export class Presets {
   readonly #buttons: readonly { preset: Preset; button: HTMLButtonElement }[];
 
-  constructor(parent: HTMLElement, onChoose: (settings: Settings) => void) {
+  /** `onChoose` is told of another example, `onAgain` of a press of the one that is set. */
+  constructor(parent: HTMLElement, onChoose: (settings: Settings) => void, onAgain: () => void) {
     this.#buttons = presets.map((preset) => {
       const button = make("button", { type: "button", "aria-pressed": "false", title: preset.words, "aria-description": preset.words }, preset.name);
-      button.addEventListener("click", () => onChoose(settingsOf(preset)));
+      button.addEventListener("click", () => (button.getAttribute("aria-pressed") === "true" ? onAgain() : onChoose(settingsOf(preset))));
       parent.append(button);
       return { preset, button };
     });

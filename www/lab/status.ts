@@ -33,9 +33,10 @@ export class Status {
   }
 
   /** Something other than the loop is going on, or has gone wrong. */
-  announce(state: Notice, words: string): void {
+  announce(state: Notice, words: string, cause: string): void {
     this.#say(state, state === "error" ? "wrong" : "open", words);
-    for (const line of [this.#cause, this.#next, this.#message]) this.#put(line, "");
+    this.#put(this.#cause, cause);
+    for (const line of [this.#next, this.#message]) this.#put(line, "");
   }
 
   #say(state: string, tone: Verdict["tone"], word: string): void {

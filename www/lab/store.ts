@@ -12,6 +12,8 @@ export class Store {
   #past: Settings[] = [];
   #undone: Settings[] = [];
   #listeners: Listener[] = [];
+  /** What the newest change came of, if it may go on. */
+  #gesture: object | undefined;
 
   constructor(initial: Settings) {
     this.#now = initial;
@@ -33,10 +35,12 @@ export class Store {
     this.#listeners.push(listener);
   }
 
-  change(patch: Record<string, Value>, live = false): void {
+  /** All changes of one `gesture`, as a drag that rests on its way, are one step back. */
+  change(patch: Record<string, Value>, live = false, gesture?: object): void {
     const next = { ...this.#now, ...patch };
     if (differing(next, this.#now).length === 0) return;
-    this.#past.push(this.#now);
+    if (gesture === undefined || gesture !== this.#gesture) this.#past.push(this.#now);
+    this.#gesture = gesture;
     this.#undone = [];
     this.#become(next, live);
   }
@@ -47,6 +51,7 @@ export class Store {
     if (differing(next, this.#now).length === 0) return;
     this.#past.push(this.#now);
     this.#undone = [];
+    this.#gesture = undefined;
     this.#now = next;
     for (const listener of this.#listeners) listener(next, [], false);
   }
@@ -58,6 +63,7 @@ export class Store {
   undo(): void {
     const before = this.#past.pop();
     if (!before) return;
+    this.#gesture = undefined;
     this.#undone.push(this.#now);
     this.#become(before, false);
   }
@@ -65,6 +71,7 @@ export class Store {
   redo(): void {
     const after = this.#undone.pop();
     if (!after) return;
+    this.#gesture = undefined;
     this.#past.push(this.#now);
     this.#become(after, false);
   }

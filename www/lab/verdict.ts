@@ -91,4 +91,5 @@ export function verdict({ status, message, pose }: StepReport, start: Pose | und
   return { tone: "wrong", status: stayed ? "start kept" : ends[status], words: [...said, caution].join(" "), next: help };
 }
 
-const sentence = (words: string): string => `${words.charAt(0).toUpperCase()}${words.slice(1)}${/[.!?]$/.test(words) ? "" : "."}`;
+/** As what stands alone is written. */
+export const sentence = (words: string): string => `${words.charAt(0).toUpperCase()}${words.slice(1)}${/[.!?]$/.test(words) ? "" : "."}`;

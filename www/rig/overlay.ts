@@ -81,8 +81,15 @@ export class Overlay {
     this.#slider.value = "0";
     this.#stopRow.replaceChildren(...this.#stops.map(({ name }, i) => press(name, () => this.#goTo(i), { "aria-pressed": "false" })));
     this.element.querySelector("datalist")?.replaceChildren(...this.#stops.map((_, i) => make("option", { value: i * WAY })));
+    this.#picture.style.aspectRatio = this.#ratioOf(run);
     fill(this.#frame, run.plans.map(({ name }, i) => ({ value: String(i), label: name })), "0");
     void this.#chooseFrame(0);
+  }
+
+  /** Known before the picture is: what stands below has its place at once. */
+  #ratioOf({ plans }: Run): string {
+    const { width = 4, height = 3 } = this.#rig.item(plans[0]?.colour)?.summary ?? {};
+    return `${width} / ${height}`;
   }
 
   #goTo(stop: number): void {
