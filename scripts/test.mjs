@@ -14,7 +14,10 @@ import { missingKeys } from "./tables/keys.mjs";
 const DENY = ["--", "-D", "warnings"];
 const modules = (path) => inRoot("node_modules", path);
 const cargo = (...args) => () => watch("cargo", args);
-/** What runs in browsers is the library; the command line in cli/ is not built for them. */
+/**
+ * What runs in browsers is the library; the command line in cli/ is not built for them. Whoever builds it for them has to say so: a choice
+ * of packages is a choice of their crates' features, and cargo keeps one build of the library for all choices, so that another one throws it away.
+ */
 const LIBRARY = ["-p", "bimodal-stereo"];
 /** The wasm tests; without a variable they run in Node. */
 const wasmIn = (variable) => async () => {
@@ -67,7 +70,7 @@ async function secondEngine() {
   const env = { FIREFOX: found.firefox, PAGE_PORT: String(await freePort()) };
   const page = await watch(process.execPath, [modules("@playwright/test/cli.js"), "test", "-c", "playwright.firefox.config.ts"], { env });
   const wasm = found.geckodriver
-    ? await watch("cargo", ["test", "--target", WASM, "--test", "wasm"], { env: { WASM_BINDGEN_USE_BROWSER: "1", GECKODRIVER: found.geckodriver } })
+    ? await watch("cargo", ["test", ...LIBRARY, "--target", WASM, "--test", "wasm"], { env: { WASM_BINDGEN_USE_BROWSER: "1", GECKODRIVER: found.geckodriver } })
     : without("the wasm tests in Firefox", "needs geckodriver (cargo install geckodriver)");
   return { code: page.code || wasm.code, output: `${page.output}\n${wasm.output}` };
 }

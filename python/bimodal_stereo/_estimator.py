@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from threading import Lock
 from typing import TYPE_CHECKING, Any, Callable, Optional, Union
+from zlib import crc32
 
-from . import _inputs, _native
+from . import _inputs, _native, _saved
 from ._errors import BimodalError
 from ._types import ColorImage, DepthMap, StepReport
 
@@ -28,7 +30,14 @@ class Estimator:
     def __init__(
         self, image: Union[ColorImage, ArrayLike], depth: Union[DepthMap, ArrayLike], **options: Unpack[Options]
     ) -> None:
-        self._own = _native.Estimator(_inputs.image(image), _inputs.depth(depth), _inputs.keywords(options))
+        self._begin(_inputs.image(image), _inputs.depth(depth), _inputs.keywords(options))
+
+    def _begin(self, image: _saved.View, depth: _saved.View, options: dict[str, Any]) -> None:
+        self._own = _native.Estimator(image, depth, options)
+        # What `save` writes, as it was when it was given.
+        self._image, self._depth, self._options = _saved.copied(image), _saved.copied(depth), _saved.text(options)
+        # Between `reset` and `save` alone: the options have to be those of the run.
+        self._lock = Lock()
 
     def step(self) -> StepReport:
         """One iteration, or one slice of the search while the loop is still there."""
@@ -58,7 +67,11 @@ class Estimator:
 
     def reset(self, **options: Unpack[Options]) -> None:
         """Back to the start with the same views, and with these options, if any are given, in place of all earlier ones."""
-        self._own.reset(_inputs.keywords(options) if options else None)
+        given = _inputs.keywords(options) if options else None
+        with self._lock:
+            self._own.reset(given)
+            if given is not None:
+                self._options = _saved.text(given)
 
     @property
     def report(self) -> StepReport:
@@ -109,3 +122,42 @@ class Estimator:
         if view not in ("image", "depth"):
             raise BimodalError("option", 'view: must be "image" or "depth"', "view")
         return self._own.points(view == "depth")
+
+    def save(self) -> bytes:
+        """The run as bytes: both views, the options and how far it has come.
+
+        A run is the same to the bit whenever it is run again, and that is how ``restore`` goes on with it.
+        """
+        with self._lock:
+            reached, found = self._own.reached()
+            return _saved.saved(self._image, self._depth, self._options, reached, crc32(found))
+
+    @classmethod
+    def restore(cls, state: Union[bytes, bytearray, memoryview]) -> Estimator:
+        """An estimator that stands where the saved one stood, to the bit, and goes on as that one would have.
+
+        It takes as long as the run had taken. Raises a ``BimodalError`` of code "state": no saved run, a damaged one, one of another
+        format or of the JavaScript package, or one whose numbers this build does not repeat.
+        """
+        own = _saved.opened(state)
+        estimator = cls.__new__(cls)
+        try:
+            estimator._begin(own.image, own.depth, own.options)
+        except BimodalError as error:
+            raise _saved.bad(f"holds what can't be run ({error})") from error
+        if own.reached["begun"]:
+            estimator._repeat(own.reached)
+        if crc32(estimator._own.reached()[1]) != own.found:
+            raise _saved.bad("was saved by a version or a build of this package that comes to other numbers; run the pair again instead")
+        return estimator
+
+    def _repeat(self, reached: dict[str, Any]) -> None:
+        """Runs as many stages as another run has, with the same views and options; an interrupt ends it between two of them."""
+        slices = 0
+        while True:
+            report = self._own.step_stage()
+            slices += report["stage"] == "search"
+            is_there = (report["stage"], report["iteration"]) == (reached["stage"], reached["iteration"])
+            is_enough = is_there and slices >= reached["slices"] and not reached["ended"]
+            if report["status"] != "running" or is_enough:
+                return

@@ -2,9 +2,9 @@
 
 use std::time::Instant;
 
-use bimodal_stereo::{Estimator as Native, Options, Status, StepReport, Surface};
+use bimodal_stereo::{Estimator as Native, Options, Stage, Status, StepReport, Surface};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyBytes, PyDict};
 
 use crate::arrays::{array, triples};
 use crate::error::{outcome, unbroken};
@@ -17,6 +17,9 @@ struct Loop {
     native: Native,
     options: Options,
     milliseconds: Vec<(&'static str, f64)>,
+    /// Whether anything has been run since the start, and how many slices of the search that was.
+    begun: bool,
+    slices: usize,
 }
 
 impl Loop {
@@ -41,6 +44,8 @@ impl Loop {
     fn timed_stage(&mut self) {
         let start = Instant::now();
         let stage = self.native.step_stage().stage.name();
+        self.begun = true;
+        self.slices += usize::from(stage == Stage::Search.name());
         let spent = 1000.0 * start.elapsed().as_secs_f64();
         match self.milliseconds.iter_mut().find(|(name, _)| *name == stage) {
             Some((_, sum)) => *sum += spent,
@@ -53,11 +58,21 @@ impl Loop {
         self.native.reset(options.clone())?;
         self.options = options;
         self.milliseconds.clear();
+        (self.begun, self.slices) = (false, 0);
         Ok(())
     }
 
     fn state(&self) -> (StepReport, Vec<(&'static str, f64)>) {
         (self.native.report().clone(), self.milliseconds.clone())
+    }
+
+    /// All that a run says and has found, but for the times: floats as text are the shortest that read back as the same bits.
+    fn found(&self) -> Vec<u8> {
+        let mut bytes = format!("{:?}", self.native.report()).into_bytes();
+        bytes.extend(self.native.light().flat().iter().flat_map(|value| value.to_le_bytes()));
+        bytes.extend(self.native.image_depth().iter().flat_map(|value| value.to_le_bytes()));
+        bytes.extend(self.native.refined_depth().iter().flat_map(|value| value.to_le_bytes()));
+        bytes
     }
 }
 
@@ -115,7 +130,7 @@ impl Estimator {
         let sizes = [[image.height, image.width], [depth.height, depth.width]];
         let kept = options.clone();
         let native = outcome(py.detach(|| guarded(|| Native::new(image, &depth, options))))?;
-        let own = Guarded::new(Loop { native, options: kept, milliseconds: Vec::new() });
+        let own = Guarded::new(Loop { native, options: kept, milliseconds: Vec::new(), begun: false, slices: 0 });
         Ok(Self { own, image: sizes[0], depth: sizes[1] })
     }
 
@@ -170,6 +185,19 @@ impl Estimator {
 
     fn light<'py>(&self, py: Python<'py>) -> Array<'py> {
         array(py, self.call(py, |own| own.native.light().flat().to_vec())?, [3, 9])
+    }
+
+    /// How far the run has come, and what `Loop::found` gives, of one moment.
+    fn reached<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyDict>, Bound<'py, PyBytes>)> {
+        let (report, begun, slices, found) =
+            self.call(py, |own| (own.native.report().clone(), own.begun, own.slices, own.found()))?;
+        let dict = PyDict::new(py);
+        dict.set_item("begun", begun)?;
+        dict.set_item("stage", report.stage.name())?;
+        dict.set_item("iteration", report.iteration)?;
+        dict.set_item("slices", slices)?;
+        dict.set_item("ended", report.status != Status::Running)?;
+        Ok((dict, PyBytes::new(py, &found)))
     }
 
     /// Of the depth view, or else of the image; the package has checked the word.

@@ -16,7 +16,7 @@ BLOCKS = re.findall(r"^```python\n(.*?)^```", README, re.MULTILINE | re.DOTALL)
 # So far away, in millimetres and pixels, a scene without perspective is nearly what a camera sees.
 FOCAL = 600.0
 # Of the pose found after a block, in degrees about y.
-BETA = {0: 50, 1: 20, 3: 20}
+BETA = {0: 50, 1: 20, 3: 20, 4: 20}
 
 
 class Intrinsics:
@@ -76,4 +76,4 @@ def test_the_readme_does_what_it_says(at, lines, monkeypatch):
 
 
 def test_every_block_is_told():
-    assert len(BLOCKS) == README.count("```") // 2 - README.count("```sh") == 7
+    assert len(BLOCKS) == README.count("```") // 2 - README.count("```sh") == 8

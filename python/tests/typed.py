@@ -16,6 +16,8 @@ message: Optional[str] = report.message
 normals: NDArray[np.float32] = estimator.image_normals()
 indices: NDArray[np.int32] = estimator.correspondence()
 light: NDArray[np.float64] = estimator.light()
+state: bytes = estimator.save()
+restored: Estimator = Estimator.restore(state)
 beta: float = sample("bust", "window", angles={"beta": 20}).pose.angles.beta
 rig = sample_rig("room")
 assert rig.pose is not None
@@ -25,4 +27,5 @@ Estimator(image, depth, ligth="estimate")  # type: ignore[call-arg]
 Estimator(image, depth, max_iterations="many")  # type: ignore[arg-type]
 Estimator(image, depth, lambda_={"shape": 1})  # type: ignore[typeddict-unknown-key]
 Pinhole(500, 500, 320)  # type: ignore[call-arg]
+Estimator.restore("state")  # type: ignore[arg-type]
 estimator.points("image").shape.total  # type: ignore[attr-defined]

@@ -59,7 +59,9 @@ function alike(told, report, degrees) {
 describe("command line", () => {
   before(async () => {
     await init();
-    const { status } = spawnSync("cargo", ["build", "--quiet", "-p", "bimodal-stereo-cli"], { cwd: inRoot(), stdio: "inherit" });
+    // With an example, since that asks for the features of the tests' crates: without them cargo compiles the library once more, under
+    // the same name, and then what the Rust tests were built on is no longer there.
+    const { status } = spawnSync("cargo", ["build", "--quiet", "--bin", "bimodal-stereo", "--example", "pair"], { cwd: inRoot(), stdio: "inherit" });
     assert.equal(status, 0);
     folder = mkdtempSync(join(tmpdir(), "bimodal-cli-"));
   });

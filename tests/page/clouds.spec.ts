@@ -1,7 +1,7 @@
 /** Both surfaces, drawn by a thread of their own where the browser lets one. */
 
 import { decode, type DecodedPng } from "fast-png";
-import { DRAWN, NO_OFFSCREEN, covered, goToClouds } from "./clouds";
+import { DRAWN, NO_OFFSCREEN, covered, goToClouds, still } from "./clouds";
 import { expect, test } from "./lab";
 
 /** How many pixels of a row are drawn on: those of another colour than the ground, which is seen near a corner. */
@@ -88,11 +88,11 @@ test("surfaces whose distance the pose settles stay in the middle of the view", 
   await lab.reaches("converged");
   const clouds = page.locator("#clouds-canvas");
   await expect.poll(() => covered(clouds)).toBeGreaterThan(DRAWN);
-  // How much of the picture is drawn tells a bust that is cut off from a whole one. The picture follows its cause after some time.
-  await page.waitForTimeout(500);
+  // How much of the picture is drawn tells a bust that is cut off from a whole one.
+  await still(clouds);
   const kept = await covered(clouds);
   await page.getByRole("button", { name: "Home", exact: true }).click();
-  await page.waitForTimeout(500);
+  await still(clouds);
   expect(Math.abs(kept / (await covered(clouds)) - 1)).toBeLessThan(0.1);
 });
 

@@ -1,6 +1,6 @@
 /** What tests of the clouds look at. */
 
-import type { Locator, Page } from "@playwright/test";
+import { expect, type Locator, type Page } from "@playwright/test";
 import { decode } from "fast-png";
 
 /** Share of the picture that two clouds cover, at least. */
@@ -15,6 +15,24 @@ export async function covered(clouds: Locator): Promise<number> {
     if (ground.some((value, c) => Math.abs(value - (data[i * channels + c] ?? 0)) > 24)) count++;
   }
   return count / (width * height);
+}
+
+/**
+ * The picture once it stands still: it follows its cause after some time, and how long that is nobody knows on a busy machine. Each look
+ * makes the browser draw, so that three alike in a row are three pictures drawn.
+ */
+export async function still(target: Locator): Promise<Buffer> {
+  let last = await target.screenshot();
+  let alike = 1;
+  await expect
+    .poll(async () => {
+      const next = await target.screenshot();
+      alike = next.equals(last) ? alike + 1 : 1;
+      last = next;
+      return alike;
+    })
+    .toBeGreaterThanOrEqual(3);
+  return last;
 }
 
 /** The clouds are loaded once a visitor comes near them; on a laptop they are there at once. */

@@ -2,7 +2,7 @@
 
 import type { Locator, Page } from "@playwright/test";
 import { decode } from "fast-png";
-import { DRAWN, covered, goToClouds } from "./clouds";
+import { DRAWN, covered, goToClouds, still } from "./clouds";
 import { expect, test, type Lab } from "./lab";
 
 const boxOf = (lab: Lab, title: string): Locator => lab.page.locator("figure.view > .canvas", { has: lab.page.locator(`canvas[aria-label^="${title}:"]`) });
@@ -75,13 +75,7 @@ test("the surfaces of a pinned run are seen left of the wipe, from wherever they
   const clouds = page.locator("#clouds-box");
   await expect(page.locator("#clouds-note")).toBeHidden();
   await expect.poll(() => covered(page.locator("#clouds-canvas"))).toBeGreaterThan(DRAWN);
-  // Where two looks at it, frames apart, see the same, it stands still.
-  let before = await clouds.screenshot();
-  await expect(async () => {
-    const earlier = before;
-    before = await clouds.screenshot();
-    expect(before.equals(earlier)).toBe(true);
-  }).toPass();
+  const before = await still(clouds);
   await page.getByRole("button", { name: "Pin this run" }).click();
   await lab.unfold();
   await page.getByLabel("Surface", { exact: true }).selectOption("vase");
