@@ -48,7 +48,7 @@ impl<'a> ImageShapeProblem<'a> {
 /// Solves one image again and again. Owns what lasts from call to call; rasters in between are those of a [`Scratch`].
 pub struct ImageShapeSolver {
     pixels: ShadingSolver,
-    /// Made by the first integration; kept where there will be another one.
+    /// Made by the first integration.
     integrator: Option<Integrator>,
     /// Where the surface is solved as a whole.
     surface: Option<ImageSurfaceSolver>,
