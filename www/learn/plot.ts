@@ -28,13 +28,17 @@ function spanOf(values: number[], range?: readonly [number, number]): Span {
   return most > least ? { least, most } : { least: least - 0.5, most: most + 0.5 };
 }
 
-/** Round numbers within a span, about as many as asked for. */
+/** Round numbers within a span, about as many as asked for and two at least: one alone tells no scale. */
 function ticks({ least, most }: Span, count: number): number[] {
   const rough = (most - least) / count;
   const power = 10 ** Math.floor(Math.log10(rough));
-  const step = ([1, 2, 5, 10].find((each) => each * power >= rough) ?? 10) * power;
-  const first = Math.ceil(least / step - 1e-9);
-  return Array.from({ length: Math.floor(most / step + 1e-9) - first + 1 }, (_, i) => Number(((first + i) * step).toPrecision(12)));
+  const steps = [10, 5, 2, 1, 0.5].map((each) => each * power);
+  const within = (step: number): number[] => {
+    const first = Math.ceil(least / step - 1e-9);
+    return Array.from({ length: Math.floor(most / step + 1e-9) - first + 1 }, (_, i) => Number(((first + i) * step).toPrecision(12)));
+  };
+  const coarse = steps.findLastIndex((step) => step >= rough);
+  return steps.slice(Math.max(0, coarse)).map(within).find((all) => all.length > 1) ?? [];
 }
 
 export class Plot {
