@@ -66,7 +66,7 @@ export const block = (...children: Element[]): Element => math("math", { display
 /** One below the other, where one line would be wider than the text of a small window. */
 export const lines = (...blocks: Element[]): Element => make("div", {}, ...blocks);
 
-/** A sentence; {n} is the symbol n, and {link|address} leads elsewhere. */
+/** A sentence; {n} is the symbol n, {−n_x} its part along x turned round, and {link|address} leads elsewhere. */
 export function sentence(words: string): (Node | string)[] {
   return words.split(/(\{[^}]+\})/).map((part) => {
     // A number keeps its sign on its line.
@@ -74,6 +74,9 @@ export function sentence(words: string): (Node | string)[] {
     const inside = part.slice(1, -1);
     const [label = "", address] = inside.split("|");
     if (address !== undefined) return make("a", { href: address }, label);
-    return inside in SYMBOLS ? inline(symbol(inside as SymbolName)) : inside;
+    const [, minus, name = "", index] = /^(−?)([^_]+)(?:_(.+))?$/.exec(inside) ?? [];
+    if (!(name in SYMBOLS)) return inside;
+    const drawn = symbol(name as SymbolName);
+    return inline(...(minus ? [mo(minus)] : []), index ? sub(drawn, mi(index)) : drawn);
   });
 }
