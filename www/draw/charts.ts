@@ -34,7 +34,7 @@ export class Chart {
   readonly #name: string;
   readonly #lines: readonly Line[];
   readonly #plot: Plot;
-  readonly #still = make("p", { class: "soft still", hidden: true }, "No change: zero in every iteration, which has no place on a logarithmic axis.");
+  readonly #still = make("p", { class: "soft still", hidden: true }, "No change in any iteration: a logarithmic axis has no zero.");
 
   private constructor(box: HTMLElement, name: string, lines: readonly Line[]) {
     box.setAttribute("role", "group");
