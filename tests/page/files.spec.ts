@@ -63,6 +63,7 @@ async function openFiles(lab: Lab): Promise<void> {
 test("nothing runs while files are awaited", async ({ lab, page }) => {
   const messages = await Messages.of(page);
   await openFiles(lab);
+  await expect(page.locator("#verdict")).toContainText("choose them in the settings");
   await page.getByRole("button", { name: "Step", exact: true }).click();
   const play = page.locator("#play");
   await play.click();
@@ -223,6 +224,7 @@ test("a camera waits for its four numbers, and its distortion must be five", asy
   };
   await type("fx", "100");
   await expect(page.locator("#status")).toHaveText("colour camera: waiting for fy, cx, cy");
+  await expect(page.locator("#verdict")).toContainText("leave all of that camera's numbers empty");
   for (const [name, value] of [["fy", "100"], ["cx", "31.5"], ["cy", "31.5"]] as const) await type(name, value);
   await lab.reaches("ready");
   await type("distortion", "0.1 0 0");

@@ -63,6 +63,31 @@ test("on a phone the figure stands below what it is about, and above the long te
   await expect(page.locator(".learn-slide .learn-figure")).toBeVisible();
 });
 
+test("pictures of a row stand in line, no plot leaves a hole beside it, and its type is never small, on slides neither", async ({ page }) => {
+  const look = () =>
+    figure(page).evaluate((box) => {
+      const panels = [...box.querySelectorAll(".learn-panel")];
+      const edges = (element: Element | null | undefined) => element?.getBoundingClientRect() ?? new DOMRect();
+      const top = (panel: Element) => Math.round(edges(panel).top);
+      const rows = [...new Set(panels.map(top))].map((at) => panels.filter((panel) => top(panel) === at));
+      const crooked = rows.filter((row) => new Set(row.map((panel) => Math.round(edges(panel.querySelector(".learn-canvas, .learn-plot-box")).top))).size > 1).length;
+      const right = edges(box.querySelector(".learn-panels")).right;
+      const plots = [...box.querySelectorAll<SVGSVGElement>(".learn-plot")];
+      const holes = plots.filter((plot) => rows.every((row) => !row.some((panel) => panel.contains(plot)) || row.every((panel) => Math.round(edges(panel).right) < Math.round(right)))).length;
+      const unscaled = plots.filter((plot) => ["middle", "end"].some((axis) => plot.querySelectorAll(`.tick[text-anchor="${axis}"]`).length < 2)).length;
+      return { crooked, holes, unscaled, type: Math.min(...plots.map((plot) => 11 * (plot.getScreenCTM()?.a ?? 0))) };
+    });
+  for (const id of ["grey", "surface", "prior", "pose", "sensor"]) {
+    for (const mode of ["", "&slides"]) {
+      await page.goto("about:blank");
+      await open(page, `at=${id}${mode}`);
+      await expect(page.locator(`${mode ? ".learn-slide " : ""}[data-lesson="${id}"]`)).toBeVisible();
+      await expect.poll(async () => (await look()).type, `${id}${mode}`).toBeGreaterThan(11.5);
+      expect(await look(), `${id}${mode}`).toMatchObject({ crooked: 0, holes: 0, unscaled: 0 });
+    }
+  }
+});
+
 test("the Lab alone loads nothing of Learn, and Learn leaves the Lab alone", async ({ lab, page }) => {
   const asked: string[] = [];
   page.on("request", (request) => asked.push(new URL(request.url()).pathname));
@@ -222,6 +247,7 @@ test("links of the exercises open the state they speak of", async ({ lab, page }
   const exercises = page.locator(".learn-exercises > ol > li");
   await expect(exercises).toHaveCount(5);
   for (const answer of await page.locator(".learn-exercises details").all()) await expect(answer).not.toHaveAttribute("open", "");
+  await expect(page.locator(".learn-exercises")).not.toContainText(/[{}_]/);
   const links = await page.locator(".learn-links a").evaluateAll((all) => all.map((link) => link.getAttribute("href") ?? ""));
   expect(links.length).toBeGreaterThanOrEqual(5);
   for (const link of links.filter((address) => address.startsWith("#learn"))) {

@@ -100,6 +100,9 @@ test("a view without values has no range of earlier ones", async ({ lab, page })
   await lab.reaches("ready");
   await expect(lab.iteration).toHaveText("0");
   await expect(lowest).toHaveValue("0");
+  // As long as `short` writes them.
+  await lowest.fill("5.2e-4");
+  expect(await lowest.evaluate(({ scrollWidth, clientWidth }) => scrollWidth - clientWidth)).toBeLessThanOrEqual(0);
 });
 
 test.describe("on a phone", () => {

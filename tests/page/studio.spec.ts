@@ -268,6 +268,17 @@ test("charts say in words what they show, and begin with the first iteration", a
   await expect(page.locator("#objective-chart")).toHaveAttribute("aria-label", /total: from \d/);
 });
 
+test("a rotation that does not change leaves no empty chart, but words", async ({ lab, page }) => {
+  await lab.open("size=32");
+  const words = page.locator("#rotation-chart .still");
+  await expect(words).toBeHidden();
+  await lab.visit("size=32&start=identity&registration=fixed");
+  await page.keyboard.press("s");
+  await expect(lab.iteration).toHaveText("1");
+  await expect(words).toBeVisible();
+  await expect(page.locator("#rotation-chart")).toHaveAttribute("aria-label", /change, deg: zero throughout/);
+});
+
 test("at 400 % zoom nothing sticks out, and the bar leaves the window to the page", async ({ lab, page }) => {
   // What 1280 x 800 at four times the size leaves.
   await page.setViewportSize({ width: 320, height: 200 });

@@ -3,7 +3,7 @@
 import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
 import type { StepReport } from "../../pkg/index.js";
-import { ink } from "../dom";
+import { ink, make } from "../dom";
 import { short } from "./numbers";
 
 export interface Curve {
@@ -34,6 +34,7 @@ export class Chart {
   readonly #name: string;
   readonly #lines: readonly Line[];
   readonly #plot: Plot;
+  readonly #still = make("p", { class: "soft still", hidden: true }, "No change in any iteration: a logarithmic axis has no zero.");
 
   private constructor(box: HTMLElement, name: string, lines: readonly Line[]) {
     box.setAttribute("role", "group");
@@ -41,6 +42,7 @@ export class Chart {
     this.#name = name;
     this.#lines = lines;
     this.#plot = new Plot(box, { xLabel: "iteration", curves: [...lines, ...lines.map((line) => ({ ...line, isPinned: true }))], whole: true, waits: true });
+    box.append(this.#still);
   }
 
   static objective(box: HTMLElement): Chart {
@@ -58,6 +60,8 @@ export class Chart {
     const iterations = Array.from({ length: Math.max(0, ...runs.flatMap((run) => [...run.keys()])) }, (_, i) => i + 1);
     const [curves = [], dashed = []] = runs.map((run) => lines.map(({ value }) => iterations.map((iteration) => optional(run.get(iteration), value))));
     this.#plot.show(iterations, [...curves, ...dashed]);
+    const values = [...curves, ...dashed].flat();
+    this.#still.hidden = !values.includes(0) || values.some((value) => value !== null && value > 0);
     this.#box.setAttribute("aria-label", [inWords(name, lines, curves), ...(pinned.length > 0 ? [inWords(`Pinned: ${name.toLowerCase()}`, lines, dashed)] : [])].join(" "));
   }
 
@@ -78,9 +82,10 @@ const optional = <T>(given: T | undefined, value: (given: T) => number): number 
 /** A chart for those who cannot see it: where each curve began and where it is. */
 function inWords(name: string, lines: readonly Line[], curves: readonly (readonly (number | null)[])[]): string {
   const said = lines.map(({ label }, i) => {
-    const values = (curves[i] ?? []).filter((value): value is number => value !== null && value > 0);
+    const all = curves[i] ?? [];
+    const values = all.filter((value): value is number => value !== null && value > 0);
     const [first, last] = [values[0], values.at(-1)];
-    return first === undefined || last === undefined ? `${label}: none yet` : `${label}: from ${short(first)} to ${short(last)}`;
+    return first === undefined || last === undefined ? `${label}: ${all.includes(0) ? "zero throughout" : "none yet"}` : `${label}: from ${short(first)} to ${short(last)}`;
   });
   return `${name} over the iterations. ${said.join("; ")}.`;
 }

@@ -35,7 +35,9 @@ const sum = o("∑");
 const term = (series: 1 | 2 | 3 | 4, ...parts: string[]) => `<mrow class="series-${series}">${parts.join("")}</mrow>`;
 const math = (...parts: string[]) => `<math display="block">${parts.join("")}</math>`;
 
-const logS = row(i("log"), i("S"));
+/** Around the name of a function, which browsers set close. */
+const space = "<mspace width='0.1667em'></mspace>";
+const logS = row(i("log"), space, i("S"));
 const n = bold("n");
 const nR = sub(bold("n"), i("R"));
 const R = bold("R");
@@ -45,7 +47,7 @@ const unit = row(o("+"), lambda("3"), sup(row(o("("), sup(n, i("⊤")), n, o("�
 
 const SEARCH: Text = {
   title: "Search",
-  formula: math(`<munder><mi>max</mi>${row(i("R"), o(","), i("s"), o(","), bold("t"))}</munder>`, "<mroot><mi>V</mi><mn>3</mn></mroot>", i("ln"), "<mfrac><mtext>spread of log S</mtext><mtext>noise left</mtext></mfrac>"),
+  formula: math(`<munder><mi>max</mi>${row(i("R"), o(","), i("s"), o(","), bold("t"))}</munder>`, space, "<mroot><mi>V</mi><mn>3</mn></mroot>", space, i("ln"), space, "<mfrac><mtext>spread of log S</mtext><mtext>noise left</mtext></mfrac>"),
   words:
     "Where nothing is known of the pose, rotations from all over are tried on a coarse grid, every shift of each at once by a Fourier transform; V counts the points that both views see. The best candidates are registered by their colours; the loop starts from the one that leaves the least noise, and those that explain nearly as much are reported as its rivals. The surface moves to the best candidate so far.",
   source: "Before Algorithm 1; not in the paper",

@@ -17,7 +17,7 @@ import { Rivals } from "./rivals";
 import { fields, inputGroups, methodOf, runOptions, settingsOf, turnOf, type Origin, type Settings } from "./settings";
 import { download, linkTo, writeAddress } from "./share";
 import { ScoreMap } from "./scoremap";
-import { originOf, readable, rememberOrigin, sourceOf } from "./source";
+import { originOf, readable, rememberOrigin, sourceOf, wayOut } from "./source";
 import { saveBlob } from "../save";
 import type { Store } from "./store";
 import { Status, type Notice } from "./status";
@@ -298,7 +298,7 @@ export class Lab {
     this.#resumed = false;
     this.#messages.clear();
     if (typeof source === "string") {
-      this.#announce("waiting", source);
+      this.#announce("waiting", source, wayOut(source));
       return;
     }
     const settings = this.store.settings;

@@ -38,6 +38,10 @@ export async function readable(source: Source): Promise<Source> {
   return { ...source, files: { ...source.files, read: await pixelsOf(source.files) } };
 }
 
+/** What can be done about what is lacking. */
+export const wayOut = (lacking: string): string =>
+  lacking.includes("camera:") ? "Type them in the settings, or leave all of that camera's numbers empty." : "Drop files anywhere on this page, or choose them in the settings.";
+
 /** Or in words what it still lacks. */
 export function sourceOf(origin: Origin, settings: Settings, { colour, depth, ...masks }: Partial<Record<Slot, File>>): Source | string {
   if (origin === "sample") return { kind: "sample", request: sampleRequest(settings), turn: turnOf(settings) };

@@ -22,7 +22,7 @@ export class Cloud {
     this.#turn = make("input", { id, type: "range", min: -90, max: 90, step: 5, value: FIRST_TURN });
     this.#turn.addEventListener("input", () => this.#draw());
     const turn = make("div", { class: "learn-turn" }, make("label", { for: id }, "Turn the view"), this.#turn);
-    this.element = make("figure", { class: "learn-panel" }, this.#title, make("div", { class: "learn-canvas plain" }, this.#canvas), turn, this.#legend);
+    this.element = make("figure", { class: "learn-panel" }, this.#title, make("div", { class: "learn-canvas plain" }, this.#canvas), make("div", { class: "learn-notes" }, turn, this.#legend));
   }
 
   show(panel: Panel): void {

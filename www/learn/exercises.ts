@@ -17,7 +17,7 @@ export const exercises: readonly Exercise[] = [
     links: [["#learn&at=grey&turn=0&height=0.8", "Open the bump and the dent"]],
     question: "Find the turn of the lamp at which both pictures agree. Show with the image model why it has to be this angle, and say whether three coloured lamps would help.",
     answer: [
-      "At 180°. A dent has the normals (−nx, −ny, nz) where the bump has (nx, ny, nz): every normal is turned by 180° about the line of sight. A light {L} turned by the same rotation gives each turned normal the old intensity, for {M} becomes R M Rᵀ and the two rotations cancel.",
+      "At 180°. A dent has the normals ({−n_x}, {−n_y}, {n_z}) where the bump has ({n_x}, {n_y}, {n_z}): every normal is turned by 180° about the line of sight. A light {L} turned by the same rotation gives each turned normal the old intensity, for {M} becomes Q {M} Qᵀ, with Q the turn, and the two rotations cancel.",
       "Coloured lamps do not help as long as the light is unknown: each of the three lights can be turned in the same way. They help once the light is known.",
     ],
   },

@@ -24,6 +24,11 @@ export const frac = (up: Element, down: Element): Element => math("mfrac", {}, u
 export const sum = (below: Element): Element => math("munder", {}, mo("∑"), below);
 export const norm = (inside: Element): Element => sup(row(mo("‖"), inside, mo("‖")), mn("2"));
 
+/** Apart from what precedes and follows, as in print; browsers set it close. */
+const space = (width: string): Element => math("mspace", { width });
+export const log = (of: Element): Element => row(mi("log"), space("0.1667em"), of);
+export const comma = (): Element => row(mo(","), space("0.6em"));
+
 interface Symbol {
   make(): Element;
   ink: Ink;
@@ -61,13 +66,17 @@ export const block = (...children: Element[]): Element => math("math", { display
 /** One below the other, where one line would be wider than the text of a small window. */
 export const lines = (...blocks: Element[]): Element => make("div", {}, ...blocks);
 
-/** A sentence; {n} is the symbol n, and {link|address} leads elsewhere. */
+/** A sentence; {n} is the symbol n, {−n_x} its part along x turned round, and {link|address} leads elsewhere. */
 export function sentence(words: string): (Node | string)[] {
   return words.split(/(\{[^}]+\})/).map((part) => {
-    if (!part.startsWith("{")) return part;
+    // A number keeps its sign on its line.
+    if (!part.startsWith("{")) return part.replace(/(\d) %/g, "$1\u00a0%");
     const inside = part.slice(1, -1);
     const [label = "", address] = inside.split("|");
     if (address !== undefined) return make("a", { href: address }, label);
-    return inside in SYMBOLS ? inline(symbol(inside as SymbolName)) : inside;
+    const [, minus, name = "", index] = /^(−?)([^_]+)(?:_(.+))?$/.exec(inside) ?? [];
+    if (!(name in SYMBOLS)) return inside;
+    const drawn = symbol(name as SymbolName);
+    return inline(...(minus ? [mo(minus)] : []), index ? sub(drawn, mi(index)) : drawn);
   });
 }

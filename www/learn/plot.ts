@@ -5,9 +5,16 @@ import { short } from "../draw/numbers";
 import type { Panel, PlotPanel } from "./protocol";
 import { svg } from "./svg";
 
-const [WIDTH, HEIGHT] = [320, 200];
-const BOX = { left: 40, top: 8, right: 306, bottom: 164 };
-const TICKS = 4;
+/** Of the drawing, which is as wide as its place: one that is scaled has type too small to read where it is narrow. */
+const WIDTH = 320;
+/** Lower than it is wide where there is room, no lower than it can be read, and no higher than a screen shows. */
+const heightOf = (width: number): number => Math.round(Math.max(Math.min(width, 200), Math.min(0.5 * width, 280)));
+/** From the axes to the edges. */
+const MARGIN = { left: 40, top: 8, right: 14, bottom: 36 };
+/** Height of the type that the margins are for, px; larger type, of slides, enlarges all. */
+const TYPE = 11;
+/** Marks along an axis of some length, each with the room for its number. */
+const marks = (length: number, room: number): number => Math.max(2, Math.min(6, Math.floor(length / room)));
 
 interface Span {
   least: number;
@@ -21,23 +28,30 @@ function spanOf(values: number[], range?: readonly [number, number]): Span {
   return most > least ? { least, most } : { least: least - 0.5, most: most + 0.5 };
 }
 
-/** Round numbers within a span, about four of them. */
-function ticks({ least, most }: Span): number[] {
-  const rough = (most - least) / TICKS;
+/** Round numbers within a span, about as many as asked for and two at least: one alone tells no scale. */
+function ticks({ least, most }: Span, count: number): number[] {
+  const rough = (most - least) / count;
   const power = 10 ** Math.floor(Math.log10(rough));
-  const step = ([1, 2, 5, 10].find((each) => each * power >= rough) ?? 10) * power;
-  const first = Math.ceil(least / step - 1e-9);
-  return Array.from({ length: Math.floor(most / step + 1e-9) - first + 1 }, (_, i) => Number(((first + i) * step).toPrecision(12)));
+  const steps = [10, 5, 2, 1, 0.5].map((each) => each * power);
+  const within = (step: number): number[] => {
+    const first = Math.ceil(least / step - 1e-9);
+    return Array.from({ length: Math.floor(most / step + 1e-9) - first + 1 }, (_, i) => Number(((first + i) * step).toPrecision(12)));
+  };
+  const coarse = steps.findLastIndex((step) => step >= rough);
+  return steps.slice(Math.max(0, coarse)).map(within).find((all) => all.length > 1) ?? [];
 }
 
 export class Plot {
   readonly element: HTMLElement;
   readonly #title = make("figcaption", {});
-  readonly #drawing = svg("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: "img", class: "learn-plot" });
+  readonly #drawing = svg("svg", { role: "img", class: "learn-plot" });
   readonly #legend = make("p", { class: "learn-legend learn-keys" });
+  #panel: PlotPanel | undefined;
+  #width = 0;
 
   constructor() {
-    this.element = make("figure", { class: "learn-panel learn-wide" }, this.#title, this.#drawing as unknown as HTMLElement, this.#legend);
+    this.element = make("figure", { class: "learn-panel learn-wide" }, this.#title, make("div", { class: "learn-plot-box" }, this.#drawing), this.#legend);
+    new ResizeObserver(() => this.#fit()).observe(this.element);
   }
 
   show(panel: Panel): void {
@@ -46,24 +60,38 @@ export class Plot {
     this.#title.textContent = panel.title;
     this.#drawing.setAttribute("aria-label", panel.alt);
     this.#legend.replaceChildren(...panel.series.map(({ name, ink }) => make("span", { class: `learn-key learn-ink-${ink}` }, name)));
+    this.#panel = panel;
     this.#draw(panel);
   }
 
+  /** Draws anew for another width or type; its own height is none of these. */
+  #fit(): void {
+    const type = parseFloat(getComputedStyle(this.#drawing).fontSize) / TYPE;
+    const width = Math.round(this.element.clientWidth / (type || 1));
+    if (width === 0 || width === this.#width) return;
+    this.#width = width;
+    if (this.#panel) this.#draw(this.#panel);
+  }
+
   #draw({ series, x, y, at, range }: PlotPanel): void {
+    const width = this.#width || WIDTH;
+    const height = heightOf(width);
+    const box = { left: MARGIN.left, top: MARGIN.top, right: width - MARGIN.right, bottom: height - MARGIN.bottom };
+    this.#drawing.setAttribute("viewBox", `0 0 ${width} ${height}`);
     const every = (axis: 0 | 1) => series.flatMap(({ points }) => points.filter((_, i) => i % 2 === axis));
     const [across, up] = [spanOf(at === undefined ? every(0) : [...every(0), at]), spanOf(every(1), range)];
-    const toX = (value: number) => BOX.left + ((value - across.least) / (across.most - across.least)) * (BOX.right - BOX.left);
-    const toY = (value: number) => BOX.bottom - ((value - up.least) / (up.most - up.least)) * (BOX.bottom - BOX.top);
+    const toX = (value: number) => box.left + ((value - across.least) / (across.most - across.least)) * (box.right - box.left);
+    const toY = (value: number) => box.bottom - ((value - up.least) / (up.most - up.least)) * (box.bottom - box.top);
     const parts: SVGElement[] = [];
-    for (const value of ticks(across)) {
-      parts.push(svg("path", { class: "grid", d: `M${toX(value)} ${BOX.top}V${BOX.bottom}` }), svg("text", { class: "tick", x: toX(value), y: BOX.bottom + 13, "text-anchor": "middle" }, label(value)));
+    for (const value of ticks(across, marks(box.right - box.left, 55))) {
+      parts.push(svg("path", { class: "grid", d: `M${toX(value)} ${box.top}V${box.bottom}` }), svg("text", { class: "tick", x: toX(value), y: box.bottom + 13, "text-anchor": "middle" }, label(value)));
     }
-    for (const value of ticks(up)) {
-      parts.push(svg("path", { class: "grid", d: `M${BOX.left} ${toY(value)}H${BOX.right}` }), svg("text", { class: "tick", x: BOX.left - 5, y: toY(value) + 3.5, "text-anchor": "end" }, label(value)));
+    for (const value of ticks(up, marks(box.bottom - box.top, 36))) {
+      parts.push(svg("path", { class: "grid", d: `M${box.left} ${toY(value)}H${box.right}` }), svg("text", { class: "tick", x: box.left - 5, y: toY(value) + 3.5, "text-anchor": "end" }, label(value)));
     }
-    parts.push(svg("text", { class: "axis", x: (BOX.left + BOX.right) / 2, y: HEIGHT - 6, "text-anchor": "middle" }, x));
-    parts.push(svg("text", { class: "axis", transform: `translate(10 ${(BOX.top + BOX.bottom) / 2}) rotate(-90)`, "text-anchor": "middle" }, y));
-    if (at !== undefined) parts.push(svg("path", { class: "at", d: `M${toX(at)} ${BOX.top}V${BOX.bottom}` }));
+    parts.push(svg("text", { class: "axis", x: (box.left + box.right) / 2, y: height - 6, "text-anchor": "middle" }, x));
+    parts.push(svg("text", { class: "axis", transform: `translate(10 ${(box.top + box.bottom) / 2}) rotate(-90)`, "text-anchor": "middle" }, y));
+    if (at !== undefined) parts.push(svg("path", { class: "at", d: `M${toX(at)} ${box.top}V${box.bottom}` }));
     for (const { ink, points, dots } of series) {
       const places = Array.from({ length: points.length / 2 }, (_, i) => [toX(points[2 * i] ?? NaN), toY(points[2 * i + 1] ?? NaN)] as const);
       parts.push(svg("path", { class: `curve learn-ink-${ink}`, d: path(places) }));

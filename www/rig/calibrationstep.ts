@@ -28,7 +28,7 @@ export class CalibrationStep {
     this.#rows = new Keyed(this.#list, (candidate) => this.#row(candidate));
     this.#next = press("Run the check", goOn, { class: "primary" });
     this.element.append(
-      make("section", { class: "rig-card" }, make("h3", {}, "Calibrations to check"), make("p", { class: "soft" }, "A calibration (extrinsics) carries points from the depth camera to the colour camera: P_colour = R P_depth + t, in metres. The first one is in question; the others are compared with it."), this.#none, this.#list, this.#alert),
+      make("section", { class: "rig-card" }, make("h3", {}, "Calibrations to check"), make("p", { class: "soft" }, "A calibration (extrinsics) carries points from the depth camera to the colour camera: P", make("sub", {}, "colour"), " = R P", make("sub", {}, "depth"), " + t, in metres. The first one is in question; the others are compared with it."), this.#none, this.#list, this.#alert),
       make("aside", { class: "rig-aside" }, this.#fromFile(), this.#fromText(), this.#fromNumbers()),
       make("div", { class: "rig-row rig-foot" }, press("Back", goBack), this.#next),
     );

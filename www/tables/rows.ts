@@ -24,7 +24,7 @@ const columns: Record<string, readonly Column[]> = {
 };
 
 function shown(value: unknown): string {
-  if (typeof value === "number") return Number.isInteger(value) ? String(value) : short(value).replace(/^-/, "−");
+  if (typeof value === "number") return (Number.isInteger(value) ? String(value) : short(value)).replace(/^-/, "−");
   return typeof value === "string" ? value : "–";
 }
 

@@ -18,7 +18,7 @@ export function described(cell: Cell): string {
   const scene = sceneOf(cell);
   if (!scene) return "";
   const { surface, light, protocol, size, angles = {}, scale, overlap, noise, depthNoise, holes } = scene;
-  const turns = (["alpha", "beta", "gamma"] as const).filter((axis) => angles[axis]).map((axis) => `${axis} ${short(angles[axis] ?? 0)}°`);
+  const turns = (["alpha", "beta", "gamma"] as const).filter((axis) => angles[axis]).map((axis) => `${axis} ${short(angles[axis] ?? 0).replace("-", "−")}°`);
   const { light: told, start } = cell.options;
   return [
     surface,

@@ -2,11 +2,11 @@
 
 import type { Lesson } from "../lesson";
 import { LIGHTS } from "../lesson";
-import { block, math, mi, mn, mo, row, sum, sup, symbol } from "../maths";
+import { block, comma, log, math, mi, mn, mo, row, sum, sup, symbol } from "../maths";
 
 const hatted = () => math("mover", {}, symbol("n"), mo("^"));
 const predicted = () => row(sup(hatted(), mi("⊤")), symbol("M"), hatted());
-const logS = () => row(mi("log"), symbol("S"));
+const logS = () => log(symbol("S"));
 
 export const pixel: Lesson = {
   id: "pixel",
@@ -48,7 +48,7 @@ export const grey: Lesson = {
   id: "grey",
   title: "One grey light is not enough",
   gist: "Under one grey light a pixel fits a whole curve of normals, and a bump can look like a dent.",
-  formula: () => block(logS(), mo("="), predicted(), mo(","), mi("j"), mo("="), mn("1")),
+  formula: () => block(logS(), mo("="), predicted(), comma(), mi("j"), mo("="), mn("1")),
   formulaWords: "One equation for one colour. The unit normal has two unknowns.",
   text: [
     "A normal has two degrees of freedom. Grey light gives one equation. So the normals that explain one pixel form a curve; in the map of costs it is the dark line. Nothing in the pixel says where on that line the true normal lies.",

@@ -2,13 +2,13 @@
 
 import type { Lesson } from "../lesson";
 import { LIGHTS } from "../lesson";
-import { block, frac, mi, mn, mo, row, sub, sup, symbol } from "../maths";
+import { block, frac, log, mi, mn, mo, row, sub, sup, symbol } from "../maths";
 
 export const paint: Lesson = {
   id: "paint",
   title: "Shadows and paint",
   gist: "The image model knows no shadows and one albedo. Paint is told from shading by its hue; shadows are outliers.",
-  formula: () => block(mi("log"), symbol("S"), mo("="), symbol("a"), mo("+"), sup(symbol("n"), mi("⊤")), symbol("M"), symbol("n"), mo("+"), symbol("e")),
+  formula: () => block(log(symbol("S")), mo("="), symbol("a"), mo("+"), sup(symbol("n"), mi("⊤")), symbol("M"), symbol("n"), mo("+"), symbol("e")),
   formulaWords: "Log intensity is log albedo plus shading plus what is left over.",
   text: [
     "Print is not shape. A model with one albedo would read every painted edge as a fold. So once the pose has come to rest, the module asks whether a few paints explain the picture better: each pixel has the shading of its measured normal, plus one of a few offsets {a}. How many paints there are follows from the evidence.",

@@ -2,9 +2,9 @@
 
 import type { Lesson } from "../lesson";
 import { LIGHTS } from "../lesson";
-import { block, lines, mi, mn, mo, norm, row, sub, sum, sup, symbol } from "../maths";
+import { block, lines, log, mi, mn, mo, norm, row, sub, sum, sup, symbol } from "../maths";
 
-const colourTerm = () => row(sum(mi("j")), sup(row(mo("("), mi("log"), symbol("S"), mo("−"), sup(symbol("n"), mi("⊤")), symbol("M"), symbol("n"), mo(")")), mn("2")));
+const colourTerm = () => row(sum(mi("j")), sup(row(mo("("), log(symbol("S")), mo("−"), sup(symbol("n"), mi("⊤")), symbol("M"), symbol("n"), mo(")")), mn("2")));
 
 export const pose: Lesson = {
   id: "pose",
@@ -20,7 +20,7 @@ export const pose: Lesson = {
   tasks: ["Turn the pose away from 0° and watch the residual rise and the two surfaces part.", "Drag λ to the right until the valleys of the pixel have merged. Repeat with the pose 20° wrong.", "Let it register from 20° away, then from 40°: the second time it says that it is lost.", "Let it search from nothing."],
   controls: [
     { kind: "slider", key: "offset", label: "Pose wrong by", min: -40, max: 40, step: 1, initial: 12, unit: "°", when: ({ run }) => run !== "search" },
-    { kind: "choice", key: "run", label: "What happens", choices: [["hold", "hold the pose there"], ["register", "register from there"], ["search", "search from nothing"]], initial: "hold" },
+    { kind: "choice", key: "run", label: "What happens", choices: [["hold", "hold it there"], ["register", "register from there"], ["search", "search from nothing"]], initial: "hold" },
     { kind: "slider", key: "weight", label: "Weight λ of the prior", min: -4, max: 1.5, step: 0.05, initial: -3, logarithmic: true },
     { kind: "box", key: "robust", label: "Robust prior", initial: 0 },
     { kind: "choice", key: "light", label: "Light", choices: LIGHTS, initial: "window" },
@@ -47,7 +47,7 @@ export const sensor: Lesson = {
   id: "sensor",
   title: "Refining the sensor",
   gist: "The picture sees fine shape that the sensor's noise hides. With the pose known, it cleans the depth map.",
-  formula: () => lines(block(mi("μ"), norm(row(symbol("z"), mo("−"), symbol("d"))), mo("+"), sum(mi("j")), sup(row(mo("("), mi("log"), symbol("S"), mo("−"), sup(sub(symbol("n"), symbol("z")), mi("⊤")), symbol("M"), sub(symbol("n"), symbol("z")), mo(")")), mn("2")), mo(",")), block(mi("μ"), mo("="), sup(row(mo("("), sub(mi("σ"), mi("S")), mo("/"), sub(mi("σ"), symbol("d")), mo(")")), mn("2")))),
+  formula: () => lines(block(mi("μ"), norm(row(symbol("z"), mo("−"), symbol("d"))), mo("+"), sum(mi("j")), sup(row(mo("("), log(symbol("S")), mo("−"), sup(sub(symbol("n"), symbol("z")), mi("⊤")), symbol("M"), sub(symbol("n"), symbol("z")), mo(")")), mn("2")), mo(",")), block(mi("μ"), mo("="), sup(row(mo("("), sub(mi("σ"), mi("S")), mo("/"), sub(mi("σ"), symbol("d")), mo(")")), mn("2")))),
   formulaWords: "A weight mu times the squared distance between the refined and the measured depth, plus the cost of the colours for the normals of the refined depth. Mu is the variance of the shading over that of the sensor.",
   text: [
     "A depth sensor is right on the large scale and noisy on the small one. Shading is the other way round: it tells slopes from pixel to pixel and drifts over long distances. The two fit together.",

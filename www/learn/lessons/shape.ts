@@ -2,7 +2,7 @@
 
 import type { Lesson } from "../lesson";
 import { LIGHTS } from "../lesson";
-import { block, frac, mi, mn, mo, norm, row, sub, sum, sup, symbol } from "../maths";
+import { block, comma, frac, log, mi, mn, mo, norm, row, sub, sum, sup, symbol } from "../maths";
 
 const n = (index: string) => sub(symbol("n"), mi(index));
 const change = (axis: string) => frac(row(mi("∂"), symbol("z")), row(mi("∂"), mi(axis)));
@@ -11,7 +11,7 @@ export const surface: Lesson = {
   id: "surface",
   title: "From normals to a surface",
   gist: "Normals tell slopes. Adding slopes up gives a surface, but a step leaves no trace in them.",
-  formula: () => block(change("x"), mo("="), mo("−"), frac(n("x"), n("z")), mo(","), change("y"), mo("="), mo("−"), frac(n("y"), n("z"))),
+  formula: () => block(change("x"), mo("="), mo("−"), frac(n("x"), n("z")), comma(), change("y"), mo("="), mo("−"), frac(n("y"), n("z"))),
   formulaWords: "The slope of the depth z along x is minus n x over n z, and along y minus n y over n z.",
   text: [
     "A normal {n} fixes the slope of the depth {z} in both directions. Integration looks for the surface whose differences from pixel to pixel fit these slopes best, in least squares. The depth as a whole stays free: adding a constant changes no slope.",
@@ -42,7 +42,7 @@ export const prior: Lesson = {
   id: "prior",
   title: "A depth map from elsewhere",
   gist: "Where a depth map gives a normal as well, the pixel prefers the explanation near it.",
-  formula: () => block(sum(mi("j")), sup(row(mo("("), mi("log"), symbol("S"), mo("−"), sup(symbol("n"), mi("⊤")), symbol("M"), symbol("n"), mo(")")), mn("2")), mo("+"), symbol("lambda"), norm(row(symbol("n"), mo("−"), symbol("m")))),
+  formula: () => block(sum(mi("j")), sup(row(mo("("), log(symbol("S")), mo("−"), sup(symbol("n"), mi("⊤")), symbol("M"), symbol("n"), mo(")")), mn("2")), mo("+"), symbol("lambda"), norm(row(symbol("n"), mo("−"), symbol("m")))),
   formulaWords: "The cost of the colours plus lambda times the squared distance between the normal and the one that the depth map gives.",
   text: [
     "A second camera measures depth. If its pose is known, each of its points lands on a pixel and brings a normal {m}. It enters the cost as a prior with the weight {lambda}: of all normals that explain the colours, take one near {m}.",
