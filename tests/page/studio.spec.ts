@@ -119,6 +119,19 @@ test("the light is shown as found and true, and the true one can be dragged: the
   await expect.poll(() => lab.fingerprint("Colour")).toBe(turned);
 });
 
+test("a light that is turned on while its last turn is being opened does not stop what was playing", async ({ lab, page }) => {
+  await lab.open("size=64");
+  await page.keyboard.press(" ");
+  const truth = page.getByRole("img", { name: /^A ball under the true light/ });
+  await truth.focus();
+  for (const turn of [5, 10, 15]) {
+    await page.keyboard.press("ArrowRight");
+    // It has come to rest, and the pair is rendered and opened anew.
+    await expect(page).toHaveURL(new RegExp(`lightTurn=-${turn}\\b`));
+  }
+  await lab.reaches("converged");
+});
+
 test("the arrow keys turn the light toward where they point", async ({ lab, page }) => {
   await lab.open("size=64&light=window");
   /** Where the ball is bright: its middle of brightness, columns. */

@@ -79,6 +79,8 @@ export class Lab {
   /** The object that the surfaces on the screen are of. */
   #seen = "";
   #offered = false;
+  /** Whether what is being opened is played once it is there. */
+  #willPlay = false;
   /** Whether the run has been played again because its worker was gone. */
   #resumed = false;
   /** The run that is to play once its input is there, if the visitor still waits for it. */
@@ -225,10 +227,11 @@ export class Lab {
     this.#form.adapt(settings, this.#origin);
     // Those of a run that is there already.
     if (changed.length === 0) return;
-    // A slider shows what it does: what was playing, or had been played to its end, plays again.
-    const again = live && (this.player.playing || this.#isFinished());
+    // A slider shows what it does: what was playing, or will be, or had been played to its end, plays again.
+    const again = live && (this.player.playing || this.#willPlay || this.#isFinished());
     const input = fields.some(({ key, group }) => inputGroups.includes(group) && changed.includes(key));
     const begun = input ? this.#reopen() : this.restart();
+    this.#willPlay = again;
     if (again) void this.#playOnce(begun);
   }
 
@@ -272,7 +275,9 @@ export class Lab {
   async #playOnce(begun: Promise<void>): Promise<void> {
     const turn = this.#turn;
     await begun;
-    if (this.#turn === turn && !this.player.playing && !this.#notice) this.player.toggle();
+    if (this.#turn !== turn) return;
+    this.#willPlay = false;
+    if (!this.player.playing && !this.#notice) this.player.toggle();
   }
 
   #reopen(): Promise<void> {
