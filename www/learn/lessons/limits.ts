@@ -43,7 +43,7 @@ export const failure: Lesson = {
     "Symmetry: a round object looks the same when it is turned about its axis. No method can see that turn. Little overlap: if the depth map covers a narrow strip, few normals have to explain everything. Texture: fine print that changes from pixel to pixel hides the shading. A large turn: the cameras share less and less of the object, and what they share is seen at a slant.",
     "Compare the true error, which is known here because the scene is made, with the reported sigma and status. A good method is allowed to fail. It should not be sure of it.",
   ],
-  tasks: ["Symmetry: remove the nose of the disc. At 100 % the turn can't be seen, and the report names the axis.", "Overlap: find the share at which the status stops being converged.", "Texture: the residual grows with the print, and the reason is given in words.", "A quarter turn: at 90° with a narrow depth map little is left to compare."],
+  tasks: ["Symmetry: remove the nose of the disc. At 100 % the turn can't be seen, and the report names the axis.", "Overlap: find the share at which the status stops being converged.", "Texture: with all of the print more of the colours is left than with none, and the reason is given in words.", "A quarter turn: at 90° with a narrow depth map little is left to compare."],
   controls: [
     { kind: "choice", key: "case", label: "What goes wrong", choices: [["symmetry", "symmetry"], ["overlap", "little overlap"], ["texture", "texture"], ["turn", "a large turn"]], initial: "overlap" },
     { kind: "slider", key: "amount", label: "How much of it", min: 0, max: 100, step: 5, initial: 0, unit: "%" },

@@ -18,7 +18,7 @@ export const surface: Lesson = {
     "Discontinuities: at a step the depth jumps between two pixels. Both have normals that know nothing of it. If the step ends somewhere, a way around it brings the height back, and the two contradict each other. Least squares spreads the contradiction over the neighbours; robust weights find the few pairs of pixels that do not fit and let go of them. If the step cuts the object in two, no way leads around it, and nothing can know its height.",
     "Bias: noise tilts normals at random, but the result is not only noisy. A slope is a quotient, and steep normals are cut off where they would turn away from the camera; so the errors do not cancel and the relief comes out with a wrong height.",
   ],
-  tasks: ["Raise the step. The height found across it lags behind the true one.", "Switch the robust weights off and on at a step of 6 px: the error of the depth falls with them.", "Let the step cut the plate in two: robust or not, its height is gone.", "Set the step to 0 and raise the noise: see the share of the relief that is kept."],
+  tasks: ["Raise the step. The height found across it lags behind the true one.", "Switch the robust weights off and on at a step of 6 px: the error of the depth falls with them.", "Let the step cut the plate in two: robust or not, its height is wrong, since nothing tells it.", "Set the step to 0 and raise the noise: see the share of the relief that is kept."],
   controls: [
     { kind: "slider", key: "step", label: "Height of the step", min: 0, max: 12, step: 0.5, initial: 6, unit: "px" },
     { kind: "box", key: "robust", label: "Robust weights", initial: 1 },
@@ -49,7 +49,7 @@ export const prior: Lesson = {
     "This is the paper's Figure 5. The light is known, the picture has 2 % noise, and a share of the pixels, chosen at random, is given the true normal. All others have their colours alone. With more of them the surface improves, at first more than in proportion: pixels without a prior gain, too, for all pixels share the exposure of the picture, and a few given normals fix it.",
     "Too small a weight and the prior is ignored; a very large one copies the depth map and throws the picture away. Here the prior is perfect, so large does no harm. A real depth map is noisy and has no fine detail.",
   ],
-  tasks: ["Move the share from 0 to 100 %. The curve is computed while you watch.", "Choose the coloured lamps: the prior is hardly needed.", "Set λ to 0: the given normals are there and change nothing."],
+  tasks: ["Move the share from 0 to 100 %. The curve is computed while you watch.", "Choose the coloured lamps: the prior is hardly needed.", "Set λ to its least: the given normals are there and hardly count."],
   controls: [
     { kind: "slider", key: "share", label: "Pixels with a prior", min: 0, max: 100, step: 1, initial: 20, unit: "%" },
     { kind: "slider", key: "weight", label: "Weight λ of the prior", min: -4, max: 1, step: 0.1, initial: -1.3, logarithmic: true },
