@@ -108,7 +108,6 @@ test("the light is shown as found and true, and the true one can be dragged: the
   await page.mouse.move(ball.x + ball.width / 2 + 20, ball.y + ball.height / 2 + 8, { steps: 3 });
   await page.mouse.up();
   await expect(page).toHaveURL(/lightTurn=-(4[5-9]|5\d)/);
-  await expect(page).toHaveURL(/lightTurn=-\d+/);
   await lab.reaches("ready");
   const turned = await lab.fingerprint("Colour");
   expect(turned).not.toBe(before);

@@ -22,7 +22,7 @@ pub const EARLY_CALL: Effort = Effort { steps: 2, iterations: 30, tolerance: 0.0
 pub const EVERY_CALL: Effort = Effort { steps: 1, iterations: 4, tolerance: 0.1, damping: FAR_DAMPING };
 
 /// A start is another optimum where its objective is less than the best one's by this share: ends of one optimum differ by some
-/// 0.2 %, for which a large image would be refined anew from level to level.
+/// 0.1 % (Mozart at 640x480, light A), for which a large image would be refined anew from level to level.
 const LEAST_GAIN: f64 = 0.01;
 /// Calls after which all starts have been tried.
 pub const STARTS: u32 = 3;
