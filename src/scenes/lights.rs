@@ -39,6 +39,9 @@ pub fn light(name: &str) -> Result<Light> {
         "colourful" => Ok(COLOURFUL),
         "window" => Ok(WINDOW),
         "overcast" => Ok(OVERCAST),
-        _ => Err(Error::new(ErrorKind::Range, "light", format!("no light is named {name:?}; there are {NAMES:?}"))),
+        _ => {
+            let message = format!("no light is named {name:?}; there are {}", NAMES.join(", "));
+            Err(Error::new(ErrorKind::Range, "light", message))
+        }
     }
 }

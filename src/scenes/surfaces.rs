@@ -23,7 +23,7 @@ pub fn surface(name: &str) -> Result<Relief> {
         "vase" => vase,
         "ripples" => ripples,
         _ => {
-            let message = format!("no surface is named {name:?}; there are {NAMES:?}");
+            let message = format!("no surface is named {name:?}; there are {}", NAMES.join(", "));
             return Err(Error::new(ErrorKind::Range, "surface", message));
         }
     };
