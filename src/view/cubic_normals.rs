@@ -44,7 +44,8 @@ const NOISE_OFFSETS: f64 = 3.0;
 const NOISE_MARGIN: f64 = 1.25;
 /// Coefficients of a cubic in two variables.
 const TERMS: usize = 10;
-/// Rounds: the second starts from a normal that is right to a few hundredths.
+/// Rounds from a first normal: the second starts from a normal that is right to a few hundredths. Where that of a narrower
+/// window is, by its error, one round from it is enough.
 const ROUNDS: usize = 2;
 /// Relative damping of the normal equations: above the rounding of their sums.
 const DAMPING: f64 = 1e-9;
@@ -66,7 +67,7 @@ pub const UNFITTED: f32 = 0.3;
 /// with the light unknown and of 60 at 128x128 with the light known: 0.56 and 0.079; without the rule 0.67 and 0.078,
 /// with the narrowest window alone 0.50 and 0.080.
 pub fn improve(size: Size, points: &Points, normals: &mut Normals, error: &mut [f32], is_white: bool) -> f64 {
-    let first = normals.clone();
+    let mut first = normals.clone();
     let (mut wide, mut wide_error) = (normals.clone(), vec![f32::NAN; error.len()]);
     let noise = noise_of(size, points);
     error.fill(f32::NAN);
@@ -79,7 +80,7 @@ pub fn improve(size: Size, points: &Points, normals: &mut Normals, error: &mut [
             offset: LARGEST_OFFSET.max(NOISE_OFFSETS * noise),
             noise: NOISE_MARGIN * noise,
         };
-        fit_all(size, points, &first, window, |index, normal, new_error| {
+        fit_all(size, points, &first, error, window, |index, normal, new_error| {
             wide.set(index, normal);
             wide_error[index] = new_error;
         });
@@ -101,6 +102,9 @@ pub fn improve(size: Size, points: &Points, normals: &mut Normals, error: &mut [
             if error[index].is_nan() || (wide_error[index] < error[index] && agrees) {
                 normals.set(index, wide.get(index));
                 error[index] = wide_error[index];
+            }
+            if error[index] < NOISY {
+                first.set(index, normals.get(index));
             }
         }
         noisy = median(error.iter().copied()) >= NOISY;
@@ -157,8 +161,16 @@ fn median(values: impl Iterator<Item = f32>) -> f32 {
     if values.is_empty() { f32::INFINITY } else { quantile(&mut values, 0.5) }
 }
 
-/// Visits every point that has a first normal with the normal of its cubic and its error.
-fn fit_all(size: Size, points: &Points, first: &Normals, window: Window, mut visit: impl FnMut(usize, [f32; 3], f32)) {
+/// Visits every point that has a first normal, with the error that is known of it or NaN, with the normal of its cubic and its
+/// error.
+fn fit_all(
+    size: Size,
+    points: &Points,
+    first: &Normals,
+    error: &[f32],
+    window: Window,
+    mut visit: impl FnMut(usize, [f32; 3], f32),
+) {
     let known = |index: usize| first.is_valid(index) && points.is_valid(index);
     let mut band = Band::new(size, window);
     for row in 0..size.height {
@@ -171,7 +183,8 @@ fn fit_all(size: Size, points: &Points, first: &Normals, window: Window, mut vis
             }
             let firsts: [[f32; 3]; DOUBLE_LANES] = std::array::from_fn(|lane| first.get(start + lane.min(count - 1)));
             let normal = [0, 1, 2].map(|axis: usize| Doubles::from(firsts.map(|first| f64::from(first[axis]))));
-            let (fitted, error) = band.fit(column, normal);
+            let is_close = error[start..start + count].iter().all(|error| *error < NOISY);
+            let (fitted, error) = band.fit(column, normal, if is_close { 1 } else { ROUNDS });
             let (cosine, error) = (dot(fitted, normal).array(), error.array());
             for lane in (0..count).filter(|lane| known(start + lane)) {
                 let fitted = fitted.map(|axis| axis.array()[lane] as f32);
@@ -223,7 +236,7 @@ impl Band {
     }
 
     /// The normals of the cubics at `column` and its right neighbour, and their errors; NaN where there is none.
-    fn fit(&self, column: usize, first: [Doubles; 3]) -> ([Doubles; 3], Doubles) {
+    fn fit(&self, column: usize, first: [Doubles; 3], rounds: usize) -> ([Doubles; 3], Doubles) {
         let middle = column + self.window.radius * (self.stride + 1);
         let centre = self.points(middle);
         let missing = Doubles::splat(f64::INFINITY);
@@ -233,7 +246,7 @@ impl Band {
             .fold(missing, |least, step| dot(step, step).min(least));
         let unit = square.sqrt();
         let (mut normal, mut last_error) = (first, missing);
-        for _ in 0..ROUNDS {
+        for _ in 0..rounds {
             let tangents = tangents(normal);
             let axes = [tangents[0], tangents[1], normal].map(|axis| scale(axis, Doubles::splat(1.0) / unit));
             let (slopes, error) = self.moments(column, centre, axes).slopes(self.window.noise);
