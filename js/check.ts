@@ -62,10 +62,36 @@ export const numbers = (count: number): Check => (value, field) => {
 
 type ArrayType = { readonly name: string; new (length: number): ArrayBufferView };
 
+const TYPED_ARRAY: object = Object.getPrototypeOf(Uint8Array.prototype);
+
+/** Whether a typed array is one, of the length that it says: the numerics make room by its word, then copy what is there. */
+function hasItsLength(value: object): boolean {
+  try {
+    return Reflect.get(TYPED_ARRAY, "length", value) === Reflect.get(value, "length");
+  } catch {
+    return false;
+  }
+}
+
+/** Whether a typed array without entries has lost them: copying from one is an error, but from one that is merely empty. */
+function isLost(value: ArrayLike<number>): boolean {
+  try {
+    new Uint8Array(0).set(value);
+    return false;
+  } catch {
+    return true;
+  }
+}
+
 /** A typed array of one of the given kinds. */
 export const array = (...types: readonly ArrayType[]): Check => (value, field) => {
   if (!types.some((type) => value instanceof type)) {
     throw wrong(field, types.map((type) => `a ${type.name}`).join(" or "), value);
+  }
+  const given = value as object & ArrayLike<number>;
+  if (!hasItsLength(given)) throw wrong(field, "a typed array of the length that it says", value);
+  if (given.length === 0 && isLost(given)) {
+    throw new BimodalError("empty", `${field}: its memory is gone, given to another thread or shrunk`, field);
   }
 };
 

@@ -134,6 +134,32 @@ describe("after init", () => {
     refused(withOptions({ registration: 3 }), "type", "options.registration");
   });
 
+  test("arrays whose memory is gone, and arrays that are none or lie about their length", () => {
+    const gone = (array) => (structuredClone(array, { transfer: [array.buffer] }), array);
+    refused(onImage({ data: gone(image.data.slice()) }), "empty", "image.data");
+    refused(onImage({ mask: gone(image.mask.slice()) }), "empty", "image.mask");
+    refused(onDepth({ data: gone(depth.data.slice()) }), "empty", "depth.data");
+    refused(() => Estimator.restore(gone(new Uint8Array(9))), "empty", "state");
+    const buffer = new ArrayBuffer(image.data.byteLength, { maxByteLength: 2 * image.data.byteLength });
+    const shrunk = new Float32Array(buffer, 0, image.data.length);
+    buffer.resize(16);
+    refused(onImage({ data: shrunk }), "empty", "image.data");
+    // By their word the numerics made room for 4e9 bytes, and broke off.
+    refused(onImage({ data: Object.defineProperty(image.data.slice(), "length", { value: 1e9 }) }), "type", "image.data");
+    class Short extends Float32Array {
+      get length() {
+        return 7;
+      }
+    }
+    refused(onImage({ data: new Short(image.data) }), "type", "image.data");
+    refused(onImage({ data: Object.create(Float32Array.prototype) }), "type", "image.data");
+    refused(onImage({ data: new Proxy(image.data, {}) }), "type", "image.data");
+    // What is shared, or lies within something larger, is what it says.
+    const within = new Float32Array(new SharedArrayBuffer(image.data.byteLength + 12), 12);
+    within.set(image.data);
+    make({ image: { data: within } }).free();
+  });
+
   test("samples", () => {
     const request = (changes) => () => sample({ surface: "bust", light: "colourful", ...changes });
     refused(request({ surface: "teapot" }), "range", "sample.surface");

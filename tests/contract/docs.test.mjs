@@ -35,3 +35,13 @@ test("the benches' medians stand by stage and size", () => {
   assert.ok(lines.includes("| step | native | 1.00 | - |"));
   assert.ok(lines.includes("| a step | 12.3 ms | 20 ms | ok |") && lines.includes("| another | - | 5 ms | not measured |"));
 });
+
+test("the tests that docs/robustness.md names are there", () => {
+  const cells = readFileSync(inRoot("docs/robustness.md"), "utf8").split("\n").filter((line) => line.startsWith("|")).map((line) => line.split(" | ").at(-1));
+  const named = cells.flatMap((cell) => [...cell.matchAll(/`([^`]+\.(?:rs|mjs|ts|py))`((?:,? "[^"]+")*)/g)]);
+  assert.ok(named.length > 50, `${named.length} named`);
+  for (const [, path, titles] of named) {
+    const text = readFileSync(inRoot(path), "utf8");
+    for (const [, title] of titles.matchAll(/"([^"]+)"/g)) assert.ok(text.includes(title), `${path}: ${title}`);
+  }
+});

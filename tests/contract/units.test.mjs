@@ -31,6 +31,18 @@ for (const [surface, light, beta] of [["ripples", "colourful", 10], ["ripples", 
   });
 }
 
+// Flat relief mostly leaves the pose so open that its sigmas speak first; at 64 pixels those of this pair do.
+test("relief a tenth as deep as it is", () => {
+  const made = pair({ surface: "ripples", light: "colourful", size: 96, angles: { beta: 10 }, noise: 0.01 });
+  const right = found(made, 1);
+  assert.equal(right.status, "converged", right.message);
+  assert.ok(apart(right.pose, made.pose) < 1);
+  const wrong = found(made, 0.1);
+  assert.ok(apart(wrong.pose, made.pose) > 3, "nothing to be told of");
+  assert.equal(wrong.status, "ambiguous");
+  assert.match(wrong.message, /relief 10\.0 times as deep explains the colours better: check depth\.unit/);
+});
+
 test("relief next to flat, by a unit a thousand times too small, is no error and no answer", () => {
   for (const surface of ["bust", "vase"]) {
     // The light that its normals ask for at first has coefficients beyond 100.

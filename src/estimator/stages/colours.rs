@@ -299,3 +299,62 @@ fn options(pair: &ViewPair) -> PhotometricOptions {
 fn is_scale_held(pair: &ViewPair) -> bool {
     gauge::held_scale(pair).is_some()
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Vector3;
+
+    use super::*;
+    use crate::estimator::Estimator;
+    use crate::options::Options;
+    use crate::pose::Angles;
+    use crate::scenes::{SampleRequest, Scene, light, surface};
+    use crate::view::{DepthMap, Size};
+
+    /// The views of a pair whose depths are read by `unit`, registered from the true rotation, the middles one on the other.
+    fn registered(unit: f64) -> (Estimator, ColourRegistration) {
+        let request = SampleRequest {
+            light: light("colourful").unwrap(),
+            size: Size { width: 96, height: 96 },
+            rotation: Angles { beta: 10.0, ..Angles::default() }.rotation(),
+            noise: 0.01,
+            ..SampleRequest::default()
+        };
+        let sample = Scene::new(&surface("ripples").unwrap()).unwrap().sample(&request).unwrap();
+        let depth = DepthMap { unit: Some(unit), ..sample.depth_map() };
+        let estimator = Estimator::new(sample.colour_image(), &depth, Options::default()).unwrap();
+        let mut registration = ColourRegistration::new(&estimator.pair);
+        let middle = estimator.pair.depth.points.centroid();
+        let moved = Vector3::new(0.0, 0.0, middle.z * (1.0 / unit - 1.0));
+        let translation = sample.pose.translation + sample.pose.scale * sample.pose.rotation * moved;
+        registration.register(&estimator.pair, &Similarity { translation, ..sample.pose }).unwrap();
+        (estimator, registration)
+    }
+
+    fn better_unit(estimator: &Estimator, registration: &mut ColourRegistration) -> Option<f32> {
+        let pose = registration.found().unwrap().pose;
+        registration.better_unit(&estimator.pair, &pose)
+    }
+
+    #[test]
+    fn relief_too_deep_and_too_flat_by_ten_is_told_and_right_relief_is_left_alone() {
+        for (unit, expected) in [(10.0, Some(0.1)), (0.1, Some(10.0)), (1.0, None)] {
+            let (estimator, mut registration) = registered(unit);
+            assert_eq!(better_unit(&estimator, &mut registration), expected, "unit {unit}");
+        }
+    }
+
+    #[test]
+    fn no_unit_is_asked_for_where_only_the_image_s_noise_is_left() {
+        let (estimator, mut registration) = registered(10.0);
+        let own = estimator.pair.image.log_noise();
+        for (left, expected) in [(0.99, None), (1.01, Some(0.1))] {
+            registration.found.as_mut().unwrap().noise = left * own / BETTER_NOISE;
+            assert_eq!(better_unit(&estimator, &mut registration), expected, "{left} of the limit");
+        }
+        // Without relief that is right there is nothing to tell, gate or no gate.
+        let (estimator, mut registration) = registered(1.0);
+        registration.found.as_mut().unwrap().noise = f64::MAX;
+        assert_eq!(better_unit(&estimator, &mut registration), None);
+    }
+}
