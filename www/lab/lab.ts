@@ -22,6 +22,7 @@ import { saveBlob } from "../save";
 import type { Store } from "./store";
 import { Status, type Notice } from "./status";
 import { Strip } from "./strip";
+import { Trial } from "./trial";
 import type { Kind } from "./kinds";
 import { Messages } from "./messages";
 import { isSearching, sentence, standing, verdict, wordsOf, type Verdict } from "./verdict";
@@ -52,9 +53,7 @@ export class Lab {
   readonly #light: LightPanel;
   readonly #compare: Compare;
   readonly #scores = new ScoreMap();
-  /** The light to be looked at next, while one is being looked at: what it changes in the settings. */
-  #trying: Settings | undefined;
-  #previewing = false;
+  readonly #trial = new Trial((patch) => this.#preview(patch));
   readonly #messages: Messages;
   #origin: Origin = "sample";
   #truth: Opened["truth"] = null;
@@ -83,8 +82,8 @@ export class Lab {
   #willPlay = false;
   /** Whether the run has been played again because its worker was gone. */
   #resumed = false;
-  /** The run that is to play once its input is there, if the visitor still waits for it. */
-  #watched: Settings | undefined;
+  /** Whether the run goes on when its visitor comes back from another place of the page. */
+  #goesOn = false;
 
   constructor({ store, form, gallery }: { store: Store; form: Form; gallery: Gallery }) {
     this.store = store;
@@ -119,27 +118,27 @@ export class Lab {
     this.#form.adapt(this.store.settings, this.#origin);
   }
 
-  /** These settings on the screen; the first ones open their input in any case. */
+  /** These settings on the screen; the first ones open their input in any case, and what played when its visitor went away plays on. */
   enter(settings: Settings): Promise<void> {
+    const [before, goesOn] = [this.#turn, this.#goesOn];
+    this.#goesOn = false;
     this.store.change(settings);
-    return this.#turn === 0 ? this.#reopen() : this.#beginning;
+    if (before === 0) return this.#reopen();
+    if (goesOn && before === this.#turn && !this.#isFinished()) void this.#playOnce(this.#beginning);
+    return this.#beginning;
   }
 
   /** Plays the run of these settings from its beginning. */
-  async watch(settings: Settings): Promise<void> {
-    this.#watched = settings;
+  watch(settings: Settings): Promise<void> {
     const before = this.#turn;
     const entered = this.enter(settings);
-    const begun = before === this.#turn ? this.restart() : entered;
-    const turn = this.#turn;
-    await begun;
-    if (this.#watched !== settings || this.#turn !== turn || this.player.playing) return;
-    this.player.toggle();
+    return this.#playOnce(before === this.#turn ? this.restart() : entered);
   }
 
-  /** The visitor has gone to the Tables. */
+  /** The visitor has gone to another place of the page, where nothing of this one plays. */
   leave(): void {
-    this.#watched = undefined;
+    this.#goesOn ||= this.player.playing || this.#willPlay;
+    this.#willPlay = false;
     this.player.pause();
   }
 
@@ -231,34 +230,27 @@ export class Lab {
     const again = live && (this.player.playing || this.#willPlay || this.#isFinished());
     const input = fields.some(({ key, group }) => inputGroups.includes(group) && changed.includes(key));
     const begun = input ? this.#reopen() : this.restart();
-    this.#willPlay = again;
     if (again) void this.#playOnce(begun);
   }
 
   /** The picture follows the light while it is moved; a run follows once it rests. */
   #changeLight(patch: Settings, done: boolean, gesture: object): void {
-    if (done) {
-      this.#trying = undefined;
-      this.store.change(patch, true, gesture);
+    if (!done) {
+      void this.#trial.show(patch);
       return;
     }
-    this.#trying = patch;
-    if (!this.#previewing) void this.#preview();
+    this.#trial.end();
+    this.store.change(patch, true, gesture);
   }
 
-  async #preview(): Promise<void> {
-    this.#previewing = true;
+  async #preview(patch: Settings): Promise<void> {
     const before = this.#turn;
-    for (let patch = this.#trying; patch; patch = this.#trying) {
-      this.#trying = undefined;
-      const source = sourceOf("sample", { ...this.store.settings, ...patch }, {});
-      if (typeof source === "string" || source.kind !== "sample" || this.#origin !== "sample") break;
-      const seen = await this.#engine.call("preview", { source }).catch(() => undefined);
-      if (!seen || this.#turn !== before) break;
-      this.gallery.preview(seen.picture);
-      this.#light.showTruth(seen.trueLight);
-    }
-    this.#previewing = false;
+    const source = sourceOf("sample", { ...this.store.settings, ...patch }, {});
+    if (typeof source === "string" || this.#origin !== "sample" || source.kind !== "sample") return;
+    const seen = await this.#engine.call("preview", { source }).catch(() => undefined);
+    if (!seen || this.#turn !== before) return;
+    this.gallery.preview(seen.picture);
+    this.#light.showTruth(seen.trueLight);
   }
 
   #pin(): void {
@@ -274,8 +266,9 @@ export class Lab {
   /** Plays a run once it has begun, unless something newer has by then. */
   async #playOnce(begun: Promise<void>): Promise<void> {
     const turn = this.#turn;
+    this.#willPlay = true;
     await begun;
-    if (this.#turn !== turn) return;
+    if (this.#turn !== turn || !this.#willPlay) return;
     this.#willPlay = false;
     if (!this.player.playing && !this.#notice) this.player.toggle();
   }
@@ -290,6 +283,7 @@ export class Lab {
 
   /** The loop from its beginning, on an input that the worker may already hold. */
   #start(source: Source | string): Promise<void> {
+    this.#willPlay = false;
     return this.#enter(this.#attempt(source, ++this.#turn));
   }
 
