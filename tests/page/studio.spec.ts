@@ -171,6 +171,11 @@ test("a slider acts when it rests, and what had been played plays again", async 
   // One step back, however many values the slider passed.
   await page.getByRole("button", { name: "Undo" }).click();
   await expect.poll(() => lab.fingerprint("Colour")).toBe(before);
+  // What is taken back, or made again, plays as the slider's own change did.
+  await lab.reaches("converged");
+  await page.getByRole("button", { name: "Redo" }).click();
+  await expect.poll(() => lab.fingerprint("Colour")).not.toBe(before);
+  await lab.reaches("converged");
 });
 
 test("a weight over many decades has a slider of powers of ten", async ({ lab, page }) => {
