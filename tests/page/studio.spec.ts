@@ -118,6 +118,47 @@ test("the light is shown as found and true, and the true one can be dragged: the
   await expect.poll(() => lab.fingerprint("Colour")).toBe(turned);
 });
 
+test("while the light is dragged, what was found is marked as of the run before, and nothing moves", async ({ lab, page }) => {
+  await lab.open("size=64");
+  const found = page.locator("#pose-found");
+  const ball = page.locator("#light figcaption").first();
+  const truth = page.getByRole("img", { name: /^A ball under the true light/ });
+  const box = await truth.boundingBox();
+  if (!box) throw new Error("the ball is on the page");
+  const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  await page.mouse.move(x + 10, y);
+  // Where the loop starts is the same under any light.
+  await expect(found).toHaveText("start");
+  await page.mouse.up();
+  await expect(page).toHaveURL(/lightTurn=-\d+/);
+
+  await page.keyboard.press(" ");
+  await lab.reaches("converged");
+  const boxes = () => page.locator("#pose th, #pose td, #pose-error, #light figure").evaluateAll((parts) => parts.map((part) => JSON.stringify(part.getBoundingClientRect())));
+  const before = await boxes();
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  await page.mouse.move(x + 6, y);
+  await expect(found).toHaveText("last run");
+  await expect(ball).toHaveText("last run");
+  expect(await boxes()).toEqual(before);
+  // Back where it was, and let go: nothing has to run anew.
+  await page.mouse.move(x, y);
+  await page.mouse.up();
+  await expect(found).toHaveText("found");
+  await expect(ball).toHaveText("found");
+  await lab.reaches("converged");
+
+  await page.mouse.down();
+  await page.mouse.move(x + 12, y);
+  await page.mouse.up();
+  await lab.reaches("converged");
+  await expect(found).toHaveText("found");
+  await expect(page.locator("#pose")).not.toHaveAttribute("data-before");
+});
+
 test("a light that is turned on while its last turn is being opened does not stop what was playing", async ({ lab, page }) => {
   await lab.open("size=64");
   await page.keyboard.press(" ");

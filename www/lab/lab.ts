@@ -2,7 +2,7 @@
 
 import { byId, nextFrame, nextTask } from "../dom";
 import { Engine, EngineError, LOST } from "../engine/engine";
-import type { Frame, Opened, Source } from "../engine/protocol";
+import type { Frame, LabOptions, Opened, Source } from "../engine/protocol";
 import type { Pose, StepReport } from "../../pkg/index.js";
 import { Explanations } from "./ask";
 import type { Form } from "./form";
@@ -17,7 +17,7 @@ import { Rivals } from "./rivals";
 import { fields, inputGroups, methodOf, runOptions, settingsOf, turnOf, type Origin, type Settings } from "./settings";
 import { download, linkTo, writeAddress } from "./share";
 import { ScoreMap } from "./scoremap";
-import { originOf, readable, rememberOrigin, sourceOf, wayOut } from "./source";
+import { objectOf, originOf, readable, rememberOrigin, sourceOf, wayOut } from "./source";
 import { saveBlob } from "../save";
 import type { Store } from "./store";
 import { Status, type Notice } from "./status";
@@ -221,11 +221,10 @@ export class Lab {
 
   #settingsChanged(settings: Settings, changed: readonly string[], live: boolean): void {
     writeAddress(settings);
-    byId("undo", HTMLButtonElement).disabled = !this.store.canUndo;
-    byId("redo", HTMLButtonElement).disabled = !this.store.canRedo;
     this.#form.adapt(settings, this.#origin);
     // Those of a run that is there already.
     if (changed.length === 0) return;
+    this.#date(true);
     // A slider shows what it does: what was playing, or will be, or had been played to its end, plays again.
     const again = live && (this.player.playing || this.#willPlay || this.#isFinished());
     const input = fields.some(({ key, group }) => inputGroups.includes(group) && changed.includes(key));
@@ -236,11 +235,21 @@ export class Lab {
   /** The picture follows the light while it is moved; a run follows once it rests. */
   #changeLight(patch: Settings, done: boolean, gesture: object): void {
     if (!done) {
+      this.#date(true);
       void this.#trial.show(patch);
       return;
     }
     this.#trial.end();
+    const before = this.store.settings;
     this.store.change(patch, true, gesture);
+    // Turned back to where it was: what has been found is of this light.
+    if (this.store.settings === before) this.#date(false);
+  }
+
+  /** Says of what has been found whether it is of the run before. */
+  #date(isBefore: boolean): void {
+    this.#pose.date(isBefore);
+    this.#light.date(isBefore);
   }
 
   async #preview(patch: Settings): Promise<void> {
@@ -313,11 +322,7 @@ export class Lab {
         this.#forget();
         await this.#show(frame);
       } else {
-        const opened = await this.#engine.call("open", { source: await readable(source), options, look: this.gallery.look });
-        this.#held = source;
-        if (turn !== this.#turn) return;
-        this.#pair = source.kind === "files" ? [source.files.colour, source.files.depth] : [];
-        await this.#present(opened);
+        if (!(await this.#open(source, options, turn))) return;
       }
       this.#good = { source, settings: source.kind === "saved" ? this.store.settings : settings };
       if (turn === this.#turn) this.#settle();
@@ -337,14 +342,26 @@ export class Lab {
     this.#offered = true;
   }
 
+  /** Has the worker open an input and shows it, unless that has been overtaken by then. */
+  async #open(source: Source, options: LabOptions, turn: number): Promise<boolean> {
+    const opened = await this.#engine.call("open", { source: await readable(source), options, look: this.gallery.look });
+    this.#held = source;
+    if (turn !== this.#turn) return false;
+    this.#pair = source.kind === "files" ? [source.files.colour, source.files.depth] : [];
+    await this.#present(opened);
+    return true;
+  }
+
   /** Pictures in one frame, numbers in the next: no press waits for the layout of both. */
   async #present(opened: Opened): Promise<void> {
     const turn = this.#turn;
     byId("lab", HTMLElement).removeAttribute("data-vacant");
-    this.#forget();
-    await this.gallery.open(opened, this.#looksOther());
+    const object = objectOf(this.#wanted, this.store.settings);
+    await this.gallery.open(opened, object === "" || object !== this.#seen);
+    this.#seen = object;
     await nextTask();
     if (turn !== this.#turn) return;
+    this.#forget();
     this.#truth = opened.truth;
     this.#length = opened.units.image;
     this.#light.showTruth(opened.trueLight);
@@ -353,15 +370,6 @@ export class Lab {
     this.#take(opened.frame);
     await nextFrame();
     offerPictures(byId("lab", HTMLElement), byId("take-picture", HTMLSelectElement));
-  }
-
-  /** Whether another object has come: the view of one whose light or noise has changed stays. */
-  #looksOther(): boolean {
-    const { surface, size, protocol } = this.store.settings;
-    const seen = typeof this.#wanted === "string" || this.#wanted.kind !== "sample" ? "" : [surface, size, protocol].join(" ");
-    const other = seen === "" || seen !== this.#seen;
-    this.#seen = seen;
-    return other;
   }
 
   async #advance(request: Advance): Promise<boolean> {
@@ -390,6 +398,7 @@ export class Lab {
     this.#history = [];
     this.#from = undefined;
     this.#scores.clear();
+    this.#date(false);
   }
 
   #isFinished(): boolean {
@@ -480,10 +489,7 @@ export class Lab {
     this.#good = undefined; // should it fail once more, the page waits for another input
     const turn = ++this.#turn;
     try {
-      const opened = await this.#engine.call("open", { source: await readable(source), options: runOptions(settings, originOf(source)), look: this.gallery.look });
-      this.#held = source;
-      if (turn !== this.#turn) return;
-      await this.#present(opened);
+      if (!(await this.#open(source, runOptions(settings, originOf(source)), turn))) return;
       this.#good = { source, settings };
       this.#messages.add("The input is kept, and the run begins anew.");
     } catch (error) {

@@ -28,6 +28,10 @@ export function wasOwn(): boolean {
 /** Which fields a source has to do with. */
 export const originOf = (source: Source): Origin => (source.kind === "sample" ? "sample" : "files");
 
+/** Which object a sample shows, whatever its light or noise; none that is known of any other source. */
+export const objectOf = (source: Source | string, { surface, size, protocol }: Settings): string =>
+  typeof source === "string" || source.kind !== "sample" ? "" : [surface, size, protocol].join(" ");
+
 /** With the pixels of the files that the worker's decoders do not know; what does know them loads with the first such file. */
 export async function readable(source: Source): Promise<Source> {
   if (source.kind !== "files") return source;

@@ -19,6 +19,10 @@ export const isSearching = ({ status, stage, iteration }: StepReport): boolean =
 export const standing = (report: StepReport): string =>
   isSearching(report) ? "candidate" : report.status === "running" && report.iteration === 0 ? "start" : "found";
 
+/** What they are once the settings are no longer those that they were found under; a start is not found. */
+export const BEFORE = "last run";
+export const dated = (standing: string, isBefore: boolean): string => (isBefore && standing !== "start" ? BEFORE : standing);
+
 /** How far a run is, in a few words. */
 export function wordsOf({ status, iteration, pose }: StepReport, truth: Pose | null): string {
   const off = truth ? `, ${decimals(angleBetween(pose.rotation, truth.rotation), 2)}° off` : "";
