@@ -14,14 +14,15 @@ import { Player, type Advance } from "./player";
 import { offerPictures } from "./pictures";
 import { PoseTable } from "./posetable";
 import { Rivals } from "./rivals";
-import { fields, inputGroups, methodOf, runOptions, settingsOf, turnOf, type Origin, type Settings } from "./settings";
+import { fields, inputGroups, methodOf, runOptions, settingsOf, startNear, turnOf, type Origin, type Settings } from "./settings";
 import { download, linkTo, writeAddress } from "./share";
 import { ScoreMap } from "./scoremap";
-import { objectOf, originOf, readable, rememberOrigin, sourceOf, wayOut } from "./source";
+import { objectOf, originOf, readable, rememberOrigin, sampleOf, sourceOf, wayOut } from "./source";
 import { saveBlob } from "../save";
 import type { Store } from "./store";
 import { Status, type Notice } from "./status";
 import { Strip } from "./strip";
+import { Transport } from "./transport";
 import { Trial } from "./trial";
 import type { Kind } from "./kinds";
 import { Messages } from "./messages";
@@ -53,6 +54,7 @@ export class Lab {
   readonly #light: LightPanel;
   readonly #compare: Compare;
   readonly #scores = new ScoreMap();
+  readonly #transport = new Transport();
   readonly #trial = new Trial((patch) => this.#preview(patch));
   readonly #messages: Messages;
   #origin: Origin = "sample";
@@ -109,7 +111,13 @@ export class Lab {
       onChange: () => this.#showState(),
       onError: (error, playing) => void this.#breakOff(error, playing),
     });
-    this.#rivals = new Rivals({ onLook: (pose) => this.gallery.pretend(pose), onStart: (pose) => this.#startFrom(pose) });
+    this.#rivals = new Rivals({
+      onLook: (pose) => {
+        gallery.pretend(pose);
+        this.#showState();
+      },
+      onStart: ({ angles }) => store.change(startNear(angles), true),
+    });
     this.#light = new LightPanel({ turn: () => turnOf(this.store.settings), onLight: (patch, done, gesture) => this.#changeLight(patch, done, gesture) });
     byId("objective-title", HTMLElement).append(this.#explanations.button("objective", "Objective"));
     byId("slots", HTMLElement).append(this.#own.intake.element);
@@ -253,10 +261,9 @@ export class Lab {
   }
 
   async #preview(patch: Settings): Promise<void> {
+    if (this.#origin !== "sample") return;
     const before = this.#turn;
-    const source = sourceOf("sample", { ...this.store.settings, ...patch }, {});
-    if (typeof source === "string" || this.#origin !== "sample" || source.kind !== "sample") return;
-    const seen = await this.#engine.call("preview", { source }).catch(() => undefined);
+    const seen = await this.#engine.call("preview", { source: sampleOf({ ...this.store.settings, ...patch }) }).catch(() => undefined);
     if (!seen || this.#turn !== before) return;
     this.gallery.preview(seen.picture);
     this.#light.showTruth(seen.trueLight);
@@ -265,11 +272,6 @@ export class Lab {
   #pin(): void {
     this.gallery.pin(this.#history);
     this.#compare.say(this.#report ? wordsOf(this.#report, this.#truth) : "");
-  }
-
-  #startFrom({ angles }: Pose): void {
-    const rounded = (degrees: number) => Math.round(10 * degrees) / 10;
-    this.store.change({ start: "near", "start.alpha": rounded(angles.alpha), "start.beta": rounded(angles.beta), "start.gamma": rounded(angles.gamma) }, true);
   }
 
   /** Plays a run once it has begun, unless something newer has by then. */
@@ -443,15 +445,13 @@ export class Lab {
     const report = this.#report;
     if (report) {
       const end = this.#verdict(report);
-      this.#pose.show(report, this.#from, this.#truth, this.#length);
       this.#rivals.show(report);
+      this.#pose.show(report, this.#rivals.looked, this.#from, this.#truth, this.#length);
       this.#strip.show(report);
       this.#status.show(report, playing ? "playing" : report.iteration > 0 || isSearching(report) ? "paused" : "ready", end);
     }
     if (this.#notice) this.#status.announce(this.#notice.state, this.#notice.words, this.#notice.cause);
-    const play = byId("play", HTMLButtonElement);
-    play.setAttribute("aria-pressed", String(playing));
-    play.setAttribute("aria-label", playing ? "Pause" : "Play");
+    this.#transport.show(playing);
   }
 
   /** Says what is wrong beside the field it concerns; what was on the screen stays, and stays usable. */

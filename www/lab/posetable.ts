@@ -55,10 +55,11 @@ export class PoseTable {
     this.#heading.textContent = words;
   }
 
-  show(report: StepReport, start: Pose | undefined, truth: Pose | null, length: "px" | "m"): void {
-    const { pose } = report;
+  /** A rival's pose in place of the run's own; all other numbers are the run's. */
+  show(report: StepReport, rival: Pose | undefined, start: Pose | undefined, truth: Pose | null, length: "px" | "m"): void {
+    const pose = rival ?? report.pose;
     // A search only tries poses: none is found before it is over.
-    this.#standing = standing(report);
+    this.#standing = rival ? "rival" : standing(report);
     this.#head();
     rows.forEach(({ index, decimals: count, read, unit = length }, i) => {
       const cells = this.#cells[i];

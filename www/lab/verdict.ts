@@ -57,7 +57,7 @@ const remedies: readonly (readonly [said: RegExp, remedy: string])[] = [
   [/painted/, "A start that is roughly known would help: Settings, Start, near."],
   [/unexplained/, "Less noise, or an object of one paint, would help."],
   [/points agree/, "Masks that leave out the background would help, and a start that is roughly known."],
-  [/other poses?/, "Choose one of the poses below to see it; a start that is roughly known decides."],
+  [/other poses?/, "Choose one of the poses on the surfaces to see it; a start that is roughly known decides."],
   [/cap of/, "Settings, Loop, Iterations lets it go on for longer."],
   [/apparent size/, "A scale that is known would help: Settings, Scale."],
 ];
