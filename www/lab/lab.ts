@@ -22,6 +22,7 @@ import { saveBlob } from "../save";
 import type { Store } from "./store";
 import { Status, type Notice } from "./status";
 import { Strip } from "./strip";
+import type { Made } from "./takeaway";
 import { Transport } from "./transport";
 import { Trial } from "./trial";
 import type { Kind } from "./kinds";
@@ -41,6 +42,7 @@ export class Lab {
     },
     onCameras: (fields) => this.store.change(fields),
     onRun: (file) => this.#goOnWith(file),
+    onDoubt: () => this.#showState(),
   });
   /** The saved run that has come in place of a pair of files, until a pair comes. */
   #saved: Source | undefined;
@@ -156,7 +158,7 @@ export class Lab {
     rememberOrigin(origin);
     this.#form.adapt(this.store.settings, origin);
     void this.#reopen();
-    if (origin === "files") void this.#own.restore();
+    this.#own.choose(origin);
   }
 
   restart(): Promise<void> {
@@ -166,8 +168,7 @@ export class Lab {
 
   download(): void {
     if (!this.#good || !this.#report) return;
-    const { source, settings } = this.#good;
-    download({ source: originOf(source), settings, truth: this.#truth, report: this.#report, history: this.#history });
+    download({ ...this.#good, source: originOf(this.#good.source), truth: this.#truth, report: this.#report, history: this.#history });
   }
 
   /** Hands over one of the results, in full. */
@@ -175,14 +176,12 @@ export class Lab {
     if (!this.#good || !this.#report) return;
     try {
       const { source, settings } = this.#good;
-      if (kind === "run") return await this.#saveRun();
-      const [{ fileOfKind }, taken] = await Promise.all([import("./takeaway"), this.#engine.call("take", {})]);
-      const report = this.#report;
+      const { fileOfKind, fileOfRun } = await import("./takeaway");
+      if (kind === "run") return this.#save(fileOfRun(await this.#engine.call("save", {})));
+      const [taken, report] = [await this.#engine.call("take", {}), this.#report];
       const run = { taken, report, end: this.#verdict(report), truth: this.#truth, origin: originOf(source), settings };
       const files = source.kind === "files" ? this.#own.intake.said : [];
-      const { name, blob, says } = await fileOfKind(kind, { ...run, files, link: linkTo(settings) });
-      saveBlob(name, blob);
-      byId("taken", HTMLElement).textContent = says ? `Saved ${name}: ${says}.` : `Saved ${name}.`;
+      this.#save(await fileOfKind(kind, { ...run, files, link: linkTo(settings) }));
     } catch (error) {
       // What was asked for next has broken it off, and speaks for itself.
       if (error instanceof EngineError) {
@@ -193,11 +192,9 @@ export class Lab {
     }
   }
 
-  /** The run itself, to go on with later. */
-  async #saveRun(): Promise<void> {
-    const name = "run.bimodal";
-    saveBlob(name, new Blob([(await this.#engine.call("save", {})) as Uint8Array<ArrayBuffer>]));
-    byId("taken", HTMLElement).textContent = `Saved ${name}: drop it on this page to go on from here; it holds both views and the options.`;
+  #save({ name, blob, says }: Made): void {
+    saveBlob(name, blob);
+    byId("taken", HTMLElement).textContent = says ? `Saved ${name}: ${says}.` : `Saved ${name}.`;
   }
 
   /** A saved run, which is run again as far as it had come. */
@@ -443,6 +440,7 @@ export class Lab {
   #showState(): void {
     const { playing } = this.player;
     const report = this.#report;
+    this.#status.doubt = this.#origin === "files" ? this.#own.doubt : "";
     if (report) {
       const end = this.#verdict(report);
       this.#rivals.show(report);
@@ -451,7 +449,9 @@ export class Lab {
       this.#status.show(report, playing ? "playing" : report.iteration > 0 || isSearching(report) ? "paused" : "ready", end);
     }
     if (this.#notice) this.#status.announce(this.#notice.state, this.#notice.words, this.#notice.cause);
-    this.#transport.show(playing);
+    // What the status tells of is in the way of a run, unless there is one that it leaves usable.
+    const isIdle = typeof this.#wanted === "string" || !this.#good;
+    this.#transport.show(playing, isIdle && this.#notice?.cause ? this.#notice.words : "");
   }
 
   /** Says what is wrong beside the field it concerns; what was on the screen stays, and stays usable. */

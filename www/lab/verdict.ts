@@ -95,5 +95,8 @@ export function verdict({ status, message, pose }: StepReport, start: Pose | und
   return { tone: "wrong", status: stayed ? "start kept" : ends[status], words: [...said, caution].join(" "), next: help };
 }
 
-/** As what stands alone is written. */
-export const sentence = (words: string): string => `${words.charAt(0).toUpperCase()}${words.slice(1)}${/[.!?]$/.test(words) ? "" : "."}`;
+/** As what stands alone is written; the name of a file stays as it is. */
+export function sentence(words: string): string {
+  const first = /^[^:]*\.\w+: /.test(words) ? words.charAt(0) : words.charAt(0).toUpperCase();
+  return `${first}${words.slice(1)}${/[.!?]$/.test(words) ? "" : "."}`;
+}
