@@ -329,6 +329,40 @@ test("what can't be used is said: a recording, a fisheye, a second depth map, a 
   await lab.reaches("ready");
 });
 
+test("what is wrong with a file is in sight, moves no slot, and is over with the next file", async ({ lab, page }) => {
+  await own(lab);
+  const zip = { name: "all.zip", mimeType: "application/zip", buffer: Buffer.from("PK\x03\x04rest") };
+  const places = () => page.locator(".slot .drop").evaluateAll((zones) => zones.map((zone) => zone.getBoundingClientRect().top));
+  for (const [width, height] of [[1280, 800], [390, 844]] as const) {
+    await page.setViewportSize({ width, height });
+    const before = await places();
+    await drop(page, "body", [zip]);
+    const remark = page.locator(".remarks").getByText("all.zip: it is a ZIP archive");
+    await expect(remark).toBeInViewport({ ratio: 1 });
+    expect(await places()).toEqual(before);
+    // Nothing lies over it.
+    expect(await remark.evaluate((words) => {
+      const { left, top, width, height } = words.getBoundingClientRect();
+      return words.contains(document.elementFromPoint(left + width / 2, top + height / 2));
+    })).toBe(true);
+    await put(lab, "Colour image", colourPng(`a${width}.png`));
+    await expect(slot(lab, 0)).toContainText(`a${width}.png`);
+    await expect(remark).toHaveCount(0);
+  }
+  // Of a slot's own file beside it, however far down that is.
+  await put(lab, "Depth map", depthPng());
+  await put(lab, "Depth mask", { ...maskPng("cut.png"), buffer: maskPng().buffer.subarray(0, 60) });
+  await lab.reaches("error");
+  await expect(slot(lab, 3).locator(".note.error").filter({ visible: true }).last()).toBeInViewport({ ratio: 1 });
+  // Who turns to the samples and back finds nothing of a file that came to nothing.
+  await drop(page, "body", [zip]);
+  await expect(page.locator(".remarks")).toBeVisible();
+  await page.getByRole("button", { name: "Sample", exact: true }).click();
+  await lab.reaches("ready");
+  await page.getByRole("button", { name: "Own files" }).click();
+  await expect(page.locator(".remarks")).toBeHidden();
+});
+
 test("of two grey pictures the one called depth is the depth map", async ({ lab, page }) => {
   await lab.open("size=32");
   await drop(page, "body", [greyPng("depth.png"), greyPng("photo.png")]);
