@@ -2,6 +2,7 @@
 
 import type { StepReport } from "../../pkg/index.js";
 import { byId } from "../dom";
+import { inWords } from "../said";
 import type { Verdict } from "./verdict";
 
 /** What else than the loop the status can tell of. */
@@ -31,7 +32,7 @@ export class Status {
     this.#say(end ? report.status : idle, end?.tone ?? "open", end?.status ?? idle);
     this.#put(this.#cause, end?.words ?? "");
     this.#put(this.#next, this.doubt || (end?.next ?? (idle === "ready" ? "Press play, or choose another example." : "")));
-    this.#put(this.#message, end ? "" : (report.message ?? ""));
+    this.#put(this.#message, end ? "" : inWords(report.message ?? ""));
   }
 
   /** Something other than the loop is going on, or has gone wrong. */

@@ -2,6 +2,7 @@
 
 import type { Pose, StepReport } from "../../pkg/index.js";
 import { decimals } from "../draw/numbers";
+import { inWords } from "../said";
 
 export interface Verdict {
   /** Whether the outcome may be built on: "open" where nothing says so or against it. */
@@ -76,7 +77,7 @@ const remedy = (said: string): string => remedies.find(([pattern]) => pattern.te
 /** How a finished loop is to be taken; nothing while it runs. */
 export function verdict({ status, message, pose }: StepReport, start: Pose | undefined, truth: Pose | null, isHeld = false): Verdict | undefined {
   if (status === "running") return undefined;
-  const said = message ? [sentence(message)] : isHeld ? [HELD] : [];
+  const said = message ? [sentence(inWords(message))] : isHeld ? [HELD] : [];
   const help = isHeld ? FREE : remedy(message ?? "");
   if (truth) {
     const off = angleBetween(pose.rotation, truth.rotation);
