@@ -63,6 +63,19 @@ test("on a phone the figure stands below what it is about, and above the long te
   await expect(page.locator(".learn-slide .learn-figure")).toBeVisible();
 });
 
+test("on a phone no picture stands alone in its row", async ({ page }) => {
+  await page.setViewportSize(narrowest);
+  for (const id of ["pixel", "grey", "colours", "surface", "prior", "pose", "sensor", "paint", "failure"]) {
+    await page.goto("about:blank");
+    await open(page, `at=${id}`);
+    await atWidths(page, [390, 600, 700], async (width) => {
+      const tops = await page.locator(".learn-panel:not(.learn-wide)").evaluateAll((all) => all.map((panel) => Math.round(panel.getBoundingClientRect().top)));
+      const alone = tops.filter((top) => tops.filter((other) => other === top).length === 1);
+      expect(alone, `${id} at ${width} px`).toEqual([]);
+    });
+  }
+});
+
 test("pictures of a row stand in line, no plot leaves a hole beside it, and its type is never small, on slides neither", async ({ page }) => {
   const look = () =>
     figure(page).evaluate((box) => {
