@@ -1,33 +1,10 @@
 /** Learn: each lesson's figure answers to its control, links open their state, slides turn by keys. */
 
 import { readFile } from "node:fs/promises";
-import type { Locator, Page } from "@playwright/test";
+import type { Page } from "@playwright/test";
+import { figure, number, open, settled, slide } from "./figure";
 import { expect, test } from "./lab";
 import { atWidths, innerWidth, narrowest } from "./widths";
-
-const figure = (page: Page): Locator => page.locator(".learn-figure");
-
-async function open(page: Page, state = ""): Promise<void> {
-  await page.goto(`./#learn${state ? `&${state}` : ""}`);
-  await settled(page);
-}
-
-/** The last drawing for the values as they are. */
-async function settled(page: Page): Promise<void> {
-  await expect(figure(page)).toHaveAttribute("aria-busy", "false");
-}
-
-async function number(page: Page, key: string): Promise<number> {
-  await settled(page);
-  return Number((await page.locator(`[data-number="${key}"]`).getAttribute("data-value")) ?? NaN);
-}
-
-/** Moves a slider as a hand does: the page hears of it by the input event, and is busy from then on. */
-async function slide(page: Page, name: string, value: number): Promise<void> {
-  const slider = page.locator(`.learn-controls input[name="${name}"]`);
-  await slider.fill(String(value));
-  await expect(slider).toHaveValue(String(value));
-}
 
 function fingerprint(page: Page, panel: string): Promise<number> {
   return page.locator(`[data-panel="${panel}"] canvas`).evaluate((canvas: HTMLCanvasElement) => {
