@@ -1,16 +1,18 @@
-// npm run pictures: contact sheets to look at, of the data beside the project and of a scene of our own.
+// npm run pictures: contact sheets to look at, of the data beside the project and of a scene of our own, and the page itself.
 //   [FOLDER]         target/pictures by default: other people's pictures stay out of the project
-//   --only a,b       these objects alone
+//   --only a,b       these objects alone, or "page"
 //   photograph-N.png photograph, albedo, shading and residual of an object, seen 20 degrees off with nothing known; where that
 //                    pose is lost the true one is told
 //   depth-N.png      a registered capture: depth as it is, the same refined, both shaded, and its colours; its pose is known
 //   painted.png      the first of these for the built-in bust, painted
+//   screenshot.png   the Lab as a first visit leaves it
 import { mkdirSync, writeFileSync } from "node:fs";
 import { join, relative, resolve } from "node:path";
 import { parseArgs } from "node:util";
 import { encode } from "fast-png";
 import { build } from "./build.mjs";
 import { setup } from "./setup.mjs";
+import { labPicture } from "./pictures/lab.mjs";
 import { Failure, root, say, script } from "./shell.mjs";
 import { hasData, library } from "./tables/library.mjs";
 import { onto } from "./tables/protocol/measure-reals.mjs";
@@ -22,6 +24,8 @@ import { PAINTED, requestOf } from "./tables/protocol/scenes.mjs";
 /** Captures; the first frame of each. */
 const CAPTURES = ["coffee_mug_1", "bowl_1", "cap_1", "cereal_box_1", "vase_rgbd", "android_rgbd", "mitten_rgbd"];
 const FRAME = 1;
+/** What --only calls the picture of the page. */
+const PAGE = "page";
 const SIZE = 96;
 const BETA = 20;
 /** Pixels of a sheet for one of a photograph's view, of a capture's depth map, and between pictures. */
@@ -145,8 +149,9 @@ function parsed() {
   try {
     const { positionals: [folder = "target/pictures"], values: { only } } = parseArgs({ options: { only: { type: "string" } }, allowPositionals: true });
     const wanted = only?.split(",");
-    const unknown = wanted?.find((name) => ![...PAINTED, ...CAPTURES].includes(name));
-    if (unknown) throw new Error(`There is no object "${unknown}"; there are ${[...PAINTED, ...CAPTURES].join(", ")}.`);
+    const names = [...PAINTED, ...CAPTURES, PAGE];
+    const unknown = wanted?.find((name) => !names.includes(name));
+    if (unknown) throw new Error(`There is no object "${unknown}"; there are ${names.join(", ")}.`);
     return { folder: resolve(root, folder), of: (names) => names.filter((name) => !wanted || wanted.includes(name)) };
   } catch (error) {
     throw new Failure(error.message);
@@ -162,6 +167,7 @@ await script(async () => {
   mkdirSync(folder, { recursive: true });
   const save = (name, row) => writeFileSync(join(folder, `${name}.png`), sheet([row]));
   save("painted", (await painted(api)).row);
+  if (of([PAGE]).length > 0) writeFileSync(join(folder, "screenshot.png"), await labPicture());
   if (hasData()) {
     const data = library(await import("../pkg/files.js"));
     for (const name of of(PAINTED)) save(`photograph-${name}`, await photographed(api, data, name));

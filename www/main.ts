@@ -119,7 +119,11 @@ const examples = new Presets(
   () => player.toggle(),
 );
 const showExample = () => examples.show(store.settings, isSample());
-store.listen(showExample);
+store.listen(() => {
+  byId("undo", HTMLButtonElement).disabled = !store.canUndo;
+  byId("redo", HTMLButtonElement).disabled = !store.canRedo;
+  showExample();
+});
 showExample();
 
 const still = matchMedia("(prefers-reduced-motion: reduce)");

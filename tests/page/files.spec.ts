@@ -64,9 +64,13 @@ test("nothing runs while files are awaited", async ({ lab, page }) => {
   const messages = await Messages.of(page);
   await openFiles(lab);
   await expect(page.locator("#verdict")).toContainText("choose them in the settings");
-  await page.getByRole("button", { name: "Step", exact: true }).click();
+  // By a press, which the buttons say to be in vain, and by the keys.
+  await page.getByRole("button", { name: "Step", exact: true }).click({ force: true });
   const play = page.locator("#play");
-  await play.click();
+  await play.click({ force: true });
+  await page.keyboard.press("s");
+  await page.keyboard.press("t");
+  await page.locator("#clouds-canvas").press(" ");
   await expect(play).toHaveAttribute("aria-pressed", "false");
   await lab.reaches("waiting");
   await expect(lab.iteration).toHaveText("0");

@@ -1,33 +1,10 @@
 /** Learn: each lesson's figure answers to its control, links open their state, slides turn by keys. */
 
 import { readFile } from "node:fs/promises";
-import type { Locator, Page } from "@playwright/test";
+import type { Page } from "@playwright/test";
+import { figure, number, open, settled, slide } from "./figure";
 import { expect, test } from "./lab";
 import { atWidths, innerWidth, narrowest } from "./widths";
-
-const figure = (page: Page): Locator => page.locator(".learn-figure");
-
-async function open(page: Page, state = ""): Promise<void> {
-  await page.goto(`./#learn${state ? `&${state}` : ""}`);
-  await settled(page);
-}
-
-/** The last drawing for the values as they are. */
-async function settled(page: Page): Promise<void> {
-  await expect(figure(page)).toHaveAttribute("aria-busy", "false");
-}
-
-async function number(page: Page, key: string): Promise<number> {
-  await settled(page);
-  return Number((await page.locator(`[data-number="${key}"]`).getAttribute("data-value")) ?? NaN);
-}
-
-/** Moves a slider as a hand does: the page hears of it by the input event, and is busy from then on. */
-async function slide(page: Page, name: string, value: number): Promise<void> {
-  const slider = page.locator(`.learn-controls input[name="${name}"]`);
-  await slider.fill(String(value));
-  await expect(slider).toHaveValue(String(value));
-}
 
 function fingerprint(page: Page, panel: string): Promise<number> {
   return page.locator(`[data-panel="${panel}"] canvas`).evaluate((canvas: HTMLCanvasElement) => {
@@ -61,6 +38,19 @@ test("on a phone the figure stands below what it is about, and above the long te
   expect(await top(".learn-figure")).toBeLessThan(await top(".learn-formula ~ p"));
   await page.getByRole("button", { name: "Slides" }).click();
   await expect(page.locator(".learn-slide .learn-figure")).toBeVisible();
+});
+
+test("on a phone no picture stands alone in its row", async ({ page }) => {
+  await page.setViewportSize(narrowest);
+  for (const id of ["pixel", "grey", "colours", "surface", "prior", "pose", "sensor", "paint", "failure"]) {
+    await page.goto("about:blank");
+    await open(page, `at=${id}`);
+    await atWidths(page, [390, 600, 700], async (width) => {
+      const tops = await page.locator(".learn-panel:not(.learn-wide)").evaluateAll((all) => all.map((panel) => Math.round(panel.getBoundingClientRect().top)));
+      const alone = tops.filter((top) => tops.filter((other) => other === top).length === 1);
+      expect(alone, `${id} at ${width} px`).toEqual([]);
+    });
+  }
 });
 
 test("pictures of a row stand in line, no plot leaves a hole beside it, and its type is never small, on slides neither", async ({ page }) => {
@@ -197,6 +187,11 @@ test("6: a wrong pose leaves a residual, valleys merge, and registration comes h
   await page.getByLabel("What happens").selectOption("register");
   expect(await number(page, "error")).toBeLessThan(1);
   await expect(page.locator('[data-number="status"]')).toHaveText("converged");
+  // From too far away it is lost, as the text says, and the page has words for what the library calls by an option's name.
+  await slide(page, "offset", 40);
+  await settled(page);
+  await expect(page.locator('[data-number="status"]')).toHaveText(/^lost: nothing within the start's tolerance/);
+  expect(await number(page, "error")).toBeCloseTo(40, 3);
   await page.getByLabel("What happens").selectOption("search");
   await expect(page.locator('[data-number="status"]')).toHaveText(/^search/);
   expect(await number(page, "error")).toBeLessThan(1);

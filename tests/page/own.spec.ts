@@ -11,6 +11,9 @@ async function put(lab: Lab, label: string, file: Upload): Promise<void> {
   await lab.page.getByLabel(label, { exact: true }).setInputFiles(file);
 }
 
+/** A grey picture of 8 bits, which may be either view. */
+const greyPng = (name: string): Upload => ({ name, mimeType: "image/png", buffer: Buffer.from(encode({ width: SIDE, height: SIDE, channels: 1, depth: 8, data: Uint8Array.from({ length: SIDE * SIDE }, (_, i) => 40 + ((7 * i) % 190)) })) });
+
 async function own(lab: Lab): Promise<void> {
   await lab.open("size=32");
   await lab.unfold();
@@ -105,11 +108,66 @@ test("swapped files are offered to be swapped, and then run", async ({ lab, page
   await put(lab, "Depth map", colourPng("second.png"));
   await expect(page.locator(".offer")).toContainText("Colour and depth seem to be swapped.");
   await lab.reaches("error");
+  // Where the eye is, too: the settings may be closed.
+  await expect(page.locator("#verdict")).toContainText("second.png: a depth map has one value for each pixel");
+  await expect(page.locator("#next")).toHaveText("Colour and depth seem to be swapped: Settings, Swap them.");
+  // With the samples nothing is swapped.
+  await page.getByRole("button", { name: "Sample", exact: true }).click();
+  await lab.reaches("ready");
+  await expect(page.locator("#next")).not.toContainText("swapped");
+  await page.getByRole("button", { name: "Own files" }).click();
+  await lab.reaches("error");
   await page.getByRole("button", { name: "Swap them" }).click();
   await expect(slot(lab, 0)).toContainText("second.png");
   await expect(slot(lab, 1)).toContainText("first.png");
   await lab.reaches("ready");
   await expect(page.locator(".offer")).toBeEmpty();
+  await expect(page.locator("#next")).not.toContainText("swapped");
+  // A grey picture may be a depth map, a coloured one can't.
+  await put(lab, "Colour image", greyPng("grey.png"));
+  await put(lab, "Depth map", colourPng("third.png"));
+  await expect(page.locator("#next")).toHaveText("Colour and depth seem to be swapped: Settings, Swap them.");
+});
+
+test("a run of files that seem to be in each other's places says so beside its verdict", async ({ lab, page }) => {
+  await own(lab);
+  await put(lab, "Colour image", depthPng("first.png"));
+  await put(lab, "Depth map", greyPng("second.png"));
+  await lab.reaches("ready");
+  await expect(page.locator("#next")).toContainText("Colour and depth seem to be swapped");
+  await page.keyboard.press("s");
+  await lab.reaches("lost");
+  await expect(page.locator("#next")).toContainText("Colour and depth seem to be swapped");
+});
+
+test("where there is nothing to run the player's buttons are off, and say why", async ({ lab, page }) => {
+  await own(lab);
+  const buttons = ["Play", "Step", "Stage", "Reset"].map((name) => page.locator("#bar").getByRole("button", { name, exact: true }));
+  const [play] = buttons;
+  const areOff = async (why: string) => {
+    for (const button of buttons) {
+      await expect(button).toBeDisabled();
+      await expect(button).toHaveAccessibleDescription(`Nothing to run (${why})`);
+    }
+  };
+  await areOff("waiting for both files");
+  // They can be reached, so that the reason can be heard; a press changes nothing.
+  await page.locator("#play").focus();
+  await page.keyboard.press("Enter");
+  await expect(page.locator("#play")).toBeFocused();
+  await lab.reaches("waiting");
+  await put(lab, "Colour image", colourPng());
+  await areOff("waiting for a depth map");
+  await put(lab, "Depth map", { ...depthPng("cut.png"), buffer: depthPng().buffer.subarray(0, 90) });
+  await areOff("Depth map: not possible");
+  await put(lab, "Depth map", depthPng());
+  await lab.reaches("ready");
+  for (const button of buttons) {
+    await expect(button).toBeEnabled();
+    await expect(button).toHaveAccessibleDescription("");
+  }
+  await play?.click();
+  await expect(lab.iteration).not.toHaveText("0");
 });
 
 test("a file in the wrong place is offered its own", async ({ lab, page }) => {
@@ -271,10 +329,43 @@ test("what can't be used is said: a recording, a fisheye, a second depth map, a 
   await lab.reaches("ready");
 });
 
+test("what is wrong with a file is in sight, moves no slot, and is over with the next file", async ({ lab, page }) => {
+  await own(lab);
+  const zip = { name: "all.zip", mimeType: "application/zip", buffer: Buffer.from("PK\x03\x04rest") };
+  const places = () => page.locator(".slot .drop").evaluateAll((zones) => zones.map((zone) => zone.getBoundingClientRect().top));
+  for (const [width, height] of [[1280, 800], [390, 844]] as const) {
+    await page.setViewportSize({ width, height });
+    const before = await places();
+    await drop(page, "body", [zip]);
+    const remark = page.locator(".remarks").getByText("all.zip: it is a ZIP archive");
+    await expect(remark).toBeInViewport({ ratio: 1 });
+    expect(await places()).toEqual(before);
+    // Nothing lies over it.
+    expect(await remark.evaluate((words) => {
+      const { left, top, width, height } = words.getBoundingClientRect();
+      return words.contains(document.elementFromPoint(left + width / 2, top + height / 2));
+    })).toBe(true);
+    await put(lab, "Colour image", colourPng(`a${width}.png`));
+    await expect(slot(lab, 0)).toContainText(`a${width}.png`);
+    await expect(remark).toHaveCount(0);
+  }
+  // Of a slot's own file beside it, however far down that is.
+  await put(lab, "Depth map", depthPng());
+  await put(lab, "Depth mask", { ...maskPng("cut.png"), buffer: maskPng().buffer.subarray(0, 60) });
+  await lab.reaches("error");
+  await expect(slot(lab, 3).locator(".note.error").filter({ visible: true }).last()).toBeInViewport({ ratio: 1 });
+  // Who turns to the samples and back finds nothing of a file that came to nothing.
+  await drop(page, "body", [zip]);
+  await expect(page.locator(".remarks")).toBeVisible();
+  await page.getByRole("button", { name: "Sample", exact: true }).click();
+  await lab.reaches("ready");
+  await page.getByRole("button", { name: "Own files" }).click();
+  await expect(page.locator(".remarks")).toBeHidden();
+});
+
 test("of two grey pictures the one called depth is the depth map", async ({ lab, page }) => {
   await lab.open("size=32");
-  const grey = (name: string): Upload => ({ name, mimeType: "image/png", buffer: Buffer.from(encode({ width: SIDE, height: SIDE, channels: 1, depth: 8, data: Uint8Array.from({ length: SIDE * SIDE }, (_, i) => 40 + ((7 * i) % 190)) })) });
-  await drop(page, "body", [grey("depth.png"), grey("photo.png")]);
+  await drop(page, "body", [greyPng("depth.png"), greyPng("photo.png")]);
   await expect(slot(lab, 0)).toContainText("photo.png");
   await expect(slot(lab, 1)).toContainText("depth.png");
 });

@@ -60,6 +60,52 @@ test("keys step, stage, play, pause, reset and enlarge", async ({ lab, page }) =
   await expect(page.getByRole("dialog", { name: "The Lab" })).toBeHidden();
 });
 
+test("a view that was alone leaves the page where it stood", async ({ lab, page }) => {
+  await lab.open("size=32");
+  const top = () => page.evaluate(() => scrollY);
+  for (const from of [0, 700]) {
+    for (const key of ["1", "3", "9"]) {
+      await page.evaluate((from) => scrollTo(0, from), from);
+      await page.keyboard.press(key);
+      await expect(page.locator("#lab")).toHaveAttribute("data-single", "");
+      // One after the other counts as one.
+      await page.keyboard.press("2");
+      await expect(page.getByRole("img", { name: /^Normals:/ })).toBeFocused();
+      await page.keyboard.press("Escape");
+      await expect(page.locator("#lab")).not.toHaveAttribute("data-single");
+      expect(await top(), `${key} from ${from}`).toBe(from);
+    }
+  }
+});
+
+test("who comes back from another place finds the run going on, and one that was paused still paused", async ({ lab, page }) => {
+  const messages = await Messages.of(page);
+  await lab.open("size=64");
+  await messages.hold("advance", 1);
+  await page.keyboard.press(" ");
+  await expect(lab.iteration).toHaveText("1");
+  // By way of two places, of which neither ends the run.
+  await page.locator("#to-learn").click();
+  await page.locator("#to-tables").click();
+  await expect(page.locator("#lab")).toBeHidden();
+  await expect(page.locator("#play")).toHaveAttribute("aria-label", "Play");
+  await messages.release();
+  await page.locator("#to-lab").click();
+  await lab.reaches("converged");
+
+  await page.keyboard.press("r");
+  await lab.reaches("ready");
+  await page.keyboard.press("s");
+  await lab.reaches("paused");
+  await page.locator("#to-tables").click();
+  await expect(page.locator("#lab")).toBeHidden();
+  await page.locator("#to-lab").click();
+  await expect(page.locator("#lab")).toBeVisible();
+  await expect(page.locator("#play")).toHaveAttribute("aria-label", "Play");
+  await lab.reaches("paused");
+  await expect(lab.iteration).toHaveText("1");
+});
+
 test("the value under the pointer is shown in every view", async ({ lab, page }) => {
   await lab.open();
   await page.keyboard.press("s");

@@ -118,6 +118,47 @@ test("the light is shown as found and true, and the true one can be dragged: the
   await expect.poll(() => lab.fingerprint("Colour")).toBe(turned);
 });
 
+test("while the light is dragged, what was found is marked as of the run before, and nothing moves", async ({ lab, page }) => {
+  await lab.open("size=64");
+  const found = page.locator("#pose-found");
+  const ball = page.locator("#light figcaption").first();
+  const truth = page.getByRole("img", { name: /^A ball under the true light/ });
+  const box = await truth.boundingBox();
+  if (!box) throw new Error("the ball is on the page");
+  const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  await page.mouse.move(x + 10, y);
+  // Where the loop starts is the same under any light.
+  await expect(found).toHaveText("start");
+  await page.mouse.up();
+  await expect(page).toHaveURL(/lightTurn=-\d+/);
+
+  await page.keyboard.press(" ");
+  await lab.reaches("converged");
+  const boxes = () => page.locator("#pose th, #pose td, #pose-error, #light figure").evaluateAll((parts) => parts.map((part) => JSON.stringify(part.getBoundingClientRect())));
+  const before = await boxes();
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  await page.mouse.move(x + 6, y);
+  await expect(found).toHaveText("last run");
+  await expect(ball).toHaveText("last run");
+  expect(await boxes()).toEqual(before);
+  // Back where it was, and let go: nothing has to run anew.
+  await page.mouse.move(x, y);
+  await page.mouse.up();
+  await expect(found).toHaveText("found");
+  await expect(ball).toHaveText("found");
+  await lab.reaches("converged");
+
+  await page.mouse.down();
+  await page.mouse.move(x + 12, y);
+  await page.mouse.up();
+  await lab.reaches("converged");
+  await expect(found).toHaveText("found");
+  await expect(page.locator("#pose")).not.toHaveAttribute("data-before");
+});
+
 test("a light that is turned on while its last turn is being opened does not stop what was playing", async ({ lab, page }) => {
   await lab.open("size=64");
   await page.keyboard.press(" ");
@@ -171,6 +212,11 @@ test("a slider acts when it rests, and what had been played plays again", async 
   // One step back, however many values the slider passed.
   await page.getByRole("button", { name: "Undo" }).click();
   await expect.poll(() => lab.fingerprint("Colour")).toBe(before);
+  // What is taken back, or made again, plays as the slider's own change did.
+  await lab.reaches("converged");
+  await page.getByRole("button", { name: "Redo" }).click();
+  await expect.poll(() => lab.fingerprint("Colour")).not.toBe(before);
+  await lab.reaches("converged");
 });
 
 test("a weight over many decades has a slider of powers of ten", async ({ lab, page }) => {
@@ -188,18 +234,35 @@ test("a pose with a rival says so, and the rival can be seen and chosen", async 
   await lab.visit("surface=vase&light=window&beta=30&size=64&noise=0.08");
   const height = await panelHeight(lab);
   await expect(page.locator("#rivals")).toBeHidden();
+  const places = () => page.locator("#panel, #pose, #pose-error, #light, #clouds-box").evaluateAll((parts) => parts.map((part) => JSON.stringify(part.getBoundingClientRect())));
+  const before = await places();
   await page.getByLabel("Speed").selectOption({ label: "fastest" });
   await page.getByRole("button", { name: "Play" }).click();
   await lab.reaches("ambiguous");
   await expect(page.locator("#verdict")).toContainText("One other pose explains the colours as well");
   await expect(page.locator("#status-icon")).toHaveText("?");
-  await expect(page.locator("#next")).toContainText("poses below");
+  await expect(page.locator("#next")).toContainText("poses on the surfaces");
   expect(await panelHeight(lab)).toBe(height);
   const rivals = page.locator("#rivals");
   await expect(rivals.getByRole("button", { name: "the one found" })).toHaveAttribute("aria-pressed", "true");
   const rival = rivals.getByRole("button", { name: /^rival, \d+° away$/ });
+  const away = Number(/\d+/.exec((await rival.textContent()) ?? "")?.[0]);
+  const beta = page.locator("#pose tbody tr").nth(2).locator("td").first();
+  const [foundBeta, foundOff] = [await beta.textContent(), await lab.errorDegrees()];
+  expect(foundOff).toBeLessThan(5);
   await rival.click();
   await expect(rival).toHaveAttribute("aria-pressed", "true");
+  // The table is the rival's, and nothing has made room for what can be done with it.
+  await expect(page.locator("#pose-found")).toHaveText("rival");
+  await expect(beta).not.toHaveText(String(foundBeta));
+  expect(await lab.errorDegrees()).toBeGreaterThan(away - 5);
+  await expect(rivals.getByRole("button", { name: "Start from it" })).toBeVisible();
+  expect(await places()).toEqual(before);
+  await rivals.getByRole("button", { name: "the one found" }).click();
+  await expect(page.locator("#pose-found")).toHaveText("found");
+  await expect(beta).toHaveText(String(foundBeta));
+  expect(await lab.errorDegrees()).toBe(foundOff);
+  await rival.click();
   await rivals.getByRole("button", { name: "Start from it" }).click();
   await expect(page).toHaveURL(/start=near/);
 });

@@ -1,6 +1,6 @@
 /** Both surfaces in the colour view's frame, to be turned by hand. Loaded when first seen: three.js outweighs all the rest. */
 
-import { Matrix4, OrthographicCamera, Quaternion, Sphere, Vector3 } from "three";
+import { Matrix4, OrthographicCamera, Quaternion, Sphere, TOUCH, Vector3 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import type { Pose } from "../../pkg/index.js";
 import type { Side, Surface } from "../engine/protocol";
@@ -72,8 +72,16 @@ export class Clouds {
     this.#controls = new OrbitControls(this.#camera, canvas);
     this.#marks = { image: make("span", { class: "dot image", hidden: true }), depth: make("span", { class: "dot depth", hidden: true }) };
     box.append(this.#marks.image, this.#marks.depth);
-    // A finger that moves up or down scrolls the page; across it turns the clouds.
+    // A finger that moves up or down scrolls the page; across it turns the clouds, and two do so any way.
     canvas.style.touchAction = "pan-y";
+    this.#controls.touches.TWO = TOUCH.DOLLY_ROTATE;
+    // Before the browser knows which it is, the clouds have turned a little.
+    canvas.addEventListener("pointerdown", ({ pointerType, isPrimary }) => {
+      if (pointerType === "touch" && isPrimary) this.#controls.saveState();
+    });
+    canvas.addEventListener("pointercancel", ({ pointerType, isPrimary }) => {
+      if (pointerType === "touch" && isPrimary) this.#controls.reset();
+    });
     this.#controls.addEventListener("change", () => this.#look());
     this.#resized.observe(box);
     this.recolour();

@@ -32,6 +32,8 @@ export class Gallery {
   #charts: readonly Chart[] = [];
   #history: readonly StepReport[] = [];
   #pinned: readonly StepReport[] = [];
+  /** Where the page stood before one view was alone. */
+  #top = 0;
   #isLooking = false;
   #looksAgain = false;
 
@@ -165,13 +167,19 @@ export class Gallery {
   enlarge(number: number | null): void {
     const chosen = number === null ? undefined : this.#figures[number - 1];
     const wasOpen = chosen?.hasAttribute("data-large") ?? true;
+    const wasSingle = this.#box.hasAttribute("data-single");
+    if (!wasSingle) this.#top = scrollY;
     for (const figure of this.#figures) figure.toggleAttribute("data-large", figure === chosen && !wasOpen);
     this.#box.toggleAttribute("data-single", !wasOpen);
     for (const figure of this.#figures) {
       const button = figure.querySelector(".enlarge");
       button?.setAttribute("aria-pressed", String(figure.hasAttribute("data-large")));
     }
-    if (wasOpen || !chosen) return;
+    if (wasOpen || !chosen) {
+      // All others are there again, and the page stands as it did before one of them made it shorter.
+      if (wasSingle) scrollTo({ top: this.#top, behavior: "instant" });
+      return;
+    }
     chosen.querySelector("canvas")?.focus({ preventScroll: true });
     // The others have made room above it.
     chosen.scrollIntoView({ block: "nearest" });

@@ -47,8 +47,8 @@ export class Intake {
       this.remarks([]);
       this.#hooks.onForget();
     });
-    // Below the slots, which stay where they are whatever is said of them.
-    this.element.append(this.#offer, this.#remarks, make("p", { class: "note keeping", role: "status" }, this.#keeping), this.#forget);
+    // Below the slots, which stay where they are whatever is said of them; what asks for an answer is in sight all the same.
+    this.element.append(make("div", { class: "said" }, this.#offer, this.#remarks), make("p", { class: "note keeping", role: "status" }, this.#keeping), this.#forget);
   }
 
   get files(): Partial<Record<Slot, File>> {
@@ -82,7 +82,10 @@ export class Intake {
     this.#offer.replaceChildren();
     if (!offer) return;
     const button = make("button", { type: "button" }, offer.button);
-    button.addEventListener("click", () => this.replaceAll(offer.slots));
+    button.addEventListener("click", () => {
+      this.remarks([]);
+      this.replaceAll(offer.slots);
+    });
     this.#offer.append(offer.words, " ", button);
   }
 
@@ -123,6 +126,8 @@ export class Intake {
     entry.note.hidden = false;
     entry.note.classList.toggle("error", isError);
     entry.zone.toggleAttribute("data-invalid", isError);
+    // Within the settings, which may be longer than their sheet.
+    if (isError) entry.note.scrollIntoView({ block: "nearest" });
     return slots.find(({ paths }) => paths === entry.paths)?.label;
   }
 
@@ -173,7 +178,9 @@ export class Intake {
     this.#hooks.onChange();
   }
 
+  /** By hand: what was said of the files that came before is over. */
   #put(slot: Slot, file: File | undefined): void {
+    this.remarks([]);
     this.#set(slot, file);
     this.#hooks.onChange();
   }

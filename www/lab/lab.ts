@@ -2,7 +2,7 @@
 
 import { byId, nextFrame, nextTask } from "../dom";
 import { Engine, EngineError, LOST } from "../engine/engine";
-import type { Frame, Opened, Source } from "../engine/protocol";
+import type { Frame, LabOptions, Opened, Source } from "../engine/protocol";
 import type { Pose, StepReport } from "../../pkg/index.js";
 import { Explanations } from "./ask";
 import type { Form } from "./form";
@@ -14,14 +14,17 @@ import { Player, type Advance } from "./player";
 import { offerPictures } from "./pictures";
 import { PoseTable } from "./posetable";
 import { Rivals } from "./rivals";
-import { fields, inputGroups, methodOf, runOptions, settingsOf, turnOf, type Origin, type Settings } from "./settings";
+import { fields, inputGroups, methodOf, runOptions, settingsOf, startNear, turnOf, type Origin, type Settings } from "./settings";
 import { download, linkTo, writeAddress } from "./share";
 import { ScoreMap } from "./scoremap";
-import { originOf, readable, rememberOrigin, sourceOf, wayOut } from "./source";
+import { objectOf, originOf, readable, rememberOrigin, sampleOf, sourceOf, wayOut } from "./source";
 import { saveBlob } from "../save";
 import type { Store } from "./store";
 import { Status, type Notice } from "./status";
 import { Strip } from "./strip";
+import type { Made } from "./takeaway";
+import { Transport } from "./transport";
+import { Trial } from "./trial";
 import type { Kind } from "./kinds";
 import { Messages } from "./messages";
 import { isSearching, sentence, standing, verdict, wordsOf, type Verdict } from "./verdict";
@@ -39,6 +42,7 @@ export class Lab {
     },
     onCameras: (fields) => this.store.change(fields),
     onRun: (file) => this.#goOnWith(file),
+    onDoubt: () => this.#showState(),
   });
   /** The saved run that has come in place of a pair of files, until a pair comes. */
   #saved: Source | undefined;
@@ -52,9 +56,8 @@ export class Lab {
   readonly #light: LightPanel;
   readonly #compare: Compare;
   readonly #scores = new ScoreMap();
-  /** The light to be looked at next, while one is being looked at: what it changes in the settings. */
-  #trying: Settings | undefined;
-  #previewing = false;
+  readonly #transport = new Transport();
+  readonly #trial = new Trial((patch) => this.#preview(patch));
   readonly #messages: Messages;
   #origin: Origin = "sample";
   #truth: Opened["truth"] = null;
@@ -83,8 +86,8 @@ export class Lab {
   #willPlay = false;
   /** Whether the run has been played again because its worker was gone. */
   #resumed = false;
-  /** The run that is to play once its input is there, if the visitor still waits for it. */
-  #watched: Settings | undefined;
+  /** Whether the run goes on when its visitor comes back from another place of the page. */
+  #goesOn = false;
 
   constructor({ store, form, gallery }: { store: Store; form: Form; gallery: Gallery }) {
     this.store = store;
@@ -110,7 +113,13 @@ export class Lab {
       onChange: () => this.#showState(),
       onError: (error, playing) => void this.#breakOff(error, playing),
     });
-    this.#rivals = new Rivals({ onLook: (pose) => this.gallery.pretend(pose), onStart: (pose) => this.#startFrom(pose) });
+    this.#rivals = new Rivals({
+      onLook: (pose) => {
+        gallery.pretend(pose);
+        this.#showState();
+      },
+      onStart: ({ angles }) => store.change(startNear(angles), true),
+    });
     this.#light = new LightPanel({ turn: () => turnOf(this.store.settings), onLight: (patch, done, gesture) => this.#changeLight(patch, done, gesture) });
     byId("objective-title", HTMLElement).append(this.#explanations.button("objective", "Objective"));
     byId("slots", HTMLElement).append(this.#own.intake.element);
@@ -119,27 +128,27 @@ export class Lab {
     this.#form.adapt(this.store.settings, this.#origin);
   }
 
-  /** These settings on the screen; the first ones open their input in any case. */
+  /** These settings on the screen; the first ones open their input in any case, and what played when its visitor went away plays on. */
   enter(settings: Settings): Promise<void> {
+    const [before, goesOn] = [this.#turn, this.#goesOn];
+    this.#goesOn = false;
     this.store.change(settings);
-    return this.#turn === 0 ? this.#reopen() : this.#beginning;
+    if (before === 0) return this.#reopen();
+    if (goesOn && before === this.#turn && !this.#isFinished()) void this.#playOnce(this.#beginning);
+    return this.#beginning;
   }
 
   /** Plays the run of these settings from its beginning. */
-  async watch(settings: Settings): Promise<void> {
-    this.#watched = settings;
+  watch(settings: Settings): Promise<void> {
     const before = this.#turn;
     const entered = this.enter(settings);
-    const begun = before === this.#turn ? this.restart() : entered;
-    const turn = this.#turn;
-    await begun;
-    if (this.#watched !== settings || this.#turn !== turn || this.player.playing) return;
-    this.player.toggle();
+    return this.#playOnce(before === this.#turn ? this.restart() : entered);
   }
 
-  /** The visitor has gone to the Tables. */
+  /** The visitor has gone to another place of the page, where nothing of this one plays. */
   leave(): void {
-    this.#watched = undefined;
+    this.#goesOn ||= this.player.playing || this.#willPlay;
+    this.#willPlay = false;
     this.player.pause();
   }
 
@@ -149,7 +158,7 @@ export class Lab {
     rememberOrigin(origin);
     this.#form.adapt(this.store.settings, origin);
     void this.#reopen();
-    if (origin === "files") void this.#own.restore();
+    this.#own.choose(origin);
   }
 
   restart(): Promise<void> {
@@ -159,8 +168,7 @@ export class Lab {
 
   download(): void {
     if (!this.#good || !this.#report) return;
-    const { source, settings } = this.#good;
-    download({ source: originOf(source), settings, truth: this.#truth, report: this.#report, history: this.#history });
+    download({ ...this.#good, source: originOf(this.#good.source), truth: this.#truth, report: this.#report, history: this.#history });
   }
 
   /** Hands over one of the results, in full. */
@@ -168,14 +176,12 @@ export class Lab {
     if (!this.#good || !this.#report) return;
     try {
       const { source, settings } = this.#good;
-      if (kind === "run") return await this.#saveRun();
-      const [{ fileOfKind }, taken] = await Promise.all([import("./takeaway"), this.#engine.call("take", {})]);
-      const report = this.#report;
+      const { fileOfKind, fileOfRun } = await import("./takeaway");
+      if (kind === "run") return this.#save(fileOfRun(await this.#engine.call("save", {})));
+      const [taken, report] = [await this.#engine.call("take", {}), this.#report];
       const run = { taken, report, end: this.#verdict(report), truth: this.#truth, origin: originOf(source), settings };
       const files = source.kind === "files" ? this.#own.intake.said : [];
-      const { name, blob, says } = await fileOfKind(kind, { ...run, files, link: linkTo(settings) });
-      saveBlob(name, blob);
-      byId("taken", HTMLElement).textContent = says ? `Saved ${name}: ${says}.` : `Saved ${name}.`;
+      this.#save(await fileOfKind(kind, { ...run, files, link: linkTo(settings) }));
     } catch (error) {
       // What was asked for next has broken it off, and speaks for itself.
       if (error instanceof EngineError) {
@@ -186,11 +192,9 @@ export class Lab {
     }
   }
 
-  /** The run itself, to go on with later. */
-  async #saveRun(): Promise<void> {
-    const name = "run.bimodal";
-    saveBlob(name, new Blob([(await this.#engine.call("save", {})) as Uint8Array<ArrayBuffer>]));
-    byId("taken", HTMLElement).textContent = `Saved ${name}: drop it on this page to go on from here; it holds both views and the options.`;
+  #save({ name, blob, says }: Made): void {
+    saveBlob(name, blob);
+    byId("taken", HTMLElement).textContent = says ? `Saved ${name}: ${says}.` : `Saved ${name}.`;
   }
 
   /** A saved run, which is run again as far as it had come. */
@@ -222,43 +226,44 @@ export class Lab {
 
   #settingsChanged(settings: Settings, changed: readonly string[], live: boolean): void {
     writeAddress(settings);
-    byId("undo", HTMLButtonElement).disabled = !this.store.canUndo;
-    byId("redo", HTMLButtonElement).disabled = !this.store.canRedo;
     this.#form.adapt(settings, this.#origin);
     // Those of a run that is there already.
     if (changed.length === 0) return;
+    this.#date(true);
     // A slider shows what it does: what was playing, or will be, or had been played to its end, plays again.
     const again = live && (this.player.playing || this.#willPlay || this.#isFinished());
     const input = fields.some(({ key, group }) => inputGroups.includes(group) && changed.includes(key));
     const begun = input ? this.#reopen() : this.restart();
-    this.#willPlay = again;
     if (again) void this.#playOnce(begun);
   }
 
   /** The picture follows the light while it is moved; a run follows once it rests. */
   #changeLight(patch: Settings, done: boolean, gesture: object): void {
-    if (done) {
-      this.#trying = undefined;
-      this.store.change(patch, true, gesture);
+    if (!done) {
+      this.#date(true);
+      void this.#trial.show(patch);
       return;
     }
-    this.#trying = patch;
-    if (!this.#previewing) void this.#preview();
+    this.#trial.end();
+    const before = this.store.settings;
+    this.store.change(patch, true, gesture);
+    // Turned back to where it was: what has been found is of this light.
+    if (this.store.settings === before) this.#date(false);
   }
 
-  async #preview(): Promise<void> {
-    this.#previewing = true;
+  /** Says of what has been found whether it is of the run before. */
+  #date(isBefore: boolean): void {
+    this.#pose.date(isBefore);
+    this.#light.date(isBefore);
+  }
+
+  async #preview(patch: Settings): Promise<void> {
+    if (this.#origin !== "sample") return;
     const before = this.#turn;
-    for (let patch = this.#trying; patch; patch = this.#trying) {
-      this.#trying = undefined;
-      const source = sourceOf("sample", { ...this.store.settings, ...patch }, {});
-      if (typeof source === "string" || source.kind !== "sample" || this.#origin !== "sample") break;
-      const seen = await this.#engine.call("preview", { source }).catch(() => undefined);
-      if (!seen || this.#turn !== before) break;
-      this.gallery.preview(seen.picture);
-      this.#light.showTruth(seen.trueLight);
-    }
-    this.#previewing = false;
+    const seen = await this.#engine.call("preview", { source: sampleOf({ ...this.store.settings, ...patch }) }).catch(() => undefined);
+    if (!seen || this.#turn !== before) return;
+    this.gallery.preview(seen.picture);
+    this.#light.showTruth(seen.trueLight);
   }
 
   #pin(): void {
@@ -266,16 +271,12 @@ export class Lab {
     this.#compare.say(this.#report ? wordsOf(this.#report, this.#truth) : "");
   }
 
-  #startFrom({ angles }: Pose): void {
-    const rounded = (degrees: number) => Math.round(10 * degrees) / 10;
-    this.store.change({ start: "near", "start.alpha": rounded(angles.alpha), "start.beta": rounded(angles.beta), "start.gamma": rounded(angles.gamma) }, true);
-  }
-
   /** Plays a run once it has begun, unless something newer has by then. */
   async #playOnce(begun: Promise<void>): Promise<void> {
     const turn = this.#turn;
+    this.#willPlay = true;
     await begun;
-    if (this.#turn !== turn) return;
+    if (this.#turn !== turn || !this.#willPlay) return;
     this.#willPlay = false;
     if (!this.player.playing && !this.#notice) this.player.toggle();
   }
@@ -290,6 +291,7 @@ export class Lab {
 
   /** The loop from its beginning, on an input that the worker may already hold. */
   #start(source: Source | string): Promise<void> {
+    this.#willPlay = false;
     return this.#enter(this.#attempt(source, ++this.#turn));
   }
 
@@ -319,11 +321,7 @@ export class Lab {
         this.#forget();
         await this.#show(frame);
       } else {
-        const opened = await this.#engine.call("open", { source: await readable(source), options, look: this.gallery.look });
-        this.#held = source;
-        if (turn !== this.#turn) return;
-        this.#pair = source.kind === "files" ? [source.files.colour, source.files.depth] : [];
-        await this.#present(opened);
+        if (!(await this.#open(source, options, turn))) return;
       }
       this.#good = { source, settings: source.kind === "saved" ? this.store.settings : settings };
       if (turn === this.#turn) this.#settle();
@@ -343,14 +341,26 @@ export class Lab {
     this.#offered = true;
   }
 
+  /** Has the worker open an input and shows it, unless that has been overtaken by then. */
+  async #open(source: Source, options: LabOptions, turn: number): Promise<boolean> {
+    const opened = await this.#engine.call("open", { source: await readable(source), options, look: this.gallery.look });
+    this.#held = source;
+    if (turn !== this.#turn) return false;
+    this.#pair = source.kind === "files" ? [source.files.colour, source.files.depth] : [];
+    await this.#present(opened);
+    return true;
+  }
+
   /** Pictures in one frame, numbers in the next: no press waits for the layout of both. */
   async #present(opened: Opened): Promise<void> {
     const turn = this.#turn;
     byId("lab", HTMLElement).removeAttribute("data-vacant");
-    this.#forget();
-    await this.gallery.open(opened, this.#looksOther());
+    const object = objectOf(this.#wanted, this.store.settings);
+    await this.gallery.open(opened, object === "" || object !== this.#seen);
+    this.#seen = object;
     await nextTask();
     if (turn !== this.#turn) return;
+    this.#forget();
     this.#truth = opened.truth;
     this.#length = opened.units.image;
     this.#light.showTruth(opened.trueLight);
@@ -359,15 +369,6 @@ export class Lab {
     this.#take(opened.frame);
     await nextFrame();
     offerPictures(byId("lab", HTMLElement), byId("take-picture", HTMLSelectElement));
-  }
-
-  /** Whether another object has come: the view of one whose light or noise has changed stays. */
-  #looksOther(): boolean {
-    const { surface, size, protocol } = this.store.settings;
-    const seen = typeof this.#wanted === "string" || this.#wanted.kind !== "sample" ? "" : [surface, size, protocol].join(" ");
-    const other = seen === "" || seen !== this.#seen;
-    this.#seen = seen;
-    return other;
   }
 
   async #advance(request: Advance): Promise<boolean> {
@@ -396,6 +397,7 @@ export class Lab {
     this.#history = [];
     this.#from = undefined;
     this.#scores.clear();
+    this.#date(false);
   }
 
   #isFinished(): boolean {
@@ -438,17 +440,18 @@ export class Lab {
   #showState(): void {
     const { playing } = this.player;
     const report = this.#report;
+    this.#status.doubt = this.#origin === "files" ? this.#own.doubt : "";
     if (report) {
       const end = this.#verdict(report);
-      this.#pose.show(report, this.#from, this.#truth, this.#length);
       this.#rivals.show(report);
+      this.#pose.show(report, this.#rivals.looked, this.#from, this.#truth, this.#length);
       this.#strip.show(report);
       this.#status.show(report, playing ? "playing" : report.iteration > 0 || isSearching(report) ? "paused" : "ready", end);
     }
     if (this.#notice) this.#status.announce(this.#notice.state, this.#notice.words, this.#notice.cause);
-    const play = byId("play", HTMLButtonElement);
-    play.setAttribute("aria-pressed", String(playing));
-    play.setAttribute("aria-label", playing ? "Pause" : "Play");
+    // What the status tells of is in the way of a run, unless there is one that it leaves usable.
+    const isIdle = typeof this.#wanted === "string" || !this.#good;
+    this.#transport.show(playing, isIdle && this.#notice?.cause ? this.#notice.words : "");
   }
 
   /** Says what is wrong beside the field it concerns; what was on the screen stays, and stays usable. */
@@ -486,10 +489,7 @@ export class Lab {
     this.#good = undefined; // should it fail once more, the page waits for another input
     const turn = ++this.#turn;
     try {
-      const opened = await this.#engine.call("open", { source: await readable(source), options: runOptions(settings, originOf(source)), look: this.gallery.look });
-      this.#held = source;
-      if (turn !== this.#turn) return;
-      await this.#present(opened);
+      if (!(await this.#open(source, runOptions(settings, originOf(source)), turn))) return;
       this.#good = { source, settings };
       this.#messages.add("The input is kept, and the run begins anew.");
     } catch (error) {

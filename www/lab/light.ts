@@ -4,6 +4,7 @@ import { byId, make } from "../dom";
 import type { Frame, KnownLight } from "../engine/protocol";
 import { Coefficients } from "./coefficients";
 import type { Settings } from "./settings";
+import { dated } from "./verdict";
 
 export interface Turn {
   alpha: number;
@@ -36,6 +37,8 @@ export class LightPanel {
   /** Turned as the pointer says, and not yet as the settings do. */
   #turn: Turn | undefined;
   #gesture = {};
+  #standing = "found";
+  #isBefore = false;
   readonly #hooks: LightHooks;
 
   constructor(hooks: LightHooks) {
@@ -49,9 +52,16 @@ export class LightPanel {
     this.#listen(this.#truth.canvas);
   }
 
+  /** Whether the light that is shown as found is of the run before. */
+  date(isBefore: boolean): void {
+    this.#isBefore = isBefore;
+    this.#found.say(dated(this.#standing, isBefore));
+  }
+
   /** While a search tries poses, the light is that of the best candidate. */
   show({ found, difference }: Frame["light"], standing: string): void {
-    this.#found.say(standing);
+    this.#standing = standing;
+    this.date(this.#isBefore);
     this.#found.show(found);
     this.#difference.show(difference);
   }

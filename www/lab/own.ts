@@ -229,7 +229,9 @@ export async function offerFor(files: Files): Promise<Offer | undefined> {
   const [colour, depth, colourMask, depthMask] = await Promise.all([look("colour"), look("depth"), look("colourMask"), look("depthMask")]);
   const seems = (there: Look | undefined, kind: Look["kind"]) => there?.kind === kind;
   const isCoarse = seems(depth, "colour") && !/\bRGB/.test(depth?.says ?? "");
-  if (files.colour && files.depth && ((seems(colour, "depth") && !seems(depth, "depth")) || (seems(depth, "colour") && !isCoarse && !seems(colour, "colour")))) {
+  // Of a grey picture and a coloured one the coloured one is no depth map, while the grey one may be.
+  const isGrey = seems(colour, "colour") && /\bgrey/.test(colour?.says ?? "");
+  if (files.colour && files.depth && ((seems(colour, "depth") && !seems(depth, "depth")) || (seems(depth, "colour") && !isCoarse && (!seems(colour, "colour") || isGrey)))) {
     return { words: "Colour and depth seem to be swapped.", button: "Swap them", slots: { ...files, colour: files.depth, depth: files.colour } };
   }
   // A mask may have soft edges, and a coarse depth map 8 bits of grey: that alone proves nothing.

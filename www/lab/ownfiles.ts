@@ -2,7 +2,8 @@
 
 import { Intake, type Slot } from "./intake";
 import { runAmong } from "./kind";
-import type { Value } from "./settings";
+import type { Offer } from "./own";
+import type { Origin, Value } from "./settings";
 import type { Files } from "./storage";
 
 export interface OwnFilesHooks {
@@ -10,6 +11,8 @@ export interface OwnFilesHooks {
   onChange(): void;
   /** A saved run in place of a pair. */
   onRun(file: File): void;
+  /** Something of them seems to be in the wrong place, or no longer. */
+  onDoubt(): void;
   /** Fields that a camera's file has filled. */
   onCameras(fields: Record<string, Value>): void;
 }
@@ -19,11 +22,23 @@ export class OwnFiles {
   readonly #hooks: OwnFilesHooks;
   /** Whether the files of last time have been asked for. */
   #restored = false;
+  #doubt = "";
   /** How often files have come by hand: those of last time come too late after the first. */
   #hands = 0;
 
   constructor(hooks: OwnFilesHooks) {
     this.#hooks = hooks;
+  }
+
+  /** What of them seems to be in the wrong place, and where that is mended; empty where all is well. */
+  get doubt(): string {
+    return this.#doubt;
+  }
+
+  /** The visitor turns to their own files, or away from them and from what was wrong with any. */
+  choose(origin: Origin): void {
+    if (origin === "files") void this.#restore();
+    else this.intake.remarks([]);
   }
 
   /** Any number of them, each into the slot that its content is of. */
@@ -41,7 +56,7 @@ export class OwnFiles {
   }
 
   /** The files of last time, once, unless there are others by then. */
-  async restore(): Promise<void> {
+  async #restore(): Promise<void> {
     if (this.#restored) return;
     this.#restored = true;
     const before = this.#hands;
@@ -61,14 +76,20 @@ export class OwnFiles {
   /** Shows what each file is, and asks where one seems to be in the wrong place. */
   async #look(): Promise<void> {
     const files: Files = { ...this.intake.files };
-    this.intake.offer(undefined);
+    this.#offer(undefined);
     if (Object.keys(files).length === 0) return;
     const { lookAt, offerFor } = await import("./own");
     await Promise.all(Object.entries(files).map(async ([slot, file]) => this.intake.show(slot as Slot, file, await lookAt(file))));
     const offer = await offerFor(files);
     const now = this.intake.files;
     const isSame = Object.keys({ ...files, ...now }).every((slot) => files[slot as Slot] === now[slot as Slot]);
-    if (isSame) this.intake.offer(offer);
+    if (isSame) this.#offer(offer);
+  }
+
+  #offer(offer: Offer | undefined): void {
+    this.intake.offer(offer);
+    this.#doubt = offer ? `${offer.words.replace(/\.$/, "")}: Settings, ${offer.button}.` : "";
+    this.#hooks.onDoubt();
   }
 
   async #keep(): Promise<void> {

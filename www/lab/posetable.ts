@@ -5,7 +5,7 @@ import { decimals } from "../draw/numbers";
 import { byId, make } from "../dom";
 import type { Explanations } from "./ask";
 import type { Term } from "./explain";
-import { angleBetween, standing } from "./verdict";
+import { BEFORE, angleBetween, dated, standing } from "./verdict";
 
 /** Rows, in the words of the run's messages; those without a unit of their own are lengths in the colour view's unit. */
 const rows: readonly { words: string; name: string; index?: string; unit?: string; decimals: number; read(pose: Pose): number | undefined }[] = [
@@ -27,6 +27,8 @@ export class PoseTable {
   readonly #extras: readonly { dt: HTMLElement; dd: HTMLElement; read: Extra["read"] }[];
   readonly #table: HTMLTableElement;
   readonly #heading = byId("pose-found", HTMLTableCellElement);
+  #standing = "start";
+  #isBefore = false;
 
   constructor(table: HTMLTableElement, explanations: Explanations) {
     this.#table = table;
@@ -41,10 +43,24 @@ export class PoseTable {
     table.tBodies[0]?.append(...lines);
   }
 
-  show(report: StepReport, start: Pose | undefined, truth: Pose | null, length: "px" | "m"): void {
-    const { pose } = report;
+  /** Whether what is shown is of the run before: the settings have changed since, or are about to. */
+  date(isBefore: boolean): void {
+    this.#isBefore = isBefore;
+    this.#head();
+  }
+
+  #head(): void {
+    const words = dated(this.#standing, this.#isBefore);
+    this.#table.toggleAttribute("data-before", words === BEFORE);
+    this.#heading.textContent = words;
+  }
+
+  /** A rival's pose in place of the run's own; all other numbers are the run's. */
+  show(report: StepReport, rival: Pose | undefined, start: Pose | undefined, truth: Pose | null, length: "px" | "m"): void {
+    const pose = rival ?? report.pose;
     // A search only tries poses: none is found before it is over.
-    this.#heading.textContent = standing(report);
+    this.#standing = rival ? "rival" : standing(report);
+    this.#head();
     rows.forEach(({ index, decimals: count, read, unit = length }, i) => {
       const cells = this.#cells[i];
       if (!cells) return;

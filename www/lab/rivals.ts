@@ -1,4 +1,4 @@
-/** Poses that explain the colours as well: each can be looked at, and be where a new run starts. */
+/** Poses that explain the colours as well, over the surfaces that they lay: each can be looked at, and be where a new run starts. */
 
 import type { Pose, StepReport } from "../../pkg/index.js";
 import { decimals } from "../draw/numbers";
@@ -6,7 +6,7 @@ import { byId, make } from "../dom";
 import { angleBetween } from "./verdict";
 
 export interface RivalHooks {
-  /** Shows the depth map under this pose, or under its own again. */
+  /** Another one of them is looked at, or the pose found again. */
   onLook(pose: Pose | undefined): void;
   onStart(pose: Pose): void;
 }
@@ -18,9 +18,15 @@ export class Rivals {
   readonly #box = byId("rivals", HTMLElement);
   readonly #hooks: RivalHooks;
   #shown = "";
+  #looked: Pose | undefined;
 
   constructor(hooks: RivalHooks) {
     this.#hooks = hooks;
+  }
+
+  /** The one that is looked at in place of the pose found. */
+  get looked(): Pose | undefined {
+    return this.#looked;
   }
 
   show({ rivals = [], pose, status }: StepReport): void {
@@ -28,6 +34,7 @@ export class Rivals {
     const key = JSON.stringify([poses, poses.length > 0 && pose]);
     if (key === this.#shown) return;
     this.#shown = key;
+    this.#looked = undefined;
     this.#box.hidden = poses.length === 0;
     const start = make("button", { type: "button", hidden: true }, "Start from it");
     const choices = [undefined, ...poses].map((rival) => {
@@ -37,6 +44,7 @@ export class Rivals {
         for (const choice of choices) choice.setAttribute("aria-pressed", String(choice === button));
         start.hidden = !rival;
         start.onclick = () => rival && this.#hooks.onStart(rival);
+        this.#looked = rival;
         this.#hooks.onLook(rival);
       });
       return button;

@@ -213,6 +213,12 @@ export function runOptions(settings: Settings, source: Origin): LabOptions {
   };
 }
 
+/** A run that starts near these angles; tenths of a degree are finer than a start has to be. */
+export function startNear({ alpha, beta, gamma }: Record<"alpha" | "beta" | "gamma", number>): Settings {
+  const rounded = (degrees: number) => Math.round(10 * degrees) / 10;
+  return { start: "near", "start.alpha": rounded(alpha), "start.beta": rounded(beta), "start.gamma": rounded(gamma) };
+}
+
 /** The value at a path below what its first name stands for. */
 const valueAt = (root: unknown, path: string): unknown => path.split(".").slice(1).reduce<unknown>((inner, name) => (inner as Record<string, unknown> | undefined)?.[name], root);
 

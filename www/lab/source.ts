@@ -1,6 +1,6 @@
 /** The input that the settings describe, and whether it was the visitor's own before a reload. */
 
-import type { OwnFiles, Source } from "../engine/protocol";
+import type { OwnFiles, SampleSource, Source } from "../engine/protocol";
 import type { Slot } from "./intake";
 import { isFurther } from "./kind";
 import { camera, sampleRequest, turnOf, type Origin, type Settings } from "./settings";
@@ -28,6 +28,10 @@ export function wasOwn(): boolean {
 /** Which fields a source has to do with. */
 export const originOf = (source: Source): Origin => (source.kind === "sample" ? "sample" : "files");
 
+/** Which object a sample shows, whatever its light or noise; none that is known of any other source. */
+export const objectOf = (source: Source | string, { surface, size, protocol }: Settings): string =>
+  typeof source === "string" || source.kind !== "sample" ? "" : [surface, size, protocol].join(" ");
+
 /** With the pixels of the files that the worker's decoders do not know; what does know them loads with the first such file. */
 export async function readable(source: Source): Promise<Source> {
   if (source.kind !== "files") return source;
@@ -42,9 +46,11 @@ export async function readable(source: Source): Promise<Source> {
 export const wayOut = (lacking: string): string =>
   lacking.includes("camera:") ? "Type them in the settings, or leave all of that camera's numbers empty." : "Drop files anywhere on this page, or choose them in the settings.";
 
+export const sampleOf = (settings: Settings): SampleSource => ({ kind: "sample", request: sampleRequest(settings), turn: turnOf(settings) });
+
 /** Or in words what it still lacks. */
 export function sourceOf(origin: Origin, settings: Settings, { colour, depth, ...masks }: Partial<Record<Slot, File>>): Source | string {
-  if (origin === "sample") return { kind: "sample", request: sampleRequest(settings), turn: turnOf(settings) };
+  if (origin === "sample") return sampleOf(settings);
   if (!colour || !depth) return colour ? "waiting for a depth map" : depth ? "waiting for a colour image" : "waiting for both files";
   const files: OwnFiles = { colour, depth, ...masks };
   for (const side of ["colour", "depth"] as const) {

@@ -2,6 +2,7 @@
 
 import type { StepReport } from "../../pkg/index.js";
 import { byId } from "../dom";
+import { inWords } from "../said";
 import type { Verdict } from "./verdict";
 
 /** What else than the loop the status can tell of. */
@@ -23,20 +24,23 @@ export class Status {
   readonly #cause = byId("verdict", HTMLElement);
   readonly #message = byId("message", HTMLElement);
   readonly #next = byId("next", HTMLElement);
+  /** What seems to be wrong with the input, and the way out: of all that may help it comes first. */
+  doubt = "";
 
   /** `idle` is what the page itself does while the loop rests. */
   show(report: StepReport, idle: "ready" | "paused" | "playing", end: Verdict | undefined): void {
     this.#say(end ? report.status : idle, end?.tone ?? "open", end?.status ?? idle);
     this.#put(this.#cause, end?.words ?? "");
-    this.#put(this.#next, end?.next ?? (idle === "ready" ? "Press play, or choose another example." : ""));
-    this.#put(this.#message, end ? "" : (report.message ?? ""));
+    this.#put(this.#next, this.doubt || (end?.next ?? (idle === "ready" ? "Press play, or choose another example." : "")));
+    this.#put(this.#message, end ? "" : inWords(report.message ?? ""));
   }
 
   /** Something other than the loop is going on, or has gone wrong. */
   announce(state: Notice, words: string, cause: string): void {
     this.#say(state, state === "error" ? "wrong" : "open", words);
     this.#put(this.#cause, cause);
-    for (const line of [this.#next, this.#message]) this.#put(line, "");
+    this.#put(this.#next, this.doubt);
+    this.#put(this.#message, "");
   }
 
   #say(state: string, tone: Verdict["tone"], word: string): void {

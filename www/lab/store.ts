@@ -2,7 +2,7 @@
 
 import { defaults, type Settings, type Value } from "./settings";
 
-/** `live` is a change by a control that is still being moved, or has just been let go. */
+/** `live` is a change by a control that is still being moved, or has just been let go, and one that is undone or redone. */
 export type Listener = (settings: Settings, changed: readonly string[], live: boolean) => void;
 
 const differing = (a: Settings, b: Settings): string[] => Object.keys(a).filter((key) => a[key] !== b[key]);
@@ -65,7 +65,7 @@ export class Store {
     if (!before) return;
     this.#gesture = undefined;
     this.#undone.push(this.#now);
-    this.#become(before, false);
+    this.#become(before, true);
   }
 
   redo(): void {
@@ -73,7 +73,7 @@ export class Store {
     if (!after) return;
     this.#gesture = undefined;
     this.#past.push(this.#now);
-    this.#become(after, false);
+    this.#become(after, true);
   }
 
   #become(next: Settings, live: boolean): void {

@@ -91,6 +91,10 @@ async function report(run: Run): Promise<Made> {
   return made("bimodal-stereo-report.html", "text/html", html);
 }
 
+/** The run itself, to go on with later. */
+export const fileOfRun = (bytes: Uint8Array): Made =>
+  made("run.bimodal", "", bytes as Uint8Array<ArrayBuffer>, "drop it on this page to go on from here; it holds both views and the options");
+
 export async function fileOfKind(kind: Exclude<Kind, "run">, run: Run): Promise<Made> {
   const { pose, unit, light, depth, image } = run.taken;
   switch (kind) {

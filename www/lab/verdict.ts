@@ -2,6 +2,7 @@
 
 import type { Pose, StepReport } from "../../pkg/index.js";
 import { decimals } from "../draw/numbers";
+import { inWords } from "../said";
 
 export interface Verdict {
   /** Whether the outcome may be built on: "open" where nothing says so or against it. */
@@ -18,6 +19,10 @@ export const isSearching = ({ status, stage, iteration }: StepReport): boolean =
 /** What a pose and a light are at this moment: before the first step nothing is found. */
 export const standing = (report: StepReport): string =>
   isSearching(report) ? "candidate" : report.status === "running" && report.iteration === 0 ? "start" : "found";
+
+/** What they are once the settings are no longer those that they were found under; a start is not found. */
+export const BEFORE = "last run";
+export const dated = (standing: string, isBefore: boolean): string => (isBefore && standing !== "start" ? BEFORE : standing);
 
 /** How far a run is, in a few words. */
 export function wordsOf({ status, iteration, pose }: StepReport, truth: Pose | null): string {
@@ -53,7 +58,7 @@ const remedies: readonly (readonly [said: RegExp, remedy: string])[] = [
   [/painted/, "A start that is roughly known would help: Settings, Start, near."],
   [/unexplained/, "Less noise, or an object of one paint, would help."],
   [/points agree/, "Masks that leave out the background would help, and a start that is roughly known."],
-  [/other poses?/, "Choose one of the poses below to see it; a start that is roughly known decides."],
+  [/other poses?/, "Choose one of the poses on the surfaces to see it; a start that is roughly known decides."],
   [/cap of/, "Settings, Loop, Iterations lets it go on for longer."],
   [/apparent size/, "A scale that is known would help: Settings, Scale."],
 ];
@@ -72,7 +77,7 @@ const remedy = (said: string): string => remedies.find(([pattern]) => pattern.te
 /** How a finished loop is to be taken; nothing while it runs. */
 export function verdict({ status, message, pose }: StepReport, start: Pose | undefined, truth: Pose | null, isHeld = false): Verdict | undefined {
   if (status === "running") return undefined;
-  const said = message ? [sentence(message)] : isHeld ? [HELD] : [];
+  const said = message ? [sentence(inWords(message))] : isHeld ? [HELD] : [];
   const help = isHeld ? FREE : remedy(message ?? "");
   if (truth) {
     const off = angleBetween(pose.rotation, truth.rotation);
@@ -91,5 +96,8 @@ export function verdict({ status, message, pose }: StepReport, start: Pose | und
   return { tone: "wrong", status: stayed ? "start kept" : ends[status], words: [...said, caution].join(" "), next: help };
 }
 
-/** As what stands alone is written. */
-export const sentence = (words: string): string => `${words.charAt(0).toUpperCase()}${words.slice(1)}${/[.!?]$/.test(words) ? "" : "."}`;
+/** As what stands alone is written; the name of a file stays as it is. */
+export function sentence(words: string): string {
+  const first = /^[^:]*\.\w+: /.test(words) ? words.charAt(0) : words.charAt(0).toUpperCase();
+  return `${first}${words.slice(1)}${/[.!?]$/.test(words) ? "" : "."}`;
+}

@@ -1,5 +1,6 @@
 /** Exercises for a course: each begins with a link that opens the state it speaks of, and ends with its answer, folded. */
 
+import { OPTIONS } from "../../pkg/options.js";
 import { make } from "../dom";
 import { sentence } from "./maths";
 
@@ -45,7 +46,7 @@ export const exercises: readonly Exercise[] = [
     question: "Raise λ from the left until the pixel has one valley. Note λ and how far the solver ends from the truth. Do the same with the pose 20° off, and then with the robust prior. Which λ would you choose for a loop that starts with a wrong pose?",
     answer: [
       "With the right pose a larger λ is only good: the wrong valleys vanish and the one that is left is the true normal. With the pose 20° off they vanish, too, but what is left moves toward the wrong prior; at large λ the pixel just repeats it.",
-      "So λ should be just large enough to choose among valleys and too small to move them: the module's 0.05 against squared log residuals. The robust prior lets go beyond some 23°, so it chooses among near valleys and cannot drag a pixel far.",
+      `So λ should be just large enough to choose among valleys and too small to move them: the module's ${OPTIONS.lambda.members.prior.default} against squared log residuals. The robust prior lets go beyond some 23°: at that λ it chooses among near valleys, and one that is far off hardly moves the pixel. A much larger λ drags it all the same.`,
     ],
   },
   {

@@ -17,7 +17,7 @@ import type { Drawing, LessonId, Values } from "./protocol";
 import { Readouts } from "./readouts";
 import { referencesOf } from "./references";
 import { Session } from "./session";
-import { Slides } from "./slides";
+import { Slides, type Slide } from "./slides";
 
 const first = lessons[0] as Lesson;
 
@@ -70,6 +70,8 @@ export class LearnPage {
     const values = isTold ? valuesFrom(lesson, asked) : (this.#kept.get(lesson.id) ?? initialValues(lesson));
     this.#show(lesson, values);
     if (asked.has("slides")) this.#startSlides();
+    // Back from a slide to the lesson that it was begun at.
+    else this.#slides.close();
     this.#writeAddress();
   }
 
@@ -95,10 +97,10 @@ export class LearnPage {
   #show(lesson: Lesson, values: Values): void {
     if (this.#shown?.lesson === lesson) {
       this.#shown.controls.show(values);
-      if (!this.#shown.article.isConnected) this.#main.replaceChildren(this.#shown.article);
+      if (!this.#slides.isOpen && this.#shown.article.parentElement !== this.#main) this.#main.replaceChildren(this.#shown.article);
     } else {
       this.#shown = this.#make(lesson, values);
-      if (this.#slides.isOpen) this.#slides.take(this.#shown.article, lesson.title);
+      if (this.#slides.isOpen) this.#slides.take(slideOf(this.#shown));
       else this.#main.replaceChildren(this.#shown.article);
     }
     this.#mark(lesson.id);
@@ -134,7 +136,10 @@ export class LearnPage {
     const embed = new Embed(`${number}. ${lesson.title}`);
     box.append(embed.source);
     const slides = make("button", { type: "button", class: "learn-slides-button" }, "Slides");
-    slides.addEventListener("click", () => this.#startSlides());
+    slides.addEventListener("click", () => {
+      this.#startSlides();
+      this.#writeAddress("another");
+    });
     const article = make(
       "article",
       { class: "learn-lesson", "data-lesson": lesson.id },
@@ -213,14 +218,15 @@ export class LearnPage {
   #go(by: 1 | -1): void {
     const next = this.#shown && beside(this.#shown.lesson.id, by);
     if (!next) return;
+    // Before it is shown, which writes the address of its values.
+    this.#writeAddress("another");
     this.#show(next, this.#kept.get(next.id) ?? initialValues(next));
     this.#writeAddress();
   }
 
   #startSlides(): void {
     if (!this.#shown || this.#slides.isOpen) return;
-    this.#slides.open(this.#shown.article, this.#shown.lesson.title);
-    this.#writeAddress();
+    this.#slides.open(slideOf(this.#shown));
   }
 
   #endSlides(): void {
@@ -231,14 +237,19 @@ export class LearnPage {
     this.#writeAddress();
   }
 
-  #writeAddress(): void {
+  /** In the place of the entry that the browser's history is at; a slide that is turned to is another one, so that Back turns back. */
+  #writeAddress(entry: "same" | "another" = "same"): void {
     const shown = this.#shown;
     if (!shown || !this.#isOpen) return;
     const start = initialValues(shown.lesson);
     const changed = Object.entries(shown.controls.values).filter(([key, value]) => value !== start[key]);
     const state = new URLSearchParams({ at: shown.lesson.id, ...Object.fromEntries(changed.map(([key, value]) => [key, String(value)])) });
     shown.embed.show(`#learn&${state}`);
-    history.replaceState(null, "", `#learn&${state}${this.#slides.isOpen ? "&slides" : ""}${this.#isEmbedded ? "&embed" : ""}`);
+    const address = `#learn&${state}${this.#slides.isOpen ? "&slides" : ""}${this.#isEmbedded ? "&embed" : ""}`;
+    if (entry === "same") history.replaceState(null, "", address);
+    else history.pushState(null, "", address);
   }
 }
+
+const slideOf = ({ article, lesson: { id, title } }: Shown): Slide => ({ article, title, hasBeside: (by) => beside(id, by) !== undefined });
 

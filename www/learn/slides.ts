@@ -5,21 +5,29 @@ import { make } from "../dom";
 /** What the arrow keys already mean something to. */
 const MOVED_BY_ARROWS = "input, select, textarea";
 
+export interface Slide {
+  article: HTMLElement;
+  title: string;
+  /** Whether there is one after it, or before it. */
+  hasBeside(by: 1 | -1): boolean;
+}
+
 export class Slides {
   readonly element: HTMLDialogElement;
   readonly #holder = make("div", { class: "learn-slide" });
+  readonly #turns: readonly { by: 1 | -1; button: HTMLButtonElement }[];
   readonly #onTurn: (by: 1 | -1) => void;
 
   constructor(onTurn: (by: 1 | -1) => void, onClose: () => void) {
     this.#onTurn = onTurn;
-    const turn = (words: string, by: 1 | -1, sign: string) => {
+    this.#turns = ([["Previous lesson", -1, "←"], ["Next lesson", 1, "→"]] as const).map(([words, by, sign]) => {
       const button = make("button", { type: "button", "aria-label": words }, sign);
       button.addEventListener("click", () => this.#onTurn(by));
-      return button;
-    };
+      return { by, button };
+    });
     const close = make("button", { type: "button" }, "Close (Esc)");
     close.addEventListener("click", () => this.close());
-    this.element = make("dialog", { class: "learn-slides" }, this.#holder, make("div", { class: "learn-slide-bar" }, turn("Previous lesson", -1, "←"), turn("Next lesson", 1, "→"), close));
+    this.element = make("dialog", { class: "learn-slides" }, this.#holder, make("div", { class: "learn-slide-bar" }, ...this.#turns.map(({ button }) => button), close));
     this.element.addEventListener("keydown", (event) => this.#key(event));
     this.element.addEventListener("close", onClose);
   }
@@ -28,13 +36,14 @@ export class Slides {
     return this.element.open;
   }
 
-  open(article: HTMLElement, title: string): void {
+  open(slide: Slide): void {
     this.element.showModal();
-    this.take(article, title);
+    this.take(slide);
   }
 
-  take(article: HTMLElement, title: string): void {
+  take({ article, title, hasBeside }: Slide): void {
     this.element.setAttribute("aria-label", `Slide: ${title}`);
+    for (const { by, button } of this.#turns) button.disabled = !hasBeside(by);
     this.#holder.replaceChildren(article);
     this.#holder.scrollTop = 0;
     // A control that is gone takes the focus with it, and the keys would reach nobody.

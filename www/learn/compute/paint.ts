@@ -1,6 +1,7 @@
 /** Shadows, paint, and what the model does about them. */
 
 import type { Sample } from "../../../pkg/index.js";
+import { inWords } from "../../said";
 import type { Drawing, Values } from "../protocol";
 import { pictureOf, scalarOf } from "./draw";
 import { correlation, meanOf, normalDegrees } from "./measure";
@@ -63,7 +64,7 @@ export function* paint(values: Values): Generator<Drawing> {
         shaded: darkness > 0 ? meanOf(residual, isShadow) : NaN,
         degrees: normalDegrees(estimator.imageNormals(), made.truth.imageNormals),
       },
-      words: { status: report.status === "running" ? `iteration ${report.iteration}` : [report.status, report.message].filter(Boolean).join(": ") },
+      words: { status: report.status === "running" ? `iteration ${report.iteration}` : [report.status, inWords(report.message ?? "")].filter(Boolean).join(": ") },
     };
   }
 }

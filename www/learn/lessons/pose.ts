@@ -51,7 +51,7 @@ export const sensor: Lesson = {
   formulaWords: "A weight mu times the squared distance between the refined and the measured depth, plus the cost of the colours for the normals of the refined depth. Mu is the variance of the shading over that of the sensor.",
   text: [
     "A depth sensor is right on the large scale and noisy on the small one. Shading is the other way round: it tells slopes from pixel to pixel and drifts over long distances. The two fit together.",
-    "Once the pose is known, the refinement looks for a depth {z} that stays near the measured depth {d} and whose normals explain the colours. Nobody sets the weight μ between the two: it is the variance of the shading over that of the sensor, both measured from the data. Holes are filled where the colour camera sees the place. Normals gain most, for they are differences of neighbours, in which noise is largest.",
+    "Once the pose is known, the refinement looks for a depth {z} that stays near the measured depth {d} and whose normals explain the colours. Nobody sets the weight μ between the two: it is the variance of the shading over that of the sensor, both measured from the data. Holes are filled where the colour camera sees the place. Normals gain with it: they are differences of neighbours, in which noise is largest.",
     "What the picture does not see stays as it was measured: the side that is turned away, and what lies in shadow.",
   ],
   tasks: ["Raise the noise of the sensor. The measured normals get rough; the refined ones hold.", "Cut holes into the depth map and watch the share that is filled.", "Raise the noise of the picture: it has less to give, and the refined depth gets worse."],

@@ -1,0 +1,27 @@
+/** The figure of a lesson in a test's hands. */
+
+import { expect, type Locator, type Page } from "@playwright/test";
+
+export const figure = (page: Page): Locator => page.locator(".learn-figure");
+
+export async function open(page: Page, state = ""): Promise<void> {
+  await page.goto(`./#learn${state ? `&${state}` : ""}`);
+  await settled(page);
+}
+
+/** The last drawing for the values as they are. */
+export async function settled(page: Page): Promise<void> {
+  await expect(figure(page)).toHaveAttribute("aria-busy", "false");
+}
+
+export async function number(page: Page, key: string): Promise<number> {
+  await settled(page);
+  return Number((await page.locator(`[data-number="${key}"]`).getAttribute("data-value")) ?? NaN);
+}
+
+/** Moves a slider as a hand does: the page hears of it by the input event, and is busy from then on. */
+export async function slide(page: Page, name: string, value: number): Promise<void> {
+  const slider = page.locator(`.learn-controls input[name="${name}"]`);
+  await slider.fill(String(value));
+  await expect(slider).toHaveValue(String(value));
+}

@@ -1,0 +1,73 @@
+/** The slides of Learn: each fits its screen, and they are turned as pages are, by the browser's Back, too. */
+
+import { expect, test } from "./lab";
+
+const LESSONS = ["pixel", "grey", "colours", "surface", "prior", "pose", "sensor", "paint", "failure"];
+/** Whose words are longest. */
+const LONG = ["pose&run=register&offset=40", "failure&case=symmetry&amount=100", "failure&amount=100"];
+
+test("each slide fits its screen, whatever its figure has to say", async ({ lab, page }) => {
+  for (const state of [...LESSONS, ...LONG]) {
+    await page.goto("about:blank");
+    await page.goto(`./#learn&at=${state}&slides`);
+    await expect(page.locator(".learn-slide .learn-figure")).toHaveAttribute("aria-busy", "false");
+    for (const [width, height] of [[1280, 720], [1366, 768], [1600, 900], [1920, 1080]] as const) {
+      await page.setViewportSize({ width, height });
+      const below = () => page.locator(".learn-slide").evaluate(({ scrollHeight, clientHeight }) => scrollHeight - clientHeight);
+      await expect.poll(below, { message: `${state} at ${width} px` }).toBeLessThanOrEqual(0);
+    }
+  }
+  expect(lab.complaints).toEqual([]);
+});
+
+test("before the first slide and after the last there is none, and the buttons say so", async ({ page }) => {
+  await page.goto("./#learn&at=pixel&slides");
+  const previous = page.getByRole("button", { name: "Previous lesson" });
+  const next = page.getByRole("button", { name: "Next lesson" });
+  await expect(page.getByRole("heading", { name: "1. What a pixel knows" })).toBeVisible();
+  await expect(previous).toBeDisabled();
+  await next.click();
+  await expect(page.getByRole("heading", { name: "2. One grey light is not enough" })).toBeVisible();
+  await expect(previous).toBeEnabled();
+  await page.goto("./#learn&at=paint&slides");
+  await expect(page.getByRole("heading", { name: "8. Shadows and paint" })).toBeVisible();
+  await next.click();
+  await expect(page.getByRole("heading", { name: "9. When it fails" })).toBeVisible();
+  await expect(next).toBeDisabled();
+});
+
+test("the browser's Back turns a slide back, then leads to the lesson, and Forward again", async ({ lab, page }) => {
+  await page.goto("./#learn&at=pose");
+  await page.getByRole("navigation", { name: "Lessons" }).getByRole("link", { name: "What a pixel knows" }).click();
+  const heading = (title: string) => page.getByRole("heading", { name: title });
+  const slides = page.locator("dialog.learn-slides");
+  await page.getByRole("button", { name: "Slides" }).click();
+  await expect(slides).toBeVisible();
+  await page.keyboard.press("ArrowRight");
+  await expect(heading("2. One grey light is not enough")).toBeVisible();
+  // What is set is no entry of its own.
+  await slides.locator('input[name="turn"]').fill("90");
+  await expect(page).toHaveURL(/at=grey&turn=90&slides$/);
+  await page.keyboard.press("PageDown");
+  await expect(heading("3. Three colours")).toBeVisible();
+  await page.goBack();
+  await expect(heading("2. One grey light is not enough")).toBeVisible();
+  await expect(slides.locator('input[name="turn"]')).toHaveValue("90");
+  await page.goBack();
+  await expect(heading("1. What a pixel knows")).toBeVisible();
+  await expect(slides).toBeVisible();
+  await page.goBack();
+  await expect(slides).toBeHidden();
+  await expect(heading("1. What a pixel knows")).toBeVisible();
+  await expect(page).toHaveURL(/at=pixel$/);
+  await page.goForward();
+  await expect(slides).toBeVisible();
+  await expect(heading("1. What a pixel knows")).toBeVisible();
+  // Away from the slides to the Lab, and back to the lesson in its place.
+  await page.goto("./#size=32");
+  await lab.reaches("ready");
+  await page.getByRole("link", { name: "Learn", exact: true }).click();
+  await expect(slides).toBeHidden();
+  await expect(page.locator(".learn-main").getByRole("heading", { name: "1. What a pixel knows" })).toBeVisible();
+  expect(lab.complaints).toEqual([]);
+});
