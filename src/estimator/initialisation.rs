@@ -29,7 +29,7 @@ const FEW_SHARE: f64 = 0.2;
 const CONTRAST_SHARE: f64 = 0.25;
 
 /// What is done where the colours are painted.
-const COMPARING_CONTRAST: &str = "comparing local contrast, for the colours are painted";
+const COMPARING_CONTRAST: &str = "comparing local contrast, for one paint does not explain the colours";
 
 /// How the initialisation stands.
 pub enum Advance {

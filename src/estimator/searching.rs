@@ -71,10 +71,10 @@ impl Estimator {
         self.adopt(registered.ok_or_else(|| initialisation::nothing_found(&self.pair))?);
         self.report.message = Some(match self.report.rivals.len() {
             0 if self.registration.found_by_outlines().is_some() => {
-                "100 %: the colours are painted; outlines tell the pose".into()
+                "100 %: one paint does not explain the colours; outlines tell the pose".into()
             }
             0 if self.registration.found_by_contrast().is_some() => {
-                "100 %: the colours are painted; local contrast tells the pose".into()
+                "100 %: one paint does not explain the colours; local contrast tells the pose".into()
             }
             0 => "100 %: one pose explains the colours best".into(),
             1 => "100 %: one other pose explains the colours as well".into(),

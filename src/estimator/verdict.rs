@@ -203,7 +203,7 @@ fn reason_for_distrust(evidence: &Evidence<'_>) -> Option<Verdict> {
         return Some((Status::Lost, Some(reason.into())));
     }
     if let Some(OutlineEvidence { sigma, weakest, is_unseen }) = evidence.outlines {
-        let painted = "outlines decide, since the colours are painted";
+        let painted = "outlines decide, since one paint does not explain the colours";
         let sigma = (sigma.is_nan() || sigma > DOUBTFUL_SIGMA).then_some(Fixed(sigma, 1));
         let reason = match (is_unseen, sigma) {
             (true, _) => format!("{painted}; they do not show {weakest}: what was told of it is kept"),
@@ -246,7 +246,9 @@ fn reason_for_distrust(evidence: &Evidence<'_>) -> Option<Verdict> {
 fn reason_without_contrast(&ContrastEvidence { sigma, weakest, unexplained }: &ContrastEvidence<'_>) -> Option<String> {
     let paint = || {
         let share = Fixed(100.0 * unexplained, 0);
-        format!("the colours are painted, and shading leaves {share} % of their local contrast unexplained")
+        format!(
+            "one paint does not explain the colours, and shading leaves {share} % of their local contrast unexplained"
+        )
     };
     too_uncertain(sigma, weakest)
         .or_else(|| (unexplained.is_nan() || unexplained > LARGEST_UNEXPLAINED_CONTRAST).then(paint))
