@@ -11,12 +11,19 @@ use crate::problem::{Problem, plain, shown};
 /// Digits of lengths, sigmas and shares.
 const DIGITS: i32 = 4;
 
-/// A number with so many digits, without an exponent.
+/// Powers of ten beyond which a number is written with an exponent: hundreds of zeros say nothing.
+const PLAIN: std::ops::RangeInclusive<i32> = -9..=14;
+
+/// A number with so many digits, without an exponent where that can be read.
 fn digits(value: f64, digits: i32) -> String {
     if value == 0.0 || !value.is_finite() {
         return value.to_string();
     }
-    let decimals = (digits - 1 - value.abs().log10().floor() as i32).clamp(0, 12);
+    let power = value.abs().log10().floor() as i32;
+    if !PLAIN.contains(&power) {
+        return format!("{value:.*e}", digits as usize - 1);
+    }
+    let decimals = (digits - 1 - power).clamp(0, 12);
     format!("{value:.*}", decimals as usize)
 }
 
@@ -300,7 +307,8 @@ mod tests {
     #[test]
     fn digits_are_those_that_count() {
         let texts = [(0.012_345, "0.01235"), (-12.345, "-12.35"), (123_456.0, "123456"), (0.0, "0"), (9.99, "9.990")];
-        for (value, text) in texts {
+        let far = [(1e300, "1.000e300"), (-1.5e-20, "-1.500e-20"), (1e14, "100000000000000"), (f64::INFINITY, "inf")];
+        for (value, text) in texts.into_iter().chain(far) {
             assert_eq!(digits(value, 4), text);
         }
     }
