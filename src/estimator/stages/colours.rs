@@ -240,7 +240,7 @@ impl ColourRegistration {
     /// How many times as deep relief would have to be for colours that it does not explain otherwise: another unit than the
     /// depth map was given in. Before a parallel projection of the map alone: a pinhole's unit is that of all three axes.
     pub fn better_unit(&mut self, pair: &ViewPair, pose: &Similarity) -> Option<f32> {
-        // White noise leaves nothing for another unit to explain.
+        // White noise leaves nothing for another unit to explain, in all points or in the few that are tried here.
         let is_explained = |found: &PhotometricReport| found.structure <= EXPLAINED_STRUCTURE;
         if !pair.depth.camera.is_orthographic() || self.found().is_some_and(is_explained) {
             return None;
@@ -263,6 +263,9 @@ impl ColourRegistration {
             let problem = PhotometricProblem { points: &points, normals: &normals, ..problem };
             let Ok(found) = self.photometric.register(&problem, pose, &options) else { continue };
             if unit == 1.0 {
+                if is_explained(&found) {
+                    return None;
+                }
                 most = BETTER_NOISE * found.noise;
             } else if found.noise < most
                 && found.structure <= LARGEST_STRUCTURE
