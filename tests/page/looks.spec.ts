@@ -105,6 +105,21 @@ test("a view without values has no range of earlier ones", async ({ lab, page })
   expect(await lowest.evaluate(({ scrollWidth, clientWidth }) => scrollWidth - clientWidth)).toBeLessThanOrEqual(0);
 });
 
+test("a range that is half typed survives the frames that arrive meanwhile", async ({ lab, page }) => {
+  await lab.open("size=64");
+  const lowest = page.getByLabel("Depth: lowest value shown", { exact: true });
+  const highest = page.getByLabel("Depth: highest value shown", { exact: true });
+  await lowest.fill("-9");
+  // Without a press, which would enter it.
+  await page.locator("#step").evaluate((button: HTMLButtonElement) => button.click());
+  await expect(lab.iteration).toHaveText("1");
+  await expect(highest).not.toHaveValue("1");
+  await expect(lowest).toHaveValue("-9");
+  await page.keyboard.press("Enter");
+  await expect(page.getByLabel("Depth: range follows the values, auto", { exact: true })).toHaveAttribute("aria-pressed", "false");
+  await expect(lowest).toHaveValue("-9.00");
+});
+
 test.describe("on a phone", () => {
   test.use({ hasTouch: true, isMobile: true, viewport: { width: 390, height: 844 } });
 
