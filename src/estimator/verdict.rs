@@ -174,8 +174,11 @@ pub fn verdict(evidence: &Evidence<'_>) -> Option<Verdict> {
 
 /// The verdict of an answer that looked good, where relief so many times as deep explains its colours better.
 pub fn verdict_of_other_unit(unit: f32) -> Verdict {
-    let times = Fixed(f64::from(unit), 1);
-    (Status::Ambiguous, Some(format!("relief {times} times as deep explains the colours better: check depth.unit")))
+    let times = Fixed(f64::from(unit), if unit < 1.0 { 2 } else { 1 });
+    (
+        Status::Ambiguous,
+        Some(format!("relief about {times} times as deep explains the colours better: check depth.unit")),
+    )
 }
 
 /// Whether another iteration would change nothing that matters.
