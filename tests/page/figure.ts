@@ -6,6 +6,9 @@ export const figure = (page: Page): Locator => page.locator(".learn-figure");
 
 export async function open(page: Page, state = ""): Promise<void> {
   await page.goto(`./#learn${state ? `&${state}` : ""}`);
+  // Where only the address's end is another one, the lesson before is there until the page hears of it.
+  const link = page.locator(`.learn-contents a[href="#learn&at=${new URLSearchParams(state).get("at") ?? ""}"]`);
+  if ((await link.count()) > 0) await expect(link).toHaveAttribute("aria-current", "true");
   await settled(page);
 }
 
