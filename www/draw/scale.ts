@@ -10,8 +10,6 @@ export class Scale {
   #range: Range = { min: 0, max: 1 };
   #isFixed = false;
   readonly #onChange: () => void;
-  /** A field whose new value has not been entered yet. */
-  #typedIn: HTMLInputElement | null = null;
   #legends: { min: HTMLInputElement; max: HTMLInputElement; auto: HTMLButtonElement; unit: HTMLElement }[] = [];
 
   /** `onChange` is called when every view on this scale has to be painted again. */
@@ -36,13 +34,8 @@ export class Scale {
   legend(name: string): { element: HTMLElement; setUnit(unit: string): void } {
     const end = (which: "min" | "max") => {
       const input = make("input", { type: "number", step: "any", "aria-label": `${name}: ${which === "min" ? "lowest" : "highest"} value shown` });
-      input.addEventListener("input", () => (this.#typedIn = input));
-      input.addEventListener("blur", () => {
-        this.#typedIn = null;
-        this.#show();
-      });
+      input.addEventListener("blur", () => this.#show());
       input.addEventListener("change", () => {
-        this.#typedIn = null;
         if (Number.isFinite(input.valueAsNumber)) {
           this.#range = { ...this.#range, [which]: input.valueAsNumber };
           this.#isFixed = true;
@@ -75,9 +68,9 @@ export class Scale {
   }
 
   #show(): void {
-    // Frames arrive while a visitor types: a value that is half typed stays.
+    // Frames arrive while a visitor types.
     const put = (input: HTMLInputElement, value: number) => {
-      if (input !== this.#typedIn) input.value = short(value);
+      if (document.activeElement !== input) input.value = short(value);
     };
     for (const { min, max, auto } of this.#legends) {
       put(min, this.#range.min);
