@@ -21,9 +21,10 @@ import { themeToggle, wearTheme } from "./theme";
 const button = (id: string, action: () => void): void => byId(id, HTMLButtonElement).addEventListener("click", action);
 
 wearTheme();
-
 // The Lab, the controls around it and the first picture are tasks of their own, and what they put on the page is laid out by one after the
-// other: no press waits for all of the start.
+// other: no press waits for all of the start. First what the layout that loads the fonts has left out.
+await nextFrame();
+document.body.removeAttribute("data-opening");
 await nextFrame();
 const store = new Store(placeOf(location.hash) === "lab" ? fromLink(location.hash) : defaults);
 const form = new Form(store);
@@ -155,6 +156,7 @@ const places: Record<Place, { main: HTMLElement; link: HTMLAnchorElement; title:
 const labOnly = [byId("bar", HTMLElement), byId("skip", HTMLElement)];
 
 function show(place: Place): void {
+  document.body.dataset.place = place;
   for (const [name, { main, link, title }] of Object.entries(places)) {
     main.hidden = name !== place;
     if (name === place) {

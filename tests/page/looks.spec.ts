@@ -194,14 +194,22 @@ test("open settings hide no input, and what has opened them stays under the poin
   await expect(page.locator("#inputs")).toBeInViewport({ ratio: 0.5 });
 });
 
-test("the footer begins where its place does, on the widest screens too", async ({ lab, page }) => {
+test("the footer begins where its place does, on the widest screens too, and before the styles of a place are there", async ({ lab, page }) => {
   await page.setViewportSize({ width: 2560, height: 1300 });
   await lab.visit("size=64");
-  const left = (box: string) => page.locator(box).evaluate((element) => element.getBoundingClientRect().left);
-  for (const [link, place] of [["#to-tables", "#tables"], ["#to-rig", "#rig"], ["#to-learn", "#learn"], ["#to-lab", "#lab"]] as const) {
+  const release: (() => void)[] = [];
+  await page.route("**/*.css", (route) => new Promise<void>((resolve) => release.push(() => resolve(route.continue()))));
+  const lefts = (place: string) => page.evaluate((boxes) => boxes.map((box) => document.querySelector(box)?.getBoundingClientRect().left), [".about", place]);
+  for (const [link, place, styles] of [["#to-tables", "#tables", 1], ["#to-rig", "#rig", 1], ["#to-learn", "#learn", 1], ["#to-lab", "#lab", 0]] as const) {
     await page.locator(link).click();
     await expect(page.locator(place)).toBeVisible();
-    expect(await left(".about")).toBe(await left(place));
+    await expect.poll(() => release.length).toBe(styles);
+    const [about, main] = await lefts(place);
+    expect(about).toBe(main);
+    for (const go of release.splice(0)) go();
+    await expect(page.locator(place)).not.toBeEmpty();
+    const [later, settled] = await lefts(place);
+    expect(later).toBe(settled);
   }
 });
 

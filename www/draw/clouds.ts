@@ -4,7 +4,7 @@ import { Matrix4, OrthographicCamera, Quaternion, Sphere, TOUCH, Vector3 } from 
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import type { Pose } from "../../pkg/index.js";
 import type { Side, Surface } from "../engine/protocol";
-import { ink, make } from "../dom";
+import { ink, make, nextTask } from "../dom";
 import type { Asked } from "./probe";
 import { type CloudsHooks, type Renderer, rendererFor } from "./renderer";
 import type { Change, PinnedSurfaces } from "./stage";
@@ -52,6 +52,8 @@ export class Clouds {
   #next: Change | undefined;
   #drawing = false;
   #shown: Change["surfaces"];
+  /** How much room they take up. */
+  #extent: Sphere | undefined;
   /** The pose that the depth map's points come with, and where they stand now. */
   #pose: Matrix4 | undefined;
   #standing = NOWHERE.clone();
@@ -102,6 +104,7 @@ export class Clouds {
    */
   show(surfaces: Record<Side, Surface>, pose: Pose, seen: Pose, fresh: boolean): void {
     this.#shown = surfaces;
+    this.#extent = boundsOf(surfaces);
     if (fresh) this.home();
     else this.#follow();
     const before = this.#pose;
@@ -134,7 +137,7 @@ export class Clouds {
 
   /** Where the pinned run stands elsewhere, as far away as an image can't see, or in pixels of another size, it is brought here. */
   #placePinned(): void {
-    const [then, now] = [this.#pinned, this.#pinned && this.#shown && boundsOf(this.#shown)];
+    const [then, now] = [this.#pinned, this.#extent];
     if (!then || !now) return;
     const growth = now.radius / then.radius;
     const size = Math.max(growth, 1 / growth) > OTHER_SIZE ? growth : 1;
@@ -236,9 +239,8 @@ export class Clouds {
    * measured, whereas the image's surface can be anything before the loop has settled.
    */
   home(): void {
-    const bounds = this.#shown && boundsOf(this.#shown);
-    if (!bounds) return;
-    this.#bounds = bounds;
+    if (!this.#extent) return;
+    const bounds = (this.#bounds = this.#extent.clone());
     const { center, radius } = bounds;
     this.#camera.up.set(0, -1, 0);
     this.#camera.position.set(center.x + 1.2 * radius, center.y - 0.8 * radius, center.z - 2.5 * radius);
@@ -252,7 +254,7 @@ export class Clouds {
 
   /** Goes along with surfaces that have left the middle, as where the pose settles how far away they are; the viewpoint stays. */
   #follow(): void {
-    const center = this.#shown && extent(this.#shown.depth.points)?.center;
+    const center = this.#extent?.center;
     if (!center || center.distanceTo(this.#bounds.center) < LEFT_THE_MIDDLE * this.#bounds.radius) return;
     const moved = center.clone().sub(this.#bounds.center);
     this.#bounds.center.copy(center);
@@ -263,7 +265,7 @@ export class Clouds {
 
   /** Looks from farther away where a surface is cut off, as one does whose scale was found to be larger; unless the visitor has chosen how near to be. */
   #makeRoom(): void {
-    const [shown, size] = [this.#shown, this.#shown && boundsOf(this.#shown)?.radius];
+    const [shown, size] = [this.#shown, this.#extent?.radius];
     const isMoved = this.#camera.zoom !== 1 || this.#controls.target.distanceTo(this.#bounds.center) > 1e-6 * this.#bounds.radius;
     if (!shown || !size || isMoved || this.#size.width === 0) return;
     this.#camera.updateMatrixWorld();
@@ -315,6 +317,8 @@ export class Clouds {
 
   async #drawAll(): Promise<void> {
     this.#drawing = true;
+    // To hand the surfaces over is a task of its own, as long as that of looking at them.
+    await nextTask();
     while (this.#next) {
       const next = this.#next;
       this.#next = undefined;
@@ -341,16 +345,15 @@ const boundsOf = ({ depth, image }: Record<Side, Surface>): Sphere | undefined =
 
 /** A sphere about the bulk of the points: a few flying ones must not shrink the rest to a dot. */
 function extent(points: Float32Array): Sphere | undefined {
-  const axes: number[][] = [[], [], []];
+  const places: number[] = [];
   const every = Math.max(1, Math.floor(points.length / 3 / 2000));
   for (let i = 0; i + 2 < points.length; i += 3 * every) {
-    const point = points.subarray(i, i + 3);
-    if (point.every(Number.isFinite)) axes.forEach((axis, a) => axis.push(point[a] ?? 0));
+    if (Number.isFinite((points[i] ?? NaN) + (points[i + 1] ?? NaN) + (points[i + 2] ?? NaN))) places.push(i);
   }
-  const spans = axes.map((axis) => {
-    axis.sort((a, b) => a - b);
-    const low = axis[Math.floor(0.01 * axis.length)];
-    const high = axis[Math.ceil(0.99 * axis.length) - 1];
+  const spans = [0, 1, 2].map((axis) => {
+    const sorted = Float32Array.from(places, (i) => points[i + axis] ?? NaN).sort();
+    const low = sorted[Math.floor(0.01 * sorted.length)];
+    const high = sorted[Math.ceil(0.99 * sorted.length) - 1];
     return low === undefined || high === undefined ? undefined : { middle: (low + high) / 2, half: (high - low) / 2 };
   });
   const [x, y, z] = spans;

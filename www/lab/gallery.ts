@@ -21,6 +21,8 @@ export class Gallery {
   #hooks: GalleryHooks = { look: () => Promise.resolve(undefined), probe: () => Promise.resolve(undefined) };
   readonly #painter = new Painter();
   readonly #box = byId("lab", HTMLElement);
+  /** Share of the width that is the pinned run's; the style sheet begins with as much. */
+  #wipe = 0.5;
   readonly #figures: HTMLElement[] = [];
   readonly #probe = new Probe((asked) => this.#hooks.probe(asked));
   readonly #card = new Card(this.#probe);
@@ -152,7 +154,9 @@ export class Gallery {
 
   /** Share of each picture's width that is the pinned run's. */
   wipe(share: number): void {
-    document.documentElement.style.setProperty("--wipe", `${100 * share}%`);
+    // Where it stands already all of the page would get its styles anew.
+    if (share !== this.#wipe) this.#box.style.setProperty("--wipe", `${100 * share}%`);
+    this.#wipe = share;
     this.#clouds.wipe(share);
   }
 
