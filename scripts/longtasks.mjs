@@ -10,7 +10,7 @@
 import { execFileSync } from "node:child_process";
 import { chromium } from "@playwright/test";
 import { browser } from "./browser.mjs";
-import { script, say } from "./shell.mjs";
+import { Failure, say, script } from "./shell.mjs";
 import { buildSite } from "./site/build.mjs";
 import { serveSite } from "./site/serve.mjs";
 
@@ -65,7 +65,12 @@ async function putFirst(program) {
   const { processInfo } = await session.send("SystemInfo.getProcessInfo");
   await session.detach();
   for (const { type, id } of processInfo) {
-    if (type === "renderer") execFileSync("renice", ["-n", "-20", "-p", String(id)], { stdio: "ignore" });
+    if (type !== "renderer") continue;
+    try {
+      execFileSync("renice", ["-n", "-20", "-p", String(id)], { stdio: "ignore" });
+    } catch (error) {
+      throw new Failure(`--alone needs Linux and root, to give process ${id} precedence: ${error.message}`);
+    }
   }
 }
 
