@@ -13,7 +13,7 @@ export interface Pinhole {
 }
 
 /**
- * One colour image of the object, up to 4096 pixels on a side. One that is several times finer than the depth map is worked on at the depth
+ * One colour image of the object, up to 4096 pixels on a side. One that is finer than the depth map, by a quarter or more, is worked on at the depth
  * map's resolution; arrays, poses and options are in its own pixels all the same, and memory is asked for the working size.
  */
 export interface ColorImage {

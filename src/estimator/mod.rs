@@ -298,7 +298,12 @@ impl Estimator {
         self.solution.pose = found.pose;
         self.solution.light.light = found.light.unwrap_or(self.solution.light.light);
         self.solution.light.exposure = found.exposure.unwrap_or(self.solution.light.exposure);
-        self.report.uncertainty = found.uncertainty.or(self.report.uncertainty.take());
+        if let Some(mut uncertainty) = found.uncertainty {
+            if !self.pair.image.camera.is_orthographic() {
+                uncertainty.add_focal_length(found.pose.apply(self.pair.depth.points.centroid()).z);
+            }
+            self.report.uncertainty = Some(uncertainty);
+        }
         self.report.rivals = found.rivals.unwrap_or_else(|| std::mem::take(&mut self.report.rivals));
     }
 

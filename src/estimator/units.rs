@@ -12,7 +12,7 @@ use crate::view::WorkingSize;
 pub fn options_in(way: Option<&WorkingSize>, mut options: Options) -> Options {
     let Some(way) = way else { return options };
     let (unit, shift) = (way.unit(), way.shift());
-    options.correspondence_distance = options.correspondence_distance.map(|distance| distance / way.factor() as f64);
+    options.correspondence_distance = options.correspondence_distance.map(|distance| distance / way.factor());
     options.scale = options.scale.map(|scale| scale / unit);
     if let Start::Pose { scale, translation, .. } = &mut options.start {
         *scale = scale.map(|scale| scale / unit);

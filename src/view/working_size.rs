@@ -1,11 +1,12 @@
-//! Unlike resolutions of the two views are matched: a photograph that is several times finer than the depth map is
+//! Unlike resolutions of the two views are matched: a photograph that is finer than the depth map is
 //! worked on where one of its pixels covers about as much of the object as one of the depth map's (docs/method.md,
 //! section 4).
 //!
-//! A working pixel is the mean of the linear intensities of the usable pixels in a square of the photograph; what is
-//! found is carried back to the photograph's pixels. Normals of a coarse depth map cannot explain finer colours: they
-//! would be noise to the model, and cost memory and time. Where the views are alike nothing is touched. A depth map that
-//! is finer than the image is used as it is: its normals average what an image pixel sees.
+//! A working pixel is the mean of the linear intensities over a square of the photograph, whose side need not be whole:
+//! a pixel counts by its usable area in the square. What is found is carried back to the photograph's pixels. Normals of
+//! a coarse depth map cannot explain finer colours: they would be noise to the model, and cost memory and time. Where the
+//! views are alike nothing is touched. A depth map that is finer than the image is used as it is: its normals average
+//! what an image pixel sees.
 
 use nalgebra::Vector3;
 
@@ -13,10 +14,12 @@ use super::colour::{self, ColourImage, ColourSamples, ColourView};
 use super::{Camera, DepthMap, DepthSamples, Normals, Pinhole, Size};
 use crate::error::Result;
 
-/// Ratios of resolution are rounded down from here: areas of masks, and of views of one object, are not exact.
-const ROUNDING: f64 = 0.25;
+/// Ratio of resolutions from which the views are unlike: areas of masks, and of two views of one object, are not exact.
+const UNLIKE: f64 = 1.25;
 /// Least share of a working pixel that usable pixels of the image cover.
 const COVERED: f64 = 0.5;
+/// Share of a working pixel that is rounding: no column of its own.
+const SLIVER: f64 = 1e-6;
 /// Working pixels of air around the object, where the image is cut to its mask.
 const MARGIN: usize = 4;
 
@@ -26,7 +29,7 @@ pub struct WorkingSize {
     full: Size,
     working: Size,
     /// Side of a working pixel in the caller's.
-    factor: usize,
+    factor: f64,
     /// First column and row of the caller's image that is worked on.
     origin: [usize; 2],
     is_orthographic: bool,
@@ -46,9 +49,9 @@ impl WorkingSize {
         let own = (depth.width * depth.height).max(1);
         let mut factor = factor(&image, &object, depth);
         while area.working(factor).len() > most && area.working(factor).len() > own {
-            factor += 1;
+            factor += 1.0;
         }
-        if factor == 1 && full.len() <= most {
+        if factor <= 1.0 && full.len() <= most {
             return Ok((ColourView::new(image)?, None));
         }
         let working = area.working(factor);
@@ -66,18 +69,23 @@ impl WorkingSize {
         let mut samples = vec![0.0; 3 * self.working.len()];
         let mut mask = vec![0; self.working.len()];
         for working in 0..self.working.len() {
-            let (mut sum, mut count) = ([0.0_f64; 3], 0);
-            for pixel in self.covered(working) {
-                let linear = if self.mask[pixel] { image.samples.linear(pixel, transfer) } else { None };
-                self.mask[pixel] = linear.is_some();
-                if let Some(linear) = linear {
-                    count += 1;
-                    (0..3).for_each(|channel| sum[channel] += f64::from(linear[channel]));
+            let (column, row) = self.working.position(working);
+            let (mut sum, mut usable) = ([0.0_f64; 3], 0.0);
+            for (row, height) in self.span(row, 1) {
+                for (column, width) in self.span(column, 0) {
+                    let pixel = self.full.index(column, row);
+                    let linear = if self.mask[pixel] { image.samples.linear(pixel, transfer) } else { None };
+                    self.mask[pixel] = linear.is_some();
+                    if let Some(linear) = linear {
+                        let area = width * height;
+                        usable += area;
+                        (0..3).for_each(|channel| sum[channel] += area * f64::from(linear[channel]));
+                    }
                 }
             }
-            if count > 0 && f64::from(count) >= COVERED * (self.factor * self.factor) as f64 {
+            if usable >= COVERED * self.factor * self.factor {
                 mask[working] = u8::MAX;
-                (0..3).for_each(|c| samples[3 * working + c] = (sum[c] / f64::from(count)) as f32);
+                (0..3).for_each(|c| samples[3 * working + c] = (sum[c] / usable) as f32);
             }
         }
         let samples = ColourSamples::RgbLinear(samples);
@@ -85,17 +93,17 @@ impl WorkingSize {
         ColourImage { width, height, samples, transfer: None, mask: Some(mask), camera }
     }
 
-    /// The caller's pixels that a working pixel covers.
-    fn covered(&self, working: usize) -> impl Iterator<Item = usize> + use<> {
-        let (column, row) = self.working.position(working);
-        let [left, top] = [self.origin[0] + column * self.factor, self.origin[1] + row * self.factor];
-        let (full, factor) = (self.full, self.factor);
-        let rows = top..(top + factor).min(full.height);
-        rows.flat_map(move |row| (left..(left + factor).min(full.width)).map(move |column| full.index(column, row)))
+    /// The caller's columns (rows along axis 1) that a working one covers, each with the share of it that is covered.
+    fn span(&self, at: usize, axis: usize) -> impl Iterator<Item = (usize, f64)> + use<> {
+        let side = [self.full.width, self.full.height][axis] as f64;
+        let start = self.origin[axis] as f64 + at as f64 * self.factor;
+        let end = (start + self.factor).min(side);
+        let share = move |pixel: usize| (pixel, end.min(pixel as f64 + 1.0) - start.max(pixel as f64));
+        (start as usize..end.ceil() as usize).map(share)
     }
 
     fn camera(&self, Pinhole { fx, fy, cx, cy, distortion }: Pinhole) -> Pinhole {
-        let side = self.factor as f64;
+        let side = self.factor;
         let place = |centre: f64, origin: usize| (centre - origin as f64 + 0.5) / side - 0.5;
         let [cx, cy] = [place(cx, self.origin[0]), place(cy, self.origin[1])];
         Pinhole { fx: fx / side, fy: fy / side, cx, cy, distortion }
@@ -104,7 +112,7 @@ impl WorkingSize {
     /// How long a unit of the working view is in the caller's: both are metres behind a pinhole.
     #[must_use]
     pub fn unit(&self) -> f64 {
-        if self.is_orthographic { self.factor as f64 } else { 1.0 }
+        if self.is_orthographic { self.factor } else { 1.0 }
     }
 
     /// Size of the image as it was given.
@@ -115,7 +123,7 @@ impl WorkingSize {
 
     /// Side of a working pixel in the caller's.
     #[must_use]
-    pub const fn factor(&self) -> usize {
+    pub const fn factor(&self) -> f64 {
         self.factor
     }
 
@@ -127,7 +135,7 @@ impl WorkingSize {
             return Vector3::zeros();
         }
         let middle = |side: usize| 0.5 * (side as f64 - 1.0);
-        let side = self.factor as f64;
+        let side = self.factor;
         let shift = |origin: usize, working: usize, full: usize| {
             origin as f64 + side * middle(working) + 0.5 * (side - 1.0) - middle(full)
         };
@@ -143,7 +151,7 @@ impl WorkingSize {
     fn place(&self, pixel: usize) -> [f32; 2] {
         let (column, row) = self.full.position(pixel);
         let place = |at: usize, origin: usize, side: usize| {
-            let place = (at as f64 - origin as f64 + 0.5) / self.factor as f64 - 0.5;
+            let place = (at as f64 - origin as f64 + 0.5) / self.factor - 0.5;
             place.clamp(0.0, (side - 1) as f64) as f32
         };
         [place(column, self.origin[0], self.working.width), place(row, self.origin[1], self.working.height)]
@@ -236,15 +244,16 @@ impl Area {
         area
     }
 
-    fn working(&self, factor: usize) -> Size {
-        let [width, height] = self.size.map(|side| side.div_ceil(factor).max(super::raster::SMALLEST_SIDE));
+    fn working(&self, factor: f64) -> Size {
+        let across = |side: usize| (side as f64 / factor - SLIVER).ceil() as usize;
+        let [width, height] = self.size.map(|side| across(side).max(super::raster::SMALLEST_SIDE));
         Size { width, height }
     }
 }
 
 /// How many image pixels a depth pixel is as wide as, at the object: by both focal lengths, else by the areas of both
 /// masks, else by the whole views; never more than by these.
-fn factor(image: &ColourImage, object: &[bool], depth: &DepthMap) -> usize {
+fn factor(image: &ColourImage, object: &[bool], depth: &DepthMap) -> f64 {
     let count = |inside: &[bool]| inside.iter().filter(|&&inside| inside).count();
     let frames = ratio(object.len(), depth.width * depth.height);
     let footprint = match (image.camera, depth.camera) {
@@ -255,9 +264,9 @@ fn factor(image: &ColourImage, object: &[bool], depth: &DepthMap) -> usize {
         _ if image.mask.is_some() => ratio(count(object), measured(depth)),
         _ => frames,
     };
-    let factor = footprint.min(frames) + ROUNDING;
+    let factor = footprint.min(frames);
     // A ratio that is not a number asks for nothing.
-    if factor >= 2.0 { factor as usize } else { 1 }
+    if factor >= UNLIKE { factor } else { 1.0 }
 }
 
 /// By which factor the pixels' sides differ.
@@ -297,31 +306,34 @@ mod tests {
         Some(Pinhole { fx: focal_length, fy: focal_length, cx: 20.0, cy: 20.0, distortion: [0.0; 5] })
     }
 
-    fn factor_of(image: &ColourImage, depth: &DepthMap, most: usize) -> usize {
-        WorkingSize::of(image.clone(), depth, most).unwrap().1.map_or(1, |way| way.factor())
+    fn factor_of(image: &ColourImage, depth: &DepthMap, most: usize) -> f64 {
+        WorkingSize::of(image.clone(), depth, most).unwrap().1.map_or(1.0, |way| way.factor())
     }
 
     #[test]
     fn the_factor_is_that_of_the_footprints_and_never_more_than_that_of_the_frames() {
-        for (side, expected) in [(40, 1), (60, 1), (72, 2), (80, 2), (158, 4), (20, 1)] {
-            assert_eq!(factor_of(&image(side, side), &depth(40, 40), MOST), expected, "{side}");
+        for (side, expected) in [(40, 1.0), (48, 1.0), (60, 1.5), (72, 1.8), (80, 2.0), (158, 3.95), (20, 1.0)] {
+            let found = factor_of(&image(side, side), &depth(40, 40), MOST);
+            assert!((found - expected).abs() < 1e-12, "{side}: {found}");
         }
         // A tenth of the columns in a frame of the same size is no coarser map.
         let mut narrow = depth(40, 40);
         narrow.mask = Some((0..1600).map(|index| u8::from(index % 40 < 4)).collect());
         let mut whole = image(40, 40);
         whole.mask = Some(vec![1; 1600]);
-        assert_eq!(factor_of(&whole, &narrow, MOST), 1);
+        assert_eq!(factor_of(&whole, &narrow, MOST), 1.0);
         // Focal lengths say it before masks do, and a cut frame does not make an image coarser.
         let (mut metric, mut cut) = (image(120, 120), image(40, 40));
         (metric.camera, cut.camera) = (camera(300.0), camera(300.0));
         let mut coarse = depth(40, 40);
         coarse.camera = camera(100.0);
-        assert_eq!([factor_of(&metric, &coarse, MOST), factor_of(&cut, &coarse, MOST)], [3, 1]);
+        assert_eq!([factor_of(&metric, &coarse, MOST), factor_of(&cut, &coarse, MOST)], [3.0, 1.0]);
         coarse.camera = camera(290.0);
-        assert_eq!(factor_of(&metric, &coarse, MOST), 1);
-        // What does not fit is made smaller as long as it is finer than the depth map.
-        assert_eq!([MOST, 450].map(|most| factor_of(&image(72, 72), &depth(20, 20), most)), [3, 4]);
+        assert_eq!(factor_of(&metric, &coarse, MOST), 1.0);
+        // What does not fit is made smaller as long as it has more pixels than the depth map.
+        let (mut wide, mut narrow) = (image(72, 72), depth(20, 20));
+        (wide.camera, narrow.camera) = (camera(300.0), camera(300.0));
+        assert_eq!([MOST, 450, 100].map(|most| factor_of(&wide, &narrow, most)), [1.0, 4.0, 4.0]);
     }
 
     #[test]
@@ -333,20 +345,43 @@ mod tests {
         let (view, way) = WorkingSize::of(fine, &coarse, MOST).unwrap();
         let way = way.expect("four times as fine");
         let full = Size { width: 123, height: 90 };
+        assert!((way.factor() - 4.1).abs() < 0.1 && way.factor().fract() > 0.0, "{}", way.factor());
         for working in [0, 40, view.size.len() - 1] {
-            // The middle of the pixels that it covers, in the frame of either view.
-            let covered: Vec<_> = way.covered(working).collect();
-            if covered.len() < way.factor() * way.factor() {
-                continue;
-            }
-            let middle = |place: fn((usize, usize)) -> usize| {
-                covered.iter().map(|&pixel| place(full.position(pixel)) as f64).sum::<f64>() / covered.len() as f64
-            };
-            let expected = Camera::Orthographic.ray(full, [middle(|place| place.0), middle(|place| place.1)]);
             let (column, row) = view.size.position(working);
+            // The middle of what it covers, in the frame of either view.
+            let middle = |at: usize, axis: usize| way.origin[axis] as f64 + way.factor() * (at as f64 + 0.5) - 0.5;
+            let expected = Camera::Orthographic.ray(full, [middle(column, 0), middle(row, 1)]);
             let [x, y] = Camera::Orthographic.ray(view.size, [column as f64, row as f64]);
             let found = way.unit() * Vector3::new(x, y, 0.0) + way.shift();
             assert!((found.x - expected[0]).abs() + (found.y - expected[1]).abs() < 1e-9, "{found} {expected:?}");
+        }
+    }
+
+    #[test]
+    fn working_pixels_share_the_image_out_among_them() {
+        for side in [50, 60, 71, 72, 80, 158] {
+            let (view, way) = WorkingSize::of(image(side, side), &depth(40, 40), MOST).unwrap();
+            assert_eq!(view.size, Size { width: 40, height: 40 }, "{side}");
+            let way = way.expect("finer than the depth map");
+            let mut shares = vec![0.0; side];
+            for (pixel, share) in (0..view.size.width).flat_map(|at| way.span(at, 0)) {
+                assert!(share > 0.0, "{side}: {pixel}");
+                shares[pixel] += share;
+            }
+            assert!(shares.iter().all(|share: &f64| (share - 1.0).abs() < 1e-9), "{side}: {shares:?}");
+        }
+    }
+
+    #[test]
+    fn a_working_pixel_is_the_mean_over_its_area() {
+        // One working pixel covers one and a half of the image's along both axes.
+        let ramp: Vec<_> = (0..60 * 60).flat_map(|pixel| [(pixel % 60) as f32 + 1.0; 3]).collect();
+        let fine = ColourImage { samples: ColourSamples::RgbLinear(ramp), ..image(60, 60) };
+        let (view, _) = WorkingSize::of(fine, &depth(40, 40), MOST).unwrap();
+        // Columns 1 and half of 2, then the other half of 2 and 3.
+        for (column, expected) in [(0, (1.0 + 0.5 * 2.0) / 1.5), (1, (0.5 * 2.0 + 3.0) / 1.5)] {
+            let found = f64::from(view.log[0][view.size.index(column, 20)]).exp();
+            assert!((found - expected).abs() < 1e-5, "{found} {expected}");
         }
     }
 }
