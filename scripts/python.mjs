@@ -1,6 +1,6 @@
 // The Python package of the checkout, installed into an environment of its own below target/, and its tests.
 import { existsSync, mkdirSync, rmSync, writeFileSync } from "node:fs";
-import { ask, inRoot, must, readIfThere, say, stamp, watch } from "./shell.mjs";
+import { ask, inRoot, must, print, readIfThere, say, stamp, watch } from "./shell.mjs";
 
 const VENV = "target/python/venv";
 const inVenv = (name) => inRoot(VENV, "bin", name);
@@ -49,7 +49,7 @@ export async function python() {
   const reason = missing();
   if (reason !== undefined) {
     const output = `skipped: the Python package # ${reason}\n`;
-    console.log(output.trimEnd());
+    print(output);
     return { code: 0, output };
   }
   await install();

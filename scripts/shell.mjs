@@ -1,4 +1,5 @@
 // Running other programs and telling the reader about it; shared by every script here.
+import { AsyncLocalStorage } from "node:async_hooks";
 import { spawn, spawnSync } from "node:child_process";
 import { createHash } from "node:crypto";
 import { existsSync, readFileSync, readdirSync, statSync } from "node:fs";
@@ -11,8 +12,25 @@ export const inRoot = (...parts) => join(root, ...parts);
 /** A failure that the reader can mend: its message is all there is to say. */
 export class Failure extends Error {}
 
-export function say(message) {
-  console.log(`> ${message}`);
+/** What a task that runs beside another has said so far. */
+const said = new AsyncLocalStorage();
+
+export function print(text) {
+  const pieces = said.getStore();
+  if (pieces) pieces.push(text);
+  else process.stdout.write(text);
+}
+
+export const say = (message) => print(`> ${message}\n`);
+
+/** Keeps what a task says until it is done, so that tasks side by side don't mix their lines. */
+export async function inOnePiece(task) {
+  const pieces = [];
+  try {
+    return await said.run(pieces, task);
+  } finally {
+    process.stdout.write(pieces.join(""));
+  }
 }
 
 export const seconds = (since) => `${((performance.now() - since) / 1000).toFixed(1)} s`;
@@ -32,9 +50,11 @@ export function watch(program, args, { env = {} } = {}) {
       stdio: ["ignore", "pipe", "pipe"],
     });
     let output = "";
+    const pieces = said.getStore();
     const pass = (stream) => (chunk) => {
       output += chunk;
-      stream.write(chunk);
+      if (pieces) pieces.push(chunk.toString());
+      else stream.write(chunk);
     };
     child.stdout.on("data", pass(process.stdout));
     child.stderr.on("data", pass(process.stderr));

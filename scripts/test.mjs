@@ -6,7 +6,7 @@ import { browser, firefox, headless } from "./browser.mjs";
 import { build } from "./build.mjs";
 import { python } from "./python.mjs";
 import { WASM, setup } from "./setup.mjs";
-import { Failure, ask, inRoot, matching, say, script, seconds, watch } from "./shell.mjs";
+import { Failure, ask, inOnePiece, inRoot, matching, print, say, script, seconds, watch } from "./shell.mjs";
 import { buildPage, judgeSizes, sizes } from "./sizes.mjs";
 import { hasData } from "./tables/library.mjs";
 import { missingKeys } from "./tables/keys.mjs";
@@ -59,7 +59,7 @@ async function page() {
 /** What is optional and not there is named among what was not run. */
 function without(what, reason) {
   const output = `skipped: ${what} # ${reason}\n`;
-  console.log(output);
+  print(output);
   return { code: 0, output };
 }
 
@@ -101,7 +101,7 @@ async function tables() {
   const missing = missingKeys(JSON.parse(readFileSync(file, "utf8")), { realPairs: hasData() });
   const lines = [missing.length === 0 ? "tables: every key is there" : `tables: the JSON lacks ${missing.join(", ")}`];
   if (!hasData()) lines.push("skipped: real pairs and photographs # needs ../shared/data");
-  console.log(lines.join("\n"));
+  print(`${lines.join("\n")}\n`);
   return { code: missing.length === 0 ? 0 : 1, output: `${result.output}\n${lines.join("\n")}\n` };
 }
 
@@ -109,7 +109,7 @@ async function tables() {
 async function downloads() {
   await buildPage();
   const { lines, kept } = judgeSizes(sizes());
-  console.log(lines.join("\n"));
+  print(`${lines.join("\n")}\n`);
   return { code: kept ? 0 : 1, output: `${lines.join("\n")}\n` };
 }
 
@@ -134,6 +134,10 @@ function notRun(output) {
   return { count: found.length, lines };
 }
 
+/**
+ * In the order in which they run. Parts with a lane keep one processor busy, so that those of the two lanes run side by side; the page is
+ * built by parts of one lane alone.
+ */
 const PARTS = [
   { name: "format", run: cargo("fmt", "--check") },
   { name: "clippy", run: cargo("clippy", "--all-targets", ...DENY), closing: CARGO },
@@ -144,16 +148,16 @@ const PARTS = [
   { name: "docs", run: docs, closing: CARGO },
   { name: "deny", run: deny, closing: /^.*bans \w+, .*$/gm },
   { name: "rust", run: rust, closing: CARGO },
-  { name: "wasm-node", run: wasmIn(), closing: CARGO },
-  { name: "wasm-browser", run: wasmIn("WASM_BINDGEN_USE_BROWSER"), closing: CARGO },
-  { name: "wasm-worker", run: wasmIn("WASM_BINDGEN_USE_DEDICATED_WORKER"), closing: CARGO },
-  { name: "types", run: types, needsBuild: true, closing: /^tsc .*$/gm },
-  { name: "sizes", run: downloads, needsBuild: true, closing: /^size of .*$/gm },
+  { name: "wasm-node", run: wasmIn(), lane: 0, closing: CARGO },
+  { name: "wasm-browser", run: wasmIn("WASM_BINDGEN_USE_BROWSER"), lane: 0, closing: CARGO },
+  { name: "wasm-worker", run: wasmIn("WASM_BINDGEN_USE_DEDICATED_WORKER"), lane: 0, closing: CARGO },
+  { name: "python", run: python, needsBuild: true, lane: 0, closing: PYTHON },
+  { name: "sizes", run: downloads, needsBuild: true, lane: 1, closing: /^size of .*$/gm },
+  { name: "firefox", run: secondEngine, needsBuild: true, lane: 1, closing: /^(?: +\d+ (?:passed|failed|skipped|flaky)|test result: ).*$/gm },
+  { name: "types", run: types, needsBuild: true, lane: 1, closing: /^tsc .*$/gm },
   { name: "contract", run: contract, needsBuild: true, closing: NODE },
-  { name: "python", run: python, needsBuild: true, closing: PYTHON },
   { name: "tables", run: tables, needsBuild: true, closing: /^(?:.* (?:ok|MISSED)$|.* cells failed:|tables: .*)$/gm },
   { name: "page", run: page, needsBuild: true, closing: /^ +(?:\d+ (?:passed|failed|skipped|flaky|did not run)| {3}tests\/page\/).*$/gm },
-  { name: "firefox", run: secondEngine, needsBuild: true, closing: /^(?: +\d+ (?:passed|failed|skipped|flaky)|test result: ).*$/gm },
 ];
 
 function chosen(names) {
@@ -164,18 +168,21 @@ function chosen(names) {
   return names.length === 0 ? PARTS : PARTS.filter((part) => names.includes(part.name));
 }
 
+/** The package, which is built once for all parts that need it. */
+let building;
+const built = () => (building ??= build());
+
 /** Runs one part; whatever goes wrong is a failed part, so that the others still get their turn. */
 async function attempt({ name, run, needsBuild, closing }) {
-  console.log(`\n=== ${name} ${"=".repeat(Math.max(0, 70 - name.length))}`);
+  print(`\n=== ${name} ${"=".repeat(Math.max(0, 70 - name.length))}\n`);
   const start = performance.now();
   let result;
   try {
-    // Quick where nothing has changed.
-    if (needsBuild) await build();
+    if (needsBuild) await built();
     result = await run();
   } catch (error) {
     if (!(error instanceof Failure)) throw error;
-    console.error(error.message);
+    print(`${error.message}\n`);
     result = { code: 1, output: "" };
   }
   const closed = closing ? [...result.output.matchAll(closing)].map((match) => (match[1] ?? match[0]).trim()) : [];
@@ -183,12 +190,28 @@ async function attempt({ name, run, needsBuild, closing }) {
   return { name, passed: result.code === 0, lines: [...closed, ...lines], notRun: count, time: seconds(start) };
 }
 
+async function inTurn(parts, run) {
+  const results = [];
+  for (const part of parts) results.push(await run(part));
+  return results;
+}
+
+/** Parts with a lane, which follow one another in the list, side by side; the others by themselves. */
+async function attemptAll(parts) {
+  const first = parts.findIndex(isInLane);
+  const lanes = [0, 1].map((lane) => parts.filter((part) => part.lane === lane)).filter((lane) => lane.length > 0);
+  if (lanes.length < 2) return inTurn(parts, attempt);
+  const before = await inTurn(parts.slice(0, first), attempt);
+  const beside = await Promise.all(lanes.map((lane) => inTurn(lane, (part) => inOnePiece(() => attempt(part)))));
+  return [...before, ...beside.flat(), ...(await inTurn(parts.slice(first).filter((part) => !isInLane(part)), attempt))];
+}
+const isInLane = ({ lane }) => lane !== undefined;
+
 await script(async () => {
   const parts = chosen(process.argv.slice(2));
   const start = performance.now();
   await setup();
-  const results = [];
-  for (const part of parts) results.push(await attempt(part));
+  const results = await attemptAll(parts);
 
   console.log(`\n=== summary ${"=".repeat(63)}`);
   for (const { name, passed, lines, time } of results) {
