@@ -43,7 +43,6 @@ test("on a phone the figure stands below what it is about, and above the long te
 test("on a phone no picture stands alone in its row", async ({ page }) => {
   await page.setViewportSize(narrowest);
   for (const id of ["pixel", "grey", "colours", "surface", "prior", "pose", "sensor", "paint", "failure"]) {
-    await page.goto("about:blank");
     await open(page, `at=${id}`);
     await atWidths(page, [390, 600, 700], async (width) => {
       const tops = await page.locator(".learn-panel:not(.learn-wide)").evaluateAll((all) => all.map((panel) => Math.round(panel.getBoundingClientRect().top)));
@@ -69,7 +68,6 @@ test("pictures of a row stand in line, no plot leaves a hole beside it, and its 
     });
   for (const id of ["grey", "surface", "prior", "pose", "sensor"]) {
     for (const mode of ["", "&slides"]) {
-      await page.goto("about:blank");
       await open(page, `at=${id}${mode}`);
       await expect(page.locator(`${mode ? ".learn-slide " : ""}[data-lesson="${id}"]`)).toBeVisible();
       await expect.poll(async () => (await look()).type, `${id}${mode}`).toBeGreaterThan(11.5);

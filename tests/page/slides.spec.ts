@@ -1,5 +1,6 @@
 /** The slides of Learn: each fits its screen, and they are turned as pages are, by the browser's Back, too. */
 
+import { open } from "./figure";
 import { expect, test } from "./lab";
 
 const LESSONS = ["pixel", "grey", "colours", "surface", "prior", "pose", "sensor", "paint", "failure"];
@@ -8,8 +9,7 @@ const LONG = ["pose&run=register&offset=40", "failure&case=symmetry&amount=100",
 
 test("each slide fits its screen, whatever its figure has to say", async ({ lab, page }) => {
   for (const state of [...LESSONS, ...LONG]) {
-    await page.goto("about:blank");
-    await page.goto(`./#learn&at=${state}&slides`);
+    await open(page, `at=${state}&slides`);
     await expect(page.locator(".learn-slide .learn-figure")).toHaveAttribute("aria-busy", "false");
     for (const [width, height] of [[1280, 720], [1366, 768], [1600, 900], [1920, 1080]] as const) {
       await page.setViewportSize({ width, height });
