@@ -101,7 +101,8 @@ test("1: the light and the albedo change the predicted colour, and a drag choose
   await slide(page, "beta", 60);
   await settled(page);
   expect(await fingerprint(page, "bust")).not.toBe(bust);
-  // The orders add up to the whole, but for the albedo.
+  // The orders add up to the whole, but for the albedo, and each says whose order it is.
+  await expect(page.locator(".learn-numbers dt").filter({ hasText: /order \d$/ })).toHaveText([0, 1, 2].map((order) => `log S, green: order ${order}`));
   const parts = (await number(page, "order0")) + (await number(page, "order1")) + (await number(page, "order2"));
   expect(parts + Math.log(0.5)).toBeCloseTo(await number(page, "green"), 4);
 

@@ -32,9 +32,9 @@ export const pixel: Lesson = {
     { key: "red", label: "log S, red", digits: 3, ink: "red" },
     { key: "green", label: "log S, green", digits: 3, ink: "green" },
     { key: "blue", label: "log S, blue", digits: 3, ink: "blue" },
-    { key: "order0", label: "of green: order 0", digits: 3, ink: "light" },
-    { key: "order1", label: "order 1", digits: 3, ink: "light" },
-    { key: "order2", label: "order 2", digits: 3, ink: "light" },
+    { key: "order0", label: "log S, green: order 0", digits: 3, ink: "light" },
+    { key: "order1", label: "log S, green: order 1", digits: 3, ink: "light" },
+    { key: "order2", label: "log S, green: order 2", digits: 3, ink: "light" },
   ],
   drags: { ball: { x: "nx", y: "ny" }, bust: { x: "beta", y: "alpha" } },
   more: {
