@@ -170,7 +170,7 @@ test("a verdict comes with its numbers, curves, shares and advice", async ({ lab
   await run(page);
   await expect(page.locator(".rig-word")).toHaveText("Off");
   await expect(page.locator(".rig-word")).toBeFocused();
-  await expect(page.locator(".rig-run").getByRole("status")).toHaveText("Done: Off.");
+  await expect(page.locator(".rig-run").getByRole("status")).toHaveText("The check is done: your calibration is off.");
   await expect(page.locator(".rig-next")).toContainText("Save the calibration found here");
   await expect(page.getByLabel("Calibration", { exact: true })).toHaveValue("");
   await expect(page.locator(".rig-calibrations")).toContainText("2.04°");
@@ -238,9 +238,9 @@ test("what is chosen to be written stays chosen when the check runs again", asyn
   await which.selectOption("found");
   await format.selectOption("kalibr");
   const status = page.locator(".rig-run").getByRole("status");
-  await expect(status).toHaveText(/^Done/);
+  await expect(status).toHaveText(/^The check is done/);
   await page.getByRole("button", { name: "Run again" }).click();
-  await expect(status).toHaveText(/^Done/);
+  await expect(status).toHaveText(/^The check is done/);
   await expect(format).toHaveValue("kalibr");
   await expect(which).toHaveValue("");
   expect(lab.complaints).toEqual([]);
