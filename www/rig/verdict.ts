@@ -127,7 +127,7 @@ function figures({ report, estimateOnly }: Run): HTMLElement {
   return make(
     "dl",
     { class: "rig-figures-row" },
-    figure(`${decimals(first.offDegrees, 2)}° and ${decimals(first.offMillimetres, 1)} mm`, "from the best fit"),
+    figure(`${decimals(first.offDegrees, 2)}° and ${decimals(first.offMillimetres, 1)} mm`, "from the best fit, the shift at the scene's middle"),
     figure(px(first.pixels), `expected error of yours (95 %: ${interval(first.interval)})`),
     found,
   );
