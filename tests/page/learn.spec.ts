@@ -199,6 +199,27 @@ test("6: a wrong pose leaves a residual, valleys merge, and registration comes h
   expect(lab.complaints).toEqual([]);
 });
 
+test("5, 6: a curve's axes stand still from its first drawing to its last", async ({ page }) => {
+  // Every text of the plots is written down as it is drawn.
+  await page.addInitScript(() => {
+    const seen = new Set<string>();
+    Object.assign(window, { seen });
+    new MutationObserver(() => {
+      const plot = document.querySelector(':is([data-panel="curve"], [data-panel="figure5"]) svg');
+      const words = [...(plot?.querySelectorAll("text") ?? [])].map((text) => `${text.textContent} at ${text.getAttribute("x")} ${text.getAttribute("y")}`);
+      if (plot && words.length > 0) seen.add([plot.getAttribute("viewBox"), ...words].join(", "));
+    }).observe(document, { childList: true, subtree: true });
+  });
+  for (const [state, points] of [["prior", 8], ["pose&offset=40", 13], ["pose&light=colourful", 13], ["pose&light=overcast", 13]] as const) {
+    await page.goto("about:blank");
+    await open(page, `at=${state}`);
+    await expect(page.locator(':is([data-panel="curve"], [data-panel="figure5"]) circle')).toHaveCount(points);
+    const axes = await page.evaluate(() => [...(window as unknown as { seen: Set<string> }).seen]);
+    // One for each width: a plot is drawn once before its place is known.
+    expect(new Set(axes.map((drawn) => drawn.split(",")[0])).size, state).toBe(axes.length);
+  }
+});
+
 test("7: the refined depth is better than the measured one, as far as the picture is good", async ({ lab, page }) => {
   await open(page, "at=sensor&noise=0.3&holes=10");
   const before = await number(page, "before");
