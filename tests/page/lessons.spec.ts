@@ -107,8 +107,10 @@ test("numbers that the text states of the method are the method's own", async ({
   await expect(page.locator(".learn-text")).toContainText(`compares ${constant("DIRECTIONS")} directions`);
   await page.goto("./#learn&at=exercises");
   await answers(page, `beyond some ${((constant("PRIOR_SCALE") * 180) / Math.PI).toFixed(0)}°`);
-  const { OPTIONS } = (await import("../../pkg/options.js")) as { OPTIONS: { lambda: { members: { prior: { default: number } } } } };
+  const { OPTIONS } = (await import("../../pkg/options.js")) as { OPTIONS: { lambda: { members: { prior: { default: number } } }; startTolerance: { members: { degrees: { default: number } } } } };
   await answers(page, `the module's ${OPTIONS.lambda.members.prior.default} against`);
+  await open(page, "at=pose");
+  await expect(page.locator(".learn-text")).toContainText(`within ${OPTIONS.startTolerance.members.degrees.default}° of it`);
   const noise = Number(/noise: ([\d.]+)/.exec(await source("www/learn/compute/prior.ts"))?.[1]);
   await open(page, "at=prior");
   await expect(page.locator(".learn-text")).toContainText(new RegExp(`${100 * noise}\\s% noise`));
