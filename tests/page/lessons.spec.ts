@@ -91,7 +91,7 @@ test("8: under coloured lamps hue says less, and the normals are worse", async (
 test("9: print and a quarter turn leave too little, the round disc warns by its sigma and rivals, not by its residual", async ({ page }) => {
   const [bare, printed] = [await numbers(page, "failure&case=texture&amount=0", "residual"), await numbers(page, "failure&case=texture&amount=100", "residual")];
   expect(printed.residual).toBeGreaterThan(1.5 * bare.residual);
-  await expect(status(page)).toHaveText(/^(lost|ambiguous): .+/);
+  await expect(status(page)).toHaveText(/^lost: the rotation is uncertain by \d+ degrees: rotation about [xyz]$/);
   const [beside, turned] = [await numbers(page, "failure&case=turn&amount=0", "sigma"), await numbers(page, "failure&case=turn&amount=100", "sigma")];
   expect(turned.sigma).toBeGreaterThan(5 * beside.sigma);
   await expect(status(page)).toHaveText(/^(lost|ambiguous): .+/);
@@ -102,6 +102,16 @@ test("9: print and a quarter turn leave too little, the round disc warns by its 
   expect([good.rivals, round.rivals > 0]).toEqual([0, true]);
 });
 
+test("9: the line between ambiguous and lost is where the text says, and the figures keep to it", async ({ page }) => {
+  const verdict = await source("src/estimator/verdict.rs");
+  const [doubtful, largest, unobservable] = ["DOUBTFUL_SIGMA", "LARGEST_SIGMA", "UNOBSERVABLE"].map((name) => Number(new RegExp(`const ${name}: f64 = ([\\d.]+);`).exec(verdict)?.[1])) as [number, number, number];
+  for (const state of ["overlap&amount=0", "overlap&amount=100", "texture&amount=50"]) {
+    const { sigma } = await numbers(page, `failure&case=${state}`, "sigma");
+    await expect(status(page), state).toHaveText(sigma > largest ? /^lost: / : sigma > doubtful ? /^ambiguous: / : "converged");
+  }
+  for (const words of [`Above ${doubtful}° the status is ambiguous`, `Above ${largest}° it is lost`, `Above ${unobservable}° the rotation counts as not observable`]) await expect(page.locator(".learn-text")).toContainText(words);
+});
+
 test("numbers that the text states of the method are the method's own", async ({ page }) => {
   const shading = await source("src/shape/pixels/shading.rs");
   const constant = (name: string) => Number(new RegExp(`const ${name}: \\w+ = ([\\d.]+);`).exec(shading)?.[1]);
@@ -109,6 +119,7 @@ test("numbers that the text states of the method are the method's own", async ({
   await expect(page.locator(".learn-text")).toContainText(`compares ${constant("DIRECTIONS")} directions`);
   await page.goto("./#learn&at=exercises");
   await answers(page, `beyond some ${((constant("PRIOR_SCALE") * 180) / Math.PI).toFixed(0)}°`);
+  await answers(page, `ambiguous once it passes ${/const DOUBTFUL_SIGMA: f64 = ([\d.]+);/.exec(await source("src/estimator/verdict.rs"))?.[1]}°`);
   const { OPTIONS } = (await import("../../pkg/options.js")) as { OPTIONS: { lambda: { members: { prior: { default: number } } }; startTolerance: { members: { degrees: { default: number } } } } };
   await answers(page, `the module's ${OPTIONS.lambda.members.prior.default} against`);
   await open(page, "at=pose");
