@@ -2,7 +2,7 @@
 
 import { readFile } from "node:fs/promises";
 import type { Page } from "@playwright/test";
-import { number, open } from "./figure";
+import { number, open, slide } from "./figure";
 import { expect, test } from "./lab";
 
 /** A figure's numbers in one of its states. */
@@ -30,6 +30,15 @@ test("3: the window's curve stays long at full colour, and a little noise moves 
   const noisy = await numbers(page, "colours&colour=1&light=window&noise=0.03", "degrees");
   expect(noisy.degrees).toBeGreaterThan(20);
   expect((await numbers(page, "colours&colour=1&noise=0.03", "degrees")).degrees).toBeLessThan(0.1 * noisy.degrees);
+});
+
+test("3: noise may give a pixel a colour that no normal has, and then the lowest valley is off by more than what counts", async ({ page }) => {
+  const noisy = await numbers(page, "colours&light=overcast&colour=0.7&noise=0.05&px=0.82&py=0.8", "explained", "off", "good");
+  expect(noisy).toMatchObject({ explained: 0, good: 1 });
+  expect(noisy.off).toBeGreaterThan(2);
+  await slide(page, "noise", 0);
+  expect(await number(page, "explained")).toBeGreaterThan(0);
+  expect(await number(page, "off")).toBeLessThan(2);
 });
 
 test("4: the height found lags behind the step, cut through it is wrong either way, and noise makes the dome too high", async ({ page }) => {
