@@ -99,7 +99,8 @@ test("1: the light and the albedo change the predicted colour, and a drag choose
   await slide(page, "beta", 60);
   await settled(page);
   expect(await fingerprint(page, "bust")).not.toBe(bust);
-  // The orders add up to the whole, but for the albedo.
+  // The orders add up to the whole, but for the albedo, and each says whose order it is.
+  await expect(page.locator(".learn-numbers dt").filter({ hasText: /order \d$/ })).toHaveText([0, 1, 2].map((order) => `log S, green: order ${order}`));
   const parts = (await number(page, "order0")) + (await number(page, "order1")) + (await number(page, "order2"));
   expect(parts + Math.log(0.5)).toBeCloseTo(await number(page, "green"), 4);
 
@@ -194,6 +195,27 @@ test("6: a wrong pose leaves a residual, valleys merge, and registration comes h
   await expect(page.locator('[data-number="status"]')).toHaveText(/^search/);
   expect(await number(page, "error")).toBeLessThan(1);
   expect(lab.complaints).toEqual([]);
+});
+
+test("5, 6: a curve's axes stand still from its first drawing to its last", async ({ page }) => {
+  // Every text of the plots is written down as it is drawn.
+  await page.addInitScript(() => {
+    const seen = new Set<string>();
+    Object.assign(window, { seen });
+    new MutationObserver(() => {
+      const plot = document.querySelector(':is([data-panel="curve"], [data-panel="figure5"]) svg');
+      const words = [...(plot?.querySelectorAll("text") ?? [])].map((text) => `${text.textContent} at ${text.getAttribute("x")} ${text.getAttribute("y")}`);
+      if (plot && words.length > 0) seen.add([plot.getAttribute("viewBox"), ...words].join(", "));
+    }).observe(document, { childList: true, subtree: true });
+  });
+  for (const [state, points] of [["prior", 8], ["pose&offset=40", 13], ["pose&light=colourful", 13], ["pose&light=overcast", 13]] as const) {
+    await page.goto("about:blank");
+    await open(page, `at=${state}`);
+    await expect(page.locator(':is([data-panel="curve"], [data-panel="figure5"]) circle')).toHaveCount(points);
+    const axes = await page.evaluate(() => [...(window as unknown as { seen: Set<string> }).seen]);
+    // One for each width: a plot is drawn once before its place is known.
+    expect(new Set(axes.map((drawn) => drawn.split(",")[0])).size, state).toBe(axes.length);
+  }
 });
 
 test("7: the refined depth is better than the measured one, as far as the picture is good", async ({ lab, page }) => {

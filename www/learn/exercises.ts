@@ -55,7 +55,7 @@ export const exercises: readonly Exercise[] = [
     question: "What does the report say of the round disc, and which of its numbers would have warned you without the truth at hand? In the Lab, find the smallest overlap at which the pose still comes within a degree and is called converged.",
     answer: [
       "The status is lost, because the rotation about z is not observable: turning the disc about its axis changes no colour. The residual is as small as for a good pose, so the residual can't warn; the reported sigma and the other poses that fit as well do.",
-      "With decreasing overlap the sigma grows before the error does; the status turns to ambiguous once it passes a degree or so. Which overlap that is depends on noise and size: vary both.",
+      "With decreasing overlap the sigma grows before the error does; the status turns to ambiguous once it passes 1.5°. Which overlap that is depends on noise and size: vary both.",
     ],
   },
 ];

@@ -73,13 +73,13 @@ export class Plot {
     if (this.#panel) this.#draw(this.#panel);
   }
 
-  #draw({ series, x, y, at, range }: PlotPanel): void {
+  #draw({ series, x, y, at, domain, range }: PlotPanel): void {
     const width = this.#width || WIDTH;
     const height = heightOf(width);
     const box = { left: MARGIN.left, top: MARGIN.top, right: width - MARGIN.right, bottom: height - MARGIN.bottom };
     this.#drawing.setAttribute("viewBox", `0 0 ${width} ${height}`);
     const every = (axis: 0 | 1) => series.flatMap(({ points }) => points.filter((_, i) => i % 2 === axis));
-    const [across, up] = [spanOf(at === undefined ? every(0) : [...every(0), at]), spanOf(every(1), range)];
+    const [across, up] = [spanOf(at === undefined ? every(0) : [...every(0), at], domain), spanOf(every(1), range)];
     const toX = (value: number) => box.left + ((value - across.least) / (across.most - across.least)) * (box.right - box.left);
     const toY = (value: number) => box.bottom - ((value - up.least) / (up.most - up.least)) * (box.bottom - box.top);
     const parts: SVGElement[] = [];

@@ -53,6 +53,8 @@ export interface PlotPanel extends Common {
   series: Series[];
   /** Where the control stands now. */
   at?: number;
+  /** Least range of x, so that the axis stands still while the curve grows. */
+  domain?: readonly [number, number];
   /** Least range of y, so that noise does not fill the picture. */
   range?: [number, number];
 }

@@ -19,7 +19,17 @@ export function icon(tone: Tone): SVGElement {
   return svg("svg", { viewBox: "0 0 24 24", class: `rig-icon ${tone}`, "aria-hidden": "true" }, svg(tone === "good" ? "circle" : "rect", tone === "good" ? { cx: 12, cy: 12, r: 10 } : { x: 2, y: 2, width: 20, height: 20, rx: tone === "open" ? 10 : 4 }), ...SHAPES[tone].map((d) => svg("path", { d })));
 }
 
-const WORDS: Record<CheckReport["verdict"], { word: string; tone: Tone }> = {
+const ENDS = {
+  Estimated: "a calibration was estimated",
+  Consistent: "your calibration is consistent",
+  "Settled, but check": "your calibration is consistent, but see the notes below",
+  Off: "your calibration is off",
+  "Off, but check": "your calibration is off, but see the notes below",
+  "This scene can't tell": "this scene can't tell",
+} as const;
+type Word = keyof typeof ENDS;
+
+const WORDS: Record<CheckReport["verdict"], { word: Word; tone: Tone }> = {
   consistent: { word: "Consistent", tone: "good" },
   off: { word: "Off", tone: "wrong" },
   undecided: { word: "This scene can't tell", tone: "open" },
@@ -29,7 +39,7 @@ const px = (value: number): string => `${decimals(value, 2)} px`;
 const interval = ([low, high]: [number, number]): string => `${decimals(low, 2)} to ${decimals(high, 2)} px`;
 
 /** Whatever was guessed keeps a verdict from being better than the files are. */
-export function headline({ report, estimateOnly, guessed, doubts }: Run): { word: string; tone: Tone; sentence: string } {
+function headline({ report, estimateOnly, guessed, doubts }: Run): { word: Word; tone: Tone; sentence: string } {
   const { pixels, interval: range } = report.health;
   if (estimateOnly) return { word: "Estimated", tone: "open", sentence: `A calibration was found; expected reprojection error ${px(pixels)} (95 %: ${interval(range)}) at the scene's depth.` };
   const { word, tone } = WORDS[report.verdict];
@@ -46,6 +56,9 @@ const afterWord = (reason: string): string => {
   const rest = reason.replace(/^(Consistent|This scene can't tell)[:,] /, "");
   return `${rest[0]?.toUpperCase() ?? ""}${rest.slice(1)}`;
 };
+
+/** The word alone reads like the state of a switch where it stands beside the controls: there it is a sentence. */
+export const ending = (run: Run): string => `The check is done: ${ENDS[headline(run).word]}.`;
 
 const AXES = ["left or right", "up or down", "to or fro"];
 const FOR_SHIFT = [
@@ -114,7 +127,7 @@ function figures({ report, estimateOnly }: Run): HTMLElement {
   return make(
     "dl",
     { class: "rig-figures-row" },
-    figure(`${decimals(first.offDegrees, 2)}° and ${decimals(first.offMillimetres, 1)} mm`, "from the best fit"),
+    figure(`${decimals(first.offDegrees, 2)}° and ${decimals(first.offMillimetres, 1)} mm`, "from the best fit, the shift at the scene's middle"),
     figure(px(first.pixels), `expected error of yours (95 %: ${interval(first.interval)})`),
     found,
   );

@@ -10,7 +10,7 @@ import { choose, labelled, press, saveFile } from "./parts";
 import type { PoseFormat } from "./protocol";
 import { messageOf, type Rig, type Run } from "./rig";
 import { wasCancelled } from "./session";
-import { candidatesTable, card, CUES, headline, nextCard, sharesCard } from "./verdict";
+import { candidatesTable, card, CUES, ending, nextCard, sharesCard } from "./verdict";
 
 const formats: readonly { value: PoseFormat; label: string }[] = [
   { value: "matrix", label: "4x4 text" },
@@ -92,7 +92,7 @@ export class VerdictStep {
       this.#busy = false;
       this.show();
       const run = this.#rig.run;
-      this.#status.textContent = run ? `Done: ${headline(run).word}.` : "";
+      this.#status.textContent = run ? ending(run) : "";
       this.#card.querySelector<HTMLElement>(".rig-word")?.focus({ preventScroll: true });
     } catch (error) {
       this.#status.textContent = wasCancelled(error) ? "Cancelled. Nothing was lost." : "";

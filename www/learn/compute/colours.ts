@@ -24,6 +24,6 @@ export function* colours(values: Values): Generator<Drawing> {
       normalsOf({ key: "found", title: "Normals, each pixel alone", alt: "Normals that single pixels find without any prior." }, grid, found, ring),
       normalsOf({ key: "truth", title: "True normals", alt: "The true normals of the bust." }, grid, made.truth.imageNormals, ring),
     ],
-    numbers: { explained: landscape.explained, good: landscape.good, degrees: normalDegrees(found, made.truth.imageNormals) },
+    numbers: { explained: landscape.explained, good: landscape.good, off: landscape.off, degrees: normalDegrees(found, made.truth.imageNormals) },
   };
 }

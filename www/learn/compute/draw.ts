@@ -52,4 +52,4 @@ export function alongRow(values: ArrayLike<number>, { width }: Grid, row: number
   return Array.from({ length: width }, (_, column) => [column, sign * (values[row * width + column] ?? NaN)]).flat();
 }
 
-export const plot = (words: Words, x: string, y: string, series: PlotPanel["series"], rest: Partial<Pick<PlotPanel, "at" | "range">> = {}): PlotPanel => ({ kind: "plot", ...words, x, y, series, ...rest });
+export const plot = (words: Words, x: string, y: string, series: PlotPanel["series"], rest: Partial<Pick<PlotPanel, "at" | "domain" | "range">> = {}): PlotPanel => ({ kind: "plot", ...words, x, y, series, ...rest });

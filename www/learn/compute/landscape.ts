@@ -14,6 +14,8 @@ export interface Landscape {
   panel: ImagePanel;
   /** Share of the hemisphere's picture whose colour is the pixel's up to noise, percent. */
   explained: number;
+  /** How far the colour of the lowest minimum is off the pixel's, percent of brightness (rms of the three). */
+  off: number;
   /** Minima as good as the best, within the noise. */
   good: number;
   /** All minima. */
@@ -30,16 +32,18 @@ export function landscapeOf(request: PixelLandscapeRequest, words: { key?: strin
   const inside = distances.filter(Number.isFinite);
   // Of three channels together.
   const reach = NOISE * Math.sqrt(3);
-  const explained = (100 * inside.filter((value) => value < reach).length) / inside.length;
   const minima = minimaOf(found);
-  const best = minima[0]?.objective ?? 0;
+  const best = minima[0]?.objective ?? NaN;
+  // A minimum that explains the pixel between the places of the picture fills one of them, so that none at all means none.
+  const places = Math.max(inside.filter((value) => value < reach).length, Math.sqrt(best) < reach ? 1 : 0);
+  const explained = (100 * places) / inside.length;
   const end = found.path.subarray(-3);
   const panel = scalarOf(
     {
       key: words.key ?? "landscape",
       title: words.title ?? "Cost of every normal of that pixel",
       alt: `The hemisphere of all visible normals seen from the front; dark is cheap. It has ${minima.length} minima.`,
-      legend: "dark: this normal explains the pixel; bright: it does not",
+      legend: "dark: explains the pixel; dots: valleys; cross: truth; line: solver",
     },
     { width: SIDE, height: SIDE },
     distances,
@@ -50,6 +54,7 @@ export function landscapeOf(request: PixelLandscapeRequest, words: { key?: strin
   return {
     panel,
     explained,
+    off: (100 * Math.sqrt(best)) / Math.sqrt(3),
     good: minima.filter(({ objective }) => objective < best + reach * reach).length,
     minima: minima.length,
     lowest: minima[0]?.normal ?? [NaN, NaN, NaN],

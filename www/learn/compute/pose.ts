@@ -12,6 +12,9 @@ const SIZE = 64;
 /** The pose to be found. */
 const BETA = 20;
 const OFFSETS = [-40, -30, -20, -14, -8, -4, 0, 4, 8, 14, 20, 30, 40];
+const ENDS = [Math.min(...OFFSETS), Math.max(...OFFSETS)] as const;
+/** Where the axis of the residual ends: above the whole curve under each light, so that it stands still while the curve is computed. */
+const MOST_RESIDUAL: Readonly<Record<string, number>> = { colourful: 0.7, window: 0.5, overcast: 0.2 };
 /** Stages of an iteration up to the light, whose fit leaves the residual, and up to the image's surface. */
 const [TO_LIGHT, TO_SURFACE] = [1, 3];
 
@@ -100,7 +103,7 @@ function drawing(values: Values, made: Sample, state: State, curve: number[]): D
     landscape.panel,
   ];
   if (String(values.run) === "hold") {
-    panels.push(plot({ key: "curve", title: "Residual against the error of the pose", alt: "The residual is least where the pose is right." }, "pose wrong by, °", "residual", [{ name: "residual", ink: "pose", points: [...curve], dots: true }], { at: numberOf(values, "offset"), range: [0, 0.2] }));
+    panels.push(plot({ key: "curve", title: "Residual against the error of the pose", alt: "The residual is least where the pose is right." }, "pose wrong by, °", "residual", [{ name: "residual", ink: "pose", points: [...curve], dots: true }], { at: numberOf(values, "offset"), domain: ENDS, range: [0, MOST_RESIDUAL[String(values.light)] ?? 1] }));
   }
   return {
     panels,

@@ -39,7 +39,7 @@ export function* prior(values: Values): Generator<Drawing> {
         { name: "true", ink: "truth", points: alongRow(centred(made.truth.imageDepth), grid, row, -1) },
         { name: "found", ink: "normal", points: alongRow(centred(found), grid, row, -1) },
       ]),
-      plot({ key: "figure5", title: "Error against the share given (Figure 5)", alt: "Mean error of the normals against the share of pixels with a prior." }, "share with a prior, %", "error, °", [{ name: "normals", ink: "prior", points: [...curve], dots: true }], { at: share, range: [0, 40] }),
+      plot({ key: "figure5", title: "Error against the share given (Figure 5)", alt: "Mean error of the normals against the share of pixels with a prior." }, "share with a prior, %", "error, °", [{ name: "normals", ink: "prior", points: [...curve], dots: true }], { at: share, domain: [0, 100], range: [0, 40] }),
     ],
     numbers: { degrees, depth, pixels: none ? 0 : mask.filter(Boolean).length },
   });

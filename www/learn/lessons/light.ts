@@ -32,9 +32,9 @@ export const pixel: Lesson = {
     { key: "red", label: "log S, red", digits: 3, ink: "red" },
     { key: "green", label: "log S, green", digits: 3, ink: "green" },
     { key: "blue", label: "log S, blue", digits: 3, ink: "blue" },
-    { key: "order0", label: "of green: order 0", digits: 3, ink: "light" },
-    { key: "order1", label: "order 1", digits: 3, ink: "light" },
-    { key: "order2", label: "order 2", digits: 3, ink: "light" },
+    { key: "order0", label: "log S, green: order 0", digits: 3, ink: "light" },
+    { key: "order1", label: "log S, green: order 1", digits: 3, ink: "light" },
+    { key: "order2", label: "log S, green: order 2", digits: 3, ink: "light" },
   ],
   drags: { ball: { x: "nx", y: "ny" }, bust: { x: "beta", y: "alpha" } },
   more: {
@@ -78,8 +78,8 @@ export const colours: Lesson = {
   formulaWords: "The sum over the three colours of the squared difference between the measured and the predicted logarithm is made as small as possible.",
   text: [
     "Let the light be red from one side, green from another and blue from a third. Each colour leaves its own curve of normals. Where the three curves meet, all colours are explained. The cost of a normal is the squared distance between measured and predicted log colours; the solver looks for its lowest valley.",
-    "A quadratic form in three colours can still have several valleys. So the solver first compares 600 directions all over the hemisphere and then walks downhill from the best one. The dots are all valleys, the larger the more starts end there.",
-    "Natural light is nearly white. Its three curves almost coincide, and the valley becomes long and flat: a little noise moves the lowest point by tens of degrees. Then a pixel alone is lost.",
+    "A quadratic form in three colours can still have several valleys. So the solver first compares 600 directions all over the hemisphere and then walks downhill from the best one. The white dots are all valleys, the larger the more starts end there.",
+    "Natural light is nearly white. Its three curves almost coincide, and the valley becomes long and flat: a little noise moves the lowest point by tens of degrees. Then a pixel alone is lost. Noise may also give the pixel a colour that no normal has: then no normal explains it within 2 %, and the lowest valley is only the nearest that there is.",
   ],
   tasks: ["Drag the colour from 0 to 1. The dark curve shrinks to a few spots and the error of the normals falls.", "Choose the window at full colour: the curve stays long.", "Add noise and compare how much each light suffers."],
   controls: [
@@ -92,7 +92,8 @@ export const colours: Lesson = {
   readouts: [
     { key: "degrees", label: "Mean error of the normals", unit: "°", digits: 1, ink: "error" },
     { key: "explained", label: "Normals that explain the pixel within 2 %", unit: "% of the map", digits: 2, ink: "normal" },
-    { key: "good", label: "Valleys as low as the lowest", digits: 0, ink: "minimum" },
+    { key: "off", label: "Lowest valley off by", unit: "%", digits: 1, ink: "minimum" },
+    { key: "good", label: "Valleys as low as it", digits: 0, ink: "minimum" },
   ],
   drags: { picture: { x: "px", y: "py" } },
   more: { paper: "Eq. 8", sections: [5] },

@@ -16,9 +16,9 @@ export const surface: Lesson = {
   text: [
     "A normal {n} fixes the slope of the depth {z} in both directions. Integration looks for the surface whose differences from pixel to pixel fit these slopes best, in least squares. The depth as a whole stays free: adding a constant changes no slope.",
     "Discontinuities: at a step the depth jumps between two pixels. Both have normals that know nothing of it. If the step ends somewhere, a way around it brings the height back, and the two contradict each other. Least squares spreads the contradiction over the neighbours; robust weights find the few pairs of pixels that do not fit and let go of them. If the step cuts the object in two, no way leads around it, and nothing can know its height.",
-    "Bias: noise tilts normals at random, but the result is not only noisy. A slope is a quotient, and steep normals are cut off where they would turn away from the camera; so the errors do not cancel and the relief comes out with a wrong height.",
+    "Bias: noise tilts normals at random, but the result is not only noisy. A slope is the tangent of a tilt: a normal that noise tilts too far adds more slope than one that it tilts too little takes away. So the errors do not cancel, steep flanks come out too steep, and the dome is found with more than 100 % of its true relief. Normals that would turn away from the camera are cut off, which takes a part of it back.",
   ],
-  tasks: ["Raise the step. The height found across it lags behind the true one.", "Switch the robust weights off and on at a step of 6 px: the error of the depth falls with them.", "Let the step cut the plate in two: robust or not, its height is wrong, since nothing tells it.", "Set the step to 0 and raise the noise: see the share of the relief that is kept."],
+  tasks: ["Raise the step. The height found across it lags behind the true one.", "Switch the robust weights off and on at a step of 6 px: the error of the depth falls with them.", "Let the step cut the plate in two: robust or not, its height is wrong, since nothing tells it.", "Set the step to 0 and raise the noise: the dome comes out higher than it is."],
   controls: [
     { kind: "slider", key: "step", label: "Height of the step", min: 0, max: 12, step: 0.5, initial: 6, unit: "px" },
     { kind: "box", key: "robust", label: "Robust weights", initial: 1 },
@@ -28,7 +28,7 @@ export const surface: Lesson = {
   readouts: [
     { key: "error", label: "Error of the depth (rms)", unit: "px", digits: 2, ink: "error" },
     { key: "jump", label: "Height found across the step", unit: "px", digits: 2, ink: "normal" },
-    { key: "kept", label: "Relief of the dome that is kept", unit: "%", digits: 0, ink: "normal" },
+    { key: "kept", label: "Relief of the dome, found over true", unit: "%", digits: 0, ink: "normal" },
   ],
   drags: {},
   more: {
