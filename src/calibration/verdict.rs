@@ -223,10 +223,12 @@ impl Judge {
             ["x", "y", "z"][(0..3).max_by(|&a, &b| rows[a].abs().total_cmp(&rows[b].abs())).unwrap_or(0)]
         };
         let (about, along) = (axis([metric[0], metric[1], metric[2]]), axis([metric[3], metric[4], metric[5]]));
+        // A turn about a camera moves the scene as far as the scene is away.
         let off = format!(
-            "{} degrees, most of it about {about}, and {} mm, most of it along {along}",
+            "{} degrees, most of it about {about}, and {} mm at the middle of the scene, {} m away, most of it along {along}",
             Fixed(turn, 2),
-            Fixed(shift, 1)
+            Fixed(shift, 1),
+            Fixed(self.units.middle.norm(), 2)
         );
         let reason = match verdict {
             CheckVerdict::Consistent if high <= self.tolerance => {

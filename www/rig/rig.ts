@@ -5,7 +5,6 @@ import { pairUp } from "./pairing";
 import { doubtsOf } from "./doubts";
 import { identity, inverse } from "./poses";
 import type { Assembly, FramePlan, Kind, NamedCamera, Summary } from "./protocol";
-import { withPlace } from "./reasons";
 import { Session } from "./session";
 import { Undo } from "./undo";
 
@@ -397,7 +396,7 @@ export class Rig {
     const estimateOnly = this.candidates.length === 0;
     const candidates = estimateOnly ? { "no calibration": identity } : Object.fromEntries(this.candidates.map(({ name, pose }) => [name, pose]));
     await this.session.call("frames", { frames: plans });
-    const report = withPlace(await this.session.call("check", { candidates, cues }, onProgress));
+    const report = await this.session.call("check", { candidates, cues }, onProgress);
     this.run = { report, plans, candidates, estimateOnly, guessed, doubts };
     this.history.push({ frames: plans.length, ...report.health });
     this.changed();
