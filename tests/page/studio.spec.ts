@@ -362,6 +362,20 @@ test("at 400 % zoom nothing sticks out, and the bar leaves the window to the pag
   expect(await page.locator("#bar").evaluate((bar) => getComputedStyle(bar).position)).toBe("static");
 });
 
+for (const [width, height] of [[640, 400], [320, 200], [1280, 400]] as const) {
+  test(`the skip link shows what Play runs in a window of ${width} x ${height}`, async ({ lab, page }) => {
+    await page.setViewportSize({ width, height });
+    await lab.open("size=32");
+    await page.keyboard.press("Tab");
+    await page.keyboard.press("Enter");
+    await expect(page.locator("#play")).toBeFocused();
+    await expect(page.locator("#play")).toBeInViewport({ ratio: 1 });
+    // What is seen of it there; the page may scroll softly.
+    await expect(page.locator("#clouds-canvas")).toBeInViewport({ ratio: height < 300 ? 0.5 : 1 });
+    if (height > 300) await expect(page.locator("#status")).toBeInViewport({ ratio: 1 });
+  });
+}
+
 test("the bar is one row of one height", async ({ lab, page }) => {
   for (const width of [320, 768, 1280, 2560]) {
     await page.setViewportSize({ width, height: 800 });
