@@ -217,6 +217,11 @@ test("a slider acts when it rests, and what had been played plays again", async 
   await page.getByRole("button", { name: "Redo" }).click();
   await expect.poll(() => lab.fingerprint("Colour")).not.toBe(before);
   await lab.reaches("converged");
+  // So does a number that is typed.
+  await exact.fill("0");
+  await exact.press("Enter");
+  await expect.poll(() => lab.fingerprint("Colour")).toBe(before);
+  await lab.reaches("converged");
 });
 
 test("a weight over many decades has a slider of powers of ten", async ({ lab, page }) => {

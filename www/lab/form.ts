@@ -143,7 +143,8 @@ const REST = 200;
 function numbers(field: NumberField, id: string, change: Change): Built {
   // The library judges the numbers, in words that a browser's bubble does not have; so no limits here.
   const exact = make("input", { id, type: "number", step: "any", inputmode: "decimal", placeholder: field.empty });
-  const read = (input: HTMLInputElement) => change(input.value === "" ? null : input.valueAsNumber);
+  // As a slider that has come to rest: what had been played plays again.
+  const read = (input: HTMLInputElement) => change(input.value === "" ? null : input.valueAsNumber, true);
   exact.addEventListener("change", () => read(exact));
   if (!field.slider) return { inputs: [exact], show: (value) => (exact.value = value === null ? "" : String(value)) };
   const { log = false, ...range } = field.slider;
