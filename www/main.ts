@@ -225,11 +225,13 @@ const views = Array.from({ length: Math.min(10, gallery.count) }, (_, i): [strin
 const keys = byId("keys-on", HTMLInputElement);
 keys.checked = areKeysOn();
 keys.addEventListener("change", () => rememberKeys(keys.checked));
+const press = (id: string) => () => byId(id, HTMLButtonElement).click();
 listenToKeys(() => keys.checked && placeOf(location.hash) === "lab", {
-  " ": () => player.toggle(),
-  s: step,
-  t: stage,
-  r: reset,
+  // As the buttons, which are off while there is nothing to run.
+  " ": press("play"),
+  s: press("step"),
+  t: press("stage-step"),
+  r: press("reset"),
   u: undo,
   y: redo,
   "?": openHelp,

@@ -3,6 +3,7 @@
 import { readFile } from "node:fs/promises";
 import { encode } from "fast-png";
 import { expect, test, type Lab } from "./lab";
+import { Messages } from "./messages";
 import { SIDE, cameraJson, cloudPly, colourPng, columnNpy, depthPfm, depthPgm, depthPng, depthTiff, drop, maskPng, type Upload } from "./uploads";
 
 const slot = (lab: Lab, index: number) => lab.page.locator(".slot").nth(index);
@@ -168,6 +169,38 @@ test("where there is nothing to run the player's buttons are off, and say why", 
   }
   await play?.click();
   await expect(lab.iteration).not.toHaveText("0");
+});
+
+test("while own files are read the page says so, asks for nothing that is there, and plays nothing", async ({ lab, page }) => {
+  const messages = await Messages.of(page);
+  await own(lab);
+  const asked = () => page.locator("#hero").evaluate((hero) => getComputedStyle(hero, "::after").content);
+  const play = page.locator("#play");
+  expect(await asked()).toContain("Drop a colour image and a depth map of one object");
+  await put(lab, "Colour image", colourPng());
+  await expect.poll(asked).toContain("Drop a depth map of the same object");
+  await messages.hold("open");
+  await put(lab, "Depth map", depthPng());
+  await lab.reaches("loading");
+  await expect(page.locator("#verdict")).toContainText("a.png");
+  expect(await asked()).toContain("Reading the input");
+  await expect(play).toHaveAccessibleDescription("Nothing to run (reading the input)");
+  await page.locator("#hero").click({ position: { x: 5, y: 5 } });
+  await page.keyboard.press(" ");
+  await expect(play).toHaveAttribute("aria-pressed", "false");
+  await messages.release();
+  await lab.reaches("ready");
+  await expect(play).toHaveAttribute("aria-pressed", "false");
+  await expect(page.locator("#next")).toHaveText(/^Press play; masks, cameras/);
+  // What is done to a large one is said as soon as it is known.
+  await page.locator("#verdict").evaluate((verdict) => {
+    const said: string[] = [];
+    Object.assign(window, { said });
+    new MutationObserver(() => said.push(verdict.textContent)).observe(verdict, { childList: true, characterData: true, subtree: true });
+  });
+  const wide = Buffer.from(encode({ width: 4100, height: 32, channels: 3, depth: 8, data: new Uint8Array(4100 * 32 * 3).fill(90) }));
+  await put(lab, "Colour image", { ...colourPng("wide.png"), buffer: wide });
+  await expect.poll(() => page.evaluate(() => (window as unknown as { said: string[] }).said.join("|"))).toMatch(/wide\.png: 4100 × 32 px is more than the library takes: scaled down by 2\./);
 });
 
 test("a file in the wrong place is offered its own", async ({ lab, page }) => {

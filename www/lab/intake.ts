@@ -195,10 +195,10 @@ export class Intake {
     if (file) this.#files[slot] = file;
     else delete this.#files[slot];
     const hint = slots.find((each) => each.slot === slot)?.hint ?? "";
-    entry.name.textContent = entry.name.title = file ? `${file.name} (${size(file.size)})` : hint;
+    entry.name.textContent = entry.name.title = file ? `${file.name} (${sizeInWords(file.size)})` : hint;
     entry.zone.toggleAttribute("data-filled", file !== undefined);
     entry.clear.hidden = file === undefined;
   }
 }
 
-const size = (bytes: number): string => (bytes < 1e6 ? `${Math.max(1, Math.round(bytes / 1e3))} kB` : `${(bytes / 1e6).toFixed(1)} MB`);
+export const sizeInWords = (bytes: number): string => (bytes < 1e6 ? `${Math.max(1, Math.round(bytes / 1e3))} kB` : `${(bytes / 1e6).toFixed(1)} MB`);
