@@ -57,6 +57,25 @@ test("a slot that is filled keeps its height, and moves no other", async ({ lab,
   expect(await places()).toEqual(before);
 });
 
+test("what is too large for a preview says its name, its size and that, below each other", async ({ lab }) => {
+  await own(lab);
+  const wide = Buffer.from(encode({ width: 8200, height: 16, channels: 3, depth: 8, data: new Uint8Array(8200 * 16 * 3).fill(90) }));
+  const name = "a-photograph-with-a-name-that-is-longer-than-its-slot.png";
+  await put(lab, "Colour image", { ...colourPng(name), buffer: wide });
+  const card = slot(lab, 0);
+  await expect(card.locator(".says")).toHaveText("8200x16, too large for a preview");
+  const [title, file, says, drop, close] = await Promise.all(["strong", ".file-name", ".says", ".drop", ".quiet"].map((part) => card.locator(part).first().boundingBox()));
+  if (!title || !file || !says || !drop || !close) throw new Error("all parts of the card are seen");
+  expect(file.x).toBe(title.x);
+  expect(file.y).toBeGreaterThanOrEqual(title.y + title.height);
+  expect(file.y).toBeGreaterThanOrEqual(close.y + close.height - 4);
+  expect(says.x).toBe(title.x);
+  expect(says.y).toBeGreaterThanOrEqual(file.y + file.height);
+  // The name is cut, its size is not.
+  await expect(card.locator(".file-name")).toHaveText(/ \(1 kB\)$/);
+  expect(await card.locator(".file-name").evaluate(({ scrollWidth, clientWidth }) => scrollWidth - clientWidth)).toBeLessThanOrEqual(0);
+});
+
 test("depth maps in TIFF, PGM and PFM are the same picture as the PNG, wherever they are dropped", async ({ lab, page }) => {
   await own(lab);
   await put(lab, "Colour image", colourPng());

@@ -195,7 +195,9 @@ export class Intake {
     if (file) this.#files[slot] = file;
     else delete this.#files[slot];
     const hint = slots.find((each) => each.slot === slot)?.hint ?? "";
-    entry.name.textContent = entry.name.title = file ? `${file.name} (${sizeInWords(file.size)})` : hint;
+    entry.name.title = file ? file.name : hint;
+    // However long the name, the size beside it stays in sight.
+    entry.name.replaceChildren(make("span", {}, file ? file.name : hint), ...(file ? [` (${sizeInWords(file.size)})`] : []));
     entry.zone.toggleAttribute("data-filled", file !== undefined);
     entry.clear.hidden = file === undefined;
   }
