@@ -222,6 +222,20 @@ test("while own files are read the page says so, asks for nothing that is there,
   await expect.poll(() => page.evaluate(() => (window as unknown as { said: string[] }).said.join("|"))).toMatch(/wide\.png: 4100 × 32 px is more than the library takes: scaled down by 2\./);
 });
 
+test("of own files no true pose is known: none can be chosen, and what was chosen of a sample is not asked for", async ({ lab, page }) => {
+  await lab.visit("size=32&start=truth");
+  await drop(page, "body", [colourPng(), depthPng()]);
+  await lab.reaches("ready");
+  const start = page.getByLabel("Start", { exact: true });
+  await expect(start).toHaveValue("search");
+  await expect(start.locator("option[value=truth]")).toBeDisabled();
+  await expect(start.locator("option[value=near]")).toBeEnabled();
+  await page.getByRole("button", { name: "Sample", exact: true }).click();
+  await lab.reaches("ready");
+  await expect(start).toHaveValue("truth");
+  await expect(start.locator("option[value=truth]")).toBeEnabled();
+});
+
 test("a file in the wrong place is offered its own", async ({ lab, page }) => {
   await own(lab);
   await put(lab, "Colour image", depthPng("far.png"));
