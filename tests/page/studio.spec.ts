@@ -367,6 +367,15 @@ test("at 400 % zoom nothing sticks out, and the bar leaves the window to the pag
   expect(await page.locator("#bar").evaluate((bar) => getComputedStyle(bar).position)).toBe("static");
 });
 
+test("where a rotation has come to rest, table and chart say zero, and that the axis leaves it out", async ({ lab, page }) => {
+  await lab.visit("size=32&start=near");
+  await page.getByRole("button", { name: "Play" }).click();
+  await expect(page.locator("#status")).toHaveAttribute("data-state", /converged|ambiguous|lost/);
+  await expect(page.locator("#pose-extra")).toContainText(/Rotation change\??\s*0°/);
+  await expect(page.locator("#rotation-chart")).toHaveAttribute("aria-label", /change, deg: from \S+ to 0, zero in \d of \d+ iterations, which a logarithmic axis leaves out\./);
+  await expect(page.locator("#rotation-chart .still")).toHaveText(/^Zero in \d of \d+ iterations: a logarithmic axis leaves those out\.$/);
+});
+
 for (const [width, height] of [[640, 400], [320, 200], [1280, 400]] as const) {
   test(`the skip link shows what Play runs in a window of ${width} x ${height}`, async ({ lab, page }) => {
     await page.setViewportSize({ width, height });
