@@ -125,6 +125,17 @@ test("a range that is half typed survives the frames that arrive meanwhile", asy
 test.describe("on a phone", () => {
   test.use({ hasTouch: true, isMobile: true, viewport: { width: 390, height: 844 } });
 
+  test("the number of the iteration is in sight wherever the bar is scrolled to", async ({ lab, page }) => {
+    await lab.visit("size=32");
+    await expect(lab.iteration).toBeInViewport({ ratio: 1 });
+    const bar = page.locator("#bar");
+    for (const left of [150, 5000]) {
+      expect(await bar.evaluate((bar, left) => (bar.scrollTo({ left, behavior: "instant" }), bar.scrollLeft), left)).toBeGreaterThan(100);
+      await expect(lab.iteration).toBeInViewport({ ratio: 1 });
+    }
+    await expect(page.locator(".stage").last()).toBeInViewport({ ratio: 1 });
+  });
+
   test("all of the verdict is on the first screen, below the surfaces", async ({ lab, page }) => {
     await lab.visit("size=64");
     const [verdict, bar, hero] = await Promise.all(["#panel", "#bar", "#hero"].map((box) => page.locator(box).boundingBox()));
