@@ -198,6 +198,10 @@ test("open settings hide no input, and what has opened them stays under the poin
   // All of it can be reached, and it stays beside what is scrolled to.
   const bar = await page.locator("#bar").boundingBox();
   expect((sheet?.y ?? 0) + (sheet?.height ?? 0)).toBeLessThanOrEqual(bar?.y ?? 0);
+  // The surfaces are seen whole, under a title of one line and above their legend.
+  const legend = await page.locator("#clouds .legend").boundingBox();
+  expect((legend?.y ?? Infinity) + (legend?.height ?? 0)).toBeLessThanOrEqual(bar?.y ?? 0);
+  expect(await page.locator("#clouds .view-title").evaluate((title) => title.getClientRects().length && title.clientHeight / parseFloat(getComputedStyle(title).lineHeight))).toBeLessThan(1.5);
   await page.locator("#numbers").evaluate((numbers) => numbers.scrollIntoView({ block: "start", behavior: "instant" }));
   await expect(page.locator("#input .sheet")).toBeInViewport({ ratio: 0.9 });
   await page.evaluate(() => scrollTo({ top: 0, behavior: "instant" }));
