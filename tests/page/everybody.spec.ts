@@ -46,6 +46,17 @@ test.describe("by touch", () => {
     expect(await small(page), "the Tables").toEqual([]);
   });
 
+  test("one place alone looks current, after Back, too", async ({ page }) => {
+    await page.goto("./#tables");
+    await expect(page.locator(".heat-cell").first()).toBeVisible();
+    await page.locator("#to-rig").tap();
+    await expect(page.locator("#to-rig")).toHaveAttribute("aria-current", "page");
+    await page.goBack();
+    await expect(page.locator("#to-tables")).toHaveAttribute("aria-current", "page");
+    const marked = await page.locator(".top nav a").evaluateAll((links) => links.filter((link) => getComputedStyle(link).boxShadow !== "none").map(({ id }) => id));
+    expect(marked).toEqual(["to-tables"]);
+  });
+
   test("so it is where a rig is checked", async ({ page }) => {
     await answerChecks(page, "off");
     await page.goto("./#rig");
