@@ -32,6 +32,8 @@ export class Strip {
       if (name === "search" && report.stage === name) time.textContent = /^\d+ %/.exec(report.message ?? "")?.[0] ?? "";
       // The last slice that was drawn is seldom the last one that ran.
       else if (name === "search" && begun && time.textContent?.endsWith("%")) time.textContent = "100 %";
+      // Where no iteration was, as after a search that found nothing, nothing ran.
+      else if (spent === 0 && report.iteration === 0) time.textContent = "";
       else if (spent !== undefined) time.textContent = `${decimals(spent, spent < 10 ? 1 : 0)} ms`;
       else if (!begun) time.textContent = "";
     }
