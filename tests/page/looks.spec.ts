@@ -89,10 +89,13 @@ test("an enlarged view comes into sight", async ({ lab, page }) => {
   expect(await widthOf("#views > section")).toBe(await widthOf("#views"));
 });
 
-test("a view without values has no range of earlier ones", async ({ lab, page }) => {
+test("a view without values has no range of earlier ones, and the surfaces' legend names what is drawn", async ({ lab, page }) => {
   await lab.open();
+  const shape = page.getByText("shape from the picture", { exact: true });
+  await expect(shape).toBeHidden();
   await page.keyboard.press("s");
   await expect(lab.iteration).toHaveText("1");
+  await expect(shape).toBeVisible();
   const lowest = page.getByLabel("Depth: lowest value shown", { exact: true });
   await expect(lowest).not.toHaveValue("0");
   await lab.unfold();
