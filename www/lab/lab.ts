@@ -443,7 +443,8 @@ export class Lab {
       this.#rivals.show(report);
       this.#pose.show(report, this.#rivals.looked, this.#from, this.#truth, this.#length);
       this.#strip.show(report);
-      this.#status.show(report, playing ? "playing" : report.iteration > 0 || isSearching(report) ? "paused" : "ready", end);
+      this.#status.show(report, playing ? "playing" : report.iteration > 0 || isSearching(report) ? "paused" : "ready", end, this.#rivals.looked !== undefined);
+      this.#light.beside(this.#rivals.looked !== undefined);
     }
     if (this.#notice) this.#status.announce(this.#notice.state, this.#notice.words, this.#notice.cause);
     // What the status tells of is in the way of a run, unless there is one that it leaves usable.

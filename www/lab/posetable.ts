@@ -75,7 +75,8 @@ export class PoseTable {
     if (truth) {
       const degrees = angleBetween(pose.rotation, truth.rotation);
       this.#error.dataset.degrees = String(degrees);
-      const before = start ? `; ${decimals(angleBetween(start.rotation, truth.rotation), 1)}° at the start` : "";
+      // Beside a rival's the error that the verdict speaks of.
+      const before = rival ? `; ${decimals(angleBetween(report.pose.rotation, truth.rotation), 1)}° the one found` : start ? `; ${decimals(angleBetween(start.rotation, truth.rotation), 1)}° at the start` : "";
       this.#error.replaceChildren(make("strong", {}, `${decimals(degrees, 2)}° off`), ` the true rotation${before}`);
       // By the truth, so that nothing moves while the search looks around.
       if (Math.abs(truth.angles.beta) > POLE) this.#error.append(". So near β = 90° only α and γ together tell the rotation.");
