@@ -263,7 +263,7 @@ test("a pose with a rival says so, and the rival can be seen and chosen", async 
   expect(await lab.errorDegrees()).toBeGreaterThan(away - 5);
   await expect(rivals.getByRole("button", { name: "Start from it" })).toBeVisible();
   // Verdict and light are those of the pose found, and say so.
-  await expect(page.locator("#status")).toHaveText(/^the one found: ambiguous, /);
+  await expect(page.locator("#status")).toHaveText(/^found: ambiguous, /);
   await expect(page.locator("#pose-error")).toHaveText(/° off the true rotation; \d\.\d° the one found/);
   await expect(page.locator("#light figcaption").first()).toHaveText("the one found");
   expect(await places()).toEqual(before);

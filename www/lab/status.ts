@@ -36,7 +36,7 @@ export class Status {
 
   /** `idle` is what the page itself does while the loop rests; the verdict is of the pose found, also where the surfaces show a rival. */
   show(report: StepReport, idle: "ready" | "paused" | "playing", end: Verdict | undefined, isRival: boolean): void {
-    this.#say(end ? report.status : idle, end?.tone ?? "open", end ? `${isRival ? "the one found: " : ""}${end.status}` : idle);
+    this.#say(end ? report.status : idle, end?.tone ?? "open", end ? `${isRival ? "found: " : ""}${end.status}` : idle);
     this.#put(this.#cause, end?.words ?? "");
     this.#put(this.#next, this.#doubt || (end?.next ?? (idle === "ready" ? this.#first : "")));
     this.#put(this.#message, end ? "" : inWords(report.message ?? ""));
