@@ -33,7 +33,8 @@ function range({ kind, min, above, max, below, unit = "" }: NumberRow): string {
   const what = kind === "number" ? "a finite number" : "a whole number";
   // A unit follows a number, not a zero in words.
   const end = unit && (max ?? below ?? above ?? min) ? ` ${unit}` : "";
-  if (min && max) return `${what}, ${min} .. ${max}${end}`;
+  // Between two ends a number is finite in any case.
+  if (min && max) return `${kind === "number" ? "a number" : what} from ${min} to ${max}${end}`;
   const named = (limit: number) => (limit === 0 ? "zero" : `${limit}`);
   const from = above !== undefined ? ` above ${named(above)}` : min !== undefined ? `, ${named(min)} or above` : "";
   const to = max !== undefined ? `, at most ${max}` : below !== undefined ? `, below ${below}` : "";

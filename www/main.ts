@@ -68,11 +68,13 @@ const reset = () => void lab.restart();
 const undo = () => store.undo();
 const redo = () => store.redo();
 
-// The address is the settings', so the link itself leads nowhere.
-byId("skip", HTMLAnchorElement).addEventListener("click", (event) => {
-  event.preventDefault();
-  byId("play", HTMLButtonElement).focus();
-});
+// The address is the settings', so the links themselves lead nowhere.
+for (const [id, target] of [["skip", "#play"], ["skip-takeaway", "#takeaway button"]] as const) {
+  byId(id, HTMLAnchorElement).addEventListener("click", (event) => {
+    event.preventDefault();
+    document.querySelector<HTMLButtonElement>(target)?.focus();
+  });
+}
 button("play", () => player.toggle());
 button("step", step);
 button("stage-step", stage);
@@ -153,7 +155,7 @@ const places: Record<Place, { main: HTMLElement; link: HTMLAnchorElement; title:
   rig: { main: byId("rig", HTMLElement), link: byId("to-rig", HTMLAnchorElement), title: "Check a rig, bimodal-stereo" },
 };
 /** What belongs to the Lab outside its own part of the page. */
-const labOnly = [byId("bar", HTMLElement), byId("skip", HTMLElement)];
+const labOnly = [byId("bar", HTMLElement), byId("skip", HTMLElement), byId("skip-takeaway", HTMLElement)];
 
 function show(place: Place): void {
   document.body.dataset.place = place;
@@ -225,11 +227,13 @@ const views = Array.from({ length: Math.min(10, gallery.count) }, (_, i): [strin
 const keys = byId("keys-on", HTMLInputElement);
 keys.checked = areKeysOn();
 keys.addEventListener("change", () => rememberKeys(keys.checked));
+const press = (id: string) => () => byId(id, HTMLButtonElement).click();
 listenToKeys(() => keys.checked && placeOf(location.hash) === "lab", {
-  " ": () => player.toggle(),
-  s: step,
-  t: stage,
-  r: reset,
+  // As the buttons, which are off while there is nothing to run.
+  " ": press("play"),
+  s: press("step"),
+  t: press("stage-step"),
+  r: press("reset"),
   u: undo,
   y: redo,
   "?": openHelp,

@@ -1,6 +1,6 @@
 /** What an estimator found, in files that other programs read: pose, light, depth and normals. */
 import { BimodalError } from "../errors.js";
-import type { Pose } from "../types.js";
+import type { Pose, StepReport } from "../types.js";
 import { real } from "../rig/write/numbers.js";
 import { checkRaster } from "./npy.js";
 import { writePng } from "./png.js";
@@ -23,11 +23,21 @@ export function matrixText({ scale, rotation, translation }: Pose): string {
   return rows.map((values) => `${values.map(real).join(" ")}\n`).join("");
 }
 
-/** The pose with its matrix, and in words what it means. */
-export function poseJson(pose: Pose, unit: Unit): string {
+/** How far a pose is to be trusted, as a report says it. */
+export type PoseStanding = Pick<StepReport, "status" | "message" | "uncertainty">;
+
+/**
+ * The pose with its matrix, and in words what it means; beside it, where a report is given, its status and one sigma of each number, `null`
+ * where the views cannot see it.
+ */
+export function poseJson(pose: Pose, unit: Unit, report?: PoseStanding): string {
   const matrix = matrixText(pose).trim().split("\n").map((line) => line.split(" ").map(Number));
   const about = `P_colour = scale * rotation * P_depth + translation; rotation row by row; angles in degrees; lengths in ${unit === "m" ? "metres" : "pixels"}`;
-  return `${JSON.stringify({ about, unit, ...pose, matrix }, null, 2)}\n`;
+  if (!report) return `${JSON.stringify({ about, unit, ...pose, matrix }, null, 2)}\n`;
+  const { status, message, uncertainty } = report;
+  const sigmas = uncertainty && "; uncertainty is one sigma, null where the views cannot see the number: any value of it would do as well, or it was held";
+  const standing = { status, ...(message ? { message } : {}), ...(uncertainty ? { uncertainty } : {}) };
+  return `${JSON.stringify({ about: about + (sigmas ?? ""), unit, ...pose, matrix, ...standing }, null, 2)}\n`;
 }
 
 const CHANNELS = ["R", "G", "B"];

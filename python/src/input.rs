@@ -121,7 +121,7 @@ pub fn angles(parent: &Members<'_>) -> PyResult<Option<Angles>> {
         if value.abs() <= FULL_TURN {
             return Ok(value);
         }
-        Err(failure("range", &given.at(name), &format!("must be a finite number, -360 .. 360 deg (got {value})")))
+        Err(failure("range", &given.at(name), &format!("must be a number from -360 to 360 deg (got {value})")))
     };
     Ok(Some(Angles { alpha: angle("alpha")?, beta: angle("beta")?, gamma: angle("gamma")? }))
 }

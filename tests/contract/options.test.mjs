@@ -80,15 +80,15 @@ describe("ranges", () => {
     const { image, depth } = sample(REQUEST);
     const estimator = (options) => () => new Estimator(image, depth, options);
     for (const [call, message] of [
-      [estimator({ workers: 17 }), "options.workers: must be a whole number, 1 .. 16 (got 17)"],
+      [estimator({ workers: 17 }), "options.workers: must be a whole number from 1 to 16 (got 17)"],
       [estimator({ scale: 0 }), "options.scale: must be a finite number above zero (got 0)"],
       [estimator({ stopDegrees: 0 }), "options.stopDegrees: must be a finite number above zero (got 0)"],
-      [estimator({ maxIterations: 0 }), "options.maxIterations: must be a whole number, 1 .. 100000 (got 0)"],
+      [estimator({ maxIterations: 0 }), "options.maxIterations: must be a whole number from 1 to 100000 (got 0)"],
       [estimator({ lambda: { prior: -1 } }), "options.lambda.prior: must be a finite number, zero or above, at most 1000000 (got -1)"],
-      [estimator({ start: { angles: { beta: 500 } } }), "options.start.angles.beta: must be a finite number, -360 .. 360 deg (got 500)"],
+      [estimator({ start: { angles: { beta: 500 } } }), "options.start.angles.beta: must be a number from -360 to 360 deg (got 500)"],
       [() => sample({ ...REQUEST, holes: 1 }), "sample.holes: must be a finite number, zero or above, below 1 (got 1)"],
       [() => sample({ ...REQUEST, overlap: 2 }), "sample.overlap: must be a finite number above zero, at most 1 (got 2)"],
-      [() => sample({ ...REQUEST, size: 8 }), "sample.size: must be a whole number, 16 .. 1024 px (got 8)"],
+      [() => sample({ ...REQUEST, size: 8 }), "sample.size: must be a whole number from 16 to 1024 px (got 8)"],
     ]) {
       assert.throws(call, { message });
     }

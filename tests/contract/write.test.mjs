@@ -36,6 +36,18 @@ describe("what others read is what was written", () => {
     read.pose.moved.forEach((value, axis) => assert.ok(Math.abs(value - moved[axis]) < 1e-12));
   });
 
+  test("the pose with how far it is to be trusted, where a report says so", () => {
+    const plain = JSON.parse(poseJson(POSE, "px"));
+    const uncertainty = { rotationDegrees: [0.1, 0.2, 0.3], translation: [0.4, 0.5, null], scale: null, weakest: "translation along y" };
+    const { about, ...told } = JSON.parse(poseJson(POSE, "px", { status: "ambiguous", message: "another pose explains the colours as well", uncertainty, iteration: 7 }));
+    const { about: before, ...kept } = plain;
+    assert.deepEqual(told, { ...kept, status: "ambiguous", message: "another pose explains the colours as well", uncertainty });
+    assert.ok(about.startsWith(before));
+    assert.match(about, /null where the views cannot see/);
+    // A run that is not over has a status alone.
+    assert.deepEqual(JSON.parse(poseJson(POSE, "px", { status: "running" })), { ...plain, status: "running" });
+  });
+
   test("light, by numpy", () => assert.deepEqual(read["light.csv"].values, [...LIGHT]));
 
   test("clouds, by Open3D", () => {

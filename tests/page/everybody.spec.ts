@@ -16,7 +16,7 @@ const small = (page: Page): Promise<string[]> =>
       const isBox = control.matches("[type=checkbox], [type=radio], [type=file]");
       const target = (isBox && (control as HTMLInputElement).labels?.[0]) || control;
       const { width, height } = target.getBoundingClientRect();
-      const isSeen = control.checkVisibility({ visibilityProperty: true }) && width > 0 && control.id !== "skip";
+      const isSeen = control.checkVisibility({ visibilityProperty: true }) && width > 0 && !control.matches(".skip");
       const isInSentence = control.matches("p a, li a") && getComputedStyle(control).display === "inline";
       if (!isSeen || isInSentence || (width >= least && height >= least)) return [];
       return [`${control.tagName} ${control.id || control.className} ${control.textContent?.trim()}: ${Math.round(width)}x${Math.round(height)}`];
@@ -44,6 +44,17 @@ test.describe("by touch", () => {
     await page.goto("./#tables");
     await expect(page.locator(".heat-cell").first()).toBeVisible();
     expect(await small(page), "the Tables").toEqual([]);
+  });
+
+  test("one place alone looks current, after Back, too", async ({ page }) => {
+    await page.goto("./#tables");
+    await expect(page.locator(".heat-cell").first()).toBeVisible();
+    await page.locator("#to-rig").tap();
+    await expect(page.locator("#to-rig")).toHaveAttribute("aria-current", "page");
+    await page.goBack();
+    await expect(page.locator("#to-tables")).toHaveAttribute("aria-current", "page");
+    const marked = await page.locator(".top nav a").evaluateAll((links) => links.filter((link) => getComputedStyle(link).boxShadow !== "none").map(({ id }) => id));
+    expect(marked).toEqual(["to-tables"]);
   });
 
   test("so it is where a rig is checked", async ({ page }) => {
@@ -84,6 +95,16 @@ test("the tab key goes through the page as it is used: places, examples, setting
     if (part && met.at(-1) !== part) met.push(part);
   }
   expect(met).toEqual(parts);
+});
+
+test("what is taken away is two presses of the tab key and Enter away", async ({ lab, page }) => {
+  await lab.open("size=32");
+  for (const key of ["Tab", "Tab", "Enter"]) await page.keyboard.press(key);
+  await expect(page.getByRole("button", { name: "Pose, JSON" })).toBeFocused();
+  await expect(page.getByRole("button", { name: "Pose, JSON" })).toBeInViewport();
+  await expect(page).not.toHaveURL(/takeaway/);
+  await page.getByRole("link", { name: "Learn" }).click();
+  await expect(page.locator("#skip-takeaway")).toBeHidden();
 });
 
 test("who wants less motion gets no show, and surfaces that do not swing", async ({ lab, page }) => {

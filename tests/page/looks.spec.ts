@@ -89,10 +89,13 @@ test("an enlarged view comes into sight", async ({ lab, page }) => {
   expect(await widthOf("#views > section")).toBe(await widthOf("#views"));
 });
 
-test("a view without values has no range of earlier ones", async ({ lab, page }) => {
+test("a view without values has no range of earlier ones, and the surfaces' legend names what is drawn", async ({ lab, page }) => {
   await lab.open();
+  const shape = page.getByText("shape from the picture", { exact: true });
+  await expect(shape).toBeHidden();
   await page.keyboard.press("s");
   await expect(lab.iteration).toHaveText("1");
+  await expect(shape).toBeVisible();
   const lowest = page.getByLabel("Depth: lowest value shown", { exact: true });
   await expect(lowest).not.toHaveValue("0");
   await lab.unfold();
@@ -124,6 +127,17 @@ test("a range that is half typed survives the frames that arrive meanwhile", asy
 
 test.describe("on a phone", () => {
   test.use({ hasTouch: true, isMobile: true, viewport: { width: 390, height: 844 } });
+
+  test("the number of the iteration is in sight wherever the bar is scrolled to", async ({ lab, page }) => {
+    await lab.visit("size=32");
+    await expect(lab.iteration).toBeInViewport({ ratio: 1 });
+    const bar = page.locator("#bar");
+    for (const left of [150, 5000]) {
+      expect(await bar.evaluate((bar, left) => (bar.scrollTo({ left, behavior: "instant" }), bar.scrollLeft), left)).toBeGreaterThan(100);
+      await expect(lab.iteration).toBeInViewport({ ratio: 1 });
+    }
+    await expect(page.locator(".stage").last()).toBeInViewport({ ratio: 1 });
+  });
 
   test("all of the verdict is on the first screen, below the surfaces", async ({ lab, page }) => {
     await lab.visit("size=64");
@@ -187,6 +201,10 @@ test("open settings hide no input, and what has opened them stays under the poin
   // All of it can be reached, and it stays beside what is scrolled to.
   const bar = await page.locator("#bar").boundingBox();
   expect((sheet?.y ?? 0) + (sheet?.height ?? 0)).toBeLessThanOrEqual(bar?.y ?? 0);
+  // The surfaces are seen whole, under a title of one line and above their legend.
+  const legend = await page.locator("#clouds .legend").boundingBox();
+  expect((legend?.y ?? Infinity) + (legend?.height ?? 0)).toBeLessThanOrEqual(bar?.y ?? 0);
+  expect(await page.locator("#clouds .view-title").evaluate((title) => title.getClientRects().length && title.clientHeight / parseFloat(getComputedStyle(title).lineHeight))).toBeLessThan(1.5);
   await page.locator("#numbers").evaluate((numbers) => numbers.scrollIntoView({ block: "start", behavior: "instant" }));
   await expect(page.locator("#input .sheet")).toBeInViewport({ ratio: 0.9 });
   await page.evaluate(() => scrollTo({ top: 0, behavior: "instant" }));

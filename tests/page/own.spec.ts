@@ -3,6 +3,7 @@
 import { readFile } from "node:fs/promises";
 import { encode } from "fast-png";
 import { expect, test, type Lab } from "./lab";
+import { Messages } from "./messages";
 import { SIDE, cameraJson, cloudPly, colourPng, columnNpy, depthPfm, depthPgm, depthPng, depthTiff, drop, maskPng, type Upload } from "./uploads";
 
 const slot = (lab: Lab, index: number) => lab.page.locator(".slot").nth(index);
@@ -54,6 +55,25 @@ test("a slot that is filled keeps its height, and moves no other", async ({ lab,
   await expect(slot(lab, 1).getByRole("img")).toBeVisible();
   await expect(slot(lab, 1)).toContainText("% valid");
   expect(await places()).toEqual(before);
+});
+
+test("what is too large for a preview says its name, its size and that, below each other", async ({ lab }) => {
+  await own(lab);
+  const wide = Buffer.from(encode({ width: 8200, height: 16, channels: 3, depth: 8, data: new Uint8Array(8200 * 16 * 3).fill(90) }));
+  const name = "a-photograph-with-a-name-that-is-longer-than-its-slot.png";
+  await put(lab, "Colour image", { ...colourPng(name), buffer: wide });
+  const card = slot(lab, 0);
+  await expect(card.locator(".says")).toHaveText("8200x16, too large for a preview");
+  const [title, file, says, drop, close] = await Promise.all(["strong", ".file-name", ".says", ".drop", ".quiet"].map((part) => card.locator(part).first().boundingBox()));
+  if (!title || !file || !says || !drop || !close) throw new Error("all parts of the card are seen");
+  expect(file.x).toBe(title.x);
+  expect(file.y).toBeGreaterThanOrEqual(title.y + title.height);
+  expect(file.y).toBeGreaterThanOrEqual(close.y + close.height - 4);
+  expect(says.x).toBe(title.x);
+  expect(says.y).toBeGreaterThanOrEqual(file.y + file.height);
+  // The name is cut, its size is not.
+  await expect(card.locator(".file-name")).toHaveText(/ \(1 kB\)$/);
+  expect(await card.locator(".file-name").evaluate(({ scrollWidth, clientWidth }) => scrollWidth - clientWidth)).toBeLessThanOrEqual(0);
 });
 
 test("depth maps in TIFF, PGM and PFM are the same picture as the PNG, wherever they are dropped", async ({ lab, page }) => {
@@ -168,6 +188,52 @@ test("where there is nothing to run the player's buttons are off, and say why", 
   }
   await play?.click();
   await expect(lab.iteration).not.toHaveText("0");
+});
+
+test("while own files are read the page says so, asks for nothing that is there, and plays nothing", async ({ lab, page }) => {
+  const messages = await Messages.of(page);
+  await own(lab);
+  const asked = () => page.locator("#hero").evaluate((hero) => getComputedStyle(hero, "::after").content);
+  const play = page.locator("#play");
+  expect(await asked()).toContain("Drop a colour image and a depth map of one object");
+  await put(lab, "Colour image", colourPng());
+  await expect.poll(asked).toContain("Drop a depth map of the same object");
+  await messages.hold("open");
+  await put(lab, "Depth map", depthPng());
+  await lab.reaches("loading");
+  await expect(page.locator("#verdict")).toContainText("a.png");
+  expect(await asked()).toContain("Reading the input");
+  await expect(play).toHaveAccessibleDescription("Nothing to run (reading the input)");
+  await page.locator("#hero").click({ position: { x: 5, y: 5 } });
+  await page.keyboard.press(" ");
+  await expect(play).toHaveAttribute("aria-pressed", "false");
+  await messages.release();
+  await lab.reaches("ready");
+  await expect(play).toHaveAttribute("aria-pressed", "false");
+  await expect(page.locator("#next")).toHaveText(/^Press play; masks, cameras/);
+  // What is done to a large one is said as soon as it is known.
+  await page.locator("#verdict").evaluate((verdict) => {
+    const said: string[] = [];
+    Object.assign(window, { said });
+    new MutationObserver(() => said.push(verdict.textContent)).observe(verdict, { childList: true, characterData: true, subtree: true });
+  });
+  const wide = Buffer.from(encode({ width: 4100, height: 32, channels: 3, depth: 8, data: new Uint8Array(4100 * 32 * 3).fill(90) }));
+  await put(lab, "Colour image", { ...colourPng("wide.png"), buffer: wide });
+  await expect.poll(() => page.evaluate(() => (window as unknown as { said: string[] }).said.join("|"))).toMatch(/wide\.png: 4100 × 32 px is more than the library takes: scaled down by 2\./);
+});
+
+test("of own files no true pose is known: none can be chosen, and what was chosen of a sample is not asked for", async ({ lab, page }) => {
+  await lab.visit("size=32&start=truth");
+  await drop(page, "body", [colourPng(), depthPng()]);
+  await lab.reaches("ready");
+  const start = page.getByLabel("Start", { exact: true });
+  await expect(start).toHaveValue("search");
+  await expect(start.locator("option[value=truth]")).toBeDisabled();
+  await expect(start.locator("option[value=near]")).toBeEnabled();
+  await page.getByRole("button", { name: "Sample", exact: true }).click();
+  await lab.reaches("ready");
+  await expect(start).toHaveValue("truth");
+  await expect(start.locator("option[value=truth]")).toBeEnabled();
 });
 
 test("a file in the wrong place is offered its own", async ({ lab, page }) => {

@@ -23,6 +23,15 @@ test("a sample runs to convergence with a small pose error", async ({ lab, page 
   await lab.reaches("playing");
 });
 
+test("no stage that has come to rest is said to have taken 0.0 ms", async ({ lab, page }) => {
+  await lab.visit("size=32&start=near");
+  await page.getByLabel("Speed").selectOption({ label: "fastest" });
+  await page.getByRole("button", { name: "Play" }).click();
+  await expect(page.locator("#status")).toHaveAttribute("data-state", /converged|lost|ambiguous/);
+  await expect(page.locator("#stages")).toContainText("ms");
+  await expect(page.locator("#stages")).not.toContainText(/\D0\.0 ms/);
+});
+
 test("keys step, stage, play, pause, reset and enlarge", async ({ lab, page }) => {
   const messages = await Messages.of(page);
   await lab.open();

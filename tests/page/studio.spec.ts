@@ -217,6 +217,11 @@ test("a slider acts when it rests, and what had been played plays again", async 
   await page.getByRole("button", { name: "Redo" }).click();
   await expect.poll(() => lab.fingerprint("Colour")).not.toBe(before);
   await lab.reaches("converged");
+  // So does a number that is typed.
+  await exact.fill("0");
+  await exact.press("Enter");
+  await expect.poll(() => lab.fingerprint("Colour")).toBe(before);
+  await lab.reaches("converged");
 });
 
 test("a weight over many decades has a slider of powers of ten", async ({ lab, page }) => {
@@ -257,9 +262,15 @@ test("a pose with a rival says so, and the rival can be seen and chosen", async 
   await expect(beta).not.toHaveText(String(foundBeta));
   expect(await lab.errorDegrees()).toBeGreaterThan(away - 5);
   await expect(rivals.getByRole("button", { name: "Start from it" })).toBeVisible();
+  // Verdict and light are those of the pose found, and say so.
+  await expect(page.locator("#status")).toHaveText(/^found: ambiguous, /);
+  await expect(page.locator("#pose-error")).toHaveText(/° off the true rotation; \d\.\d° the one found/);
+  await expect(page.locator("#light figcaption").first()).toHaveText("the one found");
   expect(await places()).toEqual(before);
   await rivals.getByRole("button", { name: "the one found" }).click();
   await expect(page.locator("#pose-found")).toHaveText("found");
+  await expect(page.locator("#status")).toHaveText(/^ambiguous, /);
+  await expect(page.locator("#light figcaption").first()).toHaveText("found");
   await expect(beta).toHaveText(String(foundBeta));
   expect(await lab.errorDegrees()).toBe(foundOff);
   await rival.click();
@@ -361,6 +372,29 @@ test("at 400 % zoom nothing sticks out, and the bar leaves the window to the pag
   expect(await page.evaluate(() => document.documentElement.scrollWidth)).toBeLessThanOrEqual(320);
   expect(await page.locator("#bar").evaluate((bar) => getComputedStyle(bar).position)).toBe("static");
 });
+
+test("where a rotation has come to rest, table and chart say zero, and that the axis leaves it out", async ({ lab, page }) => {
+  await lab.visit("size=32&start=near");
+  await page.getByRole("button", { name: "Play" }).click();
+  await expect(page.locator("#status")).toHaveAttribute("data-state", /converged|ambiguous|lost/);
+  await expect(page.locator("#pose-extra")).toContainText(/Rotation change\??\s*0°/);
+  await expect(page.locator("#rotation-chart")).toHaveAttribute("aria-label", /change, deg: from \S+ to 0, zero in \d of \d+ iterations, which a logarithmic axis leaves out\./);
+  await expect(page.locator("#rotation-chart .still")).toHaveText(/^Zero in \d of \d+ iterations: a logarithmic axis leaves those out\.$/);
+});
+
+for (const [width, height] of [[640, 400], [320, 200], [1280, 400]] as const) {
+  test(`the skip link shows what Play runs in a window of ${width} x ${height}`, async ({ lab, page }) => {
+    await page.setViewportSize({ width, height });
+    await lab.open("size=32");
+    await page.keyboard.press("Tab");
+    await page.keyboard.press("Enter");
+    await expect(page.locator("#play")).toBeFocused();
+    await expect(page.locator("#play")).toBeInViewport({ ratio: 1 });
+    // What is seen of it there; the page may scroll softly.
+    await expect(page.locator("#clouds-canvas")).toBeInViewport({ ratio: height < 300 ? 0.5 : 1 });
+    if (height > 300) await expect(page.locator("#status")).toBeInViewport({ ratio: 1 });
+  });
+}
 
 test("the bar is one row of one height", async ({ lab, page }) => {
   for (const width of [320, 768, 1280, 2560]) {

@@ -46,7 +46,8 @@ test("pose, light and clouds", async ({ lab, page }) => {
   await page.keyboard.press("s");
   await expect(lab.iteration).toHaveText("1");
   const pose = JSON.parse((await handed(lab, "Pose, JSON")).toString()) as { unit: string; scale: number; rotation: number[]; translation: number[]; matrix: number[][] };
-  expect(pose).toMatchObject({ unit: "px" });
+  // Not over after one step.
+  expect(pose).toMatchObject({ unit: "px", status: "running" });
   const rows = (await handed(lab, "Pose, 4×4")).toString().trim().split("\n").map((line) => line.split(" ").map(Number));
   expect(rows).toEqual(pose.matrix);
   expect(rows[1]).toEqual([...pose.rotation.slice(3, 6).map((value) => pose.scale * value), pose.translation[1]]);

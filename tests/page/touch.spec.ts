@@ -11,6 +11,8 @@ test("a finger up or down scrolls the page and turns nothing; across, or two of 
   await expect(page.locator("#status")).toHaveAttribute("data-state", "ready");
   await expect(page.locator("#clouds-note")).toBeHidden();
   const canvas = page.locator("#clouds-canvas");
+  // What tilts them is said where they are.
+  await expect(page.getByText("one finger turns, two tilt")).toBeVisible();
   const hand = await context.newCDPSession(page);
   const scrolled = () => page.evaluate(() => scrollY);
 

@@ -34,7 +34,7 @@ export class Chart {
   readonly #name: string;
   readonly #lines: readonly Line[];
   readonly #plot: Plot;
-  readonly #still = make("p", { class: "soft still", hidden: true }, "No change in any iteration: a logarithmic axis has no zero.");
+  readonly #still = make("p", { class: "soft still", hidden: true });
 
   private constructor(box: HTMLElement, name: string, lines: readonly Line[]) {
     box.setAttribute("role", "group");
@@ -60,9 +60,17 @@ export class Chart {
     const iterations = Array.from({ length: Math.max(0, ...runs.flatMap((run) => [...run.keys()])) }, (_, i) => i + 1);
     const [curves = [], dashed = []] = runs.map((run) => lines.map(({ value }) => iterations.map((iteration) => optional(run.get(iteration), value))));
     this.#plot.show(iterations, [...curves, ...dashed]);
-    const values = [...curves, ...dashed].flat();
-    this.#still.hidden = !values.includes(0) || values.some((value) => value !== null && value > 0);
+    this.#sayZeros(curves.flat(), dashed.flat());
     this.#box.setAttribute("aria-label", [inWords(name, lines, curves), ...(pinned.length > 0 ? [inWords(`Pinned: ${name.toLowerCase()}`, lines, dashed)] : [])].join(" "));
+  }
+
+  /** Where a single curve has gaps, and why. */
+  #sayZeros(values: readonly (number | null)[], pinned: readonly (number | null)[]): void {
+    const isDrawn = [...values, ...pinned].some((value) => value !== null && value > 0);
+    const zeros = zerosIn(values);
+    this.#still.hidden = this.#lines.length > 1 || (isDrawn ? !zeros : !values.includes(0) && !pinned.includes(0));
+    this.#still.toggleAttribute("data-some", isDrawn);
+    this.#still.textContent = isDrawn ? `${zeros.charAt(0).toUpperCase()}${zeros.slice(1)}: a logarithmic axis leaves those out.` : "No change in any iteration: a logarithmic axis has no zero.";
   }
 
   /** uPlot draws on a canvas and has to be told the theme's colours anew. */
@@ -79,13 +87,22 @@ export class Chart {
 
 const optional = <T>(given: T | undefined, value: (given: T) => number): number | null => (given === undefined ? null : value(given));
 
-/** A chart for those who cannot see it: where each curve began and where it is. */
+/** Of how many iterations a value is zero, in words; empty where it is in none. */
+function zerosIn(values: readonly (number | null)[]): string {
+  const [known, zeros] = [values.filter((value) => value !== null), values.filter((value) => value === 0)];
+  return zeros.length > 0 ? `zero in ${zeros.length} of ${known.length} iterations` : "";
+}
+
+/** A chart for those who cannot see it: where each curve began and where it is, zeros included, of which a logarithm shows none. */
 function inWords(name: string, lines: readonly Line[], curves: readonly (readonly (number | null)[])[]): string {
   const said = lines.map(({ label }, i) => {
     const all = curves[i] ?? [];
-    const values = all.filter((value): value is number => value !== null && value > 0);
+    const values = all.filter((value): value is number => value !== null && value >= 0);
     const [first, last] = [values[0], values.at(-1)];
-    return first === undefined || last === undefined ? `${label}: ${all.includes(0) ? "zero throughout" : "none yet"}` : `${label}: from ${short(first)} to ${short(last)}`;
+    if (first === undefined || last === undefined) return `${label}: none yet`;
+    if (!values.some((value) => value > 0)) return `${label}: zero throughout`;
+    const zeros = zerosIn(values);
+    return `${label}: from ${short(first)} to ${short(last)}${zeros && `, ${zeros}, which a logarithmic axis leaves out`}`;
   });
   return `${name} over the iterations. ${said.join("; ")}.`;
 }

@@ -32,6 +32,8 @@ interface Pending {
 export interface EngineHooks {
   /** Told how many bytes of the module have arrived. */
   onLoad(bytes: number): void;
+  /** Told what is done to a file that is being read. */
+  onDoing(words: string): void;
   /** The worker is gone, and with it the input that it held; calls under way are rejected with the same error. */
   onLost(error: EngineError): void;
 }
@@ -88,7 +90,8 @@ export class Engine {
 
   #receive(answer: Answer): void {
     if (answer.id === null) {
-      this.#hooks.onLoad(answer.loaded);
+      if ("doing" in answer) this.#hooks.onDoing(answer.doing);
+      else this.#hooks.onLoad(answer.loaded);
       return;
     }
     this.#loaded = true;

@@ -20,20 +20,26 @@ export interface Pair {
   notes: Record<string, string>;
 }
 
-export async function readPair(files: OwnFiles): Promise<Pair> {
+/** Told what is being done, as soon as it is known: a large file takes long. */
+type Say = (words: string) => void;
+
+export async function readPair(files: OwnFiles, say: Say): Promise<Pair> {
   const notes: Record<string, string> = {};
-  const image = await readImage(files, notes);
-  const depth = await readDepth(files, notes);
+  const image = await readImage(files, notes, say);
+  const depth = await readDepth(files, notes, say);
   return { image, depth, notes };
 }
 
-async function readImage(files: OwnFiles, notes: Record<string, string>): Promise<ColorImage> {
+async function readImage(files: OwnFiles, notes: Record<string, string>, say: Say): Promise<ColorImage> {
   const { colour, colourMask, colourCamera } = files;
   const raw = files.read?.colour ?? (await read(colour, "image", async (bytes) => (isOurs(bytes) ? decodeColour(bytes) : decodePhoto(colour))));
   const mask = files.read?.colourMask ?? (colourMask && (await read(colourMask, "image.mask", (bytes) => decodeMask(bytes))));
   const factor = factorFor(raw);
+  if (factor > 1) {
+    notes.image = `${raw.width} × ${raw.height} px is more than the library takes: scaled down by ${factor}`;
+    say(`${colour.name}: ${notes.image}.`);
+  }
   const image = factor > 1 ? shrink(raw, factor) : raw;
-  if (factor > 1) notes.image = `${raw.width} × ${raw.height} px is more than the library takes: scaled down by ${factor}`;
   if (mask) image.mask = fitMask(mask, raw, factor, "image.mask");
   // The centre of a block of pixels lies between them.
   if (colourCamera) image.camera = reduced(colourCamera, factor, (factor - 1) / 2);
@@ -44,13 +50,16 @@ async function readImage(files: OwnFiles, notes: Record<string, string>): Promis
   return image;
 }
 
-async function readDepth(files: OwnFiles, notes: Record<string, string>): Promise<DepthMap> {
+async function readDepth(files: OwnFiles, notes: Record<string, string>, say: Say): Promise<DepthMap> {
   const { depth: file, depthMask, depthCamera, unit } = files;
   const raw = files.read?.depth ?? (await read(file, "depth", (bytes) => decodeDepth(bytes)));
   const mask = files.read?.depthMask ?? (depthMask && (await read(depthMask, "depth.mask", (bytes) => decodeMask(bytes))));
   const factor = factorFor(raw);
+  if (factor > 1) {
+    notes.depth = `${raw.width} × ${raw.height} px is more than the library takes: every ${factor}th pixel is used`;
+    say(`${file.name}: ${notes.depth}.`);
+  }
   const depth = factor > 1 ? thin(raw, factor) : raw;
-  if (factor > 1) notes.depth = `${raw.width} × ${raw.height} px is more than the library takes: every ${factor}th pixel is used`;
   if (mask) depth.mask = fitMask(mask, raw, factor, "depth.mask");
   if (depthCamera) depth.camera = reduced(depthCamera, factor, Math.floor(factor / 2));
   if (unit !== undefined) depth.unit = unit;

@@ -233,4 +233,6 @@ export interface Fault {
 export type Answer =
   | { id: number; ok: true; reply: Calls[Kind]["reply"] }
   | { id: number; ok: false; fault: Fault }
-  | { id: null; loaded: number };
+  | { id: null; loaded: number }
+  /** What is done to a file, as soon as it is known. */
+  | { id: null; doing: string };

@@ -141,7 +141,7 @@ function preview({ source }: Calls["preview"]["request"]): Preview {
 /** The decoders are large and only needed here, so they load with the first file. */
 async function fromFiles(files: OwnFiles): Promise<Prepared> {
   const { readPair } = await import("./pair");
-  return { ...(await readPair(files)), truth: null };
+  return { ...(await readPair(files, (doing) => post({ id: null, doing }, []))), truth: null };
 }
 
 function reset({ options, look }: Calls["reset"]["request"]): Frame {

@@ -47,6 +47,7 @@ export class CloudPanel {
 
   show(drawings: Drawings): void {
     this.#drawings = drawings;
+    this.#name();
     this.#showAll();
   }
 
@@ -59,6 +60,7 @@ export class CloudPanel {
 
   unpin(): void {
     this.#pinned = undefined;
+    this.#name();
     this.#box.removeAttribute("data-pinned");
     this.#clouds?.unpin();
   }
@@ -75,6 +77,12 @@ export class CloudPanel {
 
   recolour(): void {
     this.#clouds?.recolour();
+  }
+
+  /** The legend names what is drawn: before the first iteration there is no shape from the picture. */
+  #name(): void {
+    const isDrawn = [this.#drawings, this.#pinned].some((drawings) => drawings?.surfaces.image.points.some(Number.isFinite));
+    byId("clouds-image", HTMLElement).toggleAttribute("data-none", !isDrawn);
   }
 
   #showAll(): void {

@@ -1,7 +1,7 @@
 /** Fields made from the settings' description, each with its label, unit, hint and a place for its error. */
 
 import { byId, freshId, make } from "../dom";
-import { fields, isLightText, type ChoiceField, type Field, type Group, type ListField, type NumberField, type Origin, type Settings, type Value } from "./settings";
+import { fields, isLightText, isOff, valueOf, type ChoiceField, type Field, type Group, type ListField, type NumberField, type Origin, type Settings, type Value } from "./settings";
 import type { Store } from "./store";
 
 const groups: readonly Group[] = ["sample", "colour", "depth", "method", "weights", "loop"];
@@ -40,7 +40,12 @@ export class Form {
 
   /** Shows only the fields that mean something for this source, and what their present values entail. */
   adapt(settings: Settings, source: Origin): void {
-    for (const { field, row, remark } of this.#controls.values()) {
+    for (const { field, row, remark, inputs, show } of this.#controls.values()) {
+      const select = inputs[0];
+      if (field.kind === "choice" && field.only && select instanceof HTMLSelectElement) {
+        for (const option of select.options) option.disabled = isOff(field, option.value, source);
+        show(valueOf(field, settings, source));
+      }
       row.hidden = !(field.when?.(settings, source) ?? true);
       remark.textContent = field.remark?.(settings[field.key] ?? null, source) ?? "";
     }
@@ -143,7 +148,8 @@ const REST = 200;
 function numbers(field: NumberField, id: string, change: Change): Built {
   // The library judges the numbers, in words that a browser's bubble does not have; so no limits here.
   const exact = make("input", { id, type: "number", step: "any", inputmode: "decimal", placeholder: field.empty });
-  const read = (input: HTMLInputElement) => change(input.value === "" ? null : input.valueAsNumber);
+  // As a slider that has come to rest: what had been played plays again.
+  const read = (input: HTMLInputElement) => change(input.value === "" ? null : input.valueAsNumber, true);
   exact.addEventListener("change", () => read(exact));
   if (!field.slider) return { inputs: [exact], show: (value) => (exact.value = value === null ? "" : String(value)) };
   const { log = false, ...range } = field.slider;

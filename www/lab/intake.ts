@@ -195,10 +195,12 @@ export class Intake {
     if (file) this.#files[slot] = file;
     else delete this.#files[slot];
     const hint = slots.find((each) => each.slot === slot)?.hint ?? "";
-    entry.name.textContent = entry.name.title = file ? `${file.name} (${size(file.size)})` : hint;
+    entry.name.title = file ? file.name : hint;
+    // However long the name, the size beside it stays in sight.
+    entry.name.replaceChildren(make("span", {}, file ? file.name : hint), ...(file ? [` (${sizeInWords(file.size)})`] : []));
     entry.zone.toggleAttribute("data-filled", file !== undefined);
     entry.clear.hidden = file === undefined;
   }
 }
 
-const size = (bytes: number): string => (bytes < 1e6 ? `${Math.max(1, Math.round(bytes / 1e3))} kB` : `${(bytes / 1e6).toFixed(1)} MB`);
+export const sizeInWords = (bytes: number): string => (bytes < 1e6 ? `${Math.max(1, Math.round(bytes / 1e3))} kB` : `${(bytes / 1e6).toFixed(1)} MB`);

@@ -17,16 +17,16 @@ import { Rivals } from "./rivals";
 import { fields, inputGroups, methodOf, runOptions, settingsOf, startNear, turnOf, type Origin, type Settings } from "./settings";
 import { download, linkTo, writeAddress } from "./share";
 import { ScoreMap } from "./scoremap";
-import { objectOf, originOf, readable, rememberOrigin, sampleOf, sourceOf, wayOut } from "./source";
-import { saveBlob } from "../save";
+import { namesIn, objectOf, originOf, readable, rememberOrigin, sampleOf, sourceOf, wayOut } from "./source";
+import { hand, refuse } from "./handover";
 import type { Store } from "./store";
 import { Status, type Notice } from "./status";
 import { Strip } from "./strip";
-import type { Made } from "./takeaway";
 import { Transport } from "./transport";
 import { Trial } from "./trial";
 import type { Kind } from "./kinds";
 import { Messages } from "./messages";
+import { fill, sayVacant, vacate } from "./vacancy";
 import { isSearching, sentence, standing, verdict, wordsOf, type Verdict } from "./verdict";
 
 export class Lab {
@@ -43,6 +43,7 @@ export class Lab {
     onCameras: (fields) => this.store.change(fields),
     onRun: (file) => this.#goOnWith(file),
     onDoubt: () => this.#showState(),
+    onLooking: (names) => typeof this.#wanted === "string" && this.#await(this.#wanted, names),
   });
   /** The saved run that has come in place of a pair of files, until a pair comes. */
   #saved: Source | undefined;
@@ -98,6 +99,7 @@ export class Lab {
       onLoad: (bytes) => {
         if (!this.#report) this.#announce("loading", `loading the numerics, ${Math.round(bytes / 1000)} kB`);
       },
+      onDoing: (words) => this.#notice?.state === "loading" && this.#announce("loading", this.#notice.words, words),
       onLost: (error) => this.#lose(error),
     });
     const unlessGone = (): undefined => undefined;
@@ -177,24 +179,16 @@ export class Lab {
     try {
       const { source, settings } = this.#good;
       const { fileOfKind, fileOfRun } = await import("./takeaway");
-      if (kind === "run") return this.#save(fileOfRun(await this.#engine.call("save", {})));
+      if (kind === "run") return hand(fileOfRun(await this.#engine.call("save", {})));
       const [taken, report] = [await this.#engine.call("take", {}), this.#report];
       const run = { taken, report, end: this.#verdict(report), truth: this.#truth, origin: originOf(source), settings };
       const files = source.kind === "files" ? this.#own.intake.said : [];
-      this.#save(await fileOfKind(kind, { ...run, files, link: linkTo(settings) }));
+      hand(await fileOfKind(kind, { ...run, files, link: linkTo(settings) }));
     } catch (error) {
       // What was asked for next has broken it off, and speaks for itself.
-      if (error instanceof EngineError) {
-        if (error.code !== "interrupted") await this.#fail(error);
-      } else {
-        byId("taken", HTMLElement).textContent = `Nothing saved: ${error instanceof Error ? error.message : String(error)}`;
-      }
+      if (!(error instanceof EngineError)) refuse(error);
+      else if (error.code !== "interrupted") await this.#fail(error);
     }
-  }
-
-  #save({ name, blob, says }: Made): void {
-    saveBlob(name, blob);
-    byId("taken", HTMLElement).textContent = says ? `Saved ${name}: ${says}.` : `Saved ${name}.`;
   }
 
   /** A saved run, which is run again as far as it had come. */
@@ -220,8 +214,7 @@ export class Lab {
     this.#pair = [];
     this.#compare.release();
     this.#forget();
-    byId("iteration", HTMLElement).textContent = "0";
-    byId("lab", HTMLElement).toggleAttribute("data-vacant", true);
+    vacate();
   }
 
   #settingsChanged(settings: Settings, changed: readonly string[], live: boolean): void {
@@ -304,13 +297,10 @@ export class Lab {
     this.#wanted = source;
     this.#resumed = false;
     this.#messages.clear();
-    if (typeof source === "string") {
-      this.#announce("waiting", source, wayOut(source));
-      return;
-    }
+    if (typeof source === "string") return this.#await(source);
     const settings = this.store.settings;
     const options = runOptions(settings, originOf(source));
-    this.#announce("loading", source === this.#good?.source ? "starting over" : "reading the input");
+    this.#announce("loading", source === this.#good?.source ? "starting over" : "reading the input", source === this.#good?.source ? "" : namesIn(source));
     try {
       await this.#offerChoices();
       await this.#engine.interrupt();
@@ -330,8 +320,14 @@ export class Lab {
     }
   }
 
+  /** Says what an input lacks, or that files are being looked at which may be that. */
+  #await(lacking: string, names = ""): void {
+    this.#announce(names ? "loading" : "waiting", names ? "looking at the files" : lacking, names || wayOut(lacking));
+  }
+
   async #offerChoices(): Promise<void> {
     if (this.#offered) return;
+    const before = this.#notice;
     this.#announce("loading", "loading the numerics");
     // The page stands still while the worker's thread is made: in a task with nothing else.
     await nextTask();
@@ -339,6 +335,7 @@ export class Lab {
     this.#form.offer("surface", surfaces);
     this.#form.offer("light", lights);
     this.#offered = true;
+    if (before && this.#notice?.state === "loading") this.#announce(before.state, before.words, before.cause);
   }
 
   /** Has the worker open an input and shows it, unless that has been overtaken by then. */
@@ -354,7 +351,7 @@ export class Lab {
   /** Pictures in one frame, numbers in the next: no press waits for the layout of both. */
   async #present(opened: Opened): Promise<void> {
     const turn = this.#turn;
-    byId("lab", HTMLElement).removeAttribute("data-vacant");
+    fill();
     const object = objectOf(this.#wanted, this.store.settings);
     await this.gallery.open(opened, object === "" || object !== this.#seen);
     this.#seen = object;
@@ -440,17 +437,19 @@ export class Lab {
   #showState(): void {
     const { playing } = this.player;
     const report = this.#report;
-    this.#status.doubt = this.#origin === "files" ? this.#own.doubt : "";
+    this.#status.about(this.#origin, this.#own.doubt);
     if (report) {
       const end = this.#verdict(report);
       this.#rivals.show(report);
       this.#pose.show(report, this.#rivals.looked, this.#from, this.#truth, this.#length);
       this.#strip.show(report);
-      this.#status.show(report, playing ? "playing" : report.iteration > 0 || isSearching(report) ? "paused" : "ready", end);
+      this.#status.show(report, playing ? "playing" : report.iteration > 0 || isSearching(report) ? "paused" : "ready", end, this.#rivals.looked !== undefined);
+      this.#light.beside(this.#rivals.looked !== undefined);
     }
     if (this.#notice) this.#status.announce(this.#notice.state, this.#notice.words, this.#notice.cause);
     // What the status tells of is in the way of a run, unless there is one that it leaves usable.
     const isIdle = typeof this.#wanted === "string" || !this.#good;
+    sayVacant(this.#wanted, this.#notice);
     this.#transport.show(playing, isIdle && this.#notice?.cause ? this.#notice.words : "");
   }
 
@@ -486,7 +485,6 @@ export class Lab {
 
   /** The worker has lost what is on the screen, as after a panic: the same input again, from its beginning. */
   async #recover({ source, settings }: { source: Source; settings: Settings }): Promise<void> {
-    this.#good = undefined; // should it fail once more, the page waits for another input
     const turn = ++this.#turn;
     try {
       if (!(await this.#open(source, runOptions(settings, originOf(source)), turn))) return;
@@ -494,6 +492,7 @@ export class Lab {
       this.#messages.add("The input is kept, and the run begins anew.");
     } catch (error) {
       if (turn !== this.#turn) return;
+      this.#good = undefined; // the page waits for another input
       this.#messages.add(error instanceof Error ? error.message : String(error), true);
     }
   }

@@ -39,6 +39,7 @@ export class LightPanel {
   #gesture = {};
   #standing = "found";
   #isBefore = false;
+  #isBesideRival = false;
   readonly #hooks: LightHooks;
 
   constructor(hooks: LightHooks) {
@@ -55,7 +56,13 @@ export class LightPanel {
   /** Whether the light that is shown as found is of the run before. */
   date(isBefore: boolean): void {
     this.#isBefore = isBefore;
-    this.#found.say(dated(this.#standing, isBefore));
+    this.#found.say(dated(this.#isBesideRival ? "the one found" : this.#standing, isBefore));
+  }
+
+  /** Beside a rival's surfaces and numbers the light stays that of the pose found, in the words of the button that shows it. */
+  beside(isRival: boolean): void {
+    this.#isBesideRival = isRival;
+    this.date(this.#isBefore);
   }
 
   /** While a search tries poses, the light is that of the best candidate. */

@@ -97,7 +97,10 @@ const inWords = ({ kind, says }: Summary): string =>
 /** What these readers do not take the Lab may still: larger pictures, which it scales down, and whatever else the browser decodes. */
 async function unread(file: File, fault: string): Promise<Look> {
   const none = { warnings: [], cameras: [] };
-  if (/pixels large|MB large/.test(fault)) return { ...none, kind: await sniffed(file), says: "too large for a preview" };
+  if (/pixels large|MB large/.test(fault)) {
+    const extent = /\d+x\d+(?= pixels large)/.exec(fault)?.[0];
+    return { ...none, kind: await sniffed(file), says: [extent, "too large for a preview"].filter(Boolean).join(", ") };
+  }
   const whole = /save it as PNG/.test(fault) ? await createImageBitmap(file).catch(() => undefined) : undefined;
   if (!whole) return { ...none, kind: undefined, says: fault, fault };
   const { width, height } = whole;

@@ -13,6 +13,8 @@ export interface OwnFilesHooks {
   onRun(file: File): void;
   /** Something of them seems to be in the wrong place, or no longer. */
   onDoubt(): void;
+  /** Files are being looked at before they go anywhere: their names, or nothing once none of them went anywhere. */
+  onLooking(names: string): void;
   /** Fields that a camera's file has filled. */
   onCameras(fields: Record<string, Value>): void;
 }
@@ -47,12 +49,14 @@ export class OwnFiles {
     this.#hands++;
     const run = await runAmong(files);
     if (run) return this.#hooks.onRun(run);
+    this.#hooks.onLooking(files.map(({ name }) => name).join(", "));
     const { sorted } = await import("./own");
     const { slots, settings, remarks } = await sorted(files, this.intake.files);
     this.intake.remarks(remarks);
     if (Object.keys(settings).length > 0) this.#hooks.onCameras(settings);
     if (slots.has("colour") && slots.has("depth")) this.intake.replaceAll(Object.fromEntries(slots));
     else if (slots.size > 0) this.intake.putAll(slots);
+    else this.#hooks.onLooking("");
   }
 
   /** The files of last time, once, unless there are others by then. */

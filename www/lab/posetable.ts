@@ -75,7 +75,8 @@ export class PoseTable {
     if (truth) {
       const degrees = angleBetween(pose.rotation, truth.rotation);
       this.#error.dataset.degrees = String(degrees);
-      const before = start ? `; ${decimals(angleBetween(start.rotation, truth.rotation), 1)}° at the start` : "";
+      // Beside a rival's the error that the verdict speaks of.
+      const before = rival ? `; ${decimals(angleBetween(report.pose.rotation, truth.rotation), 1)}° the one found` : start ? `; ${decimals(angleBetween(start.rotation, truth.rotation), 1)}° at the start` : "";
       this.#error.replaceChildren(make("strong", {}, `${decimals(degrees, 2)}° off`), ` the true rotation${before}`);
       // By the truth, so that nothing moves while the search looks around.
       if (Math.abs(truth.angles.beta) > POLE) this.#error.append(". So near β = 90° only α and γ together tell the rotation.");
@@ -103,6 +104,9 @@ export function numbersOf(report: StepReport, length: string): [name: string, va
   });
 }
 
+/** Zero is said as zero alone, as the chart's words have it. */
+const change = (degrees: number): string => (degrees === 0 ? "0°" : degrees < 0.0001 ? "below 0.0001°" : `${decimals(degrees, 4)}°`);
+
 /** A sigma says how sharp a pose is, not whether it is the right one: beside a lost one it would mislead. */
 const sure = ({ status, uncertainty }: StepReport): StepReport["uncertainty"] => (status === "lost" ? undefined : uncertainty);
 
@@ -111,7 +115,7 @@ const extras: readonly Extra[] = [
   { term: "overlap", name: "Overlap", read: ({ overlap }) => `${decimals(100 * overlap, 0)} %` },
   { term: "inliers", name: "Inliers", read: ({ inliers }) => `${decimals(100 * inliers, 0)} %` },
   { term: "residual", name: "Colour residual", read: ({ residual }) => decimals(residual, 4) },
-  { term: "change", name: "Rotation change", read: ({ rotationChange }) => `${decimals(rotationChange, 4)}°` },
+  { term: "change", name: "Rotation change", read: ({ rotationChange }) => change(rotationChange) },
   { term: "sigma", name: "σ about x, y, z", read: (report) => optional(sure(report), ({ rotationDegrees }) => sigmas(rotationDegrees)) },
   {
     term: "sigma",

@@ -39,6 +39,8 @@ export interface ChoiceField extends Common {
   initial: string;
   /** Without choices they come from the library's catalogue. */
   choices?: readonly (readonly [value: string, label: string])[];
+  /** Those that mean something for one origin alone; of the other they are the initial one. */
+  only?: Readonly<Record<string, Origin>>;
 }
 export interface FlagField extends Common {
   kind: "flag";
@@ -126,7 +128,7 @@ export const fields: readonly Field[] = [
     when: (_, source) => source === "files", remark: (value) => (value === "" ? ESTIMATED : "") },
   { kind: "choice", key: "start", label: "Start", initial: "search", group: "method", path: "options.start",
     hint: "Search: everywhere. Identity: both views coincide. Near: the angles below. True pose: a sample's own.",
-    choices: [...Object.entries(OPTIONS.start.words), ["near", "near"], ["truth", "true pose"]] },
+    choices: [...Object.entries(OPTIONS.start.words), ["near", "near"], ["truth", "true pose"]], only: { truth: "sample" } },
   startAngle("alpha", "Start α", 0), startAngle("beta", "Start β", 12), startAngle("gamma", "Start γ", 0),
   ...optionFields,
 ];
@@ -199,8 +201,15 @@ function lightOption(settings: Settings, source: Origin): LabOptions["light"] {
   return coefficients.length > 0 ? coefficients : "estimate";
 }
 
-function startOption(settings: Settings): LabOptions["start"] {
-  if (!near(settings)) return (["identity", "truth"] as const).find((word) => word === settings.start) ?? "search";
+/** Whether a choice can't be made of this origin. */
+export const isOff = ({ only }: ChoiceField, value: Value, source: Origin): boolean => (only?.[String(value)] ?? source) !== source;
+
+/** What a field comes to: of own files there is no true pose to start from. */
+export const valueOf = (field: Field, settings: Settings, source: Origin): Value =>
+  field.kind === "choice" && isOff(field, settings[field.key] ?? null, source) ? field.initial : (settings[field.key] ?? null);
+
+function startOption(settings: Settings, source: Origin): LabOptions["start"] {
+  if (!near(settings)) return (["identity", "truth"] as const).find((word) => word === settings.start && (word !== "truth" || source === "sample")) ?? "search";
   const angle = (name: string) => number(settings, `start.${name}`) ?? 0;
   return { angles: { alpha: angle("alpha"), beta: angle("beta"), gamma: angle("gamma") } };
 }
@@ -209,7 +218,7 @@ export function runOptions(settings: Settings, source: Origin): LabOptions {
   return {
     ...told<LabOptions>(optionFields, settings, source),
     light: lightOption(settings, source),
-    start: startOption(settings),
+    start: startOption(settings, source),
   };
 }
 
@@ -258,7 +267,7 @@ export function optionsInWords(settings: Settings, source: Origin): [name: strin
   const groups: Partial<Record<Group, string>> = source === "sample" ? { sample: "Sample: " } : { colour: "Colour camera: ", depth: "Depth camera: " };
   const asked = fields.filter(({ group, when }) => (groups[group] !== undefined || !(inputGroups.includes(group))) && (when?.(settings, source) ?? true));
   const isTold = ({ key, group }: Field) => (group !== "colour" && group !== "depth") || (settings[key] !== null && settings[key] !== "");
-  return asked.filter(isTold).map((field) => [`${groups[field.group] ?? ""}${field.label}`, valueInWords(field, settings[field.key] ?? null)]);
+  return asked.filter(isTold).map((field) => [`${groups[field.group] ?? ""}${field.label}`, valueInWords(field, valueOf(field, settings, source))]);
 }
 
 const lensKeys = ["fx", "fy", "cx", "cy"] as const;

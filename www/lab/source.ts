@@ -1,7 +1,7 @@
 /** The input that the settings describe, and whether it was the visitor's own before a reload. */
 
 import type { OwnFiles, SampleSource, Source } from "../engine/protocol";
-import type { Slot } from "./intake";
+import { sizeInWords, type Slot } from "./intake";
 import { isFurther } from "./kind";
 import { camera, sampleRequest, turnOf, type Origin, type Settings } from "./settings";
 
@@ -31,6 +31,13 @@ export const originOf = (source: Source): Origin => (source.kind === "sample" ? 
 /** Which object a sample shows, whatever its light or noise; none that is known of any other source. */
 export const objectOf = (source: Source | string, { surface, size, protocol }: Settings): string =>
   typeof source === "string" || source.kind !== "sample" ? "" : [surface, size, protocol].join(" ");
+
+/** The files that are read of a source, in words; nothing of a sample. */
+export function namesIn(source: Source): string {
+  if (source.kind === "sample") return "";
+  const files = source.kind === "saved" ? [source.file] : [source.files.colour, source.files.depth];
+  return files.map(({ name, size }) => `${name}, ${sizeInWords(size)}`).join("; ");
+}
 
 /** With the pixels of the files that the worker's decoders do not know; what does know them loads with the first such file. */
 export async function readable(source: Source): Promise<Source> {

@@ -3,6 +3,7 @@
 import type { StepReport } from "../../pkg/index.js";
 import { byId } from "../dom";
 import { inWords } from "../said";
+import type { Origin } from "./settings";
 import type { Verdict } from "./verdict";
 
 /** What else than the loop the status can tell of. */
@@ -24,14 +25,20 @@ export class Status {
   readonly #cause = byId("verdict", HTMLElement);
   readonly #message = byId("message", HTMLElement);
   readonly #next = byId("next", HTMLElement);
-  /** What seems to be wrong with the input, and the way out: of all that may help it comes first. */
-  doubt = "";
+  #doubt = "";
+  #isOwn = false;
 
-  /** `idle` is what the page itself does while the loop rests. */
-  show(report: StepReport, idle: "ready" | "paused" | "playing", end: Verdict | undefined): void {
-    this.#say(end ? report.status : idle, end?.tone ?? "open", end?.status ?? idle);
+  /** `doubt` is what seems to be wrong with own files, and the way out: of all that may help it comes first. */
+  about(origin: Origin, doubt: string): void {
+    this.#isOwn = origin === "files";
+    this.#doubt = this.#isOwn ? doubt : "";
+  }
+
+  /** `idle` is what the page itself does while the loop rests; the verdict is of the pose found, also where the surfaces show a rival. */
+  show(report: StepReport, idle: "ready" | "paused" | "playing", end: Verdict | undefined, isRival: boolean): void {
+    this.#say(end ? report.status : idle, end?.tone ?? "open", end ? `${isRival ? "found: " : ""}${end.status}` : idle);
     this.#put(this.#cause, end?.words ?? "");
-    this.#put(this.#next, this.doubt || (end?.next ?? (idle === "ready" ? "Press play, or choose another example." : "")));
+    this.#put(this.#next, this.#doubt || (end?.next ?? (idle === "ready" ? this.#first : "")));
     this.#put(this.#message, end ? "" : inWords(report.message ?? ""));
   }
 
@@ -39,8 +46,13 @@ export class Status {
   announce(state: Notice, words: string, cause: string): void {
     this.#say(state, state === "error" ? "wrong" : "open", words);
     this.#put(this.#cause, cause);
-    this.#put(this.#next, this.doubt);
+    this.#put(this.#next, this.#doubt);
     this.#put(this.#message, "");
+  }
+
+  /** What to do with what is there. */
+  get #first(): string {
+    return this.#isOwn ? "Press play; masks, cameras and the method are in the settings." : "Press play, or choose another example.";
   }
 
   #say(state: string, tone: Verdict["tone"], word: string): void {

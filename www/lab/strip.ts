@@ -8,6 +8,9 @@ import type { Explanations } from "./ask";
 /** The search, and the five stages of one iteration. */
 const stages: readonly Stage[] = ["search", "light", "shading", "surface", "registration", "refinement"];
 
+/** Milliseconds that would be written as none. */
+const LEAST = 0.05;
+
 export class Strip {
   readonly #buttons = new Map<Stage, { button: HTMLButtonElement; time: HTMLElement }>();
   readonly #count = byId("iteration", HTMLElement);
@@ -32,6 +35,8 @@ export class Strip {
       if (name === "search" && report.stage === name) time.textContent = /^\d+ %/.exec(report.message ?? "")?.[0] ?? "";
       // The last slice that was drawn is seldom the last one that ran.
       else if (name === "search" && begun && time.textContent?.endsWith("%")) time.textContent = "100 %";
+      // What has come to rest is not computed again, and a clock of tenths sees no time in it.
+      else if (spent !== undefined && spent < LEAST) time.textContent = "";
       else if (spent !== undefined) time.textContent = `${decimals(spent, spent < 10 ? 1 : 0)} ms`;
       else if (!begun) time.textContent = "";
     }

@@ -99,7 +99,7 @@ export async function fileOfKind(kind: Exclude<Kind, "run">, run: Run): Promise<
   const { pose, unit, light, depth, image } = run.taken;
   switch (kind) {
     case "pose":
-      return made("pose.json", "application/json", poseJson(pose, unit));
+      return made("pose.json", "application/json", poseJson(pose, unit, run.report));
     case "matrix":
       return made("depth_to_colour.txt", "text/plain", matrixText(pose), `lengths in ${unit === "m" ? "metres" : "pixels"}`);
     case "light":

@@ -4,17 +4,32 @@ import { byId } from "../dom";
 
 const IDS = ["play", "step", "stage-step", "reset"] as const;
 
+/** The same height as in bar.css. */
+const low = matchMedia("(max-height: 30rem)");
+
 export class Transport {
   readonly #play = byId("play", HTMLButtonElement);
   readonly #buttons = IDS.map((id) => byId(id, HTMLButtonElement));
 
   constructor() {
+    low.addEventListener("change", () => this.#settle());
+    this.#settle();
     for (const button of this.#buttons) {
       // Before anyone else who listens: it comes first.
       button.addEventListener("click", (event) => {
         if (button.getAttribute("aria-disabled") === "true") event.stopImmediatePropagation();
       });
     }
+  }
+
+  /** At the lower edge of the window, which is the page's end; in a low one, where nothing sticks, right above what it runs. */
+  #settle(): void {
+    const bar = byId("bar", HTMLElement);
+    const focused = bar.contains(document.activeElement) ? document.activeElement : undefined;
+    if (low.matches) byId("inputs", HTMLElement).before(bar);
+    else document.querySelector("footer")?.after(bar);
+    // What is moved loses the focus.
+    if (focused instanceof HTMLElement) focused.focus();
   }
 
   /** `lacking` is what there has to be before anything can run, in words. */

@@ -1,0 +1,28 @@
+/** What stands in the place of the surfaces while those of another pair are awaited: what to bring, or what is being done. */
+
+import { byId } from "../dom";
+import type { Source } from "../engine/protocol";
+import { sentence } from "./verdict";
+
+const lab = (): HTMLElement => byId("lab", HTMLElement);
+
+/** Nothing of a pair stays in sight. */
+export function vacate(): void {
+  byId("iteration", HTMLElement).textContent = "0";
+  lab().toggleAttribute("data-vacant", true);
+}
+
+export function fill(): void {
+  lab().removeAttribute("data-vacant");
+}
+
+const BOTH = "Drop a colour image and a depth map of one object anywhere on this page.";
+
+/** `wanted` is the input asked for, or what it lacks; `notice` what the status says of it. What is there is not asked for. */
+export function sayVacant(wanted: Source | string, notice: { state: string; words: string } | undefined): void {
+  const lacking = typeof wanted === "string" ? /^waiting for (a .+)$/.exec(wanted)?.[1] : undefined;
+  const { state = "", words = "" } = notice ?? {};
+  const isThere = typeof wanted !== "string" || state === "loading" || wanted.includes("camera:");
+  const drop = lacking ? `Drop ${lacking} of the same object anywhere on this page.` : BOTH;
+  byId("hero", HTMLElement).dataset.says = isThere && words ? sentence(words) : drop;
+}
