@@ -63,13 +63,24 @@ function without(what, reason) {
   return { code: 0, output };
 }
 
+/** The first Firefox that knows the command network.addDataCollector, with which Playwright begins. */
+const OLDEST_FIREFOX = 143;
+
+/** The page in Firefox, as far as there is one that Playwright can drive. */
+async function firefoxPage(program) {
+  const what = "the page in Firefox";
+  if (!program) return without(what, "needs firefox-esr (apt-get install firefox-esr)");
+  const version = /(\d+)\.\S+/.exec(ask(program, ["--version"]) ?? "");
+  if (version && Number(version[1]) < OLDEST_FIREFOX) return without(what, `needs Firefox ${OLDEST_FIREFOX}, this is ${version[0]}`);
+  const env = { FIREFOX: program, PAGE_PORT: String(await freePort()) };
+  return watch(process.execPath, [modules("@playwright/test/cli.js"), "test", "-c", "playwright.firefox.config.ts"], { env });
+}
+
 /** The second engine, where it is installed: a smoke of every place by Playwright, and the wasm tests by geckodriver. */
 async function secondEngine() {
   const found = firefox();
-  if (!found.firefox) return without("the page in Firefox", "needs firefox-esr (apt-get install firefox-esr)");
-  const env = { FIREFOX: found.firefox, PAGE_PORT: String(await freePort()) };
-  const page = await watch(process.execPath, [modules("@playwright/test/cli.js"), "test", "-c", "playwright.firefox.config.ts"], { env });
-  const wasm = found.geckodriver
+  const page = await firefoxPage(found.firefox);
+  const wasm = found.firefox && found.geckodriver
     ? await watch("cargo", ["test", ...LIBRARY, "--target", WASM, "--test", "wasm"], { env: { WASM_BINDGEN_USE_BROWSER: "1", GECKODRIVER: found.geckodriver } })
     : without("the wasm tests in Firefox", "needs geckodriver (cargo install geckodriver)");
   return { code: page.code || wasm.code, output: `${page.output}\n${wasm.output}` };

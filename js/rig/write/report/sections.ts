@@ -17,7 +17,7 @@ export function verdictCard({ verdict: given, reason, candidates, health }: Chec
   const [name, candidate] = first ?? [];
   return html`<section class="card ${verdict}">${sign(verdict)}<div><p class="verdict">${WORDS[verdict]}${name === undefined ? undefined : html`<span class="name">${name}</span>`}</p>
 <p>${reason}</p><dl class="facts">${candidate && [
-    fact("Off from the best fit by, at the middle of the scene", `${measure(candidate.offDegrees, "°")}, ${measure(candidate.offMillimetres, "mm")}`),
+    fact("Off from the best fit, at the middle of the scene", `${measure(candidate.offDegrees, "°")}, ${measure(candidate.offMillimetres, "mm")}`),
     fact("Its expected reprojection error", measure(candidate.pixels, "px"), within(candidate.interval)),
   ]}${fact("That of the best fit", measure(health.pixels, "px"), within(health.interval))}</dl></div></section>`;
 }
