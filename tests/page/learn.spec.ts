@@ -13,21 +13,58 @@ function fingerprint(page: Page, panel: string): Promise<number> {
   });
 }
 
-test("each lesson says where its method is written down, by links that lead there", async ({ page }) => {
+const LESSONS = ["pixel", "grey", "colours", "surface", "prior", "pose", "sensor", "paint", "failure"];
+
+test("each lesson says where its method is written down, names its controls and pictures, and fits from 320 to 2560 px", async ({ page }) => {
   const method = await readFile(new URL("../../docs/method.md", import.meta.url), "utf8");
   const anchors = [...method.matchAll(/^## (.+)$/gm)].map(([, heading = ""]) => heading.toLowerCase().replace(/[^\w\s-]/g, "").replace(/\s/g, "-"));
   const papers: string[] = [];
-  for (const id of ["pixel", "grey", "colours", "surface", "prior", "pose", "sensor", "paint", "failure"]) {
-    await page.goto(`./#learn&at=${id}`);
+  await page.setViewportSize(narrowest);
+  for (const id of LESSONS) {
+    await open(page, `at=${id}`);
     await expect(page.locator(`[data-lesson="${id}"]`)).toBeVisible();
-    const links = await page.locator(".learn-more a").evaluateAll((all) => all.map((link) => (link as HTMLAnchorElement).href));
-    const sections = links.flatMap((link) => /\/docs\/method\.md#(.+)$/.exec(link)?.[1] ?? []);
-    expect(sections.length).toBeGreaterThan(0);
-    for (const section of sections) expect(anchors).toContain(section);
-    papers.push(...links.filter((link) => !link.includes("/docs/")));
+    papers.push(...(await referencesOf(page, anchors)));
+    expect(await page.locator("#learn :is(input, select)").evaluateAll((all) => all.filter((control) => (control as HTMLInputElement).labels?.length === 0).length), id).toBe(0);
+    expect(await page.locator("#learn :is(canvas, svg.learn-plot)").evaluateAll((all) => all.filter((picture) => !picture.getAttribute("aria-label")).length), id).toBe(0);
+    await atWidths(page, [320, 390, 600, 700, 1280, 1600, 2560], (width) => fits(page, id, width));
   }
   expect(papers.length).toBeGreaterThan(8);
   for (const link of papers) expect(link).toMatch(/^https:\/\/(arxiv\.org\/abs|doi\.org)\//);
+});
+
+/** The links of a lesson that lead elsewhere; those to sections of the method lead to one that there is. */
+async function referencesOf(page: Page, anchors: string[]): Promise<string[]> {
+  const links = await page.locator(".learn-more a").evaluateAll((all) => all.map((link) => (link as HTMLAnchorElement).href));
+  const sections = links.flatMap((link) => /\/docs\/method\.md#(.+)$/.exec(link)?.[1] ?? []);
+  expect(sections.length).toBeGreaterThan(0);
+  for (const section of sections) expect(anchors).toContain(section);
+  return links.filter((link) => !link.includes("/docs/"));
+}
+
+async function fits(page: Page, id: string, width: number): Promise<void> {
+  await settled(page);
+  expect(await innerWidth(page), `${id} at ${width} px`).toBeLessThanOrEqual(width);
+  // On a phone a long formula is swiped, and no picture stands alone in its row.
+  if (width >= 1280) {
+    const cut = await page.locator(".learn-formula").evaluateAll((all) => all.map(({ scrollWidth, clientWidth }) => scrollWidth - clientWidth));
+    expect(cut.filter((px) => px > 0), `${id} at ${width} px`).toEqual([]);
+  } else if (width >= 390) {
+    const tops = await page.locator(".learn-panel:not(.learn-wide)").evaluateAll((all) => all.map((panel) => Math.round(panel.getBoundingClientRect().top)));
+    expect(tops.filter((top) => tops.filter((other) => other === top).length === 1), `${id} at ${width} px`).toEqual([]);
+  }
+}
+
+test("no exercise and no slide sticks out from 320 to 2560 px", async ({ page }) => {
+  const widths = [320, 390, 1280, 1600, 2560];
+  await page.setViewportSize(narrowest);
+  await page.goto("./#learn&at=exercises");
+  await expect(page.locator(".learn-exercises")).toBeVisible();
+  await atWidths(page, widths, async (width) => expect(await innerWidth(page), `exercises at ${width} px`).toBeLessThanOrEqual(width));
+  await page.goto("./#learn&at=pose&slides");
+  await atWidths(page, widths, async (width) => {
+    await settled(page);
+    expect(await page.locator(".learn-slide").evaluate((slide) => slide.scrollWidth - slide.clientWidth), `a slide at ${width} px`).toBe(0);
+  });
 });
 
 test("on a phone the figure stands below what it is about, and above the long text", async ({ page }) => {
@@ -38,18 +75,6 @@ test("on a phone the figure stands below what it is about, and above the long te
   expect(await top(".learn-figure")).toBeLessThan(await top(".learn-formula ~ p"));
   await page.getByRole("button", { name: "Slides" }).click();
   await expect(page.locator(".learn-slide .learn-figure")).toBeVisible();
-});
-
-test("on a phone no picture stands alone in its row", async ({ page }) => {
-  await page.setViewportSize(narrowest);
-  for (const id of ["pixel", "grey", "colours", "surface", "prior", "pose", "sensor", "paint", "failure"]) {
-    await open(page, `at=${id}`);
-    await atWidths(page, [390, 600, 700], async (width) => {
-      const tops = await page.locator(".learn-panel:not(.learn-wide)").evaluateAll((all) => all.map((panel) => Math.round(panel.getBoundingClientRect().top)));
-      const alone = tops.filter((top) => tops.filter((other) => other === top).length === 1);
-      expect(alone, `${id} at ${width} px`).toEqual([]);
-    });
-  }
 });
 
 test("pictures of a row stand in line, no plot leaves a hole beside it, and its type is never small, on slides neither", async ({ page }) => {
@@ -337,34 +362,3 @@ test("slides turn by keys, leave the sliders theirs, and end by escape", async (
   expect(lab.complaints).toEqual([]);
 });
 
-test("every control has a name and every picture words", async ({ page }) => {
-  for (const id of ["pixel", "grey", "colours", "surface", "prior", "pose", "sensor", "paint"]) {
-    await open(page, `at=${id}`);
-    const unnamed = await page.locator("#learn :is(input, select)").evaluateAll((all) =>
-      all.filter((control) => (control as HTMLInputElement).labels?.length === 0).length);
-    expect(unnamed).toBe(0);
-    const silent = await page.locator("#learn :is(canvas, svg.learn-plot)").evaluateAll((all) => all.filter((picture) => !picture.getAttribute("aria-label")).length);
-    expect(silent).toBe(0);
-  }
-});
-
-test("no lesson sticks out from 320 to 2560 px", async ({ page }) => {
-  await page.setViewportSize(narrowest);
-  const widths = [320, 390, 1280, 1600, 2560];
-  for (const id of ["pixel", "grey", "colours", "surface", "prior", "pose", "sensor", "paint", "exercises"]) {
-    await page.goto(`./#learn&at=${id}`);
-    await expect(page.locator(id === "exercises" ? ".learn-exercises" : `[data-lesson="${id}"]`)).toBeVisible();
-    await atWidths(page, widths, async (width) => {
-      if (id !== "exercises") await settled(page);
-      expect(await innerWidth(page), `${id} at ${width} px`).toBeLessThanOrEqual(width);
-      // On a phone a long formula is swiped.
-      const cut = await page.locator(".learn-formula").evaluateAll((all) => all.map(({ scrollWidth, clientWidth }) => scrollWidth - clientWidth));
-      if (width >= 1280) expect(cut.filter((px) => px > 0), `${id} at ${width} px`).toEqual([]);
-    });
-  }
-  await page.goto("./#learn&at=pose&slides");
-  await atWidths(page, widths, async (width) => {
-    await settled(page);
-    expect(await page.locator(".learn-slide").evaluate((slide) => slide.scrollWidth - slide.clientWidth), `a slide at ${width} px`).toBe(0);
-  });
-});

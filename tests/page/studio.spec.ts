@@ -195,6 +195,7 @@ test("the arrow keys turn the light toward where they point", async ({ lab, page
 
 test("a slider acts when it rests, and what had been played plays again", async ({ lab, page }) => {
   await lab.visit("size=64");
+  await page.getByLabel("Speed").selectOption({ label: "fastest" });
   await page.getByRole("button", { name: "Play" }).click();
   await lab.reaches("converged");
   await lab.unfold();
