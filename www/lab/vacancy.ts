@@ -24,5 +24,8 @@ export function sayVacant(wanted: Source | string, notice: { state: string; word
   const { state = "", words = "" } = notice ?? {};
   const isThere = typeof wanted !== "string" || state === "loading" || wanted.includes("camera:");
   const drop = lacking ? `Drop ${lacking} of the same object anywhere on this page.` : BOTH;
-  byId("hero", HTMLElement).dataset.says = isThere && words ? sentence(words) : drop;
+  const says = isThere && words ? sentence(words) : drop;
+  const hero = byId("hero", HTMLElement);
+  // Asked of every frame.
+  if (hero.dataset.says !== says) hero.dataset.says = says;
 }
