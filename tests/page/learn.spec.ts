@@ -2,7 +2,7 @@
 
 import { readFile } from "node:fs/promises";
 import type { Page } from "@playwright/test";
-import { figure, number, open, settled, slide } from "./figure";
+import { LESSONS, figure, number, open, settled, slide } from "./figure";
 import { expect, test } from "./lab";
 import { atWidths, innerWidth, narrowest } from "./widths";
 
@@ -12,8 +12,6 @@ function fingerprint(page: Page, panel: string): Promise<number> {
     return data.reduce((sum, value) => (sum * 31 + value) % 1_000_003, 7);
   });
 }
-
-const LESSONS = ["pixel", "grey", "colours", "surface", "prior", "pose", "sensor", "paint", "failure"];
 
 test("each lesson says where its method is written down, names its controls and pictures, and fits from 320 to 2560 px", async ({ page }) => {
   const method = await readFile(new URL("../../docs/method.md", import.meta.url), "utf8");
@@ -361,4 +359,3 @@ test("slides turn by keys, leave the sliders theirs, and end by escape", async (
   await expect(page).not.toHaveURL(/slides/);
   expect(lab.complaints).toEqual([]);
 });
-

@@ -1,9 +1,8 @@
 /** The slides of Learn: each fits its screen, and they are turned as pages are, by the browser's Back, too. */
 
-import { open } from "./figure";
+import { LESSONS, open } from "./figure";
 import { expect, test } from "./lab";
 
-const LESSONS = ["pixel", "grey", "colours", "surface", "prior", "pose", "sensor", "paint", "failure"];
 /** Whose words are longest. */
 const LONG = ["pose&run=register&offset=40", "failure&case=symmetry&amount=100", "failure&amount=100"];
 

@@ -105,6 +105,10 @@ const lightTurn = (key: "lightTilt" | "lightTurn", angle: "alpha" | "beta", labe
 });
 const ESTIMATED = "Estimated along with the pose.";
 
+const startField: ChoiceField = { kind: "choice", key: "start", label: "Start", initial: "search", group: "method", path: "options.start",
+  hint: "Search: everywhere. Identity: both views coincide. Near: the angles below. True pose: a sample's own.",
+  choices: [...Object.entries(OPTIONS.start.words), ["near", "near"], ["truth", "true pose"]], only: { truth: "sample" } };
+
 export const fields: readonly Field[] = [
   { kind: "choice", key: "surface", label: "Surface", initial: "bust", group: "sample", path: "sample.surface" },
   { kind: "choice", key: "light", label: "Light", initial: "colourful", group: "sample", path: "sample.light" },
@@ -126,9 +130,7 @@ export const fields: readonly Field[] = [
     choices: [["known", "known"], ...Object.entries(OPTIONS.light.words)] },
   { kind: "list", key: "coefficients", label: "Light", hint: "27 numbers where the light is known: nine for red, for green, for blue.", initial: "", empty: "estimated", group: "method", path: "options.light",
     when: (_, source) => source === "files", remark: (value) => (value === "" ? ESTIMATED : "") },
-  { kind: "choice", key: "start", label: "Start", initial: "search", group: "method", path: "options.start",
-    hint: "Search: everywhere. Identity: both views coincide. Near: the angles below. True pose: a sample's own.",
-    choices: [...Object.entries(OPTIONS.start.words), ["near", "near"], ["truth", "true pose"]], only: { truth: "sample" } },
+  startField,
   startAngle("alpha", "Start α", 0), startAngle("beta", "Start β", 12), startAngle("gamma", "Start γ", 0),
   ...optionFields,
 ];
@@ -209,7 +211,7 @@ export const valueOf = (field: Field, settings: Settings, source: Origin): Value
   field.kind === "choice" && isOff(field, settings[field.key] ?? null, source) ? field.initial : (settings[field.key] ?? null);
 
 function startOption(settings: Settings, source: Origin): LabOptions["start"] {
-  if (!near(settings)) return (["identity", "truth"] as const).find((word) => word === settings.start && (word !== "truth" || source === "sample")) ?? "search";
+  if (!near(settings)) return (["identity", "truth"] as const).find((word) => word === valueOf(startField, settings, source)) ?? "search";
   const angle = (name: string) => number(settings, `start.${name}`) ?? 0;
   return { angles: { alpha: angle("alpha"), beta: angle("beta"), gamma: angle("gamma") } };
 }
