@@ -1,4 +1,5 @@
-// npm test: sets up, builds and runs everything. `npm test -- contract page` runs these parts alone.
+// npm test: sets up, builds, and runs every test that does not take long. `npm test -- contract page` runs these parts alone,
+// `npm test -- --long` the tests that take over three seconds as well.
 import { readFileSync, rmSync } from "node:fs";
 import { createServer } from "node:net";
 import { availableParallelism } from "node:os";
@@ -11,6 +12,8 @@ import { buildPage, judgeSizes, sizes } from "./sizes.mjs";
 import { hasData } from "./tables/library.mjs";
 import { missingKeys } from "./tables/keys.mjs";
 
+/** Whether the tests that take long run as well: those of Rust's modules called `long`, those marked LONG, and whole parts. */
+const LONG = process.argv.includes("--long");
 const DENY = ["--", "-D", "warnings"];
 const modules = (path) => inRoot("node_modules", path);
 const cargo = (...args) => () => watch("cargo", args);
@@ -53,7 +56,7 @@ const docs = () => watch("cargo", ["doc", ...LIBRARY, "--no-deps"], { env: { RUS
 
 async function page() {
   const env = { CHROMIUM: await headless(), PAGE_PORT: String(await freePort()) };
-  return watch(process.execPath, [modules("@playwright/test/cli.js"), "test"], { env });
+  return watch(process.execPath, [modules("@playwright/test/cli.js"), "test", ...(LONG ? [] : ["--grep-invert", "@long"])], { env });
 }
 
 /** What is optional and not there is named among what was not run. */
@@ -97,11 +100,13 @@ const HANGS = 1_800_000;
 const contract = () => {
   const files = matching(["tests/contract"], /\.test\.mjs$/);
   // Two files at once: Node's own default is one on two processors.
-  return watch(process.execPath, ["--test", "--test-reporter=spec", `--test-concurrency=${Math.max(2, availableParallelism() - 1)}`, `--test-timeout=${HANGS}`, ...files]);
+  return watch(process.execPath, ["--test", "--test-reporter=spec", `--test-concurrency=${Math.max(2, availableParallelism() - 1)}`, `--test-timeout=${HANGS}`, ...files], {
+    env: LONG ? { LONG_TESTS: "1" } : {},
+  });
 };
 
 /** Tests that need the data beside the project are marked as ignored, with that reason, and asked for where the data are there. */
-const rust = () => watch("cargo", ["test", ...(hasData() ? ["--", "--include-ignored"] : [])]);
+const rust = () => watch("cargo", ["test", "--", ...(hasData() ? ["--include-ignored"] : []), ...(LONG ? [] : ["--skip", "::long::"])]);
 
 /** Not on accuracy: aims are shown with their verdicts. It fails where a cell throws or the JSON lacks a key. */
 async function tables() {
@@ -167,7 +172,7 @@ const PARTS = [
   { name: "firefox", run: secondEngine, needsBuild: true, lane: 1, closing: /^(?: +\d+ (?:passed|failed|skipped|flaky)|test result: ).*$/gm },
   { name: "types", run: types, needsBuild: true, lane: 1, closing: /^tsc .*$/gm },
   { name: "contract", run: contract, needsBuild: true, closing: NODE },
-  { name: "tables", run: tables, needsBuild: true, closing: /^(?:.* (?:ok|MISSED)$|.* cells failed:|tables: .*)$/gm },
+  { name: "tables", run: tables, needsBuild: true, long: true, closing: /^(?:.* (?:ok|MISSED)$|.* cells failed:|tables: .*)$/gm },
   { name: "page", run: page, needsBuild: true, closing: /^ +(?:\d+ (?:passed|failed|skipped|flaky|did not run)| {3}tests\/page\/).*$/gm },
 ];
 
@@ -176,7 +181,7 @@ function chosen(names) {
   if (unknown.length > 0) {
     throw new Failure(`There is no part "${unknown[0]}"; there are ${PARTS.map((part) => part.name).join(", ")}.`);
   }
-  return names.length === 0 ? PARTS : PARTS.filter((part) => names.includes(part.name));
+  return PARTS.filter((part) => (names.length === 0 ? LONG || !part.long : names.includes(part.name)));
 }
 
 /** The package, which is built once for all parts that need it. */
@@ -219,7 +224,7 @@ async function attemptAll(parts) {
 const isInLane = ({ lane }) => lane !== undefined;
 
 await script(async () => {
-  const parts = chosen(process.argv.slice(2));
+  const parts = chosen(process.argv.slice(2).filter((argument) => argument !== "--long"));
   const start = performance.now();
   await setup();
   const results = await attemptAll(parts);
@@ -232,6 +237,7 @@ await script(async () => {
   const failed = results.filter((result) => !result.passed).map((result) => result.name);
   const left = results.reduce((sum, result) => sum + result.notRun, 0);
   if (left > 0) console.log(`\n${left} tests were NOT RUN; the lines above say which and why.`);
+  if (!LONG) console.log("\nWhat takes long was left out: `npm test -- --long` runs it, too.");
   console.log(failed.length === 0 ? `\nAll parts passed in ${seconds(start)}.` : `\nFailed: ${failed.join(", ")} (${seconds(start)}).`);
   if (failed.length > 0) process.exitCode = 1;
 });

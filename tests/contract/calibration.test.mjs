@@ -5,6 +5,7 @@ import { before, describe, test } from "node:test";
 import { projectFrame, sampleRig } from "../../pkg/index.js";
 import { decodeColour, decodeDepth } from "../../pkg/files.js";
 import { aboutAxis, degreesBetween as degreesOf, product, transpose, turn } from "../../scripts/tables/protocol/rotations.mjs";
+import { LONG } from "./long.mjs";
 import { BimodalError, checkCalibration } from "./support.mjs";
 
 /** A pose after an error about the camera, degrees and metres. */
@@ -74,7 +75,7 @@ describe("a rig before boxes", () => {
     assert.match(warnings.join(), /told: fits inverted .* invert it/);
   });
 
-  test("a distortion that was left out is named", async () => {
+  test("a distortion that was left out is named", LONG, async () => {
     const { distortion, ...camera } = frame.image.camera;
     assert.ok(distortion.some((value) => value !== 0));
     const { warnings } = await checkCalibration([{ ...frame, image: { ...frame.image, camera } }], { told: truth });
@@ -83,7 +84,7 @@ describe("a rig before boxes", () => {
     assert.deepEqual(right.warnings, []);
   });
 
-  test("a wrong unit, a depth map of eight bits and a picture in its place are named, and keep the verdict from green", async () => {
+  test("a wrong unit, a depth map of eight bits and a picture in its place are named, and keep the verdict from green", LONG, async () => {
     const { depth } = frame;
     const said = async (changes) => checkCalibration([{ ...frame, depth: { ...depth, ...changes } }], { told: truth }, { cues: ["edges"] });
     const metres = await said({ unit: 1 });
@@ -146,7 +147,7 @@ describe("a rig before boxes", () => {
     }
   });
 
-  test("a pose that puts no depth point onto the image is never consistent, and takes no other candidate with it", async () => {
+  test("a pose that puts no depth point onto the image is never consistent, and takes no other candidate with it", LONG, async () => {
     const turned = (axis, degrees) => ({ ...truth, rotation: product(aboutAxis(axis, degrees), truth.rotation) });
     const behind = { ...truth, translation: [truth.translation[0], truth.translation[1], truth.translation[2] - 9] };
     for (const bad of [turned([1, 0, 0], 180), turned([0, 1, 0], 120), behind]) {
@@ -214,13 +215,13 @@ async function found(kind, seed, count) {
   return { own, health, degrees: degreesBetween(report.estimate, truth), millimetres: millimetresBetween(report.estimate, truth, report.middle) };
 }
 
-test("noise of a receding floor is no rim", async () => {
+test("noise of a receding floor is no rim", LONG, async () => {
   // Rims of noise drew to the line between floor and wall: 0.34 degrees and 6 mm.
   const { degrees, millimetres } = await found("objects", 2, 3);
   assert.ok(degrees < 0.15 && millimetres < 3, `${degrees} degrees, ${millimetres} mm`);
 });
 
-test("the health number's interval holds the estimate's error, not one several times as large", async () => {
+test("the health number's interval holds the estimate's error, not one several times as large", LONG, async () => {
   // A covariance of one inflation for all scenes said 0.15 to 0.8 pixels of errors of 0.1.
   for (const seed of [0, 1]) {
     const { own, health } = await found("boxes", seed, 3);

@@ -1,6 +1,7 @@
 // Inputs at the edge of what there can be: refused by name, or worked on to an end that does not claim more than it knows.
 import assert from "node:assert/strict";
 import { before, describe, test } from "node:test";
+import { LONG } from "./long.mjs";
 import { BimodalError, Estimator, init, outcome, pair, refused, sample } from "./support.mjs";
 
 /** Degrees beyond which a pose that is called converged is confidently wrong. */
@@ -124,7 +125,7 @@ describe("faults", () => {
     }
   });
 
-  test("views that show nothing in common", () => {
+  test("views that show nothing in common", LONG, () => {
     // Its front and its back: what either view sees the other does not.
     const front = pair({ size: SMALL, light: "window" });
     const back = pair({ size: SMALL, light: "window", surface: "ripples", seed: 5 });
@@ -132,7 +133,7 @@ describe("faults", () => {
     run({ image: back.image, depth: front.depth });
   });
 
-  test("a sphere, whose turns no view can tell, and a plane", () => {
+  test("a sphere, whose turns no view can tell, and a plane", LONG, () => {
     const middle = 31.5;
     const ball = Float32Array.from({ length: 64 * 64 }, (_, i) => {
       const squared = 28 ** 2 - ((i % 64) - middle) ** 2 - (Math.floor(i / 64) - middle) ** 2;

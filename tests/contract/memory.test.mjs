@@ -1,6 +1,7 @@
 // What the numerics take and give back. The module's memory never shrinks, so its size is the most that was ever in use.
 import assert from "node:assert/strict";
 import { describe, test } from "node:test";
+import { LONG } from "./long.mjs";
 import { Estimator, estimator, init, pair, sample } from "./support.mjs";
 
 /** Bytes that a pixel of either view takes: BYTES_PER_PIXEL of src/estimator/memory.rs. */
@@ -21,7 +22,7 @@ const size = () => memory.buffer.byteLength;
 const dome = (column, row) => 20 + 25 * Math.exp(-((column - 64) ** 2) / 1500 - (row - 45) ** 2 / 900) + 3 * Math.sin(column / 9 + row / 23);
 
 describe("memory", () => {
-  test("a pair keeps to its budget, the search included", (t) => {
+  test("a pair keeps to its budget, the search included", LONG, (t) => {
     // An object as wide as the frame: the estimator's memory is more than the renderer's, which it takes over.
     const relief = { width: 128, height: 96, heights: Float32Array.from({ length: 128 * 96 }, (_, k) => dome(k % 128, Math.floor(k / 128))) };
     const [width, height] = [640, 480];
@@ -34,7 +35,7 @@ describe("memory", () => {
     assert.ok(bytes <= BUDGET, `${bytes} bytes`);
   });
 
-  test(`${ROUNDS} estimators leave nothing behind`, () => {
+  test(`${ROUNDS} estimators leave nothing behind`, LONG, () => {
     const input = pair();
     const round = () => {
       const made = estimator({}, input);
@@ -48,7 +49,7 @@ describe("memory", () => {
     assert.equal(size(), before);
   });
 
-  test(`${STEPS} steps take no more than the first`, () => {
+  test(`${STEPS} steps take no more than the first`, LONG, () => {
     const { image, depth, light } = pair({ size: 16 });
     // The loop of surfaces goes on as long as it is let; that of the colours ends at once on so small a view. A reset takes as long as ten steps.
     const options = { light, start: "identity", scale: 1, registration: "icp", stopDegrees: 1e-9, maxIterations: 100 };

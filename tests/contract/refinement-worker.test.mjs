@@ -1,6 +1,7 @@
 // A worker refines the depth view beside the image surface, and nothing but the time it takes depends on it.
 import assert from "node:assert/strict";
 import { before, describe, test } from "node:test";
+import { LONG } from "./long.mjs";
 import { Estimator, init, outcome, pair } from "./support.mjs";
 import { runSettled, seen, settled, tamperWith, until } from "./threads.mjs";
 
@@ -47,7 +48,7 @@ async function lostInWaiting() {
 before(() => init());
 
 describe("a refinement worker", () => {
-  test("refines the same to the bit, whatever kind of step is taken", async (t) => {
+  test("refines the same to the bit, whatever kind of step is taken", LONG, async (t) => {
     withoutHaste(t);
     for (const given of [scene(), scene({ registration: "fixed" }), scene({}, { depthNoise: 0.1, holes: 0.1 })]) {
       const expected = await endOf(alone(given));
@@ -66,7 +67,7 @@ describe("a refinement worker", () => {
     }
   });
 
-  test("follows a search", async (t) => {
+  test("follows a search", LONG, async (t) => {
     withoutHaste(t);
     const given = scene({ start: "search", stopDegrees: 1e-12 });
     const before = seen.brought;

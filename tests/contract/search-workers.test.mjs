@@ -5,6 +5,7 @@ import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { before, describe, test } from "node:test";
+import { LONG } from "./long.mjs";
 import { Estimator, init, outcome, pair, refused } from "./support.mjs";
 import { runSettled, seen, settled, until } from "./threads.mjs";
 
@@ -18,7 +19,7 @@ async function slicesOf(estimator) {
 before(() => init());
 
 describe("search workers", () => {
-  test("any number of them finds the same to the bit", async () => {
+  test("any number of them finds the same to the bit", LONG, async () => {
     const scenes = [[scene(), true], [scene({ surface: "ripples", scale: 1.1, overlap: 0.7 }), false]];
     for (const [{ image, depth, light }, known] of scenes) {
       for (const options of [known ? { light } : {}]) {
@@ -39,7 +40,7 @@ describe("search workers", () => {
     }
   });
 
-  test("a reset in the middle leaves no trace of the search before it", async () => {
+  test("a reset in the middle leaves no trace of the search before it", LONG, async () => {
     const { image, depth, light } = scene();
     const other = new Estimator(image, depth, { light });
     await other.run();
@@ -68,7 +69,7 @@ describe("search workers", () => {
     assert.deepEqual(outcome(together), outcome(alone));
   });
 
-  test("inputs of any make look the same in every thread, and stay their owner's", async () => {
+  test("inputs of any make look the same in every thread, and stay their owner's", LONG, async () => {
     const { image, depth, light } = scene();
     const bytes = Buffer.alloc(4 * image.width * image.height);
     image.data.forEach((value, index) => (bytes[4 * Math.floor(index / 3) + (index % 3)] = Math.min(254, 160 * value)));

@@ -1,6 +1,7 @@
 // However the steps of a run are sliced, its end is the same to the bit: by iterations, by stages, by milliseconds of any number.
 import assert from "node:assert/strict";
 import { before, test } from "node:test";
+import { LONG } from "./long.mjs";
 import { Estimator, init, outcome, pair } from "./support.mjs";
 
 before(() => init());
@@ -15,7 +16,7 @@ function end(advance) {
   return found;
 }
 
-test("iterations, stages and milliseconds by turns end at the same bits as iterations", () => {
+test("iterations, stages and milliseconds by turns end at the same bits as iterations", LONG, () => {
   const byTurns = end((estimator, turn) => [() => estimator.step(), () => estimator.stepStage(), () => estimator.stepFor(0), () => estimator.stepFor(3)][turn % 4]());
   assert.deepEqual(byTurns, end((estimator) => estimator.step()));
 });

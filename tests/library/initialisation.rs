@@ -116,29 +116,6 @@ fn what_cannot_be_known_is_not_claimed() {
     assert_eq!(estimator.report().status, Status::Lost, "{:?}", estimator.report());
 }
 
-/// Paint and shadows are no shading: a pose that they may have pulled away is not called found.
-#[test]
-fn what_paint_and_shadows_mislead_is_doubted() {
-    for (name, light) in [("bust", "window"), ("bust", "overcast"), ("vase", "window")] {
-        let sample = scene(name, light);
-        let mut image = sample.colour_image();
-        let ColourSamples::RgbLinear(colours) = &mut image.samples else { unreachable!() };
-        for (index, pixel) in colours.chunks_exact_mut(3).enumerate() {
-            let [x, y] = [(index % 64) as f32, (index / 64) as f32];
-            let shadow = if x + 0.5 * y > 60.0 { 0.4 } else { 1.0 };
-            let paint = if (0.35 * x).sin() * (0.3 * y + 1.0).cos() > 0.2 { [0.5, 0.8, 1.1] } else { [1.0; 3] };
-            pixel.iter_mut().zip(paint).for_each(|(value, paint)| *value *= shadow * paint);
-        }
-        let mut estimator = Estimator::new(image, &sample.depth_map(), Options::default()).unwrap();
-        while estimator.report().status == Status::Running {
-            estimator.step();
-        }
-        let report = estimator.report();
-        let error = report.pose.degrees_to(&sample.pose);
-        assert!(error < 3.0 || report.status != Status::Converged, "{name} {light}: {error} {report:?}");
-    }
-}
-
 /// A depth map whose prior has no weight must not show in the image's normals: under a poor light they stay poor.
 #[test]
 fn a_prior_without_weight_has_no_say() {
@@ -209,19 +186,48 @@ fn run_with_workers(sample: &Sample, options: &Options, workers: usize, seed: u6
     (estimator.report().clone(), depth, findings)
 }
 
-#[test]
-fn any_number_of_workers_leaves_the_same_to_the_bit() {
-    for (name, light, known) in [("bust", "window", false), ("ripples", "overcast", false), ("vase", "colourful", true)]
-    {
-        let sample = scene(name, light);
-        let light = if known { LightSource::Known(sample.light) } else { LightSource::Estimate };
-        let options = Options { light, ..Options::default() };
-        let (alone, depth, _) = run_with_workers(&sample, &options, 0, 0);
-        for (workers, seed) in [(1, 1), (2, 2), (3, 3)] {
-            let (report, other, findings) = run_with_workers(&sample, &options, workers, seed);
-            assert!(findings > 40, "{name}: {findings}");
-            assert_eq!(report, alone, "{name}, {workers} workers");
-            assert_eq!(depth, other, "{name}, {workers} workers");
+/// Tests of over three seconds: `cargo test` runs them, `npm test` only with `--long`.
+mod long {
+    use super::*;
+
+    #[test]
+    fn any_number_of_workers_leaves_the_same_to_the_bit() {
+        for (name, light, known) in
+            [("bust", "window", false), ("ripples", "overcast", false), ("vase", "colourful", true)]
+        {
+            let sample = scene(name, light);
+            let light = if known { LightSource::Known(sample.light) } else { LightSource::Estimate };
+            let options = Options { light, ..Options::default() };
+            let (alone, depth, _) = run_with_workers(&sample, &options, 0, 0);
+            for (workers, seed) in [(1, 1), (2, 2), (3, 3)] {
+                let (report, other, findings) = run_with_workers(&sample, &options, workers, seed);
+                assert!(findings > 40, "{name}: {findings}");
+                assert_eq!(report, alone, "{name}, {workers} workers");
+                assert_eq!(depth, other, "{name}, {workers} workers");
+            }
+        }
+    }
+
+    /// Paint and shadows are no shading: a pose that they may have pulled away is not called found.
+    #[test]
+    fn what_paint_and_shadows_mislead_is_doubted() {
+        for (name, light) in [("bust", "window"), ("bust", "overcast"), ("vase", "window")] {
+            let sample = scene(name, light);
+            let mut image = sample.colour_image();
+            let ColourSamples::RgbLinear(colours) = &mut image.samples else { unreachable!() };
+            for (index, pixel) in colours.chunks_exact_mut(3).enumerate() {
+                let [x, y] = [(index % 64) as f32, (index / 64) as f32];
+                let shadow = if x + 0.5 * y > 60.0 { 0.4 } else { 1.0 };
+                let paint = if (0.35 * x).sin() * (0.3 * y + 1.0).cos() > 0.2 { [0.5, 0.8, 1.1] } else { [1.0; 3] };
+                pixel.iter_mut().zip(paint).for_each(|(value, paint)| *value *= shadow * paint);
+            }
+            let mut estimator = Estimator::new(image, &sample.depth_map(), Options::default()).unwrap();
+            while estimator.report().status == Status::Running {
+                estimator.step();
+            }
+            let report = estimator.report();
+            let error = report.pose.degrees_to(&sample.pose);
+            assert!(error < 3.0 || report.status != Status::Converged, "{name} {light}: {error} {report:?}");
         }
     }
 }

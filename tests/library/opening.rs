@@ -64,63 +64,68 @@ fn searched_without_cameras() -> &'static Run {
     RUN.get_or_init(|| searched(&large(Camera::Orthographic)))
 }
 
-#[test]
-fn a_search_on_coarse_views_ends_where_all_pixels_say() {
-    for camera in [Camera::Orthographic, pinhole()] {
-        let sample = large(camera);
-        let own;
-        let Run { report: found, search, .. } = match camera {
-            Camera::Orthographic => searched_without_cameras(),
-            _ => {
-                own = searched(&sample);
-                &own
-            }
-        };
-        let pose = sample.pose;
-        let truth =
-            Start::Pose { rotation: pose.rotation, scale: Some(pose.scale), translation: Some(pose.translation) };
-        let (near, _) = run(&sample, truth);
-        let near = near.report();
-        assert_eq!([found.status, near.status], [Status::Converged; 2], "{found:?}");
-        // Both are the same registration by all points, whatever it started from.
-        let sigma = near.uncertainty.as_ref().unwrap().rotation_degrees;
-        let apart = found.pose.degrees_to(&near.pose);
-        assert!(apart < 0.3 * sigma.iter().map(|s| s * s).sum::<f64>().sqrt(), "{camera:?}: {apart} {sigma:?}");
-        assert!((found.pose.scale / near.pose.scale - 1.0).abs() < 1e-3);
-        let middle = middle_of_depth(&sample);
-        let off = found.pose.apply(middle) - near.pose.apply(middle);
-        let pixel = camera.focal_length().map_or(1.0, |focal_length| near.pose.apply(middle).z / focal_length);
-        assert!(off.xy().norm() < 0.1 * pixel, "{camera:?}: {off}");
-        // The best candidate is reported while the search goes on, in the units of the views.
-        let halfway = &search[search.len() / 2];
-        assert!(halfway.pose.degrees_to(&pose) < 16.0, "{}", halfway.pose.degrees_to(&pose));
-        let off = halfway.pose.apply(middle) - pose.apply(middle);
-        assert!(off.xy().norm() < 25.0 * pixel, "{camera:?}: {off}");
-    }
-}
-
 fn middle_of_depth(sample: &Sample) -> nalgebra::Vector3<f64> {
     let estimator = Estimator::new(sample.colour_image(), &sample.depth_map(), Options::paper()).unwrap();
     estimator.depth().points.centroid()
 }
 
-#[test]
-fn a_worker_searches_the_same_coarse_views() {
-    let sample = large(Camera::Orthographic);
-    let alone = searched_without_cameras();
-    let options = Options::default();
-    let mut estimator = Estimator::new(sample.colour_image(), &sample.depth_map(), options.clone()).unwrap();
-    let mut worker = Worker::new(sample.colour_image(), &sample.depth_map(), options).unwrap();
-    let mut done = 0;
-    while estimator.report().status == Status::Running {
-        if let Some(task) = estimator.take_task() {
-            estimator.accept_finding(worker.perform(&task).unwrap());
-            done += 1;
+/// Tests of over three seconds: `cargo test` runs them, `npm test` only with `--long`.
+mod long {
+    use super::*;
+
+    #[test]
+    fn a_worker_searches_the_same_coarse_views() {
+        let sample = large(Camera::Orthographic);
+        let alone = searched_without_cameras();
+        let options = Options::default();
+        let mut estimator = Estimator::new(sample.colour_image(), &sample.depth_map(), options.clone()).unwrap();
+        let mut worker = Worker::new(sample.colour_image(), &sample.depth_map(), options).unwrap();
+        let mut done = 0;
+        while estimator.report().status == Status::Running {
+            if let Some(task) = estimator.take_task() {
+                estimator.accept_finding(worker.perform(&task).unwrap());
+                done += 1;
+            }
+            estimator.step();
         }
-        estimator.step();
+        assert!(done > 100, "{done}");
+        let [one, two] = [&alone.report, estimator.report()];
+        assert_eq!((one.pose, one.iteration, &one.message), (two.pose, two.iteration, &two.message));
+        assert!(alone.refined == bits(&estimator));
     }
-    assert!(done > 100, "{done}");
-    let [one, two] = [&alone.report, estimator.report()];
-    assert_eq!((one.pose, one.iteration, &one.message), (two.pose, two.iteration, &two.message));
-    assert!(alone.refined == bits(&estimator));
+
+    #[test]
+    fn a_search_on_coarse_views_ends_where_all_pixels_say() {
+        for camera in [Camera::Orthographic, pinhole()] {
+            let sample = large(camera);
+            let own;
+            let Run { report: found, search, .. } = match camera {
+                Camera::Orthographic => searched_without_cameras(),
+                _ => {
+                    own = searched(&sample);
+                    &own
+                }
+            };
+            let pose = sample.pose;
+            let truth =
+                Start::Pose { rotation: pose.rotation, scale: Some(pose.scale), translation: Some(pose.translation) };
+            let (near, _) = run(&sample, truth);
+            let near = near.report();
+            assert_eq!([found.status, near.status], [Status::Converged; 2], "{found:?}");
+            // Both are the same registration by all points, whatever it started from.
+            let sigma = near.uncertainty.as_ref().unwrap().rotation_degrees;
+            let apart = found.pose.degrees_to(&near.pose);
+            assert!(apart < 0.3 * sigma.iter().map(|s| s * s).sum::<f64>().sqrt(), "{camera:?}: {apart} {sigma:?}");
+            assert!((found.pose.scale / near.pose.scale - 1.0).abs() < 1e-3);
+            let middle = middle_of_depth(&sample);
+            let off = found.pose.apply(middle) - near.pose.apply(middle);
+            let pixel = camera.focal_length().map_or(1.0, |focal_length| near.pose.apply(middle).z / focal_length);
+            assert!(off.xy().norm() < 0.1 * pixel, "{camera:?}: {off}");
+            // The best candidate is reported while the search goes on, in the units of the views.
+            let halfway = &search[search.len() / 2];
+            assert!(halfway.pose.degrees_to(&pose) < 16.0, "{}", halfway.pose.degrees_to(&pose));
+            let off = halfway.pose.apply(middle) - pose.apply(middle);
+            assert!(off.xy().norm() < 25.0 * pixel, "{camera:?}: {off}");
+        }
+    }
 }

@@ -75,39 +75,11 @@ fn run(scene: &Painted, options: Options) -> Result<StepReport> {
     Ok(estimator.report().clone())
 }
 
-#[test]
-fn a_painted_object_is_found_from_nothing() -> Result<()> {
-    for (name, beta) in [("bust", 25.0), ("vase", -20.0)] {
-        let scene = painted(name, beta, Some(11))?;
-        let report = run(&scene, Options::default())?;
-        let off = report.pose.degrees_to(&scene.truth);
-        assert!(off < 3.0, "{name}: {off} degrees, {:?} {:?}", report.status, report.message);
-        let sigma = report.uncertainty.expect("a pose that was found has sigmas").rotation_degrees;
-        let largest = sigma.into_iter().fold(0.0, f64::max);
-        assert!(off < 3.0_f64.sqrt() * 3.0 * largest, "{name}: {off} degrees at sigmas of {sigma:?}");
-    }
-    Ok(())
-}
-
 fn assert_found(scene: &Painted) -> Result<()> {
     let report = run(scene, Options::default())?;
     let off = report.pose.degrees_to(&scene.truth);
     assert!(off < 3.0, "{off} degrees, {:?} {:?}", report.status, report.message);
     Ok(())
-}
-
-#[test]
-fn half_the_hues_are_enough() -> Result<()> {
-    let scene = painted_at(96, "bust", 25.0, Some(15))?;
-    let scene = Painted { image: with_half_hues(&scene.image), ..scene };
-    assert_found(&scene)
-}
-
-#[test]
-fn paint_is_told_beside_depth_in_steps() -> Result<()> {
-    let scene = painted("bust", 25.0, Some(11))?;
-    let scene = Painted { depth: in_steps(&scene.depth, 1.0), ..scene };
-    assert_found(&scene)
 }
 
 #[test]
@@ -134,26 +106,6 @@ fn softly_painted(name: &str, beta: f64) -> Result<Painted> {
 }
 
 #[test]
-fn the_pose_follows_soft_paint_that_is_found_under_it() -> Result<()> {
-    let (mut searched, mut followed) = (Vec::new(), Vec::new());
-    for (name, beta) in [("bust", 25.0), ("bust", -40.0), ("vase", -20.0), ("ripples", 20.0)] {
-        let scene = softly_painted(name, beta)?;
-        let mut estimator = Estimator::new(scene.image.clone(), &scene.depth, Options::default())?;
-        while estimator.is_searching() {
-            estimator.step();
-        }
-        searched.push(estimator.report().pose.degrees_to(&scene.truth));
-        while estimator.report().status == Status::Running {
-            estimator.step();
-        }
-        followed.push(estimator.report().pose.degrees_to(&scene.truth));
-    }
-    let mean = |off: &[f64]| off.iter().sum::<f64>() / off.len() as f64;
-    assert!(mean(&followed) < 0.7 * mean(&searched), "{followed:?} instead of {searched:?} degrees");
-    Ok(())
-}
-
-#[test]
 fn without_paint_the_colours_themselves_decide() -> Result<()> {
     let scene = painted("bust", 25.0, None)?;
     let report = run(&scene, Options::default())?;
@@ -161,4 +113,57 @@ fn without_paint_the_colours_themselves_decide() -> Result<()> {
     // A third of what contrast alone would leave.
     assert!(off < 0.3 && report.status == Status::Converged, "{off} degrees, {:?}", report.status);
     Ok(())
+}
+
+/// Tests of over three seconds: `cargo test` runs them, `npm test` only with `--long`.
+mod long {
+    use super::*;
+
+    #[test]
+    fn the_pose_follows_soft_paint_that_is_found_under_it() -> Result<()> {
+        let (mut searched, mut followed) = (Vec::new(), Vec::new());
+        for (name, beta) in [("bust", 25.0), ("bust", -40.0), ("vase", -20.0), ("ripples", 20.0)] {
+            let scene = softly_painted(name, beta)?;
+            let mut estimator = Estimator::new(scene.image.clone(), &scene.depth, Options::default())?;
+            while estimator.is_searching() {
+                estimator.step();
+            }
+            searched.push(estimator.report().pose.degrees_to(&scene.truth));
+            while estimator.report().status == Status::Running {
+                estimator.step();
+            }
+            followed.push(estimator.report().pose.degrees_to(&scene.truth));
+        }
+        let mean = |off: &[f64]| off.iter().sum::<f64>() / off.len() as f64;
+        assert!(mean(&followed) < 0.7 * mean(&searched), "{followed:?} instead of {searched:?} degrees");
+        Ok(())
+    }
+
+    #[test]
+    fn a_painted_object_is_found_from_nothing() -> Result<()> {
+        for (name, beta) in [("bust", 25.0), ("vase", -20.0)] {
+            let scene = painted(name, beta, Some(11))?;
+            let report = run(&scene, Options::default())?;
+            let off = report.pose.degrees_to(&scene.truth);
+            assert!(off < 3.0, "{name}: {off} degrees, {:?} {:?}", report.status, report.message);
+            let sigma = report.uncertainty.expect("a pose that was found has sigmas").rotation_degrees;
+            let largest = sigma.into_iter().fold(0.0, f64::max);
+            assert!(off < 3.0_f64.sqrt() * 3.0 * largest, "{name}: {off} degrees at sigmas of {sigma:?}");
+        }
+        Ok(())
+    }
+
+    #[test]
+    fn paint_is_told_beside_depth_in_steps() -> Result<()> {
+        let scene = painted("bust", 25.0, Some(11))?;
+        let scene = Painted { depth: in_steps(&scene.depth, 1.0), ..scene };
+        assert_found(&scene)
+    }
+
+    #[test]
+    fn half_the_hues_are_enough() -> Result<()> {
+        let scene = painted_at(96, "bust", 25.0, Some(15))?;
+        let scene = Painted { image: with_half_hues(&scene.image), ..scene };
+        assert_found(&scene)
+    }
 }

@@ -70,21 +70,6 @@ fn near(sample: &Sample) -> Options {
 }
 
 #[test]
-fn a_pose_that_does_not_move_lets_a_worker_refine() {
-    let camera = Camera::Pinhole(Pinhole { fx: 150.0, fy: 150.0, cx: 31.5, cy: 31.5, distortion: [0.0; 5] });
-    let plain = SampleRequest { light: light("window").unwrap(), noise: 0.01, ..SampleRequest::default() };
-    let holes = SampleRequest { holes: 0.1, depth_noise: 0.1, ..plain.clone() };
-    let perspective = SampleRequest { image_camera: camera, depth_camera: camera, ..plain.clone() };
-    for (name, request) in [("plain", plain), ("holes", holes), ("perspective", perspective)] {
-        let sample = sample(&request);
-        let near = near(&sample);
-        assert_same(name, &sample, &near);
-        let fixed = Options { registration: Registration::Fixed, ..near };
-        assert_same(&format!("{name}, fixed"), &sample, &fixed);
-    }
-}
-
-#[test]
 fn an_iteration_that_is_taken_back_takes_its_shape_along() {
     let colourful = light("colourful").unwrap();
     let request =
@@ -128,5 +113,25 @@ fn numbers_of_something_else_are_refused() {
     let mut worker = Worker::new(sample.colour_image(), &sample.depth_map(), Options::default()).unwrap();
     for count in [0, 26, 27, 38, 40] {
         assert_eq!(worker.refine(&vec![0.5; count], |_| {}).unwrap_err().field(), "numbers");
+    }
+}
+
+/// Tests of over three seconds: `cargo test` runs them, `npm test` only with `--long`.
+mod long {
+    use super::*;
+
+    #[test]
+    fn a_pose_that_does_not_move_lets_a_worker_refine() {
+        let camera = Camera::Pinhole(Pinhole { fx: 150.0, fy: 150.0, cx: 31.5, cy: 31.5, distortion: [0.0; 5] });
+        let plain = SampleRequest { light: light("window").unwrap(), noise: 0.01, ..SampleRequest::default() };
+        let holes = SampleRequest { holes: 0.1, depth_noise: 0.1, ..plain.clone() };
+        let perspective = SampleRequest { image_camera: camera, depth_camera: camera, ..plain.clone() };
+        for (name, request) in [("plain", plain), ("holes", holes), ("perspective", perspective)] {
+            let sample = sample(&request);
+            let near = near(&sample);
+            assert_same(name, &sample, &near);
+            let fixed = Options { registration: Registration::Fixed, ..near };
+            assert_same(&format!("{name}, fixed"), &sample, &fixed);
+        }
     }
 }

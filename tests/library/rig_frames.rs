@@ -25,34 +25,6 @@ fn a_seed_fixes_the_rig_and_a_frame_what_is_seen() {
     }
 }
 
-#[test]
-fn rigs_are_as_their_makers_build_them() {
-    let mut sizes = Vec::new();
-    for seed in 0..16 {
-        let frame = small(RigKind::Sheet, seed, 0);
-        frame.pose.validate("pose").unwrap();
-        let baseline = frame.pose.translation.norm();
-        assert!(frame.pose.scale == 1.0 && (0.0199..0.0801).contains(&baseline), "{baseline}");
-        let still = bimodal_stereo::Similarity { scale: 1.0, rotation: nalgebra::Matrix3::identity(), ..frame.pose };
-        assert!(frame.pose.degrees_to(&still) <= 3.0);
-        for camera in [frame.colour_camera, frame.depth_camera] {
-            camera.validate("camera").unwrap();
-            for [column, row] in [[0.0, 0.0], [159.0, 0.0], [0.0, 119.0], [159.0, 119.0]] {
-                assert!(camera.ray([column, row]).is_some(), "{camera:?}");
-            }
-        }
-        if seed < 4 {
-            let frame = render(&RigRequest::new(RigKind::Objects, seed, 0)).unwrap();
-            assert_eq!(frame.colour.len(), 4 * frame.colour_size.len());
-            assert_eq!((frame.depth.len(), frame.true_depth.len()), (frame.depth_size.len(), frame.depth_size.len()));
-            sizes.push((frame.colour_size.width, frame.depth_size.width));
-        }
-    }
-    sizes.sort_unstable();
-    sizes.dedup();
-    assert!(sizes.len() > 1, "{sizes:?}");
-}
-
 /// Share of the pixels whose depth lies within a range of metres.
 fn share(frame: &RigFrame, range: std::ops::Range<f32>) -> f64 {
     frame.true_depth.iter().filter(|depth| range.contains(depth)).count() as f64 / frame.true_depth.len() as f64
@@ -110,5 +82,42 @@ fn requests_out_of_range_name_their_field() {
     for (request, field, kind) in cases {
         let error = render(&request).unwrap_err();
         assert_eq!((error.field(), error.kind()), (field, kind));
+    }
+}
+
+/// Tests of over three seconds: `cargo test` runs them, `npm test` only with `--long`.
+mod long {
+    use super::*;
+
+    #[test]
+    fn rigs_are_as_their_makers_build_them() {
+        let mut sizes = Vec::new();
+        for seed in 0..16 {
+            let frame = small(RigKind::Sheet, seed, 0);
+            frame.pose.validate("pose").unwrap();
+            let baseline = frame.pose.translation.norm();
+            assert!(frame.pose.scale == 1.0 && (0.0199..0.0801).contains(&baseline), "{baseline}");
+            let still =
+                bimodal_stereo::Similarity { scale: 1.0, rotation: nalgebra::Matrix3::identity(), ..frame.pose };
+            assert!(frame.pose.degrees_to(&still) <= 3.0);
+            for camera in [frame.colour_camera, frame.depth_camera] {
+                camera.validate("camera").unwrap();
+                for [column, row] in [[0.0, 0.0], [159.0, 0.0], [0.0, 119.0], [159.0, 119.0]] {
+                    assert!(camera.ray([column, row]).is_some(), "{camera:?}");
+                }
+            }
+            if seed < 4 {
+                let frame = render(&RigRequest::new(RigKind::Objects, seed, 0)).unwrap();
+                assert_eq!(frame.colour.len(), 4 * frame.colour_size.len());
+                assert_eq!(
+                    (frame.depth.len(), frame.true_depth.len()),
+                    (frame.depth_size.len(), frame.depth_size.len())
+                );
+                sizes.push((frame.colour_size.width, frame.depth_size.width));
+            }
+        }
+        sizes.sort_unstable();
+        sizes.dedup();
+        assert!(sizes.len() > 1, "{sizes:?}");
     }
 }

@@ -85,46 +85,6 @@ fn middle(sample: &Sample) -> Vector3<f64> {
 }
 
 #[test]
-fn a_start_turned_about_the_sensor_comes_home_under_an_unknown_light() {
-    for (name, axis) in [("window", Vector3::new(0.3, 1.0, 0.1)), ("colourful", Vector3::new(1.0, -0.4, 0.2))] {
-        let sample = perspective(name);
-        let searched = run(&sample, Paint::None, Options::default());
-        for degrees in [1.0, 3.0, 8.0] {
-            let start = turned_about_the_sensor(&sample, axis, degrees);
-            let report = run(&sample, Paint::None, told(&start));
-            let (error, apart) = (report.pose.degrees_to(&sample.pose), report.pose.degrees_to(&searched.pose));
-            assert!(error < 2.0 && apart < 0.2, "{name}, {degrees}: {error} {apart} {report:?}");
-            assert_ne!(report.status, Status::Lost, "{name}, {degrees}");
-        }
-    }
-}
-
-#[test]
-fn a_told_start_never_ends_further_from_itself_than_its_tolerance() {
-    let sample = perspective("window");
-    let middle = middle(&sample);
-    for (degrees, distance, off) in [(1.0, 2.0, 4.0), (30.0, 3.0, 6.0), (5.0, 100.0, 8.0), (0.1, 0.1, 1.0)] {
-        for paint in [Paint::None, Paint::Patches] {
-            let start = turned_about_the_sensor(&sample, Vector3::new(0.5, 1.0, 0.0), off);
-            let start_tolerance = StartTolerance { degrees, distance: Some(distance) };
-            let report = run(&sample, paint, Options { start_tolerance, ..told(&start) });
-            let moved = (report.pose.apply(middle) - start.apply(middle)).norm();
-            let turned = report.pose.degrees_to(&start);
-            let tolerance = format!("{degrees} {distance} {off} {}: {turned} {moved}", paint != Paint::None);
-            assert!(turned <= degrees && moved <= distance, "{tolerance}");
-            // What is out of reach is not found, and that is said.
-            if off > degrees {
-                assert_ne!(report.status, Status::Converged, "{tolerance}");
-            }
-            if turned == 0.0 && moved == 0.0 {
-                assert_eq!((report.status, &report.uncertainty), (Status::Lost, &None), "{tolerance}");
-                assert!(report.message.unwrap().contains("startTolerance"), "{tolerance}");
-            }
-        }
-    }
-}
-
-#[test]
 fn outlines_bring_a_painted_object_home() {
     let sample = perspective("window");
     let middle = middle(&sample);
@@ -161,19 +121,6 @@ fn fine_print_is_not_taken_for_noise_that_explains_the_colours() {
 }
 
 #[test]
-fn outlines_find_a_painted_object_of_which_nothing_is_known() {
-    let sample = perspective("window");
-    let report = run(&sample, Paint::Patches, Options::default());
-    assert!(report.pose.degrees_to(&sample.pose) < 10.0, "{report:?}");
-    let middle = middle(&sample);
-    let off = report.pose.apply(middle) - sample.pose.apply(middle);
-    assert!(off.xy().norm() < 4.0, "{off} {report:?}");
-    // The image of a shape without paint is for its colours to tell.
-    let plain = run(&sample, Paint::None, Options::default());
-    assert!(plain.pose.degrees_to(&sample.pose) < 2.0 && !plain.message.unwrap_or_default().contains("outlines"));
-}
-
-#[test]
 fn what_never_moved_has_no_sigmas() {
     let sample = perspective("window");
     let start = turned_about_the_sensor(&sample, Vector3::y(), 2.0);
@@ -181,5 +128,63 @@ fn what_never_moved_has_no_sigmas() {
         let report = run(&sample, paint, Options { registration: Registration::Icp, ..told(&start) });
         let moved = report.pose.translation != start.translation || report.pose.degrees_to(&start) > 0.0;
         assert_eq!(report.uncertainty.is_some(), moved, "{report:?}");
+    }
+}
+
+/// Tests of over three seconds: `cargo test` runs them, `npm test` only with `--long`.
+mod long {
+    use super::*;
+
+    #[test]
+    fn a_told_start_never_ends_further_from_itself_than_its_tolerance() {
+        let sample = perspective("window");
+        let middle = middle(&sample);
+        for (degrees, distance, off) in [(1.0, 2.0, 4.0), (30.0, 3.0, 6.0), (5.0, 100.0, 8.0), (0.1, 0.1, 1.0)] {
+            for paint in [Paint::None, Paint::Patches] {
+                let start = turned_about_the_sensor(&sample, Vector3::new(0.5, 1.0, 0.0), off);
+                let start_tolerance = StartTolerance { degrees, distance: Some(distance) };
+                let report = run(&sample, paint, Options { start_tolerance, ..told(&start) });
+                let moved = (report.pose.apply(middle) - start.apply(middle)).norm();
+                let turned = report.pose.degrees_to(&start);
+                let tolerance = format!("{degrees} {distance} {off} {}: {turned} {moved}", paint != Paint::None);
+                assert!(turned <= degrees && moved <= distance, "{tolerance}");
+                // What is out of reach is not found, and that is said.
+                if off > degrees {
+                    assert_ne!(report.status, Status::Converged, "{tolerance}");
+                }
+                if turned == 0.0 && moved == 0.0 {
+                    assert_eq!((report.status, &report.uncertainty), (Status::Lost, &None), "{tolerance}");
+                    assert!(report.message.unwrap().contains("startTolerance"), "{tolerance}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_start_turned_about_the_sensor_comes_home_under_an_unknown_light() {
+        for (name, axis) in [("window", Vector3::new(0.3, 1.0, 0.1)), ("colourful", Vector3::new(1.0, -0.4, 0.2))] {
+            let sample = perspective(name);
+            let searched = run(&sample, Paint::None, Options::default());
+            for degrees in [1.0, 3.0, 8.0] {
+                let start = turned_about_the_sensor(&sample, axis, degrees);
+                let report = run(&sample, Paint::None, told(&start));
+                let (error, apart) = (report.pose.degrees_to(&sample.pose), report.pose.degrees_to(&searched.pose));
+                assert!(error < 2.0 && apart < 0.2, "{name}, {degrees}: {error} {apart} {report:?}");
+                assert_ne!(report.status, Status::Lost, "{name}, {degrees}");
+            }
+        }
+    }
+
+    #[test]
+    fn outlines_find_a_painted_object_of_which_nothing_is_known() {
+        let sample = perspective("window");
+        let report = run(&sample, Paint::Patches, Options::default());
+        assert!(report.pose.degrees_to(&sample.pose) < 10.0, "{report:?}");
+        let middle = middle(&sample);
+        let off = report.pose.apply(middle) - sample.pose.apply(middle);
+        assert!(off.xy().norm() < 4.0, "{off} {report:?}");
+        // The image of a shape without paint is for its colours to tell.
+        let plain = run(&sample, Paint::None, Options::default());
+        assert!(plain.pose.degrees_to(&sample.pose) < 2.0 && !plain.message.unwrap_or_default().contains("outlines"));
     }
 }

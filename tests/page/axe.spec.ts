@@ -3,7 +3,7 @@
 import { readFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import type { Page } from "@playwright/test";
-import { expect, test, type Lab } from "./lab";
+import { LONG, expect, test, type Lab } from "./lab";
 import { Messages } from "./messages";
 import { answerChecks } from "./rig";
 
@@ -123,9 +123,9 @@ async function rivals(lab: Lab, page: Page): Promise<void> {
 }
 
 test.use({ contextOptions: { reducedMotion: "reduce" } });
-test("the Lab before, while and after a run, with its settings and help", ({ lab: opened, page }) => lab(opened, page));
+test("the Lab before, while and after a run, with its settings and help", LONG, ({ lab: opened, page }) => lab(opened, page));
 test("a Lab whose pose is lost", ({ lab: opened, page }) => poseLost(opened, page));
-test("a Lab whose pose has a rival", ({ lab: opened, page }) => rivals(opened, page));
-test("every lesson, the exercises and a slide", ({ page }) => learn(page));
-test("the Tables, and a cell of theirs", ({ page }) => tables(page));
-test("the three steps of Check a rig", ({ page }) => rig(page));
+test("a Lab whose pose has a rival", LONG, ({ lab: opened, page }) => rivals(opened, page));
+test("every lesson, the exercises and a slide", LONG, ({ page }) => learn(page));
+test("the Tables, and a cell of theirs", LONG, ({ page }) => tables(page));
+test("the three steps of Check a rig", LONG, ({ page }) => rig(page));

@@ -2,7 +2,7 @@
 
 import { decode, type DecodedPng } from "fast-png";
 import { DRAWN, NO_OFFSCREEN, covered, goToClouds, still } from "./clouds";
-import { expect, test } from "./lab";
+import { LONG, expect, test } from "./lab";
 
 /** How many pixels of a row are drawn on: those of another colour than the ground, which is seen near a corner. */
 function drawnIn({ data, channels, width }: DecodedPng, row: number): number {
@@ -52,7 +52,7 @@ for (const [where, script] of [["in a thread", ""], ["on the page where threads 
   });
 }
 
-test("another example is seen from the front, however the last one was turned", async ({ lab, page }) => {
+test("another example is seen from the front, however the last one was turned", LONG, async ({ lab, page }) => {
   // Nothing plays by itself, and nothing swings.
   await page.emulateMedia({ reducedMotion: "reduce" });
   await lab.visit();
@@ -78,7 +78,7 @@ test("another example is seen from the front, however the last one was turned", 
   }).toPass();
 });
 
-test("surfaces whose distance the pose settles stay in the middle of the view", async ({ lab, page }) => {
+test("surfaces whose distance the pose settles stay in the middle of the view", LONG, async ({ lab, page }) => {
   await page.emulateMedia({ reducedMotion: "reduce" });
   await lab.visit();
   await goToClouds(page);
@@ -96,7 +96,7 @@ test("surfaces whose distance the pose settles stay in the middle of the view", 
   expect(Math.abs(kept / (await covered(clouds)) - 1)).toBeLessThan(0.1);
 });
 
-test("no surface is cut off, whatever scale is found", async ({ lab, page }) => {
+test("no surface is cut off, whatever scale is found", LONG, async ({ lab, page }) => {
   await page.emulateMedia({ reducedMotion: "reduce" });
   await lab.visit("size=64");
   await page.getByRole("button", { name: "Too hard", exact: true }).click();
@@ -130,7 +130,7 @@ test("without WebGL the page says so and computes all the same", async ({ lab, p
   lab.complaints.length = 0;
 });
 
-test("points are as large on a dense screen", async ({ browser, baseURL }) => {
+test("points are as large on a dense screen", LONG, async ({ browser, baseURL }) => {
   const shares: number[] = [];
   for (const deviceScaleFactor of [1, 2]) {
     const context = await browser.newContext({ deviceScaleFactor, viewport: { width: 1280, height: 800 } });

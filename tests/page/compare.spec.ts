@@ -3,7 +3,7 @@
 import type { Locator, Page } from "@playwright/test";
 import { decode } from "fast-png";
 import { DRAWN, covered, goToClouds, still } from "./clouds";
-import { expect, test, type Lab } from "./lab";
+import { LONG, expect, test, type Lab } from "./lab";
 
 const boxOf = (lab: Lab, title: string): Locator => lab.page.locator("figure.view > .canvas", { has: lab.page.locator(`canvas[aria-label^="${title}:"]`) });
 
@@ -65,7 +65,7 @@ test("a pinned run stays in the charts, and in the pictures left of the wipe", a
   await expect.poll(drawn).toBe(0);
 });
 
-test("the surfaces of a pinned run are seen left of the wipe, from wherever they are looked at", async ({ lab, page }) => {
+test("the surfaces of a pinned run are seen left of the wipe, from wherever they are looked at", LONG, async ({ lab, page }) => {
   // Nothing swings.
   await page.emulateMedia({ reducedMotion: "reduce" });
   await lab.open("size=64");
@@ -141,7 +141,7 @@ test("a pinned picture of another size lies where its pixels belong", async ({ l
   expect(await differing(colour, small)).toBeGreaterThan(0.001);
 });
 
-test("each number of the light has a slider: the picture follows, and undo brings it back", async ({ lab, page }) => {
+test("each number of the light has a slider: the picture follows, and undo brings it back", LONG, async ({ lab, page }) => {
   await lab.open("size=64");
   const before = await lab.fingerprint("Colour");
   await page.getByText("All 27 coefficients").click();

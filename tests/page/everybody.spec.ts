@@ -1,7 +1,7 @@
 /** Fingers, keys, and whoever wants less motion. */
 
 import type { Page } from "@playwright/test";
-import { expect, test } from "./lab";
+import { LONG, expect, test } from "./lab";
 import { answerChecks } from "./rig";
 import { atWidths, innerWidth, narrowest } from "./widths";
 
@@ -57,7 +57,7 @@ test.describe("by touch", () => {
     expect(marked).toEqual(["to-tables"]);
   });
 
-  test("so it is where a rig is checked", async ({ page }) => {
+  test("so it is where a rig is checked", LONG, async ({ page }) => {
     await answerChecks(page, "off");
     await page.goto("./#rig");
     await page.getByRole("button", { name: "Load an example" }).tap();

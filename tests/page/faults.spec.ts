@@ -4,7 +4,7 @@ import { readFileSync } from "node:fs";
 import type { Page } from "@playwright/test";
 import binaryen from "binaryen";
 import { breakable, endAll, endAt, ended, endSoon } from "./broken";
-import { expect, test, type Lab } from "./lab";
+import { LONG, expect, test, type Lab } from "./lab";
 import { answerChecks, giveFiles, pair } from "./rig";
 
 const FAST = "size=48";
@@ -40,7 +40,7 @@ test.describe("in the Lab", () => {
     await expect(alert(page)).toBeHidden();
   });
 
-  test("one that is ended each time does not go round in circles, and Play goes on once it lives", async ({ lab, page }) => {
+  test("one that is ended each time does not go round in circles, and Play goes on once it lives", LONG, async ({ lab, page }) => {
     await lab.open(FAST);
     await endAt(page, { kind: "advance" }, 1, 2);
     await play(lab);
@@ -133,7 +133,7 @@ test("in Learn: said, the values stay, and the figure is computed again", async 
   expect(lab.complaints).toEqual([]);
 });
 
-test("in the Tables: the cell says so, those after it are measured, and it can be pressed again", async ({ lab, page }) => {
+test("in the Tables: the cell says so, those after it are measured, and it can be pressed again", LONG, async ({ lab, page }) => {
   await breakable(page);
   // The second cell's worker is ended.
   await page.addInitScript(() => {

@@ -3,7 +3,7 @@
 import { readFile } from "node:fs/promises";
 import { encode } from "fast-png";
 import init, { sample, type Sample } from "../../pkg/index.js";
-import { expect, test, type Lab } from "./lab";
+import { LONG, expect, test, type Lab } from "./lab";
 import { Messages } from "./messages";
 
 const size = 64;
@@ -181,7 +181,7 @@ function phonePhoto(jpeg: Buffer): Upload {
   return { name: "phone.jpg", mimeType: "image/jpeg", buffer };
 }
 
-test("a phone's photo is turned upright, and a dropped file is taken", async ({ lab, page }) => {
+test("a phone's photo is turned upright, and a dropped file is taken", LONG, async ({ lab, page }) => {
   await openFiles(lab);
   const landscape = await page.evaluate(async () => {
     const canvas = new OffscreenCanvas(80, 48);

@@ -4,6 +4,8 @@ import { test as base, expect, type Locator, type Page } from "@playwright/test"
 
 export { expect };
 
+/** A test of over three seconds, which a shorter one makes up for: `npm test -- --long` runs it, `npm test` does not. */
+export const LONG = { tag: "@long" };
 
 const PAPER = "lighting=known&start=identity&registration=icp&shading=pixel";
 

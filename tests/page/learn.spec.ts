@@ -3,7 +3,7 @@
 import { readFile } from "node:fs/promises";
 import type { Page } from "@playwright/test";
 import { LESSONS, figure, number, open, settled, slide } from "./figure";
-import { expect, test } from "./lab";
+import { LONG, expect, test } from "./lab";
 import { atWidths, innerWidth, narrowest } from "./widths";
 
 function fingerprint(page: Page, panel: string): Promise<number> {
@@ -13,7 +13,7 @@ function fingerprint(page: Page, panel: string): Promise<number> {
   });
 }
 
-test("each lesson says where its method is written down, names its controls and pictures, and fits from 320 to 2560 px", async ({ page }) => {
+test("each lesson says where its method is written down, names its controls and pictures, and fits from 320 to 2560 px", LONG, async ({ page }) => {
   const method = await readFile(new URL("../../docs/method.md", import.meta.url), "utf8");
   const anchors = [...method.matchAll(/^## (.+)$/gm)].map(([, heading = ""]) => heading.toLowerCase().replace(/[^\w\s-]/g, "").replace(/\s/g, "-"));
   const papers: string[] = [];
@@ -52,7 +52,7 @@ async function fits(page: Page, id: string, width: number): Promise<void> {
   }
 }
 
-test("no exercise and no slide sticks out from 320 to 2560 px", async ({ page }) => {
+test("no exercise and no slide sticks out from 320 to 2560 px", LONG, async ({ page }) => {
   const widths = [320, 390, 1280, 1600, 2560];
   await page.setViewportSize(narrowest);
   await page.goto("./#learn&at=exercises");
@@ -75,7 +75,7 @@ test("on a phone the figure stands below what it is about, and above the long te
   await expect(page.locator(".learn-slide .learn-figure")).toBeVisible();
 });
 
-test("pictures of a row stand in line, no plot leaves a hole beside it, and its type is never small, on slides neither", async ({ page }) => {
+test("pictures of a row stand in line, no plot leaves a hole beside it, and its type is never small, on slides neither", LONG, async ({ page }) => {
   const look = () =>
     figure(page).evaluate((box) => {
       const panels = [...box.querySelectorAll(".learn-panel")];
@@ -179,7 +179,7 @@ test("4: a step leaves no trace, robust weights bring it back where a way leads 
   expect(lab.complaints).toEqual([]);
 });
 
-test("5: more prior, better normals; none at all where its weight is zero", async ({ lab, page }) => {
+test("5: more prior, better normals; none at all where its weight is zero", LONG, async ({ lab, page }) => {
   await open(page, "at=prior&share=0");
   const none = await number(page, "degrees");
   await slide(page, "share", 50);
@@ -195,7 +195,7 @@ test("5: more prior, better normals; none at all where its weight is zero", asyn
   expect(lab.complaints).toEqual([]);
 });
 
-test("6: a wrong pose leaves a residual, valleys merge, and registration comes home", async ({ lab, page }) => {
+test("6: a wrong pose leaves a residual, valleys merge, and registration comes home", LONG, async ({ lab, page }) => {
   await open(page, "at=pose&offset=0");
   const right = await number(page, "residual");
   const valleys = await number(page, "minima");
@@ -220,7 +220,7 @@ test("6: a wrong pose leaves a residual, valleys merge, and registration comes h
   expect(lab.complaints).toEqual([]);
 });
 
-test("5, 6: a curve's axes stand still from its first drawing to its last", async ({ page }) => {
+test("5, 6: a curve's axes stand still from its first drawing to its last", LONG, async ({ page }) => {
   // Every text of the plots is written down as it is drawn.
   await page.addInitScript(() => {
     const seen = new Set<string>();
@@ -267,7 +267,7 @@ test("8: paint goes into the albedo, a shadow into what is left over", async ({ 
   expect(lab.complaints).toEqual([]);
 });
 
-test("9: what can't be seen is said", async ({ lab, page }) => {
+test("9: what can't be seen is said", LONG, async ({ lab, page }) => {
   await open(page, "at=failure&case=overlap&amount=0");
   await expect(page.locator('[data-number="status"]')).toHaveText("converged");
   expect(await number(page, "error")).toBeLessThan(1);

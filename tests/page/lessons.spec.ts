@@ -3,7 +3,7 @@
 import { readFile } from "node:fs/promises";
 import type { Page } from "@playwright/test";
 import { number, open, slide } from "./figure";
-import { expect, test } from "./lab";
+import { LONG, expect, test } from "./lab";
 
 /** A figure's numbers in one of its states. */
 async function numbers<K extends string>(page: Page, state: string, ...keys: K[]): Promise<Record<K, number>> {
@@ -52,7 +52,7 @@ test("4: the height found lags behind the step, cut through it is wrong either w
   expect(much.kept).toBeGreaterThan(some.kept + 3);
 });
 
-test("5: the first priors help more than in proportion, coloured lamps hardly need any, and a heavy one is copied", async ({ page }) => {
+test("5: the first priors help more than in proportion, coloured lamps hardly need any, and a heavy one is copied", LONG, async ({ page }) => {
   const at = async (state: string) => (await numbers(page, `prior&${state}`, "degrees")).degrees;
   const [none, fifth, all] = [await at("share=0"), await at("share=20"), await at("share=100")];
   expect(none - fifth).toBeGreaterThan(0.3 * (none - all));
@@ -61,7 +61,7 @@ test("5: the first priors help more than in proportion, coloured lamps hardly ne
   expect(await at("share=100&weight=1")).toBeLessThan(0.2);
 });
 
-test("6: with a wrong pose the valleys merge near the wrong normal, and a robust prior that is far off loses its hold", async ({ page }) => {
+test("6: with a wrong pose the valleys merge near the wrong normal, and a robust prior that is far off loses its hold", LONG, async ({ page }) => {
   const wrong = await numbers(page, "pose&offset=20&weight=1", "minima", "off", "end");
   expect(wrong.minima).toBe(1);
   expect(wrong.end).toBeGreaterThan(0.8 * wrong.off);
@@ -97,7 +97,7 @@ test("8: under coloured lamps hue says less, and the normals are worse", async (
   expect(lamps.likeness).toBeLessThan(window.likeness);
 });
 
-test("9: print and a quarter turn leave too little, the round disc warns by its sigma and rivals, not by its residual", async ({ page }) => {
+test("9: print and a quarter turn leave too little, the round disc warns by its sigma and rivals, not by its residual", LONG, async ({ page }) => {
   const [bare, printed] = [await numbers(page, "failure&case=texture&amount=0", "residual"), await numbers(page, "failure&case=texture&amount=100", "residual")];
   expect(printed.residual).toBeGreaterThan(1.5 * bare.residual);
   await expect(status(page)).toHaveText(/^lost: the rotation is uncertain by \d+ degrees: rotation about [xyz]$/);
@@ -111,7 +111,7 @@ test("9: print and a quarter turn leave too little, the round disc warns by its 
   expect([good.rivals, round.rivals > 0]).toEqual([0, true]);
 });
 
-test("9: the line between ambiguous and lost is where the text says, and the figures keep to it", async ({ page }) => {
+test("9: the line between ambiguous and lost is where the text says, and the figures keep to it", LONG, async ({ page }) => {
   const verdict = await source("src/estimator/verdict.rs");
   const [doubtful, largest, unobservable] = ["DOUBTFUL_SIGMA", "LARGEST_SIGMA", "UNOBSERVABLE"].map((name) => Number(new RegExp(`const ${name}: f64 = ([\\d.]+);`).exec(verdict)?.[1])) as [number, number, number];
   for (const state of ["overlap&amount=0", "overlap&amount=100", "texture&amount=50"]) {
@@ -121,7 +121,7 @@ test("9: the line between ambiguous and lost is where the text says, and the fig
   for (const words of [`Above ${doubtful}° the status is ambiguous`, `Above ${largest}° it is lost`, `Above ${unobservable}° the rotation counts as not observable`]) await expect(page.locator(".learn-text")).toContainText(words);
 });
 
-test("numbers that the text states of the method are the method's own", async ({ page }) => {
+test("numbers that the text states of the method are the method's own", LONG, async ({ page }) => {
   const shading = await source("src/shape/pixels/shading.rs");
   const constant = (name: string) => Number(new RegExp(`const ${name}: \\w+ = ([\\d.]+);`).exec(shading)?.[1]);
   await open(page, "at=colours");

@@ -2,7 +2,7 @@
 
 import { readFile } from "node:fs/promises";
 import { encode } from "fast-png";
-import { expect, test, type Lab } from "./lab";
+import { LONG, expect, test, type Lab } from "./lab";
 import { Messages } from "./messages";
 import { SIDE, cameraJson, cloudPly, colourPng, columnNpy, depthPfm, depthPgm, depthPng, depthTiff, drop, maskPng, type Upload } from "./uploads";
 
@@ -76,7 +76,7 @@ test("what is too large for a preview says its name, its size and that, below ea
   expect(await card.locator(".file-name").evaluate(({ scrollWidth, clientWidth }) => scrollWidth - clientWidth)).toBeLessThanOrEqual(0);
 });
 
-test("depth maps in TIFF, PGM and PFM are the same picture as the PNG, wherever they are dropped", async ({ lab, page }) => {
+test("depth maps in TIFF, PGM and PFM are the same picture as the PNG, wherever they are dropped", LONG, async ({ lab, page }) => {
   await own(lab);
   await put(lab, "Colour image", colourPng());
   await put(lab, "Depth map", depthPng());
@@ -313,7 +313,7 @@ test("a reload keeps the files, until they are forgotten; a link alone does not 
   }))).toBe(0);
 });
 
-test("a pair that comes whole leaves no mask of the last, and files of last time come back for nobody who brings others", async ({ lab, page }) => {
+test("a pair that comes whole leaves no mask of the last, and files of last time come back for nobody who brings others", LONG, async ({ lab, page }) => {
   await lab.open("size=32");
   await drop(page, "body", [colourPng("one.png"), depthPng("two.png"), maskPng("three.png")]);
   await expect(slot(lab, 2)).toContainText("three.png");

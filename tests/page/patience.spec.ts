@@ -1,9 +1,9 @@
 /** A worker that is slow or silent: what was asked for last is what happens, and nothing has to be waited for. */
 
-import { expect, test } from "./lab";
+import { LONG, expect, test } from "./lab";
 import { Messages } from "./messages";
 
-test("reset works while a step runs", async ({ lab, page }) => {
+test("reset works while a step runs", LONG, async ({ lab, page }) => {
   const messages = await Messages.of(page);
   await lab.open();
   await messages.hold("advance");
@@ -17,7 +17,7 @@ test("reset works while a step runs", async ({ lab, page }) => {
   await expect(lab.iteration).toHaveText("1");
 });
 
-test("another input replaces one that is being worked on", async ({ lab, page }) => {
+test("another input replaces one that is being worked on", LONG, async ({ lab, page }) => {
   const messages = await Messages.of(page);
   await lab.open("surface=ripples");
   const ripples = await lab.fingerprint("Colour");
@@ -36,7 +36,7 @@ test("another input replaces one that is being worked on", async ({ lab, page })
   await expect(lab.iteration).toHaveText("1");
 });
 
-test("of several requests the last one counts", async ({ lab, page }) => {
+test("of several requests the last one counts", LONG, async ({ lab, page }) => {
   const messages = await Messages.of(page);
   await lab.open("surface=vase");
   const vase = await lab.fingerprint("Colour");
@@ -80,7 +80,7 @@ const CLOCK = "let now = 0; performance.now = () => (now += 5); addEventListener
 /** Requests until the first iteration is done: 16 by that clock. */
 const MOST_FRAMES = 40;
 
-test("where every frame is late the search still ends", async ({ lab, page }) => {
+test("where every frame is late the search still ends", LONG, async ({ lab, page }) => {
   await page.route(/worker[^/]*\.js$/, async (route) => {
     const response = await route.fetch();
     await route.fulfill({ response, body: `${CLOCK}${await response.text()}` });

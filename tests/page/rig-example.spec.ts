@@ -1,9 +1,9 @@
 /** The example of "Check a rig", checked as a visitor has it checked: nothing answers in place of the package. */
 
 import { readFileSync } from "node:fs";
-import { expect, test } from "./lab";
+import { LONG, expect, test } from "./lab";
 
-test("the example is checked by the package itself", async ({ lab, page }) => {
+test("the example is checked by the package itself", LONG, async ({ lab, page }) => {
   await page.goto("./#rig");
   await page.getByRole("button", { name: "Load an example" }).click();
   await expect(page.locator(".rig-frame")).toHaveCount(3);

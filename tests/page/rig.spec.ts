@@ -1,7 +1,7 @@
 /** Check a rig: files in, calibrations, verdict. Where the page alone is looked at, the test answers in place of the check. */
 
 import type { Page } from "@playwright/test";
-import { expect, test } from "./lab";
+import { LONG, expect, test } from "./lab";
 import { createHash } from "node:crypto";
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -283,7 +283,7 @@ test("a check can be cancelled, and run again", async ({ lab, page }) => {
   expect(lab.complaints).toEqual([]);
 });
 
-test("a worker that hears nothing is replaced, and the new one has read all files again", async ({ lab, page }) => {
+test("a worker that hears nothing is replaced, and the new one has read all files again", LONG, async ({ lab, page }) => {
   await answerChecks(page, "dead");
   await openPair(page);
   await run(page);

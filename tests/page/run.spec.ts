@@ -1,6 +1,6 @@
 /** The method runs, by pointer and by keyboard, and its pictures and numbers follow. */
 
-import { expect, test } from "./lab";
+import { LONG, expect, test } from "./lab";
 import { Messages } from "./messages";
 
 test("a sample runs to convergence with a small pose error", async ({ lab, page }) => {
@@ -87,7 +87,7 @@ test("a view that was alone leaves the page where it stood", async ({ lab, page 
   }
 });
 
-test("who comes back from another place finds the run going on, and one that was paused still paused", async ({ lab, page }) => {
+test("who comes back from another place finds the run going on, and one that was paused still paused", LONG, async ({ lab, page }) => {
   const messages = await Messages.of(page);
   await lab.open("size=64");
   await messages.hold("advance", 1);
@@ -247,7 +247,7 @@ test("nothing known: the search comes first, says how far it is, and the loop co
   await expect(search).toContainText("100 %");
 });
 
-test("what a search tries is a candidate, and the pose has the words of the messages", async ({ lab, page }) => {
+test("what a search tries is a candidate, and the pose has the words of the messages", LONG, async ({ lab, page }) => {
   await lab.visit("size=64");
   await expect(page.locator("#pose-found")).toHaveText("start");
   await page.keyboard.press("s");
@@ -294,7 +294,7 @@ test("other threads share the search where the machine has them", async ({ lab, 
   await expect.poll(() => workers.length).toBe(Math.min(threads, 4) - 1);
 });
 
-test("the search fills a map of scores, whose best rotation is near the true one; a new run empties it", async ({ lab, page }) => {
+test("the search fills a map of scores, whose best rotation is near the true one; a new run empties it", LONG, async ({ lab, page }) => {
   await lab.visit("surface=bust&light=colourful&size=64&beta=30");
   const map = page.locator("#score-map");
   await expect(map).toBeHidden();

@@ -4,7 +4,7 @@ import { readFileSync } from "node:fs";
 import type { Download, Page } from "@playwright/test";
 import { harmless } from "../contract/harmless.mjs";
 import { EVIL, EVIL_TEXT, expectHarmless, pictures, texts } from "./hostile";
-import { expect, test, type Lab } from "./lab";
+import { LONG, expect, test, type Lab } from "./lab";
 import { answerChecks, giveFiles, pair } from "./rig";
 import { drop } from "./uploads";
 import { refusals, requests } from "./visit";
@@ -123,7 +123,7 @@ async function visitRig(page: Page): Promise<void> {
   await expect(page.locator(".rig-bar").first()).toBeVisible();
 }
 
-test("a whole visit asks for nothing but the page's own files, and its policy refuses nothing of it", async ({ lab, page, context, baseURL }) => {
+test("a whole visit asks for nothing but the page's own files, and its policy refuses nothing of it", LONG, async ({ lab, page, context, baseURL }) => {
   const refused = await refusals(page);
   const asked = requests(context);
   await answerChecks(page, "consistent");

@@ -2,7 +2,7 @@
 
 import { breakable, endAll, fragileGraphics, graphics, hide } from "./broken";
 import { covered, goToClouds, DRAWN, NO_OFFSCREEN } from "./clouds";
-import { expect, test } from "./lab";
+import { LONG, expect, test } from "./lab";
 
 for (const [where, script] of [["in a thread", ""], ["on the page", NO_OFFSCREEN]] as const) {
   test(`WebGL that is lost ${where} is told of, and the clouds are drawn again once it is back`, async ({ lab, page }) => {
@@ -47,7 +47,7 @@ test("the thread that draws is ended: another draws, once", async ({ lab, page }
   await expect(lab.iteration).toHaveText("1");
 });
 
-test("a run stands still while its tab is hidden, and goes on to the same end when it is shown", async ({ lab, page }) => {
+test("a run stands still while its tab is hidden, and goes on to the same end when it is shown", LONG, async ({ lab, page }) => {
   await breakable(page);
   await lab.open("size=48");
   await page.getByRole("button", { name: "Play" }).click();

@@ -7,7 +7,7 @@ import { join } from "node:path";
 import type { Page } from "@playwright/test";
 import { POLICY } from "../../scripts/site/build.mjs";
 import { serveSite } from "../../scripts/site/serve.mjs";
-import { expect, test } from "./lab";
+import { LONG, expect, test } from "./lab";
 import { answerChecks } from "./rig";
 import { refusals, requests } from "./visit";
 
@@ -31,7 +31,7 @@ const PLACES: [string, (page: Page) => Promise<void>][] = [
   }],
 ];
 
-test("its policy refuses nothing that the page does, and nothing comes from elsewhere", async ({ lab, page, context, baseURL }) => {
+test("its policy refuses nothing that the page does, and nothing comes from elsewhere", LONG, async ({ lab, page, context, baseURL }) => {
   const refused = await refusals(page);
   const asked = requests(context);
   await answerChecks(page, "consistent");
@@ -61,7 +61,7 @@ test("the policy refuses what is not the page's own", async ({ page }) => {
   await expect.poll(() => refused.map((each) => each.split(":")[0])).toEqual(expect.arrayContaining(["style-src-attr", "script-src-attr", "img-src", "connect-src"]));
 });
 
-test("after one visit every place opens without a network", async ({ lab, page, context }) => {
+test("after one visit every place opens without a network", LONG, async ({ lab, page, context }) => {
   await page.goto("./");
   await expect(offline(page)).toHaveText("It works offline.");
   await context.setOffline(true);
@@ -80,7 +80,7 @@ test("after one visit every place opens without a network", async ({ lab, page, 
   expect(lab.complaints).toEqual([]);
 });
 
-test("a newer version is told of, taken at the next visit, and nothing of the old one is kept", async ({ context }) => {
+test("a newer version is told of, taken at the next visit, and nothing of the old one is kept", LONG, async ({ context }) => {
   const folder = mkdtempSync(join(tmpdir(), "site-"));
   cpSync(new URL("../../site", import.meta.url), folder, { recursive: true });
   const { address, close } = await serveSite({ port: 0, below: "/a/", folder });
@@ -118,7 +118,7 @@ test("a newer version is told of, taken at the next visit, and nothing of the ol
   }
 });
 
-test("under the headers that docs/hosting.md suggests it runs as well, isolated", async ({ lab, page }) => {
+test("under the headers that docs/hosting.md suggests it runs as well, isolated", LONG, async ({ lab, page }) => {
   expect(readFileSync(new URL("../../docs/hosting.md", import.meta.url), "utf8")).toContain(`Content-Security-Policy "${POLICY}"`);
   const headers = { "Content-Security-Policy": POLICY, "Cross-Origin-Opener-Policy": "same-origin", "Cross-Origin-Embedder-Policy": "require-corp", "X-Content-Type-Options": "nosniff" };
   const { address, close } = await serveSite({ port: 0, below: "/", headers });

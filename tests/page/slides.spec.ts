@@ -1,13 +1,13 @@
 /** The slides of Learn: each fits its screen, and they are turned as pages are, by the browser's Back, too. */
 
 import { LESSONS, open } from "./figure";
-import { expect, test } from "./lab";
+import { LONG, expect, test } from "./lab";
 
 /** Whose words are longest. */
-const LONG = ["pose&run=register&offset=40", "failure&case=symmetry&amount=100", "failure&amount=100"];
+const WORDIEST = ["pose&run=register&offset=40", "failure&case=symmetry&amount=100", "failure&amount=100"];
 
-test("each slide fits its screen, whatever its figure has to say", async ({ lab, page }) => {
-  for (const state of [...LESSONS, ...LONG]) {
+test("each slide fits its screen, whatever its figure has to say", LONG, async ({ lab, page }) => {
+  for (const state of [...LESSONS, ...WORDIEST]) {
     await open(page, `at=${state}&slides`);
     await expect(page.locator(".learn-slide .learn-figure")).toHaveAttribute("aria-busy", "false");
     for (const [width, height] of [[1280, 720], [1366, 768], [1600, 900], [1920, 1080]] as const) {

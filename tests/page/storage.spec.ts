@@ -1,7 +1,7 @@
 /** Storage that is full or forbidden, several tabs that share it, and files that change while a run is on. */
 
 import type { Page } from "@playwright/test";
-import { Lab, expect, test } from "./lab";
+import { Lab, LONG, expect, test } from "./lab";
 import { colourPng, depthPng, drop } from "./uploads";
 
 /** The browser's own limit, which refuses whatever is stored from now on. */
@@ -93,7 +93,7 @@ test("a tab says when another one keeps its files in the place of these", async 
   expect(other.complaints).toEqual([]);
 });
 
-test("files dropped while a run is on: the run ends, and the new pair's is what it is alone", async ({ lab, page }) => {
+test("files dropped while a run is on: the run ends, and the new pair's is what it is alone", LONG, async ({ lab, page }) => {
   const second = [colourPng("second.png", 20), depthPng("second-depth.png")];
   const play = async () => {
     await page.getByRole("button", { name: "Play" }).click();

@@ -1,6 +1,6 @@
 /** The Lab as a newcomer meets it: examples, the light, what a run has come to, and a page that stands still. */
 
-import { expect, test, type Lab } from "./lab";
+import { LONG, expect, test, type Lab } from "./lab";
 import { atWidths } from "./widths";
 
 const panelHeight = (lab: Lab) => lab.page.locator("#panel").evaluate((panel) => panel.getBoundingClientRect().height);
@@ -56,7 +56,7 @@ test("an example is a press: it sets everything and plays", async ({ lab, page }
   await expect(page).toHaveURL(/surface=vase/);
 });
 
-test("a press of the example that is set, as a space after it was chosen, pauses and plays on", async ({ lab, page }) => {
+test("a press of the example that is set, as a space after it was chosen, pauses and plays on", LONG, async ({ lab, page }) => {
   await lab.open("surface=vase&size=64");
   const play = page.locator("#play");
   const example = page.getByRole("button", { name: "Noise", exact: true });
@@ -90,7 +90,7 @@ test("a link that asks for what can't be says which field is wrong, and how", as
   await expect(field).toBeInViewport();
 });
 
-test("the light is shown as found and true, and the true one can be dragged: the picture follows", async ({ lab, page }) => {
+test("the light is shown as found and true, and the true one can be dragged: the picture follows", LONG, async ({ lab, page }) => {
   await lab.open("size=64");
   const before = await lab.fingerprint("Colour");
   const balls = page.locator("#light .ball");
@@ -118,7 +118,7 @@ test("the light is shown as found and true, and the true one can be dragged: the
   await expect.poll(() => lab.fingerprint("Colour")).toBe(turned);
 });
 
-test("while the light is dragged, what was found is marked as of the run before, and nothing moves", async ({ lab, page }) => {
+test("while the light is dragged, what was found is marked as of the run before, and nothing moves", LONG, async ({ lab, page }) => {
   await lab.open("size=64");
   const found = page.locator("#pose-found");
   const ball = page.locator("#light figcaption").first();
@@ -159,7 +159,7 @@ test("while the light is dragged, what was found is marked as of the run before,
   await expect(page.locator("#pose")).not.toHaveAttribute("data-before");
 });
 
-test("a light that is turned on while its last turn is being opened does not stop what was playing", async ({ lab, page }) => {
+test("a light that is turned on while its last turn is being opened does not stop what was playing", LONG, async ({ lab, page }) => {
   await lab.open("size=64");
   await page.keyboard.press(" ");
   const truth = page.getByRole("img", { name: /^A ball under the true light/ });
@@ -193,7 +193,7 @@ test("the arrow keys turn the light toward where they point", async ({ lab, page
   expect(await column()).toBeGreaterThan(start + 0.3);
 });
 
-test("a slider acts when it rests, and what had been played plays again", async ({ lab, page }) => {
+test("a slider acts when it rests, and what had been played plays again", LONG, async ({ lab, page }) => {
   await lab.visit("size=64");
   await page.getByLabel("Speed").selectOption({ label: "fastest" });
   await page.getByRole("button", { name: "Play" }).click();
@@ -236,7 +236,7 @@ test("a weight over many decades has a slider of powers of ten", async ({ lab, p
   await expect(weights.getByRole("slider", { name: "λ light" })).toHaveValue("-3");
 });
 
-test("a pose with a rival says so, and the rival can be seen and chosen", async ({ lab, page }) => {
+test("a pose with a rival says so, and the rival can be seen and chosen", LONG, async ({ lab, page }) => {
   await lab.visit("surface=vase&light=window&beta=30&size=64&noise=0.08");
   const height = await panelHeight(lab);
   await expect(page.locator("#rivals")).toBeHidden();
@@ -279,7 +279,7 @@ test("a pose with a rival says so, and the rival can be seen and chosen", async 
   await expect(page).toHaveURL(/start=near/);
 });
 
-test("a lost pose has one cause, one remedy, and no sigmas", async ({ lab, page }) => {
+test("a lost pose has one cause, one remedy, and no sigmas", LONG, async ({ lab, page }) => {
   await lab.visit("light=overcast&size=32&noise=0.2&beta=60&overlap=0.2");
   const height = await panelHeight(lab);
   await page.getByLabel("Speed").selectOption({ label: "fastest" });
@@ -374,7 +374,7 @@ test("at 400 % zoom nothing sticks out, and the bar leaves the window to the pag
   expect(await page.locator("#bar").evaluate((bar) => getComputedStyle(bar).position)).toBe("static");
 });
 
-test("where a rotation has come to rest, table and chart say zero, and that the axis leaves it out", async ({ lab, page }) => {
+test("where a rotation has come to rest, table and chart say zero, and that the axis leaves it out", LONG, async ({ lab, page }) => {
   await lab.visit("size=32&start=near");
   await page.getByRole("button", { name: "Play" }).click();
   await expect(page.locator("#status")).toHaveAttribute("data-state", /converged|ambiguous|lost/);
@@ -490,7 +490,7 @@ test("fingers have targets of 44 px", async ({ browser, baseURL }) => {
   await context.close();
 });
 
-test("what a failure says can be read to its end, whatever it says", async ({ lab, page }) => {
+test("what a failure says can be read to its end, whatever it says", LONG, async ({ lab, page }) => {
   await page.setViewportSize({ width: 1280, height: 800 });
   await lab.visit("size=32&noise=0.1&overlap=0.4");
   await page.keyboard.press(" ");

@@ -1,7 +1,7 @@
 /** The Tables: cells are computed here, and each of them can be watched in the Lab. */
 
 import type { Locator, Page } from "@playwright/test";
-import { expect, test } from "./lab";
+import { LONG, expect, test } from "./lab";
 import { Messages } from "./messages";
 import { atWidths, innerWidth } from "./widths";
 
@@ -72,7 +72,7 @@ test("a cell is run where it is pressed, and the Lab plays that very run", async
   await expect(cell(page, id)).toHaveAttribute("aria-pressed", "true");
 });
 
-test("the bare grid of Table 2A is exact, here and in the Lab", async ({ lab, page }) => {
+test("the bare grid of Table 2A is exact, here and in the Lab", LONG, async ({ lab, page }) => {
   const id = "table2A/60/1";
   await openTables(page, "show=table2A");
   await cell(page, id).click();
@@ -86,7 +86,7 @@ test("the bare grid of Table 2A is exact, here and in the Lab", async ({ lab, pa
   expect(await lab.errorDegrees()).toBeLessThan(1e-4);
 });
 
-test("all cells run one after the other, and stop when told to", async ({ lab, page }) => {
+test("all cells run one after the other, and stop when told to", LONG, async ({ lab, page }) => {
   const messages = await Messages.of(page);
   await openTables(page, "show=table2A");
   const stop = page.getByRole("button", { name: "Stop" });
@@ -163,7 +163,7 @@ test("a cell that fails says so in words, and the next one runs", async ({ lab, 
   expect(lab.complaints).toEqual([]);
 });
 
-test("no table sticks out from 390 to 1600 px", async ({ lab, page }) => {
+test("no table sticks out from 390 to 1600 px", LONG, async ({ lab, page }) => {
   await page.setViewportSize({ width: 390, height: 844 });
   await openTables(page);
   await page.locator(".heat-cell").first().click();

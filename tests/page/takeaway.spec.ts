@@ -4,7 +4,7 @@ import { createHash } from "node:crypto";
 import type { Download, Page } from "@playwright/test";
 import { decode } from "fast-png";
 import { decodeDepth } from "../../pkg/files.js";
-import { expect, test, type Lab } from "./lab";
+import { LONG, expect, test, type Lab } from "./lab";
 import { colourPng, depthPng } from "./uploads";
 
 async function press(lab: Lab, name: string): Promise<Download> {
@@ -99,7 +99,7 @@ test("depth as 16 bits says its step and agrees with the .npy, and normals are o
   }
 });
 
-test("any picture of the page, the clouds and the curves among them", async ({ lab, page }) => {
+test("any picture of the page, the clouds and the curves among them", LONG, async ({ lab, page }) => {
   await lab.open("size=32");
   await page.keyboard.press("s");
   await expect(lab.iteration).toHaveText("1");

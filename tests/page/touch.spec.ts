@@ -2,8 +2,9 @@
 
 import { expect, test } from "@playwright/test";
 import { still } from "./clouds";
+import { LONG } from "./lab";
 
-test("a finger up or down scrolls the page and turns nothing; across, or two of them, turn the surfaces and scroll nothing", async ({ browser, baseURL }) => {
+test("a finger up or down scrolls the page and turns nothing; across, or two of them, turn the surfaces and scroll nothing", LONG, async ({ browser, baseURL }) => {
   // Nothing swings while pictures are compared.
   const context = await browser.newContext({ hasTouch: true, isMobile: true, reducedMotion: "reduce", viewport: { width: 390, height: 844 } });
   const page = await context.newPage();
