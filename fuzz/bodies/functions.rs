@@ -387,6 +387,7 @@ fn registering(u: &mut Unstructured<'_>) -> Result<()> {
         most_points: if u.arbitrary()? { u.int_in_range(0..=300)? } else { usize::MAX },
         annealed_points: if u.arbitrary()? { u.int_in_range(0..=300)? } else { usize::MAX },
         annealing: u.arbitrary()?,
+        points_stay: false,
     };
     let mut registration = Photometric::new(&problem);
     let start = pose(u)?;

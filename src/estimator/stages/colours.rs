@@ -32,9 +32,14 @@ pub(super) const LARGEST_STRUCTURE: f64 = 0.007;
 /// What residuals have in common up to which no other unit is tried: renders in the right one stay below, two of
 /// 110 random ones apart, log units.
 const EXPLAINED_STRUCTURE: f64 = 0.0015;
-/// Relief so many times as deep is held against the map's own, the first. Units are mistaken by any factor, so these go from a tenth
-/// to ten times in steps of 1.3 to 1.7.
-const UNITS: [f32; 13] = [1.0, 0.7, 1.5, 0.5, 2.0, 0.3, 3.0, 0.2, 5.0, 0.15, 7.0, 0.1, 10.0];
+/// Relief so many times as flat and as deep is held against the map's own, from what is nearest on. Units are mistaken by any
+/// factor, so these go from a tenth to ten times in steps of 1.3 to 1.7.
+const UNITS: [[f32; 6]; 2] = [[0.7, 0.5, 0.3, 0.2, 0.15, 0.1], [1.5, 2.0, 3.0, 5.0, 7.0, 10.0]];
+/// Relief that leaves so many times the noise of the map's own leads away from the right one, and none beyond it is tried.
+const AWAY: f64 = 2.0;
+/// Rounds of a registration by another unit at most, as many as least squares take: those with instrumental variables, which would
+/// take as long again, trade a bias for noise, and change what is left of the colours by next to nothing.
+const UNIT_ROUNDS: usize = 5;
 /// Another unit explains the colours better where it leaves less noise, and less than this share of what residuals have in
 /// common: eleven random pairs in units wrong by two and five leave 0 to 0.33 of it by the right
 /// relief, 0.52 or more by five others. Random pairs in the right unit leave 2.2 times as much or more, three of files 1.3,
@@ -248,36 +253,48 @@ impl ColourRegistration {
         if !pair.depth.camera.is_orthographic() || self.found().is_some_and(is_explained) {
             return None;
         }
-        let options =
-            PhotometricOptions { most_points: CANDIDATE_POINTS, first_level: 0, annealing: false, ..options(pair) };
-        let middle = pair.depth.points.centroid().z as f32;
-        let [mut points, mut normals] = [(); 2].map(|()| Normals::missing(pair.depth.size.len()));
-        // Nothing is better than what could not be registered by its own unit.
-        let (mut better, mut noise, mut structure) = (None, 0.0, 0.0);
-        for unit in UNITS {
-            for index in 0..points.len() {
-                let [x, y, z] = pair.depth.points.get(index);
-                points.set(index, [x, y, middle + unit * (z - middle)]);
-                let [x, y, z] = self.sharp.normals.get(index);
-                let length = (unit * unit * (x * x + y * y) + z * z).sqrt();
-                normals.set(index, [unit * x, unit * y, z].map(|part| part / length));
-            }
-            let problem = self.sharp.problem(pair, is_scale_held(pair));
-            let problem = PhotometricProblem { points: &points, normals: &normals, ..problem };
-            let Ok(found) = self.photometric.register(&problem, pose, &options) else { continue };
-            if unit == 1.0 {
-                if is_explained(&found) {
-                    return None;
+        // All of them by the points that its own unit shows.
+        self.judge(pair, pose)?;
+        let own = self.register_relief(pair, pose, 1.0).filter(|own| !is_explained(own))?;
+        let (mut better, mut noise) = (None, own.noise);
+        for way in UNITS {
+            for unit in way {
+                let Some(found) = self.register_relief(pair, pose, unit) else { continue };
+                if found.noise > AWAY * own.noise {
+                    break;
                 }
-                (noise, structure) = (found.noise, LARGEST_STRUCTURE.min(BETTER_STRUCTURE * found.structure));
-            } else if found.noise < noise
-                && found.structure < structure
-                && gauge::growth(pair, &found.pose, pose) < COLLAPSE
-            {
-                (better, noise) = (Some(unit), found.noise);
+                if found.noise < noise
+                    && found.structure < LARGEST_STRUCTURE.min(BETTER_STRUCTURE * own.structure)
+                    && gauge::growth(pair, &found.pose, pose) < COLLAPSE
+                {
+                    (better, noise) = (Some(unit), found.noise);
+                }
             }
         }
         better
+    }
+
+    /// Registers relief so many times as deep by the points that take part.
+    fn register_relief(&mut self, pair: &ViewPair, pose: &Similarity, unit: f32) -> Option<PhotometricReport> {
+        let [mut points, mut normals] = [(); 2].map(|()| Normals::missing(pair.depth.size.len()));
+        let middle = pair.depth.points.centroid().z as f32;
+        for index in self.photometric.points() {
+            let [x, y, z] = pair.depth.points.get(index);
+            points.set(index, [x, y, middle + unit * (z - middle)]);
+            let [x, y, z] = self.sharp.normals.get(index);
+            let length = (unit * unit * (x * x + y * y) + z * z).sqrt();
+            normals.set(index, [unit * x, unit * y, z].map(|part| part / length));
+        }
+        let options = PhotometricOptions {
+            first_level: 0,
+            annealing: false,
+            most_rounds: UNIT_ROUNDS,
+            points_stay: true,
+            ..options(pair)
+        };
+        let problem = self.sharp.problem(pair, is_scale_held(pair));
+        let problem = PhotometricProblem { points: &points, normals: &normals, ..problem };
+        self.photometric.register(&problem, pose, &options).ok()
     }
 
     fn begin(&mut self, pair: &ViewPair, start: &Similarity) -> Result<()> {

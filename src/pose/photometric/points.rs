@@ -56,6 +56,11 @@ impl VisiblePoints {
         self.indices.len()
     }
 
+    /// Depth pixels of the points.
+    pub fn indices(&self) -> impl Iterator<Item = usize> {
+        self.indices.iter().map(|&index| index as usize)
+    }
+
     /// The most that there can be.
     pub fn capacity(&self) -> usize {
         self.indices.capacity()

@@ -123,6 +123,9 @@ pub struct PhotometricOptions {
     pub annealed_points: usize,
     /// Whether the robust scale shrinks from round to round; else it is the final one from the first round on.
     pub annealing: bool,
+    /// Whether the points are those of the registration before, in place of those that each round shows: several problems are
+    /// compared on the same ones, and only these need points and normals.
+    pub points_stay: bool,
 }
 
 impl Default for PhotometricOptions {
@@ -133,6 +136,7 @@ impl Default for PhotometricOptions {
             most_points: usize::MAX,
             annealed_points: ENOUGH_ANNEALED,
             annealing: true,
+            points_stay: false,
         }
     }
 }

@@ -123,6 +123,7 @@ pub struct Photometric {
     most_points: usize,
     annealed_points: usize,
     annealing: bool,
+    points_stay: bool,
     iterations: usize,
     /// Whether the rounds with instrumental variables are those of the annealing's points, of which there are more.
     thinned: bool,
@@ -163,6 +164,7 @@ impl Photometric {
             most_points: usize::MAX,
             annealed_points: usize::MAX,
             annealing: true,
+            points_stay: false,
             iterations: 0,
             thinned: false,
             settled_step: None,
@@ -207,6 +209,7 @@ impl Photometric {
         (self.phase, self.rounds, self.iterations) = (Phase::AnnealingRound { level, fine_rounds: 0 }, 0, 0);
         self.most_rounds = options.most_rounds.max(1);
         (self.most_points, self.annealing) = (options.most_points, options.annealing);
+        self.points_stay = options.points_stay;
         self.annealed_points = options.annealed_points.min(options.most_points);
         (self.thinned, self.settled_step) = (false, None);
         self.choose_points(problem, Sampling { level, most: self.annealed_points })?;
@@ -240,6 +243,11 @@ impl Photometric {
     #[must_use]
     pub const fn is_done(&self) -> bool {
         matches!(self.phase, Phase::Done(_))
+    }
+
+    /// Depth pixels of the points that take part at present.
+    pub fn points(&self) -> impl Iterator<Item = usize> {
+        self.points.indices()
     }
 
     /// The present pose.
@@ -406,7 +414,9 @@ impl Photometric {
 
     /// Chooses the visible points of a round.
     fn choose_points(&mut self, problem: &PhotometricProblem<'_>, sampling: Sampling) -> Result<Frame> {
-        self.points.update(problem, &self.state.pose, &self.levels[0], sampling);
+        if !self.points_stay {
+            self.points.update(problem, &self.state.pose, &self.levels[0], sampling);
+        }
         if self.points.len() < FEWEST_POINTS {
             return Err(degenerate("the image shows too few of the depth points").value(self.points.len() as f64));
         }
