@@ -276,12 +276,11 @@ impl ColourRegistration {
 
     /// Registers relief so many times as deep by the points that take part.
     fn register_relief(&mut self, pair: &ViewPair, pose: &Similarity, unit: f32) -> Option<PhotometricReport> {
-        let [mut points, mut normals] = [(); 2].map(|()| Normals::missing(pair.depth.size.len()));
+        let (mut points, mut normals) = (pair.depth.points.clone(), self.sharp.normals.clone());
         let middle = pair.depth.points.centroid().z as f32;
         for index in self.photometric.points() {
-            let [x, y, z] = pair.depth.points.get(index);
-            points.set(index, [x, y, middle + unit * (z - middle)]);
-            let [x, y, z] = self.sharp.normals.get(index);
+            points.z[index] = middle + unit * (points.z[index] - middle);
+            let [x, y, z] = normals.get(index);
             let length = (unit * unit * (x * x + y * y) + z * z).sqrt();
             normals.set(index, [unit * x, unit * y, z].map(|part| part / length));
         }
@@ -290,7 +289,7 @@ impl ColourRegistration {
             annealing: false,
             most_rounds: UNIT_ROUNDS,
             points_stay: true,
-            ..options(pair)
+            ..PhotometricOptions::default()
         };
         let problem = self.sharp.problem(pair, is_scale_held(pair));
         let problem = PhotometricProblem { points: &points, normals: &normals, ..problem };
