@@ -37,8 +37,8 @@ const EXPLAINED_STRUCTURE: f64 = 0.0015;
 const UNITS: [[f32; 6]; 2] = [[0.7, 0.5, 0.3, 0.2, 0.15, 0.1], [1.5, 2.0, 3.0, 5.0, 7.0, 10.0]];
 /// Relief that leaves so many times the noise of the map's own leads away from the right one, and none beyond it is tried.
 const AWAY: f64 = 2.0;
-/// Rounds of a registration by another unit at most, as many as least squares take: those with instrumental variables, which would
-/// take as long again, trade a bias for noise, and change what is left of the colours by next to nothing.
+/// Rounds of a registration by another unit at most, as many as least squares take. Those with instrumental variables, which would
+/// take as long again, are left out for all reliefs alike, the map's own included.
 const UNIT_ROUNDS: usize = 5;
 /// Another unit explains the colours better where it leaves less noise, and less than this share of what residuals have in
 /// common: eleven random pairs in units wrong by two and five leave 0 to 0.33 of it by the right
