@@ -96,7 +96,12 @@ function settingsOf(path) {
 }
 
 const HEAD = `${COLUMNS.join(",")}\n`;
-const cell = (value) => (/[",\r\n]/.test(String(value ?? "")) ? `"${String(value).replaceAll('"', '""')}"` : String(value ?? ""));
+/** What spreadsheets would run: they take words behind an apostrophe as they are. */
+const FORMULA = /^(?=[=+\-@\t\r])/;
+function cell(value) {
+  const text = typeof value === "string" ? value.replace(FORMULA, "'") : String(value ?? "");
+  return /[",\r\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
+}
 const lineOf = (row) => `${COLUMNS.map((column) => cell(row[column])).join(",")}\n`;
 
 /** The rows of a table that was begun, name and status of each; a line that was cut off in the middle is taken away. */
@@ -108,7 +113,7 @@ function begun(path) {
   truncateSync(path, Buffer.byteLength(HEAD + lines.join("")));
   return lines.map((line) => {
     const [, quoted, plain, status] = /^(?:"((?:[^"]|"")*)"|([^,]*)),([^,]*)/.exec(line);
-    return { line, name: quoted?.replaceAll('""', '"') ?? plain, status };
+    return { line, name: (quoted?.replaceAll('""', '"') ?? plain).replace(/^'(?=[=+\-@\t\r])/, ""), status };
   });
 }
 

@@ -58,10 +58,11 @@ export const numbers = (count: number): Check => (value, field) => {
   if (typeof length !== "number") throw wrong(field, "a list of numbers", value);
   if (length !== count) throw new BimodalError("size", `${field}: needs ${count} numbers, not ${length}`, field);
   const copy: unknown[] = Array.from({ ...Object(value), length });
-  if (!copy.every((item) => typeof item === "number")) throw wrong(field, "a list of numbers", value);
+  const other = copy.findIndex((item) => typeof item !== "number");
+  if (other >= 0) throw wrong(field, `a list of numbers, with entry ${other}`, copy[other]);
 };
 
-type ArrayType = { readonly name: string; new (length: number): ArrayBufferView };
+export type ArrayType = { readonly name: string; new (length: number): ArrayBufferView };
 
 const TYPED_ARRAY: object = Object.getPrototypeOf(Uint8Array.prototype);
 
@@ -96,11 +97,16 @@ export const array = (...types: readonly ArrayType[]): Check => (value, field) =
   }
 };
 
+/** Longest word that is repeated in a message, and held against those that are known. */
+const LONGEST_WORD = 60;
+export const brief = (given: string): string => (given.length > LONGEST_WORD ? `${given.slice(0, LONGEST_WORD)}..` : given);
+
 /** One of some words. */
 export const word = (...words: readonly string[]): Check => (value, field) => {
   if (typeof value !== "string") throw wrong(field, words.map((w) => `"${w}"`).join(" or "), value);
   if (!words.includes(value)) {
-    throw new BimodalError("option", `${field}: "${value}" is unknown${hint(value, words)}`, field);
+    const given = brief(value);
+    throw new BimodalError("option", `${field}: "${given}" is unknown${hint(given, words)}`, field);
   }
 };
 
@@ -135,9 +141,10 @@ export const object = (shape: Shape, required: readonly string[] = []): Check =>
   if (!isObject(value) || Array.isArray(value) || ArrayBuffer.isView(value)) throw wrong(field, "an object", value);
   for (const [key, member] of Object.entries(value)) {
     const check = Object.hasOwn(shape, key) ? shape[key] : undefined;
-    const path = `${field}.${key}`;
+    const given = brief(key);
+    const path = `${field}.${given}`;
     if (!check) {
-      throw new BimodalError("option", `${path}: there is no such key${hint(key, Object.keys(shape))}`, path);
+      throw new BimodalError("option", `${path}: there is no such key${hint(given, Object.keys(shape))}`, path);
     }
     if (member !== undefined) check(member, path);
   }

@@ -1,16 +1,21 @@
 /** The one wasm module behind all estimators of a page. */
 import start, * as glue from "../target/wasm-bindgen/bimodal_stereo.js";
 import { compile } from "./border.js";
-import { BimodalError } from "./errors.js";
+import { BimodalError, isPanic, translate } from "./errors.js";
 import type { WasmSource } from "./types.js";
 
 let loading: Promise<void> | undefined;
 let module: WebAssembly.Module | undefined;
+let memory: WebAssembly.Memory | undefined;
+
+/** A function of the numerics. The bindings would keep whatever else starts, for good. */
+const OWN = "sample";
 
 async function loadOnce(where: () => WasmSource): Promise<void> {
   try {
     const compiled = await compile(where);
-    await start({ module_or_path: compiled });
+    if (!WebAssembly.Module.exports(compiled).some(({ name }) => name === OWN)) throw new Error("it is another program");
+    ({ memory } = await start({ module_or_path: compiled }));
     module = compiled;
   } catch (error) {
     loading = undefined;
@@ -29,6 +34,26 @@ export function load(where: () => WasmSource): Promise<void> {
 export function compiled(): WebAssembly.Module {
   if (!module) throw new BimodalError("init", "await init() first");
   return module;
+}
+
+/** Room that a raster of a large view needs, pages of 64 kB: 256 MB. */
+const ROOM = 4096;
+
+/** Whether the module is granted no more memory. */
+function isFull(): boolean {
+  try {
+    memory?.grow(ROOM);
+    return false;
+  } catch {
+    return true;
+  }
+}
+
+/** What came out of the numerics as what the contract promises: a call that broke off where memory is full did so for lack of it. */
+export function explained(error: unknown): unknown {
+  if (!isPanic(error) || !isFull()) return translate(error);
+  const message = "image: there is no memory left for this pair; free() estimators that are no longer needed";
+  return new BimodalError("memory", message, "image", { cause: error });
 }
 
 /** The generated bindings; only once they are loaded. */

@@ -1,8 +1,7 @@
 import type { Estimator as Raw } from "../target/wasm-bindgen/bimodal_stereo.js";
 import { breathe } from "./breathe.js";
-import { across } from "./border.js";
-import { bindings } from "./engine.js";
-import { BimodalError, isPanic, translate } from "./errors.js";
+import { bindings, explained } from "./engine.js";
+import { BimodalError, isPanic } from "./errors.js";
 import { checkDepth, checkDraw, checkImage, checkLayer, checkOptions, checkRun } from "./inputs.js";
 import { copyOf, plainDepth, plainImage, plainOptions } from "./plain.js";
 import { type Reached, checksumOf, opened, otherNumbers, saved, unusable } from "./saved.js";
@@ -52,7 +51,11 @@ export class Estimator {
     const own = checked(checkOptions, plainOptions, options);
     this.#options = own;
     const { Estimator: Binding } = bindings();
-    this.#raw = across(() => new Binding(ownImage, ownDepth, own));
+    try {
+      this.#raw = new Binding(ownImage, ownDepth, own);
+    } catch (error) {
+      throw explained(error);
+    }
     const workers = Math.min((own.workers ?? 1) - 1, this.#raw.workersAfforded());
     this.#pair = { image: copyOf(ownImage, []), depth: copyOf(ownDepth, []) };
     if (workers > 0) {
@@ -324,7 +327,7 @@ export class Estimator {
       return method(this.#raw);
     } catch (error) {
       this.#broken = isPanic(error);
-      throw translate(error);
+      throw explained(error);
     }
   }
 }

@@ -1,5 +1,5 @@
 /** What the loop's inputs must look like: names and types, and whatever the rows of the options say. */
-import { type Check, DEPTH, IMAGE, type Shape, array, callback, flag, isObject, number, numbers, object, ranged, side, signal, word } from "./check.js";
+import { type Check, DEPTH, IMAGE, type Shape, array, brief, callback, flag, isObject, number, numbers, object, ranged, side, signal, word } from "./check.js";
 import { BimodalError } from "./errors.js";
 import { OPTIONS, POSE, RENDERED_ALONE, SAMPLE } from "./options.js";
 import type { Row, Rows, WordRow } from "./rows.js";
@@ -9,7 +9,7 @@ const wordOr = (words: readonly string[], other: Check, orElse: string): Check =
   if (typeof value !== "string") return other(value, field);
   if (words.includes(value)) return;
   const allowed = words.map((known) => `"${known}"`).join(", ");
-  throw new BimodalError("option", `${field}: "${value}" is unknown; known: ${allowed} or ${orElse}`, field);
+  throw new BimodalError("option", `${field}: "${brief(value)}" is unknown; known: ${allowed} or ${orElse}`, field);
 };
 
 /** The check of a value that is no word, and what it takes, with an article. */

@@ -1,16 +1,21 @@
 /** Single parts of the method, to look at: what lessons are made of. */
-import { array, flag, numbers, object, ranged } from "./check.js";
+import { type Check, array, flag, numbers, object, ranged } from "./check.js";
 import { across } from "./border.js";
 import { bindings } from "./engine.js";
 import type { PixelLandscape, PixelLandscapeRequest } from "./types.js";
 
 const light = numbers(27);
-const normal = numbers(3);
+/** A logarithm of a colour, or a coordinate of a normal: the squares of what is farther from zero say nothing. */
+const part = ranged({ kind: "number", min: -1e6, max: 1e6 });
+const three: Check = (value, field) => {
+  numbers(3)(value, field);
+  for (const [index, one] of Array.from(value as ArrayLike<number>).entries()) part(one, `${field}[${index}]`);
+};
 const side = ranged({ kind: "side", min: 1, max: 4096 });
 const weight = ranged({ kind: "number", min: 0 });
 const normals = array(Float32Array);
 const landscape = object(
-  { log: normal, light, prior: normal, weight, robust: flag, start: normal, side: ranged({ kind: "side", min: 0, max: 512 }) },
+  { log: three, light, prior: three, weight, robust: flag, start: three, side: ranged({ kind: "side", min: 0, max: 512 }) },
   ["log", "light"],
 );
 

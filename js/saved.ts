@@ -139,7 +139,8 @@ const HEADER = { image: record, depth: record, options: record, reached: object(
 /** What a file holds, once it is known to be one of ours and whole; what the views and options are worth, the estimator judges. */
 export function opened(state: unknown): Saved {
   array(Uint8Array)(state, "state");
-  const bytes = state as Uint8Array;
+  // Of its own kind: `slice` of a Node Buffer is a view.
+  const bytes = bytesOf(state as Uint8Array);
   const { header, end } = readHeader(bytes);
   const { image, depth, arrays, ...run } = header;
   const views: Record<Entry["view"], object> = { image, depth };

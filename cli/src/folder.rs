@@ -31,6 +31,8 @@ static MASK: LazyLock<Regex> = LazyLock::new(|| pattern("(?i)mask|segm"));
 static COLOUR: LazyLock<Regex> = LazyLock::new(|| pattern("(?i)colou?r|rgb|image|img"));
 static KINDS: LazyLock<Regex> =
     LazyLock::new(|| pattern("(?i)depth|dpt|colou?r|rgb|image|img|mask|crop|registered|aligned"));
+/// Files that are to be pictures, whatever is in them: reading them says what is wrong.
+static PICTURE: LazyLock<Regex> = LazyLock::new(|| pattern(r"(?i)\.(png|jpe?g|npy)$"));
 static ENDING: LazyLock<Regex> = LazyLock::new(|| pattern(r"(?i)\.[a-z0-9]{1,5}$"));
 
 /// One pair and what its files have in common.
@@ -118,11 +120,15 @@ fn natural(name: &str) -> Vec<(String, u64, String)> {
     PIECES.find_iter(name).map(|found| piece(found.as_str())).collect()
 }
 
-/// What two files of one frame have in common: their name without what says which of the two it is; numbers without leading zeros.
+/// A name without what says which file of a frame it is.
+fn common(name: &str) -> String {
+    KINDS.replace_all(&ENDING.replace(name, ""), " ").into_owned()
+}
+
+/// What files of one frame have in common: letters of any script, in either case, and numbers without leading zeros.
 fn key(name: &str) -> String {
-    let stem = ENDING.replace(base(name), "").into_owned();
-    let left = KINDS.replace_all(&stem, " ").to_lowercase();
-    let words = left.split(|letter: char| !letter.is_ascii_alphanumeric() && letter != '.').map(|word| {
+    let left = common(base(name)).to_lowercase();
+    let words = left.split(|letter: char| !letter.is_alphanumeric() && letter != '.').map(|word| {
         let word = word.trim_matches('.');
         let digits = word.bytes().take_while(|&letter| letter == b'0').count();
         let follows = word.as_bytes().get(digits).is_some_and(u8::is_ascii_digit);
@@ -194,7 +200,10 @@ fn by_time(mut colours: Vec<(f64, String)>, mut depths: Vec<(f64, String)>) -> V
 
 /// By like names; where those differ throughout, in their order.
 fn by_names(folder: &Path, files: &[PathBuf], warnings: &mut Vec<String>) -> Vec<Pair> {
-    let is_picture = |path: &&PathBuf| read::head(path, HEAD).is_ok_and(|bytes| read::kind_of(&bytes).is_some());
+    let is_picture = |path: &&PathBuf| {
+        PICTURE.is_match(&path.to_string_lossy())
+            || read::head(path, HEAD).is_ok_and(|bytes| read::kind_of(&bytes).is_some())
+    };
     let named = |path: &PathBuf| (name_in(folder, path), path.clone());
     let (masks, others): (Vec<_>, Vec<_>) =
         files.iter().filter(is_picture).map(named).partition(|(name, _)| MASK.is_match(name));
@@ -205,14 +214,15 @@ fn by_names(folder: &Path, files: &[PathBuf], warnings: &mut Vec<String>) -> Vec
         let only = || masks.first().filter(|(name, _)| masks.len() == 1 && key(name).is_empty());
         masks.iter().find(|(name, _)| key(name) == wanted).or_else(only).map(|(_, path)| path.clone())
     };
-    let by_key: HashMap<String, &PathBuf> = colours.iter().map(|(name, path)| (key(name), path)).collect();
     let of = |name: String, colour: &Path, depth: &Path| pair(name.clone(), colour, depth, mask_of(&name), None);
-    let like = |(name, depth): &(String, PathBuf)| {
-        let name = key(name);
-        by_key.get(&name).map(|colour| of(name, colour, depth))
-    };
-    let pairs: Vec<Pair> = depths.iter().filter_map(like).collect();
+    let partners = partners(&colours, &depths);
+    let paired = || depths.iter().zip(&partners).filter_map(|(depth, colour)| Some((depth, &colours[(*colour)?])));
+    let pairs: Vec<Pair> = paired().map(|((name, depth), (_, colour))| of(key(name), colour, depth)).collect();
     if !pairs.is_empty() || depths.len() != colours.len() {
+        let taken: HashSet<&PathBuf> = paired().flat_map(|((_, depth), (_, colour))| [depth, colour]).collect();
+        let lone = colours.iter().chain(&depths).filter(|(_, path)| !pairs.is_empty() && !taken.contains(path));
+        warnings
+            .extend(lone.map(|(_, path)| format!("{}: no other file's name fits it alone (left out).", shown(path))));
         return pairs;
     }
     if depths.len() > 1 {
@@ -222,6 +232,25 @@ fn by_names(folder: &Path, files: &[PathBuf], warnings: &mut Vec<String>) -> Vec
         ));
     }
     depths.iter().zip(&colours).map(|((name, depth), (_, colour))| of(key(name), colour, depth)).collect()
+}
+
+/// The colour image that belongs to each depth map: the one of like name, and where several names differ in case and signs alone the one
+/// whose whole path agrees but for what says which file of a frame it is.
+fn partners(colours: &[(String, PathBuf)], depths: &[(String, PathBuf)]) -> Vec<Option<usize>> {
+    let mut alike: HashMap<String, (Vec<usize>, usize)> = HashMap::new();
+    for (index, (name, _)) in colours.iter().enumerate() {
+        alike.entry(key(name)).or_default().0.push(index);
+    }
+    depths.iter().for_each(|(name, _)| alike.entry(key(name)).or_default().1 += 1);
+    let partner = |(name, _): &(String, PathBuf)| {
+        let (theirs, count) = &alike[&key(name)];
+        if let ([only], 1) = (&theirs[..], count) {
+            return Some(*only);
+        }
+        let mut exact = theirs.iter().filter(|&&index| common(&colours[index].0) == common(name));
+        exact.next().filter(|_| exact.next().is_none()).copied()
+    };
+    depths.iter().map(partner).collect()
 }
 
 fn pair(name: String, image: &Path, depth: &Path, any_mask: Option<PathBuf>, unit: Option<f64>) -> Pair {
@@ -259,6 +288,18 @@ mod tests {
         }
         assert_eq!(key("rgb_0.png"), "0");
         assert_ne!(key("rgb_1.png"), key("depth_10.png"));
+    }
+
+    #[test]
+    fn names_of_any_script_and_names_alike_find_their_own() {
+        let names =
+            ["\u{e4}", "\u{f6}", "\u{82b1}\u{74f6}", "\u{1f600}", "\u{1f601}", "a", "A", "a!", "one/1", "two/1"];
+        let files = |kind: &str| names.map(|name| (format!("{name}_{kind}.png"), PathBuf::new()));
+        let found = partners(&files("rgb"), &files("depth"));
+        assert_eq!(found, (0..names.len()).map(Some).collect::<Vec<_>>());
+        // What may belong to several belongs to none.
+        let ambiguous = ["a_rgb.png", "A-rgb.png"].map(|name| (name.to_owned(), PathBuf::new()));
+        assert_eq!(partners(&ambiguous, &[("a.depth.png".to_owned(), PathBuf::new())]), [None]);
     }
 
     #[test]

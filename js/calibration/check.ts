@@ -34,7 +34,8 @@ const frame = object(
 const cue = word("shading", "edges", "information", "silhouette");
 const cues: Check = (value, field) => {
   if (!Array.isArray(value)) throw wrong(field, "a list of cues", value);
-  value.forEach((one, index) => cue(one, `${field}[${index}]`));
+  // `forEach` would pass over holes.
+  for (const [index, one] of value.entries()) cue(one, `${field}[${index}]`);
   if (value.length === 0) throw new BimodalError("size", `${field}: needs at least one cue`, field);
 };
 const MOST_WORKERS = 16;
@@ -42,7 +43,6 @@ const options = object({ cues, workers: ranged({ kind: "whole", min: 1, max: MOS
 
 export function checkFrames(value: unknown): void {
   if (!Array.isArray(value)) throw wrong("frames", "a list of frames", value);
-  // `forEach` would pass over holes.
   for (const [index, one] of value.entries()) frame(one, `frames[${index}]`);
 }
 

@@ -47,10 +47,14 @@ interface Pairs {
   says: string;
 }
 
-/** What two files of one frame have in common: their name without what says which of the two it is; numbers without leading zeros. */
+/** A name without what says which file of a frame it is. */
+const common = (name: string): string => name.normalize("NFC").replace(/depth|dpt|colou?r|rgb|image|img|mask|crop|registered|aligned/gi, " ");
+/** Of a file with its folders. */
+const commonPath = (name: string): string => common(name.slice(0, name.length - base(name).length) + stem(name));
+
+/** What files of one frame have in common: letters of any script, in either case, and numbers without leading zeros. */
 function key(name: string): string {
-  const left = stem(name).replace(/depth|dpt|colou?r|rgb|image|img|mask|crop|registered|aligned/gi, " ").toLowerCase();
-  const words = left.split(/[^a-z0-9.]+/).map((word) => word.replace(/^\.+|\.+$/g, "").replace(/^0+(?=\d)/, ""));
+  const words = common(stem(name)).toLowerCase().split(/[^\p{L}\p{M}\p{N}.]+/u).map((word) => word.replace(/^\.+|\.+$/g, "").replace(/^0+(?=\d)/, ""));
   return words.filter((word) => word !== "" && word !== "mm").join(" ");
 }
 
@@ -99,6 +103,16 @@ function tum(files: NamedFile[], warnings: string[]): Pairs | undefined {
   return { pairs, unit: TUM_UNIT, says: `TUM RGB-D, ${pairs.length} pairs within ${1000 * APART} ms` };
 }
 
+function byKey(files: NamedFile[]): Map<string, NamedFile[]> {
+  const groups = new Map<string, NamedFile[]>();
+  for (const file of files) {
+    const group = groups.get(key(file.name));
+    if (group) group.push(file);
+    else groups.set(key(file.name), [file]);
+  }
+  return groups;
+}
+
 /** By like names; where those differ throughout, in their order. */
 function byNames(pictures: NamedFile[], warnings: string[]): Pairs {
   const isDepth = (file: NamedFile) => DEPTH.test(base(file.name)) || (DEPTH.test(file.name) && !COLOUR.test(base(file.name)));
@@ -106,15 +120,22 @@ function byNames(pictures: NamedFile[], warnings: string[]): Pairs {
   const others = pictures.filter((file) => !MASK.test(file.name));
   const depths = others.filter(isDepth);
   const colours = others.filter((file) => !isDepth(file));
-  const byKey = new Map(colours.map((file) => [key(file.name), file]));
   const maskOf = (name: string) => masks.find((mask) => key(mask.name) === name) ?? (masks.length === 1 && key(masks[0]?.name ?? "") === "" ? masks[0] : undefined);
   const pair = (name: string, colour: NamedFile, depth: NamedFile): Pair => {
     const mask = maskOf(name);
     return { name, colour, depth, ...(mask && { mask }) };
   };
-  const pairs = depths.flatMap((depth) => {
-    const colour = byKey.get(key(depth.name));
-    return colour === undefined ? [] : [pair(key(depth.name), colour, depth)];
+  const likeColours = byKey(colours);
+  const pairs = [...byKey(depths)].flatMap(([name, likeDepths]) => {
+    const theirs = likeColours.get(name) ?? [];
+    const isClear = theirs.length === 1 && likeDepths.length === 1;
+    return likeDepths.flatMap((depth) => {
+      // Names that differ in case and signs alone belong together where all the rest of their paths agrees.
+      const [colour, ...others] = isClear ? theirs : theirs.filter((file) => commonPath(file.name) === commonPath(depth.name));
+      if (colour && others.length === 0) return [pair(name, colour, depth)];
+      if (theirs.length > 0) warnings.push(`${depth.name}: several files have names like it (left out).`);
+      return [];
+    });
   });
   if (pairs.length > 0) return { pairs, says: `${pairs.length} pairs by their names` };
   if (depths.length === 0 || depths.length !== colours.length) return { pairs: [], says: "" };

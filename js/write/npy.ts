@@ -1,17 +1,30 @@
 /** NumPy's .npy, version 1: a header that fills whole blocks of 64 bytes, then the numbers, row by row. */
+import { type ArrayType, array, isObject, ranged, side, wrong } from "../check.js";
 import { BimodalError } from "../errors.js";
 import type { Raster } from "../npy.js";
 
-export type NpyData = Float32Array | Uint16Array | Uint8Array;
+export type NpyData = Float32Array | Float64Array | Uint16Array | Uint8Array;
 
 const BLOCK = 64;
 /** Magic, version and the header's length. */
 const LEAD = 10;
 
-const kindOf = (data: NpyData): string => (data instanceof Float32Array ? "<f4" : data instanceof Uint16Array ? "<u2" : "|u1");
+function kindOf(data: NpyData): string {
+  if (data instanceof Float64Array) return "<f8";
+  if (data instanceof Float32Array) return "<f4";
+  return data instanceof Uint16Array ? "<u2" : "|u1";
+}
 
-/** Checks that a raster is as long as it says. */
-export function checkRaster({ width, height, channels, data }: Raster<NpyData>, field: string): void {
+const channelCount = ranged({ kind: "whole", min: 1 });
+
+/** Checks that a raster is one of these kinds of numbers, and as long as it says. */
+export function checkRaster(raster: Raster<NpyData>, field: string, ...kinds: readonly ArrayType[]): void {
+  if (!isObject(raster)) throw wrong(field, "an object", raster);
+  const { width, height, channels, data } = raster;
+  side(width, `${field}.width`);
+  side(height, `${field}.height`);
+  channelCount(channels, `${field}.channels`);
+  array(...kinds)(data, `${field}.data`);
   if (data.length !== width * height * channels || data.length === 0) {
     throw new BimodalError("size", `${field}: ${width}x${height} pixels of ${channels} channels need ${width * height * channels} numbers, not ${data.length}`, field);
   }
@@ -19,7 +32,7 @@ export function checkRaster({ width, height, channels, data }: Raster<NpyData>, 
 
 /** Rows x columns, or rows x columns x channels. */
 export function writeNpy(raster: Raster<NpyData>): Uint8Array<ArrayBuffer> {
-  checkRaster(raster, "raster");
+  checkRaster(raster, "raster", Float32Array, Float64Array, Uint16Array, Uint8Array);
   const { width, height, channels, data } = raster;
   const shape = channels === 1 ? `${height}, ${width}` : `${height}, ${width}, ${channels}`;
   const said = `{'descr': '${kindOf(data)}', 'fortran_order': False, 'shape': (${shape}), }`;
@@ -29,7 +42,8 @@ export function writeNpy(raster: Raster<NpyData>): Uint8Array<ArrayBuffer> {
   const length = total - LEAD;
   file.set([0x93, 0x4e, 0x55, 0x4d, 0x50, 0x59, 1, 0, length & 255, length >> 8]);
   file.set(new TextEncoder().encode(`${said.padEnd(length - 1, " ")}\n`), LEAD);
-  if (data instanceof Float32Array) data.forEach((value, i) => view.setFloat32(total + 4 * i, value, true));
+  if (data instanceof Float64Array) data.forEach((value, i) => view.setFloat64(total + 8 * i, value, true));
+  else if (data instanceof Float32Array) data.forEach((value, i) => view.setFloat32(total + 4 * i, value, true));
   else if (data instanceof Uint16Array) data.forEach((value, i) => view.setUint16(total + 2 * i, value, true));
   else file.set(data, total);
   return file;

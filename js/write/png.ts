@@ -51,7 +51,7 @@ async function deflated(bytes: Uint8Array<ArrayBuffer>): Promise<Uint8Array> {
 
 /** `texts` are remarks in English, such as the unit, which readers hand out by their names ("Description", "Unit"). */
 export async function writePng(raster: Raster<Uint8Array | Uint16Array>, texts: Readonly<Record<string, string>> = {}): Promise<Uint8Array<ArrayBuffer>> {
-  checkRaster(raster, "raster");
+  checkRaster(raster, "raster", Uint8Array, Uint16Array);
   const { width, height, channels, data } = raster;
   const type = TYPES[channels];
   if (type === undefined) throw new BimodalError("unsupported", `raster.channels: 1 or 3 are written, not ${channels}`, "raster.channels");

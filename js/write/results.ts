@@ -1,4 +1,5 @@
 /** What an estimator found, in files that other programs read: pose, light, depth and normals. */
+import { isObject, numbers, word, wrong } from "../check.js";
 import { BimodalError } from "../errors.js";
 import type { Pose, StepReport } from "../types.js";
 import { real } from "../rig/write/numbers.js";
@@ -8,18 +9,21 @@ import { writePng } from "./png.js";
 /** Of lengths: metres where the view has a camera, pixels where it is orthographic. */
 export type Unit = "m" | "px";
 
+const unitOf = word("m", "px");
+
 export interface Extent {
   width: number;
   height: number;
 }
 
 /** The 4x4 matrix that carries the depth map's points into the colour view, scale included; `numpy.loadtxt` reads it. */
-export function matrixText({ scale, rotation, translation }: Pose): string {
+export function matrixText(pose: Pose): string {
+  if (!isObject(pose)) throw wrong("pose", "an object", pose);
+  const { scale, rotation, translation } = pose;
+  const isSound = rotation?.length === 9 && translation?.length === 3 && [scale, ...Array.from(rotation), ...Array.from(translation)].every(Number.isFinite);
+  if (!isSound) throw new BimodalError("range", "pose: needs a scale, nine numbers of a rotation and three of a translation, all finite", "pose");
   const row = (i: number) => [...rotation.slice(3 * i, 3 * i + 3).map((value) => scale * value), translation[i] ?? NaN];
   const rows = [row(0), row(1), row(2), [0, 0, 0, 1]];
-  if (rows.some((values) => values.length !== 4 || !values.every(Number.isFinite))) {
-    throw new BimodalError("range", "pose: needs a scale, nine numbers of a rotation and three of a translation, all finite", "pose");
-  }
   return rows.map((values) => `${values.map(real).join(" ")}\n`).join("");
 }
 
@@ -31,6 +35,7 @@ export type PoseStanding = Pick<StepReport, "status" | "message" | "uncertainty"
  * where the views cannot see it.
  */
 export function poseJson(pose: Pose, unit: Unit, report?: PoseStanding): string {
+  unitOf(unit, "unit");
   const matrix = matrixText(pose).trim().split("\n").map((line) => line.split(" ").map(Number));
   const about = `P_colour = scale * rotation * P_depth + translation; rotation row by row; angles in degrees; lengths in ${unit === "m" ? "metres" : "pixels"}`;
   if (!report) return `${JSON.stringify({ about, unit, ...pose, matrix }, null, 2)}\n`;
@@ -42,10 +47,13 @@ export function poseJson(pose: Pose, unit: Unit, report?: PoseStanding): string 
 
 const CHANNELS = ["R", "G", "B"];
 const COEFFICIENTS = 9;
+const coefficients = numbers(CHANNELS.length * COEFFICIENTS);
 
 /** Nine coefficients of red, of green and of blue, one channel a line. */
 export function lightCsv(light: ArrayLike<number>): string {
-  if (light.length !== CHANNELS.length * COEFFICIENTS) throw new BimodalError("size", `light: needs 27 numbers, not ${light.length}`, "light");
+  coefficients(light, "light");
+  const other = Array.from(light).find((value) => !Number.isFinite(value));
+  if (other !== undefined) throw new BimodalError("range", `light: must be finite numbers (got ${other})`, "light");
   const names = Array.from({ length: COEFFICIENTS }, (_, k) => `L${k + 1}`);
   const line = (channel: string, c: number) => [channel, ...Array.from({ length: COEFFICIENTS }, (_, k) => real(light[COEFFICIENTS * c + k] ?? NaN))].join(",");
   return `${[["channel", ...names].join(","), ...CHANNELS.map(line)].join("\n")}\n`;
@@ -64,12 +72,16 @@ export interface DepthPng {
   step: number;
   /** The same in words: "0.1 mm". */
   says: string;
+  /** Finite depths that are not in it as they are: those of a parallel projection below zero, which become 0, and any beyond 65535 of the coarsest step. */
+  lost: number;
 }
 
 /** Depth as a PNG of 16 bits; 0 is no depth. The step is told here and in the file's remark "Unit". */
 export async function depthPng(depth: Extent & { data: Float32Array }, unit: Unit): Promise<DepthPng> {
+  if (!isObject(depth)) throw wrong("depth", "an object", depth);
   const { width, height, data } = depth;
-  checkRaster({ ...depth, channels: 1 }, "depth");
+  checkRaster({ width, height, channels: 1, data }, "depth", Float32Array);
+  unitOf(unit, "unit");
   const isThere = (value: number) => value > 0 && Number.isFinite(value);
   let farthest = 0;
   for (const value of data) if (isThere(value) && value > farthest) farthest = value;
@@ -80,15 +92,18 @@ export async function depthPng(depth: Extent & { data: Float32Array }, unit: Uni
     if (isThere(value)) stored[i] = Math.min(LARGEST, Math.max(1, Math.round(value / step)));
   }
   const bytes = await writePng({ width, height, channels: 1, data: stored }, { Unit: `${says} per stored number; 0 is no depth`, Software: "bimodal-stereo" });
-  return { bytes, step, says };
+  const lost = data.reduce((count, value) => count + Number(value < 0 || (isThere(value) && value > (LARGEST + 0.5) * step)), 0);
+  return { bytes, step, says, lost };
 }
 
 /**
  * Normals as a PNG of 16 bits: red, green and blue are (n + 1) / 2 of full white, for x to the right, y up and z towards the viewer, as
  * normal maps have them; black is no normal.
  */
-export async function normalsPng({ width, height, data }: Extent & { data: Float32Array }): Promise<Uint8Array<ArrayBuffer>> {
-  checkRaster({ width, height, channels: 3, data }, "normals");
+export async function normalsPng(normals: Extent & { data: Float32Array }): Promise<Uint8Array<ArrayBuffer>> {
+  if (!isObject(normals)) throw wrong("normals", "an object", normals);
+  const { width, height, data } = normals;
+  checkRaster({ width, height, channels: 3, data }, "normals", Float32Array);
   const stored = new Uint16Array(data.length);
   const level = (value: number) => Math.round((LARGEST * (Math.min(1, Math.max(-1, value)) + 1)) / 2);
   for (let at = 0; at < data.length; at += 3) {

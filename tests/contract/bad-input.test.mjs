@@ -106,6 +106,9 @@ describe("after init", () => {
     assert.throws(withOptions({ regstration: "icp" }), /did you mean "registration"\?/);
     assert.throws(withOptions({ LAMBDA: {} }), /did you mean "lambda"\?/);
     assert.throws(withOptions({ zzz: 1 }), /known: light, start/);
+    // Words of any length are told from those that are known in no time, and repeated in part.
+    assert.throws(withOptions({ ["z".repeat(1e6)]: 1 }), ({ message }) => message.length < 1000);
+    assert.throws(withOptions({ start: "z".repeat(1e7) }), ({ message }) => message.length < 1000);
     refused(withOptions({ lambda: { priors: 1 } }), "option", "options.lambda.priors");
     refused(withOptions({ start: { angels: {} } }), "option", "options.start.angels");
     refused(withOptions({ start: { angles: { delta: 1 } } }), "option", "options.start.angles.delta");
@@ -129,6 +132,7 @@ describe("after init", () => {
     refused(onDepth({ data: new Float64Array(32 * 32) }), "type", "depth.data");
     refused(withOptions({ light: { red: 1 } }), "type", "options.light");
     refused(withOptions({ light: new Array(27).fill("1") }), "type", "options.light");
+    assert.throws(withOptions({ light: Object.assign(new Array(27).fill(1), { 5: 1n }) }), /entry 5, not bigint/);
     refused(withOptions({ maxIterations: "10" }), "type", "options.maxIterations");
     refused(withOptions({ trim: 1 }), "type", "options.trim");
     refused(withOptions({ registration: 3 }), "type", "options.registration");

@@ -196,6 +196,7 @@ describe("a rig before boxes", () => {
     await refused(check(frame, { told: { ...truth, translation: [0, NaN, 0] } }), "range", "candidates.told.translation");
     await refused(check(frame, { told: { ...truth, scale: 2 } }), "range", "candidates.told.scale");
     await refused(check(frame, { told: truth }, { cues: ["colour"] }), "option", "options.cues[0]");
+    await refused(check(frame, { told: truth }, { cues: new Array(1) }), "type", "options.cues[0]");
     await refused(check(frame, { told: truth }, { workers: 0 }), "range", "options.workers");
   });
 });

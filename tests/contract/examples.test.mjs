@@ -192,6 +192,16 @@ describe("batch.mjs", () => {
     assert.deepEqual([third.code, lines()], [1, all]);
   });
 
+  test("a name that a spreadsheet would run is a word in its table, and known again", async () => {
+    const [folder, table] = [join(data, "formulas"), join(data, "formulas.csv")];
+    mkdirSync(folder);
+    for (const name of ["=1+1-colour.png", "=1+1-depth.npy"]) writeFileSync(join(folder, name), "no picture");
+    for (let time = 0; time < 2; time++) {
+      assert.equal((await batch([folder, "--csv", table])).code, 1);
+      assert.deepEqual(readFileSync(table, "utf8").trim().split("\n").slice(1).map((line) => line.split(",")[0]), ["'=1+1"]);
+    }
+  });
+
   test("what failed can be tried again, with settings for all pairs", async () => {
     const settings = join(data, "settings.json");
     writeFileSync(settings, JSON.stringify({ options: { maxIterations: -1 } }));

@@ -89,6 +89,7 @@ describe("the landscape of a pixel", () => {
     refused(() => pixelLandscape({ light }), "missing", "landscape.log");
     refused(() => pixelLandscape({ ...request, side: 4096 }), "size", "landscape.side");
     refused(() => pixelLandscape({ ...request, weight: -1 }), "range", "landscape.weight");
+    for (const value of [NaN, Infinity, 1e300]) refused(() => pixelLandscape({ ...request, log: [0, value, 0] }), "range", "landscape.log[1]");
     refused(() => shadeNormals(Array.from({ length: 27 }, () => NaN), new Float32Array(3)), "range", "light");
   });
 });

@@ -78,6 +78,25 @@ describe("pairs by like names", () => {
     has(found.warnings, /paired in the order/);
   });
 
+  test("names of any script, and names that differ in case and signs alone", async () => {
+    const names = ["\u00e4", "\u00f6", "\u00e9", "\u82b1\u74f6", "\u{1f600}", "\u{1f601}", "a", "A", "a!", "a "];
+    const files = Object.fromEntries(names.flatMap((name, at) => [[`${name}_rgb.png`, colour(at)], [`${name.normalize("NFD")}_depth.png`, depth(1000 + at)]]));
+    const found = await folder(files);
+    assert.deepEqual(marks(found).sort(), names.map((_, at) => [at, 1000 + at]).sort());
+    assert.ok(!found.warnings.some((warning) => /names like it/.test(warning)), JSON.stringify(found.warnings));
+  });
+
+  test("frames of several scenes, whose names are the same", async () => {
+    const files = Object.fromEntries(["one", "two"].flatMap((scene, at) => [[`${scene}/color/1.png`, colour(at)], [`${scene}/depth/1.png`, depth(1000 + at)]]));
+    assert.deepEqual(marks(await folder(files)), [[0, 1000], [1, 1001]]);
+  });
+
+  test("what may belong to several is left out, and said", async () => {
+    const found = await folder({ "a_rgb.png": colour(1), "A-rgb.png": colour(2), "a.depth.png": depth(1000), "b_rgb.png": colour(3), "b_depth.png": depth(3000) });
+    assert.deepEqual(marks(found), [[3, 3000]]);
+    has(found.warnings, /^a.depth.png: several files have names like it \(left out\)/);
+  });
+
   test("a large folder is read in part, evenly", async () => {
     const files = Object.fromEntries(Array.from({ length: 41 }, (_, at) => [[`color/${at}.png`, colour(at)], [`depth/${at}.png`, depth(1000 + at)]]).flat());
     assert.deepEqual(marks(await folder(files, { frames: 3 })), [[0, 1000], [20, 1020], [40, 1040]]);

@@ -233,6 +233,10 @@ const FILES = [
   ["mirror.txt", text("1 0 0 0\n0 1 0 0\n0 0 -1 0\n0 0 0 1\n"), /mirrors/],
   ["last.txt", text("1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 2\n"), /not in 0 0 0 1/],
   ["numbers.txt", text("1.5 ".repeat(500_000)), /more than 200000 numbers/],
+  // No number, of many digits: where digits match in two ways, that takes the square of their number.
+  ["digits.txt", text(`${"1".repeat(200_000)}${"e".repeat(200_000)}`), /in none of the forms/],
+  ["digits.json", text(`{"fx":"${"1".repeat(200_000)}x","fy":1,"cx":1,"cy":1}`), /fx|camera/],
+  ["digits.yaml", text(`fx: ${"1".repeat(200_000)}x\nfy: 1\ncx: 1\ncy: 1\n`), /fx|camera|none/],
   ["cameras.txt", text("1 PINHOLE 640 480 500 320 240\n"), /needs 4 numbers, and has 3/],
   ["model.txt", text("1 FOV 640 480 500 500 320 240 0.1\n"), /model FOV/],
   ["line.txt", text("1 PINHOLE 640 480 500 500 320 240\nno camera\n"), /a line that is no camera/],

@@ -65,6 +65,14 @@ describe("goes on to the same bits", () => {
     same(run, Estimator.restore(run.save()));
   });
 
+  test("from a file as Node reads it", () => {
+    // A small file lies within a larger buffer, and what is cut from a Buffer is a view of it.
+    for (const size of [16, 32]) {
+      const run = estimator({ maxIterations: 2 }, pair({ size }));
+      same(run, Estimator.restore(Buffer.concat([Buffer.from("before"), run.save()]).subarray(6)));
+    }
+  });
+
   test("whatever becomes of the arrays that it was given", () => {
     const given = pair();
     const run = estimator({ maxIterations: 2 }, given);

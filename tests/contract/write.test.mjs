@@ -102,9 +102,11 @@ test("depths come back by our own readers", async () => {
 });
 
 test("depths beyond every step are held at the largest number, and a depth of less than half a step is still one", async () => {
-  const { bytes, step } = await depthPng({ width: 3, height: 1, data: new Float32Array([1e9, 1e-9, 5]) }, "px");
-  assert.equal(step, 1);
-  assert.deepEqual([...decodeDepth(bytes).data], [65535, 1, 5]);
+  const { bytes, step, lost } = await depthPng({ width: 5, height: 1, data: new Float32Array([1e9, 1e-9, 5, -2, NaN]) }, "px");
+  // The first and the one below zero are not in it.
+  assert.deepEqual([step, lost], [1, 2]);
+  assert.deepEqual([...decodeDepth(bytes).data], [65535, 1, 5, 0, 0]);
+  assert.equal((await depthPng({ width: 7, height: 5, data: DEPTH }, "m")).lost, DEPTH.filter((value) => value < 0).length);
 });
 
 test("what does not fit is refused by its name", async () => {
@@ -114,10 +116,32 @@ test("what does not fit is refused by its name", async () => {
   refused(() => poseJson({ ...POSE, scale: Infinity }, "m"), "range", "pose");
   refused(() => lightCsv([1, 2, 3]), "size", "light");
   refused(() => writeClouds([], "pixels"), "size", "clouds");
+  for (const clouds of [undefined, {}]) refused(() => writeClouds(clouds), "type", "clouds");
+  for (const cloud of [null, {}]) refused(() => writeClouds([cloud]), "type", "clouds[0].points");
+  assert.ok(!new TextDecoder("latin1").decode(writeClouds([{ points: new Float32Array(3) }], "m\nend_header")).includes("\nend_header;"));
+  refused(() => matrixText(), "type", "pose");
+  refused(() => matrixText({ ...POSE, rotation: [...POSE.rotation, 1, 2, 3] }), "range", "pose");
+  refused(() => matrixText({ ...POSE, translation: [1, 2, 3, 4, 5] }), "range", "pose");
+  refused(() => poseJson(POSE, "furlong"), "option", "unit");
+  refused(() => lightCsv(), "type", "light");
+  refused(() => lightCsv(LIGHT.map(() => NaN)), "range", "light");
+  refused(() => lightCsv(Array.from(LIGHT, () => "=1+1")), "type", "light");
+  refused(() => writeNpy(), "type", "raster");
+  refused(() => writeNpy({ width: 0.5, height: 2, channels: 1, data: new Float32Array(1) }), "range", "raster.width");
+  refused(() => writeNpy({ width: -1, height: -1, channels: 1, data: new Float32Array(1) }), "range", "raster.width");
+  refused(() => writeNpy({ width: 1, height: 1, channels: 1, data: new Int8Array(1) }), "type", "raster.data");
   const rejected = (promise, code, field) => assert.rejects(promise, (error) => error instanceof BimodalError && error.code === code && error.field === field);
   await rejected(writePng({ width: 1, height: 1, channels: 2, data: new Uint8Array(2) }), "unsupported", "raster.channels");
+  await rejected(writePng({ width: 1, height: 1, channels: 1, data: new Float32Array(1) }), "type", "raster.data");
   await rejected(depthPng({ width: 2, height: 2, data: new Float32Array(3) }, "m"), "size", "depth");
+  await rejected(depthPng({ width: 1, height: 1, data: new Float32Array(1) }), "type", "unit");
   await rejected(normalsPng({ width: 2, height: 2, data: new Float32Array(4) }), "size", "normals");
+});
+
+test("doubles, such as a light's, are doubles in .npy", () => {
+  const bytes = writeNpy({ width: 27, height: 1, channels: 1, data: Float64Array.from(LIGHT) });
+  assert.match(new TextDecoder("latin1").decode(bytes.subarray(0, 80)), /'<f8'/);
+  assert.deepEqual([...new Float64Array(bytes.slice(-27 * 8).buffer)], [...LIGHT]);
 });
 
 test("remarks of a PNG stay remarks, whatever they hold", async () => {

@@ -37,13 +37,30 @@ fn a_folder_is_one_line_each_and_a_broken_pair_costs_itself() {
     // The results lie in the folder by now, and are no pairs of it.
     fs::remove_file(at("depth/0004.npy")).unwrap();
     let told = run_folder(folder.path().to_str().unwrap(), &made, &["--out", out.to_str().unwrap()]);
-    assert_eq!((told.code, told.err.as_str()), (0, ""));
+    let lone: Vec<_> =
+        ["0003", "0004"].map(|name| told.err.contains(&format!("{name}.png: no other file's name"))).into();
+    assert_eq!((told.code, lone, told.err.lines().count()), (0, vec![true; 2], 2), "{}", told.err);
     let lines: Vec<&str> = told.out.lines().collect();
     assert!(
         lines.len() == 2 && lines[0].starts_with("2: converged, alpha") && lines[1].contains("degrees"),
         "{}",
         told.out
     );
+}
+
+#[test]
+fn what_is_to_be_a_picture_and_is_none_is_said() {
+    let made = bust();
+    let folder = tempfile::TempDir::new().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    copied(&made, "image.png", at("a_rgb.png"));
+    copied(&made, "depth.npy", at("a_depth.npy"));
+    fs::write(at("b_rgb.png"), b"no picture").unwrap();
+    fs::write(at("b_depth.png"), b"").unwrap();
+    let told = run_folder(folder.path().to_str().unwrap(), &made, &["--json"]);
+    let lines: Vec<Value> = told.out.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    assert_eq!((told.code, lines.len()), (3, 2), "{}", told.err);
+    assert_eq!((lines[1]["name"].as_str(), lines[1]["error"]["code"].as_str()), (Some("b"), Some("file")));
 }
 
 #[test]

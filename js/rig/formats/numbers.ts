@@ -5,7 +5,8 @@ export type Node = Record<string, unknown>;
 
 export const isNode = (value: unknown): value is Node => typeof value === "object" && value !== null && !Array.isArray(value);
 
-const NUMBER = /^[-+]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][-+]?\d+)?$/;
+// One way to match any digits: two would be tried against each other, for minutes where there are many.
+const NUMBER = /^[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eEdD][-+]?\d+)?$/;
 /** Calibrations have matrices of 16 numbers, distortions of 14; more than this is something else. */
 const MOST = 64;
 

@@ -18,8 +18,9 @@ const MOST_CLOUDS = 256;
 const isThere = (points: Float32Array, at: number): boolean =>
   Number.isFinite(points[at]) && Number.isFinite(points[at + 1]) && Number.isFinite(points[at + 2]);
 
-function check({ points, colours }: Cloud, index: number): void {
+function check(cloud: Cloud, index: number): void {
   const field = `clouds[${index}]`;
+  const { points, colours } = Object(cloud) as Cloud;
   if (!(points instanceof Float32Array)) throw new BimodalError("type", `${field}.points: must be a Float32Array`, `${field}.points`);
   if (points.length % 3 !== 0) {
     throw new BimodalError("size", `${field}.points: needs 3 numbers for each point, not ${points.length}`, `${field}.points`);
@@ -37,7 +38,7 @@ function header(clouds: readonly Cloud[], count: number, unit: string): string {
   return [
     "ply",
     "format binary_little_endian 1.0",
-    `comment ${unit}; x right, y down, z forward`,
+    `comment ${comment(unit)}; x right, y down, z forward`,
     ...clouds.map(({ name }, index) => `comment ${labels ? `label ${index}: ` : ""}${comment(name ?? `cloud ${index + 1}`)}`),
     `element vertex ${count}`,
     ...["x", "y", "z"].map((axis) => `property float ${axis}`),
@@ -53,6 +54,7 @@ function header(clouds: readonly Cloud[], count: number, unit: string): string {
  * The unit is told in a comment.
  */
 export function writeClouds(clouds: readonly Cloud[], unit: "metres" | "pixels" = "metres"): Uint8Array<ArrayBuffer> {
+  if (!Array.isArray(clouds)) throw new BimodalError("type", "clouds: must be a list of clouds", "clouds");
   if (clouds.length === 0 || clouds.length > MOST_CLOUDS) {
     throw new BimodalError("size", `clouds: needs 1 to ${MOST_CLOUDS} of them, not ${clouds.length}`, "clouds");
   }

@@ -87,8 +87,9 @@ function camera(given: RigCamera | undefined, pixels: Size | undefined, name: "c
 
 /** The rig that a pose and what is known beside it make. */
 export function rigOf(pose: Pose, context: RigContext): Rig {
-  if (pose.scale !== 1) {
-    throw new BimodalError("range", `pose.scale: extrinsics of a rig have the scale 1 (got ${pose.scale})`, "pose.scale");
+  const { scale } = Object(pose) as Pose;
+  if (scale !== 1) {
+    throw new BimodalError("range", `pose.scale: extrinsics of a rig have the scale 1 (got ${scale})`, "pose.scale");
   }
   const rotation = numbers(pose.rotation, [9], "pose.rotation");
   checkRotation(rotation);
