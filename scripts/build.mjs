@@ -25,9 +25,9 @@ const INTERNAL = [
   ...["border", "breathe", "check", "crc", "engine", "inflate", "inputs", "node", "plain", "png", "raster", "saved"].map((name) => `${name}.d.ts`),
   ...["check", "rigs", "run"].map((name) => `calibration/${name}.d.ts`),
   ...["assign", "colour", "depth", "words"].map((name) => `rig/${name}.d.ts`),
-  ...["json", "numbers", "plain", "yaml"].map((name) => `rig/write/${name}.d.ts`),
+  ...["built", "json", "numbers", "plain", "yaml"].map((name) => `rig/write/${name}.d.ts`),
   ...["charts", "curves", "markup", "numbers", "page", "parts", "sections", "style"].map((name) => `rig/write/report/${name}.d.ts`),
-  ...["rig/formats", "workers"],
+  ...["rig/formats", "workers", "write/check.d.ts"],
 ];
 
 /** What the package says about itself; name, version, licence, authors and addresses come from Cargo.toml alone. */

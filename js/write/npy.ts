@@ -1,7 +1,6 @@
 /** NumPy's .npy, version 1: a header that fills whole blocks of 64 bytes, then the numbers, row by row. */
-import { type ArrayType, array, isObject, ranged, side, wrong } from "../check.js";
-import { BimodalError } from "../errors.js";
 import type { Raster } from "../npy.js";
+import { checkRaster } from "./check.js";
 
 export type NpyData = Float32Array | Float64Array | Uint16Array | Uint8Array;
 
@@ -13,21 +12,6 @@ function kindOf(data: NpyData): string {
   if (data instanceof Float64Array) return "<f8";
   if (data instanceof Float32Array) return "<f4";
   return data instanceof Uint16Array ? "<u2" : "|u1";
-}
-
-const channelCount = ranged({ kind: "whole", min: 1 });
-
-/** Checks that a raster is one of these kinds of numbers, and as long as it says. */
-export function checkRaster(raster: Raster<NpyData>, field: string, ...kinds: readonly ArrayType[]): void {
-  if (!isObject(raster)) throw wrong(field, "an object", raster);
-  const { width, height, channels, data } = raster;
-  side(width, `${field}.width`);
-  side(height, `${field}.height`);
-  channelCount(channels, `${field}.channels`);
-  array(...kinds)(data, `${field}.data`);
-  if (data.length !== width * height * channels || data.length === 0) {
-    throw new BimodalError("size", `${field}: ${width}x${height} pixels of ${channels} channels need ${width * height * channels} numbers, not ${data.length}`, field);
-  }
 }
 
 /** Rows x columns, or rows x columns x channels. */

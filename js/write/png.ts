@@ -3,9 +3,10 @@
  * has to be downloaded; rows are stored as differences to the row above, which suits smooth depths and normals.
  */
 import { crc32 } from "../crc.js";
+import { isObject, wrong } from "../check.js";
 import { BimodalError } from "../errors.js";
 import type { Raster } from "../npy.js";
-import { checkRaster } from "./npy.js";
+import { checkRaster, text } from "./check.js";
 
 const SIGNATURE = [0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a];
 /** The filter of rows as differences to the row above. */
@@ -49,9 +50,23 @@ async function deflated(bytes: Uint8Array<ArrayBuffer>): Promise<Uint8Array> {
   return new Uint8Array(await new Response(stream).arrayBuffer());
 }
 
+/** Of a remark's name, which readers look for. */
+const LONGEST_NAME = 79;
+
+function checkTexts(texts: unknown): void {
+  if (!isObject(texts)) throw wrong("texts", "an object", texts);
+  for (const [name, words] of Object.entries(texts)) {
+    text(words, `texts.${name}`);
+    if (name.length < 1 || name.length > LONGEST_NAME) {
+      throw new BimodalError("range", `texts: a remark's name has 1 to ${LONGEST_NAME} letters, not ${name.length}`, "texts");
+    }
+  }
+}
+
 /** `texts` are remarks in English, such as the unit, which readers hand out by their names ("Description", "Unit"). */
 export async function writePng(raster: Raster<Uint8Array | Uint16Array>, texts: Readonly<Record<string, string>> = {}): Promise<Uint8Array<ArrayBuffer>> {
   checkRaster(raster, "raster", Uint8Array, Uint16Array);
+  checkTexts(texts);
   const { width, height, channels, data } = raster;
   const type = TYPES[channels];
   if (type === undefined) throw new BimodalError("unsupported", `raster.channels: 1 or 3 are written, not ${channels}`, "raster.channels");

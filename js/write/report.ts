@@ -1,10 +1,13 @@
 /** A run on a pair as one HTML file that asks for nothing else: pictures, numbers, options and the inputs' hashes, to be kept and printed. */
+import { word } from "../check.js";
 import type { Pose } from "../types.js";
+import { type Example, like } from "../rig/write/built.js";
 import type { Picture, ReportInput } from "../rig/write/report/contents.js";
 import { type Markup, html } from "../rig/write/report/markup.js";
 import { digits, measure } from "../rig/write/report/numbers.js";
 import { reportPage } from "../rig/write/report/page.js";
 import { cell, fact, inputTable, pictureSection, section, sign, table } from "../rig/write/report/parts.js";
+import { checkLight, checkUnit, checkWholePose, text } from "./check.js";
 import { type Unit, lightCsv, matrixText } from "./results.js";
 
 export type { Picture, ReportInput };
@@ -80,7 +83,30 @@ function optionSection({ options, link }: RunReport): Markup | undefined {
   return section("Options", rows.length > 0 ? table("options", ["Option", "Set to"], rows) : undefined, link === undefined ? undefined : html`<p class="soft">The same state as an address, without files:</p><pre tabindex="0">${link}</pre>`);
 }
 
+const PARTS: Example = { words: [], numbers: [[]], options: [[]] };
+const checkTone = word(...Object.keys(CARDS));
+
+/** Checks that the parts are there, and that words are words. */
+function checkReport(report: RunReport): void {
+  like(PARTS, report, "report");
+  const { tone, status, words, pose, truth, unit, light, numbers, options, title = "", link = "", pictures = [], inputs = [] } = report;
+  checkTone(tone, "report.tone");
+  checkUnit(unit, "report.unit");
+  checkWholePose(pose, "report.pose");
+  if (truth !== undefined && truth !== null) checkWholePose(truth, "report.truth");
+  checkLight(light, "report.light");
+  for (const [name, value] of Object.entries({ status, title, link })) text(value, `report.${name}`);
+  words.forEach((each, index) => text(each, `report.words[${index}]`));
+  for (const [name, entries] of Object.entries({ numbers, options })) {
+    entries.forEach((entry, index) => [0, 1].forEach((at) => text(entry[at], `report.${name}[${index}][${at}]`)));
+  }
+  like([{}], pictures, "report.pictures");
+  pictures.forEach(({ title }, index) => text(title, `report.pictures[${index}].title`));
+  like([{}], inputs, "report.inputs");
+}
+
 export function runReportHtml(report: RunReport): string {
+  checkReport(report);
   const { pictures = [], inputs = [], title = "A run of bimodal stereo", made } = report;
-  return reportPage(title, made, [card(report), poseSection(report), pictureSection(pictures), lightSection(report), optionSection(report), inputTable(inputs)]);
+  return reportPage(title, made, "report.made", [card(report), poseSection(report), pictureSection(pictures), lightSection(report), optionSection(report), inputTable(inputs)]);
 }

@@ -1,15 +1,13 @@
 /** What an estimator found, in files that other programs read: pose, light, depth and normals. */
-import { isObject, numbers, word, wrong } from "../check.js";
+import { isObject, wrong } from "../check.js";
 import { BimodalError } from "../errors.js";
-import type { Pose, StepReport } from "../types.js";
+import type { Pose, StepReport, Uncertainty } from "../types.js";
 import { real } from "../rig/write/numbers.js";
-import { checkRaster } from "./npy.js";
+import { checkLight, checkPose, checkRaster, checkStanding, checkUnit, checkWholePose } from "./check.js";
 import { writePng } from "./png.js";
 
 /** Of lengths: metres where the view has a camera, pixels where it is orthographic. */
 export type Unit = "m" | "px";
-
-const unitOf = word("m", "px");
 
 export interface Extent {
   width: number;
@@ -18,10 +16,9 @@ export interface Extent {
 
 /** The 4x4 matrix that carries the depth map's points into the colour view, scale included; `numpy.loadtxt` reads it. */
 export function matrixText(pose: Pose): string {
-  if (!isObject(pose)) throw wrong("pose", "an object", pose);
-  const { scale, rotation, translation } = pose;
-  const isSound = rotation?.length === 9 && translation?.length === 3 && [scale, ...Array.from(rotation), ...Array.from(translation)].every(Number.isFinite);
-  if (!isSound) throw new BimodalError("range", "pose: needs a scale, nine numbers of a rotation and three of a translation, all finite", "pose");
+  checkPose(pose, "pose");
+  const { scale } = pose;
+  const [rotation, translation] = [Array.from(pose.rotation), Array.from(pose.translation)];
   const row = (i: number) => [...rotation.slice(3 * i, 3 * i + 3).map((value) => scale * value), translation[i] ?? NaN];
   const rows = [row(0), row(1), row(2), [0, 0, 0, 1]];
   return rows.map((values) => `${values.map(real).join(" ")}\n`).join("");
@@ -30,30 +27,34 @@ export function matrixText(pose: Pose): string {
 /** How far a pose is to be trusted, as a report says it. */
 export type PoseStanding = Pick<StepReport, "status" | "message" | "uncertainty">;
 
+const sigmasOf = ({ rotationDegrees, translation, scale, weakest }: Uncertainty): Uncertainty => ({ rotationDegrees, translation, scale, weakest });
+
 /**
  * The pose with its matrix, and in words what it means; beside it, where a report is given, its status and one sigma of each number, `null`
  * where the views cannot see it.
  */
 export function poseJson(pose: Pose, unit: Unit, report?: PoseStanding): string {
-  unitOf(unit, "unit");
+  checkWholePose(pose, "pose");
+  checkUnit(unit, "unit");
   const matrix = matrixText(pose).trim().split("\n").map((line) => line.split(" ").map(Number));
   const about = `P_colour = scale * rotation * P_depth + translation; rotation row by row; angles in degrees; lengths in ${unit === "m" ? "metres" : "pixels"}`;
-  if (!report) return `${JSON.stringify({ about, unit, ...pose, matrix }, null, 2)}\n`;
+  const { scale, rotation, translation, angles: { alpha, beta, gamma } } = pose;
+  // Nothing but these: what else an object holds may say otherwise.
+  const told = { unit, scale, rotation: Array.from(rotation), translation: Array.from(translation), angles: { alpha, beta, gamma }, matrix };
+  if (report === undefined) return `${JSON.stringify({ about, ...told }, null, 2)}\n`;
+  checkStanding(report);
   const { status, message, uncertainty } = report;
   const sigmas = uncertainty && "; uncertainty is one sigma, null where the views cannot see the number: any value of it would do as well, or it was held";
-  const standing = { status, ...(message ? { message } : {}), ...(uncertainty ? { uncertainty } : {}) };
-  return `${JSON.stringify({ about: about + (sigmas ?? ""), unit, ...pose, matrix, ...standing }, null, 2)}\n`;
+  const standing = { status, ...(message ? { message } : {}), ...(uncertainty ? { uncertainty: sigmasOf(uncertainty) } : {}) };
+  return `${JSON.stringify({ about: about + (sigmas ?? ""), ...told, ...standing }, null, 2)}\n`;
 }
 
 const CHANNELS = ["R", "G", "B"];
 const COEFFICIENTS = 9;
-const coefficients = numbers(CHANNELS.length * COEFFICIENTS);
 
 /** Nine coefficients of red, of green and of blue, one channel a line. */
 export function lightCsv(light: ArrayLike<number>): string {
-  coefficients(light, "light");
-  const other = Array.from(light).find((value) => !Number.isFinite(value));
-  if (other !== undefined) throw new BimodalError("range", `light: must be finite numbers (got ${other})`, "light");
+  checkLight(light, "light");
   const names = Array.from({ length: COEFFICIENTS }, (_, k) => `L${k + 1}`);
   const line = (channel: string, c: number) => [channel, ...Array.from({ length: COEFFICIENTS }, (_, k) => real(light[COEFFICIENTS * c + k] ?? NaN))].join(",");
   return `${[["channel", ...names].join(","), ...CHANNELS.map(line)].join("\n")}\n`;
@@ -72,28 +73,45 @@ export interface DepthPng {
   step: number;
   /** The same in words: "0.1 mm". */
   says: string;
-  /** Finite depths that are not in it as they are: those of a parallel projection below zero, which become 0, and any beyond 65535 of the coarsest step. */
-  lost: number;
 }
 
-/** Depth as a PNG of 16 bits; 0 is no depth. The step is told here and in the file's remark "Unit". */
+/** As numbers of 32 bits have it. */
+const MISSING = Math.fround(1e12);
+/** A depth as the contract has it; all others are holes. */
+const isThere = (value: number): boolean => value > 0 && value < MISSING;
+
+/**
+ * Checks that no depth is lost. In pixels, which are counted from anywhere, one below zero is a depth as well, but of a hole there would be
+ * nothing to tell it by; behind a camera there is none.
+ */
+function checkDepths(data: Float32Array, unit: Unit): void {
+  // The coarsest step of either unit is 1.
+  const at = data.findIndex((value) => (unit === "px" && value < 0) || (isThere(value) && Math.round(value) > LARGEST));
+  if (at < 0) return;
+  const value = data[at] ?? NaN;
+  const why = value < 0 ? "would be a hole" : `is beyond ${LARGEST} ${unit}, the farthest there is room for`;
+  throw new BimodalError("range", `depth.data[${at}]: ${value} ${unit} ${why}; shift the depths, or write them with writeNpy`, `depth.data[${at}]`);
+}
+
+/**
+ * Depth as a PNG of 16 bits; 0 is no depth. The step is told here and in the file's remark "Unit". Depths in pixels below zero, as
+ * `imageDepth()` of a view without a camera has them, and those beyond 65535 are refused: they have to be shifted, or go to `writeNpy`.
+ */
 export async function depthPng(depth: Extent & { data: Float32Array }, unit: Unit): Promise<DepthPng> {
   if (!isObject(depth)) throw wrong("depth", "an object", depth);
   const { width, height, data } = depth;
   checkRaster({ width, height, channels: 1, data }, "depth", Float32Array);
-  unitOf(unit, "unit");
-  const isThere = (value: number) => value > 0 && Number.isFinite(value);
-  let farthest = 0;
-  for (const value of data) if (isThere(value) && value > farthest) farthest = value;
-  const [step, says] = STEPS[unit].find(([each]) => farthest / each <= LARGEST) ?? STEPS[unit].at(-1) ?? [1, ""];
+  checkUnit(unit, "unit");
+  checkDepths(data, unit);
+  const farthest = data.reduce((most, value) => (isThere(value) ? Math.max(most, value) : most), 0);
+  const [step, says] = STEPS[unit].find(([each]) => Math.round(farthest / each) <= LARGEST) ?? [1, ""];
   const stored = new Uint16Array(data.length);
   for (let i = 0; i < data.length; i++) {
     const value = data[i] ?? NaN;
-    if (isThere(value)) stored[i] = Math.min(LARGEST, Math.max(1, Math.round(value / step)));
+    if (isThere(value)) stored[i] = Math.max(1, Math.round(value / step));
   }
   const bytes = await writePng({ width, height, channels: 1, data: stored }, { Unit: `${says} per stored number; 0 is no depth`, Software: "bimodal-stereo" });
-  const lost = data.reduce((count, value) => count + Number(value < 0 || (isThere(value) && value > (LARGEST + 0.5) * step)), 0);
-  return { bytes, step, says, lost };
+  return { bytes, step, says };
 }
 
 /**

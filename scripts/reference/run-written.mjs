@@ -19,10 +19,10 @@ export const POSE = {
   angles: { alpha: 0, beta: (0.3 * 180) / Math.PI, gamma: 0 },
 };
 export const LIGHT = Float64Array.from({ length: 27 }, (_, k) => Math.cos(k) / 3);
-/** Depths in metres and in pixels; what is not above zero, and what is no number, is no depth. */
+/** Depths in metres and in pixels; what is not above zero, and what is no number, is no depth. In pixels one below zero would be refused. */
 export const DEPTH = Float32Array.from({ length: width * height }, (_, i) => (i === 3 ? NaN : i === 8 ? 0 : i === 9 ? -1 : i === 11 ? Infinity : 0.5 + 0.0123 * i));
 export const FAR = Float32Array.from(DEPTH, (value) => 20 * value);
-export const PIXELS = Float32Array.from(DEPTH, (value) => 100 * value);
+export const PIXELS = Float32Array.from(DEPTH, (value) => (value < 0 ? NaN : 100 * value));
 export const NORMALS = Float32Array.from({ length: 3 * width * height }, (_, i) => {
   const [x, y] = [Math.sin(Math.floor(i / 3)) / 2, Math.cos(Math.floor(i / 3)) / 3];
   return Math.floor(i / 3) === 4 ? NaN : [x, y, -Math.sqrt(1 - x * x - y * y)][i % 3];

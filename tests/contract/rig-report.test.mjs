@@ -120,6 +120,32 @@ describe("curves", () => {
   });
 });
 
+describe("what a report lacks is named", () => {
+  test("in the report", () => {
+    for (const none of [undefined, null]) refused(() => reportHtml(none), "type", "report");
+    for (const name of ["warnings", "estimate", "covariance", "health", "candidates", "cues", "frames", "sensitivity"]) {
+      for (const value of [undefined, null, 5]) refused(() => reportHtml({ ...report(), [name]: value }), "type", `report.${name}`);
+    }
+    refused(() => reportHtml({ ...report(), candidates: { a: {} } }), "type", "report.candidates.a.interval");
+    refused(() => reportHtml({ ...report(), cues: { edges: null } }), "type", "report.cues.edges");
+    refused(() => reportHtml({ ...report(), frames: [{ name: "a", share: 1 }, null] }), "type", "report.frames[1]");
+    refused(() => reportHtml({ ...report(), estimate: { rotation: [], translation: [] } }), "type", "report.estimate.angles");
+  });
+
+  test("beside it", () => {
+    refused(() => reportHtml(report(), null), "type", "pictures");
+    refused(() => reportHtml(report(), [null]), "type", "pictures[0]");
+    refused(() => reportHtml(report(), [], null), "type", "options");
+    refused(() => reportHtml(report(), [], { inputs: "a.png" }), "type", "options.inputs");
+    for (const made of [5, "2024-02-29", new Date(NaN)]) refused(() => reportHtml(report(), [], { made }), "type", "options.made");
+  });
+
+  test("but words and numbers: a report that was kept as JSON has null for what is no number", () => {
+    const kept = JSON.parse(JSON.stringify({ ...report(), covariance: new Array(36).fill(NaN), reason: undefined }));
+    assert.ok(harmless(reportHtml(kept)).text.includes("not known"));
+  });
+});
+
 test("an unfinished report is still a page", () => {
   const none = { share: NaN, sharpness: NaN };
   const empty = {

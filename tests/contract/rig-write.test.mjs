@@ -181,6 +181,20 @@ describe("refused", () => {
     refused(write({ rotation: [1, 0.001, 0, 0, 1, 0, 0, 0, 1] }), "range", "pose.rotation");
   });
 
+  test("what is no pose, no numbers and no context", () => {
+    for (const pose of [undefined, null, "pose"]) refused(() => writePose(pose, "matrix"), "type", "pose");
+    refused(() => writePose({}, "matrix"), "range", "pose.scale");
+    for (const translation of [undefined, 5]) refused(write({ translation }), "size", "pose.translation");
+    for (const translation of [new Array(3), ["1", "2", "3"]]) refused(write({ translation }), "range", "pose.translation");
+    for (const format of [undefined, Symbol("matrix")]) refused(() => writePose(NO_POSE, format), "option", "format");
+    for (const context of [null, 5]) refused(write({}, "matrix", context), "type", "context");
+    refused(write({}, "matrix", { colour: null }), "type", "context.colour");
+    for (const colour of [5, null, [640]]) refused(write({}, "matrix", { sizes: { colour } }), "size", "context.sizes.colour");
+    let times = 0;
+    const name = { toString: () => (times++ > 0 ? "a; rm -rf ." : "a") };
+    refused(write({}, "ros2", { frames: { colour: name } }), "range", "context.frames.colour");
+  });
+
   test("words, cameras, sizes and names that nobody could read", () => {
     const camera = { fx: 500, fy: 500, cx: 320, cy: 240 };
     refused(write({}, "urdf"), "option", "format");
@@ -202,12 +216,16 @@ describe("refused", () => {
     refused(() => writeClouds([]), "size", "clouds");
     refused(() => writeClouds([{ points: new Float32Array(4) }]), "size", "clouds[0].points");
     refused(() => writeClouds([{ points: [1, 2, 3] }]), "type", "clouds[0].points");
+    for (const clouds of [[null], new Array(1)]) refused(() => writeClouds(clouds), "type", "clouds[0].points");
     refused(() => writeClouds([{ points: new Float32Array(3) }, { points: new Float32Array(3), colours: new Uint8Array(4) }]), "size", "clouds[1].colours");
   });
 });
 
-test("a cloud's name cannot end its line", () => {
-  const text = Buffer.from(writeClouds([{ points: new Float32Array(3), name: "a\nend_header\nµ" }])).toString("latin1");
+test("a cloud's name cannot end its line, nor can its unit", () => {
+  const points = new Float32Array(3);
+  for (const name of [5, Symbol("s")]) assert.match(Buffer.from(writeClouds([{ points, name }])).toString("latin1"), /^comment (5|Symbol\(s\))$/m);
+  assert.match(Buffer.from(writeClouds([{ points }], "m\nend_header")).toString("latin1"), /^comment m\?end_header; /m);
+  const text = Buffer.from(writeClouds([{ points, name: "a\nend_header\nµ" }])).toString("latin1");
   assert.match(text, /^comment a\?end_header\?\?$/m);
   assert.equal(text.match(/^end_header$/gm).length, 1);
 });

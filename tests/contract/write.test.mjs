@@ -1,18 +1,27 @@
 // Files of a run: the very ones that readers of others have read (scripts/reference/run-written.py), and what these found in them.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
-import { describe, test } from "node:test";
+import { before, describe, test } from "node:test";
 import { decode } from "fast-png";
 import { decodeDepth } from "../../pkg/files.js";
 import { BimodalError as WriteError, depthPng, lightCsv, matrixText, normalsPng, poseJson, runReportHtml, writeClouds, writeNpy, writePng } from "../../pkg/write.js";
 import { CLOUDS, DEPTH, FAR, FOLDER, LIGHT, NORMALS, PIXELS, POSE, files } from "../../scripts/reference/run-written.mjs";
 import { inRoot } from "../../scripts/shell.mjs";
 import { harmless } from "./harmless.mjs";
-import { BimodalError, refused } from "./support.mjs";
+import { BimodalError, estimator, init, pair, refused } from "./support.mjs";
 
 const read = JSON.parse(readFileSync(inRoot(FOLDER, "read.json"), "utf8"));
 /** As the reference has them: what is not finite by its name. */
 const named = (value) => (Number.isFinite(value) ? value : { NaN: "nan", Infinity: "inf" }[String(value)]);
+
+/** Checks that a promise is refused with this code, this field and such words. */
+async function rejected(promise, code, field, words = /./) {
+  const error = await promise.then(() => undefined, (reason) => reason);
+  refused(() => { throw error; }, code, field);
+  assert.match(error.message, words);
+}
+
+before(() => init());
 
 test("both modules throw the same class", () => assert.equal(WriteError, BimodalError));
 
@@ -46,6 +55,12 @@ describe("what others read is what was written", () => {
     assert.match(about, /null where the views cannot see/);
     // A run that is not over has a status alone.
     assert.deepEqual(JSON.parse(poseJson(POSE, "px", { status: "running" })), { ...plain, status: "running" });
+  });
+
+  test("the pose alone, whatever else an object holds", () => {
+    const mine = { ...POSE, rotation: Float64Array.from(POSE.rotation), unit: "furlong", about: "mine", matrix: 3, toJSON: () => "gone" };
+    mine.self = mine;
+    assert.equal(poseJson(mine, "m"), poseJson(POSE, "m"));
   });
 
   test("light, by numpy", () => assert.deepEqual(read["light.csv"].values, [...LIGHT]));
@@ -101,27 +116,63 @@ test("depths come back by our own readers", async () => {
   assert.ok(Math.abs(decodeDepth(bytes).data[0] * step - DEPTH[0]) <= step / 2);
 });
 
-test("depths beyond every step are held at the largest number, and a depth of less than half a step is still one", async () => {
-  const { bytes, step, lost } = await depthPng({ width: 5, height: 1, data: new Float32Array([1e9, 1e-9, 5, -2, NaN]) }, "px");
-  // The first and the one below zero are not in it.
-  assert.deepEqual([step, lost], [1, 2]);
-  assert.deepEqual([...decodeDepth(bytes).data], [65535, 1, 5, 0, 0]);
-  assert.equal((await depthPng({ width: 7, height: 5, data: DEPTH }, "m")).lost, DEPTH.filter((value) => value < 0).length);
+describe("depths in 16 bits", () => {
+  const row = (...values) => ({ width: values.length, height: 1, data: new Float32Array(values) });
+  const stored = async (depth, unit) => {
+    const { bytes, step } = await depthPng(depth, unit);
+    return [step, ...decodeDepth(bytes).data];
+  };
+
+  test("the farthest that has room is written, and a depth of less than half a step is still one", async () => {
+    assert.deepEqual(await stored(row(65535.25, 1e-9, 5, NaN, 0), "px"), [1, 65535, 1, 5, 0, 0]);
+    assert.deepEqual(await stored(row(65535, 2), "m"), [1, 65535, 2]);
+    assert.deepEqual(await stored(row(6.5535, 2), "m"), [0.0001, 65535, 20000]);
+  });
+
+  test("what is farther is refused by its name, but for 1e12 and more, which are holes", async () => {
+    await rejected(depthPng(row(1, 1e9), "m"), "range", "depth.data[1]", /1000000000 m is beyond 65535 m.*writeNpy/);
+    await rejected(depthPng(row(65536), "px"), "range", "depth.data[0]", /65536 px is beyond 65535 px/);
+    assert.deepEqual(await stored(row(1, 1e12, Infinity), "m"), [0.0001, 10000, 0, 0]);
+  });
+
+  test("below zero a view without a camera has depths, which are refused by name; behind a camera there is none", async () => {
+    await rejected(depthPng(row(NaN, 5, -2.5, -3), "px"), "range", "depth.data[2]", /-2.5 px would be a hole; shift the depths.*writeNpy/);
+    assert.deepEqual(await stored(row(5, -2.5, -Infinity), "m"), [0.0001, 50000, 0, 0]);
+    const { image, depth, light } = pair();
+    const run = estimator({}, { image, depth, light });
+    run.step();
+    const { width, height } = image;
+    const data = run.imageDepth();
+    await rejected(depthPng({ width, height, data }, "px"), "range", `depth.data[${data.findIndex((value) => value < 0)}]`);
+    // The page's: refined depths lie where the depth map's are.
+    const refined = run.refinedDepth();
+    const back = decodeDepth((await depthPng({ width: depth.width, height: depth.height, data: refined }, "px")).bytes).data;
+    assert.deepEqual([...back].map((value) => value > 0), [...refined].map((value) => Number.isFinite(value)));
+    run.free();
+  });
 });
 
 test("what does not fit is refused by its name", async () => {
   refused(() => writeNpy({ width: 2, height: 2, channels: 1, data: new Float32Array(3) }), "size", "raster");
-  refused(() => matrixText({ ...POSE, translation: [1, NaN, 2] }), "range", "pose");
-  refused(() => matrixText({ ...POSE, rotation: [1, 0, 0] }), "range", "pose");
-  refused(() => poseJson({ ...POSE, scale: Infinity }, "m"), "range", "pose");
+  refused(() => matrixText({ ...POSE, translation: [1, NaN, 2] }), "range", "pose.translation");
+  refused(() => matrixText({ ...POSE, rotation: [1, 0, 0] }), "size", "pose.rotation");
+  refused(() => poseJson({ ...POSE, scale: Infinity }, "m"), "range", "pose.scale");
+  refused(() => poseJson({ ...POSE, angles: { ...POSE.angles, beta: NaN } }, "m"), "range", "pose.angles.beta");
+  refused(() => poseJson({ ...POSE, angles: undefined }, "m"), "type", "pose.angles");
+  refused(() => poseJson(POSE, "m", "converged"), "type", "report.status");
+  refused(() => poseJson(POSE, "m", { status: "lost", uncertainty: "large" }), "type", "report.uncertainty");
   refused(() => lightCsv([1, 2, 3]), "size", "light");
   refused(() => writeClouds([], "pixels"), "size", "clouds");
   for (const clouds of [undefined, {}]) refused(() => writeClouds(clouds), "type", "clouds");
   for (const cloud of [null, {}]) refused(() => writeClouds([cloud]), "type", "clouds[0].points");
+  refused(() => writeClouds(new Array(2)), "type", "clouds[0].points");
+  for (const colours of [null, [9, 9, 9], new Float32Array([NaN, 300, -5])]) refused(() => writeClouds([{ points: new Float32Array(3), colours }]), "size", "clouds[0].colours");
   assert.ok(!new TextDecoder("latin1").decode(writeClouds([{ points: new Float32Array(3) }], "m\nend_header")).includes("\nend_header;"));
   refused(() => matrixText(), "type", "pose");
-  refused(() => matrixText({ ...POSE, rotation: [...POSE.rotation, 1, 2, 3] }), "range", "pose");
-  refused(() => matrixText({ ...POSE, translation: [1, 2, 3, 4, 5] }), "range", "pose");
+  refused(() => matrixText({ ...POSE, rotation: [...POSE.rotation, 1, 2, 3] }), "size", "pose.rotation");
+  refused(() => matrixText({ ...POSE, translation: [1, 2, 3, 4, 5] }), "size", "pose.translation");
+  refused(() => matrixText({ ...POSE, rotation: "123456789" }), "type", "pose.rotation");
+  refused(() => matrixText({ ...POSE, scale: 1n }), "type", "pose.scale");
   refused(() => poseJson(POSE, "furlong"), "option", "unit");
   refused(() => lightCsv(), "type", "light");
   refused(() => lightCsv(LIGHT.map(() => NaN)), "range", "light");
@@ -130,9 +181,12 @@ test("what does not fit is refused by its name", async () => {
   refused(() => writeNpy({ width: 0.5, height: 2, channels: 1, data: new Float32Array(1) }), "range", "raster.width");
   refused(() => writeNpy({ width: -1, height: -1, channels: 1, data: new Float32Array(1) }), "range", "raster.width");
   refused(() => writeNpy({ width: 1, height: 1, channels: 1, data: new Int8Array(1) }), "type", "raster.data");
-  const rejected = (promise, code, field) => assert.rejects(promise, (error) => error instanceof BimodalError && error.code === code && error.field === field);
   await rejected(writePng({ width: 1, height: 1, channels: 2, data: new Uint8Array(2) }), "unsupported", "raster.channels");
   await rejected(writePng({ width: 1, height: 1, channels: 1, data: new Float32Array(1) }), "type", "raster.data");
+  const dot = { width: 1, height: 1, channels: 1, data: new Uint8Array(1) };
+  await rejected(writePng(dot, null), "type", "texts");
+  await rejected(writePng(dot, { Unit: 5 }), "type", "texts.Unit");
+  for (const name of ["", "k".repeat(80)]) await rejected(writePng(dot, { [name]: "v" }), "range", "texts");
   await rejected(depthPng({ width: 2, height: 2, data: new Float32Array(3) }, "m"), "size", "depth");
   await rejected(depthPng({ width: 1, height: 1, data: new Float32Array(1) }), "type", "unit");
   await rejected(normalsPng({ width: 2, height: 2, data: new Float32Array(4) }), "size", "normals");
@@ -174,6 +228,22 @@ describe("the report of a run", () => {
   test("says nothing of a truth that is not known, and that z is free in a view without a camera", () => {
     assert.ok(!harmless(runReportHtml(run({ truth: null }))).text.includes("True"));
     assert.ok(harmless(runReportHtml(run({ unit: "px" }))).text.includes("free"));
+  });
+
+  test("names what is missing, and what is no date, word, pose or light", () => {
+    const wrong = (changes, code, field) => refused(() => runReportHtml(run(changes)), code, field);
+    for (const name of ["words", "numbers", "options", "pose", "light", "status", "tone", "unit"]) wrong({ [name]: undefined }, "type", `report.${name}`);
+    for (const made of [5, new Date(NaN)]) wrong({ made }, "type", "report.made");
+    wrong({ tone: "__proto__" }, "option", "report.tone");
+    wrong({ unit: "furlong" }, "option", "report.unit");
+    wrong({ words: [{ toString: () => "<b>" }] }, "type", "report.words[0]");
+    wrong({ numbers: [["Overlap"]] }, "type", "report.numbers[0][1]");
+    wrong({ options: "ab" }, "type", "report.options");
+    wrong({ light: LIGHT.map(() => NaN) }, "range", "report.light");
+    wrong({ truth: { ...POSE, translation: [1, 2] } }, "size", "report.truth.translation");
+    wrong({ pictures: [null] }, "type", "report.pictures[0]");
+    wrong({ inputs: {} }, "type", "report.inputs");
+    refused(() => runReportHtml(), "type", "report");
   });
 
   test("escapes whatever comes from elsewhere", () => {

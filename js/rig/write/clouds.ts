@@ -1,5 +1,5 @@
 /** Clouds as a binary PLY with a colour for each point. */
-import { BimodalError } from "../../errors.js";
+import { fault } from "./built.js";
 
 export interface Cloud {
   /** 3 numbers for each point, interleaved, metres; points that are not finite are left out. */
@@ -21,17 +21,14 @@ const isThere = (points: Float32Array, at: number): boolean =>
 function check(cloud: Cloud, index: number): void {
   const field = `clouds[${index}]`;
   const { points, colours } = Object(cloud) as Cloud;
-  if (!(points instanceof Float32Array)) throw new BimodalError("type", `${field}.points: must be a Float32Array`, `${field}.points`);
-  if (points.length % 3 !== 0) {
-    throw new BimodalError("size", `${field}.points: needs 3 numbers for each point, not ${points.length}`, `${field}.points`);
-  }
-  if (colours !== undefined && colours.length !== points.length) {
-    throw new BimodalError("size", `${field}.colours: needs ${points.length} numbers, not ${colours.length}`, `${field}.colours`);
-  }
+  if (!(points instanceof Float32Array)) throw fault("type", `${field}.points`, "must be a Float32Array");
+  if (points.length % 3 !== 0) throw fault("size", `${field}.points`, `needs 3 numbers for each point, not ${points.length}`);
+  // Other numbers would be cut to bytes.
+  if (colours !== undefined && Object(colours).byteLength !== points.length) throw fault("size", `${field}.colours`, `needs ${points.length} bytes`);
 }
 
 /** A comment is one line of ASCII. */
-const comment = (name: string): string => name.replace(/[^\x20-\x7e]/g, "?");
+const comment = (words: string): string => String(words).replace(/[^\x20-\x7e]/g, "?");
 
 function header(clouds: readonly Cloud[], count: number, unit: string): string {
   const labels = clouds.length > 1;
@@ -54,11 +51,10 @@ function header(clouds: readonly Cloud[], count: number, unit: string): string {
  * The unit is told in a comment.
  */
 export function writeClouds(clouds: readonly Cloud[], unit: "metres" | "pixels" = "metres"): Uint8Array<ArrayBuffer> {
-  if (!Array.isArray(clouds)) throw new BimodalError("type", "clouds: must be a list of clouds", "clouds");
-  if (clouds.length === 0 || clouds.length > MOST_CLOUDS) {
-    throw new BimodalError("size", `clouds: needs 1 to ${MOST_CLOUDS} of them, not ${clouds.length}`, "clouds");
-  }
-  clouds.forEach(check);
+  if (!Array.isArray(clouds)) throw fault("type", "clouds", "must be a list of clouds");
+  if (clouds.length === 0 || clouds.length > MOST_CLOUDS) throw fault("size", "clouds", `needs 1 to ${MOST_CLOUDS} of them, not ${clouds.length}`);
+  // `forEach` would pass over holes.
+  [...clouds].forEach(check);
   let count = 0;
   for (const { points } of clouds) for (let at = 0; at < points.length; at += 3) if (isThere(points, at)) count++;
   const head = new TextEncoder().encode(header(clouds, count, unit));

@@ -1,5 +1,5 @@
 /** Extrinsics as Open3D's PinholeCameraParameters and as librealsense's structures have them, both JSON. */
-import { BimodalError } from "../../errors.js";
+import { fault } from "./built.js";
 import { list } from "./numbers.js";
 import { type Camera, type Rig, padded, reaches, rows } from "./rig.js";
 
@@ -9,21 +9,15 @@ const columns = (matrix: readonly (readonly number[])[]): number[] =>
 
 function open3dIntrinsic(camera: Camera | undefined, notes: string[]): string[] {
   if (camera === undefined) {
-    const field = "context.colour";
-    throw new BimodalError("missing", `${field}: is required, since Open3D reads no extrinsics without the camera's intrinsics`, field);
+    throw fault("missing", "context.colour", "is required, since Open3D reads no extrinsics without the camera's intrinsics");
   }
   const { fx, fy, cx, cy, size, distortion } = camera;
   const [width, height] = size ?? [0, 0];
   if (size === undefined) notes.push("the colour camera's size is not known: the file says 0");
   if (reaches(distortion, 0)) notes.push("the colour camera's distortion is left out: Open3D takes pictures whose distortion was removed");
-  const matrix = columns([
-    [fx, 0, cx],
-    [0, fy, cy],
-    [0, 0, 1],
-  ]);
   return [
     `    "height": ${height},`,
-    `    "intrinsic_matrix": [${list(matrix)}],`,
+    `    "intrinsic_matrix": [${list([fx, 0, 0, 0, fy, 0, cx, cy, 1])}],`,
     `    "width": ${width}`,
   ];
 }
@@ -75,7 +69,7 @@ function realsenseCamera(camera: Camera | undefined, key: string, name: string, 
 
 /** As `rs2_extrinsics` has it: the rotation column by column, the translation in metres, from the depth to the colour stream. */
 export function realsenseJson(rig: Rig, notes: string[]): string {
-  const rotation = columns([0, 3, 6].map((at) => rig.rotation.slice(at, at + 3)));
+  const rotation = [0, 3, 6, 1, 4, 7, 2, 5, 8].map((at) => rig.rotation[at] ?? NaN);
   return [
     "{",
     ...realsenseCamera(rig.depth, "depth", "depth", notes),

@@ -1,5 +1,5 @@
 /** Extrinsics as a 4x4 matrix in text, and as a line for ROS 2. */
-import { BimodalError } from "../../errors.js";
+import { fault } from "./built.js";
 import { real } from "./numbers.js";
 import { type Rig, type RigContext, rows } from "./rig.js";
 
@@ -30,17 +30,15 @@ export function quaternion(r: readonly number[]): [x: number, y: number, z: numb
 const FRAME = /^[A-Za-z0-9_][A-Za-z0-9_/.-]*$/;
 
 function frame(name: string, field: string): string {
-  if (FRAME.test(name)) return name;
-  throw new BimodalError("range", `${field}: is no name of a ROS frame: letters, digits, "_", "/", "." and "-"`, field);
+  if (typeof name === "string" && FRAME.test(name)) return name;
+  throw fault("range", field, 'is no name of a ROS frame: letters, digits, "_", "/", "." and "-"');
 }
 
 /** tf2 holds the pose of the child in the parent: P_parent = R P_child + t, so that the colour camera is the parent. */
 export function ros2Line(rig: Rig, { frames }: RigContext): string {
   const parent = frame(frames?.colour ?? "camera_color_optical_frame", "context.frames.colour");
   const child = frame(frames?.depth ?? "camera_depth_optical_frame", "context.frames.depth");
-  if (parent === child) {
-    throw new BimodalError("range", "context.frames: both cameras have the same frame", "context.frames");
-  }
+  if (parent === child) throw fault("range", "context.frames", "both cameras have the same frame");
   const [x = 0, y = 0, z = 0] = rig.translation;
   const [qx, qy, qz, qw] = quaternion(rig.rotation);
   const values = Object.entries({ x, y, z, qx, qy, qz, qw }).map(([name, value]) => `--${name} ${real(value)}`);

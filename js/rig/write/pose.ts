@@ -2,8 +2,8 @@
  * Extrinsics in the files of those who use them. All hold P_colour = R P_depth + t in metres, each in its format's own
  * words, and every number reads back as the very same one.
  */
-import { BimodalError } from "../../errors.js";
 import type { Pose } from "../../types.js";
+import { oneOf } from "./built.js";
 import { open3dJson, realsenseJson } from "./json.js";
 import { matrixText, ros2Line } from "./plain.js";
 import { type Rig, type RigContext, rigOf } from "./rig.js";
@@ -39,9 +39,7 @@ export const poseFormats: readonly PoseFormat[] = Object.freeze(Object.keys(FORM
 
 /** One pose of a rig as a file; `context` fills in what the format can hold beside it. */
 export function writePose(pose: Pose, format: PoseFormat, context: RigContext = {}): WrittenPose {
-  if (!Object.hasOwn(FORMATS, format)) {
-    throw new BimodalError("option", `format: "${format}" is unknown; known: ${poseFormats.join(", ")}`, "format");
-  }
+  oneOf(poseFormats, format, "format");
   const { name, write } = FORMATS[format];
   const notes: string[] = [];
   const text = write(rigOf(pose, context), notes, context);

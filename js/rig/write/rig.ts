@@ -2,8 +2,8 @@
  * What the writers of extrinsics take, checked: a file that holds a number which is none, a sheared rotation or a scale
  * would be believed by whoever reads it.
  */
-import { BimodalError } from "../../errors.js";
 import type { Pose, RigCamera } from "../../types.js";
+import { fault, like, oneOf } from "./built.js";
 
 /** Width and height in pixels. */
 export type Size = readonly [width: number, height: number];
@@ -42,12 +42,11 @@ const LENGTHS = { brown: [0, 4, 5, 8], fisheye: [4] } as const;
 const MOST_SHEAR = 1e-6;
 
 function numbers(values: ArrayLike<number>, lengths: readonly number[], field: string): number[] {
+  const { length } = Object(values) as ArrayLike<number>;
+  if (!lengths.includes(length)) throw fault("size", field, `needs ${lengths.join(" or ")} numbers, not ${length}`);
   const copy = Array.from(values);
-  if (!lengths.includes(copy.length)) {
-    throw new BimodalError("size", `${field}: needs ${lengths.join(" or ")} numbers, not ${copy.length}`, field);
-  }
-  const wrong = copy.find((value) => !Number.isFinite(value));
-  if (wrong !== undefined) throw new BimodalError("range", `${field}: must be finite numbers (got ${wrong})`, field);
+  const wrong = copy.findIndex((value) => !Number.isFinite(value));
+  if (wrong >= 0) throw fault("range", field, `must be finite numbers (got ${String(copy[wrong])})`);
   return copy;
 }
 
@@ -60,37 +59,36 @@ function checkRotation(r: readonly number[]): void {
   const shear = Math.max(...each.flatMap((i) => each.map((j) => Math.abs(dot(i, j) - (i === j ? 1 : 0)))));
   if (shear <= MOST_SHEAR && determinant > 0) return;
   const what = determinant > 0 ? `R Rᵀ differs from the identity by ${shear.toPrecision(2)}` : "it mirrors";
-  throw new BimodalError("range", `pose.rotation: is no rotation, ${what}`, "pose.rotation");
+  throw fault("range", "pose.rotation", `is no rotation, ${what}`);
 }
 
 function size(value: Size | undefined, field: string): Size | undefined {
   if (value === undefined) return undefined;
-  const [width, height] = value;
+  const [width = NaN, height = NaN] = numbers(value, [2], field);
   const isSize = [width, height].every((side) => Number.isSafeInteger(side) && side > 0);
-  if (!isSize) throw new BimodalError("size", `${field}: must be whole numbers above zero (got ${width} x ${height})`, field);
+  if (!isSize) throw fault("size", field, `must be whole numbers above zero (got ${width} x ${height})`);
   return [width, height];
 }
 
 function camera(given: RigCamera | undefined, pixels: Size | undefined, name: "colour" | "depth"): Camera | undefined {
   const known = size(pixels, `context.sizes.${name}`);
   if (given === undefined) return undefined;
+  const field = `context.${name}`;
+  like({}, given, field);
   const { model = "brown", fx, fy, cx, cy } = given;
-  if (!Object.hasOwn(LENGTHS, model)) {
-    throw new BimodalError("option", `context.${name}.model: "${model}" is unknown; known: brown, fisheye`, `context.${name}.model`);
-  }
-  numbers([fx, fy, cx, cy], [4], `context.${name}`);
-  if (fx <= 0 || fy <= 0) throw new BimodalError("range", `context.${name}: focal lengths must be above zero`, `context.${name}`);
+  oneOf(Object.keys(LENGTHS), model, `${field}.model`);
+  numbers([fx, fy, cx, cy], [4], field);
+  if (fx <= 0 || fy <= 0) throw fault("range", field, "focal lengths must be above zero");
   const none = model === "fisheye" ? [0, 0, 0, 0] : [];
-  const distortion = numbers(given.distortion ?? none, LENGTHS[model], `context.${name}.distortion`);
+  const distortion = numbers(given.distortion ?? none, LENGTHS[model], `${field}.distortion`);
   return { model, fx, fy, cx, cy, distortion, size: known };
 }
 
 /** The rig that a pose and what is known beside it make. */
 export function rigOf(pose: Pose, context: RigContext): Rig {
-  const { scale } = Object(pose) as Pose;
-  if (scale !== 1) {
-    throw new BimodalError("range", `pose.scale: extrinsics of a rig have the scale 1 (got ${scale})`, "pose.scale");
-  }
+  like({}, pose, "pose");
+  like({}, context, "context");
+  if (pose.scale !== 1) throw fault("range", "pose.scale", `extrinsics of a rig have the scale 1 (got ${String(pose.scale)})`);
   const rotation = numbers(pose.rotation, [9], "pose.rotation");
   checkRotation(rotation);
   return {

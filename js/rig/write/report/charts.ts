@@ -38,8 +38,9 @@ function ticks(from: number, to: number): number[] {
   return Array.from({ length: Math.max(0, count) }, (_, k) => (first + k) * by);
 }
 
-/** Lengths in units of the drawing. */
-const INTERVALS = { width: 400, left: 120, right: 14, line: 24, axis: 34 };
+/** Lengths of both drawings, in their units, named where they are used: a list is shorter to download. */
+const INTERVALS = [400, 120, 14, 24, 34] as const;
+const PANEL = [320, 200, 26, 10, 10, 40, 5, 3, 32] as const;
 
 export interface Interval {
   name: string;
@@ -56,7 +57,7 @@ export function intervals(all: readonly Interval[]): Markup | undefined {
   const known = all.filter(({ value, interval }) => [value, ...interval].every((number) => Number.isFinite(number) && number >= 0));
   const most = Math.max(...known.map(({ value, interval }) => Math.max(value, interval[1])));
   if (known.length === 0 || most <= 0) return undefined;
-  const { width, left, right, line, axis } = INTERVALS;
+  const [width, left, right, line, axis] = INTERVALS;
   const height = known.length * line + axis;
   const end = 1.05 * most;
   const x = (pixels: number) => at(left + (pixels / end) * (width - left - right));
@@ -78,9 +79,6 @@ interface Line {
   series: number;
   curve: Curve;
 }
-
-/** Lengths in units of the drawing. */
-const PANEL = { width: 320, height: 200, left: 26, right: 10, top: 10, bottom: 40, mark: 5, between: 3, tick: 32 };
 
 /** The part of a line that a panel shows, cut where it leaves it; one stroke as long as it stays, so that dashes run on. */
 function path({ points }: Curve, x: (offset: number) => string, y: (height: number) => string): string {
@@ -110,7 +108,7 @@ function says({ points, best, from, to }: Curve, unit: string): string {
 }
 
 function panel(title: string, unit: string, lines: readonly Line[]): Markup {
-  const { width, height, left, right, top, bottom, mark, between, tick: under } = PANEL;
+  const [width, height, left, right, top, bottom, mark, between, under] = PANEL;
   const all = lines.flatMap((line) => line.curve.points.map(({ offset }) => offset));
   const [first, last] = [Math.min(...all), Math.max(...all)];
   const x = (offset: number) => at(left + ((offset - first) / (last - first || 1)) * (width - left - right));

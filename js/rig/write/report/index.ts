@@ -3,6 +3,7 @@
  * allows none, and whatever comes from files is escaped.
  */
 import type { CheckReport } from "../../../types.js";
+import { type Example, like } from "../built.js";
 import type { Picture, ReportOptions } from "./contents.js";
 import { reportPage } from "./page.js";
 import { inputTable, pictureSection } from "./parts.js";
@@ -10,11 +11,27 @@ import { candidateTable, cueTable, estimateSection, frameTable, sensitivitySecti
 
 export type { Picture, ReportInput, ReportOptions } from "./contents.js";
 
+/** What the sections look into; a word or a number that is none is said to be "not known". */
+const REPORT: Example = {
+  warnings: [],
+  estimate: { rotation: [], translation: [], angles: {} },
+  covariance: [],
+  health: { interval: [] },
+  candidates: { "*": { interval: [] } },
+  cues: { "*": {} },
+  frames: [{}],
+  sensitivity: [{ offsets: [], values: [] }],
+};
+
 export function reportHtml(report: CheckReport, pictures: readonly Picture[] = [], options: ReportOptions = {}): string {
+  like(REPORT, report, "report");
+  like([{}], pictures, "pictures");
+  like({}, options, "options");
   const { title = "Check of a calibration", made, inputs = [] } = options;
+  like([{}], inputs, "options.inputs");
   const body = [
     ...[verdictCard(report), warningList(report), candidateTable(report), pictureSection(pictures), cueTable(report)],
     ...[frameTable(report), sensitivitySection(report), estimateSection(report), inputTable(inputs)],
   ];
-  return reportPage(title, made, body);
+  return reportPage(title, made, "options.made", body);
 }

@@ -21,9 +21,8 @@ const ENTITIES: Readonly<Record<string, string>> = { "&": "&amp;", "<": "&lt;", 
 const escaped = (text: string): string => text.replace(/[&<>"']/g, (letter) => ENTITIES[letter] ?? "");
 
 function written(part: Part): string {
-  if (part === undefined) return "";
   if (part instanceof Markup) return String(part);
-  return typeof part === "object" ? part.map(written).join("") : escaped(String(part));
+  return Array.isArray(part) ? part.map(written).join("") : escaped(String(part ?? ""));
 }
 
 /** A template whose values are escaped; attributes that hold one are in double quotes. */

@@ -1,10 +1,12 @@
 /** The page that every report is put into: it has no script, and its policy allows none. */
+import { fault } from "../built.js";
 import { Markup, type Part, html } from "./markup.js";
 import { STYLE, STYLE_SHA256 } from "./style.js";
 
 const POLICY = `default-src 'none'; img-src data:; style-src 'sha256-${STYLE_SHA256}'; base-uri 'none'; form-action 'none'`;
 
-export function reportPage(title: string, made: Date | undefined, body: Part): string {
+export function reportPage(title: string, made: Date | undefined, field: string, body: Part): string {
+  if (made !== undefined && !(made instanceof Date && made.getTime() <= Infinity)) throw fault("type", field, "must be a Date that holds a time");
   const date = made && `${made.toISOString().slice(0, 16).replace("T", " ")} UTC`;
   const page = html`<!doctype html>
 <html lang="en">

@@ -1,6 +1,6 @@
 /** Parts that any report is made of. */
-import { BimodalError } from "../../../errors.js";
 import type { CheckVerdict } from "../../../types.js";
+import { fault } from "../built.js";
 import type { Picture, ReportInput } from "./contents.js";
 import { type Markup, type Part, html } from "./markup.js";
 
@@ -28,15 +28,12 @@ export const table = (kind: string, columns: readonly string[], rows: Part): Mar
 /** Pixels in the file itself; SVG may ask for other files. */
 const PICTURE = /^data:image\/(?:png|jpeg|webp|avif|gif);base64,[A-Za-z0-9+/]+={0,2}$/;
 
-function checkPicture({ dataUrl }: Picture, index: number): void {
-  const field = `pictures[${index}].dataUrl`;
-  if (!PICTURE.test(dataUrl)) throw new BimodalError("type", `${field}: must be a data URL of a PNG, JPEG, WebP, AVIF or GIF`, field);
-}
-
 export function pictureSection(pictures: readonly Picture[]): Markup | undefined {
-  pictures.forEach(checkPicture);
   if (pictures.length === 0) return undefined;
-  const figures = pictures.map(({ title, dataUrl }) => html`<figure><img src="${dataUrl}" alt="${title}"><figcaption>${title}</figcaption></figure>`);
+  const figures = pictures.map(({ title, dataUrl }, index) => {
+    if (!PICTURE.test(String(dataUrl))) throw fault("type", `pictures[${index}].dataUrl`, "must be a data URL of a PNG, JPEG, WebP, AVIF or GIF");
+    return html`<figure><img src="${dataUrl}" alt="${title}"><figcaption>${title}</figcaption></figure>`;
+  });
   return section("Pictures", html`<div class="pictures">${figures}</div>`);
 }
 

@@ -21,10 +21,9 @@ figure{margin:0}
 .card>div{flex:1;min-width:0}
 .verdict{font-size:1.5rem;font-weight:700;line-height:1.2;margin:0}
 .verdict .name{display:block;font-size:1rem;font-weight:400;color:var(--ink)}
-.consistent .verdict,.word.consistent{color:var(--good)}.off .verdict,.word.off{color:var(--wrong)}.undecided .verdict,.word.undecided{color:var(--open)}
-.card.consistent{border-color:var(--good)}.card.off{border-color:var(--wrong)}.card.undecided{border-color:var(--open)}
-.sign{flex:none;width:3.5rem;height:3.5rem;fill:none;stroke-width:3;stroke-linecap:round;stroke-linejoin:round}
-.consistent .sign{stroke:var(--good)}.off .sign{stroke:var(--wrong)}.undecided .sign{stroke:var(--open)}
+.consistent{--said:var(--good)}.off{--said:var(--wrong)}.undecided{--said:var(--open)}
+.verdict,.word{color:var(--said)}.card{border-color:var(--said)}
+.sign{stroke:var(--said);flex:none;width:3.5rem;height:3.5rem;fill:none;stroke-width:3;stroke-linecap:round;stroke-linejoin:round}
 .facts{display:flex;flex-wrap:wrap;gap:.5rem 2rem;margin:.75rem 0 0}
 dd{margin:0;font-variant-numeric:tabular-nums}
 .warnings{margin:0;padding-left:1.25rem}.warnings li{margin:.25rem 0}.warnings li::marker{content:"! ";color:var(--wrong);font-weight:700}
@@ -42,15 +41,14 @@ svg{display:block;width:100%;height:auto;font:11px system-ui,sans-serif}
 .bar{height:.625rem;margin-top:.4rem}.track{fill:var(--sunk)}.fill{fill:var(--c3)}
 .intervals{max-width:34rem;margin-top:1rem}
 .grid{stroke:var(--line);fill:none}.tick{fill:var(--soft)}.label{fill:var(--ink);font-size:12px}
-.whisker{fill:none;stroke-width:2}.whisker.candidate{stroke:var(--c1)}.whisker.estimate{stroke:var(--c3)}
-circle.candidate{fill:var(--c1)}circle.estimate{fill:var(--c3)}
+.candidate{--its:var(--c1)}.estimate{--its:var(--c3)}.whisker{fill:none;stroke:var(--its);stroke-width:2}.intervals circle{fill:var(--its)}
 .panels{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(100%,19rem),1fr));gap:1.25rem;margin-top:1rem}
 .panel figcaption{font-weight:600}
 .level{fill:none;stroke:var(--ink);stroke-dasharray:3 3;opacity:.6}
-.series{fill:none;stroke-width:2;stroke-linejoin:round}
-.s1{stroke:var(--c1)}.s2{stroke:var(--c2);stroke-dasharray:7 3}.s3{stroke:var(--c3);stroke-dasharray:2 2}.s4{stroke:var(--c4);stroke-dasharray:8 3 2 3}.s5{stroke:var(--ink)}
+.series,.width{stroke:var(--its)}.series{fill:none;stroke-width:2;stroke-linejoin:round}
+.s1{--its:var(--c1)}.s2{--its:var(--c2);stroke-dasharray:7 3}.s3{--its:var(--c3);stroke-dasharray:2 2}.s4{--its:var(--c4);stroke-dasharray:8 3 2 3}.s5{--its:var(--ink)}
 .width{fill:none;stroke-width:1.5;stroke-dasharray:none}
-.best{stroke:none}.best.s1{fill:var(--c1)}.best.s2{fill:var(--c2)}.best.s3{fill:var(--c3)}.best.s4{fill:var(--c4)}.best.s5{fill:var(--ink)}
+.best{fill:var(--its)}
 .says{list-style:none;margin:.25rem 0 0;padding:0}
 .key{display:inline-block;width:1.5rem;height:.5rem;vertical-align:middle}
 .pictures{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(100%,24rem),1fr));gap:1rem}
@@ -75,4 +73,4 @@ figure,tr,.card,.intervals,pre{break-inside:avoid}h2,h3{break-after:avoid}
 `;
 
 /** Of STYLE, base64; a test holds it, and says the right one. */
-export const STYLE_SHA256 = "iKzyzrat2Hpk4/rONYiywTRpl954vWSOS9BBtyMSmL4=";
+export const STYLE_SHA256 = "PN+6LlrW9erk4iJ9/2/l/yDMBtEz7EYQ3u5zXpETAaA=";

@@ -1,0 +1,69 @@
+/** What the writers of a run are given: names, types and numbers, checked before anything is written. */
+import { type ArrayType, type Check, array, isObject, number, numbers, ranged, side, word, wrong } from "../check.js";
+import { BimodalError } from "../errors.js";
+import type { Raster } from "../npy.js";
+import type { Pose, StepReport } from "../types.js";
+import { like } from "../rig/write/built.js";
+
+export const checkUnit = word("m", "px");
+
+const channelCount = ranged({ kind: "whole", min: 1 });
+
+/** Checks that a raster is one of these kinds of numbers, and as long as it says. */
+export function checkRaster(raster: Raster<ArrayLike<number>>, field: string, ...kinds: readonly ArrayType[]): void {
+  if (!isObject(raster)) throw wrong(field, "an object", raster);
+  const { width, height, channels, data } = raster;
+  side(width, `${field}.width`);
+  side(height, `${field}.height`);
+  channelCount(channels, `${field}.channels`);
+  array(...kinds)(data, `${field}.data`);
+  if (data.length !== width * height * channels || data.length === 0) {
+    throw new BimodalError("size", `${field}: ${width}x${height} pixels of ${channels} channels need ${width * height * channels} numbers, not ${data.length}`, field);
+  }
+}
+
+export const text: Check = (value, field) => {
+  if (typeof value !== "string") throw wrong(field, "a text", value);
+};
+
+/** So many numbers, none of which is infinite or none at all. */
+const finite = (count: number): Check => (value, field) => {
+  numbers(count)(value, field);
+  const other = Array.from(value as ArrayLike<number>).find((one) => !Number.isFinite(one));
+  if (other !== undefined) throw new BimodalError("range", `${field}: must be finite numbers (got ${other})`, field);
+};
+/** Nine coefficients for each of three channels. */
+export const checkLight = finite(27);
+
+const scaleOf = ranged({ kind: "number", above: 0 });
+const angleOf = ranged({ kind: "number" });
+const [nine, three] = [finite(9), finite(3)];
+
+/** Checks what a pose's matrix is made of. */
+export function checkPose(pose: Pose, field: string): void {
+  if (!isObject(pose)) throw wrong(field, "an object", pose);
+  scaleOf(pose.scale, `${field}.scale`);
+  nine(pose.rotation, `${field}.rotation`);
+  three(pose.translation, `${field}.translation`);
+}
+
+/** .. and its angles. */
+export function checkWholePose(pose: Pose, field: string): void {
+  checkPose(pose, field);
+  like({ angles: {} }, pose, field);
+  for (const name of ["alpha", "beta", "gamma"] as const) angleOf(pose.angles[name], `${field}.angles.${name}`);
+}
+
+type Standing = Pick<StepReport, "status" | "message" | "uncertainty">;
+
+export function checkStanding(report: Standing): void {
+  const { status, message = "", uncertainty } = Object(report) as Standing;
+  for (const [name, words] of Object.entries({ status, message })) text(words, `report.${name}`);
+  if (uncertainty === undefined) return;
+  like({ rotationDegrees: [], translation: [] }, uncertainty, "report.uncertainty");
+  const { rotationDegrees, translation, scale } = uncertainty;
+  for (const [name, sigmas] of Object.entries({ rotationDegrees, translation, scale: [scale] })) {
+    for (const sigma of sigmas) if (sigma !== null) number(sigma, `report.uncertainty.${name}`);
+  }
+  text(uncertainty.weakest, "report.uncertainty.weakest");
+}
