@@ -106,9 +106,8 @@ fn rotated(rotation: &Matrix3<f64>, vector: [Doubles; 3]) -> [Doubles; 3] {
     [row(0), row(1), row(2)]
 }
 
-/// Points that annealing needs: with 14 to 34 unknowns 5000 average noise to a twentieth of its size or less, and the rounds after
-/// it end where they do from 20000 (22 scenes of 640x480, 64 of 128x128).
-const ENOUGH_ANNEALED: usize = 5000;
+/// Points that annealing needs: with 14 to 34 unknowns 20000 average noise to a hundredth of its size.
+const ENOUGH_ANNEALED: usize = 20_000;
 
 /// How far from the pose a registration may start, and how long it may take.
 #[derive(Clone, Copy, Debug)]
@@ -117,8 +116,7 @@ pub struct PhotometricOptions {
     pub first_level: usize,
     /// Cap on the rounds.
     pub most_rounds: usize,
-    /// Points that take part at most, spread evenly over those that are visible. Where more are visible, the end is that of the
-    /// annealing, with the bias of the noise: a sample finds a start for all of them.
+    /// Points that take part at most, spread evenly over those that are visible.
     pub most_points: usize,
     /// Points that take part in the annealing at most: the rounds after it, with instrumental variables, end at the
     /// same pose from wherever nearby they start.
@@ -148,8 +146,8 @@ impl Default for PhotometricOptions {
 pub enum PhotometricTermination {
     /// Another round would change nothing.
     Settled,
-    /// The last rounds, with instrumental variables, would have raised the objective, or are not for a sample of the points: the
-    /// pose of least squares was kept. Usable, with the bias of the noise.
+    /// The last rounds, with instrumental variables, would have raised the objective: the pose of least squares was
+    /// kept. Usable, with the bias of the noise.
     Annealed,
     /// The cap on the rounds came first.
     MostRounds,
