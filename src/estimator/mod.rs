@@ -465,10 +465,12 @@ impl Estimator {
         }
     }
 
-    /// A verdict as it stands, or that of a depth map whose unit the colours contradict.
+    /// A verdict as it stands, or that of a depth map whose unit the colours contradict: where other poses explain them as well, that
+    /// may be why.
     fn doubt_unit(&mut self, ended: Verdict) -> Verdict {
-        let is_good = ended.0 == Status::Converged;
-        let unit = is_good.then(|| self.registration.better_unit(&self.pair, &self.solution.pose)).flatten();
+        let has_rivals = !self.history.is_hollow && ended.0 == Status::Ambiguous && !self.report.rivals.is_empty();
+        let is_asked = ended.0 == Status::Converged || has_rivals;
+        let unit = is_asked.then(|| self.registration.better_unit(&self.pair, &self.solution.pose)).flatten();
         unit.map_or(ended, verdict::verdict_of_other_unit)
     }
 

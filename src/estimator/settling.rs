@@ -223,6 +223,7 @@ mod tests {
             (&joint, sample("vase", "window", 256, 40.0, 0.1, true)),
             (&joint, sample("bust", "window", 128, 20.0, 0.3, false)),
             (&known, sample("bust", "window", 128, 20.0, 0.1, false)),
+            (&known, sample("bust", "window", 128, 20.0, 0.0, false)),
             (&fixed, sample("bust", "overcast", 128, 60.0, 0.0, true)),
         ] {
             let (full, none) = ended(&sample, options, -1.0);
@@ -239,7 +240,7 @@ mod tests {
             left_out += kept;
         }
         // One for each of the scenes at the least: else this compares full solves with themselves.
-        assert!(left_out >= 7, "{left_out}");
+        assert!(left_out >= 8, "{left_out}");
     }
 
     #[test]

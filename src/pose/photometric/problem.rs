@@ -106,8 +106,9 @@ fn rotated(rotation: &Matrix3<f64>, vector: [Doubles; 3]) -> [Doubles; 3] {
     [row(0), row(1), row(2)]
 }
 
-/// Points that annealing needs: with 14 to 34 unknowns 20000 average noise to a hundredth of its size.
-const ENOUGH_ANNEALED: usize = 20_000;
+/// Points that annealing needs: with 14 to 34 unknowns 5000 average noise to a twentieth of its size or less, and the rounds after
+/// it end where they do from 20000 (22 scenes of 640x480, 64 of 128x128).
+const ENOUGH_ANNEALED: usize = 5000;
 
 /// How far from the pose a registration may start, and how long it may take.
 #[derive(Clone, Copy, Debug)]

@@ -41,6 +41,11 @@ const DAMPING_AFTER_FAILURE: f64 = 8.0;
 const LEAST_DAMPING: f64 = 1e-9;
 /// A step below this, in radians and object sizes, changes nothing: 1e-5 degrees.
 const SETTLED_STEP: f64 = 1e-7;
+/// A round on the way to the robust scale of the noise is done with a step below this, in the same units: the next one moves
+/// the pose by as much or more.
+const SMALL_STEP: f64 = 1e-3;
+/// A round at that scale is done with a step below this, 0.002 degrees: less than [`FINE_SETTLED`].
+const SMALL_FINE_STEP: f64 = 3e-5;
 /// A coarse level is done when a round rotates by less, degrees.
 const COARSE_SETTLED: f64 = 0.3;
 /// Annealing is done when a round at the final scale rotates by less, degrees: points that appear and disappear at the
@@ -54,8 +59,10 @@ const MOST_INSTRUMENTAL_STEPS: usize = 12;
 /// Where there are more points than annealing needs, these rounds go first with the points of the annealing and then with
 /// all of them, and end when no unknown moves by more than this share of its sigma: steps halve, so that as much is left.
 const SETTLED_SIGMAS: f64 = 0.02;
-/// These rounds are undone when they raise the objective by more than this share: they should only trade noise.
-const LARGEST_RISE: f64 = 0.1;
+/// These rounds are undone when they raise the objective by more than this share: they should only trade noise. Least squares
+/// seek places between pixels, where a cubic spline leaves 0.572 of the variance of white noise, 0.756 along either axis;
+/// what they find there is lost again on the pixels.
+const LARGEST_RISE: f64 = 1.0 / 0.572 - 1.0;
 /// Fewest points: two for each unknown of the pose.
 const FEWEST_POINTS: usize = 14;
 
@@ -335,7 +342,8 @@ impl Photometric {
             }
             descent.damping *= DAMPING_AFTER_FAILURE;
         }
-        let ends = size < SETTLED_STEP || descent.steps >= MOST_STEPS;
+        let small = if descent.at_noise { SMALL_FINE_STEP } else { SMALL_STEP };
+        let ends = size < small || descent.steps >= MOST_STEPS;
         Ok(if ends { self.after_annealing_round(&descent) } else { Phase::AnnealingStep(descent) })
     }
 
