@@ -32,6 +32,8 @@ pub(super) const LARGEST_STRUCTURE: f64 = 0.007;
 /// What residuals have in common up to which no other unit is tried: renders in the right one stay below, two of
 /// 110 random ones apart, log units.
 const EXPLAINED_STRUCTURE: f64 = 0.0015;
+/// Their noise up to which none is tried either, in units of the image's own: right pairs leave up to 1.23 of it.
+const EXPLAINED_NOISE: f64 = 1.25;
 /// Relief so many times as flat and as deep is held against the map's own, from what is nearest on. Units are mistaken by any
 /// factor, so these go from a tenth to ten times in steps of 1.3 to 1.7.
 const UNITS: [[f32; 6]; 2] = [[0.7, 0.5, 0.3, 0.2, 0.15, 0.1], [1.5, 2.0, 3.0, 5.0, 7.0, 10.0]];
@@ -40,11 +42,9 @@ const AWAY: f64 = 2.0;
 /// Rounds of a registration by another unit at most, as many as least squares take. Those with instrumental variables, which would
 /// take as long again, are left out for all reliefs alike, the map's own included.
 const UNIT_ROUNDS: usize = 5;
-/// Another unit explains the colours better where it leaves less noise, and less than this share of what residuals have in
-/// common: eleven random pairs in units wrong by two and five leave 0 to 0.33 of it by the right
-/// relief, 0.52 or more by five others. Random pairs in the right unit leave 2.2 times as much or more, three of files 1.3,
-/// photographs that were found 0.56, which is more than `LARGEST_STRUCTURE`.
-const BETTER_STRUCTURE: f64 = 0.5;
+/// Another unit explains the colours better where it leaves less than this share of the noise, and no more in common than
+/// [`LARGEST_STRUCTURE`]: 7500 residuals tell their noise to 0.8 %.
+const BETTER_NOISE: f64 = 0.95;
 
 /// How the registration of a candidate stands.
 pub enum Attempt {
@@ -249,14 +249,15 @@ impl ColourRegistration {
     /// depth map was given in. Before a parallel projection of the map alone: a pinhole's unit is that of all three axes.
     pub fn better_unit(&mut self, pair: &ViewPair, pose: &Similarity) -> Option<f32> {
         // White noise leaves nothing for another unit to explain, in all points or in the few that are tried here.
-        let is_explained = |found: &PhotometricReport| found.structure <= EXPLAINED_STRUCTURE;
+        let noise = EXPLAINED_NOISE * pair.image.log_noise();
+        let is_explained = |found: &PhotometricReport| found.structure <= EXPLAINED_STRUCTURE && found.noise <= noise;
         if !pair.depth.camera.is_orthographic() || self.found().is_some_and(is_explained) {
             return None;
         }
         // All of them by the points that its own unit shows.
         self.judge(pair, pose)?;
         let own = self.register_relief(pair, pose, 1.0).filter(|own| !is_explained(own))?;
-        let (mut better, mut noise) = (None, own.noise);
+        let (mut better, mut noise) = (None, BETTER_NOISE * own.noise);
         for way in UNITS {
             for unit in way {
                 let Some(found) = self.register_relief(pair, pose, unit) else { continue };
@@ -264,7 +265,7 @@ impl ColourRegistration {
                     break;
                 }
                 if found.noise < noise
-                    && found.structure < LARGEST_STRUCTURE.min(BETTER_STRUCTURE * own.structure)
+                    && found.structure < LARGEST_STRUCTURE
                     && gauge::growth(pair, &found.pose, pose) < COLLAPSE
                 {
                     (better, noise) = (Some(unit), found.noise);
@@ -372,9 +373,11 @@ mod tests {
     #[test]
     fn no_unit_is_asked_for_where_only_white_noise_is_left() {
         let (estimator, mut registration) = registered(10.0);
-        for (left, expected) in [(0.99, None), (1.01, Some(0.1))] {
-            registration.found.as_mut().unwrap().structure = left * EXPLAINED_STRUCTURE;
-            assert_eq!(better_unit(&estimator, &mut registration), expected, "{left} of the limit");
+        let limits = (EXPLAINED_STRUCTURE, EXPLAINED_NOISE * estimator.pair.image.log_noise());
+        for (structure, noise, expected) in [(0.99, 0.99, None), (1.01, 0.99, Some(0.1)), (0.99, 1.01, Some(0.1))] {
+            let found = registration.found.as_mut().unwrap();
+            (found.structure, found.noise) = (structure * limits.0, noise * limits.1);
+            assert_eq!(better_unit(&estimator, &mut registration), expected, "{structure} and {noise} of the limits");
         }
         // Without relief that is right there is nothing to tell, gate or no gate.
         let (estimator, mut registration) = registered(1.0);
