@@ -42,8 +42,8 @@ const AWAY: f64 = 2.0;
 /// Rounds of a registration by another unit at most, as many as least squares take. Those with instrumental variables, which would
 /// take as long again, are left out for all reliefs alike, the map's own included.
 const UNIT_ROUNDS: usize = 5;
-/// Another unit explains the colours better where it leaves less than this share of the noise, and no more in common than
-/// [`LARGEST_STRUCTURE`]: 7500 residuals tell their noise to 0.8 %.
+/// Another unit explains the colours better where it leaves less than this share of the noise, and less in common, too: 7500
+/// residuals tell their noise to 0.8 %. Right pairs leave 0.97 or more by other units, wrong ones 0.93 or less by their own.
 const BETTER_NOISE: f64 = 0.95;
 
 /// How the registration of a candidate stands.
@@ -265,7 +265,7 @@ impl ColourRegistration {
                     break;
                 }
                 if found.noise < noise
-                    && found.structure < LARGEST_STRUCTURE
+                    && found.structure < LARGEST_STRUCTURE.min(own.structure)
                     && gauge::growth(pair, &found.pose, pose) < COLLAPSE
                 {
                     (better, noise) = (Some(unit), found.noise);
