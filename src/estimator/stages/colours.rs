@@ -32,7 +32,7 @@ pub(super) const LARGEST_STRUCTURE: f64 = 0.007;
 /// What residuals have in common up to which no other unit is tried: renders in the right one stay below, two of
 /// 110 random ones apart, log units.
 const EXPLAINED_STRUCTURE: f64 = 0.0015;
-/// Their noise up to which none is tried either, in units of the image's own: right pairs leave up to 1.23 of it.
+/// Their noise up to which none is tried either, in units of the image's own: right pairs of clean depth leave up to 1.23.
 const EXPLAINED_NOISE: f64 = 1.25;
 /// Relief so many times as flat and as deep is held against the map's own, from what is nearest on. Units are mistaken by any
 /// factor, so these go from a tenth to ten times in steps of 1.3 to 1.7.
