@@ -42,9 +42,11 @@ const AWAY: f64 = 2.0;
 /// Rounds of a registration by another unit at most, as many as least squares take. Those with instrumental variables, which would
 /// take as long again, are left out for all reliefs alike, the map's own included.
 const UNIT_ROUNDS: usize = 5;
-/// Another unit explains the colours better where it leaves less than this share of the noise, and less in common, too: 7500
-/// residuals tell their noise to 0.8 %. Right pairs leave 0.97 or more by other units, wrong ones 0.93 or less by their own.
-const BETTER_NOISE: f64 = 0.95;
+/// Another unit explains the colours better where it leaves less than this share of what residuals have in common: wrong pairs
+/// leave 0 to 0.47 of it by their own, right ones of 48x48 without noise 0.7 or more by one that leaves less noise ..
+const BETTER_STRUCTURE: f64 = 0.5;
+/// .. and less noise, by four sigmas: the median of n points in three channels tells the noise to 0.56/sqrt(n).
+const SIGMAS_OF_NOISE: f64 = 4.0 * 0.56;
 
 /// How the registration of a candidate stands.
 pub enum Attempt {
@@ -257,7 +259,8 @@ impl ColourRegistration {
         // All of them by the points that its own unit shows.
         self.judge(pair, pose)?;
         let own = self.register_relief(pair, pose, 1.0).filter(|own| !is_explained(own))?;
-        let (mut better, mut noise) = (None, BETTER_NOISE * own.noise);
+        let uncertainty = SIGMAS_OF_NOISE / (own.visible as f64).sqrt();
+        let (mut better, mut noise) = (None, (1.0 - uncertainty) * own.noise);
         for way in UNITS {
             for unit in way {
                 let Some(found) = self.register_relief(pair, pose, unit) else { continue };
@@ -265,7 +268,7 @@ impl ColourRegistration {
                     break;
                 }
                 if found.noise < noise
-                    && found.structure < LARGEST_STRUCTURE.min(own.structure)
+                    && found.structure < LARGEST_STRUCTURE.min(BETTER_STRUCTURE * own.structure)
                     && gauge::growth(pair, &found.pose, pose) < COLLAPSE
                 {
                     (better, noise) = (Some(unit), found.noise);
