@@ -66,6 +66,16 @@ for (const [unit, size, factor] of [[5, 64, "0.20"], [3, 96, "0.30"], [2, 64, "0
   });
 }
 
+// What they leave is no noise but the error of normals of few pixels, and half or twice the relief leaves up to a fifth less of it.
+test("the right relief of a view of 48 pixels without noise is doubted by no other unit", () => {
+  for (const [light, beta] of [["colourful", 0], ["window", 10], ["overcast", 0]]) {
+    const made = pair({ surface: "bust", light, size: 48, angles: { beta }, noise: 0 });
+    const right = found(made, 1);
+    assert.ok(apart(right.pose, made.pose) < 2);
+    assert.equal(right.status, "converged", right.message);
+  }
+});
+
 test("relief next to flat, by a unit a thousand times too small, is no error and no answer", LONG, () => {
   for (const surface of ["bust", "vase"]) {
     // The light that its normals ask for at first has coefficients beyond 100.
