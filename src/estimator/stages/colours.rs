@@ -39,8 +39,8 @@ const EXPLAINED_NOISE: f64 = 1.25;
 const UNITS: [[f32; 6]; 2] = [[0.7, 0.5, 0.3, 0.2, 0.15, 0.1], [1.5, 2.0, 3.0, 5.0, 7.0, 10.0]];
 /// Relief that leaves so many times the noise of the map's own leads away from the right one, and none beyond it is tried.
 const AWAY: f64 = 2.0;
-/// Rounds of a registration by another unit at most, as many as least squares take. Those with instrumental variables, which would
-/// take as long again, are left out for all reliefs alike, the map's own included.
+/// Rounds of a registration by another unit at most, as many as least squares mostly take: those with instrumental variables would
+/// take as long again. One that has settled sooner spends what is left on them.
 const UNIT_ROUNDS: usize = 5;
 /// Another unit explains the colours better where it leaves less than this share of what residuals have in common: wrong pairs
 /// leave 0 to 0.47 of it by their own, right ones of 48x48 without noise 0.7 or more by one that leaves less noise ..
