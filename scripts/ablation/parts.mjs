@@ -81,6 +81,11 @@ export const PARTS = [
     ],
   },
   {
+    name: "softness",
+    what: "ranking contrast as softly as noisy depth tells it: on the sharp image instead",
+    changes: [{ file: "src/view/depth_noise.rs", from: "self.smoothing().sqrt().sqrt()", to: "0.0 * self.smoothing()" }],
+  },
+  {
     name: "lift",
     what: "the tenth of the median that is added to intensities, so that shadows are no deep valleys of log S",
     changes: [{ file: `${CONTRAST}/registration.rs`, from: "const LIFT: f32 = 0.1;", to: "const LIFT: f32 = 0.0;" }],

@@ -99,6 +99,12 @@ impl DepthNoise {
         CREASE * self.roughness
     }
 
+    /// How far smoothing reaches, lambda^(1/4) pixels: what is narrower, the map does not tell from noise.
+    #[must_use]
+    pub fn window(&self) -> f64 {
+        self.smoothing().sqrt().sqrt()
+    }
+
     /// sigma^2 / c^2: the weight of a squared second difference against a squared offset from the measured height.
     #[must_use]
     pub fn smoothing(&self) -> f64 {

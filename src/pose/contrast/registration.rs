@@ -13,10 +13,10 @@ use crate::pose::similarity::Similarity;
 use crate::pose::spline_image::SplineImage;
 use crate::pose::uncertainty::Uncertainty;
 
-/// Sharp, and blurred: by so many pixels ..
+/// The finest, sharp or as soft as it is asked for, and blurred: by so many pixels ..
 const LEVELS: usize = 2;
-const BLURS: [f64; LEVELS] = [0.0, 1.5];
-/// .. with local means over a Gaussian of this sigma, depth pixels; that of 2 to 5 serve alike. All three for objects as
+const BLUR: f64 = 1.5;
+/// .. with local means over a Gaussian of this sigma, depth pixels; that of 2 to 5 serve alike. Both for objects as
 /// large as those that they were measured on, views of 96x96; on larger ones they grow with it.
 const MEANS: [f64; LEVELS] = [3.0, 5.0];
 /// Depth pixels of such an object, root of their number.
@@ -87,20 +87,24 @@ pub struct ContrastRegistration {
 }
 
 impl ContrastRegistration {
-    /// By every `stride`-th depth pixel.
+    /// By every `stride`-th depth pixel, image and prediction blurred by so many depth pixels on the finest level.
     #[must_use]
-    pub fn new(problem: &ContrastProblem<'_>, stride: usize) -> Self {
+    pub fn new(problem: &ContrastProblem<'_>, stride: usize, blur: f64) -> Self {
         let samples = Samples::new(problem, stride.max(1));
         let unit = ((problem.depth.valid() as f64).sqrt() / MEASURED_SIDE).max(1.0);
+        // Noise reaches as far in large views as in small ones.
+        let finest = blur / unit;
         let lifted = problem.image.lifted(LIFT);
         let between = BLUR_OF_STRIDE * (samples.stride as f64 / unit - 1.0).max(0.0);
-        let sharp = SplineImage::new(&lifted, unit * BLURS[0].max(if unit > 1.0 { between } else { 0.0 }));
-        let blurred = sharp.blurred(&lifted, unit * BLURS[1]);
+        let sharp = SplineImage::new(&lifted, unit * finest.max(if unit > 1.0 { between } else { 0.0 }));
+        let blurred = sharp.blurred(&lifted, unit * BLUR);
         let means =
             |sigma: f64| LocalMeans::new(samples.grid.width, samples.grid.len(), unit * sigma / samples.stride as f64);
-        let mut blur = means(BLURS[1]);
-        let shades = [samples.shades.clone(), blur.smoothed(&samples.weight, &samples.shades)];
-        let [sharp_shades, blurred_shades] = shades;
+        let smoothed = |blur: f64| match blur > 0.0 {
+            true => means(blur).smoothed(&samples.weight, &samples.shades),
+            false => samples.shades.clone(),
+        };
+        let [sharp_shades, blurred_shades] = [finest, BLUR].map(smoothed);
         let levels = [
             Level { image: sharp, means: means(MEANS[0]), shades: sharp_shades },
             Level { image: blurred, means: means(MEANS[1]), shades: blurred_shades },
@@ -350,7 +354,7 @@ mod tests {
         };
         let rotation = Rotation3::new(Vector3::new(0.03, -0.04, 0.01)).into_inner();
         let start = Similarity::identity().turned_about(depth.points.centroid(), 1.0, rotation);
-        let mut registration = ContrastRegistration::new(&problem, 1);
+        let mut registration = ContrastRegistration::new(&problem, 1, 0.0);
         registration.begin(&problem, &start, ContrastEffort { instrument_rounds, ..ContrastEffort::FULL });
         while !registration.step(&problem) {}
         registration.pose().unwrap().degrees_to(&Similarity::identity())
@@ -382,7 +386,7 @@ mod tests {
             unit_scale: 1.0,
             scale_is_held: false,
         };
-        let mut registration = ContrastRegistration::new(&problem, 1);
+        let mut registration = ContrastRegistration::new(&problem, 1, 0.0);
         registration.uncertainty(&problem, &Similarity::identity()).unwrap().rotation_degrees
     }
 
@@ -424,12 +428,40 @@ mod tests {
         };
         let truth = Similarity::identity();
         let shrunk = truth.turned_about(depth.points.centroid(), 0.4, truth.rotation);
-        let mut registration = ContrastRegistration::new(&problem, 1);
+        let mut registration = ContrastRegistration::new(&problem, 1, 0.0);
         let [by_truth, by_shrunk] = [truth, shrunk].map(|pose| {
             let value = registration.evaluate(&problem, &pose, 0.05).unwrap();
             [value, registration.rank(&problem, &pose, 0.05).unwrap()]
         });
         assert!(by_shrunk[0] < by_truth[0], "no temptation: {by_shrunk:?} {by_truth:?}");
         assert!(by_truth[1] + 0.1 < by_shrunk[1], "{by_truth:?} {by_shrunk:?}");
+    }
+
+    /// The share of contrast that shading leaves at the true pose, by normals with so much noise about each axis.
+    fn share_left(noise: f64, blur: f64) -> f64 {
+        let (image, depth) = views(&[0.0; SIDE * SIDE]);
+        let mut dice = noise::white_noise(11);
+        let mut normals = depth.normals.clone();
+        for (x, (y, z)) in normals.x.iter_mut().zip(normals.y.iter_mut().zip(&mut normals.z)) {
+            let noisy = Vector3::new(*x, *y, *z).map(|part| f64::from(part) + noise * dice()).normalize();
+            [*x, *y, *z] = noisy.map(|part| part as f32).into();
+        }
+        let normal_error = vec![0.0; depth.size.len()];
+        let problem = ContrastProblem {
+            image: &image,
+            object: &image.mask,
+            depth: &depth,
+            normals: &normals,
+            normal_error: &normal_error,
+            unit_scale: 1.0,
+            scale_is_held: false,
+        };
+        ContrastRegistration::new(&problem, 1, blur).rank(&problem, &Similarity::identity(), 0.05).unwrap()
+    }
+
+    #[test]
+    fn an_image_as_soft_as_noisy_normals_are_is_explained_by_them() {
+        let [sharp, soft] = [0.0, 1.0].map(|blur| share_left(0.2, blur));
+        assert!(soft < 0.7 * sharp, "{soft} instead of {sharp}");
     }
 }

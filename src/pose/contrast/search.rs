@@ -3,7 +3,9 @@
 //!
 //! At each stage the ends are ranked by E on the sharp image at one robust scale, the contrast's part of it as a share of
 //! what there is without light, so that they can be compared. On ten photographed objects seen from 0 to 60 degrees off an
-//! end near the right one was among the first eight after the first stages wherever it was found at all.
+//! end near the right one was among the first eight after the first stages wherever it was found at all. Noisy depth tells no
+//! details that the sharp image could be compared with: there both are blurred as widely as the noise asks for, and the best
+//! end alone is registered on the sharp image.
 
 use super::problem::{ContrastProblem, ContrastReport};
 use super::registration::{ContrastEffort, ContrastRegistration};
@@ -27,13 +29,14 @@ const STAGES: [Stage; 4] = [
         kept: 6,
         apart: RIVAL_APART,
     },
-    Stage {
-        samples: 10_000.0,
-        effort: ContrastEffort { first_level: 0, rounds: 6, instrument_rounds: 20, ..ContrastEffort::FULL },
-        kept: 6,
-        apart: RIVAL_APART,
-    },
+    LAST,
 ];
+const LAST: Stage = Stage {
+    samples: 10_000.0,
+    effort: ContrastEffort { first_level: 0, rounds: 6, instrument_rounds: 20, ..ContrastEffort::FULL },
+    kept: 6,
+    apart: RIVAL_APART,
+};
 /// Noise, in log units, whose robust scale ends are ranked at: sharper than photographs leave, so that the details
 /// decide, and far above that of renders.
 const RANKING_NOISE: f64 = 0.05;
@@ -72,7 +75,7 @@ impl ContrastSearch {
     /// From these starts.
     #[must_use]
     pub fn new(problem: &ContrastProblem<'_>, starts: Vec<Similarity>) -> Self {
-        let registration = registration(problem, &STAGES[0]);
+        let registration = registration(problem, &STAGES[0], problem.depth.noise.window());
         Self { stage: 0, starts, next: 0, ends: Vec::new(), registration, under_way: false }
     }
 
@@ -116,7 +119,7 @@ impl ContrastSearch {
         }
         self.stage += 1;
         if let Some(stage) = STAGES.get(self.stage) {
-            self.registration = registration(problem, stage);
+            self.registration = registration(problem, stage, problem.depth.noise.window());
             self.starts = kept.iter().map(|(_, pose)| *pose).collect();
             (self.next, self.ends) = (0, Vec::new());
         } else {
@@ -132,13 +135,19 @@ impl ContrastSearch {
 
     /// What was found, once all is done; `None` where no registration saw enough of the object.
     pub fn outcome(&mut self, problem: &ContrastProblem<'_>) -> Option<ContrastOutcome> {
-        let &(value, pose) = self.ends.first()?;
-        let objective = self.registration.evaluate(problem, &pose, RANKING_NOISE)?;
-        let uncertainty = self.registration.uncertainty(problem, &pose)?;
-        let best = ContrastReport { pose, objective, uncertainty };
+        let &(value, mut pose) = self.ends.first()?;
         let is_rival = |end: &&End| end.0 <= value + RIVAL_MARGIN && end.1.degrees_to(&pose) >= RIVAL_APART;
         let rivals = self.ends[1..].iter().filter(is_rival).map(|(_, pose)| *pose).collect();
-        Some(ContrastOutcome { best, rivals })
+        if problem.depth.noise.window() > 0.0 {
+            self.registration = registration(problem, &LAST, 0.0);
+            // Further off it has slid into another optimum.
+            let end = registered(&mut self.registration, problem, &pose);
+            pose = end.filter(|end| end.degrees_to(&pose) <= RIVAL_APART).unwrap_or(pose);
+            self.ends[0] = (self.registration.rank(problem, &pose, RANKING_NOISE)?, pose);
+        }
+        let objective = self.registration.evaluate(problem, &pose, RANKING_NOISE)?;
+        let uncertainty = self.registration.uncertainty(problem, &pose)?;
+        Some(ContrastOutcome { best: ContrastReport { pose, objective, uncertainty }, rivals })
     }
 }
 
@@ -146,16 +155,24 @@ impl ContrastSearch {
 /// pose and its E.
 #[must_use]
 pub fn settle(problem: &ContrastProblem<'_>, start: &Similarity) -> Option<(Similarity, f64)> {
-    let last = &STAGES[STAGES.len() - 1];
-    let mut registration = registration(problem, last);
-    registration.begin(problem, start, last.effort);
-    while !registration.step(problem) {}
-    let pose = registration.pose()?;
+    let mut registration = registration(problem, &LAST, 0.0);
+    let pose = registered(&mut registration, problem, start)?;
     Some((pose, registration.evaluate(problem, &pose, RANKING_NOISE)?))
 }
 
+/// The end of the last stage's registration from `start`.
+fn registered(
+    registration: &mut ContrastRegistration,
+    problem: &ContrastProblem<'_>,
+    start: &Similarity,
+) -> Option<Similarity> {
+    registration.begin(problem, start, LAST.effort);
+    while !registration.step(problem) {}
+    registration.pose()
+}
+
 /// The registration of a stage: by about so many samples.
-fn registration(problem: &ContrastProblem<'_>, stage: &Stage) -> ContrastRegistration {
+fn registration(problem: &ContrastProblem<'_>, stage: &Stage, finest: f64) -> ContrastRegistration {
     let stride = (problem.depth.valid() as f64 / stage.samples).sqrt().round();
-    ContrastRegistration::new(problem, stride as usize)
+    ContrastRegistration::new(problem, stride as usize, finest)
 }
