@@ -44,14 +44,6 @@ pub struct Uncertainty {
 }
 
 impl Uncertainty {
-    /// All sigmas times `factor`.
-    pub(crate) fn widen(&mut self, factor: f64) {
-        let translation = self.translation.iter_mut().flatten();
-        let all = self.rotation_degrees.iter_mut().chain(translation).chain(&mut self.scale);
-        all.for_each(|sigma| *sigma *= factor);
-        self.rotation_degrees = self.rotation_degrees.map(|sigma| sigma.min(LARGEST_SIGMA));
-    }
-
     /// Adds what the focal lengths are uncertain by. A relief that is stretched by a share of it turns its normals by half of
     /// that share at most, share sin(2 slope) / 2; an object is nearer or farther by that share of its distance.
     pub(crate) fn add_focal_length(&mut self, distance: f64) {

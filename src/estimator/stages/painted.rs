@@ -12,9 +12,6 @@ use crate::view::ColourView;
 
 /// Both registrations have found one pose where their ends are this near, degrees: contrast may be off by a few.
 const SAME_POSE: f64 = 8.0;
-/// Sigmas of contrast by blurred hues or noisy normals over what they are otherwise. Of 18 found scenes with both (JPEG, depth
-/// in noisy steps) the largest errors about an axis are 1 to 5 of the sigmas before, one 9.
-const COARSE_INFLATION: f64 = 2.0;
 /// Around a told pose starts are turned by multiples of so many degrees about the axes, up to so many of them: 123 turns. Of
 /// forty photographs told 8 degrees off, 27 turns by 6 degrees find 32 natively, these 36.
 const TURN: f64 = 5.0;
@@ -112,8 +109,9 @@ pub fn conclude(
     let mut contrast = search.outcome(&problem)?;
     let plain = colours.register_in(pair, image, &contrast.best.pose);
     let is_coarse = cleaned.was_soft || !colours.has_clean_normals();
+    // Contrast of blurred hues or noisy normals is less to be believed where the colours without paint point elsewhere.
     if is_coarse {
-        doubt(&mut contrast, plain.as_ref());
+        rival(&mut contrast, plain.as_ref().map(|plain| plain.pose));
     }
     let is_believed = |plain: &PhotometricReport, search: &mut ContrastSearch| {
         is_plain(plain, &contrast)
@@ -124,13 +122,6 @@ pub fn conclude(
         Some(plain) if is_believed(&plain, search) => Conclusion::ByColours(Box::new(plain)),
         _ => Conclusion::ByContrast(Box::new(contrast)),
     })
-}
-
-/// Contrast of blurred hues or noisy normals is less to be believed: its sigmas are wider, and where the colours without
-/// paint point elsewhere the two are rivals.
-fn doubt(contrast: &mut ContrastOutcome, plain: Option<&PhotometricReport>) {
-    contrast.best.uncertainty.widen(COARSE_INFLATION);
-    rival(contrast, plain.map(|plain| plain.pose));
 }
 
 /// A pose by the colours, if it is another one, beside contrast's.
