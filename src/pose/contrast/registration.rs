@@ -13,7 +13,7 @@ use crate::pose::similarity::Similarity;
 use crate::pose::spline_image::SplineImage;
 use crate::pose::uncertainty::Uncertainty;
 
-/// The finest, sharp or as soft as it is asked for, and blurred: by so many pixels ..
+/// The finest, whose blur is the caller's, and one that is blurred by so many pixels ..
 const LEVELS: usize = 2;
 const BLUR: f64 = 1.5;
 /// .. with local means over a Gaussian of this sigma, depth pixels; that of 2 to 5 serve alike. Both for objects as
@@ -87,7 +87,8 @@ pub struct ContrastRegistration {
 }
 
 impl ContrastRegistration {
-    /// By every `stride`-th depth pixel, image and prediction blurred by so many depth pixels on the finest level.
+    /// By every `stride`-th depth pixel. On the finest level image and prediction are blurred by a Gaussian whose sigma is `blur`
+    /// depth pixels; zero leaves them sharp.
     #[must_use]
     pub fn new(problem: &ContrastProblem<'_>, stride: usize, blur: f64) -> Self {
         let samples = Samples::new(problem, stride.max(1));
@@ -100,8 +101,8 @@ impl ContrastRegistration {
         let blurred = sharp.blurred(&lifted, unit * BLUR);
         let means =
             |sigma: f64| LocalMeans::new(samples.grid.width, samples.grid.len(), unit * sigma / samples.stride as f64);
-        let smoothed = |blur: f64| match blur > 0.0 {
-            true => means(blur).smoothed(&samples.weight, &samples.shades),
+        let smoothed = |sigma: f64| match sigma > 0.0 {
+            true => means(sigma).smoothed(&samples.weight, &samples.shades),
             false => samples.shades.clone(),
         };
         let [sharp_shades, blurred_shades] = [finest, BLUR].map(smoothed);

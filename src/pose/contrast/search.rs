@@ -171,8 +171,8 @@ fn registered(
     registration.pose()
 }
 
-/// The registration of a stage: by about so many samples.
-fn registration(problem: &ContrastProblem<'_>, stage: &Stage, finest: f64) -> ContrastRegistration {
+/// The registration of a stage: by about so many samples, blurred by so many pixels on the finest level.
+fn registration(problem: &ContrastProblem<'_>, stage: &Stage, blur: f64) -> ContrastRegistration {
     let stride = (problem.depth.valid() as f64 / stage.samples).sqrt().round();
-    ContrastRegistration::new(problem, stride as usize, finest)
+    ContrastRegistration::new(problem, stride as usize, blur)
 }
