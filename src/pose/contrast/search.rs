@@ -5,7 +5,7 @@
 //! what there is without light, so that they can be compared. On ten photographed objects seen from 0 to 60 degrees off an
 //! end near the right one was among the first eight after the first stages wherever it was found at all. Noisy depth tells no
 //! details that the sharp image could be compared with: there both are blurred as widely as the noise asks for, and the best
-//! end alone is registered on the sharp image.
+//! end alone is registered on the sharp image, in a stage of its own.
 
 use super::problem::{ContrastProblem, ContrastReport};
 use super::registration::{ContrastEffort, ContrastRegistration};
@@ -20,7 +20,7 @@ struct Stage {
     apart: f64,
 }
 
-const STAGES: [Stage; 4] = [
+const STAGES: [Stage; 5] = [
     Stage { samples: 350.0, effort: ContrastEffort { rounds: 1, ..ContrastEffort::COARSE }, kept: 48, apart: 6.0 },
     Stage { samples: 350.0, effort: ContrastEffort::COARSE, kept: 12, apart: 6.0 },
     Stage {
@@ -30,7 +30,10 @@ const STAGES: [Stage; 4] = [
         apart: RIVAL_APART,
     },
     LAST,
+    LAST,
 ];
+/// The last of them is the sharp image's, for what noisy depth was too soft for; the one before finds the rivals.
+const SHARP_STAGE: usize = STAGES.len() - 1;
 const LAST: Stage = Stage {
     samples: 10_000.0,
     effort: ContrastEffort { first_level: 0, rounds: 6, instrument_rounds: 20, ..ContrastEffort::FULL },
@@ -67,6 +70,7 @@ pub struct ContrastSearch {
     starts: Vec<Similarity>,
     next: usize,
     ends: Vec<End>,
+    rivals: Vec<Similarity>,
     registration: ContrastRegistration,
     under_way: bool,
 }
@@ -76,7 +80,7 @@ impl ContrastSearch {
     #[must_use]
     pub fn new(problem: &ContrastProblem<'_>, starts: Vec<Similarity>) -> Self {
         let registration = registration(problem, &STAGES[0], problem.depth.noise.window());
-        Self { stage: 0, starts, next: 0, ends: Vec::new(), registration, under_way: false }
+        Self { stage: 0, starts, next: 0, ends: Vec::new(), rivals: Vec::new(), registration, under_way: false }
     }
 
     /// One round of one registration; whether all are done.
@@ -103,27 +107,37 @@ impl ContrastSearch {
     #[must_use]
     pub fn share(&self) -> f64 {
         let within = self.next as f64 / self.starts.len().max(1) as f64;
-        ((self.stage as f64 + within) / STAGES.len() as f64).min(1.0)
+        // One registration, where there is any: hardly work beside the others.
+        ((self.stage as f64 + within) / SHARP_STAGE as f64).min(1.0)
     }
 
     fn begin_next_stage(&mut self, problem: &ContrastProblem<'_>, done: &Stage) {
-        sort_descending(&mut self.ends, |(value, _)| -value);
-        let mut kept: Vec<End> = Vec::with_capacity(done.kept);
-        for end in &self.ends {
-            let is_apart = |(_, other): &End| {
-                other.degrees_to(&end.1) >= done.apart || (other.scale / end.1.scale).ln().abs() > SIZE_APART
-            };
-            if kept.len() < done.kept && kept.iter().all(is_apart) {
-                kept.push(*end);
-            }
+        if self.stage == SHARP_STAGE {
+            self.stay_near(problem);
         }
+        let mut kept = best_apart(std::mem::take(&mut self.ends), done);
         self.stage += 1;
-        if let Some(stage) = STAGES.get(self.stage) {
-            self.registration = registration(problem, stage, problem.depth.noise.window());
-            self.starts = kept.iter().map(|(_, pose)| *pose).collect();
-            (self.next, self.ends) = (0, Vec::new());
-        } else {
+        let window = problem.depth.noise.window();
+        if self.stage == SHARP_STAGE {
+            self.rivals = rivals(&kept);
+            kept.truncate(1);
+            self.stage += usize::from(window == 0.0);
+        }
+        let Some(stage) = STAGES.get(self.stage) else {
             self.ends = kept;
+            return;
+        };
+        self.registration = registration(problem, stage, if self.stage == SHARP_STAGE { 0.0 } else { window });
+        self.starts = kept.iter().map(|(_, pose)| *pose).collect();
+        self.next = 0;
+    }
+
+    /// Keeps the start of the sharp stage where its end is further off: that has slid into another optimum.
+    fn stay_near(&mut self, problem: &ContrastProblem<'_>) {
+        let Some(&start) = self.starts.first() else { return };
+        self.ends.retain(|(_, end)| end.degrees_to(&start) <= RIVAL_APART);
+        if self.ends.is_empty() {
+            self.ends.extend(self.registration.rank(problem, &start, RANKING_NOISE).map(|value| (value, start)));
         }
     }
 
@@ -135,44 +149,98 @@ impl ContrastSearch {
 
     /// What was found, once all is done; `None` where no registration saw enough of the object.
     pub fn outcome(&mut self, problem: &ContrastProblem<'_>) -> Option<ContrastOutcome> {
-        let &(value, mut pose) = self.ends.first()?;
-        let is_rival = |end: &&End| end.0 <= value + RIVAL_MARGIN && end.1.degrees_to(&pose) >= RIVAL_APART;
-        let rivals = self.ends[1..].iter().filter(is_rival).map(|(_, pose)| *pose).collect();
-        if problem.depth.noise.window() > 0.0 {
-            self.registration = registration(problem, &LAST, 0.0);
-            // Further off it has slid into another optimum.
-            let end = registered(&mut self.registration, problem, &pose);
-            pose = end.filter(|end| end.degrees_to(&pose) <= RIVAL_APART).unwrap_or(pose);
-            self.ends[0] = (self.registration.rank(problem, &pose, RANKING_NOISE)?, pose);
-        }
+        let &(_, pose) = self.ends.first()?;
         let objective = self.registration.evaluate(problem, &pose, RANKING_NOISE)?;
         let uncertainty = self.registration.uncertainty(problem, &pose)?;
-        Some(ContrastOutcome { best: ContrastReport { pose, objective, uncertainty }, rivals })
+        Some(ContrastOutcome { best: ContrastReport { pose, objective, uncertainty }, rivals: self.rivals.clone() })
     }
 }
 
-/// Registers from `start`, which is near the end already, as the last stage of the search does, by another version of the image; the
-/// pose and its E.
+/// Registers from `start`, which is near the end already, as the last stage of the search does, by another version of the
+/// image; the pose and its E.
 #[must_use]
 pub fn settle(problem: &ContrastProblem<'_>, start: &Similarity) -> Option<(Similarity, f64)> {
     let mut registration = registration(problem, &LAST, 0.0);
-    let pose = registered(&mut registration, problem, start)?;
+    registration.begin(problem, start, LAST.effort);
+    while !registration.step(problem) {}
+    let pose = registration.pose()?;
     Some((pose, registration.evaluate(problem, &pose, RANKING_NOISE)?))
 }
 
-/// The end of the last stage's registration from `start`.
-fn registered(
-    registration: &mut ContrastRegistration,
-    problem: &ContrastProblem<'_>,
-    start: &Similarity,
-) -> Option<Similarity> {
-    registration.begin(problem, start, LAST.effort);
-    while !registration.step(problem) {}
-    registration.pose()
+/// The best ends of a stage, best first, of which no two are one.
+fn best_apart(mut ends: Vec<End>, stage: &Stage) -> Vec<End> {
+    sort_descending(&mut ends, |(value, _)| -value);
+    let mut kept: Vec<End> = Vec::with_capacity(stage.kept);
+    for end in ends {
+        let is_apart = |(_, other): &End| {
+            other.degrees_to(&end.1) >= stage.apart || (other.scale / end.1.scale).ln().abs() > SIZE_APART
+        };
+        if kept.len() < stage.kept && kept.iter().all(is_apart) {
+            kept.push(end);
+        }
+    }
+    kept
+}
+
+/// Ends that explain the contrast as well as the first, and are no part of its optimum.
+fn rivals(ends: &[End]) -> Vec<Similarity> {
+    let Some((&(value, pose), others)) = ends.split_first() else { return Vec::new() };
+    let is_rival = |end: &&End| end.0 <= value + RIVAL_MARGIN && end.1.degrees_to(&pose) >= RIVAL_APART;
+    others.iter().filter(is_rival).map(|(_, pose)| *pose).collect()
 }
 
 /// The registration of a stage: by about so many samples, blurred by so many pixels on the finest level.
 fn registration(problem: &ContrastProblem<'_>, stage: &Stage, blur: f64) -> ContrastRegistration {
     let stride = (problem.depth.valid() as f64 / stage.samples).sqrt().round();
     ContrastRegistration::new(problem, stride as usize, blur)
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{Rotation3, Vector3};
+
+    use super::*;
+    use crate::pose::Angles;
+    use crate::scenes::{SampleRequest, Scene, light, surface};
+    use crate::view::{ColourView, DepthView, Size};
+
+    #[test]
+    fn by_noisy_depth_the_end_is_that_of_the_sharp_image() {
+        let request = SampleRequest {
+            light: light("window").unwrap(),
+            size: Size { width: 80, height: 80 },
+            rotation: Angles { beta: 20.0, ..Angles::default() }.rotation(),
+            noise: 0.01,
+            depth_noise: 0.4,
+            ..SampleRequest::default()
+        };
+        let sample = Scene::new(&surface("bust").unwrap()).unwrap().sample(&request).unwrap();
+        let image = ColourView::new(sample.colour_image()).unwrap();
+        let depth = DepthView::new(&sample.depth_map(), true).unwrap();
+        let normal_error = vec![0.0; depth.size.len()];
+        let problem = ContrastProblem {
+            image: &image,
+            object: &image.mask,
+            depth: &depth,
+            normals: &depth.normals,
+            normal_error: &normal_error,
+            unit_scale: 1.0,
+            scale_is_held: true,
+        };
+        let turned = |off: f64| {
+            let turn = Rotation3::new(Vector3::new(off, -off, 0.5 * off)).into_inner();
+            sample.pose.turned_about(depth.points.centroid(), 1.0, turn * sample.pose.rotation)
+        };
+        let mut search = ContrastSearch::new(&problem, [-0.2, 0.05, 0.1, 0.3].map(turned).to_vec());
+        while !search.advance(&problem) {}
+        let found = search.outcome(&problem).unwrap().best.pose;
+        let [from_sharp, from_soft] = [0.0, depth.noise.window()].map(|blur| {
+            let mut registration = registration(&problem, &LAST, blur);
+            registration.begin(&problem, &found, LAST.effort);
+            while !registration.step(&problem) {}
+            registration.pose().unwrap().degrees_to(&found)
+        });
+        assert!(from_sharp < 0.2 * from_soft, "{from_sharp} instead of {from_soft}");
+        assert!(found.degrees_to(&sample.pose) < RIVAL_APART, "{found:?}");
+    }
 }
