@@ -36,7 +36,10 @@ fn main() -> ExitCode {
         // Help and the version are no mistakes, and clap's own code for these would say "undecided".
         Err(said) => {
             let code = if said.use_stderr() { Code::BadInput } else { Code::Converged };
-            said.print().map_or(Code::BadInput, |()| code)
+            match said.print() {
+                Err(error) if error.kind() != ErrorKind::BrokenPipe => Code::BadInput,
+                _ => code,
+            }
         }
     };
     code.into()
@@ -49,12 +52,20 @@ struct Task {
 }
 
 fn run(arguments: Arguments) -> Result<Code> {
-    let options = arguments.options()?;
+    let is_json = arguments.json;
+    let options = arguments.options().map_err(|problem| told(problem, None, is_json))?;
     let task = Task { arguments, options };
-    match task.arguments.input()? {
+    match task.arguments.input().map_err(|problem| told(problem, None, is_json))? {
         Input::Pair(files) => task.one(&files),
         Input::Folder(folder) => task.many(&folder),
     }
+}
+
+/// Of what ends everything: says it on the standard output as well, where that is JSON.
+fn told(problem: Problem, files: Option<&Files>, is_json: bool) -> Problem {
+    let text = || report::json_of_problem(None, files, &problem, report::Layout::Lines);
+    let said = if is_json { print(&text()) } else { Ok(()) };
+    said.err().unwrap_or(problem)
 }
 
 impl Task {
@@ -68,18 +79,15 @@ impl Task {
                 found.warnings.iter().for_each(|warning| eprintln!("warning: {warning}"));
                 print(&report::words(&found)).map(|()| found.code())
             }
-            (Err(problem), true) => {
-                print(&report::json_of_problem(None, files, &problem, report::Layout::Lines))?;
-                Err(problem)
-            }
-            (Err(problem), false) => Err(problem),
+            (Err(problem), is_json) => Err(told(problem, Some(files), is_json)),
         }
     }
 
     /// A folder: one line for each pair. A pair that cannot be read costs itself, not the others.
     fn many(&self, folder: &Path) -> Result<Code> {
         let arguments = &self.arguments;
-        let found = folder::pairs(folder, arguments.out.as_deref())?;
+        let found =
+            folder::pairs(folder, arguments.out.as_deref()).map_err(|problem| told(problem, None, arguments.json))?;
         found.warnings.iter().for_each(|warning| eprintln!("warning: {warning}"));
         let mut worst = Code::Converged;
         for (index, pair) in found.pairs.iter().enumerate() {
@@ -90,7 +98,7 @@ impl Task {
                 Ok(found) if arguments.json => (report::json_line(&pair.name, found), found.code()),
                 Ok(found) => (report::line(&pair.name, found), found.code()),
                 Err(problem) if arguments.json => (
-                    report::json_of_problem(Some(&pair.name), &pair.files, problem, report::Layout::OneLine),
+                    report::json_of_problem(Some(&pair.name), Some(&pair.files), problem, report::Layout::OneLine),
                     Code::BadInput,
                 ),
                 Err(problem) => (format!("{}: {problem}\n", pair.name), Code::BadInput),

@@ -187,8 +187,10 @@ struct Sigma<'a> {
 struct Failed<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     name: Option<&'a str>,
-    image: String,
-    depth: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    image: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    depth: Option<String>,
     error: Fault<'a>,
 }
 
@@ -265,9 +267,9 @@ pub fn json_line(name: &str, found: &Outcome) -> String {
     text(&Report::of(Some(name), found), Layout::OneLine)
 }
 
-/// Why there is no report.
-pub fn json_of_problem(name: Option<&str>, files: &Files, problem: &Problem, layout: Layout) -> String {
-    let (image, depth) = (shown(&files.image), shown(&files.depth));
+/// Why there is no report, of a pair or, without files, of any.
+pub fn json_of_problem(name: Option<&str>, files: Option<&Files>, problem: &Problem, layout: Layout) -> String {
+    let [image, depth] = [files.map(|files| shown(&files.image)), files.map(|files| shown(&files.depth))];
     let error = Fault { code: problem.code, field: &problem.field, message: problem.to_string() };
     text(&Failed { name, image, depth, error }, layout)
 }

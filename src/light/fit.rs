@@ -65,7 +65,8 @@ impl LightFitter {
     /// every fit before.
     ///
     /// # Errors
-    /// [`ErrorKind::Degenerate`] where the normals do not determine the light and `weight` is zero.
+    /// [`ErrorKind::Degenerate`] where the normals do not determine the light and `weight` is zero, [`ErrorKind::Range`]
+    /// where only a light beyond any real one would explain the colours, as by relief that is next to flat.
     pub fn fit(&mut self, normals: &Normals, log: [&[f32]; 3], prior: &LightPrior, weight: f64) -> Result<LightFit> {
         self.gather(normals, log);
         let mut light = prior.mean();
@@ -89,7 +90,7 @@ impl LightFitter {
             }
         }
         let light = light.exposed(self.offset);
-        light.validate("light")?;
+        light.validate("light").map_err(beyond_any)?;
         Ok(LightFit { light, residual: median })
     }
 
@@ -163,7 +164,7 @@ impl LightFitter {
             matrix.cholesky().map(|factor| factor.solve(&target)).filter(|l| l.iter().all(|v| v.is_finite()));
         let solution = solution
             .ok_or_else(|| Error::new(ErrorKind::Degenerate, "light", "the normals do not determine the light"))?;
-        Light::from_slice("light", solution.as_slice())
+        Light::from_slice("light", solution.as_slice()).map_err(beyond_any)
     }
 
     /// Adds the harmonics' weighted products with each other, up to the diagonal, and with the colours.
@@ -187,6 +188,11 @@ impl LightFitter {
             *sum += f64::from(part.sum());
         }
     }
+}
+
+/// Says of a light that is no option what is wrong with it.
+fn beyond_any(_: Error) -> Error {
+    Error::new(ErrorKind::Range, "light", "only one beyond any real light would explain the colours by this shape")
 }
 
 #[cfg(test)]
@@ -234,6 +240,20 @@ mod tests {
         let log = [0.0_f32; 4];
         let prior = LightPrior::natural();
         assert!(LightFitter::default().fit(&none, [&log; 3], &prior, 0.0).is_err());
+    }
+
+    #[test]
+    fn colours_that_a_flat_shape_cannot_have_are_said_to_be_so_in_no_options_words() {
+        let (mut normals, mut log) = scene(&LightPrior::natural().mean(), false);
+        log.iter_mut().flatten().for_each(|value| *value *= 1000.0);
+        for index in 0..normals.len() {
+            let [x, y, _] = normals.get(index).map(|part| 0.01 * part);
+            normals.set(index, [x, y, -1.0]);
+        }
+        let fit = LightFitter::default().fit(&normals, [&log[0], &log[1], &log[2]], &LightPrior::natural(), 1e-4);
+        let said = fit.unwrap_err();
+        assert_eq!(said.kind(), ErrorKind::Range);
+        assert_eq!(said.to_string(), "light: only one beyond any real light would explain the colours by this shape");
     }
 
     #[test]

@@ -113,6 +113,16 @@ fn errors_as_json_have_a_code_and_a_field() {
     let error = &told.json()["error"];
     assert_eq!((error["code"].as_str(), error["field"].as_str()), (Some("file"), Some("file")));
     assert!(error["message"].as_str().unwrap().contains("nowhere.npy"));
+    // What is wrong before any pair is read has no files.
+    for (arguments, words) in [
+        (vec!["nowhere", "--json"], "no such folder"),
+        (vec![image.as_str(), "depth.npy", "--json", "--light", "nowhere.csv"], "nowhere.csv"),
+    ] {
+        let told = run(&arguments);
+        let report = told.json();
+        assert_eq!((told.code, report.get("image")), (3, None));
+        assert!(report["error"]["message"].as_str().unwrap().contains(words), "{report}");
+    }
 }
 
 #[test]

@@ -86,4 +86,8 @@ fn a_folder_without_pairs_is_refused() {
     let empty = tempfile::TempDir::new().unwrap();
     let told = run(&[empty.path().to_str().unwrap()]);
     assert_eq!((told.code, told.err.contains("no pair")), (3, true), "{}", told.err);
+    let told = run(&[empty.path().to_str().unwrap(), "--json"]);
+    let error = &told.json()["error"];
+    assert_eq!((told.code, error["code"].as_str()), (3, Some("file")), "{error}");
+    assert!(error["message"].as_str().unwrap().contains("no pair"), "{error}");
 }

@@ -142,4 +142,10 @@ fn help_and_version_are_no_faults_and_tell_the_codes() {
     }
     let version = run(&["--version"]);
     assert_eq!((version.code, version.out.trim()), (0, concat!("bimodal-stereo ", env!("CARGO_PKG_VERSION"))));
+    // A reader that has seen enough is no fault either.
+    let (reader, writer) = std::io::pipe().unwrap();
+    drop(reader);
+    let program = env!("CARGO_BIN_EXE_bimodal-stereo");
+    let status = std::process::Command::new(program).arg("--help").stdout(writer).status().unwrap();
+    assert_eq!(status.code(), Some(0));
 }
