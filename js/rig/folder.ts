@@ -4,11 +4,11 @@
  *
  * A file that cannot be read costs its frame, not the folder: it is named in `warnings`.
  */
-import { isObject, wrong } from "../check.js";
+import { type Check, object, wrong } from "../check.js";
 import { BimodalError, badFile } from "../errors.js";
 import { addCameras } from "./assign.js";
 import { textOf } from "./formats/text.js";
-import { checkNamed, isRasterFile, readRigFile } from "./read.js";
+import { checkNamed, isRasterFile, metresPerUnit, readRigFile } from "./read.js";
 import type { CheckFrame, Mask, NamedFile, ReadOptions, Reading, RigFolder, RigReading } from "./types.js";
 
 export interface FolderOptions {
@@ -219,13 +219,17 @@ async function byContent(pictures: NamedFile[], reader: FolderReader): Promise<P
   return { pairs: colours.flatMap((colour, index) => (depths[index] ? [{ name: stem(colour.name), colour, depth: depths[index], ...(mask && { mask }) }] : [])), says: `${depths.length} pairs by what they hold` };
 }
 
+const frameCount: Check = (value, field) => {
+  if (!(Number.isInteger(value) && Number(value) > 0)) throw new BimodalError("option", `${field}: a whole number above zero is needed`, field);
+};
+const checkOptions = object({ unit: metresPerUnit, frames: frameCount });
+
 /** Reads all files of a folder: frames with their cameras, and the poses that relate these. */
 export async function readRigFolder(files: NamedFile[], options: FolderOptions = {}): Promise<RigFolder> {
   if (!Array.isArray(files)) throw wrong("files", "a list of files", files);
   for (const [index, file] of files.entries()) checkNamed(file, `files[${index}]`);
-  if (!isObject(options)) throw wrong("options", "an object", options);
+  checkOptions(options, "options");
   const { unit, frames: most = FRAMES } = options;
-  if (!(Number.isInteger(most) && most > 0)) throw new BimodalError("option", "options.frames: a whole number above zero is needed", "options.frames");
   const kept = files.map(({ name, bytes }) => ({ name: name.replace(/\\/g, "/").replace(/^\.\//, ""), bytes })).filter(({ name }) => !IGNORED.test(name));
   const reader = new FolderReader();
   // Browsers hand folders over in any order.

@@ -3,7 +3,7 @@
  *
  * Whatever is wrong with a file comes out as one BimodalError of code "file" that names the file and the reason.
  */
-import { isObject, wrong } from "../check.js";
+import { type Check, object, word, wrong } from "../check.js";
 import { BimodalError, badFile } from "../errors.js";
 import { readNpy } from "../npy.js";
 import { looksLikeDepth, looksLikeMask, pictureColour, pictureMask } from "./colour.js";
@@ -110,13 +110,14 @@ export function checkNamed(file: NamedFile, field: string): void {
   if (typeof file?.name !== "string" || !(file.bytes instanceof Uint8Array)) throw wrong(field, "{ name: string, bytes: Uint8Array }", file);
 }
 
+export const metresPerUnit: Check = (value, field) => {
+  if (!(typeof value === "number" && value > 0 && Number.isFinite(value))) throw new BimodalError("option", `${field}: metres per stored unit, above zero, are needed`, field);
+};
+const checkOptions = object({ as: word("colour", "depth", "mask", "cameras", "poses"), unit: metresPerUnit });
+
 function checked(file: NamedFile, options: ReadOptions): void {
   checkNamed(file, "file");
-  if (!isObject(options)) throw wrong("options", "an object", options);
-  const { as, unit } = options;
-  const kinds = ["colour", "depth", "mask", "cameras", "poses"];
-  if (as !== undefined && !kinds.includes(as)) throw new BimodalError("option", `options.as: one of ${kinds.join(", ")} is needed`, "options.as");
-  if (unit !== undefined && !(typeof unit === "number" && unit > 0 && Number.isFinite(unit))) throw new BimodalError("option", "options.unit: metres per stored unit, above zero, are needed", "options.unit");
+  checkOptions(options, "options");
 }
 
 /** Reads one file. What was guessed, or looks wrong, is in `warnings`. */

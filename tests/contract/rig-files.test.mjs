@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { existsSync, readFileSync } from "node:fs";
 import { describe, test } from "node:test";
 import { fileURLToPath } from "node:url";
-import { readRigFile } from "../../pkg/rig.js";
+import { readRigFile, readRigFolder } from "../../pkg/rig.js";
 import { npy, png } from "./support.mjs";
 import { H, W, close, colours, fixture, metres, millimetres, read, readFixture, refusedFile, rgb, text } from "./rig-support.mjs";
 
@@ -141,6 +141,9 @@ describe("what looks wrong is said", () => {
   test("options are checked", async () => {
     await assert.rejects(readRigFile({ name: "a", bytes: grey8 }, { unit: -1 }), { code: "option", field: "options.unit" });
     await assert.rejects(readRigFile({ name: "a", bytes: grey8 }, { as: "cloud" }), { code: "option", field: "options.as" });
+    await assert.rejects(readRigFile({ name: "a", bytes: grey8 }, { units: 1 }), { code: "option", field: "options.units", message: /did you mean "unit"/ });
+    await assert.rejects(readRigFolder([{ name: "a", bytes: grey8 }], { frame: 3 }), { code: "option", field: "options.frame", message: /did you mean "frames"/ });
+    await assert.rejects(readRigFolder([{ name: "a", bytes: grey8 }], { unit: -1 }), { code: "option", field: "options.unit" });
     await assert.rejects(readRigFile({ name: "a" }), { code: "type" });
   });
 });
