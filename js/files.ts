@@ -24,7 +24,7 @@ function read(file: Bytes): Raster<Pixels> {
   if (!(file instanceof Uint8Array || file instanceof ArrayBuffer)) throw wrong("file", "a Uint8Array or an ArrayBuffer", file);
   const bytes = file instanceof Uint8Array ? file : new Uint8Array(file);
   if (bytes.length === 0) throw badFile("it is empty");
-  if (!isNpy(bytes) && !isPng(bytes)) throw badFile("it is neither a PNG nor a .npy file");
+  if (!isNpy(bytes) && !isPng(bytes)) throw badFile("it is neither a PNG nor a .npy file; `bimodal-stereo/rig` reads more");
   try {
     return isNpy(bytes) ? readNpy(bytes) : readPng(bytes, checkSize);
   } catch (error) {

@@ -60,8 +60,8 @@ export interface Options {
   light?: "estimate" | ArrayLike<number>;
   start?: "search" | "identity" | Partial<Pose>;
   /**
-   * How far from a told start the registration by colours may end: the rotation, by default 30 degrees, and the object's
-   * middle in the colour view's units, by default the object's own width. Where nothing within explains the colours better,
+   * How far from a told start the registration by colours may end: the rotation, by default 30 degrees, and, where a translation is
+   * told, the object's middle in the colour view's units, by default the object's own width. Where nothing within explains the colours better,
    * the told pose is kept and the status is "lost".
    */
   startTolerance?: { degrees?: number; distance?: number };
@@ -76,7 +76,7 @@ export interface Options {
   correspondenceDistance?: number;
   maxIterations?: number;
   seed?: number;
-  /** Whether flying pixels and background inside the mask are trimmed; default true. */
+  /** Whether flying pixels and background inside the mask are trimmed; default true. What is over 15 % of the depths of a map without a mask is a guess: "ambiguous". */
   trim?: boolean;
   /**
    * Threads, 1 .. 16, this one included; default 1. All of them share the search, and two the iterations of larger

@@ -105,6 +105,7 @@ impl Task {
             };
             print(&line)?;
             if let (Ok(found), false) = (&outcome, arguments.json) {
+                found.notes.iter().for_each(|note| eprintln!("note: {note}"));
                 found.warnings.iter().for_each(|warning| eprintln!("warning: {}: {warning}", pair.name));
             }
             worst = worst.max(code);

@@ -214,15 +214,20 @@ impl From<&Similarity> for Pose {
     }
 }
 
-impl<'a> Report<'a> {
-    fn of(name: Option<&'a str>, found: &'a Outcome) -> Self {
-        let report = found.estimator.report();
-        let sigma = |sigma: &'a Uncertainty| Sigma {
+impl<'a> From<&'a Uncertainty> for Sigma<'a> {
+    fn from(sigma: &'a Uncertainty) -> Self {
+        Self {
             rotation_degrees: sigma.rotation_degrees,
             translation: sigma.translation,
             scale: sigma.scale,
             weakest: &sigma.weakest,
-        };
+        }
+    }
+}
+
+impl<'a> Report<'a> {
+    fn of(name: Option<&'a str>, found: &'a Outcome) -> Self {
+        let report = found.estimator.report();
         Self {
             name,
             image: found.files.image.display().to_string(),
@@ -233,7 +238,7 @@ impl<'a> Report<'a> {
             pose: (&report.pose).into(),
             unit: found.image_length.symbol(),
             depth_unit: found.depth_length.symbol(),
-            uncertainty: report.uncertainty.as_ref().map(sigma),
+            uncertainty: report.uncertainty.as_ref().map(Sigma::from),
             rivals: report.rivals.iter().map(Pose::from).collect(),
             overlap: report.overlap,
             inliers: report.inliers,
@@ -274,21 +279,39 @@ pub fn json_of_problem(name: Option<&str>, files: Option<&Files>, problem: &Prob
     text(&Failed { name, image, depth, error }, layout)
 }
 
-/// The pose for other programs: as in js/write/results.ts.
-pub fn pose_json(pose: &Similarity, length: Length) -> String {
+/// The pose and how far it is to be trusted, for other programs: as in js/write/results.ts.
+pub fn pose_json(report: &StepReport, length: Length) -> String {
     #[derive(Serialize)]
-    struct Told {
+    struct Told<'a> {
         about: String,
         unit: &'static str,
         #[serde(flatten)]
         pose: Pose,
         matrix: [[f64; 4]; 4],
+        status: &'static str,
+        #[serde(skip_serializing_if = "Option::is_none")]
+        message: Option<&'a str>,
+        #[serde(skip_serializing_if = "Option::is_none")]
+        uncertainty: Option<Sigma<'a>>,
     }
+    let StepReport { pose, status, message, uncertainty, .. } = report;
+    let sigmas = uncertainty.as_ref().map_or("", |_| {
+        "; uncertainty is one sigma, null where the views cannot see the number: any value of it would do as well, or it was held"
+    });
     let about = format!(
-        "P_colour = scale * rotation * P_depth + translation; rotation row by row; angles in degrees; lengths in {}",
+        "P_colour = scale * rotation * P_depth + translation; rotation row by row; angles in degrees; lengths in {}{sigmas}",
         length.word()
     );
-    text(&Told { about, unit: length.symbol(), pose: pose.into(), matrix: matrix(pose) }, Layout::Lines)
+    let told = Told {
+        about,
+        unit: length.symbol(),
+        pose: pose.into(),
+        matrix: matrix(pose),
+        status: status.name(),
+        message: message.as_deref(),
+        uncertainty: uncertainty.as_ref().map(Sigma::from),
+    };
+    text(&told, Layout::Lines)
 }
 
 /// Scale and rotation in one, and the translation.

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use bimodal_stereo::{StepReport, Surface};
+use bimodal_stereo::Surface;
 
 use crate::estimate::{Length, Outcome};
 use crate::problem::{Problem, Result, shown};
@@ -25,14 +25,18 @@ pub fn results(folder: &Path, found: &Outcome) -> Result<Vec<String>> {
     let (depth, width) = (estimator.refined_depth(), estimator.depth().size.width);
     let (png, says) = depth_png(depth, width, found.depth_length)
         .map_err(|error| Problem::file(&folder.join("refined-depth.png"), error))?;
-    let StepReport { pose, .. } = estimator.report();
+    let run = estimator.report();
     let (length, depth_length) = (found.image_length.word(), found.depth_length.word());
     let files: [(&str, Vec<u8>, String); 7] = [
         ("clouds.ply", clouds(found), format!("the picture's shape and the moved depth map, {length}")),
         ("refined-depth.png", png, format!("{says} per stored number, 0 is no depth")),
         ("refined-depth.npy", npy_bytes(width, depth), format!("{depth_length}, NaN is no depth")),
-        ("pose.json", report::pose_json(pose, found.image_length).into(), length.into()),
-        ("depth_to_colour.txt", matrix_text(&report::matrix(pose)).into(), format!("4x4 with the scale, {length}")),
+        ("pose.json", report::pose_json(run, found.image_length).into(), length.into()),
+        (
+            "depth_to_colour.txt",
+            matrix_text(&report::matrix(&run.pose)).into(),
+            format!("4x4 with the scale, {length}"),
+        ),
         ("light.csv", light_csv(&estimator.light().flat()).into(), "nine coefficients a channel".into()),
         ("report.json", report::json(found, Layout::Lines).into(), "as --json".into()),
     ];

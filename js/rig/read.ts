@@ -47,9 +47,12 @@ export const isRasterFile = (bytes: Uint8Array): boolean => kindOf(bytes) !== un
 
 const isColourful = (picture: Picture): boolean => picture.channels >= 3 && !isGrey(picture);
 
+const CALLED_MASK = /mask|segm/i;
+
 /** What a picture is where nobody said: by its content, and where both would do, by the name of its file. */
 function guessedKind(name: string, picture: Picture): "colour" | "depth" | "mask" {
-  if (looksLikeMask(picture)) return "mask";
+  // A drawn mask may have soft edges.
+  if (looksLikeMask(picture) || (CALLED_MASK.test(name) && picture.bits === 8 && isGrey(picture))) return "mask";
   if (picture.data instanceof Float32Array && picture.channels === 3) return picture.format === "npy" ? "depth" : "colour";
   if (isColourful(picture)) return "colour";
   const file = name.toLowerCase();

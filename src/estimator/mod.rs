@@ -455,6 +455,7 @@ impl Estimator {
             outlines: self.registration.found_by_outlines().map(OutlineEvidence::of),
             contrast: self.registration.found_by_contrast().map(ContrastEvidence::of),
             is_hollow: history.is_hollow,
+            guessed_away: pair.depth.guessed_away(),
             has_kept_start: self.registration.has_kept_start(),
             rivals: report.rivals.len(),
             nearest_rival: nearest,

@@ -65,6 +65,8 @@ pub struct DepthView {
     pub normals_given: bool,
     /// Pixels with a depth that trimming took out of the object.
     pub trimmed: usize,
+    /// Whether a mask said what the object is.
+    pub has_mask: bool,
 }
 
 /// The field that is named where the lens lets no rays through.
@@ -108,6 +110,7 @@ impl DepthView {
             organised,
             normals_given: map.normals.is_some(),
             trimmed: 0,
+            has_mask: map.mask.is_some(),
         };
         view.require_depth()?;
         if trim && !organised {
@@ -140,6 +143,12 @@ impl DepthView {
             field,
             format!("fewer than {FEWEST_PIXELS} object pixels have a depth above zero and below {}", Brief(FARTHEST)),
         ))
+    }
+
+    /// Share of the depths that trimming left out where no mask said what the object is.
+    pub fn guessed_away(&self) -> f64 {
+        let trimmed = if self.has_mask { 0.0 } else { self.trimmed as f64 };
+        trimmed / (trimmed + self.valid() as f64)
     }
 
     fn trim(&mut self) {
@@ -311,6 +320,18 @@ mod tests {
         input.samples = DepthSamples::Float(depth);
         let view = DepthView::new(&input, true).unwrap();
         assert!(!view.mask[0] && view.mask[55]);
+    }
+
+    #[test]
+    fn an_object_before_a_wall_is_guessed_away_unless_a_mask_says_that_it_is_one() {
+        let is_object = |index: usize| index % 10 < 4 && index < 90;
+        let depth = (0..100).map(|index| if is_object(index) { 5.0 } else { 50.0 }).collect();
+        let mut input = map(DepthSamples::Float(depth));
+        assert!((DepthView::new(&input, true).unwrap().guessed_away() - 0.36).abs() < 1e-9);
+        assert!(DepthView::new(&input, false).unwrap().guessed_away() == 0.0);
+        input.mask = Some((0..100).map(|index| u8::from(is_object(index))).collect());
+        let view = DepthView::new(&input, true).unwrap();
+        assert_eq!((view.valid(), view.guessed_away()), (36, 0.0));
     }
 
     #[test]

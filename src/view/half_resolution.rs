@@ -142,7 +142,8 @@ impl DepthView {
             normals: self.normals.halved_directions(self.size),
             organised: self.organised,
             normals_given: self.normals_given,
-            trimmed: 0,
+            trimmed: self.trimmed,
+            has_mask: self.has_mask,
         }
     }
 }

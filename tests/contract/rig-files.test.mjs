@@ -132,6 +132,10 @@ describe("what looks wrong is said", () => {
   test("by content: masks, grey pictures, depth; names where either would do", async () => {
     const mask = png({ width: 10, height: 1, depth: 1, colourType: GREY, rows: [[0b10000001, 0b01000000]] });
     assert.equal((await read("x.png", mask)).kind, "mask");
+    // Drawn ones have soft edges: so called, they are masks all the same.
+    const soft = png({ width: 4, height: 1, depth: 8, colourType: GREY, rows: [[0, 96, 255, 254]] });
+    assert.equal((await read("cup-mask.png", soft)).kind, "mask");
+    assert.equal((await read("x.png", soft)).kind, "colour");
     assert.equal((await read("x.png", grey8)).kind, "colour");
     assert.equal((await read("depth/1.png", grey8)).kind, "depth");
     assert.equal((await read("x.png", depthPng([[1000, 2000]]))).kind, "depth");

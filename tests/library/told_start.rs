@@ -107,6 +107,20 @@ fn outlines_bring_a_painted_object_home() {
 }
 
 #[test]
+fn outlines_find_the_place_of_a_painted_object_whose_rotation_alone_is_told() {
+    let sample = perspective("window");
+    let middle = middle(&sample);
+    for degrees in [0.0, 3.0] {
+        let start = turned_about_the_sensor(&sample, Vector3::new(0.2, 1.0, 0.3), degrees);
+        let rotation_alone = Start::Pose { rotation: start.rotation, scale: None, translation: None };
+        let report = run(&sample, Paint::Patches, Options { start: rotation_alone, ..Options::default() });
+        let off = report.pose.apply(middle) - sample.pose.apply(middle);
+        assert!(off.xy().norm() < 1.5, "{off} {report:?}");
+        assert!(report.pose.degrees_to(&sample.pose) < 3.5, "{report:?}");
+    }
+}
+
+#[test]
 fn fine_print_is_not_taken_for_noise_that_explains_the_colours() {
     // Letters of a pixel are noise: neighbours share nothing of them, and only how much they are tells them from a camera's.
     let sample = perspective("window");

@@ -31,6 +31,7 @@ test("four files and a camera dropped anywhere go where their content belongs, e
   await expect(slot(lab, 1)).toContainText(/48x48, 16-bit, 5\d\.\d % valid, stored numbers 100 to/);
   await expect(slot(lab, 2)).toContainText("1.png");
   await expect(slot(lab, 2)).toContainText("a mask of 5");
+  await expect(page.locator(".remarks")).toContainText("The depth map has no mask");
   for (const [index, name] of [[0, "4.png"], [1, "3.npy"], [2, "1.png"]] as const) {
     await expect(slot(lab, index).getByRole("img", { name: `Preview of ${name}` })).toHaveAttribute("width", String(SIDE));
   }

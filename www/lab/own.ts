@@ -166,6 +166,9 @@ export async function sorted(files: readonly File[], there: Files): Promise<Sort
     result.slots.set(slot, file);
     after[slot] = file;
   }
+  if (of("mask").length > 0 && after.colourMask && after.depth && !after.depthMask) {
+    say("The depth map has no mask: if it shows more than the object, give it one.");
+  }
   const cameras = of("cameras").flatMap(({ file, look }) => look.cameras.map((camera) => ({ file: file.name, ...camera })));
   addCameras(cameras, { colour, depth }, result);
   for (const { file } of of("poses")) say(`${file.name}: a pose, which the Lab finds by itself; Settings, Start, near takes its angles.`);

@@ -54,6 +54,11 @@ fn results_are_files_that_others_read() {
     assert_eq!(names(&out), all);
     assert_eq!(told.json()["written"].as_array().unwrap().len(), all.len());
 
+    let pose: serde_json::Value = serde_json::from_slice(&fs::read(out.join("pose.json")).unwrap()).unwrap();
+    for said in ["status", "uncertainty"] {
+        assert_eq!(pose[said], told.json()[said], "{said}");
+    }
+
     let bytes = fs::read(out.join("refined-depth.npy")).unwrap();
     let file = npyz::NpyFile::new(&bytes[..]).unwrap();
     assert_eq!(file.shape(), [SIDE as u64; 2]);

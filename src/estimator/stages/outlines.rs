@@ -2,7 +2,7 @@
 
 use crate::estimator::gauge;
 use crate::estimator::pair::ViewPair;
-use crate::pose::{Angles, Outline, OutlinePrior, OutlineProblem, OutlineReport, PhotometricReport};
+use crate::pose::{Angles, Outline, OutlinePrior, OutlineProblem, OutlineReport, PhotometricReport, Similarity};
 use crate::view::Normals;
 
 /// Noise that the colours leave above which it is none, but paint and shadow, log units: renders leave 0.010 to 0.018, all
@@ -45,24 +45,25 @@ pub fn near(pair: &ViewPair, normals: &Normals, told: OutlinePrior) -> Option<Ou
 
 /// The pose where nothing is told: the best from several rotations at the middle of the image's object.
 pub fn anywhere(pair: &ViewPair, normals: &Normals) -> Option<OutlineReport> {
-    // An orthographic image has other ways; a frame without a mask has no object whose middle it could be.
-    if pair.image.camera.is_orthographic() || !pair.image.whole.object.contains(&false) {
-        return None;
-    }
     let turned = |angles: Angles| gauge::centred(pair, angles.rotation());
-    let pose = turned(Angles::default());
-    let distance = pose.apply(pair.depth.points.centroid()).z;
-    let prior = OutlinePrior {
-        pose,
-        rotation: ANYWHERE_DEGREES.to_radians(),
-        across: ANYWHERE_ACROSS * distance,
-        along: ANYWHERE_ALONG * distance,
-    };
+    let prior = placed_by_middles(pair, turned(Angles::default()), ANYWHERE_DEGREES)?;
     let problem = OutlineProblem { image: &pair.image, depth: &pair.depth, normals, prior };
     let mut outline = Outline::new(&problem);
     let starts = TURNS.into_iter().flat_map(|beta| TILTS.map(|alpha| turned(Angles { alpha, beta, gamma: 0.0 })));
     let found = starts.map(|start| outline.register(&problem, &start)).filter(is_seen);
     found.min_by(|a, b| a.cost.total_cmp(&b.cost))
+}
+
+/// What is known where no place is told: the pose, which puts the middle of the depth points on that of the image's object,
+/// with this sigma of its rotation, degrees.
+pub fn placed_by_middles(pair: &ViewPair, pose: Similarity, degrees: f64) -> Option<OutlinePrior> {
+    // An orthographic image has other ways; a frame without a mask has no object whose middle it could be.
+    if pair.image.camera.is_orthographic() || !pair.image.whole.object.contains(&false) {
+        return None;
+    }
+    let distance = pose.apply(pair.depth.points.centroid()).z;
+    let (across, along) = (ANYWHERE_ACROSS * distance, ANYWHERE_ALONG * distance);
+    Some(OutlinePrior { pose, rotation: degrees.to_radians(), across, along })
 }
 
 fn is_seen(found: &OutlineReport) -> bool {

@@ -7,7 +7,8 @@
 //! from the best of a search over the rotations within the tolerance, which turn about the object's middle. Where
 //! nothing within the tolerance explains the colours better than staying does, the told pose is kept.
 //!
-//! Limits: where the view's frame is not shared and no translation is told, only the rotation is believed.
+//! Limits: where the view's frame is not shared and no translation is told, only the rotation is believed; outlines then look
+//! for the place from where the middles of both views meet.
 
 use nalgebra::Vector3;
 
@@ -171,14 +172,14 @@ impl TrustRegion {
     /// The pose by outlines, where intrinsics tell of the whole frame, enough is seen of them and they like it better
     /// than the told one.
     fn by_outlines(&self, pair: &ViewPair, colours: &ColourRegistration) -> Option<OutlineReport> {
-        if !self.sees_depth || !self.distance.is_finite() {
+        let degrees = SIGMA_OF_DEGREES * self.degrees;
+        let (across, along) = (SIGMA_ACROSS * self.distance, SIGMA_ALONG * self.distance);
+        let told = if self.distance.is_infinite() {
+            outlines::placed_by_middles(pair, self.told, degrees)?
+        } else if self.sees_depth {
+            OutlinePrior { pose: self.told, rotation: degrees.to_radians(), across, along }
+        } else {
             return None;
-        }
-        let told = OutlinePrior {
-            pose: self.told,
-            rotation: (SIGMA_OF_DEGREES * self.degrees).to_radians(),
-            across: SIGMA_ACROSS * self.distance,
-            along: SIGMA_ALONG * self.distance,
         };
         outlines::near(pair, colours.normals(), told).filter(|found| self.holds(pair, &found.pose))
     }
