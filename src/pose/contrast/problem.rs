@@ -44,6 +44,15 @@ impl ContrastProblem<'_> {
     }
 }
 
+#[cfg(test)]
+impl<'a> ContrastProblem<'a> {
+    /// Of two views as they are, both in pixels.
+    pub fn of_views(image: &'a ColourView, depth: &'a DepthView, normal_error: &'a [f32]) -> Self {
+        let (object, normals) = (&image.mask, &depth.normals);
+        Self { image, object, depth, normals, normal_error, unit_scale: 1.0, scale_is_held: false }
+    }
+}
+
 /// What the registration found.
 #[derive(Clone, Debug)]
 pub struct ContrastReport {

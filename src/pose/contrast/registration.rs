@@ -344,15 +344,7 @@ mod tests {
     /// Degrees off at the end of a registration from 3 degrees off.
     fn off((image, depth): &(ColourView, DepthView), instrument_rounds: usize) -> f64 {
         let normal_error = vec![0.0; depth.size.len()];
-        let problem = ContrastProblem {
-            image,
-            object: &image.mask,
-            depth,
-            normals: &depth.normals,
-            normal_error: &normal_error,
-            unit_scale: 1.0,
-            scale_is_held: false,
-        };
+        let problem = ContrastProblem::of_views(image, depth, &normal_error);
         let rotation = Rotation3::new(Vector3::new(0.03, -0.04, 0.01)).into_inner();
         let start = Similarity::identity().turned_about(depth.points.centroid(), 1.0, rotation);
         let mut registration = ContrastRegistration::new(&problem, 1, 0.0);
@@ -378,15 +370,7 @@ mod tests {
     /// One sigma of the rotation about each axis at the true pose, with the mask as given.
     fn sigmas((image, depth): &(ColourView, DepthView), object: &[bool]) -> [f64; 3] {
         let normal_error = vec![0.0; depth.size.len()];
-        let problem = ContrastProblem {
-            image,
-            object,
-            depth,
-            normals: &depth.normals,
-            normal_error: &normal_error,
-            unit_scale: 1.0,
-            scale_is_held: false,
-        };
+        let problem = ContrastProblem { object, ..ContrastProblem::of_views(image, depth, &normal_error) };
         let mut registration = ContrastRegistration::new(&problem, 1, 0.0);
         registration.uncertainty(&problem, &Similarity::identity()).unwrap().rotation_degrees
     }
@@ -418,15 +402,8 @@ mod tests {
             }
         }
         let normal_error = vec![0.0; depth.size.len()];
-        let problem = ContrastProblem {
-            image: &image,
-            object: &image.mask,
-            depth: &depth,
-            normals: &depth.normals,
-            normal_error: &normal_error,
-            unit_scale: 1.0,
-            scale_is_held: true,
-        };
+        let problem =
+            ContrastProblem { scale_is_held: true, ..ContrastProblem::of_views(&image, &depth, &normal_error) };
         let truth = Similarity::identity();
         let shrunk = truth.turned_about(depth.points.centroid(), 0.4, truth.rotation);
         let mut registration = ContrastRegistration::new(&problem, 1, 0.0);
@@ -448,15 +425,7 @@ mod tests {
             [*x, *y, *z] = noisy.map(|part| part as f32).into();
         }
         let normal_error = vec![0.0; depth.size.len()];
-        let problem = ContrastProblem {
-            image: &image,
-            object: &image.mask,
-            depth: &depth,
-            normals: &normals,
-            normal_error: &normal_error,
-            unit_scale: 1.0,
-            scale_is_held: false,
-        };
+        let problem = ContrastProblem { normals: &normals, ..ContrastProblem::of_views(&image, &depth, &normal_error) };
         ContrastRegistration::new(&problem, 1, blur).rank(&problem, &Similarity::identity(), 0.05).unwrap()
     }
 

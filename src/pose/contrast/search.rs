@@ -218,15 +218,8 @@ mod tests {
         let image = ColourView::new(sample.colour_image()).unwrap();
         let depth = DepthView::new(&sample.depth_map(), true).unwrap();
         let normal_error = vec![0.0; depth.size.len()];
-        let problem = ContrastProblem {
-            image: &image,
-            object: &image.mask,
-            depth: &depth,
-            normals: &depth.normals,
-            normal_error: &normal_error,
-            unit_scale: 1.0,
-            scale_is_held: true,
-        };
+        let problem =
+            ContrastProblem { scale_is_held: true, ..ContrastProblem::of_views(&image, &depth, &normal_error) };
         let turned = |off: f64| {
             let turn = Rotation3::new(Vector3::new(off, -off, 0.5 * off)).into_inner();
             sample.pose.turned_about(depth.points.centroid(), 1.0, turn * sample.pose.rotation)
