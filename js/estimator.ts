@@ -129,7 +129,7 @@ export class Estimator {
     return this.#call((raw) => raw.report());
   }
 
-  /** Normals of the image view, 3*w*h interleaved, NaN outside the mask. */
+  /** Normals of the image view, 3*w*h interleaved, NaN outside the mask, which black and saturated pixels leave: they tell no colour. */
   imageNormals(): Float32Array {
     return this.#call((raw) => raw.imageNormals());
   }

@@ -72,6 +72,8 @@ async function facade() {
     external: /^node:/,
     platform: "neutral",
     resolve: { mainFields: ["module", "main"] },
+    // What the splitting below needs; set in silence it is warned of.
+    preserveEntrySignatures: "allow-extension",
   });
   // In a file of its own: who only checks a rig downloads nothing of the loop's bindings, which share it.
   const codeSplitting = { groups: [{ name: "border", test: /js\/(border|breathe|node)\.ts$/ }], includeDependenciesRecursively: false };
