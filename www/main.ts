@@ -283,6 +283,11 @@ if (placeOf(location.hash) === "lab" && wasOwn() && !asksToPlay(location.hash)) 
 onLook(() => writeAddress(store.settings));
 // On small screens the settings lie over what has opened them.
 button("close-settings", closeDrawer);
+// On phones they lie over whatever a run shows.
+const phone = matchMedia("(max-width: 45rem)");
+button("play", () => {
+  if (phone.matches && player.playing) drawer.open = false;
+});
 // A link opened in this very tab changes nothing but the part after #. The browser tells of it twice: at once, and again when it has time,
 // by which it may be elsewhere.
 let told = "";

@@ -36,6 +36,9 @@ test.describe("by touch", () => {
     // They lie over the button that has opened them.
     await page.getByRole("button", { name: "Close settings" }).tap();
     await expect(page.getByRole("button", { name: "Close settings" })).toBeHidden();
+    await page.locator("#input > summary").tap();
+    await page.getByRole("button", { name: "Play", exact: true }).tap();
+    await expect(page.getByRole("button", { name: "Close settings" }), "over what plays").toBeHidden();
     for (const id of ["pixel", "pose", "paint", "exercises"]) {
       await page.goto(`./#learn&at=${id}`);
       await expect(page.locator(id === "exercises" ? ".learn-exercises" : `[data-lesson="${id}"]`)).toBeVisible();
