@@ -76,7 +76,7 @@ export interface Options {
   correspondenceDistance?: number;
   maxIterations?: number;
   seed?: number;
-  /** Whether flying pixels and background inside the mask are trimmed; default true. What is over 15 % of the depths of a map without a mask is a guess: "ambiguous". */
+  /** Whether flying pixels and background inside the mask are trimmed; default true. Where it leaves out over 15 % of the depths of a map without a mask, the end is at best "ambiguous". */
   trim?: boolean;
   /**
    * Threads, 1 .. 16, this one included; default 1. All of them share the search, and two the iterations of larger

@@ -53,16 +53,16 @@ struct Task {
 
 fn run(arguments: Arguments) -> Result<Code> {
     let is_json = arguments.json;
-    let options = arguments.options().map_err(|problem| told(problem, None, is_json))?;
+    let options = arguments.options().map_err(|problem| printed(problem, None, is_json))?;
     let task = Task { arguments, options };
-    match task.arguments.input().map_err(|problem| told(problem, None, is_json))? {
+    match task.arguments.input().map_err(|problem| printed(problem, None, is_json))? {
         Input::Pair(files) => task.one(&files),
         Input::Folder(folder) => task.many(&folder),
     }
 }
 
-/// Of what ends everything: says it on the standard output as well, where that is JSON.
-fn told(problem: Problem, files: Option<&Files>, is_json: bool) -> Problem {
+/// A problem that ends everything, after it was printed to the standard output where that is JSON.
+fn printed(problem: Problem, files: Option<&Files>, is_json: bool) -> Problem {
     let text = || report::json_of_problem(None, files, &problem, report::Layout::Lines);
     let said = if is_json { print(&text()) } else { Ok(()) };
     said.err().unwrap_or(problem)
@@ -79,15 +79,15 @@ impl Task {
                 found.warnings.iter().for_each(|warning| eprintln!("warning: {warning}"));
                 print(&report::words(&found)).map(|()| found.code())
             }
-            (Err(problem), is_json) => Err(told(problem, Some(files), is_json)),
+            (Err(problem), is_json) => Err(printed(problem, Some(files), is_json)),
         }
     }
 
     /// A folder: one line for each pair. A pair that cannot be read costs itself, not the others.
     fn many(&self, folder: &Path) -> Result<Code> {
         let arguments = &self.arguments;
-        let found =
-            folder::pairs(folder, arguments.out.as_deref()).map_err(|problem| told(problem, None, arguments.json))?;
+        let found = folder::pairs(folder, arguments.out.as_deref())
+            .map_err(|problem| printed(problem, None, arguments.json))?;
         found.warnings.iter().for_each(|warning| eprintln!("warning: {warning}"));
         let mut worst = Code::Converged;
         for (index, pair) in found.pairs.iter().enumerate() {

@@ -16,10 +16,10 @@ const SETTLED_OBJECTIVE: f64 = 1e-3;
 /// Iterations after which shapes under a pose that does not move have come as far as they will: they flicker by some
 /// tenths of a percent.
 const MOST_UNMOVED: u32 = 8;
-/// Share of the depths that trimming may leave out of a map without a mask: flying pixels are a few percent at most. Of whole frames
-/// of a table with an object it left out 40 and 44 %, the object among them, and the wall before the image had a pose 56 to 94
-/// degrees off that seemed sure.
-const LARGEST_GUESSED_AWAY: f64 = 0.15;
+/// Share of the depths that trimming may leave out of a map without a mask. Of two whole frames of a table with an object it left out 40
+/// and 45 %, the object among them, and the wall had a pose 56 to 94 degrees off that seemed sure; of 79 renders with a second object,
+/// which seemed sure as well, less than this.
+const LARGEST_TRIMMED: f64 = 0.15;
 /// Overlap (share of valid depth pixels) below which a pose cannot be trusted.
 const LEAST_OVERLAP: f64 = 0.05;
 /// Fewer correspondences than this determine nothing.
@@ -81,7 +81,9 @@ pub struct Evidence<'a> {
     /// Whether a pose was searched for a depth map that looks hollow: mirrored, it has another pose that is as good.
     pub is_hollow: bool,
     /// Share of the depths that trimming left out where no mask said what the object is.
-    pub guessed_away: f64,
+    pub trimmed_without_mask: f64,
+    /// Whether a pose was searched for a camera's whole frame, so that nothing says what in it is the object.
+    pub is_whole_frame: bool,
     /// Number of rivals, and the degrees to the nearest.
     pub rivals: usize,
     pub nearest_rival: f64,
@@ -175,7 +177,7 @@ pub fn verdict(evidence: &Evidence<'_>) -> Option<Verdict> {
     } else {
         return None;
     };
-    Some(reason_for_distrust(evidence).or_else(|| reason_of_guessed_object(evidence)).unwrap_or(end))
+    Some(reason_for_distrust(evidence).or_else(|| reason_of_missing_mask(evidence)).unwrap_or(end))
 }
 
 /// The verdict of an answer that looked good, where relief so many times as deep explains its colours better.
@@ -253,14 +255,16 @@ fn reason_for_distrust(evidence: &Evidence<'_>) -> Option<Verdict> {
 }
 
 /// Why an answer that looks good may be that of something else.
-fn reason_of_guessed_object(evidence: &Evidence<'_>) -> Option<Verdict> {
-    (evidence.guessed_away > LARGEST_GUESSED_AWAY).then(|| {
-        let share = Fixed(100.0 * evidence.guessed_away, 0);
-        (
-            Status::Ambiguous,
-            Some(format!("{share} % of the depths were left out as background, a guess: give depth.mask")),
-        )
-    })
+fn reason_of_missing_mask(evidence: &Evidence<'_>) -> Option<Verdict> {
+    let reason = if evidence.trimmed_without_mask > LARGEST_TRIMMED {
+        let share = Fixed(100.0 * evidence.trimmed_without_mask, 0);
+        format!("{share} % of the depths were left out as background, a guess: give depth.mask")
+    } else if evidence.is_whole_frame {
+        "nothing says what the object is in the image: give image.mask".into()
+    } else {
+        return None;
+    };
+    Some((Status::Ambiguous, Some(reason)))
 }
 
 fn reason_without_contrast(&ContrastEvidence { sigma, weakest, unexplained }: &ContrastEvidence<'_>) -> Option<String> {
@@ -319,7 +323,8 @@ mod tests {
         contrast: None,
         has_kept_start: false,
         is_hollow: false,
-        guessed_away: 0.0,
+        trimmed_without_mask: 0.0,
+        is_whole_frame: false,
         rivals: 0,
         nearest_rival: f64::INFINITY,
     };
@@ -387,13 +392,14 @@ mod tests {
             ("outliers", colours(ColourEvidence { inliers: 0.3, ..SURE }), lost, "only 30 % of the points"),
             ("a fair sigma", colours(ColourEvidence { sigma: 1.6, ..SURE }), ambiguous, "1.6 degrees (one sigma)"),
             ("a hollow depth map", Evidence { is_hollow: true, ..SETTLED }, ambiguous, "larger means nearer"),
-            ("flying pixels", Evidence { guessed_away: 0.05, ..SETTLED }, Some(Status::Converged), ""),
+            ("flying pixels", Evidence { trimmed_without_mask: 0.05, ..SETTLED }, Some(Status::Converged), ""),
             (
                 "a guessed object",
-                Evidence { guessed_away: 0.4, ..SETTLED },
+                Evidence { trimmed_without_mask: 0.4, ..SETTLED },
                 ambiguous,
                 "40 % of the depths were left out",
             ),
+            ("a whole frame", Evidence { is_whole_frame: true, ..SETTLED }, ambiguous, "give image.mask"),
             ("rivals", Evidence { rivals: 2, nearest_rival: 40.2, ..SETTLED }, ambiguous, "2 other poses"),
             (
                 "rivals of matched surfaces",

@@ -117,6 +117,14 @@ impl ColourView {
         Ok(Self { whole, ..Self::of(size, camera, usable, log, transfer) })
     }
 
+    /// Whether it is a camera's whole frame: intrinsics, no mask, and over half of the first and last rows show something.
+    pub fn is_whole_frame(&self) -> bool {
+        let (width, whole) = (self.size.width, &self.whole.object);
+        let shown = |row: &[bool]| row.iter().filter(|&&is_shown| is_shown).count();
+        let edges = shown(&self.mask[..width]) + shown(&self.mask[self.mask.len() - width..]);
+        edges > width && !whole.is_empty() && !whole.contains(&false)
+    }
+
     /// The view of these logarithms, NaN off the mask.
     pub(super) fn of(size: Size, camera: Camera, mask: Vec<bool>, log: [Vec<f32>; 3], transfer: Transfer) -> Self {
         // Computed once: every stage's preparation needs them, and they would be a fifth of the search's.
@@ -298,6 +306,25 @@ mod tests {
     fn srgb_middle_grey_is_a_fifth_of_white() {
         let view = ColourView::new(image(ColourSamples::Rgba8([119, 119, 119, 255].repeat(16)))).unwrap();
         assert!((view.log[0][0].exp() - 0.1845).abs() < 1e-3);
+    }
+
+    #[test]
+    fn a_frame_that_is_filled_is_whole_unless_a_mask_says_what_the_object_is() {
+        let camera = Some(Pinhole { fx: 8.0, fy: 8.0, cx: 3.5, cy: 3.5, distortion: [0.0; 5] });
+        let is_middle = |index: usize| (2..6).contains(&(index % 8)) && (2..6).contains(&(index / 8));
+        let grey = |dark: bool, index: usize| if dark && !is_middle(index) { 0 } else { 90 };
+        let levels =
+            |dark: bool| (0..64).flat_map(|index| [[grey(dark, index); 3].as_slice(), &[255]].concat()).collect();
+        let frame = |dark, mask, camera| {
+            let samples = ColourSamples::Rgba8(levels(dark));
+            let image = ColourImage { width: 8, height: 8, mask, camera, ..image(samples) };
+            ColourView::new(image).unwrap().is_whole_frame()
+        };
+        assert!(frame(false, None, camera));
+        // An object before black, one that a mask tells, and what has no camera.
+        assert!(!frame(true, None, camera));
+        assert!(!frame(false, Some((0..64).map(|index| u8::from(is_middle(index))).collect()), camera));
+        assert!(!frame(false, None, None));
     }
 
     /// Found by a law of whole runs: stripes were noise or not as the camera was held.

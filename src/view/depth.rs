@@ -146,7 +146,7 @@ impl DepthView {
     }
 
     /// Share of the depths that trimming left out where no mask said what the object is.
-    pub fn guessed_away(&self) -> f64 {
+    pub fn trimmed_without_mask(&self) -> f64 {
         let trimmed = if self.has_mask { 0.0 } else { self.trimmed as f64 };
         trimmed / (trimmed + self.valid() as f64)
     }
@@ -323,15 +323,15 @@ mod tests {
     }
 
     #[test]
-    fn an_object_before_a_wall_is_guessed_away_unless_a_mask_says_that_it_is_one() {
+    fn an_object_before_a_wall_is_trimmed_unless_a_mask_says_that_it_is_one() {
         let is_object = |index: usize| index % 10 < 4 && index < 90;
         let depth = (0..100).map(|index| if is_object(index) { 5.0 } else { 50.0 }).collect();
         let mut input = map(DepthSamples::Float(depth));
-        assert!((DepthView::new(&input, true).unwrap().guessed_away() - 0.36).abs() < 1e-9);
-        assert!(DepthView::new(&input, false).unwrap().guessed_away() == 0.0);
+        assert!((DepthView::new(&input, true).unwrap().trimmed_without_mask() - 0.36).abs() < 1e-9);
+        assert!(DepthView::new(&input, false).unwrap().trimmed_without_mask() == 0.0);
         input.mask = Some((0..100).map(|index| u8::from(is_object(index))).collect());
         let view = DepthView::new(&input, true).unwrap();
-        assert_eq!((view.valid(), view.guessed_away()), (36, 0.0));
+        assert_eq!((view.valid(), view.trimmed_without_mask()), (36, 0.0));
     }
 
     #[test]

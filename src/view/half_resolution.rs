@@ -142,7 +142,7 @@ impl DepthView {
             normals: self.normals.halved_directions(self.size),
             organised: self.organised,
             normals_given: self.normals_given,
-            trimmed: self.trimmed,
+            trimmed: 0,
             has_mask: self.has_mask,
         }
     }

@@ -55,6 +55,7 @@ const remedies: readonly (readonly [said: RegExp, remedy: string])[] = [
   [/not observable|uncertain by|do not show/, "A larger image, less noise, or a light with more colours would show it."],
   [/depth\.unit/, "Settings, Depth camera, Unit says what a stored number stands for."],
   [/depth\.mask/, "Settings, Own files, Depth mask takes a picture of what the object is in the depth map."],
+  [/image\.mask/, "Settings, Own files, Colour mask takes a picture of what the object is in the image."],
   [/counterpart/, "Views that share more of the object would help: more overlap, a smaller rotation, or for own files the depth map's right unit."],
   [/painted/, "A start that is roughly known would help: Settings, Start, near."],
   [/unexplained/, "Less noise, or an object of one paint, would help."],
