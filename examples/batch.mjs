@@ -43,7 +43,11 @@ function parsed(args) {
   const text = { type: "string" };
   const flag = { type: "boolean" };
   try {
-    return parseArgs({ args, options: { csv: text, settings: text, threads: text, retry: flag, help: { ...flag, short: "h" } }, allowPositionals: true });
+    return parseArgs({
+      args,
+      options: { csv: text, settings: text, threads: text, retry: flag, help: { ...flag, short: "h" } },
+      allowPositionals: true,
+    });
   } catch (error) {
     throw new Mistake(error.message);
   }
@@ -66,22 +70,33 @@ function told(path) {
 /** Pairs by name, each with the paths of its files. */
 function pairsBelow(folder) {
   const found = new Map();
-  const files = readdirSync(folder, { recursive: true, withFileTypes: true }).filter((entry) => entry.isFile() && PICTURE.test(entry.name));
-  const paths = files.map((entry) => relative(folder, join(entry.parentPath ?? entry.path, entry.name)).replaceAll("\\", "/"));
+  const files = readdirSync(folder, { recursive: true, withFileTypes: true }).filter(
+    (entry) => entry.isFile() && PICTURE.test(entry.name),
+  );
+  const paths = files.map((entry) =>
+    relative(folder, join(entry.parentPath ?? entry.path, entry.name)).replaceAll("\\", "/"),
+  );
   for (const path of paths.sort()) {
     const { role, name } = told(path);
     const pair = found.get(name) ?? {};
-    if (pair[role]) throw new Mistake(`"${pair[role]}" and "${path}" are both the ${role} of "${name}": rename one of them`);
+    if (pair[role])
+      throw new Mistake(`"${pair[role]}" and "${path}" are both the ${role} of "${name}": rename one of them`);
     found.set(name, { ...pair, [role]: path });
   }
-  const pairs = [...found].filter(([, { colour, depth }]) => colour && depth).map(([name, paths]) => ({ name, ...paths }));
-  if (pairs.length === 0) throw new Mistake(`${folder} holds no pair of a colour image and a depth map with like names; --help says how they are told`);
+  const pairs = [...found]
+    .filter(([, { colour, depth }]) => colour && depth)
+    .map(([name, paths]) => ({ name, ...paths }));
+  if (pairs.length === 0)
+    throw new Mistake(
+      `${folder} holds no pair of a colour image and a depth map with like names; --help says how they are told`,
+    );
   return pairs;
 }
 
 function threadsOf(text) {
   const count = text === undefined ? availableParallelism() : Number(text);
-  if (!(Number.isInteger(count) && count > 0)) throw new Mistake(`--threads needs a whole number above zero, not "${text}"`);
+  if (!(Number.isInteger(count) && count > 0))
+    throw new Mistake(`--threads needs a whole number above zero, not "${text}"`);
   return count;
 }
 
@@ -156,7 +171,8 @@ async function run(args) {
   const { values, positionals } = parsed(args);
   if (values.help) return void process.stdout.write(HELP);
   const [folder, ...rest] = positionals;
-  if (folder === undefined || rest.length > 0) throw new Mistake(`one folder is needed, not ${positionals.length}; --help says more`);
+  if (folder === undefined || rest.length > 0)
+    throw new Mistake(`one folder is needed, not ${positionals.length}; --help says more`);
   if (!existsSync(folder) || !statSync(folder).isDirectory()) throw new Mistake(`${folder} is no folder`);
   if (values.csv === undefined) throw new Mistake("--csv OUT.csv is needed; --help says more");
   const [count, settings, pairs] = [threadsOf(values.threads), settingsOf(values.settings), pairsBelow(folder)];
@@ -179,7 +195,9 @@ async function run(args) {
   process.once("SIGINT", () => {
     stop();
     bar.end();
-    process.stderr.write(`interrupted; the same command goes on after ${pairs.length - open.length + done} of ${pairs.length} pairs\n`);
+    process.stderr.write(
+      `interrupted; the same command goes on after ${pairs.length - open.length + done} of ${pairs.length} pairs\n`,
+    );
     process.exit(INTERRUPTED);
   });
   await all;
@@ -197,9 +215,27 @@ async function registered({ name, colour, depth, mask }) {
   const estimator = new Estimator(image, { ...decodeDepth(bytes(depth)), ...settings.depth }, settings.options);
   try {
     const { status, pose, uncertainty, iteration, residual, message } = await estimator.run();
-    const { scale, angles, translation: [x, y, z] } = pose;
+    const {
+      scale,
+      angles,
+      translation: [x, y, z],
+    } = pose;
     const [sigma_x_degrees, sigma_y_degrees, sigma_z_degrees] = uncertainty?.rotationDegrees ?? [];
-    return { name, status, scale, ...angles, x, y, z, sigma_x_degrees, sigma_y_degrees, sigma_z_degrees, iterations: iteration, residual, message };
+    return {
+      name,
+      status,
+      scale,
+      ...angles,
+      x,
+      y,
+      z,
+      sigma_x_degrees,
+      sigma_y_degrees,
+      sigma_z_degrees,
+      iterations: iteration,
+      residual,
+      message,
+    };
   } finally {
     estimator.free();
   }

@@ -43,7 +43,16 @@ function parsed(args) {
   const text = { type: "string" };
   const many = { type: "string", multiple: true };
   const options = {
-    ...{ calibration: many, cameras: many, cues: text, frames: text, json: text, report: text, unit: text, workers: text },
+    ...{
+      calibration: many,
+      cameras: many,
+      cues: text,
+      frames: text,
+      json: text,
+      report: text,
+      unit: text,
+      workers: text,
+    },
     ...{ inverted: { type: "boolean" }, help: { type: "boolean", short: "h" } },
   };
   try {
@@ -56,7 +65,8 @@ function parsed(args) {
 function number(values, name) {
   if (values[name] === undefined) return {};
   const value = Number(values[name]);
-  if (values[name].trim() === "" || !Number.isFinite(value)) throw new Mistake(`--${name} needs a number, not "${values[name]}"`);
+  if (values[name].trim() === "" || !Number.isFinite(value))
+    throw new Mistake(`--${name} needs a number, not "${values[name]}"`);
   return { [name]: value };
 }
 
@@ -66,7 +76,9 @@ async function modules() {
     return { ...(await load("rig.js")), ...(await load("rig-write.js")), ...(await load("index.js")) };
   } catch (error) {
     if (error.code !== "ERR_MODULE_NOT_FOUND") throw error;
-    throw new Mistake(`this build of the package cannot check a rig: type npm run build (${error.message.split("\n")[0]})`);
+    throw new Mistake(
+      `this build of the package cannot check a rig: type npm run build (${error.message.split("\n")[0]})`,
+    );
   }
 }
 
@@ -77,23 +89,33 @@ function filesOf(folder, except) {
   const paths = readdirSync(folder, { recursive: true, withFileTypes: true })
     .filter((entry) => entry.isFile())
     .map((entry) => join(entry.parentPath ?? entry.path, entry.name))
-    .filter((path) => !relative(folder, path).split(/[\\/]/).some((part) => part.startsWith(".")) && !except.has(resolve(path)))
+    .filter(
+      (path) =>
+        !relative(folder, path)
+          .split(/[\\/]/)
+          .some((part) => part.startsWith(".")) && !except.has(resolve(path)),
+    )
     .sort();
   const bytes = paths.reduce((sum, path) => sum + statSync(path).size, 0);
   if (bytes > MOST_BYTES) {
-    throw new Mistake(`${folder} holds ${(bytes / 2 ** 30).toFixed(1)} GB, and at most ${MOST_BYTES / 2 ** 30} are read: copy some of its pairs into a folder of their own`);
+    throw new Mistake(
+      `${folder} holds ${(bytes / 2 ** 30).toFixed(1)} GB, and at most ${MOST_BYTES / 2 ** 30} are read: copy some of its pairs into a folder of their own`,
+    );
   }
   return paths.map((path) => file(path, relative(folder, path)));
 }
 
 const COLOUR = /colou?r|rgb/i;
 const DEPTH = /depth|infra|\bir\b|tof/i;
-const isBackwards = ({ from = "", to = "" }) => COLOUR.test(from) && !DEPTH.test(from) && DEPTH.test(to) && !COLOUR.test(to);
+const isBackwards = ({ from = "", to = "" }) =>
+  COLOUR.test(from) && !DEPTH.test(from) && DEPTH.test(to) && !COLOUR.test(to);
 
 /** The motion back; angles of R = Rx Ry Rz in degrees. */
 function inverse({ scale, rotation: r, translation: t }) {
   const rotation = [0, 3, 6, 1, 4, 7, 2, 5, 8].map((k) => r[k]);
-  const translation = [0, 1, 2].map((i) => -(rotation[3 * i] * t[0] + rotation[3 * i + 1] * t[1] + rotation[3 * i + 2] * t[2]));
+  const translation = [0, 1, 2].map(
+    (i) => -(rotation[3 * i] * t[0] + rotation[3 * i + 1] * t[1] + rotation[3 * i + 2] * t[2]),
+  );
   const degrees = (y, x) => (Math.atan2(y, x) * 180) / Math.PI;
   const angles = {
     alpha: degrees(-rotation[5], rotation[8]),
@@ -112,7 +134,8 @@ function candidatesOf(readings, isInverted, warnings) {
       const own = pose.name ?? (pose.from && pose.to ? `${pose.from} to ${pose.to}` : `pose ${index + 1}`);
       const title = poses.length === 1 ? basename(name) : `${basename(name)}, ${own}`;
       const turns = isInverted || isBackwards(pose);
-      if (turns && !isInverted) warnings.push(`${name}: it carries ${pose.from} to ${pose.to}; its inverse was checked.`);
+      if (turns && !isInverted)
+        warnings.push(`${name}: it carries ${pose.from} to ${pose.to}; its inverse was checked.`);
       // Two files may have one name; a number as a name would come first.
       let unique = /^\d+$/.test(title) ? `"${title}"` : title;
       while (Object.hasOwn(candidates, unique)) unique += "'";
@@ -129,7 +152,12 @@ const pixels = ({ pixels: value, interval }) => `${short(value)} (${short(interv
 /** Columns as wide as their widest cell. */
 function table(rows) {
   const widths = rows[0].map((_, column) => Math.max(...rows.map((row) => row[column].length)));
-  return rows.map((row) => row.map((cell, column) => cell.padEnd(widths[column])).join("  ").trimEnd());
+  return rows.map((row) =>
+    row
+      .map((cell, column) => cell.padEnd(widths[column]))
+      .join("  ")
+      .trimEnd(),
+  );
 }
 
 /** The report with what the readers guessed, which keeps its verdict from green as the check's own warnings do. */
@@ -143,7 +171,9 @@ const headline = ({ verdict, reason }) => `${verdict.toUpperCase()}: ${reason.re
 
 /** The report for a terminal. */
 function text(report) {
-  const { estimate: { rotation: r, translation: t } } = report;
+  const {
+    estimate: { rotation: r, translation: t },
+  } = report;
   const candidates = Object.entries(report.candidates).map(([name, found]) => [
     ...[name, found.verdict, `${short(found.offDegrees)} deg`, `${short(found.offMillimetres)} mm`],
     ...[pixels(found), short(found.probability)],
@@ -161,7 +191,9 @@ function text(report) {
     ...[0, 1, 2].map((i) => `  ${[...r.slice(3 * i, 3 * i + 3), t[i]].join(" ")}`),
     "  0 0 0 1",
     "",
-    `cues: ${Object.entries(report.cues).map(([name, { share }]) => `${name} ${percent(share)}`).join(", ")}`,
+    `cues: ${Object.entries(report.cues)
+      .map(([name, { share }]) => `${name} ${percent(share)}`)
+      .join(", ")}`,
     `frames: ${report.frames.map(({ name, share, note }) => `${name} ${percent(share)}${note ? ` (${note})` : ""}`).join(", ")}`,
     ...report.warnings.map((warning) => `warning: ${warning}`),
     "",
@@ -173,7 +205,11 @@ const sha256 = (bytes) => createHash("sha256").update(bytes).digest("hex");
 /** What was read, with the hashes by which it can be told later. */
 function inputsOf(readings, files) {
   const bytes = new Map(files.map((each) => [each.name, each.bytes]));
-  const seen = new Map(readings.filter(({ name }) => bytes.has(name)).map(({ name, says }) => [name, { name, says, sha256: sha256(bytes.get(name)) }]));
+  const seen = new Map(
+    readings
+      .filter(({ name }) => bytes.has(name))
+      .map(({ name, says }) => [name, { name, says, sha256: sha256(bytes.get(name)) }]),
+  );
   return [...seen.values()];
 }
 
@@ -181,7 +217,8 @@ async function run(args) {
   const { values, positionals } = parsed(args);
   if (values.help) return void process.stdout.write(HELP);
   const [folder, ...rest] = positionals;
-  if (folder === undefined || rest.length > 0) throw new Mistake(`one folder is needed, not ${positionals.length}; --help says more`);
+  if (folder === undefined || rest.length > 0)
+    throw new Mistake(`one folder is needed, not ${positionals.length}; --help says more`);
   if (!values.calibration) throw new Mistake("--calibration FILE is needed; --help says more");
   const options = {
     ...number(values, "workers"),
@@ -198,9 +235,15 @@ async function run(args) {
   const candidates = candidatesOf(found, values.inverted === true, warnings);
   // Intrinsics that were named go before those that lie in the folder.
   const named = [...cameras, ...calibrations.filter((_, index) => found[index].kind === "cameras")];
-  const files = filesOf(folder, new Set([...values.calibration, ...(values.cameras ?? [])].map((path) => resolve(path))));
+  const files = filesOf(
+    folder,
+    new Set([...values.calibration, ...(values.cameras ?? [])].map((path) => resolve(path))),
+  );
   const read = await readRigFolder([...named, ...files], reading);
-  if (read.frames.length === 0) throw new Mistake(`${folder} holds no pair of a colour image and a depth map that could be read${read.warnings[0] ? `: ${read.warnings[0]}` : ""}`);
+  if (read.frames.length === 0)
+    throw new Mistake(
+      `${folder} holds no pair of a colour image and a depth map that could be read${read.warnings[0] ? `: ${read.warnings[0]}` : ""}`,
+    );
 
   await init();
   const stop = new AbortController();
@@ -220,7 +263,10 @@ async function run(args) {
   const json = () => `${JSON.stringify({ ...whole, inputs }, null, 2)}\n`;
   if (values.json !== undefined && values.json !== "-") writeFileSync(values.json, json());
   if (values.report !== undefined) {
-    writeFileSync(values.report, reportHtml(whole, [], { title: `Check of ${basename(values.calibration[0])}`, made: new Date(), inputs }));
+    writeFileSync(
+      values.report,
+      reportHtml(whole, [], { title: `Check of ${basename(values.calibration[0])}`, made: new Date(), inputs }),
+    );
   }
   (values.json === "-" ? process.stderr : process.stdout).write(text(whole));
   if (values.json === "-") process.stdout.write(json());

@@ -38,7 +38,9 @@ export async function compile(where: () => WasmSource): Promise<WebAssembly.Modu
   // Servers of single-page applications answer any address that they do not know with their page.
   if (type.startsWith("text/html")) throw leftBehind(`a page of HTML is at ${response.url}`);
   // Only what is declared as wasm may be compiled while it arrives.
-  return type.startsWith("application/wasm") ? WebAssembly.compileStreaming(response) : WebAssembly.compile(await response.arrayBuffer());
+  return type.startsWith("application/wasm")
+    ? WebAssembly.compileStreaming(response)
+    : WebAssembly.compile(await response.arrayBuffer());
 }
 
 /** Runs a call into wasm; its errors come out as `BimodalError`. */

@@ -42,25 +42,29 @@ function range({ kind, min, above, max, below, unit = "" }: NumberRow): string {
 }
 
 /** A number in its range. JavaScript has one type for all numbers, the numerics have none for halves and infinities. */
-export const ranged = (row: NumberRow): Check => (value, field) => {
-  if (typeof value !== "number") throw wrong(field, "a number", value);
-  const { kind, min = -Infinity, above = -Infinity, max = Infinity, below = Infinity } = row;
-  const isWhole = Number.isInteger(value);
-  const isKind = kind === "number" ? Number.isFinite(value) : isWhole;
-  if (isKind && value >= min && value > above && value <= max && value < below) return;
-  const code = kind === "side" && isWhole && value >= 0 ? "size" : "range";
-  throw new BimodalError(code, `${field}: must be ${range(row)} (got ${value})`, field);
-};
+export const ranged =
+  (row: NumberRow): Check =>
+  (value, field) => {
+    if (typeof value !== "number") throw wrong(field, "a number", value);
+    const { kind, min = -Infinity, above = -Infinity, max = Infinity, below = Infinity } = row;
+    const isWhole = Number.isInteger(value);
+    const isKind = kind === "number" ? Number.isFinite(value) : isWhole;
+    if (isKind && value >= min && value > above && value <= max && value < below) return;
+    const code = kind === "side" && isWhole && value >= 0 ? "size" : "range";
+    throw new BimodalError(code, `${field}: must be ${range(row)} (got ${value})`, field);
+  };
 
 /** A list of so many numbers, typed arrays included. Its length comes first: what claims to be longer is not copied. */
-export const numbers = (count: number): Check => (value, field) => {
-  const length = isObject(value) && "length" in value ? value.length : undefined;
-  if (typeof length !== "number") throw wrong(field, "a list of numbers", value);
-  if (length !== count) throw new BimodalError("size", `${field}: needs ${count} numbers, not ${length}`, field);
-  const copy: unknown[] = Array.from({ ...Object(value), length });
-  const other = copy.findIndex((item) => typeof item !== "number");
-  if (other >= 0) throw wrong(field, `a list of numbers, with entry ${other}`, copy[other]);
-};
+export const numbers =
+  (count: number): Check =>
+  (value, field) => {
+    const length = isObject(value) && "length" in value ? value.length : undefined;
+    if (typeof length !== "number") throw wrong(field, "a list of numbers", value);
+    if (length !== count) throw new BimodalError("size", `${field}: needs ${count} numbers, not ${length}`, field);
+    const copy: unknown[] = Array.from({ ...Object(value), length });
+    const other = copy.findIndex((item) => typeof item !== "number");
+    if (other >= 0) throw wrong(field, `a list of numbers, with entry ${other}`, copy[other]);
+  };
 
 export type ArrayType = { readonly name: string; new (length: number): ArrayBufferView };
 
@@ -86,29 +90,34 @@ function isLost(value: ArrayLike<number>): boolean {
 }
 
 /** A typed array of one of the given kinds. */
-export const array = (...types: readonly ArrayType[]): Check => (value, field) => {
-  if (!types.some((type) => value instanceof type)) {
-    throw wrong(field, types.map((type) => `a ${type.name}`).join(" or "), value);
-  }
-  const given = value as object & ArrayLike<number>;
-  if (!hasItsLength(given)) throw wrong(field, "a typed array of the length that it says", value);
-  if (given.length === 0 && isLost(given)) {
-    throw new BimodalError("empty", `${field}: its memory is gone, given to another thread or shrunk`, field);
-  }
-};
+export const array =
+  (...types: readonly ArrayType[]): Check =>
+  (value, field) => {
+    if (!types.some((type) => value instanceof type)) {
+      throw wrong(field, types.map((type) => `a ${type.name}`).join(" or "), value);
+    }
+    const given = value as object & ArrayLike<number>;
+    if (!hasItsLength(given)) throw wrong(field, "a typed array of the length that it says", value);
+    if (given.length === 0 && isLost(given)) {
+      throw new BimodalError("empty", `${field}: its memory is gone, given to another thread or shrunk`, field);
+    }
+  };
 
 /** Longest word that is repeated in a message, and held against those that are known. */
 const LONGEST_WORD = 60;
-export const brief = (given: string): string => (given.length > LONGEST_WORD ? `${given.slice(0, LONGEST_WORD)}..` : given);
+export const brief = (given: string): string =>
+  given.length > LONGEST_WORD ? `${given.slice(0, LONGEST_WORD)}..` : given;
 
 /** One of some words. */
-export const word = (...words: readonly string[]): Check => (value, field) => {
-  if (typeof value !== "string") throw wrong(field, words.map((w) => `"${w}"`).join(" or "), value);
-  if (!words.includes(value)) {
-    const given = brief(value);
-    throw new BimodalError("option", `${field}: "${given}" is unknown${hint(given, words)}`, field);
-  }
-};
+export const word =
+  (...words: readonly string[]): Check =>
+  (value, field) => {
+    if (typeof value !== "string") throw wrong(field, words.map((w) => `"${w}"`).join(" or "), value);
+    if (!words.includes(value)) {
+      const given = brief(value);
+      throw new BimodalError("option", `${field}: "${given}" is unknown${hint(given, words)}`, field);
+    }
+  };
 
 /** Edits that turn one word into the other (Levenshtein). */
 function distance(a: string, b: string): number {
@@ -137,24 +146,26 @@ function hint(given: string, known: readonly string[]): string {
 }
 
 /** An object with these keys and no others; `undefined` counts as absent. */
-export const object = (shape: Shape, required: readonly string[] = []): Check => (value, field) => {
-  if (!isObject(value) || Array.isArray(value) || ArrayBuffer.isView(value)) throw wrong(field, "an object", value);
-  for (const [key, member] of Object.entries(value)) {
-    const check = Object.hasOwn(shape, key) ? shape[key] : undefined;
-    const given = brief(key);
-    const path = `${field}.${given}`;
-    if (!check) {
-      throw new BimodalError("option", `${path}: there is no such key${hint(given, Object.keys(shape))}`, path);
+export const object =
+  (shape: Shape, required: readonly string[] = []): Check =>
+  (value, field) => {
+    if (!isObject(value) || Array.isArray(value) || ArrayBuffer.isView(value)) throw wrong(field, "an object", value);
+    for (const [key, member] of Object.entries(value)) {
+      const check = Object.hasOwn(shape, key) ? shape[key] : undefined;
+      const given = brief(key);
+      const path = `${field}.${given}`;
+      if (!check) {
+        throw new BimodalError("option", `${path}: there is no such key${hint(given, Object.keys(shape))}`, path);
+      }
+      if (member !== undefined) check(member, path);
     }
-    if (member !== undefined) check(member, path);
-  }
-  const members = new Map<string, unknown>(Object.entries(value));
-  for (const key of required) {
-    if (members.get(key) === undefined) {
-      throw new BimodalError("missing", `${field}.${key}: is required`, `${field}.${key}`);
+    const members = new Map<string, unknown>(Object.entries(value));
+    for (const key of required) {
+      if (members.get(key) === undefined) {
+        throw new BimodalError("missing", `${field}.${key}: is required`, `${field}.${key}`);
+      }
     }
-  }
-};
+  };
 
 /** Beyond it the numerics, which count in 32 bits, would take another number for it; their own limits are far below. */
 export const side = ranged({ kind: "side", min: 0, max: 2 ** 32 - 1 });

@@ -14,7 +14,8 @@ const OWN = "sample";
 async function loadOnce(where: () => WasmSource): Promise<void> {
   try {
     const compiled = await compile(where);
-    if (!WebAssembly.Module.exports(compiled).some(({ name }) => name === OWN)) throw new Error("it is another program");
+    if (!WebAssembly.Module.exports(compiled).some(({ name }) => name === OWN))
+      throw new Error("it is another program");
     ({ memory } = await start({ module_or_path: compiled }));
     module = compiled;
   } catch (error) {

@@ -27,9 +27,15 @@ interface Crossing {
 
 function isCrossing(value: unknown): value is Crossing {
   return (
-    typeof value === "object" && value !== null && !(value instanceof Error) &&
-    "code" in value && "field" in value && "message" in value &&
-    typeof value.code === "string" && typeof value.field === "string" && typeof value.message === "string"
+    typeof value === "object" &&
+    value !== null &&
+    !(value instanceof Error) &&
+    "code" in value &&
+    "field" in value &&
+    "message" in value &&
+    typeof value.code === "string" &&
+    typeof value.field === "string" &&
+    typeof value.message === "string"
   );
 }
 

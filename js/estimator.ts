@@ -179,7 +179,11 @@ export class Estimator {
    * Paints a layer into the top left corner of a canvas, a pixel for each of its view's; what has no value stays clear. Nothing but its
    * colours leaves the module. The canvas keeps its size: give it the view's.
    */
-  draw(context: CanvasRenderingContext2D | OffscreenCanvasRenderingContext2D, layer: Layer, options: DrawOptions = {}): void {
+  draw(
+    context: CanvasRenderingContext2D | OffscreenCanvasRenderingContext2D,
+    layer: Layer,
+    options: DrawOptions = {},
+  ): void {
     if (!isContext(context)) throw new BimodalError("type", "context: must be the 2D context of a canvas", "context");
     checkLayer(layer);
     checkDraw(options);
@@ -313,7 +317,8 @@ export class Estimator {
     } else {
       this.#searchWorkers?.end();
       this.#share();
-      if (report.stage === "refinement") this.#refinementWorker?.ask((held) => this.#call((raw) => raw.refinementTask(held)));
+      if (report.stage === "refinement")
+        this.#refinementWorker?.ask((held) => this.#call((raw) => raw.refinementTask(held)));
     }
     return report;
   }

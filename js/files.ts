@@ -17,14 +17,17 @@ type Bytes = Uint8Array | ArrayBuffer;
 const MOST_PIXELS = 2 ** 27;
 
 function checkSize(width: number, height: number): void {
-  if (width * height > MOST_PIXELS) throw badFile(`this PNG says that it is ${width}x${height} pixels large; up to ${MOST_PIXELS} pixels are read`);
+  if (width * height > MOST_PIXELS)
+    throw badFile(`this PNG says that it is ${width}x${height} pixels large; up to ${MOST_PIXELS} pixels are read`);
 }
 
 function read(file: Bytes): Raster<Pixels> {
-  if (!(file instanceof Uint8Array || file instanceof ArrayBuffer)) throw wrong("file", "a Uint8Array or an ArrayBuffer", file);
+  if (!(file instanceof Uint8Array || file instanceof ArrayBuffer))
+    throw wrong("file", "a Uint8Array or an ArrayBuffer", file);
   const bytes = file instanceof Uint8Array ? file : new Uint8Array(file);
   if (bytes.length === 0) throw badFile("it is empty");
-  if (!isNpy(bytes) && !isPng(bytes)) throw badFile("it is neither a PNG nor a .npy file; `bimodal-stereo/rig` reads more");
+  if (!isNpy(bytes) && !isPng(bytes))
+    throw badFile("it is neither a PNG nor a .npy file; `bimodal-stereo/rig` reads more");
   try {
     return isNpy(bytes) ? readNpy(bytes) : readPng(bytes, checkSize);
   } catch (error) {

@@ -19,9 +19,11 @@ export function inflateUpTo(bytes: Uint8Array, most: number, what: string): Uint
     length += piece.length;
   });
   try {
-    for (let at = 0; at < bytes.length; at += PIECE) stream.push(bytes.subarray(at, at + PIECE), at + PIECE >= bytes.length);
+    for (let at = 0; at < bytes.length; at += PIECE)
+      stream.push(bytes.subarray(at, at + PIECE), at + PIECE >= bytes.length);
   } catch (error) {
-    if (error instanceof TooLong) throw badFile(`${what} is damaged: it inflates to more than the ${most} bytes that it declares`);
+    if (error instanceof TooLong)
+      throw badFile(`${what} is damaged: it inflates to more than the ${most} bytes that it declares`);
     throw badFile(`${what} is damaged or cut off (${error instanceof Error ? error.message : String(error)})`, error);
   }
   return out.subarray(0, length);
@@ -29,7 +31,8 @@ export function inflateUpTo(bytes: Uint8Array, most: number, what: string): Uint
 
 /** .. where it has to be exactly so many. */
 export function inflateExactly(bytes: Uint8Array, length: number, what: string): Uint8Array {
-  if (length > MOST_OF_ONE * bytes.length) throw badFile(`${what} is cut off: ${bytes.length} bytes cannot inflate to the ${length} that it declares`);
+  if (length > MOST_OF_ONE * bytes.length)
+    throw badFile(`${what} is cut off: ${bytes.length} bytes cannot inflate to the ${length} that it declares`);
   const out = inflateUpTo(bytes, length, what);
   if (out.length < length) throw badFile(`${what} is cut off: it inflates to ${out.length} of ${length} bytes`);
   return out;

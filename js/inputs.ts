@@ -1,16 +1,35 @@
 /** What the loop's inputs must look like: names and types, and whatever the rows of the options say. */
-import { type Check, DEPTH, IMAGE, type Shape, array, brief, callback, flag, isObject, number, numbers, object, ranged, side, signal, word } from "./check.js";
+import {
+  type Check,
+  DEPTH,
+  IMAGE,
+  type Shape,
+  array,
+  brief,
+  callback,
+  flag,
+  isObject,
+  number,
+  numbers,
+  object,
+  ranged,
+  side,
+  signal,
+  word,
+} from "./check.js";
 import { BimodalError } from "./errors.js";
 import { OPTIONS, POSE, RENDERED_ALONE, SAMPLE } from "./options.js";
 import type { Row, Rows, WordRow } from "./rows.js";
 
 /** A word, or else something that is no word. */
-const wordOr = (words: readonly string[], other: Check, orElse: string): Check => (value, field) => {
-  if (typeof value !== "string") return other(value, field);
-  if (words.includes(value)) return;
-  const allowed = words.map((known) => `"${known}"`).join(", ");
-  throw new BimodalError("option", `${field}: "${brief(value)}" is unknown; known: ${allowed} or ${orElse}`, field);
-};
+const wordOr =
+  (words: readonly string[], other: Check, orElse: string): Check =>
+  (value, field) => {
+    if (typeof value !== "string") return other(value, field);
+    if (words.includes(value)) return;
+    const allowed = words.map((known) => `"${known}"`).join(", ");
+    throw new BimodalError("option", `${field}: "${brief(value)}" is unknown; known: ${allowed} or ${orElse}`, field);
+  };
 
 /** The check of a value that is no word, and what it takes, with an article. */
 function valueOf(row: Exclude<Row, WordRow>): readonly [check: Check, what: string] {
@@ -33,21 +52,32 @@ function checkOf(row: Row): Check {
   return words.length === 0 ? check : wordOr(words, check, what);
 }
 
-const shapeOf = (rows: Rows): Shape => Object.fromEntries(Object.entries(rows).map(([name, row]) => [name, checkOf(row)]));
+const shapeOf = (rows: Rows): Shape =>
+  Object.fromEntries(Object.entries(rows).map(([name, row]) => [name, checkOf(row)]));
 
 /** A name, which the numerics judge, or something that is none. */
-const nameOr = (other: Check): Check => (value, field) => {
-  if (typeof value !== "string") other(value, field);
-};
+const nameOr =
+  (other: Check): Check =>
+  (value, field) => {
+    if (typeof value !== "string") other(value, field);
+  };
 
 function inputs() {
-  const camera = object({ fx: number, fy: number, cx: number, cy: number, distortion: numbers(5) }, ["fx", "fy", "cx", "cy"]);
+  const camera = object({ fx: number, fy: number, cx: number, cy: number, distortion: numbers(5) }, [
+    "fx",
+    "fy",
+    "cx",
+    "cy",
+  ]);
   const relief = object({ width: side, height: side, heights: array(Float32Array) }, ["width", "height", "heights"]);
   return {
     image: object({ ...IMAGE, camera }, ["width", "height", "data"]),
     depth: object({ ...DEPTH, camera, normals: array(Float32Array) }, ["width", "height"]),
     options: object(shapeOf(OPTIONS)),
-    sample: object({ surface: nameOr(relief), light: nameOr(checkOf(OPTIONS.light)), ...shapeOf(SAMPLE) }, ["surface", "light"]),
+    sample: object({ surface: nameOr(relief), light: nameOr(checkOf(OPTIONS.light)), ...shapeOf(SAMPLE) }, [
+      "surface",
+      "light",
+    ]),
     draw: object({ range: numbers(2), map: word("viridis", "magma") }),
     run: object({ maxIterations: ranged({ kind: "whole", min: 1 }), signal, onStep: callback }),
   };
@@ -60,7 +90,8 @@ export const checkImage = (value: unknown): void => checks().image(value, "image
 export const checkDepth = (value: unknown): void => checks().depth(value, "depth");
 export const checkOptions = (value: unknown): void => checks().options(value, "options");
 export const checkDraw = (value: unknown): void => checks().draw(value, "options");
-export const checkLayer: (value: unknown) => void = (value) => word("normals", "depth", "residual", "refined", "refinedNormals")(value, "layer");
+export const checkLayer: (value: unknown) => void = (value) =>
+  word("normals", "depth", "residual", "refined", "refinedNormals")(value, "layer");
 export const checkRun = (value: unknown): void => checks().run(value, "run");
 
 export function checkSample(value: unknown): void {
@@ -81,5 +112,6 @@ export const checkAngles = (value: unknown): void => checkOf(POSE.angles)(value,
 export const checkNormals = (value: unknown): void => {
   array(Float32Array)(value, "normals");
   const { length } = value as Float32Array;
-  if (length % 3 !== 0) throw new BimodalError("size", `normals: needs three numbers for each normal, not ${length} in all`, "normals");
+  if (length % 3 !== 0)
+    throw new BimodalError("size", `normals: needs three numbers for each normal, not ${length} in all`, "normals");
 };

@@ -15,7 +15,15 @@ const side = ranged({ kind: "side", min: 1, max: 4096 });
 const weight = ranged({ kind: "number", min: 0 });
 const normals = array(Float32Array);
 const landscape = object(
-  { log: three, light, prior: three, weight, robust: flag, start: three, side: ranged({ kind: "side", min: 0, max: 512 }) },
+  {
+    log: three,
+    light,
+    prior: three,
+    weight,
+    robust: flag,
+    start: three,
+    side: ranged({ kind: "side", min: 0, max: 512 }),
+  },
   ["log", "light"],
 );
 
@@ -30,7 +38,12 @@ function planes(interleaved: Float32Array): Float32Array {
  * Depth, in pixels, of the surface that has these normals (3*w*h interleaved, NaN where there is none) before an orthographic camera:
  * in the least-squares sense, or `robust`, with what crosses a discontinuity cut. Mean zero in each connected part.
  */
-export function integrateNormals(unitNormals: Float32Array, width: number, height: number, robust = true): Float32Array {
+export function integrateNormals(
+  unitNormals: Float32Array,
+  width: number,
+  height: number,
+  robust = true,
+): Float32Array {
   side(width, "width");
   side(height, "height");
   flag(robust, "robust");
@@ -45,6 +58,8 @@ export function pixelLandscape(request: PixelLandscapeRequest): PixelLandscape {
   landscape(request, "landscape");
   const { log, prior = NONE, start = FACING, weight = 0, robust = true, side = 96 } = request;
   const row = Float64Array.of(...[log, prior, start].flatMap((vector) => Array.from(vector)), weight);
-  const [objective, minima, path] = across(() => bindings().pixelLandscape(Float64Array.from(request.light), row, robust, side));
+  const [objective, minima, path] = across(() =>
+    bindings().pixelLandscape(Float64Array.from(request.light), row, robust, side),
+  );
   return { objective, minima, path };
 }

@@ -26,7 +26,10 @@ export const isNpy = (bytes: Uint8Array): boolean => [...MAGIC].every((letter, i
 /** Bytes for each element, and how `count` of them are read from aligned little-endian memory. */
 const KINDS = {
   "<f4": { size: 4, read: (memory: ArrayBuffer, count: number) => new Float32Array(memory, 0, count) },
-  "<f8": { size: 8, read: (memory: ArrayBuffer, count: number) => new Float32Array(new Float64Array(memory, 0, count)) },
+  "<f8": {
+    size: 8,
+    read: (memory: ArrayBuffer, count: number) => new Float32Array(new Float64Array(memory, 0, count)),
+  },
   "<i4": { size: 4, read: (memory: ArrayBuffer, count: number) => new Float32Array(new Int32Array(memory, 0, count)) },
   "<u2": { size: 2, read: (memory: ArrayBuffer, count: number) => new Uint16Array(memory, 0, count) },
   "|u1": { size: 1, read: (memory: ArrayBuffer, count: number) => new Uint8Array(memory, 0, count) },
@@ -36,7 +39,12 @@ const KINDS = {
 const isKind = (name: string): name is keyof typeof KINDS => Object.hasOwn(KINDS, name);
 
 /** Data in column order (the first index runs fastest) in row order. */
-function inRows<T extends Float32Array | Uint16Array | Uint8Array>(data: T, height: number, width: number, channels: number): T {
+function inRows<T extends Float32Array | Uint16Array | Uint8Array>(
+  data: T,
+  height: number,
+  width: number,
+  channels: number,
+): T {
   const rows = data.slice() as T;
   for (let row = 0; row < height; row++) {
     for (let column = 0; column < width; column++) {
@@ -65,7 +73,10 @@ export function readNpy(bytes: Uint8Array): Raster<Float32Array | Uint16Array | 
   const order = /'fortran_order': (True|False)/.exec(header)?.[1];
   if (!order) throw bad("this .npy file has no fortran_order");
   const listed = /'shape': \(([^)]*)\)/.exec(header)?.[1] ?? "";
-  const axes = listed.split(",").map((part) => part.trim()).filter((part) => part !== "");
+  const axes = listed
+    .split(",")
+    .map((part) => part.trim())
+    .filter((part) => part !== "");
   if (axes.length < 2 || axes.length > 3) {
     throw bad(`this .npy file has ${axes.length} axes; rows and columns, or rows, columns and channels are needed`);
   }
@@ -74,12 +85,14 @@ export function readNpy(bytes: Uint8Array): Raster<Float32Array | Uint16Array | 
     throw bad(`this .npy file has the shape (${listed.trim()}); whole numbers above zero are needed`);
   }
   const [height = 0, width = 0, channels = 1] = axes.map(Number);
-  if (channels > MOST_CHANNELS) throw bad(`this .npy file has ${channels} channels; 1 to ${MOST_CHANNELS} are read here`);
+  if (channels > MOST_CHANNELS)
+    throw bad(`this .npy file has ${channels} channels; 1 to ${MOST_CHANNELS} are read here`);
   const count = height * width * channels;
   const { size, read } = KINDS[kind];
   // A copy, because typed arrays want aligned memory; Node's Buffer would not make one by its own slice.
   const body = new Uint8Array(bytes.subarray(until)).buffer;
-  if (body.byteLength < count * size) throw bad(`this .npy file is cut off: ${body.byteLength} of ${count * size} bytes`);
+  if (body.byteLength < count * size)
+    throw bad(`this .npy file is cut off: ${body.byteLength} of ${count * size} bytes`);
   const data = read(body, count);
   return { width, height, channels, data: order === "True" ? inRows(data, height, width, channels) : data };
 }

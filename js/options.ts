@@ -11,7 +11,13 @@ export { paths, type PageField, type Row, type Rows, type ShownRow } from "./row
 
 /** More is a mistake, no turn; far beyond, a sine means nothing. */
 const FULL_TURN = 360;
-const angle: NumberRow & { default: number } = { kind: "number", min: -FULL_TURN, max: FULL_TURN, unit: "deg", default: 0 };
+const angle: NumberRow & { default: number } = {
+  kind: "number",
+  min: -FULL_TURN,
+  max: FULL_TURN,
+  unit: "deg",
+  default: 0,
+};
 /** A term that weighs a million times the colours leaves no more than rounding of them. */
 const weight = { kind: "number", min: 0, max: 1e6 } as const;
 /** What JavaScript's one type for numbers holds without a gap; a random generator takes any of them. */
@@ -28,7 +34,13 @@ export const POSE: RowsOf<Partial<Pose>> = {
 export const OPTIONS: RowsOf<Options> = {
   /** Nine coefficients for each of three channels. */
   light: { kind: "list", length: 27, words: { estimate: "estimate" }, default: "estimate" },
-  start: { kind: "object", noun: "a pose", members: POSE, words: { search: "search", identity: "identity" }, default: "search" },
+  start: {
+    kind: "object",
+    noun: "a pose",
+    members: POSE,
+    words: { search: "search", identity: "identity" },
+    default: "search",
+  },
   startTolerance: {
     kind: "object",
     noun: "a tolerance",
@@ -51,7 +63,11 @@ export const OPTIONS: RowsOf<Options> = {
     kind: "word",
     words: { surface: "surface", pixel: "pixel" },
     default: "surface",
-    page: { group: "method", label: "Shading", hint: "The surface as a whole, or each pixel on its own as in the paper." },
+    page: {
+      group: "method",
+      label: "Shading",
+      hint: "The surface as a whole, or each pixel on its own as in the paper.",
+    },
   },
   scale: {
     kind: "number",
@@ -73,15 +89,30 @@ export const OPTIONS: RowsOf<Options> = {
       prior: {
         ...weight,
         default: 0.05,
-        page: { group: "weights", label: "λ shape prior", hint: "How strongly a normal follows the other view's.", slider: { min: -4, max: 2, step: 0.1, log: true } },
+        page: {
+          group: "weights",
+          label: "λ shape prior",
+          hint: "How strongly a normal follows the other view's.",
+          slider: { min: -4, max: 2, step: 0.1, log: true },
+        },
       },
       unit: { ...weight, default: 1, page: { group: "weights", label: "λ unit length", link: "unitLength" } },
       light: {
         ...weight,
         default: 1e-6,
-        page: { group: "weights", label: "λ light", link: "lightPrior", hint: "How strongly the light follows natural lights.", slider: { min: -8, max: 0, step: 0.2, log: true } },
+        page: {
+          group: "weights",
+          label: "λ light",
+          link: "lightPrior",
+          hint: "How strongly the light follows natural lights.",
+          slider: { min: -8, max: 0, step: 0.2, log: true },
+        },
       },
-      refinement: { ...weight, default: 0.01, page: { group: "weights", label: "λ refinement", slider: { min: -4, max: 1, step: 0.1, log: true } } },
+      refinement: {
+        ...weight,
+        default: 0.01,
+        page: { group: "weights", label: "λ refinement", slider: { min: -4, max: 1, step: 0.1, log: true } },
+      },
     },
   },
   stopDegrees: {
@@ -103,7 +134,13 @@ export const OPTIONS: RowsOf<Options> = {
     kind: "number",
     above: 0,
     unit: "px",
-    page: { group: "loop", label: "Match within", link: "distance", hint: "Accepted distance of a correspondence.", empty: "auto" },
+    page: {
+      group: "loop",
+      label: "Match within",
+      link: "distance",
+      hint: "Accepted distance of a correspondence.",
+      empty: "auto",
+    },
   },
   seed: { ...seed, page: { group: "loop", label: "Seed" } },
   /** More threads would wait for one another. */
@@ -147,7 +184,12 @@ export const SAMPLE: RowsOf<Omit<SampleRequest, "surface" | "light">> = {
     kind: "number",
     above: 0,
     default: 1,
-    page: { group: "sample", label: "True scale", link: "trueScale", hint: "Of the pose to find: the depth view is smaller by it." },
+    page: {
+      group: "sample",
+      label: "True scale",
+      link: "trueScale",
+      hint: "Of the pose to find: the depth view is smaller by it.",
+    },
   },
   noise: {
     kind: "number",
@@ -182,7 +224,12 @@ export const SAMPLE: RowsOf<Omit<SampleRequest, "surface" | "light">> = {
   },
   seed: {
     ...seed,
-    page: { group: "sample", label: "Noise seed", link: "draw", hint: "Another number draws other noise and other holes." },
+    page: {
+      group: "sample",
+      label: "Noise seed",
+      link: "draw",
+      hint: "Another number draws other noise and other holes.",
+    },
   },
 };
 

@@ -8,11 +8,18 @@ import type { ColorImage, DepthMap, Options, Pinhole } from "./types.js";
 
 /** Some members of an object, inherited ones as well, without those that are undefined. */
 function pick<T extends object, K extends keyof T>(source: T, keys: readonly K[]): Pick<T, K> {
-  return Object.fromEntries(keys.map((key) => [key, source[key]]).filter(([, value]) => value !== undefined)) as Pick<T, K>;
+  return Object.fromEntries(keys.map((key) => [key, source[key]]).filter(([, value]) => value !== undefined)) as Pick<
+    T,
+    K
+  >;
 }
 
 /** Some of them made plain, where they are there. */
-function plainMember<T extends object, K extends keyof T>(source: T, key: K, plain: (value: NonNullable<T[K]>) => unknown): object {
+function plainMember<T extends object, K extends keyof T>(
+  source: T,
+  key: K,
+  plain: (value: NonNullable<T[K]>) => unknown,
+): object {
   const value = source[key];
   return value === undefined || value === null ? {} : { [key]: plain(value) };
 }

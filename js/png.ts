@@ -44,7 +44,8 @@ function parts(bytes: Uint8Array): Parts {
     if (at + FRAME > bytes.length) throw badFile("this PNG is cut off: its end is missing");
     const length = view.getUint32(at);
     const type = String.fromCharCode(...bytes.subarray(at + 4, at + 8));
-    if (length > bytes.length - at - FRAME) throw badFile(`this PNG is cut off or damaged in its part ${JSON.stringify(type)}`);
+    if (length > bytes.length - at - FRAME)
+      throw badFile(`this PNG is cut off or damaged in its part ${JSON.stringify(type)}`);
     const body = bytes.subarray(at + 8, at + 8 + length);
     const needed = KEPT.includes(type) || type === "IDAT";
     const intact = () => view.getUint32(at + 8 + length) === crc32(bytes.subarray(at + 4, at + 8 + length));
@@ -66,7 +67,15 @@ function parts(bytes: Uint8Array): Parts {
 
 type Pass = readonly [x: number, y: number, dx: number, dy: number];
 const AT_ONCE: readonly Pass[] = [[0, 0, 1, 1]];
-const ADAM7: readonly Pass[] = [[0, 0, 8, 8], [4, 0, 8, 8], [0, 4, 4, 8], [2, 0, 4, 4], [0, 2, 2, 4], [1, 0, 2, 2], [0, 1, 1, 2]];
+const ADAM7: readonly Pass[] = [
+  [0, 0, 8, 8],
+  [4, 0, 8, 8],
+  [0, 4, 4, 8],
+  [2, 0, 4, 4],
+  [0, 2, 2, 4],
+  [1, 0, 2, 2],
+  [0, 1, 1, 2],
+];
 const INDEXED = 3;
 /** Channels of each colour type, and the bits that each may have. */
 const CHANNELS: Record<number, number> = { 0: 1, 2: 3, [INDEXED]: 1, 4: 2, 6: 4 };
@@ -95,14 +104,23 @@ function header({ kept }: Parts): Header {
   const channels = CHANNELS[type];
   const interlaced = view.getUint8(12) === 1;
   if (width === 0 || height === 0) throw badFile(`this PNG says that it is ${width}x${height} pixels large`);
-  if (channels === undefined) throw badFile(`this PNG says that its colours are of the type ${type}, which there is not`);
-  if (!(BITS[type] ?? WHOLE_BYTES).includes(bits)) throw badFile(`this PNG says that it has ${bits} bits of a channel, which its type of colours has not`);
-  if (view.getUint8(10) !== 0 || view.getUint8(11) !== 0 || view.getUint8(12) > 1) throw badFile("this PNG is packed in a way that there is not");
-  if (interlaced && bits < 8) throw badFile("this PNG is interlaced with fewer than 8 bits, which is not read here; save it without interlace");
-  if ((kept.get("PLTE")?.length ?? 0) > 768) throw badFile("this PNG is damaged: its palette has more than 256 colours");
-  const rows = (across: number, down: number) => (across > 0 && down > 0 ? down * (1 + Math.ceil((across * channels * bits) / 8)) : 0);
+  if (channels === undefined)
+    throw badFile(`this PNG says that its colours are of the type ${type}, which there is not`);
+  if (!(BITS[type] ?? WHOLE_BYTES).includes(bits))
+    throw badFile(`this PNG says that it has ${bits} bits of a channel, which its type of colours has not`);
+  if (view.getUint8(10) !== 0 || view.getUint8(11) !== 0 || view.getUint8(12) > 1)
+    throw badFile("this PNG is packed in a way that there is not");
+  if (interlaced && bits < 8)
+    throw badFile("this PNG is interlaced with fewer than 8 bits, which is not read here; save it without interlace");
+  if ((kept.get("PLTE")?.length ?? 0) > 768)
+    throw badFile("this PNG is damaged: its palette has more than 256 colours");
+  const rows = (across: number, down: number) =>
+    across > 0 && down > 0 ? down * (1 + Math.ceil((across * channels * bits) / 8)) : 0;
   const passes = interlaced ? ADAM7 : AT_ONCE;
-  const inflated = passes.reduce((sum, [x, y, dx, dy]) => sum + rows(Math.ceil((width - x) / dx), Math.ceil((height - y) / dy)), 0);
+  const inflated = passes.reduce(
+    (sum, [x, y, dx, dy]) => sum + rows(Math.ceil((width - x) / dx), Math.ceil((height - y) / dy)),
+    0,
+  );
   return { width, height, bits, type, channels, passes, inflated };
 }
 
@@ -181,13 +199,17 @@ function pixelsOf(found: Parts, head: Header, bytes: Uint8Array): Raster<Uint8Ar
 }
 
 /** `checkSize` may refuse a size before anything is made of it. */
-export function readPng(bytes: Uint8Array, checkSize?: (width: number, height: number) => void): Raster<Uint8Array | Uint16Array> & PngRemarks {
+export function readPng(
+  bytes: Uint8Array,
+  checkSize?: (width: number, height: number) => void,
+): Raster<Uint8Array | Uint16Array> & PngRemarks {
   const found = parts(bytes);
   const head = header(found);
   const { width, height, bits, inflated } = head;
   checkSize?.(width, height);
   // What deflate cannot make shorter it keeps, with five bytes for 65535.
-  if (found.pixels.length > inflated + inflated / 1000 + SPARE) throw badFile("this PNG is damaged: its pixels are longer compressed than not");
+  if (found.pixels.length > inflated + inflated / 1000 + SPARE)
+    throw badFile("this PNG is damaged: its pixels are longer compressed than not");
   const unpacked = inflateExactly(found.pixels, inflated, "this PNG");
   return { ...pixelsOf(found, head, unpacked), bits, chunks: found.remarks };
 }

@@ -53,7 +53,9 @@ export function single({ width, height, channels, data }: Raster<Pixels>): Pixel
     const at = pixel * channels;
     const level = data[at] ?? 0;
     if (hasColour(channels) && (data[at + 1] !== level || data[at + 2] !== level)) {
-      throw badFile("a depth map has one value for each pixel, and this picture is coloured; is it a rendering of the depth?");
+      throw badFile(
+        "a depth map has one value for each pixel, and this picture is coloured; is it a rendering of the depth?",
+      );
     }
     levels[pixel] = level;
   }

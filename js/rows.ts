@@ -61,12 +61,15 @@ export type Row = ShownRow | ListRow | ObjectRow;
 export type Rows = Readonly<Record<string, Row>>;
 
 type Words<T> = Extract<T, string>;
-type Kind<V> =
-  [V] extends [never] ? WordRow
-  : [V] extends [boolean] ? FlagRow
-  : [V] extends [number] ? NumberRow
-  : [V] extends [ArrayLike<number>] ? ListRow
-  : ObjectRow & { readonly members: RowsOf<V> };
+type Kind<V> = [V] extends [never]
+  ? WordRow
+  : [V] extends [boolean]
+    ? FlagRow
+    : [V] extends [number]
+      ? NumberRow
+      : [V] extends [ArrayLike<number>]
+        ? ListRow
+        : ObjectRow & { readonly members: RowsOf<V> };
 
 /** Ties a row to the type of its member: of the same kind, with all of its words, and a default that it may have. */
 export type RowOf<T> = Kind<Exclude<T, string>> &

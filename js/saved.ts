@@ -66,7 +66,8 @@ interface Header extends Omit<Saved, "image" | "depth"> {
   arrays: Entry[];
 }
 
-const bad = (what: string, cause?: unknown) => new BimodalError("state", `state: ${what}`, "state", cause === undefined ? undefined : { cause });
+const bad = (what: string, cause?: unknown) =>
+  new BimodalError("state", `state: ${what}`, "state", cause === undefined ? undefined : { cause });
 
 export const otherNumbers = () =>
   bad("was saved by a version or a build of this package that comes to other numbers; run the pair again instead");
@@ -86,7 +87,12 @@ const bytesOf = ({ buffer, byteOffset, byteLength }: ArrayBufferView) => new Uin
 /** All that a run says and has found, but for the times. */
 export function checksumOf(estimator: Estimator): number {
   const { milliseconds: _, ...report } = estimator.report;
-  const found = [new TextEncoder().encode(JSON.stringify(report)), estimator.light(), estimator.imageDepth(), estimator.refinedDepth()];
+  const found = [
+    new TextEncoder().encode(JSON.stringify(report)),
+    estimator.light(),
+    estimator.imageDepth(),
+    estimator.refinedDepth(),
+  ];
   return crc32(joined(found));
 }
 
@@ -134,7 +140,14 @@ const list: Check = (value, field) => {
 };
 const REACHED = { begun: flag, stage: word(...STAGES), iteration: whole, slices: whole, ended: flag };
 const ENTRY = { view: word(...VIEWS), member: word(...MEMBERS), type: word(...KINDS), length: whole };
-const HEADER = { image: record, depth: record, options: record, reached: object(REACHED, Object.keys(REACHED)), found: whole, arrays: list };
+const HEADER = {
+  image: record,
+  depth: record,
+  options: record,
+  reached: object(REACHED, Object.keys(REACHED)),
+  found: whole,
+  arrays: list,
+};
 
 /** What a file holds, once it is known to be one of ours and whole; what the views and options are worth, the estimator judges. */
 export function opened(state: unknown): Saved {
@@ -160,10 +173,12 @@ function readHeader(bytes: Uint8Array): { header: Header; end: number } {
   const name = new TextDecoder("latin1").decode(bytes.subarray(0, NAME.length));
   if (name !== NAME) throw bad("is no saved run");
   if (bytes.length < MARK + 2 * WORD) throw bad("is cut off");
-  if (bytes[NAME.length] !== FORMAT) throw bad(`is of format ${bytes[NAME.length]}; this version reads format ${FORMAT}`);
+  if (bytes[NAME.length] !== FORMAT)
+    throw bad(`is of format ${bytes[NAME.length]}; this version reads format ${FORMAT}`);
   if (bytes.length > MOST_BYTES) throw bad(`has ${bytes.length} bytes; ${MOST_BYTES} are the most`);
   const end = bytes.length - WORD;
-  if (numberAt(bytes, end) !== crc32(bytes.subarray(0, end))) throw bad("is damaged or cut off: its checksum is another");
+  if (numberAt(bytes, end) !== crc32(bytes.subarray(0, end)))
+    throw bad("is damaged or cut off: its checksum is another");
   const length = numberAt(bytes, MARK);
   if (length > Math.min(LONGEST_HEADER, end - MARK - WORD)) throw bad("has a header that is too long");
   const text = bytes.subarray(MARK + WORD, MARK + WORD + length);

@@ -26,7 +26,14 @@ import { kit } from "./tables/protocol/scenes.mjs";
 
 function parsed() {
   const [flag, string] = [{ type: "boolean" }, { type: "string" }];
-  const options = { only: string, quick: flag, known: flag, json: string, docs: flag, workers: { ...string, default: "1" } };
+  const options = {
+    only: string,
+    quick: flag,
+    known: flag,
+    json: string,
+    docs: flag,
+    workers: { ...string, default: "1" },
+  };
   let given;
   try {
     given = parseArgs({ options }).values;
@@ -35,9 +42,11 @@ function parsed() {
   }
   const wanted = given.only?.split(",").filter(Boolean) ?? PARTS.map(({ name }) => name);
   const unknown = wanted.find((name) => !PARTS.some((part) => part.name === name));
-  if (unknown) throw new Failure(`There is no part "${unknown}"; there are ${PARTS.map(({ name }) => name).join(", ")}.`);
+  if (unknown)
+    throw new Failure(`There is no part "${unknown}"; there are ${PARTS.map(({ name }) => name).join(", ")}.`);
   const workers = Number(given.workers);
-  if (!(Number.isInteger(workers) && workers > 0)) throw new Failure(`--workers must be a whole number above zero, not "${given.workers}".`);
+  if (!(Number.isInteger(workers) && workers > 0))
+    throw new Failure(`--workers must be a whole number above zero, not "${given.workers}".`);
   if (given.docs && given.quick) throw new Failure("--docs is of all cells: leave --quick out.");
   return { ...given, workers, parts: PARTS.filter(({ name }) => wanted.includes(name)) };
 }
@@ -48,7 +57,8 @@ async function measured(part, chosen, { quick = false, workers }) {
   const { wasm, gzipped } = await variant(part);
   const { json, failures, complete } = await collect([table(chosen)], { quick, workers, wasm });
   if (!complete) throw new Failure("Broken off; what was done is kept, and the next run goes on from there.");
-  for (const { id, failure } of failures) say(`${part.name}, ${id}: ${failure.code ?? failure.name}: ${failure.message}`);
+  for (const { id, failure } of failures)
+    say(`${part.name}, ${id}: ${failure.code ?? failure.name}: ${failure.message}`);
   if (part === ALL && failures.length > 0) throw new Failure("With all parts no cell may fail.");
   return { part: part.name, what: part.what, gzipped, rows: json.parts };
 }
@@ -58,8 +68,13 @@ function known(part, chosen) {
   const found = built(part);
   if (!found) return [];
   const [one, journal] = [table(chosen), openJournal(found.wasm)];
-  const results = one.cells(kit(hasData())).map((cell) => ({ cell, result: journal.find(cell) })).filter(({ result }) => result);
-  return results.length > 0 ? [{ part: part.name, what: part.what, gzipped: found.gzipped, rows: rowsOf(one, results) }] : [];
+  const results = one
+    .cells(kit(hasData()))
+    .map((cell) => ({ cell, result: journal.find(cell) }))
+    .filter(({ result }) => result);
+  return results.length > 0
+    ? [{ part: part.name, what: part.what, gzipped: found.gzipped, rows: rowsOf(one, results) }]
+    : [];
 }
 
 async function all(given, chosen) {
@@ -77,10 +92,14 @@ await script(async () => {
   const start = performance.now();
   const chosen = sets(given.quick, hasData());
   const variants = await all(given, chosen);
-  if (variants[0]?.part !== ALL.name) throw new Failure("Nothing is known of the method with all parts: run it without --known.");
+  if (variants[0]?.part !== ALL.name)
+    throw new Failure("Nothing is known of the method with all parts: run it without --known.");
   console.log(`\n${text(chosen, variants).join("\n")}\n`);
   if (given.json) {
-    writeFileSync(resolve(given.json), `${JSON.stringify({ variants, quick: Boolean(given.quick), data: hasData() }, null, 1)}\n`);
+    writeFileSync(
+      resolve(given.json),
+      `${JSON.stringify({ variants, quick: Boolean(given.quick), data: hasData() }, null, 1)}\n`,
+    );
     say(`wrote ${given.json}`);
   }
   if (given.docs) fill("docs/accuracy.md", "ablation", markdown(chosen, variants));

@@ -37,7 +37,14 @@ const TOLD_EVERY = 10;
 
 function parsed() {
   const [flag, text] = [{ type: "boolean", default: false }, { type: "string" }];
-  const options = { against: text, write: flag, scalar: flag, only: text, built: flag, processes: { ...text, default: "2" } };
+  const options = {
+    against: text,
+    write: flag,
+    scalar: flag,
+    only: text,
+    built: flag,
+    processes: { ...text, default: "2" },
+  };
   let given;
   try {
     given = parseArgs({ options }).values;
@@ -49,27 +56,34 @@ function parsed() {
   const scenes = SCENES.filter(({ name }) => name.includes(only));
   const unknown = REASONS.find(({ scene }) => !SCENES.some(({ name }) => name === scene));
   if (scenes.length === 0) throw new Failure(`No scene's name contains "${only}".`);
-  if (write && (only || against)) throw new Failure("--write takes all scenes of this package: without --only and --against.");
-  if (given.scalar && against === undefined) throw new Failure("--scalar needs --against: the committed figures are of the .wasm with SIMD.");
-  if (!(Number.isInteger(count) && count > 0)) throw new Failure(`--processes must be a whole number above zero, not "${processes}".`);
+  if (write && (only || against))
+    throw new Failure("--write takes all scenes of this package: without --only and --against.");
+  if (given.scalar && against === undefined)
+    throw new Failure("--scalar needs --against: the committed figures are of the .wasm with SIMD.");
+  if (!(Number.isInteger(count) && count > 0))
+    throw new Failure(`--processes must be a whole number above zero, not "${processes}".`);
   if (unknown) throw new Failure(`scripts/answers/reasons.mjs: there is no scene "${unknown.scene}".`);
   const other = against === undefined ? undefined : resolve(against);
-  if (other && !existsSync(join(other, "pkg/package.json"))) throw new Failure(`${other} has no pkg/: run "npm run build" there.`);
+  if (other && !existsSync(join(other, "pkg/package.json")))
+    throw new Failure(`${other} has no pkg/: run "npm run build" there.`);
   return { ...given, scenes, processes: count, against: other };
 }
 
 /** Results of all scenes by name. */
 async function answers({ scenes, against, scalar, processes }) {
   const results = new Map();
-  await runCells(scenes.map(({ name }) => ({ id: name, folder: root, against, scalar })), {
-    workers: processes,
-    signal: new AbortController().signal,
-    program: inRoot("scripts/answers/worker.mjs"),
-    onResult(id, result) {
-      results.set(id, result);
-      if (results.size % TOLD_EVERY === 0) say(`${results.size} of ${scenes.length} scenes`);
+  await runCells(
+    scenes.map(({ name }) => ({ id: name, folder: root, against, scalar })),
+    {
+      workers: processes,
+      signal: new AbortController().signal,
+      program: inRoot("scripts/answers/worker.mjs"),
+      onResult(id, result) {
+        results.set(id, result);
+        if (results.size % TOLD_EVERY === 0) say(`${results.size} of ${scenes.length} scenes`);
+      },
     },
-  });
+  );
   const failed = scenes.filter(({ name }) => results.get(name).failure);
   if (failed.length === 0) return results;
   const lines = failed.map(({ name }) => `  ${name}: ${results.get(name).failure.message}`);
@@ -92,17 +106,29 @@ const shown = (value) => (value === 0 ? "0" : Number.isFinite(value) ? value.toE
 function report(rows) {
   const names = Object.keys(LIMITS);
   const line = (name, status, values, found) => [name, status, ...names.map((column) => shown(values[column])), found];
-  const lines = rows.map(({ name, status, verdict: found, comparison }) => line(name, status, comparison.columns, found));
-  console.log(`\n${columns([["scene", "status", ...names, ""], line("at most", "", LIMITS, ""), ...lines]).join("\n")}\n`);
+  const lines = rows.map(({ name, status, verdict: found, comparison }) =>
+    line(name, status, comparison.columns, found),
+  );
+  console.log(
+    `\n${columns([["scene", "status", ...names, ""], line("at most", "", LIMITS, ""), ...lines]).join("\n")}\n`,
+  );
   for (const { name, comparison } of rows) {
     for (const line of comparison.disagreements) console.log(`  ${name}: ${line}`);
-    if (comparison.reworded) console.log(`  ${name}: reworded: ${comparison.reworded.map((text) => text ?? "nothing").join(" -> ")}`);
+    if (comparison.reworded)
+      console.log(`  ${name}: reworded: ${comparison.reworded.map((text) => text ?? "nothing").join(" -> ")}`);
   }
   for (const { scene, moved, sum } of REASONS) console.log(`  ${scene}: ${moved.join(", ")}: ${sum}`);
-  const worst = names.map((column) => `${column} ${shown(Math.max(...rows.map(({ comparison }) => comparison.columns[column])))}`);
+  const worst = names.map(
+    (column) => `${column} ${shown(Math.max(...rows.map(({ comparison }) => comparison.columns[column])))}`,
+  );
   const count = (word) => rows.filter((row) => row.verdict === word).length;
   say(`largest: ${worst.join(", ")}`);
-  const kinds = [["same", "the same"], ["within", "within the limits"], ["moved", "moved with a reason"], ["OVER", "over"]];
+  const kinds = [
+    ["same", "the same"],
+    ["within", "within the limits"],
+    ["moved", "moved with a reason"],
+    ["OVER", "over"],
+  ];
   say(`${rows.length} scenes: ${kinds.map(([word, words]) => `${count(word)} ${words}`).join(", ")}`);
   return count("OVER");
 }
@@ -114,7 +140,8 @@ function checkCoverage(results) {
 }
 
 /** A scene a line, so that a change shows where it is. */
-const written = (figures) => `{\n${figures.map(([name, figure]) => `${JSON.stringify(name)}: ${JSON.stringify(figure)}`).join(",\n")}\n}\n`;
+const written = (figures) =>
+  `{\n${figures.map(([name, figure]) => `${JSON.stringify(name)}: ${JSON.stringify(figure)}`).join(",\n")}\n}\n`;
 
 /** Figures as they are once written and read. */
 const asWritten = (figure) => JSON.parse(JSON.stringify(figure));
@@ -143,7 +170,9 @@ await script(async () => {
     writeFileSync(FIGURES, text);
     return say(`wrote ${FIGURES} (${(text.length / 1000).toFixed(0)} kB, ${seconds(start)})`);
   }
-  const rows = given.against ? given.scenes.map(({ name }) => ({ name, ...results.get(name) })) : againstFigures(given.scenes, results);
+  const rows = given.against
+    ? given.scenes.map(({ name }) => ({ name, ...results.get(name) }))
+    : againstFigures(given.scenes, results);
   const over = report(rows.map((row) => ({ ...row, verdict: verdict(row.name, row.comparison) })));
   say(seconds(start));
   if (over > 0) throw new Failure(`${over} scenes give other answers.`);

@@ -40,7 +40,14 @@ const QUICK = { sizes: ["32x32", "64x64"], samples: 5, again: 1, randomSizes: ["
 
 function parsed() {
   const flag = { type: "boolean", default: false };
-  const options = { quick: flag, docs: flag, "browser-only": flag, "native-only": flag, json: { type: "string" }, sizes: { type: "string" } };
+  const options = {
+    quick: flag,
+    docs: flag,
+    "browser-only": flag,
+    "native-only": flag,
+    json: { type: "string" },
+    sizes: { type: "string" },
+  };
   try {
     const { quick, docs, json, sizes: named, ...only } = parseArgs({ options }).values;
     const plan = quick ? QUICK : FULL;
@@ -48,7 +55,14 @@ function parsed() {
     const unknown = sizes.find((size) => !SIZES.includes(size));
     if (unknown) throw new Error(`There is no size "${unknown}"; there are ${SIZES.join(", ")}.`);
     const randomSizes = plan.randomSizes.filter((size) => sizes.includes(size));
-    return { json, quick, docs, plan: { ...plan, sizes, randomSizes }, native: !only["browser-only"], inBrowser: !only["native-only"] };
+    return {
+      json,
+      quick,
+      docs,
+      plan: { ...plan, sizes, randomSizes },
+      native: !only["browser-only"],
+      inBrowser: !only["native-only"],
+    };
   } catch (error) {
     throw new Failure(error.message);
   }
@@ -62,7 +76,8 @@ async function loops(sides, made, plan) {
     found.covered = scene.covered;
     const { rows, ends } = await stages(sides, scene, { size, least: plan.samples });
     found.samples.push(...rows);
-    if (pixelsOf(size) >= SHARED) found.samples.push(...(await sharedSteps(sides, scene, { size, least: plan.samples })));
+    if (pixelsOf(size) >= SHARED)
+      found.samples.push(...(await sharedSteps(sides, scene, { size, least: plan.samples })));
     found.ends.push(...ends);
     found.converged.push(...(await searches(sides, scene, { size, times: pixelsOf(size) <= SOON ? plan.again : 1 })));
     const reader = sides.find(({ where }) => where === "browser");
@@ -73,7 +88,9 @@ async function loops(sides, made, plan) {
   }
   for (const size of plan.randomSizes) {
     for (let seed = 1; seed <= plan.randomScenes; seed++) {
-      found.searches.push(...(await searches(sides, made.random(size, seed), { size, times: 1, name: `${size}, scene ${seed}` })));
+      found.searches.push(
+        ...(await searches(sides, made.random(size, seed), { size, times: 1, name: `${size}, scene ${seed}` })),
+      );
     }
   }
   return found;

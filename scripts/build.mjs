@@ -3,7 +3,7 @@ import { cpSync, existsSync, mkdirSync, readFileSync, realpathSync, rmSync, syml
 import { gzipSync } from "node:zlib";
 import { ALL, GLUE, NUMERICS, allNumerics, node } from "./numerics.mjs";
 import { setup } from "./setup.mjs";
-import { inRoot, must, say, script, seconds, stamp } from "./shell.mjs";
+import { inRoot, say, script, seconds, stamp } from "./shell.mjs";
 
 /** The package's own; the project's speaks to those who work on it. */
 const README = "js/README.md";
@@ -22,11 +22,26 @@ const ENTRIES = {
 };
 /** Declarations that no entry mentions; one of them names the generated bindings, which stay inside. */
 const INTERNAL = [
-  ...["border", "breathe", "check", "crc", "engine", "inflate", "inputs", "node", "plain", "png", "raster", "saved"].map((name) => `${name}.d.ts`),
+  ...[
+    "border",
+    "breathe",
+    "check",
+    "crc",
+    "engine",
+    "inflate",
+    "inputs",
+    "node",
+    "plain",
+    "png",
+    "raster",
+    "saved",
+  ].map((name) => `${name}.d.ts`),
   ...["check", "rigs", "run"].map((name) => `calibration/${name}.d.ts`),
   ...["assign", "colour", "depth", "words"].map((name) => `rig/${name}.d.ts`),
   ...["built", "json", "numbers", "plain", "yaml"].map((name) => `rig/write/${name}.d.ts`),
-  ...["charts", "curves", "markup", "numbers", "page", "parts", "sections", "style"].map((name) => `rig/write/report/${name}.d.ts`),
+  ...["charts", "curves", "markup", "numbers", "page", "parts", "sections", "style"].map(
+    (name) => `rig/write/report/${name}.d.ts`,
+  ),
   ...["rig/formats", "workers", "write/check.d.ts"],
 ];
 
@@ -76,7 +91,10 @@ async function facade() {
     preserveEntrySignatures: "allow-extension",
   });
   // In a file of its own: who only checks a rig downloads nothing of the loop's bindings, which share it.
-  const codeSplitting = { groups: [{ name: "border", test: /js\/(border|breathe|node)\.ts$/ }], includeDependenciesRecursively: false };
+  const codeSplitting = {
+    groups: [{ name: "border", test: /js\/(border|breathe|node)\.ts$/ }],
+    includeDependenciesRecursively: false,
+  };
   await bundle.write({ dir: inRoot("pkg"), format: "esm", chunkFileNames: "[name].js", codeSplitting });
   await bundle.close();
   await node("typescript/bin/tsc", "-p", "js/tsconfig.json");
@@ -92,7 +110,9 @@ const sizes = (file) => {
 /** Sizes are filled in, so that they are this build's. */
 function readme() {
   const text = readFileSync(inRoot(README), "utf8");
-  return text.replaceAll(/\{size of (.+?)\}/g, (_, file) => sizes(file)[0]).replaceAll(/\{gzipped size of (.+?)\}/g, (_, file) => sizes(file)[1]);
+  return text
+    .replaceAll(/\{size of (.+?)\}/g, (_, file) => sizes(file)[0])
+    .replaceAll(/\{gzipped size of (.+?)\}/g, (_, file) => sizes(file)[1]);
 }
 
 /** The examples import the package by its name, as they would anywhere else; npm knows nothing of it. */

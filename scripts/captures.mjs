@@ -8,25 +8,44 @@ import { writeFileSync } from "node:fs";
 import { parseArgs } from "node:util";
 import { build } from "./build.mjs";
 import { folderOf } from "./captures/folder.mjs";
-import { objects, printRanking, printScenes, printTold, printVerdicts, room, scenes, verdicts } from "./captures/sections.mjs";
+import {
+  objects,
+  printRanking,
+  printScenes,
+  printTold,
+  printVerdicts,
+  room,
+  scenes,
+  verdicts,
+} from "./captures/sections.mjs";
 import { MISSING, hasData } from "./real-pairs.mjs";
 import { Failure, inRoot, say, script, seconds } from "./shell.mjs";
 
 const SECTIONS = {
   room: [room, (rows) => printVerdicts("nyu_raw_pair", rows)],
   scenes: [scenes, printScenes],
-  objects: [objects, (rows) => [printRanking(rows.filter(({ part }) => part === "rank")), printTold(rows.filter(({ part }) => part === "told"))]],
+  objects: [
+    objects,
+    (rows) => [
+      printRanking(rows.filter(({ part }) => part === "rank")),
+      printTold(rows.filter(({ part }) => part === "told")),
+    ],
+  ],
 };
 
 await script(async () => {
   const text = { type: "string" };
-  const { values } = parseArgs({ options: { draws: { ...text, default: "20" }, only: text, json: text, folder: text, calibration: text } });
+  const { values } = parseArgs({
+    options: { draws: { ...text, default: "20" }, only: text, json: text, folder: text, calibration: text },
+  });
   const number = Number(values.draws);
   if (!(Number.isInteger(number) && number >= 1)) throw new Failure("--draws takes a whole number.");
   const names = values.only?.split(",") ?? Object.keys(SECTIONS);
   const unknown = names.find((name) => !(name in SECTIONS));
-  if (unknown !== undefined) throw new Failure(`There is no part "${unknown}"; there are ${Object.keys(SECTIONS).join(", ")}.`);
-  if ((values.folder === undefined) !== (values.calibration === undefined)) throw new Failure("--folder and --calibration belong together.");
+  if (unknown !== undefined)
+    throw new Failure(`There is no part "${unknown}"; there are ${Object.keys(SECTIONS).join(", ")}.`);
+  if ((values.folder === undefined) !== (values.calibration === undefined))
+    throw new Failure("--folder and --calibration belong together.");
   if (values.folder === undefined && !hasData()) throw new Failure(`Nothing to do: ${MISSING}.`);
   await build();
   const { checkCalibration: check } = await import(inRoot("pkg/index.js"));

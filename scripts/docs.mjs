@@ -33,8 +33,19 @@ const verdict = (ok) => (ok === null ? "not measured" : ok ? "ok" : "missed");
 /** The aims of the tables, from their JSON. */
 export function tablesLines({ aims, quick, data }) {
   const from = `Version ${version()}, ${quick ? "the quick selection of cells (`--quick`), which is less than what is aimed at" : "all cells"}${data ? "" : "; built-in surfaces and lights, without the data beside the project"}.`;
-  const rows = aims.map(({ table: name, what, rows, measured, sense, limit, ok }) => [name, what, rows, measured === null ? "-" : small(measured), `${sense} ${limit}`, verdict(ok)]);
-  return [from, "", ...table(["table", "what", "rows", "measured", "aim", ""], [false, false, true, true, true, false], rows)];
+  const rows = aims.map(({ table: name, what, rows, measured, sense, limit, ok }) => [
+    name,
+    what,
+    rows,
+    measured === null ? "-" : small(measured),
+    `${sense} ${limit}`,
+    verdict(ok),
+  ]);
+  return [
+    from,
+    "",
+    ...table(["table", "what", "rows", "measured", "aim", ""], [false, false, true, true, true, false], rows),
+  ];
 }
 
 const milliseconds = (value) => fixed(value, value < 10 ? 2 : value < 100 ? 1 : 0);
@@ -45,9 +56,19 @@ export function benchLines({ rows, aims, machine, surface, lightName, quick }) {
   const from = `Version ${version()}${quick ? ", the quick selection (`--quick`)" : ""}; ${surface}, light ${lightName}; ${machine}. Milliseconds, medians.`;
   const sizes = unique(rows.map(({ size }) => size));
   const kinds = unique(rows.map(({ stage, where }) => `${stage}\n${where}`)).map((kind) => kind.split("\n"));
-  const cell = (stage, where, size) => rows.find((row) => row.stage === stage && row.where === where && row.size === size)?.milliseconds.median;
-  const times = kinds.map(([stage, where]) => [stage, where, ...sizes.map((size) => milliseconds(cell(stage, where, size)))]);
-  const judged = aims.map(({ what, value, unit, limit, met }) => [what, value === null ? "-" : `${milliseconds(value)} ${unit}`.trim(), `${Number(limit.toFixed(1))} ${unit}`.trim(), verdict(met)]);
+  const cell = (stage, where, size) =>
+    rows.find((row) => row.stage === stage && row.where === where && row.size === size)?.milliseconds.median;
+  const times = kinds.map(([stage, where]) => [
+    stage,
+    where,
+    ...sizes.map((size) => milliseconds(cell(stage, where, size))),
+  ]);
+  const judged = aims.map(({ what, value, unit, limit, met }) => [
+    what,
+    value === null ? "-" : `${milliseconds(value)} ${unit}`.trim(),
+    `${Number(limit.toFixed(1))} ${unit}`.trim(),
+    verdict(met),
+  ]);
   return [
     ...[from, "", ...table(["stage", "where", ...sizes], [false, false, ...sizes.map(() => true)], times)],
     ...["", ...table(["aim", "measured", "at most", ""], [false, true, true, false], judged)],

@@ -22,7 +22,8 @@ const MOST_MEGABYTES = 1024;
 const HANGS = 20_000;
 const LONGEST = 65_536;
 
-const filesOf = (...folders) => folders.flatMap(filesBelow).map((path) => ({ path, bytes: new Uint8Array(readFileSync(path)) }));
+const filesOf = (...folders) =>
+  folders.flatMap(filesBelow).map((path) => ({ path, bytes: new Uint8Array(readFileSync(path)) }));
 
 /** One thread until its time is over, or until a file stops it; how many milliseconds it ran. */
 function run(options, told) {
@@ -30,7 +31,10 @@ function run(options, told) {
   const start = Date.now();
   return new Promise((done) => {
     const workerData = { ...options, beat, present, folder: GROWN, findings: FINDINGS };
-    const thread = new Worker(new URL("fuzz/thread.mjs", import.meta.url), { workerData, resourceLimits: { maxOldGenerationSizeMb: MOST_MEGABYTES } });
+    const thread = new Worker(new URL("fuzz/thread.mjs", import.meta.url), {
+      workerData,
+      resourceLimits: { maxOldGenerationSizeMb: MOST_MEGABYTES },
+    });
     let [last, since, stopped] = [-1, Date.now(), undefined];
     const stop = (why) => {
       stopped = why;
@@ -47,7 +51,11 @@ function run(options, told) {
       else if (Date.now() - since > HANGS) void stop("hangs");
     }, 1000);
     thread.on("message", told);
-    thread.on("error", (error) => void stop(error.code === "ERR_WORKER_OUT_OF_MEMORY" ? "fills the memory" : `stops the thread ${error.message}`));
+    thread.on(
+      "error",
+      (error) =>
+        void stop(error.code === "ERR_WORKER_OUT_OF_MEMORY" ? "fills the memory" : `stops the thread ${error.message}`),
+    );
     thread.on("exit", () => {
       clearInterval(watch);
       done({ spent: Date.now() - start, stopped });
@@ -62,10 +70,15 @@ async function fuzz(minutes, seed) {
     if (progress) latest = progress;
     if (finding) findings.push(`${basename(path)}: ${finding}`);
     if (finding) console.log(`FOUND ${path}: ${finding}`);
-    else say(`${sum + latest.runs} files read, ${latest.read} of the last ${latest.runs} of use, ${latest.kept} kept, ${latest.covered} characters of pkg/ run`);
+    else
+      say(
+        `${sum + latest.runs} files read, ${latest.read} of the last ${latest.runs} of use, ${latest.kept} kept, ${latest.covered} characters of pkg/ run`,
+      );
   };
   for (let left = minutes * 60_000, round = 0; left > 0; round++) {
-    const seeds = filesOf(...FIXTURES, CORPUS, GROWN).map(({ bytes }) => bytes).filter((bytes) => bytes.length > 0 && bytes.length < LONGEST);
+    const seeds = filesOf(...FIXTURES, CORPUS, GROWN)
+      .map(({ bytes }) => bytes)
+      .filter((bytes) => bytes.length > 0 && bytes.length < LONGEST);
     const { spent, stopped } = await run({ seeds, seed: seed + round, milliseconds: left }, told);
     left = stopped ? left - spent : 0;
     sum += latest.runs;
@@ -95,7 +108,13 @@ async function minimise() {
 }
 
 await script(async () => {
-  const { values } = parseArgs({ options: { minutes: { type: "string", default: "10" }, seed: { type: "string", default: "1" }, minimise: { type: "boolean", default: false } } });
+  const { values } = parseArgs({
+    options: {
+      minutes: { type: "string", default: "10" },
+      seed: { type: "string", default: "1" },
+      minimise: { type: "boolean", default: false },
+    },
+  });
   await setup();
   await build();
   if (values.minimise) await minimise();

@@ -40,7 +40,11 @@ async function evaluate(session, expression) {
 
 /** Waits until the page has an element. */
 async function shows(session, selector) {
-  for (let waited = 0; !(await evaluate(session, `document.querySelector(${JSON.stringify(selector)}) !== null`)); waited += ASKED) {
+  for (
+    let waited = 0;
+    !(await evaluate(session, `document.querySelector(${JSON.stringify(selector)}) !== null`));
+    waited += ASKED
+  ) {
     if (waited > LONGEST_WAIT) throw new Error(`The page never showed ${selector}.`);
     await new Promise((go) => setTimeout(go, ASKED));
   }
@@ -50,7 +54,10 @@ async function shows(session, selector) {
 async function record(session) {
   const events = [];
   session.on("Tracing.dataCollected", ({ value }) => events.push(...value));
-  await session.send("Tracing.start", { transferMode: "ReportEvents", traceConfig: { includedCategories: CATEGORIES } });
+  await session.send("Tracing.start", {
+    transferMode: "ReportEvents",
+    traceConfig: { includedCategories: CATEGORIES },
+  });
   return async () => {
     const complete = new Promise((done) => session.once("Tracing.tracingComplete", done));
     await session.send("Tracing.end");
@@ -78,16 +85,28 @@ function tasksOf(events) {
   const marks = events.filter(({ name }) => name.startsWith("part: ")).sort((a, b) => a.ts - b.ts);
   const { pid, tid } = marks[0];
   const ours = events.filter((event) => event.pid === pid && event.tid === tid);
-  const began = Math.max(...ours.filter(({ name, ts }) => name === "navigationStart" && ts < marks[0].ts).map(({ ts }) => ts));
+  const began = Math.max(
+    ...ours.filter(({ name, ts }) => name === "navigationStart" && ts < marks[0].ts).map(({ ts }) => ts),
+  );
   const partAt = (ts) => marks.findLast((mark) => mark.ts <= ts)?.name.slice("part: ".length) ?? "start";
   const tasks = ours
     .filter(({ name, ph, ts }) => name.endsWith("RunTask") && ph === "X" && ts >= began)
-    .map(({ ts, dur, tdur = 0 }) => ({ part: partAt(ts), at: (ts - began) / 1000, wall: dur / 1000, own: tdur / 1000 }));
+    .map(({ ts, dur, tdur = 0 }) => ({
+      part: partAt(ts),
+      at: (ts - began) / 1000,
+      wall: dur / 1000,
+      own: tdur / 1000,
+    }));
   return { tasks, parts: ["start", ...marks.map(({ name }) => name.slice("part: ".length))] };
 }
 
 function words(tasks) {
-  const long = tasks.filter(({ wall }) => wall > LONG).map(({ at, wall, own }) => `${wall.toFixed(0)} ms (${own.toFixed(0)} of the processor's, at ${(at / 1000).toFixed(1)} s)`);
+  const long = tasks
+    .filter(({ wall }) => wall > LONG)
+    .map(
+      ({ at, wall, own }) =>
+        `${wall.toFixed(0)} ms (${own.toFixed(0)} of the processor's, at ${(at / 1000).toFixed(1)} s)`,
+    );
   const most = Math.max(0, ...tasks.map(({ own }) => own));
   const longest = Math.max(0, ...tasks.map(({ wall }) => wall));
   return `${long.length === 0 ? `none over ${LONG} ms, the longest ${longest.toFixed(0)}` : long.join(", ")}; at most ${most.toFixed(0)} ms of the processor's time`;
@@ -96,9 +115,14 @@ function words(tasks) {
 await script(async () => {
   await buildSite();
   const { address, close } = await serveSite({ port: 0, below: "/any/folder/" });
-  const program = await chromium.launch({ executablePath: (await browser()).chromium, args: ["--no-sandbox", "--enable-unsafe-swiftshader"] });
+  const program = await chromium.launch({
+    executablePath: (await browser()).chromium,
+    args: ["--no-sandbox", "--enable-unsafe-swiftshader"],
+  });
   const warm = await program.newPage();
-  await warm.setContent("<h1>A heading</h1><p>Some text, <b>some more</b><button>Go</button><input><select><option>one</option></select>");
+  await warm.setContent(
+    "<h1>A heading</h1><p>Some text, <b>some more</b><button>Go</button><input><select><option>one</option></select>",
+  );
   await warm.screenshot();
   for (const { name, state } of SCENES) {
     const context = await program.newContext({ viewport: { width: 1280, height: 800 }, serviceWorkers: "block" });
@@ -109,7 +133,8 @@ await script(async () => {
     const begin = (part) => evaluate(session, `performance.mark("part: ${part}")`);
     await session.send("Page.navigate", { url: `${address}#${state}` });
     if (ALONE) await putFirst(program);
-    for (const selector of ['#status[data-state="ready"]', "#clouds-note[hidden]", "#objective-chart canvas"]) await shows(session, selector);
+    for (const selector of ['#status[data-state="ready"]', "#clouds-note[hidden]", "#objective-chart canvas"])
+      await shows(session, selector);
     await page.waitForTimeout(500);
     await begin(`${STEPS} steps`);
     for (let step = 0; step < STEPS; step++) {

@@ -6,7 +6,15 @@ import { Failure, inRoot, must, stamp } from "./shell.mjs";
 import { withoutFeature } from "./wasm-features.mjs";
 
 /** What the .wasm files are made of; the rest of the sources is bundled in a second. */
-export const NUMERICS = ["src", "Cargo.toml", "Cargo.lock", "rust-toolchain.toml", ".cargo", "scripts/numerics.mjs", "scripts/wasm-features.mjs"];
+export const NUMERICS = [
+  "src",
+  "Cargo.toml",
+  "Cargo.lock",
+  "rust-toolchain.toml",
+  ".cargo",
+  "scripts/numerics.mjs",
+  "scripts/wasm-features.mjs",
+];
 const NUMERICS_MARK = "target/.numerics-stamp";
 const MODULE = "bimodal_stereo";
 /**
@@ -21,7 +29,11 @@ const REFERENCES = "reference-types";
  */
 const FLAVOURS = [
   { file: `${MODULE}_bg.wasm`, target: "target", flags: ["-C", `target-feature=-${REFERENCES}`] },
-  { file: `${MODULE}_scalar_bg.wasm`, target: "target/scalar", flags: ["-C", `target-feature=-${REFERENCES},-simd128`] },
+  {
+    file: `${MODULE}_scalar_bg.wasm`,
+    target: "target/scalar",
+    flags: ["-C", `target-feature=-${REFERENCES},-simd128`],
+  },
 ];
 /** The calibration check: bindings of its own, loaded on demand, for machines with SIMD and without. */
 const CHECK = {
@@ -32,7 +44,13 @@ const CHECK = {
   name: `${MODULE}_check`,
 };
 /** The rendered rigs of its tests and of the page's example, which nobody else downloads. */
-const RIGS = { ...CHECK, file: `${MODULE}_rigs_bg.wasm`, target: "target/rigs", features: ["--features", "rigs"], name: `${MODULE}_rigs` };
+const RIGS = {
+  ...CHECK,
+  file: `${MODULE}_rigs_bg.wasm`,
+  target: "target/rigs",
+  features: ["--features", "rigs"],
+  name: `${MODULE}_rigs`,
+};
 /** All files of the package. */
 export const ALL = [...FLAVOURS, CHECK, RIGS];
 
@@ -63,17 +81,37 @@ async function numerics({ file, target, flags, features = [], name = MODULE, sou
   const apart = ["--one-caller-inline-max-function-size", "50"];
   // Nothing reads or writes the first kilobyte but the stack, if it overflows: so offsets fold into addresses.
   // Functions that differ in constants alone become one, and a second round finds what the first has left: 0.5 kB gzipped.
-  const smaller = ["--merge-similar-functions", "-Oz", "--gufa", "--converge", "--coalesce-locals-learning", "--low-memory-unused", "-Oz"];
+  const smaller = [
+    "--merge-similar-functions",
+    "-Oz",
+    "--gufa",
+    "--converge",
+    "--coalesce-locals-learning",
+    "--low-memory-unused",
+    "-Oz",
+  ];
   // What is written twice packs better than the local that would hold it, by 0.9 kB gzipped, and runs as fast (docs/performance.md).
   const repeated = ["--skip-pass=local-cse"];
   const bare = ["--strip-producers", "--strip-target-features"];
-  await node("binaryen/bin/wasm-opt", ...smaller, ...apart, ...repeated, ...bare, `${target}/wasm-bindgen/${name}_bg.wasm`, "-o", `target/${file}`);
+  await node(
+    "binaryen/bin/wasm-opt",
+    ...smaller,
+    ...apart,
+    ...repeated,
+    ...bare,
+    `${target}/wasm-bindgen/${name}_bg.wasm`,
+    "-o",
+    `target/${file}`,
+  );
 }
 
 /** Builds the .wasm files where their sources have changed. */
 export async function allNumerics() {
   const wanted = stamp(NUMERICS);
-  const made = ALL.flatMap(({ file, target, name = MODULE }) => [`target/${file}`, `${target}/wasm-bindgen/${name}.js`]);
+  const made = ALL.flatMap(({ file, target, name = MODULE }) => [
+    `target/${file}`,
+    `${target}/wasm-bindgen/${name}.js`,
+  ]);
   const isMade = [NUMERICS_MARK, ...made].every((path) => existsSync(inRoot(path)));
   if (isMade && readFileSync(inRoot(NUMERICS_MARK), "utf8") === wanted) return;
   rmSync(inRoot(NUMERICS_MARK), { force: true });
@@ -99,4 +137,3 @@ function checkGlue(flavours = FLAVOURS) {
     }
   }
 }
-

@@ -14,7 +14,8 @@ const MISSING_COLOUR = [48, 0, 0];
 /** A picture of `pixel(index)`, cut to the mask's bounding box. */
 function picture({ width, mask }, pixel) {
   const inside = [...mask.keys()].filter((index) => mask[index]);
-  const range = (values) => values.reduce(([low, high], value) => [Math.min(low, value), Math.max(high, value)], [Infinity, 0]);
+  const range = (values) =>
+    values.reduce(([low, high], value) => [Math.min(low, value), Math.max(high, value)], [Infinity, 0]);
   const [left, right] = range(inside.map((index) => index % width));
   const [top, bottom] = range(inside.map((index) => Math.floor(index / width)));
   const size = { width: right - left + 1, height: bottom - top + 1 };
@@ -29,10 +30,12 @@ function picture({ width, mask }, pixel) {
 }
 
 /** Greys between two depths, near is white. */
-const greys = (depth, [near, far]) => (index) => {
-  const share = (depth[index] - near) / (far - near);
-  return depth[index] > 0 && new Array(3).fill(255 - 215 * Math.min(1, Math.max(0, share)));
-};
+const greys =
+  (depth, [near, far]) =>
+  (index) => {
+    const share = (depth[index] - near) / (far - near);
+    return depth[index] > 0 && new Array(3).fill(255 - 215 * Math.min(1, Math.max(0, share)));
+  };
 
 /** x right red, y up green, toward the camera blue. */
 const colours = (normals) => (index) => {

@@ -65,7 +65,10 @@ function sheet(rows) {
   rows.forEach((row, r) =>
     row.forEach((part, c) => {
       for (let y = 0; y < part.height; y++) {
-        data.set(part.data.subarray(3 * y * part.width, 3 * (y + 1) * part.width), 3 * ((tops[r] + y) * width + lefts[c]));
+        data.set(
+          part.data.subarray(3 * y * part.width, 3 * (y + 1) * part.width),
+          3 * ((tops[r] + y) * width + lefts[c]),
+        );
       }
     }),
   );
@@ -77,7 +80,9 @@ const triple = (raster, index) => [...raster.subarray(3 * index, 3 * index + 3)]
 /** R, G, B of log colours, as bright in the middle as the others. */
 function exposed(log) {
   const middle = quantile([...log].filter(Number.isFinite), 0.5);
-  return (index) => Number.isFinite(log[3 * index]) && triple(log, index).map((value) => 0.3 * Math.exp(Math.max(-LOG_RANGE, value - middle)));
+  return (index) =>
+    Number.isFinite(log[3 * index]) &&
+    triple(log, index).map((value) => 0.3 * Math.exp(Math.max(-LOG_RANGE, value - middle)));
 }
 
 /** Image, albedo, shading and residual of a run, which knows nothing but its options. */
@@ -113,7 +118,9 @@ async function photographed(api, data, surface) {
   const image = onto(SIZE, data.photograph(surface, "lab_diffuse"), made);
   const found = await taken(api, image, made.depth);
   const row = judged(found.report, made.pose);
-  say(`${surface}: ${row.degrees.toFixed(1)} degrees off${isFlagged(row) ? ", flagged" : ""}${isFound(row) ? "" : "; told the truth"}`);
+  say(
+    `${surface}: ${row.degrees.toFixed(1)} degrees off${isFlagged(row) ? ", flagged" : ""}${isFound(row) ? "" : "; told the truth"}`,
+  );
   if (isFound(row)) return found.row;
   return (await taken(api, image, made.depth, { start: made.pose, registration: "fixed" })).row;
 }
@@ -127,19 +134,34 @@ function coloured({ data, mask }) {
 /** Depth as it is and refined, and the colours. */
 const refined = (api, { image, depth }) =>
   withRun(api, { image, depth }, { start: "identity", registration: "fixed", scale: 1 }, (_, estimator) => {
-    const raw = Float64Array.from(depth.data, (value, index) => (depth.mask[index] && value > 0 ? value * depth.unit : NaN));
+    const raw = Float64Array.from(depth.data, (value, index) =>
+      depth.mask[index] && value > 0 ? value * depth.unit : NaN,
+    );
     const maps = [raw, estimator.refinedDepth()].map((metres) => picture(depth, shaded(depth, metres), OF_DEPTH));
     return [...maps, picture(image, coloured(image), Math.max(1, Math.round((OF_DEPTH * depth.width) / image.width)))];
   });
 
 /** The built-in bust in window light, in squares of four paints. */
 function painted(api) {
-  const { image, depth } = api.sample({ surface: "bust", light: "window", size: SIZE, angles: { beta: 25 }, noise: 0.01 });
-  const paints = [[1, 1, 1], [0.9, 0.35, 0.3], [0.3, 0.7, 0.4], [0.35, 0.4, 0.85]];
+  const { image, depth } = api.sample({
+    surface: "bust",
+    light: "window",
+    size: SIZE,
+    angles: { beta: 25 },
+    noise: 0.01,
+  });
+  const paints = [
+    [1, 1, 1],
+    [0.9, 0.35, 0.3],
+    [0.3, 0.7, 0.4],
+    [0.35, 0.4, 0.85],
+  ];
   const side = Math.round(SIZE / 8);
   const data = image.data.map((value, at) => {
     const index = Math.floor(at / 3);
-    const [column, row] = [index % image.width, Math.floor(index / image.width)].map((place) => Math.floor(place / side));
+    const [column, row] = [index % image.width, Math.floor(index / image.width)].map((place) =>
+      Math.floor(place / side),
+    );
     return value * paints[(column + 3 * row) % 4][at % 3];
   });
   return taken(api, { ...image, data }, depth);
@@ -147,7 +169,10 @@ function painted(api) {
 
 function parsed() {
   try {
-    const { positionals: [folder = "target/pictures"], values: { only } } = parseArgs({ options: { only: { type: "string" } }, allowPositionals: true });
+    const {
+      positionals: [folder = "target/pictures"],
+      values: { only },
+    } = parseArgs({ options: { only: { type: "string" } }, allowPositionals: true });
     const wanted = only?.split(",");
     const names = [...PAINTED, ...CAPTURES, PAGE];
     const unknown = wanted?.find((name) => !names.includes(name));

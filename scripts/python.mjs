@@ -30,7 +30,8 @@ async function once(mark, wanted, step) {
 
 async function install() {
   mkdirSync(inRoot("target/python"), { recursive: true });
-  const pip = (...args) => must(inVenv("python"), ["-m", "pip", "--disable-pip-version-check", "install", "--quiet", ...args]);
+  const pip = (...args) =>
+    must(inVenv("python"), ["-m", "pip", "--disable-pip-version-check", "install", "--quiet", ...args]);
   const interpreter = ask("python3", ["-c", "import sys; print(sys.version, sys.prefix)"]);
   await once(".venv-stamp", `${stamp([REQUIREMENTS])} ${interpreter}`, async () => {
     say("Python: an environment for its tests");

@@ -26,7 +26,12 @@ function frames(object, [first, second], { decodeColour, decodeDepth, decodeMask
   const mask = (number) => decodeMask(frame(number, "maskcrop.png")).data;
   return {
     image: { ...decodeColour(frame(first, "crop.png")), mask: mask(first), camera: camera(first) },
-    depth: { ...decodeDepth(frame(second, "depthcrop.png")), mask: mask(second), camera: camera(second), unit: MILLIMETRE },
+    depth: {
+      ...decodeDepth(frame(second, "depthcrop.png")),
+      mask: mask(second),
+      camera: camera(second),
+      unit: MILLIMETRE,
+    },
   };
 }
 
@@ -59,7 +64,10 @@ function twofold(folder, names, camera, { decodeColour, decodeDepth, decodeMask 
   const { width, data } = decodeMask(mask);
   const shared = { mask: data.filter((_, index) => index % 2 === 0 && Math.floor(index / width) % 2 === 0), camera };
   const FIFTH = 0.2 * MILLIMETRE;
-  return { image: { ...halved(decodeColour(colour)), ...shared }, depth: { ...decodeDepth(depth), ...shared, unit: FIFTH } };
+  return {
+    image: { ...halved(decodeColour(colour)), ...shared },
+    depth: { ...decodeDepth(depth), ...shared, unit: FIFTH },
+  };
 }
 
 /** Colour and depth of one moment, seen by one camera: the true pose is the identity. */
@@ -89,7 +97,13 @@ const degrees = ([a, , , , b, , , , c]) => (Math.acos(Math.min(1, Math.max(-1, (
 
 /** Runs the loop to its end. Both frames are metric, so that the pose's translation is in metres. */
 export async function runPair(Estimator, { image, depth }, options = {}) {
-  const estimator = new Estimator(image, depth, { light: "estimate", start: "identity", registration: "icp", shading: "pixel", ...options });
+  const estimator = new Estimator(image, depth, {
+    light: "estimate",
+    start: "identity",
+    registration: "icp",
+    shading: "pixel",
+    ...options,
+  });
   try {
     const before = estimator.report;
     const after = await estimator.run();
@@ -112,7 +126,18 @@ export async function runPair(Estimator, { image, depth }, options = {}) {
   }
 }
 
-const HEADINGS = ["pair", "status", "iterations", "alpha", "beta", "gamma", "rotation", "shift mm", "residual", "holes filled"];
+const HEADINGS = [
+  "pair",
+  "status",
+  "iterations",
+  "alpha",
+  "beta",
+  "gamma",
+  "rotation",
+  "shift mm",
+  "residual",
+  "holes filled",
+];
 
 /** The rows of a text table under its headings. */
 export function table(rows) {
@@ -128,5 +153,10 @@ export function table(rows) {
   ]);
   const all = [HEADINGS, ...cells];
   const widths = HEADINGS.map((_, column) => Math.max(...all.map((row) => row[column].length)));
-  return all.map((row) => row.map((cell, column) => cell.padEnd(widths[column])).join("  ").trimEnd());
+  return all.map((row) =>
+    row
+      .map((cell, column) => cell.padEnd(widths[column]))
+      .join("  ")
+      .trimEnd(),
+  );
 }

@@ -21,7 +21,8 @@ function parsed() {
     const options = { "dry-run": { type: "boolean", default: false }, date: { type: "string" } };
     const { values, positionals } = parseArgs({ options, allowPositionals: true });
     const [version, ...rest] = positionals;
-    if (!/^\d+\.\d+\.\d+(-[0-9A-Za-z.-]+)?$/.test(version ?? "") || rest.length > 0) throw new Error("one version is needed, such as 0.2.0");
+    if (!/^\d+\.\d+\.\d+(-[0-9A-Za-z.-]+)?$/.test(version ?? "") || rest.length > 0)
+      throw new Error("one version is needed, such as 0.2.0");
     const date = values.date ?? new Date().toISOString().slice(0, 10);
     if (!/^\d{4}-\d\d-\d\d$/.test(date)) throw new Error(`--date must be as 2026-01-31, not "${date}"`);
     return { version, date, isDry: values["dry-run"] };
@@ -47,22 +48,35 @@ function replaced(name, text, pattern, by) {
 }
 
 /** The project's own packages in a lock file, which come from no registry; what fuzzes them has no version. */
-const locked = (name) => (text, { version }) =>
-  replaced(name, text, /^(name = "bimodal-stereo(?!-fuzz).*"\nversion = )".+"$(?!\nsource)/gm, `$1"${version}"`);
+const locked =
+  (name) =>
+  (text, { version }) =>
+    replaced(name, text, /^(name = "bimodal-stereo(?!-fuzz).*"\nversion = )".+"$(?!\nsource)/gm, `$1"${version}"`);
 
 /** How each file changes. */
 const FILES = {
   // Once for all members, and once where the command line asks for the library.
   "Cargo.toml": (text, { version }) =>
-    replaced("Cargo.toml", replaced("Cargo.toml", text, VERSION, `version = "${version}"`), /^(bimodal-stereo = .*version = )"=.+"/m, `$1"=${version}"`),
+    replaced(
+      "Cargo.toml",
+      replaced("Cargo.toml", text, VERSION, `version = "${version}"`),
+      /^(bimodal-stereo = .*version = )"=.+"/m,
+      `$1"=${version}"`,
+    ),
   // A workspace of its own, so that what is built for browsers never sees it.
   "python/Cargo.toml": (text, { version }) => replaced("python/Cargo.toml", text, VERSION, `version = "${version}"`),
   ...Object.fromEntries(["Cargo.lock", "python/Cargo.lock", "fuzz/Cargo.lock"].map((name) => [name, locked(name)])),
   "CITATION.cff": (text, { version, date }) =>
-    replaced("CITATION.cff", text.replace(/^date-released: .*\n/m, ""), /^version: .*$/m, `version: "${version}"\ndate-released: "${date}"`),
+    replaced(
+      "CITATION.cff",
+      text.replace(/^date-released: .*\n/m, ""),
+      /^version: .*$/m,
+      `version: "${version}"\ndate-released: "${date}"`,
+    ),
   "CHANGELOG.md": (text, { version, date }) => {
     const [, after] = text.split(`${UNRELEASED}\n`);
-    if (after === undefined || after.split(/^## /m)[0].trim() === "") throw new Failure(`CHANGELOG.md has nothing under "${UNRELEASED}" to release.`);
+    if (after === undefined || after.split(/^## /m)[0].trim() === "")
+      throw new Failure(`CHANGELOG.md has nothing under "${UNRELEASED}" to release.`);
     return text.replace(UNRELEASED, `${UNRELEASED}\n\n## ${version}, ${date}`);
   },
 };
@@ -81,8 +95,10 @@ await script(async () => {
   // What is there is released as it is the first time.
   const tags = git("tag", "--list", "v*").split("\n");
   if (tags.includes(`v${version}`)) throw new Failure(`There is a tag v${version} already.`);
-  if (version !== present && !isAfter(version, present)) throw new Failure(`${version} does not come after ${present}.`);
-  if (git("status", "--porcelain") !== "") throw new Failure("There are changes that are not committed: commit or stash them first.");
+  if (version !== present && !isAfter(version, present))
+    throw new Failure(`${version} does not come after ${present}.`);
+  if (git("status", "--porcelain") !== "")
+    throw new Failure("There are changes that are not committed: commit or stash them first.");
 
   const texts = Object.entries(FILES).map(([name, change]) => {
     const before = readFileSync(inRoot(name), "utf8");
@@ -94,5 +110,7 @@ await script(async () => {
   git("add", ...texts.map(({ name }) => name));
   git("commit", "--quiet", "-m", `Release ${version}`);
   git("tag", "-a", `v${version}`, "-m", `bimodal-stereo ${version}`);
-  say(`committed and tagged v${version}; what is left: git push --follow-tags, cargo publish, npm publish ./pkg after npm run build`);
+  say(
+    `committed and tagged v${version}; what is left: git push --follow-tags, cargo publish, npm publish ./pkg after npm run build`,
+  );
 });

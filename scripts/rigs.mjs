@@ -26,30 +26,51 @@ function print(rows) {
   const frames = [...new Set(rows.map((row) => row.frames))];
   const among = (kind, count) => rows.filter((row) => (kind === "all" || row.kind === kind) && row.frames === count);
   const of = (kind, count, error) => among(kind, count).filter((row) => row.error.degrees === error.degrees);
-  console.log("The estimate of calibrations that are off, against the truth; of right ones: whether their error lies in the 95 % interval,");
+  console.log(
+    "The estimate of calibrations that are off, against the truth; of right ones: whether their error lies in the 95 % interval,",
+  );
   console.log("whether the truth lies within 95 % of the distribution, and what is said of them.");
-  console.log("kind     frames  rigs  degrees, mm: median   90 %          interval  distribution  consistent  undecided  off");
+  console.log(
+    "kind     frames  rigs  degrees, mm: median   90 %          interval  distribution  consistent  undecided  off",
+  );
   for (const kind of kinds) {
     for (const count of frames) {
       const right = of(kind, count, ERRORS[0]);
       const wrong = among(kind, count).filter((row) => row.error.degrees > 0);
-      const at = (part) => `${quantile(wrong.map((row) => row.degrees), part).toFixed(2)}, ${quantile(wrong.map((row) => row.millimetres), part).toFixed(1)}`.padEnd(13);
+      const at = (part) =>
+        `${quantile(
+          wrong.map((row) => row.degrees),
+          part,
+        ).toFixed(2)}, ${quantile(
+          wrong.map((row) => row.millimetres),
+          part,
+        ).toFixed(1)}`.padEnd(13);
       const share = (is) => percent(right.filter(is).length, right.length).padStart(6);
       const inside = share(({ own, interval }) => own >= interval[0] && own <= interval[1]);
       const within = share(({ probability }) => probability >= 0.05);
       const said = ["consistent", "undecided", "off"].map((verdict) => share((row) => row.verdict === verdict));
-      console.log(`${kind.padEnd(8)} ${String(count).padEnd(6)} ${String(wrong.length).padStart(5)}  ${at(0.5)}         ${at(0.9)} ${inside}    ${within}        ${said[0]}     ${said[1]}  ${said[2]}`);
+      console.log(
+        `${kind.padEnd(8)} ${String(count).padEnd(6)} ${String(wrong.length).padStart(5)}  ${at(0.5)}         ${at(0.9)} ${inside}    ${within}        ${said[0]}     ${said[1]}  ${said[2]}`,
+      );
     }
   }
-  console.log("\nShare of calibrations that are off by so much: said to be off; found by the lower bound of their interval at 5 % false alarms (and at 1 %).");
-  console.log(`kind     frames  ${ERRORS.slice(1).map(({ degrees, millimetres }) => `${degrees} deg, ${millimetres} mm`.padEnd(22)).join("")}`);
+  console.log(
+    "\nShare of calibrations that are off by so much: said to be off; found by the lower bound of their interval at 5 % false alarms (and at 1 %).",
+  );
+  console.log(
+    `kind     frames  ${ERRORS.slice(1)
+      .map(({ degrees, millimetres }) => `${degrees} deg, ${millimetres} mm`.padEnd(22))
+      .join("")}`,
+  );
   for (const kind of kinds) {
     for (const count of frames) {
       const bounds = of(kind, count, ERRORS[0]).map((row) => row.bounds[0]);
       const cells = ERRORS.slice(1).map((error) => {
         const some = of(kind, count, error);
         const said = percent(some.filter((row) => row.verdict === "off").length, some.length);
-        const [five, one] = [0.95, 0.99].map((part) => percent(some.filter((row) => row.bounds[0] > quantile(bounds, part)).length, some.length));
+        const [five, one] = [0.95, 0.99].map((part) =>
+          percent(some.filter((row) => row.bounds[0] > quantile(bounds, part)).length, some.length),
+        );
         return `${said}; ${five} (${one})`.padEnd(22);
       });
       console.log(`${kind.padEnd(8)} ${String(count).padEnd(6)}  ${cells.join("")}`);
@@ -70,7 +91,8 @@ await script(async () => {
   const [rigs, from] = [values.rigs, values.from].map(Number);
   const kinds = values.kinds.split(",");
   const counts = values.frames.split(",").map(Number);
-  if (!(rigs >= 1) || !Number.isInteger(from) || counts.some((count) => !(count >= 1))) throw new Failure("--rigs, --from and --frames take whole numbers.");
+  if (!(rigs >= 1) || !Number.isInteger(from) || counts.some((count) => !(count >= 1)))
+    throw new Failure("--rigs, --from and --frames take whole numbers.");
   const unknown = kinds.find((kind) => !KINDS.includes(kind));
   if (unknown !== undefined) throw new Failure(`There is no kind "${unknown}"; there are ${KINDS.join(", ")}.`);
   await build();

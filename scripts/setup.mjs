@@ -18,15 +18,17 @@ async function toolchain() {
   }
   const file = readFileSync(inRoot("rust-toolchain.toml"), "utf8");
   const channel = /^channel = "(.+)"$/m.exec(file)[1];
-  const list = (name) => [...new RegExp(`^${name} = \\[(.+)\\]$`, "m").exec(file)[1].matchAll(/"([^"]+)"/g)].map((m) => m[1]);
+  const list = (name) =>
+    [...new RegExp(`^${name} = \\[(.+)\\]$`, "m").exec(file)[1].matchAll(/"([^"]+)"/g)].map((m) => m[1]);
   const [components, targets] = [list("components"), list("targets")];
 
   const has = (kind) => ask("rustup", [kind, "list", "--installed", "--toolchain", channel])?.split("\n") ?? [];
   const [hasComponents, hasTargets] = [has("component"), has("target")];
   // Installed components carry the host in their name, as in clippy-x86_64-unknown-linux-gnu.
   const complete =
-    components.every((name) => hasComponents.some((installed) => installed === name || installed.startsWith(`${name}-`))) &&
-    targets.every((name) => hasTargets.includes(name));
+    components.every((name) =>
+      hasComponents.some((installed) => installed === name || installed.startsWith(`${name}-`)),
+    ) && targets.every((name) => hasTargets.includes(name));
   if (complete) return;
   say(`Rust ${channel} with ${[...components, ...targets].join(", ")}: installing`);
   await must("rustup", [
@@ -44,13 +46,17 @@ async function wasmBindgen() {
   // Without --locked: the lock file of some releases names a yanked crate. Not optimised, for less than half the time to compile: it
   // runs for a second. Without default features: they are TLS, and its tests speak with a driver on this machine.
   const wanted = ["--no-default-features", "--bin", "wasm-bindgen", "--bin", "wasm-bindgen-test-runner"];
-  await must("cargo", ["install", "wasm-bindgen-cli", "--version", `=${version}`, ...wanted, "--root", "target/tools", "--force"], {
-    env: {
-      CARGO_PROFILE_RELEASE_OPT_LEVEL: "0",
-      CARGO_PROFILE_RELEASE_CODEGEN_UNITS: "16",
-      CARGO_PROFILE_RELEASE_LTO: "off",
+  await must(
+    "cargo",
+    ["install", "wasm-bindgen-cli", "--version", `=${version}`, ...wanted, "--root", "target/tools", "--force"],
+    {
+      env: {
+        CARGO_PROFILE_RELEASE_OPT_LEVEL: "0",
+        CARGO_PROFILE_RELEASE_CODEGEN_UNITS: "16",
+        CARGO_PROFILE_RELEASE_LTO: "off",
+      },
     },
-  });
+  );
 }
 
 async function nodeModules() {

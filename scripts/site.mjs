@@ -16,7 +16,8 @@ function wantedPort() {
     throw new Failure(error.message);
   }
   const port = Number(text);
-  if (text !== undefined && !(Number.isInteger(port) && port > 0 && port < 65536)) throw new Failure(`--serve takes a port, a number from 1 to 65535, not "${text}".`);
+  if (text !== undefined && !(Number.isInteger(port) && port > 0 && port < 65536))
+    throw new Failure(`--serve takes a port, a number from 1 to 65535, not "${text}".`);
   return text === undefined ? undefined : port;
 }
 
@@ -26,5 +27,6 @@ await script(async () => {
   await build();
   const { files, bytes } = await buildSite();
   say(`site/: ${files} files, ${(bytes / 1e6).toFixed(1)} MB`);
-  if (port !== undefined) say(`serving it at ${(await serveSite({ port, below: "/any/folder/" })).address}  (ctrl-C ends it)`);
+  if (port !== undefined)
+    say(`serving it at ${(await serveSite({ port, below: "/any/folder/" })).address}  (ctrl-C ends it)`);
 });

@@ -30,7 +30,8 @@ function reached(first, patterns, isLeftOut = () => false) {
     found.add(path);
     if (!path.endsWith(".js")) continue;
     const text = readFileSync(inRoot(PAGE, path), "utf8");
-    for (const pattern of patterns) for (const [, script, file] of text.matchAll(pattern)) waiting.push(path.replace(/[^/]+$/, script ?? file));
+    for (const pattern of patterns)
+      for (const [, script, file] of text.matchAll(pattern)) waiting.push(path.replace(/[^/]+$/, script ?? file));
   }
   return [...found].sort();
 }
@@ -38,7 +39,10 @@ function reached(first, patterns, isLeftOut = () => false) {
 /** Scripts that the page asks for before its first paint: those it names, and what these import at once. */
 function firstScripts() {
   const page = readFileSync(inRoot(PAGE, "index.html"), "utf8");
-  return reached([...page.matchAll(/<(?:script|link)[^>]+(?:src|href)="\.\/([^"]+\.js)"/g)].map((match) => match[1]), [AT_ONCE]);
+  return reached(
+    [...page.matchAll(/<(?:script|link)[^>]+(?:src|href)="\.\/([^"]+\.js)"/g)].map((match) => match[1]),
+    [AT_ONCE],
+  );
 }
 
 const CHECK_WASM = /bimodal_stereo_check_bg/;
@@ -50,9 +54,12 @@ const OTHERS = /\/decoder-/;
 
 /** What runs a check, reads its files and writes them, all of it on demand; and what the example takes besides. */
 function checkFiles() {
-  const scripts = readdirSync(inRoot(PAGE, "assets")).filter((name) => name.endsWith(".js")).map((name) => `assets/${name}`);
+  const scripts = readdirSync(inRoot(PAGE, "assets"))
+    .filter((name) => name.endsWith(".js"))
+    .map((name) => `assets/${name}`);
   const knows = (path, word) => word.test(readFileSync(inRoot(PAGE, path), "utf8"));
-  for (const word of [CHECK_WASM, RIG_FILES]) if (!scripts.some((path) => knows(path, word))) throw new Failure(`No script of the page names ${word.source}.`);
+  for (const word of [CHECK_WASM, RIG_FILES])
+    if (!scripts.some((path) => knows(path, word))) throw new Failure(`No script of the page names ${word.source}.`);
   const first = scripts.filter((path) => knows(path, CHECK_WASM) || knows(path, RIG_FILES));
   const all = reached(first, [AT_ONCE, ON_DEMAND], (path) => OTHERS.test(path));
   const example = all.filter((path) => EXAMPLE.test(path));
@@ -64,7 +71,8 @@ export const buildPage = buildSite;
 
 /** Bytes of the built package and the built page. */
 export function sizes() {
-  for (const path of [WASM, SCALAR, `${PAGE}/index.html`]) if (!existsSync(inRoot(path))) throw new Failure(`${path} has not been built.`);
+  for (const path of [WASM, SCALAR, `${PAGE}/index.html`])
+    if (!existsSync(inRoot(path))) throw new Failure(`${path} has not been built.`);
   const scripts = firstScripts();
   const { check, example } = checkFiles();
   const total = (paths) => paths.reduce((sum, path) => sum + zipped(inRoot(PAGE, path)), 0);
@@ -85,7 +93,12 @@ export function sizes() {
 export function judgeSizes({ wasmGzipBytes, scalarGzipBytes, jsGzipBytes, checkGzipBytes, exampleGzipBytes }) {
   const line = (name, bytes, kept, budget) =>
     `${name}: ${(bytes / 1000).toFixed(1)} kB gzipped, ${kept ? "within" : "OVER"} the budget of ${budget / 1000} kB`;
-  const kept = [wasmGzipBytes <= WASM_BUDGET, scalarGzipBytes <= WASM_BUDGET, jsGzipBytes < FIRST_PAINT_BUDGET, checkGzipBytes <= CHECK_BUDGET];
+  const kept = [
+    wasmGzipBytes <= WASM_BUDGET,
+    scalarGzipBytes <= WASM_BUDGET,
+    jsGzipBytes < FIRST_PAINT_BUDGET,
+    checkGzipBytes <= CHECK_BUDGET,
+  ];
   const lines = [
     line("size of the wasm", wasmGzipBytes, kept[0], WASM_BUDGET),
     line("size of the wasm without SIMD", scalarGzipBytes, kept[1], WASM_BUDGET),

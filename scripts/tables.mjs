@@ -22,16 +22,24 @@ import { TABLES } from "./tables/protocol/index.mjs";
 function chosen(names) {
   const wanted = names?.split(",").filter(Boolean);
   const unknown = wanted?.find((name) => !TABLES.some((table) => table.name === name));
-  if (unknown) throw new Failure(`There is no table "${unknown}"; there are ${TABLES.map(({ name }) => name).join(", ")}.`);
+  if (unknown)
+    throw new Failure(`There is no table "${unknown}"; there are ${TABLES.map(({ name }) => name).join(", ")}.`);
   return wanted ? TABLES.filter(({ name }) => wanted.includes(name)) : TABLES;
 }
 
 function parsed() {
-  const options = { quick: { type: "boolean" }, docs: { type: "boolean" }, only: { type: "string" }, json: { type: "string" }, workers: { type: "string" } };
+  const options = {
+    quick: { type: "boolean" },
+    docs: { type: "boolean" },
+    only: { type: "string" },
+    json: { type: "string" },
+    workers: { type: "string" },
+  };
   try {
     const { quick = false, docs = false, only, json, workers } = parseArgs({ options }).values;
     const count = workers === undefined ? Math.min(2, availableParallelism()) : Number(workers);
-    if (!(Number.isInteger(count) && count > 0)) throw new Error(`--workers must be a whole number above zero, not "${workers}"`);
+    if (!(Number.isInteger(count) && count > 0))
+      throw new Error(`--workers must be a whole number above zero, not "${workers}"`);
     if (docs && only !== undefined) throw new Error("--docs is of all tables: leave --only out");
     return { quick, docs, tables: chosen(only), json, workers: count };
   } catch (error) {
@@ -44,7 +52,10 @@ await script(async () => {
   const start = performance.now();
   await setup();
   await build();
-  if (!hasData()) say(`no data in ${DATA_FOLDER}: the built-in surfaces and lights stand in, real pairs and photographs are left out`);
+  if (!hasData())
+    say(
+      `no data in ${DATA_FOLDER}: the built-in surfaces and lights stand in, real pairs and photographs are left out`,
+    );
   const { json, failures, complete } = await collect(tables, { quick, workers });
   if (!complete) throw new Failure("Broken off; what was done is kept, and the next run goes on from there.");
 
@@ -58,10 +69,13 @@ await script(async () => {
     writeFileSync(resolve(file), `${JSON.stringify({ ...json, aims: list, quick, data: hasData() }, null, 1)}\n`);
     say(`wrote ${file}`);
   }
-  if (docs && failures.length === 0) fill("docs/accuracy.md", "tables", tablesLines({ aims: list, quick, data: hasData() }));
+  if (docs && failures.length === 0)
+    fill("docs/accuracy.md", "tables", tablesLines({ aims: list, quick, data: hasData() }));
   say(`${tables.length} tables in ${seconds(start)}`);
   if (failures.length > 0) {
-    const lines = failures.slice(0, 20).map(({ id, failure }) => `  ${id}: ${failure.code ?? failure.name}: ${failure.message}`);
+    const lines = failures
+      .slice(0, 20)
+      .map(({ id, failure }) => `  ${id}: ${failure.code ?? failure.name}: ${failure.message}`);
     throw new Failure(`${failures.length} cells failed:\n${lines.join("\n")}${failures.length > 20 ? "\n  ..." : ""}`);
   }
 });

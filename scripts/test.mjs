@@ -16,7 +16,10 @@ import { missingKeys } from "./tables/keys.mjs";
 const LONG = process.argv.includes("--long");
 const DENY = ["--", "-D", "warnings"];
 const modules = (path) => inRoot("node_modules", path);
-const cargo = (...args) => () => watch("cargo", args);
+const cargo =
+  (...args) =>
+  () =>
+    watch("cargo", args);
 /**
  * What runs in browsers is the library; the command line in cli/ is not built for them. Whoever builds it for them has to say so: a choice
  * of packages is a choice of their crates' features, and cargo keeps one build of the library for all choices, so that another one throws it away.
@@ -34,12 +37,21 @@ async function types() {
   let code = 0;
   for (const project of matching(["js", "www", "tests", "examples"], /^tsconfig(\..+)?\.json$/)) {
     say(`tsc -p ${project}`);
-    const result = await watch(process.execPath, [modules("typescript/bin/tsc"), "-p", project, "--noEmit", "--emitDeclarationOnly", "false"]);
+    const result = await watch(process.execPath, [
+      modules("typescript/bin/tsc"),
+      "-p",
+      project,
+      "--noEmit",
+      "--emitDeclarationOnly",
+      "false",
+    ]);
     code ||= result.code;
     output += `tsc ${project}: ${result.code === 0 ? "no errors" : "errors"}\n`;
   }
   return { code, output };
 }
+
+const biome = () => watch(process.execPath, [modules("@biomejs/biome/bin/biome"), "ci"]);
 
 /** A free port. */
 function freePort() {
@@ -56,7 +68,11 @@ const docs = () => watch("cargo", ["doc", ...LIBRARY, "--no-deps"], { env: { RUS
 
 async function page() {
   const env = { CHROMIUM: await headless(), PAGE_PORT: String(await freePort()) };
-  return watch(process.execPath, [modules("@playwright/test/cli.js"), "test", ...(LONG ? [] : ["--grep-invert", "@long"])], { env });
+  return watch(
+    process.execPath,
+    [modules("@playwright/test/cli.js"), "test", ...(LONG ? [] : ["--grep-invert", "@long"])],
+    { env },
+  );
 }
 
 /** What is optional and not there is named among what was not run. */
@@ -74,24 +90,31 @@ async function firefoxPage(program) {
   const what = "the page in Firefox";
   if (!program) return without(what, "needs firefox-esr (apt-get install firefox-esr)");
   const version = /(\d+)\.\S+/.exec(ask(program, ["--version"]) ?? "");
-  if (version && Number(version[1]) < OLDEST_FIREFOX) return without(what, `needs Firefox ${OLDEST_FIREFOX}, this is ${version[0]}`);
+  if (version && Number(version[1]) < OLDEST_FIREFOX)
+    return without(what, `needs Firefox ${OLDEST_FIREFOX}, this is ${version[0]}`);
   const env = { FIREFOX: program, PAGE_PORT: String(await freePort()) };
-  return watch(process.execPath, [modules("@playwright/test/cli.js"), "test", "-c", "playwright.firefox.config.ts"], { env });
+  return watch(process.execPath, [modules("@playwright/test/cli.js"), "test", "-c", "playwright.firefox.config.ts"], {
+    env,
+  });
 }
 
 /** The second engine, where it is installed: a smoke of every place by Playwright, and the wasm tests by geckodriver. */
 async function secondEngine() {
   const found = firefox();
   const page = await firefoxPage(found.firefox);
-  const wasm = found.firefox && found.geckodriver
-    ? await watch("cargo", ["test", ...LIBRARY, "--target", WASM, "--test", "wasm"], { env: { WASM_BINDGEN_USE_BROWSER: "1", GECKODRIVER: found.geckodriver } })
-    : without("the wasm tests in Firefox", "needs geckodriver (cargo install geckodriver)");
+  const wasm =
+    found.firefox && found.geckodriver
+      ? await watch("cargo", ["test", ...LIBRARY, "--target", WASM, "--test", "wasm"], {
+          env: { WASM_BINDGEN_USE_BROWSER: "1", GECKODRIVER: found.geckodriver },
+        })
+      : without("the wasm tests in Firefox", "needs geckodriver (cargo install geckodriver)");
   return { code: page.code || wasm.code, output: `${page.output}\n${wasm.output}` };
 }
 
 /** Licenses, doubles and sources of all crates, which needs no network. */
 function deny() {
-  if (!ask("cargo", ["deny", "--version"])) return without("licenses and sources of the crates", "needs cargo-deny (cargo install cargo-deny)");
+  if (!ask("cargo", ["deny", "--version"]))
+    return without("licenses and sources of the crates", "needs cargo-deny (cargo install cargo-deny)");
   return watch("cargo", ["deny", "--offline", "check", "licenses", "bans", "sources"]);
 }
 
@@ -100,13 +123,24 @@ const HANGS = 1_800_000;
 const contract = () => {
   const files = matching(["tests/contract"], /\.test\.mjs$/);
   // Two files at once: Node's own default is one on two processors.
-  return watch(process.execPath, ["--test", "--test-reporter=spec", `--test-concurrency=${Math.max(2, availableParallelism() - 1)}`, `--test-timeout=${HANGS}`, ...files], {
-    env: LONG ? { LONG_TESTS: "1" } : {},
-  });
+  return watch(
+    process.execPath,
+    [
+      "--test",
+      "--test-reporter=spec",
+      `--test-concurrency=${Math.max(2, availableParallelism() - 1)}`,
+      `--test-timeout=${HANGS}`,
+      ...files,
+    ],
+    {
+      env: LONG ? { LONG_TESTS: "1" } : {},
+    },
+  );
 };
 
 /** Tests that need the data beside the project are marked as ignored, with that reason, and asked for where the data are there. */
-const rust = () => watch("cargo", ["test", "--", ...(hasData() ? ["--include-ignored"] : []), ...(LONG ? [] : ["--skip", "::long::"])]);
+const rust = () =>
+  watch("cargo", ["test", "--", ...(hasData() ? ["--include-ignored"] : []), ...(LONG ? [] : ["--skip", "::long::"])]);
 
 /** Not on accuracy: aims are shown with their verdicts. It fails where a cell throws or the JSON lacks a key. */
 async function tables() {
@@ -145,7 +179,10 @@ const NOT_RUN = [
 function notRun(output) {
   const names = new Map();
   const found = NOT_RUN.flatMap((pattern) => [...output.matchAll(pattern)]);
-  for (const { groups: { name, reason = "no reason given" } } of found) names.set(reason, [...(names.get(reason) ?? []), name]);
+  for (const {
+    groups: { name, reason = "no reason given" },
+  } of found)
+    names.set(reason, [...(names.get(reason) ?? []), name]);
   const lines = [...names].map(([reason, all]) => `NOT RUN: ${all.length}, ${reason} (${all.join(", ")})`);
   return { count: found.length, lines };
 }
@@ -156,11 +193,21 @@ function notRun(output) {
  */
 const PARTS = [
   { name: "format", run: cargo("fmt", "--check") },
+  // Layout and lint of everything in TypeScript and JavaScript.
+  { name: "biome", run: biome, closing: /^(?:Checked \d+ files.*|Found .*)$/gm },
   { name: "clippy", run: cargo("clippy", "--all-targets", ...DENY), closing: CARGO },
   { name: "clippy-wasm", run: cargo("clippy", ...LIBRARY, "--target", WASM, "--all-targets", ...DENY), closing: CARGO },
   // The bindings of the calibration check and of its rendered rigs, which are files of their own.
-  { name: "clippy-check", run: cargo("clippy", ...LIBRARY, "--target", WASM, "--lib", "--features", "calibration", ...DENY), closing: CARGO },
-  { name: "clippy-rigs", run: cargo("clippy", ...LIBRARY, "--target", WASM, "--lib", "--features", "rigs", ...DENY), closing: CARGO },
+  {
+    name: "clippy-check",
+    run: cargo("clippy", ...LIBRARY, "--target", WASM, "--lib", "--features", "calibration", ...DENY),
+    closing: CARGO,
+  },
+  {
+    name: "clippy-rigs",
+    run: cargo("clippy", ...LIBRARY, "--target", WASM, "--lib", "--features", "rigs", ...DENY),
+    closing: CARGO,
+  },
   { name: "docs", run: docs, closing: CARGO },
   { name: "deny", run: deny, closing: /^.*bans \w+, .*$/gm },
   { name: "rust", run: rust, closing: CARGO },
@@ -169,11 +216,28 @@ const PARTS = [
   { name: "wasm-worker", run: wasmIn("WASM_BINDGEN_USE_DEDICATED_WORKER"), lane: 0, closing: CARGO },
   { name: "python", run: python, needsBuild: true, lane: 0, closing: PYTHON },
   { name: "sizes", run: downloads, needsBuild: true, lane: 1, closing: /^size of .*$/gm },
-  { name: "firefox", run: secondEngine, needsBuild: true, lane: 1, closing: /^(?: +\d+ (?:passed|failed|skipped|flaky)|test result: ).*$/gm },
+  {
+    name: "firefox",
+    run: secondEngine,
+    needsBuild: true,
+    lane: 1,
+    closing: /^(?: +\d+ (?:passed|failed|skipped|flaky)|test result: ).*$/gm,
+  },
   { name: "types", run: types, needsBuild: true, lane: 1, closing: /^tsc .*$/gm },
   { name: "contract", run: contract, needsBuild: true, closing: NODE },
-  { name: "tables", run: tables, needsBuild: true, long: true, closing: /^(?:.* (?:ok|MISSED)$|.* cells failed:|tables: .*)$/gm },
-  { name: "page", run: page, needsBuild: true, closing: /^ +(?:\d+ (?:passed|failed|skipped|flaky|did not run)| {3}tests\/page\/).*$/gm },
+  {
+    name: "tables",
+    run: tables,
+    needsBuild: true,
+    long: true,
+    closing: /^(?:.* (?:ok|MISSED)$|.* cells failed:|tables: .*)$/gm,
+  },
+  {
+    name: "page",
+    run: page,
+    needsBuild: true,
+    closing: /^ +(?:\d+ (?:passed|failed|skipped|flaky|did not run)| {3}tests\/page\/).*$/gm,
+  },
 ];
 
 function chosen(names) {
@@ -219,7 +283,14 @@ async function attemptAll(parts) {
   if (lanes.length < 2) return inTurn(parts, attempt);
   const before = await inTurn(parts.slice(0, first), attempt);
   const beside = await Promise.all(lanes.map((lane) => inTurn(lane, (part) => inOnePiece(() => attempt(part)))));
-  return [...before, ...beside.flat(), ...(await inTurn(parts.slice(first).filter((part) => !isInLane(part)), attempt))];
+  return [
+    ...before,
+    ...beside.flat(),
+    ...(await inTurn(
+      parts.slice(first).filter((part) => !isInLane(part)),
+      attempt,
+    )),
+  ];
 }
 const isInLane = ({ lane }) => lane !== undefined;
 
@@ -238,6 +309,10 @@ await script(async () => {
   const left = results.reduce((sum, result) => sum + result.notRun, 0);
   if (left > 0) console.log(`\n${left} tests were NOT RUN; the lines above say which and why.`);
   if (!LONG) console.log("\nWhat takes long was left out: `npm test -- --long` runs it, too.");
-  console.log(failed.length === 0 ? `\nAll parts passed in ${seconds(start)}.` : `\nFailed: ${failed.join(", ")} (${seconds(start)}).`);
+  console.log(
+    failed.length === 0
+      ? `\nAll parts passed in ${seconds(start)}.`
+      : `\nFailed: ${failed.join(", ")} (${seconds(start)}).`,
+  );
   if (failed.length > 0) process.exitCode = 1;
 });

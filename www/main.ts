@@ -69,7 +69,10 @@ const undo = () => store.undo();
 const redo = () => store.redo();
 
 // The address is the settings', so the links themselves lead nowhere.
-for (const [id, target] of [["skip", "#play"], ["skip-takeaway", "#takeaway button"]] as const) {
+for (const [id, target] of [
+  ["skip", "#play"],
+  ["skip-takeaway", "#takeaway button"],
+] as const) {
   byId(id, HTMLAnchorElement).addEventListener("click", (event) => {
     event.preventDefault();
     document.querySelector<HTMLButtonElement>(target)?.focus();
@@ -150,9 +153,21 @@ async function copyLink(): Promise<void> {
 
 const places: Record<Place, { main: HTMLElement; link: HTMLAnchorElement; title: string }> = {
   lab: { main: byId("lab", HTMLElement), link: byId("to-lab", HTMLAnchorElement), title: "bimodal-stereo" },
-  learn: { main: byId("learn", HTMLElement), link: byId("to-learn", HTMLAnchorElement), title: "Learn, bimodal-stereo" },
-  tables: { main: byId("tables", HTMLElement), link: byId("to-tables", HTMLAnchorElement), title: "Tables, bimodal-stereo" },
-  rig: { main: byId("rig", HTMLElement), link: byId("to-rig", HTMLAnchorElement), title: "Check a rig, bimodal-stereo" },
+  learn: {
+    main: byId("learn", HTMLElement),
+    link: byId("to-learn", HTMLAnchorElement),
+    title: "Learn, bimodal-stereo",
+  },
+  tables: {
+    main: byId("tables", HTMLElement),
+    link: byId("to-tables", HTMLAnchorElement),
+    title: "Tables, bimodal-stereo",
+  },
+  rig: {
+    main: byId("rig", HTMLElement),
+    link: byId("to-rig", HTMLAnchorElement),
+    title: "Check a rig, bimodal-stereo",
+  },
 };
 /** What belongs to the Lab outside its own part of the page. */
 const labOnly = [byId("bar", HTMLElement), byId("skip", HTMLElement), byId("skip-takeaway", HTMLElement)];
@@ -223,7 +238,10 @@ for (const [name, { link }] of Object.entries(places)) {
   });
 }
 
-const views = Array.from({ length: Math.min(10, gallery.count) }, (_, i): [string, () => void] => [String((i + 1) % 10), () => gallery.enlarge(i + 1)]);
+const views = Array.from({ length: Math.min(10, gallery.count) }, (_, i): [string, () => void] => [
+  String((i + 1) % 10),
+  () => gallery.enlarge(i + 1),
+]);
 const keys = byId("keys-on", HTMLInputElement);
 keys.checked = areKeysOn();
 keys.addEventListener("change", () => rememberKeys(keys.checked));

@@ -6,4 +6,5 @@ const NAMES = [
   ["check depth.unit", "check the depth map's unit"],
 ] as const;
 
-export const inWords = (message: string): string => NAMES.reduce((words, [name, said]) => words.replace(name, said), message);
+export const inWords = (message: string): string =>
+  NAMES.reduce((words, [name, said]) => words.replace(name, said), message);

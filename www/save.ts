@@ -1,6 +1,7 @@
 /** Hands a file to the visitor. */
 
-export const saveJson = (name: string, value: unknown): void => saveBlob(name, new Blob([JSON.stringify(value, null, 2)], { type: "application/json" }));
+export const saveJson = (name: string, value: unknown): void =>
+  saveBlob(name, new Blob([JSON.stringify(value, null, 2)], { type: "application/json" }));
 
 export function saveBlob(name: string, blob: Blob): void {
   const url = URL.createObjectURL(blob);

@@ -9,7 +9,10 @@ const page = (name: string): string => fileURLToPath(new URL(name, import.meta.u
  * What uPlot asks the browser for as it is evaluated, and what is put in its place: how its language writes numbers, and its time zone. Who asks first waits
  * for 15 to 30 ms in one task, for tables that this page has no use for: its numbers are plain, and none is a time.
  */
-const ASKED = { "new Intl.NumberFormat(domEnv ? nav.language : 'en-US')": "({ format: String })", "new Intl.DateTimeFormat().resolvedOptions().timeZone": '"UTC"' };
+const ASKED = {
+  "new Intl.NumberFormat(domEnv ? nav.language : 'en-US')": "({ format: String })",
+  "new Intl.DateTimeFormat().resolvedOptions().timeZone": '"UTC"',
+};
 const withoutLanguage: Plugin = {
   name: "without-language",
   transform(code, id) {
@@ -30,5 +33,11 @@ export default defineConfig({
   // The package lies beside this folder, where the development server would not look.
   server: { fs: { allow: [".."] } },
   // three.js is one such chunk, and loads only when the clouds come into view.
-  build: { outDir: "../site", emptyOutDir: true, target: "es2023", chunkSizeWarningLimit: 600, rollupOptions: { input: [page("index.html"), page("shortest.html")] } },
+  build: {
+    outDir: "../site",
+    emptyOutDir: true,
+    target: "es2023",
+    chunkSizeWarningLimit: 600,
+    rollupOptions: { input: [page("index.html"), page("shortest.html")] },
+  },
 });

@@ -10,7 +10,8 @@ export function Pose({ image, depth, options }: { image: ColorImage; depth: Dept
   const { alpha, beta, gamma } = pose.angles;
   return (
     <p role="status">
-      {status} ({stage} {iteration}): alpha {alpha.toFixed(2)}, beta {beta.toFixed(2)}, gamma {gamma.toFixed(2)} degrees {message}
+      {status} ({stage} {iteration}): alpha {alpha.toFixed(2)}, beta {beta.toFixed(2)}, gamma {gamma.toFixed(2)} degrees{" "}
+      {message}
     </p>
   );
 }

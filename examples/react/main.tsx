@@ -11,9 +11,13 @@ function App() {
   return (
     <>
       <label>
-        beta <input type="range" min={-60} max={60} value={beta} onChange={(event) => setBeta(event.target.valueAsNumber)} /> {beta}
+        beta{" "}
+        <input type="range" min={-60} max={60} value={beta} onChange={(event) => setBeta(event.target.valueAsNumber)} />{" "}
+        {beta}
       </label>
-      <button onClick={() => setShown(!isShown)}>{isShown ? "Stop" : "Start"}</button>
+      <button type="button" onClick={() => setShown(!isShown)}>
+        {isShown ? "Stop" : "Start"}
+      </button>
       {isShown && <Pose image={image} depth={depth} />}
     </>
   );

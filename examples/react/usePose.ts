@@ -9,7 +9,13 @@ export interface Found {
 
 const NOTHING: Options = {};
 
-async function find(image: ColorImage, depth: DepthMap, options: Options, signal: AbortSignal, onStep: (report: StepReport) => void): Promise<void> {
+async function find(
+  image: ColorImage,
+  depth: DepthMap,
+  options: Options,
+  signal: AbortSignal,
+  onStep: (report: StepReport) => void,
+): Promise<void> {
   await init();
   // Strict mode mounts everything twice: the first time ends here.
   signal.throwIfAborted();

@@ -1,5 +1,18 @@
 /** What a check's input must look like: names and types; values are checked in Rust. */
-import { type Check, DEPTH, IMAGE, callback, isObject, number, numbers, object, ranged, signal, word, wrong } from "../check.js";
+import {
+  type Check,
+  DEPTH,
+  IMAGE,
+  callback,
+  isObject,
+  number,
+  numbers,
+  object,
+  ranged,
+  signal,
+  word,
+  wrong,
+} from "../check.js";
 import { BimodalError } from "../errors.js";
 
 /** A rig's camera: with as many coefficients as its lens model has, which the numerics judge. */
@@ -18,7 +31,12 @@ const name: Check = (value, field) => {
   if (typeof value !== "string") throw wrong(field, "a text", value);
 };
 const rigPose = object(
-  { scale: number, rotation: numbers(9), translation: numbers(3), angles: object({ alpha: number, beta: number, gamma: number }) },
+  {
+    scale: number,
+    rotation: numbers(9),
+    translation: numbers(3),
+    angles: object({ alpha: number, beta: number, gamma: number }),
+  },
   ["rotation", "translation"],
 );
 const frame = object(
@@ -39,7 +57,12 @@ const cues: Check = (value, field) => {
   if (value.length === 0) throw new BimodalError("size", `${field}: needs at least one cue`, field);
 };
 const MOST_WORKERS = 16;
-const options = object({ cues, workers: ranged({ kind: "whole", min: 1, max: MOST_WORKERS }), signal, onProgress: callback });
+const options = object({
+  cues,
+  workers: ranged({ kind: "whole", min: 1, max: MOST_WORKERS }),
+  signal,
+  onProgress: callback,
+});
 
 export function checkFrames(value: unknown): void {
   if (!Array.isArray(value)) throw wrong("frames", "a list of frames", value);
@@ -53,7 +76,11 @@ export function checkPose(value: unknown, field = "pose"): void {
   rigPose(value, field);
   const scale = isObject(value) && "scale" in value ? value.scale : undefined;
   if (typeof scale !== "number" || Math.abs(scale - 1) <= SCALE_TOLERANCE) return;
-  throw new BimodalError("range", `${field}.scale: must be 1: extrinsics do not change sizes (got ${scale})`, `${field}.scale`);
+  throw new BimodalError(
+    "range",
+    `${field}.scale: must be 1: extrinsics do not change sizes (got ${scale})`,
+    `${field}.scale`,
+  );
 }
 
 export function checkCandidates(value: unknown): void {

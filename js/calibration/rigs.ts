@@ -5,7 +5,9 @@ import { object, ranged, word } from "../check.js";
 import type { RigRequest, RigSample } from "../types.js";
 
 // In one piece: bundlers look for exactly this to carry the file along.
-const load = lazily("sampleRig", async () => start({ module_or_path: await compile(() => new URL("./bimodal_stereo_rigs_bg.wasm", import.meta.url)) }));
+const load = lazily("sampleRig", async () =>
+  start({ module_or_path: await compile(() => new URL("./bimodal_stereo_rigs_bg.wasm", import.meta.url)) }),
+);
 
 const rigRequest = object(
   {

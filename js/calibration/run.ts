@@ -10,7 +10,9 @@ import type { CheckFrame, CheckOptions, CheckReport, FrameOverlay, Pose } from "
 const SLICE = 30;
 
 // In one piece: bundlers look for exactly this to carry the file along.
-const load = lazily("checkCalibration", async () => start({ module_or_path: await compile(() => new URL("./bimodal_stereo_check_bg.wasm", import.meta.url)) }));
+const load = lazily("checkCalibration", async () =>
+  start({ module_or_path: await compile(() => new URL("./bimodal_stereo_check_bg.wasm", import.meta.url)) }),
+);
 
 const twelve = ({ rotation, translation }: Pose): number[] => [...rotation, ...translation];
 
@@ -43,7 +45,10 @@ export async function check(
     const report = run.report();
     if (!report) throw new BimodalError("internal", "checkCalibration: ended without a report", "checkCalibration");
     // Maps of names come out in alphabetical order; the first candidate is the one in question.
-    return { ...report, candidates: Object.fromEntries(names.map((name) => [name, report.candidates[name]])) as CheckReport["candidates"] };
+    return {
+      ...report,
+      candidates: Object.fromEntries(names.map((name) => [name, report.candidates[name]])) as CheckReport["candidates"],
+    };
   } finally {
     run.free();
   }

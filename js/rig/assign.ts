@@ -5,7 +5,8 @@ const COLOUR = /colou?r|rgb|\bhr\b/i;
 const DEPTH = /depth|dpt|\bir\b|infra|tof|\blr\b/i;
 const words = (name: string): string => name.replace(/[_.-]+/g, " ");
 
-const fits = (camera: NamedCamera, { width, height }: { width: number; height: number }): boolean => camera.width === width && camera.height === height;
+const fits = (camera: NamedCamera, { width, height }: { width: number; height: number }): boolean =>
+  camera.width === width && camera.height === height;
 const unsized = (camera: NamedCamera): boolean => camera.width === undefined;
 
 /** Gives the frames of a folder their cameras, with a warning where that was a guess. */
@@ -13,7 +14,8 @@ export function addCameras({ frames, cameras, warnings }: RigFolder): void {
   const [first] = frames;
   if (first === undefined || cameras.length === 0) return;
   const { image, depth } = first;
-  const byName = (pattern: RegExp, other: RegExp) => cameras.find(({ name = "" }) => pattern.test(words(name)) && !other.test(words(name)));
+  const byName = (pattern: RegExp, other: RegExp) =>
+    cameras.find(({ name = "" }) => pattern.test(words(name)) && !other.test(words(name)));
   let colour = byName(COLOUR, DEPTH);
   let range = byName(DEPTH, COLOUR);
   const free = () => cameras.filter((each) => each !== colour && each !== range);
@@ -22,7 +24,9 @@ export function addCameras({ frames, cameras, warnings }: RigFolder): void {
     const isShared = image.width === depth.width && image.height === depth.height;
     if (only !== undefined && isShared) {
       [colour, range] = [only, only];
-      warnings.push("One camera's intrinsics are there: they were taken for both, as of pictures that are registered to each other.");
+      warnings.push(
+        "One camera's intrinsics are there: they were taken for both, as of pictures that are registered to each other.",
+      );
     } else if (only !== undefined && fits(only, depth)) range = only;
     else colour = only;
   }
@@ -36,11 +40,22 @@ export function addCameras({ frames, cameras, warnings }: RigFolder): void {
     colour ??= free().find((each) => unsized(each) || fits(each, image));
     range ??= free().find((each) => unsized(each) || fits(each, depth));
   }
-  if (colour === undefined) warnings.push("The depth camera's intrinsics are there, the colour camera's are not: its focal length has to be estimated.");
-  if (range === undefined && depth.points === undefined) warnings.push("The colour camera's intrinsics are there, the depth camera's are not: without them depths are no points.");
-  for (const [camera, { width, height }, what] of [[colour, image, "colour images"], [range, depth, "depth maps"]] as const) {
+  if (colour === undefined)
+    warnings.push(
+      "The depth camera's intrinsics are there, the colour camera's are not: its focal length has to be estimated.",
+    );
+  if (range === undefined && depth.points === undefined)
+    warnings.push(
+      "The colour camera's intrinsics are there, the depth camera's are not: without them depths are no points.",
+    );
+  for (const [camera, { width, height }, what] of [
+    [colour, image, "colour images"],
+    [range, depth, "depth maps"],
+  ] as const) {
     if (camera?.width !== undefined && !fits(camera, { width, height })) {
-      warnings.push(`The intrinsics of the ${what} are for ${camera.width}x${camera.height} pixels, and these have ${width}x${height}: scale or crop them first.`);
+      warnings.push(
+        `The intrinsics of the ${what} are for ${camera.width}x${camera.height} pixels, and these have ${width}x${height}: scale or crop them first.`,
+      );
     }
   }
   for (const frame of frames) {

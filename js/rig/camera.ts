@@ -6,9 +6,15 @@ import type { RigCamera } from "./types.js";
 /** A camera of square pixels that looks through the middle of its image, by its horizontal field of view. */
 export function cameraFromFieldOfView(width: number, height: number, degrees: number): RigCamera {
   const isSize = (value: number) => Number.isInteger(value) && value > 0;
-  if (!isSize(width) || !isSize(height)) throw new BimodalError("size", "width: whole numbers of pixels above zero are needed", "width");
+  if (!isSize(width) || !isSize(height))
+    throw new BimodalError("size", "width: whole numbers of pixels above zero are needed", "width");
   number(degrees, "degrees");
-  if (!(degrees > 0 && degrees < 180)) throw new BimodalError("range", `degrees: ${degrees} is no field of view; more than 0 and less than 180 are needed`, "degrees");
+  if (!(degrees > 0 && degrees < 180))
+    throw new BimodalError(
+      "range",
+      `degrees: ${degrees} is no field of view; more than 0 and less than 180 are needed`,
+      "degrees",
+    );
   const focal = width / 2 / Math.tan((degrees * Math.PI) / 360);
   // Pixel centres are whole numbers, so that the image reaches from -1/2 to width - 1/2.
   return { fx: focal, fy: focal, cx: (width - 1) / 2, cy: (height - 1) / 2 };

@@ -9,12 +9,16 @@ const stored = ({ width, height, bits, channels, data }: Picture): string =>
   `${width}x${height}, ${bits}-bit${data instanceof Float32Array ? " float" : ""} ${CHANNELS[channels] ?? ""}`;
 
 /** Whether it is what depth cameras write: one channel of more than 8 bits. */
-export const looksLikeDepth = (picture: Picture): boolean => picture.bits > 8 && picture.channels !== 4 && isGrey(picture);
+export const looksLikeDepth = (picture: Picture): boolean =>
+  picture.bits > 8 && picture.channels !== 4 && isGrey(picture);
 
 export function pictureColour(picture: Picture): Found<Extract<RigReading, { kind: "colour" }>> {
   const image = { ...toColour(picture), ...(picture.transfer && { transfer: picture.transfer }) };
   const warnings = [...picture.warnings];
-  if (looksLikeDepth(picture)) warnings.push(`It looks like a depth map (${picture.bits}-bit, grey) where a colour image was asked for: were the files swapped?`);
+  if (looksLikeDepth(picture))
+    warnings.push(
+      `It looks like a depth map (${picture.bits}-bit, grey) where a colour image was asked for: were the files swapped?`,
+    );
   return { kind: "colour", image, says: [stored(picture), ...picture.notes].join(", "), warnings };
 }
 
@@ -24,7 +28,12 @@ export function pictureMask(picture: Picture): Found<Extract<RigReading, { kind:
   const warnings = [...picture.warnings];
   if (share === 0) warnings.push("The mask is empty: no pixel belongs to the object.");
   if (share === 1) warnings.push("The mask covers the whole picture.");
-  return { kind: "mask", mask, says: `${stored(picture)}, a mask of ${(100 * share).toFixed(1)} % of the pixels`, warnings };
+  return {
+    kind: "mask",
+    mask,
+    says: `${stored(picture)}, a mask of ${(100 * share).toFixed(1)} % of the pixels`,
+    warnings,
+  };
 }
 
 /** Whether a grey picture of 8 bits has two levels only, one of them zero. */

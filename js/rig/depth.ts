@@ -50,7 +50,8 @@ const NAMED: [number, string][] = [
   [0.0001, "tenths of a millimetre"],
 ];
 const name = (metres: number): string =>
-  NAMED.find(([unit]) => Math.abs(metres / unit - 1) < 1e-6)?.[1] ?? `units of ${Number((1000 * metres).toPrecision(4))} mm`;
+  NAMED.find(([unit]) => Math.abs(metres / unit - 1) < 1e-6)?.[1] ??
+  `units of ${Number((1000 * metres).toPrecision(4))} mm`;
 
 const isThere = (value: number): boolean => value > 0 && value < 1e12;
 
@@ -67,16 +68,23 @@ function sampled(values: ArrayLike<number>, step = 1, offset = 0): Float64Array 
   return Float64Array.from(found).sort();
 }
 
-const quantile = (sorted: Float64Array, share: number): number => sorted[Math.floor(share * (sorted.length - 1))] ?? NaN;
-const shareOf = (values: Float64Array, rule: (value: number) => boolean): number => values.reduce((sum, value) => sum + (rule(value) ? 1 : 0), 0) / values.length;
+const quantile = (sorted: Float64Array, share: number): number =>
+  sorted[Math.floor(share * (sorted.length - 1))] ?? NaN;
+const shareOf = (values: Float64Array, rule: (value: number) => boolean): number =>
+  values.reduce((sum, value) => sum + (rule(value) ? 1 : 0), 0) / values.length;
 
 const isVaried = (values: Float64Array): boolean => new Set(values).size >= MANY_VALUES;
 
 /** The unit of whole numbers: of TUM's files all are multiples of 5, since they are fives of a Kinect's millimetres. */
 function unitOfIntegers(values: Float64Array): Unit {
-  const fives = isVaried(values) && shareOf(values, (value) => value % 5 === 0) >= NEARLY_ALL && quantile(values, 0.5) > 1000 * NEAREST * 5;
-  if (fives) return { metres: 0.0002, says: `${name(0.0002)} (guessed: all values are multiples of 5)`, isGuessed: true };
-  if (quantile(values, 0.5) > 1000 * USUAL) return { metres: 0.0002, says: `${name(0.0002)} (guessed: too far for millimetres)`, isGuessed: true };
+  const fives =
+    isVaried(values) &&
+    shareOf(values, (value) => value % 5 === 0) >= NEARLY_ALL &&
+    quantile(values, 0.5) > 1000 * NEAREST * 5;
+  if (fives)
+    return { metres: 0.0002, says: `${name(0.0002)} (guessed: all values are multiples of 5)`, isGuessed: true };
+  if (quantile(values, 0.5) > 1000 * USUAL)
+    return { metres: 0.0002, says: `${name(0.0002)} (guessed: too far for millimetres)`, isGuessed: true };
   return { metres: 0.001, says: `${name(0.001)} (guessed)`, isGuessed: true };
 }
 
@@ -110,17 +118,33 @@ function seen(values: ArrayLike<number>, step = 1, offset = 0): Seen {
 }
 
 /** What is said of any depth map, and what looks wrong about it. */
-function judged(size: { width: number; height: number }, stored: string, values: ArrayLike<number>, unit: Unit, step = 1, offset = 0): { says: string; warnings: string[] } {
+function judged(
+  size: { width: number; height: number },
+  stored: string,
+  values: ArrayLike<number>,
+  unit: Unit,
+  step = 1,
+  offset = 0,
+): { says: string; warnings: string[] } {
   const { count, nearest, farthest } = seen(values, step, offset);
   const valid = count / (size.width * size.height);
   const sample = sampled(values, step, offset);
   const range = `${metresText(nearest * unit.metres)} to ${metresText(farthest * unit.metres)} m`;
   const warnings: string[] = [];
-  if (unit.isGuessed) warnings.push(`The unit is not in the file and was guessed: read as ${name(unit.metres)}, depths are ${range}. Say the unit if that is wrong.`);
+  if (unit.isGuessed)
+    warnings.push(
+      `The unit is not in the file and was guessed: read as ${name(unit.metres)}, depths are ${range}. Say the unit if that is wrong.`,
+    );
   const beyond = shareOf(sample, (value) => value * unit.metres < NEAREST || value * unit.metres > FARTHEST);
-  if (beyond > STRAY) warnings.push(`${percent(beyond)} of the depths are outside ${NEAREST} to ${FARTHEST} m (${range}): is the unit right?`);
+  if (beyond > STRAY)
+    warnings.push(
+      `${percent(beyond)} of the depths are outside ${NEAREST} to ${FARTHEST} m (${range}): is the unit right?`,
+    );
   if (1 - valid > MANY_HOLES) warnings.push(`${percent(1 - valid)} of the depth map are holes.`);
-  return { says: `${size.width}x${size.height}, ${stored}, read as ${unit.says}, ${percent(valid)} valid, ${range}`, warnings };
+  return {
+    says: `${size.width}x${size.height}, ${stored}, read as ${unit.says}, ${percent(valid)} valid, ${range}`,
+    warnings,
+  };
 }
 
 const nothing = () => badFile("no pixel of it holds a depth: all are zero, negative or not a number");
@@ -168,16 +192,31 @@ function ofIntegers(picture: Picture, integers: Uint8Array | Uint16Array, unit: 
   if (found === undefined && picture.unit === undefined && picture.bits > 8 && isTurned(sample)) {
     data = turnedBack(data);
     sample = sampled(data);
-    found = { metres: 0.001, says: "millimetres with their bits turned by three (SUN RGB-D; guessed)", isGuessed: true };
+    found = {
+      metres: 0.001,
+      says: "millimetres with their bits turned by three (SUN RGB-D; guessed)",
+      isGuessed: true,
+    };
   }
   found ??= picture.unit === undefined ? unitOfIntegers(sample) : told(picture.unit);
   const depth = { width: picture.width, height: picture.height, data, unit: found.metres };
   const { says, warnings: more } = judged(picture, `${picture.bits}-bit`, data, found);
-  if (picture.bits <= 8) warnings.push("Depths of 8 bits are too coarse to calibrate by, and are often a picture of the depth, not the depth.");
-  if (quantile(sample, 1) === BLIND_DISPARITY && shareOf(sample, (value) => value === BLIND_DISPARITY) > STRAY) warnings.push(DISPARITY);
-  return { kind: "depth", depth, guessed: found.isGuessed ? ["unit"] : [], says: [says, ...notes].join(", "), warnings: [...warnings, ...more] };
+  if (picture.bits <= 8)
+    warnings.push(
+      "Depths of 8 bits are too coarse to calibrate by, and are often a picture of the depth, not the depth.",
+    );
+  if (quantile(sample, 1) === BLIND_DISPARITY && shareOf(sample, (value) => value === BLIND_DISPARITY) > STRAY)
+    warnings.push(DISPARITY);
+  return {
+    kind: "depth",
+    depth,
+    guessed: found.isGuessed ? ["unit"] : [],
+    says: [says, ...notes].join(", "),
+    warnings: [...warnings, ...more],
+  };
 }
-const DISPARITY = "The largest value is 2047, and common: this looks like a Kinect's raw disparity, which is not depth (z = 351.3 / (1092.5 - d) m or so).";
+const DISPARITY =
+  "The largest value is 2047, and common: this looks like a Kinect's raw disparity, which is not depth (z = 351.3 / (1092.5 - d) m or so).";
 
 function ofFloats(picture: Picture, stored: Float32Array, unit: number | undefined): Found<Depth> {
   const beyond = picture.bits === 16 ? LARGEST_HALF : BEYOND;
@@ -188,16 +227,27 @@ function ofFloats(picture: Picture, stored: Float32Array, unit: number | undefin
   const found = known === undefined ? unitOfFloats(sample) : told(known);
   const depth = { width: picture.width, height: picture.height, data, unit: found.metres };
   const { says, warnings } = judged(picture, `${picture.bits}-bit float`, data, found);
-  return { kind: "depth", depth, guessed: found.isGuessed ? ["unit"] : [], says: [says, ...picture.notes].join(", "), warnings: [...picture.warnings, ...warnings] };
+  return {
+    kind: "depth",
+    depth,
+    guessed: found.isGuessed ? ["unit"] : [],
+    says: [says, ...picture.notes].join(", "),
+    warnings: [...picture.warnings, ...warnings],
+  };
 }
 
 /** An organised cloud; its points are brought to metres, NaN where there is none. */
 export function cloudDepth(cloud: Cloud, { unit }: ReadOptions): Found<Depth> {
   const points = cloud.points;
-  const behind = sampled(points.map((value) => -value), 3, 2).length;
+  const behind = sampled(
+    points.map((value) => -value),
+    3,
+    2,
+  ).length;
   const sample = sampled(points, 3, 2);
   if (sample.length === 0 && behind === 0) throw nothing();
-  if (behind > sample.length) throw badFile("its points lie behind the camera (z is negative): turn them so that z looks forward, y down");
+  if (behind > sample.length)
+    throw badFile("its points lie behind the camera (z is negative): turn them so that z looks forward, y down");
   const found = unit === undefined ? unitOfFloats(sample) : told(unit);
   const { says, warnings } = judged(cloud, "an organised cloud", points, found, 3, 2);
   for (let at = 0; at < points.length; at += 3) {
@@ -205,7 +255,13 @@ export function cloudDepth(cloud: Cloud, { unit }: ReadOptions): Found<Depth> {
     for (let axis = 0; axis < 3; axis++) points[at + axis] = there ? (points[at + axis] ?? NaN) * found.metres : NaN;
   }
   const depth = { width: cloud.width, height: cloud.height, points };
-  return { kind: "depth", depth, guessed: found.isGuessed ? ["unit"] : [], says: [says, ...cloud.notes].join(", "), warnings: [...cloud.warnings, ...warnings] };
+  return {
+    kind: "depth",
+    depth,
+    guessed: found.isGuessed ? ["unit"] : [],
+    says: [says, ...cloud.notes].join(", "),
+    warnings: [...cloud.warnings, ...warnings],
+  };
 }
 
 /** A picture as a depth map; a float one of three channels is a cloud, as .npy has it. */
@@ -216,7 +272,10 @@ export function pictureDepth(picture: Picture, options: ReadOptions): Found<Dept
     if (channels !== 1) throw badFile(`a depth map has 1 channel and a cloud 3, not ${channels}`);
     return ofFloats(picture, data, options.unit);
   }
-  if (hasColour(channels) && !isGrey(picture)) throw badFile("it is a colour picture where a depth map was asked for: were the files swapped, or is it a rendering of the depth?");
+  if (hasColour(channels) && !isGrey(picture))
+    throw badFile(
+      "it is a colour picture where a depth map was asked for: were the files swapped, or is it a rendering of the depth?",
+    );
   const one = single(picture);
   if (one instanceof Float32Array) throw badFile("a depth map has 1 channel");
   return ofIntegers(picture, one, options.unit);
@@ -225,6 +284,7 @@ export function pictureDepth(picture: Picture, options: ReadOptions): Found<Dept
 /** Whether all pixels are grey. */
 export function isGrey({ channels, data }: Picture): boolean {
   if (!hasColour(channels)) return true;
-  for (let at = 0; at < data.length; at += channels) if (data[at] !== data[at + 1] || data[at] !== data[at + 2]) return false;
+  for (let at = 0; at < data.length; at += channels)
+    if (data[at] !== data[at + 1] || data[at] !== data[at + 2]) return false;
   return true;
 }

@@ -28,7 +28,8 @@ const MOST_LINES = 200_000;
 const DEPTH = /depth|dpt|range(?![a-z])|disp/i;
 const MASK = /mask|segm/i;
 const COLOUR = /colou?r|rgb|image|img/i;
-const IGNORED = /(^|\/)(\.|__MACOSX|thumbs\.db|readme|licen[cs]e|copying|source\.txt|changelog)|\.(md|html?|py|mjs|js|csv|bag|mp4|avi|klg)$/i;
+const IGNORED =
+  /(^|\/)(\.|__MACOSX|thumbs\.db|readme|licen[cs]e|copying|source\.txt|changelog)|\.(md|html?|py|mjs|js|csv|bag|mp4|avi|klg)$/i;
 const LISTS = /(^|\/)(rgb|depth|associat\w*|accelerometer|groundtruth|times?(tamps)?)\.(txt|csv)$/i;
 
 const base = (name: string): string => name.slice(name.lastIndexOf("/") + 1);
@@ -48,34 +49,50 @@ interface Pairs {
 }
 
 /** A name without what says which file of a frame it is. */
-const common = (name: string): string => name.normalize("NFC").replace(/depth|dpt|colou?r|rgb|image|img|mask|crop|registered|aligned/gi, " ");
+const common = (name: string): string =>
+  name.normalize("NFC").replace(/depth|dpt|colou?r|rgb|image|img|mask|crop|registered|aligned/gi, " ");
 /** Of a file with its folders. */
 const commonPath = (name: string): string => common(name.slice(0, name.length - base(name).length) + stem(name));
 
 /** What files of one frame have in common: letters of any script, in either case, and numbers without leading zeros. */
 function key(name: string): string {
-  const words = common(stem(name)).toLowerCase().split(/[^\p{L}\p{M}\p{N}.]+/u).map((word) => word.replace(/^\.+|\.+$/g, "").replace(/^0+(?=\d)/, ""));
+  const words = common(stem(name))
+    .toLowerCase()
+    .split(/[^\p{L}\p{M}\p{N}.]+/u)
+    .map((word) => word.replace(/^\.+|\.+$/g, "").replace(/^0+(?=\d)/, ""));
   return words.filter((word) => word !== "" && word !== "mm").join(" ");
 }
 
 /** TUM's lists: a time stamp and a path on each line. */
 function listed(file: NamedFile): { time: number; path: string }[] {
-  const lines = (textOf(file.bytes) ?? "").split(/\r?\n/).filter((line) => line.trim() !== "" && !line.trim().startsWith("#"));
+  const lines = (textOf(file.bytes) ?? "")
+    .split(/\r?\n/)
+    .filter((line) => line.trim() !== "" && !line.trim().startsWith("#"));
   if (lines.length > MOST_LINES) throw badFile(`${file.name}: it lists more than ${MOST_LINES} frames`);
   return lines.map((line) => {
     const [time = "", path = ""] = line.trim().split(/\s+/);
-    if (path === "" || !Number.isFinite(Number(time))) throw badFile(`${file.name}: it lists time stamps and files, and ${JSON.stringify(line.slice(0, 60))} is neither`);
+    if (path === "" || !Number.isFinite(Number(time)))
+      throw badFile(
+        `${file.name}: it lists time stamps and files, and ${JSON.stringify(line.slice(0, 60))} is neither`,
+      );
     return { time: Number(time), path };
   });
 }
 
 /** Of two lists in order of time, those nearest to each other. */
-function byTime(colours: { time: number; path: string }[], depths: { time: number; path: string }[]): [string, string, number][] {
+function byTime(
+  colours: { time: number; path: string }[],
+  depths: { time: number; path: string }[],
+): [string, string, number][] {
   const order = [...depths].sort((a, b) => a.time - b.time);
   const found: [string, string, number][] = [];
   let from = 0;
   for (const { time, path } of [...colours].sort((a, b) => a.time - b.time)) {
-    while (from + 1 < order.length && Math.abs((order[from + 1]?.time ?? 0) - time) <= Math.abs((order[from]?.time ?? 0) - time)) from++;
+    while (
+      from + 1 < order.length &&
+      Math.abs((order[from + 1]?.time ?? 0) - time) <= Math.abs((order[from]?.time ?? 0) - time)
+    )
+      from++;
     const nearest = order[from];
     if (nearest === undefined || Math.abs(nearest.time - time) > APART) continue;
     found.push([path, nearest.path, time]);
@@ -98,8 +115,10 @@ function tum(files: NamedFile[], warnings: string[]): Pairs | undefined {
     if (colour && depth) pairs.push({ name: String(time), colour, depth });
     else missing++;
   }
-  if (missing > 0) warnings.push(`${missing} of the ${found.length} pairs that rgb.txt and depth.txt list are not in the folder.`);
-  if (found.length === 0) throw badFile(`${colours.name}: no time stamp of it lies within ${1000 * APART} ms of one of ${depths.name}`);
+  if (missing > 0)
+    warnings.push(`${missing} of the ${found.length} pairs that rgb.txt and depth.txt list are not in the folder.`);
+  if (found.length === 0)
+    throw badFile(`${colours.name}: no time stamp of it lies within ${1000 * APART} ms of one of ${depths.name}`);
   return { pairs, unit: TUM_UNIT, says: `TUM RGB-D, ${pairs.length} pairs within ${1000 * APART} ms` };
 }
 
@@ -115,12 +134,15 @@ function byKey(files: NamedFile[]): Map<string, NamedFile[]> {
 
 /** By like names; where those differ throughout, in their order. */
 function byNames(pictures: NamedFile[], warnings: string[]): Pairs {
-  const isDepth = (file: NamedFile) => DEPTH.test(base(file.name)) || (DEPTH.test(file.name) && !COLOUR.test(base(file.name)));
+  const isDepth = (file: NamedFile) =>
+    DEPTH.test(base(file.name)) || (DEPTH.test(file.name) && !COLOUR.test(base(file.name)));
   const masks = pictures.filter((file) => MASK.test(file.name));
   const others = pictures.filter((file) => !MASK.test(file.name));
   const depths = others.filter(isDepth);
   const colours = others.filter((file) => !isDepth(file));
-  const maskOf = (name: string) => masks.find((mask) => key(mask.name) === name) ?? (masks.length === 1 && key(masks[0]?.name ?? "") === "" ? masks[0] : undefined);
+  const maskOf = (name: string) =>
+    masks.find((mask) => key(mask.name) === name) ??
+    (masks.length === 1 && key(masks[0]?.name ?? "") === "" ? masks[0] : undefined);
   const pair = (name: string, colour: NamedFile, depth: NamedFile): Pair => {
     const mask = maskOf(name);
     return { name, colour, depth, ...(mask && { mask }) };
@@ -131,7 +153,9 @@ function byNames(pictures: NamedFile[], warnings: string[]): Pairs {
     const isClear = theirs.length === 1 && likeDepths.length === 1;
     return likeDepths.flatMap((depth) => {
       // Names that differ in case and signs alone belong together where all the rest of their paths agrees.
-      const [colour, ...others] = isClear ? theirs : theirs.filter((file) => commonPath(file.name) === commonPath(depth.name));
+      const [colour, ...others] = isClear
+        ? theirs
+        : theirs.filter((file) => commonPath(file.name) === commonPath(depth.name));
       if (colour && others.length === 0) return [pair(name, colour, depth)];
       if (theirs.length > 0) warnings.push(`${depth.name}: several files have names like it (left out).`);
       return [];
@@ -139,16 +163,28 @@ function byNames(pictures: NamedFile[], warnings: string[]): Pairs {
   });
   if (pairs.length > 0) return { pairs, says: `${pairs.length} pairs by their names` };
   if (depths.length === 0 || depths.length !== colours.length) return { pairs: [], says: "" };
-  const inOrder = (files: NamedFile[]) => [...files].sort((a, b) => a.name.localeCompare(b.name, "en", { numeric: true }));
-  if (depths.length > 1) warnings.push(`No name of a depth map is like one of a colour image: the ${depths.length} of each were paired in the order of their names.`);
+  const inOrder = (files: NamedFile[]) =>
+    [...files].sort((a, b) => a.name.localeCompare(b.name, "en", { numeric: true }));
+  if (depths.length > 1)
+    warnings.push(
+      `No name of a depth map is like one of a colour image: the ${depths.length} of each were paired in the order of their names.`,
+    );
   const ordered = inOrder(colours);
-  return { pairs: inOrder(depths).flatMap((depth, index) => (ordered[index] ? [pair(key(depth.name), ordered[index], depth)] : [])), says: `${depths.length} pairs in their order` };
+  return {
+    pairs: inOrder(depths).flatMap((depth, index) =>
+      ordered[index] ? [pair(key(depth.name), ordered[index], depth)] : [],
+    ),
+    says: `${depths.length} pairs in their order`,
+  };
 }
 
 /** Evenly spread, the first and the last among them. */
 function spread<T>(all: T[], most: number): T[] {
   if (all.length <= most) return all;
-  return Array.from({ length: most }, (_, index) => all[most === 1 ? 0 : Math.round((index * (all.length - 1)) / (most - 1))] as T);
+  return Array.from(
+    { length: most },
+    (_, index) => all[most === 1 ? 0 : Math.round((index * (all.length - 1)) / (most - 1))] as T,
+  );
 }
 
 class FolderReader {
@@ -182,7 +218,8 @@ class FolderReader {
   #mask({ image, depth }: CheckFrame, { width, height, data }: Mask, name: string): void {
     if (image.width === width && image.height === height) image.mask = data;
     else if (depth.width === width && depth.height === height) depth.mask = data;
-    else this.warnings.push(`${name}: the mask is ${width}x${height}, which is the size of neither picture (left out).`);
+    else
+      this.warnings.push(`${name}: the mask is ${width}x${height}, which is the size of neither picture (left out).`);
   }
 }
 
@@ -202,7 +239,10 @@ function grouped(warnings: string[]): string[] {
 /** Guessed for each depth map by itself, units have to agree. */
 function checkUnits(frames: CheckFrame[], warnings: string[]): void {
   const units = new Set(frames.map(({ depth }) => depth.unit));
-  if (units.size > 1) warnings.push(`Depth maps of this folder were read with different units (${[...units].map((unit) => `${1000 * (unit ?? 1)} mm`).join(", ")}): say the unit.`);
+  if (units.size > 1)
+    warnings.push(
+      `Depth maps of this folder were read with different units (${[...units].map((unit) => `${1000 * (unit ?? 1)} mm`).join(", ")}): say the unit.`,
+    );
 }
 
 /** Where no name says which picture is which, what they hold does. */
@@ -214,13 +254,22 @@ async function byContent(pictures: NamedFile[], reader: FolderReader): Promise<P
   }
   const [colours, depths, masks] = [kinds.get("colour") ?? [], kinds.get("depth") ?? [], kinds.get("mask") ?? []];
   if (colours.length === 0 || colours.length !== depths.length) return { pairs: [], says: "" };
-  if (depths.length > 1) reader.warnings.push("No name says which files are depth maps: they were told by what they hold, and paired in their order.");
+  if (depths.length > 1)
+    reader.warnings.push(
+      "No name says which files are depth maps: they were told by what they hold, and paired in their order.",
+    );
   const mask = masks.length === 1 ? masks[0] : undefined;
-  return { pairs: colours.flatMap((colour, index) => (depths[index] ? [{ name: stem(colour.name), colour, depth: depths[index], ...(mask && { mask }) }] : [])), says: `${depths.length} pairs by what they hold` };
+  return {
+    pairs: colours.flatMap((colour, index) =>
+      depths[index] ? [{ name: stem(colour.name), colour, depth: depths[index], ...(mask && { mask }) }] : [],
+    ),
+    says: `${depths.length} pairs by what they hold`,
+  };
 }
 
 const frameCount: Check = (value, field) => {
-  if (!(Number.isInteger(value) && Number(value) > 0)) throw new BimodalError("option", `${field}: a whole number above zero is needed`, field);
+  if (!(Number.isInteger(value) && Number(value) > 0))
+    throw new BimodalError("option", `${field}: a whole number above zero is needed`, field);
 };
 const checkOptions = object({ unit: metresPerUnit, frames: frameCount });
 
@@ -230,14 +279,19 @@ export async function readRigFolder(files: NamedFile[], options: FolderOptions =
   for (const [index, file] of files.entries()) checkNamed(file, `files[${index}]`);
   checkOptions(options, "options");
   const { unit, frames: most = FRAMES } = options;
-  const kept = files.map(({ name, bytes }) => ({ name: name.replace(/\\/g, "/").replace(/^\.\//, ""), bytes })).filter(({ name }) => !IGNORED.test(name));
+  const kept = files
+    .map(({ name, bytes }) => ({ name: name.replace(/\\/g, "/").replace(/^\.\//, ""), bytes }))
+    .filter(({ name }) => !IGNORED.test(name));
   const reader = new FolderReader();
   // Browsers hand folders over in any order.
-  const pictures = kept.filter(({ bytes }) => isRasterFile(bytes)).sort((a, b) => a.name.localeCompare(b.name, "en", { numeric: true }));
+  const pictures = kept
+    .filter(({ bytes }) => isRasterFile(bytes))
+    .sort((a, b) => a.name.localeCompare(b.name, "en", { numeric: true }));
   let found = tum(kept, reader.warnings) ?? byNames(pictures, reader.warnings);
   if (found.pairs.length === 0) found = await byContent(pictures, reader);
   const chosen = spread(found.pairs, most);
-  if (chosen.length < found.pairs.length) reader.warnings.push(`Of ${found.pairs.length} pairs ${chosen.length} are read, evenly spread.`);
+  if (chosen.length < found.pairs.length)
+    reader.warnings.push(`Of ${found.pairs.length} pairs ${chosen.length} are read, evenly spread.`);
   const frames: CheckFrame[] = [];
   for (const pair of chosen) {
     const frame = await reader.frame(pair, unit ?? found.unit);
@@ -250,14 +304,18 @@ export async function readRigFolder(files: NamedFile[], options: FolderOptions =
     // A pose that is called as a frame is where the camera stood then, and relates no two cameras.
     if (/pose/i.test(file.name) && names.has(key(file.name.replace(/pose/gi, "")))) continue;
     const text = await reader.read(file, {});
-    if (text?.kind === "cameras") folder.cameras.push(...text.cameras.map((each) => ({ ...each, name: each.name ?? stem(file.name) })));
-    if (text?.kind === "cameras" || text?.kind === "poses") folder.poses.push(...text.poses.filter(({ from, to }) => from !== "world" && to !== "world"));
+    if (text?.kind === "cameras")
+      folder.cameras.push(...text.cameras.map((each) => ({ ...each, name: each.name ?? stem(file.name) })));
+    if (text?.kind === "cameras" || text?.kind === "poses")
+      folder.poses.push(...text.poses.filter(({ from, to }) => from !== "world" && to !== "world"));
   }
   addCameras(folder);
   checkUnits(frames, folder.warnings);
   folder.warnings = grouped(folder.warnings);
   if (frames.length + folder.cameras.length + folder.poses.length === 0) {
-    throw badFile(`no pair of a colour image and a depth map was found among ${files.length} files${folder.warnings.length > 0 ? `: ${folder.warnings[0]}` : ""}`);
+    throw badFile(
+      `no pair of a colour image and a depth map was found among ${files.length} files${folder.warnings.length > 0 ? `: ${folder.warnings[0]}` : ""}`,
+    );
   }
   return folder;
 }

@@ -31,7 +31,10 @@ function npyPicture(bytes: Uint8Array): Picture {
   return { ...raster, format: "npy", bits: 8 * raster.data.BYTES_PER_ELEMENT, notes: [], warnings: [] };
 }
 
-const PICTURES: Record<Exclude<Kind, "ply" | "pcd">, (bytes: Uint8Array, options: ReadOptions) => Picture | Promise<Picture>> = {
+const PICTURES: Record<
+  Exclude<Kind, "ply" | "pcd">,
+  (bytes: Uint8Array, options: ReadOptions) => Picture | Promise<Picture>
+> = {
   png: pngPicture,
   jpeg: readJpeg,
   webp: readWebp,
@@ -53,7 +56,8 @@ const CALLED_MASK = /mask|segm/i;
 function guessedKind(name: string, picture: Picture): "colour" | "depth" | "mask" {
   // A drawn mask may have soft edges.
   if (looksLikeMask(picture) || (CALLED_MASK.test(name) && picture.bits === 8 && isGrey(picture))) return "mask";
-  if (picture.data instanceof Float32Array && picture.channels === 3) return picture.format === "npy" ? "depth" : "colour";
+  if (picture.data instanceof Float32Array && picture.channels === 3)
+    return picture.format === "npy" ? "depth" : "colour";
   if (isColourful(picture)) return "colour";
   const file = name.toLowerCase();
   if (/depth|dist|disp|range/.test(file)) return "depth";
@@ -69,24 +73,28 @@ function ofPicture(name: string, picture: Picture, options: ReadOptions): Conten
   throw badFile(`it is a picture (${picture.format}) where ${kind} were asked for`);
 }
 
-
 function ofCloud(cloud: Cloud, options: ReadOptions): Content {
-  if (options.as !== undefined && options.as !== "depth") throw badFile(`it is a cloud of points (${cloud.format}) where ${options.as} was asked for`);
+  if (options.as !== undefined && options.as !== "depth")
+    throw badFile(`it is a cloud of points (${cloud.format}) where ${options.as} was asked for`);
   return cloudDepth(cloud, options);
 }
 
 function ofText(text: string, { as }: ReadOptions): Content {
-  if (as === "colour" || as === "depth" || as === "mask") throw badFile(`it is a text where a ${as === "depth" ? "depth map" : `${as} image`} was asked for`);
+  if (as === "colour" || as === "depth" || as === "mask")
+    throw badFile(`it is a text where a ${as === "depth" ? "depth map" : `${as} image`} was asked for`);
   const { cameras, poses, warnings, format } = readText(text);
   const reading = { says: `${format}: ${inWords(cameras, poses)}`, warnings: [...new Set(warnings)] };
   if (as === "cameras" && cameras.length === 0) throw badFile(`it holds ${inWords(cameras, poses)}, but no camera`);
   if (as === "poses" && poses.length === 0) throw badFile(`it holds ${inWords(cameras, poses)}, but no motion`);
-  return cameras.length > 0 && as !== "poses" ? { kind: "cameras", cameras, poses, ...reading } : { kind: "poses", poses, ...reading };
+  return cameras.length > 0 && as !== "poses"
+    ? { kind: "cameras", cameras, poses, ...reading }
+    : { kind: "poses", poses, ...reading };
 }
 
 async function content({ name, bytes }: NamedFile, options: ReadOptions): Promise<Content> {
   if (bytes.length === 0) throw badFile("it is empty");
-  if (bytes.length > MOST_BYTES) throw badFile(`it is ${(bytes.length / 2 ** 20).toFixed(0)} MB large; up to ${MOST_BYTES / 2 ** 20} MB are read`);
+  if (bytes.length > MOST_BYTES)
+    throw badFile(`it is ${(bytes.length / 2 ** 20).toFixed(0)} MB large; up to ${MOST_BYTES / 2 ** 20} MB are read`);
   const kind = kindOf(bytes);
   if (kind === "ply") return ofCloud(readPly(bytes), options);
   if (kind === "pcd") return ofCloud(readPcd(bytes), options);
@@ -110,11 +118,13 @@ function named(name: string, error: unknown): BimodalError {
 }
 
 export function checkNamed(file: NamedFile, field: string): void {
-  if (typeof file?.name !== "string" || !(file.bytes instanceof Uint8Array)) throw wrong(field, "{ name: string, bytes: Uint8Array }", file);
+  if (typeof file?.name !== "string" || !(file.bytes instanceof Uint8Array))
+    throw wrong(field, "{ name: string, bytes: Uint8Array }", file);
 }
 
 export const metresPerUnit: Check = (value, field) => {
-  if (!(typeof value === "number" && value > 0 && Number.isFinite(value))) throw new BimodalError("option", `${field}: metres per stored unit, above zero, are needed`, field);
+  if (!(typeof value === "number" && value > 0 && Number.isFinite(value)))
+    throw new BimodalError("option", `${field}: metres per stored unit, above zero, are needed`, field);
 };
 const checkOptions = object({ as: word("colour", "depth", "mask", "cameras", "poses"), unit: metresPerUnit });
 

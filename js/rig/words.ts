@@ -17,10 +17,12 @@ function ofCamera(each: NamedCamera): string {
 }
 
 /** The turn of a rotation, degrees. */
-const turn = (r: number[]): number => (Math.acos(Math.min(1, Math.max(-1, ((r[0] ?? 0) + (r[4] ?? 0) + (r[8] ?? 0) - 1) / 2))) * 180) / Math.PI;
+const turn = (r: number[]): number =>
+  (Math.acos(Math.min(1, Math.max(-1, ((r[0] ?? 0) + (r[4] ?? 0) + (r[8] ?? 0) - 1) / 2))) * 180) / Math.PI;
 
 function ofPose({ name, from, to, pose }: NamedPose): string {
-  const called = from !== undefined && to !== undefined ? `from ${from} to ${to}: ` : name === undefined ? "" : `${name}: `;
+  const called =
+    from !== undefined && to !== undefined ? `from ${from} to ${to}: ` : name === undefined ? "" : `${name}: `;
   return `${called}${turn(pose.rotation).toFixed(2)} degrees, ${(1000 * Math.hypot(...pose.translation)).toFixed(1)} mm`;
 }
 

@@ -15,7 +15,10 @@ export function startWorker({ image, depth }: Views, options: Options): WorkerHa
   try {
     worker = spawn();
     const transfer: ArrayBuffer[] = [];
-    worker.post({ kind: "pair", module: compiled(), image: copyOf(image, transfer), depth: copyOf(depth, transfer), options }, transfer);
+    worker.post(
+      { kind: "pair", module: compiled(), image: copyOf(image, transfer), depth: copyOf(depth, transfer), options },
+      transfer,
+    );
     return worker;
   } catch {
     worker?.end();

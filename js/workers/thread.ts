@@ -30,7 +30,10 @@ function serve(answer: (answer: WorkerAnswer, transfer: ArrayBuffer[]) => void):
 
 const port = nodeModule("node:worker_threads")?.parentPort;
 if (port) {
-  port.on("message", serve((answer, transfer) => port.postMessage(answer, transfer)));
+  port.on(
+    "message",
+    serve((answer, transfer) => port.postMessage(answer, transfer)),
+  );
 } else {
   const handle = serve((answer, transfer) => self.postMessage(answer, { transfer }));
   self.onmessage = (event: MessageEvent<Order>) => handle(event.data);

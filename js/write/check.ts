@@ -18,7 +18,11 @@ export function checkRaster(raster: Raster<ArrayLike<number>>, field: string, ..
   channelCount(channels, `${field}.channels`);
   array(...kinds)(data, `${field}.data`);
   if (data.length !== width * height * channels || data.length === 0) {
-    throw new BimodalError("size", `${field}: ${width}x${height} pixels of ${channels} channels need ${width * height * channels} numbers, not ${data.length}`, field);
+    throw new BimodalError(
+      "size",
+      `${field}: ${width}x${height} pixels of ${channels} channels need ${width * height * channels} numbers, not ${data.length}`,
+      field,
+    );
   }
 }
 
@@ -27,11 +31,13 @@ export const text: Check = (value, field) => {
 };
 
 /** So many numbers, none of which is infinite or none at all. */
-const finite = (count: number): Check => (value, field) => {
-  numbers(count)(value, field);
-  const other = Array.from(value as ArrayLike<number>).find((one) => !Number.isFinite(one));
-  if (other !== undefined) throw new BimodalError("range", `${field}: must be finite numbers (got ${other})`, field);
-};
+const finite =
+  (count: number): Check =>
+  (value, field) => {
+    numbers(count)(value, field);
+    const other = Array.from(value as ArrayLike<number>).find((one) => !Number.isFinite(one));
+    if (other !== undefined) throw new BimodalError("range", `${field}: must be finite numbers (got ${other})`, field);
+  };
 /** Nine coefficients for each of three channels. */
 export const checkLight = finite(27);
 

@@ -4,4 +4,14 @@ export { type Cloud, writeClouds } from "../rig/write/clouds.js";
 export { type NpyData, writeNpy } from "./npy.js";
 export { writePng } from "./png.js";
 export { type Entry, type Picture, type ReportInput, type RunReport, runReportHtml } from "./report.js";
-export { type DepthPng, type Extent, type PoseStanding, type Unit, depthPng, lightCsv, matrixText, normalsPng, poseJson } from "./results.js";
+export {
+  type DepthPng,
+  type Extent,
+  type PoseStanding,
+  type Unit,
+  depthPng,
+  lightCsv,
+  matrixText,
+  normalsPng,
+  poseJson,
+} from "./results.js";

@@ -58,18 +58,26 @@ function checkTexts(texts: unknown): void {
   for (const [name, words] of Object.entries(texts)) {
     text(words, `texts.${name}`);
     if (name.length < 1 || name.length > LONGEST_NAME) {
-      throw new BimodalError("range", `texts: a remark's name has 1 to ${LONGEST_NAME} letters, not ${name.length}`, "texts");
+      throw new BimodalError(
+        "range",
+        `texts: a remark's name has 1 to ${LONGEST_NAME} letters, not ${name.length}`,
+        "texts",
+      );
     }
   }
 }
 
 /** `texts` are remarks in English, such as the unit, which readers hand out by their names ("Description", "Unit"). */
-export async function writePng(raster: Raster<Uint8Array | Uint16Array>, texts: Readonly<Record<string, string>> = {}): Promise<Uint8Array<ArrayBuffer>> {
+export async function writePng(
+  raster: Raster<Uint8Array | Uint16Array>,
+  texts: Readonly<Record<string, string>> = {},
+): Promise<Uint8Array<ArrayBuffer>> {
   checkRaster(raster, "raster", Uint8Array, Uint16Array);
   checkTexts(texts);
   const { width, height, channels, data } = raster;
   const type = TYPES[channels];
-  if (type === undefined) throw new BimodalError("unsupported", `raster.channels: 1 or 3 are written, not ${channels}`, "raster.channels");
+  if (type === undefined)
+    throw new BimodalError("unsupported", `raster.channels: 1 or 3 are written, not ${channels}`, "raster.channels");
   const head = new Uint8Array(13);
   const view = new DataView(head.buffer);
   view.setUint32(0, width);
@@ -80,7 +88,13 @@ export async function writePng(raster: Raster<Uint8Array | Uint16Array>, texts: 
     const plain = (text: string) => text.replace(/[^\x20-\x7e]/g, "?");
     return chunk("tEXt", new TextEncoder().encode(`${plain(name)}\0${plain(words)}`));
   });
-  const parts = [new Uint8Array(SIGNATURE), chunk("IHDR", head), ...remarks, chunk("IDAT", await deflated(filtered(raster))), chunk("IEND", new Uint8Array())];
+  const parts = [
+    new Uint8Array(SIGNATURE),
+    chunk("IHDR", head),
+    ...remarks,
+    chunk("IDAT", await deflated(filtered(raster))),
+    chunk("IEND", new Uint8Array()),
+  ];
   const file = new Uint8Array(parts.reduce((sum, { length }) => sum + length, 0));
   let at = 0;
   for (const part of parts) {

@@ -53,8 +53,14 @@ const COLUMNS = ["", "Found", "True"];
 function poseSection({ pose, truth, unit }: RunReport): Markup {
   const rows: [string, (pose: Pose) => string][] = [
     ["Scale", ({ scale }) => digits(scale, 5)],
-    ...(["alpha", "beta", "gamma"] as const).map((name): [string, (pose: Pose) => string] => [name, ({ angles }) => measure(angles[name], "°", 4)]),
-    ...["x", "y", "z"].map((axis, i): [string, (pose: Pose) => string] => [`Translation ${axis}`, ({ translation }) => measure(translation[i] ?? NaN, unit, 4)]),
+    ...(["alpha", "beta", "gamma"] as const).map((name): [string, (pose: Pose) => string] => [
+      name,
+      ({ angles }) => measure(angles[name], "°", 4),
+    ]),
+    ...["x", "y", "z"].map((axis, i): [string, (pose: Pose) => string] => [
+      `Translation ${axis}`,
+      ({ translation }) => measure(translation[i] ?? NaN, unit, 4),
+    ]),
   ];
   const columns = truth ? COLUMNS : COLUMNS.slice(0, 2);
   // An orthographic image cannot see how far away the object is: any number does, so none is the true one.
@@ -73,14 +79,27 @@ const COEFFICIENTS = 9;
 
 function lightSection({ light }: RunReport): Markup {
   const names = ["", ...Array.from({ length: COEFFICIENTS }, (_, k) => `L${k + 1}`)];
-  const rows = ["Red", "Green", "Blue"].map((channel, c) => html`<tr><th scope="row">${channel}</th>${names.slice(1).map((_, k) => html`<td>${digits(light[COEFFICIENTS * c + k] ?? NaN)}</td>`)}</tr>`);
-  return section("Light", html`<div class="scroll" tabindex="0">${table("matrix", names, rows)}</div>`, html`<pre tabindex="0">${lightCsv(light)}</pre>`);
+  const rows = ["Red", "Green", "Blue"].map(
+    (channel, c) =>
+      html`<tr><th scope="row">${channel}</th>${names.slice(1).map((_, k) => html`<td>${digits(light[COEFFICIENTS * c + k] ?? NaN)}</td>`)}</tr>`,
+  );
+  return section(
+    "Light",
+    html`<div class="scroll" tabindex="0">${table("matrix", names, rows)}</div>`,
+    html`<pre tabindex="0">${lightCsv(light)}</pre>`,
+  );
 }
 
 function optionSection({ options, link }: RunReport): Markup | undefined {
   const rows = options.map(([name, value]) => html`<tr><th scope="row">${name}</th>${cell("Set to", value)}</tr>`);
   if (rows.length === 0 && link === undefined) return undefined;
-  return section("Options", rows.length > 0 ? table("options", ["Option", "Set to"], rows) : undefined, link === undefined ? undefined : html`<p class="soft">The same state as an address, without files:</p><pre tabindex="0">${link}</pre>`);
+  return section(
+    "Options",
+    rows.length > 0 ? table("options", ["Option", "Set to"], rows) : undefined,
+    link === undefined
+      ? undefined
+      : html`<p class="soft">The same state as an address, without files:</p><pre tabindex="0">${link}</pre>`,
+  );
 }
 
 const PARTS: Example = { words: [], numbers: [[]], options: [[]] };
@@ -89,7 +108,21 @@ const checkTone = word(...Object.keys(CARDS));
 /** Checks that the parts are there, and that words are words. */
 function checkReport(report: RunReport): void {
   like(PARTS, report, "report");
-  const { tone, status, words, pose, truth, unit, light, numbers, options, title = "", link = "", pictures = [], inputs = [] } = report;
+  const {
+    tone,
+    status,
+    words,
+    pose,
+    truth,
+    unit,
+    light,
+    numbers,
+    options,
+    title = "",
+    link = "",
+    pictures = [],
+    inputs = [],
+  } = report;
   checkTone(tone, "report.tone");
   checkUnit(unit, "report.unit");
   checkWholePose(pose, "report.pose");
@@ -108,5 +141,12 @@ function checkReport(report: RunReport): void {
 export function runReportHtml(report: RunReport): string {
   checkReport(report);
   const { pictures = [], inputs = [], title = "A run of bimodal stereo", made } = report;
-  return reportPage(title, made, "report.made", [card(report), poseSection(report), pictureSection(pictures), lightSection(report), optionSection(report), inputTable(inputs)]);
+  return reportPage(title, made, "report.made", [
+    card(report),
+    poseSection(report),
+    pictureSection(pictures),
+    lightSection(report),
+    optionSection(report),
+    inputTable(inputs),
+  ]);
 }

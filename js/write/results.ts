@@ -27,7 +27,12 @@ export function matrixText(pose: Pose): string {
 /** How far a pose is to be trusted, as a report says it. */
 export type PoseStanding = Pick<StepReport, "status" | "message" | "uncertainty">;
 
-const sigmasOf = ({ rotationDegrees, translation, scale, weakest }: Uncertainty): Uncertainty => ({ rotationDegrees, translation, scale, weakest });
+const sigmasOf = ({ rotationDegrees, translation, scale, weakest }: Uncertainty): Uncertainty => ({
+  rotationDegrees,
+  translation,
+  scale,
+  weakest,
+});
 
 /**
  * The pose with its matrix, and in words what it means; beside it, where a report is given, its status and one sigma of each number, `null`
@@ -36,16 +41,37 @@ const sigmasOf = ({ rotationDegrees, translation, scale, weakest }: Uncertainty)
 export function poseJson(pose: Pose, unit: Unit, report?: PoseStanding): string {
   checkWholePose(pose, "pose");
   checkUnit(unit, "unit");
-  const matrix = matrixText(pose).trim().split("\n").map((line) => line.split(" ").map(Number));
+  const matrix = matrixText(pose)
+    .trim()
+    .split("\n")
+    .map((line) => line.split(" ").map(Number));
   const about = `P_colour = scale * rotation * P_depth + translation; rotation row by row; angles in degrees; lengths in ${unit === "m" ? "metres" : "pixels"}`;
-  const { scale, rotation, translation, angles: { alpha, beta, gamma } } = pose;
+  const {
+    scale,
+    rotation,
+    translation,
+    angles: { alpha, beta, gamma },
+  } = pose;
   // Nothing but these: what else an object holds may say otherwise.
-  const told = { unit, scale, rotation: Array.from(rotation), translation: Array.from(translation), angles: { alpha, beta, gamma }, matrix };
+  const told = {
+    unit,
+    scale,
+    rotation: Array.from(rotation),
+    translation: Array.from(translation),
+    angles: { alpha, beta, gamma },
+    matrix,
+  };
   if (report === undefined) return `${JSON.stringify({ about, ...told }, null, 2)}\n`;
   checkStanding(report);
   const { status, message, uncertainty } = report;
-  const sigmas = uncertainty && "; uncertainty is one sigma, null where the views cannot see the number: any value of it would do as well, or it was held";
-  const standing = { status, ...(message ? { message } : {}), ...(uncertainty ? { uncertainty: sigmasOf(uncertainty) } : {}) };
+  const sigmas =
+    uncertainty &&
+    "; uncertainty is one sigma, null where the views cannot see the number: any value of it would do as well, or it was held";
+  const standing = {
+    status,
+    ...(message ? { message } : {}),
+    ...(uncertainty ? { uncertainty: sigmasOf(uncertainty) } : {}),
+  };
   return `${JSON.stringify({ about: about + (sigmas ?? ""), ...told, ...standing }, null, 2)}\n`;
 }
 
@@ -56,15 +82,26 @@ const COEFFICIENTS = 9;
 export function lightCsv(light: ArrayLike<number>): string {
   checkLight(light, "light");
   const names = Array.from({ length: COEFFICIENTS }, (_, k) => `L${k + 1}`);
-  const line = (channel: string, c: number) => [channel, ...Array.from({ length: COEFFICIENTS }, (_, k) => real(light[COEFFICIENTS * c + k] ?? NaN))].join(",");
+  const line = (channel: string, c: number) =>
+    [channel, ...Array.from({ length: COEFFICIENTS }, (_, k) => real(light[COEFFICIENTS * c + k] ?? NaN))].join(",");
   return `${[["channel", ...names].join(","), ...CHANNELS.map(line)].join("\n")}\n`;
 }
 
 const LARGEST = 65_535;
 /** Steps of a stored depth, the finest first; the first that reaches the farthest depth is taken. */
 const STEPS: Readonly<Record<Unit, readonly (readonly [step: number, words: string])[]>> = {
-  m: [[0.0001, "0.1 mm"], [0.001, "1 mm"], [0.01, "10 mm"], [1, "1 m"]],
-  px: [[0.001, "0.001 px"], [0.01, "0.01 px"], [0.1, "0.1 px"], [1, "1 px"]],
+  m: [
+    [0.0001, "0.1 mm"],
+    [0.001, "1 mm"],
+    [0.01, "10 mm"],
+    [1, "1 m"],
+  ],
+  px: [
+    [0.001, "0.001 px"],
+    [0.01, "0.01 px"],
+    [0.1, "0.1 px"],
+    [1, "1 px"],
+  ],
 };
 
 export interface DepthPng {
@@ -90,7 +127,11 @@ function checkDepths(data: Float32Array, unit: Unit): void {
   if (at < 0) return;
   const value = data[at] ?? NaN;
   const why = value < 0 ? "would be a hole" : `is beyond ${LARGEST} ${unit}, the farthest there is room for`;
-  throw new BimodalError("range", `depth.data[${at}]: ${value} ${unit} ${why}; shift the depths, or write them with writeNpy`, `depth.data[${at}]`);
+  throw new BimodalError(
+    "range",
+    `depth.data[${at}]: ${value} ${unit} ${why}; shift the depths, or write them with writeNpy`,
+    `depth.data[${at}]`,
+  );
 }
 
 /**
@@ -110,7 +151,10 @@ export async function depthPng(depth: Extent & { data: Float32Array }, unit: Uni
     const value = data[i] ?? NaN;
     if (isThere(value)) stored[i] = Math.max(1, Math.round(value / step));
   }
-  const bytes = await writePng({ width, height, channels: 1, data: stored }, { Unit: `${says} per stored number; 0 is no depth`, Software: "bimodal-stereo" });
+  const bytes = await writePng(
+    { width, height, channels: 1, data: stored },
+    { Unit: `${says} per stored number; 0 is no depth`, Software: "bimodal-stereo" },
+  );
   return { bytes, step, says };
 }
 
@@ -132,6 +176,9 @@ export async function normalsPng(normals: Extent & { data: Float32Array }): Prom
     stored[at + 1] = level(-y);
     stored[at + 2] = level(-z);
   }
-  const texts = { Description: "Normals: (n + 1) / 2 of 65535 for x right, y up, z towards the viewer; black is none", Software: "bimodal-stereo" };
+  const texts = {
+    Description: "Normals: (n + 1) / 2 of 65535 for x right, y up, z towards the viewer; black is none",
+    Software: "bimodal-stereo",
+  };
   return writePng({ width, height, channels: 3, data: stored }, texts);
 }

@@ -11,9 +11,21 @@ const SETS = [
     lines: PAINTED.map((name) => ({ name, ids: [20, 40].map((beta) => `photographs/${name}/lab_diffuse/${beta}`) })),
     quick: 2,
   },
-  { set: "renders of them", lines: PAINTED.map((name) => ({ name: `${name}, render`, ids: [`photographs/${name}/render/40`] })), quick: 0 },
-  { set: "painted renders", lines: numbers(8).map((scene) => ({ name: `painted ${scene}`, ids: [`painted/${scene}`] })), quick: 1 },
-  { set: "plain renders", lines: numbers(8).map((scene) => ({ name: `random ${scene}`, ids: [`random/${scene}`] })), quick: 1 },
+  {
+    set: "renders of them",
+    lines: PAINTED.map((name) => ({ name: `${name}, render`, ids: [`photographs/${name}/render/40`] })),
+    quick: 0,
+  },
+  {
+    set: "painted renders",
+    lines: numbers(8).map((scene) => ({ name: `painted ${scene}`, ids: [`painted/${scene}`] })),
+    quick: 1,
+  },
+  {
+    set: "plain renders",
+    lines: numbers(8).map((scene) => ({ name: `random ${scene}`, ids: [`random/${scene}`] })),
+    quick: 1,
+  },
   {
     // Even ones of `stress`, on whose odd ones constants were set.
     set: "noisy depth",
@@ -28,7 +40,10 @@ const SETS = [
 /** The sets with their lines; without other people's data those of our own scenes. */
 export const sets = (quick, complete) =>
   SETS.map(({ set, lines, quick: few }) => ({ set, lines: quick ? lines.slice(0, few) : lines }))
-    .map(({ set, lines }) => ({ set, lines: complete ? lines : lines.filter(({ ids }) => /^(painted|random|pinhole)/.test(ids[0])) }))
+    .map(({ set, lines }) => ({
+      set,
+      lines: complete ? lines : lines.filter(({ ids }) => /^(painted|random|pinhole)/.test(ids[0])),
+    }))
     .filter(({ lines }) => lines.length > 0);
 
 /** The cells as a table of their own, which is run as the others are. */
@@ -41,5 +56,12 @@ export const table = (chosen) => ({
     if (missing) throw new Error(`no table has the cell ${missing}`);
     return ids.map((id) => cells.get(id));
   },
-  rows: (results) => results.map(({ cell, result: { degrees, status, rivals, milliseconds } }) => ({ id: cell.id, degrees, status, rivals, milliseconds })),
+  rows: (results) =>
+    results.map(({ cell, result: { degrees, status, rivals, milliseconds } }) => ({
+      id: cell.id,
+      degrees,
+      status,
+      rivals,
+      milliseconds,
+    })),
 });

@@ -34,7 +34,9 @@ export const PARTS = [
   {
     name: "following",
     what: "the pose of a painted object following the paint that is found under it",
-    changes: [{ file: "src/estimator/stages/contrasted.rs", from: "const ROUNDS: usize = 3;", to: "const ROUNDS: usize = 0;" }],
+    changes: [
+      { file: "src/estimator/stages/contrasted.rs", from: "const ROUNDS: usize = 3;", to: "const ROUNDS: usize = 0;" },
+    ],
   },
   {
     name: "contrast",
@@ -83,7 +85,9 @@ export const PARTS = [
   {
     name: "softness",
     what: "ranking contrast as softly as noisy depth tells it: on the sharp image instead",
-    changes: [{ file: "src/view/depth_noise.rs", from: "self.smoothing().sqrt().sqrt()", to: "0.0 * self.smoothing()" }],
+    changes: [
+      { file: "src/view/depth_noise.rs", from: "self.smoothing().sqrt().sqrt()", to: "0.0 * self.smoothing()" },
+    ],
   },
   {
     name: "lift",

@@ -32,12 +32,22 @@ export function rowsOf(sets, variants) {
   const of = (lines) => found.map((rows) => lines.flatMap(({ ids }) => ids.map((id) => rows.get(id))));
   const blocks = sets.map(({ set, lines }) => ({
     set,
-    lines: lines.map(({ name, ids }) => [name, ...found.map((rows) => ids.map((id) => degreesOf(rows.get(id))).join(" "))]),
+    lines: lines.map(({ name, ids }) => [
+      name,
+      ...found.map((rows) => ids.map((id) => degreesOf(rows.get(id))).join(" ")),
+    ]),
     foot: FOOT.map(([word, show]) => [`${set}: ${word}`, ...of(lines).map(whole(show))]),
   }));
   const [all] = variants;
-  const sizes = [".wasm gzipped, kB", ...variants.map(({ gzipped }, at) => (at === 0 ? kilobytes(gzipped) : kilobytes(gzipped - all.gzipped)))];
-  return { head: ["degrees, without:", ...variants.map(({ part }, at) => (at === 0 ? "(all parts)" : part))], blocks, sizes };
+  const sizes = [
+    ".wasm gzipped, kB",
+    ...variants.map(({ gzipped }, at) => (at === 0 ? kilobytes(gzipped) : kilobytes(gzipped - all.gzipped))),
+  ];
+  return {
+    head: ["degrees, without:", ...variants.map(({ part }, at) => (at === 0 ? "(all parts)" : part))],
+    blocks,
+    sizes,
+  };
 }
 
 /** Cells that a part makes worse, and those that it makes better; what is lost with and without it is neither. */
@@ -55,10 +65,12 @@ const moved = ({ id, on, off }) => `${id} ${degreesOf(off)} -> ${degreesOf(on)}`
 export function text(sets, variants) {
   const { head, blocks, sizes } = rowsOf(sets, variants);
   const [all, ...others] = variants;
-  const lists = others.map((variant) => effects(all, variant)).flatMap(({ part, worse, better }) => [
-    `  ${part}: better ${better.length}, worse ${worse.length}${worse.length > 0 ? ":" : ""}`,
-    ...worse.map((pair) => `    ${moved(pair)}`),
-  ]);
+  const lists = others
+    .map((variant) => effects(all, variant))
+    .flatMap(({ part, worse, better }) => [
+      `  ${part}: better ${better.length}, worse ${worse.length}${worse.length > 0 ? ":" : ""}`,
+      ...worse.map((pair) => `    ${moved(pair)}`),
+    ]);
   return [
     "Degrees off: with all parts, and with one part off each; ? flagged, ! over 3 degrees and not flagged",
     ...columns([head, ...blocks.flatMap(({ lines, foot }) => [...lines, ...foot, head.map(() => "")]), sizes]),
@@ -73,12 +85,23 @@ export function markdown(sets, variants) {
   const { head, blocks, sizes } = rowsOf(sets, variants);
   const [all, ...others] = variants;
   const line = (cells) => `| ${cells.join(" | ")} |`;
-  const lines = blocks.flatMap(({ set, lines, foot }) => [...(set === "photographs" ? lines : []), ...foot.slice(0, set === "photographs" ? FOOT.length : 3)]);
-  const lists = others.map((variant) => effects(all, variant)).map(
-    ({ part, worse, better }) => `- ${part}: better ${better.length}; worse ${worse.length === 0 ? "none" : worse.map(moved).join(", ")}`,
-  );
+  const lines = blocks.flatMap(({ set, lines, foot }) => [
+    ...(set === "photographs" ? lines : []),
+    ...foot.slice(0, set === "photographs" ? FOOT.length : 3),
+  ]);
+  const lists = others
+    .map((variant) => effects(all, variant))
+    .map(
+      ({ part, worse, better }) =>
+        `- ${part}: better ${better.length}; worse ${worse.length === 0 ? "none" : worse.map(moved).join(", ")}`,
+    );
   return [
     ...[line(head), `|---|${variants.map(() => "---").join("|")}|`, ...[...lines, sizes].map(line)],
-    ...["", `Cells that end better and worse with a part than without it, by over ${MATTERS} degrees (without -> with):`, "", ...lists],
+    ...[
+      "",
+      `Cells that end better and worse with a part than without it, by over ${MATTERS} degrees (without -> with):`,
+      "",
+      ...lists,
+    ],
   ];
 }

@@ -71,7 +71,11 @@ export async function answerOf(scene, api) {
   const estimator = new api.Estimator(made.image, made.depth, first);
   try {
     await drive(estimator, way, options);
-    return { input: fingerprint([made.image, made.depth]), uses: usesOf(made, options, way), ...everything(estimator, made) };
+    return {
+      input: fingerprint([made.image, made.depth]),
+      uses: usesOf(made, options, way),
+      ...everything(estimator, made),
+    };
   } finally {
     estimator.free();
   }

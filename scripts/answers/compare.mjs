@@ -39,18 +39,31 @@ const RASTERS = {
 const apart = (a, b) => (a === b ? 0 : Math.abs(a - b));
 const relative = (a, b) => apart(a, b) / Math.max(Math.abs(a), Math.abs(b), LEAST_NUMBER);
 /** Largest of some differences; what is no number differs beyond measure. */
-const largest = (values) => values.reduce((most, value) => (value <= most ? most : Number.isNaN(value) ? Infinity : value), 0);
+const largest = (values) =>
+  values.reduce((most, value) => (value <= most ? most : Number.isNaN(value) ? Infinity : value), 0);
 
 /** Largest difference of two lists; `null` and a missing list equal only themselves. */
 function listsApart(a, b, measure = apart) {
   if (!a || !b || a.length !== b.length) return (a ?? null) === (b ?? null) ? 0 : Infinity;
-  return largest(a.map((value, index) => ((value === null) !== (b[index] === null) ? Infinity : measure(value, b[index]))));
+  return largest(
+    a.map((value, index) => ((value === null) !== (b[index] === null) ? Infinity : measure(value, b[index]))),
+  );
 }
 
 /** Everything in a report that is a number and neither a pose nor a count. */
 function numbersOf({ energy, overlap, inliers, residual, uncertainty }) {
   const { rotationDegrees = [], translation = [], scale = null } = uncertainty ?? {};
-  return [...Object.keys(energy).sort().map((term) => energy[term]), overlap, inliers, residual, ...rotationDegrees, ...translation, scale];
+  return [
+    ...Object.keys(energy)
+      .sort()
+      .map((term) => energy[term]),
+    overlap,
+    inliers,
+    residual,
+    ...rotationDegrees,
+    ...translation,
+    scale,
+  ];
 }
 
 /** Words are wording, numbers are answers. */
@@ -59,10 +72,13 @@ const numbersIn = (message = "") => message.match(/-?\d+(\.\d+)?(e-?\d+)?/g)?.jo
 /** What may not differ at all, in words. */
 function disagreements(before, after) {
   const [a, b] = [before.report, after.report];
-  const list = ["status", "iteration", "stage"].filter((key) => a[key] !== b[key]).map((key) => `${key}: ${a[key]} -> ${b[key]}`);
+  const list = ["status", "iteration", "stage"]
+    .filter((key) => a[key] !== b[key])
+    .map((key) => `${key}: ${a[key]} -> ${b[key]}`);
   const count = ({ rivals = [] }) => rivals.length;
   if (count(a) !== count(b)) list.push(`rivals: ${count(a)} -> ${count(b)}`);
-  if (a.uncertainty?.weakest !== b.uncertainty?.weakest) list.push(`weakest: ${a.uncertainty?.weakest} -> ${b.uncertainty?.weakest}`);
+  if (a.uncertainty?.weakest !== b.uncertainty?.weakest)
+    list.push(`weakest: ${a.uncertainty?.weakest} -> ${b.uncertainty?.weakest}`);
   if (numbersIn(a.message) !== numbersIn(b.message)) list.push(`message: ${a.message} -> ${b.message}`);
   if (before.input !== after.input) list.push("the pair itself: `sample` renders other numbers");
   return list;
@@ -75,9 +91,15 @@ function disagreements(before, after) {
 export function compare(before, after, { rasterApart, pairsApart }) {
   const [a, b] = [before.report, after.report];
   const column = (rasters) => largest(rasters.map((name) => rasterApart(before.rasters[name], after.rasters[name])));
-  const rivals = (a.rivals ?? []).map(({ rotation }, index) => degreesBetween(rotation, b.rivals?.[index]?.rotation ?? rotation));
+  const rivals = (a.rivals ?? []).map(({ rotation }, index) =>
+    degreesBetween(rotation, b.rivals?.[index]?.rotation ?? rotation),
+  );
   const columns = {
-    degrees: largest([degreesBetween(a.pose.rotation, b.pose.rotation), apart(a.rotationChange, b.rotationChange), ...rivals]),
+    degrees: largest([
+      degreesBetween(a.pose.rotation, b.pose.rotation),
+      apart(a.rotationChange, b.rotationChange),
+      ...rivals,
+    ]),
     scale: relative(a.pose.scale, b.pose.scale),
     translation: listsApart(a.pose.translation, b.pose.translation) / before.pixel,
     light: listsApart(before.light, after.light),
@@ -106,7 +128,10 @@ export const WHOLE = {
     return most;
   },
   pairsApart(a, b) {
-    const differ = a.reduce((count, depth, index) => count + (depth === b[index] ? 0 : 1), Math.abs(a.length - b.length));
+    const differ = a.reduce(
+      (count, depth, index) => count + (depth === b[index] ? 0 : 1),
+      Math.abs(a.length - b.length),
+    );
     return differ === 0 ? undefined : `${differ} of ${a.length} pixels have another correspondence`;
   },
 };

@@ -19,7 +19,16 @@ const MEMBERS = [
   ...under("options.start", ": identity", ".scale", ".rotation", ".translation", ".angles"),
   ...under("options.", "scale", "registration: icp", "registration: fixed", "shading: pixel"),
   ...under("options.lambda.", "prior", "unit", "light", "refinement"),
-  ...under("options.", "annealing", "stopDegrees", "correspondenceDistance", "maxIterations", "seed", "trim", "workers"),
+  ...under(
+    "options.",
+    "annealing",
+    "stopDegrees",
+    "correspondenceDistance",
+    "maxIterations",
+    "seed",
+    "trim",
+    "workers",
+  ),
   ...under("driven by ", "run", "step", "stage", "time", "stop", "reset"),
 ];
 
@@ -35,7 +44,9 @@ function namesOf(path, value) {
 
 /** Those that a scene makes use of. */
 export function usesOf({ request = {}, image, depth }, options, way) {
-  const used = Object.entries({ sample: request, image, depth, options }).flatMap(([path, value]) => namesOf(path, value));
+  const used = Object.entries({ sample: request, image, depth, options }).flatMap(([path, value]) =>
+    namesOf(path, value),
+  );
   const all = new Set([...used, `driven by ${typeof way === "string" ? way : Object.keys(way)[0]}`]);
   return MEMBERS.filter((member) => all.has(member));
 }

@@ -14,7 +14,10 @@ const POSE_DIGITS = 12;
 
 const fixed = (value) => Number(value.toFixed(DECIMALS));
 const hash = ({ buffer, byteOffset, byteLength }) =>
-  createHash("sha256").update(new Uint8Array(buffer, byteOffset, byteLength)).digest("hex").slice(0, 8);
+  createHash("sha256")
+    .update(new Uint8Array(buffer, byteOffset, byteLength))
+    .digest("hex")
+    .slice(0, 8);
 
 /** Where there are values, how many, their mean and spread, and some of them. */
 function rasterFigure(values, count) {
@@ -23,7 +26,10 @@ function rasterFigure(values, count) {
   if (there.length === 0) return { pattern, count: 0, values: [] };
   const mean = there.reduce((sum, value) => sum + value, 0) / there.length;
   const spread = Math.sqrt(there.reduce((sum, value) => sum + (value - mean) ** 2, 0) / there.length);
-  const samples = Array.from({ length: count }, (_, index) => there[Math.floor(((index + 0.5) / count) * there.length)]);
+  const samples = Array.from(
+    { length: count },
+    (_, index) => there[Math.floor(((index + 0.5) / count) * there.length)],
+  );
   return { pattern, count: there.length, values: [mean, spread, ...samples].map(fixed) };
 }
 
@@ -43,7 +49,9 @@ export const figureOf = ({ input, report, light, pixel, correspondence, rasters 
   light: light.map(fixed),
   pixel: rounded(pixel),
   correspondence: { pattern: hash(correspondence), count: correspondence.filter((depth) => depth >= 0).length },
-  rasters: Object.fromEntries(Object.entries(SAMPLES).map(([name, count]) => [name, rasterFigure(rasters[name], count)])),
+  rasters: Object.fromEntries(
+    Object.entries(SAMPLES).map(([name, count]) => [name, rasterFigure(rasters[name], count)]),
+  ),
 });
 
 /** For figures. */
@@ -52,5 +60,6 @@ export const SAMPLED = {
     if (a.pattern !== b.pattern || a.values.length !== b.values.length) return Infinity;
     return a.values.reduce((most, value, index) => Math.max(most, Math.abs(value - b.values[index])), 0);
   },
-  pairsApart: (a, b) => (a.pattern === b.pattern ? undefined : `${a.count} -> ${b.count} pixels, or other correspondences`),
+  pairsApart: (a, b) =>
+    a.pattern === b.pattern ? undefined : `${a.count} -> ${b.count} pixels, or other correspondences`,
 };

@@ -41,7 +41,9 @@ const inHalfAxes = (point) => point.map((value, axis) => value / HALF_AXES[axis]
 function normalAt(point) {
   const middle = inHalfAxes(point);
   const gradient = HALF_AXES.map((length, axis) => {
-    const [before, after] = [-STEP, STEP].map((step) => outside(middle.map((value, each) => (each === axis ? value + step : value))));
+    const [before, after] = [-STEP, STEP].map((step) =>
+      outside(middle.map((value, each) => (each === axis ? value + step : value))),
+    );
     return (after - before) / length;
   });
   const length = Math.sqrt(gradient.reduce((sum, part) => sum + part * part, 0));
@@ -87,10 +89,16 @@ function undistort(seen, distortion) {
 /** Origin and direction (with z = 1) of a pixel's ray in the camera's frame; without a camera rays are parallel. */
 function ray({ camera, metresPerPixel, width, height }, column, row) {
   if (!camera) {
-    return [[(column - (width - 1) / 2) * metresPerPixel, (row - (height - 1) / 2) * metresPerPixel, 0], [0, 0, 1]];
+    return [
+      [(column - (width - 1) / 2) * metresPerPixel, (row - (height - 1) / 2) * metresPerPixel, 0],
+      [0, 0, 1],
+    ];
   }
   const { fx, fy, cx, cy, distortion = [0, 0, 0, 0, 0] } = camera;
-  return [[0, 0, 0], [...undistort([(column - cx) / fx, (row - cy) / fy], distortion), 1]];
+  return [
+    [0, 0, 0],
+    [...undistort([(column - cx) / fx, (row - cy) / fy], distortion), 1],
+  ];
 }
 
 /** Depth and normal of each pixel that sees the body, turned by `rotation` about its middle, in the camera's frame. */
@@ -132,7 +140,10 @@ export function metricPair({ image, depth, axis, degrees, noise = 0, depthNoise 
   const colours = new Float32Array(3 * seen.length);
   for (const [index, pixel] of seen.entries()) {
     if (!pixel) continue;
-    colours.set(shade(light, pixel.normal).map((value) => Math.exp(value + noise * dice.gaussian())), 3 * index);
+    colours.set(
+      shade(light, pixel.normal).map((value) => Math.exp(value + noise * dice.gaussian())),
+      3 * index,
+    );
   }
   const depths = Float32Array.from(measured, (pixel) => (pixel ? pixel.depth + depthNoise * dice.gaussian() : NaN));
   const scale = image.camera ? 1 : 1 / image.metresPerPixel;

@@ -85,7 +85,10 @@ function cloud({ data, ...depth }) {
   const points = new Float32Array(3 * data.length);
   for (const [index, value] of data.entries()) {
     const [column, row] = [index % depth.width, Math.floor(index / depth.width)];
-    points.set(Number.isNaN(value) ? [NaN, NaN, NaN] : [column - (depth.width - 1) / 2, row - (depth.height - 1) / 2, value], 3 * index);
+    points.set(
+      Number.isNaN(value) ? [NaN, NaN, NaN] : [column - (depth.width - 1) / 2, row - (depth.height - 1) / 2, value],
+      3 * index,
+    );
   }
   return { ...depth, points };
 }
@@ -94,10 +97,16 @@ function cloud({ data, ...depth }) {
 function flying(depth, seed = 5) {
   const dice = chance(seed);
   const share = 0.03;
-  return { ...depth, data: depth.data.map((value) => (dice.uniform() < share ? value + dice.uniform(0.1, 0.3) * depth.width : value)) };
+  return {
+    ...depth,
+    data: depth.data.map((value) => (dice.uniform() < share ? value + dice.uniform(0.1, 0.3) * depth.width : value)),
+  };
 }
 
-const without = (key) => ({ [key]: _, ...rest }) => rest;
+const without =
+  (key) =>
+  ({ [key]: _, ...rest }) =>
+    rest;
 
 /** Scenes name what becomes of the depth view; it happens in the order given. */
 const DEPTHS = {

@@ -21,14 +21,25 @@ const pinhole = (width, height, rest = {}) => ({
 const LENS = { distortion: [-0.12, 0.05, 0.001, -0.0015, 0.01] };
 const OTHER_LENS = { distortion: [0.08, -0.03, -0.001, 0.002, 0] };
 /** Two pinholes side by side, the body turned between them. */
-const metric = (light, image, depth, rest = {}) => ({ light, image, depth, axis: [0.36, 0.8, -0.48], degrees: 15, noise: NOISE, ...rest });
+const metric = (light, image, depth, rest = {}) => ({
+  light,
+  image,
+  depth,
+  axis: [0.36, 0.8, -0.48],
+  degrees: 15,
+  noise: NOISE,
+  ...rest,
+});
 
 const ANYWHERE = [
   {
     name: "bust, window light, 32x32, 70 % of the columns: a rival",
     sample: sample("bust", "window", 32, { angles: { beta: 30 }, overlap: 0.7 }),
   },
-  { name: "bust, window light, 64x64, beta 50", sample: sample("bust", "window", 64, { angles: { beta: 50 }, seed: 3 }) },
+  {
+    name: "bust, window light, 64x64, beta 50",
+    sample: sample("bust", "window", 64, { angles: { beta: 50 }, seed: 3 }),
+  },
   {
     name: "bust, overcast light, 96x96, turned about all axes",
     sample: sample("bust", "overcast", 96, { angles: { alpha: 10, beta: -30, gamma: 8 } }),
@@ -58,7 +69,11 @@ const ANYWHERE = [
     sample: sample("bust", "window", 128, { height: 96, holes: 0.1, depthNoise: 0.2 }),
     colours: "8 bit, sRGB",
   },
-  { name: "bust, colourful light, 160x160, beta 30", sample: sample("bust", "colourful", 160, { angles: { beta: 30 } }), drive: "step" },
+  {
+    name: "bust, colourful light, 160x160, beta 30",
+    sample: sample("bust", "colourful", 160, { angles: { beta: 30 } }),
+    drive: "step",
+  },
   {
     name: "two workers: vase, window light, 160 columns, 112 rows",
     sample: sample("vase", "window", 160, { height: 112, angles: { beta: -25 } }),
@@ -100,9 +115,20 @@ const LIGHT_KNOWN = [
     sample: sample("bust", "own", 80),
     options: { light: "known", stopDegrees: 0.1, correspondenceDistance: 2, seed: 9, maxIterations: 2 },
   },
-  { name: "bare grid: bust, colourful, beta 20, free scale", sample: grid("bust", "colourful", { beta: 20 }), options: { light: "known" } },
-  { name: "bare grid: bust, colourful, beta 90", sample: grid("bust", "colourful", { beta: 90 }), options: { light: "known", scale: 1 } },
-  { name: "bare grid: ripples, overcast, light unknown", sample: grid("ripples", "overcast", { alpha: 12, beta: -15, gamma: 5 }) },
+  {
+    name: "bare grid: bust, colourful, beta 20, free scale",
+    sample: grid("bust", "colourful", { beta: 20 }),
+    options: { light: "known" },
+  },
+  {
+    name: "bare grid: bust, colourful, beta 90",
+    sample: grid("bust", "colourful", { beta: 90 }),
+    options: { light: "known", scale: 1 },
+  },
+  {
+    name: "bare grid: ripples, overcast, light unknown",
+    sample: grid("ripples", "overcast", { alpha: 12, beta: -15, gamma: 5 }),
+  },
   {
     name: "bare grid without its normals: bust, colourful",
     sample: grid("bust", "colourful", { beta: -20 }),
@@ -155,7 +181,11 @@ const STARTS = [
     sample: sample("bust", "window", 144),
     options: { start: near(8, "angles", "translation") },
   },
-  { name: "told angles alone: ripples, overcast, 64x64", sample: sample("ripples", "overcast", 64), options: { start: near(4, "angles") } },
+  {
+    name: "told angles alone: ripples, overcast, 64x64",
+    sample: sample("ripples", "overcast", 64),
+    options: { start: near(4, "angles") },
+  },
   {
     name: "told rotation and translation, scale 1.1 held: hills, window, 80x80",
     sample: sample("hills", "window", 80, { scale: 1.1 }),
@@ -213,7 +243,11 @@ const FIXED = [
 ];
 
 const WEIGHTS = [
-  { name: "no light prior: bust, colourful, 72x72", sample: sample("bust", "colourful", 72), options: { seed: 4, lambda: { light: 0 } } },
+  {
+    name: "no light prior: bust, colourful, 72x72",
+    sample: sample("bust", "colourful", 72),
+    options: { seed: 4, lambda: { light: 0 } },
+  },
   {
     name: "other weights: ripples, window, 64x64",
     sample: sample("ripples", "window", 64),
@@ -230,7 +264,11 @@ const WEIGHTS = [
     options: { ...PAPER, light: "known", lambda: { unit: 3, refinement: 0.05 } },
     drive: { stop: 3 },
   },
-  { name: "without annealing: bust, a light of our own, 64x64", sample: sample("bust", "own", 64), options: { annealing: false } },
+  {
+    name: "without annealing: bust, a light of our own, 64x64",
+    sample: sample("bust", "own", 64),
+    options: { annealing: false },
+  },
   {
     name: "without annealing, told 10 degrees off: ripples, colourful, 96x96",
     sample: sample("ripples", "colourful", 96),
@@ -337,5 +375,14 @@ const UNKNOWABLE = [
 ];
 
 export const SCENES = [
-  ...ANYWHERE, ...WORKERS, ...LIGHT_KNOWN, ...PAPERS_LOOP, ...STARTS, ...FIXED, ...WEIGHTS, ...TYPES, ...PINHOLES, ...UNKNOWABLE,
+  ...ANYWHERE,
+  ...WORKERS,
+  ...LIGHT_KNOWN,
+  ...PAPERS_LOOP,
+  ...STARTS,
+  ...FIXED,
+  ...WEIGHTS,
+  ...TYPES,
+  ...PINHOLES,
+  ...UNKNOWABLE,
 ];

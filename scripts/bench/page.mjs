@@ -59,7 +59,9 @@ function recordFrames() {
       super.onmessage = (event) => {
         const reports = event.data.reply?.reports;
         if (reports && asked !== undefined) {
-          const computing = reports.flatMap(({ milliseconds }) => Object.values(milliseconds)).reduce((sum, value) => sum + value, 0);
+          const computing = reports
+            .flatMap(({ milliseconds }) => Object.values(milliseconds))
+            .reduce((sum, value) => sum + value, 0);
           shown = { delivery: performance.now() - asked - computing, drawing: 0 };
           frames.push(shown);
           asked = undefined;
@@ -78,7 +80,9 @@ const PLAYED = 10;
 /** Before the page's own scripts: its animation frames, and tasks that held the main thread for over 50 ms. */
 function watch() {
   const seen = (window.benchSeen = { frames: [], longTasks: [] });
-  new PerformanceObserver((list) => seen.longTasks.push(...list.getEntries().map(({ duration }) => duration))).observe({ type: "longtask" });
+  new PerformanceObserver((list) => seen.longTasks.push(...list.getEntries().map(({ duration }) => duration))).observe({
+    type: "longtask",
+  });
   const frame = (time) => {
     seen.frames.push(time);
     requestAnimationFrame(frame);
@@ -133,5 +137,9 @@ export async function drawings(chromium, address, times) {
   }
   await context.close();
   const later = frames.slice(1);
-  return { size: `${DRAWN_SIZE}x${DRAWN_SIZE}`, delivery: later.map(({ delivery }) => delivery), drawing: later.map(({ drawing }) => drawing) };
+  return {
+    size: `${DRAWN_SIZE}x${DRAWN_SIZE}`,
+    delivery: later.map(({ delivery }) => delivery),
+    drawing: later.map(({ drawing }) => drawing),
+  };
 }

@@ -14,14 +14,20 @@ function stageTable({ rows, wasmAgainstNative, growth }) {
     const row = rows.find((each) => each.where === where && each.stage === stage && each.size === size);
     return row ? spread(row.milliseconds) : "";
   };
-  const ratio = (stage, size) => fixed(wasmAgainstNative.find((row) => row.stage === stage && row.size === size)?.ratio, 2);
+  const ratio = (stage, size) =>
+    fixed(wasmAgainstNative.find((row) => row.stage === stage && row.size === size)?.ratio, 2);
   const slopes = { browser: growth, native: growth.native };
   const exponent = (where, stage) => (slopes[where] ? fixed(slopes[where][stage], 2) : "");
   const timed = (stage) => places.filter((where) => rows.some((row) => row.where === where && row.stage === stage));
   return columns([
     ["stage", "where", ...sizes, "growth"],
     ...stages.flatMap((stage) => [
-      ...timed(stage).map((where) => [stage, where, ...sizes.map((size) => cell(where, stage, size)), exponent(where, stage)]),
+      ...timed(stage).map((where) => [
+        stage,
+        where,
+        ...sizes.map((size) => cell(where, stage, size)),
+        exponent(where, stage),
+      ]),
       ...(places.length > 1 ? [["", "ratio", ...sizes.map((size) => ratio(stage, size)), ""]] : []),
     ]),
   ]);
@@ -30,14 +36,28 @@ function stageTable({ rows, wasmAgainstNative, growth }) {
 const convergedTable = ({ timeToConverged }) =>
   columns([
     ["size", "where", "start", "seconds", "iterations", "degrees", "status"],
-    ...timeToConverged.map((row) => [row.size, row.where, row.start, fixed(row.milliseconds / 1000, 2), row.iterations, fixed(row.degrees), row.status]),
+    ...timeToConverged.map((row) => [
+      row.size,
+      row.where,
+      row.start,
+      fixed(row.milliseconds / 1000, 2),
+      row.iterations,
+      fixed(row.degrees),
+      row.status,
+    ]),
   ]);
 
 const searchTable = ({ search }) =>
   columns([
     ["size", "where", "scenes", "to the end, s", "of it search, s", "longest slice, ms", "found", "median degrees"],
     ...search.map((row) => [
-      ...[row.size, row.where, row.scenes, fixed(row.milliseconds.median / 1000, 2), fixed(row.searching.median / 1000, 2)],
+      ...[
+        row.size,
+        row.where,
+        row.scenes,
+        fixed(row.milliseconds.median / 1000, 2),
+        fixed(row.searching.median / 1000, 2),
+      ],
       ...[time(row.longestSlice), `${(100 * row.foundRate).toFixed(0)} %`, fixed(row.medianDegrees)],
     ]),
   ]);
@@ -46,12 +66,14 @@ function otherTable({ startUp, transfer, drawing, playing, memory }) {
   const lines = [];
   if (startUp) lines.push(["init to first report", startUp.size, spread(startUp.milliseconds)]);
   if (transfer) lines.push(["transfer: copying out, every array", transfer.size, spread(transfer.copying)]);
-  if (transfer?.painting) lines.push(["transfer: four views painted by the module instead", transfer.size, spread(transfer.painting)]);
+  if (transfer?.painting)
+    lines.push(["transfer: four views painted by the module instead", transfer.size, spread(transfer.painting)]);
   if (transfer) lines.push(["transfer: from worker to page", transfer.size, spread(transfer.travelling)]);
   if (drawing) lines.push(["page: cutting, copying, sending", drawing.size, spread(drawing.delivery)]);
   if (drawing) lines.push(["page: drawing", drawing.size, spread(drawing.drawing)]);
   if (playing) lines.push(["page: frames a second while it plays", playing.size, fixed(playing.framesPerSecond, 1)]);
-  if (playing) lines.push(["page: its longest tasks over 50 ms", playing.size, playing.longTasks.map(time).join(", ") || "none"]);
+  if (playing)
+    lines.push(["page: its longest tasks over 50 ms", playing.size, playing.longTasks.map(time).join(", ") || "none"]);
   if (memory) lines.push(["memory after a run, MB", memory.size, fixed(memory.bytes / 1e6, 1)]);
   return lines.length === 0 ? ["  not measured"] : columns([["what", "size", "ms"], ...lines]);
 }

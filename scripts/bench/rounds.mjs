@@ -13,7 +13,8 @@ const timesOf = ({ stages }, wanted) => stages.filter(wanted).map(({ millisecond
 function steadyIterations({ stages, iterations }) {
   const first = Math.max(0, Math.min(WARMING, iterations - 1));
   const each = Array.from({ length: Math.max(0, iterations - first) }, () => ({}));
-  for (const { stage, iteration, milliseconds } of stages) if (each[iteration - first]) each[iteration - first][stage] = milliseconds;
+  for (const { stage, iteration, milliseconds } of stages)
+    if (each[iteration - first]) each[iteration - first][stage] = milliseconds;
   return each;
 }
 
@@ -61,9 +62,20 @@ class Samples {
     const of = (name) => this.#steady.map((stages) => stages[name]);
     return [
       ["preparation", this.#preparations],
-      ...[["light", of("light")], ["shading", of("shading")], ["surface", of("surface")]],
-      ...[["registration", registrations], ["refinement", of("refinement")], ["step", steps]],
-      ...[["standing step", this.#steady], ["last step", this.#last]].map(([name, steps]) => [name, steps.map((stages) => sum(Object.values(stages)))]),
+      ...[
+        ["light", of("light")],
+        ["shading", of("shading")],
+        ["surface", of("surface")],
+      ],
+      ...[
+        ["registration", registrations],
+        ["refinement", of("refinement")],
+        ["step", steps],
+      ],
+      ...[
+        ["standing step", this.#steady],
+        ["last step", this.#last],
+      ].map(([name, steps]) => [name, steps.map((stages) => sum(Object.values(stages)))]),
     ];
   }
 }
@@ -92,14 +104,21 @@ export async function stages(sides, scene, { size, least }) {
     }
     const done = Math.min(...sides.map(({ where }) => samples.get(where).steady));
     say(`${size}: ${Math.min(done, least)} of ${least} steps`);
-    if (ends.some(({ iterations }) => iterations === 0)) throw new Failure(`${size}: a loop ended before its first iteration was over`);
+    if (ends.some(({ iterations }) => iterations === 0))
+      throw new Failure(`${size}: a loop ended before its first iteration was over`);
   }
   // The registration does not look at the image's surface, so here that may be the one that is raised fastest.
   while (lacks("registrations")) {
-    for (const side of sides) samples.get(side.where).addRegistration(await side.run({ start: "near", shading: "pixel", most: 1 }));
+    for (const side of sides)
+      samples.get(side.where).addRegistration(await side.run({ start: "near", shading: "pixel", most: 1 }));
   }
   say(`${size}: ${least} registrations`);
-  const rows = sides.flatMap(({ where }) => samples.get(where).all().map(([stage, times]) => ({ where, size, stage, times })));
+  const rows = sides.flatMap(({ where }) =>
+    samples
+      .get(where)
+      .all()
+      .map(([stage, times]) => ({ where, size, stage, times })),
+  );
   return { rows, ends: ends.filter((end) => end.start === "near") };
 }
 
@@ -136,7 +155,9 @@ export async function searches(sides, scene, { size, times, name = size }) {
       const run = await side.run({ start: "search", most: TO_THE_END, workers });
       const search = sum(timesOf(run, ({ stage }) => stage === "search"));
       found.push({ where, size, scene: name, start: "search", ...endOf(run), search, longestSlice: run.longestSlice });
-      say(`${name}, ${where}: ${run.status} after ${(run.milliseconds / 1000).toFixed(1)} s, ${run.degrees.toFixed(2)} degrees off`);
+      say(
+        `${name}, ${where}: ${run.status} after ${(run.milliseconds / 1000).toFixed(1)} s, ${run.degrees.toFixed(2)} degrees off`,
+      );
     }
   }
   return found;

@@ -18,7 +18,7 @@ export const sidesOf = (size) => size.split("x").map(Number);
 /** Heights of a built-in surface, read off its own rendering on its own grid. */
 function heightsOf(surface, sample) {
   const { truth } = sample({ surface, light: "colourful", size: RELIEF_SIDE });
-  const farthest = truth.imageDepth.reduce((far, depth) => (depth > far ? depth : far), -Infinity);
+  const farthest = truth.imageDepth.reduce((far, depth) => Math.max(depth, far), -Infinity);
   const heights = truth.imageDepth.map((depth) => (Number.isNaN(depth) ? 0 : farthest - depth + FLOOR + 1));
   return { width: RELIEF_SIDE, height: RELIEF_SIDE, heights };
 }
@@ -45,7 +45,9 @@ function write(name, { image, depth, pose }) {
   const { width, height } = image;
   const head = new DataView(new ArrayBuffer(8 + 8 * 13));
   [width, height].forEach((side, index) => head.setUint32(4 * index, side, true));
-  [pose.scale, ...pose.rotation, ...pose.translation].forEach((value, index) => head.setFloat64(8 + 8 * index, value, true));
+  [pose.scale, ...pose.rotation, ...pose.translation].forEach((value, index) =>
+    head.setFloat64(8 + 8 * index, value, true),
+  );
   const colours = image.data.map((value, index) => (image.mask[Math.floor(index / 3)] ? value : NaN));
   const path = `${FOLDER}/${name}.bin`;
   writeFileSync(inRoot(path), Buffer.concat([head, colours, depth.data].map(({ buffer }) => Buffer.from(buffer))));

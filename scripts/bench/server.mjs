@@ -4,7 +4,13 @@ import { createServer } from "node:http";
 import { extname, normalize } from "node:path";
 import { inRoot } from "../shell.mjs";
 
-const TYPES = { ".html": "text/html", ".js": "text/javascript", ".css": "text/css", ".wasm": "application/wasm", ".svg": "image/svg+xml" };
+const TYPES = {
+  ".html": "text/html",
+  ".js": "text/javascript",
+  ".css": "text/css",
+  ".wasm": "application/wasm",
+  ".svg": "image/svg+xml",
+};
 const ISOLATED = { "Cross-Origin-Opener-Policy": "same-origin", "Cross-Origin-Embedder-Policy": "require-corp" };
 /** Folders that a bench has business in. */
 const SERVED = /^\/(pkg|scripts\/bench\/page|target\/bench|site)\//;
@@ -19,7 +25,11 @@ export function serve() {
       response.writeHead(404).end();
       return;
     }
-    response.writeHead(200, { ...ISOLATED, "Content-Type": TYPES[extname(path)] ?? "application/octet-stream", "Cache-Control": "no-store" });
+    response.writeHead(200, {
+      ...ISOLATED,
+      "Content-Type": TYPES[extname(path)] ?? "application/octet-stream",
+      "Cache-Control": "no-store",
+    });
     createReadStream(path).pipe(response);
   });
   return new Promise((ready) => {

@@ -4,7 +4,13 @@ import { createInterface } from "node:readline";
 import { Failure, inRoot } from "../shell.mjs";
 
 /** Containers have no sandbox, machines for tests no graphics card, and the browser's own errands no business here. */
-const FLAGS = ["--no-sandbox", "--enable-unsafe-swiftshader", "--disable-background-networking", "--disable-component-update", "--no-first-run"];
+const FLAGS = [
+  "--no-sandbox",
+  "--enable-unsafe-swiftshader",
+  "--disable-background-networking",
+  "--disable-component-update",
+  "--no-first-run",
+];
 
 export async function launch(executablePath) {
   const { chromium } = await import("@playwright/test");
@@ -42,7 +48,10 @@ export async function browserSide(chromium, address) {
 
 /** benches/rounds.rs as a process that waits for requests. */
 export function nativeSide() {
-  const child = spawn("cargo", ["bench", "--quiet", "--bench", "rounds", "--", "requests"], { cwd: inRoot(), stdio: ["pipe", "pipe", "inherit"] });
+  const child = spawn("cargo", ["bench", "--quiet", "--bench", "rounds", "--", "requests"], {
+    cwd: inRoot(),
+    stdio: ["pipe", "pipe", "inherit"],
+  });
   const lines = createInterface({ input: child.stdout })[Symbol.asyncIterator]();
   async function ask(...words) {
     child.stdin.write(`${words.join(" ")}\n`);

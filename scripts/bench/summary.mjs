@@ -14,20 +14,27 @@ const GROWTH_FROM = 64 * 64;
 /** Slope of a straight line through the points, by least squares. */
 function slope(points) {
   const middle = [0, 1].map((axis) => points.reduce((sum, point) => sum + point[axis], 0) / points.length);
-  const moment = (axis) => points.reduce((sum, point) => sum + (point[0] - middle[0]) * (point[axis] - middle[axis]), 0);
+  const moment = (axis) =>
+    points.reduce((sum, point) => sum + (point[0] - middle[0]) * (point[axis] - middle[axis]), 0);
   return moment(1) / moment(0);
 }
 
 /** Exponent of the time of a stage against the number of pixels; null where fewer than two sizes were timed. */
 function growth(rows, where, stage) {
   const points = rows
-    .filter((row) => row.where === where && row.stage === stage && pixelsOf(row.size) >= GROWTH_FROM && row.milliseconds.median > 0)
+    .filter(
+      (row) =>
+        row.where === where && row.stage === stage && pixelsOf(row.size) >= GROWTH_FROM && row.milliseconds.median > 0,
+    )
     .map(({ size, milliseconds }) => [Math.log(pixelsOf(size)), Math.log(milliseconds.median)]);
   return points.length < 2 ? null : slope(points);
 }
 
 function growths(rows) {
-  const of = (where) => Object.fromEntries([...new Set(rows.map(({ stage }) => stage))].map((stage) => [stage, growth(rows, where, stage)]));
+  const of = (where) =>
+    Object.fromEntries(
+      [...new Set(rows.map(({ stage }) => stage))].map((stage) => [stage, growth(rows, where, stage)]),
+    );
   const places = new Set(rows.map(({ where }) => where));
   const main = of(places.has("browser") ? "browser" : "native");
   return { ...main, ...(places.has("native") ? { native: of("native") } : {}) };
@@ -36,7 +43,9 @@ function growths(rows) {
 const wasmAgainstNative = (rows) =>
   rows.flatMap(({ where, size, stage, milliseconds }) => {
     const native = rows.find((row) => row.where === "native" && row.size === size && row.stage === stage);
-    return where === "browser" && native ? [{ size, stage, ratio: milliseconds.median / native.milliseconds.median }] : [];
+    return where === "browser" && native
+      ? [{ size, stage, ratio: milliseconds.median / native.milliseconds.median }]
+      : [];
   });
 
 /** One row for each place and size of searches through several scenes. */
@@ -61,9 +70,31 @@ function searchRows(searches) {
 }
 
 /** Everything as it goes into the JSON; what was not measured is null. */
-export function summary({ samples, ends, converged, searches, startUp, transfer, drawing, playing, memory, sizes, about }) {
-  const rows = samples.map(({ where, size, stage, times }) => ({ where, size, stage, samples: times.length, milliseconds: quantiles(times) }));
-  const timesOf = (found) => found && Object.fromEntries(Object.entries(found).map(([key, value]) => [key, Array.isArray(value) ? quantiles(value) : value]));
+export function summary({
+  samples,
+  ends,
+  converged,
+  searches,
+  startUp,
+  transfer,
+  drawing,
+  playing,
+  memory,
+  sizes,
+  about,
+}) {
+  const rows = samples.map(({ where, size, stage, times }) => ({
+    where,
+    size,
+    stage,
+    samples: times.length,
+    milliseconds: quantiles(times),
+  }));
+  const timesOf = (found) =>
+    found &&
+    Object.fromEntries(
+      Object.entries(found).map(([key, value]) => [key, Array.isArray(value) ? quantiles(value) : value]),
+    );
   const noSizes = { wasmBytes: null, wasmGzipBytes: null, scalarBytes: null, scalarGzipBytes: null, jsGzipBytes: null };
   const { scripts, ...bytes } = sizes ?? noSizes;
   return {
@@ -85,7 +116,17 @@ export function summary({ samples, ends, converged, searches, startUp, transfer,
 }
 
 /** [what, value, unit, limit] of each aim; a value is null where this run did not measure it. */
-export function aims({ rows, search, growth, wasmAgainstNative, playing, bytesPerPixel, wasmGzipBytes, scalarGzipBytes, jsGzipBytes }) {
+export function aims({
+  rows,
+  search,
+  growth,
+  wasmAgainstNative,
+  playing,
+  bytesPerPixel,
+  wasmGzipBytes,
+  scalarGzipBytes,
+  jsGzipBytes,
+}) {
   const step = (size, stage = "step", where = "browser") =>
     rows.find((row) => row.where === where && row.size === size && row.stage === stage)?.milliseconds.median ?? null;
   const searched = (size, where) => search.find((row) => row.where === where && row.size === size);

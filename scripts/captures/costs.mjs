@@ -26,7 +26,9 @@ const clear = (depth) => Math.max(HIDDEN.metres, HIDDEN.share * depth);
 
 /** Ranks of values over their number, 0 .. 1; NaN stays. */
 function equalised(values) {
-  const order = [...values.keys()].filter((index) => !Number.isNaN(values[index])).sort((a, b) => values[a] - values[b]);
+  const order = [...values.keys()]
+    .filter((index) => !Number.isNaN(values[index]))
+    .sort((a, b) => values[a] - values[b]);
   const ranks = new Float32Array(values.length).fill(NaN);
   for (let first = 0; first < order.length; ) {
     let end = first;
@@ -38,11 +40,15 @@ function equalised(values) {
 }
 
 /** Ranks of an image's greys; what its makers cut out is black and has the lowest level, instead of nearly all ranks. */
-const levelsOf = (light) => equalised(light.map((value) => (value > 0 ? value : NaN))).map((rank) => (Number.isNaN(rank) ? 0 : rank));
+const levelsOf = (light) =>
+  equalised(light.map((value) => (value > 0 ? value : NaN))).map((rank) => (Number.isNaN(rank) ? 0 : rank));
 
 const grey = ({ width, height, data }) => {
   const step = data.BYTES_PER_ELEMENT === 1 ? 255 : 65535;
-  return Float32Array.from({ length: width * height }, (_, k) => (0.299 * data[4 * k] + 0.587 * data[4 * k + 1] + 0.114 * data[4 * k + 2]) / step);
+  return Float32Array.from(
+    { length: width * height },
+    (_, k) => (0.299 * data[4 * k] + 0.587 * data[4 * k + 1] + 0.114 * data[4 * k + 2]) / step,
+  );
 };
 
 /** Cosine between normal and ray of each point, the depth camera at `eye`. */
@@ -51,7 +57,9 @@ export function shading(points, { width, height }, eye) {
   for (let row = REACH; row < height - REACH; row++) {
     for (let column = REACH; column < width - REACH; column++) {
       const at = row * width + column;
-      const [left, right, above, below] = [at - REACH, at + REACH, at - REACH * width, at + REACH * width].map((k) => point(points, k));
+      const [left, right, above, below] = [at - REACH, at + REACH, at - REACH * width, at + REACH * width].map((k) =>
+        point(points, k),
+      );
       const a = right.map((value, k) => value - left[k]);
       const b = below.map((value, k) => value - above[k]);
       const n = [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
@@ -84,7 +92,8 @@ function seen({ points, image }, pose) {
   return places;
 }
 
-const entropy = (counts, total) => -counts.reduce((sum, count) => (count > 0 ? sum + (count / total) * Math.log(count / total) : sum), 0);
+const entropy = (counts, total) =>
+  -counts.reduce((sum, count) => (count > 0 ? sum + (count / total) * Math.log(count / total) : sum), 0);
 const level = (rank) => Math.min(LEVELS - 1, Math.floor(rank * LEVELS));
 
 function informationDistance(places, levels, image, { width }) {
@@ -93,11 +102,16 @@ function informationDistance(places, levels, image, { width }) {
   for (let index = 0; index < levels.length; index++) {
     const column = places[3 * index];
     if (Number.isNaN(column) || Number.isNaN(levels[index])) continue;
-    joint[LEVELS * level(levels[index]) + level(image[Math.round(places[3 * index + 1]) * width + Math.round(column)])]++;
+    joint[
+      LEVELS * level(levels[index]) + level(image[Math.round(places[3 * index + 1]) * width + Math.round(column)])
+    ]++;
     total++;
   }
-  const sums = (of) => Array.from({ length: LEVELS }, (_, k) => joint.reduce((sum, count, at) => (of(at) === k ? sum + count : sum), 0));
-  const [depth, light, both] = [sums((at) => Math.floor(at / LEVELS)), sums((at) => at % LEVELS), joint].map((counts) => entropy(counts, total));
+  const sums = (of) =>
+    Array.from({ length: LEVELS }, (_, k) => joint.reduce((sum, count, at) => (of(at) === k ? sum + count : sum), 0));
+  const [depth, light, both] = [sums((at) => Math.floor(at / LEVELS)), sums((at) => at % LEVELS), joint].map((counts) =>
+    entropy(counts, total),
+  );
   return (2 * both - depth - light) / both;
 }
 
@@ -109,7 +123,8 @@ function depthEdges(points, { width, height }, eye) {
     for (let column = 1; column < width - 1; column++) {
       const at = row * width + column;
       const here = distance(at);
-      if ([at - 1, at + 1, at - width, at + width].some((next) => distance(next) > here + 2 * clear(here))) found.push(at);
+      if ([at - 1, at + 1, at - width, at + width].some((next) => distance(next) > here + 2 * clear(here)))
+        found.push(at);
     }
   }
   return found;
@@ -120,7 +135,11 @@ function blurred(values, { width, height }, sigma) {
   const weights = Array.from({ length: 2 * reach + 1 }, (_, k) => Math.exp(-0.5 * ((k - reach) / sigma) ** 2));
   const total = weights.reduce((sum, weight) => sum + weight, 0);
   const along = (from, count, stride, index, at) =>
-    weights.reduce((sum, weight, k) => sum + weight * from[at + (Math.min(count - 1, Math.max(0, index + k - reach)) - index) * stride], 0) / total;
+    weights.reduce(
+      (sum, weight, k) =>
+        sum + weight * from[at + (Math.min(count - 1, Math.max(0, index + k - reach)) - index) * stride],
+      0,
+    ) / total;
   const rows = values.map((_, at) => along(values, width, 1, at % width, at));
   return rows.map((_, at) => along(rows, height, width, Math.floor(at / width), at));
 }
@@ -131,7 +150,9 @@ function canny(values, { width, height }) {
   const strength = new Float32Array(values.length);
   const thin = new Float32Array(values.length);
   const slope = (at) => [smooth[at + 1] - smooth[at - 1], smooth[at + width] - smooth[at - width]];
-  const inside = [...values.keys()].filter((at) => at % width > 1 && at % width < width - 2 && at >= 2 * width && at < values.length - 2 * width);
+  const inside = [...values.keys()].filter(
+    (at) => at % width > 1 && at % width < width - 2 && at >= 2 * width && at < values.length - 2 * width,
+  );
   for (const at of inside) strength[at] = Math.hypot(...slope(at));
   for (const at of inside) {
     const [x, y] = slope(at);
@@ -155,11 +176,17 @@ function canny(values, { width, height }) {
 /** Distance of each pixel to the next edge in steps along rows, columns and diagonals (Borgefors 1986). */
 function distances(edges, { width, height }) {
   const far = Float32Array.from(edges, (edge) => (edge ? 0 : FARTHEST));
-  const steps = [[-1, 0, 1], [0, -1, 1], [-1, -1, Math.SQRT2], [1, -1, Math.SQRT2]];
+  const steps = [
+    [-1, 0, 1],
+    [0, -1, 1],
+    [-1, -1, Math.SQRT2],
+    [1, -1, Math.SQRT2],
+  ];
   const pass = (at, sign) => {
     for (const [right, down, length] of steps) {
       const [column, row] = [(at % width) + sign * right, Math.floor(at / width) + sign * down];
-      if (column >= 0 && row >= 0 && column < width && row < height) far[at] = Math.min(far[at], far[row * width + column] + length);
+      if (column >= 0 && row >= 0 && column < width && row < height)
+        far[at] = Math.min(far[at], far[row * width + column] + length);
     }
   };
   for (let at = 0; at < far.length; at++) pass(at, 1);
@@ -191,7 +218,9 @@ export function costs({ image, grid, points }, motion) {
     near: (pose, camera = image.camera) => {
       const on = edges.filter((index) => {
         const [column, row] = project(camera, moved(pose, point(points, index))).map(Math.round);
-        return column >= 0 && row >= 0 && column < image.width && row < image.height && far[row * image.width + column] <= 2;
+        return (
+          column >= 0 && row >= 0 && column < image.width && row < image.height && far[row * image.width + column] <= 2
+        );
       });
       return on.length / edges.length;
     },

@@ -9,7 +9,8 @@ const NOWHERE = poseOf(IDENTITY, [0, 0, 0]);
 const HIDING = { degrees: 10, millimetres: 100 };
 
 /** A number for each text, so that a capture's draws do not depend on those of another (Fowler, Noll and Vo's hash). */
-export const seedOf = (text, draw) => [...`${text} ${draw}`].reduce((hash, letter) => Math.imul(hash ^ letter.charCodeAt(0), 16777619), -2128831035) >>> 0;
+export const seedOf = (text, draw) =>
+  [...`${text} ${draw}`].reduce((hash, letter) => Math.imul(hash ^ letter.charCodeAt(0), 16777619), -2128831035) >>> 0;
 
 /** Frames of one rig behind one motion; the truth of the first is that of all. */
 function hidden(frames, random) {
@@ -24,9 +25,22 @@ function measured(report, truth, centre) {
   const [x, y, z] = d.slice(0, 3).map((angle) => (angle * 180) / Math.PI);
   const [right, down, along] = d.slice(3).map((metres) => 1000 * metres);
   const fit = sizes(offset(report.estimate, truth, report.middle));
-  const parts = { turn: Math.hypot(x, y, z), inPlane: Math.abs(z), tilt: Math.hypot(x, y), lateral: Math.hypot(right, down), along: Math.abs(along) };
+  const parts = {
+    turn: Math.hypot(x, y, z),
+    inPlane: Math.abs(z),
+    tilt: Math.hypot(x, y),
+    lateral: Math.hypot(right, down),
+    along: Math.abs(along),
+  };
   const chiSquare = mahalanobis(report.covariance, offset(report.estimate, truth, report.middle));
-  return { fit, parts, signed: [x, y, z, right, down, along], chiSquare, focal: report.focal, health: report.health.pixels };
+  return {
+    fit,
+    parts,
+    signed: [x, y, z, right, down, along],
+    chiSquare,
+    focal: report.focal,
+    health: report.health.pixels,
+  };
 }
 
 /** The told candidate is off by `error`, about the colour camera or about the frames' middle. */
@@ -38,7 +52,13 @@ export async function toldOff(check, frames, error, { seed, about = "camera", op
   const report = await check(behind.map(checkFrame), { told }, options);
   // Where the makers' pose is known to be off, what is known better: X, colour frame, before the makers' pose.
   const better = correction ? after(correction, truth) : truth;
-  return { error, about, verdict: report.verdict, ...measured(report, better, centre), start: measured({ ...report, estimate: told }, truth, centre).parts };
+  return {
+    error,
+    about,
+    verdict: report.verdict,
+    ...measured(report, better, centre),
+    start: measured({ ...report, estimate: told }, truth, centre).parts,
+  };
 }
 
 /** 1 where the wrong one is worse, 0 where it is better, one half where nothing tells. */
@@ -54,7 +74,9 @@ export async function ranked(check, frame, { start, errors, each, seed, about })
   const [behind] = frames;
   const { truth, centre } = behind;
   const first = wrong(truth, start, random.direction, about === "middle" ? centre : undefined);
-  const rivals = errors.flatMap((error) => Array.from({ length: each }, () => ({ error, pose: wrong(truth, error, random.direction) })));
+  const rivals = errors.flatMap((error) =>
+    Array.from({ length: each }, () => ({ error, pose: wrong(truth, error, random.direction) })),
+  );
   const named = Object.fromEntries(rivals.map(({ pose }, index) => [`rival ${index + 1}`, pose]));
   const report = await check([checkFrame(behind)], { first, truth, ...named });
   const theirs = costs(behind, motion);

@@ -10,7 +10,14 @@ const SAME = poseOf(IDENTITY, [0, 0, 0]);
 /** A frame before its truth is hidden; `centre` is what turns about the scene are about, colour frame. */
 function sight(name, { image, depth }, truth, centre) {
   const points = depth.points ?? cloud(depth);
-  return { name, image, grid: { width: depth.width, height: depth.height }, points, truth, centre: centre ?? middle(points, truth) };
+  return {
+    name,
+    image,
+    grid: { width: depth.width, height: depth.height },
+    points,
+    truth,
+    centre: centre ?? middle(points, truth),
+  };
 }
 
 /** Medians of the points in the colour frame. */
@@ -38,12 +45,19 @@ export function sevenScenes(from, to, { decodeColour, decodeDepth }) {
   const [[fx, , cx], [, fy, cy]] = numbers(bytes("seven_scenes", "camera-intrinsics.txt"));
   const place = (number) => {
     const rows = numbers(read(number, "pose.txt")).slice(0, 3);
-    return poseOf(rows.flatMap((row) => row.slice(0, 3)), rows.map((row) => row[3]));
+    return poseOf(
+      rows.flatMap((row) => row.slice(0, 3)),
+      rows.map((row) => row[3]),
+    );
   };
   const camera = { fx, fy, cx, cy };
   const image = { ...decodeColour(read(to, "color.png")), camera };
   const depth = { ...decodeDepth(read(from, "depth.png")), camera, unit: MILLIMETRE };
-  return sight(`seven_scenes ${from} onto ${to}`, { image, depth }, from === to ? SAME : after(inverse(place(to)), place(from)));
+  return sight(
+    `seven_scenes ${from} onto ${to}`,
+    { image, depth },
+    from === to ? SAME : after(inverse(place(to)), place(from)),
+  );
 }
 
 /** A frame of a rig that was read from files. */
@@ -53,9 +67,15 @@ export function rigSight({ name, image, depth }, truth) {
 }
 
 const numbers = (text) =>
-  text.toString().split("\n").filter((line) => line.trim() !== "").map((line) => line.trim().split(/\s+/).map(Number));
+  text
+    .toString()
+    .split("\n")
+    .filter((line) => line.trim() !== "")
+    .map((line) => line.trim().split(/\s+/).map(Number));
 
-const OBJECTS = ["coffee_mug_1", "bowl_1", "cap_1", "cereal_box_1"].flatMap((name) => [1, 2].map((frame) => [name, frame]));
+const OBJECTS = ["coffee_mug_1", "bowl_1", "cap_1", "cereal_box_1"].flatMap((name) =>
+  [1, 2].map((frame) => [name, frame]),
+);
 const LAMPS = [1, 7, 14].map((frame) => ["mitten_rgbd", frame]);
 const REGISTERED = [...OBJECTS, ["vase_rgbd", ""], ["android_rgbd", ""], ...LAMPS];
 
@@ -68,7 +88,12 @@ export function registered(files) {
     // The android was cut out of both its files; of the others all that is around the object is there.
     const masked = name === "android_rgbd";
     const { mask, ...bare } = image;
-    const shown = sight(`${name} ${frame}`.trim(), { image: masked ? image : bare, depth: { ...depth, points } }, SAME, centre);
+    const shown = sight(
+      `${name} ${frame}`.trim(),
+      { image: masked ? image : bare, depth: { ...depth, points } },
+      SAME,
+      centre,
+    );
     return masked ? { ...shown, mask: depth.mask } : shown;
   });
 }
@@ -84,4 +109,8 @@ export function hide(frame, motion) {
 }
 
 /** As the package takes it. */
-export const checkFrame = ({ name, image, grid, points, mask }) => ({ name, image, depth: { ...grid, points, ...(mask && { mask }) } });
+export const checkFrame = ({ name, image, grid, points, mask }) => ({
+  name,
+  image,
+  depth: { ...grid, points, ...(mask && { mask }) },
+});

@@ -7,10 +7,75 @@ const BYTES = [0, 1, 255, 127, 128, 45, 46, 48, 57, 10, 32, 34, 44, 58];
 const NUMBERS = [0, 1, -1, 2 ** 15, 2 ** 16 - 1, 2 ** 31 - 1, -(2 ** 31), 4096, 4097, 100, 1000];
 /** What formats of text turn on. */
 const WORDS = [
-  "nan", "inf", "-1", "0", "1e999", "1e-320", "4294967296", "65536", ".5", "0x10", "true", "null", "{", "}", "[", "]", ": ", "- ", "&a ", "*a", "<", ">", "</", "<!--", "&lt;",
-  "&#x110000;", "\n", "\r\n", "\t", "  ", "#", "---\n", "%YAML:1.0\n", "!!opencv-matrix", "|\n", ">\n", "'", '"', "\\", "\\u0000", "camera_matrix", "distortion_coefficients", "rows: 3",
-  "data", "R", "T_cam_imu", "T_cn_cnm1", "rotation", "translation", "quaternion", "PINHOLE", "OPENCV_FISHEYE", "equidistant", "radtan", "binary_compressed", "ascii", "binary_little_endian",
-  "property list uchar int ", "property double x\n", "element vertex ", "end_header\n", "COUNT 2 2 2\n", "SIZE 8 8 8\n", "TYPE I U F\n", "P1\n", "P4\n", "P7\n", "Pf\n", "-1.0\n",
+  "nan",
+  "inf",
+  "-1",
+  "0",
+  "1e999",
+  "1e-320",
+  "4294967296",
+  "65536",
+  ".5",
+  "0x10",
+  "true",
+  "null",
+  "{",
+  "}",
+  "[",
+  "]",
+  ": ",
+  "- ",
+  "&a ",
+  "*a",
+  "<",
+  ">",
+  "</",
+  "<!--",
+  "&lt;",
+  "&#x110000;",
+  "\n",
+  "\r\n",
+  "\t",
+  "  ",
+  "#",
+  "---\n",
+  "%YAML:1.0\n",
+  "!!opencv-matrix",
+  "|\n",
+  ">\n",
+  "'",
+  '"',
+  "\\",
+  "\\u0000",
+  "camera_matrix",
+  "distortion_coefficients",
+  "rows: 3",
+  "data",
+  "R",
+  "T_cam_imu",
+  "T_cn_cnm1",
+  "rotation",
+  "translation",
+  "quaternion",
+  "PINHOLE",
+  "OPENCV_FISHEYE",
+  "equidistant",
+  "radtan",
+  "binary_compressed",
+  "ascii",
+  "binary_little_endian",
+  "property list uchar int ",
+  "property double x\n",
+  "element vertex ",
+  "end_header\n",
+  "COUNT 2 2 2\n",
+  "SIZE 8 8 8\n",
+  "TYPE I U F\n",
+  "P1\n",
+  "P4\n",
+  "P7\n",
+  "Pf\n",
+  "-1.0\n",
 ];
 
 const joined = (...parts) => new Uint8Array(Buffer.concat(parts));
@@ -43,12 +108,18 @@ const STEPS = [
   },
   (file, random) => {
     const at = place(random, file.length);
-    return joined(file.subarray(0, at), text(random.pick(WORDS)), file.subarray(at + (random.chance(0.5) ? 0 : random.below(12))));
+    return joined(
+      file.subarray(0, at),
+      text(random.pick(WORDS)),
+      file.subarray(at + (random.chance(0.5) ? 0 : random.below(12))),
+    );
   },
   (file, random) => file.slice(0, random.below(file.length) + 1),
   (file, random) => {
     const [a, b] = [random.below(file.length), random.below(file.length)].sort((x, y) => x - y);
-    return random.chance(0.5) ? joined(file.subarray(0, a), file.subarray(b)) : joined(file.subarray(0, b), file.subarray(a));
+    return random.chance(0.5)
+      ? joined(file.subarray(0, a), file.subarray(b))
+      : joined(file.subarray(0, b), file.subarray(a));
   },
   (file, random, others) => {
     const other = random.pick(others);
@@ -66,7 +137,24 @@ function numberChanged(file, random) {
   const found = [...words.matchAll(/-?\d+(?:\.\d*)?(?:e[+-]?\d+)?/gi)];
   if (found.length === 0) return file;
   const { 0: old, index } = random.pick(found);
-  const value = random.pick(["0", "-1", "1", "2", "3", "4", "7", "16", "4097", "1e999", "nan", "", `-${old}`, `${old}0`, String(Number(old) + 1), String(1 / (Number(old) || 1))]);
+  const value = random.pick([
+    "0",
+    "-1",
+    "1",
+    "2",
+    "3",
+    "4",
+    "7",
+    "16",
+    "4097",
+    "1e999",
+    "nan",
+    "",
+    `-${old}`,
+    `${old}0`,
+    String(Number(old) + 1),
+    String(1 / (Number(old) || 1)),
+  ]);
   return joined(file.subarray(0, index), text(value), file.subarray(index + old.length));
 }
 
@@ -97,7 +185,9 @@ function pngMutated(file, others, random) {
   const chosen = random.pick(parts);
   if (chosen.type === "IDAT" && random.chance(0.7)) {
     try {
-      chosen.body = deflateSync(steps(new Uint8Array(inflateSync(chosen.body, { maxOutputLength: LONGEST })), others, random));
+      chosen.body = deflateSync(
+        steps(new Uint8Array(inflateSync(chosen.body, { maxOutputLength: LONGEST })), others, random),
+      );
     } catch {
       // Damaged already, or in several parts.
       chosen.body = Buffer.from(steps(chosen.body, others, random));

@@ -10,7 +10,10 @@ export const MOST_MILLISECONDS = 1000;
 const isFinite = (numbers) => numbers.every((value) => Number.isFinite(value));
 
 function checkRaster({ width, height, data }, channels, what) {
-  assert.ok(Number.isInteger(width) && Number.isInteger(height) && width > 0 && height > 0, `${what} of ${width}x${height}`);
+  assert.ok(
+    Number.isInteger(width) && Number.isInteger(height) && width > 0 && height > 0,
+    `${what} of ${width}x${height}`,
+  );
   assert.equal(data.length, width * height * channels, what);
 }
 
@@ -28,20 +31,29 @@ function checkDepth(depth) {
 function checkCamera({ camera, width, height }) {
   const { fx, fy, cx, cy, distortion = [] } = camera;
   assert.ok(isFinite([fx, fy, cx, cy, ...distortion]) && fx > 0 && fy > 0, JSON.stringify(camera));
-  for (const side of [width, height]) if (side !== undefined) assert.ok(side > 0 && isFinite([side]), `a side of ${side}`);
+  for (const side of [width, height])
+    if (side !== undefined) assert.ok(side > 0 && isFinite([side]), `a side of ${side}`);
 }
 
 function checkPose({ pose }) {
   const { rotation: r, translation } = pose;
   assert.ok(r.length === 9 && translation.length === 3 && isFinite([...r, ...translation]), JSON.stringify(pose));
-  for (const [i, j] of [[0, 0], [1, 1], [2, 2], [0, 1], [0, 2], [1, 2]]) {
+  for (const [i, j] of [
+    [0, 0],
+    [1, 1],
+    [2, 2],
+    [0, 1],
+    [0, 2],
+    [1, 2],
+  ]) {
     const product = r[3 * i] * r[3 * j] + r[3 * i + 1] * r[3 * j + 1] + r[3 * i + 2] * r[3 * j + 2];
     assert.ok(Math.abs(product - (i === j ? 1 : 0)) < 0.05, `no rotation: ${JSON.stringify(r)}`);
   }
 }
 
 function checkWords(list) {
-  for (const words of list) assert.ok(typeof words === "string" && words.length > 0 && !/undefined|\[object/.test(words), `says ${words}`);
+  for (const words of list)
+    assert.ok(typeof words === "string" && words.length > 0 && !/undefined|\[object/.test(words), `says ${words}`);
 }
 
 function checkReading({ says, warnings, kind, image, depth, mask, cameras = [], poses = [] }) {
@@ -67,7 +79,9 @@ const WAYS = [
     name: "folder",
     run: async (bytes) => {
       const names = ["rgb/1.png", "depth/1.png", "mask/1.png", "rgb.txt", "calibration.txt"];
-      const { frames, cameras, poses, readings, warnings } = await readRigFolder(names.map((name) => ({ name, bytes })));
+      const { frames, cameras, poses, readings, warnings } = await readRigFolder(
+        names.map((name) => ({ name, bytes })),
+      );
       frames.forEach(({ image, depth }) => (checkImage(image), checkDepth(depth)));
       cameras.forEach(checkCamera);
       poses.forEach(checkPose);
@@ -94,7 +108,8 @@ export async function readEveryWay(bytes) {
         await run(bytes);
         read++;
       } catch (error) {
-        if (error instanceof BimodalError && error.code === "file" && /^file: ./.test(error.message)) checkWords([error.message]);
+        if (error instanceof BimodalError && error.code === "file" && /^file: ./.test(error.message))
+          checkWords([error.message]);
         else throw new Error(`${name}: ${error?.stack ?? error}`, { cause: error });
       }
     };

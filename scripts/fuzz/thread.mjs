@@ -59,7 +59,8 @@ const end = Date.now() + milliseconds;
 let next = Date.now() + 10_000;
 while (Date.now() < end) {
   // New files are worked on more often than old ones.
-  const base = () => (random.chance(0.5) ? queue[queue.length - 1 - random.below(Math.min(queue.length, 50))] : random.pick(queue));
+  const base = () =>
+    random.chance(0.5) ? queue[queue.length - 1 - random.below(Math.min(queue.length, 50))] : random.pick(queue);
   const batch = Array.from({ length: BATCH }, () => mutated(base(), queue, random)).filter((file) => file.length > 0);
   for (const file of batch) await read(file);
   if ((await coverage.grown()) > 0) {

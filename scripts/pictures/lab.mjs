@@ -23,7 +23,10 @@ async function still(page) {
 export async function labPicture() {
   await buildSite();
   const { address, close } = await serveSite({ port: 0, below: "/any/folder/" });
-  const browser = await chromium.launch({ executablePath: await headless(), args: ["--no-sandbox", "--enable-unsafe-swiftshader"] });
+  const browser = await chromium.launch({
+    executablePath: await headless(),
+    args: ["--no-sandbox", "--enable-unsafe-swiftshader"],
+  });
   try {
     const page = await browser.newPage({ viewport: VIEWPORT, colorScheme: "light" });
     await page.goto(address);

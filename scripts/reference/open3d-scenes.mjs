@@ -17,7 +17,10 @@ if (!folder || !hasData()) throw new Error("needs a folder to write to, and the 
 const STEPS = 3;
 
 /** Pixels of a view as the frame counts them. */
-const place = ({ width, height }, index) => [(index % width) - (width - 1) / 2, Math.floor(index / width) - (height - 1) / 2];
+const place = ({ width, height }, index) => [
+  (index % width) - (width - 1) / 2,
+  Math.floor(index / width) - (height - 1) / 2,
+];
 
 function surfaceFromShading({ image, depth, light }) {
   // The loop wants some pose: identity, held. With the weight of the prior at zero neither it nor the depth has any say.
@@ -32,7 +35,9 @@ function surfaceFromShading({ image, depth, light }) {
 }
 
 const cloud = (depth) =>
-  [...depth.data.keys()].filter((index) => depth.data[index] > 0).flatMap((index) => [...place(depth, index), depth.data[index]]);
+  [...depth.data.keys()]
+    .filter((index) => depth.data[index] > 0)
+    .flatMap((index) => [...place(depth, index), depth.data[index]]);
 
 await init();
 const data = library(files);

@@ -17,7 +17,12 @@ function rotation(x, y, z, w) {
   ];
 }
 
-const pose = (turn, translation) => ({ scale: 1, rotation: rotation(...turn), translation, angles: { alpha: 0, beta: 0, gamma: 0 } });
+const pose = (turn, translation) => ({
+  scale: 1,
+  rotation: rotation(...turn),
+  translation,
+  angles: { alpha: 0, beta: 0, gamma: 0 },
+});
 const vga = [640, 480];
 
 export const RIGS = {
@@ -26,7 +31,13 @@ export const RIGS = {
     pose: pose([0.004, -0.011, 0.0023, 1], [-0.02503, 0.00017, 1 / 3000]),
     context: {
       depth: { fx: 580.6, fy: 581.1, cx: 313.45, cy: 238.4, distortion: [0, 0, 0, 0, 0] },
-      colour: { fx: 517.306408, fy: 516.469215, cx: 318.643040, cy: 255.313989, distortion: [0.262383, -0.953104, -0.005358, 0.002628, 1.163314] },
+      colour: {
+        fx: 517.306408,
+        fy: 516.469215,
+        cx: 318.64304,
+        cy: 255.313989,
+        distortion: [0.262383, -0.953104, -0.005358, 0.002628, 1.163314],
+      },
       sizes: { depth: vga, colour: [1280, 960] },
     },
   },
@@ -43,7 +54,10 @@ export const RIGS = {
   /** Four numbers of distortion, which every format holds, and no sizes. */
   radial: {
     pose: pose([-0.2, 0.3, 0.1, 0.9], [0.1, 0.2, -0.3]),
-    context: { depth: { fx: 365, fy: 365, cx: 256, cy: 212, distortion: [0.09, -0.27, 0, 1e-5] }, colour: { fx: 1050, fy: 1050, cx: 960, cy: 540 } },
+    context: {
+      depth: { fx: 365, fy: 365, cx: 256, cy: 212, distortion: [0.09, -0.27, 0, 1e-5] },
+      colour: { fx: 1050, fy: 1050, cx: 960, cy: 540 },
+    },
   },
   /** Nothing but the pose. */
   bare: { pose: pose([0, 0, 0, 1], [0, -0.05, 0]), context: {} },
@@ -54,7 +68,11 @@ export const formatsOf = (rig) => poseFormats.filter((format) => format !== "ope
 
 /** Two small clouds, points missing in the first, the second without colours. */
 export const CLOUDS = [
-  { name: "depth", points: new Float32Array([0, 0.1, 1, NaN, NaN, NaN, -0.2, 1 / 3, 2.5]), colours: new Uint8Array([255, 0, 7, 1, 2, 3, 10, 20, 30]) },
+  {
+    name: "depth",
+    points: new Float32Array([0, 0.1, 1, NaN, NaN, NaN, -0.2, 1 / 3, 2.5]),
+    colours: new Uint8Array([255, 0, 7, 1, 2, 3, 10, 20, 30]),
+  },
   { name: "colour", points: new Float32Array([1e-7, -4, 8]) },
 ];
 

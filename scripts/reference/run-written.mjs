@@ -3,7 +3,16 @@
 //
 // npm run build && node scripts/reference/run-written.mjs     writes tests/fixtures/run/
 import { mkdirSync, realpathSync, writeFileSync } from "node:fs";
-import { depthPng, lightCsv, matrixText, normalsPng, poseJson, writeClouds, writeNpy, writePng } from "../../pkg/write.js";
+import {
+  depthPng,
+  lightCsv,
+  matrixText,
+  normalsPng,
+  poseJson,
+  writeClouds,
+  writeNpy,
+  writePng,
+} from "../../pkg/write.js";
 import { inRoot } from "../shell.mjs";
 
 export const FOLDER = "tests/fixtures/run";
@@ -20,7 +29,9 @@ export const POSE = {
 };
 export const LIGHT = Float64Array.from({ length: 27 }, (_, k) => Math.cos(k) / 3);
 /** Depths in metres and in pixels; what is not above zero, and what is no number, is no depth. In pixels one below zero would be refused. */
-export const DEPTH = Float32Array.from({ length: width * height }, (_, i) => (i === 3 ? NaN : i === 8 ? 0 : i === 9 ? -1 : i === 11 ? Infinity : 0.5 + 0.0123 * i));
+export const DEPTH = Float32Array.from({ length: width * height }, (_, i) =>
+  i === 3 ? NaN : i === 8 ? 0 : i === 9 ? -1 : i === 11 ? Infinity : 0.5 + 0.0123 * i,
+);
 export const FAR = Float32Array.from(DEPTH, (value) => 20 * value);
 export const PIXELS = Float32Array.from(DEPTH, (value) => (value < 0 ? NaN : 100 * value));
 export const NORMALS = Float32Array.from({ length: 3 * width * height }, (_, i) => {
@@ -28,8 +39,16 @@ export const NORMALS = Float32Array.from({ length: 3 * width * height }, (_, i) 
   return Math.floor(i / 3) === 4 ? NaN : [x, y, -Math.sqrt(1 - x * x - y * y)][i % 3];
 });
 export const CLOUDS = [
-  { name: "shape from the picture", points: new Float32Array([0, 0.1, 1, NaN, NaN, NaN, -0.2, 1 / 3, 2.5]), colours: new Uint8Array([199, 100, 26, 0, 0, 0, 199, 100, 26]) },
-  { name: "depth map, moved by the pose", points: new Float32Array([1e-7, -4, 8]), colours: new Uint8Array([11, 98, 184]) },
+  {
+    name: "shape from the picture",
+    points: new Float32Array([0, 0.1, 1, NaN, NaN, NaN, -0.2, 1 / 3, 2.5]),
+    colours: new Uint8Array([199, 100, 26, 0, 0, 0, 199, 100, 26]),
+  },
+  {
+    name: "depth map, moved by the pose",
+    points: new Float32Array([1e-7, -4, 8]),
+    colours: new Uint8Array([11, 98, 184]),
+  },
 ];
 
 /** Every file by its name. */

@@ -20,14 +20,18 @@ export function chance(seed) {
 }
 
 export const poseOf = (rotation, translation) => ({ scale: 1, rotation, translation });
-export const moved = ({ rotation, translation }, point) => turn(rotation, point).map((value, k) => value + translation[k]);
+export const moved = ({ rotation, translation }, point) =>
+  turn(rotation, point).map((value, k) => value + translation[k]);
 
 /** First `inner`, then `outer`. */
 export const after = (outer, inner) => poseOf(product(outer.rotation, inner.rotation), moved(outer, inner.translation));
 
 export function inverse({ rotation, translation }) {
   const back = transpose(rotation);
-  return poseOf(back, turn(back, translation).map((value) => -value));
+  return poseOf(
+    back,
+    turn(back, translation).map((value) => -value),
+  );
 }
 
 /** A pose that is off by degrees about a random axis through a point of the colour frame and millimetres in a random direction. */
@@ -46,7 +50,10 @@ export function offset(estimate, truth, middle) {
 }
 
 /** Degrees and millimetres of an offset. */
-export const sizes = (d) => ({ degrees: (Math.hypot(...d.slice(0, 3)) * 180) / Math.PI, millimetres: 1000 * Math.hypot(...d.slice(3)) });
+export const sizes = (d) => ({
+  degrees: (Math.hypot(...d.slice(0, 3)) * 180) / Math.PI,
+  millimetres: 1000 * Math.hypot(...d.slice(3)),
+});
 
 /** d^T C^-1 d by elimination. */
 export function mahalanobis(covariance, d) {
@@ -58,9 +65,11 @@ export function mahalanobis(covariance, d) {
     }
   }
   const x = Array(6).fill(0);
-  for (let i = 5; i >= 0; i--) x[i] = (rows[i][6] - rows[i].slice(i + 1, 6).reduce((sum, value, j) => sum + value * x[i + 1 + j], 0)) / rows[i][i];
+  for (let i = 5; i >= 0; i--)
+    x[i] = (rows[i][6] - rows[i].slice(i + 1, 6).reduce((sum, value, j) => sum + value * x[i + 1 + j], 0)) / rows[i][i];
   return d.reduce((sum, value, i) => sum + value * x[i], 0);
 }
 
-export const quantile = (values, share) => [...values].sort((a, b) => a - b)[Math.min(values.length - 1, Math.floor(values.length * share))] ?? NaN;
+export const quantile = (values, share) =>
+  [...values].sort((a, b) => a - b)[Math.min(values.length - 1, Math.floor(values.length * share))] ?? NaN;
 export const percent = (some, all) => (all === 0 ? "-" : `${Math.round((100 * some) / all)} %`);

@@ -26,7 +26,10 @@ export const POLICY = [
 function close(path) {
   const text = readFileSync(path, "utf8");
   const before = text.includes("<head>") ? "<head>" : "<!doctype html>";
-  writeFileSync(path, text.replace(before, `${before}\n    <meta http-equiv="Content-Security-Policy" content="${POLICY}" />`));
+  writeFileSync(
+    path,
+    text.replace(before, `${before}\n    <meta http-equiv="Content-Security-Policy" content="${POLICY}" />`),
+  );
 }
 
 /** A hash as browsers check it. */
@@ -34,11 +37,18 @@ const integrity = (path) => `sha256-${createHash("sha256").update(readFileSync(p
 
 /** The service worker, told which files there are and what is in them; another content is another version. */
 async function addWorker(paths) {
-  const files = Object.fromEntries(paths.map((path) => [relative(inRoot(SITE), path).split(sep).join("/"), integrity(path)]));
+  const files = Object.fromEntries(
+    paths.map((path) => [relative(inRoot(SITE), path).split(sep).join("/"), integrity(path)]),
+  );
   const version = createHash("sha256").update(JSON.stringify(files)).digest("hex").slice(0, 16);
   const { rolldown } = await import("rolldown");
   const bundle = await rolldown({ input: inRoot("www/offline/service-worker.ts"), platform: "browser" });
-  await bundle.write({ file: inRoot(SITE, WORKER), format: "iife", banner: `self.site = ${JSON.stringify({ version, files })};`, minify: true });
+  await bundle.write({
+    file: inRoot(SITE, WORKER),
+    format: "iife",
+    banner: `self.site = ${JSON.stringify({ version, files })};`,
+    minify: true,
+  });
   await bundle.close();
 }
 

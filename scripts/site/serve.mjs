@@ -21,12 +21,18 @@ export function serveSite({ port, below, folder = inRoot(SITE), headers = {} }) 
   const server = createServer(({ url }, response) => {
     const path = fileOf(url, below, folder);
     if (!path) return response.writeHead(404).end();
-    response.writeHead(200, { ...headers, "Content-Type": TYPES[extname(path)] ?? "application/octet-stream", "Content-Length": statSync(path).size });
+    response.writeHead(200, {
+      ...headers,
+      "Content-Type": TYPES[extname(path)] ?? "application/octet-stream",
+      "Content-Length": statSync(path).size,
+    });
     createReadStream(path).pipe(response);
   });
   return new Promise((done, failed) => {
     server.once("error", failed);
-    server.listen(port, "127.0.0.1", () => done({ address: `http://127.0.0.1:${server.address().port}${below}`, close: () => server.close() }));
+    server.listen(port, "127.0.0.1", () =>
+      done({ address: `http://127.0.0.1:${server.address().port}${below}`, close: () => server.close() }),
+    );
   });
 }
 

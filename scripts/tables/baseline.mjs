@@ -6,7 +6,9 @@ const FIXTURE = "scripts/reference/open3d.csv";
 /** Degrees for a row of Table 2B; undefined where the baseline has none: it can't start without the light. */
 export function baseline() {
   const lines = (readIfThere(inRoot(FIXTURE)) ?? "").split("\n").filter((line) => /^\d/.test(line));
-  const degrees = new Map(lines.map((line) => [line.slice(0, line.lastIndexOf(",")), Number(line.slice(line.lastIndexOf(",") + 1))]));
+  const degrees = new Map(
+    lines.map((line) => [line.slice(0, line.lastIndexOf(",")), Number(line.slice(line.lastIndexOf(",") + 1))]),
+  );
   return ({ beta, overlap, size, light, lightName }) =>
     light === "known" ? degrees.get([beta, overlap, size, lightName].join(",")) : undefined;
 }

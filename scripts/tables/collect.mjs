@@ -55,17 +55,27 @@ export async function collect(tables, { quick, workers, wasm }) {
       if (now - said < PROGRESS_EVERY) return;
       said = now;
       const left = ((now - start) / finished / 1000) * (waiting.length - finished);
-      say(`${finished} of ${waiting.length} cells, ${clock((now - start) / 1000)} gone, about ${clock(left)} to go (${id})`);
+      say(
+        `${finished} of ${waiting.length} cells, ${clock((now - start) / 1000)} gone, about ${clock(left)} to go (${id})`,
+      );
     },
   });
   done();
 
   const good = (cell) => results.get(cell.id) && !results.get(cell.id).failure;
   const rows = (table) =>
-    rowsOf(table, lists.get(table).filter(good).map((cell) => ({ cell, result: results.get(cell.id) })));
+    rowsOf(
+      table,
+      lists
+        .get(table)
+        .filter(good)
+        .map((cell) => ({ cell, result: results.get(cell.id) })),
+    );
   return {
     json: Object.fromEntries(tables.map((table) => [table.name, rows(table)])),
-    failures: cells.filter((cell) => results.get(cell.id)?.failure).map((cell) => ({ id: cell.id, ...results.get(cell.id) })),
+    failures: cells
+      .filter((cell) => results.get(cell.id)?.failure)
+      .map((cell) => ({ id: cell.id, ...results.get(cell.id) })),
     complete: cells.every((cell) => results.get(cell.id) !== undefined),
   };
 }

@@ -30,7 +30,10 @@ function remember(read) {
 
 function naturalLight(index) {
   const rows = bytes("lights", "natural_lights_114.csv").toString().trim().split("\n");
-  return rows.map((row) => row.split(",").map(Number)).find(([first]) => first === index).slice(1);
+  return rows
+    .map((row) => row.split(",").map(Number))
+    .find(([first]) => first === index)
+    .slice(1);
 }
 
 /** Box of the object: first and last column and row with a height. */
@@ -54,7 +57,8 @@ function heightAt({ width, height, data }, x, y) {
   for (const row of [Math.floor(y), Math.floor(y) + 1]) {
     for (const column of [Math.floor(x), Math.floor(x) + 1]) {
       const weight = (1 - Math.abs(x - column)) * (1 - Math.abs(y - row));
-      if (weight > 0 && !Number.isNaN(at(column, row))) [sum, weights] = [sum + weight * at(column, row), weights + weight];
+      if (weight > 0 && !Number.isNaN(at(column, row)))
+        [sum, weights] = [sum + weight * at(column, row), weights + weight];
     }
   }
   return sum / weights;
@@ -70,11 +74,13 @@ function objectOn(raster) {
   };
   const heights = new Float32Array(RELIEF_SIDE * RELIEF_SIDE);
   for (let index = 0; index < heights.length; index++) {
-    const [column, row] = [index % RELIEF_SIDE, Math.floor(index / RELIEF_SIDE)].map((at) => at - (RELIEF_SIDE - 1) / 2);
+    const [column, row] = [index % RELIEF_SIDE, Math.floor(index / RELIEF_SIDE)].map(
+      (at) => at - (RELIEF_SIDE - 1) / 2,
+    );
     const [x, y] = [place.x + column / place.samplesPerPixel, place.y + row / place.samplesPerPixel];
     heights[index] = place.samplesPerPixel * heightAt(raster, x, y);
   }
-  const lowest = heights.reduce((low, height) => (height < low ? height : low), Infinity);
+  const lowest = heights.reduce((low, height) => Math.min(height, low), Infinity);
   const raised = heights.map((height) => (Number.isNaN(height) ? 0 : height - lowest + LOWEST));
   return { place, relief: { width: RELIEF_SIDE, height: RELIEF_SIDE, heights: raised } };
 }
@@ -89,7 +95,8 @@ function mitten(files, frame) {
   halved.forEach((_, index) => {
     halved[index] = mask[2 * Math.floor(index / depth.width) * width + 2 * (index % depth.width)];
   });
-  if (width !== 2 * depth.width || height !== 2 * depth.height) throw new Error("the mitten's mask is not twice its depth");
+  if (width !== 2 * depth.width || height !== 2 * depth.height)
+    throw new Error("the mitten's mask is not twice its depth");
   return {
     image: { ...files.decodeColour(read(`color_${frame}.png`)), mask, camera: camera(colour) },
     depth: { ...files.decodeDepth(read(`depth_${frame}.png`)), mask: halved, camera: camera(depth), unit },
@@ -101,15 +108,29 @@ function mitten(files, frame) {
 function scan(files, name) {
   const read = (file) => bytes("diligent", name, file);
   const { width, height, data } = readHeights(read("depth_mm.npy"));
-  const [[fx, , cx], [, fy, cy]] = read("K.txt").toString().trim().split("\n").map((row) => row.trim().split(/\s+/).map(Number));
+  const [[fx, , cx], [, fy, cy]] = read("K.txt")
+    .toString()
+    .trim()
+    .split("\n")
+    .map((row) => row.trim().split(/\s+/).map(Number));
   const encoded = files.decodeColour(read("normal_map.png")).data;
   const normals = new Float32Array(3 * width * height);
   for (let index = 0; index < width * height; index++) {
     const normal = [1, -1, -1].map((sign, axis) => sign * (2 * (encoded[4 * index + axis] / 0xffff) - 1));
-    normals.set(normal.map((part) => part / Math.hypot(...normal)), 3 * index);
+    normals.set(
+      normal.map((part) => part / Math.hypot(...normal)),
+      3 * index,
+    );
   }
   const mask = files.decodeMask(read("mask.png")).data;
-  return { width, height, metres: Float64Array.from(data, (depth) => depth / 1000), normals, mask, camera: { fx, fy, cx, cy } };
+  return {
+    width,
+    height,
+    metres: Float64Array.from(data, (depth) => depth / 1000),
+    normals,
+    mask,
+    camera: { fx, fy, cx, cy },
+  };
 }
 
 /** `files` is the package's own reader. */

@@ -37,7 +37,12 @@ export function runCells(cells, { workers, signal, onResult, program = CELLS, se
         if (task && !signal.aborted) {
           const lost = { ...task, tries: task.tries + 1 };
           if (lost.tries < MOST_TRIES) waiting.unshift(lost);
-          else onResult(lost.cell.id, { failure: { name: "Error", code: "exit", message: `its process ended (${by ?? code})` } }, 0);
+          else
+            onResult(
+              lost.cell.id,
+              { failure: { name: "Error", code: "exit", message: `its process ended (${by ?? code})` } },
+              0,
+            );
         }
         if (waiting.length > 0 && !signal.aborted) start();
         finish();

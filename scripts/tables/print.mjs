@@ -8,9 +8,11 @@ const DASH = "-";
 /** Of a list of failures so many are shown; the JSON has all. */
 const WRONG_SHOWN = 20;
 const WORST_SHOWN = 5;
-export const fixed = (value, digits = 3) => (typeof value === "number" && Number.isFinite(value) ? value.toFixed(digits) : DASH);
+export const fixed = (value, digits = 3) =>
+  typeof value === "number" && Number.isFinite(value) ? value.toFixed(digits) : DASH;
 const percent = (value) => (typeof value === "number" ? `${(100 * value).toFixed(0)} %` : DASH);
-const small = (value) => (typeof value === "number" ? (value < 1e-4 ? value.toExponential(1) : value.toFixed(6)) : DASH);
+const small = (value) =>
+  typeof value === "number" ? (value < 1e-4 ? value.toExponential(1) : value.toFixed(6)) : DASH;
 /** ? flagged as uncertain, ! wrong by more than 3 degrees and not flagged. */
 export const mark = (row) => (isFlagged(row) ? "?" : isConfidentlyWrong(row) ? "!" : "");
 
@@ -59,7 +61,9 @@ const table2A = (rows) =>
 function table2B(rows, open3d) {
   const blocks = unique(rows.map(({ size, lightName, light }) => `${size}x${size}, ${lightName}, light ${light}`));
   return blocks.flatMap((block) => {
-    const members = rows.filter(({ size, lightName, light }) => `${size}x${size}, ${lightName}, light ${light}` === block);
+    const members = rows.filter(
+      ({ size, lightName, light }) => `${size}x${size}, ${lightName}, light ${light}` === block,
+    );
     const ratios = members.filter(({ bound }) => bound > 0).map(({ degrees, bound }) => degrees / bound);
     const baseline = (row) => open3d(row);
     return [
@@ -75,10 +79,16 @@ function table2B(rows, open3d) {
 }
 
 function table3(rows) {
-  const pose = ({ scale, angles: { alpha, beta, gamma } }) => [scale, alpha, beta, gamma].map((value) => fixed(value, 2));
+  const pose = ({ scale, angles: { alpha, beta, gamma } }) =>
+    [scale, alpha, beta, gamma].map((value) => fixed(value, 2));
   return columns([
     ["pair", "s", "alpha", "beta", "gamma", "iterations", "residual", "degrees", "(within)", "identity", "status"],
-    ["paper, food_box", ...pose({ ...PAPER_TABLE_3, angles: PAPER_TABLE_3 }), PAPER_TABLE_3.iterations, ...Array(5).fill(DASH)],
+    [
+      "paper, food_box",
+      ...pose({ ...PAPER_TABLE_3, angles: PAPER_TABLE_3 }),
+      PAPER_TABLE_3.iterations,
+      ...Array(5).fill(DASH),
+    ],
     ...rows.map((row) => [
       ...[row.name, ...pose(row.pose), row.iterations, `${fixed(row.residualBefore)} -> ${fixed(row.residualAfter)}`],
       ...[fixed(row.degrees, 2), fixed(row.truthWithin, 2), fixed(row.identityDegrees, 2), row.status],
@@ -123,7 +133,16 @@ const refinement = (rows) =>
   columns([
     ["light", "pose", "before", "after", "in holes", "gain", "degrees", "status"],
     ...rows.map(({ lightName, pose, before, after, holes, gain, degrees, statuses }) => [
-      ...[lightName, pose, fixed(before), fixed(after), fixed(holes), `x${fixed(gain, 2)}`, fixed(degrees), unique(statuses).join(", ")],
+      ...[
+        lightName,
+        pose,
+        fixed(before),
+        fixed(after),
+        fixed(holes),
+        `x${fixed(gain, 2)}`,
+        fixed(degrees),
+        unique(statuses).join(", "),
+      ],
     ]),
   ]);
 
@@ -137,29 +156,55 @@ const sensors = (rows) =>
 
 function photographs(rows) {
   const [betas, images] = [unique(rows.map(({ beta }) => beta)), unique(rows.map(({ image }) => image))];
-  const cell = (object, image, beta) => rows.find((row) => row.object === object && row.image === image && row.beta === beta);
+  const cell = (object, image, beta) =>
+    rows.find((row) => row.object === object && row.image === image && row.beta === beta);
   const show = (row) => (row ? fixed(row.degrees, 2) + mark(row) : "");
-  const medians = images.map((image) => median(rows.filter((row) => row.image === image).map(({ degrees }) => degrees)));
-  const costs = images.length < 3 ? [] : [
-    `  cost, by medians: albedo ${fixed(medians[0] - medians[1], 2)}, cast shadows and one white lamp ${fixed(medians[1] - medians[2], 2)} degrees`,
-  ];
+  const medians = images.map((image) =>
+    median(rows.filter((row) => row.image === image).map(({ degrees }) => degrees)),
+  );
+  const costs =
+    images.length < 3
+      ? []
+      : [
+          `  cost, by medians: albedo ${fixed(medians[0] - medians[1], 2)}, cast shadows and one white lamp ${fixed(medians[1] - medians[2], 2)} degrees`,
+        ];
   return [
     ...columns([
       ["object", "image", ...betas.map((beta) => `beta ${beta}`)],
       ...unique(rows.map(({ object }) => object)).flatMap((object) =>
         images.map((image) => [object, image, ...betas.map((beta) => show(cell(object, image, beta)))]),
       ),
-      ["median", "", ...betas.map((beta) => fixed(median(rows.filter((row) => row.beta === beta).map(({ degrees }) => degrees)), 2))],
+      [
+        "median",
+        "",
+        ...betas.map((beta) => fixed(median(rows.filter((row) => row.beta === beta).map(({ degrees }) => degrees)), 2)),
+      ],
     ]),
     ...costs,
-    ...columns([SUMMED, ...images.map((image) => summed(image, rows.filter((row) => row.image === image)))]),
+    ...columns([
+      SUMMED,
+      ...images.map((image) =>
+        summed(
+          image,
+          rows.filter((row) => row.image === image),
+        ),
+      ),
+    ]),
   ];
 }
 
 /** Rows of one kind: what they come to. */
 const summed = (name, rows) => {
   const degrees = rows.map((row) => row.degrees);
-  return [name, rows.length, fixed(median(degrees), 2), fixed(mean(degrees), 2), percent(share(rows, isFound)), rows.filter(isConfidentlyWrong).length, percent(coverage3(rows))];
+  return [
+    name,
+    rows.length,
+    fixed(median(degrees), 2),
+    fixed(mean(degrees), 2),
+    percent(share(rows, isFound)),
+    rows.filter(isConfidentlyWrong).length,
+    percent(coverage3(rows)),
+  ];
 };
 const SUMMED = ["", "cells", "median", "mean", "under 3", "confidently wrong", "found within 3 sigma"];
 
@@ -182,18 +227,41 @@ function conditions(rows) {
 }
 
 function rgbd(rows) {
-  const figures = ({ degrees, inPlane, tilt, lateral, along }) => [degrees, inPlane, tilt, lateral, along].map((value) => fixed(value, 2));
+  const figures = ({ degrees, inPlane, tilt, lateral, along }) =>
+    [degrees, inPlane, tilt, lateral, along].map((value) => fixed(value, 2));
   const medians = (name, members) => {
     const of = (key) => median(members.map((row) => row[key]));
-    return [name, "", ...figures({ degrees: of("degrees"), inPlane: of("inPlane"), tilt: of("tilt"), lateral: of("lateral"), along: of("along") }), ""];
+    return [
+      name,
+      "",
+      ...figures({
+        degrees: of("degrees"),
+        inPlane: of("inPlane"),
+        tilt: of("tilt"),
+        lateral: of("lateral"),
+        along: of("along"),
+      }),
+      "",
+    ];
   };
   const starts = unique(rows.map(({ start }) => start));
   return columns([
     ["capture", "seen from", "degrees", "in-plane", "tilt", "lateral mm", "along mm", "status"],
-    ...rows.map((row) => [`${row.name}, ${row.start}${row.tuned ? " *" : ""}`, row.turned, ...figures(row), row.status + mark(row)]),
+    ...rows.map((row) => [
+      `${row.name}, ${row.start}${row.tuned ? " *" : ""}`,
+      row.turned,
+      ...figures(row),
+      row.status + mark(row),
+    ]),
     ...starts.flatMap((start) => {
       const members = rows.filter((row) => row.start === start);
-      return [medians(`median, ${start}`, members), medians(`.. not tuned on`, members.filter(({ tuned }) => !tuned))];
+      return [
+        medians(`median, ${start}`, members),
+        medians(
+          `.. not tuned on`,
+          members.filter(({ tuned }) => !tuned),
+        ),
+      ];
     }),
   ]);
 }
@@ -207,8 +275,17 @@ function pinhole(rows) {
       const of = (key) => members.map((row) => row[key]);
       const found = members.filter(({ degrees }) => degrees < 3).length;
       return [
-        ...[start === "search" ? "nothing known" : `${start} degrees off`, members.length, found, fixed(median(of("degrees")))],
-        ...[fixed(median(of("translation")), 2), fixed(worst(of("degrees")), 2), fixed(median(of("milliseconds")) / 1000, 1)],
+        ...[
+          start === "search" ? "nothing known" : `${start} degrees off`,
+          members.length,
+          found,
+          fixed(median(of("degrees"))),
+        ],
+        ...[
+          fixed(median(of("translation")), 2),
+          fixed(worst(of("degrees")), 2),
+          fixed(median(of("milliseconds")) / 1000, 1),
+        ],
       ];
     }),
   ]);
@@ -216,8 +293,10 @@ function pinhole(rows) {
 
 function albedo(rows) {
   const groups = unique(rows.map(({ image, pose }) => `${image}, pose ${pose}`));
-  const cell = (object, group) => rows.find((row) => row.object === object && `${row.image}, pose ${row.pose}` === group);
-  const show = (row) => (row ? `${fixed(row.correlation, 2)} ${fixed(row.error, 3)} (${fixed(row.naive, 2)}) ${fixed(row.normals, 1)}` : "");
+  const cell = (object, group) =>
+    rows.find((row) => row.object === object && `${row.image}, pose ${row.pose}` === group);
+  const show = (row) =>
+    row ? `${fixed(row.correlation, 2)} ${fixed(row.error, 3)} (${fixed(row.naive, 2)}) ${fixed(row.normals, 1)}` : "";
   const middle = (group) => {
     const members = rows.filter((row) => `${row.image}, pose ${row.pose}` === group);
     const of = (key) => median(members.map((row) => row[key]));
@@ -227,7 +306,10 @@ function albedo(rows) {
     "  correlation, error in log units (naive), and degrees that the image's normals are off",
     ...columns([
       ["object", ...groups],
-      ...unique(rows.map(({ object }) => object)).map((object) => [object, ...groups.map((group) => show(cell(object, group)))]),
+      ...unique(rows.map(({ object }) => object)).map((object) => [
+        object,
+        ...groups.map((group) => show(cell(object, group))),
+      ]),
       ["median", ...groups.map(middle)],
     ]),
   ];
@@ -239,10 +321,13 @@ const random = (row) => [
   `  median of the found ${fixed(row.medianDegrees)} degrees; within 1 sigma ${percent(row.coverage1)} ` +
     `(x, y, z: ${row.coverage1PerAxis.map(percent).join(", ")}), within 3 sigma ${percent(row.coverage3)}; ` +
     `${fixed(row.meanMilliseconds / 1000, 2)} s each`,
-  ...row.scenes.filter(isConfidentlyWrong).slice(0, WRONG_SHOWN).map(
-    ({ scene, surface, degrees, status, overlap }) =>
-      `  wrong: scene ${scene}, ${surface}, ${fixed(degrees, 1)} degrees, ${status}, P_w ${fixed(overlap, 2)}`,
-  ),
+  ...row.scenes
+    .filter(isConfidentlyWrong)
+    .slice(0, WRONG_SHOWN)
+    .map(
+      ({ scene, surface, degrees, status, overlap }) =>
+        `  wrong: scene ${scene}, ${surface}, ${fixed(degrees, 1)} degrees, ${status}, P_w ${fixed(overlap, 2)}`,
+    ),
 ];
 
 const byKind = (row) => [
@@ -262,12 +347,19 @@ function exposure(rows) {
   return [
     ...columns([
       ["colours x", "scenes", "median move", "worst, degrees"],
-      ...factors.map((factor) => [factor, moved(factor).length, small(median(moved(factor))), small(worst(moved(factor)))]),
+      ...factors.map((factor) => [
+        factor,
+        moved(factor).length,
+        small(median(moved(factor))),
+        small(worst(moved(factor))),
+      ]),
     ]),
-    ...most.slice(0, WORST_SHOWN).map(
-      ({ scene, factor, degreesMoved, degrees, status }) =>
-        `  scene ${scene} x${factor}: moved ${small(degreesMoved)}, ${fixed(degrees)} degrees off, ${status}`,
-    ),
+    ...most
+      .slice(0, WORST_SHOWN)
+      .map(
+        ({ scene, factor, degreesMoved, degrees, status }) =>
+          `  scene ${scene} x${factor}: moved ${small(degreesMoved)}, ${fixed(degrees)} degrees off, ${status}`,
+      ),
   ];
 }
 
@@ -279,13 +371,33 @@ const ablation = (rows) =>
 
 const SHOWS = {
   ...{ table1, table2A, table2B, table3, figure4, figure5, figure6, figure7 },
-  ...{ refinement, sensors, photographs, conditions, albedo, rgbd, pinhole, random, cameras: byKind, painted: random, stress: byKind, honesty: byKind, exposure, ablation },
+  ...{
+    refinement,
+    sensors,
+    photographs,
+    conditions,
+    albedo,
+    rgbd,
+    pinhole,
+    random,
+    cameras: byKind,
+    painted: random,
+    stress: byKind,
+    honesty: byKind,
+    exposure,
+    ablation,
+  },
 };
 
 /** One table's lines; `open3d` gives the baseline's degrees for a row of Table 2B, where there are any. */
 export function show({ name, title, notes = [] }, rows, open3d = () => undefined) {
   const empty = rows.length === 0 || rows.cases === 0;
-  return [title, ...notes.map((note) => `  ${note}`), ...(empty ? ["  nothing to show"] : SHOWS[name](rows, open3d)), ""];
+  return [
+    title,
+    ...notes.map((note) => `  ${note}`),
+    ...(empty ? ["  nothing to show"] : SHOWS[name](rows, open3d)),
+    "",
+  ];
 }
 
 /** Every aim with its figure and the verdict. */
@@ -294,7 +406,11 @@ export const showAims = (list) => [
   ...columns([
     ["aim", "rows", "measured", "limit", ""],
     ...list.map(({ table, what, rows, measured, sense, limit, ok }) => [
-      `${table}: ${what}`, rows, Math.abs(measured) < 1e-3 && measured !== 0 ? measured.toExponential(1) : fixed(measured), `${sense} ${limit}`, ok ? "ok" : "MISSED",
+      `${table}: ${what}`,
+      rows,
+      Math.abs(measured) < 1e-3 && measured !== 0 ? measured.toExponential(1) : fixed(measured),
+      `${sense} ${limit}`,
+      ok ? "ok" : "MISSED",
     ]),
   ]),
 ];

@@ -33,7 +33,12 @@ describe("the parts", () => {
 });
 
 describe("the cells", () => {
-  for (const [complete, quick, count] of [[true, false, 51], [true, true, 6], [false, false, 18], [false, true, 2]]) {
+  for (const [complete, quick, count] of [
+    [true, false, 51],
+    [true, true, 6],
+    [false, false, 18],
+    [false, true, 2],
+  ]) {
     test(`${complete ? "with other people's data" : "without"}${quick ? ", quick" : ""}: ${count}`, () => {
       assert.equal(table(sets(quick, complete)).cells(kit(complete)).length, count);
     });
@@ -42,19 +47,46 @@ describe("the cells", () => {
 
 describe("what is told", () => {
   const row = (id, degrees, status = "converged") => ({ id, degrees, status, rivals: 0, milliseconds: 1500 });
-  const chosen = [{ set: "photographs", lines: [{ name: "a", ids: ["a/20", "a/40"] }, { name: "b", ids: ["b/20", "b/40"] }] }, { set: "renders", lines: [{ name: "c", ids: ["c/20"] }] }];
-  const all = { part: "all", gzipped: 300_000, rows: [row("a/20", 1), row("a/40", 2, "ambiguous"), row("b/20", 0.2), row("b/40", 5), row("c/20", 30, "lost")] };
-  const off = { part: "paint", gzipped: 297_500, rows: [row("a/20", 0.5), row("a/40", 40, "lost"), row("b/20", 0.26), row("c/20", 20, "lost")] };
+  const chosen = [
+    {
+      set: "photographs",
+      lines: [
+        { name: "a", ids: ["a/20", "a/40"] },
+        { name: "b", ids: ["b/20", "b/40"] },
+      ],
+    },
+    { set: "renders", lines: [{ name: "c", ids: ["c/20"] }] },
+  ];
+  const all = {
+    part: "all",
+    gzipped: 300_000,
+    rows: [row("a/20", 1), row("a/40", 2, "ambiguous"), row("b/20", 0.2), row("b/40", 5), row("c/20", 30, "lost")],
+  };
+  const off = {
+    part: "paint",
+    gzipped: 297_500,
+    rows: [row("a/20", 0.5), row("a/40", 40, "lost"), row("b/20", 0.26), row("c/20", 20, "lost")],
+  };
 
   test("better and worse with a part, beyond what matters", () => {
     const { worse, better } = effects(all, off);
-    assert.deepEqual(worse.map(({ id }) => id), ["a/20"]);
-    assert.deepEqual(better.map(({ id }) => id), ["a/40"]);
+    assert.deepEqual(
+      worse.map(({ id }) => id),
+      ["a/20"],
+    );
+    assert.deepEqual(
+      better.map(({ id }) => id),
+      ["a/40"],
+    );
   });
 
   test("as text", () => {
     const lines = text(chosen, [all, off]);
-    const told = (pattern) => assert.ok(lines.some((line) => pattern.test(line)), `${pattern} in\n${lines.join("\n")}`);
+    const told = (pattern) =>
+      assert.ok(
+        lines.some((line) => pattern.test(line)),
+        `${pattern} in\n${lines.join("\n")}`,
+      );
     told(/^ {2}a +1\.0 2\.0\? +0\.5 40\?$/);
     told(/^ {2}b +0\.2 5\.0! +0\.3 -$/);
     told(/photographs: under 3 degrees +3 of 4 +-$/);

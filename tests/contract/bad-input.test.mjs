@@ -1,7 +1,7 @@
 // Whatever is wrong with an input is said by name.
 import assert from "node:assert/strict";
 import { before, describe, test } from "node:test";
-import { BimodalError, Estimator, estimator, init, pair, refused, sample } from "./support.mjs";
+import { Estimator, estimator, init, pair, refused, sample } from "./support.mjs";
 
 test("before init", () => refused(() => sample({ surface: "bust", light: "colourful" }), "init", undefined));
 
@@ -149,7 +149,11 @@ describe("after init", () => {
     buffer.resize(16);
     refused(onImage({ data: shrunk }), "empty", "image.data");
     // By their word the numerics made room for 4e9 bytes, and broke off.
-    refused(onImage({ data: Object.defineProperty(image.data.slice(), "length", { value: 1e9 }) }), "type", "image.data");
+    refused(
+      onImage({ data: Object.defineProperty(image.data.slice(), "length", { value: 1e9 }) }),
+      "type",
+      "image.data",
+    );
     class Short extends Float32Array {
       get length() {
         return 7;
@@ -177,10 +181,16 @@ describe("after init", () => {
     refused(request({ surface: undefined }), "missing", "sample.surface");
     refused(request({ surface: { width: 64, height: 64 } }), "missing", "sample.surface.heights");
     refused(request({ surface: { width: 10, height: 10, heights: new Float32Array(100) } }), "size", "sample.surface");
-    refused(request({ surface: { width: 64, height: 64, heights: new Float32Array(64 * 64) } }), "empty", "sample.surface.heights");
+    refused(
+      request({ surface: { width: 64, height: 64, heights: new Float32Array(64 * 64) } }),
+      "empty",
+      "sample.surface.heights",
+    );
     const heights = new Float32Array(5);
     refused(request({ surface: { width: 0.5, height: 64, heights } }), "range", "sample.surface.width");
-    assert.throws(request({ surface: { width: 64, height: 64, heights } }), (error) => error.field.startsWith("sample.surface"));
+    assert.throws(request({ surface: { width: 64, height: 64, heights } }), (error) =>
+      error.field.startsWith("sample.surface"),
+    );
   });
 
   test("a refused input leaves everything else alone", () => {

@@ -25,12 +25,30 @@ function pngOf(width, height, { bits = 8, type = 0, pixels = bomb, before = [] }
   header.writeUInt32BE(width, 0);
   header.writeUInt32BE(height, 4);
   header.set([bits, type], 8);
-  return new Uint8Array(Buffer.concat([Buffer.from("\x89PNG\r\n\x1a\n", "latin1"), chunk("IHDR", header), ...before, chunk("IDAT", pixels), chunk("IEND", Buffer.alloc(0))]));
+  return new Uint8Array(
+    Buffer.concat([
+      Buffer.from("\x89PNG\r\n\x1a\n", "latin1"),
+      chunk("IHDR", header),
+      ...before,
+      chunk("IDAT", pixels),
+      chunk("IEND", Buffer.alloc(0)),
+    ]),
+  );
 }
 
 /** A little-endian TIFF of one strip that deflate has packed. */
 function tiffOf(width, height) {
-  const tags = [[256, width], [257, height], [258, 16], [259, 8], [262, 1], [273, 0], [277, 1], [278, height], [279, bomb.length]];
+  const tags = [
+    [256, width],
+    [257, height],
+    [258, 16],
+    [259, 8],
+    [262, 1],
+    [273, 0],
+    [277, 1],
+    [278, height],
+    [279, bomb.length],
+  ];
   const head = Buffer.alloc(14 + 12 * tags.length);
   head.write("II*\0", "latin1");
   head.writeUInt32LE(8, 4);
@@ -84,7 +102,11 @@ async function refusedSmall(read, reason) {
     },
   });
   try {
-    await assert.rejects(async () => read(), (error) => error instanceof BimodalError && error.code === "file" && reason.test(error.message), String(reason));
+    await assert.rejects(
+      async () => read(),
+      (error) => error instanceof BimodalError && error.code === "file" && reason.test(error.message),
+      String(reason),
+    );
   } finally {
     globalThis.Uint8Array = Plain;
   }
@@ -94,7 +116,10 @@ async function refusedSmall(read, reason) {
 
 const rig = (name, bytes) => () => readRigFile({ name, bytes });
 
-for (const [name, decode] of [["colour", decodeColour], ["depth", decodeDepth]]) {
+for (const [name, decode] of [
+  ["colour", decodeColour],
+  ["depth", decodeDepth],
+]) {
   test(`the Lab's reader of ${name}: a PNG that inflates to more than it declares, one that declares too much, one without end`, async () => {
     await refusedSmall(() => decode(pngOf(8, 8)), /longer compressed|inflates to more/);
     await refusedSmall(() => decode(pngOf(2 ** 31 - 1, 2 ** 31 - 1)), /up to 134217728 pixels are read/);

@@ -17,10 +17,13 @@ const [MADE, OWN] = examples(README, "js");
 /** What the table says of each: the code in its second column. */
 const [, section] = /^\| with \| it needs \|\n\|---\|---\|\n((?:\|.*\n)+)/m.exec(readFileSync(README, "utf8"));
 const table = new Map(
-  section.trim().split("\n").map((row) => {
-    const [, name, needs] = /^\| (.+?) \| (.+) \|$/.exec(row);
-    return [name, [...needs.matchAll(/`([^`]+)`/g)].map(([, code]) => code)];
-  }),
+  section
+    .trim()
+    .split("\n")
+    .map((row) => {
+      const [, name, needs] = /^\| (.+?) \| (.+) \|$/.exec(row);
+      return [name, [...needs.matchAll(/`([^`]+)`/g)].map(([, code]) => code)];
+    }),
 );
 const tested = [];
 /** A test of one of the table's lines. */
@@ -53,17 +56,26 @@ function complete({ lines, missing, threads }) {
 const project = freshProject();
 write(project, { "app.js": APP });
 /** A page of the project in a folder of its own, with its script beside it. */
-const page = (folder, head = '<script type="module" src="app.js"></script>') => write(project, { [`${folder}/index.html`]: html(head) });
+const page = (folder, head = '<script type="module" src="app.js"></script>') =>
+  write(project, { [`${folder}/index.html`]: html(head) });
 
 describe("README's example in", () => {
   line("Vite", async (_, config) => {
-    write(project, { "vite/index.html": html('<script type="module" src="./app.js"></script>'), "vite/app.js": APP, "vite/older.config.js": `export default { ${config} };` });
+    write(project, {
+      "vite/index.html": html('<script type="module" src="./app.js"></script>'),
+      "vite/app.js": APP,
+      "vite/older.config.js": `export default { ${config} };`,
+    });
     const root = join(project, "vite");
     const options = { root, configFile: false, logLevel: "silent", cacheDir: join(root, "cache") };
     await build(options);
     complete(await visit(await served(join(root, "dist")), { threads: 1 }));
     for (const configFile of [false, join(root, "older.config.js")]) {
-      const server = await createServer({ ...options, configFile, server: { port: 0, host: "127.0.0.1", fs: { allow: [project] } } });
+      const server = await createServer({
+        ...options,
+        configFile,
+        server: { port: 0, host: "127.0.0.1", fs: { allow: [project] } },
+      });
       await server.listen();
       complete(await visit(server.resolvedUrls.local[0], { threads: 1 }));
       await server.close();
@@ -73,7 +85,13 @@ describe("README's example in", () => {
   line("webpack 5", async () => {
     const path = join(project, "webpack");
     const stats = await new Promise((done, fail) => {
-      const options = { context: project, mode: "production", entry: "./app.js", output: { path, filename: "app.js" }, performance: false };
+      const options = {
+        context: project,
+        mode: "production",
+        entry: "./app.js",
+        output: { path, filename: "app.js" },
+        performance: false,
+      };
       webpack(options, (error, result) => (error ? fail(error) : done(result)));
     });
     assert.equal(stats.toString({ all: false, errors: true, warnings: true }), "");
@@ -97,7 +115,10 @@ describe("README's example in", () => {
   line("anything else", async (address) => {
     write(project, { "other.js": `${MADE.replace("await init()", address)}\nconsole.log("end");` });
     run("esbuild", ["other.js", "--bundle", "--format=esm", "--outfile=other/app.js"], project);
-    cpSync(join(project, "node_modules/bimodal-stereo/bimodal_stereo_bg.wasm"), join(project, "other/assets/bimodal_stereo_bg.wasm"));
+    cpSync(
+      join(project, "node_modules/bimodal-stereo/bimodal_stereo_bg.wasm"),
+      join(project, "other/assets/bimodal_stereo_bg.wasm"),
+    );
     page("other");
     const { lines, missing } = await visit(await served(join(project, "other")));
     assert.deepEqual(missing, []);
@@ -116,16 +137,36 @@ describe("README's example in", () => {
   });
 
   line("TypeScript", (_, ...resolutions) => {
-    write(project, { "made.ts": MADE, "typed.cts": 'import stereo = require("bimodal-stereo");\nexport const loaded: Promise<void> = stereo.default();\n' });
+    write(project, {
+      "made.ts": MADE,
+      "typed.cts":
+        'import stereo = require("bimodal-stereo");\nexport const loaded: Promise<void> = stereo.default();\n',
+    });
     assert.equal(resolutions.length, 3);
     for (const resolution of resolutions.map((word) => JSON.parse(word))) {
       const files = resolution === "nodenext" ? ["made.ts", "typed.cts"] : ["made.ts"];
       const options = ["--module", resolution === "bundler" ? "esnext" : resolution, "--moduleResolution", resolution];
-      run("tsc", ["--noEmit", "--strict", "--target", "es2022", "--types", "", "--lib", "es2022,dom,esnext.disposable", ...options, ...files], project);
+      run(
+        "tsc",
+        [
+          "--noEmit",
+          "--strict",
+          "--target",
+          "es2022",
+          "--types",
+          "",
+          "--lib",
+          "es2022,dom,esnext.disposable",
+          ...options,
+          ...files,
+        ],
+        project,
+      );
     }
   });
 
-  test("no other: the table has no line without a test", () => assert.deepEqual([...table.keys()].sort(), tested.sort()));
+  test("no other: the table has no line without a test", () =>
+    assert.deepEqual([...table.keys()].sort(), tested.sort()));
 });
 
 test("README's example with files of one's own", async () => {
@@ -149,8 +190,10 @@ describe("a .wasm that was left behind is an error that names the cure", () => {
     page(`left-${format}`, head[format]);
     return join(project, `left-${format}`);
   };
-  const CURE = /^BimodalError init wasm init: the \.wasm could not be loaded \((.+?)\. Bundlers .* copy them beside the bundle.* or tell init\(url\)/;
-  const said = async (address) => CURE.exec((await visit(address)).lines.find((text) => text.startsWith("BimodalError")))?.[1];
+  const CURE =
+    /^BimodalError init wasm init: the \.wasm could not be loaded \((.+?)\. Bundlers .* copy them beside the bundle.* or tell init\(url\)/;
+  const said = async (address) =>
+    CURE.exec((await visit(address)).lines.find((text) => text.startsWith("BimodalError")))?.[1];
 
   test("where nothing is", async () => {
     const address = await served(bundle("esm"));
@@ -161,7 +204,9 @@ describe("a .wasm that was left behind is an error that names the cure", () => {
     const path = bundle("esm");
     const server = createHttpServer(({ url }, response) => {
       const file = url === "/app.js" ? "app.js" : "index.html";
-      response.writeHead(200, { "Content-Type": file === "app.js" ? "text/javascript" : "text/html" }).end(readFileSync(join(path, file)));
+      response
+        .writeHead(200, { "Content-Type": file === "app.js" ? "text/javascript" : "text/html" })
+        .end(readFileSync(join(path, file)));
     });
     after(() => server.close());
     await new Promise((done) => server.listen(0, "127.0.0.1", done));

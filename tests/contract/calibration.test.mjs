@@ -4,13 +4,22 @@ import { existsSync, readFileSync } from "node:fs";
 import { before, describe, test } from "node:test";
 import { projectFrame, sampleRig } from "../../pkg/index.js";
 import { decodeColour, decodeDepth } from "../../pkg/files.js";
-import { aboutAxis, degreesBetween as degreesOf, product, transpose, turn } from "../../scripts/tables/protocol/rotations.mjs";
+import {
+  aboutAxis,
+  degreesBetween as degreesOf,
+  product,
+  transpose,
+  turn,
+} from "../../scripts/tables/protocol/rotations.mjs";
 import { LONG } from "./long.mjs";
 import { BimodalError, checkCalibration } from "./support.mjs";
 
 /** A pose after an error about the camera, degrees and metres. */
 const wrong = (pose, axis, degrees, shift = [0, 0, 0]) => {
-  const rotation = aboutAxis(axis.map((value) => value / Math.hypot(...axis)), degrees);
+  const rotation = aboutAxis(
+    axis.map((value) => value / Math.hypot(...axis)),
+    degrees,
+  );
   const translation = turn(rotation, pose.translation).map((value, k) => value + shift[k]);
   return { ...pose, rotation: product(rotation, pose.rotation), translation };
 };
@@ -35,7 +44,9 @@ describe("a rig before boxes", () => {
   test("the right calibration is consistent, one that is off is off, and both by the same estimate", async () => {
     const messages = [];
     const candidates = { told: wrong(truth, [1, -2, 1], 1.5, [0.01, 0, -0.01]), factory: truth };
-    const report = await checkCalibration([frame], candidates, { onProgress: (share, message) => messages.push([share, message]) });
+    const report = await checkCalibration([frame], candidates, {
+      onProgress: (share, message) => messages.push([share, message]),
+    });
     assert.equal(report.verdict, "off");
     assert.deepEqual(Object.keys(report.candidates), ["told", "factory"]);
     assert.equal(report.candidates.told.verdict, "off");
@@ -53,18 +64,26 @@ describe("a rig before boxes", () => {
     assert.ok(health.interval[0] < health.pixels && health.pixels < health.interval[1]);
     const total = Object.values(cues).reduce((sum, { share }) => sum + share, 0);
     assert.ok(Math.abs(total - 1) < 1e-9);
-    assert.deepEqual(frames.map(({ name, share }) => [name, share]), [["boxes 1", 1]]);
+    assert.deepEqual(
+      frames.map(({ name, share }) => [name, share]),
+      [["boxes 1", 1]],
+    );
     assert.equal(sensitivity.length, 24);
     const edges = sensitivity.find(({ cue, axis }) => cue === "edges" && axis === "ry");
     // A degree and more away edges say less than at the estimate.
-    edges.offsets.forEach((offset, k) => Math.abs(offset) > 1 && assert.ok(edges.values[k] < 0, `${offset}: ${edges.values[k]}`));
+    edges.offsets.forEach(
+      (offset, k) => Math.abs(offset) > 1 && assert.ok(edges.values[k] < 0, `${offset}: ${edges.values[k]}`),
+    );
     const shares = messages.map(([share]) => share);
     assert.ok(shares.length > 5 && shares.every((share, k) => share >= (shares[k - 1] ?? 0)), String(shares));
   });
 
   test("the same input gives the same bits", async () => {
     const told = wrong(truth, [0, 1, 0], 0.5);
-    const [a, b] = [await checkCalibration([frame], { told }, { cues: ["edges"] }), await checkCalibration([frame], { told }, { cues: ["edges"] })];
+    const [a, b] = [
+      await checkCalibration([frame], { told }, { cues: ["edges"] }),
+      await checkCalibration([frame], { told }, { cues: ["edges"] }),
+    ];
     assert.deepEqual(a, b);
     assert.deepEqual(Object.keys(a.cues), ["edges"]);
   });
@@ -84,24 +103,35 @@ describe("a rig before boxes", () => {
     assert.deepEqual(right.warnings, []);
   });
 
-  test("a wrong unit, a depth map of eight bits and a picture in its place are named, and keep the verdict from green", LONG, async () => {
-    const { depth } = frame;
-    const said = async (changes) => checkCalibration([{ ...frame, depth: { ...depth, ...changes } }], { told: truth }, { cues: ["edges"] });
-    const metres = await said({ unit: 1 });
-    assert.match(metres.warnings.join(), /in millimetres\?/);
-    assert.notEqual(metres.verdict, "consistent");
-    const far = 8000;
-    const coarse = await said({ unit: 0.032, data: depth.data.map((level) => Math.min(255, Math.round((level / far) * 255))) });
-    assert.match(coarse.warnings.join(), /8 bits/);
-    assert.notEqual(coarse.verdict, "consistent");
-    const rough = await said({ data: depth.data.map((_, k) => 500 + ((k * 2654435761) % 4001)) });
-    assert.match(rough.warnings.join(), /swapped\?/);
-  });
+  test(
+    "a wrong unit, a depth map of eight bits and a picture in its place are named, and keep the verdict from green",
+    LONG,
+    async () => {
+      const { depth } = frame;
+      const said = async (changes) =>
+        checkCalibration([{ ...frame, depth: { ...depth, ...changes } }], { told: truth }, { cues: ["edges"] });
+      const metres = await said({ unit: 1 });
+      assert.match(metres.warnings.join(), /in millimetres\?/);
+      assert.notEqual(metres.verdict, "consistent");
+      const far = 8000;
+      const coarse = await said({
+        unit: 0.032,
+        data: depth.data.map((level) => Math.min(255, Math.round((level / far) * 255))),
+      });
+      assert.match(coarse.warnings.join(), /8 bits/);
+      assert.notEqual(coarse.verdict, "consistent");
+      const rough = await said({ data: depth.data.map((_, k) => 500 + ((k * 2654435761) % 4001)) });
+      assert.match(rough.warnings.join(), /swapped\?/);
+    },
+  );
 
   test("behind a camera that is not given a right calibration is never off, and what is far off still is", async () => {
     const image = { ...frame.image };
     delete image.camera;
-    const report = await checkCalibration([{ ...frame, image }], { truth, told: wrong(truth, [1, 2, 1], 9, [0.05, 0, 0]) });
+    const report = await checkCalibration([{ ...frame, image }], {
+      truth,
+      told: wrong(truth, [1, 2, 1], 9, [0.05, 0, 0]),
+    });
     assert.equal(report.candidates.truth.verdict, "undecided", report.candidates.truth.reason);
     assert.equal(report.candidates.told.verdict, "off", report.candidates.told.reason);
     assert.ok(report.warnings.some((warning) => /intrinsics are not given/.test(warning)));
@@ -112,7 +142,9 @@ describe("a rig before boxes", () => {
 
   test("a blank image is named, and speaks against nobody", async () => {
     const data = new Uint8ClampedArray(frame.image.data.length).fill(255);
-    const report = await checkCalibration([{ ...frame, image: { ...frame.image, data } }], { told: wrong(truth, [1, 2, 1], 3, [0.02, 0, 0]) });
+    const report = await checkCalibration([{ ...frame, image: { ...frame.image, data } }], {
+      told: wrong(truth, [1, 2, 1], 3, [0.02, 0, 0]),
+    });
     assert.match(report.warnings.join(), /boxes 1: the image is blank/);
     assert.equal(report.verdict, "undecided", report.reason);
   });
@@ -121,7 +153,11 @@ describe("a rig before boxes", () => {
     // No depth edge at all: what was told is all that is known.
     const data = new Uint16Array(frame.depth.data.length).fill(1500);
     for (const cues of [["edges"], undefined]) {
-      const { verdict, estimate, health } = await checkCalibration([{ ...frame, depth: { ...frame.depth, data } }], { told: truth }, cues && { cues });
+      const { verdict, estimate, health } = await checkCalibration(
+        [{ ...frame, depth: { ...frame.depth, data } }],
+        { told: truth },
+        cues && { cues },
+      );
       assert.equal(verdict, "undecided");
       assert.ok(estimate.translation.every(Number.isFinite) && health.pixels > 3, String(health.pixels));
     }
@@ -132,13 +168,18 @@ describe("a rig before boxes", () => {
     assert.ok(points.length > 30_000 && points.length % 3 === 0 && edges.length > 500 && edges.length % 2 === 0);
     const { width, height } = frame.image;
     for (let k = 0; k < points.length; k += 3) {
-      assert.ok(points[k] >= -1 && points[k] <= width && points[k + 1] >= -1 && points[k + 1] <= height && points[k + 2] > 0);
+      assert.ok(
+        points[k] >= -1 && points[k] <= width && points[k + 1] >= -1 && points[k + 1] <= height && points[k + 2] > 0,
+      );
     }
   });
 
   test("its points stand where a camera without a lens sees them", async () => {
     const { fx, fy, cx, cy } = frame.image.camera;
-    const { points, positions } = await projectFrame({ ...frame, image: { ...frame.image, camera: { fx, fy, cx, cy } } }, truth);
+    const { points, positions } = await projectFrame(
+      { ...frame, image: { ...frame.image, camera: { fx, fy, cx, cy } } },
+      truth,
+    );
     assert.equal(positions.length, points.length);
     for (let k = 0; k < points.length; k += 3) {
       const [x, y, z] = positions.subarray(k, k + 3);
@@ -147,25 +188,33 @@ describe("a rig before boxes", () => {
     }
   });
 
-  test("a pose that puts no depth point onto the image is never consistent, and takes no other candidate with it", LONG, async () => {
-    const turned = (axis, degrees) => ({ ...truth, rotation: product(aboutAxis(axis, degrees), truth.rotation) });
-    const behind = { ...truth, translation: [truth.translation[0], truth.translation[1], truth.translation[2] - 9] };
-    for (const bad of [turned([1, 0, 0], 180), turned([0, 1, 0], 120), behind]) {
-      const alone = await checkCalibration([frame], { bad });
-      assert.equal(alone.verdict, "undecided", alone.reason);
-      assert.match(alone.reason, /no pose puts its points onto the image/);
-      assert.ok(alone.covariance.every(Number.isFinite) && alone.health.pixels > 100);
-      const { candidates } = await checkCalibration([frame], { bad, truth });
-      assert.equal(candidates.bad.verdict, "off", candidates.bad.reason);
-      assert.equal(candidates.truth.verdict, "consistent", candidates.truth.reason);
-    }
-  });
+  test(
+    "a pose that puts no depth point onto the image is never consistent, and takes no other candidate with it",
+    LONG,
+    async () => {
+      const turned = (axis, degrees) => ({ ...truth, rotation: product(aboutAxis(axis, degrees), truth.rotation) });
+      const behind = { ...truth, translation: [truth.translation[0], truth.translation[1], truth.translation[2] - 9] };
+      for (const bad of [turned([1, 0, 0], 180), turned([0, 1, 0], 120), behind]) {
+        const alone = await checkCalibration([frame], { bad });
+        assert.equal(alone.verdict, "undecided", alone.reason);
+        assert.match(alone.reason, /no pose puts its points onto the image/);
+        assert.ok(alone.covariance.every(Number.isFinite) && alone.health.pixels > 100);
+        const { candidates } = await checkCalibration([frame], { bad, truth });
+        assert.equal(candidates.bad.verdict, "off", candidates.bad.reason);
+        assert.equal(candidates.truth.verdict, "consistent", candidates.truth.reason);
+      }
+    },
+  );
 
   test("it can be broken off", async () => {
     const stop = new AbortController();
     const onProgress = (share) => share > 0.2 && stop.abort();
-    await assert.rejects(checkCalibration([frame], { told: truth }, { signal: stop.signal, onProgress }), { name: "AbortError" });
-    await assert.rejects(checkCalibration([frame], { told: truth }, { signal: AbortSignal.abort() }), { name: "AbortError" });
+    await assert.rejects(checkCalibration([frame], { told: truth }, { signal: stop.signal, onProgress }), {
+      name: "AbortError",
+    });
+    await assert.rejects(checkCalibration([frame], { told: truth }, { signal: AbortSignal.abort() }), {
+      name: "AbortError",
+    });
   });
 
   test("what is wrong is named", async () => {
@@ -182,18 +231,34 @@ describe("a rig before boxes", () => {
     await refused(check({ image }), "missing", "frames[0].depth");
     await refused(check({ image, depth: { ...depth, camera: undefined } }), "missing", "frames[0].depth.camera");
     await refused(check({ image: { ...image, data: image.data.subarray(4) }, depth }), "size", "frames[0].image.data");
-    await refused(check({ image, depth: { ...depth, data: new Uint16Array(depth.data.length) } }), "empty", "frames[0].depth");
+    await refused(
+      check({ image, depth: { ...depth, data: new Uint16Array(depth.data.length) } }),
+      "empty",
+      "frames[0].depth",
+    );
     await refused(check({ image, depth: { ...depth, unit: -1 } }), "range", "frames[0].depth.unit");
     const lens = (distortion) => ({ image: { ...image, camera: { ...image.camera, distortion } }, depth });
     await refused(check(lens([1, 2, 3])), "size", "frames[0].image.camera.distortion");
     await refused(check(lens([NaN, 0, 0, 0, 0])), "range", "frames[0].image.camera.distortion");
     // Of a slipped decimal point: it folds near the image's middle.
     await refused(check(lens([1e6, 0, 0, 0, 0])), "range", "frames[0].image.camera.distortion");
-    await refused(check({ image, depth: { ...depth, camera: { ...depth.camera, distortion: [-40, 0, 0, 0, 0] } } }), "range", "frames[0].depth.camera.distortion");
+    await refused(
+      check({ image, depth: { ...depth, camera: { ...depth.camera, distortion: [-40, 0, 0, 0, 0] } } }),
+      "range",
+      "frames[0].depth.camera.distortion",
+    );
     await refused(projectFrame(frame, { ...truth, rotation: new Array(9).fill(0) }), "range", "pose.rotation");
     await refused(projectFrame(frame, { ...truth, translation: [0, NaN, 0] }), "range", "pose.translation");
-    await refused(check(frame, { told: { ...truth, rotation: [1, 0, 0, 0, 1, 0, 0, 0, -1] } }), "range", "candidates.told.rotation");
-    await refused(check(frame, { told: { ...truth, translation: [0, NaN, 0] } }), "range", "candidates.told.translation");
+    await refused(
+      check(frame, { told: { ...truth, rotation: [1, 0, 0, 0, 1, 0, 0, 0, -1] } }),
+      "range",
+      "candidates.told.rotation",
+    );
+    await refused(
+      check(frame, { told: { ...truth, translation: [0, NaN, 0] } }),
+      "range",
+      "candidates.told.translation",
+    );
     await refused(check(frame, { told: { ...truth, scale: 2 } }), "range", "candidates.told.scale");
     await refused(check(frame, { told: truth }, { cues: ["colour"] }), "option", "options.cues[0]");
     await refused(check(frame, { told: truth }, { cues: new Array(1) }), "type", "options.cues[0]");
@@ -213,7 +278,12 @@ async function found(kind, seed, count) {
   const { health, candidates } = report;
   // Mean squares add up: of a right candidate what is left is the estimate's own error.
   const own = Math.sqrt(Math.max(0, candidates.truth.pixels ** 2 - health.pixels ** 2));
-  return { own, health, degrees: degreesBetween(report.estimate, truth), millimetres: millimetresBetween(report.estimate, truth, report.middle) };
+  return {
+    own,
+    health,
+    degrees: degreesBetween(report.estimate, truth),
+    millimetres: millimetresBetween(report.estimate, truth, report.middle),
+  };
 }
 
 test("noise of a receding floor is no rim", LONG, async () => {
@@ -226,7 +296,10 @@ test("the health number's interval holds the estimate's error, not one several t
   // A covariance of one inflation for all scenes said 0.15 to 0.8 pixels of errors of 0.1.
   for (const seed of [0, 1]) {
     const { own, health } = await found("boxes", seed, 3);
-    assert.ok(health.interval[0] < own && own < health.interval[1], `${own} px, said to be ${health.interval.join(" to ")}`);
+    assert.ok(
+      health.interval[0] < own && own < health.interval[1],
+      `${own} px, said to be ${health.interval.join(" to ")}`,
+    );
   }
 });
 
@@ -236,7 +309,9 @@ test("one frame is found where wide windows lead elsewhere", async () => {
   assert.ok(degrees < 0.4 && millimetres < 10, `${degrees} degrees, ${millimetres} mm`);
 });
 
-test("a raw Kinect: calibrations that are off are off, and the estimate is near its makers'", { skip: !existsSync(NYU) && "other people's data are not here" }, async () => {
+test("a raw Kinect: calibrations that are off are off, and the estimate is near its makers'", {
+  skip: !existsSync(NYU) && "other people's data are not here",
+}, async () => {
   const read = (name) => readFileSync(new URL(name, NYU));
   const calib = JSON.parse(read("calib.json").toString());
   const camera = ({ fx, fy, cx, cy, dist_k1k2p1p2k3: distortion }) => ({ fx, fy, cx, cy, distortion });
@@ -245,7 +320,10 @@ test("a raw Kinect: calibrations that are off are off, and the estimate is near 
     depth: { ...decodeDepth(read("depth_raw_mm.png")), camera: camera(calib.depth), unit: 0.001 },
   };
   const truth = { scale: 1, rotation: calib.R.flat(), translation: calib.t, angles: { alpha: 0, beta: 0, gamma: 0 } };
-  const report = await checkCalibration([frame], { told: wrong(truth, [1, 2, -1], 2, [0.02, -0.02, 0]), makers: truth });
+  const report = await checkCalibration([frame], {
+    told: wrong(truth, [1, 2, -1], 2, [0.02, -0.02, 0]),
+    makers: truth,
+  });
   assert.equal(report.verdict, "off");
   assert.equal(report.candidates.makers.verdict, "consistent", report.candidates.makers.reason);
   assert.ok(degreesBetween(report.estimate, truth) < 0.5);

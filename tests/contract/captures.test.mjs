@@ -12,9 +12,15 @@ const NOWHERE = poseOf(IDENTITY, [0, 0, 0]);
 
 test("a lens's ray and projection undo each other", () => {
   const camera = { fx: 519, fy: 520, cx: 325, cy: 253, distortion: [0.21, -0.59, 0.0007, 0.001, 0.5] };
-  for (const pixel of [[325, 253], [20, 30], [600, 460]]) {
+  for (const pixel of [
+    [325, 253],
+    [20, 30],
+    [600, 460],
+  ]) {
     const [x, y] = ray(camera, pixel);
-    project(camera, [2 * x, 2 * y, 2]).forEach((value, k) => assert.ok(Math.abs(value - pixel[k]) < 1e-3, `${pixel}: ${value}`));
+    project(camera, [2 * x, 2 * y, 2]).forEach((value, k) =>
+      assert.ok(Math.abs(value - pixel[k]) < 1e-3, `${pixel}: ${value}`),
+    );
   }
 });
 
@@ -40,7 +46,10 @@ describe("a rig before boxes", () => {
   });
 
   test("hiding the truth moves no pixel, and the package's points fall where ours do", async () => {
-    const [{ points }, hidden] = [await projectFrame(checkFrame(frame), frame.truth), await projectFrame(checkFrame(behind), behind.truth)];
+    const [{ points }, hidden] = [
+      await projectFrame(checkFrame(frame), frame.truth),
+      await projectFrame(checkFrame(behind), behind.truth),
+    ];
     assert.ok(Math.abs(points.length - hidden.points.length) < 0.001 * points.length);
     const known = [];
     for (let at = 0; at < frame.points.length; at += 3) {
@@ -49,7 +58,8 @@ describe("a rig before boxes", () => {
     }
     const ours = new Set(known);
     let same = 0;
-    for (let at = 0; at < points.length; at += 3) same += ours.has([...points.subarray(at, at + 3)].map((value) => value.toFixed(1)).join());
+    for (let at = 0; at < points.length; at += 3)
+      same += ours.has([...points.subarray(at, at + 3)].map((value) => value.toFixed(1)).join());
     assert.ok(same > 0.9 * (points.length / 3), `${same} of ${points.length / 3}`);
   });
 
@@ -72,11 +82,13 @@ describe("a rig before boxes", () => {
       const p = moved(truth, [...points.subarray(3 * index, 3 * index + 3)]);
       if (!(p[2] > 0) || Number.isNaN(lit[index])) continue;
       const [column, row] = project(image.camera, p).map(Math.round);
-      if (column >= 0 && row >= 0 && column < image.width && row < image.height) data.fill(255 * lit[index], 4 * (row * image.width + column), 4 * (row * image.width + column) + 3);
+      if (column >= 0 && row >= 0 && column < image.width && row < image.height)
+        data.fill(255 * lit[index], 4 * (row * image.width + column), 4 * (row * image.width + column) + 3);
     }
     const { information } = costs({ ...frame, image: { ...image, data } }, NOWHERE);
     const best = information(truth);
     assert.ok(best < 0.9, String(best));
-    for (const rival of rivalsOf(truth, 3)) assert.ok(information(rival) > best + 0.02, `${information(rival)} and ${best}`);
+    for (const rival of rivalsOf(truth, 3))
+      assert.ok(information(rival) > best + 0.02, `${information(rival)} and ${best}`);
   });
 });

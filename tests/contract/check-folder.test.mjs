@@ -44,27 +44,46 @@ writeFileSync(join(root, "package.json"), '{ "type": "module" }');
 for (const file of ["check-folder.mjs", "progress.mjs"]) cpSync(inRoot("examples", file), join(root, "examples", file));
 writeFileSync(join(root, "pkg/rig.js"), RIG);
 writeFileSync(join(root, "pkg/index.js"), INDEX);
-writeFileSync(join(root, "pkg/rig-write.js"), `export * from ${JSON.stringify(new URL("../../pkg/rig-write.js", import.meta.url).href)};`);
+writeFileSync(
+  join(root, "pkg/rig-write.js"),
+  `export * from ${JSON.stringify(new URL("../../pkg/rig-write.js", import.meta.url).href)};`,
+);
 
 const write = (path, content) => {
   mkdirSync(join(root, path, ".."), { recursive: true });
   writeFileSync(join(root, path), JSON.stringify(content));
 };
-const pose = (x) => ({ scale: 1, rotation: [0, -1, 0, 1, 0, 0, 0, 0, 1], translation: [x, 0, 0], angles: { alpha: 0, beta: 0, gamma: 90 } });
+const pose = (x) => ({
+  scale: 1,
+  rotation: [0, -1, 0, 1, 0, 0, 0, 0, 1],
+  translation: [x, 0, 0],
+  angles: { alpha: 0, beta: 0, gamma: 90 },
+});
 write("consistent/deep/0001.json", { kind: "frame", verdict: "consistent", sure: true });
 write("guessed/deep/0001.json", { kind: "frame", verdict: "consistent" });
-for (const verdict of ["off", "undecided", "wait", "broken", "odd"]) write(`${verdict}/deep/0001.json`, { kind: "frame", verdict });
+for (const verdict of ["off", "undecided", "wait", "broken", "odd"])
+  write(`${verdict}/deep/0001.json`, { kind: "frame", verdict });
 write("none/0001.json", { kind: "other" });
 write("off/.hidden/0002.json", { kind: "frame", verdict: "consistent" });
 write("one.json", { kind: "poses", poses: [{ pose: pose(1) }] });
-write("two.json", { kind: "cameras", warnings: ["a guess"], poses: [{ pose: pose(2), from: "color", to: "depth" }, { name: "spare", pose: pose(3), from: "depth", to: "color" }] });
+write("two.json", {
+  kind: "cameras",
+  warnings: ["a guess"],
+  poses: [
+    { pose: pose(2), from: "color", to: "depth" },
+    { name: "spare", pose: pose(3), from: "depth", to: "color" },
+  ],
+});
 write("7", { kind: "poses", poses: [{ pose: pose(7) }] });
 write("empty.json", { kind: "poses", poses: [] });
 writeFileSync(join(root, "damaged.json"), "{");
 
 const command = [join(root, "examples/check-folder.mjs")];
 function check(...args) {
-  const { status, stdout, stderr } = spawnSync(process.execPath, [...command, ...args], { cwd: root, encoding: "utf8" });
+  const { status, stdout, stderr } = spawnSync(process.execPath, [...command, ...args], {
+    cwd: root,
+    encoding: "utf8",
+  });
   return { status, stdout, stderr };
 }
 /** What the check was asked. */
@@ -81,7 +100,10 @@ describe("exit codes", () => {
 
   test("2 where it is consistent but for what the readers guessed, and its word is said once", () => {
     assert.match(check("consistent", "--calibration", "one.json").stdout, /^CONSISTENT: (?!Consistent)/);
-    for (const args of [["guessed", "--calibration", "one.json"], ["consistent", "--calibration", "two.json"]]) {
+    for (const args of [
+      ["guessed", "--calibration", "one.json"],
+      ["consistent", "--calibration", "two.json"],
+    ]) {
       const { status, stdout } = check(...args, "--json", "guessed.json");
       assert.equal(status, 2);
       assert.match(stdout, /^UNDECIDED: Settled, but check: (one of the check's|two.json: a guess) /);
@@ -146,8 +168,26 @@ describe("exit codes", () => {
 
 describe("what is checked", () => {
   test("the first pose of the first file is in question; a number as a name stays in its place", () => {
-    const { candidates } = asked(check("off", "--calibration", "one.json", "--calibration", "two.json", "--calibration", "7", "--calibration", "one.json").stdout);
-    assert.deepEqual(Object.keys(candidates), ["one.json", "two.json, color to depth", "two.json, spare", '"7"', "one.json'"]);
+    const { candidates } = asked(
+      check(
+        "off",
+        "--calibration",
+        "one.json",
+        "--calibration",
+        "two.json",
+        "--calibration",
+        "7",
+        "--calibration",
+        "one.json",
+      ).stdout,
+    );
+    assert.deepEqual(Object.keys(candidates), [
+      "one.json",
+      "two.json, color to depth",
+      "two.json, spare",
+      '"7"',
+      "one.json'",
+    ]);
     assert.deepEqual(candidates["one.json"], pose(1));
     assert.deepEqual(candidates["two.json, spare"], pose(3));
   });
@@ -155,7 +195,13 @@ describe("what is checked", () => {
   test("names that say colour to depth are inverted, and that is said", () => {
     const { stdout } = check("off", "--calibration", "two.json");
     const { rotation, translation, angles } = asked(stdout).candidates["two.json, color to depth"];
-    assert.deepEqual([rotation, translation.map((value) => value + 0)], [[0, 1, 0, -1, 0, 0, 0, 0, 1], [0, 2, 0]]);
+    assert.deepEqual(
+      [rotation, translation.map((value) => value + 0)],
+      [
+        [0, 1, 0, -1, 0, 0, 0, 0, 1],
+        [0, 2, 0],
+      ],
+    );
     assert.ok(Math.abs(angles.gamma + 90) < 1e-12 && angles.alpha + angles.beta === 0, JSON.stringify(angles));
     assert.match(stdout, /warning: two.json: it carries color to depth; its inverse was checked/);
     assert.match(stdout, /warning: two.json: a guess/);
@@ -163,7 +209,10 @@ describe("what is checked", () => {
 
   test("--inverted says so of files without names", () => {
     const { candidates } = asked(check("off", "--calibration", "one.json", "--inverted").stdout);
-    assert.deepEqual(candidates["one.json"].translation.map((value) => value + 0), [0, 1, 0]);
+    assert.deepEqual(
+      candidates["one.json"].translation.map((value) => value + 0),
+      [0, 1, 0],
+    );
   });
 
   test("options reach readers and check; intrinsics that were named come first, hidden files not at all", () => {
@@ -183,11 +232,24 @@ describe("what is checked", () => {
 describe("what comes out", () => {
   test("the numbers, and progress that a log can hold", () => {
     const { stdout, stderr } = check("off", "--calibration", "one.json");
-    for (const words of ["factory.yaml", "1.92 deg", "21.3 mm", "17.4 (15.8 to 19.1)", "best fit", "0.84 (0.52 to 1.31)", "edges 55 %", "a bare wall", "one of the check's"]) {
+    for (const words of [
+      "factory.yaml",
+      "1.92 deg",
+      "21.3 mm",
+      "17.4 (15.8 to 19.1)",
+      "best fit",
+      "0.84 (0.52 to 1.31)",
+      "edges 55 %",
+      "a bare wall",
+      "one of the check's",
+    ]) {
       assert.ok(stdout.includes(words), words);
     }
     assert.ok(stdout.includes(report().estimate.rotation.slice(0, 3).join(" ")), "with all digits");
-    assert.deepEqual(stderr.match(/\d+ %/g), Array.from({ length: 11 }, (_, k) => `${10 * k} %`));
+    assert.deepEqual(
+      stderr.match(/\d+ %/g),
+      Array.from({ length: 11 }, (_, k) => `${10 * k} %`),
+    );
     assert.ok(!/[\r\x1b]/.test(stderr));
   });
 
@@ -198,13 +260,17 @@ describe("what comes out", () => {
     const { inputs, reason: _, warnings: all, ...found } = json;
     assert.deepEqual(found, JSON.parse(JSON.stringify({ verdict, ...rest })));
     assert.equal(all.length, 2);
-    const hash = (path) => createHash("sha256").update(readFileSync(join(root, path))).digest("hex");
+    const hash = (path) =>
+      createHash("sha256")
+        .update(readFileSync(join(root, path)))
+        .digest("hex");
     assert.deepEqual(inputs, [
       { name: "one.json", says: "as told", sha256: hash("one.json") },
       { name: "deep/0001.json", says: "as told", sha256: hash("off/deep/0001.json") },
     ]);
     const page = readFileSync(join(root, "out.html"), "utf8");
-    for (const words of ["Check of one.json", hash("one.json"), "Content-Security-Policy"]) assert.ok(page.includes(words), words);
+    for (const words of ["Check of one.json", hash("one.json"), "Content-Security-Policy"])
+      assert.ok(page.includes(words), words);
   });
 
   test("--json - leaves the standard output to the JSON", () => {

@@ -24,7 +24,10 @@ const at = (name) => join(folder, name);
 const file = (name) => new Uint8Array(readFileSync(at(name)));
 
 function cli(...args) {
-  const { status, stdout, stderr } = spawnSync(inRoot("target/debug/bimodal-stereo"), [...args, "--json"], { encoding: "utf8", cwd: folder });
+  const { status, stdout, stderr } = spawnSync(inRoot("target/debug/bimodal-stereo"), [...args, "--json"], {
+    encoding: "utf8",
+    cwd: folder,
+  });
   assert.equal(stderr, "");
   return { code: status, ...JSON.parse(stdout) };
 }
@@ -53,7 +56,9 @@ function alike(told, report, degrees) {
   const share = (SHARE * degrees) / DEGREES;
   assert.ok(Math.abs(told.pose.scale / report.pose.scale - 1) < share, "scale");
   const size = Math.hypot(...report.pose.translation, told.unit === "px" ? SIZE : 0);
-  told.pose.translation.forEach((value, k) => assert.ok(Math.abs(value - report.pose.translation[k]) < share * size, `translation ${k}`));
+  told.pose.translation.forEach((value, k) =>
+    assert.ok(Math.abs(value - report.pose.translation[k]) < share * size, `translation ${k}`),
+  );
 }
 
 describe("command line", () => {
@@ -61,7 +66,10 @@ describe("command line", () => {
     await init();
     // With an example, since that asks for the features of the tests' crates: without them cargo compiles the library once more, under
     // the same name, and then what the Rust tests were built on is no longer there.
-    const { status } = spawnSync("cargo", ["build", "--quiet", "--bin", "bimodal-stereo", "--example", "pair"], { cwd: inRoot(), stdio: "inherit" });
+    const { status } = spawnSync("cargo", ["build", "--quiet", "--bin", "bimodal-stereo", "--example", "pair"], {
+      cwd: inRoot(),
+      stdio: "inherit",
+    });
     assert.equal(status, 0);
     folder = mkdtempSync(join(tmpdir(), "bimodal-cli-"));
   });
@@ -96,12 +104,28 @@ describe("command line", () => {
   test("a JPEG is decoded by others, and nearly the same", async () => {
     const { image, light } = sample({ surface: "bust", light: "colourful", size: SIZE });
     const { width, height, data } = levels(image, 255);
-    const rgba = Uint8Array.from({ length: 4 * width * height }, (_, i) => (i % 4 === 3 ? 255 : data[3 * (i >> 2) + (i % 4)]));
+    const rgba = Uint8Array.from({ length: 4 * width * height }, (_, i) =>
+      i % 4 === 3 ? 255 : data[3 * (i >> 2) + (i % 4)],
+    );
     writeFileSync(at("image.jpg"), jpeg.encode({ width, height, data: rgba }, 95).data);
-    const told = cli("image.jpg", "depth.npy", "--light", "light.csv", "--start", "identity", "--scale", "1", "--max-iterations", "4");
+    const told = cli(
+      "image.jpg",
+      "depth.npy",
+      "--light",
+      "light.csv",
+      "--start",
+      "identity",
+      "--scale",
+      "1",
+      "--max-iterations",
+      "4",
+    );
     const colour = await readRigFile({ name: "image.jpg", bytes: file("image.jpg") }, { as: "colour" });
     const options = { light, start: "identity", scale: 1, maxIterations: 4 };
     const report = await answer(colour.image, decodeDepth(file("depth.npy")), options);
-    assert.ok(Math.abs(told.pose.angles.beta - report.pose.angles.beta) < JPEG_DEGREES, `${told.pose.angles.beta} ${report.pose.angles.beta}`);
+    assert.ok(
+      Math.abs(told.pose.angles.beta - report.pose.angles.beta) < JPEG_DEGREES,
+      `${told.pose.angles.beta} ${report.pose.angles.beta}`,
+    );
   });
 });

@@ -78,15 +78,23 @@ test("log S is albedo and shading and a remainder of the residual's length", asy
   for (let index = 0; index < 64 * 64; index++) {
     const channels = [0, 1, 2].map((c) => 3 * index + c);
     if (!image.mask[index]) {
-      assert.ok(channels.every((at) => Number.isNaN(albedo[at]) && Number.isNaN(shading[at])) && Number.isNaN(residual[index]));
+      assert.ok(
+        channels.every((at) => Number.isNaN(albedo[at]) && Number.isNaN(shading[at])) && Number.isNaN(residual[index]),
+      );
       continue;
     }
     const left = channels.map((at) => Math.log(data[at]) - albedo[at] - shading[at]);
     assert.ok(Math.abs(Math.hypot(...left) - residual[index]) < 1e-4, `${index}: ${left} ${residual[index]}`);
     channels.forEach((at, c) => (sums[c] += albedo[at]));
   }
-  assert.ok(sums.every((sum) => Math.abs(sum) < 0.05), `${sums}`);
-  assert.ok(albedo.some((value) => Math.abs(value) > 0.2), "paint is found");
+  assert.ok(
+    sums.every((sum) => Math.abs(sum) < 0.05),
+    `${sums}`,
+  );
+  assert.ok(
+    albedo.some((value) => Math.abs(value) > 0.2),
+    "paint is found",
+  );
   made.free();
 });
 
@@ -94,7 +102,7 @@ test("a photograph of twelve megapixels is taken with a small depth map, in its 
   const { image, depth } = pair({ size: 64 });
   const [width, height, side] = [4000, 3000, 40];
   const [data, mask] = [new Uint8Array(4 * width * height), new Uint8Array(width * height)];
-  const brightest = image.data.reduce((most, value) => (value > most ? value : most), 0);
+  const brightest = image.data.reduce((most, value) => Math.max(value, most), 0);
   for (let index = 0; index < width * height; index++) {
     const [column, row] = [index % width, Math.floor(index / width)].map((at) => Math.floor((at - 200) / side));
     const inside = column >= 0 && row >= 0 && column < 64 && row < 64;
@@ -177,13 +185,23 @@ test("rotation wins over angles", () => {
 
 test("colours may come in every kind of array", () => {
   const { image, depth, light } = pair();
-  const levels = (most) => Array.from({ length: 4 * PIXELS }, (_, i) =>
-    i % 4 === 3 ? most : Math.round(Math.min(1, image.data[3 * (i >> 2) + (i % 4)] * 0.9) * most));
-  for (const data of [new Uint8Array(levels(255)), new Uint8ClampedArray(levels(255)), new Uint16Array(levels(65535))]) {
+  const levels = (most) =>
+    Array.from({ length: 4 * PIXELS }, (_, i) =>
+      i % 4 === 3 ? most : Math.round(Math.min(1, image.data[3 * (i >> 2) + (i % 4)] * 0.9) * most),
+    );
+  for (const data of [
+    new Uint8Array(levels(255)),
+    new Uint8ClampedArray(levels(255)),
+    new Uint16Array(levels(65535)),
+  ]) {
     const made = new Estimator({ ...image, data, transfer: "linear" }, depth, { light, start: "identity" });
     assert.equal(made.step().iteration, 1);
   }
-  const integers = new Estimator(image, { ...depth, data: new Uint16Array(depth.data.map((z) => z * 100)), unit: 0.01 }, { light, start: "identity" });
+  const integers = new Estimator(
+    image,
+    { ...depth, data: new Uint16Array(depth.data.map((z) => z * 100)), unit: 0.01 },
+    { light, start: "identity" },
+  );
   assert.equal(integers.step().iteration, 1);
 });
 
@@ -264,7 +282,13 @@ test("after free nothing works but free", () => {
   const made = estimator();
   made.free();
   made.free();
-  for (const call of [() => made.step(), () => made.report, () => made.light(), () => made.reset(), () => made.points("image")]) {
+  for (const call of [
+    () => made.step(),
+    () => made.report,
+    () => made.light(),
+    () => made.reset(),
+    () => made.points("image"),
+  ]) {
     refused(call, "freed", undefined);
   }
 });

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
 import { appendFileSync, existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
-import { after, before, describe, test } from "node:test";
+import { before, describe, test } from "node:test";
 import { build } from "vite";
 import { inRoot } from "../../scripts/shell.mjs";
 import { decodeDepth } from "../../pkg/files.js";
@@ -26,7 +26,11 @@ async function onPage(address, body) {
   // Whatever is said for a moment only: on a quick machine it is gone before it is looked for.
   await page.addInitScript(() => {
     window.said = [];
-    new MutationObserver(() => window.said.push(document.getElementById("out")?.textContent ?? "")).observe(document, { subtree: true, childList: true, characterData: true });
+    new MutationObserver(() => window.said.push(document.getElementById("out")?.textContent ?? "")).observe(document, {
+      subtree: true,
+      childList: true,
+      characterData: true,
+    });
   });
   page.setDefaultTimeout(NEVER);
   const faults = [];
@@ -57,12 +61,20 @@ describe("pages", () => {
   test("worker.html draws in a worker, and stops", () =>
     onPage(`${address}examples/worker.html`, async (page) => {
       await says(page, "#out", /^converged .*beta (49|50)\.\d+ \(true: 50\)/);
-      assert.ok((await page.evaluate(() => window.said)).some((words) => /^running .*beta/.test(words)), "it says how far it is");
+      assert.ok(
+        (await page.evaluate(() => window.said)).some((words) => /^running .*beta/.test(words)),
+        "it says how far it is",
+      );
       for (const id of ["normals", "depth"]) {
         const painted = await page.locator(`#${id}`).evaluate((canvas) => {
-          const copy = Object.assign(document.createElement("canvas"), { width: canvas.width, height: canvas.height }).getContext("2d");
+          const copy = Object.assign(document.createElement("canvas"), {
+            width: canvas.width,
+            height: canvas.height,
+          }).getContext("2d");
           copy.drawImage(canvas, 0, 0);
-          return copy.getImageData(0, 0, canvas.width, canvas.height).data.filter((value, k) => k % 4 === 3 && value === 255).length;
+          return copy
+            .getImageData(0, 0, canvas.width, canvas.height)
+            .data.filter((value, k) => k % 4 === 3 && value === 255).length;
         });
         assert.ok(painted > 1000, `${painted} pixels of ${id}`);
       }
@@ -78,13 +90,20 @@ describe("react", () => {
   before(async () => {
     const outDir = folder();
     const input = { example: inRoot("examples/react/index.html"), counted: inRoot("tests/contract/react/index.html") };
-    const options = { root: inRoot(), configFile: false, logLevel: "error", build: { outDir, emptyOutDir: true, target: "es2022", rollupOptions: { input } } };
+    const options = {
+      root: inRoot(),
+      configFile: false,
+      logLevel: "error",
+      build: { outDir, emptyOutDir: true, target: "es2022", rollupOptions: { input } },
+    };
     await build({ ...options, worker: { format: "es" } });
     address = await served(outDir);
   });
 
   test("the example finds the pose", () =>
-    onPage(`${address}examples/react/index.html`, (page) => says(page, "[role=status]", /^converged .*beta (19|20)\./)));
+    onPage(`${address}examples/react/index.html`, (page) =>
+      says(page, "[role=status]", /^converged .*beta (19|20)\./),
+    ));
 
   test("a component that goes ends what is under way, in strict mode, and frees it", () =>
     onPage(`${address}tests/contract/react/index.html`, async (page) => {
@@ -105,7 +124,11 @@ describe("batch.mjs", () => {
   const pairs = join(data, "pairs");
   const LARGE = ["colour/05.png", "depth/05.npy"];
   const csv = join(data, "poses.csv");
-  const lines = () => readFileSync(csv, "utf8").trim().split("\n").map((line) => line.split(","));
+  const lines = () =>
+    readFileSync(csv, "utf8")
+      .trim()
+      .split("\n")
+      .map((line) => line.split(","));
   const named = (name) => lines().find(([first]) => first === name);
 
   /** Runs to the end, or until `stop` holds and it is interrupted. */
@@ -133,11 +156,12 @@ describe("batch.mjs", () => {
     };
     // Two ways to name them.
     for (const beta of [0, 10]) await add([`colour/${beta}.png`, `depth/${beta}.npy`], { angles: { beta }, size: 48 });
-    for (const beta of [20, 30]) await add([`view ${beta}-rgb.png`, `view ${beta}-depth.npy`], { angles: { beta }, size: 48 });
+    for (const beta of [20, 30])
+      await add([`view ${beta}-rgb.png`, `view ${beta}-depth.npy`], { angles: { beta }, size: 48 });
     // It comes after the first, and takes far longer than an interruption.
     await add(LARGE, { size: 512 });
-    writeFileSync(join(pairs, "bad, \"cut\"-colour.png"), "no picture");
-    writeFileSync(join(pairs, "bad, \"cut\"-depth.npy"), "no array");
+    writeFileSync(join(pairs, 'bad, "cut"-colour.png'), "no picture");
+    writeFileSync(join(pairs, 'bad, "cut"-depth.npy'), "no array");
     writeFileSync(join(pairs, "alone-depth.npy"), "no partner");
   });
 
@@ -167,7 +191,10 @@ describe("batch.mjs", () => {
     assert.equal(first.code, 130, first.stderr);
     assert.match(first.stderr, /interrupted/);
     const before = lines();
-    assert.deepEqual(before.map(([name]) => name), ["name", '"bad', "0"]);
+    assert.deepEqual(
+      before.map(([name]) => name),
+      ["name", '"bad', "0"],
+    );
     for (const file of LARGE) rmSync(join(pairs, file));
     // As if it had been cut off in the middle of a line.
     appendFileSync(csv, "10,conv");
@@ -198,7 +225,14 @@ describe("batch.mjs", () => {
     for (const name of ["=1+1-colour.png", "=1+1-depth.npy"]) writeFileSync(join(folder, name), "no picture");
     for (let time = 0; time < 2; time++) {
       assert.equal((await batch([folder, "--csv", table])).code, 1);
-      assert.deepEqual(readFileSync(table, "utf8").trim().split("\n").slice(1).map((line) => line.split(",")[0]), ["'=1+1"]);
+      assert.deepEqual(
+        readFileSync(table, "utf8")
+          .trim()
+          .split("\n")
+          .slice(1)
+          .map((line) => line.split(",")[0]),
+        ["'=1+1"],
+      );
     }
   });
 
@@ -217,16 +251,29 @@ describe("batch.mjs", () => {
 });
 
 describe("Rust", () => {
-  test("pair.rs", () => assert.match(run("cargo", ["run", "--quiet", "--example", "pair"], inRoot()), /^converged after/));
+  test("pair.rs", () =>
+    assert.match(run("cargo", ["run", "--quiet", "--example", "pair"], inRoot()), /^converged after/));
 
   test("files.rs reads files, and writes the refined depth", () => {
     const files = (...args) => run("cargo", ["run", "--quiet", "--example", "files", "--", ...args], inRoot());
     const refined = join(data, "refined.npy");
-    assert.match(files(join(data, "colour.png"), join(data, "depth.npy"), refined), /^converged after \d+ iterations\ns .*beta (19|20)\.\d+/);
-    const [before, { width, height, data: after }] = [decodeDepth(readFileSync(join(data, "depth.npy"))), decodeDepth(readFileSync(refined))];
+    assert.match(
+      files(join(data, "colour.png"), join(data, "depth.npy"), refined),
+      /^converged after \d+ iterations\ns .*beta (19|20)\.\d+/,
+    );
+    const [before, { width, height, data: after }] = [
+      decodeDepth(readFileSync(join(data, "depth.npy"))),
+      decodeDepth(readFileSync(refined)),
+    ];
     assert.deepEqual([width, height], [before.width, before.height]);
-    const apart = before.data.map((value, k) => Math.abs(value - after[k])).filter(Number.isFinite).sort();
-    assert.ok(apart.length > 1000 && apart[apart.length >> 1] < 0.5, `${apart.length} pixels, ${apart[apart.length >> 1]}`);
+    const apart = before.data
+      .map((value, k) => Math.abs(value - after[k]))
+      .filter(Number.isFinite)
+      .sort();
+    assert.ok(
+      apart.length > 1000 && apart[apart.length >> 1] < 0.5,
+      `${apart.length} pixels, ${apart[apart.length >> 1]}`,
+    );
     assert.throws(() => files(join(data, "depth.npy"), join(data, "depth.npy")), /depth\.npy: /);
   });
 });

@@ -9,7 +9,14 @@ const SCALAR = "bimodal_stereo_scalar_bg.wasm";
 /** Rounding may differ where a compiler reorders sums; today it does not, and the poses are equal to the bit. */
 const DEGREES = 0.001;
 /** Nothing known: the whole method runs, the search included. */
-const REQUEST = { surface: "bust", light: "window", size: 64, angles: { alpha: 10, beta: 50, gamma: 15 }, overlap: 0.7, noise: 0.01 };
+const REQUEST = {
+  surface: "bust",
+  light: "window",
+  size: 64,
+  angles: { alpha: 10, beta: 50, gamma: 15 },
+  overlap: 0.7,
+  noise: 0.01,
+};
 
 async function start(inNode, knowsSimd) {
   const workerData = { inNode, knowsSimd, request: REQUEST };
@@ -17,7 +24,8 @@ async function start(inNode, knowsSimd) {
   return result;
 }
 
-const degrees = (a, b) => (2 * Math.asin(Math.hypot(...a.map((value, i) => value - b[i])) / Math.SQRT2 / 2) * 180) / Math.PI;
+const degrees = (a, b) =>
+  (2 * Math.asin(Math.hypot(...a.map((value, i) => value - b[i])) / Math.SQRT2 / 2) * 180) / Math.PI;
 
 for (const inNode of [true, false]) {
   describe(`init() in ${inNode ? "Node" : "a browser"}`, () => {

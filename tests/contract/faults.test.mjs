@@ -75,12 +75,22 @@ describe("faults", () => {
     assert.equal(status, "converged");
   });
 
-  for (const [name, value] of [["NaN", NaN], ["infinity", Infinity], ["minus infinity", -Infinity], ["the largest float", LARGEST], ["its negative", -LARGEST], ["a denormal", DENORMAL], ["zero", 0]]) {
+  for (const [name, value] of [
+    ["NaN", NaN],
+    ["infinity", Infinity],
+    ["minus infinity", -Infinity],
+    ["the largest float", LARGEST],
+    ["its negative", -LARGEST],
+    ["a denormal", DENORMAL],
+    ["zero", 0],
+  ]) {
     test(`${name} in one of ten pixels of either view`, () => {
       const random = randoms(7);
       const [input, options] = spoiled((image, depth) => {
         for (const { data, mask } of [image, depth]) {
-          for (const i of inside(mask)) if (random() < 0.1) data.fill(value, i * (data.length / mask.length), (i + 1) * (data.length / mask.length));
+          for (const i of inside(mask))
+            if (random() < 0.1)
+              data.fill(value, i * (data.length / mask.length), (i + 1) * (data.length / mask.length));
         }
       });
       run(input, options);
@@ -100,7 +110,9 @@ describe("faults", () => {
       run(input, options);
     }
     const random = randoms(3);
-    const [input, options] = spoiled((image) => image.data.forEach((value, i) => (image.data[i] = value * 10 ** (60 * random() - 30))));
+    const [input, options] = spoiled((image) =>
+      image.data.forEach((value, i) => (image.data[i] = value * 10 ** (60 * random() - 30))),
+    );
     run(input, options);
   });
 
@@ -112,7 +124,12 @@ describe("faults", () => {
   });
 
   test("objects of one pixel, two, a row and a column", () => {
-    const masks = [[500], [500, 501], Array.from({ length: SIDE }, (_, i) => 15 * SIDE + i), Array.from({ length: SIDE }, (_, i) => 15 + SIDE * i)];
+    const masks = [
+      [500],
+      [500, 501],
+      Array.from({ length: SIDE }, (_, i) => 15 * SIDE + i),
+      Array.from({ length: SIDE }, (_, i) => 15 + SIDE * i),
+    ];
     for (const pixels of masks) {
       for (const side of ["image", "depth"]) {
         const [input] = spoiled((image, depth) => {
@@ -143,14 +160,22 @@ describe("faults", () => {
     run({ image: round.image, depth: round.depth }, SEARCH);
     // A plane of one colour before a plane.
     const count = SIDE * SIDE;
-    const flat = { image: { width: SIDE, height: SIDE, data: new Float32Array(3 * count).fill(0.5) }, depth: { width: SIDE, height: SIDE, data: new Float32Array(count).fill(100) } };
+    const flat = {
+      image: { width: SIDE, height: SIDE, data: new Float32Array(3 * count).fill(0.5) },
+      depth: { width: SIDE, height: SIDE, data: new Float32Array(count).fill(100) },
+    };
     run(flat);
-    const tilted = { ...flat, depth: { ...flat.depth, data: Float32Array.from({ length: count }, (_, i) => 100 + 0.5 * (i % SIDE)) } };
+    const tilted = {
+      ...flat,
+      depth: { ...flat.depth, data: Float32Array.from({ length: count }, (_, i) => 100 + 0.5 * (i % SIDE)) },
+    };
     run(tilted);
   });
 
   test("duplicated points: a cloud of one point, and one whose points come in fours", () => {
-    const { depth: { width, height, mask, data } } = pair({ size: SIDE });
+    const {
+      depth: { width, height, mask, data },
+    } = pair({ size: SIDE });
     const { image } = pair({ size: SIDE, light: "window" });
     const same = new Float32Array(3 * width * height);
     for (let i = 0; i < width * height; i++) same.set([10, 20, 30], 3 * i);
@@ -168,7 +193,10 @@ describe("faults", () => {
     const count = SIDE * SIDE;
     for (const level of [255, 0, 1]) {
       const [{ depth, image }] = spoiled(() => {});
-      run({ image: { width: SIDE, height: SIDE, mask: image.mask, data: new Uint8Array(4 * count).fill(level) }, depth });
+      run({
+        image: { width: SIDE, height: SIDE, mask: image.mask, data: new Uint8Array(4 * count).fill(level) },
+        depth,
+      });
     }
     const [{ depth, image }] = spoiled(() => {});
     run({ image: { ...image, data: new Float32Array(3 * count).fill(0.25) }, depth });
@@ -198,14 +226,30 @@ describe("faults", () => {
     const [width, height] = [4096, 4096];
     const { depth } = pair({ size: 32, light: "window" });
     const large = { width, height, data: new Uint8Array(4 * width * height).fill(90) };
-    refused(() => new Estimator({ width: 32, height: 32, data: new Float32Array(3 * 1024).fill(0.5) }, { width, height, data: new Float32Array(width * height).fill(2) }), "memory", "depth");
-    refused(() => new Estimator({ width: 4097, height, data: new Uint8Array(4 * 4097 * height) }, depth), "size", "image");
+    refused(
+      () =>
+        new Estimator(
+          { width: 32, height: 32, data: new Float32Array(3 * 1024).fill(0.5) },
+          { width, height, data: new Float32Array(width * height).fill(2) },
+        ),
+      "memory",
+      "depth",
+    );
+    refused(
+      () => new Estimator({ width: 4097, height, data: new Uint8Array(4 * 4097 * height) }, depth),
+      "size",
+      "image",
+    );
     run({ image: large, depth });
   });
 
   test("two estimators whose steps take turns give the bits that each gives alone", () => {
-    const scenes = [pair({ size: 32, light: "window" }), pair({ size: 40, surface: "vase", light: "window", angles: { beta: 20 } })];
-    const make = ({ image, depth }) => new Estimator(image, depth, { start: { angles: { beta: 10 } }, maxIterations: 6 });
+    const scenes = [
+      pair({ size: 32, light: "window" }),
+      pair({ size: 40, surface: "vase", light: "window", angles: { beta: 20 } }),
+    ];
+    const make = ({ image, depth }) =>
+      new Estimator(image, depth, { start: { angles: { beta: 10 } }, maxIterations: 6 });
     const isRunning = (made) => made.report.status === "running";
     const alone = scenes.map((scene) => {
       const made = make(scene);

@@ -7,7 +7,11 @@ import { FOLDER as RUN } from "../../scripts/reference/run-written.mjs";
 import { inRoot } from "../../scripts/shell.mjs";
 import { BimodalError, npy, png, refused } from "./support.mjs";
 
-const GREY = 0, RGB = 2, PALETTE = 3, GREY_ALPHA = 4, RGBA = 6;
+const GREY = 0,
+  RGB = 2,
+  PALETTE = 3,
+  GREY_ALPHA = 4,
+  RGBA = 6;
 
 test("both modules throw the same class", () => assert.equal(FilesError, BimodalError));
 
@@ -26,8 +30,9 @@ describe("PNG", () => {
   });
 
   test("8-bit grey, RGB, RGBA and palette become RGBA", () => {
-    const decoded = (colourType, row, more) =>
-      [...decodeColour(png({ width: 1, height: 1, depth: 8, colourType, rows: [row], ...more })).data];
+    const decoded = (colourType, row, more) => [
+      ...decodeColour(png({ width: 1, height: 1, depth: 8, colourType, rows: [row], ...more })).data,
+    ];
     assert.deepEqual(decoded(GREY, [9]), [9, 9, 9, 255]);
     assert.deepEqual(decoded(GREY_ALPHA, [9, 77]), [9, 9, 9, 77]);
     assert.deepEqual(decoded(RGB, [1, 2, 3]), [1, 2, 3, 255]);
@@ -38,17 +43,39 @@ describe("PNG", () => {
   test("masks: any non-zero level, few bits and palettes included", () => {
     const grey = png({ width: 3, height: 1, depth: 8, colourType: GREY, rows: [[0, 1, 255]] });
     assert.deepEqual(decodeMask(grey), { width: 3, height: 1, data: new Uint8Array([0, 255, 255]) });
-    const bits = png({ width: 10, height: 2, depth: 1, colourType: GREY, rows: [[0b10000001, 0b01000000], [0, 0b10000000]] });
+    const bits = png({
+      width: 10,
+      height: 2,
+      depth: 1,
+      colourType: GREY,
+      rows: [
+        [0b10000001, 0b01000000],
+        [0, 0b10000000],
+      ],
+    });
     const expected = [1, 0, 0, 0, 0, 0, 0, 1, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0].map((bit) => 255 * bit);
     assert.deepEqual([...decodeMask(bits).data], expected);
-    const palette = png({ width: 2, height: 1, depth: 8, colourType: PALETTE, rows: [[0, 1]], palette: [0, 0, 0, 128, 0, 0] });
+    const palette = png({
+      width: 2,
+      height: 1,
+      depth: 8,
+      colourType: PALETTE,
+      rows: [[0, 1]],
+      palette: [0, 0, 0, 128, 0, 0],
+    });
     assert.deepEqual([...decodeMask(palette).data], [0, 255]);
     const clear = png({ width: 2, height: 1, depth: 8, colourType: RGBA, rows: [[9, 9, 9, 0, 9, 9, 9, 255]] });
     assert.deepEqual([...decodeMask(clear).data], [0, 255]);
   });
 
   test("cut off or damaged", () => {
-    const file = png({ width: 8, height: 8, depth: 16, colourType: GREY, rows: Array.from({ length: 8 }, () => words(1, 2, 3, 4, 5, 6, 7, 8)) });
+    const file = png({
+      width: 8,
+      height: 8,
+      depth: 16,
+      colourType: GREY,
+      rows: Array.from({ length: 8 }, () => words(1, 2, 3, 4, 5, 6, 7, 8)),
+    });
     for (const length of [8, 20, 40, file.length - 20, file.length - 13]) {
       for (const decode of [decodeColour, decodeDepth, decodeMask]) {
         refused(() => decode(file.slice(0, length)), "file", "file");
@@ -75,7 +102,11 @@ describe(".npy", () => {
     assert.deepEqual(decoded("<i4", new Int32Array([1, -2, 3])), new Float32Array([1, -2, 3]));
     assert.deepEqual(decoded("<u2", new Uint16Array([1, 2, 65535])), new Uint16Array([1, 2, 65535]));
     assert.deepEqual(decoded("|u1", new Uint8Array([1, 2, 3])), new Uint16Array([1, 2, 3]));
-    assert.deepEqual(decoded("<f4", new Float32Array([1, 2, 3]), { align: 1 }), new Float32Array([1, 2, 3]), "unaligned");
+    assert.deepEqual(
+      decoded("<f4", new Float32Array([1, 2, 3]), { align: 1 }),
+      new Float32Array([1, 2, 3]),
+      "unaligned",
+    );
   });
 
   test("from a part of one of Node's shared buffers", () => {
@@ -88,8 +119,14 @@ describe(".npy", () => {
     const data = new Float32Array([1, 2, 3, 4, 5, 6]);
     assert.deepEqual(decodeDepth(npy({ descr: "<f4", shape: [1, 2, 3], data })), { width: 2, height: 1, points: data });
     assert.deepEqual(decodeColour(npy({ descr: "<f4", shape: [2, 1, 3], data })), { width: 1, height: 2, data });
-    assert.deepEqual([...decodeColour(npy({ descr: "|u1", shape: [1, 1, 3], data: new Uint8Array([1, 2, 3]) })).data], [1, 2, 3, 255]);
-    assert.deepEqual([...decodeMask(npy({ descr: "|b1", shape: [1, 2], data: new Uint8Array([0, 1]) })).data], [0, 255]);
+    assert.deepEqual(
+      [...decodeColour(npy({ descr: "|u1", shape: [1, 1, 3], data: new Uint8Array([1, 2, 3]) })).data],
+      [1, 2, 3, 255],
+    );
+    assert.deepEqual(
+      [...decodeMask(npy({ descr: "|b1", shape: [1, 2], data: new Uint8Array([0, 1]) })).data],
+      [0, 255],
+    );
   });
 
   test("column order as numpy writes it, of every kind, is read in row order", () => {
@@ -105,10 +142,16 @@ describe(".npy", () => {
     assert.deepEqual([height, width, 3], expected("cloud").shape);
     assert.deepEqual([...points], expected("cloud").values);
     const colour = decodeColour(file("colour"));
-    assert.deepEqual([...colour.data].filter((_, i) => i % 4 < 3), expected("colour").values);
+    assert.deepEqual(
+      [...colour.data].filter((_, i) => i % 4 < 3),
+      expected("colour").values,
+    );
     const mask = decodeMask(file("mask"));
     assert.deepEqual([mask.height, mask.width], expected("mask").shape);
-    assert.deepEqual([...mask.data], expected("mask").values.map((value) => 255 * value));
+    assert.deepEqual(
+      [...mask.data],
+      expected("mask").values.map((value) => 255 * value),
+    );
   });
 
   test("wrong ones are named", () => {
@@ -134,12 +177,18 @@ describe(".npy", () => {
     }
     assert.throws(wrong({ descr: "<c8" }), /type "<c8"/);
     const told = npy({ descr: "<f4", shape: [2, 3], data });
-    const untold = Uint8Array.from(Buffer.from(Buffer.from(told).toString("latin1").replace("'fortran_order': False", "'fortran_order': 0    "), "latin1"));
+    const untold = Uint8Array.from(
+      Buffer.from(
+        Buffer.from(told).toString("latin1").replace("'fortran_order': False", "'fortran_order': 0    "),
+        "latin1",
+      ),
+    );
     assert.throws(() => decodeDepth(untold), /fortran_order/);
     const five = npy({ descr: "|u1", shape: [1, 1, 5], data: new Uint8Array(5) });
     for (const decode of [decodeColour, decodeDepth, decodeMask]) refused(() => decode(five), "file", "file");
     const whole = npy({ descr: "<f4", shape: [2, 3], data });
-    for (const length of [6, 9, 20, whole.length - 1]) refused(() => decodeDepth(whole.slice(0, length)), "file", "file");
+    for (const length of [6, 9, 20, whole.length - 1])
+      refused(() => decodeDepth(whole.slice(0, length)), "file", "file");
   });
 });
 

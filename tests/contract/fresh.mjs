@@ -40,7 +40,9 @@ export function folder() {
 export function freshProject() {
   const path = folder();
   writeFileSync(join(path, "package.json"), JSON.stringify({ name: "fresh", private: true, type: "module" }));
-  const [{ filename }] = JSON.parse(run("npm", ["pack", inRoot("pkg"), "--json", "--pack-destination", path], inRoot()));
+  const [{ filename }] = JSON.parse(
+    run("npm", ["pack", inRoot("pkg"), "--json", "--pack-destination", path], inRoot()),
+  );
   run("npm", ["install", "--offline", "--no-audit", "--no-fund", join(path, filename)], path);
   return path;
 }
@@ -64,10 +66,13 @@ export async function pairFiles(request) {
 
 /** The fenced examples of one language in a Markdown file. */
 export const examples = (path, language) =>
-  [...readFileSync(path, "utf8").matchAll(new RegExp("^```" + language + "\\n([\\s\\S]*?)^```", "gm"))].map((m) => m[1]);
+  [...readFileSync(path, "utf8").matchAll(new RegExp("^```" + language + "\\n([\\s\\S]*?)^```", "gm"))].map(
+    (m) => m[1],
+  );
 
 /** An HTML page with something in its head. */
-export const html = (head) => `<!doctype html><meta charset="utf-8"><link rel="icon" href="data:,"><title>test</title>${head}\n`;
+export const html = (head) =>
+  `<!doctype html><meta charset="utf-8"><link rel="icon" href="data:,"><title>test</title>${head}\n`;
 
 /** The addresses of folders, until the tests are over. */
 export async function served(path) {
@@ -80,7 +85,10 @@ let started;
 /** One browser for all. */
 export function chrome() {
   started ??= (async () => {
-    const chrome = await chromium.launch({ executablePath: await headless(), args: ["--no-sandbox", "--disable-background-networking", "--no-first-run"] });
+    const chrome = await chromium.launch({
+      executablePath: await headless(),
+      args: ["--no-sandbox", "--disable-background-networking", "--no-first-run"],
+    });
     endings.push(() => chrome.close());
     return chrome;
   })();
@@ -113,7 +121,12 @@ export async function visit(address, { threads = 0 } = {}) {
   });
   const late = AbortSignal.timeout(NEVER);
   await page.goto(address);
-  await Promise.race([ended, new Promise((_, fail) => late.addEventListener("abort", () => fail(new Error(`${address}: ${seen.lines.join("\n")}`))))]);
+  await Promise.race([
+    ended,
+    new Promise((_, fail) =>
+      late.addEventListener("abort", () => fail(new Error(`${address}: ${seen.lines.join("\n")}`))),
+    ),
+  ]);
   // The browser may tell of a thread after what its page has said.
   while (seen.threads.length < threads && !late.aborted) await page.waitForTimeout(50);
   seen.threads = await Promise.all(seen.threads);

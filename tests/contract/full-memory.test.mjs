@@ -27,7 +27,11 @@ function limited(bytes, pages) {
     if (bytes[at] === MEMORY_SECTION) {
       const [initial] = leb128(bytes, from + 2);
       const section = [1, 1, ...asLeb128(initial), ...asLeb128(pages)];
-      return Buffer.concat([bytes.subarray(0, at), Buffer.from([MEMORY_SECTION, ...asLeb128(section.length), ...section]), bytes.subarray(from + size)]);
+      return Buffer.concat([
+        bytes.subarray(0, at),
+        Buffer.from([MEMORY_SECTION, ...asLeb128(section.length), ...section]),
+        bytes.subarray(from + size),
+      ]);
     }
     at = from + size;
   }
@@ -35,7 +39,9 @@ function limited(bytes, pages) {
 }
 
 test("full memory is named; what is freed can be had again", async () => {
-  await init(limited(await readFile(new URL("../../pkg/bimodal_stereo_bg.wasm", import.meta.url)), Math.floor(GRANTED / PAGE)));
+  await init(
+    limited(await readFile(new URL("../../pkg/bimodal_stereo_bg.wasm", import.meta.url)), Math.floor(GRANTED / PAGE)),
+  );
   const { image, depth } = sample({ surface: "bust", light: "window", size: 400 });
   const made = [];
   const fill = () => {

@@ -17,7 +17,9 @@ function parse(page) {
     if (words !== undefined) text += words;
     else if (end) assert.equal(open.pop(), name, `</${name}> closes another element`);
     else {
-      const found = Object.fromEntries([...attributes.matchAll(/([\w:-]+)(?:="([^"]*)")?/g)].map(([, key, value = ""]) => [key, value]));
+      const found = Object.fromEntries(
+        [...attributes.matchAll(/([\w:-]+)(?:="([^"]*)")?/g)].map(([, key, value = ""]) => [key, value]),
+      );
       elements.push({ name: name.toLowerCase(), attributes: found });
       if (!self && !VOID.has(name.toLowerCase())) open.push(name);
     }

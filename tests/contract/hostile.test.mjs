@@ -17,7 +17,17 @@ const APART = new Set(["default", "BimodalError", "Estimator"]);
 const circle = {};
 circle.self = circle;
 /** Throws from wherever it is looked at. */
-const trap = new Proxy({}, { get: () => { throw new Error("a getter that throws"); }, ownKeys: () => { throw new Error("keys that throw"); } });
+const trap = new Proxy(
+  {},
+  {
+    get: () => {
+      throw new Error("a getter that throws");
+    },
+    ownKeys: () => {
+      throw new Error("keys that throw");
+    },
+  },
+);
 const HOSTILE = {
   nothing: undefined,
   null: null,
@@ -53,7 +63,8 @@ const NAMES = Object.keys(HOSTILE);
 function* given(count) {
   for (const [index, name] of NAMES.entries()) {
     yield [name, Array(count).fill(HOSTILE[name])];
-    for (let place = 0; place < count; place++) yield [`${name}, ${place}`, Array.from({ length: count }, (_, i) => (i === place ? HOSTILE[name] : {}))];
+    for (let place = 0; place < count; place++)
+      yield [`${name}, ${place}`, Array.from({ length: count }, (_, i) => (i === place ? HOSTILE[name] : {}))];
     yield [`${name} and the next`, Array.from({ length: count }, (_, i) => HOSTILE[NAMES[(index + i) % NAMES.length]])];
   }
 }
@@ -61,8 +72,26 @@ function* given(count) {
 const PICTURES = [{ title: "a", dataUrl: "data:image/png;base64,AAAA" }];
 const BESIDE = { title: "a", made: new Date(0), inputs: [{ name: "a", says: "b", sha256: "c" }] };
 const CAMERA = { model: "brown", fx: 9, fy: 9, cx: 0, cy: 0, distortion: [1, 2, 3, 4] };
-const CONTEXT = { colour: CAMERA, depth: CAMERA, sizes: { colour: [8, 6], depth: [8, 6] }, frames: { colour: "a", depth: "b" } };
-const RUN = { ...BESIDE, tone: "good", status: "a", words: ["a"], pose: POSE, truth: POSE, unit: "m", light: LIGHT, numbers: [["a", "b"]], options: [["a", "b"]], pictures: PICTURES, link: "a" };
+const CONTEXT = {
+  colour: CAMERA,
+  depth: CAMERA,
+  sizes: { colour: [8, 6], depth: [8, 6] },
+  frames: { colour: "a", depth: "b" },
+};
+const RUN = {
+  ...BESIDE,
+  tone: "good",
+  status: "a",
+  words: ["a"],
+  pose: POSE,
+  truth: POSE,
+  unit: "m",
+  light: LIGHT,
+  numbers: [["a", "b"]],
+  options: [["a", "b"]],
+  pictures: PICTURES,
+  link: "a",
+};
 const SIGMAS = { rotationDegrees: [1, 2, 3], translation: [1, 2, null], scale: null, weakest: "a" };
 const levels = (data, channels = 1) => ({ width: 1, height: 1, channels, data });
 /** Writers with what they take. */
@@ -76,14 +105,26 @@ const WRITERS = {
   writePng: [write.writePng, levels(new Uint16Array(3), 3), { Unit: "a" }],
   depthPng: [write.depthPng, levels(new Float32Array(1)), "px"],
   normalsPng: [write.normalsPng, levels(new Float32Array(3))],
-  writeClouds: [write.writeClouds, [{ points: new Float32Array(3), colours: new Uint8Array(3), name: "a" }, { points: new Float32Array(3) }], "metres"],
-  ...Object.fromEntries(rigWrite.poseFormats.map((format) => [`writePose as ${format}`, [rigWrite.writePose, { ...POSE, scale: 1 }, format, CONTEXT]])),
+  writeClouds: [
+    write.writeClouds,
+    [{ points: new Float32Array(3), colours: new Uint8Array(3), name: "a" }, { points: new Float32Array(3) }],
+    "metres",
+  ],
+  ...Object.fromEntries(
+    rigWrite.poseFormats.map((format) => [
+      `writePose as ${format}`,
+      [rigWrite.writePose, { ...POSE, scale: 1 }, format, CONTEXT],
+    ]),
+  ),
 };
 /** A value with one member changed, at any depth, and the hostile values in its place. */
 function* changes(value, path = "") {
   if (Object(value) !== value || !(Array.isArray(value) || Object.getPrototypeOf(value) === Object.prototype)) return;
   for (const key of Object.keys(value).slice(0, 12)) {
-    const inside = [...NAMES.map((name) => [`${path}.${key}: ${name}`, HOSTILE[name]]), ...changes(value[key], `${path}.${key}`)];
+    const inside = [
+      ...NAMES.map((name) => [`${path}.${key}: ${name}`, HOSTILE[name]]),
+      ...changes(value[key], `${path}.${key}`),
+    ];
     for (const [words, member] of inside) {
       const copy = Array.isArray(value) ? [...value] : { ...value };
       copy[key] = member;
@@ -98,9 +139,18 @@ async function tried(what, call) {
     const answer = await call();
     if (answer instanceof Estimator) answer.free();
   } catch (error) {
-    assert.ok(!(error instanceof WebAssembly.RuntimeError) && !["panic", "poisoned"].includes(error?.code), `${what} broke the numerics off: ${error?.stack}`);
-    assert.ok(!/call stack|allocation|array length|out of memory/i.test(String(error?.message)), `${what} ran away: ${error?.stack}`);
-    assert.ok(error instanceof BimodalError && error.code.length > 0, `${what} does not say what is wrong: ${error?.stack ?? error}`);
+    assert.ok(
+      !(error instanceof WebAssembly.RuntimeError) && !["panic", "poisoned"].includes(error?.code),
+      `${what} broke the numerics off: ${error?.stack}`,
+    );
+    assert.ok(
+      !/call stack|allocation|array length|out of memory/i.test(String(error?.message)),
+      `${what} ran away: ${error?.stack}`,
+    );
+    assert.ok(
+      error instanceof BimodalError && error.code.length > 0,
+      `${what} does not say what is wrong: ${error?.stack ?? error}`,
+    );
   }
 }
 
@@ -139,17 +189,26 @@ describe("every export", () => {
     for (const [words, [first, second, third]] of given(3)) {
       await tried(`new Estimator(${words})`, () => new Estimator(first, second, third));
       await tried(`with an image of ${words}`, () => new Estimator({ ...image, data: first }, depth));
-      await tried(`with a camera of ${words}`, () => new Estimator({ ...image, camera: first }, { ...depth, mask: second }));
-      await tried(`with options of ${words}`, () => new Estimator(image, depth, { light: first, start: second, lambda: third }));
+      await tried(
+        `with a camera of ${words}`,
+        () => new Estimator({ ...image, camera: first }, { ...depth, mask: second }),
+      );
+      await tried(
+        `with options of ${words}`,
+        () => new Estimator(image, depth, { light: first, start: second, lambda: third }),
+      );
     }
   });
 
   test("every member of an estimator", async () => {
-    const members = Object.getOwnPropertyNames(Estimator.prototype).filter((name) => !["constructor", "free", "reset"].includes(name));
+    const members = Object.getOwnPropertyNames(Estimator.prototype).filter(
+      (name) => !["constructor", "free", "reset"].includes(name),
+    );
     assert.ok(members.includes("step") && members.includes("draw") && members.includes("save"));
     const moving = ["step", "stepStage", "stepFor", "run"];
     for (const name of members.filter((name) => typeof bystander[name] === "function" && !moving.includes(name))) {
-      for (const [words, values] of given(2)) await tried(`estimator.${name}(${words})`, () => bystander[name](...values));
+      for (const [words, values] of given(2))
+        await tried(`estimator.${name}(${words})`, () => bystander[name](...values));
     }
     // One that has ended: what is accepted costs nothing.
     const ended = estimator({ maxIterations: 1 });

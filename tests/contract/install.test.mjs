@@ -28,7 +28,8 @@ function lightsAfter(specifier, argument) {
 
 test("the file without SIMD can be asked for by its address", () => {
   const address = 'import.meta.resolve("bimodal-stereo/bimodal_stereo_scalar_bg.wasm")';
-  for (const argument of [address, `new URL(${address})`]) assert.ok(lightsAfter("bimodal-stereo", argument).includes("window"));
+  for (const argument of [address, `new URL(${address})`])
+    assert.ok(lightsAfter("bimodal-stereo", argument).includes("window"));
 });
 
 test("Node may import the module by its path, too", () => {
@@ -43,10 +44,21 @@ test("a .wasm that is not there is a BimodalError", () => {
 });
 
 test("bundled for browsers it carries its files along, and asks for nothing of Node's", async () => {
-  writeFileSync(join(folder, "page.js"), 'import init, { Estimator } from "bimodal-stereo"; console.log(init, Estimator);');
+  writeFileSync(
+    join(folder, "page.js"),
+    'import init, { Estimator } from "bimodal-stereo"; console.log(init, Estimator);',
+  );
   const warnings = [];
   const warn = (message) => void warnings.push(message);
-  const logger = { info() {}, warn, warnOnce: warn, error: warn, clearScreen() {}, hasErrorLogged: () => false, hasWarned: false };
+  const logger = {
+    info() {},
+    warn,
+    warnOnce: warn,
+    error: warn,
+    clearScreen() {},
+    hasErrorLogged: () => false,
+    hasWarned: false,
+  };
   const { output } = await build({
     ...{ root: folder, configFile: false, logLevel: "warn", customLogger: logger, worker: { format: "es" } },
     // A remark on how long plugins took depends on how busy the machine is.
@@ -58,7 +70,8 @@ test("bundled for browsers it carries its files along, and asks for nothing of N
   const wasm = ["", "_check", "_rigs", "_scalar"].map((which) => `bimodal_stereo${which}_bg.wasm`);
   const files = [...wasm, "page.js", "thread.js"];
   assert.deepEqual(bundled, files);
-  for (const { fileName, imports = [], dynamicImports = [] } of output) assert.deepEqual([...imports, ...dynamicImports], [], fileName);
+  for (const { fileName, imports = [], dynamicImports = [] } of output)
+    assert.deepEqual([...imports, ...dynamicImports], [], fileName);
 });
 
 test("the files module loads by itself", () => {
@@ -115,7 +128,8 @@ test("types resolve for Node and for bundlers, without help from other type pack
      export const wrong = (report: StepReport): string => report.nothing;`,
   );
   for (const module of ["nodenext", "bundler"]) {
-    const resolution = module === "bundler" ? ["--module", "esnext", "--moduleResolution", "bundler"] : ["--module", "nodenext"];
+    const resolution =
+      module === "bundler" ? ["--module", "esnext", "--moduleResolution", "bundler"] : ["--module", "nodenext"];
     run(process.execPath, [
       ...[inRoot("node_modules/typescript/bin/tsc"), "--noEmit", "--strict", "--target", "es2022", "--types", ""],
       ...["--lib", "es2022,dom,esnext.disposable", ...resolution, "typed/readme.ts", "typed/contract.ts"],
@@ -125,17 +139,25 @@ test("types resolve for Node and for bundlers, without help from other type pack
 
 test("nothing of the workshop is packed, and the package says where it comes from", () => {
   const installed = join(folder, "node_modules/bimodal-stereo");
-  const { files, dependencies, exports, version, author, repository, homepage, bugs } = JSON.parse(readFileSync(join(installed, "package.json"), "utf8"));
+  const { files, dependencies, exports, version, author, repository, homepage, bugs } = JSON.parse(
+    readFileSync(join(installed, "package.json"), "utf8"),
+  );
   assert.ok(files.includes("*.wasm"));
   assert.equal(dependencies, undefined);
   const cargo = readFileSync(inRoot("Cargo.toml"), "utf8");
   const [, address] = /^repository = "(https:.+)"$/m.exec(cargo);
   assert.ok(cargo.includes(`\nversion = "${version}"\n`));
   assert.match(author, /contributors/);
-  assert.deepEqual([repository.url, homepage, bugs.url], [`git+${address}.git`, `${address}#readme`, `${address}/issues`]);
-  for (const licence of ["LICENSE-MIT", "LICENSE-APACHE"]) assert.ok(readFileSync(join(installed, licence)).equals(readFileSync(inRoot(licence))));
+  assert.deepEqual(
+    [repository.url, homepage, bugs.url],
+    [`git+${address}.git`, `${address}#readme`, `${address}/issues`],
+  );
+  for (const licence of ["LICENSE-MIT", "LICENSE-APACHE"])
+    assert.ok(readFileSync(join(installed, licence)).equals(readFileSync(inRoot(licence))));
   // Whatever has a path of its own is there.
-  for (const target of Object.values(exports).flatMap((each) => (typeof each === "string" ? each : Object.values(each)))) {
+  for (const target of Object.values(exports).flatMap((each) =>
+    typeof each === "string" ? each : Object.values(each),
+  )) {
     assert.ok(existsSync(join(installed, target)), target);
   }
 });
@@ -146,5 +168,6 @@ test("the package's README speaks of the package alone, with the sizes of its fi
   assert.doesNotMatch(text, /\]\((?!https:)|npm (run|start|test)|cargo|docs\/|\{[a-z ]*size/);
   const rows = [...text.matchAll(/^\| `(\S+\.wasm)` \| .+ \| (\d+) kB \| (\d+) kB \|$/gm)];
   assert.equal(rows.length, 4);
-  for (const [, file, kilobytes] of rows) assert.equal(Math.round(readFileSync(join(installed, file)).length / 1000), Number(kilobytes));
+  for (const [, file, kilobytes] of rows)
+    assert.equal(Math.round(readFileSync(join(installed, file)).length / 1000), Number(kilobytes));
 });

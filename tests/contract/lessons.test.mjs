@@ -15,7 +15,17 @@ before(async () => {
 
 /** Eq. 5 written out, nine terms for a colour. */
 function shade([x, y, z], l) {
-  const basis = [0.886227, 2 * 0.511664 * y, 2 * 0.511664 * z, 2 * 0.511664 * x, 2 * 0.429043 * x * y, 2 * 0.429043 * y * z, 0.743125 * z * z - 0.247708, 2 * 0.429043 * x * z, 0.429043 * (x * x - y * y)];
+  const basis = [
+    0.886227,
+    2 * 0.511664 * y,
+    2 * 0.511664 * z,
+    2 * 0.511664 * x,
+    2 * 0.429043 * x * y,
+    2 * 0.429043 * y * z,
+    0.743125 * z * z - 0.247708,
+    2 * 0.429043 * x * z,
+    0.429043 * (x * x - y * y),
+  ];
   return [0, 9, 18].map((from) => basis.reduce((sum, value, k) => sum + value * l[from + k], 0));
 }
 
@@ -78,7 +88,10 @@ describe("the landscape of a pixel", () => {
       return Math.hypot(...prior.map((value, axis) => value - normal[axis]));
     };
     const weights = [0, 0.1, 1, 100].map((weight) => off({ weight, robust: false }));
-    assert.ok(weights.every((value, i) => i === 0 || value < weights[i - 1]), weights.join());
+    assert.ok(
+      weights.every((value, i) => i === 0 || value < weights[i - 1]),
+      weights.join(),
+    );
     // 65 degrees off, a robust prior has next to no hold, a plain one takes the pixel nearly half the way.
     assert.ok(off({ weight: 1 }) > 0.95 * weights[0] && off({ weight: 1, robust: false }) < 0.6 * weights[0]);
   });
@@ -89,7 +102,16 @@ describe("the landscape of a pixel", () => {
     refused(() => pixelLandscape({ light }), "missing", "landscape.log");
     refused(() => pixelLandscape({ ...request, side: 4096 }), "size", "landscape.side");
     refused(() => pixelLandscape({ ...request, weight: -1 }), "range", "landscape.weight");
-    for (const value of [NaN, Infinity, 1e300]) refused(() => pixelLandscape({ ...request, log: [0, value, 0] }), "range", "landscape.log[1]");
-    refused(() => shadeNormals(Array.from({ length: 27 }, () => NaN), new Float32Array(3)), "range", "light");
+    for (const value of [NaN, Infinity, 1e300])
+      refused(() => pixelLandscape({ ...request, log: [0, value, 0] }), "range", "landscape.log[1]");
+    refused(
+      () =>
+        shadeNormals(
+          Array.from({ length: 27 }, () => NaN),
+          new Float32Array(3),
+        ),
+      "range",
+      "light",
+    );
   });
 });

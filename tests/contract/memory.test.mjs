@@ -19,14 +19,26 @@ WebAssembly.instantiate = async (...given) => {
 await init();
 const size = () => memory.buffer.byteLength;
 
-const dome = (column, row) => 20 + 25 * Math.exp(-((column - 64) ** 2) / 1500 - (row - 45) ** 2 / 900) + 3 * Math.sin(column / 9 + row / 23);
+const dome = (column, row) =>
+  20 + 25 * Math.exp(-((column - 64) ** 2) / 1500 - (row - 45) ** 2 / 900) + 3 * Math.sin(column / 9 + row / 23);
 
 describe("memory", () => {
   test("a pair keeps to its budget, the search included", LONG, (t) => {
     // An object as wide as the frame: the estimator's memory is more than the renderer's, which it takes over.
-    const relief = { width: 128, height: 96, heights: Float32Array.from({ length: 128 * 96 }, (_, k) => dome(k % 128, Math.floor(k / 128))) };
+    const relief = {
+      width: 128,
+      height: 96,
+      heights: Float32Array.from({ length: 128 * 96 }, (_, k) => dome(k % 128, Math.floor(k / 128))),
+    };
     const [width, height] = [640, 480];
-    const { image, depth } = sample({ surface: relief, light: "window", size: width, height, noise: 0.01, angles: { beta: 8 } });
+    const { image, depth } = sample({
+      surface: relief,
+      light: "window",
+      size: width,
+      height,
+      noise: 0.01,
+      angles: { beta: 8 },
+    });
     const made = new Estimator(image, depth);
     for (let iterations = 0; iterations < 4 && made.report.status === "running"; iterations = made.step().iteration);
     made.free();

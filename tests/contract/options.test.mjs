@@ -9,7 +9,11 @@ import { Estimator, init, outcome, pair, sample } from "./support.mjs";
 const REQUEST = { surface: "bust", light: "window", size: 32 };
 
 /** An object with this value at this path, as { lambda: { prior: 1 } } of "options.lambda.prior". */
-const holding = (path, value) => path.split(".").slice(1).reduceRight((inner, name) => ({ [name]: inner }), value);
+const holding = (path, value) =>
+  path
+    .split(".")
+    .slice(1)
+    .reduceRight((inner, name) => ({ [name]: inner }), value);
 
 const bits = new DataView(new ArrayBuffer(8));
 /** The next number from x towards plus infinity (`by` = 1) or minus infinity (-1). */
@@ -24,10 +28,30 @@ function neighbour(x, by) {
 function ends({ kind, min, above, max, below }) {
   const beside = (x, by) => (kind === "number" ? neighbour(x, by) : x + by);
   return [
-    ...(min === undefined ? [] : [[min, true], [beside(min, -1), false]]),
-    ...(above === undefined ? [] : [[above, false], [beside(above, 1), true]]),
-    ...(max === undefined ? [] : [[max, true], [beside(max, 1), false]]),
-    ...(below === undefined ? [] : [[below, false], [beside(below, -1), true]]),
+    ...(min === undefined
+      ? []
+      : [
+          [min, true],
+          [beside(min, -1), false],
+        ]),
+    ...(above === undefined
+      ? []
+      : [
+          [above, false],
+          [beside(above, 1), true],
+        ]),
+    ...(max === undefined
+      ? []
+      : [
+          [max, true],
+          [beside(max, 1), false],
+        ]),
+    ...(below === undefined
+      ? []
+      : [
+          [below, false],
+          [beside(below, -1), true],
+        ]),
     ...(max === undefined && below === undefined ? [[Number.MAX_VALUE, true]] : []),
     ...[NaN, Infinity, -Infinity].map((x) => [x, false]),
   ];
@@ -61,8 +85,12 @@ describe("ranges", () => {
   for (const [path, row] of NUMBERS) {
     test(path, () => {
       const { image, depth } = sample(REQUEST);
-      const call = ({ Estimator, sample }, value) => () =>
-        path.startsWith("options") ? new Estimator(image, depth, holding(path, value)) : sample({ ...REQUEST, ...holding(path, value) });
+      const call =
+        ({ Estimator, sample }, value) =>
+        () =>
+          path.startsWith("options")
+            ? new Estimator(image, depth, holding(path, value))
+            : sample({ ...REQUEST, ...holding(path, value) });
       const native = NATIVE_FIELD[path] ?? path;
       for (const [value, inside] of ends(row)) {
         const code = refusal(path, call({ Estimator, sample }, value));
@@ -84,10 +112,19 @@ describe("ranges", () => {
       [estimator({ scale: 0 }), "options.scale: must be a finite number above zero (got 0)"],
       [estimator({ stopDegrees: 0 }), "options.stopDegrees: must be a finite number above zero (got 0)"],
       [estimator({ maxIterations: 0 }), "options.maxIterations: must be a whole number from 1 to 100000 (got 0)"],
-      [estimator({ lambda: { prior: -1 } }), "options.lambda.prior: must be a finite number, zero or above, at most 1000000 (got -1)"],
-      [estimator({ start: { angles: { beta: 500 } } }), "options.start.angles.beta: must be a number from -360 to 360 deg (got 500)"],
+      [
+        estimator({ lambda: { prior: -1 } }),
+        "options.lambda.prior: must be a finite number, zero or above, at most 1000000 (got -1)",
+      ],
+      [
+        estimator({ start: { angles: { beta: 500 } } }),
+        "options.start.angles.beta: must be a number from -360 to 360 deg (got 500)",
+      ],
       [() => sample({ ...REQUEST, holes: 1 }), "sample.holes: must be a finite number, zero or above, below 1 (got 1)"],
-      [() => sample({ ...REQUEST, overlap: 2 }), "sample.overlap: must be a finite number above zero, at most 1 (got 2)"],
+      [
+        () => sample({ ...REQUEST, overlap: 2 }),
+        "sample.overlap: must be a finite number above zero, at most 1 (got 2)",
+      ],
       [() => sample({ ...REQUEST, size: 8 }), "sample.size: must be a whole number from 16 to 1024 px (got 8)"],
     ]) {
       assert.throws(call, { message });
@@ -97,7 +134,14 @@ describe("ranges", () => {
 
 /** Noise, an unknown light and depths that stand out: most options have something to do. */
 function noisy(base = { start: "identity" }, size = 40) {
-  const { image, depth } = pair({ size, light: "window", angles: { beta: 8 }, noise: 0.02, depthNoise: 0.1, holes: 0.05 });
+  const { image, depth } = pair({
+    size,
+    light: "window",
+    angles: { beta: 8 },
+    noise: 0.02,
+    depthNoise: 0.1,
+    holes: 0.05,
+  });
   depth.data.forEach((z, index) => (depth.data[index] = index % 41 === 0 ? z + 6 : z));
   return { image, depth, base };
 }
@@ -105,7 +149,11 @@ function noisy(base = { start: "identity" }, size = 40) {
 /** A pose that goes on changing a little: sooner or later the loop is ended by its settings. */
 function slow(base = {}) {
   const { image, depth, light } = pair({ angles: { beta: 8 } });
-  return { image, depth, base: { light, scale: 1, start: "identity", registration: "icp", shading: "pixel", lambda: { prior: 0 }, ...base } };
+  return {
+    image,
+    depth,
+    base: { light, scale: 1, start: "identity", registration: "icp", shading: "pixel", lambda: { prior: 0 }, ...base },
+  };
 }
 
 const turned = { given: () => noisy({ start: { angles: {} } }) };
@@ -152,13 +200,15 @@ describe("defaults", () => {
 });
 
 /** What a loop ends with where the option has a value. */
-const loops = ({ image, depth, base }, steps, path) => async (value) => {
-  const estimator = new Estimator(image, depth, { ...base, ...holding(path, value) });
-  await estimator.run({ maxIterations: steps });
-  const end = outcome(estimator);
-  estimator.free();
-  return end;
-};
+const loops =
+  ({ image, depth, base }, steps, path) =>
+  async (value) => {
+    const estimator = new Estimator(image, depth, { ...base, ...holding(path, value) });
+    await estimator.run({ maxIterations: steps });
+    const end = outcome(estimator);
+    estimator.free();
+    return end;
+  };
 
 /** The sample where a member of the request has a value; noise and holes, so that their seed matters. */
 const samples = (path) => (value) => {

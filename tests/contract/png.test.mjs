@@ -7,7 +7,15 @@ import { decodeColour } from "../../pkg/files.js";
 import { readRigFile } from "../../pkg/rig.js";
 
 const SIGNATURE = [0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a];
-const ADAM7 = [[0, 0, 8, 8], [4, 0, 8, 8], [0, 4, 4, 8], [2, 0, 4, 4], [0, 2, 2, 4], [1, 0, 2, 2], [0, 1, 1, 2]];
+const ADAM7 = [
+  [0, 0, 8, 8],
+  [4, 0, 8, 8],
+  [0, 4, 4, 8],
+  [2, 0, 4, 4],
+  [0, 2, 2, 4],
+  [1, 0, 2, 2],
+  [0, 1, 1, 2],
+];
 const CHANNELS = { 0: 1, 2: 3, 3: 1, 4: 2, 6: 4 };
 
 /** Numerical Recipes' quick generator. */
@@ -36,10 +44,17 @@ function randomPng({ width, height, bits, type, interlaced, draw, palette, alpha
   for (const [x, y, dx, dy] of interlaced ? ADAM7 : [[0, 0, 1, 1]]) {
     const [across, down] = [Math.ceil((width - x) / dx), Math.ceil((height - y) / dy)];
     if (across <= 0) continue;
-    for (let row = 0; row < down; row++) rows.push(draw(5), ...Array.from({ length: Math.ceil((across * CHANNELS[type] * bits) / 8) }, () => draw(256)));
+    for (let row = 0; row < down; row++)
+      rows.push(draw(5), ...Array.from({ length: Math.ceil((across * CHANNELS[type] * bits) / 8) }, () => draw(256)));
   }
-  const parts = [chunk("IHDR", header), ...(palette ? [chunk("PLTE", palette)] : []), ...(alpha ? [chunk("tRNS", alpha)] : [])];
-  return new Uint8Array(Buffer.concat([Buffer.from(SIGNATURE), ...parts, chunk("IDAT", deflateSync(Buffer.from(rows))), chunk("IEND", [])]));
+  const parts = [
+    chunk("IHDR", header),
+    ...(palette ? [chunk("PLTE", palette)] : []),
+    ...(alpha ? [chunk("tRNS", alpha)] : []),
+  ];
+  return new Uint8Array(
+    Buffer.concat([Buffer.from(SIGNATURE), ...parts, chunk("IDAT", deflateSync(Buffer.from(rows))), chunk("IEND", [])]),
+  );
 }
 
 /** The channels that the facade gives, of whatever the file has. */
@@ -57,14 +72,25 @@ test("every type of colours, depth of bits and interlace, under every filter, as
   for (const [type, depths] of Object.entries({ 0: [8, 16], 2: [8, 16], 3: [8], 4: [8, 16], 6: [8, 16] })) {
     for (const bits of depths) {
       for (const interlaced of [false, true]) {
-        for (const [width, height] of [[1, 1], [3, 2], [9, 17], [40, 5]]) {
+        for (const [width, height] of [
+          [1, 1],
+          [3, 2],
+          [9, 17],
+          [40, 5],
+        ]) {
           const draw = random(1 + compared);
           const palette = type === "3" ? Array.from({ length: 768 }, () => draw(256)) : undefined;
           const file = randomPng({ width, height, bits, type: Number(type), interlaced, draw, palette });
           const theirs = decode(file);
-          const expected = palette ? spread(convertIndexedToRgb(theirs), 3, 255) : spread(theirs.data, theirs.channels, 2 ** bits - 1);
+          const expected = palette
+            ? spread(convertIndexedToRgb(theirs), 3, 255)
+            : spread(theirs.data, theirs.channels, 2 ** bits - 1);
           const { data } = decodeColour(file);
-          assert.deepEqual([...data], expected, `type ${type}, ${bits} bits, ${interlaced ? "interlaced, " : ""}${width}x${height}`);
+          assert.deepEqual(
+            [...data],
+            expected,
+            `type ${type}, ${bits} bits, ${interlaced ? "interlaced, " : ""}${width}x${height}`,
+          );
           compared++;
         }
       }

@@ -15,7 +15,20 @@ describe("CITATION.cff", () => {
   const citation = load(readFileSync(inRoot("CITATION.cff"), "utf8"));
 
   test("has what version 1.2.0 of the format asks for, and no key that it does not know", () => {
-    const known = ["cff-version", "message", "type", "title", "abstract", "authors", "version", "date-released", "license", "repository-code", "keywords", "preferred-citation"];
+    const known = [
+      "cff-version",
+      "message",
+      "type",
+      "title",
+      "abstract",
+      "authors",
+      "version",
+      "date-released",
+      "license",
+      "repository-code",
+      "keywords",
+      "preferred-citation",
+    ];
     for (const key of Object.keys(citation)) assert.ok(known.includes(key), key);
     assert.deepEqual([citation["cff-version"], citation.type], ["1.2.0", "software"]);
     for (const key of ["message", "title", "version"]) assert.equal(typeof citation[key], "string", key);
@@ -38,7 +51,18 @@ describe("CITATION.cff", () => {
 });
 
 describe("release", () => {
-  const FILES = ["Cargo.toml", "Cargo.lock", "python/Cargo.toml", "python/Cargo.lock", "fuzz/Cargo.lock", "CITATION.cff", "CHANGELOG.md", "package.json", "scripts/release.mjs", "scripts/shell.mjs"];
+  const FILES = [
+    "Cargo.toml",
+    "Cargo.lock",
+    "python/Cargo.toml",
+    "python/Cargo.lock",
+    "fuzz/Cargo.lock",
+    "CITATION.cff",
+    "CHANGELOG.md",
+    "package.json",
+    "scripts/release.mjs",
+    "scripts/shell.mjs",
+  ];
   const folders = [];
   let folder;
   const git = (...args) => {
@@ -48,7 +72,8 @@ describe("release", () => {
     assert.equal(status, 0, stderr);
     return stdout.trim();
   };
-  const release = (...args) => spawnSync(process.execPath, ["scripts/release.mjs", ...args], { cwd: folder, encoding: "utf8" });
+  const release = (...args) =>
+    spawnSync(process.execPath, ["scripts/release.mjs", ...args], { cwd: folder, encoding: "utf8" });
   const read = (name) => readFileSync(join(folder, name), "utf8");
   const write = (name, text) => writeFileSync(join(folder, name), text);
   const commit = () => git("commit", "--quiet", "-a", "-m", "a change");
@@ -57,9 +82,18 @@ describe("release", () => {
     folder = mkdtempSync(join(tmpdir(), "bimodal-release-"));
     folders.push(folder);
     for (const name of FILES) cpSync(inRoot(name), join(folder, name));
-    write("CHANGELOG.md", "# Changelog\n\n## Unreleased\n\n- something new\n\n## 0.0.9, 2020-01-01\n\n- something old\n");
+    write(
+      "CHANGELOG.md",
+      "# Changelog\n\n## Unreleased\n\n- something new\n\n## 0.0.9, 2020-01-01\n\n- something old\n",
+    );
     git("init", "--quiet");
-    for (const [key, value] of [["user.name", "a"], ["user.email", "a@b.c"], ["commit.gpgsign", "false"], ["tag.gpgsign", "false"]]) git("config", key, value);
+    for (const [key, value] of [
+      ["user.name", "a"],
+      ["user.email", "a@b.c"],
+      ["commit.gpgsign", "false"],
+      ["tag.gpgsign", "false"],
+    ])
+      git("config", key, value);
     git("add", ".");
     commit();
   });
@@ -73,15 +107,28 @@ describe("release", () => {
     const locked = [...read("Cargo.lock").matchAll(/^name = "(bimodal-stereo.*)"\nversion = "(.+)"$/gm)];
     assert.ok(locked.length >= 2 && locked.every(([, , version]) => version === "9.8.7"), String(locked));
     assert.match(read("python/Cargo.toml"), /^version = "9\.8\.7"$/m);
-    const others = [...(read("python/Cargo.lock") + read("fuzz/Cargo.lock")).matchAll(/^name = "(bimodal-stereo.*)"\nversion = "(.+)"$/gm)];
-    assert.deepEqual(others.filter(([, , version]) => version !== "9.8.7").map(([, name]) => name), ["bimodal-stereo-fuzz"]);
+    const others = [
+      ...(read("python/Cargo.lock") + read("fuzz/Cargo.lock")).matchAll(
+        /^name = "(bimodal-stereo.*)"\nversion = "(.+)"$/gm,
+      ),
+    ];
+    assert.deepEqual(
+      others.filter(([, , version]) => version !== "9.8.7").map(([, name]) => name),
+      ["bimodal-stereo-fuzz"],
+    );
     const { version, "date-released": date } = load(read("CITATION.cff"));
     assert.deepEqual([version, String(date)], ["9.8.7", "2031-02-03"]);
-    assert.match(read("CHANGELOG.md"), /^# Changelog\n\n## Unreleased\n\n## 9\.8\.7, 2031-02-03\n\n- something new\n\n## 0\.0\.9/);
+    assert.match(
+      read("CHANGELOG.md"),
+      /^# Changelog\n\n## Unreleased\n\n## 9\.8\.7, 2031-02-03\n\n- something new\n\n## 0\.0\.9/,
+    );
     assert.equal(git("status", "--porcelain"), "");
     assert.deepEqual([git("log", "-1", "--format=%s"), git("describe")], ["Release 9.8.7", "v9.8.7"]);
     // Nothing else in the lock file has moved.
-    assert.equal(git("diff", "--numstat", "HEAD~1", "--", "Cargo.lock"), `${locked.length}\t${locked.length}\tCargo.lock`);
+    assert.equal(
+      git("diff", "--numstat", "HEAD~1", "--", "Cargo.lock"),
+      `${locked.length}\t${locked.length}\tCargo.lock`,
+    );
 
     write("CHANGELOG.md", read("CHANGELOG.md").replace("## Unreleased\n", "## Unreleased\n\n- more\n"));
     commit();
@@ -92,7 +139,8 @@ describe("release", () => {
   test("a dry run prints and changes nothing", () => {
     const { status, stdout } = release("9.8.7", "--dry-run");
     assert.equal(status, 0);
-    for (const part of ['+ version = "9.8.7"', "+ ## 9.8.7, ", "would commit"]) assert.ok(stdout.includes(part), stdout);
+    for (const part of ['+ version = "9.8.7"', "+ ## 9.8.7, ", "would commit"])
+      assert.ok(stdout.includes(part), stdout);
     assert.deepEqual([git("status", "--porcelain"), git("tag")], ["", ""]);
   });
 

@@ -4,7 +4,13 @@ import { describe, test } from "node:test";
 import { cameraFromFieldOfView } from "../../pkg/rig.js";
 import { K, close, distortion, read, readFixture, refusedFile, rotation, translation } from "./rig-support.mjs";
 
-const sameCamera = ({ camera }, expected, message) => close([camera.fx, camera.fy, camera.cx, camera.cy], [expected.fx, expected.fy, expected.cx, expected.cy], 1e-9, message);
+const sameCamera = ({ camera }, expected, message) =>
+  close(
+    [camera.fx, camera.fy, camera.cx, camera.cy],
+    [expected.fx, expected.fy, expected.cx, expected.cy],
+    1e-9,
+    message,
+  );
 const samePose = ({ pose }, r = rotation, t = translation, tolerance = 1e-9) => {
   close(pose.rotation, r, tolerance, "rotation");
   close(pose.translation, t, tolerance, "translation");
@@ -13,7 +19,10 @@ const samePose = ({ pose }, r = rotation, t = translation, tolerance = 1e-9) => 
 const only = (found) => (assert.equal(found.length, 1), found[0]);
 const inverse = () => {
   const r = [0, 3, 6, 1, 4, 7, 2, 5, 8].map((at) => rotation[at]);
-  return [r, [0, 1, 2].map((i) => -(r[3 * i] * translation[0] + r[3 * i + 1] * translation[1] + r[3 * i + 2] * translation[2]))];
+  return [
+    r,
+    [0, 1, 2].map((i) => -(r[3 * i] * translation[0] + r[3 * i + 1] * translation[1] + r[3 * i + 2] * translation[2])),
+  ];
 };
 
 describe("as other programs write them", () => {
@@ -36,16 +45,26 @@ describe("as other programs write them", () => {
       assert.equal(cameras[1].camera.distortion, undefined);
       samePose(only(poses), undefined, undefined, 1e-7);
       assert.deepEqual([poses[0].from, poses[0].to], ["1", "2"]);
-      assert.equal(warnings.some((warning) => /millimetres/.test(warning)), name === "stereo.yaml");
+      assert.equal(
+        warnings.some((warning) => /millimetres/.test(warning)),
+        name === "stereo.yaml",
+      );
     }
   });
 
   test("ROS's camera_info", async () => {
     const found = only((await readFixture("camera_info.yaml")).cameras);
     sameCamera(found, K);
-    assert.deepEqual([found.name, found.width, found.height, ...found.camera.distortion], ["rgb", 640, 480, ...distortion]);
-    const message = "header:\n  frame_id: cam\nheight: 480\nwidth: 640\ndistortion_model: rational_polynomial\nD: [1, 2, 3, 4, 5, 6, 7, 8]\nK: [518.5, 0.0, 325.5, 0.0, 519.25, 253.75, 0.0, 0.0, 1.0]\nR: [1, 0, 0, 0, 1, 0, 0, 0, 1]\nP: [518.5, 0, 325.5, 0, 0, 519.25, 253.75, 0, 0, 0, 1, 0]\n---\n";
-    for (const text of [message, message.replace("D:", "d:").replace("K:", "k:").replace("R:", "r:").replace("P:", "p:")]) {
+    assert.deepEqual(
+      [found.name, found.width, found.height, ...found.camera.distortion],
+      ["rgb", 640, 480, ...distortion],
+    );
+    const message =
+      "header:\n  frame_id: cam\nheight: 480\nwidth: 640\ndistortion_model: rational_polynomial\nD: [1, 2, 3, 4, 5, 6, 7, 8]\nK: [518.5, 0.0, 325.5, 0.0, 519.25, 253.75, 0.0, 0.0, 1.0]\nR: [1, 0, 0, 0, 1, 0, 0, 0, 1]\nP: [518.5, 0, 325.5, 0, 0, 519.25, 253.75, 0, 0, 0, 1, 0]\n---\n";
+    for (const text of [
+      message,
+      message.replace("D:", "d:").replace("K:", "k:").replace("R:", "r:").replace("P:", "p:"),
+    ]) {
       const { cameras, poses } = await read("info.yaml", text);
       sameCamera(only(cameras), K);
       assert.deepEqual([...cameras[0].camera.distortion], [1, 2, 3, 4, 5, 6, 7, 8]);
@@ -55,14 +74,21 @@ describe("as other programs write them", () => {
 
   test("Kalibr's chain: both cameras and what relates them", async () => {
     const { cameras, poses } = await readFixture("camchain.yaml");
-    assert.deepEqual(cameras.map(({ name, camera }) => [name, camera.model, camera.distortion.length]), [["cam0", undefined, 4], ["cam1", "fisheye", 4]]);
+    assert.deepEqual(
+      cameras.map(({ name, camera }) => [name, camera.model, camera.distortion.length]),
+      [
+        ["cam0", undefined, 4],
+        ["cam1", "fisheye", 4],
+      ],
+    );
     samePose(only(poses));
     assert.deepEqual([poses[0].from, poses[0].to], ["cam0", "cam1"]);
   });
 
   test("Kalibr's cameras that are related to the same inertial unit", async () => {
     const row = (t) => `[[1.0, 0.0, 0.0, ${t}], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]]`;
-    const camera = (t) => `  camera_model: pinhole\n  intrinsics: [500.0, 500.0, 320.0, 240.0]\n  distortion_model: none\n  distortion_coeffs: []\n  T_cam_imu: ${row(t)}\n  resolution: [640, 480]\n`;
+    const camera = (t) =>
+      `  camera_model: pinhole\n  intrinsics: [500.0, 500.0, 320.0, 240.0]\n  distortion_model: none\n  distortion_coeffs: []\n  T_cam_imu: ${row(t)}\n  resolution: [640, 480]\n`;
     const { poses } = await read("chain.yaml", `cam0:\n${camera(0.1)}cam1:\n${camera(0.3)}`);
     assert.deepEqual([poses[0].from, poses[0].to], ["cam0", "cam1"]);
     samePose(poses[0], [1, 0, 0, 0, 1, 0, 0, 0, 1], [0.2, 0, 0]);
@@ -74,7 +100,10 @@ describe("as other programs write them", () => {
       const { cameras, poses } = await readFixture(name);
       for (const camera of cameras) sameCamera(camera, K, name);
       for (const pose of poses) samePose(pose);
-      assert.deepEqual([cameras.length, poses.length], { "open3d-intrinsic.json": [1, 0], "open3d-parameters.json": [1, 1], "open3d-trajectory.json": [2, 2] }[name]);
+      assert.deepEqual(
+        [cameras.length, poses.length],
+        { "open3d-intrinsic.json": [1, 0], "open3d-parameters.json": [1, 1], "open3d-trajectory.json": [2, 2] }[name],
+      );
       assert.ok(poses.every(({ from, to }) => from === "world" && to === "camera"));
     }
     const log = (await readFixture("redwood.log")).poses;
@@ -90,24 +119,45 @@ describe("as other programs write them", () => {
     const sized = only((await read("K.txt", "640 480\n518.5 0 325.5\n0 519.25 253.75\n0 0 1\n")).cameras);
     assert.deepEqual([sized.width, sized.height, sized.camera.fx], [640, 480, 518.5]);
     sameCamera(only((await read("K.txt", "[[518.5, 0., 325.5],\n [0., 519.25, 253.75],\n [0., 0., 1.]]")).cameras), K);
-    assert.deepEqual({ ...only((await read("k.txt", "500 501 320 240 0.1 0.2 0 0 0\n")).cameras).camera }, { fx: 500, fy: 501, cx: 320, cy: 240, distortion: [0.1, 0.2, 0, 0] });
+    assert.deepEqual(
+      { ...only((await read("k.txt", "500 501 320 240 0.1 0.2 0 0 0\n")).cameras).camera },
+      { fx: 500, fy: 501, cx: 320, cy: 240, distortion: [0.1, 0.2, 0, 0] },
+    );
   });
 
   test("RealSense: intrinsics with their models, extrinsics column by column", async () => {
     const columns = [0, 3, 6, 1, 4, 7, 2, 5, 8].map((at) => rotation[at]);
-    const file = (model, coeffs) => JSON.stringify({
-      color: { width: 640, height: 480, ppx: 325.5, ppy: 253.75, fx: 518.5, fy: 519.25, model, coeffs },
-      depth: { intrinsics: { width: 848, height: 480, ppx: 420, ppy: 240, fx: 420, fy: 420, model: "Brown Conrady", coeffs: [0, 0, 0, 0, 0] } },
-      extrinsics: { depth_to_color: { rotation: columns, translation } },
-    });
+    const file = (model, coeffs) =>
+      JSON.stringify({
+        color: { width: 640, height: 480, ppx: 325.5, ppy: 253.75, fx: 518.5, fy: 519.25, model, coeffs },
+        depth: {
+          intrinsics: {
+            width: 848,
+            height: 480,
+            ppx: 420,
+            ppy: 240,
+            fx: 420,
+            fy: 420,
+            model: "Brown Conrady",
+            coeffs: [0, 0, 0, 0, 0],
+          },
+        },
+        extrinsics: { depth_to_color: { rotation: columns, translation } },
+      });
     const { cameras, poses, warnings } = await read("rs.json", file("Inverse Brown Conrady", distortion));
-    assert.deepEqual(cameras.map(({ name }) => name), ["color", "depth"]);
+    assert.deepEqual(
+      cameras.map(({ name }) => name),
+      ["color", "depth"],
+    );
     sameCamera(cameras[0], K);
     assert.deepEqual([...cameras[0].camera.distortion], distortion);
     assert.ok(warnings.some((warning) => /Inverse Brown Conrady/.test(warning)));
     samePose(only(poses));
     assert.deepEqual([poses[0].from, poses[0].to], ["depth", "color"]);
-    assert.equal((await read("rs.json", file("Kannala Brandt4", [0.1, 0.2, 0.3, 0.4, 0]))).cameras[0].camera.model, "fisheye");
+    assert.equal(
+      (await read("rs.json", file("Kannala Brandt4", [0.1, 0.2, 0.3, 0.4, 0]))).cameras[0].camera.model,
+      "fisheye",
+    );
     assert.equal((await read("rs.json", file("Inverse Brown Conrady", [0, 0, 0, 0, 0]))).warnings.length, 0);
     await refusedFile(read("rs.json", file("Ftheta", [1, 0, 0, 0, 0])), "rs.json", /lens model "Ftheta"/);
   });
@@ -117,28 +167,70 @@ describe("as other programs write them", () => {
     const printed = `Intrinsic Parameters:\n\n Intrinsic of "Color" / 640x480 / {YUYV/RGB8}\n  Width:      \t640\n  Height:     \t480\n  PPX:        \t325.5\n  PPY:        \t253.75\n  Fx:         \t518.5\n  Fy:         \t519.25\n  Distortion: \tBrown Conrady\n  Coeffs:     \t${distortion.join("  \t")}  \n  FOV (deg):  \t63.4 x 49.6\n\nExtrinsic Parameters:\n\nExtrinsic from "Depth"\t  To\t  "Color" :\n Rotation Matrix:\n${rows}\n\n Translation Vector: ${translation.join("  ")}  \n\n`;
     const { cameras, poses } = await read("rs.txt", printed);
     sameCamera(only(cameras), K);
-    assert.deepEqual([cameras[0].name, cameras[0].width, ...cameras[0].camera.distortion], ["Color", 640, ...distortion]);
+    assert.deepEqual(
+      [cameras[0].name, cameras[0].width, ...cameras[0].camera.distortion],
+      ["Color", 640, ...distortion],
+    );
     samePose(only(poses));
     assert.deepEqual([poses[0].from, poses[0].to], ["Depth", "Color"]);
   });
 
   test("ORB-SLAM's settings, settings with equals signs, and members that name their camera", async () => {
-    const slam = await read("TUM1.yaml", "%YAML:1.0\n# comment\nCamera.fx: 518.5\nCamera.fy: 519.25\nCamera.cx: 325.5\nCamera.cy: 253.75\nCamera.k1: 0.2\nCamera.k2: -0.5\nCamera.p1: 0.001\nCamera.p2: -0.002\nCamera.k3: 0.3\nCamera.width: 640\nCamera.height: 480\nDepthMapFactor: 5000.0\n");
+    const slam = await read(
+      "TUM1.yaml",
+      "%YAML:1.0\n# comment\nCamera.fx: 518.5\nCamera.fy: 519.25\nCamera.cx: 325.5\nCamera.cy: 253.75\nCamera.k1: 0.2\nCamera.k2: -0.5\nCamera.p1: 0.001\nCamera.p2: -0.002\nCamera.k3: 0.3\nCamera.width: 640\nCamera.height: 480\nDepthMapFactor: 5000.0\n",
+    );
     sameCamera(only(slam.cameras), K);
     assert.deepEqual([slam.cameras[0].width, ...slam.cameras[0].camera.distortion], [640, ...distortion]);
     sameCamera(only((await read("k.cfg", "fx = 518.5\nfy = 519.25\ncx = 325.5\ncy = 253.75\n")).cameras), K);
-    const { cameras, poses } = await read("rig.yaml", "K_rgb: [[518.5, 0, 325.5], [0, 519.25, 253.75], [0, 0, 1]]\nK_depth: [400, 0, 320, 0, 400, 240, 0, 0, 1]\nD_rgb: [0.2, -0.5, 0.001, -0.002, 0.3]\nR_depth_to_rgb: [[1, 0, 0], [0, 1, 0], [0, 0, 1]]\nT_depth_to_rgb: [0.1, 0, 0]\n");
-    assert.deepEqual(cameras.map(({ name, camera }) => [name, camera.distortion?.length]), [["rgb", 5], ["depth", undefined]]);
+    const { cameras, poses } = await read(
+      "rig.yaml",
+      "K_rgb: [[518.5, 0, 325.5], [0, 519.25, 253.75], [0, 0, 1]]\nK_depth: [400, 0, 320, 0, 400, 240, 0, 0, 1]\nD_rgb: [0.2, -0.5, 0.001, -0.002, 0.3]\nR_depth_to_rgb: [[1, 0, 0], [0, 1, 0], [0, 0, 1]]\nT_depth_to_rgb: [0.1, 0, 0]\n",
+    );
+    assert.deepEqual(
+      cameras.map(({ name, camera }) => [name, camera.distortion?.length]),
+      [
+        ["rgb", 5],
+        ["depth", undefined],
+      ],
+    );
     assert.deepEqual([poses[0].from, poses[0].to], ["depth", "rgb"]);
   });
 
   test("COLMAP's cameras, whose pixels begin half a pixel earlier", async () => {
-    const file = ["# comment", "1 PINHOLE 640 480 518.5 519.25 326 254.25", "2 SIMPLE_PINHOLE 640 480 500 320 240", "3 SIMPLE_RADIAL 640 480 500 320 240 0.1", "4 RADIAL 640 480 500 320 240 0.1 0.2", "5 OPENCV 640 480 500 501 320 240 0.1 0.2 0.3 0.4", "6 FULL_OPENCV 640 480 500 501 320 240 1 2 3 4 5 6 7 8", "7 OPENCV_FISHEYE 640 480 500 501 320 240 0.1 0.2 0.3 0.4"];
+    const file = [
+      "# comment",
+      "1 PINHOLE 640 480 518.5 519.25 326 254.25",
+      "2 SIMPLE_PINHOLE 640 480 500 320 240",
+      "3 SIMPLE_RADIAL 640 480 500 320 240 0.1",
+      "4 RADIAL 640 480 500 320 240 0.1 0.2",
+      "5 OPENCV 640 480 500 501 320 240 0.1 0.2 0.3 0.4",
+      "6 FULL_OPENCV 640 480 500 501 320 240 1 2 3 4 5 6 7 8",
+      "7 OPENCV_FISHEYE 640 480 500 501 320 240 0.1 0.2 0.3 0.4",
+    ];
     const { cameras } = await read("cameras.txt", file.join("\n"));
     sameCamera(cameras[0], K);
-    assert.deepEqual(cameras.slice(1).map(({ camera: { fx, fy, cx, cy } }) => [fx, fy, cx, cy]), [[500, 500], [500, 500], [500, 500], [500, 501], [500, 501], [500, 501]].map((focal) => [...focal, 319.5, 239.5]));
+    assert.deepEqual(
+      cameras.slice(1).map(({ camera: { fx, fy, cx, cy } }) => [fx, fy, cx, cy]),
+      [
+        [500, 500],
+        [500, 500],
+        [500, 500],
+        [500, 501],
+        [500, 501],
+        [500, 501],
+      ].map((focal) => [...focal, 319.5, 239.5]),
+    );
     const lenses = cameras.map(({ camera }) => camera.distortion && [...camera.distortion]);
-    assert.deepEqual(lenses, [undefined, undefined, [0.1, 0, 0, 0], [0.1, 0.2, 0, 0], [0.1, 0.2, 0.3, 0.4], [1, 2, 3, 4, 5, 6, 7, 8], [0.1, 0.2, 0.3, 0.4]]);
+    assert.deepEqual(lenses, [
+      undefined,
+      undefined,
+      [0.1, 0, 0, 0],
+      [0.1, 0.2, 0, 0],
+      [0.1, 0.2, 0.3, 0.4],
+      [1, 2, 3, 4, 5, 6, 7, 8],
+      [0.1, 0.2, 0.3, 0.4],
+    ]);
     assert.equal(cameras[6].camera.model, "fisheye");
   });
 });
@@ -146,7 +238,11 @@ describe("as other programs write them", () => {
 describe("ROS's static transforms: from the child into the parent", () => {
   // Half the fixtures' rotation vector's sine and cosine: x y z w. The angles are those of fixed axes, roll first.
   const quaternion = "0.009998417 -0.014997625 0.024996042 0.999525038";
-  const [yaw, pitch, roll] = [Math.atan2(rotation[3], rotation[0]), Math.asin(-rotation[6]), Math.atan2(rotation[7], rotation[8])];
+  const [yaw, pitch, roll] = [
+    Math.atan2(rotation[3], rotation[0]),
+    Math.asin(-rotation[6]),
+    Math.atan2(rotation[7], rotation[8]),
+  ];
   const shift = translation.join(" ");
   const files = {
     "ROS 1, quaternion": `rosrun tf static_transform_publisher ${shift} ${quaternion} color depth 100`,
@@ -179,17 +275,38 @@ describe("motions are checked", () => {
     const { poses, warnings } = await read("T.txt", matrix(bent));
     assert.ok(warnings.some((warning) => /not quite/.test(warning)));
     const r = poses[0].pose.rotation;
-    for (let i = 0; i < 3; i++) for (let j = 0; j < 3; j++) close([r[3 * i] * r[3 * j] + r[3 * i + 1] * r[3 * j + 1] + r[3 * i + 2] * r[3 * j + 2]], [i === j ? 1 : 0], 1e-12);
+    for (let i = 0; i < 3; i++)
+      for (let j = 0; j < 3; j++)
+        close(
+          [r[3 * i] * r[3 * j] + r[3 * i + 1] * r[3 * j + 1] + r[3 * i + 2] * r[3 * j + 2]],
+          [i === j ? 1 : 0],
+          1e-12,
+        );
     await refusedFile(read("T.txt", matrix([1, 0.1, 0, 0, 1, 0, 0, 0, 1])), "T.txt", /R R\^T differs from 1/);
     await refusedFile(read("T.txt", matrix([1, 0, 0, 0, 1, 0, 0, 0, -1])), "T.txt", /mirrors/);
     await refusedFile(read("T.txt", "1 0 0 0\n0 1 0 0\n0 0 1 0\n0.1 0.2 0.3 1"), "T.txt", /transposed/);
   });
 
   test("angles are those of R = Rx Ry Rz, also where two axes fall together", async () => {
-    for (const [alpha, beta, gamma] of [[10, 20, 30], [-170, 60, 5], [30, 90, 0], [0, 0, 0]]) {
+    for (const [alpha, beta, gamma] of [
+      [10, 20, 30],
+      [-170, 60, 5],
+      [30, 90, 0],
+      [0, 0, 0],
+    ]) {
       const [a, b, c] = [alpha, beta, gamma].map((degrees) => (degrees * Math.PI) / 180);
       const [ca, sa, cb, sb, cc, sc] = [Math.cos(a), Math.sin(a), Math.cos(b), Math.sin(b), Math.cos(c), Math.sin(c)];
-      const r = [cb * cc, -cb * sc, sb, ca * sc + sa * sb * cc, ca * cc - sa * sb * sc, -sa * cb, sa * sc - ca * sb * cc, sa * cc + ca * sb * sc, ca * cb];
+      const r = [
+        cb * cc,
+        -cb * sc,
+        sb,
+        ca * sc + sa * sb * cc,
+        ca * cc - sa * sb * sc,
+        -sa * cb,
+        sa * sc - ca * sb * cc,
+        sa * cc + ca * sb * sc,
+        ca * cb,
+      ];
       const { angles } = (await read("T.txt", matrix(r))).poses[0].pose;
       close([angles.alpha, angles.beta, angles.gamma], [alpha, beta, gamma], 1e-6, `${alpha} ${beta} ${gamma}`);
     }
@@ -204,7 +321,13 @@ describe("motions are checked", () => {
   test("TUM's trajectory, and one shift with a quaternion", async () => {
     const line = `${translation.join(" ")} 0.009998417 -0.014997625 0.024996042 0.999525038`;
     const { poses } = await read("groundtruth.txt", `# timestamp tx ty tz qx qy qz qw\n1.5 ${line}\n2.5 ${line}\n`);
-    assert.deepEqual(poses.map(({ name, from, to }) => [name, from, to]), [["1.5", "camera", "world"], ["2.5", "camera", "world"]]);
+    assert.deepEqual(
+      poses.map(({ name, from, to }) => [name, from, to]),
+      [
+        ["1.5", "camera", "world"],
+        ["2.5", "camera", "world"],
+      ],
+    );
     samePose(poses[0], undefined, undefined, 1e-7);
     samePose(only((await read("T.txt", line)).poses), undefined, undefined, 1e-7);
   });
@@ -212,7 +335,17 @@ describe("motions are checked", () => {
 
 test("frames are told from names", async () => {
   const named = async (key) => {
-    const { poses } = await read("x.json", JSON.stringify({ [key]: [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]] }));
+    const { poses } = await read(
+      "x.json",
+      JSON.stringify({
+        [key]: [
+          [1, 0, 0, 0],
+          [0, 1, 0, 0],
+          [0, 0, 1, 0],
+          [0, 0, 0, 1],
+        ],
+      }),
+    );
     return [poses[0].from, poses[0].to];
   };
   assert.deepEqual(await named("depth_to_color"), ["depth", "color"]);
@@ -224,11 +357,23 @@ test("frames are told from names", async () => {
 test("odd cameras are warned of", async () => {
   const warned = async (camera, pattern) => {
     const { warnings } = await read("k.json", JSON.stringify(camera));
-    assert.ok(warnings.some((warning) => pattern.test(warning)), JSON.stringify(warnings));
+    assert.ok(
+      warnings.some((warning) => pattern.test(warning)),
+      JSON.stringify(warnings),
+    );
   };
   await warned({ fx: 0.9, fy: 0.9, cx: 0.5, cy: 0.5 }, /normalised/);
   await warned({ fx: 500, fy: 500, cx: 900, cy: 240, width: 640, height: 480 }, /outside of its image/);
-  await warned({ K: [[500, 3, 320], [0, 500, 240], [0, 0, 1]] }, /skewed/);
+  await warned(
+    {
+      K: [
+        [500, 3, 320],
+        [0, 500, 240],
+        [0, 0, 1],
+      ],
+    },
+    /skewed/,
+  );
   await warned({ fx: 500, fy: 300, cx: 320, cy: 240 }, /not square/);
 });
 

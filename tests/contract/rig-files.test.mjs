@@ -5,19 +5,44 @@ import { describe, test } from "node:test";
 import { fileURLToPath } from "node:url";
 import { readRigFile, readRigFolder } from "../../pkg/rig.js";
 import { npy, png } from "./support.mjs";
-import { H, W, close, colours, fixture, metres, millimetres, read, readFixture, refusedFile, rgb, text } from "./rig-support.mjs";
+import {
+  H,
+  W,
+  close,
+  colours,
+  fixture,
+  metres,
+  millimetres,
+  read,
+  readFixture,
+  refusedFile,
+  rgb,
+  text,
+} from "./rig-support.mjs";
 
-const GREY = 0, RGB = 2;
+const GREY = 0,
+  RGB = 2;
 const words = (...values) => values.flatMap((value) => [value >> 8, value & 255]);
 /** A 16-bit PNG of one row for each list. */
-const depthPng = (rows) => png({ width: rows[0].length, height: rows.length, depth: 16, colourType: GREY, rows: rows.map((row) => words(...row)) });
+const depthPng = (rows) =>
+  png({
+    width: rows[0].length,
+    height: rows.length,
+    depth: 16,
+    colourType: GREY,
+    rows: rows.map((row) => words(...row)),
+  });
 const expected = millimetres.map((value) => value / 1000);
 
 describe("depth maps", () => {
   const files = [
     ...["depth-cv.png", "depth-cv.pfm", "depth-cv.pgm", "depth-cv.tiff", "depth-columns.npy"],
-    ...["16-None", "16-lzw", "16-zlib", "16-packbits", "float-None", "float-lzw", "float-zlib", "float-packbits"].map((name) => `depth-${name}.tif`),
-    ...["16-predicted", "float-predicted", "64-predicted", "big-endian", "big-endian-float", "tiled", "strips"].map((name) => `depth-${name}.tif`),
+    ...["16-None", "16-lzw", "16-zlib", "16-packbits", "float-None", "float-lzw", "float-zlib", "float-packbits"].map(
+      (name) => `depth-${name}.tif`,
+    ),
+    ...["16-predicted", "float-predicted", "64-predicted", "big-endian", "big-endian-float", "tiled", "strips"].map(
+      (name) => `depth-${name}.tif`,
+    ),
     ...["none", "rle", "zips", "zip"].map((name) => `depth-${name}.exr`),
     ...["ascii", "binary", "compressed"].map((name) => `cloud-${name}.pcd`),
     ...["cloud-ascii.ply", "cloud-binary.ply", "cloud-columns.npy"],
@@ -45,11 +70,15 @@ describe("depth maps", () => {
   test("LZW whose table fills up and is cleared", async () => {
     const { depth } = await readFixture("noise.tif", { as: "depth", unit: 1 });
     const { sum, last, middle } = JSON.parse(new TextDecoder().decode(fixture("noise.json")));
-    assert.deepEqual([depth.data.reduce((a, b) => a + b, 0), depth.data.at(-1), depth.data[40 * 80 + 40]], [sum, last, middle]);
+    assert.deepEqual(
+      [depth.data.reduce((a, b) => a + b, 0), depth.data.at(-1), depth.data[40 * 80 + 40]],
+      [sum, last, middle],
+    );
   });
 
   test("a Stanford range grid in PLY", async () => {
-    const body = "ply\nformat ascii 1.0\nobj_info num_cols 2\nobj_info num_rows 2\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement range_grid 4\nproperty list uchar int vertex_indices\nend_header\n1 2 3\n4 5 6\n7 8 9\n1 0\n0\n1 1\n1 2\n";
+    const body =
+      "ply\nformat ascii 1.0\nobj_info num_cols 2\nobj_info num_rows 2\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement range_grid 4\nproperty list uchar int vertex_indices\nend_header\n1 2 3\n4 5 6\n7 8 9\n1 0\n0\n1 1\n1 2\n";
     assert.deepEqual(metres(await read("grid.ply", body)), [3, 0, 6, 9]);
   });
 
@@ -60,9 +89,15 @@ describe("depth maps", () => {
       return new Uint8Array([...text(`Pf\n1 2\n${little ? -1 : 1}\n`), ...new Uint8Array(view.buffer)]);
     };
     for (const little of [true, false]) assert.deepEqual(metres(await read("a.pfm", floats(little))), [2.5, 1.5]);
-    assert.deepEqual([...(await read("a.pgm", "P2 # grey\n2 2 # size\n65535\n1000 2000\n0 3000\n")).depth.data], [1000, 2000, 0, 3000]);
+    assert.deepEqual(
+      [...(await read("a.pgm", "P2 # grey\n2 2 # size\n65535\n1000 2000\n0 3000\n")).depth.data],
+      [1000, 2000, 0, 3000],
+    );
     const levels = Array.from({ length: 64 }, (_, at) => 1000 + 3 * at);
-    const swapped = new Uint8Array([...text("P5\n8 8\n65535\n"), ...levels.flatMap((level) => [level & 255, level >> 8])]);
+    const swapped = new Uint8Array([
+      ...text("P5\n8 8\n65535\n"),
+      ...levels.flatMap((level) => [level & 255, level >> 8]),
+    ]);
     const reading = await read("a.pgm", swapped);
     assert.deepEqual([...reading.depth.data], levels);
     assert.ok(reading.warnings.some((warning) => /low byte first/.test(warning)));
@@ -97,10 +132,15 @@ describe("units", () => {
   });
 
   test("floats: metres, or millimetres where metres would be too far", async () => {
-    const unit = async (values) => (await read("d.npy", npy({ descr: "<f4", shape: [1, values.length], data: new Float32Array(values) }))).depth.unit;
+    const unit = async (values) =>
+      (await read("d.npy", npy({ descr: "<f4", shape: [1, values.length], data: new Float32Array(values) }))).depth
+        .unit;
     assert.equal(await unit([0.5, 2, 7]), 1);
     assert.equal(await unit([500, 2000, 7000]), 0.001);
-    const rendered = await read("d.npy", npy({ descr: "<f4", shape: [1, 4], data: new Float32Array([1, 2, 1e10, Infinity]) }));
+    const rendered = await read(
+      "d.npy",
+      npy({ descr: "<f4", shape: [1, 4], data: new Float32Array([1, 2, 1e10, Infinity]) }),
+    );
     assert.match(rendered.says, /50.0 % valid, 1.00 to 2.00 m/);
   });
 });
@@ -108,7 +148,10 @@ describe("units", () => {
 describe("what looks wrong is said", () => {
   const warned = async (bytes, pattern, options, name = "file.png") => {
     const { warnings } = await read(name, bytes, options);
-    assert.ok(warnings.some((warning) => pattern.test(warning)), `${pattern} in ${JSON.stringify(warnings)}`);
+    assert.ok(
+      warnings.some((warning) => pattern.test(warning)),
+      `${pattern} in ${JSON.stringify(warnings)}`,
+    );
   };
   const grey8 = png({ width: 4, height: 1, depth: 8, colourType: GREY, rows: [[10, 20, 30, 40]] });
 
@@ -124,8 +167,16 @@ describe("what looks wrong is said", () => {
   test("files in each other's place", async () => {
     await warned(depthPng([[1000, 2000]]), /looks like a depth map .* swapped/, { as: "colour" });
     const coloured = png({ width: 1, height: 1, depth: 8, colourType: RGB, rows: [[1, 2, 3]] });
-    await refusedFile(read("rgb.png", coloured, { as: "depth" }), "rgb.png", /colour picture where a depth map .* swapped/);
-    await refusedFile(read("K.txt", "500 0 320\n0 500 240\n0 0 1\n", { as: "depth" }), "K.txt", /a text where a depth map/);
+    await refusedFile(
+      read("rgb.png", coloured, { as: "depth" }),
+      "rgb.png",
+      /colour picture where a depth map .* swapped/,
+    );
+    await refusedFile(
+      read("K.txt", "500 0 320\n0 500 240\n0 0 1\n", { as: "depth" }),
+      "K.txt",
+      /a text where a depth map/,
+    );
     await refusedFile(read("a.png", coloured, { as: "cameras" }), "a.png", /a picture \(PNG\) where cameras/);
   });
 
@@ -143,11 +194,28 @@ describe("what looks wrong is said", () => {
   });
 
   test("options are checked", async () => {
-    await assert.rejects(readRigFile({ name: "a", bytes: grey8 }, { unit: -1 }), { code: "option", field: "options.unit" });
-    await assert.rejects(readRigFile({ name: "a", bytes: grey8 }, { as: "cloud" }), { code: "option", field: "options.as" });
-    await assert.rejects(readRigFile({ name: "a", bytes: grey8 }, { units: 1 }), { code: "option", field: "options.units", message: /did you mean "unit"/ });
-    await assert.rejects(readRigFolder([{ name: "a", bytes: grey8 }], { frame: 3 }), { code: "option", field: "options.frame", message: /did you mean "frames"/ });
-    await assert.rejects(readRigFolder([{ name: "a", bytes: grey8 }], { unit: -1 }), { code: "option", field: "options.unit" });
+    await assert.rejects(readRigFile({ name: "a", bytes: grey8 }, { unit: -1 }), {
+      code: "option",
+      field: "options.unit",
+    });
+    await assert.rejects(readRigFile({ name: "a", bytes: grey8 }, { as: "cloud" }), {
+      code: "option",
+      field: "options.as",
+    });
+    await assert.rejects(readRigFile({ name: "a", bytes: grey8 }, { units: 1 }), {
+      code: "option",
+      field: "options.units",
+      message: /did you mean "unit"/,
+    });
+    await assert.rejects(readRigFolder([{ name: "a", bytes: grey8 }], { frame: 3 }), {
+      code: "option",
+      field: "options.frame",
+      message: /did you mean "frames"/,
+    });
+    await assert.rejects(readRigFolder([{ name: "a", bytes: grey8 }], { unit: -1 }), {
+      code: "option",
+      field: "options.unit",
+    });
     await assert.rejects(readRigFile({ name: "a" }), { code: "type" });
   });
 });
@@ -156,13 +224,20 @@ describe("colour images", () => {
   test("PPM, TIFF, 16-bit PNG: to the bit", async () => {
     for (const name of ["colour-cv.ppm", "colour.tif"]) assert.deepEqual(colours(await readFixture(name)), rgb, name);
     const deep = await readFixture("colour-cv16.png");
-    assert.deepEqual(colours(deep), rgb.map((colour) => colour.map((value) => 257 * value)));
+    assert.deepEqual(
+      colours(deep),
+      rgb.map((colour) => colour.map((value) => 257 * value)),
+    );
     assert.match(deep.says, /^16x12, 16-bit RGB/);
   });
 
   test("EXR is linear; its depth is there for who asks", async () => {
     const { image } = await readFixture("colour-and-depth.exr");
-    close([...image.data], rgb.flat().map((value) => value / 255), 5e-4);
+    close(
+      [...image.data],
+      rgb.flat().map((value) => value / 255),
+      5e-4,
+    );
     close(metres(await readFixture("colour-and-depth.exr", { as: "depth" })), expected, 1e-6);
   });
 
@@ -171,11 +246,24 @@ describe("colour images", () => {
     // Chroma at half resolution.
     close(colours(await readFixture("colour-progressive.jpg")).flat(), rgb.flat(), 40);
     const grey = colours(await readFixture("colour-grey.jpg"));
-    close(grey.map(([red]) => red), rgb.map(([r, g, b]) => 0.299 * r + 0.587 * g + 0.114 * b), 6);
+    close(
+      grey.map(([red]) => red),
+      rgb.map(([r, g, b]) => 0.299 * r + 0.587 * g + 0.114 * b),
+      6,
+    );
   });
 
   test("upright as EXIF says, which is said", async () => {
-    const turned = { 1: (x, y) => [x, y], 2: (x, y) => [W - 1 - x, y], 3: (x, y) => [W - 1 - x, H - 1 - y], 4: (x, y) => [x, H - 1 - y], 5: (x, y) => [y, x], 6: (x, y) => [y, H - 1 - x], 7: (x, y) => [W - 1 - y, H - 1 - x], 8: (x, y) => [W - 1 - y, x] };
+    const turned = {
+      1: (x, y) => [x, y],
+      2: (x, y) => [W - 1 - x, y],
+      3: (x, y) => [W - 1 - x, H - 1 - y],
+      4: (x, y) => [x, H - 1 - y],
+      5: (x, y) => [y, x],
+      6: (x, y) => [y, H - 1 - x],
+      7: (x, y) => [W - 1 - y, H - 1 - x],
+      8: (x, y) => [W - 1 - y, x],
+    };
     for (const [orientation, from] of Object.entries(turned)) {
       for (const extension of orientation === "6" ? ["png", "tiff", "jpg"] : ["png"]) {
         const reading = await readFixture(`turned-${orientation}.${extension}`);
@@ -209,15 +297,24 @@ describe("colour images", () => {
   });
 });
 
-describe("other people's data", { skip: existsSync(new URL("../../../shared/data", import.meta.url)) ? false : "needs ../shared/data" }, () => {
-  const sample = (name, options) => read(name, new Uint8Array(readFileSync(fileURLToPath(new URL(`../../../shared/data/${name}`, import.meta.url)))), options);
+describe("other people's data", {
+  skip: existsSync(new URL("../../../shared/data", import.meta.url)) ? false : "needs ../shared/data",
+}, () => {
+  const sample = (name, options) =>
+    read(
+      name,
+      new Uint8Array(readFileSync(fileURLToPath(new URL(`../../../shared/data/${name}`, import.meta.url)))),
+      options,
+    );
 
   test("depth: units and ranges", async () => {
     const says = {
-      "nyu_raw_pair/depth_raw_mm.png": /^640x480, 16-bit, read as millimetres \(guessed\), 92\.8 % valid, 1\.39 to 6\.69 m$/,
+      "nyu_raw_pair/depth_raw_mm.png":
+        /^640x480, 16-bit, read as millimetres \(guessed\), 92\.8 % valid, 1\.39 to 6\.69 m$/,
       "file_formats/TUM_depth.png": /fifths of a millimetre, 5000 to the metre.*80\.8 % valid, 1\.46 to 9\.33 m/,
       "file_formats/SUN_depth.png": /bits turned by three.*81\.8 % valid, 1\.06 to 9\.87 m/,
-      "seven_scenes/frame-000150.depth.png": /millimetres.*88\.0 % valid, 0\.94 to 2\.86 m, 65535 taken for holes|millimetres.*88\.0 % valid, 0\.94 to 2\.86 m/,
+      "seven_scenes/frame-000150.depth.png":
+        /millimetres.*88\.0 % valid, 0\.94 to 2\.86 m, 65535 taken for holes|millimetres.*88\.0 % valid, 0\.94 to 2\.86 m/,
       "mitten_rgbd/depth_1.png": /5000 to the metre/,
       "rgbd_object/cap_1_1_1_depthcrop.png": /217x156, 16-bit, read as millimetres.*0\.65 to 1\.17 m/,
       "android_rgbd/depth.png": /5000 to the metre.*0\.58 to 0\.62 m/,
@@ -235,8 +332,13 @@ describe("other people's data", { skip: existsSync(new URL("../../../shared/data
 
   test("cameras and poses", async () => {
     const { cameras, poses } = await sample("nyu_raw_pair/calib.json");
-    const calib = JSON.parse(readFileSync(fileURLToPath(new URL("../../../shared/data/nyu_raw_pair/calib.json", import.meta.url))));
-    assert.deepEqual(cameras.map(({ name }) => name), ["rgb", "depth"]);
+    const calib = JSON.parse(
+      readFileSync(fileURLToPath(new URL("../../../shared/data/nyu_raw_pair/calib.json", import.meta.url))),
+    );
+    assert.deepEqual(
+      cameras.map(({ name }) => name),
+      ["rgb", "depth"],
+    );
     assert.deepEqual([...cameras[0].camera.distortion], calib.rgb.dist_k1k2p1p2k3);
     close(poses[0].pose.rotation, calib.R.flat(), 1e-9);
     close(poses[0].pose.translation, calib.t, 1e-12);

@@ -29,7 +29,8 @@ async function inTime(what, run) {
 }
 
 const bytes = (...parts) => new Uint8Array(Buffer.concat(parts.map((part) => Buffer.from(part))));
-const u32 = (...values) => bytes(...values.map((value) => new Uint8Array([value, value >> 8, value >> 16, value >> 24])));
+const u32 = (...values) =>
+  bytes(...values.map((value) => new Uint8Array([value, value >> 8, value >> 16, value >> 24])));
 const cut = (name, length) => fixture(name).slice(0, length);
 const changed = (name, ...changes) => {
   const file = fixture(name);
@@ -52,7 +53,12 @@ const ihdr = (width, height, depth = 8, type = 2, interlace = 0) => {
   data.set([depth, type, 0, 0, interlace], 8);
   return chunk("IHDR", data);
 };
-const pngOf = (...chunks) => bytes("\x89PNG\r\n\x1a\n".split("").map((letter) => letter.charCodeAt(0)), ...chunks, chunk("IEND", Buffer.alloc(0)));
+const pngOf = (...chunks) =>
+  bytes(
+    "\x89PNG\r\n\x1a\n".split("").map((letter) => letter.charCodeAt(0)),
+    ...chunks,
+    chunk("IEND", Buffer.alloc(0)),
+  );
 const idat = (length) => chunk("IDAT", deflateSync(Buffer.alloc(length)));
 
 /** A TIFF of one strip; tags are [tag, value] of one 32-bit number each. */
@@ -69,18 +75,69 @@ const tiff = (tags, body = new Uint8Array(0)) => {
   });
   return bytes(new Uint8Array(view.buffer), body);
 };
-const tiffTags = (width, height, more = {}) => Object.entries({ 256: width, 257: height, 258: 16, 259: 1, 273: 200, 277: 1, 278: height, 279: 2 * width * height, ...more }).map(([tag, value]) => [Number(tag), value]);
+const tiffTags = (width, height, more = {}) =>
+  Object.entries({
+    256: width,
+    257: height,
+    258: 16,
+    259: 1,
+    273: 200,
+    277: 1,
+    278: height,
+    279: 2 * width * height,
+    ...more,
+  }).map(([tag, value]) => [Number(tag), value]);
 
 /** A JPEG of nothing but its marks. */
 const jpeg = (width, height, { channels = 3, bits = 8, kind = 0xc0, sampling = 0x11, scans = 1, tail = [] } = {}) =>
-  bytes([0xff, 0xd8], [0xff, kind, 0, 8 + 3 * channels, bits, height >> 8, height & 255, width >> 8, width & 255, channels], Array.from({ length: channels }, (_, at) => [at + 1, sampling, 0]).flat(), ...Array.from({ length: scans }, () => [0xff, 0xda, 0, 8, 1, 1, 0, 0, 63, 0]), tail, [0xff, 0xd9]);
+  bytes(
+    [0xff, 0xd8],
+    [0xff, kind, 0, 8 + 3 * channels, bits, height >> 8, height & 255, width >> 8, width & 255, channels],
+    Array.from({ length: channels }, (_, at) => [at + 1, sampling, 0]).flat(),
+    ...Array.from({ length: scans }, () => [0xff, 0xda, 0, 8, 1, 1, 0, 0, 63, 0]),
+    tail,
+    [0xff, 0xd9],
+  );
 
 const pcd = (changes, body = "") => {
-  const lines = { VERSION: "0.7", FIELDS: "x y z", SIZE: "4 4 4", TYPE: "F F F", COUNT: "1 1 1", WIDTH: "2", HEIGHT: "2", VIEWPOINT: "0 0 0 1 0 0 0", POINTS: "4", DATA: "ascii", ...changes };
-  return bytes(text(Object.entries(lines).map(([key, value]) => `${key} ${value}\n`).join("")), body);
+  const lines = {
+    VERSION: "0.7",
+    FIELDS: "x y z",
+    SIZE: "4 4 4",
+    TYPE: "F F F",
+    COUNT: "1 1 1",
+    WIDTH: "2",
+    HEIGHT: "2",
+    VIEWPOINT: "0 0 0 1 0 0 0",
+    POINTS: "4",
+    DATA: "ascii",
+    ...changes,
+  };
+  return bytes(
+    text(
+      Object.entries(lines)
+        .map(([key, value]) => `${key} ${value}\n`)
+        .join(""),
+    ),
+    body,
+  );
 };
-const ply = (count, body, more = "", format = "ascii") => bytes(text(`ply\nformat ${format} 1.0\n${more}element vertex ${count}\nproperty float x\nproperty float y\nproperty float z\nend_header\n`), body);
-const laughs = "abcdefghij".split("").map((key, at) => `${key}: &${key} [${Array(9).fill(at === 0 ? "1" : `*${"abcdefghij"[at - 1]}`).join(", ")}]`).join("\n");
+const ply = (count, body, more = "", format = "ascii") =>
+  bytes(
+    text(
+      `ply\nformat ${format} 1.0\n${more}element vertex ${count}\nproperty float x\nproperty float y\nproperty float z\nend_header\n`,
+    ),
+    body,
+  );
+const laughs = "abcdefghij"
+  .split("")
+  .map(
+    (key, at) =>
+      `${key}: &${key} [${Array(9)
+        .fill(at === 0 ? "1" : `*${"abcdefghij"[at - 1]}`)
+        .join(", ")}]`,
+  )
+  .join("\n");
 const exr = (changes) => {
   const file = fixture("depth-zip.exr");
   const at = (name) => Buffer.from(file).indexOf(name) + name.length;
@@ -90,7 +147,8 @@ const exr = (changes) => {
 
 /** Where the table of an EXR's one block is, which stands right behind it. */
 function table(view) {
-  for (let at = 0; at + 8 < view.byteLength; at++) if (view.getUint32(at, true) === at + 8 && view.getUint32(at + 4, true) === 0) return at;
+  for (let at = 0; at + 8 < view.byteLength; at++)
+    if (view.getUint32(at, true) === at + 8 && view.getUint32(at + 4, true) === 0) return at;
   throw new Error("no table");
 }
 
@@ -110,7 +168,11 @@ const FILES = [
   ["page.html", text("<!doctype html><html><body>404</body></html>"), /document type/],
   ["readme.txt", text("Some words: of no: use"), /none of the forms/],
 
-  ["signature.png", png({ width: 1, height: 1, depth: 8, colourType: 2, rows: [[1, 2, 3]] }).slice(0, 8), /cut off: its end is missing/],
+  [
+    "signature.png",
+    png({ width: 1, height: 1, depth: 8, colourType: 2, rows: [[1, 2, 3]] }).slice(0, 8),
+    /cut off: its end is missing/,
+  ],
   ["cut.png", cut("depth-cv.png", 60), /PNG is cut off/],
   ["checksum.png", changed("depth-cv.png", [-16, 0x55]), /checksum of its part IDAT is wrong/],
   ["none.png", pngOf(ihdr(0, 5), idat(1)), /0x5 pixels/],
@@ -125,13 +187,26 @@ const FILES = [
   ["bits.png", pngOf(ihdr(8, 8, 1, 0, 1), idat(20)), /interlaced with fewer than 8 bits/],
   ["palette.png", pngOf(ihdr(1, 1, 8, 3), chunk("PLTE", Buffer.alloc(3 * 300)), idat(2)), /more than 256 colours/],
 
-  ["cut.npy", npy({ descr: "<f4", shape: [4, 4], data: new Float32Array(16) }).slice(0, 150), /cut off: \d+ of 64 bytes/],
+  [
+    "cut.npy",
+    npy({ descr: "<f4", shape: [4, 4], data: new Float32Array(16) }).slice(0, 150),
+    /cut off: \d+ of 64 bytes/,
+  ],
   ["large.npy", npy({ descr: "<f4", shape: [100_000, 100_000], data: new Float32Array(1) }), /cut off/],
   ["complex.npy", npy({ descr: "<c8", shape: [1, 1], data: new Float32Array(2) }), /type "<c8"/],
   ["volume.npy", npy({ descr: "<f4", shape: [2, 2, 2, 2], data: new Float32Array(16) }), /4 axes/],
   ["wide.npy", npy({ descr: "|u1", shape: [1, 5000], data: new Uint8Array(5000) }), /5000x1 pixels large/],
-  ["two.npy", npy({ descr: "<f4", shape: [1, 1, 2], data: new Float32Array(2) }), /1 channel and a cloud 3, not 2/, { as: "depth" }],
-  ["holes.npy", npy({ descr: "<f4", shape: [1, 3], data: new Float32Array([0, -1, NaN]) }), /no pixel of it holds a depth/],
+  [
+    "two.npy",
+    npy({ descr: "<f4", shape: [1, 1, 2], data: new Float32Array(2) }),
+    /1 channel and a cloud 3, not 2/,
+    { as: "depth" },
+  ],
+  [
+    "holes.npy",
+    npy({ descr: "<f4", shape: [1, 3], data: new Float32Array([0, -1, NaN]) }),
+    /no pixel of it holds a depth/,
+  ],
 
   ["cut.pgm", text("P5\n4 4\n65535\nabc"), /PGM is cut off: 3 of 32 bytes/],
   ["words.pgm", text("P2\nfour 4\n255\n"), /"four" where a width is needed/],
@@ -162,7 +237,11 @@ const FILES = [
   ["cut.exr", cut("depth-zip.exr", 250), /EXR|beyond its own end/],
   ["piz.exr", fixture("depth-piz.exr"), /compressed by PIZ/],
   ["tiled.exr", exr((file) => (file[5] = 2)), /tiled/],
-  ["window.exr", exr((_, view, at) => view.setInt32(at("dataWindow\0box2i\0") + 12, 100_000, true)), /100001x12 pixels large/],
+  [
+    "window.exr",
+    exr((_, view, at) => view.setInt32(at("dataWindow\0box2i\0") + 12, 100_000, true)),
+    /100001x12 pixels large/,
+  ],
   ["block.exr", exr((_, view) => view.setInt32(table(view) + 12, 2 ** 30, true)), /damaged in its block 0/],
   ["table.exr", exr((_, view) => view.setUint32(table(view) + 4, 255, true)), /beyond its own end/],
 
@@ -173,7 +252,13 @@ const FILES = [
   ["type.ply", text("ply\nformat ascii 1.0\nelement vertex 1\nproperty colour x\nend_header\n"), /type "colour"/],
   ["format.ply", ply(1, "", "", "utf8"), /format "utf8"/],
   ["unorganised.ply", ply(3, "1 2 3 4 5 6 7 8 9"), /3 points are not in rows and columns/],
-  ["grid.ply", text("ply\nformat ascii 1.0\nobj_info num_cols 1\nobj_info num_rows 1\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nelement range_grid 1\nproperty list uchar int vertex_indices\nend_header\n1 2 3\n1 7\n"), /grid names the point 7 of 1/],
+  [
+    "grid.ply",
+    text(
+      "ply\nformat ascii 1.0\nobj_info num_cols 1\nobj_info num_rows 1\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nelement range_grid 1\nproperty list uchar int vertex_indices\nend_header\n1 2 3\n1 7\n",
+    ),
+    /grid names the point 7 of 1/,
+  ],
   ["behind.ply", ply(4, "1 2 -3\n".repeat(4), "obj_info num_cols 2\nobj_info num_rows 2\n"), /behind the camera/],
   ["cut.pcd", pcd({}, "1 2 3 4"), /PCD is cut off/],
   ["data.pcd", text("VERSION 0.7\nFIELDS x y z\n"), /no DATA/],
@@ -183,8 +268,19 @@ const FILES = [
   ["many.pcd", pcd({ WIDTH: "99999", HEIGHT: "99999", POINTS: "999999999" }), /PCD says|points/],
   ["unorganised.pcd", pcd({ WIDTH: "4", HEIGHT: "1" }), /not in rows and columns/],
   ["packed.pcd", pcd({ DATA: "binary_compressed" }, u32(10, 999)), /999 bytes long, and 48 are needed/],
-  ["back.pcd", pcd({ DATA: "binary_compressed" }, bytes(u32(4, 48), [0x3f, 0xff, 0xff, 0xff])), /damaged or cut off in its compressed points/],
-  ["promises.pcd", pcd({ WIDTH: "2048", HEIGHT: "2048", POINTS: String(2 ** 22), DATA: "binary_compressed" }, bytes(u32(4, 12 * 2 ** 22), [0, 1, 2, 3])), /compressed points/],
+  [
+    "back.pcd",
+    pcd({ DATA: "binary_compressed" }, bytes(u32(4, 48), [0x3f, 0xff, 0xff, 0xff])),
+    /damaged or cut off in its compressed points/,
+  ],
+  [
+    "promises.pcd",
+    pcd(
+      { WIDTH: "2048", HEIGHT: "2048", POINTS: String(2 ** 22), DATA: "binary_compressed" },
+      bytes(u32(4, 12 * 2 ** 22), [0, 1, 2, 3]),
+    ),
+    /compressed points/,
+  ],
 
   ["head.jpg", new Uint8Array([0xff, 0xd8, 0xff, 0xe0]), /no pixels/],
   ["cut.jpg", cut("colour.jpg", 700), /JPEG is cut off: its end is missing/],
@@ -204,21 +300,45 @@ const FILES = [
   ["else.json", text('{"a": [1, 2, {"b": 3}]}'), /neither a camera .* nor a motion/],
   ["deep.json", text("[".repeat(MEGABYTE) + "]".repeat(MEGABYTE)), /damaged|nested deeper/],
   ["deep-objects.json", text('{"a":'.repeat(200_000) + "1" + "}".repeat(200_000)), /damaged|nested deeper/],
-  ["names.json", text(JSON.stringify(Object.fromEntries(Array.from({ length: 100_000 }, (_, at) => [`K_${at}`, at])))), /neither a camera/],
+  [
+    "names.json",
+    text(JSON.stringify(Object.fromEntries(Array.from({ length: 100_000 }, (_, at) => [`K_${at}`, at])))),
+    /neither a camera/,
+  ],
   ["many.json", text(`[${'{"a":{}},'.repeat(60_000)}{}]`), /more than 50000/],
   ["focal.json", text('{"fx": -500, "fy": 500, "cx": 320, "cy": 240}'), /focal lengths -500 and 500/],
   ["half.json", text('{"fx": 500, "cx": 320}'), /without fy and cy/],
-  ["side.yaml", text("image_width: 640\ncamera_matrix: {rows: 3, cols: 3, data: [500, 0, 320, 0, 500, 240, 0, 0, 1]}\n"), /only one side of its images: a width of 640/],
+  [
+    "side.yaml",
+    text("image_width: 640\ncamera_matrix: {rows: 3, cols: 3, data: [500, 0, 320, 0, 500, 240, 0, 0, 1]}\n"),
+    /only one side of its images: a width of 640/,
+  ],
   ["rotation.json", text('{"R": [[1,0,0],[0,1,0],[0,0,2]], "t": [0,0,0]}'), /its rotation is none/],
   ["translation.json", text('{"R": [[1,0,0],[0,1,0],[0,0,1]], "t": [0,0]}'), /its t has 2 numbers/],
-  ["quaternion.json", text('{"rotation": {"x":0,"y":0,"z":0,"w":2}, "translation": {"x":0,"y":0,"z":0}}'), /quaternion has the length 2/],
+  [
+    "quaternion.json",
+    text('{"rotation": {"x":0,"y":0,"z":0,"w":2}, "translation": {"x":0,"y":0,"z":0}}'),
+    /quaternion has the length 2/,
+  ],
   ["laughs.yaml", text(laughs), /none of the forms|neither a camera/],
   ["cut.yaml", cut("opencv.yaml", 150), /as YAML|neither a camera/],
   ["twice.yaml", text("K: 1\nK: 2\n"), /as YAML/],
-  ["omni.yaml", text("cam0:\n  camera_model: omni\n  intrinsics: [1, 2, 3, 4, 5]\n  distortion_model: radtan\n"), /Kalibr's model "omni"/],
+  [
+    "omni.yaml",
+    text("cam0:\n  camera_model: omni\n  intrinsics: [1, 2, 3, 4, 5]\n  distortion_model: radtan\n"),
+    /Kalibr's model "omni"/,
+  ],
   ["four.yaml", text("cam0:\n  camera_model: pinhole\n  intrinsics: [1, 2, 3]\n"), /3 intrinsics/],
-  ["K.yaml", text("camera_matrix:\n  rows: 3\n  cols: 3\n  data: [500, 0, 320, 0, 500, 240, 1, 1, 1]\n"), /no matrix of intrinsics/],
-  ["tilt.yaml", text(`K: [500, 0, 320, 0, 500, 240, 0, 0, 1]\nD: [${Array(14).fill("0.1").join(", ")}]\n`), /thin-prism or tilt/],
+  [
+    "K.yaml",
+    text("camera_matrix:\n  rows: 3\n  cols: 3\n  data: [500, 0, 320, 0, 500, 240, 1, 1, 1]\n"),
+    /no matrix of intrinsics/,
+  ],
+  [
+    "tilt.yaml",
+    text(`K: [500, 0, 320, 0, 500, 240, 0, 0, 1]\nD: [${Array(14).fill("0.1").join(", ")}]\n`),
+    /thin-prism or tilt/,
+  ],
   ["cut.xml", cut("opencv.xml", 300), /XML is cut off/],
   ["entities.xml", text('<!DOCTYPE a [<!ENTITY a "b">]><a>&a;</a>'), /document type/],
   ["close.xml", text("<a><b></a></b>"), /closes <a>/],
@@ -240,7 +360,11 @@ const FILES = [
   ["cameras.txt", text("1 PINHOLE 640 480 500 320 240\n"), /needs 4 numbers, and has 3/],
   ["model.txt", text("1 FOV 640 480 500 500 320 240 0.1\n"), /model FOV/],
   ["line.txt", text("1 PINHOLE 640 480 500 500 320 240\nno camera\n"), /a line that is no camera/],
-  ["streams.txt", text('Extrinsic from "Depth" To "Color" :\n Rotation Matrix:\n 1 0 0\n'), /from "Depth" to "Color" have 3 numbers/],
+  [
+    "streams.txt",
+    text('Extrinsic from "Depth" To "Color" :\n Rotation Matrix:\n 1 0 0\n'),
+    /from "Depth" to "Color" have 3 numbers/,
+  ],
   ["publisher.txt", text("static_transform_publisher 1 2 3\n"), /3 numbers/],
   ["publisher2.txt", text("static_transform_publisher without numbers\n"), /no numbers follow/],
   ["long.txt", text("a: ".padEnd(600_000, "b")), /in none of the forms/],
@@ -280,7 +404,8 @@ describe("files changed at random", () => {
   function mutated(file, random) {
     const below = (count) => Math.floor(random() * count);
     if (random() < 0.3) return file.slice(0, below(file.length));
-    const copy = random() < 0.1 ? bytes(file.subarray(0, 40), new Uint8Array(below(9)), file.subarray(40)) : file.slice();
+    const copy =
+      random() < 0.1 ? bytes(file.subarray(0, 40), new Uint8Array(below(9)), file.subarray(40)) : file.slice();
     for (let change = 1 + below(5); change > 0; change--) {
       const at = below(random() < 0.5 ? Math.min(copy.length, 200) : copy.length);
       copy[at] = random() < 0.5 ? copy[at] ^ (1 << below(8)) : BYTES[below(BYTES.length)];
@@ -290,7 +415,10 @@ describe("files changed at random", () => {
 
   const folder = fileURLToPath(new URL("../fixtures/rig", import.meta.url));
   // Folders beside them hold what the writers wrote.
-  const names = readdirSync(folder, { withFileTypes: true }).filter((entry) => entry.isFile()).map(({ name }) => name).sort();
+  const names = readdirSync(folder, { withFileTypes: true })
+    .filter((entry) => entry.isFile())
+    .map(({ name }) => name)
+    .sort();
 
   test(`${CASES * names.length} cases end in a reading or in a BimodalError that names the file`, async () => {
     const random = generator(15);
@@ -306,7 +434,10 @@ describe("files changed at random", () => {
             assert.ok(reading.says.length > 0 && Array.isArray(reading.warnings));
             read++;
           } catch (error) {
-            assert.ok(error instanceof BimodalError && error.code === "file" && error.message.includes(name), `${name}, case ${index}: ${error.stack}`);
+            assert.ok(
+              error instanceof BimodalError && error.code === "file" && error.message.includes(name),
+              `${name}, case ${index}: ${error.stack}`,
+            );
             refused++;
           }
         });

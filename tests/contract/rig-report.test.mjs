@@ -7,19 +7,29 @@ import { harmless } from "./harmless.mjs";
 import { report } from "./rig-sample.mjs";
 import { refused } from "./support.mjs";
 
-const PIXEL = "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNkYPhfDwAChwGA60e6kgAAAABJRU5ErkJggg==";
+const PIXEL =
+  "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNkYPhfDwAChwGA60e6kgAAAABJRU5ErkJggg==";
 const EVIL = `</style></title><script>alert(1)</script><img src=x onerror=alert(2)>"'&amp;`;
 
 describe("the page", () => {
   test("is whole, and its policy allows its style sheet and pictures alone", () => {
     const page = reportHtml(report(), [{ title: "Overlay", dataUrl: PIXEL }]);
     const { elements } = harmless(page);
-    const policy = elements.find(({ attributes }) => attributes["http-equiv"] === "Content-Security-Policy").attributes.content.replaceAll("&#39;", "'");
+    const policy = elements
+      .find(({ attributes }) => attributes["http-equiv"] === "Content-Security-Policy")
+      .attributes.content.replaceAll("&#39;", "'");
     const style = /<style>([^<]*)<\/style>/.exec(page)[1];
     const hash = createHash("sha256").update(style).digest("base64");
-    assert.equal(policy, `default-src 'none'; img-src data:; style-src 'sha256-${hash}'; base-uri 'none'; form-action 'none'`, "STYLE_SHA256 in style.ts");
+    assert.equal(
+      policy,
+      `default-src 'none'; img-src data:; style-src 'sha256-${hash}'; base-uri 'none'; form-action 'none'`,
+      "STYLE_SHA256 in style.ts",
+    );
     assert.ok(page.indexOf("Content-Security-Policy") < page.indexOf("<style>"));
-    assert.deepEqual(elements.filter(({ name }) => name === "img").map(({ attributes }) => attributes), [{ src: PIXEL, alt: "Overlay" }]);
+    assert.deepEqual(
+      elements.filter(({ name }) => name === "img").map(({ attributes }) => attributes),
+      [{ src: PIXEL, alt: "Overlay" }],
+    );
     for (const query of ["prefers-color-scheme:dark", "@media print"]) assert.ok(style.includes(query), query);
   });
 
@@ -30,14 +40,33 @@ describe("the page", () => {
 
   test("holds the verdict, the numbers with units, warnings, frames and files", () => {
     const sha256 = "9f86d081884c7d659a2feaa0c55ad015a3bf4f1b2b0b822cd15d6c15b0f00a08";
-    const { text: spaced } = harmless(reportHtml(report(), [], { title: "Rig 7", inputs: [{ name: "depth/0001.png", says: "640x480, 16-bit", sha256 }] }));
+    const { text: spaced } = harmless(
+      reportHtml(report(), [], {
+        title: "Rig 7",
+        inputs: [{ name: "depth/0001.png", says: "640x480, 16-bit", sha256 }],
+      }),
+    );
     const text = spaced.replaceAll("\u202f", " ").replaceAll("&#39;", "'");
     const expected = [
-      ...["Rig 7", "Off", "factory.yaml", "a true calibration lies as far", "1.92°, 21.3 mm", "17.4 px", "15.8 to 19.1 px", "0.840 px", "0.520 to 1.31 px"],
+      ...[
+        "Rig 7",
+        "Off",
+        "factory.yaml",
+        "a true calibration lies as far",
+        "1.92°, 21.3 mm",
+        "17.4 px",
+        "15.8 to 19.1 px",
+        "0.840 px",
+        "0.520 to 1.31 px",
+      ],
       ...["last week", "Consistent", "0.110°", "0.610", "by hand", "Undecided", "below 0.001"],
       ...report().warnings,
       ...["55 %", "to 0.435 px", "not at all", "0003.png", "13 %", "a bare wall"],
-      ...["0.115° about x, 0.143° about y, 0.229° about z", "1.10 mm along x, 1.30 mm along y, 4.80 mm along z", "the turn about z and the shift along z"],
+      ...[
+        "0.115° about x, 0.143° about y, 0.229° about z",
+        "1.10 mm along x, 1.30 mm along y, 4.80 mm along z",
+        "the turn about z and the shift along z",
+      ],
       ...["0.9997474559344951", "4.00e\u22126", "\u221225.0 mm", "depth/0001.png", sha256],
     ];
     for (const words of expected) assert.ok(text.includes(words), words);
@@ -57,7 +86,10 @@ describe("what comes from files is escaped", () => {
       frames: [{ name: EVIL, share: 1, note: EVIL }],
       sensitivity: given.sensitivity.map((row) => ({ ...row, cue: EVIL })),
     };
-    const page = reportHtml(evil, [{ title: EVIL, dataUrl: PIXEL }], { title: EVIL, inputs: [{ name: EVIL, says: EVIL, sha256: EVIL }] });
+    const page = reportHtml(evil, [{ title: EVIL, dataUrl: PIXEL }], {
+      title: EVIL,
+      inputs: [{ name: EVIL, says: EVIL, sha256: EVIL }],
+    });
     const { text } = harmless(page);
     assert.ok(!page.includes("<script"));
     assert.ok(text.split("&lt;script&gt;alert(1)").length > 10, "it is shown as it is");
@@ -73,7 +105,14 @@ describe("what comes from files is escaped", () => {
   });
 
   test("pictures that are none", () => {
-    for (const dataUrl of ["https://example.org/x.png", "javascript:alert(1)", "data:image/svg+xml;base64,PHN2Zz4=", `${PIXEL}" onload="alert(1)`, "data:text/html;base64,AAAA", ""]) {
+    for (const dataUrl of [
+      "https://example.org/x.png",
+      "javascript:alert(1)",
+      "data:image/svg+xml;base64,PHN2Zz4=",
+      `${PIXEL}" onload="alert(1)`,
+      "data:text/html;base64,AAAA",
+      "",
+    ]) {
       refused(() => reportHtml(report(), [{ title: "", dataUrl }]), "type", "pictures[0].dataUrl");
     }
   });
@@ -102,7 +141,14 @@ describe("curves", () => {
   test("the order of offsets does not matter, nor what is missing between", () => {
     const values = parabola(0.5, 1);
     const order = offsets.map((_, k) => (k * 37) % 101);
-    assert.equal(words(order.map((k) => values[k]), "ry", order.map((k) => offsets[k])), "0.50° (\u22121.5 to 2.5)");
+    assert.equal(
+      words(
+        order.map((k) => values[k]),
+        "ry",
+        order.map((k) => offsets[k]),
+      ),
+      "0.50° (\u22121.5 to 2.5)",
+    );
     assert.equal(words(values.map((value, k) => (k % 10 === 3 ? NaN : value))), "0.50° (\u22121.5 to 2.5)");
   });
 
@@ -116,20 +162,35 @@ describe("curves", () => {
     const of = (kind) => elements.filter(({ attributes }) => attributes.class === kind).length;
     assert.equal(of("panel"), 6);
     assert.equal(of("series s1"), 12, "a line and its key");
-    for (const { name, attributes } of elements) if (name === "path") assert.ok(attributes.d && !/NaN|Infinity|undefined/.test(attributes.d), attributes.d);
+    for (const { name, attributes } of elements)
+      if (name === "path") assert.ok(attributes.d && !/NaN|Infinity|undefined/.test(attributes.d), attributes.d);
   });
 });
 
 describe("what a report lacks is named", () => {
   test("in the report", () => {
     for (const none of [undefined, null]) refused(() => reportHtml(none), "type", "report");
-    for (const name of ["warnings", "estimate", "covariance", "health", "candidates", "cues", "frames", "sensitivity"]) {
-      for (const value of [undefined, null, 5]) refused(() => reportHtml({ ...report(), [name]: value }), "type", `report.${name}`);
+    for (const name of [
+      "warnings",
+      "estimate",
+      "covariance",
+      "health",
+      "candidates",
+      "cues",
+      "frames",
+      "sensitivity",
+    ]) {
+      for (const value of [undefined, null, 5])
+        refused(() => reportHtml({ ...report(), [name]: value }), "type", `report.${name}`);
     }
     refused(() => reportHtml({ ...report(), candidates: { a: {} } }), "type", "report.candidates.a.interval");
     refused(() => reportHtml({ ...report(), cues: { edges: null } }), "type", "report.cues.edges");
     refused(() => reportHtml({ ...report(), frames: [{ name: "a", share: 1 }, null] }), "type", "report.frames[1]");
-    refused(() => reportHtml({ ...report(), estimate: { rotation: [], translation: [] } }), "type", "report.estimate.angles");
+    refused(
+      () => reportHtml({ ...report(), estimate: { rotation: [], translation: [] } }),
+      "type",
+      "report.estimate.angles",
+    );
   });
 
   test("beside it", () => {
@@ -137,7 +198,8 @@ describe("what a report lacks is named", () => {
     refused(() => reportHtml(report(), [null]), "type", "pictures[0]");
     refused(() => reportHtml(report(), [], null), "type", "options");
     refused(() => reportHtml(report(), [], { inputs: "a.png" }), "type", "options.inputs");
-    for (const made of [5, "2024-02-29", new Date(NaN)]) refused(() => reportHtml(report(), [], { made }), "type", "options.made");
+    for (const made of [5, "2024-02-29", new Date(NaN)])
+      refused(() => reportHtml(report(), [], { made }), "type", "options.made");
   });
 
   test("but words and numbers: a report that was kept as JSON has null for what is no number", () => {
@@ -149,7 +211,16 @@ describe("what a report lacks is named", () => {
 test("an unfinished report is still a page", () => {
   const none = { share: NaN, sharpness: NaN };
   const empty = {
-    ...{ verdict: "undecided", reason: "", warnings: [], covariance: [], candidates: {}, frames: [], sensitivity: [], cues: { edges: none } },
+    ...{
+      verdict: "undecided",
+      reason: "",
+      warnings: [],
+      covariance: [],
+      candidates: {},
+      frames: [],
+      sensitivity: [],
+      cues: { edges: none },
+    },
     health: { pixels: NaN, interval: [NaN, NaN] },
     estimate: { scale: 1, rotation: [], translation: [], angles: { alpha: NaN, beta: 0, gamma: 0 } },
   };

@@ -4,31 +4,41 @@ import { readFileSync } from "node:fs";
 import { fileURLToPath } from "node:url";
 import { BimodalError, readRigFile } from "../../pkg/rig.js";
 
-export const W = 16, H = 12;
+export const W = 16,
+  H = 12;
 const eachPixel = (value) => Array.from({ length: W * H }, (_, at) => value(at % W, Math.floor(at / W)));
 export const millimetres = eachPixel((x, y) => ((x + y) % 7 === 0 ? 0 : 800 + 37 * x + 11 * y));
 export const rgb = eachPixel((x, y) => [16 * x, 20 * y, 8 * (x + y)]);
 
-export const fixture = (name) => new Uint8Array(readFileSync(fileURLToPath(new URL(`../fixtures/rig/${name}`, import.meta.url))));
+export const fixture = (name) =>
+  new Uint8Array(readFileSync(fileURLToPath(new URL(`../fixtures/rig/${name}`, import.meta.url))));
 export const text = (content) => new TextEncoder().encode(content);
-export const read = (name, bytes, options) => readRigFile({ name, bytes: typeof bytes === "string" ? text(bytes) : bytes }, options);
+export const read = (name, bytes, options) =>
+  readRigFile({ name, bytes: typeof bytes === "string" ? text(bytes) : bytes }, options);
 export const readFixture = (name, options) => read(name, fixture(name), options);
 
 export function close(actual, expected, tolerance, message) {
   assert.equal(actual.length, expected.length, message);
-  expected.forEach((value, at) => assert.ok(Math.abs(actual[at] - value) <= tolerance, `${message ?? ""} [${at}]: ${actual[at]} instead of ${value}`));
+  expected.forEach((value, at) =>
+    assert.ok(Math.abs(actual[at] - value) <= tolerance, `${message ?? ""} [${at}]: ${actual[at]} instead of ${value}`),
+  );
 }
 
 /** The depths of a reading in metres, 0 where there is none. */
 export function metres({ depth }) {
-  if (depth.points) return Array.from({ length: depth.width * depth.height }, (_, at) => (Number.isNaN(depth.points[3 * at + 2]) ? 0 : depth.points[3 * at + 2]));
+  if (depth.points)
+    return Array.from({ length: depth.width * depth.height }, (_, at) =>
+      Number.isNaN(depth.points[3 * at + 2]) ? 0 : depth.points[3 * at + 2],
+    );
   return Array.from(depth.data, (value) => (value > 0 && value < 1e12 ? value * (depth.unit ?? 1) : 0));
 }
 
 /** The colours of a reading without alpha. */
 export function colours({ image }) {
   const channels = image.data instanceof Float32Array ? 3 : 4;
-  return Array.from({ length: image.width * image.height }, (_, at) => [...image.data.slice(channels * at, channels * at + 3)]);
+  return Array.from({ length: image.width * image.height }, (_, at) => [
+    ...image.data.slice(channels * at, channels * at + 3),
+  ]);
 }
 
 /** Checks that a file is refused, and that the error names it and a reason. */
@@ -44,8 +54,8 @@ export async function refusedFile(reading, name, reason) {
 
 /** Of cv2.Rodrigues of (0.02, -0.03, 0.05), and the shift, as the fixtures have them. */
 export const rotation = [
-  0.9983005382651491, -0.05026824436148818, -0.029481161922952533, 0.04966843433742314, 0.9985504591085095, -0.020737098269863558,
-  0.030480845296394256, 0.019237573209700973, 0.999350205807263,
+  0.9983005382651491, -0.05026824436148818, -0.029481161922952533, 0.04966843433742314, 0.9985504591085095,
+  -0.020737098269863558, 0.030480845296394256, 0.019237573209700973, 0.999350205807263,
 ];
 export const translation = [-0.025, 0.001, 0.003];
 export const K = { fx: 518.5, fy: 519.25, cx: 325.5, cy: 253.75 };

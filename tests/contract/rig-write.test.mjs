@@ -9,14 +9,20 @@ import { BimodalError, refused } from "./support.mjs";
 
 const read = JSON.parse(readFileSync(inRoot(FOLDER, "read.json"), "utf8"));
 const found = (rig, format) => read[`${rig}/${writePose(RIGS[rig].pose, format, RIGS[rig].context).name}`];
-const NO_POSE = { scale: 1, rotation: [1, 0, 0, 0, 1, 0, 0, 0, 1], translation: [0, 0, 0], angles: { alpha: 0, beta: 0, gamma: 0 } };
+const NO_POSE = {
+  scale: 1,
+  rotation: [1, 0, 0, 0, 1, 0, 0, 0, 1],
+  translation: [0, 0, 0],
+  angles: { alpha: 0, beta: 0, gamma: 0 },
+};
 
 test("both modules throw the same class", () => assert.equal(WriteError, BimodalError));
 
 test("every file is written again, byte for byte", () => {
   const made = files();
   assert.deepEqual(Object.keys(made).sort(), Object.keys(read).sort());
-  for (const [name, bytes] of Object.entries(made)) assert.deepEqual(Buffer.from(bytes), readFileSync(inRoot(FOLDER, name)), name);
+  for (const [name, bytes] of Object.entries(made))
+    assert.deepEqual(Buffer.from(bytes), readFileSync(inRoot(FOLDER, name)), name);
 });
 
 describe("what others read is what was written", () => {
@@ -29,7 +35,11 @@ describe("what others read is what was written", () => {
         const tolerance = format === "ros2" ? 1e-12 : 0;
         const { matrix } = found(rig, format);
         assert.deepEqual(matrix[3], [0, 0, 0, 1]);
-        expected.forEach((row, i) => row.forEach((value, j) => assert.ok(Math.abs(matrix[i][j] - value) <= tolerance, `${i} ${j}: ${matrix[i][j]}, not ${value}`)));
+        expected.forEach((row, i) =>
+          row.forEach((value, j) =>
+            assert.ok(Math.abs(matrix[i][j] - value) <= tolerance, `${i} ${j}: ${matrix[i][j]}, not ${value}`),
+          ),
+        );
       });
     }
   }
@@ -65,21 +75,35 @@ describe("what others read is what was written", () => {
   }
 
   test("cameras from OpenCV's", () => {
-    assert.equal(each("opencv", 8, ({ model, distortion }) => model ?? (distortion?.length === 8 ? "rational_polynomial" : "plumb_bob")), 6);
+    assert.equal(
+      each(
+        "opencv",
+        8,
+        ({ model, distortion }) => model ?? (distortion?.length === 8 ? "rational_polynomial" : "plumb_bob"),
+      ),
+      6,
+    );
   });
 
   test("cameras from Kalibr's, whose radtan has four numbers", () => {
-    assert.equal(each("kalibr", 4, ({ model }) => (model === "fisheye" ? "equidistant" : "radtan")), 4);
+    assert.equal(
+      each("kalibr", 4, ({ model }) => (model === "fisheye" ? "equidistant" : "radtan")),
+      4,
+    );
   });
 
   test("cameras from RealSense's, which has five", () => {
     const brown = ({ distortion }) => (distortion?.some(Boolean) ? "Brown Conrady" : "None");
-    assert.equal(each("realsense", 5, (given) => (given.model === "fisheye" ? "Kannala Brandt4" : brown(given))), 5);
+    assert.equal(
+      each("realsense", 5, (given) => (given.model === "fisheye" ? "Kannala Brandt4" : brown(given))),
+      5,
+    );
   });
 
   test("the colour camera from Open3D's, which has no distortion", () => {
     for (const [rig, { context }] of Object.entries(RIGS)) {
-      if (context.colour) same(found(rig, "open3d").colour, context.colour, context.sizes?.colour ?? [0, 0], { distortion: false });
+      if (context.colour)
+        same(found(rig, "open3d").colour, context.colour, context.sizes?.colour ?? [0, 0], { distortion: false });
     }
   });
 
@@ -113,14 +137,19 @@ describe("the package reads what it writes", () => {
     for (const format of formatsOf(rig)) {
       test(`${rig}: ${format}`, { skip }, async () => {
         const { name, text } = writePose(pose, format, context);
-        const { poses, cameras = [], warnings } = await readers.readRigFile({ name, bytes: new TextEncoder().encode(text) });
+        const {
+          poses,
+          cameras = [],
+          warnings,
+        } = await readers.readRigFile({ name, bytes: new TextEncoder().encode(text) });
         assert.deepEqual(warnings, []);
         assert.equal(poses.length, 1);
         const off = (key) => Math.max(...poses[0].pose[key].map((value, k) => Math.abs(value - pose[key][k])));
         assert.ok(off("rotation") < 1e-12 && off("translation") < 1e-12);
         const numbers = ({ fx, fy, cx, cy, model = "brown" }) => [fx, fy, cx, cy, model];
         const given = new Set([context.depth, context.colour].filter(Boolean).map((camera) => numbers(camera).join()));
-        for (const { camera } of cameras) assert.ok(format === "open3d" || given.has(numbers(camera).join()), JSON.stringify(camera));
+        for (const { camera } of cameras)
+          assert.ok(format === "open3d" || given.has(numbers(camera).join()), JSON.stringify(camera));
       });
     }
   }
@@ -135,7 +164,8 @@ describe("what a format has no place for is said", () => {
     assert.match(notes("realsense", "turned"), /colour camera's intrinsics are left out/);
     assert.match(notes("kalibr", "radial"), /depth camera's resolution is not known; the colour camera's resolution/);
     assert.match(notes("realsense", "bare"), /intrinsics are not known/);
-    for (const format of poseFormats) if (!["kalibr", "open3d"].includes(format)) assert.equal(notes(format, "usual"), "", format);
+    for (const format of poseFormats)
+      if (!["kalibr", "open3d"].includes(format)) assert.equal(notes(format, "usual"), "", format);
   });
 
   test("and in comments, where the format has them", () => {
@@ -155,7 +185,15 @@ test("any number keeps its digits", () => {
 
 test("quaternions of every quadrant", () => {
   // Half and other turns, so that each of the four is the largest once.
-  for (const [x, y, z, w] of [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0.1, 0.2, 0.3, 0.9], [0.9, 0.3, -0.2, 0.1], [-0.2, 0.9, 0.1, -0.3], [0.1, -0.2, 0.9, -0.3]]) {
+  for (const [x, y, z, w] of [
+    [1, 0, 0, 0],
+    [0, 1, 0, 0],
+    [0, 0, 1, 0],
+    [0.1, 0.2, 0.3, 0.9],
+    [0.9, 0.3, -0.2, 0.1],
+    [-0.2, 0.9, 0.1, -0.3],
+    [0.1, -0.2, 0.9, -0.3],
+  ]) {
     const n = Math.hypot(x, y, z, w);
     const s = 2 / n ** 2;
     const rotation = [
@@ -166,12 +204,17 @@ test("quaternions of every quadrant", () => {
     const { text } = writePose({ ...NO_POSE, rotation }, "ros2");
     const written = ["x", "y", "z", "w"].map((part) => Number(new RegExp(`--q${part} (\\S+)`).exec(text)[1]));
     const sign = w < 0 ? -1 : 1;
-    [x, y, z, w].forEach((value, k) => assert.ok(Math.abs(written[k] - (sign * value) / n) < 1e-15, `${[x, y, z, w]}: ${written}`));
+    [x, y, z, w].forEach((value, k) =>
+      assert.ok(Math.abs(written[k] - (sign * value) / n) < 1e-15, `${[x, y, z, w]}: ${written}`),
+    );
   }
 });
 
 describe("refused", () => {
-  const write = (pose, format = "matrix", context = {}) => () => writePose({ ...NO_POSE, ...pose }, format, context);
+  const write =
+    (pose, format = "matrix", context = {}) =>
+    () =>
+      writePose({ ...NO_POSE, ...pose }, format, context);
 
   test("poses that are no rig's", () => {
     refused(write({ scale: 1.2 }), "range", "pose.scale");
@@ -185,11 +228,13 @@ describe("refused", () => {
     for (const pose of [undefined, null, "pose"]) refused(() => writePose(pose, "matrix"), "type", "pose");
     refused(() => writePose({}, "matrix"), "range", "pose.scale");
     for (const translation of [undefined, 5]) refused(write({ translation }), "size", "pose.translation");
-    for (const translation of [new Array(3), ["1", "2", "3"]]) refused(write({ translation }), "range", "pose.translation");
+    for (const translation of [new Array(3), ["1", "2", "3"]])
+      refused(write({ translation }), "range", "pose.translation");
     for (const format of [undefined, Symbol("matrix")]) refused(() => writePose(NO_POSE, format), "option", "format");
     for (const context of [null, 5]) refused(write({}, "matrix", context), "type", "context");
     refused(write({}, "matrix", { colour: null }), "type", "context.colour");
-    for (const colour of [5, null, [640]]) refused(write({}, "matrix", { sizes: { colour } }), "size", "context.sizes.colour");
+    for (const colour of [5, null, [640]])
+      refused(write({}, "matrix", { sizes: { colour } }), "size", "context.sizes.colour");
     let times = 0;
     const name = { toString: () => (times++ > 0 ? "a; rm -rf ." : "a") };
     refused(write({}, "ros2", { frames: { colour: name } }), "range", "context.frames.colour");
@@ -202,7 +247,11 @@ describe("refused", () => {
     refused(write({}, "opencv", { colour: { ...camera, fx: 0 } }), "range", "context.colour");
     refused(write({}, "opencv", { colour: { ...camera, cx: Infinity } }), "range", "context.colour");
     refused(write({}, "opencv", { depth: { ...camera, distortion: [1, 2, 3] } }), "size", "context.depth.distortion");
-    refused(write({}, "opencv", { depth: { ...camera, model: "fisheye", distortion: [1, 2, 3, 4, 5] } }), "size", "context.depth.distortion");
+    refused(
+      write({}, "opencv", { depth: { ...camera, model: "fisheye", distortion: [1, 2, 3, 4, 5] } }),
+      "size",
+      "context.depth.distortion",
+    );
     refused(write({}, "opencv", { depth: { ...camera, model: "omni" } }), "option", "context.depth.model");
     refused(write({}, "open3d", { depth: camera }), "missing", "context.colour");
     refused(write({}, "kalibr", { depth: camera, sizes: { depth: [640, 0.5] } }), "size", "context.sizes.depth");
@@ -217,13 +266,18 @@ describe("refused", () => {
     refused(() => writeClouds([{ points: new Float32Array(4) }]), "size", "clouds[0].points");
     refused(() => writeClouds([{ points: [1, 2, 3] }]), "type", "clouds[0].points");
     for (const clouds of [[null], new Array(1)]) refused(() => writeClouds(clouds), "type", "clouds[0].points");
-    refused(() => writeClouds([{ points: new Float32Array(3) }, { points: new Float32Array(3), colours: new Uint8Array(4) }]), "size", "clouds[1].colours");
+    refused(
+      () => writeClouds([{ points: new Float32Array(3) }, { points: new Float32Array(3), colours: new Uint8Array(4) }]),
+      "size",
+      "clouds[1].colours",
+    );
   });
 });
 
 test("a cloud's name cannot end its line, nor can its unit", () => {
   const points = new Float32Array(3);
-  for (const name of [5, Symbol("s")]) assert.match(Buffer.from(writeClouds([{ points, name }])).toString("latin1"), /^comment (5|Symbol\(s\))$/m);
+  for (const name of [5, Symbol("s")])
+    assert.match(Buffer.from(writeClouds([{ points, name }])).toString("latin1"), /^comment (5|Symbol\(s\))$/m);
   assert.match(Buffer.from(writeClouds([{ points }], "m\nend_header")).toString("latin1"), /^comment m\?end_header; /m);
   const text = Buffer.from(writeClouds([{ points, name: "a\nend_header\nµ" }])).toString("latin1");
   assert.match(text, /^comment a\?end_header\?\?$/m);

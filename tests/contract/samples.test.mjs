@@ -40,7 +40,9 @@ describe("the bare grid", () => {
       const where = rows.map((row, axis) => carry(point, row) + pose.translation[axis]);
       assert.ok(Math.abs(where[2] - truth.imageDepth[index]) < 1e-4);
       assert.ok(Math.abs(where[0] - ((index % 32) - 15.5)) < 1e-4);
-      rows.forEach((row, axis) => assert.ok(Math.abs(carry(normal, row) - truth.imageNormals[3 * index + axis]) < 1e-5));
+      rows.forEach((row, axis) =>
+        assert.ok(Math.abs(carry(normal, row) - truth.imageNormals[3 * index + axis]) < 1e-5),
+      );
       compared++;
     }
     assert.ok(compared > 300);

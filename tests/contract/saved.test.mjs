@@ -31,7 +31,12 @@ describe("goes on to the same bits", () => {
     "after a first stage": [knowing(), "stepStage"],
     "at the end": [knowing({ maxIterations: 2 }), "step", "step"],
     "with the paper's registration": [knowing({ registration: "icp", shading: "pixel" }), "step"],
-    "within a search": [() => estimator({ start: "search", light: "estimate", maxIterations: 1 }), "step", "step", "step"],
+    "within a search": [
+      () => estimator({ start: "search", light: "estimate", maxIterations: 1 }),
+      "step",
+      "step",
+      "step",
+    ],
     "after a reset": [knowing(), "step", "reset", "step"],
   };
   for (const [name, [make, ...calls]] of Object.entries(cases)) {
@@ -55,11 +60,26 @@ describe("goes on to the same bits", () => {
   test("with all that views may have", () => {
     const { image, depth, light } = pair();
     const camera = { fx: 90, fy: 90, cx: 15.5, cy: 15.5 };
-    const colours = new Uint16Array(4 * 32 * 32).map((_, i) => (i % 4 === 3 ? 65535 : 65535 * Math.min(1, image.data[3 * (i >> 2) + (i % 4)])));
+    const colours = new Uint16Array(4 * 32 * 32).map((_, i) =>
+      i % 4 === 3 ? 65535 : 65535 * Math.min(1, image.data[3 * (i >> 2) + (i % 4)]),
+    );
     const run = new Estimator(
       { width: 32, height: 32, data: colours, mask: image.mask, camera, transfer: "linear" },
-      { width: 32, height: 32, mask: depth.mask, data: depth.data.map((z) => (40 + z) / 400), camera: { ...camera, distortion: [0.01, 0, 0, 0, 0] }, unit: 1.5 },
-      { light: Float64Array.from(light), start: { angles: { beta: 15 } }, startTolerance: { degrees: 20 }, lambda: { prior: 2 }, maxIterations: 2 },
+      {
+        width: 32,
+        height: 32,
+        mask: depth.mask,
+        data: depth.data.map((z) => (40 + z) / 400),
+        camera: { ...camera, distortion: [0.01, 0, 0, 0, 0] },
+        unit: 1.5,
+      },
+      {
+        light: Float64Array.from(light),
+        start: { angles: { beta: 15 } },
+        startTolerance: { degrees: 20 },
+        lambda: { prior: 2 },
+        maxIterations: 2,
+      },
     );
     run.step();
     same(run, Estimator.restore(run.save()));
@@ -98,13 +118,20 @@ describe("is refused", () => {
     const length = view.readUInt32LE(16);
     const header = JSON.parse(view.subarray(20, 20 + length).toString());
     const text = Buffer.from(JSON.stringify(change(header) ?? header));
-    const all = Buffer.concat([view.subarray(0, 16), Buffer.from(Uint32Array.of(text.length).buffer), text, view.subarray(20 + length, -4)]);
+    const all = Buffer.concat([
+      view.subarray(0, 16),
+      Buffer.from(Uint32Array.of(text.length).buffer),
+      text,
+      view.subarray(20 + length, -4),
+    ]);
     return new Uint8Array(Buffer.concat([all, Buffer.from(Uint32Array.of(crc32(all)).buffer)]));
   }
 
   test("what is no state", () => {
-    for (const value of [undefined, null, "state", [1, 2], new ArrayBuffer(8)]) refused(() => Estimator.restore(value), "type", "state");
-    for (const bytes of [[], [1, 2, 3], Buffer.from("\x89PNG\r\n\x1a\n and so on"), new Uint8Array(1000)]) bad(Uint8Array.from(bytes), /no saved run/);
+    for (const value of [undefined, null, "state", [1, 2], new ArrayBuffer(8)])
+      refused(() => Estimator.restore(value), "type", "state");
+    for (const bytes of [[], [1, 2, 3], Buffer.from("\x89PNG\r\n\x1a\n and so on"), new Uint8Array(1000)])
+      bad(Uint8Array.from(bytes), /no saved run/);
   });
 
   test("one that is cut off, anywhere", () => {
@@ -112,27 +139,74 @@ describe("is refused", () => {
   });
 
   test("one with a wrong byte, anywhere", () => {
-    for (let at = 16; at < state.length; at += 1 + (at >> 3)) bad(state.map((byte, i) => (i === at ? byte ^ 16 : byte)), /damaged/);
+    for (let at = 16; at < state.length; at += 1 + (at >> 3))
+      bad(
+        state.map((byte, i) => (i === at ? byte ^ 16 : byte)),
+        /damaged/,
+      );
   });
 
-  test("another format", () => bad(state.map((byte, i) => (i === 15 ? 2 : byte)), /format 2; this version reads format 1/));
+  test("another format", () =>
+    bad(
+      state.map((byte, i) => (i === 15 ? 2 : byte)),
+      /format 2; this version reads format 1/,
+    ));
 
   test("a header that says something else, though its checksum is right", () => {
-    bad(changed((header) => void (header.options.lamda = {})), /lamda/);
-    bad(changed((header) => void (header.image.width = 31)), /image\.mask/);
-    bad(changed((header) => void (header.arrays[0].type = "constructor")), /arrays.*type|type.*unknown/s);
-    bad(changed((header) => void (header.arrays[0].length = 2 ** 40)), /cut off/);
-    bad(changed((header) => void header.arrays.pop()), /more in it/);
-    bad(changed((header) => void (header.arrays = { length: 3 })), /must be a list/);
-    bad(changed((header) => void (header.reached.iteration = -1)), /iteration/);
-    bad(changed(() => [1]), /header/);
-    bad(changed(() => 5), /header/);
-    bad(changed((header) => JSON.parse(JSON.stringify(header).replace('"image":{', '"image":{"__proto__":{"camera":1},'))), /__proto__/);
+    bad(
+      changed((header) => void (header.options.lamda = {})),
+      /lamda/,
+    );
+    bad(
+      changed((header) => void (header.image.width = 31)),
+      /image\.mask/,
+    );
+    bad(
+      changed((header) => void (header.arrays[0].type = "constructor")),
+      /arrays.*type|type.*unknown/s,
+    );
+    bad(
+      changed((header) => void (header.arrays[0].length = 2 ** 40)),
+      /cut off/,
+    );
+    bad(
+      changed((header) => void header.arrays.pop()),
+      /more in it/,
+    );
+    bad(
+      changed((header) => void (header.arrays = { length: 3 })),
+      /must be a list/,
+    );
+    bad(
+      changed((header) => void (header.reached.iteration = -1)),
+      /iteration/,
+    );
+    bad(
+      changed(() => [1]),
+      /header/,
+    );
+    bad(
+      changed(() => 5),
+      /header/,
+    );
+    bad(
+      changed((header) =>
+        JSON.parse(JSON.stringify(header).replace('"image":{', '"image":{"__proto__":{"camera":1},')),
+      ),
+      /__proto__/,
+    );
   });
 
-  test("one whose numbers come out otherwise", () => bad(changed((header) => void (header.found = (header.found ^ 1) >>> 0)), /other numbers/));
+  test("one whose numbers come out otherwise", () =>
+    bad(
+      changed((header) => void (header.found = (header.found ^ 1) >>> 0)),
+      /other numbers/,
+    ));
 
   test("an end that is never reached does not take for ever", () => {
-    bad(changed((header) => void Object.assign(header.reached, { iteration: 1e9, slices: 1e9 })), /other numbers/);
+    bad(
+      changed((header) => void Object.assign(header.reached, { iteration: 1e9, slices: 1e9 })),
+      /other numbers/,
+    );
   });
 });

@@ -9,7 +9,8 @@ import { LONG } from "./long.mjs";
 import { Estimator, init, outcome, pair, refused } from "./support.mjs";
 import { runSettled, seen, settled, until } from "./threads.mjs";
 
-const scene = (request = {}) => pair({ light: "window", size: 48, angles: { alpha: 10, beta: 40 }, noise: 0.01, ...request });
+const scene = (request = {}) =>
+  pair({ light: "window", size: 48, angles: { alpha: 10, beta: 40 }, noise: 0.01, ...request });
 
 /** Runs to the end; how many slices of the search were done in this thread. */
 async function slicesOf(estimator) {
@@ -20,7 +21,10 @@ before(() => init());
 
 describe("search workers", () => {
   test("any number of them finds the same to the bit", LONG, async () => {
-    const scenes = [[scene(), true], [scene({ surface: "ripples", scale: 1.1, overlap: 0.7 }), false]];
+    const scenes = [
+      [scene(), true],
+      [scene({ surface: "ripples", scale: 1.1, overlap: 0.7 }), false],
+    ];
     for (const [{ image, depth, light }, known] of scenes) {
       for (const options of [known ? { light } : {}]) {
         const alone = new Estimator(image, depth, options);
@@ -91,7 +95,10 @@ describe("search workers", () => {
     }
     const alone = new Estimator(new Photo(), depth, new Settings());
     await alone.run();
-    for (const options of [{ workers: 3, light: new Proxy([...light], {}) }, { workers: 3, light: shared }]) {
+    for (const options of [
+      { workers: 3, light: new Proxy([...light], {}) },
+      { workers: 3, light: shared },
+    ]) {
       const together = new Estimator(new Photo(), depth, options);
       assert.equal(bytes.length, 4 * image.width * image.height);
       shared.fill(0);
@@ -154,7 +161,8 @@ describe("search workers", () => {
 
   test("their number is checked, and stays", () => {
     const { image, depth } = scene({ size: 32 });
-    for (const workers of [0, 1.5, 17, -1, NaN]) refused(() => new Estimator(image, depth, { workers }), "range", "options.workers");
+    for (const workers of [0, 1.5, 17, -1, NaN])
+      refused(() => new Estimator(image, depth, { workers }), "range", "options.workers");
     refused(() => new Estimator(image, depth, { workers: "2" }), "type", "options.workers");
     const estimator = new Estimator(image, depth);
     refused(() => estimator.reset({ workers: 2 }), "unsupported", "options.workers");

@@ -4,8 +4,16 @@ import { before, describe, test } from "node:test";
 import { Estimator, init, sample } from "./support.mjs";
 import { aboutAxis, product } from "../../scripts/tables/protocol/rotations.mjs";
 
-const REQUEST = { surface: "bust", light: "window", size: 64, angles: { alpha: 10, beta: 50, gamma: 15 }, overlap: 0.7, noise: 0.01 };
-const degrees = (a, b) => (2 * Math.asin(Math.hypot(...a.map((value, i) => value - b[i])) / Math.SQRT2 / 2) * 180) / Math.PI;
+const REQUEST = {
+  surface: "bust",
+  light: "window",
+  size: 64,
+  angles: { alpha: 10, beta: 50, gamma: 15 },
+  overlap: 0.7,
+  noise: 0.01,
+};
+const degrees = (a, b) =>
+  (2 * Math.asin(Math.hypot(...a.map((value, i) => value - b[i])) / Math.SQRT2 / 2) * 180) / Math.PI;
 
 /** R = Rx(alpha) Ry(beta) Rz(gamma). */
 const rotationOf = ([alpha, beta, gamma]) =>

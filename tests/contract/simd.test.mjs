@@ -26,7 +26,10 @@ describe("instructions", () => {
     const found = vectorInstructions(decoded(FILES.simd));
     const sums = found.filter((name) => /^f32x4\.(add|sub|mul|div)$/.test(name));
     t.diagnostic(`${found.length} vector instructions, ${sums.length} of them f32x4 arithmetic`);
-    assert.ok(found.length > MANY, `${found.length} vector instructions; RUSTFLAGS, where set, replaces the flags of .cargo/config.toml`);
+    assert.ok(
+      found.length > MANY,
+      `${found.length} vector instructions; RUSTFLAGS, where set, replaces the flags of .cargo/config.toml`,
+    );
     for (const name of ["f32x4.add", "f32x4.sub", "f32x4.mul"]) assert.ok(sums.includes(name), `no ${name}`);
   });
 
@@ -45,7 +48,10 @@ describe("instructions", () => {
     const [simd, scalar] = Object.values(FILES).map((file) => {
       const module = new WebAssembly.Module(bytesOf(file));
       const sorted = (entries) => entries.map((entry) => JSON.stringify(entry)).sort();
-      return { imports: sorted(WebAssembly.Module.imports(module)), exports: sorted(WebAssembly.Module.exports(module)) };
+      return {
+        imports: sorted(WebAssembly.Module.imports(module)),
+        exports: sorted(WebAssembly.Module.exports(module)),
+      };
     });
     assert.deepEqual(scalar, simd);
   });

@@ -17,6 +17,13 @@ function end(advance) {
 }
 
 test("iterations, stages and milliseconds by turns end at the same bits as iterations", LONG, () => {
-  const byTurns = end((estimator, turn) => [() => estimator.step(), () => estimator.stepStage(), () => estimator.stepFor(0), () => estimator.stepFor(3)][turn % 4]());
-  assert.deepEqual(byTurns, end((estimator) => estimator.step()));
+  const byTurns = end((estimator, turn) =>
+    [() => estimator.step(), () => estimator.stepStage(), () => estimator.stepFor(0), () => estimator.stepFor(3)][
+      turn % 4
+    ](),
+  );
+  assert.deepEqual(
+    byTurns,
+    end((estimator) => estimator.step()),
+  );
 });

@@ -17,7 +17,8 @@ syncBuiltinESMExports();
 if (!inNode) {
   process.getBuiltinModule = undefined;
   // Node's own refuses files.
-  globalThis.fetch = async (address) => new Response(await noted(address), { headers: { "content-type": "application/wasm" } });
+  globalThis.fetch = async (address) =>
+    new Response(await noted(address), { headers: { "content-type": "application/wasm" } });
 }
 if (!knowsSimd) WebAssembly.validate = () => false;
 

@@ -4,7 +4,17 @@ import { crc32, deflateSync } from "node:zlib";
 import init, * as package_ from "../../pkg/index.js";
 
 export { init };
-export const { BimodalError, Estimator, checkCalibration, sample, sampleBound, sampleLights, sampleSurfaces, shadeNormals, turnLight } = package_;
+export const {
+  BimodalError,
+  Estimator,
+  checkCalibration,
+  sample,
+  sampleBound,
+  sampleLights,
+  sampleSurfaces,
+  shadeNormals,
+  turnLight,
+} = package_;
 
 /** A pair with a known answer, quick to work on. */
 export const pair = (request = {}) => sample({ surface: "bust", light: "colourful", size: 32, ...request });
@@ -17,7 +27,13 @@ export function estimator(options = {}, { image, depth, light } = pair()) {
 /** All that comes out, to the bit, but for the times. */
 export function outcome(estimator) {
   const { milliseconds, ...report } = estimator.report;
-  const arrays = [estimator.imageNormals(), estimator.imageDepth(), estimator.depthNormals(), estimator.refinedDepth(), estimator.residual()];
+  const arrays = [
+    estimator.imageNormals(),
+    estimator.imageDepth(),
+    estimator.depthNormals(),
+    estimator.refinedDepth(),
+    estimator.residual(),
+  ];
   return { report, bits: arrays.map((array) => new Uint32Array(array.buffer)), light: estimator.light() };
 }
 

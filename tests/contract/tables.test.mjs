@@ -27,7 +27,18 @@ describe("statistics", () => {
     assert.equal(first, again);
     assert.notEqual(first, other);
     const dice = chance(3);
-    const draws = Array.from({ length: 20000 }, () => drawGaussian({ mean: [1, 2], covariance: [[4, 1], [1, 1]] }, dice));
+    const draws = Array.from({ length: 20000 }, () =>
+      drawGaussian(
+        {
+          mean: [1, 2],
+          covariance: [
+            [4, 1],
+            [1, 1],
+          ],
+        },
+        dice,
+      ),
+    );
     near(mean(draws.map(([a]) => a)), 1, 0.05);
     near(mean(draws.map(([a, b]) => (a - 1) * (b - 2))), 1, 0.05);
     near(mean(draws.map(([a]) => (a - 1) ** 2)), 4, 0.15);
@@ -69,11 +80,17 @@ describe("definitions", () => {
 
   test("the full tables have the protocol's number of cells", () => {
     const count = (name) => TABLES.find((table) => table.name === name).cells(kit(true), false).length;
-    assert.deepEqual(["table1", "table2A", "table2B", "figure5", "sensors", "photographs", "conditions", "random"].map(count), [4, 30, 480, 72, 27, 120, 136, 300]);
+    assert.deepEqual(
+      ["table1", "table2A", "table2B", "figure5", "sensors", "photographs", "conditions", "random"].map(count),
+      [4, 30, 480, 72, 27, 120, 136, 300],
+    );
   });
 
   test("random scenes keep to their limits and to their seed", () => {
-    const gaussian = { mean: Array(27).fill(-1), covariance: Array.from({ length: 27 }, (_, i) => Array.from({ length: 27 }, (_, j) => Number(i === j))) };
+    const gaussian = {
+      mean: Array(27).fill(-1),
+      covariance: Array.from({ length: 27 }, (_, i) => Array.from({ length: 27 }, (_, j) => Number(i === j))),
+    };
     for (let seed = 1; seed <= 100; seed++) {
       const scene = drawScene(chance(seed), kit(true), gaussian);
       assert.deepEqual(scene, drawScene(chance(seed), kit(true), gaussian));
@@ -85,7 +102,15 @@ describe("definitions", () => {
 });
 
 describe("the random row", () => {
-  const scene = (degrees, status, extra = {}) => ({ degrees, status, rivals: 0, milliseconds: 1, rotationOff: [degrees, 0, 0], sigmas: [1, 1, 1], ...extra });
+  const scene = (degrees, status, extra = {}) => ({
+    degrees,
+    status,
+    rivals: 0,
+    milliseconds: 1,
+    rotationOff: [degrees, 0, 0],
+    sigmas: [1, 1, 1],
+    ...extra,
+  });
   const row = randomRow([
     scene(0.5, "converged"),
     scene(1.5, "max-iterations"),
@@ -112,15 +137,31 @@ describe("the random row", () => {
 
 describe("aims", () => {
   const cell = (size, light, beta, overlap, degrees, extra = {}) => ({
-    ...{ size, light, lightName: "A", beta, overlap, degrees, error: 0, paper: 1, bound: 0.1, status: "converged", rivals: 0, milliseconds: 1 },
+    ...{
+      size,
+      light,
+      lightName: "A",
+      beta,
+      overlap,
+      degrees,
+      error: 0,
+      paper: 1,
+      bound: 0.1,
+      status: "converged",
+      rivals: 0,
+      milliseconds: 1,
+    },
     ...extra,
   });
   const verdict = (json, what) => aims(json).find((aim) => aim.what.includes(what));
 
   test("are computed from the rows", () => {
     const table2B = [
-      cell(128, "known", 20, 0.5, 0.05), cell(128, "known", 20, 1, 0.3), cell(128, "known", 20, 0.125, 5),
-      cell(128, "unknown", 90, 1, 50), cell(128, "unknown", 90, 0.5, 50, { status: "ambiguous" }),
+      cell(128, "known", 20, 0.5, 0.05),
+      cell(128, "known", 20, 1, 0.3),
+      cell(128, "known", 20, 0.125, 5),
+      cell(128, "unknown", 90, 1, 50),
+      cell(128, "unknown", 90, 0.5, 50, { status: "ambiguous" }),
     ];
     assert.equal(verdict({ table2B }, "known, P_w >= 0.5: worst").ok, true);
     assert.equal(verdict({ table2B }, "known, P_w >= 0.5: median").ok, false);
@@ -131,8 +172,18 @@ describe("aims", () => {
   });
 
   test("Figure 5 falls at every step, each run by itself", () => {
-    const figure5 = [12, 9, 10].map((degrees, index) => ({ size: 32, lightName: "A", shading: "pixel", fraction: index / 2, degrees, depthRmse: 1 }));
-    assert.deepEqual([verdict({ figure5 }, "largest rise").measured, verdict({ figure5 }, "largest rise").ok], [1, false]);
+    const figure5 = [12, 9, 10].map((degrees, index) => ({
+      size: 32,
+      lightName: "A",
+      shading: "pixel",
+      fraction: index / 2,
+      degrees,
+      depthRmse: 1,
+    }));
+    assert.deepEqual(
+      [verdict({ figure5 }, "largest rise").measured, verdict({ figure5 }, "largest rise").ok],
+      [1, false],
+    );
   });
 
   test("are printed with their verdicts", () => {
@@ -147,6 +198,8 @@ describe("aims", () => {
 test("missing keys are named", () => {
   const json = Object.fromEntries(TABLES.map(({ name }) => [name, name === "random" ? {} : []]));
   const missing = missingKeys(json, { realPairs: false });
-  assert.ok(missing.includes("rows of table1") && missing.includes("random.found") && !missing.includes("rows of table3"));
+  assert.ok(
+    missing.includes("rows of table1") && missing.includes("random.found") && !missing.includes("rows of table3"),
+  );
   assert.ok(missingKeys(json, { realPairs: true }).includes("rows of table3"));
 });

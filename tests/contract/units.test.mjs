@@ -56,7 +56,13 @@ test("relief a tenth as deep as it is", LONG, () => {
 // What TUM's scale of 5000 makes of millimetres, what half of the resolution does, a raw number taken for another one: about half of
 // such pairs ended "converged", 4 to 25 degrees off, while nothing but ten times and a tenth was tried.
 // Three times is not told of this pair at 64 pixels: 0.3 times as deep leaves 0.58 of what residuals have in common, as 1/3 is no step.
-for (const [unit, size, factor] of [[5, 64, "0.20"], [3, 96, "0.30"], [2, 64, "0.50"], [1.5, 64, "0.70"], [0.5, 64, "2.0"]]) {
+for (const [unit, size, factor] of [
+  [5, 64, "0.20"],
+  [3, 96, "0.30"],
+  [2, 64, "0.50"],
+  [1.5, 64, "0.70"],
+  [0.5, 64, "2.0"],
+]) {
   test(`relief ${unit} times as deep as it is, which no power of ten is`, () => {
     const made = pair({ surface: "bust", light: "window", size, angles: { beta: 20 }, noise: 0.01 });
     const wrong = found(made, unit);
@@ -68,7 +74,11 @@ for (const [unit, size, factor] of [[5, 64, "0.20"], [3, 96, "0.30"], [2, 64, "0
 
 // What they leave is no noise but the error of normals of few pixels, and half or twice the relief leaves up to a fifth less of it.
 test("the right relief of a view of 48 pixels without noise is doubted by no other unit", () => {
-  for (const [light, beta] of [["colourful", 0], ["window", 10], ["overcast", 0]]) {
+  for (const [light, beta] of [
+    ["colourful", 0],
+    ["window", 10],
+    ["overcast", 0],
+  ]) {
     const made = pair({ surface: "bust", light, size: 48, angles: { beta }, noise: 0 });
     const right = found(made, 1);
     assert.ok(apart(right.pose, made.pose) < 2);

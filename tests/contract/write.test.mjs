@@ -4,8 +4,29 @@ import { readFileSync } from "node:fs";
 import { before, describe, test } from "node:test";
 import { decode } from "fast-png";
 import { decodeDepth } from "../../pkg/files.js";
-import { BimodalError as WriteError, depthPng, lightCsv, matrixText, normalsPng, poseJson, runReportHtml, writeClouds, writeNpy, writePng } from "../../pkg/write.js";
-import { CLOUDS, DEPTH, FAR, FOLDER, LIGHT, NORMALS, PIXELS, POSE, files } from "../../scripts/reference/run-written.mjs";
+import {
+  BimodalError as WriteError,
+  depthPng,
+  lightCsv,
+  matrixText,
+  normalsPng,
+  poseJson,
+  runReportHtml,
+  writeClouds,
+  writeNpy,
+  writePng,
+} from "../../pkg/write.js";
+import {
+  CLOUDS,
+  DEPTH,
+  FAR,
+  FOLDER,
+  LIGHT,
+  NORMALS,
+  PIXELS,
+  POSE,
+  files,
+} from "../../scripts/reference/run-written.mjs";
 import { inRoot } from "../../scripts/shell.mjs";
 import { harmless } from "./harmless.mjs";
 import { BimodalError, estimator, init, pair, refused } from "./support.mjs";
@@ -16,8 +37,17 @@ const named = (value) => (Number.isFinite(value) ? value : { NaN: "nan", Infinit
 
 /** Checks that a promise is refused with this code, this field and such words. */
 async function rejected(promise, code, field, words = /./) {
-  const error = await promise.then(() => undefined, (reason) => reason);
-  refused(() => { throw error; }, code, field);
+  const error = await promise.then(
+    () => undefined,
+    (reason) => reason,
+  );
+  refused(
+    () => {
+      throw error;
+    },
+    code,
+    field,
+  );
   assert.match(error.message, words);
 }
 
@@ -37,7 +67,12 @@ describe("what others read is what was written", () => {
   test("the pose, by numpy and as JSON", () => {
     const [a, b, c, d, e, f, g, h, i] = POSE.rotation.map((value) => POSE.scale * value);
     const [x, y, z] = POSE.translation;
-    assert.deepEqual(read.pose.matrix, [[a, b, c, x], [d, e, f, y], [g, h, i, z], [0, 0, 0, 1]]);
+    assert.deepEqual(read.pose.matrix, [
+      [a, b, c, x],
+      [d, e, f, y],
+      [g, h, i, z],
+      [0, 0, 0, 1],
+    ]);
     assert.equal(read.pose.unit, "m");
     // A point that Open3D has moved by it.
     const [px, py, pz] = [0.1, -0.2, 0.7];
@@ -47,10 +82,27 @@ describe("what others read is what was written", () => {
 
   test("the pose with how far it is to be trusted, where a report says so", () => {
     const plain = JSON.parse(poseJson(POSE, "px"));
-    const uncertainty = { rotationDegrees: [0.1, 0.2, 0.3], translation: [0.4, 0.5, null], scale: null, weakest: "translation along y" };
-    const { about, ...told } = JSON.parse(poseJson(POSE, "px", { status: "ambiguous", message: "another pose explains the colours as well", uncertainty, iteration: 7 }));
+    const uncertainty = {
+      rotationDegrees: [0.1, 0.2, 0.3],
+      translation: [0.4, 0.5, null],
+      scale: null,
+      weakest: "translation along y",
+    };
+    const { about, ...told } = JSON.parse(
+      poseJson(POSE, "px", {
+        status: "ambiguous",
+        message: "another pose explains the colours as well",
+        uncertainty,
+        iteration: 7,
+      }),
+    );
     const { about: before, ...kept } = plain;
-    assert.deepEqual(told, { ...kept, status: "ambiguous", message: "another pose explains the colours as well", uncertainty });
+    assert.deepEqual(told, {
+      ...kept,
+      status: "ambiguous",
+      message: "another pose explains the colours as well",
+      uncertainty,
+    });
     assert.ok(about.startsWith(before));
     assert.match(about, /null where the views cannot see/);
     // A run that is not over has a status alone.
@@ -58,7 +110,14 @@ describe("what others read is what was written", () => {
   });
 
   test("the pose alone, whatever else an object holds", () => {
-    const mine = { ...POSE, rotation: Float64Array.from(POSE.rotation), unit: "furlong", about: "mine", matrix: 3, toJSON: () => "gone" };
+    const mine = {
+      ...POSE,
+      rotation: Float64Array.from(POSE.rotation),
+      unit: "furlong",
+      about: "mine",
+      matrix: 3,
+      toJSON: () => "gone",
+    };
     mine.self = mine;
     assert.equal(poseJson(mine, "m"), poseJson(POSE, "m"));
   });
@@ -69,8 +128,14 @@ describe("what others read is what was written", () => {
     for (const unit of ["metres", "pixels"]) {
       const { points, colours, labels, comments } = read[`clouds-${unit}.ply`];
       const there = CLOUDS.map(({ points }) => [...points].map((_, i) => Number.isFinite(points[i - (i % 3)])));
-      assert.deepEqual(points, CLOUDS.flatMap(({ points }, k) => [...points].filter((_, i) => there[k][i])));
-      assert.deepEqual(colours, CLOUDS.flatMap(({ colours }, k) => [...colours].filter((_, i) => there[k][i])));
+      assert.deepEqual(
+        points,
+        CLOUDS.flatMap(({ points }, k) => [...points].filter((_, i) => there[k][i])),
+      );
+      assert.deepEqual(
+        colours,
+        CLOUDS.flatMap(({ colours }, k) => [...colours].filter((_, i) => there[k][i])),
+      );
       assert.deepEqual(labels, [0, 0, 1]);
       assert.equal(comments[0], `comment ${unit}; x right, y down, z forward`);
     }
@@ -82,7 +147,11 @@ describe("what others read is what was written", () => {
     assert.deepEqual(read["levels.npy"], { shape: [5, 7], type: "uint16", values: [...DEPTH].map((_, i) => 1871 * i) });
   });
 
-  for (const [name, depth, step, unit] of [["depth", DEPTH, 0.0001, "0.1 mm"], ["depth-far", FAR, 0.001, "1 mm"], ["depth-pixels", PIXELS, 0.01, "0.01 px"]]) {
+  for (const [name, depth, step, unit] of [
+    ["depth", DEPTH, 0.0001, "0.1 mm"],
+    ["depth-far", FAR, 0.001, "1 mm"],
+    ["depth-pixels", PIXELS, 0.01, "0.01 px"],
+  ]) {
     test(`${name}, 16 bits in steps of ${unit}, by OpenCV and Pillow`, () => {
       const { shape, type, values, texts } = read[`${name}.png`];
       assert.deepEqual([shape, type], [[5, 7], "uint16"]);
@@ -105,7 +174,11 @@ describe("what others read is what was written", () => {
     });
   });
 
-  test("8 bits of grey", () => assert.deepEqual(read["grey.png"].values, [...DEPTH].map((_, i) => 7 * i)));
+  test("8 bits of grey", () =>
+    assert.deepEqual(
+      read["grey.png"].values,
+      [...DEPTH].map((_, i) => 7 * i),
+    ));
 });
 
 test("depths come back by our own readers", async () => {
@@ -136,18 +209,32 @@ describe("depths in 16 bits", () => {
   });
 
   test("below zero a view without a camera has depths, which are refused by name; behind a camera there is none", async () => {
-    await rejected(depthPng(row(NaN, 5, -2.5, -3), "px"), "range", "depth.data[2]", /-2.5 px would be a hole; shift the depths.*writeNpy/);
+    await rejected(
+      depthPng(row(NaN, 5, -2.5, -3), "px"),
+      "range",
+      "depth.data[2]",
+      /-2.5 px would be a hole; shift the depths.*writeNpy/,
+    );
     assert.deepEqual(await stored(row(5, -2.5, -Infinity), "m"), [0.0001, 50000, 0, 0]);
     const { image, depth, light } = pair();
     const run = estimator({}, { image, depth, light });
     run.step();
     const { width, height } = image;
     const data = run.imageDepth();
-    await rejected(depthPng({ width, height, data }, "px"), "range", `depth.data[${data.findIndex((value) => value < 0)}]`);
+    await rejected(
+      depthPng({ width, height, data }, "px"),
+      "range",
+      `depth.data[${data.findIndex((value) => value < 0)}]`,
+    );
     // The page's: refined depths lie where the depth map's are.
     const refined = run.refinedDepth();
-    const back = decodeDepth((await depthPng({ width: depth.width, height: depth.height, data: refined }, "px")).bytes).data;
-    assert.deepEqual([...back].map((value) => value > 0), [...refined].map((value) => Number.isFinite(value)));
+    const back = decodeDepth(
+      (await depthPng({ width: depth.width, height: depth.height, data: refined }, "px")).bytes,
+    ).data;
+    assert.deepEqual(
+      [...back].map((value) => value > 0),
+      [...refined].map((value) => Number.isFinite(value)),
+    );
     run.free();
   });
 });
@@ -166,8 +253,13 @@ test("what does not fit is refused by its name", async () => {
   for (const clouds of [undefined, {}]) refused(() => writeClouds(clouds), "type", "clouds");
   for (const cloud of [null, {}]) refused(() => writeClouds([cloud]), "type", "clouds[0].points");
   refused(() => writeClouds(new Array(2)), "type", "clouds[0].points");
-  for (const colours of [null, [9, 9, 9], new Float32Array([NaN, 300, -5])]) refused(() => writeClouds([{ points: new Float32Array(3), colours }]), "size", "clouds[0].colours");
-  assert.ok(!new TextDecoder("latin1").decode(writeClouds([{ points: new Float32Array(3) }], "m\nend_header")).includes("\nend_header;"));
+  for (const colours of [null, [9, 9, 9], new Float32Array([NaN, 300, -5])])
+    refused(() => writeClouds([{ points: new Float32Array(3), colours }]), "size", "clouds[0].colours");
+  assert.ok(
+    !new TextDecoder("latin1")
+      .decode(writeClouds([{ points: new Float32Array(3) }], "m\nend_header"))
+      .includes("\nend_header;"),
+  );
   refused(() => matrixText(), "type", "pose");
   refused(() => matrixText({ ...POSE, rotation: [...POSE.rotation, 1, 2, 3] }), "size", "pose.rotation");
   refused(() => matrixText({ ...POSE, translation: [1, 2, 3, 4, 5] }), "size", "pose.translation");
@@ -181,7 +273,11 @@ test("what does not fit is refused by its name", async () => {
   refused(() => writeNpy({ width: 0.5, height: 2, channels: 1, data: new Float32Array(1) }), "range", "raster.width");
   refused(() => writeNpy({ width: -1, height: -1, channels: 1, data: new Float32Array(1) }), "range", "raster.width");
   refused(() => writeNpy({ width: 1, height: 1, channels: 1, data: new Int8Array(1) }), "type", "raster.data");
-  await rejected(writePng({ width: 1, height: 1, channels: 2, data: new Uint8Array(2) }), "unsupported", "raster.channels");
+  await rejected(
+    writePng({ width: 1, height: 1, channels: 2, data: new Uint8Array(2) }),
+    "unsupported",
+    "raster.channels",
+  );
   await rejected(writePng({ width: 1, height: 1, channels: 1, data: new Float32Array(1) }), "type", "raster.data");
   const dot = { width: 1, height: 1, channels: 1, data: new Uint8Array(1) };
   await rejected(writePng(dot, null), "type", "texts");
@@ -199,28 +295,68 @@ test("doubles, such as a light's, are doubles in .npy", () => {
 });
 
 test("remarks of a PNG stay remarks, whatever they hold", async () => {
-  const bytes = await writePng({ width: 1, height: 1, channels: 1, data: new Uint8Array([9]) }, { "Na\0me": "\u202e\n\0é" });
+  const bytes = await writePng(
+    { width: 1, height: 1, channels: 1, data: new Uint8Array([9]) },
+    { "Na\0me": "\u202e\n\0é" },
+  );
   assert.deepEqual([...decode(bytes).data], [9]);
   assert.deepEqual(Object.entries(decode(bytes).text), [["Na?me", "????"]]);
 });
 
 describe("the report of a run", () => {
-  const PIXEL = "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNkYPhfDwAChwGA60e6kgAAAABJRU5ErkJggg==";
+  const PIXEL =
+    "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNkYPhfDwAChwGA60e6kgAAAABJRU5ErkJggg==";
   const EVIL = `</style></title><script>alert(1)</script><img src=x onerror=alert(2)>"'&amp;`;
   const run = (changes = {}) => ({
-    ...{ tone: "good", status: "converged, 0.12° off", words: ["The true pose was found."], pose: POSE, truth: POSE, unit: "m", light: LIGHT },
-    ...{ numbers: [["Overlap", "81 %"]], options: [["Light", "estimate"]], pictures: [{ title: "Normals", dataUrl: PIXEL }] },
-    ...{ inputs: [{ name: "a.png", says: "128x96", sha256: "ab".repeat(32) }], made: new Date(Date.UTC(2026, 1, 28, 9, 5)), link: "https://example.org/#size=64" },
+    ...{
+      tone: "good",
+      status: "converged, 0.12° off",
+      words: ["The true pose was found."],
+      pose: POSE,
+      truth: POSE,
+      unit: "m",
+      light: LIGHT,
+    },
+    ...{
+      numbers: [["Overlap", "81 %"]],
+      options: [["Light", "estimate"]],
+      pictures: [{ title: "Normals", dataUrl: PIXEL }],
+    },
+    ...{
+      inputs: [{ name: "a.png", says: "128x96", sha256: "ab".repeat(32) }],
+      made: new Date(Date.UTC(2026, 1, 28, 9, 5)),
+      link: "https://example.org/#size=64",
+    },
     ...changes,
   });
 
   test("holds verdict, pose beside the truth, light, options, files and pictures, and asks for nothing", () => {
     const page = runReportHtml(run());
     const { elements, text } = harmless(page);
-    for (const words of ["converged, 0.12° off", "The true pose was found.", "81 %", "1.2500", "17.19°", "-0.02503", "Found", "True", "estimate", "a.png", "128x96", "ab".repeat(32), "2026-02-28 09:05 UTC", "https://example.org/#size=64", matrixText(POSE), lightCsv(LIGHT)]) {
+    for (const words of [
+      "converged, 0.12° off",
+      "The true pose was found.",
+      "81 %",
+      "1.2500",
+      "17.19°",
+      "-0.02503",
+      "Found",
+      "True",
+      "estimate",
+      "a.png",
+      "128x96",
+      "ab".repeat(32),
+      "2026-02-28 09:05 UTC",
+      "https://example.org/#size=64",
+      matrixText(POSE),
+      lightCsv(LIGHT),
+    ]) {
       assert.ok(text.includes(words), words);
     }
-    assert.deepEqual(elements.filter(({ name }) => name === "img").map(({ attributes }) => attributes), [{ src: PIXEL, alt: "Normals" }]);
+    assert.deepEqual(
+      elements.filter(({ name }) => name === "img").map(({ attributes }) => attributes),
+      [{ src: PIXEL, alt: "Normals" }],
+    );
     assert.match(page, /default-src &#39;none&#39;; img-src data:/);
     assert.equal(runReportHtml(run()), page);
   });
@@ -232,7 +368,8 @@ describe("the report of a run", () => {
 
   test("names what is missing, and what is no date, word, pose or light", () => {
     const wrong = (changes, code, field) => refused(() => runReportHtml(run(changes)), code, field);
-    for (const name of ["words", "numbers", "options", "pose", "light", "status", "tone", "unit"]) wrong({ [name]: undefined }, "type", `report.${name}`);
+    for (const name of ["words", "numbers", "options", "pose", "light", "status", "tone", "unit"])
+      wrong({ [name]: undefined }, "type", `report.${name}`);
     for (const made of [5, new Date(NaN)]) wrong({ made }, "type", "report.made");
     wrong({ tone: "__proto__" }, "option", "report.tone");
     wrong({ unit: "furlong" }, "option", "report.unit");
@@ -247,10 +384,23 @@ describe("the report of a run", () => {
   });
 
   test("escapes whatever comes from elsewhere", () => {
-    const evil = run({ status: EVIL, words: [EVIL], numbers: [[EVIL, EVIL]], options: [[EVIL, EVIL]], pictures: [{ title: EVIL, dataUrl: PIXEL }], inputs: [{ name: EVIL, says: EVIL, sha256: EVIL }], title: EVIL, link: EVIL });
+    const evil = run({
+      status: EVIL,
+      words: [EVIL],
+      numbers: [[EVIL, EVIL]],
+      options: [[EVIL, EVIL]],
+      pictures: [{ title: EVIL, dataUrl: PIXEL }],
+      inputs: [{ name: EVIL, says: EVIL, sha256: EVIL }],
+      title: EVIL,
+      link: EVIL,
+    });
     const page = runReportHtml(evil);
     harmless(page);
     assert.ok(!page.includes("<script"));
-    refused(() => runReportHtml(run({ pictures: [{ title: "", dataUrl: "https://example.org/x.png" }] })), "type", "pictures[0].dataUrl");
+    refused(
+      () => runReportHtml(run({ pictures: [{ title: "", dataUrl: "https://example.org/x.png" }] })),
+      "type",
+      "pictures[0].dataUrl",
+    );
   });
 });

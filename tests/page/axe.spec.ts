@@ -10,7 +10,9 @@ import { answerChecks } from "./rig";
 const AXE = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
 
 interface Axe {
-  run(context: Document): Promise<{ violations: { id: string; help: string; nodes: { target: string[]; failureSummary: string }[] }[] }>;
+  run(
+    context: Document,
+  ): Promise<{ violations: { id: string; help: string; nodes: { target: string[]; failureSummary: string }[] }[] }>;
 }
 
 /** All rules, those of good practice included, with the places that break them. */
@@ -19,7 +21,9 @@ async function findings(page: Page): Promise<string[]> {
   await page.evaluate(AXE);
   return page.evaluate(async () => {
     const { violations } = await (window as unknown as { axe: Axe }).axe.run(document);
-    return violations.flatMap(({ id, nodes }) => nodes.map(({ target, failureSummary }) => `${id}: ${target.join(" ")}: ${failureSummary.replace(/\s+/g, " ")}`));
+    return violations.flatMap(({ id, nodes }) =>
+      nodes.map(({ target, failureSummary }) => `${id}: ${target.join(" ")}: ${failureSummary.replace(/\s+/g, " ")}`),
+    );
   });
 }
 
@@ -48,7 +52,8 @@ async function lab(lab: Lab, page: Page): Promise<void> {
   await expect(page.locator("#status")).toHaveAttribute("data-state", ENDS);
   await clean(page, "after a run");
   await lab.unfold();
-  for (const summary of await page.locator("#input details > summary").all()) if (await summary.isVisible()) await summary.click();
+  for (const summary of await page.locator("#input details > summary").all())
+    if (await summary.isVisible()) await summary.click();
   await clean(page, "settings");
   const hint = page.locator("#fields-method .hint:visible").first();
   await hint.click();
@@ -78,7 +83,9 @@ const settled = (page: Page) => expect(page.locator(".learn-figure")).toHaveAttr
 async function learn(page: Page): Promise<void> {
   await page.goto("./#learn");
   await settled(page);
-  const links = await page.locator(".learn-contents a").evaluateAll((all) => all.map((link) => link.getAttribute("href") ?? ""));
+  const links = await page
+    .locator(".learn-contents a")
+    .evaluateAll((all) => all.map((link) => link.getAttribute("href") ?? ""));
   expect(links).toHaveLength(10);
   for (const link of links) {
     await page.goto(`./${link}`);
@@ -123,7 +130,9 @@ async function rivals(lab: Lab, page: Page): Promise<void> {
 }
 
 test.use({ contextOptions: { reducedMotion: "reduce" } });
-test("the Lab before, while and after a run, with its settings and help", LONG, ({ lab: opened, page }) => lab(opened, page));
+test("the Lab before, while and after a run, with its settings and help", LONG, ({ lab: opened, page }) =>
+  lab(opened, page),
+);
 test("a Lab whose pose is lost", ({ lab: opened, page }) => poseLost(opened, page));
 test("a Lab whose pose has a rival", LONG, ({ lab: opened, page }) => rivals(opened, page));
 test("every lesson, the exercises and a slide", LONG, ({ page }) => learn(page));

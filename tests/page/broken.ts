@@ -26,8 +26,15 @@ export async function breakable(page: Page): Promise<void> {
       }
     };
     const send = Real.prototype.postMessage;
-    Real.prototype.postMessage = function (this: Worker, message: Record<string, unknown>, rest?: StructuredSerializeOptions | Transferable[]) {
-      const isMeant = armed !== undefined && Object.entries(armed.members).every(([key, value]) => String(message[key]) === value) && --armed.left < 1;
+    Real.prototype.postMessage = function (
+      this: Worker,
+      message: Record<string, unknown>,
+      rest?: StructuredSerializeOptions | Transferable[],
+    ) {
+      const isMeant =
+        armed !== undefined &&
+        Object.entries(armed.members).every(([key, value]) => String(message[key]) === value) &&
+        --armed.left < 1;
       // Checks are answered by the tests, ended workers by nobody.
       if (!isMeant || message.kind !== "check") send.call(this, message, rest as StructuredSerializeOptions);
       if (!armed || !isMeant) return;
@@ -63,14 +70,21 @@ export async function breakable(page: Page): Promise<void> {
 }
 
 export const endAt = (page: Page, members: Record<string, string>, nth = 1, times = 1): Promise<void> =>
-  page.evaluate(([members, nth, times]) => (window as unknown as Breakable).endAt(members, nth, times), [members, nth, times] as const);
+  page.evaluate(([members, nth, times]) => (window as unknown as Breakable).endAt(members, nth, times), [
+    members,
+    nth,
+    times,
+  ] as const);
 export const ended = (page: Page): Promise<number> => page.evaluate(() => (window as unknown as Breakable).ended);
-export const endAll = (page: Page, script: string): Promise<void> => page.evaluate((script) => (window as unknown as Breakable).endAll(script), script);
-export const hide = (page: Page, isHidden: boolean): Promise<void> => page.evaluate((isHidden) => (window as unknown as Breakable).hide(isHidden), isHidden);
+export const endAll = (page: Page, script: string): Promise<void> =>
+  page.evaluate((script) => (window as unknown as Breakable).endAll(script), script);
+export const hide = (page: Page, isHidden: boolean): Promise<void> =>
+  page.evaluate((isHidden) => (window as unknown as Breakable).hide(isHidden), isHidden);
 
 /** Has the n-th worker of this script hear nothing, and end by itself as soon as the page knows that it lives. To be called before the page opens. */
 export async function endSoon(page: Page, script: RegExp, nth: number): Promise<void> {
-  const end = "addEventListener('message', (event) => event.stopImmediatePropagation()); const say = self.postMessage; self.postMessage = (message, ...rest) => { say.call(self, message, ...rest); if (message?.holds) self.close(); };";
+  const end =
+    "addEventListener('message', (event) => event.stopImmediatePropagation()); const say = self.postMessage; self.postMessage = (message, ...rest) => { say.call(self, message, ...rest); if (message?.holds) self.close(); };";
   let count = 0;
   await page.route(script, async (route) => {
     const response = await route.fetch();
@@ -102,4 +116,5 @@ export async function fragileGraphics(page: Page): Promise<void> {
   });
 }
 
-export const graphics = (page: Page, what: "lose" | "restore"): Promise<void> => page.evaluate((what) => new BroadcastChannel("graphics of tests").postMessage(what), what);
+export const graphics = (page: Page, what: "lose" | "restore"): Promise<void> =>
+  page.evaluate((what) => new BroadcastChannel("graphics of tests").postMessage(what), what);

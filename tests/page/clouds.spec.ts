@@ -9,7 +9,9 @@ function drawnIn({ data, channels, width }: DecodedPng, row: number): number {
   const at = (column: number, row: number) => [0, 1, 2].map((c) => data[(row * width + column) * channels + c] ?? 0);
   const ground = at(width - 8, 8);
   // Corners are rounded.
-  return Array.from({ length: width - 16 }, (_, i) => at(i + 8, row)).filter((colour) => colour.some((value, c) => Math.abs(value - (ground[c] ?? 0)) > 24)).length;
+  return Array.from({ length: width - 16 }, (_, i) => at(i + 8, row)).filter((colour) =>
+    colour.some((value, c) => Math.abs(value - (ground[c] ?? 0)) > 24),
+  ).length;
 }
 
 /** Longest wait, milliseconds, of one attempt of several. */
@@ -21,7 +23,10 @@ const NO_WEBGL = `
     prototype.getContext = function (kind, ...rest) { return kind.startsWith("webgl") ? null : original.call(this, kind, ...rest); };
   }`;
 
-for (const [where, script] of [["in a thread", ""], ["on the page where threads have no canvas", NO_OFFSCREEN]] as const) {
+for (const [where, script] of [
+  ["in a thread", ""],
+  ["on the page where threads have no canvas", NO_OFFSCREEN],
+] as const) {
   test(`the clouds are drawn ${where}, and turn with the arrow keys`, async ({ lab, page }) => {
     await page.addInitScript(script);
     const threads = () => page.workers().filter((worker) => worker.url().includes("stage-thread")).length;
@@ -107,7 +112,9 @@ test("no surface is cut off, whatever scale is found", LONG, async ({ lab, page 
   // A surface that reaches the upper or lower edge goes on beyond it.
   await expect(async () => {
     const canvas = decode(await page.locator("#clouds-canvas").screenshot());
-    const [top, middle, bottom] = [1, Math.round(canvas.height / 2), canvas.height - 2].map((row) => drawnIn(canvas, row));
+    const [top, middle, bottom] = [1, Math.round(canvas.height / 2), canvas.height - 2].map((row) =>
+      drawnIn(canvas, row),
+    );
     expect(middle).toBeGreaterThan(20);
     expect([top, bottom]).toEqual([0, 0]);
   }).toPass();
@@ -173,12 +180,20 @@ test("surfaces and points, and the colours on them, are a choice", async ({ lab,
   const clouds = page.locator("#clouds-canvas");
   await expect(page.locator("#clouds-note")).toBeHidden();
   const seen: Buffer[] = [];
-  for (const [name, value] of [["Drawn as", "points"], ["Drawn as", "surfaces"], ["Coloured by", "picture"], ["Coloured by", "normals"], ["Coloured by", "residual"]] as const) {
+  for (const [name, value] of [
+    ["Drawn as", "points"],
+    ["Drawn as", "surfaces"],
+    ["Coloured by", "picture"],
+    ["Coloured by", "normals"],
+    ["Coloured by", "residual"],
+  ] as const) {
     await page.getByLabel(name).selectOption(value);
-    await expect.poll(async () => {
-      const now = await clouds.screenshot();
-      return seen.some((before) => before.equals(now));
-    }).toBe(false);
+    await expect
+      .poll(async () => {
+        const now = await clouds.screenshot();
+        return seen.some((before) => before.equals(now));
+      })
+      .toBe(false);
     seen.push(await clouds.screenshot());
   }
 });

@@ -11,7 +11,9 @@ const TARGET = 43.5;
 /** Controls that are smaller; links within a sentence are as high as its line, and a box to be ticked is hit by its label. */
 const small = (page: Page): Promise<string[]> =>
   page.evaluate((least) => {
-    const controls = [...document.querySelectorAll<HTMLElement>("a[href], button, select, summary, input, [tabindex='0']")];
+    const controls = [
+      ...document.querySelectorAll<HTMLElement>("a[href], button, select, summary, input, [tabindex='0']"),
+    ];
     return controls.flatMap((control) => {
       const isBox = control.matches("[type=checkbox], [type=radio], [type=file]");
       const target = (isBox && (control as HTMLInputElement).labels?.[0]) || control;
@@ -19,7 +21,9 @@ const small = (page: Page): Promise<string[]> =>
       const isSeen = control.checkVisibility({ visibilityProperty: true }) && width > 0 && !control.matches(".skip");
       const isInSentence = control.matches("p a, li a") && getComputedStyle(control).display === "inline";
       if (!isSeen || isInSentence || (width >= least && height >= least)) return [];
-      return [`${control.tagName} ${control.id || control.className} ${control.textContent?.trim()}: ${Math.round(width)}x${Math.round(height)}`];
+      return [
+        `${control.tagName} ${control.id || control.className} ${control.textContent?.trim()}: ${Math.round(width)}x${Math.round(height)}`,
+      ];
     });
   }, TARGET);
 
@@ -31,7 +35,8 @@ test.describe("by touch", () => {
     expect(await page.evaluate(() => matchMedia("(pointer: coarse)").matches)).toBe(true);
     expect(await small(page), "the Lab").toEqual([]);
     await page.locator("#input > summary").tap();
-    for (const summary of await page.locator("#input details > summary").all()) if (await summary.isVisible()) await summary.tap();
+    for (const summary of await page.locator("#input details > summary").all())
+      if (await summary.isVisible()) await summary.tap();
     expect(await small(page), "settings").toEqual([]);
     // They lie over the button that has opened them.
     await page.getByRole("button", { name: "Close settings" }).tap();
@@ -56,7 +61,9 @@ test.describe("by touch", () => {
     await expect(page.locator("#to-rig")).toHaveAttribute("aria-current", "page");
     await page.goBack();
     await expect(page.locator("#to-tables")).toHaveAttribute("aria-current", "page");
-    const marked = await page.locator(".top nav a").evaluateAll((links) => links.filter((link) => getComputedStyle(link).boxShadow !== "none").map(({ id }) => id));
+    const marked = await page
+      .locator(".top nav a")
+      .evaluateAll((links) => links.filter((link) => getComputedStyle(link).boxShadow !== "none").map(({ id }) => id));
     expect(marked).toEqual(["to-tables"]);
   });
 
@@ -71,7 +78,9 @@ test.describe("by touch", () => {
     await page.getByRole("button", { name: "Run the check" }).tap();
     await expect(page.locator(".rig-bar").first()).toBeVisible();
     // Its picture comes a little later.
-    await expect.poll(() => page.locator(".rig-overlay-board").evaluate(({ clientHeight }) => clientHeight)).toBeGreaterThan(TARGET);
+    await expect
+      .poll(() => page.locator(".rig-overlay-board").evaluate(({ clientHeight }) => clientHeight))
+      .toBeGreaterThan(TARGET);
     expect(await small(page), "verdict").toEqual([]);
   });
 });
@@ -88,7 +97,10 @@ test("single keys are switched off for good, where that is asked for", async ({ 
   await expect(page.getByLabel("Single keys are on")).not.toBeChecked();
 });
 
-test("the tab key goes through the page as it is used: places, examples, settings, inputs, surfaces, outcome, numbers, player", async ({ lab, page }) => {
+test("the tab key goes through the page as it is used: places, examples, settings, inputs, surfaces, outcome, numbers, player", async ({
+  lab,
+  page,
+}) => {
   await lab.open("size=32");
   const parts = ["#skip", ".top", ".lead", "#inputs", "#hero", "#outcome", "#views", "#numbers", "#bar"];
   const met: string[] = [];

@@ -16,12 +16,19 @@ async function play(lab: Lab): Promise<void> {
 }
 
 /** What a run has come to. */
-const end = async (lab: Lab): Promise<string[]> => [await lab.iteration.innerText(), await lab.page.locator("#pose").innerText(), await lab.page.locator("#verdict").innerText()];
+const end = async (lab: Lab): Promise<string[]> => [
+  await lab.iteration.innerText(),
+  await lab.page.locator("#pose").innerText(),
+  await lab.page.locator("#verdict").innerText(),
+];
 
 test.describe("in the Lab", () => {
   test.beforeEach(({ page }) => breakable(page));
 
-  test("a worker ended in the middle of a step: said, and the run plays again to the same numbers", async ({ lab, page }) => {
+  test("a worker ended in the middle of a step: said, and the run plays again to the same numbers", async ({
+    lab,
+    page,
+  }) => {
     await lab.open(FAST);
     await play(lab);
     await lab.reaches("converged");
@@ -40,17 +47,21 @@ test.describe("in the Lab", () => {
     await expect(alert(page)).toBeHidden();
   });
 
-  test("one that is ended each time does not go round in circles, and Play goes on once it lives", LONG, async ({ lab, page }) => {
-    await lab.open(FAST);
-    await endAt(page, { kind: "advance" }, 1, 2);
-    await play(lab);
-    await expect.poll(() => ended(page)).toBe(2);
-    await expect(page.getByRole("button", { name: "Play" })).toHaveAttribute("aria-pressed", "false");
-    await lab.reaches("error");
-    await expect(lab.iteration).toHaveText("0");
-    await play(lab);
-    await lab.reaches("converged");
-  });
+  test(
+    "one that is ended each time does not go round in circles, and Play goes on once it lives",
+    LONG,
+    async ({ lab, page }) => {
+      await lab.open(FAST);
+      await endAt(page, { kind: "advance" }, 1, 2);
+      await play(lab);
+      await expect.poll(() => ended(page)).toBe(2);
+      await expect(page.getByRole("button", { name: "Play" })).toHaveAttribute("aria-pressed", "false");
+      await lab.reaches("error");
+      await expect(lab.iteration).toHaveText("0");
+      await play(lab);
+      await lab.reaches("converged");
+    },
+  );
 
   test("one that is ended while its input is opened again leaves a Play that opens it", async ({ lab, page }) => {
     await endSoon(page, /\/worker-[^/]*\.js$/, 2);
@@ -133,34 +144,44 @@ test("in Learn: said, the values stay, and the figure is computed again", async 
   expect(lab.complaints).toEqual([]);
 });
 
-test("in the Tables: the cell says so, those after it are measured, and it can be pressed again", LONG, async ({ lab, page }) => {
-  await breakable(page);
-  // The second cell's worker is ended.
-  await page.addInitScript(() => {
-    const send = Worker.prototype.postMessage;
-    let cells = 0;
-    Worker.prototype.postMessage = function (this: Worker, message: { cell?: object }, ...rest: []) {
-      send.call(this, message, ...rest);
-      if (message.cell && ++cells === 2) this.terminate();
-    };
-  });
-  await page.goto("./#tables");
-  const cells = page.locator("#tables .heat-cell");
-  await expect(cells.nth(2)).toBeVisible();
-  // At once: on a busy machine the first cell would be done before the third is pressed. What is pressed last comes next.
-  await cells.evaluateAll((buttons) => buttons.slice(0, 3).forEach((button) => (button as HTMLButtonElement).click()));
-  await expect(cells.nth(0)).toHaveAttribute("data-value");
-  await expect(cells.nth(2)).toHaveAttribute("title", /failed: the thread that computed was ended/);
-  await expect(cells.nth(1)).toHaveAttribute("data-value");
-  await cells.nth(2).click();
-  await expect(cells.nth(2)).toHaveAttribute("data-value");
-  expect(lab.complaints).toEqual([]);
-});
+test(
+  "in the Tables: the cell says so, those after it are measured, and it can be pressed again",
+  LONG,
+  async ({ lab, page }) => {
+    await breakable(page);
+    // The second cell's worker is ended.
+    await page.addInitScript(() => {
+      const send = Worker.prototype.postMessage;
+      let cells = 0;
+      Worker.prototype.postMessage = function (this: Worker, message: { cell?: object }, ...rest: []) {
+        send.call(this, message, ...rest);
+        if (message.cell && ++cells === 2) this.terminate();
+      };
+    });
+    await page.goto("./#tables");
+    const cells = page.locator("#tables .heat-cell");
+    await expect(cells.nth(2)).toBeVisible();
+    // At once: on a busy machine the first cell would be done before the third is pressed. What is pressed last comes next.
+    await cells.evaluateAll((buttons) =>
+      buttons.slice(0, 3).forEach((button) => (button as HTMLButtonElement).click()),
+    );
+    await expect(cells.nth(0)).toHaveAttribute("data-value");
+    await expect(cells.nth(2)).toHaveAttribute("title", /failed: the thread that computed was ended/);
+    await expect(cells.nth(1)).toHaveAttribute("data-value");
+    await cells.nth(2).click();
+    await expect(cells.nth(2)).toHaveAttribute("data-value");
+    expect(lab.complaints).toEqual([]);
+  },
+);
 
 test.describe("in Check a rig", () => {
-  const put = (page: Page, files: ReturnType<typeof pair>) => page.locator("#rig input[type=file]:not([webkitdirectory])").first().setInputFiles(files);
+  const put = (page: Page, files: ReturnType<typeof pair>) =>
+    page.locator("#rig input[type=file]:not([webkitdirectory])").first().setInputFiles(files);
 
-  test("a worker ended in the middle of a check: said, the files stay, and the check runs again", async ({ lab, page }) => {
+  test("a worker ended in the middle of a check: said, the files stay, and the check runs again", async ({
+    lab,
+    page,
+  }) => {
     await answerChecks(page, "off");
     await breakable(page);
     await page.goto("./#rig");
@@ -169,7 +190,9 @@ test.describe("in Check a rig", () => {
     await endAt(page, { kind: "check" });
     const run = page.getByRole("button", { name: /^(Run the check|Estimate a calibration)$/ });
     await run.first().click();
-    await expect(page.locator("#rig").getByRole("alert")).toContainText("The check could not be done: the thread that computed was ended");
+    await expect(page.locator("#rig").getByRole("alert")).toContainText(
+      "The check could not be done: the thread that computed was ended",
+    );
     await page.getByRole("button", { name: "Run the check" }).click();
     await expect(page.locator(".rig-bar").first()).toBeVisible();
     expect(lab.complaints).toEqual([]);

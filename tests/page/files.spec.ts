@@ -24,14 +24,20 @@ interface Upload {
 function colourPng(): Upload {
   const linear = pair.image.data as Float32Array;
   const brightest = linear.reduce((most, value) => (Number.isFinite(value) ? Math.max(most, value) : most), 0);
-  const data = Uint16Array.from(linear, (value) => (Number.isFinite(value) ? Math.round((60_000 * value) / brightest) : 0));
+  const data = Uint16Array.from(linear, (value) =>
+    Number.isFinite(value) ? Math.round((60_000 * value) / brightest) : 0,
+  );
   const png = encode({ width: size, height: size, data, depth: 16, channels: 3 });
   return { name: "colour.png", mimeType: "image/png", buffer: Buffer.from(png) };
 }
 
 function maskPng(mask: Uint8Array | undefined, name: string): Upload {
   const data = Uint8Array.from({ length: size * size }, (_, i) => (mask === undefined || mask[i] ? 255 : 0));
-  return { name, mimeType: "image/png", buffer: Buffer.from(encode({ width: size, height: size, data, depth: 8, channels: 1 })) };
+  return {
+    name,
+    mimeType: "image/png",
+    buffer: Buffer.from(encode({ width: size, height: size, data, depth: 8, channels: 1 })),
+  };
 }
 
 /** Depth in hundredths of a pixel. */
@@ -46,7 +52,11 @@ function depthNpy(): Upload {
   const padded = `${header.padEnd(Math.ceil((header.length + 11) / 64) * 64 + 53, " ")}\n`;
   const lead = Buffer.from([0x93, 0x4e, 0x55, 0x4d, 0x50, 0x59, 1, 0, padded.length & 255, padded.length >> 8]);
   const data = pair.depth.data as Float32Array;
-  return { name: "depth.npy", mimeType: "application/octet-stream", buffer: Buffer.concat([lead, Buffer.from(padded), Buffer.from(data.buffer, data.byteOffset, data.byteLength)]) };
+  return {
+    name: "depth.npy",
+    mimeType: "application/octet-stream",
+    buffer: Buffer.concat([lead, Buffer.from(padded), Buffer.from(data.buffer, data.byteOffset, data.byteLength)]),
+  };
 }
 
 async function put(lab: Lab, slot: string, file: Upload): Promise<void> {
@@ -86,7 +96,11 @@ test("a colour and a depth PNG of 16 bits run to convergence", async ({ lab, pag
   await lab.reaches("ready");
   await put(lab, "Colour mask", maskPng(pair.image.mask, "mask.png"));
   await lab.reaches("ready");
-  await page.locator("#fields-method").getByLabel("Light", { exact: true }).filter({ visible: true }).fill([...pair.light].join(" "));
+  await page
+    .locator("#fields-method")
+    .getByLabel("Light", { exact: true })
+    .filter({ visible: true })
+    .fill([...pair.light].join(" "));
   await page.keyboard.press("Enter");
   await expect(page.getByText("guessed: linear")).toBeAttached();
   await page.getByLabel("Speed").selectOption({ label: "fastest" });
@@ -116,17 +130,29 @@ test("bad files are named in words, and another pair is not shown for them", asy
   await page.getByRole("button", { name: "Own files" }).click();
   const whole = colourPng();
   await put(lab, "Depth map", depthNpy());
-  await put(lab, "Colour image", { ...whole, name: "cut.png", buffer: whole.buffer.subarray(0, whole.buffer.length / 2) });
+  await put(lab, "Colour image", {
+    ...whole,
+    name: "cut.png",
+    buffer: whole.buffer.subarray(0, whole.buffer.length / 2),
+  });
   await lab.reaches("error");
   await expect(page.locator(".slot").first()).toContainText("cut.png: this PNG is cut off or damaged");
 
-  await put(lab, "Colour image", { name: "notes.txt", mimeType: "text/plain", buffer: Buffer.from("a list of things") });
+  await put(lab, "Colour image", {
+    name: "notes.txt",
+    mimeType: "text/plain",
+    buffer: Buffer.from("a list of things"),
+  });
   await expect(page.locator(".slot").first()).toContainText("notes.txt");
   await lab.reaches("error");
 
   await put(lab, "Colour image", whole);
   await lab.reaches("ready");
-  await put(lab, "Depth map", { name: "depth.npy", mimeType: "application/octet-stream", buffer: Buffer.from("also no array") });
+  await put(lab, "Depth map", {
+    name: "depth.npy",
+    mimeType: "application/octet-stream",
+    buffer: Buffer.from("also no array"),
+  });
   await lab.reaches("error");
   await expect(page.locator(".slot").nth(1)).toContainText("depth.npy");
 
@@ -165,7 +191,10 @@ test("on a phone a refused field is unfolded", async ({ lab, page }) => {
 });
 
 test("empty angles of a sample are zero, all of them as well as one", async ({ lab, page }) => {
-  for (const [settings, beta] of [["beta=20&alpha=&gamma=", "20.00"], ["alpha=&beta=&gamma=", "0.00"]] as const) {
+  for (const [settings, beta] of [
+    ["beta=20&alpha=&gamma=", "20.00"],
+    ["alpha=&beta=&gamma=", "0.00"],
+  ] as const) {
     await page.goto("about:blank");
     await lab.open(settings);
     await expect(page.locator("#pose tr", { hasText: "β" }).locator("td").nth(1)).toHaveText(beta);
@@ -174,7 +203,10 @@ test("empty angles of a sample are zero, all of them as well as one", async ({ l
 
 /** A JPEG as a phone held upright writes it: the sensor's landscape, and a tag that says which way is up. */
 function phonePhoto(jpeg: Buffer): Upload {
-  const exif = Buffer.from("457869660000" + "49492a0008000000" + "0100" + "120103000100000006000000" + "00000000", "hex");
+  const exif = Buffer.from(
+    "457869660000" + "49492a0008000000" + "0100" + "120103000100000006000000" + "00000000",
+    "hex",
+  );
   const length = Buffer.alloc(2);
   length.writeUInt16BE(exif.length + 2);
   const buffer = Buffer.concat([jpeg.subarray(0, 2), Buffer.from([0xff, 0xe1]), length, exif, jpeg.subarray(2)]);
@@ -194,11 +226,14 @@ test("a phone's photo is turned upright, and a dropped file is taken", LONG, asy
   });
   await put(lab, "Depth map", depthNpy());
   const photo = phonePhoto(Buffer.from(landscape));
-  const carried = await page.evaluateHandle((bytes) => {
-    const transfer = new DataTransfer();
-    transfer.items.add(new File([new Uint8Array(bytes)], "phone.jpg", { type: "image/jpeg" }));
-    return transfer;
-  }, [...photo.buffer]);
+  const carried = await page.evaluateHandle(
+    (bytes) => {
+      const transfer = new DataTransfer();
+      transfer.items.add(new File([new Uint8Array(bytes)], "phone.jpg", { type: "image/jpeg" }));
+      return transfer;
+    },
+    [...photo.buffer],
+  );
   await page.locator(".drop").first().dispatchEvent("drop", { dataTransfer: carried });
   await expect(page.locator(".slot").first()).toContainText("phone.jpg");
   await lab.reaches("ready");
@@ -210,7 +245,11 @@ test("a picture that is too large is scaled down with its camera, and says so", 
   const [width, height] = [4104, 16];
   const data = Uint8Array.from({ length: 3 * width * height }, (_, i) => 60 + ((i * 7) % 150));
   await put(lab, "Depth map", depthNpy());
-  await put(lab, "Colour image", { name: "wide.png", mimeType: "image/png", buffer: Buffer.from(encode({ width, height, data, channels: 3, depth: 8 })) });
+  await put(lab, "Colour image", {
+    name: "wide.png",
+    mimeType: "image/png",
+    buffer: Buffer.from(encode({ width, height, data, channels: 3, depth: 8 })),
+  });
   await expect(page.locator(".slot").first()).toContainText("scaled down by 2");
   await lab.reaches("ready");
 });
@@ -229,10 +268,17 @@ test("a camera waits for its four numbers, and its distortion must be five", asy
   await type("fx", "100");
   await expect(page.locator("#status")).toHaveText("colour camera: waiting for fy, cx, cy");
   await expect(page.locator("#verdict")).toContainText("leave all of that camera's numbers empty");
-  for (const [name, value] of [["fy", "100"], ["cx", "31.5"], ["cy", "31.5"]] as const) await type(name, value);
+  for (const [name, value] of [
+    ["fy", "100"],
+    ["cx", "31.5"],
+    ["cy", "31.5"],
+  ] as const)
+    await type(name, value);
   await lab.reaches("ready");
   await type("distortion", "0.1 0 0");
-  await expect(fields.locator(".field", { has: page.getByLabel("distortion", { exact: true }) })).toContainText("needs 5 numbers, not 3");
+  await expect(fields.locator(".field", { has: page.getByLabel("distortion", { exact: true }) })).toContainText(
+    "needs 5 numbers, not 3",
+  );
   await type("distortion", "0.1 0 0 0 0");
   await lab.reaches("ready");
 });

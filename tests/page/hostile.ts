@@ -45,19 +45,54 @@ export function withTexts({ buffer, ...file }: Upload): Upload {
   return { ...file, buffer: Buffer.concat([buffer.subarray(0, 33), ...texts, buffer.subarray(33)]) };
 }
 
-const text = (name: string, words: string): Upload => ({ name: `${EVIL}${name}`, mimeType: "text/plain", buffer: Buffer.from(words) });
+const text = (name: string, words: string): Upload => ({
+  name: `${EVIL}${name}`,
+  mimeType: "text/plain",
+  buffer: Buffer.from(words),
+});
 
 /** Cameras and poses whose names, models and frames are markup, and texts that are refused with words of their own in the reason. */
 export const texts = (): Upload[] => [
-  text(".json", JSON.stringify({ camera_name: EVIL_TEXT, width: 48, height: 48, fx: 61, fy: 62, cx: 23.5, cy: 23.25, [EVIL_TEXT]: EVIL_TEXT })),
+  text(
+    ".json",
+    JSON.stringify({
+      camera_name: EVIL_TEXT,
+      width: 48,
+      height: 48,
+      fx: 61,
+      fy: 62,
+      cx: 23.5,
+      cy: 23.25,
+      [EVIL_TEXT]: EVIL_TEXT,
+    }),
+  ),
   text("k.yaml", `"${EVIL}":\n  camera_model: "${EVIL.replaceAll('"', "")}"\n  intrinsics: [1, 2, 3, 4]\n`),
-  text("pose.json", JSON.stringify({ parent_frame: EVIL_TEXT, child_frame: EVIL_TEXT, name: EVIL_TEXT, R: [[1, 0, 0], [0, 1, 0], [0, 0, 1]], t: [0.05, 0, 0] })),
-  text("tf.yaml", `header: {frame_id: '${EVIL.replaceAll("'", "")}'}\nchild_frame_id: '${EVIL}'\ntransform:\n  translation: {x: 0.05, y: 0, z: 0}\n  rotation: {x: 0, y: 0, z: 0, w: 1}\n`),
+  text(
+    "pose.json",
+    JSON.stringify({
+      parent_frame: EVIL_TEXT,
+      child_frame: EVIL_TEXT,
+      name: EVIL_TEXT,
+      R: [
+        [1, 0, 0],
+        [0, 1, 0],
+        [0, 0, 1],
+      ],
+      t: [0.05, 0, 0],
+    }),
+  ),
+  text(
+    "tf.yaml",
+    `header: {frame_id: '${EVIL.replaceAll("'", "")}'}\nchild_frame_id: '${EVIL}'\ntransform:\n  translation: {x: 0.05, y: 0, z: 0}\n  rotation: {x: 0, y: 0, z: 0, w: 1}\n`,
+  ),
   text("a.xml", `<opencv_storage><${"b".repeat(9)} type_id="${EVIL.replaceAll('"', "")}">1</c></opencv_storage>`),
   text("a.txt", EVIL_TEXT),
 ];
 
-export const pictures = (): Upload[] => [withTexts(colourPng(`${EVIL}colour.png`)), withTexts(depthPng(`${EVIL}depth.png`))];
+export const pictures = (): Upload[] => [
+  withTexts(colourPng(`${EVIL}colour.png`)),
+  withTexts(depthPng(`${EVIL}depth.png`)),
+];
 
 /** Nothing of it has become an element, or has run. */
 export async function expectHarmless(page: Page): Promise<void> {

@@ -34,7 +34,8 @@ export class Lab {
 
   /** Unfolds the settings, which lie over the left of the page. */
   async unfold(): Promise<void> {
-    if (!(await this.page.locator("#input").evaluate((drawer: HTMLDetailsElement) => drawer.open))) await this.page.locator("#input > summary").click();
+    if (!(await this.page.locator("#input").evaluate((drawer: HTMLDetailsElement) => drawer.open)))
+      await this.page.locator("#input > summary").click();
   }
 
   async reaches(state: string): Promise<void> {
@@ -48,7 +49,8 @@ export class Lab {
   /** A hash of a canvas' pixels: enough to see that something was drawn. */
   fingerprint(label: string): Promise<number> {
     return this.page.locator(`canvas[aria-label^="${label}:"]`).evaluate((canvas: HTMLCanvasElement) => {
-      const data = canvas.getContext("2d")?.getImageData(0, 0, canvas.width, canvas.height).data ?? new Uint8ClampedArray();
+      const data =
+        canvas.getContext("2d")?.getImageData(0, 0, canvas.width, canvas.height).data ?? new Uint8ClampedArray();
       return data.reduce((sum, value) => (sum * 31 + value) % 1_000_003, 7);
     });
   }

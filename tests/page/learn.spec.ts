@@ -8,31 +8,53 @@ import { atWidths, innerWidth, narrowest } from "./widths";
 
 function fingerprint(page: Page, panel: string): Promise<number> {
   return page.locator(`[data-panel="${panel}"] canvas`).evaluate((canvas: HTMLCanvasElement) => {
-    const data = canvas.getContext("2d")?.getImageData(0, 0, canvas.width, canvas.height).data ?? new Uint8ClampedArray();
+    const data =
+      canvas.getContext("2d")?.getImageData(0, 0, canvas.width, canvas.height).data ?? new Uint8ClampedArray();
     return data.reduce((sum, value) => (sum * 31 + value) % 1_000_003, 7);
   });
 }
 
-test("each lesson says where its method is written down, names its controls and pictures, and fits from 320 to 2560 px", LONG, async ({ page }) => {
-  const method = await readFile(new URL("../../docs/method.md", import.meta.url), "utf8");
-  const anchors = [...method.matchAll(/^## (.+)$/gm)].map(([, heading = ""]) => heading.toLowerCase().replace(/[^\w\s-]/g, "").replace(/\s/g, "-"));
-  const papers: string[] = [];
-  await page.setViewportSize(narrowest);
-  for (const id of LESSONS) {
-    await open(page, `at=${id}`);
-    await expect(page.locator(`[data-lesson="${id}"]`)).toBeVisible();
-    papers.push(...(await referencesOf(page, anchors)));
-    expect(await page.locator("#learn :is(input, select)").evaluateAll((all) => all.filter((control) => (control as HTMLInputElement).labels?.length === 0).length), id).toBe(0);
-    expect(await page.locator("#learn :is(canvas, svg.learn-plot)").evaluateAll((all) => all.filter((picture) => !picture.getAttribute("aria-label")).length), id).toBe(0);
-    await atWidths(page, [320, 390, 600, 700, 1280, 1600, 2560], (width) => fits(page, id, width));
-  }
-  expect(papers.length).toBeGreaterThan(8);
-  for (const link of papers) expect(link).toMatch(/^https:\/\/(arxiv\.org\/abs|doi\.org)\//);
-});
+test(
+  "each lesson says where its method is written down, names its controls and pictures, and fits from 320 to 2560 px",
+  LONG,
+  async ({ page }) => {
+    const method = await readFile(new URL("../../docs/method.md", import.meta.url), "utf8");
+    const anchors = [...method.matchAll(/^## (.+)$/gm)].map(([, heading = ""]) =>
+      heading
+        .toLowerCase()
+        .replace(/[^\w\s-]/g, "")
+        .replace(/\s/g, "-"),
+    );
+    const papers: string[] = [];
+    await page.setViewportSize(narrowest);
+    for (const id of LESSONS) {
+      await open(page, `at=${id}`);
+      await expect(page.locator(`[data-lesson="${id}"]`)).toBeVisible();
+      papers.push(...(await referencesOf(page, anchors)));
+      expect(
+        await page
+          .locator("#learn :is(input, select)")
+          .evaluateAll((all) => all.filter((control) => (control as HTMLInputElement).labels?.length === 0).length),
+        id,
+      ).toBe(0);
+      expect(
+        await page
+          .locator("#learn :is(canvas, svg.learn-plot)")
+          .evaluateAll((all) => all.filter((picture) => !picture.getAttribute("aria-label")).length),
+        id,
+      ).toBe(0);
+      await atWidths(page, [320, 390, 600, 700, 1280, 1600, 2560], (width) => fits(page, id, width));
+    }
+    expect(papers.length).toBeGreaterThan(8);
+    for (const link of papers) expect(link).toMatch(/^https:\/\/(arxiv\.org\/abs|doi\.org)\//);
+  },
+);
 
 /** The links of a lesson that lead elsewhere; those to sections of the method lead to one that there is. */
 async function referencesOf(page: Page, anchors: string[]): Promise<string[]> {
-  const links = await page.locator(".learn-more a").evaluateAll((all) => all.map((link) => (link as HTMLAnchorElement).href));
+  const links = await page
+    .locator(".learn-more a")
+    .evaluateAll((all) => all.map((link) => (link as HTMLAnchorElement).href));
   const sections = links.flatMap((link) => /\/docs\/method\.md#(.+)$/.exec(link)?.[1] ?? []);
   expect(sections.length).toBeGreaterThan(0);
   for (const section of sections) expect(anchors).toContain(section);
@@ -44,11 +66,21 @@ async function fits(page: Page, id: string, width: number): Promise<void> {
   expect(await innerWidth(page), `${id} at ${width} px`).toBeLessThanOrEqual(width);
   // On a phone a long formula is swiped, and no picture stands alone in its row.
   if (width >= 1280) {
-    const cut = await page.locator(".learn-formula").evaluateAll((all) => all.map(({ scrollWidth, clientWidth }) => scrollWidth - clientWidth));
-    expect(cut.filter((px) => px > 0), `${id} at ${width} px`).toEqual([]);
+    const cut = await page
+      .locator(".learn-formula")
+      .evaluateAll((all) => all.map(({ scrollWidth, clientWidth }) => scrollWidth - clientWidth));
+    expect(
+      cut.filter((px) => px > 0),
+      `${id} at ${width} px`,
+    ).toEqual([]);
   } else if (width >= 390) {
-    const tops = await page.locator(".learn-panel:not(.learn-wide)").evaluateAll((all) => all.map((panel) => Math.round(panel.getBoundingClientRect().top)));
-    expect(tops.filter((top) => tops.filter((other) => other === top).length === 1), `${id} at ${width} px`).toEqual([]);
+    const tops = await page
+      .locator(".learn-panel:not(.learn-wide)")
+      .evaluateAll((all) => all.map((panel) => Math.round(panel.getBoundingClientRect().top)));
+    expect(
+      tops.filter((top) => tops.filter((other) => other === top).length === 1),
+      `${id} at ${width} px`,
+    ).toEqual([]);
   }
 }
 
@@ -57,11 +89,16 @@ test("no exercise and no slide sticks out from 320 to 2560 px", LONG, async ({ p
   await page.setViewportSize(narrowest);
   await page.goto("./#learn&at=exercises");
   await expect(page.locator(".learn-exercises")).toBeVisible();
-  await atWidths(page, widths, async (width) => expect(await innerWidth(page), `exercises at ${width} px`).toBeLessThanOrEqual(width));
+  await atWidths(page, widths, async (width) =>
+    expect(await innerWidth(page), `exercises at ${width} px`).toBeLessThanOrEqual(width),
+  );
   await page.goto("./#learn&at=pose&slides");
   await atWidths(page, widths, async (width) => {
     await settled(page);
-    expect(await page.locator(".learn-slide").evaluate((slide) => slide.scrollWidth - slide.clientWidth), `a slide at ${width} px`).toBe(0);
+    expect(
+      await page.locator(".learn-slide").evaluate((slide) => slide.scrollWidth - slide.clientWidth),
+      `a slide at ${width} px`,
+    ).toBe(0);
   });
 });
 
@@ -75,29 +112,45 @@ test("on a phone the figure stands below what it is about, and above the long te
   await expect(page.locator(".learn-slide .learn-figure")).toBeVisible();
 });
 
-test("pictures of a row stand in line, no plot leaves a hole beside it, and its type is never small, on slides neither", LONG, async ({ page }) => {
-  const look = () =>
-    figure(page).evaluate((box) => {
-      const panels = [...box.querySelectorAll(".learn-panel")];
-      const edges = (element: Element | null | undefined) => element?.getBoundingClientRect() ?? new DOMRect();
-      const top = (panel: Element) => Math.round(edges(panel).top);
-      const rows = [...new Set(panels.map(top))].map((at) => panels.filter((panel) => top(panel) === at));
-      const crooked = rows.filter((row) => new Set(row.map((panel) => Math.round(edges(panel.querySelector(".learn-canvas, .learn-plot-box")).top))).size > 1).length;
-      const right = edges(box.querySelector(".learn-panels")).right;
-      const plots = [...box.querySelectorAll<SVGSVGElement>(".learn-plot")];
-      const holes = plots.filter((plot) => rows.every((row) => !row.some((panel) => panel.contains(plot)) || row.every((panel) => Math.round(edges(panel).right) < Math.round(right)))).length;
-      const unscaled = plots.filter((plot) => ["middle", "end"].some((axis) => plot.querySelectorAll(`.tick[text-anchor="${axis}"]`).length < 2)).length;
-      return { crooked, holes, unscaled, type: Math.min(...plots.map((plot) => 11 * (plot.getScreenCTM()?.a ?? 0))) };
-    });
-  for (const id of ["grey", "surface", "prior", "pose", "sensor"]) {
-    for (const mode of ["", "&slides"]) {
-      await open(page, `at=${id}${mode}`);
-      await expect(page.locator(`${mode ? ".learn-slide " : ""}[data-lesson="${id}"]`)).toBeVisible();
-      await expect.poll(async () => (await look()).type, `${id}${mode}`).toBeGreaterThan(11.5);
-      expect(await look(), `${id}${mode}`).toMatchObject({ crooked: 0, holes: 0, unscaled: 0 });
+test(
+  "pictures of a row stand in line, no plot leaves a hole beside it, and its type is never small, on slides neither",
+  LONG,
+  async ({ page }) => {
+    const look = () =>
+      figure(page).evaluate((box) => {
+        const panels = [...box.querySelectorAll(".learn-panel")];
+        const edges = (element: Element | null | undefined) => element?.getBoundingClientRect() ?? new DOMRect();
+        const top = (panel: Element) => Math.round(edges(panel).top);
+        const rows = [...new Set(panels.map(top))].map((at) => panels.filter((panel) => top(panel) === at));
+        const crooked = rows.filter(
+          (row) =>
+            new Set(row.map((panel) => Math.round(edges(panel.querySelector(".learn-canvas, .learn-plot-box")).top)))
+              .size > 1,
+        ).length;
+        const right = edges(box.querySelector(".learn-panels")).right;
+        const plots = [...box.querySelectorAll<SVGSVGElement>(".learn-plot")];
+        const holes = plots.filter((plot) =>
+          rows.every(
+            (row) =>
+              !row.some((panel) => panel.contains(plot)) ||
+              row.every((panel) => Math.round(edges(panel).right) < Math.round(right)),
+          ),
+        ).length;
+        const unscaled = plots.filter((plot) =>
+          ["middle", "end"].some((axis) => plot.querySelectorAll(`.tick[text-anchor="${axis}"]`).length < 2),
+        ).length;
+        return { crooked, holes, unscaled, type: Math.min(...plots.map((plot) => 11 * (plot.getScreenCTM()?.a ?? 0))) };
+      });
+    for (const id of ["grey", "surface", "prior", "pose", "sensor"]) {
+      for (const mode of ["", "&slides"]) {
+        await open(page, `at=${id}${mode}`);
+        await expect(page.locator(`${mode ? ".learn-slide " : ""}[data-lesson="${id}"]`)).toBeVisible();
+        await expect.poll(async () => (await look()).type, `${id}${mode}`).toBeGreaterThan(11.5);
+        expect(await look(), `${id}${mode}`).toMatchObject({ crooked: 0, holes: 0, unscaled: 0 });
+      }
     }
-  }
-});
+  },
+);
 
 test("the Lab alone loads nothing of Learn, and Learn leaves the Lab alone", async ({ lab, page }) => {
   const asked: string[] = [];
@@ -113,7 +166,10 @@ test("the Lab alone loads nothing of Learn, and Learn leaves the Lab alone", asy
   await lab.reaches("ready");
 });
 
-test("1: the light and the albedo change the predicted colour, and a drag chooses the normal", async ({ lab, page }) => {
+test("1: the light and the albedo change the predicted colour, and a drag chooses the normal", async ({
+  lab,
+  page,
+}) => {
   await open(page, "at=pixel");
   const red = await number(page, "red");
   await slide(page, "albedo", 0.5);
@@ -123,7 +179,9 @@ test("1: the light and the albedo change the predicted colour, and a drag choose
   await settled(page);
   expect(await fingerprint(page, "bust")).not.toBe(bust);
   // The orders add up to the whole, but for the albedo, and each says whose order it is.
-  await expect(page.locator(".learn-numbers dt").filter({ hasText: /order \d$/ })).toHaveText([0, 1, 2].map((order) => `log S, green: order ${order}`));
+  await expect(page.locator(".learn-numbers dt").filter({ hasText: /order \d$/ })).toHaveText(
+    [0, 1, 2].map((order) => `log S, green: order ${order}`),
+  );
   const parts = (await number(page, "order0")) + (await number(page, "order1")) + (await number(page, "order2"));
   expect(parts + Math.log(0.5)).toBeCloseTo(await number(page, "green"), 4);
 
@@ -227,11 +285,18 @@ test("5, 6: a curve's axes stand still from its first drawing to its last", LONG
     Object.assign(window, { seen });
     new MutationObserver(() => {
       const plot = document.querySelector(':is([data-panel="curve"], [data-panel="figure5"]) svg');
-      const words = [...(plot?.querySelectorAll("text") ?? [])].map((text) => `${text.textContent} at ${text.getAttribute("x")} ${text.getAttribute("y")}`);
+      const words = [...(plot?.querySelectorAll("text") ?? [])].map(
+        (text) => `${text.textContent} at ${text.getAttribute("x")} ${text.getAttribute("y")}`,
+      );
       if (plot && words.length > 0) seen.add([plot.getAttribute("viewBox"), ...words].join(", "));
     }).observe(document, { childList: true, subtree: true });
   });
-  for (const [state, points] of [["prior", 8], ["pose&offset=40", 13], ["pose&light=colourful", 13], ["pose&light=overcast", 13]] as const) {
+  for (const [state, points] of [
+    ["prior", 8],
+    ["pose&offset=40", 13],
+    ["pose&light=colourful", 13],
+    ["pose&light=overcast", 13],
+  ] as const) {
     await page.goto("about:blank");
     await open(page, `at=${state}`);
     await expect(page.locator(':is([data-panel="curve"], [data-panel="figure5"]) circle')).toHaveCount(points);
@@ -284,9 +349,12 @@ test("links of the exercises open the state they speak of", async ({ lab, page }
   await page.goto("./#learn&at=exercises");
   const exercises = page.locator(".learn-exercises > ol > li");
   await expect(exercises).toHaveCount(5);
-  for (const answer of await page.locator(".learn-exercises details").all()) await expect(answer).not.toHaveAttribute("open", "");
+  for (const answer of await page.locator(".learn-exercises details").all())
+    await expect(answer).not.toHaveAttribute("open", "");
   await expect(page.locator(".learn-exercises")).not.toContainText(/[{}_]/);
-  const links = await page.locator(".learn-links a").evaluateAll((all) => all.map((link) => link.getAttribute("href") ?? ""));
+  const links = await page
+    .locator(".learn-links a")
+    .evaluateAll((all) => all.map((link) => link.getAttribute("href") ?? ""));
   expect(links.length).toBeGreaterThanOrEqual(5);
   for (const link of links.filter((address) => address.startsWith("#learn"))) {
     await page.goto(`./${link}`);
@@ -327,7 +395,9 @@ test("a slide uses a beamer's screen, and no figure is below its edge", async ({
   const slide = page.locator(".learn-slide");
   await expect(slide.locator(".learn-panel").first()).toBeVisible();
   expect((await slide.locator(".learn-figure").boundingBox())?.width).toBeGreaterThan(0.9 * 1920);
-  expect(await slide.locator("h2").evaluate((title) => Number.parseFloat(getComputedStyle(title).fontSize))).toBeGreaterThan(48);
+  expect(
+    await slide.locator("h2").evaluate((title) => Number.parseFloat(getComputedStyle(title).fontSize)),
+  ).toBeGreaterThan(48);
   expect(await slide.evaluate(({ scrollHeight, clientHeight }) => scrollHeight - clientHeight)).toBeLessThanOrEqual(0);
   expect(lab.complaints).toEqual([]);
 });

@@ -51,14 +51,24 @@ test("its counterpart is marked where the true pose says", async ({ lab }) => {
   const { depth, pose, truth } = sample({ surface: "bust", light: "colourful", size, angles: { beta: 20 } });
   await openAtTruth(lab);
   let seen = 0;
-  for (const [across, down] of [[0.45, 0.3], [0.5, 0.2], [0.4, 0.5], [0.35, 0.85]] as const) {
+  for (const [across, down] of [
+    [0.45, 0.3],
+    [0.5, 0.2],
+    [0.4, 0.5],
+    [0.35, 0.85],
+  ] as const) {
     await point(lab, "Normals", across, down);
     const [mine, theirs] = [await pixelOf(lab, "Normals"), await pixelOf(lab, "Refined depth")];
     if (!mine || !theirs) continue;
     // An orthographic view's coordinates are pixels about its middle.
     const half = (size - 1) / 2;
     const from = [theirs[0] - half, theirs[1] - half, truth.depth[theirs[1] * depth.width + theirs[0]] ?? NaN];
-    const to = [0, 1].map((row) => pose.scale * from.reduce((sum, value, c) => sum + (pose.rotation[3 * row + c] ?? NaN) * value, 0) + (pose.translation[row] ?? NaN) + half);
+    const to = [0, 1].map(
+      (row) =>
+        pose.scale * from.reduce((sum, value, c) => sum + (pose.rotation[3 * row + c] ?? NaN) * value, 0) +
+        (pose.translation[row] ?? NaN) +
+        half,
+    );
     expect(Math.hypot((to[0] ?? NaN) - mine[0], (to[1] ?? NaN) - mine[1])).toBeLessThan(1.5);
 
     // The mark stands at the pixel that is named: pointing there names it again, and leads back.
@@ -83,16 +93,38 @@ test("a card says what is known of the pixel, in a fixed size", async ({ lab, pa
     await point(lab, title, 0.45, 0.3);
     await expect(card).toBeVisible();
     heights.add((await card.boundingBox())?.height ?? 0);
-    const numbers = async (name: string) => (await card.locator("tr", { has: page.getByRole("rowheader", { name, exact: true }) }).locator("td:not(.unit)").allTextContents()).filter(Boolean).map((text) => Number(text.replace("−", "-")));
+    const numbers = async (name: string) =>
+      (
+        await card
+          .locator("tr", { has: page.getByRole("rowheader", { name, exact: true }) })
+          .locator("td:not(.unit)")
+          .allTextContents()
+      )
+        .filter(Boolean)
+        .map((text) => Number(text.replace("−", "-")));
     await expect.poll(async () => (await numbers("log colour")).length).toBe(3);
-    const [log, predicted, residual, normal] = [await numbers("log colour"), await numbers("predicted"), await numbers("residual"), await numbers("normal")];
+    const [log, predicted, residual, normal] = [
+      await numbers("log colour"),
+      await numbers("predicted"),
+      await numbers("residual"),
+      await numbers("normal"),
+    ];
     expect(log.every(Number.isFinite)).toBe(true);
     // Three decimals are shown of each.
-    expect(Math.abs(Math.hypot(...log.map((value, c) => value - (predicted[c] ?? NaN))) - (residual[0] ?? NaN))).toBeLessThan(0.003);
+    expect(
+      Math.abs(Math.hypot(...log.map((value, c) => value - (predicted[c] ?? NaN))) - (residual[0] ?? NaN)),
+    ).toBeLessThan(0.003);
     expect(Math.hypot(...normal)).toBeCloseTo(1, 2);
     const [own, view] = [await card.boundingBox(), await canvasOf(lab, title).boundingBox()];
     // Away from what is looked at.
-    expect(own && view && (own.x > view.x + view.width || own.x + own.width < view.x || own.y > view.y + view.height || own.y + own.height < view.y)).toBe(true);
+    expect(
+      own &&
+        view &&
+        (own.x > view.x + view.width ||
+          own.x + own.width < view.x ||
+          own.y > view.y + view.height ||
+          own.y + own.height < view.y),
+    ).toBe(true);
   }
   expect(heights.size).toBe(1);
 });
@@ -106,15 +138,20 @@ test("the surfaces show the point, and can be pointed at", async ({ lab, page })
   const before = await pixelOf(lab, "Colour");
   const marks = page.locator("#clouds-box .dot");
   await expect(marks.filter({ visible: true })).toHaveCount(2);
-  const [image, depth] = [await middle(page.locator("#clouds-box .dot.image")), await middle(page.locator("#clouds-box .dot.depth"))];
+  const [image, depth] = [
+    await middle(page.locator("#clouds-box .dot.image")),
+    await middle(page.locator("#clouds-box .dot.depth")),
+  ];
   // Under the true pose both surfaces lie on each other.
   expect(Math.hypot(image.x - depth.x, image.y - depth.y)).toBeLessThan(25);
   await page.mouse.move(image.x, image.y);
   await expect(page.locator("#probe")).toBeVisible();
-  await expect.poll(async () => {
-    const now = await pixelOf(lab, "Colour");
-    return before && now ? Math.hypot(now[0] - before[0], now[1] - before[1]) : Infinity;
-  }).toBeLessThan(3);
+  await expect
+    .poll(async () => {
+      const now = await pixelOf(lab, "Colour");
+      return before && now ? Math.hypot(now[0] - before[0], now[1] - before[1]) : Infinity;
+    })
+    .toBeLessThan(3);
   await page.mouse.move(2, 2);
   await expect(marks.filter({ visible: true })).toHaveCount(0);
 });
@@ -146,7 +183,8 @@ test("of many moves the last counts, and the worker is asked one thing at a time
   if (!box) throw new Error("the view is on the page");
   const before = await messages.count("probe");
   await messages.hold("probe");
-  for (let move = 1; move <= 10; move++) await page.mouse.move(box.x + (0.3 + 0.03 * move) * box.width, box.y + 0.4 * box.height);
+  for (let move = 1; move <= 10; move++)
+    await page.mouse.move(box.x + (0.3 + 0.03 * move) * box.width, box.y + 0.4 * box.height);
   expect(await messages.count("probe")).toBe(before + 1);
   // Until there is an answer, place and numbers are those of the last one.
   expect(await pixelOf(lab, "Depth")).toEqual(first);

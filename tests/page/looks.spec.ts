@@ -48,7 +48,9 @@ test("the first paint needs little, and nothing comes from elsewhere", async ({ 
   });
   // What the document itself asks for, static imports included; chunks that load later are not in it.
   const html = await (await page.request.get("./")).text();
-  const early = [...html.matchAll(/<(?:script|link rel="modulepreload")[^>]* (?:src|href)="([^"]+\.js)"/g)].map(([, path]) => path ?? "");
+  const early = [...html.matchAll(/<(?:script|link rel="modulepreload")[^>]* (?:src|href)="([^"]+\.js)"/g)].map(
+    ([, path]) => path ?? "",
+  );
   const { gzipSync } = await import("node:zlib");
   let bytes = 0;
   for (const path of early) bytes += gzipSync(await (await page.request.get(path)).body()).length;
@@ -66,10 +68,14 @@ test("the shortest page runs on the main thread", async ({ lab, page }) => {
 
 test("the Lab looks the same after the Tables", async ({ lab, page }) => {
   await lab.open();
-  const look = () => page.locator("#fields-sample .heading").first().evaluate((heading) => {
-    const { fontSize, color } = getComputedStyle(heading);
-    return `${fontSize} ${color}`;
-  });
+  const look = () =>
+    page
+      .locator("#fields-sample .heading")
+      .first()
+      .evaluate((heading) => {
+        const { fontSize, color } = getComputedStyle(heading);
+        return `${fontSize} ${color}`;
+      });
   const before = await look();
   await page.getByRole("link", { name: "Tables" }).click();
   await expect(page.getByRole("heading", { name: "Table 1" }).first()).toBeVisible();
@@ -89,7 +95,10 @@ test("an enlarged view comes into sight", async ({ lab, page }) => {
   expect(await widthOf("#views > section")).toBe(await widthOf("#views"));
 });
 
-test("a view without values has no range of earlier ones, and the surfaces' legend names what is drawn", async ({ lab, page }) => {
+test("a view without values has no range of earlier ones, and the surfaces' legend names what is drawn", async ({
+  lab,
+  page,
+}) => {
   await lab.open();
   const shape = page.getByText("shape from the picture", { exact: true });
   await expect(shape).toBeHidden();
@@ -120,7 +129,10 @@ test("a range that is half typed survives the frames that arrive meanwhile", asy
   await expect(highest).not.toHaveValue(before);
   await expect(lowest).toHaveValue("-9");
   await page.keyboard.press("Enter");
-  await expect(page.getByLabel("Depth: range follows the values, auto", { exact: true })).toHaveAttribute("aria-pressed", "false");
+  await expect(page.getByLabel("Depth: range follows the values, auto", { exact: true })).toHaveAttribute(
+    "aria-pressed",
+    "false",
+  );
   await lowest.blur();
   await expect(lowest).toHaveValue("-9.00");
 });
@@ -133,7 +145,9 @@ test.describe("on a phone", () => {
     await expect(lab.iteration).toBeInViewport({ ratio: 1 });
     const bar = page.locator("#bar");
     for (const left of [150, 5000]) {
-      expect(await bar.evaluate((bar, left) => (bar.scrollTo({ left, behavior: "instant" }), bar.scrollLeft), left)).toBeGreaterThan(100);
+      expect(
+        await bar.evaluate((bar, left) => (bar.scrollTo({ left, behavior: "instant" }), bar.scrollLeft), left),
+      ).toBeGreaterThan(100);
       await expect(lab.iteration).toBeInViewport({ ratio: 1 });
     }
     await expect(page.locator(".stage").last()).toBeInViewport({ ratio: 1 });
@@ -141,22 +155,32 @@ test.describe("on a phone", () => {
 
   test("all of the verdict is on the first screen, below the surfaces", async ({ lab, page }) => {
     await lab.visit("size=64");
-    const [verdict, bar, hero] = await Promise.all(["#panel", "#bar", "#hero"].map((box) => page.locator(box).boundingBox()));
+    const [verdict, bar, hero] = await Promise.all(
+      ["#panel", "#bar", "#hero"].map((box) => page.locator(box).boundingBox()),
+    );
     expect((verdict?.y ?? 0) + (verdict?.height ?? 0)).toBeLessThanOrEqual(bar?.y ?? 0);
     expect(verdict?.y).toBeGreaterThan((hero?.y ?? 0) + (hero?.height ?? 0));
   });
 });
 
-test("on a tablet the verdict is on the first screen, and stages that do not fit leave the controls where they are", async ({ lab, page }) => {
+test("on a tablet the verdict is on the first screen, and stages that do not fit leave the controls where they are", async ({
+  lab,
+  page,
+}) => {
   await page.setViewportSize({ width: 820, height: 1180 });
   await lab.visit("size=64");
   const [verdict, bar] = await Promise.all(["#status", "#bar"].map((box) => page.locator(box).boundingBox()));
   expect((verdict?.y ?? 0) + (verdict?.height ?? 0)).toBeLessThan(bar?.y ?? 0);
-  const widths = (box: string) => page.locator(box).evaluate(({ scrollWidth, clientWidth }) => scrollWidth - clientWidth);
+  const widths = (box: string) =>
+    page.locator(box).evaluate(({ scrollWidth, clientWidth }) => scrollWidth - clientWidth);
   expect(await widths("#stages")).toBeGreaterThan(0);
   expect(await widths("#bar")).toBe(0);
   // None of them is broken into lines.
-  const [stages] = await page.locator("#stages").evaluateAll((all) => all.map(({ clientHeight, firstElementChild }) => [clientHeight, firstElementChild?.clientHeight ?? 0]));
+  const [stages] = await page
+    .locator("#stages")
+    .evaluateAll((all) =>
+      all.map(({ clientHeight, firstElementChild }) => [clientHeight, firstElementChild?.clientHeight ?? 0]),
+    );
   expect(stages?.[0]).toBe(stages?.[1]);
 });
 
@@ -177,7 +201,8 @@ for (const width of [768, 1024]) {
     await lab.visit("size=64");
     await lab.unfold();
     const sheet = await page.locator("#input .sheet").boundingBox();
-    for (const box of ["#inputs", "#hero", "#outcome"]) expect((await page.locator(box).boundingBox())?.x).toBeGreaterThan((sheet?.x ?? 0) + (sheet?.width ?? 0));
+    for (const box of ["#inputs", "#hero", "#outcome"])
+      expect((await page.locator(box).boundingBox())?.x).toBeGreaterThan((sheet?.x ?? 0) + (sheet?.width ?? 0));
     await expect(page.locator("#inputs")).toBeInViewport({ ratio: 1 });
     await expect(page.locator("#hero")).toBeInViewport({ ratio: 0.5 });
     expect(await page.evaluate(() => document.documentElement.scrollWidth)).toBeLessThanOrEqual(width);
@@ -191,7 +216,8 @@ test("open settings hide no input, and what has opened them stays under the poin
   const before = await summary.boundingBox();
   await summary.click();
   const sheet = await page.locator("#input .sheet").boundingBox();
-  for (const box of ["#inputs", "#hero", "#outcome"]) expect((await page.locator(box).boundingBox())?.x).toBeGreaterThan((sheet?.x ?? 0) + (sheet?.width ?? 0));
+  for (const box of ["#inputs", "#hero", "#outcome"])
+    expect((await page.locator(box).boundingBox())?.x).toBeGreaterThan((sheet?.x ?? 0) + (sheet?.width ?? 0));
   expect(await summary.boundingBox()).toEqual(before);
   // Neither what is above: the places, the sentence, the examples.
   for (const box of [".top", ".lead"]) {
@@ -204,7 +230,13 @@ test("open settings hide no input, and what has opened them stays under the poin
   // The surfaces are seen whole, under a title of one line and above their legend.
   const legend = await page.locator("#clouds .legend").boundingBox();
   expect((legend?.y ?? Infinity) + (legend?.height ?? 0)).toBeLessThanOrEqual(bar?.y ?? 0);
-  expect(await page.locator("#clouds .view-title").evaluate((title) => title.getClientRects().length && title.clientHeight / parseFloat(getComputedStyle(title).lineHeight))).toBeLessThan(1.5);
+  expect(
+    await page
+      .locator("#clouds .view-title")
+      .evaluate(
+        (title) => title.getClientRects().length && title.clientHeight / parseFloat(getComputedStyle(title).lineHeight),
+      ),
+  ).toBeLessThan(1.5);
   await page.locator("#numbers").evaluate((numbers) => numbers.scrollIntoView({ block: "start", behavior: "instant" }));
   await expect(page.locator("#input .sheet")).toBeInViewport({ ratio: 0.9 });
   await page.evaluate(() => scrollTo({ top: 0, behavior: "instant" }));
@@ -212,13 +244,28 @@ test("open settings hide no input, and what has opened them stays under the poin
   await expect(page.locator("#inputs")).toBeInViewport({ ratio: 0.5 });
 });
 
-test("the footer begins where its place does, on the widest screens too, and before the styles of a place are there", async ({ lab, page }) => {
+test("the footer begins where its place does, on the widest screens too, and before the styles of a place are there", async ({
+  lab,
+  page,
+}) => {
   await page.setViewportSize({ width: 2560, height: 1300 });
   await lab.visit("size=64");
   const release: (() => void)[] = [];
-  await page.route("**/*.css", (route) => new Promise<void>((resolve) => release.push(() => resolve(route.continue()))));
-  const lefts = (place: string) => page.evaluate((boxes) => boxes.map((box) => document.querySelector(box)?.getBoundingClientRect().left), [".about", place]);
-  for (const [link, place, styles] of [["#to-tables", "#tables", 1], ["#to-rig", "#rig", 1], ["#to-learn", "#learn", 1], ["#to-lab", "#lab", 0]] as const) {
+  await page.route(
+    "**/*.css",
+    (route) => new Promise<void>((resolve) => release.push(() => resolve(route.continue()))),
+  );
+  const lefts = (place: string) =>
+    page.evaluate(
+      (boxes) => boxes.map((box) => document.querySelector(box)?.getBoundingClientRect().left),
+      [".about", place],
+    );
+  for (const [link, place, styles] of [
+    ["#to-tables", "#tables", 1],
+    ["#to-rig", "#rig", 1],
+    ["#to-learn", "#learn", 1],
+    ["#to-lab", "#lab", 0],
+  ] as const) {
     await page.locator(link).click();
     await expect(page.locator(place)).toBeVisible();
     await expect.poll(() => release.length).toBe(styles);
@@ -233,7 +280,12 @@ test("the footer begins where its place does, on the widest screens too, and bef
 
 test("each place has its own help", async ({ lab, page }) => {
   await lab.visit("size=64");
-  for (const [link, title, words] of [["#to-learn", "Learn", "Nine lessons"], ["#to-tables", "Tables", "beside the paper's number"], ["#to-rig", "Check a rig", "Load an example"], ["#to-lab", "The Lab", "Choose a pair"]] as const) {
+  for (const [link, title, words] of [
+    ["#to-learn", "Learn", "Nine lessons"],
+    ["#to-tables", "Tables", "beside the paper's number"],
+    ["#to-rig", "Check a rig", "Load an example"],
+    ["#to-lab", "The Lab", "Choose a pair"],
+  ] as const) {
     await page.locator(link).click();
     await page.locator("#help-button").click();
     const help = page.getByRole("dialog", { name: title, exact: true });

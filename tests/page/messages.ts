@@ -33,7 +33,11 @@ export class Messages {
       const box: Box = { counts: {}, holding: undefined, held: [] };
       window.messages = box;
       const send = Worker.prototype.postMessage;
-      Worker.prototype.postMessage = function (this: Worker, message: { kind?: Kind; cell?: object }, options?: StructuredSerializeOptions | Transferable[]) {
+      Worker.prototype.postMessage = function (
+        this: Worker,
+        message: { kind?: Kind; cell?: object },
+        options?: StructuredSerializeOptions | Transferable[],
+      ) {
         const pass = () => send.call(this, message, options as StructuredSerializeOptions);
         const kind = message.cell ? "cell" : message.kind;
         if (kind === undefined) return pass();

@@ -4,7 +4,20 @@ import { readFile } from "node:fs/promises";
 import { encode } from "fast-png";
 import { LONG, expect, test, type Lab } from "./lab";
 import { Messages } from "./messages";
-import { SIDE, cameraJson, cloudPly, colourPng, columnNpy, depthPfm, depthPgm, depthPng, depthTiff, drop, maskPng, type Upload } from "./uploads";
+import {
+  SIDE,
+  cameraJson,
+  cloudPly,
+  colourPng,
+  columnNpy,
+  depthPfm,
+  depthPgm,
+  depthPng,
+  depthTiff,
+  drop,
+  maskPng,
+  type Upload,
+} from "./uploads";
 
 const slot = (lab: Lab, index: number) => lab.page.locator(".slot").nth(index);
 
@@ -13,7 +26,19 @@ async function put(lab: Lab, label: string, file: Upload): Promise<void> {
 }
 
 /** A grey picture of 8 bits, which may be either view. */
-const greyPng = (name: string): Upload => ({ name, mimeType: "image/png", buffer: Buffer.from(encode({ width: SIDE, height: SIDE, channels: 1, depth: 8, data: Uint8Array.from({ length: SIDE * SIDE }, (_, i) => 40 + ((7 * i) % 190)) })) });
+const greyPng = (name: string): Upload => ({
+  name,
+  mimeType: "image/png",
+  buffer: Buffer.from(
+    encode({
+      width: SIDE,
+      height: SIDE,
+      channels: 1,
+      depth: 8,
+      data: Uint8Array.from({ length: SIDE * SIDE }, (_, i) => 40 + ((7 * i) % 190)),
+    }),
+  ),
+});
 
 async function own(lab: Lab): Promise<void> {
   await lab.open("size=32");
@@ -22,7 +47,10 @@ async function own(lab: Lab): Promise<void> {
   await lab.reaches("waiting");
 }
 
-test("four files and a camera dropped anywhere go where their content belongs, each shown at once", async ({ lab, page }) => {
+test("four files and a camera dropped anywhere go where their content belongs, each shown at once", async ({
+  lab,
+  page,
+}) => {
   await lab.open("size=32");
   await drop(page, "body", [maskPng("1.png"), cameraJson("2.json"), columnNpy("3.npy"), colourPng("4.png")]);
   await expect(slot(lab, 0)).toContainText("4.png");
@@ -32,8 +60,15 @@ test("four files and a camera dropped anywhere go where their content belongs, e
   await expect(slot(lab, 2)).toContainText("1.png");
   await expect(slot(lab, 2)).toContainText("a mask of 5");
   await expect(page.locator(".remarks")).toContainText("The depth map has no mask");
-  for (const [index, name] of [[0, "4.png"], [1, "3.npy"], [2, "1.png"]] as const) {
-    await expect(slot(lab, index).getByRole("img", { name: `Preview of ${name}` })).toHaveAttribute("width", String(SIDE));
+  for (const [index, name] of [
+    [0, "4.png"],
+    [1, "3.npy"],
+    [2, "1.png"],
+  ] as const) {
+    await expect(slot(lab, index).getByRole("img", { name: `Preview of ${name}` })).toHaveAttribute(
+      "width",
+      String(SIDE),
+    );
   }
   await lab.reaches("ready");
   // Registered pictures of one camera: its numbers are those of both.
@@ -50,9 +85,19 @@ test("a slot that is filled keeps its height, and moves no other", async ({ lab,
   await lab.open();
   await lab.unfold();
   await page.locator("#origin-files").click();
-  const places = () => page.locator(".slot .drop").evaluateAll((zones) => zones.map((zone) => { const { top, height } = zone.getBoundingClientRect(); return [top, height]; }));
+  const places = () =>
+    page.locator(".slot .drop").evaluateAll((zones) =>
+      zones.map((zone) => {
+        const { top, height } = zone.getBoundingClientRect();
+        return [top, height];
+      }),
+    );
   const before = await places();
-  await drop(page, "#lab", [colourPng("with-a-name-that-is-longer-than-its-slot-is-wide.png"), depthPng(), cameraJson()]);
+  await drop(page, "#lab", [
+    colourPng("with-a-name-that-is-longer-than-its-slot-is-wide.png"),
+    depthPng(),
+    cameraJson(),
+  ]);
   await expect(slot(lab, 1).getByRole("img")).toBeVisible();
   await expect(slot(lab, 1)).toContainText("% valid");
   expect(await places()).toEqual(before);
@@ -60,12 +105,16 @@ test("a slot that is filled keeps its height, and moves no other", async ({ lab,
 
 test("what is too large for a preview says its name, its size and that, below each other", async ({ lab }) => {
   await own(lab);
-  const wide = Buffer.from(encode({ width: 8200, height: 16, channels: 3, depth: 8, data: new Uint8Array(8200 * 16 * 3).fill(90) }));
+  const wide = Buffer.from(
+    encode({ width: 8200, height: 16, channels: 3, depth: 8, data: new Uint8Array(8200 * 16 * 3).fill(90) }),
+  );
   const name = "a-photograph-with-a-name-that-is-longer-than-its-slot.png";
   await put(lab, "Colour image", { ...colourPng(name), buffer: wide });
   const card = slot(lab, 0);
   await expect(card.locator(".says")).toHaveText("8200x16, too large for a preview");
-  const [title, file, says, drop, close] = await Promise.all(["strong", ".file-name", ".says", ".drop", ".quiet"].map((part) => card.locator(part).first().boundingBox()));
+  const [title, file, says, drop, close] = await Promise.all(
+    ["strong", ".file-name", ".says", ".drop", ".quiet"].map((part) => card.locator(part).first().boundingBox()),
+  );
   if (!title || !file || !says || !drop || !close) throw new Error("all parts of the card are seen");
   expect(file.x).toBe(title.x);
   expect(file.y).toBeGreaterThanOrEqual(title.y + title.height);
@@ -74,42 +123,54 @@ test("what is too large for a preview says its name, its size and that, below ea
   expect(says.y).toBeGreaterThanOrEqual(file.y + file.height);
   // The name is cut, its size is not.
   await expect(card.locator(".file-name")).toHaveText(/ \(1 kB\)$/);
-  expect(await card.locator(".file-name").evaluate(({ scrollWidth, clientWidth }) => scrollWidth - clientWidth)).toBeLessThanOrEqual(0);
+  expect(
+    await card.locator(".file-name").evaluate(({ scrollWidth, clientWidth }) => scrollWidth - clientWidth),
+  ).toBeLessThanOrEqual(0);
 });
 
-test("depth maps in TIFF, PGM and PFM are the same picture as the PNG, wherever they are dropped", LONG, async ({ lab, page }) => {
-  await own(lab);
-  await put(lab, "Colour image", colourPng());
-  await put(lab, "Depth map", depthPng());
-  await lab.reaches("ready");
-  const rows = await lab.fingerprint("Given depth");
-  for (const file of [depthTiff(), depthPgm(), depthPfm()]) {
-    await drop(page, "body", [file]);
-    await expect(slot(lab, 1)).toContainText(file.name);
-    await expect(slot(lab, 1)).toContainText(/48x48, .*stored numbers 100 to/);
+test(
+  "depth maps in TIFF, PGM and PFM are the same picture as the PNG, wherever they are dropped",
+  LONG,
+  async ({ lab, page }) => {
+    await own(lab);
+    await put(lab, "Colour image", colourPng());
+    await put(lab, "Depth map", depthPng());
     await lab.reaches("ready");
-    expect(await lab.fingerprint("Given depth"), file.name).toBe(rows);
-  }
-  // A colour image of another kind, and a cloud with its own points, run as well.
-  const fixture = async (name: string): Promise<Upload> => ({ name, mimeType: "", buffer: await readFile(new URL(`../fixtures/rig/${name}`, import.meta.url)) });
-  await drop(page, "body", [await fixture("colour.tif")]);
-  await expect(slot(lab, 0)).toContainText("colour.tif");
-  await lab.reaches("ready");
-  await put(lab, "Depth map", cloudPly());
-  await expect(slot(lab, 1)).toContainText("d.ply");
-  await lab.reaches("ready");
-  // What the reader has against a file is said where it lies.
-  await put(lab, "Depth map", await fixture("depth-piz.exr"));
-  await expect(slot(lab, 1)).toContainText("compressed by PIZ");
-  await lab.reaches("error");
-  await put(lab, "Depth map", await fixture("colour.jpg"));
-  await expect(slot(lab, 1)).toContainText("a colour picture where a depth map was asked for");
-  await lab.reaches("error");
-  const cut = depthTiff("cut.tif");
-  await put(lab, "Depth map", { ...cut, buffer: cut.buffer.subarray(0, 900) });
-  await lab.reaches("error");
-  await expect(slot(lab, 1).locator(".note.error").filter({ visible: true }).last()).toContainText(/cut\.tif: .*(cut off|end)/);
-});
+    const rows = await lab.fingerprint("Given depth");
+    for (const file of [depthTiff(), depthPgm(), depthPfm()]) {
+      await drop(page, "body", [file]);
+      await expect(slot(lab, 1)).toContainText(file.name);
+      await expect(slot(lab, 1)).toContainText(/48x48, .*stored numbers 100 to/);
+      await lab.reaches("ready");
+      expect(await lab.fingerprint("Given depth"), file.name).toBe(rows);
+    }
+    // A colour image of another kind, and a cloud with its own points, run as well.
+    const fixture = async (name: string): Promise<Upload> => ({
+      name,
+      mimeType: "",
+      buffer: await readFile(new URL(`../fixtures/rig/${name}`, import.meta.url)),
+    });
+    await drop(page, "body", [await fixture("colour.tif")]);
+    await expect(slot(lab, 0)).toContainText("colour.tif");
+    await lab.reaches("ready");
+    await put(lab, "Depth map", cloudPly());
+    await expect(slot(lab, 1)).toContainText("d.ply");
+    await lab.reaches("ready");
+    // What the reader has against a file is said where it lies.
+    await put(lab, "Depth map", await fixture("depth-piz.exr"));
+    await expect(slot(lab, 1)).toContainText("compressed by PIZ");
+    await lab.reaches("error");
+    await put(lab, "Depth map", await fixture("colour.jpg"));
+    await expect(slot(lab, 1)).toContainText("a colour picture where a depth map was asked for");
+    await lab.reaches("error");
+    const cut = depthTiff("cut.tif");
+    await put(lab, "Depth map", { ...cut, buffer: cut.buffer.subarray(0, 900) });
+    await lab.reaches("error");
+    await expect(slot(lab, 1).locator(".note.error").filter({ visible: true }).last()).toContainText(
+      /cut\.tif: .*(cut off|end)/,
+    );
+  },
+);
 
 test("a .npy in column order is the same picture as the PNG it was made of", async ({ lab }) => {
   await own(lab);
@@ -163,7 +224,9 @@ test("a run of files that seem to be in each other's places says so beside its v
 
 test("where there is nothing to run the player's buttons are off, and say why", async ({ lab, page }) => {
   await own(lab);
-  const buttons = ["Play", "Step", "Stage", "Reset"].map((name) => page.locator("#bar").getByRole("button", { name, exact: true }));
+  const buttons = ["Play", "Step", "Stage", "Reset"].map((name) =>
+    page.locator("#bar").getByRole("button", { name, exact: true }),
+  );
   const [play] = buttons;
   const areOff = async (why: string) => {
     for (const button of buttons) {
@@ -191,7 +254,10 @@ test("where there is nothing to run the player's buttons are off, and say why", 
   await expect(lab.iteration).not.toHaveText("0");
 });
 
-test("while own files are read the page says so, asks for nothing that is there, and plays nothing", async ({ lab, page }) => {
+test("while own files are read the page says so, asks for nothing that is there, and plays nothing", async ({
+  lab,
+  page,
+}) => {
   const messages = await Messages.of(page);
   await own(lab);
   const asked = () => page.locator("#hero").evaluate((hero) => getComputedStyle(hero, "::after").content);
@@ -216,14 +282,25 @@ test("while own files are read the page says so, asks for nothing that is there,
   await page.locator("#verdict").evaluate((verdict) => {
     const said: string[] = [];
     Object.assign(window, { said });
-    new MutationObserver(() => said.push(verdict.textContent)).observe(verdict, { childList: true, characterData: true, subtree: true });
+    new MutationObserver(() => said.push(verdict.textContent)).observe(verdict, {
+      childList: true,
+      characterData: true,
+      subtree: true,
+    });
   });
-  const wide = Buffer.from(encode({ width: 4100, height: 32, channels: 3, depth: 8, data: new Uint8Array(4100 * 32 * 3).fill(90) }));
+  const wide = Buffer.from(
+    encode({ width: 4100, height: 32, channels: 3, depth: 8, data: new Uint8Array(4100 * 32 * 3).fill(90) }),
+  );
   await put(lab, "Colour image", { ...colourPng("wide.png"), buffer: wide });
-  await expect.poll(() => page.evaluate(() => (window as unknown as { said: string[] }).said.join("|"))).toMatch(/wide\.png: 4100 × 32 px is more than the library takes: scaled down by 2\./);
+  await expect
+    .poll(() => page.evaluate(() => (window as unknown as { said: string[] }).said.join("|")))
+    .toMatch(/wide\.png: 4100 × 32 px is more than the library takes: scaled down by 2\./);
 });
 
-test("of own files no true pose is known: none can be chosen, and what was chosen of a sample is not asked for", async ({ lab, page }) => {
+test("of own files no true pose is known: none can be chosen, and what was chosen of a sample is not asked for", async ({
+  lab,
+  page,
+}) => {
   await lab.visit("size=32&start=truth");
   await drop(page, "body", [colourPng(), depthPng()]);
   await lab.reaches("ready");
@@ -256,8 +333,16 @@ test("nothing of another pair stays: no picture, no true value, nothing to save"
   await lab.unfold();
   await page.getByRole("button", { name: "Own files" }).click();
   const gone = async () => {
-    for (const name of ["Colour", "Given depth", "Normals", "Refined depth"]) await expect(page.locator(`canvas[aria-label^="${name}:"]`)).toBeHidden();
-    for (const box of ["#clouds-canvas", "#pose tbody tr >> nth=0", "#pose-error", "#light canvas >> nth=0", "#takeaway button >> nth=0"]) await expect(page.locator(box)).toBeHidden();
+    for (const name of ["Colour", "Given depth", "Normals", "Refined depth"])
+      await expect(page.locator(`canvas[aria-label^="${name}:"]`)).toBeHidden();
+    for (const box of [
+      "#clouds-canvas",
+      "#pose tbody tr >> nth=0",
+      "#pose-error",
+      "#light canvas >> nth=0",
+      "#takeaway button >> nth=0",
+    ])
+      await expect(page.locator(box)).toBeHidden();
   };
   await gone();
   await put(lab, "Colour image", colourPng());
@@ -278,7 +363,11 @@ test("nothing of another pair stays: no picture, no true value, nothing to save"
   await expect(page.locator('canvas[aria-label^="Colour:"]')).toBeVisible();
 });
 
-test("a reload keeps the files, until they are forgotten; a link alone does not show them", async ({ lab, page, context }) => {
+test("a reload keeps the files, until they are forgotten; a link alone does not show them", async ({
+  lab,
+  page,
+  context,
+}) => {
   await own(lab);
   await put(lab, "Colour image", colourPng("mine.png"));
   await put(lab, "Depth map", depthPng("deep.png"));
@@ -305,37 +394,49 @@ test("a reload keeps the files, until they are forgotten; a link alone does not 
   await expect(slot(lab, 0)).not.toContainText("mine.png");
   await page.reload();
   await lab.reaches("waiting");
-  expect(await page.evaluate(() => new Promise((resolve) => {
-    const request = indexedDB.open("bimodal-stereo");
-    request.onsuccess = () => {
-      const all = request.result.transaction("own-files").objectStore("own-files").count();
-      all.onsuccess = () => resolve(all.result);
-    };
-  }))).toBe(0);
+  expect(
+    await page.evaluate(
+      () =>
+        new Promise((resolve) => {
+          const request = indexedDB.open("bimodal-stereo");
+          request.onsuccess = () => {
+            const all = request.result.transaction("own-files").objectStore("own-files").count();
+            all.onsuccess = () => resolve(all.result);
+          };
+        }),
+    ),
+  ).toBe(0);
 });
 
-test("a pair that comes whole leaves no mask of the last, and files of last time come back for nobody who brings others", LONG, async ({ lab, page }) => {
-  await lab.open("size=32");
-  await drop(page, "body", [colourPng("one.png"), depthPng("two.png"), maskPng("three.png")]);
-  await expect(slot(lab, 2)).toContainText("three.png");
-  await lab.reaches("ready");
-  await drop(page, "#hero", [depthPng("five.png"), colourPng("four.png", 9)]);
-  await expect(slot(lab, 0)).toContainText("four.png");
-  await expect(slot(lab, 1)).toContainText("five.png");
-  await expect(slot(lab, 2)).not.toContainText("three.png");
-  await lab.reaches("ready");
-  await expect(page.locator(".keeping")).toContainText("kept in this browser");
-  await page.getByRole("button", { name: "Sample", exact: true }).click();
-  await lab.reaches("ready");
-  await page.reload();
-  await lab.reaches("ready");
-  await drop(page, "body", [maskPng("six.png")]);
-  await expect(slot(lab, 2)).toContainText("six.png");
-  await lab.reaches("waiting");
-  await expect(slot(lab, 0)).not.toContainText("four.png");
-});
+test(
+  "a pair that comes whole leaves no mask of the last, and files of last time come back for nobody who brings others",
+  LONG,
+  async ({ lab, page }) => {
+    await lab.open("size=32");
+    await drop(page, "body", [colourPng("one.png"), depthPng("two.png"), maskPng("three.png")]);
+    await expect(slot(lab, 2)).toContainText("three.png");
+    await lab.reaches("ready");
+    await drop(page, "#hero", [depthPng("five.png"), colourPng("four.png", 9)]);
+    await expect(slot(lab, 0)).toContainText("four.png");
+    await expect(slot(lab, 1)).toContainText("five.png");
+    await expect(slot(lab, 2)).not.toContainText("three.png");
+    await lab.reaches("ready");
+    await expect(page.locator(".keeping")).toContainText("kept in this browser");
+    await page.getByRole("button", { name: "Sample", exact: true }).click();
+    await lab.reaches("ready");
+    await page.reload();
+    await lab.reaches("ready");
+    await drop(page, "body", [maskPng("six.png")]);
+    await expect(slot(lab, 2)).toContainText("six.png");
+    await lab.reaches("waiting");
+    await expect(slot(lab, 0)).not.toContainText("four.png");
+  },
+);
 
-test("where storage is full, older files do not come back in the place of those that could not be kept", async ({ lab, page }) => {
+test("where storage is full, older files do not come back in the place of those that could not be kept", async ({
+  lab,
+  page,
+}) => {
   await own(lab);
   await put(lab, "Colour image", colourPng("old.png"));
   await put(lab, "Depth map", depthPng("old-depth.png"));
@@ -352,7 +453,10 @@ test("where storage is full, older files do not come back in the place of those 
   await expect(slot(lab, 0)).not.toContainText("old.png");
 });
 
-for (const [name, words] of [["QuotaExceededError", "its storage is full"], ["SecurityError", "its storage is closed to this page"]] as const) {
+for (const [name, words] of [
+  ["QuotaExceededError", "its storage is full"],
+  ["SecurityError", "its storage is closed to this page"],
+] as const) {
   test(`files work where they can't be kept: ${name}`, async ({ lab, page }) => {
     await page.addInitScript((name) => {
       IDBFactory.prototype.open = () => {
@@ -373,8 +477,16 @@ for (const [name, words] of [["QuotaExceededError", "its storage is full"], ["Se
 test("what a file is called, and what is in it, stays text", async ({ lab, page }) => {
   await lab.open("size=32");
   const evil = "<img src=x onerror=document.title='owned'>";
-  const camera = { ...cameraJson(`${evil}.json`), buffer: Buffer.from(JSON.stringify({ camera_name: evil, fx: 61, fy: 62, cx: 23.5, cy: 23.25 })) };
-  await drop(page, "body", [colourPng(`${evil}.png`), depthPng(`${evil}2.png`), camera, { name: `${evil}.txt`, mimeType: "text/plain", buffer: Buffer.from(evil) }]);
+  const camera = {
+    ...cameraJson(`${evil}.json`),
+    buffer: Buffer.from(JSON.stringify({ camera_name: evil, fx: 61, fy: 62, cx: 23.5, cy: 23.25 })),
+  };
+  await drop(page, "body", [
+    colourPng(`${evil}.png`),
+    depthPng(`${evil}2.png`),
+    camera,
+    { name: `${evil}.txt`, mimeType: "text/plain", buffer: Buffer.from(evil) },
+  ]);
   await expect(slot(lab, 0)).toContainText(`${evil}.png`);
   await expect(page.locator(".remarks")).toContainText(`${evil}.txt`);
   await expect(page.locator(".remarks")).toContainText(`${evil}.json`);
@@ -384,7 +496,12 @@ test("what a file is called, and what is in it, stays text", async ({ lab, page 
 
 test("what can't be used is said: a recording, a fisheye, a second depth map, a pose", async ({ lab, page }) => {
   await lab.open("size=32");
-  const fisheye = { ...cameraJson("eye.json"), buffer: Buffer.from("camera_model: pinhole\ndistortion_model: equidistant\nimage_width: 48\nimage_height: 48\ncamera_matrix: {rows: 3, cols: 3, data: [61, 0, 23.5, 0, 62, 23.5, 0, 0, 1]}\ndistortion_coefficients: {rows: 1, cols: 4, data: [0.1, 0, 0, 0]}\n") };
+  const fisheye = {
+    ...cameraJson("eye.json"),
+    buffer: Buffer.from(
+      "camera_model: pinhole\ndistortion_model: equidistant\nimage_width: 48\nimage_height: 48\ncamera_matrix: {rows: 3, cols: 3, data: [61, 0, 23.5, 0, 62, 23.5, 0, 0, 1]}\ndistortion_coefficients: {rows: 1, cols: 4, data: [0.1, 0, 0, 0]}\n",
+    ),
+  };
   const pose = { name: "T.txt", mimeType: "text/plain", buffer: Buffer.from("1 0 0 0.1\n0 1 0 0\n0 0 1 0\n0 0 0 1\n") };
   const zip = { name: "all.zip", mimeType: "application/zip", buffer: Buffer.from("PK\x03\x04rest") };
   await drop(page, "body", [colourPng(), depthPng("one.png"), depthPng("two.png"), fisheye, pose, zip]);
@@ -399,8 +516,12 @@ test("what can't be used is said: a recording, a fisheye, a second depth map, a 
 test("what is wrong with a file is in sight, moves no slot, and is over with the next file", async ({ lab, page }) => {
   await own(lab);
   const zip = { name: "all.zip", mimeType: "application/zip", buffer: Buffer.from("PK\x03\x04rest") };
-  const places = () => page.locator(".slot .drop").evaluateAll((zones) => zones.map((zone) => zone.getBoundingClientRect().top));
-  for (const [width, height] of [[1280, 800], [390, 844]] as const) {
+  const places = () =>
+    page.locator(".slot .drop").evaluateAll((zones) => zones.map((zone) => zone.getBoundingClientRect().top));
+  for (const [width, height] of [
+    [1280, 800],
+    [390, 844],
+  ] as const) {
     await page.setViewportSize({ width, height });
     const before = await places();
     await drop(page, "body", [zip]);
@@ -408,10 +529,12 @@ test("what is wrong with a file is in sight, moves no slot, and is over with the
     await expect(remark).toBeInViewport({ ratio: 1 });
     expect(await places()).toEqual(before);
     // Nothing lies over it.
-    expect(await remark.evaluate((words) => {
-      const { left, top, width, height } = words.getBoundingClientRect();
-      return words.contains(document.elementFromPoint(left + width / 2, top + height / 2));
-    })).toBe(true);
+    expect(
+      await remark.evaluate((words) => {
+        const { left, top, width, height } = words.getBoundingClientRect();
+        return words.contains(document.elementFromPoint(left + width / 2, top + height / 2));
+      }),
+    ).toBe(true);
     await put(lab, "Colour image", colourPng(`a${width}.png`));
     await expect(slot(lab, 0)).toContainText(`a${width}.png`);
     await expect(remark).toHaveCount(0);

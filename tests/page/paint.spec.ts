@@ -15,9 +15,17 @@ test("a painted object is shown as its paint and its shading", async ({ lab, pag
   const { image, depth } = sample({ surface: "bust", light: "window", size, angles: { beta: 0 } });
   const linear = image.data as Float32Array;
   const brightest = linear.reduce((most, value) => (Number.isFinite(value) ? Math.max(most, value) : most), 0);
-  const isPainted = (index: number) => (Math.floor((index % size) / SQUARE) + Math.floor(index / size / SQUARE)) % 2 === 1;
-  const data = Uint16Array.from(linear, (value, i) => (Number.isFinite(value) ? Math.round((45_000 * value * (isPainted(Math.floor(i / 3)) ? (PAINT[i % 3] ?? 1) : 1)) / brightest) : 0));
-  const png = (data: Uint16Array, channels: 1 | 3) => ({ mimeType: "image/png", buffer: Buffer.from(encode({ width: size, height: size, data, depth: 16, channels })) });
+  const isPainted = (index: number) =>
+    (Math.floor((index % size) / SQUARE) + Math.floor(index / size / SQUARE)) % 2 === 1;
+  const data = Uint16Array.from(linear, (value, i) =>
+    Number.isFinite(value)
+      ? Math.round((45_000 * value * (isPainted(Math.floor(i / 3)) ? (PAINT[i % 3] ?? 1) : 1)) / brightest)
+      : 0,
+  );
+  const png = (data: Uint16Array, channels: 1 | 3) => ({
+    mimeType: "image/png",
+    buffer: Buffer.from(encode({ width: size, height: size, data, depth: 16, channels })),
+  });
   const depths = Uint16Array.from(depth.data ?? [], (value) => (value > 0 ? Math.round(100 * value) : 0));
 
   await lab.visit("lighting=estimate&start=identity&registration=fixed");
@@ -35,13 +43,20 @@ test("a painted object is shown as its paint and its shading", async ({ lab, pag
   // Red over blue where there is paint and where there is none: the albedo differs, the shading hardly.
   const hues = (label: string) =>
     page.locator(`canvas[aria-label^="${label}:"]`).evaluate((canvas: HTMLCanvasElement) => {
-      const { data, width } = canvas.getContext("2d")?.getImageData(0, 0, canvas.width, canvas.height) ?? new ImageData(1, 1);
+      const { data, width } =
+        canvas.getContext("2d")?.getImageData(0, 0, canvas.width, canvas.height) ?? new ImageData(1, 1);
       const ratios: number[] = [];
-      for (let i = 0; i < data.length; i += 4 * (width > 40 ? 7 : 1)) if (data[i + 3] && data[i + 2]) ratios.push((data[i] ?? 0) / (data[i + 2] ?? 1));
+      for (let i = 0; i < data.length; i += 4 * (width > 40 ? 7 : 1))
+        if (data[i + 3] && data[i + 2]) ratios.push((data[i] ?? 0) / (data[i + 2] ?? 1));
       return ratios.sort((a, b) => a - b);
     });
-  const spread = (ratios: number[]) => (ratios[Math.floor(0.9 * ratios.length)] ?? 0) / (ratios[Math.floor(0.1 * ratios.length)] ?? 1);
-  const [albedo, shading, colour] = [spread(await hues("Albedo")), spread(await hues("Shading")), spread(await hues("Colour"))];
+  const spread = (ratios: number[]) =>
+    (ratios[Math.floor(0.9 * ratios.length)] ?? 0) / (ratios[Math.floor(0.1 * ratios.length)] ?? 1);
+  const [albedo, shading, colour] = [
+    spread(await hues("Albedo")),
+    spread(await hues("Shading")),
+    spread(await hues("Colour")),
+  ];
   expect(albedo).toBeGreaterThan(1.3);
   expect(shading).toBeLessThan(1 + 0.6 * (colour - 1));
 });

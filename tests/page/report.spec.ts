@@ -3,7 +3,8 @@ import { type Page, expect, test } from "@playwright/test";
 import { reportHtml } from "../../pkg/rig-write.js";
 import { report } from "../contract/rig-sample.mjs";
 
-const PIXEL = "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNkYPhfDwAChwGA60e6kgAAAABJRU5ErkJggg==";
+const PIXEL =
+  "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNkYPhfDwAChwGA60e6kgAAAABJRU5ErkJggg==";
 
 /** Opens a report as a file that a server gives out; what it asks for beside, and what its policy refuses, is in the list. */
 async function open(page: Page, html: string): Promise<string[]> {
@@ -18,7 +19,8 @@ async function open(page: Page, html: string): Promise<string[]> {
 }
 
 /** Pixels by which the page is wider than the window. */
-const overflow = (page: Page) => page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
+const overflow = (page: Page) =>
+  page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
 
 for (const colorScheme of ["light", "dark"] as const) {
   test(`a report in ${colorScheme} colours, on a phone and a desk`, async ({ page }) => {
@@ -43,8 +45,17 @@ test("names without end, and none at all, keep a report in its place", async ({ 
   const given = report();
   const [candidate] = Object.values(given.candidates);
   if (candidate === undefined) throw new Error("the report has a candidate");
-  const names = { ...given, reason: long, warnings: [long], candidates: { [long]: candidate }, frames: [{ name: long, share: 1, note: long }] };
-  const wrong = await open(page, reportHtml(names, [], { title: long, inputs: [{ name: long, says: long, sha256: long }] }));
+  const names = {
+    ...given,
+    reason: long,
+    warnings: [long],
+    candidates: { [long]: candidate },
+    frames: [{ name: long, share: 1, note: long }],
+  };
+  const wrong = await open(
+    page,
+    reportHtml(names, [], { title: long, inputs: [{ name: long, says: long, sha256: long }] }),
+  );
   for (const width of [390, 1280]) {
     await page.setViewportSize({ width, height: 800 });
     expect(await overflow(page)).toBe(0);

@@ -22,7 +22,9 @@ test("the example is checked by the package itself", LONG, async ({ lab, page })
   // It was made 2 degrees off.
   expect(degrees).toBeGreaterThan(1);
   expect(degrees).toBeLessThan(3);
-  const rendered = page.locator(".rig-calibrations tbody tr").filter({ has: page.getByRole("rowheader", { name: "as rendered" }) });
+  const rendered = page
+    .locator(".rig-calibrations tbody tr")
+    .filter({ has: page.getByRole("rowheader", { name: "as rendered" }) });
   await expect(rendered).not.toContainText("Off");
   await expect(page.locator(".rig-curves figure")).toHaveCount(6);
   expect(lab.complaints).toEqual([]);

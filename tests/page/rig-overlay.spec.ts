@@ -14,7 +14,11 @@ test("the overlay is as high before its picture as with it: nothing below jumps"
   await answerChecks(page, "off");
   await page.addInitScript(() => {
     const send = Worker.prototype.postMessage;
-    Worker.prototype.postMessage = function (this: Worker, message: { kind?: string }, options?: StructuredSerializeOptions | Transferable[]) {
+    Worker.prototype.postMessage = function (
+      this: Worker,
+      message: { kind?: string },
+      options?: StructuredSerializeOptions | Transferable[],
+    ) {
       const pass = () => send.call(this, message, options as StructuredSerializeOptions);
       if (window.pictures && message.kind === "picture") window.pictures.push(pass);
       else pass();
@@ -23,7 +27,10 @@ test("the overlay is as high before its picture as with it: nothing below jumps"
   await page.goto("./#rig");
   await giveFiles(page, pair());
   await page.evaluate(() => void (window.pictures = []));
-  await page.getByRole("navigation", { name: "Steps" }).getByRole("button", { name: /Your calibration/ }).click();
+  await page
+    .getByRole("navigation", { name: "Steps" })
+    .getByRole("button", { name: /Your calibration/ })
+    .click();
   await page.getByRole("button", { name: /^(Run the check|Estimate a calibration)$/ }).click({ timeout: 20_000 });
   const board = page.locator(".rig-overlay-board");
   await expect(board).toBeVisible();

@@ -36,10 +36,14 @@ const read = (page: import("@playwright/test").Page, name: string): Promise<Read
 
 /** The largest difference from the fixtures' formula; `from` says which of its pixels is expected where. */
 function off({ width, data }: Read, from = (x: number, y: number): [number, number] => [x, y]): number {
-  return Math.max(...Array.from({ length: W * H }, (_, at) => {
-    const [x, y] = from(at % width, Math.floor(at / width));
-    return Math.max(...[16 * x, 20 * y, 8 * (x + y)].map((value, channel) => Math.abs((data[4 * at + channel] ?? 0) - value)));
-  }));
+  return Math.max(
+    ...Array.from({ length: W * H }, (_, at) => {
+      const [x, y] = from(at % width, Math.floor(at / width));
+      return Math.max(
+        ...[16 * x, 20 * y, 8 * (x + y)].map((value, channel) => Math.abs((data[4 * at + channel] ?? 0) - value)),
+      );
+    }),
+  );
 }
 
 test("WebP without loss, JPEG, and JPEG that EXIF turns", async ({ page }) => {
@@ -62,12 +66,18 @@ test("a JPEG's colour profile is applied, as ours is to PNG", async ({ page }) =
 
 test("a WebP or JPEG that is cut off is an error that names it", async ({ page }) => {
   const message = (name: string, length: number) =>
-    page.evaluate(async ([file, end]) => {
-      const module = "/pkg/rig.js";
-      const { readRigFile } = await import(module);
-      const bytes = new Uint8Array(await (await fetch(`/${file}`)).arrayBuffer()).slice(0, end as number);
-      return readRigFile({ name: file, bytes }).then(() => "read", (error: Error & { code: string }) => `${error.code} ${error.message}`);
-    }, [name, length] as const);
+    page.evaluate(
+      async ([file, end]) => {
+        const module = "/pkg/rig.js";
+        const { readRigFile } = await import(module);
+        const bytes = new Uint8Array(await (await fetch(`/${file}`)).arrayBuffer()).slice(0, end as number);
+        return readRigFile({ name: file, bytes }).then(
+          () => "read",
+          (error: Error & { code: string }) => `${error.code} ${error.message}`,
+        );
+      },
+      [name, length] as const,
+    );
   expect(await message("colour.webp", 40)).toMatch(/^file file: colour\.webp: this WebP is cut off/);
   expect(await message("colour.jpg", 500)).toMatch(/^file file: colour\.jpg: this JPEG is/);
 });

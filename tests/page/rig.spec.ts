@@ -10,7 +10,8 @@ import { encode } from "fast-png";
 import { answerChecks, colourPng, depthPng, giveFiles, matrixFile, pair } from "./rig";
 import { atWidths, innerWidth, narrowest } from "./widths";
 
-const step = (page: Page, name: string) => page.getByRole("navigation", { name: "Steps" }).getByRole("button", { name });
+const step = (page: Page, name: string) =>
+  page.getByRole("navigation", { name: "Steps" }).getByRole("button", { name });
 const heading = (page: Page, name: string) => page.getByRole("heading", { level: 2, name });
 
 async function open(page: Page): Promise<void> {
@@ -24,7 +25,8 @@ async function openExample(page: Page): Promise<void> {
   await expect(page.locator(".rig-frame")).toHaveCount(3);
 }
 
-const put = (page: Page, files: Parameters<ReturnType<Page["locator"]>["setInputFiles"]>[0]) => page.locator("#rig input[type=file]:not([webkitdirectory])").first().setInputFiles(files);
+const put = (page: Page, files: Parameters<ReturnType<Page["locator"]>["setInputFiles"]>[0]) =>
+  page.locator("#rig input[type=file]:not([webkitdirectory])").first().setInputFiles(files);
 
 /** A pair, and a depth camera by its field of view. */
 async function openPair(page: Page): Promise<void> {
@@ -35,7 +37,11 @@ async function openPair(page: Page): Promise<void> {
 /** As much as the example has, three frames and two calibrations, and no rendering of it, which takes seconds. */
 async function openFrames(page: Page): Promise<void> {
   await open(page);
-  await giveFiles(page, [...["0001", "0002", "0003"].flatMap(pair), matrixFile("told.txt", 0.025), matrixFile("other.txt", 0.05)], 3);
+  await giveFiles(
+    page,
+    [...["0001", "0002", "0003"].flatMap(pair), matrixFile("told.txt", 0.025), matrixFile("other.txt", 0.05)],
+    3,
+  );
 }
 
 async function run(page: Page): Promise<void> {
@@ -65,17 +71,26 @@ test("the place opens by its link and by its address, and the Lab has loaded not
 
 test("the example loads with one press: frames, cameras and a calibration", async ({ lab, page }) => {
   await openExample(page);
-  for (const side of ["Colour", "Depth"]) await expect(page.getByRole("group", { name: `${side} camera` }).locator(".rig-camera-numbers")).toHaveText(/^fx [\d.]+, .*px; /);
+  for (const side of ["Colour", "Depth"])
+    await expect(page.getByRole("group", { name: `${side} camera` }).locator(".rig-camera-numbers")).toHaveText(
+      /^fx [\d.]+, .*px; /,
+    );
   await page.getByRole("button", { name: "Next: your calibration" }).click();
   await expect(page.locator(".rig-candidate")).toHaveCount(2);
-  await expect(page.locator(".rig-words").first()).toHaveText(/^The depth camera sits [\d.]+ mm .+ the colour camera, turned by [\d.]+°\.$/);
+  await expect(page.locator(".rig-words").first()).toHaveText(
+    /^The depth camera sits [\d.]+ mm .+ the colour camera, turned by [\d.]+°\.$/,
+  );
   expect(lab.complaints).toEqual([]);
 });
 
 test("a wrong file is named beside itself, and the others are read", async ({ lab, page }) => {
   await open(page);
   const name = "<img src=x onerror=alert(1)>.pdf";
-  await put(page, [...pair(), { name, mimeType: "application/pdf", buffer: Buffer.from("%PDF-1.7 not a picture") }, { name: "cut.png", mimeType: "image/png", buffer: colourPng().subarray(0, 200) }]);
+  await put(page, [
+    ...pair(),
+    { name, mimeType: "application/pdf", buffer: Buffer.from("%PDF-1.7 not a picture") },
+    { name: "cut.png", mimeType: "image/png", buffer: colourPng().subarray(0, 200) },
+  ]);
   const file = (name: string) => page.locator(".rig-file").filter({ hasText: name });
   for (const wrong of [name, "cut.png"]) {
     await expect(file(wrong).getByRole("alert")).toContainText(wrong);
@@ -153,7 +168,15 @@ test("calibrations from a file, pasted and typed in; inverted twice they are wha
   await page.getByRole("button", { name: "Add what I pasted" }).click();
   await expect(page.locator(".rig-step:not([hidden]) .rig-error[role=alert]").first()).toContainText("pasted text");
 
-  for (const [label, value] of [["x, m", "0"], ["y, m", "0"], ["z, m", "-0,1"], ["qx", "0"], ["qy", "0"], ["qz", "1"]] as const) await page.getByLabel(label, { exact: true }).fill(value);
+  for (const [label, value] of [
+    ["x, m", "0"],
+    ["y, m", "0"],
+    ["z, m", "-0,1"],
+    ["qx", "0"],
+    ["qy", "0"],
+    ["qz", "1"],
+  ] as const)
+    await page.getByLabel(label, { exact: true }).fill(value);
   await page.getByRole("button", { name: "Add these numbers" }).click();
   await expect(page.getByText("Some numbers are missing.").last()).toBeVisible();
   await page.getByLabel("qw", { exact: true }).fill("1");
@@ -187,7 +210,13 @@ test("the overlay moves between the calibration in question and the one found", 
   await openFrames(page);
   await run(page);
   const layer = page.locator(".rig-overlay-layer");
-  const print = () => layer.evaluate((canvas: HTMLCanvasElement) => canvas.getContext("2d")?.getImageData(0, 0, canvas.width, canvas.height).data.reduce((sum, value) => (sum * 31 + value) % 1_000_003, 7));
+  const print = () =>
+    layer.evaluate((canvas: HTMLCanvasElement) =>
+      canvas
+        .getContext("2d")
+        ?.getImageData(0, 0, canvas.width, canvas.height)
+        .data.reduce((sum, value) => (sum * 31 + value) % 1_000_003, 7),
+    );
   const slider = page.getByRole("slider", { name: "Calibration shown" });
   await expect(layer).toHaveAttribute("aria-label", /frame 1, calibration: told/);
   const before = await print();
@@ -197,7 +226,12 @@ test("the overlay moves between the calibration in question and the one found", 
   await slider.press("ArrowLeft");
   await expect(slider).toHaveAttribute("aria-valuetext", /^95 % of the way from .+ to found$/);
   // At full resolution: one pixel of the canvas for each of the image.
-  expect(await layer.evaluate((canvas: HTMLCanvasElement) => [canvas.width, canvas.height])).toEqual(await page.locator(".rig-overlay-picture > canvas").first().evaluate((canvas: HTMLCanvasElement) => [canvas.width, canvas.height]));
+  expect(await layer.evaluate((canvas: HTMLCanvasElement) => [canvas.width, canvas.height])).toEqual(
+    await page
+      .locator(".rig-overlay-picture > canvas")
+      .first()
+      .evaluate((canvas: HTMLCanvasElement) => [canvas.width, canvas.height]),
+  );
   expect(lab.complaints).toEqual([]);
 });
 
@@ -249,7 +283,8 @@ test("what is chosen to be written stays chosen when the check runs again", asyn
 test("a removed calibration can be taken back where it was, until it is there again", async ({ lab, page }) => {
   await openPair(page);
   await page.getByRole("button", { name: "Next: your calibration" }).click();
-  const give = () => page.locator("#rig .rig-step:not([hidden]) input[type=file]").setInputFiles(matrixFile("factory.txt", 0.025));
+  const give = () =>
+    page.locator("#rig .rig-step:not([hidden]) input[type=file]").setInputFiles(matrixFile("factory.txt", 0.025));
   const undo = page.getByRole("button", { name: /^Undo/ });
   await give();
   await page.getByRole("button", { name: "Remove factory" }).click();
@@ -283,28 +318,40 @@ test("a check can be cancelled, and run again", async ({ lab, page }) => {
   expect(lab.complaints).toEqual([]);
 });
 
-test("a worker that hears nothing is replaced, and the new one has read all files again", LONG, async ({ lab, page }) => {
-  await answerChecks(page, "dead");
-  await openPair(page);
-  await run(page);
-  await page.getByRole("button", { name: "Cancel" }).click();
-  await expect(page.locator(".rig-run").getByRole("status")).toHaveText("Cancelled. Nothing was lost.");
-  await step(page, "Files and cameras").click();
-  const dialog = page.getByRole("dialog");
-  // Asked of the old worker, answered by the new one.
-  await page.getByRole("button", { name: "Restrict what is used" }).click();
-  await expect(dialog).toBeVisible();
-  expect(await dialog.locator("canvas").first().evaluate((canvas: HTMLCanvasElement) => canvas.getContext("2d")?.getImageData(80, 60, 1, 1).data[0])).toBeGreaterThan(150);
-  expect(lab.complaints).toEqual([]);
-});
+test(
+  "a worker that hears nothing is replaced, and the new one has read all files again",
+  LONG,
+  async ({ lab, page }) => {
+    await answerChecks(page, "dead");
+    await openPair(page);
+    await run(page);
+    await page.getByRole("button", { name: "Cancel" }).click();
+    await expect(page.locator(".rig-run").getByRole("status")).toHaveText("Cancelled. Nothing was lost.");
+    await step(page, "Files and cameras").click();
+    const dialog = page.getByRole("dialog");
+    // Asked of the old worker, answered by the new one.
+    await page.getByRole("button", { name: "Restrict what is used" }).click();
+    await expect(dialog).toBeVisible();
+    expect(
+      await dialog
+        .locator("canvas")
+        .first()
+        .evaluate((canvas: HTMLCanvasElement) => canvas.getContext("2d")?.getImageData(80, 60, 1, 1).data[0]),
+    ).toBeGreaterThan(150);
+    expect(lab.complaints).toEqual([]);
+  },
+);
 
 test("files dropped beside the target are taken, too", async ({ lab, page }) => {
   await open(page);
-  const dropped = await page.evaluateHandle((bytes) => {
-    const data = new DataTransfer();
-    data.items.add(new File([new Uint8Array(bytes)], "dropped.png", { type: "image/png" }));
-    return data;
-  }, [...colourPng()]);
+  const dropped = await page.evaluateHandle(
+    (bytes) => {
+      const data = new DataTransfer();
+      data.items.add(new File([new Uint8Array(bytes)], "dropped.png", { type: "image/png" }));
+      return data;
+    },
+    [...colourPng()],
+  );
   await page.getByRole("heading", { name: "Cameras", exact: true }).dispatchEvent("drop", { dataTransfer: dropped });
   await expect(page.locator(".rig-file")).toContainText("dropped.png");
   await expect(page.locator(".rig-frame")).toContainText("A depth map is missing.");
@@ -326,7 +373,13 @@ test("what is used of a frame can be restricted, with the pointer and with numbe
   await expect(share).toHaveText(/^(49|50) % of the image is used\.$/);
   await dialog.getByRole("button", { name: "Use everything" }).click();
   await dialog.getByText("Rectangle by numbers").click();
-  for (const [label, value] of [["left, px", "0"], ["top, px", "0"], ["width, px", "160"], ["height, px", "30"]] as const) await dialog.getByLabel(label).fill(value);
+  for (const [label, value] of [
+    ["left, px", "0"],
+    ["top, px", "0"],
+    ["width, px", "160"],
+    ["height, px", "30"],
+  ] as const)
+    await dialog.getByLabel(label).fill(value);
   await dialog.getByRole("button", { name: "Apply" }).click();
   await expect(share).toHaveText("25 % of the image is used.");
   // A stroke is taken back, one at a time.
@@ -344,7 +397,9 @@ test("what is used of a frame can be restricted, with the pointer and with numbe
   await expect(share).toHaveText("30 % of the image is used.");
   await dialog.getByLabel("Farthest depth, m").fill("1.2");
   await dialog.getByRole("button", { name: "Done" }).click();
-  await expect(page.locator(".rig-frame")).toContainText("used: 30 % of the image, as painted, depths from 0 to 1.2 m.");
+  await expect(page.locator(".rig-frame")).toContainText(
+    "used: 30 % of the image, as painted, depths from 0 to 1.2 m.",
+  );
   expect(lab.complaints).toEqual([]);
 });
 
@@ -357,16 +412,28 @@ test("a guessed unit is confirmed at one press, for all depth maps", async ({ la
   await guess.getByRole("button", { name: "Yes, that is right" }).click();
   await expect(guess).toBeHidden();
   await expect(page.locator(".rig-files")).not.toContainText("was guessed");
-  for (const name of ["depth_0001.png", "depth_0002.png"]) await expect(page.locator(".rig-file").filter({ hasText: name }).getByLabel("Unit")).toHaveValue("0.001");
+  for (const name of ["depth_0001.png", "depth_0002.png"])
+    await expect(page.locator(".rig-file").filter({ hasText: name }).getByLabel("Unit")).toHaveValue("0.001");
   expect(lab.complaints).toEqual([]);
 });
 
-test("a folder comes in order, with its masks to be seen and left out, and its guesses in view", async ({ lab, page }) => {
+test("a folder comes in order, with its masks to be seen and left out, and its guesses in view", async ({
+  lab,
+  page,
+}) => {
   await answerChecks(page, "consistent");
   await open(page);
   const folder = mkdtempSync(join(tmpdir(), "rig-"));
-  const mask = Buffer.from(encode({ width: 160, height: 120, channels: 1, data: Uint8Array.from({ length: 160 * 120 }, (_, i) => (i % 160 < 80 ? 255 : 0)) }));
-  for (const name of ["10", "9"]) for (const { name: file, buffer } of pair(name)) writeFileSync(join(folder, file), buffer);
+  const mask = Buffer.from(
+    encode({
+      width: 160,
+      height: 120,
+      channels: 1,
+      data: Uint8Array.from({ length: 160 * 120 }, (_, i) => (i % 160 < 80 ? 255 : 0)),
+    }),
+  );
+  for (const name of ["10", "9"])
+    for (const { name: file, buffer } of pair(name)) writeFileSync(join(folder, file), buffer);
   writeFileSync(join(folder, "mask_9.png"), mask);
   writeFileSync(join(folder, "K.txt"), "150 0 80\n0 150 60\n0 0 1\n");
   await page.locator("#rig input[webkitdirectory]").first().setInputFiles(folder);
@@ -437,16 +504,37 @@ test("what a reader warned of caps the verdict, and is what to do next", async (
   await answerChecks(page, "consistent");
   await open(page);
   // A colour picture's grey levels as depths, of 8 bits, and a second frame of another size.
-  const grey = Buffer.from(encode({ width: 160, height: 120, channels: 1, data: Uint8Array.from({ length: 160 * 120 }, (_, i) => 100 + (i % 100)) }));
-  await put(page, [{ name: "color_0001.png", mimeType: "image/png", buffer: colourPng() }, { name: "depth_0001.png", mimeType: "image/png", buffer: grey }]);
-  await put(page, [{ name: "color_0002.png", mimeType: "image/png", buffer: colourPng(80, 60) }, { name: "depth_0002.png", mimeType: "image/png", buffer: depthPng(80, 60) }]);
+  const grey = Buffer.from(
+    encode({
+      width: 160,
+      height: 120,
+      channels: 1,
+      data: Uint8Array.from({ length: 160 * 120 }, (_, i) => 100 + (i % 100)),
+    }),
+  );
+  await put(page, [
+    { name: "color_0001.png", mimeType: "image/png", buffer: colourPng() },
+    { name: "depth_0001.png", mimeType: "image/png", buffer: grey },
+  ]);
+  await put(page, [
+    { name: "color_0002.png", mimeType: "image/png", buffer: colourPng(80, 60) },
+    { name: "depth_0002.png", mimeType: "image/png", buffer: depthPng(80, 60) },
+  ]);
   await expect(page.locator(".rig-frame")).toHaveCount(2);
   const colour = page.getByRole("group", { name: "Colour camera" });
   const depth = page.getByRole("group", { name: "Depth camera" });
   await depth.getByLabel("Where its numbers come from").selectOption("same");
-  await expect(page.locator(".rig-missing")).toContainText("the colour camera's numbers, which the depth camera shares");
+  await expect(page.locator(".rig-missing")).toContainText(
+    "the colour camera's numbers, which the depth camera shares",
+  );
   await colour.getByLabel("Where its numbers come from").selectOption("typed");
-  for (const [label, value] of [["fx, px", "150"], ["fy, px", "150"], ["cx, px", "20"], ["cy, px", "60"]] as const) await colour.getByLabel(label).fill(value);
+  for (const [label, value] of [
+    ["fx, px", "150"],
+    ["fy, px", "150"],
+    ["cx, px", "20"],
+    ["cy, px", "60"],
+  ] as const)
+    await colour.getByLabel(label).fill(value);
   await page.getByRole("button", { name: "Next: your calibration" }).click();
   await page.getByLabel("Or paste it, in any of these forms").fill("1 0 0 0.02\n0 1 0 0\n0 0 1 0\n0 0 0 1");
   await page.getByRole("button", { name: "Add what I pasted" }).click();
@@ -465,7 +553,12 @@ test("nothing of it sticks out from 320 to 2560 px, and targets are large enough
   await page.setViewportSize(narrowest);
   await openFrames(page);
   const controls = page.locator("#rig :is(button, select, summary, textarea, .rig-button, input[type=text])");
-  const small = () => controls.evaluateAll((all) => all.filter((each) => each.checkVisibility() && each.getBoundingClientRect().height < 43.5).map((each) => each.textContent ?? ""));
+  const small = () =>
+    controls.evaluateAll((all) =>
+      all
+        .filter((each) => each.checkVisibility() && each.getBoundingClientRect().height < 43.5)
+        .map((each) => each.textContent ?? ""),
+    );
   const isFine = (step: string) =>
     atWidths(page, [320, 390, 1280, 2560], async (width) => {
       expect(await innerWidth(page), `${step} at ${width} px`).toBeLessThanOrEqual(width);

@@ -30,8 +30,15 @@ export const pair = (name = "0001") => [
 ];
 
 /** Gives the page files of so many frames, and the depth camera that they do not name by its field of view. */
-export async function giveFiles(page: Page, files: readonly { name: string; mimeType: string; buffer: Buffer }[], frames = 1): Promise<void> {
-  await page.locator("#rig input[type=file]:not([webkitdirectory])").first().setInputFiles([...files]);
+export async function giveFiles(
+  page: Page,
+  files: readonly { name: string; mimeType: string; buffer: Buffer }[],
+  frames = 1,
+): Promise<void> {
+  await page
+    .locator("#rig input[type=file]:not([webkitdirectory])")
+    .first()
+    .setInputFiles([...files]);
   await expect(page.locator(".rig-frame")).toHaveCount(frames);
   const depth = page.getByRole("group", { name: "Depth camera" });
   await depth.getByLabel("Where its numbers come from").selectOption("typed");
@@ -39,7 +46,11 @@ export async function giveFiles(page: Page, files: readonly { name: string; mime
   await depth.getByLabel("Horizontal field of view, °").fill("60");
 }
 
-export const matrixFile = (name: string, tx: number) => ({ name, mimeType: "text/plain", buffer: Buffer.from(`1 0 0 ${tx}\n0 1 0 0\n0 0 1 0\n0 0 0 1\n`) });
+export const matrixFile = (name: string, tx: number) => ({
+  name,
+  mimeType: "text/plain",
+  buffer: Buffer.from(`1 0 0 ${tx}\n0 1 0 0\n0 0 1 0\n0 0 0 1\n`),
+});
 
 const AXES = ["rx", "ry", "rz", "tx", "ty", "tz"] as const;
 
@@ -49,22 +60,46 @@ export function reportOf(verdict: CheckReport["verdict"], candidates: string[], 
   const candidate = (i: number) => ({
     verdict: i === 0 ? verdict : ("off" as const),
     reason: `It is ${2 + i}.04 degrees off about y.`,
-    offDegrees: 2.04 + i, offMillimetres: 1.2, pixels: 10.7 + i, interval: [9.8 + i, 11.6 + i] as [number, number], probability: 0.0001,
+    offDegrees: 2.04 + i,
+    offMillimetres: 1.2,
+    pixels: 10.7 + i,
+    interval: [9.8 + i, 11.6 + i] as [number, number],
+    probability: 0.0001,
   });
   const covariance = Array.from({ length: 36 }, (_, i) => (i % 7 === 0 ? (i < 18 ? 2e-6 : i === 35 ? 3e-5 : 1e-6) : 0));
   return {
     verdict,
-    reason: verdict === "off" ? "It is 2.04 degrees off about y." : verdict === "undecided" ? "All of the scene lies on one plane." : "It agrees with all frames.",
+    reason:
+      verdict === "off"
+        ? "It is 2.04 degrees off about y."
+        : verdict === "undecided"
+          ? "All of the scene lies on one plane."
+          : "It agrees with all frames.",
     warnings: [],
-    estimate: { scale: 1, rotation: [1, 0, 0, 0, 1, 0, 0, 0, 1], translation: [0.05, 0.002, -0.003], angles: { alpha: 0, beta: 0, gamma: 0 } },
+    estimate: {
+      scale: 1,
+      rotation: [1, 0, 0, 0, 1, 0, 0, 0, 1],
+      translation: [0.05, 0.002, -0.003],
+      angles: { alpha: 0, beta: 0, gamma: 0 },
+    },
     middle: [0, 0, 1.1],
     covariance,
     health: { pixels: 0.42, interval: [0.21, 0.83] },
     candidates: Object.fromEntries(candidates.map((name, i) => [name, candidate(i)])),
-    cues: { edges: { share: 0.55, sharpness: 1.9 }, information: { share: 0.3, sharpness: 1.1 }, shading: { share: 0.1, sharpness: 0.7 }, silhouette: { share: 0.05, sharpness: 0.4 } },
+    cues: {
+      edges: { share: 0.55, sharpness: 1.9 },
+      information: { share: 0.3, sharpness: 1.1 },
+      shading: { share: 0.1, sharpness: 0.7 },
+      silhouette: { share: 0.05, sharpness: 0.4 },
+    },
     frames: frames.map((name, i) => ({ name, share: i === 0 ? 1 - 0.25 * (frames.length - 1) : 0.25 })),
     sensitivity: ["edges", "information", "shading"].flatMap((cue, k) =>
-      AXES.map((axis, a) => ({ cue, axis, offsets: offsets.map((x) => (a < 3 ? x / 4 : 2.5 * x)), values: offsets.map((x) => -((x - k + 1) ** 2) / (4 + 3 * k + 4 * a)) })),
+      AXES.map((axis, a) => ({
+        cue,
+        axis,
+        offsets: offsets.map((x) => (a < 3 ? x / 4 : 2.5 * x)),
+        values: offsets.map((x) => -((x - k + 1) ** 2) / (4 + 3 * k + 4 * a)),
+      })),
     ),
   };
 }
@@ -77,18 +112,28 @@ export async function answerChecks(page: Page, verdict: CheckReport["verdict"] |
   const source = `${reportOf.toString()}`;
   await page.addInitScript(
     ({ source, verdict, axes }) => {
-      const report = new Function("AXES", `return ${source}`)(axes) as (verdict: string, candidates: string[], frames: string[]) => unknown;
+      const report = new Function("AXES", `return ${source}`)(axes) as (
+        verdict: string,
+        candidates: string[],
+        frames: string[],
+      ) => unknown;
       const send = Worker.prototype.postMessage;
       let frames: string[] = [];
       let dead: Worker | undefined;
-      Worker.prototype.postMessage = function (this: Worker, message: { kind?: string; id?: number; candidates?: object; frames?: { name: string }[] }, options?: StructuredSerializeOptions | Transferable[]) {
+      Worker.prototype.postMessage = function (
+        this: Worker,
+        message: { kind?: string; id?: number; candidates?: object; frames?: { name: string }[] },
+        options?: StructuredSerializeOptions | Transferable[],
+      ) {
         if (this === dead) return;
         if (message.kind === "check" && verdict === "dead") dead = this;
         if (message.kind === "frames" && message.frames) frames = message.frames.map(({ name }) => name);
         if (message.kind !== "check") return send.call(this, message, options as StructuredSerializeOptions);
-        const say = (data: object) => this.dispatchEvent(new MessageEvent("message", { data: { id: message.id, ...data } }));
+        const say = (data: object) =>
+          this.dispatchEvent(new MessageEvent("message", { data: { id: message.id, ...data } }));
         setTimeout(() => say({ share: 0.4, message: "aligning depth edges" }));
-        if (verdict !== "never" && verdict !== "dead") setTimeout(() => say({ answer: report(verdict, Object.keys(message.candidates ?? {}), frames) }), 20);
+        if (verdict !== "never" && verdict !== "dead")
+          setTimeout(() => say({ answer: report(verdict, Object.keys(message.candidates ?? {}), frames) }), 20);
       };
     },
     { source, verdict, axes: [...AXES] },

@@ -87,33 +87,37 @@ test("a view that was alone leaves the page where it stood", async ({ lab, page 
   }
 });
 
-test("who comes back from another place finds the run going on, and one that was paused still paused", LONG, async ({ lab, page }) => {
-  const messages = await Messages.of(page);
-  await lab.open("size=64");
-  await messages.hold("advance", 1);
-  await page.keyboard.press(" ");
-  await expect(lab.iteration).toHaveText("1");
-  // By way of two places, of which neither ends the run.
-  await page.locator("#to-learn").click();
-  await page.locator("#to-tables").click();
-  await expect(page.locator("#lab")).toBeHidden();
-  await expect(page.locator("#play")).toHaveAttribute("aria-label", "Play");
-  await messages.release();
-  await page.locator("#to-lab").click();
-  await lab.reaches("converged");
+test(
+  "who comes back from another place finds the run going on, and one that was paused still paused",
+  LONG,
+  async ({ lab, page }) => {
+    const messages = await Messages.of(page);
+    await lab.open("size=64");
+    await messages.hold("advance", 1);
+    await page.keyboard.press(" ");
+    await expect(lab.iteration).toHaveText("1");
+    // By way of two places, of which neither ends the run.
+    await page.locator("#to-learn").click();
+    await page.locator("#to-tables").click();
+    await expect(page.locator("#lab")).toBeHidden();
+    await expect(page.locator("#play")).toHaveAttribute("aria-label", "Play");
+    await messages.release();
+    await page.locator("#to-lab").click();
+    await lab.reaches("converged");
 
-  await page.keyboard.press("r");
-  await lab.reaches("ready");
-  await page.keyboard.press("s");
-  await lab.reaches("paused");
-  await page.locator("#to-tables").click();
-  await expect(page.locator("#lab")).toBeHidden();
-  await page.locator("#to-lab").click();
-  await expect(page.locator("#lab")).toBeVisible();
-  await expect(page.locator("#play")).toHaveAttribute("aria-label", "Play");
-  await lab.reaches("paused");
-  await expect(lab.iteration).toHaveText("1");
-});
+    await page.keyboard.press("r");
+    await lab.reaches("ready");
+    await page.keyboard.press("s");
+    await lab.reaches("paused");
+    await page.locator("#to-tables").click();
+    await expect(page.locator("#lab")).toBeHidden();
+    await page.locator("#to-lab").click();
+    await expect(page.locator("#lab")).toBeVisible();
+    await expect(page.locator("#play")).toHaveAttribute("aria-label", "Play");
+    await lab.reaches("paused");
+    await expect(lab.iteration).toHaveText("1");
+  },
+);
 
 test("the value under the pointer is shown in every view", async ({ lab, page }) => {
   await lab.open();
@@ -167,7 +171,12 @@ test("the report can be taken away as JSON", async ({ lab, page }) => {
   const chunks: Buffer[] = [];
   for await (const chunk of stream) chunks.push(Buffer.from(chunk as Uint8Array));
   const report: unknown = JSON.parse(Buffer.concat(chunks).toString());
-  expect(report).toMatchObject({ format: "bimodal-stereo report", source: "sample", report: { iteration: 1 }, truth: { angles: { beta: 20 } } });
+  expect(report).toMatchObject({
+    format: "bimodal-stereo report",
+    source: "sample",
+    report: { iteration: 1 },
+    truth: { angles: { beta: 20 } },
+  });
 });
 
 test("a stage explains itself", async ({ lab, page }) => {
@@ -231,7 +240,12 @@ test("nothing known: the search comes first, says how far it is, and the loop co
   const said = await search.evaluateHandle((chip) => {
     const said: string[] = [];
     const record = () => chip.hasAttribute("data-lit") && said.push(chip.textContent ?? "");
-    new MutationObserver(record).observe(chip, { attributes: true, childList: true, characterData: true, subtree: true });
+    new MutationObserver(record).observe(chip, {
+      attributes: true,
+      childList: true,
+      characterData: true,
+      subtree: true,
+    });
     return said;
   });
   const error = page.locator("#pose-error");
@@ -294,27 +308,32 @@ test("other threads share the search where the machine has them", async ({ lab, 
   await expect.poll(() => workers.length).toBe(Math.min(threads, 4) - 1);
 });
 
-test("the search fills a map of scores, whose best rotation is near the true one; a new run empties it", LONG, async ({ lab, page }) => {
-  await lab.visit("surface=bust&light=colourful&size=64&beta=30");
-  const map = page.locator("#score-map");
-  await expect(map).toBeHidden();
-  await page.getByLabel("Speed").selectOption({ label: "fastest" });
-  await page.getByRole("button", { name: "Play" }).click();
-  await expect(map).toBeVisible();
-  await lab.reaches("converged");
-  await expect(page.locator("#score-words")).toHaveText(/: \d{3} tried; white: best, orange: true/);
-  const canvas = page.getByRole("img", { name: /^Scores of \d+ rotations; the best turns by/ });
-  const [, about] = /by (−?\d+) degrees about the vertical/.exec((await canvas.getAttribute("aria-label")) ?? "") ?? [];
-  // Rotations lie 16 degrees apart.
-  expect(Math.abs(Number(about?.replace("−", "-")) - 30)).toBeLessThanOrEqual(16);
-  // At the true turn the map is yellow, at its corner nothing was tried.
-  const colours = await canvas.evaluate((element: HTMLCanvasElement) => {
-    const at = (x: number, y: number) => [...(element.getContext("2d")?.getImageData(x, y, 1, 1).data ?? [])];
-    return { truth: at(Math.round(((30 + 105) / 210) * element.width), element.height / 2), corner: at(1, 1) };
-  });
-  expect(colours.truth[0]).toBeGreaterThan(100);
-  expect(colours.truth[1]).toBeGreaterThan(150);
-  expect(colours.corner[3]).toBe(0);
-  await page.getByRole("button", { name: "Reset" }).click();
-  await expect(map).toBeHidden();
-});
+test(
+  "the search fills a map of scores, whose best rotation is near the true one; a new run empties it",
+  LONG,
+  async ({ lab, page }) => {
+    await lab.visit("surface=bust&light=colourful&size=64&beta=30");
+    const map = page.locator("#score-map");
+    await expect(map).toBeHidden();
+    await page.getByLabel("Speed").selectOption({ label: "fastest" });
+    await page.getByRole("button", { name: "Play" }).click();
+    await expect(map).toBeVisible();
+    await lab.reaches("converged");
+    await expect(page.locator("#score-words")).toHaveText(/: \d{3} tried; white: best, orange: true/);
+    const canvas = page.getByRole("img", { name: /^Scores of \d+ rotations; the best turns by/ });
+    const [, about] =
+      /by (−?\d+) degrees about the vertical/.exec((await canvas.getAttribute("aria-label")) ?? "") ?? [];
+    // Rotations lie 16 degrees apart.
+    expect(Math.abs(Number(about?.replace("−", "-")) - 30)).toBeLessThanOrEqual(16);
+    // At the true turn the map is yellow, at its corner nothing was tried.
+    const colours = await canvas.evaluate((element: HTMLCanvasElement) => {
+      const at = (x: number, y: number) => [...(element.getContext("2d")?.getImageData(x, y, 1, 1).data ?? [])];
+      return { truth: at(Math.round(((30 + 105) / 210) * element.width), element.height / 2), corner: at(1, 1) };
+    });
+    expect(colours.truth[0]).toBeGreaterThan(100);
+    expect(colours.truth[1]).toBeGreaterThan(150);
+    expect(colours.corner[3]).toBe(0);
+    await page.getByRole("button", { name: "Reset" }).click();
+    await expect(map).toBeHidden();
+  },
+);

@@ -48,7 +48,13 @@ test("a run that was taken away goes on where it stood, with the options that it
 
 test("one that is damaged is refused, and says why", async ({ lab, page }) => {
   await lab.open("size=32");
-  await drop(page, "body", [{ name: "broken.bimodal", mimeType: "application/octet-stream", buffer: Buffer.from("bimodal-stereo\n\x01and nothing of ours") }]);
+  await drop(page, "body", [
+    {
+      name: "broken.bimodal",
+      mimeType: "application/octet-stream",
+      buffer: Buffer.from("bimodal-stereo\n\x01and nothing of ours"),
+    },
+  ]);
   await lab.reaches("error");
   await expect(page.locator("#alert")).toContainText("state: is damaged or cut off");
   await page.getByRole("button", { name: "Sample" }).click();

@@ -9,7 +9,8 @@ import { answerChecks, giveFiles, pair } from "./rig";
 import { drop } from "./uploads";
 import { refusals, requests } from "./visit";
 
-const read = async (download: Promise<Download>): Promise<string> => readFileSync(await (await download).path(), "utf8");
+const read = async (download: Promise<Download>): Promise<string> =>
+  readFileSync(await (await download).path(), "utf8");
 
 /** A report is whole and holds nothing that could run, and a browser that opens it runs nothing. */
 async function opens(page: Page, html: string): Promise<void> {
@@ -43,7 +44,13 @@ test("hostile files stay text in the Lab, in what it takes away, and in its repo
 
 test("a hostile link stays text: settings, lessons, tables and steps that no one made", async ({ lab, page }) => {
   const evil = encodeURIComponent(EVIL_TEXT);
-  for (const address of [`surface=${evil}&light=${evil}&size=${evil}&colour.distortion=${evil}&${evil}=${evil}`, `learn&at=${evil}&beta=${evil}&embed`, `tables&show=${evil}&light=${evil}`, `rig&step=${evil}`, evil]) {
+  for (const address of [
+    `surface=${evil}&light=${evil}&size=${evil}&colour.distortion=${evil}&${evil}=${evil}`,
+    `learn&at=${evil}&beta=${evil}&embed`,
+    `tables&show=${evil}&light=${evil}`,
+    `rig&step=${evil}`,
+    evil,
+  ]) {
     await page.goto("about:blank");
     await page.goto(`./#${address}`);
     await expect(page.locator("main:visible")).not.toBeEmpty();
@@ -123,16 +130,20 @@ async function visitRig(page: Page): Promise<void> {
   await expect(page.locator(".rig-bar").first()).toBeVisible();
 }
 
-test("a whole visit asks for nothing but the page's own files, and its policy refuses nothing of it", LONG, async ({ lab, page, context, baseURL }) => {
-  const refused = await refusals(page);
-  const asked = requests(context);
-  await answerChecks(page, "consistent");
-  await visitLab(lab, page);
-  await visitLearn(page);
-  await visitTables(page);
-  await visitRig(page);
-  expect(asked.length).toBeGreaterThan(20);
-  expect(asked.filter((address) => !address.startsWith(baseURL ?? "?"))).toEqual([]);
-  expect(refused).toEqual([]);
-  expect(lab.complaints).toEqual([]);
-});
+test(
+  "a whole visit asks for nothing but the page's own files, and its policy refuses nothing of it",
+  LONG,
+  async ({ lab, page, context, baseURL }) => {
+    const refused = await refusals(page);
+    const asked = requests(context);
+    await answerChecks(page, "consistent");
+    await visitLab(lab, page);
+    await visitLearn(page);
+    await visitTables(page);
+    await visitRig(page);
+    expect(asked.length).toBeGreaterThan(20);
+    expect(asked.filter((address) => !address.startsWith(baseURL ?? "?"))).toEqual([]);
+    expect(refused).toEqual([]);
+    expect(lab.complaints).toEqual([]);
+  },
+);

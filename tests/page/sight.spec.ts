@@ -4,8 +4,14 @@ import { breakable, endAll, fragileGraphics, graphics, hide } from "./broken";
 import { covered, goToClouds, DRAWN, NO_OFFSCREEN } from "./clouds";
 import { LONG, expect, test } from "./lab";
 
-for (const [where, script] of [["in a thread", ""], ["on the page", NO_OFFSCREEN]] as const) {
-  test(`WebGL that is lost ${where} is told of, and the clouds are drawn again once it is back`, async ({ lab, page }) => {
+for (const [where, script] of [
+  ["in a thread", ""],
+  ["on the page", NO_OFFSCREEN],
+] as const) {
+  test(`WebGL that is lost ${where} is told of, and the clouds are drawn again once it is back`, async ({
+    lab,
+    page,
+  }) => {
     await page.addInitScript(script);
     await fragileGraphics(page);
     await lab.open("size=48");
@@ -47,27 +53,31 @@ test("the thread that draws is ended: another draws, once", async ({ lab, page }
   await expect(lab.iteration).toHaveText("1");
 });
 
-test("a run stands still while its tab is hidden, and goes on to the same end when it is shown", LONG, async ({ lab, page }) => {
-  await breakable(page);
-  await lab.open("size=48");
-  await page.getByRole("button", { name: "Play" }).click();
-  await lab.reaches("converged");
-  const undisturbed = [await lab.iteration.innerText(), await page.locator("#pose").innerText()];
-  await page.keyboard.press("r");
-  await lab.reaches("ready");
-  await page.keyboard.press("s");
-  await expect(lab.iteration).toHaveText("1");
-  await hide(page, true);
-  await page.getByRole("button", { name: "Play" }).click();
-  // The frame that was asked for comes; it can't be drawn, so no further one is asked for.
-  await expect(lab.iteration).toHaveText("2");
-  await page.evaluate(async () => {
-    // As long as a dozen frames would take; it only makes the test able to fail.
-    for (let count = 0; count < 4; count++) await new Promise((go) => setTimeout(go, 50));
-  });
-  await expect(lab.iteration).toHaveText("2");
-  await lab.reaches("playing");
-  await hide(page, false);
-  await lab.reaches("converged");
-  expect([await lab.iteration.innerText(), await page.locator("#pose").innerText()]).toEqual(undisturbed);
-});
+test(
+  "a run stands still while its tab is hidden, and goes on to the same end when it is shown",
+  LONG,
+  async ({ lab, page }) => {
+    await breakable(page);
+    await lab.open("size=48");
+    await page.getByRole("button", { name: "Play" }).click();
+    await lab.reaches("converged");
+    const undisturbed = [await lab.iteration.innerText(), await page.locator("#pose").innerText()];
+    await page.keyboard.press("r");
+    await lab.reaches("ready");
+    await page.keyboard.press("s");
+    await expect(lab.iteration).toHaveText("1");
+    await hide(page, true);
+    await page.getByRole("button", { name: "Play" }).click();
+    // The frame that was asked for comes; it can't be drawn, so no further one is asked for.
+    await expect(lab.iteration).toHaveText("2");
+    await page.evaluate(async () => {
+      // As long as a dozen frames would take; it only makes the test able to fail.
+      for (let count = 0; count < 4; count++) await new Promise((go) => setTimeout(go, 50));
+    });
+    await expect(lab.iteration).toHaveText("2");
+    await lab.reaches("playing");
+    await hide(page, false);
+    await lab.reaches("converged");
+    expect([await lab.iteration.innerText(), await page.locator("#pose").innerText()]).toEqual(undisturbed);
+  },
+);

@@ -10,9 +10,15 @@ test("each slide fits its screen, whatever its figure has to say", LONG, async (
   for (const state of [...LESSONS, ...WORDIEST]) {
     await open(page, `at=${state}&slides`);
     await expect(page.locator(".learn-slide .learn-figure")).toHaveAttribute("aria-busy", "false");
-    for (const [width, height] of [[1280, 720], [1366, 768], [1600, 900], [1920, 1080]] as const) {
+    for (const [width, height] of [
+      [1280, 720],
+      [1366, 768],
+      [1600, 900],
+      [1920, 1080],
+    ] as const) {
       await page.setViewportSize({ width, height });
-      const below = () => page.locator(".learn-slide").evaluate(({ scrollHeight, clientHeight }) => scrollHeight - clientHeight);
+      const below = () =>
+        page.locator(".learn-slide").evaluate(({ scrollHeight, clientHeight }) => scrollHeight - clientHeight);
       await expect.poll(below, { message: `${state} at ${width} px` }).toBeLessThanOrEqual(0);
     }
   }

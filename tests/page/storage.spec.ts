@@ -36,9 +36,20 @@ test.describe("the page's own files", () => {
 
 test("where every kind of storage is forbidden all places work", async ({ lab, page }) => {
   await page.addInitScript(() => {
-    const forbid = { get: () => { throw new DOMException("no", "SecurityError"); } };
-    for (const kind of ["localStorage", "sessionStorage", "indexedDB", "caches"]) Object.defineProperty(window, kind, forbid);
-    Object.defineProperty(window, "BroadcastChannel", { value: class { constructor() { throw new DOMException("no", "SecurityError"); } } });
+    const forbid = {
+      get: () => {
+        throw new DOMException("no", "SecurityError");
+      },
+    };
+    for (const kind of ["localStorage", "sessionStorage", "indexedDB", "caches"])
+      Object.defineProperty(window, kind, forbid);
+    Object.defineProperty(window, "BroadcastChannel", {
+      value: class {
+        constructor() {
+          throw new DOMException("no", "SecurityError");
+        }
+      },
+    });
     Object.defineProperty(navigator, "locks", { value: undefined });
   });
   await lab.open("size=32");
@@ -56,10 +67,14 @@ test("where every kind of storage is forbidden all places work", async ({ lab, p
 
 test("two Labs in two tabs run at once, each as if it were alone", async ({ lab, context }) => {
   const settings = ["size=48&start=truth&iterations=6", "size=32&beta=15&start=truth&iterations=6"];
-  const end = async ({ page, iteration }: Lab): Promise<string[]> => [await iteration.innerText(), await page.locator("#pose").innerText()];
+  const end = async ({ page, iteration }: Lab): Promise<string[]> => [
+    await iteration.innerText(),
+    await page.locator("#pose").innerText(),
+  ];
   const other = new Lab(await context.newPage());
   const labs = [lab, other];
-  const isOver = ({ page }: Lab) => expect(page.locator("#status")).toHaveAttribute("data-state", /^(converged|ambiguous|lost|max-iterations)$/);
+  const isOver = ({ page }: Lab) =>
+    expect(page.locator("#status")).toHaveAttribute("data-state", /^(converged|ambiguous|lost|max-iterations)$/);
   const play = ({ page }: Lab) => page.getByRole("button", { name: "Play" }).click();
   const alone: string[][] = [];
   for (const [index, each] of labs.entries()) {
@@ -93,28 +108,40 @@ test("a tab says when another one keeps its files in the place of these", async 
   expect(other.complaints).toEqual([]);
 });
 
-test("files dropped while a run is on: the run ends, and the new pair's is what it is alone", LONG, async ({ lab, page }) => {
-  const second = [colourPng("second.png", 20), depthPng("second-depth.png")];
-  const play = async () => {
+test(
+  "files dropped while a run is on: the run ends, and the new pair's is what it is alone",
+  LONG,
+  async ({ lab, page }) => {
+    const second = [colourPng("second.png", 20), depthPng("second-depth.png")];
+    const play = async () => {
+      await page.getByRole("button", { name: "Play" }).click();
+      await expect(page.locator("#status")).toHaveAttribute(
+        "data-state",
+        /^(converged|ambiguous|lost|max-iterations)$/,
+      );
+      return [
+        await lab.iteration.innerText(),
+        await page.locator("#pose").innerText(),
+        await lab.fingerprint("Colour"),
+        await lab.fingerprint("Refined depth"),
+      ];
+    };
+    await lab.open("size=32&iterations=12");
+    await page.getByLabel("Speed").selectOption({ label: "fastest" });
+    await drop(page, "body", second);
+    await lab.reaches("ready");
+    const alone = await play();
+    await drop(page, "body", [colourPng("first.png"), depthPng("first-depth.png")]);
+    await expect(name(page, 0)).toContainText("first.png");
+    await lab.reaches("ready");
+    await page.getByLabel("Speed").selectOption({ label: "8 per second" });
     await page.getByRole("button", { name: "Play" }).click();
-    await expect(page.locator("#status")).toHaveAttribute("data-state", /^(converged|ambiguous|lost|max-iterations)$/);
-    return [await lab.iteration.innerText(), await page.locator("#pose").innerText(), await lab.fingerprint("Colour"), await lab.fingerprint("Refined depth")];
-  };
-  await lab.open("size=32&iterations=12");
-  await page.getByLabel("Speed").selectOption({ label: "fastest" });
-  await drop(page, "body", second);
-  await lab.reaches("ready");
-  const alone = await play();
-  await drop(page, "body", [colourPng("first.png"), depthPng("first-depth.png")]);
-  await expect(name(page, 0)).toContainText("first.png");
-  await lab.reaches("ready");
-  await page.getByLabel("Speed").selectOption({ label: "8 per second" });
-  await page.getByRole("button", { name: "Play" }).click();
-  await expect(lab.iteration).not.toHaveText("0");
-  await drop(page, "body", second);
-  await expect(name(page, 0)).toContainText("second.png");
-  await lab.reaches("ready");
-  await page.getByLabel("Speed").selectOption({ label: "fastest" });
-  expect(await play()).toEqual(alone);
-  await expect(page.locator("#alert")).toBeHidden();
-});
+    await expect(lab.iteration).not.toHaveText("0");
+    await drop(page, "body", second);
+    await expect(name(page, 0)).toContainText("second.png");
+    await lab.reaches("ready");
+    await page.getByLabel("Speed").selectOption({ label: "fastest" });
+    expect(await play()).toEqual(alone);
+    await expect(page.locator("#alert")).toBeHidden();
+  },
+);

@@ -29,16 +29,27 @@ test("where motion is unwelcome nothing plays by itself", async ({ lab, page }) 
 test("the surfaces are most of the first screen from 1280 to 2560 px", async ({ lab, page }) => {
   await page.setViewportSize({ width: 1280, height: 800 });
   await lab.open();
-  for (const [width, height] of [[1280, 800], [1600, 900], [2560, 1300]] as const) {
-    await atWidths(page, [width], async () => {
-      const box = await page.locator("#clouds-box").boundingBox();
-      const bar = await page.locator("#bar").boundingBox();
-      expect(box && box.width / width).toBeGreaterThan(0.45);
-      expect(box && bar && box.y + box.height).toBeLessThanOrEqual(bar?.y ?? 0);
-      // In their reading order: what goes in, the surfaces, what comes out.
-      const lefts = await page.locator("#inputs, #hero, #outcome").evaluateAll((parts) => parts.map((part) => part.getBoundingClientRect().left));
-      expect([...lefts].sort((a, b) => a - b)).toEqual(lefts);
-    }, height);
+  for (const [width, height] of [
+    [1280, 800],
+    [1600, 900],
+    [2560, 1300],
+  ] as const) {
+    await atWidths(
+      page,
+      [width],
+      async () => {
+        const box = await page.locator("#clouds-box").boundingBox();
+        const bar = await page.locator("#bar").boundingBox();
+        expect(box && box.width / width).toBeGreaterThan(0.45);
+        expect(box && bar && box.y + box.height).toBeLessThanOrEqual(bar?.y ?? 0);
+        // In their reading order: what goes in, the surfaces, what comes out.
+        const lefts = await page
+          .locator("#inputs, #hero, #outcome")
+          .evaluateAll((parts) => parts.map((part) => part.getBoundingClientRect().left));
+        expect([...lefts].sort((a, b) => a - b)).toEqual(lefts);
+      },
+      height,
+    );
   }
 });
 
@@ -56,20 +67,24 @@ test("an example is a press: it sets everything and plays", async ({ lab, page }
   await expect(page).toHaveURL(/surface=vase/);
 });
 
-test("a press of the example that is set, as a space after it was chosen, pauses and plays on", LONG, async ({ lab, page }) => {
-  await lab.open("surface=vase&size=64");
-  const play = page.locator("#play");
-  const example = page.getByRole("button", { name: "Noise", exact: true });
-  await example.click();
-  await expect(lab.iteration).not.toHaveText("0");
-  await expect(example).toBeFocused();
-  await page.keyboard.press(" ");
-  await expect(play).toHaveAttribute("aria-label", "Play");
-  // Not begun anew.
-  await expect(lab.iteration).not.toHaveText("0");
-  await page.keyboard.press(" ");
-  await lab.reaches("converged");
-});
+test(
+  "a press of the example that is set, as a space after it was chosen, pauses and plays on",
+  LONG,
+  async ({ lab, page }) => {
+    await lab.open("surface=vase&size=64");
+    const play = page.locator("#play");
+    const example = page.getByRole("button", { name: "Noise", exact: true });
+    await example.click();
+    await expect(lab.iteration).not.toHaveText("0");
+    await expect(example).toBeFocused();
+    await page.keyboard.press(" ");
+    await expect(play).toHaveAttribute("aria-label", "Play");
+    // Not begun anew.
+    await expect(lab.iteration).not.toHaveText("0");
+    await page.keyboard.press(" ");
+    await lab.reaches("converged");
+  },
+);
 
 test("a pose that was held and is off has no tick", async ({ lab, page }) => {
   await lab.visit("size=32&registration=fixed&start=identity&beta=40");
@@ -90,101 +105,118 @@ test("a link that asks for what can't be says which field is wrong, and how", as
   await expect(field).toBeInViewport();
 });
 
-test("the light is shown as found and true, and the true one can be dragged: the picture follows", LONG, async ({ lab, page }) => {
-  await lab.open("size=64");
-  const before = await lab.fingerprint("Colour");
-  const balls = page.locator("#light .ball");
-  await expect(balls).toHaveCount(3);
-  const truth = page.getByRole("img", { name: /^A ball under the true light/ });
-  const ball = await truth.boundingBox();
-  if (!ball) throw new Error("the ball is on the page");
-  await page.mouse.move(ball.x + ball.width / 2, ball.y + ball.height / 2);
-  await page.mouse.down();
-  await page.mouse.move(ball.x + ball.width / 2 + 10, ball.y + ball.height / 2 + 4, { steps: 3 });
-  await expect.poll(() => lab.fingerprint("Colour")).not.toBe(before);
-  // Where it rests on its way it counts, and all of the drag is one step for Undo.
-  await expect(page).toHaveURL(/lightTurn=-\d+/);
-  await lab.reaches("ready");
-  await page.mouse.move(ball.x + ball.width / 2 + 20, ball.y + ball.height / 2 + 8, { steps: 3 });
-  await page.mouse.up();
-  await expect(page).toHaveURL(/lightTurn=-(4[5-9]|5\d)/);
-  await lab.reaches("ready");
-  const turned = await lab.fingerprint("Colour");
-  expect(turned).not.toBe(before);
-  await lab.unfold();
-  await page.getByRole("button", { name: "Undo" }).click();
-  await expect.poll(() => lab.fingerprint("Colour")).toBe(before);
-  await page.getByRole("button", { name: "Redo" }).click();
-  await expect.poll(() => lab.fingerprint("Colour")).toBe(turned);
-});
+test(
+  "the light is shown as found and true, and the true one can be dragged: the picture follows",
+  LONG,
+  async ({ lab, page }) => {
+    await lab.open("size=64");
+    const before = await lab.fingerprint("Colour");
+    const balls = page.locator("#light .ball");
+    await expect(balls).toHaveCount(3);
+    const truth = page.getByRole("img", { name: /^A ball under the true light/ });
+    const ball = await truth.boundingBox();
+    if (!ball) throw new Error("the ball is on the page");
+    await page.mouse.move(ball.x + ball.width / 2, ball.y + ball.height / 2);
+    await page.mouse.down();
+    await page.mouse.move(ball.x + ball.width / 2 + 10, ball.y + ball.height / 2 + 4, { steps: 3 });
+    await expect.poll(() => lab.fingerprint("Colour")).not.toBe(before);
+    // Where it rests on its way it counts, and all of the drag is one step for Undo.
+    await expect(page).toHaveURL(/lightTurn=-\d+/);
+    await lab.reaches("ready");
+    await page.mouse.move(ball.x + ball.width / 2 + 20, ball.y + ball.height / 2 + 8, { steps: 3 });
+    await page.mouse.up();
+    await expect(page).toHaveURL(/lightTurn=-(4[5-9]|5\d)/);
+    await lab.reaches("ready");
+    const turned = await lab.fingerprint("Colour");
+    expect(turned).not.toBe(before);
+    await lab.unfold();
+    await page.getByRole("button", { name: "Undo" }).click();
+    await expect.poll(() => lab.fingerprint("Colour")).toBe(before);
+    await page.getByRole("button", { name: "Redo" }).click();
+    await expect.poll(() => lab.fingerprint("Colour")).toBe(turned);
+  },
+);
 
-test("while the light is dragged, what was found is marked as of the run before, and nothing moves", LONG, async ({ lab, page }) => {
-  await lab.open("size=64");
-  const found = page.locator("#pose-found");
-  const ball = page.locator("#light figcaption").first();
-  const truth = page.getByRole("img", { name: /^A ball under the true light/ });
-  const box = await truth.boundingBox();
-  if (!box) throw new Error("the ball is on the page");
-  const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
-  await page.mouse.move(x, y);
-  await page.mouse.down();
-  await page.mouse.move(x + 10, y);
-  // Where the loop starts is the same under any light.
-  await expect(found).toHaveText("start");
-  await page.mouse.up();
-  await expect(page).toHaveURL(/lightTurn=-\d+/);
+test(
+  "while the light is dragged, what was found is marked as of the run before, and nothing moves",
+  LONG,
+  async ({ lab, page }) => {
+    await lab.open("size=64");
+    const found = page.locator("#pose-found");
+    const ball = page.locator("#light figcaption").first();
+    const truth = page.getByRole("img", { name: /^A ball under the true light/ });
+    const box = await truth.boundingBox();
+    if (!box) throw new Error("the ball is on the page");
+    const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+    await page.mouse.move(x, y);
+    await page.mouse.down();
+    await page.mouse.move(x + 10, y);
+    // Where the loop starts is the same under any light.
+    await expect(found).toHaveText("start");
+    await page.mouse.up();
+    await expect(page).toHaveURL(/lightTurn=-\d+/);
 
-  await page.keyboard.press(" ");
-  await lab.reaches("converged");
-  const boxes = () => page.locator("#pose th, #pose td, #pose-error, #light figure").evaluateAll((parts) => parts.map((part) => JSON.stringify(part.getBoundingClientRect())));
-  const before = await boxes();
-  await page.mouse.move(x, y);
-  await page.mouse.down();
-  await page.mouse.move(x + 6, y);
-  await expect(found).toHaveText("last run");
-  await expect(ball).toHaveText("last run");
-  expect(await boxes()).toEqual(before);
-  // Back where it was, and let go: nothing has to run anew.
-  await page.mouse.move(x, y);
-  await page.mouse.up();
-  await expect(found).toHaveText("found");
-  await expect(ball).toHaveText("found");
-  await lab.reaches("converged");
+    await page.keyboard.press(" ");
+    await lab.reaches("converged");
+    const boxes = () =>
+      page
+        .locator("#pose th, #pose td, #pose-error, #light figure")
+        .evaluateAll((parts) => parts.map((part) => JSON.stringify(part.getBoundingClientRect())));
+    const before = await boxes();
+    await page.mouse.move(x, y);
+    await page.mouse.down();
+    await page.mouse.move(x + 6, y);
+    await expect(found).toHaveText("last run");
+    await expect(ball).toHaveText("last run");
+    expect(await boxes()).toEqual(before);
+    // Back where it was, and let go: nothing has to run anew.
+    await page.mouse.move(x, y);
+    await page.mouse.up();
+    await expect(found).toHaveText("found");
+    await expect(ball).toHaveText("found");
+    await lab.reaches("converged");
 
-  await page.mouse.down();
-  await page.mouse.move(x + 12, y);
-  await page.mouse.up();
-  await lab.reaches("converged");
-  await expect(found).toHaveText("found");
-  await expect(page.locator("#pose")).not.toHaveAttribute("data-before");
-});
+    await page.mouse.down();
+    await page.mouse.move(x + 12, y);
+    await page.mouse.up();
+    await lab.reaches("converged");
+    await expect(found).toHaveText("found");
+    await expect(page.locator("#pose")).not.toHaveAttribute("data-before");
+  },
+);
 
-test("a light that is turned on while its last turn is being opened does not stop what was playing", LONG, async ({ lab, page }) => {
-  await lab.open("size=64");
-  await page.keyboard.press(" ");
-  const truth = page.getByRole("img", { name: /^A ball under the true light/ });
-  await truth.focus();
-  for (const turn of [5, 10, 15]) {
-    await page.keyboard.press("ArrowRight");
-    // It has come to rest, and the pair is rendered and opened anew.
-    await expect(page).toHaveURL(new RegExp(`lightTurn=-${turn}\\b`));
-  }
-  await lab.reaches("converged");
-});
+test(
+  "a light that is turned on while its last turn is being opened does not stop what was playing",
+  LONG,
+  async ({ lab, page }) => {
+    await lab.open("size=64");
+    await page.keyboard.press(" ");
+    const truth = page.getByRole("img", { name: /^A ball under the true light/ });
+    await truth.focus();
+    for (const turn of [5, 10, 15]) {
+      await page.keyboard.press("ArrowRight");
+      // It has come to rest, and the pair is rendered and opened anew.
+      await expect(page).toHaveURL(new RegExp(`lightTurn=-${turn}\\b`));
+    }
+    await lab.reaches("converged");
+  },
+);
 
 test("the arrow keys turn the light toward where they point", async ({ lab, page }) => {
   await lab.open("size=64&light=window");
   /** Where the ball is bright: its middle of brightness, columns. */
-  const column = () => page.getByRole("img", { name: /^A ball under the true light/ }).evaluate((canvas: HTMLCanvasElement) => {
-    const { data, width } = canvas.getContext("2d")?.getImageData(0, 0, canvas.width, canvas.height) ?? new ImageData(1, 1);
-    let [sum, weighted] = [0, 0];
-    for (let i = 0; i < data.length; i += 4) {
-      if (!data[i + 3]) continue;
-      sum += data[i] ?? 0;
-      weighted += (data[i] ?? 0) * ((i / 4) % width);
-    }
-    return weighted / sum;
-  });
+  const column = () =>
+    page.getByRole("img", { name: /^A ball under the true light/ }).evaluate((canvas: HTMLCanvasElement) => {
+      const { data, width } =
+        canvas.getContext("2d")?.getImageData(0, 0, canvas.width, canvas.height) ?? new ImageData(1, 1);
+      let [sum, weighted] = [0, 0];
+      for (let i = 0; i < data.length; i += 4) {
+        if (!data[i + 3]) continue;
+        sum += data[i] ?? 0;
+        weighted += (data[i] ?? 0) * ((i / 4) % width);
+      }
+      return weighted / sum;
+    });
   await page.getByRole("img", { name: /^A ball under the true light/ }).focus();
   const start = await column();
   for (let press = 0; press < 6; press++) await page.keyboard.press("ArrowRight");
@@ -240,7 +272,10 @@ test("a pose with a rival says so, and the rival can be seen and chosen", LONG, 
   await lab.visit("surface=vase&light=window&beta=30&size=64&noise=0.08");
   const height = await panelHeight(lab);
   await expect(page.locator("#rivals")).toBeHidden();
-  const places = () => page.locator("#panel, #pose, #pose-error, #light, #clouds-box").evaluateAll((parts) => parts.map((part) => JSON.stringify(part.getBoundingClientRect())));
+  const places = () =>
+    page
+      .locator("#panel, #pose, #pose-error, #light, #clouds-box")
+      .evaluateAll((parts) => parts.map((part) => JSON.stringify(part.getBoundingClientRect())));
   const before = await places();
   await page.getByLabel("Speed").selectOption({ label: "fastest" });
   await page.getByRole("button", { name: "Play" }).click();
@@ -296,7 +331,10 @@ test("nothing moves under the pointer", async ({ lab, page }) => {
   await lab.open("size=64");
   await page.keyboard.press("s");
   await expect(lab.iteration).toHaveText("1");
-  const boxes = () => page.locator("#lab figure, #bar, #panel").evaluateAll((parts) => parts.map((part) => JSON.stringify(part.getBoundingClientRect())));
+  const boxes = () =>
+    page
+      .locator("#lab figure, #bar, #panel")
+      .evaluateAll((parts) => parts.map((part) => JSON.stringify(part.getBoundingClientRect())));
   await page.mouse.move(2, 2);
   const before = await boxes();
   const colour = await page.getByRole("img", { name: /^Colour:/ }).boundingBox();
@@ -331,7 +369,10 @@ test("a stage explains the method that runs", async ({ lab, page }) => {
 test("each number has its explanation", async ({ lab, page }) => {
   await lab.open("size=32");
   for (const name of ["Overlap", "Inliers", "Colour residual", "Rotation change", "Objective"]) {
-    await page.getByRole("button", { name: `What is "${name}"?` }).last().click();
+    await page
+      .getByRole("button", { name: `What is "${name}"?` })
+      .last()
+      .click();
     await expect(page.locator("#explanation h2")).toBeVisible();
     expect((await page.locator("#explanation p").first().textContent())?.length).toBeGreaterThan(40);
     await page.keyboard.press("Escape");
@@ -374,16 +415,29 @@ test("at 400 % zoom nothing sticks out, and the bar leaves the window to the pag
   expect(await page.locator("#bar").evaluate((bar) => getComputedStyle(bar).position)).toBe("static");
 });
 
-test("where a rotation has come to rest, table and chart say zero, and that the axis leaves it out", LONG, async ({ lab, page }) => {
-  await lab.visit("size=32&start=near");
-  await page.getByRole("button", { name: "Play" }).click();
-  await expect(page.locator("#status")).toHaveAttribute("data-state", /converged|ambiguous|lost/);
-  await expect(page.locator("#pose-extra")).toContainText(/Rotation change\??\s*0°/);
-  await expect(page.locator("#rotation-chart")).toHaveAttribute("aria-label", /change, deg: from \S+ to 0, zero in \d of \d+ iterations, which a logarithmic axis leaves out\./);
-  await expect(page.locator("#rotation-chart .still")).toHaveText(/^Zero in \d of \d+ iterations: a logarithmic axis leaves those out\.$/);
-});
+test(
+  "where a rotation has come to rest, table and chart say zero, and that the axis leaves it out",
+  LONG,
+  async ({ lab, page }) => {
+    await lab.visit("size=32&start=near");
+    await page.getByRole("button", { name: "Play" }).click();
+    await expect(page.locator("#status")).toHaveAttribute("data-state", /converged|ambiguous|lost/);
+    await expect(page.locator("#pose-extra")).toContainText(/Rotation change\??\s*0°/);
+    await expect(page.locator("#rotation-chart")).toHaveAttribute(
+      "aria-label",
+      /change, deg: from \S+ to 0, zero in \d of \d+ iterations, which a logarithmic axis leaves out\./,
+    );
+    await expect(page.locator("#rotation-chart .still")).toHaveText(
+      /^Zero in \d of \d+ iterations: a logarithmic axis leaves those out\.$/,
+    );
+  },
+);
 
-for (const [width, height] of [[640, 400], [320, 200], [1280, 400]] as const) {
+for (const [width, height] of [
+  [640, 400],
+  [320, 200],
+  [1280, 400],
+] as const) {
   test(`the skip link shows what Play runs in a window of ${width} x ${height}`, async ({ lab, page }) => {
     await page.setViewportSize({ width, height });
     await lab.open("size=32");
@@ -424,16 +478,43 @@ test("files dropped anywhere go where their content belongs", async ({ lab, page
   await lab.open("size=32");
   const { encode } = await import("fast-png");
   const side = 48;
-  const disc = (inside: number) => (_: unknown, i: number) => (Math.hypot((i % side) - 23.5, Math.floor(i / side) - 23.5) < 20 ? inside : 0);
-  const colour = encode({ width: side, height: side, depth: 8, channels: 3, data: Uint8Array.from({ length: 3 * side * side }, (_, i) => 60 + ((5 * i) % 120)) });
-  const depth = encode({ width: side, height: side, depth: 16, channels: 1, data: Uint16Array.from({ length: side * side }, disc(90)) });
-  const mask = encode({ width: side, height: side, depth: 8, channels: 1, data: Uint8Array.from({ length: side * side }, disc(255)) });
-  const files = [["a.png", depth], ["b.png", mask], ["c.png", colour]] as const;
-  const carried = await page.evaluateHandle((files) => {
-    const transfer = new DataTransfer();
-    for (const [name, bytes] of files) transfer.items.add(new File([new Uint8Array(bytes)], name, { type: "image/png" }));
-    return transfer;
-  }, files.map(([name, bytes]) => [name, [...bytes]] as const));
+  const disc = (inside: number) => (_: unknown, i: number) =>
+    Math.hypot((i % side) - 23.5, Math.floor(i / side) - 23.5) < 20 ? inside : 0;
+  const colour = encode({
+    width: side,
+    height: side,
+    depth: 8,
+    channels: 3,
+    data: Uint8Array.from({ length: 3 * side * side }, (_, i) => 60 + ((5 * i) % 120)),
+  });
+  const depth = encode({
+    width: side,
+    height: side,
+    depth: 16,
+    channels: 1,
+    data: Uint16Array.from({ length: side * side }, disc(90)),
+  });
+  const mask = encode({
+    width: side,
+    height: side,
+    depth: 8,
+    channels: 1,
+    data: Uint8Array.from({ length: side * side }, disc(255)),
+  });
+  const files = [
+    ["a.png", depth],
+    ["b.png", mask],
+    ["c.png", colour],
+  ] as const;
+  const carried = await page.evaluateHandle(
+    (files) => {
+      const transfer = new DataTransfer();
+      for (const [name, bytes] of files)
+        transfer.items.add(new File([new Uint8Array(bytes)], name, { type: "image/png" }));
+      return transfer;
+    },
+    files.map(([name, bytes]) => [name, [...bytes]] as const),
+  );
   await page.locator("#hero").dispatchEvent("drop", { dataTransfer: carried });
   const slots = page.locator(".slot");
   await expect(slots.nth(0)).toContainText("c.png");
@@ -483,9 +564,15 @@ test("fingers have targets of 44 px", async ({ browser, baseURL }) => {
   await expect(page.locator("#status")).toHaveAttribute("data-state", "ready");
   // On a phone the wipe comes with a run to be wiped.
   await page.getByRole("button", { name: "Pin this run" }).click();
-  const small = await page.locator("#presets button, .transport button, #pace, #input > summary, .top button, #clouds select, #clouds-home, #takeaway button, #pin, #wipe, #coefficients > summary").evaluateAll((targets) =>
-    targets.filter((target) => target.getBoundingClientRect().height < 44 || target.getBoundingClientRect().width < 44).map((target) => target.outerHTML.slice(0, 80)),
-  );
+  const small = await page
+    .locator(
+      "#presets button, .transport button, #pace, #input > summary, .top button, #clouds select, #clouds-home, #takeaway button, #pin, #wipe, #coefficients > summary",
+    )
+    .evaluateAll((targets) =>
+      targets
+        .filter((target) => target.getBoundingClientRect().height < 44 || target.getBoundingClientRect().width < 44)
+        .map((target) => target.outerHTML.slice(0, 80)),
+    );
   expect(small).toEqual([]);
   await context.close();
 });
@@ -496,6 +583,8 @@ test("what a failure says can be read to its end, whatever it says", LONG, async
   await page.keyboard.press(" ");
   await expect(page.locator("#status")).toHaveAttribute("data-state", /lost|ambiguous/);
   await expect(page.locator("#next")).not.toBeEmpty();
-  const panel = await page.locator("#panel").evaluate(({ scrollHeight, clientHeight }) => ({ scrollHeight, clientHeight }));
+  const panel = await page
+    .locator("#panel")
+    .evaluate(({ scrollHeight, clientHeight }) => ({ scrollHeight, clientHeight }));
   expect(panel.scrollHeight).toBeLessThanOrEqual(panel.clientHeight);
 });

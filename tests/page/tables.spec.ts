@@ -138,7 +138,9 @@ test("figures are drawn from the cells that are done, and the rows can be taken 
   const stream = await (await waiting).createReadStream();
   const chunks: Buffer[] = [];
   for await (const chunk of stream) chunks.push(Buffer.from(chunk as Uint8Array));
-  const json = JSON.parse(Buffer.concat(chunks).toString()) as { figure4: { iteration: number; degrees: number; depthRmse: number }[] };
+  const json = JSON.parse(Buffer.concat(chunks).toString()) as {
+    figure4: { iteration: number; degrees: number; depthRmse: number }[];
+  };
   expect(json.figure4[0]).toMatchObject({ run: "search", protocol: "2A", iteration: 1 });
   expect(lab.complaints).toEqual([]);
 });
@@ -171,7 +173,9 @@ test("no table sticks out from 390 to 1600 px", LONG, async ({ lab, page }) => {
   for (const tab of await page.locator(".tab").all()) {
     await tab.click();
     await expect(tab).toHaveAttribute("aria-current", "true");
-    await atWidths(page, [390, 1280, 1600], async (width) => expect(await innerWidth(page), `${await tab.innerText()} at ${width} px`).toBeLessThanOrEqual(width));
+    await atWidths(page, [390, 1280, 1600], async (width) =>
+      expect(await innerWidth(page), `${await tab.innerText()} at ${width} px`).toBeLessThanOrEqual(width),
+    );
   }
   expect(lab.complaints).toEqual([]);
 });

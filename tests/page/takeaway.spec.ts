@@ -38,17 +38,31 @@ function vertices(file: Buffer): { head: string; points: number[][]; labels: num
   const stride = 16;
   expect(file.length).toBe(end + count * stride);
   const at = Array.from({ length: count }, (_, i) => end + i * stride);
-  return { head, points: at.map((from) => [0, 4, 8].map((k) => file.readFloatLE(from + k))), labels: at.map((from) => file[from + 15] ?? -1) };
+  return {
+    head,
+    points: at.map((from) => [0, 4, 8].map((k) => file.readFloatLE(from + k))),
+    labels: at.map((from) => file[from + 15] ?? -1),
+  };
 }
 
 test("pose, light and clouds", async ({ lab, page }) => {
   await lab.open("size=32");
   await page.keyboard.press("s");
   await expect(lab.iteration).toHaveText("1");
-  const pose = JSON.parse((await handed(lab, "Pose, JSON")).toString()) as { unit: string; scale: number; rotation: number[]; translation: number[]; matrix: number[][] };
+  const pose = JSON.parse((await handed(lab, "Pose, JSON")).toString()) as {
+    unit: string;
+    scale: number;
+    rotation: number[];
+    translation: number[];
+    matrix: number[][];
+  };
   // Not over after one step.
   expect(pose).toMatchObject({ unit: "px", status: "running" });
-  const rows = (await handed(lab, "Pose, 4×4")).toString().trim().split("\n").map((line) => line.split(" ").map(Number));
+  const rows = (await handed(lab, "Pose, 4×4"))
+    .toString()
+    .trim()
+    .split("\n")
+    .map((line) => line.split(" ").map(Number));
   expect(rows).toEqual(pose.matrix);
   expect(rows[1]).toEqual([...pose.rotation.slice(3, 6).map((value) => pose.scale * value), pose.translation[1]]);
   await expect(page.locator("#taken")).toHaveText("Saved depth_to_colour.txt: lengths in pixels.");
@@ -64,11 +78,16 @@ test("pose, light and clouds", async ({ lab, page }) => {
   expect(light.slice(1).map((line) => line.split(",").length)).toEqual([10, 10, 10]);
 });
 
-test("depth as 16 bits says its step and agrees with the .npy, and normals are of unit length", async ({ lab, page }) => {
+test("depth as 16 bits says its step and agrees with the .npy, and normals are of unit length", async ({
+  lab,
+  page,
+}) => {
   await lab.open("size=32");
   const exact = decodeDepth(await handed(lab, "Refined depth, .npy"));
   const stored = decodeDepth(await handed(lab, "Refined depth, PNG"));
-  await expect(page.locator("#taken")).toHaveText("Saved refined-depth.png: 0.001 px per stored number, 0 is no depth.");
+  await expect(page.locator("#taken")).toHaveText(
+    "Saved refined-depth.png: 0.001 px per stored number, 0 is no depth.",
+  );
   expect([stored.width, stored.height]).toEqual([32, 32]);
   const [a, b] = [exact.data ?? [], stored.data ?? []];
   let seen = 0;
@@ -108,7 +127,17 @@ test("any picture of the page, the clouds and the curves among them", LONG, asyn
   const select = page.getByLabel("Picture", { exact: true });
   await select.focus();
   const titles = await select.locator("option").allTextContents();
-  for (const title of ["Colour", "Given depth", "Normals", "Refined depth", "Colour residual", "Both surfaces, one laid onto the other", "Objective", "Rotation change"]) expect(titles).toContain(title);
+  for (const title of [
+    "Colour",
+    "Given depth",
+    "Normals",
+    "Refined depth",
+    "Colour residual",
+    "Both surfaces, one laid onto the other",
+    "Objective",
+    "Rotation change",
+  ])
+    expect(titles).toContain(title);
   expect(new Set(titles).size).toBe(titles.length);
   for (const [count, title] of titles.entries()) {
     if (count > 0 && count % MOST_AT_ONCE === 0) await aSecond(page);
@@ -118,13 +147,18 @@ test("any picture of the page, the clouds and the curves among them", LONG, asyn
     const { width, height, channels, data } = decode(await bytesOf(file));
     expect(width * height).toBeGreaterThan(100);
     const colours = new Set<number>();
-    for (let i = 0; i < data.length; i += channels) colours.add((data[i] ?? 0) * 65536 + (data[i + 1] ?? 0) * 256 + (data[i + 2] ?? 0));
+    for (let i = 0; i < data.length; i += channels)
+      colours.add((data[i] ?? 0) * 65536 + (data[i + 1] ?? 0) * 256 + (data[i + 2] ?? 0));
     // Only what is zero everywhere, as nothing's difference, is of one colour.
     expect(colours.size, title).toBeGreaterThan(1);
   }
 });
 
-test("the report opens by itself, offline, with the numbers, options, pictures and hashes of the run", async ({ lab, page, context }) => {
+test("the report opens by itself, offline, with the numbers, options, pictures and hashes of the run", async ({
+  lab,
+  page,
+  context,
+}) => {
   await lab.open("size=64");
   await lab.unfold();
   await page.getByRole("button", { name: "Own files" }).click();
@@ -158,13 +192,24 @@ test("the report opens by itself, offline, with the numbers, options, pictures a
   expect(text).toContain("Colour image: 48x48, 8-bit RGB");
   const said = Number(/^beta\s+(-?[\d.e]+)°/m.exec(text)?.[1]);
   expect(Math.abs(said - Number(beta?.replace("−", "-")))).toBeLessThan(0.0051);
-  for (const words of ["Iterations", "not over: iteration 1", "Colour camera: Encoding", "Start", "identity", "#size=64"]) expect(text).toContain(words);
+  for (const words of [
+    "Iterations",
+    "not over: iteration 1",
+    "Colour camera: Encoding",
+    "Start",
+    "identity",
+    "#size=64",
+  ])
+    expect(text).toContain(words);
   const images = report.locator("img");
   expect(await images.count()).toBeGreaterThan(8);
-  for (const image of await images.all()) expect(await image.evaluate((each: HTMLImageElement) => each.naturalWidth)).toBeGreaterThan(0);
+  for (const image of await images.all())
+    expect(await image.evaluate((each: HTMLImageElement) => each.naturalWidth)).toBeGreaterThan(0);
   for (const width of [390, 1280]) {
     await report.setViewportSize({ width, height: 800 });
-    expect(await report.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth)).toBe(0);
+    expect(
+      await report.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth),
+    ).toBe(0);
   }
   await report.close();
   await context.setOffline(false);
@@ -175,11 +220,17 @@ test("a report of a sample has the true pose beside the found one", async ({ lab
   await page.keyboard.press("s");
   await expect(lab.iteration).toHaveText("1");
   const html = (await handed(lab, "Full report, HTML")).toString();
-  expect(html).toMatch(/<th scope="row">beta<\/th><td data-column="Found">[^<]+<\/td><td data-column="True">12\.00°<\/td>/);
+  expect(html).toMatch(
+    /<th scope="row">beta<\/th><td data-column="Found">[^<]+<\/td><td data-column="True">12\.00°<\/td>/,
+  );
   expect(html).toContain("Sample: Surface");
 });
 
-test("a link brings back how the surfaces are drawn as well, and nothing of own files", async ({ lab, page, context }) => {
+test("a link brings back how the surfaces are drawn as well, and nothing of own files", async ({
+  lab,
+  page,
+  context,
+}) => {
   await lab.open("size=32");
   await page.locator("#clouds-style").selectOption("points");
   await page.locator("#clouds-texture").selectOption("normals");
@@ -199,24 +250,34 @@ test("a line puts one figure, as it is set, into another page", async ({ page, c
   await expect(page.locator(".learn-figure")).toHaveAttribute("aria-busy", "false");
   await page.getByRole("button", { name: "Embed" }).click();
   const line = await page.getByLabel("Line for another page").inputValue();
-  expect(line).toMatch(/^<iframe src="[^"<>]+" title="1\. What a pixel knows" width="\d+" height="\d+" loading="lazy"><\/iframe>$/);
+  expect(line).toMatch(
+    /^<iframe src="[^"<>]+" title="1\. What a pixel knows" width="\d+" height="\d+" loading="lazy"><\/iframe>$/,
+  );
   await page.locator('.learn-controls input[name="beta"]').fill("55");
   await expect(page.getByLabel("Line for another page")).toHaveValue(/beta=55/);
 
   const elsewhere = await context.newPage();
-  await elsewhere.route("**/elsewhere.html", (route) => route.fulfill({ contentType: "text/html", body: `<!doctype html><title>x</title><h1>Lecture</h1>${line}` }));
+  await elsewhere.route("**/elsewhere.html", (route) =>
+    route.fulfill({ contentType: "text/html", body: `<!doctype html><title>x</title><h1>Lecture</h1>${line}` }),
+  );
   await elsewhere.goto(`${baseURL}elsewhere.html`);
   const frame = elsewhere.frameLocator("iframe");
   await expect(frame.locator(".learn-figure")).toHaveAttribute("aria-busy", "false");
   await expect(frame.locator('.learn-controls input[name="beta"]')).toHaveValue("40");
-  for (const hidden of [".top", ".learn-text", ".learn-contents", "#bar", "h1"]) await expect(frame.locator(hidden).first()).toBeHidden();
+  for (const hidden of [".top", ".learn-text", ".learn-contents", "#bar", "h1"])
+    await expect(frame.locator(hidden).first()).toBeHidden();
   await expect(frame.locator(".learn-panel canvas").first()).toBeVisible();
   // It lives, and keeps to itself.
   await frame.locator('.learn-controls input[name="beta"]').fill("10");
   await expect(frame.locator(".learn-figure")).toHaveAttribute("aria-busy", "false");
   const inside = elsewhere.frames()[1];
   expect(inside?.url()).toContain("embed");
-  expect(await inside?.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth)).toBe(0);
-  await expect(frame.getByRole("link", { name: "text and exercises" })).toHaveAttribute("href", /^#learn&at=pixel&beta=10$/);
+  expect(
+    await inside?.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth),
+  ).toBe(0);
+  await expect(frame.getByRole("link", { name: "text and exercises" })).toHaveAttribute(
+    "href",
+    /^#learn&at=pixel&beta=10$/,
+  );
   await elsewhere.close();
 });

@@ -9,7 +9,12 @@ export const narrowest = { width: 320, height: 844 };
 export const innerWidth = (page: Page): Promise<number> => page.evaluate(() => document.documentElement.scrollWidth);
 
 /** Looks at the page in windows of these widths, and leaves it as narrow as at the start. */
-export async function atWidths(page: Page, widths: readonly number[], look: (width: number) => Promise<void>, height = narrowest.height): Promise<void> {
+export async function atWidths(
+  page: Page,
+  widths: readonly number[],
+  look: (width: number) => Promise<void>,
+  height = narrowest.height,
+): Promise<void> {
   for (const width of widths) {
     await resize(page, width, height);
     await look(width);

@@ -36,8 +36,14 @@ export class Card {
 
   constructor(probe: Probe) {
     this.#probe = probe;
-    this.#rows = lines.map((line) => ({ line, unit: make("td", { class: "unit" }), cells: [make("td"), make("td"), make("td")] }));
-    const rows = this.#rows.map(({ line, unit, cells }) => make("tr", {}, make("th", { scope: "row" }, line.name), ...cells, unit));
+    this.#rows = lines.map((line) => ({
+      line,
+      unit: make("td", { class: "unit" }),
+      cells: [make("td"), make("td"), make("td")],
+    }));
+    const rows = this.#rows.map(({ line, unit, cells }) =>
+      make("tr", {}, make("th", { scope: "row" }, line.name), ...cells, unit),
+    );
     this.#element.append(this.#where, make("table", {}, make("tbody", {}, ...rows)));
     probe.listen(() => this.#show());
     // Away from what is looked at, so that it never lies over it.

@@ -26,7 +26,9 @@ const objectiveTerms: readonly Line[] = [
   { label: "refinement", token: "series-4", value: ({ energy }) => energy.refinement },
 ];
 /** Degrees. A rotation that does not move changes by zero: for that a logarithm has no place, and the curve a gap. */
-const rotation: readonly Line[] = [{ label: "change, deg", token: "accent", value: ({ rotationChange }) => rotationChange }];
+const rotation: readonly Line[] = [
+  { label: "change, deg", token: "accent", value: ({ rotationChange }) => rotationChange },
+];
 
 /** One of the Lab's charts. */
 export class Chart {
@@ -41,7 +43,12 @@ export class Chart {
     this.#box = box;
     this.#name = name;
     this.#lines = lines;
-    this.#plot = new Plot(box, { xLabel: "iteration", curves: [...lines, ...lines.map((line) => ({ ...line, isPinned: true }))], whole: true, waits: true });
+    this.#plot = new Plot(box, {
+      xLabel: "iteration",
+      curves: [...lines, ...lines.map((line) => ({ ...line, isPinned: true }))],
+      whole: true,
+      waits: true,
+    });
     box.append(this.#still);
   }
 
@@ -58,10 +65,18 @@ export class Chart {
     const [name, lines] = [this.#name, this.#lines];
     const runs = [history, pinned].map((run) => new Map(run.map((report) => [report.iteration, report])));
     const iterations = Array.from({ length: Math.max(0, ...runs.flatMap((run) => [...run.keys()])) }, (_, i) => i + 1);
-    const [curves = [], dashed = []] = runs.map((run) => lines.map(({ value }) => iterations.map((iteration) => optional(run.get(iteration), value))));
+    const [curves = [], dashed = []] = runs.map((run) =>
+      lines.map(({ value }) => iterations.map((iteration) => optional(run.get(iteration), value))),
+    );
     this.#plot.show(iterations, [...curves, ...dashed]);
     this.#sayZeros(curves.flat(), dashed.flat());
-    this.#box.setAttribute("aria-label", [inWords(name, lines, curves), ...(pinned.length > 0 ? [inWords(`Pinned: ${name.toLowerCase()}`, lines, dashed)] : [])].join(" "));
+    this.#box.setAttribute(
+      "aria-label",
+      [
+        inWords(name, lines, curves),
+        ...(pinned.length > 0 ? [inWords(`Pinned: ${name.toLowerCase()}`, lines, dashed)] : []),
+      ].join(" "),
+    );
   }
 
   /** Where a single curve has gaps, and why. */
@@ -70,7 +85,9 @@ export class Chart {
     const zeros = zerosIn(values);
     this.#still.hidden = this.#lines.length > 1 || (isDrawn ? !zeros : !values.includes(0) && !pinned.includes(0));
     this.#still.toggleAttribute("data-some", isDrawn);
-    this.#still.textContent = isDrawn ? `${zeros.charAt(0).toUpperCase()}${zeros.slice(1)}: a logarithmic axis leaves those out.` : "No change in any iteration: a logarithmic axis has no zero.";
+    this.#still.textContent = isDrawn
+      ? `${zeros.charAt(0).toUpperCase()}${zeros.slice(1)}: a logarithmic axis leaves those out.`
+      : "No change in any iteration: a logarithmic axis has no zero.";
   }
 
   /** uPlot draws on a canvas and has to be told the theme's colours anew. */
@@ -85,7 +102,8 @@ export class Chart {
   }
 }
 
-const optional = <T>(given: T | undefined, value: (given: T) => number): number | null => (given === undefined ? null : value(given));
+const optional = <T>(given: T | undefined, value: (given: T) => number): number | null =>
+  given === undefined ? null : value(given);
 
 /** Of how many iterations a value is zero, in words; empty where it is in none. */
 function zerosIn(values: readonly (number | null)[]): string {
@@ -111,7 +129,8 @@ const isPower = (value: number): boolean => Number.isInteger(Math.log10(value));
 
 /** Over many decades the lines in between would be a grey mass. */
 const MOST_LINES = 30;
-const sparse = (_: uPlot, splits: number[]): (number | null)[] => (splits.length > MOST_LINES ? splits.map((value) => (isPower(value) ? value : null)) : splits);
+const sparse = (_: uPlot, splits: number[]): (number | null)[] =>
+  splits.length > MOST_LINES ? splits.map((value) => (isPower(value) ? value : null)) : splits;
 
 /** Numbers that have a dot each. */
 const FEW = 12;
@@ -161,7 +180,12 @@ export class Plot {
     const positive = (value: number | null) => (value !== null && value > 0 && Number.isFinite(value) ? value : null);
     const curves = ys.map((values) => values.map(positive));
     // A count begins where there is something to see.
-    const first = this.#options.whole ? Math.max(0, xs.findIndex((_, i) => curves.some((values) => values[i] != null))) : 0;
+    const first = this.#options.whole
+      ? Math.max(
+          0,
+          xs.findIndex((_, i) => curves.some((values) => values[i] != null)),
+        )
+      : 0;
     this.#newest = ys.map((values) => values.findLast((value) => value !== null) ?? null);
     this.#data = [xs.slice(first), ...curves.map((values) => values.slice(first))];
     // At once: what uPlot puts off to the end of the task is drawing that no painter can see the time of.
@@ -177,7 +201,9 @@ export class Plot {
       ticks: { stroke: ink("line"), width: 1, size: 4 },
     };
     const { xLabel, curves, whole } = this.#options;
-    const counted: Pick<uPlot.Scale, "range"> = { range: (_plot, min, max) => [min ?? 1, Math.max(max ?? 2, (min ?? 1) + 1)] };
+    const counted: Pick<uPlot.Scale, "range"> = {
+      range: (_plot, min, max) => [min ?? 1, Math.max(max ?? 2, (min ?? 1) + 1)],
+    };
     this.#plot = new uPlot(
       {
         ...this.#size(),
@@ -187,7 +213,13 @@ export class Plot {
         scales: { x: { time: false, ...(whole ? counted : {}) }, y: { distr: 3 } },
         axes: [
           { ...axis, size: 24, ...(whole ? { incrs: [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000] } : {}) },
-          { ...axis, size: 48, grid: { ...axis.grid, filter: sparse }, ticks: { ...axis.ticks, filter: sparse }, values: (_, splits) => splits.map((value) => (isPower(value) ? short(value) : "")) },
+          {
+            ...axis,
+            size: 48,
+            grid: { ...axis.grid, filter: sparse },
+            ticks: { ...axis.ticks, filter: sparse },
+            values: (_, splits) => splits.map((value) => (isPower(value) ? short(value) : "")),
+          },
         ],
         series: [
           { label: xLabel },

@@ -72,7 +72,10 @@ export class Clouds {
   private constructor(canvas: HTMLCanvasElement, box: HTMLElement, renderer: Renderer) {
     this.#renderer = renderer;
     this.#controls = new OrbitControls(this.#camera, canvas);
-    this.#marks = { image: make("span", { class: "dot image", hidden: true }), depth: make("span", { class: "dot depth", hidden: true }) };
+    this.#marks = {
+      image: make("span", { class: "dot image", hidden: true }),
+      depth: make("span", { class: "dot depth", hidden: true }),
+    };
     box.append(this.#marks.image, this.#marks.depth);
     // A finger that moves up or down scrolls the page; across it turns the clouds, and two do so any way.
     canvas.style.touchAction = "pan-y";
@@ -110,7 +113,10 @@ export class Clouds {
     const before = this.#pose;
     this.#pose = matrixOf(pose);
     // From where it stood, in terms of the new points.
-    const from = before && !fresh ? this.#standing.clone().multiply(before).multiply(this.#pose.clone().invert()) : NOWHERE.clone();
+    const from =
+      before && !fresh
+        ? this.#standing.clone().multiply(before).multiply(this.#pose.clone().invert())
+        : NOWHERE.clone();
     this.#makeRoom();
     this.#change({ surfaces: this.#shown });
     this.#placePinned();
@@ -142,7 +148,9 @@ export class Clouds {
     const growth = now.radius / then.radius;
     const size = Math.max(growth, 1 / growth) > OTHER_SIZE ? growth : 1;
     const isElsewhere = size !== 1 || now.center.distanceTo(then.center) > LEFT_THE_MIDDLE * now.radius;
-    const place = isElsewhere ? new Matrix4().makeScale(size, size, size).setPosition(now.center.clone().addScaledVector(then.center, -size)) : NOWHERE;
+    const place = isElsewhere
+      ? new Matrix4().makeScale(size, size, size).setPosition(now.center.clone().addScaledVector(then.center, -size))
+      : NOWHERE;
     this.#change({ pinnedPlace: place.toArray() });
   }
 
@@ -201,7 +209,10 @@ export class Clouds {
         if (cost >= least) continue;
         least = cost;
         const { left, top, stride } = surface;
-        found = { side, pixel: { column: left + stride * (i % surface.width), row: top + stride * Math.floor(i / surface.width) } };
+        found = {
+          side,
+          pixel: { column: left + stride * (i % surface.width), row: top + stride * Math.floor(i / surface.width) },
+        };
       }
     }
     return found;
@@ -266,7 +277,8 @@ export class Clouds {
   /** Looks from farther away where a surface is cut off, as one does whose scale was found to be larger; unless the visitor has chosen how near to be. */
   #makeRoom(): void {
     const [shown, size] = [this.#shown, this.#extent?.radius];
-    const isMoved = this.#camera.zoom !== 1 || this.#controls.target.distanceTo(this.#bounds.center) > 1e-6 * this.#bounds.radius;
+    const isMoved =
+      this.#camera.zoom !== 1 || this.#controls.target.distanceTo(this.#bounds.center) > 1e-6 * this.#bounds.radius;
     if (!shown || !size || isMoved || this.#size.width === 0) return;
     this.#camera.updateMatrixWorld();
     const camera = this.#toScreen("image");
@@ -341,7 +353,8 @@ function partsOf(matrix: Matrix4): Parts {
 }
 
 /** The depth map was measured; the image's surface stands in where there is none. */
-const boundsOf = ({ depth, image }: Record<Side, Surface>): Sphere | undefined => extent(depth.points) ?? extent(image.points);
+const boundsOf = ({ depth, image }: Record<Side, Surface>): Sphere | undefined =>
+  extent(depth.points) ?? extent(image.points);
 
 /** A sphere about the bulk of the points: a few flying ones must not shrink the rest to a dot. */
 function extent(points: Float32Array): Sphere | undefined {

@@ -6,8 +6,14 @@ export type MapName = "viridis" | "magma";
 
 /** Every fifteenth of the 256 colours that the module paints with (matplotlib's maps); straight lines in between are within five levels. */
 const STOPS: Record<MapName, readonly string[]> = {
-  viridis: "440154 481769 472a7a 433d84 3d4e8a 355e8d 2e6d8e 297b8e 23898e 1f978b 21a585 2eb37c 46c06f 65cb5e 89d548 b0dd2f d8e219 fde725".split(" "),
-  magma: "000004 090720 1a1042 311165 4a1079 621980 792282 912b81 aa337d c23b75 d9466b ec5860 f7725c fc8e64 feaa74 fec68a fde2a3 fcfdbf".split(" "),
+  viridis:
+    "440154 481769 472a7a 433d84 3d4e8a 355e8d 2e6d8e 297b8e 23898e 1f978b 21a585 2eb37c 46c06f 65cb5e 89d548 b0dd2f d8e219 fde725".split(
+      " ",
+    ),
+  magma:
+    "000004 090720 1a1042 311165 4a1079 621980 792282 912b81 aa337d c23b75 d9466b ec5860 f7725c fc8e64 feaa74 fec68a fde2a3 fcfdbf".split(
+      " ",
+    ),
 };
 const BETWEEN = 15;
 
@@ -31,11 +37,16 @@ export function colourAt(map: MapName, share: number): [number, number, number] 
 }
 
 /** The map as a CSS gradient, for legends. */
-export const gradient = (map: MapName): string => `linear-gradient(to right, ${STOPS[map].map((stop) => `#${stop}`).join(", ")})`;
+export const gradient = (map: MapName): string =>
+  `linear-gradient(to right, ${STOPS[map].map((stop) => `#${stop}`).join(", ")})`;
 
 /** The same as whole pixels, in the byte order of all machines that browsers run on. */
 const whole = (table: Uint8ClampedArray): Uint32Array =>
-  Uint32Array.from({ length: 256 }, (_, i) => ((255 << 24) | ((table[3 * i + 2] ?? 0) << 16) | ((table[3 * i + 1] ?? 0) << 8) | (table[3 * i] ?? 0)) >>> 0);
+  Uint32Array.from(
+    { length: 256 },
+    (_, i) =>
+      ((255 << 24) | ((table[3 * i + 2] ?? 0) << 16) | ((table[3 * i + 1] ?? 0) << 8) | (table[3 * i] ?? 0)) >>> 0,
+  );
 const pixels: Record<MapName, Uint32Array> = { viridis: whole(tables.viridis), magma: whole(tables.magma) };
 
 /** Values outside the range take its end colours; NaN stays clear, so that the hatching behind shows. */
@@ -46,7 +57,7 @@ export function paintScalar({ width, height, data }: Raster, { min, max }: Range
   const out = new Uint32Array(image.data.buffer);
   for (let i = 0; i < out.length; i++) {
     const value = data[i] ?? NaN;
-    if (value === value) out[i] = table[Math.max(0, Math.min(255, Math.round((value - min) * factor)))] ?? 0;
+    if (!Number.isNaN(value)) out[i] = table[Math.max(0, Math.min(255, Math.round((value - min) * factor)))] ?? 0;
   }
   return image;
 }
@@ -81,7 +92,10 @@ export function paintPicture(raster: Picture): ImageData {
 /** Levels of the table for logarithms, and how far below white it reaches: what is darker is black. */
 const STEPS = 4096;
 const REACH = 14;
-const ofLog = Uint8ClampedArray.from({ length: STEPS }, (_, step) => 255 * Math.exp((-REACH * step) / (STEPS - 1) / 2.2));
+const ofLog = Uint8ClampedArray.from(
+  { length: STEPS },
+  (_, step) => 255 * Math.exp((-REACH * step) / (STEPS - 1) / 2.2),
+);
 
 /** Logarithms of linear colours; `white` is one as well. */
 export function paintLog({ width, height, data }: Raster, white: number): ImageData {
@@ -90,8 +104,10 @@ export function paintLog({ width, height, data }: Raster, white: number): ImageD
   const out = image.data;
   for (let i = 0; 3 * i < data.length; i++) {
     const first = data[3 * i] ?? NaN;
-    if (first !== first) continue;
-    for (let c = 0; c < 3; c++) out[4 * i + c] = ofLog[Math.max(0, Math.min(STEPS - 1, Math.round(factor * (white - (data[3 * i + c] ?? 0)))))] ?? 0;
+    if (Number.isNaN(first)) continue;
+    for (let c = 0; c < 3; c++)
+      out[4 * i + c] =
+        ofLog[Math.max(0, Math.min(STEPS - 1, Math.round(factor * (white - (data[3 * i + c] ?? 0)))))] ?? 0;
     out[4 * i + 3] = 255;
   }
   return image;
@@ -121,7 +137,8 @@ export function someSorted(values: Float32Array): Float32Array {
   return some.subarray(0, count).sort();
 }
 
-export const quantile = (sorted: Float32Array, share: number): number | undefined => sorted[Math.round(share * (sorted.length - 1))];
+export const quantile = (sorted: Float32Array, share: number): number | undefined =>
+  sorted[Math.round(share * (sorted.length - 1))];
 
 /** The range of the middle 98 % of the finite values, as the module has it, which does not say which: single outliers must not flatten everything else. */
 export function automaticRange({ data }: Pick<Raster, "data">): Range | undefined {

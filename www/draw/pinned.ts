@@ -32,7 +32,10 @@ export class Pinned {
   place(now: Place): void {
     if (!this.#kept) return;
     const { canvas, place } = this.#kept;
-    for (const [edge, side, first] of [["left", "width", "left"], ["top", "height", "top"]] as const) {
+    for (const [edge, side, first] of [
+      ["left", "width", "left"],
+      ["top", "height", "top"],
+    ] as const) {
       const share = (value: number, { full }: Place) => value / full[side];
       const span = share(now[side] * now.stride, now);
       canvas.style[edge] = `${(100 * (share(place[first], place) - share(now[first], now))) / span}%`;

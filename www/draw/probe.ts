@@ -10,7 +10,8 @@ export interface Asked {
 /** Answers, or nothing where there is none to be had. */
 type Ask = (asked: Asked) => Promise<Probed | undefined>;
 
-const isSame = (a: Asked | null, b: Asked | null): boolean => a === b || (a?.side === b?.side && a?.pixel.column === b?.pixel.column && a?.pixel.row === b?.pixel.row);
+const isSame = (a: Asked | null, b: Asked | null): boolean =>
+  a === b || (a?.side === b?.side && a?.pixel.column === b?.pixel.column && a?.pixel.row === b?.pixel.row);
 
 export class Probe {
   #asked: Asked | null = null;

@@ -49,7 +49,8 @@ class Thread implements Renderer {
       tell();
     };
     onGone(this.#worker, breakOff);
-    this.#worker.onmessage = ({ data }: MessageEvent<Told>) => (typeof data === "boolean" ? this.#answer?.(data) : onLost(data.lost));
+    this.#worker.onmessage = ({ data }: MessageEvent<Told>) =>
+      typeof data === "boolean" ? this.#answer?.(data) : onLost(data.lost);
     this.#worker.onerror = (event) => {
       event.preventDefault();
       breakOff();

@@ -33,7 +33,11 @@ export class Scale {
   /** A legend for one view; `name` tells screen readers which. */
   legend(name: string): { element: HTMLElement; setUnit(unit: string): void } {
     const end = (which: "min" | "max") => {
-      const input = make("input", { type: "number", step: "any", "aria-label": `${name}: ${which === "min" ? "lowest" : "highest"} value shown` });
+      const input = make("input", {
+        type: "number",
+        step: "any",
+        "aria-label": `${name}: ${which === "min" ? "lowest" : "highest"} value shown`,
+      });
       input.addEventListener("blur", () => this.#show());
       input.addEventListener("change", () => {
         if (Number.isFinite(input.valueAsNumber)) {
@@ -47,7 +51,16 @@ export class Scale {
     const min = end("min");
     const max = end("max");
     const unit = make("span", { class: "unit" });
-    const auto = make("button", { type: "button", class: "quiet", "aria-pressed": "true", "aria-label": `${name}: range follows the values, auto` }, "auto");
+    const auto = make(
+      "button",
+      {
+        type: "button",
+        class: "quiet",
+        "aria-pressed": "true",
+        "aria-label": `${name}: range follows the values, auto`,
+      },
+      "auto",
+    );
     auto.addEventListener("click", () => {
       this.#isFixed = !this.#isFixed;
       this.#tell();

@@ -1,6 +1,22 @@
 /** Draws both surfaces, as points or shaded. It needs no page, so that a thread of its own can do it. */
 
-import { AmbientLight, BufferAttribute, BufferGeometry, Camera, DirectionalLight, DoubleSide, Group, Matrix4, Mesh, MeshLambertMaterial, Points, PointsMaterial, Scene, WebGLRenderer, type WebGLRendererParameters } from "three";
+import {
+  AmbientLight,
+  BufferAttribute,
+  BufferGeometry,
+  Camera,
+  DirectionalLight,
+  DoubleSide,
+  Group,
+  Matrix4,
+  Mesh,
+  MeshLambertMaterial,
+  Points,
+  PointsMaterial,
+  Scene,
+  WebGLRenderer,
+  type WebGLRendererParameters,
+} from "three";
 import type { Side, Surface } from "../engine/protocol";
 
 /** Sizes of a point on the screen, in CSS pixels: near enough to the next to make a surface, small enough to see two. */
@@ -112,7 +128,10 @@ export class CloudStage {
   #render({ width, height }: Sight): void {
     const edge = this.#pinned.isShown ? Math.round(this.#wipe * width) : 0;
     this.#renderer.setScissorTest(edge > 0);
-    for (const [isPinned, from, to] of [[true, 0, edge], [false, edge, width]] as const) {
+    for (const [isPinned, from, to] of [
+      [true, 0, edge],
+      [false, edge, width],
+    ] as const) {
       if (from === to) continue;
       this.#runs.pinned.visible = isPinned;
       this.#runs.now.visible = !isPinned;
@@ -153,8 +172,14 @@ class Sheet {
   #style: "points" | "surfaces" = "surfaces";
 
   constructor(opacity: number) {
-    this.#points = new Points(new BufferGeometry(), new PointsMaterial({ sizeAttenuation: false, transparent: true, opacity: 0.75 }));
-    this.#mesh = new Mesh(new BufferGeometry(), new MeshLambertMaterial({ side: DoubleSide, transparent: opacity < 1, opacity }));
+    this.#points = new Points(
+      new BufferGeometry(),
+      new PointsMaterial({ sizeAttenuation: false, transparent: true, opacity: 0.75 }),
+    );
+    this.#mesh = new Mesh(
+      new BufferGeometry(),
+      new MeshLambertMaterial({ side: DoubleSide, transparent: opacity < 1, opacity }),
+    );
     this.group.matrixAutoUpdate = false;
     for (const each of [this.#points, this.#mesh]) {
       each.frustumCulled = false;
@@ -195,7 +220,8 @@ class Sheet {
   }
 
   resizePoints({ width, height }: Sight): void {
-    const apart = Math.min(width, height) / Math.sqrt(Math.max(1, this.#points.geometry.getAttribute("position")?.count ?? 1));
+    const apart =
+      Math.min(width, height) / Math.sqrt(Math.max(1, this.#points.geometry.getAttribute("position")?.count ?? 1));
     this.#points.material.size = Math.max(SMALLEST, Math.min(LARGEST, 0.6 * apart));
   }
 
@@ -240,7 +266,7 @@ function finite({ points, colours }: Surface): { points: Float32Array; colours: 
     if (colours) tints?.set(colours.subarray(3 * i, 3 * i + 3), 3 * to);
     at[i] = to++;
   }
-  return { points: kept.slice(0, 3 * to), colours: tints && tints.slice(0, 3 * to), at };
+  return { points: kept.slice(0, 3 * to), colours: tints?.slice(0, 3 * to), at };
 }
 
 /** Two triangles for each four neighbours that are not torn apart. */
@@ -251,12 +277,19 @@ function triangulate({ width, height, points }: Surface, at: Int32Array): Uint32
     return sum;
   };
   const steps: number[] = [];
-  for (let i = 0; i + 1 < at.length; i += 7) if ((i + 1) % width !== 0 && (at[i] ?? -1) >= 0 && (at[i + 1] ?? -1) >= 0) steps.push(squared(i, i + 1));
+  for (let i = 0; i + 1 < at.length; i += 7)
+    if ((i + 1) % width !== 0 && (at[i] ?? -1) >= 0 && (at[i + 1] ?? -1) >= 0) steps.push(squared(i, i + 1));
   const longest = LONGEST_STEP ** 2 * (steps.sort((a, b) => a - b)[Math.floor(steps.length / 2)] ?? 0);
   const found: number[] = [];
   const add = (a: number, b: number, c: number): void => {
     const corners = [at[a] ?? -1, at[b] ?? -1, at[c] ?? -1];
-    if (corners.some((corner) => corner < 0) || squared(a, b) > longest || squared(b, c) > longest || squared(c, a) > longest) return;
+    if (
+      corners.some((corner) => corner < 0) ||
+      squared(a, b) > longest ||
+      squared(b, c) > longest ||
+      squared(c, a) > longest
+    )
+      return;
     found.push(...corners);
   };
   for (let row = 0; row + 1 < height; row++) {

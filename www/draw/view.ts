@@ -40,11 +40,23 @@ export class View {
     this.#options = options;
     const { name, title, description, probe } = options;
     this.#side = VIEWS[name];
-    this.#canvas = make("canvas", { width: 64, height: 64, tabindex: 0, role: "img", "aria-label": `${title}: ${description}. Arrow keys move the probe.` });
+    this.#canvas = make("canvas", {
+      width: 64,
+      height: 64,
+      tabindex: 0,
+      role: "img",
+      "aria-label": `${title}: ${description}. Arrow keys move the probe.`,
+    });
     this.#context = this.#canvas.getContext("2d");
     this.#box = make("div", { class: "canvas" }, this.#canvas, this.#dot, this.#readout);
     this.#pinned = new Pinned(this.#canvas);
-    this.element = make("figure", { class: "view" }, make("figcaption", {}, make("span", { class: "view-title" }, title)), this.#box, this.#legend());
+    this.element = make(
+      "figure",
+      { class: "view" },
+      make("figcaption", {}, make("span", { class: "view-title" }, title)),
+      this.#box,
+      this.#legend(),
+    );
 
     probe.listen(() => this.#showProbe());
     const point = (event: PointerEvent) => this.#point(this.#pixelAt(event));
@@ -73,13 +85,17 @@ export class View {
     }
     const { width, height, bitmap } = painted;
     this.#box.style.setProperty("--ratio", String(width / height));
-    this.#options.painter.request(this, () => {
-      this.#canvas.width = width;
-      this.#canvas.height = height;
-      this.#context?.drawImage(bitmap, 0, 0);
-      bitmap.close();
-      this.#pinned.place(painted);
-    }, width * height);
+    this.#options.painter.request(
+      this,
+      () => {
+        this.#canvas.width = width;
+        this.#canvas.height = height;
+        this.#context?.drawImage(bitmap, 0, 0);
+        bitmap.close();
+        this.#pinned.place(painted);
+      },
+      width * height,
+    );
     this.#showProbe();
   }
 
@@ -127,7 +143,8 @@ export class View {
     const { left, top, stride, width, height } = this.#painted;
     const middle = { column: left + stride * Math.floor(width / 2), row: top + stride * Math.floor(height / 2) };
     const from = this.#options.probe.at(this.#side) ?? middle;
-    const within = (value: number, first: number, count: number) => Math.max(first, Math.min(first + (count - 1) * stride, value));
+    const within = (value: number, first: number, count: number) =>
+      Math.max(first, Math.min(first + (count - 1) * stride, value));
     this.#point({
       column: within(from.column + stride * (step[0] ?? 0), left, width),
       row: within(from.row + stride * (step[1] ?? 0), top, height),

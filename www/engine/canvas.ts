@@ -32,7 +32,17 @@ export class ViewCanvas {
     estimator.draw(this.#whole, layer, options);
     // A pixel is picked in the middle of each block, which has to be the first of a stride.
     const before = (stride - 1) / 2;
-    this.#part.drawImage(this.#whole.canvas, left - before, top - before, width * stride, height * stride, 0, 0, width, height);
+    this.#part.drawImage(
+      this.#whole.canvas,
+      left - before,
+      top - before,
+      width * stride,
+      height * stride,
+      0,
+      0,
+      width,
+      height,
+    );
     return this;
   }
 

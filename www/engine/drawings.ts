@@ -5,7 +5,20 @@ import { automaticRange, paintLog, paintPicture, paintScalar, type MapName } fro
 import { ViewCanvas } from "./canvas";
 import { Errors, type ErrorName } from "./errors";
 import type { Numbers } from "./numbers";
-import { SCALES, VIEWS, type Look, type Painted, type Range, type Raster, type ScaleName, type Side, type Drawings, type Surface, type Texture, type ViewName } from "./protocol";
+import {
+  SCALES,
+  VIEWS,
+  type Look,
+  type Painted,
+  type Range,
+  type Raster,
+  type ScaleName,
+  type Side,
+  type Drawings,
+  type Surface,
+  type Texture,
+  type ViewName,
+} from "./protocol";
 import { cutOfDepth, cutOfImage, depthAt, measured, picture, raster, surface, whiteOf, type Cut } from "./rasters";
 
 /** The range of a view that has no values. */
@@ -65,7 +78,10 @@ export class ViewPainter {
       image: { ...surface(numbers.points("image"), imageDepth, this.#cuts.image), colours: null },
       depth: { ...surface(numbers.points("depth"), refined, this.#cuts.depth), colours: null },
     };
-    const ranges = Object.fromEntries(SCALES.map((scale) => [scale, wide(look.ranges[scale] ?? NOTHING)])) as Record<ScaleName, Range>;
+    const ranges = Object.fromEntries(SCALES.map((scale) => [scale, wide(look.ranges[scale] ?? NOTHING)])) as Record<
+      ScaleName,
+      Range
+    >;
     const fit = (scale: ScaleName, data: () => Float32Array): Range => {
       const found = look.ranges[scale] ? undefined : automaticRange({ data: data() });
       if (found) ranges[scale] = wide(isError(scale) ? { min: 0, max: found.max } : found);
@@ -106,7 +122,15 @@ export class ViewPainter {
     if (this.#errors) {
       this.errors = this.#errors.of(numbers);
       for (const [name, error] of Object.entries(this.errors) as [ErrorName, Raster][]) {
-        show(name, (canvas) => canvas.picture(paintScalar(error, fit(name, () => error.data), mapOf(name))));
+        show(name, (canvas) =>
+          canvas.picture(
+            paintScalar(
+              error,
+              fit(name, () => error.data),
+              mapOf(name),
+            ),
+          ),
+        );
       }
     }
     return { views, ranges, surfaces, poses };

@@ -15,7 +15,10 @@ function angles(found: Float32Array, truth: Float32Array): Float32Array {
   const between = new Float32Array(found.length / 3);
   for (let i = 0; i < between.length; i++) {
     const [x, y, z] = [3 * i, 3 * i + 1, 3 * i + 2];
-    const squared = ((found[x] ?? NaN) - (truth[x] ?? NaN)) ** 2 + ((found[y] ?? NaN) - (truth[y] ?? NaN)) ** 2 + ((found[z] ?? NaN) - (truth[z] ?? NaN)) ** 2;
+    const squared =
+      ((found[x] ?? NaN) - (truth[x] ?? NaN)) ** 2 +
+      ((found[y] ?? NaN) - (truth[y] ?? NaN)) ** 2 +
+      ((found[z] ?? NaN) - (truth[z] ?? NaN)) ** 2;
     between[i] = 2 * Math.asin(Math.min(1, Math.sqrt(squared) / 2)) * DEGREES;
   }
   return between;
@@ -37,16 +40,30 @@ export class Errors {
 
   constructor({ imageNormals, imageDepth, depth }: Sample["truth"], cuts: Record<Side, Cut>) {
     this.#cuts = cuts;
-    this.#truth = { normalError: raster(imageNormals, 3, cuts.image), depthError: raster(imageDepth, 1, cuts.image), refinementError: raster(depth, 1, cuts.depth) };
+    this.#truth = {
+      normalError: raster(imageNormals, 3, cuts.image),
+      depthError: raster(imageDepth, 1, cuts.image),
+      refinementError: raster(depth, 1, cuts.depth),
+    };
   }
 
   of(numbers: Numbers): Record<ErrorName, Raster> {
     const { normalError, depthError, refinementError } = this.#truth;
     const { image, depth } = this.#cuts;
     return {
-      normalError: { ...normalError, channels: 1, data: angles(raster(numbers.of("imageNormals"), 3, image).data, normalError.data) },
-      depthError: { ...depthError, data: distances(raster(numbers.of("imageDepth"), 1, image).data, depthError.data, true) },
-      refinementError: { ...refinementError, data: distances(raster(numbers.of("refinedDepth"), 1, depth).data, refinementError.data, false) },
+      normalError: {
+        ...normalError,
+        channels: 1,
+        data: angles(raster(numbers.of("imageNormals"), 3, image).data, normalError.data),
+      },
+      depthError: {
+        ...depthError,
+        data: distances(raster(numbers.of("imageDepth"), 1, image).data, depthError.data, true),
+      },
+      refinementError: {
+        ...refinementError,
+        data: distances(raster(numbers.of("refinedDepth"), 1, depth).data, refinementError.data, false),
+      },
     };
   }
 }

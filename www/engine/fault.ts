@@ -7,7 +7,12 @@ import type { Fault } from "./protocol";
 export function faultOf(error: unknown, loaded: boolean): Fault {
   if (error instanceof BimodalError) {
     const { code, message, field } = error;
-    return { code, message, fatal: code === "panic" || code === "poisoned" || !loaded, ...(field === undefined ? {} : { field }) };
+    return {
+      code,
+      message,
+      fatal: code === "panic" || code === "poisoned" || !loaded,
+      ...(field === undefined ? {} : { field }),
+    };
   }
   const reason = error instanceof Error ? error.message : String(error);
   const message = loaded ? reason : `the numerics could not be loaded (${reason})`;

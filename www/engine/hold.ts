@@ -6,7 +6,9 @@ import type { Holding } from "./alive";
 const name = `bimodal-stereo ${performance.timeOrigin} ${Math.random()}`;
 
 // Where there are none the page does without.
-navigator.locks?.request(name, () => {
-  self.postMessage({ holds: name } satisfies Holding);
-  return new Promise(() => {});
-}).catch(() => {});
+navigator.locks
+  ?.request(name, () => {
+    self.postMessage({ holds: name } satisfies Holding);
+    return new Promise(() => {});
+  })
+  .catch(() => {});

@@ -2,7 +2,15 @@
 
 import type { Estimator } from "../../pkg/index.js";
 
-type Name = "imageNormals" | "imageDepth" | "albedo" | "shading" | "residual" | "refinedDepth" | "depthNormals" | "correspondence";
+type Name =
+  | "imageNormals"
+  | "imageDepth"
+  | "albedo"
+  | "shading"
+  | "residual"
+  | "refinedDepth"
+  | "depthNormals"
+  | "correspondence";
 
 export class Numbers {
   readonly #estimator: Estimator;

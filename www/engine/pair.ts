@@ -32,8 +32,11 @@ export async function readPair(files: OwnFiles, say: Say): Promise<Pair> {
 
 async function readImage(files: OwnFiles, notes: Record<string, string>, say: Say): Promise<ColorImage> {
   const { colour, colourMask, colourCamera } = files;
-  const raw = files.read?.colour ?? (await read(colour, "image", async (bytes) => (isOurs(bytes) ? decodeColour(bytes) : decodePhoto(colour))));
-  const mask = files.read?.colourMask ?? (colourMask && (await read(colourMask, "image.mask", (bytes) => decodeMask(bytes))));
+  const raw =
+    files.read?.colour ??
+    (await read(colour, "image", async (bytes) => (isOurs(bytes) ? decodeColour(bytes) : decodePhoto(colour))));
+  const mask =
+    files.read?.colourMask ?? (colourMask && (await read(colourMask, "image.mask", (bytes) => decodeMask(bytes))));
   const factor = factorFor(raw);
   if (factor > 1) {
     notes.image = `${raw.width} × ${raw.height} px is more than the library takes: scaled down by ${factor}`;
@@ -53,7 +56,8 @@ async function readImage(files: OwnFiles, notes: Record<string, string>, say: Sa
 async function readDepth(files: OwnFiles, notes: Record<string, string>, say: Say): Promise<DepthMap> {
   const { depth: file, depthMask, depthCamera, unit } = files;
   const raw = files.read?.depth ?? (await read(file, "depth", (bytes) => decodeDepth(bytes)));
-  const mask = files.read?.depthMask ?? (depthMask && (await read(depthMask, "depth.mask", (bytes) => decodeMask(bytes))));
+  const mask =
+    files.read?.depthMask ?? (depthMask && (await read(depthMask, "depth.mask", (bytes) => decodeMask(bytes))));
   const factor = factorFor(raw);
   if (factor > 1) {
     notes.depth = `${raw.width} × ${raw.height} px is more than the library takes: every ${factor}th pixel is used`;
@@ -88,12 +92,20 @@ async function read<T>(file: File, field: string, decode: (bytes: Uint8Array) =>
 /** JPEG, WebP and whatever else this browser knows, turned as the camera was held. */
 async function decodePhoto(file: File): Promise<ColorImage> {
   const bitmap = await createImageBitmap(file, { imageOrientation: "from-image" }).catch(() => {
-    throw new BimodalError("file", "this is no picture that can be read here; use PNG, JPEG, TIFF, EXR or .npy", "image");
+    throw new BimodalError(
+      "file",
+      "this is no picture that can be read here; use PNG, JPEG, TIFF, EXR or .npy",
+      "image",
+    );
   });
   const { width, height } = bitmap;
   if (width * height > MOST_PIXELS) {
     bitmap.close();
-    throw new BimodalError("file", `it is ${width} × ${height} px large; up to ${MOST_PIXELS} pixels are read`, "image");
+    throw new BimodalError(
+      "file",
+      `it is ${width} × ${height} px large; up to ${MOST_PIXELS} pixels are read`,
+      "image",
+    );
   }
   const canvas = new OffscreenCanvas(width, height);
   const context = canvas.getContext("2d");
@@ -119,7 +131,8 @@ function shrink(image: ColorImage, factor: number): ColorImage {
       for (let c = 0; c < channels; c++) {
         let sum = 0;
         for (let y = row * factor; y < (row + 1) * factor; y++) {
-          for (let x = column * factor; x < (column + 1) * factor; x++) sum += image.data[(y * image.width + x) * channels + c] ?? 0;
+          for (let x = column * factor; x < (column + 1) * factor; x++)
+            sum += image.data[(y * image.width + x) * channels + c] ?? 0;
         }
         data[(row * width + column) * channels + c] = sum / factor ** 2;
       }
@@ -148,7 +161,11 @@ function thin(depth: DepthMap, factor: number): DepthMap {
 
 function fitMask(mask: Mask, full: Extent, factor: number, field: string): Uint8Array {
   if (mask.width !== full.width || mask.height !== full.height) {
-    throw new BimodalError("size", `the mask is ${mask.width} × ${mask.height} px, its picture ${full.width} × ${full.height}`, field);
+    throw new BimodalError(
+      "size",
+      `the mask is ${mask.width} × ${mask.height} px, its picture ${full.width} × ${full.height}`,
+      field,
+    );
   }
   if (factor <= 1) return mask.data;
   const width = Math.floor(full.width / factor);
@@ -159,7 +176,13 @@ function fitMask(mask: Mask, full: Extent, factor: number, field: string): Uint8
 }
 
 /** Visits the middle pixel of every block of `factor` x `factor`. */
-function centres(width: number, height: number, fullWidth: number, factor: number, visit: (target: number, source: number) => void): void {
+function centres(
+  width: number,
+  height: number,
+  fullWidth: number,
+  factor: number,
+  visit: (target: number, source: number) => void,
+): void {
   const middle = Math.floor(factor / 2);
   for (let row = 0; row < height; row++) {
     for (let column = 0; column < width; column++) {

@@ -49,7 +49,8 @@ function coloursAt({ data, mask, transfer }: ColorImage, index: number): { store
   const white = floats ? 1 : data instanceof Uint16Array ? 65535 : 255;
   const encoded = !floats && (transfer ?? (white === 255 ? "srgb" : "linear")) === "srgb";
   // IEC 61966-2-1.
-  const linear = (share: number) => (!encoded ? share : share <= 0.04045 ? share / 12.92 : ((share + 0.055) / 1.055) ** 2.4);
+  const linear = (share: number) =>
+    !encoded ? share : share <= 0.04045 ? share / 12.92 : ((share + 0.055) / 1.055) ** 2.4;
   return { stored, log: stored.map((value) => Math.log(linear(value / white))) };
 }
 
@@ -92,14 +93,20 @@ export function probe(run: Run, side: Side, pixel: Pixel): Probed {
     values.refinedDepth = one(numbers.of("refinedDepth")[theirs]);
     values.depthNormals = depthNormal ?? [];
   }
-  const pixels = { image: mine < 0 ? null : pixelOf(mine, image.width), depth: theirs < 0 ? null : pixelOf(theirs, depth.width) };
+  const pixels = {
+    image: mine < 0 ? null : pixelOf(mine, image.width),
+    depth: theirs < 0 ? null : pixelOf(theirs, depth.width),
+  };
   const { normalError, depthError, refinementError } = painter.errors;
   values.normalError = one(drawnAt(normalError, pixels.image));
   values.depthError = one(drawnAt(depthError, pixels.image));
   values.refinementError = one(drawnAt(refinementError, pixels.depth));
   return {
     pixels,
-    points: { image: pointOf(numbers.points("image"), numbers.of("imageDepth"), mine), depth: pointOf(numbers.points("depth"), numbers.of("refinedDepth"), theirs) },
+    points: {
+      image: pointOf(numbers.points("image"), numbers.of("imageDepth"), mine),
+      depth: pointOf(numbers.points("depth"), numbers.of("refinedDepth"), theirs),
+    },
     values,
     log: colours?.log ?? null,
     predicted: albedo && shading ? albedo.map((value, c) => value + (shading[c] ?? NaN)) : null,

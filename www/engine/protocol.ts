@@ -91,7 +91,14 @@ export type ViewName = keyof typeof VIEWS;
 export type Side = (typeof VIEWS)[ViewName];
 
 /** Ranges of colours; the given depth shares that of the refined one. */
-export const SCALES = ["imageDepth", "refinedDepth", "residual", "normalError", "depthError", "refinementError"] as const;
+export const SCALES = [
+  "imageDepth",
+  "refinedDepth",
+  "residual",
+  "normalError",
+  "depthError",
+  "refinementError",
+] as const;
 export type ScaleName = (typeof SCALES)[number];
 
 export interface Range {

@@ -48,11 +48,22 @@ const strideOf = ({ width, height }: Cut): number => Math.max(1, Math.ceil(Math.
 /** The grid of the drawn pixels, or of every `step`-th of them. */
 export function gridOf(cut: Cut, step = 1): Pick<Raster, "left" | "top" | "width" | "height" | "stride"> {
   const stride = step * strideOf(cut);
-  return { left: cut.left, top: cut.top, width: Math.ceil(cut.width / stride), height: Math.ceil(cut.height / stride), stride };
+  return {
+    left: cut.left,
+    top: cut.top,
+    width: Math.ceil(cut.width / stride),
+    height: Math.ceil(cut.height / stride),
+    stride,
+  };
 }
 
 /** `pick(index)` fills one pixel of `channels` numbers into `out` at `at`. */
-function gather(cut: Cut, channels: 1 | 3, pick: (index: number, out: Float32Array, at: number) => void, step = 1): Raster {
+function gather(
+  cut: Cut,
+  channels: 1 | 3,
+  pick: (index: number, out: Float32Array, at: number) => void,
+  step = 1,
+): Raster {
   const grid = gridOf(cut, step);
   const { left, top, width, height, stride } = grid;
   const data = new Float32Array(width * height * channels);
@@ -66,7 +77,8 @@ function gather(cut: Cut, channels: 1 | 3, pick: (index: number, out: Float32Arr
 }
 
 /** One number for each drawn pixel. */
-export const measured = (cut: Cut, measure: (index: number) => number): Raster => gather(cut, 1, (index, out, at) => (out[at] = measure(index)));
+export const measured = (cut: Cut, measure: (index: number) => number): Raster =>
+  gather(cut, 1, (index, out, at) => (out[at] = measure(index)));
 
 /** A view of the library as it is drawn. */
 export function raster(data: Float32Array, channels: 1 | 3, cut: Cut): Raster {
@@ -99,7 +111,8 @@ export function picture(image: ColorImage, cut: Cut): Picture {
   });
   const integers = data instanceof Uint16Array ? 65535 : 255;
   const white = data instanceof Float32Array ? brightest(drawn.data) : integers;
-  const encoded = !(data instanceof Float32Array) && (image.transfer ?? (integers === 255 ? "srgb" : "linear")) === "srgb";
+  const encoded =
+    !(data instanceof Float32Array) && (image.transfer ?? (integers === 255 ? "srgb" : "linear")) === "srgb";
   return { ...drawn, white, encoded };
 }
 
@@ -157,10 +170,15 @@ export function placesOf(depth: Float32Array): { places: Int32Array; count: numb
 /** The points back at the pixels that they come from: those with a depth, in their order. Where these are others, a list. */
 export function surface(points: Float32Array, depth: Float32Array, cut: Cut): Omit<Surface, "colours"> {
   const { places, count } = placesOf(depth);
-  if (3 * count !== points.length || count === 0) return { left: 0, top: 0, width: 0, height: 0, stride: 1, points: thinned(points) };
+  if (3 * count !== points.length || count === 0)
+    return { left: 0, top: 0, width: 0, height: 0, stride: 1, points: thinned(points) };
   const { width, height } = gridOf(cut);
   const step = Math.max(1, Math.ceil(Math.sqrt((width * height) / MOST_POINTS)));
-  const { data, channels: _, ...grid } = gather(
+  const {
+    data,
+    channels: _,
+    ...grid
+  } = gather(
     cut,
     3,
     (index, out, at) => {

@@ -15,14 +15,21 @@ let context: OffscreenCanvasRenderingContext2D | undefined;
 /** Logarithms of the ball's colours as a picture; `white` is one as well. */
 function painted(data: Float32Array, white: number): ImageBitmap {
   context ??= contextOf(SIDE, SIDE);
-  context.putImageData(paintLog({ left: 0, top: 0, width: SIDE, height: SIDE, stride: 1, channels: 3, data }, white), 0, 0);
+  context.putImageData(
+    paintLog({ left: 0, top: 0, width: SIDE, height: SIDE, stride: 1, channels: 3, data }, white),
+    0,
+    0,
+  );
   return context.canvas.transferToImageBitmap();
 }
 
 /** The ball's colours, the brightest of them white. */
 export function lit(light: ArrayLike<number>): ImageBitmap {
   const logs = shadeNormals(light, ball);
-  return painted(logs, logs.reduce((most, value) => (value > most ? value : most), -Infinity));
+  return painted(
+    logs,
+    logs.reduce((most, value) => Math.max(value, most), -Infinity),
+  );
 }
 
 /** White of a picture of ratios: no difference is a middle grey. */

@@ -1,9 +1,31 @@
 /** The thread that owns the estimator. It answers one request at a time and sends copies, never views on its memory. */
 
 import "./hold";
-import init, { BimodalError, Estimator, sample, sampleLights, sampleSurfaces, turnLight, wasmUrl } from "../../pkg/index.js";
+import init, {
+  BimodalError,
+  Estimator,
+  sample,
+  sampleLights,
+  sampleSurfaces,
+  turnLight,
+  wasmUrl,
+} from "../../pkg/index.js";
 import type { Options, Pose, Sample, SampleRequest, StepReport } from "../../pkg/index.js";
-import type { Answer, Calls, Frame, Kind, KnownLight, Look, OwnFiles, Request, LabOptions, Preview, SampleSource, Source, Drawings } from "./protocol";
+import type {
+  Answer,
+  Calls,
+  Frame,
+  Kind,
+  KnownLight,
+  Look,
+  OwnFiles,
+  Request,
+  LabOptions,
+  Preview,
+  SampleSource,
+  Source,
+  Drawings,
+} from "./protocol";
 import { faultOf } from "./fault";
 import { Numbers } from "./numbers";
 import { probe } from "./probe";
@@ -62,7 +84,10 @@ function resolve({ light, start, ...rest }: LabOptions, input: Input): Options {
 
 const firstOf = (points: Float32Array): number[] => [...points.subarray(0, 3)];
 
-const startOf = (estimator: Estimator, numbers: Numbers): OpenInput["start"] => ({ pose: estimator.report.pose, first: firstOf(numbers.points("depth")) });
+const startOf = (estimator: Estimator, numbers: Numbers): OpenInput["start"] => ({
+  pose: estimator.report.pose,
+  first: firstOf(numbers.points("depth")),
+});
 
 function drawings(run: OpenInput, look: Look, anew = false): Drawings {
   const { estimator, numbers, painter, start } = run;
@@ -73,17 +98,29 @@ function drawings(run: OpenInput, look: Look, anew = false): Drawings {
 
 function frame(run: OpenInput, look: Look, reports: StepReport[], anew = false): Frame {
   const found = run.estimator.light();
-  return { ...drawings(run, look, anew), reports, scores: run.estimator.searchScores(), light: { found: lit(found), difference: run.light ? ratio(found, run.light) : null } };
+  return {
+    ...drawings(run, look, anew),
+    reports,
+    scores: run.estimator.searchScores(),
+    light: { found: lit(found), difference: run.light ? ratio(found, run.light) : null },
+  };
 }
 
 const known = (light: Float64Array): KnownLight => ({ ball: lit(light), coefficients: light.slice() });
 
 /** The new input replaces the old one only when it has been accepted, so a refusal loses nothing. */
 async function open({ source, options, look }: Calls["open"]["request"]): Promise<Calls["open"]["reply"]> {
-  const { estimator, ...opened } = source.kind === "saved" ? await fromSaved(source.file) : await prepared(source, options);
+  const { estimator, ...opened } =
+    source.kind === "saved" ? await fromSaved(source.file) : await prepared(source, options);
   experiment?.estimator.free();
   const numbers = new Numbers(estimator);
-  experiment = { ...opened, estimator, numbers, start: startOf(estimator, numbers), painter: new ViewPainter(opened, opened.shapes) };
+  experiment = {
+    ...opened,
+    estimator,
+    numbers,
+    start: startOf(estimator, numbers),
+    painter: new ViewPainter(opened, opened.shapes),
+  };
   return {
     units: { image: opened.image.camera ? "m" : "px", depth: opened.depth.camera ? "m" : "px" },
     notes: opened.notes,
@@ -97,7 +134,10 @@ async function open({ source, options, look }: Calls["open"]["request"]): Promis
 
 type Prepared = Input & Pick<Calls["open"]["reply"], "notes">;
 
-async function prepared(source: Exclude<Source, { kind: "saved" }>, options: LabOptions): Promise<Prepared & { estimator: Estimator }> {
+async function prepared(
+  source: Exclude<Source, { kind: "saved" }>,
+  options: LabOptions,
+): Promise<Prepared & { estimator: Estimator }> {
   const input = source.kind === "sample" ? fromSample(source) : await fromFiles(source.files);
   return { ...input, estimator: new Estimator(input.image, input.depth, resolve(options, input)) };
 }
@@ -129,7 +169,12 @@ function take(): Calls["take"]["reply"] {
     imagePoints: estimator.points("image"),
     depthPoints: estimator.points("depth"),
     image: { width: image.width, height: image.height, normals: estimator.imageNormals() },
-    depth: { width: depth.width, height: depth.height, refined: estimator.refinedDepth(), normals: estimator.depthNormals() },
+    depth: {
+      width: depth.width,
+      height: depth.height,
+      refined: estimator.refinedDepth(),
+      normals: estimator.depthNormals(),
+    },
   };
 }
 
@@ -170,7 +215,10 @@ async function advance({ by, milliseconds, look }: Calls["advance"]["request"]):
       if (isSearch()) reports.pop();
       // Unlike `step` this lets the messages of the other threads through.
       reports.push(by === "stage" ? estimator.stepStage() : await estimator.run({ maxIterations: 1 }));
-    } while (performance.now() - began < (isSearch() ? searching : milliseconds) && estimator.report.status === "running");
+    } while (
+      performance.now() - began < (isSearch() ? searching : milliseconds) &&
+      estimator.report.status === "running"
+    );
   } finally {
     current.numbers.forget();
   }

@@ -17,13 +17,19 @@ export class Explanations {
   async open(question: Question): Promise<void> {
     const { explainStage, explainTerm } = await import("./explain");
     const method = this.#method();
-    this.#popover.replaceChildren(...("stage" in question ? explainStage(question.stage, method) : explainTerm(question.term, method)));
+    this.#popover.replaceChildren(
+      ...("stage" in question ? explainStage(question.stage, method) : explainTerm(question.term, method)),
+    );
     this.#popover.showPopover();
   }
 
   /** A "?" beside what it explains. */
   button(term: Term, name: string): HTMLButtonElement {
-    const button = make("button", { type: "button", class: "quiet hint", "aria-haspopup": "dialog", "aria-label": `What is "${name}"?` }, "?");
+    const button = make(
+      "button",
+      { type: "button", class: "quiet hint", "aria-haspopup": "dialog", "aria-label": `What is "${name}"?` },
+      "?",
+    );
     button.addEventListener("click", () => void this.open({ term }));
     return button;
   }

@@ -8,7 +8,8 @@ import { byId, make } from "../dom";
 import type { Drawings } from "../engine/protocol";
 
 const NONE = "This browser offers no WebGL, so the clouds cannot be turned here.";
-const LOST = "The browser has taken the graphics away (WebGL), so the clouds stand still until it gives them back. All else goes on.";
+const LOST =
+  "The browser has taken the graphics away (WebGL), so the clouds stand still until it gives them back. All else goes on.";
 const GONE = "What draws the clouds was ended twice; a reload of the page brings them back. All else goes on.";
 
 export class CloudPanel {
@@ -32,11 +33,14 @@ export class CloudPanel {
     probe.listen(() => this.#mark());
     this.#style.addEventListener("change", () => this.#applyStyle());
     byId("clouds-home", HTMLButtonElement).addEventListener("click", () => this.#clouds?.home());
-    const seen = new IntersectionObserver((entries) => {
-      if (!entries.some((entry) => entry.isIntersecting)) return;
-      seen.disconnect();
-      void this.#open(byId("clouds-canvas", HTMLCanvasElement));
-    }, { rootMargin: "200px" });
+    const seen = new IntersectionObserver(
+      (entries) => {
+        if (!entries.some((entry) => entry.isIntersecting)) return;
+        seen.disconnect();
+        void this.#open(byId("clouds-canvas", HTMLCanvasElement));
+      },
+      { rootMargin: "200px" },
+    );
     seen.observe(this.#box);
   }
 
@@ -81,7 +85,9 @@ export class CloudPanel {
 
   /** The legend names what is drawn: before the first iteration there is no shape from the picture. */
   #name(): void {
-    const isDrawn = [this.#drawings, this.#pinned].some((drawings) => drawings?.surfaces.image.points.some(Number.isFinite));
+    const isDrawn = [this.#drawings, this.#pinned].some((drawings) =>
+      drawings?.surfaces.image.points.some(Number.isFinite),
+    );
     byId("clouds-image", HTMLElement).toggleAttribute("data-none", !isDrawn);
   }
 
@@ -89,7 +95,9 @@ export class CloudPanel {
     const [drawings, clouds] = [this.#drawings, this.#clouds];
     if (!drawings || !clouds) return;
     const fresh = this.#fresh;
-    this.#painter.request(clouds, () => clouds.show(drawings.surfaces, drawings.poses.points, drawings.poses.seen, fresh));
+    this.#painter.request(clouds, () =>
+      clouds.show(drawings.surfaces, drawings.poses.points, drawings.poses.seen, fresh),
+    );
     this.#fresh = false;
   }
 
@@ -129,7 +137,9 @@ export class CloudPanel {
   }
 
   #listen(canvas: HTMLCanvasElement, clouds: Clouds): void {
-    canvas.addEventListener("pointermove", ({ offsetX, offsetY, buttons }) => this.#probe.point(buttons === 0 ? clouds.pick(offsetX, offsetY) : null));
+    canvas.addEventListener("pointermove", ({ offsetX, offsetY, buttons }) =>
+      this.#probe.point(buttons === 0 ? clouds.pick(offsetX, offsetY) : null),
+    );
     canvas.addEventListener("pointerleave", () => this.#probe.point(null));
     canvas.addEventListener("keydown", (event) => {
       const turn = { ArrowLeft: [-10, 0], ArrowRight: [10, 0], ArrowUp: [0, -10], ArrowDown: [0, 10] }[event.key];
@@ -148,7 +158,12 @@ export class CloudPanel {
     if (this.#opened > 1) return this.#say(GONE);
     const old = byId("clouds-canvas", HTMLCanvasElement);
     const { id, tabIndex } = old;
-    const canvas = make("canvas", { id, tabindex: tabIndex, role: "img", "aria-label": old.getAttribute("aria-label") ?? "" });
+    const canvas = make("canvas", {
+      id,
+      tabindex: tabIndex,
+      role: "img",
+      "aria-label": old.getAttribute("aria-label") ?? "",
+    });
     old.replaceWith(canvas);
     this.#fresh = true;
     void this.#open(canvas);

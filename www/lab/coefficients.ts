@@ -14,8 +14,24 @@ export interface CoefficientHooks {
 const PER_CHANNEL = 9;
 const ORDERS = [
   { name: "Order 0: brightness", of: [[0, "1"]] },
-  { name: "Order 1: one side brighter", of: [[3, "x"], [1, "y"], [2, "z"]] },
-  { name: "Order 2: opposite sides alike", of: [[4, "xy"], [5, "yz"], [6, "z²"], [7, "xz"], [8, "x² − y²"]] },
+  {
+    name: "Order 1: one side brighter",
+    of: [
+      [3, "x"],
+      [1, "y"],
+      [2, "z"],
+    ],
+  },
+  {
+    name: "Order 2: opposite sides alike",
+    of: [
+      [4, "xy"],
+      [5, "yz"],
+      [6, "z²"],
+      [7, "xz"],
+      [8, "x² − y²"],
+    ],
+  },
 ] as const;
 const CHANNELS = ["red", "green", "blue"] as const;
 
@@ -38,9 +54,24 @@ export class Coefficients {
     this.#hooks = hooks;
     const heads = CHANNELS.map((channel) => make("span", { class: "channel" }, channel));
     const groups = ORDERS.map(({ name, of }) =>
-      make("fieldset", {}, make("legend", {}, name), ...of.flatMap(([k, harmonic]) => [make("span", { class: "harmonic", "aria-hidden": "true" }, harmonic), ...CHANNELS.map((channel, c) => this.#slider(PER_CHANNEL * c + k, `${channel}, ${harmonic}`))])),
+      make(
+        "fieldset",
+        {},
+        make("legend", {}, name),
+        ...of.flatMap(([k, harmonic]) => [
+          make("span", { class: "harmonic", "aria-hidden": "true" }, harmonic),
+          ...CHANNELS.map((channel, c) => this.#slider(PER_CHANNEL * c + k, `${channel}, ${harmonic}`)),
+        ]),
+      ),
     );
-    this.element = make("details", { id: "coefficients", hidden: true }, make("summary", {}, "All 27 coefficients"), this.#readout, make("div", { class: "channels", "aria-hidden": "true" }, make("span"), ...heads), ...groups);
+    this.element = make(
+      "details",
+      { id: "coefficients", hidden: true },
+      make("summary", {}, "All 27 coefficients"),
+      this.#readout,
+      make("div", { class: "channels", "aria-hidden": "true" }, make("span"), ...heads),
+      ...groups,
+    );
   }
 
   /** Those of a known light; nothing where there is none. */

@@ -15,12 +15,19 @@ export interface FileRequest {
 export type FileAnswer = { bytes: Uint8Array<ArrayBuffer>; says: string } | { fault: Fault };
 
 /** The clouds' inks on the page. */
-const [ORANGE, BLUE] = [[199, 100, 26], [11, 98, 184]];
+const [ORANGE, BLUE] = [
+  [199, 100, 26],
+  [11, 98, 184],
+];
 const NORMALS = "(n + 1) / 2 of white, x right, y up, z near";
 
 const lengthOf = (unit: "m" | "px"): "metres" | "pixels" => (unit === "m" ? "metres" : "pixels");
 
-function tinted(name: string, points: Float32Array, [red = 0, green = 0, blue = 0]: readonly number[]): { name: string; points: Float32Array; colours: Uint8Array } {
+function tinted(
+  name: string,
+  points: Float32Array,
+  [red = 0, green = 0, blue = 0]: readonly number[],
+): { name: string; points: Float32Array; colours: Uint8Array } {
   const colours = new Uint8Array(points.length);
   for (let at = 0; at < points.length; at += 3) {
     colours[at] = red;
@@ -34,7 +41,10 @@ async function pack({ kind, taken }: FileRequest): Promise<{ bytes: Uint8Array<A
   const { unit, depthUnit, image, depth, imagePoints, depthPoints } = taken;
   switch (kind) {
     case "clouds": {
-      const clouds = [tinted("shape from the picture", imagePoints, ORANGE), tinted("depth map, moved by the pose", depthPoints, BLUE)];
+      const clouds = [
+        tinted("shape from the picture", imagePoints, ORANGE),
+        tinted("depth map, moved by the pose", depthPoints, BLUE),
+      ];
       return { bytes: writeClouds(clouds, lengthOf(unit)), says: lengthOf(unit) };
     }
     case "depth":

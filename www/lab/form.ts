@@ -1,7 +1,20 @@
 /** Fields made from the settings' description, each with its label, unit, hint and a place for its error. */
 
 import { byId, freshId, make } from "../dom";
-import { fields, isLightText, isOff, valueOf, type ChoiceField, type Field, type Group, type ListField, type NumberField, type Origin, type Settings, type Value } from "./settings";
+import {
+  fields,
+  isLightText,
+  isOff,
+  valueOf,
+  type ChoiceField,
+  type Field,
+  type Group,
+  type ListField,
+  type NumberField,
+  type Origin,
+  type Settings,
+  type Value,
+} from "./settings";
 import type { Store } from "./store";
 
 const groups: readonly Group[] = ["sample", "colour", "depth", "method", "weights", "loop"];
@@ -62,7 +75,9 @@ export class Form {
 
   /** Puts an error beside the field it names, and says which that is; nothing when no field answers to that path. */
   complain(path: string, message: string): string | undefined {
-    const candidates = [...this.#controls.values()].filter(({ field, row }) => !row.hidden && (path === field.path || path.startsWith(`${field.path}.`)));
+    const candidates = [...this.#controls.values()].filter(
+      ({ field, row }) => !row.hidden && (path === field.path || path.startsWith(`${field.path}.`)),
+    );
     const control = candidates.sort((a, b) => b.field.path.length - a.field.path.length)[0];
     if (!control) return undefined;
     mark(control, message, "error");
@@ -110,7 +125,17 @@ export class Form {
 
 /** A title would be out of reach for fingers, so the hint unfolds below its field. */
 function hintButton(label: string, hint: HTMLElement): HTMLButtonElement {
-  const button = make("button", { type: "button", class: "quiet hint", "aria-expanded": "false", "aria-controls": hint.id, "aria-label": `What is "${label}"?` }, "?");
+  const button = make(
+    "button",
+    {
+      type: "button",
+      class: "quiet hint",
+      "aria-expanded": "false",
+      "aria-controls": hint.id,
+      "aria-label": `What is "${label}"?`,
+    },
+    "?",
+  );
   button.addEventListener("click", () => {
     hint.hidden = !hint.hidden;
     button.setAttribute("aria-expanded", String(!hint.hidden));
@@ -188,7 +213,8 @@ function choice(field: ChoiceField, id: string, change: Change): Built {
     inputs: [select],
     show(value) {
       const wanted = String(value);
-      if (![...select.options].some((option) => option.value === wanted)) select.append(make("option", { value: wanted }, isLightText(wanted) ? "own coefficients" : wanted));
+      if (![...select.options].some((option) => option.value === wanted))
+        select.append(make("option", { value: wanted }, isLightText(wanted) ? "own coefficients" : wanted));
       select.value = wanted;
     },
   };

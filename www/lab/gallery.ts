@@ -9,7 +9,19 @@ import { Scale } from "../draw/scale";
 import { View, type Content } from "../draw/view";
 import { byId, make, nextFrame, nextTask } from "../dom";
 import { CloudPanel } from "./cloudpanel";
-import { SCALES, TEXTURES, type Frame, type Look, type Opened, type Painted, type Probed, type ScaleName, type Drawings, type Texture, type ViewName } from "../engine/protocol";
+import {
+  SCALES,
+  TEXTURES,
+  type Frame,
+  type Look,
+  type Opened,
+  type Painted,
+  type Probed,
+  type ScaleName,
+  type Drawings,
+  type Texture,
+  type ViewName,
+} from "../engine/protocol";
 
 /** What the pictures need of the worker; nothing comes of it where there is nothing to be seen. */
 export interface GalleryHooks {
@@ -41,27 +53,105 @@ export class Gallery {
 
   constructor() {
     const isError = (scale: ScaleName): boolean => scale === "residual" || scale.endsWith("Error");
-    this.#scales = Object.fromEntries(SCALES.map((name) => [name, new Scale(isError(name) ? "magma" : "viridis", () => void this.#look())])) as Record<ScaleName, Scale>;
+    this.#scales = Object.fromEntries(
+      SCALES.map((name) => [name, new Scale(isError(name) ? "magma" : "viridis", () => void this.#look())]),
+    ) as Record<ScaleName, Scale>;
     const view = (parent: string, name: ViewName, title: string, description: string, content: Content): View => {
       const built = new View({ name, title, description, content, probe: this.#probe, painter: this.#painter });
       this.#place(built.element, parent, title);
       return built;
     };
     const scalar = (scale: ScaleName): Content => ({ kind: "scalar", scale: this.#scales[scale] });
-    const picture = view("inputs-views", "picture", "Colour", "the colour image as it was given", { kind: "picture", legend: "as it was given" });
-    const imageNormals = view("image-views", "imageNormals", "Normals", "normals found from shading in the colour image", { kind: "normals" });
-    const imageDepth = view("image-views", "imageDepth", "Depth", "depth of the colour image, integrated from its normals", scalar("imageDepth"));
-    const albedo = view("image-views", "albedo", "Albedo", "paint of the object, the colours without light and shadow", { kind: "picture", legend: "grey if all is one paint" });
-    const shading = view("image-views", "shading", "Shading", "what the light makes of the shape, the colours without paint", { kind: "picture", legend: "light on shape" });
+    const picture = view("inputs-views", "picture", "Colour", "the colour image as it was given", {
+      kind: "picture",
+      legend: "as it was given",
+    });
+    const imageNormals = view(
+      "image-views",
+      "imageNormals",
+      "Normals",
+      "normals found from shading in the colour image",
+      { kind: "normals" },
+    );
+    const imageDepth = view(
+      "image-views",
+      "imageDepth",
+      "Depth",
+      "depth of the colour image, integrated from its normals",
+      scalar("imageDepth"),
+    );
+    const albedo = view(
+      "image-views",
+      "albedo",
+      "Albedo",
+      "paint of the object, the colours without light and shadow",
+      { kind: "picture", legend: "grey if all is one paint" },
+    );
+    const shading = view(
+      "image-views",
+      "shading",
+      "Shading",
+      "what the light makes of the shape, the colours without paint",
+      { kind: "picture", legend: "light on shape" },
+    );
     const given = view("inputs-views", "given", "Given depth", "the depth map as it was given", scalar("refinedDepth"));
-    const refinedDepth = view("depth-views", "refinedDepth", "Refined depth", "the depth map after refinement", scalar("refinedDepth"));
-    const depthNormals = view("depth-views", "depthNormals", "Refined normals", "normals of the depth map after refinement", { kind: "normals" });
+    const refinedDepth = view(
+      "depth-views",
+      "refinedDepth",
+      "Refined depth",
+      "the depth map after refinement",
+      scalar("refinedDepth"),
+    );
+    const depthNormals = view(
+      "depth-views",
+      "depthNormals",
+      "Refined normals",
+      "normals of the depth map after refinement",
+      { kind: "normals" },
+    );
     this.#place(byId("clouds", HTMLElement), undefined, "Both surfaces");
-    const residual = view("image-views", "residual", "Colour residual", "how far the predicted colours are from the image", scalar("residual"));
-    const normalError = view("error-views", "normalError", "Error of normals", "angle between the colour view's normals and the true ones", scalar("normalError"));
-    const depthError = view("error-views", "depthError", "Error of depth", "distance of the colour view's depth from the true one, both about their middles", scalar("depthError"));
-    const refinementError = view("error-views", "refinementError", "Refinement error", "distance of the refined depth from the true one", scalar("refinementError"));
-    this.#views = { picture, imageNormals, imageDepth, albedo, shading, residual, given, refinedDepth, depthNormals, normalError, depthError, refinementError };
+    const residual = view(
+      "image-views",
+      "residual",
+      "Colour residual",
+      "how far the predicted colours are from the image",
+      scalar("residual"),
+    );
+    const normalError = view(
+      "error-views",
+      "normalError",
+      "Error of normals",
+      "angle between the colour view's normals and the true ones",
+      scalar("normalError"),
+    );
+    const depthError = view(
+      "error-views",
+      "depthError",
+      "Error of depth",
+      "distance of the colour view's depth from the true one, both about their middles",
+      scalar("depthError"),
+    );
+    const refinementError = view(
+      "error-views",
+      "refinementError",
+      "Refinement error",
+      "distance of the refined depth from the true one",
+      scalar("refinementError"),
+    );
+    this.#views = {
+      picture,
+      imageNormals,
+      imageDepth,
+      albedo,
+      shading,
+      residual,
+      given,
+      refinedDepth,
+      depthNormals,
+      normalError,
+      depthError,
+      refinementError,
+    };
     this.#clouds = new CloudPanel(this.#painter, this.#probe);
     const texture = byId("clouds-texture", HTMLSelectElement);
     texture.addEventListener("change", () => {
@@ -131,9 +221,18 @@ export class Gallery {
 
   #see(drawings: Drawings): void {
     const { image, depth } = this.#units;
-    const units: Partial<Record<ViewName, string>> = { imageDepth: image, residual: "log", given: depth, refinedDepth: depth, normalError: "°", depthError: image, refinementError: depth };
+    const units: Partial<Record<ViewName, string>> = {
+      imageDepth: image,
+      residual: "log",
+      given: depth,
+      refinedDepth: depth,
+      normalError: "°",
+      depthError: image,
+      refinementError: depth,
+    };
     for (const name of SCALES) this.#scales[name].follow(drawings.ranges[name]);
-    for (const [name, painted] of Object.entries(drawings.views) as [ViewName, Painted][]) this.#views[name].show(painted, units[name]);
+    for (const [name, painted] of Object.entries(drawings.views) as [ViewName, Painted][])
+      this.#views[name].show(painted, units[name]);
     this.#clouds.show(drawings);
   }
 
@@ -199,7 +298,17 @@ export class Gallery {
     // The tenth has the key 0; those after it have none.
     const key = number > 10 ? "+" : String(number % 10);
     const hint = number > 10 ? "Enlarge" : `Enlarge (${key})`;
-    const button = make("button", { type: "button", class: "quiet enlarge", "aria-pressed": "false", "aria-label": number > 10 ? `Enlarge ${title}` : `Enlarge ${title}, key ${key}`, title: hint }, key);
+    const button = make(
+      "button",
+      {
+        type: "button",
+        class: "quiet enlarge",
+        "aria-pressed": "false",
+        "aria-label": number > 10 ? `Enlarge ${title}` : `Enlarge ${title}, key ${key}`,
+        title: hint,
+      },
+      key,
+    );
     button.addEventListener("click", () => this.enlarge(number));
     figure.querySelector("figcaption")?.prepend(button);
     if (parent) byId(parent, HTMLElement).append(figure);
@@ -214,7 +323,10 @@ export class Gallery {
     await nextTask();
     const { Chart } = await import("../draw/charts");
     const charts: Chart[] = [];
-    for (const build of [() => Chart.objective(byId("objective-chart", HTMLElement)), () => Chart.rotation(byId("rotation-chart", HTMLElement))]) {
+    for (const build of [
+      () => Chart.objective(byId("objective-chart", HTMLElement)),
+      () => Chart.rotation(byId("rotation-chart", HTMLElement)),
+    ]) {
       await nextTask();
       charts.push(build());
     }

@@ -6,10 +6,34 @@ import type { Look, Offer } from "./own";
 export type Slot = "colour" | "depth" | "colourMask" | "depthMask";
 
 const slots: readonly { slot: Slot; label: string; accept: string; hint: string; paths: readonly string[] }[] = [
-  { slot: "colour", label: "Colour image", accept: ".png,.npy,.tif,.tiff,.exr,.ppm,image/*", hint: "PNG, JPEG, WebP, TIFF, EXR, PPM, .npy", paths: ["image", "image.data"] },
-  { slot: "depth", label: "Depth map", accept: ".png,.npy,.tif,.tiff,.exr,.pfm,.pgm,.ply,.pcd", hint: "PNG, .npy, TIFF, EXR, PFM, PGM, PLY, PCD", paths: ["depth", "depth.data"] },
-  { slot: "colourMask", label: "Colour mask", accept: ".png,.npy,.tif,.tiff,.pgm,image/*", hint: "optional; black is background", paths: ["image.mask"] },
-  { slot: "depthMask", label: "Depth mask", accept: ".png,.npy,.tif,.tiff,.pgm,image/*", hint: "optional; black is background", paths: ["depth.mask"] },
+  {
+    slot: "colour",
+    label: "Colour image",
+    accept: ".png,.npy,.tif,.tiff,.exr,.ppm,image/*",
+    hint: "PNG, JPEG, WebP, TIFF, EXR, PPM, .npy",
+    paths: ["image", "image.data"],
+  },
+  {
+    slot: "depth",
+    label: "Depth map",
+    accept: ".png,.npy,.tif,.tiff,.exr,.pfm,.pgm,.ply,.pcd",
+    hint: "PNG, .npy, TIFF, EXR, PFM, PGM, PLY, PCD",
+    paths: ["depth", "depth.data"],
+  },
+  {
+    slot: "colourMask",
+    label: "Colour mask",
+    accept: ".png,.npy,.tif,.tiff,.pgm,image/*",
+    hint: "optional; black is background",
+    paths: ["image.mask"],
+  },
+  {
+    slot: "depthMask",
+    label: "Depth mask",
+    accept: ".png,.npy,.tif,.tiff,.pgm,image/*",
+    hint: "optional; black is background",
+    paths: ["depth.mask"],
+  },
 ];
 
 interface Entry {
@@ -48,7 +72,11 @@ export class Intake {
       this.#hooks.onForget();
     });
     // Below the slots, which stay where they are whatever is said of them; what asks for an answer is in sight all the same.
-    this.element.append(make("div", { class: "said" }, this.#offer, this.#remarks), make("p", { class: "note keeping", role: "status" }, this.#keeping), this.#forget);
+    this.element.append(
+      make("div", { class: "said" }, this.#offer, this.#remarks),
+      make("p", { class: "note keeping", role: "status" }, this.#keeping),
+      this.#forget,
+    );
   }
 
   get files(): Partial<Record<Slot, File>> {
@@ -92,7 +120,9 @@ export class Intake {
   /** What is to be said of files that are in no slot. */
   remarks(all: readonly { words: string; wrong: boolean }[]): void {
     this.#remarks.hidden = all.length === 0;
-    this.#remarks.replaceChildren(...all.map(({ words, wrong }) => make("li", { class: wrong ? "note error" : "note" }, words)));
+    this.#remarks.replaceChildren(
+      ...all.map(({ words, wrong }) => make("li", { class: wrong ? "note error" : "note" }, words)),
+    );
   }
 
   /** Where the files are while the page is closed, in words, and whether there is something to forget. */
@@ -133,10 +163,21 @@ export class Intake {
 
   #build({ slot, label, accept, hint, paths }: (typeof slots)[number]): void {
     const id = freshId("file");
-    const picker = make("input", { id, type: "file", accept, class: "visually-hidden", "aria-label": label, "aria-describedby": `${id}-note` });
+    const picker = make("input", {
+      id,
+      type: "file",
+      accept,
+      class: "visually-hidden",
+      "aria-label": label,
+      "aria-describedby": `${id}-note`,
+    });
     const name = make("span", { class: "file-name" }, hint);
     const zone = make("label", { class: "drop", for: id }, make("strong", {}, label), name);
-    const clear = make("button", { type: "button", class: "quiet", "aria-label": `Remove ${label.toLowerCase()}`, hidden: true }, "×");
+    const clear = make(
+      "button",
+      { type: "button", class: "quiet", "aria-label": `Remove ${label.toLowerCase()}`, hidden: true },
+      "×",
+    );
     const note = make("p", { class: "note", id: `${id}-note`, hidden: true });
     const thumb = make("canvas", { class: "thumb", role: "img", width: 1, height: 1, hidden: true });
     const says = make("span", { class: "note says" });
@@ -197,10 +238,14 @@ export class Intake {
     const hint = slots.find((each) => each.slot === slot)?.hint ?? "";
     entry.name.title = file ? file.name : hint;
     // However long the name, the size beside it stays in sight.
-    entry.name.replaceChildren(make("span", {}, file ? file.name : hint), ...(file ? [` (${sizeInWords(file.size)})`] : []));
+    entry.name.replaceChildren(
+      make("span", {}, file ? file.name : hint),
+      ...(file ? [` (${sizeInWords(file.size)})`] : []),
+    );
     entry.zone.toggleAttribute("data-filled", file !== undefined);
     entry.clear.hidden = file === undefined;
   }
 }
 
-export const sizeInWords = (bytes: number): string => (bytes < 1e6 ? `${Math.max(1, Math.round(bytes / 1e3))} kB` : `${(bytes / 1e6).toFixed(1)} MB`);
+export const sizeInWords = (bytes: number): string =>
+  bytes < 1e6 ? `${Math.max(1, Math.round(bytes / 1e3))} kB` : `${(bytes / 1e6).toFixed(1)} MB`;

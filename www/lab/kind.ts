@@ -15,7 +15,12 @@ const HEAD = 512;
 /** Whether the package's readers of a rig's files are needed for it: colours that nobody else knows, and all other depth maps and masks, which no browser decodes. */
 export async function isFurther(file: File, isColour: boolean): Promise<boolean> {
   // One that is gone is told of where it is read.
-  const bytes = new Uint8Array(await file.slice(0, HEAD).arrayBuffer().catch(() => Uint8Array.from(PNG).buffer));
+  const bytes = new Uint8Array(
+    await file
+      .slice(0, HEAD)
+      .arrayBuffer()
+      .catch(() => Uint8Array.from(PNG).buffer),
+  );
   return isColour ? FURTHER.test(String.fromCharCode(...bytes)) : !begins(bytes, PNG) && !begins(bytes, NPY);
 }
 
@@ -23,7 +28,8 @@ export async function isFurther(file: File, isColour: boolean): Promise<boolean>
 const RUN = new TextEncoder().encode("bimodal-stereo\n");
 
 export async function runAmong(files: readonly File[]): Promise<File | undefined> {
-  for (const file of files) if (begins(new Uint8Array(await file.slice(0, RUN.length).arrayBuffer()), [...RUN])) return file;
+  for (const file of files)
+    if (begins(new Uint8Array(await file.slice(0, RUN.length).arrayBuffer()), [...RUN])) return file;
   return undefined;
 }
 

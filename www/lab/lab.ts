@@ -14,7 +14,17 @@ import { Player, type Advance } from "./player";
 import { offerPictures } from "./pictures";
 import { PoseTable } from "./posetable";
 import { Rivals } from "./rivals";
-import { fields, inputGroups, methodOf, runOptions, settingsOf, startNear, turnOf, type Origin, type Settings } from "./settings";
+import {
+  fields,
+  inputGroups,
+  methodOf,
+  runOptions,
+  settingsOf,
+  startNear,
+  turnOf,
+  type Origin,
+  type Settings,
+} from "./settings";
 import { download, linkTo, writeAddress } from "./share";
 import { ScoreMap } from "./scoremap";
 import { namesIn, objectOf, originOf, readable, rememberOrigin, sampleOf, sourceOf, wayOut } from "./source";
@@ -107,7 +117,11 @@ export class Lab {
       look: (look) => this.#engine.call("look", { look }).catch(unlessGone),
       probe: (asked) => this.#engine.call("probe", asked).catch(unlessGone),
     });
-    this.#compare = new Compare({ onPin: () => this.#pin(), onUnpin: () => this.gallery.unpin(), onWipe: (share) => this.gallery.wipe(share) });
+    this.#compare = new Compare({
+      onPin: () => this.#pin(),
+      onUnpin: () => this.gallery.unpin(),
+      onWipe: (share) => this.gallery.wipe(share),
+    });
     this.player = new Player({
       advance: (request) => this.#advance(request),
       restart: () => this.#start(this.#wanted),
@@ -122,10 +136,15 @@ export class Lab {
       },
       onStart: ({ angles }) => store.change(startNear(angles), true),
     });
-    this.#light = new LightPanel({ turn: () => turnOf(this.store.settings), onLight: (patch, done, gesture) => this.#changeLight(patch, done, gesture) });
+    this.#light = new LightPanel({
+      turn: () => turnOf(this.store.settings),
+      onLight: (patch, done, gesture) => this.#changeLight(patch, done, gesture),
+    });
     byId("objective-title", HTMLElement).append(this.#explanations.button("objective", "Objective"));
     byId("slots", HTMLElement).append(this.#own.intake.element);
-    byId("take-picture", HTMLSelectElement).addEventListener("focus", () => offerPictures(byId("lab", HTMLElement), byId("take-picture", HTMLSelectElement)));
+    byId("take-picture", HTMLSelectElement).addEventListener("focus", () =>
+      offerPictures(byId("lab", HTMLElement), byId("take-picture", HTMLSelectElement)),
+    );
     this.store.listen((settings, changed, live) => this.#settingsChanged(settings, changed, live));
     this.#form.adapt(this.store.settings, this.#origin);
   }
@@ -170,7 +189,13 @@ export class Lab {
 
   download(): void {
     if (!this.#good || !this.#report) return;
-    download({ ...this.#good, source: originOf(this.#good.source), truth: this.#truth, report: this.#report, history: this.#history });
+    download({
+      ...this.#good,
+      source: originOf(this.#good.source),
+      truth: this.#truth,
+      report: this.#report,
+      history: this.#history,
+    });
   }
 
   /** Hands over one of the results, in full. */
@@ -195,7 +220,9 @@ export class Lab {
   #goOnWith(file: File): void {
     this.player.pause();
     this.#saved = { kind: "saved", file };
-    this.#own.intake.remarks([{ words: `${file.name}: a saved run, from where it stood; its options are in the fields.`, wrong: false }]);
+    this.#own.intake.remarks([
+      { words: `${file.name}: a saved run, from where it stood; its options are in the fields.`, wrong: false },
+    ]);
     this.#vacate();
     void this.#start(this.#saved);
   }
@@ -253,7 +280,9 @@ export class Lab {
   async #preview(patch: Settings): Promise<void> {
     if (this.#origin !== "sample") return;
     const before = this.#turn;
-    const seen = await this.#engine.call("preview", { source: sampleOf({ ...this.store.settings, ...patch }) }).catch(() => undefined);
+    const seen = await this.#engine
+      .call("preview", { source: sampleOf({ ...this.store.settings, ...patch }) })
+      .catch(() => undefined);
     if (!seen || this.#turn !== before) return;
     this.gallery.preview(seen.picture);
     this.#light.showTruth(seen.trueLight);
@@ -279,7 +308,11 @@ export class Lab {
     const { colour, depth } = this.#own.intake.files;
     const wanted = this.#origin === "files" && !this.#saved ? [colour, depth] : [];
     if (wanted.length !== this.#pair.length || wanted.some((file, i) => file !== this.#pair[i])) this.#vacate();
-    return this.#start(this.#origin === "files" && this.#saved ? this.#saved : sourceOf(this.#origin, this.store.settings, this.#own.intake.files));
+    return this.#start(
+      this.#origin === "files" && this.#saved
+        ? this.#saved
+        : sourceOf(this.#origin, this.store.settings, this.#own.intake.files),
+    );
   }
 
   /** The loop from its beginning, on an input that the worker may already hold. */
@@ -300,7 +333,11 @@ export class Lab {
     if (typeof source === "string") return this.#await(source);
     const settings = this.store.settings;
     const options = runOptions(settings, originOf(source));
-    this.#announce("loading", source === this.#good?.source ? "starting over" : "reading the input", source === this.#good?.source ? "" : namesIn(source));
+    this.#announce(
+      "loading",
+      source === this.#good?.source ? "starting over" : "reading the input",
+      source === this.#good?.source ? "" : namesIn(source),
+    );
     try {
       await this.#offerChoices();
       await this.#engine.interrupt();
@@ -340,7 +377,11 @@ export class Lab {
 
   /** Has the worker open an input and shows it, unless that has been overtaken by then. */
   async #open(source: Source, options: LabOptions, turn: number): Promise<boolean> {
-    const opened = await this.#engine.call("open", { source: await readable(source), options, look: this.gallery.look });
+    const opened = await this.#engine.call("open", {
+      source: await readable(source),
+      options,
+      look: this.gallery.look,
+    });
     this.#held = source;
     if (turn !== this.#turn) return false;
     this.#pair = source.kind === "files" ? [source.files.colour, source.files.depth] : [];
@@ -431,7 +472,12 @@ export class Lab {
   }
 
   #verdict(report: StepReport): Verdict | undefined {
-    return verdict(report, this.#from, this.#truth, methodOf(this.store.settings, this.#origin).registration === "fixed");
+    return verdict(
+      report,
+      this.#from,
+      this.#truth,
+      methodOf(this.store.settings, this.#origin).registration === "fixed",
+    );
   }
 
   #showState(): void {
@@ -443,7 +489,12 @@ export class Lab {
       this.#rivals.show(report);
       this.#pose.show(report, this.#rivals.looked, this.#from, this.#truth, this.#length);
       this.#strip.show(report);
-      this.#status.show(report, playing ? "playing" : report.iteration > 0 || isSearching(report) ? "paused" : "ready", end, this.#rivals.looked !== undefined);
+      this.#status.show(
+        report,
+        playing ? "playing" : report.iteration > 0 || isSearching(report) ? "paused" : "ready",
+        end,
+        this.#rivals.looked !== undefined,
+      );
       this.#light.beside(this.#rivals.looked !== undefined);
     }
     if (this.#notice) this.#status.announce(this.#notice.state, this.#notice.words, this.#notice.cause);
@@ -457,7 +508,8 @@ export class Lab {
   async #fail(error: unknown): Promise<void> {
     this.player.pause();
     const placed = this.#messages.fail(error);
-    if (placed) this.#announce("error", `${placed.field}: not possible`, `${sentence(placed.words)} The field is marked.`);
+    if (placed)
+      this.#announce("error", `${placed.field}: not possible`, `${sentence(placed.words)} The field is marked.`);
     else this.#announce("error", "see the message");
     if (this.#good && this.#held !== this.#good.source) await this.#recover(this.#good);
   }
@@ -469,7 +521,8 @@ export class Lab {
   #lose(error: EngineError): void {
     this.#held = undefined;
     const turn = this.#turn;
-    if (error.fatal) setTimeout(() => turn === this.#turn && this.#good && !this.#held && void this.#enter(this.#fail(error)));
+    if (error.fatal)
+      setTimeout(() => turn === this.#turn && this.#good && !this.#held && void this.#enter(this.#fail(error)));
   }
 
   /** A run whose worker was ended plays again, to the same numbers; once, because what it does may be what ends it. */

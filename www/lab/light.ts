@@ -45,7 +45,10 @@ export class LightPanel {
   constructor(hooks: LightHooks) {
     this.#hooks = hooks;
     this.#found = new Ball("found", "A ball under the light that was found");
-    this.#truth = new Ball("true: drag it", "A ball under the true light. Drag it or use the arrow keys to turn the light.");
+    this.#truth = new Ball(
+      "true: drag it",
+      "A ball under the true light. Drag it or use the arrow keys to turn the light.",
+    );
     this.#difference = new Ball("difference", "The light that was found over the true one: grey where both are equal");
     this.#coefficients = new Coefficients(hooks);
     this.#box.append(this.#found.element, this.#truth.element, this.#difference.element);

@@ -51,13 +51,28 @@ async function look(file: File): Promise<Look> {
     const { kind, width, height, cameras } = read;
     // An object before nothing has holes around it.
     const warnings = kind === "depth" ? read.warnings.filter((words) => !/unit|are holes/.test(words)) : read.warnings;
-    return { kind, says: inWords(read), warnings, cameras, ...(width && height ? { width, height } : {}), ...(picture ? { picture } : {}) };
+    return {
+      kind,
+      says: inWords(read),
+      warnings,
+      cameras,
+      ...(width && height ? { width, height } : {}),
+      ...(picture ? { picture } : {}),
+    };
   } catch (error) {
-    return unread(file, error instanceof Error ? error.message.replace(/^file: /, "").replace(`${file.name}: `, "") : String(error));
+    return unread(
+      file,
+      error instanceof Error ? error.message.replace(/^file: /, "").replace(`${file.name}: `, "") : String(error),
+    );
   }
 }
 
-const PLACES = { colour: ["colour", "image"], depth: ["depth", "depth"], colourMask: ["mask", "image.mask"], depthMask: ["mask", "depth.mask"] } as const;
+const PLACES = {
+  colour: ["colour", "image"],
+  depth: ["depth", "depth"],
+  colourMask: ["mask", "image.mask"],
+  depthMask: ["mask", "depth.mask"],
+} as const;
 
 /** The pixels of files that only these readers know. What is wrong with one is said of its slot. */
 export async function pixelsOf(files: Files): Promise<Read> {
@@ -91,7 +106,12 @@ function withoutCamera<T>({ camera: _, ...rest }: Omit<T, "camera"> & { camera?:
 
 const inWords = ({ kind, says }: Summary): string =>
   kind === "depth"
-    ? says.replace(/read as metres, /, "").replace(/(\S+) to (\S+) m\b/, (_, from: string, to: string) => `stored numbers ${Number(from)} to ${Number(to)}`)
+    ? says
+        .replace(/read as metres, /, "")
+        .replace(
+          /(\S+) to (\S+) m\b/,
+          (_, from: string, to: string) => `stored numbers ${Number(from)} to ${Number(to)}`,
+        )
     : says;
 
 /** What these readers do not take the Lab may still: larger pictures, which it scales down, and whatever else the browser decodes. */
@@ -144,10 +164,14 @@ export async function sorted(files: readonly File[], there: Files): Promise<Sort
     const moved = odd([one, two], isColourName);
     [colours, depths] = [[moved], depths.filter((each) => each !== moved)];
   }
-  for (const [slot, all] of [["colour", colours], ["depth", depths]] as const) {
+  for (const [slot, all] of [
+    ["colour", colours],
+    ["depth", depths],
+  ] as const) {
     const [first, ...more] = all;
     if (first) result.slots.set(slot, first.file);
-    for (const { file } of more) say(`${file.name}: another ${slot === "colour" ? "colour image" : "depth map"}; the Lab takes one.`);
+    for (const { file } of more)
+      say(`${file.name}: another ${slot === "colour" ? "colour image" : "depth map"}; the Lab takes one.`);
   }
   // A pair that comes whole is another one, to which the masks of the last do not belong.
   const isPair = result.slots.has("colour") && result.slots.has("depth");
@@ -157,7 +181,8 @@ export async function sorted(files: readonly File[], there: Files): Promise<Sort
     return file && (await lookAt(file));
   };
   const [colour, depth] = [await sizeOf("colour"), await sizeOf("depth")];
-  const fits = (look: Pick<Look, "width" | "height">, other: Look | undefined) => other !== undefined && look.width === other.width && look.height === other.height;
+  const fits = (look: Pick<Look, "width" | "height">, other: Look | undefined) =>
+    other !== undefined && look.width === other.width && look.height === other.height;
   for (const { file, look } of of("mask")) {
     const [isColours, isDepths] = [fits(look, colour), fits(look, depth)];
     const free = after.colourMask === undefined ? "colourMask" : "depthMask";
@@ -169,9 +194,12 @@ export async function sorted(files: readonly File[], there: Files): Promise<Sort
   if (of("mask").length > 0 && after.colourMask && after.depth && !after.depthMask) {
     say("The depth map has no mask: if it shows more than the object, give it one.");
   }
-  const cameras = of("cameras").flatMap(({ file, look }) => look.cameras.map((camera) => ({ file: file.name, ...camera })));
+  const cameras = of("cameras").flatMap(({ file, look }) =>
+    look.cameras.map((camera) => ({ file: file.name, ...camera })),
+  );
   addCameras(cameras, { colour, depth }, result);
-  for (const { file } of of("poses")) say(`${file.name}: a pose, which the Lab finds by itself; Settings, Start, near takes its angles.`);
+  for (const { file } of of("poses"))
+    say(`${file.name}: a pose, which the Lab finds by itself; Settings, Start, near takes its angles.`);
   for (const { file, look } of seen) if (look.kind === undefined) say(`${file.name}: ${look.says}`, true);
   return result;
 }
@@ -182,8 +210,12 @@ type Given = Summary["cameras"][number] & { file: string };
 /** By names, then by the size of the pictures; a single one that fits both is taken for both, as of pictures registered to each other. */
 function addCameras(cameras: readonly Given[], sizes: Partial<Record<Side, Look | undefined>>, result: Sorted): void {
   const named = (isSide: (name: string) => boolean, isOther: (name: string) => boolean) =>
-    cameras.find(({ name = "", file }) => (isSide(name) && !isOther(name)) || (cameras.length === 1 && isSide(file) && !isOther(file)));
-  const fits = ({ width, height }: Given, side: Side) => width !== undefined && width === sizes[side]?.width && height === sizes[side]?.height;
+    cameras.find(
+      ({ name = "", file }) =>
+        (isSide(name) && !isOther(name)) || (cameras.length === 1 && isSide(file) && !isOther(file)),
+    );
+  const fits = ({ width, height }: Given, side: Side) =>
+    width !== undefined && width === sizes[side]?.width && height === sizes[side]?.height;
   let [colour, depth] = [named(isColourName, isDepthName), named(isDepthName, isColourName)];
   const free = () => cameras.filter((each) => each !== colour && each !== depth);
   colour ??= free().find((each) => fits(each, "colour") && !fits(each, "depth"));
@@ -192,14 +224,20 @@ function addCameras(cameras: readonly Given[], sizes: Partial<Record<Side, Look 
   if (only && others.length === 0 && !colour && !depth) [colour, depth] = [only, only];
   colour ??= depth && cameras.length === 1 ? undefined : free()[0];
   depth ??= colour && cameras.length === 1 ? undefined : free()[0];
-  for (const [side, given] of [["colour", colour], ["depth", depth]] as const) {
+  for (const [side, given] of [
+    ["colour", colour],
+    ["depth", depth],
+  ] as const) {
     if (!given) continue;
     const numbers = fieldsOf(side, given.camera);
     const words = `${given.file}: the ${side} camera`;
     if (typeof numbers === "string") result.remarks.push({ words: `${words} ${numbers}`, wrong: true });
     else {
       Object.assign(result.settings, numbers);
-      result.remarks.push({ words: `${words}${only === given && colour === depth ? ", as of both" : ""}; its numbers are in the fields below, Undo takes them back.`, wrong: false });
+      result.remarks.push({
+        words: `${words}${only === given && colour === depth ? ", as of both" : ""}; its numbers are in the fields below, Undo takes them back.`,
+        wrong: false,
+      });
     }
   }
 }
@@ -207,13 +245,23 @@ function addCameras(cameras: readonly Given[], sizes: Partial<Record<Side, Look 
 /** OpenCV's five numbers: k1 k2 p1 p2 k3. */
 const DISTORTION = 5;
 
-function fieldsOf(side: Side, { model, fx, fy, cx, cy, distortion: given = [] }: RigCamera): Record<string, Value> | string {
+function fieldsOf(
+  side: Side,
+  { model, fx, fy, cx, cy, distortion: given = [] }: RigCamera,
+): Record<string, Value> | string {
   const distortion = Array.from(given);
   if (model === "fisheye") return "is a fisheye, which the Lab does not know";
   const [five, rest] = [Array.from({ length: DISTORTION }, (_, k) => distortion[k] ?? 0), distortion.slice(DISTORTION)];
-  if (rest.some((value) => value !== 0)) return `has ${distortion.length} numbers of distortion; the Lab takes ${DISTORTION}`;
+  if (rest.some((value) => value !== 0))
+    return `has ${distortion.length} numbers of distortion; the Lab takes ${DISTORTION}`;
   const bent = five.some((value) => value !== 0) ? five.join(" ") : "";
-  return { [`${side}.fx`]: fx, [`${side}.fy`]: fy, [`${side}.cx`]: cx, [`${side}.cy`]: cy, [`${side}.distortion`]: bent };
+  return {
+    [`${side}.fx`]: fx,
+    [`${side}.fy`]: fy,
+    [`${side}.cx`]: cx,
+    [`${side}.cy`]: cy,
+    [`${side}.distortion`]: bent,
+  };
 }
 
 /** A change of places that seems due, in words. */
@@ -223,7 +271,12 @@ export interface Offer {
   slots: Files;
 }
 
-const called: Readonly<Record<Slot, string>> = { colour: "Colour image", depth: "Depth map", colourMask: "Colour mask", depthMask: "Depth mask" };
+const called: Readonly<Record<Slot, string>> = {
+  colour: "Colour image",
+  depth: "Depth map",
+  colourMask: "Colour mask",
+  depthMask: "Depth mask",
+};
 const sorts: Readonly<Record<string, string>> = { colour: "a colour image", depth: "a depth map", mask: "a mask" };
 
 /** What of the files seems to be in the wrong place. */
@@ -232,13 +285,27 @@ export async function offerFor(files: Files): Promise<Offer | undefined> {
     const file = files[slot];
     return file && (await lookAt(file));
   };
-  const [colour, depth, colourMask, depthMask] = await Promise.all([look("colour"), look("depth"), look("colourMask"), look("depthMask")]);
+  const [colour, depth, colourMask, depthMask] = await Promise.all([
+    look("colour"),
+    look("depth"),
+    look("colourMask"),
+    look("depthMask"),
+  ]);
   const seems = (there: Look | undefined, kind: Look["kind"]) => there?.kind === kind;
   const isCoarse = seems(depth, "colour") && !/\bRGB/.test(depth?.says ?? "");
   // Of a grey picture and a coloured one the coloured one is no depth map, while the grey one may be.
   const isGrey = seems(colour, "colour") && /\bgrey/.test(colour?.says ?? "");
-  if (files.colour && files.depth && ((seems(colour, "depth") && !seems(depth, "depth")) || (seems(depth, "colour") && !isCoarse && (!seems(colour, "colour") || isGrey)))) {
-    return { words: "Colour and depth seem to be swapped.", button: "Swap them", slots: { ...files, colour: files.depth, depth: files.colour } };
+  if (
+    files.colour &&
+    files.depth &&
+    ((seems(colour, "depth") && !seems(depth, "depth")) ||
+      (seems(depth, "colour") && !isCoarse && (!seems(colour, "colour") || isGrey)))
+  ) {
+    return {
+      words: "Colour and depth seem to be swapped.",
+      button: "Swap them",
+      slots: { ...files, colour: files.depth, depth: files.colour },
+    };
   }
   // A mask may have soft edges, and a coarse depth map 8 bits of grey: that alone proves nothing.
   const wrong: [Slot, Look | undefined, boolean][] = [

@@ -83,7 +83,9 @@ export class OwnFiles {
     this.#offer(undefined);
     if (Object.keys(files).length === 0) return;
     const { lookAt, offerFor } = await import("./own");
-    await Promise.all(Object.entries(files).map(async ([slot, file]) => this.intake.show(slot as Slot, file, await lookAt(file))));
+    await Promise.all(
+      Object.entries(files).map(async ([slot, file]) => this.intake.show(slot as Slot, file, await lookAt(file))),
+    );
     const offer = await offerFor(files);
     const now = this.intake.files;
     const isSame = Object.keys({ ...files, ...now }).every((slot) => files[slot as Slot] === now[slot as Slot]);
@@ -100,28 +102,47 @@ export class OwnFiles {
     const files: Files = { ...this.intake.files };
     if (Object.keys(files).length === 0) return this.#forget();
     const { forget, hearOthers, keep, reasonOf } = await import("./storage");
-    hearOthers(() => this.intake.files, (isEmpty) => this.#overtaken(isEmpty));
+    hearOthers(
+      () => this.intake.files,
+      (isEmpty) => this.#overtaken(isEmpty),
+    );
     try {
       await keep(files);
-      this.intake.keeping("These files are kept in this browser, on this machine, until you forget them; a reload brings them back.", true);
+      this.intake.keeping(
+        "These files are kept in this browser, on this machine, until you forget them; a reload brings them back.",
+        true,
+      );
     } catch (error) {
       // Those of another time must not come back in their place.
       await forget().catch(() => {});
-      this.intake.keeping(`This browser does not keep the files (${reasonOf(error)}): they work all the same, and are gone with a reload.`, true);
+      this.intake.keeping(
+        `This browser does not keep the files (${reasonOf(error)}): they work all the same, and are gone with a reload.`,
+        true,
+      );
     }
   }
 
   /** Another tab has put its files in the place of these, or has had them forgotten. */
   #overtaken(isEmpty: boolean): void {
     if (Object.keys(this.intake.files).length === 0) return;
-    const words = isEmpty ? "Another tab of this page has had the kept files forgotten: these are gone with a reload." : "Another tab of this page keeps its files now: a reload brings those, not these.";
+    const words = isEmpty
+      ? "Another tab of this page has had the kept files forgotten: these are gone with a reload."
+      : "Another tab of this page keeps its files now: a reload brings those, not these.";
     this.intake.keeping(words, true);
   }
 
   async #forget(): Promise<void> {
     const { forget } = await import("./storage");
-    const isDone = await forget().then(() => true, () => false);
+    const isDone = await forget().then(
+      () => true,
+      () => false,
+    );
     if (Object.keys(this.intake.files).length > 0) return;
-    this.intake.keeping(isDone ? "Nothing is kept in this browser." : "The browser's storage does not answer: what it may hold of this page, its own settings clear.", false);
+    this.intake.keeping(
+      isDone
+        ? "Nothing is kept in this browser."
+        : "The browser's storage does not answer: what it may hold of this page, its own settings clear.",
+      false,
+    );
   }
 }

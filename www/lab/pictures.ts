@@ -19,8 +19,18 @@ function titleOf(canvas: HTMLCanvasElement): string {
 
 /** All that are on the page now, in its order. */
 export function shownIn(root: HTMLElement): Shown[] {
-  const all = [...root.querySelectorAll("canvas")].filter((canvas) => canvas.getAttribute("aria-hidden") !== "true" && !canvas.closest(".drawer") && canvas.width > 1 && canvas.checkVisibility({ visibilityProperty: true }));
-  return all.map((canvas) => ({ title: titleOf(canvas), words: canvas.closest(".chart")?.getAttribute("aria-label") ?? undefined, canvas }));
+  const all = [...root.querySelectorAll("canvas")].filter(
+    (canvas) =>
+      canvas.getAttribute("aria-hidden") !== "true" &&
+      !canvas.closest(".drawer") &&
+      canvas.width > 1 &&
+      canvas.checkVisibility({ visibilityProperty: true }),
+  );
+  return all.map((canvas) => ({
+    title: titleOf(canvas),
+    words: canvas.closest(".chart")?.getAttribute("aria-label") ?? undefined,
+    canvas,
+  }));
 }
 
 /** What can be saved as a picture now. */
@@ -46,7 +56,12 @@ function flat(canvas: HTMLCanvasElement): HTMLCanvasElement {
 }
 
 export function pngOf(canvas: HTMLCanvasElement): Promise<Blob> {
-  return new Promise((resolve, reject) => flat(canvas).toBlob((blob) => (blob ? resolve(blob) : reject(new Error("This browser made no picture."))), "image/png"));
+  return new Promise((resolve, reject) =>
+    flat(canvas).toBlob(
+      (blob) => (blob ? resolve(blob) : reject(new Error("This browser made no picture."))),
+      "image/png",
+    ),
+  );
 }
 
 /** By way of a blob, which the browser packs in a thread of its own. */

@@ -8,7 +8,14 @@ import type { Term } from "./explain";
 import { BEFORE, angleBetween, dated, standing } from "./verdict";
 
 /** Rows, in the words of the run's messages; those without a unit of their own are lengths in the colour view's unit. */
-const rows: readonly { words: string; name: string; index?: string; unit?: string; decimals: number; read(pose: Pose): number | undefined }[] = [
+const rows: readonly {
+  words: string;
+  name: string;
+  index?: string;
+  unit?: string;
+  decimals: number;
+  read(pose: Pose): number | undefined;
+}[] = [
   { words: "scale", name: "s", unit: "", decimals: 4, read: ({ scale }) => scale },
   { words: "rotation about x", name: "α", unit: "°", decimals: 2, read: ({ angles }) => angles.alpha },
   { words: "rotation about y", name: "β", unit: "°", decimals: 2, read: ({ angles }) => angles.beta },
@@ -32,7 +39,11 @@ export class PoseTable {
 
   constructor(table: HTMLTableElement, explanations: Explanations) {
     this.#table = table;
-    this.#extras = extras.map(({ term, name, read }) => ({ dt: make("dt", {}, name, explanations.button(term, name)), dd: make("dd"), read }));
+    this.#extras = extras.map(({ term, name, read }) => ({
+      dt: make("dt", {}, name, explanations.button(term, name)),
+      dd: make("dd"),
+      read,
+    }));
     byId("pose-extra", HTMLElement).append(...this.#extras.flatMap(({ dt, dd }) => [dt, dd]));
     const lines = this.#cells.map(({ found, truth, unit }, i) => {
       const { words, name, index } = rows[i] ?? { words: "", name: "" };
@@ -56,7 +67,13 @@ export class PoseTable {
   }
 
   /** A rival's pose in place of the run's own; all other numbers are the run's. */
-  show(report: StepReport, rival: Pose | undefined, start: Pose | undefined, truth: Pose | null, length: "px" | "m"): void {
+  show(
+    report: StepReport,
+    rival: Pose | undefined,
+    start: Pose | undefined,
+    truth: Pose | null,
+    length: "px" | "m",
+  ): void {
     const pose = rival ?? report.pose;
     // A search only tries poses: none is found before it is over.
     this.#standing = rival ? "rival" : standing(report);
@@ -76,10 +93,15 @@ export class PoseTable {
       const degrees = angleBetween(pose.rotation, truth.rotation);
       this.#error.dataset.degrees = String(degrees);
       // Beside a rival's the error that the verdict speaks of.
-      const before = rival ? `; ${decimals(angleBetween(report.pose.rotation, truth.rotation), 1)}° the one found` : start ? `; ${decimals(angleBetween(start.rotation, truth.rotation), 1)}° at the start` : "";
+      const before = rival
+        ? `; ${decimals(angleBetween(report.pose.rotation, truth.rotation), 1)}° the one found`
+        : start
+          ? `; ${decimals(angleBetween(start.rotation, truth.rotation), 1)}° at the start`
+          : "";
       this.#error.replaceChildren(make("strong", {}, `${decimals(degrees, 2)}° off`), ` the true rotation${before}`);
       // By the truth, so that nothing moves while the search looks around.
-      if (Math.abs(truth.angles.beta) > POLE) this.#error.append(". So near β = 90° only α and γ together tell the rotation.");
+      if (Math.abs(truth.angles.beta) > POLE)
+        this.#error.append(". So near β = 90° only α and γ together tell the rotation.");
     }
     this.#extras.forEach(({ dt, dd, read }) => {
       const value = read(report, length);
@@ -105,10 +127,12 @@ export function numbersOf(report: StepReport, length: string): [name: string, va
 }
 
 /** Zero is said as zero alone, as the chart's words have it. */
-const change = (degrees: number): string => (degrees === 0 ? "0°" : degrees < 0.0001 ? "below 0.0001°" : `${decimals(degrees, 4)}°`);
+const change = (degrees: number): string =>
+  degrees === 0 ? "0°" : degrees < 0.0001 ? "below 0.0001°" : `${decimals(degrees, 4)}°`;
 
 /** A sigma says how sharp a pose is, not whether it is the right one: beside a lost one it would mislead. */
-const sure = ({ status, uncertainty }: StepReport): StepReport["uncertainty"] => (status === "lost" ? undefined : uncertainty);
+const sure = ({ status, uncertainty }: StepReport): StepReport["uncertainty"] =>
+  status === "lost" ? undefined : uncertainty;
 
 /** One sigma of each part of the pose; what is held or cannot be seen has none. */
 const extras: readonly Extra[] = [
@@ -116,18 +140,34 @@ const extras: readonly Extra[] = [
   { term: "inliers", name: "Inliers", read: ({ inliers }) => `${decimals(100 * inliers, 0)} %` },
   { term: "residual", name: "Colour residual", read: ({ residual }) => decimals(residual, 4) },
   { term: "change", name: "Rotation change", read: ({ rotationChange }) => change(rotationChange) },
-  { term: "sigma", name: "σ about x, y, z", read: (report) => optional(sure(report), ({ rotationDegrees }) => sigmas(rotationDegrees)) },
+  {
+    term: "sigma",
+    name: "σ about x, y, z",
+    read: (report) => optional(sure(report), ({ rotationDegrees }) => sigmas(rotationDegrees)),
+  },
   {
     term: "sigma",
     name: "σ of t",
-    read: (report, length) => optional(sure(report), ({ translation }) => `${translation.map((value) => (value === null ? "free" : decimals(value, 3))).join(", ")} ${length}`),
+    read: (report, length) =>
+      optional(
+        sure(report),
+        ({ translation }) =>
+          `${translation.map((value) => (value === null ? "free" : decimals(value, 3))).join(", ")} ${length}`,
+      ),
   },
-  { term: "sigma", name: "σ of s", read: (report) => optional(sure(report)?.scale ?? undefined, (scale) => decimals(scale, 4)) },
+  {
+    term: "sigma",
+    name: "σ of s",
+    read: (report) => optional(sure(report)?.scale ?? undefined, (scale) => decimals(scale, 4)),
+  },
   { term: "weakest", name: "Weakest", read: (report) => sure(report)?.weakest },
 ];
 
-const optional = <T>(value: T | undefined, show: (value: T) => string): string | undefined => (value === undefined ? undefined : show(value));
+const optional = <T>(value: T | undefined, show: (value: T) => string): string | undefined =>
+  value === undefined ? undefined : show(value);
 
 /** Half a turn of uncertainty is no knowledge at all. */
 const sigmas = (degrees: readonly number[]): string =>
-  degrees.every((value) => value >= 180) ? "unknown" : `${degrees.map((value) => (value >= 180 ? "any" : decimals(value, 2))).join(", ")}°`;
+  degrees.every((value) => value >= 180)
+    ? "unknown"
+    : `${degrees.map((value) => (value >= 180 ? "any" : decimals(value, 2))).join(", ")}°`;

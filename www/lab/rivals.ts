@@ -39,7 +39,11 @@ export class Rivals {
     const start = make("button", { type: "button", hidden: true }, "Start from it");
     const choices = [undefined, ...poses].map((rival) => {
       const away = rival && decimals(angleBetween(rival.rotation, pose.rotation), 0);
-      const button = make("button", { type: "button", "aria-pressed": String(!rival) }, rival ? `rival, ${away}° away` : "the one found");
+      const button = make(
+        "button",
+        { type: "button", "aria-pressed": String(!rival) },
+        rival ? `rival, ${away}° away` : "the one found",
+      );
       button.addEventListener("click", () => {
         for (const choice of choices) choice.setAttribute("aria-pressed", String(choice === button));
         start.hidden = !rival;

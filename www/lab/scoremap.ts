@@ -20,7 +20,9 @@ export class ScoreMap {
     const context = this.#canvas.getContext("2d");
     const count = scores.length / 4;
     if (!context || count === 0) return;
-    const rows = Array.from({ length: count }, (_, row) => scores.subarray(4 * row, 4 * row + 4)).sort((a, b) => (a[3] ?? 0) - (b[3] ?? 0));
+    const rows = Array.from({ length: count }, (_, row) => scores.subarray(4 * row, 4 * row + 4)).sort(
+      (a, b) => (a[3] ?? 0) - (b[3] ?? 0),
+    );
     const best = rows.at(-1) ?? scores;
     const { width } = this.#canvas;
     const at = (degrees: number) => ((degrees + REACH) / (2 * REACH)) * width;
@@ -44,7 +46,10 @@ export class ScoreMap {
     if (truth) mark(truth.angles.alpha, truth.angles.beta, ["#fff", "#d55e00"]);
     this.#figure.hidden = false;
     this.#words.textContent = `: ${count} tried; white: best${truth ? ", orange: true" : ""}`;
-    this.#canvas.setAttribute("aria-label", `Scores of ${count} rotations; the best turns by ${decimals(best[1], 0)} degrees about the vertical axis and ${decimals(best[0], 0)} about the level one.`);
+    this.#canvas.setAttribute(
+      "aria-label",
+      `Scores of ${count} rotations; the best turns by ${decimals(best[1], 0)} degrees about the vertical axis and ${decimals(best[0], 0)} about the level one.`,
+    );
   }
 
   clear(): void {

@@ -76,7 +76,14 @@ function fieldOf(path: string, row: ShownRow, { group, label, hint, link, initia
       return { ...common, kind: "flag", initial: value === true };
     default: {
       const start = initial ?? (typeof value === "number" ? value : null);
-      return { ...common, kind: "number", initial: start, unit: row.unit, empty: empty ?? row.words?.[String(value)] ?? String(value), slider };
+      return {
+        ...common,
+        kind: "number",
+        initial: start,
+        unit: row.unit,
+        empty: empty ?? row.words?.[String(value)] ?? String(value),
+        slider,
+      };
     }
   }
 }
@@ -87,58 +94,167 @@ const sampleFields = fieldsOf(SAMPLE, "sample");
 const optionFields = fieldsOf(OPTIONS, "options");
 
 const startAngle = (name: "alpha" | "beta" | "gamma", label: string, initial: number): NumberField => ({
-  ...{ kind: "number", key: `start.${name}`, label, initial, empty: "0", group: "method", path: `options.start.angles.${name}` },
+  ...{
+    kind: "number",
+    key: `start.${name}`,
+    label,
+    initial,
+    empty: "0",
+    group: "method",
+    path: `options.start.angles.${name}`,
+  },
   ...{ unit: SAMPLE.angles.members[name].unit, when: near },
 });
 const lens = (side: "colour" | "depth", key: "fx" | "fy" | "cx" | "cy"): NumberField => ({
-  kind: "number", key: `${side}.${key}`, label: key, initial: null, empty: "none", group: side, unit: "px",
+  kind: "number",
+  key: `${side}.${key}`,
+  label: key,
+  initial: null,
+  empty: "none",
+  group: side,
+  unit: "px",
   path: `${side === "colour" ? "image" : "depth"}.camera.${key}`,
 });
 const distortion = (side: "colour" | "depth"): ListField => ({
-  kind: "list", key: `${side}.distortion`, label: "distortion", initial: "", empty: "none", group: side,
-  hint: "Five numbers in OpenCV's order: k1 k2 p1 p2 k3.", path: `${side === "colour" ? "image" : "depth"}.camera.distortion`,
+  kind: "list",
+  key: `${side}.distortion`,
+  label: "distortion",
+  initial: "",
+  empty: "none",
+  group: side,
+  hint: "Five numbers in OpenCV's order: k1 k2 p1 p2 k3.",
+  path: `${side === "colour" ? "image" : "depth"}.camera.distortion`,
 });
 /** Turns of a sample's light about the colour view's axes. */
-const lightTurn = (key: "lightTilt" | "lightTurn", angle: "alpha" | "beta", label: string, hint: string): NumberField => ({
-  ...{ kind: "number", key, label, hint, initial: 0, empty: "0", unit: "deg", group: "sample", path: `angles.${angle}` },
+const lightTurn = (
+  key: "lightTilt" | "lightTurn",
+  angle: "alpha" | "beta",
+  label: string,
+  hint: string,
+): NumberField => ({
+  ...{
+    kind: "number",
+    key,
+    label,
+    hint,
+    initial: 0,
+    empty: "0",
+    unit: "deg",
+    group: "sample",
+    path: `angles.${angle}`,
+  },
   slider: { min: -180, max: 180, step: 5 },
 });
 const ESTIMATED = "Estimated along with the pose.";
 
-const startField: ChoiceField = { kind: "choice", key: "start", label: "Start", initial: "search", group: "method", path: "options.start",
+const startField: ChoiceField = {
+  kind: "choice",
+  key: "start",
+  label: "Start",
+  initial: "search",
+  group: "method",
+  path: "options.start",
   hint: "Search: everywhere. Identity: both views coincide. Near: the angles below. True pose: a sample's own.",
-  choices: [...Object.entries(OPTIONS.start.words), ["near", "near"], ["truth", "true pose"]], only: { truth: "sample" } };
+  choices: [...Object.entries(OPTIONS.start.words), ["near", "near"], ["truth", "true pose"]],
+  only: { truth: "sample" },
+};
 
 export const fields: readonly Field[] = [
   { kind: "choice", key: "surface", label: "Surface", initial: "bust", group: "sample", path: "sample.surface" },
   { kind: "choice", key: "light", label: "Light", initial: "colourful", group: "sample", path: "sample.light" },
   lightTurn("lightTurn", "beta", "Light turned", "About the vertical axis, as dragging the ball under the light does."),
   lightTurn("lightTilt", "alpha", "Light tilted", "About the horizontal axis."),
-  { kind: "choice", key: "size", label: "Size", hint: "Of both views: a side, or a camera's whole frame.", initial: "128", group: "sample", path: "sample.size", when: rendered,
-    choices: [["32", "32 px"], ["64", "64 px"], ["96", "96 px"], ["128", "128 px"], ["256", "256 px"], ["640x480", "640×480"]] },
+  {
+    kind: "choice",
+    key: "size",
+    label: "Size",
+    hint: "Of both views: a side, or a camera's whole frame.",
+    initial: "128",
+    group: "sample",
+    path: "sample.size",
+    when: rendered,
+    choices: [
+      ["32", "32 px"],
+      ["64", "64 px"],
+      ["96", "96 px"],
+      ["128", "128 px"],
+      ["256", "256 px"],
+      ["640x480", "640×480"],
+    ],
+  },
   ...sampleFields,
 
-  { kind: "choice", key: "transfer", label: "Encoding", hint: "How the file's numbers stand for intensity.", initial: "guess", group: "colour", path: "image.transfer",
-    choices: [["guess", "guess"], ["srgb", "sRGB"], ["linear", "linear"]] },
-  lens("colour", "fx"), lens("colour", "fy"), lens("colour", "cx"), lens("colour", "cy"), distortion("colour"),
-  { kind: "number", key: "unit", label: "Unit", hint: "Metres per stored number; pixels without a camera.", initial: null, empty: "default", group: "depth", path: "depth.unit" },
-  lens("depth", "fx"), lens("depth", "fy"), lens("depth", "cx"), lens("depth", "cy"), distortion("depth"),
+  {
+    kind: "choice",
+    key: "transfer",
+    label: "Encoding",
+    hint: "How the file's numbers stand for intensity.",
+    initial: "guess",
+    group: "colour",
+    path: "image.transfer",
+    choices: [
+      ["guess", "guess"],
+      ["srgb", "sRGB"],
+      ["linear", "linear"],
+    ],
+  },
+  lens("colour", "fx"),
+  lens("colour", "fy"),
+  lens("colour", "cx"),
+  lens("colour", "cy"),
+  distortion("colour"),
+  {
+    kind: "number",
+    key: "unit",
+    label: "Unit",
+    hint: "Metres per stored number; pixels without a camera.",
+    initial: null,
+    empty: "default",
+    group: "depth",
+    path: "depth.unit",
+  },
+  lens("depth", "fx"),
+  lens("depth", "fy"),
+  lens("depth", "cx"),
+  lens("depth", "cy"),
+  distortion("depth"),
 
-  { kind: "choice", key: "lighting", label: "Light", initial: "estimate", group: "method", path: "options.light",
+  {
+    kind: "choice",
+    key: "lighting",
+    label: "Light",
+    initial: "estimate",
+    group: "method",
+    path: "options.light",
     when: (_, source) => source === "sample",
-    remark: (value) => (value === "known" ? "The method is told the sample's own light, up to its exposure." : ESTIMATED),
-    choices: [["known", "known"], ...Object.entries(OPTIONS.light.words)] },
-  { kind: "list", key: "coefficients", label: "Light", hint: "27 numbers where the light is known: nine for red, for green, for blue.", initial: "", empty: "estimated", group: "method", path: "options.light",
-    when: (_, source) => source === "files", remark: (value) => (value === "" ? ESTIMATED : "") },
+    remark: (value) =>
+      value === "known" ? "The method is told the sample's own light, up to its exposure." : ESTIMATED,
+    choices: [["known", "known"], ...Object.entries(OPTIONS.light.words)],
+  },
+  {
+    kind: "list",
+    key: "coefficients",
+    label: "Light",
+    hint: "27 numbers where the light is known: nine for red, for green, for blue.",
+    initial: "",
+    empty: "estimated",
+    group: "method",
+    path: "options.light",
+    when: (_, source) => source === "files",
+    remark: (value) => (value === "" ? ESTIMATED : ""),
+  },
   startField,
-  startAngle("alpha", "Start α", 0), startAngle("beta", "Start β", 12), startAngle("gamma", "Start γ", 0),
+  startAngle("alpha", "Start α", 0),
+  startAngle("beta", "Start β", 12),
+  startAngle("gamma", "Start γ", 0),
   ...optionFields,
 ];
 
 export const inputGroups: readonly Group[] = ["sample", "colour", "depth"];
 
 export const defaults: Settings = Object.fromEntries(fields.map(({ key, initial }) => [key, initial]));
-if (Object.keys(defaults).length < fields.length) throw new Error("Two fields share a name: give one of their rows a `link`.");
+if (Object.keys(defaults).length < fields.length)
+  throw new Error("Two fields share a name: give one of their rows a `link`.");
 
 const number = (settings: Settings, key: string): number | undefined => {
   const value = settings[key];
@@ -182,10 +298,14 @@ export const lightOf = (text: string): string | number[] => (isLightText(text) ?
 export const isLightText = (text: string): boolean => text.includes(" ");
 
 /** Coefficients for an address: four digits are finer than any eye, and than the sliders. */
-export const lightText = (coefficients: readonly number[]): string => coefficients.map((value) => String(Number(value.toPrecision(4)))).join(" ");
+export const lightText = (coefficients: readonly number[]): string =>
+  coefficients.map((value) => String(Number(value.toPrecision(4)))).join(" ");
 
 /** By how much the sample's light is turned. */
-export const turnOf = (settings: Settings): { alpha: number; beta: number } => ({ alpha: number(settings, "lightTilt") ?? 0, beta: number(settings, "lightTurn") ?? 0 });
+export const turnOf = (settings: Settings): { alpha: number; beta: number } => ({
+  alpha: number(settings, "lightTilt") ?? 0,
+  beta: number(settings, "lightTurn") ?? 0,
+});
 
 /** "64" is a square. */
 function size(settings: Settings): Pick<SampleRequest, "size" | "height"> {
@@ -195,7 +315,10 @@ function size(settings: Settings): Pick<SampleRequest, "size" | "height"> {
 
 /** The numbers in a line of text, however they are set apart. */
 const listed = (settings: Settings, key: string): number[] =>
-  text(settings, key).split(/[\s,;[\]]+/).filter((word) => word !== "").map(Number);
+  text(settings, key)
+    .split(/[\s,;[\]]+/)
+    .filter((word) => word !== "")
+    .map(Number);
 
 function lightOption(settings: Settings, source: Origin): LabOptions["light"] {
   if (source === "sample") return settings.lighting === "known" ? "known" : "estimate";
@@ -204,14 +327,18 @@ function lightOption(settings: Settings, source: Origin): LabOptions["light"] {
 }
 
 /** Whether a choice can't be made of this origin. */
-export const isOff = ({ only }: ChoiceField, value: Value, source: Origin): boolean => (only?.[String(value)] ?? source) !== source;
+export const isOff = ({ only }: ChoiceField, value: Value, source: Origin): boolean =>
+  (only?.[String(value)] ?? source) !== source;
 
 /** What a field comes to: of own files there is no true pose to start from. */
 export const valueOf = (field: Field, settings: Settings, source: Origin): Value =>
-  field.kind === "choice" && isOff(field, settings[field.key] ?? null, source) ? field.initial : (settings[field.key] ?? null);
+  field.kind === "choice" && isOff(field, settings[field.key] ?? null, source)
+    ? field.initial
+    : (settings[field.key] ?? null);
 
 function startOption(settings: Settings, source: Origin): LabOptions["start"] {
-  if (!near(settings)) return (["identity", "truth"] as const).find((word) => word === valueOf(startField, settings, source)) ?? "search";
+  if (!near(settings))
+    return (["identity", "truth"] as const).find((word) => word === valueOf(startField, settings, source)) ?? "search";
   const angle = (name: string) => number(settings, `start.${name}`) ?? 0;
   return { angles: { alpha: angle("alpha"), beta: angle("beta"), gamma: angle("gamma") } };
 }
@@ -231,7 +358,11 @@ export function startNear({ alpha, beta, gamma }: Record<"alpha" | "beta" | "gam
 }
 
 /** The value at a path below what its first name stands for. */
-const valueAt = (root: unknown, path: string): unknown => path.split(".").slice(1).reduce<unknown>((inner, name) => (inner as Record<string, unknown> | undefined)?.[name], root);
+const valueAt = (root: unknown, path: string): unknown =>
+  path
+    .split(".")
+    .slice(1)
+    .reduce<unknown>((inner, name) => (inner as Record<string, unknown> | undefined)?.[name], root);
 
 /** The fields as a saved run had been told them; of a start the angles alone, which is all that fields have. */
 export function settingsOf(options: Options): Settings {
@@ -266,10 +397,20 @@ const valueInWords = (field: Field, value: Value): string => {
 
 /** All that a run was told, as the form shows it. */
 export function optionsInWords(settings: Settings, source: Origin): [name: string, value: string][] {
-  const groups: Partial<Record<Group, string>> = source === "sample" ? { sample: "Sample: " } : { colour: "Colour camera: ", depth: "Depth camera: " };
-  const asked = fields.filter(({ group, when }) => (groups[group] !== undefined || !(inputGroups.includes(group))) && (when?.(settings, source) ?? true));
-  const isTold = ({ key, group }: Field) => (group !== "colour" && group !== "depth") || (settings[key] !== null && settings[key] !== "");
-  return asked.filter(isTold).map((field) => [`${groups[field.group] ?? ""}${field.label}`, valueInWords(field, valueOf(field, settings, source))]);
+  const groups: Partial<Record<Group, string>> =
+    source === "sample" ? { sample: "Sample: " } : { colour: "Colour camera: ", depth: "Depth camera: " };
+  const asked = fields.filter(
+    ({ group, when }) =>
+      (groups[group] !== undefined || !inputGroups.includes(group)) && (when?.(settings, source) ?? true),
+  );
+  const isTold = ({ key, group }: Field) =>
+    (group !== "colour" && group !== "depth") || (settings[key] !== null && settings[key] !== "");
+  return asked
+    .filter(isTold)
+    .map((field) => [
+      `${groups[field.group] ?? ""}${field.label}`,
+      valueInWords(field, valueOf(field, settings, source)),
+    ]);
 }
 
 const lensKeys = ["fx", "fy", "cx", "cy"] as const;

@@ -9,14 +9,16 @@ import { angleBetween } from "./verdict";
 /** What is seen, not what is computed: choices of the page by their ids, with what they are at first. */
 const looks = { "clouds-style": "surfaces", "clouds-texture": "view", pace: "1" } as const;
 
-const selects = () => Object.entries(looks).map(([id, initial]) => ({ id, initial, select: byId(id, HTMLSelectElement) }));
+const selects = () =>
+  Object.entries(looks).map(([id, initial]) => ({ id, initial, select: byId(id, HTMLSelectElement) }));
 
 /** Takes over what an address says of them; of what it does not say, nothing changes. */
 export function showLooks(hash: string): void {
   const given = new URLSearchParams(hash.replace(/^#/, ""));
   for (const { id, select } of selects()) {
     const value = given.get(id);
-    if (value === null || value === select.value || ![...select.options].some((option) => option.value === value)) continue;
+    if (value === null || value === select.value || ![...select.options].some((option) => option.value === value))
+      continue;
     select.value = value;
     select.dispatchEvent(new Event("change"));
   }
@@ -30,7 +32,9 @@ export function onLook(act: () => void): void {
 export function linkTo(settings: Settings): string {
   const url = new URL(location.href);
   const other = selects().filter(({ initial, select }) => select.value !== initial);
-  url.hash = [toLink(settings), new URLSearchParams(other.map(({ id, select }) => [id, select.value])).toString()].filter(Boolean).join("&");
+  url.hash = [toLink(settings), new URLSearchParams(other.map(({ id, select }) => [id, select.value])).toString()]
+    .filter(Boolean)
+    .join("&");
   return url.href;
 }
 
@@ -50,5 +54,14 @@ export interface Experiment {
 /** Saves everything there is to say about a run as JSON. */
 export function download({ source, settings, truth, report, history }: Experiment): void {
   const rotationErrorDegrees = truth ? angleBetween(report.pose.rotation, truth.rotation) : null;
-  saveJson("bimodal-stereo-report.json", { format: "bimodal-stereo report", version: 1, source, settings, truth, rotationErrorDegrees, report, history });
+  saveJson("bimodal-stereo-report.json", {
+    format: "bimodal-stereo report",
+    version: 1,
+    source,
+    settings,
+    truth,
+    rotationErrorDegrees,
+    report,
+    history,
+  });
 }

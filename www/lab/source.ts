@@ -43,7 +43,9 @@ export function namesIn(source: Source): string {
 export async function readable(source: Source): Promise<Source> {
   if (source.kind !== "files") return source;
   const { colour, depth, colourMask, depthMask } = source.files;
-  const isNeeded = [colour, depth, colourMask, depthMask].map((file, i) => file !== undefined && isFurther(file, i === 0));
+  const isNeeded = [colour, depth, colourMask, depthMask].map(
+    (file, i) => file !== undefined && isFurther(file, i === 0),
+  );
   if (!(await Promise.all(isNeeded)).includes(true)) return source;
   const { pixelsOf } = await import("./own");
   return { ...source, files: { ...source.files, read: await pixelsOf(source.files) } };
@@ -51,14 +53,25 @@ export async function readable(source: Source): Promise<Source> {
 
 /** What can be done about what is lacking. */
 export const wayOut = (lacking: string): string =>
-  lacking.includes("camera:") ? "Type them in the settings, or leave all of that camera's numbers empty." : "Drop files anywhere on this page, or choose them in the settings.";
+  lacking.includes("camera:")
+    ? "Type them in the settings, or leave all of that camera's numbers empty."
+    : "Drop files anywhere on this page, or choose them in the settings.";
 
-export const sampleOf = (settings: Settings): SampleSource => ({ kind: "sample", request: sampleRequest(settings), turn: turnOf(settings) });
+export const sampleOf = (settings: Settings): SampleSource => ({
+  kind: "sample",
+  request: sampleRequest(settings),
+  turn: turnOf(settings),
+});
 
 /** Or in words what it still lacks. */
-export function sourceOf(origin: Origin, settings: Settings, { colour, depth, ...masks }: Partial<Record<Slot, File>>): Source | string {
+export function sourceOf(
+  origin: Origin,
+  settings: Settings,
+  { colour, depth, ...masks }: Partial<Record<Slot, File>>,
+): Source | string {
   if (origin === "sample") return sampleOf(settings);
-  if (!colour || !depth) return colour ? "waiting for a depth map" : depth ? "waiting for a colour image" : "waiting for both files";
+  if (!colour || !depth)
+    return colour ? "waiting for a depth map" : depth ? "waiting for a colour image" : "waiting for both files";
   const files: OwnFiles = { colour, depth, ...masks };
   for (const side of ["colour", "depth"] as const) {
     const given = camera(settings, side);

@@ -11,12 +11,22 @@ export type Notice = "loading" | "waiting" | "error";
 
 /** The marks of the Tables, and those of what is not over. */
 const glyphs: Readonly<Record<string, string>> = {
-  ready: "○", paused: "‖", playing: "▸", loading: "…", waiting: "…", error: "!",
-  converged: "✓", doubted: "~", "max-iterations": "=", ambiguous: "?", lost: "×",
+  ready: "○",
+  paused: "‖",
+  playing: "▸",
+  loading: "…",
+  waiting: "…",
+  error: "!",
+  converged: "✓",
+  doubted: "~",
+  "max-iterations": "=",
+  ambiguous: "?",
+  lost: "×",
 };
 
 /** A tick is for what may be built on: one beside a pose that is off would speak against its own words. */
-const markOf = (state: string, tone: Verdict["tone"]): string => (state !== "converged" || tone === "good" ? state : tone === "wrong" ? "lost" : "doubted");
+const markOf = (state: string, tone: Verdict["tone"]): string =>
+  state !== "converged" || tone === "good" ? state : tone === "wrong" ? "lost" : "doubted";
 
 export class Status {
   readonly #panel = byId("panel", HTMLElement);
@@ -52,7 +62,9 @@ export class Status {
 
   /** What to do with what is there. */
   get #first(): string {
-    return this.#isOwn ? "Press play; masks, cameras and the method are in the settings." : "Press play, or choose another example.";
+    return this.#isOwn
+      ? "Press play; masks, cameras and the method are in the settings."
+      : "Press play, or choose another example.";
   }
 
   #say(state: string, tone: Verdict["tone"], word: string): void {

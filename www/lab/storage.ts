@@ -25,7 +25,8 @@ async function change(work: (store: IDBObjectStore) => void): Promise<void> {
     const transaction = database.transaction(STORE, "readwrite");
     const end = new Promise<void>((resolve, reject) => {
       transaction.oncomplete = () => resolve();
-      transaction.onabort = transaction.onerror = () => reject(transaction.error ?? new Error("the browser's storage failed"));
+      transaction.onabort = transaction.onerror = () =>
+        reject(transaction.error ?? new Error("the browser's storage failed"));
     });
     end.catch(() => {}); // told once, whichever of both comes first
     work(transaction.objectStore(STORE));
@@ -48,7 +49,12 @@ function channel(): BroadcastChannel | undefined {
 }
 
 /** What tells files from others without reading them. */
-const namesOf = (files: Files): string => JSON.stringify(Object.entries(files).map(([slot, { name, size, lastModified }]) => [slot, name, size, lastModified]).sort());
+const namesOf = (files: Files): string =>
+  JSON.stringify(
+    Object.entries(files)
+      .map(([slot, { name, size, lastModified }]) => [slot, name, size, lastModified])
+      .sort(),
+  );
 
 /** Has it told what another tab has put there, or that it has put nothing there. */
 export function hearOthers(here: () => Files, tell: (isEmpty: boolean) => void): void {
@@ -74,7 +80,9 @@ export async function kept(): Promise<Map<string, File>> {
   try {
     const store = database.transaction(STORE).objectStore(STORE);
     const [keys, values] = await Promise.all([done(store.getAllKeys()), done(store.getAll())]);
-    return new Map(keys.flatMap((key, i): [string, File][] => (values[i] instanceof File ? [[String(key), values[i]]] : [])));
+    return new Map(
+      keys.flatMap((key, i): [string, File][] => (values[i] instanceof File ? [[String(key), values[i]]] : [])),
+    );
   } finally {
     database.close();
   }

@@ -19,7 +19,12 @@ export class Strip {
   constructor(list: HTMLElement, explanations: Explanations) {
     for (const name of stages) {
       const time = make("span", { class: "time" });
-      const button = make("button", { type: "button", class: "stage", "aria-haspopup": "dialog" }, make("span", {}, name), time);
+      const button = make(
+        "button",
+        { type: "button", class: "stage", "aria-haspopup": "dialog" },
+        make("span", {}, name),
+        time,
+      );
       button.addEventListener("click", () => void explanations.open({ stage: name }));
       this.#buttons.set(name, { button, time });
       list.append(make("li", {}, button));

@@ -34,14 +34,19 @@ export interface Made {
   says?: string;
 }
 
-const made = (name: string, type: string, part: BlobPart, says?: string): Made => ({ name, blob: new Blob([part], { type }), ...(says === undefined ? {} : { says }) });
+const made = (name: string, type: string, part: BlobPart, says?: string): Made => ({
+  name,
+  blob: new Blob([part], { type }),
+  ...(says === undefined ? {} : { says }),
+});
 
 /** Made in a thread of its own. */
 function madeApart(kind: LargeKind, taken: Taken): Promise<Extract<FileAnswer, { bytes: Uint8Array }>> {
   const worker = new Worker(new URL("./files-thread.ts", import.meta.url), { type: "module" });
   const answer = new Promise<Extract<FileAnswer, { bytes: Uint8Array }>>((resolve, reject) => {
     onGone(worker, () => reject(new Error(GONE)));
-    worker.onmessage = ({ data }: MessageEvent<FileAnswer>) => ("fault" in data ? reject(new Error(data.fault.message)) : resolve(data));
+    worker.onmessage = ({ data }: MessageEvent<FileAnswer>) =>
+      "fault" in data ? reject(new Error(data.fault.message)) : resolve(data);
     worker.onerror = (event) => {
       event.preventDefault();
       reject(new Error(event.message || "what makes the file could not be loaded."));
@@ -49,7 +54,9 @@ function madeApart(kind: LargeKind, taken: Taken): Promise<Extract<FileAnswer, {
   });
   const { imagePoints, depthPoints, image, depth } = taken;
   const arrays = [imagePoints, depthPoints, image.normals, depth.refined, depth.normals];
-  worker.postMessage({ kind, taken } satisfies FileRequest, [...new Set(arrays.map(({ buffer }) => buffer as ArrayBuffer))]);
+  worker.postMessage({ kind, taken } satisfies FileRequest, [
+    ...new Set(arrays.map(({ buffer }) => buffer as ArrayBuffer)),
+  ]);
   return answer.finally(() => worker.terminate());
 }
 
@@ -64,7 +71,11 @@ const FILES: Readonly<Record<LargeKind, { name: string; type: string }>> = {
 };
 
 /** A file's name of a title. */
-const slug = (title: string): string => title.toLowerCase().replace(/[^a-z0-9]+/g, "-").replace(/^-|-$/g, "") || "picture";
+const slug = (title: string): string =>
+  title
+    .toLowerCase()
+    .replace(/[^a-z0-9]+/g, "-")
+    .replace(/^-|-$/g, "") || "picture";
 
 /** The picture that is chosen beside the button. */
 async function picture(): Promise<Made> {
@@ -76,9 +87,13 @@ async function picture(): Promise<Made> {
 
 async function report(run: Run): Promise<Made> {
   const { taken, report, end, truth, origin, settings, files, link } = run;
-  const inputs = await Promise.all(files.map(async ({ file, says }) => ({ name: file.name, says, sha256: await sha256(file) })));
+  const inputs = await Promise.all(
+    files.map(async ({ file, says }) => ({ name: file.name, says, sha256: await sha256(file) })),
+  );
   const shown = shownIn(byId("lab", HTMLElement));
-  const pictures = await Promise.all(shown.map(async ({ title, words, canvas }) => ({ title: words ?? title, dataUrl: await dataUrlOf(canvas) })));
+  const pictures = await Promise.all(
+    shown.map(async ({ title, words, canvas }) => ({ title: words ?? title, dataUrl: await dataUrlOf(canvas) })),
+  );
   const words = [end?.words ?? report.message ?? "", end?.next ?? ""].filter(Boolean);
   const html = runReportHtml({
     ...{ tone: end?.tone ?? "open", status: end?.status ?? `not over: iteration ${report.iteration}`, words },
@@ -93,7 +108,12 @@ async function report(run: Run): Promise<Made> {
 
 /** The run itself, to go on with later. */
 export const fileOfRun = (bytes: Uint8Array): Made =>
-  made("run.bimodal", "", bytes as Uint8Array<ArrayBuffer>, "drop it on this page to go on from here; it holds both views and the options");
+  made(
+    "run.bimodal",
+    "",
+    bytes as Uint8Array<ArrayBuffer>,
+    "drop it on this page to go on from here; it holds both views and the options",
+  );
 
 export async function fileOfKind(kind: Exclude<Kind, "run">, run: Run): Promise<Made> {
   const { pose, unit, light, depth, image } = run.taken;
@@ -101,7 +121,12 @@ export async function fileOfKind(kind: Exclude<Kind, "run">, run: Run): Promise<
     case "pose":
       return made("pose.json", "application/json", poseJson(pose, unit, run.report));
     case "matrix":
-      return made("depth_to_colour.txt", "text/plain", matrixText(pose), `lengths in ${unit === "m" ? "metres" : "pixels"}`);
+      return made(
+        "depth_to_colour.txt",
+        "text/plain",
+        matrixText(pose),
+        `lengths in ${unit === "m" ? "metres" : "pixels"}`,
+      );
     case "light":
       return made("light.csv", "text/csv", lightCsv(light));
     case "picture":
@@ -110,7 +135,13 @@ export async function fileOfKind(kind: Exclude<Kind, "run">, run: Run): Promise<
       return report(run);
     default: {
       // The first iteration finds them.
-      const normals = { normals: image.normals, depthNormals: depth.normals, clouds: undefined, depth: undefined, depthPng: undefined }[kind];
+      const normals = {
+        normals: image.normals,
+        depthNormals: depth.normals,
+        clouds: undefined,
+        depth: undefined,
+        depthPng: undefined,
+      }[kind];
       if (normals && !hasNormals(normals)) throw new Error("there are no normals yet; press Step or Play first.");
       const { bytes, says } = await madeApart(kind, run.taken);
       return made(FILES[kind].name, FILES[kind].type, bytes, says);

@@ -14,7 +14,8 @@ export interface Verdict {
 }
 
 /** Whether poses are still being tried. */
-export const isSearching = ({ status, stage, iteration }: StepReport): boolean => status === "running" && stage === "search" && iteration === 0;
+export const isSearching = ({ status, stage, iteration }: StepReport): boolean =>
+  status === "running" && stage === "search" && iteration === 0;
 
 /** What a pose and a light are at this moment: before the first step nothing is found. */
 export const standing = (report: StepReport): string =>
@@ -22,7 +23,8 @@ export const standing = (report: StepReport): string =>
 
 /** What they are once the settings are no longer those that they were found under; a start is not found. */
 export const BEFORE = "last run";
-export const dated = (standing: string, isBefore: boolean): string => (isBefore && standing !== "start" ? BEFORE : standing);
+export const dated = (standing: string, isBefore: boolean): string =>
+  isBefore && standing !== "start" ? BEFORE : standing;
 
 /** How far a run is, in a few words. */
 export function wordsOf({ status, iteration, pose }: StepReport, truth: Pose | null): string {
@@ -52,11 +54,17 @@ const ends: Record<Exclude<StepReport["status"], "running">, string> = {
 
 /** What may help against what a run says of itself: the first that its words bear out. */
 const remedies: readonly (readonly [said: RegExp, remedy: string])[] = [
-  [/not observable|uncertain by|do not show/, "A larger image, less noise, or a light with more colours would show it."],
+  [
+    /not observable|uncertain by|do not show/,
+    "A larger image, less noise, or a light with more colours would show it.",
+  ],
   [/depth\.unit/, "Settings, Depth camera, Unit says what a stored number stands for."],
   [/depth\.mask/, "Settings, Own files, Depth mask takes a picture of what the object is in the depth map."],
   [/image\.mask/, "Settings, Own files, Colour mask takes a picture of what the object is in the image."],
-  [/counterpart/, "Views that share more of the object would help: more overlap, a smaller rotation, or for own files the depth map's right unit."],
+  [
+    /counterpart/,
+    "Views that share more of the object would help: more overlap, a smaller rotation, or for own files the depth map's right unit.",
+  ],
   [/painted/, "A start that is roughly known would help: Settings, Start, near."],
   [/unexplained/, "Less noise, or an object of one paint, would help."],
   [/points agree/, "Masks that leave out the background would help, and a start that is roughly known."],
@@ -77,25 +85,62 @@ const FREE = "Settings, Registration, joint lets it move.";
 const remedy = (said: string): string => remedies.find(([pattern]) => pattern.test(said))?.[1] ?? GENERAL;
 
 /** How a finished loop is to be taken; nothing while it runs. */
-export function verdict({ status, message, pose }: StepReport, start: Pose | undefined, truth: Pose | null, isHeld = false): Verdict | undefined {
+export function verdict(
+  { status, message, pose }: StepReport,
+  start: Pose | undefined,
+  truth: Pose | null,
+  isHeld = false,
+): Verdict | undefined {
   if (status === "running") return undefined;
   const said = message ? [sentence(inWords(message))] : isHeld ? [HELD] : [];
   const help = isHeld ? FREE : remedy(message ?? "");
   if (truth) {
     const off = angleBetween(pose.rotation, truth.rotation);
-    const tone = off > MISSED && status !== "ambiguous" ? "wrong" : status === "converged" && off <= FOUND ? "good" : "open";
+    const tone =
+      off > MISSED && status !== "ambiguous" ? "wrong" : status === "converged" && off <= FOUND ? "good" : "open";
     const isNear = status === "converged" && !message && !isHeld && off > FOUND && off <= MISSED;
-    const missed = off > MISSED ? ["The true pose was not found."] : tone === "good" && !message ? ["The true pose was found."] : isNear ? ["The true pose was found, though not within a degree."] : [];
-    const next = tone === "good" ? HARDER : isNear ? FINER : off <= FOUND && status === "lost" ? `The pose is right all the same. ${help}` : help;
-    return { tone, status: `${ends[status]}, ${decimals(off, off < 10 ? 2 : 1)}° off`, words: [...said, ...missed].join(" "), next };
+    const missed =
+      off > MISSED
+        ? ["The true pose was not found."]
+        : tone === "good" && !message
+          ? ["The true pose was found."]
+          : isNear
+            ? ["The true pose was found, though not within a degree."]
+            : [];
+    const next =
+      tone === "good"
+        ? HARDER
+        : isNear
+          ? FINER
+          : off <= FOUND && status === "lost"
+            ? `The pose is right all the same. ${help}`
+            : help;
+    return {
+      tone,
+      status: `${ends[status]}, ${decimals(off, off < 10 ? 2 : 1)}° off`,
+      words: [...said, ...missed].join(" "),
+      next,
+    };
   }
   if (status === "converged") {
-    return { tone: "good", status: ends[status], words: [...said, "The pose has settled; there is no true one to compare it with."].join(" "), next: "" };
+    return {
+      tone: "good",
+      status: ends[status],
+      words: [...said, "The pose has settled; there is no true one to compare it with."].join(" "),
+      next: "",
+    };
   }
   if (status === "ambiguous") return { tone: "open", status: ends[status], words: said.join(" "), next: help };
   const stayed = start !== undefined && angleBetween(pose.rotation, start.rotation) < STAYED;
-  const caution = stayed ? "The rotation is still that of the start, which does not confirm it." : "The pose has not settled: do not build on it.";
-  return { tone: "wrong", status: stayed ? "start kept" : ends[status], words: [...said, caution].join(" "), next: help };
+  const caution = stayed
+    ? "The rotation is still that of the start, which does not confirm it."
+    : "The pose has not settled: do not build on it.";
+  return {
+    tone: "wrong",
+    status: stayed ? "start kept" : ends[status],
+    words: [...said, caution].join(" "),
+    next: help,
+  };
 }
 
 /** As what stands alone is written; the name of a file stays as it is. */

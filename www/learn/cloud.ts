@@ -22,7 +22,13 @@ export class Cloud {
     this.#turn = make("input", { id, type: "range", min: -90, max: 90, step: 5, value: FIRST_TURN });
     this.#turn.addEventListener("input", () => this.#draw());
     const turn = make("div", { class: "learn-turn" }, make("label", { for: id }, "Turn the view"), this.#turn);
-    this.element = make("figure", { class: "learn-panel" }, this.#title, make("div", { class: "learn-canvas plain" }, this.#canvas), make("div", { class: "learn-notes" }, turn, this.#legend));
+    this.element = make(
+      "figure",
+      { class: "learn-panel" },
+      this.#title,
+      make("div", { class: "learn-canvas plain" }, this.#canvas),
+      make("div", { class: "learn-notes" }, turn, this.#legend),
+    );
   }
 
   show(panel: Panel): void {
@@ -31,7 +37,9 @@ export class Cloud {
     this.#panel = panel;
     this.#title.textContent = panel.title;
     this.#canvas.setAttribute("aria-label", panel.alt);
-    this.#legend.replaceChildren(...panel.sets.map(({ name, ink }) => make("span", { class: `learn-key learn-ink-${ink}` }, name)));
+    this.#legend.replaceChildren(
+      ...panel.sets.map(({ name, ink }) => make("span", { class: `learn-key learn-ink-${ink}` }, name)),
+    );
     this.#draw();
   }
 
@@ -50,9 +58,14 @@ export class Cloud {
       context.fillStyle = ink(`learn-${name}`);
       context.globalAlpha = 0.75;
       for (let at = 0; at < points.length; at += 3) {
-        const [x, y, z] = [0, 1, 2].map((axis) => (points[at + axis] ?? NaN) - (middle[axis] ?? 0)) as [number, number, number];
+        const [x, y, z] = [0, 1, 2].map((axis) => (points[at + axis] ?? NaN) - (middle[axis] ?? 0)) as [
+          number,
+          number,
+          number,
+        ];
         const [u, v] = [c * x + s * z, y];
-        if (Number.isFinite(u + v)) context.fillRect((SIDE - POINT) / 2 + scale * u, (SIDE - POINT) / 2 + scale * v, POINT, POINT);
+        if (Number.isFinite(u + v))
+          context.fillRect((SIDE - POINT) / 2 + scale * u, (SIDE - POINT) / 2 + scale * v, POINT, POINT);
       }
     }
     context.globalAlpha = 1;

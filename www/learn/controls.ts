@@ -20,7 +20,11 @@ export class Controls {
     this.#values = values;
     this.#onChange = onChange;
     this.#fields = lesson.controls.map((control) => this.#field(control));
-    this.element = make("div", { class: "learn-controls", role: "group", "aria-label": "Controls of the figure" }, ...this.#fields.map(({ element }) => element));
+    this.element = make(
+      "div",
+      { class: "learn-controls", role: "group", "aria-label": "Controls of the figure" },
+      ...this.#fields.map(({ element }) => element),
+    );
     this.show(values);
   }
 
@@ -64,20 +68,49 @@ export class Controls {
       output.textContent = shown(control, Number(value));
       input.setAttribute("aria-valuetext", output.textContent);
     };
-    return { control, element: make("div", { class: "learn-slider" }, make("label", { for: id }, control.label), output, input, ...hint(control, input)), show };
+    return {
+      control,
+      element: make(
+        "div",
+        { class: "learn-slider" },
+        make("label", { for: id }, control.label),
+        output,
+        input,
+        ...hint(control, input),
+      ),
+      show,
+    };
   }
 
   #choice(control: Extract<Control, { kind: "choice" }>): Field {
     const id = freshId("learn");
-    const select = make("select", { id, name: control.key }, ...control.choices.map(([value, label]) => make("option", { value }, label)));
+    const select = make(
+      "select",
+      { id, name: control.key },
+      ...control.choices.map(([value, label]) => make("option", { value }, label)),
+    );
     select.addEventListener("change", () => this.set({ [control.key]: select.value }));
-    return { control, element: make("div", { class: "learn-choice" }, make("label", { for: id }, control.label), select, ...hint(control, select)), show: (value) => (select.value = String(value)) };
+    return {
+      control,
+      element: make(
+        "div",
+        { class: "learn-choice" },
+        make("label", { for: id }, control.label),
+        select,
+        ...hint(control, select),
+      ),
+      show: (value) => (select.value = String(value)),
+    };
   }
 
   #box(control: Extract<Control, { kind: "box" }>): Field {
     const box = make("input", { type: "checkbox", name: control.key });
     box.addEventListener("change", () => this.set({ [control.key]: box.checked ? 1 : 0 }));
-    return { control, element: make("div", { class: "learn-box" }, make("label", {}, box, control.label), ...hint(control, box)), show: (value) => (box.checked = value === 1) };
+    return {
+      control,
+      element: make("div", { class: "learn-box" }, make("label", {}, box, control.label), ...hint(control, box)),
+      show: (value) => (box.checked = value === 1),
+    };
   }
 }
 

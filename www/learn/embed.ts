@@ -19,7 +19,12 @@ export class Embed {
     copy.addEventListener("click", () => void this.#copy(copy));
     this.#link.append(`${title}: text and exercises`);
     this.source = make("p", { class: "learn-source" }, this.#link);
-    this.element = make("div", { class: "learn-embed", hidden: true }, make("label", {}, "Line for another page, which shows the figure as it is set now", this.#line), copy);
+    this.element = make(
+      "div",
+      { class: "learn-embed", hidden: true },
+      make("label", {}, "Line for another page, which shows the figure as it is set now", this.#line),
+      copy,
+    );
     this.button.addEventListener("click", () => {
       this.element.hidden = !this.element.hidden;
       this.button.setAttribute("aria-expanded", String(!this.element.hidden));
@@ -33,7 +38,13 @@ export class Embed {
     url.hash = hash;
     this.#link.href = hash;
     // The browser's own way to write it, so that nothing in it can end an attribute.
-    this.#line.value = make("iframe", { src: `${url.href}&embed`, title: this.#title, width: WIDTH, height: HEIGHT, loading: "lazy" }).outerHTML;
+    this.#line.value = make("iframe", {
+      src: `${url.href}&embed`,
+      title: this.#title,
+      width: WIDTH,
+      height: HEIGHT,
+      loading: "lazy",
+    }).outerHTML;
   }
 
   async #copy(button: HTMLButtonElement): Promise<void> {

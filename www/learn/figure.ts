@@ -89,13 +89,24 @@ class Picture implements Widget {
 
 function drawn({ ink, shape, points, size = 2 }: Mark): SVGElement[] {
   const at = (i: number): [number, number] => [100 * (points[2 * i] ?? NaN), 100 * (points[2 * i + 1] ?? NaN)];
-  const all = Array.from({ length: points.length / 2 }, (_, i) => at(i)).filter(([x, y]) => Number.isFinite(x) && Number.isFinite(y));
+  const all = Array.from({ length: points.length / 2 }, (_, i) => at(i)).filter(
+    ([x, y]) => Number.isFinite(x) && Number.isFinite(y),
+  );
   const name = `learn-mark learn-ink-${ink}`;
-  if (shape === "line") return [svg("polyline", { class: `${name} halo`, points: all.join(" ") }), svg("polyline", { class: name, points: all.join(" ") })];
+  if (shape === "line")
+    return [
+      svg("polyline", { class: `${name} halo`, points: all.join(" ") }),
+      svg("polyline", { class: name, points: all.join(" ") }),
+    ];
   return all.flatMap(([x, y]) => {
     if (shape === "dot") return [svg("circle", { class: `${name} filled`, cx: x, cy: y, r: size })];
     const form = (kind: string) =>
-      shape === "ring" ? svg("circle", { class: kind, cx: x, cy: y, r: size }) : svg("path", { class: kind, d: `M${x - size} ${y - size}l${2 * size} ${2 * size}m0 ${-2 * size}l${-2 * size} ${2 * size}` });
+      shape === "ring"
+        ? svg("circle", { class: kind, cx: x, cy: y, r: size })
+        : svg("path", {
+            class: kind,
+            d: `M${x - size} ${y - size}l${2 * size} ${2 * size}m0 ${-2 * size}l${-2 * size} ${2 * size}`,
+          });
     return [form(`${name} halo`), form(name)];
   });
 }

@@ -62,9 +62,14 @@ export interface Lesson {
   more: References;
 }
 
-export const LIGHTS = [["colourful", "coloured lamps"], ["window", "window"], ["overcast", "cloudy yard"]] as const;
+export const LIGHTS = [
+  ["colourful", "coloured lamps"],
+  ["window", "window"],
+  ["overcast", "cloudy yard"],
+] as const;
 
-export const initialValues = ({ controls }: Lesson): Values => Object.fromEntries(controls.map(({ key, initial }) => [key, initial]));
+export const initialValues = ({ controls }: Lesson): Values =>
+  Object.fromEntries(controls.map(({ key, initial }) => [key, initial]));
 
 /** The values as they are computed with: a logarithmic slider's are powers of ten, and zero at its lower end. */
 export function computed({ controls }: Lesson, values: Values): Values {
@@ -76,13 +81,19 @@ export function computed({ controls }: Lesson, values: Values): Values {
   );
 }
 
-export const amount = ({ logarithmic, min }: SliderControl, value: number): number => (!logarithmic ? value : value <= min ? 0 : 10 ** value);
+export const amount = ({ logarithmic, min }: SliderControl, value: number): number =>
+  !logarithmic ? value : value <= min ? 0 : 10 ** value;
 
 /** The value of a control as people read it. */
 export function shown(control: SliderControl, value: number): string {
   const number = amount(control, value);
-  const digits = control.logarithmic ? (number === 0 ? 0 : Math.max(0, 2 - Math.floor(Math.log10(number)))) : Math.max(0, -Math.floor(Math.log10(control.step) + 1e-9));
-  const unit = control.unit === undefined ? "" : control.unit === "°" || control.unit === "%" ? control.unit : ` ${control.unit}`;
+  const digits = control.logarithmic
+    ? number === 0
+      ? 0
+      : Math.max(0, 2 - Math.floor(Math.log10(number)))
+    : Math.max(0, -Math.floor(Math.log10(control.step) + 1e-9));
+  const unit =
+    control.unit === undefined ? "" : control.unit === "°" || control.unit === "%" ? control.unit : ` ${control.unit}`;
   return `${decimals(number, digits)}${unit}`;
 }
 
@@ -103,4 +114,5 @@ export function valuesFrom(lesson: Lesson, asked: URLSearchParams): Values {
   return values;
 }
 
-export const list = (kind: "ul" | "ol", items: readonly (Node | string)[][]): HTMLElement => make(kind, {}, ...items.map((item) => make("li", {}, ...item)));
+export const list = (kind: "ul" | "ol", items: readonly (Node | string)[][]): HTMLElement =>
+  make(kind, {}, ...items.map((item) => make("li", {}, ...item)));

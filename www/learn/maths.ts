@@ -13,7 +13,8 @@ export function math(tag: string, attributes: Record<string, string>, ...childre
   return element;
 }
 
-const text = (tag: "mi" | "mn" | "mo", content: string, variant?: string) => math(tag, variant ? { mathvariant: variant } : {}, content);
+const text = (tag: "mi" | "mn" | "mo", content: string, variant?: string) =>
+  math(tag, variant ? { mathvariant: variant } : {}, content);
 export const mi = (content: string): Element => text("mi", content);
 export const mn = (content: string): Element => text("mn", content);
 export const mo = (content: string): Element => text("mo", content);

@@ -35,7 +35,10 @@ interface Shown {
 }
 
 export class LearnPage {
-  readonly #session = new Session({ onDrawing: (drawing, done) => this.#draw(drawing, done), onFault: ({ message }) => this.#complain(message) });
+  readonly #session = new Session({
+    onDrawing: (drawing, done) => this.#draw(drawing, done),
+    onFault: ({ message }) => this.#complain(message),
+  });
   readonly #kept = new Map<LessonId, Values>();
   readonly #links = new Map<LessonId, HTMLAnchorElement>();
   readonly #contents = make("ol", {});
@@ -54,8 +57,16 @@ export class LearnPage {
       this.#links.set(id, link);
       this.#contents.append(make("li", {}, link));
     }
-    const nav = make("nav", { class: "learn-contents", "aria-label": "Lessons" }, this.#contents, make("p", {}, this.#exerciseLink));
-    this.#slides = new Slides((by) => this.#go(by), () => this.#endSlides());
+    const nav = make(
+      "nav",
+      { class: "learn-contents", "aria-label": "Lessons" },
+      this.#contents,
+      make("p", {}, this.#exerciseLink),
+    );
+    this.#slides = new Slides(
+      (by) => this.#go(by),
+      () => this.#endSlides(),
+    );
     parent.append(nav, this.#main, this.#slides.element);
   }
 
@@ -91,13 +102,21 @@ export class LearnPage {
   download(): void {
     if (!this.#shown) return;
     const { lesson, controls, drawing } = this.#shown;
-    saveJson(`bimodal-stereo-lesson-${lesson.id}.json`, { format: "bimodal-stereo lesson", version: 1, lesson: lesson.id, values: controls.values, numbers: drawing?.numbers, words: drawing?.words });
+    saveJson(`bimodal-stereo-lesson-${lesson.id}.json`, {
+      format: "bimodal-stereo lesson",
+      version: 1,
+      lesson: lesson.id,
+      values: controls.values,
+      numbers: drawing?.numbers,
+      words: drawing?.words,
+    });
   }
 
   #show(lesson: Lesson, values: Values): void {
     if (this.#shown?.lesson === lesson) {
       this.#shown.controls.show(values);
-      if (!this.#slides.isOpen && this.#shown.article.parentElement !== this.#main) this.#main.replaceChildren(this.#shown.article);
+      if (!this.#slides.isOpen && this.#shown.article.parentElement !== this.#main)
+        this.#main.replaceChildren(this.#shown.article);
     } else {
       this.#shown = this.#make(lesson, values);
       if (this.#slides.isOpen) this.#slides.take(slideOf(this.#shown));
@@ -131,8 +150,19 @@ export class LearnPage {
     const readouts = new Readouts(lesson.readouts);
     const alert = make("p", { class: "alert", role: "alert", hidden: true });
     const number = lessons.indexOf(lesson) + 1;
-    const formula = make("div", { class: "learn-formula", role: "group", tabindex: "0", "aria-label": lesson.formulaWords }, lesson.formula());
-    const box = make("section", { class: "card learn-figure", "aria-label": "Figure", "aria-busy": "true" }, alert, controls.element, readouts.element, figure.element);
+    const formula = make(
+      "div",
+      { class: "learn-formula", role: "group", tabindex: "0", "aria-label": lesson.formulaWords },
+      lesson.formula(),
+    );
+    const box = make(
+      "section",
+      { class: "card learn-figure", "aria-label": "Figure", "aria-busy": "true" },
+      alert,
+      controls.element,
+      readouts.element,
+      figure.element,
+    );
     const embed = new Embed(`${number}. ${lesson.title}`);
     box.append(embed.source);
     const slides = make("button", { type: "button", class: "learn-slides-button" }, "Slides");
@@ -146,7 +176,13 @@ export class LearnPage {
       make(
         "div",
         { class: "learn-text" },
-        make("div", { class: "learn-head" }, make("h2", { tabindex: "-1" }, `${number}. ${lesson.title}`), embed.button, slides),
+        make(
+          "div",
+          { class: "learn-head" },
+          make("h2", { tabindex: "-1" }, `${number}. ${lesson.title}`),
+          embed.button,
+          slides,
+        ),
         embed.element,
         make("p", { class: "learn-gist" }, lesson.gist),
         formula,
@@ -168,7 +204,9 @@ export class LearnPage {
       "p",
       { class: "learn-ends" },
       ...(before ? [make("a", { href: `#learn&at=${before.id}` }, `← ${before.title}`)] : []),
-      after ? make("a", { href: `#learn&at=${after.id}` }, `${after.title} →`) : make("a", { href: "#learn&at=exercises" }, "Exercises →"),
+      after
+        ? make("a", { href: `#learn&at=${after.id}` }, `${after.title} →`)
+        : make("a", { href: "#learn&at=exercises" }, "Exercises →"),
     );
   }
 
@@ -243,7 +281,10 @@ export class LearnPage {
     if (!shown || !this.#isOpen) return;
     const start = initialValues(shown.lesson);
     const changed = Object.entries(shown.controls.values).filter(([key, value]) => value !== start[key]);
-    const state = new URLSearchParams({ at: shown.lesson.id, ...Object.fromEntries(changed.map(([key, value]) => [key, String(value)])) });
+    const state = new URLSearchParams({
+      at: shown.lesson.id,
+      ...Object.fromEntries(changed.map(([key, value]) => [key, String(value)])),
+    });
     shown.embed.show(`#learn&${state}`);
     const address = `#learn&${state}${this.#slides.isOpen ? "&slides" : ""}${this.#isEmbedded ? "&embed" : ""}`;
     if (entry === "same") history.replaceState(null, "", address);
@@ -251,5 +292,8 @@ export class LearnPage {
   }
 }
 
-const slideOf = ({ article, lesson: { id, title } }: Shown): Slide => ({ article, title, hasBeside: (by) => beside(id, by) !== undefined });
-
+const slideOf = ({ article, lesson: { id, title } }: Shown): Slide => ({
+  article,
+  title,
+  hasBeside: (by) => beside(id, by) !== undefined,
+});

@@ -35,10 +35,17 @@ function ticks({ least, most }: Span, count: number): number[] {
   const steps = [10, 5, 2, 1, 0.5].map((each) => each * power);
   const within = (step: number): number[] => {
     const first = Math.ceil(least / step - 1e-9);
-    return Array.from({ length: Math.floor(most / step + 1e-9) - first + 1 }, (_, i) => Number(((first + i) * step).toPrecision(12)));
+    return Array.from({ length: Math.floor(most / step + 1e-9) - first + 1 }, (_, i) =>
+      Number(((first + i) * step).toPrecision(12)),
+    );
   };
   const coarse = steps.findLastIndex((step) => step >= rough);
-  return steps.slice(Math.max(0, coarse)).map(within).find((all) => all.length > 1) ?? [];
+  return (
+    steps
+      .slice(Math.max(0, coarse))
+      .map(within)
+      .find((all) => all.length > 1) ?? []
+  );
 }
 
 export class Plot {
@@ -50,7 +57,13 @@ export class Plot {
   #width = 0;
 
   constructor() {
-    this.element = make("figure", { class: "learn-panel learn-wide" }, this.#title, make("div", { class: "learn-plot-box" }, this.#drawing), this.#legend);
+    this.element = make(
+      "figure",
+      { class: "learn-panel learn-wide" },
+      this.#title,
+      make("div", { class: "learn-plot-box" }, this.#drawing),
+      this.#legend,
+    );
     new ResizeObserver(() => this.#fit()).observe(this.element);
   }
 
@@ -59,7 +72,9 @@ export class Plot {
     this.element.dataset.panel = panel.key;
     this.#title.textContent = panel.title;
     this.#drawing.setAttribute("aria-label", panel.alt);
-    this.#legend.replaceChildren(...panel.series.map(({ name, ink }) => make("span", { class: `learn-key learn-ink-${ink}` }, name)));
+    this.#legend.replaceChildren(
+      ...panel.series.map(({ name, ink }) => make("span", { class: `learn-key learn-ink-${ink}` }, name)),
+    );
     this.#panel = panel;
     this.#draw(panel);
   }
@@ -80,28 +95,56 @@ export class Plot {
     this.#drawing.setAttribute("viewBox", `0 0 ${width} ${height}`);
     const every = (axis: 0 | 1) => series.flatMap(({ points }) => points.filter((_, i) => i % 2 === axis));
     const [across, up] = [spanOf(at === undefined ? every(0) : [...every(0), at], domain), spanOf(every(1), range)];
-    const toX = (value: number) => box.left + ((value - across.least) / (across.most - across.least)) * (box.right - box.left);
+    const toX = (value: number) =>
+      box.left + ((value - across.least) / (across.most - across.least)) * (box.right - box.left);
     const toY = (value: number) => box.bottom - ((value - up.least) / (up.most - up.least)) * (box.bottom - box.top);
     const parts: SVGElement[] = [];
     for (const value of ticks(across, marks(box.right - box.left, 55))) {
-      parts.push(svg("path", { class: "grid", d: `M${toX(value)} ${box.top}V${box.bottom}` }), svg("text", { class: "tick", x: toX(value), y: box.bottom + 13, "text-anchor": "middle" }, label(value)));
+      parts.push(
+        svg("path", { class: "grid", d: `M${toX(value)} ${box.top}V${box.bottom}` }),
+        svg("text", { class: "tick", x: toX(value), y: box.bottom + 13, "text-anchor": "middle" }, label(value)),
+      );
     }
     for (const value of ticks(up, marks(box.bottom - box.top, 36))) {
-      parts.push(svg("path", { class: "grid", d: `M${box.left} ${toY(value)}H${box.right}` }), svg("text", { class: "tick", x: box.left - 5, y: toY(value) + 3.5, "text-anchor": "end" }, label(value)));
+      parts.push(
+        svg("path", { class: "grid", d: `M${box.left} ${toY(value)}H${box.right}` }),
+        svg("text", { class: "tick", x: box.left - 5, y: toY(value) + 3.5, "text-anchor": "end" }, label(value)),
+      );
     }
-    parts.push(svg("text", { class: "axis", x: (box.left + box.right) / 2, y: height - 6, "text-anchor": "middle" }, x));
-    parts.push(svg("text", { class: "axis", transform: `translate(10 ${(box.top + box.bottom) / 2}) rotate(-90)`, "text-anchor": "middle" }, y));
+    parts.push(
+      svg("text", { class: "axis", x: (box.left + box.right) / 2, y: height - 6, "text-anchor": "middle" }, x),
+    );
+    parts.push(
+      svg(
+        "text",
+        {
+          class: "axis",
+          transform: `translate(10 ${(box.top + box.bottom) / 2}) rotate(-90)`,
+          "text-anchor": "middle",
+        },
+        y,
+      ),
+    );
     if (at !== undefined) parts.push(svg("path", { class: "at", d: `M${toX(at)} ${box.top}V${box.bottom}` }));
     for (const { ink, points, dots } of series) {
-      const places = Array.from({ length: points.length / 2 }, (_, i) => [toX(points[2 * i] ?? NaN), toY(points[2 * i + 1] ?? NaN)] as const);
+      const places = Array.from(
+        { length: points.length / 2 },
+        (_, i) => [toX(points[2 * i] ?? NaN), toY(points[2 * i + 1] ?? NaN)] as const,
+      );
       parts.push(svg("path", { class: `curve learn-ink-${ink}`, d: path(places) }));
-      if (dots) parts.push(...places.filter(([px, py]) => Number.isFinite(px + py)).map(([px, py]) => svg("circle", { class: `point learn-ink-${ink}`, cx: px, cy: py, r: 3 })));
+      if (dots)
+        parts.push(
+          ...places
+            .filter(([px, py]) => Number.isFinite(px + py))
+            .map(([px, py]) => svg("circle", { class: `point learn-ink-${ink}`, cx: px, cy: py, r: 3 })),
+        );
     }
     this.#drawing.replaceChildren(...parts);
   }
 }
 
-const label = (value: number): string => (Number.isInteger(value) ? String(value) : short(value).replace(/0+$/, "")).replace("-", "−");
+const label = (value: number): string =>
+  (Number.isInteger(value) ? String(value) : short(value).replace(/0+$/, "")).replace("-", "−");
 
 function path(places: readonly (readonly [number, number])[]): string {
   let isDown = false;

@@ -9,7 +9,22 @@ export const LESSONS = ["pixel", "grey", "colours", "surface", "prior", "pose", 
 export type LessonId = (typeof LESSONS)[number];
 
 /** What is drawn over a picture; the style sheet gives each its colour, the same as that of its symbol in the text. */
-export type Ink = "normal" | "light" | "albedo" | "prior" | "colour" | "pose" | "sensor" | "minimum" | "path" | "truth" | "error" | "red" | "green" | "blue" | "pixel";
+export type Ink =
+  | "normal"
+  | "light"
+  | "albedo"
+  | "prior"
+  | "colour"
+  | "pose"
+  | "sensor"
+  | "minimum"
+  | "path"
+  | "truth"
+  | "error"
+  | "red"
+  | "green"
+  | "blue"
+  | "pixel";
 
 /** Points of a picture, x and y in turn, from 0 at the left and the top to 1. */
 export interface Mark {

@@ -10,8 +10,19 @@ export class Readouts {
   readonly #rows: { readout: Readout; value: HTMLElement }[];
 
   constructor(readouts: readonly Readout[]) {
-    this.#rows = readouts.map((readout) => ({ readout, value: make("dd", { "data-number": readout.key, ...(readout.ink ? { class: `learn-ink-${readout.ink}` } : {}) }, "–") }));
-    this.element = make("dl", { class: "learn-numbers" }, ...this.#rows.map(({ readout, value }) => make("div", {}, make("dt", {}, readout.label), value)));
+    this.#rows = readouts.map((readout) => ({
+      readout,
+      value: make(
+        "dd",
+        { "data-number": readout.key, ...(readout.ink ? { class: `learn-ink-${readout.ink}` } : {}) },
+        "–",
+      ),
+    }));
+    this.element = make(
+      "dl",
+      { class: "learn-numbers" },
+      ...this.#rows.map(({ readout, value }) => make("div", {}, make("dt", {}, readout.label), value)),
+    );
   }
 
   show({ numbers, words = {} }: Drawing): void {

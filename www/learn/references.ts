@@ -29,12 +29,22 @@ export interface References {
 }
 
 /** The name that a heading has in an address. */
-const anchor = (heading: string): string => heading.toLowerCase().replace(/[^\w\s-]/g, "").replace(/\s/g, "-");
+const anchor = (heading: string): string =>
+  heading
+    .toLowerCase()
+    .replace(/[^\w\s-]/g, "")
+    .replace(/\s/g, "-");
 
 export function referencesOf({ sections, paper, others = [] }: References): HTMLElement {
   const links = [
     ...(paper ? [make("a", { href: PAPER }, `The paper, ${paper}`)] : []),
-    ...sections.map((number) => make("a", { href: `${DOCS}/method.md#${anchor(`${number} ${SECTIONS[number]}`)}` }, `The method, ${number}: ${SECTIONS[number]}`)),
+    ...sections.map((number) =>
+      make(
+        "a",
+        { href: `${DOCS}/method.md#${anchor(`${number} ${SECTIONS[number]}`)}` },
+        `The method, ${number}: ${SECTIONS[number]}`,
+      ),
+    ),
     ...others.map(([doi, words]) => make("a", { href: `https://doi.org/${doi}` }, words)),
   ];
   return make("ul", { class: "soft learn-more" }, ...links.map((link) => make("li", {}, link)));

@@ -33,7 +33,8 @@ export class Session {
   #spawn(): Worker {
     const worker = new Worker(new URL("./worker.ts", import.meta.url), { type: "module" });
     onGone(worker, () => {
-      if (worker === this.#worker) this.#fail({ code: "lost", message: `This figure broke off: ${GONE}.`, fatal: true });
+      if (worker === this.#worker)
+        this.#fail({ code: "lost", message: `This figure broke off: ${GONE}.`, fatal: true });
     });
     worker.onmessage = (event: MessageEvent<Answer>) => {
       // What was asked before the newest request is out of date.
@@ -41,7 +42,8 @@ export class Session {
     };
     worker.onerror = (event) => {
       event.preventDefault();
-      if (worker === this.#worker) this.#fail({ code: "panic", message: event.message || "The worker could not be loaded.", fatal: true });
+      if (worker === this.#worker)
+        this.#fail({ code: "panic", message: event.message || "The worker could not be loaded.", fatal: true });
     };
     return worker;
   }

@@ -20,14 +20,24 @@ export class Slides {
 
   constructor(onTurn: (by: 1 | -1) => void, onClose: () => void) {
     this.#onTurn = onTurn;
-    this.#turns = ([["Previous lesson", -1, "←"], ["Next lesson", 1, "→"]] as const).map(([words, by, sign]) => {
+    this.#turns = (
+      [
+        ["Previous lesson", -1, "←"],
+        ["Next lesson", 1, "→"],
+      ] as const
+    ).map(([words, by, sign]) => {
       const button = make("button", { type: "button", "aria-label": words }, sign);
       button.addEventListener("click", () => this.#onTurn(by));
       return { by, button };
     });
     const close = make("button", { type: "button" }, "Close (Esc)");
     close.addEventListener("click", () => this.close());
-    this.element = make("dialog", { class: "learn-slides" }, this.#holder, make("div", { class: "learn-slide-bar" }, ...this.#turns.map(({ button }) => button), close));
+    this.element = make(
+      "dialog",
+      { class: "learn-slides" },
+      this.#holder,
+      make("div", { class: "learn-slide-bar" }, ...this.#turns.map(({ button }) => button), close),
+    );
     this.element.addEventListener("keydown", (event) => this.#key(event));
     this.element.addEventListener("close", onClose);
   }

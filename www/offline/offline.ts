@@ -3,18 +3,21 @@
 export async function keepForOffline(line: HTMLElement): Promise<void> {
   if (!import.meta.env.PROD || !("serviceWorker" in navigator)) return;
   // The first run comes first.
-  if (document.readyState !== "complete") await new Promise((loaded) => addEventListener("load", loaded, { once: true }));
+  if (document.readyState !== "complete")
+    await new Promise((loaded) => addEventListener("load", loaded, { once: true }));
   try {
     const registration = await navigator.serviceWorker.register("./sw.js");
     const tell = (): void => {
-      if (registration.waiting) line.textContent = "A newer version is ready: close every tab of this page, and open it again.";
+      if (registration.waiting)
+        line.textContent = "A newer version is ready: close every tab of this page, and open it again.";
       else if (registration.active) line.textContent = "It works offline.";
     };
     const follow = (worker: ServiceWorker | null): void =>
       worker?.addEventListener("statechange", () => {
         tell();
         const isRefused = worker.state === "redundant" && !registration.active && !registration.waiting;
-        if (isRefused) line.textContent = "This browser keeps no copy of the page (its storage may be full): it needs its network.";
+        if (isRefused)
+          line.textContent = "This browser keeps no copy of the page (its storage may be full): it needs its network.";
       });
     follow(registration.installing);
     registration.addEventListener("updatefound", () => follow(registration.installing));

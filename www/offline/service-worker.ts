@@ -42,7 +42,10 @@ async function keepAll(): Promise<void> {
     if (OTHER.test(path)) continue;
     const named = NAMED_BY_CONTENT.test(path);
     const earlier = named ? await caches.match(address) : undefined;
-    await cache.put(address, earlier ?? plain(await fetch(address, { integrity, cache: named ? "default" : "no-cache" })));
+    await cache.put(
+      address,
+      earlier ?? plain(await fetch(address, { integrity, cache: named ? "default" : "no-cache" })),
+    );
   }
 }
 

@@ -5,15 +5,35 @@ import { svg } from "./parts";
 
 /** Two cameras seen from above, before something; the words are the caption's. */
 function drawing(...scene: SVGElement[]): SVGElement {
-  const camera = (x: number, kind: string) => svg("g", { class: `ink-${kind}` }, svg("rect", { x: x - 9, y: 104, width: 18, height: 11, rx: 2 }), svg("path", { d: `M${x - 4} 104l-3-6h14l-3 6z` }));
+  const camera = (x: number, kind: string) =>
+    svg(
+      "g",
+      { class: `ink-${kind}` },
+      svg("rect", { x: x - 9, y: 104, width: 18, height: 11, rx: 2 }),
+      svg("path", { d: `M${x - 4} 104l-3-6h14l-3 6z` }),
+    );
   const sight = svg("path", { class: "sight", d: "M88 98L34 20M88 98L150 20M112 98L50 20M112 98L166 20" });
-  return svg("svg", { viewBox: "0 0 200 122", "aria-hidden": "true" }, sight, ...scene, camera(88, "image"), camera(112, "depth"));
+  return svg(
+    "svg",
+    { viewBox: "0 0 200 122", "aria-hidden": "true" },
+    sight,
+    ...scene,
+    camera(88, "image"),
+    camera(112, "depth"),
+  );
 }
 
-const wall = () => svg("path", { class: "wall", d: "M20 20H180M20 20l6-7m10 7l6-7m10 7l6-7m10 7l6-7m10 7l6-7m10 7l6-7m10 7l6-7m10 7l6-7m10 7l6-7m10 7l6-7m10 7l6-7" });
+const wall = () =>
+  svg("path", {
+    class: "wall",
+    d: "M20 20H180M20 20l6-7m10 7l6-7m10 7l6-7m10 7l6-7m10 7l6-7m10 7l6-7m10 7l6-7m10 7l6-7m10 7l6-7m10 7l6-7m10 7l6-7",
+  });
 
 function good(): SVGElement {
-  const sheet = svg("path", { class: "thing", d: "M66 58c4-10 9-2 13-9s8 8 13 0 9-9 13 1 8-8 13-1 9 6 12 2c4 6 2 12 1 14-18 3-44 4-64 1-1-3-2-5-1-8z" });
+  const sheet = svg("path", {
+    class: "thing",
+    d: "M66 58c4-10 9-2 13-9s8 8 13 0 9-9 13 1 8-8 13-1 9 6 12 2c4 6 2 12 1 14-18 3-44 4-64 1-1-3-2-5-1-8z",
+  });
   const gap = svg("g", { class: "measure" }, svg("path", { d: "M140 24v28M137 27l3-3 3 3M137 49l3 3 3-3" }));
   const text = svg("text", { x: 147, y: 42 });
   text.textContent = "0.3 m";
@@ -23,7 +43,8 @@ function good(): SVGElement {
 const poor = (): SVGElement => drawing(wall());
 
 export function advice(): HTMLElement {
-  const figure = (picture: SVGElement, kind: string, ...caption: (Node | string)[]) => make("figure", { class: kind }, picture as unknown as HTMLElement, make("figcaption", {}, ...caption));
+  const figure = (picture: SVGElement, kind: string, ...caption: (Node | string)[]) =>
+    make("figure", { class: kind }, picture as unknown as HTMLElement, make("figcaption", {}, ...caption));
   return make(
     "section",
     { class: "rig-card rig-advice" },
@@ -31,7 +52,12 @@ export function advice(): HTMLElement {
     make(
       "div",
       { class: "rig-figures" },
-      figure(good(), "good", make("strong", {}, "Tells much: "), "something with edges and folds, and free space behind it"),
+      figure(
+        good(),
+        "good",
+        make("strong", {}, "Tells much: "),
+        "something with edges and folds, and free space behind it",
+      ),
       figure(poor(), "poor", make("strong", {}, "Tells little: "), "a wall alone looks the same from a little aside"),
     ),
     make(
@@ -40,7 +66,11 @@ export function advice(): HTMLElement {
       make("li", {}, "A matte thing of one colour: crumpled paper, or a sheet draped over a chair."),
       make("li", {}, "A background about 0.3 m behind it, so that its outline shows in both cameras."),
       make("li", {}, "Nothing that shines, mirrors or lets light through; nothing that moves."),
-      make("li", {}, "Three frames with the thing turned by some 30° tell more than one. Both cameras at the same moment."),
+      make(
+        "li",
+        {},
+        "Three frames with the thing turned by some 30° tell more than one. Both cameras at the same moment.",
+      ),
     ),
   );
 }

@@ -9,7 +9,11 @@ import { messageOf, type Candidate, type Rig } from "./rig";
 
 type By = "quaternion" | EulerOrder;
 
-const TURNS: Record<By, readonly string[]> = { quaternion: ["qx", "qy", "qz", "qw"], rpy: ["roll", "pitch", "yaw"], xyz: ["about x", "about y", "about z"] };
+const TURNS: Record<By, readonly string[]> = {
+  quaternion: ["qx", "qy", "qz", "qw"],
+  rpy: ["roll", "pitch", "yaw"],
+  xyz: ["about x", "about y", "about z"],
+};
 
 /** Metres between two cameras from which on a wrong unit, or a place in a room, is likelier than a rig. */
 const FAR = 0.5;
@@ -19,7 +23,12 @@ export class CalibrationStep {
   readonly #rig: Rig;
   readonly #list = make("ol", { class: "rig-candidates", "aria-label": "Calibrations to check" });
   readonly #rows: Keyed<Candidate>;
-  readonly #none = make("p", { class: "rig-none" }, make("strong", {}, "No calibration given: "), "the check only estimates one. Add yours to have it judged.");
+  readonly #none = make(
+    "p",
+    { class: "rig-none" },
+    make("strong", {}, "No calibration given: "),
+    "the check only estimates one. Add yours to have it judged.",
+  );
   readonly #alert = make("p", { class: "rig-error", role: "alert", hidden: true });
   readonly #next: HTMLButtonElement;
 
@@ -28,7 +37,23 @@ export class CalibrationStep {
     this.#rows = new Keyed(this.#list, (candidate) => this.#row(candidate));
     this.#next = press("Run the check", goOn, { class: "primary" });
     this.element.append(
-      make("section", { class: "rig-card" }, make("h3", {}, "Calibrations to check"), make("p", { class: "soft" }, "A calibration (extrinsics) carries points from the depth camera to the colour camera: P", make("sub", {}, "colour"), " = R P", make("sub", {}, "depth"), " + t, in metres. The first one is in question; the others are compared with it."), this.#none, this.#list, this.#alert),
+      make(
+        "section",
+        { class: "rig-card" },
+        make("h3", {}, "Calibrations to check"),
+        make(
+          "p",
+          { class: "soft" },
+          "A calibration (extrinsics) carries points from the depth camera to the colour camera: P",
+          make("sub", {}, "colour"),
+          " = R P",
+          make("sub", {}, "depth"),
+          " + t, in metres. The first one is in question; the others are compared with it.",
+        ),
+        this.#none,
+        this.#list,
+        this.#alert,
+      ),
       make("aside", { class: "rig-aside" }, this.#fromFile(), this.#fromText(), this.#fromNumbers()),
       make("div", { class: "rig-row rig-foot" }, press("Back", goBack), this.#next),
     );
@@ -61,18 +86,27 @@ export class CalibrationStep {
     const rank = make("span", { class: "rig-rank" });
     const invert = press("Invert", () => {
       candidate.pose = inverse(candidate.pose);
-      candidate.origin = candidate.origin.endsWith(", inverted") ? candidate.origin.slice(0, -", inverted".length) : `${candidate.origin}, inverted`;
+      candidate.origin = candidate.origin.endsWith(", inverted")
+        ? candidate.origin.slice(0, -", inverted".length)
+        : `${candidate.origin}, inverted`;
       rig.changed();
     });
     const first = press("Put first", () => {
       rig.candidates = [candidate, ...rig.candidates.filter((each) => each !== candidate)];
       rig.changed();
     });
-    const remove = press("×", () => {
-      rig.undo.keep(`removing ${candidate.name}`, { where: "calibration", isMoot: () => rig.candidates.some(({ name }) => name === candidate.name) });
-      rig.candidates = rig.candidates.filter((each) => each !== candidate);
-      rig.changed();
-    }, { class: "icon" });
+    const remove = press(
+      "×",
+      () => {
+        rig.undo.keep(`removing ${candidate.name}`, {
+          where: "calibration",
+          isMoot: () => rig.candidates.some(({ name }) => name === candidate.name),
+        });
+        rig.candidates = rig.candidates.filter((each) => each !== candidate);
+        rig.changed();
+      },
+      { class: "icon" },
+    );
     const element = make(
       "li",
       { class: "rig-candidate" },
@@ -82,7 +116,11 @@ export class CalibrationStep {
       origin,
       make("details", {}, make("summary", {}, "Matrix"), matrix),
       make("div", { class: "rig-row" }, invert, first, remove),
-      make("p", { class: "soft rig-hint" }, "Does that fit the rig on your desk? If left and right are the wrong way round, invert it: the wrong direction is the commonest mistake."),
+      make(
+        "p",
+        { class: "soft rig-hint" },
+        "Does that fit the rig on your desk? If left and right are the wrong way round, invert it: the wrong direction is the commonest mistake.",
+      ),
     );
     return {
       element,
@@ -90,7 +128,17 @@ export class CalibrationStep {
         if (document.activeElement !== name) name.value = candidate.name;
         words.textContent = inWords(candidate.pose);
         const apart = Math.hypot(...candidate.pose.translation);
-        far.replaceChildren(...(apart > FAR ? [make("li", {}, `${decimals(apart, apart > 10 ? 0 : 2)} m apart is a lot for one rig. Is it in metres, and does it lead from one camera to the other?`)] : []));
+        far.replaceChildren(
+          ...(apart > FAR
+            ? [
+                make(
+                  "li",
+                  {},
+                  `${decimals(apart, apart > 10 ? 0 : 2)} m apart is a lot for one rig. Is it in metres, and does it lead from one camera to the other?`,
+                ),
+              ]
+            : []),
+        );
         origin.textContent = `From ${candidate.origin}.`;
         matrix.textContent = matrixText(candidate.pose);
         const isFirst = rig.candidates[0] === candidate;
@@ -103,7 +151,11 @@ export class CalibrationStep {
   }
 
   #fromFile(): HTMLElement {
-    const drop = dropTarget({ title: "From a file", hint: "4x4 text, Kalibr, ROS tf, Open3D, OpenCV, RealSense", files: "Choose a file" }, (files) => void this.#add(files), this.element);
+    const drop = dropTarget(
+      { title: "From a file", hint: "4x4 text, Kalibr, ROS tf, Open3D, OpenCV, RealSense", files: "Choose a file" },
+      (files) => void this.#add(files),
+      this.element,
+    );
     return make("section", { class: "rig-card" }, drop);
   }
 
@@ -114,11 +166,16 @@ export class CalibrationStep {
     const added = this.#rig.items.slice(-files.length);
     const failed = added.find(({ state }) => state === "failed");
     if (failed) this.#complain(failed.error ?? "");
-    else if (this.#rig.candidates.length === before) this.#complain(`There is no calibration in ${files.map(({ name }) => name).join(", ")}.`);
+    else if (this.#rig.candidates.length === before)
+      this.#complain(`There is no calibration in ${files.map(({ name }) => name).join(", ")}.`);
   }
 
   #fromText(): HTMLElement {
-    const text = make("textarea", { rows: 4, spellcheck: "false", placeholder: "1 0 0 0.025\n0 1 0 0\n0 0 1 0\n0 0 0 1" });
+    const text = make("textarea", {
+      rows: 4,
+      spellcheck: "false",
+      placeholder: "1 0 0 0.025\n0 1 0 0\n0 0 1 0\n0 0 0 1",
+    });
     const add = press("Add what I pasted", () => void this.#paste(text.value));
     return make("section", { class: "rig-card" }, labelled("Or paste it, in any of these forms", text), add);
   }
@@ -151,10 +208,18 @@ export class CalibrationStep {
         const text = element.querySelector("label");
         if (text && words) text.textContent = by === "quaternion" ? words : `${words}, °`;
       });
-    const kind = choose([{ value: "quaternion", label: "quaternion (w last)" }, { value: "rpy", label: "roll, pitch, yaw (ROS)" }, { value: "xyz", label: "R = Rx Ry Rz" }], by, (value) => {
-      by = value as By;
-      label();
-    });
+    const kind = choose(
+      [
+        { value: "quaternion", label: "quaternion (w last)" },
+        { value: "rpy", label: "roll, pitch, yaw (ROS)" },
+        { value: "xyz", label: "R = Rx Ry Rz" },
+      ],
+      by,
+      (value) => {
+        by = value as By;
+        label();
+      },
+    );
     label();
     const note = make("p", { class: "rig-error", role: "alert" });
     const add = press("Add these numbers", () => {
@@ -162,13 +227,26 @@ export class CalibrationStep {
       const [a = NaN, b = NaN, c = NaN, d = NaN] = turn;
       const isWhole = [...shift, ...turn.slice(0, count)].every(Number.isFinite);
       const rotation = !isWhole ? undefined : by === "quaternion" ? fromQuaternion(a, b, c, d) : fromEuler(a, b, c, by);
-      note.textContent = rotation ? "" : isWhole ? "A quaternion of length zero is no rotation." : "Some numbers are missing.";
+      note.textContent = rotation
+        ? ""
+        : isWhole
+          ? "A quaternion of length zero is no rotation."
+          : "Some numbers are missing.";
       if (rotation) this.#rig.addPose({ name: "typed in", pose: poseOf(rotation, shift) }, "what was typed in");
     });
     return make(
       "section",
       { class: "rig-card" },
-      make("fieldset", {}, make("legend", {}, "Or type it in, from depth to colour"), make("div", { class: "rig-four" }, ...shifts), labelled("Rotation as", kind), make("div", { class: "rig-four" }, ...turns.map(({ element }) => element)), note, add),
+      make(
+        "fieldset",
+        {},
+        make("legend", {}, "Or type it in, from depth to colour"),
+        make("div", { class: "rig-four" }, ...shifts),
+        labelled("Rotation as", kind),
+        make("div", { class: "rig-four" }, ...turns.map(({ element }) => element)),
+        note,
+        add,
+      ),
     );
   }
 

@@ -37,16 +37,34 @@ export class CameraForm {
       mine.chosen = true;
       rig.changed();
     });
-    this.#by = choose([{ value: "focal", label: "focal lengths and centre" }, { value: "view", label: "field of view" }], "focal", (value) => {
-      mine.typed.by = value as TypedCamera["by"];
-      rig.changed();
-    });
-    this.#model = choose([{ value: "brown", label: "Brown (OpenCV)" }, { value: "fisheye", label: "fisheye (Kannala-Brandt)" }], "brown", (value) => {
-      mine.typed.model = value as TypedCamera["model"];
-      rig.changed();
-    });
+    this.#by = choose(
+      [
+        { value: "focal", label: "focal lengths and centre" },
+        { value: "view", label: "field of view" },
+      ],
+      "focal",
+      (value) => {
+        mine.typed.by = value as TypedCamera["by"];
+        rig.changed();
+      },
+    );
+    this.#model = choose(
+      [
+        { value: "brown", label: "Brown (OpenCV)" },
+        { value: "fisheye", label: "fisheye (Kannala-Brandt)" },
+      ],
+      "brown",
+      (value) => {
+        mine.typed.model = value as TypedCamera["model"];
+        rig.changed();
+      },
+    );
     this.#distortion.addEventListener("input", () => {
-      const numbers = this.#distortion.value.trim().split(/[\s,;[\]]+/).filter(Boolean).map(toNumber);
+      const numbers = this.#distortion.value
+        .trim()
+        .split(/[\s,;[\]]+/)
+        .filter(Boolean)
+        .map(toNumber);
       mine.typed.distortion = numbers;
       rig.changed();
     });
@@ -60,10 +78,13 @@ export class CameraForm {
       this.#inputs.get("fx")?.input.focus();
     });
     for (const { key, label, unit } of fields) {
-      this.#inputs.set(key, numberField(label, unit, (value) => {
-        mine.typed[key] = value;
-        rig.changed();
-      }));
+      this.#inputs.set(
+        key,
+        numberField(label, unit, (value) => {
+          mine.typed[key] = value;
+          rig.changed();
+        }),
+      );
     }
     const title = side === "colour" ? "Colour camera" : "Depth camera";
     this.#form.append(
@@ -72,20 +93,42 @@ export class CameraForm {
       labelled("Distortion model", this.#model),
       labelled("Distortion", this.#distortion, this.#distortionNote),
     );
-    this.element = make("fieldset", { class: "rig-camera" }, make("legend", {}, title), labelled("Where its numbers come from", this.#source), this.#numbers, this.#edit, this.#form);
+    this.element = make(
+      "fieldset",
+      { class: "rig-camera" },
+      make("legend", {}, title),
+      labelled("Where its numbers come from", this.#source),
+      this.#numbers,
+      this.#edit,
+      this.#form,
+    );
   }
 
   show(): void {
     const { given, cameras } = this.#rig;
     const { source, typed } = cameras[this.#side];
     const unknown = this.#side === "colour" ? "Unknown: estimate its focal length" : "Not given yet";
-    const same = this.#side === "depth" ? [{ value: "same", label: "The colour camera's (depth aligned to colour)" }] : [];
-    fill(this.#source, [{ value: "", label: unknown }, ...same, ...given.map((each) => ({ value: each.source, label: each.label })), { value: "typed", label: "Type them in" }], source);
+    const same =
+      this.#side === "depth" ? [{ value: "same", label: "The colour camera's (depth aligned to colour)" }] : [];
+    fill(
+      this.#source,
+      [
+        { value: "", label: unknown },
+        ...same,
+        ...given.map((each) => ({ value: each.source, label: each.label })),
+        { value: "typed", label: "Type them in" },
+      ],
+      source,
+    );
     this.#form.hidden = source !== "typed";
     const camera = this.#rig.cameraOf(this.#side);
     const isFile = source !== "" && source !== "typed" && camera !== undefined;
     this.#edit.hidden = !isFile;
-    this.#numbers.textContent = camera ? words(camera, cameraDoubt(this.#rig, this.#side)) : source === "typed" ? "Some numbers are missing." : "";
+    this.#numbers.textContent = camera
+      ? words(camera, cameraDoubt(this.#rig, this.#side))
+      : source === "typed"
+        ? "Some numbers are missing."
+        : "";
     this.#by.value = typed.by;
     this.#model.value = typed.model;
     for (const { key } of fields) {
@@ -99,13 +142,22 @@ export class CameraForm {
     const allowed = typed.model === "brown" ? [0, 4, 5, 8] : [0, 4];
     const isWrong = !allowed.includes(count) || typed.distortion.some(Number.isNaN);
     this.#distortion.toggleAttribute("aria-invalid", isWrong);
-    this.#distortionNote.textContent = typed.model === "brown" ? "k1 k2 p1 p2 [k3 [k4 k5 k6]]: 4, 5 or 8 numbers, or none" : "k1 k2 k3 k4: 4 numbers, or none";
+    this.#distortionNote.textContent =
+      typed.model === "brown"
+        ? "k1 k2 p1 p2 [k3 [k4 k5 k6]]: 4, 5 or 8 numbers, or none"
+        : "k1 k2 k3 k4: 4 numbers, or none";
   }
 }
 
-function words(camera: { fx: number; fy: number; cx: number; cy: number; model?: string; distortion?: ArrayLike<number> }, remark: string): string {
+function words(
+  camera: { fx: number; fy: number; cx: number; cy: number; model?: string; distortion?: ArrayLike<number> },
+  remark: string,
+): string {
   const { fx, fy, cx, cy, model = "brown", distortion } = camera;
   const px = (value: number) => decimals(value, 2);
-  const lens = distortion && distortion.length > 0 ? `${model === "brown" ? "Brown" : "fisheye"} distortion ${Array.from(distortion, (value) => decimals(value, 4)).join(" ")}` : "no distortion";
+  const lens =
+    distortion && distortion.length > 0
+      ? `${model === "brown" ? "Brown" : "fisheye"} distortion ${Array.from(distortion, (value) => decimals(value, 4)).join(" ")}`
+      : "no distortion";
   return `fx ${px(fx)}, fy ${px(fy)}, cx ${px(cx)}, cy ${px(cy)} px; ${lens}.${remark && ` Mind: ${remark}`}`;
 }

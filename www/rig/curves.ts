@@ -18,7 +18,12 @@ const axes: Record<Axis, { title: string; unit: string }> = {
   ty: { title: "Shift along y (up and down)", unit: "mm" },
   tz: { title: "Shift along z (to and fro)", unit: "mm" },
 };
-const tokens: Record<string, string> = { shading: "series-1", edges: "series-3", information: "series-2", silhouette: "series-4" };
+const tokens: Record<string, string> = {
+  shading: "series-1",
+  edges: "series-3",
+  information: "series-2",
+  silhouette: "series-4",
+};
 /** A curve that loses less than this is shown as flat as it is. */
 const FLAT = 4;
 /** Sigmas to each side of a 95 % interval. */
@@ -52,7 +57,10 @@ export class SensitivityCharts {
     this.#observers = [];
     const key = (token: string, words: string) => make("span", { style: `--key: var(--${token})` }, words);
     const cues = [...new Set(this.#shown.map(({ cue }) => cue))];
-    this.#keys.replaceChildren(...cues.map((cue) => key(tokens[cue] ?? "ink-soft", CUES[cue] ?? cue)), key("ink", "all together"));
+    this.#keys.replaceChildren(
+      ...cues.map((cue) => key(tokens[cue] ?? "ink-soft", CUES[cue] ?? cue)),
+      key("ink", "all together"),
+    );
     this.#figures.replaceChildren();
     for (const axis of Object.keys(axes) as Axis[]) {
       const curves = this.#shown.filter((each) => each.axis === axis && each.offsets.length > 1);
@@ -70,9 +78,21 @@ export class SensitivityCharts {
     const [digits, gap] = unit === "mm" ? [1, " "] : [2, ""];
     const box = make("div", { class: "chart" });
     const words = `Least at ${decimals(place, digits)}${gap}${unit}; ± ${decimals(reach, digits)}${gap}${unit} (95 %)`;
-    this.#figures.append(make("figure", {}, make("figcaption", {}, make("strong", {}, title), make("span", { class: "soft" }, words)), box));
+    this.#figures.append(
+      make(
+        "figure",
+        {},
+        make("figcaption", {}, make("strong", {}, title), make("span", { class: "soft" }, words)),
+        box,
+      ),
+    );
     const line = { stroke: ink("line"), width: 1 };
-    const style: uPlot.Axis = { stroke: ink("ink-soft"), font: "11px system-ui, sans-serif", grid: line, ticks: { ...line, size: 4 } };
+    const style: uPlot.Axis = {
+      stroke: ink("ink-soft"),
+      font: "11px system-ui, sans-serif",
+      grid: line,
+      ticks: { ...line, size: 4 },
+    };
     const size = () => ({ width: Math.max(120, box.clientWidth), height: 150 });
     const plot = new uPlot(
       {
@@ -80,7 +100,14 @@ export class SensitivityCharts {
         padding: [8, 8, 0, 0],
         cursor: { y: false, drag: { x: false, y: false } },
         scales: { x: { time: false }, y: { range: (_plot, _min, max) => [0, Math.max(max ?? 1, FLAT)] } },
-        axes: [{ ...style, size: 26, values: (_, splits) => splits.map((value) => `${value}`) }, { ...style, size: 44, values: (_, splits) => splits.map((value) => (value >= 1e4 ? short(value) : `${value}`)) }],
+        axes: [
+          { ...style, size: 26, values: (_, splits) => splits.map((value) => `${value}`) },
+          {
+            ...style,
+            size: 44,
+            values: (_, splits) => splits.map((value) => (value >= 1e4 ? short(value) : `${value}`)),
+          },
+        ],
         legend: { show: false },
         series: [
           {},
@@ -100,7 +127,11 @@ export class SensitivityCharts {
 }
 
 /** All cues at the offsets of the first; what is lost against the best of each. */
-function lossesOf(curves: readonly Sensitivity[]): { xs: number[]; lines: { cue: string; losses: number[] }[]; total: number[] } {
+function lossesOf(curves: readonly Sensitivity[]): {
+  xs: number[];
+  lines: { cue: string; losses: number[] }[];
+  total: number[];
+} {
   const xs = curves[0]?.offsets ?? [];
   const same = curves.filter(({ offsets, values }) => offsets.length === xs.length && values.length === xs.length);
   const sum = xs.map((_, i) => same.reduce((total, { values }) => total + (values[i] ?? 0), 0));

@@ -29,26 +29,54 @@ async function walk(entry: FileSystemEntry, path: string, found: Named[]): Promi
 /** What was dropped; entries must be asked for before anything is awaited. */
 async function dropped(data: DataTransfer): Promise<{ files: Named[]; isFolder: boolean }> {
   const entries = [...data.items].map((item) => item.webkitGetAsEntry()).filter((entry) => entry !== null);
-  if (entries.every((entry) => entry.isFile)) return { files: [...data.files].map((file) => ({ name: file.name, blob: file })), isFolder: false };
+  if (entries.every((entry) => entry.isFile))
+    return { files: [...data.files].map((file) => ({ name: file.name, blob: file })), isFolder: false };
   const files: Named[] = [];
   for (const entry of entries) await walk(entry, "", files);
   return { files, isFolder: true };
 }
 
-export function dropTarget(words: { title: string; hint: string; files: string; folder?: string }, onFiles: (files: Named[], isFolder: boolean) => void, area?: HTMLElement): HTMLElement {
+export function dropTarget(
+  words: { title: string; hint: string; files: string; folder?: string },
+  onFiles: (files: Named[], isFolder: boolean) => void,
+  area?: HTMLElement,
+): HTMLElement {
   const id = freshId("drop");
-  const picker = make("input", { id, type: "file", multiple: true, class: "visually-hidden", "aria-describedby": `${id}-hint` });
-  const folder = make("input", { id: `${id}-folder`, type: "file", multiple: true, webkitdirectory: true, class: "visually-hidden" });
+  const picker = make("input", {
+    id,
+    type: "file",
+    multiple: true,
+    class: "visually-hidden",
+    "aria-describedby": `${id}-hint`,
+  });
+  const folder = make("input", {
+    id: `${id}-folder`,
+    type: "file",
+    multiple: true,
+    webkitdirectory: true,
+    class: "visually-hidden",
+  });
   const zone = make(
     "div",
     { class: "rig-drop" },
     make("strong", {}, words.title),
     make("span", { class: "soft", id: `${id}-hint` }, words.hint),
-    make("div", { class: "rig-row" }, picker, make("label", { for: id, class: "rig-button" }, words.files), ...(words.folder ? [folder, make("label", { for: `${id}-folder`, class: "rig-button" }, words.folder)] : [])),
+    make(
+      "div",
+      { class: "rig-row" },
+      picker,
+      make("label", { for: id, class: "rig-button" }, words.files),
+      ...(words.folder ? [folder, make("label", { for: `${id}-folder`, class: "rig-button" }, words.folder)] : []),
+    ),
   );
-  for (const [input, isFolder] of [[picker, false], [folder, true]] as const) {
+  for (const [input, isFolder] of [
+    [picker, false],
+    [folder, true],
+  ] as const) {
     input.addEventListener("change", () => {
-      const files = [...(input.files ?? [])].slice(0, MOST_FILES).map((file) => ({ name: file.webkitRelativePath || file.name, blob: file }));
+      const files = [...(input.files ?? [])]
+        .slice(0, MOST_FILES)
+        .map((file) => ({ name: file.webkitRelativePath || file.name, blob: file }));
       input.value = ""; // so that the same file, mended on disk, can be picked again
       if (files.length > 0) onFiles(files, isFolder);
     });

@@ -23,5 +23,11 @@ export async function loadExample(): Promise<Example> {
   const { rotation, translation } = first.pose;
   const told = poseOf(times(fromEuler(0, OFF, 0, "xyz"), rotation), translation);
   const ends = { from: "depth", to: "colour" };
-  return { frames, poses: [{ ...ends, name: `${OFF}° off`, pose: told }, { ...ends, name: "as rendered", pose: first.pose }] };
+  return {
+    frames,
+    poses: [
+      { ...ends, name: `${OFF}° off`, pose: told },
+      { ...ends, name: "as rendered", pose: first.pose },
+    ],
+  };
 }

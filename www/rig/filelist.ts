@@ -21,7 +21,8 @@ const units = [
   { value: "0.01", label: "centimetres" },
 ];
 
-export const unitName = (metres: number): string => units.find(({ value }) => Number(value) === metres)?.label ?? `${metres} m`;
+export const unitName = (metres: number): string =>
+  units.find(({ value }) => Number(value) === metres)?.label ?? `${metres} m`;
 
 export class FileList {
   readonly element = make("ul", { class: "rig-files", "aria-label": "Files" });
@@ -52,7 +53,13 @@ export class FileList {
     const kindBox = make("label", { class: "rig-choice" }, make("span", {}, "Kind"), kind);
     const unitBox = make("label", { class: "rig-choice" }, make("span", {}, "Unit"), unit);
     const remove = press("×", () => this.#rig.remove(item), { class: "icon", "aria-label": `Remove ${item.name}` });
-    const element = make("li", { class: "rig-file" }, canvas, make("div", { class: "rig-file-words" }, make("strong", {}, item.name), says, error, notes), make("div", { class: "rig-row rig-corrections" }, kindBox, unitBox, remove));
+    const element = make(
+      "li",
+      { class: "rig-file" },
+      canvas,
+      make("div", { class: "rig-file-words" }, make("strong", {}, item.name), says, error, notes),
+      make("div", { class: "rig-row rig-corrections" }, kindBox, unitBox, remove),
+    );
     let drawn = "";
     return {
       element,
@@ -63,20 +70,41 @@ export class FileList {
         error.textContent = item.error ?? "";
         error.hidden = state !== "failed";
         const said = (summary?.warnings ?? []).some((words) => /guess/i.test(words));
-        const guessed = (said ? [] : (summary?.guessed ?? [])).map((what) => `The ${what} was guessed: correct it here if it is wrong, or choose it to confirm it.`);
+        const guessed = (said ? [] : (summary?.guessed ?? [])).map(
+          (what) => `The ${what} was guessed: correct it here if it is wrong, or choose it to confirm it.`,
+        );
         notes.replaceChildren(...[...(summary?.warnings ?? []), ...guessed].map((words) => make("li", {}, words)));
         kindBox.hidden = !item.blob;
-        fill(kind, summary ? kinds : [{ value: "", label: "not recognised" }, ...kinds], item.as ?? summary?.kind ?? "");
+        fill(
+          kind,
+          summary ? kinds : [{ value: "", label: "not recognised" }, ...kinds],
+          item.as ?? summary?.kind ?? "",
+        );
         unitBox.hidden = summary?.kind !== "depth" || summary.organised === true;
         const now = String(item.unit ?? summary?.unit ?? 1);
-        const listed = units.some(({ value }) => Number(value) === Number(now)) ? units : [...units, { value: now, label: `${now} m` }];
+        const listed = units.some(({ value }) => Number(value) === Number(now))
+          ? units
+          : [...units, { value: now, label: `${now} m` }];
         const isGuess = summary?.guessed.includes("unit") ?? false;
-        fill(unit, isGuess ? [{ value: "", label: `guessed: ${listed.find(({ value }) => Number(value) === Number(now))?.label}` }, ...listed] : listed, isGuess ? "" : (listed.find(({ value }) => Number(value) === Number(now))?.value ?? now));
+        fill(
+          unit,
+          isGuess
+            ? [
+                { value: "", label: `guessed: ${listed.find(({ value }) => Number(value) === Number(now))?.label}` },
+                ...listed,
+              ]
+            : listed,
+          isGuess ? "" : (listed.find(({ value }) => Number(value) === Number(now))?.value ?? now),
+        );
         const wanted = state === "read" && summary?.width ? `${summary.kind} ${summary.says}` : "";
         if (wanted === drawn) return;
         drawn = wanted;
         canvas.hidden = wanted === "";
-        if (wanted) void this.#rig.session.call("picture", { file: item.id, width: THUMB }).then((bitmap) => draw(canvas, bitmap), () => (canvas.hidden = true));
+        if (wanted)
+          void this.#rig.session.call("picture", { file: item.id, width: THUMB }).then(
+            (bitmap) => draw(canvas, bitmap),
+            () => (canvas.hidden = true),
+          );
       },
     };
   }

@@ -32,26 +32,65 @@ export class FilesStep {
   constructor(rig: Rig, goOn: () => void) {
     this.#rig = rig;
     this.#files = new FileList(rig);
-    this.#frames = new FrameList(rig, () => (this.#tool ??= import("./masktool").then(({ MaskTool }) => new MaskTool(rig))));
+    this.#frames = new FrameList(
+      rig,
+      () => (this.#tool ??= import("./masktool").then(({ MaskTool }) => new MaskTool(rig))),
+    );
     this.#cameras = [new CameraForm(rig, "colour"), new CameraForm(rig, "depth")];
     this.#next = press("Next: your calibration", goOn, { class: "primary" });
     const drop = dropTarget(
-      { title: "Drop files or a folder here", hint: "Colour images, depth maps, masks, camera numbers, a calibration: they are told apart by what is in them. Nothing leaves this machine.", files: "Choose files", folder: "Choose a folder" },
+      {
+        title: "Drop files or a folder here",
+        hint: "Colour images, depth maps, masks, camera numbers, a calibration: they are told apart by what is in them. Nothing leaves this machine.",
+        files: "Choose files",
+        folder: "Choose a folder",
+      },
       (files, isFolder) => void this.#take(files, isFolder),
       this.element,
     );
-    this.#guess.append(this.#guessWords, press("Yes, that is right", () => void this.#rig.confirmUnits()));
-    this.#filesCard = make("details", { class: "rig-card rig-files-card" }, make("summary", {}, make("h3", {}, "Files")), this.#files.element);
-    this.#framesCard = make("section", { class: "rig-card" }, make("h3", {}, "Frames"), make("p", { class: "soft" }, "Each frame is a colour image and a depth map of the same moment. Add more one by one: the answer sharpens."), this.#frames.element);
+    this.#guess.append(
+      this.#guessWords,
+      press("Yes, that is right", () => void this.#rig.confirmUnits()),
+    );
+    this.#filesCard = make(
+      "details",
+      { class: "rig-card rig-files-card" },
+      make("summary", {}, make("h3", {}, "Files")),
+      this.#files.element,
+    );
+    this.#framesCard = make(
+      "section",
+      { class: "rig-card" },
+      make("h3", {}, "Frames"),
+      make(
+        "p",
+        { class: "soft" },
+        "Each frame is a colour image and a depth map of the same moment. Add more one by one: the answer sharpens.",
+      ),
+      this.#frames.element,
+    );
     this.element.append(
-      make("section", { class: "rig-card" }, drop, make("div", { class: "rig-row" }, this.#example, this.#clear, this.#status), this.#alert, this.#guess, this.#notes),
+      make(
+        "section",
+        { class: "rig-card" },
+        drop,
+        make("div", { class: "rig-row" }, this.#example, this.#clear, this.#status),
+        this.#alert,
+        this.#guess,
+        this.#notes,
+      ),
       make("aside", { class: "rig-aside" }, advice(), formats()),
       make(
         "div",
         { class: "rig-main" },
         this.#filesCard,
         this.#framesCard,
-        make("section", { class: "rig-card" }, make("h3", {}, "Cameras"), make("div", { class: "rig-cameras" }, ...this.#cameras.map(({ element }) => element))),
+        make(
+          "section",
+          { class: "rig-card" },
+          make("h3", {}, "Cameras"),
+          make("div", { class: "rig-cameras" }, ...this.#cameras.map(({ element }) => element)),
+        ),
         make("div", { class: "rig-row rig-foot" }, this.#missing, this.#next),
       ),
     );
@@ -68,11 +107,20 @@ export class FilesStep {
     const guessed = this.#rig.unitsGuessed;
     const names = [...new Set(guessed.map(({ summary }) => unitName(summary?.unit ?? 1)))];
     this.#guess.hidden = guessed.length === 0;
-    this.#guessWords.textContent = guessed.length === 0 ? "" : `The unit of ${guessed.length === 1 ? guessed[0]?.name : `${guessed.length} depth maps`} was guessed: ${names.join(" and ")}.`;
+    this.#guessWords.textContent =
+      guessed.length === 0
+        ? ""
+        : `The unit of ${guessed.length === 1 ? guessed[0]?.name : `${guessed.length} depth maps`} was guessed: ${names.join(" and ")}.`;
     this.#clear.hidden = items.length === 0;
     const reading = items.filter(({ state }) => state === "reading").length;
     const failed = items.filter(({ state }) => state === "failed").length;
-    this.#status.textContent = this.#rig.busy ? this.#rig.busy : items.length === 0 ? "" : reading > 0 ? `Reading ${reading} of ${items.length} files` : `${items.length} files read${failed > 0 ? `, ${failed} of them not understood` : ""}`;
+    this.#status.textContent = this.#rig.busy
+      ? this.#rig.busy
+      : items.length === 0
+        ? ""
+        : reading > 0
+          ? `Reading ${reading} of ${items.length} files`
+          : `${items.length} files read${failed > 0 ? `, ${failed} of them not understood` : ""}`;
     this.#missing.textContent = missing.length === 0 ? "" : `Still missing: ${missing.join("; ")}.`;
     this.#next.disabled = missing.length > 0;
   }
@@ -118,4 +166,13 @@ const known: readonly [string, string][] = [
 ];
 
 const formats = (): HTMLElement =>
-  make("details", { class: "rig-card" }, make("summary", {}, "Which files are understood"), make("dl", { class: "rig-formats" }, ...known.flatMap(([what, list]) => [make("dt", {}, what), make("dd", {}, list)])));
+  make(
+    "details",
+    { class: "rig-card" },
+    make("summary", {}, "Which files are understood"),
+    make(
+      "dl",
+      { class: "rig-formats" },
+      ...known.flatMap(([what, list]) => [make("dt", {}, what), make("dd", {}, list)]),
+    ),
+  );

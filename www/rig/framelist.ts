@@ -28,7 +28,10 @@ export class FrameList {
 
   #row(frame: Frame): { element: HTMLElement; show(frame: Frame): void } {
     const rig = this.#rig;
-    const canvases = { colour: make("canvas", { class: "rig-thumb", "aria-hidden": "true" }), depth: make("canvas", { class: "rig-thumb", "aria-hidden": "true" }) };
+    const canvases = {
+      colour: make("canvas", { class: "rig-thumb", "aria-hidden": "true" }),
+      depth: make("canvas", { class: "rig-thumb", "aria-hidden": "true" }),
+    };
     const name = make("strong");
     const state = make("p", { class: "soft" });
     const select = (role: Role) =>
@@ -38,11 +41,31 @@ export class FrameList {
         if (role === "colour") delete frame.paint;
         rig.changed();
       });
-    const selects: Record<Role, HTMLSelectElement> = { colour: select("colour"), depth: select("depth"), mask: select("mask") };
-    const boxes = (Object.keys(selects) as Role[]).map((role) => make("label", { class: "rig-choice", "data-role": role }, make("span", {}, titles[role]), selects[role]));
-    const restrict = press("Restrict what is used", () => void this.#tool().then((tool) => tool.open(frame), () => {}), { "aria-haspopup": "dialog" });
+    const selects: Record<Role, HTMLSelectElement> = {
+      colour: select("colour"),
+      depth: select("depth"),
+      mask: select("mask"),
+    };
+    const boxes = (Object.keys(selects) as Role[]).map((role) =>
+      make("label", { class: "rig-choice", "data-role": role }, make("span", {}, titles[role]), selects[role]),
+    );
+    const restrict = press(
+      "Restrict what is used",
+      () =>
+        void this.#tool().then(
+          (tool) => tool.open(frame),
+          () => {},
+        ),
+      { "aria-haspopup": "dialog" },
+    );
     const remove = press("×", () => rig.removeFrame(frame), { class: "icon", "aria-label": `Remove ${frame.name}` });
-    const element = make("li", { class: "rig-frame" }, make("div", { class: "rig-pair" }, canvases.colour, canvases.depth), make("div", { class: "rig-frame-words" }, name, state), make("div", { class: "rig-row rig-corrections" }, ...boxes, restrict, remove));
+    const element = make(
+      "li",
+      { class: "rig-frame" },
+      make("div", { class: "rig-pair" }, canvases.colour, canvases.depth),
+      make("div", { class: "rig-frame-words" }, name, state),
+      make("div", { class: "rig-row rig-corrections" }, ...boxes, restrict, remove),
+    );
     const drawn = { colour: "", depth: "" };
     return {
       element,
@@ -52,7 +75,11 @@ export class FrameList {
         state.classList.toggle("rig-error", frame.colour === undefined || frame.depth === undefined);
         for (const role of Object.keys(selects) as Role[]) {
           const files = rig.of(role).map(({ id, name }) => ({ value: String(id), label: name }));
-          fill(selects[role], [{ value: "", label: role === "mask" ? "none" : "missing" }, ...files], String(frame[role] ?? ""));
+          fill(
+            selects[role],
+            [{ value: "", label: role === "mask" ? "none" : "missing" }, ...files],
+            String(frame[role] ?? ""),
+          );
         }
         (boxes.at(-1) as HTMLElement).hidden = rig.of("mask").length === 0;
         restrict.disabled = frame.colour === undefined;
@@ -61,12 +88,21 @@ export class FrameList {
     };
   }
 
-  #draw(canvas: HTMLCanvasElement, item: Item | undefined, drawn: Record<"colour" | "depth", string>, role: "colour" | "depth"): void {
+  #draw(
+    canvas: HTMLCanvasElement,
+    item: Item | undefined,
+    drawn: Record<"colour" | "depth", string>,
+    role: "colour" | "depth",
+  ): void {
     const wanted = item?.state === "read" ? `${item.id} ${item.summary?.kind}` : "";
     if (drawn[role] === wanted) return;
     drawn[role] = wanted;
     canvas.getContext("2d")?.clearRect(0, 0, canvas.width, canvas.height);
-    if (item && wanted) void this.#rig.session.call("picture", { file: item.id, width: THUMB }).then((bitmap) => drawn[role] === wanted && draw(canvas, bitmap), () => {});
+    if (item && wanted)
+      void this.#rig.session.call("picture", { file: item.id, width: THUMB }).then(
+        (bitmap) => drawn[role] === wanted && draw(canvas, bitmap),
+        () => {},
+      );
   }
 }
 
@@ -79,7 +115,11 @@ function describe(rig: Rig, { colour, depth, mask, paint, range }: Frame): strin
   };
   const limits = [
     ...(mask === undefined ? [] : ["the mask's file"]),
-    ...(paint ? [`${((100 * paint.reduce((sum, value) => sum + (value ? 1 : 0), 0)) / paint.length).toFixed(0)} % of the image, as painted`] : []),
+    ...(paint
+      ? [
+          `${((100 * paint.reduce((sum, value) => sum + (value ? 1 : 0), 0)) / paint.length).toFixed(0)} % of the image, as painted`,
+        ]
+      : []),
     ...(range ? [`depths from ${range[0]} to ${range[1]} m`] : []),
   ];
   return `Colour ${size(colour)}, depth ${size(depth)}; ${limits.length === 0 ? "all of it is used." : `used: ${limits.join(", ")}.`}`;

@@ -17,9 +17,17 @@ export class MaskTool {
   readonly #rig: Rig;
   readonly #title = make("h2", { id: "rig-mask-title" });
   readonly #image = make("canvas");
-  readonly #layer = make("canvas", { class: "rig-mask-layer", role: "img", "aria-label": "What is used of the colour image. Draw with the pointer, or type a rectangle's numbers." });
+  readonly #layer = make("canvas", {
+    class: "rig-mask-layer",
+    role: "img",
+    "aria-label": "What is used of the colour image. Draw with the pointer, or type a rectangle's numbers.",
+  });
   readonly #frameBox = make("div", { class: "rig-mask-band", hidden: true });
-  readonly #depth = make("canvas", { class: "rig-mask-depth", role: "img", "aria-label": "Depth map; grey depths are not used." });
+  readonly #depth = make("canvas", {
+    class: "rig-mask-depth",
+    role: "img",
+    "aria-label": "Depth map; grey depths are not used.",
+  });
   readonly #share = make("p", { role: "status", class: "soft" });
   readonly #near: { element: HTMLElement; input: HTMLInputElement };
   readonly #far: { element: HTMLElement; input: HTMLInputElement };
@@ -40,12 +48,46 @@ export class MaskTool {
     this.#rig = rig;
     this.#near = numberField("Nearest depth", "m", (value) => this.#changeRange([value, this.#range[1]]));
     this.#far = numberField("Farthest depth", "m", (value) => this.#changeRange([this.#range[0], value]));
-    const board = make("div", { class: "rig-mask-board" }, make("div", { class: "rig-mask-picture" }, this.#image, this.#layer, this.#frameBox));
+    const board = make(
+      "div",
+      { class: "rig-mask-board" },
+      make("div", { class: "rig-mask-picture" }, this.#image, this.#layer, this.#frameBox),
+    );
     this.element.append(
-      make("div", { class: "rig-mask-head" }, this.#title, make("p", { class: "soft" }, "Restrict it to what you trust: a thing and the background behind it, without screens, mirrors, glass or people who moved.")),
+      make(
+        "div",
+        { class: "rig-mask-head" },
+        this.#title,
+        make(
+          "p",
+          { class: "soft" },
+          "Restrict it to what you trust: a thing and the background behind it, without screens, mirrors, glass or people who moved.",
+        ),
+      ),
       board,
-      make("div", { class: "rig-mask-side" }, this.#tools(), this.#typed(), this.#growing(), make("fieldset", {}, make("legend", {}, "Depths"), make("div", { class: "rig-row" }, this.#near.element, this.#far.element), this.#depth)),
-      make("div", { class: "rig-row rig-mask-foot" }, this.#share, this.#undo, press("Use everything", () => this.#reset()), press("Cancel", () => this.element.close()), press("Done", () => this.#done(), { class: "primary" })),
+      make(
+        "div",
+        { class: "rig-mask-side" },
+        this.#tools(),
+        this.#typed(),
+        this.#growing(),
+        make(
+          "fieldset",
+          {},
+          make("legend", {}, "Depths"),
+          make("div", { class: "rig-row" }, this.#near.element, this.#far.element),
+          this.#depth,
+        ),
+      ),
+      make(
+        "div",
+        { class: "rig-row rig-mask-foot" },
+        this.#share,
+        this.#undo,
+        press("Use everything", () => this.#reset()),
+        press("Cancel", () => this.element.close()),
+        press("Done", () => this.#done(), { class: "primary" }),
+      ),
     );
     this.#listen();
     document.body.append(this.element);
@@ -75,39 +117,82 @@ export class MaskTool {
   }
 
   #tools(): HTMLElement {
-    const tool = choose([{ value: "rectangle", label: "rectangle" }, { value: "brush", label: "brush" }], this.#tool, (value) => (this.#tool = value as Tool));
-    const use = choose([{ value: "use", label: "use what I draw" }, { value: "leave", label: "leave it out" }], "use", (value) => (this.#use = value === "use"));
+    const tool = choose(
+      [
+        { value: "rectangle", label: "rectangle" },
+        { value: "brush", label: "brush" },
+      ],
+      this.#tool,
+      (value) => (this.#tool = value as Tool),
+    );
+    const use = choose(
+      [
+        { value: "use", label: "use what I draw" },
+        { value: "leave", label: "leave it out" },
+      ],
+      "use",
+      (value) => (this.#use = value === "use"),
+    );
     const radius = numberField("Brush radius", "px", (value) => (this.#radius = value > 0 ? value : this.#radius));
     this.#radiusInput = radius.input;
-    return make("fieldset", {}, make("legend", {}, "Draw"), labelled("Tool", tool), labelled("It means", use), radius.element);
+    return make(
+      "fieldset",
+      {},
+      make("legend", {}, "Draw"),
+      labelled("Tool", tool),
+      labelled("It means", use),
+      radius.element,
+    );
   }
 
   #typed(): HTMLElement {
-    const sides = (["left", "top", "width", "height"] as const).map((side) => numberField(side, "px", (value) => (this.#box = { ...this.#box, [side]: Number.isFinite(value) ? value : 0 })).element);
+    const sides = (["left", "top", "width", "height"] as const).map(
+      (side) =>
+        numberField(side, "px", (value) => (this.#box = { ...this.#box, [side]: Number.isFinite(value) ? value : 0 }))
+          .element,
+    );
     const apply = press("Apply", () => {
       this.#keep();
       this.#paint.rectangle(this.#box, this.#use);
       this.#showAll();
     });
-    return make("details", {}, make("summary", {}, "Rectangle by numbers"), make("div", { class: "rig-four" }, ...sides), apply);
+    return make(
+      "details",
+      {},
+      make("summary", {}, "Rectangle by numbers"),
+      make("div", { class: "rig-four" }, ...sides),
+      apply,
+    );
   }
 
   #growing(): HTMLElement {
-    const step = numberField("By", "px", (value) => (this.#step = value > 0 ? Math.min(200, Math.round(value)) : this.#step));
+    const step = numberField(
+      "By",
+      "px",
+      (value) => (this.#step = value > 0 ? Math.min(200, Math.round(value)) : this.#step),
+    );
     step.input.value = String(this.#step);
     const by = (sign: number) => () => {
       this.#keep();
       this.#paint.grow(sign * this.#step);
       this.#showAll();
     };
-    return make("fieldset", {}, make("legend", {}, "Grow what is used"), make("div", { class: "rig-row rig-bottom" }, step.element, press("Grow", by(1)), press("Shrink", by(-1))));
+    return make(
+      "fieldset",
+      {},
+      make("legend", {}, "Grow what is used"),
+      make("div", { class: "rig-row rig-bottom" }, step.element, press("Grow", by(1)), press("Shrink", by(-1))),
+    );
   }
 
   #listen(): void {
     let from: { x: number; y: number } | undefined;
     const place = (event: PointerEvent) => {
       const { left, top, width, height } = this.#layer.getBoundingClientRect();
-      return { x: ((event.clientX - left) / width) * this.#paint.width, y: ((event.clientY - top) / height) * this.#paint.height };
+      return {
+        x: ((event.clientX - left) / width) * this.#paint.width,
+        y: ((event.clientY - top) / height) * this.#paint.height,
+      };
     };
     this.#layer.addEventListener("pointerdown", (event) => {
       this.#layer.setPointerCapture(event.pointerId);
@@ -121,7 +206,8 @@ export class MaskTool {
       const to = place(event);
       if (this.#tool === "brush") {
         const steps = Math.max(1, Math.ceil(Math.hypot(to.x - from.x, to.y - from.y) / Math.max(1, this.#radius / 2)));
-        for (let i = 1; i <= steps; i++) this.#dab({ x: from.x + ((to.x - from.x) * i) / steps, y: from.y + ((to.y - from.y) * i) / steps });
+        for (let i = 1; i <= steps; i++)
+          this.#dab({ x: from.x + ((to.x - from.x) * i) / steps, y: from.y + ((to.y - from.y) * i) / steps });
         from = to;
       } else {
         this.#showBand(boxOf(from, to));
@@ -132,7 +218,8 @@ export class MaskTool {
       const box = boxOf(from, place(event));
       from = undefined;
       this.#frameBox.hidden = true;
-      if (this.#tool === "rectangle" && box.width > 1 && box.height > 1 && event.type === "pointerup") this.#showPart(this.#paint.rectangle(box, this.#use), true);
+      if (this.#tool === "rectangle" && box.width > 1 && box.height > 1 && event.type === "pointerup")
+        this.#showPart(this.#paint.rectangle(box, this.#use), true);
       this.#showShare();
     };
     this.#layer.addEventListener("pointerup", end);
@@ -163,7 +250,12 @@ export class MaskTool {
   #showBand({ left, top, width, height }: Box): void {
     const percent = (value: number, of: number) => `${(100 * value) / of}%`;
     this.#frameBox.hidden = false;
-    Object.assign(this.#frameBox.style, { left: percent(left, this.#paint.width), top: percent(top, this.#paint.height), width: percent(width, this.#paint.width), height: percent(height, this.#paint.height) });
+    Object.assign(this.#frameBox.style, {
+      left: percent(left, this.#paint.width),
+      top: percent(top, this.#paint.height),
+      width: percent(width, this.#paint.width),
+      height: percent(height, this.#paint.height),
+    });
   }
 
   #showAll(): void {
@@ -200,14 +292,19 @@ export class MaskTool {
 
   get #wholeRange(): [number, number] | undefined {
     const [near, far] = this.#range;
-    return Number.isFinite(near) || Number.isFinite(far) ? [Number.isFinite(near) ? near : 0, Number.isFinite(far) ? far : 1000] : undefined;
+    return Number.isFinite(near) || Number.isFinite(far)
+      ? [Number.isFinite(near) ? near : 0, Number.isFinite(far) ? far : 1000]
+      : undefined;
   }
 
   #showDepth(): void {
     const file = this.#frame?.depth;
     const range = this.#wholeRange;
     if (file === undefined) return;
-    void this.#rig.session.call("picture", { file, ...(range ? { range } : {}) }).then((bitmap) => draw(this.#depth, bitmap), () => {});
+    void this.#rig.session.call("picture", { file, ...(range ? { range } : {}) }).then(
+      (bitmap) => draw(this.#depth, bitmap),
+      () => {},
+    );
   }
 
   #reset(): void {
@@ -235,4 +332,9 @@ export class MaskTool {
   }
 }
 
-const boxOf = (a: { x: number; y: number }, b: { x: number; y: number }): Box => ({ left: Math.min(a.x, b.x), top: Math.min(a.y, b.y), width: Math.abs(a.x - b.x), height: Math.abs(a.y - b.y) });
+const boxOf = (a: { x: number; y: number }, b: { x: number; y: number }): Box => ({
+  left: Math.min(a.x, b.x),
+  top: Math.min(a.y, b.y),
+  width: Math.abs(a.x - b.x),
+  height: Math.abs(a.y - b.y),
+});

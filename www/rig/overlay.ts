@@ -29,8 +29,17 @@ export class Overlay {
   readonly element = make("section", { class: "rig-card rig-overlay", "aria-label": "Overlay" });
   readonly #rig: Rig;
   readonly #image = make("canvas", { "aria-hidden": "true" });
-  readonly #layer = make("canvas", { role: "img", class: "rig-overlay-layer", "aria-label": "Depth map on the colour image, not drawn yet" });
-  readonly #board = make("div", { class: "rig-overlay-board", tabindex: "0", role: "group", "aria-label": "Picture, scrolls when enlarged" });
+  readonly #layer = make("canvas", {
+    role: "img",
+    class: "rig-overlay-layer",
+    "aria-label": "Depth map on the colour image, not drawn yet",
+  });
+  readonly #board = make("div", {
+    class: "rig-overlay-board",
+    tabindex: "0",
+    role: "group",
+    "aria-label": "Picture, scrolls when enlarged",
+  });
   readonly #picture = make("div", { class: "rig-overlay-picture" });
   readonly #frame: HTMLSelectElement;
   readonly #slider = make("input", { type: "range", min: "0", step: "1", "aria-label": "Calibration shown" });
@@ -49,10 +58,18 @@ export class Overlay {
   constructor(rig: Rig) {
     this.#rig = rig;
     this.#frame = choose([], "0", (value) => void this.#chooseFrame(Number(value)));
-    const what = choose([{ value: "both", label: "points and edges" }, { value: "points", label: "points" }, { value: "edges", label: "depth edges" }], "both", (value) => {
-      this.#what = value as What;
-      this.#paint();
-    });
+    const what = choose(
+      [
+        { value: "both", label: "points and edges" },
+        { value: "points", label: "points" },
+        { value: "edges", label: "depth edges" },
+      ],
+      "both",
+      (value) => {
+        this.#what = value as What;
+        this.#paint();
+      },
+    );
     const opacity = make("input", { type: "range", min: "0", max: "100", value: "55" });
     const fade = () => (this.#layer.style.opacity = String(Number(opacity.value) / 100));
     opacity.addEventListener("input", fade);
@@ -64,7 +81,15 @@ export class Overlay {
     const ticks = freshId("ticks");
     this.#slider.setAttribute("list", ticks);
     this.element.append(
-      make("div", { class: "rig-overlay-head" }, make("h3", {}, "Depth on colour"), labelled("Frame", this.#frame), labelled("Shown", what), labelled("Opacity", opacity), this.#size),
+      make(
+        "div",
+        { class: "rig-overlay-head" },
+        make("h3", {}, "Depth on colour"),
+        labelled("Frame", this.#frame),
+        labelled("Shown", what),
+        labelled("Opacity", opacity),
+        this.#size,
+      ),
       make("div", { class: "rig-slide" }, this.#stopRow, this.#slider, this.#where, make("datalist", { id: ticks })),
       this.#board,
       this.#legend,
@@ -79,10 +104,18 @@ export class Overlay {
     this.#stops = first ? [first, found, ...others] : [found];
     this.#slider.max = String(WAY * (this.#stops.length - 1));
     this.#slider.value = "0";
-    this.#stopRow.replaceChildren(...this.#stops.map(({ name }, i) => press(name, () => this.#goTo(i), { "aria-pressed": "false" })));
-    this.element.querySelector("datalist")?.replaceChildren(...this.#stops.map((_, i) => make("option", { value: i * WAY })));
+    this.#stopRow.replaceChildren(
+      ...this.#stops.map(({ name }, i) => press(name, () => this.#goTo(i), { "aria-pressed": "false" })),
+    );
+    this.element
+      .querySelector("datalist")
+      ?.replaceChildren(...this.#stops.map((_, i) => make("option", { value: i * WAY })));
     this.#picture.style.aspectRatio = this.#ratioOf(run);
-    fill(this.#frame, run.plans.map(({ name }, i) => ({ value: String(i), label: name })), "0");
+    fill(
+      this.#frame,
+      run.plans.map(({ name }, i) => ({ value: String(i), label: name })),
+      "0",
+    );
     void this.#chooseFrame(0);
   }
 
@@ -124,7 +157,11 @@ export class Overlay {
     const share = value / WAY - i;
     if (!a) throw new Error("There is nothing to show.");
     if (!b || share === 0) return { pose: a.pose, words: a.name, stop: i };
-    return { pose: between(a.pose, b.pose, share), words: `${Math.round(100 * share)} % of the way from ${a.name} to ${b.name}`, stop: -1 };
+    return {
+      pose: between(a.pose, b.pose, share),
+      words: `${Math.round(100 * share)} % of the way from ${a.name} to ${b.name}`,
+      stop: -1,
+    };
   }
 
   /** The newest place wins; those passed while the worker was busy are left out. */
@@ -153,13 +190,20 @@ export class Overlay {
   #paint(): void {
     if (!this.#drawn) return;
     const { min, max } = paint(this.#layer, this.#drawn, this.#what);
-    this.#layer.setAttribute("aria-label", `Depth map on the colour image of ${this.#run?.plans[this.#index]?.name ?? ""}, calibration: ${this.#where.textContent}`);
+    this.#layer.setAttribute(
+      "aria-label",
+      `Depth map on the colour image of ${this.#run?.plans[this.#index]?.name ?? ""}, calibration: ${this.#where.textContent}`,
+    );
     const isWithPoints = this.#what !== "edges" && max > min;
     const bar = make("span", { class: "rig-ramp", style: `background: ${gradient("viridis")}` });
     const key = make("span", { class: "rig-edge-key" });
     this.#legend.replaceChildren(
-      ...(isWithPoints ? [make("span", {}, `${decimals(min, 2)} m`), bar, make("span", {}, `${decimals(max, 2)} m`)] : []),
-      ...(this.#what === "points" ? [] : [make("span", { class: "rig-legend-edge" }, key, "depth edges: they should lie on the image's outlines")]),
+      ...(isWithPoints
+        ? [make("span", {}, `${decimals(min, 2)} m`), bar, make("span", {}, `${decimals(max, 2)} m`)]
+        : []),
+      ...(this.#what === "points"
+        ? []
+        : [make("span", { class: "rig-legend-edge" }, key, "depth edges: they should lie on the image's outlines")]),
     );
   }
 
@@ -175,7 +219,10 @@ export class Overlay {
         const layer = make("canvas", { width: bitmap.width, height: bitmap.height });
         paint(layer, projection, "both");
         const scale = Math.min(1, REPORT_WIDTH / bitmap.width);
-        const canvas = make("canvas", { width: Math.round(scale * bitmap.width), height: Math.round(scale * bitmap.height) });
+        const canvas = make("canvas", {
+          width: Math.round(scale * bitmap.width),
+          height: Math.round(scale * bitmap.height),
+        });
         const context = canvas.getContext("2d");
         context?.drawImage(bitmap, 0, 0, canvas.width, canvas.height);
         if (context) context.globalAlpha = 0.55;
@@ -203,7 +250,10 @@ function paint(layer: HTMLCanvasElement, { points, edges }: Projection, what: Wh
   };
   if (what !== "edges") {
     const ramp = Uint32Array.from({ length: 256 }, (_, i) => packed(colourAt("viridis", i / 255)));
-    const size = Math.max(1, Math.min(8, Math.ceil(OVERLAP * Math.sqrt((width * height) / Math.max(1, points.length / 3)))));
+    const size = Math.max(
+      1,
+      Math.min(8, Math.ceil(OVERLAP * Math.sqrt((width * height) / Math.max(1, points.length / 3)))),
+    );
     const factor = max > min ? 255 / (max - min) : 0;
     for (let i = 0; i + 2 < points.length; i += 3) {
       const share = Math.max(0, Math.min(255, Math.round(((points[i + 2] ?? 0) - min) * factor)));
@@ -219,7 +269,8 @@ function paint(layer: HTMLCanvasElement, { points, edges }: Projection, what: Wh
 }
 
 /** As a canvas has its pixels in memory: red first, opaque. */
-const packed = ([r, g, b]: readonly [number, number, number]): number => new Uint32Array(new Uint8Array([r, g, b, 255]).buffer)[0] ?? 0;
+const packed = ([r, g, b]: readonly [number, number, number]): number =>
+  new Uint32Array(new Uint8Array([r, g, b, 255]).buffer)[0] ?? 0;
 
 /** The middle 98 % of the depths: single outliers must not flatten everything else. */
 function rangeOf(points: Float32Array): { min: number; max: number } {

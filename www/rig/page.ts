@@ -14,7 +14,11 @@ import { VerdictStep } from "./verdictstep";
 const STEPS = ["files", "calibration", "verdict"] as const;
 type Step = (typeof STEPS)[number];
 
-const titles: Record<Step, string> = { files: "Files and cameras", calibration: "Your calibration", verdict: "Verdict" };
+const titles: Record<Step, string> = {
+  files: "Files and cameras",
+  calibration: "Your calibration",
+  verdict: "Verdict",
+};
 const isStep = (name: string | null): name is Step => STEPS.some((step) => step === name);
 
 export class RigPage {
@@ -30,12 +34,25 @@ export class RigPage {
     const rig = this.#rig;
     this.#steps = {
       files: new FilesStep(rig, () => this.#go("calibration")),
-      calibration: new CalibrationStep(rig, () => this.#go("files"), () => this.#run()),
+      calibration: new CalibrationStep(
+        rig,
+        () => this.#go("files"),
+        () => this.#run(),
+      ),
       verdict: new VerdictStep(rig, () => this.#go("calibration")),
     };
     this.#body.append(...STEPS.map((step) => this.#steps[step].element));
     parent.append(
-      make("div", { class: "rig-intro" }, make("p", {}, "A colour camera and a depth camera, and extrinsics that a tool or a factory gave: are they right? Drop a few frames and get an answer with its evidence."), this.#stepper()),
+      make(
+        "div",
+        { class: "rig-intro" },
+        make(
+          "p",
+          {},
+          "A colour camera and a depth camera, and extrinsics that a tool or a factory gave: are they right? Drop a few frames and get an answer with its evidence.",
+        ),
+        this.#stepper(),
+      ),
       make("div", { class: "rig-title" }, this.#heading, this.#undo),
       this.#body,
     );
@@ -63,7 +80,12 @@ export class RigPage {
 
   #stepper(): HTMLElement {
     const items = STEPS.map((step, i) => {
-      const button = make("button", { type: "button" }, make("span", { class: "rig-number" }, String(i + 1)), titles[step]);
+      const button = make(
+        "button",
+        { type: "button" },
+        make("span", { class: "rig-number" }, String(i + 1)),
+        titles[step],
+      );
       button.addEventListener("click", () => this.#go(step));
       this.#links.set(step, button);
       return make("li", {}, button);

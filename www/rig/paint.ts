@@ -36,7 +36,12 @@ export class Paint {
 
   disc(column: number, row: number, radius: number, use: boolean): Box {
     const data = this.#start(use);
-    const box = this.#within({ left: Math.floor(column - radius), top: Math.floor(row - radius), width: 2 * radius + 2, height: 2 * radius + 2 });
+    const box = this.#within({
+      left: Math.floor(column - radius),
+      top: Math.floor(row - radius),
+      width: 2 * radius + 2,
+      height: 2 * radius + 2,
+    });
     for (let y = box.top; y < box.top + box.height; y++) {
       for (let x = box.left; x < box.left + box.width; x++) {
         if ((x - column) ** 2 + (y - row) ** 2 <= radius ** 2) data[y * this.width + x] = use ? 255 : 0;

@@ -17,12 +17,15 @@ export function keyOf(name: string): string {
 export function pairUp(rig: Rig): Frame[] {
   const frames = rig.frames.map((frame) => frame);
   const used = (role: "colour" | "depth" | "mask") => new Set(frames.map((frame) => frame[role]));
-  const left = (role: "colour" | "depth" | "mask") => rig.of(role).filter(({ id, aside }) => !aside && !used(role).has(id));
+  const left = (role: "colour" | "depth" | "mask") =>
+    rig.of(role).filter(({ id, aside }) => !aside && !used(role).has(id));
 
   for (const role of ["colour", "depth"] as const) {
     const other = role === "colour" ? "depth" : "colour";
     for (const item of left(role)) {
-      const frame = frames.find((each) => each[role] === undefined && keyOf(rig.item(each[other])?.name ?? "") === keyOf(item.name));
+      const frame = frames.find(
+        (each) => each[role] === undefined && keyOf(rig.item(each[other])?.name ?? "") === keyOf(item.name),
+      );
       if (frame) frame[role] = item.id;
     }
   }
@@ -47,7 +50,9 @@ export function pairUp(rig: Rig): Frame[] {
     else frames.push(fresh(rig, frames, undefined, depth));
   }
   for (const mask of left("mask")) {
-    const frame = frames.find((each) => each.mask === undefined && keyOf(rig.item(each.colour)?.name ?? "") === keyOf(mask.name)) ?? (frames.length === 1 && frames[0]?.mask === undefined ? frames[0] : undefined);
+    const frame =
+      frames.find((each) => each.mask === undefined && keyOf(rig.item(each.colour)?.name ?? "") === keyOf(mask.name)) ??
+      (frames.length === 1 && frames[0]?.mask === undefined ? frames[0] : undefined);
     if (frame) frame.mask = mask.id;
   }
   return frames;
@@ -55,5 +60,10 @@ export function pairUp(rig: Rig): Frame[] {
 
 function fresh(rig: Rig, frames: readonly Frame[], colour: Item | undefined, depth: Item | undefined): Frame {
   const number = 1 + Math.max(0, ...frames.map(({ name }) => Number(/^frame (\d+)$/.exec(name)?.[1] ?? 0)));
-  return { id: rig.freshId(), name: `frame ${number}`, ...(colour ? { colour: colour.id } : {}), ...(depth ? { depth: depth.id } : {}) };
+  return {
+    id: rig.freshId(),
+    name: `frame ${number}`,
+    ...(colour ? { colour: colour.id } : {}),
+    ...(depth ? { depth: depth.id } : {}),
+  };
 }

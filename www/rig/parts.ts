@@ -8,7 +8,11 @@ export const THUMB = 360;
 const SVG = "http://www.w3.org/2000/svg";
 
 /** An element of a drawing. */
-export function svg(tag: string, attributes: Record<string, string | number> = {}, ...children: SVGElement[]): SVGElement {
+export function svg(
+  tag: string,
+  attributes: Record<string, string | number> = {},
+  ...children: SVGElement[]
+): SVGElement {
   const element = document.createElementNS(SVG, tag);
   for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, String(value));
   element.append(...children);
@@ -40,13 +44,18 @@ export class Keyed<T extends { id: number }> {
         this.#rows.set(thing.id, row);
       }
       // Moving an element that is in its place would take the focus away.
-      if (this.#parent.children[i] !== row.element) this.#parent.insertBefore(row.element, this.#parent.children[i] ?? null);
+      if (this.#parent.children[i] !== row.element)
+        this.#parent.insertBefore(row.element, this.#parent.children[i] ?? null);
       row.show(thing);
     });
   }
 }
 
-export function press(label: string, action: () => void, attributes: Record<string, string | boolean> = {}): HTMLButtonElement {
+export function press(
+  label: string,
+  action: () => void,
+  attributes: Record<string, string | boolean> = {},
+): HTMLButtonElement {
   const element = make("button", { type: "button", ...attributes }, label);
   element.addEventListener("click", action);
   return element;
@@ -64,7 +73,11 @@ export function labelled(label: string, control: HTMLElement, note?: HTMLElement
 }
 
 /** Fills a select without losing what is chosen. */
-export function fill(select: HTMLSelectElement, options: readonly { value: string; label: string }[], chosen: string): void {
+export function fill(
+  select: HTMLSelectElement,
+  options: readonly { value: string; label: string }[],
+  chosen: string,
+): void {
   const now = JSON.stringify(options);
   if (select.dataset.options !== now) {
     select.replaceChildren(...options.map(({ value, label }) => make("option", { value }, label)));
@@ -73,7 +86,11 @@ export function fill(select: HTMLSelectElement, options: readonly { value: strin
   select.value = chosen;
 }
 
-export function choose(options: readonly { value: string; label: string }[], chosen: string, onChange: (value: string) => void): HTMLSelectElement {
+export function choose(
+  options: readonly { value: string; label: string }[],
+  chosen: string,
+  onChange: (value: string) => void,
+): HTMLSelectElement {
   const select = make("select");
   fill(select, options, chosen);
   select.addEventListener("change", () => onChange(select.value));
@@ -81,7 +98,11 @@ export function choose(options: readonly { value: string; label: string }[], cho
 }
 
 /** A number with its unit; an empty or wrong one is NaN. */
-export function numberField(label: string, unit: string, onChange: (value: number) => void): { element: HTMLElement; input: HTMLInputElement } {
+export function numberField(
+  label: string,
+  unit: string,
+  onChange: (value: number) => void,
+): { element: HTMLElement; input: HTMLInputElement } {
   const input = make("input", { type: "text", inputmode: "decimal", autocomplete: "off", spellcheck: "false" });
   input.addEventListener("input", () => {
     const value = toNumber(input.value);
@@ -94,10 +115,12 @@ export function numberField(label: string, unit: string, onChange: (value: numbe
   return { element, input };
 }
 
-export const toNumber = (text: string): number => (text.trim() === "" ? NaN : Number(text.trim().replace(",", ".").replace("−", "-")));
+export const toNumber = (text: string): number =>
+  text.trim() === "" ? NaN : Number(text.trim().replace(",", ".").replace("−", "-"));
 
 export const show = (input: HTMLInputElement, value: number): void => {
-  if (document.activeElement !== input) input.value = Number.isFinite(value) ? String(Number(value.toPrecision(8))) : "";
+  if (document.activeElement !== input)
+    input.value = Number.isFinite(value) ? String(Number(value.toPrecision(8))) : "";
 };
 
 /** Draws a picture into a canvas of its own size. */

@@ -18,7 +18,8 @@ function colour({ width, height, data, transfer }: CheckFrame["image"]): ImageDa
   }
   const wide = data instanceof Uint16Array;
   // Linear integers would look black in the shadows.
-  const level = (value: number) => (transfer === "linear" ? 255 * (value / (wide ? 65535 : 255)) ** (1 / 2.2) : wide ? value / 257 : value);
+  const level = (value: number) =>
+    transfer === "linear" ? 255 * (value / (wide ? 65535 : 255)) ** (1 / 2.2) : wide ? value / 257 : value;
   for (let i = 0; i < data.length; i++) out.data[i] = i % 4 === 3 ? 255 : level(data[i] ?? 0);
   return out;
 }
@@ -41,7 +42,10 @@ function depth(map: CheckFrame["depth"], range: readonly [number, number] | unde
 
 export function picture(reading: RigReading, range?: readonly [number, number], width?: number): Promise<ImageBitmap> {
   const made = pixels(reading, range);
-  return createImageBitmap(made, width !== undefined && width < made.width ? { resizeWidth: width, resizeQuality: "medium" } : {});
+  return createImageBitmap(
+    made,
+    width !== undefined && width < made.width ? { resizeWidth: width, resizeQuality: "medium" } : {},
+  );
 }
 
 function pixels(reading: RigReading, range: readonly [number, number] | undefined): ImageData {

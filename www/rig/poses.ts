@@ -21,14 +21,21 @@ export const identity: Pose = poseOf([1, 0, 0, 0, 1, 0, 0, 0, 1], [0, 0, 0]);
 
 /** The product of two rotations. */
 export const times = (a: readonly number[], b: readonly number[]): number[] =>
-  Array.from({ length: 9 }, (_, i) => [0, 1, 2].reduce((sum, k) => sum + at(a, 3 * Math.floor(i / 3) + k) * at(b, 3 * k + (i % 3)), 0));
-const transposed = (a: readonly number[]): number[] => Array.from({ length: 9 }, (_, i) => at(a, 3 * (i % 3) + Math.floor(i / 3)));
-const turned = (a: readonly number[], v: readonly number[]): number[] => [0, 1, 2].map((row) => [0, 1, 2].reduce((sum, k) => sum + at(a, 3 * row + k) * at(v, k), 0));
+  Array.from({ length: 9 }, (_, i) =>
+    [0, 1, 2].reduce((sum, k) => sum + at(a, 3 * Math.floor(i / 3) + k) * at(b, 3 * k + (i % 3)), 0),
+  );
+const transposed = (a: readonly number[]): number[] =>
+  Array.from({ length: 9 }, (_, i) => at(a, 3 * (i % 3) + Math.floor(i / 3)));
+const turned = (a: readonly number[], v: readonly number[]): number[] =>
+  [0, 1, 2].map((row) => [0, 1, 2].reduce((sum, k) => sum + at(a, 3 * row + k) * at(v, k), 0));
 
 /** The other direction. */
 export function inverse({ rotation, translation }: Pose): Pose {
   const back = transposed(rotation);
-  return poseOf(back, turned(back, translation).map((value) => -value));
+  return poseOf(
+    back,
+    turned(back, translation).map((value) => -value),
+  );
 }
 
 /** A unit quaternion's rotation, the real part last; nothing where its length is zero. */
@@ -37,9 +44,15 @@ export function fromQuaternion(x: number, y: number, z: number, w: number): numb
   if (!(square > 0) || !Number.isFinite(square)) return undefined;
   const s = 2 / square;
   return [
-    1 - s * (y * y + z * z), s * (x * y - z * w), s * (x * z + y * w),
-    s * (x * y + z * w), 1 - s * (x * x + z * z), s * (y * z - x * w),
-    s * (x * z - y * w), s * (y * z + x * w), 1 - s * (x * x + y * y),
+    1 - s * (y * y + z * z),
+    s * (x * y - z * w),
+    s * (x * z + y * w),
+    s * (x * y + z * w),
+    1 - s * (x * x + z * z),
+    s * (y * z - x * w),
+    s * (x * z - y * w),
+    s * (y * z + x * w),
+    1 - s * (x * x + y * y),
   ];
 }
 
@@ -49,7 +62,11 @@ export type EulerOrder = "rpy" | "xyz";
 export function fromEuler(x: number, y: number, z: number, order: EulerOrder): number[] {
   const turn = (axis: number, degrees: number): number[] => {
     const [c, s] = [Math.cos(degrees * DEGREE), Math.sin(degrees * DEGREE)];
-    return axis === 0 ? [1, 0, 0, 0, c, -s, 0, s, c] : axis === 1 ? [c, 0, s, 0, 1, 0, -s, 0, c] : [c, -s, 0, s, c, 0, 0, 0, 1];
+    return axis === 0
+      ? [1, 0, 0, 0, c, -s, 0, s, c]
+      : axis === 1
+        ? [c, 0, s, 0, 1, 0, -s, 0, c]
+        : [c, -s, 0, s, c, 0, 0, 0, 1];
   };
   const [rx, ry, rz] = [turn(0, x), turn(1, y), turn(2, z)];
   return order === "rpy" ? times(rz, times(ry, rx)) : times(rx, times(ry, rz));
@@ -57,7 +74,8 @@ export function fromEuler(x: number, y: number, z: number, order: EulerOrder): n
 
 /** Twice the axis times the sine of the angle. */
 const axisOf = (r: readonly number[]): number[] => [at(r, 7) - at(r, 5), at(r, 2) - at(r, 6), at(r, 3) - at(r, 1)];
-const angleOf = (r: readonly number[]): number => Math.atan2(Math.hypot(...axisOf(r)) / 2, (at(r, 0) + at(r, 4) + at(r, 8) - 1) / 2);
+const angleOf = (r: readonly number[]): number =>
+  Math.atan2(Math.hypot(...axisOf(r)) / 2, (at(r, 0) + at(r, 4) + at(r, 8) - 1) / 2);
 
 export const degreesOf = ({ rotation }: Pose): number => angleOf(rotation) / DEGREE;
 
@@ -72,10 +90,17 @@ export function between(a: Pose, b: Pose, share: number): Pose {
   const [x = 0, y = 0, z = 0] = axis.map((value) => (value / length) * Math.sin(half));
   const step = fromQuaternion(x, y, z, Math.cos(half));
   const rotation = step ? times(step, a.rotation) : a.rotation;
-  return poseOf(rotation, a.translation.map((value, i) => value + share * (at(b.translation, i) - value)));
+  return poseOf(
+    rotation,
+    a.translation.map((value, i) => value + share * (at(b.translation, i) - value)),
+  );
 }
 
-const SIDES = [["to the right of", "to the left of"], ["below", "above"], ["in front of", "behind"]] as const;
+const SIDES = [
+  ["to the right of", "to the left of"],
+  ["below", "above"],
+  ["in front of", "behind"],
+] as const;
 
 /** Where the depth camera sits, seen from the colour camera: what a look at the rig can confirm. */
 export function inWords(pose: Pose): string {
@@ -84,11 +109,23 @@ export function inWords(pose: Pose): string {
     .filter(({ mm }) => Math.abs(mm) >= 0.05)
     .sort((a, b) => Math.abs(b.mm) - Math.abs(a.mm))
     .map(({ mm, words }) => `${decimals(Math.abs(mm), 1)} mm ${words}`);
-  const place = parts.length === 0 ? "in the place of" : parts.length === 1 ? parts[0] : `${parts.slice(0, -1).join(", ")} and ${parts.at(-1)}`;
+  const place =
+    parts.length === 0
+      ? "in the place of"
+      : parts.length === 1
+        ? parts[0]
+        : `${parts.slice(0, -1).join(", ")} and ${parts.at(-1)}`;
   const degrees = degreesOf(pose);
   return `The depth camera sits ${place} the colour camera, turned by ${decimals(degrees, 2)}°.`;
 }
 
 /** Four rows, as a text file has them. */
 export const matrixText = ({ rotation, translation }: Pose): string =>
-  [0, 1, 2].map((row) => [...[0, 1, 2].map((column) => at(rotation, 3 * row + column)), at(translation, row)].map((value) => decimals(value, 6).padStart(10)).join(" ")).concat("  0.000000   0.000000   0.000000   1.000000").join("\n");
+  [0, 1, 2]
+    .map((row) =>
+      [...[0, 1, 2].map((column) => at(rotation, 3 * row + column)), at(translation, row)]
+        .map((value) => decimals(value, 6).padStart(10))
+        .join(" "),
+    )
+    .concat("  0.000000   0.000000   0.000000   1.000000")
+    .join("\n");

@@ -74,7 +74,14 @@ export interface Calls {
   pose: { ask: { pose: Pose; format: PoseFormat }; answer: { name: string; text: string; notes: string[] } };
   /** One cloud of the frame for each pose, in the colour camera's frame. */
   clouds: { ask: { frame: number; poses: { name: string; pose: Pose }[] }; answer: Uint8Array };
-  report: { ask: { report: CheckReport; pictures: { title: string; dataUrl: string }[]; inputs: { name: string; says: string; sha256?: string }[] }; answer: string };
+  report: {
+    ask: {
+      report: CheckReport;
+      pictures: { title: string; dataUrl: string }[];
+      inputs: { name: string; says: string; sha256?: string }[];
+    };
+    answer: string;
+  };
 }
 
 export type CallKind = keyof Calls;

@@ -2,11 +2,19 @@
 
 import type { CheckFrame } from "../../pkg/index.js";
 
-export function restrictImage(image: CheckFrame["image"], masks: readonly (Uint8Array | undefined)[]): CheckFrame["image"] {
+export function restrictImage(
+  image: CheckFrame["image"],
+  masks: readonly (Uint8Array | undefined)[],
+): CheckFrame["image"] {
   const count = image.width * image.height;
-  const given = [image.mask, ...masks].filter((mask): mask is Uint8Array => mask !== undefined && mask.length === count);
+  const given = [image.mask, ...masks].filter(
+    (mask): mask is Uint8Array => mask !== undefined && mask.length === count,
+  );
   if (given.length === 0) return image;
-  return { ...image, mask: Uint8Array.from({ length: count }, (_, i) => (given.every((mask) => mask[i] !== 0) ? 255 : 0)) };
+  return {
+    ...image,
+    mask: Uint8Array.from({ length: count }, (_, i) => (given.every((mask) => mask[i] !== 0) ? 255 : 0)),
+  };
 }
 
 /** Metres at each pixel; a hole is zero or no number. */
@@ -17,7 +25,10 @@ export function metresOf({ width, height, data, points, unit, camera }: CheckFra
   return Float32Array.from({ length: count }, (_, i) => (data?.[i] ?? 0) * factor);
 }
 
-export function restrictDepth(depth: CheckFrame["depth"], range: readonly [number, number] | undefined): CheckFrame["depth"] {
+export function restrictDepth(
+  depth: CheckFrame["depth"],
+  range: readonly [number, number] | undefined,
+): CheckFrame["depth"] {
   if (!range) return depth;
   const [near, far] = range;
   const { mask } = depth;

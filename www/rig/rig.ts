@@ -77,7 +77,16 @@ export interface Run {
   doubts: string[];
 }
 
-const emptyCamera = (): TypedCamera => ({ by: "focal", model: "brown", fx: NaN, fy: NaN, cx: NaN, cy: NaN, view: NaN, distortion: [] });
+const emptyCamera = (): TypedCamera => ({
+  by: "focal",
+  model: "brown",
+  fx: NaN,
+  fy: NaN,
+  cx: NaN,
+  cy: NaN,
+  view: NaN,
+  distortion: [],
+});
 const choice = (): CameraChoice => ({ source: "", chosen: false, typed: emptyCamera() });
 
 export class Rig {
@@ -179,7 +188,13 @@ export class Rig {
     item.state = "reading";
     this.changed();
     try {
-      const summary = await this.session.call("read", { file: id, name, blob, ...(as ? { as } : {}), ...(unit === undefined ? {} : { unit }) });
+      const summary = await this.session.call("read", {
+        file: id,
+        name,
+        blob,
+        ...(as ? { as } : {}),
+        ...(unit === undefined ? {} : { unit }),
+      });
       if (!this.items.includes(item)) return;
       Object.assign(item, { state: "read", summary });
       delete item.error;
@@ -202,7 +217,11 @@ export class Rig {
   /** A pose that says it leads from colour to depth is turned round. */
   addPose({ name, pose, from, to }: Summary["poses"][number], origin: string, file?: number): void {
     const isBackward = (from !== undefined && COLOUR.test(from)) || (to !== undefined && DEPTH.test(to));
-    const direction = isBackward ? ", given from colour to depth and inverted here" : from && to ? `, from ${from} to ${to}` : "";
+    const direction = isBackward
+      ? ", given from colour to depth and inverted here"
+      : from && to
+        ? `, from ${from} to ${to}`
+        : "";
     const candidate: Candidate = {
       id: this.freshId(),
       name: this.#freshName(name || origin.replace(/\.\w+$/, "").replace(/^.*\//, "")),
@@ -232,7 +251,9 @@ export class Rig {
   }
 
   remove(item: Item): void {
-    this.undo.keep(`removing ${item.name}`, { isMoot: () => this.items.some(({ id, name }) => name === item.name && id > item.id) });
+    this.undo.keep(`removing ${item.name}`, {
+      isMoot: () => this.items.some(({ id, name }) => name === item.name && id > item.id),
+    });
     this.items = this.items.filter((each) => each !== item);
     this.candidates = this.candidates.filter(({ file }) => file !== item.id);
     this.#unlink(item);
@@ -257,7 +278,8 @@ export class Rig {
   /** A check that runs is of what is gone then. */
   clear(): void {
     this.session.cancel();
-    if (this.items.length + this.frames.length + this.candidates.length > 0) this.undo.keep("starting over", { isWhole: true });
+    if (this.items.length + this.frames.length + this.candidates.length > 0)
+      this.undo.keep("starting over", { isWhole: true });
     this.items = [];
     this.frames = [];
     this.candidates = [];
@@ -302,7 +324,14 @@ export class Rig {
     for (const frame of frames) this.frames.push({ id: this.freshId(), ...frame });
     // Cameras of a folder's own files, beside those that its frames were given.
     if (cameras.length > 0) {
-      const summary: Summary = { kind: "cameras", says: `${cameras.length} cameras`, warnings: [], guessed: [], cameras, poses: [] };
+      const summary: Summary = {
+        kind: "cameras",
+        says: `${cameras.length} cameras`,
+        warnings: [],
+        guessed: [],
+        cameras,
+        poses: [],
+      };
       this.items.push({ id: this.freshId(), name: origin, state: "read", summary });
     }
     for (const pose of poses) this.addPose(pose, origin);
@@ -316,7 +345,11 @@ export class Rig {
     return this.items.flatMap((item) =>
       (item.summary?.cameras ?? []).map((camera, i) => {
         const size = camera.width && camera.height ? `, ${camera.width}×${camera.height}` : "";
-        return { source: `${item.id}:${i}`, label: `${item.name}${camera.name ? `: ${camera.name}` : ""}${size}`, camera };
+        return {
+          source: `${item.id}:${i}`,
+          label: `${item.name}${camera.name ? `: ${camera.name}` : ""}${size}`,
+          camera,
+        };
       }),
     );
   }
@@ -329,8 +362,12 @@ export class Rig {
       const isThere = ["", "typed", "same"].includes(mine.source) || given.some(({ source }) => source === mine.source);
       if (mine.chosen && isThere) continue;
       const [own, other] = side === "colour" ? [COLOUR, DEPTH] : [DEPTH, COLOUR];
-      const named = given.find(({ label }) => own.test(label) && !other.test(label)) ?? given.find(({ camera }) => own.test(camera.name ?? ""));
-      const left = given.filter(({ label, camera }) => !other.test(camera.name ?? "") && (own.test(label) || !other.test(label)));
+      const named =
+        given.find(({ label }) => own.test(label) && !other.test(label)) ??
+        given.find(({ camera }) => own.test(camera.name ?? ""));
+      const left = given.filter(
+        ({ label, camera }) => !other.test(camera.name ?? "") && (own.test(label) || !other.test(label)),
+      );
       const byOrder = given.length === 2 ? given[side === "colour" ? 0 : 1] : left.length === 1 ? left[0] : undefined;
       mine.source = (named ?? byOrder)?.source ?? "";
       mine.chosen = false;
@@ -360,15 +397,23 @@ export class Rig {
     if (this.complete.length === 0) missing.push("a colour image and a depth map of the same moment");
     const depths = this.complete.map(({ depth }) => this.item(depth)?.summary);
     const isShared = this.cameras.depth.source === "same";
-    if (depths.some((summary) => summary?.organised === false) && !this.cameraOf("depth")) missing.push(isShared ? "the colour camera's numbers, which the depth camera shares" : "the depth camera's numbers (or its field of view)");
-    if (this.cameras.colour.source === "typed" && !this.cameraOf("colour")) missing.push("all numbers of the colour camera, or “Unknown”");
+    if (depths.some((summary) => summary?.organised === false) && !this.cameraOf("depth"))
+      missing.push(
+        isShared
+          ? "the colour camera's numbers, which the depth camera shares"
+          : "the depth camera's numbers (or its field of view)",
+      );
+    if (this.cameras.colour.source === "typed" && !this.cameraOf("colour"))
+      missing.push("all numbers of the colour camera, or “Unknown”");
     return missing;
   }
 
   get guessed(): string[] {
     const files = new Set(this.complete.map(({ depth }) => depth));
     // Of a colour camera that is not known the check itself warns.
-    const units = this.items.filter(({ id, summary }) => files.has(id) && summary?.guessed.includes("unit")).map(({ name }) => name);
+    const units = this.items
+      .filter(({ id, summary }) => files.has(id) && summary?.guessed.includes("unit"))
+      .map(({ name }) => name);
     return units.length > 2 ? [`the unit of ${units.length} depth maps`] : units.map((name) => `the unit of ${name}`);
   }
 
@@ -379,7 +424,9 @@ export class Rig {
       if (colour === undefined || depth === undefined) return [];
       const organised = this.item(depth)?.summary?.organised;
       return {
-        name, colour, depth,
+        name,
+        colour,
+        depth,
         ...(mask === undefined ? {} : { mask }),
         ...(paint ? { paint } : {}),
         ...(range ? { range } : {}),
@@ -394,7 +441,9 @@ export class Rig {
     const { guessed, cues } = this;
     const doubts = doubtsOf(this);
     const estimateOnly = this.candidates.length === 0;
-    const candidates = estimateOnly ? { "no calibration": identity } : Object.fromEntries(this.candidates.map(({ name, pose }) => [name, pose]));
+    const candidates = estimateOnly
+      ? { "no calibration": identity }
+      : Object.fromEntries(this.candidates.map(({ name, pose }) => [name, pose]));
     await this.session.call("frames", { frames: plans });
     const report = await this.session.call("check", { candidates, cues }, onProgress);
     this.run = { report, plans, candidates, estimateOnly, guessed, doubts };
@@ -407,9 +456,13 @@ export const COLOUR = /colou?r|rgb|image|left|cam0/i;
 export const DEPTH = /depth|\bir\b|infra|tof|disp|cloud/i;
 
 /** Without the field at fault, which every message of a file begins with. */
-export const messageOf = (error: unknown): string => (error instanceof Error ? error.message : String(error)).replace(/^file: /, "");
+export const messageOf = (error: unknown): string =>
+  (error instanceof Error ? error.message : String(error)).replace(/^file: /, "");
 
-function fromTyped({ by, model, fx, fy, cx, cy, view, distortion }: TypedCamera, size: { width: number; height: number } | undefined): RigCamera | undefined {
+function fromTyped(
+  { by, model, fx, fy, cx, cy, view, distortion }: TypedCamera,
+  size: { width: number; height: number } | undefined,
+): RigCamera | undefined {
   const lens = distortion.length > 0 ? { model, distortion } : {};
   if (by === "focal") return [fx, fy, cx, cy].every(Number.isFinite) ? { fx, fy, cx, cy, ...lens } : undefined;
   if (!size || !(view > 0 && view < 180)) return undefined;

@@ -39,7 +39,11 @@ export class Session {
   /** What a new worker is told first: everything that the old one had read. */
   #known = new Map<string, { kind: CallKind; ask: object }>();
 
-  call<K extends CallKind>(kind: K, ask: Calls[K]["ask"], onProgress?: (share: number, message: string) => void): Promise<Calls[K]["answer"]> {
+  call<K extends CallKind>(
+    kind: K,
+    ask: Calls[K]["ask"],
+    onProgress?: (share: number, message: string) => void,
+  ): Promise<Calls[K]["answer"]> {
     this.#remember(kind, ask);
     const worker = this.#thread();
     const id = this.#next++;
@@ -119,7 +123,8 @@ export class Session {
     const left = [...this.#waiting.values()];
     this.#waiting.clear();
     // What was being read may be what ended it: no other worker is told to.
-    for (const { kind, ask } of left) if (kind === "read" || kind === "folder" || kind === "example") this.#known.delete(keyOf(kind, ask));
+    for (const { kind, ask } of left)
+      if (kind === "read" || kind === "folder" || kind === "example") this.#known.delete(keyOf(kind, ask));
     for (const { reject } of left) reject(new RigError({ code: "internal", message, fatal: true }));
   }
 }

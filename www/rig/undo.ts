@@ -49,9 +49,24 @@ export class Undo {
   }
 
   /** To be called before the change. */
-  keep(words: string, { where = "files", isWhole = false, isMoot = () => false }: Partial<Pick<Step, "where" | "isWhole" | "isMoot">> = {}): void {
+  keep(
+    words: string,
+    {
+      where = "files",
+      isWhole = false,
+      isMoot = () => false,
+    }: Partial<Pick<Step, "where" | "isWhole" | "isMoot">> = {},
+  ): void {
     const { items, frames, candidates, notes, history, cameras, run } = this.#rig;
-    const things = [...items, ...frames, ...candidates, cameras.colour, cameras.depth, cameras.colour.typed, cameras.depth.typed];
+    const things = [
+      ...items,
+      ...frames,
+      ...candidates,
+      cameras.colour,
+      cameras.depth,
+      cameras.colour.typed,
+      cameras.depth.typed,
+    ];
     this.#steps.push({
       words,
       where,
@@ -74,7 +89,8 @@ export class Undo {
       Object.assign(thing, copy);
     }
     const { items, frames, candidates } = this.#rig;
-    const later = <T extends { id: number }>(list: T[]): T[] => (step.isWhole ? [] : list.filter(({ id }) => id > step.last));
+    const later = <T extends { id: number }>(list: T[]): T[] =>
+      step.isWhole ? [] : list.filter(({ id }) => id > step.last);
     Object.assign(this.#rig, {
       items: [...step.lists.items, ...later(items)],
       frames: [...step.lists.frames, ...later(frames)],
@@ -88,8 +104,11 @@ export class Undo {
 
   /** Files are forgotten once no step leads back to them. */
   #forget(): void {
-    const needed = new Set([...this.#rig.items, ...this.#steps.flatMap(({ lists }) => lists.items)].map(({ id }) => id));
-    for (const id of this.#known) if (!needed.has(id)) void this.#rig.session.call("forget", { file: id }).catch(() => {});
+    const needed = new Set(
+      [...this.#rig.items, ...this.#steps.flatMap(({ lists }) => lists.items)].map(({ id }) => id),
+    );
+    for (const id of this.#known)
+      if (!needed.has(id)) void this.#rig.session.call("forget", { file: id }).catch(() => {});
     this.#known = needed;
   }
 }

@@ -16,7 +16,15 @@ const SHAPES: Record<Tone, readonly string[]> = {
 
 /** Told apart by shape, not by colour alone. */
 export function icon(tone: Tone): SVGElement {
-  return svg("svg", { viewBox: "0 0 24 24", class: `rig-icon ${tone}`, "aria-hidden": "true" }, svg(tone === "good" ? "circle" : "rect", tone === "good" ? { cx: 12, cy: 12, r: 10 } : { x: 2, y: 2, width: 20, height: 20, rx: tone === "open" ? 10 : 4 }), ...SHAPES[tone].map((d) => svg("path", { d })));
+  return svg(
+    "svg",
+    { viewBox: "0 0 24 24", class: `rig-icon ${tone}`, "aria-hidden": "true" },
+    svg(
+      tone === "good" ? "circle" : "rect",
+      tone === "good" ? { cx: 12, cy: 12, r: 10 } : { x: 2, y: 2, width: 20, height: 20, rx: tone === "open" ? 10 : 4 },
+    ),
+    ...SHAPES[tone].map((d) => svg("path", { d })),
+  );
 }
 
 const ENDS = {
@@ -41,12 +49,18 @@ const interval = ([low, high]: [number, number]): string => `${decimals(low, 2)}
 /** Whatever was guessed keeps a verdict from being better than the files are. */
 function headline({ report, estimateOnly, guessed, doubts }: Run): { word: Word; tone: Tone; sentence: string } {
   const { pixels, interval: range } = report.health;
-  if (estimateOnly) return { word: "Estimated", tone: "open", sentence: `A calibration was found; expected reprojection error ${px(pixels)} (95 %: ${interval(range)}) at the scene's depth.` };
+  if (estimateOnly)
+    return {
+      word: "Estimated",
+      tone: "open",
+      sentence: `A calibration was found; expected reprojection error ${px(pixels)} (95 %: ${interval(range)}) at the scene's depth.`,
+    };
   const { word, tone } = WORDS[report.verdict];
   const [own] = Object.values(report.candidates);
   const isOpen = guessed.length + doubts.length + report.warnings.length > 0;
   // The check itself calls a consistent candidate undecided where it warns.
-  if (isOpen && own?.verdict === "consistent") return { word: "Settled, but check", tone: "open", sentence: afterWord(own.reason) };
+  if (isOpen && own?.verdict === "consistent")
+    return { word: "Settled, but check", tone: "open", sentence: afterWord(own.reason) };
   if (isOpen && report.verdict === "off") return { word: "Off, but check", tone, sentence: report.reason };
   return { word, tone, sentence: afterWord(report.reason) };
 }
@@ -66,7 +80,11 @@ const FOR_SHIFT = [
   "show level edges with free space behind them, such as the top of a box",
   "put things at different distances, one of them near, in front of the wall",
 ];
-const FOR_TURN = ["show more of the picture's top and bottom", "show more of the picture's left and right", "show outlines far from the picture's middle"];
+const FOR_TURN = [
+  "show more of the picture's top and bottom",
+  "show more of the picture's left and right",
+  "show outlines far from the picture's middle",
+];
 /** A share below this adds little, of the frames' mean share. */
 const LITTLE = 0.3;
 
@@ -75,21 +93,35 @@ export function advise({ report, plans, estimateOnly, guessed, doubts, candidate
   const list: string[] = [];
   const said = [report.reason, ...doubts, ...report.warnings].join(" ");
   const name = Object.keys(candidates)[0] ?? "";
-  if (/invert/i.test(said)) list.push("Invert the calibration in step 2 and check again: it seems to lead the other way.");
-  if (/\b8 bits/.test(said)) list.push("Record the depth map itself, with 16 bits: a picture of the depth tells no calibration.");
+  if (/invert/i.test(said))
+    list.push("Invert the calibration in step 2 and check again: it seems to lead the other way.");
+  if (/\b8 bits/.test(said))
+    list.push("Record the depth map itself, with 16 bits: a picture of the depth tells no calibration.");
   if (/swapped/i.test(said)) list.push("Look at step 1 again: colour image and depth map seem to be swapped.");
-  if (doubts.some((words) => /another size|these are for|for one size/.test(words))) list.push("Use the cameras' numbers for the size that the files have.");
+  if (doubts.some((words) => /another size|these are for|for one size/.test(words)))
+    list.push("Use the cameras' numbers for the size that the files have.");
   const isOpen = report.verdict === "undecided" && Object.values(report.candidates)[0]?.verdict === "undecided";
   const confirm = guessed.length > 0 ? [`Say in step 1 what was guessed: ${guessed.join("; ")}.`] : [];
   if (!isOpen) list.push(...confirm);
-  if (!estimateOnly && report.verdict === "off") list.push("Save the calibration found here, use it in place of yours, and check it against fresh frames.");
+  if (!estimateOnly && report.verdict === "off")
+    list.push("Save the calibration found here, use it in place of yours, and check it against fresh frames.");
   if (estimateOnly) list.push("Save what was found, or add your own calibration in step 2 to have it judged.");
-  if (plans.length < 3) list.push(plans.length === 1 ? "Add two more frames, with the thing turned by about 30° each time." : "Add another frame, with the thing turned by about 30°.");
+  if (plans.length < 3)
+    list.push(
+      plans.length === 1
+        ? "Add two more frames, with the thing turned by about 30° each time."
+        : "Add another frame, with the thing turned by about 30°.",
+    );
   list.push(weakest(report), ...(isOpen ? confirm : []));
   const mean = 1 / Math.max(1, report.frames.length);
-  for (const { name, share, note } of report.frames) if (report.frames.length > 1 && share < LITTLE * mean) list.push(`Take ${name} anew: it adds little (${(100 * share).toFixed(0)} %)${note ? `, ${note}` : ""}.`);
-  if (!estimateOnly && report.verdict === "consistent") list.push(`Keep “${name}”, and check again after the rig was moved, knocked or heated.`);
-  return report.verdict === "consistent" && !estimateOnly && guessed.length + doubts.length === 0 ? [...list.slice(-1), ...list.slice(0, -1)] : list;
+  for (const { name, share, note } of report.frames)
+    if (report.frames.length > 1 && share < LITTLE * mean)
+      list.push(`Take ${name} anew: it adds little (${(100 * share).toFixed(0)} %)${note ? `, ${note}` : ""}.`);
+  if (!estimateOnly && report.verdict === "consistent")
+    list.push(`Keep “${name}”, and check again after the rig was moved, knocked or heated.`);
+  return report.verdict === "consistent" && !estimateOnly && guessed.length + doubts.length === 0
+    ? [...list.slice(-1), ...list.slice(0, -1)]
+    : list;
 }
 
 /** The least certain turn and shift, one sigma, and what would tell them. */
@@ -113,7 +145,15 @@ export function card(run: Run): HTMLElement {
     "div",
     { class: `rig-verdict ${tone}`, "data-verdict": run.estimateOnly ? "estimate" : run.report.verdict },
     icon(tone) as unknown as HTMLElement,
-    make("div", {}, make("h3", { class: "rig-word", tabindex: "-1" }, word), make("p", {}, sentence), figures(run), make("p", { class: "rig-next" }, make("strong", {}, "Next: "), next), ...(all.length > 0 ? [make("ul", { class: "rig-notes" }, ...all.map((words) => make("li", {}, words)))] : [])),
+    make(
+      "div",
+      {},
+      make("h3", { class: "rig-word", tabindex: "-1" }, word),
+      make("p", {}, sentence),
+      figures(run),
+      make("p", { class: "rig-next" }, make("strong", {}, "Next: "), next),
+      ...(all.length > 0 ? [make("ul", { class: "rig-notes" }, ...all.map((words) => make("li", {}, words)))] : []),
+    ),
   );
 }
 
@@ -127,7 +167,10 @@ function figures({ report, estimateOnly }: Run): HTMLElement {
   return make(
     "dl",
     { class: "rig-figures-row" },
-    figure(`${decimals(first.offDegrees, 2)}° and ${decimals(first.offMillimetres, 1)} mm`, "from the best fit, the shift at the scene's middle"),
+    figure(
+      `${decimals(first.offDegrees, 2)}° and ${decimals(first.offMillimetres, 1)} mm`,
+      "from the best fit, the shift at the scene's middle",
+    ),
     figure(px(first.pixels), `expected error of yours (95 %: ${interval(first.interval)})`),
     found,
   );
@@ -136,52 +179,159 @@ function figures({ report, estimateOnly }: Run): HTMLElement {
 /** All intervals on one scale, so that they can be compared at a glance. */
 function whisker(value: number, [low, high]: [number, number], most: number): HTMLElement {
   const at = (x: number) => `${(100 * Math.min(1, x / most)).toFixed(1)}%`;
-  return make("span", { class: "rig-whisker", "aria-hidden": "true" }, make("span", { class: "rig-range", style: `inset-inline: ${at(low)} calc(100% - ${at(high)})` }), make("span", { class: "rig-dot", style: `inset-inline-start: ${at(value)}` }));
+  return make(
+    "span",
+    { class: "rig-whisker", "aria-hidden": "true" },
+    make("span", { class: "rig-range", style: `inset-inline: ${at(low)} calc(100% - ${at(high)})` }),
+    make("span", { class: "rig-dot", style: `inset-inline-start: ${at(value)}` }),
+  );
 }
 
 export function candidatesTable({ report, estimateOnly }: Run): HTMLElement {
   const { health } = report;
   const list = Object.entries(report.candidates);
   const most = 1.05 * Math.max(health.interval[1], ...list.map(([, { interval }]) => interval[1]), 1e-6);
-  const row = (name: string, words: (Node | string)[], off: string, shift: string, pixels: number, range: [number, number], reason: string) => [
-    make("tr", {}, make("th", { scope: "row" }, name), make("td", {}, ...words), make("td", { "data-label": "turned by" }, off), make("td", { "data-label": "shifted by" }, shift), make("td", { class: "rig-pixels" }, px(pixels), make("span", { class: "soft" }, interval(range)), whisker(pixels, range, most))),
+  const row = (
+    name: string,
+    words: (Node | string)[],
+    off: string,
+    shift: string,
+    pixels: number,
+    range: [number, number],
+    reason: string,
+  ) => [
+    make(
+      "tr",
+      {},
+      make("th", { scope: "row" }, name),
+      make("td", {}, ...words),
+      make("td", { "data-label": "turned by" }, off),
+      make("td", { "data-label": "shifted by" }, shift),
+      make(
+        "td",
+        { class: "rig-pixels" },
+        px(pixels),
+        make("span", { class: "soft" }, interval(range)),
+        whisker(pixels, range, most),
+      ),
+    ),
     ...(reason ? [make("tr", { class: "rig-reason" }, make("td", { colspan: 5 }, reason))] : []),
   ];
-  const candidate = ([name, { verdict, reason, offDegrees, offMillimetres, pixels, interval: range, probability }]: [string, CandidateReport]) => {
+  const candidate = ([name, { verdict, reason, offDegrees, offMillimetres, pixels, interval: range, probability }]: [
+    string,
+    CandidateReport,
+  ]) => {
     const { word, tone } = WORDS[verdict];
     const chance = `Were it right, one this far from the estimate would come up in ${probability < 0.001 ? "less than 0.1" : decimals(100 * probability, 1)} % of checks.`;
-    return row(name, [icon(tone) as unknown as HTMLElement, word], `${decimals(offDegrees, 2)}°`, `${decimals(offMillimetres, 1)} mm`, pixels, range, `${reason} ${chance}`);
+    return row(
+      name,
+      [icon(tone) as unknown as HTMLElement, word],
+      `${decimals(offDegrees, 2)}°`,
+      `${decimals(offMillimetres, 1)} mm`,
+      pixels,
+      range,
+      `${reason} ${chance}`,
+    );
   };
-  const head = ["Calibration", "Verdict", "Turned by", "Shifted by", "Reprojection error, 95 %"].map((words) => make("th", { scope: "col" }, words));
+  const head = ["Calibration", "Verdict", "Turned by", "Shifted by", "Reprojection error, 95 %"].map((words) =>
+    make("th", { scope: "col" }, words),
+  );
   return make(
     "section",
     { class: "rig-card" },
     make("h3", {}, "Calibrations"),
-    make("p", { class: "soft" }, "Turn and shift are measured from the calibration found, at the scene's middle; the error is what to expect at the scene's depth, in pixels of the colour image."),
-    make("div", { class: "rig-scroll rig-calibrations-card" }, make("table", { class: "rig-table rig-calibrations" }, make("thead", {}, make("tr", {}, ...head)), make("tbody", {}, ...row("found", ["the best fit"], "–", "–", health.pixels, health.interval, ""), ...(estimateOnly ? [] : list.flatMap(candidate))))),
+    make(
+      "p",
+      { class: "soft" },
+      "Turn and shift are measured from the calibration found, at the scene's middle; the error is what to expect at the scene's depth, in pixels of the colour image.",
+    ),
+    make(
+      "div",
+      { class: "rig-scroll rig-calibrations-card" },
+      make(
+        "table",
+        { class: "rig-table rig-calibrations" },
+        make("thead", {}, make("tr", {}, ...head)),
+        make(
+          "tbody",
+          {},
+          ...row("found", ["the best fit"], "–", "–", health.pixels, health.interval, ""),
+          ...(estimateOnly ? [] : list.flatMap(candidate)),
+        ),
+      ),
+    ),
   );
 }
 
-const bar = (share: number): HTMLElement => make("span", { class: "rig-bar", "aria-hidden": "true" }, make("span", { style: `width: ${(100 * Math.max(0, Math.min(1, share))).toFixed(1)}%` }));
+const bar = (share: number): HTMLElement =>
+  make(
+    "span",
+    { class: "rig-bar", "aria-hidden": "true" },
+    make("span", { style: `width: ${(100 * Math.max(0, Math.min(1, share))).toFixed(1)}%` }),
+  );
 const percent = (share: number): string => `${(100 * share).toFixed(0)} %`;
 
-export function sharesCard({ report }: Run, history: readonly { frames: number; pixels: number; interval: [number, number] }[]): HTMLElement {
-  const frame = ({ name, share, note }: CheckReport["frames"][number]) => make("tr", {}, make("th", { scope: "row" }, name), make("td", {}, bar(share)), make("td", {}, percent(share)), make("td", { class: "rig-note" }, note ?? ""));
-  const cue = ([name, { share, sharpness }]: [string, { share: number; sharpness: number }]) => make("tr", {}, make("th", { scope: "row" }, CUES[name] ?? name), make("td", {}, bar(share)), make("td", {}, percent(share)), make("td", {}, sharpness > 0 ? `± ${decimals(1 / sharpness, 2)} px` : "tells nothing"));
-  const table = (caption: string, last: string, rows: HTMLElement[]) => make("table", { class: "rig-table rig-shares" }, make("caption", {}, caption), make("thead", { class: "visually-hidden" }, make("tr", {}, ...["Name", "As a bar", "Share", last].map((words) => make("th", { scope: "col" }, words)))), make("tbody", {}, ...rows));
-  const runs = history.map(({ frames, pixels, interval: range }) => make("li", {}, `${frames} ${frames === 1 ? "frame" : "frames"}: ${px(pixels)} (${interval(range)})`));
+export function sharesCard(
+  { report }: Run,
+  history: readonly { frames: number; pixels: number; interval: [number, number] }[],
+): HTMLElement {
+  const frame = ({ name, share, note }: CheckReport["frames"][number]) =>
+    make(
+      "tr",
+      {},
+      make("th", { scope: "row" }, name),
+      make("td", {}, bar(share)),
+      make("td", {}, percent(share)),
+      make("td", { class: "rig-note" }, note ?? ""),
+    );
+  const cue = ([name, { share, sharpness }]: [string, { share: number; sharpness: number }]) =>
+    make(
+      "tr",
+      {},
+      make("th", { scope: "row" }, CUES[name] ?? name),
+      make("td", {}, bar(share)),
+      make("td", {}, percent(share)),
+      make("td", {}, sharpness > 0 ? `± ${decimals(1 / sharpness, 2)} px` : "tells nothing"),
+    );
+  const table = (caption: string, last: string, rows: HTMLElement[]) =>
+    make(
+      "table",
+      { class: "rig-table rig-shares" },
+      make("caption", {}, caption),
+      make(
+        "thead",
+        { class: "visually-hidden" },
+        make("tr", {}, ...["Name", "As a bar", "Share", last].map((words) => make("th", { scope: "col" }, words))),
+      ),
+      make("tbody", {}, ...rows),
+    );
+  const runs = history.map(({ frames, pixels, interval: range }) =>
+    make("li", {}, `${frames} ${frames === 1 ? "frame" : "frames"}: ${px(pixels)} (${interval(range)})`),
+  );
   return make(
     "section",
     { class: "rig-card" },
     make("h3", {}, "What told it"),
     table("Each frame's share of the answer", "Note", report.frames.map(frame)),
     table("Each cue's share, and its sigma", "Sigma", Object.entries(report.cues).map(cue)),
-    ...(runs.length > 1 ? [make("h4", {}, "Checks so far, with the expected error"), make("ol", { class: "rig-history" }, ...runs)] : []),
+    ...(runs.length > 1
+      ? [make("h4", {}, "Checks so far, with the expected error"), make("ol", { class: "rig-history" }, ...runs)]
+      : []),
   );
 }
 
-export const CUES: Record<string, string> = { shading: "shading", edges: "depth edges on image edges", information: "shared information", silhouette: "silhouettes" };
+export const CUES: Record<string, string> = {
+  shading: "shading",
+  edges: "depth edges on image edges",
+  information: "shared information",
+  silhouette: "silhouettes",
+};
 
 export function nextCard(run: Run): HTMLElement {
-  return make("section", { class: "rig-card" }, make("h3", {}, "What to do next"), make("ol", { class: "rig-advice-list" }, ...advise(run).map((words) => make("li", {}, words))));
+  return make(
+    "section",
+    { class: "rig-card" },
+    make("h3", {}, "What to do next"),
+    make("ol", { class: "rig-advice-list" }, ...advise(run).map((words) => make("li", {}, words))),
+  );
 }

@@ -29,7 +29,11 @@ export class VerdictStep {
   readonly #progress = make("progress", { max: 1, value: 0, "aria-label": "Progress of the check" });
   readonly #status = make("p", { class: "rig-status", role: "status" });
   readonly #alert = make("p", { class: "rig-error", role: "alert", hidden: true });
-  readonly #stale = make("p", { class: "rig-stale", hidden: true }, "Files, cameras or calibrations have changed since this verdict: run the check again.");
+  readonly #stale = make(
+    "p",
+    { class: "rig-stale", hidden: true },
+    "Files, cameras or calibrations have changed since this verdict: run the check again.",
+  );
   readonly #card = make("div", { class: "rig-card rig-verdict-box", hidden: true });
   readonly #results = make("div", { class: "rig-results", hidden: true });
   /** In the order of reading; on wide screens the pictures stand beside both. */
@@ -48,10 +52,28 @@ export class VerdictStep {
     this.#overlay = new Overlay(rig);
     this.#run = press("Run the check", () => void this.start(), { class: "primary" });
     this.#cancel = press("Cancel", () => rig.session.cancel());
-    this.#curvesBox.append(make("h3", {}, "How sharply this scene tells each axis"), make("p", { class: "soft" }, "Log likelihood lost when the calibration found is moved: a narrow valley is a sure answer, a flat one says that this scene can't tell. The dot is the least of all cues together, the band what the answer is certain to (95 %)."));
-    this.#results.append(this.#first, make("div", { class: "rig-column rig-pictures" }, this.#overlay.element, this.#curvesBox), this.#last);
+    this.#curvesBox.append(
+      make("h3", {}, "How sharply this scene tells each axis"),
+      make(
+        "p",
+        { class: "soft" },
+        "Log likelihood lost when the calibration found is moved: a narrow valley is a sure answer, a flat one says that this scene can't tell. The dot is the least of all cues together, the band what the answer is certain to (95 %).",
+      ),
+    );
+    this.#results.append(
+      this.#first,
+      make("div", { class: "rig-column rig-pictures" }, this.#overlay.element, this.#curvesBox),
+      this.#last,
+    );
     this.element.append(
-      make("section", { class: "rig-card rig-run" }, make("div", { class: "rig-row" }, press("Back", goBack), this.#run, this.#cancel, this.#status, this.#progress), this.#cueChoice(), this.#alert, this.#stale),
+      make(
+        "section",
+        { class: "rig-card rig-run" },
+        make("div", { class: "rig-row" }, press("Back", goBack), this.#run, this.#cancel, this.#status, this.#progress),
+        this.#cueChoice(),
+        this.#alert,
+        this.#stale,
+      ),
       this.#card,
       this.#results,
     );
@@ -134,14 +156,21 @@ export class VerdictStep {
     const boxes = Object.entries(CUES).map(([cue, words]) => {
       const box = make("input", { type: "checkbox", checked: true, value: cue });
       box.addEventListener("change", () => {
-        const on = [...this.element.querySelectorAll<HTMLInputElement>(".rig-cues input:checked")].map(({ value }) => value as CheckCue);
+        const on = [...this.element.querySelectorAll<HTMLInputElement>(".rig-cues input:checked")].map(
+          ({ value }) => value as CheckCue,
+        );
         // Of no cue at all nothing can be said.
         if (on.length === 0) box.checked = true;
         else this.#rig.cues = on.length === Object.keys(CUES).length ? [] : on;
       });
       return make("label", {}, box, words);
     });
-    return make("details", { class: "rig-cues" }, make("summary", {}, "Cues to use"), make("div", { class: "rig-row" }, ...boxes));
+    return make(
+      "details",
+      { class: "rig-cues" },
+      make("summary", {}, "Cues to use"),
+      make("div", { class: "rig-row" }, ...boxes),
+    );
   }
 
   #out(run: Run): HTMLElement {
@@ -151,42 +180,78 @@ export class VerdictStep {
       note.textContent = remark.textContent = "";
       await action().catch((error: unknown) => (note.textContent = `It could not be written: ${messageOf(error)}`));
     };
-    const poses = [{ value: "", label: "found" }, ...Object.keys(run.candidates).map((name) => ({ value: name, label: name }))];
+    const poses = [
+      { value: "", label: "found" },
+      ...Object.keys(run.candidates).map((name) => ({ value: name, label: name })),
+    ];
     // Who was right keeps what is there.
     const isKept = !run.estimateOnly && Object.values(run.report.candidates)[0]?.verdict === "consistent";
     const wish = this.#wish;
     const wished = poses.find(({ value }) => value === wish.pose)?.value;
-    const which = choose(poses, wished ?? (isKept ? (Object.keys(run.candidates)[0] ?? "") : ""), (pose) => (wish.pose = pose));
+    const which = choose(
+      poses,
+      wished ?? (isKept ? (Object.keys(run.candidates)[0] ?? "") : ""),
+      (pose) => (wish.pose = pose),
+    );
     const format = choose(formats, wish.format, (format) => (wish.format = format as PoseFormat));
     const seen = run.plans.findIndex(({ name }) => name === wish.frame);
-    const frame = choose(run.plans.map(({ name }, i) => ({ value: String(i), label: name })), String(Math.max(0, seen)), (index) => (wish.frame = run.plans[Number(index)]?.name ?? ""));
+    const frame = choose(
+      run.plans.map(({ name }, i) => ({ value: String(i), label: name })),
+      String(Math.max(0, seen)),
+      (index) => (wish.frame = run.plans[Number(index)]?.name ?? ""),
+    );
     const pose = () => run.candidates[which.value] ?? run.report.estimate;
     const { session } = this.#rig;
-    const save = press("Save calibration", attempt(async () => {
-      const { name, text, notes } = await session.call("pose", { pose: pose(), format: format.value as PoseFormat });
-      saveFile(name, text, "text/plain");
-      remark.textContent = notes.length > 0 ? `Mind: ${notes.join("; ")}.` : `Saved as ${name}.`;
-    }), { class: "primary" });
-    const clouds = press("Save clouds (PLY)", attempt(async () => {
-      const index = Number(frame.value);
-      const both = Object.entries(run.candidates).slice(0, run.estimateOnly ? 0 : 1).map(([name, pose]) => ({ name, pose }));
-      const poses = [{ name: "found", pose: run.report.estimate }, ...both];
-      saveFile(`${run.plans[index]?.name ?? "frame"}.ply`.replaceAll(/[^\w.-]+/g, "-"), (await session.call("clouds", { frame: index, poses })) as BlobPart, "application/octet-stream");
-    }));
-    const html = press("Save report (HTML)", attempt(async () => {
-      const pictures = await this.#overlay.pictures();
-      const inputs = await Promise.all(this.#rig.items.map(async ({ name, summary, blob }) => {
-        const hash = blob && (await sha256(blob));
-        return { name, says: summary?.says ?? "not read", ...(hash ? { sha256: hash } : {}) };
-      }));
-      saveFile("rig-check.html", await session.call("report", { report: whole(run), pictures, inputs }), "text/html");
-    }));
+    const save = press(
+      "Save calibration",
+      attempt(async () => {
+        const { name, text, notes } = await session.call("pose", { pose: pose(), format: format.value as PoseFormat });
+        saveFile(name, text, "text/plain");
+        remark.textContent = notes.length > 0 ? `Mind: ${notes.join("; ")}.` : `Saved as ${name}.`;
+      }),
+      { class: "primary" },
+    );
+    const clouds = press(
+      "Save clouds (PLY)",
+      attempt(async () => {
+        const index = Number(frame.value);
+        const both = Object.entries(run.candidates)
+          .slice(0, run.estimateOnly ? 0 : 1)
+          .map(([name, pose]) => ({ name, pose }));
+        const poses = [{ name: "found", pose: run.report.estimate }, ...both];
+        saveFile(
+          `${run.plans[index]?.name ?? "frame"}.ply`.replaceAll(/[^\w.-]+/g, "-"),
+          (await session.call("clouds", { frame: index, poses })) as BlobPart,
+          "application/octet-stream",
+        );
+      }),
+    );
+    const html = press(
+      "Save report (HTML)",
+      attempt(async () => {
+        const pictures = await this.#overlay.pictures();
+        const inputs = await Promise.all(
+          this.#rig.items.map(async ({ name, summary, blob }) => {
+            const hash = blob && (await sha256(blob));
+            return { name, says: summary?.says ?? "not read", ...(hash ? { sha256: hash } : {}) };
+          }),
+        );
+        saveFile("rig-check.html", await session.call("report", { report: whole(run), pictures, inputs }), "text/html");
+      }),
+    );
     return make(
       "section",
       { class: "rig-card" },
       make("h3", {}, "Files out"),
       make("div", { class: "rig-row rig-bottom" }, labelled("Calibration", which), labelled("Format", format), save),
-      make("div", { class: "rig-row rig-bottom" }, labelled("Frame", frame), clouds, html, press("Save numbers (JSON)", () => this.download())),
+      make(
+        "div",
+        { class: "rig-row rig-bottom" },
+        labelled("Frame", frame),
+        clouds,
+        html,
+        press("Save numbers (JSON)", () => this.download()),
+      ),
       note,
       remark,
     );
@@ -199,7 +264,10 @@ export class VerdictStep {
 }
 
 /** The report with what the page knows to be guessed. */
-const whole = ({ report, guessed, doubts }: Run): CheckReport => ({ ...report, warnings: [...guessed.map((what) => `Guessed: ${what}.`), ...doubts, ...report.warnings] });
+const whole = ({ report, guessed, doubts }: Run): CheckReport => ({
+  ...report,
+  warnings: [...guessed.map((what) => `Guessed: ${what}.`), ...doubts, ...report.warnings],
+});
 
 /** Whether the verdict is of what there is now. */
 function isSame(run: Run, rig: Rig): boolean {

@@ -25,7 +25,12 @@ function summaryOf(reading: RigReading): Summary {
   const plain = { says, warnings, kind, guessed: [], cameras: [], poses: [] };
   switch (reading.kind) {
     case "colour":
-      return { ...plain, width: reading.image.width, height: reading.image.height, cameras: reading.image.camera ? [{ camera: reading.image.camera }] : [] };
+      return {
+        ...plain,
+        width: reading.image.width,
+        height: reading.image.height,
+        cameras: reading.image.camera ? [{ camera: reading.image.camera }] : [],
+      };
     case "depth": {
       const { width, height, unit, points, camera } = reading.depth;
       const rest = { width, height, organised: points !== undefined, cameras: camera ? [{ camera }] : [] };
@@ -53,7 +58,12 @@ function readingOf<K extends RigReading["kind"]>(file: number, kind: K): Extract
 }
 
 /** Keeps pairs that came together as files of their own; their cameras, which all have, are told once. */
-function assemble(origin: string, first: number, pairs: CheckFrame[], { cameras, poses, warnings }: Pick<Assembly, "cameras" | "poses" | "warnings">): Assembly {
+function assemble(
+  origin: string,
+  first: number,
+  pairs: CheckFrame[],
+  { cameras, poses, warnings }: Pick<Assembly, "cameras" | "poses" | "warnings">,
+): Assembly {
   const items: Assembly["items"] = [];
   const guessed: "unit"[] = warnings.some((words) => /unit .*guessed/i.test(words)) ? ["unit"] : [];
   const keep = (reading: RigReading): number => {
@@ -68,9 +78,26 @@ function assemble(origin: string, first: number, pairs: CheckFrame[], { cameras,
     return {
       name,
       colour: keep({ kind: "colour", name: `${name}, colour`, says: `${width}x${height}`, warnings: [], image }),
-      depth: keep({ kind: "depth", name: `${name}, depth`, says: `${depth.width}x${depth.height}`, warnings: [], guessed, depth }),
+      depth: keep({
+        kind: "depth",
+        name: `${name}, depth`,
+        says: `${depth.width}x${depth.height}`,
+        warnings: [],
+        guessed,
+        depth,
+      }),
       // A file of its own, so that it is seen and can be left out: the background tells much.
-      ...(mask ? { mask: keep({ kind: "mask", name: `${name}, mask`, says: `${width}x${height}`, warnings: [], mask: { width, height, data: mask } }) } : {}),
+      ...(mask
+        ? {
+            mask: keep({
+              kind: "mask",
+              name: `${name}, mask`,
+              says: `${width}x${height}`,
+              warnings: [],
+              mask: { width, height, data: mask },
+            }),
+          }
+        : {}),
     };
   });
   return { origin, items, frames, cameras, poses, warnings };
@@ -79,9 +106,16 @@ function assemble(origin: string, first: number, pairs: CheckFrame[], { cameras,
 const bytesOf = async (blob: Blob): Promise<Uint8Array> => new Uint8Array(await blob.arrayBuffer());
 
 function frameOf({ name, colour, depth, mask, paint, range, colourCamera, depthCamera }: FramePlan): CheckFrame {
-  const image = restrictImage(readingOf(colour, "colour").image, [mask === undefined ? undefined : readingOf(mask, "mask").mask.data, paint]);
+  const image = restrictImage(readingOf(colour, "colour").image, [
+    mask === undefined ? undefined : readingOf(mask, "mask").mask.data,
+    paint,
+  ]);
   const map = restrictDepth(readingOf(depth, "depth").depth, range);
-  return { name, image: { ...image, ...(colourCamera ? { camera: colourCamera } : {}) }, depth: { ...map, ...(depthCamera ? { camera: depthCamera } : {}) } };
+  return {
+    name,
+    image: { ...image, ...(colourCamera ? { camera: colourCamera } : {}) },
+    depth: { ...map, ...(depthCamera ? { camera: depthCamera } : {}) },
+  };
 }
 
 const frameAt = (index: number): CheckFrame => {
@@ -94,7 +128,10 @@ type Handlers = { [K in CallKind]: (ask: Calls[K]["ask"], id: number) => Promise
 
 const handlers: Handlers = {
   async read({ file, name, blob, as, unit }) {
-    const reading = await readRigFile({ name, bytes: await bytesOf(blob) }, { ...(as ? { as } : {}), ...(unit === undefined ? {} : { unit }) });
+    const reading = await readRigFile(
+      { name, bytes: await bytesOf(blob) },
+      { ...(as ? { as } : {}), ...(unit === undefined ? {} : { unit }) },
+    );
     readings.set(file, reading);
     return summaryOf(reading);
   },
@@ -134,7 +171,12 @@ const handlers: Handlers = {
     try {
       const workers = Math.max(1, Math.min(navigator.hardwareConcurrency || 1, MOST_WORKERS));
       const onProgress = (share: number, message: string) => post({ id, share, message });
-      return await checkCalibration(frames, candidates, { signal, onProgress, workers, ...(cues.length > 0 ? { cues } : {}) });
+      return await checkCalibration(frames, candidates, {
+        signal,
+        onProgress,
+        workers,
+        ...(cues.length > 0 ? { cues } : {}),
+      });
     } finally {
       running = undefined;
     }
@@ -147,9 +189,15 @@ const handlers: Handlers = {
     const { writePose } = await import("./write");
     const [frame] = frames;
     const { image, depth } = frame ?? {};
-    const cameras = { ...(image?.camera ? { colour: image.camera } : {}), ...(depth?.camera ? { depth: depth.camera } : {}) };
+    const cameras = {
+      ...(image?.camera ? { colour: image.camera } : {}),
+      ...(depth?.camera ? { depth: depth.camera } : {}),
+    };
     const size = (of: { width: number; height: number }): [number, number] => [of.width, of.height];
-    return writePose(pose, format, { ...cameras, ...(image && depth ? { sizes: { colour: size(image), depth: size(depth) } } : {}) });
+    return writePose(pose, format, {
+      ...cameras,
+      ...(image && depth ? { sizes: { colour: size(image), depth: size(depth) } } : {}),
+    });
   },
   async clouds({ frame, poses }) {
     const [{ writeClouds }, { cloudOf }] = await Promise.all([import("./write"), import("./cloud")]);

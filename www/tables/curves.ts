@@ -17,7 +17,11 @@ const tokens = ["series-3", "series-1", "series-2", "series-4"];
 const token = (index: number): string => tokens[index % tokens.length] ?? "ink";
 
 /** One curve for each row of the grid, and the paper's beside them. */
-function across({ across, down, value, paper, quantity, unit, cells }: Panel, done: Done, shown: readonly Cell[]): Data[] {
+function across(
+  { across, down, value, paper, quantity, unit, cells }: Panel,
+  done: Done,
+  shown: readonly Cell[],
+): Data[] {
   const xs = [...new Set(shown.map((cell) => Number(across.of(cell))))].sort((a, b) => a - b);
   const at = (row: string | number) =>
     xs.map((x) => {
@@ -31,7 +35,10 @@ function across({ across, down, value, paper, quantity, unit, cells }: Panel, do
       title: `${quantity},${unit === "°" ? " degrees" : unit}`,
       xLabel: across.label,
       xs,
-      curves: [...rows.map((row, i) => ({ label: down.name(row), token: token(i) })), ...(reference ? [{ label: "the paper", token: "ink" }] : [])],
+      curves: [
+        ...rows.map((row, i) => ({ label: down.name(row), token: token(i) })),
+        ...(reference ? [{ label: "the paper", token: "ink" }] : []),
+      ],
       ys: [...rows.map(at), ...(reference ? [reference] : [])],
     },
   ];
@@ -45,7 +52,10 @@ interface Iteration {
 
 /** One curve for each run; runs end at different iterations. */
 function iterations(done: Done): Data[] {
-  const runs = done.map(({ cell, result }) => ({ name: `${cell.row.run}, ${cell.row.protocol}`, list: (result.iterations ?? []) as Iteration[] }));
+  const runs = done.map(({ cell, result }) => ({
+    name: `${cell.row.run}, ${cell.row.protocol}`,
+    list: (result.iterations ?? []) as Iteration[],
+  }));
   const last = runs.reduce((most, { list }) => Math.max(most, list.length), 1);
   const xs = Array.from({ length: last }, (_, i) => i + 1);
   const data = (title: string, key: "degrees" | "depthRmse"): Data => ({
@@ -63,7 +73,14 @@ export class Curves {
   #plots: Plot[] = [];
 
   show(panel: Panel, done: Done, shown: readonly Cell[]): void {
-    const list = done.length === 0 ? [] : panel.curves === "iterations" ? iterations(done) : panel.curves === "across" ? across(panel, done, shown) : [];
+    const list =
+      done.length === 0
+        ? []
+        : panel.curves === "iterations"
+          ? iterations(done)
+          : panel.curves === "across"
+            ? across(panel, done, shown)
+            : [];
     for (const plot of this.#plots) plot.destroy();
     this.#plots = [];
     this.element.replaceChildren();

@@ -31,7 +31,11 @@ const lines: readonly Fact[] = [
   { term: "β", read: ({ beta }) => beta, show: (value) => `${decimals(value, 3)}°` },
   { term: "γ", read: ({ gamma }) => gamma, show: (value) => `${decimals(value, 3)}°` },
   { term: "Rivals", read: ({ rivals }) => rivals || undefined, show: String },
-  { term: "Iterations", read: ({ iterations }) => (Array.isArray(iterations) ? iterations.length : iterations), show: String },
+  {
+    term: "Iterations",
+    read: ({ iterations }) => (Array.isArray(iterations) ? iterations.length : iterations),
+    show: String,
+  },
   { term: "Time", read: ({ milliseconds }) => milliseconds, show: (value) => `${decimals(value / 1000, 1)} s` },
 ];
 
@@ -69,9 +73,17 @@ export class Detail {
     const result = state?.kind === "done" ? state.result : undefined;
     const value = result && panel.value(result);
     const mark = markOf(state);
-    this.#outcome.textContent = cell ? (value === undefined ? inWords(panel, state) : `${short(value)}${panel.unit}`) : "";
+    this.#outcome.textContent = cell
+      ? value === undefined
+        ? inWords(panel, state)
+        : `${short(value)}${panel.unit}`
+      : "";
     this.#outcome.classList.toggle("error", state?.kind === "failed");
-    this.#mark.replaceChildren(...(mark ? [make("span", { class: "mark", "data-mark": mark.kind, "aria-hidden": "true" }, mark.glyph), ` ${mark.words}`] : []));
+    this.#mark.replaceChildren(
+      ...(mark
+        ? [make("span", { class: "mark", "data-mark": mark.kind, "aria-hidden": "true" }, mark.glyph), ` ${mark.words}`]
+        : []),
+    );
     this.#message.textContent = result?.message ?? "";
     this.#run.disabled = state?.kind === "waiting" || state?.kind === "running";
     this.#run.textContent = state?.kind === "done" || state?.kind === "failed" ? "Run again" : "Run";
@@ -81,7 +93,9 @@ export class Detail {
 
   #showCell(panel: Panel, cell: Cell | undefined): void {
     this.#title.textContent = cell ? whereIs(panel, cell) : "No cell chosen";
-    this.#quantity.textContent = cell ? sentence(panel.quantity) : "Press one: it runs here, and can then be watched in the Lab.";
+    this.#quantity.textContent = cell
+      ? sentence(panel.quantity)
+      : "Press one: it runs here, and can then be watched in the Lab.";
     this.#scene.textContent = cell ? `${sentence(described(cell))}.` : "";
     this.element.toggleAttribute("data-empty", cell === undefined);
     const link = cell && watchLink(cell);

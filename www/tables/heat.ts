@@ -28,7 +28,13 @@ export function markOf(state: State | undefined): Mark | undefined {
   const { result } = state;
   // Where no pose was looked for, it is neither right nor wrong, and a loop without an aim always ends at its cap.
   if (!("rivals" in result)) return undefined;
-  const kind = isConfidentlyWrong(result) ? "wrong" : result.status === "max-iterations" ? "stopped" : result.status === "lost" && isFound(result) ? "doubted" : result.status;
+  const kind = isConfidentlyWrong(result)
+    ? "wrong"
+    : result.status === "max-iterations"
+      ? "stopped"
+      : result.status === "lost" && isFound(result)
+        ? "doubted"
+        : result.status;
   return marks.find((mark) => mark.kind === kind);
 }
 
@@ -55,7 +61,9 @@ export function inWords(panel: Panel, state: State | undefined): string {
 export const whereIs = ({ down, across, where }: Panel, cell: Cell): string =>
   where?.(cell) ?? [down, across].map((axis) => `${axis.label} ${axis.name(axis.of(cell))}`.trim()).join(", ");
 
-const values = (axis: Axis, cells: readonly Cell[]): (string | number)[] => [...new Set(cells.map((cell) => axis.of(cell)))];
+const values = (axis: Axis, cells: readonly Cell[]): (string | number)[] => [
+  ...new Set(cells.map((cell) => axis.of(cell))),
+];
 
 /** Numbers in their order; words in the protocol's. */
 const ordered = (axis: Axis, cells: readonly Cell[]): (string | number)[] => {
@@ -80,20 +88,46 @@ export class Heat {
     const { down, across } = panel;
     const rows = ordered(down, cells);
     const columns = ordered(across, cells);
-    const corner = make("th", { scope: "col" }, down.label, ...(across.label ? [make("span", { class: "soft" }, ` \\ ${across.label}`)] : []));
-    const head = make("thead", {}, make("tr", {}, corner, ...columns.map((column) => make("th", { scope: "col" }, across.name(column)))));
+    const corner = make(
+      "th",
+      { scope: "col" },
+      down.label,
+      ...(across.label ? [make("span", { class: "soft" }, ` \\ ${across.label}`)] : []),
+    );
+    const head = make(
+      "thead",
+      {},
+      make("tr", {}, corner, ...columns.map((column) => make("th", { scope: "col" }, across.name(column)))),
+    );
     const body = make("tbody");
     for (const row of rows) {
       const line = columns.map((column) => {
         const cell = cells.find((each) => down.of(each) === row && across.of(each) === column);
         return cell && this.#button(cell, onPress);
       });
-      const heading = make("button", { type: "button", class: "quiet", tabindex: -1, "aria-label": `Run row ${down.label} ${down.name(row)}`, title: "Run this row" }, down.name(row));
+      const heading = make(
+        "button",
+        {
+          type: "button",
+          class: "quiet",
+          tabindex: -1,
+          "aria-label": `Run row ${down.label} ${down.name(row)}`,
+          title: "Run this row",
+        },
+        down.name(row),
+      );
       this.#buttons.push([heading, ...line]);
       heading.addEventListener("click", () => onRow(cells.filter((cell) => down.of(cell) === row)));
-      body.append(make("tr", {}, make("th", { scope: "row" }, heading), ...line.map((button) => make("td", {}, button ?? ""))));
+      body.append(
+        make("tr", {}, make("th", { scope: "row" }, heading), ...line.map((button) => make("td", {}, button ?? ""))),
+      );
     }
-    const attributes = { class: "heat", role: "grid", "aria-label": `${panel.tab}: ${panel.quantity}`, style: `--columns: ${columns.length}` };
+    const attributes = {
+      class: "heat",
+      role: "grid",
+      "aria-label": `${panel.tab}: ${panel.quantity}`,
+      style: `--columns: ${columns.length}`,
+    };
     this.element = make("table", { ...attributes, "data-two-lines": panel.paper !== undefined }, head, body);
     this.element.addEventListener("keydown", (event) => this.#move(event));
     const [first] = this.#byId.values();
@@ -132,7 +166,13 @@ export class Heat {
   }
 
   #button(cell: Cell, onPress: (cell: Cell) => void): HTMLButtonElement {
-    const button = make("button", { type: "button", class: "heat-cell", tabindex: -1, "data-cell": cell.id, "aria-pressed": "false" });
+    const button = make("button", {
+      type: "button",
+      class: "heat-cell",
+      tabindex: -1,
+      "data-cell": cell.id,
+      "aria-pressed": "false",
+    });
     button.addEventListener("click", () => onPress(cell));
     this.#byId.set(cell.id, { cell, button });
     return button;
@@ -146,7 +186,7 @@ export class Heat {
   #move(event: KeyboardEvent): void {
     const step = { ArrowLeft: [0, -1], ArrowRight: [0, 1], ArrowUp: [-1, 0], ArrowDown: [1, 0] }[event.key];
     const row = this.#buttons.findIndex((line) => line.some((button) => button === event.target));
-    const column = this.#buttons[row]?.findIndex((button) => button === event.target) ?? -1;
+    const column = this.#buttons[row]?.indexOf(event.target) ?? -1;
     if (!step || column < 0) return;
     event.preventDefault();
     const target = this.#buttons[row + (step[0] ?? 0)]?.[column + (step[1] ?? 0)];

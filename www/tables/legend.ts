@@ -6,7 +6,12 @@ import type { Panel } from "./panels";
 import { rampLegend } from "./ramp";
 
 const swatch = (state: string, words: string): HTMLElement =>
-  make("span", { class: "key-cell" }, make("span", { class: "heat-cell sample", "data-state": state, "aria-hidden": "true" }), words);
+  make(
+    "span",
+    { class: "key-cell" },
+    make("span", { class: "heat-cell sample", "data-state": state, "aria-hidden": "true" }),
+    words,
+  );
 
 export function legend({ unit, paper }: Panel): HTMLElement {
   return make(
@@ -21,7 +26,14 @@ export function legend({ unit, paper }: Panel): HTMLElement {
       swatch("waiting", "waiting"),
       swatch("running", "running"),
       swatch("failed", "failed"),
-      ...marks.map(({ kind, glyph, words }) => make("span", { class: "key-cell" }, make("span", { class: "mark", "data-mark": kind, "aria-hidden": "true" }, glyph), words)),
+      ...marks.map(({ kind, glyph, words }) =>
+        make(
+          "span",
+          { class: "key-cell" },
+          make("span", { class: "mark", "data-mark": kind, "aria-hidden": "true" }, glyph),
+          words,
+        ),
+      ),
     ),
   );
 }

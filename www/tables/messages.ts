@@ -9,6 +9,4 @@ export interface Task {
 
 export type CellAnswer =
   /** How far the cell is, in words. */
-  | { id: string; progress: string }
-  | { id: string; result: Result }
-  | { id: string; fault: Fault };
+  { id: string; progress: string } | { id: string; result: Result } | { id: string; fault: Fault };

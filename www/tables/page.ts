@@ -74,7 +74,9 @@ export class TablesPage {
 
   /** The rows of all that is done, under the names that the command gives them. */
   download(): void {
-    const done = panels.map(({ name, cells }) => [name, this.#runner.results(cells)] as const).filter(([, results]) => results.length > 0);
+    const done = panels
+      .map(({ name, cells }) => [name, this.#runner.results(cells)] as const)
+      .filter(([, results]) => results.length > 0);
     const json = Object.fromEntries(done.map(([name, results]) => [name, rowsOf(name, results)]));
     saveJson("bimodal-stereo-tables.json", { format: "bimodal-stereo tables", version: 1, data: false, ...json });
   }
@@ -85,7 +87,9 @@ export class TablesPage {
 
   #shown(): Cell[] {
     const { values } = this.#of(this.#panel);
-    return this.#panel.cells.filter(({ row }) => Object.entries(values).every(([key, value]) => String(row[key]) === value));
+    return this.#panel.cells.filter(({ row }) =>
+      Object.entries(values).every(([key, value]) => String(row[key]) === value),
+    );
   }
 
   #tab(panel: Panel): HTMLElement {
@@ -104,11 +108,21 @@ export class TablesPage {
     }
     const cells = this.#shown();
     const { cell } = this.#of(panel);
-    this.#heat = new Heat(panel, cells, { onPress: (pressed) => this.#press(pressed), onRow: (row) => this.#runner.runAll(row) });
+    this.#heat = new Heat(panel, cells, {
+      onPress: (pressed) => this.#press(pressed),
+      onRow: (row) => this.#runner.runAll(row),
+    });
     this.#main.replaceChildren(
       make("h2", {}, `${panel.tab}: ${panel.title}`),
       make("p", { class: "soft" }, panel.words),
-      make("div", { class: "toolbar" }, ...panel.choices.map((choice) => this.#choice(choice)), this.#runAll, this.#stop, this.#progress),
+      make(
+        "div",
+        { class: "toolbar" },
+        ...panel.choices.map((choice) => this.#choice(choice)),
+        this.#runAll,
+        this.#stop,
+        this.#progress,
+      ),
       make("div", { class: "heat-box" }, this.#heat.element),
       legend(panel),
       this.#curvesBox,
@@ -148,7 +162,9 @@ export class TablesPage {
     const chosen = this.#of(this.#panel);
     const { down, across } = this.#panel;
     const before = chosen.cell;
-    chosen.cell = before && this.#shown().find((cell) => down.of(cell) === down.of(before) && across.of(cell) === across.of(before));
+    chosen.cell =
+      before &&
+      this.#shown().find((cell) => down.of(cell) === down.of(before) && across.of(cell) === across.of(before));
   }
 
   /** A cell that has come to nothing yet runs at once. */
@@ -233,7 +249,13 @@ function intro(): HTMLElement {
       "details",
       {},
       make("summary", {}, "What is not here"),
-      make("p", {}, "The same protocols run on the command line, ", make("code", {}, "npm run tables"), ". There alone, where other people's recordings are at hand:"),
+      make(
+        "p",
+        {},
+        "The same protocols run on the command line, ",
+        make("code", {}, "npm run tables"),
+        ". There alone, where other people's recordings are at hand:",
+      ),
       make("ul", {}, ...elsewhere.map((title) => make("li", {}, title))),
     ),
   );

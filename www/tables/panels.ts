@@ -51,11 +51,14 @@ const byKey = (label: string, key: string, name = plain): Axis => ({
 });
 
 const degrees = ({ degrees }: Result): number | undefined => degrees;
-const paperOfTable2 = ({ row }: Cell): number | undefined => (isNumber(row.paper) ? paperDegrees(row.paper) : undefined);
+const paperOfTable2 = ({ row }: Cell): number | undefined =>
+  isNumber(row.paper) ? paperDegrees(row.paper) : undefined;
 /** A row of results that has more than one line of its own: its last. */
 const atTheEnd = ({ iterations }: Result): number | undefined => {
   const last: unknown = Array.isArray(iterations) ? iterations.at(-1) : undefined;
-  return typeof last === "object" && last !== null && "degrees" in last && isNumber(last.degrees) ? last.degrees : undefined;
+  return typeof last === "object" && last !== null && "degrees" in last && isNumber(last.degrees)
+    ? last.degrees
+    : undefined;
 };
 
 const beta = byKey("β", "beta", (value) => `${value}°`);
@@ -70,22 +73,35 @@ type Layout = Omit<Panel, "title" | "cells" | "value" | "unit" | "quantity" | "c
 /** Titles are the protocol's own; they begin with the name that the tab already says. */
 function panel(layout: Layout): Panel {
   const title = tableNamed(layout.name).title.replace(/^[^:]+?: /, "");
-  return { value: degrees, unit: "°", quantity: "error of the rotation", choices: [], ...layout, title, cells: cellsOf(layout.name) };
+  return {
+    value: degrees,
+    unit: "°",
+    quantity: "error of the rotation",
+    choices: [],
+    ...layout,
+    title,
+    cells: cellsOf(layout.name),
+  };
 }
 
 export const panels: readonly Panel[] = [
   panel({
     name: "table1",
     tab: "Table 1",
-    words: "The paper turns its bust by 20 degrees and solves for scale and angles. Both signs, because conventions differ; as the paper reads its protocol (2A) and as a camera sees it (2B).",
+    words:
+      "The paper turns its bust by 20 degrees and solves for scale and angles. Both signs, because conventions differ; as the paper reads its protocol (2A) and as a camera sees it (2B).",
     down: byKey("protocol", "protocol"),
     across: byKey("β", "sign", (sign) => (Number(sign) > 0 ? "+20°" : "−20°")),
-    paper: ({ row }) => (typeof row.paper === "object" && row.paper !== null && "degrees" in row.paper && isNumber(row.paper.degrees) ? row.paper.degrees : undefined),
+    paper: ({ row }) =>
+      typeof row.paper === "object" && row.paper !== null && "degrees" in row.paper && isNumber(row.paper.degrees)
+        ? row.paper.degrees
+        : undefined,
   }),
   panel({
     name: "table2A",
     tab: "Table 2A",
-    words: "The same points in both views (the overlap is the paper's P_w), without occlusion, resampling or noise: an exact answer exists, and what is left should be rounding.",
+    words:
+      "The same points in both views (the overlap is the paper's P_w), without occlusion, resampling or noise: an exact answer exists, and what is left should be rounding.",
     down: beta,
     across: overlap,
     paper: paperOfTable2,
@@ -93,7 +109,8 @@ export const panels: readonly Panel[] = [
   panel({
     name: "table2B",
     tab: "Table 2B",
-    words: "Both views rendered as cameras see them, with one per cent of noise on the colours. The start is unknown, and the light is told or not.",
+    words:
+      "Both views rendered as cameras see them, with one per cent of noise on the colours. The start is unknown, and the light is told or not.",
     choices: [side, { key: "light", label: "Light is", name: plain }, light],
     down: beta,
     across: overlap,
@@ -102,7 +119,8 @@ export const panels: readonly Panel[] = [
   panel({
     name: "figure4",
     tab: "Figure 4",
-    words: "Table 1's run, iteration by iteration: by the search over poses, and by the paper's own stages from the paper's own start.",
+    words:
+      "Table 1's run, iteration by iteration: by the search over poses, and by the paper's own stages from the paper's own start.",
     down: byKey("run", "run"),
     across: byKey("protocol", "protocol"),
     value: atTheEnd,
@@ -112,7 +130,8 @@ export const panels: readonly Panel[] = [
   panel({
     name: "figure5",
     tab: "Figure 5",
-    words: "How good the normals from shading get when a share P_er of the pixels is told the true ones. Pose and light are known. Single pixels, as in the paper, or the surface as a whole.",
+    words:
+      "How good the normals from shading get when a share P_er of the pixels is told the true ones. Pose and light are known. Single pixels, as in the paper, or the surface as a whole.",
     choices: [side, light],
     down: byKey("shading", "shading"),
     across: byKey("share", "fraction"),
@@ -122,7 +141,8 @@ export const panels: readonly Panel[] = [
   panel({
     name: "figure6",
     tab: "Figure 6",
-    words: "One row of Table 2: how the error falls as both views share more. These are the cells of Tables 2A and 2B (128 × 128, colourful light, known); what has run there is here.",
+    words:
+      "One row of Table 2: how the error falls as both views share more. These are the cells of Tables 2A and 2B (128 × 128, colourful light, known); what has run there is here.",
     down: { label: "protocol", of: ({ id }) => (id.startsWith("table2A/") ? "2A" : "2B"), name: plain },
     across: overlap,
     paper: paperOfTable2,
@@ -131,7 +151,8 @@ export const panels: readonly Panel[] = [
   panel({
     name: "refinement",
     tab: "Refinement",
-    words: "A depth map with half a pixel of noise and holes, mended by the colours. Five draws of the noise for each light, with the pose given and with the pose to be found.",
+    words:
+      "A depth map with half a pixel of noise and holes, mended by the colours. Five draws of the noise for each light, with the pose given and with the pose to be found.",
     down: { label: "light, pose", of: ({ row }) => `${row.lightName}, ${row.pose}`, name: plain },
     across: byKey("draw", "seed"),
     where: ({ row }) => `${row.lightName} light, pose ${row.pose}, draw ${row.seed}`,
@@ -142,15 +163,21 @@ export const panels: readonly Panel[] = [
   panel({
     name: "random",
     tab: "Random",
-    words: "Any surface, light, pose and scale, drawn by chance, and nothing known. All 300 take a good quarter of an hour; a row of ten says much already.",
-    down: { label: "scenes", of: ({ row }) => COLUMNS * Math.floor((Number(row.scene) - 1) / COLUMNS) + 1, name: (first) => `${first}–${Number(first) + COLUMNS - 1}` },
+    words:
+      "Any surface, light, pose and scale, drawn by chance, and nothing known. All 300 take a good quarter of an hour; a row of ten says much already.",
+    down: {
+      label: "scenes",
+      of: ({ row }) => COLUMNS * Math.floor((Number(row.scene) - 1) / COLUMNS) + 1,
+      name: (first) => `${first}–${Number(first) + COLUMNS - 1}`,
+    },
     where: ({ row }) => `scene ${row.scene}`,
     across: { label: "", of: ({ row }) => ((Number(row.scene) - 1) % COLUMNS) + 1, name: plain },
   }),
   panel({
     name: "exposure",
     tab: "Exposure",
-    words: "The exposure is the photographer's choice and must not matter: random scenes with all their colours darker and brighter.",
+    words:
+      "The exposure is the photographer's choice and must not matter: random scenes with all their colours darker and brighter.",
     down: byKey("scene", "scene"),
     across: { label: "colours", of: ({ exposure = 1 }) => exposure, name: (factor) => `× ${factor}` },
   }),
@@ -164,4 +191,6 @@ export const panels: readonly Panel[] = [
 ];
 
 /** What needs other people's recordings, which the page does not have. */
-export const elsewhere: readonly string[] = ["table3", "figure7", "sensors", "photographs", "albedo", "rgbd"].map((name) => tableNamed(name).title);
+export const elsewhere: readonly string[] = ["table3", "figure7", "sensors", "photographs", "albedo", "rgbd"].map(
+  (name) => tableNamed(name).title,
+);

@@ -83,10 +83,8 @@ export const tableNamed = (name: string): Table => definition(name);
 export const cellsOf = (name: string): Cell[] => definition(name).cells(own, false) as Cell[];
 
 /** The rows as the command writes them: a list, or one summary with counts. */
-export const rowsOf = (name: string, results: Done): Row[] | Row =>
-  rows(definition(name), results) as Row[] | Row;
+export const rowsOf = (name: string, results: Done): Row[] | Row => rows(definition(name), results) as Row[] | Row;
 
-export const aimsOf = (name: string, results: Done): Aim[] =>
-  judge({ [name]: rowsOf(name, results) }) as Aim[];
+export const aimsOf = (name: string, results: Done): Aim[] => judge({ [name]: rowsOf(name, results) }) as Aim[];
 
 export const sceneOf = (cell: Cell): Cell["scene"] => scene(cell, library) as Cell["scene"];

@@ -11,7 +11,8 @@ const TO = 2;
 /** Where a value lies on the ramp, 0 .. 1. */
 const shareOf = (value: number): number => (Math.log10(value) - FROM) / (TO - FROM);
 
-const bytes = (value: number): [number, number, number] => colourAt(MAP, value > 0 ? Math.max(0, Math.min(1, shareOf(value))) : 0);
+const bytes = (value: number): [number, number, number] =>
+  colourAt(MAP, value > 0 ? Math.max(0, Math.min(1, shareOf(value))) : 0);
 
 export const colourOf = (value: number): string => `rgb(${bytes(value).join(" ")})`;
 
@@ -25,5 +26,10 @@ export function wantsBlack(value: number): boolean {
 export function rampLegend(unit: string): HTMLElement {
   const ticks = Array.from({ length: TO - FROM + 1 }, (_, i) => make("span", {}, `${10 ** (FROM + i)}${unit}`));
   const bar = make("div", { class: "ramp-bar", style: `background: ${gradient(MAP)}` });
-  return make("div", { class: "ramp", role: "img", "aria-label": `Colours from ${10 ** FROM} to ${10 ** TO}${unit}, logarithmic` }, bar, make("div", { class: "ramp-ticks" }, ...ticks));
+  return make(
+    "div",
+    { class: "ramp", role: "img", "aria-label": `Colours from ${10 ** FROM} to ${10 ** TO}${unit}, logarithmic` },
+    bar,
+    make("div", { class: "ramp-ticks" }, ...ticks),
+  );
 }

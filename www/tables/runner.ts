@@ -125,7 +125,10 @@ export class Runner {
     } else if ("fault" in answer && answer.fault.fatal) {
       this.#breakDown(answer.fault.message);
     } else {
-      this.#end(id, "fault" in answer ? { kind: "failed", message: answer.fault.message } : { kind: "done", result: answer.result });
+      this.#end(
+        id,
+        "fault" in answer ? { kind: "failed", message: answer.fault.message } : { kind: "done", result: answer.result },
+      );
     }
   }
 

@@ -7,7 +7,8 @@ import { sceneOf, type Cell } from "./protocol";
 
 /** Why the Lab can't show a cell, in words; nothing where it can. */
 export function obstacle({ kind, exposure, alternations }: Cell): string | undefined {
-  if (kind === "shading") return "This run is given true normals in a share of the pixels, which the Lab has no setting for.";
+  if (kind === "shading")
+    return "This run is given true normals in a share of the pixels, which the Lab has no setting for.";
   if (exposure !== undefined) return "The colours of this run are multiplied, which the Lab has no setting for.";
   if (alternations !== undefined) return "This cell is many short runs in turn; the Lab shows one.";
   return undefined;
@@ -18,7 +19,9 @@ export function described(cell: Cell): string {
   const scene = sceneOf(cell);
   if (!scene) return "";
   const { surface, light, protocol, size, angles = {}, scale, overlap, noise, depthNoise, holes } = scene;
-  const turns = (["alpha", "beta", "gamma"] as const).filter((axis) => angles[axis]).map((axis) => `${axis} ${short(angles[axis] ?? 0).replace("-", "−")}°`);
+  const turns = (["alpha", "beta", "gamma"] as const)
+    .filter((axis) => angles[axis])
+    .map((axis) => `${axis} ${short(angles[axis] ?? 0).replace("-", "−")}°`);
   const { light: told, start } = cell.options;
   return [
     surface,

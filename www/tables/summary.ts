@@ -18,7 +18,12 @@ function overview(panel: Panel, done: Done): HTMLElement {
   const posed = done.filter(({ result }) => "rivals" in result).map(({ result }) => result);
   const words = [
     `Of ${done.length} done: median ${number(median(values))}${panel.unit}, worst ${number(worst(values))}${panel.unit}`,
-    ...(posed.length > 0 ? [`${posed.filter(isFound).length} of ${posed.length} poses found within 3°`, `${posed.filter(isFlagged).length} flagged as uncertain`] : []),
+    ...(posed.length > 0
+      ? [
+          `${posed.filter(isFound).length} of ${posed.length} poses found within 3°`,
+          `${posed.filter(isFlagged).length} flagged as uncertain`,
+        ]
+      : []),
   ];
   return make("p", {}, `${words.join("; ")}.`);
 }
@@ -43,8 +48,21 @@ function aims(panel: Panel, done: Done): HTMLElement[] {
       "details",
       { class: "aims" },
       make("summary", {}, "The project's aims for this table"),
-      make("p", { class: "soft" }, "Set for the paper's surface and for whole tables; here they are computed from the cells that are done, on the built-in bust."),
-      make("div", { class: "wide-box", tabindex: 0, role: "region", "aria-label": "Aims" }, make("table", { class: "rows" }, make("thead", {}, make("tr", {}, ...head)), make("tbody", {}, ...list.map(row)))),
+      make(
+        "p",
+        { class: "soft" },
+        "Set for the paper's surface and for whole tables; here they are computed from the cells that are done, on the built-in bust.",
+      ),
+      make(
+        "div",
+        { class: "wide-box", tabindex: 0, role: "region", "aria-label": "Aims" },
+        make(
+          "table",
+          { class: "rows" },
+          make("thead", {}, make("tr", {}, ...head)),
+          make("tbody", {}, ...list.map(row)),
+        ),
+      ),
     ),
   ];
 }

@@ -17,7 +17,8 @@ export interface RawCamera {
 }
 
 /** Files call the same model by many names. */
-const BROWN = /^(|none|pinhole|plumb[_ ]?bob|radtan|radial-tangential|brown|brown[_ ]?conrady|opencv|rational[_ ]?polynomial|full_opencv|perspective)$/;
+const BROWN =
+  /^(|none|pinhole|plumb[_ ]?bob|radtan|radial-tangential|brown|brown[_ ]?conrady|opencv|rational[_ ]?polynomial|full_opencv|perspective)$/;
 const FISHEYE = /^(fisheye|equidistant|equi|kannala[_ ]?brandt4?|opencv_fisheye)$/;
 /** librealsense's variants; it projects both as Brown's (its older versions followed the second the other way), but for products of terms. */
 const REALSENSE = /^(modified|inverse)[_ ]?brown[_ ]?conrady$/;
@@ -27,7 +28,8 @@ const LONGEST = 1e6;
 /** Coefficients in OpenCV's numbers: 4, 5 or 8; further ones (thin prism, tilt) have to be zero. */
 function brown(values: Numbers): Numbers | undefined {
   const used = values.slice(0, 8);
-  if (values.length > 14 || values.slice(8).some((value) => value !== 0)) throw badFile("its distortion has thin-prism or tilt terms, which are not known here");
+  if (values.length > 14 || values.slice(8).some((value) => value !== 0))
+    throw badFile("its distortion has thin-prism or tilt terms, which are not known here");
   while (used.length > 0 && used.at(-1) === 0) used.pop();
   if (used.length === 0) return undefined;
   const length = used.length <= 4 ? 4 : used.length <= 5 ? 5 : 8;
@@ -38,8 +40,12 @@ function sizeOf({ width, height }: RawCamera): { width: number; height: number }
   if (width === undefined && height === undefined) return undefined;
   const isSide = (side: number) => Number.isInteger(side) && side > 0 && side <= 4 * MOST_SIDE;
   if (width === 0 && height === 0) return undefined;
-  if (width === undefined || height === undefined) throw badFile(`its camera says only one side of its images: a ${width === undefined ? "height" : "width"} of ${width ?? height}`);
-  if (!isSide(width) || !isSide(height)) throw badFile(`its camera says that images are ${width}x${height} pixels large`);
+  if (width === undefined || height === undefined)
+    throw badFile(
+      `its camera says only one side of its images: a ${width === undefined ? "height" : "width"} of ${width ?? height}`,
+    );
+  if (!isSide(width) || !isSide(height))
+    throw badFile(`its camera says that images are ${width}x${height} pixels large`);
   return { width, height };
 }
 
@@ -48,15 +54,23 @@ export function cameraOf(raw: RawCamera, warnings: string[]): NamedCamera {
   const [fx = NaN, fy = fx] = raw.focal;
   const [cx = NaN, cy = NaN] = raw.centre;
   const of = raw.name === undefined ? "its camera" : `its camera "${raw.name}"`;
-  if (!(fx > 0 && fy > 0 && fx < LONGEST && fy < LONGEST)) throw badFile(`${of} has the focal lengths ${fx} and ${fy}; numbers of pixels above zero are needed`);
+  if (!(fx > 0 && fy > 0 && fx < LONGEST && fy < LONGEST))
+    throw badFile(`${of} has the focal lengths ${fx} and ${fy}; numbers of pixels above zero are needed`);
   if (!(Math.abs(cx) < LONGEST && Math.abs(cy) < LONGEST)) throw badFile(`${of} has the principal point ${cx}, ${cy}`);
   const size = sizeOf(raw);
   const label = raw.name === undefined ? "The camera" : `The camera "${raw.name}"`;
-  if (size !== undefined && (cx < 0 || cy < 0 || cx > size.width || cy > size.height)) warnings.push(`${label} has its principal point outside of its image (${cx}, ${cy} of ${size.width}x${size.height}).`);
-  if (size === undefined && (cx <= 0 || cy <= 0)) warnings.push(`${label} has the principal point ${cx}, ${cy}, outside of any image.`);
-  if (fx < 2 || fy < 2) warnings.push(`${label} has a focal length of ${fx}: it looks normalised by the image's size, pixels are needed.`);
-  if (Math.abs(fx / fy - 1) > 0.1) warnings.push(`${label} has pixels that are not square (fx ${fx.toFixed(1)}, fy ${fy.toFixed(1)}).`);
-  if (raw.skew !== undefined && Math.abs(raw.skew) > 1e-6 * fx) warnings.push(`${label} has skewed axes (${raw.skew}), which is left out.`);
+  if (size !== undefined && (cx < 0 || cy < 0 || cx > size.width || cy > size.height))
+    warnings.push(
+      `${label} has its principal point outside of its image (${cx}, ${cy} of ${size.width}x${size.height}).`,
+    );
+  if (size === undefined && (cx <= 0 || cy <= 0))
+    warnings.push(`${label} has the principal point ${cx}, ${cy}, outside of any image.`);
+  if (fx < 2 || fy < 2)
+    warnings.push(`${label} has a focal length of ${fx}: it looks normalised by the image's size, pixels are needed.`);
+  if (Math.abs(fx / fy - 1) > 0.1)
+    warnings.push(`${label} has pixels that are not square (fx ${fx.toFixed(1)}, fy ${fy.toFixed(1)}).`);
+  if (raw.skew !== undefined && Math.abs(raw.skew) > 1e-6 * fx)
+    warnings.push(`${label} has skewed axes (${raw.skew}), which is left out.`);
   const lens = lensOf(raw, label, warnings);
   return { ...(raw.name !== undefined && { name: raw.name }), camera: { fx, fy, cx, cy, ...lens }, ...size };
 }
@@ -64,16 +78,22 @@ export function cameraOf(raw: RawCamera, warnings: string[]): NamedCamera {
 type Lens = { model?: "fisheye"; distortion?: Numbers };
 
 function lensOf({ model: written = "", distortion: values = [] }: RawCamera, label: string, warnings: string[]): Lens {
-  if (!values.every((value) => Number.isFinite(value) && Math.abs(value) < 1e6)) throw badFile("its distortion is not made of numbers");
+  if (!values.every((value) => Number.isFinite(value) && Math.abs(value) < 1e6))
+    throw badFile("its distortion is not made of numbers");
   const model = written.trim().toLowerCase();
   const bent = values.some((value) => value !== 0);
   if (FISHEYE.test(model)) {
-    if (values.length !== 0 && values.length !== 4 && values.slice(4).some((value) => value !== 0)) throw badFile(`its fisheye lens has ${values.length} coefficients; k1 k2 k3 k4 are needed`);
+    if (values.length !== 0 && values.length !== 4 && values.slice(4).some((value) => value !== 0))
+      throw badFile(`its fisheye lens has ${values.length} coefficients; k1 k2 k3 k4 are needed`);
     return { model: "fisheye", distortion: [0, 1, 2, 3].map((index) => values[index] ?? 0) };
   }
   if (!bent) return {};
-  if (REALSENSE.test(model)) warnings.push(`${label} has RealSense's "${written.trim()}" lens, taken for Brown's as librealsense projects it: they differ by products of coefficients.`);
-  else if (!BROWN.test(model)) throw badFile(`its lens model "${written.slice(0, 40)}" is not known here; Brown's and Kannala-Brandt's are`);
+  if (REALSENSE.test(model))
+    warnings.push(
+      `${label} has RealSense's "${written.trim()}" lens, taken for Brown's as librealsense projects it: they differ by products of coefficients.`,
+    );
+  else if (!BROWN.test(model))
+    throw badFile(`its lens model "${written.slice(0, 40)}" is not known here; Brown's and Kannala-Brandt's are`);
   return withBrown(brown(values));
 }
 

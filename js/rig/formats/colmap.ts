@@ -26,22 +26,41 @@ const MODELS: Record<string, Model> = {
   RADIAL_FISHEYE: { focals: 1, lens: [0, 1], fisheye: true },
 };
 
-const linesOf = (text: string): string[] => text.split(/\r?\n/).filter((line) => line.trim() !== "" && !line.trim().startsWith("#"));
+const linesOf = (text: string): string[] =>
+  text.split(/\r?\n/).filter((line) => line.trim() !== "" && !line.trim().startsWith("#"));
 
 export const isColmap = (text: string): boolean => LINE.test(linesOf(text.slice(0, 4096))[0] ?? "");
 
 function readLine(line: string): RawCamera {
   const [, id = "", name = "", width, height, rest = ""] = LINE.exec(line) ?? [];
   const model = Object.hasOwn(MODELS, name) ? MODELS[name] : undefined;
-  if (model === undefined) throw badFile(id === "" ? `it has a line that is no camera: ${line.slice(0, 60)}` : `its camera ${id} is of the model ${name}, which is not known here`);
-  const values: (number | undefined)[] = rest.trim().split(/\s+/).filter((part) => part !== "").map(numberOf);
+  if (model === undefined)
+    throw badFile(
+      id === ""
+        ? `it has a line that is no camera: ${line.slice(0, 60)}`
+        : `its camera ${id} is of the model ${name}, which is not known here`,
+    );
+  const values: (number | undefined)[] = rest
+    .trim()
+    .split(/\s+/)
+    .filter((part) => part !== "")
+    .map(numberOf);
   const needed = model.focals + 2 + model.lens.length;
-  if (values.length !== needed || values.includes(undefined)) throw badFile(`its camera ${id} (${name}) needs ${needed} numbers, and has ${values.length}`);
+  if (values.length !== needed || values.includes(undefined))
+    throw badFile(`its camera ${id} (${name}) needs ${needed} numbers, and has ${values.length}`);
   const numbers = values as Numbers;
   const distortion = new Array<number>(model.lens.length).fill(0);
   model.lens.forEach((place, index) => (distortion[place] = numbers[model.focals + 2 + index] ?? 0));
   const centre = numbers.slice(model.focals, model.focals + 2).map((value) => value - CORNER);
-  return { name: id, focal: numbers.slice(0, model.focals), centre, distortion, model: model.fisheye ? "fisheye" : "opencv", width: Number(width), height: Number(height) };
+  return {
+    name: id,
+    focal: numbers.slice(0, model.focals),
+    centre,
+    distortion,
+    model: model.fisheye ? "fisheye" : "opencv",
+    width: Number(width),
+    height: Number(height),
+  };
 }
 
 export function readColmap(text: string): Calibration {

@@ -20,7 +20,17 @@ export function exifOrientation(exif: Uint8Array): number {
   return 1;
 }
 
-const TURNS = ["", "", "mirrored", "turned by 180 degrees", "mirrored upside down", "mirrored and turned", "turned by 90 degrees", "mirrored and turned", "turned by 270 degrees"];
+const TURNS = [
+  "",
+  "",
+  "mirrored",
+  "turned by 180 degrees",
+  "mirrored upside down",
+  "mirrored and turned",
+  "turned by 90 degrees",
+  "mirrored and turned",
+  "turned by 270 degrees",
+];
 
 /** What is said of a picture that was turned; its camera's numbers are mostly those of the sensor. */
 export function turnedWords(orientation: number, why: string): { note: string; warning: string } {
@@ -46,5 +56,12 @@ export function turnedBy(picture: Picture, orientation: number, why: string): Pi
     }
   }
   const { note, warning } = turnedWords(orientation, why);
-  return { ...picture, width: across, height: down, data: out, notes: [...picture.notes, note], warnings: [...picture.warnings, warning] };
+  return {
+    ...picture,
+    width: across,
+    height: down,
+    data: out,
+    notes: [...picture.notes, note],
+    warnings: [...picture.warnings, warning],
+  };
 }

@@ -45,7 +45,8 @@ function channelList(view: DataView, bytes: Uint8Array, from: number, until: num
     const [name, next] = word(bytes, at);
     const type = view.getInt32(next, true);
     if (SIZES[type] === undefined) throw badFile(`this EXR has a channel of type ${type}, which there is not`);
-    if (view.getInt32(next + 8, true) !== 1 || view.getInt32(next + 12, true) !== 1) throw badFile("this EXR has channels of fewer pixels than the picture");
+    if (view.getInt32(next + 8, true) !== 1 || view.getInt32(next + 12, true) !== 1)
+      throw badFile("this EXR has channels of fewer pixels than the picture");
     found.push({ name, type });
     if (found.length > MOST_CHANNELS) throw badFile(`this EXR has more than ${MOST_CHANNELS} channels`);
     at = next + 16;
@@ -55,7 +56,10 @@ function channelList(view: DataView, bytes: Uint8Array, from: number, until: num
 
 function header(view: DataView, bytes: Uint8Array): Header {
   const flags = view.getUint32(4, true);
-  if (flags & 0x1a00) throw badFile(`this EXR is ${flags & 0x200 ? "tiled" : flags & 0x800 ? "deep" : "of several parts"}, which is not read here; save it as plain scan lines`);
+  if (flags & 0x1a00)
+    throw badFile(
+      `this EXR is ${flags & 0x200 ? "tiled" : flags & 0x800 ? "deep" : "of several parts"}, which is not read here; save it as plain scan lines`,
+    );
   const found: Header = { width: 0, height: 0, top: 0, compression: -1, channels: [], end: 0 };
   let at = 8;
   while (bytes[at] !== 0) {
@@ -63,7 +67,8 @@ function header(view: DataView, bytes: Uint8Array): Header {
     const [, afterType] = word(bytes, afterName);
     const size = view.getInt32(afterType, true);
     const body = afterType + 4;
-    if (size < 0 || body + size > Math.min(bytes.length, MOST_HEADER)) throw badFile("this EXR is cut off or damaged in its header");
+    if (size < 0 || body + size > Math.min(bytes.length, MOST_HEADER))
+      throw badFile("this EXR is cut off or damaged in its header");
     if (name === "channels") found.channels = channelList(view, bytes, body, body + size);
     if (name === "compression") found.compression = view.getUint8(body);
     if (name === "dataWindow") {
@@ -77,7 +82,10 @@ function header(view: DataView, bytes: Uint8Array): Header {
   found.end = at + 1;
   checkSize(found.width, found.height);
   if (found.channels.length === 0) throw badFile("this EXR has no channels");
-  if (LINES[found.compression] === undefined) throw badFile(`this EXR is compressed by ${COMPRESSIONS[found.compression] ?? "an unknown method"}, which is not read here; save it by ZIP`);
+  if (LINES[found.compression] === undefined)
+    throw badFile(
+      `this EXR is compressed by ${COMPRESSIONS[found.compression] ?? "an unknown method"}, which is not read here; save it by ZIP`,
+    );
   return found;
 }
 
@@ -86,7 +94,8 @@ function runs(bytes: Uint8Array, length: number): Uint8Array {
   let made = 0;
   for (let at = 0; made < length; ) {
     const head = bytes[at++];
-    if (head === undefined || at >= bytes.length) throw badFile(`this EXR is cut off: a block has ${made} of ${length} bytes`);
+    if (head === undefined || at >= bytes.length)
+      throw badFile(`this EXR is cut off: a block has ${made} of ${length} bytes`);
     const count = head < 128 ? head + 1 : 256 - head;
     for (let index = 0; index < count && made < length; index++) out[made++] = bytes[head < 128 ? at : at + index] ?? 0;
     at += head < 128 ? 1 : count;
@@ -106,20 +115,34 @@ function restored(data: Uint8Array): Uint8Array {
 /** Of 16 bits: five of exponent, ten of fraction. */
 function half(bits: number): number {
   const [exponent, fraction] = [(bits >> 10) & 31, bits & 1023];
-  const size = exponent === 0 ? fraction * 2 ** -24 : exponent === 31 ? (fraction === 0 ? Infinity : NaN) : (1024 + fraction) * 2 ** (exponent - 25);
+  const size =
+    exponent === 0
+      ? fraction * 2 ** -24
+      : exponent === 31
+        ? fraction === 0
+          ? Infinity
+          : NaN
+        : (1024 + fraction) * 2 ** (exponent - 25);
   return bits & 0x8000 ? -size : size;
 }
 
 /** Which channels make the picture: red, green and blue, or the one that holds depth. */
 function chosen(channels: Channel[], isDepth: boolean): number[] {
-  const find = (...names: string[]) => channels.findIndex(({ name }) => names.includes((name.split(".").at(-1) ?? "").toUpperCase()));
+  const find = (...names: string[]) =>
+    channels.findIndex(({ name }) => names.includes((name.split(".").at(-1) ?? "").toUpperCase()));
   const colours = [find("R"), find("G"), find("B")];
   const depth = find("Z", "V", "DEPTH");
   if (isDepth && depth >= 0) return [depth];
   if (colours.every((index) => index >= 0)) return colours;
   if (channels.length === 1) return [0];
   const single = depth >= 0 ? depth : find("Y");
-  if (single < 0) throw badFile(`this EXR has the channels ${channels.map(({ name }) => name).slice(0, 8).join(", ")}; R, G, B, or Z, or one alone, are read`);
+  if (single < 0)
+    throw badFile(
+      `this EXR has the channels ${channels
+        .map(({ name }) => name)
+        .slice(0, 8)
+        .join(", ")}; R, G, B, or Z, or one alone, are read`,
+    );
   return [single];
 }
 
@@ -128,7 +151,8 @@ export function readExr(bytes: Uint8Array, isDepth: boolean): Picture {
   const { width, height, top, compression, channels, end } = header(view, bytes);
   const used = chosen(channels, isDepth);
   const stride = width * channels.reduce((sum, { type }) => sum + (SIZES[type] ?? 0), 0);
-  if (stride * height > MOST_PIXELS) throw badFile(`this EXR has ${width}x${height} pixels of ${channels.length} channels, which is too much`);
+  if (stride * height > MOST_PIXELS)
+    throw badFile(`this EXR has ${width}x${height} pixels of ${channels.length} channels, which is too much`);
   const lines = LINES[compression] ?? 1;
   const blocks = Math.ceil(height / lines);
   const data = new Float32Array(width * height * used.length).fill(NaN);
@@ -136,16 +160,30 @@ export function readExr(bytes: Uint8Array, isDepth: boolean): Picture {
     const at = Number(view.getBigUint64(end + 8 * block, true));
     const row = view.getInt32(at, true) - top;
     const size = view.getInt32(at + 4, true);
-    if (row < 0 || row >= height || size < 0 || at + 8 + size > bytes.length) throw badFile(`this EXR is cut off or damaged in its block ${block}`);
+    if (row < 0 || row >= height || size < 0 || at + 8 + size > bytes.length)
+      throw badFile(`this EXR is cut off or damaged in its block ${block}`);
     const rows = Math.min(lines, height - row);
     const length = rows * stride;
     const body = bytes.subarray(at + 8, at + 8 + size);
     if (size > 2 * length + 1024) throw badFile(`this EXR is damaged: its block ${block} is too long`);
-    const plain = size === length || compression === 0 ? body : restored(compression === 1 ? runs(body, length) : inflateExactly(body, length, "this EXR"));
-    if (plain.length < length) throw badFile(`this EXR is cut off: its block ${block} has ${plain.length} of ${length} bytes`);
+    const plain =
+      size === length || compression === 0
+        ? body
+        : restored(compression === 1 ? runs(body, length) : inflateExactly(body, length, "this EXR"));
+    if (plain.length < length)
+      throw badFile(`this EXR is cut off: its block ${block} has ${plain.length} of ${length} bytes`);
     spread(plain, { width, rows, row, channels, used, stride }, data);
   }
-  return { width, height, channels: used.length, data, format: "EXR", bits: channels[used[0] ?? 0]?.type === 1 ? 16 : 32, notes: [], warnings: [] };
+  return {
+    width,
+    height,
+    channels: used.length,
+    data,
+    format: "EXR",
+    bits: channels[used[0] ?? 0]?.type === 1 ? 16 : 32,
+    notes: [],
+    warnings: [],
+  };
 }
 
 interface Block {
@@ -167,7 +205,12 @@ function spread(plain: Uint8Array, { width, rows, row, channels, used, stride }:
       const channel = used.indexOf(index);
       for (let column = 0; channel >= 0 && column < width; column++) {
         const at = from + column * size;
-        const value = type === 1 ? half(view.getUint16(at, true)) : type === 2 ? view.getFloat32(at, true) : view.getUint32(at, true);
+        const value =
+          type === 1
+            ? half(view.getUint16(at, true))
+            : type === 2
+              ? view.getFloat32(at, true)
+              : view.getUint32(at, true);
         data[((row + line) * width + column) * used.length + channel] = value;
       }
       from += width * size;

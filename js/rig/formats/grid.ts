@@ -3,7 +3,26 @@ import { badFile } from "../../errors.js";
 import { checkSize } from "./limits.js";
 
 /** Images of depth cameras, by which points without rows and columns may still be told to have them. */
-const SIZES = [[640, 480], [320, 240], [640, 576], [512, 512], [512, 424], [320, 288], [1280, 720], [848, 480], [640, 360], [480, 270], [424, 240], [1024, 768], [1024, 1024], [1280, 800], [640, 400], [1920, 1080], [224, 171], [160, 120]] as const;
+const SIZES = [
+  [640, 480],
+  [320, 240],
+  [640, 576],
+  [512, 512],
+  [512, 424],
+  [320, 288],
+  [1280, 720],
+  [848, 480],
+  [640, 360],
+  [480, 270],
+  [424, 240],
+  [1024, 768],
+  [1024, 1024],
+  [1280, 800],
+  [640, 400],
+  [1920, 1080],
+  [224, 171],
+  [160, 120],
+] as const;
 
 /** Most points, of which three floats are kept each. */
 export const MOST_POINTS = 2 ** 22;
@@ -16,13 +35,19 @@ export function checkPoints(count: number): void {
 /** The size that so many points without one have, with a warning, or why they cannot be used. */
 export function sizeOfCount(count: number, warnings: string[]): { width: number; height: number } {
   const size = SIZES.find(([width, height]) => width * height === count);
-  if (size === undefined) throw badFile(`its ${count} points are not in rows and columns (unorganised), so that no neighbours are known; save it as an organised cloud or as a depth map`);
+  if (size === undefined)
+    throw badFile(
+      `its ${count} points are not in rows and columns (unorganised), so that no neighbours are known; save it as an organised cloud or as a depth map`,
+    );
   const [width, height] = size;
-  warnings.push(`The file does not say that its points are in rows and columns: ${count} were guessed to be ${width}x${height}.`);
+  warnings.push(
+    `The file does not say that its points are in rows and columns: ${count} were guessed to be ${width}x${height}.`,
+  );
   return { width, height };
 }
 
 export function checkGrid(width: number, height: number, count: number): void {
   checkSize(width, height);
-  if (width * height !== count) throw badFile(`it says that it has ${count} points in ${width}x${height} rows and columns`);
+  if (width * height !== count)
+    throw badFile(`it says that it has ${count} points in ${width}x${height} rows and columns`);
 }

@@ -16,7 +16,8 @@ const TABLE = 16_384;
 /** Profiles that differ by less are sRGB under another name: one step of 8 bits. */
 const SAME = 1 / 255;
 
-const encoded = (linear: number): number => (linear <= 0.0031308 ? 12.92 * linear : 1.055 * linear ** (1 / 2.4) - 0.055);
+const encoded = (linear: number): number =>
+  linear <= 0.0031308 ? 12.92 * linear : 1.055 * linear ** (1 / 2.4) - 0.055;
 
 type Curve = (value: number) => number;
 interface Profile {
@@ -64,7 +65,10 @@ function parse(bytes: Uint8Array): Profile {
   const count = Math.min(view.getUint32(128), MOST_TAGS);
   for (let index = 0; index < count; index++) {
     const at = 132 + 12 * index;
-    tags.set(latin(bytes.subarray(at, at + 4)), bytes.subarray(view.getUint32(at + 4), view.getUint32(at + 4) + view.getUint32(at + 8)));
+    tags.set(
+      latin(bytes.subarray(at, at + 4)),
+      bytes.subarray(view.getUint32(at + 4), view.getUint32(at + 4) + view.getUint32(at + 8)),
+    );
   }
   const viewOf = (tag: Uint8Array) => new DataView(tag.buffer, tag.byteOffset, tag.byteLength);
   const desc = tags.get("desc");
@@ -74,14 +78,25 @@ function parse(bytes: Uint8Array): Profile {
     const body = tags.get(tag);
     return body && curveOf(viewOf(body), latin(body.subarray(0, 4)));
   });
-  if (latin(bytes.subarray(16, 20)).trim() !== "RGB" || tags.has("A2B0") || !columns.every((column) => column !== undefined) || !curves.every((curve) => curve !== undefined)) return { name };
+  if (
+    latin(bytes.subarray(16, 20)).trim() !== "RGB" ||
+    tags.has("A2B0") ||
+    !columns.every((column) => column !== undefined) ||
+    !curves.every((curve) => curve !== undefined)
+  )
+    return { name };
   const xyz = columns.map((column) => [8, 12, 16].map((at) => viewOf(column).getInt32(at) / 65_536));
   return { name, matrix: [0, 1, 2].flatMap((row) => xyz.map((column) => column[row] ?? 0)), curves };
 }
 
 /** From linear values of the profile to linear sRGB. */
 const toSrgb = (matrix: number[]): number[] =>
-  Array.from({ length: 9 }, (_, index) => [0, 1, 2].reduce((sum, k) => sum + (FROM_XYZ[3 * Math.floor(index / 3) + k] ?? 0) * (matrix[3 * k + (index % 3)] ?? 0), 0));
+  Array.from({ length: 9 }, (_, index) =>
+    [0, 1, 2].reduce(
+      (sum, k) => sum + (FROM_XYZ[3 * Math.floor(index / 3) + k] ?? 0) * (matrix[3 * k + (index % 3)] ?? 0),
+      0,
+    ),
+  );
 
 const isSrgb = (matrix: number[], curves: Curve[]): boolean =>
   toSrgb(matrix).every((value, index) => Math.abs(value - (index % 4 === 0 ? 1 : 0)) < 0.01) &&
@@ -111,16 +126,27 @@ export function inSrgb(picture: Picture, profile: Uint8Array): Picture {
   try {
     found = parse(profile);
   } catch {
-    return { ...picture, warnings: [...picture.warnings, "Its colour profile is damaged and left out: colours are taken for sRGB."] };
+    return {
+      ...picture,
+      warnings: [...picture.warnings, "Its colour profile is damaged and left out: colours are taken for sRGB."],
+    };
   }
   const { name, matrix, curves } = found;
   const called = name === "" ? "without a name" : `"${name.slice(0, 60)}"`;
   if (matrix === undefined || curves === undefined) {
     if (/srgb/i.test(name)) return { ...picture, transfer: "srgb", notes: [...picture.notes, "sRGB"] };
-    return { ...picture, warnings: [...picture.warnings, `Its colour profile ${called} is left out: colours are taken for sRGB.`] };
+    return {
+      ...picture,
+      warnings: [...picture.warnings, `Its colour profile ${called} is left out: colours are taken for sRGB.`],
+    };
   }
   if (isSrgb(matrix, curves)) return { ...picture, transfer: "srgb", notes: [...picture.notes, "sRGB"] };
-  return { ...picture, data: converted(picture, matrix, curves), transfer: "srgb", notes: [...picture.notes, `from the colour profile ${called} to sRGB`] };
+  return {
+    ...picture,
+    data: converted(picture, matrix, curves),
+    transfer: "srgb",
+    notes: [...picture.notes, `from the colour profile ${called} to sRGB`],
+  };
 }
 
 /** PNG keeps a name, a zero and the compressed profile. */

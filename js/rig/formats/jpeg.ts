@@ -26,18 +26,26 @@ interface Marked {
   profile?: Uint8Array;
 }
 
-const text = (bytes: Uint8Array, from: number, length: number): string => String.fromCharCode(...bytes.subarray(from, from + length));
+const text = (bytes: Uint8Array, from: number, length: number): string =>
+  String.fromCharCode(...bytes.subarray(from, from + length));
 
 /** SOF's sizes, channels and sampling. */
 function frame(body: Uint8Array, kind: number, length: number): { width: number; height: number } {
   const [bits = 0, h1 = 0, h0 = 0, w1 = 0, w0 = 0, channels = 0] = body;
   const [width, height] = [(w1 << 8) | w0, (h1 << 8) | h0];
-  if (![0xc0, 0xc1, 0xc2].includes(kind)) throw badFile("this JPEG is lossless, hierarchical or arithmetic, which is not read here; save it as an ordinary one");
+  if (![0xc0, 0xc1, 0xc2].includes(kind))
+    throw badFile(
+      "this JPEG is lossless, hierarchical or arithmetic, which is not read here; save it as an ordinary one",
+    );
   checkSize(width, height);
   if (bits !== 8) throw badFile(`this JPEG has ${bits} bits, which is not read here; 8 are`);
-  if (channels !== 1 && channels !== 3) throw badFile(`this JPEG has ${channels} channels${channels === 4 ? " (CMYK, for print)" : ""}; grey and RGB are read`);
+  if (channels !== 1 && channels !== 3)
+    throw badFile(
+      `this JPEG has ${channels} channels${channels === 4 ? " (CMYK, for print)" : ""}; grey and RGB are read`,
+    );
   const factors = Array.from({ length: channels }, (_, index) => body[7 + 3 * index] ?? 0);
-  if (factors.some((factor) => factor >> 4 < 1 || factor >> 4 > 4 || (factor & 15) < 1 || (factor & 15) > 4)) throw badFile("this JPEG is damaged: its sampling factors are none");
+  if (factors.some((factor) => factor >> 4 < 1 || factor >> 4 > 4 || (factor & 15) < 1 || (factor & 15) > 4))
+    throw badFile("this JPEG is damaged: its sampling factors are none");
   const full = Math.max(...factors.map((factor) => (factor >> 4) * (factor & 15)));
   const share = factors.reduce((sum, factor) => sum + ((factor >> 4) * (factor & 15)) / full, 0);
   const least = ((width * height * share) / 64) * (kind === 0xc2 ? 1 : BITS_OF_BLOCK);
@@ -141,7 +149,12 @@ export async function readJpeg(bytes: Uint8Array): Promise<Picture> {
   const { default: decode } = await import("jpeg-js/lib/decoder.js");
   let data: Uint8Array;
   try {
-    data = decode(bytes, { useTArray: true, formatAsRGBA: false, tolerantDecoding: false, maxMemoryUsageInMB: MEMORY }).data;
+    data = decode(bytes, {
+      useTArray: true,
+      formatAsRGBA: false,
+      tolerantDecoding: false,
+      maxMemoryUsageInMB: MEMORY,
+    }).data;
   } catch (error) {
     throw badFile(`this JPEG is damaged or cut off (${reasonOf(error)})`, error);
   }
@@ -160,11 +173,17 @@ function webpSize(bytes: Uint8Array): void {
   else if (kind === "VP8L") checkSize(1 + (packed & 0x3fff), 1 + ((packed >>> 14) & 0x3fff));
   else if (kind === "VP8 ") checkSize(view.getUint16(26, true) & 0x3fff, view.getUint16(28, true) & 0x3fff);
   else throw badFile("this WebP is damaged: its first part is of no known kind");
-  if (view.getUint32(4, true) + 8 > bytes.length) throw badFile(`this WebP is cut off: ${bytes.length} of ${view.getUint32(4, true) + 8} bytes`);
+  if (view.getUint32(4, true) + 8 > bytes.length)
+    throw badFile(`this WebP is cut off: ${bytes.length} of ${view.getUint32(4, true) + 8} bytes`);
 }
 
 export async function readWebp(bytes: Uint8Array): Promise<Picture> {
   webpSize(bytes);
-  if (!hasBrowser()) throw new BimodalError("file", "file: WebP is read in browsers only; convert it to PNG first (dwebp in.webp -o out.png)", "file");
+  if (!hasBrowser())
+    throw new BimodalError(
+      "file",
+      "file: WebP is read in browsers only; convert it to PNG first (dwebp in.webp -o out.png)",
+      "file",
+    );
   return byBrowser(bytes, "WebP");
 }

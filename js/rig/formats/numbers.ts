@@ -3,7 +3,8 @@
 export type Numbers = number[];
 export type Node = Record<string, unknown>;
 
-export const isNode = (value: unknown): value is Node => typeof value === "object" && value !== null && !Array.isArray(value);
+export const isNode = (value: unknown): value is Node =>
+  typeof value === "object" && value !== null && !Array.isArray(value);
 
 // One way to match any digits: two would be tried against each other, for minutes where there are many.
 const NUMBER = /^[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eEdD][-+]?\d+)?$/;
@@ -35,7 +36,8 @@ export function matrixOf(value: unknown): Matrix | undefined {
   if (isNode(value)) {
     const values = listOf(value.data);
     const [rows, columns] = [numberOf(value.rows), numberOf(value.cols)];
-    if (values === undefined || rows === undefined || columns === undefined || rows * columns !== values.length) return undefined;
+    if (values === undefined || rows === undefined || columns === undefined || rows * columns !== values.length)
+      return undefined;
     return { values, rows };
   }
   if (Array.isArray(value) && value.length > 0 && value.length <= MOST && value.every(Array.isArray)) {

@@ -48,7 +48,8 @@ function header(bytes: Uint8Array): Header {
   if (stride > MOST_STRIDE) throw badFile(`this PCD has points of ${stride} bytes`);
   const [width, height] = [one("WIDTH"), one("HEIGHT")];
   const points = entries.has("POINTS") ? one("POINTS") : width * height;
-  if (points !== width * height) throw badFile(`this PCD says that it has ${points} points in ${width}x${height} rows and columns`);
+  if (points !== width * height)
+    throw badFile(`this PCD says that it has ${points} points in ${width}x${height} rows and columns`);
   return { fields, stride, width, height, points, data: entries.get("DATA")?.[0] ?? "", end: words.at };
 }
 
@@ -57,11 +58,13 @@ function fieldsOf(entries: Map<string, string[]>): Field[] {
   const [sizes = [], types = []] = [entries.get("SIZE"), entries.get("TYPE")];
   const counts = entries.get("COUNT") ?? names.map(() => "1");
   if (names.length === 0 || names.length > MOST_FIELDS) throw badFile(`this PCD has ${names.length} fields`);
-  if (sizes.length !== names.length || types.length !== names.length || counts.length !== names.length) throw badFile("this PCD has not a size, a type and a count for each field");
+  if (sizes.length !== names.length || types.length !== names.length || counts.length !== names.length)
+    throw badFile("this PCD has not a size, a type and a count for each field");
   let offset = 0;
   return names.map((name, index) => {
     const [size, count, type] = [Number(sizes[index]), Number(counts[index]), types[index] ?? ""];
-    if (![1, 2, 4, 8].includes(size) || !Number.isInteger(count) || count < 0 || count > MOST_STRIDE) throw badFile(`this PCD has the field ${name.slice(0, 20)} of ${sizes[index]} bytes, ${counts[index]} times`);
+    if (![1, 2, 4, 8].includes(size) || !Number.isInteger(count) || count < 0 || count > MOST_STRIDE)
+      throw badFile(`this PCD has the field ${name.slice(0, 20)} of ${sizes[index]} bytes, ${counts[index]} times`);
     const field = { name, size, type, count, offset };
     offset += size * count;
     return field;
@@ -129,7 +132,8 @@ function ofText(body: Uint8Array, head: Header): Float32Array {
       if (word === "") throw badFile(`this PCD is cut off: ${point} of ${head.points} points`);
       if (axis < 0) continue;
       const value = /^[-+]?(?:nan|inf)/i.test(word) ? NaN : Number(word);
-      if (Number.isNaN(value) && !/nan|inf/i.test(word)) throw badFile(`this PCD has ${JSON.stringify(word.slice(0, 20))} where a number is needed`);
+      if (Number.isNaN(value) && !/nan|inf/i.test(word))
+        throw badFile(`this PCD has ${JSON.stringify(word.slice(0, 20))} where a number is needed`);
       out[3 * point + axis] = value;
     }
   }
@@ -139,11 +143,17 @@ function ofText(body: Uint8Array, head: Header): Float32Array {
 function pointsOf(body: Uint8Array, head: Header): Float32Array {
   if (head.data === "ascii") return ofText(body, head);
   if (head.data === "binary") return ofBinary(body, head, false);
-  if (head.data !== "binary_compressed") throw badFile(`this PCD has DATA ${JSON.stringify(head.data.slice(0, 20))}; ascii, binary and binary_compressed are read`);
+  if (head.data !== "binary_compressed")
+    throw badFile(
+      `this PCD has DATA ${JSON.stringify(head.data.slice(0, 20))}; ascii, binary and binary_compressed are read`,
+    );
   checkBytes(8, body.length, "this PCD");
   const view = new DataView(body.buffer, body.byteOffset, body.byteLength);
   const [packed, length] = [view.getUint32(0, true), view.getUint32(4, true)];
-  if (length !== head.points * head.stride) throw badFile(`this PCD says that its points are ${length} bytes long, and ${head.points * head.stride} are needed`);
+  if (length !== head.points * head.stride)
+    throw badFile(
+      `this PCD says that its points are ${length} bytes long, and ${head.points * head.stride} are needed`,
+    );
   checkBytes(8 + packed, body.length, "this PCD");
   return ofBinary(lzf(body.subarray(8, 8 + packed), length), head, true);
 }
@@ -154,7 +164,8 @@ const MOST_BYTES = 2 ** 28;
 export function readPcd(bytes: Uint8Array): Cloud {
   const head = header(bytes);
   checkPoints(head.points);
-  if (head.points * head.stride > MOST_BYTES) throw badFile(`this PCD says that its points are ${head.points * head.stride} bytes long, which is too much`);
+  if (head.points * head.stride > MOST_BYTES)
+    throw badFile(`this PCD says that its points are ${head.points * head.stride} bytes long, which is too much`);
   const warnings: string[] = [];
   const size = head.height === 1 ? sizeOfCount(head.points, warnings) : { width: head.width, height: head.height };
   checkGrid(size.width, size.height, head.points);

@@ -15,7 +15,10 @@ function rowsOf(text: string): Numbers[] | undefined {
   const rows: Numbers[] = [];
   let count = 0;
   for (const line of text.split(/\r?\n/)) {
-    const parts = line.replace(/(?:#|\/\/|%).*$/, "").split(/[\s,;[\]()]+/).filter((part) => part !== "");
+    const parts = line
+      .replace(/(?:#|\/\/|%).*$/, "")
+      .split(/[\s,;[\]()]+/)
+      .filter((part) => part !== "");
     if (parts.length === 0) continue;
     const numbers: Numbers = [];
     for (const part of parts) {
@@ -43,7 +46,9 @@ function nine(values: Numbers, size: Numbers): Found {
   if (near(values[1], 0) && near(values[2], 0) && near(values[5], 0) && near(values[8], 1)) {
     throw badFile("its matrix of intrinsics is transposed: fx 0 cx / 0 fy cy / 0 0 1 are needed");
   }
-  throw badFile("its nine numbers are no matrix of intrinsics, fx 0 cx / 0 fy cy / 0 0 1; a rotation needs its translation beside it");
+  throw badFile(
+    "its nine numbers are no matrix of intrinsics, fx 0 cx / 0 fy cy / 0 0 1; a rotation needs its translation beside it",
+  );
 }
 
 /** TUM: time stamp, translation, quaternion x y z w, of the camera in the world. */
@@ -54,7 +59,12 @@ function trajectory(rows: Numbers[]): Found {
     const names = row.length === 8 ? { name: String(row[0]), from: "camera", to: "world" } : {};
     return motion(ofQuaternion(quaternion, warnings), [x, y, z], names, warnings, row.length === 7);
   });
-  return { cameras: [], poses, warnings: [...new Set(warnings)].slice(0, 4), format: rows.length === 1 ? "a shift and a quaternion" : "a trajectory" };
+  return {
+    cameras: [],
+    poses,
+    warnings: [...new Set(warnings)].slice(0, 4),
+    format: rows.length === 1 ? "a shift and a quaternion" : "a trajectory",
+  };
 }
 
 /** Redwood: three whole numbers, then 4x4 of the camera in the world. */
@@ -85,6 +95,9 @@ export function readNumbers(text: string): Found | undefined {
     return { cameras: [], poses: [motionOfMatrix(values, {}, warnings)], warnings, format: "a matrix of a motion" };
   }
   const [fx = 0, fy = 0, cx = 0, cy = 0, ...lens] = values;
-  if (rows.length === 1 && [4, 9, 12].includes(values.length) && fx > 10 && fy > 10) return camera([fx, 0, cx, 0, fy, cy, 0, 0, 1], [], lens);
-  throw badFile(`it holds ${values.length} numbers in ${rows.length} rows: 3x3 of intrinsics, 3x4 or 4x4 of a motion, or rows of a trajectory are read`);
+  if (rows.length === 1 && [4, 9, 12].includes(values.length) && fx > 10 && fy > 10)
+    return camera([fx, 0, cx, 0, fy, cy, 0, 0, 1], [], lens);
+  throw badFile(
+    `it holds ${values.length} numbers in ${rows.length} rows: 3x3 of intrinsics, 3x4 or 4x4 of a motion, or rows of a trajectory are read`,
+  );
 }

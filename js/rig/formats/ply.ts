@@ -23,7 +23,8 @@ for (const [names, size, read] of [
 }
 const typeOf = (name = "") => {
   const type = Object.hasOwn(TYPES, name) ? TYPES[name] : undefined;
-  if (type === undefined) throw badFile(`this PLY has a property of the type "${name.slice(0, 20)}", which there is not`);
+  if (type === undefined)
+    throw badFile(`this PLY has a property of the type "${name.slice(0, 20)}", which there is not`);
   return type;
 };
 
@@ -74,7 +75,8 @@ function header(bytes: Uint8Array): Header {
 }
 
 function countOf(text = ""): number {
-  if (!/^\d{1,9}$/.test(text)) throw badFile(`this PLY says that it has ${JSON.stringify(text.slice(0, 20))} of something`);
+  if (!/^\d{1,9}$/.test(text))
+    throw badFile(`this PLY says that it has ${JSON.stringify(text.slice(0, 20))} of something`);
   return Number(text);
 }
 
@@ -99,7 +101,8 @@ class TextSource implements Source {
     const word = this.#words.next();
     if (word === "") throw badFile("this PLY is cut off: it has fewer numbers than it says");
     const value = /^[-+]?(?:nan|inf)/i.test(word) ? NaN : Number(word);
-    if (Number.isNaN(value) && !/nan|inf/i.test(word)) throw badFile(`this PLY has ${JSON.stringify(word.slice(0, 20))} where a number is needed`);
+    if (Number.isNaN(value) && !/nan|inf/i.test(word))
+      throw badFile(`this PLY has ${JSON.stringify(word.slice(0, 20))} where a number is needed`);
     return value;
   }
 }
@@ -130,7 +133,9 @@ function listOf(source: Source, property: Property): number[] {
 }
 
 function points(source: Source, { count, properties }: Element): Float32Array {
-  const axes = ["x", "y", "z"].map((axis) => properties.findIndex(({ name, count: list }) => name === axis && list === undefined));
+  const axes = ["x", "y", "z"].map((axis) =>
+    properties.findIndex(({ name, count: list }) => name === axis && list === undefined),
+  );
   if (axes.includes(-1)) throw badFile("this PLY has no x, y and z");
   if (properties.some((each) => each.count)) throw badFile("this PLY has lists at its points");
   const out = new Float32Array(3 * count);
@@ -152,7 +157,8 @@ function inCells(source: Source, grid: Element, cloud: Float32Array): Float32Arr
     for (const each of grid.properties) {
       const [point] = listOf(source, each);
       if (each.name !== "vertex_indices" || point === undefined) continue;
-      if (!(Number.isInteger(point) && point >= 0 && 3 * point < cloud.length)) throw badFile(`this PLY's grid names the point ${point} of ${cloud.length / 3}`);
+      if (!(Number.isInteger(point) && point >= 0 && 3 * point < cloud.length))
+        throw badFile(`this PLY's grid names the point ${point} of ${cloud.length / 3}`);
       out.set(cloud.subarray(3 * point, 3 * point + 3), 3 * cell);
     }
   }
@@ -161,7 +167,8 @@ function inCells(source: Source, grid: Element, cloud: Float32Array): Float32Arr
 
 export function readPly(bytes: Uint8Array): Cloud {
   const { format, elements, columns, rows, end } = header(bytes);
-  if (!["ascii", "binary_little_endian", "binary_big_endian"].includes(format)) throw badFile(`this PLY is of the format "${format.slice(0, 30)}", which there is not`);
+  if (!["ascii", "binary_little_endian", "binary_big_endian"].includes(format))
+    throw badFile(`this PLY is of the format "${format.slice(0, 30)}", which there is not`);
   const [vertices, ...others] = elements;
   if (vertices?.name !== "vertex") throw badFile("this PLY does not begin with points");
   checkPoints(vertices.count);
@@ -169,7 +176,8 @@ export function readPly(bytes: Uint8Array): Cloud {
   const grid = others[0]?.name === "range_grid" ? others[0] : undefined;
   const body = bytes.subarray(end);
   // A number as text has a digit and a space at least.
-  const least = vertices.count * vertices.properties.reduce((sum, { size }) => sum + (format === "ascii" ? 2 : size), 0) - 1;
+  const least =
+    vertices.count * vertices.properties.reduce((sum, { size }) => sum + (format === "ascii" ? 2 : size), 0) - 1;
   checkBytes(least, body.length, "this PLY");
   if (grid) {
     checkPoints(grid.count);
@@ -178,8 +186,17 @@ export function readPly(bytes: Uint8Array): Cloud {
   }
   const source = format === "ascii" ? new TextSource(body) : new BinarySource(body, format === "binary_little_endian");
   const cloud = points(source, vertices);
-  if (grid) return { format: "PLY", width: columns ?? 0, height: rows ?? 0, points: inCells(source, grid, cloud), notes: [], warnings };
-  if (others.some(({ name, count }) => name === "face" && count > 0)) warnings.push("The file is a mesh; its faces are left out.");
+  if (grid)
+    return {
+      format: "PLY",
+      width: columns ?? 0,
+      height: rows ?? 0,
+      points: inCells(source, grid, cloud),
+      notes: [],
+      warnings,
+    };
+  if (others.some(({ name, count }) => name === "face" && count > 0))
+    warnings.push("The file is a mesh; its faces are left out.");
   if (columns !== undefined && rows !== undefined && columns * rows === vertices.count) {
     checkGrid(columns, rows, vertices.count);
     return { format: "PLY", width: columns, height: rows, points: cloud, notes: [], warnings };

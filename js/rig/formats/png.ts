@@ -15,7 +15,13 @@ function withGamma(picture: Picture, chunk: Uint8Array): Picture {
   const is = (other: number) => Math.abs(gamma / other - 1) < SAME;
   if (is(LINEAR)) return { ...picture, transfer: "linear", notes: [...picture.notes, "linear"] };
   if (is(SRGB) || gamma === 0) return picture;
-  return { ...picture, warnings: [...picture.warnings, `Its gamma of ${(gamma / LINEAR).toFixed(3)} is left out: colours are taken for sRGB.`] };
+  return {
+    ...picture,
+    warnings: [
+      ...picture.warnings,
+      `Its gamma of ${(gamma / LINEAR).toFixed(3)} is left out: colours are taken for sRGB.`,
+    ],
+  };
 }
 
 function inColour(picture: Picture, chunks: Map<string, Uint8Array>): Picture {

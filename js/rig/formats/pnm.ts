@@ -9,7 +9,8 @@ const MOST_LEVEL = 65_535;
 
 const whole = (words: Words, what: string): number => {
   const word = words.next();
-  if (!/^\d{1,9}$/.test(word)) throw badFile(`its header has ${JSON.stringify(word.slice(0, 20))} where ${what} is needed`);
+  if (!/^\d{1,9}$/.test(word))
+    throw badFile(`its header has ${JSON.stringify(word.slice(0, 20))} where ${what} is needed`);
   return Number(word);
 };
 
@@ -49,7 +50,8 @@ function level(words: Words, most: number, at: number, count: number): number {
   const word = words.next();
   if (word === "") throw badFile(`it is cut off: ${at} of ${count} levels`);
   const value = Number(word);
-  if (!Number.isInteger(value) || value < 0 || value > most) throw badFile(`its level ${at} is ${JSON.stringify(word.slice(0, 20))}; whole numbers up to ${most} are needed`);
+  if (!Number.isInteger(value) || value < 0 || value > most)
+    throw badFile(`its level ${at} is ${JSON.stringify(word.slice(0, 20))}; whole numbers up to ${most} are needed`);
   return value;
 }
 
@@ -59,7 +61,10 @@ function bitText(words: Words, data: Uint8Array | Uint16Array): void {
   for (let at = 0; at < data.length; at++) {
     if (word === "") word = words.next();
     const bit = word[0];
-    if (bit !== "0" && bit !== "1") throw badFile(bit === undefined ? `it is cut off: ${at} of ${data.length} bits` : `its bit ${at} is ${JSON.stringify(bit)}`);
+    if (bit !== "0" && bit !== "1")
+      throw badFile(
+        bit === undefined ? `it is cut off: ${at} of ${data.length} bits` : `its bit ${at} is ${JSON.stringify(bit)}`,
+      );
     data[at] = Number(bit);
     word = word.slice(1);
   }
@@ -92,7 +97,8 @@ export function readPfm(bytes: Uint8Array): Picture {
   const [width, height] = [whole(words, "a width"), whole(words, "a height")];
   checkSize(width, height);
   const scale = Number(words.next() || NaN);
-  if (!Number.isFinite(scale) || scale === 0) throw badFile("this PFM has no scale, whose sign tells the order of its bytes");
+  if (!Number.isFinite(scale) || scale === 0)
+    throw badFile("this PFM has no scale, whose sign tells the order of its bytes");
   const body = bytes.subarray(words.at + 1);
   const stride = width * channels;
   checkBytes(4 * stride * height, body.length, "this PFM");

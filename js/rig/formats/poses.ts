@@ -24,7 +24,8 @@ function skewness(r: Numbers): number {
   let most = 0;
   for (let i = 0; i < 3; i++) {
     for (let j = 0; j < 3; j++) {
-      const product = at(r, 3 * i) * at(r, 3 * j) + at(r, 3 * i + 1) * at(r, 3 * j + 1) + at(r, 3 * i + 2) * at(r, 3 * j + 2);
+      const product =
+        at(r, 3 * i) * at(r, 3 * j) + at(r, 3 * i + 1) * at(r, 3 * j + 1) + at(r, 3 * i + 2) * at(r, 3 * j + 2);
       most = Math.max(most, Math.abs(product - (i === j ? 1 : 0)));
     }
   }
@@ -51,17 +52,24 @@ function nearestRotation(matrix: Numbers): Numbers {
 export function rotationOf(values: Numbers, warnings: string[]): Numbers {
   if (values.length !== 9 || !values.every(Number.isFinite)) throw badFile("a rotation has nine numbers");
   const off = skewness(values);
-  if (!(off <= ROTATION_TOLERANCE)) throw badFile(`its rotation is none: R R^T differs from 1 by ${off.toPrecision(2)}`);
-  if (determinant(values) < 0) throw badFile("its rotation mirrors (the determinant is -1): an axis or the handedness is swapped");
-  if (off > ROUNDING) warnings.push(`The rotation was not quite one (R R^T differs from 1 by ${off.toPrecision(2)}) and was replaced by the nearest.`);
+  if (!(off <= ROTATION_TOLERANCE))
+    throw badFile(`its rotation is none: R R^T differs from 1 by ${off.toPrecision(2)}`);
+  if (determinant(values) < 0)
+    throw badFile("its rotation mirrors (the determinant is -1): an axis or the handedness is swapped");
+  if (off > ROUNDING)
+    warnings.push(
+      `The rotation was not quite one (R R^T differs from 1 by ${off.toPrecision(2)}) and was replaced by the nearest.`,
+    );
   return nearestRotation(values);
 }
 
 /** From x, y, z, w. */
 export function ofQuaternion([x = 0, y = 0, z = 0, w = 0]: Numbers, warnings: string[]): Numbers {
   const length = Math.hypot(x, y, z, w);
-  if (!(Math.abs(length - 1) <= ROTATION_TOLERANCE)) throw badFile(`its quaternion has the length ${length.toPrecision(3)}, not 1`);
-  if (Math.abs(length - 1) > ROUNDING) warnings.push(`The quaternion had the length ${length.toPrecision(4)} and was brought to 1.`);
+  if (!(Math.abs(length - 1) <= ROTATION_TOLERANCE))
+    throw badFile(`its quaternion has the length ${length.toPrecision(3)}, not 1`);
+  if (Math.abs(length - 1) > ROUNDING)
+    warnings.push(`The quaternion had the length ${length.toPrecision(4)} and was brought to 1.`);
   const [a, b, c, d] = [x / length, y / length, z / length, w / length];
   return [
     ...[1 - 2 * (b * b + c * c), 2 * (a * b - c * d), 2 * (a * c + b * d)],
@@ -80,8 +88,25 @@ export function ofVector([x = 0, y = 0, z = 0]: Numbers): Numbers {
 
 /** ROS 1's yaw, pitch and roll in rad: about z, then y, then x, of fixed axes in the order roll, pitch, yaw. */
 export function ofYawPitchRoll([yaw = 0, pitch = 0, roll = 0]: Numbers): Numbers {
-  const [cy, sy, cp, sp, cr, sr] = [Math.cos(yaw), Math.sin(yaw), Math.cos(pitch), Math.sin(pitch), Math.cos(roll), Math.sin(roll)];
-  return [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr, sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr, -sp, cp * sr, cp * cr];
+  const [cy, sy, cp, sp, cr, sr] = [
+    Math.cos(yaw),
+    Math.sin(yaw),
+    Math.cos(pitch),
+    Math.sin(pitch),
+    Math.cos(roll),
+    Math.sin(roll),
+  ];
+  return [
+    cy * cp,
+    cy * sp * sr - sy * cr,
+    cy * sp * cr + sy * sr,
+    sy * cp,
+    sy * sp * sr + cy * cr,
+    sy * sp * cr - cy * sr,
+    -sp,
+    cp * sr,
+    cp * cr,
+  ];
 }
 
 /** As the package has poses: R = Rx(alpha) Ry(beta) Rz(gamma), degrees. */
@@ -91,30 +116,57 @@ function anglesOf(r: Numbers): Pose["angles"] {
   // Looking along an axis only alpha + gamma is seen: all of it is given to alpha.
   const locked = Math.hypot(at(r, 0), at(r, 1)) < 1e-9;
   const alpha = locked ? Math.atan2(at(r, 7), at(r, 4)) : Math.atan2(-at(r, 5), at(r, 8));
-  return { alpha: alpha * degrees, beta: beta * degrees, gamma: locked ? 0 : Math.atan2(-at(r, 1), at(r, 0)) * degrees };
+  return {
+    alpha: alpha * degrees,
+    beta: beta * degrees,
+    gamma: locked ? 0 : Math.atan2(-at(r, 1), at(r, 0)) * degrees,
+  };
 }
 
-export const poseOf = (rotation: Numbers, translation: Numbers): Pose => ({ scale: 1, rotation, translation, angles: anglesOf(rotation) });
+export const poseOf = (rotation: Numbers, translation: Numbers): Pose => ({
+  scale: 1,
+  rotation,
+  translation,
+  angles: anglesOf(rotation),
+});
 
 /** The motion back. */
 export function inverseOf({ rotation: r, translation: t }: Pose): Pose {
   const back = [0, 3, 6, 1, 4, 7, 2, 5, 8].map((index) => at(r, index));
-  return poseOf(back, [0, 1, 2].map((i) => -(at(back, 3 * i) * at(t, 0) + at(back, 3 * i + 1) * at(t, 1) + at(back, 3 * i + 2) * at(t, 2))));
+  return poseOf(
+    back,
+    [0, 1, 2].map(
+      (i) => -(at(back, 3 * i) * at(t, 0) + at(back, 3 * i + 1) * at(t, 1) + at(back, 3 * i + 2) * at(t, 2)),
+    ),
+  );
 }
 
 /** First `b`, then `a`. */
 export function chained(a: Pose, b: Pose): Pose {
   const rotation = Array.from({ length: 9 }, (_, index) => {
     const [i, j] = [Math.floor(index / 3), index % 3];
-    return at(a.rotation, 3 * i) * at(b.rotation, j) + at(a.rotation, 3 * i + 1) * at(b.rotation, 3 + j) + at(a.rotation, 3 * i + 2) * at(b.rotation, 6 + j);
+    return (
+      at(a.rotation, 3 * i) * at(b.rotation, j) +
+      at(a.rotation, 3 * i + 1) * at(b.rotation, 3 + j) +
+      at(a.rotation, 3 * i + 2) * at(b.rotation, 6 + j)
+    );
   });
-  const turned = [0, 1, 2].map((i) => at(a.rotation, 3 * i) * at(b.translation, 0) + at(a.rotation, 3 * i + 1) * at(b.translation, 1) + at(a.rotation, 3 * i + 2) * at(b.translation, 2));
-  return poseOf(rotation, turned.map((value, i) => value + at(a.translation, i)));
+  const turned = [0, 1, 2].map(
+    (i) =>
+      at(a.rotation, 3 * i) * at(b.translation, 0) +
+      at(a.rotation, 3 * i + 1) * at(b.translation, 1) +
+      at(a.rotation, 3 * i + 2) * at(b.translation, 2),
+  );
+  return poseOf(
+    rotation,
+    turned.map((value, i) => value + at(a.translation, i)),
+  );
 }
 
 /** A shift in metres: longer than a rig is in millimetres, where `isRig` says that two cameras are related and not a world. */
 export function shiftOf(values: Numbers, isRig: boolean, warnings: string[]): Numbers {
-  if (values.length !== 3 || !values.every((value) => Number.isFinite(value) && Math.abs(value) < 1e9)) throw badFile("a translation has three numbers");
+  if (values.length !== 3 || !values.every((value) => Number.isFinite(value) && Math.abs(value) < 1e9))
+    throw badFile("a translation has three numbers");
   const length = Math.hypot(...values);
   if (!isRig || length <= LONGEST) return values.slice();
   warnings.push(`The translation is ${length.toPrecision(4)} units long and was guessed to be in millimetres.`);
@@ -122,16 +174,29 @@ export function shiftOf(values: Numbers, isRig: boolean, warnings: string[]): Nu
 }
 
 /** A pose from a rotation and a translation that were read, with its names. */
-export function motion(rotation: Numbers, translation: Numbers, names: Omit<NamedPose, "pose">, warnings: string[], isRig = true): NamedPose {
+export function motion(
+  rotation: Numbers,
+  translation: Numbers,
+  names: Omit<NamedPose, "pose">,
+  warnings: string[],
+  isRig = true,
+): NamedPose {
   return { ...names, pose: poseOf(rotationOf(rotation, warnings), shiftOf(translation, isRig, warnings)) };
 }
 
 /** Whether a row is that of a motion's matrix, 0 0 0 1. */
-export const isLastRow = (row: Numbers): boolean => row.length === 4 && row.every((value, index) => Math.abs(value - (index === 3 ? 1 : 0)) < 1e-6);
+export const isLastRow = (row: Numbers): boolean =>
+  row.length === 4 && row.every((value, index) => Math.abs(value - (index === 3 ? 1 : 0)) < 1e-6);
 
 /** 12 or 16 numbers, row by row. */
-export function motionOfMatrix(values: Numbers, names: Omit<NamedPose, "pose">, warnings: string[], isRig = true): NamedPose {
-  if (values.length !== 12 && values.length !== 16) throw badFile(`a motion has 3x4 or 4x4 numbers, not ${values.length}`);
+export function motionOfMatrix(
+  values: Numbers,
+  names: Omit<NamedPose, "pose">,
+  warnings: string[],
+  isRig = true,
+): NamedPose {
+  if (values.length !== 12 && values.length !== 16)
+    throw badFile(`a motion has 3x4 or 4x4 numbers, not ${values.length}`);
   if (values.length === 16 && !isLastRow(values.slice(12))) {
     const last = [3, 7, 11, 15].map((index) => at(values, index));
     if (isLastRow(last)) throw badFile("its matrix is transposed: the translation stands in the last row");

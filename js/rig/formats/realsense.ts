@@ -12,24 +12,42 @@ const MOST = 2000;
 
 export const isEnumeration = (text: string): boolean => /^[ \t]*(?:Intrinsic of|Extrinsic from) "/m.test(text);
 
-const numbersOf = (text: string): Numbers => text.split(/\s+/).map(numberOf).filter((value) => value !== undefined);
+const numbersOf = (text: string): Numbers =>
+  text
+    .split(/\s+/)
+    .map(numberOf)
+    .filter((value) => value !== undefined);
 
 function camera(name: string, lines: string[], warnings: string[]): Calibration["cameras"][number] {
-  const entries = new Map(lines.map((line) => [line.split(":")[0]?.trim().toLowerCase() ?? "", line.slice(line.indexOf(":") + 1).trim()]));
+  const entries = new Map(
+    lines.map((line) => [line.split(":")[0]?.trim().toLowerCase() ?? "", line.slice(line.indexOf(":") + 1).trim()]),
+  );
   const number = (key: string): number => numberOf(entries.get(key) ?? "") ?? NaN;
   return cameraOf(
     {
       ...{ name, focal: [number("fx"), number("fy")], centre: [number("ppx"), number("ppy")] },
-      ...{ model: entries.get("distortion"), distortion: numbersOf(entries.get("coeffs") ?? ""), width: number("width"), height: number("height") },
+      ...{
+        model: entries.get("distortion"),
+        distortion: numbersOf(entries.get("coeffs") ?? ""),
+        width: number("width"),
+        height: number("height"),
+      },
     },
     warnings,
   );
 }
 
 /** The rotation is printed row by row, though librealsense keeps it by columns. */
-function extrinsics([, from = "", to = ""]: RegExpExecArray, lines: string[], warnings: string[]): Calibration["poses"][number] {
+function extrinsics(
+  [, from = "", to = ""]: RegExpExecArray,
+  lines: string[],
+  warnings: string[],
+): Calibration["poses"][number] {
   const values = lines.flatMap((line) => numbersOf(line.replace(/^.*:/, "")));
-  if (values.length !== 12) throw badFile(`its extrinsics from "${from}" to "${to}" have ${values.length} numbers; nine of a rotation and three of a translation are needed`);
+  if (values.length !== 12)
+    throw badFile(
+      `its extrinsics from "${from}" to "${to}" have ${values.length} numbers; nine of a rotation and three of a translation are needed`,
+    );
   return motion(values.slice(0, 9), values.slice(9), { name: `${to} from ${from}`, from, to }, warnings);
 }
 

@@ -17,8 +17,16 @@ function mentions(text: string): string[][] {
   const pieces = text.split(NAME).slice(1);
   if (pieces.length > MOST) throw badFile(`it holds more than ${MOST} static transforms`);
   return pieces.map((piece) => {
-    const inside = piece.slice(0, REACH).replace(/\\\r?\n/g, " ").split(/\/>|<\/node>|<node|\bNode\s*\(/)[0] ?? "";
-    const args = /\bargs\s*=\s*"([^"]*)"/.exec(inside)?.[1] ?? /\barguments\s*=\s*\[([^\]]*)\]/.exec(inside)?.[1] ?? (inside.split(/\r?\n/).find((line) => /\d/.test(line)) ?? "");
+    const inside =
+      piece
+        .slice(0, REACH)
+        .replace(/\\\r?\n/g, " ")
+        .split(/\/>|<\/node>|<node|\bNode\s*\(/)[0] ?? "";
+    const args =
+      /\bargs\s*=\s*"([^"]*)"/.exec(inside)?.[1] ??
+      /\barguments\s*=\s*\[([^\]]*)\]/.exec(inside)?.[1] ??
+      inside.split(/\r?\n/).find((line) => /\d/.test(line)) ??
+      "";
     return args.split(/[\s,'"[\]()=]+/).filter((part) => part !== "");
   });
 }
@@ -38,7 +46,12 @@ function ofFlags(words: string[], warnings: string[]): NamedPose {
     ? ofQuaternion([number("qx", 0), number("qy", 0), number("qz", 0), number("qw", 1)], warnings)
     : ofYawPitchRoll([number("yaw", 0), number("pitch", 0), number("roll", 0)]);
   const [to, from] = [values.get("frame-id"), values.get("child-frame-id")];
-  return motion(rotation, [number("x", 0), number("y", 0), number("z", 0)], { ...(from !== undefined && { from }), ...(to !== undefined && { to }) }, warnings);
+  return motion(
+    rotation,
+    [number("x", 0), number("y", 0), number("z", 0)],
+    { ...(from !== undefined && { from }), ...(to !== undefined && { to }) },
+    warnings,
+  );
 }
 
 /** ROS 1: `x y z yaw pitch roll parent child [ms]` or `x y z qx qy qz qw parent child [ms]`. */
@@ -49,11 +62,19 @@ function ofPlaces(words: string[], warnings: string[]): NamedPose {
     if (value === undefined) break;
     numbers.push(value);
   }
-  if (numbers.length !== 6 && numbers.length !== 7) throw badFile(`its static transform has ${numbers.length} numbers; x y z and yaw pitch roll, or qx qy qz qw, are needed`);
+  if (numbers.length !== 6 && numbers.length !== 7)
+    throw badFile(
+      `its static transform has ${numbers.length} numbers; x y z and yaw pitch roll, or qx qy qz qw, are needed`,
+    );
   const [to, from] = words.slice(numbers.length);
   const turn = numbers.slice(3);
   const rotation = turn.length === 4 ? ofQuaternion(turn, warnings) : ofYawPitchRoll(turn);
-  return motion(rotation, numbers.slice(0, 3), { ...(from !== undefined && { from }), ...(to !== undefined && { to }) }, warnings);
+  return motion(
+    rotation,
+    numbers.slice(0, 3),
+    { ...(from !== undefined && { from }), ...(to !== undefined && { to }) },
+    warnings,
+  );
 }
 
 /** The transform carries points of the child frame into the parent, so that the child is where they come from. */
@@ -61,21 +82,31 @@ export function readPublishers(text: string): Calibration {
   const warnings: string[] = [];
   const found = mentions(text).filter((words) => words.some((word) => numberOf(word) !== undefined));
   if (found.length === 0) throw badFile(`it names ${NAME}, but no numbers follow`);
-  return { cameras: [], poses: found.map((words) => (words.some((word) => word.startsWith("--")) ? ofFlags : ofPlaces)(words, warnings)), warnings };
+  return {
+    cameras: [],
+    poses: found.map((words) => (words.some((word) => word.startsWith("--")) ? ofFlags : ofPlaces)(words, warnings)),
+    warnings,
+  };
 }
 
 const TRIPLE = /Translation:\s*\[([^\]\n]{1,200})\]/;
 const QUATERNION = /Quaternion\s*(?:\(xyzw\)\s*)?\[([^\]\n]{1,200})\]/;
 
-export const isEcho = (text: string): boolean => TRIPLE.test(text.slice(0, REACH)) && QUATERNION.test(text.slice(0, REACH));
+export const isEcho = (text: string): boolean =>
+  TRIPLE.test(text.slice(0, REACH)) && QUATERNION.test(text.slice(0, REACH));
 
 /** What tf_echo prints, the first of it; which frames it asked for is not in there. */
 export function readEcho(text: string): Calibration {
   const warnings: string[] = [];
   const numbers = (pattern: RegExp, count: number): Numbers => {
     const found = (pattern.exec(text.slice(0, REACH))?.[1] ?? "").split(",").map((part) => numberOf(part) ?? NaN);
-    if (found.length !== count || found.some(Number.isNaN)) throw badFile(`its transform has not ${count} numbers where they are needed`);
+    if (found.length !== count || found.some(Number.isNaN))
+      throw badFile(`its transform has not ${count} numbers where they are needed`);
     return found;
   };
-  return { cameras: [], poses: [motion(ofQuaternion(numbers(QUATERNION, 4), warnings), numbers(TRIPLE, 3), {}, warnings)], warnings };
+  return {
+    cameras: [],
+    poses: [motion(ofQuaternion(numbers(QUATERNION, 4), warnings), numbers(TRIPLE, 3), {}, warnings)],
+    warnings,
+  };
 }

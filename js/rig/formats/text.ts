@@ -16,7 +16,8 @@ const MOST_YAML = 2 ** 18;
 export function textOf(bytes: Uint8Array): string | undefined {
   if (bytes.length > MOST_TEXT) return undefined;
   const [first, second] = bytes;
-  const encoding = first === 0xff && second === 0xfe ? "utf-16le" : first === 0xfe && second === 0xff ? "utf-16be" : "utf-8";
+  const encoding =
+    first === 0xff && second === 0xfe ? "utf-16le" : first === 0xfe && second === 0xff ? "utf-16be" : "utf-8";
   try {
     const text = new TextDecoder(encoding, { fatal: true }).decode(bytes);
     // Control characters tell bytes from text.
@@ -37,13 +38,18 @@ function readJson(text: string): unknown {
 
 /** OpenCV's YAML says "%YAML:1.0", which YAML does not have, and marks its matrices by a tag of its own, as Python does its tuples. */
 const plainYaml = (text: string): string =>
-  text.replace(/^%YAML.*$/m, "").replace(/!!(?:opencv-[\w-]+|python\/[\w:./]+)/g, "").replace(/^\t+/gm, (tabs) => "  ".repeat(tabs.length));
+  text
+    .replace(/^%YAML.*$/m, "")
+    .replace(/!!(?:opencv-[\w-]+|python\/[\w:./]+)/g, "")
+    .replace(/^\t+/gm, (tabs) => "  ".repeat(tabs.length));
 
 /** Settings as "fx = 500", line by line, are YAML but for the sign. */
-const withColons = (text: string): string => (/^[ \t]*[\w.]{1,80}[ \t]*:/m.test(text) ? text : text.replace(/^([ \t]*[\w.]{1,80})[ \t]*=[ \t]*/gm, "$1: "));
+const withColons = (text: string): string =>
+  /^[ \t]*[\w.]{1,80}[ \t]*:/m.test(text) ? text : text.replace(/^([ \t]*[\w.]{1,80})[ \t]*=[ \t]*/gm, "$1: ");
 
 function readYaml(text: string): unknown {
-  if (text.length > MOST_YAML) throw badFile(`it is text of ${text.length} characters, in none of the forms that are read here`);
+  if (text.length > MOST_YAML)
+    throw badFile(`it is text of ${text.length} characters, in none of the forms that are read here`);
   try {
     return readDocuments(withColons(plainYaml(text)));
   } catch (error) {
@@ -52,13 +58,16 @@ function readYaml(text: string): unknown {
   }
 }
 
-const NEITHER = "neither a camera (camera_matrix, K, fx fy cx cy, intrinsics) nor a motion (R and T, T_.., rotation and translation, a 4x4 matrix)";
+const NEITHER =
+  "neither a camera (camera_matrix, K, fx fy cx cy, intrinsics) nor a motion (R and T, T_.., rotation and translation, a 4x4 matrix)";
 
 function searched(value: unknown, format: string): Calibration & { format: string } {
   const isText = (each: unknown) => typeof each !== "object" || each === null;
-  if (isText(value) || (Array.isArray(value) && value.every(isText))) throw badFile("it is a text in none of the forms that are read here");
+  if (isText(value) || (Array.isArray(value) && value.every(isText)))
+    throw badFile("it is a text in none of the forms that are read here");
   const found = searchTree(value);
-  if (found.cameras.length === 0 && found.poses.length === 0) throw badFile(`it is ${format}, but holds ${NEITHER} that is known here`);
+  if (found.cameras.length === 0 && found.poses.length === 0)
+    throw badFile(`it is ${format}, but holds ${NEITHER} that is known here`);
   return { ...found, format };
 }
 

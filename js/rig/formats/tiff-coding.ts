@@ -5,7 +5,8 @@ const CLEAR = 256;
 const END = 257;
 const LONGEST_CODE = 12;
 
-const short = (made: number, length: number) => badFile(`this TIFF is damaged or cut off: a part of its pixels expands to ${made} of ${length} bytes`);
+const short = (made: number, length: number) =>
+  badFile(`this TIFF is damaged or cut off: a part of its pixels expands to ${made} of ${length} bytes`);
 
 /** LZW, codes from the high bit down and a code wider one early. Of an entry its predecessor and last byte are kept. */
 export function lzw(bytes: Uint8Array, length: number): Uint8Array {
@@ -74,9 +75,15 @@ export function packBits(bytes: Uint8Array, length: number): Uint8Array {
 /** Each sample is the difference to the one of the pixel before it. */
 export function undoIntegers(part: Uint8Array, width: number, size: number, samples: number): void {
   const { buffer, byteOffset, length } = part;
-  const values = size === 1 ? part : size === 2 ? new Uint16Array(buffer, byteOffset, length / 2) : new Uint32Array(buffer, byteOffset, Math.floor(length / 4));
+  const values =
+    size === 1
+      ? part
+      : size === 2
+        ? new Uint16Array(buffer, byteOffset, length / 2)
+        : new Uint32Array(buffer, byteOffset, Math.floor(length / 4));
   const stride = width * samples;
-  for (let at = 0; at < values.length; at++) if (at % stride >= samples) values[at] = (values[at] ?? 0) + (values[at - samples] ?? 0);
+  for (let at = 0; at < values.length; at++)
+    if (at % stride >= samples) values[at] = (values[at] ?? 0) + (values[at - samples] ?? 0);
 }
 
 /** Rows hold all high bytes, then all next ones, and so on; differences run over the whole row. Into little-endian order. */
@@ -86,6 +93,7 @@ export function undoFloats(part: Uint8Array, count: number, size: number, sample
   for (let from = 0; from + stride <= part.length; from += stride) {
     row.set(part.subarray(from, from + stride));
     for (let at = samples; at < stride; at++) row[at] = (row[at] ?? 0) + (row[at - samples] ?? 0);
-    for (let at = 0; at < count; at++) for (let byte = 0; byte < size; byte++) part[from + at * size + byte] = row[(size - 1 - byte) * count + at] ?? 0;
+    for (let at = 0; at < count; at++)
+      for (let byte = 0; byte < size; byte++) part[from + at * size + byte] = row[(size - 1 - byte) * count + at] ?? 0;
   }
 }

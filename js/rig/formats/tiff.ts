@@ -17,8 +17,27 @@ const MOST_PIXELS = 2 ** 28;
 const OVERHEAD = 1024;
 
 const Tag = {
-  ...{ Width: 256, Height: 257, Bits: 258, Compression: 259, Photometric: 262, Offsets: 273, Orientation: 274, Samples: 277, Rows: 278 },
-  ...{ Counts: 279, Planes: 284, Predictor: 317, TileWidth: 322, TileHeight: 323, TileOffsets: 324, TileCounts: 325, Format: 339 },
+  ...{
+    Width: 256,
+    Height: 257,
+    Bits: 258,
+    Compression: 259,
+    Photometric: 262,
+    Offsets: 273,
+    Orientation: 274,
+    Samples: 277,
+    Rows: 278,
+  },
+  ...{
+    Counts: 279,
+    Planes: 284,
+    Predictor: 317,
+    TileWidth: 322,
+    TileHeight: 323,
+    TileOffsets: 324,
+    TileCounts: 325,
+    Format: 339,
+  },
 } as const;
 
 /** Bytes of a value of each of TIFF's types that are numbers here. */
@@ -30,7 +49,8 @@ type Tags = Map<number, number[]>;
 
 function directory(view: DataView): { tags: Tags; little: boolean } {
   const little = view.getUint16(0) === 0x4949;
-  if (view.getUint16(2, little) !== 42) throw badFile("it is a BigTIFF, which is not read here; save it as an ordinary TIFF");
+  if (view.getUint16(2, little) !== 42)
+    throw badFile("it is a BigTIFF, which is not read here; save it as an ordinary TIFF");
   const at = view.getUint32(4, little);
   const count = view.getUint16(at, little);
   if (count === 0 || count > MOST_TAGS) throw badFile(`this TIFF has ${count} tags`);
@@ -41,8 +61,12 @@ function directory(view: DataView): { tags: Tags; little: boolean } {
     const length = view.getUint32(entry + 4, little);
     if (size === undefined || length > MOST_VALUES) continue;
     const from = size * length <= 4 ? entry + 8 : view.getUint32(entry + 8, little);
-    const one = (place: number) => (size === 1 ? view.getUint8(place) : size === 2 ? view.getUint16(place, little) : view.getUint32(place, little));
-    tags.set(view.getUint16(entry, little), Array.from({ length }, (_, each) => one(from + size * each)));
+    const one = (place: number) =>
+      size === 1 ? view.getUint8(place) : size === 2 ? view.getUint16(place, little) : view.getUint32(place, little);
+    tags.set(
+      view.getUint16(entry, little),
+      Array.from({ length }, (_, each) => one(from + size * each)),
+    );
   }
   return { tags, little };
 }
@@ -72,37 +96,68 @@ function layout(tags: Tags): Layout {
   const isFloat = format === 3;
   if (tags.get(Tag.Bits)?.some((each) => each !== bits)) throw badFile("this TIFF has channels of different sizes");
   const known = isFloat ? [32, 64] : [8, 16, 32];
-  if (!known.includes(bits) || format > 3) throw badFile(`this TIFF has ${bits}-bit samples of format ${format}; 8, 16 and 32 bits, or floats of 32 and 64, are read`);
+  if (!known.includes(bits) || format > 3)
+    throw badFile(
+      `this TIFF has ${bits}-bit samples of format ${format}; 8, 16 and 32 bits, or floats of 32 and 64, are read`,
+    );
   if (samples < 1 || samples > 4) throw badFile(`this TIFF has ${samples} channels; 1 to 4 are read`);
   if (one(Tag.Photometric, 1) === 3) throw badFile("this TIFF has a palette, which is not read here; save it as PNG");
-  if (one(Tag.Planes, 1) !== 1 && samples > 1) throw badFile("this TIFF keeps its channels apart, which is not read here");
-  if ((width * height * samples * bits) / 8 > MOST_PIXELS) throw badFile(`this TIFF has ${width}x${height} pixels of ${samples} times ${bits} bits, which is too much`);
+  if (one(Tag.Planes, 1) !== 1 && samples > 1)
+    throw badFile("this TIFF keeps its channels apart, which is not read here");
+  if ((width * height * samples * bits) / 8 > MOST_PIXELS)
+    throw badFile(`this TIFF has ${width}x${height} pixels of ${samples} times ${bits} bits, which is too much`);
   const isTiled = tags.has(Tag.TileWidth);
-  const [tileWidth, tileHeight] = isTiled ? [one(Tag.TileWidth, 0), one(Tag.TileHeight, 0)] : [width, Math.min(height, one(Tag.Rows, height))];
+  const [tileWidth, tileHeight] = isTiled
+    ? [one(Tag.TileWidth, 0), one(Tag.TileHeight, 0)]
+    : [width, Math.min(height, one(Tag.Rows, height))];
   if (isTiled) checkSize(tileWidth, tileHeight);
   if (tileHeight < 1) throw badFile("this TIFF has strips of no rows");
   const needed = Math.ceil(width / tileWidth) * Math.ceil(height / tileHeight);
-  const [offsets = [], counts = []] = [tags.get(isTiled ? Tag.TileOffsets : Tag.Offsets), tags.get(isTiled ? Tag.TileCounts : Tag.Counts)];
-  if (offsets.length < needed || counts.length < needed) throw badFile(`this TIFF lists ${offsets.length} parts of its pixels; ${needed} are needed`);
-  const rest = { isFloat, isSigned: format === 2, compression: one(Tag.Compression, 1), predictor: one(Tag.Predictor, 1) };
+  const [offsets = [], counts = []] = [
+    tags.get(isTiled ? Tag.TileOffsets : Tag.Offsets),
+    tags.get(isTiled ? Tag.TileCounts : Tag.Counts),
+  ];
+  if (offsets.length < needed || counts.length < needed)
+    throw badFile(`this TIFF lists ${offsets.length} parts of its pixels; ${needed} are needed`);
+  const rest = {
+    isFloat,
+    isSigned: format === 2,
+    compression: one(Tag.Compression, 1),
+    predictor: one(Tag.Predictor, 1),
+  };
   // Tiles at the edges are padded: together they may not be much more than the picture.
-  if (isTiled && needed * tileWidth * tileHeight > 4 * width * height + 4 * tileWidth * tileHeight) throw badFile("this TIFF has tiles much larger than its picture");
+  if (isTiled && needed * tileWidth * tileHeight > 4 * width * height + 4 * tileWidth * tileHeight)
+    throw badFile("this TIFF has tiles much larger than its picture");
   return { width, height, samples, bits, ...rest, isTiled, tileWidth, tileHeight, offsets, counts };
 }
 
-const COMPRESSIONS: Record<number, string> = { 2: "CCITT", 3: "CCITT", 4: "CCITT", 6: "JPEG", 7: "JPEG", 34925: "LZMA", 50000: "ZSTD", 34887: "LERC", 50001: "WebP" };
+const COMPRESSIONS: Record<number, string> = {
+  2: "CCITT",
+  3: "CCITT",
+  4: "CCITT",
+  6: "JPEG",
+  7: "JPEG",
+  34925: "LZMA",
+  50000: "ZSTD",
+  34887: "LERC",
+  50001: "WebP",
+};
 
 /** The bytes of one strip or tile, exactly `length` of them. */
 function expanded(bytes: Uint8Array, { compression }: Layout, length: number): Uint8Array {
   if (compression === 1) {
-    if (bytes.length < length) throw badFile(`this TIFF is cut off: a part of its pixels has ${bytes.length} of ${length} bytes`);
+    if (bytes.length < length)
+      throw badFile(`this TIFF is cut off: a part of its pixels has ${bytes.length} of ${length} bytes`);
     return bytes.slice(0, length);
   }
-  if (bytes.length > 2 * length + OVERHEAD) throw badFile("this TIFF is damaged: a part of its pixels is longer compressed than not");
+  if (bytes.length > 2 * length + OVERHEAD)
+    throw badFile("this TIFF is damaged: a part of its pixels is longer compressed than not");
   if (compression === 5) return lzw(bytes, length);
   if (compression === 8 || compression === 32946) return inflateExactly(bytes, length, "this TIFF");
   if (compression === 32773) return packBits(bytes, length);
-  throw badFile(`this TIFF is compressed by ${COMPRESSIONS[compression] ?? `method ${compression}`}, which is not read here; save it plain, or by LZW or deflate`);
+  throw badFile(
+    `this TIFF is compressed by ${COMPRESSIONS[compression] ?? `method ${compression}`}, which is not read here; save it plain, or by LZW or deflate`,
+  );
 }
 
 /** All samples, as bytes in this machine's order. */
@@ -125,7 +180,10 @@ function pixels(bytes: Uint8Array, found: Layout, little: boolean): Uint8Array {
       if (predictor === 2) undoIntegers(part, tileWidth, bits / 8, samples);
       const used = Math.min(tileWidth, width - column) * size;
       for (let line = 0; line < Math.min(rows, height - row); line++) {
-        out.set(part.subarray(line * tileWidth * size, line * tileWidth * size + used), ((row + line) * width + column) * size);
+        out.set(
+          part.subarray(line * tileWidth * size, line * tileWidth * size + used),
+          ((row + line) * width + column) * size,
+        );
       }
     }
   }
@@ -142,13 +200,21 @@ export function readTiff(bytes: Uint8Array): Picture {
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
   const { tags, little } = directory(view);
   const found = layout(tags);
-  if (![1, 2, 3].includes(found.predictor) || (found.predictor === 3 && !found.isFloat)) throw badFile(`this TIFF has the predictor ${found.predictor}, which is not known here`);
+  if (![1, 2, 3].includes(found.predictor) || (found.predictor === 3 && !found.isFloat))
+    throw badFile(`this TIFF has the predictor ${found.predictor}, which is not known here`);
   const { buffer } = pixels(bytes, found, little) as Uint8Array<ArrayBuffer>;
   const { width, height, samples: channels, bits, isFloat, isSigned } = found;
   const data = isFloat
-    ? bits === 64 ? new Float32Array(new Float64Array(buffer)) : new Float32Array(buffer)
-    : bits === 8 ? new Uint8Array(buffer) : bits === 32 ? new Float32Array(isSigned ? new Int32Array(buffer) : new Uint32Array(buffer))
-    : isSigned ? new Uint16Array(new Int16Array(buffer).map((value) => Math.max(0, value))) : new Uint16Array(buffer);
+    ? bits === 64
+      ? new Float32Array(new Float64Array(buffer))
+      : new Float32Array(buffer)
+    : bits === 8
+      ? new Uint8Array(buffer)
+      : bits === 32
+        ? new Float32Array(isSigned ? new Int32Array(buffer) : new Uint32Array(buffer))
+        : isSigned
+          ? new Uint16Array(new Int16Array(buffer).map((value) => Math.max(0, value)))
+          : new Uint16Array(buffer);
   const picture: Picture = { width, height, channels, data, format: "TIFF", bits, notes: [], warnings: [] };
   return turnedBy(picture, tags.get(Tag.Orientation)?.[0] ?? 1, "its tag says");
 }

@@ -27,7 +27,8 @@ export class Words {
       while (at < bytes.length && bytes[at] !== NEWLINE) at++;
     }
     let word = "";
-    while (at < bytes.length && (bytes[at] ?? 0) > 32 && word.length < MOST) word += String.fromCharCode(bytes[at++] ?? 0);
+    while (at < bytes.length && (bytes[at] ?? 0) > 32 && word.length < MOST)
+      word += String.fromCharCode(bytes[at++] ?? 0);
     this.at = at;
     return word;
   }

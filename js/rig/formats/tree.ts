@@ -27,17 +27,57 @@ const MOST_FOUND = 5000;
 /** Letters of a name that means anything here. */
 const LONGEST_NAME = 80;
 
-const INTRINSICS = [["camera", "matrix"], ["intrinsic", "matrix"], ["camera", "intrinsics"], ["intrinsics"], ["intrinsic"], ["mtx"], ["k"], ["m"]];
-const LENS = [["distortion", "coefficients"], ["distortion", "coeffs"], ["dist", "coeffs"], ["dist", "coeff"], ["distortion"], ["dist"], ["coeffs"], ["d"]];
-const ROTATION = [["rotation", "matrix"], ["rotation", "vector"], ["rotation"], ["orientation"], ["quaternion"], ["rot"], ["rvec"], ["r"]];
+const INTRINSICS = [
+  ["camera", "matrix"],
+  ["intrinsic", "matrix"],
+  ["camera", "intrinsics"],
+  ["intrinsics"],
+  ["intrinsic"],
+  ["mtx"],
+  ["k"],
+  ["m"],
+];
+const LENS = [
+  ["distortion", "coefficients"],
+  ["distortion", "coeffs"],
+  ["dist", "coeffs"],
+  ["dist", "coeff"],
+  ["distortion"],
+  ["dist"],
+  ["coeffs"],
+  ["d"],
+];
+const ROTATION = [
+  ["rotation", "matrix"],
+  ["rotation", "vector"],
+  ["rotation"],
+  ["orientation"],
+  ["quaternion"],
+  ["rot"],
+  ["rvec"],
+  ["r"],
+];
 const TRANSLATION = [["translation", "vector"], ["translation"], ["position"], ["trans"], ["tvec"], ["t"]];
 /** Matrices of 3x4 and 4x4 that are no motions: projections, and disparity to depth. */
-const NO_MOTION = [["p"], ["q"], ["projection", "matrix"], ["projection"], ["disp", "to", "depth"], ["disparity", "to", "depth"], ["covariance"]];
+const NO_MOTION = [
+  ["p"],
+  ["q"],
+  ["projection", "matrix"],
+  ["projection"],
+  ["disp", "to", "depth"],
+  ["disparity", "to", "depth"],
+  ["covariance"],
+];
 
 /** The words of a name. */
 function wordsOf(name: string): string[] {
   if (name.length > LONGEST_NAME) return [];
-  return name.replace(/([a-z])([A-Z])/g, "$1 $2").replace(/([A-Za-z])(\d)/g, "$1 $2").toLowerCase().split(/[^a-z0-9]+/).filter((word) => word !== "");
+  return name
+    .replace(/([a-z])([A-Z])/g, "$1 $2")
+    .replace(/([A-Za-z])(\d)/g, "$1 $2")
+    .toLowerCase()
+    .split(/[^a-z0-9]+/)
+    .filter((word) => word !== "");
 }
 
 /** Names come again and again: what `of` says of one is kept, for as many names as a file may have. */
@@ -82,12 +122,18 @@ function member(node: Node, ...names: string[]): unknown {
 }
 
 /** The member whose name is one of some phrases and this label. */
-function labelled(node: Node, names: ((name: string) => string | undefined)[], label: string): { key: string; value: unknown } | undefined {
-  for (const besides of names) for (const key of Object.keys(node)) if (besides(key) === label) return { key, value: node[key] };
+function labelled(
+  node: Node,
+  names: ((name: string) => string | undefined)[],
+  label: string,
+): { key: string; value: unknown } | undefined {
+  for (const besides of names)
+    for (const key of Object.keys(node)) if (besides(key) === label) return { key, value: node[key] };
   return undefined;
 }
 
-const textOf = (value: unknown): string | undefined => (typeof value === "string" && value !== "" ? value.slice(0, 200) : undefined);
+const textOf = (value: unknown): string | undefined =>
+  typeof value === "string" && value !== "" ? value.slice(0, 200) : undefined;
 const isLike = (value: number | undefined, to: number): boolean => value !== undefined && Math.abs(value - to) < 1e-6;
 
 /** Nine numbers as a matrix of intrinsics, row by row, however they stood. */
@@ -95,7 +141,8 @@ function intrinsics(matrix: Matrix | undefined): Numbers | undefined {
   const values = matrix?.values;
   if (values?.length !== 9 || !isLike(values[8], 1)) return undefined;
   const isTriangle = (m: Numbers) => isLike(m[3], 0) && isLike(m[6], 0) && isLike(m[7], 0) && !isLike(m[0], 0);
-  if (isTriangle(values)) return isLike(values[2], 0) && isLike(values[5], 0) && isLike(values[0], 1) ? undefined : values;
+  if (isTriangle(values))
+    return isLike(values[2], 0) && isLike(values[5], 0) && isLike(values[0], 1) ? undefined : values;
   const turned = transposed(values, 3);
   return isTriangle(turned) ? turned : undefined;
 }
@@ -116,7 +163,8 @@ class Search implements Calibration {
     if (typeof value !== "object" || value === null) return;
     if (++this.#nodes > MOST_NODES) throw badFile(`it holds more than ${MOST_NODES} lists and objects`);
     if (depth > MOST_DEPTH) throw badFile(`it is nested deeper than ${MOST_DEPTH}`);
-    if (this.cameras.length + this.poses.length > MOST_FOUND) throw badFile(`it holds more than ${MOST_FOUND} cameras and poses`);
+    if (this.cameras.length + this.poses.length > MOST_FOUND)
+      throw badFile(`it holds more than ${MOST_FOUND} cameras and poses`);
     if (Array.isArray(value)) {
       if (typeof value[0] !== "object") return;
       for (const each of value) this.walk(each, name, frames, depth + 1);
@@ -128,7 +176,8 @@ class Search implements Calibration {
     if (this.#members > MOST_MEMBERS) throw badFile(`its objects have more than ${MOST_MEMBERS} members`);
     const inner = keys.length > MOST_OWN ? frames : this.#read(node, name, frames);
     for (const [group, members] of dotted(node, keys)) this.walk(members, group, frames, depth + 1);
-    for (const key of keys) if (matrixOf(node[key]) === undefined) this.walk(node[key], nameOf(key, name), inner, depth + 1);
+    for (const key of keys)
+      if (matrixOf(node[key]) === undefined) this.walk(node[key], nameOf(key, name), inner, depth + 1);
   }
 
   /** The cameras and motions that are members of this object, and the frames that it names. */
@@ -158,8 +207,12 @@ class Search implements Calibration {
     const kalibr = textOf(member(node, "cameramodel"));
     const four = matrixOf(member(node, "intrinsics"))?.values;
     if (kalibr !== undefined && four !== undefined) {
-      if (kalibr !== "pinhole") throw badFile(`its camera "${name ?? ""}" is of Kalibr's model "${kalibr.slice(0, 40)}"; only pinhole is known here`);
-      if (four.length !== 4) throw badFile(`its camera "${name ?? ""}" has ${four.length} intrinsics; fu fv pu pv are needed`);
+      if (kalibr !== "pinhole")
+        throw badFile(
+          `its camera "${name ?? ""}" is of Kalibr's model "${kalibr.slice(0, 40)}"; only pinhole is known here`,
+        );
+      if (four.length !== 4)
+        throw badFile(`its camera "${name ?? ""}" has ${four.length} intrinsics; fu fv pu pv are needed`);
       return this.#add({ name, focal: four.slice(0, 2), centre: four.slice(2), ...this.#rest(node, "") });
     }
     for (const key of Object.keys(node)) this.#cameraOfMatrix(node, key, name);
@@ -171,11 +224,18 @@ class Search implements Calibration {
     const matrix = matrixOf(node[key]);
     const k = intrinsics(matrix);
     if (k === undefined) {
-      if (matrix?.values.length === 9 && label === "" && key !== "M") throw badFile(`its ${key} is no matrix of intrinsics, fx 0 cx / 0 fy cy / 0 0 1`);
+      if (matrix?.values.length === 9 && label === "" && key !== "M")
+        throw badFile(`its ${key} is no matrix of intrinsics, fx 0 cx / 0 fy cy / 0 0 1`);
       return;
     }
     const [fx = NaN, skew = 0, cx = NaN, , fy = NaN, cy = NaN] = k;
-    this.#add({ name: label === "" ? parent : label, focal: [fx, fy], centre: [cx, cy], skew, ...this.#rest(node, label) });
+    this.#add({
+      name: label === "" ? parent : label,
+      focal: [fx, fy],
+      centre: [cx, cy],
+      skew,
+      ...this.#rest(node, label),
+    });
   }
 
   /** Distortion, model and size of the camera with this label. */
@@ -183,10 +243,19 @@ class Search implements Calibration {
     const written = labelled(node, lensNames, label)?.value ?? member(node, "distk1k2p1p2k3");
     const singles = ["k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"].map((key) => numberOf(member(node, key)));
     const isFisheye = numberOf(member(node, "fisheyemodel")) === 1 || member(node, "fisheye") === true;
-    const model = isFisheye ? "fisheye" : (textOf(member(node, "distortionmodel", "lensmodel", "lens")) ?? textOf(member(node, "model")));
+    const model = isFisheye
+      ? "fisheye"
+      : (textOf(member(node, "distortionmodel", "lensmodel", "lens")) ?? textOf(member(node, "model")));
     const fisheye = [0, 1, 4, 5].map((index) => singles[index]);
     const listed = isNode(written) && written.data === undefined ? undefined : matrixOf(written)?.values;
-    if (written !== undefined && !isNode(written) && listed === undefined && !isEmpty(written) && typeof written !== "string") throw badFile("its distortion is not made of numbers");
+    if (
+      written !== undefined &&
+      !isNode(written) &&
+      listed === undefined &&
+      !isEmpty(written) &&
+      typeof written !== "string"
+    )
+      throw badFile("its distortion is not made of numbers");
     if (singles.some((value) => value !== undefined) && listed === undefined) {
       const used = /fisheye|kannala|equi/i.test(model ?? "") ? fisheye : singles;
       return { distortion: used.map((value) => value ?? 0), model, ...sizeOf(node, label) };
@@ -230,7 +299,10 @@ class Search implements Calibration {
     if (r.values.length === 9) say(isRealSense ? transposed(r.values, 3) : r.values);
     else if (r.values.length === 4) say(ofQuaternion(r.values, this.warnings));
     else if (r.values.length === 3) say(ofVector(r.values));
-    else throw badFile(`its ${key} has ${r.values.length} numbers: 9 of a matrix, 4 of a quaternion or 3 of a vector are needed`);
+    else
+      throw badFile(
+        `its ${key} has ${r.values.length} numbers: 9 of a matrix, 4 of a quaternion or 3 of a vector are needed`,
+      );
   }
 
   #motionOfMatrix(node: Node, key: string, parent: string, frames: Frames): void {
@@ -240,9 +312,14 @@ class Search implements Calibration {
     if (matrix === undefined || (length !== 16 && length !== 12) || isLens(key) === "") return;
     if (length === 12 && matrix.rows !== 3) return;
     const isOpen3D = key === "extrinsic" || key === "pose";
-    const names = isOpen3D ? named(parent, key === "extrinsic" ? { from: "world", to: "camera" } : { from: "camera", to: "world" }) : this.#kalibr(key, parent) ?? named(key, frames);
+    const names = isOpen3D
+      ? named(parent, key === "extrinsic" ? { from: "world", to: "camera" } : { from: "camera", to: "world" })
+      : (this.#kalibr(key, parent) ?? named(key, frames));
     const isFlat = matrix.rows === undefined && length === 16;
-    const byColumns = isFlat && (isOpen3D || (!isLastRow(matrix.values.slice(12)) && isLastRow([3, 7, 11, 15].map((index) => matrix.values[index] ?? NaN))));
+    const byColumns =
+      isFlat &&
+      (isOpen3D ||
+        (!isLastRow(matrix.values.slice(12)) && isLastRow([3, 7, 11, 15].map((index) => matrix.values[index] ?? NaN))));
     const values = byColumns ? transposed(matrix.values, 4) : matrix.values;
     this.poses.push(motionOfMatrix(values, names, this.warnings, !isOpen3D));
   }
@@ -263,8 +340,18 @@ class Search implements Calibration {
       const next = /^cam(\d+)$/.exec(to ?? "")?.[1];
       if (from !== "imu" || next === undefined) continue;
       const before = this.poses.find((other) => other.from === "imu" && other.to === `cam${Number(next) - 1}`);
-      if (before?.to === undefined || to === undefined || this.poses.some((other) => other.from === before.to && other.to === to)) continue;
-      this.poses.unshift({ name: `${to} from ${before.to}`, from: before.to, to, pose: chained(pose, inverseOf(before.pose)) });
+      if (
+        before?.to === undefined ||
+        to === undefined ||
+        this.poses.some((other) => other.from === before.to && other.to === to)
+      )
+        continue;
+      this.poses.unshift({
+        name: `${to} from ${before.to}`,
+        from: before.to,
+        to,
+        pose: chained(pose, inverseOf(before.pose)),
+      });
     }
   }
 }
@@ -282,9 +369,11 @@ function dotted(node: Node, keys: string[]): Map<string, Node> {
 }
 
 /** What a member's cameras and poses are called: members that only say what they are take their parent's name. */
-const nameOf = (key: string, parent: string): string => (/^(transforms?|intrinsics?|pose|opencv_storage|launch|parameters|ros__parameters|nodes)$/.test(key) ? parent : key);
+const nameOf = (key: string, parent: string): string =>
+  /^(transforms?|intrinsics?|pose|opencv_storage|launch|parameters|ros__parameters|nodes)$/.test(key) ? parent : key;
 
-const isEmpty = (value: unknown): boolean => value === null || value === "" || (Array.isArray(value) && value.length === 0);
+const isEmpty = (value: unknown): boolean =>
+  value === null || value === "" || (Array.isArray(value) && value.length === 0);
 
 /** A list or matrix, or an object of x, y, z and w. */
 function parts(value: unknown, axes: string[]): Matrix | undefined {
@@ -296,7 +385,8 @@ function parts(value: unknown, axes: string[]): Matrix | undefined {
 function sizeOf(node: Node, label: string): { width?: number; height?: number } {
   const both = matrixOf(member(node, "resolution", "imagesize", "size"))?.values;
   if (both?.length === 2) return { width: both[0] ?? 0, height: both[1] ?? 0 };
-  const side = (...names: string[]) => numberOf(member(node, ...names.flatMap((name) => (label === "" ? [name] : [`${name}${label}`, name]))));
+  const side = (...names: string[]) =>
+    numberOf(member(node, ...names.flatMap((name) => (label === "" ? [name] : [`${name}${label}`, name]))));
   const [width, height] = [side("imagewidth", "width"), side("imageheight", "height")];
   return { ...(width !== undefined && { width }), ...(height !== undefined && { height }) };
 }

@@ -19,11 +19,13 @@ const MOST_ELEMENTS = 100_000;
 const MOST_TAG = 4096;
 
 const ENTITIES: Record<string, string> = { lt: "<", gt: ">", amp: "&", quot: '"', apos: "'" };
-const plain = (text: string): string => text.replace(/&(lt|gt|amp|quot|apos);/g, (_, name: string) => ENTITIES[name] ?? "");
+const plain = (text: string): string =>
+  text.replace(/&(lt|gt|amp|quot|apos);/g, (_, name: string) => ENTITIES[name] ?? "");
 
 function attributesOf(text: string): Record<string, string> {
   const found: Record<string, string> = Object.create(null);
-  for (const [, name = "", double, single] of text.matchAll(/([\w:.-]+)\s*=\s*(?:"([^"]*)"|'([^']*)')/g)) found[name] = plain(double ?? single ?? "");
+  for (const [, name = "", double, single] of text.matchAll(/([\w:.-]+)\s*=\s*(?:"([^"]*)"|'([^']*)')/g))
+    found[name] = plain(double ?? single ?? "");
   return found;
 }
 
@@ -58,7 +60,8 @@ export function readXml(text: string): Element {
     pieces.at(-1)?.push(text.slice(at, tag));
     if (text.startsWith("<?", tag)) at = after(text, "?>", tag);
     else if (text.startsWith("<!--", tag)) at = after(text, "-->", tag);
-    else if (text.startsWith("<!", tag)) throw badFile("this XML declares a document type or raw data, which no calibration needs: not read");
+    else if (text.startsWith("<!", tag))
+      throw badFile("this XML declares a document type or raw data, which no calibration needs: not read");
     else {
       const end = tagEnd(text, tag);
       const inner = text.slice(tag + 1, end - 1);
@@ -73,7 +76,12 @@ export function readXml(text: string): Element {
       const empty = inner.endsWith("/");
       const name = /^[\w:.-]+/.exec(inner)?.[0];
       if (name === undefined) throw badFile("this XML has a tag without a name");
-      const element: Element = { tag: name, attributes: attributesOf(inner.slice(name.length)), children: [], text: "" };
+      const element: Element = {
+        tag: name,
+        attributes: attributesOf(inner.slice(name.length)),
+        children: [],
+        text: "",
+      };
       open.at(-1)?.children.push(element);
       if (++count > MOST_ELEMENTS) throw badFile(`this XML has more than ${MOST_ELEMENTS} elements`);
       if (empty) continue;

@@ -13,7 +13,21 @@ const MOST_DEEP = 32;
 const MOST_ALIASES = 64;
 
 const isBlank = (c: string | undefined): boolean => c === undefined || c === " " || c === "\t" || c === "\n";
-const ESCAPES: Record<string, string> = { 0: "\0", a: "\x07", b: "\b", t: "\t", n: "\n", v: "\v", f: "\f", r: "\r", e: "\x1b", N: "\x85", _: "\xa0", L: "\u2028", P: "\u2029" };
+const ESCAPES: Record<string, string> = {
+  0: "\0",
+  a: "\x07",
+  b: "\b",
+  t: "\t",
+  n: "\n",
+  v: "\v",
+  f: "\f",
+  r: "\r",
+  e: "\x1b",
+  N: "\x85",
+  _: "\xa0",
+  L: "\u2028",
+  P: "\u2029",
+};
 /** Digits of an escape by code. */
 const CODES: Record<string, number> = { x: 2, u: 4, U: 8 };
 
@@ -22,7 +36,8 @@ function plain(text: string): unknown {
   if (/^(?:~|null|Null|NULL|)$/.test(text)) return null;
   if (/^(?:true|True|TRUE)$/.test(text)) return true;
   if (/^(?:false|False|FALSE)$/.test(text)) return false;
-  if (/^[-+]?(?:\.\d+|\d+(?:\.\d*)?)(?:[eE][-+]?\d+)?$/.test(text) || /^0(?:o[0-7]+|x[\da-fA-F]+)$/.test(text)) return Number(text);
+  if (/^[-+]?(?:\.\d+|\d+(?:\.\d*)?)(?:[eE][-+]?\d+)?$/.test(text) || /^0(?:o[0-7]+|x[\da-fA-F]+)$/.test(text))
+    return Number(text);
   if (/^[-+]?\.(?:inf|Inf|INF)$/.test(text)) return text.startsWith("-") ? -Infinity : Infinity;
   return /^\.(?:nan|NaN|NAN)$/.test(text) ? NaN : text;
 }
@@ -151,7 +166,12 @@ class Reader {
     if (++this.#deep > MOST_DEEP) this.#fail(`it is nested more than ${MOST_DEEP} deep`);
     let anchor: string | undefined;
     let [isBroken, properties] = [this.#skip(), 0];
-    while (!this.#isOver && (this.#next === "!" || this.#next === "&") && (!isBroken || this.#column >= least) && !this.#isKey(isBroken)) {
+    while (
+      !this.#isOver &&
+      (this.#next === "!" || this.#next === "&") &&
+      (!isBroken || this.#column >= least) &&
+      !this.#isKey(isBroken)
+    ) {
       if (++properties > 2) this.#fail("nothing has more than a tag and an anchor");
       anchor = this.#property() ?? anchor;
       isBroken = this.#skip() || isBroken;
@@ -203,14 +223,27 @@ class Reader {
     const end = this.#text.indexOf("\n", this.#at);
     const line = this.#text.slice(this.#at, end < 0 ? undefined : end);
     if (quote === "[" || quote === "{" || quote === "#") return undefined;
-    const pattern = quote === '"' ? /^"(?:[^"\\]|\\.)*"(?=[ \t]*:(?:[ \t]|$))/ : quote === "'" ? /^'(?:[^']|'')*'(?=[ \t]*:(?:[ \t]|$))/ : /^.*?(?=:(?:[ \t]|$))/;
+    const pattern =
+      quote === '"'
+        ? /^"(?:[^"\\]|\\.)*"(?=[ \t]*:(?:[ \t]|$))/
+        : quote === "'"
+          ? /^'(?:[^']|'')*'(?=[ \t]*:(?:[ \t]|$))/
+          : /^.*?(?=:(?:[ \t]|$))/;
     const [key] = pattern.exec(line) ?? [];
-    return key === undefined || (quote !== '"' && quote !== "'" && /[ \t]#/.test(key)) ? undefined : this.#at + key.length;
+    return key === undefined || (quote !== '"' && quote !== "'" && /[ \t]#/.test(key))
+      ? undefined
+      : this.#at + key.length;
   }
 
   #key(end: number): string {
     const quote = this.#next;
-    const value = quote === '"' || quote === "'" ? this.#quoted(quote) : this.#text.slice(this.#at, end).replace(/^(?:[!&]\S+[ \t]+)+/, "").trim();
+    const value =
+      quote === '"' || quote === "'"
+        ? this.#quoted(quote)
+        : this.#text
+            .slice(this.#at, end)
+            .replace(/^(?:[!&]\S+[ \t]+)+/, "")
+            .trim();
     this.#at = this.#text.indexOf(":", end) + 1;
     return value;
   }
@@ -261,7 +294,11 @@ class Reader {
     const isQuoted = this.#next === '"' || this.#next === "'";
     const key = this.#flowValue();
     this.#skip();
-    if (this.#next !== ":" || !(isQuoted || isBlank(this.#text[this.#at + 1]) || /[,[\]{}]/.test(this.#text[this.#at + 1] ?? ""))) return { key, value: key, isPair: false };
+    if (
+      this.#next !== ":" ||
+      !(isQuoted || isBlank(this.#text[this.#at + 1]) || /[,[\]{}]/.test(this.#text[this.#at + 1] ?? ""))
+    )
+      return { key, value: key, isPair: false };
     this.#at++;
     this.#skip();
     const isEmpty = /[,}\]]/.test(this.#text[this.#at] ?? "");
@@ -281,7 +318,7 @@ class Reader {
 
   #quoted(quote: string): string {
     const start = ++this.#at;
-    for (;; this.#at++) {
+    for (; ; this.#at++) {
       const c = this.#next;
       if (c === undefined) this.#fail("a quote is missing");
       if (c === "\\" && quote === '"') this.#at++;
@@ -290,12 +327,16 @@ class Reader {
     }
     const inside = this.#text.slice(start, this.#at++);
     if (quote === "'") return folded(inside).replaceAll("''", "'");
-    return folded(inside.replace(/\\\n[ \t]*/g, "")).replace(/\\(?:x[\da-fA-F]{2}|u[\da-fA-F]{4}|U[\da-fA-F]{8}|[^])/g, (escape) => this.#escaped(escape.slice(1)));
+    return folded(inside.replace(/\\\n[ \t]*/g, "")).replace(
+      /\\(?:x[\da-fA-F]{2}|u[\da-fA-F]{4}|U[\da-fA-F]{8}|[^])/g,
+      (escape) => this.#escaped(escape.slice(1)),
+    );
   }
 
   #escaped(code: string): string {
     const letter = code.slice(0, 1);
-    if (CODES[letter] === undefined) return ESCAPES[letter] ?? (/[ "/\\\t]/.test(letter) ? letter : this.#fail(`there is no escape \\${letter}`));
+    if (CODES[letter] === undefined)
+      return ESCAPES[letter] ?? (/[ "/\\\t]/.test(letter) ? letter : this.#fail(`there is no escape \\${letter}`));
     const point = Number.parseInt(code.slice(1), 16);
     return code.length === 1 || point > 0x10ffff ? this.#fail("an escape is damaged") : String.fromCodePoint(point);
   }
@@ -310,7 +351,9 @@ class Reader {
       const back = this.#at;
       const gap = this.#take(GAP);
       if (gap === undefined) return text;
-      const goesOn = !this.#isOver && (inFlow ? !/[,[\]{}:]/.test(this.#next ?? "") : this.#column >= least && this.#keyEnd() === undefined);
+      const goesOn =
+        !this.#isOver &&
+        (inFlow ? !/[,[\]{}:]/.test(this.#next ?? "") : this.#column >= least && this.#keyEnd() === undefined);
       if (!goesOn) {
         this.#at = back;
         return text;
@@ -321,7 +364,8 @@ class Reader {
 
   /** A literal or folded scalar: the lines that are indented from column `least` on. */
   #block(least: number, isFolded: boolean): string {
-    const head = /^[|>]([-+]?)([1-9]?)([-+]?)[ \t]*(?:#.*)?$/.exec(this.#line()) ?? this.#fail("the head of a text is damaged");
+    const head =
+      /^[|>]([-+]?)([1-9]?)([-+]?)[ \t]*(?:#.*)?$/.exec(this.#line()) ?? this.#fail("the head of a text is damaged");
     const chomp = head[1] || head[3];
     const lines: string[] = [];
     let indent = head[2] ? Math.max(0, least - 1) + Number(head[2]) : undefined;

@@ -1,11 +1,13 @@
 /** What writers are given, checked by name: whoever reads a file of something else would believe it. */
 import { BimodalError } from "../../errors.js";
 
-export const fault = (code: string, field: string, words: string): BimodalError => new BimodalError(code, `${field}: ${words}`, field);
+export const fault = (code: string, field: string, words: string): BimodalError =>
+  new BimodalError(code, `${field}: ${words}`, field);
 
 /** One of some words. */
 export function oneOf(words: readonly string[], value: unknown, field: string): void {
-  if (!words.some((word) => word === value)) throw fault("option", field, `"${String(value)}" is unknown; known: ${words.join(", ")}`);
+  if (!words.some((word) => word === value))
+    throw fault("option", field, `"${String(value)}" is unknown; known: ${words.join(", ")}`);
 }
 
 /** Lists by one entry, objects by their members, those of any name by "*"; what is in neither is not looked at. */
@@ -15,8 +17,10 @@ export type Example = readonly Example[] | { readonly [name: string]: Example };
 export function like(example: Example, value: unknown, field: string): void {
   const isList = Array.isArray(example);
   const members = Object(value) as Record<string, unknown>;
-  if (members !== value || Array.isArray(value) !== isList) throw fault("type", field, `must be ${isList ? "a list" : "an object"}`);
+  if (members !== value || Array.isArray(value) !== isList)
+    throw fault("type", field, `must be ${isList ? "a list" : "an object"}`);
   for (const [name, member] of Object.entries(example)) {
-    for (const key of isList || name === "*" ? Object.keys(members) : [name]) like(member, members[key], field + (isList ? `[${key}]` : `.${key}`));
+    for (const key of isList || name === "*" ? Object.keys(members) : [name])
+      like(member, members[key], field + (isList ? `[${key}]` : `.${key}`));
   }
 }

@@ -22,9 +22,11 @@ function check(cloud: Cloud, index: number): void {
   const field = `clouds[${index}]`;
   const { points, colours } = Object(cloud) as Cloud;
   if (!(points instanceof Float32Array)) throw fault("type", `${field}.points`, "must be a Float32Array");
-  if (points.length % 3 !== 0) throw fault("size", `${field}.points`, `needs 3 numbers for each point, not ${points.length}`);
+  if (points.length % 3 !== 0)
+    throw fault("size", `${field}.points`, `needs 3 numbers for each point, not ${points.length}`);
   // Other numbers would be cut to bytes.
-  if (colours !== undefined && Object(colours).byteLength !== points.length) throw fault("size", `${field}.colours`, `needs ${points.length} bytes`);
+  if (colours !== undefined && Object(colours).byteLength !== points.length)
+    throw fault("size", `${field}.colours`, `needs ${points.length} bytes`);
 }
 
 /** A comment is one line of ASCII. */
@@ -36,7 +38,9 @@ function header(clouds: readonly Cloud[], count: number, unit: string): string {
     "ply",
     "format binary_little_endian 1.0",
     `comment ${comment(unit)}; x right, y down, z forward`,
-    ...clouds.map(({ name }, index) => `comment ${labels ? `label ${index}: ` : ""}${comment(name ?? `cloud ${index + 1}`)}`),
+    ...clouds.map(
+      ({ name }, index) => `comment ${labels ? `label ${index}: ` : ""}${comment(name ?? `cloud ${index + 1}`)}`,
+    ),
     `element vertex ${count}`,
     ...["x", "y", "z"].map((axis) => `property float ${axis}`),
     ...["red", "green", "blue"].map((colour) => `property uchar ${colour}`),
@@ -52,7 +56,8 @@ function header(clouds: readonly Cloud[], count: number, unit: string): string {
  */
 export function writeClouds(clouds: readonly Cloud[], unit: "metres" | "pixels" = "metres"): Uint8Array<ArrayBuffer> {
   if (!Array.isArray(clouds)) throw fault("type", "clouds", "must be a list of clouds");
-  if (clouds.length === 0 || clouds.length > MOST_CLOUDS) throw fault("size", "clouds", `needs 1 to ${MOST_CLOUDS} of them, not ${clouds.length}`);
+  if (clouds.length === 0 || clouds.length > MOST_CLOUDS)
+    throw fault("size", "clouds", `needs 1 to ${MOST_CLOUDS} of them, not ${clouds.length}`);
   // `forEach` would pass over holes.
   [...clouds].forEach(check);
   let count = 0;

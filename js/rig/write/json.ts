@@ -9,12 +9,17 @@ const columns = (matrix: readonly (readonly number[])[]): number[] =>
 
 function open3dIntrinsic(camera: Camera | undefined, notes: string[]): string[] {
   if (camera === undefined) {
-    throw fault("missing", "context.colour", "is required, since Open3D reads no extrinsics without the camera's intrinsics");
+    throw fault(
+      "missing",
+      "context.colour",
+      "is required, since Open3D reads no extrinsics without the camera's intrinsics",
+    );
   }
   const { fx, fy, cx, cy, size, distortion } = camera;
   const [width, height] = size ?? [0, 0];
   if (size === undefined) notes.push("the colour camera's size is not known: the file says 0");
-  if (reaches(distortion, 0)) notes.push("the colour camera's distortion is left out: Open3D takes pictures whose distortion was removed");
+  if (reaches(distortion, 0))
+    notes.push("the colour camera's distortion is left out: Open3D takes pictures whose distortion was removed");
   return [
     `    "height": ${height},`,
     `    "intrinsic_matrix": [${list([fx, 0, 0, 0, fy, 0, cx, cy, 1])}],`,
@@ -54,7 +59,9 @@ function realsenseCamera(camera: Camera | undefined, key: string, name: string, 
   const { fx, fy, cx, cy, size } = camera;
   const distortion = realsenseDistortion(camera);
   if (distortion === undefined) {
-    notes.push(`the ${name} camera's intrinsics are left out: librealsense has k1 k2 p1 p2 k3 alone, and its distortion has more`);
+    notes.push(
+      `the ${name} camera's intrinsics are left out: librealsense has k1 k2 p1 p2 k3 alone, and its distortion has more`,
+    );
     return [];
   }
   if (size === undefined) notes.push(`the ${name} camera's size is not known`);

@@ -4,7 +4,10 @@ import { real } from "./numbers.js";
 import { type Rig, type RigContext, rows } from "./rig.js";
 
 /** Four rows of four numbers and nothing else, which `numpy.loadtxt` and everything else read. */
-export const matrixText = (rig: Rig): string => rows(rig).map((values) => `${values.map(real).join(" ")}\n`).join("");
+export const matrixText = (rig: Rig): string =>
+  rows(rig)
+    .map((values) => `${values.map(real).join(" ")}\n`)
+    .join("");
 
 /**
  * The unit quaternion x y z w of a rotation, w not negative (Shepperd 1978): divided by the largest of the four, so that

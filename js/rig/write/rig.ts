@@ -88,7 +88,8 @@ function camera(given: RigCamera | undefined, pixels: Size | undefined, name: "c
 export function rigOf(pose: Pose, context: RigContext): Rig {
   like({}, pose, "pose");
   like({}, context, "context");
-  if (pose.scale !== 1) throw fault("range", "pose.scale", `extrinsics of a rig have the scale 1 (got ${String(pose.scale)})`);
+  if (pose.scale !== 1)
+    throw fault("range", "pose.scale", `extrinsics of a rig have the scale 1 (got ${String(pose.scale)})`);
   const rotation = numbers(pose.rotation, [9], "pose.rotation");
   checkRotation(rotation);
   return {
@@ -100,13 +101,17 @@ export function rigOf(pose: Pose, context: RigContext): Rig {
 }
 
 /** Row `i` of the 3x4 matrix (R t). */
-export const row = ({ rotation, translation }: Rig, i: number): number[] => [...rotation.slice(3 * i, 3 * i + 3), translation[i] ?? 0];
+export const row = ({ rotation, translation }: Rig, i: number): number[] => [
+  ...rotation.slice(3 * i, 3 * i + 3),
+  translation[i] ?? 0,
+];
 
 /** The four rows of the 4x4 matrix that carries points of the depth camera into the colour camera's frame. */
 export const rows = (rig: Rig): number[][] => [...[0, 1, 2].map((i) => row(rig, i)), [0, 0, 0, 1]];
 
 /** Whether any number is not zero from the given one on. */
-export const reaches = (distortion: readonly number[], from: number): boolean => distortion.slice(from).some((value) => value !== 0);
+export const reaches = (distortion: readonly number[], from: number): boolean =>
+  distortion.slice(from).some((value) => value !== 0);
 
 /** So many numbers of a distortion, zeros where it has fewer. */
 export const padded = (distortion: readonly number[], length: number): number[] =>

@@ -5,7 +5,13 @@ import { type Camera, type Rig, padded, reaches, rows } from "./rig.js";
 const SAYS = "P_colour = R P_depth + t, metres.";
 
 function matrix(name: string, height: number, width: number, values: readonly number[]): string[] {
-  return [`${name}: !!opencv-matrix`, `   rows: ${height}`, `   cols: ${width}`, "   dt: d", `   data: [ ${list(values)} ]`];
+  return [
+    `${name}: !!opencv-matrix`,
+    `   rows: ${height}`,
+    `   cols: ${width}`,
+    "   dt: d",
+    `   data: [ ${list(values)} ]`,
+  ];
 }
 
 /** By the names of OpenCV's calibration sample; the words for the model, which it leaves out, are those of ROS. */
@@ -53,7 +59,9 @@ function kalibrCamera(camera: Camera | undefined, name: string, notes: string[])
   const distortion = kalibrDistortion(camera);
   const { fx, fy, cx, cy, size } = camera;
   if (distortion === undefined) {
-    return leftOut(`the ${name} camera's intrinsics are left out: Kalibr's radtan has k1 k2 p1 p2 alone, and its distortion has more`);
+    return leftOut(
+      `the ${name} camera's intrinsics are left out: Kalibr's radtan has k1 k2 p1 p2 alone, and its distortion has more`,
+    );
   }
   return [
     "  camera_model: pinhole",

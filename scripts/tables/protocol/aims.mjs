@@ -20,24 +20,60 @@ function table1Aims(rows = []) {
   const grid = rows.filter(({ protocol }) => protocol === "2A");
   const off = (key, truth) => worst(grid.map((row) => Math.abs(row[key] - truth(row))));
   return [
-    aim("table1", "2A, both signs: beta off, degrees", off("beta", ({ sign }) => 20 * sign), "<=", 0.001, grid.length),
-    aim("table1", "2A, both signs: alpha off", off("alpha", () => 0), "<=", 0.001, grid.length),
-    aim("table1", "2A, both signs: gamma off", off("gamma", () => 0), "<=", 0.001, grid.length),
+    aim(
+      "table1",
+      "2A, both signs: beta off, degrees",
+      off("beta", ({ sign }) => 20 * sign),
+      "<=",
+      0.001,
+      grid.length,
+    ),
+    aim(
+      "table1",
+      "2A, both signs: alpha off",
+      off("alpha", () => 0),
+      "<=",
+      0.001,
+      grid.length,
+    ),
+    aim(
+      "table1",
+      "2A, both signs: gamma off",
+      off("gamma", () => 0),
+      "<=",
+      0.001,
+      grid.length,
+    ),
   ];
 }
 
 const table2AAims = (rows = []) => [
-  aim("table2A", "every cell: error / the paper's", worst(rows.map(({ error, paper }) => error / paper)), "<=", 0.01, rows.length),
+  aim(
+    "table2A",
+    "every cell: error / the paper's",
+    worst(rows.map(({ error, paper }) => error / paper)),
+    "<=",
+    0.01,
+    rows.length,
+  ),
 ];
 
 const ratios = (rows) => rows.filter(({ bound }) => bound > 0).map(({ degrees, bound }) => degrees / bound);
 
 function table2BAims(rows = []) {
-  const of = (size, light, passes = () => true) => rows.filter((row) => row.size === size && row.light === light && passes(row));
+  const of = (size, light, passes = () => true) =>
+    rows.filter((row) => row.size === size && row.light === light && passes(row));
   const wide = ({ overlap }) => overlap >= 0.5;
   const fair = (row) => wide(row) && row.beta <= 80;
   const line = (size, light, where, what, members, statistic, limit, sense = "<=") =>
-    aim("table2B", `${size}x${size}, light ${light}, ${where}: ${what}`, statistic(members), sense, limit, members.length);
+    aim(
+      "table2B",
+      `${size}x${size}, light ${light}, ${where}: ${what}`,
+      statistic(members),
+      sense,
+      limit,
+      members.length,
+    );
   const degrees = (statistic) => (members) => statistic(members.map((row) => row.degrees));
   const toBound = (members) => median(ratios(members));
 
@@ -48,14 +84,40 @@ function table2BAims(rows = []) {
   return [
     line(128, "known", "P_w >= 0.5", "median degrees", known.filter(wide), degrees(median), 0.08),
     line(128, "known", "P_w >= 0.5", "worst degrees", known.filter(wide), degrees(worst), 0.4),
-    line(128, "known", "P_w < 0.5", "worst degrees", known.filter((row) => !wide(row)), degrees(worst), 2),
+    line(
+      128,
+      "known",
+      "P_w < 0.5",
+      "worst degrees",
+      known.filter((row) => !wide(row)),
+      degrees(worst),
+      2,
+    ),
     line(128, "known", "all", "median of degrees / bound", known, toBound, 3),
     line(128, "unknown", "P_w >= 0.5, beta <= 80", "median degrees", unknown, degrees(median), 0.15),
     line(128, "unknown", "P_w >= 0.5, beta <= 80", "worst degrees", unknown, degrees(worst), 0.8),
     line(128, "unknown", "P_w >= 0.5, beta <= 80", "median of degrees / bound", unknown, toBound, 4),
-    line(128, "unknown", "beta = 90", "share found or flagged", edge, (members) => share(members, isFoundOrFlagged), 1, ">="),
+    line(
+      128,
+      "unknown",
+      "beta = 90",
+      "share found or flagged",
+      edge,
+      (members) => share(members, isFoundOrFlagged),
+      1,
+      ">=",
+    ),
     line(64, "unknown", "P_w >= 0.5, beta <= 80", "median degrees", small, degrees(median), 0.6),
-    line(64, "unknown", "P_w >= 0.5, beta <= 80", `share under ${FOUND_WITHIN} degrees`, small, (members) => share(members, isFound), 0.95, ">="),
+    line(
+      64,
+      "unknown",
+      "P_w >= 0.5, beta <= 80",
+      `share under ${FOUND_WITHIN} degrees`,
+      small,
+      (members) => share(members, isFound),
+      0.95,
+      ">=",
+    ),
   ];
 }
 
@@ -67,18 +129,30 @@ function figure5Aims(rows = []) {
     const next = pixel.find((other) => sameRun(row, other) && other.fraction > row.fraction);
     return next ? [next.degrees - row.degrees] : [];
   });
-  const halves = of("surface", 0).map((row) => row.degrees / of("pixel", 0).find((other) => sameRun(row, other)).degrees);
+  const halves = of("surface", 0).map(
+    (row) => row.degrees / of("pixel", 0).find((other) => sameRun(row, other)).degrees,
+  );
   const full = of("surface", 1);
   return [
     aim("figure5", "pixel: largest rise from one share to the next, degrees", worst(rises), "<=", 0, rises.length),
     aim("figure5", "no prior: surface / pixel, worst", worst(halves), "<=", 0.5, halves.length),
-    aim("figure5", "full prior: surface, worst degrees", worst(full.map(({ degrees }) => degrees)), "<=", 3, full.length),
+    aim(
+      "figure5",
+      "full prior: surface, worst degrees",
+      worst(full.map(({ degrees }) => degrees)),
+      "<=",
+      3,
+      full.length,
+    ),
   ];
 }
 
 function refinementAims(rows = []) {
   const gains = (passes) => rows.filter((row) => row.pose === "estimated" && passes(row)).map(({ gain }) => gain);
-  const [colourful, natural] = [gains(({ lightName }) => lightName === COLOURFUL), gains(({ lightName }) => lightName !== COLOURFUL)];
+  const [colourful, natural] = [
+    gains(({ lightName }) => lightName === COLOURFUL),
+    gains(({ lightName }) => lightName !== COLOURFUL),
+  ];
   return [
     aim("refinement", "pose estimated, colourful: error in / out", least(colourful), ">=", 5, colourful.length),
     aim("refinement", "pose estimated, natural: error in / out, least", least(natural), ">=", 2.5, natural.length),
@@ -111,15 +185,34 @@ function photographsAims(rows = []) {
   return [
     aim("photographs", "median degrees", middle(painted), "<=", 1.2, painted.length),
     aim("photographs", `share under ${FOUND_WITHIN} degrees`, share(painted, isFound), ">=", 0.75, painted.length),
-    aim("photographs", "worst degrees of those not flagged", worst(unflagged.map(({ degrees }) => degrees)), "<=", 4, unflagged.length),
+    aim(
+      "photographs",
+      "worst degrees of those not flagged",
+      worst(unflagged.map(({ degrees }) => degrees)),
+      "<=",
+      4,
+      unflagged.length,
+    ),
     aim("photographs", "shading alone: median degrees", middle(shaded), "<=", 0.8, shaded.length),
-    aim("photographs", "renders: worst degrees", worst(rendered.map(({ degrees }) => degrees)), "<=", 1, rendered.length),
+    aim(
+      "photographs",
+      "renders: worst degrees",
+      worst(rendered.map(({ degrees }) => degrees)),
+      "<=",
+      1,
+      rendered.length,
+    ),
     ...IMAGES.map((image) => coverageAim("photographs", image, of(image))),
   ];
 }
 
 /** Limits of each condition. */
-const LIMITS = { told: { median: 1, found: 0.8 }, lamps: { median: 0.8 }, natural: { median: 0.4, mean: 1 }, large: { median: 1.2, found: 0.75, worst: 4 } };
+const LIMITS = {
+  told: { median: 1, found: 0.8 },
+  lamps: { median: 0.8 },
+  natural: { median: 0.4, mean: 1 },
+  large: { median: 1.2, found: 0.75, worst: 4 },
+};
 
 const conditionsAims = (rows = []) =>
   CONDITIONS.flatMap(({ condition, kind }) => {
@@ -141,16 +234,32 @@ function rgbdAims(rows = []) {
   const told = rows.filter(({ start }) => start === "told");
   const known = rows.filter(({ start }) => start === "search");
   const line = (what, members, measured, sense, limit) => aim("rgbd", what, measured, sense, limit, members.length);
-  const of = (key, at) => quantile(told.map((row) => row[key]), at);
+  const of = (key, at) =>
+    quantile(
+      told.map((row) => row[key]),
+      at,
+    );
   return [
     line("told: lateral, median mm", told, of("lateral", 0.5), "<=", 2),
     line("told: lateral, ninetieth percentile", told, of("lateral", 0.9), "<=", 4),
     line("told: along the line of sight, median mm", told, of("along", 0.5), "<=", 6),
     line("told: along the line of sight, ninetieth percentile", told, of("along", 0.9), "<=", 14),
     line("told: in-plane turn, median degrees", told, of("inPlane", 0.5), "<=", 0.7),
-    line("told: tilt over what was told, by medians", told, of("tilt", 0.5) / median(told.map((row) => row.told.tilt)), "<=", 1),
+    line(
+      "told: tilt over what was told, by medians",
+      told,
+      of("tilt", 0.5) / median(told.map((row) => row.told.tilt)),
+      "<=",
+      1,
+    ),
     line("told: share confidently wrong", told, share(told, isConfidentlyWrong), "<=", 0),
-    line("nothing known: share under 10 degrees", known, share(known, ({ degrees }) => degrees < 10), ">=", 0.7),
+    line(
+      "nothing known: share under 10 degrees",
+      known,
+      share(known, ({ degrees }) => degrees < 10),
+      ">=",
+      0.7,
+    ),
     line("nothing known: share confidently wrong", known, share(known, isConfidentlyWrong), "<=", 0),
   ];
 }
@@ -169,11 +278,23 @@ function pinholeAims(rows = []) {
     });
   const sure = rows.filter((row) => isFound(row) && row.sigmas);
   const held = (offs, sigmas) => offs.every((off, axis) => Math.abs(off) <= 3 * sigmas[axis]);
-  const [turns, places] = [({ rotationOff, sigmas }) => held(rotationOff, sigmas), (row) => held(row.translationOff, row.translationSigmas)];
+  const [turns, places] = [
+    ({ rotationOff, sigmas }) => held(rotationOff, sigmas),
+    (row) => held(row.translationOff, row.translationSigmas),
+  ];
   return [
     aim("pinhole", "nothing known: median degrees", middle(searched, "degrees"), "<=", 0.35, searched.length),
     aim("pinhole", "nothing known: median mm", middle(searched, "translation"), "<=", 5.5, searched.length),
-    ...[1, 2, 4, 8].map((start) => aim("pinhole", `${start} degrees off: share that ends like the search`, ends(start), ">=", 0.95, of(start).length)),
+    ...[1, 2, 4, 8].map((start) =>
+      aim(
+        "pinhole",
+        `${start} degrees off: share that ends like the search`,
+        ends(start),
+        ">=",
+        0.95,
+        of(start).length,
+      ),
+    ),
     aim("pinhole", "share confidently wrong", share(rows, isConfidentlyWrong), "<=", 0, rows.length),
     aim("pinhole", "found: rotations within 3 sigma on all axes", share(sure, turns), ">=", 0.93, sure.length),
     aim("pinhole", "found: translations within 3 sigma on all axes", share(sure, places), ">=", 0.93, sure.length),
@@ -185,9 +306,30 @@ function albedoAims(rows = []) {
   const told = of("lab_diffuse", "told");
   const plain = of("lab_shading", "told");
   return [
-    aim("albedo", "photographs, pose told: median correlation with the measured paint", median(told.map(({ correlation }) => correlation)), ">=", 0.85, told.length),
-    aim("albedo", "photographs, pose told: median of error / naive error", median(told.map(({ error, naive }) => error / naive)), "<=", 0.5, told.length),
-    aim("albedo", "shading alone: largest error, log units", worst(plain.map(({ error }) => error)), "<=", 0.02, plain.length),
+    aim(
+      "albedo",
+      "photographs, pose told: median correlation with the measured paint",
+      median(told.map(({ correlation }) => correlation)),
+      ">=",
+      0.85,
+      told.length,
+    ),
+    aim(
+      "albedo",
+      "photographs, pose told: median of error / naive error",
+      median(told.map(({ error, naive }) => error / naive)),
+      "<=",
+      0.5,
+      told.length,
+    ),
+    aim(
+      "albedo",
+      "shading alone: largest error, log units",
+      worst(plain.map(({ error }) => error)),
+      "<=",
+      0.02,
+      plain.length,
+    ),
   ];
 }
 
@@ -223,13 +365,34 @@ function honestyAims(row) {
   const each = row.kinds.filter(({ cases }) => cases > 0);
   return [
     aim("honesty", "share confidently wrong", row.confidentlyWrong / row.cases, "<=", 0.005, row.cases),
-    aim("honesty", "share confidently wrong, the worst kind", worst(each.map(({ confidentlyWrong, cases }) => confidentlyWrong / cases)), "<=", 0.02, row.cases),
-    aim("honesty", "found within 3 sigma on all axes, the worst kind", least(each.map(({ coverage3 }) => coverage3).filter((value) => value !== null)), ">=", 0.95, row.found),
+    aim(
+      "honesty",
+      "share confidently wrong, the worst kind",
+      worst(each.map(({ confidentlyWrong, cases }) => confidentlyWrong / cases)),
+      "<=",
+      0.02,
+      row.cases,
+    ),
+    aim(
+      "honesty",
+      "found within 3 sigma on all axes, the worst kind",
+      least(each.map(({ coverage3 }) => coverage3).filter((value) => value !== null)),
+      ">=",
+      0.95,
+      row.found,
+    ),
   ];
 }
 
 const exposureAims = (rows = []) => [
-  aim("exposure", "largest move of a pose, degrees", worst(rows.map(({ degreesMoved }) => degreesMoved)), "<=", 0.01, rows.length),
+  aim(
+    "exposure",
+    "largest move of a pose, degrees",
+    worst(rows.map(({ degreesMoved }) => degreesMoved)),
+    "<=",
+    0.01,
+    rows.length,
+  ),
 ];
 
 /** Every aim of the tables that are there. */

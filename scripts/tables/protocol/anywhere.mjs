@@ -50,7 +50,9 @@ const randomCell = (kit, seed, { id = "random", row = {}, options = {}, ...chang
 
 /** The scene of any cell: written down, or drawn from its seed. */
 export const sceneOf = (cell, library) =>
-  cell.kind === "random" ? { ...drawScene(chance(cell.seed), cell.kit, library.gaussian), seed: cell.seed } : cell.scene;
+  cell.kind === "random"
+    ? { ...drawScene(chance(cell.seed), cell.kit, library.gaussian), seed: cell.seed }
+    : cell.scene;
 
 const seeds = (count) => Array.from({ length: count }, (_, index) => index + 1);
 
@@ -69,7 +71,9 @@ export const exposure = {
   cells: (kit, quick) =>
     seeds(quick ? 2 : 40).flatMap((seed) => [
       randomCell(kit, seed),
-      ...EXPOSURES.map((factor) => randomCell(kit, seed, { id: `exposure/${factor}`, row: { factor }, exposure: factor })),
+      ...EXPOSURES.map((factor) =>
+        randomCell(kit, seed, { id: `exposure/${factor}`, row: { factor }, exposure: factor }),
+      ),
     ]),
   rows: (results) =>
     results
@@ -99,7 +103,9 @@ export const ablation = {
   cells: (kit, quick) =>
     seeds(quick ? 2 : 30).flatMap((seed) => [
       randomCell(kit, seed),
-      ...ABLATIONS.map(({ without, ...changes }) => randomCell(kit, seed, { id: `ablation/${without}`, row: { without }, ...changes })),
+      ...ABLATIONS.map(({ without, ...changes }) =>
+        randomCell(kit, seed, { id: `ablation/${without}`, row: { without }, ...changes }),
+      ),
     ]),
   rows: (results) =>
     ["nothing", ...ABLATIONS.map(({ without }) => without)].map((without) => {

@@ -26,7 +26,9 @@ function vignetted({ width, height, data }) {
 /** Variance proportional to the signal, and a constant. */
 function grained({ data }, dice) {
   const full = data.reduce((most, value) => Math.max(most, value), 0);
-  return data.map((value) => Math.max(0, value + full * (SHOT * Math.sqrt(Math.max(value, 0) / full) + READING) * dice.gaussian()));
+  return data.map((value) =>
+    Math.max(0, value + full * (SHOT * Math.sqrt(Math.max(value, 0) / full) + READING) * dice.gaussian()),
+  );
 }
 
 /** Each pixel measures one colour, red, green, green, blue in squares; the others are means of its neighbours', near ones twice. */
@@ -69,7 +71,11 @@ export const cameras = {
   /** The row of all, and one for each kind. */
   rows: (results) => {
     const rows = results.map(({ cell, result }) => ({ ...cell.row, ...result }));
-    const kinds = NAMES.map((flaw) => ({ kind: flaw, ...randomRow(rows.filter((row) => row.flaw === flaw)), scenes: undefined }));
+    const kinds = NAMES.map((flaw) => ({
+      kind: flaw,
+      ...randomRow(rows.filter((row) => row.flaw === flaw)),
+      scenes: undefined,
+    }));
     return { ...randomRow(rows), kinds };
   },
 };

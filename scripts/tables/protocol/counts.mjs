@@ -19,7 +19,8 @@ const within = ({ rotationOff, sigmas }, count) =>
   sigmas && AXES.map((axis) => Math.abs(rotationOff[axis]) <= count * sigmas[axis]);
 
 /** Share of the found whose rotation is within three sigma on all axes; one without sigmas is not. */
-export const coverage3 = (rows) => share(rows.filter(isFound), (row) => Boolean(row.sigmas) && within(row, 3).every(Boolean));
+export const coverage3 = (rows) =>
+  share(rows.filter(isFound), (row) => Boolean(row.sigmas) && within(row, 3).every(Boolean));
 
 /** The row of the random scenes: counts; coverages are shares of the found. */
 export function randomRow(rows) {

@@ -38,7 +38,10 @@ const brightest = ({ data }, index) => Math.max(data[3 * index], data[3 * index 
 
 /** The level that so large a share of the object's pixels stays below. */
 function level(image, share) {
-  const levels = pixelsOf(image).filter((index) => image.mask[index]).map((index) => brightest(image, index)).sort((a, b) => a - b);
+  const levels = pixelsOf(image)
+    .filter((index) => image.mask[index])
+    .map((index) => brightest(image, index))
+    .sort((a, b) => a - b);
   return levels[Math.min(levels.length - 1, Math.floor(share * levels.length))];
 }
 
@@ -64,24 +67,41 @@ function cropped({ image, depth }, dice) {
   start[axis] = from;
   sides[axis] = to - from;
   const [width, height] = sides;
-  const source = Array.from({ length: width * height }, (_, index) => (Math.floor(index / width) + start[1]) * image.width + (index % width) + start[0]);
-  const data = Float32Array.from({ length: 3 * source.length }, (_, k) => image.data[3 * source[Math.floor(k / 3)] + (k % 3)]);
-  return { image: { ...image, width, height, data, mask: Uint8Array.from(source, (index) => image.mask[index]) }, depth };
+  const source = Array.from(
+    { length: width * height },
+    (_, index) => (Math.floor(index / width) + start[1]) * image.width + (index % width) + start[0],
+  );
+  const data = Float32Array.from(
+    { length: 3 * source.length },
+    (_, k) => image.data[3 * source[Math.floor(k / 3)] + (k % 3)],
+  );
+  return {
+    image: { ...image, width, height, data, mask: Uint8Array.from(source, (index) => image.mask[index]) },
+    depth,
+  };
 }
 
 /** Another object where the first is not: in the image, and in every other scene in the depth map as well. */
 function withSecond({ image, depth }, dice, { api, library, kit, scene }) {
   const size = Math.max(16, Math.round(scene.size * dice.uniform(...SECOND.size)));
-  const other = api.sample(requestOf({ ...drawScene(dice, kit, library.gaussian), size, light: scene.light, overlap: 1 }, library));
+  const other = api.sample(
+    requestOf({ ...drawScene(dice, kit, library.gaussian), size, light: scene.light, overlap: 1 }, library),
+  );
   const angle = dice.uniform(0, 2 * Math.PI);
-  const shift = [Math.cos(angle), Math.sin(angle)].map((part) => Math.round(SECOND.off * scene.size * part + (scene.size - size) / 2));
+  const shift = [Math.cos(angle), Math.sin(angle)].map((part) =>
+    Math.round(SECOND.off * scene.size * part + (scene.size - size) / 2),
+  );
   const each = (view, put) => {
     for (const index of pixelsOf(view)) {
       const [column, row] = [(index % size) + shift[0], Math.floor(index / size) + shift[1]];
-      if (view.mask[index] && column >= 0 && row >= 0 && column < scene.size && row < scene.size) put(index, row * scene.size + column);
+      if (view.mask[index] && column >= 0 && row >= 0 && column < scene.size && row < scene.size)
+        put(index, row * scene.size + column);
     }
   };
-  const both = { image: { ...image, data: image.data.slice(), mask: image.mask.slice() }, depth: { ...depth, data: depth.data.slice() } };
+  const both = {
+    image: { ...image, data: image.data.slice(), mask: image.mask.slice() },
+    depth: { ...depth, data: depth.data.slice() },
+  };
   each(other.image, (from, to) => {
     if (image.mask[to]) return;
     both.image.mask[to] = 1;
@@ -89,11 +109,14 @@ function withSecond({ image, depth }, dice, { api, library, kit, scene }) {
   });
   if (depth.mask) both.depth.mask = depth.mask.slice();
   if (dice.below(2) === 1) {
-    each({ width: size, height: size, mask: other.depth.data.map((z) => Number(Number.isFinite(z) && z > 0)) }, (from, to) => {
-      if (depth.data[to] > 0) return;
-      both.depth.data[to] = other.depth.data[from];
-      if (both.depth.mask) both.depth.mask[to] = 1;
-    });
+    each(
+      { width: size, height: size, mask: other.depth.data.map((z) => Number(Number.isFinite(z) && z > 0)) },
+      (from, to) => {
+        if (depth.data[to] > 0) return;
+        both.depth.data[to] = other.depth.data[from];
+        if (both.depth.mask) both.depth.mask[to] = 1;
+      },
+    );
   }
   return both;
 }
@@ -122,20 +145,34 @@ function unlike({ image }, dice, { api, library, scene }) {
 /** How a scene is drawn, and what becomes of its pair. */
 const KINDS = {
   "image noise": { scene: (dice) => ({ noise: dice.uniform(...IMAGE_NOISE) }) },
-  "depth noise": { scene: (dice) => ({ noise: dice.uniform(...IMAGE_NOISE), depthNoise: dice.uniform(...DEPTH_NOISE) }) },
+  "depth noise": {
+    scene: (dice) => ({ noise: dice.uniform(...IMAGE_NOISE), depthNoise: dice.uniform(...DEPTH_NOISE) }),
+  },
   "depth in steps": { pair: inSteps },
-  "JPEG": { pair: ({ image, depth }, dice) => {
-    const gain = BRIGHT / level(image, 0.99);
-    const data = image.data.map((value, at) => (image.mask[Math.floor(at / 3)] ? gain * value : 0.2));
-    return { image: { ...image, data: throughJpeg({ ...image, data }, Math.round(dice.uniform(...QUALITIES))) }, depth };
-  } },
-  "size": { scene: (dice) => ({ size: Math.round(logUniform(dice, SIDES)) }) },
-  "cropped": { pair: cropped },
+  JPEG: {
+    pair: ({ image, depth }, dice) => {
+      const gain = BRIGHT / level(image, 0.99);
+      const data = image.data.map((value, at) => (image.mask[Math.floor(at / 3)] ? gain * value : 0.2));
+      return {
+        image: { ...image, data: throughJpeg({ ...image, data }, Math.round(dice.uniform(...QUALITIES))) },
+        depth,
+      };
+    },
+  },
+  size: { scene: (dice) => ({ size: Math.round(logUniform(dice, SIDES)) }) },
+  cropped: { pair: cropped },
   "unlike resolutions": { pair: unlike },
-  "wrong unit": { pair: ({ image, depth }, dice) => ({ image, depth: { ...depth, unit: UNITS[dice.below(UNITS.length)] } }) },
+  "wrong unit": {
+    pair: ({ image, depth }, dice) => ({ image, depth: { ...depth, unit: UNITS[dice.below(UNITS.length)] } }),
+  },
   "flipped depth": { pair: flipped },
   "second object": { pair: withSecond },
-  "saturated": { pair: ({ image, depth }, dice) => ({ image: exposed(image, 1 / level(image, 1 - dice.uniform(...CLIPPED))), depth }) },
+  saturated: {
+    pair: ({ image, depth }, dice) => ({
+      image: exposed(image, 1 / level(image, 1 - dice.uniform(...CLIPPED))),
+      depth,
+    }),
+  },
 };
 /** Two pinhole cameras, one of them of another focal length than it says. */
 const INTRINSICS = "wrong intrinsics";
@@ -153,14 +190,25 @@ export const honesty = {
   cells: (kit, quick) =>
     Array.from({ length: quick ? QUICK_PER_KIND : PER_KIND }, (_, index) => index + 1).flatMap((scene) =>
       NAMES.map((kind) => ({
-        ...{ id: `honesty/${kind}/${scene}`, kind: "honesty", row: { scene, kind }, kit, seed: FIRST_SEED + scene, options: FROM_ANYWHERE },
+        ...{
+          id: `honesty/${kind}/${scene}`,
+          kind: "honesty",
+          row: { scene, kind },
+          kit,
+          seed: FIRST_SEED + scene,
+          options: FROM_ANYWHERE,
+        },
         ...(kind === INTRINSICS ? { ...PINHOLE, focalOff: FOCAL_OFF } : {}),
       })),
     ),
   /** The row of all, and one for each kind. */
   rows: (results) => {
     const rows = results.map(({ cell, result }) => ({ ...cell.row, ...result }));
-    const kinds = NAMES.map((kind) => ({ ...randomRow(rows.filter((row) => row.kind === kind)), kind, scenes: undefined }));
+    const kinds = NAMES.map((kind) => ({
+      ...randomRow(rows.filter((row) => row.kind === kind)),
+      kind,
+      scenes: undefined,
+    }));
     return { ...randomRow(rows), kinds };
   },
 };

@@ -14,7 +14,22 @@ import { figure4, figure5, refinement } from "./shapes.mjs";
 /** In the order in which they are printed. */
 export const TABLES = [
   ...[table1, table2A, table2B, table3, figure4, figure5, figure6, figure7],
-  ...[refinement, sensors, photographs, conditions, albedo, rgbd, pinhole, random, cameras, painted, stress, honesty, exposure, ablation],
+  ...[
+    refinement,
+    sensors,
+    photographs,
+    conditions,
+    albedo,
+    rgbd,
+    pinhole,
+    random,
+    cameras,
+    painted,
+    stress,
+    honesty,
+    exposure,
+    ablation,
+  ],
 ];
 
 /** The rows of a table as the JSON has them: what the cell says of itself, which nothing measured may overwrite, and the rest. */

@@ -3,17 +3,26 @@
 
 const BLOCK = 8;
 const LUMA = [
-  ...[16, 11, 10, 16, 24, 40, 51, 61, 12, 12, 14, 19, 26, 58, 60, 55, 14, 13, 16, 24, 40, 57, 69, 56, 14, 17, 22, 29, 51, 87, 80, 62],
+  ...[
+    16, 11, 10, 16, 24, 40, 51, 61, 12, 12, 14, 19, 26, 58, 60, 55, 14, 13, 16, 24, 40, 57, 69, 56, 14, 17, 22, 29, 51,
+    87, 80, 62,
+  ],
   ...[18, 22, 37, 56, 68, 109, 103, 77, 24, 35, 55, 64, 81, 104, 113, 92, 49, 64, 78, 87, 103, 121, 120, 101],
   ...[72, 92, 95, 98, 112, 100, 103, 99],
 ];
 const CHROMA = [
-  ...[17, 18, 24, 47, 99, 99, 99, 99, 18, 21, 26, 66, 99, 99, 99, 99, 24, 26, 56, 99, 99, 99, 99, 99, 47, 66, 99, 99, 99, 99, 99, 99],
+  ...[
+    17, 18, 24, 47, 99, 99, 99, 99, 18, 21, 26, 66, 99, 99, 99, 99, 24, 26, 56, 99, 99, 99, 99, 99, 47, 66, 99, 99, 99,
+    99, 99, 99,
+  ],
   ...Array(32).fill(99),
 ];
 
 const COSINES = Array.from({ length: BLOCK }, (_, k) =>
-  Array.from({ length: BLOCK }, (_, x) => Math.sqrt((k === 0 ? 1 : 2) / BLOCK) * Math.cos(((2 * x + 1) * k * Math.PI) / (2 * BLOCK))),
+  Array.from(
+    { length: BLOCK },
+    (_, x) => Math.sqrt((k === 0 ? 1 : 2) / BLOCK) * Math.cos(((2 * x + 1) * k * Math.PI) / (2 * BLOCK)),
+  ),
 );
 
 const scaled = (table, quality) => {
@@ -53,7 +62,8 @@ function quantised({ width, height, data }, table) {
       const steps = transformed(block, false).map((value, index) => Math.round(value / table[index]) * table[index]);
       transformed(steps, true).forEach((value, index) => {
         const [row, column] = [top + Math.floor(index / BLOCK), left + (index % BLOCK)];
-        if (row < height && column < width) out[row * width + column] = Math.round(Math.min(255, Math.max(0, value + 128)));
+        if (row < height && column < width)
+          out[row * width + column] = Math.round(Math.min(255, Math.max(0, value + 128)));
       });
     }
   }
@@ -73,7 +83,8 @@ function halved({ width, height, data }) {
 
 /** Twice as large, bilinear between the pixels' middles. */
 function doubled({ width, height, data }, size) {
-  const at = (column, row) => data[Math.min(Math.max(row, 0), height - 1) * width + Math.min(Math.max(column, 0), width - 1)];
+  const at = (column, row) =>
+    data[Math.min(Math.max(row, 0), height - 1) * width + Math.min(Math.max(column, 0), width - 1)];
   return Float64Array.from({ length: size.width * size.height }, (_, index) => {
     const [x, y] = [((index % size.width) - 0.5) / 2, (Math.floor(index / size.width) - 0.5) / 2];
     const [column, row] = [Math.floor(x), Math.floor(y)];
@@ -91,9 +102,13 @@ export function throughJpeg({ width, height, data }, quality) {
   const length = width * height;
   const planes = [0, 1, 2].map(() => new Float64Array(length));
   for (let index = 0; index < length; index++) {
-    const [r, g, b] = [0, 1, 2].map((channel) => Math.round(encoded(Math.min(1, Math.max(0, data[3 * index + channel])))));
+    const [r, g, b] = [0, 1, 2].map((channel) =>
+      Math.round(encoded(Math.min(1, Math.max(0, data[3 * index + channel])))),
+    );
     const luma = 0.299 * r + 0.587 * g + 0.114 * b;
-    [luma, 128 + 0.564 * (b - luma), 128 + 0.713 * (r - luma)].forEach((value, plane) => (planes[plane][index] = value));
+    [luma, 128 + 0.564 * (b - luma), 128 + 0.713 * (r - luma)].forEach(
+      (value, plane) => (planes[plane][index] = value),
+    );
   }
   const size = { width, height };
   const [luma, ...chroma] = planes.map((plane) => ({ ...size, data: plane }));
@@ -102,7 +117,10 @@ export function throughJpeg({ width, height, data }, quality) {
   const out = new Uint8ClampedArray(4 * length);
   for (let index = 0; index < length; index++) {
     const [blue, red] = [cb[index] - 128, cr[index] - 128];
-    out.set([y[index] + 1.402 * red, y[index] - 0.344136 * blue - 0.714136 * red, y[index] + 1.772 * blue, 255], 4 * index);
+    out.set(
+      [y[index] + 1.402 * red, y[index] - 0.344136 * blue - 0.714136 * red, y[index] + 1.772 * blue, 255],
+      4 * index,
+    );
   }
   return out;
 }

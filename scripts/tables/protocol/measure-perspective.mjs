@@ -19,7 +19,10 @@ function direction({ gaussian }) {
 }
 
 /** The pose whose rotation about a point leaves the point where it is. */
-const about = (middle, rotation) => ({ rotation, translation: middle.map((value, axis) => value - turn(rotation, middle)[axis]) });
+const about = (middle, rotation) => ({
+  rotation,
+  translation: middle.map((value, axis) => value - turn(rotation, middle)[axis]),
+});
 
 /** A start that is off by a turn about the depth camera and a shift; chance follows from the cell's name. */
 function startOff(truth, { degrees, metres }, name) {
@@ -34,7 +37,13 @@ function offsets(pose, truth, middle) {
   const [x, y, z] = moved(pose, middle).map((value, axis) => 1000 * (value - moved(truth, middle)[axis]));
   const turned = offBy(pose.rotation, truth.rotation);
   const translation = Math.hypot(...pose.translation.map((value, axis) => 1000 * (value - truth.translation[axis])));
-  return { lateral: Math.hypot(x, y), along: Math.abs(z), inPlane: Math.abs(turned[2]), tilt: Math.hypot(turned[0], turned[1]), translation };
+  return {
+    lateral: Math.hypot(x, y),
+    along: Math.abs(z),
+    inPlane: Math.abs(turned[2]),
+    tilt: Math.hypot(turned[0], turned[1]),
+    translation,
+  };
 }
 
 function run(cell, api, { image, depth, truth }) {
@@ -51,12 +60,15 @@ function run(cell, api, { image, depth, truth }) {
 }
 
 /** The depth of a capture as from `degrees` further left, about the object's middle. */
-function seenFrom(depth, degrees, truth) {
+function seenFrom(depth, _degrees, truth) {
   const { width, height, data, camera, unit, mask } = depth;
   const points = Array.from(data, (value, index) =>
     value > 0 && mask[index] ? pointAt(camera, [index % width, Math.floor(index / width)], value * unit) : null,
   );
-  const back = { rotation: transpose(truth.rotation), translation: times(turn(transpose(truth.rotation), truth.translation), -1) };
+  const back = {
+    rotation: transpose(truth.rotation),
+    translation: times(turn(transpose(truth.rotation), truth.translation), -1),
+  };
   const again = seen(meshOf(width, points, JUMP), camera, { width, height }, back).depth;
   return { width, height, camera, data: again, mask: Uint8Array.from(again, (value) => Number(value > 0)) };
 }
@@ -69,7 +81,12 @@ export async function measureCapture(cell, api, library) {
 
 /** A surface's mesh, metres: `height` high, its middle at the origin. */
 function meshOfSurface(api, library, surface, height) {
-  const { depth } = api.sample({ surface: library.surface(surface), light: "colourful", size: RASTER, angles: { beta: 0 } });
+  const { depth } = api.sample({
+    surface: library.surface(surface),
+    light: "colourful",
+    size: RASTER,
+    angles: { beta: 0 },
+  });
   const metres = height / RASTER;
   const points = Array.from(depth.data, (z, index) => {
     const place = [(index % RASTER) - (RASTER - 1) / 2, Math.floor(index / RASTER) - (RASTER - 1) / 2, z];
@@ -77,7 +94,7 @@ function meshOfSurface(api, library, surface, height) {
   });
   const inside = points.filter(Boolean);
   const middle = [0, 1, 2].map((axis) => inside.reduce((sum, point) => sum + point[axis], 0) / inside.length);
-  const centred = points.map((point) => point && point.map((value, axis) => value - middle[axis]));
+  const centred = points.map((point) => point?.map((value, axis) => value - middle[axis]));
   return meshOf(RASTER, centred, RELIEF_JUMP * metres);
 }
 
@@ -108,7 +125,10 @@ export async function measurePinhole(cell, api, library) {
   for (let index = 0; index < view.depth.length; index++) {
     if (!isSeen(index)) continue;
     const log = shade(light, [...view.normals.subarray(3 * index, 3 * index + 3)]);
-    colours.set(log.map((value) => Math.exp(value + noise * dice.gaussian())), 3 * index);
+    colours.set(
+      log.map((value) => Math.exp(value + noise * dice.gaussian())),
+      3 * index,
+    );
   }
   const mask = Uint8Array.from(view.depth, (_, index) => Number(isSeen(index)));
   const data = other.depth.map((z) => z + depthNoise * dice.gaussian());

@@ -22,11 +22,16 @@ function cloudOf({ width, height, data, camera, unit, mask }) {
 function turnedDepth({ width, height, ...depth }, degrees) {
   const points = cloudOf({ width, height, ...depth });
   const measured = [...Array(width * height).keys()].filter((index) => Number.isFinite(points[3 * index]));
-  const centre = [0, 1, 2].map((axis) => measured.reduce((sum, index) => sum + points[3 * index + axis], 0) / measured.length);
+  const centre = [0, 1, 2].map(
+    (axis) => measured.reduce((sum, index) => sum + points[3 * index + axis], 0) / measured.length,
+  );
   const inverse = transpose(aboutY(degrees));
   for (const index of measured) {
     const offset = centre.map((middle, axis) => points[3 * index + axis] - middle);
-    points.set(turn(inverse, offset).map((part, axis) => part + centre[axis]), 3 * index);
+    points.set(
+      turn(inverse, offset).map((part, axis) => part + centre[axis]),
+      3 * index,
+    );
   }
   return { width, height, mask: depth.mask, camera: depth.camera, points };
 }
@@ -85,7 +90,10 @@ export function onto(size, { width, height, data, mask, place }, made) {
     }
     if (covered < COVERED * all || covered === 0 || sum.some((channel) => channel <= 0)) continue;
     inside[index] = 255;
-    colours.set(sum.map((channel) => channel / covered), 3 * index);
+    colours.set(
+      sum.map((channel) => channel / covered),
+      3 * index,
+    );
   }
   return { width: size, height: size, data: colours, mask: inside };
 }
@@ -95,7 +103,8 @@ const LUMINANCE = [0.2126, 0.7152, 0.0722];
 
 /** Photographs under one lamp each as the channels of one image. */
 function channels(photographs) {
-  const grey = ({ data }, index) => LUMINANCE.reduce((sum, weight, channel) => sum + weight * data[3 * index + channel], 0);
+  const grey = ({ data }, index) =>
+    LUMINANCE.reduce((sum, weight, channel) => sum + weight * data[3 * index + channel], 0);
   const data = photographs[0].data.map((_, at) => grey(photographs[at % 3], Math.floor(at / 3)));
   return { ...photographs[0], data };
 }
@@ -107,7 +116,9 @@ function startOff({ rotation, scale, translation }, depth, degrees, name) {
   for (const [index, z] of depth.data.entries()) {
     if (!(z > 0)) continue;
     count++;
-    [(index % width) - (width - 1) / 2, Math.floor(index / width) - (height - 1) / 2, z].forEach((value, axis) => (middle[axis] += value));
+    [(index % width) - (width - 1) / 2, Math.floor(index / width) - (height - 1) / 2, z].forEach(
+      (value, axis) => (middle[axis] += value),
+    );
   }
   const turned = product(aboutAxis(direction(chance(seedOf(name))), degrees), rotation);
   const [from, to] = [rotation, turned].map((matrix) => turn(matrix, middle).map((value) => (scale * value) / count));
@@ -122,7 +133,9 @@ export async function measurePhotograph(cell, api, library) {
   const image = photograph ? onto(size, photograph, made) : made.image;
   const start = cell.off ? { start: startOff(made.pose, made.depth, cell.off, cell.id) } : {};
   const options = { ...optionsOf(cell.options, made), ...start };
-  return withRun(api, { image, depth: made.depth }, options, (report, _, milliseconds) => judged(report, made.pose, milliseconds));
+  return withRun(api, { image, depth: made.depth }, options, (report, _, milliseconds) =>
+    judged(report, made.pose, milliseconds),
+  );
 }
 
 /** Correlation of two fields of log colours and their root mean square difference, each channel less its mean over the pixels. */
@@ -151,16 +164,21 @@ export async function measureAlbedo(cell, api, library) {
   // Of a picture of the shading alone all is one paint.
   const isPainted = cell.photograph !== "lab_shading";
   const truth = paint.data.map((value) => (isPainted ? Math.log(value) : 0));
-  return withRun(api, { image, depth: made.depth }, optionsOf(cell.options, made), (report, estimator, milliseconds) => {
-    const albedo = estimator.albedo();
-    const pixels = [...image.mask.keys()].filter((pixel) => paint.mask[pixel] && Number.isFinite(albedo[3 * pixel]));
-    const log = image.data.map((value) => Math.log(value));
-    return {
-      ...compared(albedo, truth, pixels),
-      naive: compared(log, truth, pixels).error,
-      normals: normalDegrees(estimator.imageNormals(), made.truth.imageNormals),
-      ...judged(report, made.pose, milliseconds),
-      error: compared(albedo, truth, pixels).error,
-    };
-  });
+  return withRun(
+    api,
+    { image, depth: made.depth },
+    optionsOf(cell.options, made),
+    (report, estimator, milliseconds) => {
+      const albedo = estimator.albedo();
+      const pixels = [...image.mask.keys()].filter((pixel) => paint.mask[pixel] && Number.isFinite(albedo[3 * pixel]));
+      const log = image.data.map((value) => Math.log(value));
+      return {
+        ...compared(albedo, truth, pixels),
+        naive: compared(log, truth, pixels).error,
+        normals: normalDegrees(estimator.imageNormals(), made.truth.imageNormals),
+        ...judged(report, made.pose, milliseconds),
+        error: compared(albedo, truth, pixels).error,
+      };
+    },
+  );
 }

@@ -32,7 +32,10 @@ export function blurred({ width, height, data }, sigma) {
       }
       return sum;
     });
-  for (const [stride, side, at] of [[1, width, (index) => index % width], [width, height, (index) => Math.floor(index / width)]]) {
+  for (const [stride, side, at] of [
+    [1, width, (index) => index % width],
+    [width, height, (index) => Math.floor(index / width)],
+  ]) {
     [values, shares] = [values, shares].map((field) => along(field, stride, side, at));
   }
   return Float64Array.from(data, (value, index) => (Number.isFinite(value) ? values[index] / shares[index] : NaN));
@@ -73,16 +76,35 @@ export async function measureKinect(cell, api, library) {
   const middle = median([...made.truth.depth]);
   const metres = Float64Array.from(made.truth.depth, (depth) => OBJECT.distance + (depth - middle) * pixel);
   const { focalLength, baseline, steps } = SENSOR;
-  const quantised = metres.map((z) => (focalLength * baseline) / (Math.round((steps * focalLength * baseline) / z) / steps));
+  const quantised = metres.map(
+    (z) => (focalLength * baseline) / (Math.round((steps * focalLength * baseline) / z) / steps),
+  );
   const photograph = cell.photograph && library.photograph(cell.scene.surface, cell.photograph);
   const image = photograph ? onto(size, photograph, made) : made.image;
   const depth = { ...made.depth, data: Float32Array.from(quantised, (z) => z / pixel) };
-  return refined(api, image, depth, metres.map((z) => z / pixel), 1, optionsOf(cell.options, made));
+  return refined(
+    api,
+    image,
+    depth,
+    metres.map((z) => z / pixel),
+    1,
+    optionsOf(cell.options, made),
+  );
 }
 
 /** log S of the image model: nine coefficients for each channel. */
 function logShading([x, y, z], light) {
-  const basis = [C4, 2 * C2 * y, 2 * C2 * z, 2 * C2 * x, 2 * C1 * x * y, 2 * C1 * y * z, C3 * z * z - C5, 2 * C1 * x * z, C1 * (x * x - y * y)];
+  const basis = [
+    C4,
+    2 * C2 * y,
+    2 * C2 * z,
+    2 * C2 * x,
+    2 * C1 * x * y,
+    2 * C1 * y * z,
+    C3 * z * z - C5,
+    2 * C1 * x * z,
+    C1 * (x * x - y * y),
+  ];
   return [0, 1, 2].map((channel) => basis.reduce((sum, value, k) => sum + value * light[9 * channel + k], 0));
 }
 
@@ -94,7 +116,10 @@ export async function measureScan(cell, api, library) {
   const colours = new Float32Array(3 * width * height).fill(1);
   for (const index of inside) {
     const log = logShading(normals.subarray(3 * index, 3 * index + 3), light);
-    colours.set(log.map((value) => Math.exp(value + SCAN.colour * dice.gaussian())), 3 * index);
+    colours.set(
+      log.map((value) => Math.exp(value + SCAN.colour * dice.gaussian())),
+      3 * index,
+    );
   }
   const pixel = median(inside.map((index) => metres[index])) / camera.fx;
   const noise = blurred({ width, height, data: metres.map(() => dice.gaussian()) }, SCAN.blur);
@@ -106,5 +131,12 @@ export async function measureScan(cell, api, library) {
     data[index] = Math.round((metres[index] + (SCAN.noise * pixel * noise[index]) / spread) / step) * step;
   }
   const image = { width, height, data: colours, mask, camera };
-  return refined(api, image, { width, height, data, mask, camera }, truth, pixel, optionsOf(cell.options, { pose: IDENTITY }));
+  return refined(
+    api,
+    image,
+    { width, height, data, mask, camera },
+    truth,
+    pixel,
+    optionsOf(cell.options, { pose: IDENTITY }),
+  );
 }

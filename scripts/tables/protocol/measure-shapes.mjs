@@ -86,7 +86,8 @@ export async function measureRefinement(cell, api, library) {
   const inside = [...made.depth.mask.keys()].filter((index) => made.depth.mask[index]);
   const measured = inside.filter((index) => Number.isFinite(given[index]));
   const lost = inside.filter((index) => !Number.isFinite(given[index]));
-  const error = (depth, pixels) => rms(pixels.map((index) => depth[index] - made.truth.depth[index]).filter(Number.isFinite));
+  const error = (depth, pixels) =>
+    rms(pixels.map((index) => depth[index] - made.truth.depth[index]).filter(Number.isFinite));
   return withRun(api, made, optionsOf(cell.options, made), (report, estimator, milliseconds) => {
     const refined = estimator.refinedDepth();
     return {

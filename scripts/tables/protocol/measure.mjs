@@ -50,7 +50,10 @@ async function alternate(api, pair, options, rounds) {
   for (let round = 0; round < rounds; round++) {
     const { pose } = report;
     const light = await withRun(
-      api, pair, { ...options, start: pose, registration: "fixed", maxIterations: 1 }, (_, estimator) => estimator.light(),
+      api,
+      pair,
+      { ...options, start: pose, registration: "fixed", maxIterations: 1 },
+      (_, estimator) => estimator.light(),
     );
     ({ report } = await withRun(api, pair, { ...options, start: pose, light }, keep));
   }

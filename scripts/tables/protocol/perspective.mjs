@@ -52,7 +52,10 @@ export function seen({ points, normals, triangles }, { fx, fy, cx, cy }, { width
   const turned = normals.map((normal) => turn(pose.rotation, normal));
   const pixels = placed.map((point) => point && [(fx * point[0]) / point[2] + cx, (fy * point[1]) / point[2] + cy]);
   const [depth, seenNormals] = [new Float32Array(width * height).fill(NaN), new Float32Array(3 * width * height)];
-  const span = (values, most) => [Math.max(0, Math.ceil(Math.min(...values))), Math.min(most - 1, Math.floor(Math.max(...values)))];
+  const span = (values, most) => [
+    Math.max(0, Math.ceil(Math.min(...values))),
+    Math.min(most - 1, Math.floor(Math.max(...values))),
+  ];
   for (const corners of triangles) {
     const [a, b, c] = corners.map((corner) => pixels[corner]);
     const area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
@@ -70,7 +73,10 @@ export function seen({ points, normals, triangles }, { fx, fy, cx, cy }, { width
         const at = v * width + u;
         if (depth[at] <= z) continue;
         depth[at] = z;
-        const normal = corners.reduce((sum, corner, k) => plus(sum, times(unit(turned[corner]), weights[k])), [0, 0, 0]);
+        const normal = corners.reduce(
+          (sum, corner, k) => plus(sum, times(unit(turned[corner]), weights[k])),
+          [0, 0, 0],
+        );
         seenNormals.set(unit(normal), 3 * at);
       }
     }

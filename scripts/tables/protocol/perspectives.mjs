@@ -3,7 +3,9 @@ import { FROM_ANYWHERE, NOISE } from "./scenes.mjs";
 
 /** Of `rgbd_object` two frames of each; colour and depth of one frame belong together. Outlines were tuned on `tuned`. */
 export const CAPTURES = [
-  ...["coffee_mug_1", "bowl_1", "cap_1", "cereal_box_1"].flatMap((object) => [1, 2].map((frame) => ({ name: object, frame, tuned: frame === 1 }))),
+  ...["coffee_mug_1", "bowl_1", "cap_1", "cereal_box_1"].flatMap((object) =>
+    [1, 2].map((frame) => ({ name: object, frame, tuned: frame === 1 })),
+  ),
   { name: "vase_rgbd", tuned: false },
   { name: "android_rgbd", tuned: false },
   { name: "mitten_rgbd", frame: 1, tuned: true },
@@ -27,11 +29,14 @@ const captureCell = ({ name, frame, tuned }, turned, told) => ({
 
 export const rgbd = {
   name: "rgbd",
-  title: "Registered RGB-D captures, depth seen again from further left: a start told 3 degrees and 20 mm off, and nothing known",
+  title:
+    "Registered RGB-D captures, depth seen again from further left: a start told 3 degrees and 20 mm off, and nothing known",
   cells: ({ complete }, quick) => {
     if (!complete) return [];
     const [captures, turns] = quick ? [CAPTURES.slice(3, 4), [20]] : [CAPTURES, TURNS];
-    return captures.flatMap((capture) => turns.flatMap((turned) => [true, false].map((told) => captureCell(capture, turned, told))));
+    return captures.flatMap((capture) =>
+      turns.flatMap((turned) => [true, false].map((told) => captureCell(capture, turned, told))),
+    );
   },
 };
 
@@ -61,7 +66,8 @@ const pinholeCell = (kit, seed, degrees) => ({
 
 export const pinhole = {
   name: "pinhole",
-  title: "Two pinhole cameras: 0.2 m at 0.8 m, 160x120, 0.5 mm of depth noise, 1 % of colour noise; nothing known, and starts turned about the sensor",
+  title:
+    "Two pinhole cameras: 0.2 m at 0.8 m, 160x120, 0.5 mm of depth noise, 1 % of colour noise; nothing known, and starts turned about the sensor",
   cells: (kit, quick) =>
     Array.from({ length: quick ? QUICK_SCENES : SCENES }, (_, index) => index + 1).flatMap((seed) =>
       (quick ? [null, 8] : STARTS).map((degrees) => pinholeCell(kit, seed, degrees)),

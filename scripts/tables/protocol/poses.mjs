@@ -38,7 +38,14 @@ function table2ACell({ main }, beta, overlap) {
   };
 }
 
-const QUICK_2A = [[20, 0.125], [20, 1], [60, 0.375], [60, 0.75], [90, 0.25], [90, 1]];
+const QUICK_2A = [
+  [20, 0.125],
+  [20, 1],
+  [60, 0.375],
+  [60, 0.75],
+  [90, 0.25],
+  [90, 1],
+];
 const everywhere = BETAS.flatMap((beta) => OVERLAPS.map((overlap) => [beta, overlap]));
 
 export const table2A = {
@@ -64,7 +71,9 @@ const lightsOf = (kit) => [COLOURFUL, ...kit.naturals];
 /** A corner of the table at 64x64: both kinds of knowledge, easy and natural light, tilted a little and a lot. */
 const quick2B = (kit) =>
   [COLOURFUL, kit.naturals[0]].flatMap((lightName) =>
-    ["known", "unknown"].flatMap((light) => [20, 60].map((beta) => table2BCell(kit, 64, lightName, light, beta, beta === 20 ? 1 : 0.5))),
+    ["known", "unknown"].flatMap((light) =>
+      [20, 60].map((beta) => table2BCell(kit, 64, lightName, light, beta, beta === 20 ? 1 : 0.5)),
+    ),
   );
 
 const full2B = (kit) =>

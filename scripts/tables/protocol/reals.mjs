@@ -25,13 +25,25 @@ const pairCells = ({ complete }, quick, turns) =>
 
 export const table3 = {
   name: "table3",
-  title: "Table 3: real pairs in place of the paper's, nothing known; degrees are off a truth known within the figure beside them",
+  title:
+    "Table 3: real pairs in place of the paper's, nothing known; degrees are off a truth known within the figure beside them",
   paper: PAPER_TABLE_3,
   cells: (kit, quick) => pairCells(kit, quick, TURNS),
   rows: (results) =>
     results.map(({ cell, result }) => {
-      const { pose, iterations, residualBefore, residualAfter, degrees, identityDegrees, status, milliseconds } = result;
-      return { ...cell.row, pose, iterations, residualBefore, residualAfter, degrees, identityDegrees, status, milliseconds };
+      const { pose, iterations, residualBefore, residualAfter, degrees, identityDegrees, status, milliseconds } =
+        result;
+      return {
+        ...cell.row,
+        pose,
+        iterations,
+        residualBefore,
+        residualAfter,
+        degrees,
+        identityDegrees,
+        status,
+        milliseconds,
+      };
     }),
 };
 
@@ -92,11 +104,14 @@ const albedoCell = (object, image, pose) => ({
 
 export const albedo = {
   name: "albedo",
-  title: "Albedo: log paint beside the measured one, 96x96, each channel up to an offset; naive takes all of log S for paint",
+  title:
+    "Albedo: log paint beside the measured one, 96x96, each channel up to an offset; naive takes all of log S for paint",
   cells: ({ painted }, quick) =>
     quick
       ? painted.slice(0, 2).map((object) => albedoCell(object, "lab_diffuse", "told"))
       : painted.flatMap((object) =>
-          PAINTS.flatMap((image) => (image === "lab_diffuse" ? ["told", "found"] : ["told"]).map((pose) => albedoCell(object, image, pose))),
+          PAINTS.flatMap((image) =>
+            (image === "lab_diffuse" ? ["told", "found"] : ["told"]).map((pose) => albedoCell(object, image, pose)),
+          ),
         ),
 };

@@ -14,7 +14,14 @@ const PAPER_TABLE_2 = {
 export const paperTable2 = (beta, overlap) => PAPER_TABLE_2[beta][OVERLAPS.indexOf(overlap)];
 
 /** The paper's Tables 1 and 3. */
-export const PAPER_TABLE_1 = { scale: 1, alpha: 0.03216, beta: 18.7013, gamma: 0.01812, iterations: 16, degrees: 1.2993 };
+export const PAPER_TABLE_1 = {
+  scale: 1,
+  alpha: 0.03216,
+  beta: 18.7013,
+  gamma: 0.01812,
+  iterations: 16,
+  degrees: 1.2993,
+};
 export const PAPER_TABLE_3 = { scale: 0.9972, alpha: -0.4813, beta: 17.3492, gamma: 9.322, iterations: 19 };
 
 export const COLOURFUL = "colourful";
@@ -23,7 +30,13 @@ export const COLOURFUL = "colourful";
 export const NOISE = 0.01;
 
 /** Nothing known: every option as it is left by a user who has nothing but two files. */
-export const FROM_ANYWHERE = { start: "search", registration: "joint", shading: "surface", light: "estimate", scale: "free" };
+export const FROM_ANYWHERE = {
+  start: "search",
+  registration: "joint",
+  shading: "surface",
+  light: "estimate",
+  scale: "free",
+};
 
 /** Objects of `mit_berkeley`. */
 export const OBJECTS = ["raccoon", "frog2", "squirrel", "turtle"];
@@ -37,7 +50,14 @@ export const BUILT_IN = ["bust", "vase", "ripples"];
  */
 export const kit = (complete) =>
   complete
-    ? { complete, main: "mozart", naturals: ["A", "B", "C"], surfaces: ["mozart", ...OBJECTS, ...BUILT_IN], objects: OBJECTS, painted: PAINTED }
+    ? {
+        complete,
+        main: "mozart",
+        naturals: ["A", "B", "C"],
+        surfaces: ["mozart", ...OBJECTS, ...BUILT_IN],
+        objects: OBJECTS,
+        painted: PAINTED,
+      }
     : { complete, main: "bust", naturals: ["window", "overcast"], surfaces: BUILT_IN, objects: [], painted: [] };
 
 /** A scene of a cell as a request for `sample`: names become heights and coefficients where the package lacks them. */

@@ -9,7 +9,10 @@ const OBJECTS = [
   ...["raccoon", "squirrel", "deer", "sun", "paper1"].map((object) => ({ object, half: "tuned" })),
   ...["frog2", "turtle", "panther", "cup1", "teabag1"].map((object) => ({ object, half: "held out" })),
 ];
-const SCANS = [{ object: "bear", half: "tuned" }, { object: "cow", half: "held out" }];
+const SCANS = [
+  { object: "bear", half: "tuned" },
+  { object: "cow", half: "held out" },
+];
 const SIZE = 128;
 
 const OPTIONS = { ...FROM_ANYWHERE, start: "truth", registration: "fixed", scale: 1 };
@@ -42,7 +45,8 @@ const scanCell = ({ object, half }, lightName) => ({
 
 export const sensors = {
   name: "sensors",
-  title: "Sensors: depth refined at the known pose, light estimated; median error before and after, millimetres (mitten) or pixels",
+  title:
+    "Sensors: depth refined at the known pose, light estimated; median error before and after, millimetres (mitten) or pixels",
   notes: [
     "mitten: one frame against the median of twenty, which is a staircase itself and smoothed by 1.5 pixels",
     "kinect: 128x128, object 0.2 m wide at 0.8 m, disparity 580 x 0.075 / z rounded to 1/8 pixel; photograph, or light A",

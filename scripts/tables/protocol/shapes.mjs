@@ -19,11 +19,18 @@ export const figure4 = {
       id: `figure4/${run}/${protocol}`,
       kind: "iterations",
       row: { run, protocol },
-      scene: { surface: main, light: COLOURFUL, ...(protocol === "2A" ? { protocol: "grid" } : { size: 32 }), angles: { beta: 20 } },
+      scene: {
+        surface: main,
+        light: COLOURFUL,
+        ...(protocol === "2A" ? { protocol: "grid" } : { size: 32 }),
+        angles: { beta: 20 },
+      },
       options,
     })),
   rows: (results) =>
-    results.flatMap(({ cell, result }) => (result.iterations ?? []).map((iteration) => ({ ...cell.row, ...iteration }))),
+    results.flatMap(({ cell, result }) =>
+      (result.iterations ?? []).map((iteration) => ({ ...cell.row, ...iteration })),
+    ),
 };
 
 /** Shares of the pixels that are given the true normal: the paper's P_er. */
@@ -42,11 +49,14 @@ const figure5Cell = (surface, size, lightName, shading, fraction) => ({
 
 export const figure5 = {
   name: "figure5",
-  title: "Figure 5: error of the normals against the share of pixels with a true prior; pose and light known, sigma = 0.02",
+  title:
+    "Figure 5: error of the normals against the share of pixels with a true prior; pose and light known, sigma = 0.02",
   cells: ({ main, naturals }, quick) =>
     (quick ? [32] : [32, 64]).flatMap((size) =>
       (quick ? naturals.slice(0, 1) : naturals).flatMap((lightName) =>
-        ["pixel", "surface"].flatMap((shading) => FRACTIONS.map((fraction) => figure5Cell(main, size, lightName, shading, fraction))),
+        ["pixel", "surface"].flatMap((shading) =>
+          FRACTIONS.map((fraction) => figure5Cell(main, size, lightName, shading, fraction)),
+        ),
       ),
     ),
 };
@@ -60,7 +70,16 @@ const refinementCell = (surface, lightName, pose, seed) => ({
   id: `refinement/${lightName}/${pose}/${seed}`,
   kind: "refinement",
   row: { lightName, pose, seed },
-  scene: { surface, light: lightName, size: 64, angles: {}, depthNoise: DEPTH_NOISE, holes: HOLES, noise: 2 * NOISE, seed },
+  scene: {
+    surface,
+    light: lightName,
+    size: 64,
+    angles: {},
+    depthNoise: DEPTH_NOISE,
+    holes: HOLES,
+    noise: 2 * NOISE,
+    seed,
+  },
   options: pose === "fixed" ? { ...KNOWN, start: "truth", registration: "fixed" } : KNOWN,
 });
 
@@ -77,12 +96,25 @@ export const refinement = {
   rows: (results) => {
     const groups = grouped(results, ({ cell }) => `${cell.row.lightName}/${cell.row.pose}`);
     return [...groups.values()].map((members) => {
-      const [{ cell: { row } }] = members;
+      const [
+        {
+          cell: { row },
+        },
+      ] = members;
       const over = (key) => Math.sqrt(mean(members.map(({ result }) => result[key] ** 2)));
       const [before, after, holes] = [over("before"), over("after"), over("holes")];
       const degrees = mean(members.map(({ result }) => result.degrees));
       const statuses = members.map(({ result }) => result.status);
-      return { lightName: row.lightName, pose: row.pose, before, after, holes, gain: before / after, degrees, statuses };
+      return {
+        lightName: row.lightName,
+        pose: row.pose,
+        before,
+        after,
+        holes,
+        gain: before / after,
+        degrees,
+        statuses,
+      };
     });
   },
 };

@@ -31,7 +31,8 @@ const LIGHTS = ["natural", "lamp"];
 
 export const stress = {
   name: "stress",
-  title: "Renders with paint, lamps and their shadows, JPEG 85, depth in noisy steps: random scenes at 96 to 128 pixels, nothing known",
+  title:
+    "Renders with paint, lamps and their shadows, JPEG 85, depth in noisy steps: random scenes at 96 to 128 pixels, nothing known",
   notes: [
     "paint: two to eight colours in stripes or patches, or print in one; light: natural, or a lamp with attached and cast shadows and ambient light",
     "depth: 0.22 m wide frame at 0.5 to 0.8 m, disparity 580 x 0.075 / z with smoothed noise of 0.4 steps, rounded to 1/8 pixel",
@@ -47,7 +48,11 @@ export const stress = {
   /** The row of all, and one for each kind. */
   rows: (results) => {
     const rows = results.map(({ cell, result }) => ({ ...cell.row, ...result }));
-    const group = (key, value) => ({ kind: value, ...randomRow(rows.filter((row) => row[key] === value)), scenes: undefined });
+    const group = (key, value) => ({
+      kind: value,
+      ...randomRow(rows.filter((row) => row[key] === value)),
+      scenes: undefined,
+    });
     const kinds = [...PAINTS.map((kind) => group("paint", kind)), ...LIGHTS.map((kind) => group("lit", kind))];
     return { ...randomRow(rows), kinds };
   },
@@ -57,7 +62,7 @@ export const stress = {
 function castShadows({ width, height, depth }, lamp) {
   const across = Math.hypot(lamp[0], lamp[1]);
   const reach = across < 1e-6 ? 0 : Math.ceil(Math.hypot(width, height) / across / RAY.step);
-  const nearest = depth.reduce((least, z) => (z < least ? z : least), Infinity);
+  const nearest = depth.reduce((least, z) => Math.min(z, least), Infinity);
   return depth.map((z, index) => {
     const [column, row] = [index % width, Math.floor(index / width)];
     for (let k = 2; k < reach; k++) {
@@ -111,7 +116,12 @@ function print(colours, size, dice) {
 function photographed(image, colours, dice) {
   const { width, height, mask } = image;
   const inside = [...mask.keys()].filter((index) => mask[index]);
-  const exposure = BRIGHT / quantile(inside.map((index) => Math.max(...colours.subarray(3 * index, 3 * index + 3))), 0.99);
+  const exposure =
+    BRIGHT /
+    quantile(
+      inside.map((index) => Math.max(...colours.subarray(3 * index, 3 * index + 3))),
+      0.99,
+    );
   const wall = dice.uniform(...BACKGROUND);
   const data = colours.map((value, index) => (mask[Math.floor(index / 3)] ? value * exposure : wall));
   return { width, height, mask, data: throughJpeg({ width, height, data }, QUALITY) };
@@ -134,7 +144,11 @@ function measured(depth, width, dice) {
 
 function makeStress(cell, api, library) {
   const dice = chance(cell.seed);
-  const scene = { ...drawScene(dice, cell.kit, library.gaussian), size: SIZES[dice.below(SIZES.length)], seed: cell.seed };
+  const scene = {
+    ...drawScene(dice, cell.kit, library.gaussian),
+    size: SIZES[dice.below(SIZES.length)],
+    seed: cell.seed,
+  };
   const made = api.sample(requestOf(scene, library));
   const colours = cell.row.lit === "lamp" ? litByLamp(made, dice) : made.image.data.slice();
   if (cell.row.paint === "print") print(colours, scene.size, dice);

@@ -15,15 +15,45 @@ export function* colours(values: Values): Generator<Drawing> {
   const chosen = pixelAt(grid.mask, grid.width, grid.height, numberOf(values, "px"), numberOf(values, "py"));
   const truth = vectorAt(made.truth.imageNormals, chosen);
   const landscape = landscapeOf({ log: logAt(made, chosen), light, start: [0, 0, -1] }, { truth });
-  const found = after(made, { light, start: made.pose, registration: "fixed", shading: "pixel", lambda: { prior: 0 } }, 1, (estimator) => estimator.imageNormals());
+  const found = after(
+    made,
+    { light, start: made.pose, registration: "fixed", shading: "pixel", lambda: { prior: 0 } },
+    1,
+    (estimator) => estimator.imageNormals(),
+  );
   const ring = [{ ink: "pixel", shape: "ring", points: atPixel(chosen, grid), size: 3 } as const];
   yield {
     panels: [
-      pictureOf({ key: "picture", title: "The picture", alt: "A bust under the light of the slider.", legend: "drag to choose a pixel" }, grid, made.image.data as Float32Array, ring),
+      pictureOf(
+        {
+          key: "picture",
+          title: "The picture",
+          alt: "A bust under the light of the slider.",
+          legend: "drag to choose a pixel",
+        },
+        grid,
+        made.image.data as Float32Array,
+        ring,
+      ),
       landscape.panel,
-      normalsOf({ key: "found", title: "Normals, each pixel alone", alt: "Normals that single pixels find without any prior." }, grid, found, ring),
-      normalsOf({ key: "truth", title: "True normals", alt: "The true normals of the bust." }, grid, made.truth.imageNormals, ring),
+      normalsOf(
+        { key: "found", title: "Normals, each pixel alone", alt: "Normals that single pixels find without any prior." },
+        grid,
+        found,
+        ring,
+      ),
+      normalsOf(
+        { key: "truth", title: "True normals", alt: "The true normals of the bust." },
+        grid,
+        made.truth.imageNormals,
+        ring,
+      ),
     ],
-    numbers: { explained: landscape.explained, good: landscape.good, off: landscape.off, degrees: normalDegrees(found, made.truth.imageNormals) },
+    numbers: {
+      explained: landscape.explained,
+      good: landscape.good,
+      off: landscape.off,
+      degrees: normalDegrees(found, made.truth.imageNormals),
+    },
   };
 }

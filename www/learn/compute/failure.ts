@@ -21,7 +21,10 @@ function disc(nose: number): Relief {
     const [x, y] = [(index % DISC) / (DISC / 2) - 1, Math.floor(index / DISC) / (DISC / 2) - 1];
     const distance = Math.hypot(x, y);
     const bump = Math.exp(-((x - 0.35) ** 2 + (y + 0.2) ** 2) / 0.02);
-    heights[index] = distance > 0.9 ? 0 : 20 + 30 * Math.sqrt(Math.max(0, 1 - distance ** 2)) + 4 * Math.cos(9 * distance) + 10 * nose * bump;
+    heights[index] =
+      distance > 0.9
+        ? 0
+        : 20 + 30 * Math.sqrt(Math.max(0, 1 - distance ** 2)) + 4 * Math.cos(9 * distance) + 10 * nose * bump;
   }
   return { width: DISC, height: DISC, heights };
 }
@@ -55,7 +58,9 @@ function textured(made: Sample, strength: number): Pick<Sample, "image" | "depth
   const { width, height } = made.image;
   const every = new Uint8Array(width * height).fill(1);
   const dark = [7, 8, 9].map((seed) => chosenPixels(every, 0.5, seed));
-  const data = (made.image.data as Float32Array).map((value, at) => value * (dark[at % 3]?.[Math.floor(at / 3)] ? Math.exp(-2 * strength) : 1));
+  const data = (made.image.data as Float32Array).map(
+    (value, at) => value * (dark[at % 3]?.[Math.floor(at / 3)] ? Math.exp(-2 * strength) : 1),
+  );
   return { image: { ...made.image, data }, depth: made.depth };
 }
 
@@ -70,10 +75,35 @@ export function* failure(values: Values): Generator<Drawing> {
     const { report } = estimator;
     yield {
       panels: [
-        pictureOf({ key: "picture", title: "The picture", alt: "The colour image." }, grid, pair.image.data as Float32Array),
-        scalarOf({ key: "depth", title: "The depth map", alt: "The depth map from the other side.", legend: "dark near, bright far; hatched: none" }, made.depth, depth, { min: -14, max: 14 }),
+        pictureOf(
+          { key: "picture", title: "The picture", alt: "The colour image." },
+          grid,
+          pair.image.data as Float32Array,
+        ),
+        scalarOf(
+          {
+            key: "depth",
+            title: "The depth map",
+            alt: "The depth map from the other side.",
+            legend: "dark near, bright far; hatched: none",
+          },
+          made.depth,
+          depth,
+          { min: -14, max: 14 },
+        ),
         cloudsOf(estimator),
-        scalarOf({ key: "residual", title: "Colours left unexplained", alt: "Residual of every pixel.", legend: "dark: explained; bright: off by 0.5 and more" }, grid, estimator.residual(), { min: 0, max: 0.5 }, "magma"),
+        scalarOf(
+          {
+            key: "residual",
+            title: "Colours left unexplained",
+            alt: "Residual of every pixel.",
+            legend: "dark: explained; bright: off by 0.5 and more",
+          },
+          grid,
+          estimator.residual(),
+          { min: 0, max: 0.5 },
+          "magma",
+        ),
       ],
       numbers: {
         error: done ? degreesBetween(report.pose.rotation, made.pose.rotation) : NaN,

@@ -54,8 +54,29 @@ export function* grey(values: Values): Generator<Drawing> {
   const white = Math.max(...colours.map(brightest));
   yield {
     panels: [
-      pictureOf({ key: "hill", title: "A bump, lamp on the left", alt: "A round bump on a plate, lit from the left.", legend: "drag to choose a pixel" }, grid, colours[0], ring, white),
-      pictureOf({ key: "dent", title: "A dent, lamp turned", alt: `A round dent in a plate, the lamp turned by ${numberOf(values, "turn")} degrees about the line of sight.` }, grid, colours[1], [], white),
+      pictureOf(
+        {
+          key: "hill",
+          title: "A bump, lamp on the left",
+          alt: "A round bump on a plate, lit from the left.",
+          legend: "drag to choose a pixel",
+        },
+        grid,
+        colours[0],
+        ring,
+        white,
+      ),
+      pictureOf(
+        {
+          key: "dent",
+          title: "A dent, lamp turned",
+          alt: `A round dent in a plate, the lamp turned by ${numberOf(values, "turn")} degrees about the line of sight.`,
+        },
+        grid,
+        colours[1],
+        [],
+        white,
+      ),
       plot(
         { key: "profile", title: "Both from the side", alt: "Cross-sections: one goes up where the other goes down." },
         "column, px",

@@ -26,7 +26,10 @@ export interface Landscape {
 
 const COLUMNS = 5;
 
-export function landscapeOf(request: PixelLandscapeRequest, words: { key?: string; title?: string; truth?: ArrayLike<number> } = {}): Landscape {
+export function landscapeOf(
+  request: PixelLandscapeRequest,
+  words: { key?: string; title?: string; truth?: ArrayLike<number> } = {},
+): Landscape {
   const found = pixelLandscape({ side: SIDE, ...request });
   const distances = found.objective.map((value) => Math.sqrt(value));
   const inside = distances.filter(Number.isFinite);
@@ -78,13 +81,21 @@ function minimaOf({ minima }: PixelLandscape): Minimum[] {
   }).filter(({ share }) => share > LEAST_SHARE);
 }
 
-function marksOf({ path }: PixelLandscape, minima: Minimum[], { prior, weight }: PixelLandscapeRequest, truth?: ArrayLike<number>): Mark[] {
+function marksOf(
+  { path }: PixelLandscape,
+  minima: Minimum[],
+  { prior, weight }: PixelLandscapeRequest,
+  truth?: ArrayLike<number>,
+): Mark[] {
   const steps = Array.from({ length: path.length / 3 }, (_, i) => onDisc(path.subarray(3 * i, 3 * i + 3)));
   return [
     { ink: "path", shape: "line", points: steps.flat() },
     { ink: "path", shape: "dot", points: steps.flat(), size: 0.9 },
     ...(truth ? [{ ink: "truth", shape: "cross", points: onDisc(truth), size: 3 } as const] : []),
-    ...minima.map(({ normal, share }) => ({ ink: "minimum", shape: "dot", points: onDisc(normal), size: 1.2 + 3 * Math.sqrt(share) }) as const),
+    ...minima.map(
+      ({ normal, share }) =>
+        ({ ink: "minimum", shape: "dot", points: onDisc(normal), size: 1.2 + 3 * Math.sqrt(share) }) as const,
+    ),
     ...(prior && (weight ?? 0) > 0 ? [{ ink: "prior", shape: "ring", points: onDisc(prior), size: 3.5 } as const] : []),
   ];
 }

@@ -1,10 +1,24 @@
 /** Errors against the truth of a made scene: those of the tables, measured by the same modules. */
 
-import { chosenPixels as chosen, depthRmse as rmse, normalDegrees as degrees } from "../../../scripts/tables/protocol/measure-shapes.mjs";
-import { aboutY as aboutVertical, angleBetween as between, degreesBetween as rotationBetween, product as times, turn } from "../../../scripts/tables/protocol/rotations.mjs";
+import {
+  chosenPixels as chosen,
+  depthRmse as rmse,
+  normalDegrees as degrees,
+} from "../../../scripts/tables/protocol/measure-shapes.mjs";
+import {
+  aboutY as aboutVertical,
+  angleBetween as between,
+  degreesBetween as rotationBetween,
+  product as times,
+  turn,
+} from "../../../scripts/tables/protocol/rotations.mjs";
 
 /** Mean angle between two fields of normals where both have one. */
-export const normalDegrees = degrees as (found: ArrayLike<number>, truth: ArrayLike<number>, counts?: (index: number) => boolean) => number;
+export const normalDegrees = degrees as (
+  found: ArrayLike<number>,
+  truth: ArrayLike<number>,
+  counts?: (index: number) => boolean,
+) => number;
 /** Depth error, root mean square, up to a constant. */
 export const depthRmse = rmse as (found: Float32Array, truth: Float32Array) => number;
 /** The same pixels come first for every share. */

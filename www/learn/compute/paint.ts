@@ -9,7 +9,11 @@ import { numberOf, running, scene } from "./scenes";
 
 const SIZE = 96;
 /** Log colours of the paints at full strength, and the side of a square of paint, pixels. */
-const PAINTS = [[0, -0.7, -0.9], [-0.8, -0.2, -0.1], [-0.1, -0.1, -0.8]] as const;
+const PAINTS = [
+  [0, -0.7, -0.9],
+  [-0.8, -0.2, -0.1],
+  [-0.1, -0.1, -0.8],
+] as const;
 const SQUARE = 16;
 /** The shadow falls on a slanting band. */
 const BAND = [0.42, 0.58] as const;
@@ -53,10 +57,39 @@ export function* paint(values: Values): Generator<Drawing> {
     const hasPaint = albedo.some((value) => Number.isFinite(value) && value !== 0);
     yield {
       panels: [
-        pictureOf({ key: "picture", title: "The picture", alt: "A painted bust with a cast shadow across it." }, grid, pair.image.data as Float32Array),
-        pictureOf({ key: "albedo", title: "Albedo: the paint found", alt: "The paint that the module tells apart from the light." }, grid, exp(albedo), [], 1.6),
-        pictureOf({ key: "shading", title: "Shading: what the light does", alt: "The picture without its paint." }, grid, exp(shading)),
-        scalarOf({ key: "residual", title: "Left over", alt: "What neither paint nor shading explains.", legend: "dark: explained; bright: off by 1 and more" }, grid, residual, { min: 0, max: 1 }, "magma"),
+        pictureOf(
+          { key: "picture", title: "The picture", alt: "A painted bust with a cast shadow across it." },
+          grid,
+          pair.image.data as Float32Array,
+        ),
+        pictureOf(
+          {
+            key: "albedo",
+            title: "Albedo: the paint found",
+            alt: "The paint that the module tells apart from the light.",
+          },
+          grid,
+          exp(albedo),
+          [],
+          1.6,
+        ),
+        pictureOf(
+          { key: "shading", title: "Shading: what the light does", alt: "The picture without its paint." },
+          grid,
+          exp(shading),
+        ),
+        scalarOf(
+          {
+            key: "residual",
+            title: "Left over",
+            alt: "What neither paint nor shading explains.",
+            legend: "dark: explained; bright: off by 1 and more",
+          },
+          grid,
+          residual,
+          { min: 0, max: 1 },
+          "magma",
+        ),
       ],
       numbers: {
         likeness: strength > 0 && hasPaint ? correlation(albedo, paint) : NaN,
@@ -64,7 +97,12 @@ export function* paint(values: Values): Generator<Drawing> {
         shaded: darkness > 0 ? meanOf(residual, isShadow) : NaN,
         degrees: normalDegrees(estimator.imageNormals(), made.truth.imageNormals),
       },
-      words: { status: report.status === "running" ? `iteration ${report.iteration}` : [report.status, inWords(report.message ?? "")].filter(Boolean).join(": ") },
+      words: {
+        status:
+          report.status === "running"
+            ? `iteration ${report.iteration}`
+            : [report.status, inWords(report.message ?? "")].filter(Boolean).join(": "),
+      },
     };
   }
 }

@@ -8,12 +8,19 @@ import { lightNamed, normalAt, numberOf, ofOrder, scene } from "./scenes";
 
 const BALL = { width: 96, height: 96 };
 const normals = ballNormals(BALL.width);
-const CHANNELS = [["red", "R"], ["green", "G"], ["blue", "B"]] as const satisfies readonly (readonly [Ink, string])[];
+const CHANNELS = [
+  ["red", "R"],
+  ["green", "G"],
+  ["blue", "B"],
+] as const satisfies readonly (readonly [Ink, string])[];
 /** Places along the section through the ball. */
 const SECTION = 49;
 
 export function* pixel(values: Values): Generator<Drawing> {
-  const light = turnLight(lightNamed(String(values.light)), { alpha: numberOf(values, "alpha"), beta: numberOf(values, "beta") });
+  const light = turnLight(lightNamed(String(values.light)), {
+    alpha: numberOf(values, "alpha"),
+    beta: numberOf(values, "beta"),
+  });
   const albedo = Math.log(numberOf(values, "albedo"));
   const normal = normalAt(numberOf(values, "nx"), numberOf(values, "ny"));
   const one = Float32Array.from(normal);
@@ -30,22 +37,64 @@ export function* pixel(values: Values): Generator<Drawing> {
   yield {
     panels: [
       pictureOf(
-        { key: "ball", title: "A ball under this light", alt: "A ball: every visible normal once. The ring is the chosen normal.", legend: "drag on the ball to choose a normal" },
+        {
+          key: "ball",
+          title: "A ball under this light",
+          alt: "A ball: every visible normal once. The ring is the chosen normal.",
+          legend: "drag on the ball to choose a normal",
+        },
         BALL,
         ball,
         [{ ink: "normal", shape: "ring", points: onDisc(normal), size: 4 }],
         white,
       ),
-      pictureOf({ key: "patch", title: "The predicted colour", alt: `The colour of the pixel: ${log.map((value) => Math.exp(value).toFixed(2)).join(", ")} in linear red, green and blue.` }, { width: 1, height: 1 }, colour, [], white),
-      pictureOf({ key: "bust", title: "A bust under the same light", alt: "A bust, coloured by the image model from its true normals.", legend: "drag here to turn the light" }, bust.image, predicted(light, bust.truth.imageNormals, albedo), [], white),
+      pictureOf(
+        {
+          key: "patch",
+          title: "The predicted colour",
+          alt: `The colour of the pixel: ${log.map((value) => Math.exp(value).toFixed(2)).join(", ")} in linear red, green and blue.`,
+        },
+        { width: 1, height: 1 },
+        colour,
+        [],
+        white,
+      ),
+      pictureOf(
+        {
+          key: "bust",
+          title: "A bust under the same light",
+          alt: "A bust, coloured by the image model from its true normals.",
+          legend: "drag here to turn the light",
+        },
+        bust.image,
+        predicted(light, bust.truth.imageNormals, albedo),
+        [],
+        white,
+      ),
       plot(
-        { key: "section", title: "Across the ball, through that normal", alt: "log S of red, green and blue against the horizontal part of the normal." },
+        {
+          key: "section",
+          title: "Across the ball, through that normal",
+          alt: "log S of red, green and blue against the horizontal part of the normal.",
+        },
         "nx",
         "log S",
-        CHANNELS.map(([ink, name], channel) => ({ name, ink, points: across.flatMap((x, i) => [x, (section[3 * i + channel] ?? NaN) + albedo]) })),
+        CHANNELS.map(([ink, name], channel) => ({
+          name,
+          ink,
+          points: across.flatMap((x, i) => [x, (section[3 * i + channel] ?? NaN) + albedo]),
+        })),
         { at: normal[0], range: [-3, 0.5] },
       ),
     ],
-    numbers: { red: log[0] ?? NaN, green: log[1] ?? NaN, blue: log[2] ?? NaN, nz: normal[2], order0: orders[0] ?? NaN, order1: orders[1] ?? NaN, order2: orders[2] ?? NaN },
+    numbers: {
+      red: log[0] ?? NaN,
+      green: log[1] ?? NaN,
+      blue: log[2] ?? NaN,
+      nz: normal[2],
+      order0: orders[0] ?? NaN,
+      order1: orders[1] ?? NaN,
+      order2: orders[2] ?? NaN,
+    },
   };
 }

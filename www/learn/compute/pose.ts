@@ -18,14 +18,20 @@ const MOST_RESIDUAL: Readonly<Record<string, number>> = { colourful: 0.7, window
 /** Stages of an iteration up to the light, whose fit leaves the residual, and up to the image's surface. */
 const [TO_LIGHT, TO_SURFACE] = [1, 3];
 
-const picture = (values: Values): Sample => scene({ surface: "bust", light: String(values.light), size: SIZE, angles: { beta: BETA }, noise: 0.01 });
+const picture = (values: Values): Sample =>
+  scene({ surface: "bust", light: String(values.light), size: SIZE, angles: { beta: BETA }, noise: 0.01 });
 
 const middles = new WeakMap<Sample, number[]>();
 /** The middle of the depth map's points in the camera's frame, under the true pose. */
 function middleOf(made: Sample): number[] {
   const known = middles.get(made);
   if (known) return known;
-  const points = afterStages(made, { light: made.light, start: made.pose, scale: 1, registration: "fixed" }, 0, (estimator) => estimator.points("depth"));
+  const points = afterStages(
+    made,
+    { light: made.light, start: made.pose, scale: 1, registration: "fixed" },
+    0,
+    (estimator) => estimator.points("depth"),
+  );
   const middle = [0, 1, 2].map((axis) => meanOf(points, (at) => at % 3 === axis));
   middles.set(made, middle);
   return middle;
@@ -37,7 +43,13 @@ function told(made: Sample, degrees: number, registration: "fixed" | "joint"): O
   const turn = aboutY(degrees);
   const arm = made.pose.translation.map((value, axis) => value - (middle[axis] ?? 0));
   const translation = turned(turn, arm).map((value, axis) => value + (middle[axis] ?? 0));
-  return { light: made.light, start: { rotation: product(turn, made.pose.rotation), translation }, scale: 1, registration, shading: "pixel" };
+  return {
+    light: made.light,
+    start: { rotation: product(turn, made.pose.rotation), translation },
+    scale: 1,
+    registration,
+    shading: "pixel",
+  };
 }
 
 interface State {
@@ -67,13 +79,18 @@ export function* pose(values: Values): Generator<Drawing> {
   const made = picture(values);
   const offset = numberOf(values, "offset");
   const curve: number[] = [];
-  let state = afterStages(made, told(made, offset, "fixed"), TO_SURFACE, (estimator) => stateOf(estimator, "held where you put it"));
+  let state = afterStages(made, told(made, offset, "fixed"), TO_SURFACE, (estimator) =>
+    stateOf(estimator, "held where you put it"),
+  );
   const draw = (): Drawing => drawing(values, made, state, curve);
   yield draw();
   const run = String(values.run);
   if (run === "hold") {
     for (const each of OFFSETS) {
-      curve.push(each, afterStages(made, told(made, each, "fixed"), TO_LIGHT, (estimator) => estimator.report.residual));
+      curve.push(
+        each,
+        afterStages(made, told(made, each, "fixed"), TO_LIGHT, (estimator) => estimator.report.residual),
+      );
       yield draw();
     }
     return;
@@ -93,21 +110,71 @@ function drawing(values: Values, made: Sample, state: State, curve: number[]): D
   const prior = seen < 0 ? undefined : turned(state.rotation, vectorAt(state.normals, seen));
   const known = prior?.every(Number.isFinite) ? prior : undefined;
   const weight = numberOf(values, "weight");
-  const landscape = landscapeOf({ log: logAt(made, chosen), light: made.light, weight: known ? weight : 0, robust: isOn(values, "robust"), start: known ?? [0, 0, -1], ...(known ? { prior: known } : {}) }, { truth });
+  const landscape = landscapeOf(
+    {
+      log: logAt(made, chosen),
+      light: made.light,
+      weight: known ? weight : 0,
+      robust: isOn(values, "robust"),
+      start: known ?? [0, 0, -1],
+      ...(known ? { prior: known } : {}),
+    },
+    { truth },
+  );
   const ring = [{ ink: "pixel", shape: "ring", points: atPixel(chosen, grid), size: 3 } as const];
   const error = degreesBetween(state.rotation, made.pose.rotation);
   const panels: Drawing["panels"] = [
-    pictureOf({ key: "picture", title: "The picture", alt: "A bust; the ring is the pixel of the cost map.", legend: "drag to choose a pixel" }, grid, made.image.data as Float32Array, ring),
+    pictureOf(
+      {
+        key: "picture",
+        title: "The picture",
+        alt: "A bust; the ring is the pixel of the cost map.",
+        legend: "drag to choose a pixel",
+      },
+      grid,
+      made.image.data as Float32Array,
+      ring,
+    ),
     state.panel,
-    scalarOf({ key: "residual", title: "Colours left unexplained", alt: "Residual of every pixel under this pose: dark where the colours are explained.", legend: "dark: explained; bright: off by 0.5 and more" }, grid, state.residual, { min: 0, max: 0.5 }, "magma", ring),
+    scalarOf(
+      {
+        key: "residual",
+        title: "Colours left unexplained",
+        alt: "Residual of every pixel under this pose: dark where the colours are explained.",
+        legend: "dark: explained; bright: off by 0.5 and more",
+      },
+      grid,
+      state.residual,
+      { min: 0, max: 0.5 },
+      "magma",
+      ring,
+    ),
     landscape.panel,
   ];
   if (String(values.run) === "hold") {
-    panels.push(plot({ key: "curve", title: "Residual against the error of the pose", alt: "The residual is least where the pose is right." }, "pose wrong by, °", "residual", [{ name: "residual", ink: "pose", points: [...curve], dots: true }], { at: numberOf(values, "offset"), domain: ENDS, range: [0, MOST_RESIDUAL[String(values.light)] ?? 1] }));
+    panels.push(
+      plot(
+        {
+          key: "curve",
+          title: "Residual against the error of the pose",
+          alt: "The residual is least where the pose is right.",
+        },
+        "pose wrong by, °",
+        "residual",
+        [{ name: "residual", ink: "pose", points: [...curve], dots: true }],
+        { at: numberOf(values, "offset"), domain: ENDS, range: [0, MOST_RESIDUAL[String(values.light)] ?? 1] },
+      ),
+    );
   }
   return {
     panels,
-    numbers: { error, residual: meanOf([state.explained]), minima: landscape.minima, off: known ? angleBetween(known, truth) : NaN, end: angleBetween(landscape.end, truth) },
+    numbers: {
+      error,
+      residual: meanOf([state.explained]),
+      minima: landscape.minima,
+      off: known ? angleBetween(known, truth) : NaN,
+      end: angleBetween(landscape.end, truth),
+    },
     words: { status: state.status },
   };
 }

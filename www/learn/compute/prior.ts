@@ -12,14 +12,44 @@ const ANYWHERE = 1e6;
 const SHARES = [0, 5, 10, 20, 35, 50, 75, 100];
 
 function solved(values: Values, share: number) {
-  const made = scene({ surface: "bust", light: String(values.light), size: SIZE, angles: { beta: 0 }, noise: 0.02, seed: 5 });
+  const made = scene({
+    surface: "bust",
+    light: String(values.light),
+    size: SIZE,
+    angles: { beta: 0 },
+    noise: 0.02,
+    seed: 5,
+  });
   // A depth map without a pixel is refused: for none of them the prior weighs nothing.
   const none = share === 0;
-  const mask = none ? (made.depth.mask ?? new Uint8Array()) : chosenPixels(made.depth.mask ?? new Uint8Array(), share / 100, 5);
+  const mask = none
+    ? (made.depth.mask ?? new Uint8Array())
+    : chosenPixels(made.depth.mask ?? new Uint8Array(), share / 100, 5);
   const depth = { ...made.depth, mask, normals: made.truth.depthNormals };
-  const options: Options = { light: made.light, start: made.pose, registration: "fixed", shading: "pixel", lambda: { prior: none ? 0 : numberOf(values, "weight") }, correspondenceDistance: ANYWHERE, trim: false };
-  const [normals, found] = after({ image: made.image, depth }, options, 2, (estimator) => [estimator.imageNormals(), estimator.imageDepth()] as const);
-  return { made, mask, none, normals, found, degrees: normalDegrees(normals, made.truth.imageNormals), depth: depthRmse(found, made.truth.imageDepth) };
+  const options: Options = {
+    light: made.light,
+    start: made.pose,
+    registration: "fixed",
+    shading: "pixel",
+    lambda: { prior: none ? 0 : numberOf(values, "weight") },
+    correspondenceDistance: ANYWHERE,
+    trim: false,
+  };
+  const [normals, found] = after(
+    { image: made.image, depth },
+    options,
+    2,
+    (estimator) => [estimator.imageNormals(), estimator.imageDepth()] as const,
+  );
+  return {
+    made,
+    mask,
+    none,
+    normals,
+    found,
+    degrees: normalDegrees(normals, made.truth.imageNormals),
+    depth: depthRmse(found, made.truth.imageDepth),
+  };
 }
 
 export function* prior(values: Values): Generator<Drawing> {
@@ -32,14 +62,48 @@ export function* prior(values: Values): Generator<Drawing> {
   const curve: number[] = [];
   const drawing = (): Drawing => ({
     panels: [
-      normalsOf({ key: "given", title: "Normals from the depth map", alt: `The prior: ${share} percent of the pixels have a normal from elsewhere.`, legend: "hatched: none given" }, grid, given),
+      normalsOf(
+        {
+          key: "given",
+          title: "Normals from the depth map",
+          alt: `The prior: ${share} percent of the pixels have a normal from elsewhere.`,
+          legend: "hatched: none given",
+        },
+        grid,
+        given,
+      ),
       normalsOf({ key: "found", title: "Normals found", alt: "Normals from colours and prior." }, grid, normals),
-      scalarOf({ key: "depth", title: "Depth from these normals", alt: "The surface that they integrate to.", legend: "dark near, bright far" }, grid, centred(found), { min: -14, max: 14 }),
-      plot({ key: "profile", title: "A section through the face", alt: "Heights along one row: true and found." }, "column, px", "height, px", [
-        { name: "true", ink: "truth", points: alongRow(centred(made.truth.imageDepth), grid, row, -1) },
-        { name: "found", ink: "normal", points: alongRow(centred(found), grid, row, -1) },
-      ]),
-      plot({ key: "figure5", title: "Error against the share given (Figure 5)", alt: "Mean error of the normals against the share of pixels with a prior." }, "share with a prior, %", "error, °", [{ name: "normals", ink: "prior", points: [...curve], dots: true }], { at: share, domain: [0, 100], range: [0, 40] }),
+      scalarOf(
+        {
+          key: "depth",
+          title: "Depth from these normals",
+          alt: "The surface that they integrate to.",
+          legend: "dark near, bright far",
+        },
+        grid,
+        centred(found),
+        { min: -14, max: 14 },
+      ),
+      plot(
+        { key: "profile", title: "A section through the face", alt: "Heights along one row: true and found." },
+        "column, px",
+        "height, px",
+        [
+          { name: "true", ink: "truth", points: alongRow(centred(made.truth.imageDepth), grid, row, -1) },
+          { name: "found", ink: "normal", points: alongRow(centred(found), grid, row, -1) },
+        ],
+      ),
+      plot(
+        {
+          key: "figure5",
+          title: "Error against the share given (Figure 5)",
+          alt: "Mean error of the normals against the share of pixels with a prior.",
+        },
+        "share with a prior, %",
+        "error, °",
+        [{ name: "normals", ink: "prior", points: [...curve], dots: true }],
+        { at: share, domain: [0, 100], range: [0, 40] },
+      ),
     ],
     numbers: { degrees, depth, pixels: none ? 0 : mask.filter(Boolean).length },
   });

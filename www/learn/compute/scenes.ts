@@ -9,7 +9,13 @@ const MOST_KEPT = 8;
 const kept = new Map<string, Sample>();
 
 export function scene(request: SampleRequest, key = ""): Sample {
-  const name = key + JSON.stringify({ ...request, surface: typeof request.surface === "string" ? request.surface : "own", light: Array.from(request.light as never) });
+  const name =
+    key +
+    JSON.stringify({
+      ...request,
+      surface: typeof request.surface === "string" ? request.surface : "own",
+      light: Array.from(request.light as never),
+    });
   const known = kept.get(name);
   if (known) return known;
   const made = sample(request);
@@ -44,7 +50,13 @@ export function saturated(light: Float64Array, share: number): Float64Array {
 
 /** The part of a light that is of one order in the normal: 0, 1 or 2. */
 export function ofOrder(light: Float64Array, order: 0 | 1 | 2): Float64Array {
-  const [first, end] = ([[0, 1], [1, 4], [4, ORDERS]] as const)[order];
+  const [first, end] = (
+    [
+      [0, 1],
+      [1, 4],
+      [4, ORDERS],
+    ] as const
+  )[order];
   return light.map((value, index) => (index % ORDERS >= first && index % ORDERS < end ? value : 0));
 }
 
@@ -67,13 +79,22 @@ export function pixelAt(mask: Uint8Array | undefined, width: number, height: num
   return best;
 }
 
-export const vectorAt = (field: ArrayLike<number>, index: number): [number, number, number] => [field[3 * index] ?? NaN, field[3 * index + 1] ?? NaN, field[3 * index + 2] ?? NaN];
+export const vectorAt = (field: ArrayLike<number>, index: number): [number, number, number] => [
+  field[3 * index] ?? NaN,
+  field[3 * index + 1] ?? NaN,
+  field[3 * index + 2] ?? NaN,
+];
 
 /** The logarithm of a pixel's colour. */
-export const logAt = ({ image }: Sample, index: number): [number, number, number] => vectorAt(image.data, index).map((value) => Math.log(value)) as [number, number, number];
+export const logAt = ({ image }: Sample, index: number): [number, number, number] =>
+  vectorAt(image.data, index).map((value) => Math.log(value)) as [number, number, number];
 
 /** Runs a loop to its end, or so many steps, and frees it whatever happens. */
-export function* running(made: Pick<Sample, "image" | "depth">, options: Options, steps = Infinity): Generator<Estimator> {
+export function* running(
+  made: Pick<Sample, "image" | "depth">,
+  options: Options,
+  steps = Infinity,
+): Generator<Estimator> {
   const estimator = new Estimator(made.image, made.depth, options);
   try {
     for (let step = 0; step < steps && estimator.report.status === "running"; step++) {
@@ -86,7 +107,12 @@ export function* running(made: Pick<Sample, "image" | "depth">, options: Options
 }
 
 /** What is asked of an estimator after so many stages of its first iteration. */
-export function afterStages<T>(made: Pick<Sample, "image" | "depth">, options: Options, stages: number, ask: (estimator: Estimator) => T): T {
+export function afterStages<T>(
+  made: Pick<Sample, "image" | "depth">,
+  options: Options,
+  stages: number,
+  ask: (estimator: Estimator) => T,
+): T {
   const estimator = new Estimator(made.image, made.depth, options);
   try {
     for (let stage = 0; stage < stages; stage++) estimator.stepStage();
@@ -97,7 +123,12 @@ export function afterStages<T>(made: Pick<Sample, "image" | "depth">, options: O
 }
 
 /** What is asked of an estimator after so many steps. */
-export function after<T>(made: Pick<Sample, "image" | "depth">, options: Options, steps: number, ask: (estimator: Estimator) => T): T {
+export function after<T>(
+  made: Pick<Sample, "image" | "depth">,
+  options: Options,
+  steps: number,
+  ask: (estimator: Estimator) => T,
+): T {
   const estimator = new Estimator(made.image, made.depth, options);
   try {
     for (let step = 0; step < steps && estimator.report.status === "running"; step++) estimator.step();
@@ -113,14 +144,21 @@ const PICTURE_EVERY = 150;
 const MOST_STEPS = 12_000;
 
 /** A whole run from search to verdict, shown now and then, and at its end with what it says of itself. */
-export function* watched(made: Pick<Sample, "image" | "depth">, options: Options): Generator<{ estimator: Estimator; status: string; done: boolean }> {
+export function* watched(
+  made: Pick<Sample, "image" | "depth">,
+  options: Options,
+): Generator<{ estimator: Estimator; status: string; done: boolean }> {
   const estimator = new Estimator(made.image, made.depth, options);
   try {
     let shown = -Infinity;
     for (let step = 0; step < MOST_STEPS && estimator.report.status === "running"; step++) {
       const { stage, message, iteration } = estimator.step();
       if (performance.now() - shown < PICTURE_EVERY) continue;
-      yield { estimator, status: stage === "search" ? `search, ${message ?? ""}` : `iteration ${iteration}`, done: false };
+      yield {
+        estimator,
+        status: stage === "search" ? `search, ${message ?? ""}` : `iteration ${iteration}`,
+        done: false,
+      };
       shown = performance.now();
     }
     const { status, message } = estimator.report;

@@ -23,10 +23,20 @@ function rawNormals(made: Sample): Float32Array {
 
 export function* sensor(values: Values): Generator<Drawing> {
   const [noise, holes] = [numberOf(values, "noise"), numberOf(values, "holes")];
-  const made = scene({ surface: "bust", light: String(values.light), size: SIZE, angles: { beta: 15 }, noise: numberOf(values, "picture"), depthNoise: noise, holes: holes / 100, seed: 3 });
+  const made = scene({
+    surface: "bust",
+    light: String(values.light),
+    size: SIZE,
+    angles: { beta: 15 },
+    noise: numberOf(values, "picture"),
+    depthNoise: noise,
+    holes: holes / 100,
+    seed: 3,
+  });
   const grid = made.depth;
   const measured = made.depth.data as Float32Array;
-  const inside = (depth: ArrayLike<number>) => Array.from(depth, (value, index) => (made.depth.mask?.[index] ? value : NaN));
+  const inside = (depth: ArrayLike<number>) =>
+    Array.from(depth, (value, index) => (made.depth.mask?.[index] ? value : NaN));
   const raw = rawNormals(made);
   const middle = meanOf(made.truth.depth);
   const row = Math.round(0.45 * grid.height);
@@ -37,17 +47,44 @@ export function* sensor(values: Values): Generator<Drawing> {
     const measuredOnly = refined.map((value, index) => (Number.isFinite(measured[index]) ? value : NaN));
     const filled = refined.filter((value, index) => holesAt(index) && Number.isFinite(value)).length;
     const all = measured.filter((_, index) => holesAt(index)).length;
-    const off = (depth: ArrayLike<number>) => alongRow(Array.from(depth, (value) => value - middle), grid, row, -1);
+    const off = (depth: ArrayLike<number>) =>
+      alongRow(
+        Array.from(depth, (value) => value - middle),
+        grid,
+        row,
+        -1,
+      );
     yield {
       panels: [
-        normalsOf({ key: "raw", title: "Sensor: normals as measured", alt: "Normals of the noisy depth map." }, grid, raw),
-        normalsOf({ key: "refined", title: "Sensor: normals refined", alt: "Normals of the depth map after refinement." }, grid, normals),
-        normalsOf({ key: "truth", title: "True normals", alt: "True normals in the depth view." }, grid, made.truth.depthNormals),
-        plot({ key: "profile", title: "A section through the face", alt: "Heights along one row: measured, refined and true." }, "column, px", "height, px", [
-          { name: "measured", ink: "error", points: off(inside(measured)) },
-          { name: "true", ink: "truth", points: off(made.truth.depth) },
-          { name: "refined", ink: "sensor", points: off(refined) },
-        ]),
+        normalsOf(
+          { key: "raw", title: "Sensor: normals as measured", alt: "Normals of the noisy depth map." },
+          grid,
+          raw,
+        ),
+        normalsOf(
+          { key: "refined", title: "Sensor: normals refined", alt: "Normals of the depth map after refinement." },
+          grid,
+          normals,
+        ),
+        normalsOf(
+          { key: "truth", title: "True normals", alt: "True normals in the depth view." },
+          grid,
+          made.truth.depthNormals,
+        ),
+        plot(
+          {
+            key: "profile",
+            title: "A section through the face",
+            alt: "Heights along one row: measured, refined and true.",
+          },
+          "column, px",
+          "height, px",
+          [
+            { name: "measured", ink: "error", points: off(inside(measured)) },
+            { name: "true", ink: "truth", points: off(made.truth.depth) },
+            { name: "refined", ink: "sensor", points: off(refined) },
+          ],
+        ),
       ],
       numbers: {
         before: rms(measured, made.truth.depth),

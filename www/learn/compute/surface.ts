@@ -30,10 +30,23 @@ function relief(step: number, through: boolean): Relief {
 }
 
 export function* surface(values: Values): Generator<Drawing> {
-  const [step, noise, robust, through] = [numberOf(values, "step"), numberOf(values, "noise"), isOn(values, "robust"), isOn(values, "through")];
-  const made = scene({ surface: relief(step, through), light: "colourful", size: SIZE, angles: { beta: 0 }, noise }, `step ${step} ${through}`);
+  const [step, noise, robust, through] = [
+    numberOf(values, "step"),
+    numberOf(values, "noise"),
+    isOn(values, "robust"),
+    isOn(values, "through"),
+  ];
+  const made = scene(
+    { surface: relief(step, through), light: "colourful", size: SIZE, angles: { beta: 0 }, noise },
+    `step ${step} ${through}`,
+  );
   const grid = made.image;
-  const pixels = after(made, { light: made.light, start: made.pose, registration: "fixed", shading: "pixel", lambda: { prior: 0 } }, 1, (estimator) => estimator.imageNormals());
+  const pixels = after(
+    made,
+    { light: made.light, start: made.pose, registration: "fixed", shading: "pixel", lambda: { prior: 0 } },
+    1,
+    (estimator) => estimator.imageNormals(),
+  );
   const found = integrateNormals(pixels, grid.width, grid.height, robust);
   const truth = made.truth.imageDepth;
   const centred = (depth: Float32Array): Float32Array => {
@@ -43,20 +56,58 @@ export function* surface(values: Values): Generator<Drawing> {
   const [foundDepth, trueDepth] = [centred(found), centred(truth)];
   const row = Math.round(ROW * grid.height);
   const column = Math.round(WALL * grid.width);
-  const jump = (depth: Float32Array) => (depth[row * grid.width + column - 3] ?? NaN) - (depth[row * grid.width + column + 3] ?? NaN);
+  const jump = (depth: Float32Array) =>
+    (depth[row * grid.width + column - 3] ?? NaN) - (depth[row * grid.width + column + 3] ?? NaN);
   const left = (depth: Float32Array) => depth.filter((_, index) => index % grid.width < column - 2);
   const least = Math.min(...trueDepth.filter(Number.isFinite));
   const most = Math.max(...trueDepth.filter(Number.isFinite));
   yield {
     panels: [
-      normalsOf({ key: "normals", title: "Normals of the pixels", alt: "Normals found from the colours: nearly the same on both sides of the step." }, grid, pixels),
-      scalarOf({ key: "depth", title: "Depth after integration", alt: "The depth that the normals integrate to.", legend: "dark near, bright far" }, grid, foundDepth, { min: least, max: most }),
-      scalarOf({ key: "truth", title: "True depth", alt: "The true depth: a dome, and a part raised by the step.", legend: "dark near, bright far" }, grid, trueDepth, { min: least, max: most }),
-      plot({ key: "profile", title: "A section through dome and step", alt: "Heights along one row: true and found." }, "column, px", "height, px", [
-        { name: "true", ink: "truth", points: alongRow(trueDepth, grid, row, -1) },
-        { name: "found", ink: "normal", points: alongRow(foundDepth, grid, row, -1) },
-      ]),
+      normalsOf(
+        {
+          key: "normals",
+          title: "Normals of the pixels",
+          alt: "Normals found from the colours: nearly the same on both sides of the step.",
+        },
+        grid,
+        pixels,
+      ),
+      scalarOf(
+        {
+          key: "depth",
+          title: "Depth after integration",
+          alt: "The depth that the normals integrate to.",
+          legend: "dark near, bright far",
+        },
+        grid,
+        foundDepth,
+        { min: least, max: most },
+      ),
+      scalarOf(
+        {
+          key: "truth",
+          title: "True depth",
+          alt: "The true depth: a dome, and a part raised by the step.",
+          legend: "dark near, bright far",
+        },
+        grid,
+        trueDepth,
+        { min: least, max: most },
+      ),
+      plot(
+        { key: "profile", title: "A section through dome and step", alt: "Heights along one row: true and found." },
+        "column, px",
+        "height, px",
+        [
+          { name: "true", ink: "truth", points: alongRow(trueDepth, grid, row, -1) },
+          { name: "found", ink: "normal", points: alongRow(foundDepth, grid, row, -1) },
+        ],
+      ),
     ],
-    numbers: { error: depthRmse(found, truth), jump: jump(foundDepth), kept: 100 * slopeOf(left(foundDepth), left(trueDepth)) },
+    numbers: {
+      error: depthRmse(found, truth),
+      jump: jump(foundDepth),
+      kept: 100 * slopeOf(left(foundDepth), left(trueDepth)),
+    },
   };
 }

@@ -4,25 +4,65 @@ import type { Lesson } from "../lesson";
 import { LIGHTS } from "../lesson";
 import { block, lines, log, mi, mn, mo, norm, row, sub, sum, sup, symbol } from "../maths";
 
-const colourTerm = () => row(sum(mi("j")), sup(row(mo("("), log(symbol("S")), mo("−"), sup(symbol("n"), mi("⊤")), symbol("M"), symbol("n"), mo(")")), mn("2")));
+const colourTerm = () =>
+  row(
+    sum(mi("j")),
+    sup(row(mo("("), log(symbol("S")), mo("−"), sup(symbol("n"), mi("⊤")), symbol("M"), symbol("n"), mo(")")), mn("2")),
+  );
 
 export const pose: Lesson = {
   id: "pose",
   title: "Finding the pose",
   gist: "Under the right pose the normals of the depth map explain the colours. That is how the pose is found.",
-  formula: () => block(colourTerm(), mo("+"), symbol("lambda"), norm(row(symbol("n"), mo("−"), symbol("R"), symbol("m")))),
-  formulaWords: "The cost of the colours plus lambda times the squared distance between the normal and the depth map's normal turned by the pose.",
+  formula: () =>
+    block(colourTerm(), mo("+"), symbol("lambda"), norm(row(symbol("n"), mo("−"), symbol("R"), symbol("m")))),
+  formulaWords:
+    "The cost of the colours plus lambda times the squared distance between the normal and the depth map's normal turned by the pose.",
   text: [
     "A photograph and a depth map look nothing alike, so there are no features to match. What links them is the image model: turn the depth map's normals {m} by the pose's rotation {R}, and they must explain the colours. Under a wrong pose they do not, and a residual is left. The curve shows it for wrong turns about the vertical axis.",
     "Joint registration walks down this residual, and light and pose move together where the light is unknown. It needs a start within reach, some 20 to 30 degrees. If nothing is known, a search comes first: it scores rotations from all over the sphere coarsely and hands the best to the registration.",
     "“Register from there” tells the registration a pose to start from. This told pose is believed up to a tolerance: the answer has to lie within 30° of it, and may move the object's middle by about the object's own width. If no pose within the tolerance explains the colours better, the told pose is kept and the status is lost.",
     "The last map is the cost of one pixel over all its normals, with the prior from the depth map under the present pose: a ring for the prior, dots for the valleys, a line for the steps of the solver from the prior. A small {lambda} leaves several valleys. Make it larger and they merge into one, near the prior. That is help if the pose is right, and harm if it is wrong. The robust prior is a compromise: one that is far off loses its hold.",
   ],
-  tasks: ["Turn the pose away from 0° and watch the residual rise and the two surfaces part.", "Drag λ to the right until the valleys of the pixel have merged. Repeat with the pose 20° wrong.", "Let it register from 20° away, then from 40°: the true pose lies beyond the tolerance, so the told pose is kept and the status is lost.", "Let it search from nothing."],
+  tasks: [
+    "Turn the pose away from 0° and watch the residual rise and the two surfaces part.",
+    "Drag λ to the right until the valleys of the pixel have merged. Repeat with the pose 20° wrong.",
+    "Let it register from 20° away, then from 40°: the true pose lies beyond the tolerance, so the told pose is kept and the status is lost.",
+    "Let it search from nothing.",
+  ],
   controls: [
-    { kind: "slider", key: "offset", label: "Pose wrong by", min: -40, max: 40, step: 1, initial: 12, unit: "°", when: ({ run }) => run !== "search" },
-    { kind: "choice", key: "run", label: "What happens", choices: [["hold", "hold it there"], ["register", "register from there"], ["search", "search from nothing"]], initial: "hold" },
-    { kind: "slider", key: "weight", label: "Weight λ of the prior", min: -4, max: 1.5, step: 0.05, initial: -3, logarithmic: true },
+    {
+      kind: "slider",
+      key: "offset",
+      label: "Pose wrong by",
+      min: -40,
+      max: 40,
+      step: 1,
+      initial: 12,
+      unit: "°",
+      when: ({ run }) => run !== "search",
+    },
+    {
+      kind: "choice",
+      key: "run",
+      label: "What happens",
+      choices: [
+        ["hold", "hold it there"],
+        ["register", "register from there"],
+        ["search", "search from nothing"],
+      ],
+      initial: "hold",
+    },
+    {
+      kind: "slider",
+      key: "weight",
+      label: "Weight λ of the prior",
+      min: -4,
+      max: 1.5,
+      step: 0.05,
+      initial: -3,
+      logarithmic: true,
+    },
     { kind: "box", key: "robust", label: "Robust prior", initial: 0 },
     { kind: "choice", key: "light", label: "Light", choices: LIGHTS, initial: "window" },
     { kind: "slider", key: "px", label: "Pixel, across", min: 0, max: 1, step: 0.01, initial: 0.48 },
@@ -48,16 +88,56 @@ export const sensor: Lesson = {
   id: "sensor",
   title: "Refining the sensor",
   gist: "The picture sees fine shape that the sensor's noise hides. With the pose known, it cleans the depth map.",
-  formula: () => lines(block(mi("μ"), norm(row(symbol("z"), mo("−"), symbol("d"))), mo("+"), sum(mi("j")), sup(row(mo("("), log(symbol("S")), mo("−"), sup(sub(symbol("n"), symbol("z")), mi("⊤")), symbol("M"), sub(symbol("n"), symbol("z")), mo(")")), mn("2")), mo(",")), block(mi("μ"), mo("="), sup(row(mo("("), sub(mi("σ"), mi("S")), mo("/"), sub(mi("σ"), symbol("d")), mo(")")), mn("2")))),
-  formulaWords: "A weight mu times the squared distance between the refined and the measured depth, plus the cost of the colours for the normals of the refined depth. Mu is the variance of the shading over that of the sensor.",
+  formula: () =>
+    lines(
+      block(
+        mi("μ"),
+        norm(row(symbol("z"), mo("−"), symbol("d"))),
+        mo("+"),
+        sum(mi("j")),
+        sup(
+          row(
+            mo("("),
+            log(symbol("S")),
+            mo("−"),
+            sup(sub(symbol("n"), symbol("z")), mi("⊤")),
+            symbol("M"),
+            sub(symbol("n"), symbol("z")),
+            mo(")"),
+          ),
+          mn("2"),
+        ),
+        mo(","),
+      ),
+      block(
+        mi("μ"),
+        mo("="),
+        sup(row(mo("("), sub(mi("σ"), mi("S")), mo("/"), sub(mi("σ"), symbol("d")), mo(")")), mn("2")),
+      ),
+    ),
+  formulaWords:
+    "A weight mu times the squared distance between the refined and the measured depth, plus the cost of the colours for the normals of the refined depth. Mu is the variance of the shading over that of the sensor.",
   text: [
     "A depth sensor is right on the large scale and noisy on the small one. Shading is the other way round: it tells slopes from pixel to pixel and drifts over long distances. The two fit together.",
     "Once the pose is known, the refinement looks for a depth {z} that stays near the measured depth {d} and whose normals explain the colours. Nobody sets the weight μ between the two: it is the variance of the shading over that of the sensor, both measured from the data. Holes are filled where the colour camera sees the place. Normals gain with it: they are differences of neighbours, in which noise is largest.",
     "What the picture does not see stays as it was measured: the side that is turned away, and what lies in shadow.",
   ],
-  tasks: ["Raise the noise of the sensor. The measured normals get rough; the refined ones hold.", "Cut holes into the depth map and watch the share that is filled.", "Raise the noise of the picture: it has less to give, and the refined depth gets worse."],
+  tasks: [
+    "Raise the noise of the sensor. The measured normals get rough; the refined ones hold.",
+    "Cut holes into the depth map and watch the share that is filled.",
+    "Raise the noise of the picture: it has less to give, and the refined depth gets worse.",
+  ],
   controls: [
-    { kind: "slider", key: "noise", label: "Noise of the sensor", min: 0.02, max: 1, step: 0.02, initial: 0.4, unit: "px" },
+    {
+      kind: "slider",
+      key: "noise",
+      label: "Noise of the sensor",
+      min: 0.02,
+      max: 1,
+      step: 0.02,
+      initial: 0.4,
+      unit: "px",
+    },
     { kind: "slider", key: "holes", label: "Holes", min: 0, max: 40, step: 1, initial: 5, unit: "%" },
     { kind: "slider", key: "picture", label: "Noise of the picture", min: 0, max: 0.2, step: 0.005, initial: 0.005 },
     { kind: "choice", key: "light", label: "Light", choices: LIGHTS, initial: "colourful" },

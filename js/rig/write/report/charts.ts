@@ -54,7 +54,9 @@ const at = (value: number): string => value.toFixed(2);
 
 /** A dot and its 95 % interval for each, on one scale of pixels from zero. */
 export function intervals(all: readonly Interval[]): Markup | undefined {
-  const known = all.filter(({ value, interval }) => [value, ...interval].every((number) => Number.isFinite(number) && number >= 0));
+  const known = all.filter(({ value, interval }) =>
+    [value, ...interval].every((number) => Number.isFinite(number) && number >= 0),
+  );
   const most = Math.max(...known.map(({ value, interval }) => Math.max(value, interval[1])));
   if (known.length === 0 || most <= 0) return undefined;
   const [width, left, right, line, axis] = INTERVALS;
@@ -62,7 +64,9 @@ export function intervals(all: readonly Interval[]): Markup | undefined {
   const end = 1.05 * most;
   const x = (pixels: number) => at(left + (pixels / end) * (width - left - right));
   const base = known.length * line + 6;
-  const said = known.map(({ name, value, interval }) => `${name}: ${digits(value)} (${digits(interval[0])} to ${digits(interval[1])})`).join("; ");
+  const said = known
+    .map(({ name, value, interval }) => `${name}: ${digits(value)} (${digits(interval[0])} to ${digits(interval[1])})`)
+    .join("; ");
   return html`<svg class="intervals" viewBox="0 0 ${width} ${height}" role="img" aria-label="Expected reprojection error in pixels, with its 95 % interval. ${said}">
 ${ticks(0, end).map((tick) => html`<path class="grid" d="M${x(tick)} 0V${base}"/><text class="tick" x="${x(tick)}" y="${base + 13}" text-anchor="middle">${brief(tick)}</text>`)}
 <text class="tick" x="${(left + width - right) / 2}" y="${height - 1}" text-anchor="middle">expected reprojection error, pixels</text>
@@ -101,7 +105,8 @@ function path({ points }: Curve, x: (offset: number) => string, y: (height: numb
 /** Best offset and 95 % interval in words, as far as the curve's range tells. */
 function says({ points, best, from, to }: Curve, unit: string): string {
   const [first = NaN, last = NaN] = [points[0]?.offset, points.at(-1)?.offset];
-  if (from === undefined && to === undefined) return `cannot tell from ${brief(first)} to ${brief(last)}${unit === "°" ? unit : ` ${unit}`}`;
+  if (from === undefined && to === undefined)
+    return `cannot tell from ${brief(first)} to ${brief(last)}${unit === "°" ? unit : ` ${unit}`}`;
   const least = from === undefined ? `below ${brief(first)}` : digits(from, 2);
   const most = to === undefined ? `above ${brief(last)}` : digits(to, 2);
   return `${measure(best, unit, 2)} (${least} to ${most})`;

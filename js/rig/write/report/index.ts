@@ -7,7 +7,15 @@ import { type Example, like } from "../built.js";
 import type { Picture, ReportOptions } from "./contents.js";
 import { reportPage } from "./page.js";
 import { inputTable, pictureSection } from "./parts.js";
-import { candidateTable, cueTable, estimateSection, frameTable, sensitivitySection, verdictCard, warningList } from "./sections.js";
+import {
+  candidateTable,
+  cueTable,
+  estimateSection,
+  frameTable,
+  sensitivitySection,
+  verdictCard,
+  warningList,
+} from "./sections.js";
 
 export type { Picture, ReportInput, ReportOptions } from "./contents.js";
 
@@ -23,7 +31,11 @@ const REPORT: Example = {
   sensitivity: [{ offsets: [], values: [] }],
 };
 
-export function reportHtml(report: CheckReport, pictures: readonly Picture[] = [], options: ReportOptions = {}): string {
+export function reportHtml(
+  report: CheckReport,
+  pictures: readonly Picture[] = [],
+  options: ReportOptions = {},
+): string {
   like(REPORT, report, "report");
   like([{}], pictures, "pictures");
   like({}, options, "options");

@@ -28,7 +28,8 @@ export function span([from, to]: readonly [number, number], unit: string): strin
   return Number.isFinite(from) && Number.isFinite(to) ? `${digits(from)} to ${measure(to, unit)}` : NONE;
 }
 
-export const percent = (share: number): string => (Number.isFinite(share) ? `${(100 * share).toFixed(0)}${SPACE}%` : NONE);
+export const percent = (share: number): string =>
+  Number.isFinite(share) ? `${(100 * share).toFixed(0)}${SPACE}%` : NONE;
 
 const LEAST_PROBABILITY = 0.001;
 

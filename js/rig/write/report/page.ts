@@ -6,7 +6,8 @@ import { STYLE, STYLE_SHA256 } from "./style.js";
 const POLICY = `default-src 'none'; img-src data:; style-src 'sha256-${STYLE_SHA256}'; base-uri 'none'; form-action 'none'`;
 
 export function reportPage(title: string, made: Date | undefined, field: string, body: Part): string {
-  if (made !== undefined && !(made instanceof Date && made.getTime() <= Infinity)) throw fault("type", field, "must be a Date that holds a time");
+  if (made !== undefined && !(made instanceof Date && made.getTime() <= Infinity))
+    throw fault("type", field, "must be a Date that holds a time");
   const date = made && `${made.toISOString().slice(0, 16).replace("T", " ")} UTC`;
   const page = html`<!doctype html>
 <html lang="en">

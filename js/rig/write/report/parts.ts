@@ -31,7 +31,8 @@ const PICTURE = /^data:image\/(?:png|jpeg|webp|avif|gif);base64,[A-Za-z0-9+/]+={
 export function pictureSection(pictures: readonly Picture[]): Markup | undefined {
   if (pictures.length === 0) return undefined;
   const figures = pictures.map(({ title, dataUrl }, index) => {
-    if (!PICTURE.test(String(dataUrl))) throw fault("type", `pictures[${index}].dataUrl`, "must be a data URL of a PNG, JPEG, WebP, AVIF or GIF");
+    if (!PICTURE.test(String(dataUrl)))
+      throw fault("type", `pictures[${index}].dataUrl`, "must be a data URL of a PNG, JPEG, WebP, AVIF or GIF");
     return html`<figure><img src="${dataUrl}" alt="${title}"><figcaption>${title}</figcaption></figure>`;
   });
   return section("Pictures", html`<div class="pictures">${figures}</div>`);

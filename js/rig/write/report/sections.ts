@@ -16,10 +16,15 @@ export function verdictCard({ verdict: given, reason, candidates, health }: Chec
   const [first] = Object.entries(candidates);
   const [name, candidate] = first ?? [];
   return html`<section class="card ${verdict}">${sign(verdict)}<div><p class="verdict">${WORDS[verdict]}${name === undefined ? undefined : html`<span class="name">${name}</span>`}</p>
-<p>${reason}</p><dl class="facts">${candidate && [
-    fact("Off from the best fit, at the middle of the scene", `${measure(candidate.offDegrees, "°")}, ${measure(candidate.offMillimetres, "mm")}`),
-    fact("Its expected reprojection error", measure(candidate.pixels, "px"), within(candidate.interval)),
-  ]}${fact("That of the best fit", measure(health.pixels, "px"), within(health.interval))}</dl></div></section>`;
+<p>${reason}</p><dl class="facts">${
+    candidate && [
+      fact(
+        "Off from the best fit, at the middle of the scene",
+        `${measure(candidate.offDegrees, "°")}, ${measure(candidate.offMillimetres, "mm")}`,
+      ),
+      fact("Its expected reprojection error", measure(candidate.pixels, "px"), within(candidate.interval)),
+    ]
+  }${fact("That of the best fit", measure(health.pixels, "px"), within(health.interval))}</dl></div></section>`;
 }
 
 export const warningList = ({ warnings }: CheckReport): Markup =>
@@ -30,7 +35,16 @@ export const warningList = ({ warnings }: CheckReport): Markup =>
       : html`<ul class="warnings">${warnings.map((warning) => html`<li>${warning}</li>`)}</ul>`,
   );
 
-const CANDIDATE_COLUMNS = ["Calibration", "Verdict", "Turned by", "Shifted by", "Expected error", "95\u202f% interval", "Probability", "Reason"];
+const CANDIDATE_COLUMNS = [
+  "Calibration",
+  "Verdict",
+  "Turned by",
+  "Shifted by",
+  "Expected error",
+  "95\u202f% interval",
+  "Probability",
+  "Reason",
+];
 
 function candidateRow(name: string, found: CandidateReport): Markup {
   const verdict = verdictOf(found.verdict);
@@ -51,7 +65,13 @@ export function candidateTable({ candidates, health }: CheckReport): Markup {
   ];
   return section(
     "Calibrations compared",
-    rows.length > 0 ? table("candidates stacks", CANDIDATE_COLUMNS, rows.map(([name, found]) => candidateRow(name, found))) : undefined,
+    rows.length > 0
+      ? table(
+          "candidates stacks",
+          CANDIDATE_COLUMNS,
+          rows.map(([name, found]) => candidateRow(name, found)),
+        )
+      : undefined,
     intervals(drawn),
     html`<p class="soft">Turned and shifted: from the best fit, the shift at the scene's middle. Expected error: the distance in the colour
 image between where a point of the scene falls and where it belongs, at the scene's depth. Probability: that of being as far from the best fit,
@@ -100,7 +120,10 @@ export function estimateSection({ estimate, covariance }: CheckReport): Markup {
     html`<h3>Covariance</h3><div class="scroll" tabindex="0">${table(
       "matrix",
       ["", ...COVARIANCE],
-      COVARIANCE.map((name, i) => html`<tr><th scope="row">${name}</th>${COVARIANCE.map((_, j) => html`<td>${digits(covariance[6 * i + j] ?? NaN)}</td>`)}</tr>`),
+      COVARIANCE.map(
+        (name, i) =>
+          html`<tr><th scope="row">${name}</th>${COVARIANCE.map((_, j) => html`<td>${digits(covariance[6 * i + j] ?? NaN)}</td>`)}</tr>`,
+      ),
     )}</div><p class="soft">Of a rotation vector in rad about the scene's middle, then a translation in m, in the colour camera's frame.</p>`,
   );
 }
@@ -113,7 +136,8 @@ const CUES: Readonly<Record<string, readonly [name: string, more: string]>> = {
   silhouette: ["Silhouettes", "outlines in both views"],
 };
 
-const about = (cue: string): readonly [name: string, more: string] => (Object.hasOwn(CUES, cue) ? CUES[cue] : undefined) ?? [cue, ""];
+const about = (cue: string): readonly [name: string, more: string] =>
+  (Object.hasOwn(CUES, cue) ? CUES[cue] : undefined) ?? [cue, ""];
 
 const sharpness = (value: number): string => (value > 0 ? `to ${measure(1 / value, "px")}` : "not at all");
 
@@ -122,7 +146,9 @@ export function cueTable({ cues }: CheckReport): Markup | undefined {
     ([cue, { share, sharpness: sharp }]) =>
       html`<tr><th scope="row">${about(cue)[0]} <span class="soft">${about(cue)[1]}</span></th><td class="number">${percent(share)}</td><td class="bars">${bar(share)}</td>${cell("Tells the pose", sharpness(sharp))}</tr>`,
   );
-  return rows.length === 0 ? undefined : section("What the answer rests on", table("shares", ["Cue", "Share", "", "Tells the pose"], rows));
+  return rows.length === 0
+    ? undefined
+    : section("What the answer rests on", table("shares", ["Cue", "Share", "", "Tells the pose"], rows));
 }
 
 export function frameTable({ frames }: CheckReport): Markup | undefined {
