@@ -18,7 +18,7 @@ export const sidesOf = (size) => size.split("x").map(Number);
 /** Heights of a built-in surface, read off its own rendering on its own grid. */
 function heightsOf(surface, sample) {
   const { truth } = sample({ surface, light: "colourful", size: RELIEF_SIDE });
-  const farthest = truth.imageDepth.reduce((far, depth) => Math.max(depth, far), -Infinity);
+  const farthest = truth.imageDepth.reduce((far, depth) => (depth > far ? depth : far), -Infinity);
   const heights = truth.imageDepth.map((depth) => (Number.isNaN(depth) ? 0 : farthest - depth + FLOOR + 1));
   return { width: RELIEF_SIDE, height: RELIEF_SIDE, heights };
 }

@@ -80,7 +80,7 @@ function objectOn(raster) {
     const [x, y] = [place.x + column / place.samplesPerPixel, place.y + row / place.samplesPerPixel];
     heights[index] = place.samplesPerPixel * heightAt(raster, x, y);
   }
-  const lowest = heights.reduce((low, height) => Math.min(height, low), Infinity);
+  const lowest = heights.reduce((low, height) => (height < low ? height : low), Infinity);
   const raised = heights.map((height) => (Number.isNaN(height) ? 0 : height - lowest + LOWEST));
   return { place, relief: { width: RELIEF_SIDE, height: RELIEF_SIDE, heights: raised } };
 }

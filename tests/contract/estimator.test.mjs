@@ -102,7 +102,7 @@ test("a photograph of twelve megapixels is taken with a small depth map, in its 
   const { image, depth } = pair({ size: 64 });
   const [width, height, side] = [4000, 3000, 40];
   const [data, mask] = [new Uint8Array(4 * width * height), new Uint8Array(width * height)];
-  const brightest = image.data.reduce((most, value) => Math.max(value, most), 0);
+  const brightest = image.data.reduce((most, value) => (value > most ? value : most), 0);
   for (let index = 0; index < width * height; index++) {
     const [column, row] = [index % width, Math.floor(index / width)].map((at) => Math.floor((at - 200) / side));
     const inside = column >= 0 && row >= 0 && column < 64 && row < 64;

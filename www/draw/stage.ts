@@ -266,7 +266,7 @@ function finite({ points, colours }: Surface): { points: Float32Array; colours: 
     if (colours) tints?.set(colours.subarray(3 * i, 3 * i + 3), 3 * to);
     at[i] = to++;
   }
-  return { points: kept.slice(0, 3 * to), colours: tints?.slice(0, 3 * to), at };
+  return { points: kept.slice(0, 3 * to), colours: tints ? tints.slice(0, 3 * to) : null, at };
 }
 
 /** Two triangles for each four neighbours that are not torn apart. */

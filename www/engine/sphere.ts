@@ -28,7 +28,7 @@ export function lit(light: ArrayLike<number>): ImageBitmap {
   const logs = shadeNormals(light, ball);
   return painted(
     logs,
-    logs.reduce((most, value) => Math.max(value, most), -Infinity),
+    logs.reduce((most, value) => (value > most ? value : most), -Infinity),
   );
 }
 

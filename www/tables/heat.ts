@@ -186,7 +186,7 @@ export class Heat {
   #move(event: KeyboardEvent): void {
     const step = { ArrowLeft: [0, -1], ArrowRight: [0, 1], ArrowUp: [-1, 0], ArrowDown: [1, 0] }[event.key];
     const row = this.#buttons.findIndex((line) => line.some((button) => button === event.target));
-    const column = this.#buttons[row]?.indexOf(event.target) ?? -1;
+    const column = this.#buttons[row]?.findIndex((button) => button === event.target) ?? -1;
     if (!step || column < 0) return;
     event.preventDefault();
     const target = this.#buttons[row + (step[0] ?? 0)]?.[column + (step[1] ?? 0)];

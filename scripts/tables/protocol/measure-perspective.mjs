@@ -94,7 +94,7 @@ function meshOfSurface(api, library, surface, height) {
   });
   const inside = points.filter(Boolean);
   const middle = [0, 1, 2].map((axis) => inside.reduce((sum, point) => sum + point[axis], 0) / inside.length);
-  const centred = points.map((point) => point?.map((value, axis) => value - middle[axis]));
+  const centred = points.map((point) => point && point.map((value, axis) => value - middle[axis]));
   return meshOf(RASTER, centred, RELIEF_JUMP * metres);
 }
 

@@ -62,7 +62,7 @@ export const stress = {
 function castShadows({ width, height, depth }, lamp) {
   const across = Math.hypot(lamp[0], lamp[1]);
   const reach = across < 1e-6 ? 0 : Math.ceil(Math.hypot(width, height) / across / RAY.step);
-  const nearest = depth.reduce((least, z) => Math.min(z, least), Infinity);
+  const nearest = depth.reduce((least, z) => (z < least ? z : least), Infinity);
   return depth.map((z, index) => {
     const [column, row] = [index % width, Math.floor(index / width)];
     for (let k = 2; k < reach; k++) {
