@@ -40,7 +40,7 @@ const CHECK = {
   file: `${MODULE}_check_bg.wasm`,
   target: "target/check",
   flags: ["-C", `target-feature=-${REFERENCES},-simd128`],
-  features: ["--features", "calibration"],
+  features: ["--features", "bindings-check"],
   name: `${MODULE}_check`,
 };
 /** The rendered rigs of its tests and of the page's example, which nobody else downloads. */
@@ -48,7 +48,7 @@ const RIGS = {
   ...CHECK,
   file: `${MODULE}_rigs_bg.wasm`,
   target: "target/rigs",
-  features: ["--features", "rigs"],
+  features: ["--features", "bindings-rigs"],
   name: `${MODULE}_rigs`,
 };
 /** All files of the package. */
@@ -59,7 +59,7 @@ export const GLUE = ALL.map(({ target, name = MODULE }) => `${target}/wasm-bindg
 
 export const node = (module, ...args) => must(process.execPath, [inRoot("node_modules", module), ...args]);
 
-async function numerics({ file, target, flags, features = [], name = MODULE, sources = "." }) {
+async function numerics({ file, target, flags, features = ["--features", "bindings"], name = MODULE, sources = "." }) {
   // Messages of panics name files: without where they lie on this machine, which is nobody's business.
   const registry = `${process.env.CARGO_HOME ?? `${homedir()}/.cargo`}/registry/src/`;
   const config = `target.${WASM}.rustflags=${JSON.stringify([...flags, `--remap-path-prefix=${registry}=`])}`;

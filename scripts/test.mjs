@@ -196,16 +196,20 @@ const PARTS = [
   // Layout and lint of everything in TypeScript and JavaScript.
   { name: "biome", run: biome, closing: /^(?:Checked \d+ files.*|Found .*)$/gm },
   { name: "clippy", run: cargo("clippy", "--all-targets", ...DENY), closing: CARGO },
-  { name: "clippy-wasm", run: cargo("clippy", ...LIBRARY, "--target", WASM, "--all-targets", ...DENY), closing: CARGO },
+  {
+    name: "clippy-wasm",
+    run: cargo("clippy", ...LIBRARY, "--target", WASM, "--all-targets", "--features", "bindings", ...DENY),
+    closing: CARGO,
+  },
   // The bindings of the calibration check and of its rendered rigs, which are files of their own.
   {
     name: "clippy-check",
-    run: cargo("clippy", ...LIBRARY, "--target", WASM, "--lib", "--features", "calibration", ...DENY),
+    run: cargo("clippy", ...LIBRARY, "--target", WASM, "--lib", "--features", "bindings-check", ...DENY),
     closing: CARGO,
   },
   {
     name: "clippy-rigs",
-    run: cargo("clippy", ...LIBRARY, "--target", WASM, "--lib", "--features", "rigs", ...DENY),
+    run: cargo("clippy", ...LIBRARY, "--target", WASM, "--lib", "--features", "bindings-rigs", ...DENY),
     closing: CARGO,
   },
   { name: "docs", run: docs, closing: CARGO },

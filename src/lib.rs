@@ -63,7 +63,7 @@ mod text;
 #[cfg(any(doc, doctest))]
 pub mod tutorial;
 mod view;
-#[cfg(all(target_arch = "wasm32", target_os = "unknown"))]
+#[cfg(all(target_arch = "wasm32", target_os = "unknown", feature = "bindings"))]
 #[allow(unsafe_code, reason = "of what wasm-bindgen generates; the files themselves have none")]
 mod wasm;
 
@@ -74,6 +74,8 @@ pub use calibration::{
 pub use error::{Error, ErrorKind, Result};
 pub use estimator::{Estimator, Finding, RefinementTask, Surface, Task, Worker};
 pub use light::{COEFFICIENTS, CoefficientMatrix, Light, LightFit, LightFitter, LightPrior};
+/// The linear algebra in this crate's public types, of the very release that they are made of.
+pub use nalgebra;
 pub use options::{LightSource, Options, Registration, Shading, Start, StartTolerance, Weights};
 pub use picture::{ColourMap, Layer};
 pub use pose::{

@@ -4,13 +4,13 @@
 use std::hint::black_box;
 
 use arbitrary::{Result, Unstructured};
+use bimodal_stereo::nalgebra::SMatrix;
 use bimodal_stereo::{
     AnchorWeight, Anchors, Angles, Camera, ColourView, DepthView, Icp, IcpOptions, IcpProblem, IntegrationOptions,
     Integrator, Light, LightFitter, LightPrior, Metric, Normals, Photometric, PhotometricOptions, PhotometricProblem,
     PixelLandscape, RansacOptions, Robustness, Search, SearchProblem, ShadingProblem, ShadingSolver, ShadingWeights,
     Similarity, Size, cubic_normals, exposure_step, first_exposure, gradients, normals, ransac, surface_of_normals,
 };
-use nalgebra::SMatrix;
 
 use super::calibration::rig_camera;
 use super::numbers::{light, number, odd, perhaps, points, pose, rarely, rotation, unit, vector};

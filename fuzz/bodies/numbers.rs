@@ -1,8 +1,8 @@
 //! Numbers, poses and lights, plain ones and odd ones.
 
 use arbitrary::{Result, Unstructured};
+use bimodal_stereo::nalgebra::{Matrix3, Vector3};
 use bimodal_stereo::{Angles, Light, Similarity, scenes};
-use nalgebra::{Matrix3, Vector3};
 
 /// Where arithmetic breaks: no numbers, infinities, both zeros, denormals, numbers whose squares overflow or vanish, whole
 /// numbers that an index or a rounded f32 cannot hold.

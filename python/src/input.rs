@@ -1,7 +1,7 @@
 //! From the dictionaries of the package to the views of the crate.
 
+use bimodal_stereo::nalgebra::{Matrix3, Vector3};
 use bimodal_stereo::{Angles, ColourImage, ColourSamples, DepthMap, DepthSamples, Pinhole, Similarity, Transfer};
-use nalgebra::{Matrix3, Vector3};
 use pyo3::prelude::*;
 
 use crate::error::failure;

@@ -71,7 +71,7 @@ fn start(given: &Members<'_>) -> PyResult<Option<Start>> {
         None => {}
     }
     let Some(pose) = given.below("start", &POSE)? else { return Ok(None) };
-    let rotation = rotation(&pose)?.unwrap_or_else(nalgebra::Matrix3::identity);
+    let rotation = rotation(&pose)?.unwrap_or_else(bimodal_stereo::nalgebra::Matrix3::identity);
     Ok(Some(Start::Pose { rotation, scale: pose.number("scale")?, translation: translation(&pose)? }))
 }
 

@@ -4,41 +4,41 @@
 //! as for every other caller. Arrays are copied both ways, because a view on wasm memory dies when that memory grows.
 
 mod error;
-#[cfg(not(feature = "rigs"))]
-#[cfg_attr(feature = "calibration", allow(dead_code, reason = "options are the loop's"))]
+#[cfg(not(feature = "bindings-rigs"))]
+#[cfg_attr(feature = "bindings-check", allow(dead_code, reason = "options are the loop's"))]
 mod input;
-#[cfg_attr(any(feature = "calibration", feature = "rigs"), allow(dead_code, reason = "so are its reports"))]
+#[cfg_attr(any(feature = "bindings-check", feature = "bindings-rigs"), allow(dead_code, reason = "so are its reports"))]
 mod output;
 
 // A file of its own for each: visitors who don't check a rig don't download the check, and the other way round.
-#[cfg(feature = "calibration")]
+#[cfg(feature = "bindings-check")]
 mod calibration;
-#[cfg(not(any(feature = "calibration", feature = "rigs")))]
+#[cfg(not(any(feature = "bindings-check", feature = "bindings-rigs")))]
 mod estimator;
-#[cfg(not(any(feature = "calibration", feature = "rigs")))]
+#[cfg(not(any(feature = "bindings-check", feature = "bindings-rigs")))]
 mod lessons;
-#[cfg(feature = "rigs")]
+#[cfg(feature = "bindings-rigs")]
 mod rigs;
-#[cfg(not(any(feature = "calibration", feature = "rigs")))]
+#[cfg(not(any(feature = "bindings-check", feature = "bindings-rigs")))]
 mod sample;
-#[cfg(not(any(feature = "calibration", feature = "rigs")))]
+#[cfg(not(any(feature = "bindings-check", feature = "bindings-rigs")))]
 mod worker;
 
 use wasm_bindgen::prelude::wasm_bindgen;
 
-#[cfg(not(any(feature = "calibration", feature = "rigs")))]
+#[cfg(not(any(feature = "bindings-check", feature = "bindings-rigs")))]
 #[wasm_bindgen(typescript_custom_section)]
 const TYPES: &str = r#"
 import type { ColorImage, DepthMap, Options, Sample, SampleRequest, StepReport } from "../../js/types.js";
 "#;
 
-#[cfg(feature = "calibration")]
+#[cfg(feature = "bindings-check")]
 #[wasm_bindgen(typescript_custom_section)]
 const TYPES: &str = r#"
 import type { CheckFrame, CheckReport, ColorImage, DepthMap, Options } from "../../../js/types.js";
 "#;
 
-#[cfg(feature = "rigs")]
+#[cfg(feature = "bindings-rigs")]
 #[wasm_bindgen(typescript_custom_section)]
 const TYPES: &str = r#"
 import type { RigSample } from "../../../js/types.js";
