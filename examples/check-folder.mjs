@@ -258,7 +258,9 @@ async function run(args) {
     process.removeListener("SIGINT", interrupt);
   }
 
-  const whole = capped(report, [...new Set([...report.warnings, ...warnings, ...read.warnings])]);
+  const whole = capped(report, [
+    ...new Set([...report.warnings.map(({ message }) => message), ...warnings, ...read.warnings]),
+  ]);
   const inputs = inputsOf([...found, ...(read.readings ?? [])], [...calibrations, ...cameras, ...files]);
   const json = () => `${JSON.stringify({ ...whole, inputs }, null, 2)}\n`;
   if (values.json !== undefined && values.json !== "-") writeFileSync(values.json, json());

@@ -76,8 +76,8 @@ fn print(report: &StepReport) {
     if let Some(uncertainty) = &report.uncertainty {
         println!("one sigma about x, y, z: {:.2?} degrees", uncertainty.rotation_degrees);
     }
-    if let Some(message) = &report.message {
-        println!("{message}");
+    if let Some(reason) = &report.reason {
+        println!("{reason}");
     }
 }
 

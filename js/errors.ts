@@ -1,16 +1,46 @@
+/** What can go wrong, for programs. */
+export type ErrorCode =
+  | "size"
+  | "range"
+  | "missing"
+  | "empty"
+  | "degenerate"
+  | "memory"
+  | "unsupported"
+  | "option"
+  | "type"
+  | "file"
+  | "state"
+  | "init"
+  | "freed"
+  | "panic"
+  | "poisoned"
+  | "internal";
+
 /** Everything that goes wrong here for a reason the caller can name. */
 export class BimodalError extends Error {
   override readonly name = "BimodalError";
-  /** Stable, for programs: "size", "range", "missing", "empty", "option", "type", "unsupported", "freed", "state", "panic", "poisoned", ... */
-  readonly code: string;
+  /** Stable, for programs; docs/codes.md has cause and remedy of each. */
+  readonly code: ErrorCode;
   /** The input at fault, as a path in the contract, e.g. "depth.camera.fx". */
   declare readonly field?: string;
+  /** Index into the field's array, where one entry is at fault. */
+  declare readonly index?: number;
+  /** The number at fault, where the numerics name it. */
+  declare readonly value?: number;
 
-  constructor(code: string, message: string, field?: string, options?: ErrorOptions) {
+  constructor(
+    code: ErrorCode,
+    message: string,
+    field?: string,
+    options?: ErrorOptions & { index?: number | undefined; value?: number | undefined },
+  ) {
     super(message, options);
     this.code = code;
     // Absent rather than undefined, so that `"field" in error` tells the truth.
     if (field !== undefined) this.field = field;
+    if (options?.index !== undefined) this.index = options.index;
+    if (options?.value !== undefined) this.value = options.value;
   }
 }
 
@@ -20,9 +50,11 @@ export const badFile = (message: string, cause?: unknown) =>
 
 /** How errors cross from wasm: plain data. */
 interface Crossing {
-  code: string;
+  code: ErrorCode;
   field: string;
   message: string;
+  index?: number;
+  value?: number;
 }
 
 function isCrossing(value: unknown): value is Crossing {
@@ -44,7 +76,10 @@ export const isPanic = (error: unknown): boolean => error instanceof WebAssembly
 
 /** What came out of wasm as what the contract promises; anything else passes unchanged. */
 export function translate(error: unknown): unknown {
-  if (isCrossing(error)) return new BimodalError(error.code, error.message, error.field);
+  if (isCrossing(error)) {
+    const { code, message, field, index, value } = error;
+    return new BimodalError(code, message, field, { index, value });
+  }
   if (isPanic(error)) {
     const message = "the numerics broke off; this is a bug. Free this estimator and make another one";
     return new BimodalError("panic", message, undefined, { cause: error });

@@ -24,7 +24,7 @@ const weight = { kind: "number", min: 0, max: 1e6 } as const;
 const seed = { kind: "whole", min: 0, max: Number.MAX_SAFE_INTEGER, default: 1 } as const;
 const side = { kind: "side", min: 16, max: 1024, unit: "px" } as const;
 
-export const POSE: RowsOf<Partial<Pose>> = {
+export const POSE: RowsOf<Partial<Omit<Pose, "matrix">>> = {
   scale: { kind: "number", above: 0 },
   rotation: { kind: "list", length: 9 },
   translation: { kind: "list", length: 3 },

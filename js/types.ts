@@ -54,11 +54,13 @@ export interface Pose {
   rotation: number[];
   translation: number[];
   angles: { alpha: number; beta: number; gamma: number };
+  /** The same as one 4x4 matrix, four rows of four numbers: scale * rotation beside the translation, 0 0 0 1 below. */
+  matrix: number[][];
 }
 
 export interface Options {
   light?: "estimate" | ArrayLike<number>;
-  start?: "search" | "identity" | Partial<Pose>;
+  start?: "search" | "identity" | Partial<Omit<Pose, "matrix">>;
   /**
    * How far from a told start the registration by colours may end: the rotation, by default 30 degrees, and, where a translation is
    * told, the object's middle in the colour view's units, by default the object's own width. Where nothing within explains the colours better,
@@ -101,6 +103,40 @@ export interface Uncertainty {
   weakest: string;
 }
 
+/** Why a run ended as it did, or what the last step of one that goes on came to; docs/codes.md has cause and remedy of each. */
+export type ReasonCode =
+  | "searching"
+  | "search-done"
+  | "taken-back"
+  | "pose-stays"
+  | "shapes-stay"
+  | "no-better-pose"
+  | "iteration-cap"
+  | "little-overlap"
+  | "initial-pose-kept"
+  | "not-observable"
+  | "rotation-uncertain"
+  | "albedo-varies"
+  | "silhouette-blind"
+  | "contrast-unexplained"
+  | "unexplained"
+  | "few-inliers"
+  | "hollow"
+  | "rivals"
+  | "missing-depth-mask"
+  | "missing-image-mask"
+  | "other-unit"
+  | "no-pose"
+  | "size-runs-away"
+  | "behind-camera"
+  | "stage-failed";
+
+/** A reason with its numbers, such as `percent`, `sigmaDegrees`, `weakest` or `count`. */
+export interface Reason {
+  code: ReasonCode;
+  [detail: string]: unknown;
+}
+
 export interface StepReport {
   iteration: number;
   /** The one that ran last. */
@@ -116,7 +152,9 @@ export interface StepReport {
   /** Robust mean log-colour residual. */
   residual: number;
   status: Status;
+  /** `reason` in words, which may change; programs decide by its code. */
   message?: string;
+  reason?: Reason;
   rivals?: Pose[];
   uncertainty?: Uncertainty;
   /** Wall time of each stage in the last step. */
@@ -211,8 +249,45 @@ export interface CheckOptions {
 
 export type CheckVerdict = "consistent" | "off" | "undecided";
 
+/** Why a verdict is what it is; docs/codes.md has cause and remedy of each. */
+export type CheckCode =
+  | "within-tolerance"
+  | "nothing-against"
+  | "off-target"
+  | "no-points-on-image"
+  | "guessed-camera"
+  | "unconstrained"
+  | "too-close"
+  | "no-pose-on-image"
+  | "no-candidate"
+  | "doubtful";
+
+/** What looks wrong about the input. */
+export type WarningCode =
+  | "blank-image"
+  | "intrinsics-guessed"
+  | "many-holes"
+  | "eight-bits"
+  | "unusual-depths"
+  | "rough-depth"
+  | "far-apart"
+  | "fits-inverted"
+  | "lens-left-out";
+
+/** What was guessed, looks wrong or is missing, and stops nothing; beside these members the numbers of the code. */
+export interface Warning {
+  /** Stable, for programs. */
+  code: WarningCode;
+  /** The same in a sentence. */
+  message: string;
+  /** The input that it is about, as a path in the contract. */
+  field?: string;
+  [detail: string]: unknown;
+}
+
 export interface CandidateReport {
   verdict: CheckVerdict;
+  code: CheckCode;
   /** The verdict in a sentence with its numbers. */
   reason: string;
   /** How far the candidate is from the estimate: turn in degrees, and shift at the scene's middle in millimetres. */
@@ -228,9 +303,11 @@ export interface CandidateReport {
 /** What a check of a calibration found. The first candidate is the one in question (JavaScript puts names like "7" before all others). */
 export interface CheckReport {
   verdict: CheckVerdict;
+  code: CheckCode;
+  /** The verdict in a sentence with its numbers. */
   reason: string;
-  /** What was guessed or looks wrong, in words; any of them keeps the verdict from being better than the files are. */
-  warnings: string[];
+  /** What was guessed or looks wrong; any of it keeps the verdict from being better than the files are. */
+  warnings: Warning[];
   /** The extrinsics that fit best, scale 1: P_colour = R P_depth + t, metres. */
   estimate: Pose;
   /** The scene's middle in the colour frame, metres. */

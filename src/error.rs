@@ -6,7 +6,8 @@ use std::fmt;
 use crate::text::Brief;
 
 /// The family an [`Error`] belongs to. Its [`code`](ErrorKind::code) is stable and is what JavaScript sees.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, strum::IntoStaticStr, strum::VariantNames)]
+#[strum(serialize_all = "kebab-case")]
 #[non_exhaustive]
 pub enum ErrorKind {
     /// Two sizes that must agree do not, or a size is outside its bounds.
@@ -26,18 +27,13 @@ pub enum ErrorKind {
 }
 
 impl ErrorKind {
+    /// The codes of all kinds.
+    pub const CODES: &'static [&'static str] = <Self as strum::VariantNames>::VARIANTS;
+
     /// Stable, lower-case name of the kind.
     #[must_use]
-    pub const fn code(self) -> &'static str {
-        match self {
-            Self::Size => "size",
-            Self::Range => "range",
-            Self::Missing => "missing",
-            Self::Empty => "empty",
-            Self::Degenerate => "degenerate",
-            Self::Memory => "memory",
-            Self::Unsupported => "unsupported",
-        }
+    pub fn code(self) -> &'static str {
+        self.into()
     }
 }
 
@@ -96,6 +92,12 @@ impl Error {
     pub const fn index(&self) -> Option<usize> {
         self.index
     }
+
+    /// The value at fault, where it is a number.
+    #[must_use]
+    pub const fn bad_value(&self) -> Option<f64> {
+        self.value
+    }
 }
 
 impl fmt::Display for Error {
@@ -113,3 +115,22 @@ impl fmt::Display for Error {
 }
 
 impl std::error::Error for Error {}
+
+/// As the JavaScript contract has it: code, message, field, and where they help index and value.
+#[cfg(feature = "serde")]
+impl serde::Serialize for Error {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
+        use serde::ser::SerializeMap;
+        let mut map = serializer.serialize_map(None)?;
+        map.serialize_entry("code", self.kind.code())?;
+        map.serialize_entry("message", &self.to_string())?;
+        map.serialize_entry("field", self.field())?;
+        if let Some(index) = self.index {
+            map.serialize_entry("index", &index)?;
+        }
+        if let Some(value) = self.value {
+            map.serialize_entry("value", &value)?;
+        }
+        map.end()
+    }
+}

@@ -7,7 +7,7 @@
 //!
 //! | room | what it holds | the paper |
 //! |---|---|---|
-//! | `text`, `error`, `check` ([`Error`]) | numbers in messages, errors as values, checks of single numbers | |
+//! | `text`, `serial`, `error`, `check` ([`Error`]) | numbers in messages, shapes for serde, errors as values, checks of single numbers | |
 //! | `numeric` | lanes, robust weights, conjugate gradients, cosine and Fourier transforms, ranks, noise | |
 //! | `view` ([`ColourView`], [`DepthView`]) | what comes in: sizes, masks, cameras, log colours, points, normals | input of Algorithm 1 |
 //! | `light` ([`Light`]) | `harmonics` the image model, `prior` the natural lights, `fit` the light of known normals | Eq. 2, 3, 5 |
@@ -22,7 +22,7 @@
 //! | `pose/similarity`, `pose/angles` ([`Similarity`], [`Angles`]) | s, R, t and the angles, in closed form; the least-squares fit of Eq. 16 is a test, `tests/library/pose_angles.rs` | Eq. 15, 16, 20 |
 //! | `pose/correspondence` ([`Correspondences`]) | which depth point is which pixel, and what hides it | the 1-pixel rule |
 //! | `calibration` ([`RigCamera`]) | the cameras of a rig whose calibration is in question, and their lenses | |
-//! | `options`, `report` ([`Options`], [`StepReport`]) | what the loop can be told, what it says | |
+//! | `options`, `reason`, `report` ([`Options`], [`Reason`], [`StepReport`]) | what the loop can be told, what it reports and why | |
 //! | `picture` ([`Layer`]) | results as pixels of a screen | |
 //! | `estimator` ([`Estimator`]) | Algorithm 1 stage by stage, its `objective`, its `verdict`; the `initialisation` before it; its [`Worker`]s | Eq. 1, Algorithm 1 |
 //! | [`scenes`] | surfaces, lights and a renderer with a known answer; stands on `view`, `light`, `pose`, `calibration` | the experiments |
@@ -46,6 +46,9 @@
 #[doc = include_str!("../README.md")]
 struct Readme;
 
+/// Cause and remedy of every code, as JSON: by group ("runs", "checks", "warnings", "errors") and code.
+pub const CODES: &str = include_str!("codes.json");
+
 mod calibration;
 mod check;
 mod error;
@@ -56,8 +59,11 @@ mod numeric;
 mod options;
 mod picture;
 mod pose;
+mod reason;
 mod report;
 pub mod scenes;
+#[cfg(feature = "serde")]
+mod serial;
 mod shape;
 mod text;
 #[cfg(any(doc, doctest))]
@@ -68,8 +74,8 @@ mod view;
 mod wasm;
 
 pub use calibration::{
-    CalibrationCheck, CandidateReport, CheckReport, CheckVerdict, Cue, CueReport, FrameReport, Health, Lens, Overlay,
-    RigCamera, RigView, Sensitivity, overlay,
+    CalibrationCheck, CandidateReport, CheckReason, CheckReport, CheckVerdict, Cue, CueReport, FrameReport, Health,
+    Lens, Margin, Offset, Overlay, RigCamera, RigView, Sensitivity, Warning, WarningKind, overlay,
 };
 pub use error::{Error, ErrorKind, Result};
 pub use estimator::{Estimator, Finding, RefinementTask, Surface, Task, Worker};
@@ -79,11 +85,12 @@ pub use nalgebra;
 pub use options::{LightSource, Options, Registration, Shading, Start, StartTolerance, Weights};
 pub use picture::{ColourMap, Layer};
 pub use pose::{
-    Angles, Candidate, CorrespondenceProblem, Correspondences, Icp, IcpOptions, IcpProblem, IcpReport, IcpTermination,
-    Information, Metric, Pair, Photometric, PhotometricOptions, PhotometricProblem, PhotometricReport,
+    Angles, Axis, Candidate, CorrespondenceProblem, Correspondences, Direction, Icp, IcpOptions, IcpProblem, IcpReport,
+    IcpTermination, Information, Metric, Pair, Photometric, PhotometricOptions, PhotometricProblem, PhotometricReport,
     PhotometricTermination, Progress, RansacOptions, RansacReport, Search, SearchProblem, Similarity, Uncertainty,
-    ransac,
+    Unknown, ransac,
 };
+pub use reason::{Activity, FoundBy, Reason};
 pub use report::{Objective, Stage, Status, StepReport};
 pub use shape::{
     AnchorWeight, Anchors, IntegrationOptions, IntegrationReport, IntegrationTermination, Integrator, Minimum,

@@ -10,6 +10,11 @@ use crate::pose::Similarity;
 /// Where the light comes from.
 #[expect(clippy::large_enum_variant, reason = "one value for each loop; a box would only complicate it")]
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(try_from = "serialised::GivenLight", into = "serialised::GivenLight")
+)]
 pub enum LightSource {
     /// Fitted to the data under the Gaussian prior of Eq. 2.
     Estimate,
@@ -19,6 +24,11 @@ pub enum LightSource {
 
 /// Where the pose starts.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(from = "serialised::GivenStart", into = "serialised::GivenStart")
+)]
 pub enum Start {
     /// Looked for everywhere.
     Search,
@@ -37,6 +47,7 @@ pub enum Start {
 
 /// How far from a told start the answer may lie.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct StartTolerance {
     /// Rotation in degrees.
     pub degrees: f64,
@@ -53,6 +64,7 @@ impl Default for StartTolerance {
 
 /// How the pose is refined in each iteration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Registration {
     /// Straight from the colours: pose and light together, the light projected out.
     Joint,
@@ -64,6 +76,7 @@ pub enum Registration {
 
 /// How the shape of the colour view is found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Shading {
     /// One normal for each pixel (Eq. 6), then integration.
     Pixel,
@@ -74,6 +87,7 @@ pub enum Shading {
 /// Weights of the terms of the objective. Brightness residuals are differences of natural logarithms; normals have no
 /// unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct Weights {
     /// lambda_2 of Eq. 6: how strongly a normal follows the normal of the other view.
     pub prior: f64,
@@ -95,6 +109,7 @@ impl Default for Weights {
 
 /// Everything the loop can be told. `Options::default()` is a sensible start.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "camelCase", default))]
 pub struct Options {
     /// Known or estimated light.
     pub light: LightSource,
@@ -103,12 +118,14 @@ pub struct Options {
     /// How far from a told start the registration by colours may end.
     pub start_tolerance: StartTolerance,
     /// Scale of the pose: `None` is free, `Some(s)` holds it.
+    #[cfg_attr(feature = "serde", serde(with = "serialised::free_or_held"))]
     pub scale: Option<f64>,
     /// Pose stage.
     pub registration: Registration,
     /// Shape stage.
     pub shading: Shading,
     /// Weights of the terms of the objective.
+    #[cfg_attr(feature = "serde", serde(rename = "lambda"))]
     pub weights: Weights,
     /// The loop converges when the rotation changes by less than this, in degrees.
     pub stop_degrees: f64,
@@ -202,5 +219,188 @@ impl Options {
             .value(f64::from(self.max_iterations)));
         }
         Ok(())
+    }
+}
+
+/// Members that are a word or something else: `"estimate"` or 27 numbers, `"search"`, `"identity"` or a pose, `"free"` or a number.
+#[cfg(feature = "serde")]
+mod serialised {
+    use nalgebra::{Matrix3, Vector3};
+    use serde::{Deserialize, Serialize};
+
+    use super::{LightSource, Start};
+    use crate::error::Error;
+    use crate::light::Light;
+    use crate::pose::Angles;
+
+    #[derive(Serialize, Deserialize)]
+    #[serde(rename_all = "lowercase")]
+    pub enum LightWord {
+        Estimate,
+    }
+
+    #[derive(Serialize, Deserialize)]
+    #[serde(untagged)]
+    pub enum GivenLight {
+        Word(LightWord),
+        Numbers(Vec<f64>),
+    }
+
+    impl TryFrom<GivenLight> for LightSource {
+        type Error = Error;
+
+        fn try_from(given: GivenLight) -> Result<Self, Error> {
+            Ok(match given {
+                GivenLight::Word(LightWord::Estimate) => Self::Estimate,
+                GivenLight::Numbers(values) => Self::Known(Light::from_slice("options.light", &values)?),
+            })
+        }
+    }
+
+    impl From<LightSource> for GivenLight {
+        fn from(source: LightSource) -> Self {
+            match source {
+                LightSource::Estimate => Self::Word(LightWord::Estimate),
+                LightSource::Known(light) => Self::Numbers(light.into()),
+            }
+        }
+    }
+
+    #[derive(Serialize, Deserialize)]
+    #[serde(rename_all = "lowercase")]
+    pub enum StartWord {
+        Search,
+        Identity,
+    }
+
+    /// As much of a pose as is known. The rotation, row by row, wins over the angles.
+    #[derive(Default, Serialize, Deserialize)]
+    #[serde(default)]
+    pub struct GivenPose {
+        #[serde(skip_serializing_if = "Option::is_none")]
+        scale: Option<f64>,
+        #[serde(skip_serializing_if = "Option::is_none")]
+        rotation: Option<[f64; 9]>,
+        #[serde(skip_serializing_if = "Option::is_none")]
+        translation: Option<[f64; 3]>,
+        #[serde(skip_serializing)]
+        angles: Angles,
+    }
+
+    #[derive(Serialize, Deserialize)]
+    #[serde(untagged)]
+    pub enum GivenStart {
+        Word(StartWord),
+        Pose(GivenPose),
+    }
+
+    impl From<GivenStart> for Start {
+        fn from(given: GivenStart) -> Self {
+            match given {
+                GivenStart::Word(StartWord::Search) => Self::Search,
+                GivenStart::Word(StartWord::Identity) => Self::Identity,
+                GivenStart::Pose(GivenPose { scale, rotation, translation, angles }) => Self::Pose {
+                    rotation: rotation.map_or_else(|| angles.rotation(), |rows| Matrix3::from_row_slice(&rows)),
+                    scale,
+                    translation: translation.map(Vector3::from),
+                },
+            }
+        }
+    }
+
+    impl From<Start> for GivenStart {
+        fn from(start: Start) -> Self {
+            match start {
+                Start::Search => Self::Word(StartWord::Search),
+                Start::Identity => Self::Word(StartWord::Identity),
+                Start::Pose { rotation, scale, translation } => Self::Pose(GivenPose {
+                    scale,
+                    rotation: Some(std::array::from_fn(|at| rotation[(at / 3, at % 3)])),
+                    translation: translation.map(Into::into),
+                    angles: Angles::default(),
+                }),
+            }
+        }
+    }
+
+    pub mod free_or_held {
+        use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+        #[derive(Serialize, Deserialize)]
+        #[serde(rename_all = "lowercase")]
+        enum Word {
+            Free,
+        }
+
+        #[derive(Serialize, Deserialize)]
+        #[serde(untagged)]
+        enum Given {
+            Word(Word),
+            Number(f64),
+        }
+
+        pub fn serialize<S: Serializer>(scale: &Option<f64>, serializer: S) -> Result<S::Ok, S::Error> {
+            scale.map_or(Given::Word(Word::Free), Given::Number).serialize(serializer)
+        }
+
+        pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D::Error> {
+            Ok(match Given::deserialize(deserializer)? {
+                Given::Word(Word::Free) => None,
+                Given::Number(scale) => Some(scale),
+            })
+        }
+    }
+}
+
+#[cfg(all(test, feature = "serde"))]
+mod tests {
+    use nalgebra::Matrix3;
+    use serde_json::json;
+
+    use super::*;
+
+    #[test]
+    fn options_read_back_as_they_were_written() {
+        let rotation = crate::pose::Angles { alpha: 3.0, beta: -20.0, gamma: 7.0 }.rotation();
+        let options = Options {
+            light: LightSource::Known(Light([[0.25; 9]; 3])),
+            start: Start::Pose { rotation, scale: None, translation: Some(Vector3::new(1.0, 2.0, 3.0)) },
+            start_tolerance: StartTolerance { degrees: 5.0, distance: Some(2.0) },
+            scale: Some(1.5),
+            registration: Registration::Icp,
+            shading: Shading::Pixel,
+            weights: Weights { prior: 1.0, unit: 2.0, light: 3.0, refinement: 4.0 },
+            stop_degrees: 0.5,
+            correspondence_distance: Some(2.0),
+            max_iterations: 7,
+            seed: 9,
+            annealing: false,
+            trim: false,
+        };
+        for options in [options, Options::default(), Options::paper()] {
+            let text = serde_json::to_string(&options).unwrap();
+            assert_eq!(serde_json::from_str::<Options>(&text).unwrap(), options, "{text}");
+        }
+    }
+
+    #[test]
+    fn options_come_in_the_shapes_of_the_contract() {
+        let given = json!({
+            "light": "estimate", "start": { "angles": { "beta": 90.0 }, "scale": 2.0 }, "scale": "free",
+            "startTolerance": { "degrees": 3.0 }, "lambda": { "prior": 0.5 }, "maxIterations": 4, "workers": 2,
+        });
+        let found: Options = serde_json::from_value(given).unwrap();
+        let Start::Pose { rotation, scale: Some(2.0), translation: None } = found.start else { panic!("{found:?}") };
+        assert!((rotation - Matrix3::new(0.0, 0.0, 1.0, 0.0, 1.0, 0.0, -1.0, 0.0, 0.0)).abs().max() < 1e-12);
+        let expected = Options {
+            start: found.start,
+            start_tolerance: StartTolerance { degrees: 3.0, distance: None },
+            weights: Weights { prior: 0.5, ..Weights::default() },
+            max_iterations: 4,
+            ..Options::default()
+        };
+        assert_eq!(found, expected);
+        assert!(serde_json::from_value::<Options>(json!({ "light": [1.0, 2.0] })).is_err());
+        assert!(serde_json::from_value::<Options>(json!({ "registration": "best" })).is_err());
     }
 }

@@ -1,9 +1,11 @@
 //! What the loop says after each step.
 
 use crate::pose::{Similarity, Uncertainty};
+use crate::reason::Reason;
 
 /// Stages of one iteration, in the order in which they run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "kebab-case"))]
 pub enum Stage {
     /// A slice of the search over all poses, before the first iteration.
     Search,
@@ -52,6 +54,7 @@ impl Stage {
 
 /// Where the loop stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "kebab-case"))]
 pub enum Status {
     /// More steps will change something.
     Running,
@@ -81,6 +84,7 @@ impl Status {
 
 /// The terms of Eq. 1, each a robust mean, so that sizes of images do not matter.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(into = "serialised::Energy"))]
 pub struct Objective {
     /// Brightness term l_1 of the colour view (Eq. 8).
     pub shading: f64,
@@ -102,6 +106,7 @@ impl Objective {
 
 /// State of the loop after a step or a stage.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "camelCase"))]
 pub struct StepReport {
     /// Completed iterations.
     pub iteration: u32,
@@ -112,6 +117,7 @@ pub struct StepReport {
     /// Change of the rotation in the last iteration, degrees.
     pub rotation_change: f64,
     /// Terms of the objective over the evaluation points.
+    #[cfg_attr(feature = "serde", serde(rename = "energy"))]
     pub objective: Objective,
     /// Share of the valid depth pixels that have a correspondence.
     pub overlap: f64,
@@ -121,11 +127,14 @@ pub struct StepReport {
     pub residual: f64,
     /// Where the loop stands.
     pub status: Status,
-    /// Why, in words, where there is something to say.
-    pub message: Option<String>,
+    /// Why it stands there, where there is something to say.
+    #[cfg_attr(feature = "serde", serde(flatten, serialize_with = "serialised::with_message"))]
+    pub reason: Option<Reason>,
     /// Other poses that the data can't tell from this one, best first.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Vec::is_empty"))]
     pub rivals: Vec<Similarity>,
     /// One sigma of the pose, where it could be computed.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub uncertainty: Option<Uncertainty>,
 }
 
@@ -142,9 +151,44 @@ impl StepReport {
             inliers: 0.0,
             residual: 0.0,
             status: Status::Running,
-            message: None,
+            reason: None,
             rivals: Vec::new(),
             uncertainty: None,
         }
+    }
+}
+
+/// What the contract has beside a field: sums and words, which are made where a report leaves the crate.
+#[cfg(feature = "serde")]
+mod serialised {
+    use serde::{Serialize, Serializer};
+
+    use super::{Objective, Reason};
+
+    #[derive(Serialize)]
+    pub struct Energy {
+        shading: f64,
+        prior: f64,
+        registration: f64,
+        refinement: f64,
+        total: f64,
+    }
+
+    impl From<Objective> for Energy {
+        fn from(terms: Objective) -> Self {
+            let Objective { shading, prior, registration, refinement } = terms;
+            Self { shading, prior, registration, refinement, total: terms.total() }
+        }
+    }
+
+    pub fn with_message<S: Serializer>(reason: &Option<Reason>, serializer: S) -> Result<S::Ok, S::Error> {
+        #[derive(Serialize)]
+        struct Explained<'a> {
+            #[serde(skip_serializing_if = "Option::is_none")]
+            message: Option<String>,
+            #[serde(skip_serializing_if = "Option::is_none")]
+            reason: &'a Option<Reason>,
+        }
+        Explained { message: reason.as_ref().map(Reason::to_string), reason }.serialize(serializer)
     }
 }

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use bimodal_stereo::{Stage, StepReport};
+use bimodal_stereo::{Reason, Stage, StepReport};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use crate::problem::plain;
@@ -46,13 +46,14 @@ impl Progress {
     }
 }
 
-/// How far the run is, 0 to 1, and what it is at. The search says its percent in its message; of the iterations only their largest number
-/// is known, of which most runs need few.
+/// How far the run is, 0 to 1, and what it is at. The search reports its percent; of the iterations only their largest number is known, of
+/// which most runs need few.
 fn share(report: &StepReport, most_iterations: u32) -> (f64, String) {
-    let message = report.message.as_deref().unwrap_or_default();
     if report.stage == Stage::Search {
-        let (percent, what) = message.split_once(" %: ").unwrap_or(("0", message));
-        return (SEARCH * percent.parse().unwrap_or(0.0) / 100.0, format!("search: {what}"));
+        return match report.reason {
+            Some(Reason::Searching { percent, activity }) => (SEARCH * percent / 100.0, format!("search: {activity}")),
+            _ => (SEARCH, "search".into()),
+        };
     }
     let iterations = f64::from(report.iteration) / f64::from(most_iterations.max(1));
     let words = format!("iteration {}, turned by {:.3} degrees", report.iteration, report.rotation_change);

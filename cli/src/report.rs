@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use bimodal_stereo::{Angles, Similarity, StepReport, Uncertainty};
+use bimodal_stereo::{Angles, CODES, Light, Reason, Similarity, Status, StepReport, Uncertainty};
 use serde::Serialize;
 
 use crate::estimate::{Files, Length, Outcome};
@@ -44,8 +44,11 @@ pub fn words(found: &Outcome) -> String {
     let length = found.image_length.word();
     let mut text = String::new();
     line!(text, "{} after {}", report.status.name(), iterations(report));
-    if let Some(message) = &report.message {
-        line!(text, "{}", plain(message));
+    if let Some(reason) = &report.reason {
+        line!(text, "{}", plain(&reason.to_string()));
+        remedy(reason).into_iter().for_each(|remedy| {
+            line!(text, "{remedy}");
+        });
     }
     line!(text, "\npose: P_colour = s R P_depth + t, R = Rx(alpha) Ry(beta) Rz(gamma); x right, y down, z forward");
     pose_words(&mut text, &report.pose, length);
@@ -76,6 +79,12 @@ pub fn words(found: &Outcome) -> String {
     text
 }
 
+/// What may help, from the table of codes.
+fn remedy(reason: &Reason) -> Option<String> {
+    let table: serde_json::Value = serde_json::from_str(CODES).ok()?;
+    Some(table["runs"][reason.code()]["remedy"].as_str()?.to_owned())
+}
+
 fn iterations(report: &StepReport) -> String {
     format!("{} iteration{}", report.iteration, if report.iteration == 1 { "" } else { "s" })
 }
@@ -101,7 +110,7 @@ fn sigma_words(text: &mut String, sigma: &Uncertainty, length: &str) {
     );
     line!(text, "  translation along x, y, z  {}", list(sigma.translation.map(seen)));
     line!(text, "  s                          {}", sigma.scale.map_or("held".into(), |scale| digits(scale, DIGITS)));
-    line!(text, "  weakest: {}", plain(&sigma.weakest));
+    line!(text, "  weakest: {}", sigma.weakest);
 }
 
 /// A pair of a folder.
@@ -130,6 +139,7 @@ pub enum Layout {
     OneLine,
 }
 
+/// The report as the crate writes it, and what a command line knows beside it.
 #[derive(Serialize)]
 #[serde(rename_all = "camelCase")]
 struct Report<'a> {
@@ -137,50 +147,17 @@ struct Report<'a> {
     name: Option<&'a str>,
     image: String,
     depth: String,
-    status: &'static str,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    message: Option<&'a str>,
-    iteration: u32,
-    pose: Pose,
+    #[serde(flatten)]
+    report: &'a StepReport,
     /// Of lengths: "px" or "m".
     unit: &'static str,
     depth_unit: &'static str,
-    uncertainty: Option<Sigma<'a>>,
-    rivals: Vec<Pose>,
-    overlap: f64,
-    inliers: f64,
-    residual: f64,
     /// R1..9, G1..9, B1..9.
-    light: Vec<f64>,
+    light: Light,
     exposure: f64,
     notes: &'a [String],
     warnings: &'a [String],
     written: &'a [String],
-}
-
-#[derive(Serialize)]
-struct Pose {
-    scale: f64,
-    /// Row by row.
-    rotation: [f64; 9],
-    translation: [f64; 3],
-    angles: InDegrees,
-}
-
-#[derive(Serialize)]
-struct InDegrees {
-    alpha: f64,
-    beta: f64,
-    gamma: f64,
-}
-
-#[derive(Serialize)]
-#[serde(rename_all = "camelCase")]
-struct Sigma<'a> {
-    rotation_degrees: [f64; 3],
-    translation: [Option<f64>; 3],
-    scale: Option<f64>,
-    weakest: &'a str,
 }
 
 #[derive(Serialize)]
@@ -201,49 +178,16 @@ struct Fault<'a> {
     message: String,
 }
 
-impl From<&Similarity> for Pose {
-    fn from(pose: &Similarity) -> Self {
-        let Angles { alpha, beta, gamma } = Angles::of(&pose.rotation);
-        let rotation = std::array::from_fn(|at| pose.rotation[(at / 3, at % 3)]);
-        Self {
-            scale: pose.scale,
-            rotation,
-            translation: pose.translation.into(),
-            angles: InDegrees { alpha, beta, gamma },
-        }
-    }
-}
-
-impl<'a> From<&'a Uncertainty> for Sigma<'a> {
-    fn from(sigma: &'a Uncertainty) -> Self {
-        Self {
-            rotation_degrees: sigma.rotation_degrees,
-            translation: sigma.translation,
-            scale: sigma.scale,
-            weakest: &sigma.weakest,
-        }
-    }
-}
-
 impl<'a> Report<'a> {
     fn of(name: Option<&'a str>, found: &'a Outcome) -> Self {
-        let report = found.estimator.report();
         Self {
             name,
             image: found.files.image.display().to_string(),
             depth: found.files.depth.display().to_string(),
-            status: report.status.name(),
-            message: report.message.as_deref(),
-            iteration: report.iteration,
-            pose: (&report.pose).into(),
+            report: found.estimator.report(),
             unit: found.image_length.symbol(),
             depth_unit: found.depth_length.symbol(),
-            uncertainty: report.uncertainty.as_ref().map(Sigma::from),
-            rivals: report.rivals.iter().map(Pose::from).collect(),
-            overlap: report.overlap,
-            inliers: report.inliers,
-            residual: report.residual,
-            light: found.estimator.light().flat().to_vec(),
+            light: found.estimator.light(),
             exposure: found.estimator.exposure(),
             notes: &found.notes,
             warnings: &found.warnings,
@@ -286,15 +230,16 @@ pub fn pose_json(report: &StepReport, length: Length) -> String {
         about: String,
         unit: &'static str,
         #[serde(flatten)]
-        pose: Pose,
-        matrix: [[f64; 4]; 4],
-        status: &'static str,
+        pose: &'a Similarity,
+        status: Status,
         #[serde(skip_serializing_if = "Option::is_none")]
-        message: Option<&'a str>,
+        message: Option<String>,
         #[serde(skip_serializing_if = "Option::is_none")]
-        uncertainty: Option<Sigma<'a>>,
+        reason: &'a Option<Reason>,
+        #[serde(skip_serializing_if = "Option::is_none")]
+        uncertainty: &'a Option<Uncertainty>,
     }
-    let StepReport { pose, status, message, uncertainty, .. } = report;
+    let StepReport { pose, status, reason, uncertainty, .. } = report;
     let sigmas = uncertainty.as_ref().map_or("", |_| {
         "; uncertainty is one sigma, null where the views cannot see the number: any value of it would do as well, or it was held"
     });
@@ -302,15 +247,8 @@ pub fn pose_json(report: &StepReport, length: Length) -> String {
         "P_colour = scale * rotation * P_depth + translation; rotation row by row; angles in degrees; lengths in {}{sigmas}",
         length.word()
     );
-    let told = Told {
-        about,
-        unit: length.symbol(),
-        pose: pose.into(),
-        matrix: matrix(pose),
-        status: status.name(),
-        message: message.as_deref(),
-        uncertainty: uncertainty.as_ref().map(Sigma::from),
-    };
+    let message = reason.as_ref().map(Reason::to_string);
+    let told = Told { about, unit: length.symbol(), pose, status: *status, message, reason, uncertainty };
     text(&told, Layout::Lines)
 }
 

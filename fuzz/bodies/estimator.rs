@@ -66,9 +66,8 @@ pub fn judge(report: &StepReport) {
     }
     assert!(report.residual >= 0.0 && report.rotation_change >= 0.0, "{report:?}");
     assert!(report.rivals.iter().all(|rival| rival.validate("rival").is_ok()), "{report:?}");
-    assert!(report.message.as_ref().is_none_or(|message| !message.is_empty()));
     if report.status == Status::Lost {
-        assert!(report.message.is_some(), "lost without a reason: {report:?}");
+        assert!(report.reason.is_some(), "lost without a reason: {report:?}");
     }
     if let Some(uncertainty) = &report.uncertainty {
         let sigmas = uncertainty.rotation_degrees.into_iter();

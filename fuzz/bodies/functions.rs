@@ -184,8 +184,7 @@ fn matching(u: &mut Unstructured<'_>) -> Result<()> {
     if let Some(report) = passed(icp.register(&problem, &options)) {
         is_similarity(&report.pose);
         black_box(report.information.is_degenerate());
-        let sigmas = report.information.uncertainty(number(u, 1.0)?.abs(), &report.pose, &b.camera);
-        assert!(!sigmas.weakest.is_empty());
+        black_box(report.information.uncertainty(number(u, 1.0)?.abs(), &report.pose, &b.camera));
     }
     let (mut from, mut to) = (Vec::new(), Vec::new());
     icp.paired_points(&problem, &mut from, &mut to, u.int_in_range(0..=50)?);

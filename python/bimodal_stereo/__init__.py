@@ -14,6 +14,7 @@ depth points into the colour view: P_colour = scale * rotation @ P_depth + trans
 
 from ._calibration import CandidateReport, CheckFrame, CheckReport, CueReport, FrameReport, RigSample, Sensitivity
 from ._calibration import check_calibration, sample_rig
+from ._codes import CODES
 from ._errors import BimodalError
 from ._estimator import Estimator
 from ._inputs import Options, StartTolerance, Weights
@@ -23,6 +24,7 @@ from ._types import Angles, ColorImage, DepthMap, Energy, Pinhole, Pose, RigCame
 
 __all__ = [
     "Angles",
+    "CODES",
     "BimodalError",
     "CandidateReport",
     "CheckFrame",

@@ -5,9 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Callable, Mapping, NamedTuple, Optional, Sequence, Union
 
+import numpy as np
+
 from . import _inputs, _native
 from ._errors import BimodalError
-from ._types import ColorImage, DepthMap, Pose, RigCamera
+from ._types import ColorImage, DepthMap, Pose, RigCamera, made, renamed
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -37,13 +39,14 @@ class RigSample(CheckFrame):
 
 @dataclass(frozen=True)
 class CandidateReport:
-    """What is said of one candidate: "consistent", "off" or "undecided", and the reason with its numbers.
+    """What is said of one candidate: "consistent", "off" or "undecided", and the reason with its numbers; ``code`` names it for programs.
 
     ``off_degrees``, ``off_millimetres``: turn from the estimate, and shift at the scene's middle. ``pixels``, ``interval``: expected reprojection
     error at the scene's depth, pixels of the colour image, and its 95 % interval. ``probability``: of a distance as large, were it right.
     """
 
     verdict: str
+    code: str
     reason: str
     off_degrees: float
     off_millimetres: float
@@ -80,15 +83,17 @@ class Sensitivity(NamedTuple):
 class CheckReport:
     """What a check found. The first candidate is the one in question: ``verdict`` and ``reason`` are its own.
 
-    ``warnings``: what was guessed or looks wrong. ``estimate``: the extrinsics that fit best, P_colour = rotation @ P_depth + translation,
+    ``code`` names the reason for programs. ``warnings``: what was guessed or looks wrong, each a ``code``, a ``message``, the ``field`` and its
+    numbers. ``estimate``: the extrinsics that fit best, P_colour = rotation @ P_depth + translation,
     metres. ``middle``: (3,), the scene's, in the colour frame, metres. ``covariance``: (6, 6), of a rotation vector in rad about the middle,
     then a translation in m. ``focal``: factor of the assumed focal length and the logarithm's sigma, where the colour camera was
     not given. ``pixels``, ``interval``: expected reprojection error of the estimate, and its 95 % interval.
     """
 
     verdict: str
+    code: str
     reason: str
-    warnings: Sequence[str]
+    warnings: Sequence[Mapping[str, Any]]
     estimate: Pose
     middle: Floats
     covariance: Floats
@@ -124,14 +129,24 @@ def check_calibration(
     named = [(str(name), _inputs.plain(pose)) for name, pose in candidates.items()]
     given = [rig_frame(frame, index) for index, frame in enumerate(frames)]
     raw = _native.check_calibration(given, named, list(cues or []), on_progress)
-    made = {
-        "estimate": Pose._of(raw["estimate"]),
-        "candidates": {name: CandidateReport(**one) for name, one in raw["candidates"].items()},
-        "cues": {name: CueReport(*one) for name, one in raw["cues"].items()},
-        "frames": [FrameReport(**one) for one in raw["frames"]],
-        "sensitivity": [Sensitivity(**one) for one in raw["sensitivity"]],
-    }
-    return CheckReport(**{**raw, **made})
+    health = raw.pop("health")
+    return made(
+        CheckReport,
+        raw,
+        warnings=[renamed(warning) for warning in raw["warnings"]],
+        estimate=Pose._of(raw["estimate"]),
+        middle=np.array(raw["middle"]),
+        covariance=np.reshape(raw["covariance"], (6, 6)),
+        focal=tuple(raw["focal"]) if "focal" in raw else None,
+        pixels=health["pixels"],
+        interval=tuple(health["interval"]),
+        candidates={name: made(CandidateReport, one, interval=tuple(one["interval"])) for name, one in raw["candidates"].items()},
+        cues={name: CueReport(**one) for name, one in raw["cues"].items()},
+        frames=[made(FrameReport, one) for one in raw["frames"]],
+        sensitivity=[
+            made(Sensitivity, one, offsets=np.array(one["offsets"]), values=np.array(one["values"])) for one in raw["sensitivity"]
+        ],
+    )
 
 
 def rig_frame(frame: CheckFrame, index: int) -> dict[str, Any]:

@@ -10,17 +10,25 @@ class BimodalError(ValueError):
 
     ``code`` is stable, for programs: "size", "range", "missing", "empty", "degenerate", "memory", "option", "type",
     "unsupported", "state", "panic", "poisoned". ``field`` is the argument at fault as a path, such as "depth.camera.fx" or "stop_degrees",
-    or ``None``.
+    or ``None``. ``index``: of the entry of that argument, where a single one is at fault. ``value``: the number at fault.
     """
 
     code: str
     field: Optional[str]
+    index: Optional[int]
+    value: Optional[float]
 
-    def __init__(self, code: str, message: str, field: Optional[str] = None) -> None:
-        # All three are the exception's arguments, so that it passes between processes.
-        super().__init__(code, message, field)
-        self.code = code
-        self.field = field
+    def __init__(
+        self,
+        code: str,
+        message: str,
+        field: Optional[str] = None,
+        index: Optional[int] = None,
+        value: Optional[float] = None,
+    ) -> None:
+        # All are the exception's arguments, so that it passes between processes.
+        super().__init__(code, message, field, index, value)
+        self.code, self.field, self.index, self.value = code, field, index, value
 
     def __str__(self) -> str:
         return str(self.args[1])

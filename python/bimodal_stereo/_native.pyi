@@ -6,6 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 VERSION: str
+CODES: str
+
+def spelled(name: str) -> str: ...
 
 class Estimator:
     def __new__(cls, image: dict[str, Any], depth: dict[str, Any], keywords: dict[str, Any]) -> Estimator: ...

@@ -3,14 +3,31 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Mapping, Optional, Sequence, Union
+from typing import TYPE_CHECKING, Any, Mapping, Optional, Sequence, TypeVar, Union
+
+import numpy as np
+
+from ._native import spelled
 
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import ArrayLike, NDArray
 
     Floats = NDArray[np.float64]
     Singles = NDArray[np.float32]
+
+
+Made = TypeVar("Made")
+
+
+def renamed(raw: Mapping[str, Any]) -> dict[str, Any]:
+    """Members of the JavaScript contract by the names that they have here."""
+    return {spelled(name): value for name, value in raw.items()}
+
+
+def made(kind: type[Made], raw: Mapping[str, Any], **parts: Any) -> Made:
+    """An object from its members in the contract: ``None`` for those that are absent, ``parts`` in place of those named."""
+    members = {**dict.fromkeys(kind.__annotations__), **renamed(raw), **parts}
+    return kind(**members)
 
 
 @dataclass(frozen=True)
@@ -87,17 +104,26 @@ class Angles:
 class Pose:
     """P_colour = scale * rotation @ P_depth + translation, in units of the colour view.
 
-    ``rotation`` is (3, 3), ``translation`` (3,). As a start any part may be left out, and ``angles`` may stand for the rotation.
+    ``rotation`` is (3, 3), ``translation`` (3,), ``matrix`` (4, 4), scale and rotation in one beside the translation. As a start any part may
+    be left out, and ``angles`` may stand for the rotation.
     """
 
     scale: float
     rotation: Floats
     translation: Floats
     angles: Angles
+    matrix: Optional[Floats] = None
 
     @classmethod
     def _of(cls, raw: Mapping[str, Any]) -> Pose:
-        return cls(**{**raw, "angles": Angles(**raw["angles"])})
+        return made(
+            cls,
+            raw,
+            rotation=np.reshape(raw["rotation"], (3, 3)),
+            translation=np.array(raw["translation"]),
+            angles=Angles(**raw["angles"]),
+            matrix=np.array(raw["matrix"]),
+        )
 
 
 @dataclass(frozen=True)
@@ -124,13 +150,20 @@ class Uncertainty:
     scale: Optional[float]
     weakest: str
 
+    @classmethod
+    def _of(cls, raw: Mapping[str, Any]) -> Uncertainty:
+        # As floats `None` is NaN.
+        arrays = {name: np.array(raw[key], float) for name, key in (("rotation_degrees", "rotationDegrees"), ("translation", "translation"))}
+        return made(cls, raw, **arrays)
+
 
 @dataclass(frozen=True, eq=False)
 class StepReport:
     """State of the loop after a step.
 
     ``stage``: "search", "light", "shading", "surface", "registration" or "refinement", the one that ran last. ``status``: "running",
-    "converged", "max-iterations", "ambiguous" (``rivals`` explain the colours as well) or "lost" (``message`` says why).
+    "converged", "max-iterations", "ambiguous" or "lost". ``reason``: why, as a ``code`` for programs and its numbers; ``message``: the same
+    in words. ``rivals``: other poses that fit the image as well.
     ``rotation_change``: degrees. ``overlap``: share of valid depth pixels with a correspondence, ``inliers``: share of those within the
     robust scale. ``residual``: robust mean of the log-colour residual. ``milliseconds``: wall time of each stage in the last step.
     """
@@ -145,17 +178,20 @@ class StepReport:
     residual: float
     status: str
     message: Optional[str]
+    reason: Optional[Mapping[str, Any]]
     rivals: Sequence[Pose]
     uncertainty: Optional[Uncertainty]
     milliseconds: Mapping[str, float]
 
     @classmethod
     def _of(cls, raw: Mapping[str, Any]) -> StepReport:
-        sigma = raw["uncertainty"]
-        made = {
-            "pose": Pose._of(raw["pose"]),
-            "energy": Energy(**raw["energy"]),
-            "rivals": [Pose._of(rival) for rival in raw["rivals"]],
-            "uncertainty": None if sigma is None else Uncertainty(**sigma),
-        }
-        return cls(**{**raw, **made})
+        sigma, reason = raw.get("uncertainty"), raw.get("reason")
+        return made(
+            cls,
+            raw,
+            pose=Pose._of(raw["pose"]),
+            energy=Energy(**raw["energy"]),
+            reason=None if reason is None else renamed(reason),
+            rivals=[Pose._of(rival) for rival in raw.get("rivals", ())],
+            uncertainty=None if sigma is None else Uncertainty._of(sigma),
+        )

@@ -1,10 +1,7 @@
 //! The check of a calibration for Python, and the rendered rigs that it is tried on.
 
 use bimodal_stereo::scenes::rig::{RigKind, RigRequest, render};
-use bimodal_stereo::{
-    CalibrationCheck, CandidateReport, CheckReport, CheckVerdict, Cue, FrameReport, Lens, RigCamera, RigView,
-    Sensitivity, Size,
-};
+use bimodal_stereo::{CalibrationCheck, Cue, Lens, RigCamera, RigView, Size};
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyDict};
 
@@ -45,7 +42,7 @@ pub fn check_calibration<'py>(
         }
     }
     let report = unbroken(check.call(|check| check.report().cloned()))?;
-    plain(py, &report.ok_or_else(|| failure("internal", "check_calibration", "ended without a report"))?)
+    report::plain(py, &report.ok_or_else(|| failure("internal", "check_calibration", "ended without a report"))?)
 }
 
 fn cue(name: &str) -> PyResult<Cue> {
@@ -99,64 +96,6 @@ fn camera(raster: &Members<'_>) -> PyResult<Option<RigCamera>> {
     Ok(Some(RigCamera { fx, fy, cx, cy, lens }))
 }
 
-const fn word(verdict: CheckVerdict) -> &'static str {
-    match verdict {
-        CheckVerdict::Consistent => "consistent",
-        CheckVerdict::Off => "off",
-        CheckVerdict::Undecided => "undecided",
-    }
-}
-
-fn plain<'py>(py: Python<'py>, report: &CheckReport) -> Dict<'py> {
-    let dict = PyDict::new(py);
-    dict.set_item("verdict", word(report.verdict))?;
-    dict.set_item("reason", &report.reason)?;
-    dict.set_item("warnings", &report.warnings)?;
-    dict.set_item("estimate", report::pose(py, &report.estimate)?)?;
-    dict.set_item("middle", array(py, report.middle.to_vec(), [3])?)?;
-    dict.set_item("covariance", array(py, report.covariance.transpose().as_slice().to_vec(), [6, 6])?)?;
-    dict.set_item("focal", report.focal.map(|[factor, sigma]| (factor, sigma)))?;
-    dict.set_item("pixels", report.health.pixels)?;
-    dict.set_item("interval", <(f64, f64)>::from(report.health.interval))?;
-    let named = |one| Ok::<_, PyErr>((one, candidate(py, one)?));
-    let candidates = report.candidates.iter().map(named).collect::<PyResult<Vec<_>>>()?;
-    dict.set_item("candidates", candidates.into_iter().map(|(one, plain)| (&one.name, plain)).into_py_dict(py)?)?;
-    let cues = report.cues.iter().map(|one| (one.cue.name(), (one.share, one.sharpness)));
-    dict.set_item("cues", cues.into_py_dict(py)?)?;
-    dict.set_item("frames", report.frames.iter().map(|one| frame(py, one)).collect::<PyResult<Vec<_>>>()?)?;
-    dict.set_item("sensitivity", report.sensitivity.iter().map(|one| curve(py, one)).collect::<PyResult<Vec<_>>>()?)?;
-    Ok(dict)
-}
-
-fn candidate<'py>(py: Python<'py>, one: &CandidateReport) -> Dict<'py> {
-    let dict = PyDict::new(py);
-    dict.set_item("verdict", word(one.verdict))?;
-    dict.set_item("reason", &one.reason)?;
-    dict.set_item("off_degrees", one.off_degrees)?;
-    dict.set_item("off_millimetres", one.off_millimetres)?;
-    dict.set_item("pixels", one.health.pixels)?;
-    dict.set_item("interval", <(f64, f64)>::from(one.health.interval))?;
-    dict.set_item("probability", one.probability)?;
-    Ok(dict)
-}
-
-fn frame<'py>(py: Python<'py>, one: &FrameReport) -> Dict<'py> {
-    let dict = PyDict::new(py);
-    dict.set_item("name", &one.name)?;
-    dict.set_item("share", one.share)?;
-    dict.set_item("note", &one.note)?;
-    Ok(dict)
-}
-
-fn curve<'py>(py: Python<'py>, one: &Sensitivity) -> Dict<'py> {
-    let dict = PyDict::new(py);
-    dict.set_item("cue", one.cue.name())?;
-    dict.set_item("axis", one.axis)?;
-    dict.set_item("offsets", array(py, one.offsets.to_vec(), [one.offsets.len()])?)?;
-    dict.set_item("values", array(py, one.values.to_vec(), [one.values.len()])?)?;
-    Ok(dict)
-}
-
 /// One frame of a rendered rig.
 #[pyfunction]
 pub fn sample_rig<'py>(py: Python<'py>, keywords: &Bound<'py, PyAny>) -> Dict<'py> {
@@ -173,7 +112,7 @@ pub fn sample_rig<'py>(py: Python<'py>, keywords: &Bound<'py, PyAny>) -> Dict<'p
     let Size { width, height } = made.depth_size;
     depth.set_item("data", array(py, made.depth, [height, width])?)?;
     depth.set_item("unit", 0.001)?;
-    let dict = [("image", image), ("depth", depth), ("pose", report::pose(py, &made.pose)?)].into_py_dict(py)?;
+    let dict = [("image", image), ("depth", depth), ("pose", report::plain(py, &made.pose)?)].into_py_dict(py)?;
     dict.set_item("name", format!("{} {}", kind.name(), u64::from(request.frame) + 1))?;
     Ok(dict)
 }

@@ -1,6 +1,6 @@
 //! What goes wrong becomes the package's `BimodalError`, in Python's spelling.
 
-use pyo3::{PyErr, PyResult, import_exception};
+use pyo3::{PyErr, PyResult, import_exception, pyfunction};
 
 use crate::guard::BrokenOff;
 
@@ -11,26 +11,28 @@ pub fn failure(code: &str, field: &str, message: &str) -> PyErr {
     BimodalError::new_err((code.to_owned(), format!("{field}: {message}"), field.to_owned()))
 }
 
-/// Names of the contract that Python spells otherwise, where they come in fields and sentences of the crate.
-const SPELLINGS: [(&str, &str); 6] = [
-    ("startTolerance", "start_tolerance"),
-    ("correspondenceDistance", "correspondence_distance"),
-    ("maxIterations", "max_iterations"),
-    ("stopDegrees", "stop_degrees"),
-    ("depthNoise", "depth_noise"),
-    // A word of the language.
-    ("lambda.", "lambda_."),
-];
-
-pub fn spelled(text: &str) -> String {
+/// A name of the contract, or a path of names, in Python's spelling.
+#[pyfunction]
+pub fn spelled(name: &str) -> String {
     // Options are arguments here, not members of an object.
-    let text = text.strip_prefix("options.").unwrap_or(text);
-    SPELLINGS.iter().fold(text.to_owned(), |text, (name, own)| text.replace(name, own))
+    let name = name.strip_prefix("options.").unwrap_or(name);
+    let mut own = String::with_capacity(name.len());
+    for letter in name.chars() {
+        if letter.is_ascii_uppercase() {
+            own.push('_');
+        }
+        own.push(letter.to_ascii_lowercase());
+    }
+    // A word of the language.
+    let segments = own.split('.').map(|name| if name == "lambda" { "lambda_" } else { name });
+    segments.collect::<Vec<_>>().join(".")
 }
 
 /// An error of the crate.
 pub fn refused(error: &bimodal_stereo::Error) -> PyErr {
-    BimodalError::new_err((error.kind().code(), spelled(&error.to_string()), spelled(error.field())))
+    let (field, message) = (spelled(error.field()), error.to_string());
+    let message = message.strip_prefix(error.field()).map_or(message.clone(), |rest| format!("{field}{rest}"));
+    BimodalError::new_err((error.kind().code(), message, field, error.index(), error.bad_value()))
 }
 
 /// What a guarded call of the crate came to.

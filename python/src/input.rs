@@ -1,6 +1,6 @@
 //! From the dictionaries of the package to the views of the crate.
 
-use bimodal_stereo::nalgebra::{Matrix3, Vector3};
+use bimodal_stereo::nalgebra::{Matrix3, Matrix4, Vector3};
 use bimodal_stereo::{Angles, ColourImage, ColourSamples, DepthMap, DepthSamples, Pinhole, Similarity, Transfer};
 use pyo3::prelude::*;
 
@@ -96,18 +96,37 @@ fn pinhole(raster: &Members<'_>) -> PyResult<Option<Pinhole>> {
     Ok(Some(Pinhole { fx, fy, cx, cy, distortion }))
 }
 
-pub const POSE: [&str; 4] = ["scale", "rotation", "translation", "angles"];
+pub const POSE: [&str; 5] = ["scale", "rotation", "translation", "angles", "matrix"];
 
-/// The rotation of a pose, by its matrix or else by its angles; `None` without either.
+/// The 4x4 matrix of a pose.
+fn matrix(pose: &Members<'_>) -> PyResult<Option<Matrix4<f64>>> {
+    Ok(pose.numbers::<16>("matrix")?.map(|rows| Matrix4::from_row_slice(&rows)))
+}
+
+/// The scale of a pose, by itself or in its matrix.
+pub fn scale(pose: &Members<'_>) -> PyResult<Option<f64>> {
+    let of_matrix = |matrix: Matrix4<f64>| matrix.fixed_view::<3, 3>(0, 0).determinant().cbrt();
+    Ok(pose.number("scale")?.or(matrix(pose)?.map(of_matrix)))
+}
+
+/// The rotation of a pose, by itself, in its matrix, or by its angles; `None` without any.
 pub fn rotation(pose: &Members<'_>) -> PyResult<Option<Matrix3<f64>>> {
-    match pose.numbers::<9>("rotation")? {
-        Some(rows) => Ok(Some(Matrix3::from_row_slice(&rows))),
+    if let Some(rows) = pose.numbers::<9>("rotation")? {
+        return Ok(Some(Matrix3::from_row_slice(&rows)));
+    }
+    match matrix(pose)? {
+        Some(matrix) => {
+            let scaled: Matrix3<f64> = matrix.fixed_view::<3, 3>(0, 0).into();
+            Ok(Some(scaled / scaled.determinant().cbrt()))
+        }
         None => Ok(angles(pose)?.map(|angles| angles.rotation())),
     }
 }
 
+/// The translation of a pose, by itself or in its matrix.
 pub fn translation(pose: &Members<'_>) -> PyResult<Option<Vector3<f64>>> {
-    Ok(pose.numbers::<3>("translation")?.map(Vector3::from))
+    let given = pose.numbers::<3>("translation")?.map(Vector3::from);
+    Ok(given.or(matrix(pose)?.map(|matrix| matrix.fixed_view::<3, 1>(0, 3).into())))
 }
 
 /// More is a mistake, no turn; far beyond, a sine means nothing.
@@ -131,7 +150,7 @@ pub fn extrinsics(value: &Bound<'_, PyAny>, path: &str) -> PyResult<Similarity> 
     /// What a product of rotations with rounding leaves of a scale of one.
     const SCALE_TOLERANCE: f64 = 0.01;
     let pose = Members::new(value, path, &POSE)?;
-    let scale = pose.number("scale")?.unwrap_or(1.0);
+    let scale = scale(&pose)?.unwrap_or(1.0);
     if (scale - 1.0).abs() > SCALE_TOLERANCE {
         let message = format!("must be 1: extrinsics do not change sizes (got {scale})");
         return Err(failure("range", &pose.at("scale"), &message));

@@ -20,9 +20,15 @@ mod _native {
     #[pymodule_export]
     use super::calibration::{check_calibration, sample_rig};
     #[pymodule_export]
+    use super::error::spelled;
+    #[pymodule_export]
     use super::estimator::Estimator;
     #[pymodule_export]
     use super::samples::{sample, sample_lights, sample_surfaces};
+
+    /// Cause and remedy of every code, as JSON.
+    #[pymodule_export]
+    const CODES: &str = bimodal_stereo::CODES;
 
     /// Version of the bindings, which is the package's.
     #[pymodule_export]

@@ -4,7 +4,7 @@ use bimodal_stereo::{Light, LightSource, Options, Registration, Shading, Start, 
 use pyo3::prelude::*;
 
 use crate::error::refused;
-use crate::input::{POSE, rotation, translation};
+use crate::input::{POSE, rotation, scale as pose_scale, translation};
 use crate::members::{Members, unknown};
 
 const NAMES: [&str; 13] = [
@@ -72,7 +72,7 @@ fn start(given: &Members<'_>) -> PyResult<Option<Start>> {
     }
     let Some(pose) = given.below("start", &POSE)? else { return Ok(None) };
     let rotation = rotation(&pose)?.unwrap_or_else(bimodal_stereo::nalgebra::Matrix3::identity);
-    Ok(Some(Start::Pose { rotation, scale: pose.number("scale")?, translation: translation(&pose)? }))
+    Ok(Some(Start::Pose { rotation, scale: pose_scale(&pose)?, translation: translation(&pose)? }))
 }
 
 fn tolerance(given: &Members<'_>, default: StartTolerance) -> PyResult<StartTolerance> {

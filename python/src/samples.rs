@@ -124,7 +124,7 @@ fn plain<'py>(py: Python<'py>, sample: &Sample) -> PyResult<Bound<'py, PyDict>> 
 
     let dict = [("image", image), ("depth", depth), ("truth", truth)].into_py_dict(py)?;
     dict.set_item("light", array(py, sample.light.flat().to_vec(), [3, 9])?)?;
-    dict.set_item("pose", report::pose(py, &sample.pose)?)?;
+    dict.set_item("pose", report::plain(py, &sample.pose)?)?;
     Ok(dict)
 }
 

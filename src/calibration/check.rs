@@ -12,6 +12,7 @@ use super::frame::{Frame, Projection};
 use super::guessed;
 use super::input::RigView;
 use super::planes::Planes;
+use super::reason::{CheckReason, Warning, WarningKind};
 use super::registration::{
     ARRIVED, Findings, MOST_RIMS_OF_STARTS, MOST_SETTLING, Round, SIGMAS, SURVIVORS, Scene, Start,
 };
@@ -21,7 +22,6 @@ use super::unknowns::{Matrix, POSE, State};
 use super::verdict::{CandidateReport, CheckVerdict, Health, Judge};
 use crate::error::{Error, ErrorKind, Result};
 use crate::pose::Similarity;
-use crate::text::Fixed;
 
 /// Most frames of one check: their images fill the memory of a page.
 const MOST_FRAMES: usize = 24;
@@ -38,8 +38,10 @@ const FARTHEST: f64 = 1e6;
 
 /// What one cue contributed.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct CueReport {
     /// Which.
+    #[cfg_attr(feature = "serde", serde(skip))]
     pub cue: Cue,
     /// Of the answer's information, 0 .. 1.
     pub share: f64,
@@ -49,37 +51,45 @@ pub struct CueReport {
 
 /// What one frame contributed.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct FrameReport {
     /// Its name.
     pub name: String,
     /// Of the answer's information, 0 .. 1.
     pub share: f64,
     /// What should be known about it.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub note: Option<String>,
 }
 
 /// What a check found.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct CheckReport {
     /// Of the first candidate; undecided without one.
     pub verdict: CheckVerdict,
-    /// In a sentence.
-    pub reason: String,
+    /// Why.
+    #[cfg_attr(feature = "serde", serde(flatten, serialize_with = "super::serialised::coded"))]
+    pub reason: CheckReason,
     /// What was guessed or looks wrong.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Warning>,
     /// The extrinsics that fit best.
     pub estimate: Similarity,
     /// The scene's middle, colour frame, metres.
     pub middle: [f64; 3],
     /// Rotation vector in rad about the scene's middle, then translation in m; colour frame.
+    #[cfg_attr(feature = "serde", serde(serialize_with = "super::serialised::rows"))]
     pub covariance: SMatrix<f64, POSE, POSE>,
     /// Factor of the colour camera's focal length, and its sigma, where it was looked for.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub focal: Option<[f64; 2]>,
     /// Of the estimate.
     pub health: Health,
     /// In the order given.
+    #[cfg_attr(feature = "serde", serde(serialize_with = "super::serialised::candidates_by_name"))]
     pub candidates: Vec<CandidateReport>,
     /// Each that was asked for.
+    #[cfg_attr(feature = "serde", serde(serialize_with = "super::serialised::cues_by_name"))]
     pub cues: Vec<CueReport>,
     /// In the order given.
     pub frames: Vec<FrameReport>,
@@ -120,7 +130,7 @@ enum Stage {
 pub struct CalibrationCheck {
     scene: Scene,
     candidates: Vec<(String, State)>,
-    warnings: Vec<String>,
+    warnings: Vec<Warning>,
     /// Width of the first image as it was given.
     width: f64,
     /// Best first once they have arrived.
@@ -153,7 +163,7 @@ impl CalibrationCheck {
         let (mut warnings, mut frames, mut is_guessed) = (vec![], vec![], false);
         for (index, view) in views.into_iter().enumerate() {
             let (frame, guessed) =
-                view.prepare(&mut warnings).map_err(|error| error.below(&format!("frames[{index}]")))?;
+                view.prepare(index, &mut warnings).map_err(|error| error.below(&format!("frames[{index}]")))?;
             is_guessed |= guessed;
             frames.push(frame);
         }
@@ -337,22 +347,17 @@ impl CalibrationCheck {
         let mut warnings = self.warnings.clone();
         self.warn_of_inverses(&judge, &mut warnings);
         if let Some(term) = self.lens {
-            warnings.push(format!(
-                "Depth edges fit the image's clearly better behind a lens of k1 about {}: was the colour camera's distortion left out?",
-                Fixed(term, 2)
-            ));
+            let kind = WarningKind::LensLeftOut { k1: term };
+            warnings.push(Warning { name: String::new(), field: "frames".into(), kind });
         }
         let health = if is_seen { judge.estimate() } else { Judge::blind(self.width) };
         let (mut verdict, mut reason) = match candidates.first() {
             Some(first) => (first.verdict, first.reason.clone()),
-            None => (
-                CheckVerdict::Undecided,
-                format!("No candidate was given; the estimate is good to {} px.", Fixed(health.pixels, 1)),
-            ),
+            None => (CheckVerdict::Undecided, CheckReason::NoCandidate { pixels: health.pixels }),
         };
-        if !warnings.is_empty() && verdict == CheckVerdict::Consistent {
+        if let (Some(warning), CheckVerdict::Consistent) = (warnings.first(), verdict) {
             verdict = CheckVerdict::Undecided;
-            reason = format!("Settled, but check: {} {reason}", warnings[0]);
+            reason = CheckReason::Doubtful { warning: Box::new(warning.clone()), reason: Box::new(reason) };
         }
         let scaled = Matrix::from_diagonal(&units.of);
         let metric = scaled * covariance * scaled;
@@ -385,18 +390,15 @@ impl CalibrationCheck {
     }
 
     /// The commonest mistake: P_depth = R P_colour + t.
-    fn warn_of_inverses(&self, judge: &Judge, warnings: &mut Vec<String>) {
+    fn warn_of_inverses(&self, judge: &Judge, warnings: &mut Vec<Warning>) {
         for (name, candidate) in &self.candidates {
             let inverse = State::at(candidate.pose.inverse());
             let [as_it_is, inverted] =
                 [candidate, &inverse].map(|state| judge.judge(name, &self.best.state, state, None));
             let fits = inverted.verdict != CheckVerdict::Off && as_it_is.verdict != CheckVerdict::Consistent;
             if fits && 3.0 * inverted.health.pixels < as_it_is.health.pixels {
-                warnings.push(format!(
-                    "{name}: fits inverted ({} px instead of {}): it seems to map colour to depth, P_depth = R P_colour + t; invert it.",
-                    Fixed(inverted.health.pixels, 1),
-                    Fixed(as_it_is.health.pixels, 1)
-                ));
+                let [pixels, inverted_pixels] = [as_it_is, inverted].map(|report| report.health.pixels);
+                warnings.push(of_candidate(name, WarningKind::FitsInverted { pixels, inverted_pixels }));
             }
         }
     }
@@ -431,7 +433,7 @@ impl CalibrationCheck {
 /// # Errors
 /// As [`CalibrationCheck::new`].
 pub fn overlay(view: RigView, pose: &Similarity) -> Result<Overlay> {
-    let (frame, _) = view.prepare(&mut vec![])?;
+    let (frame, _) = view.prepare(0, &mut vec![])?;
     let state = rigid(pose).map_err(|error| error.below("pose"))?;
     let projection = Projection::new(&frame, &state);
     // Back from halves of pixels.
@@ -485,17 +487,18 @@ fn rigid(pose: &Similarity) -> Result<State> {
     Ok(State::at(Similarity { scale: 1.0, ..nearest }))
 }
 
+fn of_candidate(name: &str, kind: WarningKind) -> Warning {
+    Warning { name: name.to_owned(), field: format!("candidates.{name}"), kind }
+}
+
 /// Millimetres where metres were asked for.
-fn warn_of_translations(candidates: &[(String, State)], warnings: &mut Vec<String>) {
+fn warn_of_translations(candidates: &[(String, State)], warnings: &mut Vec<Warning>) {
     /// Metres: farther apart than any rig.
     const FARTHEST_APART: f64 = 10.0;
     for (name, candidate) in candidates {
         let length = candidate.pose.translation.norm();
         if length > FARTHEST_APART {
-            warnings.push(format!(
-                "{name}: its cameras are {} m apart; is the translation in millimetres?",
-                Fixed(length, 1)
-            ));
+            warnings.push(of_candidate(name, WarningKind::FarApart { metres: length }));
         }
     }
 }

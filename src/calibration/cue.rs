@@ -2,6 +2,7 @@
 
 /// What of a frame bears on the calibration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "kebab-case"))]
 pub enum Cue {
     /// Colours within patches follow their normals.
     Shading,

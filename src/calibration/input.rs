@@ -3,9 +3,9 @@
 use super::frame::Frame;
 use super::lens::RigCamera;
 use super::planes::Planes;
+use super::reason::{Warning, WarningKind};
 use crate::check::positive;
 use crate::error::{Error, ErrorKind, Result};
-use crate::text::Fixed;
 use crate::view::{ColourSamples, DepthSamples, Size, Transfer, to_srgb, transfer_of};
 
 /// Widest image that is worked on as it is: beyond, halves say as much as a depth map can.
@@ -57,11 +57,13 @@ pub struct RigView {
 }
 
 impl RigView {
-    /// The frame as the check works on it, and warnings in words.
+    /// The frame of this number as the check works on it, and warnings.
     ///
     /// # Errors
     /// Naming the member at fault below `frames`.
-    pub(super) fn prepare(self, warnings: &mut Vec<String>) -> Result<(Frame, bool)> {
+    pub(super) fn prepare(self, index: usize, warnings: &mut Vec<Warning>) -> Result<(Frame, bool)> {
+        let name = self.name.clone();
+        let of = |view: &str, kind| Warning { name: name.clone(), field: format!("frames[{index}].{view}"), kind };
         let size = Size::new("image", self.image_size[0], self.image_size[1])?;
         let grid = Size::new("depth", self.depth_size[0], self.depth_size[1])?;
         for (field, mask, size) in [("image.mask", &self.image_mask, size), ("depth.mask", &self.depth_mask, grid)] {
@@ -71,7 +73,7 @@ impl RigView {
         }
         let planes = Planes { size, pixels: encoded(&self.image, self.transfer, size)? };
         if planes.pixels.iter().flatten().all(|value| (value - planes.pixels[0][0]).abs() < BLANK) {
-            warnings.push(format!("{}: the image is blank.", self.name));
+            warnings.push(of("image", WarningKind::BlankImage));
         }
         let points = points(&self, grid)?;
         let known = points.iter().filter(|point| !point[2].is_nan()).count();
@@ -80,13 +82,10 @@ impl RigView {
                 format!("holds {known} depths inside its mask; {FEWEST_DEPTHS} are the fewest that say anything");
             return Err(Error::new(ErrorKind::Empty, "depth", message));
         }
-        warn(&self, grid, &points, warnings);
+        warnings.extend(doubts(&self, grid, &points).into_iter().map(|kind| of("depth", kind)));
         let is_guessed = self.image_camera.is_none();
         if is_guessed {
-            warnings.push(format!(
-                "{}: the colour camera's intrinsics are not given; its focal length is estimated.",
-                self.name
-            ));
+            warnings.push(of("image.camera", WarningKind::IntrinsicsGuessed));
         }
         let camera = self.image_camera.unwrap_or_else(|| {
             let focal = USUAL_FOCAL * size.width.max(size.height) as f64;
@@ -219,34 +218,23 @@ fn points(view: &RigView, grid: Size) -> Result<Vec<[f32; 3]>> {
         .collect())
 }
 
-/// Guards before green: what is probably not what it was taken for.
-fn warn(view: &RigView, grid: Size, points: &[[f32; 3]], warnings: &mut Vec<String>) {
-    let name = &view.name;
+/// Plausibility of a depth map; each doubt caps the verdict.
+fn doubts(view: &RigView, grid: Size, points: &[[f32; 3]]) -> Vec<WarningKind> {
+    let mut doubts = Vec::new();
     let mut depths: Vec<f32> = points.iter().map(|point| point[2]).filter(|depth| !depth.is_nan()).collect();
     let holes = 1.0 - depths.len() as f64 / points.len() as f64;
     if holes > MANY_HOLES && view.depth_mask.is_none() {
-        warnings.push(format!("{name}: {} % of the depth map are holes.", Fixed(100.0 * holes, 0)));
+        doubts.push(WarningKind::ManyHoles { percent: 100.0 * holes });
     }
     if let DepthSamples::Integer(data) = &view.depth
         && data.iter().all(|&level| level <= LEVELS_OF_A_BYTE)
     {
-        warnings.push(format!("{name}: the depth map has 8 bits; steps of a 256th are no measurement."));
+        doubts.push(WarningKind::EightBits);
     }
     let median = crate::numeric::quantile(&mut depths, 0.5);
     if !(NEAREST..=FARTHEST).contains(&median) {
-        let metres = crate::text::Brief(f64::from(median));
-        let hint = if median > 100.0 {
-            ": is it in millimetres?"
-        } else if median < 0.02 {
-            ": is its unit a thousand times larger?"
-        } else {
-            ""
-        };
-        warnings.push(format!(
-            "{name}: depths are {metres} m at the median, outside {} to {} m{hint}",
-            crate::text::Brief(f64::from(NEAREST)),
-            crate::text::Brief(f64::from(FARTHEST))
-        ));
+        let usual = [NEAREST, FARTHEST].map(f64::from);
+        doubts.push(WarningKind::UnusualDepths { metres: f64::from(median), usual });
     }
     let pairs = (0..points.len() - 1)
         .filter(|index| index % grid.width != grid.width - 1)
@@ -257,8 +245,9 @@ fn warn(view: &RigView, grid: Size, points: &[[f32; 3]], warnings: &mut Vec<Stri
         jumps += usize::from((a - b).abs() > ROUGH_JUMP * a.abs());
     }
     if jumps as f64 > ROUGH_SHARE * f64::from(count.max(1)) {
-        warnings.push(format!("{name}: the depth map is as rough as a photograph; are the two files swapped?"));
+        doubts.push(WarningKind::RoughDepth);
     }
+    doubts
 }
 
 #[cfg(test)]

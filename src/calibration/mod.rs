@@ -13,7 +13,8 @@
 //! | `unknowns`, `evidence` | the unknowns in pixels; log likelihoods by tiles, weights, covariance |
 //! | `search`, `registration` | starts, rounds |
 //! | `distortion`, `guessed` | whether a lens was left out; what a guessed camera leaves open |
-//! | `sensitivity`, `verdict`, `check` | curves, words, and the order of it all |
+//! | `sensitivity`, `verdict`, `reason`, `check` | curves, verdicts, their reasons, and the order of it all |
+//! | `serialised` | shapes of the report for serde |
 
 mod check;
 mod cue;
@@ -28,10 +29,13 @@ mod input;
 mod lens;
 mod patches;
 mod planes;
+mod reason;
 mod registration;
 mod rims;
 mod search;
 mod sensitivity;
+#[cfg(feature = "serde")]
+mod serialised;
 mod shading;
 mod silhouette;
 mod surface;
@@ -42,5 +46,6 @@ pub use check::{CalibrationCheck, CheckReport, CueReport, FrameReport, Overlay, 
 pub use cue::Cue;
 pub use input::RigView;
 pub use lens::{Lens, RigCamera};
+pub use reason::{CheckReason, Margin, Offset, Warning, WarningKind};
 pub use sensitivity::Sensitivity;
 pub use verdict::{CandidateReport, CheckVerdict, Health};

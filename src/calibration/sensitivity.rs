@@ -25,6 +25,7 @@ const AXES: [&str; POSE] = ["rx", "ry", "rz", "tx", "ty", "tz"];
 
 /// One curve.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Sensitivity {
     /// Which cue.
     pub cue: Cue,

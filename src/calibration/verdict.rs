@@ -14,10 +14,11 @@
 
 use nalgebra::{SMatrix, SVector, Vector3};
 
+use super::reason::{CheckReason, Margin, Offset};
 use super::unknowns::{Matrix, POSE, State, Units};
 use crate::numeric::quantile;
 use crate::numeric::random::Random;
-use crate::text::Fixed;
+use crate::pose::{Axis, Unknown};
 
 /// Reprojection error that passes, pixels of an image 640 wide: 0.4 degrees at a usual focal length, what a
 /// careful calibration by hand reaches and colours of points at rims need.
@@ -40,6 +41,7 @@ type PoseMatrix = SMatrix<f64, POSE, POSE>;
 
 /// What can be said.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "kebab-case"))]
 pub enum CheckVerdict {
     /// Within the tolerance.
     Consistent,
@@ -51,6 +53,7 @@ pub enum CheckVerdict {
 
 /// Expected reprojection error, pixels of the colour image, and its 95 % interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Health {
     /// Root mean square.
     pub pixels: f64,
@@ -60,18 +63,22 @@ pub struct Health {
 
 /// What is said of one candidate.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "camelCase"))]
 pub struct CandidateReport {
     /// Its name.
+    #[cfg_attr(feature = "serde", serde(skip))]
     pub name: String,
     /// The word.
     pub verdict: CheckVerdict,
-    /// The sentence.
-    pub reason: String,
+    /// Why.
+    #[cfg_attr(feature = "serde", serde(flatten, serialize_with = "super::serialised::coded"))]
+    pub reason: CheckReason,
     /// Turn from the estimate.
     pub off_degrees: f64,
     /// Shift of the scene's middle from the estimate's.
     pub off_millimetres: f64,
     /// Its reprojection error.
+    #[cfg_attr(feature = "serde", serde(flatten))]
     pub health: Health,
     /// Probability of a distance as large, were it right.
     pub probability: f64,
@@ -173,16 +180,22 @@ impl Judge {
         self.own
     }
 
-    /// Sigmas of a pose: degrees about x, y, z, millimetres along them.
-    pub fn weakest(&self, covariance: &Matrix) -> Option<&'static str> {
-        const NAMES: [&str; POSE] =
-            ["turns about x", "turns about y", "turns about z", "shifts along x", "shifts along y", "shifts along z"];
+    /// What a scene shows least of a pose, where it is next to nothing.
+    pub fn weakest(&self, covariance: &Matrix) -> Option<Unknown> {
+        const ORDER: [Unknown; POSE] = [
+            Unknown::Rotation(Axis::X),
+            Unknown::Rotation(Axis::Y),
+            Unknown::Rotation(Axis::Z),
+            Unknown::Translation(Axis::X),
+            Unknown::Translation(Axis::Y),
+            Unknown::Translation(Axis::Z),
+        ];
         let worst = |k: usize| {
             let sigma = covariance[(k, k)].sqrt() * self.units.of[k];
             sigma / if k < 3 { UNSEEN_DEGREES.to_radians() } else { UNSEEN_METRES }
         };
         let k = (0..POSE).max_by(|&a, &b| worst(a).total_cmp(&worst(b)))?;
-        (worst(k) > 1.0).then_some(NAMES[k])
+        (worst(k) > 1.0).then_some(ORDER[k])
     }
 
     /// Nothing is known of a pose that puts hardly any point onto the image.
@@ -191,7 +204,7 @@ impl Judge {
     }
 
     /// The verdict on a candidate.
-    pub fn judge(&self, name: &str, estimate: &State, candidate: &State, weakest: Option<&str>) -> CandidateReport {
+    pub fn judge(&self, name: &str, estimate: &State, candidate: &State, weakest: Option<Unknown>) -> CandidateReport {
         let between = self.units.between(estimate, candidate);
         let offset: PoseVector = between.fixed_rows::<POSE>(0).into();
         let metric = between.component_mul(&self.units.of);
@@ -212,42 +225,25 @@ impl Judge {
         } else {
             CheckVerdict::Undecided
         };
-        let pixels = format!(
-            "{} px at the scene's depth (95 %: {} to {})",
-            Fixed(health.pixels, 1),
-            Fixed(low, 1),
-            Fixed(high, 1)
-        );
-        let passes = Fixed(self.tolerance, 1);
+        let margin = Margin { health, tolerance: self.tolerance };
         let axis = |rows: [f64; 3]| {
-            ["x", "y", "z"][(0..3).max_by(|&a, &b| rows[a].abs().total_cmp(&rows[b].abs())).unwrap_or(0)]
+            [Axis::X, Axis::Y, Axis::Z][(0..3).max_by(|&a, &b| rows[a].abs().total_cmp(&rows[b].abs())).unwrap_or(0)]
         };
-        let (about, along) = (axis([metric[0], metric[1], metric[2]]), axis([metric[3], metric[4], metric[5]]));
-        // A turn about a camera moves the scene as far as the scene is away.
-        let off = format!(
-            "{} degrees, most of it about {about}, and {} mm at the middle of the scene, {} m away, most of it along {along}",
-            Fixed(turn, 2),
-            Fixed(shift, 1),
-            Fixed(self.units.middle.norm(), 2)
-        );
         let reason = match verdict {
-            CheckVerdict::Consistent if high <= self.tolerance => {
-                format!("Consistent: its error is {pixels}; up to {passes} px pass.")
+            CheckVerdict::Consistent if high <= self.tolerance => CheckReason::WithinTolerance(margin),
+            CheckVerdict::Consistent => CheckReason::NothingAgainst { margin, shown: self.reach },
+            CheckVerdict::Off => {
+                let (about, along) = (axis([metric[0], metric[1], metric[2]]), axis([metric[3], metric[4], metric[5]]));
+                let distance = self.units.middle.norm();
+                let offset = Offset { degrees: turn, about, millimetres: shift, along, distance };
+                CheckReason::OffTarget { margin, offset }
             }
-            CheckVerdict::Consistent => format!(
-                "Consistent: nothing speaks against it, and this scene shows errors beyond {} px; its error is {pixels}; up to {passes} px pass.",
-                Fixed(self.reach, 1)
-            ),
-            CheckVerdict::Off => format!("Off by about {off}: {pixels}; up to {passes} px pass."),
-            CheckVerdict::Undecided if low > self.tolerance && low <= bound && !is_likely => format!(
-                "This scene can't tell behind a guessed camera: {pixels}, around the {} px that pass.",
-                Fixed(self.explained, 0)
-            ),
+            CheckVerdict::Undecided if low > self.tolerance && low <= bound && !is_likely => {
+                CheckReason::GuessedCamera { margin, explained: self.explained }
+            }
             CheckVerdict::Undecided => match weakest {
-                Some(weakest) => format!(
-                    "This scene can't tell, because it hardly sees {weakest}: {pixels}, around the {passes} px that pass."
-                ),
-                None => format!("This scene can't tell: {pixels}, around the {passes} px that pass."),
+                Some(weakest) => CheckReason::Unconstrained { margin, weakest },
+                None => CheckReason::TooClose(margin),
             },
         };
         CandidateReport {
@@ -267,10 +263,10 @@ impl CandidateReport {
     #[inline(never)]
     pub(super) fn without_points(&mut self, is_end_seen: bool, width: f64) {
         (self.verdict, self.reason, self.probability) = if is_end_seen {
-            (CheckVerdict::Off, "Off: it puts no points onto the image.".into(), 0.0)
+            (CheckVerdict::Off, CheckReason::NoPointsOnImage, 0.0)
         } else {
             self.health = Judge::blind(width);
-            (CheckVerdict::Undecided, "This scene can't tell: no pose puts its points onto the image.".into(), 1.0)
+            (CheckVerdict::Undecided, CheckReason::NoPoseOnImage, 1.0)
         };
     }
 }

@@ -7,8 +7,9 @@
 
 use nalgebra::Matrix3;
 
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::Result;
 use crate::pose::{ContrastSearch, ImageGrid, Search, SearchProblem, Similarity, TaskResults};
+use crate::reason::Activity;
 
 use super::gauge;
 use super::local_optima::{Decision, LocalOptima};
@@ -28,13 +29,10 @@ const FEW_SHARE: f64 = 0.2;
 /// .. and local contrast, where the colours are painted.
 const CONTRAST_SHARE: f64 = 0.25;
 
-/// What is done where the colours are painted.
-const COMPARING_CONTRAST: &str = "comparing local contrast, for one paint does not explain the colours";
-
 /// How the initialisation stands.
 pub enum Advance {
     /// Not done; the share of the work that is, and what is being done.
-    Ongoing(f64, &'static str),
+    Ongoing(f64, Activity),
     /// What was found.
     Done(Outcome),
 }
@@ -188,9 +186,9 @@ impl Initialisation {
     fn progress(&self) -> Advance {
         if self.is_searching() {
             let share = self.search.progress().share;
-            return Advance::Ongoing(SEARCH_SHARE * share, "comparing rotations, translations and scales");
+            return Advance::Ongoing(SEARCH_SHARE * share, Activity::Comparing);
         }
-        Advance::Ongoing(registered_share(self.tried), "registering the best candidates")
+        Advance::Ongoing(registered_share(self.tried), Activity::Registering)
     }
 
     /// A step of the registration that is under way here, or the beginning of the next one.
@@ -283,7 +281,7 @@ impl Initialisation {
         poses.extend(outcome.best.iter().map(|best| best.pose).chain(outcome.rivals.iter().copied()));
         let search = Box::new(painted::search(pair, colours, &cleaned, &poses));
         self.contrast = Some(ByContrast { colours: outcome, cleaned, search });
-        Advance::Ongoing(1.0 - CONTRAST_SHARE, COMPARING_CONTRAST)
+        Advance::Ongoing(1.0 - CONTRAST_SHARE, Activity::ComparingContrast)
     }
 
     /// A slice of the search by contrast.
@@ -292,7 +290,7 @@ impl Initialisation {
             return Advance::Done(Outcome::default());
         };
         if !search.advance(&colours.contrast_problem(pair, cleaned.image(pair))) {
-            return Advance::Ongoing(1.0 - CONTRAST_SHARE * (1.0 - search.share()), COMPARING_CONTRAST);
+            return Advance::Ongoing(1.0 - CONTRAST_SHARE * (1.0 - search.share()), Activity::ComparingContrast);
         }
         Advance::Done(match painted::conclude(pair, colours, cleaned, search) {
             Some(Conclusion::ByColours(best)) => Outcome { best: Some(best), ..Outcome::default() },
@@ -307,19 +305,4 @@ fn registered_share(tried: usize) -> f64 {
     let few = tried.min(FEW_TRIED);
     let more = (tried - few) as f64 / (MOST_TRIED - FEW_TRIED) as f64;
     SEARCH_SHARE + FEW_SHARE * few as f64 / FEW_TRIED as f64 + (1.0 - SEARCH_SHARE - FEW_SHARE - CONTRAST_SHARE) * more
-}
-
-/// Why there is no pose to start from.
-pub fn nothing_found(pair: &ViewPair) -> Error {
-    no_start(match gauge::held_scale(pair) {
-        Some(_) => "no pose explains the colours by the depth map's normals",
-        None => {
-            "no pose explains the colours by the depth map's normals at 0.7 to 1.4 times the scale that the units give; \
-             `scale` or `start.scale` takes another one"
-        }
-    })
-}
-
-fn no_start(message: &'static str) -> Error {
-    Error::new(ErrorKind::Degenerate, "start", message)
 }

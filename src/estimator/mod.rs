@@ -33,9 +33,9 @@ mod workers;
 use crate::error::{Error, ErrorKind, Result};
 use crate::options::{Options, Registration, Shading, Start};
 use crate::pose::{Correspondences, Similarity};
+use crate::reason::Reason;
 use crate::report::{Objective, Stage, Status, StepReport};
 use crate::shape::Scratch;
-use crate::text::Fixed;
 use crate::view::{ColourImage, DepthMap};
 use measurement::Residuals;
 use objective::Trial;
@@ -191,20 +191,20 @@ impl Estimator {
     /// One stage of an iteration, or a slice of the initialisation.
     pub fn step_stage(&mut self) -> &StepReport {
         let outcome = match self.run {
-            Run::Preparing(_) => self.prepare_search(),
+            Run::Preparing(_) => self.prepare_search().map_err(Reason::from),
             Run::Searching(_) => self.search(),
             Run::Iterating(stage) => self.iterate(stage),
             Run::Ended => Ok(()),
         };
-        if let Err(error) = outcome {
-            self.end(Status::Lost, Some(error.to_string()));
+        if let Err(reason) = outcome {
+            self.end(Status::Lost, Some(reason));
         }
         self.translate_report();
         self.report()
     }
 
     /// One stage of Algorithm 1, and what follows the last of an iteration. Shapes that have settled are kept.
-    fn iterate(&mut self, stage: Stage) -> Result<()> {
+    fn iterate(&mut self, stage: Stage) -> std::result::Result<(), Reason> {
         self.report.stage = stage;
         self.run = Run::Iterating(stage.next());
         match stage {
@@ -271,9 +271,9 @@ impl Estimator {
     }
 
     /// Pose (Eq. 12 to 16), then the correspondences that it gives.
-    fn register(&mut self) -> Result<()> {
+    fn register(&mut self) -> std::result::Result<(), Reason> {
         if gauge::pixel_length(&self.pair.image, &self.solution) <= 0.0 {
-            return Err(Error::new(ErrorKind::Degenerate, "pose", "puts the object behind the colour camera"));
+            return Err(Reason::BehindCamera);
         }
         let start = self.solution.pose;
         let inputs = Inputs::of(&self.pair, &self.paint, &self.light, &self.correspondences, self.report.iteration);
@@ -382,19 +382,14 @@ impl Estimator {
         self.refinement.shape_changed();
         self.find_correspondences();
         self.report.rotation_change = 0.0;
-        self.report.message = Some(format!(
-            "iteration taken back: the objective would have risen from {} to {}; the next one goes half as far",
-            Fixed(before.total(), 4),
-            Fixed(after.total(), 4)
-        ));
+        self.report.reason = Some(Reason::TakenBack { before: before.total(), after: after.total() });
     }
 
     /// Makes the new solution the one to beat.
     fn accept(&mut self, rotation_change: f64) {
         self.report.rotation_change = rotation_change;
         self.history.rejections = if self.history.improved { 0 } else { self.history.rejections + 1 };
-        let stayed = || "the registration found no pose better than the present one".into();
-        self.report.message = (!self.history.improved).then(stayed);
+        self.report.reason = (!self.history.improved).then_some(Reason::PoseStays);
         if self.settling.keeps_all() {
             return;
         }
@@ -458,12 +453,12 @@ impl Estimator {
             trimmed_without_mask: pair.depth.trimmed_without_mask(),
             is_whole_frame: pair.options.start == Start::Search && pair.image.is_whole_frame(),
             has_kept_start: self.registration.has_kept_start(),
-            rivals: report.rivals.len(),
+            rivals: report.rivals.len() as u32,
             nearest_rival: nearest,
         });
         let doubted = ended.map(|ended| self.doubt_unit(ended));
-        if let Some((status, message)) = doubted {
-            self.end(status, message);
+        if let Some((status, reason)) = doubted {
+            self.end(status, reason);
         }
     }
 
@@ -476,10 +471,10 @@ impl Estimator {
         unit.map_or(ended, verdict::verdict_of_other_unit)
     }
 
-    fn end(&mut self, status: Status, message: Option<String>) {
+    fn end(&mut self, status: Status, reason: Option<Reason>) {
         self.run = Run::Ended;
         self.report.status = status;
-        self.report.message = message;
+        self.report.reason = reason;
     }
 
     /// What the next refinement looks at, where that is known: then a worker may make it while the other stages run.

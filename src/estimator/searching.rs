@@ -1,23 +1,24 @@
-//! The initialisation as a part of the run: its slices, what is said meanwhile, and the loop's start from what it finds.
+//! The initialisation as a part of the run: its slices, the reason given meanwhile, and the loop's start from what it finds.
 
 use nalgebra::Matrix3;
 
 use super::Estimator;
-use super::initialisation::{self, Advance, Initialisation};
+use super::gauge;
+use super::initialisation::{Advance, Initialisation};
 use super::opening::Opening;
 use super::run::Run;
 use super::stages::Outcome;
 use crate::error::Result;
 use crate::pose::{Angles, ImageGrid};
+use crate::reason::{Activity, FoundBy, Reason};
 use crate::report::Stage;
-use crate::text::Fixed;
 use crate::view::is_hollow;
 
 impl Estimator {
     /// What the search needs of one of the views.
     pub(super) fn prepare_search(&mut self) -> Result<()> {
         self.report.stage = Stage::Search;
-        self.report.message = Some("0 %: preparing the search".into());
+        self.report.reason = Some(Reason::Searching { percent: 0.0, activity: Activity::Preparing });
         let Run::Preparing(prepared) = std::mem::replace(&mut self.run, Run::Preparing(None)) else { return Ok(()) };
         self.run = match prepared {
             None => {
@@ -37,11 +38,11 @@ impl Estimator {
     }
 
     /// A slice of the initialisation.
-    pub(super) fn search(&mut self) -> Result<()> {
+    pub(super) fn search(&mut self) -> std::result::Result<(), Reason> {
         let Run::Searching(initialisation) = &mut self.run else { return Ok(()) };
         match initialisation.advance(&self.pair, &mut self.registration) {
-            Advance::Ongoing(share, what) => {
-                self.report.message = Some(format!("{} %: {what}", Fixed(100.0 * share, 0)));
+            Advance::Ongoing(share, activity) => {
+                self.report.reason = Some(Reason::Searching { percent: 100.0 * share, activity });
                 self.report.pose = initialisation.best_pose().unwrap_or(self.report.pose);
                 Ok(())
             }
@@ -66,20 +67,17 @@ impl Estimator {
     }
 
     /// Starts the loop from what the initialisation found.
-    fn start_from(&mut self, outcome: Outcome) -> Result<()> {
+    fn start_from(&mut self, outcome: Outcome) -> std::result::Result<(), Reason> {
         let registered = self.registration.adopt(&self.pair, outcome, &self.solution.pose);
-        self.adopt(registered.ok_or_else(|| initialisation::nothing_found(&self.pair))?);
-        self.report.message = Some(match self.report.rivals.len() {
-            0 if self.registration.found_by_outlines().is_some() => {
-                "100 %: one paint does not explain the colours; outlines tell the pose".into()
-            }
-            0 if self.registration.found_by_contrast().is_some() => {
-                "100 %: one paint does not explain the colours; local contrast tells the pose".into()
-            }
-            0 => "100 %: one pose explains the colours best".into(),
-            1 => "100 %: one other pose explains the colours as well".into(),
-            count => format!("100 %: {count} other poses explain the colours as well"),
-        });
+        self.adopt(registered.ok_or(Reason::NoPose { scale_is_held: gauge::held_scale(&self.pair).is_some() })?);
+        let by = if self.registration.found_by_outlines().is_some() {
+            FoundBy::Silhouettes
+        } else if self.registration.found_by_contrast().is_some() {
+            FoundBy::Contrast
+        } else {
+            FoundBy::Image
+        };
+        self.report.reason = Some(Reason::SearchDone { by, rivals: self.report.rivals.len() as u32 });
         self.report.pose = self.solution.pose;
         self.find_correspondences();
         self.accepted.accept(&self.solution);

@@ -22,6 +22,7 @@ const C5: f64 = 0.247_708;
 
 /// Nine coefficients for each of R, G, B in the colour view's frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(into = "Vec<f64>"))]
 pub struct Light(pub [[f64; HARMONICS]; 3]);
 
 impl Light {
@@ -111,6 +112,14 @@ impl Light {
     #[must_use]
     pub(crate) fn of_basis(&self, basis: &[f64; HARMONICS]) -> [f64; 3] {
         self.0.map(|channel| channel.iter().zip(basis).map(|(l, b)| l * b).sum())
+    }
+}
+
+/// R1..9, G1..9, B1..9.
+#[cfg(feature = "serde")]
+impl From<Light> for Vec<f64> {
+    fn from(light: Light) -> Self {
+        light.flat().to_vec()
     }
 }
 

@@ -13,6 +13,7 @@ const POLE: f64 = 1e-6;
 
 /// Angles in degrees of R = Rx(alpha) Ry(beta) Rz(gamma), active and right-handed, in the colour view's frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct Angles {
     /// About x (right), degrees, in (-180, 180]; zero where beta is at a pole.
     pub alpha: f64,

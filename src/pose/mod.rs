@@ -48,4 +48,4 @@ pub use ransac::{RansacOptions, RansacReport, ransac};
 pub use search::{Candidate, Progress, Search, SearchProblem};
 pub(crate) use search::{Hypothesis, ImageGrid, SearchFinding, SearchTask, TaskResults};
 pub use similarity::Similarity;
-pub use uncertainty::{Information, Uncertainty};
+pub use uncertainty::{Axis, Direction, Information, Uncertainty, Unknown};

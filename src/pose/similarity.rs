@@ -19,6 +19,7 @@ pub(crate) const FEWEST_PAIRS: usize = 4;
 
 /// An active, right-handed similarity that transforms points of the depth view into the colour view.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(into = "serialised::Pose"))]
 pub struct Similarity {
     /// s > 0.
     pub scale: f64,
@@ -207,4 +208,38 @@ fn nearest_rotation(matrix: &Matrix3<f64>) -> Result<Matrix3<f64>> {
     }
     let q = eigen.vectors.column(largest);
     Ok(UnitQuaternion::from_quaternion(Quaternion::new(q[0], q[1], q[2], q[3])).to_rotation_matrix().into_inner())
+}
+
+/// A pose of the JavaScript contract: what it says, and that as angles and as one matrix.
+#[cfg(feature = "serde")]
+mod serialised {
+    use super::Similarity;
+    use crate::pose::angles::Angles;
+
+    #[derive(serde::Serialize)]
+    pub struct Pose {
+        scale: f64,
+        /// Row by row.
+        rotation: [f64; 9],
+        translation: [f64; 3],
+        angles: Angles,
+        /// s R and t: rows.
+        matrix: [[f64; 4]; 4],
+    }
+
+    impl From<Similarity> for Pose {
+        fn from(Similarity { scale, rotation, translation }: Similarity) -> Self {
+            let row = |row: usize| {
+                let entry = |column| scale * rotation[(row, column)];
+                [entry(0), entry(1), entry(2), translation[row]]
+            };
+            Self {
+                scale,
+                rotation: std::array::from_fn(|at| rotation[(at / 3, at % 3)]),
+                translation: translation.into(),
+                angles: Angles::of(&rotation),
+                matrix: [row(0), row(1), row(2), [0.0, 0.0, 0.0, 1.0]],
+            }
+        }
+    }
 }

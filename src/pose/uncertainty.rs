@@ -8,6 +8,8 @@
 //! One sigma covers what the residuals show, correlated ones included; an error that leaves no residual (a surface that
 //! is tilted as a whole, another local optimum that fits as well) is not seen by it. See docs/method.md, section 14.
 
+use std::fmt;
+
 use nalgebra::Vector3;
 
 use super::increment::{Frame, PoseMatrix, PoseVector, SCALE, TRANSLATION_Z, UNKNOWNS, clear_unknowns, fix_unknowns};
@@ -30,8 +32,100 @@ const FOCAL_LENGTH_SIGMA: f64 = 0.005;
 /// A second direction is named where it has at least this share of the first one's part.
 const WORTH_NAMING: f64 = 0.6;
 
+/// One of the seven numbers of a pose, in the colour view's frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unknown {
+    /// Rotation about x, y or z.
+    Rotation(Axis),
+    /// Translation along x, y or z.
+    Translation(Axis),
+    /// The scale.
+    Scale,
+}
+
+/// An axis of a view's frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Axis {
+    /// To the right.
+    X,
+    /// Down.
+    Y,
+    /// Forward.
+    Z,
+}
+
+/// The unknowns in the order of the rows of an information matrix.
+const ORDER: [Unknown; UNKNOWNS] = [
+    Unknown::Rotation(Axis::X),
+    Unknown::Rotation(Axis::Y),
+    Unknown::Rotation(Axis::Z),
+    Unknown::Translation(Axis::X),
+    Unknown::Translation(Axis::Y),
+    Unknown::Translation(Axis::Z),
+    Unknown::Scale,
+];
+
+/// A direction in which a pose may change, by its one or two largest parts. [`Display`](fmt::Display) writes them as words.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Direction {
+    /// The largest part; `None` where the direction is unknown.
+    pub first: Option<Unknown>,
+    /// A second part that is nearly as large.
+    pub second: Option<Unknown>,
+}
+
+impl Direction {
+    /// The one or two largest parts of a change.
+    pub(crate) fn of(change: &PoseVector) -> Self {
+        let first = change.iamax();
+        let second = (0..UNKNOWNS)
+            .filter(|&k| k != first)
+            .max_by(|&a, &b| change[a].abs().total_cmp(&change[b].abs()))
+            .filter(|&k| change[k].abs() >= WORTH_NAMING * change[first].abs());
+        Self { first: Some(ORDER[first]), second: second.map(|second| ORDER[second]) }
+    }
+}
+
+impl fmt::Display for Direction {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match (self.first, self.second) {
+            (None, _) => f.write_str("unknown"),
+            (Some(first), None) => first.fmt(f),
+            (Some(first), Some(second)) => write!(f, "{first} with {second}"),
+        }
+    }
+}
+
+impl fmt::Display for Unknown {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Rotation(axis) => write!(f, "rotation about {axis}"),
+            Self::Translation(axis) => write!(f, "translation along {axis}"),
+            Self::Scale => f.write_str("scale"),
+        }
+    }
+}
+
+impl fmt::Display for Axis {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::X => "x",
+            Self::Y => "y",
+            Self::Z => "z",
+        })
+    }
+}
+
+#[cfg(feature = "serde")]
+impl serde::Serialize for Direction {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+}
+
 /// Uncertainty of the pose, one sigma.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "camelCase"))]
 pub struct Uncertainty {
     /// Rotation about the x, y and z axis of the colour view, degrees.
     pub rotation_degrees: [f64; 3],
@@ -39,8 +133,8 @@ pub struct Uncertainty {
     pub translation: [Option<f64>; 3],
     /// Scale; `None` where it is held.
     pub scale: Option<f64>,
-    /// The weakest direction, in words.
-    pub weakest: String,
+    /// The least certain direction.
+    pub weakest: Direction,
 }
 
 impl Uncertainty {
@@ -99,10 +193,10 @@ impl Information {
         describe(&covariance, &frame, pose, [gauge, self.scale_is_held], weakest)
     }
 
-    /// Covariance of the seven unknowns and the weakest direction in words. Held and gauge unknowns have none.
-    fn covariance(&self, sigma: f64, gauge: bool) -> (PoseMatrix, String) {
+    /// Covariance of the seven unknowns and the weakest direction. Held and gauge unknowns have none.
+    fn covariance(&self, sigma: f64, gauge: bool) -> (PoseMatrix, Direction) {
         let Some(eigen) = self.eigen(gauge) else {
-            return (PoseMatrix::identity() * UNKNOWN.powi(2), "unknown".to_owned());
+            return (PoseMatrix::identity() * UNKNOWN.powi(2), Direction::default());
         };
         let floor = self.floor();
         let mut covariance = PoseMatrix::zeros();
@@ -116,7 +210,7 @@ impl Information {
             covariance += variance * direction * direction.transpose();
         }
         clear_unknowns(&mut covariance, &self.without_variance(gauge));
-        (covariance, in_words(&eigen.vectors.column(eigen.values.imin()).into_owned()))
+        (covariance, Direction::of(&eigen.vectors.column(eigen.values.imin()).into_owned()))
     }
 
     /// Eigenvalues over the weight. The gauge is projected out. What is not estimated gets the eigenvalue one, so that
@@ -152,7 +246,7 @@ pub(super) fn describe(
     frame: &Frame,
     pose: &Similarity,
     fixed: [bool; 2],
-    weakest: String,
+    weakest: Direction,
 ) -> Uncertainty {
     // t is where the origin of the depth view goes; it is rotated and scaled about the centre with everything else.
     let arm = pose.translation - frame.centre;
@@ -175,32 +269,10 @@ pub(super) fn describe(
     }
 }
 
-/// The least certain direction of a covariance, in words.
-pub(super) fn weakest_of(covariance: &PoseMatrix) -> String {
-    symmetric_eigen(covariance)
-        .map_or_else(|| "unknown".to_owned(), |eigen| in_words(&eigen.vectors.column(eigen.values.imax()).into_owned()))
-}
-
-/// The one or two largest parts of a direction.
-pub(super) fn in_words(direction: &PoseVector) -> String {
-    const NAMES: [&str; UNKNOWNS] = [
-        "rotation about x",
-        "rotation about y",
-        "rotation about z",
-        "translation along x",
-        "translation along y",
-        "translation along z",
-        "scale",
-    ];
-    let first = direction.iamax();
-    let second = (0..UNKNOWNS)
-        .filter(|&k| k != first)
-        .max_by(|&a, &b| direction[a].abs().total_cmp(&direction[b].abs()))
-        .filter(|&k| direction[k].abs() >= WORTH_NAMING * direction[first].abs());
-    match second {
-        None => NAMES[first].to_owned(),
-        Some(second) => format!("{} with {}", NAMES[first], NAMES[second]),
-    }
+/// The least certain direction of a covariance.
+pub(super) fn weakest_of(covariance: &PoseMatrix) -> Direction {
+    let weakest = |eigen: Eigen<UNKNOWNS>| Direction::of(&eigen.vectors.column(eigen.values.imax()).into_owned());
+    symmetric_eigen(covariance).map(weakest).unwrap_or_default()
 }
 
 #[cfg(test)]
@@ -213,7 +285,7 @@ mod tests {
             rotation_degrees: [0.0, 0.0, LARGEST_SIGMA],
             translation: [Some(0.001), None, Some(0.0)],
             scale: None,
-            weakest: String::new(),
+            weakest: Direction::default(),
         };
         let mut found = sure.clone();
         found.add_focal_length(0.8);

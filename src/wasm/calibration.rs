@@ -1,17 +1,14 @@
 //! The calibration check for JavaScript.
 
-use js_sys::{Array, Float32Array, Object};
+use js_sys::{Float32Array, Object};
 use nalgebra::{Matrix3, Vector3};
 use wasm_bindgen::prelude::wasm_bindgen;
 use wasm_bindgen::{JsCast, JsValue};
 
 use super::error::Thrown;
 use super::input::{JsDepth, JsImage, numbers, samples_of_depth, samples_of_image};
-use super::output::{numbers as values, object, set};
-use crate::calibration::{
-    self, CandidateReport, CheckReport, CheckVerdict, Cue, CueReport, FrameReport, Health, Lens, RigCamera, RigView,
-    Sensitivity,
-};
+use super::output::{plain, set};
+use crate::calibration::{self, Cue, Lens, RigCamera, RigView};
 use crate::error::{Error, ErrorKind, Result};
 use crate::pose::Similarity;
 use crate::view::Transfer;
@@ -89,7 +86,7 @@ impl Check {
     /// The report so far, once the candidates are judged.
     #[must_use]
     pub fn report(&self) -> Option<JsReport> {
-        self.0.report().map(|report| plain_report(report).unchecked_into())
+        self.0.report().map(|report| plain(report).unchecked_into())
     }
 }
 
@@ -155,78 +152,4 @@ fn rig_camera(js: &JsCamera, field: &str) -> Result<RigCamera> {
         return Err(wrong("4, 5 or 8"));
     };
     Ok(RigCamera { fx: js.fx(), fy: js.fy(), cx: js.cx(), cy: js.cy(), lens })
-}
-
-const fn word(verdict: CheckVerdict) -> &'static str {
-    match verdict {
-        CheckVerdict::Consistent => "consistent",
-        CheckVerdict::Off => "off",
-        CheckVerdict::Undecided => "undecided",
-    }
-}
-
-/// An object of named things.
-fn by_name<'a>(entries: impl Iterator<Item = (&'a str, Object)>) -> JsValue {
-    let all = Object::new();
-    entries.for_each(|(name, one)| set(&all, name, one));
-    all.into()
-}
-
-fn list(entries: impl Iterator<Item = Object>) -> JsValue {
-    entries.collect::<Array>().into()
-}
-
-fn plain_health(health: &Health) -> [(&'static str, JsValue); 2] {
-    [("pixels", health.pixels.into()), ("interval", values(health.interval))]
-}
-
-fn plain_candidate(one: &CandidateReport) -> Object {
-    let [pixels, interval] = plain_health(&one.health);
-    object([
-        ("verdict", word(one.verdict).into()),
-        ("reason", one.reason.as_str().into()),
-        ("offDegrees", one.off_degrees.into()),
-        ("offMillimetres", one.off_millimetres.into()),
-        pixels,
-        interval,
-        ("probability", one.probability.into()),
-    ])
-}
-
-fn plain_frame(frame: &FrameReport) -> Object {
-    let plain = object([("name", frame.name.as_str().into()), ("share", frame.share.into())]);
-    if let Some(note) = &frame.note {
-        set(&plain, "note", note.as_str());
-    }
-    plain
-}
-
-fn plain_curve(curve: &Sensitivity) -> Object {
-    object([
-        ("cue", curve.cue.name().into()),
-        ("axis", curve.axis.into()),
-        ("offsets", values(curve.offsets.iter().copied())),
-        ("values", values(curve.values.iter().copied())),
-    ])
-}
-
-fn plain_report(report: &CheckReport) -> Object {
-    let cue = |cue: &CueReport| object([("share", cue.share.into()), ("sharpness", cue.sharpness.into())]);
-    let plain = object([
-        ("verdict", word(report.verdict).into()),
-        ("reason", report.reason.as_str().into()),
-        ("warnings", report.warnings.iter().map(JsValue::from).collect::<Array>().into()),
-        ("estimate", super::output::pose(&report.estimate)),
-        ("middle", values(report.middle)),
-        ("covariance", values(report.covariance.transpose().iter().copied())),
-        ("health", object(plain_health(&report.health)).into()),
-        ("candidates", by_name(report.candidates.iter().map(|one| (one.name.as_str(), plain_candidate(one))))),
-        ("cues", by_name(report.cues.iter().map(|one| (one.cue.name(), cue(one))))),
-        ("frames", list(report.frames.iter().map(plain_frame))),
-        ("sensitivity", list(report.sensitivity.iter().map(plain_curve))),
-    ]);
-    if let Some(focal) = report.focal {
-        set(&plain, "focal", values(focal));
-    }
-    plain
 }

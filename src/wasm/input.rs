@@ -2,13 +2,11 @@
 //! sides, counts and seeds are whole and fit their types here has been checked by the facade.
 
 use js_sys::{Float32Array, Float64Array, Uint8Array, Uint8ClampedArray, Uint16Array};
-use nalgebra::{Matrix3, Vector3};
 use wasm_bindgen::prelude::wasm_bindgen;
 use wasm_bindgen::{JsCast, JsValue};
 
 use crate::error::{Error, ErrorKind, Result};
-use crate::light::Light;
-use crate::options::{LightSource, Options, Registration, Shading, Start, StartTolerance, Weights};
+use crate::options::Options;
 use crate::pose::Angles;
 use crate::view::{ColourImage, ColourSamples, DepthMap, DepthSamples, Pinhole, Transfer};
 
@@ -62,58 +60,6 @@ extern "C" {
 
     #[wasm_bindgen(typescript_type = "Options")]
     pub type JsOptions;
-    #[wasm_bindgen(method, getter)]
-    fn light(this: &JsOptions) -> JsValue;
-    #[wasm_bindgen(method, getter)]
-    fn start(this: &JsOptions) -> JsValue;
-    #[wasm_bindgen(method, getter, js_name = "startTolerance")]
-    fn start_tolerance(this: &JsOptions) -> Option<JsTolerance>;
-    #[wasm_bindgen(method, getter)]
-    fn scale(this: &JsOptions) -> JsValue;
-    #[wasm_bindgen(method, getter)]
-    fn registration(this: &JsOptions) -> Option<String>;
-    #[wasm_bindgen(method, getter)]
-    fn shading(this: &JsOptions) -> Option<String>;
-    #[wasm_bindgen(method, getter)]
-    fn lambda(this: &JsOptions) -> Option<JsLambda>;
-    #[wasm_bindgen(method, getter)]
-    fn annealing(this: &JsOptions) -> Option<bool>;
-    #[wasm_bindgen(method, getter, js_name = "stopDegrees")]
-    fn stop_degrees(this: &JsOptions) -> Option<f64>;
-    #[wasm_bindgen(method, getter, js_name = "correspondenceDistance")]
-    fn correspondence_distance(this: &JsOptions) -> Option<f64>;
-    #[wasm_bindgen(method, getter, js_name = "maxIterations")]
-    fn max_iterations(this: &JsOptions) -> Option<f64>;
-    #[wasm_bindgen(method, getter)]
-    fn seed(this: &JsOptions) -> Option<f64>;
-    #[wasm_bindgen(method, getter)]
-    fn trim(this: &JsOptions) -> Option<bool>;
-
-    pub type JsTolerance;
-    #[wasm_bindgen(method, getter)]
-    fn degrees(this: &JsTolerance) -> Option<f64>;
-    #[wasm_bindgen(method, getter)]
-    fn distance(this: &JsTolerance) -> Option<f64>;
-
-    pub type JsLambda;
-    #[wasm_bindgen(method, getter)]
-    fn prior(this: &JsLambda) -> Option<f64>;
-    #[wasm_bindgen(method, getter)]
-    fn unit(this: &JsLambda) -> Option<f64>;
-    #[wasm_bindgen(method, getter)]
-    fn light(this: &JsLambda) -> Option<f64>;
-    #[wasm_bindgen(method, getter)]
-    fn refinement(this: &JsLambda) -> Option<f64>;
-
-    pub type JsPose;
-    #[wasm_bindgen(method, getter)]
-    fn scale(this: &JsPose) -> Option<f64>;
-    #[wasm_bindgen(method, getter)]
-    fn rotation(this: &JsPose) -> JsValue;
-    #[wasm_bindgen(method, getter)]
-    fn translation(this: &JsPose) -> JsValue;
-    #[wasm_bindgen(method, getter)]
-    fn angles(this: &JsPose) -> Option<JsAngles>;
 
     pub type JsAngles;
     #[wasm_bindgen(method, getter)]
@@ -192,59 +138,10 @@ fn pinhole(distortion: &'static str, js: &JsPinhole) -> Result<Pinhole> {
     Ok(Pinhole { fx: js.fx(), fy: js.fy(), cx: js.cx(), cy: js.cy(), distortion })
 }
 
-/// Options of the contract over the native defaults.
+/// Options of the contract over the native defaults. Names and types have been checked by the facade, whose errors name the field; serde's do not.
 pub fn options(js: &JsOptions) -> Result<Options> {
-    let default = Options::default();
-    Ok(Options {
-        light: match numbers(&js.light()) {
-            Some(values) => LightSource::Known(Light::from_slice("options.light", &values)?),
-            None => LightSource::Estimate,
-        },
-        start: match js.start().as_string().as_deref() {
-            Some("identity") => Start::Identity,
-            _ if js.start().is_object() => start(js.start().unchecked_ref())?,
-            _ => default.start,
-        },
-        start_tolerance: js.start_tolerance().map_or(default.start_tolerance, |js| StartTolerance {
-            degrees: js.degrees().unwrap_or(default.start_tolerance.degrees),
-            distance: js.distance(),
-        }),
-        scale: js.scale().as_f64(),
-        registration: match js.registration().as_deref() {
-            Some("fixed") => Registration::Fixed,
-            Some("icp") => Registration::Icp,
-            _ => Registration::Joint,
-        },
-        shading: match js.shading().as_deref() {
-            Some("pixel") => Shading::Pixel,
-            _ => Shading::Surface,
-        },
-        weights: js.lambda().map_or(default.weights, |lambda| weights(&lambda, default.weights)),
-        annealing: js.annealing().unwrap_or(default.annealing),
-        stop_degrees: js.stop_degrees().unwrap_or(default.stop_degrees),
-        correspondence_distance: js.correspondence_distance(),
-        max_iterations: js.max_iterations().map_or(default.max_iterations, |most| most as u32),
-        seed: js.seed().map_or(default.seed, |seed| seed as u64),
-        trim: js.trim().unwrap_or(default.trim),
-    })
-}
-
-fn weights(js: &JsLambda, default: Weights) -> Weights {
-    Weights {
-        prior: js.prior().unwrap_or(default.prior),
-        unit: js.unit().unwrap_or(default.unit),
-        light: js.light().unwrap_or(default.light),
-        refinement: js.refinement().unwrap_or(default.refinement),
-    }
-}
-
-fn start(js: &JsPose) -> Result<Start> {
-    let rotation = match exactly::<9>("options.start.rotation", &js.rotation())? {
-        Some(rows) => Matrix3::from_row_slice(&rows),
-        None => js.angles().map_or_else(Matrix3::identity, |given| angles(&given).rotation()),
-    };
-    let translation = exactly::<3>("options.start.translation", &js.translation())?.map(Vector3::from);
-    Ok(Start::Pose { rotation, scale: js.scale(), translation })
+    serde_wasm_bindgen::from_value(js.into())
+        .map_err(|error| Error::new(ErrorKind::Range, "options", error.to_string()))
 }
 
 /// Missing angles are zero.

@@ -5,7 +5,7 @@ use wasm_bindgen::prelude::wasm_bindgen;
 use wasm_bindgen::{JsCast, JsValue};
 
 use super::error::Thrown;
-use super::output::{numbers, object, pose, set};
+use super::output::{numbers, plain, set};
 use crate::calibration::{Lens, RigCamera};
 use crate::error::{Error, ErrorKind};
 use crate::scenes::rig::{RigKind, RigRequest, render};
@@ -40,7 +40,7 @@ pub fn sample_rig(name: &str, seed: f64, frame: f64, noise: Option<f64>) -> std:
         ("name", format!("{name} {}", native.frame + 1).into()),
         ("image", image.into()),
         ("depth", depth.into()),
-        ("pose", pose(&frame.pose)),
+        ("pose", plain(&frame.pose)),
     ]);
     Ok(sample.unchecked_into())
 }
@@ -60,4 +60,11 @@ fn raster(size: Size, camera: &RigCamera) -> Object {
         ("height", JsValue::from(size.height as f64)),
         ("camera", camera.into()),
     ])
+}
+
+/// A plain object of these properties, in this order.
+fn object<const COUNT: usize>(properties: [(&str, JsValue); COUNT]) -> Object {
+    let object = Object::new();
+    properties.into_iter().for_each(|(key, value)| set(&object, key, value));
+    object
 }

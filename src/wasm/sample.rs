@@ -6,7 +6,7 @@ use wasm_bindgen::{JsCast, JsValue};
 
 use super::error::Thrown;
 use super::input::{JsAngles, angles, numbers};
-use super::output::{camera, mask, pose, set};
+use super::output::{camera, mask, plain as shaped, set};
 use crate::error::Result;
 use crate::light::Light;
 use crate::scenes::{DepthData, Relief, Sample, SampleRequest, Scene, bare_grid, bound, lights, surfaces};
@@ -166,7 +166,7 @@ fn plain(sample: &Sample) -> Object {
     set(&object, "image", image);
     set(&object, "depth", depth);
     set(&object, "light", Float64Array::from(sample.light.flat().as_slice()));
-    set(&object, "pose", pose(&sample.pose));
+    set(&object, "pose", shaped(&sample.pose));
     set(&object, "truth", truth);
     object
 }

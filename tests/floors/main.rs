@@ -10,8 +10,9 @@ use std::path::PathBuf;
 use house::House;
 
 /// From the ground up: a room looks only into rooms before it.
-const ROOMS: [&str; 16] = [
+const ROOMS: [&str; 18] = [
     "text",
+    "serial",
     "error",
     "check",
     "numeric",
@@ -21,6 +22,7 @@ const ROOMS: [&str; 16] = [
     "pose",
     "calibration",
     "options",
+    "reason",
     "report",
     "picture",
     "estimator",
@@ -32,7 +34,7 @@ const ROOMS: [&str; 16] = [
 /// those of the method.
 const BELOW_SCENES: [&str; 8] = ["text", "error", "check", "numeric", "view", "light", "pose", "calibration"];
 /// Crates that only bindings may name.
-const BINDINGS: [&str; 4] = ["wasm_bindgen", "js_sys", "web_sys", "console_error_panic_hook"];
+const BINDINGS: [&str; 5] = ["wasm_bindgen", "serde_wasm_bindgen", "js_sys", "web_sys", "console_error_panic_hook"];
 
 fn source() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("src")

@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use bimodal_stereo::scenes::{Relief, Sample, SampleRequest, Scene, light, surface};
 use bimodal_stereo::{
-    Angles, ColourSamples, Estimator, Finding, LightSource, Options, Registration, Size, Stage, Start, Status,
+    Angles, ColourSamples, Estimator, Finding, LightSource, Options, Reason, Registration, Size, Stage, Start, Status,
     StepReport, Task, Weights, Worker,
 };
 
@@ -75,11 +75,13 @@ fn the_search_comes_in_slices_and_says_how_far_it_is() {
     while estimator.is_searching() {
         let report = estimator.step();
         assert_eq!((report.stage, report.iteration, report.status), (Stage::Search, 0, Status::Running));
-        let message = report.message.clone().expect("progress");
-        let share: f64 = message.split(' ').next().and_then(|number| number.parse().ok()).expect("a percentage");
-        assert!((0.0..=100.0).contains(&share), "{message}");
-        assert!(share >= last, "{last} then {message}");
-        (slices, last) = (slices + 1, share);
+        let percent = match report.reason {
+            Some(Reason::Searching { percent, .. }) => percent,
+            Some(Reason::SearchDone { .. }) => 100.0,
+            _ => panic!("no progress: {report:?}"),
+        };
+        assert!((0.0..=100.0).contains(&percent) && percent >= last, "{last} then {percent}");
+        (slices, last) = (slices + 1, percent);
     }
     assert!(slices > 50 && last == 100.0, "{slices} {last}");
     let report = estimator.step();
@@ -105,7 +107,7 @@ fn what_cannot_be_known_is_not_claimed() {
     let ball = Scene::new(&Relief::new(256, 256, ball).unwrap()).unwrap().sample(&request).unwrap();
     let report = run(&ball, 1.0, Options::default());
     assert!(matches!(report.status, Status::Lost | Status::Ambiguous), "{report:?}");
-    assert!(report.message.is_some());
+    assert!(report.reason.is_some());
 
     let mut grey = scene("bust", "window").colour_image();
     grey.samples = ColourSamples::RgbLinear(vec![0.5; 3 * 64 * 64]);

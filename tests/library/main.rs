@@ -2,6 +2,7 @@
 //! library, and runs alone.
 
 mod agreement;
+mod codes;
 mod common;
 mod fuzz_corpus;
 mod image_model;

@@ -90,7 +90,7 @@ mod long {
         }
         assert!(done > 100, "{done}");
         let [one, two] = [&alone.report, estimator.report()];
-        assert_eq!((one.pose, one.iteration, &one.message), (two.pose, two.iteration, &two.message));
+        assert_eq!((one.pose, one.iteration, &one.reason), (two.pose, two.iteration, &two.reason));
         assert!(alone.refined == bits(&estimator));
     }
 

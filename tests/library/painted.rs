@@ -78,7 +78,7 @@ fn run(scene: &Painted, options: Options) -> Result<StepReport> {
 fn assert_found(scene: &Painted) -> Result<()> {
     let report = run(scene, Options::default())?;
     let off = report.pose.degrees_to(&scene.truth);
-    assert!(off < 3.0, "{off} degrees, {:?} {:?}", report.status, report.message);
+    assert!(off < 3.0, "{off} degrees, {:?} {:?}", report.status, report.reason);
     Ok(())
 }
 
@@ -89,7 +89,7 @@ fn paint_does_not_pull_a_told_start_away() -> Result<()> {
     let start = Start::Pose { rotation: told, scale: Some(1.0), translation: None };
     let report = run(&scene, Options { start, ..Options::default() })?;
     let off = report.pose.degrees_to(&scene.truth);
-    assert!(off < 3.0, "{off} degrees, {:?} {:?}", report.status, report.message);
+    assert!(off < 3.0, "{off} degrees, {:?} {:?}", report.status, report.reason);
     Ok(())
 }
 
@@ -145,7 +145,7 @@ mod long {
             let scene = painted(name, beta, Some(11))?;
             let report = run(&scene, Options::default())?;
             let off = report.pose.degrees_to(&scene.truth);
-            assert!(off < 3.0, "{name}: {off} degrees, {:?} {:?}", report.status, report.message);
+            assert!(off < 3.0, "{name}: {off} degrees, {:?} {:?}", report.status, report.reason);
             let sigma = report.uncertainty.expect("a pose that was found has sigmas").rotation_degrees;
             let largest = sigma.into_iter().fold(0.0, f64::max);
             assert!(off < 3.0_f64.sqrt() * 3.0 * largest, "{name}: {off} degrees at sigmas of {sigma:?}");

@@ -2,8 +2,8 @@
 
 use bimodal_stereo::scenes::{Sample, SampleRequest, Scene, light, surface};
 use bimodal_stereo::{
-    Camera, Estimator, LightSource, Options, Pinhole, Registration, Similarity, Stage, Start, Status, StepReport,
-    Weights, Worker,
+    Camera, Estimator, LightSource, Options, Pinhole, Reason, Registration, Similarity, Stage, Start, Status,
+    StepReport, Weights, Worker,
 };
 
 /// What a run leaves: its report, refined depth and image depth to the bit, and how many refinements a worker has made.
@@ -83,8 +83,8 @@ fn an_iteration_that_is_taken_back_takes_its_shape_along() {
     let first = estimator.refinement_task(None).unwrap().shape;
     let (known, unknown) = (planes(&estimator, Some(first)), planes(&estimator, None));
     assert!(known < unknown);
-    let message = estimator.step().message.clone().unwrap_or_default();
-    assert!(message.contains("taken back"), "{message}");
+    let report = estimator.step();
+    assert!(matches!(report.reason, Some(Reason::TakenBack { .. })), "{report:?}");
     // A worker that has made the second shape does not hold the first one any more.
     assert_eq!(planes(&estimator, Some(first + 1)), unknown);
     assert_same("taken back", &sample, &options);

@@ -3,6 +3,7 @@
 import type { Stage, StepReport } from "../../pkg/index.js";
 import { decimals } from "../draw/numbers";
 import { byId, make } from "../dom";
+import { searched } from "../engine/searched";
 import type { Explanations } from "./ask";
 
 /** The search, and the five stages of one iteration. */
@@ -37,7 +38,7 @@ export class Strip {
     for (const [name, { button, time }] of this.#buttons) {
       const spent = report.milliseconds[name];
       button.toggleAttribute("data-lit", name === report.stage && begun);
-      if (name === "search" && report.stage === name) time.textContent = /^\d+ %/.exec(report.message ?? "")?.[0] ?? "";
+      if (name === "search" && report.stage === name) time.textContent = searched(report);
       // The last slice that was drawn is seldom the last one that ran.
       else if (name === "search" && begun && time.textContent?.endsWith("%")) time.textContent = "100 %";
       // What has come to rest is not computed again, and a clock of tenths sees no time in it.

@@ -2,7 +2,7 @@
 
 import type { Pose, StepReport } from "../../pkg/index.js";
 import { decimals } from "../draw/numbers";
-import { inWords } from "../said";
+import { remedyOf } from "../remedies";
 
 export interface Verdict {
   /** Whether the outcome may be built on: "open" where nothing says so or against it. */
@@ -52,48 +52,25 @@ const ends: Record<Exclude<StepReport["status"], "running">, string> = {
   lost: "lost",
 };
 
-/** What may help against what a run says of itself: the first that its words bear out. */
-const remedies: readonly (readonly [said: RegExp, remedy: string])[] = [
-  [
-    /not observable|uncertain by|do not show/,
-    "A larger image, less noise, or a light with more colours would show it.",
-  ],
-  [/depth\.unit/, "Settings, Depth camera, Unit says what a stored number stands for."],
-  [/depth\.mask/, "Settings, Own files, Depth mask takes a picture of what the object is in the depth map."],
-  [/image\.mask/, "Settings, Own files, Colour mask takes a picture of what the object is in the image."],
-  [
-    /counterpart/,
-    "Views that share more of the object would help: more overlap, a smaller rotation, or for own files the depth map's right unit.",
-  ],
-  [/painted/, "A start that is roughly known would help: Settings, Start, near."],
-  [/unexplained/, "Less noise, or an object of one paint, would help."],
-  [/points agree/, "Masks that leave out the background would help, and a start that is roughly known."],
-  [/other poses?/, "Choose one of the poses on the surfaces to see it; a start that is roughly known decides."],
-  [/cap of/, "Settings, Loop, Iterations lets it go on for longer."],
-  [/apparent size/, "A scale that is known would help: Settings, Scale."],
-];
 /** Where all went well there is more to try. */
 const HARDER = "Turn the surfaces, drag the light, or try Too hard, which can't be found.";
 /** The right pose, but for what noise does to it. */
 const FINER = "Less noise, or a larger image, brings it closer.";
-const GENERAL = "Another start may find it: Settings, Start, near.";
 
 /** Where the pose is not sought at all. */
 const HELD = "The pose was kept where it started, as the settings ask.";
 const FREE = "Settings, Registration, joint lets it move.";
 
-const remedy = (said: string): string => remedies.find(([pattern]) => pattern.test(said))?.[1] ?? GENERAL;
-
 /** How a finished loop is to be taken; nothing while it runs. */
 export function verdict(
-  { status, message, pose }: StepReport,
+  { status, message, reason, pose }: StepReport,
   start: Pose | undefined,
   truth: Pose | null,
   isHeld = false,
 ): Verdict | undefined {
   if (status === "running") return undefined;
-  const said = message ? [sentence(inWords(message))] : isHeld ? [HELD] : [];
-  const help = isHeld ? FREE : remedy(message ?? "");
+  const said = message ? [sentence(message)] : isHeld ? [HELD] : [];
+  const help = isHeld ? FREE : remedyOf(reason?.code);
   if (truth) {
     const off = angleBetween(pose.rotation, truth.rotation);
     const tone =

@@ -1,8 +1,13 @@
 /** What the page and its worker say to each other. The worker keeps all pixels; what crosses is summaries, pictures and numbers. */
 
-import type { CheckCue, CheckReport, Pose, RigCamera } from "../../pkg/index.js";
+import type { CheckCue, CheckReport, Pose, RigCamera, Warning } from "../../pkg/index.js";
 import type { Fault } from "../engine/protocol";
 import type { NamedPose, Reading, RigReading } from "./files";
+
+/** What the check found, with what the page knows to be guessed among its warnings. */
+export interface WholeReport extends Omit<CheckReport, "warnings"> {
+  warnings: (string | Warning)[];
+}
 
 export type Kind = RigReading["kind"];
 export type NamedCamera = { name?: string; camera: RigCamera; width?: number; height?: number };
@@ -76,7 +81,7 @@ export interface Calls {
   clouds: { ask: { frame: number; poses: { name: string; pose: Pose }[] }; answer: Uint8Array };
   report: {
     ask: {
-      report: CheckReport;
+      report: WholeReport;
       pictures: { title: string; dataUrl: string }[];
       inputs: { name: string; says: string; sha256?: string }[];
     };

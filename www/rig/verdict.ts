@@ -91,7 +91,7 @@ const LITTLE = 0.3;
 /** What to do next, the most useful first. */
 export function advise({ report, plans, estimateOnly, guessed, doubts, candidates }: Run): string[] {
   const list: string[] = [];
-  const said = [report.reason, ...doubts, ...report.warnings].join(" ");
+  const said = [report.reason, ...doubts, ...report.warnings.map(({ message }) => message)].join(" ");
   const name = Object.keys(candidates)[0] ?? "";
   if (/invert/i.test(said))
     list.push("Invert the calibration in step 2 and check again: it seems to lead the other way.");
@@ -140,7 +140,7 @@ function weakest({ covariance }: CheckReport): string {
 export function card(run: Run): HTMLElement {
   const { word, tone, sentence } = headline(run);
   const [next = ""] = advise(run);
-  const all = [...run.guessed.map((what) => `Guessed: ${what}.`), ...run.doubts, ...run.report.warnings];
+  const all = [...run.guessed.map((what) => `Guessed: ${what}.`), ...run.doubts, ...run.report.warnings.map(({ message }) => message)];
   return make(
     "div",
     { class: `rig-verdict ${tone}`, "data-verdict": run.estimateOnly ? "estimate" : run.report.verdict },

@@ -1,13 +1,13 @@
 /** Step 3: the check runs, and says what it found. */
 
-import type { CheckCue, CheckReport } from "../../pkg/index.js";
+import type { CheckCue } from "../../pkg/index.js";
 import { make } from "../dom";
 import { sha256 } from "../hash";
 import { saveJson } from "../save";
 import type { SensitivityCharts } from "./curves";
 import { Overlay } from "./overlay";
 import { choose, labelled, press, saveFile } from "./parts";
-import type { PoseFormat } from "./protocol";
+import type { PoseFormat, WholeReport } from "./protocol";
 import { messageOf, type Rig, type Run } from "./rig";
 import { wasCancelled } from "./session";
 import { candidatesTable, card, CUES, ending, nextCard, sharesCard } from "./verdict";
@@ -264,7 +264,7 @@ export class VerdictStep {
 }
 
 /** The report with what the page knows to be guessed. */
-const whole = ({ report, guessed, doubts }: Run): CheckReport => ({
+const whole = ({ report, guessed, doubts }: Run): WholeReport => ({
   ...report,
   warnings: [...guessed.map((what) => `Guessed: ${what}.`), ...doubts, ...report.warnings],
 });

@@ -205,7 +205,7 @@ function caption(state: State | undefined, value: number | undefined): string {
     case "waiting":
       return "···";
     case "running":
-      return /\d+ %/.exec(state.words)?.[0] ?? "···";
+      return state.share || "···";
     case "failed":
       return "failed";
     case "done":

@@ -8,5 +8,5 @@ export interface Task {
 }
 
 export type CellAnswer =
-  /** How far the cell is, in words. */
-  { id: string; progress: string } | { id: string; result: Result } | { id: string; fault: Fault };
+  /** How far the cell is, in words, and how far its search is, in percent. */
+  { id: string; progress: string; share: string } | { id: string; result: Result } | { id: string; fault: Fault };

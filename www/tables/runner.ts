@@ -6,7 +6,7 @@ import type { Cell, Result } from "./protocol";
 
 export type State =
   | { kind: "waiting" }
-  | { kind: "running"; words: string }
+  | { kind: "running"; words: string; share: string }
   | { kind: "done"; result: Result }
   | { kind: "failed"; message: string };
 
@@ -96,7 +96,7 @@ export class Runner {
     if (!cell) return;
     const fresh = this.#worker === undefined;
     this.#worker ??= this.#spawn();
-    this.#become(cell.id, { kind: "running", words: fresh ? "loading" : "starting" });
+    this.#become(cell.id, { kind: "running", words: fresh ? "loading" : "starting", share: "" });
     const task: Task = { cell };
     this.#worker.postMessage(task);
   }
@@ -121,7 +121,7 @@ export class Runner {
     const { id } = answer;
     if (this.#running?.id !== id) return;
     if ("progress" in answer) {
-      this.#become(id, { kind: "running", words: answer.progress });
+      this.#become(id, { kind: "running", words: answer.progress, share: answer.share });
     } else if ("fault" in answer && answer.fault.fatal) {
       this.#breakDown(answer.fault.message);
     } else {

@@ -5,6 +5,7 @@ import init, { Estimator, sample, sampleBound } from "../../pkg/index.js";
 import type { RunOptions, StepReport } from "../../pkg/index.js";
 import { measure } from "../../scripts/tables/protocol/measure.mjs";
 import { faultOf } from "../engine/fault";
+import { searched } from "../engine/searched";
 import type { CellAnswer, Task } from "./messages";
 import { library, type Result } from "./protocol";
 
@@ -19,12 +20,12 @@ ready.catch(() => {});
 let current = "";
 let told = 0;
 
-function tell({ stage, message, iteration }: StepReport): void {
+function tell({ stage, reason, iteration }: StepReport): void {
   const now = performance.now();
   if (now - told < TELL_EVERY) return;
   told = now;
-  const share = stage === "search" ? /^\d+ %/.exec(message ?? "")?.[0] : undefined;
-  post({ id: current, progress: share ? `search ${share}` : `iteration ${iteration}` });
+  const share = stage === "search" ? searched({ reason }) : "";
+  post({ id: current, progress: share ? `search ${share}` : `iteration ${iteration}`, share });
 }
 
 /** The protocol's own run, told of while it lasts. */

@@ -128,6 +128,7 @@ export const poseOf = (rotation: Numbers, translation: Numbers): Pose => ({
   rotation,
   translation,
   angles: anglesOf(rotation),
+  matrix: [...[0, 1, 2].map((row) => [...rotation.slice(3 * row, 3 * row + 3), at(translation, row)]), [0, 0, 0, 1]],
 });
 
 /** The motion back. */

@@ -1,7 +1,7 @@
 /** What writers are given, checked by name: whoever reads a file of something else would believe it. */
-import { BimodalError } from "../../errors.js";
+import { BimodalError, type ErrorCode } from "../../errors.js";
 
-export const fault = (code: string, field: string, words: string): BimodalError =>
+export const fault = (code: ErrorCode, field: string, words: string): BimodalError =>
   new BimodalError(code, `${field}: ${words}`, field);
 
 /** One of some words. */

@@ -1,12 +1,12 @@
 //! The registration stage: which of the two registrations a pair asks for, and what it found.
 
-use crate::error::{Error, ErrorKind, Result};
 use crate::estimator::gauge;
 use crate::estimator::pair::ViewPair;
 use crate::estimator::solution::Solution;
 use crate::light::Light;
 use crate::options::{Registration, Start};
 use crate::pose::{ContrastOutcome, ContrastReport, OutlineReport, PhotometricReport, Similarity, Uncertainty};
+use crate::reason::Reason;
 use crate::view::Normals;
 
 use super::colours::ColourRegistration;
@@ -217,7 +217,7 @@ impl RegistrationStage {
         inputs: Inputs<'_>,
         paint: &PaintStage,
         solution: &Solution,
-    ) -> Result<Option<Registered>> {
+    ) -> Result<Option<Registered>, Reason> {
         match self.kind(inputs.pair) {
             Registration::Fixed => Ok(None),
             Registration::Joint => self.register_colours(inputs.pair, paint, &solution.pose),
@@ -240,7 +240,7 @@ impl RegistrationStage {
         pair: &ViewPair,
         paint: &PaintStage,
         start: &Similarity,
-    ) -> Result<Option<Registered>> {
+    ) -> Result<Option<Registered>, Reason> {
         let Some(colours) = &mut self.colours else { return Ok(None) };
         let found = match std::mem::replace(&mut self.told, Told::Kept) {
             told @ (Told::Kept | Told::Outlined(_)) => {
@@ -274,9 +274,7 @@ impl RegistrationStage {
             }
         };
         if !gauge::keeps_size(pair, &found.pose, start) {
-            let message = "the colours pull the apparent size away from the start's by a factor of more than two";
-            let growth = gauge::growth(pair, &found.pose, start);
-            return Err(Error::new(ErrorKind::Degenerate, "start", message).value(growth.exp()));
+            return Err(Reason::SizeRunsAway { times: gauge::growth(pair, &found.pose, start).exp() });
         }
         Ok(Some(self.registered(pair, &found, start)))
     }

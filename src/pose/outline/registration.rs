@@ -11,7 +11,7 @@ use crate::numeric::eigen::symmetric_eigen;
 use crate::numeric::{quantile, robust};
 use crate::pose::increment::{Frame, PoseMatrix, PoseVector, SCALE, UNKNOWNS, clear_unknowns, inverse, solve};
 use crate::pose::similarity::Similarity;
-use crate::pose::uncertainty::{describe, in_words};
+use crate::pose::uncertainty::{Direction, describe};
 
 /// Half the width of an outline, pixels: neither a pixel's own size nor the rounding of a mask is an error. Without it
 /// the silhouette pulls poses by one to two degrees.
@@ -331,14 +331,14 @@ impl Outline {
     }
 }
 
-/// The rotation that is known least, in words, and its variance as a share of the prior's.
-fn weakest_turn(covariance: &PoseMatrix, prior: f64) -> (String, f64) {
+/// The rotation that is known least, and its variance as a share of the prior's.
+fn weakest_turn(covariance: &PoseMatrix, prior: f64) -> (Direction, f64) {
     let turns: Matrix3<f64> = covariance.fixed_view::<3, 3>(0, 0).into();
     let Some(eigen) = symmetric_eigen(&turns) else {
-        return ("unknown".to_owned(), 1.0);
+        return (Direction::default(), 1.0);
     };
     let weakest = eigen.values.imax();
     let mut direction = PoseVector::zeros();
     direction.fixed_rows_mut::<3>(0).copy_from(&eigen.vectors.column(weakest));
-    (in_words(&direction), eigen.values[weakest] / (prior * prior))
+    (Direction::of(&direction), eigen.values[weakest] / (prior * prior))
 }

@@ -1,7 +1,6 @@
 /** Shadows, paint, and what the model does about them. */
 
 import type { Sample } from "../../../pkg/index.js";
-import { inWords } from "../../said";
 import type { Drawing, Values } from "../protocol";
 import { pictureOf, scalarOf } from "./draw";
 import { correlation, meanOf, normalDegrees } from "./measure";
@@ -101,7 +100,7 @@ export function* paint(values: Values): Generator<Drawing> {
         status:
           report.status === "running"
             ? `iteration ${report.iteration}`
-            : [report.status, inWords(report.message ?? "")].filter(Boolean).join(": "),
+            : [report.status, report.message].filter(Boolean).join(": "),
       },
     };
   }

@@ -1,7 +1,6 @@
 /** Scenes of the lessons, made by the module and kept as long as they are looked at. */
 
 import { Estimator, sample, type Options, type Sample, type SampleRequest } from "../../../pkg/index.js";
-import { inWords } from "../../said";
 import type { Values } from "../protocol";
 
 /** The last few scenes: dragging a control that is no part of the scene must not render it anew. */
@@ -162,7 +161,7 @@ export function* watched(
       shown = performance.now();
     }
     const { status, message } = estimator.report;
-    yield { estimator, status: [status, inWords(message ?? "")].filter(Boolean).join(": "), done: true };
+    yield { estimator, status: [status, message].filter(Boolean).join(": "), done: true };
   } finally {
     estimator.free();
   }

@@ -1,4 +1,10 @@
-/** What a report may hold beside what the check found. */
+/** What a report holds: what the check found, and beside it what its caller adds. */
+import type { CheckReport, Warning } from "../../../types.js";
+
+/** What a check found; its warnings may have words of the caller's among them. */
+export interface Checked extends Omit<CheckReport, "warnings"> {
+  warnings: readonly (string | Pick<Warning, "message">)[];
+}
 
 export interface Picture {
   title: string;

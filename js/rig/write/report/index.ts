@@ -2,9 +2,8 @@
  * A check of a rig as one HTML file that asks for nothing else: it can be kept, mailed and printed. It has no script, its policy
  * allows none, and whatever comes from files is escaped.
  */
-import type { CheckReport } from "../../../types.js";
 import { type Example, like } from "../built.js";
-import type { Picture, ReportOptions } from "./contents.js";
+import type { Checked, Picture, ReportOptions } from "./contents.js";
 import { reportPage } from "./page.js";
 import { inputTable, pictureSection } from "./parts.js";
 import {
@@ -17,7 +16,7 @@ import {
   warningList,
 } from "./sections.js";
 
-export type { Picture, ReportInput, ReportOptions } from "./contents.js";
+export type { Checked, Picture, ReportInput, ReportOptions } from "./contents.js";
 
 /** What the sections look into; a word or a number that is none is said to be "not known". */
 const REPORT: Example = {
@@ -32,7 +31,7 @@ const REPORT: Example = {
 };
 
 export function reportHtml(
-  report: CheckReport,
+  report: Checked,
   pictures: readonly Picture[] = [],
   options: ReportOptions = {},
 ): string {

@@ -1,6 +1,7 @@
 /** The parts of a report, each a section of HTML or nothing. */
-import type { CandidateReport, CheckReport, CheckVerdict } from "../../../types.js";
+import type { CandidateReport, CheckVerdict } from "../../../types.js";
 import { bar, intervals, sensitivities } from "./charts.js";
+import type { Checked } from "./contents.js";
 import { type Markup, html } from "./markup.js";
 import { digits, measure, percent, probability, span } from "./numbers.js";
 import { cell, fact, section, sign, table } from "./parts.js";
@@ -11,7 +12,7 @@ const verdictOf = (verdict: CheckVerdict): CheckVerdict => (Object.hasOwn(WORDS,
 
 const within = (interval: readonly [number, number]): string => `95\u202f%: ${span(interval, "px")}`;
 
-export function verdictCard({ verdict: given, reason, candidates, health }: CheckReport): Markup {
+export function verdictCard({ verdict: given, reason, candidates, health }: Checked): Markup {
   const verdict = verdictOf(given);
   const [first] = Object.entries(candidates);
   const [name, candidate] = first ?? [];
@@ -27,12 +28,12 @@ export function verdictCard({ verdict: given, reason, candidates, health }: Chec
   }${fact("That of the best fit", measure(health.pixels, "px"), within(health.interval))}</dl></div></section>`;
 }
 
-export const warningList = ({ warnings }: CheckReport): Markup =>
+export const warningList = ({ warnings }: Checked): Markup =>
   section(
     "Warnings",
     warnings.length === 0
       ? html`<p>None: nothing was guessed, and nothing looks wrong.</p>`
-      : html`<ul class="warnings">${warnings.map((warning) => html`<li>${warning}</li>`)}</ul>`,
+      : html`<ul class="warnings">${warnings.map((warning) => html`<li>${typeof warning === "string" ? warning : warning.message}</li>`)}</ul>`,
   );
 
 const CANDIDATE_COLUMNS = [
@@ -57,7 +58,7 @@ function candidateRow(name: string, found: CandidateReport): Markup {
   return html`<tr><th scope="row">${name}</th>${values.map((value, index) => cell(CANDIDATE_COLUMNS[index + 1] ?? "", value))}</tr>`;
 }
 
-export function candidateTable({ candidates, health }: CheckReport): Markup {
+export function candidateTable({ candidates, health }: Checked): Markup {
   const rows = Object.entries(candidates);
   const drawn = [
     ...rows.map(([name, { pixels, interval }]) => ({ name, value: pixels, interval, isEstimate: false })),
@@ -101,7 +102,7 @@ const exact = (value: number): string => (Number.isFinite(value) ? String(value)
 
 const COVARIANCE = ["turn x", "turn y", "turn z", "shift x", "shift y", "shift z"];
 
-export function estimateSection({ estimate, covariance }: CheckReport): Markup {
+export function estimateSection({ estimate, covariance }: Checked): Markup {
   const { rotation: r, translation: t, angles } = estimate;
   const known = sigmas(covariance);
   const [turn, shift] = [known.slice(0, 3), known.slice(3)];
@@ -141,7 +142,7 @@ const about = (cue: string): readonly [name: string, more: string] =>
 
 const sharpness = (value: number): string => (value > 0 ? `to ${measure(1 / value, "px")}` : "not at all");
 
-export function cueTable({ cues }: CheckReport): Markup | undefined {
+export function cueTable({ cues }: Checked): Markup | undefined {
   const rows = Object.entries(cues).map(
     ([cue, { share, sharpness: sharp }]) =>
       html`<tr><th scope="row">${about(cue)[0]} <span class="soft">${about(cue)[1]}</span></th><td class="number">${percent(share)}</td><td class="bars">${bar(share)}</td>${cell("Tells the pose", sharpness(sharp))}</tr>`,
@@ -151,7 +152,7 @@ export function cueTable({ cues }: CheckReport): Markup | undefined {
     : section("What the answer rests on", table("shares", ["Cue", "Share", "", "Tells the pose"], rows));
 }
 
-export function frameTable({ frames }: CheckReport): Markup | undefined {
+export function frameTable({ frames }: Checked): Markup | undefined {
   const rows = frames.map(
     ({ name, share, note }) =>
       html`<tr><th scope="row">${name}</th><td class="number">${percent(share)}</td><td class="bars">${bar(share)}</td><td>${note}</td></tr>`,
@@ -159,7 +160,7 @@ export function frameTable({ frames }: CheckReport): Markup | undefined {
   return rows.length === 0 ? undefined : section("Frames", table("shares", ["Frame", "Share", "", "Note"], rows));
 }
 
-export function sensitivitySection({ sensitivity }: CheckReport): Markup | undefined {
+export function sensitivitySection({ sensitivity }: Checked): Markup | undefined {
   const panels = sensitivities(sensitivity.map((row) => ({ ...row, cue: about(row.cue)[0] })));
   if (panels.length === 0) return undefined;
   return section(

@@ -1,0 +1,324 @@
+//! Why a candidate has its verdict, and what looks wrong about the input: values with their numbers, whose words are made where they
+//! leave the crate.
+
+use std::fmt;
+
+use super::verdict::Health;
+use crate::pose::{Axis, Unknown};
+use crate::text::{Brief, Fixed};
+
+/// Why a verdict is what it is. Its [`code`](CheckReason::code) is stable; its [`Display`](fmt::Display) is the sentence for people.
+#[derive(Clone, Debug, PartialEq, strum::IntoStaticStr, strum::VariantNames)]
+#[strum(serialize_all = "kebab-case")]
+#[non_exhaustive]
+pub enum CheckReason {
+    /// Consistent: all of the interval passes.
+    WithinTolerance(Margin),
+    /// Consistent: nothing contradicts the candidate, and the scene shows errors beyond so many pixels.
+    NothingAgainst {
+        /// Its error.
+        margin: Margin,
+        /// Errors that the scene would show.
+        shown: f64,
+    },
+    /// Off: all of the interval is beyond what passes.
+    OffTarget {
+        /// Its error.
+        margin: Margin,
+        /// By how much.
+        offset: Offset,
+    },
+    /// Off: the candidate puts no points onto the image.
+    NoPointsOnImage,
+    /// Undecided: behind a colour camera that was guessed.
+    GuessedCamera {
+        /// Its error.
+        margin: Margin,
+        /// Errors that the guess explains.
+        explained: f64,
+    },
+    /// Undecided: the scene hardly constrains one of the six numbers.
+    Unconstrained {
+        /// Its error.
+        margin: Margin,
+        /// Which.
+        weakest: Unknown,
+    },
+    /// Undecided: the interval holds what passes and what does not.
+    TooClose(Margin),
+    /// Undecided: no pose puts points onto the image.
+    NoPoseOnImage,
+    /// Undecided: no candidate was given.
+    NoCandidate {
+        /// Error of the estimate.
+        pixels: f64,
+    },
+    /// Consistent, but for a warning about the input.
+    Doubtful {
+        /// The first warning.
+        warning: Box<Warning>,
+        /// Why it would be consistent.
+        reason: Box<CheckReason>,
+    },
+}
+
+/// A reprojection error beside what passes, pixels of the colour image.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Margin {
+    /// The error.
+    pub health: Health,
+    /// What passes.
+    pub tolerance: f64,
+}
+
+/// How far a candidate is from the estimate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Offset {
+    /// Turn.
+    pub degrees: f64,
+    /// The axis of most of it.
+    pub about: Axis,
+    /// Shift of the middle of the scene.
+    pub millimetres: f64,
+    /// The axis of most of it.
+    pub along: Axis,
+    /// Distance of the middle of the scene, metres.
+    pub distance: f64,
+}
+
+impl CheckReason {
+    /// The codes of all reasons.
+    pub const CODES: &'static [&'static str] = <Self as strum::VariantNames>::VARIANTS;
+
+    /// Stable name for programs.
+    #[must_use]
+    pub fn code(&self) -> &'static str {
+        self.into()
+    }
+}
+
+impl fmt::Display for CheckReason {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::WithinTolerance(margin) => write!(f, "Consistent: its error is {margin}; {}.", margin.passes()),
+            Self::NothingAgainst { margin, shown } => write!(
+                f,
+                "Consistent: nothing contradicts it, and this scene shows errors beyond {} px; its error is {margin}; {}.",
+                Fixed(*shown, 1),
+                margin.passes()
+            ),
+            Self::OffTarget { margin, offset } => write!(f, "Off by about {offset}: {margin}; {}.", margin.passes()),
+            Self::NoPointsOnImage => f.write_str("Off: it puts no points onto the image."),
+            Self::GuessedCamera { margin, explained } => write!(
+                f,
+                "This scene can't tell behind a guessed camera: {margin}, around the {} px that pass.",
+                Fixed(*explained, 0)
+            ),
+            Self::Unconstrained { margin, weakest } => write!(
+                f,
+                "This scene can't tell, because it hardly shows {weakest}: {margin}, around the {} px that pass.",
+                Fixed(margin.tolerance, 1)
+            ),
+            Self::TooClose(margin) => {
+                write!(f, "This scene can't tell: {margin}, around the {} px that pass.", Fixed(margin.tolerance, 1))
+            }
+            Self::NoPoseOnImage => f.write_str("This scene can't tell: no pose puts its points onto the image."),
+            Self::NoCandidate { pixels } => {
+                write!(f, "No candidate was given; the estimate is good to {} px.", Fixed(*pixels, 1))
+            }
+            Self::Doubtful { warning, reason } => write!(f, "Settled, but check: {warning} {reason}"),
+        }
+    }
+}
+
+impl Margin {
+    fn passes(&self) -> impl fmt::Display {
+        format!("up to {} px pass", Fixed(self.tolerance, 1))
+    }
+}
+
+impl fmt::Display for Margin {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [low, high] = self.health.interval.map(|value| Fixed(value, 1));
+        write!(f, "{} px at the scene's depth (95 %: {low} to {high})", Fixed(self.health.pixels, 1))
+    }
+}
+
+impl fmt::Display for Offset {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { degrees, about, millimetres, along, distance } = *self;
+        // A turn about a camera moves the scene as far as the scene is away.
+        write!(
+            f,
+            "{} degrees, most of it about {about}, and {} mm at the middle of the scene, {} m away, most of it along {along}",
+            Fixed(degrees, 2),
+            Fixed(millimetres, 1),
+            Fixed(distance, 2)
+        )
+    }
+}
+
+/// A warning about the input, which keeps the verdict from being better than the input is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Warning {
+    /// The frame or the candidate at fault; empty where it is all of them.
+    pub name: String,
+    /// The same as a path of the JavaScript contract.
+    pub field: String,
+    /// What looks wrong.
+    pub kind: WarningKind,
+}
+
+/// What looks wrong. Its [`code`](WarningKind::code) is stable; the [`Display`](fmt::Display) of a [`Warning`] is the sentence for people.
+#[derive(Clone, Copy, Debug, PartialEq, strum::IntoStaticStr, strum::VariantNames)]
+#[strum(serialize_all = "kebab-case")]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize),
+    serde(tag = "code", rename_all = "kebab-case", rename_all_fields = "camelCase")
+)]
+#[non_exhaustive]
+pub enum WarningKind {
+    /// The image shows nothing.
+    BlankImage,
+    /// The intrinsics of the colour camera were not given.
+    IntrinsicsGuessed,
+    /// Much of a depth map without a mask is missing.
+    ManyHoles {
+        /// Of its pixels.
+        percent: f64,
+    },
+    /// A depth map of integers has no more than 256 levels.
+    EightBits,
+    /// Depths are not those of a depth camera.
+    UnusualDepths {
+        /// Their median.
+        metres: f64,
+        /// The smallest and the largest that are usual.
+        usual: [f64; 2],
+    },
+    /// The depth map is as rough as a photograph.
+    RoughDepth,
+    /// The cameras are farther apart than those of any rig.
+    FarApart {
+        /// Their distance.
+        metres: f64,
+    },
+    /// The inverse of the candidate fits.
+    FitsInverted {
+        /// Error of the candidate.
+        pixels: f64,
+        /// Error of its inverse.
+        inverted_pixels: f64,
+    },
+    /// A lens was probably left out.
+    LensLeftOut {
+        /// Its first radial coefficient.
+        k1: f64,
+    },
+}
+
+impl WarningKind {
+    /// The codes of all warnings.
+    pub const CODES: &'static [&'static str] = <Self as strum::VariantNames>::VARIANTS;
+
+    /// Stable name for programs.
+    #[must_use]
+    pub fn code(&self) -> &'static str {
+        self.into()
+    }
+}
+
+/// A median above it is probably in millimetres, and one below the other a thousand times too small, metres.
+const MILLIMETRES: f64 = 100.0;
+const KILOMETRES: f64 = 0.02;
+
+impl fmt::Display for Warning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if !self.name.is_empty() {
+            write!(f, "{}: ", self.name)?;
+        }
+        match self.kind {
+            WarningKind::BlankImage => f.write_str("the image is blank."),
+            WarningKind::IntrinsicsGuessed => {
+                f.write_str("the colour camera's intrinsics are not given; its focal length is estimated.")
+            }
+            WarningKind::ManyHoles { percent } => write!(f, "{} % of the depth map are holes.", Fixed(percent, 0)),
+            WarningKind::EightBits => f.write_str("the depth map has 8 bits; steps of a 256th are no measurement."),
+            WarningKind::UnusualDepths { metres, usual } => {
+                let [nearest, farthest] = usual.map(Brief);
+                write!(f, "depths are {} m at the median, outside {nearest} to {farthest} m", Brief(metres))?;
+                if metres > MILLIMETRES {
+                    f.write_str(": is it in millimetres?")
+                } else if metres < KILOMETRES {
+                    f.write_str(": is its unit a thousand times larger?")
+                } else {
+                    Ok(())
+                }
+            }
+            WarningKind::RoughDepth => {
+                f.write_str("the depth map is as rough as a photograph; are the two files swapped?")
+            }
+            WarningKind::FarApart { metres } => {
+                write!(f, "its cameras are {} m apart; is the translation in millimetres?", Fixed(metres, 1))
+            }
+            WarningKind::FitsInverted { pixels, inverted_pixels } => write!(
+                f,
+                "fits inverted ({} px instead of {}): it seems to map colour to depth, P_depth = R P_colour + t; invert it.",
+                Fixed(inverted_pixels, 1),
+                Fixed(pixels, 1)
+            ),
+            WarningKind::LensLeftOut { k1 } => write!(
+                f,
+                "Depth edges fit the image's clearly better behind a lens of k1 about {}: was the colour camera's distortion \
+                 left out?",
+                Fixed(k1, 2)
+            ),
+        }
+    }
+}
+
+#[cfg(feature = "serde")]
+impl serde::Serialize for Warning {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        #[derive(serde::Serialize)]
+        struct Explained<'a> {
+            #[serde(flatten)]
+            kind: WarningKind,
+            message: String,
+            field: &'a str,
+        }
+        Explained { kind: self.kind, message: self.to_string(), field: &self.field }.serialize(serializer)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_warning_names_what_it_is_about() {
+        let kind = WarningKind::ManyHoles { percent: 43.2 };
+        let warning = Warning { name: "frame 1".into(), field: "frames[0].depth".into(), kind };
+        assert_eq!(
+            (warning.kind.code(), warning.to_string().as_str()),
+            ("many-holes", "frame 1: 43 % of the depth map are holes.")
+        );
+        let doubtful =
+            CheckReason::Doubtful { warning: Box::new(warning), reason: Box::new(CheckReason::NoPoseOnImage) };
+        assert_eq!(doubtful.code(), "doubtful");
+        assert!(doubtful.to_string().starts_with("Settled, but check: frame 1: "), "{doubtful}");
+    }
+
+    #[cfg(feature = "serde")]
+    #[test]
+    fn a_warning_leaves_with_its_code_words_field_and_numbers() {
+        let kind = WarningKind::FitsInverted { pixels: 30.0, inverted_pixels: 0.5 };
+        let warning = Warning { name: "mine".into(), field: "candidates.mine".into(), kind };
+        let expected = serde_json::json!({
+            "code": "fits-inverted", "pixels": 30.0, "invertedPixels": 0.5,
+            "message": warning.to_string(), "field": "candidates.mine",
+        });
+        assert_eq!(serde_json::to_value(&warning).unwrap(), expected);
+    }
+}

@@ -1,0 +1,33 @@
+//! Reports as the JavaScript contract has them: codes with their words, lists of numbers, members by name.
+
+use nalgebra::SMatrix;
+use serde::{Serialize, Serializer};
+
+use super::check::CueReport;
+use super::reason::CheckReason;
+use super::unknowns::POSE;
+use super::verdict::CandidateReport;
+
+pub(super) fn coded<S: Serializer>(reason: &CheckReason, serializer: S) -> Result<S::Ok, S::Error> {
+    #[derive(Serialize)]
+    struct Explained {
+        code: &'static str,
+        reason: String,
+    }
+    Explained { code: reason.code(), reason: reason.to_string() }.serialize(serializer)
+}
+
+pub(super) fn rows<S: Serializer>(matrix: &SMatrix<f64, POSE, POSE>, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_seq(matrix.transpose().iter())
+}
+
+pub(super) fn candidates_by_name<S: Serializer>(
+    candidates: &[CandidateReport],
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(candidates.iter().map(|one| (&one.name, one)))
+}
+
+pub(super) fn cues_by_name<S: Serializer>(cues: &[CueReport], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(cues.iter().map(|one| (one.cue, one)))
+}
