@@ -35,7 +35,7 @@ export async function checkCalibration(frames, candidates, { signal, onProgress,
   for (let k = 0; k <= 100; k++) onProgress(k / 100, "edges of " + frames.length);
   while (verdict === "wait") { await new Promise((go) => setTimeout(go, 10)); signal.throwIfAborted(); }
   if (verdict === "broken") throw new TypeError("a bug");
-  return { ...report(), verdict, reason: (verdict === "consistent" ? "Consistent: " : "") + JSON.stringify({ candidates, options }), warnings: sure ? [] : ["one of the check's"] };
+  return { ...report(), verdict, reason: (verdict === "consistent" ? "Consistent: " : "") + JSON.stringify({ candidates, options }), warnings: sure ? [] : [{ code: "many-holes", message: "one of the check's" }] };
 }`;
 
 mkdirSync(join(root, "pkg"));

@@ -49,7 +49,10 @@ async function answer(image, depth, options) {
 }
 
 function alike(told, report, degrees) {
-  assert.deepEqual([told.status, told.iteration, told.message], [report.status, report.iteration, report.message]);
+  assert.deepEqual(
+    [told.status, told.iteration, told.message, told.reason?.code],
+    [report.status, report.iteration, report.message, report.reason?.code],
+  );
   const trace = told.pose.rotation.reduce((sum, value, k) => sum + value * report.pose.rotation[k], 0);
   const off = (Math.acos(Math.min(1, (trace - 1) / 2)) * 180) / Math.PI;
   assert.ok(off < degrees, `${off} degrees`);

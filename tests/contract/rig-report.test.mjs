@@ -60,7 +60,7 @@ describe("the page", () => {
         "0.520 to 1.31 px",
       ],
       ...["last week", "Consistent", "0.110°", "0.610", "by hand", "Undecided", "below 0.001"],
-      ...report().warnings,
+      ...report().warnings.map((warning) => warning.message ?? warning),
       ...["55 %", "to 0.435 px", "not at all", "0003.png", "13 %", "a bare wall"],
       ...[
         "0.115° about x, 0.143° about y, 0.229° about z",

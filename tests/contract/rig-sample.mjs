@@ -17,11 +17,12 @@ const CUES = { edges: [1, 0.3], information: [1.6, -0.8], shading: [6, 1], silho
 
 export const report = () => ({
   verdict: "off",
+  code: "off-target",
   reason:
     "Off by about 1.9° and 21 mm, mostly a turn about the y axis; a true calibration lies as far from the best fit once in 4000 checks.",
   warnings: [
     "The unit of depth/0001.png was guessed: 1 mm.",
-    "The colour camera's distortion is not given and was taken for zero.",
+    { code: "lens-left-out", message: "The colour camera's distortion is not given and was taken for zero." },
   ],
   estimate: {
     scale: 1,

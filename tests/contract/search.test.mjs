@@ -37,7 +37,8 @@ describe("search", () => {
     const seen = reports(pair);
     const search = seen.filter(({ stage }) => stage === "search");
     assert.ok(search.length > 50 && search.every(({ iteration, status }) => iteration === 0 && status === "running"));
-    assert.match(search[0].message, /^\d+ %: /);
+    assert.deepEqual(search[0].reason, { code: "searching", percent: 0, activity: "preparing" });
+    assert.deepEqual(search.at(-1).reason, { code: "search-done", by: "image", rivals: 0 });
     assert.match(search.at(-1).message, /^100 %: /);
     const last = seen.at(-1);
     assert.equal(last.status, "converged", last.message);
@@ -77,14 +78,19 @@ describe("search", () => {
     for (const value of [0.5, 1e30, 3e38]) {
       const last = reports({ image: { ...image, data: image.data.fill(value) }, depth }).at(-1);
       assert.equal(last.status, "lost");
-      assert.match(last.message, /all colours are the same/, `${value}`);
+      const { code, error } = last.reason;
+      assert.deepEqual([code, error.code, error.field], ["stage-failed", "degenerate", "image"], `${value}`);
     }
   });
 
   test("where nothing is found, the scales that were compared are named, if there were any", () => {
     const { image, depth } = sample({ ...REQUEST, size: 32 });
-    const message = (data, options) => reports({ image, depth: { ...depth, data } }, 1, options).at(-1).message;
-    assert.match(message(depth.data.map(() => 20)), /no pose explains .* 0\.7 to 1\.4 .*`scale` or `start\.scale`/);
-    assert.match(message(depth.data, { scale: 10 }), /no pose explains the colours by the depth map's normals$/);
+    const last = (data, options) => reports({ image, depth: { ...depth, data } }, 1, options).at(-1);
+    const free = last(depth.data.map(() => 20));
+    assert.deepEqual(free.reason, { code: "no-pose", scaleIsHeld: false });
+    assert.match(free.message, / 0\.7 to 1\.4 /);
+    const held = last(depth.data, { scale: 10 });
+    assert.deepEqual(held.reason, { code: "no-pose", scaleIsHeld: true });
+    assert.doesNotMatch(held.message, / 0\.7 /);
   });
 });

@@ -141,7 +141,9 @@ test(
       await numbers(page, "failure&case=texture&amount=100", "residual"),
     ];
     expect(printed.residual).toBeGreaterThan(1.5 * bare.residual);
-    await expect(status(page)).toHaveText(/^lost: the rotation is uncertain by \d+ degrees: rotation about [xyz]$/);
+    await expect(status(page)).toHaveText(
+      /^lost: the rotation is uncertain by \d+ degrees \(one sigma\): rotation about [xyz]$/,
+    );
     const [beside, turned] = [
       await numbers(page, "failure&case=turn&amount=0", "sigma"),
       await numbers(page, "failure&case=turn&amount=100", "sigma"),

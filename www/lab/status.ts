@@ -48,7 +48,7 @@ export class Status {
     this.#say(end ? report.status : idle, end?.tone ?? "open", end ? `${isRival ? "found: " : ""}${end.status}` : idle);
     this.#put(this.#cause, end?.words ?? "");
     this.#put(this.#next, this.#doubt || (end?.next ?? (idle === "ready" ? this.#first : "")));
-    this.#put(this.#message, end ? "" : report.message ?? "");
+    this.#put(this.#message, end ? "" : (report.message ?? ""));
   }
 
   /** Something other than the loop is going on, or has gone wrong. */

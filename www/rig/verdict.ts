@@ -140,7 +140,11 @@ function weakest({ covariance }: CheckReport): string {
 export function card(run: Run): HTMLElement {
   const { word, tone, sentence } = headline(run);
   const [next = ""] = advise(run);
-  const all = [...run.guessed.map((what) => `Guessed: ${what}.`), ...run.doubts, ...run.report.warnings.map(({ message }) => message)];
+  const all = [
+    ...run.guessed.map((what) => `Guessed: ${what}.`),
+    ...run.doubts,
+    ...run.report.warnings.map(({ message }) => message),
+  ];
   return make(
     "div",
     { class: `rig-verdict ${tone}`, "data-verdict": run.estimateOnly ? "estimate" : run.report.verdict },

@@ -1,0 +1,51 @@
+// node scripts/codes.mjs: writes docs/codes.md, what every code means and what may help, from src/codes.json, which the page and the
+// command line read as well. tests/contract/codes.test.mjs holds that both say the same.
+import { readFileSync, realpathSync, writeFileSync } from "node:fs";
+import { inRoot, say } from "./shell.mjs";
+
+export const DOCUMENT = "docs/codes.md";
+
+const GROUPS = {
+  runs: [
+    "Ends of a run",
+    '`report.reason.code` in JavaScript, `report.reason["code"]` in Python and in the command line\'s JSON, `Reason::code()` in Rust. The numbers of a reason stand beside its code. The first four belong to runs that go on.',
+  ],
+  checks: [
+    "Verdicts of a calibration check",
+    "`code` of a check's report and of each of its candidates, `CheckReason::code()` in Rust.",
+  ],
+  warnings: [
+    "Warnings of a calibration check",
+    '`code` of each entry of `warnings`, beside its `message`, its `field` and its numbers; `WarningKind::code()` in Rust. Any of them keeps a verdict from being "consistent".',
+  ],
+  errors: [
+    "Errors",
+    "`code` of a `BimodalError`, beside its `message`, and where they help its `field`, `index` and `value`; `ErrorKind::code()` in Rust.",
+  ],
+};
+
+/** The document that a table of codes makes. */
+export function documentOf(table) {
+  const sections = Object.entries(GROUPS).flatMap(([group, [title, words]]) => [
+    `## ${title}`,
+    "",
+    words,
+    "",
+    "| code | cause | remedy |",
+    "|---|---|---|",
+    ...Object.entries(table[group]).map(([code, { cause, remedy }]) => `| \`${code}\` | ${cause} | ${remedy} |`),
+    "",
+  ]);
+  return [
+    "# Codes",
+    "",
+    "Programs decide by codes, which are stable; the sentences beside them are for people and may change.",
+    "",
+    ...sections,
+  ].join("\n");
+}
+
+if (import.meta.filename === realpathSync(process.argv[1])) {
+  writeFileSync(inRoot(DOCUMENT), documentOf(JSON.parse(readFileSync(inRoot("src/codes.json"), "utf8"))));
+  say(`wrote ${DOCUMENT}`);
+}

@@ -1,0 +1,93 @@
+// Codes, then words: the types list what the numerics can give, the documentation has a row for each, and nothing decides by a message.
+import assert from "node:assert/strict";
+import { readFileSync, readdirSync } from "node:fs";
+import { test } from "node:test";
+import { inRoot } from "../../scripts/shell.mjs";
+import { DOCUMENT, documentOf } from "../../scripts/codes.mjs";
+
+const TABLE = JSON.parse(readFileSync(inRoot("src/codes.json"), "utf8"));
+const source = (path) => readFileSync(inRoot(path), "utf8");
+/** The files below some folders whose paths fit. */
+const files = (folders, pattern) =>
+  folders.flatMap((folder) =>
+    readdirSync(inRoot(folder), { recursive: true })
+      .map((path) => `${folder}/${path}`)
+      .filter((path) => pattern.test(path)),
+  );
+
+/** The words of a union type. */
+function union(path, name) {
+  const [, body] = new RegExp(`export type ${name} =([^;]+);`).exec(source(path)) ?? [];
+  assert.ok(body, `${path} has no ${name}`);
+  return [...body.matchAll(/"([a-z-]+)"/g)].map(([, word]) => word);
+}
+
+// That the table has the codes of the numerics and no others is a test of the crate (tests/library/codes.rs).
+for (const [group, path, name] of [
+  ["runs", "js/types.ts", "ReasonCode"],
+  ["checks", "js/types.ts", "CheckCode"],
+  ["warnings", "js/types.ts", "WarningCode"],
+  ["errors", "js/errors.ts", "ErrorCode"],
+])
+  test(`${name} is the table's ${group}`, () =>
+    assert.deepEqual(union(path, name).sort(), Object.keys(TABLE[group]).sort()));
+
+test("errors of the command line and of Python have a row", () => {
+  const given = (pattern, paths) =>
+    paths.flatMap((path) => [...source(path).matchAll(pattern)].map(([, code]) => code));
+  const used = [
+    ...given(
+      /\b(?:failure|BimodalError|of)\(\s*"([a-z-]+)"/g,
+      files(["python/src", "python/bimodal_stereo"], /\.(?:rs|py)$/),
+    ),
+    ...given(/\bcode: "([a-z-]+)"/g, files(["cli/src"], /\.rs$/)),
+  ];
+  assert.ok(used.length > 20, String(used.length));
+  assert.deepEqual(
+    [...new Set(used)].filter((code) => !(code in TABLE.errors)),
+    [],
+  );
+});
+
+test("the documentation's table is made of these rows", () => {
+  assert.equal(source(DOCUMENT), documentOf(TABLE), "node scripts/codes.mjs writes it anew");
+});
+
+/** Whatever looks for words in a message, a reason or a warning. */
+const DECIDING = [
+  /\.(?:test|exec)\(\s*[^()]*\b(?:message|reason|warnings?)\b/,
+  /\b(?:message|reason|warnings?)\b(?:[?!]|\s*\?\?\s*"")?\)?\??\.(?:match|matchAll|includes|startsWith|endsWith|search)\(/,
+  /\b(?:messages|warnings)\b[^;]*=>[^;]*\.(?:test|exec|match|includes|startsWith|endsWith)\(/,
+  /(?<!typeof [\w.]*)\b(?:message|warning)\b\s*[!=]==?\s*["'`][^"'`]/,
+  /\bswitch \((?:[\w.?]*\.)?(?:message|warning)\)/,
+];
+/** What is left: a message is shown without the name of the field that it stands beside. */
+const SHOWN = ["www/lab/messages.ts"];
+/** Warnings of the readers of files, which are words still. */
+const READERS = ["www/lab/own.ts", "www/rig/filelist.ts", "www/rig/worker.ts"];
+
+function decisions(text) {
+  const code = text.replace(/\/\*[^]*?\*\/|^\s*\/\/.*$/gm, "");
+  return code.split("\n").filter((line) => DECIDING.some((pattern) => pattern.test(line)));
+}
+
+test("nothing in js and www decides by the words of a message", () => {
+  const all = files(["js", "www"], /\.ts$/).sort();
+  assert.ok(all.length > 150, String(all.length));
+  const found = all.filter((path) => decisions(source(path)).length > 0);
+  assert.deepEqual(found, [...SHOWN, ...READERS].sort());
+});
+
+test("the search for such decisions finds them", () => {
+  for (const line of [
+    "if (/painted/.test(message)) return;",
+    'const share = /^\\d+ %/.exec(report.message ?? "")?.[0];',
+    'if (report.message?.includes("unit")) return;',
+    "const isGuessed = warnings.some((words) => /guess/i.test(words));",
+    'if (message === "lost") return;',
+    "switch (error.message) {",
+  ])
+    assert.equal(decisions(line).length, 1, line);
+  for (const line of ['if (reason.code === "rivals") return;', "say(report.message);", "// the message.includes(what)"])
+    assert.equal(decisions(line).length, 0, line);
+});
