@@ -212,6 +212,14 @@ export class Estimator {
     return this.#call((raw) => raw.searchScores());
   }
 
+  /**
+   * Which registration the pose is of. For the project's own tests, and no part of the contract.
+   * @internal
+   */
+  get registeredBy(): string {
+    return this.#call((raw) => raw.registeredBy());
+  }
+
   /** What it was given, as copies: both views, and the options of the last `reset`. */
   get given(): { image: ColorImage; depth: DepthMap; options: Options } {
     return structuredClone({ ...this.#pair, options: this.#options });

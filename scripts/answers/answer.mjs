@@ -2,6 +2,7 @@
 import { createHash } from "node:crypto";
 import { usesOf } from "./contract.mjs";
 import { optionsOf, pairOf } from "./pairs.mjs";
+import { checkOf } from "./rigs.mjs";
 
 /** No scene goes on longer, unless it says so; what does not converge by then is compared where it stands. */
 const MOST_ITERATIONS = 25;
@@ -47,6 +48,8 @@ function everything(estimator, { image, depth, middle }) {
   const pixels = { image: pixelOf(image, middle), depth: pixelOf(depth, middle) };
   return {
     report,
+    // Packages from before it was said do not say.
+    endedBy: report.status === "running" ? undefined : estimator.registeredBy,
     light: [...estimator.light()],
     pixel: pixels.image,
     correspondence: estimator.correspondence(),
@@ -62,8 +65,19 @@ function everything(estimator, { image, depth, middle }) {
   };
 }
 
+/** Length of a pixel of the colour image at the middle of a rig's scene, metres. */
+const rigPixelOf = ({ middle }, { image }) => middle[2] / (image.camera?.fx ?? image.width);
+
+/** A rig is made by the same package, likewise. */
+async function checkAnswerOf({ rig }, api) {
+  const { frames, report } = await checkOf(rig, api);
+  const input = fingerprint(frames.flatMap(({ image, depth }) => [image, depth]));
+  return { input, uses: [], report, pixel: rigPixelOf(report, frames[0]) };
+}
+
 /** The pair is made by the same package, so that what `sample` renders is compared as well. */
 export async function answerOf(scene, api) {
+  if (scene.rig) return checkAnswerOf(scene, api);
   const made = pairOf(scene, api);
   const options = { maxIterations: MOST_ITERATIONS, ...optionsOf(scene.options ?? {}, made) };
   const way = scene.drive ?? "run";
@@ -71,10 +85,11 @@ export async function answerOf(scene, api) {
   const estimator = new api.Estimator(made.image, made.depth, first);
   try {
     await drive(estimator, way, options);
+    const answer = everything(estimator, made);
     return {
       input: fingerprint([made.image, made.depth]),
-      uses: usesOf(made, options, way),
-      ...everything(estimator, made),
+      uses: usesOf({ ...made, albedo: scene.albedo }, options, way, answer.endedBy),
+      ...answer,
     };
   } finally {
     estimator.free();

@@ -37,13 +37,13 @@ const RASTERS = {
 };
 
 const apart = (a, b) => (a === b ? 0 : Math.abs(a - b));
-const relative = (a, b) => apart(a, b) / Math.max(Math.abs(a), Math.abs(b), LEAST_NUMBER);
+export const relative = (a, b) => apart(a, b) / Math.max(Math.abs(a), Math.abs(b), LEAST_NUMBER);
 /** Largest of some differences; what is no number differs beyond measure. */
-const largest = (values) =>
+export const largest = (values) =>
   values.reduce((most, value) => (value <= most ? most : Number.isNaN(value) ? Infinity : value), 0);
 
 /** Largest difference of two lists; `null` and a missing list equal only themselves. */
-function listsApart(a, b, measure = apart) {
+export function listsApart(a, b, measure = apart) {
   if (!a || !b || a.length !== b.length) return (a ?? null) === (b ?? null) ? 0 : Infinity;
   return largest(
     a.map((value, index) => ((value === null) !== (b[index] === null) ? Infinity : measure(value, b[index]))),
@@ -66,6 +66,11 @@ function numbersOf({ energy, overlap, inliers, residual, uncertainty }) {
   ];
 }
 
+/** The code of a reason; packages from before there were codes have none. */
+export const codeOf = ({ reason }) => reason?.code;
+/** Whether two answers that say so say different things. */
+export const differ = (a, b) => a !== undefined && b !== undefined && a !== b;
+
 /** Words are wording, numbers are answers. */
 const numbersIn = (message = "") => message.match(/-?\d+(\.\d+)?(e-?\d+)?/g)?.join(" ") ?? "";
 
@@ -80,6 +85,12 @@ function disagreements(before, after) {
   if (a.uncertainty?.weakest !== b.uncertainty?.weakest)
     list.push(`weakest: ${a.uncertainty?.weakest} -> ${b.uncertainty?.weakest}`);
   if (numbersIn(a.message) !== numbersIn(b.message)) list.push(`message: ${a.message} -> ${b.message}`);
+  for (const [what, x, y] of [
+    ["reason", codeOf(a), codeOf(b)],
+    ["ended by", before.endedBy, after.endedBy],
+  ]) {
+    if (differ(x, y)) list.push(`${what}: ${x} -> ${y}`);
+  }
   if (before.input !== after.input) list.push("the pair itself: `sample` renders other numbers");
   return list;
 }

@@ -5,6 +5,16 @@ const LEAST = 3;
 
 const under = (path, ...names) => names.map((name) => `${path}${name}`);
 
+/** Whatever a run's pose can rest on. */
+export const ENGINES = [
+  "photometric registration",
+  "local contrast",
+  "silhouettes",
+  "surfaces",
+  "initial pose kept",
+  "held pose",
+];
+
 /** Members and values as `namesOf` spells them. Of defaults nothing is asked: scenes that say nothing have them. */
 const MEMBERS = [
   ...under("sample.surface", ": bust", ": vase", ": ripples", ".heights"),
@@ -30,6 +40,8 @@ const MEMBERS = [
     "workers",
   ),
   ...under("driven by ", "run", "step", "stage", "time", "stop", "reset"),
+  ...under("albedo.", "seed", "stripes"),
+  ...under("ended by ", ...ENGINES),
 ];
 
 /** "path.to.member", and with it a word's value, an array's type, a light's length. */
@@ -43,11 +55,12 @@ function namesOf(path, value) {
 }
 
 /** Those that a scene makes use of. */
-export function usesOf({ request = {}, image, depth }, options, way) {
-  const used = Object.entries({ sample: request, image, depth, options }).flatMap(([path, value]) =>
+export function usesOf({ request = {}, image, depth, albedo = {} }, options, way, endedBy) {
+  const used = Object.entries({ sample: request, image, depth, options, albedo }).flatMap(([path, value]) =>
     namesOf(path, value),
   );
-  const all = new Set([...used, `driven by ${typeof way === "string" ? way : Object.keys(way)[0]}`]);
+  const driven = `driven by ${typeof way === "string" ? way : Object.keys(way)[0]}`;
+  const all = new Set([...used, driven, `ended by ${endedBy}`]);
   return MEMBERS.filter((member) => all.has(member));
 }
 

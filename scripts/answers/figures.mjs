@@ -43,9 +43,12 @@ function rounded(value, digits = DIGITS) {
   return Object.fromEntries(entries.map(([key, item]) => [key, rounded(item, precise ? POSE_DIGITS : digits)]));
 }
 
-export const figureOf = ({ input, report, light, pixel, correspondence, rasters }) => ({
+export const figureOfCheck = ({ input, report, pixel }) => ({ input, report: rounded(report), pixel: rounded(pixel) });
+
+export const figureOf = ({ input, report, endedBy, light, pixel, correspondence, rasters }) => ({
   input,
   report: rounded(report),
+  endedBy,
   light: light.map(fixed),
   pixel: rounded(pixel),
   correspondence: { pattern: hash(correspondence), count: correspondence.filter((depth) => depth >= 0).length },

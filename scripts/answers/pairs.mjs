@@ -1,5 +1,7 @@
 // The pair of views of a scene: rendered by the package's `sample` or in metres, then changed into what the scene asks for.
-import { chance } from "../tables/protocol/numbers.mjs";
+import { throughJpeg } from "../tables/protocol/jpeg.mjs";
+import { chance, median } from "../tables/protocol/numbers.mjs";
+import { paint } from "../tables/protocol/painted.mjs";
 import { aboutAxis, anglesOf, product, turn } from "../tables/protocol/rotations.mjs";
 import { metricPair } from "./metric.mjs";
 
@@ -63,8 +65,32 @@ function integers({ data, mask, ...image }, Type, most, transfer, encode) {
   return { ...image, mask, data: rgba, ...(transfer ? { transfer } : {}) };
 }
 
+/** As a camera with its exposure set by the object stores it; what lies around the object is grey. */
+function photographed({ data, mask, ...image }, quality) {
+  const [exposure, wall] = [0.9 / data.reduce((high, value) => Math.max(high, value), 0), 0.2];
+  const levels = data.map((value, index) => (mask[Math.floor(index / 3)] ? value * exposure : wall));
+  return { ...image, mask, data: throughJpeg({ ...image, data: levels }, quality) };
+}
+
+/** The object before a wall of another colour, both in the frame. */
+function beforeWall({ data, mask, ...image }) {
+  const brightest = data.reduce((high, value) => Math.max(high, value), 0);
+  const wall = [0.5, 0.45, 0.4].map((share) => share * brightest);
+  return { ...image, mask, data: data.map((value, index) => (mask[Math.floor(index / 3)] ? value : wall[index % 3])) };
+}
+
+/** Another albedo in patches or stripes, by a seed. */
+const painted = ({ data, ...image }, { seed, stripes = false }) => {
+  const colours = data.slice();
+  paint(colours, image.width, chance(seed), stripes);
+  return { ...image, data: colours };
+};
+
 const same = (value) => value;
 const COLOURS = {
+  "JPEG of quality 85": (image) => photographed(image, 85),
+  "JPEG of quality 60": (image) => photographed(image, 60),
+  "before a wall": beforeWall,
   "8 bit, sRGB": (image) => integers(image, Uint8Array, 255, undefined, toSrgb),
   "8 bit, linear": (image) => integers(image, Uint8ClampedArray, 255, "linear", same),
   "8 bit clamped, sRGB": (image) => integers(image, Uint8ClampedArray, 255, "srgb", toSrgb),
@@ -103,6 +129,23 @@ function flying(depth, seed = 5) {
   };
 }
 
+/** What it says its lengths are, so many times as long as they are. */
+const misread = (depth, factor) => ({ ...depth, unit: factor * (depth.unit ?? 1) });
+
+/** The relief turned inside out: what was near is far. */
+function hollow({ data, ...depth }) {
+  const middle = median(data.filter((value) => value > 0));
+  return { ...depth, data: data.map((value) => 2 * middle - value) };
+}
+
+/** A wall behind the object, as far off as the object is wide. */
+function wall({ data, mask: _, ...depth }) {
+  const seen = data.filter((value) => value > 0);
+  const pixel = depth.camera ? median(seen) / depth.camera.fx : 1;
+  const behind = median(seen) + 0.5 * depth.width * pixel;
+  return { ...depth, data: data.map((value) => (value > 0 ? value : behind)) };
+}
+
 const without =
   (key) =>
   ({ [key]: _, ...rest }) =>
@@ -111,6 +154,7 @@ const without =
 /** Scenes name what becomes of the depth view; it happens in the order given. */
 const DEPTHS = {
   "16 bit, 1/200 pixel": (depth) => quantised(depth, 1 / 200, false),
+  "16 bit, quarter pixels": (depth) => quantised(depth, 1 / 4, false),
   "16 bit, millimetres": (depth) => quantised(depth, 0.001, true),
   "16 bit, 0.2 mm": (depth) => quantised(depth, 0.0002, false),
   "float, half pixels": (depth) => ({ ...depth, data: depth.data.map((value) => 2 * value), unit: 0.5 }),
@@ -119,6 +163,11 @@ const DEPTHS = {
   "without normals": without("normals"),
   "without mask": without("mask"),
   "flying pixels": (depth) => flying(depth),
+  "unit ten times too long": (depth) => misread(depth, 10),
+  "unit twice too long": (depth) => misread(depth, 2),
+  "unit half as long": (depth) => misread(depth, 0.5),
+  hollow,
+  "before a wall, without mask": wall,
 };
 
 /** Turns a start away from the truth; the axis is no axis of symmetry. */
@@ -141,9 +190,10 @@ function middleOf({ data, points }) {
 }
 
 /** The pair of a scene, made by a package; `request` is what `sample` was asked for, `middle` the depth of the surface's middle. */
-export function pairOf({ sample, metric: body, colours, depths = [], maskless = false }, api) {
+export function pairOf({ sample, metric: body, albedo, colours, depths = [], maskless = false }, api) {
   const made = body ? metric(body, api) : sampled(sample, api);
-  const image = colours ? COLOURS[colours](made.image) : made.image;
+  const bare = albedo ? painted(made.image, albedo) : made.image;
+  const image = colours ? COLOURS[colours](bare) : bare;
   return {
     ...made,
     middle: middleOf(made.depth),

@@ -1,35 +1,15 @@
 // The scenes, each with a name in words, its pair (see pairs.mjs), its options, and how it is driven.
 //   sample, metric   the pair, from the package's `sample` or in metres (metric.mjs)
+//   albedo           { seed, stripes }: patches or stripes of other colours
 //   colours, depths  what becomes of its views; `maskless` leaves the image's mask out
 //   options          the estimator's; light "known" is the pair's; start { off: degrees, about, members } is near the pair's pose
 //   drive            "run" (the default), "step", "stage", "time": which method takes the steps;
 //                    { stop: n }: the loop is left running after n steps; { reset: options }: some steps with those come first
-
-const NOISE = 0.01;
-/** The paper's own loop. */
-const PAPER = { start: "identity", registration: "icp", shading: "pixel" };
-const TOLD = { light: "known", start: { off: 0 } };
-const near = (off, ...members) => ({ off, ...(members.length > 0 ? { members } : {}) });
-const sample = (surface, light, size, rest = {}) => ({ surface, light, size, noise: NOISE, ...rest });
-const grid = (surface, light, angles, rest = {}) => ({ surface, light, protocol: "grid", angles, ...rest });
-
-const pinhole = (width, height, rest = {}) => ({
-  width,
-  height,
-  camera: { fx: 2.2 * height, fy: 2.25 * height, cx: (width - 1) / 2 + 1.3, cy: (height - 1) / 2 - 0.8, ...rest },
-});
-const LENS = { distortion: [-0.12, 0.05, 0.001, -0.0015, 0.01] };
-const OTHER_LENS = { distortion: [0.08, -0.03, -0.001, 0.002, 0] };
-/** Two pinholes side by side, the body turned between them. */
-const metric = (light, image, depth, rest = {}) => ({
-  light,
-  image,
-  depth,
-  axis: [0.36, 0.8, -0.48],
-  degrees: 15,
-  noise: NOISE,
-  ...rest,
-});
+//   rig              in place of all these: frames of a rendered rig that is checked (rigs.mjs)
+import { MISSTATED } from "./misstated.mjs";
+import { PAINTED } from "./painted.mjs";
+import { GIVEN, LENS, OTHER_LENS, PAPER, grid, metric, near, pinhole, sample } from "./requests.mjs";
+import { RIGS } from "./rigs.mjs";
 
 const ANYWHERE = [
   {
@@ -222,12 +202,12 @@ const FIXED = [
   {
     name: "pose held: bust, window, 64x64, pixels without prior",
     sample: sample("bust", "window", 64, { noise: 0.02 }),
-    options: { ...TOLD, registration: "fixed", shading: "pixel", lambda: { prior: 0 } },
+    options: { ...GIVEN, registration: "fixed", shading: "pixel", lambda: { prior: 0 } },
   },
   {
     name: "pose held: vase, overcast, 64x64, heights with a strong prior",
     sample: sample("vase", "overcast", 64, { noise: 0.02 }),
-    options: { ...TOLD, registration: "fixed", lambda: { prior: 0.5 } },
+    options: { ...GIVEN, registration: "fixed", lambda: { prior: 0.5 } },
   },
   {
     name: "pose held: bust, colourful, 64x64, refinement",
@@ -385,4 +365,7 @@ export const SCENES = [
   ...TYPES,
   ...PINHOLES,
   ...UNKNOWABLE,
+  ...PAINTED,
+  ...MISSTATED,
+  ...RIGS,
 ];

@@ -3,8 +3,9 @@ import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { pathToFileURL } from "node:url";
 import { answerOf } from "./answer.mjs";
+import { compareChecks } from "./checks.mjs";
 import { WHOLE, compare } from "./compare.mjs";
-import { figureOf } from "./figures.mjs";
+import { figureOf, figureOfCheck } from "./figures.mjs";
 import { SCENES } from "./scenes.mjs";
 
 const packages = new Map();
@@ -25,9 +26,11 @@ async function load(folder, scalar) {
 async function run({ id, folder, against, scalar }) {
   const scene = SCENES.find(({ name }) => name === id);
   const answer = await answerOf(scene, await load(folder, scalar));
-  if (against === undefined) return { uses: answer.uses, figure: figureOf(answer) };
+  const { uses, endedBy, report } = answer;
+  if (against === undefined) return { uses, endedBy, figure: (scene.rig ? figureOfCheck : figureOf)(answer) };
   const before = await answerOf(scene, await load(against, scalar));
-  return { uses: answer.uses, status: answer.report.status, comparison: compare(before, answer, WHOLE) };
+  const comparison = scene.rig ? compareChecks(before, answer) : compare(before, answer, WHOLE);
+  return { uses, endedBy, status: report.status ?? report.verdict, comparison };
 }
 
 process.on("message", async ({ cell }) => {

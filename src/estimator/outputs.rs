@@ -27,6 +27,13 @@ impl Estimator {
         self.report_out.as_deref().unwrap_or(&self.report)
     }
 
+    /// Which registration the pose is of, in words, for tests of the whole.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn registered_by(&self) -> &'static str {
+        self.registration.engine(&self.pair)
+    }
+
     /// Normals of the image surface, colour view's frame, NaN off the mask.
     #[must_use]
     pub fn image_normals(&self) -> Cow<'_, Normals> {

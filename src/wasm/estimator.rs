@@ -204,12 +204,17 @@ impl Estimator {
         Float64Array::from(self.native.light().flat().as_slice())
     }
 
-    /// Points of the "image" or the "depth" view; the facade has checked the word.
+    #[wasm_bindgen(js_name = "registeredBy")]
+    pub fn registered_by(&self) -> String {
+        self.native.registered_by().to_owned()
+    }
+
     #[wasm_bindgen(js_name = "searchScores")]
     pub fn search_scores(&self) -> Float32Array {
         Float32Array::from(self.native.search_scores().as_flattened())
     }
 
+    /// Points of the "image" or the "depth" view; the facade has checked the word.
     pub fn points(&self, view: &str) -> Float32Array {
         let surface = if view == "depth" { Surface::Depth } else { Surface::Image };
         Float32Array::from(self.native.points(surface).as_slice())

@@ -29,16 +29,16 @@ export const painted = {
   rows: (results) => randomRow(results.map(({ cell, result }) => ({ ...cell.row, ...result }))),
 };
 
-/** Paints linear RGB colours, in place; stripes, or patches, or either of them by chance. */
-export function paint(colours, size, dice, striped) {
+/** Paints the linear RGB colours of an image so wide, in place; stripes, or patches, or either of them by chance. */
+export function paint(colours, width, dice, striped) {
   const palette = Array.from({ length: PAINTS[0] + dice.below(PAINTS[1] - PAINTS[0] + 1) }, () =>
     [0, 1, 2].map(() => dice.uniform(DARKEST, 1)),
   );
-  const [angle, width, chosen] = [dice.uniform(0, 2 * Math.PI), dice.uniform(...STRIPES), dice.uniform() < STRIPED];
-  for (let index = 0; index < size * size; index++) {
-    const [column, row] = [index % size, Math.floor(index / size)];
-    const along = Math.floor((column * Math.cos(angle) + row * Math.sin(angle)) / width);
-    const across = Math.floor((row * Math.cos(angle) - column * Math.sin(angle)) / (1.3 * width));
+  const [angle, stripe, chosen] = [dice.uniform(0, 2 * Math.PI), dice.uniform(...STRIPES), dice.uniform() < STRIPED];
+  for (let index = 0; index < colours.length / 3; index++) {
+    const [column, row] = [index % width, Math.floor(index / width)];
+    const along = Math.floor((column * Math.cos(angle) + row * Math.sin(angle)) / stripe);
+    const across = Math.floor((row * Math.cos(angle) - column * Math.sin(angle)) / (1.3 * stripe));
     const number = (striped ?? chosen) ? along : 7 * along + 3 * across;
     const hue = palette[((number % palette.length) + palette.length) % palette.length];
     for (let channel = 0; channel < 3; channel++) colours[3 * index + channel] *= hue[channel];

@@ -174,6 +174,18 @@ impl RegistrationStage {
         matches!(self.told, Told::Kept)
     }
 
+    /// What the pose rests on, in words.
+    pub fn engine(&self, pair: &ViewPair) -> &'static str {
+        match (self.kind(pair), &self.told) {
+            (Registration::Fixed, _) => "held pose",
+            (Registration::Icp, _) => "surfaces",
+            (Registration::Joint, Told::Kept) => "initial pose kept",
+            (Registration::Joint, Told::Outlined(_)) => "silhouettes",
+            (Registration::Joint, Told::Contrasted(_)) => "local contrast",
+            (Registration::Joint, _) => "photometric registration",
+        }
+    }
+
     /// What outlines have found, where they decide.
     pub const fn found_by_outlines(&self) -> Option<&OutlineReport> {
         match &self.told {
