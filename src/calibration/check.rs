@@ -336,8 +336,12 @@ impl CalibrationCheck {
             .explaining(if self.scene.focal_is_free { guessed::explains(self.width) } else { 0.0 });
         let weakest = judge.weakest(&covariance);
         let is_seen = self.scene.is_seen(&state);
+        let is_silent = findings.cues.iter().all(|(.., weight)| *weight == 0.0);
         let report = |(name, candidate): &(String, State)| {
             let mut report = judge.judge(name, &state, candidate, weakest);
+            if is_silent {
+                report.without_evidence();
+            }
             if !is_seen || !self.scene.is_seen(candidate) {
                 report.without_points(is_seen, self.width);
             }

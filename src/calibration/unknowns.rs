@@ -9,7 +9,7 @@ use nalgebra::{Rotation3, SMatrix, SVector, Vector3};
 
 use super::lens::RigCamera;
 use crate::numeric::eigen::Eigen;
-use crate::pose::Similarity;
+use crate::pose::{Similarity, rotation_vector};
 
 /// w (3), v (3), d, ln f.
 pub(super) const UNKNOWNS: usize = 8;
@@ -126,8 +126,7 @@ impl Units {
 
     /// The step from one state to another (the inverse of [`step`](Self::step)).
     pub fn between(&self, from: &State, to: &State) -> Vector {
-        let turn = Rotation3::from_matrix_unchecked(to.pose.rotation * from.pose.rotation.transpose());
-        let rotation = turn.scaled_axis();
+        let rotation = rotation_vector(&(to.pose.rotation * from.pose.rotation.transpose()));
         let moved = to.pose.apply(from.pose.inverse().apply(self.middle)) - self.middle;
         Vector::from([
             rotation.x,

@@ -113,6 +113,8 @@ pub(crate) fn solve(system: &mut dyn System, limits: Limits, vectors: Vectors<'_
 #[cfg(test)]
 mod tests {
     use super::*;
+    #[cfg(target_arch = "wasm32")]
+    use wasm_bindgen_test::wasm_bindgen_test as test;
 
     /// Tridiagonal, preconditioned by its diagonal.
     struct Chain {

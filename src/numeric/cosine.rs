@@ -267,6 +267,8 @@ fn set_columns(four: [Lanes; LANES], rows: &mut [f32], start: usize, stride: usi
 #[cfg(test)]
 mod tests {
     use super::*;
+    #[cfg(target_arch = "wasm32")]
+    use wasm_bindgen_test::wasm_bindgen_test as test;
 
     /// (c L + s) z in f64.
     fn apply(width: usize, height: usize, stiffness: f64, shift: f64, z: &[f64]) -> Vec<f32> {

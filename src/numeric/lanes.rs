@@ -350,6 +350,8 @@ mod arch {
 #[cfg(test)]
 mod tests {
     use super::*;
+    #[cfg(target_arch = "wasm32")]
+    use wasm_bindgen_test::wasm_bindgen_test as test;
 
     #[test]
     fn ends_are_padded_and_nothing_is_written_beyond_them() {

@@ -42,6 +42,8 @@ pub fn white_noise(seed: u64) -> impl FnMut() -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    #[cfg(target_arch = "wasm32")]
+    use wasm_bindgen_test::wasm_bindgen_test as test;
 
     #[test]
     fn cubics_have_no_noise_and_white_noise_its_own() {

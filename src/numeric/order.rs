@@ -48,6 +48,8 @@ pub(crate) fn descending(keys: &[f64]) -> Vec<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    #[cfg(target_arch = "wasm32")]
+    use wasm_bindgen_test::wasm_bindgen_test as test;
 
     #[test]
     fn a_quantile_is_a_member_of_that_rank() {

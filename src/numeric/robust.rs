@@ -51,6 +51,8 @@ pub(crate) fn saturated<T: Real>(u: T) -> T {
 #[cfg(test)]
 mod tests {
     use super::*;
+    #[cfg(target_arch = "wasm32")]
+    use wasm_bindgen_test::wasm_bindgen_test as test;
 
     #[test]
     fn the_weight_is_the_derivative_of_rho() {

@@ -5,7 +5,7 @@
 //! from it, so that all seven numbers are free of units, of like size, and hardly coupled. Residuals are divided by L
 //! as well.
 
-use nalgebra::{Rotation3, SMatrix, SVector, Vector3};
+use nalgebra::{Matrix3, Rotation3, SMatrix, SVector, UnitQuaternion, Vector3};
 
 use super::similarity::Similarity;
 
@@ -50,6 +50,12 @@ impl Frame {
         let translation = self.centre + shift * (share * self.length) - scale * (rotation * self.centre);
         Similarity { scale, rotation, translation }
     }
+}
+
+/// Axis times angle of a rotation, radians. By a quaternion: nalgebra takes a matrix's angle from its trace, which rounding raises above three
+/// where nothing turns, and the angle is then no number.
+pub(crate) fn rotation_vector(rotation: &Matrix3<f64>) -> Vector3<f64> {
+    UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(*rotation)).scaled_axis()
 }
 
 /// Clears rows and columns of the unknowns that are `held`.
@@ -175,6 +181,21 @@ mod tests {
             let slope = (moved - point).dot(&direction) / (small * equations.length);
             assert!((slope - row[k]).abs() < 1e-5, "{k}: {slope} {}", row[k]);
         }
+    }
+
+    #[test]
+    fn a_rotation_vector_is_a_number_even_where_rounding_turns_nothing() {
+        let mut is_raised = false;
+        for k in 0..2000 {
+            let vector = Vector3::new(0.001, -0.0007, 0.0013) * f64::from(k);
+            let rotation = Rotation3::new(vector).into_inner();
+            assert!((rotation_vector(&rotation) - vector).norm() < 1e-12, "{k}");
+            let nothing = rotation * rotation.transpose();
+            is_raised |= nothing.trace() > 3.0;
+            // Written so that NaN fails.
+            assert!(rotation_vector(&nothing).norm() < 1e-14, "{k}");
+        }
+        assert!(is_raised, "no product rounds to a trace above three");
     }
 
     #[test]

@@ -41,6 +41,7 @@ pub use angles::Angles;
 pub(crate) use contrast::{ContrastOutcome, ContrastProblem, ContrastReport, ContrastSearch, settle};
 pub use correspondence::{CorrespondenceProblem, Correspondences};
 pub(crate) use distance_transform::squared_distances;
+pub(crate) use increment::rotation_vector;
 pub use icp::{Icp, IcpOptions, IcpProblem, IcpReport, IcpTermination, Metric, Pair};
 pub(crate) use outline::{Outline, OutlinePrior, OutlineProblem, OutlineReport};
 pub use photometric::{Photometric, PhotometricOptions, PhotometricProblem, PhotometricReport, PhotometricTermination};

@@ -1,9 +1,13 @@
 //! Tests of the library's public face, a file a subject. One program: each test program more is compiled and linked with all of the
 //! library, and runs alone.
+//!
+//! On wasm32 the same tests run by wasm-bindgen's harness, in Node and in browsers: there `test` is the name of its attribute. Those that
+//! read files are of computers alone.
 
 mod agreement;
 mod codes;
 mod common;
+#[cfg(not(target_arch = "wasm32"))]
 mod fuzz_corpus;
 mod image_model;
 mod initialisation;
@@ -24,6 +28,7 @@ mod refinement_workers;
 mod resolutions;
 mod rig_cameras;
 mod rig_frames;
+mod rig_laws;
 mod scene_laws;
 mod scenes_geometry;
 mod scenes_pictures;

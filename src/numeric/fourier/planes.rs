@@ -127,6 +127,8 @@ fn join<const SIDE: usize>([re, im]: Lines<'_, SIDE>, [low_re, low_im]: Lines<'_
 #[cfg(test)]
 mod tests {
     use std::f64::consts::TAU;
+    #[cfg(target_arch = "wasm32")]
+    use wasm_bindgen_test::wasm_bindgen_test as test;
 
     use super::*;
 

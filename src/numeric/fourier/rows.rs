@@ -145,6 +145,8 @@ fn third([a, b, c]: [Complex; 3]) -> [Complex; 3] {
 #[cfg(test)]
 mod tests {
     use std::f64::consts::TAU;
+    #[cfg(target_arch = "wasm32")]
+    use wasm_bindgen_test::wasm_bindgen_test as test;
 
     use super::*;
 

@@ -9,7 +9,9 @@ use super::rims::Rims;
 use super::sums::{Row, Sums};
 use crate::numeric::eigen::symmetric_eigen;
 use crate::numeric::{quantile, robust};
-use crate::pose::increment::{Frame, PoseMatrix, PoseVector, SCALE, UNKNOWNS, clear_unknowns, inverse, solve};
+use crate::pose::increment::{
+    Frame, PoseMatrix, PoseVector, SCALE, UNKNOWNS, clear_unknowns, inverse, rotation_vector, solve,
+};
 use crate::pose::similarity::Similarity;
 use crate::pose::uncertainty::{Direction, describe};
 
@@ -267,8 +269,7 @@ impl Outline {
 
     fn add_prior(&self, problem: &OutlineProblem<'_>, pose: &Similarity, loss: f64, sums: &mut Sums) {
         let OutlinePrior { pose: told, rotation, across, along } = &problem.prior;
-        let turn = (pose.rotation * told.rotation.transpose()).transpose();
-        let turned = -nalgebra::Rotation3::from_matrix_unchecked(turn).scaled_axis();
+        let turned = -rotation_vector(&(told.rotation * pose.rotation.transpose()));
         let moved = pose.apply(self.middle) - told.apply(self.middle);
         let length = pose.scale * self.size;
         for axis in 0..3 {

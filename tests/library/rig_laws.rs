@@ -1,0 +1,113 @@
+//! Laws of the calibration check, whatever the rig, the cues and the candidate.
+
+#[cfg(target_arch = "wasm32")]
+use wasm_bindgen_test::wasm_bindgen_test as test;
+
+use crate::common::laws;
+use bimodal_stereo::scenes::rig::{RigFrame, RigKind, RigRequest, render};
+use bimodal_stereo::{
+    CalibrationCheck, CheckReport, CheckVerdict, ColourSamples, Cue, DepthSamples, RigView, Similarity, Size,
+};
+use nalgebra::{Rotation3, Vector3};
+use proptest::prelude::*;
+
+const SMALL: Size = Size { width: 96, height: 72 };
+
+fn small(kind: RigKind, seed: u64) -> RigFrame {
+    let request = RigRequest { colour_size: Some(SMALL), depth_size: Some(SMALL), ..RigRequest::new(kind, seed, 0) };
+    render(&request).expect("a frame")
+}
+
+fn view(frame: &RigFrame, is_known: bool) -> RigView {
+    RigView {
+        name: "frame".into(),
+        image_size: [frame.colour_size.width, frame.colour_size.height],
+        image: ColourSamples::Rgba8(frame.colour.clone()),
+        transfer: None,
+        image_mask: None,
+        image_camera: is_known.then_some(frame.colour_camera),
+        depth_size: [frame.depth_size.width, frame.depth_size.height],
+        depth: DepthSamples::Integer(frame.depth.clone()),
+        unit: None,
+        depth_mask: None,
+        depth_camera: Some(frame.depth_camera),
+    }
+}
+
+fn check(view: RigView, candidates: &[Similarity], cues: &[Cue]) -> CheckReport {
+    let named = candidates.iter().enumerate().map(|(index, pose)| (index.to_string(), *pose)).collect();
+    let mut check = CalibrationCheck::new(vec![view], named, cues).expect("a check");
+    while !check.step() {}
+    check.report().expect("a report").clone()
+}
+
+/// Every number of a report, by name.
+fn numbers(report: &CheckReport) -> Vec<(String, f64)> {
+    let CheckReport { estimate, middle, covariance, focal, health, candidates, cues, frames, sensitivity, .. } = report;
+    let mut all = vec![];
+    let mut add = |name: &str, values: &[f64]| all.extend(values.iter().map(|value| (name.to_owned(), *value)));
+    add("estimate", estimate.rotation.as_slice());
+    add("estimate", estimate.translation.as_slice());
+    add("middle", middle);
+    add("covariance", covariance.as_slice());
+    add("focal", focal.as_ref().map_or(&[], |focal| focal.as_slice()));
+    add("health", &[health.pixels, health.interval[0], health.interval[1]]);
+    for one in candidates {
+        let [low, high] = one.health.interval;
+        add(&one.name, &[one.off_degrees, one.off_millimetres, one.health.pixels, low, high, one.probability]);
+    }
+    cues.iter().for_each(|cue| add(cue.cue.name(), &[cue.share, cue.sharpness]));
+    frames.iter().for_each(|frame| add(&frame.name, &[frame.share]));
+    for curve in sensitivity {
+        add("sensitivity", &curve.offsets);
+        add("sensitivity", &curve.values);
+    }
+    all
+}
+
+fn turned(pose: &Similarity, turn: Vector3<f64>, shift: Vector3<f64>) -> Similarity {
+    let change = Similarity { scale: 1.0, rotation: Rotation3::new(turn).into_inner(), translation: shift };
+    change.after(pose)
+}
+
+fn vector(size: f64) -> impl Strategy<Value = Vector3<f64>> {
+    prop::array::uniform3(-size..size).prop_map(Vector3::from)
+}
+
+proptest! {
+    #![proptest_config(laws(10))]
+
+    #[test]
+    fn a_report_holds_numbers_alone_and_no_verdict_without_evidence(
+        kind in prop::sample::select(RigKind::ALL.to_vec()),
+        seed in 0_u64..1000,
+        cues in prop::sample::subsequence(Cue::ALL.to_vec(), 1..=4),
+        turn in vector(0.05),
+        shift in vector(0.02),
+        is_known in prop::bool::weighted(0.8),
+    ) {
+        let frame = small(kind, seed);
+        let report = check(view(&frame, is_known), &[frame.pose, turned(&frame.pose, turn, shift)], &cues);
+        for (name, value) in numbers(&report) {
+            prop_assert!(value.is_finite(), "{name}: {value} of {kind:?} {seed} by {cues:?}");
+        }
+        let has_evidence = report.cues.iter().any(|cue| cue.sharpness > 0.0);
+        for candidate in report.candidates {
+            prop_assert!(has_evidence || candidate.verdict == CheckVerdict::Undecided, "{candidate:?} by {cues:?}");
+        }
+    }
+}
+
+/// Without masks there is no silhouette: the estimate is the candidate to the last digit, and nothing is known of it.
+#[test]
+fn silhouettes_without_masks_leave_every_candidate_undecided() {
+    for kind in RigKind::ALL {
+        for seed in 0..4 {
+            let frame = small(kind, seed);
+            let report = check(view(&frame, true), &[frame.pose], &[Cue::Silhouette]);
+            let candidate = &report.candidates[0];
+            assert_eq!((report.verdict, candidate.verdict), (CheckVerdict::Undecided, CheckVerdict::Undecided));
+            assert!(candidate.off_degrees < 1e-4 && candidate.probability > 0.99, "{kind:?} {seed}: {candidate:?}");
+        }
+    }
+}
