@@ -14,6 +14,8 @@ import { missingKeys } from "./tables/keys.mjs";
 
 /** Whether the tests that take long run as well: those of Rust's modules called `long`, those marked LONG, and whole parts. */
 const LONG = process.argv.includes("--long");
+/** What cargo's test programs are given to leave out. */
+const SHORT = LONG ? [] : ["--skip", "::long::"];
 const DENY = ["--", "-D", "warnings"];
 const modules = (path) => inRoot("node_modules", path);
 const cargo =
@@ -25,11 +27,15 @@ const cargo =
  * of packages is a choice of their crates' features, and cargo keeps one build of the library for all choices, so that another one throws it away.
  */
 const LIBRARY = ["-p", "bimodal-stereo"];
-/** The wasm tests; without a variable they run in Node. */
-const wasmIn = (variable) => async () => {
-  const where = variable ? { [variable]: "1", CHROMEDRIVER: (await browser()).chromedriver } : {};
-  return watch("cargo", ["test", ...LIBRARY, "--target", WASM, "--test", "wasm"], { env: where });
-};
+/** A test in a browser runs to its end, too: the runner's own limit is twenty seconds. */
+const PATIENCE = { WASM_BINDGEN_TEST_TIMEOUT: "1800" };
+/** The library's tests that read no files, compiled for wasm; without a variable they run in Node. */
+const wasmTests = (where) =>
+  watch("cargo", ["test", ...LIBRARY, "--target", WASM, "--lib", "--test", "library", "--", ...SHORT], {
+    env: { ...PATIENCE, ...where },
+  });
+const wasmIn = (variable) => async () =>
+  wasmTests(variable ? { [variable]: "1", CHROMEDRIVER: (await browser()).chromedriver } : {});
 
 /** Every TypeScript project: the facade, the page, its worker, the tests, the example in React. */
 async function types() {
@@ -104,9 +110,7 @@ async function secondEngine() {
   const page = await firefoxPage(found.firefox);
   const wasm =
     found.firefox && found.geckodriver
-      ? await watch("cargo", ["test", ...LIBRARY, "--target", WASM, "--test", "wasm"], {
-          env: { WASM_BINDGEN_USE_BROWSER: "1", GECKODRIVER: found.geckodriver },
-        })
+      ? await wasmTests({ WASM_BINDGEN_USE_BROWSER: "1", GECKODRIVER: found.geckodriver })
       : without("the wasm tests in Firefox", "needs geckodriver (cargo install geckodriver)");
   return { code: page.code || wasm.code, output: `${page.output}\n${wasm.output}` };
 }
@@ -140,7 +144,7 @@ const contract = () => {
 
 /** Tests that need the data beside the project are marked as ignored, with that reason, and asked for where the data are there. */
 const rust = () =>
-  watch("cargo", ["test", "--", ...(hasData() ? ["--include-ignored"] : []), ...(LONG ? [] : ["--skip", "::long::"])]);
+  watch("cargo", ["test", "--", ...(hasData() ? ["--include-ignored"] : []), ...SHORT]);
 
 /** Not on accuracy: aims are shown with their verdicts. It fails where a cell throws or the JSON lacks a key. */
 async function tables() {

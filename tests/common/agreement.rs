@@ -1,5 +1,5 @@
 //! Runs whose ends are written down, so that every build can be held against the same numbers: the native one
-//! (`tests/library/agreement.rs`) and the .wasm (`tests/wasm.rs`), whose SIMD and scalar files `tests/contract/fallback.test.mjs`
+//! (`tests/library/agreement.rs`) and the .wasm (the same test on wasm32), whose SIMD and scalar files `tests/contract/fallback.test.mjs`
 //! compares.
 
 use bimodal_stereo::scenes::{self, Sample, SampleRequest, Scene};

@@ -1,5 +1,8 @@
 //! The native build against the numbers that the .wasm is held against as well.
 
+#[cfg(target_arch = "wasm32")]
+use wasm_bindgen_test::wasm_bindgen_test as test;
+
 #[path = "../common/agreement.rs"]
 mod ends;
 

@@ -7,6 +7,14 @@ use std::path::{Path, PathBuf};
 use bimodal_stereo::scenes::Relief;
 use bimodal_stereo::{Light, Normals, Size};
 use nalgebra::Vector3;
+use proptest::prelude::ProptestConfig;
+use proptest::test_runner::RngSeed;
+
+/// So many cases of a law, the same in every run: natively .cargo/config.toml has their seed, and wasm sees no environment.
+pub fn laws(cases: u32) -> ProptestConfig {
+    let drawn = ProptestConfig { cases, failure_persistence: None, ..ProptestConfig::default() };
+    if cfg!(target_arch = "wasm32") { ProptestConfig { rng_seed: RngSeed::Fixed(1), ..drawn } } else { drawn }
+}
 
 /// Folder of other people's data, which is never part of the project. A test that needs it is marked `#[ignore]` with
 /// that reason, so that no summary counts it as passed where it could not run; `npm test` asks for it where the data

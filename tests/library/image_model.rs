@@ -1,5 +1,8 @@
 //! The image model against renders that others made (MIT-Berkeley Intrinsic Images under natural lights).
 
+#[cfg(target_arch = "wasm32")]
+use wasm_bindgen_test::wasm_bindgen_test as test;
+
 use std::path::Path;
 
 use crate::common::{data_dir, median, read_csv, read_npy_f32, read_png};

@@ -1,5 +1,8 @@
 //! Pose from anywhere: nothing is known but the two views.
 
+#[cfg(target_arch = "wasm32")]
+use wasm_bindgen_test::wasm_bindgen_test as test;
+
 use std::collections::VecDeque;
 
 use bimodal_stereo::scenes::{Relief, Sample, SampleRequest, Scene, light, surface};

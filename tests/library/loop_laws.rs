@@ -1,5 +1,8 @@
 //! What the loop owes whatever the scene: it does not depend on exposure, origin or luck, and says only what is so.
 
+#[cfg(target_arch = "wasm32")]
+use wasm_bindgen_test::wasm_bindgen_test as test;
+
 use bimodal_stereo::scenes::{DepthData, Sample, SampleRequest, Scene, light, surface};
 use bimodal_stereo::{
     ColourSamples, DepthSamples, Estimator, Light, LightSource, Options, Reason, Registration, Similarity, Start,

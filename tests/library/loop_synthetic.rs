@@ -1,5 +1,8 @@
 //! The whole loop on scenes with a known answer: the aims that the project has set itself, never softened.
 
+#[cfg(target_arch = "wasm32")]
+use wasm_bindgen_test::wasm_bindgen_test as test;
+
 use crate::common::{angles_between, data_dir, mean, mozart, natural_light};
 use bimodal_stereo::scenes::{DepthData, Sample, SampleRequest, Scene, bare_grid, light, lights, surface};
 use bimodal_stereo::{

@@ -1,5 +1,8 @@
 //! Normals of depth maps: analytic shapes, holes and jumps, noise, a scanned object.
 
+#[cfg(target_arch = "wasm32")]
+use wasm_bindgen_test::wasm_bindgen_test as test;
+
 use crate::common::{data_dir, read_npy_f32, read_png};
 use bimodal_stereo::normals::{self, Estimate};
 use bimodal_stereo::{Camera, Normals, Pinhole, Points, Size};

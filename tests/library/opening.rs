@@ -1,5 +1,8 @@
 //! Large views: the search works on coarse ones, and the end is that of all pixels.
 
+#[cfg(target_arch = "wasm32")]
+use wasm_bindgen_test::wasm_bindgen_test as test;
+
 use std::sync::OnceLock;
 
 use bimodal_stereo::scenes::{Sample, SampleRequest, Scene, light, surface};

@@ -1,5 +1,8 @@
 //! Paint is told from shading, and what is given out adds up.
 
+#[cfg(target_arch = "wasm32")]
+use wasm_bindgen_test::wasm_bindgen_test as test;
+
 use bimodal_stereo::scenes::{Sample, SampleRequest, Scene, light, surface};
 use bimodal_stereo::{ColourSamples, Estimator, LightSource, Options, Registration, Size, Start, Status};
 

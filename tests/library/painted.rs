@@ -1,5 +1,8 @@
 //! Painted objects: colours that light and shape do not explain must neither mislead the pose nor be believed.
 
+#[cfg(target_arch = "wasm32")]
+use wasm_bindgen_test::wasm_bindgen_test as test;
+
 use bimodal_stereo::scenes::{SampleRequest, Scene, light, surface};
 use bimodal_stereo::{
     Angles, ColourImage, ColourSamples, DepthMap, DepthSamples, Estimator, Options, Result, Similarity, Size, Start,

@@ -1,5 +1,9 @@
 //! Eq. 16 as the paper solves it, by Levenberg-Marquardt over scale and angles: the closed form finds the same.
 
+#[cfg(target_arch = "wasm32")]
+use wasm_bindgen_test::wasm_bindgen_test as test;
+
+use crate::common::laws;
 use bimodal_stereo::{Angles, Similarity};
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt, differentiate_numerically};
 use nalgebra::storage::Owned;
@@ -90,7 +94,7 @@ fn finds_a_rotation_from_far_off() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 128, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(laws(128))]
 
     /// The solver starts off the closed form, so that it has a way to go.
     #[test]

@@ -1,5 +1,8 @@
 //! Correspondences of the built-in bust at its true pose, where every answer is known.
 
+#[cfg(target_arch = "wasm32")]
+use wasm_bindgen_test::wasm_bindgen_test as test;
+
 use bimodal_stereo::{
     Angles, ColourView, CorrespondenceProblem, Correspondences, DepthView, Points, Similarity, Size, scenes,
 };

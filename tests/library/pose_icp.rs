@@ -1,5 +1,8 @@
 //! ICP on the built-in bust: how far it reaches, and what it says where the geometry says nothing.
 
+#[cfg(target_arch = "wasm32")]
+use wasm_bindgen_test::wasm_bindgen_test as test;
+
 use bimodal_stereo::{
     Angles, Camera, ErrorKind, Icp, IcpOptions, IcpProblem, IcpReport, Metric, Normals, Points, RansacOptions, Result,
     Similarity, Size, ransac, scenes,

@@ -1,5 +1,9 @@
 //! Laws that poses obey whatever their numbers.
 
+#[cfg(target_arch = "wasm32")]
+use wasm_bindgen_test::wasm_bindgen_test as test;
+
+use crate::common::laws;
 use bimodal_stereo::{Angles, ErrorKind, RansacOptions, Similarity, ransac};
 use nalgebra::{Rotation3, Vector3};
 use proptest::prelude::*;
@@ -24,7 +28,7 @@ fn cloud(points: usize) -> impl Strategy<Value = Vec<Vector3<f64>>> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 128, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(laws(128))]
 
     #[test]
     fn angles_round_trip(alpha in -180.0..180.0, beta in -90.0..=90.0, gamma in -180.0..180.0) {

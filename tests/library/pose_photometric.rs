@@ -1,5 +1,8 @@
 //! The pose straight from the colours, on scenes whose pose is known.
 
+#[cfg(target_arch = "wasm32")]
+use wasm_bindgen_test::wasm_bindgen_test as test;
+
 use bimodal_stereo::{
     Angles, ColourView, DepthNoise, DepthView, ErrorKind, Light, LightPrior, Photometric, PhotometricOptions,
     PhotometricProblem, PhotometricReport, PhotometricTermination, Points, Result, Similarity, Size, cubic_normals,

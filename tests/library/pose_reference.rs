@@ -1,5 +1,8 @@
 //! Angles and closed-form similarity against numpy and scipy (scripts/reference/pose.py).
 
+#[cfg(target_arch = "wasm32")]
+use wasm_bindgen_test::wasm_bindgen_test as test;
+
 use bimodal_stereo::{Angles, Similarity};
 use nalgebra::{Matrix3, Vector3};
 

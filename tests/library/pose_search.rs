@@ -1,5 +1,8 @@
 //! The search over poses on scenes with a known pose: what it finds, and the laws it obeys.
 
+#[cfg(target_arch = "wasm32")]
+use wasm_bindgen_test::wasm_bindgen_test as test;
+
 use bimodal_stereo::scenes::{self, Sample, SampleRequest, Scene};
 use bimodal_stereo::{
     Angles, Camera, ColourSamples, ColourView, DepthView, Light, Pinhole, Search, SearchProblem, Similarity, Size,

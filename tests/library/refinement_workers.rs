@@ -1,5 +1,8 @@
 //! The refinement beside the image surface, here or in a worker: the outcome is the same to the bit.
 
+#[cfg(target_arch = "wasm32")]
+use wasm_bindgen_test::wasm_bindgen_test as test;
+
 use bimodal_stereo::scenes::{Sample, SampleRequest, Scene, light, surface};
 use bimodal_stereo::{
     Camera, Estimator, LightSource, Options, Pinhole, Reason, Registration, Similarity, Stage, Start, Status,

@@ -1,6 +1,9 @@
 //! A photograph that is much finer than the depth map is worked on at the depth map's resolution, and everything is
 //! carried back to the photograph's pixels and units.
 
+#[cfg(target_arch = "wasm32")]
+use wasm_bindgen_test::wasm_bindgen_test as test;
+
 use bimodal_stereo::scenes::{Sample, SampleRequest, Scene, light, surface};
 use bimodal_stereo::{
     Camera, ColourImage, ColourSamples, Estimator, Options, Pinhole, Registration, Similarity, Size, Start, Status,

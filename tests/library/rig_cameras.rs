@@ -1,5 +1,8 @@
 //! Cameras of a rig against OpenCV (scripts/reference/lens.py).
 
+#[cfg(target_arch = "wasm32")]
+use wasm_bindgen_test::wasm_bindgen_test as test;
+
 use bimodal_stereo::{Lens, RigCamera};
 
 const REFERENCE: &str = include_str!("../../scripts/reference/lens.csv");

@@ -1,5 +1,8 @@
 //! Rendered rigs: what a seed fixes, and that each kind of scene is what it says.
 
+#[cfg(target_arch = "wasm32")]
+use wasm_bindgen_test::wasm_bindgen_test as test;
+
 use bimodal_stereo::scenes::rig::{RigFrame, RigKind, RigRequest, render};
 use bimodal_stereo::{ErrorKind, Size};
 

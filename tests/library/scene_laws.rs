@@ -1,6 +1,10 @@
 //! Laws of whole runs and whole views, for random scenes: what turns, changes channels, units or exposure together has
 //! the answer turned with it, and nobody sees how the steps were sliced.
 
+#[cfg(target_arch = "wasm32")]
+use wasm_bindgen_test::wasm_bindgen_test as test;
+
+use crate::common::laws;
 use bimodal_stereo::scenes::{Sample, SampleRequest, Scene, light, surface};
 use bimodal_stereo::{
     Angles, ColourImage, ColourSamples, DepthMap, DepthSamples, DepthView, ErrorKind, Estimator, Light, LightSource,
@@ -82,7 +86,7 @@ fn outcome(estimator: &Estimator) -> (String, Vec<u32>) {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 6, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(laws(6))]
 
     #[test]
     fn light_and_image_turned_together_turn_the_pose(sample in scene()) {
@@ -155,7 +159,7 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 32, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(laws(32))]
 
     /// As sensors store them, and as floats: the same view, to the bit.
     #[test]

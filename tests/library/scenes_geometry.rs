@@ -1,5 +1,8 @@
 //! The renderer and the true pose against analytic surfaces.
 
+#[cfg(target_arch = "wasm32")]
+use wasm_bindgen_test::wasm_bindgen_test as test;
+
 use bimodal_stereo::scenes::{Relief, SampleRequest, Scene, View, surface};
 use bimodal_stereo::{Angles, Camera, Pinhole, Similarity, Size};
 use nalgebra::{Matrix3, Vector3};

@@ -1,5 +1,8 @@
 //! Pictures to look at, in target/tmp: no test can say whether a face looks like one.
 
+#[cfg(target_arch = "wasm32")]
+use wasm_bindgen_test::wasm_bindgen_test as test;
+
 use crate::common::{beside, colour_bytes, data_dir, depth_bytes, normal_bytes, write_png};
 use bimodal_stereo::scenes::{DepthData, Relief, SampleRequest, Scene, bare_grid, light, lights, surface, surfaces};
 use bimodal_stereo::{Angles, Size};

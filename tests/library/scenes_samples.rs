@@ -1,5 +1,8 @@
 //! What samples promise: the image model, noise, overlap, holes, seeds, limits, and the bare grid of Table 2A.
 
+#[cfg(target_arch = "wasm32")]
+use wasm_bindgen_test::wasm_bindgen_test as test;
+
 use bimodal_stereo::scenes::{
     DepthData, Relief, Sample, SampleRequest, Scene, bare_grid, light, lights, surface, surfaces,
 };

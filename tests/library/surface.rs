@@ -1,5 +1,8 @@
 //! Integration of analytic surfaces: exact cases, masks, anchors, noise, perspective.
 
+#[cfg(target_arch = "wasm32")]
+use wasm_bindgen_test::wasm_bindgen_test as test;
+
 use bimodal_stereo::{
     AnchorWeight, Anchors, Camera, ErrorKind, IntegrationOptions, IntegrationReport, IntegrationTermination,
     Integrator, Normals, Pinhole, Robustness, Size, gradients,

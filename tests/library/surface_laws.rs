@@ -1,5 +1,9 @@
 //! Laws of the integration, for random gradients on random masks.
 
+#[cfg(target_arch = "wasm32")]
+use wasm_bindgen_test::wasm_bindgen_test as test;
+
+use crate::common::laws;
 use bimodal_stereo::{AnchorWeight, Anchors, IntegrationOptions, Integrator, Size};
 use proptest::prelude::*;
 
@@ -40,7 +44,7 @@ fn mirrored<T: Copy>(field: &[T]) -> Vec<T> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(laws(64))]
 
     #[test]
     fn anchors_carry_a_constant(mask in mask(), p in field(), q in field(), anchor in field(), shift in -50.0_f32..50.0) {

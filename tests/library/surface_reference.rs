@@ -1,5 +1,8 @@
 //! Integration against scipy's sparse least squares (scripts/reference/integration.py).
 
+#[cfg(target_arch = "wasm32")]
+use wasm_bindgen_test::wasm_bindgen_test as test;
+
 use bimodal_stereo::{AnchorWeight, Anchors, IntegrationOptions, IntegrationTermination, Integrator, Size};
 
 const FIXTURE: &str = include_str!("../fixtures/integration.txt");

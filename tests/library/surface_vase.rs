@@ -1,5 +1,8 @@
 //! Integration of a published vase whose gradients carry spikes of +-10 at its discontinuities.
 
+#[cfg(target_arch = "wasm32")]
+use wasm_bindgen_test::wasm_bindgen_test as test;
+
 use crate::common::{data_dir, median, read_npy_f32};
 use bimodal_stereo::{IntegrationOptions, IntegrationTermination, Integrator, Robustness, Size};
 

@@ -1,5 +1,8 @@
 //! A start that is told: believed within its tolerance, searched around, and kept where nothing better is near.
 
+#[cfg(target_arch = "wasm32")]
+use wasm_bindgen_test::wasm_bindgen_test as test;
+
 use bimodal_stereo::scenes::{Sample, SampleRequest, Scene, light, surface};
 use bimodal_stereo::{
     Angles, Camera, ColourSamples, DepthView, Estimator, Options, Pinhole, Reason, Registration, Similarity, Size,

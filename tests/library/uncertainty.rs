@@ -1,5 +1,8 @@
 //! Sigmas that can be believed: where the colours tell nothing of the pose, it is said.
 
+#[cfg(target_arch = "wasm32")]
+use wasm_bindgen_test::wasm_bindgen_test as test;
+
 use bimodal_stereo::scenes::{Relief, Sample, SampleRequest, Scene, light};
 use bimodal_stereo::{Angles, Estimator, LightSource, Options, Similarity, Size, Start, Status, StepReport};
 
