@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::check::{not_negative, positive};
 use crate::error::{Error, ErrorKind, Result};
-use crate::light::Light;
+use crate::light::{Light, LightPrior};
 use crate::pose::Similarity;
 
 /// Where the light comes from.
@@ -93,7 +93,7 @@ pub struct Weights {
     pub prior: f64,
     /// lambda_3 of Eq. 6: how strongly a normal is kept at unit length.
     pub unit: f64,
-    /// lambda_L of Eq. 2: how strongly the light follows the natural lights.
+    /// lambda_L of Eq. 2: how strongly the light follows the prior over lights.
     pub light: f64,
     /// lambda_g2 of Eq. 17: the shape prior of the refinement.
     pub refinement: f64,
@@ -113,6 +113,8 @@ impl Default for Weights {
 pub struct Options {
     /// Known or estimated light.
     pub light: LightSource,
+    /// What lights are likely, where the light is estimated.
+    pub prior: LightPrior,
     /// First pose.
     pub start: Start,
     /// How far from a told start the registration by colours may end.
@@ -147,6 +149,7 @@ impl Default for Options {
     fn default() -> Self {
         Self {
             light: LightSource::Estimate,
+            prior: LightPrior::natural(),
             start: Start::Search,
             start_tolerance: StartTolerance::default(),
             scale: None,

@@ -29,6 +29,7 @@ pub fn options(keywords: &Bound<'_, PyAny>) -> PyResult<Options> {
     let default = Options::default();
     Ok(Options {
         light: light(&given)?,
+        prior: default.prior,
         start: start(&given)?.unwrap_or(default.start),
         start_tolerance: tolerance(&given, default.start_tolerance)?,
         scale: scale(&given)?,

@@ -1,8 +1,8 @@
-//! What a run is given and never changes: both views, the options, the prior over natural lights.
+//! What a run is given and never changes: both views and the options.
 
 use super::{memory, units};
 use crate::error::Result;
-use crate::light::{Light, LightPrior};
+use crate::light::Light;
 use crate::options::{LightSource, Options};
 use crate::view::{ColourImage, ColourView, DepthMap, DepthView, Size, WorkingSize};
 
@@ -10,7 +10,6 @@ pub struct ViewPair {
     pub image: ColourView,
     pub depth: DepthView,
     pub options: Options,
-    pub prior: LightPrior,
     /// From the caller's image to the one that is worked on, where they differ.
     pub way: Option<WorkingSize>,
 }
@@ -28,14 +27,14 @@ impl ViewPair {
         let (image, way) = WorkingSize::of(image, depth, memory::most_image_pixels(size))?;
         memory::check(image.size, size)?;
         let depth = DepthView::new(depth, options.trim)?;
-        Ok(Self { image, depth, options: units::options_in(way.as_ref(), options), prior: LightPrior::natural(), way })
+        Ok(Self { image, depth, options: units::options_in(way.as_ref(), options), way })
     }
 
     /// The same views with other options.
     pub fn with(&self, options: Options) -> Self {
         let way = self.way.clone();
         let options = units::options_in(way.as_ref(), options);
-        Self { image: self.image.clone(), depth: self.depth.clone(), options, prior: LightPrior::natural(), way }
+        Self { image: self.image.clone(), depth: self.depth.clone(), options, way }
     }
 
     /// The light, where it is known but for its exposure.

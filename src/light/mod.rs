@@ -1,9 +1,9 @@
 //! The image model and its light (Eq. 2, 3, 5; docs/method.md, sections 2 and 3).
 
+mod environments;
 mod fit;
 mod harmonics;
 mod mixture;
-mod natural;
 mod paint;
 mod prior;
 

@@ -9,7 +9,7 @@ use nalgebra::{SMatrix, SVector};
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::light::harmonics::HARMONICS;
-use crate::light::{Light, natural};
+use crate::light::{Light, environments};
 
 /// Coefficients of a light in all channels.
 pub const COEFFICIENTS: usize = 3 * HARMONICS;
@@ -18,6 +18,11 @@ pub const COEFFICIENTS: usize = 3 * HARMONICS;
 pub type Coefficients = SVector<f64, COEFFICIENTS>;
 /// Matrix over them.
 pub type CoefficientMatrix = SMatrix<f64, COEFFICIENTS, COEFFICIENTS>;
+
+/// Largest difference of a covariance from its transpose, as a share of its largest number: rounding to six digits.
+const ASYMMETRY: f64 = 1e-5;
+/// Largest precision: a standard deviation of a millionth, far below what any image determines.
+const MOST_PRECISION: f64 = 1e12;
 
 /// A Gaussian over lights that does not depend on the exposure.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,31 +35,49 @@ impl LightPrior {
     /// From a mean and a symmetric positive definite covariance in the order R1..9, G1..9, B1..9.
     ///
     /// # Errors
-    /// [`ErrorKind::Range`] naming `prior.mean` or `prior.covariance` where a number is not finite or the
-    /// covariance is not positive definite.
+    /// [`ErrorKind::Range`] naming `prior.mean` where a number is not finite or larger than any light's, and
+    /// `prior.covariance` where it is not symmetric and positive definite or a standard deviation is under a millionth.
     pub fn new(mean: &[f64; COEFFICIENTS], covariance: &CoefficientMatrix) -> Result<Self> {
-        if let Some(index) = mean.iter().position(|value| !value.is_finite()) {
-            return Err(Error::new(ErrorKind::Range, "prior.mean", "must be finite").at(index));
+        Light::from_slice("prior.mean", mean)?;
+        let bad = |message| Error::new(ErrorKind::Range, "prior.covariance", message);
+        let largest = covariance.amax();
+        if !covariance.iter().all(|value| value.is_finite()) {
+            return Err(bad("must be finite"));
         }
-        let bad = || Error::new(ErrorKind::Range, "prior.covariance", "must be symmetric positive definite");
-        if covariance.iter().any(|value| !value.is_finite()) {
-            return Err(bad());
+        if (covariance - covariance.transpose()).amax() > ASYMMETRY * largest {
+            return Err(bad("must be symmetric"));
         }
-        let lower = covariance.cholesky().ok_or_else(bad)?.unpack();
-        let whitening = lower.solve_lower_triangular(&CoefficientMatrix::identity()).ok_or_else(bad)?;
+        let indefinite = || bad("must be positive definite");
+        let lower = covariance.cholesky().ok_or_else(indefinite)?.unpack();
+        let whitening = lower.solve_lower_triangular(&CoefficientMatrix::identity()).ok_or_else(indefinite)?;
         let exposure = whitening * exposure_direction();
         let flattened = CoefficientMatrix::identity() - exposure * exposure.transpose() / exposure.norm_squared();
-        Ok(Self { mean: Coefficients::from(*mean), precision: whitening.transpose() * flattened * whitening })
+        let precision = whitening.transpose() * flattened * whitening;
+        if !precision.iter().all(|value| value.abs() <= MOST_PRECISION) {
+            return Err(bad("must not have a standard deviation under a millionth"));
+        }
+        Ok(Self { mean: Coefficients::from(*mean), precision })
     }
 
-    /// The natural lights: 1552 augmented environments of the sIBL archive, log shading.
+    /// From lists: 27 numbers and 729, row after row.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Size`] for any other count, and what [`new`](Self::new) refuses.
+    pub fn from_slices(mean: &[f64], covariance: &[f64]) -> Result<Self> {
+        let wrong =
+            |field, needed, given| Error::new(ErrorKind::Size, field, format!("needs {needed} numbers, not {given}"));
+        let given = mean.try_into().map_err(|_| wrong("prior.mean", COEFFICIENTS, mean.len()))?;
+        let most = COEFFICIENTS * COEFFICIENTS;
+        if covariance.len() != most {
+            return Err(wrong("prior.covariance", most, covariance.len()));
+        }
+        Self::new(given, &CoefficientMatrix::from_row_slice(covariance))
+    }
+
+    /// Lights around us: 18 photographed environments, indoors and outdoors, at every azimuth.
     #[must_use]
     pub fn natural() -> Self {
-        let covariance = CoefficientMatrix::from_fn(|row, column| {
-            let (long, short) = (row.max(column), row.min(column));
-            f64::from(natural::COVARIANCE[long * (long + 1) / 2 + short])
-        });
-        let Ok(prior) = Self::new(&natural::MEAN.map(f64::from), &covariance) else {
+        let Ok(prior) = Self::new(&environments::MEAN.map(f64::from), &natural_covariance()) else {
             unreachable!("the kept covariance is positive definite, as a test shows")
         };
         prior
@@ -80,6 +103,14 @@ impl LightPrior {
     pub(crate) fn mean_coefficients(&self) -> &Coefficients {
         &self.mean
     }
+}
+
+/// The kept covariance.
+fn natural_covariance() -> CoefficientMatrix {
+    CoefficientMatrix::from_fn(|row, column| {
+        let (long, short) = (row.max(column), row.min(column));
+        f64::from(environments::COVARIANCE[long * (long + 1) / 2 + short])
+    })
 }
 
 /// e: what one unit of exposure adds to the coefficients, up to a factor.
@@ -109,8 +140,76 @@ mod tests {
     }
 
     #[test]
-    fn a_covariance_that_is_not_positive_definite_is_refused() {
-        let error = LightPrior::new(&[0.0; COEFFICIENTS], &CoefficientMatrix::zeros()).unwrap_err();
-        assert_eq!(error.field(), "prior.covariance");
+    fn the_distance_is_mahalanobis_with_the_exposure_left_free() {
+        let prior = LightPrior::new(&[0.0; COEFFICIENTS], &(4.0 * CoefficientMatrix::identity())).unwrap();
+        let mut light = Light([[0.0; HARMONICS]; 3]);
+        light.0[1][4] = 3.0;
+        assert!((prior.squared_distance(&light) - 9.0 / 4.0).abs() < 1e-12);
+        // Of a brighter red a third is exposure.
+        light.0[0][0] = 3.0;
+        assert!((prior.squared_distance(&light) - (9.0 + 6.0) / 4.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_kept_covariance_is_positive_definite_and_that_of_a_mirrored_world() {
+        let covariance = natural_covariance();
+        let eigenvalues = covariance.symmetric_eigenvalues();
+        assert!(eigenvalues.min() > 1e-3 && eigenvalues.max() < 10.0, "{eigenvalues}");
+        let is_odd = |index: usize| matches!(index % HARMONICS, 3 | 4 | 7);
+        for row in 0..COEFFICIENTS {
+            assert!(!is_odd(row) || environments::MEAN[row] == 0.0, "{row}");
+            for column in 0..COEFFICIENTS {
+                assert!(is_odd(row) == is_odd(column) || covariance[(row, column)] == 0.0, "{row} {column}");
+            }
+        }
+    }
+
+    #[test]
+    fn light_from_above_and_without_a_hue_is_likelier() {
+        let prior = LightPrior::natural();
+        let distance = |red: [f64; HARMONICS], blue: [f64; HARMONICS]| prior.squared_distance(&Light([red, red, blue]));
+        // y is down: a negative second coefficient is light from above.
+        let (above, below) =
+            ([-1.0, -0.8, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], [-1.0, 0.8, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+        assert!(distance(above, above) < 10.0 && distance(below, below) > 2.0 * distance(above, above));
+        let mut blue = above;
+        blue[0] += 2.0;
+        assert!(distance(above, blue) > 2.0 * distance(above, above));
+        let (mut left, mut right) = (above, above);
+        (left[3], right[3]) = (-0.5, 0.5);
+        assert!((distance(left, left) - distance(right, right)).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_gaussian_that_is_none_is_refused_with_its_field() {
+        let refused = |mean: f64, change: fn(&mut CoefficientMatrix)| {
+            let mut covariance = CoefficientMatrix::identity();
+            change(&mut covariance);
+            LightPrior::new(&[mean; COEFFICIENTS], &covariance).unwrap_err().to_string()
+        };
+        assert_eq!(refused(f64::NAN, |_| ()), "prior.mean[0]: must be finite and within 100 either way (got NaN)");
+        let cases: [(fn(&mut CoefficientMatrix), &str); 5] = [
+            (|covariance| covariance[(1, 1)] = f64::INFINITY, "must be finite"),
+            (|covariance| covariance[(0, 1)] = 0.1, "must be symmetric"),
+            (|covariance| covariance[(2, 2)] = -1.0, "must be positive definite"),
+            (|covariance| *covariance = CoefficientMatrix::zeros(), "must be positive definite"),
+            (|covariance| covariance[(2, 2)] = 1e-14, "must not have a standard deviation under a millionth"),
+        ];
+        for (change, message) in cases {
+            assert_eq!(refused(0.0, change), format!("prior.covariance: {message}"));
+        }
+    }
+
+    #[test]
+    fn lists_of_another_length_are_refused() {
+        let (mean, covariance) = ([0.0; COEFFICIENTS], CoefficientMatrix::identity());
+        assert_eq!(
+            LightPrior::from_slices(&mean, covariance.as_slice()).unwrap(),
+            LightPrior::new(&mean, &covariance).unwrap()
+        );
+        let short = LightPrior::from_slices(&mean[1..], covariance.as_slice()).unwrap_err();
+        assert_eq!(short.to_string(), "prior.mean: needs 27 numbers, not 26");
+        let short = LightPrior::from_slices(&mean, &covariance.as_slice()[1..]).unwrap_err();
+        assert_eq!((short.field(), short.kind()), ("prior.covariance", ErrorKind::Size));
     }
 }
