@@ -66,6 +66,18 @@ export const numbers =
     if (other >= 0) throw wrong(field, `a list of numbers, with entry ${other}`, copy[other]);
   };
 
+/** A square matrix: a list of all its numbers, or a list of its rows. */
+export const matrix =
+  (side: number): Check =>
+  (value, field) => {
+    const rows =
+      isObject(value) && "length" in value && value.length === side
+        ? Array.from({ ...Object(value), length: side })
+        : [];
+    if (!rows.some(isObject)) return numbers(side * side)(value, field);
+    for (const [index, row] of rows.entries()) numbers(side)(row, `${field}[${index}]`);
+  };
+
 export type ArrayType = { readonly name: string; new (length: number): ArrayBufferView };
 
 const TYPED_ARRAY: object = Object.getPrototypeOf(Uint8Array.prototype);

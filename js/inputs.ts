@@ -9,6 +9,7 @@ import {
   callback,
   flag,
   isObject,
+  matrix,
   number,
   numbers,
   object,
@@ -38,8 +39,10 @@ function valueOf(row: Exclude<Row, WordRow>): readonly [check: Check, what: stri
       return [flag, "a flag"];
     case "list":
       return [numbers(row.length), `${row.length} numbers`];
+    case "matrix":
+      return [matrix(row.side), `${row.side}x${row.side} numbers`];
     case "object":
-      return [object(shapeOf(row.members)), row.noun];
+      return [object(shapeOf(row.members), row.required), row.noun];
     default:
       return [ranged(row), "a number"];
   }

@@ -34,6 +34,12 @@ export const POSE: RowsOf<Partial<Omit<Pose, "matrix">>> = {
 export const OPTIONS: RowsOf<Options> = {
   /** Nine coefficients for each of three channels. */
   light: { kind: "list", length: 27, words: { estimate: "estimate" }, default: "estimate" },
+  prior: {
+    kind: "object",
+    noun: "a Gaussian over lights",
+    members: { mean: { kind: "list", length: 27 }, covariance: { kind: "matrix", side: 27 } },
+    required: ["mean", "covariance"],
+  },
   start: {
     kind: "object",
     noun: "a pose",

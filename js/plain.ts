@@ -26,6 +26,10 @@ function plainMember<T extends object, K extends keyof T>(
 
 const numbers = (list: ArrayLike<number>): number[] => Array.from(list);
 
+/** The numbers of a matrix in one list. */
+const rowAfterRow = (matrix: ArrayLike<number | ArrayLike<number>>): number[] =>
+  Array.from(matrix).flatMap((row) => (typeof row === "number" ? row : numbers(row)));
+
 const plainCamera = (camera: Pinhole): Pinhole => ({
   ...pick(camera, ["fx", "fy", "cx", "cy"]),
   ...plainMember(camera, "distortion", numbers),
@@ -51,6 +55,7 @@ function plainMembers(source: object, rows: Rows): object {
 function plainValue(value: unknown, row: Row | undefined): unknown {
   if (typeof value !== "object" || value === null) return value;
   if (row?.kind === "list") return numbers(value as ArrayLike<number>);
+  if (row?.kind === "matrix") return rowAfterRow(value as ArrayLike<number | ArrayLike<number>>);
   return row?.kind === "object" ? plainMembers(value, row.members) : value;
 }
 

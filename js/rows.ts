@@ -49,17 +49,26 @@ export interface ListRow extends Common {
   readonly kind: "list";
   readonly length: number;
 }
+/** A square matrix: its numbers row after row in one list, or a list for each row. */
+export interface MatrixRow extends Common {
+  readonly kind: "matrix";
+  readonly side: number;
+}
 export interface ObjectRow extends Common {
   readonly kind: "object";
   /** What it is, with its article. */
   readonly noun: string;
   readonly members: Rows;
+  /** Those that must be there. */
+  readonly required?: readonly string[];
 }
 
 export type ShownRow = NumberRow | FlagRow | WordRow;
-export type Row = ShownRow | ListRow | ObjectRow;
+export type Row = ShownRow | ListRow | MatrixRow | ObjectRow;
 export type Rows = Readonly<Record<string, Row>>;
 
+type NumberList = ArrayLike<number>;
+type Matrix = ArrayLike<NumberList>;
 type Words<T> = Extract<T, string>;
 type Kind<V> = [V] extends [never]
   ? WordRow
@@ -67,9 +76,11 @@ type Kind<V> = [V] extends [never]
     ? FlagRow
     : [V] extends [number]
       ? NumberRow
-      : [V] extends [ArrayLike<number>]
+      : [V] extends [NumberList]
         ? ListRow
-        : ObjectRow & { readonly members: RowsOf<V> };
+        : [V] extends [NumberList | Matrix]
+          ? MatrixRow
+          : ObjectRow & { readonly members: RowsOf<V> };
 
 /** Ties a row to the type of its member: of the same kind, with all of its words, and a default that it may have. */
 export type RowOf<T> = Kind<Exclude<T, string>> &

@@ -39,7 +39,7 @@ const FORMAT = 1;
 const MARK = NAME.length + 1;
 /** A 32-bit number: the header's length, the checksum. */
 const WORD = 4;
-/** Bytes of a header: options hold some hundred numbers at most. */
+/** Bytes of a header: options hold at most 800 numbers, of 25 letters each. */
 const LONGEST_HEADER = 65_536;
 /** Bytes in all: both views of 4096 pixels on a side with everything they may have are 0.7 GB. */
 const MOST_BYTES = 2 ** 30;

@@ -58,8 +58,18 @@ export interface Pose {
   matrix: number[][];
 }
 
+/** A Gaussian over lights: 27 coefficients R1..R9, G1..G9, B1..B9 of log shading in the colour view's frame, as `light` has them. */
+export interface LightGaussian {
+  /** 27 numbers. */
+  mean: ArrayLike<number>;
+  /** 27x27, symmetric and positive definite: 729 numbers row after row, or 27 rows. */
+  covariance: ArrayLike<number> | ArrayLike<ArrayLike<number>>;
+}
+
 export interface Options {
   light?: "estimate" | ArrayLike<number>;
+  /** The lights to expect where the light is estimated. By default natural lights, indoors and outdoors. */
+  prior?: LightGaussian;
   start?: "search" | "identity" | Partial<Omit<Pose, "matrix">>;
   /**
    * How far from a told start the registration by colours may end: the rotation, by default 30 degrees, and, where a translation is
@@ -259,6 +269,7 @@ export type CheckCode =
   | "unconstrained"
   | "too-close"
   | "no-pose-on-image"
+  | "no-evidence"
   | "no-candidate"
   | "doubtful";
 

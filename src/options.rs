@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::check::{not_negative, positive};
 use crate::error::{Error, ErrorKind, Result};
-use crate::light::{Light, LightPrior};
+use crate::light::{Light, LightGaussian, LightPrior};
 use crate::pose::Similarity;
 
 /// Where the light comes from.
@@ -113,8 +113,9 @@ impl Default for Weights {
 pub struct Options {
     /// Known or estimated light.
     pub light: LightSource,
-    /// What lights are likely, where the light is estimated.
-    pub prior: LightPrior,
+    /// The lights to expect where the light is estimated; `None`: natural lights.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
+    pub prior: Option<LightGaussian>,
     /// First pose.
     pub start: Start,
     /// How far from a told start the registration by colours may end.
@@ -149,7 +150,7 @@ impl Default for Options {
     fn default() -> Self {
         Self {
             light: LightSource::Estimate,
-            prior: LightPrior::natural(),
+            prior: None,
             start: Start::Search,
             start_tolerance: StartTolerance::default(),
             scale: None,
@@ -178,6 +179,19 @@ impl Options {
         Self { start: Start::Identity, registration: Registration::Icp, shading: Shading::Pixel, ..Self::default() }
     }
 
+    /// The prior over lights that these options choose.
+    ///
+    /// # Errors
+    /// What [`LightPrior::from_slices`] refuses, below `options.prior`.
+    pub(crate) fn light_prior(&self) -> Result<LightPrior> {
+        match &self.prior {
+            None => Ok(LightPrior::natural()),
+            Some(LightGaussian { mean, covariance }) => {
+                LightPrior::from_slices(mean, covariance).map_err(|error| error.below("options"))
+            }
+        }
+    }
+
     /// Checks every number against its range.
     ///
     /// # Errors
@@ -185,6 +199,9 @@ impl Options {
     pub fn validate(&self) -> Result<()> {
         if let LightSource::Known(light) = &self.light {
             light.validate("options.light")?;
+        }
+        if self.prior.is_some() {
+            self.light_prior()?;
         }
         if let Start::Pose { rotation, scale, translation } = self.start {
             let scale = scale.unwrap_or(1.0);

@@ -70,6 +70,11 @@ pub struct Arguments {
     #[arg(long, value_name = "FILE")]
     light: Option<PathBuf>,
 
+    /// The lights to expect where the light is estimated, in place of natural ones: JSON with "mean", 27 numbers, and
+    /// "covariance", 27x27 numbers
+    #[arg(long, value_name = "FILE", conflicts_with = "light")]
+    light_prior: Option<PathBuf>,
+
     /// Holds the scale s at this number [default: found]
     #[arg(long, value_name = "S", value_parser = positive)]
     scale: Option<f64>,
@@ -134,6 +139,7 @@ impl Arguments {
         };
         Ok(Options {
             light,
+            prior: self.light_prior.as_deref().map(read::light_prior).transpose()?,
             start: self.start,
             scale: self.scale,
             registration: self.registration,

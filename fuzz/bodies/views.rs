@@ -3,8 +3,8 @@
 
 use arbitrary::{Result, Unstructured};
 use bimodal_stereo::{
-    ColourImage, ColourSamples, DepthMap, DepthSamples, Light, LightSource, Options, Pinhole, Registration, Shading,
-    Start, StartTolerance, Transfer, Weights,
+    ColourImage, ColourSamples, DepthMap, DepthSamples, Light, LightGaussian, LightSource, Options, Pinhole,
+    Registration, Shading, Start, StartTolerance, Transfer, Weights,
 };
 
 use super::numbers::{light, number, odd, perhaps, pose, rarely, unit};
@@ -270,5 +270,19 @@ pub fn options(u: &mut Unstructured<'_>, of_scene: &Light) -> Result<Options> {
         seed: if u.arbitrary()? { u.arbitrary()? } else { usual.seed },
         annealing: !u.arbitrary::<bool>()?,
         trim: !u.arbitrary::<bool>()?,
+        prior: if rarely(u, 16)? { Some(gaussian(u)?) } else { None },
     })
+}
+
+/// Mean and covariance of lights: usually a diagonal, and sometimes not even of 27 coefficients.
+fn gaussian(u: &mut Unstructured<'_>) -> Result<LightGaussian> {
+    let count = if rarely(u, 8)? { 26 } else { 27 };
+    let mean = (0..count).map(|_| number(u, -0.1)).collect::<Result<_>>()?;
+    let mut covariance = vec![0.0; count * count];
+    for row in 0..count {
+        covariance[row * (count + 1)] = number(u, 0.2)?;
+    }
+    let odd = u.int_in_range(0..=count * count - 1)?;
+    covariance[odd] += number(u, 0.0)?;
+    Ok(LightGaussian { mean, covariance })
 }

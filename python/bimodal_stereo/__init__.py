@@ -17,7 +17,7 @@ from ._calibration import check_calibration, sample_rig
 from ._codes import CODES
 from ._errors import BimodalError
 from ._estimator import Estimator
-from ._inputs import Options, StartTolerance, Weights
+from ._inputs import LightGaussian, Options, StartTolerance, Weights
 from ._native import VERSION as __version__
 from ._samples import Sample, Truth, sample, sample_lights, sample_surfaces
 from ._types import Angles, ColorImage, DepthMap, Energy, Pinhole, Pose, RigCamera, StepReport, Uncertainty
@@ -35,6 +35,7 @@ __all__ = [
     "Energy",
     "Estimator",
     "FrameReport",
+    "LightGaussian",
     "Options",
     "Pinhole",
     "Pose",

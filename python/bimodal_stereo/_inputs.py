@@ -18,6 +18,16 @@ if TYPE_CHECKING:
 LARGEST_LEVEL = 65535
 
 
+class LightGaussian(TypedDict):
+    """A Gaussian over lights: 27 coefficients, nine of red, of green, of blue, as ``light`` has them.
+
+    mean: 27 numbers, (3, 9) or flat. covariance: (27, 27), symmetric and positive definite.
+    """
+
+    mean: ArrayLike
+    covariance: ArrayLike
+
+
 class StartTolerance(TypedDict, total=False):
     """How far from a told start the answer may lie.
 
@@ -43,7 +53,8 @@ class Weights(TypedDict, total=False):
 class Options(TypedDict, total=False):
     """What may be chosen; all of it may be left out.
 
-    light: "estimate", or 27 coefficients, (3, 9) or flat. start: "search", "identity", or a pose with the parts that are known.
+    light: "estimate", or 27 coefficients, (3, 9) or flat. prior: the lights to expect where the light is estimated; natural lights.
+    start: "search", "identity", or a pose with the parts that are known.
     start_tolerance: how far from a told start the answer may lie. registration: "joint", "icp" or "fixed". shading: "surface" or "pixel".
     scale: "free", or the number to hold. trim: whether flying pixels and background inside the mask are left out; True. annealing:
     whether the registration starts tolerant; True. lambda\\_: weights. stop_degrees: change of the rotation that counts as
@@ -52,6 +63,7 @@ class Options(TypedDict, total=False):
     """
 
     light: Union[str, ArrayLike]
+    prior: LightGaussian
     start: Union[str, Pose, Mapping[str, Any]]
     start_tolerance: StartTolerance
     registration: str
@@ -76,11 +88,14 @@ def plain(value: Any) -> Any:
 
 
 def keywords(given: Mapping[str, Any]) -> dict[str, Any]:
-    """Arguments with objects made plain and a light as numbers."""
+    """Arguments with objects made plain and lights as numbers."""
     made: dict[str, Any] = plain(given)
     light = made.get("light")
     if light is not None and not isinstance(light, str):
-        made["light"] = array(light, "light", "numbers").astype(np.float64).ravel()
+        made["light"] = flat(light, "light")
+    prior = made.get("prior")
+    if isinstance(prior, dict):
+        made["prior"] = {name: None if value is None else flat(value, f"prior.{name}") for name, value in prior.items()}
     return made
 
 
@@ -104,6 +119,11 @@ def array(value: ArrayLike, field: str, what: str) -> NDArray[Any]:
     if made.dtype.kind not in "buif":
         raise BimodalError("type", f"{field}: must be an array of {what}, not of {made.dtype}", field)
     return made
+
+
+def flat(value: ArrayLike, field: str) -> NDArray[np.float64]:
+    """Numbers one after the other, row after row."""
+    return array(value, field, "numbers").astype(np.float64).ravel()
 
 
 def shaped(made: NDArray[Any], field: str, *shapes: Sequence[Optional[int]]) -> NDArray[Any]:

@@ -27,7 +27,7 @@ FORMAT = 129
 FOREIGN = 128
 MARK = len(NAME) + 1
 WORD = 4
-# Bytes of a header: options hold some hundred numbers at most.
+# Bytes of a header: options hold at most 800 numbers, of 25 letters each.
 LONGEST_HEADER = 65_536
 # Bytes in all: both views of 4096 pixels on a side with everything they may have are 0.7 GB.
 MOST_BYTES = 2**30

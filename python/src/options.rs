@@ -1,14 +1,17 @@
 //! From keyword arguments to the crate's options, over its defaults.
 
-use bimodal_stereo::{Light, LightSource, Options, Registration, Shading, Start, StartTolerance, Weights};
+use bimodal_stereo::{
+    Light, LightGaussian, LightSource, Options, Registration, Shading, Start, StartTolerance, Weights,
+};
 use pyo3::prelude::*;
 
 use crate::error::refused;
 use crate::input::{POSE, rotation, scale as pose_scale, translation};
 use crate::members::{Members, unknown};
 
-const NAMES: [&str; 13] = [
+const NAMES: [&str; 14] = [
     "light",
+    "prior",
     "start",
     "start_tolerance",
     "registration",
@@ -29,7 +32,7 @@ pub fn options(keywords: &Bound<'_, PyAny>) -> PyResult<Options> {
     let default = Options::default();
     Ok(Options {
         light: light(&given)?,
-        prior: default.prior,
+        prior: prior(&given)?,
         start: start(&given)?.unwrap_or(default.start),
         start_tolerance: tolerance(&given, default.start_tolerance)?,
         scale: scale(&given)?,
@@ -62,6 +65,12 @@ fn light(given: &Members<'_>) -> PyResult<LightSource> {
     }
     let Some(values) = given.list("light")? else { return Ok(LightSource::Estimate) };
     Light::from_slice("light", &values).map(LightSource::Known).map_err(|error| refused(&error))
+}
+
+fn prior(given: &Members<'_>) -> PyResult<Option<LightGaussian>> {
+    let Some(prior) = given.below("prior", &["mean", "covariance"])? else { return Ok(None) };
+    let list = |name| prior.needed(name, prior.list(name)?);
+    Ok(Some(LightGaussian { mean: list("mean")?, covariance: list("covariance")? }))
 }
 
 fn start(given: &Members<'_>) -> PyResult<Option<Start>> {

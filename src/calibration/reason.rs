@@ -48,6 +48,8 @@ pub enum CheckReason {
     TooClose(Margin),
     /// Undecided: no pose puts points onto the image.
     NoPoseOnImage,
+    /// Undecided: no cue finds anything to compare.
+    NoEvidence,
     /// Undecided: no candidate was given.
     NoCandidate {
         /// Error of the estimate.
@@ -123,6 +125,9 @@ impl fmt::Display for CheckReason {
                 write!(f, "This scene can't tell: {margin}, around the {} px that pass.", Fixed(margin.tolerance, 1))
             }
             Self::NoPoseOnImage => f.write_str("This scene can't tell: no pose puts its points onto the image."),
+            Self::NoEvidence => {
+                f.write_str("This scene can't tell: none of the chosen cues finds anything to compare in it.")
+            }
             Self::NoCandidate { pixels } => {
                 write!(f, "No candidate was given; the estimate is good to {} px.", Fixed(*pixels, 1))
             }

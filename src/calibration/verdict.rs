@@ -262,7 +262,7 @@ impl CandidateReport {
     /// What is said where no cue found anything to compare: the estimate is the first candidate, and its distribution the prior.
     pub(super) fn without_evidence(&mut self) {
         self.verdict = CheckVerdict::Undecided;
-        self.reason = "This scene can't tell: none of the cues that were asked for finds anything to compare in it.".into();
+        self.reason = CheckReason::NoEvidence;
     }
 
     /// What is said where the check's end or the candidate puts hardly any point onto the image.

@@ -103,7 +103,7 @@ impl Estimator {
 
     fn of(pair: ViewPair) -> Result<Self> {
         let pose = gauge::first_pose(&pair);
-        let light = pair.known_light().copied().unwrap_or_else(|| pair.options.prior.mean());
+        let light = pair.known_light().copied().unwrap_or_else(|| pair.prior.mean());
         // First what needs much more memory while it is made than afterwards.
         let registration = RegistrationStage::new(&pair, Opening::is_called_for(&pair));
         let refinement = RefinementStage::new(&pair)?;
@@ -165,7 +165,7 @@ impl Estimator {
                 "is applied when the views are read; make a new estimator to change it",
             ));
         }
-        *self = Self::of(self.pair.with(options))?;
+        *self = Self::of(self.pair.with(options)?)?;
         Ok(())
     }
 

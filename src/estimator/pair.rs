@@ -1,8 +1,8 @@
-//! What a run is given and never changes: both views and the options.
+//! What a run is given and never changes: both views, the options, the prior over lights.
 
 use super::{memory, units};
 use crate::error::Result;
-use crate::light::Light;
+use crate::light::{Light, LightPrior};
 use crate::options::{LightSource, Options};
 use crate::view::{ColourImage, ColourView, DepthMap, DepthView, Size, WorkingSize};
 
@@ -10,6 +10,7 @@ pub struct ViewPair {
     pub image: ColourView,
     pub depth: DepthView,
     pub options: Options,
+    pub prior: LightPrior,
     /// From the caller's image to the one that is worked on, where they differ.
     pub way: Option<WorkingSize>,
 }
@@ -21,20 +22,25 @@ impl ViewPair {
     /// Any [`Error`](crate::Error) of the views or the options, naming the field.
     pub fn new(image: ColourImage, depth: &DepthMap, options: Options) -> Result<Self> {
         options.validate()?;
+        let prior = options.light_prior()?;
         let size = Size::new("depth", depth.width, depth.height)?;
         // What is too large whatever the image becomes is refused before anything is read.
         memory::check(Size { width: 0, height: 0 }, size)?;
         let (image, way) = WorkingSize::of(image, depth, memory::most_image_pixels(size))?;
         memory::check(image.size, size)?;
         let depth = DepthView::new(depth, options.trim)?;
-        Ok(Self { image, depth, options: units::options_in(way.as_ref(), options), way })
+        Ok(Self { image, depth, options: units::options_in(way.as_ref(), options), prior, way })
     }
 
     /// The same views with other options.
-    pub fn with(&self, options: Options) -> Self {
+    ///
+    /// # Errors
+    /// [`ErrorKind::Range`](crate::ErrorKind) or `Size` of a prior that is not a Gaussian over lights.
+    pub fn with(&self, options: Options) -> Result<Self> {
+        let prior = options.light_prior()?;
         let way = self.way.clone();
         let options = units::options_in(way.as_ref(), options);
-        Self { image: self.image.clone(), depth: self.depth.clone(), options, way }
+        Ok(Self { image: self.image.clone(), depth: self.depth.clone(), options, prior, way })
     }
 
     /// The light, where it is known but for its exposure.

@@ -12,4 +12,4 @@ pub use harmonics::Light;
 pub(crate) use harmonics::{HARMONICS, Polynomial, basis, basis_gradient, falling_by_turns};
 pub use paint::{Paint, PaintFitter};
 pub(crate) use prior::Coefficients;
-pub use prior::{COEFFICIENTS, CoefficientMatrix, LightPrior};
+pub use prior::{COEFFICIENTS, CoefficientMatrix, LightGaussian, LightPrior};

@@ -24,6 +24,16 @@ const ASYMMETRY: f64 = 1e-5;
 /// Largest precision: a standard deviation of a millionth, far below what any image determines.
 const MOST_PRECISION: f64 = 1e12;
 
+/// Mean and covariance of lights, in the order R1..9, G1..9, B1..9, as a caller gives them.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct LightGaussian {
+    /// 27 numbers.
+    pub mean: Vec<f64>,
+    /// 27x27 numbers, row after row; symmetric and positive definite.
+    pub covariance: Vec<f64>,
+}
+
 /// A Gaussian over lights that does not depend on the exposure.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LightPrior {

@@ -7,7 +7,8 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-use bimodal_stereo::Light;
+use bimodal_stereo::{Light, LightGaussian, LightPrior};
+use serde::Deserialize;
 
 use crate::problem::{Problem, Result};
 pub use npy::bytes as npy_bytes;
@@ -106,6 +107,31 @@ pub fn light(path: &Path) -> Result<Light> {
     let light = Light::from_slice("light", &numbers).map_err(|error| Problem::file(path, error))?;
     light.validate("light").map_err(|error| Problem::file(path, error))?;
     Ok(light)
+}
+
+/// A Gaussian over lights from JSON. Other members, such as where it comes from, are passed over.
+pub fn light_prior(path: &Path) -> Result<LightGaussian> {
+    /// The file of the crate's own prior has ten kilobytes.
+    const MOST_TEXT: u64 = 1 << 20;
+    #[derive(Deserialize)]
+    struct Given {
+        mean: Vec<f64>,
+        covariance: Covariance,
+    }
+    #[derive(Deserialize)]
+    #[serde(untagged, expecting = "\"covariance\" must be 729 numbers or 27 rows of 27")]
+    enum Covariance {
+        List(Vec<f64>),
+        Rows(Vec<[f64; 27]>),
+    }
+    let bytes = head(path, MOST_TEXT).map_err(|error| Problem::file(path, error))?;
+    let Given { mean, covariance } = serde_json::from_slice(&bytes).map_err(|error| Problem::file(path, error))?;
+    let covariance = match covariance {
+        Covariance::List(numbers) => numbers,
+        Covariance::Rows(rows) => rows.concat(),
+    };
+    LightPrior::from_slices(&mean, &covariance).map_err(|error| Problem::file(path, error))?;
+    Ok(LightGaussian { mean, covariance })
 }
 
 impl Raster {

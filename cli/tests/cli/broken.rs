@@ -31,6 +31,7 @@ fn arguments() {
     refused(&pair(&["--depth-unit", "nan"]), &["above zero"]);
     refused(&pair(&["--max-iterations", "0"]), &["maxIterations"]);
     refused(&pair(&["--light", "nowhere.csv"]), &["nowhere.csv"]);
+    refused(&pair(&["--light-prior", "nowhere.json"]), &["nowhere.json"]);
     refused(&pair(&["--registration", "magic"]), &["joint"]);
 }
 
@@ -102,6 +103,15 @@ fn files_that_are_something_else() {
     let light = made.path("short.csv");
     fs::write(&light, "1 2 3").unwrap();
     refused(&[&image, &depth, "--light", &light], &["short.csv", "27"]);
+    let prior = made.path("prior.json");
+    for (text, part) in [
+        ("{}", "mean"),
+        (r#"{"mean": [1], "covariance": [1, 2]}"#, "prior.mean: needs 27 numbers, not 1"),
+        (r#"{"mean": [1], "covariance": [[1, 2], [3]]}"#, "27 rows of 27"),
+    ] {
+        fs::write(&prior, text).unwrap();
+        refused(&[&image, &depth, "--light-prior", &prior], &["prior.json", part]);
+    }
 }
 
 #[test]

@@ -154,3 +154,28 @@ fn help_and_version_are_no_faults_and_tell_the_codes() {
     let status = std::process::Command::new(program).arg("--help").stdout(writer).status().unwrap();
     assert_eq!(status.code(), Some(0));
 }
+
+#[test]
+fn a_prior_over_lights_is_read_and_followed() {
+    let made = bust();
+    let [image, depth] = ["image.png", "depth.npy"].map(|name| made.path(name));
+    let kept = concat!(env!("CARGO_MANIFEST_DIR"), "/../scripts/reference/light-prior.json");
+    // A prior of grey light from the front alone.
+    let narrow = made.path("narrow.json");
+    let covariance: Vec<Vec<f64>> =
+        (0..27).map(|row| (0..27).map(|column| if row == column { 1e-10 } else { 0.0 }).collect()).collect();
+    let channel = [-1.0, 0.0, -0.5, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+    let mean = [channel; 3].concat();
+    fs::write(&narrow, serde_json::json!({ "mean": mean, "covariance": covariance }).to_string()).unwrap();
+    let light = |more: &[&str]| {
+        let fixed =
+            ["--start", "identity", "--scale", "1", "--registration", "fixed", "--max-iterations", "1", "--json"];
+        let told = run(&[&[image.as_str(), &depth], more, &fixed].concat());
+        assert!(told.code <= 2, "{}", told.err);
+        numbers(&told.json()["light"])
+    };
+    let (own, given, held) = (light(&[]), light(&["--light-prior", kept]), light(&["--light-prior", &narrow]));
+    let off = |light: &[f64]| own.iter().zip(light).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    assert!(off(&given) < 1e-3, "the kept file holds the crate's own prior: {}", off(&given));
+    assert!(off(&held) > 0.1 && (held[2] - held[11]).abs() < 1e-2 && held[3].abs() < 1e-2, "{held:?}");
+}

@@ -96,7 +96,7 @@ impl SharpNormals {
             normal_error: Some(&self.error),
             depth_noise: pair.depth.noise,
             light: pair.known_light(),
-            prior: &pair.options.prior,
+            prior: &pair.prior,
             prior_weight: if pair.options.weights.light > 0.0 { PRIOR_WEIGHT } else { 0.0 },
             scale_is_held,
         }

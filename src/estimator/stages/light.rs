@@ -81,7 +81,7 @@ impl LightStage {
         }
         let weight = pair.options.weights.light;
         let fit =
-            self.fitter.fit(&self.depth_normals, colours.log.each_ref().map(Vec::as_slice), &pair.options.prior, weight)?;
+            self.fitter.fit(&self.depth_normals, colours.log.each_ref().map(Vec::as_slice), &pair.prior, weight)?;
         self.residual = fit.residual;
         Ok(Some(fit.light))
     }

@@ -46,7 +46,7 @@ impl PaintStage {
 
     /// Looks for paint under `pose`, by the measured `normals` of the image's pixels.
     pub fn find(&mut self, pair: &ViewPair, pose: &Similarity, normals: &Normals) {
-        let prior = (&pair.options.prior, pair.options.weights.light);
+        let prior = (&pair.prior, pair.options.weights.light);
         let paint = self.fitter.fit(normals, pair.log(), prior, pair.known_light());
         self.pose = Some(*pose);
         self.found = paint.map(|paint| FoundPaint::of(pair, normals, &paint));

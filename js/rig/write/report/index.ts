@@ -30,11 +30,7 @@ const REPORT: Example = {
   sensitivity: [{ offsets: [], values: [] }],
 };
 
-export function reportHtml(
-  report: Checked,
-  pictures: readonly Picture[] = [],
-  options: ReportOptions = {},
-): string {
+export function reportHtml(report: Checked, pictures: readonly Picture[] = [], options: ReportOptions = {}): string {
   like(REPORT, report, "report");
   like([{}], pictures, "pictures");
   like({}, options, "options");
