@@ -299,7 +299,7 @@ impl CalibrationCheck {
             self.scene.approach(start, SIGMAS[level] * self.scene.scale, &planes);
             return Stage::Approaching { level, index: index + 1, planes };
         }
-        crate::numeric::sort_descending(&mut self.starts, |start| start.score);
+        self.starts.sort_by(|a, b| b.score.total_cmp(&a.score));
         self.keep_apart(SURVIVORS[level]);
         if level + 1 == ENTERING {
             self.enter_candidates();

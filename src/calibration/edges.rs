@@ -150,7 +150,7 @@ fn edges(planes: &Planes, start: [f64; 2], normal: [f64; 2], window: f64, blur: 
             ((k as f64 + shift - (half + 1) as f64) * pace, b)
         })
         .collect();
-    crate::numeric::sort_descending(&mut edges, |edge| edge.1);
+    edges.sort_by(|a, b| b.1.total_cmp(&a.1));
     edges.truncate(MOST_EDGES);
     let total: f64 = edges.iter().map(|edge| edge.1).sum();
     edges.iter_mut().for_each(|edge| edge.1 /= total);

@@ -132,15 +132,17 @@ impl Lattice {
         let motion = squares / (rows.len() as f64).max(1.0);
         let root = spectral(&symmetric_eigen(prior)?, |value| 1.0 / value.max(f64::MIN_POSITIVE).sqrt());
         let eigen = symmetric_eigen(&(root * motion * root))?;
-        let order = crate::numeric::descending(eigen.values.as_slice());
+        let mut order: [usize; UNKNOWNS] = std::array::from_fn(|k| k);
+        order.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));
         // Pixels of a sigma along each.
-        let lengths: [f64; UNKNOWNS] = std::array::from_fn(|k| eigen.values[order[k]].max(f64::MIN_POSITIVE).sqrt());
+        let lengths: [f64; UNKNOWNS] =
+            std::array::from_fn(|k| eigen.eigenvalues[order[k]].max(f64::MIN_POSITIVE).sqrt());
         let reach = |pace: f64| lengths.map(|length| (REACH * length / pace).min(f64::from(i8::MAX)) as i8);
         while reach(*pace).iter().map(|&k| 2.0 * f64::from(k) + 1.0).product::<f64>() > MOST_PLACES {
             *pace *= 1.1;
         }
         let sigmas = lengths.map(|length| *pace / length);
-        let steps = std::array::from_fn(|k| root * eigen.vectors.column(order[k]) * sigmas[k]);
+        let steps = std::array::from_fn(|k| root * eigen.eigenvectors.column(order[k]) * sigmas[k]);
         Some(Self { steps, sigmas, reach: reach(*pace) })
     }
 
@@ -170,7 +172,7 @@ impl Lattice {
             place[next] += 1;
             (2..next).for_each(|k| place[k] = -self.reach[k]);
         }
-        crate::numeric::sort_descending(&mut scores, |entry| entry.0);
+        scores.sort_by(|a, b| b.0.total_cmp(&a.0));
         let mut chosen = vec![[0; UNKNOWNS]];
         for (_, place) in scores {
             if chosen.iter().all(|other| squared_distance(other, &place) > APART * APART) {

@@ -52,7 +52,7 @@ fn sample(frame: &Frame, column: usize, row: usize) -> Option<Sample> {
     }
     let mean = sum / count as f64;
     let eigen = symmetric_eigen(&(squares / count as f64 - mean * mean.transpose()))?;
-    let normal: Vector3<f64> = eigen.vectors.column(eigen.values.imin()).into();
+    let normal: Vector3<f64> = eigen.eigenvectors.column(eigen.eigenvalues.imin()).into();
     let normal = if normal.dot(&point) > 0.0 { -normal } else { normal };
     Some(Sample { index, point, normal })
 }

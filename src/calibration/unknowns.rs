@@ -40,7 +40,7 @@ pub(super) fn solve(matrix: &Matrix, right: &Vector) -> Option<Vector> {
 /// V f(L) V^T of a symmetric matrix V L V^T, of which only this is known.
 #[inline(never)]
 pub(super) fn spectral(eigen: &Eigen<UNKNOWNS>, of: fn(f64) -> f64) -> Matrix {
-    eigen.vectors * Matrix::from_diagonal(&eigen.values.map(of)) * eigen.vectors.transpose()
+    eigen.eigenvectors * Matrix::from_diagonal(&eigen.eigenvalues.map(of)) * eigen.eigenvectors.transpose()
 }
 
 /// Pixels that a radian or a metre moves the scene by at the least, so that what is not on the image has finite units.

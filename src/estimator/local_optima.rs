@@ -9,7 +9,6 @@
 //! leave 1.25 times their noise or more, so a pose that leaves nothing but the noise of the image comes before one that
 //! sees more but leaves so much.
 
-use crate::numeric::{power, sort_descending};
 use crate::pose::Similarity;
 
 use super::workers::task::RegisteredCandidate;
@@ -82,7 +81,7 @@ impl LocalOptima {
 
     /// Enters where a registration ended: the better of two that are one.
     pub fn enter(&mut self, candidate: usize, registered: RegisteredCandidate) {
-        let gain = power(registered.visible, THIRD) * (self.spread / registered.noise).ln();
+        let gain = registered.visible.powf(THIRD) * (self.spread / registered.noise).ln();
         if !gain.is_finite() {
             return;
         }
@@ -134,7 +133,7 @@ impl LocalOptima {
     /// The best optimum and those that the data can't tell from it, given the noise of the image.
     pub fn decide(&mut self) -> Decision {
         let (mut optima, noise) = (std::mem::take(&mut self.optima), self.noise);
-        sort_descending(&mut optima, |optimum| optimum.gain);
+        optima.sort_by(|a, b| b.gain.total_cmp(&a.gain));
         // Nothing but the image's noise is left by it, and far more by the first.
         let wins = |first: &LocalOptimum, other: &LocalOptimum| {
             other.registered.noise <= noise && other.rivals(first, 1.0) && !first.rivals(other, RIVAL_NOISE)

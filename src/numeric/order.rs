@@ -1,6 +1,4 @@
-//! Ranks: quantiles, sorting, and thinning of long lists.
-
-use std::collections::BinaryHeap;
+//! Ranks: quantiles, and thinning of long lists.
 
 /// The value below which the `share` of `values` lies; `values` is reordered and must hold no NaN.
 pub(crate) fn quantile(values: &mut [f32], share: f64) -> f32 {
@@ -23,26 +21,6 @@ pub(crate) fn thin(elements: &mut Vec<usize>, most: usize) {
         (0..most).for_each(|k| elements[k] = elements[k * count / most]);
         elements.truncate(most);
     }
-}
-
-/// Largest key first. Sorts numbers, not the things themselves: sorting is a lot of code for each type there is, and
-/// all of it is downloaded.
-pub(crate) fn sort_descending<T>(list: &mut Vec<T>, key: impl Fn(&T) -> f64) {
-    let order = descending(&list.iter().map(key).collect::<Vec<_>>());
-    let mut things: Vec<Option<T>> = list.drain(..).map(Some).collect();
-    list.extend(order.into_iter().filter_map(|index| things[index].take()));
-}
-
-/// Indices of the keys, that of the largest key first.
-pub(crate) fn descending(keys: &[f64]) -> Vec<usize> {
-    // Bits of positive numbers are in their order, those of negative ones in the opposite (IEEE 754). A heap, because
-    // the library's sort is four times as much code; by index where equal, so that the order is the same everywhere.
-    let rank = |value: f64| {
-        let bits = value.to_bits();
-        if value.is_sign_negative() { bits } else { !bits & (u64::MAX >> 1) }
-    };
-    let ranked: BinaryHeap<_> = keys.iter().enumerate().map(|(index, &key)| (rank(key), index)).collect();
-    ranked.into_sorted_vec().into_iter().map(|(_, index)| index).collect()
 }
 
 #[cfg(test)]
@@ -76,20 +54,5 @@ mod tests {
         thin(&mut kept, 5);
         assert_eq!(kept, [0, 2, 4, 6, 8]);
         assert_eq!(evenly_spread(5, || 0..0).count(), 0);
-    }
-
-    #[test]
-    fn sorting_puts_the_largest_key_first() {
-        let mut list = vec!["b", "dddd", "cc", ""];
-        sort_descending(&mut list, |text| text.len() as f64);
-        assert_eq!(list, ["dddd", "cc", "b", ""]);
-    }
-
-    #[test]
-    fn the_order_is_that_of_a_sort() {
-        let keys = [0.5, -2.0, 3.0, 0.0, f64::INFINITY, -0.0, 3.0, -1e-300, f64::NEG_INFINITY, 1e-310, -2.0];
-        let mut order: Vec<usize> = (0..keys.len()).collect();
-        order.sort_by(|&a, &b| keys[b].total_cmp(&keys[a]));
-        assert_eq!(descending(&keys), order);
     }
 }

@@ -25,7 +25,6 @@ mod correspondence;
 mod distance_transform;
 mod icp;
 mod increment;
-mod kd_tree;
 mod neighbours;
 mod outline;
 mod photometric;

@@ -1,16 +1,24 @@
-//! Nearest points of a surface, by a k-d tree.
+//! Nearest points of a surface, by kiddo's k-d tree.
 
-use super::kd_tree::KdTree;
+use kiddo::{ImmutableKdTree, SquaredEuclidean};
+
 use crate::view::Points;
 
 /// Coordinates beyond this have squared distances that overflow f32; such points count as missing.
 const LARGEST_COORDINATE: f32 = 1e15;
-/// One, and what rounding may add to a square.
-const ROUNDING: f32 = 1.0 + 1e-6;
 
 /// The points of one surface in a tree. Missing points never enter it, and a missing query has no neighbour.
+///
+/// The immutable tree takes any number of identical points, where the mutable one panics beyond 32. NaN makes either
+/// panic.
 #[derive(Default)]
-pub(super) struct Neighbours(KdTree);
+pub(super) struct Neighbours {
+    tree: Option<ImmutableKdTree<f32, 3>>,
+    /// The points in the tree; kept to spare the next build its allocation.
+    points: Vec<[f32; 3]>,
+    /// The index in the caller's order of every point in the tree.
+    original: Vec<u32>,
+}
 
 /// The nearest point to a query.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,25 +33,34 @@ impl Neighbours {
     /// Forgets the points it held and takes those of `points` for which `accept(index)` holds and that are not missing.
     /// Equal points are all kept; any one of them may be the answer.
     pub fn rebuild(&mut self, points: &Points, accept: impl Fn(usize) -> bool) {
-        let all = (0..points.len()).map(|index| (points.get(index), index as u32));
-        self.0.rebuild(all.filter(|(point, index)| is_present(point) && accept(*index as usize)));
+        // Frees the old tree before the new one takes memory.
+        self.tree = None;
+        self.points.clear();
+        self.original.clear();
+        for index in 0..points.len() {
+            let point = points.get(index);
+            if is_present(&point) && accept(index) {
+                self.points.push(point);
+                self.original.push(index as u32);
+            }
+        }
+        // kiddo refuses more than 2^32 points; the largest view has 2^24.
+        self.tree = if self.points.is_empty() { None } else { ImmutableKdTree::new_from_slice(&self.points).ok() };
     }
 
     /// Number of points held.
     #[must_use]
     pub fn len(&self) -> usize {
-        self.0.len()
+        self.points.len()
     }
 
     /// The nearest point to `query` that is no farther than `distance`; `None` too where the query is missing.
     #[must_use]
     pub fn nearest(&self, query: [f32; 3], distance: f32) -> Option<Neighbour> {
-        if !is_present(&query) {
-            return None;
-        }
-        // Whether a root is at most the distance is asked of the root itself.
-        let (index, squared) = self.0.nearest(query, (distance * distance).next_up() * ROUNDING)?;
-        let neighbour = Neighbour { index: index as usize, distance: squared.sqrt() };
+        let tree = self.tree.as_ref().filter(|_| is_present(&query))?;
+        let found = tree.query(&query).nearest_one::<SquaredEuclidean<f32>>().execute();
+        let index = *self.original.get(found.item as usize)? as usize;
+        let neighbour = Neighbour { index, distance: found.distance.sqrt() };
         (neighbour.distance <= distance).then_some(neighbour)
     }
 }

@@ -238,7 +238,7 @@ fn samples_needed(share: f64) -> u32 {
 /// Smallest over largest eigenvalue of a covariance.
 fn thickness(covariance: &Matrix3<f64>) -> f64 {
     match symmetric_eigen(covariance) {
-        Some(eigen) if eigen.values.max() > 0.0 => eigen.values.min() / eigen.values.max(),
+        Some(eigen) if eigen.eigenvalues.max() > 0.0 => eigen.eigenvalues.min() / eigen.eigenvalues.max(),
         _ => 0.0,
     }
 }

@@ -5,7 +5,6 @@ use nalgebra::{Matrix3, Matrix4, Quaternion, Rotation3, UnitQuaternion, Vector3}
 use crate::check::positive;
 use crate::error::{Error, ErrorKind, Result};
 use crate::numeric::eigen::symmetric_eigen;
-use crate::numeric::power;
 
 /// How far R^T R may be from one: rotations typed with five digits pass, anything else is a mistake.
 const ROTATION_TOLERANCE: f64 = 1e-4;
@@ -104,7 +103,7 @@ impl Similarity {
     pub fn towards(&self, other: &Self, share: f64, centre: Vector3<f64>) -> Self {
         let change = quaternion(&(other.rotation * self.rotation.transpose())).powf(share);
         let rotation = change.to_rotation_matrix().into_inner() * self.rotation;
-        let scale = self.scale * power(other.scale / self.scale, share);
+        let scale = self.scale * (other.scale / self.scale).powf(share);
         let target = self.apply(centre).lerp(&other.apply(centre), share);
         Self { scale, rotation, translation: target - scale * (rotation * centre) }
     }
@@ -200,13 +199,13 @@ fn nearest_rotation(matrix: &Matrix3<f64>) -> Result<Matrix3<f64>> {
     horn.fixed_view_mut::<1, 3>(0, 1).copy_from(&skew.transpose());
     horn.fixed_view_mut::<3, 3>(1, 1).copy_from(&(m + m.transpose() - Matrix3::identity() * trace));
     let eigen = symmetric_eigen(&horn).ok_or_else(degenerate)?;
-    let largest = eigen.values.imax();
-    let second = (0..4).filter(|&k| k != largest).map(|k| eigen.values[k]).fold(f64::MIN, f64::max);
+    let largest = eigen.eigenvalues.imax();
+    let second = (0..4).filter(|&k| k != largest).map(|k| eigen.eigenvalues[k]).fold(f64::MIN, f64::max);
     // The gap is twice the sum of the second and the signed third singular value: zero for points on a line.
-    if eigen.values[largest] - second <= RANK_TOLERANCE {
+    if eigen.eigenvalues[largest] - second <= RANK_TOLERANCE {
         return Err(degenerate());
     }
-    let q = eigen.vectors.column(largest);
+    let q = eigen.eigenvectors.column(largest);
     Ok(UnitQuaternion::from_quaternion(Quaternion::new(q[0], q[1], q[2], q[3])).to_rotation_matrix().into_inner())
 }
 

@@ -173,7 +173,7 @@ impl Information {
     /// The smallest eigenvalue over the weight: what the worst determined direction has, 0 .. 1/3.
     #[must_use]
     pub fn weakest(&self) -> f64 {
-        self.eigen(false).map_or(0.0, |eigen| eigen.values.min())
+        self.eigen(false).map_or(0.0, |eigen| eigen.eigenvalues.min())
     }
 
     /// Whether some direction has no information: the geometry does not determine the pose.
@@ -200,17 +200,17 @@ impl Information {
         };
         let floor = self.floor();
         let mut covariance = PoseMatrix::zeros();
-        for (k, &value) in eigen.values.iter().enumerate() {
+        for (k, &value) in eigen.eigenvalues.iter().enumerate() {
             let variance = if value > floor {
                 ((sigma / self.length).powi(2) / (value * self.weight * self.independent)).min(UNKNOWN.powi(2))
             } else {
                 UNKNOWN.powi(2)
             };
-            let direction = eigen.vectors.column(k);
+            let direction = eigen.eigenvectors.column(k);
             covariance += variance * direction * direction.transpose();
         }
         clear_unknowns(&mut covariance, &self.without_variance(gauge));
-        (covariance, Direction::of(&eigen.vectors.column(eigen.values.imin()).into_owned()))
+        (covariance, Direction::of(&eigen.eigenvectors.column(eigen.eigenvalues.imin()).into_owned()))
     }
 
     /// Eigenvalues over the weight. The gauge is projected out. What is not estimated gets the eigenvalue one, so that
@@ -271,7 +271,7 @@ pub(super) fn describe(
 
 /// The least certain direction of a covariance.
 pub(super) fn weakest_of(covariance: &PoseMatrix) -> Direction {
-    let weakest = |eigen: Eigen<UNKNOWNS>| Direction::of(&eigen.vectors.column(eigen.values.imax()).into_owned());
+    let weakest = |eigen: Eigen<UNKNOWNS>| Direction::of(&eigen.eigenvectors.column(eigen.eigenvalues.imax()).into_owned());
     symmetric_eigen(covariance).map(weakest).unwrap_or_default()
 }
 

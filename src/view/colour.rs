@@ -1,7 +1,7 @@
 //! The colour image: checked once and converted to log intensities over a mask (docs/method.md, section 4).
 
 use crate::error::{Error, ErrorKind, Result};
-use crate::numeric::{noise, power, quantile};
+use crate::numeric::{noise, quantile};
 use crate::view::mask::{self, FEWEST_PIXELS};
 use crate::view::{Camera, Pinhole, Size};
 
@@ -285,7 +285,7 @@ fn decode(value: f32, transfer: Transfer) -> f32 {
     match transfer {
         Transfer::Linear => value,
         Transfer::Srgb if value <= 0.040_45 => value / 12.92,
-        Transfer::Srgb => power((f64::from(value) + 0.055) / 1.055, 2.4) as f32,
+        Transfer::Srgb => ((f64::from(value) + 0.055) / 1.055).powf(2.4) as f32,
     }
 }
 

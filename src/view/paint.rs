@@ -10,8 +10,10 @@
 //! Limits: paint that changes softly stays, and so does what a region's borders do not tell; an edge of the relief looks
 //! like one of paint if it is sharp enough. Regions of a few pixels, mixtures of two paints, leave the mask.
 
+use std::cmp::Reverse;
+
 use super::ColourView;
-use crate::numeric::{quantile, sort_descending};
+use crate::numeric::quantile;
 
 /// Differences of neighbours' log colours, hue (what differs from their mean) and all, that no shading of a smooth
 /// surface makes, beside four sigmas of the noise; set once, and not varied since.
@@ -130,7 +132,7 @@ impl Regions {
             found.push((pixels, label));
         }
         let labels = found.len();
-        sort_descending(&mut found, |&(pixels, _)| pixels as f64);
+        found.sort_by_key(|&(pixels, _)| Reverse(pixels));
         found.truncate(MOST_REGIONS);
         found.retain(|(pixels, _)| *pixels >= SMALLEST_REGION);
         let mut names = vec![NONE; labels];
@@ -200,7 +202,7 @@ impl Regions {
     /// What paints differ by across each border that is long enough.
     fn borders(&self, view: &ColourView) -> Vec<Border> {
         let mut steps = self.steps(view);
-        sort_descending(&mut steps, |([a, b], _)| f64::from(*a) * MOST_REGIONS as f64 + f64::from(*b));
+        steps.sort_by_key(|&(regions, _)| Reverse(regions));
         let long = steps.chunk_by(|a, b| a.0 == b.0).filter(|border| border.len() >= FEWEST_PAIRS);
         long.map(|border| Border {
             regions: border[0].0.map(|region| region as usize),

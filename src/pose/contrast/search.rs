@@ -9,7 +9,6 @@
 
 use super::problem::{ContrastProblem, ContrastReport};
 use super::registration::{ContrastEffort, ContrastRegistration};
-use crate::numeric::sort_descending;
 use crate::pose::similarity::Similarity;
 
 /// A stage: samples, what a registration may take, how many ends go on and how far apart they are, degrees.
@@ -169,7 +168,7 @@ pub fn settle(problem: &ContrastProblem<'_>, start: &Similarity) -> Option<(Simi
 
 /// The best ends of a stage, best first, of which no two are one.
 fn best_apart(mut ends: Vec<End>, stage: &Stage) -> Vec<End> {
-    sort_descending(&mut ends, |(value, _)| -value);
+    ends.sort_by(|(a, _), (b, _)| a.total_cmp(b));
     let mut kept: Vec<End> = Vec::with_capacity(stage.kept);
     for end in ends {
         let is_apart = |(_, other): &End| {

@@ -338,8 +338,8 @@ fn weakest_turn(covariance: &PoseMatrix, prior: f64) -> (Direction, f64) {
     let Some(eigen) = symmetric_eigen(&turns) else {
         return (Direction::default(), 1.0);
     };
-    let weakest = eigen.values.imax();
+    let weakest = eigen.eigenvalues.imax();
     let mut direction = PoseVector::zeros();
-    direction.fixed_rows_mut::<3>(0).copy_from(&eigen.vectors.column(weakest));
-    (Direction::of(&direction), eigen.values[weakest] / (prior * prior))
+    direction.fixed_rows_mut::<3>(0).copy_from(&eigen.eigenvectors.column(weakest));
+    (Direction::of(&direction), eigen.eigenvalues[weakest] / (prior * prior))
 }

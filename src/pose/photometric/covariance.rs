@@ -191,7 +191,7 @@ fn sigma_growth(matrix: &PoseMatrix, noise_information: &PoseMatrix) -> Option<P
     let inverse = inverse(&root)?;
     let symmetric = 0.5 * (matrix + matrix.transpose());
     let whitened = product(&product(&inverse, &symmetric), &inverse.transpose());
-    let Eigen { values, vectors } = symmetric_eigen(&whitened)?;
+    let Eigen { eigenvalues: values, eigenvectors: vectors } = symmetric_eigen(&whitened)?;
     let mut along = product(&root, &vectors).transpose();
     for (mut row, value) in along.row_iter_mut().zip(&values) {
         row *= value.max(1.0) / (value - 1.0).max(LEAST_SIGNAL);

@@ -10,7 +10,6 @@ use super::sweep::Sweep;
 use super::task_results::TaskResults;
 use crate::check::positive;
 use crate::error::Result;
-use crate::numeric::sort_descending;
 use crate::pose::similarity::Similarity;
 
 /// Ascents at most.
@@ -214,7 +213,7 @@ impl Search {
     /// The best hypotheses of the sweep, no two rotations alike.
     fn choose_starts(&mut self) {
         self.starts = self.swept.results().flatten().copied().collect();
-        sort_descending(&mut self.starts, |start| start.score);
+        self.starts.sort_by(|a, b| b.score.total_cmp(&a.score));
         suppress_duplicates(&mut self.starts, MOST_ASCENTS, SWEEP_SEPARATION, |start| &start.rotation);
         self.ascents = TaskResults::new(self.starts.len());
     }
@@ -223,7 +222,7 @@ impl Search {
     fn choose_candidates(&mut self) {
         let ends = self.ascents.results().filter(|candidate| candidate.score.is_finite());
         self.candidates = ends.copied().collect();
-        sort_descending(&mut self.candidates, |candidate| candidate.score);
+        self.candidates.sort_by(|a, b| b.score.total_cmp(&a.score));
         suppress_duplicates(&mut self.candidates, MOST_CANDIDATES, CANDIDATE_SEPARATION, |one| &one.pose.rotation);
     }
 }

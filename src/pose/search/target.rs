@@ -151,11 +151,11 @@ fn flat() -> Error {
 /// W: principal axes over the fourth root of their variance, the first of them scaled to variance one.
 fn balance(covariance: &Matrix3<f64>) -> Result<Matrix3<f64>> {
     let eigen = symmetric_eigen(covariance).ok_or_else(flat)?;
-    let largest = eigen.values.max();
+    let largest = eigen.eigenvalues.max();
     if largest.is_nan() || largest <= f64::from(f32::EPSILON).powi(2) {
         return Err(flat());
     }
-    let shares = eigen.values.map(|value| (value.max(0.0) + NOISE * NOISE) / largest);
+    let shares = eigen.eigenvalues.map(|value| (value.max(0.0) + NOISE * NOISE) / largest);
     let gains = shares.map(|share| 1.0 / (share.sqrt().sqrt() * largest.sqrt()));
-    Ok(Matrix3::from_diagonal(&gains) * eigen.vectors.transpose())
+    Ok(Matrix3::from_diagonal(&gains) * eigen.eigenvectors.transpose())
 }
