@@ -79,10 +79,10 @@ function ofCloud(cloud: Cloud, options: ReadOptions): Content {
   return cloudDepth(cloud, options);
 }
 
-function ofText(text: string, { as }: ReadOptions): Content {
+async function ofText(text: string, { as }: ReadOptions): Promise<Content> {
   if (as === "colour" || as === "depth" || as === "mask")
     throw badFile(`it is a text where a ${as === "depth" ? "depth map" : `${as} image`} was asked for`);
-  const { cameras, poses, warnings, format } = readText(text);
+  const { cameras, poses, warnings, format } = await readText(text);
   const reading = { says: `${format}: ${inWords(cameras, poses)}`, warnings: [...new Set(warnings)] };
   if (as === "cameras" && cameras.length === 0) throw badFile(`it holds ${inWords(cameras, poses)}, but no camera`);
   if (as === "poses" && poses.length === 0) throw badFile(`it holds ${inWords(cameras, poses)}, but no motion`);

@@ -78,7 +78,14 @@ def tiffs():
     save("tiled", METRES, tile=(16, 16), compression="zlib", predictor=3)
     save("strips", MM, rowsperstrip=5, compression="lzw")
     save("zstd", METRES, compression="zstd")
+    save("zstd-predicted", METRES, compression="zstd", predictor=3, rowsperstrip=5)
     save("bigtiff", METRES, bigtiff=True)
+    save("bigtiff-lzw", MM, bigtiff=True, byteorder=">", compression="lzw", predictor=2, rowsperstrip=5)
+    save("half", METRES.astype(np.float16), compression="zlib")
+    save("lerc", METRES, compression="lerc")
+    save("lerc-zstd", METRES, compression="lerc", compressionargs={"compression": "zstd"})
+    save("lerc-deflate", METRES, compression="lerc", compressionargs={"compression": "deflate"})
+    tifffile.imwrite(OUT / "colour-planes.tif", np.moveaxis(RGB, -1, 0), photometric="rgb", planarconfig="separate", compression="zlib")
     tifffile.imwrite(OUT / "colour.tif", RGB, photometric="rgb", compression="lzw", predictor=2)
     # A picture whose table of LZW codes fills up and is cleared.
     noise = np.random.default_rng(1).integers(0, 1 << 16, (80, 80), dtype=np.uint16)
@@ -94,6 +101,29 @@ def exrs():
     header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
     linear = (RGB / 255).astype(np.float16)
     OpenEXR.File(header, {"R": linear[..., 0].copy(), "G": linear[..., 1].copy(), "B": linear[..., 2].copy(), "Z": METRES}).write(str(OUT / "colour-and-depth.exr"))
+
+
+def large_exrs():
+    """64x48 pixels, so that blocks become shorter: depths of 0.75 + x / 64 + y / 128 metres, which halves hold, and colours of (x, y, (x + y) / 2) / 64."""
+    x, y = np.meshgrid(np.arange(64), np.arange(48))
+    depth = np.where((x + y) % 7 == 0, 0, 0.75 + x / 64 + y / 128)
+    colours = {"R": x / 64, "G": y / 64, "B": (x + y) / 128}
+
+    def write(name, compression, channels):
+        header = {"compression": compression, "type": OpenEXR.scanlineimage}
+        OpenEXR.File(header, channels).write(str(OUT / f"large-{name}.exr"))
+
+    half, full = [{"Z": depth.astype(kind)} for kind in (np.float16, np.float32)]
+    rgb = {name: values.astype(np.float16) for name, values in colours.items()}
+    write("piz-half", OpenEXR.PIZ_COMPRESSION, half)
+    write("piz-float", OpenEXR.PIZ_COMPRESSION, full)
+    write("piz-colours", OpenEXR.PIZ_COMPRESSION, {**rgb, "Z": half["Z"]})
+    write("pxr24-float", OpenEXR.PXR24_COMPRESSION, full)
+    write("pxr24-mixed", OpenEXR.PXR24_COMPRESSION, {**rgb, **full})
+    write("dwaa-colours", OpenEXR.DWAA_COMPRESSION, rgb)
+    write("dwab-colours", OpenEXR.DWAB_COMPRESSION, rgb)
+    write("dwaa-depth", OpenEXR.DWAA_COMPRESSION, full)
+    write("b44", OpenEXR.B44_COMPRESSION, half)
 
 
 def clouds():
@@ -177,5 +207,5 @@ def profiles():
     converted.save(OUT / "colour-wide-by-lcms.png")
 
 
-for make in [pictures, tiffs, exrs, clouds, calibrations, profiles]:
+for make in [pictures, tiffs, exrs, large_exrs, clouds, calibrations, profiles]:
     make()

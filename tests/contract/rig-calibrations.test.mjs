@@ -197,6 +197,12 @@ describe("as other programs write them", () => {
     assert.deepEqual([poses[0].from, poses[0].to], ["depth", "rgb"]);
   });
 
+  test("YAML of all kinds: merged keys, keys after a question mark, anchors and folded texts", async () => {
+    const merged =
+      "base: &base {fx: 518.5, fy: 519.25}\ncameras:\n  - <<: *base\n    ? cx\n    : 325.5\n    cy: 253.75\n    notes: >-\n      of the\n      left one\n";
+    sameCamera((await read("rig.yaml", merged)).cameras.at(-1), K);
+  });
+
   test("COLMAP's cameras, whose pixels begin half a pixel earlier", async () => {
     const file = [
       "# comment",

@@ -138,12 +138,24 @@ const laughs = "abcdefghij"
         .join(", ")}]`,
   )
   .join("\n");
-const exr = (changes) => {
-  const file = fixture("depth-zip.exr");
+const exr = (changes, name = "depth-zip.exr") => {
+  const file = fixture(name);
   const at = (name) => Buffer.from(file).indexOf(name) + name.length;
   changes(file, new DataView(file.buffer), at);
   return file;
 };
+
+/** Where the table of an EXR of several blocks is: it points behind its own end. */
+function blocksAt(view) {
+  for (let at = 0; at + 8 < view.byteLength; at++) {
+    const first = view.getUint32(at, true);
+    if (first > at && first < at + 200 && (first - at) % 8 === 0 && view.getUint32(at + 4, true) === 0) return at;
+  }
+  throw new Error("no table");
+}
+
+/** The first block once more in place of the second. */
+const twice = (_, view) => view.setUint32(blocksAt(view) + 8, view.getUint32(blocksAt(view), true), true);
 
 /** Where the table of an EXR's one block is, which stands right behind it. */
 function table(view) {
@@ -151,6 +163,30 @@ function table(view) {
     if (view.getUint32(at, true) === at + 8 && view.getUint32(at + 4, true) === 0) return at;
   throw new Error("no table");
 }
+
+/** The same file by another compression, as its header says. */
+const packed = (name, compression) => {
+  const file = fixture(name);
+  const at = Buffer.from(file).indexOf("compression\0compression\0") + "compression\0compression\0".length;
+  file[at + 4] = compression;
+  return file;
+};
+
+/** An EXR whose first block inflates to twenty megabytes. */
+function bombOf(name) {
+  const file = fixture(name);
+  const view = new DataView(file.buffer);
+  const from = Number(view.getBigUint64(blocksAt(view), true));
+  const bomb = deflateSync(Buffer.alloc(20 * MEGABYTE)).subarray(0, 4000);
+  return bytes(file.subarray(0, from + 4), u32(bomb.length), bomb, new Uint8Array(30_000));
+}
+
+/** A frame of ZSTD that declares so many bytes and holds none. */
+const zstdOf = (declared) => bytes([0x28, 0xb5, 0x2f, 0xfd, 0xa0], u32(declared), [1, 0, 0]);
+
+/** The header of a blob of LERC, of the second version. */
+const lercOf = ({ width = 4, height = 4, block = 8, length = 100 }) =>
+  bytes(text("Lerc2 "), u32(2, height, width, width * height, block, length, 3), new Uint8Array(100)).slice(0, 100);
 
 /** File, bytes, what the error has to say, and options where it needs some. */
 const FILES = [
@@ -222,8 +258,14 @@ const FILES = [
   ["head.tif", text("II*\x00"), /beyond its own end/],
   ["nowhere.tif", bytes([0x49, 0x49, 42, 0], u32(0xffffff)), /beyond its own end/],
   ["cut.tif", cut("depth-float-zlib.tif", 300), /TIFF|beyond its own end/],
-  ["big.tif", fixture("depth-bigtiff.tif"), /BigTIFF/],
-  ["zstd.tif", fixture("depth-zstd.tif"), /compressed by ZSTD/],
+  ["big.tif", cut("depth-bigtiff.tif", 40), /beyond its own end/],
+  ["tags.tif", bytes([0x49, 0x49, 43, 0, 8, 0, 0, 0], u32(16, 0, 0xffffffff, 0xffff)), /TIFF has \d+ tags/],
+  ["kind.tif", changed("depth-16-None.tif", [2, 44]), /TIFF|no kind/],
+  ["zstd.tif", tiff(tiffTags(4096, 4096, { 259: 50000, 273: 110, 279: 8 }), zstdOf(2 ** 31)), /damaged|cut off/],
+  ["lerc.tif", tiff(tiffTags(4, 4, { 259: 34887, 273: 110, 279: 100 }), lercOf({ width: 2 ** 15 })), /kind of LERC/],
+  ["lerc-none.tif", tiff(tiffTags(4, 4, { 259: 34887, 273: 110, 279: 100 }), lercOf({ length: 0 })), /LERC/],
+  ["lerc-block.tif", tiff(tiffTags(4, 4, { 259: 34887, 273: 110, 279: 100 }), lercOf({ block: 0 })), /kind of LERC/],
+  ["lzma.tif", tiff(tiffTags(4, 4, { 259: 34925, 279: 20 }), new Uint8Array(200)), /compressed by LZMA/],
   ["promises.tif", tiff(tiffTags(4096, 4096)), /cut off: \d+ of \d+ bytes/],
   ["wide.tif", tiff(tiffTags(70_000, 1)), /70000x1 pixels large/],
   ["fat.tif", tiff(tiffTags(4096, 4096, { 258: 64, 277: 4, 339: 3 })), /too much/],
@@ -235,7 +277,12 @@ const FILES = [
   ["palette.tif", tiff(tiffTags(4, 4, { 262: 3 })), /palette/],
 
   ["cut.exr", cut("depth-zip.exr", 250), /EXR|beyond its own end/],
-  ["piz.exr", fixture("depth-piz.exr"), /compressed by PIZ/],
+  ["b44.exr", fixture("large-b44.exr"), /compressed by B44/],
+  ["dwa.exr", fixture("large-dwaa-depth.exr"), /DWA, of which R, G, B and Y are read/],
+  ["types.exr", packed("colour-and-depth.exr", 4), /channels of different types/],
+  ["piz.exr", changed("large-piz-half.exr", [-200, 0], [-201, 0], [-202, 0], [-700, 255]), /EXR|damaged/],
+  ["order.exr", exr(twice, "large-pxr24-float.exr"), /a block of it is missing/],
+  ["bomb.exr", bombOf("large-pxr24-float.exr"), /inflates to more than the 4096 bytes/],
   ["tiled.exr", exr((file) => (file[5] = 2)), /tiled/],
   [
     "window.exr",
@@ -323,6 +370,10 @@ const FILES = [
   ["laughs.yaml", text(laughs), /none of the forms|neither a camera/],
   ["cut.yaml", cut("opencv.yaml", 150), /as YAML|neither a camera/],
   ["twice.yaml", text("K: 1\nK: 2\n"), /as YAML/],
+  ["nested.yaml", text(`K: ${"[".repeat(40)}${"]".repeat(40)}`), /as YAML: nesting/],
+  ["aliases.yaml", text(`x: &a 1\ny: [${Array(65).fill("*a").join(", ")}]`), /as YAML/],
+  ["open.yaml", text(`K: [${"1,".repeat(2 ** 17 - 8)}`), /as YAML/],
+  ["words.yaml", text(`K: [${"a\n".repeat(2 ** 17 - 8)}`), /as YAML/],
   [
     "omni.yaml",
     text("cam0:\n  camera_model: omni\n  intrinsics: [1, 2, 3, 4, 5]\n  distortion_model: radtan\n"),

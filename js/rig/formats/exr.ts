@@ -1,33 +1,38 @@
 /**
  * OpenEXR of one part in scan lines, plain or by RLE, ZIPS or ZIP: half, float and whole numbers.
  *
- * Written here: three's EXRLoader brings a scene graph's textures along, parse-exr is a copy of it, and neither checks what a file
- * declares. Not read: PIZ, PXR24, B44 and DWA, tiles, deep pixels, several parts; each is named.
+ * PIZ, PXR24 and DWA are parse-exr's (exr-others.ts). It does not replace this: it knows neither a channel Z nor whole numbers, mistakes
+ * channels of different types, and checks nothing of what a file declares. Not read: B44, tiles, deep pixels, several parts; each is named.
  */
 import { badFile } from "../../errors.js";
 import { inflateExactly } from "../../inflate.js";
+import { half } from "./half.js";
 import { checkSize } from "./limits.js";
 import type { Picture } from "./picture.js";
 
 const COMPRESSIONS = ["none", "RLE", "ZIPS", "ZIP", "PIZ", "PXR24", "B44", "B44A", "DWAA", "DWAB"];
 /** Lines of a block, of those that are read. */
-const LINES = [1, 1, 1, 16];
+const LINES: Record<number, number> = { 0: 1, 1: 1, 2: 1, 3: 16, 4: 32, 5: 16, 8: 32, 9: 256 };
+/** The last compression that is read here. */
+const ZIP = 3;
 const SIZES = [4, 2, 4];
 const MOST_CHANNELS = 64;
 const MOST_HEADER = 65_536;
 /** Bytes of all channels, used or not. */
 const MOST_PIXELS = 2 ** 28;
 
-interface Channel {
+export interface Channel {
   name: string;
   type: number;
 }
 
-interface Header {
+export interface Header {
   width: number;
   height: number;
   top: number;
   compression: number;
+  /** Lines of a block. */
+  lines: number;
   channels: Channel[];
   end: number;
 }
@@ -60,7 +65,7 @@ function header(view: DataView, bytes: Uint8Array): Header {
     throw badFile(
       `this EXR is ${flags & 0x200 ? "tiled" : flags & 0x800 ? "deep" : "of several parts"}, which is not read here; save it as plain scan lines`,
     );
-  const found: Header = { width: 0, height: 0, top: 0, compression: -1, channels: [], end: 0 };
+  const found: Header = { width: 0, height: 0, top: 0, compression: -1, lines: 0, channels: [], end: 0 };
   let at = 8;
   while (bytes[at] !== 0) {
     const [name, afterName] = word(bytes, at);
@@ -82,10 +87,12 @@ function header(view: DataView, bytes: Uint8Array): Header {
   found.end = at + 1;
   checkSize(found.width, found.height);
   if (found.channels.length === 0) throw badFile("this EXR has no channels");
-  if (LINES[found.compression] === undefined)
+  const lines = LINES[found.compression];
+  if (lines === undefined)
     throw badFile(
       `this EXR is compressed by ${COMPRESSIONS[found.compression] ?? "an unknown method"}, which is not read here; save it by ZIP`,
     );
+  found.lines = lines;
   return found;
 }
 
@@ -112,20 +119,6 @@ function restored(data: Uint8Array): Uint8Array {
   return out;
 }
 
-/** Of 16 bits: five of exponent, ten of fraction. */
-function half(bits: number): number {
-  const [exponent, fraction] = [(bits >> 10) & 31, bits & 1023];
-  const size =
-    exponent === 0
-      ? fraction * 2 ** -24
-      : exponent === 31
-        ? fraction === 0
-          ? Infinity
-          : NaN
-        : (1024 + fraction) * 2 ** (exponent - 25);
-  return bits & 0x8000 ? -size : size;
-}
-
 /** Which channels make the picture: red, green and blue, or the one that holds depth. */
 function chosen(channels: Channel[], isDepth: boolean): number[] {
   const find = (...names: string[]) =>
@@ -146,44 +139,55 @@ function chosen(channels: Channel[], isDepth: boolean): number[] {
   return [single];
 }
 
-export function readExr(bytes: Uint8Array, isDepth: boolean): Picture {
+const strideOf = ({ width, channels }: Header): number =>
+  width * channels.reduce((sum, { type }) => sum + (SIZES[type] ?? 0), 0);
+
+/** Where the blocks are: their first lines, what the file has of them, and the bytes that this becomes. */
+export function blocks(bytes: Uint8Array, header: Header): { row: number; body: Uint8Array; length: number }[] {
+  const { height, top, lines, end } = header;
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
-  const { width, height, top, compression, channels, end } = header(view, bytes);
-  const used = chosen(channels, isDepth);
-  const stride = width * channels.reduce((sum, { type }) => sum + (SIZES[type] ?? 0), 0);
-  if (stride * height > MOST_PIXELS)
-    throw badFile(`this EXR has ${width}x${height} pixels of ${channels.length} channels, which is too much`);
-  const lines = LINES[compression] ?? 1;
-  const blocks = Math.ceil(height / lines);
-  const data = new Float32Array(width * height * used.length).fill(NaN);
-  for (let block = 0; block < blocks; block++) {
+  return Array.from({ length: Math.ceil(height / lines) }, (_, block) => {
     const at = Number(view.getBigUint64(end + 8 * block, true));
     const row = view.getInt32(at, true) - top;
     const size = view.getInt32(at + 4, true);
     if (row < 0 || row >= height || size < 0 || at + 8 + size > bytes.length)
       throw badFile(`this EXR is cut off or damaged in its block ${block}`);
-    const rows = Math.min(lines, height - row);
-    const length = rows * stride;
-    const body = bytes.subarray(at + 8, at + 8 + size);
+    const length = Math.min(lines, height - row) * strideOf(header);
     if (size > 2 * length + 1024) throw badFile(`this EXR is damaged: its block ${block} is too long`);
+    return { row, body: bytes.subarray(at + 8, at + 8 + size), length };
+  });
+}
+
+/** The samples of the chosen channels. */
+function readKnown(bytes: Uint8Array, header: Header, used: number[]): Float32Array {
+  const { width, height, channels, compression } = header;
+  const stride = strideOf(header);
+  const data = new Float32Array(width * height * used.length).fill(NaN);
+  blocks(bytes, header).forEach(({ row, body, length }, block) => {
     const plain =
-      size === length || compression === 0
+      body.length === length || compression === 0
         ? body
         : restored(compression === 1 ? runs(body, length) : inflateExactly(body, length, "this EXR"));
     if (plain.length < length)
       throw badFile(`this EXR is cut off: its block ${block} has ${plain.length} of ${length} bytes`);
-    spread(plain, { width, rows, row, channels, used, stride }, data);
-  }
-  return {
-    width,
-    height,
-    channels: used.length,
-    data,
-    format: "EXR",
-    bits: channels[used[0] ?? 0]?.type === 1 ? 16 : 32,
-    notes: [],
-    warnings: [],
-  };
+    spread(plain, { width, rows: length / stride, row, channels, used, stride }, data);
+  });
+  return data;
+}
+
+export function readExr(bytes: Uint8Array, isDepth: boolean): Picture | Promise<Picture> {
+  const found = header(new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength), bytes);
+  const { width, height, channels, compression } = found;
+  const used = chosen(channels, isDepth);
+  if (strideOf(found) * height > MOST_PIXELS)
+    throw badFile(`this EXR has ${width}x${height} pixels of ${channels.length} channels, which is too much`);
+  const bits = channels[used[0] ?? 0]?.type === 1 ? 16 : 32;
+  const picture = (data: Float32Array): Picture => ({
+    ...{ width, height, channels: used.length, data },
+    ...{ format: "EXR", bits, notes: [], warnings: [] },
+  });
+  if (compression <= ZIP) return picture(readKnown(bytes, found, used));
+  return import("./exr-others.js").then(({ readOthers }) => picture(readOthers(bytes, found, used)));
 }
 
 interface Block {

@@ -5,6 +5,8 @@ import { badFile } from "../../errors.js";
 export const MOST_SIDE = 4096;
 /** Bytes of a file: 4096x4096 pixels of 16 bits and twice that; a cloud of 1280x960 pixels as text. */
 export const MOST_BYTES = 64 * 2 ** 20;
+/** What is compressed may be longer than twice what it was made of by so many bytes, and no more. */
+export const OVERHEAD = 1024;
 /** Characters of a text that holds cameras or poses; a trajectory of ten thousand poses has a million. */
 export const MOST_TEXT = 4 * 2 ** 20;
 

@@ -7,10 +7,11 @@ import { isEnumeration, readEnumeration } from "./realsense.js";
 import { isEcho, isPublisher, readEcho, readPublishers } from "./ros.js";
 import { type Calibration, searchTree } from "./tree.js";
 import { plainXml, readXml } from "./xml.js";
-import { readDocuments } from "./yaml.js";
 
 /** Characters of YAML: calibrations have a few thousand. */
 const MOST_YAML = 2 ** 18;
+/** So that a small file cannot become a large value. */
+const YAML_LIMITS = { maxDepth: 32, maxAliases: 64 };
 
 /** The text of a file, or nothing where its bytes are none. */
 export function textOf(bytes: Uint8Array): string | undefined {
@@ -47,11 +48,13 @@ const plainYaml = (text: string): string =>
 const withColons = (text: string): string =>
   /^[ \t]*[\w.]{1,80}[ \t]*:/m.test(text) ? text : text.replace(/^([ \t]*[\w.]{1,80})[ \t]*=[ \t]*/gm, "$1: ");
 
-function readYaml(text: string): unknown {
+/** By js-yaml, which is loaded when such a text comes. */
+async function readYaml(text: string): Promise<unknown> {
   if (text.length > MOST_YAML)
     throw badFile(`it is text of ${text.length} characters, in none of the forms that are read here`);
+  const { CORE_SCHEMA, loadAll, mergeTag } = await import("js-yaml");
   try {
-    return readDocuments(withColons(plainYaml(text)));
+    return loadAll(withColons(plainYaml(text)), { ...YAML_LIMITS, schema: CORE_SCHEMA.withTags(mergeTag) });
   } catch (error) {
     const reason = error instanceof Error ? (error.message.split("\n")[0] ?? "") : String(error);
     throw badFile(`it is a text in none of the forms that are read here, or damaged (as YAML: ${reason})`, error);
@@ -72,7 +75,7 @@ function searched(value: unknown, format: string): Calibration & { format: strin
 }
 
 /** What a text holds, with a word on what kind of text it is. */
-export function readText(text: string): Calibration & { format: string } {
+export async function readText(text: string): Promise<Calibration & { format: string }> {
   const trimmed = text.replace(/^\ufeff/, "").trim();
   if (trimmed === "") throw badFile("it is empty: there is nothing in it but spaces");
   if (isPublisher(trimmed)) return { ...readPublishers(trimmed), format: "a static transform of ROS" };
@@ -83,5 +86,5 @@ export function readText(text: string): Calibration & { format: string } {
   const numbers = readNumbers(trimmed);
   if (numbers !== undefined) return numbers;
   if (/^[{[]/.test(trimmed)) return searched(readJson(trimmed), "JSON");
-  return searched(readYaml(trimmed), "YAML");
+  return searched(await readYaml(trimmed), "YAML");
 }

@@ -1,20 +1,22 @@
 /**
- * TIFF of one picture: integers and floats, in strips or tiles, plain, LZW, deflate or PackBits, with either predictor.
+ * TIFF and BigTIFF of one picture: integers, and floats of 16, 32 and 64 bits, in strips or tiles, plain, LZW, deflate, PackBits, ZSTD or
+ * LERC, with either predictor.
  *
- * Written here because tiff (7.1) takes sizes and offsets as the file declares them and knows no predictor of floats, with which GDAL and
- * tifffile write depth, and geotiff (3, 40 kB gzipped) is made for maps. Not read: BigTIFF, planes apart, JPEG inside, palettes.
+ * The containers are read here, ZSTD and LERC by libraries (tiff-codecs.ts). Why not geotiff (3.0): it takes sizes as a file declares
+ * them and inflates whatever there is, it imports http, fs and vm, which browsers do not have, and its ZSTD fetches a data: address, which
+ * the page's policy forbids. Why not tiff (7.1): it knows no predictor of floats, with which GDAL and tifffile write depth. Not read: JPEG
+ * inside, palettes.
  */
 import { badFile } from "../../errors.js";
 import { inflateExactly } from "../../inflate.js";
 import { turnedBy } from "./exif.js";
-import { checkSize } from "./limits.js";
+import { half } from "./half.js";
+import { OVERHEAD, checkSize } from "./limits.js";
 import type { Picture } from "./picture.js";
 import { lzw, packBits, undoFloats, undoIntegers } from "./tiff-coding.js";
 
 /** Bytes of all pixels. */
 const MOST_PIXELS = 2 ** 28;
-/** What is compressed may be somewhat longer than what it was made of, and no more. */
-const OVERHEAD = 1024;
 
 const Tag = {
   ...{
@@ -37,11 +39,12 @@ const Tag = {
     TileOffsets: 324,
     TileCounts: 325,
     Format: 339,
+    Lerc: 50674,
   },
 } as const;
 
 /** Bytes of a value of each of TIFF's types that are numbers here. */
-const TYPES: Record<number, number> = { 1: 1, 3: 2, 4: 4 };
+const TYPES: Record<number, number> = { 1: 1, 3: 2, 4: 4, 16: 8 };
 const MOST_TAGS = 1000;
 const MOST_VALUES = 200_000;
 
@@ -49,23 +52,33 @@ type Tags = Map<number, number[]>;
 
 function directory(view: DataView): { tags: Tags; little: boolean } {
   const little = view.getUint16(0) === 0x4949;
-  if (view.getUint16(2, little) !== 42)
-    throw badFile("it is a BigTIFF, which is not read here; save it as an ordinary TIFF");
-  const at = view.getUint32(4, little);
-  const count = view.getUint16(at, little);
+  const kind = view.getUint16(2, little);
+  if (kind !== 42 && kind !== 43) throw badFile("this TIFF is of a kind that there is not");
+  const isBig = kind === 43;
+  const whole = (at: number) => (isBig ? Number(view.getBigUint64(at, little)) : view.getUint32(at, little));
+  const number = (at: number, size: number) =>
+    size === 1
+      ? view.getUint8(at)
+      : size === 2
+        ? view.getUint16(at, little)
+        : size === 4
+          ? view.getUint32(at, little)
+          : Number(view.getBigUint64(at, little));
+  const at = whole(isBig ? 8 : 4);
+  const count = isBig ? whole(at) : view.getUint16(at, little);
   if (count === 0 || count > MOST_TAGS) throw badFile(`this TIFF has ${count} tags`);
+  const [first, step, room] = isBig ? [at + 8, 20, 8] : [at + 2, 12, 4];
   const tags: Tags = new Map();
   for (let index = 0; index < count; index++) {
-    const entry = at + 2 + 12 * index;
+    const entry = first + step * index;
     const size = TYPES[view.getUint16(entry + 2, little)];
-    const length = view.getUint32(entry + 4, little);
+    const length = whole(entry + 4);
     if (size === undefined || length > MOST_VALUES) continue;
-    const from = size * length <= 4 ? entry + 8 : view.getUint32(entry + 8, little);
-    const one = (place: number) =>
-      size === 1 ? view.getUint8(place) : size === 2 ? view.getUint16(place, little) : view.getUint32(place, little);
+    const place = entry + 4 + room;
+    const from = size * length <= room ? place : whole(place);
     tags.set(
       view.getUint16(entry, little),
-      Array.from({ length }, (_, each) => one(from + size * each)),
+      Array.from({ length }, (_, each) => number(from + size * each, size)),
     );
   }
   return { tags, little };
@@ -79,7 +92,11 @@ interface Layout {
   isFloat: boolean;
   isSigned: boolean;
   compression: number;
+  /** How LERC is compressed once more. */
+  again: number;
   predictor: number;
+  /** Whether each channel has strips or tiles of its own. */
+  isApart: boolean;
   isTiled: boolean;
   /** Of a tile; a strip is one as wide as the picture. */
   tileWidth: number;
@@ -95,15 +112,13 @@ function layout(tags: Tags): Layout {
   const [samples, bits, format] = [one(Tag.Samples, 1), one(Tag.Bits, 1), one(Tag.Format, 1)];
   const isFloat = format === 3;
   if (tags.get(Tag.Bits)?.some((each) => each !== bits)) throw badFile("this TIFF has channels of different sizes");
-  const known = isFloat ? [32, 64] : [8, 16, 32];
+  const known = isFloat ? [16, 32, 64] : [8, 16, 32];
   if (!known.includes(bits) || format > 3)
     throw badFile(
-      `this TIFF has ${bits}-bit samples of format ${format}; 8, 16 and 32 bits, or floats of 32 and 64, are read`,
+      `this TIFF has ${bits}-bit samples of format ${format}; 8, 16 and 32 bits, or floats of 16, 32 and 64, are read`,
     );
   if (samples < 1 || samples > 4) throw badFile(`this TIFF has ${samples} channels; 1 to 4 are read`);
   if (one(Tag.Photometric, 1) === 3) throw badFile("this TIFF has a palette, which is not read here; save it as PNG");
-  if (one(Tag.Planes, 1) !== 1 && samples > 1)
-    throw badFile("this TIFF keeps its channels apart, which is not read here");
   if ((width * height * samples * bits) / 8 > MOST_PIXELS)
     throw badFile(`this TIFF has ${width}x${height} pixels of ${samples} times ${bits} bits, which is too much`);
   const isTiled = tags.has(Tag.TileWidth);
@@ -112,7 +127,9 @@ function layout(tags: Tags): Layout {
     : [width, Math.min(height, one(Tag.Rows, height))];
   if (isTiled) checkSize(tileWidth, tileHeight);
   if (tileHeight < 1) throw badFile("this TIFF has strips of no rows");
-  const needed = Math.ceil(width / tileWidth) * Math.ceil(height / tileHeight);
+  const isApart = one(Tag.Planes, 1) !== 1 && samples > 1;
+  const each = Math.ceil(width / tileWidth) * Math.ceil(height / tileHeight);
+  const needed = isApart ? each * samples : each;
   const [offsets = [], counts = []] = [
     tags.get(isTiled ? Tag.TileOffsets : Tag.Offsets),
     tags.get(isTiled ? Tag.TileCounts : Tag.Counts),
@@ -123,10 +140,12 @@ function layout(tags: Tags): Layout {
     isFloat,
     isSigned: format === 2,
     compression: one(Tag.Compression, 1),
+    again: tags.get(Tag.Lerc)?.[1] ?? 0,
     predictor: one(Tag.Predictor, 1),
+    isApart,
   };
   // Tiles at the edges are padded: together they may not be much more than the picture.
-  if (isTiled && needed * tileWidth * tileHeight > 4 * width * height + 4 * tileWidth * tileHeight)
+  if (isTiled && each * tileWidth * tileHeight > 4 * width * height + 4 * tileWidth * tileHeight)
     throw badFile("this TIFF has tiles much larger than its picture");
   return { width, height, samples, bits, ...rest, isTiled, tileWidth, tileHeight, offsets, counts };
 }
@@ -138,13 +157,14 @@ const COMPRESSIONS: Record<number, string> = {
   6: "JPEG",
   7: "JPEG",
   34925: "LZMA",
-  50000: "ZSTD",
-  34887: "LERC",
   50001: "WebP",
 };
+const [ZSTD, LERC] = [50000, 34887];
+
+type Codecs = typeof import("./tiff-codecs.js");
 
 /** The bytes of one strip or tile, exactly `length` of them. */
-function expanded(bytes: Uint8Array, { compression }: Layout, length: number): Uint8Array {
+function expanded(bytes: Uint8Array, { compression, again }: Layout, length: number, codecs?: Codecs): Uint8Array {
   if (compression === 1) {
     if (bytes.length < length)
       throw badFile(`this TIFF is cut off: a part of its pixels has ${bytes.length} of ${length} bytes`);
@@ -155,13 +175,31 @@ function expanded(bytes: Uint8Array, { compression }: Layout, length: number): U
   if (compression === 5) return lzw(bytes, length);
   if (compression === 8 || compression === 32946) return inflateExactly(bytes, length, "this TIFF");
   if (compression === 32773) return packBits(bytes, length);
+  if (compression === ZSTD && codecs) return codecs.unpackZstd(bytes, length);
+  if (compression === LERC && codecs) return codecs.unpackLerc(bytes, length, again);
   throw badFile(
     `this TIFF is compressed by ${COMPRESSIONS[compression] ?? `method ${compression}`}, which is not read here; save it plain, or by LZW or deflate`,
   );
 }
 
+/** Channels apart, side by side. */
+function joined(bytes: Uint8Array, found: Layout, little: boolean, codecs?: Codecs): Uint8Array {
+  const { width, height, samples, bits, offsets, counts } = found;
+  const [size, each] = [bits / 8, Math.floor(offsets.length / samples)];
+  const out = new Uint8Array(width * height * samples * size);
+  for (let channel = 0; channel < samples; channel++) {
+    const own = (list: number[]) => list.slice(channel * each, (channel + 1) * each);
+    const one = { ...found, samples: 1, isApart: false, offsets: own(offsets), counts: own(counts) };
+    const plane = pixels(bytes, one, little, codecs);
+    for (let at = 0; at < plane.length; at++)
+      out[(Math.floor(at / size) * samples + channel) * size + (at % size)] = plane[at] ?? 0;
+  }
+  return out;
+}
+
 /** All samples, as bytes in this machine's order. */
-function pixels(bytes: Uint8Array, found: Layout, little: boolean): Uint8Array {
+function pixels(bytes: Uint8Array, found: Layout, little: boolean, codecs?: Codecs): Uint8Array {
+  if (found.isApart) return joined(bytes, found, little, codecs);
   const { width, height, samples, bits, isTiled, tileWidth, tileHeight, offsets, counts, predictor } = found;
   const size = (bits / 8) * samples;
   const out = new Uint8Array(width * height * size);
@@ -174,9 +212,9 @@ function pixels(bytes: Uint8Array, found: Layout, little: boolean): Uint8Array {
       const from = offsets[index] ?? 0;
       const until = from + (counts[index] ?? 0);
       if (until > bytes.length) throw badFile(`this TIFF is cut off: ${bytes.length} of ${until} bytes`);
-      const part = expanded(bytes.subarray(from, until), found, rows * tileWidth * size);
+      const part = expanded(bytes.subarray(from, until), found, rows * tileWidth * size, codecs);
       if (predictor === 3) undoFloats(part, tileWidth * samples, bits / 8, samples);
-      else swap(part, bits / 8, little);
+      else if (found.compression !== LERC) swap(part, bits / 8, little);
       if (predictor === 2) undoIntegers(part, tileWidth, bits / 8, samples);
       const used = Math.min(tileWidth, width - column) * size;
       for (let line = 0; line < Math.min(rows, height - row); line++) {
@@ -196,18 +234,32 @@ function swap(part: Uint8Array, size: number, little: boolean): void {
   for (let at = 0; at + size <= part.length; at += size) part.subarray(at, at + size).reverse();
 }
 
-export function readTiff(bytes: Uint8Array): Picture {
+export function readTiff(bytes: Uint8Array): Picture | Promise<Picture> {
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
   const { tags, little } = directory(view);
   const found = layout(tags);
   if (![1, 2, 3].includes(found.predictor) || (found.predictor === 3 && !found.isFloat))
     throw badFile(`this TIFF has the predictor ${found.predictor}, which is not known here`);
-  const { buffer } = pixels(bytes, found, little) as Uint8Array<ArrayBuffer>;
+  const picture = (codecs?: Codecs) =>
+    turnedBy(
+      asPicture(pixels(bytes, found, little, codecs), found),
+      tags.get(Tag.Orientation)?.[0] ?? 1,
+      "its tag says",
+    );
+  if (found.compression !== ZSTD && found.compression !== LERC) return picture();
+  return import("./tiff-codecs.js").then(picture);
+}
+
+/** Samples as pictures have them. */
+function asPicture(samples: Uint8Array, found: Layout): Picture {
+  const { buffer } = samples as Uint8Array<ArrayBuffer>;
   const { width, height, samples: channels, bits, isFloat, isSigned } = found;
   const data = isFloat
     ? bits === 64
       ? new Float32Array(new Float64Array(buffer))
-      : new Float32Array(buffer)
+      : bits === 16
+        ? Float32Array.from(new Uint16Array(buffer), half)
+        : new Float32Array(buffer)
     : bits === 8
       ? new Uint8Array(buffer)
       : bits === 32
@@ -215,6 +267,5 @@ export function readTiff(bytes: Uint8Array): Picture {
         : isSigned
           ? new Uint16Array(new Int16Array(buffer).map((value) => Math.max(0, value)))
           : new Uint16Array(buffer);
-  const picture: Picture = { width, height, channels, data, format: "TIFF", bits, notes: [], warnings: [] };
-  return turnedBy(picture, tags.get(Tag.Orientation)?.[0] ?? 1, "its tag says");
+  return { width, height, channels, data, format: "TIFF", bits, notes: [], warnings: [] };
 }

@@ -1,0 +1,117 @@
+/**
+ * OpenEXR by PIZ, PXR24 or DWA, by parse-exr. Loaded when such a file comes.
+ *
+ * parse-exr trusts what a file declares and knows but the channels R, G, B, A and Y. So it is given a file that is made here: the
+ * attributes that it needs, blocks in their order and checked, and the wanted channels under these names. Not read: B44, which parse-exr
+ * does not know; PIZ and DWA of channels of different types, which it mistakes; DWA of channels but R, G, B and Y, which the blocks
+ * themselves name.
+ */
+import parseExr from "parse-exr";
+import { badFile } from "../../errors.js";
+import { inflateUpTo } from "../../inflate.js";
+import { type Header, blocks } from "./exr.js";
+
+/** three's number of a type, which parse-exr takes. */
+const FLOAT = 1015;
+const MOST_CHANNELS = 16;
+/** The type of whole numbers. */
+const WHOLE = 0;
+const [PXR24, DWAA, DWAB] = [5, 8, 9];
+/** Little-endian numbers of four bytes. */
+const words = (...values: number[]): Uint8Array => new Uint8Array(new Int32Array(values).buffer);
+const text = (value: string): Uint8Array => new TextEncoder().encode(value);
+
+const joined = (parts: Uint8Array[]): Uint8Array<ArrayBuffer> => {
+  const out = new Uint8Array(parts.reduce((sum, part) => sum + part.length, 0));
+  let at = 0;
+  for (const part of parts) {
+    out.set(part, at);
+    at += part.length;
+  }
+  return out;
+};
+
+const attribute = (name: string, type: string, body: Uint8Array): Uint8Array[] => [
+  text(`${name}\0${type}\0`),
+  words(body.length),
+  body,
+];
+
+/** The names that parse-exr takes for the chosen channels, and none of them for the others. */
+function names({ channels, compression }: Header, used: number[]): string[] {
+  const known = used.length === 1 ? ["Y"] : ["R", "G", "B"];
+  const given = channels.map(({ name }, index) => known[used.indexOf(index)] ?? `other ${name}`);
+  const isDwa = compression === DWAA || compression === DWAB;
+  if (isDwa && channels.some(({ name }, index) => used.includes(index) && name !== given[index]))
+    throw badFile("this EXR is compressed by DWA, of which R, G, B and Y are read; save it by ZIP");
+  return isDwa ? channels.map(({ name }) => name) : given;
+}
+
+/** The parts of a block by DWA inflate to no more than they may: parse-exr inflates whatever there is. */
+function checkDwa(body: Uint8Array, length: number): void {
+  const view = new DataView(body.buffer, body.byteOffset, body.byteLength);
+  const at = (index: number) => Number(view.getBigUint64(8 * index, true));
+  const [unknown, ac, dc, rle, rleRaw, acCount, dcCount, method] = [2, 3, 4, 5, 7, 8, 9, 10].map(at) as [
+    ...[number, number, number, number],
+    ...[number, number, number, number],
+  ];
+  if (unknown > 0 || (ac > 0 && method !== 0))
+    throw badFile("this EXR is compressed by a kind of DWA that is not read here; save it by ZIP");
+  const start = 88 + view.getUint16(88, true);
+  if (Math.max(2 * acCount, 2 * dcCount, rleRaw) > 2 * length || start + ac + dc + rle > body.length)
+    throw badFile("this EXR is damaged: a block of it declares more than the picture holds");
+  if (dc > 0) inflateUpTo(body.subarray(start + ac, start + ac + dc), 2 * dcCount, "this EXR");
+  if (rle > 0) inflateUpTo(body.subarray(start + ac + dc, start + ac + dc + rle), 2 * length, "this EXR");
+}
+
+function checkBlock(body: Uint8Array, length: number, { compression }: Header): void {
+  // What did not become shorter is stored as it is.
+  if (body.length >= length) {
+    if (body.length > length) throw badFile("this EXR is damaged: a block of it is longer compressed than not");
+  } else if (compression === PXR24) inflateUpTo(body, length, "this EXR");
+  else if (compression === DWAA || compression === DWAB) checkDwa(body, length);
+}
+
+/** A file of nothing but what parse-exr needs. */
+function plainFile(bytes: Uint8Array, header: Header, given: string[]): ArrayBuffer {
+  const { width, height, top, channels, compression } = header;
+  const list = channels.flatMap(({ type }, index) => [text(`${given[index]}\0`), words(type, 0, 1, 1)]);
+  const head = joined([
+    words(20_000_630, 2),
+    ...attribute("channels", "chlist", joined([...list, text("\0")])),
+    ...attribute("compression", "compression", new Uint8Array([compression])),
+    ...attribute("dataWindow", "box2i", words(0, top, width - 1, top + height - 1)),
+    ...attribute("lineOrder", "lineOrder", new Uint8Array([0])),
+    text("\0"),
+  ]);
+  const found = blocks(bytes, header).sort((a, b) => a.row - b.row);
+  found.forEach(({ row, body, length }, index) => {
+    if (row !== index * header.lines) throw badFile("this EXR is damaged: a block of it is missing");
+    checkBlock(body, length, header);
+  });
+  const body = found.flatMap(({ row, body }) => [words(top + row, body.length), body]);
+  // parse-exr counts the table and reads the blocks one after the other.
+  return joined([head, new Uint8Array(8 * found.length), ...body]).buffer;
+}
+
+export function readOthers(bytes: Uint8Array, header: Header, used: number[]): Float32Array {
+  const { width, height, channels, compression } = header;
+  const types = new Set(
+    (compression === PXR24 ? channels.filter((_, at) => used.includes(at)) : channels).map(({ type }) => type),
+  );
+  if (channels.length > MOST_CHANNELS)
+    throw badFile(`this EXR has ${channels.length} channels; up to ${MOST_CHANNELS} are read`);
+  if (types.size > 1 || channels.some(({ type }) => type === WHOLE))
+    throw badFile(
+      "this EXR has channels of different types or of whole numbers, which are read by ZIP alone; save it by ZIP",
+    );
+  const { data } = parseExr(plainFile(bytes, header, names(header, used)), FLOAT);
+  const step = used.length === 1 ? 1 : 4;
+  const out = new Float32Array(width * height * used.length);
+  // Its first line is the lowest.
+  for (let row = 0, to = 0; row < height; row++)
+    for (let column = 0; column < width; column++)
+      for (let channel = 0; channel < used.length; channel++)
+        out[to++] = data[((height - 1 - row) * width + column) * step + channel] ?? NaN;
+  return out;
+}

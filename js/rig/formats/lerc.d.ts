@@ -1,0 +1,10 @@
+/** The package declares nothing. */
+declare module "lerc" {
+  const lerc: {
+    decode(
+      blob: ArrayBuffer,
+      options: { returnPixelInterleavedDims: boolean },
+    ): { pixels: (Uint8Array | Uint16Array | Uint32Array | Float32Array | Float64Array)[] };
+  };
+  export default lerc;
+}

@@ -1,0 +1,40 @@
+/**
+ * Strips and tiles of TIFF by ZSTD and LERC: fzstd and lerc. Loaded when such a file comes.
+ *
+ * Neither makes more than it is asked for: fzstd is given its room, and what a blob of LERC declares is checked before.
+ */
+import { decompress } from "fzstd";
+import Lerc from "lerc";
+import { badFile } from "../../errors.js";
+import { inflateUpTo } from "../../inflate.js";
+import { OVERHEAD } from "./limits.js";
+
+/** As many of `length` bytes as there are. */
+export const unpackZstd = (bytes: Uint8Array, length: number): Uint8Array => decompress(bytes, new Uint8Array(length));
+
+/** How LERC may be compressed once more. */
+const [DEFLATE, ZSTD] = [1, 2];
+/** Bytes of a value of each of LERC's types. */
+const SIZES = [1, 1, 2, 2, 4, 4, 4, 8];
+
+/** A blob of so many bytes, in this machine's order; lerc goes on for ever over blobs of no length or blocks of no pixels. */
+export function unpackLerc(packed: Uint8Array, length: number, again: number): Uint8Array {
+  const most = 2 * length + OVERHEAD;
+  const bytes =
+    again === DEFLATE ? inflateUpTo(packed, most, "this TIFF") : again === ZSTD ? unpackZstd(packed, most) : packed;
+  const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
+  const isKnown = String.fromCharCode(...bytes.subarray(0, 6)) === "Lerc2 ";
+  const version = isKnown ? view.getInt32(6, true) : 0;
+  // Behind name and version comes a checksum, from the third one on.
+  const at = version >= 3 ? 14 : 10;
+  const word = (index: number) => view.getUint32(at + 4 * index, true);
+  const [height, width, depths] = [word(0), word(1), version >= 4 ? word(2) : 1];
+  // Behind the number of valid pixels.
+  const [block, declared, type] = (version >= 4 ? [4, 5, 6] : [3, 4, 5]).map(word) as [number, number, number];
+  const isSound = isKnown && block >= 1 && declared <= bytes.length;
+  if (!isSound || width * height * depths * (SIZES[type] ?? 0) !== length)
+    throw badFile("this TIFF is damaged, or compressed by a kind of LERC that is not read here");
+  const [values] = Lerc.decode(bytes.slice(0, declared).buffer, { returnPixelInterleavedDims: true }).pixels;
+  if (values?.byteLength !== length) throw badFile("this TIFF is damaged: a part of its pixels by LERC is incomplete");
+  return new Uint8Array(values.buffer, values.byteOffset, length);
+}
