@@ -1,8 +1,9 @@
 /**
  * PNG of 1 to 16 bits: what the file says of itself is checked against its length, its checksums and the length of what it inflates to.
  *
- * By hand and not by fast-png (8.0, 7 kB gzipped), which inflates whatever there is, so that all of these checks and one more inflation
- * had to come before it; the tests compare with it.
+ * By hand and not by fast-png (8.0): it inflates whatever there is, and gives neither sRGB, gAMA, cICP nor eXIf. All of these checks, the
+ * search for these parts and one more inflation would come before it: 6.6 ms instead of 5.2 for a depth map of 640x480 (Node 20). The
+ * tests compare with it.
  */
 import { crc32 } from "./crc.js";
 import { badFile } from "./errors.js";

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
 use regex_lite::Regex;
+use walkdir::{DirEntry, WalkDir};
 
 use crate::estimate::Files;
 use crate::problem::{Problem, Result, shown};
@@ -59,8 +60,7 @@ pub struct Pairs {
 
 /// All pairs in the order of their names; what lies below `except`, results of an earlier run, is none of them.
 pub fn pairs(folder: &Path, except: Option<&Path>) -> Result<Pairs> {
-    let mut files = Vec::new();
-    below(folder, DEEPEST, except.and_then(|path| path.canonicalize().ok()).as_deref(), &mut files)?;
+    let mut files = below(folder, except.and_then(|path| path.canonicalize().ok()).as_deref())?;
     files.sort_by_cached_key(|path| natural(&name_in(folder, path)));
     let mut warnings = Vec::new();
     let found = match tum(folder, &files, &mut warnings)? {
@@ -78,26 +78,27 @@ pub fn pairs(folder: &Path, except: Option<&Path>) -> Result<Pairs> {
 }
 
 /// The files below a folder, hidden ones and links to folders left out.
-fn below(folder: &Path, deepest: usize, except: Option<&Path>, files: &mut Vec<PathBuf>) -> Result<()> {
-    let entries = std::fs::read_dir(folder).map_err(|error| Problem::file(folder, error))?;
-    for entry in entries {
-        let entry = entry.map_err(|error| Problem::file(folder, error))?;
-        let kind = entry.file_type().map_err(|error| Problem::file(&entry.path(), error))?;
-        if entry.file_name().to_string_lossy().starts_with('.') {
-            continue;
-        }
-        if kind.is_dir() && deepest > 0 {
-            if except.is_none() || entry.path().canonicalize().ok().as_deref() != except {
-                below(&entry.path(), deepest - 1, except, files)?;
-            }
-        } else if !kind.is_dir() && entry.path().is_file() {
-            files.push(entry.path());
+fn below(folder: &Path, except: Option<&Path>) -> Result<Vec<PathBuf>> {
+    let is_hidden = |entry: &DirEntry| entry.depth() > 0 && entry.file_name().to_string_lossy().starts_with('.');
+    let is_except = |entry: &DirEntry| {
+        except.is_some() && entry.file_type().is_dir() && entry.path().canonicalize().ok().as_deref() == except
+    };
+    let walk = WalkDir::new(folder).max_depth(DEEPEST + 1).into_iter();
+    let mut files = Vec::new();
+    for entry in walk.filter_entry(|entry| !is_hidden(entry) && !is_except(entry)) {
+        let entry = entry.map_err(|error| {
+            let reason = error.io_error().map_or_else(|| error.to_string(), ToString::to_string);
+            Problem::file(error.path().unwrap_or(folder), reason)
+        })?;
+        // What a link leads to counts as what it is.
+        if !entry.file_type().is_dir() && entry.path().is_file() {
+            files.push(entry.into_path());
         }
         if files.len() > MOST_FILES {
             return Err(Problem::file(folder, format!("it holds more than {MOST_FILES} files")));
         }
     }
-    Ok(())
+    Ok(files)
 }
 
 /// The path below the folder.
@@ -110,7 +111,7 @@ fn base(name: &str) -> &str {
     name.rsplit('/').next().unwrap_or(name)
 }
 
-/// Numbers in names by their value.
+/// Numbers in names by their value, and capitals beside their small letters: natord and alphanumeric-sort put all capitals first.
 fn natural(name: &str) -> Vec<(String, u64, String)> {
     static PIECES: LazyLock<Regex> = LazyLock::new(|| pattern("[0-9]{1,18}|[^0-9]+"));
     let piece = |piece: &str| match piece.parse() {

@@ -1,4 +1,4 @@
-//! Long vectors of f32, their sums in f64.
+//! Long vectors of f32, their sums in f64: nalgebra sums in the precision of its vectors.
 
 /// target += factor * source.
 #[inline(never)]

@@ -1,6 +1,6 @@
 //! NumPy's .npy, the few kinds that images and depth maps come in, as js/npy.ts reads them.
 //!
-//! By hand: npyz (0.9.1) multiplies what the shape says without a check, and asks nobody whether so much is there.
+//! By hand: npyz (0.9.1) multiplies the sides of a shape before anybody can look at them, which overflows on a hostile header.
 
 use super::{Raster, Samples, check_size};
 
