@@ -5,83 +5,114 @@ use wasm_bindgen_test::wasm_bindgen_test as test;
 
 use crate::common::laws;
 use bimodal_stereo::{Angles, Similarity};
-use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt, differentiate_numerically};
-use nalgebra::storage::Owned;
-use nalgebra::{Matrix3, Rotation3, SMatrix, SVector, U4, U9, Vector3, Vector4};
+use nalgebra::{Matrix3, Rotation3, Vector3};
 use proptest::prelude::*;
+use rmpfit::{MPConfig, MPFitter, MPPar, MPResult, MPSide, MPSuccess};
 
-/// Nine residuals s Rx Ry Rz - A in four unknowns: s and three angles in radians.
+/// s and three angles in radians.
+type Parameters = [f64; 4];
+
+/// Nine residuals s Rx Ry Rz - A in four unknowns.
 struct Equation16 {
-    parameters: Vector4<f64>,
+    parameters: Parameters,
     target: Matrix3<f64>,
+    settings: [MPPar; 4],
+}
+
+/// Tolerances as small as rounding allows.
+const PRECISE: MPConfig = MPConfig { ftol: 1e-15, xtol: 1e-15, gtol: 1e-15, ..MPConfig::new() };
+
+fn scale_of(parameters: &[f64]) -> f64 {
+    parameters[0]
+}
+
+/// Rx, Ry, Rz.
+fn factors_of(parameters: &[f64]) -> [Matrix3<f64>; 3] {
+    let [alpha, beta, gamma] = [1, 2, 3].map(|index| parameters[index].to_degrees());
+    let none = Angles::default();
+    [Angles { alpha, ..none }, Angles { beta, ..none }, Angles { gamma, ..none }].map(|angles| angles.rotation())
+}
+
+fn rotation_of(parameters: &[f64]) -> Matrix3<f64> {
+    let [x, y, z] = factors_of(parameters);
+    x * y * z
+}
+
+/// The derivative of s Rx Ry Rz by each unknown.
+fn derivatives(parameters: &[f64]) -> [Matrix3<f64>; 4] {
+    let [x, y, z] = factors_of(parameters);
+    let s = scale_of(parameters);
+    // d Rx / d alpha = [e_x] Rx with the cross-product matrix of the axis, and so on.
+    let [ex, ey, ez] = [Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| axis.cross_matrix());
+    [x * y * z, ex * x * y * z * s, x * ey * y * z * s, x * y * ez * z * s]
 }
 
 impl Equation16 {
     /// Starts at a scale and at angles.
     fn new(scale: f64, angles: Angles, target: Matrix3<f64>) -> Self {
         let Angles { alpha, beta, gamma } = angles;
-        let parameters = Vector4::new(scale, alpha.to_radians(), beta.to_radians(), gamma.to_radians());
-        Self { parameters, target }
+        let parameters = [scale, alpha.to_radians(), beta.to_radians(), gamma.to_radians()];
+        let settings = [(); 4].map(|()| MPPar { side: MPSide::User, ..MPPar::default() });
+        Self { parameters, target, settings }
     }
 
     fn scale(&self) -> f64 {
-        self.parameters[0]
-    }
-
-    /// Rx, Ry, Rz.
-    fn factors(&self) -> [Matrix3<f64>; 3] {
-        let [alpha, beta, gamma] = [1, 2, 3].map(|index| self.parameters[index].to_degrees());
-        let none = Angles::default();
-        [Angles { alpha, ..none }, Angles { beta, ..none }, Angles { gamma, ..none }].map(|angles| angles.rotation())
+        scale_of(&self.parameters)
     }
 
     fn rotation(&self) -> Matrix3<f64> {
-        let [x, y, z] = self.factors();
-        x * y * z
+        rotation_of(&self.parameters)
     }
 
-    fn solved(self) -> Self {
-        let (problem, report) = LevenbergMarquardt::new().minimize(self);
-        assert!(report.termination.was_successful(), "{:?}", report.termination);
-        problem
+    fn solved(mut self) -> Self {
+        let mut parameters = self.parameters;
+        let status = self.mpfit(&mut parameters).unwrap();
+        assert!(!matches!(status.success, MPSuccess::NotDone | MPSuccess::MaxIter), "{} iterations", status.n_iter);
+        Self { parameters, ..self }
     }
 }
 
-impl LeastSquaresProblem<f64, U9, U4> for Equation16 {
-    type ParameterStorage = Owned<f64, U4>;
-    type ResidualStorage = Owned<f64, U9>;
-    type JacobianStorage = Owned<f64, U9, U4>;
-
-    fn set_params(&mut self, parameters: &Vector4<f64>) {
-        self.parameters.copy_from(parameters);
+impl MPFitter for Equation16 {
+    fn eval(&mut self, parameters: &[f64], deviates: &mut [f64]) -> MPResult<()> {
+        let difference = rotation_of(parameters) * scale_of(parameters) - self.target;
+        deviates.copy_from_slice(difference.as_slice());
+        Ok(())
     }
 
-    fn params(&self) -> Vector4<f64> {
-        self.parameters
+    fn jacobian(&mut self, parameters: &[f64], deviates: &mut [f64], columns: &mut [Option<Vec<f64>>]) -> MPResult<()> {
+        for (column, derivative) in columns.iter_mut().flatten().zip(&derivatives(parameters)) {
+            column.copy_from_slice(derivative.as_slice());
+        }
+        self.eval(parameters, deviates)
     }
 
-    fn residuals(&self) -> Option<SVector<f64, 9>> {
-        let difference = self.rotation() * self.scale() - self.target;
-        Some(SVector::from_column_slice(difference.as_slice()))
+    fn number_of_points(&self) -> usize {
+        self.target.len()
     }
 
-    fn jacobian(&self) -> Option<SMatrix<f64, 9, 4>> {
-        let [x, y, z] = self.factors();
-        let s = self.scale();
-        // d Rx / d alpha = [e_x] Rx with the cross-product matrix of the axis, and so on.
-        let [ex, ey, ez] = [Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| axis.cross_matrix());
-        let columns = [x * y * z, ex * x * y * z * s, x * ey * y * z * s, x * y * ez * z * s];
-        Some(SMatrix::from_columns(&columns.map(|column| SVector::<f64, 9>::from_column_slice(column.as_slice()))))
+    fn config(&self) -> &MPConfig {
+        &PRECISE
+    }
+
+    fn parameters(&self) -> &[MPPar] {
+        &self.settings
     }
 }
 
 #[test]
 fn jacobian_agrees_with_finite_differences() {
-    let target = Angles { alpha: 20.0, beta: -35.0, gamma: 110.0 }.rotation() * 0.8;
-    let mut problem = Equation16::new(1.3, Angles { alpha: 23.0, beta: -40.0, gamma: 115.0 }, target);
-    let numerical = differentiate_numerically(&mut problem).unwrap();
-    let analytic = problem.jacobian().unwrap();
-    assert!((numerical - analytic).abs().max() < 1e-6, "{}", numerical - analytic);
+    const STEP: f64 = 1e-6;
+    let angles = Angles { alpha: 23.0, beta: -40.0, gamma: 115.0 };
+    let Equation16 { parameters, .. } = Equation16::new(1.3, angles, Matrix3::zeros());
+    for (index, analytic) in derivatives(&parameters).into_iter().enumerate() {
+        let moved = |step: f64| {
+            let mut moved = parameters;
+            moved[index] += step;
+            rotation_of(&moved) * scale_of(&moved)
+        };
+        let numerical = (moved(STEP) - moved(-STEP)) / (2.0 * STEP);
+        assert!((numerical - analytic).abs().max() < 1e-6, "{index}: {}", numerical - analytic);
+    }
 }
 
 #[test]
