@@ -9,6 +9,7 @@
 //! | `icp` | Eq. 12: the depth points onto the image surface | robust point-to-plane distance | pose | nearest neighbours and Gauss-Newton, alternating |
 //! | `ransac` | Eq. 13 and 14: consensus of pairs over the linear model P -> A P + t | truncated squared distance | the twelve numbers theta | samples of four pairs, then linear least squares |
 //! | `similarity` | Eq. 15: the similarity nearest to A; Eq. 12 for known pairs, in closed form | least squares | s, R, t | Horn's quaternion |
+//! | `transforms` | a pose as nalgebra's transformations and as a 4x4 matrix | | | |
 //! | `angles` | Eq. 16: the angles of a rotation | | alpha, beta, gamma | closed form |
 //! | `correspondence`, `visibility` | which depth point is which pixel, with occlusion in both directions: the 1-pixel rule | | | z-buffers |
 //! | `increment` | a Gauss-Newton step of a similarity: seven unknowns | | | |
@@ -33,6 +34,7 @@ mod search;
 mod silhouette;
 mod similarity;
 mod spline_image;
+mod transforms;
 mod uncertainty;
 mod visibility;
 

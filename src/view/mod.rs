@@ -6,6 +6,8 @@ mod colour;
 pub mod cubic_normals;
 mod depth;
 pub(crate) mod depth_noise;
+#[cfg(feature = "image")]
+mod dynamic_image;
 mod flying_pixels;
 mod half_resolution;
 mod heights;
