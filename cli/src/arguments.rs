@@ -91,6 +91,10 @@ pub struct Arguments {
     #[arg(long, value_name = "N", default_value_t = Options::default().max_iterations)]
     pub max_iterations: u32,
 
+    /// Threads that share the work; the answer does not depend on their number [default: one for each processor]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    workers: Option<u16>,
+
     /// Of everything random
     #[arg(long, value_name = "N", default_value_t = Options::default().seed)]
     seed: u64,
@@ -129,6 +133,12 @@ impl Arguments {
             })),
             [] => Err(Problem::option("IMAGE", "is needed")),
         }
+    }
+
+    /// How many threads share the work.
+    pub fn workers(&self) -> usize {
+        let processors = || std::thread::available_parallelism().map_or(1, usize::from);
+        self.workers.map_or_else(processors, usize::from)
     }
 
     /// What the loop is told.

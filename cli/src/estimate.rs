@@ -73,7 +73,8 @@ pub fn estimate(files: &Files, arguments: &Arguments, options: &Options, progres
     let length = |has_camera| if has_camera { Length::Metres } else { Length::Pixels };
     let [image_length, depth_length] = [views.image.camera.is_some(), views.depth.camera.is_some()].map(length);
     let mut estimator = Estimator::new(views.image, &views.depth, options.clone())
-        .map_err(|error| Problem::of_pair(&error, &files.image, &files.depth))?;
+        .map_err(|error| Problem::of_pair(&error, &files.image, &files.depth))?
+        .with_threads(arguments.workers());
     while estimator.report().status == Status::Running {
         progress.show(estimator.step());
     }

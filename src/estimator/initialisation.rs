@@ -183,7 +183,8 @@ impl Initialisation {
         self.decision.is_some() || self.contrast.is_some()
     }
 
-    fn progress(&self) -> Advance {
+    /// How far the search by colours has come.
+    pub fn progress(&self) -> Advance {
         if self.is_searching() {
             let share = self.search.progress().share;
             return Advance::Ongoing(SEARCH_SHARE * share, Activity::Comparing);

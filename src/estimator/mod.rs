@@ -26,6 +26,8 @@ mod searching;
 mod settling;
 mod solution;
 mod stages;
+#[cfg(feature = "rayon")]
+mod threads;
 mod units;
 mod verdict;
 mod workers;
@@ -90,6 +92,9 @@ pub struct Estimator {
     report: StepReport,
     /// The same in the caller's units, where they are others.
     report_out: Option<Box<StepReport>>,
+    /// Threads that share the work, where there are any.
+    #[cfg(feature = "rayon")]
+    threads: Option<Box<threads::Threads>>,
 }
 
 impl Estimator {
@@ -133,6 +138,8 @@ impl Estimator {
             settling: Settling::new(settling::TOLERANCE),
             report: StepReport::at(pose),
             report_out: None,
+            #[cfg(feature = "rayon")]
+            threads: None,
             pair,
         };
         estimator.prepare()?;
@@ -165,13 +172,20 @@ impl Estimator {
                 "is applied when the views are read; make a new estimator to change it",
             ));
         }
-        *self = Self::of(self.pair.with(options)?)?;
+        let next = Self::of(self.pair.with(options)?)?;
+        #[cfg(feature = "rayon")]
+        let next = next.with_threads_of(self);
+        *self = next;
         Ok(())
     }
 
     /// One iteration, the rest of one that was begun by [`step_stage`](Self::step_stage), or a slice of the
     /// initialisation. Changes nothing once the status is no longer [`Status::Running`].
     pub fn step(&mut self) -> &StepReport {
+        #[cfg(feature = "rayon")]
+        if self.step_in_threads() {
+            return self.report();
+        }
         if self.is_searching() {
             return self.step_stage();
         }
@@ -475,20 +489,5 @@ impl Estimator {
         self.run = Run::Ended;
         self.report.status = status;
         self.report.reason = reason;
-    }
-
-    /// What the next refinement looks at, where that is known: then a worker may make it while the other stages run.
-    fn prepare_next_refinement(&mut self) {
-        // A worker has the image with its paint.
-        let is_known = self.report.status == Status::Running
-            && !self.settling.keeps_depth()
-            && self.paint.found().is_none()
-            && self.registration.keeps(&self.pair, &self.solution.pose);
-        if is_known {
-            let inputs = Inputs::of(&self.pair, &self.paint, &self.light, &self.correspondences, self.report.iteration);
-            self.refinement.prepare_next(inputs, &self.solution);
-        } else {
-            self.refinement.discard_prepared();
-        }
     }
 }

@@ -6,6 +6,7 @@ use crate::light::{Light, LightPrior};
 use crate::options::{LightSource, Options};
 use crate::view::{ColourImage, ColourView, DepthMap, DepthView, Size, WorkingSize};
 
+#[derive(Clone)]
 pub struct ViewPair {
     pub image: ColourView,
     pub depth: DepthView,

@@ -42,8 +42,7 @@ impl Estimator {
         let Run::Searching(initialisation) = &mut self.run else { return Ok(()) };
         match initialisation.advance(&self.pair, &mut self.registration) {
             Advance::Ongoing(share, activity) => {
-                self.report.reason = Some(Reason::Searching { percent: 100.0 * share, activity });
-                self.report.pose = initialisation.best_pose().unwrap_or(self.report.pose);
+                self.report_search(share, activity);
                 Ok(())
             }
             Advance::Done(outcome) => {
@@ -51,6 +50,23 @@ impl Estimator {
                 self.report.pose = self.solution.pose;
                 self.start_from(outcome)
             }
+        }
+    }
+
+    /// What the search has come to, and the best pose so far.
+    fn report_search(&mut self, share: f64, activity: Activity) {
+        let Run::Searching(initialisation) = &self.run else { return };
+        self.report.reason = Some(Reason::Searching { percent: 100.0 * share, activity });
+        self.report.pose = initialisation.best_pose().unwrap_or(self.report.pose);
+    }
+
+    /// The report of a search that others have advanced.
+    #[cfg(feature = "rayon")]
+    pub(super) fn show_search(&mut self) {
+        let Run::Searching(initialisation) = &self.run else { return };
+        if let Advance::Ongoing(share, activity) = initialisation.progress() {
+            self.report_search(share, activity);
+            self.translate_report();
         }
     }
 

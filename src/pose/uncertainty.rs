@@ -271,7 +271,8 @@ pub(super) fn describe(
 
 /// The least certain direction of a covariance.
 pub(super) fn weakest_of(covariance: &PoseMatrix) -> Direction {
-    let weakest = |eigen: Eigen<UNKNOWNS>| Direction::of(&eigen.eigenvectors.column(eigen.eigenvalues.imax()).into_owned());
+    let weakest =
+        |eigen: Eigen<UNKNOWNS>| Direction::of(&eigen.eigenvectors.column(eigen.eigenvalues.imax()).into_owned());
     symmetric_eigen(covariance).map(weakest).unwrap_or_default()
 }
 

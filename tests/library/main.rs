@@ -24,6 +24,7 @@ mod pose_laws;
 mod pose_photometric;
 mod pose_reference;
 mod pose_search;
+mod pose_transforms;
 mod refinement_workers;
 mod resolutions;
 mod rig_cameras;
@@ -37,5 +38,7 @@ mod surface;
 mod surface_laws;
 mod surface_reference;
 mod surface_vase;
+#[cfg(feature = "rayon")]
+mod threads;
 mod told_start;
 mod uncertainty;

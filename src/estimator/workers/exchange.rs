@@ -1,8 +1,9 @@
 //! What an estimator gives to workers and takes from them. Whatever they do or fail to do, the outcome is the same to
 //! the bit.
 
+use crate::estimator::stages::Inputs;
 use crate::estimator::{Estimator, RefinementTask, Run, memory};
-use crate::report::Stage;
+use crate::report::{Stage, Status};
 use crate::view::Normals;
 
 use super::task::{Finding, Task};
@@ -51,5 +52,20 @@ impl Estimator {
         let depth = &mut self.solution.depth;
         let Normals { x, y, z } = &mut depth.normals;
         Some([&mut depth.points.z, x, y, z])
+    }
+
+    /// What the next refinement looks at, where that is known: then a worker may make it while the other stages run.
+    pub(in crate::estimator) fn prepare_next_refinement(&mut self) {
+        // A worker has the image with its paint.
+        let is_known = self.report.status == Status::Running
+            && !self.settling.keeps_depth()
+            && self.paint.found().is_none()
+            && self.registration.keeps(&self.pair, &self.solution.pose);
+        if is_known {
+            let inputs = Inputs::of(&self.pair, &self.paint, &self.light, &self.correspondences, self.report.iteration);
+            self.refinement.prepare_next(inputs, &self.solution);
+        } else {
+            self.refinement.discard_prepared();
+        }
     }
 }

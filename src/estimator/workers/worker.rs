@@ -50,7 +50,12 @@ impl Worker {
     /// # Errors
     /// Those of [`Estimator::new`](crate::Estimator::new).
     pub fn new(image: ColourImage, depth: &DepthMap, options: Options) -> Result<Self> {
-        Ok(Self { pair: ViewPair::new(image, depth, options)?, initialisation: None, refinement: None })
+        Ok(Self::of(ViewPair::new(image, depth, options)?))
+    }
+
+    /// A worker for a pair that has been read.
+    pub(in crate::estimator) const fn of(pair: ViewPair) -> Self {
+        Self { pair, initialisation: None, refinement: None }
     }
 
     /// Does one task of the initialisation, however long it takes.
