@@ -36,6 +36,8 @@ const wasmTests = (where) =>
   });
 const wasmIn = (variable) => async () =>
   wasmTests(variable ? { [variable]: "1", CHROMEDRIVER: (await browser()).chromedriver } : {});
+/** Natively everything optional is looked at; what is built for browsers has none of it. */
+const FEATURES = ["--all-features"];
 
 /** Every TypeScript project: the facade, the page, its worker, the tests, the example in React. */
 async function types() {
@@ -70,7 +72,8 @@ function freePort() {
 }
 
 /** The documentation as docs.rs builds it: a link that leads nowhere fails. Its examples run with the tests. */
-const docs = () => watch("cargo", ["doc", ...LIBRARY, "--no-deps"], { env: { RUSTDOCFLAGS: "-D warnings" } });
+const docs = () =>
+  watch("cargo", ["doc", ...LIBRARY, "--no-deps", ...FEATURES], { env: { RUSTDOCFLAGS: "-D warnings" } });
 
 async function page() {
   const env = { CHROMIUM: await headless(), PAGE_PORT: String(await freePort()) };
@@ -144,7 +147,7 @@ const contract = () => {
 
 /** Tests that need the data beside the project are marked as ignored, with that reason, and asked for where the data are there. */
 const rust = () =>
-  watch("cargo", ["test", "--", ...(hasData() ? ["--include-ignored"] : []), ...SHORT]);
+  watch("cargo", ["test", ...FEATURES, "--", ...(hasData() ? ["--include-ignored"] : []), ...SHORT]);
 
 /** Not on accuracy: aims are shown with their verdicts. It fails where a cell throws or the JSON lacks a key. */
 async function tables() {
@@ -199,7 +202,7 @@ const PARTS = [
   { name: "format", run: cargo("fmt", "--check") },
   // Layout and lint of everything in TypeScript and JavaScript.
   { name: "biome", run: biome, closing: /^(?:Checked \d+ files.*|Found .*)$/gm },
-  { name: "clippy", run: cargo("clippy", "--all-targets", ...DENY), closing: CARGO },
+  { name: "clippy", run: cargo("clippy", "--all-targets", ...FEATURES, ...DENY), closing: CARGO },
   {
     name: "clippy-wasm",
     run: cargo("clippy", ...LIBRARY, "--target", WASM, "--all-targets", "--features", "bindings", ...DENY),
