@@ -146,8 +146,7 @@ const contract = () => {
 };
 
 /** Tests that need the data beside the project are marked as ignored, with that reason, and asked for where the data are there. */
-const rust = () =>
-  watch("cargo", ["test", ...FEATURES, "--", ...(hasData() ? ["--include-ignored"] : []), ...SHORT]);
+const rust = () => watch("cargo", ["test", ...FEATURES, "--", ...(hasData() ? ["--include-ignored"] : []), ...SHORT]);
 
 /** Not on accuracy: aims are shown with their verdicts. It fails where a cell throws or the JSON lacks a key. */
 async function tables() {
