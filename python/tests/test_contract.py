@@ -66,6 +66,37 @@ def test_an_estimator_has_the_same_methods():
     assert own == kept(set(names) - {"constructor"})
 
 
+def test_names_are_spelled_by_one_rule():
+    from bimodal_stereo._native import spelled as own
+
+    for name in ["offDegrees", "lambda", "startTolerance", "start.angles.beta", "lambda.prior"]:
+        assert own(name) == ".".join(map(spelled, name.split(".")))
+    assert own("options.stopDegrees") == "stop_degrees"
+
+
+def test_a_run_ends_with_a_code_and_its_numbers(near):
+    report = near(max_iterations=1).run()
+    assert report.reason == {"code": "iteration-cap", "iterations": 1}
+    assert report.message == "the cap of 1 iterations was reached"
+    assert bimodal.CODES["runs"][report.reason["code"]]["remedy"]
+    matrix = report.pose.matrix
+    assert matrix.shape == (4, 4) and (matrix[:3, 3] == report.pose.translation).all()
+
+
+def test_a_pose_starts_by_its_matrix(near):
+    pose = near().report.pose
+    scaled = pose.matrix.copy()
+    scaled[:3, :3] *= 2
+    start = near(start={"matrix": scaled}, scale="free", registration="fixed").report.pose
+    assert abs(start.scale / pose.scale - 2) < 1e-12 and abs(start.rotation - pose.rotation).max() < 1e-12
+
+
+def test_errors_name_entry_and_value(near):
+    with pytest.raises(bimodal.BimodalError) as caught:
+        near(light=[0.0] * 5 + [float("inf")] + [0.0] * 21)
+    assert (caught.value.code, caught.value.field, caught.value.index) == ("range", "light", 5)
+
+
 ROWS = """import { OPTIONS, paths } from "./pkg/options.js"; console.log(JSON.stringify([...paths(OPTIONS, "options")]))"""
 
 
