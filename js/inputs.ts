@@ -65,6 +65,15 @@ const nameOr =
     if (typeof value !== "string") other(value, field);
   };
 
+/** A reported pose says itself as a matrix as well, which its other members hold. */
+const withoutMatrix =
+  (check: Check): Check =>
+  (value, field) => {
+    if (!isObject(value) || !("matrix" in value)) return check(value, field);
+    const { matrix: _, ...rest } = value;
+    check(rest, field);
+  };
+
 function inputs() {
   const camera = object({ fx: number, fy: number, cx: number, cy: number, distortion: numbers(5) }, [
     "fx",
@@ -76,7 +85,7 @@ function inputs() {
   return {
     image: object({ ...IMAGE, camera }, ["width", "height", "data"]),
     depth: object({ ...DEPTH, camera, normals: array(Float32Array) }, ["width", "height"]),
-    options: object(shapeOf(OPTIONS)),
+    options: object({ ...shapeOf(OPTIONS), start: withoutMatrix(checkOf(OPTIONS.start)) }),
     sample: object({ surface: nameOr(relief), light: nameOr(checkOf(OPTIONS.light)), ...shapeOf(SAMPLE) }, [
       "surface",
       "light",

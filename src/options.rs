@@ -13,7 +13,7 @@ use crate::pose::Similarity;
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
-    serde(try_from = "serialised::GivenLight", into = "serialised::GivenLight")
+    serde(from = "serialised::GivenLight", into = "serialised::GivenLight")
 )]
 pub enum LightSource {
     /// Fitted to the data under the Gaussian prior of Eq. 2.
@@ -245,11 +245,12 @@ impl Options {
 /// Members that are a word or something else: `"estimate"` or 27 numbers, `"search"`, `"identity"` or a pose, `"free"` or a number.
 #[cfg(feature = "serde")]
 mod serialised {
+    use std::array::from_fn;
+
     use nalgebra::{Matrix3, Vector3};
     use serde::{Deserialize, Serialize};
 
     use super::{LightSource, Start};
-    use crate::error::Error;
     use crate::light::Light;
     use crate::pose::Angles;
 
@@ -263,17 +264,16 @@ mod serialised {
     #[serde(untagged)]
     pub enum GivenLight {
         Word(LightWord),
-        Numbers(Vec<f64>),
+        Numbers([f64; 27]),
     }
 
-    impl TryFrom<GivenLight> for LightSource {
-        type Error = Error;
-
-        fn try_from(given: GivenLight) -> Result<Self, Error> {
-            Ok(match given {
+    impl From<GivenLight> for LightSource {
+        fn from(given: GivenLight) -> Self {
+            match given {
                 GivenLight::Word(LightWord::Estimate) => Self::Estimate,
-                GivenLight::Numbers(values) => Self::Known(Light::from_slice("options.light", &values)?),
-            })
+                // Their range is for `Options::validate` to check, whose errors name them.
+                GivenLight::Numbers(flat) => Self::Known(Light(from_fn(|channel| from_fn(|k| flat[9 * channel + k])))),
+            }
         }
     }
 
@@ -281,7 +281,7 @@ mod serialised {
         fn from(source: LightSource) -> Self {
             match source {
                 LightSource::Estimate => Self::Word(LightWord::Estimate),
-                LightSource::Known(light) => Self::Numbers(light.into()),
+                LightSource::Known(light) => Self::Numbers(light.flat()),
             }
         }
     }
@@ -335,7 +335,7 @@ mod serialised {
                 Start::Identity => Self::Word(StartWord::Identity),
                 Start::Pose { rotation, scale, translation } => Self::Pose(GivenPose {
                     scale,
-                    rotation: Some(std::array::from_fn(|at| rotation[(at / 3, at % 3)])),
+                    rotation: Some(from_fn(|at| rotation[(at / 3, at % 3)])),
                     translation: translation.map(Into::into),
                     angles: Angles::default(),
                 }),

@@ -252,17 +252,6 @@ pub fn pose_json(report: &StepReport, length: Length) -> String {
     text(&told, Layout::Lines)
 }
 
-/// Scale and rotation in one, and the translation.
-pub fn matrix(pose: &Similarity) -> [[f64; 4]; 4] {
-    let place = |row: usize, column: usize| match (row, column) {
-        (3, 3) => 1.0,
-        (3, _) => 0.0,
-        (_, 3) => pose.translation[row],
-        _ => pose.scale * pose.rotation[(row, column)],
-    };
-    std::array::from_fn(|row| std::array::from_fn(|column| place(row, column)))
-}
-
 #[cfg(test)]
 mod tests {
     use super::digits;

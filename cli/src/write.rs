@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use bimodal_stereo::Surface;
+use bimodal_stereo::{Similarity, Surface};
 
 use crate::estimate::{Length, Outcome};
 use crate::problem::{Problem, Result, shown};
@@ -32,11 +32,7 @@ pub fn results(folder: &Path, found: &Outcome) -> Result<Vec<String>> {
         ("refined-depth.png", png, format!("{says} per stored number, 0 is no depth")),
         ("refined-depth.npy", npy_bytes(width, depth), format!("{depth_length}, NaN is no depth")),
         ("pose.json", report::pose_json(run, found.image_length).into(), length.into()),
-        (
-            "depth_to_colour.txt",
-            matrix_text(&report::matrix(&run.pose)).into(),
-            format!("4x4 with the scale, {length}"),
-        ),
+        ("depth_to_colour.txt", matrix_text(&run.pose).into(), format!("4x4 with the scale, {length}")),
         ("light.csv", light_csv(&estimator.light().flat()).into(), "nine coefficients a channel".into()),
         ("report.json", report::json(found, Layout::Lines).into(), "as --json".into()),
     ];
@@ -99,8 +95,12 @@ fn clouds(found: &Outcome) -> Vec<u8> {
 }
 
 /// The 4x4 matrix that carries depth points into the colour view; `numpy.loadtxt` reads it.
-fn matrix_text(matrix: &[[f64; 4]; 4]) -> String {
-    matrix.iter().map(|row| row.map(|value| value.to_string()).join(" ") + "\n").collect()
+fn matrix_text(pose: &Similarity) -> String {
+    let line = |row: usize| {
+        let values: Vec<String> = pose.matrix().row(row).iter().map(f64::to_string).collect();
+        values.join(" ") + "\n"
+    };
+    (0..4).map(line).collect()
 }
 
 /// Nine coefficients of red, of green and of blue, one channel a line.

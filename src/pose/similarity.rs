@@ -227,17 +227,15 @@ mod serialised {
     }
 
     impl From<Similarity> for Pose {
-        fn from(Similarity { scale, rotation, translation }: Similarity) -> Self {
-            let row = |row: usize| {
-                let entry = |column| scale * rotation[(row, column)];
-                [entry(0), entry(1), entry(2), translation[row]]
-            };
+        fn from(pose: Similarity) -> Self {
+            let Similarity { scale, rotation, translation } = pose;
+            let matrix = pose.matrix();
             Self {
                 scale,
                 rotation: std::array::from_fn(|at| rotation[(at / 3, at % 3)]),
                 translation: translation.into(),
                 angles: Angles::of(&rotation),
-                matrix: [row(0), row(1), row(2), [0.0, 0.0, 0.0, 1.0]],
+                matrix: std::array::from_fn(|row| std::array::from_fn(|column| matrix[(row, column)])),
             }
         }
     }

@@ -66,6 +66,13 @@ describe("after init", () => {
     refused(onDepth({ unit: 0 }), "range", "depth.unit");
   });
 
+  test("the entry and the number at fault are values of the error", () => {
+    const light = new Array(27).fill(0.1);
+    light[5] = 1e300;
+    assert.throws(withOptions({ light }), { code: "range", field: "options.light", index: 5, value: 1e300 });
+    assert.throws(onDepth({ width: 31 }), (error) => !("index" in error) && !("value" in error));
+  });
+
   test("numbers among the options", () => {
     refused(withOptions({ light: new Array(27).fill(NaN) }), "range", "options.light");
     refused(withOptions({ light: new Array(27).fill(1e300) }), "range", "options.light");

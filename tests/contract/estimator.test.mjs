@@ -216,6 +216,23 @@ test("depths where a folding lens lets no ray through are left out", () => {
   assert.ok(made.refinedDepth().some(Number.isFinite));
 });
 
+test("a pose says itself as a matrix, and an end its code with its numbers", async () => {
+  const { pose, reason, message } = await estimator({ maxIterations: 1 }).run();
+  const [scaled, row] = [pose.rotation.map((entry) => pose.scale * entry), (i) => [3 * i, 3 * i + 3]];
+  assert.deepEqual(pose.matrix, [
+    ...[0, 1, 2].map((i) => [...scaled.slice(...row(i)), pose.translation[i]]),
+    [0, 0, 0, 1],
+  ]);
+  assert.deepEqual(reason, { code: "iteration-cap", iterations: 1 });
+  assert.equal(message, "the cap of 1 iterations was reached");
+  assert.deepEqual(
+    await estimator({ start: pose, maxIterations: 1 })
+      .run()
+      .then(({ reason }) => reason),
+    reason,
+  );
+});
+
 test("a start of an absurd scale is kept and lost", async () => {
   const { status, reason, pose, uncertainty } = await estimator({ start: { scale: 1e-9 }, scale: "free" }).run();
   assert.equal(status, "lost");
