@@ -45,6 +45,8 @@ thiserror = "2.0.18"
 wasm-bindgen = "0.2"
 `,
     {
+      // The glue is a CommonJS module, and this project's are not.
+      "bound/package.json": "{}",
       "src/lib.rs": `use bimodal_stereo::{Estimator, Options, scenes};
 use wasm_bindgen::prelude::{JsError, wasm_bindgen};
 
@@ -69,8 +71,10 @@ pub fn scale_at_the_start(surface: &str) -> Result<f64, JsError> {
   const linked = `${path}/target/${WASM}/debug/dependent.wasm`;
   const exported = (file) =>
     WebAssembly.Module.exports(new WebAssembly.Module(readFileSync(file))).map(({ name }) => name);
-  // What wasm-bindgen is to make a function of has a description; the linker's own names begin with underscores as well.
-  const described = exported(linked).filter((name) => !name.startsWith("__") && name !== "memory");
+  // Until it is bound, a function's name has a hash at its end; names of wasm-bindgen's and the linker's own begin with underscores.
+  const described = exported(linked)
+    .filter((name) => !name.startsWith("__") && name !== "memory")
+    .map((name) => name.replace(/_[0-9a-f]{16}$/, ""));
   assert.deepEqual(described, ["scale_at_the_start"]);
 
   run(tool("wasm-bindgen"), ["--target", "nodejs", "--out-dir", "bound", linked], path);
