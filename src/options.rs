@@ -384,6 +384,7 @@ mod tests {
         let rotation = crate::pose::Angles { alpha: 3.0, beta: -20.0, gamma: 7.0 }.rotation();
         let options = Options {
             light: LightSource::Known(Light([[0.25; 9]; 3])),
+            prior: Some(LightGaussian { mean: vec![0.5; 27], covariance: vec![0.25; 729] }),
             start: Start::Pose { rotation, scale: None, translation: Some(Vector3::new(1.0, 2.0, 3.0)) },
             start_tolerance: StartTolerance { degrees: 5.0, distance: Some(2.0) },
             scale: Some(1.5),
@@ -420,6 +421,9 @@ mod tests {
             ..Options::default()
         };
         assert_eq!(found, expected);
+        let prior = json!({ "prior": { "mean": [1.0], "covariance": [[1.0, 2.0], [3.0, 4.0]] } });
+        let prior = serde_json::from_value::<Options>(prior).unwrap().prior.unwrap();
+        assert_eq!(prior, LightGaussian { mean: vec![1.0], covariance: vec![1.0, 2.0, 3.0, 4.0] });
         assert!(serde_json::from_value::<Options>(json!({ "light": [1.0, 2.0] })).is_err());
         assert!(serde_json::from_value::<Options>(json!({ "registration": "best" })).is_err());
     }

@@ -31,7 +31,23 @@ pub struct LightGaussian {
     /// 27 numbers.
     pub mean: Vec<f64>,
     /// 27x27 numbers, row after row; symmetric and positive definite.
+    #[cfg_attr(feature = "serde", serde(deserialize_with = "row_after_row"))]
     pub covariance: Vec<f64>,
+}
+
+/// A matrix as one list or as a list of rows.
+#[cfg(feature = "serde")]
+fn row_after_row<'de, D: serde::Deserializer<'de>>(deserializer: D) -> std::result::Result<Vec<f64>, D::Error> {
+    #[derive(serde::Deserialize)]
+    #[serde(untagged, expecting = "must be a list of numbers or of rows of numbers")]
+    enum Given {
+        List(Vec<f64>),
+        Rows(Vec<Vec<f64>>),
+    }
+    serde::Deserialize::deserialize(deserializer).map(|given| match given {
+        Given::List(numbers) => numbers,
+        Given::Rows(rows) => rows.concat(),
+    })
 }
 
 /// A Gaussian over lights that does not depend on the exposure.

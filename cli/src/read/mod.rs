@@ -8,7 +8,6 @@ use std::io::Read;
 use std::path::Path;
 
 use bimodal_stereo::{Light, LightGaussian, LightPrior};
-use serde::Deserialize;
 
 use crate::problem::{Problem, Result};
 pub use npy::bytes as npy_bytes;
@@ -113,25 +112,10 @@ pub fn light(path: &Path) -> Result<Light> {
 pub fn light_prior(path: &Path) -> Result<LightGaussian> {
     /// The file of the crate's own prior has ten kilobytes.
     const MOST_TEXT: u64 = 1 << 20;
-    #[derive(Deserialize)]
-    struct Given {
-        mean: Vec<f64>,
-        covariance: Covariance,
-    }
-    #[derive(Deserialize)]
-    #[serde(untagged, expecting = "\"covariance\" must be 729 numbers or 27 rows of 27")]
-    enum Covariance {
-        List(Vec<f64>),
-        Rows(Vec<[f64; 27]>),
-    }
     let bytes = head(path, MOST_TEXT).map_err(|error| Problem::file(path, error))?;
-    let Given { mean, covariance } = serde_json::from_slice(&bytes).map_err(|error| Problem::file(path, error))?;
-    let covariance = match covariance {
-        Covariance::List(numbers) => numbers,
-        Covariance::Rows(rows) => rows.concat(),
-    };
-    LightPrior::from_slices(&mean, &covariance).map_err(|error| Problem::file(path, error))?;
-    Ok(LightGaussian { mean, covariance })
+    let prior: LightGaussian = serde_json::from_slice(&bytes).map_err(|error| Problem::file(path, error))?;
+    LightPrior::from_slices(&prior.mean, &prior.covariance).map_err(|error| Problem::file(path, error))?;
+    Ok(prior)
 }
 
 impl Raster {
