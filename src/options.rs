@@ -384,7 +384,7 @@ mod tests {
         let rotation = crate::pose::Angles { alpha: 3.0, beta: -20.0, gamma: 7.0 }.rotation();
         let options = Options {
             light: LightSource::Known(Light([[0.25; 9]; 3])),
-            prior: Some(LightGaussian { mean: vec![0.5; 27], covariance: vec![0.25; 729] }),
+            prior: Some(LightGaussian { mean: vec![0.5], covariance: vec![0.25, 2.0] }),
             start: Start::Pose { rotation, scale: None, translation: Some(Vector3::new(1.0, 2.0, 3.0)) },
             start_tolerance: StartTolerance { degrees: 5.0, distance: Some(2.0) },
             scale: Some(1.5),
