@@ -29,9 +29,29 @@ const cargo =
 const LIBRARY = ["-p", "bimodal-stereo"];
 /** A test in a browser runs to its end, too: the runner's own limit is twenty seconds. */
 const PATIENCE = { WASM_BINDGEN_TEST_TIMEOUT: "1800" };
+/**
+ * Modules of `tests/library` that go through whole runs, some thousands of times what the others compute. They always run natively; by
+ * wasm `agreement` compares whole runs with the native ones, and `--long` runs all.
+ */
+const WHOLE_RUNS = [
+  "initialisation",
+  "loop_laws",
+  "loop_synthetic",
+  "opening",
+  "paint",
+  "painted",
+  "pose_search",
+  "refinement_workers",
+  "resolutions",
+  "rig_laws",
+  "scene_laws",
+  "told_start",
+  "uncertainty",
+];
+const SHORT_IN_WASM = LONG ? [] : [...SHORT, ...WHOLE_RUNS.flatMap((name) => ["--skip", `::${name}::`])];
 /** The library's tests that read no files, compiled for wasm; without a variable they run in Node. */
 const wasmTests = (where) =>
-  watch("cargo", ["test", ...LIBRARY, "--target", WASM, "--lib", "--test", "library", "--", ...SHORT], {
+  watch("cargo", ["test", ...LIBRARY, "--target", WASM, "--lib", "--test", "library", "--", ...SHORT_IN_WASM], {
     env: { ...PATIENCE, ...where },
   });
 const wasmIn = (variable) => async () =>
@@ -75,13 +95,13 @@ function freePort() {
 const docs = () =>
   watch("cargo", ["doc", ...LIBRARY, "--no-deps", ...FEATURES], { env: { RUSTDOCFLAGS: "-D warnings" } });
 
+/** The files of tests/page that go to each place of the page, in its own words; the others look closer, with `--long`. */
+const PLACES = ["run", "files", "saved", "learn", "rig", "report", "tables", "security", "site"];
+
 async function page() {
   const env = { CHROMIUM: await headless(), PAGE_PORT: String(await freePort()) };
-  return watch(
-    process.execPath,
-    [modules("@playwright/test/cli.js"), "test", ...(LONG ? [] : ["--grep-invert", "@long"])],
-    { env },
-  );
+  const short = ["--grep-invert", "@long", ...PLACES.map((name) => `/${name}\\.spec\\.ts$`)];
+  return watch(process.execPath, [modules("@playwright/test/cli.js"), "test", ...(LONG ? [] : short)], { env });
 }
 
 /** What is optional and not there is named among what was not run. */
