@@ -80,16 +80,7 @@ async function numerics({ file, target, flags, features = ["--features", "bindin
   // engines replace a function by its optimised code at its next call only, and what is one long loop would run slowly to its end.
   const apart = ["--one-caller-inline-max-function-size", "50"];
   // Nothing reads or writes the first kilobyte but the stack, if it overflows: so offsets fold into addresses.
-  // Functions that differ in constants alone become one, and a second round finds what the first has left: 0.5 kB gzipped.
-  const smaller = [
-    "--merge-similar-functions",
-    "-Oz",
-    "--gufa",
-    "--converge",
-    "--coalesce-locals-learning",
-    "--low-memory-unused",
-    "-Oz",
-  ];
+  const smaller = ["-Oz", "--low-memory-unused"];
   // What is written twice packs better than the local that would hold it, by 0.9 kB gzipped, and runs as fast (docs/performance.md).
   const repeated = ["--skip-pass=local-cse"];
   const bare = ["--strip-producers", "--strip-target-features"];
