@@ -1,6 +1,8 @@
 // npm run build: leaves the installable package in pkg/.
 import { cpSync, existsSync, mkdirSync, readFileSync, realpathSync, rmSync, symlinkSync, writeFileSync } from "node:fs";
 import { gzipSync } from "node:zlib";
+import { collector } from "./notices/bundled.mjs";
+import { NOTICES, section } from "./notices/text.mjs";
 import { ALL, GLUE, NUMERICS, allNumerics, node } from "./numerics.mjs";
 import { setup } from "./setup.mjs";
 import { inRoot, say, script, seconds, stamp } from "./shell.mjs";
@@ -8,7 +10,7 @@ import { inRoot, say, script, seconds, stamp } from "./shell.mjs";
 /** The package's own; the project's speaks to those who work on it. */
 const README = "js/README.md";
 const COPIED = ["CHANGELOG.md", "LICENSE-MIT", "LICENSE-APACHE"];
-const SOURCES = [...NUMERICS, "js", "package-lock.json", "scripts/build.mjs"];
+const SOURCES = [...NUMERICS, NOTICES, "js", "package-lock.json", "scripts/build.mjs", "scripts/notices"];
 const MARK = "pkg/.stamp";
 /** One for programs, one for images and depth maps, two for what reads and writes a rig's files, one for what writes a run's, one for the page's fields, and one for the threads of workers. */
 const ENTRIES = {
@@ -75,14 +77,20 @@ function manifest() {
       "./package.json": "./package.json",
     },
     types: "./index.d.ts",
-    files: ["*.js", "*.d.ts", "calibration", "rig", "write", "*.wasm", "README.md", ...COPIED],
+    files: ["*.js", "*.d.ts", "calibration", "rig", "write", "*.wasm", "README.md", NOTICES, ...COPIED],
   };
 }
+
+/** What the scripts contain, and what the .wasm files do, which is written down beside Cargo.toml (scripts/notices.mjs). */
+const notices = (entries) =>
+  [section("Contained in the scripts of bimodal-stereo:", entries), readFileSync(inRoot(NOTICES), "utf8")].join("\n");
 
 /** One file for each entry and one for what they share, with the PNG decoder in the files module alone. */
 async function facade() {
   const { rolldown } = await import("rolldown");
+  const npm = collector();
   const bundle = await rolldown({
+    plugins: [npm.plugin],
     input: Object.fromEntries(Object.entries(ENTRIES).map(([name, source]) => [name, inRoot(`js/${source}.ts`)])),
     external: /^node:/,
     platform: "neutral",
@@ -97,6 +105,7 @@ async function facade() {
   };
   await bundle.write({ dir: inRoot("pkg"), format: "esm", chunkFileNames: "[name].js", codeSplitting });
   await bundle.close();
+  writeFileSync(inRoot("pkg", NOTICES), notices(npm.entries()));
   await node("typescript/bin/tsc", "-p", "js/tsconfig.json");
   for (const name of INTERNAL) rmSync(inRoot("pkg", name), { recursive: true });
 }

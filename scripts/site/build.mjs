@@ -1,11 +1,14 @@
 // The built page, closed against everything but its own files, and with the service worker that keeps these for a visit without a network.
 import { createHash } from "node:crypto";
-import { readFileSync, writeFileSync } from "node:fs";
+import { cpSync, readFileSync, writeFileSync } from "node:fs";
 import { relative, sep } from "node:path";
-import { filesBelow, inRoot } from "../shell.mjs";
+import { collector } from "../notices/bundled.mjs";
+import { NOTICES, section } from "../notices/text.mjs";
+import { Failure, filesBelow, inRoot } from "../shell.mjs";
 
 export const SITE = "site";
 const WORKER = "sw.js";
+const LICENCES = ["LICENSE-MIT", "LICENSE-APACHE"];
 
 /**
  * What the page may do. Nothing but its own files, no script or style in the document itself; .wasm may be compiled. Pictures may be a
@@ -42,7 +45,12 @@ async function addWorker(paths) {
   );
   const version = createHash("sha256").update(JSON.stringify(files)).digest("hex").slice(0, 16);
   const { rolldown } = await import("rolldown");
-  const bundle = await rolldown({ input: inRoot("www/offline/service-worker.ts"), platform: "browser" });
+  const npm = collector();
+  const bundle = await rolldown({
+    input: inRoot("www/offline/service-worker.ts"),
+    platform: "browser",
+    plugins: [npm.plugin],
+  });
   await bundle.write({
     file: inRoot(SITE, WORKER),
     format: "iife",
@@ -50,12 +58,29 @@ async function addWorker(paths) {
     minify: true,
   });
   await bundle.close();
+  // It names the hashes of all other files, the notices among them, so that these can't tell of it any more.
+  if (npm.entries().length > 0) throw new Failure("The service worker contains code of others, which has no notice.");
+}
+
+/** The licences of the page, and the notices of what it contains: of its own, and of the package in it. */
+function addLicences(entries) {
+  for (const file of LICENCES) cpSync(inRoot(file), inRoot(SITE, file));
+  const own = section("Contained in the scripts of this page:", entries);
+  writeFileSync(inRoot(SITE, NOTICES), [own, readFileSync(inRoot("pkg", NOTICES), "utf8")].join("\n"));
 }
 
 /** Builds site/ from pkg/ and www/. */
 export async function buildSite() {
   const { build } = await import("vite");
-  await build({ root: inRoot("www"), configFile: inRoot("www/vite.config.ts"), logLevel: "warn" });
+  const npm = collector();
+  await build({
+    root: inRoot("www"),
+    configFile: inRoot("www/vite.config.ts"),
+    logLevel: "warn",
+    plugins: [npm.plugin],
+    worker: { plugins: () => [npm.plugin] },
+  });
+  addLicences(npm.entries());
   const paths = filesBelow(inRoot(SITE));
   for (const path of paths) if (path.endsWith(".html")) close(path);
   await addWorker(paths);

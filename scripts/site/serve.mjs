@@ -6,7 +6,13 @@ import { extname, join, normalize } from "node:path";
 import { inRoot, script } from "../shell.mjs";
 import { SITE, buildSite } from "./build.mjs";
 
-const TYPES = { ".html": "text/html", ".js": "text/javascript", ".css": "text/css", ".wasm": "application/wasm" };
+const TYPES = {
+  ".html": "text/html",
+  ".js": "text/javascript",
+  ".css": "text/css",
+  ".wasm": "application/wasm",
+  ".txt": "text/plain; charset=utf-8",
+};
 
 /** The file of an address, or nothing. */
 function fileOf(url, below, folder) {

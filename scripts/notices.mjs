@@ -1,0 +1,89 @@
+// npm run notices: writes down the licences of the crates that .wasm files, command line and Python package contain.
+//
+// To be run after a change of Cargo.lock, python/Cargo.lock or rust-toolchain.toml; tests/contract/notices.test.mjs misses it. What npm's
+// packages bring is added by the build itself (notices/bundled.mjs).
+import { mkdirSync, readFileSync, readdirSync, writeFileSync } from "node:fs";
+import { dirname, join } from "node:path";
+import { ARTEFACTS, cratesOf } from "./notices/crates.mjs";
+import { standardLibrary } from "./notices/standard-library.mjs";
+import { section } from "./notices/text.mjs";
+import { tool } from "./setup.mjs";
+import { Failure, ask, inRoot, must, say, script } from "./shell.mjs";
+
+const ABOUT = "0.9.3";
+const FOLDER = "target/notices";
+/** What cargo-about leaves out of the licence that it finds: the attributions that Apache-2.0 asks for. */
+const NOTICE = /^notice/i;
+
+async function install() {
+  if (ask(tool("cargo-about"), ["--version"]) === `cargo-about ${ABOUT}`) return;
+  say(`cargo-about ${ABOUT}: compiling it (minutes, once)`);
+  const args = ["cargo-about", "--version", `=${ABOUT}`, "--locked", "--features", "cli"];
+  await must("cargo", ["install", ...args, "--root", "target/tools", "--force"]);
+}
+
+/** Licences are chosen from those that deny.toml allows, in its order. */
+function settings() {
+  const accepted = /^allow = (\[.+\])$/m.exec(readFileSync(inRoot("deny.toml"), "utf8"))[1];
+  const lines = [`accepted = ${accepted}`, "ignore-build-dependencies = true", "ignore-dev-dependencies = true"];
+  const path = inRoot(FOLDER, "about.toml");
+  writeFileSync(path, lines.join("\n"));
+  return path;
+}
+
+/** Every crate of an artefact, with the licences chosen for it; macros and what they need among them. */
+async function about({ manifest, builds }, config) {
+  const out = join(FOLDER, `${manifest.replaceAll(/\W/g, "-")}.json`);
+  // Offline, so that it reads what is compiled and asks no server what others think of it.
+  const args = ["generate", "--format", "json", "--locked", "--offline", "--fail", "--config", config];
+  await must(tool("cargo-about"), [
+    ...args,
+    ...new Set(builds.flat()),
+    "--manifest-path",
+    manifest,
+    "--output-file",
+    out,
+  ]);
+  const entries = new Map();
+  for (const { id, text, used_by } of JSON.parse(readFileSync(inRoot(out), "utf8")).licenses) {
+    for (const { crate } of used_by) {
+      const key = `${crate.name} ${crate.version}`;
+      const { licences, texts } = entries.get(key) ?? { licences: [], texts: attributions(crate) };
+      entries.set(key, { licences: [...licences, id], texts: [...texts, signed(text, crate)] });
+    }
+  }
+  return entries;
+}
+
+/** A crate without a file of its licence gets the licence's general form, which leaves a place for names. */
+const signed = (text, { authors }) =>
+  text.replace("<year> <copyright holders>", authors.map((author) => author.replace(/ *<.*>/, "")).join(", "));
+
+function attributions({ manifest_path }) {
+  const folder = dirname(manifest_path);
+  const files = readdirSync(folder).filter((file) => NOTICE.test(file));
+  return files.map((file) => readFileSync(join(folder, file), "utf8"));
+}
+
+function entryOf(crate, entries) {
+  const entry = entries.get(crate);
+  if (entry === undefined) throw new Failure(`cargo-about says nothing of ${crate}.`);
+  const [name, version] = crate.split(" ");
+  return { name, version, licence: [...new Set(entry.licences)].sort().join(" AND "), texts: entry.texts };
+}
+
+await script(async () => {
+  await install();
+  mkdirSync(inRoot(FOLDER), { recursive: true });
+  const config = settings();
+  for (const artefact of ARTEFACTS) {
+    const entries = await about(artefact, config);
+    const crates = cratesOf(artefact).map((crate) => entryOf(crate, entries));
+    const parts = [
+      section(artefact.title, crates),
+      section("Contained by way of Rust's standard library:", standardLibrary()),
+    ];
+    writeFileSync(inRoot(artefact.file), parts.join("\n"));
+    say(`${artefact.file}: ${crates.length} crates`);
+  }
+});

@@ -1,0 +1,52 @@
+// The npm packages whose code a bundler puts into its output, read off the bundler's own module graph.
+import { existsSync, readFileSync, readdirSync } from "node:fs";
+import { dirname, join } from "node:path";
+import { Failure, inRoot } from "../shell.mjs";
+
+/** Files of a package that say whose it is and what it may be used for. */
+const TEXTS = /^(licen[cs]e|copying|notice|third-party-licen[cs]e)/i;
+/** Modules that a bundler adds by itself are that bundler's code. */
+const RUNTIME = /^\0(rolldown|vite)\//;
+/** Vite's file goes on with what the program consists of, none of which reaches the output. */
+const REST = /\n# Licenses of bundled dependencies[\s\S]*$/;
+
+/** The folder of the package that a module belongs to; nothing for the project's own modules. */
+function folderOf(id) {
+  if (id.startsWith("\0")) {
+    const runtime = RUNTIME.exec(id);
+    if (!runtime) throw new Failure(`Whose is the module "${id.slice(1)}"? scripts/notices/bundled.mjs does not know.`);
+    return inRoot("node_modules", runtime[1]);
+  }
+  if (!id.includes("/node_modules/")) return undefined;
+  let folder = dirname(id.replace(/\?.*$/, ""));
+  // A package.json without a name only sets the type of the modules beside it.
+  while (!existsSync(join(folder, "package.json")) || read(folder, "package.json").name === undefined)
+    folder = dirname(folder);
+  return folder;
+}
+
+const read = (folder, file) => JSON.parse(readFileSync(join(folder, file), "utf8"));
+
+function entryOf(folder) {
+  const { name, version, license: licence } = read(folder, "package.json");
+  const texts = readdirSync(folder)
+    .filter((file) => TEXTS.test(file))
+    .map((file) => readFileSync(join(folder, file), "utf8").replace(REST, ""));
+  if (texts.length === 0) throw new Failure(`The package ${name} ${version} carries no licence text.`);
+  return { name, version, licence, texts };
+}
+
+/** A plugin of rolldown and vite that looks at every bundle, and what it has found: entries for `section` of text.mjs. */
+export function collector() {
+  const folders = new Set();
+  return {
+    plugin: {
+      name: "notices",
+      generateBundle(_, bundle) {
+        const ids = Object.values(bundle).flatMap((file) => (file.type === "chunk" ? file.moduleIds : []));
+        for (const folder of ids.map(folderOf)) if (folder !== undefined) folders.add(folder);
+      },
+    },
+    entries: () => [...folders].map(entryOf),
+  };
+}
