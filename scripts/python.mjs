@@ -1,13 +1,19 @@
 // The Python package of the checkout, installed into an environment of its own below target/, and its tests.
-import { existsSync, mkdirSync, rmSync, writeFileSync } from "node:fs";
+import { existsSync, mkdirSync, readdirSync, rmSync, writeFileSync } from "node:fs";
+import { join } from "node:path";
+import { NOTICES } from "./notices/text.mjs";
 import { ask, inRoot, must, print, readIfThere, say, stamp, watch } from "./shell.mjs";
 
 const VENV = "target/python/venv";
+/** Where the wheel is kept that was installed last. */
+export const WHEELS = "target/python/wheels";
 const inVenv = (name) => inRoot(VENV, "bin", name);
 /** What the tests' pinned numpy asks for; the package itself takes older ones. */
 const OLDEST = [3, 11];
 const REQUIREMENTS = "python/tests/requirements.txt";
-const PACKAGE = ["python/src", "python/bimodal_stereo", "python/README.md", "python/Cargo.toml", "python/Cargo.lock"];
+const PACKAGE = ["src", "bimodal_stereo", "README.md", "Cargo.toml", "Cargo.lock", NOTICES].map(
+  (name) => `python/${name}`,
+);
 const SOURCES = ["src", "Cargo.toml", "rust-toolchain.toml", "pyproject.toml", ...PACKAGE];
 
 /** Why Python can't be asked here; nothing where it can. */
@@ -30,18 +36,24 @@ async function once(mark, wanted, step) {
 
 async function install() {
   mkdirSync(inRoot("target/python"), { recursive: true });
-  const pip = (...args) =>
-    must(inVenv("python"), ["-m", "pip", "--disable-pip-version-check", "install", "--quiet", ...args]);
+  const pip = (...args) => must(inVenv("python"), ["-m", "pip", "--disable-pip-version-check", "--quiet", ...args]);
   const interpreter = ask("python3", ["-c", "import sys; print(sys.version, sys.prefix)"]);
   await once(".venv-stamp", `${stamp([REQUIREMENTS])} ${interpreter}`, async () => {
     say("Python: an environment for its tests");
     await must("python3", ["-m", "venv", "--clear", inRoot(VENV)]);
-    await pip("--requirement", REQUIREMENTS);
+    await pip("install", "--requirement", REQUIREMENTS);
   });
   await once(".package-stamp", stamp([...SOURCES, REQUIREMENTS]), async () => {
-    say("Python: pip install .");
-    // As its README says; what cargo has made stays in python/target.
-    await pip("--force-reinstall", "--no-deps", ".");
+    say("Python: pip install ., by way of its wheel");
+    rmSync(inRoot(WHEELS), { recursive: true, force: true });
+    // What cargo has made stays in python/target.
+    await pip("wheel", "--no-deps", "--wheel-dir", WHEELS, ".");
+    await pip(
+      "install",
+      "--force-reinstall",
+      "--no-deps",
+      ...readdirSync(inRoot(WHEELS)).map((name) => join(WHEELS, name)),
+    );
   });
 }
 

@@ -11,21 +11,24 @@ const NATIVE = ["x86_64-unknown-linux-gnu", "aarch64-apple-darwin"].map((target)
 export const ARTEFACTS = [
   {
     file: NOTICES,
-    title: "Contained in the .wasm files of bimodal-stereo:",
+    title: "The sources of bimodal-stereo hold no code of others. Contained in its .wasm files:",
     manifest: "Cargo.toml",
+    crate: "bimodal-stereo",
     // As one argument each, so that all builds together name each once.
     builds: ALL.map(({ features = [] }) => [`--target=${WASM}`, features.join("=")].filter(Boolean)),
   },
   {
     file: `cli/${NOTICES}`,
-    title: "Contained in the command line bimodal-stereo, once it is compiled:",
+    title: "The sources of the command line hold no code of others. Contained in it once it is compiled:",
     manifest: "cli/Cargo.toml",
+    crate: "bimodal-stereo-cli",
     builds: NATIVE,
   },
   {
     file: `python/${NOTICES}`,
     title: "Contained in the compiled module of the Python package bimodal-stereo:",
     manifest: "python/Cargo.toml",
+    crate: "bimodal-stereo-python",
     builds: NATIVE,
   },
 ];
@@ -34,8 +37,9 @@ export const ARTEFACTS = [
 const FOREIGN = /^(\S+) v(\S+)(?: \(\*\))?$/;
 
 /** The crates of all builds of an artefact, each as "name version", sorted. */
-export function cratesOf({ manifest, builds }) {
-  const tree = ["tree", "--locked", "--manifest-path", manifest, "--edges", "normal,no-proc-macro", "--prefix", "none"];
+export function cratesOf({ manifest, crate, builds }) {
+  const which = ["--locked", "--manifest-path", manifest, "--package", crate];
+  const tree = ["tree", ...which, "--edges", "normal,no-proc-macro", "--prefix", "none"];
   const lines = builds.flatMap((build) => {
     const answer = ask("cargo", [...tree, ...build]);
     if (answer === undefined) throw new Failure(`"cargo tree" failed for ${manifest}: ${build.join(" ")}`);
