@@ -115,7 +115,7 @@ describe("the package for npm", () => {
   test("carries licences and notices of what its scripts and .wasm files contain", () => {
     const regions = filesBelow(path)
       .filter((file) => file.endsWith(".js"))
-      .flatMap((file) => [...readFileSync(file, "utf8").matchAll(/^\/\/#region node_modules\/((?:@[^/]+\/)?[^/]+)/gm)]);
+      .flatMap((file) => [...readFileSync(file, "utf8").matchAll(/^\/\/ node_modules\/((?:@[^/]+\/)?[^/]+)/gm)]);
     const bundled = [...new Set(regions.map((match) => match[1])), "rolldown"].map(npmPackage);
     assert.ok(bundled.length >= 3);
     const text = carries(path, [...bundled.map(({ named }) => named), ...namedIn(read(NOTICES))]);
