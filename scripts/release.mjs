@@ -1,7 +1,7 @@
 // npm run release -- 0.2.0: a version, from the tree as it is committed. `--dry-run` prints what would change.
 //
 // The version is in the root's Cargo.toml alone, and everything else reads it there; the lock files, python/Cargo.toml, CITATION.cff and the changelog are written from it.
-// It commits and tags, and neither pushes nor publishes. Run `npm test -- --long` before it.
+// It commits and tags, and neither pushes nor publishes; the tag, once it is pushed, does (.github/workflows/release.yml). Run `npm test -- --long` before it.
 import { readFileSync, writeFileSync } from "node:fs";
 import { spawnSync } from "node:child_process";
 import { parseArgs } from "node:util";
@@ -111,6 +111,6 @@ await script(async () => {
   git("commit", "--quiet", "-m", `Release ${version}`);
   git("tag", "-a", `v${version}`, "-m", `bimodal-stereo ${version}`);
   say(
-    `committed and tagged v${version}; what is left: git push --follow-tags, cargo publish, npm publish ./pkg after npm run build`,
+    `committed and tagged v${version}; what is left: git push --follow-tags, after which .github/workflows/release.yml publishes it`,
   );
 });

@@ -1,9 +1,20 @@
 // npm start: sets up, builds and serves the page until ctrl-C. PORT names a port, else the first free one from 4173.
+import { readFileSync } from "node:fs";
 import { build } from "./build.mjs";
+import { NOTICES } from "./notices/text.mjs";
 import { setup } from "./setup.mjs";
 import { Failure, inRoot, say, script } from "./shell.mjs";
 
 const FIRST_PORT = 4173;
+
+/** The built page has the notices of all that it contains beside it; here its link leads to those of the package. */
+const notices = {
+  name: "notices",
+  configureServer: ({ middlewares }) =>
+    void middlewares.use(`/${NOTICES}`, (_, response) => {
+      response.setHeader("Content-Type", "text/plain; charset=utf-8").end(readFileSync(inRoot("pkg", NOTICES)));
+    }),
+};
 
 function wantedPort() {
   if (!process.env.PORT) return undefined;
@@ -20,6 +31,7 @@ await script(async () => {
   const { createServer } = await import("vite");
   const server = await createServer({
     root: inRoot("www"),
+    plugins: [notices],
     // A number address: "localhost" may mean IPv6 alone, which leaves others outside.
     server: { host: "127.0.0.1", port: port ?? FIRST_PORT, strictPort: port !== undefined },
   });

@@ -5,6 +5,8 @@ import { Failure, inRoot } from "../shell.mjs";
 
 /** Files of a package that say whose it is and what it may be used for. */
 const TEXTS = /^(licen[cs]e|copying|notice|third-party-licen[cs]e)/i;
+/** Licences whose text is the same for everybody, for packages that forget it. */
+const GENERAL = { "Apache-2.0": "LICENSE-APACHE" };
 /** Modules that a bundler adds by itself are that bundler's code. */
 const RUNTIME = /^\0(rolldown|vite)\//;
 /** Vite's file goes on with what the program consists of, none of which reaches the output. */
@@ -32,6 +34,7 @@ function entryOf(folder) {
   const texts = readdirSync(folder)
     .filter((file) => TEXTS.test(file))
     .map((file) => readFileSync(join(folder, file), "utf8").replace(REST, ""));
+  if (texts.length === 0 && GENERAL[licence]) texts.push(readFileSync(inRoot(GENERAL[licence]), "utf8"));
   if (texts.length === 0) throw new Failure(`The package ${name} ${version} carries no licence text.`);
   return { name, version, licence, texts };
 }

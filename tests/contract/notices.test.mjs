@@ -60,11 +60,11 @@ function carries(path, packages) {
 const headsOf = (text) =>
   [...text.matchAll(/^={80}\n(.+(?:\n.+)*?)\n={80}\n\n(?=.*\S)/gm)].flatMap((match) => match[1].split(/,\s/));
 
-/** An npm package as the notices name it, and its own copy of its licence. */
+/** An npm package as the notices name it, and its own copy of its licence; the one that forgets it is under Apache's. */
 function npmPackage(name) {
   const at = `node_modules/${name}`;
   const file = readdirSync(inRoot(at)).find((each) => /^licen[cs]e/i.test(each));
-  return { named: `${name} ${JSON.parse(read(`${at}/package.json`)).version}`, text: read(`${at}/${file}`) };
+  return { named: `${name} ${JSON.parse(read(`${at}/package.json`)).version}`, text: read(file ? `${at}/${file}` : "LICENSE-APACHE") };
 }
 
 /** What the sources of some folders import by a name of npm's, type declarations aside. */
