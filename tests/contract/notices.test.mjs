@@ -64,7 +64,10 @@ const headsOf = (text) =>
 function npmPackage(name) {
   const at = `node_modules/${name}`;
   const file = readdirSync(inRoot(at)).find((each) => /^licen[cs]e/i.test(each));
-  return { named: `${name} ${JSON.parse(read(`${at}/package.json`)).version}`, text: read(file ? `${at}/${file}` : "LICENSE-APACHE") };
+  return {
+    named: `${name} ${JSON.parse(read(`${at}/package.json`)).version}`,
+    text: read(file ? `${at}/${file}` : "LICENSE-APACHE"),
+  };
 }
 
 /** What the sources of some folders import by a name of npm's, type declarations aside. */
