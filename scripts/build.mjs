@@ -1,6 +1,17 @@
 // npm run build: leaves the installable package in pkg/.
-import { cpSync, existsSync, mkdirSync, readFileSync, realpathSync, rmSync, symlinkSync, writeFileSync } from "node:fs";
+import {
+  cpSync,
+  existsSync,
+  mkdirSync,
+  readFileSync,
+  readdirSync,
+  realpathSync,
+  rmSync,
+  symlinkSync,
+  writeFileSync,
+} from "node:fs";
 import { gzipSync } from "node:zlib";
+import { reachable } from "./declarations.mjs";
 import { collector } from "./notices/bundled.mjs";
 import { NOTICES, section } from "./notices/text.mjs";
 import { ALL, GLUE, NUMERICS, allNumerics, node } from "./numerics.mjs";
@@ -10,7 +21,15 @@ import { inRoot, say, script, seconds, stamp } from "./shell.mjs";
 /** The package's own; the project's speaks to those who work on it. */
 const README = "js/README.md";
 const COPIED = ["CHANGELOG.md", "LICENSE-MIT", "LICENSE-APACHE"];
-const SOURCES = [...NUMERICS, NOTICES, "js", "package-lock.json", "scripts/build.mjs", "scripts/notices"];
+const SOURCES = [
+  ...NUMERICS,
+  NOTICES,
+  "js",
+  "package-lock.json",
+  "scripts/build.mjs",
+  "scripts/declarations.mjs",
+  "scripts/notices",
+];
 const MARK = "pkg/.stamp";
 /** One for programs, one for images and depth maps, two for what reads and writes a rig's files, one for what writes a run's, one for the page's fields, and one for the threads of workers. */
 const ENTRIES = {
@@ -22,31 +41,6 @@ const ENTRIES = {
   options: "options",
   thread: "workers/thread",
 };
-/** Declarations that no entry mentions; one of them names the generated bindings, which stay inside. */
-const INTERNAL = [
-  ...[
-    "border",
-    "breathe",
-    "check",
-    "crc",
-    "engine",
-    "inflate",
-    "inputs",
-    "node",
-    "plain",
-    "png",
-    "raster",
-    "saved",
-  ].map((name) => `${name}.d.ts`),
-  ...["check", "rigs", "run"].map((name) => `calibration/${name}.d.ts`),
-  ...["assign", "colour", "depth", "words"].map((name) => `rig/${name}.d.ts`),
-  ...["built", "json", "numbers", "plain", "yaml"].map((name) => `rig/write/${name}.d.ts`),
-  ...["charts", "curves", "markup", "numbers", "page", "parts", "sections", "style"].map(
-    (name) => `rig/write/report/${name}.d.ts`,
-  ),
-  ...["rig/formats", "workers", "write/check.d.ts"],
-];
-
 /** What the package says about itself; name, version, licence, authors and addresses come from Cargo.toml alone. */
 function manifest() {
   const cargo = readFileSync(inRoot("Cargo.toml"), "utf8");
@@ -107,7 +101,15 @@ async function facade() {
   await bundle.close();
   writeFileSync(inRoot("pkg", NOTICES), notices(npm.entries()));
   await node("typescript/bin/tsc", "-p", "js/tsconfig.json");
-  for (const name of INTERNAL) rmSync(inRoot("pkg", name), { recursive: true });
+  // Declarations of what no entry names stay inside, those of the generated bindings among them.
+  const kept = reachable(
+    inRoot("pkg"),
+    Object.values(ENTRIES)
+      .filter((source) => source !== ENTRIES.thread)
+      .map((source) => `${source}.d.ts`),
+  );
+  for (const name of readdirSync(inRoot("pkg"), { recursive: true }))
+    if (name.endsWith(".d.ts") && !kept.has(name)) rmSync(inRoot("pkg", name));
 }
 
 const kilobytes = (bytes) => `${(bytes / 1000).toFixed(0)} kB`;

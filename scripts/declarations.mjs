@@ -1,0 +1,33 @@
+/** Which files import which, by their syntax: what the package ships of its declarations, and what the tests of layers read. */
+import { existsSync, readFileSync } from "node:fs";
+import { dirname, join } from "node:path";
+import { parseAst } from "rolldown/parseAst";
+
+const isNode = (value) => typeof value === "object" && value !== null;
+
+/** Every node of a syntax tree. */
+function* nodes(tree) {
+  yield tree;
+  for (const child of Object.values(tree).flat()) if (isNode(child)) yield* nodes(child);
+}
+
+/** The addresses that a source imports, as they are written: statements, `import("x")` in code and in types. */
+export function imports(text, lang) {
+  const sources = [...nodes(parseAst(text, { lang }))].map(({ source }) => source?.value);
+  return [...new Set(sources.filter((source) => typeof source === "string"))];
+}
+
+/** The declarations below a folder that some of them reach by relative imports. A file that is not there is an error. */
+export function reachable(folder, entries) {
+  const found = new Set();
+  const waiting = [...entries];
+  for (let name = waiting.pop(); name !== undefined; name = waiting.pop()) {
+    if (found.has(name)) continue;
+    found.add(name);
+    const path = join(folder, name);
+    if (!existsSync(path)) throw new Error(`${name} is imported by a declaration and is not there`);
+    for (const source of imports(readFileSync(path, "utf8"), "dts"))
+      if (source.startsWith(".")) waiting.push(join(dirname(name), source.replace(/\.js$/, ".d.ts")));
+  }
+  return found;
+}
