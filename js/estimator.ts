@@ -2,10 +2,23 @@ import type { Estimator as Raw } from "../target/wasm-bindgen/bimodal_stereo.js"
 import { breathe } from "./breathe.js";
 import { bindings, explained } from "./engine.js";
 import { BimodalError, isPanic } from "./errors.js";
-import { checkDepth, checkDraw, checkImage, checkLayer, checkOptions, checkRun } from "./inputs.js";
+import { checkDepth, checkDraw, checkImage, checkLayer, checkOptions, checkRestore, checkRun } from "./inputs.js";
+import type { PlainOptions } from "./options.js";
 import { copyOf, plainDepth, plainImage, plainOptions } from "./plain.js";
 import { type Reached, checksumOf, opened, otherNumbers, saved, unusable } from "./saved.js";
-import type { ColorImage, DepthMap, DrawOptions, Layer, Options, RunOptions, StepReport } from "./types.js";
+import type {
+  ColorImage,
+  ColorImageInput,
+  DepthMap,
+  DepthMapInput,
+  DrawOptions,
+  Layer,
+  Options,
+  RestoreOptions,
+  RunOptions,
+  StepReport,
+  Warning,
+} from "./types.js";
 import type { Views } from "./workers/messages.js";
 import { RefinementWorker, type Refinement } from "./workers/refinement.js";
 import { SearchWorkers } from "./workers/search.js";
@@ -20,7 +33,7 @@ function isContext(value: unknown): boolean {
 }
 
 /** An input made plain; checked before, for keys that are unknown, and after, for members that are inherited. */
-function checked<T>(check: (value: unknown) => void, plain: (input: T) => T, input: T): T {
+function checked<T, Plain>(check: (value: unknown) => void, plain: (input: T) => Plain, input: T): Plain {
   check(input);
   const own = plain(input);
   check(own);
@@ -37,16 +50,17 @@ export class Estimator {
   #raw: Raw | undefined;
   #broken = false;
   /** Those of the loop that is under way. */
-  #options: Options;
+  #options: PlainOptions;
   /** Copies: their owner may change the pair before it is saved or a worker asks for it. */
   readonly #pair: Views;
+  #warnings: Warning[] = [];
   /** Whether anything has been run since the start, and how many slices of the search this thread has done. */
   #begun = false;
   #slices = 0;
   readonly #searchWorkers: SearchWorkers | undefined;
   readonly #refinementWorker: RefinementWorker | undefined;
 
-  constructor(image: ColorImage, depth: DepthMap, options: Options = {}) {
+  constructor(image: ColorImageInput, depth: DepthMapInput, options: Options = {}) {
     const [ownImage, ownDepth] = [checked(checkImage, plainImage, image), checked(checkDepth, plainDepth, depth)];
     const own = checked(checkOptions, plainOptions, options);
     this.#options = own;
@@ -59,11 +73,18 @@ export class Estimator {
     const workers = Math.min((own.workers ?? 1) - 1, this.#raw.workersAfforded());
     this.#pair = { image: copyOf(ownImage, []), depth: copyOf(ownDepth, []) };
     if (workers > 0) {
-      this.#searchWorkers = new SearchWorkers(workers, this.#pair, {
-        take: () => this.#call((raw) => raw.takeTask()),
-        accept: (result) => this.#call((raw) => raw.accept(result)),
-      });
-      if (depth.width * depth.height >= LEAST_SHARED) this.#refinementWorker = new RefinementWorker(this.#pair);
+      const unavailable = (reason: unknown) => this.#warn(reason);
+      this.#searchWorkers = new SearchWorkers(
+        workers,
+        this.#pair,
+        {
+          take: () => this.#call((raw) => raw.takeTask()),
+          accept: (result) => this.#call((raw) => raw.accept(result)),
+        },
+        unavailable,
+      );
+      if (depth.width * depth.height >= LEAST_SHARED)
+        this.#refinementWorker = new RefinementWorker(this.#pair, unavailable);
       this.#begin();
     }
   }
@@ -110,6 +131,19 @@ export class Estimator {
     return report;
   }
 
+  /**
+   * The reports of the steps that are left, one a step, the last one with the status that the loop ends with; events pass between them.
+   * Leaving the iteration early keeps what has been found: another one, or `run`, goes on from there.
+   */
+  async *[Symbol.asyncIterator](): AsyncGenerator<StepReport, void, undefined> {
+    for (let { status } = this.report; status === "running"; ) {
+      const report = await this.#stepTogether();
+      ({ status } = report);
+      yield report;
+      await breathe();
+    }
+  }
+
   /** Back to the start, with the same views and, if given, other options. */
   reset(options?: Options): void {
     const own = options === undefined ? undefined : checked(checkOptions, plainOptions, options);
@@ -122,6 +156,11 @@ export class Estimator {
     if (own) this.#options = { ...own, workers };
     [this.#begun, this.#slices] = [false, 0];
     this.#begin();
+  }
+
+  /** What this place lacks, for which the estimator does without: "workers-unavailable" where no other thread could be started. */
+  get warnings(): readonly Warning[] {
+    return this.#warnings;
   }
 
   /** The report of the last step; before the first one, that of the start. */
@@ -242,10 +281,32 @@ export class Estimator {
    * @throws BimodalError of code "state": no saved run, a damaged one, one of another format, or one whose numbers this build does not repeat.
    */
   static restore(state: Uint8Array): Estimator {
+    const restoring = Estimator.#restoring(state);
+    let next = restoring.next();
+    while (!next.done) next = restoring.next();
+    return next.value;
+  }
+
+  /** As `restore`, with room for events while the run is repeated. When `signal` aborts, the promise is rejected with its reason. */
+  static async restoreAsync(state: Uint8Array, options: RestoreOptions = {}): Promise<Estimator> {
+    checkRestore(options);
+    const { signal } = options;
+    signal?.throwIfAborted();
+    const restoring = Estimator.#restoring(state);
+    let next = restoring.next();
+    while (!next.done) {
+      await breathe();
+      next = signal?.aborted ? restoring.throw(signal.reason) : restoring.next();
+    }
+    return next.value;
+  }
+
+  /** Repeats a saved run, stage by stage; what is broken off is freed. */
+  static *#restoring(state: Uint8Array): Generator<void, Estimator, undefined> {
     const { image, depth, options, reached, found } = opened(state);
     const estimator = unusable(() => new Estimator(image, depth, options));
     try {
-      estimator.#repeat(reached);
+      yield* estimator.#repeat(reached);
       // How far a search has come in so many slices depends on how many threads share it.
       const isWithinSearch = reached.stage === "search" && !reached.ended;
       if (!isWithinSearch && checksumOf(estimator) !== found) throw otherNumbers();
@@ -270,6 +331,14 @@ export class Estimator {
     this.free();
   }
 
+  /** Said once: an estimator without other threads takes longer and finds the same. */
+  #warn(reason: unknown): void {
+    if (this.#warnings.length > 0) return;
+    const message = `options.workers: no other thread could be started (${reason instanceof Error ? reason.message : String(reason)}); this one does all the work`;
+    this.#warnings = [{ code: "workers-unavailable", message, field: "options.workers" }];
+    console.warn(`bimodal-stereo: workers-unavailable: ${message}`);
+  }
+
   /** The workers begin anew: those of the search if the loop starts with one, or else the one that refines. */
   #begin(): void {
     this.#searchWorkers?.end();
@@ -287,12 +356,14 @@ export class Estimator {
   }
 
   /** Runs as many stages as another run has, with the same views and options. */
-  #repeat({ begun, stage, iteration, slices, ended }: Reached): void {
+  *#repeat({ begun, stage, iteration, slices, ended }: Reached): Generator<void, void, undefined> {
     if (!begun) return;
     let report: StepReport;
     const isThere = () => !ended && report.stage === stage && report.iteration === iteration && this.#slices >= slices;
-    do report = this.#after(this.#call((raw) => raw.stepStage()));
-    while (report.status === "running" && !isThere());
+    do {
+      report = this.#after(this.#call((raw) => raw.stepStage()));
+      yield;
+    } while (report.status === "running" && !isThere());
   }
 
   /** A step that waits for the refinement worker, if it is busy. */

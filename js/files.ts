@@ -10,6 +10,8 @@ import { type Pixels, single, toColour, toMask } from "./raster.js";
 import type { ColorImage, DepthMap, Mask } from "./types.js";
 
 export { BimodalError };
+export { imageFrom } from "./images.js";
+export type { ColorImage, DepthMap, ImageOptions, ImageSource, Mask } from "./types.js";
 
 type Bytes = Uint8Array | ArrayBuffer;
 

@@ -19,6 +19,7 @@ import {
   word,
 } from "./check.js";
 import { BimodalError } from "./errors.js";
+import { cameraOf, poseOf } from "./matrices.js";
 import { OPTIONS, POSE, RENDERED_ALONE, SAMPLE } from "./options.js";
 import type { Row, Rows, WordRow } from "./rows.js";
 
@@ -65,33 +66,32 @@ const nameOr =
     if (typeof value !== "string") other(value, field);
   };
 
-/** A reported pose says itself as a matrix as well, which its other members hold. */
-const withoutMatrix =
-  (check: Check): Check =>
-  (value, field) => {
-    if (!isObject(value) || !("matrix" in value)) return check(value, field);
-    const { matrix: _, ...rest } = value;
-    check(rest, field);
-  };
+/** A check of what a matrix becomes. */
+const of =
+  (members: (value: unknown, field: string) => unknown, check: Check): Check =>
+  (value, field) =>
+    check(members(value, field), field);
 
 function inputs() {
-  const camera = object({ fx: number, fy: number, cx: number, cy: number, distortion: numbers(5) }, [
+  const members = object({ fx: number, fy: number, cx: number, cy: number, distortion: numbers(5) }, [
     "fx",
     "fy",
     "cx",
     "cy",
   ]);
+  const camera = of(cameraOf, members);
   const relief = object({ width: side, height: side, heights: array(Float32Array) }, ["width", "height", "heights"]);
   return {
     image: object({ ...IMAGE, camera }, ["width", "height", "data"]),
     depth: object({ ...DEPTH, camera, normals: array(Float32Array) }, ["width", "height"]),
-    options: object({ ...shapeOf(OPTIONS), start: withoutMatrix(checkOf(OPTIONS.start)) }),
+    options: object({ ...shapeOf(OPTIONS), start: of(poseOf, checkOf(OPTIONS.start)) }),
     sample: object({ surface: nameOr(relief), light: nameOr(checkOf(OPTIONS.light)), ...shapeOf(SAMPLE) }, [
       "surface",
       "light",
     ]),
     draw: object({ range: numbers(2), map: word("viridis", "magma") }),
     run: object({ maxIterations: ranged({ kind: "whole", min: 1 }), signal, onStep: callback }),
+    restore: object({ signal }),
   };
 }
 let made: ReturnType<typeof inputs> | undefined;
@@ -104,6 +104,7 @@ export const checkOptions = (value: unknown): void => checks().options(value, "o
 export const checkDraw = (value: unknown): void => checks().draw(value, "options");
 export const checkLayer: (value: unknown) => void = (value) =>
   word("normals", "depth", "residual", "refined", "refinedNormals")(value, "layer");
+export const checkRestore = (value: unknown): void => checks().restore(value, "options");
 export const checkRun = (value: unknown): void => checks().run(value, "run");
 
 export function checkSample(value: unknown): void {

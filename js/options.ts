@@ -24,14 +24,19 @@ const weight = { kind: "number", min: 0, max: 1e6 } as const;
 const seed = { kind: "whole", min: 0, max: Number.MAX_SAFE_INTEGER, default: 1 } as const;
 const side = { kind: "side", min: 16, max: 1024, unit: "px" } as const;
 
-export const POSE: RowsOf<Partial<Omit<Pose, "matrix">>> = {
+/** A pose without its matrix, which is turned into the other members before anything is checked. */
+type PlainPose = Partial<Omit<Pose, "matrix">>;
+/** Options whose pose is of members. */
+export type PlainOptions = Omit<Options, "start"> & { start?: "search" | "identity" | PlainPose };
+
+export const POSE: RowsOf<PlainPose> = {
   scale: { kind: "number", above: 0 },
   rotation: { kind: "list", length: 9 },
   translation: { kind: "list", length: 3 },
   angles: { kind: "object", noun: "angles", members: { alpha: angle, beta: angle, gamma: angle } },
 };
 
-export const OPTIONS: RowsOf<Options> = {
+export const OPTIONS: RowsOf<PlainOptions> = {
   /** Nine coefficients for each of three channels. */
   light: { kind: "list", length: 27, words: { estimate: "estimate" }, default: "estimate" },
   prior: {

@@ -2,9 +2,10 @@
  * Inputs as plain objects of nothing but what the contract names. All threads are given the same: a class with getters, a
  * proxy or memory that is shared would look different in another one.
  */
-import { OPTIONS } from "./options.js";
+import { cameraOf, poseOf } from "./matrices.js";
+import { OPTIONS, type PlainOptions } from "./options.js";
 import type { Row, Rows } from "./rows.js";
-import type { ColorImage, DepthMap, Options, Pinhole } from "./types.js";
+import type { ColorImage, ColorImageInput, DepthMap, DepthMapInput, Options, Pinhole, PinholeInput } from "./types.js";
 
 /** Some members of an object, inherited ones as well, without those that are undefined. */
 function pick<T extends object, K extends keyof T>(source: T, keys: readonly K[]): Pick<T, K> {
@@ -30,19 +31,19 @@ const numbers = (list: ArrayLike<number>): number[] => Array.from(list);
 const rowAfterRow = (matrix: ArrayLike<number | ArrayLike<number>>): number[] =>
   Array.from(matrix).flatMap((row) => (typeof row === "number" ? row : numbers(row)));
 
-const plainCamera = (camera: Pinhole): Pinhole => ({
-  ...pick(camera, ["fx", "fy", "cx", "cy"]),
-  ...plainMember(camera, "distortion", numbers),
-});
+const plainCamera = (given: PinholeInput, field: string): Pinhole => {
+  const camera = cameraOf(given, field) as Pinhole;
+  return { ...pick(camera, ["fx", "fy", "cx", "cy"]), ...plainMember(camera, "distortion", numbers) };
+};
 
-export const plainImage = (image: ColorImage): ColorImage => ({
+export const plainImage = (image: ColorImageInput): ColorImage => ({
   ...pick(image, ["width", "height", "mask", "transfer", "data"]),
-  ...plainMember(image, "camera", plainCamera),
+  ...plainMember(image, "camera", (camera) => plainCamera(camera, "image.camera")),
 });
 
-export const plainDepth = (depth: DepthMap): DepthMap => ({
+export const plainDepth = (depth: DepthMapInput): DepthMap => ({
   ...pick(depth, ["width", "height", "mask", "unit", "data", "points", "normals"]),
-  ...plainMember(depth, "camera", plainCamera),
+  ...plainMember(depth, "camera", (camera) => plainCamera(camera, "depth.camera")),
 });
 
 /** The members that some rows describe. */
@@ -59,7 +60,10 @@ function plainValue(value: unknown, row: Row | undefined): unknown {
   return row?.kind === "object" ? plainMembers(value, row.members) : value;
 }
 
-export const plainOptions = (options: Options): Options => plainMembers(options, OPTIONS);
+export function plainOptions(options: Options): PlainOptions {
+  const values: Record<string, unknown> = pick(options, Object.keys(OPTIONS) as (keyof Options)[]);
+  return plainMembers({ ...values, start: poseOf(values.start, "options.start") }, OPTIONS);
+}
 
 /** What the contract takes; Node's Buffer is one of them by inheritance, and its slices are views. */
 const ARRAYS = [Uint8ClampedArray, Uint8Array, Uint16Array, Float32Array] as const;

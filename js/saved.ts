@@ -9,8 +9,7 @@
 import { array, flag, isObject, object, ranged, word, wrong, type Check } from "./check.js";
 import { crc32 } from "./crc.js";
 import { BimodalError } from "./errors.js";
-import type { Estimator } from "./estimator.js";
-import type { ColorImage, DepthMap, Options, Stage } from "./types.js";
+import type { ColorImage, DepthMap, Options, Stage, StepReport } from "./types.js";
 
 /** How far a run has come. */
 export interface Reached {
@@ -84,11 +83,19 @@ export function unusable<T>(call: () => T): T {
 
 const bytesOf = ({ buffer, byteOffset, byteLength }: ArrayBufferView) => new Uint8Array(buffer, byteOffset, byteLength);
 
-/** All that a run says and has found, but for the times. */
-export function checksumOf(estimator: Estimator): number {
+/** An estimator, as far as its outcome goes. */
+interface Outcome {
+  readonly report: StepReport;
+  light(): Float64Array;
+  imageDepth(): Float32Array;
+  refinedDepth(): Float32Array;
+}
+
+/** All that a run says and has found, but for the times, and for matrices, which say what their poses say. */
+export function checksumOf(estimator: Outcome): number {
   const { milliseconds: _, ...report } = estimator.report;
   const found = [
-    new TextEncoder().encode(JSON.stringify(report)),
+    new TextEncoder().encode(JSON.stringify(report, (name, value) => (name === "matrix" ? undefined : value))),
     estimator.light(),
     estimator.imageDepth(),
     estimator.refinedDepth(),

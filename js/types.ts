@@ -12,6 +12,23 @@ export interface Pinhole {
   distortion?: [number, number, number, number, number];
 }
 
+/** A 3x3 camera matrix, fx 0 cx, 0 fy cy, 0 0 1, in pixels: three rows of three numbers, or its nine numbers row by row. */
+export type Matrix3 = readonly ArrayLike<number>[] | ArrayLike<number>;
+
+/** A 4x4 matrix [s R, t; 0 0 0 1]: four rows of four numbers, or its 16 numbers row by row. */
+export type Matrix4 = readonly ArrayLike<number>[] | ArrayLike<number>;
+
+/** A camera by its matrix, with its distortion. */
+export interface CameraMatrix<Camera extends { distortion?: unknown }> {
+  /** fx 0 cx, 0 fy cy, 0 0 1, in pixels. */
+  K: Matrix3;
+  /** As the camera of members has it. */
+  distortion?: Exclude<Camera["distortion"], undefined>;
+}
+
+/** A pinhole camera as it may be given: its members, its matrix, or `{ K, distortion }`. */
+export type PinholeInput = Pinhole | CameraMatrix<Pinhole> | Matrix3;
+
 /**
  * One colour image of the object, up to 4096 pixels on a side. One that is finer than the depth map, by a quarter or more, is worked on at the depth
  * map's resolution; arrays, poses and options are in its own pixels all the same, and memory is asked for the working size.
@@ -29,6 +46,12 @@ export interface ColorImage {
   data: Uint8Array | Uint8ClampedArray | Uint16Array | Float32Array;
 }
 
+/** A colour image as it may be given: its camera in any of the forms of `PinholeInput`. */
+export interface ColorImageInput extends Omit<ColorImage, "camera"> {
+  /** Without it the view is orthographic. */
+  camera?: PinholeInput;
+}
+
 /** One depth map of the same object from another view: `data` or `points`, exactly one of the two. */
 export interface DepthMap {
   width: number;
@@ -43,6 +66,23 @@ export interface DepthMap {
   points?: Float32Array;
   /** Unit normals, 3*w*h interleaved; they override our own. */
   normals?: Float32Array;
+}
+
+/**
+ * Whatever holds a colour image: a file (`Blob`), its bytes, its address or in Node its path; an element, a canvas, a bitmap or a frame of a
+ * video in a browser.
+ */
+export type ImageSource = string | URL | Uint8Array | ArrayBuffer | ImageBitmapSource;
+
+export interface ImageOptions {
+  /** Breaks off the download or the reading; the promise is rejected with its reason. */
+  signal?: AbortSignal;
+}
+
+/** A depth map as it may be given: its camera in any of the forms of `PinholeInput`. */
+export interface DepthMapInput extends Omit<DepthMap, "camera"> {
+  /** Without it the view is orthographic. */
+  camera?: PinholeInput;
 }
 
 /**
@@ -66,11 +106,20 @@ export interface LightGaussian {
   covariance: ArrayLike<number> | ArrayLike<ArrayLike<number>>;
 }
 
+/** A pose by its members. `rotation` wins over `matrix`, and both over `angles`. */
+export interface PoseMembers extends Omit<Pose, "matrix" | "angles"> {
+  angles?: Pose["angles"];
+  matrix?: Matrix4;
+}
+
+/** A pose as it may be given: its members, `{ matrix }`, or the 4x4 matrix itself. */
+export type PoseInput = PoseMembers | { matrix: Matrix4 } | Matrix4;
+
 export interface Options {
   light?: "estimate" | ArrayLike<number>;
   /** The lights to expect where the light is estimated. By default natural lights, indoors and outdoors. */
   prior?: LightGaussian;
-  start?: "search" | "identity" | Partial<Omit<Pose, "matrix">>;
+  start?: "search" | "identity" | Partial<PoseMembers> | Matrix4;
   /**
    * How far from a told start the registration by colours may end: the rotation, by default 30 degrees, and, where a translation is
    * told, the object's middle in the colour view's units, by default the object's own width. Where nothing within explains the colours better,
@@ -96,6 +145,16 @@ export interface Options {
    * `run` does, which also waits for answers; a copy of the pair is kept for the others.
    */
   workers?: number;
+}
+
+/** What was guessed, looks wrong or is missing, and stops nothing. */
+export interface Warning {
+  /** Stable, for programs: "workers-unavailable". */
+  code: string;
+  /** The same in a sentence, with what to do. */
+  message: string;
+  /** The input that it is about, as a path in the contract. */
+  field?: string;
 }
 
 export type Stage = "search" | "light" | "shading" | "surface" | "registration" | "refinement";
@@ -225,6 +284,11 @@ export interface RunOptions {
   onStep?: (report: StepReport) => void;
 }
 
+export interface RestoreOptions {
+  /** Breaks the repetition off; the promise is rejected with its reason. */
+  signal?: AbortSignal;
+}
+
 /**
  * A camera of a rig. Distortion as OpenCV has it: of the model "brown" (the default) 4, 5 or 8 numbers, k1 k2 p1 p2 [k3 [k4 k5 k6]];
  * of the model "fisheye" (Kannala-Brandt) the 4 numbers k1 k2 k3 k4. Units: pixels; pixel centres are whole numbers.
@@ -234,6 +298,9 @@ export interface RigCamera extends Omit<Pinhole, "distortion"> {
   distortion?: ArrayLike<number>;
 }
 
+/** A camera of a rig as it may be given: its members, its matrix, or `{ K, distortion, model }`. */
+export type RigCameraInput = RigCamera | (CameraMatrix<RigCamera> & Pick<RigCamera, "model">) | Matrix3;
+
 /** One pair of a rig whose calibration is in question: the whole frames; masks are optional. Depth is metric. */
 export interface CheckFrame {
   /** Without a camera the focal length is estimated, the principal point being the middle of the image. */
@@ -242,6 +309,14 @@ export interface CheckFrame {
   depth: Omit<DepthMap, "camera" | "normals"> & { camera?: RigCamera };
   /** How the report calls it; "frame 1" and so on without it. */
   name?: string;
+}
+
+/** A frame as it may be given: its cameras in any of the forms of `RigCameraInput`. */
+export interface CheckFrameInput extends Omit<CheckFrame, "image" | "depth"> {
+  /** Without a camera the focal length is estimated, the principal point being the middle of the image. */
+  image: Omit<CheckFrame["image"], "camera"> & { camera?: RigCameraInput };
+  /** A depth map with its camera, or an organised cloud in metres. */
+  depth: Omit<CheckFrame["depth"], "camera"> & { camera?: RigCameraInput };
 }
 
 /** What of a frame bears on the calibration. */

@@ -14,6 +14,8 @@ import {
   wrong,
 } from "../check.js";
 import { BimodalError } from "../errors.js";
+import { type PoseMembers, cameraOf, poseOf } from "../matrices.js";
+import type { CheckFrame, CheckFrameInput, RigCamera, RigCameraInput } from "../types.js";
 
 /** A rig's camera: with as many coefficients as its lens model has, which the numerics judge. */
 const list: Check = (value, field) => {
@@ -23,14 +25,15 @@ const list: Check = (value, field) => {
 };
 /** OpenCV's longest model that is read here. */
 const MOST_COEFFICIENTS = 8;
-const rigCamera = object(
+const cameraMembers = object(
   { fx: number, fy: number, cx: number, cy: number, model: word("brown", "fisheye"), distortion: list },
   ["fx", "fy", "cx", "cy"],
 );
+const rigCamera: Check = (value, field) => cameraMembers(cameraOf(value, field), field);
 const name: Check = (value, field) => {
   if (typeof value !== "string") throw wrong(field, "a text", value);
 };
-const rigPose = object(
+const poseMembers = object(
   {
     scale: number,
     rotation: numbers(9),
@@ -41,6 +44,7 @@ const rigPose = object(
   },
   ["rotation", "translation"],
 );
+const rigPose: Check = (value, field) => poseMembers(poseOf(value, field), field);
 const frame = object(
   {
     image: object({ ...IMAGE, camera: rigCamera }, ["width", "height", "data"]),
@@ -66,18 +70,41 @@ const options = object({
   onProgress: callback,
 });
 
-export function checkFrames(value: unknown): void {
+/** A view with the members of its camera, where that is a matrix. */
+function withCamera<T extends object>(
+  view: T & { camera?: RigCameraInput },
+  field: string,
+): T & { camera?: RigCamera } {
+  const camera = cameraOf(view.camera, `${field}.camera`) as RigCamera | undefined;
+  if (camera === view.camera) return view as T & { camera?: RigCamera };
+  // Whatever the view inherits stays within reach.
+  return Object.create(view, { camera: { value: camera, enumerable: true } });
+}
+
+/** The frames with the members of their cameras. */
+export function checkedFrames(value: unknown): CheckFrame[] {
   if (!Array.isArray(value)) throw wrong("frames", "a list of frames", value);
-  for (const [index, one] of value.entries()) frame(one, `frames[${index}]`);
+  return Array.from(value, (one: CheckFrameInput, index) => {
+    const field = `frames[${index}]`;
+    frame(one, field);
+    const { image, depth, name } = one;
+    return {
+      image: withCamera(image, `${field}.image`),
+      depth: withCamera(depth, `${field}.depth`),
+      ...(name !== undefined && { name }),
+    };
+  });
 }
 
 /** What a product of rotations with rounding leaves of a scale of one. */
 const SCALE_TOLERANCE = 0.01;
 
-export function checkPose(value: unknown, field = "pose"): void {
-  rigPose(value, field);
+/** The members of a pose that is given in any of its forms. */
+export function checkedPose(given: unknown, field = "pose"): PoseMembers {
+  const value = poseOf(given, field);
+  poseMembers(value, field);
   const scale = isObject(value) && "scale" in value ? value.scale : undefined;
-  if (typeof scale !== "number" || Math.abs(scale - 1) <= SCALE_TOLERANCE) return;
+  if (typeof scale !== "number" || Math.abs(scale - 1) <= SCALE_TOLERANCE) return value as PoseMembers;
   throw new BimodalError(
     "range",
     `${field}.scale: must be 1: extrinsics do not change sizes (got ${scale})`,
@@ -85,9 +112,10 @@ export function checkPose(value: unknown, field = "pose"): void {
   );
 }
 
-export function checkCandidates(value: unknown): void {
+/** The candidates in their order. */
+export function checkedCandidates(value: unknown): [name: string, pose: PoseMembers][] {
   if (!isObject(value) || Array.isArray(value)) throw wrong("candidates", "an object of poses by name", value);
-  for (const [name, pose] of Object.entries(value)) checkPose(pose, `candidates.${name}`);
+  return Object.entries(value).map(([name, pose]) => [name, checkedPose(pose, `candidates.${name}`)]);
 }
 
 export const checkCheckOptions = (value: unknown): void => options(value, "options");

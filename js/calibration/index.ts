@@ -1,13 +1,21 @@
 /** The check of a calibration and the rigs that it is tested on: a .wasm file of its own for each, loaded with the first call. */
-import type { CheckFrame, CheckOptions, CheckReport, FrameOverlay, Pose, RigRequest, RigSample } from "../types.js";
+import type {
+  CheckFrameInput,
+  CheckOptions,
+  CheckReport,
+  FrameOverlay,
+  PoseInput,
+  RigRequest,
+  RigSample,
+} from "../types.js";
 
 /**
  * Whether the frames agree with some candidates for the extrinsics of a rig, P_colour = R P_depth + t in metres; the first
  * candidate is the one in question. Needs no `init()`. Runs in slices, so that events and drawing go on, or call it in a worker.
  */
 export async function checkCalibration(
-  frames: CheckFrame[],
-  candidates: Record<string, Pose>,
+  frames: CheckFrameInput[],
+  candidates: Record<string, PoseInput>,
   options: CheckOptions = {},
 ): Promise<CheckReport> {
   const { check } = await import("./run.js");
@@ -15,7 +23,7 @@ export async function checkCalibration(
 }
 
 /** Where a pose puts the depth points and depth edges of a frame on its image. */
-export async function projectFrame(frame: CheckFrame, pose: Pose): Promise<FrameOverlay> {
+export async function projectFrame(frame: CheckFrameInput, pose: PoseInput): Promise<FrameOverlay> {
   const { project } = await import("./run.js");
   return project(frame, pose);
 }

@@ -1,10 +1,11 @@
 /** Runs the check: its module, its inputs' names and types, its slices. */
 import start, { CalibrationCheck, overlay } from "../../target/check/wasm-bindgen/bimodal_stereo_check.js";
-import { checkCandidates, checkCheckOptions, checkFrames, checkPose } from "./check.js";
+import { checkCheckOptions, checkedCandidates, checkedFrames, checkedPose } from "./check.js";
 import { across, compile, lazily } from "../border.js";
 import { BimodalError } from "../errors.js";
 import { breathe } from "../breathe.js";
-import type { CheckFrame, CheckOptions, CheckReport, FrameOverlay, Pose } from "../types.js";
+import type { PoseMembers } from "../matrices.js";
+import type { CheckFrame, CheckFrameInput, CheckOptions, CheckReport, FrameOverlay, PoseInput } from "../types.js";
 
 /** Milliseconds between two breaths: a page stays responsive, and a message costs a hundredth of it. */
 const SLICE = 30;
@@ -14,24 +15,24 @@ const load = lazily("checkCalibration", async () =>
   start({ module_or_path: await compile(() => new URL("./bimodal_stereo_check_bg.wasm", import.meta.url)) }),
 );
 
-const twelve = ({ rotation, translation }: Pose): number[] => [...rotation, ...translation];
+const twelve = ({ rotation, translation }: PoseMembers): number[] => [...rotation, ...translation];
 
 export async function check(
-  frames: CheckFrame[],
-  candidates: Record<string, Pose>,
+  frames: CheckFrameInput[],
+  candidates: Record<string, PoseInput>,
   options: CheckOptions,
 ): Promise<CheckReport> {
-  checkFrames(frames);
-  checkCandidates(candidates);
+  const views = checkedFrames(frames);
+  const known = checkedCandidates(candidates);
   checkCheckOptions(options);
   const { cues, signal, onProgress } = options;
   signal?.throwIfAborted();
   await load();
-  const names = Object.keys(candidates);
-  const poses = Float64Array.from(names.flatMap((name) => twelve(candidates[name] as Pose)));
+  const names = known.map(([name]) => name);
+  const poses = Float64Array.from(known.flatMap(([, pose]) => twelve(pose)));
   onProgress?.(0, "reading the frames");
   await breathe();
-  const run = across(() => new CalibrationCheck(frames, names, poses, cues ?? []));
+  const run = across(() => new CalibrationCheck(views, names, poses, cues ?? []));
   try {
     let last = performance.now();
     for (let done = false; !done; ) {
@@ -54,9 +55,9 @@ export async function check(
   }
 }
 
-export async function project(frame: CheckFrame, pose: Pose): Promise<FrameOverlay> {
-  checkFrames([frame]);
-  checkPose(pose);
+export async function project(frame: CheckFrameInput, pose: PoseInput): Promise<FrameOverlay> {
+  const [view] = checkedFrames([frame]) as [CheckFrame];
+  const known = checkedPose(pose);
   await load();
-  return across(() => overlay(frame, Float64Array.from(twelve(pose)))) as FrameOverlay;
+  return across(() => overlay(view, Float64Array.from(twelve(known)))) as FrameOverlay;
 }

@@ -4,7 +4,8 @@
  *
  * A file that cannot be read costs its frame, not the folder: it is named in `warnings`.
  */
-import { type Check, object, wrong } from "../check.js";
+import { breathe } from "../breathe.js";
+import { type Check, object, signal, wrong } from "../check.js";
 import { BimodalError, badFile } from "../errors.js";
 import { addCameras } from "./assign.js";
 import { textOf } from "./formats/text.js";
@@ -16,6 +17,8 @@ export interface FolderOptions {
   unit?: number;
   /** At most so many pairs are read, evenly spread over the folder; default 20. */
   frames?: number;
+  /** Breaks the reading off between two files; the promise is rejected with its reason. */
+  signal?: AbortSignal;
 }
 
 const FRAMES = 20;
@@ -190,9 +193,21 @@ function spread<T>(all: T[], most: number): T[] {
 class FolderReader {
   readonly readings: Reading[] = [];
   readonly warnings: string[] = [];
+  readonly #signal: AbortSignal | undefined;
+
+  constructor(signal: AbortSignal | undefined) {
+    this.#signal = signal;
+  }
+
+  /** Lets events pass, an abort among them. */
+  async rest(): Promise<void> {
+    await breathe();
+    this.#signal?.throwIfAborted();
+  }
 
   /** The file's content, or nothing with a warning. */
   async read(file: NamedFile, options: ReadOptions): Promise<RigReading | undefined> {
+    await this.rest();
     try {
       const found = await readRigFile(file, options);
       this.readings.push({ name: found.name, says: found.says, warnings: found.warnings });
@@ -249,6 +264,7 @@ function checkUnits(frames: CheckFrame[], warnings: string[]): void {
 async function byContent(pictures: NamedFile[], reader: FolderReader): Promise<Pairs> {
   const kinds = new Map<string, NamedFile[]>();
   for (const file of pictures.slice(0, 2 * FRAMES)) {
+    await reader.rest();
     const found = await readRigFile(file).catch(() => undefined);
     if (found) kinds.set(found.kind, [...(kinds.get(found.kind) ?? []), file]);
   }
@@ -271,18 +287,19 @@ const frameCount: Check = (value, field) => {
   if (!(Number.isInteger(value) && Number(value) > 0))
     throw new BimodalError("option", `${field}: a whole number above zero is needed`, field);
 };
-const checkOptions = object({ unit: metresPerUnit, frames: frameCount });
+const checkOptions = object({ unit: metresPerUnit, frames: frameCount, signal });
 
 /** Reads all files of a folder: frames with their cameras, and the poses that relate these. */
 export async function readRigFolder(files: NamedFile[], options: FolderOptions = {}): Promise<RigFolder> {
   if (!Array.isArray(files)) throw wrong("files", "a list of files", files);
   for (const [index, file] of files.entries()) checkNamed(file, `files[${index}]`);
   checkOptions(options, "options");
-  const { unit, frames: most = FRAMES } = options;
+  const { unit, frames: most = FRAMES, signal } = options;
+  signal?.throwIfAborted();
   const kept = files
     .map(({ name, bytes }) => ({ name: name.replace(/\\/g, "/").replace(/^\.\//, ""), bytes }))
     .filter(({ name }) => !IGNORED.test(name));
-  const reader = new FolderReader();
+  const reader = new FolderReader(signal);
   // Browsers hand folders over in any order.
   const pictures = kept
     .filter(({ bytes }) => isRasterFile(bytes))

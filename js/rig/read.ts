@@ -3,7 +3,7 @@
  *
  * Whatever is wrong with a file comes out as one BimodalError of code "file" that names the file and the reason.
  */
-import { type Check, object, word, wrong } from "../check.js";
+import { type Check, object, signal, word, wrong } from "../check.js";
 import { BimodalError, badFile } from "../errors.js";
 import { readNpy } from "../npy.js";
 import { looksLikeDepth, looksLikeMask, pictureColour, pictureMask } from "./colour.js";
@@ -126,7 +126,7 @@ export const metresPerUnit: Check = (value, field) => {
   if (!(typeof value === "number" && value > 0 && Number.isFinite(value)))
     throw new BimodalError("option", `${field}: metres per stored unit, above zero, are needed`, field);
 };
-const checkOptions = object({ as: word("colour", "depth", "mask", "cameras", "poses"), unit: metresPerUnit });
+const checkOptions = object({ as: word("colour", "depth", "mask", "cameras", "poses"), unit: metresPerUnit, signal });
 
 function checked(file: NamedFile, options: ReadOptions): void {
   checkNamed(file, "file");
@@ -136,9 +136,12 @@ function checked(file: NamedFile, options: ReadOptions): void {
 /** Reads one file. What was guessed, or looks wrong, is in `warnings`. */
 export async function readRigFile(file: NamedFile, options: ReadOptions = {}): Promise<RigReading> {
   checked(file, options);
+  options.signal?.throwIfAborted();
   try {
     return { name: file.name, ...(await content(file, options)) };
   } catch (error) {
     throw named(file.name, error);
+  } finally {
+    options.signal?.throwIfAborted();
   }
 }

@@ -47,6 +47,8 @@ export interface ReadOptions {
   as?: RigReading["kind"];
   /** Metres per stored unit of a depth map or cloud; without it the values decide. */
   unit?: number;
+  /** Breaks the reading off; the promise is rejected with its reason. */
+  signal?: AbortSignal;
 }
 
 /** A folder of frames. The cameras are those of the files, shared by all frames. */

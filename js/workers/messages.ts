@@ -1,5 +1,6 @@
 /** What an estimator and its workers in other threads send each other. */
-import type { ColorImage, DepthMap, Options } from "../types.js";
+import type { PlainOptions } from "../options.js";
+import type { ColorImage, DepthMap } from "../types.js";
 
 /** Both views, of which every worker gets a copy. */
 export interface Views {
@@ -9,7 +10,7 @@ export interface Views {
 
 /** A worker first gets its pair, then tasks of the search, or refinements. */
 export type Order =
-  | ({ kind: "pair"; module: WebAssembly.Module; options: Options } & Views)
+  | ({ kind: "pair"; module: WebAssembly.Module; options: PlainOptions } & Views)
   | { kind: "task"; task: Float64Array }
   | { kind: "refine"; numbers: Float64Array; planes: Float32Array };
 
@@ -23,6 +24,6 @@ export type WorkerAnswer = Float64Array | Float32Array | typeof READY | null;
 export interface WorkerHandle {
   post(order: Order, transfer: ArrayBuffer[]): void;
   onAnswer(handler: (answer: WorkerAnswer) => void): void;
-  onFailure(handler: () => void): void;
+  onFailure(handler: (reason: unknown) => void): void;
   end(): void;
 }

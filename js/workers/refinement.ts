@@ -1,5 +1,5 @@
 /** A worker that refines the depth view while the estimator's own thread finds the image surface. */
-import type { Options } from "../types.js";
+import type { PlainOptions } from "../options.js";
 import { READY, type WorkerAnswer, type Views, type WorkerHandle } from "./messages.js";
 import { startWorker } from "./start.js";
 
@@ -21,6 +21,7 @@ const LONGEST_WAIT = 2000;
  */
 export class RefinementWorker {
   readonly #pair: Views;
+  readonly #unavailable: (reason: unknown) => void;
   #worker: WorkerHandle | undefined;
   /** Whether it could not be started or has failed; no other one is started in this loop. */
   #failed = false;
@@ -33,14 +34,15 @@ export class RefinementWorker {
   #answer: Refinement | undefined;
   #waiting: (() => void)[] = [];
 
-  constructor(pair: Views) {
+  constructor(pair: Views, unavailable: (reason: unknown) => void) {
     this.#pair = pair;
+    this.#unavailable = unavailable;
   }
 
   /** A loop begins, unless it is under way. */
-  begin(options: Options): void {
+  begin(options: PlainOptions): void {
     if (this.#worker || this.#failed) return;
-    const worker = startWorker(this.#pair, options);
+    const worker = startWorker(this.#pair, options, this.#unavailable);
     this.#worker = worker;
     this.#failed = !worker;
     worker?.onAnswer((answer) => {

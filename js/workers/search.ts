@@ -1,5 +1,5 @@
 /** Workers that do parts of the search over poses for an estimator. */
-import type { Options } from "../types.js";
+import type { PlainOptions } from "../options.js";
 import { READY, type WorkerAnswer, type Views, type WorkerHandle } from "./messages.js";
 import { startWorker } from "./start.js";
 
@@ -27,21 +27,23 @@ export class SearchWorkers {
   readonly #count: number;
   readonly #pair: Views;
   readonly #tasks: Tasks;
+  readonly #unavailable: (reason: unknown) => void;
 
-  constructor(count: number, pair: Views, tasks: Tasks) {
+  constructor(count: number, pair: Views, tasks: Tasks, unavailable: (reason: unknown) => void) {
     this.#count = count;
     this.#pair = pair;
     this.#tasks = tasks;
+    this.#unavailable = unavailable;
   }
 
   /** A search begins, with workers of its own. */
-  begin(options: Options): void {
+  begin(options: PlainOptions): void {
     this.end();
     for (let started = 0; started < this.#count; started++) this.#start(options);
   }
 
-  #start(options: Options): void {
-    const handle = startWorker(this.#pair, options);
+  #start(options: PlainOptions): void {
+    const handle = startWorker(this.#pair, options, this.#unavailable);
     if (!handle) return;
     const worker: SearchWorker = { handle, queued: 0 };
     this.#workers.push(worker);

@@ -2,26 +2,37 @@
 import { compiled } from "../engine.js";
 import { nodeModule } from "../node.js";
 import { copyOf } from "../plain.js";
-import type { Options } from "../types.js";
+import type { PlainOptions } from "../options.js";
 import { wasmUrl } from "../wasm.js";
 import type { Views, WorkerHandle } from "./messages.js";
 
 /**
  * A worker with a copy of the pair, where this place has any. A page may forbid workers, a system may be out of threads or
- * of memory for them.
+ * of memory for them: that is told to `unavailable`, with the reason.
  */
-export function startWorker({ image, depth }: Views, options: Options): WorkerHandle | undefined {
+export function startWorker(
+  { image, depth }: Views,
+  options: PlainOptions,
+  unavailable: (reason: unknown) => void,
+): WorkerHandle | undefined {
   let worker: WorkerHandle | undefined;
   try {
     worker = spawn();
+    let isReady = false;
+    worker.onAnswer(() => (isReady = true));
+    worker.onFailure((reason) => {
+      if (!isReady) unavailable(reason);
+      isReady = true;
+    });
     const transfer: ArrayBuffer[] = [];
     worker.post(
       { kind: "pair", module: compiled(), image: copyOf(image, transfer), depth: copyOf(depth, transfer), options },
       transfer,
     );
     return worker;
-  } catch {
+  } catch (error) {
     worker?.end();
+    unavailable(error);
     return undefined;
   }
 }
@@ -31,17 +42,36 @@ function spawn(): WorkerHandle {
   return threads ? spawnInNode(threads) : spawnInBrowser();
 }
 
-function spawnInBrowser(): WorkerHandle {
+/**
+ * A page may import modules from other origins, and start workers from its own alone. A worker of its own that imports the module is both;
+ * it needs thread.js beside the .wasm, as where no bundler has renamed it.
+ */
+function foreignWorker(thread: URL): Worker {
+  const text = `import ${JSON.stringify(thread.href)};`;
+  const address = URL.createObjectURL(new Blob([text], { type: "text/javascript" }));
+  const worker = new Worker(address, { type: "module" });
+  const forget = () => URL.revokeObjectURL(address);
+  worker.addEventListener("message", forget, { once: true });
+  worker.addEventListener("error", forget, { once: true });
+  return worker;
+}
+
+function ownWorker(): Worker {
   // Written out in one piece: bundlers look for exactly this form to include the file.
-  const worker = new Worker(new URL("./thread.js", import.meta.url), { type: "module" });
+  return new Worker(new URL("./thread.js", import.meta.url), { type: "module" });
+}
+
+function spawnInBrowser(): WorkerHandle {
+  const thread = new URL("thread.js", wasmUrl());
+  const worker = thread.origin === self.location.origin ? ownWorker() : foreignWorker(thread);
   return {
     post: (order, transfer) => worker.postMessage(order, transfer),
     onAnswer: (handler) => worker.addEventListener("message", (event) => handler(event.data)),
     onFailure: (handler) =>
       worker.addEventListener("error", (event) => {
-        // The estimator does the work itself, so that a console need not show it.
+        // The estimator does the work itself and warns, so that the console need not show it once more.
         event.preventDefault();
-        handler();
+        handler(event.message || `${thread.href} could not be loaded`);
       }),
     end: () => worker.terminate(),
   };
@@ -60,7 +90,7 @@ function spawnInNode({ Worker }: typeof import("node:worker_threads")): WorkerHa
       // Adding a listener refs the worker again, and a program would not end before its workers do.
       worker.unref();
     },
-    onFailure: (handler) => worker.on("error", handler).on("exit", handler),
+    onFailure: (handler) => worker.on("error", handler).on("exit", () => handler("it ended")),
     end: () => void worker.terminate(),
   };
 }

@@ -2,7 +2,8 @@
 import { type ArrayType, type Check, array, isObject, number, numbers, ranged, side, word, wrong } from "../check.js";
 import { BimodalError } from "../errors.js";
 import type { Raster } from "../npy.js";
-import type { Pose, StepReport } from "../types.js";
+import { wholePoseOf } from "../matrices.js";
+import type { Pose, PoseInput, StepReport } from "../types.js";
 import { like } from "../rig/write/built.js";
 
 export const checkUnit = word("m", "px");
@@ -45,19 +46,22 @@ const scaleOf = ranged({ kind: "number", above: 0 });
 const angleOf = ranged({ kind: "number" });
 const [nine, three] = [finite(9), finite(3)];
 
-/** Checks what a pose's matrix is made of. */
-export function checkPose(pose: Pose, field: string): void {
+/** A pose in any of its forms as the members that its matrix is made of. */
+export function checkedPose(given: PoseInput, field: string): Pose {
+  const pose = wholePoseOf(given, field);
   if (!isObject(pose)) throw wrong(field, "an object", pose);
   scaleOf(pose.scale, `${field}.scale`);
   nine(pose.rotation, `${field}.rotation`);
   three(pose.translation, `${field}.translation`);
+  return pose;
 }
 
-/** .. and its angles. */
-export function checkWholePose(pose: Pose, field: string): void {
-  checkPose(pose, field);
+/** A pose in any of its forms as members, its angles among them. */
+export function checkedWholePose(given: PoseInput, field: string): Pose {
+  const pose = checkedPose(given, field);
   like({ angles: {} }, pose, field);
   for (const name of ["alpha", "beta", "gamma"] as const) angleOf(pose.angles[name], `${field}.angles.${name}`);
+  return pose;
 }
 
 type Standing = Pick<StepReport, "status" | "message" | "uncertainty">;

@@ -2,7 +2,7 @@
 export { BimodalError } from "../errors.js";
 export { type Cloud, writeClouds } from "../rig/write/clouds.js";
 export { type NpyData, writeNpy } from "./npy.js";
-export { writePng } from "./png.js";
+export { type PngInput, writePng } from "./png.js";
 export { type Entry, type Picture, type ReportInput, type RunReport, runReportHtml } from "./report.js";
 export {
   type DepthPng,

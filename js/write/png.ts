@@ -1,5 +1,5 @@
 /**
- * PNG of 8 or 16 bits, grey or RGB. A canvas would write 8 bits alone. Compressed by the platform's own deflate, so that no second one
+ * PNG of 8 or 16 bits, grey or colour, with or without alpha. A canvas would write 8 bits alone. Compressed by the platform's own deflate, so that no second one
  * has to be downloaded; rows are stored as differences to the row above, which suits smooth depths and normals.
  */
 import { crc32 } from "../crc.js";
@@ -11,8 +11,16 @@ import { checkRaster, text } from "./check.js";
 const SIGNATURE = [0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a];
 /** The filter of rows as differences to the row above. */
 const UP = 2;
-/** Colour types by the number of channels: grey and RGB. */
-const TYPES: Readonly<Record<number, number>> = { 1: 0, 3: 2 };
+/** Colour types by the number of channels: grey, grey with alpha, RGB, RGBA. */
+const TYPES: Readonly<Record<number, number>> = { 1: 0, 2: 4, 3: 2, 4: 6 };
+
+type Samples = Uint8Array | Uint8ClampedArray | Uint16Array;
+
+/** Pixels to be written; without `channels` as many as the data hold for each pixel, so that a `ColorImage` is one. */
+export type PngInput = Omit<Raster<Samples>, "channels"> & {
+  /** 1 grey, 2 grey and alpha, 3 RGB, 4 RGBA. */
+  channels?: number;
+};
 
 function chunk(type: string, body: Uint8Array): Uint8Array<ArrayBuffer> {
   const part = new Uint8Array(body.length + 12);
@@ -25,7 +33,7 @@ function chunk(type: string, body: Uint8Array): Uint8Array<ArrayBuffer> {
 }
 
 /** High bytes first, each row behind its filter. */
-function filtered({ width, height, channels, data }: Raster<Uint8Array | Uint16Array>): Uint8Array<ArrayBuffer> {
+function filtered({ width, height, channels, data }: Raster<Samples>): Uint8Array<ArrayBuffer> {
   const [samples, bytes] = [width * channels, data.BYTES_PER_ELEMENT];
   const stride = 1 + samples * bytes;
   const out = new Uint8Array(height * stride);
@@ -67,17 +75,22 @@ function checkTexts(texts: unknown): void {
   }
 }
 
-/** `texts` are remarks in English, such as the unit, which readers hand out by their names ("Description", "Unit"). */
+/**
+ * A PNG of 8 or 16 bits, as the data have. `texts` are remarks in English, such as the unit, which readers hand out by their names
+ * ("Description", "Unit").
+ */
 export async function writePng(
-  raster: Raster<Uint8Array | Uint16Array>,
+  input: PngInput,
   texts: Readonly<Record<string, string>> = {},
 ): Promise<Uint8Array<ArrayBuffer>> {
-  checkRaster(raster, "raster", Uint8Array, Uint16Array);
+  if (!isObject(input)) throw wrong("raster", "an object", input);
+  const { width, height, data, channels = Object(data).length / (width * height) } = input;
+  const raster = { width, height, channels, data };
+  checkRaster(raster, "raster", Uint8Array, Uint8ClampedArray, Uint16Array);
   checkTexts(texts);
-  const { width, height, channels, data } = raster;
   const type = TYPES[channels];
   if (type === undefined)
-    throw new BimodalError("unsupported", `raster.channels: 1 or 3 are written, not ${channels}`, "raster.channels");
+    throw new BimodalError("unsupported", `raster.channels: 1 to 4 are written, not ${channels}`, "raster.channels");
   const head = new Uint8Array(13);
   const view = new DataView(head.buffer);
   view.setUint32(0, width);

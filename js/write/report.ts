@@ -1,13 +1,13 @@
 /** A run on a pair as one HTML file that asks for nothing else: pictures, numbers, options and the inputs' hashes, to be kept and printed. */
 import { word } from "../check.js";
-import type { Pose } from "../types.js";
+import type { Pose, PoseInput } from "../types.js";
 import { type Example, like } from "../rig/write/built.js";
 import type { Picture, ReportInput } from "../rig/write/report/contents.js";
 import { type Markup, html } from "../rig/write/report/markup.js";
 import { digits, measure } from "../rig/write/report/numbers.js";
 import { reportPage } from "../rig/write/report/page.js";
 import { cell, fact, inputTable, pictureSection, section, sign, table } from "../rig/write/report/parts.js";
-import { checkLight, checkUnit, checkWholePose, text } from "./check.js";
+import { checkLight, checkUnit, checkedWholePose, text } from "./check.js";
 import { type Unit, lightCsv, matrixText } from "./results.js";
 
 export type { Picture, ReportInput };
@@ -22,9 +22,9 @@ export interface RunReport {
   status: string;
   /** In a sentence or some. */
   words: readonly string[];
-  pose: Pose;
+  pose: PoseInput;
   /** Where it is known. */
-  truth?: Pose | null | undefined;
+  truth?: PoseInput | null | undefined;
   /** Of the colour view's lengths. */
   unit: Unit;
   light: ArrayLike<number>;
@@ -50,7 +50,7 @@ function card({ tone, status, words, numbers }: RunReport): Markup {
 
 const COLUMNS = ["", "Found", "True"];
 
-function poseSection({ pose, truth, unit }: RunReport): Markup {
+function poseSection({ pose, truth, unit }: Checked): Markup {
   const rows: [string, (pose: Pose) => string][] = [
     ["Scale", ({ scale }) => digits(scale, 5)],
     ...(["alpha", "beta", "gamma"] as const).map((name): [string, (pose: Pose) => string] => [
@@ -105,8 +105,11 @@ function optionSection({ options, link }: RunReport): Markup | undefined {
 const PARTS: Example = { words: [], numbers: [[]], options: [[]] };
 const checkTone = word(...Object.keys(CARDS));
 
+/** The report with its poses as members. */
+type Checked = RunReport & { pose: Pose; truth?: Pose | null | undefined };
+
 /** Checks that the parts are there, and that words are words. */
-function checkReport(report: RunReport): void {
+function checkedReport(report: RunReport): Checked {
   like(PARTS, report, "report");
   const {
     tone,
@@ -125,8 +128,8 @@ function checkReport(report: RunReport): void {
   } = report;
   checkTone(tone, "report.tone");
   checkUnit(unit, "report.unit");
-  checkWholePose(pose, "report.pose");
-  if (truth !== undefined && truth !== null) checkWholePose(truth, "report.truth");
+  const found = checkedWholePose(pose, "report.pose");
+  const known = truth === undefined || truth === null ? undefined : checkedWholePose(truth, "report.truth");
   checkLight(light, "report.light");
   for (const [name, value] of Object.entries({ status, title, link })) text(value, `report.${name}`);
   words.forEach((each, index) => text(each, `report.words[${index}]`));
@@ -136,10 +139,11 @@ function checkReport(report: RunReport): void {
   like([{}], pictures, "report.pictures");
   pictures.forEach(({ title }, index) => text(title, `report.pictures[${index}].title`));
   like([{}], inputs, "report.inputs");
+  return { ...report, pose: found, truth: known };
 }
 
-export function runReportHtml(report: RunReport): string {
-  checkReport(report);
+export function runReportHtml(given: RunReport): string {
+  const report = checkedReport(given);
   const { pictures = [], inputs = [], title = "A run of bimodal stereo", made } = report;
   return reportPage(title, made, "report.made", [
     card(report),

@@ -1,9 +1,9 @@
 /** What an estimator found, in files that other programs read: pose, light, depth and normals. */
 import { isObject, wrong } from "../check.js";
 import { BimodalError } from "../errors.js";
-import type { Pose, StepReport, Uncertainty } from "../types.js";
+import type { PoseInput, StepReport, Uncertainty } from "../types.js";
 import { real } from "../rig/write/numbers.js";
-import { checkLight, checkPose, checkRaster, checkStanding, checkUnit, checkWholePose } from "./check.js";
+import { checkLight, checkRaster, checkStanding, checkUnit, checkedPose, checkedWholePose } from "./check.js";
 import { writePng } from "./png.js";
 
 /** Of lengths: metres where the view has a camera, pixels where it is orthographic. */
@@ -15,8 +15,8 @@ export interface Extent {
 }
 
 /** The 4x4 matrix that carries the depth map's points into the colour view, scale included; `numpy.loadtxt` reads it. */
-export function matrixText(pose: Pose): string {
-  checkPose(pose, "pose");
+export function matrixText(given: PoseInput): string {
+  const pose = checkedPose(given, "pose");
   const { scale } = pose;
   const [rotation, translation] = [Array.from(pose.rotation), Array.from(pose.translation)];
   const row = (i: number) => [...rotation.slice(3 * i, 3 * i + 3).map((value) => scale * value), translation[i] ?? NaN];
@@ -38,8 +38,8 @@ const sigmasOf = ({ rotationDegrees, translation, scale, weakest }: Uncertainty)
  * The pose with its matrix, and in words what it means; beside it, where a report is given, its status and one sigma of each number, `null`
  * where the views cannot see it.
  */
-export function poseJson(pose: Pose, unit: Unit, report?: PoseStanding): string {
-  checkWholePose(pose, "pose");
+export function poseJson(given: PoseInput, unit: Unit, report?: PoseStanding): string {
+  const pose = checkedWholePose(given, "pose");
   checkUnit(unit, "unit");
   const matrix = matrixText(pose)
     .trim()

@@ -2,6 +2,7 @@
  * Rigid motions as files write them: checked, orthonormal to the last digit, in metres, P_to = R P_from + t.
  */
 import { badFile } from "../../errors.js";
+import { anglesOf, determinant, matrixOf } from "../../matrices.js";
 import type { NamedPose, Pose } from "../types.js";
 import type { Numbers } from "./numbers.js";
 
@@ -13,11 +14,6 @@ const ROUNDING = 1e-3;
 const LONGEST = 10;
 
 const at = (values: Numbers, index: number): number => values[index] ?? 0;
-
-function determinant(r: Numbers): number {
-  const minor = (a: number, b: number, c: number, d: number) => at(r, a) * at(r, d) - at(r, b) * at(r, c);
-  return at(r, 0) * minor(4, 5, 7, 8) - at(r, 1) * minor(3, 5, 6, 8) + at(r, 2) * minor(3, 4, 6, 7);
-}
 
 /** The largest element of R R^T - 1. */
 function skewness(r: Numbers): number {
@@ -109,26 +105,12 @@ export function ofYawPitchRoll([yaw = 0, pitch = 0, roll = 0]: Numbers): Numbers
   ];
 }
 
-/** As the package has poses: R = Rx(alpha) Ry(beta) Rz(gamma), degrees. */
-function anglesOf(r: Numbers): Pose["angles"] {
-  const degrees = 180 / Math.PI;
-  const beta = Math.atan2(at(r, 2), Math.hypot(at(r, 0), at(r, 1)));
-  // Looking along an axis only alpha + gamma is seen: all of it is given to alpha.
-  const locked = Math.hypot(at(r, 0), at(r, 1)) < 1e-9;
-  const alpha = locked ? Math.atan2(at(r, 7), at(r, 4)) : Math.atan2(-at(r, 5), at(r, 8));
-  return {
-    alpha: alpha * degrees,
-    beta: beta * degrees,
-    gamma: locked ? 0 : Math.atan2(-at(r, 1), at(r, 0)) * degrees,
-  };
-}
-
 export const poseOf = (rotation: Numbers, translation: Numbers): Pose => ({
   scale: 1,
   rotation,
   translation,
   angles: anglesOf(rotation),
-  matrix: [...[0, 1, 2].map((row) => [...rotation.slice(3 * row, 3 * row + 3), at(translation, row)]), [0, 0, 0, 1]],
+  matrix: matrixOf({ scale: 1, rotation, translation }),
 });
 
 /** The motion back. */

@@ -2,7 +2,7 @@
  * Extrinsics in the files of those who use them. All hold P_colour = R P_depth + t in metres, each in its format's own
  * words, and every number reads back as the very same one.
  */
-import type { Pose } from "../../types.js";
+import type { PoseInput } from "../../types.js";
 import { oneOf } from "./built.js";
 import { open3dJson, realsenseJson } from "./json.js";
 import { matrixText, ros2Line } from "./plain.js";
@@ -38,7 +38,7 @@ const FORMATS: Readonly<Record<PoseFormat, Format>> = {
 export const poseFormats: readonly PoseFormat[] = Object.freeze(Object.keys(FORMATS) as PoseFormat[]);
 
 /** One pose of a rig as a file; `context` fills in what the format can hold beside it. */
-export function writePose(pose: Pose, format: PoseFormat, context: RigContext = {}): WrittenPose {
+export function writePose(pose: PoseInput, format: PoseFormat, context: RigContext = {}): WrittenPose {
   oneOf(poseFormats, format, "format");
   const { name, write } = FORMATS[format];
   const notes: string[] = [];

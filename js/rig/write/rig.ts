@@ -2,7 +2,8 @@
  * What the writers of extrinsics take, checked: a file that holds a number which is none, a sheared rotation or a scale
  * would be believed by whoever reads it.
  */
-import type { Pose, RigCamera } from "../../types.js";
+import { cameraOf, determinant, poseOf } from "../../matrices.js";
+import type { Pose, PoseInput, RigCamera, RigCameraInput } from "../../types.js";
 import { fault, like, oneOf } from "./built.js";
 
 /** Width and height in pixels. */
@@ -10,8 +11,8 @@ export type Size = readonly [width: number, height: number];
 
 /** What is known of the rig beside the pose; a format that has a place for it holds it. */
 export interface RigContext {
-  colour?: RigCamera | undefined;
-  depth?: RigCamera | undefined;
+  colour?: RigCameraInput | undefined;
+  depth?: RigCameraInput | undefined;
   /** Of both cameras' pictures. */
   sizes?: { colour?: Size | undefined; depth?: Size | undefined } | undefined;
   /** ROS names of both cameras' optical frames; by default those of the RealSense driver. */
@@ -53,12 +54,11 @@ function numbers(values: ArrayLike<number>, lengths: readonly number[], field: s
 function checkRotation(r: readonly number[]): void {
   const at = (row: number, column: number) => r[3 * row + (column % 3)] ?? NaN;
   const dot = (i: number, j: number) => at(i, 0) * at(j, 0) + at(i, 1) * at(j, 1) + at(i, 2) * at(j, 2);
-  const minor = (column: number) => at(1, column + 1) * at(2, column + 2) - at(1, column + 2) * at(2, column + 1);
-  const determinant = at(0, 0) * minor(0) + at(0, 1) * minor(1) + at(0, 2) * minor(2);
+  const isRightHanded = determinant(r) > 0;
   const each = [0, 1, 2];
   const shear = Math.max(...each.flatMap((i) => each.map((j) => Math.abs(dot(i, j) - (i === j ? 1 : 0)))));
-  if (shear <= MOST_SHEAR && determinant > 0) return;
-  const what = determinant > 0 ? `R Rᵀ differs from the identity by ${shear.toPrecision(2)}` : "it mirrors";
+  if (shear <= MOST_SHEAR && isRightHanded) return;
+  const what = isRightHanded ? `R Rᵀ differs from the identity by ${shear.toPrecision(2)}` : "it mirrors";
   throw fault("range", "pose.rotation", `is no rotation, ${what}`);
 }
 
@@ -70,10 +70,15 @@ function size(value: Size | undefined, field: string): Size | undefined {
   return [width, height];
 }
 
-function camera(given: RigCamera | undefined, pixels: Size | undefined, name: "colour" | "depth"): Camera | undefined {
+function camera(
+  input: RigCameraInput | undefined,
+  pixels: Size | undefined,
+  name: "colour" | "depth",
+): Camera | undefined {
   const known = size(pixels, `context.sizes.${name}`);
-  if (given === undefined) return undefined;
+  if (input === undefined) return undefined;
   const field = `context.${name}`;
+  const given = cameraOf(input, field) as RigCamera;
   like({}, given, field);
   const { model = "brown", fx, fy, cx, cy } = given;
   oneOf(Object.keys(LENGTHS), model, `${field}.model`);
@@ -85,7 +90,8 @@ function camera(given: RigCamera | undefined, pixels: Size | undefined, name: "c
 }
 
 /** The rig that a pose and what is known beside it make. */
-export function rigOf(pose: Pose, context: RigContext): Rig {
+export function rigOf(given: PoseInput, context: RigContext): Rig {
+  const pose = poseOf(given, "pose") as Pose;
   like({}, pose, "pose");
   like({}, context, "context");
   if (pose.scale !== 1)
