@@ -1,15 +1,6 @@
 // npm run build: leaves the installable package in pkg/.
-import {
-  cpSync,
-  existsSync,
-  mkdirSync,
-  readFileSync,
-  readdirSync,
-  realpathSync,
-  rmSync,
-  symlinkSync,
-  writeFileSync,
-} from "node:fs";
+import { cpSync, existsSync, mkdirSync, readFileSync, realpathSync, rmSync, symlinkSync, writeFileSync } from "node:fs";
+import { join } from "node:path";
 import { gzipSync } from "node:zlib";
 import { reachable } from "./declarations.mjs";
 import { collector } from "./notices/bundled.mjs";
@@ -71,7 +62,7 @@ function manifest() {
       "./package.json": "./package.json",
     },
     types: "./index.d.ts",
-    files: ["*.js", "*.d.ts", "calibration", "rig", "write", "*.wasm", "README.md", NOTICES, ...COPIED],
+    files: ["*.js", "**/*.d.ts", "*.wasm", "README.md", NOTICES, ...COPIED],
   };
 }
 
@@ -100,16 +91,20 @@ async function facade() {
   await bundle.write({ dir: inRoot("pkg"), format: "esm", chunkFileNames: "[name].js", codeSplitting });
   await bundle.close();
   writeFileSync(inRoot("pkg", NOTICES), notices(npm.entries()));
-  await node("typescript/bin/tsc", "-p", "js/tsconfig.json");
-  // Declarations of what no entry names stay inside, those of the generated bindings among them.
-  const kept = reachable(
-    inRoot("pkg"),
-    Object.values(ENTRIES)
-      .filter((source) => source !== ENTRIES.thread)
-      .map((source) => `${source}.d.ts`),
-  );
-  for (const name of readdirSync(inRoot("pkg"), { recursive: true }))
-    if (name.endsWith(".d.ts") && !kept.has(name)) rmSync(inRoot("pkg", name));
+  await declarations();
+}
+
+/** The types of all that the entries name; the others stay inside, those of the generated bindings among them. */
+async function declarations() {
+  const all = inRoot("target/declarations");
+  rmSync(all, { recursive: true, force: true });
+  await node("typescript/bin/tsc", "-p", "js/tsconfig.json", "--outDir", all);
+  const typed = Object.values(ENTRIES).filter((source) => source !== ENTRIES.thread);
+  for (const name of reachable(
+    all,
+    typed.map((source) => `${source}.d.ts`),
+  ))
+    cpSync(join(all, name), inRoot("pkg", name));
 }
 
 const kilobytes = (bytes) => `${(bytes / 1000).toFixed(0)} kB`;

@@ -372,7 +372,7 @@ export function settingsOf(options: Options): Settings {
     return [field.key, typeof value === "string" || typeof value === "boolean" ? value : field.initial];
   });
   const { light, start = "search" } = options;
-  const angles = typeof start === "string" ? undefined : start.angles;
+  const angles = typeof start === "object" && "angles" in start ? start.angles : undefined;
   const near = angles && Object.entries(angles).map(([name, value]): [string, Value] => [`start.${name}`, value]);
   return {
     ...Object.fromEntries(own),

@@ -14,7 +14,14 @@ export function poseOf(rotation: readonly number[], translation: readonly number
     beta: Math.asin(Math.max(-1, Math.min(1, r(0, 2)))) / DEGREE,
     gamma: Math.atan2(-r(0, 1), r(0, 0)) / DEGREE,
   };
-  return { scale: 1, rotation: [...rotation], translation: [...translation], angles };
+  const matrix = [0, 1, 2].map((row) => [r(row, 0), r(row, 1), r(row, 2), at(translation, row)]);
+  return {
+    scale: 1,
+    rotation: [...rotation],
+    translation: [...translation],
+    angles,
+    matrix: [...matrix, [0, 0, 0, 1]],
+  };
 }
 
 export const identity: Pose = poseOf([1, 0, 0, 0, 1, 0, 0, 0, 1], [0, 0, 0]);
