@@ -19,6 +19,7 @@ export type ErrorCode =
 
 /** Everything that goes wrong here for a reason the caller can name. */
 export class BimodalError extends Error {
+  /** Always "BimodalError". */
   override readonly name = "BimodalError";
   /** Stable, for programs; docs/codes.md has cause and remedy of each. */
   readonly code: ErrorCode;

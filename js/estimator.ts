@@ -40,6 +40,16 @@ function checked<T, Plain>(check: (value: unknown) => void, plain: (input: T) =>
   return own;
 }
 
+/** What an estimator was given. */
+export interface Given {
+  /** The colour image, its camera as members. */
+  image: ColorImage;
+  /** The depth map, its camera as members. */
+  depth: DepthMap;
+  /** The options, an initial pose as members. */
+  options: Options;
+}
+
 /**
  * Shape, light and pose from one colour image and one depth map, one iteration after the other.
  *
@@ -260,7 +270,7 @@ export class Estimator {
   }
 
   /** What it was given, as copies: both views, and the options of the last `reset`. */
-  get given(): { image: ColorImage; depth: DepthMap; options: Options } {
+  get given(): Given {
     return structuredClone({ ...this.#pair, options: this.#options });
   }
 
@@ -327,6 +337,7 @@ export class Estimator {
     if (!this.#broken) raw?.free();
   }
 
+  /** The same as `free`, for `using`. */
   [Symbol.dispose](): void {
     this.free();
   }

@@ -5,7 +5,7 @@ import { wasmUrl } from "./wasm.js";
 
 export { checkCalibration, projectFrame, sampleRig } from "./calibration/index.js";
 export { BimodalError, type ErrorCode } from "./errors.js";
-export { Estimator } from "./estimator.js";
+export { Estimator, type Given } from "./estimator.js";
 export { integrateNormals, pixelLandscape } from "./lessons.js";
 export { sample, sampleBound, sampleLights, sampleSurfaces, shadeNormals, turnLight } from "./samples.js";
 export type * from "./types.js";

@@ -12,6 +12,7 @@ import { textOf } from "./formats/text.js";
 import { checkNamed, isRasterFile, metresPerUnit, readRigFile } from "./read.js";
 import type { CheckFrame, Mask, NamedFile, ReadOptions, Reading, RigFolder, RigReading } from "./types.js";
 
+/** How `readRigFolder` reads. */
 export interface FolderOptions {
   /** Metres per stored unit of all depth maps. */
   unit?: number;

@@ -5,26 +5,39 @@ export type { CheckFrame, Mask, Pose, RigCamera };
 
 /** A file as it was dropped or read; the name may hold a path, "depth/0001.png". */
 export interface NamedFile {
+  /** Name or path; readers tell depth from colour by it where the content does not. */
   name: string;
+  /** The whole content. */
   bytes: Uint8Array;
 }
 
 /** P_to = R P_from + t, metres. */
 export interface NamedPose {
+  /** The pose's name in its file. */
   name?: string;
+  /** Scale 1, metres. */
   pose: Pose;
+  /** Name of the frame that points come from. */
   from?: string;
+  /** Name of the frame that points go to. */
   to?: string;
 }
 
+/** A camera as a file names it. */
 export interface NamedCamera {
+  /** The camera's name in its file, or the file's. */
   name?: string;
+  /** Its intrinsics, pixels. */
   camera: RigCamera;
+  /** Columns of its pictures, where the file says so. */
   width?: number;
+  /** Rows of its pictures, where the file says so. */
   height?: number;
 }
 
+/** What was read of a file, in words. */
 export interface Reading {
+  /** Of the file. */
   name: string;
   /** What was read, in plain words: "640x480, 16-bit, read as millimetres, 92.8 % valid, 1.39 to 6.69 m". */
   says: string;
@@ -35,13 +48,43 @@ export interface Reading {
 /** What a file may hold. `guessed` names what of a depth map is not in its file and was told from its values. */
 export type RigReading = Reading &
   (
-    | { kind: "colour"; image: CheckFrame["image"] }
-    | { kind: "depth"; depth: CheckFrame["depth"]; guessed: "unit"[] }
-    | { kind: "mask"; mask: Mask }
-    | { kind: "cameras"; cameras: NamedCamera[]; poses: NamedPose[] }
-    | { kind: "poses"; poses: NamedPose[] }
+    | {
+        /** What the file holds. */
+        kind: "colour";
+        /** Without a camera. */
+        image: CheckFrame["image"];
+      }
+    | {
+        /** What the file holds. */
+        kind: "depth";
+        /** With its unit. */
+        depth: CheckFrame["depth"];
+        /** Members that are not in the file and were guessed from its values. */
+        guessed: "unit"[];
+      }
+    | {
+        /** What the file holds. */
+        kind: "mask";
+        /** 255 where the object is, else 0. */
+        mask: Mask;
+      }
+    | {
+        /** What the file holds. */
+        kind: "cameras";
+        /** In the order of the file. */
+        cameras: NamedCamera[];
+        /** In the order of the file. */
+        poses: NamedPose[];
+      }
+    | {
+        /** What the file holds. */
+        kind: "poses";
+        /** In the order of the file. */
+        poses: NamedPose[];
+      }
   );
 
+/** How `readRigFile` reads. */
 export interface ReadOptions {
   /** What the file is wanted for; without it the content decides. */
   as?: RigReading["kind"];
@@ -53,10 +96,14 @@ export interface ReadOptions {
 
 /** A folder of frames. The cameras are those of the files, shared by all frames. */
 export interface RigFolder {
+  /** Pairs with the cameras that were found for them. */
   frames: CheckFrame[];
+  /** All cameras of the folder's files. */
   cameras: NamedCamera[];
+  /** Poses that relate two cameras. */
   poses: NamedPose[];
   /** What was read of each file, in the folder's order. */
   readings: Reading[];
+  /** What was guessed, looks wrong or was left out, a sentence each. */
   warnings: string[];
 }

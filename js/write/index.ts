@@ -7,6 +7,7 @@ export { type Entry, type Picture, type ReportInput, type RunReport, runReportHt
 export {
   type DepthPng,
   type Extent,
+  type FloatRaster,
   type PoseStanding,
   type Unit,
   depthPng,

@@ -2,6 +2,7 @@
 import type { Raster } from "../npy.js";
 import { checkRaster } from "./check.js";
 
+/** Kinds of numbers that are written. */
 export type NpyData = Float32Array | Float64Array | Uint16Array | Uint8Array;
 
 const BLOCK = 64;

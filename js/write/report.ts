@@ -15,6 +15,7 @@ export type { Picture, ReportInput };
 /** A name and what it is. */
 export type Entry = readonly [name: string, value: string];
 
+/** What the report of a run shows. */
 export interface RunReport {
   /** How the outcome is to be taken: "open" where nothing speaks for or against it. */
   tone: "good" | "open" | "wrong";
@@ -22,16 +23,23 @@ export interface RunReport {
   status: string;
   /** In a sentence or some. */
   words: readonly string[];
+  /** The pose that was found. */
   pose: PoseInput;
   /** Where it is known. */
   truth?: PoseInput | null | undefined;
   /** Of the colour view's lengths. */
   unit: Unit;
+  /** 27 coefficients. */
   light: ArrayLike<number>;
+  /** Shown beside the status. */
   numbers: readonly Entry[];
+  /** Options of the run, as the reader should see them. */
   options: readonly Entry[];
+  /** Shown below the pose. */
   pictures?: readonly Picture[];
+  /** Files that the run was given, with their hashes. */
   inputs?: readonly ReportInput[];
+  /** Heading. Default "A run of bimodal stereo". */
   title?: string;
   /** No date without it. */
   made?: Date;
@@ -142,6 +150,7 @@ function checkedReport(report: RunReport): Checked {
   return { ...report, pose: found, truth: known };
 }
 
+/** The report of a run as one HTML file without scripts. */
 export function runReportHtml(given: RunReport): string {
   const report = checkedReport(given);
   const { pictures = [], inputs = [], title = "A run of bimodal stereo", made } = report;

@@ -9,9 +9,18 @@ import { writePng } from "./png.js";
 /** Of lengths: metres where the view has a camera, pixels where it is orthographic. */
 export type Unit = "m" | "px";
 
+/** The size of a raster. */
 export interface Extent {
+  /** Columns. */
   width: number;
+  /** Rows. */
   height: number;
+}
+
+/** Floats of a view, as `Estimator` gives them out. */
+export interface FloatRaster extends Extent {
+  /** Row by row; three numbers a pixel for normals, else one. */
+  data: Float32Array;
 }
 
 /** The 4x4 matrix that carries the depth map's points into the colour view, scale included; `numpy.loadtxt` reads it. */
@@ -104,7 +113,9 @@ const STEPS: Readonly<Record<Unit, readonly (readonly [step: number, words: stri
   ],
 };
 
+/** A depth map that was written, with the step of its numbers. */
 export interface DepthPng {
+  /** The PNG file. */
   bytes: Uint8Array<ArrayBuffer>;
   /** Units (metres or pixels) per stored number. */
   step: number;
@@ -138,7 +149,7 @@ function checkDepths(data: Float32Array, unit: Unit): void {
  * Depth as a PNG of 16 bits; 0 is no depth. The step is told here and in the file's remark "Unit". Depths in pixels below zero, as
  * `imageDepth()` of a view without a camera has them, and those beyond 65535 are refused: they have to be shifted, or go to `writeNpy`.
  */
-export async function depthPng(depth: Extent & { data: Float32Array }, unit: Unit): Promise<DepthPng> {
+export async function depthPng(depth: FloatRaster, unit: Unit): Promise<DepthPng> {
   if (!isObject(depth)) throw wrong("depth", "an object", depth);
   const { width, height, data } = depth;
   checkRaster({ width, height, channels: 1, data }, "depth", Float32Array);
@@ -162,7 +173,7 @@ export async function depthPng(depth: Extent & { data: Float32Array }, unit: Uni
  * Normals as a PNG of 16 bits: red, green and blue are (n + 1) / 2 of full white, for x to the right, y up and z towards the viewer, as
  * normal maps have them; black is no normal.
  */
-export async function normalsPng(normals: Extent & { data: Float32Array }): Promise<Uint8Array<ArrayBuffer>> {
+export async function normalsPng(normals: FloatRaster): Promise<Uint8Array<ArrayBuffer>> {
   if (!isObject(normals)) throw wrong("normals", "an object", normals);
   const { width, height, data } = normals;
   checkRaster({ width, height, channels: 3, data }, "normals", Float32Array);

@@ -1,6 +1,7 @@
 /** Clouds as a binary PLY with a colour for each point. */
 import { fault } from "./built.js";
 
+/** Points with colours. */
 export interface Cloud {
   /** 3 numbers for each point, interleaved, metres; points that are not finite are left out. */
   points: Float32Array;

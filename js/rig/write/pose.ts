@@ -11,11 +11,14 @@ import { kalibrYaml, opencvYaml } from "./yaml.js";
 
 export type { RigContext, Size } from "./rig.js";
 
+/** A text matrix, or the file of OpenCV, Kalibr, ROS 2, Open3D or RealSense. */
 export type PoseFormat = "matrix" | "opencv" | "kalibr" | "ros2" | "open3d" | "realsense";
 
+/** A file to be saved. */
 export interface WrittenPose {
   /** A file name that says the direction. */
   name: string;
+  /** The content of the file. */
   text: string;
   /** In words, what of the cameras the format has no place for, or what it wants and is not known. */
   notes: string[];
@@ -35,6 +38,7 @@ const FORMATS: Readonly<Record<PoseFormat, Format>> = {
   realsense: { name: "depth_to_colour.realsense.json", write: realsenseJson },
 };
 
+/** All formats that `writePose` knows. */
 export const poseFormats: readonly PoseFormat[] = Object.freeze(Object.keys(FORMATS) as PoseFormat[]);
 
 /** One pose of a rig as a file; `context` fills in what the format can hold beside it. */

@@ -11,12 +11,28 @@ export type Size = readonly [width: number, height: number];
 
 /** What is known of the rig beside the pose; a format that has a place for it holds it. */
 export interface RigContext {
+  /** The colour camera. */
   colour?: RigCameraInput | undefined;
+  /** The depth camera. */
   depth?: RigCameraInput | undefined;
   /** Of both cameras' pictures. */
-  sizes?: { colour?: Size | undefined; depth?: Size | undefined } | undefined;
+  sizes?:
+    | {
+        /** Of the colour camera, pixels. */
+        colour?: Size | undefined;
+        /** Of the depth camera, pixels. */
+        depth?: Size | undefined;
+      }
+    | undefined;
   /** ROS names of both cameras' optical frames; by default those of the RealSense driver. */
-  frames?: { colour?: string | undefined; depth?: string | undefined } | undefined;
+  frames?:
+    | {
+        /** Of the colour camera. Default "camera_color_optical_frame". */
+        colour?: string | undefined;
+        /** Of the depth camera. Default "camera_depth_optical_frame". */
+        depth?: string | undefined;
+      }
+    | undefined;
 }
 
 /** A camera with its distortion as OpenCV has it: none at all, or 4, 5 or 8 numbers; fisheye always 4. */

@@ -7,12 +7,15 @@ export interface Checked extends Omit<CheckReport, "warnings"> {
 }
 
 export interface Picture {
+  /** Shown above it. */
   title: string;
   /** `data:image/png;base64,..`, or JPEG, WebP, AVIF or GIF. */
   dataUrl: string;
 }
 
+/** A file that the report names. */
 export interface ReportInput {
+  /** Of the file. */
   name: string;
   /** What was read in it, in words. */
   says?: string | undefined;
@@ -20,6 +23,7 @@ export interface ReportInput {
   sha256?: string | undefined;
 }
 
+/** What a report says beside the result. */
 export interface ReportOptions {
   /** "Check of a calibration" without it. */
   title?: string | undefined;

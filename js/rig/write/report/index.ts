@@ -30,6 +30,7 @@ const REPORT: Example = {
   sensitivity: [{ offsets: [], values: [] }],
 };
 
+/** The report of a check as one HTML file without scripts. `pictures` are shown below the verdict. */
 export function reportHtml(report: Checked, pictures: readonly Picture[] = [], options: ReportOptions = {}): string {
   like(REPORT, report, "report");
   like([{}], pictures, "pictures");
