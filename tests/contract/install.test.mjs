@@ -1,6 +1,6 @@
 // What `npm run build` leaves can be installed: into an empty folder, with types, and README's examples are true.
 import assert from "node:assert/strict";
-import { existsSync, mkdirSync, readFileSync, writeFileSync } from "node:fs";
+import { existsSync, mkdirSync, readFileSync, readdirSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
 import { pathToFileURL } from "node:url";
@@ -135,6 +135,38 @@ test("types resolve for Node and for bundlers, without help from other type pack
       ...["--lib", "es2022,dom,esnext.disposable", ...resolution, "typed/readme.ts", "typed/contract.ts"],
     ]);
   }
+});
+
+/** The package's entry points for programs, by the names that they are imported by. */
+const typedEntries = () => {
+  const { name, exports } = JSON.parse(readFileSync(join(folder, "node_modules/bimodal-stereo/package.json"), "utf8"));
+  return Object.entries(exports).flatMap(([path, { types }]) => (types === undefined ? [] : [join(name, path)]));
+};
+
+test("every entry point has all of its types, which are checked themselves", () => {
+  const entries = typedEntries();
+  assert.ok(entries.length >= 5, entries.join(" "));
+  const lines = entries.map((entry, i) => `import * as e${i} from "${entry}";\nexport const used${i} = e${i};`);
+  mkdirSync(join(folder, "entries"), { recursive: true });
+  writeFileSync(join(folder, "entries/all.ts"), lines.join("\n"));
+  for (const [module, moduleResolution] of [
+    ["esnext", "bundler"],
+    ["nodenext", "nodenext"],
+  ]) {
+    const compilerOptions = {
+      ...{ module, moduleResolution, target: "es2022", lib: ["es2022", "dom", "esnext.disposable"], types: [] },
+      ...{ strict: true, exactOptionalPropertyTypes: true, skipLibCheck: false, noEmit: true },
+    };
+    writeFileSync(join(folder, "entries/tsconfig.json"), JSON.stringify({ compilerOptions, include: ["*.ts"] }));
+    run(process.execPath, [inRoot("node_modules/typescript/bin/tsc"), "-p", "entries"]);
+  }
+});
+
+test("nothing is wrong with the types of the packed file", () => {
+  const [packed] = readdirSync(folder).filter((name) => name.endsWith(".tgz"));
+  // .wasm files and thread.js have paths for bundlers and no types.
+  const entries = typedEntries().map((entry) => entry.replace(/^bimodal-stereo/, "."));
+  run("attw", [packed, "--profile", "esm-only", "--no-color", "--no-definitely-typed", "--entrypoints", ...entries]);
 });
 
 test("nothing of the workshop is packed, and the package says where it comes from", () => {
