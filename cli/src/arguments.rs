@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use bimodal_stereo::{Angles, LightSource, Options, Pinhole, Registration, Shading, Start, Transfer};
 use clap::Parser;
 
-use crate::estimate::Files;
+use crate::files::Files;
 use crate::problem::{Problem, Result};
 use crate::read;
 

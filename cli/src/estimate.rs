@@ -1,27 +1,13 @@
 //! One pair from its files to its answer.
 
-use std::path::PathBuf;
-
 use bimodal_stereo::{Estimator, Options, Status};
 
 use crate::arguments::Arguments;
 use crate::code::Code;
+use crate::files::Files;
 use crate::problem::{Problem, Result};
 use crate::progress::Progress;
 use crate::views;
-
-/// The files of a pair.
-#[derive(Clone, Debug)]
-pub struct Files {
-    pub image: PathBuf,
-    pub depth: PathBuf,
-    pub image_mask: Option<PathBuf>,
-    pub depth_mask: Option<PathBuf>,
-    /// Belongs to the view whose size it has.
-    pub any_mask: Option<PathBuf>,
-    /// Metres for each stored number, where the folder tells.
-    pub unit: Option<f64>,
-}
 
 /// Of lengths.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

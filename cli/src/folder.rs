@@ -9,7 +9,7 @@ use std::sync::LazyLock;
 use regex_lite::Regex;
 use walkdir::{DirEntry, WalkDir};
 
-use crate::estimate::Files;
+use crate::files::Files;
 use crate::problem::{Problem, Result, shown};
 use crate::read;
 

@@ -6,6 +6,7 @@
 mod arguments;
 mod code;
 mod estimate;
+mod files;
 mod folder;
 mod problem;
 mod progress;
@@ -23,7 +24,8 @@ use arguments::{Arguments, Input};
 use bimodal_stereo::Options;
 use clap::Parser;
 use code::Code;
-use estimate::{Files, estimate};
+use estimate::estimate;
+use files::Files;
 use problem::{Problem, Result};
 use progress::Progress;
 

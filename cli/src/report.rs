@@ -5,7 +5,8 @@ use std::fmt::Write;
 use bimodal_stereo::{Angles, CODES, Light, Reason, Similarity, Status, StepReport, Uncertainty};
 use serde::Serialize;
 
-use crate::estimate::{Files, Length, Outcome};
+use crate::estimate::{Length, Outcome};
+use crate::files::Files;
 use crate::problem::{Problem, plain, shown};
 
 /// Digits of lengths, sigmas and shares.

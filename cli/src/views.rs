@@ -5,7 +5,7 @@ use std::path::Path;
 use bimodal_stereo::{ColourImage, ColourSamples, DepthMap, DepthSamples, Pinhole, Transfer};
 
 use crate::arguments::Arguments;
-use crate::estimate::Files;
+use crate::files::Files;
 use crate::problem::{Problem, Result, shown};
 use crate::read::{self, Raster, Samples};
 use crate::unit::{self, Sample, Unit};

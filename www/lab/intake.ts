@@ -2,8 +2,7 @@
 
 import { freshId, make } from "../dom";
 import type { Look, Offer } from "./own";
-
-export type Slot = "colour" | "depth" | "colourMask" | "depthMask";
+import type { Slot } from "./storage";
 
 const slots: readonly { slot: Slot; label: string; accept: string; hint: string; paths: readonly string[] }[] = [
   {

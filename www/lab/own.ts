@@ -8,10 +8,9 @@ import { EngineError } from "../engine/engine";
 import type { Read } from "../engine/protocol";
 import type { Summary } from "../rig/protocol";
 import { RigError, Session } from "../rig/session";
-import type { Slot } from "./intake";
 import { isFurther, sniffed } from "./kind";
 import type { Value } from "./settings";
-import type { Files } from "./storage";
+import type { Files, Slot } from "./storage";
 
 /** What a file turned out to be. */
 export interface Look {

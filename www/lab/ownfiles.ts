@@ -1,10 +1,10 @@
 /** The visitor's files: what they are, where they belong, and that the browser keeps them. */
 
-import { Intake, type Slot } from "./intake";
+import { Intake } from "./intake";
 import { runAmong } from "./kind";
 import type { Offer } from "./own";
 import type { Origin, Value } from "./settings";
-import type { Files } from "./storage";
+import type { Files, Slot } from "./storage";
 
 export interface OwnFilesHooks {
   /** Other files than before. */

@@ -1,7 +1,8 @@
 /** The input that the settings describe, and whether it was the visitor's own before a reload. */
 
 import type { OwnFiles, SampleSource, Source } from "../engine/protocol";
-import { sizeInWords, type Slot } from "./intake";
+import { sizeInWords } from "./intake";
+import type { Slot } from "./storage";
 import { isFurther } from "./kind";
 import { camera, sampleRequest, turnOf, type Origin, type Settings } from "./settings";
 

@@ -1,6 +1,7 @@
 /** The visitor's files in the browser's own database, so that a reload keeps them. Everything may fail: storage is full, or forbidden. */
 
-import type { Slot } from "./intake";
+/** Where a file of the visitor's belongs. */
+export type Slot = "colour" | "depth" | "colourMask" | "depthMask";
 
 export type Files = Partial<Record<Slot, File>>;
 

@@ -1,12 +1,12 @@
 /** What is doubtful about the input of a check: each keeps its verdict from being better than the files are. */
 
-import type { Rig, Side } from "./rig";
+import type { RigState, Side } from "./state";
 
 /** A principal point farther from the middle than this share of the picture's side is likelier another size's. */
 const OFF_CENTRE = 0.2;
 
 /** Numbers for another size of image are the second commonest mistake. */
-export function cameraDoubt(rig: Rig, side: Side): string {
+export function cameraDoubt(rig: RigState, side: Side): string {
   const file = rig.given.find(({ source }) => source === rig.cameras[side].source)?.camera;
   const size = rig.sizeOf(side);
   if (!size) return "";
@@ -20,7 +20,7 @@ export function cameraDoubt(rig: Rig, side: Side): string {
 }
 
 /** What the readers of files and folders warned of, once for files that are alike, and what speaks against the cameras' numbers. A guessed unit is told apart: it can be confirmed. */
-export function doubtsOf(rig: Rig): string[] {
+export function doubtsOf(rig: RigState): string[] {
   const used = new Set(rig.complete.flatMap(({ colour, depth }) => [colour, depth]));
   const alike = new Map<string, { first: string; count: number }>();
   for (const { id, name, summary } of rig.items) {

@@ -1,6 +1,6 @@
 /** Which colour image and which depth map belong together, told by their names. */
 
-import type { Frame, Item, Rig } from "./rig";
+import type { Frame, Item, RigState } from "./state";
 
 /** What a name says beside its role: "depth/0001.png" and "rgb/0001.jpg" are both "0001". */
 export function keyOf(name: string): string {
@@ -14,7 +14,7 @@ export function keyOf(name: string): string {
 }
 
 /** Frames as they are, with what is new put together: by like names first, else in the order of their names. */
-export function pairUp(rig: Rig): Frame[] {
+export function pairUp(rig: RigState): Frame[] {
   const frames = rig.frames.map((frame) => frame);
   const used = (role: "colour" | "depth" | "mask") => new Set(frames.map((frame) => frame[role]));
   const left = (role: "colour" | "depth" | "mask") =>
@@ -58,7 +58,7 @@ export function pairUp(rig: Rig): Frame[] {
   return frames;
 }
 
-function fresh(rig: Rig, frames: readonly Frame[], colour: Item | undefined, depth: Item | undefined): Frame {
+function fresh(rig: RigState, frames: readonly Frame[], colour: Item | undefined, depth: Item | undefined): Frame {
   const number = 1 + Math.max(0, ...frames.map(({ name }) => Number(/^frame (\d+)$/.exec(name)?.[1] ?? 0)));
   return {
     id: rig.freshId(),

@@ -1,81 +1,15 @@
 /** What the visitor has brought and chosen: files, frames, cameras, candidates, and what the check said of them. */
 
-import type { CheckCue, CheckReport, Pose, RigCamera } from "../../pkg/index.js";
+import type { CheckCue, RigCamera } from "../../pkg/index.js";
 import { pairUp } from "./pairing";
 import { doubtsOf } from "./doubts";
 import { identity, inverse } from "./poses";
 import type { Assembly, FramePlan, Kind, NamedCamera, Summary } from "./protocol";
 import { Session } from "./session";
+import type { CameraChoice, Candidate, Frame, Item, RigState, Run, Side, TypedCamera } from "./state";
 import { Undo } from "./undo";
 
-export type Side = "colour" | "depth";
-
-export interface Item {
-  id: number;
-  name: string;
-  /** Absent where it came with others, as a folder or the example: then nothing of it can be read another way. */
-  blob?: Blob;
-  state: "reading" | "read" | "failed";
-  summary?: Summary;
-  error?: string;
-  as?: Kind;
-  unit?: number;
-  /** Its frame was taken away: it makes no new one by itself. */
-  aside?: true;
-}
-
-export interface Frame {
-  id: number;
-  name: string;
-  colour?: number;
-  depth?: number;
-  mask?: number;
-  paint?: Uint8Array;
-  range?: [number, number];
-}
-
-/** Typed in; empty fields are NaN. */
-export interface TypedCamera {
-  by: "focal" | "view";
-  model: "brown" | "fisheye";
-  fx: number;
-  fy: number;
-  cx: number;
-  cy: number;
-  /** Horizontal, degrees. */
-  view: number;
-  distortion: number[];
-}
-
-export interface CameraChoice {
-  /** "", "typed", "same" as the colour camera, or the camera's place among those of the files, "3:0". */
-  source: string;
-  /** Whether the visitor has chosen it; else it follows the files. */
-  chosen: boolean;
-  typed: TypedCamera;
-}
-
-export interface Candidate {
-  id: number;
-  name: string;
-  /** Where it comes from, in words. */
-  origin: string;
-  pose: Pose;
-  /** The file it came from; it goes with it. */
-  file?: number;
-}
-
-export interface Run {
-  report: CheckReport;
-  plans: FramePlan[];
-  candidates: Record<string, Pose>;
-  /** Whether no calibration was given and the identity stood in. */
-  estimateOnly: boolean;
-  /** What had been guessed when it ran, in words. */
-  guessed: string[];
-  /** What else was doubtful about files and cameras. */
-  doubts: string[];
-}
+export type { CameraChoice, Candidate, Frame, Item, Run, Side, TypedCamera } from "./state";
 
 const emptyCamera = (): TypedCamera => ({
   by: "focal",
@@ -89,7 +23,7 @@ const emptyCamera = (): TypedCamera => ({
 });
 const choice = (): CameraChoice => ({ source: "", chosen: false, typed: emptyCamera() });
 
-export class Rig {
+export class Rig implements RigState {
   readonly session = new Session();
   readonly undo = new Undo(this);
   items: Item[] = [];

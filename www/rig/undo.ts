@@ -1,6 +1,6 @@
 /** Steps back: what there was before something was taken away or changed at one press. */
 
-import type { Rig } from "./rig";
+import type { RigState } from "./state";
 
 /** More steps than anyone goes back; what they hold is kept in memory. */
 const MOST_STEPS = 20;
@@ -23,18 +23,18 @@ interface Step {
   last: number;
   /** Everything went: whatever came later is another rig's. */
   isWhole: boolean;
-  lists: Pick<Rig, "items" | "frames" | "candidates">;
-  rest: Pick<Rig, "notes" | "history" | "run">;
+  lists: Pick<RigState, "items" | "frames" | "candidates">;
+  rest: Pick<RigState, "notes" | "history" | "run">;
   kept: Kept[];
 }
 
 export class Undo {
-  readonly #rig: Rig;
+  readonly #rig: RigState;
   #steps: Step[] = [];
   /** Files that the worker holds, by what was seen of them here. */
   #known = new Set<number>();
 
-  constructor(rig: Rig) {
+  constructor(rig: RigState) {
     this.#rig = rig;
   }
 

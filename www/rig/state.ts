@@ -1,0 +1,98 @@
+/** What the visitor has brought and chosen, and how the parts beside `rig.ts` see the whole of it. */
+
+import type { CheckReport, Pose, RigCamera } from "../../pkg/index.js";
+import type { FramePlan, Kind, NamedCamera, Summary } from "./protocol";
+import type { Session } from "./session";
+
+export type Side = "colour" | "depth";
+
+export interface Item {
+  id: number;
+  name: string;
+  /** Absent where it came with others, as a folder or the example: then nothing of it can be read another way. */
+  blob?: Blob;
+  state: "reading" | "read" | "failed";
+  summary?: Summary;
+  error?: string;
+  as?: Kind;
+  unit?: number;
+  /** Its frame was taken away: it makes no new one by itself. */
+  aside?: true;
+}
+
+export interface Frame {
+  id: number;
+  name: string;
+  colour?: number;
+  depth?: number;
+  mask?: number;
+  paint?: Uint8Array;
+  range?: [number, number];
+}
+
+/** Typed in; empty fields are NaN. */
+export interface TypedCamera {
+  by: "focal" | "view";
+  model: "brown" | "fisheye";
+  fx: number;
+  fy: number;
+  cx: number;
+  cy: number;
+  /** Horizontal, degrees. */
+  view: number;
+  distortion: number[];
+}
+
+export interface CameraChoice {
+  /** "", "typed", "same" as the colour camera, or the camera's place among those of the files, "3:0". */
+  source: string;
+  /** Whether the visitor has chosen it; else it follows the files. */
+  chosen: boolean;
+  typed: TypedCamera;
+}
+
+export interface Candidate {
+  id: number;
+  name: string;
+  /** Where it comes from, in words. */
+  origin: string;
+  pose: Pose;
+  /** The file it came from; it goes with it. */
+  file?: number;
+}
+
+export interface Run {
+  report: CheckReport;
+  plans: FramePlan[];
+  candidates: Record<string, Pose>;
+  /** Whether no calibration was given and the identity stood in. */
+  estimateOnly: boolean;
+  /** What had been guessed when it ran, in words. */
+  guessed: string[];
+  /** What else was doubtful about files and cameras. */
+  doubts: string[];
+}
+
+/** A rig, as far as pairing, doubts and undoing look at it. */
+export interface RigState {
+  items: Item[];
+  frames: Frame[];
+  readonly cameras: Record<Side, CameraChoice>;
+  candidates: Candidate[];
+  notes: string[];
+  run: Run | undefined;
+  /** How sharp the answer has been, run by run, with how many frames. */
+  history: { frames: number; pixels: number; interval: [number, number] }[];
+  readonly session: Session;
+  /** The cameras of the files, by their places among them. */
+  readonly given: { source: string; label: string; camera: NamedCamera }[];
+  /** The frames that have both pictures. */
+  readonly complete: Frame[];
+  freshId(): number;
+  /** Tells those who show it. */
+  changed(): void;
+  item(id: number | undefined): Item | undefined;
+  of(kind: Kind): Item[];
+  sizeOf(side: Side): { width: number; height: number } | undefined;
+  cameraOf(side: Side): RigCamera | undefined;
+}
