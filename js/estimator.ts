@@ -12,12 +12,12 @@ import type {
   DepthMap,
   DepthMapInput,
   DrawOptions,
+  EstimatorWarning,
   Layer,
   Options,
   RestoreOptions,
   RunOptions,
   StepReport,
-  Warning,
 } from "./types.js";
 import type { Views } from "./workers/messages.js";
 import { RefinementWorker, type Refinement } from "./workers/refinement.js";
@@ -63,7 +63,7 @@ export class Estimator {
   #options: PlainOptions;
   /** Copies: their owner may change the pair before it is saved or a worker asks for it. */
   readonly #pair: Views;
-  #warnings: Warning[] = [];
+  #warnings: EstimatorWarning[] = [];
   /** Whether anything has been run since the start, and how many slices of the search this thread has done. */
   #begun = false;
   #slices = 0;
@@ -169,7 +169,7 @@ export class Estimator {
   }
 
   /** What this place lacks, for which the estimator does without: "workers-unavailable" where no other thread could be started. */
-  get warnings(): readonly Warning[] {
+  get warnings(): readonly EstimatorWarning[] {
     return this.#warnings;
   }
 

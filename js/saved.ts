@@ -91,11 +91,11 @@ interface Outcome {
   refinedDepth(): Float32Array;
 }
 
-/** All that a run says and has found, but for the times, and for matrices, which say what their poses say. */
+/** All that a run says and has found, but for the times. */
 export function checksumOf(estimator: Outcome): number {
   const { milliseconds: _, ...report } = estimator.report;
   const found = [
-    new TextEncoder().encode(JSON.stringify(report, (name, value) => (name === "matrix" ? undefined : value))),
+    new TextEncoder().encode(JSON.stringify(report)),
     estimator.light(),
     estimator.imageDepth(),
     estimator.refinedDepth(),

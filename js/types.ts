@@ -589,6 +589,19 @@ export interface Warning {
   [detail: string]: unknown;
 }
 
+/** What an estimator does without. */
+export type EstimatorWarningCode = "workers-unavailable";
+
+/** What the place where an estimator runs lacks, and what the estimator does without. */
+export interface EstimatorWarning {
+  /** Stable, for programs. */
+  code: EstimatorWarningCode;
+  /** The same in a sentence. */
+  message: string;
+  /** The input that it is about, as a path in the contract. */
+  field?: string;
+}
+
 /** What a check found of one candidate. */
 export interface CandidateReport {
   /** Of this candidate. */

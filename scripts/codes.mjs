@@ -18,6 +18,10 @@ const GROUPS = {
     "Warnings of a calibration check",
     '`code` of each entry of `warnings`, beside its `message`, its `field` and its numbers; `WarningKind::code()` in Rust. Any of them keeps a verdict from being "consistent".',
   ],
+  estimators: [
+    "Warnings of an estimator",
+    "`code` of each entry of `Estimator.warnings` in JavaScript, which the console shows once, too.",
+  ],
   errors: [
     "Errors",
     "`code` of a `BimodalError`, beside its `message`, and where they help its `field`, `index` and `value`; `ErrorKind::code()` in Rust.",

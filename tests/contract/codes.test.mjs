@@ -27,6 +27,7 @@ for (const [group, path, name] of [
   ["runs", "js/types.ts", "ReasonCode"],
   ["checks", "js/types.ts", "CheckCode"],
   ["warnings", "js/types.ts", "WarningCode"],
+  ["estimators", "js/types.ts", "EstimatorWarningCode"],
   ["errors", "js/errors.ts", "ErrorCode"],
 ])
   test(`${name} is the table's ${group}`, () =>
