@@ -21,8 +21,8 @@ import { Failure, say, script, seconds } from "./shell.mjs";
 import { collect } from "./tables/collect.mjs";
 import { openJournal } from "./tables/journal.mjs";
 import { hasData } from "./tables/library.mjs";
-import { rowsOf } from "./tables/protocol/index.mjs";
-import { kit } from "./tables/protocol/scenes.mjs";
+import { rowsOf } from "../protocols/index.mjs";
+import { kit } from "../protocols/scenes.mjs";
 
 function parsed() {
   const [flag, string] = [{ type: "boolean" }, { type: "string" }];

@@ -2,7 +2,7 @@
 import { cpSync, existsSync, mkdirSync, readFileSync, realpathSync, rmSync, symlinkSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { gzipSync } from "node:zlib";
-import { reachable } from "./declarations.mjs";
+import { reachable } from "./imports.mjs";
 import { collector } from "./notices/bundled.mjs";
 import { NOTICES, section } from "./notices/text.mjs";
 import { ALL, GLUE, NUMERICS, allNumerics, node } from "./numerics.mjs";
@@ -18,7 +18,7 @@ const SOURCES = [
   "js",
   "package-lock.json",
   "scripts/build.mjs",
-  "scripts/declarations.mjs",
+  "scripts/imports.mjs",
   "scripts/notices",
 ];
 const MARK = "pkg/.stamp";

@@ -15,11 +15,11 @@ import { setup } from "./setup.mjs";
 import { labPicture } from "./pictures/lab.mjs";
 import { Failure, root, say, script } from "./shell.mjs";
 import { hasData, library } from "./tables/library.mjs";
-import { onto } from "./tables/protocol/measure-reals.mjs";
-import { isFlagged, isFound } from "./tables/protocol/counts.mjs";
-import { quantile } from "./tables/protocol/numbers.mjs";
-import { judged, withRun } from "./tables/protocol/runs.mjs";
-import { PAINTED, requestOf } from "./tables/protocol/scenes.mjs";
+import { onto } from "../protocols/measure-reals.mjs";
+import { isFlagged, isFound } from "../protocols/counts.mjs";
+import { quantile } from "../protocols/numbers.mjs";
+import { judged, withRun } from "../protocols/runs.mjs";
+import { PAINTED, requestOf } from "../protocols/scenes.mjs";
 
 /** Captures; the first frame of each. */
 const CAPTURES = ["coffee_mug_1", "bowl_1", "cap_1", "cereal_box_1", "vase_rgbd", "android_rgbd", "mitten_rgbd"];

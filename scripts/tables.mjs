@@ -16,8 +16,8 @@ import { collect } from "./tables/collect.mjs";
 import { show, showAims } from "./tables/print.mjs";
 import { baseline } from "./tables/baseline.mjs";
 import { DATA_FOLDER, hasData } from "./tables/library.mjs";
-import { aims } from "./tables/protocol/aims.mjs";
-import { TABLES } from "./tables/protocol/index.mjs";
+import { aims } from "../protocols/aims.mjs";
+import { TABLES } from "../protocols/index.mjs";
 
 function chosen(names) {
   const wanted = names?.split(",").filter(Boolean);

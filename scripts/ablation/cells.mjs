@@ -1,6 +1,6 @@
 // What every variant runs: cells of the tables, by their names.
-import { TABLES } from "../tables/protocol/index.mjs";
-import { PAINTED } from "../tables/protocol/scenes.mjs";
+import { TABLES } from "../../protocols/index.mjs";
+import { PAINTED } from "../../protocols/scenes.mjs";
 
 const numbers = (count) => Array.from({ length: count }, (_, index) => index + 1);
 

@@ -1,7 +1,7 @@
 // What each part buys, as text and as a table of docs/accuracy.md.
 import { columns, fixed, mark } from "../tables/print.mjs";
-import { isConfidentlyWrong, isFound } from "../tables/protocol/counts.mjs";
-import { median, worst } from "../tables/protocol/numbers.mjs";
+import { isConfidentlyWrong, isFound } from "../../protocols/counts.mjs";
+import { median, worst } from "../../protocols/numbers.mjs";
 
 /** A cell is worse or better by a part where it moves by so much, degrees: a tenth of what counts as found. */
 const MATTERS = 0.3;

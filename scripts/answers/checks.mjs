@@ -1,5 +1,5 @@
 // How far two reports of a calibration check lie apart.
-import { degreesBetween } from "../tables/protocol/rotations.mjs";
+import { degreesBetween } from "../../protocols/rotations.mjs";
 import { LIMITS, codeOf, differ, largest, listsApart, relative } from "./compare.mjs";
 
 /** Unknowns of a pose. */

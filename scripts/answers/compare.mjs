@@ -1,5 +1,5 @@
 // How far two answers to one scene lie apart, and what may be.
-import { degreesBetween } from "../tables/protocol/rotations.mjs";
+import { degreesBetween } from "../../protocols/rotations.mjs";
 
 /**
  * Largest differences of a redesign that only reorders sums. Lengths are in pixels: of an orthographic view its unit, of a view

@@ -1,7 +1,7 @@
 // Pairs in metres: an analytic body seen by pinhole cameras, which `sample` does not offer. Each pixel's ray is followed to the
 // body's surface, so nothing is resampled and the pose is known.
-import { IDENTITY, aboutAxis, transpose, turn } from "../tables/protocol/rotations.mjs";
-import { chance } from "../tables/protocol/numbers.mjs";
+import { IDENTITY, aboutAxis, transpose, turn } from "../../protocols/rotations.mjs";
+import { chance } from "../../protocols/numbers.mjs";
 
 /** Half axes of the body and its distance from either camera, metres. */
 const HALF_AXES = [0.1, 0.12, 0.1];

@@ -1,8 +1,8 @@
 // The pair of views of a scene: rendered by the package's `sample` or in metres, then changed into what the scene asks for.
-import { throughJpeg } from "../tables/protocol/jpeg.mjs";
-import { chance, median } from "../tables/protocol/numbers.mjs";
-import { paint } from "../tables/protocol/painted.mjs";
-import { aboutAxis, anglesOf, product, turn } from "../tables/protocol/rotations.mjs";
+import { throughJpeg } from "../../protocols/jpeg.mjs";
+import { chance, median } from "../../protocols/numbers.mjs";
+import { paint } from "../../protocols/painted.mjs";
+import { aboutAxis, anglesOf, product, turn } from "../../protocols/rotations.mjs";
 import { metricPair } from "./metric.mjs";
 
 /** Grid of a relief of our own, samples; its radius is that of its disc. */

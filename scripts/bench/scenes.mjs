@@ -2,9 +2,9 @@
 import { mkdirSync, writeFileSync } from "node:fs";
 import { inRoot } from "../shell.mjs";
 import { hasData, library } from "../tables/library.mjs";
-import { drawScene } from "../tables/protocol/anywhere.mjs";
-import { chance } from "../tables/protocol/numbers.mjs";
-import { NOISE, kit, requestOf } from "../tables/protocol/scenes.mjs";
+import { drawScene } from "../../protocols/anywhere.mjs";
+import { chance } from "../../protocols/numbers.mjs";
+import { NOISE, kit, requestOf } from "../../protocols/scenes.mjs";
 
 const FOLDER = "target/bench/scenes";
 /** Samples of a relief on a side: of Mozart and of the built-in surfaces. */

@@ -1,7 +1,7 @@
 // From samples to the JSON: quantiles, ratios, growth, and the aims with their verdicts.
 import { FIRST_PAINT_BUDGET, WASM_BUDGET } from "../sizes.mjs";
-import { FOUND_WITHIN, isFound } from "../tables/protocol/counts.mjs";
-import { median, quantile } from "../tables/protocol/numbers.mjs";
+import { FOUND_WITHIN, isFound } from "../../protocols/counts.mjs";
+import { median, quantile } from "../../protocols/numbers.mjs";
 import { sidesOf } from "./scenes.mjs";
 
 export const quantiles = (times) => ({ median: median(times), p10: quantile(times, 0.1), p90: quantile(times, 0.9) });

@@ -1,6 +1,6 @@
 // Checks on captures whose truth has been hidden: how each draw is made, and what is measured of it.
 import { after, chance, inverse, mahalanobis, offset, poseOf, sizes, wrong } from "../rigs/draws.mjs";
-import { IDENTITY } from "../tables/protocol/rotations.mjs";
+import { IDENTITY } from "../../protocols/rotations.mjs";
 import { costs } from "./costs.mjs";
 import { checkFrame, hide } from "./read.mjs";
 

@@ -1,7 +1,7 @@
 // The captures that a check is measured on: whole frames without masks, as clouds, each with the extrinsics that its makers state.
 import { after, inverse, moved, poseOf, quantile } from "../rigs/draws.mjs";
 import { bytes, capture } from "../real-pairs.mjs";
-import { IDENTITY } from "../tables/protocol/rotations.mjs";
+import { IDENTITY } from "../../protocols/rotations.mjs";
 import { cloud } from "./lens.mjs";
 
 const MILLIMETRE = 0.001;

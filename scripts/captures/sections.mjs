@@ -1,6 +1,6 @@
 // The three parts of the measurement, each as rows, and what is printed of them.
 import { percent, poseOf, quantile } from "../rigs/draws.mjs";
-import { IDENTITY } from "../tables/protocol/rotations.mjs";
+import { IDENTITY } from "../../protocols/rotations.mjs";
 import { costs } from "./costs.mjs";
 import { ranked, seedOf, toldOff } from "./draws.mjs";
 import { checkFrame, nyu, registered, sevenScenes } from "./read.mjs";

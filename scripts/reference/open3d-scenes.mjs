@@ -7,8 +7,8 @@ import { join } from "node:path";
 import init, { Estimator, sample } from "../../pkg/index.js";
 import * as files from "../../pkg/files.js";
 import { hasData, library } from "../tables/library.mjs";
-import { table2B } from "../tables/protocol/poses.mjs";
-import { kit, requestOf } from "../tables/protocol/scenes.mjs";
+import { table2B } from "../../protocols/poses.mjs";
+import { kit, requestOf } from "../../protocols/scenes.mjs";
 
 const [, , folder] = process.argv;
 if (!folder || !hasData()) throw new Error("needs a folder to write to, and the data beside the project");

@@ -1,5 +1,5 @@
 // What a draw of a check needs: random candidates, how far an estimate is from the truth, and shares in words.
-import { aboutAxis, offBy, product, transpose, turn } from "../tables/protocol/rotations.mjs";
+import { aboutAxis, offBy, product, transpose, turn } from "../../protocols/rotations.mjs";
 
 /** Numbers that follow from a seed (Steele and Vigna's splitmix32); directions from normal ones by Box and Muller. */
 export function chance(seed) {

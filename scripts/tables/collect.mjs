@@ -3,8 +3,8 @@ import { inRoot, say } from "../shell.mjs";
 import { openJournal } from "./journal.mjs";
 import { hasData } from "./library.mjs";
 import { runCells } from "./pool.mjs";
-import { rowsOf } from "./protocol/index.mjs";
-import { kit } from "./protocol/scenes.mjs";
+import { rowsOf } from "../../protocols/index.mjs";
+import { kit } from "../../protocols/scenes.mjs";
 
 /** Milliseconds between two progress lines. */
 const PROGRESS_EVERY = 10_000;

@@ -9,7 +9,7 @@ const FOLDER = "target/tables";
 const decisive = (wasm) => [
   ...matching(["pkg"], wasm ? /\.js$/ : /\.(js|wasm)$/),
   ...(wasm ? [wasm] : []),
-  ...["scripts/tables/protocol", "scripts/tables/library.mjs", "scripts/tables/npy.mjs"],
+  ...["protocols", "scripts/tables/library.mjs", "scripts/tables/npy.mjs"],
 ];
 
 const keyOf = (cell) => createHash("sha256").update(JSON.stringify(cell)).digest("hex").slice(0, 16);

@@ -1,8 +1,8 @@
 // The tables as text.
-import { coverage3, isConfidentlyWrong, isFlagged, isFound } from "./protocol/counts.mjs";
-import { mean, median, share, worst } from "./protocol/numbers.mjs";
-import { paperDegrees } from "./protocol/rotations.mjs";
-import { PAPER_TABLE_1, PAPER_TABLE_3 } from "./protocol/scenes.mjs";
+import { coverage3, isConfidentlyWrong, isFlagged, isFound } from "../../protocols/counts.mjs";
+import { mean, median, share, worst } from "../../protocols/numbers.mjs";
+import { paperDegrees } from "../../protocols/rotations.mjs";
+import { PAPER_TABLE_1, PAPER_TABLE_3 } from "../../protocols/scenes.mjs";
 
 const DASH = "-";
 /** Of a list of failures so many are shown; the JSON has all. */

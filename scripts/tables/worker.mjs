@@ -2,7 +2,7 @@
 //   WASM   a file in place of the package's own
 import { pathToFileURL } from "node:url";
 import { library } from "./library.mjs";
-import { measure } from "./protocol/measure.mjs";
+import { measure } from "../../protocols/measure.mjs";
 
 const api = await import("../../pkg/index.js");
 const [wasm] = process.argv.slice(2);

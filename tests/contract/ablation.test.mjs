@@ -6,7 +6,7 @@ import { sets, table } from "../../scripts/ablation/cells.mjs";
 import { ALL, PARTS, without } from "../../scripts/ablation/parts.mjs";
 import { effects, markdown, text } from "../../scripts/ablation/print.mjs";
 import { inRoot } from "../../scripts/shell.mjs";
-import { kit } from "../../scripts/tables/protocol/scenes.mjs";
+import { kit } from "../../protocols/scenes.mjs";
 
 describe("the parts", () => {
   for (const part of PARTS) {

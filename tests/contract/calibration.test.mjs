@@ -4,13 +4,7 @@ import { existsSync, readFileSync } from "node:fs";
 import { before, describe, test } from "node:test";
 import { projectFrame, sampleRig } from "../../pkg/index.js";
 import { decodeColour, decodeDepth } from "../../pkg/files.js";
-import {
-  aboutAxis,
-  degreesBetween as degreesOf,
-  product,
-  transpose,
-  turn,
-} from "../../scripts/tables/protocol/rotations.mjs";
+import { aboutAxis, degreesBetween as degreesOf, product, transpose, turn } from "../../protocols/rotations.mjs";
 import { LONG } from "./long.mjs";
 import { BimodalError, checkCalibration } from "./support.mjs";
 

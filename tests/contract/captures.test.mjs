@@ -6,7 +6,7 @@ import { costs, shading } from "../../scripts/captures/costs.mjs";
 import { project, ray } from "../../scripts/captures/lens.mjs";
 import { checkFrame, hide, rigSight } from "../../scripts/captures/read.mjs";
 import { after, chance, inverse, mahalanobis, moved, offset, poseOf, sizes, wrong } from "../../scripts/rigs/draws.mjs";
-import { IDENTITY } from "../../scripts/tables/protocol/rotations.mjs";
+import { IDENTITY } from "../../protocols/rotations.mjs";
 
 const NOWHERE = poseOf(IDENTITY, [0, 0, 0]);
 

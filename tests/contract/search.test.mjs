@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { before, describe, test } from "node:test";
 import { Estimator, init, sample } from "./support.mjs";
-import { aboutAxis, product } from "../../scripts/tables/protocol/rotations.mjs";
+import { aboutAxis, product } from "../../protocols/rotations.mjs";
 
 const REQUEST = {
   surface: "bust",

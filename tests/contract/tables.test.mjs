@@ -3,13 +3,13 @@ import assert from "node:assert/strict";
 import { describe, test } from "node:test";
 import { missingKeys } from "../../scripts/tables/keys.mjs";
 import { show, showAims } from "../../scripts/tables/print.mjs";
-import { aims } from "../../scripts/tables/protocol/aims.mjs";
-import { randomRow } from "../../scripts/tables/protocol/counts.mjs";
-import { TABLES } from "../../scripts/tables/protocol/index.mjs";
-import { chance, drawGaussian, mean, median, quantile } from "../../scripts/tables/protocol/numbers.mjs";
-import * as rotations from "../../scripts/tables/protocol/rotations.mjs";
-import { drawScene } from "../../scripts/tables/protocol/anywhere.mjs";
-import { OVERLAPS, kit } from "../../scripts/tables/protocol/scenes.mjs";
+import { aims } from "../../protocols/aims.mjs";
+import { randomRow } from "../../protocols/counts.mjs";
+import { TABLES } from "../../protocols/index.mjs";
+import { chance, drawGaussian, mean, median, quantile } from "../../protocols/numbers.mjs";
+import * as rotations from "../../protocols/rotations.mjs";
+import { drawScene } from "../../protocols/anywhere.mjs";
+import { OVERLAPS, kit } from "../../protocols/scenes.mjs";
 import { init, sample } from "./support.mjs";
 
 const near = (actual, expected, tolerance = 1e-9) =>

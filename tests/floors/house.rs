@@ -72,13 +72,11 @@ impl House {
         self.looks().into_iter().filter(forbidden).map(|(from, to)| format!("{from} -> {to}")).collect()
     }
 
-    /// One circle for each set of files of a room that lead to each other.
+    /// One circle for each set of files that lead to each other.
     pub fn circles(&self) -> Vec<String> {
         let mut next: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
         for (from, to) in self.looks() {
-            if self.files[from].room() == self.files[to].room() {
-                next.entry(from).or_default().push(to);
-            }
+            next.entry(from).or_default().push(to);
         }
         let mut known = BTreeSet::new();
         let mut circles = Vec::new();

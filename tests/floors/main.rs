@@ -69,6 +69,19 @@ fn no_two_files_of_a_room_import_each_other() {
     assert!(circles.is_empty(), "{} circles:\n{}", circles.len(), circles.join("\n"));
 }
 
+/// The command line is not packed with the crate.
+#[test]
+fn no_two_files_of_the_command_line_import_each_other() {
+    let source = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("cli/src");
+    if !source.exists() {
+        return;
+    }
+    let house = House::read(&source);
+    assert!(house.looks().len() > 20, "the sources are not read");
+    let circles = house.circles();
+    assert!(circles.is_empty(), "{} circles:\n{}", circles.len(), circles.join("\n"));
+}
+
 #[test]
 fn only_the_bindings_know_javascript() {
     let house = House::read(&source());

@@ -3,15 +3,15 @@
  * repeated here but the shape of what they hand over.
  */
 
-import { aims as judge } from "../../scripts/tables/protocol/aims.mjs";
-import { sceneOf as scene } from "../../scripts/tables/protocol/anywhere.mjs";
-import * as counts from "../../scripts/tables/protocol/counts.mjs";
-import { TABLES, rowsOf as rows } from "../../scripts/tables/protocol/index.mjs";
-import { paperDegrees } from "../../scripts/tables/protocol/rotations.mjs";
-import { kit } from "../../scripts/tables/protocol/scenes.mjs";
+import { aims as judge } from "../../protocols/aims.mjs";
+import { sceneOf as scene } from "../../protocols/anywhere.mjs";
+import * as counts from "../../protocols/counts.mjs";
+import { TABLES, rowsOf as rows } from "../../protocols/index.mjs";
+import { paperDegrees } from "../../protocols/rotations.mjs";
+import { kit } from "../../protocols/scenes.mjs";
 import type { Options, SampleRequest, StepReport } from "../../pkg/index.js";
 
-export { median, worst } from "../../scripts/tables/protocol/numbers.mjs";
+export { median, worst } from "../../protocols/numbers.mjs";
 export { paperDegrees };
 
 /** What a cell says of itself, and a row of what was measured. */

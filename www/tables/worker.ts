@@ -3,7 +3,7 @@
 import "../engine/hold";
 import init, { Estimator, sample, sampleBound } from "../../pkg/index.js";
 import type { RunOptions, StepReport } from "../../pkg/index.js";
-import { measure } from "../../scripts/tables/protocol/measure.mjs";
+import { measure } from "../../protocols/measure.mjs";
 import { faultOf } from "../engine/fault";
 import { searched } from "../engine/searched";
 import type { CellAnswer, Task } from "./messages";

@@ -4,14 +4,14 @@ import {
   chosenPixels as chosen,
   depthRmse as rmse,
   normalDegrees as degrees,
-} from "../../../scripts/tables/protocol/measure-shapes.mjs";
+} from "../../../protocols/measure-shapes.mjs";
 import {
   aboutY as aboutVertical,
   angleBetween as between,
   degreesBetween as rotationBetween,
   product as times,
   turn,
-} from "../../../scripts/tables/protocol/rotations.mjs";
+} from "../../../protocols/rotations.mjs";
 
 /** Mean angle between two fields of normals where both have one. */
 export const normalDegrees = degrees as (
