@@ -295,6 +295,50 @@ describe("run", () => {
   });
 });
 
+describe("for await", () => {
+  test("gives a report for each step, the last one with the status that the loop ends with", async () => {
+    const [made, other] = [estimator({ stopDegrees: 0.1 }), estimator({ stopDegrees: 0.1 })];
+    const reports = [];
+    for await (const report of made) reports.push(report);
+    const expected = [];
+    await other.run({ onStep: (report) => expected.push(report) });
+    const alone = ({ milliseconds, ...rest }) => rest;
+    assert.deepEqual(reports.map(alone), expected.map(alone));
+    assert.ok(reports.length > 1 && reports.slice(0, -1).every(({ status }) => status === "running"));
+    assert.notEqual(reports.at(-1).status, "running");
+    assert.deepEqual(reports.at(-1), made.report);
+    // The loop is over: there is no other step.
+    for await (const report of made) assert.fail(report.status);
+  });
+
+  test("lets events through, and goes on after a break where it was left", async () => {
+    const made = estimator({ stopDegrees: 1e-12 });
+    let events = 0;
+    for await (const { iteration } of made) {
+      if (iteration === 1) setImmediate(() => events++);
+      if (iteration === 3) break;
+    }
+    assert.equal(events, 1);
+    assert.equal(made.report.iteration, 3);
+    for await (const { iteration } of made) {
+      assert.equal(iteration, 4);
+      break;
+    }
+    const error = new Error("of the caller");
+    const thrown = (async () => {
+      for await (const { iteration } of made) throw Object.assign(error, { iteration });
+    })();
+    await assert.rejects(thrown, { iteration: 5 });
+    assert.equal(made.step().iteration, 6);
+    await assert.rejects(
+      (async () => {
+        for await (const _ of made) made.free();
+      })(),
+      { code: "freed" },
+    );
+  });
+});
+
 test("after free nothing works but free", () => {
   const made = estimator();
   made.free();

@@ -29,6 +29,9 @@ after(async () => {
   for (const end of endings.reverse()) await end();
 });
 
+/** Has something done after all tests of a file. */
+export const atTheEnd = (end) => void endings.push(end);
+
 /** A folder that is gone after the tests. */
 export function folder() {
   const path = mkdtempSync(join(tmpdir(), "bimodal-stereo-"));

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { existsSync, readFileSync, readdirSync } from "node:fs";
 import { describe, test } from "node:test";
 import { fileURLToPath } from "node:url";
-import { readRigFolder } from "../../pkg/rig.js";
+import { readRigFile, readRigFolder } from "../../pkg/rig.js";
 import { png } from "./support.mjs";
 import { close, text } from "./rig-support.mjs";
 
@@ -349,4 +349,18 @@ describe("other people's folders", {
       android_rgbd: [1, 0, 0.0002, true, 1216.7],
     });
   });
+});
+
+test("a signal ends the reading between two files", async () => {
+  const bytes = new Uint8Array(readFileSync(new URL("../fixtures/rig/colour-srgb.png", import.meta.url)));
+  const files = Array.from({ length: 8 }, (_, i) => ({ name: `${i % 2 ? "rgb" : "depth"}/${i >> 1}.png`, bytes }));
+  const reason = new Error("enough");
+  const control = new AbortController();
+  const reading = readRigFolder(files, { signal: control.signal });
+  setImmediate(() => control.abort(reason));
+  await assert.rejects(reading, (error) => error === reason);
+  const aborted = { signal: AbortSignal.abort(reason) };
+  await assert.rejects(readRigFolder(files, aborted), (error) => error === reason);
+  await assert.rejects(readRigFile(files[0], aborted), (error) => error === reason);
+  await assert.rejects(readRigFolder(files, { signal: 5 }), { code: "type", field: "options.signal" });
 });

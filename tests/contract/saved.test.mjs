@@ -48,6 +48,27 @@ describe("goes on to the same bits", () => {
     });
   }
 
+  test("with room for events, which may break it off", async () => {
+    const run = after(estimator({ maxIterations: 4 }), "step", "step");
+    const state = run.save();
+    let events = 0;
+    const count = setInterval(() => events++, 0);
+    const other = await Estimator.restoreAsync(state);
+    clearInterval(count);
+    same(run, other);
+    other.free();
+    const control = new AbortController();
+    const reason = new Error("enough");
+    const broken = Estimator.restoreAsync(state, { signal: control.signal });
+    control.abort(reason);
+    await assert.rejects(broken, (error) => error === reason);
+    await assert.rejects(Estimator.restoreAsync(state, { signal: AbortSignal.abort() }), { name: "AbortError" });
+    await assert.rejects(Estimator.restoreAsync(new Uint8Array(3)), { code: "state", field: "state" });
+    await assert.rejects(Estimator.restoreAsync(state, { signl: 1 }), { code: "option", field: "options.signl" });
+    assert.ok(events > 0);
+    run.free();
+  });
+
   test("after a search that threads have shared", async () => {
     const run = estimator({ start: "search", workers: 2, maxIterations: 2 });
     await run.run();

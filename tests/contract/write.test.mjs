@@ -274,7 +274,7 @@ test("what does not fit is refused by its name", async () => {
   refused(() => writeNpy({ width: -1, height: -1, channels: 1, data: new Float32Array(1) }), "range", "raster.width");
   refused(() => writeNpy({ width: 1, height: 1, channels: 1, data: new Int8Array(1) }), "type", "raster.data");
   await rejected(
-    writePng({ width: 1, height: 1, channels: 2, data: new Uint8Array(2) }),
+    writePng({ width: 1, height: 1, channels: 5, data: new Uint8Array(5) }),
     "unsupported",
     "raster.channels",
   );
@@ -292,6 +292,23 @@ test("doubles, such as a light's, are doubles in .npy", () => {
   const bytes = writeNpy({ width: 27, height: 1, channels: 1, data: Float64Array.from(LIGHT) });
   assert.match(new TextDecoder("latin1").decode(bytes.subarray(0, 80)), /'<f8'/);
   assert.deepEqual([...new Float64Array(bytes.slice(-27 * 8).buffer)], [...LIGHT]);
+});
+
+test("what the readers give is written, with alpha or without", async () => {
+  for (const channels of [1, 2, 3, 4]) {
+    for (const type of [Uint8Array, Uint8ClampedArray, Uint16Array]) {
+      const data = type.from({ length: 6 * channels }, (_, i) => 37 * i + (type === Uint16Array ? 1000 * i : 0));
+      const bytes = await writePng({ width: 3, height: 2, data });
+      const back = decode(bytes);
+      assert.deepEqual([back.width, back.height, back.channels], [3, 2, channels]);
+      assert.deepEqual([...back.data], [...data]);
+    }
+  }
+  const image = decodeColour(
+    await writePng({ width: 1, height: 2, channels: 3, data: Uint8Array.of(1, 2, 3, 4, 5, 6) }),
+  );
+  assert.deepEqual(decodeColour(await writePng(image)), image);
+  assert.deepEqual([...image.data], [1, 2, 3, 255, 4, 5, 6, 255]);
 });
 
 test("remarks of a PNG stay remarks, whatever they hold", async () => {
