@@ -30,24 +30,46 @@ export class BimodalError extends Error {
   /** The number at fault, where the numerics name it. */
   declare readonly value?: number;
 
-  constructor(
-    code: ErrorCode,
-    message: string,
-    field?: string,
-    options?: ErrorOptions & { index?: number | undefined; value?: number | undefined },
-  ) {
+  /** The values in the message; of a file's error `file`, `reason` and, where it matters, `problem`. */
+  declare readonly details?: ErrorDetails;
+
+  constructor(code: ErrorCode, message: string, field?: string, options?: BimodalErrorOptions) {
     super(message, options);
     this.code = code;
     // Absent rather than undefined, so that `"field" in error` tells the truth.
     if (field !== undefined) this.field = field;
     if (options?.index !== undefined) this.index = options.index;
     if (options?.value !== undefined) this.value = options.value;
+    if (options?.details !== undefined) this.details = options.details;
   }
 }
 
+/** What else an error can carry. */
+interface BimodalErrorOptions extends ErrorOptions {
+  index?: number | undefined;
+  value?: number | undefined;
+  details?: ErrorDetails;
+}
+
+/** What programs can ask of an error beyond its code. */
+export interface ErrorDetails {
+  /** The file that could not be read. */
+  readonly file?: string;
+  /** What is wrong with it, without its name. */
+  readonly reason?: string;
+  /** "too-large": it holds more than is read here; "picture": a picture of a format that browsers read and these readers do not. */
+  readonly problem?: "too-large" | "picture";
+  /** Its size in pixels, where that is the problem. */
+  readonly width?: number;
+  readonly height?: number;
+}
+
 /** What is wrong with a file. */
-export const badFile = (message: string, cause?: unknown) =>
-  new BimodalError("file", `file: ${message}`, "file", cause === undefined ? undefined : { cause });
+export const badFile = (message: string, cause?: unknown, details?: ErrorDetails) =>
+  new BimodalError("file", message, "file", {
+    ...(cause !== undefined && { cause }),
+    details: { reason: message, ...details },
+  });
 
 /** How errors cross from wasm: plain data. */
 interface Crossing {

@@ -4,7 +4,7 @@ import type { WasmSource } from "./types.js";
 import { wasmUrl } from "./wasm.js";
 
 export { checkCalibration, projectFrame, sampleRig } from "./calibration/index.js";
-export { BimodalError, type ErrorCode } from "./errors.js";
+export { BimodalError, type ErrorCode, type ErrorDetails } from "./errors.js";
 export { Estimator, type Given } from "./estimator.js";
 export { integrateNormals, pixelLandscape } from "./lessons.js";
 export { sample, sampleBound, sampleLights, sampleSurfaces, shadeNormals, turnLight } from "./samples.js";

@@ -1,5 +1,6 @@
 /** Which of the cameras that were read took which pictures: by their names, by the size of their images, and last by their order. */
 import type { NamedCamera, RigFolder } from "./types.js";
+import { warning } from "./warnings.js";
 
 const COLOUR = /colou?r|rgb|\bhr\b/i;
 const DEPTH = /depth|dpt|\bir\b|infra|tof|\blr\b/i;
@@ -25,7 +26,10 @@ export function addCameras({ frames, cameras, warnings }: RigFolder): void {
     if (only !== undefined && isShared) {
       [colour, range] = [only, only];
       warnings.push(
-        "One camera's intrinsics are there: they were taken for both, as of pictures that are registered to each other.",
+        warning(
+          "camera-shared",
+          "Only one camera's intrinsics were found; they are used for both pictures, as if these were registered to each other.",
+        ),
       );
     } else if (only !== undefined && fits(only, depth)) range = only;
     else colour = only;
@@ -33,7 +37,12 @@ export function addCameras({ frames, cameras, warnings }: RigFolder): void {
   colour ??= free().find((each) => fits(each, image) && !fits(each, depth));
   range ??= free().find((each) => fits(each, depth) && !fits(each, image));
   if (colour === undefined && range === undefined && cameras.length > 1) {
-    warnings.push("No name says which camera is which: the first was taken for colour, the second for depth.");
+    warnings.push(
+      warning(
+        "cameras-by-order",
+        "No name says which camera is which; the first was used for colour and the second for depth.",
+      ),
+    );
     [colour, range] = cameras;
   }
   if (cameras.length > 1) {
@@ -42,11 +51,17 @@ export function addCameras({ frames, cameras, warnings }: RigFolder): void {
   }
   if (colour === undefined)
     warnings.push(
-      "The depth camera's intrinsics are there, the colour camera's are not: its focal length has to be estimated.",
+      warning(
+        "colour-camera-missing",
+        "The colour camera's intrinsics are missing; its focal length has to be estimated.",
+      ),
     );
   if (range === undefined && depth.points === undefined)
     warnings.push(
-      "The colour camera's intrinsics are there, the depth camera's are not: without them depths are no points.",
+      warning(
+        "depth-camera-missing",
+        "The depth camera's intrinsics are missing; without them depths cannot be turned into points.",
+      ),
     );
   for (const [camera, { width, height }, what] of [
     [colour, image, "colour images"],
@@ -54,7 +69,11 @@ export function addCameras({ frames, cameras, warnings }: RigFolder): void {
   ] as const) {
     if (camera?.width !== undefined && !fits(camera, { width, height })) {
       warnings.push(
-        `The intrinsics of the ${what} are for ${camera.width}x${camera.height} pixels, and these have ${width}x${height}: scale or crop them first.`,
+        warning(
+          "camera-size",
+          `The intrinsics of the ${what} are for ${camera.width}x${camera.height} pixels, and these have ${width}x${height}: scale or crop them first.`,
+          { camera: [camera.width, camera.height ?? 0], picture: [width, height] },
+        ),
       );
     }
   }

@@ -1,8 +1,9 @@
 /** A raster as a colour image or a mask, and what of it looks like something else. */
-import { toColour, toMask } from "../raster.js";
+import { hasColour, toColour, toMask } from "../raster.js";
 import { isGrey, type Found } from "./depth.js";
 import type { Picture } from "./formats/picture.js";
 import type { RigReading } from "./types.js";
+import { warning } from "./warnings.js";
 
 const CHANNELS = ["", "grey", "grey with alpha", "RGB", "RGB with alpha"];
 const stored = ({ width, height, bits, channels, data }: Picture): string =>
@@ -17,20 +18,30 @@ export function pictureColour(picture: Picture): Found<Extract<RigReading, { kin
   const warnings = [...picture.warnings];
   if (looksLikeDepth(picture))
     warnings.push(
-      `It looks like a depth map (${picture.bits}-bit, grey) where a colour image was asked for: were the files swapped?`,
+      warning(
+        "files-swapped",
+        `It looks like a depth map (${picture.bits}-bit, grey) where a colour image was expected: were the files swapped?`,
+      ),
     );
-  return { kind: "colour", image, says: [stored(picture), ...picture.notes].join(", "), warnings };
+  return {
+    kind: "colour",
+    image,
+    isGrey: !hasColour(picture.channels),
+    says: [stored(picture), ...picture.notes].join(", "),
+    warnings,
+  };
 }
 
 export function pictureMask(picture: Picture): Found<Extract<RigReading, { kind: "mask" }>> {
   const mask = toMask(picture);
   const share = mask.data.reduce((sum, value) => sum + (value > 0 ? 1 : 0), 0) / mask.data.length;
   const warnings = [...picture.warnings];
-  if (share === 0) warnings.push("The mask is empty: no pixel belongs to the object.");
-  if (share === 1) warnings.push("The mask covers the whole picture.");
+  if (share === 0) warnings.push(warning("mask-empty", "The mask is empty: no pixel belongs to the object."));
+  if (share === 1) warnings.push(warning("mask-full", "The mask covers the whole picture."));
   return {
     kind: "mask",
     mask,
+    isGrey: !hasColour(picture.channels),
     says: `${stored(picture)}, a mask of ${(100 * share).toFixed(1)} % of the pixels`,
     warnings,
   };

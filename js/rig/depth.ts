@@ -8,6 +8,7 @@ import { badFile } from "../errors.js";
 import { hasColour, single } from "../raster.js";
 import type { Cloud, Picture } from "./formats/picture.js";
 import type { ReadOptions, RigReading } from "./types.js";
+import { type ReaderWarning, warning } from "./warnings.js";
 
 type Depth = Extract<RigReading, { kind: "depth" }>;
 export type Found<T> = Omit<T, "name">;
@@ -117,6 +118,12 @@ function seen(values: ArrayLike<number>, step = 1, offset = 0): Seen {
   return found;
 }
 
+interface Judged {
+  says: string;
+  measured: NonNullable<Depth["measured"]>;
+  warnings: ReaderWarning[];
+}
+
 /** What is said of any depth map, and what looks wrong about it. */
 function judged(
   size: { width: number; height: number },
@@ -125,23 +132,33 @@ function judged(
   unit: Unit,
   step = 1,
   offset = 0,
-): { says: string; warnings: string[] } {
+): Judged {
   const { count, nearest, farthest } = seen(values, step, offset);
   const valid = count / (size.width * size.height);
   const sample = sampled(values, step, offset);
   const range = `${metresText(nearest * unit.metres)} to ${metresText(farthest * unit.metres)} m`;
-  const warnings: string[] = [];
+  const warnings: ReaderWarning[] = [];
   if (unit.isGuessed)
     warnings.push(
-      `The unit is not in the file and was guessed: read as ${name(unit.metres)}, depths are ${range}. Say the unit if that is wrong.`,
+      warning(
+        "unit-guessed",
+        `The file does not give its unit. It was read as ${name(unit.metres)}, so that depths are ${range}; give the unit if that is wrong.`,
+        { unit: unit.metres },
+      ),
     );
   const beyond = shareOf(sample, (value) => value * unit.metres < NEAREST || value * unit.metres > FARTHEST);
   if (beyond > STRAY)
     warnings.push(
-      `${percent(beyond)} of the depths are outside ${NEAREST} to ${FARTHEST} m (${range}): is the unit right?`,
+      warning(
+        "depth-range",
+        `${percent(beyond)} of the depths are outside ${NEAREST} to ${FARTHEST} m (${range}): is the unit right?`,
+        { share: beyond },
+      ),
     );
-  if (1 - valid > MANY_HOLES) warnings.push(`${percent(1 - valid)} of the depth map are holes.`);
+  if (1 - valid > MANY_HOLES)
+    warnings.push(warning("many-holes", `${percent(1 - valid)} of the depth map is missing.`, { share: 1 - valid }));
   return {
+    measured: { stored, valid, range: [nearest * unit.metres, farthest * unit.metres] },
     says: `${size.width}x${size.height}, ${stored}, read as ${unit.says}, ${percent(valid)} valid, ${range}`,
     warnings,
   };
@@ -171,10 +188,12 @@ function roughness(data: Uint16Array, width: number, swap: boolean): number {
 const CLEARLY = 8;
 
 /** 16-bit PGM are high byte first; some programs write them the other way round. */
-function inOrder(picture: Picture, data: Uint16Array, warnings: string[]): Uint16Array {
+function inOrder(picture: Picture, data: Uint16Array, warnings: ReaderWarning[]): Uint16Array {
   if (picture.format !== "PGM" || picture.bits !== 16) return data;
   if (roughness(data, picture.width, false) <= CLEARLY * roughness(data, picture.width, true)) return data;
-  warnings.push("Its bytes lie low byte first, against the format's rule, and were swapped.");
+  warnings.push(
+    warning("bytes-swapped", "The samples are stored low byte first, against the format's rule; they were swapped."),
+  );
   return data.map((value) => (value >> 8) | ((value & 255) << 8));
 }
 
@@ -200,17 +219,21 @@ function ofIntegers(picture: Picture, integers: Uint8Array | Uint16Array, unit: 
   }
   found ??= picture.unit === undefined ? unitOfIntegers(sample) : told(picture.unit);
   const depth = { width: picture.width, height: picture.height, data, unit: found.metres };
-  const { says, warnings: more } = judged(picture, `${picture.bits}-bit`, data, found);
+  const { says, measured, warnings: more } = judged(picture, `${picture.bits}-bit`, data, found);
   if (picture.bits <= 8)
     warnings.push(
-      "Depths of 8 bits are too coarse to calibrate by, and are often a picture of the depth, not the depth.",
+      warning(
+        "eight-bits",
+        "Depths of 8 bits are too coarse for a calibration, and often a picture of the depth rather than the depth itself.",
+      ),
     );
   if (quantile(sample, 1) === BLIND_DISPARITY && shareOf(sample, (value) => value === BLIND_DISPARITY) > STRAY)
-    warnings.push(DISPARITY);
+    warnings.push(warning("raw-disparity", DISPARITY));
   return {
     kind: "depth",
     depth,
     guessed: found.isGuessed ? ["unit"] : [],
+    measured,
     says: [says, ...notes].join(", "),
     warnings: [...warnings, ...more],
   };
@@ -226,11 +249,12 @@ function ofFloats(picture: Picture, stored: Float32Array, unit: number | undefin
   const known = unit ?? picture.unit;
   const found = known === undefined ? unitOfFloats(sample) : told(known);
   const depth = { width: picture.width, height: picture.height, data, unit: found.metres };
-  const { says, warnings } = judged(picture, `${picture.bits}-bit float`, data, found);
+  const { says, measured, warnings } = judged(picture, `${picture.bits}-bit float`, data, found);
   return {
     kind: "depth",
     depth,
     guessed: found.isGuessed ? ["unit"] : [],
+    measured,
     says: [says, ...picture.notes].join(", "),
     warnings: [...picture.warnings, ...warnings],
   };
@@ -249,7 +273,7 @@ export function cloudDepth(cloud: Cloud, { unit }: ReadOptions): Found<Depth> {
   if (behind > sample.length)
     throw badFile("its points lie behind the camera (z is negative): turn them so that z looks forward, y down");
   const found = unit === undefined ? unitOfFloats(sample) : told(unit);
-  const { says, warnings } = judged(cloud, "an organised cloud", points, found, 3, 2);
+  const { says, measured, warnings } = judged(cloud, "an organised cloud", points, found, 3, 2);
   for (let at = 0; at < points.length; at += 3) {
     const there = isThere(points[at + 2] ?? NaN) && Number.isFinite(points[at]) && Number.isFinite(points[at + 1]);
     for (let axis = 0; axis < 3; axis++) points[at + axis] = there ? (points[at + axis] ?? NaN) * found.metres : NaN;
@@ -259,6 +283,7 @@ export function cloudDepth(cloud: Cloud, { unit }: ReadOptions): Found<Depth> {
     kind: "depth",
     depth,
     guessed: found.isGuessed ? ["unit"] : [],
+    measured,
     says: [says, ...cloud.notes].join(", "),
     warnings: [...cloud.warnings, ...warnings],
   };

@@ -11,6 +11,7 @@ import { addCameras } from "./assign.js";
 import { textOf } from "./formats/text.js";
 import { checkNamed, isRasterFile, metresPerUnit, readRigFile } from "./read.js";
 import type { CheckFrame, Mask, NamedFile, ReadOptions, Reading, RigFolder, RigReading } from "./types.js";
+import { type ReaderWarning, grouped, ofFile, warning } from "./warnings.js";
 
 /** How `readRigFolder` reads. */
 export interface FolderOptions {
@@ -105,7 +106,7 @@ function byTime(
   return found;
 }
 
-function tum(files: NamedFile[], warnings: string[]): Pairs | undefined {
+function tum(files: NamedFile[], warnings: ReaderWarning[]): Pairs | undefined {
   const list = (name: string) => files.find((file) => base(file.name).toLowerCase() === name);
   const [colours, depths] = [list("rgb.txt"), list("depth.txt")];
   if (colours === undefined || depths === undefined) return undefined;
@@ -120,7 +121,13 @@ function tum(files: NamedFile[], warnings: string[]): Pairs | undefined {
     else missing++;
   }
   if (missing > 0)
-    warnings.push(`${missing} of the ${found.length} pairs that rgb.txt and depth.txt list are not in the folder.`);
+    warnings.push(
+      warning(
+        "pairs-missing",
+        `${missing} of the ${found.length} pairs that rgb.txt and depth.txt list are not in the folder.`,
+        { missing, listed: found.length },
+      ),
+    );
   if (found.length === 0)
     throw badFile(`${colours.name}: no time stamp of it lies within ${1000 * APART} ms of one of ${depths.name}`);
   return { pairs, unit: TUM_UNIT, says: `TUM RGB-D, ${pairs.length} pairs within ${1000 * APART} ms` };
@@ -137,7 +144,7 @@ function byKey(files: NamedFile[]): Map<string, NamedFile[]> {
 }
 
 /** By like names; where those differ throughout, in their order. */
-function byNames(pictures: NamedFile[], warnings: string[]): Pairs {
+function byNames(pictures: NamedFile[], warnings: ReaderWarning[]): Pairs {
   const isDepth = (file: NamedFile) =>
     DEPTH.test(base(file.name)) || (DEPTH.test(file.name) && !COLOUR.test(base(file.name)));
   const masks = pictures.filter((file) => MASK.test(file.name));
@@ -161,7 +168,10 @@ function byNames(pictures: NamedFile[], warnings: string[]): Pairs {
         ? theirs
         : theirs.filter((file) => commonPath(file.name) === commonPath(depth.name));
       if (colour && others.length === 0) return [pair(name, colour, depth)];
-      if (theirs.length > 0) warnings.push(`${depth.name}: several files have names like it (left out).`);
+      if (theirs.length > 0)
+        warnings.push(
+          ofFile(depth.name, warning("names-ambiguous", "several files have names like this one; it was left out.")),
+        );
       return [];
     });
   });
@@ -171,7 +181,11 @@ function byNames(pictures: NamedFile[], warnings: string[]): Pairs {
     [...files].sort((a, b) => a.name.localeCompare(b.name, "en", { numeric: true }));
   if (depths.length > 1)
     warnings.push(
-      `No name of a depth map is like one of a colour image: the ${depths.length} of each were paired in the order of their names.`,
+      warning(
+        "pairs-by-order",
+        `No depth map has a name like a colour image's; the ${depths.length} of each were paired in the order of their names.`,
+        { pairs: depths.length },
+      ),
     );
   const ordered = inOrder(colours);
   return {
@@ -193,7 +207,7 @@ function spread<T>(all: T[], most: number): T[] {
 
 class FolderReader {
   readonly readings: Reading[] = [];
-  readonly warnings: string[] = [];
+  readonly warnings: ReaderWarning[] = [];
   readonly #signal: AbortSignal | undefined;
 
   constructor(signal: AbortSignal | undefined) {
@@ -212,11 +226,12 @@ class FolderReader {
     try {
       const found = await readRigFile(file, options);
       this.readings.push({ name: found.name, says: found.says, warnings: found.warnings });
-      for (const warning of found.warnings) this.warnings.push(`${file.name}: ${warning}`);
+      for (const each of found.warnings) this.warnings.push(ofFile(file.name, each));
       return found;
     } catch (error) {
       if (!(error instanceof BimodalError)) throw error;
-      this.warnings.push(`${error.message.replace(/^file: /, "")} (left out)`);
+      const message = `${error.message} (left out)`;
+      this.warnings.push({ ...warning("file-left-out", message, { ...error.details }), file: file.name });
       return undefined;
     }
   }
@@ -235,29 +250,24 @@ class FolderReader {
     if (image.width === width && image.height === height) image.mask = data;
     else if (depth.width === width && depth.height === height) depth.mask = data;
     else
-      this.warnings.push(`${name}: the mask is ${width}x${height}, which is the size of neither picture (left out).`);
+      this.warnings.push(
+        ofFile(
+          name,
+          warning("mask-size", `the mask is ${width}x${height}, the size of neither picture; it was left out.`),
+        ),
+      );
   }
-}
-
-/** What is said of many files alike, numbers aside, is said once. */
-function grouped(warnings: string[]): string[] {
-  const alike = new Map<string, string[]>();
-  for (const warning of warnings) {
-    const about = warning.slice(warning.indexOf(": ") + 1).replace(/\d+(\.\d+)?/g, "#");
-    alike.set(about, [...(alike.get(about) ?? []), warning]);
-  }
-  return [...alike.values()].map(([first = "", ...others]) => {
-    const more = new Set(others).size;
-    return more === 0 || others.every((other) => other === first) ? first : `${first} (and ${more} more alike)`;
-  });
 }
 
 /** Guessed for each depth map by itself, units have to agree. */
-function checkUnits(frames: CheckFrame[], warnings: string[]): void {
+function checkUnits(frames: CheckFrame[], warnings: ReaderWarning[]): void {
   const units = new Set(frames.map(({ depth }) => depth.unit));
   if (units.size > 1)
     warnings.push(
-      `Depth maps of this folder were read with different units (${[...units].map((unit) => `${1000 * (unit ?? 1)} mm`).join(", ")}): say the unit.`,
+      warning(
+        "units-differ",
+        `The depth maps of this folder were read with different units (${[...units].map((unit) => `${1000 * (unit ?? 1)} mm`).join(", ")}): give the unit.`,
+      ),
     );
 }
 
@@ -273,7 +283,11 @@ async function byContent(pictures: NamedFile[], reader: FolderReader): Promise<P
   if (colours.length === 0 || colours.length !== depths.length) return { pairs: [], says: "" };
   if (depths.length > 1)
     reader.warnings.push(
-      "No name says which files are depth maps: they were told by what they hold, and paired in their order.",
+      warning(
+        "pairs-by-content",
+        "No name says which files are depth maps; they were recognised by their content and paired in order.",
+        { pairs: depths.length },
+      ),
     );
   const mask = masks.length === 1 ? masks[0] : undefined;
   return {
@@ -309,7 +323,12 @@ export async function readRigFolder(files: NamedFile[], options: FolderOptions =
   if (found.pairs.length === 0) found = await byContent(pictures, reader);
   const chosen = spread(found.pairs, most);
   if (chosen.length < found.pairs.length)
-    reader.warnings.push(`Of ${found.pairs.length} pairs ${chosen.length} are read, evenly spread.`);
+    reader.warnings.push(
+      warning("pairs-sampled", `${chosen.length} of ${found.pairs.length} pairs are read, evenly spread.`, {
+        read: chosen.length,
+        pairs: found.pairs.length,
+      }),
+    );
   const frames: CheckFrame[] = [];
   for (const pair of chosen) {
     const frame = await reader.frame(pair, unit ?? found.unit);
@@ -332,7 +351,7 @@ export async function readRigFolder(files: NamedFile[], options: FolderOptions =
   folder.warnings = grouped(folder.warnings);
   if (frames.length + folder.cameras.length + folder.poses.length === 0) {
     throw badFile(
-      `no pair of a colour image and a depth map was found among ${files.length} files${folder.warnings.length > 0 ? `: ${folder.warnings[0]}` : ""}`,
+      `no pair of a colour image and a depth map was found among ${files.length} files${folder.warnings.length > 0 ? `: ${folder.warnings[0]?.message}` : ""}`,
     );
   }
   return folder;

@@ -21,6 +21,7 @@ import { readText, textOf } from "./formats/text.js";
 import { readTiff } from "./formats/tiff.js";
 import type { NamedFile, ReadOptions, RigReading } from "./types.js";
 import { inWords, strange } from "./words.js";
+import { distinct } from "./warnings.js";
 
 type Unnamed<T> = T extends unknown ? Omit<T, "name"> : never;
 type Content = Unnamed<RigReading>;
@@ -83,7 +84,7 @@ async function ofText(text: string, { as }: ReadOptions): Promise<Content> {
   if (as === "colour" || as === "depth" || as === "mask")
     throw badFile(`it is a text where a ${as === "depth" ? "depth map" : `${as} image`} was asked for`);
   const { cameras, poses, warnings, format } = await readText(text);
-  const reading = { says: `${format}: ${inWords(cameras, poses)}`, warnings: [...new Set(warnings)] };
+  const reading = { says: `${format}: ${inWords(cameras, poses)}`, warnings: distinct(warnings) };
   if (as === "cameras" && cameras.length === 0) throw badFile(`it holds ${inWords(cameras, poses)}, but no camera`);
   if (as === "poses" && poses.length === 0) throw badFile(`it holds ${inWords(cameras, poses)}, but no motion`);
   return cameras.length > 0 && as !== "poses"
@@ -94,18 +95,22 @@ async function ofText(text: string, { as }: ReadOptions): Promise<Content> {
 async function content({ name, bytes }: NamedFile, options: ReadOptions): Promise<Content> {
   if (bytes.length === 0) throw badFile("it is empty");
   if (bytes.length > MOST_BYTES)
-    throw badFile(`it is ${(bytes.length / 2 ** 20).toFixed(0)} MB large; up to ${MOST_BYTES / 2 ** 20} MB are read`);
+    throw badFile(
+      `it is ${(bytes.length / 2 ** 20).toFixed(0)} MB large; up to ${MOST_BYTES / 2 ** 20} MB are read`,
+      undefined,
+      { problem: "too-large" },
+    );
   const kind = kindOf(bytes);
   if (kind === "ply") return ofCloud(readPly(bytes), options);
   if (kind === "pcd") return ofCloud(readPcd(bytes), options);
   if (kind !== undefined) return ofPicture(name, await PICTURES[kind](bytes, options), options);
   const text = textOf(bytes);
-  if (text === undefined) throw badFile(strange(bytes));
+  if (text === undefined) throw strange(bytes);
   return ofText(text, options);
 }
 
 function reasonOf(error: unknown): string {
-  if (error instanceof BimodalError) return error.message.replace(/^file: /, "");
+  if (error instanceof BimodalError) return error.message;
   // Readers look at bytes through views that refuse what lies beyond their end.
   if (error instanceof RangeError) return "it is cut off or damaged: it points beyond its own end";
   return `it is damaged or cut off (${error instanceof Error ? error.message : String(error)})`;
@@ -114,7 +119,9 @@ function reasonOf(error: unknown): string {
 /** The error with the file's name in it. */
 function named(name: string, error: unknown): BimodalError {
   if (error instanceof BimodalError && error.code !== "file") return error;
-  return badFile(`${name}: ${reasonOf(error)}`, error instanceof BimodalError ? error.cause : error);
+  const reason = reasonOf(error);
+  const [cause, details] = error instanceof BimodalError ? [error.cause, error.details] : [error, {}];
+  return badFile(`${name}: ${reason}`, cause, { ...details, file: name, reason });
 }
 
 export function checkNamed(file: NamedFile, field: string): void {

@@ -1,7 +1,8 @@
 /** What is read from the files of a rig. */
 import type { CheckFrame, Mask, Pose, RigCamera } from "../types.js";
+import type { ReaderWarning } from "./warnings.js";
 
-export type { CheckFrame, Mask, Pose, RigCamera };
+export type { CheckFrame, Mask, Pose, ReaderWarning, RigCamera };
 
 /** A file as it was dropped or read; the name may hold a path, "depth/0001.png". */
 export interface NamedFile {
@@ -41,11 +42,15 @@ export interface Reading {
   name: string;
   /** What was read, in plain words: "640x480, 16-bit, read as millimetres, 92.8 % valid, 1.39 to 6.69 m". */
   says: string;
-  /** What was guessed or looks wrong, a sentence each. */
-  warnings: string[];
+  /** What was guessed or looks wrong. */
+  warnings: ReaderWarning[];
+  /** Whether a picture is stored without colours. */
+  isGrey?: boolean;
+  /** Of a depth map or cloud: how its numbers are stored ("16-bit"), the share of valid pixels, the nearest and the farthest depth in metres. */
+  measured?: { stored: string; valid: number; range: [number, number] };
 }
 
-/** What a file may hold. `guessed` names what of a depth map is not in its file and was told from its values. */
+/** What a file may hold. `guessed` names what of a depth map is not in its file and was inferred from its values. */
 export type RigReading = Reading &
   (
     | {
@@ -104,6 +109,6 @@ export interface RigFolder {
   poses: NamedPose[];
   /** What was read of each file, in the folder's order. */
   readings: Reading[];
-  /** What was guessed, looks wrong or was left out, a sentence each. */
-  warnings: string[];
+  /** What was guessed, looks wrong or was left out. */
+  warnings: ReaderWarning[];
 }

@@ -16,7 +16,9 @@ export async function folderOf({ readRigFile, readRigFolder }, folder, calibrati
     bytes: new Uint8Array(readFileSync(calibration)),
   });
   if (frames.length === 0)
-    throw new Failure(`${folder} holds no pair of a colour image and a depth map. ${warnings.join(" ")}`);
+    throw new Failure(
+      `${folder} holds no pair of a colour image and a depth map. ${warnings.map(({ message }) => message).join(" ")}`,
+    );
   if (poses.length === 0) throw new Failure(`${calibration} holds no extrinsics.`);
   const blind = frames.find(({ image, depth }) => !image.camera || !(depth.camera || depth.points));
   if (blind) throw new Failure(`${blind.name}: both cameras' intrinsics are needed.`);

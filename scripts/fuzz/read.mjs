@@ -57,7 +57,8 @@ function checkWords(list) {
 }
 
 function checkReading({ says, warnings, kind, image, depth, mask, cameras = [], poses = [] }) {
-  checkWords([says, ...warnings]);
+  checkWords([says, ...warnings.map(({ message }) => message)]);
+  checkWords(warnings.map(({ code }) => code));
   if (kind === "colour") checkImage(image);
   else if (kind === "depth") checkDepth(depth);
   else if (kind === "mask") checkRaster(mask, 1, "a mask");
@@ -85,7 +86,7 @@ const WAYS = [
       frames.forEach(({ image, depth }) => (checkImage(image), checkDepth(depth)));
       cameras.forEach(checkCamera);
       poses.forEach(checkPose);
-      checkWords([...warnings, ...readings.map(({ says }) => says)]);
+      checkWords([...warnings.map(({ message }) => message), ...readings.map(({ says }) => says)]);
     },
   },
 ];
@@ -108,7 +109,7 @@ export async function readEveryWay(bytes) {
         await run(bytes);
         read++;
       } catch (error) {
-        if (error instanceof BimodalError && error.code === "file" && /^file: ./.test(error.message))
+        if (error instanceof BimodalError && error.code === "file" && error.details?.reason)
           checkWords([error.message]);
         else throw new Error(`${name}: ${error?.stack ?? error}`, { cause: error });
       }

@@ -53,7 +53,7 @@ describe("pages", () => {
     onPage(`${address}examples/page.html`, async (page) => {
       await page.setInputFiles("#colour", join(data, "bad.png"));
       await page.setInputFiles("#depth", join(data, "depth.npy"));
-      await says(page, "#out", /^file: /);
+      await says(page, "#out", /PNG/);
       await page.setInputFiles("#colour", join(data, "colour.png"));
       await says(page, "#out", /^converged .* beta (19|20)\.\d+/);
     }));

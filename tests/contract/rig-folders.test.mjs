@@ -20,9 +20,9 @@ const folder = (files, options) =>
   );
 /** The first value of each frame's colour image and depth map, which tell which files they are of. */
 const marks = ({ frames }) => frames.map(({ image, depth }) => [image.data[0], depth.data[0]]);
-const has = (warnings, pattern) =>
+const has = (warnings, code, pattern = /./) =>
   assert.ok(
-    warnings.some((warning) => pattern.test(warning)),
+    warnings.some((warning) => warning.code === code && pattern.test(warning.message)),
     JSON.stringify(warnings),
   );
 
@@ -67,8 +67,8 @@ describe("TUM RGB-D", () => {
       ],
     );
     assert.equal(found.poses.length, 0, "where the camera stood relates no two cameras");
-    has(found.warnings, /1 of the 3 pairs that rgb.txt and depth.txt list are not in the folder/);
-    assert.ok(!found.warnings.some((warning) => /guessed/.test(warning)));
+    has(found.warnings, "pairs-missing", /1 of the 3 pairs that rgb.txt and depth.txt list are not in the folder/);
+    assert.ok(!found.warnings.some(({ code }) => code === "unit-guessed"));
   });
 
   test("lists that fit nothing", async () => {
@@ -162,7 +162,7 @@ describe("pairs by like names", () => {
       [1, 1000],
       [2, 2000],
     ]);
-    has(found.warnings, /paired in the order/);
+    has(found.warnings, "pairs-by-order");
   });
 
   test("names of any script, and names that differ in case and signs alone", async () => {
@@ -175,7 +175,7 @@ describe("pairs by like names", () => {
     );
     const found = await folder(files);
     assert.deepEqual(marks(found).sort(), names.map((_, at) => [at, 1000 + at]).sort());
-    assert.ok(!found.warnings.some((warning) => /names like it/.test(warning)), JSON.stringify(found.warnings));
+    assert.ok(!found.warnings.some(({ code }) => code === "names-ambiguous"), JSON.stringify(found.warnings));
   });
 
   test("frames of several scenes, whose names are the same", async () => {
@@ -200,7 +200,7 @@ describe("pairs by like names", () => {
       "b_depth.png": depth(3000),
     });
     assert.deepEqual(marks(found), [[3, 3000]]);
-    has(found.warnings, /^a.depth.png: several files have names like it \(left out\)/);
+    has(found.warnings, "names-ambiguous", /^a.depth.png: several files have names like this one/);
   });
 
   test("a large folder is read in part, evenly", async () => {
@@ -217,7 +217,7 @@ describe("pairs by like names", () => {
     ]);
     const found = await folder(files);
     assert.equal(found.frames.length, 20);
-    has(found.warnings, /Of 41 pairs 20 are read/);
+    has(found.warnings, "pairs-sampled", /20 of 41 pairs are read/);
     await assert.rejects(folder(files, { frames: 0 }), { code: "option" });
   });
 
@@ -234,9 +234,10 @@ describe("pairs by like names", () => {
       [2, 2000],
       [3, 3000],
     ]);
-    has(found.warnings, /^depth\/1.png: this PNG is cut off.*left out/);
-    assert.equal(found.warnings.filter((warning) => /guessed/.test(warning)).length, 1);
-    has(found.warnings, /guessed.*and 1 more alike/);
+    has(found.warnings, "file-left-out", /^depth\/1.png: this PNG is cut off.*left out/);
+    assert.equal(found.warnings.filter(({ code }) => code === "unit-guessed").length, 1);
+    has(found.warnings, "unit-guessed", /and 1 more like it/);
+    assert.equal(found.warnings.find(({ code }) => code === "unit-guessed").files, 2);
   });
 
   test("nothing of use is an error", async () => {
@@ -252,7 +253,7 @@ describe("cameras are given to the pictures they took", () => {
     return [
       frames[0].image.camera?.fx,
       frames[0].depth.camera?.fx,
-      warnings.filter((warning) => !/unit/.test(warning)),
+      warnings.filter(({ code }) => code !== "unit-guessed" && code !== "units-differ"),
     ];
   };
 
@@ -278,22 +279,22 @@ describe("cameras are given to the pictures they took", () => {
   test("one for both, one without the other, neither named, sizes that do not fit: each with a word", async () => {
     const shared = await focals({ ...pair, "K.txt": K(500) });
     assert.deepEqual(shared.slice(0, 2), [500, 500]);
-    has(shared[2], /taken for both/);
+    has(shared[2], "camera-shared");
     const colourOnly = await focals({ ...pair, "rgb_K.txt": K(500) });
     assert.deepEqual(colourOnly.slice(0, 2), [500, undefined]);
-    has(colourOnly[2], /the depth camera's are not/);
+    has(colourOnly[2], "depth-camera-missing");
     const depthOnly = await focals({ ...pair, "depth_K.txt": K(500) });
     assert.deepEqual(depthOnly.slice(0, 2), [undefined, 500]);
-    has(depthOnly[2], /the colour camera's are not/);
+    has(depthOnly[2], "colour-camera-missing");
     const unnamed = await focals({ ...pair, "1.txt": K(500), "2.txt": K(400) });
     assert.deepEqual(unnamed.slice(0, 2), [500, 400]);
-    has(unnamed[2], /No name says which camera/);
+    has(unnamed[2], "cameras-by-order");
     const wrong = await focals({
       ...pair,
       "rgb.json": text('{"fx": 500, "fy": 500, "cx": 1, "cy": 1, "width": 64, "height": 48}'),
       "depth_K.txt": K(400),
     });
-    has(wrong[2], /are for 64x48 pixels, and these have 2x1/);
+    has(wrong[2], "camera-size", /are for 64x48 pixels, and these have 2x1/);
   });
 
   test("poses between cameras are kept, poses of frames are not", async () => {

@@ -193,7 +193,7 @@ const FILES = [
   ["empty.png", new Uint8Array(0), /it is empty/],
   ["spaces.txt", text(" \n\t "), /nothing in it but spaces/],
   ["large.bin", new Uint8Array(65 * MEGABYTE), /65 MB large; up to 64 MB/],
-  ["noise.bin", new Uint8Array([0, 1, 2, 3, 255]), /of no kind that is read here/],
+  ["noise.bin", new Uint8Array([0, 1, 2, 3, 255]), /format is not known here/],
   ["a.gif", text("GIF89a\x00\x01"), /a GIF; save it as PNG/],
   ["a.bmp", text("BM\x00\x01"), /a BMP; save it as PNG/],
   ["a.npz", text("PK\x03\x04...."), /ZIP archive .* unpack/],

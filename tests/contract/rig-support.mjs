@@ -46,8 +46,9 @@ export async function refusedFile(reading, name, reason) {
   await assert.rejects(reading, (error) => {
     assert.ok(error instanceof BimodalError, `not a BimodalError: ${error.stack}`);
     assert.deepEqual([error.code, error.field], ["file", "file"], error.message);
-    assert.ok(error.message.startsWith(`file: ${name}: `), error.message);
+    assert.ok(error.message.startsWith(`${name}: `), error.message);
     assert.match(error.message, reason);
+    assert.deepEqual([error.details.file, `${name}: ${error.details.reason}`], [name, error.message]);
     return true;
   });
 }

@@ -6,12 +6,13 @@ import type { Fault } from "./protocol";
 /** What went wrong in a worker, whose module may not even have been `loaded`. */
 export function faultOf(error: unknown, loaded: boolean): Fault {
   if (error instanceof BimodalError) {
-    const { code, message, field } = error;
+    const { code, message, field, details } = error;
     return {
       code,
       message,
       fatal: code === "panic" || code === "poisoned" || !loaded,
       ...(field === undefined ? {} : { field }),
+      ...(details === undefined ? {} : { details }),
     };
   }
   const reason = error instanceof Error ? error.message : String(error);

@@ -83,7 +83,7 @@ async function read<T>(file: File, field: string, decode: (bytes: Uint8Array) =>
   try {
     return await decode(new Uint8Array(await file.arrayBuffer()));
   } catch (error) {
-    const reason = error instanceof Error ? error.message.replace(/^file: /, "") : String(error);
+    const reason = error instanceof Error ? error.message : String(error);
     const code = error instanceof BimodalError ? error.code : "file";
     throw new BimodalError(code, `${file.name}: ${reason}`, field, { cause: error });
   }

@@ -1,5 +1,6 @@
 /** What the page and its worker say to each other. Both sides import this file and nothing else of one another. */
 
+import type { ErrorDetails } from "../../pkg/index.js";
 import type { ColorImage, DepthMap, Mask, Options, Pinhole, Pose, SampleRequest, StepReport } from "../../pkg/index.js";
 
 /** A camera as it was typed in: how many numbers there are the library judges. */
@@ -233,6 +234,7 @@ export interface Fault {
   code: string;
   message: string;
   field?: string;
+  details?: ErrorDetails;
   /** After a panic the instance is suspect, and without its module it is none: the worker has to be replaced. */
   fatal: boolean;
 }

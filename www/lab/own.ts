@@ -3,7 +3,7 @@
  * and put where it belongs. Loaded with the first file.
  */
 
-import type { ColorImage, DepthMap, RigCamera } from "../../pkg/index.js";
+import type { ColorImage, DepthMap, ErrorDetails, RigCamera } from "../../pkg/index.js";
 import { EngineError } from "../engine/engine";
 import type { Read } from "../engine/protocol";
 import type { Summary } from "../rig/protocol";
@@ -19,11 +19,16 @@ export interface Look {
   /** Why it could not be read here; the browser may still read it. */
   fault?: string;
   warnings: string[];
+  /** Whether a picture is stored without colours. */
+  isGrey?: boolean;
   width?: number;
   height?: number;
   cameras: Summary["cameras"];
   picture?: ImageBitmap;
 }
+
+/** Warnings that the Lab's own fields settle: it reads depths in stored numbers, and an object before nothing has holes around it. */
+const SETTLED: ReadonlySet<string> = new Set(["unit-guessed", "units-differ", "depth-range", "many-holes"]);
 
 /** Pixels of a preview's width. */
 const PREVIEW = 192;
@@ -48,21 +53,19 @@ async function look(file: File): Promise<Look> {
     const picture = isPicture ? await session.call("picture", { file: number, width: PREVIEW }) : undefined;
     void session.call("forget", { file: number });
     const { kind, width, height, cameras } = read;
-    // An object before nothing has holes around it.
-    const warnings = kind === "depth" ? read.warnings.filter((words) => !/unit|are holes/.test(words)) : read.warnings;
+    const warnings = read.warnings.filter(({ code }) => kind !== "depth" || !SETTLED.has(code));
     return {
       kind,
       says: inWords(read),
-      warnings,
+      warnings: warnings.map(({ message }) => message),
+      isGrey: read.isGrey ?? false,
       cameras,
       ...(width && height ? { width, height } : {}),
       ...(picture ? { picture } : {}),
     };
   } catch (error) {
-    return unread(
-      file,
-      error instanceof Error ? error.message.replace(/^file: /, "").replace(`${file.name}: `, "") : String(error),
-    );
+    const details = error instanceof RigError ? error.fault.details : undefined;
+    return unread(file, details?.reason ?? (error instanceof Error ? error.message : String(error)), details);
   }
 }
 
@@ -91,7 +94,7 @@ export async function pixelsOf(files: Files): Promise<Read> {
       } else if (reading.kind === "mask" && (slot === "colourMask" || slot === "depthMask")) found[slot] = reading.mask;
     } catch (error) {
       if (!(error instanceof RigError)) throw error;
-      throw new EngineError({ ...error.fault, message: error.message.replace(/^file: /, ""), field, fatal: false });
+      throw new EngineError({ ...error.fault, field, fatal: false });
     } finally {
       void session.call("forget", { file: number });
     }
@@ -103,24 +106,25 @@ function withoutCamera<T>({ camera: _, ...rest }: Omit<T, "camera"> & { camera?:
   return rest as T;
 }
 
-const inWords = ({ kind, says }: Summary): string =>
-  kind === "depth"
-    ? says
-        .replace(/read as metres, /, "")
-        .replace(
-          /(\S+) to (\S+) m\b/,
-          (_, from: string, to: string) => `stored numbers ${Number(from)} to ${Number(to)}`,
-        )
+const short = (value: number): string => String(Number(value.toPrecision(3)));
+
+const inWords = ({ kind, says, measured, width, height }: Summary): string =>
+  kind === "depth" && measured
+    ? `${width}x${height}, ${measured.stored}, ${(100 * measured.valid).toFixed(1)} % valid, stored numbers ${measured.range.map(short).join(" to ")}`
     : says;
 
 /** What these readers do not take the Lab may still: larger pictures, which it scales down, and whatever else the browser decodes. */
-async function unread(file: File, fault: string): Promise<Look> {
+async function unread(
+  file: File,
+  fault: string,
+  { problem, width: wide, height: high }: ErrorDetails = {},
+): Promise<Look> {
   const none = { warnings: [], cameras: [] };
-  if (/pixels large|MB large/.test(fault)) {
-    const extent = /\d+x\d+(?= pixels large)/.exec(fault)?.[0];
+  if (problem === "too-large") {
+    const extent = wide && high ? `${wide}x${high}` : "";
     return { ...none, kind: await sniffed(file), says: [extent, "too large for a preview"].filter(Boolean).join(", ") };
   }
-  const whole = /save it as PNG/.test(fault) ? await createImageBitmap(file).catch(() => undefined) : undefined;
+  const whole = problem === "picture" ? await createImageBitmap(file).catch(() => undefined) : undefined;
   if (!whole) return { ...none, kind: undefined, says: fault, fault };
   const { width, height } = whole;
   const picture = await createImageBitmap(whole, { resizeWidth: Math.min(PREVIEW, width), resizeQuality: "medium" });
@@ -145,7 +149,7 @@ interface Seen {
 
 /** Of two pictures that claim the same place, the one that rather belongs into the other: by its name, or the grey one. */
 function odd(pair: readonly [Seen, Seen], isOther: (name: string) => boolean): Seen {
-  return pair.find(({ file }) => isOther(file.name)) ?? pair.find(({ look }) => /grey/.test(look.says)) ?? pair[1];
+  return pair.find(({ file }) => isOther(file.name)) ?? pair.find(({ look }) => look.isGrey) ?? pair[1];
 }
 
 /** One of each kind; `there` are the files that the slots already hold. */
@@ -291,9 +295,9 @@ export async function offerFor(files: Files): Promise<Offer | undefined> {
     look("depthMask"),
   ]);
   const seems = (there: Look | undefined, kind: Look["kind"]) => there?.kind === kind;
-  const isCoarse = seems(depth, "colour") && !/\bRGB/.test(depth?.says ?? "");
+  const isCoarse = seems(depth, "colour") && depth?.isGrey === true;
   // Of a grey picture and a coloured one the coloured one is no depth map, while the grey one may be.
-  const isGrey = seems(colour, "colour") && /\bgrey/.test(colour?.says ?? "");
+  const isGrey = seems(colour, "colour") && colour?.isGrey === true;
   if (
     files.colour &&
     files.depth &&
@@ -310,8 +314,8 @@ export async function offerFor(files: Files): Promise<Offer | undefined> {
   const wrong: [Slot, Look | undefined, boolean][] = [
     ["colour", colour, seems(colour, "depth") || seems(colour, "mask")],
     ["depth", depth, (seems(depth, "colour") && !isCoarse) || seems(depth, "mask")],
-    ["colourMask", colourMask, seems(colourMask, "depth") || /\bRGB/.test(colourMask?.says ?? "")],
-    ["depthMask", depthMask, seems(depthMask, "depth") || /\bRGB/.test(depthMask?.says ?? "")],
+    ["colourMask", colourMask, seems(colourMask, "depth") || colourMask?.isGrey === false],
+    ["depthMask", depthMask, seems(depthMask, "depth") || depthMask?.isGrey === false],
   ];
   for (const [slot, there, isWrong] of wrong) {
     const file = files[slot];

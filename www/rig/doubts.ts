@@ -1,6 +1,6 @@
-/** What is doubtful about the input of a check: each keeps its verdict from being better than the files are. */
+/** What is doubtful about the input of a check: each doubt caps the verdict. */
 
-import type { RigState, Side } from "./state";
+import type { Doubt, RigState, Side } from "./state";
 
 /** A principal point farther from the middle than this share of the picture's side is likelier another size's. */
 const OFF_CENTRE = 0.2;
@@ -19,23 +19,26 @@ export function cameraDoubt(rig: RigState, side: Side): string {
     : "";
 }
 
-/** What the readers of files and folders warned of, once for files that are alike, and what speaks against the cameras' numbers. A guessed unit is told apart: it can be confirmed. */
-export function doubtsOf(rig: RigState): string[] {
+/**
+ * The warnings of the readers, once for all files that have the same, and those about the cameras' numbers. A guessed unit is not among
+ * them: the visitor can confirm it.
+ */
+export function doubtsOf(rig: RigState): Doubt[] {
   const used = new Set(rig.complete.flatMap(({ colour, depth }) => [colour, depth]));
   const alike = new Map<string, { first: string; count: number }>();
   for (const { id, name, summary } of rig.items) {
     if (!used.has(id)) continue;
-    for (const words of summary?.warnings ?? []) {
-      if (isOfUnit(words)) continue;
-      const about = words.replace(/\d+(\.\d+)?/g, "#");
-      const known = alike.get(about);
+    for (const { code, message } of summary?.warnings ?? []) {
+      if (code === "unit-guessed") continue;
+      const known = alike.get(code);
       if (known) known.count++;
-      else alike.set(about, { first: `${name}: ${words}`, count: 1 });
+      else alike.set(code, { first: `${name}: ${message}`, count: 1 });
     }
   }
-  const ofFiles = [...alike.values()].map(({ first, count }) =>
-    count > 1 ? `${first} (And ${count - 1} more alike.)` : first,
-  );
+  const ofFiles = [...alike].map(([code, { first, count }]) => ({
+    code,
+    message: count > 1 ? `${first} (And ${count - 1} more like it.)` : first,
+  }));
   const sizes = rig.complete.flatMap((frame) =>
     (["colour", "depth"] as const).flatMap((side) => {
       const [own, usual] = [rig.item(frame[side])?.summary, rig.sizeOf(side)];
@@ -43,24 +46,23 @@ export function doubtsOf(rig: RigState): string[] {
       return isUsual || !rig.cameraOf(side) || own.organised
         ? []
         : [
-            `${frame.name}: its ${side === "colour" ? "colour image" : "depth map"} is ${own.width}×${own.height} px, not ${usual.width}×${usual.height} px as the first frame's, and the camera's numbers are for one size.`,
+            ofSize(
+              `${frame.name}: its ${side === "colour" ? "colour image" : "depth map"} is ${own.width}×${own.height} px, not ${usual.width}×${usual.height} px as the first frame's, and the camera's numbers are for one size.`,
+            ),
           ];
     }),
   );
   const sides = rig.cameras.depth.source === "same" ? (["colour"] as const) : (["colour", "depth"] as const);
   const ofCameras = sides.flatMap((side) => {
     const words = cameraDoubt(rig, side);
-    return words ? [`The ${side} camera's numbers: ${words}`] : [];
+    return words ? [ofSize(`The ${side} camera's numbers: ${words}`)] : [];
   });
   return [
     ...ofFiles,
-    ...rig.notes.filter((words) => !isOfUnit(words) && !MERE_NOTE.test(words)),
+    ...rig.notes.filter((note) => note.code !== "unit-guessed" && note.isDoubt),
     ...sizes,
     ...ofCameras,
   ];
 }
 
-/** Of a folder: what was not read says nothing against what was. */
-const MERE_NOTE = /\(left out\)|evenly spread/;
-
-const isOfUnit = (words: string): boolean => /unit .*guess|guess.* unit/i.test(words);
+const ofSize = (message: string): Doubt => ({ code: "camera-size", message });

@@ -69,11 +69,14 @@ export class FileList {
         says.textContent = state === "reading" ? "reading" : (summary?.says ?? "");
         error.textContent = item.error ?? "";
         error.hidden = state !== "failed";
-        const said = (summary?.warnings ?? []).some((words) => /guess/i.test(words));
-        const guessed = (said ? [] : (summary?.guessed ?? [])).map(
+        const warnings = summary?.warnings ?? [];
+        const isSaid = warnings.some(({ code }) => code === "unit-guessed");
+        const guessed = (isSaid ? [] : (summary?.guessed ?? [])).map(
           (what) => `The ${what} was guessed: correct it here if it is wrong, or choose it to confirm it.`,
         );
-        notes.replaceChildren(...[...(summary?.warnings ?? []), ...guessed].map((words) => make("li", {}, words)));
+        notes.replaceChildren(
+          ...[...warnings.map(({ message }) => message), ...guessed].map((words) => make("li", {}, words)),
+        );
         kindBox.hidden = !item.blob;
         fill(
           kind,

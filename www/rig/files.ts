@@ -3,7 +3,15 @@
 import * as rig from "../../pkg/rig.js";
 import type * as Rig from "../../pkg/rig/index.js";
 
-export type { NamedCamera, NamedFile, NamedPose, ReadOptions, Reading, RigReading } from "../../pkg/rig/index.js";
+export type {
+  NamedCamera,
+  NamedFile,
+  NamedPose,
+  ReadOptions,
+  ReaderWarning,
+  Reading,
+  RigReading,
+} from "../../pkg/rig/index.js";
 
 export const readRigFile = rig.readRigFile as typeof Rig.readRigFile;
 export const readRigFolder = rig.readRigFolder as typeof Rig.readRigFolder;

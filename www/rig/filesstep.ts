@@ -103,7 +103,7 @@ export class FilesStep {
     const { items, notes, missing } = this.#rig;
     this.#filesCard.hidden = items.length === 0;
     this.#framesCard.hidden = this.#rig.frames.length === 0;
-    this.#notes.replaceChildren(...notes.map((words) => make("li", {}, words)));
+    this.#notes.replaceChildren(...notes.map(({ message }) => make("li", {}, message)));
     const guessed = this.#rig.unitsGuessed;
     const names = [...new Set(guessed.map(({ summary }) => unitName(summary?.unit ?? 1)))];
     this.#guess.hidden = guessed.length === 0;

@@ -2,7 +2,7 @@
 
 import type { CheckCue, CheckReport, Pose, RigCamera, Warning } from "../../pkg/index.js";
 import type { Fault } from "../engine/protocol";
-import type { NamedPose, Reading, RigReading } from "./files";
+import type { NamedPose, ReaderWarning, Reading, RigReading } from "./files";
 
 /** What the check found, with what the page knows to be guessed among its warnings. */
 export interface WholeReport extends Omit<CheckReport, "warnings"> {
@@ -49,7 +49,7 @@ export interface Assembly {
   frames: { name: string; colour: number; depth: number; mask?: number }[];
   cameras: NamedCamera[];
   poses: NamedPose[];
-  warnings: string[];
+  warnings: ReaderWarning[];
 }
 
 /** Columns, rows and depths in metres of the points, columns and rows of the depth edges, in the colour image. */

@@ -3,6 +3,7 @@
 import type { CheckCue, RigCamera } from "../../pkg/index.js";
 import { pairUp } from "./pairing";
 import { doubtsOf } from "./doubts";
+import type { ReaderWarning } from "./files";
 import { identity, inverse } from "./poses";
 import type { Assembly, FramePlan, Kind, NamedCamera, Summary } from "./protocol";
 import { Session } from "./session";
@@ -31,7 +32,8 @@ export class Rig implements RigState {
   readonly cameras: Record<Side, CameraChoice> = { colour: choice(), depth: choice() };
   candidates: Candidate[] = [];
   cues: CheckCue[] = [];
-  notes: string[] = [];
+  /** What the readers of folders warned of. */
+  notes: ReaderWarning[] = [];
   /** What is being read as a whole, in words. */
   busy = "";
   run: Run | undefined;
@@ -112,7 +114,7 @@ export class Rig implements RigState {
       if (item.blob) await this.reread(item);
       else item.summary = await this.session.call("unit", { file: item.id, unit });
     }
-    if (this.unitsGuessed.length === 0) this.notes = this.notes.filter((words) => !/unit .*guess/i.test(words));
+    if (this.unitsGuessed.length === 0) this.notes = this.notes.filter(({ code }) => code !== "unit-guessed");
     this.changed();
   }
 
@@ -389,9 +391,7 @@ export class Rig implements RigState {
 export const COLOUR = /colou?r|rgb|image|left|cam0/i;
 export const DEPTH = /depth|\bir\b|infra|tof|disp|cloud/i;
 
-/** Without the field at fault, which every message of a file begins with. */
-export const messageOf = (error: unknown): string =>
-  (error instanceof Error ? error.message : String(error)).replace(/^file: /, "");
+export const messageOf = (error: unknown): string => (error instanceof Error ? error.message : String(error));
 
 function fromTyped(
   { by, model, fx, fy, cx, cy, view, distortion }: TypedCamera,

@@ -1,6 +1,7 @@
 /** What the visitor has brought and chosen, and how the parts beside `rig.ts` see the whole of it. */
 
 import type { CheckReport, Pose, RigCamera } from "../../pkg/index.js";
+import type { ReaderWarning } from "./files";
 import type { FramePlan, Kind, NamedCamera, Summary } from "./protocol";
 import type { Session } from "./session";
 
@@ -61,6 +62,12 @@ export interface Candidate {
   file?: number;
 }
 
+/** A warning of a reader or of this page. */
+export interface Doubt {
+  code: string;
+  message: string;
+}
+
 export interface Run {
   report: CheckReport;
   plans: FramePlan[];
@@ -69,8 +76,8 @@ export interface Run {
   estimateOnly: boolean;
   /** What had been guessed when it ran, in words. */
   guessed: string[];
-  /** What else was doubtful about files and cameras. */
-  doubts: string[];
+  /** What else is doubtful about files and cameras. */
+  doubts: Doubt[];
 }
 
 /** A rig, as far as pairing, doubts and undoing look at it. */
@@ -79,7 +86,8 @@ export interface RigState {
   frames: Frame[];
   readonly cameras: Record<Side, CameraChoice>;
   candidates: Candidate[];
-  notes: string[];
+  /** What the readers of folders warned of. */
+  notes: ReaderWarning[];
   run: Run | undefined;
   /** How sharp the answer has been, run by run, with how many frames. */
   history: { frames: number; pixels: number; interval: [number, number] }[];

@@ -88,18 +88,22 @@ const FOR_TURN = [
 /** A share below this adds little, of the frames' mean share. */
 const LITTLE = 0.3;
 
+const SWAPPED = "Look at step 1 again: colour image and depth map seem to be swapped.";
+/** What a warning asks for, the most useful first. */
+const ADVICE: readonly [code: string, advice: string][] = [
+  ["fits-inverted", "Invert the calibration in step 2 and check again: it seems to lead the other way."],
+  ["eight-bits", "Record the depth map itself, with 16 bits: a picture of the depth is too coarse for a calibration."],
+  ["files-swapped", SWAPPED],
+  ["rough-depth", SWAPPED],
+  ["camera-size", "Use the cameras' numbers for the size that the files have."],
+];
+
 /** What to do next, the most useful first. */
 export function advise({ report, plans, estimateOnly, guessed, doubts, candidates }: Run): string[] {
   const list: string[] = [];
-  const said = [report.reason, ...doubts, ...report.warnings.map(({ message }) => message)].join(" ");
+  const codes = new Set([...doubts, ...report.warnings].map(({ code }) => code));
   const name = Object.keys(candidates)[0] ?? "";
-  if (/invert/i.test(said))
-    list.push("Invert the calibration in step 2 and check again: it seems to lead the other way.");
-  if (/\b8 bits/.test(said))
-    list.push("Record the depth map itself, with 16 bits: a picture of the depth tells no calibration.");
-  if (/swapped/i.test(said)) list.push("Look at step 1 again: colour image and depth map seem to be swapped.");
-  if (doubts.some((words) => /another size|these are for|for one size/.test(words)))
-    list.push("Use the cameras' numbers for the size that the files have.");
+  for (const [code, advice] of ADVICE) if (codes.has(code)) list.push(advice);
   const isOpen = report.verdict === "undecided" && Object.values(report.candidates)[0]?.verdict === "undecided";
   const confirm = guessed.length > 0 ? [`Say in step 1 what was guessed: ${guessed.join("; ")}.`] : [];
   if (!isOpen) list.push(...confirm);
@@ -142,8 +146,7 @@ export function card(run: Run): HTMLElement {
   const [next = ""] = advise(run);
   const all = [
     ...run.guessed.map((what) => `Guessed: ${what}.`),
-    ...run.doubts,
-    ...run.report.warnings.map(({ message }) => message),
+    ...[...run.doubts, ...run.report.warnings].map(({ message }) => message),
   ];
   return make(
     "div",

@@ -266,7 +266,11 @@ export class VerdictStep {
 /** The report with what the page knows to be guessed. */
 const whole = ({ report, guessed, doubts }: Run): WholeReport => ({
   ...report,
-  warnings: [...guessed.map((what) => `Guessed: ${what}.`), ...doubts, ...report.warnings],
+  warnings: [
+    ...guessed.map((what) => ({ code: "unit-guessed", message: `Guessed: ${what}.` })),
+    ...doubts,
+    ...report.warnings,
+  ],
 });
 
 /** Whether the verdict is of what there is now. */

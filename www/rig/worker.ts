@@ -21,8 +21,9 @@ function post(answer: Answer, transfer: Transferable[] = []): void {
 }
 
 function summaryOf(reading: RigReading): Summary {
-  const { says, warnings, kind } = reading;
-  const plain = { says, warnings, kind, guessed: [], cameras: [], poses: [] };
+  const { says, warnings, kind, isGrey, measured } = reading;
+  const figures = { ...(isGrey !== undefined && { isGrey }), ...(measured && { measured }) };
+  const plain = { says, warnings, kind, ...figures, guessed: [], cameras: [], poses: [] };
   switch (reading.kind) {
     case "colour":
       return {
@@ -65,7 +66,7 @@ function assemble(
   { cameras, poses, warnings }: Pick<Assembly, "cameras" | "poses" | "warnings">,
 ): Assembly {
   const items: Assembly["items"] = [];
-  const guessed: "unit"[] = warnings.some((words) => /unit .*guessed/i.test(words)) ? ["unit"] : [];
+  const guessed: "unit"[] = warnings.some(({ code }) => code === "unit-guessed") ? ["unit"] : [];
   const keep = (reading: RigReading): number => {
     const file = first + items.length;
     const summary = summaryOf(reading);

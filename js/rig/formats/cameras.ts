@@ -3,6 +3,7 @@ import { badFile } from "../../errors.js";
 import type { NamedCamera } from "../types.js";
 import { MOST_SIDE } from "./limits.js";
 import type { Numbers } from "./numbers.js";
+import { type ReaderWarning, warning } from "../warnings.js";
 
 /** What a file says of a camera, before it is checked. */
 export interface RawCamera {
@@ -50,7 +51,7 @@ function sizeOf({ width, height }: RawCamera): { width: number; height: number }
 }
 
 /** The camera, or why it is none. */
-export function cameraOf(raw: RawCamera, warnings: string[]): NamedCamera {
+export function cameraOf(raw: RawCamera, warnings: ReaderWarning[]): NamedCamera {
   const [fx = NaN, fy = fx] = raw.focal;
   const [cx = NaN, cy = NaN] = raw.centre;
   const of = raw.name === undefined ? "its camera" : `its camera "${raw.name}"`;
@@ -61,23 +62,53 @@ export function cameraOf(raw: RawCamera, warnings: string[]): NamedCamera {
   const label = raw.name === undefined ? "The camera" : `The camera "${raw.name}"`;
   if (size !== undefined && (cx < 0 || cy < 0 || cx > size.width || cy > size.height))
     warnings.push(
-      `${label} has its principal point outside of its image (${cx}, ${cy} of ${size.width}x${size.height}).`,
+      warning(
+        "principal-point",
+        `${label} has its principal point outside its image (${cx}, ${cy} of ${size.width}x${size.height}).`,
+        { cx, cy },
+      ),
     );
   if (size === undefined && (cx <= 0 || cy <= 0))
-    warnings.push(`${label} has the principal point ${cx}, ${cy}, outside of any image.`);
+    warnings.push(
+      warning("principal-point", `${label} has the principal point ${cx}, ${cy}, which is outside any image.`, {
+        cx,
+        cy,
+      }),
+    );
   if (fx < 2 || fy < 2)
-    warnings.push(`${label} has a focal length of ${fx}: it looks normalised by the image's size, pixels are needed.`);
+    warnings.push(
+      warning(
+        "focal-length-normalised",
+        `${label} has a focal length of ${fx}, which looks normalised by the image's size; pixels are needed.`,
+        { fx, fy },
+      ),
+    );
   if (Math.abs(fx / fy - 1) > 0.1)
-    warnings.push(`${label} has pixels that are not square (fx ${fx.toFixed(1)}, fy ${fy.toFixed(1)}).`);
+    warnings.push(
+      warning(
+        "pixels-not-square",
+        `${label} has pixels that are not square (fx ${fx.toFixed(1)}, fy ${fy.toFixed(1)}).`,
+        {
+          fx,
+          fy,
+        },
+      ),
+    );
   if (raw.skew !== undefined && Math.abs(raw.skew) > 1e-6 * fx)
-    warnings.push(`${label} has skewed axes (${raw.skew}), which is left out.`);
+    warnings.push(
+      warning("skew-ignored", `${label} has skewed axes (${raw.skew}); the skew is ignored.`, { skew: raw.skew }),
+    );
   const lens = lensOf(raw, label, warnings);
   return { ...(raw.name !== undefined && { name: raw.name }), camera: { fx, fy, cx, cy, ...lens }, ...size };
 }
 
 type Lens = { model?: "fisheye"; distortion?: Numbers };
 
-function lensOf({ model: written = "", distortion: values = [] }: RawCamera, label: string, warnings: string[]): Lens {
+function lensOf(
+  { model: written = "", distortion: values = [] }: RawCamera,
+  label: string,
+  warnings: ReaderWarning[],
+): Lens {
   if (!values.every((value) => Number.isFinite(value) && Math.abs(value) < 1e6))
     throw badFile("its distortion is not made of numbers");
   const model = written.trim().toLowerCase();
@@ -90,7 +121,11 @@ function lensOf({ model: written = "", distortion: values = [] }: RawCamera, lab
   if (!bent) return {};
   if (REALSENSE.test(model))
     warnings.push(
-      `${label} has RealSense's "${written.trim()}" lens, taken for Brown's as librealsense projects it: they differ by products of coefficients.`,
+      warning(
+        "lens-approximated",
+        `${label} has RealSense's "${written.trim()}" lens, which is read as Brown's, as librealsense projects it; the two differ by products of coefficients.`,
+        { model: written.trim() },
+      ),
     );
   else if (!BROWN.test(model))
     throw badFile(`its lens model "${written.slice(0, 40)}" is not known here; Brown's and Kannala-Brandt's are`);

@@ -3,6 +3,7 @@ import { badFile } from "../../errors.js";
 import { type RawCamera, cameraOf } from "./cameras.js";
 import { type Numbers, numberOf } from "./numbers.js";
 import type { Calibration } from "./tree.js";
+import type { ReaderWarning } from "../warnings.js";
 
 const LINE = /^\s*(\d+)\s+([A-Z][A-Z_]+)\s+(\d+)\s+(\d+)((?:\s+\S+)*)\s*$/;
 /** COLMAP's principal points count from the corner of the first pixel, ours from its centre. */
@@ -64,6 +65,6 @@ function readLine(line: string): RawCamera {
 }
 
 export function readColmap(text: string): Calibration {
-  const warnings: string[] = [];
+  const warnings: ReaderWarning[] = [];
   return { cameras: linesOf(text).map((line) => cameraOf(readLine(line), warnings)), poses: [], warnings };
 }

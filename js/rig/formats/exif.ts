@@ -1,5 +1,6 @@
 /** Which side of a picture is up, as EXIF says it. */
 import type { Picture } from "./picture.js";
+import { type ReaderWarning, warning } from "../warnings.js";
 
 const ORIENTATION = 0x0112;
 const MOST_TAGS = 500;
@@ -32,10 +33,11 @@ const TURNS = [
   "turned by 270 degrees",
 ];
 
-/** What is said of a picture that was turned; its camera's numbers are mostly those of the sensor. */
-export function turnedWords(orientation: number, why: string): { note: string; warning: string } {
+/** The note and the warning about a picture that was turned: most intrinsics are those of the sensor's frame. */
+export function turnedWords(orientation: number, why: string): { note: string; turned: ReaderWarning } {
   const note = `${TURNS[orientation]} as ${why}`;
-  return { note, warning: `The picture was ${note}: intrinsics have to be those of the turned picture.` };
+  const message = `The picture was ${note}; the intrinsics must be those of the turned picture.`;
+  return { note, turned: warning("image-turned", message, { orientation }) };
 }
 
 /** The picture upright. */
@@ -55,13 +57,13 @@ export function turnedBy(picture: Picture, orientation: number, why: string): Pi
       for (let channel = 0; channel < channels; channel++) out[to + channel] = data[from + channel] ?? 0;
     }
   }
-  const { note, warning } = turnedWords(orientation, why);
+  const { note, turned } = turnedWords(orientation, why);
   return {
     ...picture,
     width: across,
     height: down,
     data: out,
     notes: [...picture.notes, note],
-    warnings: [...picture.warnings, warning],
+    warnings: [...picture.warnings, turned],
   };
 }

@@ -1,6 +1,7 @@
 /** Points in rows and columns: the cloud of a depth camera before anything was left out. */
 import { badFile } from "../../errors.js";
 import { checkSize } from "./limits.js";
+import { type ReaderWarning, warning } from "../warnings.js";
 
 /** Images of depth cameras, by which points without rows and columns may still be told to have them. */
 const SIZES = [
@@ -33,7 +34,7 @@ export function checkPoints(count: number): void {
 }
 
 /** The size that so many points without one have, with a warning, or why they cannot be used. */
-export function sizeOfCount(count: number, warnings: string[]): { width: number; height: number } {
+export function sizeOfCount(count: number, warnings: ReaderWarning[]): { width: number; height: number } {
   const size = SIZES.find(([width, height]) => width * height === count);
   if (size === undefined)
     throw badFile(
@@ -41,7 +42,11 @@ export function sizeOfCount(count: number, warnings: string[]): { width: number;
     );
   const [width, height] = size;
   warnings.push(
-    `The file does not say that its points are in rows and columns: ${count} were guessed to be ${width}x${height}.`,
+    warning(
+      "grid-guessed",
+      `The file does not give rows and columns for its ${count} points; ${width}x${height} was guessed.`,
+      { width, height },
+    ),
   );
   return { width, height };
 }

@@ -5,6 +5,7 @@
  */
 import { inflateUpTo } from "../../inflate.js";
 import type { Picture } from "./picture.js";
+import { warning } from "../warnings.js";
 
 const MOST_PROFILE = 2 ** 22;
 const MOST_TAGS = 200;
@@ -119,7 +120,10 @@ function converted({ width, height, channels, data }: Picture, matrix: number[],
   return out;
 }
 
-/** The picture in sRGB, or a warning that its profile is left out. */
+export const damagedProfile = () =>
+  warning("colour-profile-ignored", "The colour profile is damaged; colours are read as sRGB.");
+
+/** The picture in sRGB, or a warning that its profile is ignored. */
 export function inSrgb(picture: Picture, profile: Uint8Array): Picture {
   if (picture.channels < 3 || picture.data instanceof Float32Array) return picture;
   let found: Profile;
@@ -128,7 +132,7 @@ export function inSrgb(picture: Picture, profile: Uint8Array): Picture {
   } catch {
     return {
       ...picture,
-      warnings: [...picture.warnings, "Its colour profile is damaged and left out: colours are taken for sRGB."],
+      warnings: [...picture.warnings, damagedProfile()],
     };
   }
   const { name, matrix, curves } = found;
@@ -137,7 +141,12 @@ export function inSrgb(picture: Picture, profile: Uint8Array): Picture {
     if (/srgb/i.test(name)) return { ...picture, transfer: "srgb", notes: [...picture.notes, "sRGB"] };
     return {
       ...picture,
-      warnings: [...picture.warnings, `Its colour profile ${called} is left out: colours are taken for sRGB.`],
+      warnings: [
+        ...picture.warnings,
+        warning("colour-profile-ignored", `The colour profile ${called} is not supported; colours are read as sRGB.`, {
+          profile: name,
+        }),
+      ],
     };
   }
   if (isSrgb(matrix, curves)) return { ...picture, transfer: "srgb", notes: [...picture.notes, "sRGB"] };

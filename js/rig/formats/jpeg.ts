@@ -142,8 +142,8 @@ export async function readJpeg(bytes: Uint8Array): Promise<Picture> {
   if (hasBrowser()) {
     const picture = withoutAlpha(await byBrowser(bytes, "JPEG"));
     if (orientation < 2 || orientation > 8) return picture;
-    const { note, warning } = turnedWords(orientation, "EXIF says");
-    return { ...picture, notes: [note], warnings: [warning] };
+    const { note, turned } = turnedWords(orientation, "EXIF says");
+    return { ...picture, notes: [note], warnings: [turned] };
   }
   // The file itself and not the package's front door, which brings the encoder along.
   const { default: decode } = await import("jpeg-js/lib/decoder.js");
@@ -182,7 +182,7 @@ export async function readWebp(bytes: Uint8Array): Promise<Picture> {
   if (!hasBrowser())
     throw new BimodalError(
       "file",
-      "file: WebP is read in browsers only; convert it to PNG first (dwebp in.webp -o out.png)",
+      "WebP is read in browsers only; convert it to PNG first (dwebp in.webp -o out.png)",
       "file",
     );
   return byBrowser(bytes, "WebP");

@@ -14,7 +14,11 @@ export function checkSize(width: number, height: number): void {
   const isSide = (side: number) => Number.isInteger(side) && side > 0;
   if (!isSide(width) || !isSide(height)) throw badFile(`it says that it is ${width}x${height} pixels large`);
   if (width > MOST_SIDE || height > MOST_SIDE)
-    throw badFile(`it says that it is ${width}x${height} pixels large; up to ${MOST_SIDE} on a side are read`);
+    throw badFile(`it is ${width}x${height} pixels large; up to ${MOST_SIDE} on a side are read`, undefined, {
+      problem: "too-large",
+      width,
+      height,
+    });
 }
 
 /** Checks what is declared against what is there. */

@@ -4,6 +4,7 @@ import { checkGrid, checkPoints, sizeOfCount } from "./grid.js";
 import { checkBytes } from "./limits.js";
 import type { Cloud } from "./picture.js";
 import { Words } from "./tokens.js";
+import type { ReaderWarning } from "../warnings.js";
 
 interface Field {
   name: string;
@@ -166,7 +167,7 @@ export function readPcd(bytes: Uint8Array): Cloud {
   checkPoints(head.points);
   if (head.points * head.stride > MOST_BYTES)
     throw badFile(`this PCD says that its points are ${head.points * head.stride} bytes long, which is too much`);
-  const warnings: string[] = [];
+  const warnings: ReaderWarning[] = [];
   const size = head.height === 1 ? sizeOfCount(head.points, warnings) : { width: head.width, height: head.height };
   checkGrid(size.width, size.height, head.points);
   return { format: "PCD", ...size, points: pointsOf(bytes.subarray(head.end), head), notes: [], warnings };

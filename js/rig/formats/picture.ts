@@ -1,6 +1,7 @@
 /** A raster and what its file says about it; the readers of pictures end here. */
 import type { Raster } from "../../npy.js";
 import type { Pixels } from "../../raster.js";
+import type { ReaderWarning } from "../warnings.js";
 
 export interface Picture extends Raster<Pixels> {
   /** "PNG", "PFM" and so on. */
@@ -13,7 +14,7 @@ export interface Picture extends Raster<Pixels> {
   transfer?: "srgb" | "linear";
   /** Additions to what is said, such as how it was turned. */
   notes: string[];
-  warnings: string[];
+  warnings: ReaderWarning[];
 }
 
 /** An organised cloud, NaN where there is no point. */
@@ -23,5 +24,5 @@ export interface Cloud {
   height: number;
   points: Float32Array;
   notes: string[];
-  warnings: string[];
+  warnings: ReaderWarning[];
 }

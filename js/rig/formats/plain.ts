@@ -4,6 +4,7 @@ import { cameraOf } from "./cameras.js";
 import { type Numbers, numberOf } from "./numbers.js";
 import { motion, motionOfMatrix, ofQuaternion } from "./poses.js";
 import type { Calibration } from "./tree.js";
+import { type ReaderWarning, distinct } from "../warnings.js";
 
 type Found = Calibration & { format: string };
 
@@ -34,7 +35,7 @@ function rowsOf(text: string): Numbers[] | undefined {
 }
 
 const camera = (k: Numbers, size: Numbers, distortion: Numbers = []): Found => {
-  const warnings: string[] = [];
+  const warnings: ReaderWarning[] = [];
   const [fx = NaN, skew = 0, cx = NaN, , fy = NaN, cy = NaN] = k;
   const raw = { focal: [fx, fy], centre: [cx, cy], skew, distortion, width: size[0], height: size[1] };
   return { cameras: [cameraOf(raw, warnings)], poses: [], warnings, format: "a matrix of intrinsics" };
@@ -53,7 +54,7 @@ function nine(values: Numbers, size: Numbers): Found {
 
 /** TUM: time stamp, translation, quaternion x y z w, of the camera in the world. */
 function trajectory(rows: Numbers[]): Found {
-  const warnings: string[] = [];
+  const warnings: ReaderWarning[] = [];
   const poses = rows.map((row) => {
     const [x = NaN, y = NaN, z = NaN, ...quaternion] = row.slice(-7);
     const names = row.length === 8 ? { name: String(row[0]), from: "camera", to: "world" } : {};
@@ -62,19 +63,19 @@ function trajectory(rows: Numbers[]): Found {
   return {
     cameras: [],
     poses,
-    warnings: [...new Set(warnings)].slice(0, 4),
+    warnings: distinct(warnings, 4),
     format: rows.length === 1 ? "a shift and a quaternion" : "a trajectory",
   };
 }
 
 /** Redwood: three whole numbers, then 4x4 of the camera in the world. */
 function log(rows: Numbers[]): Found {
-  const warnings: string[] = [];
+  const warnings: ReaderWarning[] = [];
   const poses = Array.from({ length: rows.length / 5 }, (_, index) => {
     const names = { name: String(rows[5 * index]?.[0]), from: "camera", to: "world" };
     return motionOfMatrix(rows.slice(5 * index + 1, 5 * index + 5).flat(), names, warnings, false);
   });
-  return { cameras: [], poses, warnings: [...new Set(warnings)].slice(0, 4), format: "a trajectory" };
+  return { cameras: [], poses, warnings: distinct(warnings, 4), format: "a trajectory" };
 }
 
 /** What a text of numbers holds; nothing where it has words. */
@@ -91,7 +92,7 @@ export function readNumbers(text: string): Found | undefined {
   const isLine = rows.length === 1 && !near(values[8], 1);
   if (values.length - size.length === 9 && !isLine) return nine(values.slice(size.length), size);
   if (values.length === 12 || values.length === 16) {
-    const warnings: string[] = [];
+    const warnings: ReaderWarning[] = [];
     return { cameras: [], poses: [motionOfMatrix(values, {}, warnings)], warnings, format: "a matrix of a motion" };
   }
   const [fx = 0, fy = 0, cx = 0, cy = 0, ...lens] = values;

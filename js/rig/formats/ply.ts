@@ -6,6 +6,7 @@ import { checkGrid, checkPoints, sizeOfCount } from "./grid.js";
 import { checkBytes } from "./limits.js";
 import type { Cloud } from "./picture.js";
 import { Words } from "./tokens.js";
+import { type ReaderWarning, warning } from "../warnings.js";
 
 type Read = (view: DataView, at: number, little: boolean) => number;
 const TYPES: Record<string, { size: number; read: Read }> = {};
@@ -172,7 +173,7 @@ export function readPly(bytes: Uint8Array): Cloud {
   const [vertices, ...others] = elements;
   if (vertices?.name !== "vertex") throw badFile("this PLY does not begin with points");
   checkPoints(vertices.count);
-  const warnings: string[] = [];
+  const warnings: ReaderWarning[] = [];
   const grid = others[0]?.name === "range_grid" ? others[0] : undefined;
   const body = bytes.subarray(end);
   // A number as text has a digit and a space at least.
@@ -196,7 +197,7 @@ export function readPly(bytes: Uint8Array): Cloud {
       warnings,
     };
   if (others.some(({ name, count }) => name === "face" && count > 0))
-    warnings.push("The file is a mesh; its faces are left out.");
+    warnings.push(warning("mesh-faces-ignored", "The file is a mesh; only its vertices are read."));
   if (columns !== undefined && rows !== undefined && columns * rows === vertices.count) {
     checkGrid(columns, rows, vertices.count);
     return { format: "PLY", width: columns, height: rows, points: cloud, notes: [], warnings };

@@ -1,9 +1,10 @@
 /** PNG upright and in sRGB, as far as it says what it is. */
 import { readPng } from "../../png.js";
 import { exifOrientation, turnedBy } from "./exif.js";
-import { inSrgb, pngProfile } from "./icc.js";
+import { damagedProfile, inSrgb, pngProfile } from "./icc.js";
 import { checkSize } from "./limits.js";
 import type { Picture } from "./picture.js";
+import { warning } from "../warnings.js";
 
 /** gAMA of a linear picture and of sRGB, and how far off they may be. */
 const LINEAR = 100_000;
@@ -19,7 +20,9 @@ function withGamma(picture: Picture, chunk: Uint8Array): Picture {
     ...picture,
     warnings: [
       ...picture.warnings,
-      `Its gamma of ${(gamma / LINEAR).toFixed(3)} is left out: colours are taken for sRGB.`,
+      warning("gamma-ignored", `The gamma of ${(gamma / LINEAR).toFixed(3)} is ignored; colours are read as sRGB.`, {
+        gamma: gamma / LINEAR,
+      }),
     ],
   };
 }
@@ -31,7 +34,7 @@ function inColour(picture: Picture, chunks: Map<string, Uint8Array>): Picture {
     try {
       return inSrgb(picture, pngProfile(profile));
     } catch {
-      return { ...picture, warnings: ["Its colour profile is damaged and left out: colours are taken for sRGB."] };
+      return { ...picture, warnings: [damagedProfile()] };
     }
   }
   return gamma ? withGamma(picture, gamma) : picture;

@@ -5,6 +5,7 @@ import { badFile } from "../../errors.js";
 import { anglesOf, determinant, matrixOf } from "../../matrices.js";
 import type { NamedPose, Pose } from "../types.js";
 import type { Numbers } from "./numbers.js";
+import { type ReaderWarning, warning } from "../warnings.js";
 
 /** What may be wrong with R^T R - 1 before the matrix is no rotation: digits that were cut off, or a calibration that drifted. */
 const ROTATION_TOLERANCE = 1e-2;
@@ -44,8 +45,8 @@ function nearestRotation(matrix: Numbers): Numbers {
   return r;
 }
 
-/** Nine numbers as a rotation; `warnings` takes a word where they had to be bent. */
-export function rotationOf(values: Numbers, warnings: string[]): Numbers {
+/** Nine numbers as a rotation, with a warning where they had to be adjusted. */
+export function rotationOf(values: Numbers, warnings: ReaderWarning[]): Numbers {
   if (values.length !== 9 || !values.every(Number.isFinite)) throw badFile("a rotation has nine numbers");
   const off = skewness(values);
   if (!(off <= ROTATION_TOLERANCE))
@@ -54,18 +55,26 @@ export function rotationOf(values: Numbers, warnings: string[]): Numbers {
     throw badFile("its rotation mirrors (the determinant is -1): an axis or the handedness is swapped");
   if (off > ROUNDING)
     warnings.push(
-      `The rotation was not quite one (R R^T differs from 1 by ${off.toPrecision(2)}) and was replaced by the nearest.`,
+      warning(
+        "rotation-adjusted",
+        `The rotation matrix is not quite orthonormal (R R^T differs from 1 by ${off.toPrecision(2)}); the nearest rotation is used.`,
+        { off },
+      ),
     );
   return nearestRotation(values);
 }
 
 /** From x, y, z, w. */
-export function ofQuaternion([x = 0, y = 0, z = 0, w = 0]: Numbers, warnings: string[]): Numbers {
+export function ofQuaternion([x = 0, y = 0, z = 0, w = 0]: Numbers, warnings: ReaderWarning[]): Numbers {
   const length = Math.hypot(x, y, z, w);
   if (!(Math.abs(length - 1) <= ROTATION_TOLERANCE))
     throw badFile(`its quaternion has the length ${length.toPrecision(3)}, not 1`);
   if (Math.abs(length - 1) > ROUNDING)
-    warnings.push(`The quaternion had the length ${length.toPrecision(4)} and was brought to 1.`);
+    warnings.push(
+      warning("quaternion-normalised", `The quaternion has length ${length.toPrecision(4)} and was normalised.`, {
+        length,
+      }),
+    );
   const [a, b, c, d] = [x / length, y / length, z / length, w / length];
   return [
     ...[1 - 2 * (b * b + c * c), 2 * (a * b - c * d), 2 * (a * c + b * d)],
@@ -147,12 +156,18 @@ export function chained(a: Pose, b: Pose): Pose {
 }
 
 /** A shift in metres: longer than a rig is in millimetres, where `isRig` says that two cameras are related and not a world. */
-export function shiftOf(values: Numbers, isRig: boolean, warnings: string[]): Numbers {
+export function shiftOf(values: Numbers, isRig: boolean, warnings: ReaderWarning[]): Numbers {
   if (values.length !== 3 || !values.every((value) => Number.isFinite(value) && Math.abs(value) < 1e9))
     throw badFile("a translation has three numbers");
   const length = Math.hypot(...values);
   if (!isRig || length <= LONGEST) return values.slice();
-  warnings.push(`The translation is ${length.toPrecision(4)} units long and was guessed to be in millimetres.`);
+  warnings.push(
+    warning(
+      "translation-unit-guessed",
+      `The translation is ${length.toPrecision(4)} units long and was guessed to be in millimetres.`,
+      { length },
+    ),
+  );
   return values.map((value) => value / 1000);
 }
 
@@ -161,7 +176,7 @@ export function motion(
   rotation: Numbers,
   translation: Numbers,
   names: Omit<NamedPose, "pose">,
-  warnings: string[],
+  warnings: ReaderWarning[],
   isRig = true,
 ): NamedPose {
   return { ...names, pose: poseOf(rotationOf(rotation, warnings), shiftOf(translation, isRig, warnings)) };
@@ -175,7 +190,7 @@ export const isLastRow = (row: Numbers): boolean =>
 export function motionOfMatrix(
   values: Numbers,
   names: Omit<NamedPose, "pose">,
-  warnings: string[],
+  warnings: ReaderWarning[],
   isRig = true,
 ): NamedPose {
   if (values.length !== 12 && values.length !== 16)

@@ -4,6 +4,7 @@ import { cameraOf } from "./cameras.js";
 import { type Numbers, numberOf } from "./numbers.js";
 import { motion } from "./poses.js";
 import type { Calibration } from "./tree.js";
+import type { ReaderWarning } from "../warnings.js";
 
 const INTRINSIC = /^\s*Intrinsic of "([^"]{1,60})"/;
 const EXTRINSIC = /^\s*Extrinsic from "([^"]{1,60})"\s+To\s+"([^"]{1,60})"/i;
@@ -18,7 +19,7 @@ const numbersOf = (text: string): Numbers =>
     .map(numberOf)
     .filter((value) => value !== undefined);
 
-function camera(name: string, lines: string[], warnings: string[]): Calibration["cameras"][number] {
+function camera(name: string, lines: string[], warnings: ReaderWarning[]): Calibration["cameras"][number] {
   const entries = new Map(
     lines.map((line) => [line.split(":")[0]?.trim().toLowerCase() ?? "", line.slice(line.indexOf(":") + 1).trim()]),
   );
@@ -41,7 +42,7 @@ function camera(name: string, lines: string[], warnings: string[]): Calibration[
 function extrinsics(
   [, from = "", to = ""]: RegExpExecArray,
   lines: string[],
-  warnings: string[],
+  warnings: ReaderWarning[],
 ): Calibration["poses"][number] {
   const values = lines.flatMap((line) => numbersOf(line.replace(/^.*:/, "")));
   if (values.length !== 12)

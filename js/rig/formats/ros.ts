@@ -4,6 +4,7 @@ import type { NamedPose } from "../types.js";
 import { type Numbers, numberOf } from "./numbers.js";
 import { motion, ofQuaternion, ofYawPitchRoll } from "./poses.js";
 import type { Calibration } from "./tree.js";
+import type { ReaderWarning } from "../warnings.js";
 
 const NAME = "static_transform_publisher";
 /** What follows the name and belongs to it, in characters: numbers, names, quotes and brackets. */
@@ -32,7 +33,7 @@ function mentions(text: string): string[][] {
 }
 
 /** ROS 2: `--x 1 --qw 1 --frame-id a --child-frame-id b`. */
-function ofFlags(words: string[], warnings: string[]): NamedPose {
+function ofFlags(words: string[], warnings: ReaderWarning[]): NamedPose {
   const values = new Map<string, string>();
   words.forEach((word, index) => word.startsWith("--") && values.set(word.slice(2), words[index + 1] ?? ""));
   const number = (name: string, missing: number): number => {
@@ -55,7 +56,7 @@ function ofFlags(words: string[], warnings: string[]): NamedPose {
 }
 
 /** ROS 1: `x y z yaw pitch roll parent child [ms]` or `x y z qx qy qz qw parent child [ms]`. */
-function ofPlaces(words: string[], warnings: string[]): NamedPose {
+function ofPlaces(words: string[], warnings: ReaderWarning[]): NamedPose {
   const numbers: Numbers = [];
   for (const word of words) {
     const value = numberOf(word);
@@ -79,7 +80,7 @@ function ofPlaces(words: string[], warnings: string[]): NamedPose {
 
 /** The transform carries points of the child frame into the parent, so that the child is where they come from. */
 export function readPublishers(text: string): Calibration {
-  const warnings: string[] = [];
+  const warnings: ReaderWarning[] = [];
   const found = mentions(text).filter((words) => words.some((word) => numberOf(word) !== undefined));
   if (found.length === 0) throw badFile(`it names ${NAME}, but no numbers follow`);
   return {
@@ -97,7 +98,7 @@ export const isEcho = (text: string): boolean =>
 
 /** What tf_echo prints, the first of it; which frames it asked for is not in there. */
 export function readEcho(text: string): Calibration {
-  const warnings: string[] = [];
+  const warnings: ReaderWarning[] = [];
   const numbers = (pattern: RegExp, count: number): Numbers => {
     const found = (pattern.exec(text.slice(0, REACH))?.[1] ?? "").split(",").map((part) => numberOf(part) ?? NaN);
     if (found.length !== count || found.some(Number.isNaN))

@@ -10,11 +10,12 @@ import type { NamedCamera, NamedPose } from "../types.js";
 import { type RawCamera, cameraOf } from "./cameras.js";
 import { type Matrix, type Node, type Numbers, isNode, matrixOf, numberOf, transposed } from "./numbers.js";
 import { chained, inverseOf, isLastRow, motion, motionOfMatrix, ofQuaternion, ofVector } from "./poses.js";
+import type { ReaderWarning } from "../warnings.js";
 
 export interface Calibration {
   cameras: NamedCamera[];
   poses: NamedPose[];
-  warnings: string[];
+  warnings: ReaderWarning[];
 }
 
 const MOST_NODES = 50_000;
@@ -155,7 +156,7 @@ interface Frames {
 class Search implements Calibration {
   readonly cameras: NamedCamera[] = [];
   readonly poses: NamedPose[] = [];
-  readonly warnings: string[] = [];
+  readonly warnings: ReaderWarning[] = [];
   #nodes = 0;
   #members = 0;
 
