@@ -1,5 +1,15 @@
 // npm run build: leaves the installable package in pkg/.
-import { cpSync, existsSync, mkdirSync, readFileSync, realpathSync, rmSync, symlinkSync, writeFileSync } from "node:fs";
+import {
+  chmodSync,
+  cpSync,
+  existsSync,
+  mkdirSync,
+  readFileSync,
+  realpathSync,
+  rmSync,
+  symlinkSync,
+  writeFileSync,
+} from "node:fs";
 import { join } from "node:path";
 import { gzipSync } from "node:zlib";
 import { reachable } from "./imports.mjs";
@@ -22,7 +32,7 @@ const SOURCES = [
   "scripts/notices",
 ];
 const MARK = "pkg/.stamp";
-/** One for programs, one for images and depth maps, two for what reads and writes a rig's files, one for what writes a run's, one for the page's fields, and one for the threads of workers. */
+/** One for programs, one for images and depth maps, two for what reads and writes a rig's files, one for what writes a run's, one for the page's fields, one for the threads of workers, and one for shells. */
 const ENTRIES = {
   index: "index",
   files: "files",
@@ -31,6 +41,7 @@ const ENTRIES = {
   write: "write/index",
   options: "options",
   thread: "workers/thread",
+  cli: "cli/main",
 };
 /** What the package says about itself; name, version, licence, authors and addresses come from Cargo.toml alone. */
 function manifest() {
@@ -62,6 +73,8 @@ function manifest() {
       "./package.json": "./package.json",
     },
     types: "./index.d.ts",
+    // npx bimodal-stereo
+    bin: { "bimodal-stereo": "./cli.js" },
     files: ["*.js", "**/*.d.ts", "*.wasm", "README.md", NOTICES, ...COPIED],
   };
 }
@@ -90,6 +103,7 @@ async function facade() {
   };
   await bundle.write({ dir: inRoot("pkg"), format: "esm", chunkFileNames: "[name].js", codeSplitting });
   await bundle.close();
+  chmodSync(inRoot("pkg/cli.js"), 0o755);
   writeFileSync(inRoot("pkg", NOTICES), notices(npm.entries()));
   await declarations();
 }
@@ -99,7 +113,7 @@ async function declarations() {
   const all = inRoot("target/declarations");
   rmSync(all, { recursive: true, force: true });
   await node("typescript/bin/tsc", "-p", "js/tsconfig.json", "--outDir", all);
-  const typed = Object.values(ENTRIES).filter((source) => source !== ENTRIES.thread);
+  const typed = Object.values(ENTRIES).filter((source) => source !== ENTRIES.thread && source !== ENTRIES.cli);
   for (const name of reachable(
     all,
     typed.map((source) => `${source}.d.ts`),

@@ -14,7 +14,15 @@ const REQUIREMENTS = "python/tests/requirements.txt";
 const PACKAGE = ["src", "bimodal_stereo", "README.md", "Cargo.toml", "Cargo.lock", NOTICES].map(
   (name) => `python/${name}`,
 );
-const SOURCES = ["src", "Cargo.toml", "rust-toolchain.toml", "pyproject.toml", ...PACKAGE];
+const SOURCES = [
+  "src",
+  "files/src",
+  "files/Cargo.toml",
+  "Cargo.toml",
+  "rust-toolchain.toml",
+  "pyproject.toml",
+  ...PACKAGE,
+];
 
 /** Why Python can't be asked here; nothing where it can. */
 function missing() {

@@ -60,7 +60,7 @@ const FILES = {
     replaced(
       "Cargo.toml",
       replaced("Cargo.toml", text, VERSION, `version = "${version}"`),
-      /^(bimodal-stereo = .*version = )"=.+"/m,
+      /^(bimodal-stereo(?:-files)? = .*version = )"=.+"/gm,
       `$1"=${version}"`,
     ),
   // A workspace of its own, so that what is built for browsers never sees it.

@@ -90,6 +90,9 @@
 #[doc = include_str!("../README.md")]
 struct Readme;
 
+/// Cause and remedy of every code, as JSON: by group ("runs", "checks", "warnings", "errors" ..) and code.
+pub const CODES: &str = include_str!("codes.json");
+
 // What each module holds. Data flows one way: a module uses only those before it, and no two files of a module import
 // each other. `tests/floors` holds both, and that this table is complete and in order.
 //
@@ -154,7 +157,7 @@ pub use estimator::{Estimator, Finding, RefinementTask, Surface, Task, Worker};
 /// The pictures that this crate's views can be made from.
 #[cfg(feature = "image")]
 pub use image;
-pub use light::{COEFFICIENTS, CoefficientMatrix, Light, LightFit, LightFitter, LightPrior};
+pub use light::{COEFFICIENTS, CoefficientMatrix, Light, LightFit, LightFitter, LightGaussian, LightPrior};
 /// The linear algebra in this crate's public types, of the very release that they are made of.
 pub use nalgebra;
 pub use options::{LightSource, Options, Registration, Shading, Start, StartTolerance, Weights};

@@ -3,18 +3,22 @@
 use std::path::PathBuf;
 
 use bimodal_stereo::{Angles, LightSource, Options, Pinhole, Registration, Shading, Start, Transfer};
+use bimodal_stereo_files::pairs::Files;
+use bimodal_stereo_files::{Problem, Result, read};
 use clap::Parser;
 
-use crate::files::Files;
-use crate::problem::{Problem, Result};
-use crate::read;
-
-const USAGE: &str = "bimodal-stereo [OPTIONS] IMAGE DEPTH
-       bimodal-stereo [OPTIONS] FOLDER";
+const USAGE: &str = "bimodal-stereo [estimate] [OPTIONS] IMAGE DEPTH
+       bimodal-stereo [estimate] [OPTIONS] FOLDER
+       bimodal-stereo check FOLDER --calibration FILE [OPTIONS]";
 
 const AFTER: &str = "\
 A folder holds pairs with like names (rgb_1.png and depth_1.png, color/0001.jpg and depth/0001.png), masks among them, or TUM RGB-D's
 rgb.txt and depth.txt. Each pair is one line, or one line of JSON.
+
+The intrinsics are those of --image-camera and --depth-camera, else of --cameras, else of files beside the images that are called
+calib, camera, intrinsics or K. The camera of a crop is that of the whole frame where a NAME_loc.txt lies beside NAME_crop.png.
+
+`bimodal-stereo check --help` is the manual of the check of a rig's calibration.
 
 Exit code: 0 converged, 1 lost or ambiguous, 2 undecided (the cap on iterations came first), 3 the input is bad. Of a folder the worst:
 3 before 1 before 2 before 0.
@@ -45,6 +49,10 @@ pub struct Arguments {
     /// Intrinsics of the depth camera
     #[arg(long, value_name = "FX,FY,CX,CY[,K1..]", value_parser = camera)]
     pub depth_camera: Option<Pinhole>,
+
+    /// Intrinsics of one camera or both in a file, as OpenCV, ROS, Kalibr, Open3D and others write them [default: those beside the images]
+    #[arg(long, value_name = "FILE")]
+    pub cameras: Vec<PathBuf>,
 
     /// Metres for each stored number of the depth map, 0.001 for millimetres; pixels where it has no camera [default: guessed, 1]
     #[arg(long, value_name = "UNIT", value_parser = positive)]

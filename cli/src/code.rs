@@ -1,4 +1,4 @@
-//! Exit codes, those of `examples/check-folder.mjs`.
+//! Exit codes, in the order of those of the command `check`.
 
 use std::process::ExitCode;
 

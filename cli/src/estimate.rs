@@ -1,11 +1,11 @@
 //! One pair from its files to its answer.
 
-use bimodal_stereo::{Estimator, Options, Status};
+use bimodal_stereo::{Estimator, Status};
+use bimodal_stereo_files::pairs::Files;
+use bimodal_stereo_files::{Problem, Result, Warning};
 
-use crate::arguments::Arguments;
+use crate::Task;
 use crate::code::Code;
-use crate::files::Files;
-use crate::problem::{Problem, Result};
 use crate::progress::Progress;
 use crate::views;
 
@@ -42,7 +42,7 @@ pub struct Outcome {
     pub depth_length: Length,
     /// How the files were read.
     pub notes: Vec<String>,
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Warning>,
     /// The files of results.
     pub written: Vec<String>,
 }
@@ -54,13 +54,13 @@ impl Outcome {
 }
 
 /// Reads both views and runs the loop to its end.
-pub fn estimate(files: &Files, arguments: &Arguments, options: &Options, progress: &Progress) -> Result<Outcome> {
-    let views = views::read(files, arguments)?;
+pub fn estimate(files: &Files, task: &Task, progress: &Progress) -> Result<Outcome> {
+    let views = views::read(files, &task.arguments, &task.cameras)?;
     let length = |has_camera| if has_camera { Length::Metres } else { Length::Pixels };
     let [image_length, depth_length] = [views.image.camera.is_some(), views.depth.camera.is_some()].map(length);
-    let mut estimator = Estimator::new(views.image, &views.depth, options.clone())
+    let mut estimator = Estimator::new(views.image, &views.depth, task.options.clone())
         .map_err(|error| Problem::of_pair(&error, &files.image, &files.depth))?
-        .with_threads(arguments.workers());
+        .with_threads(task.arguments.workers());
     while estimator.report().status == Status::Running {
         progress.show(estimator.step());
     }

@@ -1,36 +1,47 @@
 //! The pose between a colour image and a depth map, from their files, for a shell and for scripts.
 //!
-//! `arguments` says what may be asked, `read` turns files into rasters and `views` these into what the library takes, `folder` finds pairs,
-//! `estimate` runs the loop under a progress bar, `report` and `write` say and save what came out. Nothing here computes.
+//! `arguments` states what can be asked, `views` turns what the crate `files` reads into what the library takes, `estimate` runs the loop under
+//! a progress bar, `report` and `write` print and save what came out, and `check` hands over to the command of that name. Nothing here
+//! computes.
 
 mod arguments;
+mod cameras;
+mod check;
 mod code;
 mod estimate;
-mod files;
-mod folder;
-mod problem;
 mod progress;
-mod read;
 mod report;
-mod unit;
 mod views;
 mod write;
 
+use std::ffi::OsString;
 use std::io::{self, ErrorKind, Write};
 use std::path::Path;
 use std::process::ExitCode;
 
 use arguments::{Arguments, Input};
 use bimodal_stereo::Options;
+use bimodal_stereo_files::pairs::{self, Files};
+use bimodal_stereo_files::{Problem, Result};
+use cameras::Cameras;
 use clap::Parser;
 use code::Code;
 use estimate::estimate;
-use files::Files;
-use problem::{Problem, Result};
 use progress::Progress;
 
+/// A first word that names another command; an image or a folder of that name is reached as "./check".
+const CHECK: &str = "check";
+/// .. and the usual one.
+const ESTIMATE: &str = "estimate";
+
 fn main() -> ExitCode {
-    let code = match Arguments::try_parse() {
+    let mut words: Vec<OsString> = std::env::args_os().collect();
+    match words.get(1).and_then(|word| word.to_str()) {
+        Some(CHECK) => return check::run(words.into_iter().skip(2)).into(),
+        Some(ESTIMATE) => drop(words.remove(1)),
+        _ => {}
+    }
+    let code = match Arguments::try_parse_from(words) {
         Ok(arguments) => run(arguments).unwrap_or_else(|problem| {
             eprintln!("{problem}");
             Code::BadInput
@@ -51,12 +62,14 @@ fn main() -> ExitCode {
 struct Task {
     arguments: Arguments,
     options: Options,
+    cameras: Cameras,
 }
 
 fn run(arguments: Arguments) -> Result<Code> {
     let is_json = arguments.json;
     let options = arguments.options().map_err(|problem| printed(problem, None, is_json))?;
-    let task = Task { arguments, options };
+    let cameras = Cameras::named(&arguments.cameras).map_err(|problem| printed(problem, None, is_json))?;
+    let task = Task { arguments, options, cameras };
     match task.arguments.input().map_err(|problem| printed(problem, None, is_json))? {
         Input::Pair(files) => task.one(&files),
         Input::Folder(folder) => task.many(&folder),
@@ -88,9 +101,9 @@ impl Task {
     /// A folder: one line for each pair. A pair that cannot be read costs itself, not the others.
     fn many(&self, folder: &Path) -> Result<Code> {
         let arguments = &self.arguments;
-        let found = folder::pairs(folder, arguments.out.as_deref())
-            .map_err(|problem| printed(problem, None, arguments.json))?;
-        found.warnings.iter().for_each(|warning| eprintln!("warning: {warning}"));
+        let found =
+            pairs::pairs(folder, arguments.out.as_deref()).map_err(|problem| printed(problem, None, arguments.json))?;
+        found.warnings.0.iter().for_each(|warning| eprintln!("warning: {warning}"));
         let mut worst = Code::Converged;
         for (index, pair) in found.pairs.iter().enumerate() {
             let progress = Progress::new(Some((index, found.pairs.len(), &pair.name)), arguments.max_iterations);
@@ -117,7 +130,7 @@ impl Task {
 
     /// Runs one pair and writes its files.
     fn finish(&self, files: &Files, out: Option<&Path>, progress: &Progress) -> Result<estimate::Outcome> {
-        let outcome = estimate(files, &self.arguments, &self.options, progress);
+        let outcome = estimate(files, self, progress);
         progress.end();
         let mut outcome = outcome?;
         if let Some(out) = out {

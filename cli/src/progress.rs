@@ -3,9 +3,8 @@
 use std::time::Duration;
 
 use bimodal_stereo::{Reason, Stage, StepReport};
+use bimodal_stereo_files::plain;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-
-use crate::problem::plain;
 
 /// The bar: in thousandths, of which the search takes most.
 const LENGTH: u64 = 1000;

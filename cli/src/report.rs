@@ -3,11 +3,11 @@
 use std::fmt::Write;
 
 use bimodal_stereo::{Angles, CODES, Light, Reason, Similarity, Status, StepReport, Uncertainty};
+use bimodal_stereo_files::pairs::Files;
+use bimodal_stereo_files::{Problem, Warning, plain, shown};
 use serde::Serialize;
 
 use crate::estimate::{Length, Outcome};
-use crate::files::Files;
-use crate::problem::{Problem, plain, shown};
 
 /// Digits of lengths, sigmas and shares.
 const DIGITS: i32 = 4;
@@ -157,7 +157,7 @@ struct Report<'a> {
     light: Light,
     exposure: f64,
     notes: &'a [String],
-    warnings: &'a [String],
+    warnings: &'a [Warning],
     written: &'a [String],
 }
 

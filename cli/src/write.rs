@@ -4,10 +4,10 @@ use std::fs;
 use std::path::Path;
 
 use bimodal_stereo::{Similarity, Surface};
+use bimodal_stereo_files::read::npy_bytes;
+use bimodal_stereo_files::{Problem, Result, shown};
 
 use crate::estimate::{Length, Outcome};
-use crate::problem::{Problem, Result, shown};
-use crate::read::npy_bytes;
 use crate::report::{self, Layout};
 
 /// Steps of a stored depth, the finest first; the first that reaches the farthest depth is taken.

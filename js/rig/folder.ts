@@ -35,6 +35,8 @@ const MASK = /mask|segm/i;
 const COLOUR = /colou?r|rgb|image|img/i;
 const IGNORED =
   /(^|\/)(\.|__MACOSX|thumbs\.db|readme|licen[cs]e|copying|source\.txt|changelog)|\.(md|html?|py|mjs|js|csv|bag|mp4|avi|klg)$/i;
+/** A path that leads out of the folder is that of a file which somebody named. */
+const ELSEWHERE = /^(?:\/|\.\.\/|[a-z]:\/)/i;
 const LISTS = /(^|\/)(rgb|depth|associat\w*|accelerometer|groundtruth|times?(tamps)?)\.(txt|csv)$/i;
 
 const base = (name: string): string => name.slice(name.lastIndexOf("/") + 1);
@@ -313,7 +315,7 @@ export async function readRigFolder(files: NamedFile[], options: FolderOptions =
   signal?.throwIfAborted();
   const kept = files
     .map(({ name, bytes }) => ({ name: name.replace(/\\/g, "/").replace(/^\.\//, ""), bytes }))
-    .filter(({ name }) => !IGNORED.test(name));
+    .filter(({ name }) => ELSEWHERE.test(name) || !IGNORED.test(name));
   const reader = new FolderReader(signal);
   // Browsers hand folders over in any order.
   const pictures = kept

@@ -17,6 +17,7 @@ from ._calibration import check_calibration, sample_rig
 from ._codes import CODES
 from ._errors import BimodalError
 from ._estimator import Estimator
+from ._files import Calibration, NamedCamera, NamedPose, ReaderWarning, RigFolder, read_calibration, read_rig_folder
 from ._inputs import LightGaussian, Options, StartTolerance, Weights
 from ._native import VERSION as __version__
 from ._samples import Sample, Truth, sample, sample_lights, sample_surfaces
@@ -26,6 +27,7 @@ __all__ = [
     "Angles",
     "CODES",
     "BimodalError",
+    "Calibration",
     "CandidateReport",
     "CheckFrame",
     "CheckReport",
@@ -36,10 +38,14 @@ __all__ = [
     "Estimator",
     "FrameReport",
     "LightGaussian",
+    "NamedCamera",
+    "NamedPose",
     "Options",
     "Pinhole",
     "Pose",
+    "ReaderWarning",
     "RigCamera",
+    "RigFolder",
     "RigSample",
     "Sample",
     "Sensitivity",
@@ -50,6 +56,8 @@ __all__ = [
     "Weights",
     "__version__",
     "check_calibration",
+    "read_calibration",
+    "read_rig_folder",
     "sample",
     "sample_lights",
     "sample_rig",

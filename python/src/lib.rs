@@ -8,6 +8,7 @@ mod arrays;
 mod calibration;
 mod error;
 mod estimator;
+mod files;
 mod guard;
 mod input;
 mod members;
@@ -23,6 +24,8 @@ mod _native {
     use super::error::spelled;
     #[pymodule_export]
     use super::estimator::Estimator;
+    #[pymodule_export]
+    use super::files::{check_command, read_calibration, read_rig_folder};
     #[pymodule_export]
     use super::samples::{sample, sample_lights, sample_surfaces};
 

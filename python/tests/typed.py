@@ -5,7 +5,7 @@ from typing import Optional
 import numpy as np
 from numpy.typing import NDArray
 
-from bimodal_stereo import ColorImage, DepthMap, Estimator, Pinhole, StepReport, check_calibration, sample, sample_rig
+from bimodal_stereo import ColorImage, DepthMap, Estimator, Pinhole, StepReport, check_calibration, read_calibration, read_rig_folder, sample, sample_rig
 
 camera = Pinhole(500, 500, 320, 240, [0.1, 0, 0, 0, 0])
 image = ColorImage(np.zeros((480, 640, 3), np.uint8), mask=np.ones((480, 640)), camera=camera, transfer="srgb")
@@ -22,6 +22,8 @@ beta: float = sample("bust", "window", angles={"beta": 20}).pose.angles.beta
 rig = sample_rig("room")
 assert rig.pose is not None
 verdict: str = check_calibration([rig], {"factory": rig.pose}, cues=["edges"]).verdict
+folder = read_rig_folder("frames", unit=0.001, cameras=["rgb.yaml"])
+verdict = check_calibration(folder.frames, {"mine": read_calibration("rig.json").poses[0].pose}).verdict
 
 Estimator(image, depth, ligth="estimate")  # type: ignore[call-arg]
 Estimator(image, depth, max_iterations="many")  # type: ignore[arg-type]

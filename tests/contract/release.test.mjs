@@ -103,7 +103,8 @@ describe("release", () => {
     const { status, stderr } = release("9.8.7", "--date", "2031-02-03");
     assert.equal(status, 0, stderr);
     assert.match(read("Cargo.toml"), /^version = "9\.8\.7"$/m);
-    assert.match(read("Cargo.toml"), /^bimodal-stereo = .*version = "=9\.8\.7"/m);
+    for (const name of ["bimodal-stereo", "bimodal-stereo-files"])
+      assert.match(read("Cargo.toml"), new RegExp(`^${name} = .*version = "=9\\.8\\.7"`, "m"));
     const locked = [...read("Cargo.lock").matchAll(/^name = "(bimodal-stereo.*)"\nversion = "(.+)"$/gm)];
     assert.ok(locked.length >= 2 && locked.every(([, , version]) => version === "9.8.7"), String(locked));
     assert.match(read("python/Cargo.toml"), /^version = "9\.8\.7"$/m);

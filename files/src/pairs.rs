@@ -1,4 +1,4 @@
-//! The pairs of a folder, told as js/rig/folder.ts tells them: by time stamps (TUM RGB-D), by like names, or in their order.
+//! The pairs of a folder, found as js/rig/folder.ts finds them: by time stamps (TUM RGB-D), by like names, or in their order.
 //!
 //! Limits: pictures whose names do not say which is which are not looked into, and at least one of a pair has to be called a depth map.
 
@@ -9,10 +9,12 @@ use std::sync::LazyLock;
 use regex_lite::Regex;
 use walkdir::{DirEntry, WalkDir};
 
-use crate::files::Files;
-use crate::problem::{Problem, Result, shown};
+use crate::problem::{Problem, Result, plain, shown};
 use crate::read;
+use crate::warning::{Warning, Warnings};
 
+/// The code of a picture that belongs to no other.
+pub const ALONE: &str = "file-alone";
 /// Time stamps farther apart than this, in seconds, are no pair; TUM's own tool has the same.
 const APART: f64 = 0.02;
 const TUM_UNIT: f64 = 1.0 / 5000.0;
@@ -36,10 +38,25 @@ static KINDS: LazyLock<Regex> =
 static PICTURE: LazyLock<Regex> = LazyLock::new(|| pattern(r"(?i)\.(png|jpe?g|npy)$"));
 static ENDING: LazyLock<Regex> = LazyLock::new(|| pattern(r"(?i)\.[a-z0-9]{1,5}$"));
 
+/// The files of a pair.
+#[derive(Clone, Debug)]
+pub struct Files {
+    pub image: PathBuf,
+    pub depth: PathBuf,
+    pub image_mask: Option<PathBuf>,
+    pub depth_mask: Option<PathBuf>,
+    /// Belongs to the view whose size it has.
+    pub any_mask: Option<PathBuf>,
+    /// Metres for each stored number, where the folder states it.
+    pub unit: Option<f64>,
+}
+
 /// One pair and what its files have in common.
 #[derive(Clone, Debug)]
 pub struct Pair {
     pub name: String,
+    /// What the names of its files have in common.
+    pub key: String,
     pub files: Files,
 }
 
@@ -55,26 +72,37 @@ impl Pair {
 #[derive(Debug)]
 pub struct Pairs {
     pub pairs: Vec<Pair>,
-    pub warnings: Vec<String>,
+    pub warnings: Warnings,
 }
 
 /// All pairs in the order of their names; what lies below `except`, results of an earlier run, is none of them.
 pub fn pairs(folder: &Path, except: Option<&Path>) -> Result<Pairs> {
     let mut files = below(folder, except.and_then(|path| path.canonicalize().ok()).as_deref())?;
-    files.sort_by_cached_key(|path| natural(&name_in(folder, path)));
-    let mut warnings = Vec::new();
-    let found = match tum(folder, &files, &mut warnings)? {
-        Some(pairs) => pairs,
-        None => by_names(folder, &files, &mut warnings),
-    };
-    if found.is_empty() {
+    let Pairs { pairs, warnings } = among(folder, &mut files)?;
+    if pairs.is_empty() {
         let words = format!(
             "no pair of a colour image and a depth map was found among its {} files; names have to say which is which",
             files.len()
         );
         return Err(Problem::file(folder, words));
     }
-    Ok(Pairs { pairs: unique(found), warnings })
+    Ok(Pairs { pairs: unique(pairs), warnings })
+}
+
+/// The pairs among files of a folder, which are brought into the order of their names.
+pub fn among(folder: &Path, files: &mut [PathBuf]) -> Result<Pairs> {
+    files.sort_by_cached_key(|path| natural(&name_in(folder, path)));
+    let mut warnings = Warnings::default();
+    let pairs = match tum(folder, files, &mut warnings)? {
+        Some(pairs) => pairs,
+        None => by_names(folder, files, &mut warnings),
+    };
+    Ok(Pairs { pairs, warnings })
+}
+
+/// All files below a folder.
+pub fn files_of(folder: &Path) -> Result<Vec<PathBuf>> {
+    below(folder, None)
 }
 
 /// The files below a folder, hidden ones and links to folders left out.
@@ -101,14 +129,41 @@ fn below(folder: &Path, except: Option<&Path>) -> Result<Vec<PathBuf>> {
     Ok(files)
 }
 
+/// Texts in the folders of both images, and above where these are two side by side, whose names speak of cameras.
+pub fn files_beside(files: &Files) -> Vec<PathBuf> {
+    static CAMERA: LazyLock<Regex> =
+        LazyLock::new(|| pattern(r"(?i)(calib|camera|intrinsic|cam_?info|^k\b).*\.(json|ya?ml|xml|txt)$|^k\.txt$"));
+    let mut folders: Vec<&Path> = [&files.image, &files.depth].into_iter().filter_map(|path| path.parent()).collect();
+    folders.dedup();
+    if let [one, other] = folders[..]
+        && one.parent() == other.parent()
+    {
+        folders.extend(one.parent());
+    }
+    let mut found = Vec::new();
+    for folder in folders {
+        let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+        let entries = std::fs::read_dir(folder).into_iter().flatten().flatten().take(MOST_FILES);
+        let named = entries.filter(|entry| CAMERA.is_match(&entry.file_name().to_string_lossy()));
+        found.extend(named.map(|entry| entry.path()).filter(|path| path.is_file()));
+    }
+    found.sort();
+    found
+}
+
 /// The path below the folder.
-fn name_in(folder: &Path, path: &Path) -> String {
+pub fn name_in(folder: &Path, path: &Path) -> String {
     path.strip_prefix(folder).unwrap_or(path).to_string_lossy().replace('\\', "/")
 }
 
 /// The name itself.
-fn base(name: &str) -> &str {
+pub fn base(name: &str) -> &str {
     name.rsplit('/').next().unwrap_or(name)
+}
+
+/// A name without its ending.
+pub fn stem(name: &str) -> &str {
+    ENDING.find(name).map_or(name, |ending| &name[..ending.start()])
 }
 
 /// Numbers in names by their value, and capitals beside their small letters: natord and alphanumeric-sort put all capitals first.
@@ -127,7 +182,7 @@ fn common(name: &str) -> String {
 }
 
 /// What files of one frame have in common: letters of any script, in either case, and numbers without leading zeros.
-fn key(name: &str) -> String {
+pub fn key(name: &str) -> String {
     let left = common(base(name)).to_lowercase();
     let words = left.split(|letter: char| !letter.is_alphanumeric() && letter != '.').map(|word| {
         let word = word.trim_matches('.');
@@ -156,7 +211,7 @@ fn listed(path: &Path) -> Result<Vec<(f64, String)>> {
 }
 
 /// The pairs of rgb.txt and depth.txt, where both are there.
-fn tum(folder: &Path, files: &[PathBuf], warnings: &mut Vec<String>) -> Result<Option<Vec<Pair>>> {
+fn tum(folder: &Path, files: &[PathBuf], warnings: &mut Warnings) -> Result<Option<Vec<Pair>>> {
     let list = |name: &str| files.iter().find(|path| base(&name_in(folder, path)).eq_ignore_ascii_case(name));
     let (Some(colours), Some(depths)) = (list("rgb.txt"), list("depth.txt")) else { return Ok(None) };
     let root = colours.parent().unwrap_or(folder);
@@ -175,7 +230,10 @@ fn tum(folder: &Path, files: &[PathBuf], warnings: &mut Vec<String>) -> Result<O
         .collect();
     if pairs.len() < count {
         let missing = count - pairs.len();
-        warnings.push(format!("{missing} of the {count} pairs that rgb.txt and depth.txt list are not in the folder."));
+        warnings.add(
+            "pairs-missing",
+            format!("{missing} of the {count} pairs that rgb.txt and depth.txt list are not in the folder."),
+        );
     }
     Ok(Some(pairs))
 }
@@ -200,7 +258,7 @@ fn by_time(mut colours: Vec<(f64, String)>, mut depths: Vec<(f64, String)>) -> V
 }
 
 /// By like names; where those differ throughout, in their order.
-fn by_names(folder: &Path, files: &[PathBuf], warnings: &mut Vec<String>) -> Vec<Pair> {
+fn by_names(folder: &Path, files: &[PathBuf], warnings: &mut Warnings) -> Vec<Pair> {
     let is_picture = |path: &&PathBuf| {
         PICTURE.is_match(&path.to_string_lossy())
             || read::head(path, HEAD).is_ok_and(|bytes| read::kind_of(&bytes).is_some())
@@ -222,14 +280,26 @@ fn by_names(folder: &Path, files: &[PathBuf], warnings: &mut Vec<String>) -> Vec
     if !pairs.is_empty() || depths.len() != colours.len() {
         let taken: HashSet<&PathBuf> = paired().flat_map(|((_, depth), (_, colour))| [depth, colour]).collect();
         let lone = colours.iter().chain(&depths).filter(|(_, path)| !pairs.is_empty() && !taken.contains(path));
-        warnings
-            .extend(lone.map(|(_, path)| format!("{}: no other file's name fits it alone (left out).", shown(path))));
+        let is_ambiguous = |(name, _): &(String, PathBuf)| {
+            depths.iter().any(|(depth, _)| depth == name) && colours.iter().any(|(other, _)| key(other) == key(name))
+        };
+        for file in lone {
+            let name = plain(&file.0);
+            if is_ambiguous(file) {
+                warnings.push(
+                    Warning::new("names-ambiguous", "several files have names like this one; it was left out.")
+                        .of_file(&name),
+                );
+            } else {
+                warnings.push(Warning::new(ALONE, "no other file's name fits it alone (left out).").of_file(&name));
+            }
+        }
         return pairs;
     }
     if depths.len() > 1 {
         let count = depths.len();
-        warnings.push(format!(
-            "No name of a depth map is like one of a colour image: the {count} of each were paired in the order of their names."
+        warnings.add("pairs-by-order", format!(
+            "No depth map has a name like a colour image's; the {count} of each were paired in the order of their names."
         ));
     }
     depths.iter().zip(&colours).map(|((name, depth), (_, colour))| of(key(name), colour, depth)).collect()
@@ -257,7 +327,7 @@ fn partners(colours: &[(String, PathBuf)], depths: &[(String, PathBuf)]) -> Vec<
 fn pair(name: String, image: &Path, depth: &Path, any_mask: Option<PathBuf>, unit: Option<f64>) -> Pair {
     let stem = || image.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
     let files = Files { image: image.into(), depth: depth.into(), image_mask: None, depth_mask: None, any_mask, unit };
-    Pair { name: if name.is_empty() { stem() } else { name }, files }
+    Pair { name: if name.is_empty() { stem() } else { name.clone() }, key: name, files }
 }
 
 /// Two pairs of one name get a number each, so that neither writes over the other's results.

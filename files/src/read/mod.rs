@@ -10,12 +10,14 @@ use std::path::Path;
 use bimodal_stereo::{Light, LightGaussian, LightPrior};
 
 use crate::problem::{Problem, Result};
+use crate::text::words;
+use crate::warning::Warning;
 pub use npy::bytes as npy_bytes;
 
 /// Largest file that is read, as in js/rig/formats/limits.ts; what is no file (/dev/zero) ends there too.
 const MOST_BYTES: u64 = 64 << 20;
 /// Pixels on a side, as for all images of the library.
-const MOST_SIDE: usize = 4096;
+pub const MOST_SIDE: usize = 4096;
 
 #[derive(Clone, Debug, PartialEq)]
 pub enum Samples {
@@ -37,8 +39,10 @@ pub struct Raster {
     pub is_lossy: bool,
     /// Whether the file says that its numbers are proportional to intensity; `None` where it says nothing.
     pub linear: Option<bool>,
+    /// The chunk of a PNG that states it: "sRGB" or "linear".
+    pub encoding: Option<&'static str>,
     pub notes: Vec<String>,
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Warning>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -62,7 +66,7 @@ pub fn head(path: &Path, most: u64) -> std::io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-fn whole(path: &Path) -> Result<Vec<u8>> {
+pub fn whole(path: &Path) -> Result<Vec<u8>> {
     let bytes = head(path, MOST_BYTES + 1).map_err(|error| Problem::file(path, error))?;
     match bytes.len() as u64 {
         0 => Err(Problem::file(path, "it is empty")),
@@ -75,14 +79,17 @@ fn whole(path: &Path) -> Result<Vec<u8>> {
 
 /// A picture or an array.
 pub fn raster(path: &Path) -> Result<Raster> {
-    let bytes = whole(path)?;
-    let read = match kind_of(&bytes) {
-        Some(Kind::Png) => picture::png(&bytes),
-        Some(Kind::Jpeg) => picture::jpeg(&bytes),
-        Some(Kind::Npy) => npy::read(&bytes),
-        None => Err("it is neither a PNG nor a JPEG nor a .npy file".into()),
-    };
-    read.map_err(|reason| Problem::file(path, reason))
+    decoded(&whole(path)?).map_err(|reason| Problem::file(path, reason))
+}
+
+/// The same of a file's bytes, or why it is not read.
+pub fn decoded(bytes: &[u8]) -> std::result::Result<Raster, String> {
+    match kind_of(bytes) {
+        Some(Kind::Png) => picture::png(bytes),
+        Some(Kind::Jpeg) => picture::jpeg(bytes),
+        Some(Kind::Npy) => npy::read(bytes),
+        None => Err(format!("it is neither a PNG nor a JPEG nor a .npy file: {}", words::strange(bytes))),
+    }
 }
 
 /// Refuses what is too large before anything is made of it.

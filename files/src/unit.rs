@@ -4,9 +4,11 @@
 
 use std::collections::HashSet;
 
+use crate::text::numbers::brief;
+
 /// Depths of which a camera is expected to see, metres.
-const NEAREST: f64 = 0.1;
-const FARTHEST: f64 = 20.0;
+pub const NEAREST: f64 = 0.1;
+pub const FARTHEST: f64 = 20.0;
 /// A few stray depths say nothing of the unit: of those beyond the range so many may be.
 const STRAY: f64 = 0.01;
 /// Half of what indoor sensors with integer depths see lies nearer, metres; beyond it the unit is not the millimetre.
@@ -22,11 +24,50 @@ const LARGEST: f64 = 1e12;
 /// Quantiles need no more values than these.
 const SAMPLE: usize = 65_536;
 
-/// Metres for each stored number, and why.
-#[derive(Clone, Debug, PartialEq)]
+/// Metres for each stored number, and how that is known.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Unit {
     pub metres: f64,
-    pub says: String,
+    pub is_guessed: bool,
+    /// What the values show, where the guess needs a reason.
+    why: &'static str,
+}
+
+impl Unit {
+    /// One that was given.
+    pub const fn given(metres: f64) -> Self {
+        Self { metres, is_guessed: false, why: "" }
+    }
+
+    const fn guessed(metres: f64, why: &'static str) -> Self {
+        Self { metres, is_guessed: true, why }
+    }
+
+    /// What values that are turned by three bits are in, once they are turned back.
+    pub const TURNED: Self = Self::guessed(0.001, "SUN RGB-D");
+
+    /// The unit by its name.
+    pub fn name(&self) -> String {
+        const NAMED: [(f64, &str); 5] = [
+            (1.0, "metres"),
+            (0.001, "millimetres"),
+            (0.01, "centimetres"),
+            (0.0002, "fifths of a millimetre, 5000 to the metre"),
+            (0.0001, "tenths of a millimetre"),
+        ];
+        let named = NAMED.into_iter().find(|(metres, _)| (self.metres / metres - 1.0).abs() < 1e-6);
+        named.map_or_else(|| format!("units of {} mm", brief(1000.0 * self.metres, 4)), |(_, name)| name.into())
+    }
+
+    /// .. with a word on the guess.
+    pub fn says(&self) -> String {
+        match (*self == Self::TURNED, self.is_guessed, self.why) {
+            (true, ..) => "millimetres with their bits turned by three (SUN RGB-D; guessed)".into(),
+            (_, false, _) => self.name(),
+            (_, true, "") => format!("{} (guessed)", self.name()),
+            (_, true, why) => format!("{} (guessed: {why})", self.name()),
+        }
+    }
 }
 
 /// The valid values in order, at most [`SAMPLE`] of them.
@@ -62,31 +103,45 @@ impl Sample {
         let fives = self.is_varied()
             && self.share(|value| value % 5.0 == 0.0) >= NEARLY_ALL
             && self.median() > 1000.0 * NEAREST * 5.0;
-        let (metres, why) = match () {
-            () if fives => (0.0002, "fifths of a millimetre, as all are multiples of 5"),
-            () if self.median() > 1000.0 * USUAL => {
-                (0.0002, "fifths of a millimetre, as they are too far for millimetres")
-            }
-            () => (0.001, "millimetres"),
-        };
-        Unit { metres, says: why.into() }
+        if fives {
+            return Unit::guessed(0.0002, "all values are multiples of 5");
+        }
+        if self.median() > 1000.0 * USUAL {
+            return Unit::guessed(0.0002, "too far for millimetres");
+        }
+        Unit::guessed(0.001, "")
     }
 
     /// The unit of floats: millimetres if half of them lay beyond what metres would reach.
     pub fn unit_of_floats(&self) -> Unit {
-        if self.median() > FARTHEST {
-            Unit { metres: 0.001, says: "millimetres".into() }
-        } else {
-            Unit { metres: 1.0, says: "metres".into() }
-        }
+        Unit::guessed(if self.median() > FARTHEST { 0.001 } else { 1.0 }, "")
+    }
+
+    /// Whether half of whole numbers without a unit is so large that they are no pixels of an object but millimetres of a camera.
+    pub fn looks_like_millimetres(&self) -> bool {
+        self.is_varied() && self.median() > 1000.0 * NEAREST
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// Whether the largest value is that with which a Kinect's raw disparity marks what it does not see, and common.
+    pub fn looks_like_disparity(&self) -> bool {
+        const BLIND: f64 = 2047.0;
+        self.0.last() == Some(&BLIND) && self.share(|value| value == BLIND) > STRAY
+    }
+
+    /// The share of depths beyond what a rig's camera is expected to see, where that is more than some stray ones.
+    pub fn beyond(&self, metres: f64) -> Option<f64> {
+        let beyond = self.share(|value| value * metres < NEAREST || value * metres > FARTHEST);
+        (beyond > STRAY).then_some(beyond)
     }
 
     /// What is wrong with depths of that unit.
     pub fn warning(&self, metres: f64) -> Option<String> {
-        let beyond = self.share(|value| value * metres < NEAREST || value * metres > FARTHEST);
-        let says =
-            format!("{:.1} % of the depths are outside {NEAREST} to {FARTHEST} m: is the unit right?", 100.0 * beyond);
-        (beyond > STRAY).then_some(says)
+        let share = 100.0 * self.beyond(metres)?;
+        Some(format!("{share:.1} % of the depths are outside {NEAREST} to {FARTHEST} m: is the unit right?"))
     }
 }
 

@@ -6,6 +6,8 @@ use image::metadata::Orientation;
 use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
 use moxcms::{ColorProfile, Layout, TransformOptions};
 
+use crate::warning::Warning;
+
 use super::{MOST_SIDE, Raster, Samples, check_size};
 
 /// Bytes that a decoder may ask for: 4096x4096 pixels of four channels of 16 bits, and as much again.
@@ -28,9 +30,11 @@ pub fn png(bytes: &[u8]) -> Result<Raster> {
         return Ok(raster);
     }
     match (profile, gamma) {
-        _ if has_srgb => raster.linear = Some(false),
+        _ if has_srgb => (raster.linear, raster.encoding) = (Some(false), Some("sRGB")),
         (Some(profile), _) => to_srgb(&mut raster, &profile),
-        (None, Some(gamma)) if (gamma / LINEAR - 1.0).abs() < SAME => raster.linear = Some(true),
+        (None, Some(gamma)) if (gamma / LINEAR - 1.0).abs() < SAME => {
+            (raster.linear, raster.encoding) = (Some(true), Some("linear"));
+        }
         _ => {}
     }
     Ok(raster)
@@ -66,6 +70,19 @@ fn decoded(bytes: &[u8], format: ImageFormat) -> image::ImageResult<(Raster, Opt
     Ok((raster_of(picture, orientation), profile))
 }
 
+/// What EXIF says in words.
+const fn turned(orientation: Orientation) -> &'static str {
+    match orientation {
+        Orientation::NoTransforms => "not turned",
+        Orientation::FlipHorizontal => "mirrored",
+        Orientation::FlipVertical => "mirrored upside down",
+        Orientation::Rotate90FlipH | Orientation::Rotate270FlipH => "mirrored and turned",
+        Orientation::Rotate90 => "turned by 90 degrees",
+        Orientation::Rotate180 => "turned by 180 degrees",
+        Orientation::Rotate270 => "turned by 270 degrees",
+    }
+}
+
 fn raster_of(picture: DynamicImage, orientation: Orientation) -> Raster {
     let (width, height) = (picture.width() as usize, picture.height() as usize);
     let channels = usize::from(picture.color().channel_count());
@@ -79,10 +96,12 @@ fn raster_of(picture: DynamicImage, orientation: Orientation) -> Raster {
     let bits = if matches!(samples, Samples::U16(_)) { 16 } else { 8 };
     let (mut notes, mut warnings) = (Vec::new(), Vec::new());
     if orientation != Orientation::NoTransforms {
-        notes.push("turned as EXIF says".into());
-        warnings.push("The picture was turned as EXIF says: intrinsics have to be those of the turned picture.".into());
+        let note = format!("{} as EXIF says", turned(orientation));
+        let words = format!("The picture was {note}; the intrinsics must be those of the turned picture.");
+        warnings.push(Warning::new("image-turned", words));
+        notes.push(note);
     }
-    Raster { width, height, channels, samples, bits, is_lossy: false, linear: None, notes, warnings }
+    Raster { width, height, channels, samples, bits, is_lossy: false, linear: None, encoding: None, notes, warnings }
 }
 
 /// Whether the picture's own end is there: a preview in the file's remarks has one too, and segments are passed over by their length.
@@ -113,7 +132,10 @@ fn to_srgb(raster: &mut Raster, profile: &[u8]) {
             raster.linear = Some(false);
             raster.notes.push("from its colour profile to sRGB".into());
         }
-        None => raster.warnings.push("Its colour profile is left out: colours are taken for sRGB.".into()),
+        None => {
+            let words = "The colour profile is not supported; colours are read as sRGB.";
+            raster.warnings.push(Warning::new("colour-profile-ignored", words));
+        }
     }
 }
 

@@ -59,6 +59,7 @@ pub fn read(bytes: &[u8]) -> Result<Raster> {
         bits,
         is_lossy: false,
         linear: None,
+        encoding: None,
         notes: Vec::new(),
         warnings: Vec::new(),
     })

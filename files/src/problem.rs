@@ -10,21 +10,29 @@ pub type Result<T> = std::result::Result<T, Problem>;
 pub struct Problem {
     pub code: &'static str,
     pub field: String,
+    /// Of the message, where it begins with a file's name, the rest.
+    reason: usize,
     message: String,
 }
 
 impl Problem {
     /// A file that cannot be read, written or understood.
     pub fn file(path: &Path, reason: impl fmt::Display) -> Self {
-        Self { code: "file", field: "file".into(), message: format!("{}: {reason}", shown(path)) }
+        let name = format!("{}: ", shown(path));
+        Self { code: "file", field: "file".into(), reason: name.len(), message: format!("{name}{reason}") }
+    }
+
+    /// A depth map of a camera that is not given.
+    pub fn camera(path: &Path, reason: impl fmt::Display) -> Self {
+        Self { code: "missing", field: "depth.camera".into(), ..Self::file(path, reason) }
     }
 
     /// An argument, or the arguments together.
     pub fn option(field: &str, reason: impl fmt::Display) -> Self {
-        Self { code: "option", field: field.into(), message: format!("{field}: {reason}") }
+        Self { code: "option", field: field.into(), reason: 0, message: format!("{field}: {reason}") }
     }
 
-    /// What the library says of a pair, with the file of the view at fault.
+    /// What the library says about a pair, with the file of the view at fault.
     pub fn of_pair(error: &bimodal_stereo::Error, image: &Path, depth: &Path) -> Self {
         let path = match error.field() {
             field if field.starts_with("image") => Some(image),
@@ -32,7 +40,17 @@ impl Problem {
             _ => None,
         };
         let message = path.map_or_else(|| error.to_string(), |path| format!("{}: {error}", shown(path)));
-        Self { code: error.kind().code(), field: error.field().into(), message }
+        Self { code: error.kind().code(), field: error.field().into(), reason: 0, message }
+    }
+
+    /// What the library says about the inputs of a check.
+    pub fn of_check(error: &bimodal_stereo::Error) -> Self {
+        Self { code: error.kind().code(), field: error.field().into(), reason: 0, message: error.to_string() }
+    }
+
+    /// The message without the file's name.
+    pub fn reason(&self) -> &str {
+        &self.message[self.reason..]
     }
 }
 

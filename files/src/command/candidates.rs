@@ -1,0 +1,85 @@
+//! The extrinsics in question, from their files.
+
+use std::path::{Path, PathBuf};
+
+use bimodal_stereo::Similarity;
+
+use super::arguments::Arguments;
+use super::base;
+use crate::problem::{Problem, Result};
+use crate::rig::{Reading, given_name, read_calibration, says};
+use crate::text::names::{Pattern, pattern};
+use crate::text::{Calibration, NamedPose};
+use crate::warning::{Warning, Warnings};
+
+static COLOUR: Pattern = Pattern::new(|| pattern("(?i)colou?r|rgb"));
+static DEPTH: Pattern = Pattern::new(|| pattern(r"(?i)depth|infra|\bir\b|tof"));
+
+pub struct Candidates {
+    /// By name, that in question first.
+    pub poses: Vec<(String, Similarity)>,
+    pub readings: Vec<Reading>,
+    /// Calibrations that hold cameras as well.
+    pub cameras: Vec<PathBuf>,
+}
+
+/// Whether names state that a pose carries colour to depth.
+fn is_backwards(pose: &NamedPose) -> bool {
+    let [from, to] = [&pose.names.from, &pose.names.to].map(|name| name.as_deref().unwrap_or(""));
+    COLOUR.is_match(from) && !DEPTH.is_match(from) && DEPTH.is_match(to) && !COLOUR.is_match(to)
+}
+
+pub fn candidates(arguments: &Arguments, warnings: &mut Warnings) -> Result<Candidates> {
+    let mut found = Candidates { poses: Vec::new(), readings: Vec::new(), cameras: Vec::new() };
+    let mut read = Vec::new();
+    for path in &arguments.calibration {
+        let one = read_calibration(path)?;
+        let name = given_name(path);
+        warnings.extend(one.warnings.0.iter().map(|warning| warning.of_file(&name)));
+        found.readings.push(Reading { name: name.clone(), path: path.clone(), says: says(&one) });
+        if !one.cameras.is_empty() {
+            found.cameras.push(path.clone());
+        }
+        read.push((path, name, one));
+    }
+    for (path, name, one) in read {
+        add(path, &name, one, arguments.inverted, &mut found.poses, warnings)?;
+    }
+    Ok(found)
+}
+
+fn add(
+    path: &Path,
+    name: &str,
+    calibration: Calibration,
+    is_inverted: bool,
+    poses: &mut Vec<(String, Similarity)>,
+    warnings: &mut Warnings,
+) -> Result<()> {
+    if calibration.poses.is_empty() {
+        return Err(Problem::file(path, "it holds no extrinsics"));
+    }
+    let is_only = calibration.poses.len() == 1;
+    for (index, pose) in calibration.poses.iter().enumerate() {
+        let own = match (&pose.names.name, &pose.names.from, &pose.names.to) {
+            (Some(name), ..) => name.clone(),
+            (None, Some(from), Some(to)) => format!("{from} to {to}"),
+            _ => format!("pose {}", index + 1),
+        };
+        let title = if is_only { base(path) } else { format!("{}, {own}", base(path)) };
+        let turns = is_inverted || is_backwards(pose);
+        if turns && !is_inverted {
+            let [from, to] = [&pose.names.from, &pose.names.to].map(|name| name.as_deref().unwrap_or(""));
+            let words = format!("it carries {from} to {to}; its inverse was checked.");
+            warnings.push(Warning::new("inverse-checked", words).of_file(name));
+        }
+        // A number as a name would come first in JavaScript, and two files may have one name.
+        let is_number = title.bytes().all(|letter| letter.is_ascii_digit());
+        let mut unique = if is_number { format!("\"{title}\"") } else { title };
+        while poses.iter().any(|(known, _)| *known == unique) {
+            unique.push('\'');
+        }
+        poses.push((unique, if turns { pose.pose.inverse() } else { pose.pose }));
+    }
+    Ok(())
+}

@@ -1,0 +1,223 @@
+//! The command `check`: the calibration of a rig over a folder of frames, for a shell and for continuous integration.
+//!
+//! `arguments` states what can be asked, `candidates` reads the calibrations in question, and `text`, `json` and `page` write what came out.
+//! The help text is that of the package for JavaScript, line by line.
+
+mod arguments;
+mod candidates;
+mod json;
+mod page;
+mod progress;
+mod text;
+
+use std::collections::BTreeMap;
+use std::ffi::OsString;
+use std::fs;
+use std::io::{self, ErrorKind, Write};
+use std::path::{Path, PathBuf};
+
+use bimodal_stereo::{CalibrationCheck, CheckReport, CheckVerdict};
+use clap::Parser;
+use serde_json::{Value, json};
+use sha2::{Digest, Sha256};
+
+use crate::problem::{Problem, Result, shown};
+use crate::rig::{FolderOptions, RigFolder, read_rig_folder};
+use crate::warning::Warnings;
+use arguments::Arguments;
+use candidates::{Candidates, candidates};
+use progress::Progress;
+
+pub use arguments::HELP;
+
+/// Exit codes besides those of the verdicts.
+const BAD: u8 = 3;
+const INTERRUPTED: u8 = 130;
+
+/// Where the command writes, and when it ends before its time.
+pub struct Terminal<'a> {
+    pub out: &'a mut dyn Write,
+    pub err: &'a mut dyn Write,
+    /// Whether `err` is one that a person looks at.
+    pub is_terminal: bool,
+    /// Asked between two slices of the work.
+    pub is_interrupted: &'a mut dyn FnMut() -> bool,
+}
+
+/// A file that was read, with the hash by which it can be recognised.
+#[derive(Clone, Debug, serde::Serialize)]
+pub(crate) struct Input {
+    name: String,
+    says: String,
+    sha256: String,
+}
+
+/// A warning of the check or of the readers.
+pub(crate) struct Said {
+    message: String,
+    is_doubt: bool,
+    json: Value,
+}
+
+/// What a check found, with what the readers add to it.
+pub(crate) struct Checked {
+    report: CheckReport,
+    verdict: CheckVerdict,
+    code: &'static str,
+    reason: String,
+    warnings: Vec<Said>,
+    inputs: Vec<Input>,
+}
+
+/// Why there is no verdict.
+enum End {
+    Problem(Problem),
+    Interrupted,
+}
+
+impl From<Problem> for End {
+    fn from(problem: Problem) -> Self {
+        Self::Problem(problem)
+    }
+}
+
+/// Runs the command with its arguments, those behind `check`; the exit code.
+pub fn run(arguments: impl IntoIterator<Item = OsString>, terminal: &mut Terminal<'_>) -> u8 {
+    let name = OsString::from("check");
+    let parsed = Arguments::try_parse_from([name].into_iter().chain(arguments));
+    let ended = match parsed {
+        Ok(arguments) => arguments.checked().map_err(End::from).and_then(|()| check(&arguments, terminal)),
+        Err(said) if said.use_stderr() => {
+            let _ = write!(terminal.err, "{said}");
+            return BAD;
+        }
+        Err(said) => print(terminal.out, &said.to_string()).map(|()| 0).map_err(End::from),
+    };
+    match ended {
+        Ok(code) => code,
+        Err(End::Interrupted) => {
+            let _ = writeln!(terminal.err, "interrupted");
+            INTERRUPTED
+        }
+        Err(End::Problem(problem)) => {
+            let _ = writeln!(terminal.err, "{problem}");
+            BAD
+        }
+    }
+}
+
+fn check(arguments: &Arguments, terminal: &mut Terminal<'_>) -> std::result::Result<u8, End> {
+    let mut warnings = Warnings::default();
+    let Candidates { poses, readings, cameras } = candidates(arguments, &mut warnings)?;
+    let options = FolderOptions {
+        unit: arguments.unit,
+        frames: arguments.frames,
+        cameras: arguments.cameras.iter().cloned().chain(cameras).collect(),
+        except: arguments.calibration.clone(),
+    };
+    let RigFolder { frames, readings: read, warnings: doubts, .. } = read_rig_folder(&arguments.folder, &options)?;
+    if frames.is_empty() {
+        let first = doubts.first().map(|warning| format!(": {warning}")).unwrap_or_default();
+        let folder = &arguments.folder;
+        let reason = format!("it holds no pair of a colour image and a depth map that could be read{first}");
+        return Err(Problem::file(folder, reason).into());
+    }
+    let run = CalibrationCheck::new(frames, poses, &arguments.cues).map_err(|error| Problem::of_check(&error))?;
+    let report = finished(run, terminal)?;
+    let mut all = Warnings::default();
+    all.extend(warnings.0);
+    all.extend(doubts);
+    let own = report.warnings.iter().map(|one| Said { message: one.to_string(), is_doubt: true, json: json!(one) });
+    let others =
+        all.0.iter().map(|one| Said { message: one.message.clone(), is_doubt: one.is_doubt(), json: json!(one) });
+    let warnings = own.chain(others).collect();
+    let files = readings.iter().chain(&read).map(|each| (each.name.clone(), (each.says.clone(), each.path.clone())));
+    let checked = capped(report, warnings, inputs(files)?);
+    write(&checked, arguments, terminal)?;
+    Ok(match checked.verdict {
+        CheckVerdict::Consistent => 0,
+        CheckVerdict::Off => 1,
+        CheckVerdict::Undecided => 2,
+    })
+}
+
+/// Runs the check to its end under a bar.
+fn finished(mut check: CalibrationCheck, terminal: &mut Terminal<'_>) -> std::result::Result<CheckReport, End> {
+    let mut progress = Progress::new(terminal.is_terminal);
+    loop {
+        let is_done = check.step();
+        let (share, words) = check.progress();
+        progress.show(share, words, terminal.err);
+        if (terminal.is_interrupted)() {
+            progress.end(terminal.err);
+            return Err(End::Interrupted);
+        }
+        if is_done {
+            break;
+        }
+    }
+    progress.end(terminal.err);
+    let report = check.report().cloned();
+    report.ok_or_else(|| Problem::option("check", "ended without a report").into())
+}
+
+/// What the readers guessed keeps the verdict from green, as the check's own warnings do.
+fn capped(report: CheckReport, warnings: Vec<Said>, inputs: Vec<Input>) -> Checked {
+    /// That of the check's own warnings.
+    const DOUBTFUL: &str = "doubtful";
+    let (mut verdict, mut code, mut reason) = (report.verdict, report.reason.code(), report.reason.to_string());
+    if let (CheckVerdict::Consistent, Some(first)) = (verdict, warnings.iter().find(|warning| warning.is_doubt)) {
+        reason = format!("Settled, but check: {} {reason}", first.message);
+        (verdict, code) = (CheckVerdict::Undecided, DOUBTFUL);
+    }
+    Checked { report, verdict, code, reason, warnings, inputs }
+}
+
+/// Each file once, in the order in which it was first read.
+fn inputs(files: impl Iterator<Item = (String, (String, PathBuf))>) -> Result<Vec<Input>> {
+    let (mut order, mut last) = (Vec::new(), BTreeMap::new());
+    for (name, read) in files {
+        if last.insert(name.clone(), read).is_none() {
+            order.push(name);
+        }
+    }
+    let input = |name: String| {
+        let (says, path) = &last[&name];
+        let bytes = fs::read(path).map_err(|error| Problem::file(path, error))?;
+        let sha256 = Sha256::digest(&bytes).iter().map(|byte| format!("{byte:02x}")).collect();
+        Ok(Input { says: says.clone(), sha256, name })
+    };
+    order.into_iter().map(input).collect()
+}
+
+fn write(checked: &Checked, arguments: &Arguments, terminal: &mut Terminal<'_>) -> Result<()> {
+    let is_json = arguments.json.as_deref() == Some(Path::new("-"));
+    if let Some(path) = arguments.json.as_ref().filter(|_| !is_json) {
+        fs::write(path, json::json(checked)).map_err(|error| Problem::file(path, error))?;
+    }
+    if let Some(path) = &arguments.report {
+        let page = page::page(checked, &format!("Check of {}", base(&arguments.calibration[0])));
+        fs::write(path, page).map_err(|error| Problem::file(path, error))?;
+    }
+    let words = text::text(checked);
+    if !is_json {
+        return print(terminal.out, &words);
+    }
+    print(terminal.err, &words)?;
+    print(terminal.out, &json::json(checked))
+}
+
+/// A reader that has seen enough (`head`) is no fault.
+fn print(to: &mut dyn Write, text: &str) -> Result<()> {
+    match to.write_all(text.as_bytes()).and_then(|()| to.flush()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+            Err(Problem::file(Path::new("standard output"), io::Error::from(error.kind())))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// A file's own name.
+fn base(path: &Path) -> String {
+    path.file_name().map_or_else(|| shown(path), |name| crate::plain(&name.to_string_lossy()))
+}

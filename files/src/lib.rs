@@ -1,0 +1,26 @@
+//! Files of a colour camera and a depth camera, as [`bimodal_stereo`] takes what is in them.
+//!
+//! [`read_rig_folder`] reads a whole folder of frames with their cameras, [`read_calibration`] the cameras and poses of one text: matrices,
+//! JSON, YAML and XML by the names of their members (OpenCV, ROS, Kalibr, Open3D), and what RealSense's and COLMAP's programs write. Pictures
+//! are PNG, JPEG and `.npy`; whatever else there is, an error names it. What a reader guesses is a [`Warning`].
+//!
+//! Every size that a file declares is checked before anything is made of it.
+
+mod assign;
+pub mod colour;
+#[cfg(feature = "command")]
+pub mod command;
+mod depth;
+pub mod pairs;
+mod problem;
+pub mod read;
+mod rig;
+mod text;
+pub mod unit;
+mod warning;
+
+pub use assign::assigned;
+pub use problem::{Problem, Result, plain, shown};
+pub use rig::{FolderOptions, Reading, RigFolder, read_calibration, read_corner, read_rig_folder, says};
+pub use text::{Calibration, NamedCamera, NamedPose, Names};
+pub use warning::{Warning, Warnings};

@@ -1,0 +1,236 @@
+//! Text files of cameras and poses: what they are is recognised by their words, and what they hold comes out as cameras and poses.
+//!
+//! | file | what it holds |
+//! |---|---|
+//! | `numbers` | numbers and matrices as files write them |
+//! | `cameras`, `poses` | what a file states about a camera or a motion, checked |
+//! | `names`, `tree` | members of JSON, YAML and XML by their names |
+//! | `plain`, `realsense`, `ros`, `colmap` | matrices and trajectories, and what these programs write |
+//! | `words` | cameras and poses in plain words |
+
+mod cameras;
+mod colmap;
+pub(crate) mod names;
+pub mod numbers;
+mod plain;
+pub mod poses;
+mod realsense;
+mod ros;
+mod tree;
+pub mod words;
+
+use bimodal_stereo::{RigCamera, Similarity};
+use serde::Deserialize;
+use serde_json::{Map, Value};
+
+pub use crate::warning::Warnings;
+pub use cameras::coefficients;
+pub use poses::Names;
+
+/// Why a file is not read, without its name.
+pub type Reason = String;
+
+/// A camera with the size of its images, where the file states it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NamedCamera {
+    pub name: Option<String>,
+    pub camera: RigCamera,
+    /// Columns and rows.
+    pub size: Option<[usize; 2]>,
+}
+
+/// P_to = R P_from + t, metres.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NamedPose {
+    pub names: Names,
+    pub pose: Similarity,
+}
+
+/// What a text holds.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Calibration {
+    pub cameras: Vec<NamedCamera>,
+    pub poses: Vec<NamedPose>,
+    pub warnings: Warnings,
+    /// What kind of text it is.
+    pub format: String,
+}
+
+/// Characters of a text that holds cameras or poses; a trajectory of ten thousand poses has a million.
+const MOST_TEXT: usize = 4 << 20;
+/// Characters of YAML: calibrations have a few thousand.
+const MOST_YAML: usize = 1 << 18;
+const NO_FORM: &str = "it is a text in none of the forms that are read here";
+
+/// The text of a file, or nothing where its bytes are none.
+pub fn text_of(bytes: &[u8]) -> Option<String> {
+    if bytes.len() > MOST_TEXT {
+        return None;
+    }
+    let wide = |bytes: &[u8], order: fn([u8; 2]) -> u16| {
+        let units: Vec<u16> = bytes.as_chunks().0.iter().map(|&pair| order(pair)).collect();
+        String::from_utf16(&units).ok()
+    };
+    let text = match bytes {
+        [0xff, 0xfe, rest @ ..] => wide(rest, u16::from_le_bytes)?,
+        [0xfe, 0xff, rest @ ..] => wide(rest, u16::from_be_bytes)?,
+        _ => String::from_utf8(bytes.to_vec()).ok()?,
+    };
+    // Control characters tell bytes from text.
+    let is_binary = |letter: char| matches!(letter, '\0'..='\x08' | '\x0e'..='\x1f');
+    (!text.contains(is_binary)).then_some(text)
+}
+
+/// What a text holds, with a word on what kind of text it is.
+pub fn read_text(text: &str) -> Result<Calibration, Reason> {
+    let text = text.trim_start_matches('\u{feff}').trim();
+    if text.is_empty() {
+        return Err("it is empty: there is nothing in it but spaces".into());
+    }
+    if ros::is_publisher(text) {
+        return ros::read_publishers(text);
+    }
+    if ros::is_echo(text) {
+        return ros::read_echo(text);
+    }
+    if realsense::is_enumeration(text) {
+        return realsense::read(text);
+    }
+    if text.starts_with('<') {
+        return searched(&xml(text)?, "XML");
+    }
+    if colmap::is_colmap(text) {
+        return colmap::read(text);
+    }
+    if let Some(found) = plain::read(text)? {
+        return Ok(found);
+    }
+    if text.starts_with(['{', '[']) {
+        return searched(&json(text)?, "JSON");
+    }
+    searched(&yaml(text)?, "YAML")
+}
+
+fn searched(value: &Value, format: &str) -> Result<Calibration, Reason> {
+    const NEITHER: &str = "neither a camera (camera_matrix, K, fx fy cx cy, intrinsics) nor a motion (R and T, T_.., rotation and translation, a 4x4 matrix)";
+    let is_text = |value: &Value| !value.is_object() && !value.is_array();
+    if is_text(value) || value.as_array().is_some_and(|all| all.iter().all(is_text)) {
+        return Err(NO_FORM.into());
+    }
+    let mut found = tree::search(value)?;
+    if found.cameras.is_empty() && found.poses.is_empty() {
+        return Err(format!("it is {format}, but holds {NEITHER} that is known here"));
+    }
+    found.format = format.into();
+    Ok(found)
+}
+
+fn json(text: &str) -> Result<Value, Reason> {
+    // Python writes these three, which JSON does not have; nothing of a calibration may be one of them.
+    static NONE: names::Pattern = names::Pattern::new(|| names::pattern(r"-?\bInfinity\b|\bNaN\b"));
+    let plain = NONE.replace_all(text, "null");
+    serde_json::from_str(&plain).map_err(|error| format!("this JSON is damaged or cut off ({error})"))
+}
+
+fn yaml(text: &str) -> Result<Value, Reason> {
+    if text.len() > MOST_YAML {
+        return Err(format!(
+            "it is text of {} characters, in none of the forms that are read here",
+            text.chars().count()
+        ));
+    }
+    let plain = with_colons(&plain_yaml(text));
+    let documents: Result<Vec<_>, _> =
+        serde_yaml_ng::Deserializer::from_str(&plain).map(serde_yaml_ng::Value::deserialize).collect();
+    let mut documents = documents.map_err(|error| format!("{NO_FORM}, or damaged (as YAML: {error})"))?;
+    let value = if documents.len() == 1 { documents.remove(0) } else { serde_yaml_ng::Value::Sequence(documents) };
+    Ok(plain_value(value))
+}
+
+/// OpenCV's YAML begins with "%YAML:1.0", which YAML does not have, and marks its matrices by a tag of its own, as Python does its tuples.
+fn plain_yaml(text: &str) -> String {
+    static HEAD: names::Pattern = names::Pattern::new(|| names::pattern(r"(?m)^%YAML.*$"));
+    static TAG: names::Pattern =
+        names::Pattern::new(|| names::pattern(r"!!(?:opencv-[A-Za-z0-9_-]+|python/[A-Za-z0-9_:./]+)"));
+    let text = HEAD.replace(text, "");
+    let text = TAG.replace_all(&text, "");
+    let line = |line: &str| {
+        let tabs = line.len() - line.trim_start_matches('\t').len();
+        format!("{}{}", "  ".repeat(tabs), &line[tabs..])
+    };
+    text.split('\n').map(line).collect::<Vec<_>>().join("\n")
+}
+
+/// Settings as "fx = 500", line by line, are YAML but for the sign.
+fn with_colons(text: &str) -> String {
+    static COLON: names::Pattern = names::Pattern::new(|| names::pattern(r"(?m)^[ \t]*[A-Za-z0-9_.]{1,80}[ \t]*:"));
+    static EQUAL: names::Pattern =
+        names::Pattern::new(|| names::pattern(r"(?m)^([ \t]*[A-Za-z0-9_.]{1,80})[ \t]*=[ \t]*"));
+    if COLON.is_match(text) { text.into() } else { EQUAL.replace_all(text, "$1: ").into_owned() }
+}
+
+/// YAML as JSON: its tags are left out, and its keys are texts.
+fn plain_value(value: serde_yaml_ng::Value) -> Value {
+    use serde_yaml_ng::Value as Yaml;
+    match value {
+        Yaml::Null => Value::Null,
+        Yaml::Bool(value) => value.into(),
+        Yaml::Number(number) => number.as_f64().into(),
+        Yaml::String(text) => text.into(),
+        Yaml::Sequence(list) => list.into_iter().map(plain_value).collect(),
+        Yaml::Mapping(members) => {
+            let key = |key: Yaml| match key {
+                Yaml::String(text) => text,
+                Yaml::Number(number) => number.to_string(),
+                Yaml::Bool(value) => value.to_string(),
+                _ => String::new(),
+            };
+            members.into_iter().map(|(name, value)| (key(name), plain_value(value))).collect::<Map<_, _>>().into()
+        }
+        Yaml::Tagged(tagged) => plain_value(tagged.value),
+    }
+}
+
+/// Elements as plain values: those with children as objects (repeated ones and OpenCV's `<_>` as lists), others as their text.
+fn xml(text: &str) -> Result<Value, Reason> {
+    const MOST_ELEMENTS: u32 = 300_000;
+    const MOST_DEPTH: usize = 32;
+    let options = roxmltree::ParsingOptions { allow_dtd: false, nodes_limit: MOST_ELEMENTS, ..Default::default() };
+    // Launch files and pieces of them may hold several elements side by side, which XML itself does not allow.
+    let text = text.split_once("?>").filter(|_| text.starts_with("<?")).map_or(text, |(_, rest)| rest);
+    let whole = format!("<_all>{text}</_all>");
+    let document = roxmltree::Document::parse_with_options(&whole, options).map_err(|error| match error {
+        roxmltree::Error::DtdDetected => {
+            "this XML declares a document type or raw data, which no calibration needs: not read".to_owned()
+        }
+        error => format!("this XML is damaged or cut off ({error})"),
+    })?;
+    plain_element(document.root_element(), MOST_DEPTH)
+}
+
+fn plain_element(element: roxmltree::Node<'_, '_>, depth: usize) -> Result<Value, Reason> {
+    let Some(depth) = depth.checked_sub(1) else { return Err("this XML is nested deeper than 32".into()) };
+    let children: Vec<_> = element.children().filter(roxmltree::Node::is_element).collect();
+    if children.is_empty() {
+        let text: Vec<&str> =
+            element.children().filter(roxmltree::Node::is_text).filter_map(|node| node.text()).collect();
+        return Ok(text.join(" ").trim().into());
+    }
+    if children.iter().all(|child| child.tag_name().name() == "_") {
+        return children.into_iter().map(|child| plain_element(child, depth)).collect();
+    }
+    let mut all: Map<String, Value> = Map::new();
+    for child in children {
+        let name = child.tag_name().name().to_owned();
+        let value = plain_element(child, depth)?;
+        match all.entry(name).or_insert_with(|| Value::Array(Vec::new())) {
+            Value::Array(values) => values.push(value),
+            _ => unreachable!("all members are lists until the end"),
+        }
+    }
+    let single = |value: Value| match value {
+        Value::Array(mut values) if values.len() == 1 => values.remove(0),
+        other => other,
+    };
+    Ok(all.into_iter().map(|(name, values)| (name, single(values))).collect::<Map<_, _>>().into())
+}

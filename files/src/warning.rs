@@ -1,0 +1,59 @@
+//! What was guessed or looks wrong: a code, a sentence, and the file that it is about.
+
+use std::fmt;
+
+/// Something that a reader guessed or that looks wrong.
+#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
+pub struct Warning {
+    pub code: &'static str,
+    pub message: String,
+    /// The file or the input that it is about.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub field: Option<String>,
+}
+
+/// Codes of what was not read, which does not make what was read doubtful.
+const HARMLESS: [&str; 5] = ["file-left-out", "file-alone", "names-ambiguous", "mask-size", "pairs-sampled"];
+
+impl Warning {
+    /// Whether it makes what was read doubtful, so that it caps the verdict of a check.
+    pub fn is_doubt(&self) -> bool {
+        !HARMLESS.contains(&self.code)
+    }
+
+    pub fn new(code: &'static str, message: impl Into<String>) -> Self {
+        Self { code, message: message.into(), field: None }
+    }
+
+    /// The same with the file's name, in the message as well.
+    #[must_use]
+    pub fn of_file(&self, name: &str) -> Self {
+        Self { code: self.code, message: format!("{name}: {}", self.message), field: Some(name.into()) }
+    }
+}
+
+impl fmt::Display for Warning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.message)
+    }
+}
+
+/// Warnings in the order in which they came up, each once.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Warnings(pub Vec<Warning>);
+
+impl Warnings {
+    pub fn add(&mut self, code: &'static str, message: impl Into<String>) {
+        self.push(Warning::new(code, message));
+    }
+
+    pub fn push(&mut self, warning: Warning) {
+        if !self.0.contains(&warning) {
+            self.0.push(warning);
+        }
+    }
+
+    pub fn extend(&mut self, others: impl IntoIterator<Item = Warning>) {
+        others.into_iter().for_each(|warning| self.push(warning));
+    }
+}

@@ -1,0 +1,40 @@
+/** The extrinsics in question, from what was read of their files. */
+import { basename } from "node:path";
+import { inverseOf } from "../rig/formats/poses.js";
+import type { NamedPose, RigReading } from "../rig/types.js";
+import type { Pose } from "../types.js";
+import { Mistake } from "./arguments.js";
+import type { Judged } from "./report.js";
+
+const COLOUR = /colou?r|rgb/i;
+const DEPTH = /depth|infra|\bir\b|tof/i;
+
+/** Whether names state that a pose carries colour to depth. */
+const isBackwards = ({ from = "", to = "" }: NamedPose): boolean =>
+  COLOUR.test(from) && !DEPTH.test(from) && DEPTH.test(to) && !COLOUR.test(to);
+
+/** The poses of all calibrations by name, that in question first. */
+export function candidatesOf(readings: RigReading[], isInverted: boolean, warnings: Judged[]): Record<string, Pose> {
+  const candidates: Record<string, Pose> = {};
+  for (const reading of readings) {
+    const { name } = reading;
+    const poses = "poses" in reading ? (reading.poses ?? []) : [];
+    if (poses.length === 0) throw new Mistake(`${name}: it holds no extrinsics`);
+    poses.forEach((pose, index) => {
+      const own = pose.name ?? (pose.from && pose.to ? `${pose.from} to ${pose.to}` : `pose ${index + 1}`);
+      const title = poses.length === 1 ? basename(name) : `${basename(name)}, ${own}`;
+      const turns = isInverted || isBackwards(pose);
+      if (turns && !isInverted)
+        warnings.push({
+          code: "inverse-checked",
+          message: `${name}: it carries ${pose.from} to ${pose.to}; its inverse was checked.`,
+          field: name,
+        });
+      // Two files may have one name; a number as a name would come first.
+      let unique = /^\d+$/.test(title) ? `"${title}"` : title;
+      while (Object.hasOwn(candidates, unique)) unique += "'";
+      candidates[unique] = turns ? inverseOf(pose.pose) : pose.pose;
+    });
+  }
+  return candidates;
+}

@@ -1,0 +1,84 @@
+/** The command `check`: the calibration of a rig over a folder of frames, for a shell and for continuous integration. */
+import { writeFileSync } from "node:fs";
+import { basename } from "node:path";
+import type { NamedFile, RigReading } from "../rig/types.js";
+import type { CheckReport } from "../types.js";
+import { type Arguments, Mistake } from "./arguments.js";
+import { candidatesOf } from "./candidates.js";
+import { file, filesOf, inputsOf } from "./files.js";
+import { progress } from "./progress.js";
+import { type Judged, type Whole, capped, ofReader, textOf } from "./report.js";
+
+const CODES: Record<string, number> = { consistent: 0, off: 1, undecided: 2 };
+export const BAD = 3;
+
+/** As they are needed: who asks for the manual loads none of them. */
+async function modules() {
+  const [main, rig, write] = await Promise.all([
+    import("../index.js"),
+    import("../rig/index.js"),
+    import("../rig/write/index.js"),
+  ]);
+  return { ...main, ...rig, ...write };
+}
+type Modules = Awaited<ReturnType<typeof modules>>;
+
+/** Runs the check under a bar; an interrupt ends it. */
+async function checked(
+  { checkCalibration }: Modules,
+  frames: Parameters<Modules["checkCalibration"]>[0],
+  candidates: Parameters<Modules["checkCalibration"]>[1],
+  options: Arguments["checking"],
+): Promise<CheckReport> {
+  const stop = new AbortController();
+  const interrupt = () => stop.abort();
+  process.once("SIGINT", interrupt);
+  const bar = progress(process.stderr);
+  try {
+    return await checkCalibration(frames, candidates, { ...options, signal: stop.signal, onProgress: bar.show });
+  } finally {
+    bar.end();
+    process.removeListener("SIGINT", interrupt);
+  }
+}
+
+/** The exit code. */
+export async function check(args: Arguments): Promise<number> {
+  const loaded = await modules();
+  const calibrations = args.calibrations.map((path) => file(path));
+  const cameras = args.cameras.map((path) => file(path));
+  const found: RigReading[] = [];
+  for (const each of calibrations) found.push(await loaded.readRigFile(each));
+  const warnings: Judged[] = found.flatMap(({ name, warnings: own }) =>
+    own.map((each) => ({ ...ofReader(each), message: `${name}: ${each.message}`, field: name })),
+  );
+  const candidates = candidatesOf(found, args.isInverted, warnings);
+  // Intrinsics that were named go before those that lie in the folder.
+  const named = [...cameras, ...calibrations.filter((_, index) => found[index]?.kind === "cameras")];
+  const files = filesOf(args.folder, [...args.calibrations, ...args.cameras]);
+  const read = await loaded.readRigFolder([...named, ...files], args.reading);
+  if (read.frames.length === 0) {
+    const first = read.warnings[0] ? `: ${read.warnings[0].message}` : "";
+    throw new Mistake(`${args.folder}: it holds no pair of a colour image and a depth map that could be read${first}`);
+  }
+  const report = await checked(loaded, read.frames, candidates, args.checking);
+  const whole = capped(report, [...report.warnings, ...warnings, ...read.warnings.map(ofReader)]);
+  write(
+    loaded,
+    args,
+    whole,
+    inputsOf([...found, ...read.readings], [...calibrations, ...cameras, ...files] as NamedFile[]),
+  );
+  return CODES[whole.verdict] ?? BAD;
+}
+
+function write({ reportHtml }: Modules, args: Arguments, whole: Whole, inputs: ReturnType<typeof inputsOf>): void {
+  const json = () => `${JSON.stringify({ ...whole, inputs }, null, 2)}\n`;
+  if (args.json !== undefined && args.json !== "-") writeFileSync(args.json, json());
+  if (args.report !== undefined) {
+    const title = `Check of ${basename(args.calibrations[0] ?? "")}`;
+    writeFileSync(args.report, reportHtml(whole as CheckReport, [], { title, made: new Date(), inputs }));
+  }
+  (args.json === "-" ? process.stderr : process.stdout).write(textOf(whole));
+  if (args.json === "-") process.stdout.write(json());
+}

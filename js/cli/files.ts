@@ -1,0 +1,54 @@
+/** Files of a folder with their bytes. */
+import { createHash } from "node:crypto";
+import { readFileSync, readdirSync, statSync } from "node:fs";
+import { join, relative, resolve } from "node:path";
+import type { NamedFile } from "../rig/types.js";
+import { Mistake } from "./arguments.js";
+
+/** Bytes that a folder may hold, since all of it is read: some hundreds of pairs. */
+const MOST_BYTES = 2 ** 31;
+
+export const file = (path: string, name = path): NamedFile => ({
+  name: name.replaceAll("\\", "/").replace(/^\.\//, ""),
+  bytes: new Uint8Array(readFileSync(path)),
+});
+
+const isHidden = (folder: string, path: string): boolean =>
+  relative(folder, path)
+    .split(/[\\/]/)
+    .some((part) => part.startsWith("."));
+
+/** The files below a folder by name, hidden ones left out; those of `except` as well. */
+export function filesOf(folder: string, except: string[]): NamedFile[] {
+  const left = new Set(except.map((path) => resolve(path)));
+  const paths = readdirSync(folder, { recursive: true, withFileTypes: true })
+    .filter((entry) => entry.isFile())
+    .map((entry) => join(entry.parentPath ?? entry.path, entry.name))
+    .filter((path) => !isHidden(folder, path) && !left.has(resolve(path)))
+    .sort();
+  const bytes = paths.reduce((sum, path) => sum + statSync(path).size, 0);
+  if (bytes > MOST_BYTES) {
+    const size = (bytes / 2 ** 30).toFixed(1);
+    throw new Mistake(
+      `${folder}: it holds ${size} GB, and at most ${MOST_BYTES / 2 ** 30} are read: copy some of its pairs into a folder of their own`,
+    );
+  }
+  return paths.map((path) => file(path, relative(folder, path)));
+}
+
+export interface Input {
+  name: string;
+  says: string;
+  sha256: string;
+}
+
+/** What was read of each file, with the hash by which it can be recognised later. */
+export function inputsOf(readings: { name: string; says: string }[], files: NamedFile[]): Input[] {
+  const bytes = new Map(files.map((each) => [each.name, each.bytes]));
+  const seen = new Map<string, Input>();
+  for (const { name, says } of readings) {
+    const own = bytes.get(name);
+    if (own) seen.set(name, { name, says, sha256: createHash("sha256").update(own).digest("hex") });
+  }
+  return [...seen.values()];
+}

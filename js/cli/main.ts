@@ -1,0 +1,43 @@
+#!/usr/bin/env node
+/** `npx bimodal-stereo`: the commands of the package. */
+import { readFileSync } from "node:fs";
+import { Mistake, argumentsOf } from "./arguments.js";
+import { BAD, check } from "./check.js";
+import { CHECK_HELP, HELP } from "./help.js";
+
+const INTERRUPTED = 130;
+
+/** A mistake, an error of the package, or one of the system: its message is all that the user needs. */
+const isForeseen = (error: unknown): error is Error =>
+  error instanceof Mistake ||
+  (error instanceof Error && (error.name === "BimodalError" || ("syscall" in error && error.syscall !== undefined)));
+
+function version(): number {
+  const { version: own } = JSON.parse(readFileSync(new URL("./package.json", import.meta.url), "utf8"));
+  process.stdout.write(`bimodal-stereo ${own}\n`);
+  return 0;
+}
+
+function print(text: string): number {
+  process.stdout.write(text);
+  return 0;
+}
+
+async function run([command, ...rest]: string[]): Promise<number> {
+  if (command === undefined || command === "--help" || command === "-h") return print(HELP);
+  if (command === "--version" || command === "-V") return version();
+  if (command !== "check") throw new Mistake(`there is no command "${command}"; --help lists them`);
+  const args = argumentsOf(rest);
+  if (args === "help") return print(CHECK_HELP);
+  return args === "version" ? version() : check(args);
+}
+
+try {
+  process.exitCode = await run(process.argv.slice(2));
+} catch (error) {
+  // Node's own code for what goes wrong is 1, which means "off" here.
+  const isAbort = error instanceof Error && error.name === "AbortError";
+  const words = isForeseen(error) ? error.message : error instanceof Error ? error.stack : String(error);
+  process.stderr.write(`${isAbort ? "interrupted" : words}\n`);
+  process.exitCode = isAbort ? INTERRUPTED : BAD;
+}

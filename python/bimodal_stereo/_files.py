@@ -1,0 +1,100 @@
+"""Files of a rig: calibrations, and folders of frames."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Mapping, Optional, Sequence, Union
+
+from . import _native
+from ._calibration import CheckFrame
+from ._types import ColorImage, DepthMap, Pose, RigCamera
+
+if TYPE_CHECKING:
+    Path = Union[str, os.PathLike[str]]
+
+
+@dataclass(frozen=True)
+class ReaderWarning:
+    """What a reader guessed or what looks wrong: a stable code, a sentence, and the file that it is about."""
+
+    code: str
+    message: str
+    field: Optional[str]
+
+
+@dataclass(frozen=True)
+class NamedCamera:
+    """A camera of a file, with its name and the size (width, height) of its images where the file states them."""
+
+    name: Optional[str]
+    camera: RigCamera
+    size: Optional[tuple[int, int]]
+
+
+@dataclass(frozen=True, eq=False)
+class NamedPose:
+    """P_target = rotation @ P_source + translation, metres, with the names of the pose and of its frames where the file states them."""
+
+    name: Optional[str]
+    source: Optional[str]
+    target: Optional[str]
+    pose: Pose
+
+
+@dataclass(frozen=True, eq=False)
+class Calibration:
+    """The cameras and poses of one file. ``says``: what was read, in words."""
+
+    cameras: Sequence[NamedCamera]
+    poses: Sequence[NamedPose]
+    says: str
+    warnings: Sequence[ReaderWarning]
+
+
+@dataclass(frozen=True, eq=False)
+class RigFolder:
+    """The frames of a folder with their cameras, for ``check_calibration``, and the cameras and poses that lie beside them."""
+
+    frames: Sequence[CheckFrame]
+    cameras: Sequence[NamedCamera]
+    poses: Sequence[NamedPose]
+    warnings: Sequence[ReaderWarning]
+
+
+def read_calibration(path: Path) -> Calibration:
+    """Reads cameras and poses: matrices in text, JSON, YAML and XML of OpenCV, ROS, Kalibr and Open3D, texts of RealSense and COLMAP."""
+    raw = _native.read_calibration(os.fspath(path))
+    return Calibration(_cameras(raw), _poses(raw), raw["says"], _warnings(raw))
+
+
+def read_rig_folder(
+    path: Path, *, unit: Optional[float] = None, frames: Optional[int] = None, cameras: Sequence[Path] = ()
+) -> RigFolder:
+    """Reads a folder of frames: pairs of a colour image and a depth map with like names, or as TUM RGB-D or Redwood have them.
+
+    unit: metres of a stored number of all depth maps; guessed without it, with a warning. frames: at most so many pairs, evenly spread; 20.
+    cameras: files of intrinsics that lie elsewhere, which go before those in the folder.
+    """
+    raw = _native.read_rig_folder(os.fspath(path), unit, frames, [os.fspath(each) for each in cameras])
+    return RigFolder([_frame(each) for each in raw["frames"]], _cameras(raw), _poses(raw), _warnings(raw))
+
+
+def _frame(raw: Mapping[str, Any]) -> CheckFrame:
+    image, depth = (
+        {**raw[view], "camera": None if raw[view]["camera"] is None else RigCamera(**raw[view]["camera"])}
+        for view in ("image", "depth")
+    )
+    return CheckFrame(ColorImage(**image), DepthMap(**depth), raw["name"])
+
+
+def _cameras(raw: Mapping[str, Any]) -> list[NamedCamera]:
+    return [NamedCamera(each["name"], RigCamera(**each["camera"]), each["size"]) for each in raw["cameras"]]
+
+
+def _poses(raw: Mapping[str, Any]) -> list[NamedPose]:
+    return [NamedPose(**{**each, "pose": Pose._of(each["pose"])}) for each in raw["poses"]]
+
+
+def _warnings(raw: Mapping[str, Any]) -> list[ReaderWarning]:
+    return [ReaderWarning(**each) for each in raw["warnings"]]

@@ -1,0 +1,169 @@
+//! Files of a rig for Python: the command `check` as a whole, and the readers of calibrations and folders.
+
+use std::ffi::OsString;
+use std::io::{self, Write};
+use std::path::PathBuf;
+
+use bimodal_stereo::{ColourSamples, DepthSamples, Lens, RigCamera, RigView, Transfer};
+use bimodal_stereo_files::command::{self, Terminal};
+use bimodal_stereo_files::{self as files, FolderOptions, NamedCamera, NamedPose, Problem, Warning};
+use pyo3::prelude::*;
+use pyo3::types::{IntoPyDict, PyDict, PyList};
+
+use crate::arrays::array;
+use crate::error::{BimodalError, unbroken};
+use crate::guard::guarded;
+use crate::report;
+
+type Dict<'py> = PyResult<Bound<'py, PyDict>>;
+
+/// A function of Python that takes text.
+struct Text(Py<PyAny>);
+
+impl Write for Text {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let text = String::from_utf8_lossy(bytes);
+        let written = Python::attach(|py| self.0.call1(py, (text,)).map(drop));
+        written.map(|()| bytes.len()).map_err(|_| io::Error::from(io::ErrorKind::BrokenPipe))
+    }
+
+    /// Texts arrive whole.
+    fn write_fmt(&mut self, words: std::fmt::Arguments<'_>) -> io::Result<()> {
+        self.write_all(words.to_string().as_bytes())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+/// Runs `check` with these arguments; the exit code.
+#[pyfunction]
+pub fn check_command(
+    py: Python<'_>,
+    arguments: Vec<OsString>,
+    write: Py<PyAny>,
+    write_error: Py<PyAny>,
+    is_terminal: bool,
+) -> PyResult<u8> {
+    let run = || {
+        command::run(
+            arguments,
+            &mut Terminal {
+                out: &mut Text(write),
+                err: &mut Text(write_error),
+                is_terminal,
+                is_interrupted: &mut || Python::attach(|py| py.check_signals().is_err()),
+            },
+        )
+    };
+    unbroken(py.detach(|| guarded(run)))
+}
+
+fn refused(problem: &Problem) -> PyErr {
+    BimodalError::new_err((problem.code, problem.to_string(), problem.field.clone()))
+}
+
+/// The cameras and poses of one file.
+#[pyfunction]
+pub fn read_calibration(py: Python<'_>, path: PathBuf) -> Dict<'_> {
+    let read = unbroken(py.detach(|| guarded(|| files::read_calibration(&path))))?;
+    let found = read.map_err(|problem| refused(&problem))?;
+    let dict = PyDict::new(py);
+    dict.set_item("cameras", cameras(py, &found.cameras)?)?;
+    dict.set_item("poses", poses(py, &found.poses)?)?;
+    dict.set_item("says", files::says(&found))?;
+    dict.set_item("warnings", warnings(py, &found.warnings.0)?)?;
+    Ok(dict)
+}
+
+/// The frames of a folder with what lies beside them.
+#[pyfunction]
+pub fn read_rig_folder(
+    py: Python<'_>,
+    path: PathBuf,
+    unit: Option<f64>,
+    frames: Option<usize>,
+    camera_files: Vec<PathBuf>,
+) -> Dict<'_> {
+    let options = FolderOptions { unit, frames, cameras: camera_files, except: Vec::new() };
+    let read = unbroken(py.detach(|| guarded(|| files::read_rig_folder(&path, &options))))?;
+    let found = read.map_err(|problem| refused(&problem))?;
+    let dict = PyDict::new(py);
+    dict.set_item("frames", found.frames.into_iter().map(|view| frame(py, view)).collect::<PyResult<Vec<_>>>()?)?;
+    dict.set_item("cameras", cameras(py, &found.cameras)?)?;
+    dict.set_item("poses", poses(py, &found.poses)?)?;
+    dict.set_item("warnings", warnings(py, &found.warnings)?)?;
+    Ok(dict)
+}
+
+fn warnings<'py>(py: Python<'py>, all: &[Warning]) -> PyResult<Bound<'py, PyList>> {
+    let plain = |one: &Warning| {
+        let dict = PyDict::new(py);
+        dict.set_item("code", one.code)?;
+        dict.set_item("message", &one.message)?;
+        dict.set_item("field", &one.field)?;
+        Ok(dict)
+    };
+    PyList::new(py, all.iter().map(plain).collect::<PyResult<Vec<_>>>()?)
+}
+
+fn camera<'py>(py: Python<'py>, camera: &RigCamera) -> Dict<'py> {
+    let own = [("fx", camera.fx), ("fy", camera.fy), ("cx", camera.cx), ("cy", camera.cy)].into_py_dict(py)?;
+    own.set_item("model", if matches!(camera.lens, Lens::Fisheye(_)) { "fisheye" } else { "brown" })?;
+    own.set_item("distortion", camera.lens.coefficients().to_vec())?;
+    Ok(own)
+}
+
+fn cameras<'py>(py: Python<'py>, all: &[NamedCamera]) -> PyResult<Vec<Bound<'py, PyDict>>> {
+    let plain = |one: &NamedCamera| {
+        let dict = PyDict::new(py);
+        dict.set_item("name", &one.name)?;
+        dict.set_item("camera", camera(py, &one.camera)?)?;
+        dict.set_item("size", one.size.map(<(usize, usize)>::from))?;
+        Ok(dict)
+    };
+    all.iter().map(plain).collect()
+}
+
+fn poses<'py>(py: Python<'py>, all: &[NamedPose]) -> PyResult<Vec<Bound<'py, PyDict>>> {
+    let plain = |one: &NamedPose| {
+        let dict = PyDict::new(py);
+        dict.set_item("name", &one.names.name)?;
+        dict.set_item("source", &one.names.from)?;
+        dict.set_item("target", &one.names.to)?;
+        dict.set_item("pose", report::pose(py, &one.pose)?)?;
+        Ok(dict)
+    };
+    all.iter().map(plain).collect()
+}
+
+fn frame(py: Python<'_>, view: RigView) -> Dict<'_> {
+    let image = PyDict::new(py);
+    let [width, height] = view.image_size;
+    let colours = match view.image {
+        ColourSamples::Rgba8(data) => array(py, data, [height, width, 4])?.into_any(),
+        ColourSamples::Rgba16(data) => array(py, data, [height, width, 4])?.into_any(),
+        ColourSamples::RgbLinear(data) => array(py, data, [height, width, 3])?.into_any(),
+    };
+    image.set_item("data", colours)?;
+    let transfer = |transfer| if transfer == Transfer::Linear { "linear" } else { "srgb" };
+    image.set_item("transfer", view.transfer.map(transfer))?;
+    image.set_item("mask", view.image_mask.map(|mask| array(py, mask, [height, width])).transpose()?)?;
+    image.set_item("camera", view.image_camera.map(|own| camera(py, &own)).transpose()?)?;
+    let depth = PyDict::new(py);
+    let [width, height] = view.depth_size;
+    match view.depth {
+        DepthSamples::Integer(data) => depth.set_item("data", array(py, data, [height, width])?)?,
+        DepthSamples::Float(data) => depth.set_item("data", array(py, data, [height, width])?)?,
+        DepthSamples::Cloud(data) => depth.set_item("points", array(py, data, [height, width, 3])?)?,
+    }
+    depth.set_item("unit", view.unit)?;
+    depth.set_item("mask", view.depth_mask.map(|mask| array(py, mask, [height, width])).transpose()?)?;
+    depth.set_item("camera", view.depth_camera.map(|own| camera(py, &own)).transpose()?)?;
+    let dict = PyDict::new(py);
+    dict.set_item("image", image)?;
+    dict.set_item("depth", depth)?;
+    dict.set_item("name", view.name)?;
+    Ok(dict)
+}

@@ -1,0 +1,167 @@
+// `check` on three command lines: npm's, Rust's and Python's. One manual, one verdict, one JSON, one text.
+import assert from "node:assert/strict";
+import { spawnSync } from "node:child_process";
+import { existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { basename, join } from "node:path";
+import { after, before, describe, test } from "node:test";
+import init, { sampleRig } from "../../pkg/index.js";
+import { writePose } from "../../pkg/rig-write.js";
+import { writePng } from "../../pkg/write.js";
+import { ask, inRoot } from "../../scripts/shell.mjs";
+import { freshProject } from "./fresh.mjs";
+
+/** Native code and wasm round the same sums in another order; relative, and absolute for numbers around zero. */
+const RELATIVE = 1e-6;
+/** Of the quantiles of drawn errors, which are kept in single precision. */
+const ABSOLUTE = 1e-6;
+
+const NYU = inRoot("../shared/data/nyu_raw_pair");
+const PYTHON = inRoot("target/python/venv/bin/python");
+const hasPython = existsSync(PYTHON) && ask(PYTHON, ["-c", "import bimodal_stereo._native"]) !== undefined;
+const folder = mkdtempSync(join(tmpdir(), "check-commands-"));
+after(() => rmSync(folder, { recursive: true, force: true }));
+
+const COMMANDS = {
+  npm: { skip: false },
+  rust: { skip: false },
+  python: { skip: hasPython ? false : "needs the Python package in target/python (npm test -- python)" },
+};
+
+function run(name, args) {
+  const { program, before: first = [], cwd = folder } = COMMANDS[name];
+  const { status, stdout, stderr } = spawnSync(program, [...first, ...args], { cwd, encoding: "utf8" });
+  return { status, stdout, stderr };
+}
+
+before(() => {
+  const project = freshProject();
+  COMMANDS.npm = { ...COMMANDS.npm, program: "npx", before: ["--no-install", "bimodal-stereo"], cwd: project };
+  // With an example, as in cli.test.mjs: it asks for the features of the tests' crates.
+  const { status } = spawnSync("cargo", ["build", "--quiet", "--bin", "bimodal-stereo", "--example", "pair"], {
+    cwd: inRoot(),
+    stdio: "inherit",
+  });
+  assert.equal(status, 0);
+  COMMANDS.rust = { ...COMMANDS.rust, program: inRoot("target/debug/bimodal-stereo") };
+  COMMANDS.python = { ...COMMANDS.python, program: PYTHON, before: ["-m", "bimodal_stereo"] };
+});
+
+/** A rendered rig as files of ours: two frames, the cameras of both, and its extrinsics. */
+async function rendered() {
+  await init();
+  const at = join(folder, "rig");
+  mkdirSync(at);
+  let truth;
+  for (const frame of [0, 1]) {
+    const { image, depth, pose } = await sampleRig({ kind: "objects", seed: 3, frame });
+    const { width, height, data } = image;
+    writeFileSync(join(at, `color_${frame}.png`), await writePng({ width, height, channels: 4, data }));
+    const stored = { width: depth.width, height: depth.height, channels: 1, data: depth.data };
+    writeFileSync(join(at, `depth_${frame}.png`), await writePng(stored));
+    truth = { image, depth, pose };
+  }
+  const camera = ({ fx, fy, cx, cy, distortion }, { width, height }) => ({
+    ...{ fx, fy, cx, cy, distortion, width, height },
+  });
+  const { image, depth, pose } = truth;
+  writeFileSync(
+    join(at, "cameras.json"),
+    JSON.stringify({ color: camera(image.camera, image), depth: camera(depth.camera, depth) }),
+  );
+  writeFileSync(join(folder, "extrinsics.txt"), writePose(pose, "matrix").text);
+  return { frames: at, calibration: join(folder, "extrinsics.txt") };
+}
+
+/** Equal in shape, in words, and nearly in numbers; the farthest of these, relative. */
+function alike(one, other, path, far) {
+  if (typeof one === "number" && typeof other === "number") {
+    const off = Math.abs(one - other);
+    const relative = off / Math.max(Math.abs(one), Math.abs(other), 1e-300);
+    if (off > ABSOLUTE) far.push({ path, one, other, relative });
+    assert.ok(off <= ABSOLUTE || relative <= RELATIVE, `${path}: ${one} and ${other}`);
+  } else if (typeof one === "object" && one !== null && typeof other === "object" && other !== null) {
+    assert.deepEqual(Object.keys(other).sort(), Object.keys(one).sort(), path);
+    for (const key of Object.keys(one)) alike(one[key], other[key], `${path}.${key}`, far);
+  } else assert.equal(other, one, path);
+}
+
+/** The same files for all, one after the other; what npm's prints is what the others are compared with. */
+function checkAll(frames, calibration, more = []) {
+  const [first, ...others] = Object.keys(COMMANDS).filter((name) => !COMMANDS[name].skip);
+  const outcome = (name) => {
+    const [json, page] = [join(folder, `${name}.json`), join(folder, `${name}.html`)];
+    const found = run(name, ["check", frames, "--calibration", calibration, "--json", json, "--report", page, ...more]);
+    assert.ok(found.status < 3, `${name}: ${found.stderr}`);
+    const report = JSON.parse(readFileSync(json, "utf8"));
+    const html = readFileSync(page, "utf8");
+    for (const words of [`Check of ${basename(calibration)}`, "Content-Security-Policy", report.inputs[0].sha256])
+      assert.ok(html.includes(words), `${name}: ${words}`);
+    // Numbers with all digits are compared in the JSON.
+    const words = found.stdout.replace(/^ {2}[-\d].*$/gm, "  ..");
+    return { ...found, words, report };
+  };
+  const theirs = outcome(first);
+  const far = [];
+  for (const name of others) {
+    const ours = outcome(name);
+    assert.equal(ours.status, theirs.status, name);
+    alike(theirs.report, ours.report, name, far);
+    assert.equal(ours.words, theirs.words, name);
+    assert.equal(ours.stderr, theirs.stderr, name);
+  }
+  return theirs;
+}
+
+describe("check by npm, Rust and Python", () => {
+  for (const [name, { skip }] of Object.entries(COMMANDS)) {
+    test(`${name}: the manual and the version`, { skip }, () => {
+      const manual = readFileSync(inRoot("files/src/command/help.txt"), "utf8");
+      const { version } = JSON.parse(readFileSync(inRoot("pkg/package.json"), "utf8"));
+      assert.deepEqual(run(name, ["check", "--help"]), { status: 0, stdout: manual, stderr: "" });
+      assert.ok(run(name, ["check", "--version"]).stdout.trim().endsWith(version));
+      assert.match(run(name, ["--help"]).stdout, /check/);
+    });
+
+    test(`${name}: what is wrong is 3, with a reason`, { skip }, () => {
+      writeFileSync(join(folder, "empty.json"), "{}");
+      const good = join(folder, "good.txt");
+      writeFileSync(good, "1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
+      const wrong = {
+        calibration: [folder],
+        "holds neither a camera": [folder, "--calibration", join(folder, "empty.json")],
+        "nowhere.json": [folder, "--calibration", "nowhere.json"],
+        nowhere: ["nowhere", "--calibration", good],
+        jsn: [folder, "--calibration", good, "--jsn"],
+        unit: [folder, "--calibration", good, "--unit", "0"],
+        workers: [folder, "--calibration", good, "--workers", "many"],
+      };
+      for (const [words, args] of Object.entries(wrong)) {
+        const { status, stdout, stderr } = run(name, ["check", ...args]);
+        assert.deepEqual([status, stdout], [3, ""], `${words}: ${stderr}`);
+        assert.ok(stderr.includes(words), `${words}: ${stderr}`);
+      }
+    });
+  }
+
+  test("a rendered rig has one verdict and one JSON", async () => {
+    const { frames, calibration } = await rendered();
+    const { status, report } = checkAll(frames, calibration, ["--unit", "0.001"]);
+    assert.deepEqual([status, report.verdict, report.warnings], [0, "consistent", []]);
+    assert.deepEqual(
+      report.inputs.map(({ name }) => basename(name)),
+      [...["extrinsics.txt", "color_0.png", "depth_0.png", "color_1.png", "depth_1.png", "cameras.json"]],
+    );
+  });
+
+  test("a raw Kinect has one verdict and one JSON", { skip: existsSync(NYU) ? false : "needs ../shared/data" }, () => {
+    const { status, report } = checkAll(NYU, join(NYU, "calib.json"));
+    // Its unit is in no file.
+    assert.deepEqual([status, report.verdict], [2, "undecided"]);
+    assert.deepEqual(
+      report.warnings.map(({ code }) => code),
+      ["unit-guessed"],
+    );
+    assert.equal(report.candidates["calib.json"].verdict, "consistent");
+  });
+});
