@@ -174,6 +174,10 @@ def rows_of(numbers, each=10):
     return "\n".join("    " + " ".join(f"{number:.6f}," for number in line) for line in lines)
 
 
+def listed(numbers):
+    return "[" + ", ".join(f"{number:.6f}" for number in numbers) + "]"
+
+
 def write(mean, covariance, names):
     triangle = [covariance[row, column] for row in range(27) for column in range(row + 1)]
     (ROOT / "src/light/environments.rs").write_text(
@@ -196,7 +200,6 @@ pub(super) const COVARIANCE: [f32; 378] = [
 ];
 """
     )
-    listed = lambda numbers: "[" + ", ".join(f"{number:.6f}" for number in numbers) + "]"
     matrix = ",\n  ".join(listed(row) for row in covariance)
     (ROOT / "scripts/reference/light-prior.json").write_text(
         f"""{{
