@@ -324,18 +324,21 @@ describe("for await", () => {
       assert.equal(iteration, 4);
       break;
     }
+  });
+
+  test("ends with the caller's error, or with the estimator", async () => {
+    const made = estimator({ stopDegrees: 1e-12 });
     const error = new Error("of the caller");
-    const thrown = (async () => {
-      for await (const { iteration } of made) throw Object.assign(error, { iteration });
-    })();
-    await assert.rejects(thrown, { iteration: 5 });
-    assert.equal(made.step().iteration, 6);
-    await assert.rejects(
-      (async () => {
-        for await (const _ of made) made.free();
-      })(),
-      { code: "freed" },
-    );
+    const each = async (body) => {
+      for await (const report of made) body(report);
+    };
+    const broken = each(() => {
+      throw error;
+    });
+    await assert.rejects(broken, (thrown) => thrown === error);
+    assert.equal(made.step().iteration, 2);
+    const freed = each(() => made.free());
+    await assert.rejects(freed, { code: "freed" });
   });
 });
 
