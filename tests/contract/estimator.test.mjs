@@ -336,7 +336,7 @@ describe("for await", () => {
       throw error;
     });
     await assert.rejects(broken, (thrown) => thrown === error);
-    assert.equal(made.step().iteration, 2);
+    assert.equal(made.report.iteration, 1);
     const freed = each(() => made.free());
     await assert.rejects(freed, { code: "freed" });
   });

@@ -1,7 +1,7 @@
 // The package in Deno and Bun: its README's example, threads, and files from disk. Both are installed for this test alone, below target/.
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
-import { existsSync } from "node:fs";
+import { existsSync, readFileSync } from "node:fs";
 import { join } from "node:path";
 import { describe, test } from "node:test";
 import { decodeDepth } from "../../pkg/files.js";
@@ -13,7 +13,10 @@ import { LONG } from "./long.mjs";
 const RUNTIMES = inRoot("target/runtimes");
 const VERSIONS = { deno: "2.9.6", bun: "1.4.5" };
 const program = (name) => join(RUNTIMES, "node_modules/.bin", name);
-const COMMANDS = { deno: [program("deno"), ["run", "--allow-read"]], bun: [program("bun"), []] };
+/** The commands of README's table, by their programs. */
+const COMMANDS = [
+  ...readFileSync(inRoot("pkg/README.md"), "utf8").matchAll(/^\| (?:Deno|Bun) \| `(.+?) app\.mjs`/gm),
+].map(([, command]) => command.split(" "));
 
 /** Whether a runtime is there, installed now or before. */
 function isThere(name) {
@@ -39,7 +42,13 @@ console.log((await imageFrom("image.png")).width);
 `;
 
 describe("the package runs in", () => {
-  for (const [name, [path, args]] of Object.entries(COMMANDS)) {
+  test("both have a line in README's table", () =>
+    assert.deepEqual(
+      COMMANDS.map(([name]) => name),
+      ["deno", "bun"],
+    ));
+  for (const [name, ...args] of COMMANDS) {
+    const path = program(name);
     test(name, LONG, async (context) => {
       if (!isThere(name)) return context.skip(`needs ${name}, which npm could not install into target/runtimes`);
       const project = freshProject();

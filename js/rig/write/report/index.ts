@@ -20,7 +20,7 @@ export type { Checked, Picture, ReportInput, ReportOptions } from "./contents.js
 
 /** What the sections look into; a word or a number that is none is said to be "not known". */
 const REPORT: Example = {
-  warnings: [],
+  warnings: [{}],
   estimate: { rotation: [], translation: [], angles: {} },
   covariance: [],
   health: { interval: [] },
