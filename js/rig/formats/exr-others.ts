@@ -9,7 +9,7 @@
 import parseExr from "parse-exr";
 import { badFile } from "../../errors.js";
 import { inflateUpTo } from "../../inflate.js";
-import { type Header, blocks } from "./exr.js";
+import { type Header, blocks } from "./exr-header.js";
 
 /** three's number of a type, which parse-exr takes. */
 const FLOAT = 1015;
