@@ -26,6 +26,7 @@ const MEMBERS = [
   ...under("depth.", "width", "height", "mask", "camera.fx", "camera.distortion", "unit", "points", "normals"),
   ...under("depth.data: ", "Float32Array", "Uint16Array"),
   ...under("options.light", " of 27 numbers"),
+  ...under("options.startTolerance.", "degrees", "distance"),
   ...under("options.start", ": identity", ".scale", ".rotation", ".translation", ".angles"),
   ...under("options.", "scale", "registration: icp", "registration: fixed", "shading: pixel"),
   ...under("options.lambda.", "prior", "unit", "light", "refinement"),

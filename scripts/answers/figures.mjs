@@ -43,7 +43,17 @@ function rounded(value, digits = DIGITS) {
   return Object.fromEntries(entries.map(([key, item]) => [key, rounded(item, precise ? POSE_DIGITS : digits)]));
 }
 
-export const figureOfCheck = ({ input, report, pixel }) => ({ input, report: rounded(report), pixel: rounded(pixel) });
+/** Of a curve of the log likelihood where it falls to, and its mean. */
+function curveFigure({ values, ...curve }) {
+  const mean = values.reduce((sum, value) => sum + value, 0) / values.length;
+  return { ...curve, offsets: [], values: [Math.min(...values), mean] };
+}
+
+export const figureOfCheck = ({ input, report, pixel }) => ({
+  input,
+  report: rounded({ ...report, sensitivity: report.sensitivity.map(curveFigure) }),
+  pixel: rounded(pixel),
+});
 
 export const figureOf = ({ input, report, endedBy, light, pixel, correspondence, rasters }) => ({
   input,

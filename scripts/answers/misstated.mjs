@@ -1,4 +1,5 @@
-// Scenes of pairs that are not what they are taken for: another unit, relief inside out, no mask where one is needed.
+// Scenes of pairs that are not what they are taken for: another unit, relief inside out, no mask where one is
+// needed, an initial pose that is believed too much.
 import { LENS, OTHER_LENS, metric, near, pinhole, sample } from "./requests.mjs";
 
 const UNITS = [
@@ -93,4 +94,30 @@ const WITHOUT_MASKS = [
   },
 ];
 
-export const MISSTATED = [...UNITS, ...HOLLOW, ...WITHOUT_MASKS];
+/** Initial poses that are farther off than they are said to be: nothing that is allowed explains the colours better. */
+const BELIEVED = { degrees: 1, distance: 0.5 };
+const TOO_SURE = [
+  {
+    name: "an initial pose believed too much: bust, window, 64x64",
+    sample: sample("bust", "window", 64),
+    options: { start: near(9), startTolerance: BELIEVED, scale: 1 },
+  },
+  {
+    name: "an initial pose believed too much: ripples, overcast, 64x64, light known",
+    sample: sample("ripples", "overcast", 64),
+    options: { light: "known", start: near(9), startTolerance: BELIEVED, scale: 1 },
+  },
+  {
+    name: "an initial pose believed too much: vase with stripes, colourful, 64x64",
+    sample: sample("vase", "colourful", 64),
+    albedo: { seed: 5, stripes: true },
+    options: { start: near(12), startTolerance: BELIEVED, scale: 1 },
+  },
+  {
+    name: "an initial pose believed too much: hills and a light of our own, 64x64",
+    sample: sample("hills", "own", 64),
+    options: { start: near(10, "rotation", "translation"), startTolerance: { degrees: 2, distance: 1 }, scale: 1 },
+  },
+];
+
+export const MISSTATED = [...UNITS, ...HOLLOW, ...WITHOUT_MASKS, ...TOO_SURE];

@@ -193,6 +193,8 @@ fn run_with_workers(sample: &Sample, options: &Options, workers: usize, seed: u6
 
 /// Tests of over three seconds: `cargo test` runs them, `npm test` only with `--long`.
 mod long {
+    #[cfg(target_arch = "wasm32")]
+    use super::test;
     use super::*;
 
     #[test]

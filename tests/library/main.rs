@@ -2,7 +2,7 @@
 //! library, and runs alone.
 //!
 //! On wasm32 the same tests run by wasm-bindgen's harness, in Node and in browsers: there `test` is the name of its attribute. Those that
-//! read files are of computers alone.
+//! read or write files run natively alone.
 
 mod agreement;
 mod codes;

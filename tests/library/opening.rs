@@ -74,6 +74,8 @@ fn middle_of_depth(sample: &Sample) -> nalgebra::Vector3<f64> {
 
 /// Tests of over three seconds: `cargo test` runs them, `npm test` only with `--long`.
 mod long {
+    #[cfg(target_arch = "wasm32")]
+    use super::test;
     use super::*;
 
     #[test]

@@ -120,6 +120,8 @@ fn without_paint_the_colours_themselves_decide() -> Result<()> {
 
 /// Tests of over three seconds: `cargo test` runs them, `npm test` only with `--long`.
 mod long {
+    #[cfg(target_arch = "wasm32")]
+    use super::test;
     use super::*;
 
     #[test]

@@ -121,6 +121,8 @@ fn numbers_of_something_else_are_refused() {
 
 /// Tests of over three seconds: `cargo test` runs them, `npm test` only with `--long`.
 mod long {
+    #[cfg(target_arch = "wasm32")]
+    use super::test;
     use super::*;
 
     #[test]

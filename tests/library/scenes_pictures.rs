@@ -25,6 +25,7 @@ fn draw(name: &str, relief: &Relief, light_name: &str, side: usize) {
     assert!(seen > side * side / 6, "{name} fills {seen} of {} pixels", side * side);
 }
 
+#[cfg_attr(target_arch = "wasm32", ignore = "writes files")]
 #[test]
 fn built_in_surfaces_under_built_in_lights() {
     for name in surfaces::NAMES {

@@ -152,6 +152,8 @@ fn what_never_moved_has_no_sigmas() {
 
 /// Tests of over three seconds: `cargo test` runs them, `npm test` only with `--long`.
 mod long {
+    #[cfg(target_arch = "wasm32")]
+    use super::test;
     use super::*;
 
     #[test]
