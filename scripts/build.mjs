@@ -103,11 +103,10 @@ async function facade() {
   const { rolldown } = await import("rolldown");
   const npm = collector();
   const bundle = await rolldown({
-    plugins: [npm.plugin],
     input: Object.fromEntries(Object.entries(ENTRIES).map(([name, source]) => [name, inRoot(`js/${source}.ts`)])),
     external: /^node:/,
     platform: "neutral",
-    plugins: [endingExr],
+    plugins: [npm.plugin, endingExr],
     resolve: { mainFields: ["module", "main"] },
     // What the splitting below needs; set in silence it is warned of.
     preserveEntrySignatures: "allow-extension",
