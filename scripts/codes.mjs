@@ -22,6 +22,10 @@ const GROUPS = {
     "Warnings of an estimator",
     "`code` of each entry of `Estimator.warnings` in JavaScript, which the console shows once, too.",
   ],
+  readers: [
+    "Warnings of the readers of files",
+    "`code` of each entry of `warnings` of `readRigFile` and `readRigFolder`, and of the command `check`. Those with `isDoubt` keep a verdict from being \"consistent\"; the others name what was left out.",
+  ],
   errors: [
     "Errors",
     "`code` of a `BimodalError`, beside its `message`, and where they help its `field`, `index` and `value`; `ErrorKind::code()` in Rust.",

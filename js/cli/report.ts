@@ -48,9 +48,9 @@ function table(rows: string[][]): string[] {
   );
 }
 
-/** The verdict, whose reason may open with the same word. */
+/** The verdict with its reason. */
 const headline = ({ verdict, reason }: Whole): string =>
-  `${verdict.toUpperCase()}: ${reason.replace(/^consistent: /i, "")}`;
+  `${verdict.toUpperCase()}: ${reason}`;
 
 /** The report for a terminal. */
 export function textOf(report: Whole): string {

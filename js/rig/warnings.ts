@@ -36,7 +36,9 @@ export type ReaderCode =
   | "quaternion-normalised"
   | "translation-unit-guessed"
   // Folders
+  | "inverse-checked"
   | "file-left-out"
+  | "file-alone"
   | "names-ambiguous"
   | "pairs-missing"
   | "pairs-by-order"

@@ -102,10 +102,10 @@ impl CheckReason {
 impl fmt::Display for CheckReason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::WithinTolerance(margin) => write!(f, "Consistent: its error is {margin}; {}.", margin.passes()),
+            Self::WithinTolerance(margin) => write!(f, "Its error is {margin}; {}.", margin.passes()),
             Self::NothingAgainst { margin, shown } => write!(
                 f,
-                "Consistent: nothing contradicts it, and this scene shows errors beyond {} px; its error is {margin}; {}.",
+                "Nothing contradicts it, and this scene shows errors beyond {} px; its error is {margin}; {}.",
                 Fixed(*shown, 1),
                 margin.passes()
             ),
@@ -113,20 +113,20 @@ impl fmt::Display for CheckReason {
             Self::NoPointsOnImage => f.write_str("Off: it puts no points onto the image."),
             Self::GuessedCamera { margin, explained } => write!(
                 f,
-                "This scene can't tell behind a guessed camera: {margin}, around the {} px that pass.",
+                "Behind a guessed camera its error is {margin}, around the {} px that pass.",
                 Fixed(*explained, 0)
             ),
             Self::Unconstrained { margin, weakest } => write!(
                 f,
-                "This scene can't tell, because it hardly shows {weakest}: {margin}, around the {} px that pass.",
+                "This scene hardly constrains {weakest}: its error is {margin}, around the {} px that pass.",
                 Fixed(margin.tolerance, 1)
             ),
             Self::TooClose(margin) => {
-                write!(f, "This scene can't tell: {margin}, around the {} px that pass.", Fixed(margin.tolerance, 1))
+                write!(f, "Its error is {margin}, around the {} px that pass.", Fixed(margin.tolerance, 1))
             }
-            Self::NoPoseOnImage => f.write_str("This scene can't tell: no pose puts its points onto the image."),
+            Self::NoPoseOnImage => f.write_str("No pose puts its points onto the image."),
             Self::NoEvidence => {
-                f.write_str("This scene can't tell: none of the chosen cues finds anything to compare in it.")
+                f.write_str("None of the chosen cues finds anything to compare in this scene.")
             }
             Self::NoCandidate { pixels } => {
                 write!(f, "No candidate was given; the estimate is good to {} px.", Fixed(*pixels, 1))

@@ -27,6 +27,7 @@ for (const [group, path, name] of [
   ["runs", "js/types.ts", "ReasonCode"],
   ["checks", "js/types.ts", "CheckCode"],
   ["warnings", "js/types.ts", "WarningCode"],
+  ["readers", "js/rig/warnings.ts", "ReaderCode"],
   ["estimators", "js/types.ts", "EstimatorWarningCode"],
   ["errors", "js/errors.ts", "ErrorCode"],
 ])
@@ -46,6 +47,17 @@ test("errors of the command line and of Python have a row", () => {
   assert.ok(used.length > 20, String(used.length));
   assert.deepEqual(
     [...new Set(used)].filter((code) => !(code in TABLE.errors)),
+    [],
+  );
+});
+
+test("warnings of the readers in Rust and of the command check have a row", () => {
+  const used = files(["files/src", "js/cli"], /\.(?:rs|ts)$/).flatMap((path) =>
+    [...source(path).matchAll(/(?:\b(?:Warning::new|warn|add|say)\(|code: |const \w+: &str = )\s*"([a-z]+(?:-[a-z]+)+)"/g)].map(([, code]) => code),
+  );
+  assert.ok(new Set(used).size > 12, String(used));
+  assert.deepEqual(
+    [...new Set(used)].filter((code) => !(code in TABLE.readers)),
     [],
   );
 });

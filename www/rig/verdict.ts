@@ -60,16 +60,10 @@ function headline({ report, estimateOnly, guessed, doubts }: Run): { word: Word;
   const isOpen = guessed.length + doubts.length + report.warnings.length > 0;
   // The check itself calls a consistent candidate undecided where it warns.
   if (isOpen && own?.verdict === "consistent")
-    return { word: "Settled, but check", tone: "open", sentence: afterWord(own.reason) };
+    return { word: "Settled, but check", tone: "open", sentence: own.reason };
   if (isOpen && report.verdict === "off") return { word: "Off, but check", tone, sentence: report.reason };
-  return { word, tone, sentence: afterWord(report.reason) };
+  return { word, tone, sentence: report.reason };
 }
-
-/** The card says the word already. */
-const afterWord = (reason: string): string => {
-  const rest = reason.replace(/^(Consistent|This scene can't tell)[:,] /, "");
-  return `${rest[0]?.toUpperCase() ?? ""}${rest.slice(1)}`;
-};
 
 /** The word alone reads like the state of a switch where it stands beside the controls: there it is a sentence. */
 export const ending = (run: Run): string => `The check is done: ${ENDS[headline(run).word]}.`;

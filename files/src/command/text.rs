@@ -43,13 +43,9 @@ fn table(rows: &[[String; 6]]) -> Vec<String> {
     rows.iter().map(line).collect()
 }
 
-/// The verdict, whose reason may open with the same word.
+/// The verdict with its reason.
 pub fn headline(checked: &Checked) -> String {
-    const OPENING: &str = "consistent: ";
-    let reason = &checked.reason;
-    let has_opening = reason.get(..OPENING.len()).is_some_and(|start| start.eq_ignore_ascii_case(OPENING));
-    let rest = if has_opening { &reason[OPENING.len()..] } else { reason };
-    format!("{}: {rest}", word(checked.verdict).to_uppercase())
+    format!("{}: {}", word(checked.verdict).to_uppercase(), checked.reason)
 }
 
 pub fn text(checked: &Checked) -> String {
