@@ -1,5 +1,9 @@
 //! A pose as nalgebra's transformations and as a 4x4 matrix.
 
+#[cfg(target_arch = "wasm32")]
+use wasm_bindgen_test::wasm_bindgen_test as test;
+
+use crate::common::laws;
 use bimodal_stereo::nalgebra::{Isometry3, Matrix4, Point3, Similarity3, Translation3, UnitQuaternion, Vector3};
 use bimodal_stereo::{Angles, ErrorKind, Similarity};
 use proptest::prelude::*;
@@ -10,6 +14,8 @@ fn pose(turn: [f64; 3], scale: f64, translation: [f64; 3]) -> Similarity {
 }
 
 proptest! {
+    #![proptest_config(laws(128))]
+
     #[test]
     fn all_carry_a_point_to_the_same_place_and_back_again(
         turn in prop::array::uniform3(-3.0..3.0), scale in 0.01..100.0_f64,
