@@ -3,9 +3,9 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use bimodal_stereo::nalgebra::{Matrix3, Vector3};
 use bimodal_stereo::{Lens, RigCamera};
 use bimodal_stereo_files::{Calibration, FolderOptions, Result, read_calibration, read_corner, read_rig_folder};
-use bimodal_stereo::nalgebra::{Matrix3, Vector3};
 
 fn read(text: &str) -> Result<Calibration> {
     let folder = tempfile::tempdir().unwrap();

@@ -10,6 +10,7 @@ use super::distortion;
 use super::evidence::Tiles;
 use super::frame::{Frame, Projection};
 use super::guessed;
+use super::health::Health;
 use super::input::RigView;
 use super::planes::Planes;
 use super::reason::{CheckReason, Warning, WarningKind};
@@ -19,7 +20,7 @@ use super::registration::{
 use super::search;
 use super::sensitivity::{Sensitivity, curves};
 use super::unknowns::{Matrix, POSE, State};
-use super::verdict::{CandidateReport, CheckVerdict, Health, Judge};
+use super::verdict::{CandidateReport, CheckVerdict, Judge};
 use crate::error::{Error, ErrorKind, Result};
 use crate::pose::Similarity;
 

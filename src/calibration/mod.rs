@@ -24,6 +24,7 @@ mod edges;
 mod evidence;
 mod frame;
 mod guessed;
+mod health;
 mod information;
 mod input;
 mod lens;
@@ -44,8 +45,9 @@ mod verdict;
 
 pub use check::{CalibrationCheck, CheckReport, CueReport, FrameReport, Overlay, overlay};
 pub use cue::Cue;
+pub use health::Health;
 pub use input::RigView;
 pub use lens::{Lens, RigCamera};
 pub use reason::{CheckReason, Margin, Offset, Warning, WarningKind};
 pub use sensitivity::Sensitivity;
-pub use verdict::{CandidateReport, CheckVerdict, Health};
+pub use verdict::{CandidateReport, CheckVerdict};

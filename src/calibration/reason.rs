@@ -3,7 +3,7 @@
 
 use std::fmt;
 
-use super::verdict::Health;
+use super::health::Health;
 use crate::pose::{Axis, Unknown};
 use crate::text::{Brief, Fixed};
 
@@ -125,9 +125,7 @@ impl fmt::Display for CheckReason {
                 write!(f, "Its error is {margin}, around the {} px that pass.", Fixed(margin.tolerance, 1))
             }
             Self::NoPoseOnImage => f.write_str("No pose puts its points onto the image."),
-            Self::NoEvidence => {
-                f.write_str("None of the chosen cues finds anything to compare in this scene.")
-            }
+            Self::NoEvidence => f.write_str("None of the chosen cues finds anything to compare in this scene."),
             Self::NoCandidate { pixels } => {
                 write!(f, "No candidate was given; the estimate is good to {} px.", Fixed(*pixels, 1))
             }

@@ -14,6 +14,7 @@
 
 use nalgebra::{SMatrix, SVector, Vector3};
 
+use super::health::Health;
 use super::reason::{CheckReason, Margin, Offset};
 use super::unknowns::{Matrix, POSE, State, Units};
 use crate::numeric::quantile;
@@ -49,16 +50,6 @@ pub enum CheckVerdict {
     Off,
     /// The scene can't tell.
     Undecided,
-}
-
-/// Expected reprojection error, pixels of the colour image, and its 95 % interval.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
-pub struct Health {
-    /// Root mean square.
-    pub pixels: f64,
-    /// From, to.
-    pub interval: [f64; 2],
 }
 
 /// What is said of one candidate.
