@@ -34,13 +34,13 @@ const patterns = UNFREE.flatMap((pair) => [Float32Array.from(pair), Float64Array
 );
 
 /** The files of a folder in which something is not free, by their paths in it. */
-const unfreeIn = (path) =>
-  filesBelow(path)
-    .filter((file) => {
-      const bytes = readFileSync(file);
-      return UNFREE_WORDS.test(bytes.toString("latin1")) || patterns.some((pattern) => bytes.includes(pattern));
-    })
-    .map((file) => relative(path, file));
+function unfreeIn(path) {
+  const files = filesBelow(path);
+  assert.ok(files.length > 0, `${path} is empty`);
+  const isUnfree = (bytes) =>
+    UNFREE_WORDS.test(bytes.toString("latin1")) || patterns.some((pattern) => bytes.includes(pattern));
+  return files.filter((file) => isUnfree(readFileSync(file))).map((file) => relative(path, file));
+}
 
 /** The own licences are there, and the notices, which name these packages with a text each. */
 function carries(path, packages) {
