@@ -1,17 +1,19 @@
 // npm run notices: writes down the licences of the crates that .wasm files, command line and Python package contain.
 //
-// To be run after a change of Cargo.lock, python/Cargo.lock or rust-toolchain.toml; tests/contract/notices.test.mjs misses it. What npm's
-// packages bring is added by the build itself (notices/bundled.mjs).
+// To be run after a change of Cargo.lock, python/Cargo.lock or rust-toolchain.toml; tests/contract/notices.test.mjs misses it. Files that name
+// the right crates stay as they are; `-- --all` writes them anew. What npm's packages bring is added by the build itself (notices/bundled.mjs).
 import { mkdirSync, readFileSync, readdirSync, writeFileSync } from "node:fs";
 import { dirname, join } from "node:path";
+import { isDeepStrictEqual } from "node:util";
 import { ARTEFACTS, cratesOf } from "./notices/crates.mjs";
-import { standardLibrary } from "./notices/standard-library.mjs";
-import { section } from "./notices/text.mjs";
+import { compiler, standardLibrary } from "./notices/standard-library.mjs";
+import { namedIn, section } from "./notices/text.mjs";
 import { tool } from "./setup.mjs";
-import { Failure, ask, inRoot, must, say, script } from "./shell.mjs";
+import { Failure, ask, inRoot, must, readIfThere, say, script } from "./shell.mjs";
 
 const ABOUT = "0.9.3";
 const FOLDER = "target/notices";
+const LIBRARY = "Contained by way of Rust's standard library:";
 /** What cargo-about leaves out of the licence that it finds: the attributions that Apache-2.0 asks for. */
 const NOTICE = /^notice/i;
 
@@ -72,17 +74,23 @@ function entryOf(crate, entries) {
   return { name, version, licence: [...new Set(entry.licences)].sort().join(" AND "), texts: entry.texts };
 }
 
+/** Whether the file names what is compiled, in its versions. */
+function isCurrent(artefact) {
+  const [crates, library = ""] = (readIfThere(inRoot(artefact.file)) ?? "").split(LIBRARY);
+  const named = namedIn(crates).sort();
+  return isDeepStrictEqual(named, cratesOf(artefact)) && namedIn(library).includes(`rust-std ${compiler()}`);
+}
+
 await script(async () => {
+  const stale = process.argv.includes("--all") ? ARTEFACTS : ARTEFACTS.filter((artefact) => !isCurrent(artefact));
+  if (stale.length === 0) return say("the notices are up to date");
   await install();
   mkdirSync(inRoot(FOLDER), { recursive: true });
   const config = settings();
-  for (const artefact of ARTEFACTS) {
+  for (const artefact of stale) {
     const entries = await about(artefact, config);
     const crates = cratesOf(artefact).map((crate) => entryOf(crate, entries));
-    const parts = [
-      section(artefact.title, crates),
-      section("Contained by way of Rust's standard library:", standardLibrary()),
-    ];
+    const parts = [section(artefact.title, crates), section(LIBRARY, standardLibrary())];
     writeFileSync(inRoot(artefact.file), parts.join("\n"));
     say(`${artefact.file}: ${crates.length} crates`);
   }
