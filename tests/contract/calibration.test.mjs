@@ -74,7 +74,7 @@ describe("a rig before boxes", () => {
     assert.ok(shares.length > 5 && shares.every((share, k) => share >= (shares[k - 1] ?? 0)), String(shares));
   });
 
-  test("the same input gives the same bits", async () => {
+  test("the same input gives the same bits", LONG, async () => {
     const told = wrong(truth, [0, 1, 0], 0.5);
     const [a, b] = [
       await checkCalibration([frame], { told }, { cues: ["edges"] }),
@@ -124,20 +124,24 @@ describe("a rig before boxes", () => {
     },
   );
 
-  test("behind a camera that is not given a right calibration is never off, and what is far off still is", async () => {
-    const image = { ...frame.image };
-    delete image.camera;
-    const report = await checkCalibration([{ ...frame, image }], {
-      truth,
-      told: wrong(truth, [1, 2, 1], 9, [0.05, 0, 0]),
-    });
-    assert.equal(report.candidates.truth.verdict, "undecided", report.candidates.truth.reason);
-    assert.equal(report.candidates.told.verdict, "off", report.candidates.told.reason);
-    assert.ok(codes(report.warnings).includes("intrinsics-guessed"));
-    // Its principal point and its lens are as unknown: of the scene's middle by a hundredth of the width at the least.
-    const across = Math.sqrt(report.covariance[21]) / report.middle[2];
-    assert.ok(across > (0.01 * frame.image.width) / frame.image.camera.fx, String(across));
-  });
+  test(
+    "behind a camera that is not given a right calibration is never off, and what is far off still is",
+    LONG,
+    async () => {
+      const image = { ...frame.image };
+      delete image.camera;
+      const report = await checkCalibration([{ ...frame, image }], {
+        truth,
+        told: wrong(truth, [1, 2, 1], 9, [0.05, 0, 0]),
+      });
+      assert.equal(report.candidates.truth.verdict, "undecided", report.candidates.truth.reason);
+      assert.equal(report.candidates.told.verdict, "off", report.candidates.told.reason);
+      assert.ok(codes(report.warnings).includes("intrinsics-guessed"));
+      // Its principal point and its lens are as unknown: of the scene's middle by a hundredth of the width at the least.
+      const across = Math.sqrt(report.covariance[21]) / report.middle[2];
+      assert.ok(across > (0.01 * frame.image.width) / frame.image.camera.fx, String(across));
+    },
+  );
 
   test("a blank image is named, and speaks against nobody", async () => {
     const data = new Uint8ClampedArray(frame.image.data.length).fill(255);
@@ -303,7 +307,7 @@ test("the health number's interval holds the estimate's error, not one several t
   }
 });
 
-test("one frame is found where wide windows lead elsewhere", async () => {
+test("one frame is found where wide windows lead elsewhere", LONG, async () => {
   // Every start of the search by image shifts ended in one wrong place: 2.8 degrees, 51 mm.
   const { degrees, millimetres } = await found("room", 5, 1);
   assert.ok(degrees < 0.4 && millimetres < 10, `${degrees} degrees, ${millimetres} mm`);
