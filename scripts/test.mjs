@@ -29,16 +29,10 @@ const cargo =
 const LIBRARY = ["-p", "bimodal-stereo"];
 /** A test in a browser runs to its end, too: the runner's own limit is twenty seconds. */
 const PATIENCE = { WASM_BINDGEN_TEST_TIMEOUT: "1800" };
-/**
- * Modules of `tests/library` that go through whole runs, some thousands of times what the others compute. They always run natively; by
- * wasm `agreement` compares whole runs with the native ones, and `--long` runs all.
- */
-const WHOLE_RUNS = [
+/** Modules of `tests/library` that search and sweep: they always run natively; by wasm with `--long`, as all others do each time. */
+const SEARCHES = [
   "initialisation",
-  "loop_laws",
-  "loop_synthetic",
   "opening",
-  "paint",
   "painted",
   "pose_search",
   "refinement_workers",
@@ -46,9 +40,8 @@ const WHOLE_RUNS = [
   "rig_laws",
   "scene_laws",
   "told_start",
-  "uncertainty",
 ];
-const SHORT_IN_WASM = LONG ? [] : [...SHORT, ...WHOLE_RUNS.flatMap((name) => ["--skip", `${name}::`])];
+const SHORT_IN_WASM = LONG ? [] : [...SHORT, ...SEARCHES.flatMap((name) => ["--skip", `${name}::`])];
 /** The library's tests that read no files, compiled for wasm; without a variable they run in Node. */
 const wasmTests = (where) =>
   watch("cargo", ["test", ...LIBRARY, "--target", WASM, "--lib", "--test", "library", "--", ...SHORT_IN_WASM], {
