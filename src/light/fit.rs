@@ -28,6 +28,9 @@ const SCALE_OF_MEDIAN: f64 = 3.0;
 const SMALLEST_SCALE: f64 = 0.005;
 /// Pixels whose terms are summed in f32 before the sum is added to one in f64: few enough to keep six digits.
 const SUMMANDS: usize = 256;
+/// How often the prior's weight is taken tenfold until the equations of the light can be solved. Sums in f32 are off by up
+/// to a millionth, and where relief is next to flat a weak prior is less than that.
+const MOST_RAISES: i32 = 10;
 /// Products summed for each harmonic: with the nine harmonics, then with R, G, B.
 const COLUMNS: usize = HARMONICS + 3;
 
@@ -149,8 +152,7 @@ impl LightFitter {
         }
         let total: f64 = self.weights.iter().map(|&weight| f64::from(weight)).sum();
         let share = if total > 0.0 { 1.0 / total } else { 0.0 };
-        let mut matrix: CoefficientMatrix = weight * prior.precision();
-        let mut target: Coefficients = weight * (prior.precision() * prior.mean_coefficients());
+        let (mut matrix, mut target) = (CoefficientMatrix::zeros(), Coefficients::zeros());
         for channel in 0..3 {
             for row in 0..HARMONICS {
                 target[channel * HARMONICS + row] += share * sums[row][HARMONICS + channel];
@@ -160,9 +162,14 @@ impl LightFitter {
                 }
             }
         }
-        let solution =
-            matrix.cholesky().map(|factor| factor.solve(&target)).filter(|l| l.iter().all(|v| v.is_finite()));
-        let solution = solution
+        let pull = prior.precision() * prior.mean_coefficients();
+        let solved = |raises| {
+            let weight = 10.0_f64.powi(raises) * weight;
+            let solution = (matrix + weight * prior.precision()).cholesky()?.solve(&(target + weight * pull));
+            solution.iter().all(|value| value.is_finite()).then_some(solution)
+        };
+        let solution = (0..=MOST_RAISES)
+            .find_map(solved)
             .ok_or_else(|| Error::new(ErrorKind::Degenerate, "light", "the normals do not determine the light"))?;
         Light::from_slice("light", solution.as_slice()).map_err(beyond_any)
     }
@@ -240,6 +247,25 @@ mod tests {
         let log = [0.0_f32; 4];
         let prior = LightPrior::natural();
         assert!(LightFitter::default().fit(&none, [&log; 3], &prior, 0.0).is_err());
+    }
+
+    #[test]
+    fn relief_next_to_flat_has_a_light_whatever_the_priors_spread() {
+        let truth = LightPrior::natural().mean();
+        let (mut normals, log) = scene(&truth, false);
+        for index in 0..normals.len() {
+            let [x, y, _] = normals.get(index).map(|part| 1e-3 * part);
+            normals.set(index, [x, y, -1.0]);
+        }
+        for spread in [1e-2, 1.0, 1e4, 1e8] {
+            let wide = LightPrior::new(&truth.flat(), &(spread * CoefficientMatrix::identity())).unwrap();
+            let fit = LightFitter::default().fit(&normals, [&log[0], &log[1], &log[2]], &wide, 1e-6);
+            assert!(
+                fit.as_ref().is_ok_and(|fit| fit.residual.is_finite())
+                    || fit.as_ref().is_err_and(|error| error.kind() == ErrorKind::Range),
+                "{spread}: {fit:?}"
+            );
+        }
     }
 
     #[test]
