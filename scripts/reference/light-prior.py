@@ -19,9 +19,8 @@ The Gaussian: first and second moments over
   azimuths      32 of them, evenly spread
   mirror        x to -x, which turns the signs of what is odd in x (L4, L5, L8): moments of odd with even are exactly zero
   exposure      taken out of each light, then put back as MEAN_EXPOSURE and EXPOSURE_SPREAD, the same for R, G, B
-  contrast      all but the constants times each of CONTRASTS, for lamps and skies between those that were photographed
-and FLOOR on the diagonal, a coefficient's variance that 18 environments say nothing of. CONTRASTS and FLOOR are where the
-environments left out are likeliest at the median (the table that this prints).
+and FLOOR on the diagonal, a coefficient's variance that 18 environments say nothing of: where the environments left out are
+likeliest at the median (the table that this prints).
 """
 
 import base64
@@ -56,7 +55,6 @@ LIMB = 0.05
 # Coefficient of the constant at the mean exposure: log S = log 0.36, one stop above middle grey. Half a stop of spread.
 MEAN_EXPOSURE = np.log(0.36) / C4
 EXPOSURE_SPREAD = 0.5 * np.log(2) / C4
-CONTRASTS = (0.5**0.5, 1, 2**0.5)
 FLOOR = 1e-3
 
 
@@ -134,20 +132,16 @@ def exposed(lights):
     return lights + np.where(CONSTANT, MEAN_EXPOSURE - lights[:, CONSTANT].mean(1, keepdims=True), 0)
 
 
-def gaussian(lights, contrasts=CONTRASTS, floor=FLOOR):
+def gaussian(lights, floor=FLOOR):
     """Mean and covariance of lights (a list of one array for each environment), in closed form."""
     every = np.concatenate([exposed(of_one) for of_one in lights])
     every = np.concatenate([every, every * MIRROR])
-    first = every.mean(0)
+    mean = every.mean(0)
     second = every.T @ every / len(every)
     # Sums of what cancels in pairs leave a rounding error; the mirror makes them zero.
-    first[MIRROR < 0] = 0
+    mean[MIRROR < 0] = 0
     second[np.not_equal.outer(MIRROR, MIRROR)] = 0
-    powers = np.where(CONSTANT, 0, 1)
-    power = np.add.outer(powers, powers)
-    factors = np.array([np.mean(np.power(contrasts, exponent)) for exponent in (0, 1, 2)])
-    mean = first * factors[powers]
-    covariance = second * factors[power] - np.outer(mean, mean)
+    covariance = second - np.outer(mean, mean)
     covariance += EXPOSURE_SPREAD**2 * np.outer(CONSTANT, CONSTANT) + floor * np.eye(27)
     return mean, covariance
 
@@ -160,12 +154,12 @@ def scores(mean, covariance, lights):
     return -squared / 2 - np.log(np.diag(lower)).sum(), squared
 
 
-def left_out(lights, contrasts, floor):
+def left_out(lights, floor):
     """Median over the environments of their mean scores under the prior made from the others."""
     found = []
     for name, own in lights.items():
         others = [of_one for other, of_one in lights.items() if other != name]
-        found.append([part.mean() for part in scores(*gaussian(others, contrasts, floor), own)])
+        found.append([part.mean() for part in scores(*gaussian(others, floor), own)])
     return np.median(found, 0)
 
 
@@ -228,11 +222,10 @@ def main(package):
     eigenvalues = np.linalg.eigvalsh(covariance)
     print(f"eigenvalues of the covariance: {eigenvalues[0]:.2e} to {eigenvalues[-1]:.2f}")
 
-    print("left out: contrast to either side, floor, log-likelihood, squared distance (medians over environments)")
-    for factor in (1, 2**0.5, 2):
-        for floor in (1e-4, 3e-4, 1e-3, 3e-3, 1e-2):
-            likelihood, squared = left_out(lights, (1 / factor, 1, factor), floor)
-            print(f"  {factor:5.2f} {floor:.4f} {likelihood:6.2f} {squared:5.1f}")
+    print("left out: floor, log-likelihood, squared distance (medians over environments)")
+    for floor in (1e-4, 3e-4, 1e-3, 3e-3, 1e-2):
+        likelihood, squared = left_out(lights, floor)
+        print(f"  {floor:.4f} {likelihood:6.2f} {squared:5.1f}")
     if TEST_LIGHTS.exists():
         table = np.array(list(csv.reader(TEST_LIGHTS.open()))[1:], float)[:, 1:]
         likelihood, squared = scores(mean, covariance, table)
