@@ -9,6 +9,10 @@
 //! A rectangle whose width has large prime factors is solved as part of a wider one, zero beyond it: a preconditioner
 //! need not be exact (docs/method.md, section 6).
 //!
+//! Why not rustdct (0.7): it takes one row after the other. A solve of 640x480 takes 5.9 ms instead of 2.9 with simd128 and
+//! rustfft's SIMD for WebAssembly, 8.0 without the latter (Node 20); a solve is most of an iteration of the integration.
+//! Without SIMD rustdct needs 0.4 to 0.8 of the time: what counts is the module that browsers of today load.
+//!
 //! Limits: without a shift (s = 0) constants are in the null space: f has to sum to zero (its mean is ignored)
 //! and the answer has mean zero. Rounding: about 1e-6 of the largest height at 256x256 (f32 pixels, f64 pivots).
 

@@ -1,6 +1,9 @@
 //! Two pixels side by side: f64 arithmetic that fills one vector register of WebAssembly, see [`lanes`](super::lanes).
 //!
 //! For sums of which small differences matter: solving normal equations loses half of the digits.
+//!
+//! Why not the crate `wide` (1.7): its exponential takes 4.5 times as long with simd128 and 3.6 times without (Node 20), as
+//! it has all digits; seven suffice here.
 
 use std::ops::{Add, BitAnd, Div, Mul, Sub};
 

@@ -4,6 +4,9 @@
 //! loops, four numbers at a time under simd128. The forward transform decimates in frequency and leaves a spectrum
 //! transposed and in bit-reversed order, which products of two spectra do not mind; the inverse decimates in time and
 //! takes the same steps back. Neither direction divides by the number of cells.
+//!
+//! Why not rustfft (6.4): a square of 32x32 and back takes 12.6 us instead of 7.6 with simd128 (Node 20). Its own SIMD for
+//! WebAssembly brings that to 6.9 us, but the module for engines without SIMD must not contain it.
 
 use super::roots::{Root, root};
 
