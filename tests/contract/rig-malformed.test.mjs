@@ -172,12 +172,12 @@ const packed = (name, compression) => {
   return file;
 };
 
-/** An EXR whose first block inflates to twenty megabytes. */
+/** An EXR whose first block inflates to two megabytes. */
 function bombOf(name) {
   const file = fixture(name);
   const view = new DataView(file.buffer);
   const from = Number(view.getBigUint64(blocksAt(view), true));
-  const bomb = deflateSync(Buffer.alloc(20 * MEGABYTE)).subarray(0, 4000);
+  const bomb = deflateSync(Buffer.alloc(2 * MEGABYTE));
   return bytes(file.subarray(0, from + 4), u32(bomb.length), bomb, new Uint8Array(30_000));
 }
 
@@ -260,10 +260,14 @@ const FILES = [
   ["cut.tif", cut("depth-float-zlib.tif", 300), /TIFF|beyond its own end/],
   ["big.tif", cut("depth-bigtiff.tif", 40), /beyond its own end/],
   ["tags.tif", bytes([0x49, 0x49, 43, 0, 8, 0, 0, 0], u32(16, 0, 0xffffffff, 0xffff)), /TIFF has \d+ tags/],
-  ["kind.tif", changed("depth-16-None.tif", [2, 44]), /TIFF|no kind/],
+  ["kind.tif", changed("depth-16-None.tif", [2, 44]), /not known here/],
   ["zstd.tif", tiff(tiffTags(4096, 4096, { 259: 50000, 273: 110, 279: 8 }), zstdOf(2 ** 31)), /damaged|cut off/],
   ["lerc.tif", tiff(tiffTags(4, 4, { 259: 34887, 273: 110, 279: 100 }), lercOf({ width: 2 ** 15 })), /kind of LERC/],
-  ["lerc-none.tif", tiff(tiffTags(4, 4, { 259: 34887, 273: 110, 279: 100 }), lercOf({ length: 0 })), /LERC/],
+  [
+    "lerc-none.tif",
+    tiff(tiffTags(4, 4, { 259: 34887, 273: 110, 279: 100 }), lercOf({ length: 0 })),
+    /beyond its own end/,
+  ],
   ["lerc-block.tif", tiff(tiffTags(4, 4, { 259: 34887, 273: 110, 279: 100 }), lercOf({ block: 0 })), /kind of LERC/],
   ["lzma.tif", tiff(tiffTags(4, 4, { 259: 34925, 279: 20 }), new Uint8Array(200)), /compressed by LZMA/],
   ["promises.tif", tiff(tiffTags(4096, 4096)), /cut off: \d+ of \d+ bytes/],
