@@ -59,6 +59,7 @@ export function reportOf(verdict: CheckReport["verdict"], candidates: string[], 
   const offsets = Array.from({ length: 41 }, (_, i) => i - 20);
   const candidate = (i: number) => ({
     verdict: i === 0 ? verdict : ("off" as const),
+    code: "off-target" as const,
     reason: `It is ${2 + i}.04 degrees off about y.`,
     offDegrees: 2.04 + i,
     offMillimetres: 1.2,
@@ -67,8 +68,10 @@ export function reportOf(verdict: CheckReport["verdict"], candidates: string[], 
     probability: 0.0001,
   });
   const covariance = Array.from({ length: 36 }, (_, i) => (i % 7 === 0 ? (i < 18 ? 2e-6 : i === 35 ? 3e-5 : 1e-6) : 0));
+  const codes = { consistent: "within-tolerance", off: "off-target", undecided: "unconstrained" } as const;
   return {
     verdict,
+    code: codes[verdict],
     reason:
       verdict === "off"
         ? "It is 2.04 degrees off about y."

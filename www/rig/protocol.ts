@@ -6,7 +6,7 @@ import type { NamedPose, ReaderWarning, Reading, RigReading } from "./files";
 
 /** What the check found, with what the page knows to be guessed among its warnings. */
 export interface WholeReport extends Omit<CheckReport, "warnings"> {
-  warnings: (string | Warning)[];
+  warnings: (string | Pick<Warning, "message">)[];
 }
 
 export type Kind = RigReading["kind"];

@@ -20,11 +20,12 @@ ready.catch(() => {});
 let current = "";
 let told = 0;
 
-function tell({ stage, reason, iteration }: StepReport): void {
+function tell(report: StepReport): void {
+  const { stage, iteration } = report;
   const now = performance.now();
   if (now - told < TELL_EVERY) return;
   told = now;
-  const share = stage === "search" ? searched({ reason }) : "";
+  const share = stage === "search" ? searched(report) : "";
   post({ id: current, progress: share ? `search ${share}` : `iteration ${iteration}`, share });
 }
 
