@@ -59,8 +59,9 @@ export interface ErrorDetails {
   readonly reason?: string;
   /** "too-large": it holds more than is read here; "picture": a picture of a format that browsers read and these readers do not. */
   readonly problem?: "too-large" | "picture";
-  /** Its size in pixels, where that is the problem. */
+  /** Its columns, where its size is the problem. */
   readonly width?: number;
+  /** Its rows, where its size is the problem. */
   readonly height?: number;
 }
 

@@ -311,6 +311,7 @@ export type ReasonCode =
 
 /** A reason with its numbers, such as `percent`, `sigmaDegrees`, `weakest` or `count`. */
 export interface Reason {
+  /** Stable, for programs. */
   code: ReasonCode;
   [detail: string]: unknown;
 }
@@ -606,6 +607,7 @@ export interface EstimatorWarning {
 export interface CandidateReport {
   /** Of this candidate. */
   verdict: CheckVerdict;
+  /** Why, for programs. */
   code: CheckCode;
   /** The verdict in a sentence with its numbers. */
   reason: string;
@@ -625,6 +627,7 @@ export interface CandidateReport {
 export interface CheckReport {
   /** Of the first candidate. */
   verdict: CheckVerdict;
+  /** Why, for programs. */
   code: CheckCode;
   /** The verdict in a sentence with its numbers. */
   reason: string;

@@ -46,8 +46,15 @@ export interface Reading {
   warnings: ReaderWarning[];
   /** Whether a picture is stored without colours. */
   isGrey?: boolean;
-  /** Of a depth map or cloud: how its numbers are stored ("16-bit"), the share of valid pixels, the nearest and the farthest depth in metres. */
-  measured?: { stored: string; valid: number; range: [number, number] };
+  /** Of a depth map or cloud. */
+  measured?: {
+    /** How its numbers are stored: "16-bit". */
+    stored: string;
+    /** Share of valid pixels, 0 to 1. */
+    valid: number;
+    /** The nearest and the farthest depth, metres. */
+    range: [number, number];
+  };
 }
 
 /** What a file may hold. `guessed` names what of a depth map is not in its file and was inferred from its values. */

@@ -45,7 +45,9 @@ export type ReaderCode =
   | "pairs-by-content"
   | "pairs-sampled";
 
+/** What a reader guessed, changed or found wrong; beside these members the numbers of the code. */
 export interface ReaderWarning {
+  /** Stable, for programs. */
   code: ReaderCode;
   /** A sentence; of a folder's file it begins with the file's name. */
   message: string;

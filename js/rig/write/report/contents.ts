@@ -6,6 +6,7 @@ export interface Checked extends Omit<CheckReport, "warnings"> {
   warnings: readonly (string | Pick<Warning, "message">)[];
 }
 
+/** A picture that the report shows. */
 export interface Picture {
   /** Shown above it. */
   title: string;
