@@ -24,7 +24,7 @@ const GROUPS = {
   ],
   readers: [
     "Warnings of the readers of files",
-    "`code` of each entry of `warnings` of `readRigFile` and `readRigFolder`, and of the command `check`. Those with `isDoubt` keep a verdict from being \"consistent\"; the others name what was left out.",
+    '`code` of each entry of `warnings` of `readRigFile` and `readRigFolder`, and of the command `check`. Those with `isDoubt` keep a verdict from being "consistent"; the others name what was left out.',
   ],
   errors: [
     "Errors",

@@ -49,8 +49,7 @@ function table(rows: string[][]): string[] {
 }
 
 /** The verdict with its reason. */
-const headline = ({ verdict, reason }: Whole): string =>
-  `${verdict.toUpperCase()}: ${reason}`;
+const headline = ({ verdict, reason }: Whole): string => `${verdict.toUpperCase()}: ${reason}`;
 
 /** The report for a terminal. */
 export function textOf(report: Whole): string {

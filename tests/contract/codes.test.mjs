@@ -53,7 +53,11 @@ test("errors of the command line and of Python have a row", () => {
 
 test("warnings of the readers in Rust and of the command check have a row", () => {
   const used = files(["files/src", "js/cli"], /\.(?:rs|ts)$/).flatMap((path) =>
-    [...source(path).matchAll(/(?:\b(?:Warning::new|warn|add|say)\(|code: |const \w+: &str = )\s*"([a-z]+(?:-[a-z]+)+)"/g)].map(([, code]) => code),
+    [
+      ...source(path).matchAll(
+        /(?:\b(?:Warning::new|warn|add|say)\(|code: |const \w+: &str = )\s*"([a-z]+(?:-[a-z]+)+)"/g,
+      ),
+    ].map(([, code]) => code),
   );
   assert.ok(new Set(used).size > 12, String(used));
   assert.deepEqual(
