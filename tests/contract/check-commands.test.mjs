@@ -18,6 +18,8 @@ import { freshProject } from "./fresh.mjs";
 const RELATIVE = 1e-5;
 /** Of curves: a tile of a depth edge more or less changes them by a thousandth. */
 const RELATIVE_OF_CURVES = 0.02;
+/** What rounding leaves of numbers that are zero. */
+const ZERO = 1e-9;
 
 const NYU = inRoot("../shared/data/nyu_raw_pair");
 const PYTHON = inRoot("target/python/venv/bin/python");
@@ -77,7 +79,7 @@ async function rendered() {
 }
 
 const isNumber = (value) => typeof value === "number";
-const size = (values) => Math.max(...values.map(Math.abs), Number.MIN_VALUE);
+const size = (values) => Math.max(...values.map(Math.abs));
 
 /** Equal in shape and in words, and nearly in numbers. */
 function alike(one, other, path) {
@@ -86,7 +88,7 @@ function alike(one, other, path) {
     assert.equal(theirs.length, ours.length, path);
     const off = size(ours.map((value, index) => value - theirs[index]));
     const tolerance = path.includes(".sensitivity.") ? RELATIVE_OF_CURVES : RELATIVE;
-    assert.ok(off <= tolerance * size(ours), `${path}: ${ours} and ${theirs}`);
+    assert.ok(off <= tolerance * size(ours) + ZERO, `${path}: ${ours} and ${theirs}`);
   } else if (typeof one === "object" && one !== null && typeof other === "object" && other !== null) {
     assert.deepEqual(Object.keys(other).sort(), Object.keys(one).sort(), path);
     for (const key of Object.keys(one)) alike(one[key], other[key], `${path}.${key}`);
