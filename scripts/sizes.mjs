@@ -48,9 +48,10 @@ function firstScripts() {
 const CHECK_WASM = /bimodal_stereo_check_bg/;
 /** A word that only those know who read or write a rig's files: Kalibr's name of its extrinsics. */
 const RIG_FILES = /T_cn_cnm1/;
-/** The rendered example, which is loaded when it is asked for, and the decoder of JPEG, which browsers have. */
+/** The rendered example, which is loaded when it is asked for. */
 const EXAMPLE = /\/(?:rigs-|bimodal_stereo_rigs_bg)/;
-const OTHERS = /\/decoder-/;
+/** Readers that are loaded for a file of their kind: JPEG where there is no browser, YAML, rare compressions of EXR and TIFF. */
+const OTHERS = /\/(?:decoder|exr-others|tiff-codecs|js-yaml)-/;
 
 /** What runs a check, reads its files and writes them, all of it on demand; and what the example takes besides. */
 function checkFiles() {
