@@ -132,7 +132,7 @@ fn poses<'py>(py: Python<'py>, all: &[NamedPose]) -> PyResult<Vec<Bound<'py, PyD
         dict.set_item("name", &one.names.name)?;
         dict.set_item("source", &one.names.from)?;
         dict.set_item("target", &one.names.to)?;
-        dict.set_item("pose", report::pose(py, &one.pose)?)?;
+        dict.set_item("pose", report::plain(py, &one.pose)?)?;
         Ok(dict)
     };
     all.iter().map(plain).collect()
