@@ -95,11 +95,10 @@ export function poseOf(value: unknown, field: string): unknown {
   if (isMatrix(value)) return ofMatrix4(value as Matrix4, field);
   if (!isObject(value) || !("matrix" in value) || value.matrix === undefined) return value;
   const { matrix, ...members } = value;
-  if (!isMatrix(matrix)) throw wrong(`${field}.matrix`, "a 4x4 matrix", matrix);
   // A pose of a report has both, and whoever changed its rotation meant that.
-  const own =
-    "rotation" in value && value.rotation !== undefined ? {} : ofMatrix4(matrix as Matrix4, `${field}.matrix`);
-  return { ...members, ...own };
+  if ("rotation" in value && value.rotation !== undefined) return members;
+  if (!isMatrix(matrix)) throw wrong(`${field}.matrix`, "a 4x4 matrix", matrix);
+  return { ...members, ...ofMatrix4(matrix as Matrix4, `${field}.matrix`) };
 }
 
 /** A pose with all members, its angles among them: those of a matrix, or its own. */

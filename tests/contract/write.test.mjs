@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { before, describe, test } from "node:test";
 import { decode } from "fast-png";
-import { decodeDepth } from "../../pkg/files.js";
+import { decodeColour, decodeDepth } from "../../pkg/files.js";
 import {
   BimodalError as WriteError,
   depthPng,
