@@ -96,7 +96,7 @@ export function poseOf(value: unknown, field: string): unknown {
   if (!isObject(value) || !("matrix" in value) || value.matrix === undefined) return value;
   const { matrix, ...members } = value;
   // A pose of a report has both, and whoever changed its rotation meant that.
-  if ("rotation" in value && value.rotation !== undefined) return members;
+  if ("rotation" in value && value.rotation !== undefined) return Object.hasOwn(value, "matrix") ? members : value;
   if (!isMatrix(matrix)) throw wrong(`${field}.matrix`, "a 4x4 matrix", matrix);
   return { ...members, ...ofMatrix4(matrix as Matrix4, `${field}.matrix`) };
 }

@@ -60,6 +60,15 @@ describe("a pose", () => {
     near(again.report.pose.rotation, pose.rotation);
     const turned = new Estimator(image, depth, { start: { ...pose, rotation: ROTATION } });
     near(turned.report.pose.rotation, ROTATION);
+    class Inherited {
+      get rotation() {
+        return ROTATION;
+      }
+      get matrix() {
+        return "not looked at";
+      }
+    }
+    near(new Estimator(image, depth, { start: new Inherited() }).report.pose.rotation, ROTATION);
   });
 
   test("of a rig: the numbers of a file of single precision stay what they are", () => {
