@@ -112,7 +112,7 @@ describe("after init", () => {
     refused(withOptions({ regstration: "icp" }), "option", "options.regstration");
     assert.throws(withOptions({ regstration: "icp" }), /did you mean "registration"\?/);
     assert.throws(withOptions({ LAMBDA: {} }), /did you mean "lambda"\?/);
-    assert.throws(withOptions({ zzz: 1 }), /known: light, start/);
+    assert.throws(withOptions({ zzz: 1 }), /known: light, prior, start/);
     // Words of any length are told from those that are known in no time, and repeated in part.
     assert.throws(withOptions({ ["z".repeat(1e6)]: 1 }), ({ message }) => message.length < 1000);
     assert.throws(withOptions({ start: "z".repeat(1e7) }), ({ message }) => message.length < 1000);

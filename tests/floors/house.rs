@@ -171,7 +171,7 @@ fn collect(folder: &Path, prefix: &str, found: &mut Vec<(String, String)>) {
 impl File {
     fn new(path: &str, text: &str) -> Self {
         let mut module: Segments = path.trim_end_matches(".rs").split('/').map(String::from).collect();
-        if matches!(module.last().map(String::as_str), Some("mod" | "lib")) {
+        if matches!(module.last().map(String::as_str), Some("mod" | "lib" | "main")) {
             module.pop();
         }
         let words = tokens(text);
