@@ -138,10 +138,12 @@ fn pinhole(distortion: &'static str, js: &JsPinhole) -> Result<Pinhole> {
     Ok(Pinhole { fx: js.fx(), fy: js.fy(), cx: js.cx(), cy: js.cy(), distortion })
 }
 
-/// Options of the contract over the native defaults. Names and types have been checked by the facade, whose errors name the field; serde's do not.
+/// Options of the contract over the native defaults. Names and types have been checked by the facade.
 pub fn options(js: &JsOptions) -> Result<Options> {
-    serde_wasm_bindgen::from_value(js.into())
-        .map_err(|error| Error::new(ErrorKind::Range, "options", error.to_string()))
+    serde_path_to_error::deserialize(serde_wasm_bindgen::Deserializer::from(JsValue::from(js))).map_err(|error| {
+        let field = format!("options.{}", error.path());
+        Error::new(ErrorKind::Range, field, error.into_inner().to_string())
+    })
 }
 
 /// Missing angles are zero.

@@ -217,7 +217,7 @@ test("depths where a folding lens lets no ray through are left out", () => {
 });
 
 test("a pose says itself as a matrix, and an end its code with its numbers", async () => {
-  const { pose, reason, message } = await estimator({ maxIterations: 1 }).run();
+  const { pose, reason, message } = await estimator({ registration: "fixed", maxIterations: 1 }).run();
   const [scaled, row] = [pose.rotation.map((entry) => pose.scale * entry), (i) => [3 * i, 3 * i + 3]];
   assert.deepEqual(pose.matrix, [
     ...[0, 1, 2].map((i) => [...scaled.slice(...row(i)), pose.translation[i]]),
@@ -226,7 +226,7 @@ test("a pose says itself as a matrix, and an end its code with its numbers", asy
   assert.deepEqual(reason, { code: "iteration-cap", iterations: 1 });
   assert.equal(message, "the cap of 1 iterations was reached");
   assert.deepEqual(
-    await estimator({ start: pose, maxIterations: 1 })
+    await estimator({ start: pose, registration: "fixed", maxIterations: 1 })
       .run()
       .then(({ reason }) => reason),
     reason,

@@ -212,7 +212,7 @@ describe("batch.mjs", () => {
       assert.equal(row[1], "converged");
       assert.ok(Math.abs(row[4] - beta) < 2, row.join());
     }
-    assert.match(readFileSync(csv, "utf8"), /^"bad, ""cut""",error,.*file: it is neither/m);
+    assert.match(readFileSync(csv, "utf8"), /^"bad, ""cut""",error,.*it is neither/m);
 
     // Nothing is left to do.
     const third = await batch([pairs, "--csv", csv]);

@@ -21,7 +21,7 @@ export const report = () => ({
   reason:
     "Off by about 1.9° and 21 mm, mostly a turn about the y axis; a true calibration lies as far from the best fit once in 4000 checks.",
   warnings: [
-    "The unit of depth/0001.png was guessed: 1 mm.",
+    { code: "unit-guessed", message: "The unit of depth/0001.png was guessed: 1 mm." },
     { code: "lens-left-out", message: "The colour camera's distortion is not given and was taken for zero." },
   ],
   estimate: {

@@ -1,7 +1,7 @@
 //! Threads that share an estimator's work: the outcome is the same to the bit, however many there are.
 
 use bimodal_stereo::scenes::{Sample, SampleRequest, Scene, light, surface};
-use bimodal_stereo::{Estimator, Options, Similarity, Start, Status, StepReport};
+use bimodal_stereo::{Estimator, Options, Reason, Similarity, Start, Status, StepReport};
 
 /// Its report, refined depth and image depth to the bit.
 type End = (StepReport, [Vec<u32>; 2]);
@@ -52,8 +52,10 @@ fn a_search_that_is_shared_says_how_far_it_is_and_can_be_begun_again() {
     let mut shared = estimator(&sample, &Options::default()).with_threads(3);
     let mut told = Vec::new();
     while shared.is_searching() {
-        let message = shared.step().message.clone().unwrap();
-        told.push(message.split_once(" %").unwrap().0.parse::<u32>().unwrap());
+        let Some(Reason::Searching { percent, .. }) = shared.step().reason else {
+            panic!("the search is not reported")
+        };
+        told.push(percent);
     }
     assert!(told.len() > 4 && told.is_sorted(), "{told:?}");
     let first = end(&mut shared);
