@@ -14,6 +14,10 @@ pub fn failure(code: &str, field: &str, message: &str) -> PyErr {
 /// A name of the contract, or a path of names, in Python's spelling.
 #[pyfunction]
 pub fn spelled(name: &str) -> String {
+    // The names of candidates are the caller's.
+    if name.starts_with("candidates.") {
+        return name.to_owned();
+    }
     // Options are arguments here, not members of an object.
     let name = name.strip_prefix("options.").unwrap_or(name);
     let mut own = String::with_capacity(name.len());
