@@ -80,7 +80,7 @@ describe("what comes from files is escaped", () => {
     const evil = {
       ...given,
       reason: EVIL,
-      warnings: [EVIL],
+      warnings: [{ code: "many-holes", message: EVIL }],
       candidates: { [EVIL]: { ...candidate, reason: EVIL } },
       cues: { [EVIL]: { share: 1, sharpness: 1 } },
       frames: [{ name: EVIL, share: 1, note: EVIL }],
