@@ -48,7 +48,7 @@ test("names without end, and none at all, keep a report in its place", async ({ 
   const names = {
     ...given,
     reason: long,
-    warnings: [long],
+    warnings: [{ code: "many-holes", message: long }],
     candidates: { [long]: candidate },
     frames: [{ name: long, share: 1, note: long }],
   };
