@@ -65,9 +65,9 @@ pub fn fixed(value: f64, decimals: i32) -> String {
     if !value.is_finite() || value.abs() >= 1e15 {
         return shown(value);
     }
-    // A value that lies exactly between two is the only one that the two languages round differently.
+    // A value that lies exactly between two is the only one that the two languages round differently; it is a multiple of that power of two.
     let scaled = value.abs() * 10_f64.powi(decimals);
-    let is_half = scaled.fract() == 0.5 && scaled / 10_f64.powi(decimals) == value.abs();
+    let is_half = scaled.fract() == 0.5 && (value * 2_f64.powi(decimals + 1)).fract() == 0.0;
     let value = if is_half { value.signum() * (scaled + 0.25).round() / 10_f64.powi(decimals) } else { value };
     format!("{value:.*}", decimals as usize)
 }
