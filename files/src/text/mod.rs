@@ -199,12 +199,12 @@ fn xml(text: &str) -> Result<Value, Reason> {
     // Launch files and pieces of them may hold several elements side by side, which XML itself does not allow.
     let text = text.split_once("?>").filter(|_| text.starts_with("<?")).map_or(text, |(_, rest)| rest);
     let whole = format!("<_all>{text}</_all>");
-    let document = roxmltree::Document::parse_with_options(&whole, options).map_err(|error| match error {
-        roxmltree::Error::DtdDetected => {
-            "this XML declares a document type or raw data, which no calibration needs: not read".to_owned()
-        }
-        error => format!("this XML is damaged or cut off ({error})"),
-    })?;
+    // Below an element a declaration is no syntax to the parser, which would call it damage.
+    if ["<!DOCTYPE", "<![CDATA["].iter().any(|declaration| text.contains(declaration)) {
+        return Err("this XML declares a document type or raw data, which no calibration needs: not read".to_owned());
+    }
+    let document = roxmltree::Document::parse_with_options(&whole, options)
+        .map_err(|error| format!("this XML is damaged or cut off ({error})"))?;
     plain_element(document.root_element(), MOST_DEPTH)
 }
 
