@@ -262,6 +262,7 @@ mod serialised {
 
     #[derive(Serialize, Deserialize)]
     #[serde(untagged)]
+    #[expect(clippy::large_enum_variant, reason = "lives no longer than a conversion")]
     pub enum GivenLight {
         Word(LightWord),
         Numbers([f64; 27]),
