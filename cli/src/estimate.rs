@@ -2,36 +2,13 @@
 
 use bimodal_stereo::{Estimator, Status};
 use bimodal_stereo_files::pairs::Files;
+use bimodal_stereo_files::write::Length;
 use bimodal_stereo_files::{Problem, Result, Warning};
 
 use crate::Task;
 use crate::code::Code;
 use crate::progress::Progress;
 use crate::views;
-
-/// Of lengths.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Length {
-    Metres,
-    Pixels,
-}
-
-impl Length {
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Metres => "metres",
-            Self::Pixels => "pixels",
-        }
-    }
-
-    /// As in the files of the page.
-    pub fn symbol(self) -> &'static str {
-        match self {
-            Self::Metres => "m",
-            Self::Pixels => "px",
-        }
-    }
-}
 
 /// What came out.
 pub struct Outcome {
@@ -56,8 +33,7 @@ impl Outcome {
 /// Reads both views and runs the loop to its end.
 pub fn estimate(files: &Files, task: &Task, progress: &Progress) -> Result<Outcome> {
     let views = views::read(files, &task.arguments, &task.cameras)?;
-    let length = |has_camera| if has_camera { Length::Metres } else { Length::Pixels };
-    let [image_length, depth_length] = [views.image.camera.is_some(), views.depth.camera.is_some()].map(length);
+    let [image_length, depth_length] = [views.image.camera.is_some(), views.depth.camera.is_some()].map(Length::of);
     let mut estimator = Estimator::new(views.image, &views.depth, task.options.clone())
         .map_err(|error| Problem::of_pair(&error, &files.image, &files.depth))?
         .with_threads(task.arguments.workers());

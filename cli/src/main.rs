@@ -12,7 +12,6 @@ mod estimate;
 mod progress;
 mod report;
 mod views;
-mod write;
 
 use std::ffi::OsString;
 use std::io::{self, ErrorKind, Write};
@@ -22,7 +21,7 @@ use std::process::ExitCode;
 use arguments::{Arguments, Input};
 use bimodal_stereo::Options;
 use bimodal_stereo_files::pairs::{self, Files};
-use bimodal_stereo_files::{Problem, Result};
+use bimodal_stereo_files::{Problem, Result, write};
 use cameras::Cameras;
 use clap::Parser;
 use code::Code;
@@ -134,7 +133,8 @@ impl Task {
         progress.end();
         let mut outcome = outcome?;
         if let Some(out) = out {
-            outcome.written = write::results(out, &outcome)?;
+            let report = ("report.json", report::json(&outcome, report::Layout::Lines).into(), "as --json".into());
+            outcome.written = write::results(out, &outcome.estimator, vec![report])?;
         }
         Ok(outcome)
     }

@@ -2,12 +2,12 @@
 
 use std::fmt::Write;
 
-use bimodal_stereo::{Angles, CODES, Light, Reason, Similarity, Status, StepReport, Uncertainty};
+use bimodal_stereo::{Angles, CODES, Light, Reason, Similarity, StepReport, Uncertainty};
 use bimodal_stereo_files::pairs::Files;
 use bimodal_stereo_files::{Problem, Warning, plain, shown};
 use serde::Serialize;
 
-use crate::estimate::{Length, Outcome};
+use crate::estimate::Outcome;
 
 /// Digits of lengths, sigmas and shares.
 const DIGITS: i32 = 4;
@@ -222,35 +222,6 @@ pub fn json_of_problem(name: Option<&str>, files: Option<&Files>, problem: &Prob
     let [image, depth] = [files.map(|files| shown(&files.image)), files.map(|files| shown(&files.depth))];
     let error = Fault { code: problem.code, field: &problem.field, message: problem.to_string() };
     text(&Failed { name, image, depth, error }, layout)
-}
-
-/// The pose and how far it is to be trusted, for other programs: as in js/write/results.ts.
-pub fn pose_json(report: &StepReport, length: Length) -> String {
-    #[derive(Serialize)]
-    struct Told<'a> {
-        about: String,
-        unit: &'static str,
-        #[serde(flatten)]
-        pose: &'a Similarity,
-        status: Status,
-        #[serde(skip_serializing_if = "Option::is_none")]
-        message: Option<String>,
-        #[serde(skip_serializing_if = "Option::is_none")]
-        reason: &'a Option<Reason>,
-        #[serde(skip_serializing_if = "Option::is_none")]
-        uncertainty: &'a Option<Uncertainty>,
-    }
-    let StepReport { pose, status, reason, uncertainty, .. } = report;
-    let sigmas = uncertainty.as_ref().map_or("", |_| {
-        "; uncertainty is one sigma, null where the views cannot see the number: any value of it would do as well, or it was held"
-    });
-    let about = format!(
-        "P_colour = scale * rotation * P_depth + translation; rotation row by row; angles in degrees; lengths in {}{sigmas}",
-        length.word()
-    );
-    let message = reason.as_ref().map(Reason::to_string);
-    let told = Told { about, unit: length.symbol(), pose, status: *status, message, reason, uncertainty };
-    text(&told, Layout::Lines)
 }
 
 #[cfg(test)]

@@ -18,8 +18,10 @@ mod rig;
 mod text;
 pub mod unit;
 mod warning;
+pub mod write;
 
 pub use assign::assigned;
+pub use depth::{Depth, depth_of};
 pub use problem::{Problem, Result, plain, shown};
 pub use rig::{FolderOptions, Reading, RigFolder, read_calibration, read_corner, read_rig_folder, says};
 pub use text::{Calibration, NamedCamera, NamedPose, Names};

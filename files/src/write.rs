@@ -3,12 +3,40 @@
 use std::fs;
 use std::path::Path;
 
-use bimodal_stereo::{Similarity, Surface};
-use bimodal_stereo_files::read::npy_bytes;
-use bimodal_stereo_files::{Problem, Result, shown};
+use bimodal_stereo::{Estimator, Reason, Similarity, Status, StepReport, Surface, Uncertainty};
+use serde::Serialize;
 
-use crate::estimate::{Length, Outcome};
-use crate::report::{self, Layout};
+use crate::problem::{Problem, Result, shown};
+use crate::read::npy_bytes;
+
+/// Of lengths: metres where a view has a camera, pixels where it is orthographic.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Length {
+    Metres,
+    Pixels,
+}
+
+impl Length {
+    /// The unit of a view with or without a camera.
+    pub fn of(has_camera: bool) -> Self {
+        if has_camera { Self::Metres } else { Self::Pixels }
+    }
+
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Metres => "metres",
+            Self::Pixels => "pixels",
+        }
+    }
+
+    /// As in the files of the page.
+    pub fn symbol(self) -> &'static str {
+        match self {
+            Self::Metres => "m",
+            Self::Pixels => "px",
+        }
+    }
+}
 
 /// Steps of a stored depth, the finest first; the first that reaches the farthest depth is taken.
 const METRES: [(f64, &str); 4] = [(0.0001, "0.1 mm"), (0.001, "1 mm"), (0.01, "10 mm"), (1.0, "1 m")];
@@ -18,24 +46,29 @@ const LARGEST: f64 = 65_535.0;
 /// The clouds' inks on the page: orange and blue.
 const INKS: [[u8; 3]; 2] = [[199, 100, 26], [11, 98, 184]];
 
-/// Writes everything into a folder; says what.
-pub fn results(folder: &Path, found: &Outcome) -> Result<Vec<String>> {
+/// A file's name, its bytes, and what they are in words.
+pub type Entry = (&'static str, Vec<u8>, String);
+
+/// Writes what an estimator has found into a folder, and `more` beside it; the paths with what they hold.
+pub fn results(folder: &Path, estimator: &Estimator, more: Vec<Entry>) -> Result<Vec<String>> {
     fs::create_dir_all(folder).map_err(|error| Problem::file(folder, error))?;
-    let estimator = &found.estimator;
+    let image_length = Length::of(estimator.image().camera.pinhole().is_some());
+    let depth_length = Length::of(estimator.depth().camera.pinhole().is_some());
     let (depth, width) = (estimator.refined_depth(), estimator.depth().size.width);
-    let (png, says) = depth_png(depth, width, found.depth_length)
+    let (png, says) = depth_png(depth, width, depth_length)
         .map_err(|error| Problem::file(&folder.join("refined-depth.png"), error))?;
     let run = estimator.report();
-    let (length, depth_length) = (found.image_length.word(), found.depth_length.word());
-    let files: [(&str, Vec<u8>, String); 7] = [
-        ("clouds.ply", clouds(found), format!("the picture's shape and the moved depth map, {length}")),
+    let (length, depth_length) = (image_length.word(), depth_length.word());
+    let clouds = clouds(estimator, image_length);
+    let mut files: Vec<Entry> = vec![
+        ("clouds.ply", clouds, format!("the picture's shape and the moved depth map, {length}")),
         ("refined-depth.png", png, format!("{says} per stored number, 0 is no depth")),
         ("refined-depth.npy", npy_bytes(width, depth), format!("{depth_length}, NaN is no depth")),
-        ("pose.json", report::pose_json(run, found.image_length).into(), length.into()),
+        ("pose.json", pose_json(run, image_length).into(), length.into()),
         ("depth_to_colour.txt", matrix_text(&run.pose).into(), format!("4x4 with the scale, {length}")),
         ("light.csv", light_csv(&estimator.light().flat()).into(), "nine coefficients a channel".into()),
-        ("report.json", report::json(found, Layout::Lines).into(), "as --json".into()),
     ];
+    files.extend(more);
     let mut written = Vec::new();
     for (name, bytes, says) in files {
         let path = folder.join(name);
@@ -46,7 +79,7 @@ pub fn results(folder: &Path, found: &Outcome) -> Result<Vec<String>> {
 }
 
 /// Depth as a PNG of 16 bits, and its step in words, which the file's remark "Unit" says too.
-fn depth_png(
+pub fn depth_png(
     depth: &[f32],
     width: usize,
     length: Length,
@@ -71,8 +104,8 @@ fn depth_png(
 }
 
 /// Both clouds in the colour view's frame as a binary PLY, with a colour and a label: 0 the picture's, 1 the depth map's.
-fn clouds(found: &Outcome) -> Vec<u8> {
-    let clouds = [Surface::Image, Surface::Depth].map(|surface| found.estimator.points(surface));
+fn clouds(estimator: &Estimator, length: Length) -> Vec<u8> {
+    let clouds = [Surface::Image, Surface::Depth].map(|surface| estimator.points(surface));
     let there = |points: &'_ [f32]| points.iter().all(|value| value.is_finite());
     let points = |cloud: usize| clouds[cloud].chunks_exact(3).filter(move |point| there(point));
     let count = points(0).count() + points(1).count();
@@ -81,7 +114,7 @@ fn clouds(found: &Outcome) -> Vec<u8> {
          comment label 0: shape from the picture\ncomment label 1: depth map, moved by the pose\n\
          element vertex {count}\nproperty float x\nproperty float y\nproperty float z\n\
          property uchar red\nproperty uchar green\nproperty uchar blue\nproperty uchar label\nend_header\n",
-        found.image_length.word()
+        length.word()
     )
     .into_bytes();
     for (label, ink) in INKS.into_iter().enumerate() {
@@ -95,7 +128,7 @@ fn clouds(found: &Outcome) -> Vec<u8> {
 }
 
 /// The 4x4 matrix that carries depth points into the colour view; `numpy.loadtxt` reads it.
-fn matrix_text(pose: &Similarity) -> String {
+pub fn matrix_text(pose: &Similarity) -> String {
     let line = |row: usize| {
         let values: Vec<String> = pose.matrix().row(row).iter().map(f64::to_string).collect();
         values.join(" ") + "\n"
@@ -104,7 +137,7 @@ fn matrix_text(pose: &Similarity) -> String {
 }
 
 /// Nine coefficients of red, of green and of blue, one channel a line.
-fn light_csv(light: &[f64]) -> String {
+pub fn light_csv(light: &[f64]) -> String {
     let names: Vec<String> = (1..=9).map(|index| format!("L{index}")).collect();
     let line = |(channel, values): (&str, &[f64])| {
         let values: Vec<String> = values.iter().map(f64::to_string).collect();
@@ -112,4 +145,34 @@ fn light_csv(light: &[f64]) -> String {
     };
     let lines = ["R", "G", "B"].into_iter().zip(light.chunks_exact(9)).map(line);
     format!("channel,{}\n{}", names.join(","), lines.collect::<String>())
+}
+
+/// The pose and how far it is to be trusted, for other programs: as in js/write/results.ts.
+pub fn pose_json(report: &StepReport, length: Length) -> String {
+    #[derive(Serialize)]
+    struct Told<'a> {
+        about: String,
+        unit: &'static str,
+        #[serde(flatten)]
+        pose: &'a Similarity,
+        status: Status,
+        #[serde(skip_serializing_if = "Option::is_none")]
+        message: Option<String>,
+        #[serde(skip_serializing_if = "Option::is_none")]
+        reason: &'a Option<Reason>,
+        #[serde(skip_serializing_if = "Option::is_none")]
+        uncertainty: &'a Option<Uncertainty>,
+    }
+    let StepReport { pose, status, reason, uncertainty, .. } = report;
+    let sigmas = uncertainty.as_ref().map_or("", |_| {
+        "; uncertainty is one sigma, null where the views cannot see the number: any value of it would do as well, or it was held"
+    });
+    let about = format!(
+        "P_colour = scale * rotation * P_depth + translation; rotation row by row; angles in degrees; lengths in {}{sigmas}",
+        length.word()
+    );
+    let message = reason.as_ref().map(Reason::to_string);
+    let told = Told { about, unit: length.symbol(), pose, status: *status, message, reason, uncertainty };
+    // Strings and numbers alone, whose keys are names.
+    serde_json::to_string_pretty(&told).expect("can be written") + "\n"
 }
