@@ -1,11 +1,11 @@
 //! The check of a calibration for Python, and the rendered rigs that it is tried on.
 
 use bimodal_stereo::scenes::rig::{RigKind, RigRequest, render};
-use bimodal_stereo::{CalibrationCheck, Cue, Lens, RigCamera, RigView, Size};
+use bimodal_stereo::{CalibrationCheck, Cue, Lens, RigCamera, RigView, Size, overlay};
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyDict};
 
-use crate::arrays::array;
+use crate::arrays::{array, triples};
 use crate::error::{failure, outcome, unbroken};
 use crate::guard::{Guarded, guarded};
 use crate::input::{Raster, extrinsics, intrinsics};
@@ -43,6 +43,19 @@ pub fn check_calibration<'py>(
     }
     let report = unbroken(check.call(|check| check.report().cloned()))?;
     report::plain(py, &report.ok_or_else(|| failure("internal", "check_calibration", "ended without a report"))?)
+}
+
+/// Where a pose puts the visible points and the depth edges of a frame on its image.
+#[pyfunction]
+pub fn project_frame<'py>(py: Python<'py>, frame: &Bound<'py, PyAny>, pose: &Bound<'py, PyAny>) -> Dict<'py> {
+    let (view, pose) = (view(0, frame)?, extrinsics(pose, "pose")?);
+    let found = outcome(py.detach(|| guarded(|| overlay(view, &pose))))?;
+    let count = found.edges.len() / 2;
+    let dict = PyDict::new(py);
+    dict.set_item("points", triples(py, found.points)?)?;
+    dict.set_item("positions", triples(py, found.positions)?)?;
+    dict.set_item("edges", array(py, found.edges, [count, 2])?)?;
+    Ok(dict)
 }
 
 fn cue(name: &str) -> PyResult<Cue> {

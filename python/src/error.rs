@@ -3,6 +3,7 @@
 use pyo3::{PyErr, PyResult, import_exception, pyfunction};
 
 use crate::guard::BrokenOff;
+use crate::members::Members;
 
 import_exception!(bimodal_stereo._errors, BimodalError);
 
@@ -34,7 +35,16 @@ pub fn spelled(name: &str) -> String {
 
 /// An error of the crate.
 pub fn refused(error: &bimodal_stereo::Error) -> PyErr {
-    let (field, message) = (spelled(error.field()), error.to_string());
+    of_field(spelled(error.field()), error)
+}
+
+/// An error of the crate about a member of a dictionary.
+pub fn refused_below(parent: &Members<'_>, error: &bimodal_stereo::Error) -> PyErr {
+    of_field(parent.at(&spelled(error.field())), error)
+}
+
+fn of_field(field: String, error: &bimodal_stereo::Error) -> PyErr {
+    let message = error.to_string();
     let message = message.strip_prefix(error.field()).map_or(message.clone(), |rest| format!("{field}{rest}"));
     BimodalError::new_err((error.kind().code(), message, field, error.index(), error.bad_value()))
 }

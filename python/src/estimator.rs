@@ -1,21 +1,24 @@
 //! The loop for Python.
 
+use std::path::PathBuf;
 use std::time::Instant;
 
 use bimodal_stereo::{Estimator as Native, Options, Stage, Status, StepReport, Surface};
+use bimodal_stereo_files::write;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 
 use crate::arrays::{array, triples};
-use crate::error::{outcome, unbroken};
+use crate::error::{failure, outcome, unbroken};
 use crate::guard::{Guarded, guarded};
-use crate::{input, options, report};
+use crate::{files, input, options, report};
 
 /// An estimator, the options a reset without options goes back to, and the wall time of the stages that ran last: the
 /// numerics have no clock.
 struct Loop {
     native: Native,
     options: Options,
+    workers: usize,
     milliseconds: Vec<(&'static str, f64)>,
     /// Whether anything has been run since the start, and how many slices of the search that was.
     begun: bool,
@@ -25,6 +28,10 @@ struct Loop {
 impl Loop {
     fn step(&mut self) {
         self.milliseconds.clear();
+        if self.workers > 1 && !self.native.is_searching() {
+            // Stages run beside each other in the threads.
+            return self.timed(Some("iteration"), Native::step);
+        }
         let before = self.native.report().iteration;
         loop {
             let is_searching = self.native.is_searching();
@@ -41,15 +48,23 @@ impl Loop {
         self.timed_stage();
     }
 
+    /// A stage, or a step of the search: with several threads that is a round of theirs.
     fn timed_stage(&mut self) {
+        let work = if self.native.is_searching() { Native::step } else { Native::step_stage };
+        self.timed(None, work);
+    }
+
+    /// Measures some work under a name, or under that of the stage that it ends with.
+    fn timed(&mut self, name: Option<&'static str>, work: fn(&mut Native) -> &StepReport) {
         let start = Instant::now();
-        let stage = self.native.step_stage().stage.name();
+        let stage = work(&mut self.native).stage;
         self.begun = true;
-        self.slices += usize::from(stage == Stage::Search.name());
+        self.slices += usize::from(stage == Stage::Search);
         let spent = 1000.0 * start.elapsed().as_secs_f64();
-        match self.milliseconds.iter_mut().find(|(name, _)| *name == stage) {
+        let name = name.unwrap_or_else(|| stage.name());
+        match self.milliseconds.iter_mut().find(|(known, _)| *known == name) {
             Some((_, sum)) => *sum += spent,
-            None => self.milliseconds.push((stage, spent)),
+            None => self.milliseconds.push((name, spent)),
         }
     }
 
@@ -83,6 +98,7 @@ pub struct Estimator {
     /// Rows and columns of both views.
     image: [usize; 2],
     depth: [usize; 2],
+    workers: usize,
 }
 
 type Array<'py> = PyResult<Bound<'py, PyAny>>;
@@ -128,10 +144,12 @@ impl Estimator {
     ) -> PyResult<Self> {
         let (image, depth, options) = (input::image(image)?, input::depth(depth)?, options::options(keywords)?);
         let sizes = [[image.height, image.width], [depth.height, depth.width]];
+        let workers = options::workers(keywords)?.unwrap_or(1);
         let kept = options.clone();
-        let native = outcome(py.detach(|| guarded(|| Native::new(image, &depth, options))))?;
-        let own = Guarded::new(Loop { native, options: kept, milliseconds: Vec::new(), begun: false, slices: 0 });
-        Ok(Self { own, image: sizes[0], depth: sizes[1] })
+        let make = || Native::new(image, &depth, options).map(|native| native.with_threads(workers));
+        let native = outcome(py.detach(|| guarded(make)))?;
+        let own = Loop { native, options: kept, workers, milliseconds: Vec::new(), begun: false, slices: 0 };
+        Ok(Self { own: Guarded::new(own), image: sizes[0], depth: sizes[1], workers })
     }
 
     fn step<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
@@ -147,8 +165,19 @@ impl Estimator {
     }
 
     fn reset(&self, py: Python<'_>, keywords: Option<&Bound<'_, PyAny>>) -> PyResult<()> {
+        let workers = keywords.map(options::workers).transpose()?.flatten();
+        if workers.is_some_and(|count| count != self.workers) {
+            let message = "are those that the estimator was made with; make a new estimator to change them";
+            return Err(failure("option", "workers", message));
+        }
         let options = keywords.map(options::options).transpose()?;
         outcome(py.detach(|| self.own.call(|own| own.reset(options))))
+    }
+
+    /// Writes what was found into a folder; the paths with what they hold.
+    fn write_results(&self, py: Python<'_>, folder: PathBuf) -> PyResult<Vec<String>> {
+        let written = self.call(py, |own| write::results(&folder, &own.native, Vec::new()))?;
+        written.map_err(|problem| files::refused(&problem))
     }
 
     fn image_normals<'py>(&self, py: Python<'py>) -> Array<'py> {

@@ -2,11 +2,12 @@
 
 use std::ffi::OsString;
 use std::io::{self, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use bimodal_stereo::{ColourSamples, DepthSamples, Lens, RigCamera, RigView, Transfer};
 use bimodal_stereo_files::command::{self, Terminal};
-use bimodal_stereo_files::{self as files, FolderOptions, NamedCamera, NamedPose, Problem, Warning};
+use bimodal_stereo_files::read::{self, Raster};
+use bimodal_stereo_files::{self as files, FolderOptions, NamedCamera, NamedPose, Problem, Warning, colour};
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyDict, PyList};
 
@@ -60,7 +61,8 @@ pub fn check_command(
     unbroken(py.detach(|| guarded(run)))
 }
 
-fn refused(problem: &Problem) -> PyErr {
+/// A file that cannot be read or written.
+pub fn refused(problem: &Problem) -> PyErr {
     BimodalError::new_err((problem.code, problem.to_string(), problem.field.clone()))
 }
 
@@ -94,6 +96,68 @@ pub fn read_rig_folder(
     dict.set_item("cameras", cameras(py, &found.cameras)?)?;
     dict.set_item("poses", poses(py, &found.poses)?)?;
     dict.set_item("warnings", warnings(py, &found.warnings)?)?;
+    Ok(dict)
+}
+
+/// A file's raster, read without the interpreter's lock.
+fn raster(py: Python<'_>, path: &Path) -> PyResult<Raster> {
+    unbroken(py.detach(|| guarded(|| read::raster(path))))?.map_err(|problem| refused(&problem))
+}
+
+/// A colour image.
+#[pyfunction]
+pub fn read_image(py: Python<'_>, path: PathBuf) -> Dict<'_> {
+    let raster = raster(py, &path)?;
+    let dict = PyDict::new(py);
+    dict.set_item("data", samples(py, colour::colours(&raster), [raster.height, raster.width])?)?;
+    dict.set_item("transfer", colour::transfer(&raster).map(transfer_name))?;
+    dict.set_item("warnings", warnings(py, &raster.warnings)?)?;
+    Ok(dict)
+}
+
+/// A depth map or an organised cloud. `is_metric`: whether its unit is the metre, to be guessed where it is not given, and not the pixel.
+#[pyfunction]
+pub fn read_depth(py: Python<'_>, path: PathBuf, unit: Option<f64>, is_metric: bool) -> Dict<'_> {
+    let raster = raster(py, &path)?;
+    let size = [raster.height, raster.width];
+    let of_file = raster.warnings.clone();
+    let given = if is_metric { unit } else { Some(unit.unwrap_or(1.0)) };
+    let read = unbroken(py.detach(|| guarded(|| files::depth_of(raster, given))))?;
+    let found = read.map_err(|reason| refused(&Problem::file(&path, reason)))?;
+    let dict = depths(py, found.samples, size)?;
+    dict.set_item("unit", found.unit)?;
+    // What is said of metres means nothing of pixels.
+    dict.set_item("warnings", warnings(py, if is_metric { &found.warnings.0 } else { &of_file })?)?;
+    Ok(dict)
+}
+
+/// True where a picture is neither zero nor transparent.
+#[pyfunction]
+pub fn read_mask(py: Python<'_>, path: PathBuf) -> PyResult<Bound<'_, PyAny>> {
+    let raster = raster(py, &path)?;
+    let inside = colour::mask(&raster).into_iter().map(|value| value != 0).collect();
+    array(py, inside, [raster.height, raster.width])
+}
+
+fn transfer_name(transfer: Transfer) -> &'static str {
+    if transfer == Transfer::Linear { "linear" } else { "srgb" }
+}
+
+fn samples(py: Python<'_>, all: ColourSamples, [height, width]: [usize; 2]) -> PyResult<Bound<'_, PyAny>> {
+    match all {
+        ColourSamples::Rgba8(data) => array(py, data, [height, width, 4]),
+        ColourSamples::Rgba16(data) => array(py, data, [height, width, 4]),
+        ColourSamples::RgbLinear(data) => array(py, data, [height, width, 3]),
+    }
+}
+
+fn depths(py: Python<'_>, all: DepthSamples, [height, width]: [usize; 2]) -> Dict<'_> {
+    let dict = PyDict::new(py);
+    match all {
+        DepthSamples::Integer(data) => dict.set_item("data", array(py, data, [height, width])?)?,
+        DepthSamples::Float(data) => dict.set_item("data", array(py, data, [height, width])?)?,
+        DepthSamples::Cloud(data) => dict.set_item("points", array(py, data, [height, width, 3])?)?,
+    }
     Ok(dict)
 }
 
@@ -141,23 +205,12 @@ fn poses<'py>(py: Python<'py>, all: &[NamedPose]) -> PyResult<Vec<Bound<'py, PyD
 fn frame(py: Python<'_>, view: RigView) -> Dict<'_> {
     let image = PyDict::new(py);
     let [width, height] = view.image_size;
-    let colours = match view.image {
-        ColourSamples::Rgba8(data) => array(py, data, [height, width, 4])?.into_any(),
-        ColourSamples::Rgba16(data) => array(py, data, [height, width, 4])?.into_any(),
-        ColourSamples::RgbLinear(data) => array(py, data, [height, width, 3])?.into_any(),
-    };
-    image.set_item("data", colours)?;
-    let transfer = |transfer| if transfer == Transfer::Linear { "linear" } else { "srgb" };
-    image.set_item("transfer", view.transfer.map(transfer))?;
+    image.set_item("data", samples(py, view.image, [height, width])?)?;
+    image.set_item("transfer", view.transfer.map(transfer_name))?;
     image.set_item("mask", view.image_mask.map(|mask| array(py, mask, [height, width])).transpose()?)?;
     image.set_item("camera", view.image_camera.map(|own| camera(py, &own)).transpose()?)?;
-    let depth = PyDict::new(py);
     let [width, height] = view.depth_size;
-    match view.depth {
-        DepthSamples::Integer(data) => depth.set_item("data", array(py, data, [height, width])?)?,
-        DepthSamples::Float(data) => depth.set_item("data", array(py, data, [height, width])?)?,
-        DepthSamples::Cloud(data) => depth.set_item("points", array(py, data, [height, width, 3])?)?,
-    }
+    let depth = depths(py, view.depth, [height, width])?;
     depth.set_item("unit", view.unit)?;
     depth.set_item("mask", view.depth_mask.map(|mask| array(py, mask, [height, width])).transpose()?)?;
     depth.set_item("camera", view.depth_camera.map(|own| camera(py, &own)).transpose()?)?;

@@ -4,7 +4,7 @@ use bimodal_stereo::nalgebra::{Matrix3, Matrix4, Vector3};
 use bimodal_stereo::{Angles, ColourImage, ColourSamples, DepthMap, DepthSamples, Pinhole, Similarity, Transfer};
 use pyo3::prelude::*;
 
-use crate::error::failure;
+use crate::error::{failure, refused_below};
 use crate::members::Members;
 
 const IMAGE: [&str; 6] = ["width", "height", "data", "mask", "camera", "transfer"];
@@ -98,35 +98,27 @@ fn pinhole(raster: &Members<'_>) -> PyResult<Option<Pinhole>> {
 
 pub const POSE: [&str; 5] = ["scale", "rotation", "translation", "angles", "matrix"];
 
-/// The 4x4 matrix of a pose.
-fn matrix(pose: &Members<'_>) -> PyResult<Option<Matrix4<f64>>> {
-    Ok(pose.numbers::<16>("matrix")?.map(|rows| Matrix4::from_row_slice(&rows)))
+/// The parts of a pose that are given.
+pub struct GivenPose {
+    pub scale: Option<f64>,
+    pub rotation: Option<Matrix3<f64>>,
+    pub translation: Option<Vector3<f64>>,
 }
 
-/// The scale of a pose, by itself or in its matrix.
-pub fn scale(pose: &Members<'_>) -> PyResult<Option<f64>> {
-    let of_matrix = |matrix: Matrix4<f64>| matrix.fixed_view::<3, 3>(0, 0).determinant().cbrt();
-    Ok(pose.number("scale")?.or(matrix(pose)?.map(of_matrix)))
-}
-
-/// The rotation of a pose, by itself, in its matrix, or by its angles; `None` without any.
-pub fn rotation(pose: &Members<'_>) -> PyResult<Option<Matrix3<f64>>> {
-    if let Some(rows) = pose.numbers::<9>("rotation")? {
-        return Ok(Some(Matrix3::from_row_slice(&rows)));
+/// A pose by its members; without a rotation a 4x4 matrix gives all of them, and without either angles give the rotation.
+pub fn pose(pose: &Members<'_>) -> PyResult<GivenPose> {
+    let rows = pose.numbers::<9>("rotation")?;
+    if let (None, Some(entries)) = (rows, pose.numbers::<16>("matrix")?) {
+        let whole = Similarity::try_from(Matrix4::from_row_slice(&entries));
+        let Similarity { scale, rotation, translation } = whole.map_err(|error| refused_below(pose, &error))?;
+        return Ok(GivenPose { scale: Some(scale), rotation: Some(rotation), translation: Some(translation) });
     }
-    match matrix(pose)? {
-        Some(matrix) => {
-            let scaled: Matrix3<f64> = matrix.fixed_view::<3, 3>(0, 0).into();
-            Ok(Some(scaled / scaled.determinant().cbrt()))
-        }
-        None => Ok(angles(pose)?.map(|angles| angles.rotation())),
-    }
-}
-
-/// The translation of a pose, by itself or in its matrix.
-pub fn translation(pose: &Members<'_>) -> PyResult<Option<Vector3<f64>>> {
-    let given = pose.numbers::<3>("translation")?.map(Vector3::from);
-    Ok(given.or(matrix(pose)?.map(|matrix| matrix.fixed_view::<3, 1>(0, 3).into())))
+    let turned = angles(pose)?.map(|angles| angles.rotation());
+    Ok(GivenPose {
+        scale: pose.number("scale")?,
+        rotation: rows.map(|rows| Matrix3::from_row_slice(&rows)).or(turned),
+        translation: pose.numbers::<3>("translation")?.map(Vector3::from),
+    })
 }
 
 /// More is a mistake, no turn; far beyond, a sine means nothing.
@@ -149,15 +141,16 @@ pub fn angles(parent: &Members<'_>) -> PyResult<Option<Angles>> {
 pub fn extrinsics(value: &Bound<'_, PyAny>, path: &str) -> PyResult<Similarity> {
     /// What a product of rotations with rounding leaves of a scale of one.
     const SCALE_TOLERANCE: f64 = 0.01;
-    let pose = Members::new(value, path, &POSE)?;
-    let scale = scale(&pose)?.unwrap_or(1.0);
+    let members = Members::new(value, path, &POSE)?;
+    let given = pose(&members)?;
+    let scale = given.scale.unwrap_or(1.0);
     if (scale - 1.0).abs() > SCALE_TOLERANCE {
         let message = format!("must be 1: extrinsics do not change sizes (got {scale})");
-        return Err(failure("range", &pose.at("scale"), &message));
+        return Err(failure("range", &members.at("scale"), &message));
     }
     Ok(Similarity {
         scale: 1.0,
-        rotation: pose.needed("rotation", rotation(&pose)?)?,
-        translation: pose.needed("translation", translation(&pose)?)?,
+        rotation: members.needed("rotation", given.rotation)?,
+        translation: members.needed("translation", given.translation)?,
     })
 }

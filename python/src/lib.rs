@@ -11,23 +11,29 @@ mod estimator;
 mod files;
 mod guard;
 mod input;
+mod lessons;
 mod members;
 mod options;
 mod report;
 mod samples;
+mod write;
 
 #[pyo3::pymodule]
 mod _native {
     #[pymodule_export]
-    use super::calibration::{check_calibration, sample_rig};
+    use super::calibration::{check_calibration, project_frame, sample_rig};
     #[pymodule_export]
     use super::error::spelled;
     #[pymodule_export]
     use super::estimator::Estimator;
     #[pymodule_export]
-    use super::files::{check_command, read_calibration, read_rig_folder};
+    use super::files::{check_command, read_calibration, read_depth, read_image, read_mask, read_rig_folder};
+    #[pymodule_export]
+    use super::lessons::{integrate_normals, pixel_landscape, shade_normals, turn_light};
     #[pymodule_export]
     use super::samples::{sample, sample_lights, sample_surfaces};
+    #[pymodule_export]
+    use super::write::{depth_png, matrix_text};
 
     /// Cause and remedy of every code, as JSON.
     #[pymodule_export]

@@ -5,11 +5,11 @@ use bimodal_stereo::{
 };
 use pyo3::prelude::*;
 
-use crate::error::refused;
-use crate::input::{POSE, rotation, scale as pose_scale, translation};
+use crate::error::{failure, refused};
+use crate::input::{POSE, pose};
 use crate::members::{Members, unknown};
 
-const NAMES: [&str; 14] = [
+const NAMES: [&str; 15] = [
     "light",
     "prior",
     "start",
@@ -24,6 +24,7 @@ const NAMES: [&str; 14] = [
     "max_iterations",
     "correspondence_distance",
     "seed",
+    "workers",
 ];
 
 /// The options that these keyword arguments name; the others are the defaults'.
@@ -46,6 +47,19 @@ pub fn options(keywords: &Bound<'_, PyAny>) -> PyResult<Options> {
         annealing: given.flag("annealing")?.unwrap_or(default.annealing),
         trim: given.flag("trim")?.unwrap_or(default.trim),
     })
+}
+
+/// How many threads share the work.
+pub fn workers(keywords: &Bound<'_, PyAny>) -> PyResult<Option<usize>> {
+    const MOST_WORKERS: usize = 16;
+    let given = Members::new(keywords, "", &NAMES)?.whole("workers")?;
+    match given {
+        Some(count) if !(1..=MOST_WORKERS).contains(&count) => {
+            let message = format!("must be a whole number from 1 to {MOST_WORKERS} (got {count})");
+            Err(failure("range", "workers", &message))
+        }
+        other => Ok(other),
+    }
 }
 
 const REGISTRATIONS: [(&str, Registration); 3] =
@@ -80,9 +94,10 @@ fn start(given: &Members<'_>) -> PyResult<Option<Start>> {
         Some(word) => return Err(unknown("start", word, ["search", "identity", "or a pose"].iter())),
         None => {}
     }
-    let Some(pose) = given.below("start", &POSE)? else { return Ok(None) };
-    let rotation = rotation(&pose)?.unwrap_or_else(bimodal_stereo::nalgebra::Matrix3::identity);
-    Ok(Some(Start::Pose { rotation, scale: pose_scale(&pose)?, translation: translation(&pose)? }))
+    let Some(members) = given.below("start", &POSE)? else { return Ok(None) };
+    let given = pose(&members)?;
+    let rotation = given.rotation.unwrap_or_else(bimodal_stereo::nalgebra::Matrix3::identity);
+    Ok(Some(Start::Pose { rotation, scale: given.scale, translation: given.translation }))
 }
 
 fn tolerance(given: &Members<'_>, default: StartTolerance) -> PyResult<StartTolerance> {

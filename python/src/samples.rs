@@ -1,7 +1,7 @@
 //! Made scenes for Python.
 
 use bimodal_stereo::scenes::{self, DepthData, Relief, Sample, SampleRequest, Scene, lights, surfaces};
-use bimodal_stereo::{Camera, Error, Light, Size};
+use bimodal_stereo::{Camera, Size};
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyDict};
@@ -10,6 +10,7 @@ use crate::arrays::array;
 use crate::error::{failure, outcome, refused};
 use crate::guard::guarded;
 use crate::input::angles;
+use crate::lessons::light;
 use crate::members::{Members, wrong};
 use crate::report;
 
@@ -69,15 +70,6 @@ fn relief(given: &Members<'_>) -> PyResult<Relief> {
     let array = heights.as_array();
     let (height, width) = array.dim();
     Relief::new(width, height, array.iter().copied().collect()).map_err(|error| refused(&error))
-}
-
-fn light(given: &Members<'_>) -> PyResult<Light> {
-    let value = given.needed("light", given.get("light")?)?;
-    let made = match value.extract::<String>() {
-        Ok(name) => lights::light(&name),
-        Err(_) => Light::from_slice("light", &given.list("light")?.unwrap_or_default()),
-    };
-    made.map_err(|error: Error| refused(&error))
 }
 
 fn request(given: &Members<'_>) -> PyResult<SampleRequest> {
