@@ -12,21 +12,25 @@ depth points into the colour view: P_colour = scale * rotation @ P_depth + trans
     print(report.status, report.pose.angles.beta)
 """
 
-from ._calibration import CandidateReport, CheckFrame, CheckReport, CueReport, FrameReport, RigSample, Sensitivity
-from ._calibration import check_calibration, sample_rig
+from ._calibration import CandidateReport, CheckFrame, CheckReport, CueReport, FrameOverlay, FrameReport, RigSample, Sensitivity
+from ._calibration import check_calibration, project_frame, sample_rig
 from ._codes import CODES
-from ._errors import BimodalError
+from ._errors import BimodalError, BimodalWarning
 from ._estimator import Estimator
-from ._files import Calibration, NamedCamera, NamedPose, ReaderWarning, RigFolder, read_calibration, read_rig_folder
+from ._files import Calibration, NamedCamera, NamedPose, ReaderWarning, RigFolder
+from ._files import read_calibration, read_depth, read_image, read_rig_folder
 from ._inputs import LightGaussian, Options, StartTolerance, Weights
+from ._lessons import PixelLandscape, integrate_normals, pixel_landscape, shade_normals, turn_light
 from ._native import VERSION as __version__
 from ._samples import Sample, Truth, sample, sample_lights, sample_surfaces
 from ._types import Angles, ColorImage, DepthMap, Energy, Pinhole, Pose, RigCamera, StepReport, Uncertainty
+from ._write import write_cloud, write_depth, write_pose, write_results
 
 __all__ = [
     "Angles",
     "CODES",
     "BimodalError",
+    "BimodalWarning",
     "Calibration",
     "CandidateReport",
     "CheckFrame",
@@ -36,11 +40,13 @@ __all__ = [
     "DepthMap",
     "Energy",
     "Estimator",
+    "FrameOverlay",
     "FrameReport",
     "LightGaussian",
     "NamedCamera",
     "NamedPose",
     "Options",
+    "PixelLandscape",
     "Pinhole",
     "Pose",
     "ReaderWarning",
@@ -56,10 +62,21 @@ __all__ = [
     "Weights",
     "__version__",
     "check_calibration",
+    "integrate_normals",
+    "pixel_landscape",
+    "project_frame",
     "read_calibration",
+    "read_depth",
+    "read_image",
     "read_rig_folder",
     "sample",
     "sample_lights",
     "sample_rig",
     "sample_surfaces",
+    "shade_normals",
+    "turn_light",
+    "write_cloud",
+    "write_depth",
+    "write_pose",
+    "write_results",
 ]

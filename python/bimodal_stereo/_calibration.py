@@ -7,14 +7,12 @@ from typing import TYPE_CHECKING, Any, Callable, Mapping, NamedTuple, Optional, 
 
 import numpy as np
 
-from . import _inputs, _native
+from . import _inputs, _native, _sources
 from ._errors import BimodalError
 from ._types import ColorImage, DepthMap, Pose, RigCamera, made, renamed
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from ._types import Floats
+    from ._types import Floats, Pixels, PoseInput, Singles
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,8 +23,8 @@ class CheckFrame:
     in metres. ``name``: how the report calls it.
     """
 
-    image: Union[ColorImage, ArrayLike]
-    depth: Union[DepthMap, ArrayLike]
+    image: Union[ColorImage, Pixels]
+    depth: Union[DepthMap, Pixels]
     name: Optional[str] = None
 
 
@@ -108,14 +106,14 @@ class CheckReport:
 
 def check_calibration(
     frames: Sequence[CheckFrame],
-    candidates: Mapping[str, Union[Pose, Mapping[str, Any]]],
+    candidates: Mapping[str, PoseInput],
     *,
     cues: Optional[Sequence[str]] = None,
     on_progress: Optional[Callable[[float, str], Any]] = None,
 ) -> CheckReport:
     """Whether frames agree with some candidates for the extrinsics of a rig, P_colour = rotation @ P_depth + translation in metres.
 
-    candidates: poses by name, with ``rotation`` (3, 3) and ``translation`` (3,); the first one is in question. cues: of "shading", "edges",
+    candidates: poses by name, each a 4x4 matrix, or ``rotation`` (3, 3) and ``translation`` (3,); the first one is in question. cues: of "shading", "edges",
     "information" and "silhouette"; all without it. on_progress: called with the share of the work done, 0 .. 1, and what is being done.
     """
     if not isinstance(candidates, Mapping):
@@ -126,7 +124,7 @@ def check_calibration(
         raise BimodalError("size", "cues: needs at least one cue", "cues")
     if isinstance(frames, CheckFrame):
         raise BimodalError("type", "frames: must be a list of frames", "frames")
-    named = [(str(name), _inputs.plain(pose)) for name, pose in candidates.items()]
+    named = [(str(name), _sources.pose(pose, f"candidates.{name}")) for name, pose in candidates.items()]
     given = [rig_frame(frame, index) for index, frame in enumerate(frames)]
     raw = _native.check_calibration(given, named, list(cues or []), on_progress)
     health = raw.pop("health")
@@ -147,6 +145,27 @@ def check_calibration(
             made(Sensitivity, one, offsets=np.array(one["offsets"]), values=np.array(one["values"])) for one in raw["sensitivity"]
         ],
     )
+
+
+@dataclass(frozen=True, eq=False)
+class FrameOverlay:
+    """A frame as a pose lays it over its image, float32.
+
+    ``points``: (n, 3), column, row in pixels and depth in metres of each visible depth point. ``positions``: (n, 3), the same points in the
+    colour camera's frame, metres. ``edges``: (m, 2), column and row of each point of a depth edge.
+    """
+
+    points: Singles
+    positions: Singles
+    edges: Singles
+
+
+def project_frame(frame: CheckFrame, pose: PoseInput) -> FrameOverlay:
+    """Where a pose puts the depth points and depth edges of a frame on its image.
+
+    pose: extrinsics, P_colour = rotation @ P_depth + translation in metres: a 4x4 matrix, or ``rotation`` and ``translation``.
+    """
+    return FrameOverlay(**_native.project_frame(rig_frame(frame, 0), _sources.pose(pose, "pose")))
 
 
 def rig_frame(frame: CheckFrame, index: int) -> dict[str, Any]:

@@ -32,3 +32,18 @@ class BimodalError(ValueError):
 
     def __str__(self) -> str:
         return str(self.args[1])
+
+
+class BimodalWarning(UserWarning):
+    """What a reader of files has guessed, or what looks wrong about a file: ``code`` is stable, ``field`` is the file."""
+
+    code: str
+    field: Optional[str]
+
+    def __init__(self, code: str, message: str, field: Optional[str] = None) -> None:
+        super().__init__(code, message, field)
+        self.code, self.field = code, field
+
+    def __str__(self) -> str:
+        said = str(self.args[1])
+        return said if self.field is None else f"{self.field}: {said}"

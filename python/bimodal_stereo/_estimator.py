@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from threading import Lock
-from typing import TYPE_CHECKING, Any, Callable, Optional, Union
+from typing import TYPE_CHECKING, Any, Callable, Iterator, Optional, Union
 from zlib import crc32
 
 from . import _inputs, _native, _saved
@@ -12,23 +12,24 @@ from ._types import ColorImage, DepthMap, StepReport
 
 if TYPE_CHECKING:
     import numpy as np
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import NDArray
     from typing_extensions import Unpack
 
     from ._inputs import Options
-    from ._types import Floats, Singles
+    from ._types import Floats, Pixels, Singles
 
 
 class Estimator:
     """Shape, light and pose from one colour image and one depth map, one iteration after the other.
 
-    ``image`` is a ``ColorImage`` or an array (h, w, 3 or 4), ``depth`` a ``DepthMap`` or an array, (h, w) of depths or (h, w, 3) of an
-    organised cloud. ``options`` are those of ``Options``, each with a default: nothing needs to be known. Every array that
-    comes out is a copy. Other threads of Python run while a step does; threads that share an estimator wait for each other.
+    ``image`` is a ``ColorImage``, or what its ``data`` may be: an array (h, w), (h, w, 3) or (h, w, 4), a picture, a file. ``depth`` is a
+    ``DepthMap``, an array, (h, w) of depths or (h, w, 3) of an organised cloud, a picture, or a file. ``options`` are those of ``Options``,
+    each with a default: nothing needs to be known. Every array that comes out is a copy. Other threads of Python run while a step does;
+    threads that share an estimator wait for each other. ``for report in estimator`` steps until the loop ends.
     """
 
     def __init__(
-        self, image: Union[ColorImage, ArrayLike], depth: Union[DepthMap, ArrayLike], **options: Unpack[Options]
+        self, image: Union[ColorImage, Pixels], depth: Union[DepthMap, Pixels], **options: Unpack[Options]
     ) -> None:
         self._begin(_inputs.image(image), _inputs.depth(depth), _inputs.keywords(options))
 
@@ -65,8 +66,16 @@ class Estimator:
                 on_step(report)
         return report
 
+    def __iter__(self) -> Iterator[StepReport]:
+        """Steps until the loop ends, and gives the report of each; whoever leaves the iteration may go on with another one."""
+        while self.report.status == "running":
+            yield self.step()
+
     def reset(self, **options: Unpack[Options]) -> None:
-        """Back to the start with the same views, and with these options, if any are given, in place of all earlier ones."""
+        """Back to the start with the same views, and with these options, if any are given, in place of all earlier ones.
+
+        ``workers`` stay as they are.
+        """
         given = _inputs.keywords(options) if options else None
         with self._lock:
             self._own.reset(given)

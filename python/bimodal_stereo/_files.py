@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Mapping, Optional, Sequence, Union
+from typing import TYPE_CHECKING, Any, Mapping, Optional, Sequence
 
-from . import _native
+from . import _native, _sources
 from ._calibration import CheckFrame
 from ._types import ColorImage, DepthMap, Pose, RigCamera
 
 if TYPE_CHECKING:
-    Path = Union[str, os.PathLike[str]]
+    from ._sources import FilePath
+    from ._types import CameraInput, Pixels
 
 
 @dataclass(frozen=True)
@@ -62,14 +63,37 @@ class RigFolder:
     warnings: Sequence[ReaderWarning]
 
 
-def read_calibration(path: Path) -> Calibration:
+def read_image(
+    path: FilePath, *, mask: Optional[Pixels] = None, camera: Optional[CameraInput] = None, transfer: Optional[str] = None
+) -> ColorImage:
+    """Reads a PNG, JPEG or .npy file as a colour image: uint8 or uint16 (h, w, 4), or float32 (h, w, 3), which is linear.
+
+    The image is upright, in sRGB where the file has a colour profile. ``transfer``: in place of what the file states. Grey is accepted.
+    """
+    data, known = _sources.colours(os.fspath(path), transfer)
+    return ColorImage(data, mask, camera, known)
+
+
+def read_depth(
+    path: FilePath, *, mask: Optional[Pixels] = None, camera: Optional[CameraInput] = None, unit: Optional[float] = None
+) -> DepthMap:
+    """Reads a PNG or .npy file as a depth map, or a .npy file of three channels as an organised cloud.
+
+    With a camera depths are metric, and ``unit`` is the metres of a stored number; without it, it is guessed, with a ``BimodalWarning``.
+    Without a camera depths are pixels.
+    """
+    found = _sources.depth(path, unit, camera is not None)
+    return DepthMap(mask=mask, camera=camera, **found)
+
+
+def read_calibration(path: FilePath) -> Calibration:
     """Reads cameras and poses: matrices in text, JSON, YAML and XML of OpenCV, ROS, Kalibr and Open3D, texts of RealSense and COLMAP."""
     raw = _native.read_calibration(os.fspath(path))
     return Calibration(_cameras(raw), _poses(raw), raw["says"], _warnings(raw))
 
 
 def read_rig_folder(
-    path: Path, *, unit: Optional[float] = None, frames: Optional[int] = None, cameras: Sequence[Path] = ()
+    path: FilePath, *, unit: Optional[float] = None, frames: Optional[int] = None, cameras: Sequence[FilePath] = ()
 ) -> RigFolder:
     """Reads a folder of frames: pairs of a colour image and a depth map with like names, or as TUM RGB-D or Redwood have them.
 

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
-from dataclasses import fields, is_dataclass
+from dataclasses import replace
 from operator import index
 from typing import TYPE_CHECKING, Any, Mapping, Optional, Sequence, TypedDict, Union
 
 import numpy as np
 
+from . import _sources
 from ._errors import BimodalError
-from ._types import ColorImage, DepthMap, Pose
+from ._sources import array, camera, flat, plain, pose
+from ._types import ColorImage, DepthMap
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
+
+    from ._types import Pixels, PoseInput
 
 # Largest level of 16 bits, in which integers are stored.
 LARGEST_LEVEL = 65535
@@ -54,17 +58,17 @@ class Options(TypedDict, total=False):
     """What may be chosen; all of it may be left out.
 
     light: "estimate", or 27 coefficients, (3, 9) or flat. prior: the lights to expect where the light is estimated; natural lights.
-    start: "search", "identity", or a pose with the parts that are known.
+    start: "search", "identity", or a pose: a 4x4 matrix that carries depth points into the colour view, or the parts that are known.
     start_tolerance: how far from a told start the answer may lie. registration: "joint", "icp" or "fixed". shading: "surface" or "pixel".
     scale: "free", or the number to hold. trim: whether flying pixels and background inside the mask are left out; True. annealing:
     whether the registration starts tolerant; True. lambda\\_: weights. stop_degrees: change of the rotation that counts as
     settled; 0.01. max_iterations: 1 .. 100000; 60. correspondence_distance: accepted distance in image pixels; follows the data.
-    seed: of everything random; 1.
+    seed: of everything random; 1. workers: threads that share the work, 1 .. 16, with the same result to the bit; 1.
     """
 
     light: Union[str, ArrayLike]
     prior: LightGaussian
-    start: Union[str, Pose, Mapping[str, Any]]
+    start: Union[str, PoseInput]
     start_tolerance: StartTolerance
     registration: str
     shading: str
@@ -76,20 +80,14 @@ class Options(TypedDict, total=False):
     max_iterations: int
     correspondence_distance: float
     seed: int
-
-
-def plain(value: Any) -> Any:
-    """Objects as dictionaries, and numbers of numpy's as Python's."""
-    if is_dataclass(value) and not isinstance(value, type):
-        return {field.name: plain(getattr(value, field.name)) for field in fields(value)}
-    if isinstance(value, Mapping):
-        return {key: plain(member) for key, member in value.items()}
-    return value
+    workers: int
 
 
 def keywords(given: Mapping[str, Any]) -> dict[str, Any]:
     """Arguments with objects made plain and lights as numbers."""
-    made: dict[str, Any] = plain(given)
+    made: dict[str, Any] = plain({name: value for name, value in given.items() if name != "start"})
+    if "start" in given:
+        made["start"] = pose(given["start"], "start")
     light = made.get("light")
     if light is not None and not isinstance(light, str):
         made["light"] = flat(light, "light")
@@ -108,22 +106,6 @@ def whole(value: Any, field: str, least: int) -> int:
     if made < least:
         raise BimodalError("range", f"{field}: must be {least} or above, not {made}", field)
     return made
-
-
-def array(value: ArrayLike, field: str, what: str) -> NDArray[Any]:
-    """An array of numbers."""
-    try:
-        made = np.asarray(value)
-    except (TypeError, ValueError) as error:
-        raise BimodalError("type", f"{field}: must be an array of {what}", field) from error
-    if made.dtype.kind not in "buif":
-        raise BimodalError("type", f"{field}: must be an array of {what}, not of {made.dtype}", field)
-    return made
-
-
-def flat(value: ArrayLike, field: str) -> NDArray[np.float64]:
-    """Numbers one after the other, row after row."""
-    return array(value, field, "numbers").astype(np.float64).ravel()
 
 
 def shaped(made: NDArray[Any], field: str, *shapes: Sequence[Optional[int]]) -> NDArray[Any]:
@@ -150,29 +132,28 @@ def singles(made: NDArray[Any]) -> NDArray[np.float32]:
         return packed(made, np.float32)
 
 
-def mask(value: Optional[ArrayLike], field: str, shape: tuple[int, ...]) -> Optional[NDArray[np.uint8]]:
+def mask(value: Any, field: str, shape: tuple[int, ...]) -> Optional[NDArray[np.uint8]]:
     if value is None:
         return None
-    return packed(shaped(array(value, field, "flags"), field, shape[:2]) != 0, np.uint8)
+    return packed(shaped(array(_sources.mask(value), field, "flags"), field, shape[:2]) != 0, np.uint8)
 
 
-def camera(view: Union[ColorImage, DepthMap]) -> Any:
-    return plain(view.camera)
-
-
-def image(given: Union[ColorImage, ArrayLike], path: str = "image") -> dict[str, Any]:
-    """A colour image, or an array of one, for the bindings."""
+def image(given: Union[ColorImage, Pixels], path: str = "image") -> dict[str, Any]:
+    """A colour image, or the pixels of one, for the bindings."""
     own = given if isinstance(given, ColorImage) else ColorImage(given)
     field = f"{path}.data"
-    data = shaped(array(own.data, field, "uint8, uint16 or float32"), field, (None, None, 3), (None, None, 4))
+    pixels, transfer = _sources.colours(own.data, own.transfer)
+    data = shaped(array(pixels, field, "uint8, uint16 or float32"), field, (None, None, 3), (None, None, 4), (None, None))
+    if data.ndim == 2:
+        data = np.repeat(data[..., np.newaxis], 3, axis=2)
     if own.transfer == "srgb" and data.dtype.kind == "f":
         raise BimodalError("option", f"{path}.transfer: floats are linear; give integers, or decode them first", f"{path}.transfer")
     return {
         **size(data),
         "data": colours(data, field),
         "mask": mask(own.mask, f"{path}.mask", data.shape),
-        "camera": camera(own),
-        "transfer": own.transfer,
+        "camera": camera(own.camera, f"{path}.camera"),
+        "transfer": transfer,
     }
 
 
@@ -192,12 +173,14 @@ def colours(data: NDArray[Any], field: str) -> NDArray[Any]:
     return packed(data if data.shape[2] == 4 else np.concatenate([data, opaque], axis=2), kind)
 
 
-def depth(given: Union[DepthMap, ArrayLike], path: str = "depth") -> dict[str, Any]:
-    """A depth map, or an array of one or of an organised cloud, for the bindings."""
-    own = given if isinstance(given, DepthMap) else of_array(given, path)
+def depth(given: Union[DepthMap, Pixels], path: str = "depth") -> dict[str, Any]:
+    """A depth map, or the pixels of one or of an organised cloud, for the bindings."""
+    own = given if isinstance(given, DepthMap) else of_pixels(given, path)
     if (own.data is None) == (own.points is None):
         said = "or depth.points is required" if own.data is None else "excludes depth.points: give one of the two"
         raise BimodalError("missing", f"{path}.data: {said}", f"{path}.data")
+    if _sources.is_path(own.data):
+        own = replace(own, **{"data": None, **_sources.depth(own.data, own.unit, own.camera is not None)})
     if own.data is not None:
         data = shaped(array(own.data, f"{path}.data", "float32 or uint16"), f"{path}.data", (None, None))
         rasters = {**size(data), "data": depths(data, f"{path}.data")}
@@ -205,11 +188,13 @@ def depth(given: Union[DepthMap, ArrayLike], path: str = "depth") -> dict[str, A
         data = cloud(own.points, f"{path}.points", (None, None, 3))
         rasters = {**size(data), "points": data}
     normals = None if own.normals is None else cloud(own.normals, f"{path}.normals", (*data.shape[:2], 3))
-    extras = {"mask": mask(own.mask, f"{path}.mask", data.shape), "camera": camera(own), "unit": own.unit}
-    return {**rasters, **extras, "normals": normals}
+    inside, own_camera = mask(own.mask, f"{path}.mask", data.shape), camera(own.camera, f"{path}.camera")
+    return {**rasters, "mask": inside, "camera": own_camera, "unit": own.unit, "normals": normals}
 
 
-def of_array(given: ArrayLike, path: str) -> DepthMap:
+def of_pixels(given: Pixels, path: str) -> DepthMap:
+    if _sources.is_path(given):
+        return DepthMap(data=given)
     made = shaped(array(given, path, "depths or points"), path, (None, None), (None, None, 3))
     return DepthMap(data=made) if made.ndim == 2 else DepthMap(points=made)
 

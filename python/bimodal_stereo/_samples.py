@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Mapping, Optional, Union
 
 from . import _inputs, _native
+from ._sources import array
 from ._types import Angles, ColorImage, DepthMap, Pinhole, Pose
 
 if TYPE_CHECKING:
@@ -59,7 +60,7 @@ def sample(
     colours; 0. depth_noise: sigma in pixels; 0. holes: share of the depth pixels that is lost; 0. seed: 1.
     """
     if not isinstance(surface, str):
-        surface = _inputs.singles(_inputs.array(surface, "surface", "heights"))
+        surface = _inputs.singles(array(surface, "surface", "heights"))
     given = {
         "surface": surface,
         "light": light,

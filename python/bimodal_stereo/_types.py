@@ -12,8 +12,14 @@ from ._native import spelled
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from ._sources import FilePath, Picture
+
     Floats = NDArray[np.float64]
     Singles = NDArray[np.float32]
+    # Numbers, a file that holds them, or a picture of another package.
+    Pixels = Union[ArrayLike, FilePath, Picture]
+    CameraInput = Union["Pinhole", "RigCamera", ArrayLike, Mapping[str, Any]]
+    PoseInput = Union["Pose", ArrayLike, Mapping[str, Any]]
 
 
 Made = TypeVar("Made")
@@ -40,6 +46,11 @@ class Pinhole:
     cy: float
     distortion: Sequence[float] = (0.0, 0.0, 0.0, 0.0, 0.0)
 
+    @property
+    def K(self) -> Floats:
+        """The matrix of the camera, (3, 3): fx 0 cx, 0 fy cy, 0 0 1."""
+        return _matrix(self)
+
 
 @dataclass(frozen=True)
 class RigCamera:
@@ -56,20 +67,31 @@ class RigCamera:
     model: str = "brown"
     distortion: Sequence[float] = ()
 
+    @property
+    def K(self) -> Floats:
+        """The matrix of the camera, (3, 3): fx 0 cx, 0 fy cy, 0 0 1."""
+        return _matrix(self)
+
+
+def _matrix(camera: Union[Pinhole, RigCamera]) -> Floats:
+    return np.array([[camera.fx, 0.0, camera.cx], [0.0, camera.fy, camera.cy], [0.0, 0.0, 1.0]])
+
 
 @dataclass(frozen=True, eq=False)
 class ColorImage:
     """One colour image of the object, up to 4096 pixels on a side.
 
-    ``data``: (h, w, 3) or (h, w, 4), R G B and perhaps A. uint8 and uint16 are encoded by ``transfer``, "srgb" or "linear": 8 bits
-    default to "srgb", of 16 bits it is guessed. Floats are linear intensities above 0. Black, saturated and transparent
-    pixels are left out. ``mask``: (h, w), non-zero where the object is; all pixels without it. Without a ``camera`` the view
-    is orthographic.
+    ``data``: (h, w, 3) or (h, w, 4), R G B and perhaps A, (h, w) grey, an image of Pillow or Open3D, or the path of a PNG, JPEG or .npy
+    file. uint8 and uint16 are encoded by ``transfer``, "srgb" or "linear": 8 bits default to "srgb", of 16 bits it is guessed where the
+    file does not state it. Floats are linear intensities above 0. Black, saturated and transparent pixels are left out. ``mask``: (h, w),
+    non-zero where the object is, or a picture or a file of that; all pixels without it. ``camera``: a ``Pinhole`` or ``RigCamera``, its
+    matrix (3, 3), a dictionary with ``K`` and ``distortion``, or Open3D's PinholeCameraIntrinsic, in pixels; without it the view is
+    orthographic.
     """
 
-    data: ArrayLike
-    mask: Optional[ArrayLike] = None
-    camera: Optional[Union[Pinhole, RigCamera]] = None
+    data: Pixels
+    mask: Optional[Pixels] = None
+    camera: Optional[CameraInput] = None
     transfer: Optional[str] = None
 
 
@@ -77,16 +99,16 @@ class ColorImage:
 class DepthMap:
     """One depth map of the same object from another view: ``data`` or ``points``, exactly one of the two.
 
-    ``data``: (h, w), depth along z. Zero, negative, NaN, and 1e12 or more are holes. ``points``: (h, w, 3), an organised cloud, NaN
-    where missing. ``unit``: metres (or pixels, orthographic) of a stored unit; default 1, and 0.001 for integers with a
-    camera. ``mask``: (h, w), non-zero where the object is. ``normals``: (h, w, 3), unit normals that override our own.
-    Without a ``camera`` the view is orthographic.
+    ``data``: (h, w), depth along z, an image of Pillow or Open3D, or the path of a PNG or .npy file. Zero, negative, NaN, and 1e12 or more
+    are holes. ``points``: (h, w, 3), an organised cloud in the depth camera's frame, NaN where missing. ``unit``: metres (or pixels,
+    orthographic) of a stored unit; default 1, and 0.001 for integers with a camera; of a file with a camera it is guessed, with a
+    ``BimodalWarning``. ``mask`` and ``camera`` as those of ``ColorImage``. ``normals``: (h, w, 3), unit normals that override our own.
     """
 
-    data: Optional[ArrayLike] = None
+    data: Optional[Pixels] = None
     points: Optional[ArrayLike] = None
-    mask: Optional[ArrayLike] = None
-    camera: Optional[Union[Pinhole, RigCamera]] = None
+    mask: Optional[Pixels] = None
+    camera: Optional[CameraInput] = None
     unit: Optional[float] = None
     normals: Optional[ArrayLike] = None
 
@@ -165,7 +187,8 @@ class StepReport:
     "converged", "max-iterations", "ambiguous" or "lost". ``reason``: why, as a ``code`` for programs and its numbers; ``message``: the same
     in words. ``rivals``: other poses that fit the image as well.
     ``rotation_change``: degrees. ``overlap``: share of valid depth pixels with a correspondence, ``inliers``: share of those within the
-    robust scale. ``residual``: robust mean of the log-colour residual. ``milliseconds``: wall time of each stage in the last step.
+    robust scale. ``residual``: robust mean of the log-colour residual. ``milliseconds``: wall time of each stage in the last step; with
+    ``workers``, whose stages overlap, of the whole "iteration".
     """
 
     iteration: int

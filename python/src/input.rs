@@ -90,9 +90,31 @@ pub fn intrinsics(camera: &Members<'_>) -> PyResult<[f64; 4]> {
 }
 
 fn pinhole(raster: &Members<'_>) -> PyResult<Option<Pinhole>> {
-    let Some(camera) = raster.below("camera", &["fx", "fy", "cx", "cy", "distortion"])? else { return Ok(None) };
+    let names = ["fx", "fy", "cx", "cy", "model", "distortion"];
+    let Some(camera) = raster.below("camera", &names)? else { return Ok(None) };
     let [fx, fy, cx, cy] = intrinsics(&camera)?;
-    let distortion = camera.numbers("distortion")?.unwrap_or_default();
+    let unsupported = |name: &str, what: &str| {
+        let message = format!("{what} in a run; undistort the image first");
+        Err(failure("unsupported", &camera.at(name), &message))
+    };
+    let distortion = match camera.word("model", &[("brown", false), ("fisheye", true)])? {
+        Some(true) => return unsupported("model", "the fisheye model is not supported"),
+        None => camera.numbers("distortion")?.unwrap_or_default(),
+        // A rig's camera has as many coefficients as its file.
+        Some(false) => {
+            let given = camera.list("distortion")?.unwrap_or_default();
+            if !matches!(given.len(), 0 | 4 | 5 | 8) {
+                let message = format!("needs 4, 5 or 8 numbers, not {}", given.len());
+                return Err(failure("size", &camera.at("distortion"), &message));
+            }
+            if given.iter().skip(5).any(|value| *value != 0.0) {
+                return unsupported("distortion", "k4, k5 and k6 are not supported");
+            }
+            let mut five = [0.0; 5];
+            five.iter_mut().zip(&given).for_each(|(own, value)| *own = *value);
+            five
+        }
+    };
     Ok(Some(Pinhole { fx, fy, cx, cy, distortion }))
 }
 

@@ -1,0 +1,105 @@
+"""Single parts of the method, to look at."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Mapping, Optional, Union
+
+import numpy as np
+
+from . import _inputs, _native
+from ._errors import BimodalError
+from ._sources import array, flat, plain
+from ._types import Angles
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from ._types import Floats, Singles
+
+# A logarithm of a colour, or a coordinate of a normal: the squares of what is farther from zero say nothing.
+FARTHEST = 1e6
+LARGEST_SIDE = 512
+
+
+@dataclass(frozen=True, eq=False)
+class PixelLandscape:
+    """The objective of one pixel over all normals that a camera can see (Eq. 6), float32.
+
+    ``objective``: (side, side), seen from the camera: n_x grows with the column, n_y with the row, both from -1 to 1; NaN where no normal is.
+    ``minima``: (n, 5), the lowest first: unit normal, objective, share of all directions whose descent ends there. ``path``: (m, 3), normals
+    from step to step of one descent.
+    """
+
+    objective: Singles
+    minima: Singles
+    path: Singles
+
+
+def integrate_normals(normals: ArrayLike, *, robust: bool = True) -> Singles:
+    """Depth, (h, w) float32, in pixels, of the surface that has these normals before an orthographic camera.
+
+    normals: (h, w, 3), unit normals, NaN where there is none. robust: what crosses a discontinuity is cut; without it the depth is the one of
+    least squares. Mean zero in each connected part, NaN where there is no normal.
+    """
+    made = _inputs.shaped(array(normals, "normals", "float32"), "normals", (None, None, 3))
+    planes = _inputs.singles(np.moveaxis(made, 2, 0))
+    return _native.integrate_normals({"normals": planes, "height": made.shape[0], "width": made.shape[1], "robust": robust})
+
+
+def turn_light(light: Union[str, ArrayLike], angles: Union[None, Angles, Mapping[str, float]] = None) -> Floats:
+    """The coefficients of a light, (3, 9), turned by angles in degrees: what fell on a normal n falls on R n.
+
+    light: a name of ``sample_lights()``, or 27 coefficients, (3, 9) or flat.
+    """
+    return _native.turn_light({"light": light_of(light), "angles": plain(angles)})
+
+
+def shade_normals(light: Union[str, ArrayLike], normals: ArrayLike) -> Singles:
+    """log S of R, G, B (natural logarithms) of unit normals under a light, in the normals' shape: (.., 3), float32.
+
+    light: a name of ``sample_lights()``, or 27 coefficients, (3, 9) or flat.
+    """
+    made = array(normals, "normals", "float32")
+    if made.ndim == 0 or made.shape[-1] != 3:
+        raise BimodalError("size", f"normals: must have the shape (.., 3), not {made.shape}", "normals")
+    shaded: Singles = _native.shade_normals({"light": light_of(light), "normals": _inputs.singles(made)})
+    return shaded.reshape(made.shape)
+
+
+def pixel_landscape(
+    log: ArrayLike,
+    light: Union[str, ArrayLike],
+    *,
+    prior: Optional[ArrayLike] = None,
+    weight: float = 0.0,
+    robust: bool = True,
+    start: Optional[ArrayLike] = None,
+    side: int = 96,
+) -> PixelLandscape:
+    """The objective of one pixel over all normals that a camera can see, its minima, and the steps of one descent.
+
+    log: natural logarithms of its linear R, G, B. light: a name of ``sample_lights()``, or 27 coefficients, exposure included. prior: a unit
+    normal that a depth map has there. weight: of the prior, as ``lambda_["prior"]`` of ``Options``. robust: whether a prior that is far off
+    loses its weight, as in the loop; without it the objective is Eq. 9 as printed in the paper. start: the unit normal at which the descent
+    starts; towards the camera. side: rows and columns of ``objective``, 0 .. 512.
+    """
+    if not weight >= 0:
+        raise BimodalError("range", f"weight: must be zero or above (got {weight})", "weight")
+    if _inputs.whole(side, "side", 0) > LARGEST_SIDE:
+        raise BimodalError("range", f"side: must be a whole number from 0 to {LARGEST_SIDE} (got {side})", "side")
+    vectors = {name: None if value is None else three(value, name) for name, value in (("log", log), ("prior", prior), ("start", start))}
+    given = {**vectors, "light": light_of(light), "weight": weight, "robust": robust, "side": side}
+    return PixelLandscape(**_native.pixel_landscape(given))
+
+
+def three(value: ArrayLike, field: str) -> Any:
+    made = flat(value, field)
+    wrong = ~(np.abs(made) <= FARTHEST)
+    if wrong.any():
+        raise BimodalError("range", f"{field}: must be numbers from -1e6 to 1e6 (got {made[wrong][0]})", field, int(wrong.argmax()))
+    return made
+
+
+def light_of(light: Union[str, ArrayLike]) -> Any:
+    return light if isinstance(light, str) else flat(light, "light")

@@ -1,0 +1,159 @@
+"""From files, and from pictures, cameras and poses as other packages hold them, to arrays and dictionaries.
+
+No other package is imported: an object is recognised by the package that its type comes from.
+"""
+
+from __future__ import annotations
+
+import os
+import warnings
+from dataclasses import fields, is_dataclass
+from typing import TYPE_CHECKING, Any, Mapping, Optional, Protocol, Sequence, Union
+
+import numpy as np
+
+from . import _native
+from ._errors import BimodalError, BimodalWarning
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+FilePath = Union[str, "os.PathLike[str]"]
+
+
+class Picture(Protocol):
+    """What numpy takes for an array, such as an image of Pillow."""
+
+    @property
+    def __array_interface__(self) -> Any: ...
+
+
+def plain(value: Any) -> Any:
+    """Objects as dictionaries, and numbers of numpy's as Python's."""
+    if is_dataclass(value) and not isinstance(value, type):
+        return {field.name: plain(getattr(value, field.name)) for field in fields(value)}
+    if isinstance(value, Mapping):
+        return {key: plain(member) for key, member in value.items()}
+    return value
+
+
+def array(value: Any, field: str, what: str) -> NDArray[Any]:
+    """An array of numbers."""
+    try:
+        made = np.asarray(value)
+    except (TypeError, ValueError) as error:
+        raise BimodalError("type", f"{field}: must be an array of {what}", field) from error
+    if made.dtype.kind not in "buif":
+        raise BimodalError("type", f"{field}: must be an array of {what}, not of {made.dtype}", field)
+    return made
+
+
+def flat(value: Any, field: str) -> NDArray[np.float64]:
+    """Numbers one after the other, row after row."""
+    return array(value, field, "numbers").astype(np.float64).ravel()
+
+
+def matrix(value: Any, side: int, field: str) -> NDArray[np.float64]:
+    """A square matrix."""
+    made = array(value, field, "numbers").astype(np.float64)
+    if made.shape != (side, side):
+        raise BimodalError("size", f"{field}: must have the shape ({side}, {side}), not {made.shape}", field)
+    return made
+
+
+def pose(value: Any, field: str) -> Any:
+    """The members of a pose that is given by them, or by a 4x4 matrix."""
+    if value is None or isinstance(value, str):
+        return value
+    if not isinstance(value, Mapping) and not is_dataclass(value):
+        return {"matrix": matrix(value, 4, field)}
+    made = plain(value)
+    for name in ("rotation", "translation", "matrix"):
+        if made.get(name) is not None:
+            made[name] = flat(made[name], f"{field}.{name}")
+    return made
+
+
+def camera(value: Any, field: str) -> Any:
+    """The members of a camera that is given by them, by its matrix K, by ``{"K": .., "distortion": ..}``, or as Open3D has it."""
+    if value is None or is_dataclass(value):
+        return plain(value)
+    if package(value) == "open3d":
+        value = value.intrinsic_matrix
+    if not isinstance(value, Mapping):
+        return of_matrix(value, field)
+    if value.get("K") is None:
+        return plain(value)
+    twice = next((name for name in ("fx", "fy", "cx", "cy") if value.get(name) is not None), None)
+    if twice is not None:
+        raise BimodalError("option", f"{field}.{twice}: K holds it already; leave one of them out", f"{field}.{twice}")
+    others = {name: member for name, member in value.items() if name != "K"}
+    return {**plain(others), **of_matrix(value["K"], f"{field}.K")}
+
+
+def of_matrix(value: Any, field: str) -> dict[str, float]:
+    # What a factor of zero or one becomes where a matrix was stored in single precision.
+    rounding = 1e-6
+    k = matrix(value, 3, field)
+    (fx, skew, cx), (below, fy, cy), last = k.tolist()
+    if fx != 0 and abs(skew) > rounding * abs(fx):
+        raise BimodalError("range", f"{field}: a camera with skew is not supported (got {skew} in row 1, column 2)", field)
+    if below != 0 or last[:2] != [0, 0] or not abs(last[2] - 1) <= rounding:
+        raise BimodalError("range", f"{field}: must be fx 0 cx, 0 fy cy, 0 0 1", field)
+    return {"fx": fx, "fy": fy, "cx": cx, "cy": cy}
+
+
+def package(value: Any) -> str:
+    """The package that a value's type comes from."""
+    return type(value).__module__.partition(".")[0]
+
+
+def is_path(value: Any) -> bool:
+    return isinstance(value, (str, os.PathLike))
+
+
+def warn(found: Sequence[Mapping[str, Any]]) -> None:
+    """Passes on what a reader has guessed."""
+    for each in found:
+        warnings.warn(BimodalWarning(each["code"], each["message"], each["field"]), stacklevel=4)
+
+
+def picture(value: Any) -> Any:
+    """An image of Pillow with its palette and its colour model resolved; anything else as it is."""
+    if package(value) != "PIL" or not hasattr(value, "convert"):
+        return value
+    kept = ("L", "RGB", "RGBA", "I", "F")
+    if value.mode in kept or value.mode.startswith("I;16"):
+        return value
+    has_alpha = "A" in value.getbands() or "transparency" in value.info
+    return value.convert("RGBA" if has_alpha else "RGB")
+
+
+def colours(value: Any, transfer: Optional[str]) -> tuple[Any, Optional[str]]:
+    """The pixels of a file or a picture, and how they encode intensity where that is known."""
+    if not is_path(value):
+        return picture(value), transfer
+    found = _native.read_image(os.fspath(value))
+    warn(found["warnings"])
+    return found["data"], transfer or found["transfer"]
+
+
+def depth(path: Any, unit: Optional[float], is_metric: bool) -> dict[str, Any]:
+    """``data`` or ``points`` of a file, and ``unit``."""
+    found: dict[str, Any] = _native.read_depth(os.fspath(path), unit, is_metric)
+    warn(found.pop("warnings"))
+    return found
+
+
+def mask(value: Any) -> Any:
+    """Non-zero where the object is, of a file, a picture or an array."""
+    if is_path(value):
+        return _native.read_mask(os.fspath(value))
+    made = picture(value)
+    if made is value and package(value) != "PIL":
+        return value
+    pixels = np.asarray(made)
+    if pixels.ndim == 2:
+        return pixels
+    inside = (pixels[..., :3] > 0).any(axis=2)
+    return inside & (pixels[..., 3] > 127) if pixels.shape[2] == 4 else inside
