@@ -135,14 +135,14 @@ def singles(made: NDArray[Any]) -> NDArray[np.float32]:
 def mask(value: Any, field: str, shape: tuple[int, ...]) -> Optional[NDArray[np.uint8]]:
     if value is None:
         return None
-    return packed(shaped(array(_sources.mask(value), field, "flags"), field, shape[:2]) != 0, np.uint8)
+    return packed(shaped(array(_sources.mask(value, field), field, "flags"), field, shape[:2]) != 0, np.uint8)
 
 
 def image(given: Union[ColorImage, Pixels], path: str = "image") -> dict[str, Any]:
     """A colour image, or the pixels of one, for the bindings."""
     own = given if isinstance(given, ColorImage) else ColorImage(given)
     field = f"{path}.data"
-    pixels, transfer = _sources.colours(own.data, own.transfer)
+    pixels, transfer = _sources.colours(own.data, own.transfer, field)
     data = shaped(array(pixels, field, "uint8, uint16 or float32"), field, (None, None, 3), (None, None, 4), (None, None))
     if data.ndim == 2:
         data = np.repeat(data[..., np.newaxis], 3, axis=2)
@@ -180,7 +180,7 @@ def depth(given: Union[DepthMap, Pixels], path: str = "depth") -> dict[str, Any]
         said = "or depth.points is required" if own.data is None else "excludes depth.points: give one of the two"
         raise BimodalError("missing", f"{path}.data: {said}", f"{path}.data")
     if _sources.is_path(own.data):
-        own = replace(own, **{"data": None, **_sources.depth(own.data, own.unit, own.camera is not None)})
+        own = replace(own, **{"data": None, **_sources.depth(own.data, own.unit, own.camera is not None, f"{path}.data")})
     if own.data is not None:
         data = shaped(array(own.data, f"{path}.data", "float32 or uint16"), f"{path}.data", (None, None))
         rasters = {**size(data), "data": depths(data, f"{path}.data")}

@@ -8,7 +8,7 @@ from __future__ import annotations
 import os
 import warnings
 from dataclasses import fields, is_dataclass
-from typing import TYPE_CHECKING, Any, Mapping, Optional, Protocol, Sequence, Union
+from typing import TYPE_CHECKING, Any, Callable, Mapping, Optional, Protocol, Sequence, TypeVar, Union
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from ._errors import BimodalError, BimodalWarning
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+Made = TypeVar("Made")
 FilePath = Union[str, "os.PathLike[str]"]
 
 
@@ -56,6 +57,8 @@ def flat(value: Any, field: str) -> NDArray[np.float64]:
 def matrix(value: Any, side: int, field: str) -> NDArray[np.float64]:
     """A square matrix."""
     made = array(value, field, "numbers").astype(np.float64)
+    if made.ndim == 0:
+        raise BimodalError("type", f"{field}: must be a matrix ({side}, {side}) or a dictionary, not {type(value).__name__}", field)
     if made.shape != (side, side):
         raise BimodalError("size", f"{field}: must have the shape ({side}, {side}), not {made.shape}", field)
     return made
@@ -129,26 +132,36 @@ def picture(value: Any) -> Any:
     return value.convert("RGBA" if has_alpha else "RGB")
 
 
-def colours(value: Any, transfer: Optional[str]) -> tuple[Any, Optional[str]]:
+def read(reader: Callable[..., Made], path: Any, field: Optional[str], *others: Any) -> Made:
+    """What a reader makes of a file; an error names the argument that the file was given for, if any."""
+    try:
+        return reader(os.fspath(path), *others)
+    except BimodalError as error:
+        if field is None:
+            raise
+        raise BimodalError(error.code, f"{field}: {error}", field) from error
+
+
+def colours(value: Any, transfer: Optional[str], field: Optional[str] = None) -> tuple[Any, Optional[str]]:
     """The pixels of a file or a picture, and how they encode intensity where that is known."""
     if not is_path(value):
         return picture(value), transfer
-    found = _native.read_image(os.fspath(value))
+    found = read(_native.read_image, value, field)
     warn(found["warnings"])
     return found["data"], transfer or found["transfer"]
 
 
-def depth(path: Any, unit: Optional[float], is_metric: bool) -> dict[str, Any]:
+def depth(path: Any, unit: Optional[float], is_metric: bool, field: Optional[str] = None) -> dict[str, Any]:
     """``data`` or ``points`` of a file, and ``unit``."""
-    found: dict[str, Any] = _native.read_depth(os.fspath(path), unit, is_metric)
+    found = read(_native.read_depth, path, field, unit, is_metric)
     warn(found.pop("warnings"))
     return found
 
 
-def mask(value: Any) -> Any:
+def mask(value: Any, field: str) -> Any:
     """Non-zero where the object is, of a file, a picture or an array."""
     if is_path(value):
-        return _native.read_mask(os.fspath(value))
+        return read(_native.read_mask, value, field)
     made = picture(value)
     if made is value and package(value) != "PIL":
         return value

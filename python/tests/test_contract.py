@@ -17,7 +17,6 @@ NODE = shutil.which("node")
 
 # What has no place here, and why.
 LEFT_OUT = {
-    "workers": "threads of its own make no copy of the pair here",
     "width": "arrays have a shape",
     "height": "likewise",
     "draw": "paints on a canvas",
