@@ -126,8 +126,10 @@ pub fn read_depth(py: Python<'_>, path: PathBuf, unit: Option<f64>, is_metric: b
     let found = read.map_err(|reason| refused(&Problem::file(&path, reason)))?;
     let dict = depths(py, found.samples, size)?;
     dict.set_item("unit", found.unit)?;
-    // What is said of metres means nothing of pixels.
-    dict.set_item("warnings", warnings(py, if is_metric { &found.warnings.0 } else { &of_file })?)?;
+    // What is said of metres means nothing of pixels, and around a single object most of a depth map is often empty.
+    let mut told = if is_metric { found.warnings.0 } else { of_file };
+    told.retain(|warning| warning.code != "many-holes");
+    dict.set_item("warnings", warnings(py, &told)?)?;
     Ok(dict)
 }
 

@@ -8,7 +8,7 @@ use bimodal_stereo_files::write::{self, Length};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
-use crate::error::{failure, refused_below, unbroken};
+use crate::error::{self, failure, unbroken};
 use crate::files::refused;
 use crate::guard::guarded;
 use crate::input::{POSE, pose};
@@ -42,6 +42,6 @@ pub fn matrix_text(value: &Bound<'_, PyAny>) -> PyResult<String> {
         rotation: members.needed("rotation", given.rotation)?,
         translation: members.needed("translation", given.translation)?,
     };
-    whole.validate("").map_err(|error| refused_below(&members, &error))?;
+    whole.validate("pose").map_err(|error| error::refused(&error))?;
     Ok(write::matrix_text(&whole))
 }
