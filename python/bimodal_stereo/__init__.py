@@ -22,7 +22,7 @@ from ._files import read_calibration, read_depth, read_image, read_rig_folder
 from ._inputs import LightGaussian, Options, StartTolerance, Weights
 from ._lessons import PixelLandscape, integrate_normals, pixel_landscape, shade_normals, turn_light
 from ._native import VERSION as __version__
-from ._samples import Sample, Truth, sample, sample_lights, sample_surfaces
+from ._samples import Sample, Truth, sample, sample_bound, sample_lights, sample_surfaces
 from ._types import Angles, ColorImage, DepthMap, Energy, Pinhole, Pose, RigCamera, StepReport, Uncertainty
 from ._write import write_cloud, write_depth, write_pose, write_results
 
@@ -70,6 +70,7 @@ __all__ = [
     "read_image",
     "read_rig_folder",
     "sample",
+    "sample_bound",
     "sample_lights",
     "sample_rig",
     "sample_surfaces",

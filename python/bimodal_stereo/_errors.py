@@ -9,7 +9,7 @@ class BimodalError(ValueError):
     """An input that can't be worked on, or a failure of the numerics.
 
     ``code`` is stable, for programs: "size", "range", "missing", "empty", "degenerate", "memory", "option", "type",
-    "unsupported", "state", "panic", "poisoned". ``field`` is the argument at fault as a path, such as "depth.camera.fx" or "stop_degrees",
+    "file", "unsupported", "state", "panic", "poisoned". ``field`` is the argument at fault as a path, such as "depth.camera.fx" or "stop_degrees",
     or ``None``. ``index``: of the entry of that argument, where a single one is at fault. ``value``: the number at fault.
     """
 

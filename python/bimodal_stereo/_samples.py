@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Mapping, Optional, Union
+from typing import TYPE_CHECKING, Any, Mapping, Optional, TypedDict, Union
 
 from . import _inputs, _native
 from ._sources import array
@@ -11,6 +11,7 @@ from ._types import Angles, ColorImage, DepthMap, Pinhole, Pose
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
+    from typing_extensions import Unpack
 
     from ._types import Floats, Singles
 
@@ -59,11 +60,7 @@ def sample(
     scale: of the pose to find; 1. overlap: share of the depth map's columns that is kept; 1. noise: sigma on the logarithm of the
     colours; 0. depth_noise: sigma in pixels; 0. holes: share of the depth pixels that is lost; 0. seed: 1.
     """
-    if not isinstance(surface, str):
-        surface = _inputs.singles(array(surface, "surface", "heights"))
-    given = {
-        "surface": surface,
-        "light": light,
+    options = {
         "size": size,
         "height": height,
         "protocol": protocol,
@@ -75,7 +72,7 @@ def sample(
         "holes": holes,
         "seed": seed,
     }
-    raw = _native.sample(_inputs.keywords(given))
+    raw = _native.sample(requested(surface, light, options))
     return Sample(
         image=ColorImage(**with_pinhole(raw["image"])),
         depth=DepthMap(**with_pinhole(raw["depth"])),
@@ -83,6 +80,37 @@ def sample(
         pose=Pose._of(raw["pose"]),
         truth=Truth(**raw["truth"]),
     )
+
+
+class SampleOptions(TypedDict, total=False):
+    """The options of ``sample``."""
+
+    size: Optional[int]
+    height: Optional[int]
+    protocol: Optional[str]
+    angles: Union[None, Angles, Mapping[str, float]]
+    scale: Optional[float]
+    overlap: Optional[float]
+    noise: Optional[float]
+    depth_noise: Optional[float]
+    holes: Optional[float]
+    seed: Optional[int]
+
+
+def sample_bound(
+    surface: Union[str, ArrayLike], light: Union[str, ArrayLike], *, light_is_known: bool, **options: Unpack[SampleOptions]
+) -> Optional[float]:
+    """The least error of the rotation that any estimator can have on that scene: its Cramer-Rao bound, one sigma, degrees.
+
+    The arguments are those of ``sample``. ``None`` where there is none: without noise, and where the scene determines no rotation.
+    """
+    return _native.sample_bound(requested(surface, light, options), light_is_known)
+
+
+def requested(surface: Any, light: Any, options: Mapping[str, Any]) -> dict[str, Any]:
+    if not isinstance(surface, str):
+        surface = _inputs.singles(array(surface, "surface", "heights"))
+    return _inputs.keywords({"surface": surface, "light": light, **options})
 
 
 def with_pinhole(view: Mapping[str, Any]) -> Mapping[str, Any]:

@@ -3,7 +3,6 @@
 use pyo3::{PyErr, PyResult, import_exception, pyfunction};
 
 use crate::guard::BrokenOff;
-use crate::members::Members;
 
 import_exception!(bimodal_stereo._errors, BimodalError);
 
@@ -35,15 +34,11 @@ pub fn spelled(name: &str) -> String {
 
 /// An error of the crate.
 pub fn refused(error: &bimodal_stereo::Error) -> PyErr {
-    of_field(spelled(error.field()), error)
+    refused_at(spelled(error.field()), error)
 }
 
-/// An error of the crate about a member of a dictionary.
-pub fn refused_below(parent: &Members<'_>, error: &bimodal_stereo::Error) -> PyErr {
-    of_field(parent.at(&spelled(error.field())), error)
-}
-
-fn of_field(field: String, error: &bimodal_stereo::Error) -> PyErr {
+/// The same with another path of the field at fault.
+pub fn refused_at(field: String, error: &bimodal_stereo::Error) -> PyErr {
     let message = error.to_string();
     let message = message.strip_prefix(error.field()).map_or(message.clone(), |rest| format!("{field}{rest}"));
     BimodalError::new_err((error.kind().code(), message, field, error.index(), error.bad_value()))

@@ -4,7 +4,7 @@ use bimodal_stereo::nalgebra::{Matrix3, Matrix4, Vector3};
 use bimodal_stereo::{Angles, ColourImage, ColourSamples, DepthMap, DepthSamples, Pinhole, Similarity, Transfer};
 use pyo3::prelude::*;
 
-use crate::error::{failure, refused_below};
+use crate::error::{failure, refused_at};
 use crate::members::Members;
 
 const IMAGE: [&str; 6] = ["width", "height", "data", "mask", "camera", "transfer"];
@@ -132,7 +132,8 @@ pub fn pose(pose: &Members<'_>) -> PyResult<GivenPose> {
     let rows = pose.numbers::<9>("rotation")?;
     if let (None, Some(entries)) = (rows, pose.numbers::<16>("matrix")?) {
         let whole = Similarity::try_from(Matrix4::from_row_slice(&entries));
-        let Similarity { scale, rotation, translation } = whole.map_err(|error| refused_below(pose, &error))?;
+        let Similarity { scale, rotation, translation } =
+            whole.map_err(|error| refused_at(pose.at(error.field()), &error))?;
         return Ok(GivenPose { scale: Some(scale), rotation: Some(rotation), translation: Some(translation) });
     }
     let turned = angles(pose)?.map(|angles| angles.rotation());

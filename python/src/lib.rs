@@ -31,7 +31,7 @@ mod _native {
     #[pymodule_export]
     use super::lessons::{integrate_normals, pixel_landscape, shade_normals, turn_light};
     #[pymodule_export]
-    use super::samples::{sample, sample_lights, sample_surfaces};
+    use super::samples::{sample, sample_bound, sample_lights, sample_surfaces};
     #[pymodule_export]
     use super::write::{depth_png, matrix_text};
 

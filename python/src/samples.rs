@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyDict};
 
 use crate::arrays::array;
-use crate::error::{failure, outcome, refused};
+use crate::error::{failure, outcome, refused, unbroken};
 use crate::guard::guarded;
 use crate::input::angles;
 use crate::lessons::light;
@@ -43,9 +43,19 @@ pub fn sample_lights() -> Vec<&'static str> {
 
 #[pyfunction]
 pub fn sample<'py>(py: Python<'py>, keywords: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyDict>> {
+    plain(py, &made(py, &Members::new(keywords, "", &NAMES)?)?)
+}
+
+/// The least error of the rotation that any estimator can have on this scene, degrees.
+#[pyfunction]
+pub fn sample_bound(py: Python<'_>, keywords: &Bound<'_, PyAny>, light_is_known: bool) -> PyResult<Option<f64>> {
     let given = Members::new(keywords, "", &NAMES)?;
-    let relief = relief(&given)?;
-    let request = request(&given)?;
+    let (made, noise) = (made(py, &given)?, given.number("noise")?.unwrap_or_default());
+    unbroken(py.detach(|| guarded(|| scenes::bound(&made, light_is_known, noise))))
+}
+
+fn made(py: Python<'_>, given: &Members<'_>) -> PyResult<Sample> {
+    let (relief, request) = (relief(given)?, request(given)?);
     let is_grid = given.word("protocol", &[("rendered", false), ("grid", true)])?.unwrap_or(false);
     if is_grid {
         let surplus = RENDERED_ALONE.into_iter().find(|name| matches!(given.get(name), Ok(Some(_))));
@@ -57,7 +67,7 @@ pub fn sample<'py>(py: Python<'py>, keywords: &Bound<'py, PyAny>) -> PyResult<Bo
         true => scenes::bare_grid(&relief, &request.light, &request.rotation, request.overlap),
         false => Scene::new(&relief)?.sample(&request),
     };
-    plain(py, &outcome(py.detach(|| guarded(make)))?)
+    outcome(py.detach(|| guarded(make)))
 }
 
 fn relief(given: &Members<'_>) -> PyResult<Relief> {

@@ -24,6 +24,10 @@ LEFT_OUT = {
     "searchScores": "the page's picture of the search",
     "registeredBy": "no part of the contract",
     "warnings": "threads are the system's own",
+    "ErrorDetails": "arguments of an error's own constructor",
+    "ErrorCode": "a text here",
+    "Given": "of given",
+    "wasmUrl": "there is no .wasm file",
     "given": "what a restored run was made of",
     "free": "memory is given back by itself",
 }
@@ -48,6 +52,23 @@ def test_objects_have_the_same_members(name):
     interface = members(name)
     assert len(interface) > 3
     assert {field.name for field in fields(getattr(bimodal, name))} == kept(interface)
+
+
+@pytest.mark.parametrize("name", ["FrameOverlay", "PixelLandscape"])
+def test_small_objects_have_the_same_members(name):
+    assert {field.name for field in fields(getattr(bimodal, name))} == kept(members(name)) != set()
+
+
+def test_the_package_has_the_same_functions():
+    exported = re.findall(r"^export {(.*?)}", (ROOT / "js/index.ts").read_text(), re.MULTILINE | re.DOTALL)
+    names = {name for names in exported for name in re.findall(r"\b(?<!type )[A-Za-z]\w*", names)} - {"type"}
+    assert {"sampleRig", "integrateNormals", "Estimator"} <= names
+    own = {spelled(name) if name[0].islower() else name for name in names if name not in LEFT_OUT}
+    assert own <= set(bimodal.__all__)
+
+
+def test_what_is_exported_is_there_and_in_order():
+    assert all(hasattr(bimodal, name) for name in bimodal.__all__) and len(set(bimodal.__all__)) == len(bimodal.__all__)
 
 
 def test_options_have_the_same_names():

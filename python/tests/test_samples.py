@@ -132,3 +132,11 @@ def test_bad_checks_are_refused_by_name(rig):
     refused(lambda: bimodal.sample_rig("attic"), "option", "kind")
     refused(lambda: bimodal.sample_rig("boxes", seed=-1), "range", "seed")
     refused(lambda: bimodal.sample_rig("boxes", noise=float("inf")), "range", "noise")
+
+
+def test_a_scene_has_a_bound():
+    known = bimodal.sample_bound("bust", "colourful", light_is_known=True, size=32, noise=0.01)
+    unknown = bimodal.sample_bound("bust", "colourful", light_is_known=False, size=32, noise=0.01)
+    assert 0 < known <= unknown < 10
+    assert bimodal.sample_bound("bust", "colourful", light_is_known=True, size=32) is None
+    refused(lambda: bimodal.sample_bound("bust", "candle", light_is_known=True), "range", "light")
