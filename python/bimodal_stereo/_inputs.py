@@ -200,7 +200,7 @@ def of_pixels(given: Pixels, path: str) -> DepthMap:
 
 
 def cloud(value: Any, field: str, shape: Sequence[Optional[int]]) -> NDArray[np.float32]:
-    return singles(shaped(array(value, field, "float32"), field, shape))
+    return singles(shaped(array(_sources.points(value), field, "float32"), field, shape))
 
 
 def depths(data: NDArray[Any], field: str) -> NDArray[Any]:

@@ -158,6 +158,11 @@ def depth(path: Any, unit: Optional[float], is_metric: bool, field: Optional[str
     return found
 
 
+def points(value: Any) -> Any:
+    """The points of a cloud of Open3D, which has no rows and columns; anything else as it is."""
+    return value.points if package(value) == "open3d" and hasattr(value, "points") else value
+
+
 def mask(value: Any, field: str) -> Any:
     """Non-zero where the object is, of a file, a picture or an array."""
     if is_path(value):

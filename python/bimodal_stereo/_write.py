@@ -9,7 +9,7 @@ import numpy as np
 
 from . import _inputs, _native
 from ._errors import BimodalError
-from ._sources import array, pose as members_of
+from ._sources import array, points as points_of, pose as members_of
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -61,8 +61,8 @@ def write_depth(path: FilePath, depth: ArrayLike, unit: str = "m") -> str:
     return str(says)
 
 
-def write_cloud(path: FilePath, points: ArrayLike, colours: Optional[ArrayLike] = None) -> None:
-    """Writes points, (n, 3) or (h, w, 3), as a binary PLY, without those that are not finite.
+def write_cloud(path: FilePath, points: Any, colours: Optional[ArrayLike] = None) -> None:
+    """Writes points, (n, 3) or (h, w, 3) or a PointCloud of Open3D, as a binary PLY, without those that are not finite.
 
     colours: of each point, in the shape of ``points``: uint8, or floats from 0 to 1.
     """
@@ -84,8 +84,8 @@ def write_cloud(path: FilePath, points: ArrayLike, colours: Optional[ArrayLike] 
     _put(path, header.encode() + cloud.tobytes())
 
 
-def rows(values: ArrayLike, field: str) -> Any:
-    made = array(values, field, "numbers")
+def rows(values: Any, field: str) -> Any:
+    made = array(points_of(values), field, "numbers")
     if made.ndim < 2 or made.shape[-1] != 3:
         raise BimodalError("size", f"{field}: must have the shape (n, 3) or (h, w, 3), not {made.shape}", field)
     return made.reshape(-1, 3)

@@ -133,6 +133,16 @@ def test_images_and_cameras_of_open3d_are_taken(levels, of_views):
     assert of_views(image, bimodal.DepthMap(OfOpen3D(hundredths), camera=OfOpen3D(K))) == expected
 
 
+def test_clouds_of_open3d_are_points(levels, tmp_path):
+    cloud = OfOpen3D(None)
+    cloud.points = [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]
+    for number, points in enumerate([cloud, cloud.points]):
+        bimodal.write_cloud(tmp_path / f"{number}.ply", points)
+    assert (tmp_path / "0.ply").read_bytes() == (tmp_path / "1.ply").read_bytes()
+    # It has no rows.
+    refused(lambda: bimodal.Estimator(levels[0], bimodal.DepthMap(points=cloud)), "size", "depth.points")
+
+
 def test_cameras_are_matrices(levels, of_views):
     eight, hundredths = levels
     lens = (0.1, -0.02, 0.001, 0, 0)
