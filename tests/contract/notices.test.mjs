@@ -179,7 +179,7 @@ describe("the wheel", () => {
 
 describe("the crates", LONG, () => {
   const target = folder();
-  const crates = ["bimodal-stereo", "bimodal-stereo-cli"];
+  const crates = ["bimodal-stereo", "bimodal-stereo-cli", "bimodal-stereo-files"];
   const version = /^version = "(.+)"$/m.exec(read("Cargo.toml"))[1];
   const at = (name) => join(target, "package", `${name}-${version}`);
 
