@@ -78,6 +78,6 @@ test("a WebP or JPEG that is cut off is an error that names it", async ({ page }
       },
       [name, length] as const,
     );
-  expect(await message("colour.webp", 40)).toMatch(/^file file: colour\.webp: this WebP is cut off/);
-  expect(await message("colour.jpg", 500)).toMatch(/^file file: colour\.jpg: this JPEG is/);
+  expect(await message("colour.webp", 40)).toMatch(/^file colour\.webp: this WebP is cut off/);
+  expect(await message("colour.jpg", 500)).toMatch(/^file colour\.jpg: this JPEG is/);
 });

@@ -442,7 +442,7 @@ test("a folder comes in order, with its masks to be seen and left out, and its g
   await expect(frames.first()).toContainText("used: the mask's file.");
   await frames.first().getByLabel("Mask").selectOption("");
   await expect(frames.first()).toContainText("all of it is used.");
-  await expect(page.locator(".rig-notes").first()).toContainText("One camera's intrinsics are there");
+  await expect(page.locator(".rig-notes").first()).toContainText("Only one camera's intrinsics were found");
   await page.getByRole("group", { name: "Units" }).getByRole("button").click();
   await expect(page.getByRole("group", { name: "Units" })).toBeHidden();
   await expect(page.locator(".rig-notes").first()).not.toContainText("unit");
@@ -451,7 +451,7 @@ test("a folder comes in order, with its masks to be seen and left out, and its g
   await page.getByRole("button", { name: "Add what I pasted" }).click();
   await page.getByRole("button", { name: "Run the check" }).locator("visible=true").click();
   await expect(page.locator(".rig-word")).toHaveText("Settled, but check");
-  await expect(page.locator(".rig-verdict")).toContainText("they were taken for both");
+  await expect(page.locator(".rig-verdict")).toContainText("they are used for both pictures");
   await expect(page.locator(".rig-verdict")).not.toContainText("Guessed");
   rmSync(folder, { recursive: true });
   expect(lab.complaints).toEqual([]);
