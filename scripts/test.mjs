@@ -41,14 +41,15 @@ const SEARCHES = [
   "scene_laws",
   "told_start",
 ];
-const SHORT_IN_WASM = LONG ? [] : [...SHORT, ...SEARCHES.flatMap((name) => ["--skip", `${name}::`])];
-/** The library's tests that read no files, compiled for wasm; without a variable they run in Node. */
-const wasmTests = (where) =>
-  watch("cargo", ["test", ...LIBRARY, "--target", WASM, "--lib", "--test", "library", "--", ...SHORT_IN_WASM], {
+const WITHOUT_SEARCHES = [...SEARCHES.flatMap((name) => ["--skip", `${name}::`]), "--skip", "::long::"];
+/** The library's tests that read no files, compiled for wasm. */
+const wasmTests = (where, skipped = WITHOUT_SEARCHES) =>
+  watch("cargo", ["test", ...LIBRARY, "--target", WASM, "--lib", "--test", "library", "--", ...skipped], {
     env: { ...PATIENCE, ...where },
   });
-const wasmIn = (variable) => async () =>
-  wasmTests(variable ? { [variable]: "1", CHROMEDRIVER: (await browser()).chromedriver } : {});
+/** In Node `--long` runs all of them. A page and a worker have the same engine: what takes long would only be computed again. */
+const wasmInNode = () => wasmTests({}, LONG ? [] : WITHOUT_SEARCHES);
+const wasmIn = (variable) => async () => wasmTests({ [variable]: "1", CHROMEDRIVER: (await browser()).chromedriver });
 /** Natively everything optional is looked at; what is built for browsers has none of it. */
 const FEATURES = ["--all-features"];
 
@@ -234,7 +235,7 @@ const PARTS = [
   { name: "docs", run: docs, closing: CARGO },
   { name: "deny", run: deny, closing: /^.*bans \w+, .*$/gm },
   { name: "rust", run: rust, closing: CARGO },
-  { name: "wasm-node", run: wasmIn(), lane: 0, closing: CARGO },
+  { name: "wasm-node", run: wasmInNode, lane: 0, closing: CARGO },
   { name: "wasm-browser", run: wasmIn("WASM_BINDGEN_USE_BROWSER"), lane: 0, closing: CARGO },
   { name: "wasm-worker", run: wasmIn("WASM_BINDGEN_USE_DEDICATED_WORKER"), lane: 0, closing: CARGO },
   { name: "python", run: python, needsBuild: true, lane: 0, closing: PYTHON },
