@@ -81,7 +81,7 @@ async function numerics({ file, target, flags, features = ["--features", "bindin
   const apart = ["--one-caller-inline-max-function-size", "50"];
   // Nothing reads or writes the first kilobyte but the stack, if it overflows: so offsets fold into addresses.
   const smaller = ["-Oz", "--low-memory-unused"];
-  // What is written twice packs better than the local that would hold it, by 0.9 kB gzipped, and runs as fast (docs/performance.md).
+  // Repeated expressions compress better than a local variable that holds them.
   const repeated = ["--skip-pass=local-cse"];
   const bare = ["--strip-producers", "--strip-target-features"];
   await node(

@@ -18,8 +18,8 @@ const DEGREES = 180 / Math.PI;
 const apart = ({ rotation: a }, { rotation: b }) =>
   DEGREES * Math.acos(Math.min(1, (a.reduce((sum, entry, index) => sum + entry * b[index], 0) - 1) / 2));
 
-// Ripples under window light leave the rotation uncertain by 1.5 degrees, which speaks before the unit. The image of the bust passes for
-// one of varying albedo.
+// With ripples under window light the sigma of the rotation reaches 1.5 degrees, and the verdict reports that before it compares units. The
+// image of the bust looks like one of varying albedo.
 const [BY_UNIT, BY_SIGMA, BY_CONTRAST] = [
   ["ambiguous", "other-unit", 0.1],
   ["ambiguous", "rotation-uncertain"],

@@ -128,7 +128,7 @@ test("8: under coloured lamps hue says less, and the normals are worse", async (
     await numbers(page, "paint", "likeness", "degrees"),
     await numbers(page, "paint&light=colourful", "likeness", "degrees"),
   ];
-  // The text names the direction alone; with the prior from environments they are 10 % worse.
+  // The text names the direction; a difference of a twentieth can be seen.
   expect(lamps.degrees).toBeGreaterThan(1.05 * window.degrees);
   expect(lamps.likeness).toBeLessThan(window.likeness);
 });

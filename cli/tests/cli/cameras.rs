@@ -15,9 +15,9 @@ fn with(made: &Made, name: &str, text: &str) -> String {
 
 /// Which units a run has, of its pose and of its depth map.
 fn units(made: &Made, more: &[&str]) -> [String; 2] {
-    let told = run_pair(made, &[&ONCE, more].concat());
-    assert!(told.code < 3, "{}", told.err);
-    ["unit", "depthUnit"].map(|name| told.json()[name].as_str().unwrap().to_owned())
+    let found = run_pair(made, &[&ONCE, more].concat());
+    assert!(found.code < 3, "{}", found.err);
+    ["unit", "depthUnit"].map(|name| found.json()[name].as_str().unwrap().to_owned())
 }
 
 #[test]
@@ -38,8 +38,8 @@ fn cameras_of_files_make_metres() {
 fn cameras_that_do_not_fit_are_refused() {
     let made = bust();
     let refused = |text: &str, words: &str| {
-        let told = run_pair(&made, &["--cameras", &with(&made, "elsewhere.json", text)]);
-        assert!(told.code == 3 && told.err.contains(words), "{words}: {}", told.err);
+        let found = run_pair(&made, &["--cameras", &with(&made, "elsewhere.json", text)]);
+        assert!(found.code == 3 && found.err.contains(words), "{words}: {}", found.err);
     };
     refused(&CAMERA.replace("48", "640"), "640x640");
     refused(
@@ -58,9 +58,9 @@ fn millimetres_without_intrinsics_are_not_taken_for_pixels() {
     write_png(depth.as_ref(), SIDE, png::ColorType::Grayscale, png::BitDepth::Sixteen, &levels);
     let image = made.path("image.png");
     let pair = |more: &[&str]| run(&[&[image.as_str(), depth.as_str()], &ONCE[..], more].concat());
-    let told = pair(&[]);
+    let found = pair(&[]);
     assert_eq!(
-        (told.code, &told.json()["error"]["code"], &told.json()["error"]["field"]),
+        (found.code, &found.json()["error"]["code"], &found.json()["error"]["field"]),
         (3, &"missing".into(), &"depth.camera".into())
     );
     assert!(pair(&["--depth-unit", "1"]).code < 3);
@@ -82,14 +82,14 @@ fn the_camera_of_a_crop_is_that_of_its_frame() {
     );
     let [image, depth, light] = ["mug_crop.png", "mug_depthcrop.npy", "light.csv"].map(|name| made.path(name));
     let pair = |cameras: &[&str]| {
-        let told = run(&[
+        let found = run(&[
             &[image.as_str(), depth.as_str(), "--light", &light, "--start", "identity", "--depth-unit", "0.01"],
             &ONCE[..],
             cameras,
         ]
         .concat());
-        assert!(told.code < 3, "{}", told.err);
-        told.json()
+        assert!(found.code < 3, "{}", found.err);
+        found.json()
     };
     let found = pair(&["--cameras", &named]);
     assert!(found["notes"].to_string().contains("moved to its crop"), "{found}");
