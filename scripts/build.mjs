@@ -12,7 +12,6 @@ import {
 } from "node:fs";
 import { join } from "node:path";
 import { gzipSync } from "node:zlib";
-import { reachable } from "./imports.mjs";
 import { collector } from "./notices/bundled.mjs";
 import { NOTICES, section } from "./notices/text.mjs";
 import { ALL, GLUE, NUMERICS, allNumerics, node } from "./numerics.mjs";
@@ -125,6 +124,8 @@ async function facade() {
 
 /** The types of all that the entries name; the others stay inside, those of the generated bindings among them. */
 async function declarations() {
+  // Imported late, as the bundler is: before the set-up there are no node_modules.
+  const { reachable } = await import("./imports.mjs");
   const all = inRoot("target/declarations");
   rmSync(all, { recursive: true, force: true });
   await node("typescript/bin/tsc", "-p", "js/tsconfig.json", "--outDir", all);
