@@ -32,6 +32,10 @@ const GROUPS = {
   ],
 };
 
+/** Of readers a row says as well whether a check's verdict is capped. */
+const row = ([code, { cause, remedy, harmless }]) =>
+  `| \`${code}\` | ${cause}${harmless ? " Caps no verdict." : ""} | ${remedy} |`;
+
 /** The document that a table of codes makes. */
 export function documentOf(table) {
   const sections = Object.entries(GROUPS).flatMap(([group, [title, words]]) => [
@@ -41,7 +45,7 @@ export function documentOf(table) {
     "",
     "| code | cause | remedy |",
     "|---|---|---|",
-    ...Object.entries(table[group]).map(([code, { cause, remedy }]) => `| \`${code}\` | ${cause} | ${remedy} |`),
+    ...Object.entries(table[group]).map(row),
     "",
   ]);
   return [

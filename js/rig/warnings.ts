@@ -62,7 +62,13 @@ export interface ReaderWarning {
 }
 
 /** These name what was not read; they do not make what was read doubtful. */
-const HARMLESS: ReadonlySet<ReaderCode> = new Set(["file-left-out", "names-ambiguous", "mask-size", "pairs-sampled"]);
+const HARMLESS: ReadonlySet<ReaderCode> = new Set([
+  "file-left-out",
+  "file-alone",
+  "names-ambiguous",
+  "mask-size",
+  "pairs-sampled",
+]);
 
 export const warning = (
   code: ReaderCode,

@@ -66,6 +66,20 @@ test("warnings of the readers in Rust and of the command check have a row", () =
   );
 });
 
+/** The words of a list in a source. */
+function list(path, pattern) {
+  const [, body] = pattern.exec(source(path)) ?? [];
+  assert.ok(body, `${path} has no ${pattern}`);
+  return [...body.matchAll(/"([a-z-]+)"/g)].map(([, word]) => word).sort();
+}
+
+test("what a reader left out caps no verdict, in JavaScript and in Rust", () => {
+  const harmless = Object.keys(TABLE.readers).filter((code) => TABLE.readers[code].harmless);
+  assert.ok(harmless.length > 3);
+  assert.deepEqual(list("js/rig/warnings.ts", /HARMLESS[^=]*= new Set\(\[([^\]]+)\]/), harmless.sort());
+  assert.deepEqual(list("files/src/warning.rs", /HARMLESS: [^=]*= \[([^\]]+)\]/), harmless.sort());
+});
+
 test("the documentation's table is made of these rows", () => {
   assert.equal(source(DOCUMENT), documentOf(TABLE), "node scripts/codes.mjs writes it anew");
 });
