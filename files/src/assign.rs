@@ -1,6 +1,5 @@
 //! Which of the cameras that were read took which pictures: by their names, by the size of their images, and last by their order.
 
-use crate::rig::RigFolder;
 use crate::text::NamedCamera;
 use crate::text::names::{Pattern, pattern};
 use crate::warning::Warning;
@@ -80,19 +79,4 @@ pub fn assigned(
         }
     }
     [colour, range]
-}
-
-/// Gives the frames of a folder their cameras.
-pub fn add_cameras(folder: &mut RigFolder) {
-    let Some(first) = folder.frames.first() else { return };
-    if folder.cameras.is_empty() {
-        return;
-    }
-    let is_cloud = matches!(first.depth, bimodal_stereo::DepthSamples::Cloud(_));
-    let sizes = [first.image_size, first.depth_size];
-    let [colour, range] = assigned(&folder.cameras, sizes, is_cloud, &mut folder.warnings)
-        .map(|index| index.map(|index| folder.cameras[index].camera));
-    for frame in &mut folder.frames {
-        (frame.image_camera, frame.depth_camera) = (colour, range);
-    }
 }

@@ -69,3 +69,8 @@ pub fn shown(path: &Path) -> String {
 pub fn plain(text: &str) -> String {
     text.chars().map(|letter| if letter.is_control() { '\u{fffd}' } else { letter }).collect()
 }
+
+/// A file's own name, for a terminal.
+pub fn own_name(path: &Path) -> String {
+    path.file_name().map_or_else(|| shown(path), |name| plain(&name.to_string_lossy()))
+}

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use bimodal_stereo::{DepthSamples, RigView};
 
-use crate::assign::add_cameras;
+use crate::assign::assigned;
 use crate::colour;
 use crate::depth::depth_of;
 use crate::pairs::{self, ALONE, Pair, Pairs, base, key, name_in};
@@ -109,6 +109,21 @@ pub fn read_corner(picture: &Path) -> Result<Option<[f64; 2]>> {
 pub fn given_name(path: &Path) -> String {
     let name = shown(path).replace('\\', "/");
     name.strip_prefix("./").map_or_else(|| name.clone(), Into::into)
+}
+
+/// Gives the frames of a folder their cameras.
+fn add_cameras(folder: &mut RigFolder) {
+    let Some(first) = folder.frames.first() else { return };
+    if folder.cameras.is_empty() {
+        return;
+    }
+    let is_cloud = matches!(first.depth, DepthSamples::Cloud(_));
+    let sizes = [first.image_size, first.depth_size];
+    let [colour, range] = assigned(&folder.cameras, sizes, is_cloud, &mut folder.warnings)
+        .map(|index| index.map(|index| folder.cameras[index].camera));
+    for frame in &mut folder.frames {
+        (frame.image_camera, frame.depth_camera) = (colour, range);
+    }
 }
 
 fn is_raster(bytes: &[u8]) -> bool {

@@ -3,22 +3,20 @@
 //! Starts (the candidates, their inverses, and what the coarse search finds beside the first) are each brought to rest by
 //! edges alone; the best by its score is settled with all cues; then the candidates are judged by its covariance.
 
-use nalgebra::{SMatrix, Vector3};
+use nalgebra::Vector3;
 
 use super::cue::Cue;
 use super::distortion;
-use super::evidence::Tiles;
-use super::frame::{Frame, Projection};
 use super::guessed;
-use super::health::Health;
 use super::input::RigView;
 use super::planes::Planes;
 use super::reason::{CheckReason, Warning, WarningKind};
 use super::registration::{
     ARRIVED, Findings, MOST_RIMS_OF_STARTS, MOST_SETTLING, Round, SIGMAS, SURVIVORS, Scene, Start,
 };
+use super::report::{CheckReport, CueReport, FrameReport};
 use super::search;
-use super::sensitivity::{Sensitivity, curves};
+use super::sensitivity::curves;
 use super::unknowns::{Matrix, POSE, State};
 use super::verdict::{CandidateReport, CheckVerdict, Judge};
 use crate::error::{Error, ErrorKind, Result};
@@ -36,78 +34,6 @@ const FINDING_ANEW: [usize; 2] = [1, 3];
 const ENTERING: usize = 2;
 /// Variance where nothing at all is known, squared pixels.
 const FARTHEST: f64 = 1e6;
-
-/// What one cue contributed.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
-pub struct CueReport {
-    /// Which.
-    #[cfg_attr(feature = "serde", serde(skip))]
-    pub cue: Cue,
-    /// Of the answer's information, 0 .. 1.
-    pub share: f64,
-    /// One over its sigma, pixels of the colour image.
-    pub sharpness: f64,
-}
-
-/// What one frame contributed.
-#[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
-pub struct FrameReport {
-    /// Its name.
-    pub name: String,
-    /// Of the answer's information, 0 .. 1.
-    pub share: f64,
-    /// What should be known about it.
-    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
-    pub note: Option<String>,
-}
-
-/// What a check found.
-#[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
-pub struct CheckReport {
-    /// Of the first candidate; undecided without one.
-    pub verdict: CheckVerdict,
-    /// Why.
-    #[cfg_attr(feature = "serde", serde(flatten, serialize_with = "super::serialised::coded"))]
-    pub reason: CheckReason,
-    /// What was guessed or looks wrong.
-    pub warnings: Vec<Warning>,
-    /// The extrinsics that fit best.
-    pub estimate: Similarity,
-    /// The scene's middle, colour frame, metres.
-    pub middle: [f64; 3],
-    /// Rotation vector in rad about the scene's middle, then translation in m; colour frame.
-    #[cfg_attr(feature = "serde", serde(serialize_with = "super::serialised::rows"))]
-    pub covariance: SMatrix<f64, POSE, POSE>,
-    /// Factor of the colour camera's focal length, and its sigma, where it was looked for.
-    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
-    pub focal: Option<[f64; 2]>,
-    /// Of the estimate.
-    pub health: Health,
-    /// In the order given.
-    #[cfg_attr(feature = "serde", serde(serialize_with = "super::serialised::candidates_by_name"))]
-    pub candidates: Vec<CandidateReport>,
-    /// Each that was asked for.
-    #[cfg_attr(feature = "serde", serde(serialize_with = "super::serialised::cues_by_name"))]
-    pub cues: Vec<CueReport>,
-    /// In the order given.
-    pub frames: Vec<FrameReport>,
-    /// By cue and axis.
-    pub sensitivity: Vec<Sensitivity>,
-}
-
-/// A frame as a calibration lays it over its image.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Overlay {
-    /// Column, row, metres of each visible point.
-    pub points: Vec<f32>,
-    /// x, y, z of the same points in the colour camera's frame, metres.
-    pub positions: Vec<f32>,
-    /// Column, row of each point of a depth edge.
-    pub edges: Vec<f32>,
-}
 
 /// How far an entry of a rotation may be from the nearest rotation's: trackers write matrices that have drifted by 1e-3.
 const ROTATION_TOLERANCE: f64 = 0.01;
@@ -376,8 +302,8 @@ impl CalibrationCheck {
             focal: self.scene.focal_is_free.then(|| [state.focal, metric[(7, 7)].sqrt()]),
             health,
             candidates,
-            cues: cue_reports(findings, frame.pixel),
-            frames: self.frame_reports(findings),
+            cues: CueReport::all(findings, frame.pixel),
+            frames: FrameReport::all(&self.scene, findings),
             sensitivity: vec![],
         }
     }
@@ -407,77 +333,10 @@ impl CalibrationCheck {
             }
         }
     }
-
-    fn frame_reports(&self, findings: &Findings) -> Vec<FrameReport> {
-        let mut start = 0;
-        let traces: Vec<f64> = self
-            .scene
-            .frames
-            .iter()
-            .map(|frame| {
-                let count = Tiles::new(frame.planes.size).count();
-                let shares = findings.total.shares.iter().skip(start).take(count);
-                start += count;
-                shares.map(|share| share.curvature.trace()).sum()
-            })
-            .collect();
-        let total = traces.iter().sum::<f64>().max(f64::MIN_POSITIVE);
-        let fair = 1.0 / traces.len() as f64;
-        let report = |(frame, trace): (&Frame, &f64)| {
-            let share = trace / total;
-            let note =
-                (share < 0.25 * fair).then(|| "adds little: its depth and its image have little in common".to_owned());
-            FrameReport { name: frame.name.clone(), share, note }
-        };
-        self.scene.frames.iter().zip(&traces).map(report).collect()
-    }
-}
-
-/// A frame as a pose lays it over its image, in the image's own pixels.
-///
-/// # Errors
-/// As [`CalibrationCheck::new`].
-pub fn overlay(view: RigView, pose: &Similarity) -> Result<Overlay> {
-    let (frame, _) = view.prepare(0, &mut vec![])?;
-    let state = rigid(pose).map_err(|error| error.below("pose"))?;
-    let projection = Projection::new(&frame, &state);
-    // Back from halves of pixels.
-    let original = |value: f64| ((value + 0.5) * frame.pixel - 0.5) as f32;
-    let size = frame.planes.size;
-    let is_seen = |index: &usize| {
-        let [column, row] = projection.pixels[*index];
-        !projection.is_hidden[*index] && size.nearest(column, row).is_some()
-    };
-    let (mut points, mut positions) = (vec![], vec![]);
-    for index in (0..frame.points.len()).filter(is_seen) {
-        let [column, row] = projection.pixels[index].map(f64::from);
-        points.extend([original(column), original(row), projection.positions[index][2]]);
-        positions.extend(projection.positions[index]);
-    }
-    let edges = super::rims::find(&frame, &projection);
-    Ok(Overlay { points, positions, edges: edges.iter().flat_map(|rim| rim.pixel.map(original)).collect() })
-}
-
-fn cue_reports(findings: &Findings, pixel: f64) -> Vec<CueReport> {
-    let informations: Vec<f64> = findings
-        .cues
-        .iter()
-        .map(|(_, evidence, weight)| {
-            let curvature = evidence.curvature();
-            weight * (0..POSE).map(|k| curvature[(k, k)]).sum::<f64>() / POSE as f64
-        })
-        .collect();
-    let total = informations.iter().sum::<f64>().max(f64::MIN_POSITIVE);
-    let report = |((cue, ..), information): (&(Cue, super::evidence::Evidence, f64), &f64)| CueReport {
-        cue: *cue,
-        share: information / total,
-        sharpness: information.max(0.0).sqrt() / pixel,
-    };
-    findings.cues.iter().zip(&informations).map(report).collect()
 }
 
 /// A pose with the rotation nearest to the matrix that was given.
-fn rigid(pose: &Similarity) -> Result<State> {
+pub(super) fn rigid(pose: &Similarity) -> Result<State> {
     let wrong = |member, message: &str| Error::new(ErrorKind::Range, member, message.to_owned());
     if (pose.scale - 1.0).abs() > ROTATION_TOLERANCE {
         return Err(wrong("scale", "must be 1: extrinsics do not change sizes").value(pose.scale));

@@ -14,7 +14,8 @@
 //! | `search`, `registration` | starts, rounds |
 //! | `distortion`, `guessed` | whether a lens was left out; what a guessed camera leaves open |
 //! | `sensitivity`, `verdict`, `reason`, `check` | curves, verdicts, their reasons, and the order of it all |
-//! | `serialised` | shapes of the report for serde |
+//! | `report`, `serialised` | what a check found; its shapes for serde |
+//! | `overlay` | a frame as a pose lays it over its image |
 
 mod check;
 mod cue;
@@ -28,10 +29,12 @@ mod health;
 mod information;
 mod input;
 mod lens;
+mod overlay;
 mod patches;
 mod planes;
 mod reason;
 mod registration;
+mod report;
 mod rims;
 mod search;
 mod sensitivity;
@@ -43,11 +46,13 @@ mod surface;
 mod unknowns;
 mod verdict;
 
-pub use check::{CalibrationCheck, CheckReport, CueReport, FrameReport, Overlay, overlay};
+pub use check::CalibrationCheck;
 pub use cue::Cue;
 pub use health::Health;
 pub use input::RigView;
 pub use lens::{Lens, RigCamera};
+pub use overlay::{Overlay, overlay};
 pub use reason::{CheckReason, Margin, Offset, Warning, WarningKind};
+pub use report::{CheckReport, CueReport, FrameReport};
 pub use sensitivity::Sensitivity;
 pub use verdict::{CandidateReport, CheckVerdict};

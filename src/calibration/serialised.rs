@@ -3,8 +3,8 @@
 use nalgebra::SMatrix;
 use serde::{Serialize, Serializer};
 
-use super::check::CueReport;
 use super::reason::CheckReason;
+use super::report::CueReport;
 use super::unknowns::POSE;
 use super::verdict::CandidateReport;
 

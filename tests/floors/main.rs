@@ -69,17 +69,19 @@ fn no_two_files_of_a_room_import_each_other() {
     assert!(circles.is_empty(), "{} circles:\n{}", circles.len(), circles.join("\n"));
 }
 
-/// The command line is not packed with the crate.
+/// The crates of files and of the command line are not packed with the library's.
 #[test]
-fn no_two_files_of_the_command_line_import_each_other() {
-    let source = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("cli/src");
-    if !source.exists() {
-        return;
+fn no_two_files_beside_the_library_import_each_other() {
+    for (folder, fewest) in [("files/src", 30), ("cli/src", 5)] {
+        let source = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(folder);
+        if !source.exists() {
+            continue;
+        }
+        let house = House::read(&source);
+        assert!(house.looks().len() > fewest, "the sources of {folder} are not read");
+        let circles = house.circles();
+        assert!(circles.is_empty(), "{} circles:\n{}", circles.len(), circles.join("\n"));
     }
-    let house = House::read(&source);
-    assert!(house.looks().len() > 5, "the sources are not read");
-    let circles = house.circles();
-    assert!(circles.is_empty(), "{} circles:\n{}", circles.len(), circles.join("\n"));
 }
 
 #[test]

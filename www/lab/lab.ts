@@ -3,17 +3,16 @@
 import { byId, nextFrame, nextTask } from "../dom";
 import { Engine, EngineError, LOST } from "../engine/engine";
 import type { Frame, LabOptions, Opened, Source } from "../engine/protocol";
-import type { Pose, StepReport } from "../../pkg/index.js";
+import type { StepReport } from "../../pkg/index.js";
 import { Explanations } from "./ask";
 import type { Form } from "./form";
 import type { Gallery } from "./gallery";
 import { OwnFiles } from "./ownfiles";
 import { Compare } from "./compare";
-import { LightPanel } from "./light";
 import { Player, type Advance } from "./player";
 import { offerPictures } from "./pictures";
-import { PoseTable } from "./posetable";
-import { Rivals } from "./rivals";
+import { Panels } from "./panels";
+import { RunRecord } from "./record";
 import {
   fields,
   inputGroups,
@@ -26,18 +25,16 @@ import {
   type Settings,
 } from "./settings";
 import { download, linkTo, writeAddress } from "./share";
-import { ScoreMap } from "./scoremap";
 import { namesIn, objectOf, originOf, readable, rememberOrigin, sampleOf, sourceOf, wayOut } from "./source";
 import { hand, refuse } from "./handover";
 import type { Store } from "./store";
-import { Status, type Notice } from "./status";
-import { Strip } from "./strip";
+import type { Notice } from "./status";
 import { Transport } from "./transport";
 import { Trial } from "./trial";
 import type { Kind } from "./kinds";
 import { Messages } from "./messages";
 import { fill, sayVacant, vacate } from "./vacancy";
-import { isSearching, sentence, standing, verdict, wordsOf, type Verdict } from "./verdict";
+import { sentence, verdict, wordsOf, type Verdict } from "./verdict";
 
 export class Lab {
   readonly store: Store;
@@ -59,25 +56,13 @@ export class Lab {
   #saved: Source | undefined;
   /** The files of what is on the screen; none of a sample. */
   #pair: readonly (File | undefined)[] = [];
-  readonly #status = new Status();
-  readonly #explanations = new Explanations(() => methodOf(this.store.settings, this.#origin));
-  readonly #strip = new Strip(byId("stages", HTMLElement), this.#explanations);
-  readonly #pose = new PoseTable(byId("pose", HTMLTableElement), this.#explanations);
-  readonly #rivals: Rivals;
-  readonly #light: LightPanel;
+  readonly #panels: Panels;
   readonly #compare: Compare;
-  readonly #scores = new ScoreMap();
   readonly #transport = new Transport();
   readonly #trial = new Trial((patch) => this.#preview(patch));
   readonly #messages: Messages;
   #origin: Origin = "sample";
-  #truth: Opened["truth"] = null;
-  #length: Opened["units"]["image"] = "px";
-  #report: StepReport | undefined;
-  /** Where the loop began. */
-  #from: Pose | undefined;
-  /** One report for each completed iteration. */
-  #history: StepReport[] = [];
+  readonly #record = new RunRecord();
   /** The input that was asked for last, accepted or not, or what it lacked. */
   #wanted: Source | string = "";
   /** What is on the screen: to be opened again where the worker has lost it. */
@@ -107,7 +92,7 @@ export class Lab {
     this.#messages = new Messages(this.#form, this.#own.intake);
     this.#engine = new Engine({
       onLoad: (bytes) => {
-        if (!this.#report) this.#announce("loading", `loading the numerics, ${Math.round(bytes / 1000)} kB`);
+        if (!this.#record.report) this.#announce("loading", `loading the numerics, ${Math.round(bytes / 1000)} kB`);
       },
       onDoing: (words) => this.#notice?.state === "loading" && this.#announce("loading", this.#notice.words, words),
       onLost: (error) => this.#lose(error),
@@ -125,22 +110,23 @@ export class Lab {
     this.player = new Player({
       advance: (request) => this.#advance(request),
       restart: () => this.#start(this.#wanted),
-      isFinished: () => this.#isFinished(),
+      isFinished: () => this.#record.isFinished,
       onChange: () => this.#showState(),
       onError: (error, playing) => void this.#breakOff(error, playing),
     });
-    this.#rivals = new Rivals({
-      onLook: (pose) => {
-        gallery.pretend(pose);
-        this.#showState();
+    this.#panels = new Panels(new Explanations(() => methodOf(this.store.settings, this.#origin)), {
+      rivals: {
+        onLook: (pose) => {
+          gallery.pretend(pose);
+          this.#showState();
+        },
+        onStart: ({ angles }) => store.change(startNear(angles), true),
       },
-      onStart: ({ angles }) => store.change(startNear(angles), true),
+      light: {
+        turn: () => turnOf(this.store.settings),
+        onLight: (patch, done, gesture) => this.#changeLight(patch, done, gesture),
+      },
     });
-    this.#light = new LightPanel({
-      turn: () => turnOf(this.store.settings),
-      onLight: (patch, done, gesture) => this.#changeLight(patch, done, gesture),
-    });
-    byId("objective-title", HTMLElement).append(this.#explanations.button("objective", "Objective"));
     byId("slots", HTMLElement).append(this.#own.intake.element);
     byId("take-picture", HTMLSelectElement).addEventListener("focus", () =>
       offerPictures(byId("lab", HTMLElement), byId("take-picture", HTMLSelectElement)),
@@ -155,7 +141,7 @@ export class Lab {
     this.#goesOn = false;
     this.store.change(settings);
     if (before === 0) return this.#reopen();
-    if (goesOn && before === this.#turn && !this.#isFinished()) void this.#playOnce(this.#beginning);
+    if (goesOn && before === this.#turn && !this.#record.isFinished) void this.#playOnce(this.#beginning);
     return this.#beginning;
   }
 
@@ -188,25 +174,32 @@ export class Lab {
   }
 
   download(): void {
-    if (!this.#good || !this.#report) return;
+    if (!this.#good || !this.#record.report) return;
     download({
       ...this.#good,
       source: originOf(this.#good.source),
-      truth: this.#truth,
-      report: this.#report,
-      history: this.#history,
+      truth: this.#record.truth,
+      report: this.#record.report,
+      history: this.#record.history,
     });
   }
 
   /** Hands over one of the results, in full. */
   async take(kind: Kind): Promise<void> {
-    if (!this.#good || !this.#report) return;
+    if (!this.#good || !this.#record.report) return;
     try {
       const { source, settings } = this.#good;
       const { fileOfKind, fileOfRun } = await import("./takeaway");
       if (kind === "run") return hand(fileOfRun(await this.#engine.call("save", {})));
-      const [taken, report] = [await this.#engine.call("take", {}), this.#report];
-      const run = { taken, report, end: this.#verdict(report), truth: this.#truth, origin: originOf(source), settings };
+      const [taken, report] = [await this.#engine.call("take", {}), this.#record.report];
+      const run = {
+        taken,
+        report,
+        end: this.#verdict(report),
+        truth: this.#record.truth,
+        origin: originOf(source),
+        settings,
+      };
       const files = source.kind === "files" ? this.#own.intake.said : [];
       hand(await fileOfKind(kind, { ...run, files, link: linkTo(settings) }));
     } catch (error) {
@@ -235,8 +228,7 @@ export class Lab {
   /** Nothing of a pair that is not the one asked for stays on the screen: neither its pictures nor its true values. */
   #vacate(): void {
     this.#good = undefined;
-    this.#report = undefined;
-    this.#truth = null;
+    this.#record.clear();
     this.#messages.note({});
     this.#pair = [];
     this.#compare.release();
@@ -249,9 +241,9 @@ export class Lab {
     this.#form.adapt(settings, this.#origin);
     // Those of a run that is there already.
     if (changed.length === 0) return;
-    this.#date(true);
+    this.#panels.date(true);
     // A slider shows what it does: what was playing, or will be, or had been played to its end, plays again.
-    const again = live && (this.player.playing || this.#willPlay || this.#isFinished());
+    const again = live && (this.player.playing || this.#willPlay || this.#record.isFinished);
     const input = fields.some(({ key, group }) => inputGroups.includes(group) && changed.includes(key));
     const begun = input ? this.#reopen() : this.restart();
     if (again) void this.#playOnce(begun);
@@ -260,7 +252,7 @@ export class Lab {
   /** The picture follows the light while it is moved; a run follows once it rests. */
   #changeLight(patch: Settings, done: boolean, gesture: object): void {
     if (!done) {
-      this.#date(true);
+      this.#panels.date(true);
       void this.#trial.show(patch);
       return;
     }
@@ -268,13 +260,7 @@ export class Lab {
     const before = this.store.settings;
     this.store.change(patch, true, gesture);
     // Turned back to where it was: what has been found is of this light.
-    if (this.store.settings === before) this.#date(false);
-  }
-
-  /** Says of what has been found whether it is of the run before. */
-  #date(isBefore: boolean): void {
-    this.#pose.date(isBefore);
-    this.#light.date(isBefore);
+    if (this.store.settings === before) this.#panels.date(false);
   }
 
   async #preview(patch: Settings): Promise<void> {
@@ -285,12 +271,12 @@ export class Lab {
       .catch(() => undefined);
     if (!seen || this.#turn !== before) return;
     this.gallery.preview(seen.picture);
-    this.#light.showTruth(seen.trueLight);
+    this.#panels.light.showTruth(seen.trueLight);
   }
 
   #pin(): void {
-    this.gallery.pin(this.#history);
-    this.#compare.say(this.#report ? wordsOf(this.#report, this.#truth) : "");
+    this.gallery.pin(this.#record.history);
+    this.#compare.say(this.#record.report ? wordsOf(this.#record.report, this.#record.truth) : "");
   }
 
   /** Plays a run once it has begun, unless something newer has by then. */
@@ -399,9 +385,9 @@ export class Lab {
     await nextTask();
     if (turn !== this.#turn) return;
     this.#forget();
-    this.#truth = opened.truth;
-    this.#length = opened.units.image;
-    this.#light.showTruth(opened.trueLight);
+    this.#record.truth = opened.truth;
+    this.#record.length = opened.units.image;
+    this.#panels.light.showTruth(opened.trueLight);
     if (opened.options) this.store.adopt(settingsOf(opened.options));
     this.#messages.note(opened.notes);
     this.#take(opened.frame);
@@ -414,9 +400,9 @@ export class Lab {
     // While files are awaited, the pair on the screen is not the one asked for.
     if (typeof this.#wanted === "string") return false;
     if (!this.#good) await this.#start(this.#wanted);
-    if (!this.#good || this.#isFinished()) return false;
+    if (!this.#good || this.#record.isFinished) return false;
     const turn = this.#turn;
-    if (request.by === "stage") this.#strip.run();
+    if (request.by === "stage") this.#panels.run();
     try {
       const frame = await this.#engine.call("advance", { ...request, look: this.gallery.look });
       if (turn !== this.#turn) return false;
@@ -427,36 +413,23 @@ export class Lab {
       throw error;
     }
     if (turn === this.#turn) this.#settle();
-    return !this.#isFinished();
+    return !this.#record.isFinished;
   }
 
   /** What the last run showed. */
   #forget(): void {
-    this.#history = [];
-    this.#from = undefined;
-    this.#scores.clear();
-    this.#date(false);
-  }
-
-  #isFinished(): boolean {
-    return this.#report !== undefined && this.#report.status !== "running";
+    this.#record.restart();
+    this.#panels.clear();
   }
 
   #show(frame: Frame): Promise<void> {
     this.#take(frame);
-    return this.gallery.show(frame, this.#history);
+    return this.gallery.show(frame, this.#record.history);
   }
 
-  #take({ reports, light, scores }: Frame): void {
-    const newest = reports.at(-1) ?? this.#report;
-    this.#light.show(light, newest ? standing(newest) : "start");
-    this.#scores.show(scores, this.#truth);
-    for (const report of reports) {
-      // The first of a run: a search has found its pose before the first iteration.
-      this.#from ??= report.pose;
-      this.#report = report;
-      if (report.iteration > (this.#history.at(-1)?.iteration ?? 0)) this.#history.push(report);
-    }
+  #take(frame: Frame): void {
+    this.#record.add(frame.reports);
+    this.#panels.take(frame, this.#record);
     this.#showState();
   }
 
@@ -474,30 +447,18 @@ export class Lab {
   #verdict(report: StepReport): Verdict | undefined {
     return verdict(
       report,
-      this.#from,
-      this.#truth,
+      this.#record.from,
+      this.#record.truth,
       methodOf(this.store.settings, this.#origin).registration === "fixed",
     );
   }
 
   #showState(): void {
     const { playing } = this.player;
-    const report = this.#report;
-    this.#status.about(this.#origin, this.#own.doubt);
-    if (report) {
-      const end = this.#verdict(report);
-      this.#rivals.show(report);
-      this.#pose.show(report, this.#rivals.looked, this.#from, this.#truth, this.#length);
-      this.#strip.show(report);
-      this.#status.show(
-        report,
-        playing ? "playing" : report.iteration > 0 || isSearching(report) ? "paused" : "ready",
-        end,
-        this.#rivals.looked !== undefined,
-      );
-      this.#light.beside(this.#rivals.looked !== undefined);
-    }
-    if (this.#notice) this.#status.announce(this.#notice.state, this.#notice.words, this.#notice.cause);
+    const { report } = this.#record;
+    this.#panels.about(this.#origin, this.#own.doubt);
+    this.#panels.show(this.#record, playing, report && this.#verdict(report));
+    if (this.#notice) this.#panels.announce(this.#notice);
     // What the status tells of is in the way of a run, unless there is one that it leaves usable.
     const isIdle = typeof this.#wanted === "string" || !this.#good;
     sayVacant(this.#wanted, this.#notice);

@@ -5,8 +5,7 @@ use std::path::{Path, PathBuf};
 use bimodal_stereo::Similarity;
 
 use super::arguments::Arguments;
-use super::base;
-use crate::problem::{Problem, Result};
+use crate::problem::{Problem, Result, own_name};
 use crate::rig::{Reading, given_name, read_calibration, says};
 use crate::text::names::{Pattern, pattern};
 use crate::text::{Calibration, NamedPose};
@@ -66,7 +65,7 @@ fn add(
             (None, Some(from), Some(to)) => format!("{from} to {to}"),
             _ => format!("pose {}", index + 1),
         };
-        let title = if is_only { base(path) } else { format!("{}, {own}", base(path)) };
+        let title = if is_only { own_name(path) } else { format!("{}, {own}", own_name(path)) };
         let turns = is_inverted || is_backwards(pose);
         if turns && !is_inverted {
             let [from, to] = [&pose.names.from, &pose.names.to].map(|name| name.as_deref().unwrap_or(""));

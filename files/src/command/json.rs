@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::Checked;
+use super::checked::Checked;
 
 /// Numbers that are none become null.
 pub fn json(checked: &Checked) -> String {

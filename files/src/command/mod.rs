@@ -1,10 +1,11 @@
 //! The command `check`: the calibration of a rig over a folder of frames, for a shell and for continuous integration.
 //!
-//! `arguments` states what can be asked, `candidates` reads the calibrations in question, and `text`, `json` and `page` write what came out.
+//! `arguments` states what can be asked, `candidates` reads the calibrations in question, `checked` is what came out, and `text`, `json` and `page` write it.
 //! The help text is that of the package for JavaScript, line by line.
 
 mod arguments;
 mod candidates;
+mod checked;
 mod json;
 mod page;
 mod progress;
@@ -18,14 +19,15 @@ use std::path::{Path, PathBuf};
 
 use bimodal_stereo::{CalibrationCheck, CheckReport, CheckVerdict};
 use clap::Parser;
-use serde_json::{Value, json};
+use serde_json::json;
 use sha2::{Digest, Sha256};
 
-use crate::problem::{Problem, Result, shown};
+use crate::problem::{Problem, Result, own_name};
 use crate::rig::{FolderOptions, RigFolder, read_rig_folder};
 use crate::warning::Warnings;
 use arguments::Arguments;
 use candidates::{Candidates, candidates};
+use checked::{Checked, Input, Said};
 use progress::Progress;
 
 pub use arguments::HELP;
@@ -42,31 +44,6 @@ pub struct Terminal<'a> {
     pub is_terminal: bool,
     /// Asked between two slices of the work.
     pub is_interrupted: &'a mut dyn FnMut() -> bool,
-}
-
-/// A file that was read, with the hash by which it can be recognised.
-#[derive(Clone, Debug, serde::Serialize)]
-pub(crate) struct Input {
-    name: String,
-    says: String,
-    sha256: String,
-}
-
-/// A warning of the check or of the readers.
-pub(crate) struct Said {
-    message: String,
-    is_doubt: bool,
-    json: Value,
-}
-
-/// What a check found, with what the readers add to it.
-pub(crate) struct Checked {
-    report: CheckReport,
-    verdict: CheckVerdict,
-    code: &'static str,
-    reason: String,
-    warnings: Vec<Said>,
-    inputs: Vec<Input>,
 }
 
 /// Why there is no verdict.
@@ -132,7 +109,7 @@ fn check(arguments: &Arguments, terminal: &mut Terminal<'_>) -> std::result::Res
         all.0.iter().map(|one| Said { message: one.message.clone(), is_doubt: one.is_doubt(), json: json!(one) });
     let warnings = own.chain(others).collect();
     let files = readings.iter().chain(&read).map(|each| (each.name.clone(), (each.says.clone(), each.path.clone())));
-    let checked = capped(report, warnings, inputs(files)?);
+    let checked = Checked::capped(report, warnings, inputs(files)?);
     write(&checked, arguments, terminal)?;
     Ok(match checked.verdict {
         CheckVerdict::Consistent => 0,
@@ -161,18 +138,6 @@ fn finished(mut check: CalibrationCheck, terminal: &mut Terminal<'_>) -> std::re
     report.ok_or_else(|| Problem::option("check", "ended without a report").into())
 }
 
-/// What the readers guessed keeps the verdict from green, as the check's own warnings do.
-fn capped(report: CheckReport, warnings: Vec<Said>, inputs: Vec<Input>) -> Checked {
-    /// That of the check's own warnings.
-    const DOUBTFUL: &str = "doubtful";
-    let (mut verdict, mut code, mut reason) = (report.verdict, report.reason.code(), report.reason.to_string());
-    if let (CheckVerdict::Consistent, Some(first)) = (verdict, warnings.iter().find(|warning| warning.is_doubt)) {
-        reason = format!("Settled, but check: {} {reason}", first.message);
-        (verdict, code) = (CheckVerdict::Undecided, DOUBTFUL);
-    }
-    Checked { report, verdict, code, reason, warnings, inputs }
-}
-
 /// Each file once, in the order in which it was first read.
 fn inputs(files: impl Iterator<Item = (String, (String, PathBuf))>) -> Result<Vec<Input>> {
     let (mut order, mut last) = (Vec::new(), BTreeMap::new());
@@ -196,7 +161,7 @@ fn write(checked: &Checked, arguments: &Arguments, terminal: &mut Terminal<'_>) 
         fs::write(path, json::json(checked)).map_err(|error| Problem::file(path, error))?;
     }
     if let Some(path) = &arguments.report {
-        let page = page::page(checked, &format!("Check of {}", base(&arguments.calibration[0])));
+        let page = page::page(checked, &format!("Check of {}", own_name(&arguments.calibration[0])));
         fs::write(path, page).map_err(|error| Problem::file(path, error))?;
     }
     let words = text::text(checked);
@@ -215,9 +180,4 @@ fn print(to: &mut dyn Write, text: &str) -> Result<()> {
         }
         _ => Ok(()),
     }
-}
-
-/// A file's own name.
-fn base(path: &Path) -> String {
-    path.file_name().map_or_else(|| shown(path), |name| crate::plain(&name.to_string_lossy()))
 }

@@ -3,7 +3,7 @@
 
 use bimodal_stereo::{Angles, CandidateReport, CheckVerdict, Health};
 
-use super::Checked;
+use super::checked::Checked;
 use super::text::word;
 use crate::text::numbers::{brief, fixed, shown};
 

@@ -2,7 +2,7 @@
 
 use bimodal_stereo::{CheckVerdict, Health};
 
-use super::Checked;
+use super::checked::Checked;
 use crate::problem::plain;
 use crate::text::numbers::{brief, fixed, shown};
 

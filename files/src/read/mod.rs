@@ -2,6 +2,7 @@
 
 mod npy;
 mod picture;
+mod raster;
 
 use std::fs::File;
 use std::io::Read;
@@ -11,39 +12,11 @@ use bimodal_stereo::{Light, LightGaussian, LightPrior};
 
 use crate::problem::{Problem, Result};
 use crate::text::words;
-use crate::warning::Warning;
 pub use npy::bytes as npy_bytes;
+pub use raster::{MOST_SIDE, Raster, Samples};
 
 /// Largest file that is read, as in js/rig/formats/limits.ts; what is no file (/dev/zero) ends there too.
 const MOST_BYTES: u64 = 64 << 20;
-/// Pixels on a side, as for all images of the library.
-pub const MOST_SIDE: usize = 4096;
-
-#[derive(Clone, Debug, PartialEq)]
-pub enum Samples {
-    U8(Vec<u8>),
-    U16(Vec<u16>),
-    F32(Vec<f32>),
-}
-
-/// Samples with their channels interleaved, and what the file says of itself.
-#[derive(Clone, Debug)]
-pub struct Raster {
-    pub width: usize,
-    pub height: usize,
-    pub channels: usize,
-    pub samples: Samples,
-    /// Bits of a channel.
-    pub bits: u32,
-    /// Whether its format keeps less than it was given (JPEG).
-    pub is_lossy: bool,
-    /// Whether the file says that its numbers are proportional to intensity; `None` where it says nothing.
-    pub linear: Option<bool>,
-    /// The chunk of a PNG that states it: "sRGB" or "linear".
-    pub encoding: Option<&'static str>,
-    pub notes: Vec<String>,
-    pub warnings: Vec<Warning>,
-}
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
@@ -92,14 +65,6 @@ pub fn decoded(bytes: &[u8]) -> std::result::Result<Raster, String> {
     }
 }
 
-/// Refuses what is too large before anything is made of it.
-fn check_size(width: usize, height: usize) -> std::result::Result<(), String> {
-    if width.max(height) > MOST_SIDE {
-        return Err(format!("it says that it is {width}x{height} pixels large; up to {MOST_SIDE} on a side are read"));
-    }
-    Ok(())
-}
-
 /// 27 numbers in a text, whatever lies between them: names of channels and coefficients are passed over.
 pub fn light(path: &Path) -> Result<Light> {
     /// A light has half a kilobyte.
@@ -123,42 +88,4 @@ pub fn light_prior(path: &Path) -> Result<LightGaussian> {
     let prior: LightGaussian = serde_json::from_slice(&bytes).map_err(|error| Problem::file(path, error))?;
     LightPrior::from_slices(&prior.mean, &prior.covariance).map_err(|error| Problem::file(path, error))?;
     Ok(prior)
-}
-
-impl Raster {
-    /// Whether a pixel has red, green and blue.
-    pub fn has_colour(&self) -> bool {
-        self.channels >= 3
-    }
-
-    /// Whether the last channel is the opacity.
-    pub fn has_alpha(&self) -> bool {
-        self.channels == 2 || self.channels == 4
-    }
-
-    /// Whether red, green and blue are the same in all pixels.
-    pub fn is_grey(&self) -> bool {
-        fn grey<T: PartialEq>(data: &[T], channels: usize) -> bool {
-            data.chunks_exact(channels).all(|pixel| pixel[0] == pixel[1] && pixel[0] == pixel[2])
-        }
-        !self.has_colour()
-            || match &self.samples {
-                Samples::U8(data) => grey(data, self.channels),
-                Samples::U16(data) => grey(data, self.channels),
-                Samples::F32(data) => grey(data, self.channels),
-            }
-    }
-
-    /// Each pixel of integers as `pick` has it.
-    pub fn map_pixels<T>(&self, pick: impl Fn(&[u16]) -> T) -> Vec<T> {
-        let wide = |data: &mut dyn Iterator<Item = u16>| {
-            let all: Vec<u16> = data.collect();
-            all.chunks_exact(self.channels).map(&pick).collect()
-        };
-        match &self.samples {
-            Samples::U8(data) => wide(&mut data.iter().map(|&level| level.into())),
-            Samples::U16(data) => wide(&mut data.iter().copied()),
-            Samples::F32(data) => wide(&mut data.iter().map(|&value| u16::from(value > 0.0))),
-        }
-    }
 }

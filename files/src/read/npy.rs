@@ -2,7 +2,7 @@
 //!
 //! By hand: npyz (0.9.1) multiplies the sides of a shape before anybody can look at them, which overflows on a hostile header.
 
-use super::{Raster, Samples, check_size};
+use super::raster::{Raster, Samples, check_size};
 
 /// Magic, two bytes of version, two or four of header length.
 const SHORTEST: usize = 10;

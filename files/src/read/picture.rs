@@ -6,9 +6,8 @@ use image::metadata::Orientation;
 use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
 use moxcms::{ColorProfile, Layout, TransformOptions};
 
+use super::raster::{MOST_SIDE, Raster, Samples, check_size};
 use crate::warning::Warning;
-
-use super::{MOST_SIDE, Raster, Samples, check_size};
 
 /// Bytes that a decoder may ask for: 4096x4096 pixels of four channels of 16 bits, and as much again.
 const MOST_MEMORY: u64 = 256 << 20;

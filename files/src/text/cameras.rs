@@ -5,9 +5,10 @@ use std::sync::LazyLock;
 use bimodal_stereo::{Lens, RigCamera};
 use regex_lite::Regex;
 
+use super::calibration::{NamedCamera, Reason};
 use super::numbers::{fixed, shown};
-use super::{NamedCamera, Reason, Warnings};
 use crate::read::MOST_SIDE;
+use crate::warning::Warnings;
 
 /// What a file states about a camera, before it is checked.
 #[derive(Clone, Debug, Default)]

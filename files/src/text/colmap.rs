@@ -1,9 +1,9 @@
 //! COLMAP's cameras.txt: a line for each camera, "ID MODEL WIDTH HEIGHT PARAMS[]".
 
+use super::calibration::{Calibration, Reason};
 use super::cameras::{RawCamera, camera_of};
 use super::names::{Pattern, pattern};
 use super::numbers::number_in;
-use super::{Calibration, Reason};
 
 static LINE: Pattern =
     Pattern::new(|| pattern(r"^\s*([0-9]+)\s+([A-Z][A-Z_]+)\s+([0-9]+)\s+([0-9]+)((?:\s+\S+)*)\s*$"));

@@ -2,12 +2,14 @@
 //!
 //! | file | what it holds |
 //! |---|---|
+//! | `calibration` | what comes out |
 //! | `numbers` | numbers and matrices as files write them |
 //! | `cameras`, `poses` | what a file states about a camera or a motion, checked |
 //! | `names`, `tree` | members of JSON, YAML and XML by their names |
 //! | `plain`, `realsense`, `ros`, `colmap` | matrices and trajectories, and what these programs write |
 //! | `words` | cameras and poses in plain words |
 
+mod calibration;
 mod cameras;
 mod colmap;
 pub(crate) mod names;
@@ -19,42 +21,12 @@ mod ros;
 mod tree;
 pub mod words;
 
-use bimodal_stereo::{RigCamera, Similarity};
 use serde::Deserialize;
 use serde_json::{Map, Value};
 
-pub use crate::warning::Warnings;
-pub use cameras::coefficients;
-pub use poses::Names;
+pub use calibration::{Calibration, NamedCamera, NamedPose, Names};
 
-/// Why a file is not read, without its name.
-pub type Reason = String;
-
-/// A camera with the size of its images, where the file states it.
-#[derive(Clone, Debug, PartialEq)]
-pub struct NamedCamera {
-    pub name: Option<String>,
-    pub camera: RigCamera,
-    /// Columns and rows.
-    pub size: Option<[usize; 2]>,
-}
-
-/// P_to = R P_from + t, metres.
-#[derive(Clone, Debug, PartialEq)]
-pub struct NamedPose {
-    pub names: Names,
-    pub pose: Similarity,
-}
-
-/// What a text holds.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Calibration {
-    pub cameras: Vec<NamedCamera>,
-    pub poses: Vec<NamedPose>,
-    pub warnings: Warnings,
-    /// What kind of text it is.
-    pub format: String,
-}
+use calibration::Reason;
 
 /// Characters of a text that holds cameras or poses; a trajectory of ten thousand poses has a million.
 const MOST_TEXT: usize = 4 << 20;

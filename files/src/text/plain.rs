@@ -1,9 +1,10 @@
 //! Files of nothing but numbers: K.txt, matrices of motions, and trajectories of the TUM and Redwood kind.
 
+use super::calibration::{Calibration, Names, Reason};
 use super::cameras::{RawCamera, camera_of};
 use super::numbers::{number_in, shown, words_of_numbers};
-use super::poses::{Names, motion_of_matrix, of_quaternion, turned};
-use super::{Calibration, Reason, Warnings};
+use super::poses::{motion_of_matrix, of_quaternion, turned};
+use crate::warning::Warnings;
 
 const MOST_NUMBERS: usize = 200_000;
 /// Warnings of a trajectory, whose poses mostly have the same.

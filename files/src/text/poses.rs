@@ -3,8 +3,9 @@
 use bimodal_stereo::Similarity;
 use bimodal_stereo::nalgebra::{Matrix3, Vector3};
 
+use super::calibration::{NamedPose, Names, Reason};
 use super::numbers::{precise, shown};
-use super::{NamedPose, Reason, Warnings};
+use crate::warning::Warnings;
 
 /// What may be wrong with R R^T - 1 before the matrix is not a rotation: digits that were cut off, or a calibration that drifted.
 const ROTATION_TOLERANCE: f64 = 1e-2;
@@ -12,20 +13,6 @@ const ROTATION_TOLERANCE: f64 = 1e-2;
 const ROUNDING: f64 = 1e-3;
 /// Cameras of one rig are not so far apart, metres: a longer shift is in millimetres.
 const LONGEST: f64 = 10.0;
-
-/// What a file calls a motion, and between which frames it is.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Names {
-    pub name: Option<String>,
-    pub from: Option<String>,
-    pub to: Option<String>,
-}
-
-impl Names {
-    pub fn between(name: Option<String>, from: &str, to: &str) -> Self {
-        Self { name, from: Some(from.into()), to: Some(to.into()) }
-    }
-}
 
 /// The nearest rotation, by Newton's iteration for the polar factor: quadratic, four steps from 1e-2 are exact.
 fn nearest(matrix: Matrix3<f64>) -> Matrix3<f64> {

@@ -2,11 +2,12 @@
 
 use std::collections::HashMap;
 
+use super::calibration::{Calibration, NamedCamera, NamedPose, Names, Reason};
 use super::cameras::{RawCamera, camera_of};
 use super::names::{Pattern, pattern};
 use super::numbers::number_in;
-use super::poses::{Names, motion};
-use super::{Calibration, NamedCamera, NamedPose, Reason, Warnings};
+use super::poses::motion;
+use crate::warning::Warnings;
 
 static INTRINSIC: Pattern = Pattern::new(|| pattern(r#"^\s*Intrinsic of "([^"]{1,60})""#));
 static EXTRINSIC: Pattern = Pattern::new(|| pattern(r#"(?i)^\s*Extrinsic from "([^"]{1,60})"\s+To\s+"([^"]{1,60})""#));

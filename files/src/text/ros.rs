@@ -2,10 +2,11 @@
 
 use std::collections::HashMap;
 
+use super::calibration::{Calibration, NamedPose, Names, Reason};
 use super::names::{Pattern, pattern};
 use super::numbers::number_in;
-use super::poses::{Names, of_quaternion, of_yaw_pitch_roll, turned};
-use super::{Calibration, NamedPose, Reason, Warnings};
+use super::poses::{of_quaternion, of_yaw_pitch_roll, turned};
+use crate::warning::Warnings;
 
 const NAME: &str = "static_transform_publisher";
 /// What follows the name and belongs to it, in characters: numbers, names, quotes and brackets.

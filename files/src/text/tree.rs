@@ -6,15 +6,13 @@
 use bimodal_stereo::Similarity;
 use serde_json::{Map, Value};
 
+use super::calibration::{Calibration, NamedPose, Names, Reason};
 use super::cameras::{RawCamera, camera_of};
 use super::names::{
     self, INTRINSICS, LENS, NO_MOTION, Pattern, ROTATION, TRANSLATION, labelled, leftover, member, pattern,
 };
 use super::numbers::{Matrix, matrix_of, number_of, transposed};
-use super::poses::{
-    Names, chained, is_last_row, last_column, motion, motion_of_matrix, of_quaternion, of_vector, turned,
-};
-use super::{Calibration, NamedPose, Reason};
+use super::poses::{chained, is_last_row, last_column, motion, motion_of_matrix, of_quaternion, of_vector, turned};
 
 type Node = Map<String, Value>;
 type Done = Result<(), Reason>;

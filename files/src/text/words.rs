@@ -3,8 +3,9 @@
 use bimodal_stereo::Lens;
 use bimodal_stereo::nalgebra::Matrix3;
 
+use super::calibration::{Calibration, NamedCamera, NamedPose};
+use super::cameras::coefficients;
 use super::numbers::{brief, fixed};
-use super::{Calibration, NamedCamera, NamedPose, coefficients};
 
 /// How many are described one by one.
 const FEW: usize = 4;

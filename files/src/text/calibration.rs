@@ -1,0 +1,48 @@
+//! What a text of cameras and poses holds.
+
+use bimodal_stereo::{RigCamera, Similarity};
+
+use crate::warning::Warnings;
+
+/// Why a file is not read, without its name.
+pub type Reason = String;
+
+/// A camera with the size of its images, where the file states it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NamedCamera {
+    pub name: Option<String>,
+    pub camera: RigCamera,
+    /// Columns and rows.
+    pub size: Option<[usize; 2]>,
+}
+
+/// What a file calls a motion, and between which frames it is.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Names {
+    pub name: Option<String>,
+    pub from: Option<String>,
+    pub to: Option<String>,
+}
+
+impl Names {
+    pub fn between(name: Option<String>, from: &str, to: &str) -> Self {
+        Self { name, from: Some(from.into()), to: Some(to.into()) }
+    }
+}
+
+/// P_to = R P_from + t, metres.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NamedPose {
+    pub names: Names,
+    pub pose: Similarity,
+}
+
+/// What a text holds.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Calibration {
+    pub cameras: Vec<NamedCamera>,
+    pub poses: Vec<NamedPose>,
+    pub warnings: Warnings,
+    /// What kind of text it is.
+    pub format: String,
+}

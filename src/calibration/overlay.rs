@@ -1,0 +1,44 @@
+//! A frame with a pose's points and depth edges over its image.
+
+use super::check::rigid;
+use super::frame::Projection;
+use super::input::RigView;
+use super::rims;
+use crate::error::Result;
+use crate::pose::Similarity;
+
+/// A frame as a calibration lays it over its image.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Overlay {
+    /// Column, row, metres of each visible point.
+    pub points: Vec<f32>,
+    /// x, y, z of the same points in the colour camera's frame, metres.
+    pub positions: Vec<f32>,
+    /// Column, row of each point of a depth edge.
+    pub edges: Vec<f32>,
+}
+
+/// A frame as a pose lays it over its image, in the image's own pixels.
+///
+/// # Errors
+/// As [`CalibrationCheck::new`].
+pub fn overlay(view: RigView, pose: &Similarity) -> Result<Overlay> {
+    let (frame, _) = view.prepare(0, &mut vec![])?;
+    let state = rigid(pose).map_err(|error| error.below("pose"))?;
+    let projection = Projection::new(&frame, &state);
+    // Back from halves of pixels.
+    let original = |value: f64| ((value + 0.5) * frame.pixel - 0.5) as f32;
+    let size = frame.planes.size;
+    let is_seen = |index: &usize| {
+        let [column, row] = projection.pixels[*index];
+        !projection.is_hidden[*index] && size.nearest(column, row).is_some()
+    };
+    let (mut points, mut positions) = (vec![], vec![]);
+    for index in (0..frame.points.len()).filter(is_seen) {
+        let [column, row] = projection.pixels[index].map(f64::from);
+        points.extend([original(column), original(row), projection.positions[index][2]]);
+        positions.extend(projection.positions[index]);
+    }
+    let edges = rims::find(&frame, &projection);
+    Ok(Overlay { points, positions, edges: edges.iter().flat_map(|rim| rim.pixel.map(original)).collect() })
+}

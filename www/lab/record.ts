@@ -1,0 +1,42 @@
+/** What a run has shown so far: its reports, where it began, and the truth where that is known. */
+
+import type { Opened } from "../engine/protocol";
+import type { Pose, StepReport } from "../../pkg/index.js";
+
+export class RunRecord {
+  truth: Opened["truth"] = null;
+  /** The unit of lengths in the image. */
+  length: Opened["units"]["image"] = "px";
+  /** The newest. */
+  report: StepReport | undefined;
+  /** Where the loop began. */
+  from: Pose | undefined;
+  /** One report for each completed iteration. */
+  history: StepReport[] = [];
+
+  get isFinished(): boolean {
+    return this.report !== undefined && this.report.status !== "running";
+  }
+
+  add(reports: readonly StepReport[]): void {
+    for (const report of reports) {
+      // The first of a run: a search has found its pose before the first iteration.
+      this.from ??= report.pose;
+      this.report = report;
+      if (report.iteration > (this.history.at(-1)?.iteration ?? 0)) this.history.push(report);
+    }
+  }
+
+  /** The run begins anew on the same input. */
+  restart(): void {
+    this.history = [];
+    this.from = undefined;
+  }
+
+  /** Its input is gone. */
+  clear(): void {
+    this.report = undefined;
+    this.truth = null;
+    this.restart();
+  }
+}
