@@ -24,9 +24,9 @@ import {
   type Origin,
   type Settings,
 } from "./settings";
-import { download, linkTo, writeAddress } from "./share";
+import { download, writeAddress } from "./share";
 import { namesIn, objectOf, originOf, readable, rememberOrigin, sampleOf, sourceOf, wayOut } from "./source";
-import { hand, refuse } from "./handover";
+import { handOver } from "./handover";
 import type { Store } from "./store";
 import type { Notice } from "./status";
 import { Transport } from "./transport";
@@ -174,38 +174,20 @@ export class Lab {
   }
 
   download(): void {
-    if (!this.#good || !this.#record.report) return;
-    download({
-      ...this.#good,
-      source: originOf(this.#good.source),
-      truth: this.#record.truth,
-      report: this.#record.report,
-      history: this.#record.history,
-    });
+    const { truth, report, history } = this.#record;
+    if (!this.#good || !report) return;
+    download({ ...this.#good, source: originOf(this.#good.source), truth, report, history });
   }
 
   /** Hands over one of the results, in full. */
   async take(kind: Kind): Promise<void> {
-    if (!this.#good || !this.#record.report) return;
+    const { report, truth } = this.#record;
+    if (!this.#good || !report) return;
+    const files = this.#good.source.kind === "files" ? this.#own.intake.said : [];
     try {
-      const { source, settings } = this.#good;
-      const { fileOfKind, fileOfRun } = await import("./takeaway");
-      if (kind === "run") return hand(fileOfRun(await this.#engine.call("save", {})));
-      const [taken, report] = [await this.#engine.call("take", {}), this.#record.report];
-      const run = {
-        taken,
-        report,
-        end: this.#verdict(report),
-        truth: this.#record.truth,
-        origin: originOf(source),
-        settings,
-      };
-      const files = source.kind === "files" ? this.#own.intake.said : [];
-      hand(await fileOfKind(kind, { ...run, files, link: linkTo(settings) }));
+      await handOver(kind, this.#engine, { ...this.#good, report, truth, end: this.#verdict(report), files });
     } catch (error) {
-      // What was asked for next has broken it off, and speaks for itself.
-      if (!(error instanceof EngineError)) refuse(error);
-      else if (error.code !== "interrupted") await this.#fail(error);
+      await this.#fail(error);
     }
   }
 
