@@ -48,7 +48,7 @@ fn painted(sample: &Sample, kind: Paint) -> ColourSamples {
         if kind == Paint::Patches {
             return paints[(column / 5 + 2 * (row / 7) + (column + row) / 11) % 4];
         }
-        if (index * 2_654_435_761) >> 7 & 3 < 2 { [0.04; 3] } else { [0.9; 3] }
+        if (index as u64 * 2_654_435_761) >> 7 & 3 < 2 { [0.04; 3] } else { [0.9; 3] }
     };
     let shaded = |index: usize| {
         let shading = sample.image.colours[3 * index..3 * index + 3].iter().sum::<f32>() / 3.0;
