@@ -1,7 +1,10 @@
 //! Which of the cameras that were read took which pictures: by their names, by the size of their images, and last by their order.
 
+use bimodal_stereo::RigCamera;
+
 use crate::text::NamedCamera;
 use crate::text::names::{Pattern, pattern};
+use crate::text::numbers::shown;
 use crate::warning::Warning;
 
 static COLOUR: Pattern = Pattern::new(|| pattern(r"(?i)colou?r|rgb|\bhr\b"));
@@ -74,6 +77,20 @@ pub fn assigned(
                 "camera-size",
                 &format!(
                     "The intrinsics of the {what} are for {w}x{h} pixels, and these have {width}x{height}: scale or crop them first."
+                ),
+            );
+        }
+        let Some(NamedCamera { camera: RigCamera { cx, cy, .. }, size: None, .. }) = index.map(|index| &cameras[index])
+        else {
+            continue;
+        };
+        if *cx > width as f64 || *cy > height as f64 {
+            warn(
+                "principal-point",
+                &format!(
+                    "The intrinsics of the {what} have their principal point outside these ({}, {} of {width}x{height}): they may be for another size.",
+                    shown(*cx),
+                    shown(*cy)
                 ),
             );
         }

@@ -11,10 +11,9 @@ use walkdir::{DirEntry, WalkDir};
 
 use crate::problem::{Problem, Result, plain, shown};
 use crate::read;
+use crate::text::words::is_strange_picture;
 use crate::warning::{Warning, Warnings};
 
-/// The code of a picture that belongs to no other.
-pub const ALONE: &str = "file-alone";
 /// Time stamps farther apart than this, in seconds, are no pair; TUM's own tool has the same.
 const APART: f64 = 0.02;
 const TUM_UNIT: f64 = 1.0 / 5000.0;
@@ -261,7 +260,7 @@ fn by_time(mut colours: Vec<(f64, String)>, mut depths: Vec<(f64, String)>) -> V
 fn by_names(folder: &Path, files: &[PathBuf], warnings: &mut Warnings) -> Vec<Pair> {
     let is_picture = |path: &&PathBuf| {
         PICTURE.is_match(&path.to_string_lossy())
-            || read::head(path, HEAD).is_ok_and(|bytes| read::kind_of(&bytes).is_some())
+            || read::head(path, HEAD).is_ok_and(|bytes| read::kind_of(&bytes).is_some() || is_strange_picture(&bytes))
     };
     let named = |path: &PathBuf| (name_in(folder, path), path.clone());
     let (masks, others): (Vec<_>, Vec<_>) =
@@ -291,7 +290,8 @@ fn by_names(folder: &Path, files: &[PathBuf], warnings: &mut Warnings) -> Vec<Pa
                         .of_file(&name),
                 );
             } else {
-                warnings.push(Warning::new(ALONE, "no other file's name fits it alone (left out).").of_file(&name));
+                warnings
+                    .push(Warning::new("file-alone", "no other file's name fits it alone (left out).").of_file(&name));
             }
         }
         return pairs;

@@ -10,7 +10,7 @@ use bimodal_stereo::{DepthSamples, RigView};
 use crate::assign::assigned;
 use crate::colour;
 use crate::depth::depth_of;
-use crate::pairs::{self, ALONE, Pair, Pairs, base, key, name_in};
+use crate::pairs::{self, Pair, Pairs, base, key, name_in};
 use crate::problem::{Problem, Result, shown};
 use crate::read::{self, kind_of};
 use crate::text::names::{Pattern, pattern};
@@ -127,7 +127,7 @@ fn add_cameras(folder: &mut RigFolder) {
 }
 
 fn is_raster(bytes: &[u8]) -> bool {
-    kind_of(bytes).is_some() || words::read_elsewhere(bytes).is_some()
+    kind_of(bytes).is_some() || words::is_strange_picture(bytes)
 }
 
 struct Reader {
@@ -340,7 +340,6 @@ pub fn read_rig_folder(folder: &Path, options: &FolderOptions) -> Result<RigFold
         pictures.iter().chain(texts.iter().filter(|(name, _)| is_list(name))).map(|(_, path)| path.clone()).collect();
     let Pairs { pairs, warnings } = pairs::among(folder, &mut candidates)?;
     let mut reader = Reader { readings: Vec::new(), warnings: warnings.0 };
-    reader.warnings.retain(|warning| warning.code != ALONE);
     let keys: HashSet<String> = pairs.iter().map(|pair| pair.key.clone()).collect();
     let (count, most) = (pairs.len(), options.frames.unwrap_or(FRAMES));
     let chosen = spread(pairs, most);

@@ -132,6 +132,40 @@ fn other_formats_are_named_with_what_reads_them() {
     assert!(message.contains("OpenEXR") && message.contains("npx bimodal-stereo"), "{message}");
 }
 
+/// A folder of two pairs, of which the second has this colour image.
+fn with_second(name: &str, bytes: &[u8]) -> Vec<(&'static str, String)> {
+    let folder = tempfile::tempdir().unwrap();
+    let put = |name: &str, bytes: &[u8]| fs::write(folder.path().join(name), bytes).unwrap();
+    let grey = |width: u32, colour: image::DynamicImage| {
+        let mut bytes = std::io::Cursor::new(Vec::new());
+        assert_eq!(colour.width(), width);
+        colour.write_to(&mut bytes, image::ImageFormat::Png).unwrap();
+        bytes.into_inner()
+    };
+    let depths = image::ImageBuffer::<image::Luma<u16>, _>::from_fn(8, 8, |x, _| image::Luma([1000 + x as u16]));
+    let colours = image::RgbImage::from_fn(8, 8, |x, y| image::Rgb([x as u8 * 20, y as u8 * 20, 90]));
+    for k in ["1", "2"] {
+        put(&format!("depth_{k}.png"), &grey(8, depths.clone().into()));
+    }
+    put("color_1.png", &grey(8, colours.into()));
+    put(name, bytes);
+    let found =
+        read_rig_folder(folder.path(), &FolderOptions { unit: Some(0.001), ..FolderOptions::default() }).unwrap();
+    assert_eq!(found.frames.len(), 1);
+    found.warnings.into_iter().map(|warning| (warning.code, warning.message)).collect()
+}
+
+#[test]
+fn pictures_of_other_formats_and_lone_ones_are_left_out_and_said() {
+    let webp = with_second("color_2.webp", b"RIFF\x24\0\0\0WEBPVP8 ");
+    assert_eq!(webp[0].0, "file-left-out");
+    assert!(webp[0].1.contains("color_2.webp") && webp[0].1.contains("WebP; save it as PNG"), "{webp:?}");
+    let tiff = with_second("color_2.tif", b"II*\0\x08\0\0\0");
+    assert!(tiff[0].1.contains("color_2.tif") && tiff[0].1.contains("TIFF"), "{tiff:?}");
+    let alone = with_second("notes.txt", b"nothing");
+    assert!(alone.iter().any(|(code, message)| *code == "file-alone" && message.contains("depth_2.png")), "{alone:?}");
+}
+
 #[test]
 fn a_crop_has_its_place_beside_it() {
     let folder = tempfile::tempdir().unwrap();

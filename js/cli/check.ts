@@ -74,11 +74,12 @@ export async function check(args: Arguments): Promise<number> {
 
 function write({ reportHtml }: Modules, args: Arguments, whole: Whole, inputs: ReturnType<typeof inputsOf>): void {
   const json = () => `${JSON.stringify({ ...whole, inputs }, null, 2)}\n`;
+  // First: a file that cannot be written costs no verdict.
+  (args.json === "-" ? process.stderr : process.stdout).write(textOf(whole));
   if (args.json !== undefined && args.json !== "-") writeFileSync(args.json, json());
   if (args.report !== undefined) {
     const title = `Check of ${basename(args.calibrations[0] ?? "")}`;
     writeFileSync(args.report, reportHtml(whole as CheckReport, [], { title, made: new Date(), inputs }));
   }
-  (args.json === "-" ? process.stderr : process.stdout).write(textOf(whole));
   if (args.json === "-") process.stdout.write(json());
 }

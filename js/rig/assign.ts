@@ -77,6 +77,21 @@ export function addCameras({ frames, cameras, warnings }: RigFolder): void {
       );
     }
   }
+  for (const [camera, { width, height }, what] of [
+    [colour, image, "colour images"],
+    [range, depth, "depth maps"],
+  ] as const) {
+    if (camera === undefined || !unsized(camera)) continue;
+    const { cx, cy } = camera.camera;
+    if (cx > width || cy > height)
+      warnings.push(
+        warning(
+          "principal-point",
+          `The intrinsics of the ${what} have their principal point outside these (${cx}, ${cy} of ${width}x${height}): they may be for another size.`,
+          { cx, cy },
+        ),
+      );
+  }
   for (const frame of frames) {
     if (colour) frame.image.camera = colour.camera;
     if (range) frame.depth.camera = range.camera;

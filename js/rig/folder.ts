@@ -161,6 +161,8 @@ function byNames(pictures: NamedFile[], warnings: ReaderWarning[]): Pairs {
     return { name, colour, depth, ...(mask && { mask }) };
   };
   const likeColours = byKey(colours);
+  /** Files of which that is said already. */
+  const ambiguous = new Set<string>();
   const pairs = [...byKey(depths)].flatMap(([name, likeDepths]) => {
     const theirs = likeColours.get(name) ?? [];
     const isClear = theirs.length === 1 && likeDepths.length === 1;
@@ -170,14 +172,22 @@ function byNames(pictures: NamedFile[], warnings: ReaderWarning[]): Pairs {
         ? theirs
         : theirs.filter((file) => commonPath(file.name) === commonPath(depth.name));
       if (colour && others.length === 0) return [pair(name, colour, depth)];
-      if (theirs.length > 0)
+      if (theirs.length > 0) {
         warnings.push(
           ofFile(depth.name, warning("names-ambiguous", "several files have names like this one; it was left out.")),
         );
+        for (const { name } of [depth, ...theirs]) ambiguous.add(name);
+      }
       return [];
     });
   });
-  if (pairs.length > 0) return { pairs, says: `${pairs.length} pairs by their names` };
+  if (pairs.length > 0) {
+    const said = new Set([...pairs.flatMap(({ colour, depth }) => [colour.name, depth.name]), ...ambiguous]);
+    for (const { name } of others)
+      if (!said.has(name))
+        warnings.push(ofFile(name, warning("file-alone", "no other file's name fits it alone (left out).")));
+    return { pairs, says: `${pairs.length} pairs by their names` };
+  }
   if (depths.length === 0 || depths.length !== colours.length) return { pairs: [], says: "" };
   const inOrder = (files: NamedFile[]) =>
     [...files].sort((a, b) => a.name.localeCompare(b.name, "en", { numeric: true }));

@@ -18,11 +18,17 @@ export function startWorker(
   let worker: WorkerHandle | undefined;
   try {
     worker = spawn();
-    let isReady = false;
-    worker.onAnswer(() => (isReady = true));
+    // One that is ended before it was ready has not failed.
+    const { end } = worker;
+    let isSettled = false;
+    worker.end = () => {
+      isSettled = true;
+      end();
+    };
+    worker.onAnswer(() => (isSettled = true));
     worker.onFailure((reason) => {
-      if (!isReady) unavailable(reason);
-      isReady = true;
+      if (!isSettled) unavailable(reason);
+      isSettled = true;
     });
     const transfer: ArrayBuffer[] = [];
     worker.post(

@@ -12,6 +12,16 @@ const RUNTIME = /^\0(rolldown|vite)\//;
 /** Vite's file goes on with what the program consists of, none of which reaches the output. */
 const REST = /\n# Licenses of bundled dependencies[\s\S]*$/;
 
+/** Comments, block by block or line after line, with the empty lines between these. */
+const COMMENT = /\/\*[\s\S]*?\*\/|(?:^[ \t]*\/\/.*(?:\n\s*)?)+/gm;
+const CLAIM = /\bcopyright\b|\(c\) \d{4}|\bred?istributions? /i;
+
+/** What a source says of its own licence: bundlers leave comments out, and some licences ask for them. */
+export function claimsIn(source) {
+  const words = (comment) => comment.replaceAll(/^[ \t]*(?:\/\*+|\/\/+|\*(?!\/))?[ \t]?(?:\/\/ ?)*|\*+\/[ \t]*$/gm, "");
+  return [...source.matchAll(COMMENT)].map(([comment]) => words(comment)).filter((text) => CLAIM.test(text));
+}
+
 /** The folder of the package that a module belongs to; nothing for the project's own modules. */
 function folderOf(id) {
   if (id.startsWith("\0")) {
@@ -29,25 +39,33 @@ function folderOf(id) {
 
 const read = (folder, file) => JSON.parse(readFileSync(join(folder, file), "utf8"));
 
-function entryOf(folder) {
+function entryOf([folder, modules]) {
   const { name, version, license: licence } = read(folder, "package.json");
   const texts = readdirSync(folder)
     .filter((file) => TEXTS.test(file))
     .map((file) => readFileSync(join(folder, file), "utf8").replace(REST, ""));
   if (texts.length === 0 && GENERAL[licence]) texts.push(readFileSync(inRoot(GENERAL[licence]), "utf8"));
+  for (const path of modules) texts.push(...claimsIn(readFileSync(path, "utf8")));
   if (texts.length === 0) throw new Failure(`The package ${name} ${version} carries no licence text.`);
   return { name, version, licence, texts };
 }
 
 /** A plugin of rolldown and vite that looks at every bundle, and what it has found: entries for `section` of text.mjs. */
 export function collector() {
-  const folders = new Set();
+  /** The modules of each package. */
+  const folders = new Map();
   return {
     plugin: {
       name: "notices",
       generateBundle(_, bundle) {
         const ids = Object.values(bundle).flatMap((file) => (file.type === "chunk" ? file.moduleIds : []));
-        for (const folder of ids.map(folderOf)) if (folder !== undefined) folders.add(folder);
+        for (const id of ids) {
+          const folder = folderOf(id);
+          if (folder === undefined) continue;
+          const paths = folders.get(folder) ?? folders.set(folder, new Set()).get(folder);
+          const path = id.replace(/\?.*$/, "");
+          if (existsSync(path)) paths.add(path);
+        }
       },
     },
     entries: () => [...folders].map(entryOf),

@@ -122,6 +122,9 @@ describe("the package for npm", () => {
     const bundled = [...new Set(regions.map((match) => match[1])), "rolldown"].map(npmPackage);
     assert.ok(bundled.length >= 3);
     const text = carries(path, [...bundled.map(({ named }) => named), ...namedIn(read(NOTICES))]);
+    // What sources say of themselves and their package's licence does not: bundlers leave comments out.
+    for (const claim of ["Syoyo Fujita", "Industrial Light & Magic", "notmasteryet"])
+      assert.ok(text.includes(claim), claim);
     for (const { named, text: licence } of bundled) assert.ok(isWhole(text, licence), named);
   });
 

@@ -12,7 +12,7 @@ const depth = (value) => png({ width: 2, height: 1, depth: 16, colourType: 0, ro
 const colour = (value, width = 2) =>
   png({ width, height: 1, depth: 8, colourType: 2, rows: [Array(width).fill([value, 2, 3]).flat()] });
 const mask = () => png({ width: 2, height: 1, depth: 8, colourType: 0, rows: [[0, 255]] });
-const K = (focal) => text(`${focal} 0 320\n0 ${focal} 240\n0 0 1\n`);
+const K = (focal) => text(`${focal} 0 1\n0 ${focal} 0.5\n0 0 1\n`);
 const folder = (files, options) =>
   readRigFolder(
     Object.entries(files).map(([name, bytes]) => ({ name, bytes })),
@@ -203,6 +203,21 @@ describe("pairs by like names", () => {
     has(found.warnings, "names-ambiguous", /^a.depth.png: several files have names like this one/);
   });
 
+  test("a picture without another of its name is left out, and said", async () => {
+    const found = await folder({
+      "rgb_1.png": colour(1),
+      "depth_1.png": depth(1000),
+      "rgb_2.png": colour(2),
+      "depth_3.png": depth(3000),
+    });
+    assert.deepEqual(marks(found), [[1, 1000]]);
+    const alone = found.warnings.filter(({ code }) => code === "file-alone");
+    assert.deepEqual(
+      alone.map(({ isDoubt, files, message }) => [isDoubt, files, message]),
+      [[false, 2, "depth_3.png: no other file's name fits it alone (left out). (and 1 more like it)"]],
+    );
+  });
+
   test("a large folder is read in part, evenly", async () => {
     const files = Object.fromEntries(
       Array.from({ length: 41 }, (_, at) => [
@@ -295,6 +310,9 @@ describe("cameras are given to the pictures they took", () => {
       "depth_K.txt": K(400),
     });
     has(wrong[2], "camera-size", /are for 64x48 pixels, and these have 2x1/);
+    // Without a size the principal point tells.
+    const outside = await focals({ ...pair, "rgb.json": text('{"fx": 500, "fy": 500, "cx": 320, "cy": 240}') });
+    has(outside[2], "principal-point", /outside these \(320, 240 of 2x1\)/);
   });
 
   test("poses between cameras are kept, poses of frames are not", async () => {

@@ -157,6 +157,9 @@ fn inputs(files: impl Iterator<Item = (String, (String, PathBuf))>) -> Result<Ve
 
 fn write(checked: &Checked, arguments: &Arguments, terminal: &mut Terminal<'_>) -> Result<()> {
     let is_json = arguments.json.as_deref() == Some(Path::new("-"));
+    // First: a file that cannot be written costs no verdict.
+    let words = text::text(checked);
+    if is_json { print(terminal.err, &words) } else { print(terminal.out, &words) }?;
     if let Some(path) = arguments.json.as_ref().filter(|_| !is_json) {
         fs::write(path, json::json(checked)).map_err(|error| Problem::file(path, error))?;
     }
@@ -164,12 +167,10 @@ fn write(checked: &Checked, arguments: &Arguments, terminal: &mut Terminal<'_>) 
         let page = page::page(checked, &format!("Check of {}", own_name(&arguments.calibration[0])));
         fs::write(path, page).map_err(|error| Problem::file(path, error))?;
     }
-    let words = text::text(checked);
-    if !is_json {
-        return print(terminal.out, &words);
+    if is_json {
+        print(terminal.out, &json::json(checked))?;
     }
-    print(terminal.err, &words)?;
-    print(terminal.out, &json::json(checked))
+    Ok(())
 }
 
 /// A reader that has seen enough (`head`) is no fault.
