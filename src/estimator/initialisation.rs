@@ -97,7 +97,7 @@ impl Initialisation {
             registrations: TaskResults::new(0),
             next: 0,
             tried: 0,
-            optima: LocalOptima::new(MOST_TRIED, pair.image.log_spread(), pair.image.log_noise()),
+            optima: LocalOptima::new(MOST_TRIED, pair.residuals_of_noise(0.0)),
             begun: None,
             may_be_painted: painted::is_called_for(pair, colours),
             decision: None,

@@ -9,6 +9,7 @@
 //! leave 1.25 times their noise or more, so a pose that leaves nothing but the noise of the image comes before one that
 //! sees more but leaves so much.
 
+use crate::diagnosis::{Alternative, Diagnosis, Residuals};
 use crate::pose::Similarity;
 
 use super::workers::task::RegisteredCandidate;
@@ -17,13 +18,8 @@ use super::workers::task::RegisteredCandidate;
 const THIRD: f64 = 1.0 / 3.0;
 /// A local optimum convinces when the noise of every other one that sees as much is larger by this factor.
 const CONVINCING_NOISE: f64 = 2.0;
-/// Share of the colours' spread that is nearly nothing: noise of 1 % under lights of good contrast.
-const UNEXPLAINED: f64 = 0.05;
 /// Registrations that end nearer than this have found one optimum, degrees.
 const SAME_OPTIMUM: f64 = 3.0;
-/// Noise, in log units, that only paint and shadows leave: renders 0.010 to 0.018, photographs of painted objects 0.04 to
-/// 0.34.
-const PAINTED_NOISE: f64 = 0.07;
 /// An optimum reached so often needs no more support: candidates next to it are passed over.
 const ENOUGH_SUPPORT: u32 = 2;
 /// Candidates nearer than this to such an optimum would only reach it again, degrees.
@@ -67,21 +63,24 @@ pub struct Decision {
 /// All optima that registrations have found so far.
 pub struct LocalOptima {
     optima: Vec<LocalOptimum>,
-    /// Standard deviation of log S over the mask.
-    spread: f64,
-    /// Standard deviation of the noise of log S.
-    noise: f64,
+    /// Of the image: its noise and its spread.
+    image: Residuals,
 }
 
 impl LocalOptima {
-    /// None yet; memory for `most`.
-    pub fn new(most: usize, spread: f64, noise: f64) -> Self {
-        Self { optima: Vec::with_capacity(most), spread, noise }
+    /// None yet, of this image; memory for `most`.
+    pub fn new(most: usize, image: Residuals) -> Self {
+        Self { optima: Vec::with_capacity(most), image }
+    }
+
+    /// What an optimum leaves of the image.
+    fn residuals(&self, optimum: &LocalOptimum) -> Residuals {
+        Residuals { noise: optimum.registered.noise, ..self.image }
     }
 
     /// Enters where a registration ended: the better of two that are one.
     pub fn enter(&mut self, candidate: usize, registered: RegisteredCandidate) {
-        let gain = registered.visible.powf(THIRD) * (self.spread / registered.noise).ln();
+        let gain = registered.visible.powf(THIRD) * (self.image.spread / registered.noise).ln();
         if !gain.is_finite() {
             return;
         }
@@ -120,19 +119,20 @@ impl LocalOptima {
             let compared = others.peek().is_some();
             let alone = !others.any(|other| other.rivals(best, CONVINCING_NOISE));
             let most = compared && 2 * best.support as usize >= tried;
-            let clear = best.registered.noise < UNEXPLAINED * self.spread || most;
+            let clear = self.residuals(best).is_next_to_nothing() || most;
             best.support >= ENOUGH_SUPPORT && alone && clear
         })
     }
 
     /// Whether all optima leave far more than light, noise and errors of normals do on an object of one albedo.
     pub fn is_painted(&self) -> bool {
-        self.optima.iter().all(|optimum| optimum.registered.noise > PAINTED_NOISE)
+        let varies = |optimum| self.residuals(optimum).diagnose(Alternative::LocalContrast) == Diagnosis::VaryingAlbedo;
+        self.optima.iter().all(varies)
     }
 
     /// The best optimum and those that the data can't tell from it, given the noise of the image.
     pub fn decide(&mut self) -> Decision {
-        let (mut optima, noise) = (std::mem::take(&mut self.optima), self.noise);
+        let (mut optima, noise) = (std::mem::take(&mut self.optima), self.image.image_noise);
         optima.sort_by(|a, b| b.gain.total_cmp(&a.gain));
         // Nothing but the image's noise is left by it, and far more by the first.
         let wins = |first: &LocalOptimum, other: &LocalOptimum| {
@@ -170,7 +170,10 @@ mod tests {
     }
 
     fn winner(optima: &[LocalOptimum], noise: f64) -> (Option<usize>, usize) {
-        let mut all = LocalOptima { optima: optima.to_vec(), spread: 1.0, noise };
+        let mut all = LocalOptima {
+            optima: optima.to_vec(),
+            image: Residuals { noise: 0.0, covariance: None, image_noise: noise, spread: 1.0 },
+        };
         let Decision { best, rivals } = all.decide();
         (best.map(|best| best.candidate), rivals.len())
     }

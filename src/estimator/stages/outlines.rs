@@ -1,20 +1,11 @@
 //! Outlines in place of colours that are painted (docs/method.md, section 10): near a told pose, or from anywhere.
 
+use crate::diagnosis::{Alternative, Diagnosis};
 use crate::estimator::gauge;
 use crate::estimator::pair::ViewPair;
 use crate::pose::{Angles, Outline, OutlinePrior, OutlineProblem, OutlineReport, PhotometricReport, Similarity};
 use crate::view::Normals;
 
-/// Noise that the colours leave above which it is none, but paint and shadow, log units: renders leave 0.010 to 0.018, all
-/// that is real 0.041 and more.
-const LARGEST_PURE_NOISE: f64 = 0.035;
-/// The same as a share of the colours' spread, since noisy normals under strong lights leave as much: renders leave 0.01 to
-/// 0.1, registered captures 0.14 to 0.54.
-const LARGEST_PURE_SHARE: f64 = 0.15;
-/// What residuals of neighbours have in common above which it is paint all the same, log units: dark print spreads colours so far
-/// that little of it is left. Pinhole renders leave up to 0.006 at the right pose (twelve scenes with 0.5 mm of depth noise),
-/// registered captures 0.14 to 0.39.
-const LARGEST_STRUCTURE: f64 = 0.03;
 /// Outlines of fewer points, or that are farther from the image's in the median, tell nothing; pixels.
 const FEWEST_RIMS: usize = 40;
 const LARGEST_RIM_NOISE: f64 = 6.0;
@@ -30,8 +21,7 @@ const ANYWHERE_ALONG: f64 = 0.08;
 
 /// Whether what the colours leave is paint: then outlines decide where there are any.
 pub fn is_painted(pair: &ViewPair, found: &PhotometricReport) -> bool {
-    let purest = LARGEST_PURE_NOISE.max(LARGEST_PURE_SHARE * pair.image.log_spread());
-    found.structure > LARGEST_STRUCTURE || found.noise > purest
+    pair.residuals(found).diagnose(Alternative::Silhouettes) == Diagnosis::VaryingAlbedo
 }
 
 /// The pose near a told one, where outlines like it better.

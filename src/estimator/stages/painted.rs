@@ -3,7 +3,8 @@
 
 use nalgebra::{Rotation3, Vector3};
 
-use super::colours::{ColourRegistration, LARGEST_STRUCTURE};
+use super::colours::ColourRegistration;
+use crate::diagnosis::{Alternative, Diagnosis};
 use crate::estimator::gauge;
 use crate::estimator::pair::ViewPair;
 use crate::options::Registration;
@@ -41,13 +42,17 @@ fn is_open(pair: &ViewPair, plain: Option<&PhotometricReport>) -> bool {
         && pair.known_light().is_none()
         && pair.image.camera.is_orthographic()
         && pair.image.mask.contains(&false)
-        && plain.is_none_or(|plain| plain.structure > LARGEST_STRUCTURE)
+        && plain.is_none_or(|plain| albedo_varies(pair, plain))
+}
+
+fn albedo_varies(pair: &ViewPair, plain: &PhotometricReport) -> bool {
+    pair.residuals(plain).diagnose(Alternative::LocalContrast) == Diagnosis::VaryingAlbedo
 }
 
 /// Whether a registration by colours from where contrast ended leaves no more than noise: then there is no paint, and its
 /// pose is the better one.
-fn is_plain(plain: &PhotometricReport, contrast: &ContrastOutcome) -> bool {
-    plain.structure <= LARGEST_STRUCTURE && plain.pose.degrees_to(&contrast.best.pose) < SAME_POSE
+fn is_plain(pair: &ViewPair, plain: &PhotometricReport, contrast: &ContrastOutcome) -> bool {
+    !albedo_varies(pair, plain) && plain.pose.degrees_to(&contrast.best.pose) < SAME_POSE
 }
 
 /// Whether the first is less uncertain about its least certain axis.
@@ -114,7 +119,7 @@ pub fn conclude(
         rival(&mut contrast, plain.as_ref().map(|plain| plain.pose));
     }
     let is_believed = |plain: &PhotometricReport, search: &mut ContrastSearch| {
-        is_plain(plain, &contrast)
+        is_plain(pair, plain, &contrast)
             && search.is_explained_by(&problem, &plain.pose)
             && (!is_coarse || is_surer(&plain.uncertainty, &contrast.best.uncertainty))
     };

@@ -15,6 +15,7 @@ use nalgebra::Vector3;
 use super::colours::ColourRegistration;
 use super::outlines;
 use super::painted::{self, Conclusion};
+use crate::diagnosis::{Alternative, Diagnosis};
 use crate::error::Result;
 use crate::estimator::gauge;
 use crate::estimator::local_optima::LocalOptima;
@@ -29,10 +30,6 @@ use crate::pose::{
 /// their middle): the object's own width, more or less, and as far as a turn by 8 degrees about a sensor moves what is 0.2
 /// m high at 0.8 m, a slim vase included.
 const OBJECT_SIZES: f64 = 3.0;
-/// A pose that leaves so many times the image's own noise, or this share of the colours' spread, explains them: renders
-/// leave 0.75 to 1 times the noise.
-const EXPLAINED_NOISE: f64 = 1.5;
-const EXPLAINED_SHARE: f64 = 0.05;
 /// One sigma of what is told as a share of its tolerance: of the rotation, and of the object's place across and along the
 /// line of sight. For a mug at 0.8 m 3 degrees, 45 and 25 mm.
 const SIGMA_OF_DEGREES: f64 = 0.1;
@@ -111,8 +108,8 @@ impl TrustRegion {
             return Ok(Settled::ByColours(Box::new(found.clone())));
         }
         let plain = colours.take_found().map(Box::new).filter(|found| self.holds(pair, &found.pose));
-        let noisy = plain.as_deref().filter(|found| leaves_noise(pair, found)).map(|found| found.pose);
-        let mut optima = LocalOptima::new(MOST_TRIED + 4, pair.image.log_spread(), pair.image.log_noise());
+        let noisy = plain.as_deref().filter(|found| pair.residuals(found).is_noise()).map(|found| found.pose);
+        let mut optima = LocalOptima::new(MOST_TRIED + 4, pair.residuals_of_noise(0.0));
         if let Some(staying) = colours.judge(pair, &self.told) {
             optima.enter(STAYING, RegisteredCandidate::of(staying));
         }
@@ -237,13 +234,7 @@ impl TrustRegion {
 
 /// Whether a pose explains the colours: fine print is noise to an image, but not to neighbours.
 fn explains(pair: &ViewPair, found: &PhotometricReport) -> bool {
-    leaves_noise(pair, found) && !outlines::is_painted(pair, found)
-}
-
-/// Whether hardly more than the image's own noise is left of the colours.
-fn leaves_noise(pair: &ViewPair, found: &PhotometricReport) -> bool {
-    let image = &pair.image;
-    found.noise <= (EXPLAINED_NOISE * image.log_noise()).max(EXPLAINED_SHARE * image.log_spread())
+    pair.residuals(found).diagnose(Alternative::Silhouettes) == Diagnosis::Explained
 }
 
 /// Root mean square distance of the depth points from their middle.
