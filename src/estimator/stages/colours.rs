@@ -107,6 +107,12 @@ impl ColourRegistration {
         }
     }
 
+    /// That of a pair, made now where it is not there yet.
+    #[inline(never)]
+    pub fn prepared<'a>(memory: &'a mut Option<Self>, pair: &ViewPair) -> &'a mut Self {
+        memory.get_or_insert_with(|| Self::new(pair))
+    }
+
     /// Normals of the depth view, which it is registered by.
     pub const fn normals(&self) -> &Normals {
         &self.sharp.normals
@@ -179,6 +185,14 @@ impl ColourRegistration {
             None => self.register_anew(pair, start, &PhotometricOptions { first_level, ..options(pair) })?,
         };
         Ok(self.found.insert(found))
+    }
+
+    /// The best pose near that of a registration by a sample of the points, by all of them.
+    pub fn register_all(&mut self, pair: &ViewPair, sampled: PhotometricReport) -> Result<PhotometricReport> {
+        let pose = sampled.pose;
+        self.found = Some(sampled);
+        self.register(pair, &pose)?;
+        self.found.take().ok_or_else(collapsed)
     }
 
     fn register_anew(

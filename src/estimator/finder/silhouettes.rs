@@ -1,8 +1,9 @@
-//! Outlines in place of colours that are painted (docs/method.md, section 10): near a told pose, or from anywhere.
+//! Silhouettes, where the albedo varies behind a pinhole (docs/method.md, section 10): near an initial pose, or from anywhere.
 
 use crate::diagnosis::{Alternative, Diagnosis};
 use crate::estimator::gauge;
 use crate::estimator::pair::ViewPair;
+use crate::options::Registration;
 use crate::pose::{Angles, Outline, OutlinePrior, OutlineProblem, OutlineReport, PhotometricReport, Similarity};
 use crate::view::Normals;
 
@@ -33,15 +34,49 @@ pub fn near(pair: &ViewPair, normals: &Normals, told: OutlinePrior) -> Option<Ou
     Some(found).filter(|found| is_seen(found) && found.cost < staying)
 }
 
-/// The pose where nothing is told: the best from several rotations at the middle of the image's object.
-pub fn anywhere(pair: &ViewPair, normals: &Normals) -> Option<OutlineReport> {
-    let turned = |angles: Angles| gauge::centred(pair, angles.rotation());
-    let prior = placed_by_middles(pair, turned(Angles::default()), ANYWHERE_DEGREES)?;
-    let problem = OutlineProblem { image: &pair.image, depth: &pair.depth, normals, prior };
-    let mut outline = Outline::new(&problem);
-    let starts = TURNS.into_iter().flat_map(|beta| TILTS.map(|alpha| turned(Angles { alpha, beta, gamma: 0.0 })));
-    let found = starts.map(|start| outline.register(&problem, &start)).filter(is_seen);
-    found.min_by(|a, b| a.cost.total_cmp(&b.cost))
+/// Whether silhouettes decide where nothing is known of the pose, unless they tell nothing: `found` is the best by a single albedo.
+pub fn are_called_for(pair: &ViewPair, found: Option<&PhotometricReport>) -> bool {
+    pair.options.registration == Registration::Joint && found.is_none_or(|found| is_painted(pair, found))
+}
+
+/// The pose where nothing is known of it, in slices: the best from several rotations at the middle of the image's object.
+pub struct Anywhere {
+    outline: Outline,
+    prior: OutlinePrior,
+    /// Those that are left, the next one last.
+    starts: Vec<Similarity>,
+    best: Option<OutlineReport>,
+}
+
+impl Anywhere {
+    /// `None` where silhouettes tell nothing.
+    pub fn new(pair: &ViewPair, normals: &Normals) -> Option<Self> {
+        let turned = |angles: Angles| gauge::centred(pair, angles.rotation());
+        let prior = placed_by_middles(pair, turned(Angles::default()), ANYWHERE_DEGREES)?;
+        let starts = TURNS.into_iter().flat_map(|beta| TILTS.map(|alpha| turned(Angles { alpha, beta, gamma: 0.0 })));
+        let mut starts: Vec<_> = starts.collect();
+        starts.reverse();
+        let outline = Outline::new(&OutlineProblem { image: &pair.image, depth: &pair.depth, normals, prior });
+        Some(Self { outline, prior, starts, best: None })
+    }
+
+    /// The registration from the next start; whether all are done.
+    pub fn advance(&mut self, pair: &ViewPair, normals: &Normals) -> bool {
+        let Some(start) = self.starts.pop() else { return true };
+        let problem = OutlineProblem { image: &pair.image, depth: &pair.depth, normals, prior: self.prior };
+        let found = self.outline.register(&problem, &start);
+        // The first of equals stays.
+        let is_better = |best: &OutlineReport| found.cost.total_cmp(&best.cost).is_lt();
+        if is_seen(&found) && self.best.as_ref().is_none_or(is_better) {
+            self.best = Some(found);
+        }
+        self.starts.is_empty()
+    }
+
+    /// The best so far that tells anything.
+    pub fn best(&mut self) -> Option<OutlineReport> {
+        self.best.take()
+    }
 }
 
 /// What is known where no place is told: the pose, which puts the middle of the depth points on that of the image's object,

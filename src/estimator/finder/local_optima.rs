@@ -10,10 +10,12 @@
 //! sees more but leaves so much.
 
 use crate::diagnosis::{Alternative, Diagnosis, Residuals};
-use crate::pose::Similarity;
+use crate::pose::{PhotometricReport, Similarity};
 
-use super::workers::task::RegisteredCandidate;
-
+/// Number of the initial pose among the candidates: none of the others has it.
+pub const STAYING: usize = usize::MAX;
+/// That of what is tried before the search; the reports of these are at hand.
+pub const BEFORE: usize = usize::MAX - 1;
 /// Power of the number of visible points. A cube root of its own would be 1 kB of the download.
 const THIRD: f64 = 1.0 / 3.0;
 /// A local optimum convinces when the noise of every other one that sees as much is larger by this factor.
@@ -30,6 +32,24 @@ const RIVAL_NOISE: f64 = 1.25;
 const RIVAL_VISIBLE: f64 = 0.5;
 /// Rivals reported at most.
 const MOST_RIVALS: usize = 5;
+
+/// What tells one registration from another.
+#[derive(Clone, Debug)]
+pub struct RegisteredCandidate {
+    pub pose: Similarity,
+    /// Number of visible points.
+    pub visible: f64,
+    /// Standard deviation of what is left of log S.
+    pub noise: f64,
+    /// All of it, where it was made in this thread.
+    pub report: Option<Box<PhotometricReport>>,
+}
+
+impl RegisteredCandidate {
+    pub fn of(report: Box<PhotometricReport>) -> Self {
+        Self { pose: report.pose, visible: report.visible as f64, noise: report.noise, report: Some(report) }
+    }
+}
 
 /// A pose where registrations end.
 #[derive(Clone)]
@@ -55,9 +75,26 @@ impl LocalOptimum {
 }
 
 /// The best optimum, if any is worth something, and its rivals.
-pub struct Decision {
+pub struct Optimum {
     pub best: Option<LocalOptimum>,
     pub rivals: Vec<Similarity>,
+}
+
+/// The choice among the local optima.
+#[derive(Default)]
+pub struct Choice {
+    /// The best pose by a single albedo, if any could be registered; none where the initial pose is as good.
+    pub best: Option<Box<PhotometricReport>>,
+    /// Poses that the data cannot tell from the best, best first.
+    pub rivals: Vec<Similarity>,
+}
+
+impl Choice {
+    /// Of the best optimum, whose report is there.
+    pub fn of(Optimum { best, rivals }: Optimum) -> Self {
+        let best = best.filter(|best| best.candidate != STAYING).and_then(|best| best.registered.report);
+        Self { best, rivals }
+    }
 }
 
 /// All optima that registrations have found so far.
@@ -125,13 +162,13 @@ impl LocalOptima {
     }
 
     /// Whether all optima leave far more than light, noise and errors of normals do on an object of one albedo.
-    pub fn is_painted(&self) -> bool {
+    pub fn are_of_varying_albedo(&self) -> bool {
         let varies = |optimum| self.residuals(optimum).diagnose(Alternative::LocalContrast) == Diagnosis::VaryingAlbedo;
         self.optima.iter().all(varies)
     }
 
     /// The best optimum and those that the data can't tell from it, given the noise of the image.
-    pub fn decide(&mut self) -> Decision {
+    pub fn decide(&mut self) -> Optimum {
         let (mut optima, noise) = (std::mem::take(&mut self.optima), self.image.image_noise);
         optima.sort_by(|a, b| b.gain.total_cmp(&a.gain));
         // Nothing but the image's noise is left by it, and far more by the first.
@@ -143,14 +180,14 @@ impl LocalOptima {
         }
         let mut optima = optima.into_iter();
         let Some(best) = optima.next().filter(|best| best.gain > 0.0) else {
-            return Decision { best: None, rivals: Vec::new() };
+            return Optimum { best: None, rivals: Vec::new() };
         };
         let rivals = optima
             .filter(|other| other.is_apart(&best) && other.rivals(&best, RIVAL_NOISE))
             .map(|other| other.registered.pose)
             .take(MOST_RIVALS)
             .collect();
-        Decision { best: Some(best), rivals }
+        Optimum { best: Some(best), rivals }
     }
 }
 
@@ -174,7 +211,7 @@ mod tests {
             optima: optima.to_vec(),
             image: Residuals { noise: 0.0, covariance: None, image_noise: noise, spread: 1.0 },
         };
-        let Decision { best, rivals } = all.decide();
+        let Optimum { best, rivals } = all.decide();
         (best.map(|best| best.candidate), rivals.len())
     }
 
