@@ -100,6 +100,7 @@ pub const CODES: &str = include_str!("codes.json");
 // |---|---|---|
 // | `text`, `serial`, `error`, `check` | numbers in messages, shapes for serde, errors as values, checks of single numbers | |
 // | `numeric` | lanes, robust weights, conjugate gradients, cosine and Fourier transforms, ranks, noise | |
+// | `diagnosis` | whether a single albedo explains an image: all thresholds of that question | |
 // | `view` | the input: sizes, masks, cameras, log colours, points, normals | input of Algorithm 1 |
 // | `light` | `harmonics` the image model, `prior` the natural lights, `fit` the light of known normals | Eq. 2, 3, 5 |
 // | `shape/pixels` | a normal for each pixel, with a prior; the exposure, which all share | Eq. 6 to 9 |
@@ -126,6 +127,7 @@ pub const CODES: &str = include_str!("codes.json");
 
 mod calibration;
 mod check;
+mod diagnosis;
 mod error;
 mod estimator;
 mod light;

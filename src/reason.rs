@@ -159,6 +159,8 @@ pub enum Activity {
     Registering,
     /// Comparing local contrast, because a single albedo does not fit the image.
     ComparingContrast,
+    /// Comparing silhouettes, likewise.
+    ComparingSilhouettes,
 }
 
 /// What tells a pose.
@@ -301,6 +303,7 @@ impl fmt::Display for Activity {
             Self::Comparing => "comparing rotations, translations and scales",
             Self::Registering => "registering the best candidates",
             Self::ComparingContrast => "comparing local contrast, because a single albedo does not fit the image",
+            Self::ComparingSilhouettes => "comparing silhouettes, because a single albedo does not fit the image",
         })
     }
 }

@@ -5,20 +5,18 @@
 //! with that of the last accepted one over the same depth points; a worse iteration is taken back, and the next one
 //! takes half the registration's step.
 //!
-//! Where nothing is known of the pose, the [`initialisation`] comes first: a search in slices, then registrations of
-//! its best candidates by their colours. The registration by colours has an objective of its own, so the loop's never
+//! Where nothing is known of the pose, the [`finder`] comes first; where an initial pose does not explain the image, it
+//! looks around that within the first iteration. The registration by colours has an objective of its own, so the loop's never
 //! takes back a pose that it moves.
 //!
 //! Each stage owns its memory and says by its signature what it reads and what it writes ([`stages`]); this file is the
 //! order in which they run. What an end is called is decided in [`verdict`].
 
+mod finder;
 mod gauge;
-mod initialisation;
-mod local_optima;
 mod measurement;
 mod memory;
 mod objective;
-mod opening;
 mod outputs;
 mod pair;
 mod run;
@@ -39,16 +37,16 @@ use crate::reason::Reason;
 use crate::report::{Objective, Stage, Status, StepReport};
 use crate::shape::Scratch;
 use crate::view::{ColourImage, DepthMap};
+use finder::Opening;
 use measurement::Residuals;
 use objective::Trial;
-use opening::Opening;
 pub use outputs::Surface;
 use pair::ViewPair;
 use run::{History, Run};
 use settling::Settling;
 use solution::{Accepted, Solution};
 pub use stages::RefinementTask;
-use stages::{Inputs, LightStage, PaintStage, RefinementStage, Registered, RegistrationStage, ShapeStage};
+use stages::{Inputs, LightStage, PaintStage, RefinementStage, Registered, Registering, RegistrationStage, ShapeStage};
 use verdict::{ColourEvidence, ContrastEvidence, Evidence, OutlineEvidence, Verdict, verdict};
 pub use workers::Worker;
 pub use workers::task::{Finding, Task};
@@ -180,7 +178,7 @@ impl Estimator {
     }
 
     /// One iteration, the rest of one that was begun by [`step_stage`](Self::step_stage), or a slice of the
-    /// initialisation. Changes nothing once the status is no longer [`Status::Running`].
+    /// finder. Changes nothing once the status is no longer [`Status::Running`].
     pub fn step(&mut self) -> &StepReport {
         #[cfg(feature = "rayon")]
         if self.step_in_threads() {
@@ -190,19 +188,19 @@ impl Estimator {
             return self.step_stage();
         }
         let iteration = self.report.iteration;
-        while self.report.status == Status::Running && self.report.iteration == iteration {
+        while self.report.status == Status::Running && self.report.iteration == iteration && !self.is_searching() {
             self.step_stage();
         }
         self.report()
     }
 
-    /// Whether the next step is a slice of the initialisation.
+    /// Whether the next step is a slice of the finder.
     #[must_use]
     pub const fn is_searching(&self) -> bool {
         matches!(self.run, Run::Preparing(_) | Run::Searching(_))
     }
 
-    /// One stage of an iteration, or a slice of the initialisation.
+    /// One stage of an iteration, or a slice of the finder.
     pub fn step_stage(&mut self) -> &StepReport {
         let outcome = match self.run {
             Run::Preparing(_) => self.prepare_search().map_err(Reason::from),
@@ -289,10 +287,19 @@ impl Estimator {
         if gauge::pixel_length(&self.pair.image, &self.solution) <= 0.0 {
             return Err(Reason::BehindCamera);
         }
-        let start = self.solution.pose;
         let inputs = Inputs::of(&self.pair, &self.paint, &self.light, &self.correspondences, self.report.iteration);
+        match self.registration.register(inputs, &self.paint, &self.solution)? {
+            Registering::Done(registered) => self.finish_registration(registered.map(|registered| *registered)),
+            Registering::Finding(finder) => self.find(finder),
+        }
+        Ok(())
+    }
+
+    /// Takes over the pose of a registration, and finds the correspondences that it gives.
+    fn finish_registration(&mut self, registered: Option<Registered>) {
+        let start = self.solution.pose;
         (self.history.proposed_degrees, self.history.improved) = (0.0, true);
-        if let Some(registered) = self.registration.register(inputs, &self.paint, &self.solution)? {
+        if let Some(registered) = registered {
             self.history.improved = registered.improved;
             self.adopt(registered);
             self.history.proposed_degrees = start.degrees_to(&self.solution.pose);
@@ -304,7 +311,6 @@ impl Estimator {
             gauge::settle_depth(&self.pair, &self.correspondences, &mut self.scratch.spare, &mut self.solution);
             self.find_correspondences();
         }
-        Ok(())
     }
 
     /// Takes over a pose, its uncertainty and rivals, and the light where it was found with the pose.

@@ -1,9 +1,11 @@
 //! What a run is given and never changes: both views, the options, the prior over lights.
 
 use super::{memory, units};
+use crate::diagnosis::Residuals;
 use crate::error::Result;
 use crate::light::{Light, LightPrior};
 use crate::options::{LightSource, Options};
+use crate::pose::PhotometricReport;
 use crate::view::{ColourImage, ColourView, DepthMap, DepthView, Size, WorkingSize};
 
 #[derive(Clone)]
@@ -50,6 +52,16 @@ impl ViewPair {
             LightSource::Known(light) => Some(light),
             LightSource::Estimate => None,
         }
+    }
+
+    /// What a registration leaves of the image.
+    pub fn residuals(&self, found: &PhotometricReport) -> Residuals {
+        Residuals { covariance: Some(found.structure), ..self.residuals_of_noise(found.noise) }
+    }
+
+    /// The same where only the noise was measured.
+    pub fn residuals_of_noise(&self, noise: f64) -> Residuals {
+        Residuals { noise, covariance: None, image_noise: self.image.log_noise(), spread: self.image.log_spread() }
     }
 
     /// log S of R, G, B.

@@ -1,7 +1,6 @@
 //! Where a run stands, and what it remembers of its iterations.
 
-use super::initialisation::Initialisation;
-use super::opening::Opening;
+use super::finder::{Finder, Opening};
 use crate::pose::ImageGrid;
 use crate::report::Stage;
 
@@ -10,8 +9,8 @@ pub enum Run {
     /// Prepares the image's grid for the search, with the coarse views where these are large, then the search of the
     /// depth view in it: a slice each.
     Preparing(Option<Box<(ImageGrid, Option<Box<Opening>>)>>),
-    /// A slice of the initialisation.
-    Searching(Box<Initialisation>),
+    /// A slice of the finder: before the first iteration, or in place of its registration.
+    Searching(Box<Finder>),
     /// A stage of an iteration.
     Iterating(Stage),
     /// Nothing: the status says how it ended.

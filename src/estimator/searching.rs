@@ -1,16 +1,13 @@
-//! The initialisation as a part of the run: its slices, the reason given meanwhile, and the loop's start from what it finds.
+//! The finder as a part of the run: its slices, the reason given meanwhile, and the loop's start from what it finds.
 
 use nalgebra::Matrix3;
 
 use super::Estimator;
-use super::gauge;
-use super::initialisation::{Advance, Initialisation};
-use super::opening::Opening;
+use super::finder::{Advance, Decision, Finder, Opening};
 use super::run::Run;
-use super::stages::Outcome;
 use crate::error::Result;
 use crate::pose::{Angles, ImageGrid};
-use crate::reason::{Activity, FoundBy, Reason};
+use crate::reason::{Activity, Reason};
 use crate::report::Stage;
 use crate::view::is_hollow;
 
@@ -30,41 +27,56 @@ impl Estimator {
             }
             Some(prepared) => {
                 let (grid, opening) = *prepared;
-                let initialisation = Initialisation::new(&self.pair, &mut self.registration, opening, grid)?;
-                Run::Searching(Box::new(initialisation))
+                let memory = self.registration.memory();
+                Run::Searching(Box::new(Finder::everywhere(&self.pair, memory, opening, grid)?))
             }
         };
         Ok(())
     }
 
-    /// A slice of the initialisation.
+    /// A finder in place of a registration, which goes on once that has decided.
+    pub(super) fn find(&mut self, finder: Box<Finder>) {
+        self.report.stage = Stage::Search;
+        self.report.reason = Some(Reason::Searching { percent: 0.0, activity: Activity::Registering });
+        self.run = Run::Searching(finder);
+    }
+
+    /// A slice of the finder.
     pub(super) fn search(&mut self) -> std::result::Result<(), Reason> {
-        let Run::Searching(initialisation) = &mut self.run else { return Ok(()) };
-        match initialisation.advance(&self.pair, &mut self.registration) {
+        let Run::Searching(finder) = &mut self.run else { return Ok(()) };
+        match finder.advance(&self.pair, self.registration.memory())? {
             Advance::Ongoing(share, activity) => {
                 self.report_search(share, activity);
                 Ok(())
             }
-            Advance::Done(outcome) => {
+            Advance::Done(decision) if finder.is_near() => {
+                self.run = Run::Iterating(Stage::Registration.next());
+                self.report.stage = Stage::Registration;
+                self.report.pose = self.accepted.pose;
+                let registered = self.registration.adopt(&self.pair, decision, &self.solution.pose)?;
+                self.finish_registration(registered);
+                Ok(())
+            }
+            Advance::Done(decision) => {
                 self.run = Run::Iterating(Stage::Light);
                 self.report.pose = self.solution.pose;
-                self.start_from(outcome)
+                self.start_from(decision)
             }
         }
     }
 
     /// What the search has come to, and the best pose so far.
     fn report_search(&mut self, share: f64, activity: Activity) {
-        let Run::Searching(initialisation) = &self.run else { return };
+        let Run::Searching(finder) = &self.run else { return };
         self.report.reason = Some(Reason::Searching { percent: 100.0 * share, activity });
-        self.report.pose = initialisation.best_pose().unwrap_or(self.report.pose);
+        self.report.pose = finder.best_pose().unwrap_or(self.report.pose);
     }
 
     /// The report of a search that others have advanced.
     #[cfg(feature = "rayon")]
     pub(super) fn show_search(&mut self) {
-        let Run::Searching(initialisation) = &self.run else { return };
-        if let Advance::Ongoing(share, activity) = initialisation.progress() {
+        let Run::Searching(finder) = &self.run else { return };
+        if let Some((share, activity)) = finder.progress() {
             self.report_search(share, activity);
             self.translate_report();
         }
@@ -74,25 +86,20 @@ impl Estimator {
     /// a constant colour, in cells of the search's grid, at the best translation and size. Empty before and after the search.
     #[must_use]
     pub fn search_scores(&self) -> Vec<[f32; 4]> {
-        let Run::Searching(initialisation) = &self.run else { return vec![] };
+        let Run::Searching(finder) = &self.run else { return vec![] };
         let row = |(rotation, score): (Matrix3<f64>, f64)| {
             let Angles { alpha, beta, gamma } = Angles::of(&rotation);
             [alpha, beta, gamma, score].map(|value| value as f32)
         };
-        initialisation.scores().into_iter().filter(|(_, score)| score.is_finite()).map(row).collect()
+        finder.scores().into_iter().filter(|(_, score)| score.is_finite()).map(row).collect()
     }
 
-    /// Starts the loop from what the initialisation found.
-    fn start_from(&mut self, outcome: Outcome) -> std::result::Result<(), Reason> {
-        let registered = self.registration.adopt(&self.pair, outcome, &self.solution.pose);
-        self.adopt(registered.ok_or(Reason::NoPose { scale_is_held: gauge::held_scale(&self.pair).is_some() })?);
-        let by = if self.registration.found_by_outlines().is_some() {
-            FoundBy::Silhouettes
-        } else if self.registration.found_by_contrast().is_some() {
-            FoundBy::Contrast
-        } else {
-            FoundBy::Image
-        };
+    /// Starts the loop from what the finder has decided.
+    fn start_from(&mut self, decision: Decision) -> std::result::Result<(), Reason> {
+        let by = decision.by.found_by();
+        if let Some(registered) = self.registration.adopt(&self.pair, decision, &self.solution.pose)? {
+            self.adopt(registered);
+        }
         self.report.reason = Some(Reason::SearchDone { by, rivals: self.report.rivals.len() as u32 });
         self.report.pose = self.solution.pose;
         self.find_correspondences();

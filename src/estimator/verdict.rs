@@ -4,6 +4,7 @@
 //! good is then held against what the registration by colours says of its own answer, and may turn out to be ambiguous
 //! or lost. `docs/method.md`, section 16, lists the thresholds with the data they were calibrated on.
 
+use crate::diagnosis::{LARGEST_UNEXPLAINED, LARGEST_UNEXPLAINED_CONTRAST};
 use crate::options::{Registration, Shading};
 use crate::pose::{ContrastReport, Direction, OutlineReport, PhotometricReport, Uncertainty};
 use crate::reason::Reason;
@@ -37,12 +38,6 @@ const LARGEST_SIGMA: f64 = 5.0;
 /// which a pose counts as found. One in 300 random scenes is so uncertain, and all photographs that end over 4 degrees
 /// off are, by 2.2 or more.
 const DOUBTFUL_SIGMA: f64 = 1.5;
-/// Share of the colours' spread that a trusted pose may leave unexplained. Renders leave 0.01 to 0.1.
-const LARGEST_UNEXPLAINED: f64 = 0.3;
-/// What contrast and outline may leave unexplained of a trusted pose. Before paint was taken out at its edges, found
-/// photographs left 0.13 to 0.51 and print on a flat bag 0.58 or more; since then the bag leaves 0.26, so that this catches
-/// what has no edges alone.
-const LARGEST_UNEXPLAINED_CONTRAST: f64 = 0.56;
 /// Share of the points within the robust scale that a trusted pose has at least.
 const FEWEST_INLIERS: f64 = 0.4;
 

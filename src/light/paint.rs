@@ -9,6 +9,7 @@
 //! Limits: paint of one chromaticity whose lightness follows the shading is taken for shading, and a large cast shadow
 //! with a sharp border may be taken for paint of the same hue.
 
+use crate::diagnosis::PURE_NOISE;
 use crate::light::harmonics::basis;
 use crate::light::mixture::{Axes, AxesPrior, MOST_REGIONS, Mixture, Sample};
 use crate::light::{Light, LightPrior};
@@ -26,9 +27,6 @@ const TILE: f64 = 64.0;
 const MOST_TILES: f64 = 125.0;
 /// Unknowns of one paint more: its offset in three channels, and its share.
 const UNKNOWNS: f64 = 4.0;
-/// Error of the shading, log units in a channel, up to which nobody asks for paint: noise, and differences of heights
-/// for normals. Renders leave 0.01 to 0.03, ten painted photographs 0.1 and more.
-const PURE_NOISE: f64 = 0.035;
 /// Share of the lightness that a region's paint leaves unexplained which is paint, not shading, where there is as much
 /// paint as one likes: none, half and all of it left 0.30, 0.25 and 0.26 of error on ten photographs (median).
 const LIGHTNESS_SHARE: f64 = 0.5;

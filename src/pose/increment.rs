@@ -74,8 +74,7 @@ pub(crate) fn fix_unknowns(matrix: &mut PoseMatrix, held: &[bool; UNKNOWNS]) {
 
 /// Sums of one step over point-to-plane or point-to-point residuals.
 pub(crate) struct NormalEquations {
-    centre: Vector3<f64>,
-    length: f64,
+    frame: Frame,
     matrix: PoseMatrix,
     gradient: PoseVector,
     weight: f64,
@@ -91,29 +90,24 @@ pub(crate) struct Increment {
 
 impl NormalEquations {
     pub fn new(centre: Vector3<f64>, length: f64) -> Self {
-        Self { centre, length, matrix: PoseMatrix::zeros(), gradient: PoseVector::zeros(), weight: 0.0 }
+        Self {
+            frame: Frame { centre, length },
+            matrix: PoseMatrix::zeros(),
+            gradient: PoseVector::zeros(),
+            weight: 0.0,
+        }
     }
 
     /// How far a point moves along `direction` with each unknown, in units of L.
     pub fn row(&self, point: &Vector3<f64>, direction: &Vector3<f64>) -> PoseVector {
-        let arm = (point - self.centre) / self.length;
-        let by_rotation = arm.cross(direction);
-        PoseVector::from([
-            by_rotation.x,
-            by_rotation.y,
-            by_rotation.z,
-            direction.x,
-            direction.y,
-            direction.z,
-            arm.dot(direction),
-        ])
+        self.frame.row(point, direction) / self.frame.length
     }
 
     /// Enters a residual: what `point` still has to move along the unit vector `direction`.
     pub fn add(&mut self, point: &Vector3<f64>, direction: &Vector3<f64>, residual: f64, weight: f64) {
         let row = self.row(point, direction);
         self.matrix.syger(weight, &row, &row, 1.0);
-        self.gradient.axpy(weight * residual / self.length, &row, 1.0);
+        self.gradient.axpy(weight * residual / self.frame.length, &row, 1.0);
         self.weight += weight;
     }
 
@@ -136,7 +130,7 @@ impl NormalEquations {
         if !step.norm().is_finite() {
             return None;
         }
-        let change = Frame { centre: self.centre, length: self.length }.change(&step);
+        let change = self.frame.change(&step);
         let size = rotation.norm().max(shift.norm()).max(step[SCALE].abs());
         Some(Increment { change, size })
     }
@@ -176,9 +170,9 @@ mod tests {
             step[k] = small;
             let rotation: Vector3<f64> = step.fixed_rows::<3>(0).into();
             let shift: Vector3<f64> = step.fixed_rows::<3>(3).into();
-            let arm = Rotation3::new(rotation) * (point - equations.centre) * step[SCALE].exp();
-            let moved = equations.centre + arm + shift * equations.length;
-            let slope = (moved - point).dot(&direction) / (small * equations.length);
+            let arm = Rotation3::new(rotation) * (point - equations.frame.centre) * step[SCALE].exp();
+            let moved = equations.frame.centre + arm + shift * equations.frame.length;
+            let slope = (moved - point).dot(&direction) / (small * equations.frame.length);
             assert!((slope - row[k]).abs() < 1e-5, "{k}: {slope} {}", row[k]);
         }
     }

@@ -23,6 +23,7 @@
 mod angles;
 mod contrast;
 mod correspondence;
+mod descent;
 mod distance_transform;
 mod icp;
 mod increment;

@@ -18,6 +18,7 @@ use super::heights::{
 };
 use super::integration::{AnchorWeight, Anchors, IntegrationOptions, Integrator, Robustness, find_slopes};
 use super::pixels::{ShadingProblem, ShadingSolver, ShadingWeights};
+use crate::diagnosis::MIXED_NOISE;
 use crate::error::Result;
 use crate::light::Light;
 use crate::view::{ColourView, DepthView, Normals, depth_noise, normals};
@@ -30,10 +31,8 @@ const DISCRETISATION: f64 = 0.065;
 /// Bounds of the weight of an anchor, squared log residual per squared pixel of height: whatever its noise, depth
 /// neither loses all weight nor overrides the colours.
 const ANCHOR_WEIGHTS: [f64; 2] = [1e-3, 10.0];
-/// Error of the colours, log units, up to which they tell more of the surface than its roughness does, and the share of
-/// the bending that gives way to them. Mozart at 64x64 with noise of half a pixel under colourful light, A, B, C: x5.9, 3.3,
+/// Share of the bending that gives way to colours which tell more of the surface than its roughness does. Mozart at 64x64 with noise of half a pixel under colourful light, A, B, C: x5.9, 3.3,
 /// 2.4, 2.2 without, 6.0, 3.8, 2.8, 2.9 with it; photographs with quantised depth want all of the bending.
-const EXPLAINED: f64 = 0.07;
 const GIVEN_WAY: f64 = 0.75;
 /// Work at each scale of the first refinement: noisy depth starts far from its colours.
 const FIRST: Effort = Effort { steps: 6, iterations: 40, tolerance: 0.03, damping: FAR_DAMPING };
@@ -157,7 +156,7 @@ impl Refiner {
         // Where the surface is known to resist bending, that weighs against depth without colours as well.
         let unshaded = if view.noise.is_visible() { shaded } else { self.anchor_weight };
         let error = self.shading_error.max(problem.terms.colour_error);
-        let bending = bending(shaded, [variance_inflation, (EXPLAINED / error).min(1.0).powi(2)], view);
+        let bending = bending(shaded, [variance_inflation, (MIXED_NOISE / error).min(1.0).powi(2)], view);
         self.load_anchors(scratch, view, view.measured(), |has_colour| if has_colour { shaded } else { unshaded });
         find_slopes(view.size, &view.camera, normals, &view.mask, &mut scratch.slopes);
         view.camera.heights_from_depth(depth);

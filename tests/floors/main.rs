@@ -10,12 +10,13 @@ use std::path::PathBuf;
 use house::House;
 
 /// From the ground up: a room looks only into rooms before it.
-const ROOMS: [&str; 18] = [
+const ROOMS: [&str; 19] = [
     "text",
     "serial",
     "error",
     "check",
     "numeric",
+    "diagnosis",
     "view",
     "light",
     "shape",

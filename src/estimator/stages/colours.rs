@@ -1,5 +1,6 @@
 //! The registration by colours as a stage of the loop: the photometric registration, its normals, and its last result.
 
+use crate::diagnosis::{Alternative, Diagnosis};
 use crate::error::{Error, ErrorKind, Result};
 use crate::estimator::gauge;
 use crate::estimator::pair::ViewPair;
@@ -25,15 +26,6 @@ const CANDIDATE_POINTS: usize = 2500;
 /// cloud is easily explained. Candidates of the search lie within 0.1 of a right size.
 const COLLAPSE: f64 = 0.3;
 
-/// What residuals of neighbours may have in common for the colours to be explained, log units. 40 renders of objects and
-/// 15 random ones leave up to 0.0015, 100 random ones with 3 % of noise up to 0.0043, but for one that was lost (0.065);
-/// pictures of shading with cast shadows and light from other parts of the object 0.0084 or more, the cup but 0.002.
-pub(super) const LARGEST_STRUCTURE: f64 = 0.007;
-/// What residuals have in common up to which no other unit is tried: renders in the right one stay below, two of
-/// 110 random ones apart, log units.
-const EXPLAINED_STRUCTURE: f64 = 0.0015;
-/// Their noise up to which none is tried either, in units of the image's own: right pairs of clean depth leave up to 1.23.
-const EXPLAINED_NOISE: f64 = 1.25;
 /// Relief so many times as flat and as deep is held against the map's own, from what is nearest on. Units are mistaken by any
 /// factor, so these go from a tenth to ten times in steps of 1.3 to 1.7.
 const UNITS: [[f32; 6]; 2] = [[0.7, 0.5, 0.3, 0.2, 0.15, 0.1], [1.5, 2.0, 3.0, 5.0, 7.0, 10.0]];
@@ -115,6 +107,12 @@ impl ColourRegistration {
         }
     }
 
+    /// That of a pair, made now where it is not there yet.
+    #[inline(never)]
+    pub fn prepared<'a>(memory: &'a mut Option<Self>, pair: &ViewPair) -> &'a mut Self {
+        memory.get_or_insert_with(|| Self::new(pair))
+    }
+
     /// Normals of the depth view, which it is registered by.
     pub const fn normals(&self) -> &Normals {
         &self.sharp.normals
@@ -189,6 +187,14 @@ impl ColourRegistration {
         Ok(self.found.insert(found))
     }
 
+    /// The best pose near that of a registration by a sample of the points, by all of them.
+    pub fn register_all(&mut self, pair: &ViewPair, sampled: PhotometricReport) -> Result<PhotometricReport> {
+        let pose = sampled.pose;
+        self.found = Some(sampled);
+        self.register(pair, &pose)?;
+        self.found.take().ok_or_else(collapsed)
+    }
+
     fn register_anew(
         &mut self,
         pair: &ViewPair,
@@ -251,8 +257,8 @@ impl ColourRegistration {
     /// depth map was given in. Before a parallel projection of the map alone: a pinhole's unit is that of all three axes.
     pub fn better_unit(&mut self, pair: &ViewPair, pose: &Similarity) -> Option<f32> {
         // White noise leaves nothing for another unit to explain, in all points or in the few that are tried here.
-        let noise = EXPLAINED_NOISE * pair.image.log_noise();
-        let is_explained = |found: &PhotometricReport| found.structure <= EXPLAINED_STRUCTURE && found.noise <= noise;
+        let is_explained =
+            |found: &PhotometricReport| pair.residuals(found).diagnose(Alternative::DepthUnit) == Diagnosis::Explained;
         if !pair.depth.camera.is_orthographic() || self.found().is_some_and(is_explained) {
             return None;
         }
@@ -268,7 +274,7 @@ impl ColourRegistration {
                     break;
                 }
                 if found.noise < noise
-                    && found.structure < LARGEST_STRUCTURE.min(BETTER_STRUCTURE * own.structure)
+                    && pair.residuals(&found).is_less_common(BETTER_STRUCTURE, &pair.residuals(&own))
                     && gauge::growth(pair, &found.pose, pose) < COLLAPSE
                 {
                     (better, noise) = (Some(unit), found.noise);
@@ -333,6 +339,7 @@ mod tests {
     use nalgebra::Vector3;
 
     use super::*;
+    use crate::diagnosis::{UNIT_COVARIANCE, UNIT_NOISE};
     use crate::estimator::Estimator;
     use crate::options::Options;
     use crate::pose::Angles;
@@ -376,7 +383,7 @@ mod tests {
     #[test]
     fn no_unit_is_asked_for_where_only_white_noise_is_left() {
         let (estimator, mut registration) = registered(10.0);
-        let limits = (EXPLAINED_STRUCTURE, EXPLAINED_NOISE * estimator.pair.image.log_noise());
+        let limits = (UNIT_COVARIANCE, UNIT_NOISE * estimator.pair.image.log_noise());
         for (structure, noise, expected) in [(0.99, 0.99, None), (1.01, 0.99, Some(0.1)), (0.99, 1.01, Some(0.1))] {
             let found = registration.found.as_mut().unwrap();
             (found.structure, found.noise) = (structure * limits.0, noise * limits.1);

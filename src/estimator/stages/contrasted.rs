@@ -8,7 +8,7 @@
 
 use super::colours::ColourRegistration;
 use super::paint::PaintStage;
-use super::told_start::TrustRegion;
+use crate::estimator::finder::TrustRegion;
 use crate::estimator::pair::ViewPair;
 use crate::pose::{ContrastReport, Similarity, settle};
 
@@ -22,16 +22,14 @@ pub struct Contrasted {
     pub report: ContrastReport,
     /// E of the pose without its paint.
     objective: f64,
-    /// Where the pose may be, if it was told.
-    region: Option<TrustRegion>,
     rounds: usize,
 }
 
 impl Contrasted {
     /// Before the first round.
-    pub const fn new(report: ContrastReport, region: Option<TrustRegion>) -> Self {
+    pub const fn new(report: ContrastReport) -> Self {
         let objective = report.objective;
-        Self { report, objective, region, rounds: ROUNDS }
+        Self { report, objective, rounds: ROUNDS }
     }
 
     /// Whether the pose will not move any more.
@@ -39,13 +37,20 @@ impl Contrasted {
         self.rounds == 0
     }
 
-    /// A round: the pose by what is left without the paint that was found under it; nothing where it stands.
-    pub fn follow(&mut self, pair: &ViewPair, colours: &ColourRegistration, paint: &PaintStage) -> Option<Similarity> {
+    /// A round: the pose by what is left without the paint that was found under it; nothing where it stands, or would leave the trust region
+    /// of an initial pose.
+    pub fn follow(
+        &mut self,
+        pair: &ViewPair,
+        colours: &ColourRegistration,
+        paint: &PaintStage,
+        region: Option<&TrustRegion>,
+    ) -> Option<Similarity> {
         let rounds = self.rounds.checked_sub(1)?;
         self.rounds = 0;
         let image = paint.without_albedo(pair)?;
         let (pose, objective) = settle(&colours.contrast_problem(pair, &image), &self.report.pose)?;
-        let is_allowed = self.region.as_ref().is_none_or(|region| region.holds(pair, &pose));
+        let is_allowed = region.is_none_or(|region| region.holds(pair, &pose));
         if !is_allowed || objective >= self.objective {
             return None;
         }

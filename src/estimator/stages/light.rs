@@ -1,6 +1,7 @@
 //! The light stage (Eq. 2): the light from the depth view's normals where the present pose puts them.
 
 use super::paint::PaintStage;
+use crate::diagnosis::MIXED_NOISE;
 use crate::error::Result;
 use crate::estimator::pair::ViewPair;
 use crate::estimator::solution::Solution;
@@ -8,9 +9,6 @@ use crate::light::{Light, LightFitter};
 use crate::pose::{Correspondences, Similarity};
 use crate::shape::first_exposure;
 use crate::view::{ColourView, Normals};
-
-/// Median log residual up to which a fitted light counts as explaining the colours: noise and discretisation.
-const EXPLAINED: f64 = 0.07;
 
 /// What the stages after the light look at besides the solution.
 #[derive(Clone, Copy)]
@@ -119,6 +117,6 @@ impl LightStage {
     /// By how much the variance of the colours exceeds what is usual. Colours that even the fitted light leaves
     /// unexplained (texture, cast shadows) weigh less, which is to say that priors weigh more.
     pub fn variance_inflation(&self) -> f64 {
-        (self.residual / EXPLAINED).max(1.0).powi(2)
+        (self.residual / MIXED_NOISE).max(1.0).powi(2)
     }
 }

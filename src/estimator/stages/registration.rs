@@ -1,32 +1,20 @@
 //! The registration stage: which of the two registrations a pair asks for, and what it found.
 
+use crate::estimator::finder::{Decision, Finder, Method, TrustRegion, explains};
 use crate::estimator::gauge;
 use crate::estimator::pair::ViewPair;
 use crate::estimator::solution::Solution;
 use crate::light::Light;
 use crate::options::{Registration, Start};
-use crate::pose::{ContrastOutcome, ContrastReport, OutlineReport, PhotometricReport, Similarity, Uncertainty};
+use crate::pose::{ContrastReport, OutlineReport, PhotometricReport, Similarity, Uncertainty};
 use crate::reason::Reason;
 use crate::view::Normals;
 
 use super::colours::ColourRegistration;
 use super::contrasted::Contrasted;
 use super::light::Inputs;
-use super::outlines;
 use super::paint::PaintStage;
 use super::surfaces::{Matched, SurfaceRegistration};
-use super::told_start::{Settled, TrustRegion};
-
-/// What the initialisation found.
-#[derive(Default)]
-pub struct Outcome {
-    /// The best pose by colours, if any could be registered.
-    pub best: Option<Box<PhotometricReport>>,
-    /// Poses that the data can't tell from the best, best first.
-    pub rivals: Vec<Similarity>,
-    /// What local contrast says, where the colours are painted.
-    pub contrast: Option<Box<ContrastOutcome>>,
-}
 
 /// What a registration found: a pose, and what came with it.
 pub struct Registered {
@@ -59,22 +47,32 @@ pub struct RegistrationStage {
     /// Only where the options ask for it: it holds splines of the image.
     colours: Option<ColourRegistration>,
     surfaces: SurfaceRegistration,
-    told: Told,
+    /// Where the pose may be, if there is an initial one.
+    region: Option<TrustRegion>,
+    /// What the pose rests on, once the finder has decided.
+    decided: Option<Decided>,
 }
 
-/// What is known of a told start.
-enum Told {
-    /// The pose is free: nothing was told, or the registration is the paper's own, which walks as far as it likes.
-    Nothing,
-    Untried(TrustRegion),
-    /// A better pose within the tolerance was found.
-    Improved(TrustRegion),
-    /// None was: the told pose is kept.
-    Kept,
-    /// The colours are painted; the pose is that of the outlines ..
-    Outlined(OutlineReport),
-    /// .. or that of local contrast.
-    Contrasted(Contrasted),
+/// What the pose rests on.
+enum Decided {
+    Image,
+    Contrast(Box<Contrasted>),
+    Silhouettes(Box<OutlineReport>),
+    /// Nothing better was found: the initial pose stays.
+    Initial,
+}
+
+/// What a stage has come to.
+pub enum Registering {
+    Done(Option<Box<Registered>>),
+    /// A pose has to be found first.
+    Finding(Box<Finder>),
+}
+
+impl Registering {
+    fn of(found: Option<Registered>) -> Self {
+        Self::Done(found.map(Box::new))
+    }
 }
 
 impl RegistrationStage {
@@ -82,19 +80,17 @@ impl RegistrationStage {
     pub fn new(pair: &ViewPair, colours_wait: bool) -> Self {
         let by_colours = pair.options.start == Start::Search || pair.options.registration == Registration::Joint;
         let by_colours = by_colours && !colours_wait;
-        let is_joint = pair.options.registration == Registration::Joint;
-        let region = is_joint.then(|| TrustRegion::new(pair)).flatten();
         Self {
             colours: by_colours.then(|| ColourRegistration::new(pair)),
             surfaces: SurfaceRegistration::new(),
-            told: region.map_or(Told::Nothing, Told::Untried),
+            region: TrustRegion::of(pair),
+            decided: None,
         }
     }
 
-    /// The registration by colours, made now where it is not there yet.
-    #[inline(never)]
-    pub fn prepare(&mut self, pair: &ViewPair) -> &mut ColourRegistration {
-        self.colours.get_or_insert_with(|| ColourRegistration::new(pair))
+    /// The registration by colours, for a finder, which makes it where it is not there yet.
+    pub const fn memory(&mut self) -> &mut Option<ColourRegistration> {
+        &mut self.colours
     }
 
     /// The registration that this pair asks for now: noisy depth is found by its colours and settled by its surface.
@@ -122,82 +118,77 @@ impl RegistrationStage {
         colours.and_then(|colours| colours.better_unit(pair, pose))
     }
 
-    /// Takes over what the search has found, if anything; what contrast or outlines say where the colours are painted.
-    pub fn adopt(&mut self, pair: &ViewPair, outcome: Outcome, present: &Similarity) -> Option<Registered> {
-        let Outcome { best, rivals, contrast } = outcome;
-        if let Some(contrast) = contrast {
-            return Some(self.adopt_contrast(pair, *contrast, None, present));
-        }
-        let registered = self.adopt_colours(pair, best.map(|best| *best), present)?;
-        let rivals = if self.found_by_outlines().is_some() { Vec::new() } else { rivals };
-        Some(Registered { rivals: Some(rivals), ..registered })
-    }
-
-    fn adopt_contrast(
+    /// Takes over what the finder has decided.
+    ///
+    /// # Errors
+    /// Where nothing could be registered, or the size has run away from the initial pose's.
+    pub fn adopt(
         &mut self,
         pair: &ViewPair,
-        found: ContrastOutcome,
-        region: Option<TrustRegion>,
+        decision: Decision,
         present: &Similarity,
-    ) -> Registered {
-        let ContrastOutcome { best, rivals } = found;
-        let (pose, uncertainty) = (with_gauge_of(pair, best.pose, present), Some(best.uncertainty.clone()));
-        self.told = Told::Contrasted(Contrasted::new(best, region));
-        Registered { uncertainty, rivals: Some(rivals), ..Registered::of_pose(pose) }
+    ) -> Result<Option<Registered>, Reason> {
+        let Decision { by, rivals } = decision;
+        let registered = match by {
+            Method::Nothing => return Err(Reason::NoPose { scale_is_held: gauge::held_scale(pair).is_some() }),
+            Method::Initial => {
+                self.decided = Some(Decided::Initial);
+                return Ok(None);
+            }
+            Method::Silhouettes(found) => {
+                let registered = Registered::by_outlines(&found);
+                self.decided = Some(Decided::Silhouettes(found));
+                registered
+            }
+            Method::Contrast(found) => {
+                let pose = with_gauge_of(pair, found.pose, present);
+                let uncertainty = Some(found.uncertainty.clone());
+                self.decided = Some(Decided::Contrast(Box::new(Contrasted::new(*found))));
+                Registered { uncertainty, ..Registered::of_pose(pose) }
+            }
+            Method::Image(found) => {
+                self.decided = Some(Decided::Image);
+                let registered = self.registered(pair, &found, present);
+                let size = self.region.is_some().then(|| check_size(pair, &found.pose, present));
+                if let Some(colours) = &mut self.colours {
+                    colours.adopt(*found);
+                }
+                size.transpose()?;
+                registered
+            }
+        };
+        Ok(Some(Registered { rivals, ..registered }))
     }
 
-    fn adopt_colours(
-        &mut self,
-        pair: &ViewPair,
-        found: Option<PhotometricReport>,
-        present: &Similarity,
-    ) -> Option<Registered> {
-        let is_painted = found.as_ref().is_none_or(|found| outlines::is_painted(pair, found));
-        if is_painted
-            && pair.options.registration == Registration::Joint
-            && let Some(outlined) = outlines::anywhere(pair, self.colours.as_ref()?.normals())
-        {
-            let registered = Registered::by_outlines(&outlined);
-            self.told = Told::Outlined(outlined);
-            return Some(registered);
-        }
-        let found = found?;
-        let registered = self.registered(pair, &found, present);
-        if let Some(colours) = &mut self.colours {
-            colours.adopt(found);
-        }
-        Some(registered)
-    }
-
-    /// Whether nothing near a told start explains the colours better, so that it is kept.
+    /// Whether nothing near the initial pose fits the image better, so that it is kept.
     pub const fn has_kept_start(&self) -> bool {
-        matches!(self.told, Told::Kept)
+        matches!(self.decided, Some(Decided::Initial))
     }
 
     /// What the pose rests on, in words.
     pub fn engine(&self, pair: &ViewPair) -> &'static str {
-        match (self.kind(pair), &self.told) {
+        match (self.kind(pair), &self.decided) {
             (Registration::Fixed, _) => "held pose",
             (Registration::Icp, _) => "surfaces",
-            (Registration::Joint, Told::Kept) => "initial pose kept",
-            (Registration::Joint, Told::Outlined(_)) => "silhouettes",
-            (Registration::Joint, Told::Contrasted(_)) => "local contrast",
+            (Registration::Joint, Some(Decided::Initial)) => "initial pose kept",
+            (Registration::Joint, Some(Decided::Silhouettes(_))) => "silhouettes",
+            (Registration::Joint, Some(Decided::Contrast(_))) => "local contrast",
             (Registration::Joint, _) => "photometric registration",
         }
     }
 
     /// What outlines have found, where they decide.
     pub const fn found_by_outlines(&self) -> Option<&OutlineReport> {
-        match &self.told {
-            Told::Outlined(found) => Some(found),
+        match &self.decided {
+            Some(Decided::Silhouettes(found)) => Some(found),
             _ => None,
         }
     }
 
     /// What local contrast has found, where it decides.
     pub const fn found_by_contrast(&self) -> Option<&ContrastReport> {
-        match &self.told {
-            Told::Contrasted(found) => Some(&found.report),
+        match &self.decided {
+            Some(Decided::Contrast(found)) => Some(&found.report),
             _ => None,
         }
     }
@@ -207,10 +198,10 @@ impl RegistrationStage {
         match self.kind(pair) {
             Registration::Fixed => true,
             Registration::Joint => {
-                let stands = match &self.told {
-                    Told::Kept | Told::Outlined(_) => true,
-                    Told::Contrasted(found) => found.stands(),
-                    _ => false,
+                let stands = match &self.decided {
+                    Some(Decided::Initial | Decided::Silhouettes(_)) => true,
+                    Some(Decided::Contrast(found)) => found.stands(),
+                    Some(Decided::Image) | None => false,
                 };
                 stands || self.colours.as_ref().is_some_and(|colours| colours.ended_in(pose))
             }
@@ -220,33 +211,55 @@ impl RegistrationStage {
 
     /// Whether paint is looked for under `pose`: it stands, or waits for nothing but that.
     pub fn asks_for_paint(&self, pair: &ViewPair, pose: &Similarity) -> bool {
-        matches!(self.told, Told::Contrasted(_)) || self.keeps(pair, pose)
+        matches!(self.decided, Some(Decided::Contrast(_))) || self.keeps(pair, pose)
     }
 
-    /// The pose from the present one, without the paint that was found under it; nothing where it is fixed.
+    /// The pose from the present one, without the paint that was found under it; nothing where it is fixed. Around an initial pose that does
+    /// not explain the image a finder has to be asked.
     pub fn register(
         &mut self,
         inputs: Inputs<'_>,
         paint: &PaintStage,
         solution: &Solution,
-    ) -> Result<Option<Registered>, Reason> {
-        match self.kind(inputs.pair) {
-            Registration::Fixed => Ok(None),
-            Registration::Joint => self.register_colours(inputs.pair, paint, &solution.pose),
+    ) -> Result<Registering, Reason> {
+        let pair = inputs.pair;
+        match self.kind(pair) {
+            Registration::Fixed => Ok(Registering::Done(None)),
+            Registration::Joint if self.region.is_some() && self.decided.is_none() => {
+                self.register_initial(pair, &solution.pose)
+            }
+            Registration::Joint => self.register_colours(pair, paint, &solution.pose).map(Registering::of),
             Registration::Icp => {
                 let Matched { mut pose, mut improved, uncertainty } = self.surfaces.register(inputs, solution)?;
-                if let Told::Improved(region) = &self.told
-                    && !region.holds(inputs.pair, &pose)
-                {
+                if self.region.as_ref().is_some_and(|region| !region.holds(pair, &pose)) {
                     (pose, improved) = (solution.pose, false);
                 }
                 let uncertainty = improved.then_some(uncertainty);
-                Ok(Some(Registered { pose, light: None, exposure: None, uncertainty, improved, rivals: None }))
+                let found = Registered { pose, light: None, exposure: None, uncertainty, improved, rivals: None };
+                Ok(Registering::of(Some(found)))
             }
         }
     }
 
-    /// Pose and light together from the colours.
+    /// From the initial pose: what explains the image from there is the answer, or else a finder looks around.
+    fn register_initial(&mut self, pair: &ViewPair, present: &Similarity) -> Result<Registering, Reason> {
+        let (Some(colours), Some(region)) = (&mut self.colours, &self.region) else {
+            return Ok(Registering::Done(None));
+        };
+        let found = colours.register(pair, &region.initial).ok().cloned();
+        let is_answer = |found: &PhotometricReport| region.holds(pair, &found.pose) && explains(pair, found);
+        match found {
+            Some(found) if is_answer(&found) => {
+                self.adopt(pair, Decision::of(Method::Image(Box::new(found))), present).map(Registering::of)
+            }
+            _ => {
+                let plain = colours.take_found();
+                Ok(Registering::Finding(Box::new(Finder::near(pair, region.clone(), plain))))
+            }
+        }
+    }
+
+    /// Pose and light together from the colours, or the pose of what else decides.
     fn register_colours(
         &mut self,
         pair: &ViewPair,
@@ -254,41 +267,18 @@ impl RegistrationStage {
         start: &Similarity,
     ) -> Result<Option<Registered>, Reason> {
         let Some(colours) = &mut self.colours else { return Ok(None) };
-        let found = match std::mem::replace(&mut self.told, Told::Kept) {
-            told @ (Told::Kept | Told::Outlined(_)) => {
-                self.told = told;
-                return Ok(None);
+        match &mut self.decided {
+            Some(Decided::Initial | Decided::Silhouettes(_)) => Ok(None),
+            Some(Decided::Contrast(found)) => {
+                let pose = found.follow(pair, colours, paint, self.region.as_ref());
+                Ok(pose.map(|pose| Registered::of_pose(with_gauge_of(pair, pose, start))))
             }
-            Told::Contrasted(mut found) => {
-                let pose = found.follow(pair, colours, paint);
-                self.told = Told::Contrasted(found);
-                return Ok(pose.map(|pose| Registered::of_pose(with_gauge_of(pair, pose, start))));
+            Some(Decided::Image) | None => {
+                let found = colours.register(pair, start)?.clone();
+                check_size(pair, &found.pose, start)?;
+                Ok(Some(self.registered(pair, &found, start)))
             }
-            Told::Untried(region) => match region.settle(pair, colours)? {
-                Settled::ByColours(found) => {
-                    self.told = Told::Improved(region);
-                    *found
-                }
-                Settled::ByOutlines(found) => {
-                    let registered = Registered::by_outlines(&found);
-                    self.told = Told::Outlined(*found);
-                    return Ok(Some(registered));
-                }
-                Settled::ByContrast(found) => {
-                    return Ok(Some(self.adopt_contrast(pair, *found, Some(region), start)));
-                }
-                // As it stands since the replacement above.
-                Settled::Kept => return Ok(None),
-            },
-            told => {
-                self.told = told;
-                colours.register(pair, start)?.clone()
-            }
-        };
-        if !gauge::keeps_size(pair, &found.pose, start) {
-            return Err(Reason::SizeRunsAway { times: gauge::growth(pair, &found.pose, start).exp() });
         }
-        Ok(Some(self.registered(pair, &found, start)))
     }
 
     fn registered(&self, pair: &ViewPair, found: &PhotometricReport, present: &Similarity) -> Registered {
@@ -304,6 +294,12 @@ impl RegistrationStage {
             rivals: None,
         }
     }
+}
+
+/// The apparent size may not run away from that of another pose.
+fn check_size(pair: &ViewPair, pose: &Similarity, other: &Similarity) -> Result<(), Reason> {
+    let keeps = gauge::keeps_size(pair, pose, other);
+    keeps.then_some(()).ok_or_else(|| Reason::SizeRunsAway { times: gauge::growth(pair, pose, other).exp() })
 }
 
 /// A pose with the present t_z before an orthographic image: there it is a gauge, which the loop has settled already.

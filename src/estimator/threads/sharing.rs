@@ -78,9 +78,8 @@ impl Estimator {
 
     /// An iteration.
     fn iterate_in(&mut self, threads: &mut Threads) {
-        threads.workers.truncate(1);
         let iteration = self.report.iteration;
-        while self.report.status == Status::Running && self.report.iteration == iteration {
+        while self.report.status == Status::Running && self.report.iteration == iteration && !self.is_searching() {
             if self.precedes_refinement() {
                 self.refine_in(threads);
             }
@@ -90,6 +89,8 @@ impl Estimator {
 
     /// The stages before a refinement, and beside them the refinement, where it can be made already.
     fn refine_in(&mut self, threads: &mut Threads) {
+        // A finder wants all of them, and nothing is refined beside the other stages before it is done.
+        threads.workers.truncate(1);
         let Threads { pool, workers, held, .. } = threads;
         let (Some(worker), Some(task)) = (workers.first_mut(), self.refinement_task(held.take())) else { return };
         let (shape, numbers) = (task.shape, task.numbers);

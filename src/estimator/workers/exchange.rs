@@ -18,15 +18,15 @@ impl Estimator {
     /// A part of the initialisation for a [`Worker`](crate::Worker); `None` while there is none to give away.
     pub fn take_task(&mut self) -> Option<Task> {
         match &mut self.run {
-            Run::Searching(initialisation) => initialisation.take(),
+            Run::Searching(finder) => finder.take(),
             _ => None,
         }
     }
 
     /// Takes in what a worker has found. What is no longer needed is passed over.
     pub fn accept_finding(&mut self, finding: Finding) {
-        if let Run::Searching(initialisation) = &mut self.run {
-            initialisation.accept(finding);
+        if let Run::Searching(finder) = &mut self.run {
+            finder.accept(&self.pair, finding);
         }
     }
 

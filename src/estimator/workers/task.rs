@@ -3,7 +3,8 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::pose::{Candidate, Hypothesis, PhotometricReport, SearchFinding, SearchTask, Similarity};
+use crate::estimator::finder::RegisteredCandidate;
+use crate::pose::{Candidate, Hypothesis, SearchFinding, SearchTask, Similarity};
 
 /// A part of the initialisation. It depends on the pair, the options and itself alone, so that whoever has these gets
 /// the same.
@@ -26,24 +27,6 @@ pub(in crate::estimator) enum Found {
     Search(SearchFinding),
     /// `None` where the candidate could not be registered.
     Registered(usize, Option<RegisteredCandidate>),
-}
-
-/// What tells one registration from another.
-#[derive(Clone, Debug)]
-pub(in crate::estimator) struct RegisteredCandidate {
-    pub pose: Similarity,
-    /// Number of visible points.
-    pub visible: f64,
-    /// Standard deviation of what is left of log S.
-    pub noise: f64,
-    /// All of it, where it was made in this thread.
-    pub report: Option<Box<PhotometricReport>>,
-}
-
-impl RegisteredCandidate {
-    pub fn of(report: Box<PhotometricReport>) -> Self {
-        Self { pose: report.pose, visible: report.visible as f64, noise: report.noise, report: Some(report) }
-    }
 }
 
 /// First number of each kind of task or finding.

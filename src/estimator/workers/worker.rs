@@ -1,16 +1,15 @@
 //! Does parts of an estimator's work for it, in another thread with an instance of its own.
 
 use crate::error::Result;
-use crate::estimator::initialisation::search;
-use crate::estimator::opening::Opening;
+use crate::estimator::finder::{Opening, RegisteredCandidate, search};
 use crate::estimator::pair::ViewPair;
-use crate::estimator::stages::{Attempt, ColourRegistration};
+use crate::estimator::stages::ColourRegistration;
 use crate::options::Options;
-use crate::pose::{ImageGrid, PhotometricReport, Search, Similarity};
+use crate::pose::{ImageGrid, Search};
 use crate::view::{ColourImage, DepthMap};
 
 use super::refinement::RefinementWorker;
-use super::task::{Finding, Found, RegisteredCandidate, Task, Work};
+use super::task::{Finding, Found, Task, Work};
 
 /// What is searched, and whose candidates are registered.
 enum Searched {
@@ -78,7 +77,7 @@ impl Worker {
         Ok(Finding(match &task.0 {
             Work::Search(task) => Found::Search(search.perform(task)),
             Work::Register(index, start) => {
-                let report = register(pair, colours, start);
+                let report = colours.register_candidate(pair, start);
                 Found::Registered(*index, report.map(RegisteredCandidate::of))
             }
         }))
@@ -98,16 +97,5 @@ impl Worker {
         };
         load(refinement.planes());
         refinement.refine(pair, numbers)
-    }
-}
-
-/// The whole registration of one candidate.
-fn register(pair: &ViewPair, colours: &mut ColourRegistration, start: &Similarity) -> Option<Box<PhotometricReport>> {
-    let mut attempt = colours.step_candidate(pair, start, true);
-    loop {
-        match attempt {
-            Attempt::Ongoing => attempt = colours.step_candidate(pair, start, false),
-            Attempt::Ended(report) => return report,
-        }
     }
 }

@@ -7,6 +7,7 @@ use super::problem::ContrastProblem;
 use super::samples::Samples;
 use super::seen::Seen;
 use super::uncertainty::{Linearised, described};
+use crate::pose::descent::{Damping, Lowered};
 use crate::pose::increment::Frame;
 use crate::pose::silhouette::Silhouette;
 use crate::pose::similarity::Similarity;
@@ -31,11 +32,6 @@ const SHRINKING: f64 = 0.6;
 /// Gauss-Newton steps of a round, and attempts to find the damping of each.
 const MOST_STEPS: usize = 4;
 const MOST_ATTEMPTS: usize = 6;
-/// Damping at the start of a round, as a share of the diagonal; its factors after a success and a failure; its least.
-const FIRST_DAMPING: f64 = 1e-3;
-const DAMPING_AFTER_SUCCESS: f64 = 0.2;
-const DAMPING_AFTER_FAILURE: f64 = 8.0;
-const LEAST_DAMPING: f64 = 1e-9;
 /// A step below this, in radians and object sizes, changes nothing that matters: a thousandth of a degree.
 const SETTLED_STEP: f64 = 2e-5;
 /// A level is done when a round rotates by less, degrees.
@@ -251,25 +247,20 @@ impl ContrastRegistration {
     /// Damped Gauss-Newton steps that lower E.
     fn descend(&mut self, problem: &ContrastProblem<'_>, level: usize, frame: &Frame, state: &mut State) {
         let (held, level) = (problem.held(), &mut self.levels[level]);
-        let mut damping = FIRST_DAMPING;
+        let mut damping = Damping::FIRST;
         let mut value = self.objective.value(problem, level, state);
         for _ in 0..MOST_STEPS {
             let Some(reduced) = self.objective.linearise(problem, level, frame, state) else { return };
-            let mut size = 0.0;
-            for _ in 0..MOST_ATTEMPTS {
-                if let Some((change, light)) = reduced.step(damping, &held) {
-                    let mut next = *state;
-                    next.pose = frame.change(&change).after(&state.pose).orthonormal();
-                    next.light.iter_mut().zip(light).for_each(|(light, step)| *light += step);
-                    let next_value = self.objective.value(problem, level, &next);
-                    if next_value <= value {
-                        (*state, value, size) = (next, next_value, change.norm());
-                        damping = (DAMPING_AFTER_SUCCESS * damping).max(LEAST_DAMPING);
-                        break;
-                    }
-                }
-                damping *= DAMPING_AFTER_FAILURE;
-            }
+            let lowered = damping.lower(MOST_ATTEMPTS, value, |damping| {
+                let (change, light) = reduced.step(damping, &held)?;
+                let mut next = *state;
+                next.pose = frame.change(&change).after(&state.pose).orthonormal();
+                next.light.iter_mut().zip(light).for_each(|(light, step)| *light += step);
+                let objective = self.objective.value(problem, level, &next);
+                Some(Lowered { state: next, objective, size: change.norm() })
+            });
+            let Some(Lowered { state: next, objective, size }) = lowered else { return };
+            (*state, value) = (next, objective);
             if size < SETTLED_STEP {
                 return;
             }

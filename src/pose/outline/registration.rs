@@ -182,19 +182,10 @@ impl Outline {
         let frame = self.frame(pose);
         let point = pose.apply(problem.point(index));
         let (pixel, slopes) = problem.image.camera.project_with_gradient(problem.image.size, point.into())?;
-        let arm = point - frame.centre;
         let row = |slope: [f64; 3]| {
-            let slope = Vector3::from(slope);
-            let turn = arm.cross(&slope);
-            Row::from([
-                turn.x,
-                turn.y,
-                turn.z,
-                frame.length * slope.x,
-                frame.length * slope.y,
-                frame.length * slope.z,
-                0.0,
-            ])
+            let mut row = frame.row(&point, &slope.into());
+            row[LOSS] = 0.0;
+            row
         };
         Some((pixel, slopes.map(row)))
     }

@@ -17,6 +17,7 @@
 
 use super::equations::{ReducedSystem, SquareSums, add_product, folded, no_sums, scaled};
 use super::evaluation::Evaluation;
+use crate::diagnosis::share_of_model;
 use crate::numeric::eigen::{Eigen, symmetric_eigen};
 use crate::numeric::{Doubles, Real, dot};
 use crate::pose::increment::{Frame, PoseMatrix, PoseVector, clear_unknowns, fix_unknowns, inverse, product};
@@ -31,10 +32,6 @@ const TILE: usize = 8;
 /// random scenes of `npm run tables`; 2.2 is 1.9 raised to what 95 % ask for there and in every kind of worse inputs
 /// (`honesty`), so those scenes are no independent test.
 const SIGMA_INFLATION: f64 = 2.2;
-/// Residuals so many times larger than the noise of the image itself are errors of the model: shadows, print, a lamp
-/// too sharp for nine harmonics. Made scenes leave 0.75 to 1 times that noise, photographs with shadows and paint 0.7
-/// to 5 times.
-const LARGEST_IMAGE_NOISE: f64 = 2.0;
 /// One sigma where all residuals are the model's, over what tiles tell: such errors reach across tiles. Photographs in
 /// one lamp's light that leave more than twice their noise end 4 to 17 such sigmas off, the others 1 to 3.
 const MODEL_SIGMA_INFLATION: f64 = 2.0;
@@ -64,8 +61,7 @@ pub(super) struct Noise {
 impl Noise {
     /// Factor of one sigma for what the scores of the tiles do not tell.
     fn sigma_inflation(&self) -> f64 {
-        let of_image = LARGEST_IMAGE_NOISE * self.image / self.residuals;
-        let of_model = (1.0 - of_image * of_image).max(0.0);
+        let of_model = share_of_model(self.residuals, self.image);
         let of_model = (MODEL_SIGMA_INFLATION * MODEL_SIGMA_INFLATION - 1.0) * of_model;
         SIGMA_INFLATION * (1.0 + of_model + (self.depth / BIASING_NOISE).powi(2)).sqrt()
     }

@@ -9,6 +9,7 @@ use super::residual::{ColourModel, Samples};
 use super::state::State;
 use super::weighting::{Weighting, final_robust_scale, prior_weight};
 use crate::error::{Error, ErrorKind, Result};
+use crate::pose::descent::{Damping, Lowered};
 use crate::pose::increment::{Frame, PoseMatrix, PoseVector, SCALE, TRANSLATION_Z, clear_unknowns};
 use crate::pose::similarity::Similarity;
 use crate::pose::spline_image::SplineImage;
@@ -34,11 +35,6 @@ const LIGHT_ROUNDS: usize = 6;
 /// Gauss-Newton steps of a round, and attempts to find the damping of each.
 const MOST_STEPS: usize = 6;
 const MOST_ATTEMPTS: usize = 8;
-/// Damping at the start of a round, as a share of the diagonal; its factors after a success and a failure; its least.
-const FIRST_DAMPING: f64 = 1e-3;
-const DAMPING_AFTER_SUCCESS: f64 = 0.2;
-const DAMPING_AFTER_FAILURE: f64 = 8.0;
-const LEAST_DAMPING: f64 = 1e-9;
 /// A step below this, in radians and object sizes, changes nothing: 1e-5 degrees.
 const SETTLED_STEP: f64 = 1e-7;
 /// A round on the way to the robust scale of the noise is done with a step below this, in the same units: the next one moves
@@ -102,7 +98,7 @@ struct Descent {
     before: Similarity,
     /// Whether the robust scale is that of the noise.
     at_noise: bool,
-    damping: f64,
+    damping: Damping,
     objective: f64,
     steps: usize,
 }
@@ -316,7 +312,7 @@ impl Photometric {
             frame,
             before: self.state.pose,
             at_noise: self.weighting.robust_scale <= target,
-            damping: FIRST_DAMPING,
+            damping: Damping::FIRST,
             objective: self.evaluation(problem, level, &self.state).objective(),
             steps: 0,
         }))
@@ -329,18 +325,15 @@ impl Photometric {
         descent.steps += 1;
         let reduced = self.evaluation(problem, level, &self.state).reduced_system(&frame);
         let reduced = reduced.ok_or_else(undetermined_light)?;
-        let mut size = 0.0;
-        for _ in 0..MOST_ATTEMPTS {
-            if let Some(step) = reduced.step(descent.damping, &problem.held()) {
-                let next = self.state.stepped(&frame, &step, problem.light.is_some());
-                let objective = self.evaluation(problem, level, &next).objective();
-                if objective <= descent.objective {
-                    (self.state, descent.objective, size) = (next, objective, step.pose.norm());
-                    descent.damping = (DAMPING_AFTER_SUCCESS * descent.damping).max(LEAST_DAMPING);
-                    break;
-                }
-            }
-            descent.damping *= DAMPING_AFTER_FAILURE;
+        let lowered = descent.damping.lower(MOST_ATTEMPTS, descent.objective, |damping| {
+            let step = reduced.step(damping, &problem.held())?;
+            let state = self.state.stepped(&frame, &step, problem.light.is_some());
+            let objective = self.evaluation(problem, level, &state).objective();
+            Some(Lowered { state, objective, size: step.pose.norm() })
+        });
+        let size = lowered.as_ref().map_or(0.0, |lowered| lowered.size);
+        if let Some(Lowered { state, objective, .. }) = lowered {
+            (self.state, descent.objective) = (state, objective);
         }
         let small = if descent.at_noise { SMALL_FINE_STEP } else { SMALL_STEP };
         let ends = size < small || descent.steps >= MOST_STEPS;

@@ -1,16 +1,15 @@
 //! How much residuals and prior count in the objective, by the noise that is left.
 
 use super::problem::PhotometricProblem;
+use crate::diagnosis::excess;
 use crate::light::{COEFFICIENTS, Light};
 
 /// The robust scale in standard deviations of |r|: beyond three hardly any residual is noise.
 const SCALE_IN_SIGMAS: f64 = 3.0;
 /// |r| over three channels in standard deviations of one: 3^(1/2).
 const NORM_OF_CHANNELS: f64 = 1.732_050_807_568_877_2;
-/// Noise per channel, log units, from which on the scale grows in proportion, and by how much at most. What is left
-/// then is no noise but shadows and paint, and a narrow scale would settle on a part of the object that light and
-/// normals happen to explain. Nearly all renders with 1 % noise stay below, photographs in one lamp's light do not.
-const LARGEST_PURE_NOISE: f64 = 0.035;
+/// By how much the scale grows at most where residuals are more than noise: a narrow scale would settle on a part of the object that
+/// light and normals happen to explain.
 const LARGEST_WIDENING: f64 = 2.0;
 /// Degrees of freedom of the prior's tails: coloured lamps lie far outside the Gaussian, and it would bend them by
 /// degrees.
@@ -33,7 +32,7 @@ impl Weighting {
 
 /// The robust scale for residuals with this standard deviation per channel, log units.
 pub(super) fn final_robust_scale(noise: f64) -> f64 {
-    SCALE_IN_SIGMAS * NORM_OF_CHANNELS * noise * (noise / LARGEST_PURE_NOISE).clamp(1.0, LARGEST_WIDENING)
+    SCALE_IN_SIGMAS * NORM_OF_CHANNELS * noise * excess(noise, [1.0, LARGEST_WIDENING])
 }
 
 /// Weight of the prior at a light: that of a Gaussian near the natural lights, with the tails of Student's t for lights

@@ -3,8 +3,8 @@
 
 use nalgebra::Vector3;
 
-use super::pair::ViewPair;
-use super::stages::ColourRegistration;
+use crate::estimator::pair::ViewPair;
+use crate::estimator::stages::ColourRegistration;
 use crate::options::Start;
 use crate::pose::{PhotometricReport, Similarity};
 use crate::view::{ColourView, DepthView};

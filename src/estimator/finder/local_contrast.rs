@@ -1,11 +1,12 @@
-//! Local contrast in place of colours that are painted (docs/method.md, section 10): from what the search has seen, or
-//! around a told pose.
+//! Local contrast, where the albedo varies before an orthographic image (docs/method.md, section 10): from what the search has seen, or around
+//! an initial pose.
 
 use nalgebra::{Rotation3, Vector3};
 
-use super::colours::{ColourRegistration, LARGEST_STRUCTURE};
+use crate::diagnosis::{Alternative, Diagnosis};
 use crate::estimator::gauge;
 use crate::estimator::pair::ViewPair;
+use crate::estimator::stages::ColourRegistration;
 use crate::options::Registration;
 use crate::pose::{ContrastOutcome, ContrastSearch, PhotometricReport, Similarity, Uncertainty};
 use crate::view::ColourView;
@@ -21,7 +22,7 @@ const MOST_TURNS: i32 = 3;
 /// has an outline.
 /// Behind a pinhole outlines in space decide; under a known light surfaces settle what noisy normals leave. Noisy normals
 /// leave as much as paint does, so there the image itself has to show edges of paint.
-pub fn is_called_for(pair: &ViewPair, colours: &ColourRegistration) -> bool {
+pub fn may_be_called_for(pair: &ViewPair, colours: &ColourRegistration) -> bool {
     is_open(pair, None) && (colours.has_clean_normals() || CleanedImage::new(pair).image.is_some())
 }
 
@@ -41,13 +42,17 @@ fn is_open(pair: &ViewPair, plain: Option<&PhotometricReport>) -> bool {
         && pair.known_light().is_none()
         && pair.image.camera.is_orthographic()
         && pair.image.mask.contains(&false)
-        && plain.is_none_or(|plain| plain.structure > LARGEST_STRUCTURE)
+        && plain.is_none_or(|plain| albedo_varies(pair, plain))
+}
+
+fn albedo_varies(pair: &ViewPair, plain: &PhotometricReport) -> bool {
+    pair.residuals(plain).diagnose(Alternative::LocalContrast) == Diagnosis::VaryingAlbedo
 }
 
 /// Whether a registration by colours from where contrast ended leaves no more than noise: then there is no paint, and its
 /// pose is the better one.
-fn is_plain(plain: &PhotometricReport, contrast: &ContrastOutcome) -> bool {
-    plain.structure <= LARGEST_STRUCTURE && plain.pose.degrees_to(&contrast.best.pose) < SAME_POSE
+fn is_plain(pair: &ViewPair, plain: &PhotometricReport, contrast: &ContrastOutcome) -> bool {
+    !albedo_varies(pair, plain) && plain.pose.degrees_to(&contrast.best.pose) < SAME_POSE
 }
 
 /// Whether the first is less uncertain about its least certain axis.
@@ -81,20 +86,29 @@ impl CleanedImage {
 /// renders all that were 16 % larger or smaller were lost; with three, two are.
 const SIZES: [f64; 3] = [0.84, 1.0, 1.19];
 
-/// A search from these poses, at some sizes where the scale is free.
-pub fn search(
-    pair: &ViewPair,
-    colours: &ColourRegistration,
-    cleaned: &CleanedImage,
-    poses: &[Similarity],
-) -> ContrastSearch {
+/// These poses at each of the sizes that the scale may have.
+pub fn of_all_sizes(pair: &ViewPair, poses: &[Similarity]) -> Vec<Similarity> {
     let middle = pair.depth.points.centroid();
     let held = gauge::held_scale(pair);
     let unit = gauge::unit_scale(pair);
     let scales = held.map_or_else(|| SIZES.map(|size| size * unit).to_vec(), |held| vec![held]);
     let rescaled = |pose: &Similarity, scale: f64| pose.turned_about(middle, scale, pose.rotation);
-    let starts = poses.iter().flat_map(|pose| scales.iter().map(move |&scale| rescaled(pose, scale))).collect();
-    ContrastSearch::new(&colours.contrast_problem(pair, cleaned.image(pair)), starts)
+    poses.iter().flat_map(|pose| scales.iter().map(move |&scale| rescaled(pose, scale))).collect()
+}
+
+/// The poses around an initial one.
+pub fn around(pair: &ViewPair, initial: &Similarity) -> Vec<Similarity> {
+    let middle = pair.depth.points.centroid();
+    let turned = |turn: Vector3<f64>| {
+        initial.turned_about(middle, initial.scale, Rotation3::new(turn).into_inner() * initial.rotation)
+    };
+    // A cube of turns, of which the ball in it is taken.
+    let side = 2 * MOST_TURNS + 1;
+    let turn =
+        |at: i32| Vector3::new(at % side, at / side % side, at / side / side).map(|step| f64::from(step - MOST_TURNS));
+    let is_near = |turn: &Vector3<f64>| turn.norm() <= f64::from(MOST_TURNS);
+    let turns = (0..side * side * side).map(turn).filter(is_near);
+    turns.map(|turn| turned(TURN.to_radians() * turn)).collect()
 }
 
 /// The outcome of a search that is done: contrast's, or that of the colours from there, where they leave nothing more.
@@ -114,7 +128,7 @@ pub fn conclude(
         rival(&mut contrast, plain.as_ref().map(|plain| plain.pose));
     }
     let is_believed = |plain: &PhotometricReport, search: &mut ContrastSearch| {
-        is_plain(plain, &contrast)
+        is_plain(pair, plain, &contrast)
             && search.is_explained_by(&problem, &plain.pose)
             && (!is_coarse || is_surer(&plain.uncertainty, &contrast.best.uncertainty))
     };
@@ -134,27 +148,4 @@ pub fn rival(contrast: &mut ContrastOutcome, by_colours: Option<Similarity>) {
 pub enum Conclusion {
     ByColours(Box<PhotometricReport>),
     ByContrast(Box<ContrastOutcome>),
-}
-
-/// The pose around a told one.
-pub fn near(
-    pair: &ViewPair,
-    colours: &ColourRegistration,
-    cleaned: &CleanedImage,
-    told: &Similarity,
-) -> Option<Conclusion> {
-    let middle = pair.depth.points.centroid();
-    let turned =
-        |turn: Vector3<f64>| told.turned_about(middle, told.scale, Rotation3::new(turn).into_inner() * told.rotation);
-    // A cube of turns, of which the ball in it is taken.
-    let side = 2 * MOST_TURNS + 1;
-    let turn =
-        |at: i32| Vector3::new(at % side, at / side % side, at / side / side).map(|step| f64::from(step - MOST_TURNS));
-    let is_near = |turn: &Vector3<f64>| turn.norm() <= f64::from(MOST_TURNS);
-    let turns = (0..side * side * side).map(turn).filter(is_near);
-    let starts = turns.map(|turn| turned(TURN.to_radians() * turn)).collect();
-    let problem = colours.contrast_problem(pair, cleaned.image(pair));
-    let mut search = ContrastSearch::new(&problem, starts);
-    while !search.advance(&problem) {}
-    conclude(pair, colours, cleaned, &mut search)
 }

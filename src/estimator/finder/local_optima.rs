@@ -9,21 +9,19 @@
 //! leave 1.25 times their noise or more, so a pose that leaves nothing but the noise of the image comes before one that
 //! sees more but leaves so much.
 
-use crate::pose::Similarity;
+use crate::diagnosis::{Alternative, Diagnosis, Residuals};
+use crate::pose::{PhotometricReport, Similarity};
 
-use super::workers::task::RegisteredCandidate;
-
+/// Number of the initial pose among the candidates: none of the others has it.
+pub const STAYING: usize = usize::MAX;
+/// That of what is tried before the search; the reports of these are at hand.
+pub const BEFORE: usize = usize::MAX - 1;
 /// Power of the number of visible points. A cube root of its own would be 1 kB of the download.
 const THIRD: f64 = 1.0 / 3.0;
 /// A local optimum convinces when the noise of every other one that sees as much is larger by this factor.
 const CONVINCING_NOISE: f64 = 2.0;
-/// Share of the colours' spread that is nearly nothing: noise of 1 % under lights of good contrast.
-const UNEXPLAINED: f64 = 0.05;
 /// Registrations that end nearer than this have found one optimum, degrees.
 const SAME_OPTIMUM: f64 = 3.0;
-/// Noise, in log units, that only paint and shadows leave: renders 0.010 to 0.018, photographs of painted objects 0.04 to
-/// 0.34.
-const PAINTED_NOISE: f64 = 0.07;
 /// An optimum reached so often needs no more support: candidates next to it are passed over.
 const ENOUGH_SUPPORT: u32 = 2;
 /// Candidates nearer than this to such an optimum would only reach it again, degrees.
@@ -34,6 +32,24 @@ const RIVAL_NOISE: f64 = 1.25;
 const RIVAL_VISIBLE: f64 = 0.5;
 /// Rivals reported at most.
 const MOST_RIVALS: usize = 5;
+
+/// What tells one registration from another.
+#[derive(Clone, Debug)]
+pub struct RegisteredCandidate {
+    pub pose: Similarity,
+    /// Number of visible points.
+    pub visible: f64,
+    /// Standard deviation of what is left of log S.
+    pub noise: f64,
+    /// All of it, where it was made in this thread.
+    pub report: Option<Box<PhotometricReport>>,
+}
+
+impl RegisteredCandidate {
+    pub fn of(report: Box<PhotometricReport>) -> Self {
+        Self { pose: report.pose, visible: report.visible as f64, noise: report.noise, report: Some(report) }
+    }
+}
 
 /// A pose where registrations end.
 #[derive(Clone)]
@@ -59,29 +75,49 @@ impl LocalOptimum {
 }
 
 /// The best optimum, if any is worth something, and its rivals.
-pub struct Decision {
+pub struct Optimum {
     pub best: Option<LocalOptimum>,
     pub rivals: Vec<Similarity>,
+}
+
+/// The choice among the local optima.
+#[derive(Default)]
+pub struct Choice {
+    /// The best pose by a single albedo, if any could be registered; none where the initial pose is as good.
+    pub best: Option<Box<PhotometricReport>>,
+    /// Poses that the data cannot tell from the best, best first.
+    pub rivals: Vec<Similarity>,
+}
+
+impl Choice {
+    /// Of the best optimum, whose report is there.
+    pub fn of(Optimum { best, rivals }: Optimum) -> Self {
+        let best = best.filter(|best| best.candidate != STAYING).and_then(|best| best.registered.report);
+        Self { best, rivals }
+    }
 }
 
 /// All optima that registrations have found so far.
 pub struct LocalOptima {
     optima: Vec<LocalOptimum>,
-    /// Standard deviation of log S over the mask.
-    spread: f64,
-    /// Standard deviation of the noise of log S.
-    noise: f64,
+    /// Of the image: its noise and its spread.
+    image: Residuals,
 }
 
 impl LocalOptima {
-    /// None yet; memory for `most`.
-    pub fn new(most: usize, spread: f64, noise: f64) -> Self {
-        Self { optima: Vec::with_capacity(most), spread, noise }
+    /// None yet, of this image; memory for `most`.
+    pub fn new(most: usize, image: Residuals) -> Self {
+        Self { optima: Vec::with_capacity(most), image }
+    }
+
+    /// What an optimum leaves of the image.
+    fn residuals(&self, optimum: &LocalOptimum) -> Residuals {
+        Residuals { noise: optimum.registered.noise, ..self.image }
     }
 
     /// Enters where a registration ended: the better of two that are one.
     pub fn enter(&mut self, candidate: usize, registered: RegisteredCandidate) {
-        let gain = registered.visible.powf(THIRD) * (self.spread / registered.noise).ln();
+        let gain = registered.visible.powf(THIRD) * (self.image.spread / registered.noise).ln();
         if !gain.is_finite() {
             return;
         }
@@ -120,19 +156,20 @@ impl LocalOptima {
             let compared = others.peek().is_some();
             let alone = !others.any(|other| other.rivals(best, CONVINCING_NOISE));
             let most = compared && 2 * best.support as usize >= tried;
-            let clear = best.registered.noise < UNEXPLAINED * self.spread || most;
+            let clear = self.residuals(best).is_next_to_nothing() || most;
             best.support >= ENOUGH_SUPPORT && alone && clear
         })
     }
 
     /// Whether all optima leave far more than light, noise and errors of normals do on an object of one albedo.
-    pub fn is_painted(&self) -> bool {
-        self.optima.iter().all(|optimum| optimum.registered.noise > PAINTED_NOISE)
+    pub fn are_of_varying_albedo(&self) -> bool {
+        let varies = |optimum| self.residuals(optimum).diagnose(Alternative::LocalContrast) == Diagnosis::VaryingAlbedo;
+        self.optima.iter().all(varies)
     }
 
     /// The best optimum and those that the data can't tell from it, given the noise of the image.
-    pub fn decide(&mut self) -> Decision {
-        let (mut optima, noise) = (std::mem::take(&mut self.optima), self.noise);
+    pub fn decide(&mut self) -> Optimum {
+        let (mut optima, noise) = (std::mem::take(&mut self.optima), self.image.image_noise);
         optima.sort_by(|a, b| b.gain.total_cmp(&a.gain));
         // Nothing but the image's noise is left by it, and far more by the first.
         let wins = |first: &LocalOptimum, other: &LocalOptimum| {
@@ -143,14 +180,14 @@ impl LocalOptima {
         }
         let mut optima = optima.into_iter();
         let Some(best) = optima.next().filter(|best| best.gain > 0.0) else {
-            return Decision { best: None, rivals: Vec::new() };
+            return Optimum { best: None, rivals: Vec::new() };
         };
         let rivals = optima
             .filter(|other| other.is_apart(&best) && other.rivals(&best, RIVAL_NOISE))
             .map(|other| other.registered.pose)
             .take(MOST_RIVALS)
             .collect();
-        Decision { best: Some(best), rivals }
+        Optimum { best: Some(best), rivals }
     }
 }
 
@@ -170,8 +207,11 @@ mod tests {
     }
 
     fn winner(optima: &[LocalOptimum], noise: f64) -> (Option<usize>, usize) {
-        let mut all = LocalOptima { optima: optima.to_vec(), spread: 1.0, noise };
-        let Decision { best, rivals } = all.decide();
+        let mut all = LocalOptima {
+            optima: optima.to_vec(),
+            image: Residuals { noise: 0.0, covariance: None, image_noise: noise, spread: 1.0 },
+        };
+        let Optimum { best, rivals } = all.decide();
         (best.map(|best| best.candidate), rivals.len())
     }
 

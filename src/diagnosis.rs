@@ -1,0 +1,201 @@
+//! Whether a single albedo explains an image, or what is left of it is an error of the model or an albedo that varies.
+//!
+//! All of the crate asks this question here. [`Residuals::diagnose`] answers it for the method that would take over, since each of them is
+//! worth its trouble from another point on; [`excess`] and [`share_of_model`] grade it where a weight has to follow the residuals and no
+//! decision is made. Pure numbers in, one of three words out.
+//!
+//! | threshold | value | set on | held out |
+//! |---|---|---|---|
+//! | [`PURE_NOISE`] | 0.035 log units | renders leave 0.010 to 0.018, anything real 0.041 or more | 54 renders of the built-in surfaces |
+//! | [`MIXED_NOISE`] | twice that | photographs of painted objects leave 0.04 to 0.34 | five objects and the cow, for the refinement alone |
+//! | `PURE_SHARE` | 0.15 of the spread | pinhole renders leave 0.01 to 0.10, registered captures 0.14 to 0.54 | none |
+//! | `MODEL_COVARIANCE` | 0.007 log units | 155 renders leave up to 0.0043, pictures of shading 0.0084 or more | shading of five objects, painted renders |
+//! | `PINHOLE_COVARIANCE` | 0.03 log units | twelve pinhole renders leave up to 0.006, four captures 0.14 to 0.39 | none |
+//! | `UNIT_COVARIANCE` | 0.0015 log units | all but two of 110 random renders in the right unit stay below | none |
+//! | `NOISE_OF_IMAGE`, `SHARE_OF_SPREAD` | 1.5, 0.05 | renders leave 0.75 to 1 times the image's noise | none |
+//! | `UNIT_NOISE` | 1.25 | right pairs with clean depth leave up to 1.23 times the image's noise | none |
+//! | `MODEL_NOISE` | 2 | renders leave 0.75 to 1 times the image's noise, photographs 0.7 to 5 times | none |
+//! | [`LARGEST_UNEXPLAINED`] | 0.3 of the spread | renders leave 0.01 to 0.1 | none |
+//! | [`LARGEST_UNEXPLAINED_CONTRAST`] | 0.56 | photographs whose pose is found leave 0.13 to 0.51 | none |
+
+/// Standard deviation of residuals in a channel, log units, up to which they may be nothing but noise and errors of normals.
+pub const PURE_NOISE: f64 = 0.035;
+/// The same from which on light, noise and errors of normals do not suffice.
+pub const MIXED_NOISE: f64 = 2.0 * PURE_NOISE;
+/// [`PURE_NOISE`] as a share of the spread of the colours: noisy normals under a strong light leave as much.
+const PURE_SHARE: f64 = 0.15;
+/// Largest spatial covariance of residuals (as a standard deviation, log units) for which a single albedo is an adequate model.
+const MODEL_COVARIANCE: f64 = 0.007;
+/// The same behind a pinhole, where print may be so dark that little of its noise is left beside the spread of the colours.
+const PINHOLE_COVARIANCE: f64 = 0.03;
+/// The same up to which no other unit of depth is tried.
+pub const UNIT_COVARIANCE: f64 = 0.0015;
+/// Residuals of so many times the image's own noise are that noise ..
+const NOISE_OF_IMAGE: f64 = 1.5;
+/// .. and so are those of this share of the spread of the colours.
+const SHARE_OF_SPREAD: f64 = 0.05;
+/// [`NOISE_OF_IMAGE`] where another unit of depth is in question.
+pub const UNIT_NOISE: f64 = 1.25;
+/// Residuals of more than so many times the image's own noise are errors of the model: shadows, print, a lamp too sharp for nine harmonics.
+const MODEL_NOISE: f64 = 2.0;
+/// Share of the spread of the colours that a trusted pose may leave unexplained.
+pub const LARGEST_UNEXPLAINED: f64 = 0.3;
+/// Share of the local contrast that a trusted pose may leave unexplained.
+pub const LARGEST_UNEXPLAINED_CONTRAST: f64 = 0.56;
+
+/// What a registration with a single albedo leaves of an image, in log units.
+#[derive(Clone, Copy, Debug)]
+pub struct Residuals {
+    /// Robust standard deviation of a channel.
+    pub noise: f64,
+    /// What residuals of neighbours have in common, as a standard deviation; none where only the noise was measured.
+    pub covariance: Option<f64>,
+    /// Standard deviation of the image's own noise.
+    pub image_noise: f64,
+    /// Standard deviation of the image's log colours.
+    pub spread: f64,
+}
+
+/// What would be tried where a single albedo does not explain the image.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Alternative {
+    /// Registration by local contrast, before an orthographic image.
+    LocalContrast,
+    /// Registration by silhouettes, behind a pinhole.
+    Silhouettes,
+    /// The same shape in another unit of depth.
+    DepthUnit,
+}
+
+/// What is left of an image.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Diagnosis {
+    /// Noise.
+    Explained,
+    /// More than noise, but nothing that the alternative would explain.
+    ModelError,
+    /// An albedo that varies, or what looks like one: cast shadows, light from other parts of the object.
+    VaryingAlbedo,
+}
+
+impl Residuals {
+    /// What is left, as far as it matters to an alternative. Another unit is no matter of albedo, so that it is only told whether the image is
+    /// explained without.
+    #[must_use]
+    pub fn diagnose(&self, against: Alternative) -> Diagnosis {
+        let common = |most: f64| self.covariance.is_some_and(|covariance| covariance > most);
+        let (varies, is_explained) = match against {
+            Alternative::LocalContrast if self.covariance.is_none() => (self.noise > MIXED_NOISE, self.is_noise()),
+            Alternative::LocalContrast => (common(MODEL_COVARIANCE), self.is_noise()),
+            Alternative::Silhouettes => {
+                let purest = PURE_NOISE.max(PURE_SHARE * self.spread);
+                (common(PINHOLE_COVARIANCE) || self.noise > purest, self.is_noise())
+            }
+            Alternative::DepthUnit => (false, !common(UNIT_COVARIANCE) && self.noise <= UNIT_NOISE * self.image_noise),
+        };
+        match (varies, is_explained) {
+            (true, _) => Diagnosis::VaryingAlbedo,
+            (false, true) => Diagnosis::Explained,
+            (false, false) => Diagnosis::ModelError,
+        }
+    }
+
+    /// Whether hardly more than the image's own noise is left, however much of it neighbours share.
+    #[must_use]
+    pub fn is_noise(&self) -> bool {
+        self.noise <= (NOISE_OF_IMAGE * self.image_noise).max(SHARE_OF_SPREAD * self.spread)
+    }
+
+    /// Whether next to nothing of the spread is left.
+    #[must_use]
+    pub fn is_next_to_nothing(&self) -> bool {
+        self.noise < SHARE_OF_SPREAD * self.spread
+    }
+
+    /// Whether neighbours share less of these residuals than of others, and little enough for a single albedo.
+    #[must_use]
+    pub fn is_less_common(&self, share: f64, others: &Self) -> bool {
+        let limit = others.covariance.map_or(MODEL_COVARIANCE, |covariance| MODEL_COVARIANCE.min(share * covariance));
+        self.covariance.is_some_and(|covariance| covariance < limit)
+    }
+}
+
+/// Noise in units of the largest that may be nothing else, between two bounds.
+#[must_use]
+pub fn excess(noise: f64, [least, most]: [f64; 2]) -> f64 {
+    (noise / PURE_NOISE).clamp(least, most)
+}
+
+/// Share of the variance of residuals that errors of the model have made.
+#[must_use]
+pub fn share_of_model(residuals: f64, image_noise: f64) -> f64 {
+    let of_image = MODEL_NOISE * image_noise / residuals;
+    (1.0 - of_image * of_image).max(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use Alternative::{DepthUnit, LocalContrast, Silhouettes};
+    use Diagnosis::{Explained, ModelError, VaryingAlbedo};
+
+    /// Noise, covariance, the image's own noise, spread; what each alternative makes of it.
+    const TABLE: [([f64; 4], [Diagnosis; 3]); 9] = [
+        // Renders: with noise, with none, with 3 % of it.
+        ([0.010, 0.0005, 0.011, 0.4], [Explained, Explained, Explained]),
+        ([0.004, 0.0015, 0.000, 0.4], [Explained, Explained, ModelError]),
+        ([0.030, 0.0043, 0.031, 0.3], [Explained, Explained, ModelError]),
+        // Noisy normals: more than noise, nothing common.
+        ([0.034, 0.0040, 0.010, 0.3], [ModelError, ModelError, ModelError]),
+        // The same under a strong light.
+        ([0.100, 0.0040, 0.010, 0.9], [ModelError, ModelError, ModelError]),
+        // Cast shadows in a picture of shading.
+        ([0.030, 0.0100, 0.010, 0.3], [VaryingAlbedo, ModelError, ModelError]),
+        // Dark print, which spreads so far that the noise is small beside it.
+        ([0.200, 0.1400, 0.010, 2.1], [VaryingAlbedo, VaryingAlbedo, ModelError]),
+        // A painted object.
+        ([0.150, 0.1000, 0.010, 0.4], [VaryingAlbedo, VaryingAlbedo, ModelError]),
+        // Fine print, of which neighbours share nothing.
+        ([0.150, 0.0010, 0.010, 0.4], [ModelError, VaryingAlbedo, ModelError]),
+    ];
+
+    fn residuals([noise, covariance, image_noise, spread]: [f64; 4]) -> Residuals {
+        Residuals { noise, covariance: Some(covariance), image_noise, spread }
+    }
+
+    #[test]
+    fn each_kind_of_image_has_its_diagnosis() {
+        for (numbers, expected) in TABLE {
+            let found = [LocalContrast, Silhouettes, DepthUnit].map(|against| residuals(numbers).diagnose(against));
+            assert_eq!(found, expected, "{numbers:?}");
+        }
+    }
+
+    #[test]
+    fn without_a_covariance_the_noise_alone_tells() {
+        let only =
+            |noise| Residuals { noise, covariance: None, image_noise: 0.01, spread: 0.4 }.diagnose(LocalContrast);
+        assert_eq!([0.015, 0.06, 0.08].map(only), [Explained, ModelError, VaryingAlbedo]);
+    }
+
+    #[test]
+    fn what_is_no_number_is_not_explained() {
+        for against in [LocalContrast, Silhouettes, DepthUnit] {
+            assert_eq!(residuals([f64::NAN, 0.0, 0.01, 0.4]).diagnose(against), ModelError, "{against:?}");
+        }
+    }
+
+    #[test]
+    fn another_unit_has_to_leave_less_in_common() {
+        let [own, half, most] = [0.01, 0.0049, 0.0069].map(|covariance| residuals([0.02, covariance, 0.01, 0.4]));
+        assert!(half.is_less_common(0.5, &own) && !most.is_less_common(0.5, &own));
+        assert!(most.is_less_common(0.9, &residuals([0.02, 1.0, 0.01, 0.4])));
+    }
+
+    #[test]
+    fn grades_begin_where_noise_ends() {
+        assert_eq!([0.01, 0.035, 0.0525, 1.0].map(|noise| excess(noise, [1.0, 2.0])), [1.0, 1.0, 1.5, 2.0]);
+        assert_eq!(share_of_model(0.02, 0.01), 0.0);
+        assert!((share_of_model(0.04, 0.01) - 0.75).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,224 @@
+//! The search, and the photometric registration of its candidates.
+//!
+//! Tasks depend on the pair and themselves alone, so that threads may do some of them; what they find counts in the order of the candidates.
+
+use nalgebra::Matrix3;
+
+use crate::error::Result;
+use crate::estimator::gauge;
+use crate::estimator::pair::ViewPair;
+use crate::estimator::stages::{Attempt, ColourRegistration};
+use crate::estimator::workers::task::{Finding, Found, Task, Work};
+use crate::pose::{ImageGrid, Search, SearchProblem, Similarity, TaskResults};
+use crate::reason::Activity;
+
+use super::local_optima::{Choice, LocalOptima, Optimum, RegisteredCandidate};
+use super::scope::TrustRegion;
+
+/// How many candidates are registered.
+#[derive(Clone, Copy)]
+pub struct Effort {
+    /// After so many an optimum that convinces is trusted.
+    pub few: usize,
+    pub most: usize,
+}
+
+/// Where nothing is known of the pose.
+pub const EVERYWHERE: Effort = Effort { few: 10, most: 40 };
+/// Near an initial pose: all of them, to be held against that.
+pub const NEARBY: Effort = Effort { few: 12, most: 12 };
+/// Share of the progress that the search itself takes ..
+const SEARCH_SHARE: f64 = 0.4;
+/// .. the first few registrations: what comes after them may be spared, and then progress leaps to its end ..
+const FEW_SHARE: f64 = 0.2;
+/// .. and all of them.
+const MORE_SHARE: f64 = 0.15;
+
+/// The search of a pair, by the normals that registrations go by; near an initial pose of the rotations within its tolerance.
+///
+/// # Errors
+/// Those of [`Search`], where the views allow none.
+#[inline(never)]
+pub fn search(pair: &ViewPair, grid: ImageGrid, colours: &ColourRegistration) -> Result<Search> {
+    let region = TrustRegion::of(pair);
+    let problem = SearchProblem {
+        image: &pair.image,
+        depth: &pair.depth,
+        normals: colours.normals(),
+        light: pair.known_light(),
+        scale: gauge::held_scale(pair),
+        unit_scale: region.as_ref().map_or_else(|| gauge::unit_scale(pair), |region| region.initial.scale),
+        seed: pair.options.seed,
+    };
+    let mut search = Search::with_grid(&problem, grid)?;
+    if let Some(region) = region {
+        search.narrow(&region.initial, region.degrees);
+    }
+    Ok(search)
+}
+
+/// The candidates of a search on their way to a choice; owns its memory.
+pub struct Candidates {
+    search: Search,
+    /// What became of each candidate; `None` where it could not be registered.
+    registrations: TaskResults<Option<RegisteredCandidate>>,
+    effort: Effort,
+    /// The next candidate to count, and how many have been counted.
+    next: usize,
+    tried: usize,
+    optima: LocalOptima,
+    /// The candidate whose registration is under way here.
+    begun: Option<usize>,
+    /// Whether local contrast takes over where no single albedo explains anything.
+    may_vary: bool,
+    chosen: Option<Optimum>,
+}
+
+impl Candidates {
+    /// Of a search, beside the optima that are known already.
+    pub fn new(search: Search, optima: LocalOptima, effort: Effort, may_vary: bool) -> Self {
+        let registrations = TaskResults::new(0);
+        Self { search, registrations, effort, next: 0, tried: 0, optima, begun: None, may_vary, chosen: None }
+    }
+
+    /// The best pose so far: that of a registration, or else of the search.
+    pub fn best_pose(&self) -> Option<Similarity> {
+        self.optima.best().or_else(|| self.search.best().map(|best| best.pose))
+    }
+
+    /// Each rotation that was tried so far, and its score.
+    pub fn scores(&self) -> Vec<(Matrix3<f64>, f64)> {
+        self.search.scores()
+    }
+
+    /// Where the search was: every rotation of its sweep, and its candidates.
+    pub fn poses(&self) -> Vec<Similarity> {
+        let mut poses = self.search.swept_poses();
+        poses.extend(self.search.candidates().iter().map(|candidate| candidate.pose));
+        poses
+    }
+
+    /// A task for a worker; `None` while none can be begun.
+    pub fn take(&mut self) -> Option<Task> {
+        if let Some(task) = self.search.take() {
+            return Some(Task(Work::Search(task)));
+        }
+        if self.chosen.is_some() {
+            return None;
+        }
+        let Self { registrations, search, optima, next, begun, .. } = self;
+        let candidates = search.candidates();
+        let is_wanted = |index| index >= *next && Some(index) != *begun && !optima.is_known(&candidates[index].pose);
+        let index = registrations.take(is_wanted)?;
+        Some(Task(Work::Register(index, candidates[index].pose)))
+    }
+
+    /// What a worker has found.
+    pub fn accept(&mut self, finding: Finding, is_allowed: impl Fn(&Similarity) -> bool) {
+        match finding.0 {
+            Found::Search(finding) => self.search.accept(finding),
+            Found::Registered(index, registered) => self.registrations.put(index, registered),
+        }
+        self.count(is_allowed);
+    }
+
+    /// One slice: a part of the search, or a step of a registration. The choice, once there is one; ends where not `is_allowed` do not count.
+    #[inline(never)]
+    pub fn advance(
+        &mut self,
+        pair: &ViewPair,
+        colours: &mut ColourRegistration,
+        is_allowed: impl Fn(&Similarity) -> bool,
+    ) -> Option<Choice> {
+        if self.is_searching() {
+            self.search.advance();
+        } else if let Some(chosen) = self.chosen.take() {
+            return self.conclude(pair, colours, chosen);
+        } else {
+            self.register(pair, colours);
+        }
+        self.count(is_allowed);
+        None
+    }
+
+    fn is_searching(&self) -> bool {
+        !self.search.is_done()
+    }
+
+    /// Share of the work that is done, and what is being done.
+    pub fn progress(&self) -> (f64, Activity) {
+        if self.is_searching() {
+            return (SEARCH_SHARE * self.search.progress().share, Activity::Comparing);
+        }
+        let Effort { few, most } = self.effort;
+        let first = self.tried.min(few);
+        let more = (self.tried - first) as f64 / (most - few).max(1) as f64;
+        (SEARCH_SHARE + FEW_SHARE * first as f64 / few as f64 + MORE_SHARE * more, Activity::Registering)
+    }
+
+    /// A step of the registration that is under way here, or the beginning of the next one.
+    fn register(&mut self, pair: &ViewPair, colours: &mut ColourRegistration) {
+        let candidates = self.search.candidates();
+        let is_wanted = |index: usize| index >= self.next && !self.optima.is_known(&candidates[index].pose);
+        let begun = self.begun.filter(|&index| is_wanted(index) && self.registrations.get(index).is_none());
+        let Some(index) = begun.or_else(|| self.registrations.next(is_wanted)) else { return };
+        if let Attempt::Ended(report) = self.step_candidate(pair, colours, index) {
+            self.registrations.put(index, report.map(RegisteredCandidate::of));
+        }
+    }
+
+    /// A step of one registration; another one that was under way here is dropped.
+    fn step_candidate(&mut self, pair: &ViewPair, colours: &mut ColourRegistration, candidate: usize) -> Attempt {
+        let start = self.search.candidates()[candidate].pose;
+        let progress = colours.step_candidate(pair, &start, self.begun != Some(candidate));
+        self.begun = matches!(progress, Attempt::Ongoing).then_some(candidate);
+        progress
+    }
+
+    /// Counts what has become of the candidates, in their order, up to the first that is still open.
+    fn count(&mut self, is_allowed: impl Fn(&Similarity) -> bool) {
+        if self.is_searching() || self.chosen.is_some() {
+            return;
+        }
+        let count = self.search.candidates().len();
+        if self.registrations.len() != count {
+            self.registrations = TaskResults::new(count);
+        }
+        while !self.is_exhausted() {
+            if self.optima.is_known(&self.search.candidates()[self.next].pose) {
+                self.next += 1;
+                continue;
+            }
+            let Some(registered) = self.registrations.get(self.next) else { return };
+            (self.next, self.tried) = (self.next + 1, self.tried + 1);
+            if let Some(registered) = registered.clone().filter(|registered| is_allowed(&registered.pose)) {
+                self.optima.enter(self.next - 1, registered);
+            }
+        }
+        self.chosen = Some(self.optima.decide());
+    }
+
+    /// Whether no further candidate counts.
+    fn is_exhausted(&self) -> bool {
+        let is_clear =
+            || self.optima.is_convincing(self.tried) || (self.may_vary && self.optima.are_of_varying_albedo());
+        let enough = self.tried >= self.effort.most || (self.tried >= self.effort.few && is_clear());
+        self.next >= self.search.candidates().len() || enough
+    }
+
+    /// The choice, once the best one's whole report is here: a worker brings only what tells one optimum from another.
+    fn conclude(&mut self, pair: &ViewPair, colours: &mut ColourRegistration, chosen: Optimum) -> Option<Choice> {
+        let Optimum { best, rivals } = chosen;
+        let Some(mut best) = best else { return Some(Choice::default()) };
+        if best.registered.report.is_none() {
+            match self.step_candidate(pair, colours, best.candidate) {
+                Attempt::Ended(report) => best.registered.report = report,
+                Attempt::Ongoing => {
+                    self.chosen = Some(Optimum { best: Some(best), rivals });
+                    return None;
+                }
+            }
+        }
+        Some(Choice::of(Optimum { best: Some(best), rivals }))
+    }
+}

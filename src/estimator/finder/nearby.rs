@@ -1,0 +1,132 @@
+//! What is tried around an initial pose before the search: each step only where those before it have not explained the image.
+//!
+//! The registration from the initial pose comes first, and is the loop's own. Then: from where silhouettes put the object; from the initial
+//! rotation, shifted to where the projected cloud fits mask and colours, for a calibration that is turned about the sensor moves the object by
+//! an eighth of its size with each degree, and the registration's basin is one of translation. What is left is the search over the rotations
+//! within the tolerance, which turn about the object's middle.
+
+use crate::diagnosis::{Alternative, Diagnosis};
+use crate::error::Result;
+use crate::estimator::pair::ViewPair;
+use crate::estimator::stages::{Attempt, ColourRegistration};
+use crate::pose::{ImageGrid, OutlineReport, PhotometricReport, Search, Similarity};
+
+use super::candidates::{Candidates, NEARBY, search};
+use super::local_optima::{BEFORE, Choice, LocalOptima, RegisteredCandidate, STAYING};
+use super::scope::TrustRegion;
+use super::silhouettes;
+
+/// What has come of a slice.
+pub enum Progress {
+    Ongoing,
+    Explained(Choice),
+    Unexplained(Box<Candidates>),
+}
+
+/// The next step.
+enum Step {
+    Judge,
+    FromSilhouettes(Similarity),
+    Shift,
+    FromShifted(Similarity),
+    Search,
+}
+
+/// The steps around an initial pose.
+pub struct Nearby {
+    step: Step,
+    /// Whether the registration of this step is under way.
+    is_begun: bool,
+    /// Where the registration from the initial pose ended, if that is within the tolerance.
+    plain: Option<Box<PhotometricReport>>,
+    optima: Option<LocalOptima>,
+    silhouettes: Option<Box<OutlineReport>>,
+    search: Option<Search>,
+}
+
+impl Nearby {
+    pub fn new(pair: &ViewPair, plain: Option<Box<PhotometricReport>>) -> Self {
+        let optima = LocalOptima::new(NEARBY.most + 4, pair.residuals_of_noise(0.0));
+        Self { step: Step::Judge, is_begun: false, plain, optima: Some(optima), silhouettes: None, search: None }
+    }
+
+    /// The pose by silhouettes, where they decide anything.
+    pub fn silhouettes(&mut self) -> Option<Box<OutlineReport>> {
+        self.silhouettes.take()
+    }
+
+    /// One slice.
+    pub fn advance(
+        &mut self,
+        pair: &ViewPair,
+        colours: &mut ColourRegistration,
+        region: &TrustRegion,
+    ) -> Result<Progress> {
+        match self.step {
+            Step::Judge => {
+                self.judge(pair, colours, region);
+                let found = self.silhouettes.as_ref().map(|found| found.pose);
+                self.step = found.map_or(Step::Shift, Step::FromSilhouettes);
+            }
+            Step::FromSilhouettes(start) => return Ok(self.register(pair, colours, region, &start, Step::Shift)),
+            Step::Shift => {
+                let mut search = search(pair, ImageGrid::new(&pair.image)?, colours)?;
+                self.step = search.shifted(&region.initial.rotation).map_or(Step::Search, Step::FromShifted);
+                self.search = Some(search);
+            }
+            Step::FromShifted(start) => return Ok(self.register(pair, colours, region, &start, Step::Search)),
+            Step::Search => {
+                let (Some(search), Some(optima)) = (self.search.take(), self.optima.take()) else {
+                    return Ok(Progress::Explained(Choice::default()));
+                };
+                let candidates = Candidates::new(search, optima, NEARBY, false);
+                return Ok(Progress::Unexplained(Box::new(candidates)));
+            }
+        }
+        Ok(Progress::Ongoing)
+    }
+
+    /// What staying is worth, what was found so far, and where silhouettes put the object.
+    fn judge(&mut self, pair: &ViewPair, colours: &mut ColourRegistration, region: &TrustRegion) {
+        let Some(optima) = &mut self.optima else { return };
+        if let Some(staying) = colours.judge(pair, &region.initial) {
+            optima.enter(STAYING, RegisteredCandidate::of(staying));
+        }
+        if let Some(plain) = self.plain.take() {
+            optima.enter(BEFORE, RegisteredCandidate::of(plain));
+        }
+        let found = region.prior(pair).and_then(|prior| silhouettes::near(pair, colours.normals(), prior));
+        self.silhouettes = found.filter(|found| region.holds(pair, &found.pose)).map(Box::new);
+    }
+
+    /// A step of a registration; at its end, whether it explains the image.
+    fn register(
+        &mut self,
+        pair: &ViewPair,
+        colours: &mut ColourRegistration,
+        region: &TrustRegion,
+        start: &Similarity,
+        next: Step,
+    ) -> Progress {
+        let attempt = colours.step_candidate(pair, start, !self.is_begun);
+        let Attempt::Ended(found) = attempt else {
+            self.is_begun = true;
+            return Progress::Ongoing;
+        };
+        (self.is_begun, self.step) = (false, next);
+        let found = found.filter(|found| region.holds(pair, &found.pose));
+        let (Some(found), Some(mut optima)) = (found, self.optima.take()) else { return Progress::Ongoing };
+        let is_explained = explains(pair, &found);
+        optima.enter(BEFORE, RegisteredCandidate::of(found));
+        if is_explained {
+            return Progress::Explained(Choice::of(optima.decide()));
+        }
+        self.optima = Some(optima);
+        Progress::Ongoing
+    }
+}
+
+/// Whether a pose explains the image: fine print is noise to an image, but not to neighbours.
+pub fn explains(pair: &ViewPair, found: &PhotometricReport) -> bool {
+    pair.residuals(found).diagnose(Alternative::Silhouettes) == Diagnosis::Explained
+}
