@@ -99,7 +99,7 @@ export class Estimator {
     }
   }
 
-  /** One iteration, or one slice of the search while the loop is still there. */
+  /** One iteration, or one slice of the search while the loop is still there. A search around an initial pose belongs to the first iteration. */
   step(): StepReport {
     const answer = this.#refinementWorker?.answer;
     if (answer) this.#call((raw) => raw.stepHalfway());
@@ -112,14 +112,14 @@ export class Estimator {
     return this.#after(this.#call((raw) => raw.stepStage()));
   }
 
-  /** As many steps as fit into the time, at least one. */
+  /** As many steps as fit into the time, at least one. Of a search around an initial pose a step is one slice here, as in `run`. */
   stepFor(milliseconds: number): StepReport {
     if (typeof milliseconds !== "number" || Number.isNaN(milliseconds)) {
       throw new BimodalError("type", "milliseconds: must be a number", "milliseconds");
     }
     const end = performance.now() + milliseconds;
-    let report = this.step();
-    while (report.status === "running" && performance.now() < end) report = this.step();
+    let report = this.#advance();
+    while (report.status === "running" && performance.now() < end) report = this.#advance();
     return report;
   }
 
@@ -377,9 +377,15 @@ export class Estimator {
     } while (report.status === "running" && !isThere());
   }
 
+  /** As `step`, but one slice of a search around an initial pose, which `step` does as a whole. */
+  #advance(): StepReport {
+    if (this.#refinementWorker?.answer) return this.step();
+    return this.#after(this.#call((raw) => raw.advance()));
+  }
+
   /** A step that waits for the refinement worker, if it is busy. */
   async #stepTogether(): Promise<StepReport> {
-    if (!this.#refinementWorker?.isBusy) return this.step();
+    if (!this.#refinementWorker?.isBusy) return this.#advance();
     this.#call((raw) => raw.stepHalfway());
     await this.#refinementWorker.settled();
     return this.#finish(this.#refinementWorker.answer);
@@ -403,7 +409,7 @@ export class Estimator {
       this.#searchWorkers?.end();
       this.#refinementWorker?.end();
     } else if (report.stage === "search") {
-      this.#searchWorkers?.feed();
+      this.#searchWorkers?.feed(this.#options);
     } else {
       this.#searchWorkers?.end();
       this.#share();

@@ -238,7 +238,6 @@ const PARTS = [
   { name: "wasm-node", run: wasmInNode, lane: 0, closing: CARGO },
   { name: "wasm-browser", run: wasmIn("WASM_BINDGEN_USE_BROWSER"), lane: 0, closing: CARGO },
   { name: "wasm-worker", run: wasmIn("WASM_BINDGEN_USE_DEDICATED_WORKER"), lane: 0, closing: CARGO },
-  { name: "python", run: python, needsBuild: true, lane: 0, closing: PYTHON },
   { name: "sizes", run: downloads, needsBuild: true, lane: 1, closing: /^size of .*$/gm },
   {
     name: "firefox",
@@ -248,6 +247,7 @@ const PARTS = [
     closing: /^(?: +\d+ (?:passed|failed|skipped|flaky)|test result: ).*$/gm,
   },
   { name: "types", run: types, needsBuild: true, lane: 1, closing: /^tsc .*$/gm },
+  { name: "python", run: python, needsBuild: true, lane: 1, closing: PYTHON },
   { name: "contract", run: contract, needsBuild: true, closing: NODE },
   {
     name: "tables",

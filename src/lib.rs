@@ -116,7 +116,7 @@ pub const CODES: &str = include_str!("codes.json");
 // | `calibration` | the cameras of a rig whose calibration is in question, and their lenses | |
 // | `options`, `reason`, `report` | what a run can be given, what it reports and why | |
 // | `picture` | results as pixels of a screen | |
-// | `estimator` | Algorithm 1 stage by stage, its `objective`, its `verdict`; the `initialisation` before it; workers and threads | Eq. 1, Algorithm 1 |
+// | `estimator` | Algorithm 1 stage by stage, its `objective`, its `verdict`; the `finder` of a pose; workers and threads | Eq. 1, Algorithm 1 |
 // | `scenes` | surfaces, lights and a renderer with a known answer; uses `view`, `light`, `pose`, `calibration` | the experiments |
 // | `tutorial` | the method in eight chapters, each with an example that runs; documentation alone | all of it |
 // | `wasm` | bindings without mathematics, wasm32 only | |

@@ -24,6 +24,7 @@ interface SearchWorker {
  */
 export class SearchWorkers {
   #workers: SearchWorker[] = [];
+  #isBegun = false;
   readonly #count: number;
   readonly #pair: Views;
   readonly #tasks: Tasks;
@@ -39,6 +40,7 @@ export class SearchWorkers {
   /** A search begins, with workers of its own. */
   begin(options: PlainOptions): void {
     this.end();
+    this.#isBegun = true;
     for (let started = 0; started < this.#count; started++) this.#start(options);
   }
 
@@ -51,8 +53,13 @@ export class SearchWorkers {
     handle.onFailure(() => this.#drop(worker));
   }
 
-  /** Gives out tasks until there are none or every queue is full. */
-  feed(): void {
+  /** Gives out tasks until there are none or every queue is full; a search around an initial pose begins here. */
+  feed(options: PlainOptions): void {
+    if (!this.#isBegun) this.begin(options);
+    this.#give();
+  }
+
+  #give(): void {
     for (const worker of [...this.#workers]) {
       while (worker.queued < QUEUE) {
         const task = this.#tasks.take();
@@ -70,6 +77,7 @@ export class SearchWorkers {
 
   /** The search is over, or the estimator freed. */
   end(): void {
+    this.#isBegun = false;
     for (const worker of [...this.#workers]) this.#drop(worker);
   }
 
@@ -80,7 +88,7 @@ export class SearchWorkers {
     worker.queued--;
     try {
       this.#tasks.accept(answer);
-      this.feed();
+      this.#give();
     } catch {
       // The estimator has panicked; its next call throws the error.
       this.end();

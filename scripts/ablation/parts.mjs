@@ -5,7 +5,7 @@
 import { Failure } from "../shell.mjs";
 
 const CONTRAST = "src/pose/contrast";
-const PAINTED = "src/estimator/stages/painted.rs";
+const PAINTED = "src/estimator/finder/local_contrast.rs";
 
 const objective = (from, to) => ({ file: `${CONTRAST}/objective.rs`, from, to });
 const LIMBS = [
@@ -113,7 +113,7 @@ export const PARTS = [
   {
     name: "confirmed",
     what: "the colours' word after contrast's: contrast's end is the end",
-    changes: [{ file: PAINTED, from: "is_plain(plain, &contrast)", to: "false" }],
+    changes: [{ file: PAINTED, from: "is_plain(pair, plain, &contrast)", to: "false" }],
   },
   {
     name: "sizes",

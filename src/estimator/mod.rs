@@ -188,16 +188,20 @@ impl Estimator {
             return self.step_stage();
         }
         let iteration = self.report.iteration;
-        while self.report.status == Status::Running && self.report.iteration == iteration && !self.is_searching() {
+        while self.report.status == Status::Running && self.report.iteration == iteration {
             self.step_stage();
         }
         self.report()
     }
 
-    /// Whether the next step is a slice of the finder.
+    /// Whether the next step is a slice of the search that comes before the first iteration.
     #[must_use]
     pub const fn is_searching(&self) -> bool {
-        matches!(self.run, Run::Preparing(_) | Run::Searching(_))
+        match &self.run {
+            Run::Preparing(_) => true,
+            Run::Searching(finder) => !finder.is_near(),
+            Run::Iterating(_) | Run::Ended => false,
+        }
     }
 
     /// One stage of an iteration, or a slice of the finder.

@@ -11,7 +11,7 @@ use super::output;
 use crate::estimator::{Estimator as Native, Finding, RefinementTask, Surface};
 use crate::options::Options;
 use crate::picture::{ColourMap, Layer};
-use crate::report::Status;
+use crate::report::{Stage, Status};
 
 #[wasm_bindgen]
 extern "C" {
@@ -63,6 +63,22 @@ impl Estimator {
             self.timed_stage();
             let report = self.native.report();
             if searching || report.iteration != before || report.status != Status::Running {
+                return self.report();
+            }
+        }
+    }
+
+    /// As `step`, but for a search around an initial pose within the first iteration, of which it does one slice.
+    pub fn advance(&mut self) -> JsReport {
+        let report = self.native.report();
+        if self.halfway || self.native.is_searching() || report.iteration > 0 || report.status != Status::Running {
+            return self.step();
+        }
+        self.milliseconds.clear();
+        loop {
+            self.timed_stage();
+            let report = self.native.report();
+            if report.stage == Stage::Search || report.iteration > 0 || report.status != Status::Running {
                 return self.report();
             }
         }

@@ -8,7 +8,7 @@
 use std::sync::Mutex;
 
 use super::pool::Threads;
-use crate::estimator::{Estimator, Task, Worker};
+use crate::estimator::{Estimator, Run, Task, Worker};
 use crate::report::Status;
 
 /// Tasks of a round for each thread: some tenths of a second, after which there is progress to show.
@@ -79,7 +79,11 @@ impl Estimator {
     /// An iteration.
     fn iterate_in(&mut self, threads: &mut Threads) {
         let iteration = self.report.iteration;
-        while self.report.status == Status::Running && self.report.iteration == iteration && !self.is_searching() {
+        while self.report.status == Status::Running && self.report.iteration == iteration {
+            if matches!(self.run, Run::Searching(_)) {
+                self.search_in(threads);
+                continue;
+            }
             if self.precedes_refinement() {
                 self.refine_in(threads);
             }
