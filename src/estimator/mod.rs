@@ -19,6 +19,7 @@ mod memory;
 mod objective;
 mod outputs;
 mod pair;
+mod reported;
 mod run;
 mod searching;
 mod settling;
@@ -42,11 +43,14 @@ use measurement::Residuals;
 use objective::Trial;
 pub use outputs::Surface;
 use pair::ViewPair;
+use reported::Reported;
 use run::{History, Run};
 use settling::Settling;
 use solution::{Accepted, Solution};
 pub use stages::RefinementTask;
-use stages::{Inputs, LightStage, PaintStage, RefinementStage, Registered, Registering, RegistrationStage, ShapeStage};
+use stages::{
+    Inputs, LightStage, PaintStage, RefinementStage, Registered, Registering, RegistrationStage, ShapeStage, Stages,
+};
 use verdict::{ColourEvidence, ContrastEvidence, Evidence, OutlineEvidence, Verdict, verdict};
 pub use workers::Worker;
 pub use workers::task::{Finding, Task};
@@ -70,26 +74,19 @@ pub use workers::task::{Finding, Task};
 pub struct Estimator {
     pair: ViewPair,
     run: Run,
-    light: LightStage,
-    paint: PaintStage,
-    shape: ShapeStage,
-    registration: RegistrationStage,
-    refinement: RefinementStage,
+    stages: Stages,
     correspondences: Correspondences,
     residuals: Residuals,
     /// Memory that the stages take turns at.
     scratch: Scratch,
     /// What the stages of this iteration work on.
     solution: Solution,
-    /// The last iteration that was accepted, and the depth points over which the next one is compared with it.
+    /// The last iteration that was accepted.
     accepted: Accepted,
-    evaluated: Vec<u32>,
     history: History,
     /// Which shapes have settled, so that they are kept.
     settling: Settling,
-    report: StepReport,
-    /// The same in the caller's units, where they are others.
-    report_out: Option<Box<StepReport>>,
+    report: Reported,
     /// Threads that share the work, where there are any.
     #[cfg(feature = "rayon")]
     threads: Option<Box<threads::Threads>>,
@@ -118,24 +115,24 @@ impl Estimator {
         let correspondences = Correspondences::new(&pair.image, &pair.depth);
         let mut estimator = Self {
             run: if pair.options.start == Start::Search { Run::Preparing(None) } else { Run::Iterating(Stage::Light) },
-            light: LightStage::new(pixels),
-            paint: PaintStage::new(),
-            shape,
-            registration,
-            refinement,
+            stages: Stages {
+                light: LightStage::new(pixels),
+                paint: PaintStage::new(),
+                shape,
+                registration,
+                refinement,
+            },
             correspondences: match pair.options.shading {
                 Shading::Pixel => correspondences.of_points_alone(),
                 Shading::Surface => correspondences,
             },
             residuals: Residuals::new(pixels),
             scratch,
-            accepted: Accepted::new(&solution),
+            accepted: Accepted::new(&solution, objective::MOST_POINTS),
             solution,
-            evaluated: Vec::with_capacity(objective::MOST_POINTS),
             history: History::default(),
             settling: Settling::new(settling::TOLERANCE),
-            report: StepReport::at(pose),
-            report_out: None,
+            report: Reported::new(StepReport::at(pose)),
             #[cfg(feature = "rayon")]
             threads: None,
             pair,
@@ -147,8 +144,8 @@ impl Estimator {
 
     /// Everything that iteration zero needs: holes guessed, points placed, correspondences and light by the first pose.
     fn prepare(&mut self) -> Result<()> {
-        self.refinement.fill_holes(&self.pair, &mut self.scratch, &mut self.solution.depth)?;
-        self.solution.light.exposure = self.light.find_first_exposure(&self.pair);
+        self.stages.refinement.fill_holes(&self.pair, &mut self.scratch, &mut self.solution.depth)?;
+        self.solution.light.exposure = self.stages.light.find_first_exposure(&self.pair);
         self.find_correspondences();
         // Relief that is next to flat asks for a light that there is none of. The prior's stands until a pose is tried.
         self.fit_light().or_else(|error| if error.kind() == ErrorKind::Range { Ok(()) } else { Err(error) })?;
@@ -244,15 +241,15 @@ impl Estimator {
     /// was found together with paint before both.
     fn fit_light(&mut self) -> Result<()> {
         self.find_paint();
-        let colours = self.paint.colours(&self.pair);
-        let fitted = self.light.fit(&self.pair, colours, &self.solution, &self.correspondences)?;
+        let colours = self.stages.paint.colours(&self.pair);
+        let fitted = self.stages.light.fit(&self.pair, colours, &self.solution, &self.correspondences)?;
         if let Some(light) = fitted {
             self.solution.light.light = light;
         }
-        if let Some(found) = self.registration.found_by_colours() {
+        if let Some(found) = self.stages.registration.found_by_colours() {
             (self.solution.light.light, self.solution.light.exposure) = (found.light, found.exposure);
         }
-        if let Some(painted) = self.paint.found() {
+        if let Some(painted) = self.stages.paint.found() {
             self.solution.light = painted.light;
         }
         Ok(())
@@ -261,27 +258,40 @@ impl Estimator {
     /// Paint, where the pose has come to rest or follows it, and it has not been looked for yet.
     fn find_paint(&mut self) {
         let Solution { pose, .. } = &self.solution;
-        if self.registration.asks_for_paint(&self.pair, pose) && !self.paint.knows(&self.pair, pose) {
-            let normals = self.registration.measured_normals(&self.pair);
-            self.light.bring_normals(&self.pair, normals, pose, &self.correspondences);
-            self.paint.find(&self.pair, pose, self.light.depth_normals());
+        if self.stages.registration.asks_for_paint(&self.pair, pose) && !self.stages.paint.knows(&self.pair, pose) {
+            let normals = self.stages.registration.measured_normals(&self.pair);
+            self.stages.light.bring_normals(&self.pair, normals, pose, &self.correspondences);
+            self.stages.paint.find(&self.pair, pose, self.stages.light.depth_normals());
         }
     }
 
     /// Normals of the image (Eq. 6 to 9), and the exposure of a known light unless the registration has found it.
     fn find_normals(&mut self) {
-        let exposure_is_free = self.pair.known_light().is_some() && self.registration.found_by_colours().is_none();
-        let inputs = Inputs::of(&self.pair, &self.paint, &self.light, &self.correspondences, self.report.iteration);
+        let exposure_is_free =
+            self.pair.known_light().is_some() && self.stages.registration.found_by_colours().is_none();
+        let inputs = Inputs::of(
+            &self.pair,
+            &self.stages.paint,
+            &self.stages.light,
+            &self.correspondences,
+            self.report.iteration,
+        );
         let Solution { light, image, .. } = &mut self.solution;
-        self.shape.find_normals(inputs, exposure_is_free, light, &mut image.normals);
+        self.stages.shape.find_normals(inputs, exposure_is_free, light, &mut image.normals);
     }
 
     /// Heights of the image, then the gauges that neither view can tell: t_z of an orthographic image, the distance of
     /// a pinhole image's surface.
     fn find_surface(&mut self) -> Result<()> {
         let light = self.solution.light.total();
-        let inputs = Inputs::of(&self.pair, &self.paint, &self.light, &self.correspondences, self.report.iteration);
-        self.shape.find_surface(inputs, &light, &mut self.scratch, &mut self.solution.image)?;
+        let inputs = Inputs::of(
+            &self.pair,
+            &self.stages.paint,
+            &self.stages.light,
+            &self.correspondences,
+            self.report.iteration,
+        );
+        self.stages.shape.find_surface(inputs, &light, &mut self.scratch, &mut self.solution.image)?;
         gauge::settle_surface(&self.pair, &self.correspondences, &mut self.scratch.spare, &mut self.solution);
         Ok(())
     }
@@ -291,8 +301,14 @@ impl Estimator {
         if gauge::pixel_length(&self.pair.image, &self.solution) <= 0.0 {
             return Err(Reason::BehindCamera);
         }
-        let inputs = Inputs::of(&self.pair, &self.paint, &self.light, &self.correspondences, self.report.iteration);
-        match self.registration.register(inputs, &self.paint, &self.solution)? {
+        let inputs = Inputs::of(
+            &self.pair,
+            &self.stages.paint,
+            &self.stages.light,
+            &self.correspondences,
+            self.report.iteration,
+        );
+        match self.stages.registration.register(inputs, &self.stages.paint, &self.solution)? {
             Registering::Done(registered) => self.finish_registration(registered.map(|registered| *registered)),
             Registering::Finding(finder) => self.find(finder),
         }
@@ -307,7 +323,7 @@ impl Estimator {
             self.history.improved = registered.improved;
             self.adopt(registered);
             self.history.proposed_degrees = start.degrees_to(&self.solution.pose);
-            if self.registration.kind(&self.pair) == Registration::Icp {
+            if self.stages.registration.kind(&self.pair) == Registration::Icp {
                 self.shorten_step(&start);
             }
         }
@@ -350,8 +366,14 @@ impl Estimator {
 
     /// Normals and depth of the depth view (Eq. 17 to 19).
     fn refine(&mut self) {
-        let inputs = Inputs::of(&self.pair, &self.paint, &self.light, &self.correspondences, self.report.iteration);
-        self.refinement.refine(inputs, &self.accepted, &mut self.scratch, &mut self.solution);
+        let inputs = Inputs::of(
+            &self.pair,
+            &self.stages.paint,
+            &self.stages.light,
+            &self.correspondences,
+            self.report.iteration,
+        );
+        self.stages.refinement.refine(inputs, &self.accepted, &mut self.scratch, &mut self.solution);
     }
 
     /// Projects the depth points, hides what is occluded, and drops what is too far from the image surface.
@@ -374,7 +396,7 @@ impl Estimator {
         // The registration by colours has an objective of its own: a pose that it moves is not for this one to take
         // back.
         let is_comparable =
-            self.registration.kind(&self.pair) != Registration::Joint || change < self.pair.options.stop_degrees;
+            self.stages.registration.kind(&self.pair) != Registration::Joint || change < self.pair.options.stop_degrees;
         let worse_than =
             before.filter(|before| is_comparable && objective::worsens(before.total(), after.total(), change));
         match worse_than {
@@ -394,8 +416,12 @@ impl Estimator {
     /// Objective of the working solution over the evaluation points.
     fn objective(&self) -> Objective {
         let light = self.solution.light.total();
-        let colours = self.paint.colours(&self.pair);
-        objective::evaluate(&self.pair, &self.evaluated, Trial::of(&self.pair, colours, &self.solution, &light))
+        let colours = self.stages.paint.colours(&self.pair);
+        objective::evaluate(
+            &self.pair,
+            self.accepted.evaluated(),
+            Trial::of(&self.pair, colours, &self.solution, &light),
+        )
     }
 
     /// Goes back to the accepted solution.
@@ -403,7 +429,7 @@ impl Estimator {
         self.history.rejections += 1;
         self.settling.restart();
         self.solution.restore(&self.accepted, &self.pair);
-        self.refinement.shape_changed();
+        self.stages.refinement.shape_changed();
         self.find_correspondences();
         self.report.rotation_change = 0.0;
         self.report.reason = Some(Reason::TakenBack { before: before.total(), after: after.total() });
@@ -427,7 +453,8 @@ impl Estimator {
     /// Decides which shapes the next iteration keeps: none before the surface has tried its starts, and none after one
     /// that has changed the pose.
     fn settle(&mut self) {
-        let Self { pair, paint, registration, accepted, solution, scratch, settling, report, .. } = self;
+        let Self { pair, stages, accepted, solution, scratch, settling, report, .. } = self;
+        let Stages { paint, registration, .. } = stages;
         let stands = registration.keeps(pair, &solution.pose) && paint.knows(pair, &solution.pose);
         if stands && report.iteration >= crate::shape::STARTS {
             settling.advance(settling::movements(pair, accepted, solution, &mut scratch.spare));
@@ -438,13 +465,12 @@ impl Estimator {
 
     /// The evaluation points of the next comparison, from the present correspondences.
     fn choose_evaluation_points(&mut self) {
-        self.evaluated.clear();
-        self.evaluated.extend(objective::evaluation_points(&self.pair, &self.correspondences));
+        self.accepted.compared_over(objective::evaluation_points(&self.pair, &self.correspondences));
     }
 
     /// Overlap, inliers and residuals of the present correspondences.
     fn measure(&mut self) {
-        let Self { pair, paint, solution, correspondences, scratch, .. } = self;
+        let Self { pair, stages: Stages { paint, .. }, solution, correspondences, scratch, .. } = self;
         let residual = self.residuals.measure(pair, paint, solution, correspondences, &mut scratch.spare);
         self.report.residual = residual.unwrap_or(self.report.residual);
         self.report.overlap = correspondences.count() as f64 / pair.depth.valid().max(1) as f64;
@@ -460,7 +486,7 @@ impl Estimator {
         let ended = verdict(&Evidence {
             iteration: report.iteration,
             max_iterations: pair.options.max_iterations,
-            registration: self.registration.kind(pair),
+            registration: self.stages.registration.kind(pair),
             shading: pair.options.shading,
             correspondences: self.correspondences.count(),
             overlap: report.overlap,
@@ -470,13 +496,17 @@ impl Estimator {
             rejections: history.rejections,
             unmoved: history.unmoved,
             is_whole_step: history.step_fraction >= 1.0 && history.improved,
-            colours: self.registration.found_by_colours().map(|it| ColourEvidence::of(it, pair.image.log_spread())),
-            outlines: self.registration.found_by_outlines().map(OutlineEvidence::of),
-            contrast: self.registration.found_by_contrast().map(ContrastEvidence::of),
+            colours: self
+                .stages
+                .registration
+                .found_by_colours()
+                .map(|it| ColourEvidence::of(it, pair.image.log_spread())),
+            outlines: self.stages.registration.found_by_outlines().map(OutlineEvidence::of),
+            contrast: self.stages.registration.found_by_contrast().map(ContrastEvidence::of),
             is_hollow: history.is_hollow,
             trimmed_without_mask: pair.depth.trimmed_without_mask(),
             is_whole_frame: pair.options.start == Start::Search && pair.image.is_whole_frame(),
-            has_kept_start: self.registration.has_kept_start(),
+            has_kept_start: self.stages.registration.has_kept_start(),
             rivals: report.rivals.len() as u32,
             nearest_rival: nearest,
         });
@@ -491,7 +521,7 @@ impl Estimator {
     fn doubt_unit(&mut self, ended: Verdict) -> Verdict {
         let has_rivals = !self.history.is_hollow && ended.0 == Status::Ambiguous && !self.report.rivals.is_empty();
         let is_asked = ended.0 == Status::Converged || has_rivals;
-        let unit = is_asked.then(|| self.registration.better_unit(&self.pair, &self.solution.pose)).flatten();
+        let unit = is_asked.then(|| self.stages.registration.better_unit(&self.pair, &self.solution.pose)).flatten();
         unit.map_or(ended, verdict::verdict_of_other_unit)
     }
 

@@ -24,14 +24,14 @@ impl Estimator {
     /// What the last stage left.
     #[must_use]
     pub fn report(&self) -> &StepReport {
-        self.report_out.as_deref().unwrap_or(&self.report)
+        self.report.given_out()
     }
 
     /// Which registration the pose is of, in words, for tests of the whole.
     #[doc(hidden)]
     #[must_use]
     pub fn registered_by(&self) -> &'static str {
-        self.registration.engine(&self.pair)
+        self.stages.registration.engine(&self.pair)
     }
 
     /// Normals of the image surface, colour view's frame, NaN off the mask.
@@ -99,7 +99,7 @@ impl Estimator {
     #[must_use]
     pub fn albedo(&self) -> Vec<f32> {
         let mask = &self.pair.image.mask;
-        self.carried(match self.paint.found() {
+        self.carried(match self.stages.paint.found() {
             Some(found) => {
                 (0..mask.len()).flat_map(|pixel| [0, 1, 2].map(|channel: usize| found.albedo[channel][pixel])).collect()
             }
@@ -111,12 +111,12 @@ impl Estimator {
     /// this has [`residual`](Self::residual) for its length.
     #[must_use]
     pub fn shading(&self) -> Vec<f32> {
-        self.carried(measurement::shading(&self.pair, &self.paint, &self.solution, &self.correspondences))
+        self.carried(measurement::shading(&self.pair, &self.stages.paint, &self.solution, &self.correspondences))
     }
 
     /// The report of the last stage in the caller's units.
     pub(super) fn translate_report(&mut self) {
-        self.report_out = self.pair.way.as_ref().map(|way| Box::new(units::report_out(way, &self.report)));
+        self.report.translate(self.pair.way.as_ref());
     }
 
     /// Colours of the working view at the caller's pixels.

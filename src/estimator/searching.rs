@@ -27,7 +27,7 @@ impl Estimator {
             }
             Some(prepared) => {
                 let (grid, opening) = *prepared;
-                let memory = self.registration.memory();
+                let memory = self.stages.registration.memory();
                 Run::Searching(Box::new(Finder::everywhere(&self.pair, memory, opening, grid)?))
             }
         };
@@ -44,7 +44,7 @@ impl Estimator {
     /// A slice of the finder.
     pub(super) fn search(&mut self) -> std::result::Result<(), Reason> {
         let Run::Searching(finder) = &mut self.run else { return Ok(()) };
-        match finder.advance(&self.pair, self.registration.memory())? {
+        match finder.advance(&self.pair, self.stages.registration.memory())? {
             Advance::Ongoing(share, activity) => {
                 self.report_search(share, activity);
                 Ok(())
@@ -53,7 +53,7 @@ impl Estimator {
                 self.run = Run::Iterating(Stage::Registration.next());
                 self.report.stage = Stage::Registration;
                 self.report.pose = self.accepted.pose;
-                let registered = self.registration.adopt(&self.pair, decision, &self.solution.pose)?;
+                let registered = self.stages.registration.adopt(&self.pair, decision, &self.solution.pose)?;
                 self.finish_registration(registered);
                 Ok(())
             }
@@ -97,7 +97,7 @@ impl Estimator {
     /// Starts the loop from what the finder has decided.
     fn start_from(&mut self, decision: Decision) -> std::result::Result<(), Reason> {
         let by = decision.by.found_by();
-        if let Some(registered) = self.registration.adopt(&self.pair, decision, &self.solution.pose)? {
+        if let Some(registered) = self.stages.registration.adopt(&self.pair, decision, &self.solution.pose)? {
             self.adopt(registered);
         }
         self.report.reason = Some(Reason::SearchDone { by, rivals: self.report.rivals.len() as u32 });

@@ -125,11 +125,13 @@ pub struct Accepted {
     image_depth: Vec<f32>,
     depth_normals: Normals,
     refined_depth: Vec<f32>,
+    /// Depth points over which the next iteration is compared with it.
+    evaluated: Vec<u32>,
 }
 
 impl Accepted {
-    /// No shape yet.
-    pub fn new(solution: &Solution) -> Self {
+    /// No shape yet; memory for so many points to compare over.
+    pub fn new(solution: &Solution, points: usize) -> Self {
         Self {
             pose: solution.pose,
             light: solution.light,
@@ -137,6 +139,7 @@ impl Accepted {
             image_depth: Vec::new(),
             depth_normals: Normals::default(),
             refined_depth: Vec::new(),
+            evaluated: Vec::with_capacity(points),
         }
     }
 
@@ -153,6 +156,17 @@ impl Accepted {
     /// Normals and depths of the refined depth view.
     pub fn depth(&self) -> (&Normals, &[f32]) {
         (&self.depth_normals, &self.refined_depth)
+    }
+
+    /// The depth points over which the next iteration is compared with this one.
+    pub fn evaluated(&self) -> &[u32] {
+        &self.evaluated
+    }
+
+    /// Chooses these points.
+    pub fn compared_over(&mut self, points: impl Iterator<Item = u32>) {
+        self.evaluated.clear();
+        self.evaluated.extend(points);
     }
 
     /// Accepts `solution`; allocates the first time.

@@ -21,3 +21,12 @@ pub use paint::PaintStage;
 pub use refinement::{RefinementStage, RefinementTask, terms_from_numbers};
 pub use registration::{Registered, Registering, RegistrationStage};
 pub use shape::ShapeStage;
+
+/// All stages of an iteration, in their order but for paint, which is looked for under a pose that has settled.
+pub struct Stages {
+    pub light: LightStage,
+    pub paint: PaintStage,
+    pub shape: ShapeStage,
+    pub registration: RegistrationStage,
+    pub refinement: RefinementStage,
+}

@@ -34,19 +34,20 @@ impl Estimator {
     /// still to be found.
     #[must_use]
     pub fn refinement_task(&self, held: Option<u32>) -> Option<RefinementTask<'_>> {
-        self.refinement.task(&self.accepted, &self.solution.depth, held)
+        self.stages.refinement.task(&self.accepted, &self.solution.depth, held)
     }
 
     /// Whether there are stages left before a refinement that a worker may be making.
     #[must_use]
     pub fn precedes_refinement(&self) -> bool {
-        matches!(self.run, Run::Iterating(stage) if stage != Stage::Refinement) && self.refinement.can_be_shared()
+        matches!(self.run, Run::Iterating(stage) if stage != Stage::Refinement)
+            && self.stages.refinement.can_be_shared()
     }
 
     /// Where to put the shape that a worker has made of the one with number `shape`: refined depth and normals (x, y,
     /// z). `None` unless the next stage asks for it.
     pub fn accept_refinement(&mut self, shape: u32) -> Option<[&mut [f32]; 4]> {
-        if !matches!(self.run, Run::Iterating(Stage::Refinement)) || !self.refinement.accept(shape) {
+        if !matches!(self.run, Run::Iterating(Stage::Refinement)) || !self.stages.refinement.accept(shape) {
             return None;
         }
         let depth = &mut self.solution.depth;
@@ -59,13 +60,19 @@ impl Estimator {
         // A worker has the image with its paint.
         let is_known = self.report.status == Status::Running
             && !self.settling.keeps_depth()
-            && self.paint.found().is_none()
-            && self.registration.keeps(&self.pair, &self.solution.pose);
+            && self.stages.paint.found().is_none()
+            && self.stages.registration.keeps(&self.pair, &self.solution.pose);
         if is_known {
-            let inputs = Inputs::of(&self.pair, &self.paint, &self.light, &self.correspondences, self.report.iteration);
-            self.refinement.prepare_next(inputs, &self.solution);
+            let inputs = Inputs::of(
+                &self.pair,
+                &self.stages.paint,
+                &self.stages.light,
+                &self.correspondences,
+                self.report.iteration,
+            );
+            self.stages.refinement.prepare_next(inputs, &self.solution);
         } else {
-            self.refinement.discard_prepared();
+            self.stages.refinement.discard_prepared();
         }
     }
 }
