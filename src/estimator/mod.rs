@@ -12,6 +12,7 @@
 //! Each stage owns its memory and says by its signature what it reads and what it writes ([`stages`]); this file is the
 //! order in which they run. What an end is called is decided in [`verdict`].
 
+mod checks;
 mod finder;
 mod gauge;
 mod measurement;
@@ -503,26 +504,29 @@ impl Estimator {
                 .map(|it| ColourEvidence::of(it, pair.image.log_spread())),
             outlines: self.stages.registration.found_by_outlines().map(OutlineEvidence::of),
             contrast: self.stages.registration.found_by_contrast().map(ContrastEvidence::of),
-            is_hollow: history.is_hollow,
-            trimmed_without_mask: pair.depth.trimmed_without_mask(),
-            is_whole_frame: pair.options.start == Start::Search && pair.image.is_whole_frame(),
+            hollow: history.hollow.clone(),
+            missing_mask: checks::missing_mask(pair),
             has_kept_start: self.stages.registration.has_kept_start(),
             rivals: report.rivals.len() as u32,
             nearest_rival: nearest,
         });
-        let doubted = ended.map(|ended| self.doubt_unit(ended));
-        if let Some((status, reason)) = doubted {
+        let checked = ended.map(|ended| self.check_unit(ended));
+        if let Some((status, reason)) = checked {
             self.end(status, reason);
         }
     }
 
-    /// A verdict as it stands, or that of a depth map whose unit the colours contradict: where other poses explain them as well, that
-    /// may be why.
-    fn doubt_unit(&mut self, ended: Verdict) -> Verdict {
-        let has_rivals = !self.history.is_hollow && ended.0 == Status::Ambiguous && !self.report.rivals.is_empty();
-        let is_asked = ended.0 == Status::Converged || has_rivals;
-        let unit = is_asked.then(|| self.stages.registration.better_unit(&self.pair, &self.solution.pose)).flatten();
-        unit.map_or(ended, verdict::verdict_of_other_unit)
+    /// A verdict as it stands, or that of a depth map whose unit the image contradicts: where other poses fit as well, that may be why.
+    fn check_unit(&mut self, ended: Verdict) -> Verdict {
+        let has_rivals =
+            self.history.hollow.is_none() && ended.0 == Status::Ambiguous && !self.report.rivals.is_empty();
+        let is_joint = self.pair.options.registration == Registration::Joint;
+        if !(is_joint && (ended.0 == Status::Converged || has_rivals)) {
+            return ended;
+        }
+        let colours = self.stages.registration.memory().as_mut();
+        let reason = colours.and_then(|colours| checks::other_unit(colours, &self.pair, &self.solution.pose));
+        reason.map_or(ended, verdict::capped)
     }
 
     fn end(&mut self, status: Status, reason: Option<Reason>) {

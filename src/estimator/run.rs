@@ -2,6 +2,7 @@
 
 use super::finder::{Finder, Opening};
 use crate::pose::ImageGrid;
+use crate::reason::Reason;
 use crate::report::Stage;
 
 /// Where the run stands: what the next step does.
@@ -30,11 +31,11 @@ pub struct History {
     /// Iterations in a row whose registration proposed less than `stop_degrees`.
     pub unmoved: u32,
     /// Whether the depth map was found to be hollow when the search began.
-    pub is_hollow: bool,
+    pub hollow: Option<Reason>,
 }
 
 impl Default for History {
     fn default() -> Self {
-        Self { step_fraction: 1.0, proposed_degrees: 0.0, improved: true, rejections: 0, unmoved: 0, is_hollow: false }
+        Self { step_fraction: 1.0, proposed_degrees: 0.0, improved: true, rejections: 0, unmoved: 0, hollow: None }
     }
 }

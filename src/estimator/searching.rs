@@ -3,13 +3,13 @@
 use nalgebra::Matrix3;
 
 use super::Estimator;
+use super::checks;
 use super::finder::{Advance, Decision, Finder, Opening};
 use super::run::Run;
 use crate::error::Result;
 use crate::pose::{Angles, ImageGrid};
 use crate::reason::{Activity, Reason};
 use crate::report::Stage;
-use crate::view::is_hollow;
 
 impl Estimator {
     /// What the search needs of one of the views.
@@ -19,8 +19,7 @@ impl Estimator {
         let Run::Preparing(prepared) = std::mem::replace(&mut self.run, Run::Preparing(None)) else { return Ok(()) };
         self.run = match prepared {
             None => {
-                let depth = &self.pair.depth;
-                self.history.is_hollow = is_hollow(depth.size, &depth.points.z, &depth.normals);
+                self.history.hollow = checks::hollow(&self.pair.depth);
                 let opening = Opening::of(&self.pair).map(Box::new);
                 let image = opening.as_ref().map_or(&self.pair.image, |opening| &opening.pair.image);
                 Run::Preparing(Some(Box::new((ImageGrid::new(image)?, opening))))

@@ -17,10 +17,6 @@ const SETTLED_OBJECTIVE: f64 = 1e-3;
 /// Iterations after which shapes under a pose that does not move have come as far as they will: they flicker by some
 /// tenths of a percent.
 const MOST_UNMOVED: u32 = 8;
-/// Share of the depths that trimming may leave out of a map without a mask. Of two whole frames of a table with an object it left out 40
-/// and 45 %, the object among them, and the wall had a pose 56 to 94 degrees off that seemed sure; of 79 renders with a second object,
-/// which seemed sure as well, less than this.
-const LARGEST_TRIMMED: f64 = 0.15;
 /// Overlap (share of valid depth pixels) below which a pose cannot be trusted.
 const LEAST_OVERLAP: f64 = 0.05;
 /// Fewer correspondences than this determine nothing.
@@ -42,7 +38,7 @@ const DOUBTFUL_SIGMA: f64 = 1.5;
 const FEWEST_INLIERS: f64 = 0.4;
 
 /// What is known at the end of an iteration.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Evidence {
     /// Iterations so far, and their cap.
     pub iteration: u32,
@@ -73,12 +69,9 @@ pub struct Evidence {
     pub contrast: Option<ContrastEvidence>,
     /// Whether nothing near a told start explains the colours better, so that it was kept.
     pub has_kept_start: bool,
-    /// Whether a pose was searched for a depth map that looks hollow: mirrored, it has another pose that is as good.
-    pub is_hollow: bool,
-    /// Share of the depths that trimming left out where no mask said what the object is.
-    pub trimmed_without_mask: f64,
-    /// Whether a pose was searched for a camera's whole frame, so that nothing says what in it is the object.
-    pub is_whole_frame: bool,
+    /// What checks of the input have against an answer: a hollow depth map, a mask that is missing.
+    pub hollow: Option<Reason>,
+    pub missing_mask: Option<Reason>,
     /// Number of rivals, and the degrees to the nearest.
     pub rivals: u32,
     pub nearest_rival: f64,
@@ -168,12 +161,13 @@ pub fn verdict(evidence: &Evidence) -> Option<Verdict> {
     } else {
         return None;
     };
-    Some(reason_for_distrust(evidence).or_else(|| reason_of_missing_mask(evidence)).unwrap_or(end))
+    let of_input = || evidence.missing_mask.clone().map(capped);
+    Some(reason_for_distrust(evidence).or_else(of_input).unwrap_or(end))
 }
 
-/// The verdict of an answer that looked good, where relief so many times as deep explains its colours better.
-pub fn verdict_of_other_unit(unit: f32) -> Verdict {
-    (Status::Ambiguous, Some(Reason::OtherUnit { times: f64::from(unit) }))
+/// What a check of the input leaves of an answer that looks good.
+pub const fn capped(reason: Reason) -> Verdict {
+    (Status::Ambiguous, Some(reason))
 }
 
 /// Whether another iteration would change nothing that matters.
@@ -215,8 +209,8 @@ fn reason_for_distrust(evidence: &Evidence) -> Option<Verdict> {
     if let Some(reason) = evidence.colours.and_then(|colours| reason_to_be_lost(&colours)) {
         return Some((Status::Lost, Some(reason)));
     }
-    if evidence.is_hollow {
-        return Some((Status::Ambiguous, Some(Reason::Hollow)));
+    if let Some(hollow) = &evidence.hollow {
+        return Some(capped(hollow.clone()));
     }
     let certainty = evidence.colours.map(|colours| (colours.sigma, colours.weakest));
     let certainty = certainty.or(evidence.contrast.map(|contrast| (contrast.sigma, contrast.weakest)));
@@ -226,18 +220,6 @@ fn reason_for_distrust(evidence: &Evidence) -> Option<Verdict> {
         }
         (0, _) => return None,
         (count, _) => Reason::Rivals { count, nearest_degrees: evidence.nearest_rival },
-    };
-    Some((Status::Ambiguous, Some(reason)))
-}
-
-/// Why an answer that looks good may be that of something else.
-fn reason_of_missing_mask(evidence: &Evidence) -> Option<Verdict> {
-    let reason = if evidence.trimmed_without_mask > LARGEST_TRIMMED {
-        Reason::MissingDepthMask { percent: 100.0 * evidence.trimmed_without_mask }
-    } else if evidence.is_whole_frame {
-        Reason::MissingImageMask
-    } else {
-        return None;
     };
     Some((Status::Ambiguous, Some(reason)))
 }
@@ -288,9 +270,8 @@ mod tests {
         outlines: None,
         contrast: None,
         has_kept_start: false,
-        is_hollow: false,
-        trimmed_without_mask: 0.0,
-        is_whole_frame: false,
+        hollow: None,
+        missing_mask: None,
         rivals: 0,
         nearest_rival: f64::INFINITY,
     };
@@ -396,15 +377,29 @@ mod tests {
                 Some(Reason::FewInliers { percent: 30.0 }),
             ),
             ("a fair sigma", colours(ColourEvidence { sigma: 1.6, ..SURE }), ambiguous, turned(1.6)),
-            ("a hollow depth map", Evidence { is_hollow: true, ..SETTLED }, ambiguous, Some(Reason::Hollow)),
-            ("flying pixels", Evidence { trimmed_without_mask: 0.05, ..SETTLED }, Some(Status::Converged), None),
+            (
+                "a hollow depth map",
+                Evidence { hollow: Some(Reason::Hollow), ..SETTLED },
+                ambiguous,
+                Some(Reason::Hollow),
+            ),
             (
                 "a guessed object",
-                Evidence { trimmed_without_mask: 0.4, ..SETTLED },
+                Evidence { missing_mask: Some(Reason::MissingImageMask), ..SETTLED },
                 ambiguous,
-                Some(Reason::MissingDepthMask { percent: 40.0 }),
+                Some(Reason::MissingImageMask),
             ),
-            ("a whole frame", Evidence { is_whole_frame: true, ..SETTLED }, ambiguous, Some(Reason::MissingImageMask)),
+            (
+                "a hollow guessed object with rivals",
+                Evidence {
+                    hollow: Some(Reason::Hollow),
+                    missing_mask: Some(Reason::MissingImageMask),
+                    rivals: 2,
+                    ..SETTLED
+                },
+                ambiguous,
+                Some(Reason::Hollow),
+            ),
             (
                 "rivals",
                 Evidence { rivals: 2, nearest_rival: 40.2, ..SETTLED },

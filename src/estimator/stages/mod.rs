@@ -14,7 +14,7 @@ mod registration;
 mod shape;
 mod surfaces;
 
-pub use colours::{Attempt, ColourRegistration};
+pub use colours::{Attempt, COLLAPSE, ColourRegistration};
 pub use correspondences::correspondence_problem;
 pub use light::{Inputs, LightStage};
 pub use paint::PaintStage;

@@ -112,12 +112,6 @@ impl RegistrationStage {
         self.colours.as_ref().map_or(&pair.depth.normals, ColourRegistration::normals)
     }
 
-    /// How many times as deep relief would have to be for colours that it does not explain otherwise.
-    pub fn better_unit(&mut self, pair: &ViewPair, pose: &Similarity) -> Option<f32> {
-        let colours = self.colours.as_mut().filter(|_| pair.options.registration == Registration::Joint);
-        colours.and_then(|colours| colours.better_unit(pair, pose))
-    }
-
     /// Takes over what the finder has decided.
     ///
     /// # Errors

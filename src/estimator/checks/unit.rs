@@ -1,0 +1,123 @@
+//! Whether the depth map's unit is another one: relief is held against the image in units beside the given one.
+//!
+//! Only before a parallel projection of the map: a pinhole's unit is that of all three axes.
+
+use crate::diagnosis::{Alternative, Diagnosis};
+use crate::estimator::gauge;
+use crate::estimator::pair::ViewPair;
+use crate::estimator::stages::{COLLAPSE, ColourRegistration};
+use crate::pose::{PhotometricReport, Similarity};
+use crate::reason::Reason;
+
+/// Relief so many times as flat and as deep is held against the map's own, from what is nearest on. Units are mistaken by any
+/// factor, so these go from a tenth to ten times in steps of 1.3 to 1.7.
+const UNITS: [[f32; 6]; 2] = [[0.7, 0.5, 0.3, 0.2, 0.15, 0.1], [1.5, 2.0, 3.0, 5.0, 7.0, 10.0]];
+/// Relief that leaves so many times the noise of the map's own leads away from the right one, and none beyond it is tried.
+const AWAY: f64 = 2.0;
+/// Rounds of a registration by another unit at most, as many as least squares mostly take: those with instrumental variables would
+/// take as long again. One that has settled sooner spends what is left on them.
+const UNIT_ROUNDS: usize = 5;
+/// Another unit explains the colours better where it leaves less than this share of what residuals have in common: wrong pairs
+/// leave 0 to 0.47 of it by their own, right ones of 48x48 without noise 0.7 or more by one that leaves less noise ..
+const BETTER_STRUCTURE: f64 = 0.5;
+/// .. and less noise, by four sigmas: the median of n points in three channels tells the noise to 0.56/sqrt(n).
+const SIGMAS_OF_NOISE: f64 = 4.0 * 0.56;
+
+/// Whether relief so many times as deep explains an image that the given unit does not explain.
+pub fn other_unit(colours: &mut ColourRegistration, pair: &ViewPair, pose: &Similarity) -> Option<Reason> {
+    better_unit(colours, pair, pose).map(|times| Reason::OtherUnit { times: f64::from(times) })
+}
+
+/// How many times as deep relief would have to be.
+fn better_unit(colours: &mut ColourRegistration, pair: &ViewPair, pose: &Similarity) -> Option<f32> {
+    // White noise leaves nothing for another unit to explain, in all points or in the few that are tried here.
+    let is_explained =
+        |found: &PhotometricReport| pair.residuals(found).diagnose(Alternative::DepthUnit) == Diagnosis::Explained;
+    if !pair.depth.camera.is_orthographic() || colours.found().is_some_and(is_explained) {
+        return None;
+    }
+    // All of them by the points that its own unit shows.
+    colours.judge(pair, pose)?;
+    let own = colours.register_relief(pair, pose, 1.0, UNIT_ROUNDS).filter(|own| !is_explained(own))?;
+    let uncertainty = SIGMAS_OF_NOISE / (own.visible as f64).sqrt();
+    let (mut better, mut noise) = (None, (1.0 - uncertainty) * own.noise);
+    for way in UNITS {
+        for unit in way {
+            let Some(found) = colours.register_relief(pair, pose, unit, UNIT_ROUNDS) else { continue };
+            if found.noise > AWAY * own.noise {
+                break;
+            }
+            if found.noise < noise
+                && pair.residuals(&found).is_less_common(BETTER_STRUCTURE, &pair.residuals(&own))
+                && gauge::growth(pair, &found.pose, pose) < COLLAPSE
+            {
+                (better, noise) = (Some(unit), found.noise);
+            }
+        }
+    }
+    better
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Vector3;
+
+    use super::*;
+    use crate::diagnosis::{UNIT_COVARIANCE, UNIT_NOISE};
+    use crate::estimator::Estimator;
+    use crate::options::Options;
+    use crate::pose::Angles;
+    use crate::scenes::{SampleRequest, Scene, light, surface};
+    use crate::view::{DepthMap, Size};
+
+    /// The views of a pair whose depths are read by `unit`, registered from the true rotation, the middles one on the other.
+    fn registered(unit: f64) -> (Estimator, ColourRegistration) {
+        let request = SampleRequest {
+            light: light("colourful").unwrap(),
+            size: Size { width: 96, height: 96 },
+            rotation: Angles { beta: 10.0, ..Angles::default() }.rotation(),
+            noise: 0.01,
+            ..SampleRequest::default()
+        };
+        let sample = Scene::new(&surface("ripples").unwrap()).unwrap().sample(&request).unwrap();
+        let depth = DepthMap { unit: Some(unit), ..sample.depth_map() };
+        let estimator = Estimator::new(sample.colour_image(), &depth, Options::default()).unwrap();
+        let mut registration = ColourRegistration::new(&estimator.pair);
+        let middle = estimator.pair.depth.points.centroid();
+        let moved = Vector3::new(0.0, 0.0, middle.z * (1.0 / unit - 1.0));
+        let translation = sample.pose.translation + sample.pose.scale * sample.pose.rotation * moved;
+        registration.register(&estimator.pair, &Similarity { translation, ..sample.pose }).unwrap();
+        (estimator, registration)
+    }
+
+    fn better_unit(estimator: &Estimator, registration: &mut ColourRegistration) -> Option<f32> {
+        let pose = registration.found().unwrap().pose;
+        super::better_unit(registration, &estimator.pair, &pose)
+    }
+
+    #[test]
+    fn relief_too_deep_and_too_flat_is_told_and_right_relief_is_left_alone() {
+        let wrong = [(10.0, 0.1), (5.0, 0.2), (3.0, 0.3), (2.0, 0.5), (1.5, 0.7), (0.7, 1.5), (0.1, 10.0)];
+        for (unit, expected) in wrong.map(|(unit, right)| (unit, Some(right))).into_iter().chain([(1.0, None)]) {
+            let (estimator, mut registration) = registered(unit);
+            assert_eq!(better_unit(&estimator, &mut registration), expected, "unit {unit}");
+        }
+    }
+
+    #[test]
+    fn no_unit_is_asked_for_where_only_white_noise_is_left() {
+        let (estimator, mut registration) = registered(10.0);
+        let limits = (UNIT_COVARIANCE, UNIT_NOISE * estimator.pair.image.log_noise());
+        for (structure, noise, expected) in [(0.99, 0.99, None), (1.01, 0.99, Some(0.1)), (0.99, 1.01, Some(0.1))] {
+            let mut found = registration.found().unwrap().clone();
+            (found.structure, found.noise) = (structure * limits.0, noise * limits.1);
+            registration.adopt(found);
+            assert_eq!(better_unit(&estimator, &mut registration), expected, "{structure} and {noise} of the limits");
+        }
+        // Without relief that is right there is nothing to tell, gate or no gate.
+        let (estimator, mut registration) = registered(1.0);
+        let found = registration.found().unwrap().clone();
+        registration.adopt(PhotometricReport { structure: f64::MAX, ..found });
+        assert_eq!(better_unit(&estimator, &mut registration), None);
+    }
+}
