@@ -46,7 +46,14 @@ export const PARTS = [
   {
     name: "outline",
     what: "limbs on the outline and points inside it",
-    changes: [...LIMBS, objective("const BESIDE_WEIGHT: f64 = 3.0;", "const BESIDE_WEIGHT: f64 = 0.0;")],
+    changes: [
+      ...LIMBS,
+      {
+        file: "src/pose/silhouette.rs",
+        from: "const OUTSIDE_WEIGHT: f64 = 3.0;",
+        to: "const OUTSIDE_WEIGHT: f64 = 0.0;",
+      },
+    ],
   },
   { name: "limbs", what: "limbs on the outline", changes: LIMBS },
   {

@@ -7,10 +7,8 @@
 use super::evidence::Tiles;
 use super::patches::{Patches, Sight};
 use super::unknowns::State;
-use crate::pose::squared_distances;
+use crate::pose::{SLACK, squared_distances};
 
-/// Pixels outside the mask that cost nothing: a mask's own raster.
-const TOLERANCE: f64 = 0.7;
 /// U, pixels: beyond it a point is a mistake of one of the masks.
 const OUTLIER: f64 = 6.0;
 
@@ -44,7 +42,7 @@ impl<'a> Silhouette<'a> {
             let clamped = [within(column, size.width), within(row, size.height)];
             let beyond = (column - clamped[0]).hypot(row - clamped[1]);
             let distance = f64::from(size.bilinear(&self.outside, clamped[0] as f32, clamped[1] as f32)) + beyond;
-            let u = (distance - TOLERANCE).max(0.0);
+            let u = (distance - SLACK).max(0.0);
             out[tile as usize] -= 0.5 * u * u / (1.0 + u * u / (OUTLIER * OUTLIER));
         }
         debug_assert_eq!(out.len(), self.tiles.count());

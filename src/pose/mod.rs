@@ -50,5 +50,6 @@ pub use photometric::{Photometric, PhotometricOptions, PhotometricProblem, Photo
 pub use ransac::{RansacOptions, RansacReport, ransac};
 pub use search::{Candidate, Progress, Search, SearchProblem};
 pub(crate) use search::{Hypothesis, ImageGrid, SearchFinding, SearchTask, TaskResults};
+pub(crate) use silhouette::SLACK;
 pub use similarity::Similarity;
 pub use uncertainty::{Axis, Direction, Information, Uncertainty, Unknown};

@@ -3,6 +3,12 @@
 use super::distance_transform::squared_distances;
 use crate::view::Size;
 
+/// Distance off the mask that costs nothing, pixels: neither a pixel's own size nor the rounding of a mask is an error. Without it
+/// a silhouette pulls poses by one to two degrees.
+pub(crate) const SLACK: f64 = 0.7;
+/// Weight of points off the mask, against one of what else decides (local contrast, depth discontinuities).
+pub(super) const OUTSIDE_WEIGHT: f64 = 3.0;
+
 /// Distances to one mask, pixels: zero on it.
 pub(super) struct Silhouette {
     size: Size,

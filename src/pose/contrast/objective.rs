@@ -13,14 +13,11 @@ use super::samples::Samples;
 use super::seen::Seen;
 use crate::numeric::{quantile, robust};
 use crate::pose::increment::{Frame, PoseVector, SCALE, TRANSLATION_Z, UNKNOWNS};
-use crate::pose::silhouette::Silhouette;
+use crate::pose::silhouette::{OUTSIDE_WEIGHT, SLACK, Silhouette};
 use crate::pose::similarity::Similarity;
 use crate::pose::spline_image::SplineImage;
 
-/// Distances to the outline below this are the sampling of the mask and of the points, pixels.
-const SLACK: f64 = 0.7;
-/// Weight and robust scale (pixels) of points beside the mask, against the contrast's share of one.
-const BESIDE_WEIGHT: f64 = 3.0;
+/// Robust scale of points beside the mask, pixels.
 const BESIDE_SCALE: f64 = 3.0;
 /// The same of the contour generator off the outline. Its scale is tighter: contours inside the mask, where one part of
 /// the object hides another, are no part of the outline.
@@ -296,7 +293,7 @@ impl Objective {
         };
         let beside: f64 = self.samples.list.iter().map(beside).sum();
         let limbs: f64 = self.seen.limbs.iter().map(limb).sum();
-        BESIDE_WEIGHT * beside / self.samples.list.len() as f64 + self.limb_weight() * limbs
+        OUTSIDE_WEIGHT * beside / self.samples.list.len() as f64 + self.limb_weight() * limbs
     }
 
     /// Weight of one limb: there are as many more of them as samples lie closer.
@@ -365,7 +362,7 @@ impl Objective {
         pose: &Similarity,
         mut visit: impl FnMut([f64; 2], &PoseVector, f64, f64),
     ) {
-        let (beside, limb) = (BESIDE_WEIGHT / self.samples.list.len() as f64, self.limb_weight());
+        let (beside, limb) = (OUTSIDE_WEIGHT / self.samples.list.len() as f64, self.limb_weight());
         for sample in &self.samples.list {
             let Some((place, by_pose)) = by_pose(problem, &pose.apply(sample.point), frame) else { continue };
             let (distance, slope) = self.silhouette.at(place);

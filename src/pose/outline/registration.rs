@@ -15,11 +15,7 @@ use crate::pose::increment::{
 use crate::pose::similarity::Similarity;
 use crate::pose::uncertainty::{Direction, describe};
 
-/// Half the width of an outline, pixels: neither a pixel's own size nor the rounding of a mask is an error. Without it
-/// the silhouette pulls poses by one to two degrees.
-const OUTLINE: f64 = 0.7;
-/// Weights of points that leave the mask, of rims off its outline and of outline that nothing covers.
-const OUTSIDE: f64 = 3.0;
+/// Weights of rims off the mask's outline, and of outline that nothing covers.
 const RIM: f64 = 1.0;
 const BARE: f64 = 0.3;
 /// Weight of rims beside edges of the image, which may be print: of 0.3 to 2 on the first frames of the captures 0.3 to 0.5
@@ -207,12 +203,12 @@ impl Outline {
 
     fn sums(&self, problem: &OutlineProblem<'_>, pose: &Similarity, loss: f64, scale: f64) -> Sums {
         let mut sums = Sums::new();
-        let share = OUTSIDE / self.sample.len().max(1) as f64;
+        let share = OUTSIDE_WEIGHT / self.sample.len().max(1) as f64;
         for &index in &self.sample {
             if let Some((residual, row)) = self.against_mask(problem, pose, loss, index as usize)
-                && residual > OUTLINE
+                && residual > SLACK
             {
-                sums.add(&row, residual - OUTLINE, share, scale);
+                sums.add(&row, residual - SLACK, share, scale);
             }
         }
         self.add_edges(problem, pose, loss, scale, &mut sums);
@@ -222,7 +218,7 @@ impl Outline {
             let Some((pixel, [across, down])) = self.rows(problem, pose, index as usize) else { continue };
             let offset = [pixel[0] - place[0], pixel[1] - place[1]];
             let distance = offset[0].hypot(offset[1]);
-            let residual = distance - OUTLINE - loss;
+            let residual = distance - SLACK - loss;
             if residual > 0.0 {
                 let mut row = (offset[0] * across + offset[1] * down) / distance;
                 row[LOSS] = -1.0;
