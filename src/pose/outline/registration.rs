@@ -12,6 +12,7 @@ use crate::numeric::{quantile, robust};
 use crate::pose::increment::{
     Frame, PoseMatrix, PoseVector, SCALE, UNKNOWNS, clear_unknowns, inverse, rotation_vector, solve,
 };
+use crate::pose::silhouette::{OUTSIDE_WEIGHT, SLACK};
 use crate::pose::similarity::Similarity;
 use crate::pose::uncertainty::{Direction, describe};
 
