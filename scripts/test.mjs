@@ -248,7 +248,7 @@ const PARTS = [
   },
   { name: "types", run: types, needsBuild: true, lane: 1, closing: /^tsc .*$/gm },
   { name: "python", run: python, needsBuild: true, lane: 1, closing: PYTHON },
-  { name: "contract", run: contract, needsBuild: true, closing: NODE },
+  { name: "contract", run: contract, needsBuild: true, lane: 1, closing: NODE },
   {
     name: "tables",
     run: tables,
