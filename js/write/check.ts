@@ -64,11 +64,15 @@ export function checkedWholePose(given: PoseInput, field: string): Pose {
   return pose;
 }
 
-type Standing = Pick<StepReport, "status" | "message" | "uncertainty">;
+type Standing = Pick<StepReport, "status" | "reason" | "message" | "uncertainty">;
 
 export function checkStanding(report: Standing): void {
-  const { status, message = "", uncertainty } = Object(report) as Standing;
+  const { status, reason, message = "", uncertainty } = Object(report) as Standing;
   for (const [name, words] of Object.entries({ status, message })) text(words, `report.${name}`);
+  if (reason !== undefined) {
+    like({}, reason, "report.reason");
+    text(reason.code, "report.reason.code");
+  }
   if (uncertainty === undefined) return;
   like({ rotationDegrees: [], translation: [] }, uncertainty, "report.uncertainty");
   const { rotationDegrees, translation, scale } = uncertainty;

@@ -1,7 +1,7 @@
 /** What an estimator found, in files that other programs read: pose, light, depth and normals. */
 import { isObject, wrong } from "../check.js";
 import { BimodalError } from "../errors.js";
-import type { PoseInput, StepReport, Uncertainty } from "../types.js";
+import type { PoseInput, Reason, StepReport, Uncertainty } from "../types.js";
 import { real } from "../rig/write/numbers.js";
 import { checkLight, checkRaster, checkStanding, checkUnit, checkedPose, checkedWholePose } from "./check.js";
 import { writePng } from "./png.js";
@@ -34,7 +34,7 @@ export function matrixText(given: PoseInput): string {
 }
 
 /** How far a pose is to be trusted, as a report says it. */
-export type PoseStanding = Pick<StepReport, "status" | "message" | "uncertainty">;
+export type PoseStanding = Pick<StepReport, "status" | "reason" | "message" | "uncertainty">;
 
 const sigmasOf = ({ rotationDegrees, translation, scale, weakest }: Uncertainty): Uncertainty => ({
   rotationDegrees,
@@ -43,8 +43,12 @@ const sigmasOf = ({ rotationDegrees, translation, scale, weakest }: Uncertainty)
   weakest,
 });
 
+/** The code with its numbers and words. */
+const plainReason = (reason: Reason): Record<string, unknown> =>
+  Object.fromEntries(Object.entries(reason).filter(([, value]) => ["string", "number"].includes(typeof value)));
+
 /**
- * The pose with its matrix, and in words what it means; beside it, where a report is given, its status and one sigma of each number, `null`
+ * The pose with its matrix, and in words what it means; beside it, where a report is given, its status and reason and one sigma of each number, `null`
  * where the views cannot see it.
  */
 export function poseJson(given: PoseInput, unit: Unit, report?: PoseStanding): string {
@@ -72,12 +76,13 @@ export function poseJson(given: PoseInput, unit: Unit, report?: PoseStanding): s
   };
   if (report === undefined) return `${JSON.stringify({ about, ...told }, null, 2)}\n`;
   checkStanding(report);
-  const { status, message, uncertainty } = report;
+  const { status, reason, message, uncertainty } = report;
   const sigmas =
     uncertainty &&
     "; uncertainty is one sigma, null where the views cannot see the number: any value of it would do as well, or it was held";
   const standing = {
     status,
+    ...(reason ? { reason: plainReason(reason) } : {}),
     ...(message ? { message } : {}),
     ...(uncertainty ? { uncertainty: sigmasOf(uncertainty) } : {}),
   };

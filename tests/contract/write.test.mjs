@@ -91,6 +91,7 @@ describe("what others read is what was written", () => {
     const { about, ...told } = JSON.parse(
       poseJson(POSE, "px", {
         status: "ambiguous",
+        reason: { code: "rivals", count: 1, nearestDegrees: 40.5 },
         message: "another pose explains the colours as well",
         uncertainty,
         iteration: 7,
@@ -100,6 +101,7 @@ describe("what others read is what was written", () => {
     assert.deepEqual(told, {
       ...kept,
       status: "ambiguous",
+      reason: { code: "rivals", count: 1, nearestDegrees: 40.5 },
       message: "another pose explains the colours as well",
       uncertainty,
     });
