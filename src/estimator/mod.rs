@@ -10,8 +10,9 @@
 //! takes back a pose that it moves.
 //!
 //! Each stage owns its memory and says by its signature what it reads and what it writes ([`stages`]); this file is the
-//! order in which they run. What an end is called is decided in [`verdict`].
+//! order in which they run, [`acceptance`] what follows the last of them. What an end is called is decided in [`verdict`].
 
+mod acceptance;
 mod checks;
 mod finder;
 mod gauge;
@@ -36,12 +37,11 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::options::{Options, Registration, Shading, Start};
 use crate::pose::{Correspondences, Similarity};
 use crate::reason::Reason;
-use crate::report::{Objective, Stage, Status, StepReport};
+use crate::report::{Stage, Status, StepReport};
 use crate::shape::Scratch;
 use crate::view::{ColourImage, DepthMap};
 use finder::Opening;
 use measurement::Residuals;
-use objective::Trial;
 pub use outputs::Surface;
 use pair::ViewPair;
 use reported::Reported;
@@ -52,7 +52,6 @@ pub use stages::RefinementTask;
 use stages::{
     Inputs, LightStage, PaintStage, RefinementStage, Registered, Registering, RegistrationStage, ShapeStage, Stages,
 };
-use verdict::{ColourEvidence, ContrastEvidence, Evidence, OutlineEvidence, Verdict, verdict};
 pub use workers::Worker;
 pub use workers::task::{Finding, Task};
 
@@ -381,157 +380,5 @@ impl Estimator {
     fn find_correspondences(&mut self) {
         let problem = stages::correspondence_problem(&self.pair, &self.solution);
         self.correspondences.update(&problem);
-    }
-
-    /// Compares the new solution with the accepted one, keeps the better, and decides whether the loop goes on.
-    fn finish_iteration(&mut self) {
-        self.report.iteration += 1;
-        let is_first = self.report.iteration == 1;
-        if is_first {
-            self.choose_evaluation_points();
-        }
-        let before = (!is_first).then_some(self.report.objective);
-        let is_new = !self.settling.keeps_all();
-        let after = if is_new { self.objective() } else { self.report.objective };
-        let change = self.accepted.pose.degrees_to(&self.solution.pose);
-        // The registration by colours has an objective of its own: a pose that it moves is not for this one to take
-        // back.
-        let is_comparable =
-            self.stages.registration.kind(&self.pair) != Registration::Joint || change < self.pair.options.stop_degrees;
-        let worse_than =
-            before.filter(|before| is_comparable && objective::worsens(before.total(), after.total(), change));
-        match worse_than {
-            Some(before) => self.take_back(before, after),
-            None => self.accept(change),
-        }
-        self.report.pose = self.accepted.pose;
-        if is_new {
-            self.measure();
-        }
-        self.conclude(worse_than.is_some(), before);
-        let History { step_fraction, .. } = &mut self.history;
-        *step_fraction = if worse_than.is_some() { 0.5 * *step_fraction } else { (2.0 * *step_fraction).min(1.0) };
-        self.prepare_next_refinement();
-    }
-
-    /// Objective of the working solution over the evaluation points.
-    fn objective(&self) -> Objective {
-        let light = self.solution.light.total();
-        let colours = self.stages.paint.colours(&self.pair);
-        objective::evaluate(
-            &self.pair,
-            self.accepted.evaluated(),
-            Trial::of(&self.pair, colours, &self.solution, &light),
-        )
-    }
-
-    /// Goes back to the accepted solution.
-    fn take_back(&mut self, before: Objective, after: Objective) {
-        self.history.rejections += 1;
-        self.settling.restart();
-        self.solution.restore(&self.accepted, &self.pair);
-        self.stages.refinement.shape_changed();
-        self.find_correspondences();
-        self.report.rotation_change = 0.0;
-        self.report.reason = Some(Reason::TakenBack { before: before.total(), after: after.total() });
-    }
-
-    /// Makes the new solution the one to beat.
-    fn accept(&mut self, rotation_change: f64) {
-        self.report.rotation_change = rotation_change;
-        self.history.rejections = if self.history.improved { 0 } else { self.history.rejections + 1 };
-        self.report.reason = (!self.history.improved).then_some(Reason::PoseStays);
-        if self.settling.keeps_all() {
-            return;
-        }
-        self.settle();
-        self.accepted.accept(&self.solution);
-        self.choose_evaluation_points();
-        // Over the new evaluation points, as the next iteration will be.
-        self.report.objective = self.objective();
-    }
-
-    /// Decides which shapes the next iteration keeps: none before the surface has tried its starts, and none after one
-    /// that has changed the pose.
-    fn settle(&mut self) {
-        let Self { pair, stages, accepted, solution, scratch, settling, report, .. } = self;
-        let Stages { paint, registration, .. } = stages;
-        let stands = registration.keeps(pair, &solution.pose) && paint.knows(pair, &solution.pose);
-        if stands && report.iteration >= crate::shape::STARTS {
-            settling.advance(settling::movements(pair, accepted, solution, &mut scratch.spare));
-        } else {
-            settling.restart();
-        }
-    }
-
-    /// The evaluation points of the next comparison, from the present correspondences.
-    fn choose_evaluation_points(&mut self) {
-        self.accepted.compared_over(objective::evaluation_points(&self.pair, &self.correspondences));
-    }
-
-    /// Overlap, inliers and residuals of the present correspondences.
-    fn measure(&mut self) {
-        let Self { pair, stages: Stages { paint, .. }, solution, correspondences, scratch, .. } = self;
-        let residual = self.residuals.measure(pair, paint, solution, correspondences, &mut scratch.spare);
-        self.report.residual = residual.unwrap_or(self.report.residual);
-        self.report.overlap = correspondences.count() as f64 / pair.depth.valid().max(1) as f64;
-        self.report.inliers = correspondences.inliers();
-    }
-
-    /// Ends the loop where the evidence says so.
-    fn conclude(&mut self, is_rejected: bool, before: Option<Objective>) {
-        let is_unmoved = self.history.proposed_degrees < self.pair.options.stop_degrees;
-        self.history.unmoved = if is_unmoved { self.history.unmoved + 1 } else { 0 };
-        let Self { pair, report, history, .. } = &*self;
-        let nearest = report.rivals.iter().map(|rival| rival.degrees_to(&report.pose)).fold(f64::INFINITY, f64::min);
-        let ended = verdict(&Evidence {
-            iteration: report.iteration,
-            max_iterations: pair.options.max_iterations,
-            registration: self.stages.registration.kind(pair),
-            shading: pair.options.shading,
-            correspondences: self.correspondences.count(),
-            overlap: report.overlap,
-            objective_before: before.map(|before| before.total()),
-            objective: report.objective.total(),
-            is_rejected,
-            rejections: history.rejections,
-            unmoved: history.unmoved,
-            is_whole_step: history.step_fraction >= 1.0 && history.improved,
-            colours: self
-                .stages
-                .registration
-                .found_by_colours()
-                .map(|it| ColourEvidence::of(it, pair.image.log_spread())),
-            outlines: self.stages.registration.found_by_outlines().map(OutlineEvidence::of),
-            contrast: self.stages.registration.found_by_contrast().map(ContrastEvidence::of),
-            hollow: history.hollow.clone(),
-            missing_mask: checks::missing_mask(pair),
-            has_kept_start: self.stages.registration.has_kept_start(),
-            rivals: report.rivals.len() as u32,
-            nearest_rival: nearest,
-        });
-        let checked = ended.map(|ended| self.check_unit(ended));
-        if let Some((status, reason)) = checked {
-            self.end(status, reason);
-        }
-    }
-
-    /// A verdict as it stands, or that of a depth map whose unit the image contradicts: where other poses fit as well, that may be why.
-    fn check_unit(&mut self, ended: Verdict) -> Verdict {
-        let has_rivals =
-            self.history.hollow.is_none() && ended.0 == Status::Ambiguous && !self.report.rivals.is_empty();
-        let is_joint = self.pair.options.registration == Registration::Joint;
-        if !(is_joint && (ended.0 == Status::Converged || has_rivals)) {
-            return ended;
-        }
-        let colours = self.stages.registration.memory().as_mut();
-        let reason = colours.and_then(|colours| checks::other_unit(colours, &self.pair, &self.solution.pose));
-        reason.map_or(ended, verdict::capped)
-    }
-
-    fn end(&mut self, status: Status, reason: Option<Reason>) {
-        self.run = Run::Ended;
-        self.report.status = status;
-        self.report.reason = reason;
     }
 }
