@@ -129,13 +129,21 @@ describe("exit codes", () => {
       "ENOENT.*nowhere": ["nowhere", "--calibration", "one.json"],
       '--workers needs a number, not "many"': ["off", "--calibration", "one.json", "--workers", "many"],
       "Unknown option '--jsn'": ["off", "--calibration", "one.json", "--jsn", "x"],
-      "ENOENT.*no/such": ["off", "--calibration", "one.json", "--json", "no/such/file.json"],
     };
     for (const [message, args] of Object.entries(wrong)) {
       const { status, stderr, stdout } = check(...args);
       assert.equal(status, 3, message);
       assert.match(stderr.trim().split("\n").at(-1), new RegExp(message));
       assert.equal(stdout, "");
+    }
+  });
+
+  test("3 where a file cannot be written, below the verdict", () => {
+    for (const option of ["--json", "--report"]) {
+      const { status, stderr, stdout } = check("off", "--calibration", "one.json", option, "no/such/file");
+      assert.equal(status, 3);
+      assert.match(stderr.trim().split("\n").at(-1), /ENOENT.*no\/such/);
+      assert.match(stdout, /^OFF: /);
     }
   });
 
