@@ -44,11 +44,15 @@ function run(name, args) {
 before(() => {
   const project = freshProject();
   COMMANDS.npm = { ...COMMANDS.npm, program: "npx", before: ["--no-install", "bimodal-stereo"], cwd: project };
-  // With an example, as in cli.test.mjs: it asks for the features of the tests' crates.
-  const { status } = spawnSync("cargo", ["build", "--quiet", "--bin", "bimodal-stereo", "--example", "pair"], {
-    cwd: inRoot(),
-    stdio: "inherit",
-  });
+  // With all features and an example, as in cli.test.mjs.
+  const { status } = spawnSync(
+    "cargo",
+    ["build", "--quiet", "--all-features", "--bin", "bimodal-stereo", "--example", "pair"],
+    {
+      cwd: inRoot(),
+      stdio: "inherit",
+    },
+  );
   assert.equal(status, 0);
   COMMANDS.rust = { ...COMMANDS.rust, program: inRoot("target/debug/bimodal-stereo") };
   COMMANDS.python = { ...COMMANDS.python, program: PYTHON, before: ["-m", "bimodal_stereo"] };

@@ -67,12 +67,16 @@ function alike(told, report, degrees) {
 describe("command line", () => {
   before(async () => {
     await init();
-    // With an example, since that asks for the features of the tests' crates: without them cargo compiles the library once more, under
-    // the same name, and then what the Rust tests were built on is no longer there.
-    const { status } = spawnSync("cargo", ["build", "--quiet", "--bin", "bimodal-stereo", "--example", "pair"], {
-      cwd: inRoot(),
-      stdio: "inherit",
-    });
+    // With all features and an example, as the Rust tests are built: cargo keeps one build of the library for all choices of features, and
+    // examples of the documentation would be linked with another one's.
+    const { status } = spawnSync(
+      "cargo",
+      ["build", "--quiet", "--all-features", "--bin", "bimodal-stereo", "--example", "pair"],
+      {
+        cwd: inRoot(),
+        stdio: "inherit",
+      },
+    );
     assert.equal(status, 0);
     folder = mkdtempSync(join(tmpdir(), "bimodal-cli-"));
   });

@@ -252,10 +252,14 @@ describe("batch.mjs", () => {
 
 describe("Rust", () => {
   test("pair.rs", () =>
-    assert.match(run("cargo", ["run", "--quiet", "--example", "pair"], inRoot()), /^converged after/));
+    assert.match(
+      run("cargo", ["run", "--quiet", "--all-features", "--example", "pair"], inRoot()),
+      /^converged after/,
+    ));
 
   test("files.rs reads files, and writes the refined depth", () => {
-    const files = (...args) => run("cargo", ["run", "--quiet", "--example", "files", "--", ...args], inRoot());
+    const files = (...args) =>
+      run("cargo", ["run", "--quiet", "--all-features", "--example", "files", "--", ...args], inRoot());
     const refined = join(data, "refined.npy");
     assert.match(
       files(join(data, "colour.png"), join(data, "depth.npy"), refined),

@@ -50,10 +50,20 @@ function same(one, other, path) {
 
 describe("readers in Rust and in JavaScript", () => {
   before(() => {
-    // With a binary and an example of the library, as in cli.test.mjs: they ask for the features of the tests' crates.
+    // With a binary and an example of the library, as in cli.test.mjs.
     const built = spawnSync(
       "cargo",
-      ["build", "--quiet", "--bin", "bimodal-stereo", "--example", "pair", "--example", "calibration"],
+      [
+        "build",
+        "--quiet",
+        "--all-features",
+        "--bin",
+        "bimodal-stereo",
+        "--example",
+        "pair",
+        "--example",
+        "calibration",
+      ],
       { cwd: inRoot(), stdio: "inherit" },
     );
     assert.equal(built.status, 0);
