@@ -384,10 +384,16 @@ mod tests {
                 Some(Reason::Hollow),
             ),
             (
-                "a guessed object",
+                "a whole frame",
                 Evidence { missing_mask: Some(Reason::MissingImageMask), ..SETTLED },
                 ambiguous,
                 Some(Reason::MissingImageMask),
+            ),
+            (
+                "a guessed object",
+                Evidence { missing_mask: Some(Reason::MissingDepthMask { percent: 40.0 }), ..SETTLED },
+                ambiguous,
+                Some(Reason::MissingDepthMask { percent: 40.0 }),
             ),
             (
                 "a hollow guessed object with rivals",
