@@ -21,7 +21,7 @@ pub struct Overlay {
 /// A frame as a pose lays it over its image, in the image's own pixels.
 ///
 /// # Errors
-/// As [`CalibrationCheck::new`].
+/// As [`CalibrationCheck::new`](crate::CalibrationCheck::new).
 pub fn overlay(view: RigView, pose: &Similarity) -> Result<Overlay> {
     let (frame, _) = view.prepare(0, &mut vec![])?;
     let state = rigid(pose).map_err(|error| error.below("pose"))?;
