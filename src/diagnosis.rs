@@ -1,8 +1,7 @@
 //! Whether a single albedo explains an image, or what is left of it is an error of the model or an albedo that varies.
 //!
-//! All of the crate asks this question here. [`Residuals::diagnose`] answers it for the method that would take over, since each of them is
-//! worth its trouble from another point on; [`excess`] and [`share_of_model`] grade it where a weight has to follow the residuals and no
-//! decision is made. Pure numbers in, one of three words out.
+//! Nothing else in the crate decides this. [`Residuals::diagnose`] gives the diagnosis for each method that could take over, because each has
+//! its own threshold; [`excess`] and [`share_of_model`] grade the residuals where a weight depends on them.
 //!
 //! | threshold | value | set on | held out |
 //! |---|---|---|---|
@@ -30,13 +29,13 @@ const MODEL_COVARIANCE: f64 = 0.007;
 const PINHOLE_COVARIANCE: f64 = 0.03;
 /// The same up to which no other unit of depth is tried.
 pub const UNIT_COVARIANCE: f64 = 0.0015;
-/// Residuals of so many times the image's own noise are that noise ..
+/// Residuals up to this multiple of the image's own noise count as noise.
 const NOISE_OF_IMAGE: f64 = 1.5;
-/// .. and so are those of this share of the spread of the colours.
+/// Residuals up to this share of the spread of the colours count as noise, too.
 const SHARE_OF_SPREAD: f64 = 0.05;
 /// [`NOISE_OF_IMAGE`] where another unit of depth is in question.
 pub const UNIT_NOISE: f64 = 1.25;
-/// Residuals of more than so many times the image's own noise are errors of the model: shadows, print, a lamp too sharp for nine harmonics.
+/// Residuals beyond this multiple of the image's own noise are errors of the model: shadows, print, a lamp too sharp for nine harmonics.
 const MODEL_NOISE: f64 = 2.0;
 /// Share of the spread of the colours that a trusted pose may leave unexplained.
 pub const LARGEST_UNEXPLAINED: f64 = 0.3;
@@ -79,8 +78,7 @@ pub enum Diagnosis {
 }
 
 impl Residuals {
-    /// What is left, as far as it matters to an alternative. Another unit is no matter of albedo, so that it is only told whether the image is
-    /// explained without.
+    /// The diagnosis that decides whether an alternative is tried. For another unit of depth it is never [`Diagnosis::VaryingAlbedo`].
     #[must_use]
     pub fn diagnose(&self, against: Alternative) -> Diagnosis {
         let common = |most: f64| self.covariance.is_some_and(|covariance| covariance > most);
@@ -120,13 +118,13 @@ impl Residuals {
     }
 }
 
-/// Noise in units of the largest that may be nothing else, between two bounds.
+/// Noise as a multiple of [`PURE_NOISE`], clamped to two bounds.
 #[must_use]
 pub fn excess(noise: f64, [least, most]: [f64; 2]) -> f64 {
     (noise / PURE_NOISE).clamp(least, most)
 }
 
-/// Share of the variance of residuals that errors of the model have made.
+/// Share of the variance of the residuals that errors of the model explain.
 #[must_use]
 pub fn share_of_model(residuals: f64, image_noise: f64) -> f64 {
     let of_image = MODEL_NOISE * image_noise / residuals;

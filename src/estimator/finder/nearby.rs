@@ -1,9 +1,8 @@
-//! What is tried around an initial pose before the search: each step only where those before it have not explained the image.
+//! Registrations around an initial pose that come before the search. Each runs only if the ones before it did not explain the image.
 //!
-//! The registration from the initial pose comes first, and is the loop's own. Then: from where silhouettes put the object; from the initial
-//! rotation, shifted to where the projected cloud fits mask and colours, for a calibration that is turned about the sensor moves the object by
-//! an eighth of its size with each degree, and the registration's basin is one of translation. What is left is the search over the rotations
-//! within the tolerance, which turn about the object's middle.
+//! The loop itself registers from the initial pose. Then follow the pose that silhouettes find, and the initial rotation shifted to where the
+//! projected cloud fits mask and colours: a calibration that is wrong by a degree about the sensor moves the object by an eighth of its size,
+//! more than the registration's basin of translation. The search over the rotations within the tolerance comes last.
 
 use crate::diagnosis::{Alternative, Diagnosis};
 use crate::error::Result;
@@ -86,7 +85,7 @@ impl Nearby {
         Ok(Progress::Ongoing)
     }
 
-    /// What staying is worth, what was found so far, and where silhouettes put the object.
+    /// Enters the initial pose and what was found from it, and registers silhouettes.
     fn judge(&mut self, pair: &ViewPair, colours: &mut ColourRegistration, region: &TrustRegion) {
         let Some(optima) = &mut self.optima else { return };
         if let Some(staying) = colours.judge(pair, &region.initial) {
