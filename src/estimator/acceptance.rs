@@ -2,11 +2,12 @@
 
 use super::Estimator;
 use super::checks;
+use super::evidence::{ColourEvidence, ContrastEvidence, Evidence, OutlineEvidence};
 use super::objective::{self, Trial};
 use super::run::{History, Run};
 use super::settling;
 use super::stages::Stages;
-use super::verdict::{self, ColourEvidence, ContrastEvidence, Evidence, OutlineEvidence, Verdict};
+use super::verdict::{self, Verdict};
 use crate::options::Registration;
 use crate::reason::Reason;
 use crate::report::{Objective, Status};

@@ -14,6 +14,7 @@
 
 mod acceptance;
 mod checks;
+mod evidence;
 mod finder;
 mod gauge;
 mod measurement;

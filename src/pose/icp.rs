@@ -24,7 +24,7 @@ use super::uncertainty::Information;
 use crate::check::positive;
 use crate::error::{Error, ErrorKind, Result};
 use crate::numeric::{quantile, robust};
-use crate::view::{Normals, Points, Size};
+use crate::view::{Normals, Points, Size, extent};
 
 /// Normals of a pair must agree to 60 degrees. Up to 90 makes no difference; 45 loses 3 of 34 far starts of the busts
 /// above, 26 loses 7.
@@ -193,7 +193,7 @@ impl Icp {
         check(problem, options)?;
         self.prepare(problem)?;
         let (mut pose, mut iterations) = (problem.start, 0);
-        let mut distances = Distances::new(options, spread(problem.image_points).1);
+        let mut distances = Distances::new(options, extent(problem.image_points.valid()).1);
         let mut termination = IcpTermination::MostIterations;
         for _ in 0..options.most_iterations.max(1) {
             iterations += 1;
@@ -301,10 +301,8 @@ impl Icp {
 
     /// Centroid of the transformed points of the pairs and their root mean square distance from it.
     fn frame(&self, problem: &IcpProblem<'_>, pose: &Similarity) -> (Vector3<f64>, f64) {
-        let points = || self.pairs.iter().map(|pair| pose.apply(vector(problem.depth_points, pair.depth)));
-        let count = self.pairs.len() as f64;
-        let centre = points().sum::<Vector3<f64>>() / count;
-        let length = (points().map(|point| (point - centre).norm_squared()).sum::<f64>() / count).sqrt();
+        let (centre, length) =
+            extent(self.pairs.iter().map(|pair| pose.apply(vector(problem.depth_points, pair.depth))));
         // Equal points have no extent; any length keeps the equations finite, and they then have no information.
         (centre, if length > 0.0 { length } else { 1.0 })
     }
@@ -408,14 +406,6 @@ impl Distances {
     fn share(&self) -> f64 {
         if self.present <= self.last { 0.0 } else { (self.present / self.last).ln() / (self.first / self.last).ln() }
     }
-}
-
-/// Centroid of the valid points and their root mean square distance from it; zero without points.
-fn spread(points: &Points) -> (Vector3<f64>, f64) {
-    let valid = || (0..points.len()).filter(|&index| points.is_valid(index)).map(|index| vector(points, index as u32));
-    let count = valid().count().max(1) as f64;
-    let centre = valid().sum::<Vector3<f64>>() / count;
-    (centre, (valid().map(|point| (point - centre).norm_squared()).sum::<f64>() / count).sqrt())
 }
 
 fn vector(points: &Points, index: u32) -> Vector3<f64> {

@@ -19,6 +19,8 @@ pub(crate) const UNKNOWNS: usize = 7;
 /// Indices of the translation along z and of the scale among them.
 pub(crate) const TRANSLATION_Z: usize = 5;
 pub(crate) const SCALE: usize = 6;
+/// Sigma of a direction that nothing is known about, radians or object sizes: enough to be seen as "unknown".
+pub(crate) const UNKNOWN: f64 = 1e3;
 /// A matrix over the unknowns.
 pub(crate) type PoseMatrix = SMatrix<f64, UNKNOWNS, UNKNOWNS>;
 /// A number for each unknown: a row of a Jacobian, a gradient, a step.
@@ -134,6 +136,24 @@ impl NormalEquations {
         let size = rotation.norm().max(shift.norm()).max(step[SCALE].abs());
         Some(Increment { change, size })
     }
+}
+
+/// The Gauss-Newton step of symmetric equations, damped by a share of the diagonal (Levenberg and Marquardt); held unknowns stay.
+/// `None` where they determine none.
+pub(crate) fn damped_step(
+    mut matrix: PoseMatrix,
+    mut gradient: PoseVector,
+    damping: f64,
+    held: &[bool; UNKNOWNS],
+) -> Option<PoseVector> {
+    for k in 0..UNKNOWNS {
+        matrix[(k, k)] *= 1.0 + damping;
+        if held[k] {
+            gradient[k] = 0.0;
+        }
+    }
+    fix_unknowns(&mut matrix, held);
+    solve(matrix, &gradient).map(|step| -step).filter(|step| step.norm().is_finite())
 }
 
 /// The solution of symmetric equations; `None` where they are not positive definite. One copy of it and of the next two:

@@ -13,6 +13,7 @@
 //! | `angles` | Eq. 16: the angles of a rotation | | alpha, beta, gamma | closed form |
 //! | `correspondence`, `visibility` | which depth point is which pixel, with occlusion in both directions: the 1-pixel rule | | | z-buffers |
 //! | `increment` | a Gauss-Newton step of a similarity: seven unknowns | | | |
+//! | `sandwich` | the covariance of a pose from the scores of independent clusters | | | |
 //! | `uncertainty` | one sigma of each number of a pose, from the information of matched surfaces | | | |
 //! | `spline_image`, `silhouette`, `distance_transform` | log S between pixels; distance to the mask | | | |
 //! | `neighbours` | nearest points | | | k-d tree |
@@ -31,6 +32,7 @@ mod neighbours;
 mod outline;
 mod photometric;
 mod ransac;
+mod sandwich;
 mod search;
 mod silhouette;
 mod similarity;
@@ -42,7 +44,6 @@ mod visibility;
 pub use angles::Angles;
 pub(crate) use contrast::{ContrastOutcome, ContrastProblem, ContrastReport, ContrastSearch, settle};
 pub use correspondence::{CorrespondenceProblem, Correspondences};
-pub(crate) use distance_transform::squared_distances;
 pub use icp::{Icp, IcpOptions, IcpProblem, IcpReport, IcpTermination, Metric, Pair};
 pub(crate) use increment::rotation_vector;
 pub(crate) use outline::{Outline, OutlinePrior, OutlineProblem, OutlineReport};
@@ -50,6 +51,6 @@ pub use photometric::{Photometric, PhotometricOptions, PhotometricProblem, Photo
 pub use ransac::{RansacOptions, RansacReport, ransac};
 pub use search::{Candidate, Progress, Search, SearchProblem};
 pub(crate) use search::{Hypothesis, ImageGrid, SearchFinding, SearchTask, TaskResults};
-pub(crate) use silhouette::SLACK;
+pub(crate) use silhouette::{SLACK, Silhouette};
 pub use similarity::Similarity;
 pub use uncertainty::{Axis, Direction, Information, Uncertainty, Unknown};

@@ -1,4 +1,4 @@
-//! How far a place lies off an image's mask: the distance to the nearest pixel of the mask, bilinear between pixels.
+//! How far a position lies off an image's mask. Distances are exact at pixel centres and bilinear between them.
 
 use super::distance_transform::squared_distances;
 use crate::view::Size;
@@ -8,22 +8,26 @@ use crate::view::Size;
 pub(crate) const SLACK: f64 = 0.7;
 /// Weight of points off the mask, against one of what else decides (local contrast, depth discontinuities).
 pub(super) const OUTSIDE_WEIGHT: f64 = 3.0;
+/// Half the distance over which [`Silhouette::smoothly_signed_at`] takes its gradient, pixels: the steps of a mask's border turn its
+/// normal by up to 45 degrees, and noise of normals passes for information about rotations that leave the border as it is.
+const SMOOTHING: f64 = 4.0;
 
-/// Distances to one mask, pixels: zero on it.
-pub(super) struct Silhouette {
+/// Distances to one mask, pixels.
+pub(crate) struct Silhouette {
     size: Size,
-    distance: Vec<f32>,
-    /// Likewise, negative on the mask: the distance to its border.
+    /// To the nearest pixel of the mask: zero on it.
+    outside: Vec<f32>,
+    /// To the mask's border, which runs between pixels: negative on the mask.
     signed: Vec<f32>,
 }
 
 impl Silhouette {
     pub fn new(size: Size, mask: &[bool]) -> Self {
-        let [distance, inside] = [true, false].map(|kind| distances(size, |index| mask[index] == kind));
+        let [outside, inside] = [true, false].map(|kind| distances(size, |index| mask[index] == kind));
         // Centres of pixels on either side of a border are half a pixel off it.
         let signed =
-            distance.iter().zip(&inside).map(|(out, inn)| if *out > 0.0 { out - 0.5 } else { 0.5 - inn }).collect();
-        Self { size, distance, signed }
+            outside.iter().zip(&inside).map(|(out, inn)| if *out > 0.0 { out - 0.5 } else { 0.5 - inn }).collect();
+        Self { size, outside, signed }
     }
 
     /// Pixels of the mask next to one that is not.
@@ -31,21 +35,51 @@ impl Silhouette {
         self.signed.iter().filter(|&&signed| signed == -0.5).count()
     }
 
-    /// The signed distance of a place and its derivative.
+    /// The distance to the mask and its derivative by column and row. Beyond the frame it is that of the nearest position within:
+    /// an object that the frame cuts off may go on there.
+    pub fn at(&self, place: [f64; 2]) -> (f64, [f64; 2]) {
+        self.bilinear(&self.outside, place)
+    }
+
+    /// The distance to the mask. Beyond the frame it grows with the distance from the frame.
+    pub fn beyond_frame_at(&self, place: [f64; 2]) -> f64 {
+        self.bilinear(&self.outside, place).0 + self.off_frame(place)
+    }
+
+    /// The signed distance to the border and its derivative, beyond the frame as [`at`](Self::at).
     pub fn signed_at(&self, place: [f64; 2]) -> (f64, [f64; 2]) {
         self.bilinear(&self.signed, place)
     }
 
-    /// Distance of a place and its derivative by column and row. Beyond the raster that of the nearest place within
-    /// counts on: an object that the frame cuts off may go on there.
-    pub fn at(&self, place: [f64; 2]) -> (f64, [f64; 2]) {
-        self.bilinear(&self.distance, place)
+    /// The signed distance to the border, and its gradient over several pixels. Beyond the frame it grows with the distance from
+    /// the frame.
+    pub fn smoothly_signed_at(&self, place: [f64; 2]) -> (f64, [f64; 2]) {
+        let value = |place: [f64; 2]| {
+            let (value, off) = (self.bilinear(&self.signed, place).0, self.off_frame(place));
+            if off > 0.0 { value.max(0.0) + off } else { value }
+        };
+        let gradient = [0, 1].map(|axis| {
+            let beside = |by: f64| value(std::array::from_fn(|k| if k == axis { place[k] + by } else { place[k] }));
+            (beside(SMOOTHING) - beside(-SMOOTHING)) / (2.0 * SMOOTHING)
+        });
+        (value(place), gradient)
     }
 
-    fn bilinear(&self, field: &[f32], [column, row]: [f64; 2]) -> (f64, [f64; 2]) {
+    /// How far a position lies beyond the frame.
+    fn off_frame(&self, place: [f64; 2]) -> f64 {
+        let [x, y] = self.within(place);
+        (place[0] - x).hypot(place[1] - y)
+    }
+
+    fn within(&self, [column, row]: [f64; 2]) -> [f64; 2] {
+        // `clamp` can panic with both limits in words, which takes 8 kB of code for floats.
+        let within = |value: f64, length: usize| value.max(0.0).min((length - 1) as f64);
+        [within(column, self.size.width), within(row, self.size.height)]
+    }
+
+    fn bilinear(&self, field: &[f32], place: [f64; 2]) -> (f64, [f64; 2]) {
         let Size { width, height } = self.size;
-        let x = column.clamp(0.0, (width - 1) as f64);
-        let y = row.clamp(0.0, (height - 1) as f64);
+        let [x, y] = self.within(place);
         let (left, top) = ((x as usize).min(width - 2), (y as usize).min(height - 2));
         let (u, v) = (x - left as f64, y - top as f64);
         let at = |c: usize, r: usize| f64::from(field[self.size.index(left + c, top + r)]);
@@ -104,6 +138,40 @@ mod tests {
         let down =
             silhouette.signed_at([place[0], place[1] + step]).0 - silhouette.signed_at([place[0], place[1] - step]).0;
         assert!((slope[0] - right / (2.0 * step)).abs() < 1e-4 && (slope[1] - down / (2.0 * step)).abs() < 1e-4);
+    }
+
+    #[test]
+    fn signed_distances_are_those_of_a_search_over_all_pixels() {
+        let size = Size { width: 23, height: 17 };
+        let mask: Vec<bool> = (0..size.len()).map(|index| (index * 7919) % 11 < 3 || index % 23 > 16).collect();
+        let silhouette = Silhouette::new(size, &mask);
+        for index in 0..size.len() {
+            let (column, row) = size.position(index);
+            let others = (0..size.len()).filter(|&other| mask[other] != mask[index]).map(|other| {
+                let (c, r) = size.position(other);
+                (c as f64 - column as f64).hypot(r as f64 - row as f64)
+            });
+            let nearest = others.fold(f64::INFINITY, f64::min) - 0.5;
+            let expected = if mask[index] { -nearest } else { nearest };
+            let (found, _) = silhouette.smoothly_signed_at([column as f64, row as f64]);
+            assert!((found - expected).abs() < 1e-5, "{index}");
+        }
+    }
+
+    #[test]
+    fn the_smooth_gradient_points_away_from_the_mask_and_the_frame_is_no_end() {
+        let silhouette = disc();
+        for at in [[3.0, 4.0], [31.0, 14.2], [18.3, 27.0], [-5.0, 40.0]] {
+            let (value, gradient) = silhouette.smoothly_signed_at(at);
+            let [right, down] = [at[0] - 18.0, at[1] - 15.0];
+            let exact = right.hypot(down);
+            // The frame is nearer than the disc where the position is beyond it.
+            assert!((value - (exact - 9.0)).abs() < if at[0] < 0.0 { 20.0 } else { 0.6 }, "{at:?}: {value}");
+            assert!((gradient[0] * right + gradient[1] * down) / exact > 0.9, "{at:?}: {gradient:?}");
+        }
+        let far = [-50.0, 14.0];
+        assert!(silhouette.smoothly_signed_at(far).0 > 50.0 && silhouette.beyond_frame_at(far) > 50.0);
+        assert_eq!(silhouette.at(far), silhouette.at([0.0, 14.0]));
     }
 
     #[test]

@@ -12,7 +12,9 @@ use std::fmt;
 
 use nalgebra::Vector3;
 
-use super::increment::{Frame, PoseMatrix, PoseVector, SCALE, TRANSLATION_Z, UNKNOWNS, clear_unknowns, fix_unknowns};
+use super::increment::{
+    Frame, PoseMatrix, PoseVector, SCALE, TRANSLATION_Z, UNKNOWN, UNKNOWNS, clear_unknowns, fix_unknowns,
+};
 use super::similarity::Similarity;
 use crate::numeric::eigen::{Eigen, symmetric_eigen};
 use crate::view::Camera;
@@ -21,8 +23,6 @@ use crate::view::Camera;
 /// between normals and motion. A face has 5e-3, a bust with a third of its relief 1e-3; smooth surfaces of revolution
 /// stay below 1e-4.
 const LEAST_INFORMATION: f64 = 1e-4;
-/// Sigma of a direction without information, in radians or object sizes: enough to be seen as "unknown".
-const UNKNOWN: f64 = 1e3;
 /// Rotations are never more uncertain than this, degrees.
 const LARGEST_SIGMA: f64 = 180.0;
 /// Sigma of the focal lengths that files state, as a share. Set so that the rotations of random pinhole pairs, one of whose

@@ -28,5 +28,6 @@ pub use depth::{DepthMap, DepthSamples, DepthView};
 pub use depth_noise::DepthNoise;
 pub(crate) use limbs::is_hollow;
 pub use raster::Size;
+pub(crate) use vectors::extent;
 pub use vectors::{Normals, Points};
 pub(crate) use working_size::WorkingSize;

@@ -98,15 +98,15 @@ impl Normals {
         }
     }
 
+    /// The vectors that are not missing.
+    pub fn valid(&self) -> impl Iterator<Item = Vector3<f64>> + Clone {
+        (0..self.len()).filter(|&index| self.is_valid(index)).map(|index| self.get(index).map(f64::from).into())
+    }
+
     /// Mean of the vectors that are not missing, zero where all are.
     #[must_use]
     pub fn centroid(&self) -> Vector3<f64> {
-        let (mut sum, mut count) = (Vector3::zeros(), 0.0);
-        for index in (0..self.len()).filter(|&index| self.is_valid(index)) {
-            sum += Vector3::from(self.get(index).map(f64::from));
-            count += 1.0;
-        }
-        sum / f64::max(count, 1.0)
+        extent(self.valid()).0
     }
 
     /// The vectors interleaved: x, y, z, x, y, z, ...
@@ -114,6 +114,18 @@ impl Normals {
     pub fn interleaved(&self) -> Vec<f32> {
         (0..self.len()).flat_map(|index| self.get(index)).collect()
     }
+}
+
+/// Centroid of points and their root mean square distance from it; zero without points.
+pub(crate) fn extent(points: impl Iterator<Item = Vector3<f64>> + Clone) -> (Vector3<f64>, f64) {
+    let (mut sum, mut count) = (Vector3::zeros(), 0.0);
+    for point in points.clone() {
+        sum += point;
+        count += 1.0;
+    }
+    let count = f64::max(count, 1.0);
+    let centre = sum / count;
+    (centre, (points.map(|point| (point - centre).norm_squared()).sum::<f64>() / count).sqrt())
 }
 
 #[cfg(test)]

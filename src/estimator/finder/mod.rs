@@ -79,8 +79,15 @@ pub enum Advance {
 enum Scope {
     /// The halved pair stands in for the views where these are large.
     Everywhere(Option<Box<Opening>>),
-    /// `noisy`: where the registration from the initial pose left no more than the image's own noise.
-    Near { region: Box<TrustRegion>, noisy: Option<Similarity>, silhouettes: Option<Box<OutlineReport>> },
+    Near(Box<Near>),
+}
+
+/// What is known around an initial pose.
+struct Near {
+    region: TrustRegion,
+    /// Where the registration from the initial pose left no more than the image's own noise.
+    noisy: Option<Similarity>,
+    silhouettes: Option<Box<OutlineReport>>,
 }
 
 /// What is being done.
@@ -89,6 +96,7 @@ enum Phase {
     Candidates(Box<Candidates>),
     Contrast(Box<ByContrast>),
     Silhouettes(Box<Anywhere>),
+    Done,
 }
 
 /// The search by local contrast.
@@ -96,6 +104,15 @@ struct ByContrast {
     cleaned: CleanedImage,
     search: ContrastSearch,
 }
+
+/// What a slice has come to.
+enum Next {
+    Phase(Phase),
+    Decision(Decision),
+}
+
+/// The registration by colours, which a search of a halved pair does without.
+type Memory = Option<ColourRegistration>;
 
 /// Finds a pose in slices; owns its memory.
 pub struct Finder {
@@ -111,7 +128,7 @@ impl Finder {
     /// Those of the search, where the views allow none.
     pub fn everywhere(
         pair: &ViewPair,
-        memory: &mut Option<ColourRegistration>,
+        memory: &mut Memory,
         opening: Option<Box<Opening>>,
         grid: ImageGrid,
     ) -> Result<Self> {
@@ -130,17 +147,14 @@ impl Finder {
     pub fn near(pair: &ViewPair, region: TrustRegion, plain: Option<PhotometricReport>) -> Self {
         let plain = plain.map(Box::new).filter(|found| region.holds(pair, &found.pose));
         let noisy = plain.as_deref().filter(|found| pair.residuals(found).is_noise()).map(|found| found.pose);
-        let nearby = Nearby::new(pair, plain);
-        Self {
-            scope: Scope::Near { region: Box::new(region), noisy, silhouettes: None },
-            phase: Phase::Nearby(Box::new(nearby)),
-            chosen: Choice::default(),
-        }
+        let phase = Phase::Nearby(Box::new(Nearby::new(pair, region.clone(), plain)));
+        let near = Near { region, noisy, silhouettes: None };
+        Self { scope: Scope::Near(Box::new(near)), phase, chosen: Choice::default() }
     }
 
     /// Whether it looks near an initial pose.
     pub const fn is_near(&self) -> bool {
-        matches!(self.scope, Scope::Near { .. })
+        matches!(self.scope, Scope::Near(_))
     }
 
     /// The best pose so far: that of a registration, or else of the search.
@@ -174,9 +188,8 @@ impl Finder {
 
     /// What a worker has found.
     pub fn accept(&mut self, pair: &ViewPair, finding: Finding) {
-        let region = self.scope.region();
         if let Phase::Candidates(candidates) = &mut self.phase {
-            candidates.accept(finding, |pose| region.is_none_or(|region| region.holds(pair, pose)));
+            candidates.accept(finding, |pose| self.scope.holds(pair, pose));
         }
     }
 
@@ -192,63 +205,58 @@ impl Finder {
     /// One slice.
     ///
     /// # Errors
-    /// Those of the search near an initial pose, where the views allow none.
-    pub fn advance(&mut self, pair: &ViewPair, memory: &mut Option<ColourRegistration>) -> Result<Advance> {
-        match &mut self.phase {
-            Phase::Nearby(_) => self.look_nearby(pair, memory),
-            Phase::Candidates(_) => self.register_candidates(pair, memory),
-            Phase::Contrast(_) => self.compare_contrast(pair, memory),
-            Phase::Silhouettes(anywhere) => {
-                if anywhere.advance(pair, ColourRegistration::prepared(memory, pair).normals()) {
-                    let found = anywhere.best();
-                    return Ok(Advance::Done(self.everywhere_by(found)));
-                }
-                Ok(Advance::Ongoing(BEFORE_CONTRAST, Activity::ComparingSilhouettes))
+    /// Those of the search near an initial pose, where the views allow none; there is nothing more to find then.
+    pub fn advance(&mut self, pair: &ViewPair, memory: &mut Memory) -> Result<Advance> {
+        let next = match std::mem::replace(&mut self.phase, Phase::Done) {
+            Phase::Nearby(nearby) => self.look_nearby(pair, memory, nearby)?,
+            Phase::Candidates(candidates) => self.register_candidates(pair, memory, candidates)?,
+            Phase::Contrast(contrast) => self.compare_contrast(pair, memory, contrast)?,
+            Phase::Silhouettes(anywhere) => self.compare_silhouettes(pair, memory, anywhere),
+            Phase::Done => Next::Decision(Decision::of(Method::Nothing)),
+        };
+        Ok(match next {
+            Next::Decision(decision) => Advance::Done(decision),
+            Next::Phase(phase) => {
+                let (share, activity) = phase.progress();
+                self.phase = phase;
+                Advance::Ongoing(share, activity)
             }
-        }
+        })
     }
 
     /// What is tried first around an initial pose.
-    fn look_nearby(&mut self, pair: &ViewPair, memory: &mut Option<ColourRegistration>) -> Result<Advance> {
-        let (Scope::Near { region, silhouettes, .. }, Phase::Nearby(nearby)) = (&mut self.scope, &mut self.phase)
-        else {
-            return Ok(Advance::Done(Decision::of(Method::Nothing)));
-        };
-        let progress = nearby.advance(pair, ColourRegistration::prepared(memory, pair), region)?;
-        let activity = Activity::Registering;
+    fn look_nearby(&mut self, pair: &ViewPair, memory: &mut Memory, mut nearby: Box<Nearby>) -> Result<Next> {
+        let progress = nearby.advance(pair, ColourRegistration::prepared(memory, pair))?;
+        if matches!(progress, Progress::Ongoing) {
+            return Ok(Next::Phase(Phase::Nearby(nearby)));
+        }
+        if let Scope::Near(near) = &mut self.scope {
+            near.silhouettes = nearby.silhouettes();
+        }
         match progress {
-            Progress::Ongoing => Ok(Advance::Ongoing(0.0, activity)),
-            Progress::Explained(choice) => {
-                *silhouettes = nearby.silhouettes();
-                self.diagnose(pair, memory, choice, Vec::new())
-            }
-            Progress::Unexplained(candidates) => {
-                *silhouettes = nearby.silhouettes();
-                self.phase = Phase::Candidates(candidates);
-                Ok(Advance::Ongoing(0.0, activity))
-            }
+            Progress::Explained(choice) => self.diagnose(pair, memory, choice, Vec::new()),
+            Progress::Unexplained(candidates) => Ok(Next::Phase(Phase::Candidates(candidates))),
+            Progress::Ongoing => Ok(Next::Phase(Phase::Nearby(nearby))),
         }
     }
 
     /// A slice of the search, or of the registration of a candidate.
-    fn register_candidates(&mut self, pair: &ViewPair, memory: &mut Option<ColourRegistration>) -> Result<Advance> {
-        let Self { scope, phase: Phase::Candidates(candidates), .. } = self else {
-            return Ok(Advance::Done(Decision::of(Method::Nothing)));
-        };
-        let choice = match scope {
+    fn register_candidates(
+        &mut self,
+        pair: &ViewPair,
+        memory: &mut Memory,
+        mut candidates: Box<Candidates>,
+    ) -> Result<Next> {
+        let choice = match &mut self.scope {
             Scope::Everywhere(Some(opening)) => candidates.advance(&opening.pair, &mut opening.colours, |_| true),
-            Scope::Everywhere(None) => candidates.advance(pair, ColourRegistration::prepared(memory, pair), |_| true),
-            Scope::Near { region, .. } => {
+            scope => {
                 let colours = ColourRegistration::prepared(memory, pair);
-                candidates.advance(pair, colours, |pose| region.holds(pair, pose))
+                candidates.advance(pair, colours, |pose| scope.holds(pair, pose))
             }
         };
-        let Some(mut choice) = choice else {
-            let (share, activity) = candidates.progress();
-            return Ok(Advance::Ongoing(share, activity));
-        };
+        let Some(mut choice) = choice else { return Ok(Next::Phase(Phase::Candidates(candidates))) };
         let mut looked_at = candidates.poses();
-        if let Scope::Everywhere(Some(opening)) = scope {
+        if let Scope::Everywhere(Some(opening)) = &mut self.scope {
             looked_at.iter_mut().chain(&mut choice.rivals).for_each(|pose| *pose = opening.pose_out(pose));
             choice.best = choice.best.map(|best| opening.report_out(best));
         }
@@ -259,10 +267,10 @@ impl Finder {
     fn diagnose(
         &mut self,
         pair: &ViewPair,
-        memory: &mut Option<ColourRegistration>,
+        memory: &mut Memory,
         choice: Choice,
         mut looked_at: Vec<Similarity>,
-    ) -> Result<Advance> {
+    ) -> Result<Next> {
         self.chosen = choice;
         let colours = &*ColourRegistration::prepared(memory, pair);
         let Some(cleaned) = local_contrast::cleaned(pair, colours, self.chosen.best.as_deref()) else {
@@ -274,90 +282,104 @@ impl Finder {
                 looked_at.extend(best.iter().map(|best| best.pose).chain(rivals.iter().copied()));
                 local_contrast::of_all_sizes(pair, &looked_at)
             }
-            Scope::Near { region, .. } => local_contrast::around(pair, &region.initial),
+            Scope::Near(near) => local_contrast::around(pair, &near.region.initial),
         };
         let search = ContrastSearch::new(&colours.contrast_problem(pair, cleaned.image(pair)), starts);
-        self.phase = Phase::Contrast(Box::new(ByContrast { cleaned, search }));
-        Ok(Advance::Ongoing(BEFORE_CONTRAST, Activity::ComparingContrast))
+        Ok(Next::Phase(Phase::Contrast(Box::new(ByContrast { cleaned, search }))))
     }
 
     /// A slice of the search by local contrast.
-    fn compare_contrast(&mut self, pair: &ViewPair, memory: &mut Option<ColourRegistration>) -> Result<Advance> {
-        let Phase::Contrast(contrast) = &mut self.phase else {
-            return Ok(Advance::Done(Decision::of(Method::Nothing)));
-        };
-        let ByContrast { cleaned, search } = &mut **contrast;
+    fn compare_contrast(
+        &mut self,
+        pair: &ViewPair,
+        memory: &mut Memory,
+        mut contrast: Box<ByContrast>,
+    ) -> Result<Next> {
+        let ByContrast { cleaned, search } = &mut *contrast;
         let colours = &*ColourRegistration::prepared(memory, pair);
         if !search.advance(&colours.contrast_problem(pair, cleaned.image(pair))) {
-            let share = BEFORE_CONTRAST + (1.0 - BEFORE_CONTRAST) * search.share();
-            return Ok(Advance::Ongoing(share, Activity::ComparingContrast));
+            return Ok(Next::Phase(Phase::Contrast(contrast)));
         }
         let conclusion = local_contrast::conclude(pair, colours, cleaned, search);
         self.decide(pair, memory, conclusion)
     }
 
-    fn decide(
-        &mut self,
-        pair: &ViewPair,
-        memory: &mut Option<ColourRegistration>,
-        found: Option<Conclusion>,
-    ) -> Result<Advance> {
-        if self.is_near() {
-            return self.decide_near(pair, memory, found).map(Advance::Done);
+    /// A slice of the registrations by silhouettes from anywhere.
+    fn compare_silhouettes(&mut self, pair: &ViewPair, memory: &mut Memory, mut anywhere: Box<Anywhere>) -> Next {
+        if anywhere.advance(pair, ColourRegistration::prepared(memory, pair).normals()) {
+            return Next::Decision(everywhere_by(anywhere.best(), std::mem::take(&mut self.chosen)));
         }
-        Ok(Advance::Done(match found {
+        Next::Phase(Phase::Silhouettes(anywhere))
+    }
+
+    fn decide(&mut self, pair: &ViewPair, memory: &mut Memory, found: Option<Conclusion>) -> Result<Next> {
+        let colours = ColourRegistration::prepared(memory, pair);
+        if let Scope::Near(near) = &mut self.scope {
+            let choice = std::mem::take(&mut self.chosen);
+            return near.decide(pair, colours, choice, found).map(Next::Decision);
+        }
+        let decision = match found {
             Some(Conclusion::ByColours(best)) => Decision { by: Method::Image(best), rivals: Some(Vec::new()) },
             Some(Conclusion::ByContrast(found)) => {
                 Decision { by: Method::Contrast(Box::new(found.best)), rivals: Some(found.rivals) }
             }
-            None if silhouettes::are_called_for(pair, self.chosen.best.as_deref()) => {
-                let normals = ColourRegistration::prepared(memory, pair).normals();
-                let Some(anywhere) = Anywhere::new(pair, normals) else {
-                    return Ok(Advance::Done(self.everywhere_by(None)));
-                };
-                self.phase = Phase::Silhouettes(Box::new(anywhere));
-                return Ok(Advance::Ongoing(BEFORE_CONTRAST, Activity::ComparingSilhouettes));
+            None => {
+                let anywhere = silhouettes::are_called_for(pair, self.chosen.best.as_deref())
+                    .then(|| Anywhere::new(pair, colours.normals()));
+                if let Some(anywhere) = anywhere.flatten() {
+                    return Ok(Next::Phase(Phase::Silhouettes(Box::new(anywhere))));
+                }
+                everywhere_by(None, std::mem::take(&mut self.chosen))
             }
-            None => self.everywhere_by(None),
-        }))
+        };
+        Ok(Next::Decision(decision))
     }
+}
 
-    /// By silhouettes, or else by the best registration.
-    fn everywhere_by(&mut self, silhouettes: Option<OutlineReport>) -> Decision {
-        let Choice { best, rivals } = std::mem::take(&mut self.chosen);
-        match (silhouettes, best) {
-            (Some(found), _) => Decision { by: Method::Silhouettes(Box::new(found)), rivals: Some(Vec::new()) },
-            (None, Some(best)) => Decision { by: Method::Image(best), rivals: Some(rivals) },
-            (None, None) => Decision { by: Method::Nothing, rivals: Some(rivals) },
+/// By silhouettes, or else by the best registration.
+fn everywhere_by(silhouettes: Option<OutlineReport>, Choice { best, rivals }: Choice) -> Decision {
+    match (silhouettes, best) {
+        (Some(found), _) => Decision { by: Method::Silhouettes(Box::new(found)), rivals: Some(Vec::new()) },
+        (None, Some(best)) => Decision { by: Method::Image(best), rivals: Some(rivals) },
+        (None, None) => Decision { by: Method::Nothing, rivals: Some(rivals) },
+    }
+}
+
+impl Scope {
+    /// Whether a pose may be the answer.
+    fn holds(&self, pair: &ViewPair, pose: &Similarity) -> bool {
+        match self {
+            Self::Near(near) => near.region.holds(pair, pose),
+            Self::Everywhere(_) => true,
         }
     }
+}
 
+impl Near {
     /// What lies within the trust region: by local contrast, by the image, by silhouettes; or else the initial pose.
-    fn decide_near(
+    fn decide(
         &mut self,
         pair: &ViewPair,
-        memory: &mut Option<ColourRegistration>,
+        colours: &mut ColourRegistration,
+        Choice { best, .. }: Choice,
         found: Option<Conclusion>,
     ) -> Result<Decision> {
-        let Scope::Near { region, noisy, silhouettes } = &mut self.scope else {
-            return Ok(Decision::of(Method::Nothing));
-        };
+        let region = &self.region;
         match found {
             Some(Conclusion::ByColours(found)) if region.holds(pair, &found.pose) => {
                 return Ok(Decision::of(Method::Image(found)));
             }
             Some(Conclusion::ByContrast(mut found)) if region.holds(pair, &found.best.pose) => {
                 // What leaves no more than the image's own noise is a rival, however much of it neighbours share.
-                local_contrast::rival(&mut found, *noisy);
+                local_contrast::rival(&mut found, self.noisy);
                 return Ok(Decision { by: Method::Contrast(Box::new(found.best)), rivals: Some(found.rivals) });
             }
             _ => {}
         }
-        let (best, silhouettes) = (self.chosen.best.take(), silhouettes.take());
-        Ok(Decision::of(match (best, silhouettes) {
+        Ok(Decision::of(match (best, self.silhouettes.take()) {
             (Some(best), silhouettes) if silhouettes.is_none() || !silhouettes::is_painted(pair, &best) => {
                 // All points follow the sample that candidates are registered by.
-                let found = ColourRegistration::prepared(memory, pair).register_all(pair, *best)?;
+                let found = colours.register_all(pair, *best)?;
                 match region.holds(pair, &found.pose) {
                     true => Method::Image(Box::new(found)),
                     false => Method::Initial,
@@ -369,11 +391,17 @@ impl Finder {
     }
 }
 
-impl Scope {
-    fn region(&self) -> Option<&TrustRegion> {
+impl Phase {
+    /// Share of the work that is done, and what is being done.
+    fn progress(&self) -> (f64, Activity) {
         match self {
-            Self::Near { region, .. } => Some(region),
-            Self::Everywhere(_) => None,
+            Self::Nearby(_) => (0.0, Activity::Registering),
+            Self::Candidates(candidates) => candidates.progress(),
+            Self::Contrast(contrast) => {
+                (BEFORE_CONTRAST + (1.0 - BEFORE_CONTRAST) * contrast.search.share(), Activity::ComparingContrast)
+            }
+            Self::Silhouettes(_) => (BEFORE_CONTRAST, Activity::ComparingSilhouettes),
+            Self::Done => (1.0, Activity::Registering),
         }
     }
 }

@@ -33,6 +33,7 @@ enum Step {
 
 /// The steps around an initial pose.
 pub struct Nearby {
+    region: TrustRegion,
     step: Step,
     /// Whether the registration of this step is under way.
     is_begun: bool,
@@ -44,9 +45,17 @@ pub struct Nearby {
 }
 
 impl Nearby {
-    pub fn new(pair: &ViewPair, plain: Option<Box<PhotometricReport>>) -> Self {
+    pub fn new(pair: &ViewPair, region: TrustRegion, plain: Option<Box<PhotometricReport>>) -> Self {
         let optima = LocalOptima::new(NEARBY.most + 4, pair.residuals_of_noise(0.0));
-        Self { step: Step::Judge, is_begun: false, plain, optima: Some(optima), silhouettes: None, search: None }
+        Self {
+            region,
+            step: Step::Judge,
+            is_begun: false,
+            plain,
+            optima: Some(optima),
+            silhouettes: None,
+            search: None,
+        }
     }
 
     /// The pose by silhouettes, where they decide anything.
@@ -55,25 +64,20 @@ impl Nearby {
     }
 
     /// One slice.
-    pub fn advance(
-        &mut self,
-        pair: &ViewPair,
-        colours: &mut ColourRegistration,
-        region: &TrustRegion,
-    ) -> Result<Progress> {
+    pub fn advance(&mut self, pair: &ViewPair, colours: &mut ColourRegistration) -> Result<Progress> {
         match self.step {
             Step::Judge => {
-                self.judge(pair, colours, region);
+                self.judge(pair, colours);
                 let found = self.silhouettes.as_ref().map(|found| found.pose);
                 self.step = found.map_or(Step::Shift, Step::FromSilhouettes);
             }
-            Step::FromSilhouettes(start) => return Ok(self.register(pair, colours, region, &start, Step::Shift)),
+            Step::FromSilhouettes(start) => return Ok(self.register(pair, colours, &start, Step::Shift)),
             Step::Shift => {
                 let mut search = search(pair, ImageGrid::new(&pair.image)?, colours)?;
-                self.step = search.shifted(&region.initial.rotation).map_or(Step::Search, Step::FromShifted);
+                self.step = search.shifted(&self.region.initial.rotation).map_or(Step::Search, Step::FromShifted);
                 self.search = Some(search);
             }
-            Step::FromShifted(start) => return Ok(self.register(pair, colours, region, &start, Step::Search)),
+            Step::FromShifted(start) => return Ok(self.register(pair, colours, &start, Step::Search)),
             Step::Search => {
                 let (Some(search), Some(optima)) = (self.search.take(), self.optima.take()) else {
                     return Ok(Progress::Explained(Choice::default()));
@@ -86,7 +90,8 @@ impl Nearby {
     }
 
     /// Enters the initial pose and what was found from it, and registers silhouettes.
-    fn judge(&mut self, pair: &ViewPair, colours: &mut ColourRegistration, region: &TrustRegion) {
+    fn judge(&mut self, pair: &ViewPair, colours: &mut ColourRegistration) {
+        let region = &self.region;
         let Some(optima) = &mut self.optima else { return };
         if let Some(staying) = colours.judge(pair, &region.initial) {
             optima.enter(STAYING, RegisteredCandidate::of(staying));
@@ -103,7 +108,6 @@ impl Nearby {
         &mut self,
         pair: &ViewPair,
         colours: &mut ColourRegistration,
-        region: &TrustRegion,
         start: &Similarity,
         next: Step,
     ) -> Progress {
@@ -113,7 +117,7 @@ impl Nearby {
             return Progress::Ongoing;
         };
         (self.is_begun, self.step) = (false, next);
-        let found = found.filter(|found| region.holds(pair, &found.pose));
+        let found = found.filter(|found| self.region.holds(pair, &found.pose));
         let (Some(found), Some(mut optima)) = (found, self.optima.take()) else { return Progress::Ongoing };
         let is_explained = explains(pair, &found);
         optima.enter(BEFORE, RegisteredCandidate::of(found));

@@ -9,6 +9,7 @@ use crate::estimator::gauge;
 use crate::estimator::pair::ViewPair;
 use crate::options::{Registration, Start};
 use crate::pose::{OutlinePrior, Similarity};
+use crate::view::extent;
 
 use super::silhouettes;
 
@@ -48,9 +49,9 @@ impl TrustRegion {
             Start::Pose { translation, .. } => translation.is_some(),
         };
         let initial = gauge::first_pose(pair);
-        let middle = pair.depth.points.centroid();
+        let (middle, spread) = extent(pair.depth.points.valid());
         let tolerance = pair.options.start_tolerance;
-        let own_width = || OBJECT_SIZES * initial.scale * spread(pair, &middle);
+        let own_width = || OBJECT_SIZES * initial.scale * spread;
         let distance = if is_placed { tolerance.distance.unwrap_or_else(own_width) } else { f64::INFINITY };
         let sees_depth = !pair.image.camera.is_orthographic();
         Some(Self { initial, middle, degrees: tolerance.degrees, distance, sees_depth })
@@ -77,15 +78,4 @@ impl TrustRegion {
         let prior = OutlinePrior { pose: self.initial, rotation: degrees.to_radians(), across, along };
         self.sees_depth.then_some(prior)
     }
-}
-
-/// Root mean square distance of the depth points from their middle.
-fn spread(pair: &ViewPair, middle: &Vector3<f64>) -> f64 {
-    let points = &pair.depth.points;
-    let (mut sum, mut count) = (0.0, 0.0);
-    for index in (0..points.len()).filter(|&index| points.is_valid(index)) {
-        sum += (Vector3::from(points.get(index).map(f64::from)) - middle).norm_squared();
-        count += 1.0;
-    }
-    (sum / f64::max(count, 1.0)).sqrt()
 }

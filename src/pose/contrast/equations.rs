@@ -2,7 +2,7 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use crate::pose::increment::{PoseMatrix, PoseVector, UNKNOWNS, fix_unknowns, solve};
+use crate::pose::increment::{PoseMatrix, PoseVector, UNKNOWNS, damped_step};
 
 /// Harmonics of order one and two: the constant one has no contrast.
 pub(super) const SHADES: usize = 8;
@@ -145,19 +145,7 @@ pub(super) struct Reduced {
 impl Reduced {
     /// The damped step of the pose, and that of the light which follows it.
     pub fn step(&self, damping: f64, held: &[bool; UNKNOWNS]) -> Option<(PoseVector, Lights)> {
-        let mut matrix = self.matrix;
-        let mut gradient = self.gradient;
-        for k in 0..UNKNOWNS {
-            matrix[(k, k)] *= 1.0 + damping;
-            if held[k] {
-                gradient[k] = 0.0;
-            }
-        }
-        fix_unknowns(&mut matrix, held);
-        let step = -solve(matrix, &gradient)?;
-        if !step.norm().is_finite() {
-            return None;
-        }
+        let step = damped_step(self.matrix, self.gradient, damping, held)?;
         let light = |channel: usize| {
             self.inverse_gram * self.shade_gradient[channel] + self.projected[channel].transpose() * step
         };

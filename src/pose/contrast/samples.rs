@@ -7,7 +7,7 @@ use super::equations::SHADES;
 use super::problem::ContrastProblem;
 use crate::light::basis;
 use crate::numeric::robust;
-use crate::view::Size;
+use crate::view::{Size, extent};
 
 /// Error of a normal, radians, at which its point has lost three quarters of its weight, as in the registration by
 /// colours.
@@ -96,10 +96,8 @@ impl Samples {
 
     /// Middle, size and spacing.
     fn measure(&mut self) {
-        let count = self.list.len().max(1) as f64;
-        self.centre = self.list.iter().map(|sample| sample.point).sum::<Vector3<f64>>() / count;
-        let square: f64 = self.list.iter().map(|sample| (sample.point - self.centre).norm_squared()).sum();
-        self.radius = (square / count).sqrt().max(f64::MIN_POSITIVE);
+        let (centre, radius) = extent(self.list.iter().map(|sample| sample.point));
+        (self.centre, self.radius) = (centre, radius.max(f64::MIN_POSITIVE));
         let mut steps: Vec<f32> = self.neighbours.iter().map(|&pair| self.distance(pair) as f32).collect();
         if !steps.is_empty() {
             self.step = f64::from(crate::numeric::quantile(&mut steps, 0.5));

@@ -3,9 +3,8 @@
 use super::equations::Reduced;
 use super::objective::{Objective, State};
 use super::problem::ContrastProblem;
-use crate::pose::increment::{
-    Frame, PoseMatrix, PoseVector, SCALE, TRANSLATION_Z, UNKNOWNS, clear_unknowns, fix_unknowns, inverse, product,
-};
+use crate::pose::increment::{Frame, PoseMatrix, PoseVector, SCALE, TRANSLATION_Z, UNKNOWNS, fix_unknowns, inverse};
+use crate::pose::sandwich::Scores;
 use crate::pose::uncertainty::{Uncertainty, describe, weakest_of};
 use crate::view::Size;
 
@@ -16,9 +15,6 @@ const TILE: f64 = 9.0;
 /// four photographed objects and their shading (deer, frog2, panther, paper1, 0 to 60 degrees, 96x96) are 1.33 sigmas off
 /// about their worst axis at the median, Gaussian errors 1.22, and 93 % of them within 3.4: either asks for 3.3 to 3.4.
 const SIGMA_INFLATION: f64 = 3.5;
-/// Sigma of a direction that nothing is known about, radians or object sizes.
-const UNKNOWN: f64 = 1e3;
-
 /// What a covariance is taken of.
 pub(super) struct Linearised<'a> {
     pub problem: &'a ContrastProblem<'a>,
@@ -60,27 +56,11 @@ impl Linearised<'_> {
 /// contrast: what it adds to the information it adds to the scores as well.
 fn covariance(linearised: &Linearised<'_>, held: &[bool; UNKNOWNS]) -> PoseMatrix {
     let [contrast, outline] = linearised.tiles();
-    let is_taken = |score: &&PoseVector| score.norm() > 0.0;
-    let count = contrast.iter().filter(is_taken).count() as f64;
-    let mut spread = PoseMatrix::zeros();
-    for score in contrast.iter().chain(&outline).filter(is_taken) {
-        spread.ger(1.0, score, score, 1.0);
-    }
-    let free = held.iter().filter(|&&held| !held).count() as f64;
+    let mut scores = Scores::of(contrast.iter());
+    scores.add(outline.iter());
     let mut matrix = linearised.reduced.matrix;
     fix_unknowns(&mut matrix, held);
-    let mut covariance = match inverse(&matrix) {
-        Some(inverse) if count > free => {
-            product(&product(&inverse, &spread), &inverse.transpose())
-                * (SIGMA_INFLATION.powi(2) * count / (count - free))
-        }
-        _ => PoseMatrix::identity() * UNKNOWN.powi(2),
-    };
-    if !covariance.norm().is_finite() {
-        covariance = PoseMatrix::identity() * UNKNOWN.powi(2);
-    }
-    clear_unknowns(&mut covariance, held);
-    covariance
+    scores.covariance(inverse(&matrix).as_ref(), SIGMA_INFLATION, held)
 }
 
 /// One sigma of the pose's own numbers.

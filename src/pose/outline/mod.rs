@@ -15,7 +15,6 @@
 //! | file | what it holds |
 //! |---|---|
 //! | `edges` | edges of the image across a line |
-//! | `mask_distance` | the signed distance to the mask's outline |
 //! | `rims` | which points of the depth map draw its outline under a pose |
 //! | `problem` | what goes in, what comes out |
 //! | `registration` | the rounds: [`Outline`] |
@@ -25,7 +24,6 @@
 //! turns without changing its outline (a bowl about its axis) keeps the told turn.
 
 mod edges;
-mod mask_distance;
 mod problem;
 mod registration;
 mod rims;

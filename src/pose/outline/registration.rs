@@ -3,18 +3,18 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::edges::{Edge, Edges, LEVELS};
-use super::mask_distance::MaskDistance;
 use super::problem::{OutlinePrior, OutlineProblem, OutlineReport};
 use super::rims::Rims;
 use super::sums::{Row, Sums};
 use crate::numeric::eigen::symmetric_eigen;
 use crate::numeric::{quantile, robust};
 use crate::pose::increment::{
-    Frame, PoseMatrix, PoseVector, SCALE, UNKNOWNS, clear_unknowns, inverse, rotation_vector, solve,
+    Frame, PoseMatrix, PoseVector, SCALE, UNKNOWN, UNKNOWNS, clear_unknowns, damped_step, inverse, rotation_vector,
 };
-use crate::pose::silhouette::{OUTSIDE_WEIGHT, SLACK};
+use crate::pose::silhouette::{OUTSIDE_WEIGHT, SLACK, Silhouette};
 use crate::pose::similarity::Similarity;
 use crate::pose::uncertainty::{Direction, describe};
+use crate::view::extent;
 
 /// Weights of rims off the mask's outline, and of outline that nothing covers.
 const RIM: f64 = 1.0;
@@ -44,8 +44,6 @@ const CORRELATED: f64 = 8.0;
 const SIGMA_INFLATION: f64 = 3.0;
 /// Least noise of rims, pixels: a third of one.
 const LEAST_NOISE: f64 = 0.3;
-/// Variance of a direction that nothing is known about.
-const UNKNOWN: f64 = 1e3;
 /// Variance of a rotation as a share of the prior's above which outlines do not see it.
 const UNSEEN: f64 = 0.8;
 
@@ -55,7 +53,7 @@ const LOSS: usize = SCALE;
 /// Registers by outlines; owns its memory.
 pub struct Outline {
     /// Where there is a mask.
-    distance: Option<MaskDistance>,
+    silhouette: Option<Silhouette>,
     edges: Edges,
     /// The edge next to each rim, where there is one.
     matches: Vec<Option<([f64; 2], Edge)>>,
@@ -87,11 +85,9 @@ impl Outline {
         let valid: Vec<u32> =
             (0..depth.size.len()).filter(|&index| depth.points.is_valid(index)).map(|index| index as u32).collect();
         let thinned = valid.len().div_ceil(MOST_POINTS).max(1);
-        let middle = depth.points.centroid();
-        let squares = valid.iter().map(|&index| (problem.point(index as usize) - middle).norm_squared());
-        let size = (squares.sum::<f64>() / valid.len().max(1) as f64).sqrt();
+        let (middle, size) = extent(depth.points.valid());
         Self {
-            distance: is_masked.then(|| MaskDistance::new(image.size, object)),
+            silhouette: is_masked.then(|| Silhouette::new(image.size, object)),
             edges: Edges::new(image.size, &image.whole.grey),
             matches: Vec::new(),
             outline: all.into_iter().step_by(every).map(place).collect(),
@@ -116,10 +112,7 @@ impl Outline {
                     let sums = self.sums(problem, &pose, loss, scale);
                     let mut matrix = sums.matrix;
                     matrix.fill_upper_triangle_with_lower_triangle();
-                    for k in 0..UNKNOWNS {
-                        matrix[(k, k)] *= 1.0 + DAMPING;
-                    }
-                    let Some(step) = solve(matrix, &sums.gradient).map(|step| -step) else { break };
+                    let Some(step) = damped_step(matrix, sums.gradient, DAMPING, &[false; UNKNOWNS]) else { break };
                     loss += step[LOSS];
                     let mut change = step;
                     change[SCALE] = 0.0;
@@ -196,7 +189,7 @@ impl Outline {
         index: usize,
     ) -> Option<(f64, Row)> {
         let (pixel, [across, down]) = self.rows(problem, pose, index)?;
-        let (distance, [right, low]) = self.distance.as_ref()?.at(pixel);
+        let (distance, [right, low]) = self.silhouette.as_ref()?.smoothly_signed_at(pixel);
         let mut row = right * across + low * down;
         row[LOSS] = 1.0;
         Some((distance + loss, row))

@@ -1,26 +1,21 @@
-//! Covariance of the pose: M^-1 (sum over tiles of g g^T) M^-T, the sandwich estimator over clusters (docs/method.md,
-//! section 14).
+//! Covariance of the pose: the [sandwich](crate::pose::sandwich) over tiles of the depth map (docs/method.md, section 14).
 //!
-//! M is the matrix of the equations that the pose solves, g the sum of the scores of a tile of the depth map once the
-//! light has followed. Noise, wrong normals and interpolation enter with the size and the correlation that they have,
-//! so nothing is assumed about them but that tiles are independent. What leaves no residual is allowed for by a factor
-//! that was measured.
+//! M is the matrix of the equations that the pose solves, and a tile's score that once the light has followed. What leaves no
+//! residual is allowed for by a factor that was measured.
 //!
 //! M itself is in part an effect of noise: gradients of a noisy image are noisy as well, and noise squared looks like
 //! information. A sphere, whose colours tell nothing of its rotation, has as much of it as F = sum w s^2 k D^T D with s
 //! the noise of the image, D = d pixel / d unknowns and k the covariance of the two gradients of white noise. So the
 //! eigenvalues lambda of M over F (one where there is nothing but noise, 12 to 900 on the built-in surfaces) say what
 //! the colours tell, and sigmas grow by lambda / (lambda - 1) along each of their directions.
-//!
-//! P. Huber: "The behavior of maximum likelihood estimates under nonstandard conditions", Proc. 5th Berkeley Symposium,
-//! 1967. K.-Y. Liang, S. Zeger: "Longitudinal data analysis using generalized linear models", Biometrika 73, 1986.
 
 use super::equations::{ReducedSystem, SquareSums, add_product, folded, no_sums, scaled};
 use super::evaluation::Evaluation;
 use crate::diagnosis::share_of_model;
 use crate::numeric::eigen::{Eigen, symmetric_eigen};
 use crate::numeric::{Doubles, Real, dot};
-use crate::pose::increment::{Frame, PoseMatrix, PoseVector, clear_unknowns, fix_unknowns, inverse, product};
+use crate::pose::increment::{Frame, PoseMatrix, PoseVector, fix_unknowns, inverse, product};
+use crate::pose::sandwich::{Scores, student_growth};
 use crate::view::Size;
 
 /// Side of the tiles of the depth map whose scores count as one observation, pixels: twice the reach of normals and
@@ -44,9 +39,6 @@ const BIASING_NOISE: f64 = 0.3;
 const GRADIENT_COVARIANCE: f64 = 0.144;
 /// Least lambda - 1: chance puts lambda of a ball to 0.85 .. 1.15, and a sigma a thousand times as large is unknown.
 const LEAST_SIGNAL: f64 = 1e-3;
-/// Sigma of a direction that nothing is known about, radians or object sizes.
-const UNKNOWN: f64 = 1e3;
-
 /// Standard deviations, those of colours per channel and in log units.
 #[derive(Clone, Copy)]
 pub(super) struct Noise {
@@ -97,30 +89,16 @@ impl Tiles {
         noise: Noise,
     ) -> PoseMatrix {
         let mut noise_information = folded(&self.sum_scores(evaluation, frame, reduced, noise));
-        let (mut spread, mut count) = (PoseMatrix::zeros(), 0.0);
-        for Tile { score, .. } in self.tiles.iter().filter(|tile| tile.score.norm() > 0.0) {
-            spread.ger(1.0, score, score, 1.0);
-            count += 1.0;
-        }
+        let scores = Scores::of(self.tiles.iter().map(|tile| &tile.score));
         let held = evaluation.problem.held();
-        let free = held.iter().filter(|&&held| !held).count() as f64;
         let mut matrix = reduced.matrix;
         fix_unknowns(&mut matrix, &held);
         fix_unknowns(&mut noise_information, &held);
-        let mut covariance = match inverse(&matrix).zip(sigma_growth(&matrix, &noise_information)) {
-            // Fewer tiles than unknowns say nothing about the spread.
-            Some((inverse, growth)) if count > free => {
-                let gain = product(&growth, &inverse);
-                let sigmas = noise.sigma_inflation() * student_growth(count - free);
-                product(&product(&gain, &spread), &gain.transpose()) * (sigmas.powi(2) * count / (count - free))
-            }
-            _ => PoseMatrix::identity() * UNKNOWN.powi(2),
-        };
-        if !covariance.norm().is_finite() {
-            covariance = PoseMatrix::identity() * UNKNOWN.powi(2);
-        }
-        clear_unknowns(&mut covariance, &held);
-        covariance
+        let gain = inverse(&matrix)
+            .zip(sigma_growth(&matrix, &noise_information))
+            .map(|(inverse, growth)| product(&growth, &inverse));
+        let growth = scores.degrees_of_freedom(&held).map_or(1.0, student_growth);
+        scores.covariance(gain.as_ref(), noise.sigma_inflation() * growth, &held)
     }
 
     /// Root mean covariance of residuals of one tile, log units, by the last sums: what the model leaves out reaches over
@@ -172,14 +150,6 @@ impl Tiles {
     }
 }
 
-/// Three sigmas of Student's distribution over those of the normal one: a spread that few tiles tell is itself uncertain.
-/// D. Wallace: "Bounds on normal approximations to Student's and the chi-square distributions", Annals of Mathematical
-/// Statistics 30, 1959, the other way round: within 3 % from four degrees of freedom on, and never below the truth.
-fn student_growth(degrees_of_freedom: f64) -> f64 {
-    let sigmas = 3.0 * (8.0 * degrees_of_freedom + 3.0) / (8.0 * degrees_of_freedom + 1.0);
-    (degrees_of_freedom * ((sigmas * sigmas / degrees_of_freedom).exp() - 1.0)).sqrt() / 3.0
-}
-
 /// The map of steps that stretches each eigenvector of `matrix` over `noise_information` by lambda / (lambda - 1);
 /// `None` where the points do not move in every direction.
 fn sigma_growth(matrix: &PoseMatrix, noise_information: &PoseMatrix) -> Option<PoseMatrix> {
@@ -209,16 +179,6 @@ mod tests {
         assert_eq!(inflation(0.01, 0.0), SIGMA_INFLATION);
         assert!((inflation(0.01, BIASING_NOISE) / SIGMA_INFLATION - 2.0_f64.sqrt()).abs() < 1e-12);
         assert!((inflation(1e9, 0.0) / (MODEL_SIGMA_INFLATION * SIGMA_INFLATION) - 1.0).abs() < 1e-12);
-    }
-
-    #[test]
-    fn sigmas_that_few_tiles_tell_grow_as_students_distribution_does() {
-        // scipy.stats: t.isf(norm.sf(3), degrees) / 3.
-        for (degrees, expected) in [(4.0, 2.2067), (6.0, 1.6347), (10.0, 1.3190), (20.0, 1.1407), (100.0, 1.0256)] {
-            let growth = student_growth(degrees);
-            assert!(growth >= expected - 1e-4 && growth < 1.03 * expected, "{degrees}: {growth}");
-        }
-        assert!(student_growth(1.0) > 10.0);
     }
 
     #[test]

@@ -29,7 +29,7 @@
 //! | file | what it holds |
 //! |---|---|
 //! | `problem` | what goes in, what comes out |
-//! | `registration` | the rounds: [`Photometric`] |
+//! | `registration` | the rounds of [`Photometric`]: `annealing`, then `instruments` |
 //! | `state` | pose and light, and a step of both |
 //! | `points` | which depth points take part |
 //! | `residual` | r and its derivatives |

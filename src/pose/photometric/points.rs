@@ -8,7 +8,7 @@ use crate::pose::increment::Frame;
 use crate::pose::similarity::Similarity;
 use crate::pose::spline_image::SplineImage;
 use crate::pose::visibility::{Visibility, VisibilityProblem};
-use crate::view::Size;
+use crate::view::{Size, extent};
 
 /// Distance from the border of the mask within which points stay out, image pixels: they would enter and leave with
 /// every step, and the spline is continued there.
@@ -152,11 +152,8 @@ impl VisiblePoints {
 
     /// Centroid of the transformed points and their root mean square distance from it.
     pub fn frame(&self, problem: &PhotometricProblem<'_>, pose: &Similarity) -> Frame {
-        let points =
-            || self.indices.iter().map(|&index| Vector3::from(problem.points.get(index as usize).map(f64::from)));
-        let count = self.indices.len().max(1) as f64;
-        let centre = points().sum::<Vector3<f64>>() / count;
-        let spread = (points().map(|point| (point - centre).norm_squared()).sum::<f64>() / count).sqrt();
+        let point = |&index: &u32| Vector3::from(problem.points.get(index as usize).map(f64::from));
+        let (centre, spread) = extent(self.indices.iter().map(point));
         let length = pose.scale * spread;
         Frame { centre: pose.apply(centre), length: if length > 0.0 { length } else { 1.0 } }
     }

@@ -1,5 +1,10 @@
 //! The rounds of a photometric registration: annealing, then instrumental variables.
 
+mod annealing;
+mod instruments;
+
+use annealing::{Descent, SCALE_SHRINKING};
+
 use super::covariance::{Noise, Tiles};
 use super::equations::ReducedSystem;
 use super::evaluation::Evaluation;
@@ -9,7 +14,6 @@ use super::residual::{ColourModel, Samples};
 use super::state::State;
 use super::weighting::{Weighting, final_robust_scale, prior_weight};
 use crate::error::{Error, ErrorKind, Result};
-use crate::pose::descent::{Damping, Lowered};
 use crate::pose::increment::{Frame, PoseMatrix, PoseVector, SCALE, TRANSLATION_Z, clear_unknowns};
 use crate::pose::similarity::Similarity;
 use crate::pose::spline_image::SplineImage;
@@ -26,39 +30,10 @@ const COARSEST_UNKNOWN: usize = 1;
 pub(super) const INSTRUMENT_BLUR: f64 = 1.0;
 /// The first robust scale over that of the residuals at the start.
 const FIRST_SCALE: f64 = 2.0;
-/// The robust scale of a round over the one before, at least.
-const SCALE_SHRINKING: f64 = 0.6;
 /// Noise of log S that is always allowed for: half a percent of a good 8-bit image's rounding, log units.
 const LEAST_NOISE: f64 = 0.002;
 /// Reweightings of the light at the start of a round.
 const LIGHT_ROUNDS: usize = 6;
-/// Gauss-Newton steps of a round, and attempts to find the damping of each.
-const MOST_STEPS: usize = 6;
-const MOST_ATTEMPTS: usize = 8;
-/// A step below this, in radians and object sizes, changes nothing: 1e-5 degrees.
-const SETTLED_STEP: f64 = 1e-7;
-/// A round on the way to the robust scale of the noise is done with a step below this, in the same units: the next one moves
-/// the pose by as much or more.
-const SMALL_STEP: f64 = 1e-3;
-/// A round at that scale is done with a step below this, 0.002 degrees: less than [`FINE_SETTLED`].
-const SMALL_FINE_STEP: f64 = 3e-5;
-/// A coarse level is done when a round rotates by less, degrees.
-const COARSE_SETTLED: f64 = 0.3;
-/// Annealing is done when a round at the final scale rotates by less, degrees: points that appear and disappear at the
-/// rim change the pose by more than that.
-const FINE_SETTLED: f64 = 3e-3;
-/// Rounds at the final scale after which only such points still change the pose.
-const MOST_FINE_ROUNDS: usize = 4;
-/// Rounds with instrumental variables: the visible points follow in the first, and stay in the others.
-const INSTRUMENTAL_ROUNDS: usize = 3;
-const MOST_INSTRUMENTAL_STEPS: usize = 12;
-/// Where there are more points than annealing needs, these rounds go first with the points of the annealing and then with
-/// all of them, and end when no unknown moves by more than this share of its sigma: steps halve, so that as much is left.
-const SETTLED_SIGMAS: f64 = 0.02;
-/// These rounds are undone when they raise the objective by more than this share: they should only trade noise. Least squares
-/// seek places between pixels, where a cubic spline leaves 0.572 of the variance of white noise, 0.756 along either axis;
-/// what they find there is lost again on the pixels.
-const LARGEST_RISE: f64 = 1.0 / 0.572 - 1.0;
 /// Fewest points: two for each unknown of the pose.
 const FEWEST_POINTS: usize = 14;
 
@@ -85,22 +60,6 @@ enum Phase {
         last: f64,
     },
     Done(PhotometricTermination),
-}
-
-/// A round of damped Gauss-Newton at one level and one robust scale, between two of its steps.
-#[derive(Clone, Copy, Debug)]
-struct Descent {
-    level: usize,
-    /// Rounds at the robust scale of the noise before this one.
-    fine_rounds: usize,
-    frame: Frame,
-    /// The pose at the beginning of the round.
-    before: Similarity,
-    /// Whether the robust scale is that of the noise.
-    at_noise: bool,
-    damping: Damping,
-    objective: f64,
-    steps: usize,
 }
 
 /// Registers one depth view to one image again and again; owns all memory.
@@ -294,122 +253,6 @@ impl Photometric {
             information,
             covariance,
             uncertainty: describe(&covariance, &frame, &self.state.pose, [held[TRANSLATION_Z], held[SCALE]], weakest),
-        })
-    }
-
-    /// The beginning of a round of annealing: its points, their light, its robust scale.
-    fn begin_annealing(&mut self, problem: &PhotometricProblem<'_>, level: usize, fine_rounds: usize) -> Result<Phase> {
-        self.rounds += 1;
-        let frame = self.choose_points(problem, Sampling { level, most: self.annealed_points })?;
-        self.fit_light(problem, level)?;
-        self.measure_noise(problem, level);
-        let target = final_robust_scale(self.noise.residuals);
-        let tolerated = if self.annealing { SCALE_SHRINKING * self.weighting.robust_scale } else { 0.0 };
-        self.weigh(problem, target.max(tolerated));
-        Ok(Phase::AnnealingStep(Descent {
-            level,
-            fine_rounds,
-            frame,
-            before: self.state.pose,
-            at_noise: self.weighting.robust_scale <= target,
-            damping: Damping::FIRST,
-            objective: self.evaluation(problem, level, &self.state).objective(),
-            steps: 0,
-        }))
-    }
-
-    /// A step of pose and light that lowers the objective.
-    fn descend(&mut self, problem: &PhotometricProblem<'_>, mut descent: Descent) -> Result<Phase> {
-        let Descent { level, frame, .. } = descent;
-        self.iterations += 1;
-        descent.steps += 1;
-        let reduced = self.evaluation(problem, level, &self.state).reduced_system(&frame);
-        let reduced = reduced.ok_or_else(undetermined_light)?;
-        let lowered = descent.damping.lower(MOST_ATTEMPTS, descent.objective, |damping| {
-            let step = reduced.step(damping, &problem.held())?;
-            let state = self.state.stepped(&frame, &step, problem.light.is_some());
-            let objective = self.evaluation(problem, level, &state).objective();
-            Some(Lowered { state, objective, size: step.pose.norm() })
-        });
-        let size = lowered.as_ref().map_or(0.0, |lowered| lowered.size);
-        if let Some(Lowered { state, objective, .. }) = lowered {
-            (self.state, descent.objective) = (state, objective);
-        }
-        let small = if descent.at_noise { SMALL_FINE_STEP } else { SMALL_STEP };
-        let ends = size < small || descent.steps >= MOST_STEPS;
-        Ok(if ends { self.after_annealing_round(&descent) } else { Phase::AnnealingStep(descent) })
-    }
-
-    /// What follows a round of annealing.
-    fn after_annealing_round(&mut self, &Descent { level, fine_rounds, before, at_noise, .. }: &Descent) -> Phase {
-        let change = before.degrees_to(&self.state.pose);
-        match level {
-            0 if at_noise && (change < FINE_SETTLED || fine_rounds >= MOST_FINE_ROUNDS) => {
-                self.annealed = self.state;
-                self.thinned = self.points.are_sampled() && self.annealed_points < self.most_points;
-                Phase::InstrumentalRound { round: 0 }
-            }
-            0 => Phase::AnnealingRound { level, fine_rounds: fine_rounds + usize::from(at_noise) },
-            _ if change < COARSE_SETTLED || (at_noise && fine_rounds >= MOST_FINE_ROUNDS) => {
-                Phase::AnnealingRound { level: level - 1, fine_rounds: 0 }
-            }
-            _ => Phase::AnnealingRound { level, fine_rounds: fine_rounds + usize::from(at_noise) },
-        }
-    }
-
-    /// The beginning of a round of sum w Z^T r = 0: the visible points follow in the first.
-    fn begin_instrumental(&mut self, problem: &PhotometricProblem<'_>, round: usize) -> Result<Phase> {
-        self.rounds += 1;
-        let frame = match round {
-            0 if !self.thinned => self.choose_points(problem, Sampling { level: 0, most: self.most_points })?,
-            _ => self.points.frame(problem, &self.state.pose),
-        };
-        if self.thinned {
-            let reduced = self.reduce_by_instruments(problem, &frame)?;
-            let variances = self.covariance(problem, &frame, &reduced).diagonal();
-            self.settled_step = Some(variances.map(|variance| SETTLED_SIGMAS * variance.sqrt()));
-        }
-        Ok(Phase::InstrumentalStep { round, frame, steps: 0, last: f64::INFINITY })
-    }
-
-    /// A step of such a round: undamped, for there is no objective that it has to lower. After the first round, whose steps may
-    /// grow on their way, one that is longer than the one before is not taken: the pose sought may repel what rounding puts
-    /// beside it, by a third with each step.
-    fn step_by_instruments(
-        &mut self,
-        problem: &PhotometricProblem<'_>,
-        round: usize,
-        frame: &Frame,
-        steps: usize,
-        last: f64,
-    ) -> Result<Phase> {
-        self.iterations += 1;
-        let reduced = self.reduce_by_instruments(problem, frame)?;
-        let mut settled = true;
-        if let Some(step) = reduced.step(0.0, &problem.held()).filter(|step| round == 0 || step.pose.norm() <= last) {
-            self.state = self.state.stepped(frame, &step, problem.light.is_some());
-            settled = match &self.settled_step {
-                Some(least) => step.pose.iter().zip(least).all(|(step, least)| step.abs() <= *least),
-                None => step.pose.norm() < SETTLED_STEP,
-            };
-            if !settled && steps + 1 < MOST_INSTRUMENTAL_STEPS {
-                return Ok(Phase::InstrumentalStep { round, frame: *frame, steps: steps + 1, last: step.pose.norm() });
-            }
-        }
-        let objective = |state: &State| self.evaluation(problem, 0, state).objective();
-        let rise = objective(&self.state) / objective(&self.annealed);
-        if rise.is_nan() || rise > 1.0 + LARGEST_RISE {
-            self.state = self.annealed;
-            return Ok(Phase::Done(PhotometricTermination::Annealed));
-        }
-        if std::mem::take(&mut self.thinned) {
-            return Ok(Phase::InstrumentalRound { round });
-        }
-        let last = round + 1 >= INSTRUMENTAL_ROUNDS || (settled && (round > 0 || self.settled_step.is_some()));
-        Ok(if last {
-            Phase::Done(PhotometricTermination::Settled)
-        } else {
-            Phase::InstrumentalRound { round: round + 1 }
         })
     }
 

@@ -1,0 +1,111 @@
+//! Annealing: rounds of damped Gauss-Newton whose robust scale shrinks to that of the noise, from coarse to fine.
+
+use super::{Phase, Photometric, undetermined_light};
+use crate::error::Result;
+use crate::pose::descent::{Damping, Lowered};
+use crate::pose::increment::Frame;
+use crate::pose::photometric::points::Sampling;
+use crate::pose::photometric::problem::PhotometricProblem;
+use crate::pose::photometric::weighting::final_robust_scale;
+use crate::pose::similarity::Similarity;
+
+/// The robust scale of a round over the one before, at least.
+pub(super) const SCALE_SHRINKING: f64 = 0.6;
+/// Gauss-Newton steps of a round, and attempts to find the damping of each.
+const MOST_STEPS: usize = 6;
+const MOST_ATTEMPTS: usize = 8;
+/// A round on the way to the robust scale of the noise is done with a step below this, in the same units: the next one moves
+/// the pose by as much or more.
+const SMALL_STEP: f64 = 1e-3;
+/// A round at that scale is done with a step below this, 0.002 degrees: less than [`FINE_SETTLED`].
+const SMALL_FINE_STEP: f64 = 3e-5;
+/// A coarse level is done when a round rotates by less, degrees.
+const COARSE_SETTLED: f64 = 0.3;
+/// Annealing is done when a round at the final scale rotates by less, degrees: points that appear and disappear at the
+/// rim change the pose by more than that.
+const FINE_SETTLED: f64 = 3e-3;
+/// Rounds at the final scale after which only such points still change the pose.
+const MOST_FINE_ROUNDS: usize = 4;
+
+/// A round of damped Gauss-Newton at one level and one robust scale, between two of its steps.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Descent {
+    level: usize,
+    /// Rounds at the robust scale of the noise before this one.
+    fine_rounds: usize,
+    frame: Frame,
+    /// The pose at the beginning of the round.
+    before: Similarity,
+    /// Whether the robust scale is that of the noise.
+    at_noise: bool,
+    damping: Damping,
+    objective: f64,
+    steps: usize,
+}
+
+impl Photometric {
+    /// The beginning of a round of annealing: its points, their light, its robust scale.
+    pub(super) fn begin_annealing(
+        &mut self,
+        problem: &PhotometricProblem<'_>,
+        level: usize,
+        fine_rounds: usize,
+    ) -> Result<Phase> {
+        self.rounds += 1;
+        let frame = self.choose_points(problem, Sampling { level, most: self.annealed_points })?;
+        self.fit_light(problem, level)?;
+        self.measure_noise(problem, level);
+        let target = final_robust_scale(self.noise.residuals);
+        let tolerated = if self.annealing { SCALE_SHRINKING * self.weighting.robust_scale } else { 0.0 };
+        self.weigh(problem, target.max(tolerated));
+        Ok(Phase::AnnealingStep(Descent {
+            level,
+            fine_rounds,
+            frame,
+            before: self.state.pose,
+            at_noise: self.weighting.robust_scale <= target,
+            damping: Damping::FIRST,
+            objective: self.evaluation(problem, level, &self.state).objective(),
+            steps: 0,
+        }))
+    }
+
+    /// A step of pose and light that lowers the objective.
+    pub(super) fn descend(&mut self, problem: &PhotometricProblem<'_>, mut descent: Descent) -> Result<Phase> {
+        let Descent { level, frame, .. } = descent;
+        self.iterations += 1;
+        descent.steps += 1;
+        let reduced = self.evaluation(problem, level, &self.state).reduced_system(&frame);
+        let reduced = reduced.ok_or_else(undetermined_light)?;
+        let lowered = descent.damping.lower(MOST_ATTEMPTS, descent.objective, |damping| {
+            let step = reduced.step(damping, &problem.held())?;
+            let state = self.state.stepped(&frame, &step, problem.light.is_some());
+            let objective = self.evaluation(problem, level, &state).objective();
+            Some(Lowered { state, objective, size: step.pose.norm() })
+        });
+        let size = lowered.as_ref().map_or(0.0, |lowered| lowered.size);
+        if let Some(Lowered { state, objective, .. }) = lowered {
+            (self.state, descent.objective) = (state, objective);
+        }
+        let small = if descent.at_noise { SMALL_FINE_STEP } else { SMALL_STEP };
+        let ends = size < small || descent.steps >= MOST_STEPS;
+        Ok(if ends { self.after_annealing_round(&descent) } else { Phase::AnnealingStep(descent) })
+    }
+
+    /// What follows a round of annealing.
+    fn after_annealing_round(&mut self, &Descent { level, fine_rounds, before, at_noise, .. }: &Descent) -> Phase {
+        let change = before.degrees_to(&self.state.pose);
+        match level {
+            0 if at_noise && (change < FINE_SETTLED || fine_rounds >= MOST_FINE_ROUNDS) => {
+                self.annealed = self.state;
+                self.thinned = self.points.are_sampled() && self.annealed_points < self.most_points;
+                Phase::InstrumentalRound { round: 0 }
+            }
+            0 => Phase::AnnealingRound { level, fine_rounds: fine_rounds + usize::from(at_noise) },
+            _ if change < COARSE_SETTLED || (at_noise && fine_rounds >= MOST_FINE_ROUNDS) => {
+                Phase::AnnealingRound { level: level - 1, fine_rounds: 0 }
+            }
+            _ => Phase::AnnealingRound { level, fine_rounds: fine_rounds + usize::from(at_noise) },
+        }
+    }
+}

@@ -1,0 +1,80 @@
+//! Rounds with instrumental variables: sum w Z^T r = 0 in place of sum w J^T r = 0, because the gradients J of a noisy image are noisy
+//! as well (docs/method.md, section 10).
+
+use super::{Phase, Photometric};
+use crate::error::Result;
+use crate::pose::increment::Frame;
+use crate::pose::photometric::points::Sampling;
+use crate::pose::photometric::problem::{PhotometricProblem, PhotometricTermination};
+use crate::pose::photometric::state::State;
+
+/// A step below this, in radians and object sizes, changes nothing: 1e-5 degrees.
+const SETTLED_STEP: f64 = 1e-7;
+/// Rounds with instrumental variables: the visible points follow in the first, and stay in the others.
+const INSTRUMENTAL_ROUNDS: usize = 3;
+const MOST_INSTRUMENTAL_STEPS: usize = 12;
+/// Where there are more points than annealing needs, these rounds go first with the points of the annealing and then with
+/// all of them, and end when no unknown moves by more than this share of its sigma: steps halve, so that as much is left.
+const SETTLED_SIGMAS: f64 = 0.02;
+/// These rounds are undone when they raise the objective by more than this share: they should only trade noise. Least squares
+/// seek places between pixels, where a cubic spline leaves 0.572 of the variance of white noise, 0.756 along either axis;
+/// what they find there is lost again on the pixels.
+const LARGEST_RISE: f64 = 1.0 / 0.572 - 1.0;
+
+impl Photometric {
+    /// The beginning of a round of sum w Z^T r = 0: the visible points follow in the first.
+    pub(super) fn begin_instrumental(&mut self, problem: &PhotometricProblem<'_>, round: usize) -> Result<Phase> {
+        self.rounds += 1;
+        let frame = match round {
+            0 if !self.thinned => self.choose_points(problem, Sampling { level: 0, most: self.most_points })?,
+            _ => self.points.frame(problem, &self.state.pose),
+        };
+        if self.thinned {
+            let reduced = self.reduce_by_instruments(problem, &frame)?;
+            let variances = self.covariance(problem, &frame, &reduced).diagonal();
+            self.settled_step = Some(variances.map(|variance| SETTLED_SIGMAS * variance.sqrt()));
+        }
+        Ok(Phase::InstrumentalStep { round, frame, steps: 0, last: f64::INFINITY })
+    }
+
+    /// A step of such a round: undamped, for there is no objective that it has to lower. After the first round, whose steps may
+    /// grow on their way, one that is longer than the one before is not taken: the pose sought may repel what rounding puts
+    /// beside it, by a third with each step.
+    pub(super) fn step_by_instruments(
+        &mut self,
+        problem: &PhotometricProblem<'_>,
+        round: usize,
+        frame: &Frame,
+        steps: usize,
+        last: f64,
+    ) -> Result<Phase> {
+        self.iterations += 1;
+        let reduced = self.reduce_by_instruments(problem, frame)?;
+        let mut settled = true;
+        if let Some(step) = reduced.step(0.0, &problem.held()).filter(|step| round == 0 || step.pose.norm() <= last) {
+            self.state = self.state.stepped(frame, &step, problem.light.is_some());
+            settled = match &self.settled_step {
+                Some(least) => step.pose.iter().zip(least).all(|(step, least)| step.abs() <= *least),
+                None => step.pose.norm() < SETTLED_STEP,
+            };
+            if !settled && steps + 1 < MOST_INSTRUMENTAL_STEPS {
+                return Ok(Phase::InstrumentalStep { round, frame: *frame, steps: steps + 1, last: step.pose.norm() });
+            }
+        }
+        let objective = |state: &State| self.evaluation(problem, 0, state).objective();
+        let rise = objective(&self.state) / objective(&self.annealed);
+        if rise.is_nan() || rise > 1.0 + LARGEST_RISE {
+            self.state = self.annealed;
+            return Ok(Phase::Done(PhotometricTermination::Annealed));
+        }
+        if std::mem::take(&mut self.thinned) {
+            return Ok(Phase::InstrumentalRound { round });
+        }
+        let last = round + 1 >= INSTRUMENTAL_ROUNDS || (settled && (round > 0 || self.settled_step.is_some()));
+        Ok(if last {
+            Phase::Done(PhotometricTermination::Settled)
+        } else {
+            Phase::InstrumentalRound { round: round + 1 }
+        })
+    }
+}
