@@ -8,6 +8,7 @@ import { pinhole, rgbd } from "./perspectives.mjs";
 import { figure6, table1, table2A, table2B } from "./poses.mjs";
 import { albedo, figure7, photographs, table3 } from "./reals.mjs";
 import { sensors } from "./sensors.mjs";
+import { statue } from "./statue.mjs";
 import { stress } from "./stress.mjs";
 import { figure4, figure5, refinement } from "./shapes.mjs";
 
@@ -21,6 +22,7 @@ export const TABLES = [
     conditions,
     albedo,
     rgbd,
+    statue,
     pinhole,
     random,
     cameras,

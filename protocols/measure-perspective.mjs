@@ -1,7 +1,7 @@
 // Pairs of two pinhole cameras: made, told a start that is off, run, and how far their ends are off.
 import { chance, drawGaussian, seedOf } from "./numbers.mjs";
 import { meshOf, middleOf, moved, pointAt, seen, shade, times } from "./perspective.mjs";
-import { IDENTITY, aboutAxis, aboutY, offBy, product, transpose, turn } from "./rotations.mjs";
+import { IDENTITY, aboutAxis, aboutY, degreesBetween, offBy, product, transpose, turn } from "./rotations.mjs";
 import { judged, optionsOf, withRun } from "./runs.mjs";
 
 /** Neighbours of a depth map farther apart than this belong to different parts, metres. */
@@ -53,7 +53,7 @@ function run(cell, api, { image, depth, truth }) {
   return withRun(api, { image, depth }, options, (report, _, milliseconds) => ({
     ...judged(report, truth, milliseconds),
     ...offsets(report.pose, truth, middle),
-    told: start && offsets(start, truth, middle),
+    told: start && { degrees: degreesBetween(start.rotation, truth.rotation), ...offsets(start, truth, middle) },
     translationOff: report.pose.translation.map((value, axis) => value - truth.translation[axis]),
     translationSigmas: report.uncertainty?.translation ?? null,
   }));
@@ -77,6 +77,12 @@ export async function measureCapture(cell, api, library) {
   const { image, depth } = library.capture(cell.capture.name, cell.capture.frame);
   const truth = { scale: 1, ...about(middleOf(depth), aboutY(cell.turned)) };
   return run(cell, api, { image, depth: cell.turned === 0 ? depth : seenFrom(depth, cell.turned, truth), truth });
+}
+
+/** Colour and depth of a statue, whose truth is in the library. */
+export async function measureStatue(cell, api, library) {
+  const { view, ...pair } = library.statue(cell.pair);
+  return { view, ...(await run(cell, api, pair)) };
 }
 
 /** A surface's mesh, metres: `height` high, its middle at the origin. */

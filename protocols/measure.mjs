@@ -6,7 +6,7 @@ import { measureCamera } from "./cameras.mjs";
 import { measurePainted } from "./painted.mjs";
 import { measureHonesty } from "./honesty.mjs";
 import { measureStress } from "./stress.mjs";
-import { measureCapture, measurePinhole } from "./measure-perspective.mjs";
+import { measureCapture, measurePinhole, measureStatue } from "./measure-perspective.mjs";
 import { measureAlbedo, measurePair, measurePhotograph } from "./measure-reals.mjs";
 import { measureKinect, measureMitten, measureScan } from "./measure-sensors.mjs";
 import { measureIterations, measureRefinement, measureShading } from "./measure-shapes.mjs";
@@ -70,6 +70,7 @@ const KINDS = {
   photograph: measurePhotograph,
   capture: measureCapture,
   pinhole: measurePinhole,
+  statue: measureStatue,
   albedo: measureAlbedo,
   camera: measureCamera,
   painted: measurePainted,

@@ -48,7 +48,7 @@ export const BUILT_IN = ["bust", "vase", "ripples"];
  * Names of what there is: with other people's data the paper's bust and natural lights, without it what the package brings.
  * A cell names its surface and its light; the program that runs it has a library that knows these names (`requestOf`).
  */
-export const kit = (complete) =>
+export const kit = (complete, statues = []) =>
   complete
     ? {
         complete,
@@ -57,8 +57,17 @@ export const kit = (complete) =>
         surfaces: ["mozart", ...OBJECTS, ...BUILT_IN],
         objects: OBJECTS,
         painted: PAINTED,
+        statues,
       }
-    : { complete, main: "bust", naturals: ["window", "overcast"], surfaces: BUILT_IN, objects: [], painted: [] };
+    : {
+        complete,
+        main: "bust",
+        naturals: ["window", "overcast"],
+        surfaces: BUILT_IN,
+        objects: [],
+        painted: [],
+        statues,
+      };
 
 /** A scene of a cell as a request for `sample`: names become heights and coefficients where the package lacks them. */
 export const requestOf = ({ surface, light, ...rest }, library) => ({

@@ -1,7 +1,7 @@
 // From tables to their rows: every cell once, what is known from the journal, the rest run now.
 import { inRoot, say } from "../shell.mjs";
 import { openJournal } from "./journal.mjs";
-import { hasData } from "./library.mjs";
+import { hasData, statues } from "./library.mjs";
 import { runCells } from "./pool.mjs";
 import { rowsOf } from "../../protocols/index.mjs";
 import { kit } from "../../protocols/scenes.mjs";
@@ -16,7 +16,7 @@ function clock(seconds) {
 
 /** Cells of all tables by their id; tables share some. */
 function cellsOf(tables, quick) {
-  const things = kit(hasData());
+  const things = kit(hasData(), statues());
   const lists = new Map(tables.map((table) => [table, table.cells(things, quick)]));
   const cells = new Map([...lists.values()].flat().map((cell) => [cell.id, cell]));
   return { lists, cells: [...cells.values()] };

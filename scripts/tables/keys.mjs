@@ -38,6 +38,7 @@ const KEYS = {
   photographs: ["object", "image", "beta", "degrees", "status"],
   conditions: ["object", "condition", "beta", "degrees", "status"],
   rgbd: ["name", "turned", "start", "degrees", "inPlane", "tilt", "lateral", "along", "status"],
+  statue: ["name", "start", "view", "degrees", "lateral", "along", "status"],
   pinhole: ["scene", "start", "degrees", "translation", "status"],
   albedo: ["object", "image", "pose", "beta", "correlation", "error", "naive", "degrees", "status"],
   random: [
@@ -63,7 +64,7 @@ const KEYS = {
   ablation: ["without", "medianDegrees", "found"],
 };
 /** Nothing replaces these where other people's data is absent. */
-const REAL = ["table3", "figure7", "sensors", "photographs", "conditions", "albedo", "rgbd"];
+const REAL = ["table3", "figure7", "sensors", "photographs", "conditions", "albedo", "rgbd", "statue"];
 
 /** Tables without a row, and keys that a row lacks. A key may be null: not everything has a value. */
 export const missingKeys = (json, { realPairs }) =>

@@ -1,5 +1,5 @@
 // The names in the cells and what they stand for: the package's own scenes, and other people's data from beside the project.
-import { existsSync, readFileSync } from "node:fs";
+import { existsSync, readFileSync, readdirSync } from "node:fs";
 import { join } from "node:path";
 import { PAIRS, capture } from "../real-pairs.mjs";
 import { inRoot } from "../shell.mjs";
@@ -15,6 +15,9 @@ const OBJECT_SPAN = 230;
 const LOWEST = 6;
 
 export const hasData = () => existsSync(DATA);
+/** Pairs of a statue: of the data beside the project, or of a folder in the environment, which processes inherit. */
+const STATUES = () => process.env.BIMODAL_STATUE ?? join(DATA, "statue");
+export const statues = () => (existsSync(STATUES()) ? readdirSync(STATUES()).sort() : []);
 export const DATA_FOLDER = DATA;
 
 const bytes = (...path) => readFileSync(join(DATA, ...path));
@@ -133,6 +136,25 @@ function scan(files, name) {
   };
 }
 
+/** Colour and depth of a statue with both cameras, the pose between them, and the degrees between the viewing directions. */
+function statue(name) {
+  const read = (file) => readFileSync(join(STATUES(), name, file));
+  const { iw, ih, dw, dh, Kc, Kd, rotation, translation, viewDegrees } = JSON.parse(read("meta.json").toString());
+  const depth = read("depth.bin");
+  return {
+    view: viewDegrees,
+    image: { width: iw, height: ih, data: new Uint8Array(read("image.bin")), mask: read("imask.bin"), camera: Kc },
+    depth: {
+      width: dw,
+      height: dh,
+      data: new Float32Array(new Uint8Array(depth).buffer),
+      mask: read("dmask.bin"),
+      camera: Kd,
+    },
+    truth: { scale: 1, rotation, translation },
+  };
+}
+
 /** `files` is the package's own reader. */
 export function library(files) {
   if (!hasData()) return { surface: (name) => name, light: (name) => name, gaussian: undefined };
@@ -159,6 +181,7 @@ export function library(files) {
     gaussian: JSON.parse(bytes("lights", "natural_light_gaussian.json").toString()),
     mitten: (frame) => mitten(files, frame),
     scan: (name) => scan(files, name),
+    statue,
     pair: (name) => PAIRS[name](files),
     /** Colour and depth of one moment, one frame of their own each. */
     capture: (name, frame) => capture(name, frame, files),

@@ -2,6 +2,7 @@
 import { coverage3, isConfidentlyWrong, isFlagged, isFound } from "../../protocols/counts.mjs";
 import { mean, median, share, worst } from "../../protocols/numbers.mjs";
 import { paperDegrees } from "../../protocols/rotations.mjs";
+import { FOUND, REGISTERED, VIEWS } from "../../protocols/statue.mjs";
 import { PAPER_TABLE_1, PAPER_TABLE_3 } from "../../protocols/scenes.mjs";
 
 const DASH = "-";
@@ -266,6 +267,53 @@ function rgbd(rows) {
   ]);
 }
 
+/** Medians of rows by degrees between the views; how many ended farther off than they began, and where a registration is worth having. */
+function statueLines(name, rows) {
+  const count = (is) => `${rows.filter(is).length} of ${rows.length}`;
+  const isWorse = ({ told, degrees, lateral }) => told !== null && degrees > told.degrees && lateral > told.lateral;
+  const isRegistered = ({ degrees, lateral }) => degrees < REGISTERED.degrees && lateral < REGISTERED.lateral;
+  const bins = VIEWS.map(({ below }, k) =>
+    rows.filter(({ view }) => view < below && view >= (VIEWS[k - 1]?.below ?? 0)),
+  );
+  const medians = (members) =>
+    members.length === 0
+      ? "-"
+      : ["degrees", "lateral", "along"].map((key) => fixed(median(members.map((row) => row[key])), 1)).join(", ");
+  return [
+    ...[name, ...bins.map(medians), count(isRegistered), count(({ degrees }) => degrees < FOUND)],
+    ...[count(isWorse), count(isConfidentlyWrong), fixed(mean(rows.map(({ milliseconds }) => milliseconds)) / 1000, 1)],
+  ];
+}
+
+function statue(rows) {
+  const starts = unique(rows.map(({ start }) => start));
+  return [
+    ...columns([
+      ["pair", "view", "start", "degrees", "lateral mm", "along mm", "status"],
+      ...rows.map((row) => [
+        `${row.name}${row.tuned ? " *" : ""}`,
+        ...[fixed(row.view, 0), row.start, fixed(row.degrees, 2), fixed(row.lateral, 1), fixed(row.along, 1)],
+        row.status,
+      ]),
+    ]),
+    ...columns([
+      [
+        ...["median degrees, lateral mm, along mm", ...VIEWS.map((view) => `${view.name} degrees apart`)],
+        ...[`within ${REGISTERED.degrees} degrees, ${REGISTERED.lateral} mm`, `within ${FOUND} degrees`],
+        ...["worse than it began", "overconfident", "s each"],
+      ],
+      ...starts.flatMap((start) =>
+        [true, false].map((tuned) =>
+          statueLines(
+            `${start}, ${tuned ? "tuned on" : "not tuned on"}`,
+            rows.filter((row) => row.start === start && row.tuned === tuned),
+          ),
+        ),
+      ),
+    ]),
+  ];
+}
+
 function pinhole(rows) {
   const starts = unique(rows.map(({ start }) => start));
   return columns([
@@ -378,6 +426,7 @@ const SHOWS = {
     conditions,
     albedo,
     rgbd,
+    statue,
     pinhole,
     random,
     cameras: byKind,

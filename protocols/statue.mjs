@@ -1,0 +1,36 @@
+// Two real views of one thing: colour and depth of a statue from different places, with the pose between them known.
+import { FROM_ANYWHERE } from "./scenes.mjs";
+
+/** Constants and choices of the method were made on pairs of these colour views; the others took no part. */
+const TUNED = ["c10", "c52"];
+/** How far an initial pose is off: about the sensor, and in a straight line. */
+const OFF = { degrees: 3, metres: 0.02 };
+/** Degrees between the viewing directions below which a pair is of the first, second or third kind. */
+export const VIEWS = [
+  { name: "10-20", below: 25 },
+  { name: "30-40", below: 45 },
+  { name: "50-60", below: 90 },
+];
+/** A pair counts as registered within so many degrees and millimetres across the line of sight. */
+export const REGISTERED = { degrees: 2, lateral: 5 };
+/** A search has found a pose within so many degrees. */
+export const FOUND = 5;
+
+const STARTS = ["off", "truth", "search"];
+
+const statueCell = (name, start) => ({
+  id: `statue/${name}/${start}`,
+  kind: "statue",
+  row: { name, start, tuned: TUNED.includes(name.slice(0, 3)) },
+  pair: name,
+  off: start === "search" ? null : start === "off" ? OFF : { degrees: 0, metres: 0 },
+  options: FROM_ANYWHERE,
+});
+
+export const statue = {
+  name: "statue",
+  title:
+    "Two views of a statue: started 3 degrees and 20 mm off, from the truth, and with nothing given; pairs marked * were tuned on",
+  cells: ({ statues }, quick) =>
+    statues.slice(0, quick ? 1 : undefined).flatMap((name) => STARTS.map((start) => statueCell(name, start))),
+};
