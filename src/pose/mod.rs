@@ -47,7 +47,7 @@ pub use correspondence::{CorrespondenceProblem, Correspondences};
 pub use icp::{Icp, IcpOptions, IcpProblem, IcpReport, IcpTermination, Metric, Pair};
 pub(crate) use increment::rotation_vector;
 pub(crate) use outline::{Outline, OutlinePrior, OutlineProblem, OutlineReport};
-pub use photometric::{Photometric, PhotometricOptions, PhotometricProblem, PhotometricReport, PhotometricTermination};
+pub use photometric::{Photometric, PhotometricOptions, PhotometricProblem, PhotometricReport, PhotometricTermination, PosePrior};
 pub use ransac::{RansacOptions, RansacReport, ransac};
 pub use search::{Candidate, Progress, Search, SearchProblem};
 pub(crate) use search::{Hypothesis, ImageGrid, SearchFinding, SearchTask, TaskResults};

@@ -76,6 +76,7 @@ impl SharpNormals {
             prior: &pair.prior,
             prior_weight: if pair.options.weights.light > 0.0 { PRIOR_WEIGHT } else { 0.0 },
             scale_is_held,
+            near: None,
         }
     }
 }

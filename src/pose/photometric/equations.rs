@@ -230,6 +230,12 @@ impl Equations {
 }
 
 impl ReducedSystem {
+    /// Enters sums that the light has no part in.
+    pub fn add(&mut self, matrix: &PoseMatrix, gradient: &PoseVector) {
+        self.matrix += matrix;
+        self.score += gradient;
+    }
+
     /// The step of pose and light, the pose's damped by a share of its diagonal; `held` unknowns stay. `None` where it
     /// is not finite.
     pub fn step(&self, damping: f64, held: &[bool; UNKNOWNS]) -> Option<Step> {

@@ -42,6 +42,7 @@
 //! Limits: Lambertian, one albedo; starts beyond some 20 to 30 degrees may end elsewhere; behind a pinhole image the
 //! scale is held, for it cannot be told from the distance.
 
+mod anchors;
 mod covariance;
 mod equations;
 mod evaluation;
@@ -53,5 +54,5 @@ mod residual;
 mod state;
 mod weighting;
 
-pub use problem::{PhotometricOptions, PhotometricProblem, PhotometricReport, PhotometricTermination};
+pub use problem::{PosePrior, PhotometricOptions, PhotometricProblem, PhotometricReport, PhotometricTermination};
 pub use registration::Photometric;

@@ -12,7 +12,7 @@ use crate::pose::uncertainty::Uncertainty;
 use crate::view::{ColourView, DepthNoise, Normals, Points, Size};
 
 /// The coarsest level of the image.
-pub(super) const COARSEST: usize = 2;
+pub(super) const COARSEST: usize = 3;
 
 /// Depth pixels whose points are worked on side by side.
 pub(super) type Indices = [u32; DOUBLE_LANES];
@@ -41,6 +41,21 @@ pub struct PhotometricProblem<'a> {
     pub prior_weight: f64,
     /// Whether the scale of the start is kept.
     pub scale_is_held: bool,
+    /// An initial pose that is trusted so far; points are then held on the image's mask as well.
+    pub near: Option<PosePrior>,
+}
+
+/// A pose and one sigma of it.
+#[derive(Clone, Copy, Debug)]
+pub struct PosePrior {
+    /// The pose.
+    pub pose: Similarity,
+    /// Radians.
+    pub rotation: f64,
+    /// Of the object's middle, across the line of sight, units of the colour view.
+    pub across: f64,
+    /// Of the object's middle, along the line of sight, units of the colour view.
+    pub along: f64,
 }
 
 impl PhotometricProblem<'_> {

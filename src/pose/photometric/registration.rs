@@ -5,6 +5,7 @@ mod instruments;
 
 use annealing::{Descent, SCALE_SHRINKING};
 
+use super::anchors::{AnchorSums, AnchorWeights, Anchors};
 use super::covariance::{Noise, Tiles};
 use super::equations::ReducedSystem;
 use super::evaluation::Evaluation;
@@ -21,11 +22,11 @@ use crate::pose::uncertainty::{describe, weakest_of};
 use crate::view::Size;
 
 /// Gaussian blur of each level's image, pixels; a level takes every 2^level-th point.
-const BLURS: [f64; COARSEST + 1] = [0.0, 1.5, 3.0];
+const BLURS: [f64; COARSEST + 1] = [0.0, 1.5, 3.0, 6.0];
 /// Coarsest level under an unknown light: a light that follows explains strongly blurred colours in any pose. From 20
 /// degrees off level 1 always converged on Mozart at 64x64, level 2 in a third of the cases; a known light converges
 /// from 30 by level 2.
-const COARSEST_UNKNOWN: usize = 1;
+const COARSEST_UNKNOWN: usize = 3;
 /// Blur of the image whose gradients are the instrumental variables, pixels: 0.7 to 1.5 serve alike.
 pub(super) const INSTRUMENT_BLUR: f64 = 1.0;
 /// The first robust scale over that of the residuals at the start.
@@ -70,6 +71,7 @@ pub struct Photometric {
     /// The image whose gradients are the instrumental variables.
     instruments: SplineImage,
     points: VisiblePoints,
+    anchors: Anchors,
     tiles: Tiles,
     /// log S at the points while the pose stays.
     samples: Vec<Samples>,
@@ -111,6 +113,7 @@ impl Photometric {
             samples: Vec::new(),
             magnitudes: Vec::with_capacity(points.capacity()),
             points,
+            anchors: Anchors::new(problem),
             tiles: Tiles::new(problem.depth_size),
             state,
             annealed: state,
@@ -294,6 +297,25 @@ impl Photometric {
         self.weighting = Weighting { robust_scale, prior };
     }
 
+    /// The terms of the pose alone, where there are any.
+    fn anchors(
+        &self,
+        problem: &PhotometricProblem<'_>,
+        level: usize,
+        frame: &Frame,
+        pose: &Similarity,
+    ) -> Option<AnchorSums> {
+        let largest = self.weighting.robust_scale.powi(2);
+        let weights = AnchorWeights { total: self.points.weight(), largest, level, noise: self.noise.residuals };
+        problem.near.map(|near| self.anchors.sums(problem, &near, pose, frame, weights))
+    }
+
+    /// The objective of a state.
+    fn objective(&self, problem: &PhotometricProblem<'_>, level: usize, frame: &Frame, state: &State) -> f64 {
+        let anchors = self.anchors(problem, level, frame, &state.pose).map_or(0.0, |sums| sums.cost);
+        self.evaluation(problem, level, state).objective() + anchors
+    }
+
     /// The points at one level of the image under a state, derivatives for least squares.
     fn evaluation<'a>(&'a self, problem: &'a PhotometricProblem<'a>, level: usize, state: &'a State) -> Evaluation<'a> {
         let model = ColourModel::new(&self.levels[level], &problem.image.camera, &state.exposed_light());
@@ -307,7 +329,12 @@ impl Photometric {
     }
 
     fn reduce_by_instruments(&self, problem: &PhotometricProblem<'_>, frame: &Frame) -> Result<ReducedSystem> {
-        self.evaluation_by_instruments(problem).unbiased_system(frame).ok_or_else(undetermined_light)
+        let mut reduced =
+            self.evaluation_by_instruments(problem).unbiased_system(frame).ok_or_else(undetermined_light)?;
+        if let Some(AnchorSums { matrix, gradient, .. }) = self.anchors(problem, 0, frame, &self.state.pose) {
+            reduced.add(&matrix, &gradient);
+        }
+        Ok(reduced)
     }
 
     fn covariance(&mut self, problem: &PhotometricProblem<'_>, frame: &Frame, reduced: &ReducedSystem) -> PoseMatrix {

@@ -65,7 +65,7 @@ impl Photometric {
             before: self.state.pose,
             at_noise: self.weighting.robust_scale <= target,
             damping: Damping::FIRST,
-            objective: self.evaluation(problem, level, &self.state).objective(),
+            objective: self.objective(problem, level, &frame, &self.state),
             steps: 0,
         }))
     }
@@ -76,11 +76,14 @@ impl Photometric {
         self.iterations += 1;
         descent.steps += 1;
         let reduced = self.evaluation(problem, level, &self.state).reduced_system(&frame);
-        let reduced = reduced.ok_or_else(undetermined_light)?;
+        let mut reduced = reduced.ok_or_else(undetermined_light)?;
+        if let Some(sums) = self.anchors(problem, level, &frame, &self.state.pose) {
+            reduced.add(&sums.matrix, &sums.gradient);
+        }
         let lowered = descent.damping.lower(MOST_ATTEMPTS, descent.objective, |damping| {
             let step = reduced.step(damping, &problem.held())?;
             let state = self.state.stepped(&frame, &step, problem.light.is_some());
-            let objective = self.evaluation(problem, level, &state).objective();
+            let objective = self.objective(problem, level, &frame, &state);
             Some(Lowered { state, objective, size: step.pose.norm() })
         });
         let size = lowered.as_ref().map_or(0.0, |lowered| lowered.size);
