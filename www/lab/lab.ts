@@ -30,8 +30,21 @@ import { sentence, verdict, wordsOf, type Verdict } from "./verdict";
 export class Lab {
   readonly store: Store;
   readonly gallery: Gallery;
-  readonly player: Player;
-  readonly #engine: Engine;
+  readonly player = new Player({
+    advance: (request) => this.#advance(request),
+    restart: () => this.#start(this.#wanted),
+    isFinished: () => this.#record.isFinished,
+    onChange: () => this.#showState(),
+    onError: (error, playing) => void this.#breakOff(error, playing),
+  });
+  readonly #engine = new Engine({
+    onLoad: (bytes) => {
+      if (!this.#record.report)
+        this.#notices.announce("loading", `loading the numerics, ${Math.round(bytes / 1000)} kB`);
+    },
+    onDoing: (words) => this.#notices.detail(words),
+    onLost: (error) => this.#lose(error),
+  });
   readonly #form: Form;
   readonly #own = new OwnFiles({
     onChange: () => {
@@ -80,14 +93,6 @@ export class Lab {
     this.#form = form;
     this.gallery = gallery;
     this.#messages = new Messages(this.#form, this.#own.intake);
-    this.#engine = new Engine({
-      onLoad: (bytes) => {
-        if (!this.#record.report)
-          this.#notices.announce("loading", `loading the numerics, ${Math.round(bytes / 1000)} kB`);
-      },
-      onDoing: (words) => this.#notices.detail(words),
-      onLost: (error) => this.#lose(error),
-    });
     const unlessGone = (): undefined => undefined;
     gallery.serve({
       look: (look) => this.#engine.call("look", { look }).catch(unlessGone),
@@ -97,13 +102,6 @@ export class Lab {
       onPin: () => this.#pin(),
       onUnpin: () => this.gallery.unpin(),
       onWipe: (share) => this.gallery.wipe(share),
-    });
-    this.player = new Player({
-      advance: (request) => this.#advance(request),
-      restart: () => this.#start(this.#wanted),
-      isFinished: () => this.#record.isFinished,
-      onChange: () => this.#showState(),
-      onError: (error, playing) => void this.#breakOff(error, playing),
     });
     this.#panels = new Panels(new Explanations(() => methodOf(this.store.settings, this.#origin)), {
       rivals: {
