@@ -18,7 +18,7 @@ import type {
   RestoreOptions,
   RunOptions,
   StepReport,
-} from "./types.js";
+} from "./types/index.js";
 import type { Views } from "./workers/messages.js";
 import { RefinementWorker, type Refinement } from "./workers/refinement.js";
 import { SearchWorkers } from "./workers/search.js";

@@ -9,7 +9,7 @@ import { BimodalError, badFile } from "./errors.js";
 import { nodeModule } from "./node.js";
 import { kindOf } from "./rig/formats/kinds.js";
 import { checkSize } from "./rig/formats/limits.js";
-import type { ColorImage, ImageOptions, ImageSource } from "./types.js";
+import type { ColorImage, ImageOptions, ImageSource } from "./types/index.js";
 
 const checkOptions = object({ signal });
 

@@ -4,7 +4,7 @@
  */
 import { isObject, wrong } from "./check.js";
 import { BimodalError } from "./errors.js";
-import type { Matrix3, Matrix4, Pose } from "./types.js";
+import type { Matrix3, Matrix4, Pose } from "./types/index.js";
 
 /** The members that a matrix stands for. */
 export type PoseMembers = Pick<Pose, "scale" | "rotation" | "translation">;

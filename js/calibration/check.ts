@@ -15,7 +15,7 @@ import {
 } from "../check.js";
 import { BimodalError } from "../errors.js";
 import { type PoseMembers, cameraOf, poseOf } from "../matrices.js";
-import type { CheckFrame, CheckFrameInput, RigCamera, RigCameraInput } from "../types.js";
+import type { CheckFrame, CheckFrameInput, RigCamera, RigCameraInput } from "../types/index.js";
 
 /** A rig's camera: with as many coefficients as its lens model has, which the numerics judge. */
 const list: Check = (value, field) => {

@@ -3,7 +3,7 @@ import { type ArrayType, type Check, array, isObject, number, numbers, ranged, s
 import { BimodalError } from "../errors.js";
 import type { Raster } from "../npy.js";
 import { wholePoseOf } from "../matrices.js";
-import type { Pose, PoseInput, StepReport } from "../types.js";
+import type { Pose, PoseInput, StepReport } from "../types/index.js";
 import { like } from "../rig/write/built.js";
 
 export const checkUnit = word("m", "px");

@@ -1,7 +1,7 @@
 /** What an estimator found, in files that other programs read: pose, light, depth and normals. */
 import { isObject, wrong } from "../check.js";
 import { BimodalError } from "../errors.js";
-import type { PoseInput, Reason, StepReport, Uncertainty } from "../types.js";
+import type { PoseInput, Reason, StepReport, Uncertainty } from "../types/index.js";
 import { real } from "../rig/write/numbers.js";
 import { checkLight, checkRaster, checkStanding, checkUnit, checkedPose, checkedWholePose } from "./check.js";
 import { writePng } from "./png.js";

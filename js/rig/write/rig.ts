@@ -3,7 +3,7 @@
  * would be believed by whoever reads it.
  */
 import { cameraOf, determinant, poseOf } from "../../matrices.js";
-import type { Pose, PoseInput, RigCamera, RigCameraInput } from "../../types.js";
+import type { Pose, PoseInput, RigCamera, RigCameraInput } from "../../types/index.js";
 import { fault, like, oneOf } from "./built.js";
 
 /** Width and height in pixels. */
