@@ -8,12 +8,7 @@ import { inRoot, root } from "../../scripts/shell.mjs";
 const MOST_LINES = 450;
 const CODE = /\.(?:rs|ts|tsx|mjs|mts|js|py|pyi|css|html|sh)$/;
 /** Longer still, and to be split: none is to be added. */
-const LONGER = [
-  "src/calibration/lens.rs",
-  "src/estimator/verdict.rs",
-  "src/pose/icp.rs",
-  "src/pose/photometric/registration.rs",
-];
+const LONGER = ["src/calibration/lens.rs"];
 
 const linesOf = (text) => text.split("\n").length - (text.endsWith("\n") ? 1 : 0);
 const tooLong = (texts) =>
