@@ -1,7 +1,7 @@
 /** What every .wasm of the package needs: its code compiled, and the border that every call crosses. */
 import { BimodalError, translate } from "./errors.js";
 import { nodeModule } from "./node.js";
-import type { WasmSource } from "./types.js";
+import type { WasmSource } from "./types/index.js";
 
 /** The bytes of a file in Node, whose fetch reads none; nothing where the address is no file's. */
 function fromDisk(wasm: string | URL | Request | Response): Promise<BufferSource> | undefined {

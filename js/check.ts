@@ -2,7 +2,7 @@
  * How names and types are checked before wasm sees them, because a misspelt key or a string for a number would pass in
  * silence or fail without a name. What lies in rasters is checked in Rust.
  */
-import { BimodalError } from "./errors.js";
+import { BimodalError, refused } from "./errors.js";
 import type { NumberRow } from "./rows.js";
 
 /** Checks one value; `field` is its path in the contract. */
@@ -17,8 +17,9 @@ function kind(value: unknown): string {
   return typeof value;
 }
 
-export const wrong = (field: string, expected: string, value: unknown) =>
-  new BimodalError("type", `${field}: must be ${expected}, not ${kind(value)}`, field);
+/** `index` is that of an entry, where a single one is of another type. */
+export const wrong = (field: string, expected: string, value: unknown, index?: number) =>
+  new BimodalError("type", `${field}: must be ${expected}, not ${kind(value)}`, field, refused(value, index));
 
 export const number: Check = (value, field) => {
   if (typeof value !== "number") throw wrong(field, "a number", value);
@@ -51,7 +52,7 @@ export const ranged =
     const isKind = kind === "number" ? Number.isFinite(value) : isWhole;
     if (isKind && value >= min && value > above && value <= max && value < below) return;
     const code = kind === "side" && isWhole && value >= 0 ? "size" : "range";
-    throw new BimodalError(code, `${field}: must be ${range(row)} (got ${value})`, field);
+    throw new BimodalError(code, `${field}: must be ${range(row)} (got ${value})`, field, refused(value));
   };
 
 /** A list of so many numbers, typed arrays included. Its length comes first: what claims to be longer is not copied. */
@@ -63,7 +64,7 @@ export const numbers =
     if (length !== count) throw new BimodalError("size", `${field}: needs ${count} numbers, not ${length}`, field);
     const copy: unknown[] = Array.from({ ...Object(value), length });
     const other = copy.findIndex((item) => typeof item !== "number");
-    if (other >= 0) throw wrong(field, `a list of numbers, with entry ${other}`, copy[other]);
+    if (other >= 0) throw wrong(field, `a list of numbers, with entry ${other}`, copy[other], other);
   };
 
 /** A square matrix: a list of all its numbers, or a list of its rows. */

@@ -2,7 +2,7 @@
 import start, * as glue from "../target/wasm-bindgen/bimodal_stereo.js";
 import { compile } from "./border.js";
 import { BimodalError, isPanic, translate } from "./errors.js";
-import type { WasmSource } from "./types.js";
+import type { WasmSource } from "./types/index.js";
 
 let loading: Promise<void> | undefined;
 let module: WebAssembly.Module | undefined;

@@ -27,7 +27,7 @@ export class BimodalError extends Error {
   declare readonly field?: string;
   /** Index into the field's array, where one entry is at fault. */
   declare readonly index?: number;
-  /** The number at fault, where the numerics name it. */
+  /** The number at fault, where a single one is. */
   declare readonly value?: number;
 
   /** The values in the message; of a file's error `file`, `reason` and, where it matters, `problem`. */
@@ -65,12 +65,22 @@ export interface ErrorDetails {
   readonly height?: number;
 }
 
+/** What an error carries of a refused value: the number that it is, and which entry of its field. */
+export const refused = (value: unknown, index?: number): { value: number | undefined; index: number | undefined } => ({
+  value: typeof value === "number" ? value : undefined,
+  index,
+});
+
 /** What is wrong with a file. */
 export const badFile = (message: string, cause?: unknown, details?: ErrorDetails) =>
   new BimodalError("file", message, "file", {
     ...(cause !== undefined && { cause }),
     details: { reason: message, ...details },
   });
+
+/** What is wrong with the file of this name. */
+export const badNamed = (name: string, reason: string, cause?: unknown, details?: ErrorDetails): BimodalError =>
+  badFile(`${name}: ${reason}`, cause, { ...details, file: name, reason });
 
 /** How errors cross from wasm: plain data. */
 interface Crossing {

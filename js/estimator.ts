@@ -1,7 +1,7 @@
 import type { Estimator as Raw } from "../target/wasm-bindgen/bimodal_stereo.js";
 import { breathe } from "./breathe.js";
 import { bindings, explained } from "./engine.js";
-import { BimodalError, isPanic } from "./errors.js";
+import { BimodalError, isPanic, refused } from "./errors.js";
 import { checkDepth, checkDraw, checkImage, checkLayer, checkOptions, checkRestore, checkRun } from "./inputs.js";
 import type { PlainOptions } from "./options.js";
 import { copyOf, plainDepth, plainImage, plainOptions } from "./plain.js";
@@ -18,7 +18,7 @@ import type {
   RestoreOptions,
   RunOptions,
   StepReport,
-} from "./types.js";
+} from "./types/index.js";
 import type { Views } from "./workers/messages.js";
 import { RefinementWorker, type Refinement } from "./workers/refinement.js";
 import { SearchWorkers } from "./workers/search.js";
@@ -115,7 +115,7 @@ export class Estimator {
   /** As many steps as fit into the time, at least one. Of a search around an initial pose a step is one slice here, as in `run`. */
   stepFor(milliseconds: number): StepReport {
     if (typeof milliseconds !== "number" || Number.isNaN(milliseconds)) {
-      throw new BimodalError("type", "milliseconds: must be a number", "milliseconds");
+      throw new BimodalError("type", "milliseconds: must be a number", "milliseconds", refused(milliseconds));
     }
     const end = performance.now() + milliseconds;
     let report = this.#advance();
@@ -160,7 +160,7 @@ export class Estimator {
     const workers = this.#options.workers ?? 1;
     if ((own?.workers ?? workers) !== workers) {
       const message = "options.workers: threads get the views when they are made; make a new estimator to change it";
-      throw new BimodalError("unsupported", message, "options.workers");
+      throw new BimodalError("unsupported", message, "options.workers", refused(own?.workers));
     }
     this.#call((raw) => raw.reset(own));
     if (own) this.#options = { ...own, workers };

@@ -7,11 +7,11 @@ import { BimodalError, badFile } from "./errors.js";
 import { type Raster, isNpy, readNpy } from "./npy.js";
 import { isPng, readPng } from "./png.js";
 import { type Pixels, single, toColour, toMask } from "./raster.js";
-import type { ColorImage, DepthMap, Mask } from "./types.js";
+import type { ColorImage, DepthMap, Mask } from "./types/index.js";
 
 export { BimodalError };
 export { imageFrom } from "./images.js";
-export type { ColorImage, DepthMap, ImageOptions, ImageSource, Mask } from "./types.js";
+export type { ColorImage, DepthMap, ImageOptions, ImageSource, Mask } from "./types/index.js";
 
 type Bytes = Uint8Array | ArrayBuffer;
 

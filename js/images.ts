@@ -4,12 +4,12 @@
  * Files are read by the readers of rigs, which keep 16 bits, follow colour profiles and orientation, and are loaded when the first file
  * comes in. What they do not know is the browser's.
  */
-import { object, signal, wrong } from "./check.js";
-import { BimodalError, badFile } from "./errors.js";
+import { brief, object, signal, wrong } from "./check.js";
+import { BimodalError, badNamed } from "./errors.js";
 import { nodeModule } from "./node.js";
 import { kindOf } from "./rig/formats/kinds.js";
 import { checkSize } from "./rig/formats/limits.js";
-import type { ColorImage, ImageOptions, ImageSource } from "./types.js";
+import type { ColorImage, ImageOptions, ImageSource } from "./types/index.js";
 
 const checkOptions = object({ signal });
 
@@ -25,9 +25,10 @@ async function fetched(address: string | URL, signal: AbortSignal | undefined): 
     response = await fetch(address, signal ? { signal } : {});
   } catch (error) {
     signal?.throwIfAborted();
-    throw badFile(`${address} cannot be reached, or its server does not permit other origins to read it (CORS)`, error);
+    const reason = "it cannot be reached, or its server does not permit other origins to read it (CORS)";
+    throw badNamed(nameOf(address), reason, error);
   }
-  if (!response.ok) throw badFile(`${address} answers with status ${response.status}`);
+  if (!response.ok) throw badNamed(nameOf(address), `it answers with status ${response.status}`);
   return new Uint8Array(await response.arrayBuffer());
 }
 
@@ -41,7 +42,7 @@ async function located(address: string | URL, signal: AbortSignal | undefined): 
     return await disk.readFile(isPath ? text : new URL(text), signal ? { signal } : {});
   } catch (error) {
     signal?.throwIfAborted();
-    throw badFile(`${text} cannot be read (${error instanceof Error ? error.message : String(error)})`, error);
+    throw badNamed(text, `it cannot be read (${error instanceof Error ? error.message : String(error)})`, error);
   }
 }
 
@@ -54,16 +55,34 @@ async function bytesOf(source: ImageSource, signal: AbortSignal | undefined): Pr
   return undefined;
 }
 
+/** What an error calls a source that is a file: its path, its address, or the name that a page's `File` has. */
+function nameOf(source: ImageSource): string {
+  // An address may hold the whole picture.
+  if (typeof source === "string" || source instanceof URL)
+    return /^data:/i.test(String(source)) ? brief(String(source)) : String(source);
+  return typeof File !== "undefined" && source instanceof File ? source.name : "image";
+}
+
 const canDraw = (): boolean => typeof createImageBitmap === "function" && typeof OffscreenCanvas === "function";
 
-async function decoded(bytes: Uint8Array, signal: AbortSignal | undefined): Promise<ColorImage> {
-  if (bytes.length === 0) throw badFile("it is empty");
+async function decoded(bytes: Uint8Array, name: string, signal: AbortSignal | undefined): Promise<ColorImage> {
+  if (bytes.length === 0) throw badNamed(name, "it is empty");
   // GIF, AVIF and whatever else a browser shows.
-  if (kindOf(bytes) === undefined && canDraw()) return drawn(new Blob([bytes as Uint8Array<ArrayBuffer>]));
+  if (kindOf(bytes) === undefined && canDraw()) return shown(bytes, name);
   const { readRigFile } = await import("./rig/read.js");
-  const reading = await readRigFile({ name: "image", bytes }, { as: "colour", ...(signal && { signal }) });
-  if (reading.kind !== "colour") throw badFile("it is no colour image");
+  const reading = await readRigFile({ name, bytes }, { as: "colour", ...(signal && { signal }) });
+  if (reading.kind !== "colour") throw badNamed(name, "it is no colour image");
   return reading.image as ColorImage;
+}
+
+/** A file by the browser's decoders. */
+async function shown(bytes: Uint8Array, name: string): Promise<ColorImage> {
+  try {
+    return await drawn(new Blob([bytes as Uint8Array<ArrayBuffer>]));
+  } catch (error) {
+    if (!(error instanceof BimodalError) || error.code !== "file") throw error;
+    throw badNamed(name, error.details?.reason ?? error.message, error.cause, error.details);
+  }
 }
 
 /** What the browser shows, as sRGB of 8 bits and upright. */
@@ -99,8 +118,8 @@ async function bitmapOf(source: ImageBitmapSource): Promise<ImageBitmap> {
   } catch (error) {
     if (error instanceof TypeError)
       throw wrong("source", "an image, a canvas, a video frame, a file, its bytes or its address", source);
-    const message = `source: it has no picture that the browser can decode (${error instanceof Error ? error.message : String(error)})`;
-    throw new BimodalError("file", message, "source", { cause: error });
+    const reason = `it has no picture that the browser can decode (${error instanceof Error ? error.message : String(error)})`;
+    throw new BimodalError("file", `source: ${reason}`, "source", { cause: error, details: { reason } });
   }
 }
 
@@ -127,5 +146,5 @@ async function read(source: ImageSource, signal: AbortSignal | undefined): Promi
   const isPlain = isImageData(source) && source.data instanceof Uint8ClampedArray && source.colorSpace === "srgb";
   if (isPlain) return { width: source.width, height: source.height, data: source.data.slice() as Uint8ClampedArray };
   const bytes = await bytesOf(source, signal);
-  return bytes ? decoded(bytes, signal) : drawn(source as ImageBitmapSource);
+  return bytes ? decoded(bytes, nameOf(source), signal) : drawn(source as ImageBitmapSource);
 }

@@ -1,6 +1,6 @@
 /** Entry for browsers, bundlers and Node. */
 import { load } from "./engine.js";
-import type { WasmSource } from "./types.js";
+import type { WasmSource } from "./types/index.js";
 import { wasmUrl } from "./wasm.js";
 
 export { checkCalibration, projectFrame, sampleRig } from "./calibration/index.js";
@@ -8,7 +8,7 @@ export { BimodalError, type ErrorCode, type ErrorDetails } from "./errors.js";
 export { Estimator, type Given } from "./estimator.js";
 export { integrateNormals, pixelLandscape } from "./lessons.js";
 export { sample, sampleBound, sampleLights, sampleSurfaces, shadeNormals, turnLight } from "./samples.js";
-export type * from "./types.js";
+export type * from "./types/index.js";
 export { wasmUrl } from "./wasm.js";
 
 /** Loads the numerics; without an argument from the .wasm file beside this module that `wasmUrl` names, in Node from disk. */

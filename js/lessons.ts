@@ -2,7 +2,7 @@
 import { type Check, array, flag, numbers, object, ranged } from "./check.js";
 import { across } from "./border.js";
 import { bindings } from "./engine.js";
-import type { PixelLandscape, PixelLandscapeRequest } from "./types.js";
+import type { PixelLandscape, PixelLandscapeRequest } from "./types/index.js";
 
 const light = numbers(27);
 /** A logarithm of a colour, or a coordinate of a normal: the squares of what is farther from zero say nothing. */

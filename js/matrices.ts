@@ -3,8 +3,8 @@
  * rotation is orthonormal and a focal length above zero is judged where all poses and cameras are.
  */
 import { isObject, wrong } from "./check.js";
-import { BimodalError } from "./errors.js";
-import type { Matrix3, Matrix4, Pose } from "./types.js";
+import { BimodalError, refused } from "./errors.js";
+import type { Matrix3, Matrix4, Pose } from "./types/index.js";
 
 /** The members that a matrix stands for. */
 export type PoseMembers = Pick<Pose, "scale" | "rotation" | "translation">;
@@ -25,7 +25,8 @@ const isMatrix = (value: unknown): value is Matrix3 | Matrix4 => Array.isArray(v
 const ROUNDING = 1e-6;
 const near = (value: number, expected: number): boolean => Math.abs(value - expected) <= ROUNDING;
 
-const range = (field: string, words: string): BimodalError => new BimodalError("range", `${field}: ${words}`, field);
+const range = (field: string, words: string, value?: number, index?: number): BimodalError =>
+  new BimodalError("range", `${field}: ${words}`, field, refused(value, index));
 
 /** The entries row by row, all of them finite numbers. */
 function entries(matrix: Matrix3 | Matrix4, side: 3 | 4, field: string): number[] {
@@ -46,7 +47,7 @@ function entries(matrix: Matrix3 | Matrix4, side: 3 | 4, field: string): number[
   return rows.flat().map((value, index) => {
     const path = isNested ? `${field}[${Math.floor(index / side)}][${index % side}]` : `${field}[${index}]`;
     if (typeof value !== "number") throw wrong(path, "a number", value);
-    if (!Number.isFinite(value)) throw range(path, `must be a finite number (got ${value})`);
+    if (!Number.isFinite(value)) throw range(path, `must be a finite number (got ${value})`, value);
     return value;
   });
 }
@@ -80,8 +81,9 @@ export function matrixOf({ scale, rotation, translation }: PoseMembers): number[
 /** The scale, rotation and translation of a 4x4 matrix. */
 function ofMatrix4(matrix: Matrix4, field: string): PoseMembers {
   const m = entries(matrix, 4, field);
-  const isAffine = near(at(m, 12), 0) && near(at(m, 13), 0) && near(at(m, 14), 0) && near(at(m, 15), 1);
-  if (!isAffine) throw range(field, `its last row must be 0 0 0 1 (got ${m.slice(12).join(" ")})`);
+  const other = [12, 13, 14, 15].find((index) => !near(at(m, index), index === 15 ? 1 : 0));
+  if (other !== undefined)
+    throw range(field, `its last row must be 0 0 0 1 (got ${m.slice(12).join(" ")})`, m[other], other);
   const upper = [0, 1, 2].flatMap((i) => m.slice(4 * i, 4 * i + 3));
   const size = Math.cbrt(determinant(upper));
   if (!(size > 0))
@@ -111,9 +113,10 @@ export function wholePoseOf(value: unknown, field: string): Pose {
 function ofMatrix3(matrix: Matrix3, field: string): CameraMembers {
   const k = entries(matrix, 3, field);
   const [fx, skew, cx, , fy, cy] = k as [number, number, number, number, number, number];
-  if (!near(skew / fx, 0)) throw range(field, `a camera with skew is not supported (got ${skew} in row 1, column 2)`);
-  const isIntrinsic = at(k, 3) === 0 && at(k, 6) === 0 && at(k, 7) === 0 && near(at(k, 8), 1);
-  if (!isIntrinsic) throw range(field, "must be fx 0 cx, 0 fy cy, 0 0 1");
+  if (!near(skew / fx, 0))
+    throw range(field, `a camera with skew is not supported (got ${skew} in row 1, column 2)`, skew, 1);
+  const other = [3, 6, 7, 8].find((index) => (index === 8 ? !near(at(k, 8), 1) : at(k, index) !== 0));
+  if (other !== undefined) throw range(field, "must be fx 0 cx, 0 fy cy, 0 0 1", k[other], other);
   return { fx, fy, cx, cy };
 }
 

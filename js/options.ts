@@ -5,7 +5,7 @@
  * give; `tests/contract/options.test.mjs` holds that they agree.
  */
 import type { NumberRow, RowsOf } from "./rows.js";
-import type { Options, Pose, SampleRequest } from "./types.js";
+import type { Options, Pose, SampleRequest } from "./types/index.js";
 
 export { paths, type PageField, type Row, type Rows, type ShownRow } from "./rows.js";
 

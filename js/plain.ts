@@ -5,7 +5,15 @@
 import { cameraOf, poseOf } from "./matrices.js";
 import { OPTIONS, type PlainOptions } from "./options.js";
 import type { Row, Rows } from "./rows.js";
-import type { ColorImage, ColorImageInput, DepthMap, DepthMapInput, Options, Pinhole, PinholeInput } from "./types.js";
+import type {
+  ColorImage,
+  ColorImageInput,
+  DepthMap,
+  DepthMapInput,
+  Options,
+  Pinhole,
+  PinholeInput,
+} from "./types/index.js";
 
 /** Some members of an object, inherited ones as well, without those that are undefined. */
 function pick<T extends object, K extends keyof T>(source: T, keys: readonly K[]): Pick<T, K> {

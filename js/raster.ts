@@ -1,7 +1,7 @@
 /** Rasters of any number of channels as the contract has them: colours, one channel, masks. */
 import { badFile } from "./errors.js";
 import type { Raster } from "./npy.js";
-import type { ColorImage, Mask } from "./types.js";
+import type { ColorImage, Mask } from "./types/index.js";
 
 export type Pixels = Uint8Array | Uint16Array | Float32Array;
 

@@ -2,7 +2,7 @@
 import { across } from "./border.js";
 import { bindings } from "./engine.js";
 import { checkAngles, checkLight, checkLightIsKnown, checkNormals, checkSample } from "./inputs.js";
-import type { Pose, Sample, SampleRequest } from "./types.js";
+import type { Pose, Sample, SampleRequest } from "./types/index.js";
 
 /** Renders a colour image and a depth map of a built-in (or your own) surface. */
 export function sample(request: SampleRequest): Sample {

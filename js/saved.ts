@@ -9,7 +9,7 @@
 import { array, flag, isObject, object, ranged, word, wrong, type Check } from "./check.js";
 import { crc32 } from "./crc.js";
 import { BimodalError } from "./errors.js";
-import type { ColorImage, DepthMap, Options, Stage, StepReport } from "./types.js";
+import type { ColorImage, DepthMap, Options, Stage, StepReport } from "./types/index.js";
 
 /** How far a run has come. */
 export interface Reached {

@@ -31,7 +31,7 @@ import { build } from "./build.mjs";
 import { setup } from "./setup.mjs";
 import { Failure, inRoot, root, say, script, seconds } from "./shell.mjs";
 import { runCells } from "./tables/pool.mjs";
-import { columns } from "./tables/print.mjs";
+import { columns } from "./tables/columns.mjs";
 
 const FIGURES = inRoot("scripts/answers/figures.json");
 /** Progress is told after so many scenes. */

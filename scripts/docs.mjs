@@ -3,7 +3,7 @@
 // A region lies between two comments, and whatever stands there is replaced as a whole; its figures are of one run, as its first line says.
 import { readFileSync, writeFileSync } from "node:fs";
 import { Failure, inRoot, say } from "./shell.mjs";
-import { fixed } from "./tables/print.mjs";
+import { fixed } from "./tables/columns.mjs";
 
 const begin = (name) => `<!-- begin: ${name} (written by npm run ${name} -- --docs) -->`;
 const end = (name) => `<!-- end: ${name} -->`;

@@ -1,8 +1,8 @@
 /**
  * The comments of the package's types: which members have none, and which lines of them follow from the rows of js/options.ts.
- * `node scripts/documented.mjs` writes these lines into js/types.ts, from pkg/ as it is built; the contract tests hold that they are there.
+ * `node scripts/documented.mjs` writes these lines into js/types/, from pkg/ as it is built; the contract tests hold that they are there.
  */
-import { readFileSync, realpathSync, writeFileSync } from "node:fs";
+import { readFileSync, readdirSync, realpathSync, writeFileSync } from "node:fs";
 import { inRoot } from "./shell.mjs";
 import { ts } from "ts-morph";
 
@@ -135,9 +135,11 @@ export async function rowsOfTypes() {
   return new Map([...paths(OPTIONS, "Options"), ...paths(SAMPLE, "SampleRequest")]);
 }
 
-export const TYPES = inRoot("js/types.ts");
+/** The sources of the public types. */
+export const TYPES = readdirSync(inRoot("js/types")).map((name) => inRoot("js/types", name));
 
 // Node names this module by its real path, and the command by the path it was given.
 if (import.meta.filename === realpathSync(process.argv[1])) {
-  writeFileSync(TYPES, documented(readFileSync(TYPES, "utf8"), await rowsOfTypes()));
+  const rows = await rowsOfTypes();
+  for (const path of TYPES) writeFileSync(path, documented(readFileSync(path, "utf8"), rows));
 }

@@ -90,7 +90,7 @@ const docs = () =>
   watch("cargo", ["doc", ...LIBRARY, "--no-deps", ...FEATURES], { env: { RUSTDOCFLAGS: "-D warnings" } });
 
 /** The files of tests/page that go to each place of the page, in its own words; the others look closer, with `--long`. */
-const PLACES = ["run", "files", "saved", "learn", "rig", "report", "tables", "security", "site"];
+const PLACES = ["run", "files", "saved", "learn", "rig", "rig-frames", "report", "tables", "security", "site"];
 
 async function page() {
   const env = { CHROMIUM: await headless(), PAGE_PORT: String(await freePort()) };

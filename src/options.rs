@@ -1,5 +1,8 @@
 //! What the caller may choose, with its defaults and its limits.
 
+#[cfg(feature = "serde")]
+mod serialised;
+
 use nalgebra::{Matrix3, Vector3};
 
 use crate::check::{not_negative, positive};
@@ -47,7 +50,7 @@ pub enum Start {
 
 /// How far from a told start the answer may lie.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct StartTolerance {
     /// Rotation in degrees.
     pub degrees: f64,
@@ -87,7 +90,7 @@ pub enum Shading {
 /// Weights of the terms of the objective. Brightness residuals are differences of natural logarithms; normals have no
 /// unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct Weights {
     /// lambda_2 of Eq. 6: how strongly a normal follows the normal of the other view.
     pub prior: f64,
@@ -109,7 +112,11 @@ impl Default for Weights {
 
 /// Everything the loop can be told. `Options::default()` is a sensible start.
 #[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "camelCase", default))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "camelCase", default, deny_unknown_fields)
+)]
 pub struct Options {
     /// Known or estimated light.
     pub light: LightSource,
@@ -242,137 +249,6 @@ impl Options {
     }
 }
 
-/// Members that are a word or something else: `"estimate"` or 27 numbers, `"search"`, `"identity"` or a pose, `"free"` or a number.
-#[cfg(feature = "serde")]
-mod serialised {
-    use std::array::from_fn;
-
-    use nalgebra::{Matrix3, Vector3};
-    use serde::{Deserialize, Serialize};
-
-    use super::{LightSource, Start};
-    use crate::light::Light;
-    use crate::pose::Angles;
-
-    #[derive(Serialize, Deserialize)]
-    #[serde(rename_all = "lowercase")]
-    pub enum LightWord {
-        Estimate,
-    }
-
-    #[derive(Serialize, Deserialize)]
-    #[serde(untagged)]
-    #[expect(clippy::large_enum_variant, reason = "lives no longer than a conversion")]
-    pub enum GivenLight {
-        Word(LightWord),
-        Numbers([f64; 27]),
-    }
-
-    impl From<GivenLight> for LightSource {
-        fn from(given: GivenLight) -> Self {
-            match given {
-                GivenLight::Word(LightWord::Estimate) => Self::Estimate,
-                // Their range is for `Options::validate` to check, whose errors name them.
-                GivenLight::Numbers(flat) => Self::Known(Light(from_fn(|channel| from_fn(|k| flat[9 * channel + k])))),
-            }
-        }
-    }
-
-    impl From<LightSource> for GivenLight {
-        fn from(source: LightSource) -> Self {
-            match source {
-                LightSource::Estimate => Self::Word(LightWord::Estimate),
-                LightSource::Known(light) => Self::Numbers(light.flat()),
-            }
-        }
-    }
-
-    #[derive(Serialize, Deserialize)]
-    #[serde(rename_all = "lowercase")]
-    pub enum StartWord {
-        Search,
-        Identity,
-    }
-
-    /// As much of a pose as is known. The rotation, row by row, wins over the angles.
-    #[derive(Default, Serialize, Deserialize)]
-    #[serde(default)]
-    pub struct GivenPose {
-        #[serde(skip_serializing_if = "Option::is_none")]
-        scale: Option<f64>,
-        #[serde(skip_serializing_if = "Option::is_none")]
-        rotation: Option<[f64; 9]>,
-        #[serde(skip_serializing_if = "Option::is_none")]
-        translation: Option<[f64; 3]>,
-        #[serde(skip_serializing)]
-        angles: Angles,
-    }
-
-    #[derive(Serialize, Deserialize)]
-    #[serde(untagged)]
-    pub enum GivenStart {
-        Word(StartWord),
-        Pose(GivenPose),
-    }
-
-    impl From<GivenStart> for Start {
-        fn from(given: GivenStart) -> Self {
-            match given {
-                GivenStart::Word(StartWord::Search) => Self::Search,
-                GivenStart::Word(StartWord::Identity) => Self::Identity,
-                GivenStart::Pose(GivenPose { scale, rotation, translation, angles }) => Self::Pose {
-                    rotation: rotation.map_or_else(|| angles.rotation(), |rows| Matrix3::from_row_slice(&rows)),
-                    scale,
-                    translation: translation.map(Vector3::from),
-                },
-            }
-        }
-    }
-
-    impl From<Start> for GivenStart {
-        fn from(start: Start) -> Self {
-            match start {
-                Start::Search => Self::Word(StartWord::Search),
-                Start::Identity => Self::Word(StartWord::Identity),
-                Start::Pose { rotation, scale, translation } => Self::Pose(GivenPose {
-                    scale,
-                    rotation: Some(from_fn(|at| rotation[(at / 3, at % 3)])),
-                    translation: translation.map(Into::into),
-                    angles: Angles::default(),
-                }),
-            }
-        }
-    }
-
-    pub mod free_or_held {
-        use serde::{Deserialize, Deserializer, Serialize, Serializer};
-
-        #[derive(Serialize, Deserialize)]
-        #[serde(rename_all = "lowercase")]
-        enum Word {
-            Free,
-        }
-
-        #[derive(Serialize, Deserialize)]
-        #[serde(untagged)]
-        enum Given {
-            Word(Word),
-            Number(f64),
-        }
-
-        pub fn serialize<S: Serializer>(scale: &Option<f64>, serializer: S) -> Result<S::Ok, S::Error> {
-            scale.map_or(Given::Word(Word::Free), Given::Number).serialize(serializer)
-        }
-
-        pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D::Error> {
-            Ok(match Given::deserialize(deserializer)? {
-                Given::Word(Word::Free) => None,
-                Given::Number(scale) => Some(scale),
-            })
-        }
-    }
-}
-
 #[cfg(all(test, feature = "serde"))]
 mod tests {
     use nalgebra::Matrix3;
@@ -410,7 +286,7 @@ mod tests {
     fn options_come_in_the_shapes_of_the_contract() {
         let given = json!({
             "light": "estimate", "start": { "angles": { "beta": 90.0 }, "scale": 2.0 }, "scale": "free",
-            "startTolerance": { "degrees": 3.0 }, "lambda": { "prior": 0.5 }, "maxIterations": 4, "workers": 2,
+            "startTolerance": { "degrees": 3.0 }, "lambda": { "prior": 0.5 }, "maxIterations": 4,
         });
         let found: Options = serde_json::from_value(given).unwrap();
         let Start::Pose { rotation, scale: Some(2.0), translation: None } = found.start else { panic!("{found:?}") };
@@ -430,5 +306,37 @@ mod tests {
         let bright: Options = serde_json::from_value(json!({ "light": vec![1e300; 27] })).unwrap();
         assert_eq!(bright.validate().unwrap_err().field(), "options.light");
         assert!(serde_json::from_value::<Options>(json!({ "registration": "best" })).is_err());
+    }
+
+    /// Threads are no option here, but `Estimator::with_threads`.
+    #[test]
+    fn a_member_that_there_is_not_is_an_error_with_its_name() {
+        for (path, given) in [
+            ("regstration", json!({ "regstration": "icp" })),
+            ("workers", json!({ "workers": 2 })),
+            ("lambda.priors", json!({ "lambda": { "priors": 1.0 } })),
+            ("startTolerance.degree", json!({ "startTolerance": { "degree": 1.0 } })),
+            ("start.scal", json!({ "start": { "scal": 1.0 } })),
+            ("start.angles.delta", json!({ "start": { "angles": { "delta": 1.0 } } })),
+            ("prior.sigma", json!({ "prior": { "mean": [], "covariance": [], "sigma": 1.0 } })),
+        ] {
+            let error = serde_path_to_error::deserialize::<_, Options>(given).unwrap_err();
+            assert_eq!(error.path().to_string(), path);
+            let name = path.rsplit('.').next().unwrap();
+            assert!(error.to_string().contains(&format!("unknown field `{name}`")), "{error}");
+        }
+    }
+
+    #[test]
+    fn a_wrong_member_of_a_pose_is_named() {
+        for (path, given) in [
+            ("start.rotation", json!({ "start": { "rotation": [1.0] } })),
+            ("start.angles.beta", json!({ "start": { "angles": { "beta": "20" } } })),
+            ("start", json!({ "start": "serch" })),
+            ("start", json!({ "start": 5 })),
+        ] {
+            let error = serde_path_to_error::deserialize::<_, Options>(given).unwrap_err();
+            assert!(error.path().to_string().starts_with(path), "{path}: {error}");
+        }
     }
 }

@@ -13,9 +13,9 @@ import {
   word,
   wrong,
 } from "../check.js";
-import { BimodalError } from "../errors.js";
+import { BimodalError, refused } from "../errors.js";
 import { type PoseMembers, cameraOf, poseOf } from "../matrices.js";
-import type { CheckFrame, CheckFrameInput, RigCamera, RigCameraInput } from "../types.js";
+import type { CheckFrame, CheckFrameInput, RigCamera, RigCameraInput } from "../types/index.js";
 
 /** A rig's camera: with as many coefficients as its lens model has, which the numerics judge. */
 const list: Check = (value, field) => {
@@ -107,6 +107,7 @@ export function checkedPose(given: unknown, field = "pose"): PoseMembers {
     "range",
     `${field}.scale: must be 1: extrinsics do not change sizes (got ${scale})`,
     `${field}.scale`,
+    refused(scale),
   );
 }
 

@@ -7,7 +7,7 @@ import type {
   PoseInput,
   RigRequest,
   RigSample,
-} from "../types.js";
+} from "../types/index.js";
 
 /**
  * Whether the frames agree with some candidates for the extrinsics of a rig, P_colour = R P_depth + t in metres; the first

@@ -2,7 +2,7 @@
 import start, { sampleRig } from "../../target/rigs/wasm-bindgen/bimodal_stereo_rigs.js";
 import { across, compile, lazily } from "../border.js";
 import { object, ranged, word } from "../check.js";
-import type { RigRequest, RigSample } from "../types.js";
+import type { RigRequest, RigSample } from "../types/index.js";
 
 // In one piece: bundlers look for exactly this to carry the file along.
 const load = lazily("sampleRig", async () =>

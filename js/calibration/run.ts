@@ -5,7 +5,14 @@ import { across, compile, lazily } from "../border.js";
 import { BimodalError } from "../errors.js";
 import { breathe } from "../breathe.js";
 import type { PoseMembers } from "../matrices.js";
-import type { CheckFrame, CheckFrameInput, CheckOptions, CheckReport, FrameOverlay, PoseInput } from "../types.js";
+import type {
+  CheckFrame,
+  CheckFrameInput,
+  CheckOptions,
+  CheckReport,
+  FrameOverlay,
+  PoseInput,
+} from "../types/index.js";
 
 /** Milliseconds between two breaths: a page stays responsive, and a message costs a hundredth of it. */
 const SLICE = 30;

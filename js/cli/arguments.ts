@@ -1,6 +1,6 @@
 /** What can be asked of `check`. */
 import { parseArgs } from "node:util";
-import type { CheckCue } from "../types.js";
+import type { CheckCue } from "../types/index.js";
 
 /** Something that the user can mend; its message is all that is printed. */
 export class Mistake extends Error {}

@@ -2,7 +2,7 @@
 import { basename } from "node:path";
 import { inverseOf } from "../rig/formats/poses.js";
 import type { NamedPose, RigReading } from "../rig/types.js";
-import type { Pose } from "../types.js";
+import type { Pose } from "../types/index.js";
 import { Mistake } from "./arguments.js";
 import type { Judged } from "./report.js";
 

@@ -2,7 +2,7 @@
 import { writeFileSync } from "node:fs";
 import { basename } from "node:path";
 import type { NamedFile, RigReading } from "../rig/types.js";
-import type { CheckReport } from "../types.js";
+import type { CheckReport } from "../types/index.js";
 import { type Arguments, Mistake } from "./arguments.js";
 import { candidatesOf } from "./candidates.js";
 import { file, filesOf, inputsOf } from "./files.js";

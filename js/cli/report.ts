@@ -1,6 +1,6 @@
 /** The report with what the readers add to it, and its text for a terminal. */
 import type { ReaderWarning } from "../rig/warnings.js";
-import type { CheckReport } from "../types.js";
+import type { CheckReport } from "../types/index.js";
 
 /** As the contract has warnings. */
 export interface Warning {

@@ -1,19 +1,21 @@
 /** Cameras by hand. */
 import { number } from "../check.js";
-import { BimodalError } from "../errors.js";
+import { BimodalError, refused } from "../errors.js";
 import type { RigCamera } from "./types.js";
 
 /** A camera of square pixels that looks through the middle of its image, by its horizontal field of view. */
 export function cameraFromFieldOfView(width: number, height: number, degrees: number): RigCamera {
   const isSize = (value: number) => Number.isInteger(value) && value > 0;
-  if (!isSize(width) || !isSize(height))
-    throw new BimodalError("size", "width: whole numbers of pixels above zero are needed", "width");
+  for (const [field, side] of Object.entries({ width, height }))
+    if (!isSize(side))
+      throw new BimodalError("size", `${field}: a whole number of pixels above zero is needed`, field, refused(side));
   number(degrees, "degrees");
   if (!(degrees > 0 && degrees < 180))
     throw new BimodalError(
       "range",
       `degrees: ${degrees} is no field of view; more than 0 and less than 180 are needed`,
       "degrees",
+      refused(degrees),
     );
   const focal = width / 2 / Math.tan((degrees * Math.PI) / 360);
   // Pixel centres are whole numbers, so that the image reaches from -1/2 to width - 1/2.

@@ -6,7 +6,7 @@
  */
 import { breathe } from "../breathe.js";
 import { type Check, object, signal, wrong } from "../check.js";
-import { BimodalError, badFile } from "../errors.js";
+import { BimodalError, badFile, refused } from "../errors.js";
 import { addCameras } from "./assign.js";
 import { textOf } from "./formats/text.js";
 import { checkNamed, isRasterFile, metresPerUnit, readRigFile } from "./read.js";
@@ -312,7 +312,7 @@ async function byContent(pictures: NamedFile[], reader: FolderReader): Promise<P
 
 const frameCount: Check = (value, field) => {
   if (!(Number.isInteger(value) && Number(value) > 0))
-    throw new BimodalError("option", `${field}: a whole number above zero is needed`, field);
+    throw new BimodalError("option", `${field}: a whole number above zero is needed`, field, refused(value));
 };
 const checkOptions = object({ unit: metresPerUnit, frames: frameCount, signal });
 

@@ -4,7 +4,7 @@
  * Whatever is wrong with a file comes out as one BimodalError of code "file" that names the file and the reason.
  */
 import { type Check, object, signal, word, wrong } from "../check.js";
-import { BimodalError, badFile } from "../errors.js";
+import { BimodalError, badFile, badNamed, refused } from "../errors.js";
 import { readNpy } from "../npy.js";
 import { looksLikeDepth, looksLikeMask, pictureColour, pictureMask } from "./colour.js";
 import { cloudDepth, isGrey, pictureDepth } from "./depth.js";
@@ -121,7 +121,7 @@ function named(name: string, error: unknown): BimodalError {
   if (error instanceof BimodalError && error.code !== "file") return error;
   const reason = reasonOf(error);
   const [cause, details] = error instanceof BimodalError ? [error.cause, error.details] : [error, {}];
-  return badFile(`${name}: ${reason}`, cause, { ...details, file: name, reason });
+  return badNamed(name, reason, cause, details);
 }
 
 export function checkNamed(file: NamedFile, field: string): void {
@@ -131,7 +131,7 @@ export function checkNamed(file: NamedFile, field: string): void {
 
 export const metresPerUnit: Check = (value, field) => {
   if (!(typeof value === "number" && value > 0 && Number.isFinite(value)))
-    throw new BimodalError("option", `${field}: metres per stored unit, above zero, are needed`, field);
+    throw new BimodalError("option", `${field}: metres per stored unit, above zero, are needed`, field, refused(value));
 };
 const checkOptions = object({ as: word("colour", "depth", "mask", "cameras", "poses"), unit: metresPerUnit, signal });
 

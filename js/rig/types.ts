@@ -1,5 +1,5 @@
 /** What is read from the files of a rig. */
-import type { CheckFrame, Mask, Pose, RigCamera } from "../types.js";
+import type { CheckFrame, Mask, Pose, RigCamera } from "../types/index.js";
 import type { ReaderWarning } from "./warnings.js";
 
 export type { CheckFrame, Mask, Pose, ReaderWarning, RigCamera };

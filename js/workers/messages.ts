@@ -1,6 +1,6 @@
 /** What an estimator and its workers in other threads send each other. */
 import type { PlainOptions } from "../options.js";
-import type { ColorImage, DepthMap } from "../types.js";
+import type { ColorImage, DepthMap } from "../types/index.js";
 
 /** Both views, of which every worker gets a copy. */
 export interface Views {

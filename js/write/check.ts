@@ -1,9 +1,9 @@
 /** What the writers of a run are given: names, types and numbers, checked before anything is written. */
 import { type ArrayType, type Check, array, isObject, number, numbers, ranged, side, word, wrong } from "../check.js";
-import { BimodalError } from "../errors.js";
+import { BimodalError, refused } from "../errors.js";
 import type { Raster } from "../npy.js";
 import { wholePoseOf } from "../matrices.js";
-import type { Pose, PoseInput, StepReport } from "../types.js";
+import type { Pose, PoseInput, StepReport } from "../types/index.js";
 import { like } from "../rig/write/built.js";
 
 export const checkUnit = word("m", "px");
@@ -36,8 +36,11 @@ const finite =
   (count: number): Check =>
   (value, field) => {
     numbers(count)(value, field);
-    const other = Array.from(value as ArrayLike<number>).find((one) => !Number.isFinite(one));
-    if (other !== undefined) throw new BimodalError("range", `${field}: must be finite numbers (got ${other})`, field);
+    const copy = Array.from(value as ArrayLike<number>);
+    const index = copy.findIndex((one) => !Number.isFinite(one));
+    if (index < 0) return;
+    const message = `${field}: must be finite numbers (got ${copy[index]})`;
+    throw new BimodalError("range", message, field, refused(copy[index], index));
   };
 /** Nine coefficients for each of three channels. */
 export const checkLight = finite(27);

@@ -4,7 +4,7 @@
  */
 import { crc32 } from "../crc.js";
 import { isObject, wrong } from "../check.js";
-import { BimodalError } from "../errors.js";
+import { BimodalError, refused } from "../errors.js";
 import type { Raster } from "../npy.js";
 import { checkRaster, text } from "./check.js";
 
@@ -70,6 +70,7 @@ function checkTexts(texts: unknown): void {
         "range",
         `texts: a remark's name has 1 to ${LONGEST_NAME} letters, not ${name.length}`,
         "texts",
+        refused(name.length),
       );
     }
   }
@@ -90,7 +91,12 @@ export async function writePng(
   checkTexts(texts);
   const type = TYPES[channels];
   if (type === undefined)
-    throw new BimodalError("unsupported", `raster.channels: 1 to 4 are written, not ${channels}`, "raster.channels");
+    throw new BimodalError(
+      "unsupported",
+      `raster.channels: 1 to 4 are written, not ${channels}`,
+      "raster.channels",
+      refused(channels),
+    );
   const head = new Uint8Array(13);
   const view = new DataView(head.buffer);
   view.setUint32(0, width);

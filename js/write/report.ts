@@ -1,6 +1,6 @@
 /** A run on a pair as one HTML file that asks for nothing else: pictures, numbers, options and the inputs' hashes, to be kept and printed. */
 import { word } from "../check.js";
-import type { Pose, PoseInput } from "../types.js";
+import type { Pose, PoseInput } from "../types/index.js";
 import { type Example, like } from "../rig/write/built.js";
 import type { Picture, ReportInput } from "../rig/write/report/contents.js";
 import { type Markup, html } from "../rig/write/report/markup.js";

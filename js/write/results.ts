@@ -1,7 +1,7 @@
 /** What an estimator found, in files that other programs read: pose, light, depth and normals. */
 import { isObject, wrong } from "../check.js";
-import { BimodalError } from "../errors.js";
-import type { PoseInput, Reason, StepReport, Uncertainty } from "../types.js";
+import { BimodalError, refused } from "../errors.js";
+import type { PoseInput, Reason, StepReport, Uncertainty } from "../types/index.js";
 import { real } from "../rig/write/numbers.js";
 import { checkLight, checkRaster, checkStanding, checkUnit, checkedPose, checkedWholePose } from "./check.js";
 import { writePng } from "./png.js";
@@ -147,6 +147,7 @@ function checkDepths(data: Float32Array, unit: Unit): void {
     "range",
     `depth.data[${at}]: ${value} ${unit} ${why}; shift the depths, or write them with writeNpy`,
     `depth.data[${at}]`,
+    refused(value),
   );
 }
 

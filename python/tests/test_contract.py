@@ -37,9 +37,12 @@ def spelled(name):
     return {"lambda": "lambda_"}.get(name, re.sub("[A-Z]", lambda letter: f"_{letter[0].lower()}", name))
 
 
+TYPES = "\n".join(path.read_text() for path in sorted((ROOT / "js/types").glob("*.ts")))
+
+
 def members(interface):
-    """The members of an interface of js/types.ts."""
-    body = re.search(rf"export interface {interface}\b[^{{]*{{\n(.*?)\n}}", (ROOT / "js/types.ts").read_text(), re.DOTALL)
+    """The members of an interface of js/types/."""
+    body = re.search(rf"export interface {interface}\b[^{{]*{{\n(.*?)\n}}", TYPES, re.DOTALL)
     return re.findall(r"^  (\w+)\??:", body[1], re.MULTILINE)
 
 

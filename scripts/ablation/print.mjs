@@ -1,5 +1,5 @@
 // What each part buys, as text and as a table of docs/accuracy.md.
-import { columns, fixed, mark } from "../tables/print.mjs";
+import { columns, fixed, mark } from "../tables/columns.mjs";
 import { isConfidentlyWrong, isFound } from "../../protocols/counts.mjs";
 import { median, worst } from "../../protocols/numbers.mjs";
 

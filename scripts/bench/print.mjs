@@ -1,5 +1,5 @@
 // The measurements as text.
-import { columns, fixed } from "../tables/print.mjs";
+import { columns, fixed } from "../tables/columns.mjs";
 import { pixelsOf } from "./summary.mjs";
 
 const time = (milliseconds) => fixed(milliseconds, milliseconds < 10 ? 2 : milliseconds < 100 ? 1 : 0);

@@ -1,31 +1,16 @@
 // The tables as text.
-import { coverage3, isConfidentlyWrong, isFlagged, isFound } from "../../protocols/counts.mjs";
+import { coverage3, isConfidentlyWrong, isFound } from "../../protocols/counts.mjs";
 import { mean, median, share, worst } from "../../protocols/numbers.mjs";
 import { paperDegrees } from "../../protocols/rotations.mjs";
-import { FOUND, REGISTERED, VIEWS } from "../../protocols/statue.mjs";
 import { PAPER_TABLE_1, PAPER_TABLE_3 } from "../../protocols/scenes.mjs";
+import { columns, DASH, fixed, mark, percent, unique } from "./columns.mjs";
+import { pinhole, rgbd, statue } from "./print-perspective.mjs";
 
-const DASH = "-";
 /** Of a list of failures so many are shown; the JSON has all. */
 const WRONG_SHOWN = 20;
 const WORST_SHOWN = 5;
-export const fixed = (value, digits = 3) =>
-  typeof value === "number" && Number.isFinite(value) ? value.toFixed(digits) : DASH;
-const percent = (value) => (typeof value === "number" ? `${(100 * value).toFixed(0)} %` : DASH);
 const small = (value) =>
   typeof value === "number" ? (value < 1e-4 ? value.toExponential(1) : value.toFixed(6)) : DASH;
-/** ? flagged as uncertain, ! wrong by more than 3 degrees and not flagged. */
-export const mark = (row) => (isFlagged(row) ? "?" : isConfidentlyWrong(row) ? "!" : "");
-
-/** Lists of words as columns, the first one flush left. */
-export function columns(rows) {
-  const widths = rows[0].map((_, column) => Math.max(...rows.map((row) => String(row[column]).length)));
-  const pad = (word, column) => (column === 0 ? String(word).padEnd(widths[0]) : String(word).padStart(widths[column]));
-  return rows.map((row) => `  ${row.map(pad).join("  ")}`.trimEnd());
-}
-
-const unique = (values) => [...new Set(values)];
-
 function table1(rows) {
   const keys = ["scale", "alpha", "beta", "gamma", "iterations", "degrees"];
   const digits = (key) => (key === "iterations" ? 0 : 4);
@@ -225,118 +210,6 @@ function conditions(rows) {
     ),
     ...columns([SUMMED, ...kinds.map((condition) => summed(condition, of(condition)))]),
   ];
-}
-
-function rgbd(rows) {
-  const figures = ({ degrees, inPlane, tilt, lateral, along }) =>
-    [degrees, inPlane, tilt, lateral, along].map((value) => fixed(value, 2));
-  const medians = (name, members) => {
-    const of = (key) => median(members.map((row) => row[key]));
-    return [
-      name,
-      "",
-      ...figures({
-        degrees: of("degrees"),
-        inPlane: of("inPlane"),
-        tilt: of("tilt"),
-        lateral: of("lateral"),
-        along: of("along"),
-      }),
-      "",
-    ];
-  };
-  const starts = unique(rows.map(({ start }) => start));
-  return columns([
-    ["capture", "seen from", "degrees", "in-plane", "tilt", "lateral mm", "along mm", "status"],
-    ...rows.map((row) => [
-      `${row.name}, ${row.start}${row.tuned ? " *" : ""}`,
-      row.turned,
-      ...figures(row),
-      row.status + mark(row),
-    ]),
-    ...starts.flatMap((start) => {
-      const members = rows.filter((row) => row.start === start);
-      return [
-        medians(`median, ${start}`, members),
-        medians(
-          `.. not tuned on`,
-          members.filter(({ tuned }) => !tuned),
-        ),
-      ];
-    }),
-  ]);
-}
-
-/** Medians of rows by degrees between the views; how many ended farther off than they began, and where a registration is worth having. */
-function statueLines(name, rows) {
-  const count = (is) => `${rows.filter(is).length} of ${rows.length}`;
-  const isWorse = ({ told, degrees, lateral }) => told !== null && degrees > told.degrees && lateral > told.lateral;
-  const isRegistered = ({ degrees, lateral }) => degrees < REGISTERED.degrees && lateral < REGISTERED.lateral;
-  const bins = VIEWS.map(({ below }, k) =>
-    rows.filter(({ view }) => view < below && view >= (VIEWS[k - 1]?.below ?? 0)),
-  );
-  const medians = (members) =>
-    members.length === 0
-      ? "-"
-      : ["degrees", "lateral", "along"].map((key) => fixed(median(members.map((row) => row[key])), 1)).join(", ");
-  return [
-    ...[name, ...bins.map(medians), count(isRegistered), count(({ degrees }) => degrees < FOUND)],
-    ...[count(isWorse), count(isConfidentlyWrong), fixed(mean(rows.map(({ milliseconds }) => milliseconds)) / 1000, 1)],
-  ];
-}
-
-function statue(rows) {
-  const starts = unique(rows.map(({ start }) => start));
-  return [
-    ...columns([
-      ["pair", "view", "start", "degrees", "lateral mm", "along mm", "status"],
-      ...rows.map((row) => [
-        `${row.name}${row.tuned ? " *" : ""}`,
-        ...[fixed(row.view, 0), row.start, fixed(row.degrees, 2), fixed(row.lateral, 1), fixed(row.along, 1)],
-        row.status,
-      ]),
-    ]),
-    ...columns([
-      [
-        ...["median degrees, lateral mm, along mm", ...VIEWS.map((view) => `${view.name} degrees apart`)],
-        ...[`within ${REGISTERED.degrees} degrees, ${REGISTERED.lateral} mm`, `within ${FOUND} degrees`],
-        ...["worse than it began", "overconfident", "s each"],
-      ],
-      ...starts.flatMap((start) =>
-        [true, false].map((tuned) =>
-          statueLines(
-            `${start}, ${tuned ? "tuned on" : "not tuned on"}`,
-            rows.filter((row) => row.start === start && row.tuned === tuned),
-          ),
-        ),
-      ),
-    ]),
-  ];
-}
-
-function pinhole(rows) {
-  const starts = unique(rows.map(({ start }) => start));
-  return columns([
-    ["start", "scenes", "found", "median degrees", "mm", "worst degrees", "s each"],
-    ...starts.map((start) => {
-      const members = rows.filter((row) => row.start === start);
-      const of = (key) => members.map((row) => row[key]);
-      const found = members.filter(({ degrees }) => degrees < 3).length;
-      return [
-        ...[
-          start === "search" ? "nothing known" : `${start} degrees off`,
-          members.length,
-          found,
-          fixed(median(of("degrees"))),
-        ],
-        ...[
-          fixed(median(of("translation")), 2),
-          fixed(worst(of("degrees")), 2),
-          fixed(median(of("milliseconds")) / 1000, 1),
-        ],
-      ];
-    }),
-  ]);
 }
 
 function albedo(rows) {

@@ -12,8 +12,9 @@
 //! modeling using the t distribution", J. Am. Stat. Assoc. 84, 1989.
 
 use crate::light::Light;
-use crate::light::harmonics::{HARMONICS, basis_gradient};
-use crate::light::prior::{COEFFICIENTS, CoefficientMatrix, Coefficients, LightPrior};
+use crate::light::colour_axes::{Axes, AxesPrior, principal_axis};
+use crate::light::harmonics::HARMONICS;
+use crate::light::prior::COEFFICIENTS;
 
 /// Most paints of an object. Each of ten photographs was as well explained by eight as by more (docs/method.md, 16).
 pub const MOST_REGIONS: usize = 8;
@@ -36,101 +37,6 @@ pub struct Sample {
     pub normal: [f64; 3],
     pub basis: [f64; HARMONICS],
     pub colour: [f64; 3],
-}
-
-/// Orthonormal axes of colour (R, G, B), the one of the shading first.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Axes([[f64; 3]; 3]);
-
-impl Axes {
-    /// Lightness and two differences of colour: those of white lamps.
-    pub const WHITE: Self = Self([
-        [0.577_350_269_189_625_8, 0.577_350_269_189_625_8, 0.577_350_269_189_625_8],
-        [std::f64::consts::FRAC_1_SQRT_2, -std::f64::consts::FRAC_1_SQRT_2, 0.0],
-        [0.408_248_290_463_863, 0.408_248_290_463_863, -0.816_496_580_927_726],
-    ]);
-
-    /// The first is the direction in which the shading of `light` varies most with the normals of the samples.
-    pub fn of_shading(light: &Light, samples: &[Sample]) -> Self {
-        let mut scatter = [[0.0; 3]; 3];
-        for Sample { normal, .. } in samples {
-            let gradient = basis_gradient(*normal);
-            let slopes = light.0.map(|channel| {
-                let slope: [f64; 3] =
-                    std::array::from_fn(|axis| (0..HARMONICS).map(|k| channel[k] * gradient[k][axis]).sum());
-                // A normal stays a unit vector.
-                let along: f64 = slope.iter().zip(normal).map(|(s, n)| s * n).sum();
-                [0, 1, 2].map(|axis: usize| slope[axis] - along * normal[axis])
-            });
-            for row in 0..3 {
-                for column in 0..3 {
-                    scatter[row][column] += slopes[row].iter().zip(&slopes[column]).map(|(a, b)| a * b).sum::<f64>();
-                }
-            }
-        }
-        let (first, variance) = principal_axis(&scatter);
-        if variance <= 0.0 {
-            return Self::WHITE;
-        }
-        // The second is any direction across it, the third completes the two.
-        let least = if first[0].abs() < first[1].abs() { 0 } else { 1 };
-        let mut second: [f64; 3] = std::array::from_fn(|c| f64::from(c == least) - first[least] * first[c]);
-        let length = second.iter().map(|value| value * value).sum::<f64>().sqrt();
-        second = second.map(|value| value / length);
-        let third = std::array::from_fn(|c| {
-            let (a, b) = ((c + 1) % 3, (c + 2) % 3);
-            first[a] * second[b] - first[b] * second[a]
-        });
-        Self([first, second, third])
-    }
-
-    /// R, G, B along the axes.
-    #[inline(never)]
-    pub fn along(&self, rgb: [f64; 3]) -> [f64; 3] {
-        self.0.map(|row| row[0] * rgb[0] + row[1] * rgb[1] + row[2] * rgb[2])
-    }
-
-    /// And back.
-    #[inline(never)]
-    pub fn back(&self, values: [f64; 3]) -> [f64; 3] {
-        std::array::from_fn(|channel| (0..3).map(|row| self.0[row][channel] * values[row]).sum())
-    }
-}
-
-/// The prior over lights along the axes.
-pub struct AxesPrior {
-    precision: CoefficientMatrix,
-    target: Coefficients,
-    /// A known light is taken off the colours before, and none is left to find.
-    is_known: bool,
-    /// lambda_L against the mean squared error along the first axis.
-    weight: f64,
-}
-
-impl AxesPrior {
-    /// Of an unknown light.
-    pub fn of(prior: &LightPrior, weight: f64, Axes(axes): &Axes) -> Self {
-        let turned = |row: usize, column: usize| -> f64 {
-            let (i, j) = (row % HARMONICS, column % HARMONICS);
-            let (first, second) = (&axes[row / HARMONICS], &axes[column / HARMONICS]);
-            let term =
-                |c: usize, d: usize| first[c] * second[d] * prior.precision()[(c * HARMONICS + i, d * HARMONICS + j)];
-            (0..9).map(|pair| term(pair / 3, pair % 3)).sum()
-        };
-        let precision = CoefficientMatrix::from_fn(turned);
-        let mean = |row: usize| -> f64 {
-            (0..3).map(|c| axes[row / HARMONICS][c] * prior.mean_coefficients()[c * HARMONICS + row % HARMONICS]).sum()
-        };
-        let target = Coefficients::from_fn(|row, _| {
-            (0..COEFFICIENTS).map(|column| precision[(row, column)] * mean(column)).sum()
-        });
-        Self { precision, target, is_known: false, weight }
-    }
-
-    /// Of a light that is known.
-    pub fn known() -> Self {
-        Self { precision: CoefficientMatrix::identity(), target: Coefficients::zeros(), is_known: true, weight: 1.0 }
-    }
 }
 
 /// Light and palette along the axes.
@@ -334,22 +240,6 @@ fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
 /// Weight of a squared residual in Student's t of so many dimensions, by [`spreads`].
 fn weight_of(spread: f64, dimensions: f64) -> f64 {
     (DEGREES + dimensions) / (DEGREES * spread)
-}
-
-/// Axis of largest scatter, and the scatter along it, by the power method; a few rounds are enough for a direction.
-fn principal_axis(scatter: &[[f64; 3]; 3]) -> ([f64; 3], f64) {
-    let mut axis = [0.5, 0.6, 0.62];
-    let mut variance = 0.0;
-    for _ in 0..12 {
-        let turned = scatter.map(|row| row.iter().zip(axis).map(|(s, a)| s * a).sum::<f64>());
-        let length = turned.iter().map(|value| value * value).sum::<f64>().sqrt();
-        if length <= 0.0 {
-            break;
-        }
-        axis = turned.map(|value| value / length);
-        variance = length;
-    }
-    (axis, variance)
 }
 
 /// What one round sums over the pixels; the first index of a pair tells the first axis from the others.

@@ -1,5 +1,6 @@
 //! The image model and its light (Eq. 2, 3, 5; docs/method.md, sections 2 and 3).
 
+mod colour_axes;
 mod environments;
 mod fit;
 mod harmonics;

@@ -10,8 +10,9 @@
 //! with a sharp border may be taken for paint of the same hue.
 
 use crate::diagnosis::PURE_NOISE;
+use crate::light::colour_axes::{Axes, AxesPrior};
 use crate::light::harmonics::basis;
-use crate::light::mixture::{Axes, AxesPrior, MOST_REGIONS, Mixture, Sample};
+use crate::light::mixture::{MOST_REGIONS, Mixture, Sample};
 use crate::light::{Light, LightPrior};
 use crate::numeric::evenly_spread;
 use crate::view::Normals;
@@ -94,7 +95,8 @@ impl PaintFitter {
         if white.scales.iter().map(|scale| scale * scale).sum::<f64>() < 3.0 * PURE_NOISE * PURE_NOISE {
             return None;
         }
-        let axes = Axes::of_shading(known.unwrap_or(&white.light(&Axes::WHITE)), &self.samples);
+        let normals = self.samples.iter().map(|sample| sample.normal);
+        let axes = Axes::of_shading(known.unwrap_or(&white.light(&Axes::WHITE)), normals);
         self.turn(Some(&Axes::WHITE), &axes);
         let mixture = self.choose(&prior(&axes), tiles)?;
         Some(self.paint(mixture, axes, centre, known.copied()))

@@ -26,7 +26,7 @@ const MOST_PRECISION: f64 = 1e12;
 
 /// Mean and covariance of lights, in the order R1..9, G1..9, B1..9, as a caller gives them.
 #[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct LightGaussian {
     /// 27 numbers.
     pub mean: Vec<f64>,

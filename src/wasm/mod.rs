@@ -29,19 +29,19 @@ use wasm_bindgen::prelude::wasm_bindgen;
 #[cfg(not(any(feature = "bindings-check", feature = "bindings-rigs")))]
 #[wasm_bindgen(typescript_custom_section)]
 const TYPES: &str = r#"
-import type { ColorImage, DepthMap, Options, Sample, SampleRequest, StepReport } from "../../js/types.js";
+import type { ColorImage, DepthMap, Options, Sample, SampleRequest, StepReport } from "../../js/types/index.js";
 "#;
 
 #[cfg(feature = "bindings-check")]
 #[wasm_bindgen(typescript_custom_section)]
 const TYPES: &str = r#"
-import type { CheckFrame, CheckReport, ColorImage, DepthMap, Options } from "../../../js/types.js";
+import type { CheckFrame, CheckReport, ColorImage, DepthMap, Options } from "../../../js/types/index.js";
 "#;
 
 #[cfg(feature = "bindings-rigs")]
 #[wasm_bindgen(typescript_custom_section)]
 const TYPES: &str = r#"
-import type { RigSample } from "../../../js/types.js";
+import type { RigSample } from "../../../js/types/index.js";
 "#;
 
 /// Runs once, when the module has been loaded: a panic then says in the console where it happened.

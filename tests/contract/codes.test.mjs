@@ -24,11 +24,11 @@ function union(path, name) {
 
 // That the table has the codes of the numerics and no others is a test of the crate (tests/library/codes.rs).
 for (const [group, path, name] of [
-  ["runs", "js/types.ts", "ReasonCode"],
-  ["checks", "js/types.ts", "CheckCode"],
-  ["warnings", "js/types.ts", "WarningCode"],
+  ["runs", "js/types/codes.ts", "ReasonCode"],
+  ["checks", "js/types/codes.ts", "CheckCode"],
+  ["warnings", "js/types/codes.ts", "WarningCode"],
   ["readers", "js/rig/warnings.ts", "ReaderCode"],
-  ["estimators", "js/types.ts", "EstimatorWarningCode"],
+  ["estimators", "js/types/codes.ts", "EstimatorWarningCode"],
   ["errors", "js/errors.ts", "ErrorCode"],
 ])
   test(`${name} is the table's ${group}`, () =>

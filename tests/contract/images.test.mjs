@@ -69,14 +69,36 @@ describe("in Node", () => {
         assert.match(error.message, message);
         return true;
       });
-    await refused(join(place, "none.png"), "file", /none\.png cannot be read .*ENOENT/);
-    await refused(`${address}/none.png`, "file", /answers with status 404/);
-    await refused("http://127.0.0.1:1/a.png", "file", /cannot be reached/);
+    await refused(join(place, "none.png"), "file", /none\.png: it cannot be read .*ENOENT/);
+    await refused(`${address}/none.png`, "file", /none\.png: it answers with status 404/);
+    await refused("http://127.0.0.1:1/a.png", "file", /a\.png: it cannot be reached/);
     await refused(join(place, "empty.png"), "file", /empty/);
     await refused(join(place, "broken.png"), "file", /cut off/);
     await refused(join(FIXTURES, "cloud.ply"), "file", /cloud/);
     for (const source of [5, null, undefined, {}, [], Symbol("a")]) await refused(source, "type", /^source: must be/);
     await refused(path, "option", /signl/, { signl: 1 });
+  });
+
+  test("a file that cannot be read or decoded is named", async () => {
+    const broken = deep.subarray(0, 60);
+    for (const [source, name] of [
+      [join(place, "none.png"), join(place, "none.png")],
+      [join(place, "empty.png"), join(place, "empty.png")],
+      [join(place, "broken.png"), join(place, "broken.png")],
+      [join(FIXTURES, "cloud.ply"), join(FIXTURES, "cloud.ply")],
+      [pathToFileURL(join(place, "broken.png")), pathToFileURL(join(place, "broken.png")).href],
+      [`${address}/none.png`, `${address}/none.png`],
+      [new File([broken], "mine.png"), "mine.png"],
+      [new Blob([broken]), "image"],
+      [broken, "image"],
+    ])
+      await assert.rejects(imageFrom(source), ({ code, message, details }) => {
+        assert.deepEqual([code, details.file, message], ["file", name, `${name}: ${details.reason}`]);
+        return true;
+      });
+    // An address that holds the picture is not repeated as a whole.
+    const picture = `data:image/png;base64,${Buffer.from(broken).toString("base64").repeat(9)}`;
+    await assert.rejects(imageFrom(picture), ({ message }) => message.startsWith("data:") && message.length < 200);
   });
 
   test("a signal breaks it off", async () => {
@@ -127,6 +149,7 @@ await say("gif", () => gif);
 await say("video", () => document.createElement("video"));
 await say("nothing", () => new Uint8Array([1, 2, 3]));
 await say("missing", () => "missing.png");
+await say("text", () => new File(["no picture"], "text.png"));
 await say("number", () => 5);
 const foreign = new URL(location.search.slice(1));
 await say("tainted", async () => { const image = element(foreign); await image.decode(); return image; });
@@ -170,6 +193,8 @@ describe("on a page", () => {
 
   test("what has no picture says so", () => {
     for (const name of ["video", "nothing", "missing"]) assert.match(lines.get(name), /^BimodalError file /, name);
+    assert.match(lines.get("text"), /^BimodalError file text\.png: it has no picture/);
+    assert.match(lines.get("missing"), /^BimodalError file missing\.png: /);
     assert.match(lines.get("number"), /^BimodalError type source: must be an image/);
     assert.match(lines.get("tainted"), /^BimodalError unsupported source: .*crossOrigin/);
     assert.match(lines.get("forbidden"), /^BimodalError file .*CORS/);

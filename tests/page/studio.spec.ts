@@ -1,7 +1,6 @@
-/** The Lab as a newcomer meets it: examples, the light, what a run has come to, and a page that stands still. */
+/** The Lab as a newcomer meets it: examples, the light, and what a run has come to. */
 
 import { LONG, expect, test, type Lab } from "./lab";
-import { atWidths } from "./widths";
 
 const panelHeight = (lab: Lab) => lab.page.locator("#panel").evaluate((panel) => panel.getBoundingClientRect().height);
 
@@ -24,33 +23,6 @@ test("where motion is unwelcome nothing plays by itself", async ({ lab, page }) 
   await page.getByRole("button", { name: "Noise", exact: true }).click();
   await lab.reaches("ready");
   await expect(page).toHaveURL(/noise=0\.05/);
-});
-
-test("the surfaces are most of the first screen from 1280 to 2560 px", async ({ lab, page }) => {
-  await page.setViewportSize({ width: 1280, height: 800 });
-  await lab.open();
-  for (const [width, height] of [
-    [1280, 800],
-    [1600, 900],
-    [2560, 1300],
-  ] as const) {
-    await atWidths(
-      page,
-      [width],
-      async () => {
-        const box = await page.locator("#clouds-box").boundingBox();
-        const bar = await page.locator("#bar").boundingBox();
-        expect(box && box.width / width).toBeGreaterThan(0.45);
-        expect(box && bar && box.y + box.height).toBeLessThanOrEqual(bar?.y ?? 0);
-        // In their reading order: what goes in, the surfaces, what comes out.
-        const lefts = await page
-          .locator("#inputs, #hero, #outcome")
-          .evaluateAll((parts) => parts.map((part) => part.getBoundingClientRect().left));
-        expect([...lefts].sort((a, b) => a - b)).toEqual(lefts);
-      },
-      height,
-    );
-  }
 });
 
 test("an example is a press: it sets everything and plays", async ({ lab, page }) => {
@@ -327,23 +299,6 @@ test("a lost pose has one cause, one remedy, and no sigmas", LONG, async ({ lab,
   for (const sigma of await page.locator("#pose-extra dt", { hasText: "σ" }).all()) await expect(sigma).toBeHidden();
 });
 
-test("nothing moves under the pointer", async ({ lab, page }) => {
-  await lab.open("size=64");
-  await page.keyboard.press("s");
-  await expect(lab.iteration).toHaveText("1");
-  const boxes = () =>
-    page
-      .locator("#lab figure, #bar, #panel")
-      .evaluateAll((parts) => parts.map((part) => JSON.stringify(part.getBoundingClientRect())));
-  await page.mouse.move(2, 2);
-  const before = await boxes();
-  const colour = await page.getByRole("img", { name: /^Colour:/ }).boundingBox();
-  if (!colour) throw new Error("the picture is on the page");
-  await page.mouse.move(colour.x + colour.width / 2, colour.y + colour.height / 2);
-  await expect(page.locator("#inputs-views .readout").first()).toHaveText(/^\d+, \d+: /);
-  expect(await boxes()).toEqual(before);
-});
-
 test("a stage explains the method that runs", async ({ lab, page }) => {
   for (const [settings, stage, words] of [
     ["", "registration", "Equations 12 to 16"],
@@ -407,14 +362,6 @@ test("a rotation that does not change leaves no empty chart, but words", async (
   await expect(page.locator("#rotation-chart")).toHaveAttribute("aria-label", /change, deg: zero throughout/);
 });
 
-test("at 400 % zoom nothing sticks out, and the bar leaves the window to the page", async ({ lab, page }) => {
-  // What 1280 x 800 at four times the size leaves.
-  await page.setViewportSize({ width: 320, height: 200 });
-  await lab.open("size=32");
-  expect(await page.evaluate(() => document.documentElement.scrollWidth)).toBeLessThanOrEqual(320);
-  expect(await page.locator("#bar").evaluate((bar) => getComputedStyle(bar).position)).toBe("static");
-});
-
 test(
   "where a rotation has come to rest, table and chart say zero, and that the axis leaves it out",
   LONG,
@@ -432,47 +379,6 @@ test(
     );
   },
 );
-
-for (const [width, height] of [
-  [640, 400],
-  [320, 200],
-  [1280, 400],
-] as const) {
-  test(`the skip link shows what Play runs in a window of ${width} x ${height}`, async ({ lab, page }) => {
-    await page.setViewportSize({ width, height });
-    await lab.open("size=32");
-    await page.keyboard.press("Tab");
-    await page.keyboard.press("Enter");
-    await expect(page.locator("#play")).toBeFocused();
-    await expect(page.locator("#play")).toBeInViewport({ ratio: 1 });
-    // What is seen of it there; the page may scroll softly.
-    await expect(page.locator("#clouds-canvas")).toBeInViewport({ ratio: height < 300 ? 0.5 : 1 });
-    if (height > 300) await expect(page.locator("#status")).toBeInViewport({ ratio: 1 });
-  });
-}
-
-test("the bar is one row of one height", async ({ lab, page }) => {
-  for (const width of [320, 768, 1280, 2560]) {
-    await page.setViewportSize({ width, height: 800 });
-    await lab.open("size=32");
-    expect(await page.locator("#bar").evaluate((bar) => bar.getBoundingClientRect().height)).toBe(60);
-  }
-});
-
-test("what is focused is never behind the bar", async ({ lab, page }) => {
-  await lab.open("size=32");
-  const bar = (await page.locator("#bar").boundingBox())?.y ?? 0;
-  for (let press = 0; press < 70; press++) {
-    await page.keyboard.press("Tab");
-    const hidden = await page.evaluate((bar) => {
-      const focused = document.activeElement;
-      if (!focused || focused.closest("#bar") || focused === document.body) return false;
-      const { top, height } = focused.getBoundingClientRect();
-      return top + Math.min(height, 24) > bar;
-    }, bar);
-    expect(hidden).toBe(false);
-  }
-});
 
 test("files dropped anywhere go where their content belongs", async ({ lab, page }) => {
   await lab.open("size=32");
@@ -525,66 +431,4 @@ test("files dropped anywhere go where their content belongs", async ({ lab, page
   await expect(page.locator("#errors")).toBeHidden();
   await expect(page.locator("#pose-error")).toBeHidden();
   await expect(page.locator("#light .ball").filter({ visible: true })).toHaveCount(1);
-});
-
-test("the keyboard alone leads from the load to a pose", async ({ lab, page }) => {
-  await lab.open("size=32");
-  await page.keyboard.press("Tab");
-  await expect(page.getByRole("link", { name: "Skip to Play" })).toBeFocused();
-  await page.keyboard.press("Enter");
-  await expect(page.getByRole("button", { name: "Play" })).toBeFocused();
-  await page.keyboard.press("Enter");
-  await lab.reaches("converged");
-  const waiting = page.waitForEvent("download");
-  await page.getByRole("button", { name: "Pose, JSON" }).focus();
-  await page.keyboard.press("Enter");
-  expect((await waiting).suggestedFilename()).toBe("pose.json");
-});
-
-test("single keys can be switched off", async ({ lab, page }) => {
-  await lab.open("size=32");
-  await page.keyboard.press("?");
-  await page.getByLabel("Single keys are on").uncheck();
-  await page.getByRole("button", { name: "Close" }).click();
-  await page.locator("#clouds-canvas").focus();
-  await page.keyboard.press("s");
-  await page.getByRole("button", { name: "Step", exact: true }).click();
-  await expect(lab.iteration).toHaveText("1");
-  await page.reload();
-  await lab.reaches("ready");
-  await page.keyboard.press("s");
-  await page.keyboard.press("?");
-  await expect(page.getByRole("dialog", { name: "The Lab" })).toBeHidden();
-});
-
-test("fingers have targets of 44 px", async ({ browser, baseURL }) => {
-  const context = await browser.newContext({ hasTouch: true, isMobile: true, viewport: { width: 390, height: 844 } });
-  const page = await context.newPage();
-  await page.goto(`${baseURL}#size=32&start=identity`);
-  await expect(page.locator("#status")).toHaveAttribute("data-state", "ready");
-  // On a phone the wipe comes with a run to be wiped.
-  await page.getByRole("button", { name: "Pin this run" }).click();
-  const small = await page
-    .locator(
-      "#presets button, .transport button, #pace, #input > summary, .top button, #clouds select, #clouds-home, #takeaway button, #pin, #wipe, #coefficients > summary",
-    )
-    .evaluateAll((targets) =>
-      targets
-        .filter((target) => target.getBoundingClientRect().height < 44 || target.getBoundingClientRect().width < 44)
-        .map((target) => target.outerHTML.slice(0, 80)),
-    );
-  expect(small).toEqual([]);
-  await context.close();
-});
-
-test("what a failure says can be read to its end, whatever it says", LONG, async ({ lab, page }) => {
-  await page.setViewportSize({ width: 1280, height: 800 });
-  await lab.visit("size=32&noise=0.1&overlap=0.4");
-  await page.keyboard.press(" ");
-  await expect(page.locator("#status")).toHaveAttribute("data-state", /lost|ambiguous/);
-  await expect(page.locator("#next")).not.toBeEmpty();
-  const panel = await page
-    .locator("#panel")
-    .evaluate(({ scrollHeight, clientHeight }) => ({ scrollHeight, clientHeight }));
-  expect(panel.scrollHeight).toBeLessThanOrEqual(panel.clientHeight);
 });

@@ -3,7 +3,6 @@
 import { byId, freshId, make } from "../dom";
 import {
   fields,
-  isLightText,
   isOff,
   valueOf,
   type ChoiceField,
@@ -11,10 +10,8 @@ import {
   type Group,
   type ListField,
   type NumberField,
-  type Origin,
-  type Settings,
-  type Value,
-} from "./settings";
+} from "./fields";
+import { isLightText, type Origin, type Settings, type Value } from "./settings";
 import type { Store } from "./store";
 
 const groups: readonly Group[] = ["sample", "colour", "depth", "method", "weights", "loop"];

@@ -13,34 +13,38 @@ import { Player, type Advance } from "./player";
 import { offerPictures } from "./pictures";
 import { Panels } from "./panels";
 import { RunRecord } from "./record";
-import {
-  fields,
-  inputGroups,
-  methodOf,
-  runOptions,
-  settingsOf,
-  startNear,
-  turnOf,
-  type Origin,
-  type Settings,
-} from "./settings";
+import { areOfInput } from "./fields";
+import { methodOf, runOptions, settingsOf, startNear, turnOf, type Origin, type Settings } from "./settings";
 import { download, writeAddress } from "./share";
-import { namesIn, objectOf, originOf, readable, rememberOrigin, sampleOf, sourceOf, wayOut } from "./source";
+import { namesIn, objectOf, originOf, readable, rememberOrigin, sourceOf } from "./source";
 import { handOver } from "./handover";
 import type { Store } from "./store";
-import type { Notice } from "./status";
 import { Transport } from "./transport";
-import { Trial } from "./trial";
+import { LightTrial } from "./trial";
 import type { Kind } from "./kinds";
 import { Messages } from "./messages";
+import { Notices } from "./notices";
 import { fill, sayVacant, vacate } from "./vacancy";
 import { sentence, verdict, wordsOf, type Verdict } from "./verdict";
 
 export class Lab {
   readonly store: Store;
   readonly gallery: Gallery;
-  readonly player: Player;
-  readonly #engine: Engine;
+  readonly player = new Player({
+    advance: (request) => this.#advance(request),
+    restart: () => this.#start(this.#wanted),
+    isFinished: () => this.#record.isFinished,
+    onChange: () => this.#showState(),
+    onError: (error, playing) => void this.#breakOff(error, playing),
+  });
+  readonly #engine = new Engine({
+    onLoad: (bytes) => {
+      if (!this.#record.report)
+        this.#notices.announce("loading", `loading the numerics, ${Math.round(bytes / 1000)} kB`);
+    },
+    onDoing: (words) => this.#notices.detail(words),
+    onLost: (error) => this.#lose(error),
+  });
   readonly #form: Form;
   readonly #own = new OwnFiles({
     onChange: () => {
@@ -50,7 +54,7 @@ export class Lab {
     onCameras: (fields) => this.store.change(fields),
     onRun: (file) => this.#goOnWith(file),
     onDoubt: () => this.#showState(),
-    onLooking: (names) => typeof this.#wanted === "string" && this.#await(this.#wanted, names),
+    onLooking: (names) => typeof this.#wanted === "string" && this.#notices.lack(this.#wanted, names),
   });
   /** The saved run that has come in place of a pair of files, until a pair comes. */
   #saved: Source | undefined;
@@ -59,7 +63,8 @@ export class Lab {
   readonly #panels: Panels;
   readonly #compare: Compare;
   readonly #transport = new Transport();
-  readonly #trial = new Trial((patch) => this.#preview(patch));
+  readonly #light: LightTrial;
+  readonly #notices = new Notices(() => this.#showState());
   readonly #messages: Messages;
   #origin: Origin = "sample";
   readonly #record = new RunRecord();
@@ -69,8 +74,6 @@ export class Lab {
   #good: { source: Source; settings: Settings } | undefined;
   /** What the worker holds, which may be an input that was overtaken before it could be shown. */
   #held: Source | undefined;
-  /** What the page does or fails at apart from the loop; the status shows it until the next frame is on the screen. */
-  #notice: { state: Notice; words: string; cause: string } | undefined;
   /** Counts beginnings, so that the answer to an overtaken one is dropped. */
   #turn = 0;
   /** The beginning under way, which steps wait for. */
@@ -90,13 +93,6 @@ export class Lab {
     this.#form = form;
     this.gallery = gallery;
     this.#messages = new Messages(this.#form, this.#own.intake);
-    this.#engine = new Engine({
-      onLoad: (bytes) => {
-        if (!this.#record.report) this.#announce("loading", `loading the numerics, ${Math.round(bytes / 1000)} kB`);
-      },
-      onDoing: (words) => this.#notice?.state === "loading" && this.#announce("loading", this.#notice.words, words),
-      onLost: (error) => this.#lose(error),
-    });
     const unlessGone = (): undefined => undefined;
     gallery.serve({
       look: (look) => this.#engine.call("look", { look }).catch(unlessGone),
@@ -106,13 +102,6 @@ export class Lab {
       onPin: () => this.#pin(),
       onUnpin: () => this.gallery.unpin(),
       onWipe: (share) => this.gallery.wipe(share),
-    });
-    this.player = new Player({
-      advance: (request) => this.#advance(request),
-      restart: () => this.#start(this.#wanted),
-      isFinished: () => this.#record.isFinished,
-      onChange: () => this.#showState(),
-      onError: (error, playing) => void this.#breakOff(error, playing),
     });
     this.#panels = new Panels(new Explanations(() => methodOf(this.store.settings, this.#origin)), {
       rivals: {
@@ -124,8 +113,12 @@ export class Lab {
       },
       light: {
         turn: () => turnOf(this.store.settings),
-        onLight: (patch, done, gesture) => this.#changeLight(patch, done, gesture),
+        onLight: (patch, done, gesture) => this.#light.change(patch, done, gesture),
       },
+    });
+    this.#light = new LightTrial({
+      ...{ store, gallery, engine: this.#engine, panels: this.#panels },
+      turn: () => (this.#origin === "sample" ? this.#turn : undefined),
     });
     byId("slots", HTMLElement).append(this.#own.intake.element);
     byId("take-picture", HTMLSelectElement).addEventListener("focus", () =>
@@ -226,34 +219,8 @@ export class Lab {
     this.#panels.date(true);
     // A slider shows what it does: what was playing, or will be, or had been played to its end, plays again.
     const again = live && (this.player.playing || this.#willPlay || this.#record.isFinished);
-    const input = fields.some(({ key, group }) => inputGroups.includes(group) && changed.includes(key));
-    const begun = input ? this.#reopen() : this.restart();
+    const begun = areOfInput(changed) ? this.#reopen() : this.restart();
     if (again) void this.#playOnce(begun);
-  }
-
-  /** The picture follows the light while it is moved; a run follows once it rests. */
-  #changeLight(patch: Settings, done: boolean, gesture: object): void {
-    if (!done) {
-      this.#panels.date(true);
-      void this.#trial.show(patch);
-      return;
-    }
-    this.#trial.end();
-    const before = this.store.settings;
-    this.store.change(patch, true, gesture);
-    // Turned back to where it was: what has been found is of this light.
-    if (this.store.settings === before) this.#panels.date(false);
-  }
-
-  async #preview(patch: Settings): Promise<void> {
-    if (this.#origin !== "sample") return;
-    const before = this.#turn;
-    const seen = await this.#engine
-      .call("preview", { source: sampleOf({ ...this.store.settings, ...patch }) })
-      .catch(() => undefined);
-    if (!seen || this.#turn !== before) return;
-    this.gallery.preview(seen.picture);
-    this.#panels.light.showTruth(seen.trueLight);
   }
 
   #pin(): void {
@@ -268,7 +235,7 @@ export class Lab {
     await begun;
     if (this.#turn !== turn || !this.#willPlay) return;
     this.#willPlay = false;
-    if (!this.player.playing && !this.#notice) this.player.toggle();
+    if (!this.player.playing && !this.#notices.now) this.player.toggle();
   }
 
   #reopen(): Promise<void> {
@@ -298,10 +265,10 @@ export class Lab {
     this.#wanted = source;
     this.#resumed = false;
     this.#messages.clear();
-    if (typeof source === "string") return this.#await(source);
+    if (typeof source === "string") return this.#notices.lack(source);
     const settings = this.store.settings;
     const options = runOptions(settings, originOf(source));
-    this.#announce(
+    this.#notices.announce(
       "loading",
       source === this.#good?.source ? "starting over" : "reading the input",
       source === this.#good?.source ? "" : namesIn(source),
@@ -319,28 +286,22 @@ export class Lab {
         if (!(await this.#open(source, options, turn))) return;
       }
       this.#good = { source, settings: source.kind === "saved" ? this.store.settings : settings };
-      if (turn === this.#turn) this.#settle();
+      if (turn === this.#turn) this.#notices.settle();
     } catch (error) {
       if (turn === this.#turn) await this.#fail(error);
     }
   }
 
-  /** Says what an input lacks, or that files are being looked at which may be that. */
-  #await(lacking: string, names = ""): void {
-    this.#announce(names ? "loading" : "waiting", names ? "looking at the files" : lacking, names || wayOut(lacking));
-  }
-
   async #offerChoices(): Promise<void> {
     if (this.#offered) return;
-    const before = this.#notice;
-    this.#announce("loading", "loading the numerics");
-    // The page stands still while the worker's thread is made: in a task with nothing else.
-    await nextTask();
-    const { surfaces, lights } = await this.#engine.call("catalogue", {});
-    this.#form.offer("surface", surfaces);
-    this.#form.offer("light", lights);
-    this.#offered = true;
-    if (before && this.#notice?.state === "loading") this.#announce(before.state, before.words, before.cause);
+    await this.#notices.loading("loading the numerics", async () => {
+      // The page stands still while the worker's thread is made: in a task with nothing else.
+      await nextTask();
+      const { surfaces, lights } = await this.#engine.call("catalogue", {});
+      this.#form.offer("surface", surfaces);
+      this.#form.offer("light", lights);
+      this.#offered = true;
+    });
   }
 
   /** Has the worker open an input and shows it, unless that has been overtaken by then. */
@@ -394,7 +355,7 @@ export class Lab {
       if (turn !== this.#turn) return false;
       throw error;
     }
-    if (turn === this.#turn) this.#settle();
+    if (turn === this.#turn) this.#notices.settle();
     return !this.#record.isFinished;
   }
 
@@ -415,24 +376,9 @@ export class Lab {
     this.#showState();
   }
 
-  #announce(state: Notice, words: string, cause = ""): void {
-    this.#notice = { state, words, cause };
-    this.#showState();
-  }
-
-  /** A new frame is on the screen: the loop speaks for itself again. */
-  #settle(): void {
-    this.#notice = undefined;
-    this.#showState();
-  }
-
   #verdict(report: StepReport): Verdict | undefined {
-    return verdict(
-      report,
-      this.#record.from,
-      this.#record.truth,
-      methodOf(this.store.settings, this.#origin).registration === "fixed",
-    );
+    const isHeld = methodOf(this.store.settings, this.#origin).registration === "fixed";
+    return verdict(report, this.#record.from, this.#record.truth, isHeld);
   }
 
   #showState(): void {
@@ -440,11 +386,12 @@ export class Lab {
     const { report } = this.#record;
     this.#panels.about(this.#origin, this.#own.doubt);
     this.#panels.show(this.#record, playing, report && this.#verdict(report));
-    if (this.#notice) this.#panels.announce(this.#notice);
+    const notice = this.#notices.now;
+    if (notice) this.#panels.announce(notice);
     // What the status tells of is in the way of a run, unless there is one that it leaves usable.
     const isIdle = typeof this.#wanted === "string" || !this.#good;
-    sayVacant(this.#wanted, this.#notice);
-    this.#transport.show(playing, isIdle && this.#notice?.cause ? this.#notice.words : "");
+    sayVacant(this.#wanted, notice);
+    this.#transport.show(playing, isIdle && notice?.cause ? notice.words : "");
   }
 
   /** Says what is wrong beside the field it concerns; what was on the screen stays, and stays usable. */
@@ -452,8 +399,12 @@ export class Lab {
     this.player.pause();
     const placed = this.#messages.fail(error);
     if (placed)
-      this.#announce("error", `${placed.field}: not possible`, `${sentence(placed.words)} The field is marked.`);
-    else this.#announce("error", "see the message");
+      this.#notices.announce(
+        "error",
+        `${placed.field}: not possible`,
+        `${sentence(placed.words)} The field is marked.`,
+      );
+    else this.#notices.announce("error", "see the message");
     if (this.#good && this.#held !== this.#good.source) await this.#recover(this.#good);
   }
 

@@ -1,260 +1,26 @@
-/**
- * Everything the Lab can be told: the form, its errors, undo and the link are all made from this list. What is a member of
- * the library's options comes from the library's own rows, with its default and its words; here is what the Lab makes of
- * several, or of files. An empty number is absent, and so the library's default.
- */
+/** What the fields say, as requests and options of the library, in words, and as a link; and fields as a saved run had been told them. */
 
 import type { Options, SampleRequest } from "../../pkg/index.js";
-import { OPTIONS, RENDERED_ALONE, SAMPLE, paths, type PageField, type Rows, type ShownRow } from "../../pkg/options.js";
 import type { LabOptions, OwnCamera } from "../engine/protocol";
 import type { Method } from "./explain";
-
-/** Where the pair comes from: made by the crate, or the visitor's own. */
-export type Origin = "sample" | "files";
-export type Value = string | number | boolean | null;
-
-interface Common {
-  key: string;
-  label: string;
-  /** One sentence that explains the label. */
-  hint?: string;
-  /** What the present choice entails, always in sight. */
-  remark?: (value: Value, source: Origin) => string;
-  group: Group;
-  /** Path in the library's errors that belongs to this field. */
-  path: string;
-  /** Shown only while this holds. */
-  when?: (settings: Settings, source: Origin) => boolean;
-}
-export interface NumberField extends Common {
-  kind: "number";
-  initial: number | null;
-  unit?: string | undefined;
-  /** What an empty field means. */
-  empty: string;
-  slider?: PageField["slider"];
-}
-export interface ChoiceField extends Common {
-  kind: "choice";
-  initial: string;
-  /** Without choices they come from the library's catalogue. */
-  choices?: readonly (readonly [value: string, label: string])[];
-  /** Those that mean something for one origin alone; of the other they are the initial one. */
-  only?: Readonly<Record<string, Origin>>;
-}
-export interface FlagField extends Common {
-  kind: "flag";
-  initial: boolean;
-}
-/** Numbers as one line of text, as they are copied from elsewhere. */
-export interface ListField extends Common {
-  kind: "list";
-  initial: string;
-  empty: string;
-}
-export type Field = NumberField | ChoiceField | FlagField | ListField;
-export type Group = PageField["group"] | "colour" | "depth";
-export type Settings = Readonly<Record<string, Value>>;
-
-const near = (settings: Settings) => settings.start === "near";
-/** The bare grid is taken as it is: its size follows from the surface, and nothing is rendered that noise could be added to. */
-const rendered = (settings: Settings) => settings.protocol !== "grid";
-
-/** The field of a row. */
-function fieldOf(path: string, row: ShownRow, { group, label, hint, link, initial, empty, slider }: PageField): Field {
-  const [, ...names] = path.split(".");
-  const common = {
-    ...{ key: link ?? String(names.at(-1)), label, group, path },
-    ...(hint === undefined ? {} : { hint }),
-    ...(group === "sample" && RENDERED_ALONE.includes(String(names[0])) ? { when: rendered } : {}),
-  };
-  const value = row.default;
-  switch (row.kind) {
-    case "word":
-      return { ...common, kind: "choice", initial: String(value), choices: Object.entries(row.words) };
-    case "flag":
-      return { ...common, kind: "flag", initial: value === true };
-    default: {
-      const start = initial ?? (typeof value === "number" ? value : null);
-      return {
-        ...common,
-        kind: "number",
-        initial: start,
-        unit: row.unit,
-        empty: empty ?? row.words?.[String(value)] ?? String(value),
-        slider,
-      };
-    }
-  }
-}
-
-const fieldsOf = (rows: Rows, root: string): Field[] =>
-  [...paths(rows, root)].flatMap(([path, row]) => ("page" in row ? [fieldOf(path, row, row.page)] : []));
-const sampleFields = fieldsOf(SAMPLE, "sample");
-const optionFields = fieldsOf(OPTIONS, "options");
-
-const startAngle = (name: "alpha" | "beta" | "gamma", label: string, initial: number): NumberField => ({
-  ...{
-    kind: "number",
-    key: `start.${name}`,
-    label,
-    initial,
-    empty: "0",
-    group: "method",
-    path: `options.start.angles.${name}`,
-  },
-  ...{ unit: SAMPLE.angles.members[name].unit, when: near },
-});
-const lens = (side: "colour" | "depth", key: "fx" | "fy" | "cx" | "cy"): NumberField => ({
-  kind: "number",
-  key: `${side}.${key}`,
-  label: key,
-  initial: null,
-  empty: "none",
-  group: side,
-  unit: "px",
-  path: `${side === "colour" ? "image" : "depth"}.camera.${key}`,
-});
-const distortion = (side: "colour" | "depth"): ListField => ({
-  kind: "list",
-  key: `${side}.distortion`,
-  label: "distortion",
-  initial: "",
-  empty: "none",
-  group: side,
-  hint: "Five numbers in OpenCV's order: k1 k2 p1 p2 k3.",
-  path: `${side === "colour" ? "image" : "depth"}.camera.distortion`,
-});
-/** Turns of a sample's light about the colour view's axes. */
-const lightTurn = (
-  key: "lightTilt" | "lightTurn",
-  angle: "alpha" | "beta",
-  label: string,
-  hint: string,
-): NumberField => ({
-  ...{
-    kind: "number",
-    key,
-    label,
-    hint,
-    initial: 0,
-    empty: "0",
-    unit: "deg",
-    group: "sample",
-    path: `angles.${angle}`,
-  },
-  slider: { min: -180, max: 180, step: 5 },
-});
-const ESTIMATED = "Estimated along with the pose.";
-
-const startField: ChoiceField = {
-  kind: "choice",
-  key: "start",
-  label: "Start",
-  initial: "search",
-  group: "method",
-  path: "options.start",
-  hint: "Search: everywhere. Identity: both views coincide. Near: the angles below. True pose: a sample's own.",
-  choices: [...Object.entries(OPTIONS.start.words), ["near", "near"], ["truth", "true pose"]],
-  only: { truth: "sample" },
-};
-
-export const fields: readonly Field[] = [
-  { kind: "choice", key: "surface", label: "Surface", initial: "bust", group: "sample", path: "sample.surface" },
-  { kind: "choice", key: "light", label: "Light", initial: "colourful", group: "sample", path: "sample.light" },
-  lightTurn("lightTurn", "beta", "Light turned", "About the vertical axis, as dragging the ball under the light does."),
-  lightTurn("lightTilt", "alpha", "Light tilted", "About the horizontal axis."),
-  {
-    kind: "choice",
-    key: "size",
-    label: "Size",
-    hint: "Of both views: a side, or a camera's whole frame.",
-    initial: "128",
-    group: "sample",
-    path: "sample.size",
-    when: rendered,
-    choices: [
-      ["32", "32 px"],
-      ["64", "64 px"],
-      ["96", "96 px"],
-      ["128", "128 px"],
-      ["256", "256 px"],
-      ["640x480", "640×480"],
-    ],
-  },
-  ...sampleFields,
-
-  {
-    kind: "choice",
-    key: "transfer",
-    label: "Encoding",
-    hint: "How the file's numbers stand for intensity.",
-    initial: "guess",
-    group: "colour",
-    path: "image.transfer",
-    choices: [
-      ["guess", "guess"],
-      ["srgb", "sRGB"],
-      ["linear", "linear"],
-    ],
-  },
-  lens("colour", "fx"),
-  lens("colour", "fy"),
-  lens("colour", "cx"),
-  lens("colour", "cy"),
-  distortion("colour"),
-  {
-    kind: "number",
-    key: "unit",
-    label: "Unit",
-    hint: "Metres per stored number; pixels without a camera.",
-    initial: null,
-    empty: "default",
-    group: "depth",
-    path: "depth.unit",
-  },
-  lens("depth", "fx"),
-  lens("depth", "fy"),
-  lens("depth", "cx"),
-  lens("depth", "cy"),
-  distortion("depth"),
-
-  {
-    kind: "choice",
-    key: "lighting",
-    label: "Light",
-    initial: "estimate",
-    group: "method",
-    path: "options.light",
-    when: (_, source) => source === "sample",
-    remark: (value) =>
-      value === "known" ? "The method is told the sample's own light, up to its exposure." : ESTIMATED,
-    choices: [["known", "known"], ...Object.entries(OPTIONS.light.words)],
-  },
-  {
-    kind: "list",
-    key: "coefficients",
-    label: "Light",
-    hint: "27 numbers where the light is known: nine for red, for green, for blue.",
-    initial: "",
-    empty: "estimated",
-    group: "method",
-    path: "options.light",
-    when: (_, source) => source === "files",
-    remark: (value) => (value === "" ? ESTIMATED : ""),
-  },
+import {
+  defaults,
+  fields,
+  inputGroups,
+  near,
+  optionFields,
+  rendered,
+  sampleFields,
   startField,
-  startAngle("alpha", "Start α", 0),
-  startAngle("beta", "Start β", 12),
-  startAngle("gamma", "Start γ", 0),
-  ...optionFields,
-];
+  valueOf,
+  type Field,
+  type Group,
+  type Origin,
+  type Settings,
+  type Value,
+} from "./fields";
 
-export const inputGroups: readonly Group[] = ["sample", "colour", "depth"];
-
-export const defaults: Settings = Object.fromEntries(fields.map(({ key, initial }) => [key, initial]));
-if (Object.keys(defaults).length < fields.length)
-  throw new Error("Two fields share a name: give one of their rows a `link`.");
+export { defaults, type Origin, type Settings, type Value } from "./fields";
 
 const number = (settings: Settings, key: string): number | undefined => {
   const value = settings[key];
@@ -325,16 +91,6 @@ function lightOption(settings: Settings, source: Origin): LabOptions["light"] {
   const coefficients = listed(settings, "coefficients");
   return coefficients.length > 0 ? coefficients : "estimate";
 }
-
-/** Whether a choice can't be made of this origin. */
-export const isOff = ({ only }: ChoiceField, value: Value, source: Origin): boolean =>
-  (only?.[String(value)] ?? source) !== source;
-
-/** What a field comes to: of own files there is no true pose to start from. */
-export const valueOf = (field: Field, settings: Settings, source: Origin): Value =>
-  field.kind === "choice" && isOff(field, settings[field.key] ?? null, source)
-    ? field.initial
-    : (settings[field.key] ?? null);
 
 function startOption(settings: Settings, source: Origin): LabOptions["start"] {
   if (!near(settings))

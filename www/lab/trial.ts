@@ -1,8 +1,13 @@
 /** What a control looks like while it is still moved: one look at a time, and of what was asked for meanwhile the newest. */
 
+import type { Engine } from "../engine/engine";
+import type { Gallery } from "./gallery";
+import type { Panels } from "./panels";
 import type { Settings } from "./settings";
+import { sampleOf } from "./source";
+import type { Store } from "./store";
 
-export class Trial {
+class Trial {
   /** What is to be looked at next: what it changes in the settings. */
   #next: Settings | undefined;
   #isLooking = false;
@@ -27,5 +32,50 @@ export class Trial {
   /** What is moved has come to rest: nothing more is only looked at. */
   end(): void {
     this.#next = undefined;
+  }
+}
+
+/** What a light that is moved has to do with. */
+export interface Lit {
+  store: Store;
+  engine: Engine;
+  gallery: Gallery;
+  panels: Panels;
+  /** Counts the Lab's beginnings; undefined where the light is not a sample's. */
+  turn: () => number | undefined;
+}
+
+/** The picture follows the light while it is moved; a run follows once it rests. */
+export class LightTrial {
+  readonly #trial = new Trial((patch) => this.#preview(patch));
+  readonly #lit: Lit;
+
+  constructor(lit: Lit) {
+    this.#lit = lit;
+  }
+
+  change(patch: Settings, done: boolean, gesture: object): void {
+    const { store, panels } = this.#lit;
+    if (!done) {
+      panels.date(true);
+      void this.#trial.show(patch);
+      return;
+    }
+    this.#trial.end();
+    const before = store.settings;
+    store.change(patch, true, gesture);
+    // Turned back to where it was: what has been found is of this light.
+    if (store.settings === before) panels.date(false);
+  }
+
+  async #preview(patch: Settings): Promise<void> {
+    const { store, engine, gallery, panels, turn } = this.#lit;
+    const before = turn();
+    if (before === undefined) return;
+    const source = sampleOf({ ...store.settings, ...patch });
+    const seen = await engine.call("preview", { source }).catch(() => undefined);
+    if (!seen || turn() !== before) return;
+    gallery.preview(seen.picture);
+    panels.light.showTruth(seen.trueLight);
   }
 }

@@ -2,7 +2,7 @@
  * Extrinsics in the files of those who use them. All hold P_colour = R P_depth + t in metres, each in its format's own
  * words, and every number reads back as the very same one.
  */
-import type { PoseInput } from "../../types.js";
+import type { PoseInput } from "../../types/index.js";
 import { oneOf } from "./built.js";
 import { open3dJson, realsenseJson } from "./json.js";
 import { matrixText, ros2Line } from "./plain.js";

@@ -3,7 +3,7 @@
  * would be believed by whoever reads it.
  */
 import { cameraOf, determinant, poseOf } from "../../matrices.js";
-import type { Pose, PoseInput, RigCamera, RigCameraInput } from "../../types.js";
+import type { Pose, PoseInput, RigCamera, RigCameraInput } from "../../types/index.js";
 import { fault, like, oneOf } from "./built.js";
 
 /** Width and height in pixels. */
@@ -63,7 +63,11 @@ function numbers(values: ArrayLike<number>, lengths: readonly number[], field: s
   if (!lengths.includes(length)) throw fault("size", field, `needs ${lengths.join(" or ")} numbers, not ${length}`);
   const copy = Array.from(values);
   const wrong = copy.findIndex((value) => !Number.isFinite(value));
-  if (wrong >= 0) throw fault("range", field, `must be finite numbers (got ${String(copy[wrong])})`);
+  if (wrong >= 0)
+    throw fault("range", field, `must be finite numbers (got ${String(copy[wrong])})`, {
+      value: copy[wrong],
+      index: wrong,
+    });
   return copy;
 }
 
@@ -81,8 +85,12 @@ function checkRotation(r: readonly number[]): void {
 function size(value: Size | undefined, field: string): Size | undefined {
   if (value === undefined) return undefined;
   const [width = NaN, height = NaN] = numbers(value, [2], field);
-  const isSize = [width, height].every((side) => Number.isSafeInteger(side) && side > 0);
-  if (!isSize) throw fault("size", field, `must be whole numbers above zero (got ${width} x ${height})`);
+  const index = [width, height].findIndex((side) => !(Number.isSafeInteger(side) && side > 0));
+  if (index >= 0)
+    throw fault("size", field, `must be whole numbers above zero (got ${width} x ${height})`, {
+      value: value[index],
+      index,
+    });
   return [width, height];
 }
 
@@ -99,7 +107,8 @@ function camera(
   const { model = "brown", fx, fy, cx, cy } = given;
   oneOf(Object.keys(LENGTHS), model, `${field}.model`);
   numbers([fx, fy, cx, cy], [4], field);
-  if (fx <= 0 || fy <= 0) throw fault("range", field, "focal lengths must be above zero");
+  for (const value of [fx, fy])
+    if (value <= 0) throw fault("range", field, "focal lengths must be above zero", { value });
   const none = model === "fisheye" ? [0, 0, 0, 0] : [];
   const distortion = numbers(given.distortion ?? none, LENGTHS[model], `${field}.distortion`);
   return { model, fx, fy, cx, cy, distortion, size: known };
@@ -111,7 +120,9 @@ export function rigOf(given: PoseInput, context: RigContext): Rig {
   like({}, pose, "pose");
   like({}, context, "context");
   if (pose.scale !== 1)
-    throw fault("range", "pose.scale", `extrinsics of a rig have the scale 1 (got ${String(pose.scale)})`);
+    throw fault("range", "pose.scale", `extrinsics of a rig have the scale 1 (got ${String(pose.scale)})`, {
+      value: pose.scale,
+    });
   const rotation = numbers(pose.rotation, [9], "pose.rotation");
   checkRotation(rotation);
   return {

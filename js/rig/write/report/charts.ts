@@ -1,5 +1,5 @@
 /** The report's drawings as inline SVG: bars, intervals, and small multiples of the sensitivity curves. */
-import type { CheckReport } from "../../../types.js";
+import type { CheckReport } from "../../../types/index.js";
 import { type Curve, SIGMAS_95, curve } from "./curves.js";
 import { type Markup, html } from "./markup.js";
 import { brief, digits, measure } from "./numbers.js";

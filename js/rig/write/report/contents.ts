@@ -1,5 +1,5 @@
 /** What a report holds: what the check found, and beside it what its caller adds. */
-import type { CheckReport, Warning } from "../../../types.js";
+import type { CheckReport, Warning } from "../../../types/index.js";
 
 /** What a check found; its warnings may have words of the caller's among them. */
 export interface Checked extends Omit<CheckReport, "warnings"> {

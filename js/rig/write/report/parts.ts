@@ -1,5 +1,5 @@
 /** Parts that any report is made of. */
-import type { CheckVerdict } from "../../../types.js";
+import type { CheckVerdict } from "../../../types/index.js";
 import { fault } from "../built.js";
 import type { Picture, ReportInput } from "./contents.js";
 import { type Markup, type Part, html } from "./markup.js";

@@ -1,5 +1,5 @@
 /** The parts of a report, each a section of HTML or nothing. */
-import type { CandidateReport, CheckVerdict } from "../../../types.js";
+import type { CandidateReport, CheckVerdict } from "../../../types/index.js";
 import { bar, intervals, sensitivities } from "./charts.js";
 import type { Checked } from "./contents.js";
 import { type Markup, html } from "./markup.js";

@@ -1,0 +1,58 @@
+/** The codes of ends, verdicts and warnings; docs/codes.md has cause and remedy of each. */
+
+/** Why a run ended as it did, or what the last step of one that goes on came to; docs/codes.md has cause and remedy of each. */
+export type ReasonCode =
+  | "searching"
+  | "search-done"
+  | "taken-back"
+  | "pose-stays"
+  | "shapes-stay"
+  | "no-better-pose"
+  | "iteration-cap"
+  | "little-overlap"
+  | "initial-pose-kept"
+  | "not-observable"
+  | "rotation-uncertain"
+  | "albedo-varies"
+  | "silhouette-blind"
+  | "contrast-unexplained"
+  | "unexplained"
+  | "few-inliers"
+  | "hollow"
+  | "rivals"
+  | "missing-depth-mask"
+  | "missing-image-mask"
+  | "other-unit"
+  | "no-pose"
+  | "size-runs-away"
+  | "behind-camera"
+  | "stage-failed";
+
+/** Why a verdict is what it is; docs/codes.md has cause and remedy of each. */
+export type CheckCode =
+  | "within-tolerance"
+  | "nothing-against"
+  | "off-target"
+  | "no-points-on-image"
+  | "guessed-camera"
+  | "unconstrained"
+  | "too-close"
+  | "no-pose-on-image"
+  | "no-evidence"
+  | "no-candidate"
+  | "doubtful";
+
+/** What looks wrong about the input. */
+export type WarningCode =
+  | "blank-image"
+  | "intrinsics-guessed"
+  | "many-holes"
+  | "eight-bits"
+  | "unusual-depths"
+  | "rough-depth"
+  | "far-apart"
+  | "fits-inverted"
+  | "lens-left-out";
+
+/** What an estimator does without. */
+export type EstimatorWarningCode = "workers-unavailable";

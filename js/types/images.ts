@@ -1,0 +1,75 @@
+/** Colour images, depth maps and masks, and what colour images are read from. */
+import type { Pinhole, PinholeInput } from "./cameras.js";
+
+/**
+ * One colour image of the object, up to 4096 pixels on a side. One that is finer than the depth map, by a quarter or more, is worked on at the depth
+ * map's resolution; arrays, poses and options are in its own pixels all the same, and memory is asked for the working size.
+ */
+export interface ColorImage {
+  /** Columns, 1 to 4096. */
+  width: number;
+  /** Rows, 1 to 4096. */
+  height: number;
+  /** Non-zero where the object is; all pixels without it. */
+  mask?: Uint8Array;
+  /** Without it the view is orthographic. */
+  camera?: Pinhole;
+  /** How integers encode intensity; 8 bit defaults to "srgb", 16 bit is guessed. Floats are linear. */
+  transfer?: "srgb" | "linear";
+  /** RGBA integers, or RGB interleaved linear floats > 0. */
+  data: Uint8Array | Uint8ClampedArray | Uint16Array | Float32Array;
+}
+
+/** A colour image as it may be given: its camera in any of the forms of `PinholeInput`. */
+export interface ColorImageInput extends Omit<ColorImage, "camera"> {
+  /** Without it the view is orthographic. */
+  camera?: PinholeInput;
+}
+
+/** One depth map of the same object from another view: `data` or `points`, exactly one of the two. */
+export interface DepthMap {
+  /** Columns, 1 to 4096. */
+  width: number;
+  /** Rows, 1 to 4096. */
+  height: number;
+  /** Non-zero where the object is; all pixels without it. */
+  mask?: Uint8Array;
+  /** Without it the view is orthographic, and its unit is the pixel. */
+  camera?: Pinhole;
+  /** Metres (or pixels, orthographic) per stored unit; default 1, and 0.001 for a Uint16Array with a camera. */
+  unit?: number;
+  /** Depth along z. Zero, negative, NaN, and 1e12 or more are holes: a depth that is relative has to be moved above zero. */
+  data?: Float32Array | Uint16Array;
+  /** An organised cloud, 3*w*h interleaved, NaN where missing; 1e12 or more is missing, too. */
+  points?: Float32Array;
+  /** Unit normals, 3*w*h interleaved; they override our own. */
+  normals?: Float32Array;
+}
+
+/** A depth map as it may be given: its camera in any of the forms of `PinholeInput`. */
+export interface DepthMapInput extends Omit<DepthMap, "camera"> {
+  /** Without it the view is orthographic. */
+  camera?: PinholeInput;
+}
+
+/** A mask read from a file: 255 where the object is, else 0. */
+export interface Mask {
+  /** Columns. */
+  width: number;
+  /** Rows. */
+  height: number;
+  /** A byte for each pixel, row by row. */
+  data: Uint8Array;
+}
+
+/**
+ * Whatever holds a colour image: a file (`Blob`), its bytes, its address or in Node its path; an element, a canvas, a bitmap or a frame of a
+ * video in a browser.
+ */
+export type ImageSource = string | URL | Uint8Array | ArrayBuffer | ImageBitmapSource;
+
+/** How `imageFrom` reads. */
+export interface ImageOptions {
+  /** Breaks off the download or the reading; the promise is rejected with its reason. */
+  signal?: AbortSignal;
+}

@@ -1,0 +1,29 @@
+/** Single parts of the method, to look at. */
+
+/** One pixel whose objective is to be looked at. */
+export interface PixelLandscapeRequest {
+  /** Natural logarithms of its linear R, G, B. */
+  log: ArrayLike<number>;
+  /** 27 coefficients, exposure included. */
+  light: ArrayLike<number>;
+  /** A unit normal that a depth map has there. */
+  prior?: ArrayLike<number>;
+  /** Weight of the prior, `lambda.prior` of `Options`. Default 0. */
+  weight?: number;
+  /** Whether a prior that is far off loses its weight, as in the loop; default true. False is Eq. 9 as the paper prints it. */
+  robust?: boolean;
+  /** The unit normal at which the descent of `path` starts. Default: toward the camera. */
+  start?: ArrayLike<number>;
+  /** Columns and rows of `objective`, 0 .. 512. Default 96. */
+  side?: number;
+}
+
+/** The objective of one pixel over all normals that a camera can see (Eq. 6). */
+export interface PixelLandscape {
+  /** Seen from the camera: n_x grows with the column, n_y with the row, both from -1 to 1; NaN where no normal is. */
+  objective: Float32Array;
+  /** The lowest first, five numbers each: unit normal, objective, share of all directions whose descent ends there. */
+  minima: Float32Array;
+  /** Normals from step to step of one descent, three numbers each. */
+  path: Float32Array;
+}

@@ -1,0 +1,71 @@
+/** What a run reports after each step. */
+import type { ReasonCode } from "./codes.js";
+import type { Pose } from "./poses.js";
+
+/** A stage of an iteration. */
+export type Stage = "search" | "light" | "shading" | "surface" | "registration" | "refinement";
+
+/** How a run stands: only "converged" ends with a pose to be trusted; "ambiguous" has rivals, "lost" a reason. */
+export type Status = "running" | "converged" | "max-iterations" | "ambiguous" | "lost";
+
+/** One sigma of the pose: the truth is (a small turn) times the estimate, about the axes of the colour view. */
+export interface Uncertainty {
+  /** About x, y and z of the colour view, degrees. */
+  rotationDegrees: number[];
+  /** Along x, y and z of the colour view, in its units; `null` where the views cannot see it. */
+  translation: (number | null)[];
+  /** Of the scale itself; `null` where it is held. */
+  scale: number | null;
+  /** The least certain direction in words. */
+  weakest: string;
+}
+
+/** A reason with its numbers, such as `percent`, `sigmaDegrees`, `weakest` or `count`. */
+export interface Reason {
+  /** Stable, for programs. */
+  code: ReasonCode;
+  [detail: string]: unknown;
+}
+
+/** How a run stands after a step. */
+export interface StepReport {
+  /** Iterations that are complete, from 0. */
+  iteration: number;
+  /** The one that ran last. */
+  stage: Stage;
+  /** The present pose. */
+  pose: Pose;
+  /** Degrees. */
+  rotationChange: number;
+  /** The terms of the objective, without unit. */
+  energy: {
+    /** Image residuals. */
+    shading: number;
+    /** Normals against those of the other view. */
+    prior: number;
+    /** Distances of correspondences. */
+    registration: number;
+    /** Refined depth against the measured one. */
+    refinement: number;
+    /** The sum. */
+    total: number;
+  };
+  /** Share of valid depth pixels with a correspondence. */
+  overlap: number;
+  /** Share of those within the robust scale. */
+  inliers: number;
+  /** Robust mean log-colour residual. */
+  residual: number;
+  /** "running" until the loop ends. */
+  status: Status;
+  /** `reason` in words, which may change; programs decide by its code. */
+  message?: string;
+  /** Why the run ended as it did, or what the last step came to. */
+  reason?: Reason;
+  /** Other poses that fit the data as well, best first; only where the status is "ambiguous". */
+  rivals?: Pose[];
+  /** Once the loop has ended with a pose. */
+  uncertainty?: Uncertainty;
+  /** Wall time of each stage in the last step. */
+  milliseconds: Record<string, number>;
+}

@@ -1,0 +1,173 @@
+//! Options as they are written: members that are a word or something else, `"estimate"` or 27 numbers, `"search"`, `"identity"` or a pose,
+//! `"free"` or a number. A member that there is not is an error with its name.
+
+use std::array::from_fn;
+use std::fmt::Formatter;
+
+use nalgebra::{Matrix3, Vector3};
+use serde::de::value::MapAccessDeserializer;
+use serde::de::{Error, IntoDeserializer, MapAccess, Visitor};
+use serde::{Deserialize, Deserializer, Serialize};
+
+use super::{LightSource, Start};
+use crate::light::Light;
+use crate::pose::Angles;
+
+#[derive(Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum LightWord {
+    Estimate,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(untagged)]
+#[expect(clippy::large_enum_variant, reason = "lives no longer than a conversion")]
+pub enum GivenLight {
+    Word(LightWord),
+    Numbers([f64; 27]),
+}
+
+impl From<GivenLight> for LightSource {
+    fn from(given: GivenLight) -> Self {
+        match given {
+            GivenLight::Word(LightWord::Estimate) => Self::Estimate,
+            // Their range is for `Options::validate` to check, whose errors name them.
+            GivenLight::Numbers(flat) => Self::Known(Light(from_fn(|channel| from_fn(|k| flat[9 * channel + k])))),
+        }
+    }
+}
+
+impl From<LightSource> for GivenLight {
+    fn from(source: LightSource) -> Self {
+        match source {
+            LightSource::Estimate => Self::Word(LightWord::Estimate),
+            LightSource::Known(light) => Self::Numbers(light.flat()),
+        }
+    }
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum StartWord {
+    Search,
+    Identity,
+}
+
+/// As much of a pose as is known. The rotation, row by row, wins over the angles.
+#[derive(Default, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct GivenPose {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    scale: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    rotation: Option<[f64; 9]>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    translation: Option<[f64; 3]>,
+    #[serde(skip_serializing)]
+    angles: GivenAngles,
+}
+
+/// The members of [`Angles`] and no others.
+#[derive(Clone, Copy, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+struct GivenAngles {
+    alpha: f64,
+    beta: f64,
+    gamma: f64,
+}
+
+impl From<GivenAngles> for Angles {
+    fn from(GivenAngles { alpha, beta, gamma }: GivenAngles) -> Self {
+        Self { alpha, beta, gamma }
+    }
+}
+
+#[derive(Serialize)]
+#[serde(untagged)]
+pub enum GivenStart {
+    Word(StartWord),
+    Pose(GivenPose),
+}
+
+/// Derived, it would say of a pose with a wrong member that nothing fits, and not which member is wrong.
+impl<'de> Deserialize<'de> for GivenStart {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(WordOrPose)
+    }
+}
+
+struct WordOrPose;
+
+impl<'de> Visitor<'de> for WordOrPose {
+    type Value = GivenStart;
+
+    fn expecting(&self, formatter: &mut Formatter<'_>) -> std::fmt::Result {
+        formatter.write_str("\"search\", \"identity\" or a pose")
+    }
+
+    fn visit_str<E: Error>(self, word: &str) -> Result<GivenStart, E> {
+        StartWord::deserialize(word.into_deserializer()).map(GivenStart::Word)
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, members: A) -> Result<GivenStart, A::Error> {
+        GivenPose::deserialize(MapAccessDeserializer::new(members)).map(GivenStart::Pose)
+    }
+}
+
+impl From<GivenStart> for Start {
+    fn from(given: GivenStart) -> Self {
+        match given {
+            GivenStart::Word(StartWord::Search) => Self::Search,
+            GivenStart::Word(StartWord::Identity) => Self::Identity,
+            GivenStart::Pose(GivenPose { scale, rotation, translation, angles }) => Self::Pose {
+                rotation: rotation
+                    .map_or_else(|| Angles::from(angles).rotation(), |rows| Matrix3::from_row_slice(&rows)),
+                scale,
+                translation: translation.map(Vector3::from),
+            },
+        }
+    }
+}
+
+impl From<Start> for GivenStart {
+    fn from(start: Start) -> Self {
+        match start {
+            Start::Search => Self::Word(StartWord::Search),
+            Start::Identity => Self::Word(StartWord::Identity),
+            Start::Pose { rotation, scale, translation } => Self::Pose(GivenPose {
+                scale,
+                rotation: Some(from_fn(|at| rotation[(at / 3, at % 3)])),
+                translation: translation.map(Into::into),
+                angles: GivenAngles::default(),
+            }),
+        }
+    }
+}
+
+pub mod free_or_held {
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    #[derive(Serialize, Deserialize)]
+    #[serde(rename_all = "lowercase")]
+    enum Word {
+        Free,
+    }
+
+    #[derive(Serialize, Deserialize)]
+    #[serde(untagged)]
+    enum Given {
+        Word(Word),
+        Number(f64),
+    }
+
+    pub fn serialize<S: Serializer>(scale: &Option<f64>, serializer: S) -> Result<S::Ok, S::Error> {
+        scale.map_or(Given::Word(Word::Free), Given::Number).serialize(serializer)
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D::Error> {
+        Ok(match Given::deserialize(deserializer)? {
+            Given::Word(Word::Free) => None,
+            Given::Number(scale) => Some(scale),
+        })
+    }
+}

@@ -1,0 +1,70 @@
+// Files of a rig changed at random: each ends in a reading or in an error that names it, in bounded time and memory.
+import assert from "node:assert/strict";
+import { readdirSync } from "node:fs";
+import { test } from "node:test";
+import { fileURLToPath } from "node:url";
+import { BimodalError, readRigFile } from "../../pkg/rig.js";
+import { assertSmall, bytes, inTime } from "./malformed.mjs";
+import { fixture } from "./rig-support.mjs";
+
+/** Mulberry32: the same cases in each run. */
+function generator(seed) {
+  let state = seed >>> 0;
+  return () => {
+    state = (state + 0x6d2b79f5) >>> 0;
+    let mixed = Math.imul(state ^ (state >>> 15), state | 1);
+    mixed ^= mixed + Math.imul(mixed ^ (mixed >>> 7), mixed | 61);
+    return ((mixed ^ (mixed >>> 14)) >>> 0) / 2 ** 32;
+  };
+}
+
+const CASES = 120;
+const KINDS = ["colour", "depth", "mask", "cameras", "poses", undefined, undefined, undefined];
+const BYTES = [0, 255, 127, 128, 45, 48, 57, 10];
+
+/** Cut off, with bits and bytes changed (headers more than bodies), or with something put in between. */
+function mutated(file, random) {
+  const below = (count) => Math.floor(random() * count);
+  if (random() < 0.3) return file.slice(0, below(file.length));
+  const copy = random() < 0.1 ? bytes(file.subarray(0, 40), new Uint8Array(below(9)), file.subarray(40)) : file.slice();
+  for (let change = 1 + below(5); change > 0; change--) {
+    const at = below(random() < 0.5 ? Math.min(copy.length, 200) : copy.length);
+    copy[at] = random() < 0.5 ? copy[at] ^ (1 << below(8)) : BYTES[below(BYTES.length)];
+  }
+  return copy;
+}
+
+const folder = fileURLToPath(new URL("../fixtures/rig", import.meta.url));
+// Folders beside them hold what the writers wrote.
+const names = readdirSync(folder, { withFileTypes: true })
+  .filter((entry) => entry.isFile())
+  .map(({ name }) => name)
+  .sort();
+
+test(`${CASES * names.length} cases end in a reading or in a BimodalError that names the file`, async () => {
+  const random = generator(15);
+  let [read, refused] = [0, 0];
+  for (const name of names) {
+    const file = fixture(name);
+    for (let index = 0; index < CASES; index++) {
+      const as = KINDS[Math.floor(random() * KINDS.length)];
+      const content = mutated(file, random);
+      await inTime(`${name}, case ${index}`, async () => {
+        try {
+          const reading = await readRigFile({ name, bytes: content }, as && { as });
+          assert.ok(reading.says.length > 0 && Array.isArray(reading.warnings));
+          read++;
+        } catch (error) {
+          assert.ok(
+            error instanceof BimodalError && error.code === "file" && error.message.includes(name),
+            `${name}, case ${index}: ${error.stack}`,
+          );
+          refused++;
+        }
+      });
+    }
+  }
+  assert.ok(read > 500 && refused > 5000, `${read} read, ${refused} refused`);
+});
+
+test("no file took a gigabyte", assertSmall);

@@ -1,0 +1,46 @@
+/** What the page does or fails at apart from the loop; the status shows it until the next frame is on the screen. */
+
+import { wayOut } from "./source";
+import type { Notice } from "./status";
+
+export class Notices {
+  #now: { state: Notice; words: string; cause: string } | undefined;
+  readonly #onChange: () => void;
+
+  constructor(onChange: () => void) {
+    this.#onChange = onChange;
+  }
+
+  get now(): { state: Notice; words: string; cause: string } | undefined {
+    return this.#now;
+  }
+
+  announce(state: Notice, words: string, cause = ""): void {
+    this.#now = { state, words, cause };
+    this.#onChange();
+  }
+
+  /** Says what an input lacks, or that files are being looked at which may be that. */
+  lack(lacking: string, names = ""): void {
+    this.announce(names ? "loading" : "waiting", names ? "looking at the files" : lacking, names || wayOut(lacking));
+  }
+
+  /** What is being done of what is loading. */
+  detail(words: string): void {
+    if (this.#now?.state === "loading") this.announce("loading", this.#now.words, words);
+  }
+
+  /** Says so while something loads, and afterwards what was said before. */
+  async loading(words: string, load: () => Promise<void>): Promise<void> {
+    const before = this.#now;
+    this.announce("loading", words);
+    await load();
+    if (before && this.#now?.state === "loading") this.announce(before.state, before.words, before.cause);
+  }
+
+  /** A new frame is on the screen: the loop speaks for itself again. */
+  settle(): void {
+    this.#now = undefined;
+    this.#onChange();
+  }
+}
