@@ -167,8 +167,8 @@ pub use picture::{ColourMap, Layer};
 pub use pose::{
     Angles, Axis, Candidate, CorrespondenceProblem, Correspondences, Direction, Icp, IcpOptions, IcpProblem, IcpReport,
     IcpTermination, Information, Metric, Pair, Photometric, PhotometricOptions, PhotometricProblem, PhotometricReport,
-    PhotometricTermination, PosePrior, Progress, RansacOptions, RansacReport, Search, SearchProblem, Similarity, Uncertainty,
-    Unknown, ransac,
+    PhotometricTermination, PosePrior, Progress, RansacOptions, RansacReport, Search, SearchProblem, Similarity,
+    Uncertainty, Unknown, ransac,
 };
 pub use reason::{Activity, FoundBy, Reason};
 pub use report::{Objective, Stage, Status, StepReport};

@@ -12,6 +12,7 @@
 //! | `transforms` | a pose as nalgebra's transformations and as a 4x4 matrix | | | |
 //! | `angles` | Eq. 16: the angles of a rotation | | alpha, beta, gamma | closed form |
 //! | `correspondence`, `visibility` | which depth point is which pixel, with occlusion in both directions: the 1-pixel rule | | | z-buffers |
+//! | `prior` | a Gaussian about an initial pose | | | |
 //! | `increment` | a Gauss-Newton step of a similarity: seven unknowns | | | |
 //! | `sandwich` | the covariance of a pose from the scores of independent clusters | | | |
 //! | `uncertainty` | one sigma of each number of a pose, from the information of matched surfaces | | | |
@@ -31,6 +32,7 @@ mod increment;
 mod neighbours;
 mod outline;
 mod photometric;
+mod prior;
 mod ransac;
 mod sandwich;
 mod search;
@@ -46,8 +48,9 @@ pub(crate) use contrast::{ContrastOutcome, ContrastProblem, ContrastReport, Cont
 pub use correspondence::{CorrespondenceProblem, Correspondences};
 pub use icp::{Icp, IcpOptions, IcpProblem, IcpReport, IcpTermination, Metric, Pair};
 pub(crate) use increment::rotation_vector;
-pub(crate) use outline::{Outline, OutlinePrior, OutlineProblem, OutlineReport};
-pub use photometric::{Photometric, PhotometricOptions, PhotometricProblem, PhotometricReport, PhotometricTermination, PosePrior};
+pub(crate) use outline::{Outline, OutlineProblem, OutlineReport};
+pub use photometric::{Photometric, PhotometricOptions, PhotometricProblem, PhotometricReport, PhotometricTermination};
+pub use prior::PosePrior;
 pub use ransac::{RansacOptions, RansacReport, ransac};
 pub use search::{Candidate, Progress, Search, SearchProblem};
 pub(crate) use search::{Hypothesis, ImageGrid, SearchFinding, SearchTask, TaskResults};

@@ -377,7 +377,11 @@ impl Near {
             _ => {}
         }
         Ok(Decision::of(match (best, self.silhouettes.take()) {
-            (Some(best), silhouettes) if silhouettes.is_none() || !silhouettes::is_painted(pair, &best) => {
+            (Some(best), _) => {
+                // What a single albedo explains needs no help from the initial pose.
+                if explains(pair, &best) {
+                    colours.keep_near(None);
+                }
                 // All points follow the sample that candidates are registered by.
                 let found = colours.register_all(pair, *best)?;
                 match region.holds(pair, &found.pose) {
@@ -385,8 +389,8 @@ impl Near {
                     false => Method::Initial,
                 }
             }
-            (_, Some(found)) => Method::Silhouettes(found),
-            (..) => Method::Initial,
+            (None, Some(found)) => Method::Silhouettes(found),
+            (None, None) => Method::Initial,
         }))
     }
 }

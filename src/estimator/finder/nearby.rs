@@ -7,7 +7,7 @@
 use crate::diagnosis::{Alternative, Diagnosis};
 use crate::error::Result;
 use crate::estimator::pair::ViewPair;
-use crate::estimator::stages::{Attempt, ColourRegistration};
+use crate::estimator::stages::{Attempt, COARSEST_LEVEL, ColourRegistration, FIRST_LEVEL_NEAR};
 use crate::pose::{ImageGrid, OutlineReport, PhotometricReport, Search, Similarity};
 
 use super::candidates::{Candidates, NEARBY, search};
@@ -25,6 +25,7 @@ pub enum Progress {
 /// The next step.
 enum Step {
     Judge,
+    FromInitial { level: usize },
     FromSilhouettes(Similarity),
     Shift,
     FromShifted(Similarity),
@@ -68,16 +69,28 @@ impl Nearby {
         match self.step {
             Step::Judge => {
                 self.judge(pair, colours);
-                let found = self.silhouettes.as_ref().map(|found| found.pose);
-                self.step = found.map_or(Step::Shift, Step::FromSilhouettes);
+                self.step = match self.region.prior(pair) {
+                    Some(_) => Step::FromInitial { level: COARSEST_LEVEL },
+                    None => self.after_initial(),
+                };
             }
-            Step::FromSilhouettes(start) => return Ok(self.register(pair, colours, &start, Step::Shift)),
+            Step::FromInitial { level } => {
+                let next = match level {
+                    COARSEST_LEVEL => Step::FromInitial { level: FIRST_LEVEL_NEAR },
+                    _ => self.after_initial(),
+                };
+                let initial = self.region.initial;
+                return Ok(self.register(pair, colours, &initial, level, next));
+            }
+            Step::FromSilhouettes(start) => {
+                return Ok(self.register(pair, colours, &start, COARSEST_LEVEL, Step::Shift));
+            }
             Step::Shift => {
                 let mut search = search(pair, ImageGrid::new(&pair.image)?, colours)?;
                 self.step = search.shifted(&self.region.initial.rotation).map_or(Step::Search, Step::FromShifted);
                 self.search = Some(search);
             }
-            Step::FromShifted(start) => return Ok(self.register(pair, colours, &start, Step::Search)),
+            Step::FromShifted(start) => return Ok(self.register(pair, colours, &start, COARSEST_LEVEL, Step::Search)),
             Step::Search => {
                 let (Some(search), Some(optima)) = (self.search.take(), self.optima.take()) else {
                     return Ok(Progress::Explained(Choice::default()));
@@ -89,18 +102,25 @@ impl Nearby {
         Ok(Progress::Ongoing)
     }
 
-    /// Enters the initial pose and what was found from it, and registers silhouettes.
+    /// What follows the initial pose.
+    fn after_initial(&self) -> Step {
+        self.silhouettes.as_ref().map_or(Step::Shift, |found| Step::FromSilhouettes(found.pose))
+    }
+
+    /// Registers silhouettes, and enters the initial pose and what was found from it. Where a prior keeps registrations near the initial
+    /// pose, one from there stands for both.
     fn judge(&mut self, pair: &ViewPair, colours: &mut ColourRegistration) {
-        let region = &self.region;
-        let Some(optima) = &mut self.optima else { return };
+        let (region, prior) = (&self.region, self.region.prior(pair));
+        colours.keep_near(prior);
+        let found = prior.and_then(|prior| silhouettes::near(pair, colours.normals(), prior));
+        self.silhouettes = found.filter(|found| region.holds(pair, &found.pose)).map(Box::new);
+        let Some(optima) = self.optima.as_mut().filter(|_| prior.is_none()) else { return };
         if let Some(staying) = colours.judge(pair, &region.initial) {
             optima.enter(STAYING, RegisteredCandidate::of(staying));
         }
         if let Some(plain) = self.plain.take() {
             optima.enter(BEFORE, RegisteredCandidate::of(plain));
         }
-        let found = region.prior(pair).and_then(|prior| silhouettes::near(pair, colours.normals(), prior));
-        self.silhouettes = found.filter(|found| region.holds(pair, &found.pose)).map(Box::new);
     }
 
     /// A step of a registration; at its end, whether it explains the image.
@@ -109,23 +129,20 @@ impl Nearby {
         pair: &ViewPair,
         colours: &mut ColourRegistration,
         start: &Similarity,
+        first_level: usize,
         next: Step,
     ) -> Progress {
-        let attempt = colours.step_candidate(pair, start, !self.is_begun);
+        let attempt = colours.step_from(pair, start, first_level, !self.is_begun);
         let Attempt::Ended(found) = attempt else {
             self.is_begun = true;
             return Progress::Ongoing;
         };
         (self.is_begun, self.step) = (false, next);
         let found = found.filter(|found| self.region.holds(pair, &found.pose));
-        let (Some(found), Some(mut optima)) = (found, self.optima.take()) else { return Progress::Ongoing };
+        let (Some(found), Some(optima)) = (found, &mut self.optima) else { return Progress::Ongoing };
         let is_explained = explains(pair, &found);
         optima.enter(BEFORE, RegisteredCandidate::of(found));
-        if is_explained {
-            return Progress::Explained(Choice::of(optima.decide()));
-        }
-        self.optima = Some(optima);
-        Progress::Ongoing
+        if is_explained { Progress::Explained(Choice::of(optima.decide())) } else { Progress::Ongoing }
     }
 }
 

@@ -8,7 +8,7 @@ use nalgebra::Vector3;
 use crate::estimator::gauge;
 use crate::estimator::pair::ViewPair;
 use crate::options::{Registration, Start};
-use crate::pose::{OutlinePrior, Similarity};
+use crate::pose::{PosePrior, Similarity};
 use crate::view::extent;
 
 use super::silhouettes;
@@ -69,13 +69,13 @@ impl TrustRegion {
     }
 
     /// The initial pose as silhouettes take it into account; none where they see no distances.
-    pub fn prior(&self, pair: &ViewPair) -> Option<OutlinePrior> {
+    pub fn prior(&self, pair: &ViewPair) -> Option<PosePrior> {
         let degrees = SIGMA_OF_DEGREES * self.degrees;
         if self.distance.is_infinite() {
             return silhouettes::placed_by_middles(pair, self.initial, degrees);
         }
         let (across, along) = (SIGMA_ACROSS * self.distance, SIGMA_ALONG * self.distance);
-        let prior = OutlinePrior { pose: self.initial, rotation: degrees.to_radians(), across, along };
+        let prior = PosePrior { pose: self.initial, rotation: degrees.to_radians(), across, along };
         self.sees_depth.then_some(prior)
     }
 }

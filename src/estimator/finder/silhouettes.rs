@@ -4,7 +4,7 @@ use crate::diagnosis::{Alternative, Diagnosis};
 use crate::estimator::gauge;
 use crate::estimator::pair::ViewPair;
 use crate::options::Registration;
-use crate::pose::{Angles, Outline, OutlinePrior, OutlineProblem, OutlineReport, PhotometricReport, Similarity};
+use crate::pose::{Angles, Outline, OutlineProblem, OutlineReport, PhotometricReport, PosePrior, Similarity};
 use crate::view::Normals;
 
 /// Outlines of fewer points, or that are farther from the image's in the median, tell nothing; pixels.
@@ -26,7 +26,7 @@ pub fn is_painted(pair: &ViewPair, found: &PhotometricReport) -> bool {
 }
 
 /// The pose near a told one, where outlines like it better.
-pub fn near(pair: &ViewPair, normals: &Normals, told: OutlinePrior) -> Option<OutlineReport> {
+pub fn near(pair: &ViewPair, normals: &Normals, told: PosePrior) -> Option<OutlineReport> {
     let problem = OutlineProblem { image: &pair.image, depth: &pair.depth, normals, prior: told };
     let mut outline = Outline::new(&problem);
     let staying = outline.judge(&problem, &told.pose).cost;
@@ -42,7 +42,7 @@ pub fn are_called_for(pair: &ViewPair, found: Option<&PhotometricReport>) -> boo
 /// The pose where nothing is known of it, in slices: the best from several rotations at the middle of the image's object.
 pub struct Anywhere {
     outline: Outline,
-    prior: OutlinePrior,
+    prior: PosePrior,
     /// Those that are left, the next one last.
     starts: Vec<Similarity>,
     best: Option<OutlineReport>,
@@ -81,14 +81,14 @@ impl Anywhere {
 
 /// What is known where no place is told: the pose, which puts the middle of the depth points on that of the image's object,
 /// with this sigma of its rotation, degrees.
-pub fn placed_by_middles(pair: &ViewPair, pose: Similarity, degrees: f64) -> Option<OutlinePrior> {
+pub fn placed_by_middles(pair: &ViewPair, pose: Similarity, degrees: f64) -> Option<PosePrior> {
     // An orthographic image has other ways; a frame without a mask has no object whose middle it could be.
     if pair.image.camera.is_orthographic() || !pair.image.whole.object.contains(&false) {
         return None;
     }
     let distance = pose.apply(pair.depth.points.centroid()).z;
     let (across, along) = (ANYWHERE_ACROSS * distance, ANYWHERE_ALONG * distance);
-    Some(OutlinePrior { pose, rotation: degrees.to_radians(), across, along })
+    Some(PosePrior { pose, rotation: degrees.to_radians(), across, along })
 }
 
 fn is_seen(found: &OutlineReport) -> bool {

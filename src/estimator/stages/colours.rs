@@ -4,7 +4,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::estimator::gauge;
 use crate::estimator::pair::ViewPair;
 use crate::pose::{
-    ContrastProblem, Photometric, PhotometricOptions, PhotometricProblem, PhotometricReport, Similarity,
+    ContrastProblem, Photometric, PhotometricOptions, PhotometricProblem, PhotometricReport, PosePrior, Similarity,
 };
 use crate::view::{ColourView, DepthView, Normals, cubic_normals};
 
@@ -25,6 +25,10 @@ const CANDIDATE_POINTS: usize = 2500;
 /// cloud is easily explained. Candidates of the search lie within 0.1 of a right size.
 pub const COLLAPSE: f64 = 0.3;
 
+/// Level of the image that candidates near an initial pose begin with, and the coarsest.
+pub const FIRST_LEVEL_NEAR: usize = 1;
+pub const COARSEST_LEVEL: usize = 3;
+
 /// How the registration of a candidate stands.
 pub enum Attempt {
     Ongoing,
@@ -37,6 +41,8 @@ pub struct ColourRegistration {
     photometric: Photometric,
     sharp: SharpNormals,
     is_coarse: bool,
+    /// An initial pose that registrations keep near, where a single albedo does not explain the image from there.
+    near: Option<PosePrior>,
     /// The last registration.
     found: Option<PhotometricReport>,
 }
@@ -64,7 +70,12 @@ impl SharpNormals {
 
     // One copy of it: visitors download each.
     #[inline(never)]
-    fn problem<'a>(&'a self, pair: &'a ViewPair, scale_is_held: bool) -> PhotometricProblem<'a> {
+    fn problem<'a>(
+        &'a self,
+        pair: &'a ViewPair,
+        scale_is_held: bool,
+        near: Option<PosePrior>,
+    ) -> PhotometricProblem<'a> {
         PhotometricProblem {
             image: &pair.image,
             depth_size: pair.depth.size,
@@ -76,7 +87,7 @@ impl SharpNormals {
             prior: &pair.prior,
             prior_weight: if pair.options.weights.light > 0.0 { PRIOR_WEIGHT } else { 0.0 },
             scale_is_held,
-            near: None,
+            near,
         }
     }
 }
@@ -86,11 +97,17 @@ impl ColourRegistration {
     pub fn new(pair: &ViewPair) -> Self {
         let sharp = SharpNormals::new(&pair.depth);
         Self {
-            photometric: Photometric::new(&sharp.problem(pair, is_scale_held(pair))),
+            photometric: Photometric::new(&sharp.problem(pair, is_scale_held(pair), None)),
+            near: None,
             is_coarse: sharp.noise > LARGEST_NOISE && pair.known_light().is_some(),
             sharp,
             found: None,
         }
+    }
+
+    /// Keeps the registrations that follow near an initial pose, or sets them free.
+    pub const fn keep_near(&mut self, prior: Option<PosePrior>) {
+        self.near = prior;
     }
 
     /// That of a pair, made now where it is not there yet.
@@ -106,7 +123,7 @@ impl ColourRegistration {
 
     /// The best pose near `start` by the colours of another version of the image.
     pub fn register_in(&self, pair: &ViewPair, image: &ColourView, start: &Similarity) -> Option<PhotometricReport> {
-        let problem = PhotometricProblem { image, ..self.sharp.problem(pair, is_scale_held(pair)) };
+        let problem = PhotometricProblem { image, ..self.sharp.problem(pair, is_scale_held(pair), self.near) };
         let found = Photometric::new(&problem).register(&problem, start, &options(pair)).ok()?;
         Some(found).filter(|found| gauge::growth(pair, &found.pose, start) < COLLAPSE)
     }
@@ -188,7 +205,7 @@ impl ColourRegistration {
         options: &PhotometricOptions,
     ) -> Result<PhotometricReport> {
         let scale_is_held = is_scale_held(pair);
-        match self.photometric.register(&self.sharp.problem(pair, scale_is_held), start, options) {
+        match self.photometric.register(&self.sharp.problem(pair, scale_is_held, self.near), start, options) {
             Ok(found) if gauge::growth(pair, &found.pose, start) < COLLAPSE => Ok(found),
             Ok(_) if scale_is_held && !pair.image.camera.is_orthographic() => Err(collapsed()),
             found if scale_is_held => found,
@@ -204,14 +221,21 @@ impl ColourRegistration {
         start: &Similarity,
         options: &PhotometricOptions,
     ) -> Result<PhotometricReport> {
-        let near = self.photometric.register(&self.sharp.problem(pair, true), start, options)?;
+        let near = self.photometric.register(&self.sharp.problem(pair, true, self.near), start, options)?;
         let options = PhotometricOptions { first_level: 0, annealing: false, ..*options };
-        self.photometric.register(&self.sharp.problem(pair, is_scale_held(pair)), &near.pose, &options)
+        self.photometric.register(&self.sharp.problem(pair, is_scale_held(pair), self.near), &near.pose, &options)
     }
 
-    /// A step of the registration of a candidate, `anew` the first.
+    /// A step of the registration of a candidate, `anew` the first. Near an initial pose it begins with an image that is little blurred:
+    /// candidates are many and close to one another, and much blurred all of them would lead to one place.
     pub fn step_candidate(&mut self, pair: &ViewPair, start: &Similarity, anew: bool) -> Attempt {
-        let outcome = if anew { self.begin(pair, start).map(|()| None) } else { self.advance(pair) };
+        let first_level = if self.near.is_some() { FIRST_LEVEL_NEAR } else { options(pair).first_level };
+        self.step_from(pair, start, first_level, anew)
+    }
+
+    /// The same from a level of the image.
+    pub fn step_from(&mut self, pair: &ViewPair, start: &Similarity, first_level: usize, anew: bool) -> Attempt {
+        let outcome = if anew { self.begin(pair, start, first_level).map(|()| None) } else { self.advance(pair) };
         match outcome {
             Ok(None) => Attempt::Ongoing,
             outcome => {
@@ -234,7 +258,7 @@ impl ColourRegistration {
     /// What the colours say of a pose as it is, the light fitted to it.
     pub fn judge(&mut self, pair: &ViewPair, pose: &Similarity) -> Option<Box<PhotometricReport>> {
         let options = PhotometricOptions { most_points: CANDIDATE_POINTS, first_level: 0, ..options(pair) };
-        let problem = self.sharp.problem(pair, is_scale_held(pair));
+        let problem = self.sharp.problem(pair, is_scale_held(pair), self.near);
         self.photometric.begin(&problem, pose, &options).ok()?;
         self.photometric.report(&problem).ok().map(Box::new)
     }
@@ -262,19 +286,19 @@ impl ColourRegistration {
             points_stay: true,
             ..PhotometricOptions::default()
         };
-        let problem = self.sharp.problem(pair, is_scale_held(pair));
+        let problem = self.sharp.problem(pair, is_scale_held(pair), self.near);
         let problem = PhotometricProblem { points: &points, normals: &normals, ..problem };
         self.photometric.register(&problem, pose, &options).ok()
     }
 
-    fn begin(&mut self, pair: &ViewPair, start: &Similarity) -> Result<()> {
-        let options = PhotometricOptions { most_points: CANDIDATE_POINTS, ..options(pair) };
-        self.photometric.begin(&self.sharp.problem(pair, is_scale_held(pair)), start, &options)
+    fn begin(&mut self, pair: &ViewPair, start: &Similarity, first_level: usize) -> Result<()> {
+        let options = PhotometricOptions { most_points: CANDIDATE_POINTS, first_level, ..options(pair) };
+        self.photometric.begin(&self.sharp.problem(pair, is_scale_held(pair), self.near), start, &options)
     }
 
     /// One step; the report, which takes about as long, once there is none left.
     fn advance(&mut self, pair: &ViewPair) -> Result<Option<PhotometricReport>> {
-        let problem = self.sharp.problem(pair, is_scale_held(pair));
+        let problem = self.sharp.problem(pair, is_scale_held(pair), self.near);
         if self.photometric.is_done() {
             return self.photometric.report(&problem).map(Some);
         }

@@ -1,7 +1,7 @@
 //! Does parts of an estimator's work for it, in another thread with an instance of its own.
 
 use crate::error::Result;
-use crate::estimator::finder::{Opening, RegisteredCandidate, search};
+use crate::estimator::finder::{Opening, RegisteredCandidate, TrustRegion, search};
 use crate::estimator::pair::ViewPair;
 use crate::estimator::stages::ColourRegistration;
 use crate::options::Options;
@@ -70,6 +70,7 @@ impl Worker {
                 let mut searched = Searched::of(pair);
                 let (pair, colours) = searched.parts(pair);
                 let search = search(pair, ImageGrid::new(&pair.image)?, colours)?;
+                colours.keep_near(TrustRegion::of(pair).and_then(|region| region.prior(pair)));
                 none.insert((searched, search))
             }
         };

@@ -13,7 +13,7 @@ const REACH: f64 = 2.5;
 const MOST: usize = 21;
 
 /// The operator on one raster; owns its memory. Values of a pixel lie side by side, so that all are worked on at once.
-pub(super) struct LocalMeans {
+pub(in crate::pose) struct LocalMeans {
     width: usize,
     /// The Gaussian from -reach to reach.
     kernel: Vec<f32>,

@@ -35,6 +35,7 @@
 
 mod equations;
 mod local_means;
+pub(super) use local_means::LocalMeans;
 mod objective;
 mod prediction;
 mod problem;

@@ -29,5 +29,5 @@ mod registration;
 mod rims;
 mod sums;
 
-pub use problem::{OutlinePrior, OutlineProblem, OutlineReport};
+pub use problem::{OutlineProblem, OutlineReport};
 pub use registration::Outline;

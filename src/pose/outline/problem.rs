@@ -2,6 +2,7 @@
 
 use nalgebra::Vector3;
 
+use crate::pose::prior::PosePrior;
 use crate::pose::similarity::Similarity;
 use crate::pose::uncertainty::Uncertainty;
 use crate::view::{ColourView, DepthView, Normals};
@@ -14,18 +15,7 @@ pub struct OutlineProblem<'a> {
     /// Normals of the depth view's points.
     pub normals: &'a Normals,
     /// What is told.
-    pub prior: OutlinePrior,
-}
-
-/// A told pose and one sigma of it.
-#[derive(Clone, Copy)]
-pub struct OutlinePrior {
-    pub pose: Similarity,
-    /// Radians.
-    pub rotation: f64,
-    /// Of the object's middle, across and along the line of sight, units of the colour view.
-    pub across: f64,
-    pub along: f64,
+    pub prior: PosePrior,
 }
 
 /// What outlines say.

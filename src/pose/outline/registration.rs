@@ -3,13 +3,13 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::edges::{Edge, Edges, LEVELS};
-use super::problem::{OutlinePrior, OutlineProblem, OutlineReport};
+use super::problem::{OutlineProblem, OutlineReport};
 use super::rims::Rims;
 use super::sums::{Row, Sums};
 use crate::numeric::eigen::symmetric_eigen;
 use crate::numeric::{quantile, robust};
 use crate::pose::increment::{
-    Frame, PoseMatrix, PoseVector, SCALE, UNKNOWN, UNKNOWNS, clear_unknowns, damped_step, inverse, rotation_vector,
+    Frame, PoseMatrix, PoseVector, SCALE, UNKNOWN, UNKNOWNS, clear_unknowns, damped_step, inverse,
 };
 use crate::pose::silhouette::{OUTSIDE_WEIGHT, SLACK, Silhouette};
 use crate::pose::similarity::Similarity;
@@ -249,19 +249,9 @@ impl Outline {
     }
 
     fn add_prior(&self, problem: &OutlineProblem<'_>, pose: &Similarity, loss: f64, sums: &mut Sums) {
-        let OutlinePrior { pose: told, rotation, across, along } = &problem.prior;
-        let turned = -rotation_vector(&(told.rotation * pose.rotation.transpose()));
-        let moved = pose.apply(self.middle) - told.apply(self.middle);
-        let length = pose.scale * self.size;
-        for axis in 0..3 {
-            let mut row = Row::zeros();
-            row[axis] = 1.0 / rotation;
-            sums.add(&row, turned[axis] / rotation, PRIOR, f64::INFINITY);
-            let sigma = if axis < 2 { across } else { along };
-            let mut row = Row::zeros();
-            row[3 + axis] = length / sigma;
-            sums.add(&row, moved[axis] / sigma, PRIOR, f64::INFINITY);
-        }
+        problem.prior.for_each(self.middle, pose, &self.frame(pose), |row, residual| {
+            sums.add(row, residual, PRIOR, f64::INFINITY);
+        });
         let mut row = Row::zeros();
         row[LOSS] = 1.0 / LOSS_SIGMA;
         sums.add(&row, loss / LOSS_SIGMA, PRIOR, f64::INFINITY);

@@ -5,6 +5,7 @@ use super::equations::{Equations, LightEquations, ReducedSystem};
 use super::normal_noise::NormalNoise;
 use super::points::VisiblePoints;
 use super::problem::{Indices, PhotometricProblem};
+use super::relief::{Relief, ReliefSums};
 use super::residual::{ColourModel, LinearisedPoints, Samples};
 use super::state::State;
 use super::weighting::Weighting;
@@ -20,6 +21,7 @@ const LEAST_WEIGHT_FOR_NOISE: f64 = 0.25;
 pub(super) struct Evaluation<'a> {
     pub problem: &'a PhotometricProblem<'a>,
     pub points: &'a VisiblePoints,
+    pub relief: Option<&'a Relief>,
     /// The image under the light of the state.
     pub model: ColourModel<'a>,
     pub state: &'a State,
@@ -125,7 +127,7 @@ impl Evaluation<'_> {
         let mut equations = LightEquations::new(self.problem.light.is_some());
         for ((indices, weight), samples) in self.points.lane_groups().zip(samples) {
             let normals = self.problem.normals(&self.state.pose, &indices);
-            let residual = self.model.residual(samples, normals);
+            let residual = self.less_albedo(&indices, self.model.residual(samples, normals));
             let weight = weight * samples.shown * self.robust_weight(&residual);
             equations.add(&basis(normals), &residual, weight);
         }
@@ -139,7 +141,8 @@ impl Evaluation<'_> {
         let (problem, pose) = (self.problem, &self.state.pose);
         for (indices, weight) in self.points.lane_groups() {
             let points = problem.points(pose, &indices);
-            let linearised = self.model.linearise(points, problem.normals(pose, &indices), frame);
+            let mut linearised = self.model.linearise(points, problem.normals(pose, &indices), frame);
+            linearised.residual = self.less_albedo(&indices, linearised.residual);
             visit(&indices, &linearised, weight * linearised.shown * self.robust_weight(&linearised.residual));
         }
     }
@@ -151,8 +154,40 @@ impl Evaluation<'_> {
         for (indices, weight) in self.points.lane_groups() {
             let samples = self.model.sample(problem.points(pose, &indices));
             let residual = self.model.residual(&samples, problem.normals(pose, &indices));
+            let residual = self.less_albedo(&indices, residual);
             visit(weight, samples.shown, dot(residual, residual));
         }
+    }
+
+    /// Sums of a fit of the albedo that goes with the relief.
+    pub fn relief_sums(&self, samples: &[Samples]) -> ReliefSums {
+        let mut sums = ReliefSums::new();
+        let Some(relief) = self.relief else { return sums };
+        for ((indices, weight), samples) in self.points.lane_groups().zip(samples) {
+            let normals = self.problem.normals(&self.state.pose, &indices);
+            let residual = self.less_albedo(&indices, self.model.residual(samples, normals));
+            let weight = (weight * samples.shown * self.robust_weight(&residual)).array();
+            let residual = residual.map(Doubles::array);
+            for (lane, &index) in indices.iter().enumerate().filter(|(lane, _)| weight[*lane] > 0.0) {
+                relief.add(
+                    &mut sums,
+                    index as usize,
+                    [0, 1, 2].map(|channel: usize| residual[channel][lane]),
+                    weight[lane],
+                );
+            }
+        }
+        sums
+    }
+
+    /// Residuals less the albedo that goes with the relief.
+    #[inline(always)]
+    fn less_albedo(&self, indices: &Indices, residual: [Doubles; 3]) -> [Doubles; 3] {
+        let Some(relief) = self.relief else { return residual };
+        let albedo = indices.map(|index| relief.albedo(index as usize));
+        std::array::from_fn(|channel| {
+            residual[channel] - Doubles::from(std::array::from_fn(|lane| f64::from(albedo[lane][channel])))
+        })
     }
 
     #[inline(always)]

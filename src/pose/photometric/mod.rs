@@ -34,6 +34,8 @@
 //! | `points` | which depth points take part |
 //! | `residual` | r and its derivatives |
 //! | `weighting` | robust scale and weight of the prior |
+//! | `anchors` | terms of the pose alone around an initial pose: mask and prior |
+//! | `relief` | albedo that goes with the curvature of the depth map |
 //! | `evaluation` | sums over the points: objective, equations, noise, inliers |
 //! | `equations` | the linear system, the light eliminated |
 //! | `normal_noise` | what noisy normals add to it |
@@ -50,9 +52,10 @@ mod normal_noise;
 mod points;
 mod problem;
 mod registration;
+mod relief;
 mod residual;
 mod state;
 mod weighting;
 
-pub use problem::{PosePrior, PhotometricOptions, PhotometricProblem, PhotometricReport, PhotometricTermination};
+pub use problem::{PhotometricOptions, PhotometricProblem, PhotometricReport, PhotometricTermination};
 pub use registration::Photometric;

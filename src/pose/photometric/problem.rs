@@ -7,12 +7,15 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::light::{Light, LightPrior};
 use crate::numeric::{DOUBLE_LANES, Doubles, Real, dot};
 use crate::pose::increment::{PoseMatrix, UNKNOWNS};
+use crate::pose::prior::PosePrior;
 use crate::pose::similarity::Similarity;
 use crate::pose::uncertainty::Uncertainty;
 use crate::view::{ColourView, DepthNoise, Normals, Points, Size};
 
 /// The coarsest level of the image.
-pub(super) const COARSEST: usize = 3;
+pub(super) const COARSEST: usize = 2;
+/// The same around an initial pose, which keeps an unknown light from explaining a blurred image in any pose.
+pub(super) const COARSEST_NEAR: usize = 3;
 
 /// Depth pixels whose points are worked on side by side.
 pub(super) type Indices = [u32; DOUBLE_LANES];
@@ -41,21 +44,9 @@ pub struct PhotometricProblem<'a> {
     pub prior_weight: f64,
     /// Whether the scale of the start is kept.
     pub scale_is_held: bool,
-    /// An initial pose that is trusted so far; points are then held on the image's mask as well.
+    /// An initial pose that is trusted so far. Points are then held on the image's mask as well, and albedo that goes with the
+    /// curvature of the depth map is allowed for.
     pub near: Option<PosePrior>,
-}
-
-/// A pose and one sigma of it.
-#[derive(Clone, Copy, Debug)]
-pub struct PosePrior {
-    /// The pose.
-    pub pose: Similarity,
-    /// Radians.
-    pub rotation: f64,
-    /// Of the object's middle, across the line of sight, units of the colour view.
-    pub across: f64,
-    /// Of the object's middle, along the line of sight, units of the colour view.
-    pub along: f64,
 }
 
 impl PhotometricProblem<'_> {
@@ -128,7 +119,7 @@ const ENOUGH_ANNEALED: usize = 5000;
 /// How far from the pose a registration may start, and how long it may take.
 #[derive(Clone, Copy, Debug)]
 pub struct PhotometricOptions {
-    /// First level, 0 to 2: 2 from afar, 0 from a pose that is right to a degree.
+    /// First level, 0 to 3, as far as a problem has one: the coarsest from afar, 0 from a pose that is right to a degree.
     pub first_level: usize,
     /// Cap on the rounds.
     pub most_rounds: usize,
@@ -147,7 +138,7 @@ pub struct PhotometricOptions {
 impl Default for PhotometricOptions {
     fn default() -> Self {
         Self {
-            first_level: COARSEST,
+            first_level: COARSEST_NEAR,
             most_rounds: 40,
             most_points: usize::MAX,
             annealed_points: ENOUGH_ANNEALED,

@@ -10,7 +10,10 @@ use super::covariance::{Noise, Tiles};
 use super::equations::ReducedSystem;
 use super::evaluation::Evaluation;
 use super::points::{Sampling, VisiblePoints};
-use super::problem::{COARSEST, PhotometricOptions, PhotometricProblem, PhotometricReport, PhotometricTermination};
+use super::problem::{
+    COARSEST, COARSEST_NEAR, PhotometricOptions, PhotometricProblem, PhotometricReport, PhotometricTermination,
+};
+use super::relief::Relief;
 use super::residual::{ColourModel, Samples};
 use super::state::State;
 use super::weighting::{Weighting, final_robust_scale, prior_weight};
@@ -22,11 +25,11 @@ use crate::pose::uncertainty::{describe, weakest_of};
 use crate::view::Size;
 
 /// Gaussian blur of each level's image, pixels; a level takes every 2^level-th point.
-const BLURS: [f64; COARSEST + 1] = [0.0, 1.5, 3.0, 6.0];
+const BLURS: [f64; COARSEST_NEAR + 1] = [0.0, 1.5, 3.0, 6.0];
 /// Coarsest level under an unknown light: a light that follows explains strongly blurred colours in any pose. From 20
 /// degrees off level 1 always converged on Mozart at 64x64, level 2 in a third of the cases; a known light converges
 /// from 30 by level 2.
-const COARSEST_UNKNOWN: usize = 3;
+const COARSEST_UNKNOWN: usize = 1;
 /// Blur of the image whose gradients are the instrumental variables, pixels: 0.7 to 1.5 serve alike.
 pub(super) const INSTRUMENT_BLUR: f64 = 1.0;
 /// The first robust scale over that of the residuals at the start.
@@ -63,6 +66,12 @@ enum Phase {
     Done(PhotometricTermination),
 }
 
+/// What an initial pose brings in.
+struct Near {
+    anchors: Anchors,
+    relief: Relief,
+}
+
 /// Registers one depth view to one image again and again; owns all memory.
 pub struct Photometric {
     sizes: [Size; 2],
@@ -71,7 +80,8 @@ pub struct Photometric {
     /// The image whose gradients are the instrumental variables.
     instruments: SplineImage,
     points: VisiblePoints,
-    anchors: Anchors,
+    /// What an initial pose brings in, once there is one.
+    near: Option<Box<Near>>,
     tiles: Tiles,
     /// log S at the points while the pose stays.
     samples: Vec<Samples>,
@@ -113,7 +123,7 @@ impl Photometric {
             samples: Vec::new(),
             magnitudes: Vec::with_capacity(points.capacity()),
             points,
-            anchors: Anchors::new(problem),
+            near: None,
             tiles: Tiles::new(problem.depth_size),
             state,
             annealed: state,
@@ -164,6 +174,7 @@ impl Photometric {
     ) -> Result<()> {
         problem.check(self.sizes)?;
         start.validate("start")?;
+        self.prepare_near(problem);
         let level = options.first_level.min(coarsest(problem)).min(self.levels.len() - 1);
         // From the image's own brightness, so that a change of exposure changes nothing that follows.
         let brightness = problem.image.log_mean();
@@ -179,6 +190,7 @@ impl Photometric {
         (self.thinned, self.settled_step) = (false, None);
         self.choose_points(problem, Sampling { level, most: self.annealed_points })?;
         self.weighting = Weighting::FIRST;
+        self.noise.residuals = f64::INFINITY;
         self.fit_light(problem, level)?;
         self.measure_noise(problem, level);
         let tolerance = if options.annealing { FIRST_SCALE / SCALE_SHRINKING } else { 1.0 };
@@ -278,9 +290,35 @@ impl Photometric {
             let equations = self.evaluation(problem, level, &self.state).light_equations(&samples);
             let step = equations.step().ok_or_else(undetermined_light)?;
             self.state = self.state.relit(&step, problem.light.is_some());
+            self.fit_relief(problem, level, &samples);
         }
         self.samples = samples;
         Ok(())
+    }
+
+    /// Memory for what an initial pose brings in, and levels of the image that are as coarse as it allows.
+    fn prepare_near(&mut self, problem: &PhotometricProblem<'_>) {
+        if problem.near.is_none() {
+            return;
+        }
+        for &blur in &BLURS[self.levels.len().min(coarsest(problem) + 1)..=coarsest(problem)] {
+            self.levels.push(self.levels[0].blurred(problem.image, blur));
+        }
+        match &mut self.near {
+            Some(near) => near.relief.clear(),
+            none => *none = Some(Box::new(Near { anchors: Anchors::new(problem), relief: Relief::new(problem) })),
+        }
+    }
+
+    /// The albedo that goes with the relief, around an initial pose and once the noise is known.
+    fn fit_relief(&mut self, problem: &PhotometricProblem<'_>, level: usize, samples: &[Samples]) {
+        if problem.near.is_none() || !self.noise.residuals.is_finite() {
+            return;
+        }
+        let sums = self.evaluation(problem, level, &self.state).relief_sums(samples);
+        if let Some(near) = &mut self.near {
+            near.relief.step(sums, self.noise.residuals);
+        }
     }
 
     /// The noise of the residuals.
@@ -305,9 +343,10 @@ impl Photometric {
         frame: &Frame,
         pose: &Similarity,
     ) -> Option<AnchorSums> {
-        let largest = self.weighting.robust_scale.powi(2);
-        let weights = AnchorWeights { total: self.points.weight(), largest, level, noise: self.noise.residuals };
-        problem.near.map(|near| self.anchors.sums(problem, &near, pose, frame, weights))
+        let (prior, near) = problem.near.as_ref().zip(self.near.as_ref())?;
+        let (points, robust_scale) = (self.points.weight(), self.weighting.robust_scale);
+        let weights = AnchorWeights { points, robust_scale, noise: self.noise.residuals, level };
+        Some(near.anchors.sums(problem, prior, pose, frame, weights))
     }
 
     /// The objective of a state.
@@ -319,7 +358,8 @@ impl Photometric {
     /// The points at one level of the image under a state, derivatives for least squares.
     fn evaluation<'a>(&'a self, problem: &'a PhotometricProblem<'a>, level: usize, state: &'a State) -> Evaluation<'a> {
         let model = ColourModel::new(&self.levels[level], &problem.image.camera, &state.exposed_light());
-        Evaluation { problem, points: &self.points, model, state, weighting: self.weighting }
+        let relief = self.near.as_ref().filter(|_| problem.near.is_some()).map(|near| &near.relief);
+        Evaluation { problem, points: &self.points, relief, model, state, weighting: self.weighting }
     }
 
     /// The same on the sharp image at the present state, with instrumental variables.
@@ -329,12 +369,7 @@ impl Photometric {
     }
 
     fn reduce_by_instruments(&self, problem: &PhotometricProblem<'_>, frame: &Frame) -> Result<ReducedSystem> {
-        let mut reduced =
-            self.evaluation_by_instruments(problem).unbiased_system(frame).ok_or_else(undetermined_light)?;
-        if let Some(AnchorSums { matrix, gradient, .. }) = self.anchors(problem, 0, frame, &self.state.pose) {
-            reduced.add(&matrix, &gradient);
-        }
-        Ok(reduced)
+        self.evaluation_by_instruments(problem).unbiased_system(frame).ok_or_else(undetermined_light)
     }
 
     fn covariance(&mut self, problem: &PhotometricProblem<'_>, frame: &Frame, reduced: &ReducedSystem) -> PoseMatrix {
@@ -347,7 +382,11 @@ impl Photometric {
 
 /// The coarsest level that serves a problem.
 const fn coarsest(problem: &PhotometricProblem<'_>) -> usize {
-    if problem.light.is_some() { COARSEST } else { COARSEST_UNKNOWN }
+    match (problem.near, problem.light) {
+        (Some(_), _) => COARSEST_NEAR,
+        (None, Some(_)) => COARSEST,
+        (None, None) => COARSEST_UNKNOWN,
+    }
 }
 
 fn undetermined_light() -> Error {

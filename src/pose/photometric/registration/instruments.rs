@@ -49,7 +49,10 @@ impl Photometric {
         last: f64,
     ) -> Result<Phase> {
         self.iterations += 1;
-        let reduced = self.reduce_by_instruments(problem, frame)?;
+        let mut reduced = self.reduce_by_instruments(problem, frame)?;
+        if let Some(sums) = self.anchors(problem, 0, frame, &self.state.pose) {
+            reduced.add(&sums.matrix, &sums.gradient);
+        }
         let mut settled = true;
         if let Some(step) = reduced.step(0.0, &problem.held()).filter(|step| round == 0 || step.pose.norm() <= last) {
             self.state = self.state.stepped(frame, &step, problem.light.is_some());

@@ -1,0 +1,113 @@
+//! Albedo that goes with the relief: dirt and ambient shadow lie in hollows, wear on ridges.
+//!
+//! Curvature of the depth map at two scales, and its squares, are regressors of the log albedo beside the light. Their coefficients are
+//! fitted to the residuals at the beginning of a round, in turn with the light, and the albedo that they give stays during the round.
+
+use nalgebra::{SMatrix, SVector};
+
+use super::problem::PhotometricProblem;
+use super::weighting::CORRELATED;
+use crate::pose::contrast::LocalMeans;
+use crate::view::{Normals, Size};
+
+/// Regressors of a point.
+const REGRESSORS: usize = 4;
+type Gram = SMatrix<f64, REGRESSORS, REGRESSORS>;
+type Coefficients = SVector<f64, REGRESSORS>;
+
+/// Sigmas of the Gaussians, depth pixels of an object as large as that of [`MEASURED_SIDE`].
+const SCALES: [f64; 2] = [1.5, 4.0];
+const MEASURED_SIDE: f64 = 64.0;
+/// Curvatures beyond so many standard deviations count as that.
+const LARGEST: f32 = 2.5;
+/// One sigma of a coefficient, log units a standard deviation of its regressor.
+const PRIOR: f64 = 0.3;
+
+/// Regressors, their coefficients, and the albedo that they give; owns its memory.
+pub(super) struct Relief {
+    regressors: Vec<[f32; REGRESSORS]>,
+    coefficients: [Coefficients; 3],
+    albedo: Vec<[f32; 3]>,
+}
+
+/// Sums of a fit over points.
+pub(super) struct ReliefSums {
+    gram: Gram,
+    right: [Coefficients; 3],
+}
+
+impl Relief {
+    /// Of the normals of a problem.
+    pub fn new(problem: &PhotometricProblem<'_>) -> Self {
+        let size = problem.depth_size;
+        let [fine, coarse] = SCALES.map(|scale| curvature(size, problem.normals, scale));
+        let regressors = fine.into_iter().zip(coarse).map(|(a, b)| [a, b, a * a, b * b]).collect();
+        Self { regressors, coefficients: [Coefficients::zeros(); 3], albedo: vec![[0.0; 3]; size.len()] }
+    }
+
+    /// Forgets what was fitted.
+    pub fn clear(&mut self) {
+        self.coefficients = [Coefficients::zeros(); 3];
+        self.albedo.fill([0.0; 3]);
+    }
+
+    /// Log albedo of a depth pixel.
+    pub fn albedo(&self, index: usize) -> [f32; 3] {
+        self.albedo[index]
+    }
+
+    /// Enters the residual of a point, whose own albedo is off already.
+    pub fn add(&self, sums: &mut ReliefSums, index: usize, residual: [f64; 3], weight: f64) {
+        let regressors = SVector::from(self.regressors[index].map(f64::from));
+        sums.gram.ger(weight, &regressors, &regressors, 1.0);
+        for (right, residual) in sums.right.iter_mut().zip(residual) {
+            right.axpy(weight * residual, &regressors, 1.0);
+        }
+    }
+
+    /// Takes a step of the coefficients; `ridge` is the weight of their prior.
+    pub fn step(&mut self, mut sums: ReliefSums, noise: f64) {
+        let ridge = CORRELATED * (noise / PRIOR).powi(2);
+        sums.gram += Gram::identity() * ridge;
+        let Some(factor) = sums.gram.cholesky() else { return };
+        for (coefficients, right) in self.coefficients.iter_mut().zip(sums.right) {
+            *coefficients += factor.solve(&(right - *coefficients * ridge));
+        }
+        for (albedo, regressors) in self.albedo.iter_mut().zip(&self.regressors) {
+            let regressors = SVector::from(regressors.map(f64::from));
+            *albedo = std::array::from_fn(|channel| self.coefficients[channel].dot(&regressors) as f32);
+        }
+    }
+}
+
+impl ReliefSums {
+    pub fn new() -> Self {
+        Self { gram: Gram::zeros(), right: [Coefficients::zeros(); 3] }
+    }
+}
+
+/// Divergence of the normals, smoothed by a Gaussian, in standard deviations; zero where a neighbour is missing.
+fn curvature(size: Size, normals: &Normals, scale: f64) -> Vec<f32> {
+    let valid: Vec<f32> = (0..size.len()).map(|index| f32::from(u8::from(normals.is_valid(index)))).collect();
+    let slope = |index: usize| if valid[index] > 0.0 { [normals.x[index], normals.y[index]] } else { [0.0; 2] };
+    let slopes: Vec<[f32; 2]> = (0..size.len()).map(slope).collect();
+    let count = valid.iter().sum::<f32>().max(1.0);
+    let unit = f64::from(count).sqrt() / MEASURED_SIDE;
+    let smooth = LocalMeans::new(size.width, size.len(), scale * unit).smoothed(&valid, &slopes);
+    let divergence = |index: usize| {
+        let (column, row) = size.position(index);
+        let is_inside = column > 0 && row > 0 && column + 1 < size.width && row + 1 < size.height;
+        if !is_inside || valid[index] == 0.0 {
+            return 0.0;
+        }
+        let beside = [index - 1, index + 1, index - size.width, index + size.width];
+        let [left, right, above, below] = beside.map(|at| smooth[at]);
+        let is_whole = beside.iter().all(|&at| valid[at] > 0.0);
+        if is_whole { right[0] - left[0] + below[1] - above[1] } else { 0.0 }
+    };
+    let mut curvature: Vec<f32> = (0..size.len()).map(divergence).collect();
+    let square = curvature.iter().map(|value| value * value).sum::<f32>() / count;
+    let spread = square.sqrt().max(f32::MIN_POSITIVE);
+    curvature.iter_mut().for_each(|value| *value = (*value / spread).clamp(-LARGEST, LARGEST));
+    curvature
+}
