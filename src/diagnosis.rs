@@ -104,6 +104,12 @@ impl Residuals {
         self.noise <= (NOISE_OF_IMAGE * self.image_noise).max(SHARE_OF_SPREAD * self.spread)
     }
 
+    /// Whether more of the spread is left than a trusted pose may leave.
+    #[must_use]
+    pub fn is_unexplained(&self) -> bool {
+        self.noise.is_nan() || self.noise > LARGEST_UNEXPLAINED * self.spread
+    }
+
     /// Whether next to nothing of the spread is left.
     #[must_use]
     pub fn is_next_to_nothing(&self) -> bool {

@@ -1,7 +1,7 @@
 //! What the verdict is taken from: the state of the loop at the end of an iteration, and what each registration reports of its answer.
 
 use crate::options::{Registration, Shading};
-use crate::pose::{ContrastReport, Direction, OutlineReport, PhotometricReport, Uncertainty};
+use crate::pose::{ContrastReport, Direction, OutlineReport, PhotometricReport};
 use crate::reason::Reason;
 
 /// What is known at the end of an iteration.
@@ -79,7 +79,11 @@ pub struct ContrastEvidence {
 impl ContrastEvidence {
     /// Of a registration by local contrast.
     pub fn of(found: &ContrastReport) -> Self {
-        Self { sigma: largest(&found.uncertainty), weakest: found.uncertainty.weakest, unexplained: found.objective }
+        Self {
+            sigma: found.uncertainty.largest_rotation(),
+            weakest: found.uncertainty.weakest,
+            unexplained: found.objective,
+        }
     }
 }
 
@@ -87,7 +91,7 @@ impl ColourEvidence {
     /// Of a registration, given the spread of the colours.
     pub fn of(found: &PhotometricReport, log_spread: f64) -> Self {
         Self {
-            sigma: largest(&found.uncertainty),
+            sigma: found.uncertainty.largest_rotation(),
             weakest: found.uncertainty.weakest,
             unexplained: found.noise / log_spread,
             inliers: found.inliers,
@@ -98,10 +102,10 @@ impl ColourEvidence {
 impl OutlineEvidence {
     /// Of a registration by outlines.
     pub fn of(found: &OutlineReport) -> Self {
-        Self { sigma: largest(&found.uncertainty), weakest: found.uncertainty.weakest, is_unseen: found.unseen }
+        Self {
+            sigma: found.uncertainty.largest_rotation(),
+            weakest: found.uncertainty.weakest,
+            is_unseen: found.unseen,
+        }
     }
-}
-
-fn largest(uncertainty: &Uncertainty) -> f64 {
-    uncertainty.rotation_degrees.into_iter().fold(0.0, f64::max)
 }

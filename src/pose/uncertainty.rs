@@ -138,6 +138,11 @@ pub struct Uncertainty {
 }
 
 impl Uncertainty {
+    /// Sigma of the rotation about its least certain axis, degrees.
+    pub(crate) fn largest_rotation(&self) -> f64 {
+        self.rotation_degrees.into_iter().fold(0.0, f64::max)
+    }
+
     /// Adds what the focal lengths are uncertain by. A relief that is stretched by a share of it turns its normals by half of
     /// that share at most, share sin(2 slope) / 2; an object is nearer or farther by that share of its distance.
     pub(crate) fn add_focal_length(&mut self, distance: f64) {

@@ -8,7 +8,7 @@ use crate::estimator::gauge;
 use crate::estimator::pair::ViewPair;
 use crate::estimator::stages::ColourRegistration;
 use crate::options::Registration;
-use crate::pose::{ContrastOutcome, ContrastSearch, PhotometricReport, Similarity, Uncertainty};
+use crate::pose::{ContrastOutcome, ContrastSearch, PhotometricReport, Similarity};
 use crate::view::ColourView;
 
 /// Both registrations have found one pose where their ends are this near, degrees: contrast may be off by a few.
@@ -53,12 +53,6 @@ fn albedo_varies(pair: &ViewPair, plain: &PhotometricReport) -> bool {
 /// pose is the better one.
 fn is_plain(pair: &ViewPair, plain: &PhotometricReport, contrast: &ContrastOutcome) -> bool {
     !albedo_varies(pair, plain) && plain.pose.degrees_to(&contrast.best.pose) < SAME_POSE
-}
-
-/// Whether the first is less uncertain about its least certain axis.
-fn is_surer(first: &Uncertainty, second: &Uncertainty) -> bool {
-    let largest = |uncertainty: &Uncertainty| uncertainty.rotation_degrees.into_iter().fold(0.0, f64::max);
-    largest(first) <= largest(second)
 }
 
 /// What contrast is compared in: the image without the paint that shows at its edges, or as it is.
@@ -130,7 +124,7 @@ pub fn conclude(
     let is_believed = |plain: &PhotometricReport, search: &mut ContrastSearch| {
         is_plain(pair, plain, &contrast)
             && search.is_explained_by(&problem, &plain.pose)
-            && (!is_coarse || is_surer(&plain.uncertainty, &contrast.best.uncertainty))
+            && (!is_coarse || plain.uncertainty.largest_rotation() <= contrast.best.uncertainty.largest_rotation())
     };
     Some(match plain {
         Some(plain) if is_believed(&plain, search) => Conclusion::ByColours(Box::new(plain)),

@@ -376,7 +376,17 @@ impl Near {
             }
             _ => {}
         }
-        Ok(Decision::of(match (best, self.silhouettes.take()) {
+        let silhouettes = self.silhouettes.take();
+        // Colours that hardly fit tell less than silhouettes, and so do those that leave more open.
+        let is_trusted = |best: &PhotometricReport| match &silhouettes {
+            Some(found) => {
+                !pair.residuals(best).is_unexplained()
+                    && best.uncertainty.largest_rotation() <= found.uncertainty.largest_rotation()
+            }
+            None => true,
+        };
+        let best = best.filter(|best| is_trusted(best));
+        Ok(Decision::of(match (best, silhouettes) {
             (Some(best), _) => {
                 // What a single albedo explains needs no help from the initial pose.
                 if explains(pair, &best) {
@@ -389,8 +399,8 @@ impl Near {
                     false => Method::Initial,
                 }
             }
-            (None, Some(found)) => Method::Silhouettes(found),
-            (None, None) => Method::Initial,
+            (_, Some(found)) => Method::Silhouettes(found),
+            (..) => Method::Initial,
         }))
     }
 }
