@@ -8,8 +8,9 @@ use bimodal_stereo::nalgebra::SMatrix;
 use bimodal_stereo::{
     AnchorWeight, Anchors, Angles, Camera, ColourView, DepthView, Icp, IcpOptions, IcpProblem, IntegrationOptions,
     Integrator, Light, LightFitter, LightPrior, Metric, Normals, Photometric, PhotometricOptions, PhotometricProblem,
-    PixelLandscape, RansacOptions, Robustness, Search, SearchProblem, ShadingProblem, ShadingSolver, ShadingWeights,
-    Similarity, Size, cubic_normals, exposure_step, first_exposure, gradients, normals, ransac, surface_of_normals,
+    PixelLandscape, PosePrior, RansacOptions, Robustness, Search, SearchProblem, ShadingProblem, ShadingSolver,
+    ShadingWeights, Similarity, Size, cubic_normals, exposure_step, first_exposure, gradients, normals, ransac,
+    surface_of_normals,
 };
 
 use super::calibration::rig_camera;
@@ -379,6 +380,7 @@ fn registering(u: &mut Unstructured<'_>) -> Result<()> {
         prior: &prior,
         prior_weight: number(u, 1.0)?,
         scale_is_held: u.arbitrary()?,
+        near: None,
     };
     let options = PhotometricOptions {
         first_level: u.int_in_range(0..=4)?,
@@ -390,6 +392,11 @@ fn registering(u: &mut Unstructured<'_>) -> Result<()> {
     };
     let mut registration = Photometric::new(&problem);
     let start = pose(u)?;
+    let mut near = None;
+    if rarely(u, 3)? {
+        near = Some(PosePrior { pose: pose(u)?, rotation: unit(u)?, across: number(u, 0.1)?, along: unit(u)? });
+    }
+    let problem = PhotometricProblem { near, ..problem };
     let Some(()) = passed(registration.begin(&problem, &start, &options)) else { return Ok(()) };
     for _ in 0..MOST_SLICES {
         match passed(registration.step(&problem)) {

@@ -4,6 +4,8 @@ use nalgebra::Vector3;
 
 use super::increment::{Frame, PoseVector, rotation_vector};
 use super::similarity::Similarity;
+use crate::check::positive;
+use crate::error::Result;
 
 /// A pose and one sigma of it.
 #[derive(Clone, Copy, Debug)]
@@ -19,6 +21,14 @@ pub struct PosePrior {
 }
 
 impl PosePrior {
+    /// # Errors
+    /// [`ErrorKind::Range`](crate::ErrorKind::Range) of a pose that is no similarity, and of sigmas that are not above zero.
+    pub(super) fn validate(&self, field: &'static str) -> Result<()> {
+        self.pose.validate(field)?;
+        let sigmas = [("rotation", self.rotation), ("across", self.across), ("along", self.along)];
+        sigmas.into_iter().try_for_each(|(name, sigma)| positive(name, sigma).map_err(|error| error.below(field)))
+    }
+
     /// Calls `visit` with each residual of a pose, in sigmas, and its derivative by the unknowns of a frame; `middle` is that of the
     /// object, depth view's frame.
     pub(super) fn for_each(

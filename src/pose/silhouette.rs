@@ -80,9 +80,12 @@ impl Silhouette {
     fn bilinear(&self, field: &[f32], place: [f64; 2]) -> (f64, [f64; 2]) {
         let Size { width, height } = self.size;
         let [x, y] = self.within(place);
-        let (left, top) = ((x as usize).min(width - 2), (y as usize).min(height - 2));
+        let (left, top) = ((x as usize).min(width.saturating_sub(2)), (y as usize).min(height.saturating_sub(2)));
         let (u, v) = (x - left as f64, y - top as f64);
-        let at = |c: usize, r: usize| f64::from(field[self.size.index(left + c, top + r)]);
+        let at = |c: usize, r: usize| {
+            let (column, row) = ((left + c).min(width - 1), (top + r).min(height - 1));
+            f64::from(field[self.size.index(column, row)])
+        };
         let [a, b, c, d] = [at(0, 0), at(1, 0), at(0, 1), at(1, 1)];
         let distance = (1.0 - v) * ((1.0 - u) * a + u * b) + v * ((1.0 - u) * c + u * d);
         let gradient = [(1.0 - v) * (b - a) + v * (d - c), (1.0 - u) * (c - a) + u * (d - b)];
@@ -172,6 +175,12 @@ mod tests {
         let far = [-50.0, 14.0];
         assert!(silhouette.smoothly_signed_at(far).0 > 50.0 && silhouette.beyond_frame_at(far) > 50.0);
         assert_eq!(silhouette.at(far), silhouette.at([0.0, 14.0]));
+    }
+
+    #[test]
+    fn a_mask_of_one_pixel_has_distances_as_well() {
+        let silhouette = Silhouette::new(Size { width: 1, height: 1 }, &[true]);
+        assert_eq!((silhouette.at([0.3, -2.0]).0, silhouette.beyond_frame_at([4.0, 3.0])), (0.0, 5.0));
     }
 
     #[test]

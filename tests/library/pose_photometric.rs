@@ -60,6 +60,7 @@ fn register(views: &Views, light: Option<&Light>, start: &Similarity) -> Result<
         prior: &prior,
         prior_weight: 1.0,
         scale_is_held: true,
+        near: None,
     };
     Photometric::new(&problem).register(&problem, start, &PhotometricOptions::default())
 }

@@ -69,8 +69,10 @@ pub struct Candidates {
     optima: LocalOptima,
     /// The candidate whose registration is under way here.
     begun: Option<usize>,
-    /// Whether local contrast takes over where no single albedo explains anything.
+    /// Whether something else takes over where no single albedo explains anything.
     may_vary: bool,
+    /// Whether registrations are kept near the initial pose.
+    is_near: bool,
     chosen: Option<Optimum>,
 }
 
@@ -78,7 +80,23 @@ impl Candidates {
     /// Of a search, beside the optima that are known already.
     pub fn new(search: Search, optima: LocalOptima, effort: Effort, may_vary: bool) -> Self {
         let registrations = TaskResults::new(0);
-        Self { search, registrations, effort, next: 0, tried: 0, optima, begun: None, may_vary, chosen: None }
+        Self {
+            search,
+            registrations,
+            effort,
+            next: 0,
+            tried: 0,
+            optima,
+            begun: None,
+            may_vary,
+            is_near: false,
+            chosen: None,
+        }
+    }
+
+    /// The same, registered near the initial pose.
+    pub fn near(self) -> Self {
+        Self { is_near: true, ..self }
     }
 
     /// The best pose so far: that of a registration, or else of the search.
@@ -106,11 +124,11 @@ impl Candidates {
         if self.chosen.is_some() {
             return None;
         }
-        let Self { registrations, search, optima, next, begun, .. } = self;
+        let Self { registrations, search, optima, next, begun, is_near, .. } = self;
         let candidates = search.candidates();
         let is_wanted = |index| index >= *next && Some(index) != *begun && !optima.is_known(&candidates[index].pose);
         let index = registrations.take(is_wanted)?;
-        Some(Task(Work::Register(index, candidates[index].pose)))
+        Some(Task(Work::Register(index, candidates[index].pose, *is_near)))
     }
 
     /// What a worker has found.

@@ -88,6 +88,8 @@ struct Near {
     /// Where the registration from the initial pose left no more than the image's own noise.
     noisy: Option<Similarity>,
     silhouettes: Option<Box<OutlineReport>>,
+    /// Whether registrations are kept near the initial pose.
+    is_second: bool,
 }
 
 /// What is being done.
@@ -148,7 +150,7 @@ impl Finder {
         let plain = plain.map(Box::new).filter(|found| region.holds(pair, &found.pose));
         let noisy = plain.as_deref().filter(|found| pair.residuals(found).is_noise()).map(|found| found.pose);
         let phase = Phase::Nearby(Box::new(Nearby::new(pair, region.clone(), plain)));
-        let near = Near { region, noisy, silhouettes: None };
+        let near = Near { region, noisy, silhouettes: None, is_second: false };
         Self { scope: Scope::Near(Box::new(near)), phase, chosen: Choice::default() }
     }
 
@@ -316,6 +318,11 @@ impl Finder {
         let colours = ColourRegistration::prepared(memory, pair);
         if let Scope::Near(near) = &mut self.scope {
             let choice = std::mem::take(&mut self.chosen);
+            if found.is_none() && near.begins_again(pair, &choice) {
+                colours.keep_near(near.region.prior(pair));
+                let nearby = Nearby::again(pair, near.region.clone(), near.silhouettes.take());
+                return Ok(Next::Phase(Phase::Nearby(Box::new(nearby))));
+            }
             return near.decide(pair, colours, choice, found).map(Next::Decision);
         }
         let decision = match found {
@@ -356,6 +363,14 @@ impl Scope {
 }
 
 impl Near {
+    /// Whether a single albedo does not explain the image, so that registrations are repeated that are kept near the initial pose.
+    fn begins_again(&mut self, pair: &ViewPair, choice: &Choice) -> bool {
+        let is_explained = choice.best.as_ref().is_some_and(|best| !silhouettes::is_painted(pair, best));
+        let begins = !self.is_second && !is_explained && self.region.prior(pair).is_some();
+        self.is_second |= begins;
+        begins
+    }
+
     /// What lies within the trust region: by local contrast, by the image, by silhouettes; or else the initial pose.
     fn decide(
         &mut self,
@@ -377,30 +392,23 @@ impl Near {
             _ => {}
         }
         let silhouettes = self.silhouettes.take();
-        // Colours that hardly fit tell less than silhouettes, and so do those that leave more open.
+        // Where the albedo varies, colours that hardly fit tell less than silhouettes, and so do those that leave more open.
         let is_trusted = |best: &PhotometricReport| match &silhouettes {
+            Some(_) if !silhouettes::is_painted(pair, best) => true,
             Some(found) => {
                 !pair.residuals(best).is_unexplained()
                     && best.uncertainty.largest_rotation() <= found.uncertainty.largest_rotation()
             }
             None => true,
         };
-        let best = best.filter(|best| is_trusted(best));
-        Ok(Decision::of(match (best, silhouettes) {
-            (Some(best), _) => {
-                // What a single albedo explains needs no help from the initial pose.
-                if explains(pair, &best) {
-                    colours.keep_near(None);
-                }
-                // All points follow the sample that candidates are registered by.
-                let found = colours.register_all(pair, *best)?;
-                match region.holds(pair, &found.pose) {
-                    true => Method::Image(Box::new(found)),
-                    false => Method::Initial,
-                }
-            }
-            (_, Some(found)) => Method::Silhouettes(found),
-            (..) => Method::Initial,
+        let Some(best) = best.filter(|best| is_trusted(best)) else {
+            return Ok(Decision::of(silhouettes.map_or(Method::Initial, Method::Silhouettes)));
+        };
+        // All points follow the sample that candidates are registered by.
+        let found = colours.register_all(pair, *best)?;
+        Ok(Decision::of(match region.holds(pair, &found.pose) {
+            true => Method::Image(Box::new(found)),
+            false => Method::Initial,
         }))
     }
 }

@@ -43,6 +43,8 @@ pub struct Nearby {
     optima: Option<LocalOptima>,
     silhouettes: Option<Box<OutlineReport>>,
     search: Option<Search>,
+    /// Whether registrations are kept near the initial pose.
+    is_near: bool,
 }
 
 impl Nearby {
@@ -56,7 +58,15 @@ impl Nearby {
             optima: Some(optima),
             silhouettes: None,
             search: None,
+            is_near: false,
         }
+    }
+
+    /// The second time, where a single albedo did not explain the image: registrations are kept near the initial pose. The first is from
+    /// there, then from where silhouettes are.
+    pub fn again(pair: &ViewPair, region: TrustRegion, silhouettes: Option<Box<OutlineReport>>) -> Self {
+        let step = Step::FromInitial { level: COARSEST_LEVEL };
+        Self { step, silhouettes, is_near: true, ..Self::new(pair, region, None) }
     }
 
     /// The pose by silhouettes, where they decide anything.
@@ -69,10 +79,7 @@ impl Nearby {
         match self.step {
             Step::Judge => {
                 self.judge(pair, colours);
-                self.step = match self.region.prior(pair) {
-                    Some(_) => Step::FromInitial { level: COARSEST_LEVEL },
-                    None => self.after_initial(),
-                };
+                self.step = self.after_initial();
             }
             Step::FromInitial { level } => {
                 let next = match level {
@@ -96,6 +103,7 @@ impl Nearby {
                     return Ok(Progress::Explained(Choice::default()));
                 };
                 let candidates = Candidates::new(search, optima, NEARBY, false);
+                let candidates = if self.is_near { candidates.near() } else { candidates };
                 return Ok(Progress::Unexplained(Box::new(candidates)));
             }
         }
@@ -107,20 +115,18 @@ impl Nearby {
         self.silhouettes.as_ref().map_or(Step::Shift, |found| Step::FromSilhouettes(found.pose))
     }
 
-    /// Registers silhouettes, and enters the initial pose and what was found from it. Where a prior keeps registrations near the initial
-    /// pose, one from there stands for both.
+    /// Enters the initial pose and what was found from it, and registers silhouettes.
     fn judge(&mut self, pair: &ViewPair, colours: &mut ColourRegistration) {
-        let (region, prior) = (&self.region, self.region.prior(pair));
-        colours.keep_near(prior);
-        let found = prior.and_then(|prior| silhouettes::near(pair, colours.normals(), prior));
-        self.silhouettes = found.filter(|found| region.holds(pair, &found.pose)).map(Box::new);
-        let Some(optima) = self.optima.as_mut().filter(|_| prior.is_none()) else { return };
+        let region = &self.region;
+        let Some(optima) = &mut self.optima else { return };
         if let Some(staying) = colours.judge(pair, &region.initial) {
             optima.enter(STAYING, RegisteredCandidate::of(staying));
         }
         if let Some(plain) = self.plain.take() {
             optima.enter(BEFORE, RegisteredCandidate::of(plain));
         }
+        let found = region.prior(pair).and_then(|prior| silhouettes::near(pair, colours.normals(), prior));
+        self.silhouettes = found.filter(|found| region.holds(pair, &found.pose)).map(Box::new);
     }
 
     /// A step of a registration; at its end, whether it explains the image.

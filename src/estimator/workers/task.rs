@@ -14,8 +14,8 @@ pub struct Task(pub(in crate::estimator) Work);
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::estimator) enum Work {
     Search(SearchTask),
-    /// The registration of a candidate, by its number, from its pose.
-    Register(usize, Similarity),
+    /// The registration of a candidate, by its number, from its pose; kept near the initial pose or not.
+    Register(usize, Similarity, bool),
 }
 
 /// What became of a [`Task`].
@@ -33,6 +33,7 @@ pub(in crate::estimator) enum Found {
 const SWEEP: f64 = 0.0;
 const ASCEND: f64 = 1.0;
 const REGISTER: f64 = 2.0;
+const REGISTER_NEAR: f64 = 3.0;
 
 impl Task {
     /// As plain numbers.
@@ -43,7 +44,9 @@ impl Task {
             Work::Search(SearchTask::Ascend(index, hypothesis)) => {
                 list(ASCEND, *index, &hypothesis_numbers(hypothesis))
             }
-            Work::Register(index, pose) => list(REGISTER, *index, &pose_numbers(pose)),
+            Work::Register(index, pose, is_near) => {
+                list(if *is_near { REGISTER_NEAR } else { REGISTER }, *index, &pose_numbers(pose))
+            }
         }
     }
 
@@ -55,7 +58,7 @@ impl Task {
         Some(Self(match kind {
             SWEEP if rest.is_empty() => Work::Search(SearchTask::Sweep(index)),
             ASCEND => Work::Search(SearchTask::Ascend(index, hypothesis(rest.try_into().ok()?))),
-            REGISTER => Work::Register(index, pose(rest.try_into().ok()?)),
+            REGISTER | REGISTER_NEAR => Work::Register(index, pose(rest.try_into().ok()?), kind == REGISTER_NEAR),
             _ => return None,
         }))
     }
@@ -151,7 +154,8 @@ mod tests {
         for work in [
             Work::Search(SearchTask::Sweep(7)),
             Work::Search(SearchTask::Ascend(3, hypothesis)),
-            Work::Register(5, pose),
+            Work::Register(5, pose, false),
+            Work::Register(6, pose, true),
         ] {
             assert_eq!(Task::from_numbers(&Task(work).to_numbers()), Some(Task(work)));
         }
@@ -170,7 +174,7 @@ mod tests {
 
     #[test]
     fn other_numbers_are_refused() {
-        for numbers in [&[][..], &[0.0], &[3.0, 0.0], &[1.0, 0.0, 1.0], &[f64::NAN, 0.0]] {
+        for numbers in [&[][..], &[0.0], &[3.0, 0.0], &[4.0, 0.0], &[1.0, 0.0, 1.0], &[f64::NAN, 0.0]] {
             assert!(Task::from_numbers(numbers).is_none());
             assert!(Finding::from_numbers(numbers).is_none());
         }

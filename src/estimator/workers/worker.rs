@@ -70,14 +70,15 @@ impl Worker {
                 let mut searched = Searched::of(pair);
                 let (pair, colours) = searched.parts(pair);
                 let search = search(pair, ImageGrid::new(&pair.image)?, colours)?;
-                colours.keep_near(TrustRegion::of(pair).and_then(|region| region.prior(pair)));
                 none.insert((searched, search))
             }
         };
         let (pair, colours) = searched.parts(pair);
         Ok(Finding(match &task.0 {
             Work::Search(task) => Found::Search(search.perform(task)),
-            Work::Register(index, start) => {
+            Work::Register(index, start, is_near) => {
+                let region = TrustRegion::of(pair).filter(|_| *is_near);
+                colours.keep_near(region.and_then(|region| region.prior(pair)));
                 let report = colours.register_candidate(pair, start);
                 Found::Registered(*index, report.map(RegisteredCandidate::of))
             }

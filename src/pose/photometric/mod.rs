@@ -34,7 +34,7 @@
 //! | `points` | which depth points take part |
 //! | `residual` | r and its derivatives |
 //! | `weighting` | robust scale and weight of the prior |
-//! | `anchors` | terms of the pose alone around an initial pose: mask and prior |
+//! | `near` | terms of the pose alone around an initial pose: mask and prior |
 //! | `relief` | albedo that goes with the curvature of the depth map |
 //! | `evaluation` | sums over the points: objective, equations, noise, inliers |
 //! | `equations` | the linear system, the light eliminated |
@@ -44,10 +44,10 @@
 //! Limits: Lambertian, one albedo; starts beyond some 20 to 30 degrees may end elsewhere; behind a pinhole image the
 //! scale is held, for it cannot be told from the distance.
 
-mod anchors;
 mod covariance;
 mod equations;
 mod evaluation;
+mod near;
 mod normal_noise;
 mod points;
 mod problem;

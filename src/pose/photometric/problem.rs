@@ -87,6 +87,7 @@ impl PhotometricProblem<'_> {
                 "must have a point, a normal and an error for each pixel",
             ));
         }
+        self.near.map_or(Ok(()), |near| near.validate("near"))?;
         not_negative("options.lambda.light", self.prior_weight)
     }
 }

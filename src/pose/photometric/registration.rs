@@ -5,10 +5,10 @@ mod instruments;
 
 use annealing::{Descent, SCALE_SHRINKING};
 
-use super::anchors::{AnchorSums, AnchorWeights, Anchors};
 use super::covariance::{Noise, Tiles};
 use super::equations::ReducedSystem;
 use super::evaluation::Evaluation;
+use super::near::{NearSums, NearTerms, NearWeights};
 use super::points::{Sampling, VisiblePoints};
 use super::problem::{
     COARSEST, COARSEST_NEAR, PhotometricOptions, PhotometricProblem, PhotometricReport, PhotometricTermination,
@@ -68,7 +68,7 @@ enum Phase {
 
 /// What an initial pose brings in.
 struct Near {
-    anchors: Anchors,
+    terms: NearTerms,
     relief: Relief,
 }
 
@@ -306,7 +306,7 @@ impl Photometric {
         }
         match &mut self.near {
             Some(near) => near.relief.clear(),
-            none => *none = Some(Box::new(Near { anchors: Anchors::new(problem), relief: Relief::new(problem) })),
+            none => *none = Some(Box::new(Near { terms: NearTerms::new(problem), relief: Relief::new(problem) })),
         }
     }
 
@@ -336,23 +336,23 @@ impl Photometric {
     }
 
     /// The terms of the pose alone, where there are any.
-    fn anchors(
+    fn near_terms(
         &self,
         problem: &PhotometricProblem<'_>,
         level: usize,
         frame: &Frame,
         pose: &Similarity,
-    ) -> Option<AnchorSums> {
+    ) -> Option<NearSums> {
         let (prior, near) = problem.near.as_ref().zip(self.near.as_ref())?;
         let (points, robust_scale) = (self.points.weight(), self.weighting.robust_scale);
-        let weights = AnchorWeights { points, robust_scale, noise: self.noise.residuals, level };
-        Some(near.anchors.sums(problem, prior, pose, frame, weights))
+        let weights = NearWeights { points, robust_scale, noise: self.noise.residuals, level };
+        Some(near.terms.sums(problem, prior, pose, frame, weights))
     }
 
     /// The objective of a state.
     fn objective(&self, problem: &PhotometricProblem<'_>, level: usize, frame: &Frame, state: &State) -> f64 {
-        let anchors = self.anchors(problem, level, frame, &state.pose).map_or(0.0, |sums| sums.cost);
-        self.evaluation(problem, level, state).objective() + anchors
+        let near_terms = self.near_terms(problem, level, frame, &state.pose).map_or(0.0, |sums| sums.cost);
+        self.evaluation(problem, level, state).objective() + near_terms
     }
 
     /// The points at one level of the image under a state, derivatives for least squares.

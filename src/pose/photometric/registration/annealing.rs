@@ -77,7 +77,7 @@ impl Photometric {
         descent.steps += 1;
         let reduced = self.evaluation(problem, level, &self.state).reduced_system(&frame);
         let mut reduced = reduced.ok_or_else(undetermined_light)?;
-        if let Some(sums) = self.anchors(problem, level, &frame, &self.state.pose) {
+        if let Some(sums) = self.near_terms(problem, level, &frame, &self.state.pose) {
             reduced.add(&sums.matrix, &sums.gradient);
         }
         let lowered = descent.damping.lower(MOST_ATTEMPTS, descent.objective, |damping| {

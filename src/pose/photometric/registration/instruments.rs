@@ -50,7 +50,7 @@ impl Photometric {
     ) -> Result<Phase> {
         self.iterations += 1;
         let mut reduced = self.reduce_by_instruments(problem, frame)?;
-        if let Some(sums) = self.anchors(problem, 0, frame, &self.state.pose) {
+        if let Some(sums) = self.near_terms(problem, 0, frame, &self.state.pose) {
             reduced.add(&sums.matrix, &sums.gradient);
         }
         let mut settled = true;

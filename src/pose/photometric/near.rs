@@ -30,7 +30,7 @@ const SCALES: [f64; 4] = [6.0, 6.0, 12.0, 20.0];
 const DISTANCE_FIRST: f64 = 0.1;
 
 /// What is held against the mask; owns its memory.
-pub(super) struct Anchors {
+pub(super) struct NearTerms {
     /// `None` where the whole image is the object.
     silhouette: Option<Silhouette>,
     points: Vec<Vector3<f64>>,
@@ -39,7 +39,7 @@ pub(super) struct Anchors {
 
 /// How much the terms count at one moment.
 #[derive(Clone, Copy)]
-pub(super) struct AnchorWeights {
+pub(super) struct NearWeights {
     /// Of all points together.
     pub points: f64,
     /// The robust scale, log units.
@@ -52,13 +52,13 @@ pub(super) struct AnchorWeights {
 
 /// Sums of the terms.
 #[derive(Clone, Copy)]
-pub(super) struct AnchorSums {
+pub(super) struct NearSums {
     pub matrix: PoseMatrix,
     pub gradient: PoseVector,
     pub cost: f64,
 }
 
-impl Anchors {
+impl NearTerms {
     /// Of the mask and the points of a problem.
     pub fn new(problem: &PhotometricProblem<'_>) -> Self {
         let object = &problem.image.whole.object;
@@ -77,11 +77,11 @@ impl Anchors {
         prior: &PosePrior,
         pose: &Similarity,
         frame: &Frame,
-        weights: AnchorWeights,
-    ) -> AnchorSums {
-        let mut sums = AnchorSums { matrix: PoseMatrix::zeros(), gradient: PoseVector::zeros(), cost: 0.0 };
+        weights: NearWeights,
+    ) -> NearSums {
+        let mut sums = NearSums { matrix: PoseMatrix::zeros(), gradient: PoseVector::zeros(), cost: 0.0 };
         self.add_mask(problem, pose, frame, weights, &mut sums);
-        let AnchorWeights { noise, level, .. } = weights;
+        let NearWeights { noise, level, .. } = weights;
         let along = if level > 0 { DISTANCE_FIRST * prior.along } else { prior.along };
         PosePrior { along, ..*prior }.for_each(self.middle, pose, frame, |row, residual| {
             sums.add(row, residual, CORRELATED * noise * noise, f64::INFINITY);
@@ -94,11 +94,11 @@ impl Anchors {
         problem: &PhotometricProblem<'_>,
         pose: &Similarity,
         frame: &Frame,
-        weights: AnchorWeights,
-        sums: &mut AnchorSums,
+        weights: NearWeights,
+        sums: &mut NearSums,
     ) {
         let Some(silhouette) = &self.silhouette else { return };
-        let AnchorWeights { points, robust_scale, level, .. } = weights;
+        let NearWeights { points, robust_scale, level, .. } = weights;
         let scale = SCALES[level];
         let share = OFF_WEIGHT * points / self.points.len().max(1) as f64 * (robust_scale / scale).powi(2);
         for point in &self.points {
@@ -114,7 +114,7 @@ impl Anchors {
     }
 }
 
-impl AnchorSums {
+impl NearSums {
     /// A residual under a robust function.
     fn add(&mut self, row: &PoseVector, residual: f64, weight: f64, scale: f64) {
         let square = (residual / scale).powi(2);
