@@ -34,6 +34,8 @@ mod scene_laws;
 mod scenes_geometry;
 mod scenes_pictures;
 mod scenes_samples;
+#[cfg(not(target_arch = "wasm32"))]
+mod statue;
 mod surface;
 mod surface_laws;
 mod surface_reference;

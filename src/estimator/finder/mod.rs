@@ -14,8 +14,8 @@
 //!                +-> choice among the local optima <---------------+--+  |
 //!                        |                                               |
 //!                    diagnosis: does a single albedo explain the image?  |
-//!                        | yes          | no: local contrast (orthographic image)
-//!                        |              |     or silhouettes (pinhole)   |
+//!                        | yes          | no: local contrast (orthographic image); behind a pinhole silhouettes or,
+//!                        |              |     near an initial pose, all of it again, held near that pose
 //!                        v              v                                |
 //!                    decision: pose, method, rivals <--------------------+
 //! ```

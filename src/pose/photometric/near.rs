@@ -124,3 +124,99 @@ impl NearSums {
         self.gradient.axpy(robust * residual, row, 1.0);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::light::LightPrior;
+    use crate::pose::increment::UNKNOWNS;
+    use crate::view::{ColourImage, ColourSamples, ColourView, DepthMap, DepthSamples, DepthView, Pinhole};
+
+    const SIDE: usize = 40;
+    const WEIGHTS: NearWeights = NearWeights { points: 100.0, robust_scale: 0.1, noise: 0.02, level: 0 };
+
+    fn lens() -> Pinhole {
+        Pinhole { fx: 50.0, fy: 50.0, cx: 19.5, cy: 19.5, distortion: [0.0; 5] }
+    }
+
+    fn disc(radius: f64) -> Vec<u8> {
+        let inside = |index: usize| {
+            let [x, y] = [index % SIDE, index / SIDE].map(|at| at as f64 - 19.5);
+            u8::from(x.hypot(y) < radius)
+        };
+        (0..SIDE * SIDE).map(inside).collect()
+    }
+
+    /// A disc at one metre before a mask of another size.
+    fn views(mask: f64, object: f64) -> (ColourView, DepthView) {
+        let image = ColourImage {
+            width: SIDE,
+            height: SIDE,
+            samples: ColourSamples::RgbLinear(vec![0.5; 3 * SIDE * SIDE]),
+            transfer: None,
+            mask: Some(disc(mask)),
+            camera: Some(lens()),
+        };
+        let depth = DepthMap {
+            width: SIDE,
+            height: SIDE,
+            samples: DepthSamples::Float(vec![1.0; SIDE * SIDE]),
+            unit: None,
+            mask: Some(disc(object)),
+            normals: None,
+            camera: Some(lens()),
+        };
+        (ColourView::new(image).unwrap(), DepthView::new(&depth, false).unwrap())
+    }
+
+    fn sums(views: &(ColourView, DepthView), initial: Similarity, pose: &Similarity, frame: &Frame) -> NearSums {
+        let (image, depth) = views;
+        let light = LightPrior::natural();
+        let prior = PosePrior { pose: initial, rotation: 0.05, across: 0.02, along: 0.02 };
+        let problem = PhotometricProblem {
+            image,
+            depth_size: depth.size,
+            points: &depth.points,
+            normals: &depth.normals,
+            normal_error: None,
+            depth_noise: depth.noise,
+            light: None,
+            prior: &light,
+            prior_weight: 1.0,
+            scale_is_held: true,
+            near: Some(prior),
+        };
+        NearTerms::new(&problem).sums(&problem, &prior, pose, frame, WEIGHTS)
+    }
+
+    const FRAME: Frame = Frame { centre: Vector3::new(0.0, 0.0, 1.0), length: 0.1 };
+
+    #[test]
+    fn what_no_point_covers_costs_nothing_and_points_off_the_mask_do() {
+        let here = Similarity::identity();
+        let [small, large] = [(15.0, 8.0), (8.0, 15.0)].map(|(mask, object)| views(mask, object));
+        assert_eq!(sums(&small, here, &here, &FRAME).cost, 0.0);
+        assert!(sums(&large, here, &here, &FRAME).cost > 0.01);
+    }
+
+    #[test]
+    fn the_gradient_is_the_difference_quotient() {
+        let views = views(12.0, 12.0);
+        let initial = Similarity::identity();
+        let pose = Similarity { translation: Vector3::new(0.11, -0.07, 0.01), ..initial };
+        let cost = |pose: &Similarity| sums(&views, initial, pose, &FRAME).cost;
+        let gradient = sums(&views, initial, &pose, &FRAME).gradient;
+        let small = 1e-5;
+        for k in 0..UNKNOWNS - 1 {
+            let moved = |by: f64| {
+                let mut step = PoseVector::zeros();
+                step[k] = by;
+                cost(&FRAME.change(&step).after(&pose))
+            };
+            // Half of the derivative of the cost; that of the distance is taken over several pixels.
+            let slope = (moved(small) - moved(-small)) / (4.0 * small);
+            let off = (gradient[k] - slope).abs();
+            assert!(off < 0.2 * gradient.norm(), "{k}: {} {slope}", gradient[k]);
+        }
+    }
+}

@@ -111,3 +111,59 @@ fn curvature(size: Size, normals: &Normals, scale: f64) -> Vec<f32> {
     curvature.iter_mut().for_each(|value| *value = (*value / spread).clamp(-LARGEST, LARGEST));
     curvature
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SIZE: Size = Size { width: 60, height: 60 };
+
+    /// Normals of a ball's front, which face the camera; a bowl's with the opposite sign of x and y.
+    fn ball(sign: f32) -> Normals {
+        let mut normals = Normals::missing(SIZE.len());
+        for index in 0..SIZE.len() {
+            let (column, row) = SIZE.position(index);
+            let [x, y] = [column, row].map(|at| (at as f32 - 29.5) / 30.0);
+            let square = x * x + y * y;
+            if square < 0.9 {
+                normals.set(index, [sign * x, sign * y, -(1.0 - square).sqrt()]);
+            }
+        }
+        normals
+    }
+
+    #[test]
+    fn balls_bulge_and_bowls_are_hollow() {
+        let middle = SIZE.index(30, 30);
+        let [bulging, hollow] = [1.0, -1.0].map(|sign| curvature(SIZE, &ball(sign), 1.5)[middle]);
+        assert!(bulging > 0.5 && hollow < -0.5, "{bulging} {hollow}");
+        assert_eq!(curvature(SIZE, &ball(1.0), 1.5)[0], 0.0);
+    }
+
+    #[test]
+    fn an_albedo_that_goes_with_the_relief_is_found() {
+        let regressors: Vec<[f32; REGRESSORS]> = (0..400)
+            .map(|k| {
+                let [a, b] = [0.11, 0.47].map(|pace| (pace * k as f32).sin());
+                [a, b, a * a, b * b]
+            })
+            .collect();
+        let count = regressors.len();
+        let mut relief = Relief { regressors, coefficients: [Coefficients::zeros(); 3], albedo: vec![[0.0; 3]; count] };
+        let truth = [0.2, -0.1, 0.05, 0.0];
+        for _ in 0..3 {
+            let mut sums = ReliefSums::new();
+            for index in 0..count {
+                let albedo: f64 = relief.regressors[index].iter().zip(truth).map(|(r, c)| f64::from(*r) * c).sum();
+                let left = relief.albedo(index).map(|found| albedo - f64::from(found));
+                relief.add(&mut sums, index, left, 1.0);
+            }
+            relief.step(sums, 1e-3);
+        }
+        for (found, truth) in relief.coefficients[1].iter().zip(truth) {
+            assert!((found - truth).abs() < 2e-3, "{found} {truth}");
+        }
+        relief.clear();
+        assert_eq!(relief.albedo(7), [0.0; 3]);
+    }
+}

@@ -1,0 +1,105 @@
+//! Two real views of a statue from different places, whose albedo varies, with the pose between them known.
+
+use std::fs;
+use std::path::PathBuf;
+
+use bimodal_stereo::nalgebra::{Matrix3, Rotation3, Vector3};
+use bimodal_stereo::{
+    ColourImage, ColourSamples, DepthMap, DepthSamples, Estimator, Options, Pinhole, Similarity, Start, Status,
+};
+use serde_json::Value;
+
+use crate::common::data_dir;
+
+struct Pair {
+    image: ColourImage,
+    depth: DepthMap,
+    truth: Similarity,
+    /// Of the depth points.
+    middle: Vector3<f64>,
+}
+
+fn numbers(value: &Value) -> Vec<f64> {
+    value.as_array().unwrap().iter().map(|number| number.as_f64().unwrap()).collect()
+}
+
+fn load(name: &str) -> Pair {
+    let folder: PathBuf = data_dir().join("statue").join(name);
+    let read = |file: &str| fs::read(folder.join(file)).unwrap();
+    let meta: Value = serde_json::from_slice(&read("meta.json")).unwrap();
+    let length = |key: &str| meta[key].as_u64().unwrap() as usize;
+    let camera = |key: &str| {
+        let of = |member: &str| meta[key][member].as_f64().unwrap();
+        Pinhole { fx: of("fx"), fy: of("fy"), cx: of("cx"), cy: of("cy"), distortion: [0.0; 5] }
+    };
+    let metres: Vec<f32> = read("depth.bin").as_chunks().0.iter().map(|bytes| f32::from_le_bytes(*bytes)).collect();
+    let (width, mask, lens) = (length("dw"), read("dmask.bin"), camera("Kd"));
+    let point = |index: usize| {
+        let z = f64::from(metres[index]);
+        let [column, row] = [index % width, index / width].map(|place| place as f64);
+        Vector3::new((column - lens.cx) / lens.fx * z, (row - lens.cy) / lens.fy * z, z)
+    };
+    let valid: Vec<_> = (0..metres.len()).filter(|&index| metres[index] > 0.0 && mask[index] > 0).collect();
+    let middle = valid.iter().map(|&index| point(index)).sum::<Vector3<f64>>() / valid.len() as f64;
+    Pair {
+        image: ColourImage {
+            width: length("iw"),
+            height: length("ih"),
+            samples: ColourSamples::Rgba8(read("image.bin")),
+            transfer: None,
+            mask: Some(read("imask.bin")),
+            camera: Some(camera("Kc")),
+        },
+        depth: DepthMap {
+            width,
+            height: length("dh"),
+            samples: DepthSamples::Float(metres.clone()),
+            unit: None,
+            mask: Some(mask.clone()),
+            normals: None,
+            camera: Some(lens),
+        },
+        truth: Similarity {
+            scale: 1.0,
+            rotation: Matrix3::from_row_slice(&numbers(&meta["rotation"])),
+            translation: Vector3::from_vec(numbers(&meta["translation"])),
+        },
+        middle,
+    }
+}
+
+/// How far a run ends off that starts from this pose: degrees, and metres across the line of sight.
+fn run(pair: &Pair, start: &Similarity) -> (f64, f64) {
+    let start = Start::Pose { rotation: start.rotation, scale: None, translation: Some(start.translation) };
+    let options = Options { start, ..Options::default() };
+    let mut estimator = Estimator::new(pair.image.clone(), &pair.depth, options).unwrap();
+    while estimator.report().status == Status::Running {
+        estimator.step();
+    }
+    let pose = estimator.report().pose;
+    let off = pose.apply(pair.middle) - pair.truth.apply(pair.middle);
+    (pose.degrees_to(&pair.truth), off.xy().norm())
+}
+
+/// Silhouettes alone pull a depth map that sees part of the object until it fills the image's mask: 3 to 9 degrees and 3 to 30 mm off,
+/// from the true pose as well.
+#[test]
+#[ignore = "needs ../shared/data"]
+fn views_of_a_statue_from_different_places_register_from_a_pose_that_is_roughly_right() {
+    for (name, axis, shift) in [
+        ("c10_d06", Vector3::new(0.6, -0.5, 0.62), Vector3::new(-0.012, 0.014, 0.007)),
+        ("c52_d53", Vector3::new(-0.2, 0.9, 0.38), Vector3::new(0.015, -0.008, 0.01)),
+    ] {
+        let pair = load(name);
+        let turn = Rotation3::new(axis.normalize() * 3.0_f64.to_radians()).into_inner();
+        let off = Similarity {
+            rotation: pair.truth.rotation * turn,
+            translation: pair.truth.translation + shift,
+            ..pair.truth
+        };
+        for start in [pair.truth, off] {
+            let (degrees, across) = run(&pair, &start);
+            assert!(degrees < 2.0 && across < 0.005, "{name}: {degrees} degrees, {across} m");
+        }
+    }
+}
