@@ -3,7 +3,11 @@
 /** What `init` takes: where the .wasm is, or the .wasm itself; `bimodal_stereo_scalar_bg.wasm` needs no SIMD. Node also takes `file:` addresses. */
 export type WasmSource = string | URL | Request | Response | BufferSource | WebAssembly.Module;
 
-/** A pinhole camera; distortion is k1 k2 p1 p2 k3 (OpenCV). Units: pixels. */
+/**
+ * A pinhole camera behind a lens. Distortion as OpenCV has it: of the model "brown" (the default) 4, 5 or 8 numbers,
+ * k1 k2 p1 p2 [k3 [k4 k5 k6]]; of the model "fisheye" (Kannala-Brandt) the 4 numbers k1 k2 k3 k4. Units: pixels; pixel centres are whole
+ * numbers.
+ */
 export interface Pinhole {
   /** Focal length along the rows, pixels, above zero. */
   fx: number;
@@ -13,8 +17,10 @@ export interface Pinhole {
   cx: number;
   /** Row of the principal point, pixels; the centre of the first pixel is 0. */
   cy: number;
-  /** k1 k2 p1 p2 k3. Default: none. */
-  distortion?: [number, number, number, number, number];
+  /** Coefficients in OpenCV's order. Default: none; of a fisheye zeros. */
+  distortion?: ArrayLike<number>;
+  /** The lens model. Default "brown". */
+  model?: "brown" | "fisheye";
 }
 
 /** A 3x3 camera matrix, fx 0 cx, 0 fy cy, 0 0 1, in pixels: three rows of three numbers, or its nine numbers row by row. */
@@ -23,16 +29,14 @@ export type Matrix3 = readonly ArrayLike<number>[] | ArrayLike<number>;
 /** A 4x4 matrix [s R, t; 0 0 0 1]: four rows of four numbers, or its 16 numbers row by row. */
 export type Matrix4 = readonly ArrayLike<number>[] | ArrayLike<number>;
 
-/** A camera by its matrix, with its distortion. */
-export interface CameraMatrix<Camera extends { distortion?: unknown }> {
+/** A camera by its matrix, with its lens. */
+export interface CameraMatrix extends Pick<Pinhole, "distortion" | "model"> {
   /** fx 0 cx, 0 fy cy, 0 0 1, in pixels. */
   K: Matrix3;
-  /** As the camera of members has it. */
-  distortion?: Exclude<Camera["distortion"], undefined>;
 }
 
-/** A pinhole camera as it may be given: its members, its matrix, or `{ K, distortion }`. */
-export type PinholeInput = Pinhole | CameraMatrix<Pinhole> | Matrix3;
+/** A pinhole camera as it may be given: its members, its matrix, or `{ K, distortion, model }`. */
+export type PinholeInput = Pinhole | CameraMatrix | Matrix3;
 
 /**
  * One colour image of the object, up to 4096 pixels on a side. One that is finer than the depth map, by a quarter or more, is worked on at the depth
@@ -491,47 +495,33 @@ export interface RestoreOptions {
   signal?: AbortSignal;
 }
 
-/**
- * A camera of a rig. Distortion as OpenCV has it: of the model "brown" (the default) 4, 5 or 8 numbers, k1 k2 p1 p2 [k3 [k4 k5 k6]];
- * of the model "fisheye" (Kannala-Brandt) the 4 numbers k1 k2 k3 k4. Units: pixels; pixel centres are whole numbers.
- */
-export interface RigCamera extends Omit<Pinhole, "distortion"> {
-  /** The lens model. Default "brown". */
-  model?: "brown" | "fisheye";
-  /** Coefficients in OpenCV's order. Default: none. */
-  distortion?: ArrayLike<number>;
-}
-
-/** A camera of a rig as it may be given: its members, its matrix, or `{ K, distortion, model }`. */
-export type RigCameraInput = RigCamera | (CameraMatrix<RigCamera> & Pick<RigCamera, "model">) | Matrix3;
-
 /** One pair of a rig whose calibration is in question: the whole frames; masks are optional. Depth is metric. */
 export interface CheckFrame {
   /** Without a camera the focal length is estimated, the principal point being the middle of the image. */
   image: Omit<ColorImage, "camera"> & {
     /** The colour camera. */
-    camera?: RigCamera;
+    camera?: Pinhole;
   };
   /** A depth map with its camera, or an organised cloud in metres. */
   depth: Omit<DepthMap, "camera" | "normals"> & {
     /** The depth camera, which a depth map needs. */
-    camera?: RigCamera;
+    camera?: Pinhole;
   };
   /** How the report calls it; "frame 1" and so on without it. */
   name?: string;
 }
 
-/** A frame as it may be given: its cameras in any of the forms of `RigCameraInput`. */
+/** A frame as it may be given: its cameras in any of the forms of `PinholeInput`. */
 export interface CheckFrameInput extends Omit<CheckFrame, "image" | "depth"> {
   /** Without a camera the focal length is estimated, the principal point being the middle of the image. */
   image: Omit<CheckFrame["image"], "camera"> & {
     /** The colour camera. */
-    camera?: RigCameraInput;
+    camera?: PinholeInput;
   };
   /** A depth map with its camera, or an organised cloud in metres. */
   depth: Omit<CheckFrame["depth"], "camera"> & {
     /** The depth camera, which a depth map needs. */
-    camera?: RigCameraInput;
+    camera?: PinholeInput;
   };
 }
 

@@ -1,10 +1,10 @@
 /** Cameras by hand. */
 import { number } from "../check.js";
 import { BimodalError } from "../errors.js";
-import type { RigCamera } from "./types.js";
+import type { Pinhole } from "./types.js";
 
 /** A camera of square pixels that looks through the middle of its image, by its horizontal field of view. */
-export function cameraFromFieldOfView(width: number, height: number, degrees: number): RigCamera {
+export function cameraFromFieldOfView(width: number, height: number, degrees: number): Pinhole {
   const isSize = (value: number) => Number.isInteger(value) && value > 0;
   if (!isSize(width) || !isSize(height))
     throw new BimodalError("size", "width: whole numbers of pixels above zero are needed", "width");

@@ -4,9 +4,9 @@
  * several, or of files. An empty number is absent, and so the library's default.
  */
 
-import type { Options, SampleRequest } from "../../pkg/index.js";
+import type { Options, Pinhole, SampleRequest } from "../../pkg/index.js";
 import { OPTIONS, RENDERED_ALONE, SAMPLE, paths, type PageField, type Rows, type ShownRow } from "../../pkg/options.js";
-import type { LabOptions, OwnCamera } from "../engine/protocol";
+import type { LabOptions } from "../engine/protocol";
 import type { Method } from "./explain";
 
 /** Where the pair comes from: made by the crate, or the visitor's own. */
@@ -416,7 +416,7 @@ export function optionsInWords(settings: Settings, source: Origin): [name: strin
 const lensKeys = ["fx", "fy", "cx", "cy"] as const;
 
 /** A camera once all of its four numbers are given; none where none is; the name of what is missing in between. */
-export function camera(settings: Settings, side: "colour" | "depth"): OwnCamera | undefined | string {
+export function camera(settings: Settings, side: "colour" | "depth"): Pinhole | undefined | string {
   const [fx, fy, cx, cy] = lensKeys.map((key) => number(settings, `${side}.${key}`));
   const distortion = listed(settings, `${side}.distortion`);
   if (fx !== undefined && fy !== undefined && cx !== undefined && cy !== undefined) {
