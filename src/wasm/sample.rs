@@ -10,7 +10,7 @@ use super::output::{mask, pinhole, plain as shaped, set};
 use crate::error::Result;
 use crate::light::Light;
 use crate::scenes::{DepthData, Relief, Sample, SampleRequest, Scene, bare_grid, bound, lights, surfaces};
-use crate::view::Size;
+use crate::view::{Camera, Size};
 
 #[wasm_bindgen]
 extern "C" {
