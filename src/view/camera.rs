@@ -39,9 +39,20 @@ impl Camera {
     /// [`project`](Self::project) with its derivative: d column and d row, each by x, y, z of the point.
     #[must_use]
     pub fn project_with_gradient(&self, size: Size, point: [f64; 3]) -> Option<([f64; 2], [[f64; 3]; 2])> {
+        let [x, y, z] = point;
         match self {
             Self::Orthographic => Some((self.project(size, point)?, [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])),
-            Self::Pinhole(pinhole) => pinhole.project_with_gradient(point).filter(|_| point[2] > 0.0),
+            Self::Pinhole(pinhole) => {
+                let pixel = self.project(size, point)?;
+                // Ahead of the camera the pixel is the ray's, so that its derivative by the slopes is enough.
+                let [u, v] = [x / z, y / z];
+                let (_, [column, row]) = pinhole.lens.project_with_gradient([u, v, 1.0])?;
+                let gradient = [(pinhole.fx, column), (pinhole.fy, row)].map(|(focal_length, [by_u, by_v, _])| {
+                    let share = focal_length / z;
+                    [share * by_u, share * by_v, -share * (by_u * u + by_v * v)]
+                });
+                Some((pixel, gradient))
+            }
         }
     }
 

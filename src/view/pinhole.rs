@@ -61,8 +61,9 @@ impl Pinhole {
     /// [`project`](Self::project) with its derivative: d column and d row, each by x, y, z of the point.
     #[must_use]
     pub fn project_with_gradient(&self, point: [f64; 3]) -> Option<([f64; 2], [[f64; 3]; 2])> {
-        let ([x, y], gradient) = self.lens.project_with_gradient(point, [self.fx, self.fy])?;
-        Some(([self.fx * x + self.cx, self.fy * y + self.cy], gradient))
+        let ([x, y], [by_x, by_y]) = self.lens.project_with_gradient(point)?;
+        let pixel = [self.fx * x + self.cx, self.fy * y + self.cy];
+        Some((pixel, [by_x.map(|slope| self.fx * slope), by_y.map(|slope| self.fy * slope)]))
     }
 
     /// Direction of the ray through a pixel: with z = 1 where it runs ahead, so that depth times it is the point; a

@@ -85,15 +85,12 @@ impl Lens {
         }
     }
 
-    /// [`project`](Self::project), and the derivative of the pixel by x, y, z of the point, of these focal lengths.
-    pub(super) fn project_with_gradient(&self, point: [f64; 3], focal: [f64; 2]) -> Option<Projection> {
+    /// [`project`](Self::project) with its derivative by x, y, z of the point.
+    pub(super) fn project_with_gradient(&self, point: [f64; 3]) -> Option<Projection> {
         match self {
-            Self::None => through_slopes(point, focal, |ray| Some((ray, [[1.0, 0.0], [0.0, 1.0]]))),
-            Self::Brown(coefficients) => through_slopes(point, focal, |ray| brown::project(coefficients, ray)),
-            Self::Fisheye(coefficients) => {
-                let (distorted, gradient) = fisheye::project_with_gradient(coefficients, point)?;
-                Some((distorted, [0, 1].map(|axis| gradient[axis].map(|slope| focal[axis] * slope))))
-            }
+            Self::None => through_slopes(point, |ray| Some((ray, [[1.0, 0.0], [0.0, 1.0]]))),
+            Self::Brown(coefficients) => through_slopes(point, |ray| brown::project(coefficients, ray)),
+            Self::Fisheye(coefficients) => fisheye::project_with_gradient(coefficients, point),
         }
     }
 
@@ -138,18 +135,11 @@ fn slopes([x, y, z]: [f64; 3]) -> Option<[f64; 2]> {
     (z > 0.0).then(|| [x / z, y / z])
 }
 
-fn through_slopes(
-    point: [f64; 3],
-    focal: [f64; 2],
-    distort: impl Fn([f64; 2]) -> Option<Distorted>,
-) -> Option<Projection> {
+fn through_slopes(point: [f64; 3], distort: impl Fn([f64; 2]) -> Option<Distorted>) -> Option<Projection> {
     let [u, v] = slopes(point)?;
     let (distorted, gradient) = distort([u, v])?;
-    let by_point = [0, 1].map(|axis| {
-        let share = focal[axis] / point[2];
-        let [by_u, by_v] = gradient[axis];
-        [share * by_u, share * by_v, -share * (by_u * u + by_v * v)]
-    });
+    let inverse = 1.0 / point[2];
+    let by_point = gradient.map(|[by_u, by_v]| [inverse * by_u, inverse * by_v, -inverse * (by_u * u + by_v * v)]);
     Some((distorted, by_point))
 }
 
