@@ -1,4 +1,5 @@
 /** What the loop's inputs must look like: names and types, and whatever the rows of the options say. */
+import { camera } from "./cameras.js";
 import {
   type Check,
   DEPTH,
@@ -10,7 +11,6 @@ import {
   flag,
   isObject,
   matrix,
-  number,
   numbers,
   object,
   ranged,
@@ -19,7 +19,7 @@ import {
   word,
 } from "./check.js";
 import { BimodalError } from "./errors.js";
-import { cameraOf, poseOf } from "./matrices.js";
+import { poseOf } from "./matrices.js";
 import { OPTIONS, POSE, RENDERED_ALONE, SAMPLE } from "./options.js";
 import type { Row, Rows, WordRow } from "./rows.js";
 
@@ -73,13 +73,6 @@ const of =
     check(members(value, field), field);
 
 function inputs() {
-  const members = object({ fx: number, fy: number, cx: number, cy: number, distortion: numbers(5) }, [
-    "fx",
-    "fy",
-    "cx",
-    "cy",
-  ]);
-  const camera = of(cameraOf, members);
   const relief = object({ width: side, height: side, heights: array(Float32Array) }, ["width", "height", "heights"]);
   return {
     image: object({ ...IMAGE, camera }, ["width", "height", "data"]),

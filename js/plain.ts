@@ -41,7 +41,7 @@ const rowAfterRow = (matrix: ArrayLike<number | ArrayLike<number>>): number[] =>
 
 const plainCamera = (given: PinholeInput, field: string): Pinhole => {
   const camera = cameraOf(given, field) as Pinhole;
-  return { ...pick(camera, ["fx", "fy", "cx", "cy"]), ...plainMember(camera, "distortion", numbers) };
+  return { ...pick(camera, ["fx", "fy", "cx", "cy", "model"]), ...plainMember(camera, "distortion", numbers) };
 };
 
 export const plainImage = (image: ColorImageInput): ColorImage => ({

@@ -152,7 +152,7 @@ mod wasm;
 
 pub use calibration::{
     CalibrationCheck, CandidateReport, CheckReason, CheckReport, CheckVerdict, Cue, CueReport, FrameReport, Health,
-    Lens, Margin, Offset, Overlay, RigCamera, RigView, Sensitivity, Warning, WarningKind, overlay,
+    Margin, Offset, Overlay, RigView, Sensitivity, Warning, WarningKind, overlay,
 };
 pub use error::{Error, ErrorKind, Result};
 pub use estimator::{Estimator, Finding, RefinementTask, Surface, Task, Worker};
@@ -178,6 +178,6 @@ pub use shape::{
     first_exposure, gradients, surface_of_normals,
 };
 pub use view::{
-    Camera, ColourImage, ColourSamples, ColourView, DepthMap, DepthNoise, DepthSamples, DepthView, Normals, Pinhole,
-    Points, Size, Transfer, cubic_normals, normals,
+    Camera, ColourImage, ColourSamples, ColourView, DepthMap, DepthNoise, DepthSamples, DepthView, Lens, Normals,
+    Pinhole, Points, Size, Transfer, cubic_normals, normals,
 };

@@ -7,7 +7,7 @@ use std::sync::atomic::Ordering;
 
 use allocations::ALLOCATIONS;
 use bimodal_stereo::scenes::{SampleRequest, Scene, surface};
-use bimodal_stereo::{Camera, Estimator, LightSource, Options, Pinhole, Stage, Status};
+use bimodal_stereo::{Camera, Estimator, Lens, LightSource, Options, Pinhole, Stage, Status};
 
 /// Iterations that are counted, after the first.
 const COUNTED: u32 = 4;
@@ -38,7 +38,7 @@ fn fewest(request: &SampleRequest, known: bool) -> [usize; Stage::ALL.len()] {
 // test harness has a thread of its own.
 #[test]
 fn later_iterations_allocate_nothing_for_their_pixels() {
-    let camera = Camera::Pinhole(Pinhole { fx: 150.0, fy: 150.0, cx: 31.5, cy: 31.5, distortion: [0.0; 5] });
+    let camera = Camera::Pinhole(Pinhole { fx: 150.0, fy: 150.0, cx: 31.5, cy: 31.5, lens: Lens::None });
     let flawed = SampleRequest { noise: 0.01, depth_noise: 0.2, holes: 0.1, ..SampleRequest::default() };
     let perspective = SampleRequest { image_camera: camera, depth_camera: camera, ..flawed.clone() };
     for request in [flawed, perspective] {

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use bimodal_stereo::{Angles, LightSource, Options, Pinhole, Registration, Shading, Start, Transfer};
+use bimodal_stereo::{Angles, Lens, LightSource, Options, Pinhole, Registration, Shading, Start, Transfer};
 use bimodal_stereo_files::pairs::Files;
 use bimodal_stereo_files::{Problem, Result, read};
 use clap::Parser;
@@ -42,7 +42,7 @@ pub struct Arguments {
     #[arg(long)]
     pub json: bool,
 
-    /// Intrinsics of the colour camera in pixels: fx,fy,cx,cy and if need be OpenCV's k1,k2,p1,p2,k3
+    /// Intrinsics of the colour camera in pixels: fx,fy,cx,cy and if need be OpenCV's k1,k2,p1,p2,k3[,k4,k5,k6]
     #[arg(long, value_name = "FX,FY,CX,CY[,K1..]", value_parser = camera)]
     pub image_camera: Option<Pinhole>,
 
@@ -176,12 +176,13 @@ fn numbers(text: &str) -> std::result::Result<Vec<f64>, String> {
 fn camera(text: &str) -> std::result::Result<Pinhole, String> {
     let numbers = numbers(text)?;
     let (&[fx, fy, cx, cy], lens) = numbers.split_first_chunk().ok_or("needs fx,fy,cx,cy")?;
-    let mut distortion = [0.0; 5];
-    if lens.len() > distortion.len() {
-        return Err("has more than k1,k2,p1,p2,k3 behind fx,fy,cx,cy".into());
+    if !matches!(lens.len(), 0..=5 | 8) {
+        return Err("needs up to k1,k2,p1,p2,k3, or all of k1,k2,p1,p2,k3,k4,k5,k6, behind fx,fy,cx,cy".into());
     }
-    distortion[..lens.len()].copy_from_slice(lens);
-    let camera = Pinhole { fx, fy, cx, cy, distortion };
+    let mut coefficients = [0.0; 8];
+    coefficients[..lens.len()].copy_from_slice(lens);
+    let lens = Lens::brown(&coefficients).map_err(|error| error.to_string())?;
+    let camera = Pinhole { fx, fy, cx, cy, lens };
     camera.validate("camera").map_err(|error| error.to_string())?;
     Ok(camera)
 }

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use bimodal_stereo::{Lens, Pinhole, RigCamera};
+use bimodal_stereo::Pinhole;
 use bimodal_stereo_files::pairs::{Files, files_beside};
 use bimodal_stereo_files::{NamedCamera, Problem, Result, Warning, assigned, read_calibration, read_corner, shown};
 
@@ -73,8 +73,8 @@ impl Cameras {
             let [left, top] = corner.unwrap_or([0.0; 2]);
             let cropped = if corner.is_some() { ", moved to its crop" } else { "" };
             notes.push(format!("{}: intrinsics of the {what}{cropped}", shown(path)));
-            let RigCamera { fx, fy, cx, cy, lens } = named.camera;
-            pinhole(RigCamera { fx, fy, cx: cx - left, cy: cy - top, lens }, path).map(Some)
+            let Pinhole { cx, cy, .. } = named.camera;
+            Ok(Some(Pinhole { cx: cx - left, cy: cy - top, ..named.camera }))
         };
         Ok(Found {
             image: camera(picked[0], sizes.image, image_corner, "image")?,
@@ -97,26 +97,4 @@ fn beside(files: &Files) -> Result<Vec<(NamedCamera, PathBuf)>> {
         all.extend(found.cameras.into_iter().map(|camera| (with_name(camera, &path), path.clone())));
     }
     Ok(all)
-}
-
-/// The loop knows Brown's first five coefficients.
-fn pinhole(camera: RigCamera, path: &Path) -> Result<Pinhole> {
-    let RigCamera { fx, fy, cx, cy, lens } = camera;
-    let distortion = match lens {
-        Lens::None => [0.0; 5],
-        Lens::Brown([k1, k2, p1, p2, k3, 0.0, 0.0, 0.0]) => [k1, k2, p1, p2, k3],
-        Lens::Brown(_) => {
-            return Err(Problem::file(
-                path,
-                "its lens has eight coefficients, and five are known here: undistort the image first",
-            ));
-        }
-        Lens::Fisheye(_) => {
-            return Err(Problem::file(
-                path,
-                "its lens is a fisheye, which is not known here: undistort the image first",
-            ));
-        }
-    };
-    Ok(Pinhole { fx, fy, cx, cy, distortion })
 }

@@ -1,6 +1,6 @@
 //! Which of the cameras that were read took which pictures: by their names, by the size of their images, and last by their order.
 
-use bimodal_stereo::RigCamera;
+use bimodal_stereo::Pinhole;
 
 use crate::text::NamedCamera;
 use crate::text::names::{Pattern, pattern};
@@ -80,7 +80,7 @@ pub fn assigned(
                 ),
             );
         }
-        let Some(NamedCamera { camera: RigCamera { cx, cy, .. }, size: None, .. }) = index.map(|index| &cameras[index])
+        let Some(NamedCamera { camera: Pinhole { cx, cy, .. }, size: None, .. }) = index.map(|index| &cameras[index])
         else {
             continue;
         };

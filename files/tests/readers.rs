@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use bimodal_stereo::nalgebra::{Matrix3, Vector3};
-use bimodal_stereo::{Lens, RigCamera};
+use bimodal_stereo::{Lens, Pinhole};
 use bimodal_stereo_files::{Calibration, FolderOptions, Result, read_calibration, read_corner, read_rig_folder};
 
 fn read(text: &str) -> Result<Calibration> {
@@ -21,7 +21,7 @@ fn found(text: &str) -> Calibration {
 /// A camera of these numbers and this lens.
 fn camera(found: &Calibration, index: usize, numbers: [f64; 4], lens: Lens) {
     let [fx, fy, cx, cy] = numbers;
-    assert_eq!(found.cameras[index].camera, RigCamera { fx, fy, cx, cy, lens });
+    assert_eq!(found.cameras[index].camera, Pinhole { fx, fy, cx, cy, lens });
 }
 
 /// A quarter turn about z and a shift, which no order of numbers hides.

@@ -1,7 +1,7 @@
 //! The check of a calibration on small frames, and the overlay of a frame.
 
 use arbitrary::{Result, Unstructured};
-use bimodal_stereo::{CalibrationCheck, CheckReport, Cue, DepthSamples, Health, Lens, RigCamera, RigView, overlay};
+use bimodal_stereo::{CalibrationCheck, CheckReport, Cue, DepthSamples, Health, Lens, Pinhole, RigView, overlay};
 
 use super::named;
 use super::numbers::{light, number, perhaps, pose, rarely, unit};
@@ -99,7 +99,7 @@ fn view(u: &mut Unstructured<'_>) -> Result<RigView> {
     })
 }
 
-pub fn rig_camera(u: &mut Unstructured<'_>, size: [usize; 2]) -> Result<RigCamera> {
+pub fn rig_camera(u: &mut Unstructured<'_>, size: [usize; 2]) -> Result<Pinhole> {
     let [cx, cy] = size.map(|side| (side as f64 - 1.0) / 2.0);
     let lens = match u.int_in_range(0..=5)? {
         0..=2 => Lens::None,
@@ -120,5 +120,5 @@ pub fn rig_camera(u: &mut Unstructured<'_>, size: [usize; 2]) -> Result<RigCamer
             Lens::Fisheye(coefficients)
         }
     };
-    Ok(RigCamera { fx: number(u, 24.0)?, fy: number(u, 24.0)?, cx: number(u, cx)?, cy: number(u, cy)?, lens })
+    Ok(Pinhole { fx: number(u, 24.0)?, fy: number(u, 24.0)?, cx: number(u, cx)?, cy: number(u, cy)?, lens })
 }

@@ -3,7 +3,7 @@
 
 use arbitrary::{Result, Unstructured};
 use bimodal_stereo::{
-    ColourImage, ColourSamples, DepthMap, DepthSamples, Light, LightGaussian, LightSource, Options, Pinhole,
+    ColourImage, ColourSamples, DepthMap, DepthSamples, Lens, Light, LightGaussian, LightSource, Options, Pinhole,
     Registration, Shading, Start, StartTolerance, Transfer, Weights,
 };
 
@@ -226,7 +226,7 @@ pub fn camera(u: &mut Unstructured<'_>, size: [usize; 2]) -> Result<Option<Pinho
         fy: number(u, focal)?,
         cx: number(u, cx)?,
         cy: number(u, cy)?,
-        distortion,
+        lens: Lens::brown(&distortion).unwrap(),
     }))
 }
 

@@ -1,4 +1,5 @@
 /** What a check's input must look like: names and types; values are checked in Rust. */
+import { camera } from "../cameras.js";
 import {
   type Check,
   DEPTH,
@@ -15,21 +16,8 @@ import {
 } from "../check.js";
 import { BimodalError, refused } from "../errors.js";
 import { type PoseMembers, cameraOf, poseOf } from "../matrices.js";
-import type { CheckFrame, CheckFrameInput, RigCamera, RigCameraInput } from "../types/index.js";
+import type { CheckFrame, CheckFrameInput, Pinhole, PinholeInput } from "../types/index.js";
 
-/** A rig's camera: with as many coefficients as its lens model has, which the numerics judge. */
-const list: Check = (value, field) => {
-  const length = isObject(value) && "length" in value ? value.length : undefined;
-  if (typeof length !== "number" || length > MOST_COEFFICIENTS) throw wrong(field, "a list of numbers", value);
-  numbers(length)(value, field);
-};
-/** OpenCV's longest model that is read here. */
-const MOST_COEFFICIENTS = 8;
-const cameraMembers = object(
-  { fx: number, fy: number, cx: number, cy: number, model: word("brown", "fisheye"), distortion: list },
-  ["fx", "fy", "cx", "cy"],
-);
-const rigCamera: Check = (value, field) => cameraMembers(cameraOf(value, field), field);
 const name: Check = (value, field) => {
   if (typeof value !== "string") throw wrong(field, "a text", value);
 };
@@ -45,8 +33,8 @@ const poseMembers = object(
 const rigPose: Check = (value, field) => poseMembers(poseOf(value, field), field);
 const frame = object(
   {
-    image: object({ ...IMAGE, camera: rigCamera }, ["width", "height", "data"]),
-    depth: object({ ...DEPTH, camera: rigCamera }, ["width", "height"]),
+    image: object({ ...IMAGE, camera }, ["width", "height", "data"]),
+    depth: object({ ...DEPTH, camera }, ["width", "height"]),
     name,
     // What `sampleRig` adds.
     pose: rigPose,
@@ -69,12 +57,9 @@ const options = object({
 });
 
 /** A view with the members of its camera, where that is a matrix. */
-function withCamera<T extends object>(
-  view: T & { camera?: RigCameraInput },
-  field: string,
-): T & { camera?: RigCamera } {
-  const camera = cameraOf(view.camera, `${field}.camera`) as RigCamera | undefined;
-  if (camera === view.camera) return view as T & { camera?: RigCamera };
+function withCamera<T extends object>(view: T & { camera?: PinholeInput }, field: string): T & { camera?: Pinhole } {
+  const camera = cameraOf(view.camera, `${field}.camera`) as Pinhole | undefined;
+  if (camera === view.camera) return view as T & { camera?: Pinhole };
   // Whatever the view inherits stays within reach.
   return Object.create(view, { camera: { value: camera, enumerable: true } });
 }

@@ -1,10 +1,10 @@
 /** Cameras by hand. */
 import { number } from "../check.js";
 import { BimodalError, refused } from "../errors.js";
-import type { RigCamera } from "./types.js";
+import type { Pinhole } from "./types.js";
 
 /** A camera of square pixels that looks through the middle of its image, by its horizontal field of view. */
-export function cameraFromFieldOfView(width: number, height: number, degrees: number): RigCamera {
+export function cameraFromFieldOfView(width: number, height: number, degrees: number): Pinhole {
   const isSize = (value: number) => Number.isInteger(value) && value > 0;
   for (const [field, side] of Object.entries({ width, height }))
     if (!isSize(side))

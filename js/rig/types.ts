@@ -1,8 +1,8 @@
 /** What is read from the files of a rig. */
-import type { CheckFrame, Mask, Pose, RigCamera } from "../types/index.js";
+import type { CheckFrame, Mask, Pinhole, Pose } from "../types/index.js";
 import type { ReaderWarning } from "./warnings.js";
 
-export type { CheckFrame, Mask, Pose, ReaderWarning, RigCamera };
+export type { CheckFrame, Mask, Pinhole, Pose, ReaderWarning };
 
 /** A file as it was dropped or read; the name may hold a path, "depth/0001.png". */
 export interface NamedFile {
@@ -29,7 +29,7 @@ export interface NamedCamera {
   /** The camera's name in its file, or the file's. */
   name?: string;
   /** Its intrinsics, pixels. */
-  camera: RigCamera;
+  camera: Pinhole;
   /** Columns of its pictures, where the file says so. */
   width?: number;
   /** Rows of its pictures, where the file says so. */

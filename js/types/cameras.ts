@@ -1,6 +1,10 @@
 /** Cameras, and the matrices that cameras and poses may be given as. */
 
-/** A pinhole camera; distortion is k1 k2 p1 p2 k3 (OpenCV). Units: pixels. */
+/**
+ * A pinhole camera behind a lens. Distortion as OpenCV has it: of the model "brown" (the default) 4, 5 or 8 numbers,
+ * k1 k2 p1 p2 [k3 [k4 k5 k6]]; of the model "fisheye" (Kannala-Brandt) the 4 numbers k1 k2 k3 k4. Units: pixels; pixel centres are whole
+ * numbers.
+ */
 export interface Pinhole {
   /** Focal length along the rows, pixels, above zero. */
   fx: number;
@@ -10,8 +14,10 @@ export interface Pinhole {
   cx: number;
   /** Row of the principal point, pixels; the centre of the first pixel is 0. */
   cy: number;
-  /** k1 k2 p1 p2 k3. Default: none. */
-  distortion?: [number, number, number, number, number];
+  /** Coefficients in OpenCV's order. Default: none; of a fisheye zeros. */
+  distortion?: ArrayLike<number>;
+  /** The lens model. Default "brown". */
+  model?: "brown" | "fisheye";
 }
 
 /** A 3x3 camera matrix, fx 0 cx, 0 fy cy, 0 0 1, in pixels: three rows of three numbers, or its nine numbers row by row. */
@@ -20,27 +26,11 @@ export type Matrix3 = readonly ArrayLike<number>[] | ArrayLike<number>;
 /** A 4x4 matrix [s R, t; 0 0 0 1]: four rows of four numbers, or its 16 numbers row by row. */
 export type Matrix4 = readonly ArrayLike<number>[] | ArrayLike<number>;
 
-/** A camera by its matrix, with its distortion. */
-export interface CameraMatrix<Camera extends { distortion?: unknown }> {
+/** A camera by its matrix, with its lens. */
+export interface CameraMatrix extends Pick<Pinhole, "distortion" | "model"> {
   /** fx 0 cx, 0 fy cy, 0 0 1, in pixels. */
   K: Matrix3;
-  /** As the camera of members has it. */
-  distortion?: Exclude<Camera["distortion"], undefined>;
 }
 
-/** A pinhole camera as it may be given: its members, its matrix, or `{ K, distortion }`. */
-export type PinholeInput = Pinhole | CameraMatrix<Pinhole> | Matrix3;
-
-/**
- * A camera of a rig. Distortion as OpenCV has it: of the model "brown" (the default) 4, 5 or 8 numbers, k1 k2 p1 p2 [k3 [k4 k5 k6]];
- * of the model "fisheye" (Kannala-Brandt) the 4 numbers k1 k2 k3 k4. Units: pixels; pixel centres are whole numbers.
- */
-export interface RigCamera extends Omit<Pinhole, "distortion"> {
-  /** The lens model. Default "brown". */
-  model?: "brown" | "fisheye";
-  /** Coefficients in OpenCV's order. Default: none. */
-  distortion?: ArrayLike<number>;
-}
-
-/** A camera of a rig as it may be given: its members, its matrix, or `{ K, distortion, model }`. */
-export type RigCameraInput = RigCamera | (CameraMatrix<RigCamera> & Pick<RigCamera, "model">) | Matrix3;
+/** A pinhole camera as it may be given: its members, its matrix, or `{ K, distortion, model }`. */
+export type PinholeInput = Pinhole | CameraMatrix | Matrix3;

@@ -1,5 +1,5 @@
 /** The check of a calibration: its frames, its options and what it finds. */
-import type { RigCamera, RigCameraInput } from "./cameras.js";
+import type { Pinhole, PinholeInput } from "./cameras.js";
 import type { CheckCode, WarningCode } from "./codes.js";
 import type { ColorImage, DepthMap } from "./images.js";
 import type { Pose } from "./poses.js";
@@ -9,28 +9,28 @@ export interface CheckFrame {
   /** Without a camera the focal length is estimated, the principal point being the middle of the image. */
   image: Omit<ColorImage, "camera"> & {
     /** The colour camera. */
-    camera?: RigCamera;
+    camera?: Pinhole;
   };
   /** A depth map with its camera, or an organised cloud in metres. */
   depth: Omit<DepthMap, "camera" | "normals"> & {
     /** The depth camera, which a depth map needs. */
-    camera?: RigCamera;
+    camera?: Pinhole;
   };
   /** How the report calls it; "frame 1" and so on without it. */
   name?: string;
 }
 
-/** A frame as it may be given: its cameras in any of the forms of `RigCameraInput`. */
+/** A frame as it may be given: its cameras in any of the forms of `PinholeInput`. */
 export interface CheckFrameInput extends Omit<CheckFrame, "image" | "depth"> {
   /** Without a camera the focal length is estimated, the principal point being the middle of the image. */
   image: Omit<CheckFrame["image"], "camera"> & {
     /** The colour camera. */
-    camera?: RigCameraInput;
+    camera?: PinholeInput;
   };
   /** A depth map with its camera, or an organised cloud in metres. */
   depth: Omit<CheckFrame["depth"], "camera"> & {
     /** The depth camera, which a depth map needs. */
-    camera?: RigCameraInput;
+    camera?: PinholeInput;
   };
 }
 

@@ -23,7 +23,7 @@ from ._inputs import LightGaussian, Options, StartTolerance, Weights
 from ._lessons import PixelLandscape, integrate_normals, pixel_landscape, shade_normals, turn_light
 from ._native import VERSION as __version__
 from ._samples import Sample, Truth, sample, sample_bound, sample_lights, sample_surfaces
-from ._types import Angles, ColorImage, DepthMap, Energy, Pinhole, Pose, RigCamera, StepReport, Uncertainty
+from ._types import Angles, ColorImage, DepthMap, Energy, Pinhole, Pose, StepReport, Uncertainty
 from ._write import write_cloud, write_depth, write_pose, write_results
 
 __all__ = [
@@ -50,7 +50,6 @@ __all__ = [
     "Pinhole",
     "Pose",
     "ReaderWarning",
-    "RigCamera",
     "RigFolder",
     "RigSample",
     "Sample",

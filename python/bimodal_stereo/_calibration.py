@@ -9,7 +9,7 @@ import numpy as np
 
 from . import _inputs, _native, _sources
 from ._errors import BimodalError
-from ._types import ColorImage, DepthMap, Pose, RigCamera, made, renamed
+from ._types import ColorImage, DepthMap, Pinhole, Pose, made, renamed
 
 if TYPE_CHECKING:
     from ._types import Floats, Pixels, PoseInput, Singles
@@ -185,5 +185,5 @@ def sample_rig(
     noise: factor of both sensors' noise; 1.
     """
     raw = _native.sample_rig({"kind": kind, "seed": seed, "frame": frame, "noise": noise})
-    image, depth = ({**raw[view], "camera": RigCamera(**raw[view]["camera"])} for view in ("image", "depth"))
+    image, depth = ({**raw[view], "camera": Pinhole(**raw[view]["camera"])} for view in ("image", "depth"))
     return RigSample(ColorImage(**image), DepthMap(**depth), raw["name"], Pose._of(raw["pose"]))

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Mapping, Optional, Sequence
 
 from . import _native, _sources
 from ._calibration import CheckFrame
-from ._types import ColorImage, DepthMap, Pose, RigCamera
+from ._types import ColorImage, DepthMap, Pinhole, Pose
 
 if TYPE_CHECKING:
     from ._sources import FilePath
@@ -29,7 +29,7 @@ class NamedCamera:
     """A camera of a file, with its name and the size (width, height) of its images where the file states them."""
 
     name: Optional[str]
-    camera: RigCamera
+    camera: Pinhole
     size: Optional[tuple[int, int]]
 
 
@@ -106,14 +106,14 @@ def read_rig_folder(
 
 def _frame(raw: Mapping[str, Any]) -> CheckFrame:
     image, depth = (
-        {**raw[view], "camera": None if raw[view]["camera"] is None else RigCamera(**raw[view]["camera"])}
+        {**raw[view], "camera": None if raw[view]["camera"] is None else Pinhole(**raw[view]["camera"])}
         for view in ("image", "depth")
     )
     return CheckFrame(ColorImage(**image), DepthMap(**depth), raw["name"])
 
 
 def _cameras(raw: Mapping[str, Any]) -> list[NamedCamera]:
-    return [NamedCamera(each["name"], RigCamera(**each["camera"]), each["size"]) for each in raw["cameras"]]
+    return [NamedCamera(each["name"], Pinhole(**each["camera"]), each["size"]) for each in raw["cameras"]]
 
 
 def _poses(raw: Mapping[str, Any]) -> list[NamedPose]:

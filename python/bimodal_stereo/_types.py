@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     Singles = NDArray[np.float32]
     # Numbers, a file that holds them, or a picture of another package.
     Pixels = Union[ArrayLike, FilePath, Picture]
-    CameraInput = Union["Pinhole", "RigCamera", ArrayLike, Mapping[str, Any]]
+    CameraInput = Union["Pinhole", ArrayLike, Mapping[str, Any]]
     PoseInput = Union["Pose", ArrayLike, Mapping[str, Any]]
 
 
@@ -38,43 +38,23 @@ def made(kind: type[Made], raw: Mapping[str, Any], **parts: Any) -> Made:
 
 @dataclass(frozen=True)
 class Pinhole:
-    """A pinhole camera, in pixels; pixel centres are whole numbers. ``distortion`` is k1 k2 p1 p2 k3 (OpenCV)."""
-
-    fx: float
-    fy: float
-    cx: float
-    cy: float
-    distortion: Sequence[float] = (0.0, 0.0, 0.0, 0.0, 0.0)
-
-    @property
-    def K(self) -> Floats:
-        """The matrix of the camera, (3, 3): fx 0 cx, 0 fy cy, 0 0 1."""
-        return _matrix(self)
-
-
-@dataclass(frozen=True)
-class RigCamera:
-    """A camera of a rig, in pixels; pixel centres are whole numbers.
+    """A pinhole camera behind a lens, in pixels; pixel centres are whole numbers.
 
     ``distortion`` as OpenCV has it: of the model "brown" 4, 5 or 8 numbers, k1 k2 p1 p2 [k3 [k4 k5 k6]]; of the model "fisheye"
-    (Kannala-Brandt) the 4 numbers k1 k2 k3 k4.
+    (Kannala-Brandt) the 4 numbers k1 k2 k3 k4. Without any there is no distortion, and of a fisheye they are zero.
     """
 
     fx: float
     fy: float
     cx: float
     cy: float
-    model: str = "brown"
     distortion: Sequence[float] = ()
+    model: str = "brown"
 
     @property
     def K(self) -> Floats:
         """The matrix of the camera, (3, 3): fx 0 cx, 0 fy cy, 0 0 1."""
-        return _matrix(self)
-
-
-def _matrix(camera: Union[Pinhole, RigCamera]) -> Floats:
-    return np.array([[camera.fx, 0.0, camera.cx], [0.0, camera.fy, camera.cy], [0.0, 0.0, 1.0]])
+        return np.array([[self.fx, 0.0, self.cx], [0.0, self.fy, self.cy], [0.0, 0.0, 1.0]])
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,9 +64,8 @@ class ColorImage:
     ``data``: (h, w, 3) or (h, w, 4), R G B and perhaps A, (h, w) grey, an image of Pillow or Open3D, or the path of a PNG, JPEG or .npy
     file. uint8 and uint16 are encoded by ``transfer``, "srgb" or "linear": 8 bits default to "srgb", of 16 bits it is guessed where the
     file does not state it. Floats are linear intensities above 0. Black, saturated and transparent pixels are left out. ``mask``: (h, w),
-    non-zero where the object is, or a picture or a file of that; all pixels without it. ``camera``: a ``Pinhole`` or ``RigCamera``, its
-    matrix (3, 3), a dictionary with ``K`` and ``distortion``, or Open3D's PinholeCameraIntrinsic, in pixels; without it the view is
-    orthographic.
+    non-zero where the object is, or a picture or a file of that; all pixels without it. ``camera``: a ``Pinhole``, its matrix (3, 3), a
+    dictionary with ``K``, ``distortion`` and ``model``, or Open3D's PinholeCameraIntrinsic, in pixels; without it the view is orthographic.
     """
 
     data: Pixels

@@ -1,14 +1,15 @@
 //! The check of a calibration for Python, and the rendered rigs that it is tried on.
 
 use bimodal_stereo::scenes::rig::{RigKind, RigRequest, render};
-use bimodal_stereo::{CalibrationCheck, Cue, Lens, RigCamera, RigView, Size, overlay};
+use bimodal_stereo::{CalibrationCheck, Cue, RigView, Size, overlay};
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyDict};
 
 use crate::arrays::{array, triples};
+use crate::cameras::{pinhole, plain};
 use crate::error::{failure, outcome, unbroken};
 use crate::guard::{Guarded, guarded};
-use crate::input::{Raster, extrinsics, intrinsics};
+use crate::input::{Raster, extrinsics};
 use crate::members::{Members, unknown};
 use crate::report;
 
@@ -77,36 +78,14 @@ fn view(index: usize, frame: &Bound<'_, PyAny>) -> PyResult<RigView> {
         image_size: image.size,
         image: image.colours()?,
         transfer: image.transfer()?,
-        image_camera: camera(&image.members)?,
+        image_camera: pinhole(&image.members)?,
         image_mask: image.mask,
         depth_size: depth.size,
         depth: depth.depths()?,
         unit: depth.members.number("unit")?,
-        depth_camera: camera(&depth.members)?,
+        depth_camera: pinhole(&depth.members)?,
         depth_mask: depth.mask,
     })
-}
-
-fn camera(raster: &Members<'_>) -> PyResult<Option<RigCamera>> {
-    let names = ["fx", "fy", "cx", "cy", "model", "distortion"];
-    let Some(camera) = raster.below("camera", &names)? else { return Ok(None) };
-    let [fx, fy, cx, cy] = intrinsics(&camera)?;
-    let is_fisheye = camera.word("model", &[("brown", false), ("fisheye", true)])?.unwrap_or(false);
-    let given = camera.list("distortion")?.unwrap_or_default();
-    let lens = match (is_fisheye, given.len()) {
-        (true, _) => Lens::Fisheye(camera.numbers("distortion")?.unwrap_or_default()),
-        (false, _) if given.iter().all(|value| *value == 0.0) => Lens::None,
-        (false, 4 | 5 | 8) => {
-            let mut all = [0.0; 8];
-            all[..given.len()].copy_from_slice(&given);
-            Lens::Brown(all)
-        }
-        (false, count) => {
-            let message = format!("needs 4, 5 or 8 numbers, not {count}");
-            return Err(failure("size", &camera.at("distortion"), &message));
-        }
-    };
-    Ok(Some(RigCamera { fx, fy, cx, cy, lens }))
 }
 
 /// One frame of a rendered rig.
@@ -118,21 +97,14 @@ pub fn sample_rig<'py>(py: Python<'py>, keywords: &Bound<'py, PyAny>) -> Dict<'p
         RigRequest::new(kind, given.whole("seed")?.unwrap_or_default(), given.whole("frame")?.unwrap_or_default());
     request.noise = given.number("noise")?.unwrap_or(request.noise);
     let made = outcome(py.detach(|| guarded(|| render(&request))))?;
-    let image = raster(py, &made.colour_camera)?;
+    let image = [("camera", plain(py, &made.colour_camera)?)].into_py_dict(py)?;
     let Size { width, height } = made.colour_size;
     image.set_item("data", array(py, made.colour, [height, width, 4])?)?;
-    let depth = raster(py, &made.depth_camera)?;
+    let depth = [("camera", plain(py, &made.depth_camera)?)].into_py_dict(py)?;
     let Size { width, height } = made.depth_size;
     depth.set_item("data", array(py, made.depth, [height, width])?)?;
     depth.set_item("unit", 0.001)?;
     let dict = [("image", image), ("depth", depth), ("pose", report::plain(py, &made.pose)?)].into_py_dict(py)?;
     dict.set_item("name", format!("{} {}", kind.name(), u64::from(request.frame) + 1))?;
     Ok(dict)
-}
-
-fn raster<'py>(py: Python<'py>, camera: &RigCamera) -> Dict<'py> {
-    let own = [("fx", camera.fx), ("fy", camera.fy), ("cx", camera.cx), ("cy", camera.cy)].into_py_dict(py)?;
-    own.set_item("model", if matches!(camera.lens, Lens::Fisheye(_)) { "fisheye" } else { "brown" })?;
-    own.set_item("distortion", camera.lens.coefficients().to_vec())?;
-    [("camera", own)].into_py_dict(py)
 }

@@ -4,14 +4,15 @@ use std::ffi::OsString;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use bimodal_stereo::{ColourSamples, DepthSamples, Lens, RigCamera, RigView, Transfer};
+use bimodal_stereo::{ColourSamples, DepthSamples, RigView, Transfer};
 use bimodal_stereo_files::command::{self, Terminal};
 use bimodal_stereo_files::read::{self, Raster};
 use bimodal_stereo_files::{self as files, FolderOptions, NamedCamera, NamedPose, Problem, Warning, colour};
 use pyo3::prelude::*;
-use pyo3::types::{IntoPyDict, PyDict, PyList};
+use pyo3::types::{PyDict, PyList};
 
 use crate::arrays::array;
+use crate::cameras;
 use crate::error::{BimodalError, unbroken};
 use crate::guard::guarded;
 use crate::report;
@@ -72,7 +73,7 @@ pub fn read_calibration(py: Python<'_>, path: PathBuf) -> Dict<'_> {
     let read = unbroken(py.detach(|| guarded(|| files::read_calibration(&path))))?;
     let found = read.map_err(|problem| refused(&problem))?;
     let dict = PyDict::new(py);
-    dict.set_item("cameras", cameras(py, &found.cameras)?)?;
+    dict.set_item("cameras", named_cameras(py, &found.cameras)?)?;
     dict.set_item("poses", poses(py, &found.poses)?)?;
     dict.set_item("says", files::says(&found))?;
     dict.set_item("warnings", warnings(py, &found.warnings.0)?)?;
@@ -93,7 +94,7 @@ pub fn read_rig_folder(
     let found = read.map_err(|problem| refused(&problem))?;
     let dict = PyDict::new(py);
     dict.set_item("frames", found.frames.into_iter().map(|view| frame(py, view)).collect::<PyResult<Vec<_>>>()?)?;
-    dict.set_item("cameras", cameras(py, &found.cameras)?)?;
+    dict.set_item("cameras", named_cameras(py, &found.cameras)?)?;
     dict.set_item("poses", poses(py, &found.poses)?)?;
     dict.set_item("warnings", warnings(py, &found.warnings)?)?;
     Ok(dict)
@@ -174,18 +175,11 @@ fn warnings<'py>(py: Python<'py>, all: &[Warning]) -> PyResult<Bound<'py, PyList
     PyList::new(py, all.iter().map(plain).collect::<PyResult<Vec<_>>>()?)
 }
 
-fn camera<'py>(py: Python<'py>, camera: &RigCamera) -> Dict<'py> {
-    let own = [("fx", camera.fx), ("fy", camera.fy), ("cx", camera.cx), ("cy", camera.cy)].into_py_dict(py)?;
-    own.set_item("model", if matches!(camera.lens, Lens::Fisheye(_)) { "fisheye" } else { "brown" })?;
-    own.set_item("distortion", camera.lens.coefficients().to_vec())?;
-    Ok(own)
-}
-
-fn cameras<'py>(py: Python<'py>, all: &[NamedCamera]) -> PyResult<Vec<Bound<'py, PyDict>>> {
+fn named_cameras<'py>(py: Python<'py>, all: &[NamedCamera]) -> PyResult<Vec<Bound<'py, PyDict>>> {
     let plain = |one: &NamedCamera| {
         let dict = PyDict::new(py);
         dict.set_item("name", &one.name)?;
-        dict.set_item("camera", camera(py, &one.camera)?)?;
+        dict.set_item("camera", cameras::plain(py, &one.camera)?)?;
         dict.set_item("size", one.size.map(<(usize, usize)>::from))?;
         Ok(dict)
     };
@@ -210,12 +204,12 @@ fn frame(py: Python<'_>, view: RigView) -> Dict<'_> {
     image.set_item("data", samples(py, view.image, [height, width])?)?;
     image.set_item("transfer", view.transfer.map(transfer_name))?;
     image.set_item("mask", view.image_mask.map(|mask| array(py, mask, [height, width])).transpose()?)?;
-    image.set_item("camera", view.image_camera.map(|own| camera(py, &own)).transpose()?)?;
+    image.set_item("camera", view.image_camera.map(|own| cameras::plain(py, &own)).transpose()?)?;
     let [width, height] = view.depth_size;
     let depth = depths(py, view.depth, [height, width])?;
     depth.set_item("unit", view.unit)?;
     depth.set_item("mask", view.depth_mask.map(|mask| array(py, mask, [height, width])).transpose()?)?;
-    depth.set_item("camera", view.depth_camera.map(|own| camera(py, &own)).transpose()?)?;
+    depth.set_item("camera", view.depth_camera.map(|own| cameras::plain(py, &own)).transpose()?)?;
     let dict = PyDict::new(py);
     dict.set_item("image", image)?;
     dict.set_item("depth", depth)?;

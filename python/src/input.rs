@@ -1,9 +1,10 @@
 //! From the dictionaries of the package to the views of the crate.
 
 use bimodal_stereo::nalgebra::{Matrix3, Matrix4, Vector3};
-use bimodal_stereo::{Angles, ColourImage, ColourSamples, DepthMap, DepthSamples, Pinhole, Similarity, Transfer};
+use bimodal_stereo::{Angles, ColourImage, ColourSamples, DepthMap, DepthSamples, Similarity, Transfer};
 use pyo3::prelude::*;
 
+use crate::cameras::pinhole;
 use crate::error::{failure, refused_at};
 use crate::members::Members;
 
@@ -81,41 +82,6 @@ pub fn depth(value: &Bound<'_, PyAny>) -> PyResult<DepthMap> {
         normals: raster.members.array("normals")?,
         mask: raster.mask,
     })
-}
-
-/// fx, fy, cx, cy.
-pub fn intrinsics(camera: &Members<'_>) -> PyResult<[f64; 4]> {
-    let number = |name| camera.needed(name, camera.number(name)?);
-    Ok([number("fx")?, number("fy")?, number("cx")?, number("cy")?])
-}
-
-fn pinhole(raster: &Members<'_>) -> PyResult<Option<Pinhole>> {
-    let names = ["fx", "fy", "cx", "cy", "model", "distortion"];
-    let Some(camera) = raster.below("camera", &names)? else { return Ok(None) };
-    let [fx, fy, cx, cy] = intrinsics(&camera)?;
-    let unsupported = |name: &str, what: &str| {
-        let message = format!("{what} in a run; undistort the image first");
-        Err(failure("unsupported", &camera.at(name), &message))
-    };
-    let distortion = match camera.word("model", &[("brown", false), ("fisheye", true)])? {
-        Some(true) => return unsupported("model", "the fisheye model is not supported"),
-        None => camera.numbers("distortion")?.unwrap_or_default(),
-        // A rig's camera has as many coefficients as its file.
-        Some(false) => {
-            let given = camera.list("distortion")?.unwrap_or_default();
-            if !matches!(given.len(), 0 | 4 | 5 | 8) {
-                let message = format!("needs 4, 5 or 8 numbers, not {}", given.len());
-                return Err(failure("size", &camera.at("distortion"), &message));
-            }
-            if given.iter().skip(5).any(|value| *value != 0.0) {
-                return unsupported("distortion", "k4, k5 and k6 are not supported");
-            }
-            let mut five = [0.0; 5];
-            five.iter_mut().zip(&given).for_each(|(own, value)| *own = *value);
-            five
-        }
-    };
-    Ok(Some(Pinhole { fx, fy, cx, cy, distortion }))
 }
 
 pub const POSE: [&str; 5] = ["scale", "rotation", "translation", "angles", "matrix"];

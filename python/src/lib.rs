@@ -6,6 +6,7 @@
 
 mod arrays;
 mod calibration;
+mod cameras;
 mod error;
 mod estimator;
 mod files;

@@ -7,6 +7,7 @@ use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyDict};
 
 use crate::arrays::array;
+use crate::cameras;
 use crate::error::{failure, outcome, refused, unbroken};
 use crate::guard::guarded;
 use crate::input::angles;
@@ -134,9 +135,7 @@ fn view<'py>(py: Python<'py>, size: Size, mask: &[bool], camera: &Camera) -> PyR
     let dict = PyDict::new(py);
     dict.set_item("mask", array(py, mask.to_vec(), [size.height, size.width])?)?;
     if let Some(camera) = camera.pinhole() {
-        let own = [("fx", camera.fx), ("fy", camera.fy), ("cx", camera.cx), ("cy", camera.cy)].into_py_dict(py)?;
-        own.set_item("distortion", camera.distortion)?;
-        dict.set_item("camera", own)?;
+        dict.set_item("camera", cameras::plain(py, &camera)?)?;
     }
     Ok(dict)
 }

@@ -152,12 +152,16 @@ def test_cameras_are_matrices(levels, of_views):
 
     expected = run(CAMERA)
     own = {"fx": 160, "fy": 150, "cx": 15.5, "cy": 14.5}
-    for camera in (K, K.tolist(), K.astype(np.float32), CAMERA.K, {"K": K}, own, bimodal.RigCamera(**own)):
+    for camera in (K, K.tolist(), K.astype(np.float32), CAMERA.K, {"K": K}, own, bimodal.Pinhole(**own)):
         assert run(camera) == expected
     distorted = run(bimodal.Pinhole(**own, distortion=lens))
     assert distorted != expected
-    assert run({"K": K.tolist(), "distortion": lens}) == run(bimodal.RigCamera(**own, distortion=[*lens, 0, 0, 0])) == distorted
-    np.testing.assert_array_equal(bimodal.RigCamera(**own).K, K)
+    assert run({"K": K.tolist(), "distortion": lens}) == run(bimodal.Pinhole(**own, distortion=[*lens, 0, 0, 0])) == distorted
+    rational = run(bimodal.Pinhole(**own, distortion=[*lens, 0.1, 0, 0]))
+    fisheye = run({"K": K, "distortion": [0.1, 0, 0, 0], "model": "fisheye"})
+    assert fisheye == run(bimodal.Pinhole(**own, distortion=[0.1, 0, 0, 0], model="fisheye"))
+    assert len({str(each) for each in (expected, distorted, rational, fisheye)}) == 4
+    np.testing.assert_array_equal(bimodal.Pinhole(**own).K, K)
 
 
 def test_poses_are_matrices(near):

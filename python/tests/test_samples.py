@@ -111,7 +111,7 @@ def test_bad_checks_are_refused_by_name(rig):
         return bimodal.CheckFrame(rig.image, bimodal.DepthMap(**{**vars(rig.depth), **members}))
 
     def with_camera(**members):
-        return with_depth(camera=bimodal.RigCamera(**{**vars(rig.depth.camera), **members}))
+        return with_depth(camera=bimodal.Pinhole(**{**vars(rig.depth.camera), **members}))
 
     refused(check(frames=[]), "size", "frames")
     refused(check(frames=[rig.image]), "type", "frames[0]")

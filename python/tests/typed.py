@@ -11,6 +11,7 @@ from bimodal_stereo import read_calibration, read_depth, read_rig_folder, sample
 from bimodal_stereo import write_depth, write_results
 
 camera = Pinhole(500, 500, 320, 240, [0.1, 0, 0, 0, 0])
+fisheye = Pinhole(500, 500, 320, 240, [0.1, 0, 0, 0], model="fisheye")
 image = ColorImage(np.zeros((480, 640, 3), np.uint8), mask=np.ones((480, 640)), camera=camera, transfer="srgb")
 depth = DepthMap(np.zeros((480, 640), np.uint16), camera=camera, unit=0.001)
 estimator = Estimator(image, depth, start={"angles": {"beta": 3}}, lambda_={"prior": 0.1}, max_iterations=3)

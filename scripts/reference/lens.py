@@ -1,4 +1,4 @@
-"""Reference answers for src/calibration/lens.rs, from OpenCV.
+"""Reference answers for src/view/lens/, from OpenCV.
 
 python3 scripts/reference/lens.py > scripts/reference/lens.csv     (pip install opencv-python-headless numpy)
 

@@ -4,9 +4,9 @@
 //! Only a camera that came without any is asked. A few terms k1 are tried, each with a pose of its own, and the mean log
 //! likelihoods of their rims compared.
 
-use super::lens::Lens;
 use super::planes::Planes;
 use super::registration::{MOST_RIMS_OF_STARTS, Round, Scene, Start};
+use crate::view::Lens;
 
 /// Terms that are tried: from what moves a usual image's corner by ten pixels to a wide lens.
 const TERMS: [f64; 6] = [-0.3, -0.15, -0.06, 0.06, 0.15, 0.3];

@@ -2,10 +2,9 @@
 
 use nalgebra::Vector3;
 
-use super::lens::RigCamera;
 use super::planes::Planes;
 use super::unknowns::State;
-use crate::view::{Size, depth_noise};
+use crate::view::{Pinhole, Size, depth_noise};
 
 /// Points behind the nearest one by more than this are hidden, as a share of their distance: twice the step of a Kinect
 /// at three metres.
@@ -22,7 +21,7 @@ const NOISE_SIGMAS: f64 = 6.0;
 pub(super) struct Frame {
     pub name: String,
     pub planes: Planes,
-    pub camera: RigCamera,
+    pub camera: Pinhole,
     /// Where the object is on the image, if it was told.
     pub image_mask: Option<Vec<bool>>,
     /// Raster of the depth map.
@@ -44,7 +43,7 @@ fn noise(grid: Size, points: &[[f32; 3]]) -> f64 {
 
 impl Frame {
     /// `points` in the depth camera's frame, metres.
-    pub fn new(name: String, planes: Planes, camera: RigCamera, grid: Size, points: Vec<[f32; 3]>) -> Self {
+    pub fn new(name: String, planes: Planes, camera: Pinhole, grid: Size, points: Vec<[f32; 3]>) -> Self {
         let noise = noise(grid, &points);
         Self { name, planes, camera, image_mask: None, grid, points, has_depth_mask: false, pixel: 1.0, noise }
     }
@@ -63,9 +62,9 @@ impl Frame {
                 .map(|(column, row)| mask[from.index(2 * column, 2 * row)])
                 .collect()
         });
-        let RigCamera { fx, fy, cx, cy, lens } = self.camera;
+        let Pinhole { fx, fy, cx, cy, lens } = self.camera;
         // The middle of two pixels lies between them.
-        self.camera = RigCamera { fx: fx / 2.0, fy: fy / 2.0, cx: (cx - 0.5) / 2.0, cy: (cy - 0.5) / 2.0, lens };
+        self.camera = Pinhole { fx: fx / 2.0, fy: fy / 2.0, cx: (cx - 0.5) / 2.0, cy: (cy - 0.5) / 2.0, lens };
         self.planes = to;
         self.pixel *= 2.0;
     }

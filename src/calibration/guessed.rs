@@ -6,8 +6,8 @@
 
 use nalgebra::Vector3;
 
-use super::lens::RigCamera;
 use super::unknowns::{Matrix, Units, Vector, add_square, solve};
+use crate::view::Pinhole;
 
 /// Sigma of either coordinate of the principal point, shares of the image's width: cameras as made are off its middle by one
 /// to three hundredths.
@@ -26,7 +26,7 @@ pub(super) fn explains(width: f64) -> f64 {
 /// image in pixels of the units; `prior` is the information of what was told.
 pub(super) fn covariance(
     units: &Units,
-    camera: &RigCamera,
+    camera: &Pinhole,
     cloud: &[Vector3<f64>],
     width: f64,
     prior: &Matrix,
@@ -55,11 +55,11 @@ pub(super) fn covariance(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::calibration::Lens;
+    use crate::view::Lens;
 
     #[test]
     fn before_one_depth_a_principal_point_is_a_shift() {
-        let camera = RigCamera { fx: 500.0, fy: 500.0, cx: 320.0, cy: 240.0, lens: Lens::None };
+        let camera = Pinhole { fx: 500.0, fy: 500.0, cx: 320.0, cy: 240.0, lens: Lens::None };
         let cloud: Vec<_> = (0..400)
             .map(|k| Vector3::new((k % 20) as f64 / 100.0 - 0.095, (k / 20) as f64 / 100.0 - 0.095, 1.0))
             .collect();

@@ -1,12 +1,11 @@
 //! What comes in, checked once: frames with their cameras, and what looks wrong about them.
 
 use super::frame::Frame;
-use super::lens::RigCamera;
 use super::planes::Planes;
 use super::reason::{Warning, WarningKind};
 use crate::check::positive;
 use crate::error::{Error, ErrorKind, Result};
-use crate::view::{ColourSamples, DepthSamples, Size, Transfer, to_srgb, transfer_of};
+use crate::view::{ColourSamples, DepthSamples, Lens, Pinhole, Size, Transfer, to_srgb, transfer_of};
 
 /// Widest image that is worked on as it is: beyond, halves say as much as a depth map can.
 const WIDEST: usize = 1000;
@@ -43,7 +42,7 @@ pub struct RigView {
     /// Non-zero where the object is.
     pub image_mask: Option<Vec<u8>>,
     /// `None`: its focal length is looked for.
-    pub image_camera: Option<RigCamera>,
+    pub image_camera: Option<Pinhole>,
     /// Columns and rows of the depth map.
     pub depth_size: [usize; 2],
     /// Its samples; a cloud needs no camera.
@@ -53,7 +52,7 @@ pub struct RigView {
     /// Non-zero where the depth map is to be used.
     pub depth_mask: Option<Vec<u8>>,
     /// Needed unless the depth map is a cloud.
-    pub depth_camera: Option<RigCamera>,
+    pub depth_camera: Option<Pinhole>,
 }
 
 impl RigView {
@@ -90,7 +89,7 @@ impl RigView {
         let camera = self.image_camera.unwrap_or_else(|| {
             let focal = USUAL_FOCAL * size.width.max(size.height) as f64;
             let [cx, cy] = [size.width, size.height].map(|side| (side as f64 - 1.0) / 2.0);
-            RigCamera { fx: focal, fy: focal, cx, cy, lens: super::Lens::None }
+            Pinhole { fx: focal, fy: focal, cx, cy, lens: Lens::None }
         });
         validate(&camera, size, "image.camera")?;
         let mut frame = Frame::new(self.name, planes, camera, grid, points);
@@ -105,7 +104,7 @@ impl RigView {
 
 /// A camera whose lens is one over most of its image: of coefficients with a slipped decimal point it folds near the middle, or
 /// sees next to nothing.
-fn validate(camera: &RigCamera, size: Size, field: &str) -> Result<()> {
+fn validate(camera: &Pinhole, size: Size, field: &str) -> Result<()> {
     /// Rows and columns of pixels that are tried.
     const TRIED: usize = 9;
     /// Of the slope of a ray without a lens; the strongest pincushions leave two thirds.
@@ -253,15 +252,15 @@ fn doubts(view: &RigView, grid: Size, points: &[[f32; 3]]) -> Vec<WarningKind> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::calibration::Lens;
 
     /// Found by the fuzzer: a focal length of almost nothing put points at infinity, and the estimate with them.
     #[test]
     fn points_beyond_all_distances_are_missing() {
-        let camera = RigCamera { fx: 1e-45, fy: 20.0, cx: 10.5, cy: 8.0, lens: Lens::None };
+        // Almost nothing that is still a camera, and what is none.
+        let camera = |fx| Pinhole { fx, fy: 20.0, cx: 10.5, cy: 8.0, lens: Lens::None };
         let size = [16, 16];
         let grid = Size::new("depth", 16, 16).unwrap();
-        let view = |depth| RigView {
+        let view = |fx, depth| RigView {
             name: String::new(),
             image_size: size,
             image: ColourSamples::Rgba8(vec![]),
@@ -272,12 +271,18 @@ mod tests {
             depth,
             unit: None,
             depth_mask: None,
-            depth_camera: Some(camera),
+            depth_camera: Some(camera(fx)),
         };
         for far in [1.0, 1e12, 3e38, f32::INFINITY] {
             for depth in [DepthSamples::Float(vec![far; 256]), DepthSamples::Cloud(vec![far; 3 * 256])] {
-                let points = points(&view(depth), grid).unwrap_or_default();
-                assert!(points.iter().flatten().all(|value| value.is_nan() || value.abs() < BEYOND), "{far}");
+                let is_map = matches!(depth, DepthSamples::Float(_));
+                for fx in [1e-45, 2e-11] {
+                    let found = points(&view(fx, depth.clone()), grid);
+                    // A cloud needs no camera.
+                    assert_eq!(found.is_err(), is_map && fx < 1e-12, "{far} {fx}");
+                    let mut coordinates = found.unwrap_or_default().into_iter().flatten();
+                    assert!(coordinates.all(|value| value.is_nan() || value.abs() < BEYOND), "{far} {fx}");
+                }
             }
         }
     }
@@ -285,13 +290,13 @@ mod tests {
     #[test]
     fn slipped_decimal_points_are_no_lens() {
         let size = Size::new("image", 640, 480).unwrap();
-        let with = |lens| RigCamera { fx: 525.0, fy: 525.0, cx: 319.5, cy: 239.5, lens };
+        let with = |lens| Pinhole { fx: 525.0, fy: 525.0, cx: 319.5, cy: 239.5, lens };
         let brown = |k1| Lens::Brown([k1, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
         for lens in [Lens::None, brown(-0.4), brown(0.5), Lens::Fisheye([0.1, -0.05, 0.0, 0.0])] {
             assert_eq!(validate(&with(lens), size, "camera"), Ok(()));
         }
         // Wide: a fisheye whose rim looks aside.
-        let wide = RigCamera { fx: 200.0, fy: 200.0, ..with(Lens::Fisheye([0.0; 4])) };
+        let wide = Pinhole { fx: 200.0, fy: 200.0, ..with(Lens::Fisheye([0.0; 4])) };
         assert_eq!(validate(&wide, size, "camera"), Ok(()));
         for lens in
             [brown(-40.0), brown(1e6), Lens::Fisheye([-60.0, 0.0, 0.0, 0.0]), Lens::Fisheye([1e6, 0.0, 0.0, 0.0])]

@@ -5,7 +5,7 @@
 //!
 //! | file | what it holds |
 //! |---|---|
-//! | `lens`, `cue` | cameras of a rig; names of the cues |
+//! | `cue` | names of the cues |
 //! | `input`, `frame`, `planes` | what comes in, guards, the colour camera's view of the depth points |
 //! | `rims`, `edges` | depth edges, and their log likelihood on image edges |
 //! | `surface`, `patches` | samples of the depth map with normals, grouped |
@@ -28,7 +28,6 @@ mod guessed;
 mod health;
 mod information;
 mod input;
-mod lens;
 mod overlay;
 mod patches;
 mod planes;
@@ -50,7 +49,6 @@ pub use check::CalibrationCheck;
 pub use cue::Cue;
 pub use health::Health;
 pub use input::RigView;
-pub use lens::{Lens, RigCamera};
 pub use overlay::{Overlay, overlay};
 pub use reason::{CheckReason, Margin, Offset, Warning, WarningKind};
 pub use report::{CheckReport, CueReport, FrameReport};

@@ -7,9 +7,9 @@
 
 use nalgebra::{Rotation3, SMatrix, SVector, Vector3};
 
-use super::lens::RigCamera;
 use crate::numeric::eigen::Eigen;
 use crate::pose::{Similarity, rotation_vector};
+use crate::view::Pinhole;
 
 /// w (3), v (3), d, ln f.
 pub(super) const UNKNOWNS: usize = 8;
@@ -61,8 +61,8 @@ impl State {
         Self { pose, loss: 0.0, focal: 1.0 }
     }
 
-    pub fn camera(&self, camera: &RigCamera) -> RigCamera {
-        RigCamera { fx: camera.fx * self.focal, fy: camera.fy * self.focal, ..*camera }
+    pub fn camera(&self, camera: &Pinhole) -> Pinhole {
+        Pinhole { fx: camera.fx * self.focal, fy: camera.fy * self.focal, ..*camera }
     }
 }
 
@@ -77,7 +77,7 @@ pub(super) struct Units {
 
 impl Units {
     /// The units at which a cloud moves by one pixel; points in the colour camera's frame.
-    pub fn new(points: &[Vector3<f64>], camera: &RigCamera) -> Self {
+    pub fn new(points: &[Vector3<f64>], camera: &Pinhole) -> Self {
         let mut depths: Vec<f32> = points.iter().map(|point| point.z as f32).collect();
         let mean = points.iter().sum::<Vector3<f64>>() / points.len().max(1) as f64;
         let depth = if depths.is_empty() { 1.0 } else { f64::from(crate::numeric::quantile(&mut depths, 0.5)) };
@@ -98,7 +98,7 @@ impl Units {
     }
 
     /// Pixel of a point in the colour camera's frame, and how its column and row move with each unknown.
-    pub fn rows(&self, point: &Vector3<f64>, camera: &RigCamera) -> Option<([f64; 2], [Vector; 2])> {
+    pub fn rows(&self, point: &Vector3<f64>, camera: &Pinhole) -> Option<([f64; 2], [Vector; 2])> {
         let (pixel, gradient) = camera.project_with_gradient([point.x, point.y, point.z])?;
         let arm = point - self.middle;
         let from_centre = [pixel[0] - camera.cx, pixel[1] - camera.cy];

@@ -98,7 +98,7 @@ impl Judge {
     /// `cloud` in the colour camera's frame; `scale` of the distribution; `pixel` of the original image in one worked on; `width` of the original.
     pub fn new(
         units: Units,
-        camera: &super::RigCamera,
+        camera: &crate::view::Pinhole,
         cloud: &[Vector3<f64>],
         scale: &Matrix,
         pixel: f64,

@@ -159,12 +159,12 @@ mod tests {
     use crate::pose::Angles;
     use crate::report::Status;
     use crate::scenes::{Sample, SampleRequest, Scene, light, surface};
-    use crate::view::{Camera, Pinhole};
+    use crate::view::{Camera, Lens, Pinhole};
 
     /// A pair of `side` pixels, turned by `beta`.
     fn sample(name: &str, lamps: &str, side: usize, beta: f64, depth_noise: f64, is_pinhole: bool) -> Sample {
         let (focal, middle) = (2.3 * side as f64, 0.5 * (side as f64 - 1.0));
-        let pinhole = Pinhole { fx: focal, fy: focal, cx: middle, cy: middle, distortion: [0.0; 5] };
+        let pinhole = Pinhole { fx: focal, fy: focal, cx: middle, cy: middle, lens: Lens::None };
         let camera = if is_pinhole { Camera::Pinhole(pinhole) } else { Camera::Orthographic };
         let request = SampleRequest {
             light: light(lamps).unwrap(),

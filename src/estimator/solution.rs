@@ -93,7 +93,7 @@ impl Shape {
 /// The points at their depths along the pixels' rays.
 fn place(size: Size, camera: &Camera, points: &mut Points) {
     let parallel = camera.is_orthographic();
-    let straight = camera.pinhole().is_none_or(|pinhole| pinhole.is_undistorted());
+    let straight = camera.is_straight();
     // Of straight rays x follows from the column and y from the row.
     let [first, second] = [0.0, 1.0].map(|place| camera.ray(size, [place; 2]));
     let step = second[0] - first[0];

@@ -297,6 +297,7 @@ pub(crate) fn to_srgb(linear: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::view::Lens;
 
     fn image(samples: ColourSamples) -> ColourImage {
         ColourImage { width: 4, height: 4, samples, transfer: None, mask: None, camera: None }
@@ -310,7 +311,7 @@ mod tests {
 
     #[test]
     fn a_frame_that_is_filled_is_whole_unless_a_mask_says_what_the_object_is() {
-        let camera = Some(Pinhole { fx: 8.0, fy: 8.0, cx: 3.5, cy: 3.5, distortion: [0.0; 5] });
+        let camera = Some(Pinhole { fx: 8.0, fy: 8.0, cx: 3.5, cy: 3.5, lens: Lens::None });
         let is_middle = |index: usize| (2..6).contains(&(index % 8)) && (2..6).contains(&(index / 8));
         let grey = |dark: bool, index: usize| if dark && !is_middle(index) { 0 } else { 90 };
         let levels =

@@ -4,12 +4,11 @@
 use crate::check::positive;
 use crate::error::{Error, ErrorKind, Result};
 use crate::text::Brief;
-use crate::view::camera::FARTHEST;
 use crate::view::depth_noise::DepthNoise;
-use crate::view::flying_pixels;
 use crate::view::mask::{self, FEWEST_PIXELS, components};
+use crate::view::pinhole::FARTHEST;
 use crate::view::smoothing::smooth;
-use crate::view::{Camera, Normals, Pinhole, Points, Size, normals};
+use crate::view::{Camera, Normals, Pinhole, Points, Size, flying_pixels, normals};
 
 /// Samples as they come from a sensor or a file.
 #[derive(Clone, Debug, PartialEq)]
@@ -294,6 +293,7 @@ fn enclosed(size: Size, depth: &[f32]) -> Vec<bool> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::view::Lens;
 
     fn map(samples: DepthSamples) -> DepthMap {
         DepthMap { width: 10, height: 10, samples, unit: None, mask: None, camera: None, normals: None }
@@ -337,7 +337,7 @@ mod tests {
     #[test]
     fn integers_with_a_camera_are_millimetres() {
         let mut input = map(DepthSamples::Integer(vec![1500; 100]));
-        input.camera = Some(Pinhole { fx: 10.0, fy: 10.0, cx: 4.5, cy: 4.5, distortion: [0.0; 5] });
+        input.camera = Some(Pinhole { fx: 10.0, fy: 10.0, cx: 4.5, cy: 4.5, lens: Lens::None });
         let view = DepthView::new(&input, true).unwrap();
         assert!((view.points.z[0] - 1.5).abs() < 1e-6 && (view.points.x[0] + 0.675).abs() < 1e-6);
     }
@@ -354,7 +354,8 @@ mod tests {
     fn where_the_lens_lets_no_ray_through_is_no_depth() {
         let mut input = map(DepthSamples::Float(vec![1.0; 100]));
         // No ray runs farther than 0.385 focal lengths from the middle.
-        let camera = Pinhole { fx: 10.0, fy: 10.0, cx: 4.5, cy: 4.5, distortion: [-1.0, 0.0, 0.0, 0.0, 0.0] };
+        let lens = Lens::brown(&[-1.0, 0.0, 0.0, 0.0, 0.0]).unwrap();
+        let camera = Pinhole { fx: 10.0, fy: 10.0, cx: 4.5, cy: 4.5, lens };
         input.camera = Some(camera);
         assert_eq!(DepthView::new(&input, true).unwrap_err().field(), "depth.camera.distortion");
         input.camera = Some(Pinhole { fx: 14.0, fy: 14.0, ..camera });
@@ -367,7 +368,7 @@ mod tests {
     #[test]
     fn a_zero_focal_length_is_refused_by_name() {
         let mut input = map(DepthSamples::Float(vec![1.0; 100]));
-        input.camera = Some(Pinhole { fx: 0.0, fy: 10.0, cx: 4.5, cy: 4.5, distortion: [0.0; 5] });
+        input.camera = Some(Pinhole { fx: 0.0, fy: 10.0, cx: 4.5, cy: 4.5, lens: Lens::None });
         assert_eq!(DepthView::new(&input, true).unwrap_err().field(), "depth.camera.fx");
     }
 }

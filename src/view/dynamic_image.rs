@@ -2,13 +2,13 @@
 //!
 //! ```
 //! use bimodal_stereo::image::{DynamicImage, ImageBuffer, Luma};
-//! use bimodal_stereo::{ColourImage, DepthMap, Pinhole};
+//! use bimodal_stereo::{ColourImage, DepthMap, Lens, Pinhole};
 //!
 //! // In place of image::open("colour.png")? and image::open("depth.png")?.
 //! let colours = DynamicImage::new_rgb8(64, 48);
 //! let depths = DynamicImage::from(ImageBuffer::<Luma<u16>, _>::from_pixel(64, 48, Luma([812])));
 //!
-//! let camera = Some(Pinhole { fx: 60.0, fy: 60.0, cx: 31.5, cy: 23.5, distortion: [0.0; 5] });
+//! let camera = Some(Pinhole { fx: 60.0, fy: 60.0, cx: 31.5, cy: 23.5, lens: Lens::None });
 //! let image = ColourImage { camera, ..ColourImage::try_from(&colours)? };
 //! let depth = DepthMap { camera, unit: Some(0.001), ..DepthMap::try_from(&depths)? };
 //! assert_eq!((image.width, depth.height), (64, 48));

@@ -54,9 +54,9 @@ impl Camera {
     fn halved(self) -> Self {
         match self {
             Self::Orthographic => Self::Orthographic,
-            Self::Pinhole(Pinhole { fx, fy, cx, cy, distortion }) => {
+            Self::Pinhole(Pinhole { fx, fy, cx, cy, lens }) => {
                 let [cx, cy] = [cx, cy].map(|centre| (centre + 0.5) / 2.0 - 0.5);
-                Self::Pinhole(Pinhole { fx: fx / 2.0, fy: fy / 2.0, cx, cy, distortion })
+                Self::Pinhole(Pinhole { fx: fx / 2.0, fy: fy / 2.0, cx, cy, lens })
             }
         }
     }
@@ -151,6 +151,7 @@ impl DepthView {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::view::Lens;
 
     const ODD: Size = Size { width: 7, height: 5 };
 
@@ -182,7 +183,8 @@ mod tests {
 
     #[test]
     fn rays_stay_where_they_were() {
-        let pinhole = Pinhole { fx: 80.0, fy: 90.0, cx: 3.2, cy: 2.1, distortion: [0.1, 0.0, 0.0, 0.0, 0.0] };
+        let lens = Lens::brown(&[0.1, 0.0, 0.0, 0.0]).unwrap();
+        let pinhole = Pinhole { fx: 80.0, fy: 90.0, cx: 3.2, cy: 2.1, lens };
         let camera = Camera::Pinhole(pinhole);
         let fine = camera.ray(ODD, [2.5, 0.5]);
         let coarse = camera.halved().ray(ODD.halved(), [1.0, 0.0]);

@@ -26,12 +26,12 @@ impl Camera {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::view::Pinhole;
+    use crate::view::{Lens, Pinhole};
 
     #[test]
     fn depths_come_back_and_their_slopes_are_in_pixels() {
         let depth = [0.8, 1.0, 1.001, f32::NAN];
-        let pinhole = Pinhole { fx: 500.0, fy: 500.0, cx: 0.0, cy: 0.0, distortion: [0.0; 5] };
+        let pinhole = Pinhole { fx: 500.0, fy: 500.0, cx: 0.0, cy: 0.0, lens: Lens::None };
         for (camera, slope) in [(Camera::Orthographic, 0.001), (Camera::Pinhole(pinhole), 0.5)] {
             let mut field = depth;
             camera.heights_from_depth(&mut field);

@@ -102,11 +102,11 @@ impl WorkingSize {
         (start as usize..end.ceil() as usize).map(share)
     }
 
-    fn camera(&self, Pinhole { fx, fy, cx, cy, distortion }: Pinhole) -> Pinhole {
+    fn camera(&self, Pinhole { fx, fy, cx, cy, lens }: Pinhole) -> Pinhole {
         let side = self.factor;
         let place = |centre: f64, origin: usize| (centre - origin as f64 + 0.5) / side - 0.5;
         let [cx, cy] = [place(cx, self.origin[0]), place(cy, self.origin[1])];
-        Pinhole { fx: fx / side, fy: fy / side, cx, cy, distortion }
+        Pinhole { fx: fx / side, fy: fy / side, cx, cy, lens }
     }
 
     /// How long a unit of the working view is in the caller's: both are metres behind a pinhole.
@@ -293,6 +293,7 @@ fn measured(depth: &DepthMap) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::view::Lens;
 
     const MOST: usize = 4_000_000;
 
@@ -307,7 +308,7 @@ mod tests {
     }
 
     fn camera(focal_length: f64) -> Option<Pinhole> {
-        Some(Pinhole { fx: focal_length, fy: focal_length, cx: 20.0, cy: 20.0, distortion: [0.0; 5] })
+        Some(Pinhole { fx: focal_length, fy: focal_length, cx: 20.0, cy: 20.0, lens: Lens::None })
     }
 
     fn factor_of(image: &ColourImage, depth: &DepthMap, most: usize) -> f64 {

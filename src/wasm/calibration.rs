@@ -2,14 +2,14 @@
 
 use js_sys::{Float32Array, Object};
 use nalgebra::{Matrix3, Vector3};
+use wasm_bindgen::JsCast;
 use wasm_bindgen::prelude::wasm_bindgen;
-use wasm_bindgen::{JsCast, JsValue};
 
 use super::error::Thrown;
-use super::input::{JsDepth, JsImage, numbers, samples_of_depth, samples_of_image};
+use super::input::{JsDepth, JsImage, JsPinhole, pinhole, samples_of_depth, samples_of_image};
 use super::output::{plain, set};
-use crate::calibration::{self, Cue, Lens, RigCamera, RigView};
-use crate::error::{Error, ErrorKind, Result};
+use crate::calibration::{self, Cue, RigView};
+use crate::error::{Error, Result};
 use crate::pose::Similarity;
 use crate::view::Transfer;
 
@@ -23,20 +23,6 @@ extern "C" {
     fn depth(this: &JsFrame) -> JsDepth;
     #[wasm_bindgen(method, getter)]
     fn name(this: &JsFrame) -> Option<String>;
-
-    pub type JsCamera;
-    #[wasm_bindgen(method, getter)]
-    fn fx(this: &JsCamera) -> f64;
-    #[wasm_bindgen(method, getter)]
-    fn fy(this: &JsCamera) -> f64;
-    #[wasm_bindgen(method, getter)]
-    fn cx(this: &JsCamera) -> f64;
-    #[wasm_bindgen(method, getter)]
-    fn cy(this: &JsCamera) -> f64;
-    #[wasm_bindgen(method, getter)]
-    fn model(this: &JsCamera) -> Option<String>;
-    #[wasm_bindgen(method, getter)]
-    fn distortion(this: &JsCamera) -> JsValue;
 
     #[wasm_bindgen(typescript_type = "CheckReport")]
     pub type JsReport;
@@ -116,40 +102,19 @@ fn pose(numbers: &[f64]) -> Similarity {
 fn view(index: usize, js: &JsFrame) -> Result<RigView> {
     let (image, depth) = (js.image(), js.depth());
     let below = |error: Error| error.below(&format!("frames[{index}]"));
-    let camera_of = |value: JsValue, field: &str| {
-        let camera: Option<JsCamera> = value.is_object().then(|| value.unchecked_into());
-        camera.map(|camera| rig_camera(&camera, field)).transpose().map_err(below)
-    };
+    let camera_of =
+        |js: Option<JsPinhole>, field: &str| js.map(|camera| pinhole(&camera, field)).transpose().map_err(below);
     Ok(RigView {
         name: js.name().unwrap_or_else(|| format!("frame {}", index + 1)),
         image_size: [image.width() as usize, image.height() as usize],
         image: samples_of_image(&image),
         transfer: image.transfer().map(|name| if name == "linear" { Transfer::Linear } else { Transfer::Srgb }),
         image_mask: image.mask().map(|mask| mask.to_vec()),
-        image_camera: camera_of(image.camera().into(), "image.camera")?,
+        image_camera: camera_of(image.camera(), "image.camera")?,
         depth_size: [depth.width() as usize, depth.height() as usize],
         depth: samples_of_depth(&depth).map_err(below)?,
         unit: depth.unit(),
         depth_mask: depth.mask().map(|mask| mask.to_vec()),
-        depth_camera: camera_of(depth.camera().into(), "depth.camera")?,
+        depth_camera: camera_of(depth.camera(), "depth.camera")?,
     })
-}
-
-fn rig_camera(js: &JsCamera, field: &str) -> Result<RigCamera> {
-    let given = numbers(&js.distortion()).unwrap_or_default();
-    let wrong = |needs: &str| {
-        Error::new(ErrorKind::Size, "distortion", format!("needs {needs} numbers, not {}", given.len())).below(field)
-    };
-    let lens = if js.model().as_deref() == Some("fisheye") {
-        Lens::Fisheye(<[f64; 4]>::try_from(given.clone()).map_err(|_| wrong("4"))?)
-    } else if given.iter().all(|value| *value == 0.0) {
-        Lens::None
-    } else if matches!(given.len(), 4 | 5 | 8) {
-        let mut all = [0.0; 8];
-        all[..given.len()].copy_from_slice(&given);
-        Lens::Brown(all)
-    } else {
-        return Err(wrong("4, 5 or 8"));
-    };
-    Ok(RigCamera { fx: js.fx(), fy: js.fy(), cx: js.cx(), cy: js.cy(), lens })
 }

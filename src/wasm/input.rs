@@ -8,7 +8,7 @@ use wasm_bindgen::{JsCast, JsValue};
 use crate::error::{Error, ErrorKind, Result};
 use crate::options::Options;
 use crate::pose::Angles;
-use crate::view::{ColourImage, ColourSamples, DepthMap, DepthSamples, Pinhole, Transfer};
+use crate::view::{ColourImage, ColourSamples, DepthMap, DepthSamples, Lens, Pinhole, Transfer};
 
 #[wasm_bindgen]
 extern "C" {
@@ -56,6 +56,8 @@ extern "C" {
     #[wasm_bindgen(method, getter)]
     fn cy(this: &JsPinhole) -> f64;
     #[wasm_bindgen(method, getter)]
+    fn model(this: &JsPinhole) -> Option<String>;
+    #[wasm_bindgen(method, getter)]
     fn distortion(this: &JsPinhole) -> JsValue;
 
     #[wasm_bindgen(typescript_type = "Options")]
@@ -73,13 +75,6 @@ extern "C" {
 /// Numbers from any list of numbers; `None` where there is none.
 pub fn numbers(value: &JsValue) -> Option<Vec<f64>> {
     value.is_object().then(|| Float64Array::new(value).to_vec())
-}
-
-fn exactly<const N: usize>(field: &'static str, value: &JsValue) -> Result<Option<[f64; N]>> {
-    let Some(values) = numbers(value) else { return Ok(None) };
-    let length = values.len();
-    let wrong = || Error::new(ErrorKind::Size, field, format!("needs {N} numbers, not {length}"));
-    values.try_into().map(Some).map_err(|_| wrong())
 }
 
 pub fn samples_of_image(js: &JsImage) -> ColourSamples {
@@ -102,7 +97,7 @@ pub fn image(js: &JsImage) -> Result<ColourImage> {
         samples: samples_of_image(js),
         transfer: js.transfer().map(|name| if name == "linear" { Transfer::Linear } else { Transfer::Srgb }),
         mask: js.mask().map(|mask| mask.to_vec()),
-        camera: js.camera().map(|camera| pinhole("image.camera.distortion", &camera)).transpose()?,
+        camera: js.camera().map(|camera| pinhole(&camera, "image.camera")).transpose()?,
     })
 }
 
@@ -128,14 +123,17 @@ pub fn depth(js: &JsDepth) -> Result<DepthMap> {
         samples: samples_of_depth(js)?,
         unit: js.unit(),
         mask: js.mask().map(|mask| mask.to_vec()),
-        camera: js.camera().map(|camera| pinhole("depth.camera.distortion", &camera)).transpose()?,
+        camera: js.camera().map(|camera| pinhole(&camera, "depth.camera")).transpose()?,
         normals: js.normals().map(|normals| normals.to_vec()),
     })
 }
 
-fn pinhole(distortion: &'static str, js: &JsPinhole) -> Result<Pinhole> {
-    let distortion = exactly(distortion, &js.distortion())?.unwrap_or_default();
-    Ok(Pinhole { fx: js.fx(), fy: js.fy(), cx: js.cx(), cy: js.cy(), distortion })
+pub fn pinhole(js: &JsPinhole, field: &str) -> Result<Pinhole> {
+    let coefficients = numbers(&js.distortion()).unwrap_or_default();
+    let is_fisheye = js.model().is_some_and(|name| name == "fisheye");
+    let lens = if is_fisheye { Lens::fisheye(&coefficients) } else { Lens::brown(&coefficients) };
+    let lens = lens.map_err(|error| error.below(field))?;
+    Ok(Pinhole { fx: js.fx(), fy: js.fy(), cx: js.cx(), cy: js.cy(), lens })
 }
 
 /// Options of the contract over the native defaults. Names and types have been checked by the facade.

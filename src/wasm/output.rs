@@ -6,7 +6,7 @@ use serde_wasm_bindgen::Serializer;
 use wasm_bindgen::{JsCast, JsValue, UnwrapThrowExt};
 
 use crate::report::StepReport;
-use crate::view::{Camera, Pinhole};
+use crate::view::Pinhole;
 
 /// Sets a property of a plain object, which can't fail.
 pub fn set(object: &Object, key: &str, value: impl Into<JsValue>) {
@@ -30,15 +30,17 @@ pub fn report(report: &StepReport, milliseconds: &[(&'static str, f64)]) -> JsVa
     object.into()
 }
 
-/// A camera of the contract; an orthographic one is the absence of one.
-pub fn camera(camera: &Camera) -> JsValue {
-    let Camera::Pinhole(Pinhole { fx, fy, cx, cy, distortion }) = camera else { return JsValue::UNDEFINED };
+/// A camera of the contract.
+pub fn pinhole(camera: &Pinhole) -> Object {
+    let Pinhole { fx, fy, cx, cy, lens } = camera;
     let object = Object::new();
     for (key, value) in [("fx", fx), ("fy", fy), ("cx", cx), ("cy", cy)] {
         set(&object, key, *value);
     }
-    set(&object, "distortion", numbers(*distortion));
-    object.into()
+    set(&object, "model", lens.model());
+    let coefficients = if lens.coefficients().is_empty() { &[0.0; 5] } else { lens.coefficients() };
+    set(&object, "distortion", numbers(coefficients.iter().copied()));
+    object
 }
 
 /// A mask of the contract: 255 inside.

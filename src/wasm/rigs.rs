@@ -5,11 +5,10 @@ use wasm_bindgen::prelude::wasm_bindgen;
 use wasm_bindgen::{JsCast, JsValue};
 
 use super::error::Thrown;
-use super::output::{numbers, plain, set};
-use crate::calibration::{Lens, RigCamera};
+use super::output::{pinhole, plain, set};
 use crate::error::{Error, ErrorKind};
 use crate::scenes::rig::{RigKind, RigRequest, render};
-use crate::view::Size;
+use crate::view::{Pinhole, Size};
 
 #[wasm_bindgen]
 extern "C" {
@@ -45,20 +44,11 @@ pub fn sample_rig(name: &str, seed: f64, frame: f64, noise: Option<f64>) -> std:
     Ok(sample.unchecked_into())
 }
 
-fn raster(size: Size, camera: &RigCamera) -> Object {
-    let model = if matches!(camera.lens, Lens::Fisheye(_)) { "fisheye" } else { "brown" };
-    let camera = object([
-        ("fx", camera.fx.into()),
-        ("fy", camera.fy.into()),
-        ("cx", camera.cx.into()),
-        ("cy", camera.cy.into()),
-        ("model", model.into()),
-        ("distortion", numbers(camera.lens.coefficients().iter().copied())),
-    ]);
+fn raster(size: Size, camera: &Pinhole) -> Object {
     object([
         ("width", JsValue::from(size.width as f64)),
         ("height", JsValue::from(size.height as f64)),
-        ("camera", camera.into()),
+        ("camera", pinhole(camera).into()),
     ])
 }
 

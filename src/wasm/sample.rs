@@ -6,11 +6,11 @@ use wasm_bindgen::{JsCast, JsValue};
 
 use super::error::Thrown;
 use super::input::{JsAngles, angles, numbers};
-use super::output::{camera, mask, plain as shaped, set};
+use super::output::{mask, pinhole, plain as shaped, set};
 use crate::error::Result;
 use crate::light::Light;
 use crate::scenes::{DepthData, Relief, Sample, SampleRequest, Scene, bare_grid, bound, lights, surfaces};
-use crate::view::Size;
+use crate::view::{Camera, Size};
 
 #[wasm_bindgen]
 extern "C" {
@@ -144,10 +144,10 @@ fn floats(values: &[f32]) -> Float32Array {
 }
 
 fn plain(sample: &Sample) -> Object {
-    let image = view(sample.image.size, &sample.image.mask, &camera(&sample.image.camera));
+    let image = view(sample.image.size, &sample.image.mask, &sample.image.camera);
     set(&image, "data", floats(&sample.image.colours));
 
-    let depth = view(sample.depth.size, &sample.depth.mask, &camera(&sample.depth.camera));
+    let depth = view(sample.depth.size, &sample.depth.mask, &sample.depth.camera);
     match &sample.depth.data {
         DepthData::Map(data) => set(&depth, "data", floats(data)),
         DepthData::Cloud { points, normals } => {
@@ -171,13 +171,14 @@ fn plain(sample: &Sample) -> Object {
     object
 }
 
-fn view(size: Size, inside: &[bool], camera: &JsValue) -> Object {
+fn view(size: Size, inside: &[bool], camera: &Camera) -> Object {
     let object = Object::new();
     set(&object, "width", size.width as f64);
     set(&object, "height", size.height as f64);
     set(&object, "mask", mask(inside));
-    if !camera.is_undefined() {
-        set(&object, "camera", camera);
+    // An orthographic camera is the absence of one.
+    if let Camera::Pinhole(camera) = camera {
+        set(&object, "camera", pinhole(camera));
     }
     object
 }

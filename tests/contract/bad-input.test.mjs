@@ -58,6 +58,11 @@ describe("after init", () => {
     refused(onImage({ camera: { ...camera, fy: -1 } }), "range", "image.camera.fy");
     refused(onImage({ camera: { ...camera, cx: NaN } }), "range", "image.camera.cx");
     refused(onImage({ camera: { ...camera, distortion: [1, 2] } }), "size", "image.camera.distortion");
+    refused(onImage({ camera: { ...camera, distortion: [0.1, 0, 0, 0, 0, 0] } }), "size", "image.camera.distortion");
+    refused(onImage({ camera: { ...camera, model: "round" } }), "option", "image.camera.model");
+    const fisheye = { ...camera, model: "fisheye", distortion: [0.1, 0, 0, 0, 0] };
+    refused(onDepth({ camera: fisheye }), "size", "depth.camera.distortion");
+    refused(onDepth({ camera: { ...fisheye, distortion: [NaN, 0, 0, 0] } }), "range", "depth.camera.distortion");
     const folded = { fx: 60, fy: 60, cx: 90, cy: 90, distortion: [-1, 0, 0, 0, 0] };
     refused(onDepth({ camera: folded }), "range", "depth.camera.distortion");
     refused(onImage({ camera: folded }), "range", "image.camera.distortion");

@@ -129,6 +129,29 @@ describe("a camera", () => {
     assert.deepEqual(given.image.camera, { ...CAMERA, distortion });
   });
 
+  test("may have any lens, as a rig's has", async () => {
+    const { image, depth } = pair({ size: 32 });
+    const z = depth.data.map((value) => (value > 0 ? 0.5 + value / 2000 : NaN));
+    const lenses = [
+      {},
+      { model: "brown", distortion: [0.1, 0, 0, 0] },
+      { distortion: [0.1, 0, 0, 0, 0, 0.2, 0, 0] },
+      { model: "fisheye" },
+      { model: "fisheye", distortion: Float64Array.of(0.1, 0, 0, 0) },
+    ];
+    const found = [];
+    for (const lens of lenses) {
+      const camera = { ...CAMERA, ...lens };
+      const estimator = new Estimator({ ...image, camera }, { ...depth, data: z, camera }, { start: "identity" });
+      const distortion = lens.distortion && { distortion: [...lens.distortion] };
+      assert.deepEqual(estimator.given.image.camera, { ...camera, ...distortion });
+      await estimator.run({ maxIterations: 2 });
+      found.push(JSON.stringify(outcome(estimator)));
+      assert.equal(JSON.stringify(outcome(Estimator.restore(estimator.save()))), found.at(-1));
+    }
+    assert.equal(new Set(found).size, lenses.length);
+  });
+
   test("that is none is refused by its field", () => {
     const { image, depth } = pair({ size: 32 });
     const made = (camera) => () => new Estimator({ ...image, camera }, depth);

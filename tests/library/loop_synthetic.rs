@@ -6,7 +6,7 @@ use wasm_bindgen_test::wasm_bindgen_test as test;
 use crate::common::{angles_between, data_dir, mean, mozart, natural_light};
 use bimodal_stereo::scenes::{DepthData, Sample, SampleRequest, Scene, bare_grid, light, lights, surface};
 use bimodal_stereo::{
-    Angles, Camera, Estimator, Light, LightSource, Options, Pinhole, Reason, Registration, Size, Start, Status,
+    Angles, Camera, Estimator, Lens, Light, LightSource, Options, Pinhole, Reason, Registration, Size, Start, Status,
 };
 use nalgebra::{Matrix3, Vector3};
 
@@ -154,8 +154,7 @@ fn refinement_lowers_the_error_of_mozart() {
 
 #[test]
 fn two_pinhole_cameras_give_a_metric_pose() {
-    let pinhole =
-        |focal: f64| Camera::Pinhole(Pinhole { fx: focal, fy: focal, cx: 31.5, cy: 31.5, distortion: [0.0; 5] });
+    let pinhole = |focal: f64| Camera::Pinhole(Pinhole { fx: focal, fy: focal, cx: 31.5, cy: 31.5, lens: Lens::None });
     let request =
         SampleRequest { image_camera: pinhole(160.0), depth_camera: pinhole(140.0), ..SampleRequest::default() };
     let sample = bust(&request);
@@ -167,8 +166,25 @@ fn two_pinhole_cameras_give_a_metric_pose() {
 }
 
 #[test]
+fn cameras_behind_any_lens_give_the_pose() {
+    let brown = |coefficients: &[f64]| Lens::brown(coefficients).unwrap();
+    let five = brown(&[-0.2, 0.05, 0.002, -0.001, 0.0]);
+    let eight = brown(&[0.5, -0.9, 2e-4, -1e-4, 0.4, 0.65, -0.9, 0.4]);
+    let fisheye = Lens::Fisheye([0.05, -0.02, 0.003, 0.0]);
+    for (image, depth) in [(five, eight), (eight, fisheye), (fisheye, five)] {
+        let camera = |focal: f64, lens| Camera::Pinhole(Pinhole { fx: focal, fy: focal, cx: 31.5, cy: 31.5, lens });
+        let [image_camera, depth_camera] = [camera(90.0, image), camera(80.0, depth)];
+        let sample = bust(&SampleRequest { image_camera, depth_camera, ..SampleRequest::default() });
+        let estimator = run(&format!("bust, {image:?} and {depth:?}"), &sample, known(&sample));
+        let report = estimator.report();
+        assert_eq!(report.status, Status::Converged, "{image:?}");
+        assert!(report.pose.degrees_to(&sample.pose) <= BUST_ROTATION, "{image:?}");
+    }
+}
+
+#[test]
 fn a_start_behind_the_camera_is_lost_for_that_reason() {
-    let pinhole = Camera::Pinhole(Pinhole { fx: 160.0, fy: 160.0, cx: 31.5, cy: 31.5, distortion: [0.0; 5] });
+    let pinhole = Camera::Pinhole(Pinhole { fx: 160.0, fy: 160.0, cx: 31.5, cy: 31.5, lens: Lens::None });
     let sample = bust(&SampleRequest { image_camera: pinhole, depth_camera: pinhole, ..SampleRequest::default() });
     let translation = Some(Vector3::new(0.0, 0.0, -1e4));
     let start = Start::Pose { rotation: Matrix3::identity(), scale: None, translation };

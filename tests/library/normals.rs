@@ -5,7 +5,7 @@ use wasm_bindgen_test::wasm_bindgen_test as test;
 
 use crate::common::{data_dir, read_npy_f32, read_png};
 use bimodal_stereo::normals::{self, Estimate};
-use bimodal_stereo::{Camera, Normals, Pinhole, Points, Size};
+use bimodal_stereo::{Camera, Lens, Normals, Pinhole, Points, Size};
 
 fn size(width: usize, height: usize) -> Size {
     Size { width, height }
@@ -18,7 +18,7 @@ fn pinhole(size: Size) -> Camera {
         fy: 1.5 * size.width as f64,
         cx: 0.48 * size.width as f64,
         cy: 0.53 * size.height as f64,
-        distortion: [-0.12, 0.05, 0.001, -0.002, 0.0],
+        lens: Lens::brown(&[-0.12, 0.05, 0.001, -0.002, 0.0]).unwrap(),
     })
 }
 
@@ -199,7 +199,7 @@ fn a_scanned_bear_agrees_with_its_normal_map() {
     let (size, depth) = read_npy_f32(&folder.join("depth_mm.npy"));
     let text = std::fs::read_to_string(folder.join("K.txt")).expect("the file is there");
     let k: Vec<f64> = text.split_whitespace().map(|word| word.parse().expect("a number")).collect();
-    let camera = Camera::Pinhole(Pinhole { fx: k[0], fy: k[4], cx: k[2], cy: k[5], distortion: [0.0; 5] });
+    let camera = Camera::Pinhole(Pinhole { fx: k[0], fy: k[4], cx: k[2], cy: k[5], lens: Lens::None });
     let (mask, map) = (read_png(&folder.join("mask.png")), read_png(&folder.join("normal_map.png")));
     assert_eq!((mask.size, map.size, map.bits), (size, size, 16));
     let inside = |index: usize| mask.values[index * mask.channels] > 0;

@@ -6,7 +6,9 @@ use wasm_bindgen_test::wasm_bindgen_test as test;
 use std::sync::OnceLock;
 
 use bimodal_stereo::scenes::{Sample, SampleRequest, Scene, light, surface};
-use bimodal_stereo::{Angles, Camera, Estimator, Options, Pinhole, Size, Stage, Start, Status, StepReport, Worker};
+use bimodal_stereo::{
+    Angles, Camera, Estimator, Lens, Options, Pinhole, Size, Stage, Start, Status, StepReport, Worker,
+};
 
 /// More object pixels than a frame of 128x128, odd sides, part of the depth map missing.
 fn large(camera: Camera) -> Sample {
@@ -28,7 +30,7 @@ fn large(camera: Camera) -> Sample {
 }
 
 fn pinhole() -> Camera {
-    Camera::Pinhole(Pinhole { fx: 300.0, fy: 310.0, cx: 118.3, cy: 107.6, distortion: [0.0; 5] })
+    Camera::Pinhole(Pinhole { fx: 300.0, fy: 310.0, cx: 118.3, cy: 107.6, lens: Lens::None })
 }
 
 /// Runs to the end; the reports of the search on the way.

@@ -5,7 +5,7 @@ use wasm_bindgen_test::wasm_bindgen_test as test;
 
 use bimodal_stereo::scenes::{self, Sample, SampleRequest, Scene};
 use bimodal_stereo::{
-    Angles, Camera, ColourSamples, ColourView, DepthView, Light, Pinhole, Search, SearchProblem, Similarity, Size,
+    Angles, Camera, ColourSamples, ColourView, DepthView, Lens, Light, Pinhole, Search, SearchProblem, Similarity, Size,
 };
 use nalgebra::{Rotation3, Vector3};
 
@@ -92,13 +92,7 @@ fn a_free_scale_is_found_with_the_pose() {
 fn translations_carry_the_centre_to_its_place() {
     let pinhole = |focal_length: f64| {
         let centre = 31.5;
-        Camera::Pinhole(Pinhole {
-            fx: focal_length,
-            fy: focal_length,
-            cx: centre + 12.0,
-            cy: centre,
-            distortion: [0.0; 5],
-        })
+        Camera::Pinhole(Pinhole { fx: focal_length, fy: focal_length, cx: centre + 12.0, cy: centre, lens: Lens::None })
     };
     for (image_camera, depth_camera) in [
         (Camera::Orthographic, Camera::Orthographic),

@@ -5,7 +5,7 @@ use wasm_bindgen_test::wasm_bindgen_test as test;
 
 use bimodal_stereo::scenes::{Sample, SampleRequest, Scene, light, surface};
 use bimodal_stereo::{
-    Camera, Estimator, LightSource, Options, Pinhole, Reason, Registration, Similarity, Stage, Start, Status,
+    Camera, Estimator, Lens, LightSource, Options, Pinhole, Reason, Registration, Similarity, Stage, Start, Status,
     StepReport, Weights, Worker,
 };
 
@@ -127,7 +127,7 @@ mod long {
 
     #[test]
     fn a_pose_that_does_not_move_lets_a_worker_refine() {
-        let camera = Camera::Pinhole(Pinhole { fx: 150.0, fy: 150.0, cx: 31.5, cy: 31.5, distortion: [0.0; 5] });
+        let camera = Camera::Pinhole(Pinhole { fx: 150.0, fy: 150.0, cx: 31.5, cy: 31.5, lens: Lens::None });
         let plain = SampleRequest { light: light("window").unwrap(), noise: 0.01, ..SampleRequest::default() };
         let holes = SampleRequest { holes: 0.1, depth_noise: 0.1, ..plain.clone() };
         let perspective = SampleRequest { image_camera: camera, depth_camera: camera, ..plain.clone() };

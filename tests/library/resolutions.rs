@@ -6,7 +6,8 @@ use wasm_bindgen_test::wasm_bindgen_test as test;
 
 use bimodal_stereo::scenes::{Sample, SampleRequest, Scene, light, surface};
 use bimodal_stereo::{
-    Camera, ColourImage, ColourSamples, Estimator, Options, Pinhole, Registration, Similarity, Size, Start, Status,
+    Camera, ColourImage, ColourSamples, Estimator, Lens, Options, Pinhole, Registration, Similarity, Size, Start,
+    Status,
 };
 
 const SMALL: Size = Size { width: 64, height: 64 };
@@ -155,7 +156,7 @@ fn a_photograph_of_twelve_megapixels_finds_its_small_depth_map() {
 fn behind_pinholes_poses_stay_metric() {
     let camera = |side: f64| {
         let (focal, centre) = (150.0 * side, 32.0 * side - 0.5);
-        Camera::Pinhole(Pinhole { fx: focal, fy: focal, cx: centre, cy: centre, distortion: [0.0; 5] })
+        Camera::Pinhole(Pinhole { fx: focal, fy: focal, cx: centre, cy: centre, lens: Lens::None })
     };
     let small = sample(SMALL, camera(1.0));
     let ColourSamples::RgbLinear(colours) = small.colour_image().samples else { panic!("renders are linear") };

@@ -3,7 +3,7 @@
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen_test::wasm_bindgen_test as test;
 
-use bimodal_stereo::{Lens, RigCamera};
+use bimodal_stereo::{Lens, Pinhole};
 
 const REFERENCE: &str = include_str!("../../scripts/reference/lens.csv");
 /// Agreement in pixels: both compute in 64 bits.
@@ -30,7 +30,7 @@ fn pixels_agree_with_opencv() {
             _ => 4,
         };
         let (coefficients, points) = rest.split_at(count);
-        let camera = RigCamera { fx, fy, cx, cy, lens: lens(name, coefficients) };
+        let camera = Pinhole { fx, fy, cx, cy, lens: lens(name, coefficients) };
         assert_eq!((camera.validate("camera"), points.len()), (Ok(()), 25));
         for row in points.chunks_exact(5) {
             let (point, pixel) = ([row[0], row[1], row[2]], [row[3], row[4]]);
@@ -48,11 +48,11 @@ fn pixels_agree_with_opencv() {
 #[test]
 fn slopes_beyond_all_numbers_are_no_rays() {
     for lens in [Lens::None, Lens::Brown([0.0; 8]), Lens::Fisheye([0.0; 4])] {
-        let camera = RigCamera { fx: 500.0, fy: 500.0, cx: 320.0, cy: 240.0, lens };
+        let camera = Pinhole { fx: 500.0, fy: 500.0, cx: 320.0, cy: 240.0, lens };
         for beyond in [f64::INFINITY, f64::NEG_INFINITY, f64::NAN, f64::MAX, -1e300] {
             assert_eq!((camera.ray([beyond, 0.0]), camera.ray([0.0, beyond])), (None, None), "{lens:?}");
         }
-        let sharp = RigCamera { fx: 5e-324, ..camera };
+        let sharp = Pinhole { fx: 5e-324, ..camera };
         assert_eq!(sharp.ray([0.0, 0.0]), None, "{lens:?}");
     }
 }

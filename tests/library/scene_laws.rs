@@ -7,8 +7,8 @@ use wasm_bindgen_test::wasm_bindgen_test as test;
 use crate::common::laws;
 use bimodal_stereo::scenes::{Sample, SampleRequest, Scene, light, surface};
 use bimodal_stereo::{
-    Angles, ColourImage, ColourSamples, DepthMap, DepthSamples, DepthView, ErrorKind, Estimator, Light, LightSource,
-    Options, Pinhole, Similarity, Size, Start, Status,
+    Angles, ColourImage, ColourSamples, DepthMap, DepthSamples, DepthView, ErrorKind, Estimator, Lens, Light,
+    LightSource, Options, Pinhole, Similarity, Size, Start, Status,
 };
 use nalgebra::Matrix3;
 use proptest::prelude::*;
@@ -166,7 +166,7 @@ proptest! {
     fn millimetres_are_thousandths_of_metres(levels in prop::collection::vec(700_u16..1400, 144), holes in 0_usize..40) {
         let mut levels = levels;
         levels.iter_mut().step_by(3).take(holes).for_each(|level| *level = 0);
-        let camera = Some(Pinhole { fx: 20.0, fy: 21.0, cx: 5.5, cy: 5.0, distortion: [0.0; 5] });
+        let camera = Some(Pinhole { fx: 20.0, fy: 21.0, cx: 5.5, cy: 5.0, lens: Lens::None });
         let map = |samples, unit| DepthMap { width: 12, height: 12, samples, unit, mask: None, camera, normals: None };
         let floats = levels.iter().map(|&level| f32::from(level)).collect();
         let maps = [map(DepthSamples::Integer(levels), None), map(DepthSamples::Float(floats), Some(0.001))];
@@ -181,7 +181,7 @@ proptest! {
 #[test]
 fn points_beyond_all_distances_are_missing() {
     let with = |fx, depth| {
-        let camera = Some(Pinhole { fx, fy: 20.0, cx: 5.5, cy: 5.5, distortion: [0.0; 5] });
+        let camera = Some(Pinhole { fx, fy: 20.0, cx: 5.5, cy: 5.5, lens: Lens::None });
         let samples = DepthSamples::Float(vec![depth; 144]);
         let map = DepthMap { width: 12, height: 12, samples, unit: None, mask: None, camera, normals: None };
         DepthView::new(&map, true).map(|view| view.valid()).map_err(|error| error.kind())

@@ -4,7 +4,7 @@
 use wasm_bindgen_test::wasm_bindgen_test as test;
 
 use bimodal_stereo::scenes::{Relief, SampleRequest, Scene, View, surface};
-use bimodal_stereo::{Angles, Camera, Pinhole, Similarity, Size};
+use bimodal_stereo::{Angles, Camera, Lens, Pinhole, Similarity, Size};
 use nalgebra::{Matrix3, Vector3};
 
 const SIDE: usize = 256;
@@ -49,8 +49,12 @@ fn square(side: usize) -> Size {
     Size { width: side, height: side }
 }
 
-fn lens(distortion: [f64; 5]) -> Camera {
-    Camera::Pinhole(Pinhole { fx: 400.0, fy: 390.0, cx: 121.3, cy: 130.8, distortion })
+fn lens(coefficients: &[f64]) -> Camera {
+    behind(Lens::brown(coefficients).unwrap())
+}
+
+fn behind(lens: Lens) -> Camera {
+    Camera::Pinhole(Pinhole { fx: 400.0, fy: 390.0, cx: 121.3, cy: 130.8, lens })
 }
 
 /// Where a view puts the mesh: documented at `Scene::view`.
@@ -105,9 +109,11 @@ fn a_sphere_cap_is_rendered_as_it_is() {
         ("orthographic, half size", rotation(0.0, 0.0, 0.0), 128, Camera::Orthographic),
         ("orthographic, magnified", rotation(10.0, -20.0, 5.0), 512, Camera::Orthographic),
         ("orthographic, 30 degrees", rotation(0.0, 30.0, 0.0), 256, Camera::Orthographic),
-        ("pinhole, as it is", rotation(0.0, 0.0, 0.0), 256, lens([0.0; 5])),
-        ("pinhole, 30 degrees", rotation(0.0, 30.0, 0.0), 256, lens([0.0; 5])),
-        ("pinhole with distortion", rotation(-15.0, 25.0, 40.0), 256, lens([0.1, -0.05, 0.002, -0.001, 0.01])),
+        ("pinhole, as it is", rotation(0.0, 0.0, 0.0), 256, lens(&[])),
+        ("pinhole, 30 degrees", rotation(0.0, 30.0, 0.0), 256, lens(&[])),
+        ("pinhole with distortion", rotation(-15.0, 25.0, 40.0), 256, lens(&[0.1, -0.05, 0.002, -0.001, 0.01])),
+        ("eight coefficients", rotation(-15.0, 25.0, 40.0), 256, lens(&[0.5, -0.9, 2e-4, -1e-4, 0.4, 0.45, -0.9, 0.4])),
+        ("fisheye", rotation(-15.0, 25.0, 40.0), 256, behind(Lens::Fisheye([0.02, -0.03, 0.005, 0.0]))),
     ];
     for (name, rotation, side, camera) in cases {
         let (depth, normal) = errors_on_sphere(&rotation, square(side), camera);
@@ -125,8 +131,8 @@ fn the_pose_carries_the_depth_view_onto_the_surface() {
         ([0.0, 20.0, 0.0], 1.0, wide, wide),
         ([25.0, -40.0, 60.0], 1.0, wide, wide),
         ([0.0, 30.0, 10.0], 1.3, wide, wide),
-        ([0.0, 30.0, 10.0], 400.0, wide, lens([0.0; 5])),
-        ([0.0, 30.0, 10.0], 1.0, lens([0.0; 5]), lens([0.1, 0.0, 0.0, 0.0, 0.0])),
+        ([0.0, 30.0, 10.0], 400.0, wide, lens(&[])),
+        ([0.0, 30.0, 10.0], 1.0, lens(&[]), lens(&[0.1, 0.0, 0.0, 0.0, 0.0])),
     ] {
         let rotation = rotation(angles[0], angles[1], angles[2]);
         let size = square(SIDE);

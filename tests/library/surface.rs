@@ -5,7 +5,7 @@ use wasm_bindgen_test::wasm_bindgen_test as test;
 
 use bimodal_stereo::{
     AnchorWeight, Anchors, Camera, ErrorKind, IntegrationOptions, IntegrationReport, IntegrationTermination,
-    Integrator, Normals, Pinhole, Robustness, Size, gradients,
+    Integrator, Lens, Normals, Pinhole, Robustness, Size, gradients,
 };
 
 fn size(width: usize, height: usize) -> Size {
@@ -203,8 +203,8 @@ fn anchors_set_the_level_and_gradients_fill_the_holes() {
 #[test]
 fn a_perspective_sphere_comes_back_up_to_scale() {
     let size = size(120, 100);
-    let distortion = [-0.1, 0.03, 0.001, -0.001, 0.0];
-    let camera = Camera::Pinhole(Pinhole { fx: 150.0, fy: 160.0, cx: 57.0, cy: 52.0, distortion });
+    let lens = Lens::brown(&[-0.1, 0.03, 0.001, -0.001, 0.0]).unwrap();
+    let camera = Camera::Pinhole(Pinhole { fx: 150.0, fy: 160.0, cx: 57.0, cy: 52.0, lens });
     let (centre, radius) = ([0.05, -0.04, 3.0], 0.9);
     let mut surface = Normals::missing(size.len());
     let (mut depth, mut mask) = (vec![f32::NAN; size.len()], vec![false; size.len()]);
@@ -241,7 +241,7 @@ fn a_perspective_sphere_comes_back_up_to_scale() {
 #[test]
 fn gradients_stay_finite_at_grazing_normals() {
     let size = size(4, 4);
-    let pinhole = Pinhole { fx: 4.0, fy: 4.0, cx: 1.5, cy: 1.5, distortion: [0.0; 5] };
+    let pinhole = Pinhole { fx: 4.0, fy: 4.0, cx: 1.5, cy: 1.5, lens: Lens::None };
     let mut surface = Normals::missing(16);
     surface.set(0, [1.0, 0.0, 0.0]);
     surface.set(1, [0.0, 0.8, 0.6]);

@@ -5,8 +5,8 @@ use wasm_bindgen_test::wasm_bindgen_test as test;
 
 use bimodal_stereo::scenes::{Sample, SampleRequest, Scene, light, surface};
 use bimodal_stereo::{
-    Angles, Camera, ColourSamples, DepthView, Estimator, Options, Pinhole, Reason, Registration, Similarity, Size,
-    Start, StartTolerance, Status, StepReport,
+    Angles, Camera, ColourSamples, DepthView, Estimator, Lens, Options, Pinhole, Reason, Registration, Similarity,
+    Size, Start, StartTolerance, Status, StepReport,
 };
 use nalgebra::{Rotation3, Vector3};
 
@@ -14,7 +14,7 @@ const SIZE: Size = Size { width: 96, height: 72 };
 
 /// The bust four of its heights away from both cameras, which are calibrated.
 fn perspective(light_name: &str) -> Sample {
-    let pinhole = Pinhole { fx: 288.0, fy: 288.0, cx: 47.5, cy: 35.5, distortion: [0.0; 5] };
+    let pinhole = Pinhole { fx: 288.0, fy: 288.0, cx: 47.5, cy: 35.5, lens: Lens::None };
     let request = SampleRequest {
         size: SIZE,
         light: light(light_name).unwrap(),

@@ -7,7 +7,7 @@
 import { BimodalError } from "../../pkg/index.js";
 import { decodeColour, decodeDepth, decodeMask } from "../../pkg/files.js";
 import type { ColorImage, DepthMap, Mask, Pinhole } from "../../pkg/index.js";
-import type { OwnCamera, OwnFiles } from "./protocol";
+import type { OwnFiles } from "./protocol";
 
 /** Longest side the library takes. */
 const LONGEST = 4096;
@@ -192,9 +192,7 @@ function centres(
 }
 
 /** The camera of a view of which only every `factor`-th pixel is left, the first of them `offset` pixels in. */
-function reduced({ fx, fy, cx, cy, distortion }: OwnCamera, factor: number, offset: number): Pinhole {
-  const pinhole: Pinhole = { fx: fx / factor, fy: fy / factor, cx: (cx - offset) / factor, cy: (cy - offset) / factor };
-  // Not yet known to be five: the library says so where they are not.
-  if (distortion) pinhole.distortion = distortion as NonNullable<Pinhole["distortion"]>;
-  return pinhole;
+function reduced(camera: Pinhole, factor: number, offset: number): Pinhole {
+  const { fx, fy, cx, cy } = camera;
+  return { ...camera, fx: fx / factor, fy: fy / factor, cx: (cx - offset) / factor, cy: (cy - offset) / factor };
 }

@@ -3,9 +3,6 @@
 import type { ErrorDetails } from "../../pkg/index.js";
 import type { ColorImage, DepthMap, Mask, Options, Pinhole, Pose, SampleRequest, StepReport } from "../../pkg/index.js";
 
-/** A camera as it was typed in: how many numbers there are the library judges. */
-export type OwnCamera = Omit<Pinhole, "distortion"> & { distortion?: number[] };
-
 /** Files whose pixels have been read already, as the worker's decoders do not know them; depths in stored numbers. */
 export interface Read {
   colour?: ColorImage;
@@ -21,8 +18,8 @@ export interface OwnFiles {
   colourMask?: File;
   depthMask?: File;
   read?: Read;
-  colourCamera?: OwnCamera;
-  depthCamera?: OwnCamera;
+  colourCamera?: Pinhole;
+  depthCamera?: Pinhole;
   /** Metres (or pixels) per stored unit of depth; the library's default without it. */
   unit?: number;
   /** Guessed from the bit depth without it. */

@@ -3,7 +3,7 @@
  * and put where it belongs. Loaded with the first file.
  */
 
-import type { ColorImage, DepthMap, ErrorDetails, RigCamera } from "../../pkg/index.js";
+import type { ColorImage, DepthMap, ErrorDetails, Pinhole } from "../../pkg/index.js";
 import { EngineError } from "../engine/engine";
 import type { Read } from "../engine/protocol";
 import type { Summary } from "../rig/protocol";
@@ -250,7 +250,7 @@ const DISTORTION = 5;
 
 function fieldsOf(
   side: Side,
-  { model, fx, fy, cx, cy, distortion: given = [] }: RigCamera,
+  { model, fx, fy, cx, cy, distortion: given = [] }: Pinhole,
 ): Record<string, Value> | string {
   const distortion = Array.from(given);
   if (model === "fisheye") return "is a fisheye, which the Lab does not know";

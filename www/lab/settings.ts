@@ -1,7 +1,7 @@
 /** What the fields say, as requests and options of the library, in words, and as a link; and fields as a saved run had been told them. */
 
-import type { Options, SampleRequest } from "../../pkg/index.js";
-import type { LabOptions, OwnCamera } from "../engine/protocol";
+import type { Options, Pinhole, SampleRequest } from "../../pkg/index.js";
+import type { LabOptions } from "../engine/protocol";
 import type { Method } from "./explain";
 import {
   defaults,
@@ -172,7 +172,7 @@ export function optionsInWords(settings: Settings, source: Origin): [name: strin
 const lensKeys = ["fx", "fy", "cx", "cy"] as const;
 
 /** A camera once all of its four numbers are given; none where none is; the name of what is missing in between. */
-export function camera(settings: Settings, side: "colour" | "depth"): OwnCamera | undefined | string {
+export function camera(settings: Settings, side: "colour" | "depth"): Pinhole | undefined | string {
   const [fx, fy, cx, cy] = lensKeys.map((key) => number(settings, `${side}.${key}`));
   const distortion = listed(settings, `${side}.distortion`);
   if (fx !== undefined && fy !== undefined && cx !== undefined && cy !== undefined) {

@@ -1,6 +1,6 @@
 /** What the page and its worker say to each other. The worker keeps all pixels; what crosses is summaries, pictures and numbers. */
 
-import type { CheckCue, CheckReport, Pose, RigCamera, Warning } from "../../pkg/index.js";
+import type { CheckCue, CheckReport, Pinhole, Pose, Warning } from "../../pkg/index.js";
 import type { Fault } from "../engine/protocol";
 import type { NamedPose, ReaderWarning, Reading, RigReading } from "./files";
 
@@ -10,7 +10,7 @@ export interface WholeReport extends Omit<CheckReport, "warnings"> {
 }
 
 export type Kind = RigReading["kind"];
-export type NamedCamera = { name?: string; camera: RigCamera; width?: number; height?: number };
+export type NamedCamera = { name?: string; camera: Pinhole; width?: number; height?: number };
 
 /** A file as read, without its pixels. */
 export interface Summary extends Omit<Reading, "name"> {
@@ -37,8 +37,8 @@ export interface FramePlan {
   paint?: Uint8Array;
   /** Nearest and farthest depth that is used, metres. */
   range?: [number, number];
-  colourCamera?: RigCamera;
-  depthCamera?: RigCamera;
+  colourCamera?: Pinhole;
+  depthCamera?: Pinhole;
 }
 
 /** Several files that belong together: a folder, or the example. */

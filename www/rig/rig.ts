@@ -1,6 +1,6 @@
 /** What the visitor has brought and chosen: files, frames, cameras, candidates, and what the check said of them. */
 
-import type { CheckCue, RigCamera } from "../../pkg/index.js";
+import type { CheckCue, Pinhole } from "../../pkg/index.js";
 import { pairUp } from "./pairing";
 import { doubtsOf } from "./doubts";
 import type { ReaderWarning } from "./files";
@@ -316,7 +316,7 @@ export class Rig implements RigState {
     return summary?.width && summary.height ? { width: summary.width, height: summary.height } : undefined;
   }
 
-  cameraOf(side: Side): RigCamera | undefined {
+  cameraOf(side: Side): Pinhole | undefined {
     const { source, typed } = this.cameras[side];
     if (source === "same") return this.cameraOf("colour");
     if (source === "typed") return fromTyped(typed, this.sizeOf(side));
@@ -396,7 +396,7 @@ export const messageOf = (error: unknown): string => (error instanceof Error ? e
 function fromTyped(
   { by, model, fx, fy, cx, cy, view, distortion }: TypedCamera,
   size: { width: number; height: number } | undefined,
-): RigCamera | undefined {
+): Pinhole | undefined {
   const lens = distortion.length > 0 ? { model, distortion } : {};
   if (by === "focal") return [fx, fy, cx, cy].every(Number.isFinite) ? { fx, fy, cx, cy, ...lens } : undefined;
   if (!size || !(view > 0 && view < 180)) return undefined;
@@ -404,6 +404,6 @@ function fromTyped(
   return { fx: focal, fy: focal, cx: (size.width - 1) / 2, cy: (size.height - 1) / 2, ...lens };
 }
 
-export function typedFrom({ fx, fy, cx, cy, model, distortion }: RigCamera): TypedCamera {
+export function typedFrom({ fx, fy, cx, cy, model, distortion }: Pinhole): TypedCamera {
   return { ...emptyCamera(), fx, fy, cx, cy, model: model ?? "brown", distortion: Array.from(distortion ?? []) };
 }

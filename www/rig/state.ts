@@ -1,6 +1,6 @@
 /** What the visitor has brought and chosen, and how the parts beside `rig.ts` see the whole of it. */
 
-import type { CheckReport, Pose, RigCamera } from "../../pkg/index.js";
+import type { CheckReport, Pinhole, Pose } from "../../pkg/index.js";
 import type { ReaderWarning } from "./files";
 import type { FramePlan, Kind, NamedCamera, Summary } from "./protocol";
 import type { Session } from "./session";
@@ -102,5 +102,5 @@ export interface RigState {
   item(id: number | undefined): Item | undefined;
   of(kind: Kind): Item[];
   sizeOf(side: Side): { width: number; height: number } | undefined;
-  cameraOf(side: Side): RigCamera | undefined;
+  cameraOf(side: Side): Pinhole | undefined;
 }

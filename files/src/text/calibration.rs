@@ -1,6 +1,6 @@
 //! What a text of cameras and poses holds.
 
-use bimodal_stereo::{RigCamera, Similarity};
+use bimodal_stereo::{Pinhole, Similarity};
 
 use crate::warning::Warnings;
 
@@ -11,7 +11,7 @@ pub type Reason = String;
 #[derive(Clone, Debug, PartialEq)]
 pub struct NamedCamera {
     pub name: Option<String>,
-    pub camera: RigCamera,
+    pub camera: Pinhole,
     /// Columns and rows.
     pub size: Option<[usize; 2]>,
 }

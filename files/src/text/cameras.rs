@@ -2,7 +2,7 @@
 
 use std::sync::LazyLock;
 
-use bimodal_stereo::{Lens, RigCamera};
+use bimodal_stereo::{Lens, Pinhole};
 use regex_lite::Regex;
 
 use super::calibration::{NamedCamera, Reason};
@@ -59,7 +59,7 @@ pub fn camera_of(raw: RawCamera, warnings: &mut Warnings) -> Result<NamedCamera,
     let size = size_of(&raw)?;
     doubts(&raw, size, &format!("The camera{called}"), warnings);
     let lens = lens_of(&raw, &format!("The camera{called}"), warnings)?;
-    Ok(NamedCamera { name: raw.name, camera: RigCamera { fx, fy, cx, cy, lens }, size })
+    Ok(NamedCamera { name: raw.name, camera: Pinhole { fx, fy, cx, cy, lens }, size })
 }
 
 fn size_of(raw: &RawCamera) -> Result<Option<[usize; 2]>, Reason> {

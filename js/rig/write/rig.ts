@@ -3,7 +3,7 @@
  * would be believed by whoever reads it.
  */
 import { cameraOf, determinant, poseOf } from "../../matrices.js";
-import type { Pose, PoseInput, RigCamera, RigCameraInput } from "../../types/index.js";
+import type { Pinhole, PinholeInput, Pose, PoseInput } from "../../types/index.js";
 import { fault, like, oneOf } from "./built.js";
 
 /** Width and height in pixels. */
@@ -12,9 +12,9 @@ export type Size = readonly [width: number, height: number];
 /** What is known of the rig beside the pose; a format that has a place for it holds it. */
 export interface RigContext {
   /** The colour camera. */
-  colour?: RigCameraInput | undefined;
+  colour?: PinholeInput | undefined;
   /** The depth camera. */
-  depth?: RigCameraInput | undefined;
+  depth?: PinholeInput | undefined;
   /** Of both cameras' pictures. */
   sizes?:
     | {
@@ -95,14 +95,14 @@ function size(value: Size | undefined, field: string): Size | undefined {
 }
 
 function camera(
-  input: RigCameraInput | undefined,
+  input: PinholeInput | undefined,
   pixels: Size | undefined,
   name: "colour" | "depth",
 ): Camera | undefined {
   const known = size(pixels, `context.sizes.${name}`);
   if (input === undefined) return undefined;
   const field = `context.${name}`;
-  const given = cameraOf(input, field) as RigCamera;
+  const given = cameraOf(input, field) as Pinhole;
   like({}, given, field);
   const { model = "brown", fx, fy, cx, cy } = given;
   oneOf(Object.keys(LENGTHS), model, `${field}.model`);

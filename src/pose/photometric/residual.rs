@@ -203,7 +203,7 @@ mod tests {
     use super::*;
     use crate::pose::increment::PoseVector;
     use crate::scenes::lights::COLOURFUL;
-    use crate::view::{ColourImage, ColourSamples, ColourView, Pinhole};
+    use crate::view::{ColourImage, ColourSamples, ColourView, Lens, Pinhole};
 
     fn image() -> SplineImage {
         let (width, height) = (40, 32);
@@ -219,8 +219,8 @@ mod tests {
     #[test]
     fn derivatives_are_the_central_differences() {
         let image = image();
-        let distortion = [0.1, -0.05, 0.003, -0.002, 0.0];
-        let pinhole = Camera::Pinhole(Pinhole { fx: 50.0, fy: 48.0, cx: 19.0, cy: 15.0, distortion });
+        let lens = Lens::brown(&[0.1, -0.05, 0.003, -0.002, 0.0]).unwrap();
+        let pinhole = Camera::Pinhole(Pinhole { fx: 50.0, fy: 48.0, cx: 19.0, cy: 15.0, lens });
         let normal = Vector3::new(0.36, -0.48, -0.8);
         // Colours are those of f32: a difference of smaller steps would be their rounding.
         let small = 3e-3;

@@ -2,10 +2,9 @@
 
 use nalgebra::{Rotation3, Unit, Vector3};
 
-use crate::calibration::{Lens, RigCamera};
 use crate::pose::Similarity;
 use crate::scenes::flaws::Chance;
-use crate::view::Size;
+use crate::view::{Lens, Pinhole, Size};
 
 /// Sizes of colour and of depth cameras.
 const COLOUR_SIZES: [Size; 2] = [Size { width: 640, height: 480 }, Size { width: 960, height: 540 }];
@@ -23,9 +22,9 @@ const PROJECTOR: [f64; 2] = [0.05, 0.08];
 #[derive(Clone, Debug)]
 pub struct Rig {
     pub colour_size: Size,
-    pub colour: RigCamera,
+    pub colour: Pinhole,
     pub depth_size: Size,
-    pub depth: RigCamera,
+    pub depth: Pinhole,
     /// P_colour = R P_depth + t, metres.
     pub pose: Similarity,
     /// Place of the projector on the depth camera's x axis, metres.
@@ -51,7 +50,7 @@ impl Rig {
     }
 }
 
-fn camera(size: Size, focal: [f64; 2], chance: &mut Chance) -> RigCamera {
+fn camera(size: Size, focal: [f64; 2], chance: &mut Chance) -> Pinhole {
     let fx = size.width as f64 * chance.between(focal);
     let fy = fx * chance.between([0.99, 1.01]);
     let [cx, cy] =
@@ -61,5 +60,5 @@ fn camera(size: Size, focal: [f64; 2], chance: &mut Chance) -> RigCamera {
     let k2 = -0.4 * k1 + chance.between([-0.02, 0.02]);
     let [p1, p2] = [0; 2].map(|_| chance.between([-0.001, 0.001]));
     let k3 = chance.between([-0.005, 0.005]);
-    RigCamera { fx, fy, cx, cy, lens: Lens::Brown([k1, k2, p1, p2, k3, 0.0, 0.0, 0.0]) }
+    Pinhole { fx, fy, cx, cy, lens: Lens::Brown([k1, k2, p1, p2, k3, 0.0, 0.0, 0.0]) }
 }

@@ -157,9 +157,9 @@ fn smooth_noise(size: Size, chance: &mut Chance) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::calibration::{Lens, RigCamera};
     use crate::scenes::rig::paint::Paint;
     use crate::scenes::rig::solids::Solid;
+    use crate::view::{Lens, Pinhole};
 
     const SIZE: Size = Size { width: 200, height: 150 };
 
@@ -229,7 +229,7 @@ mod tests {
     #[test]
     fn the_shadow_of_the_projector_lies_where_geometry_says() {
         for projector in [0.06, -0.08] {
-            let camera = RigCamera { fx: 180.0, fy: 180.0, cx: 99.5, cy: 74.5, lens: Lens::None };
+            let camera = Pinhole { fx: 180.0, fy: 180.0, cx: 99.5, cy: 74.5, lens: Lens::None };
             let mut rig = Rig::random(Some(SIZE), Some(SIZE), &mut Chance::of_stream(1, 1));
             (rig.depth, rig.projector) = (camera, projector);
             let mut stage = Stage::default();

@@ -7,13 +7,12 @@ use super::illumination::Illumination;
 use super::layout::{Layout, RigKind, layout};
 use super::raster::{Hits, Rays};
 use super::stage::Stage;
-use crate::calibration::RigCamera;
 use crate::check::not_negative;
 use crate::error::{Error, ErrorKind, Result};
 use crate::pose::Similarity;
 use crate::scenes::flaws::Chance;
 use crate::scenes::{LARGEST_VIEW, SMALLEST_VIEW};
-use crate::view::Size;
+use crate::view::{Pinhole, Size};
 
 /// Streams of random numbers of each frame; the rig has one of its own, beyond those of any frame.
 #[derive(Clone, Copy)]
@@ -82,13 +81,13 @@ pub struct RigFrame {
     /// Columns and rows of the colour image.
     pub colour_size: Size,
     /// Its camera.
-    pub colour_camera: RigCamera,
+    pub colour_camera: Pinhole,
     /// Millimetres along z, 0 where nothing was measured.
     pub depth: Vec<u16>,
     /// Columns and rows of the depth map.
     pub depth_size: Size,
     /// Its camera.
-    pub depth_camera: RigCamera,
+    pub depth_camera: Pinhole,
     /// The extrinsics: P_colour = R P_depth + t, metres, scale 1.
     pub pose: Similarity,
     /// Depth of the surfaces at the pixels' centres without any flaw, metres; NaN where nothing is.

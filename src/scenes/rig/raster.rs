@@ -7,9 +7,8 @@
 use nalgebra::Vector3;
 
 use super::stage::Stage;
-use crate::calibration::{Lens, RigCamera};
 use crate::pose::Similarity;
-use crate::view::Size;
+use crate::view::{Lens, Pinhole, Size};
 
 /// Nearest depth that is drawn, metres.
 const NEAR: f64 = 0.1;
@@ -27,7 +26,7 @@ pub const NOTHING: u32 = u32::MAX;
 
 /// The rays of a camera, `samples` x `samples` for each pixel.
 pub struct Rays {
-    camera: RigCamera,
+    camera: Pinhole,
     samples: f64,
     /// Of the samples.
     pub size: Size,
@@ -56,7 +55,7 @@ pub struct Hit {
 }
 
 impl Rays {
-    pub fn new(camera: &RigCamera, size: Size, samples: usize) -> Self {
+    pub fn new(camera: &Pinhole, size: Size, samples: usize) -> Self {
         let size = Size { width: size.width * samples, height: size.height * samples };
         let nowhere = [f64::INFINITY, f64::NEG_INFINITY];
         let slopes = Vec::with_capacity(size.len());
@@ -88,7 +87,7 @@ impl Rays {
     /// A view without a lens, of one sample a pixel: that of a lamp or a projector.
     pub fn straight(focal_length: f64, size: Size) -> Self {
         let [cx, cy] = [size.width, size.height].map(|side| 0.5 * (side as f64 - 1.0));
-        Self::new(&RigCamera { fx: focal_length, fy: focal_length, cx, cy, lens: Lens::None }, size, 1)
+        Self::new(&Pinhole { fx: focal_length, fy: focal_length, cx, cy, lens: Lens::None }, size, 1)
     }
 
     /// Slopes of the ray through a position among the samples.
@@ -232,9 +231,9 @@ mod tests {
     const SIZE: Size = Size { width: 160, height: 120 };
 
     /// A camera with all of Brown's terms, and one pixel of a square wall that it sees askew.
-    fn wall() -> (RigCamera, Stage, Similarity) {
+    fn wall() -> (Pinhole, Stage, Similarity) {
         let lens = Lens::Brown([0.1, -0.06, 0.001, -0.0008, 0.004, 0.0, 0.0, 0.0]);
-        let camera = RigCamera { fx: 130.0, fy: 131.0, cx: 81.0, cy: 58.5, lens };
+        let camera = Pinhole { fx: 130.0, fy: 131.0, cx: 81.0, cy: 58.5, lens };
         let mut stage = Stage::default();
         let placement = Similarity { translation: Vector3::new(0.2, 0.1, 1.3), ..Similarity::identity() };
         let face = Solid::face(Vector3::new(-4.0, -4.0, 0.0), 8.0 * Vector3::x(), 8.0 * Vector3::y());

@@ -31,12 +31,10 @@ pub(super) enum RayFrames {
 impl RayFrames {
     /// Of a box of `sides` columns and rows from the pixel `corner` on. Columns beyond the view repeat its last one.
     pub fn new(camera: &Camera, size: Size, corner: [usize; 2], sides: [usize; 2]) -> Self {
-        let (Some(pinhole), Some(focal_length)) = (camera.pinhole(), camera.focal_length()) else {
-            return Self::Orthographic;
-        };
+        let Some(focal_length) = camera.focal_length() else { return Self::Orthographic };
         let last = [size.width - 1, size.height - 1];
         let place = |axis: usize, index: usize| (corner[axis] + index).min(last[axis]) as f64;
-        if pinhole.is_undistorted() {
+        if camera.is_straight() {
             let line = |axis: usize| {
                 // Without distortion the other axis does not matter.
                 let ray = |place: f64| camera.ray(size, [place; 2])[axis];
@@ -105,13 +103,13 @@ fn frame_of(ray: impl Fn([f64; 2]) -> [f64; 2], focal_length: f64) -> RayFrame {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::view::Pinhole;
+    use crate::view::{Lens, Pinhole};
 
     /// What is made of columns and rows is what each pixel's own rays make.
     #[test]
     fn frames_of_rows_and_columns_are_those_of_the_rays() {
         let size = Size { width: 23, height: 17 };
-        let pinhole = Pinhole { fx: 41.0, fy: 43.7, cx: 10.3, cy: 8.9, distortion: [0.0; 5] };
+        let pinhole = Pinhole { fx: 41.0, fy: 43.7, cx: 10.3, cy: 8.9, lens: Lens::None };
         let camera = Camera::Pinhole(pinhole);
         let frames = RayFrames::new(&camera, size, [3, 2], [24, 11]);
         for index in (0..24 * 11).step_by(4) {

@@ -1,0 +1,120 @@
+//! Brown's distortion as OpenCV writes it: the rational model of eight coefficients, of which the usual five are a part.
+//!
+//! Rays are found by Newton's method inside a bracket along the radius, then in two dimensions for what is not radial.
+
+use super::inverse::{FOLD_SAMPLES, LARGEST_SLOPE, MOST_ROUNDS, RETURN_DISTANCE, inverse, pixels};
+use crate::numeric::{Lanes, Real};
+
+/// A distorted point, and its derivative by the slopes of the ray.
+pub type Distorted = ([f64; 2], [[f64; 2]; 2]);
+
+/// A ray has been found when its pixel is within [`RETURN_DISTANCE`] or so near relative to its distance from the middle:
+/// what 64 bits leave of pixels millions beyond the picture.
+const ROUNDING: f64 = 1e-13;
+
+/// The distorted slopes of a ray before the first fold of the lens, and their derivative by them.
+pub fn project(coefficients: &[f64; 8], ray: [f64; 2]) -> Option<Distorted> {
+    let (distorted, gradient) = distort(coefficients, ray);
+    is_unfolded(coefficients, ray, gradient).then_some((distorted, gradient))
+}
+
+/// The slopes of the ray that is distorted to `target`, where there is one.
+pub fn ray(coefficients: &[f64; 8], target: [f64; 2], focal: [f64; 2]) -> Option<[f64; 2]> {
+    let radius = target[0].hypot(target[1]);
+    let radial = |radius: f64| {
+        let square = radius * radius;
+        let [factor, slope] = radial(coefficients, square);
+        let grows = grows(coefficients, square);
+        (radius * factor, factor + 2.0 * square * slope, grows)
+    };
+    let start = inverse(radial, radius, LARGEST_SLOPE);
+    let share = if radius > 0.0 { start / radius } else { 0.0 };
+    let mut ray = target.map(|part| share * part);
+    for _ in 0..MOST_ROUNDS {
+        let (distorted, gradient) = distort(coefficients, ray);
+        let [right, down] = [target[0] - distorted[0], target[1] - distorted[1]];
+        if pixels(focal, [right, down]) < RETURN_DISTANCE + ROUNDING * pixels(focal, target) {
+            return is_unfolded(coefficients, ray, gradient).then_some(ray);
+        }
+        let [[a, b], [c, d]] = gradient;
+        let determinant = a * d - b * c;
+        ray[0] += (d * right - b * down) / determinant;
+        ray[1] += (a * down - c * right) / determinant;
+    }
+    None
+}
+
+/// Factor of the radius by its square, and the derivative of that.
+fn radial([k1, k2, _, _, k3, k4, k5, k6]: &[f64; 8], square: f64) -> [f64; 2] {
+    let above = 1.0 + square * (k1 + square * (k2 + square * k3));
+    let above_slope = k1 + square * (2.0 * k2 + 3.0 * square * k3);
+    // The usual five coefficients need no division, which takes as long as all the rest.
+    if *k4 == 0.0 && *k5 == 0.0 && *k6 == 0.0 {
+        return [above, above_slope];
+    }
+    let below = 1.0 + square * (k4 + square * (k5 + square * k6));
+    let below_slope = k4 + square * (2.0 * k5 + 3.0 * square * k6);
+    let factor = above / below;
+    [factor, (above_slope - factor * below_slope) / below]
+}
+
+/// The distorted slopes of a ray and their derivative by them.
+fn distort(coefficients: &[f64; 8], [x, y]: [f64; 2]) -> Distorted {
+    let [_, _, p1, p2, ..] = coefficients;
+    let square = x * x + y * y;
+    let [factor, by_square] = radial(coefficients, square);
+    // d factor / d x = slope x.
+    let slope = 2.0 * by_square;
+    let mixed = x * y * slope + 2.0 * (p1 * x + p2 * y);
+    let distorted = [
+        x * factor + 2.0 * p1 * x * y + p2 * (square + 2.0 * x * x),
+        y * factor + p1 * (square + 2.0 * y * y) + 2.0 * p2 * x * y,
+    ];
+    let gradient = [
+        [factor + x * x * slope + 2.0 * p1 * y + 6.0 * p2 * x, mixed],
+        [mixed, factor + y * y * slope + 6.0 * p1 * y + 2.0 * p2 * x],
+    ];
+    (distorted, gradient)
+}
+
+/// Whether a ray lies before the first fold of the lens: its image is not mirrored, and its radius has grown all the
+/// way.
+fn is_unfolded(coefficients: &[f64; 8], [x, y]: [f64; 2], [[a, b], [c, d]]: [[f64; 2]; 2]) -> bool {
+    let square = x * x + y * y;
+    let bends = square < LARGEST_SLOPE * LARGEST_SLOPE && a * d - b * c > 0.0 && a + d > 0.0;
+    bends && grows(coefficients, square)
+}
+
+/// Whether the distorted radius grows up to the radius of that square. Small coefficients cannot keep it from that;
+/// where they could, radii in between are asked.
+fn grows(coefficients: &[f64; 8], square: f64) -> bool {
+    let [k1, k2, _, _, k3, k4, k5, k6] = coefficients.map(f64::abs);
+    let below = square * (k4 + square * (k5 + square * k6));
+    let below_slope = 2.0 * square * (k4 + square * (2.0 * k5 + 3.0 * square * k6));
+    let above = square * (k1 + square * (k2 + square * k3));
+    let shrinking = square * (3.0 * k1 + square * (5.0 * k2 + 7.0 * square * k3));
+    if below < 1.0 && (1.0 - shrinking) * (1.0 - below) > (1.0 + above) * below_slope {
+        return true;
+    }
+    (1..=FOLD_SAMPLES).all(|k| {
+        let square = square * k as f64 / FOLD_SAMPLES as f64;
+        let [factor, slope] = radial(coefficients, square);
+        // A pole between two samples turns the sign of the factor.
+        factor > 0.0 && factor + 2.0 * square * slope > 0.0
+    })
+}
+
+/// The distorted slopes of four rays under the usual five coefficients, NaN where the radius shrinks: behind the fold, where the
+/// image is mirrored.
+#[inline(never)]
+pub fn distort_lanes(coefficients: [f64; 5], [x, y]: [Lanes; 2]) -> [Lanes; 2] {
+    let [k1, k2, p1, p2, k3] = coefficients.map(|value| Lanes::splat(value as f32));
+    let (xx, yy, xy) = (x * x, y * y, x * y + x * y);
+    let r2 = xx + yy;
+    let one = Lanes::splat(1.0);
+    let radial = one + r2 * (k1 + r2 * (k2 + r2 * k3));
+    let three = Lanes::splat(3.0);
+    let growth = one + r2 * (three * k1 + r2 * (Lanes::splat(5.0) * k2 + r2 * (Lanes::splat(7.0) * k3)));
+    let radial = Lanes::splat(0.0).less(growth).select(radial, Lanes::splat(f32::NAN));
+    [x * radial + p1 * xy + p2 * (r2 + xx + xx), y * radial + p1 * (r2 + yy + yy) + p2 * xy]
+}

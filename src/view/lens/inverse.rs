@@ -1,0 +1,36 @@
+//! Where a distorted radius is reached: what both lens models share.
+
+/// Most rounds of Newton's method; usual lenses take three, halving the bracket down to rounding takes fifty.
+pub(super) const MOST_ROUNDS: usize = 60;
+/// A ray has been found when its pixel is this near, in pixels: a hundredth of the step between coordinates in f32.
+pub(super) const RETURN_DISTANCE: f64 = 1e-7;
+/// Largest slope of a ray behind Brown's lens, 89.4 degrees off the axis: the model knows no ray at 90.
+pub(super) const LARGEST_SLOPE: f64 = 100.0;
+/// Radii at which the growth of the distorted radius is asked, evenly spread in their squares.
+pub(super) const FOLD_SAMPLES: usize = 16;
+
+/// How far a step in the plane of the slopes is in pixels, by the focal lengths along x and y.
+pub(super) fn pixels([fx, fy]: [f64; 2], [right, down]: [f64; 2]) -> f64 {
+    (fx * right).hypot(fy * down)
+}
+
+/// Where a function that grows from zero, up to its first fold, reaches `target`: Newton's method inside a bracket.
+/// `function` gives value, derivative, and whether it has grown all the way. Beyond its reach: the fold, or `most`.
+pub(super) fn inverse(function: impl Fn(f64) -> (f64, f64, bool), target: f64, most: f64) -> f64 {
+    let (mut low, mut high) = (0.0, most);
+    let mut at = target.min(0.5 * most);
+    for _ in 0..MOST_ROUNDS {
+        let (value, slope, grows) = function(at);
+        if grows && value <= target {
+            low = at;
+        } else {
+            high = at;
+        }
+        let step = (target - value) / slope;
+        if grows && step.abs() <= 2.0 * f64::EPSILON * at {
+            return at;
+        }
+        at = if grows && at + step > low && at + step < high { at + step } else { 0.5 * (low + high) };
+    }
+    low
+}
