@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use bimodal_stereo::nalgebra::{Matrix3, Rotation3, Vector3};
 use bimodal_stereo::{
-    ColourImage, ColourSamples, DepthMap, DepthSamples, Estimator, Options, Pinhole, Similarity, Start, Status,
+    ColourImage, ColourSamples, DepthMap, DepthSamples, Estimator, Lens, Options, Pinhole, Similarity, Start, Status,
 };
 use serde_json::Value;
 
@@ -30,7 +30,7 @@ fn load(name: &str) -> Pair {
     let length = |key: &str| meta[key].as_u64().unwrap() as usize;
     let camera = |key: &str| {
         let of = |member: &str| meta[key][member].as_f64().unwrap();
-        Pinhole { fx: of("fx"), fy: of("fy"), cx: of("cx"), cy: of("cy"), distortion: [0.0; 5] }
+        Pinhole { fx: of("fx"), fy: of("fy"), cx: of("cx"), cy: of("cy"), lens: Lens::None }
     };
     let metres: Vec<f32> = read("depth.bin").as_chunks().0.iter().map(|bytes| f32::from_le_bytes(*bytes)).collect();
     let (width, mask, lens) = (length("dw"), read("dmask.bin"), camera("Kd"));

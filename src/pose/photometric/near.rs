@@ -130,13 +130,13 @@ mod tests {
     use super::*;
     use crate::light::LightPrior;
     use crate::pose::increment::UNKNOWNS;
-    use crate::view::{ColourImage, ColourSamples, ColourView, DepthMap, DepthSamples, DepthView, Pinhole};
+    use crate::view::{ColourImage, ColourSamples, ColourView, DepthMap, DepthSamples, DepthView, Lens, Pinhole};
 
     const SIDE: usize = 40;
     const WEIGHTS: NearWeights = NearWeights { points: 100.0, robust_scale: 0.1, noise: 0.02, level: 0 };
 
     fn lens() -> Pinhole {
-        Pinhole { fx: 50.0, fy: 50.0, cx: 19.5, cy: 19.5, distortion: [0.0; 5] }
+        Pinhole { fx: 50.0, fy: 50.0, cx: 19.5, cy: 19.5, lens: Lens::None }
     }
 
     fn disc(radius: f64) -> Vec<u8> {
