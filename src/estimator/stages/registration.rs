@@ -76,7 +76,7 @@ impl Registering {
 }
 
 impl RegistrationStage {
-    /// Without the registration by colours where `colours_wait` for the search to end: [`prepare`](Self::prepare).
+    /// Without the registration by colours where `colours_wait` for the search to end: then the finder makes it.
     pub fn new(pair: &ViewPair, colours_wait: bool) -> Self {
         let by_colours = pair.options.start == Start::Search || pair.options.registration == Registration::Joint;
         let by_colours = by_colours && !colours_wait;
