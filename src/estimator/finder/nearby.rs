@@ -156,3 +156,47 @@ impl Nearby {
 pub fn explains(pair: &ViewPair, found: &PhotometricReport) -> bool {
     pair.residuals(found).diagnose(Alternative::Silhouettes) == Diagnosis::Explained
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Vector3;
+
+    use super::*;
+    use crate::options::{Options, Start, StartTolerance};
+    use crate::pose::Angles;
+    use crate::scenes::{SampleRequest, Scene, surface};
+
+    /// A pair whose initial pose is three degrees off and believed to a tenth of one, and its true pose.
+    fn pair_beside_its_pose() -> (ViewPair, Similarity) {
+        let sample = Scene::new(&surface("bust").unwrap()).unwrap().sample(&SampleRequest::default()).unwrap();
+        let Similarity { rotation, scale, translation } = sample.pose;
+        let turn = Angles { gamma: 3.0, ..Angles::default() }.rotation();
+        let options = Options {
+            start: Start::Pose { rotation: turn * rotation, scale: Some(scale), translation: Some(translation) },
+            start_tolerance: StartTolerance { degrees: 0.1, distance: None },
+            ..Options::default()
+        };
+        (ViewPair::new(sample.colour_image(), &sample.depth_map(), options).unwrap(), sample.pose)
+    }
+
+    #[test]
+    fn what_was_found_before_outlives_a_registration_that_fails_or_ends_outside_the_region() {
+        let (pair, truth) = pair_beside_its_pose();
+        let mut colours = ColourRegistration::new(&pair);
+        let out_of_sight = Similarity { translation: Vector3::new(1e4, 0.0, 0.0), ..truth };
+        for (start, is_registered) in [(out_of_sight, false), (truth, true)] {
+            let region = TrustRegion::of(&pair).unwrap();
+            let initial = region.initial;
+            let end = colours.register_candidate(&pair, &start);
+            assert_eq!(end.is_some(), is_registered);
+            assert!(end.is_none_or(|end| !region.holds(&pair, &end.pose)));
+            let mut nearby = Nearby::new(&pair, region, None);
+            nearby.judge(&pair, &mut colours);
+            nearby.step = Step::FromSilhouettes(start);
+            while matches!(nearby.step, Step::FromSilhouettes(_)) {
+                assert!(matches!(nearby.advance(&pair, &mut colours).unwrap(), Progress::Ongoing));
+            }
+            assert_eq!(nearby.optima.and_then(|optima| optima.best()), Some(initial), "{is_registered}");
+        }
+    }
+}
