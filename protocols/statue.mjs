@@ -1,7 +1,7 @@
 // Two real views of one thing: colour and depth of a statue from different places, with the pose between them known.
 import { FROM_ANYWHERE } from "./scenes.mjs";
 
-/** Constants and choices of the method were made on pairs of these colour views; the others took no part. */
+/** Constants were set on pairs of these colour views. The others informed choices of the method, and are no independent test of it. */
 const TUNED = ["c10", "c52"];
 /** How far an initial pose is off: about the sensor, and in a straight line. */
 const OFF = { degrees: 3, metres: 0.02 };

@@ -4,6 +4,7 @@
 //   --json FILE      the rows as JSON
 //   --docs           the aims and their verdicts into the marked region of docs/accuracy.md
 //   --workers N      processes; the results do not depend on it
+// The environment's BIMODAL_STATUE names a folder of pairs for the table `statue`, laid out as those beside the project.
 import { writeFileSync } from "node:fs";
 import { availableParallelism } from "node:os";
 import { resolve } from "node:path";

@@ -15,6 +15,7 @@
 //! | `prior` | a Gaussian about an initial pose | | | |
 //! | `increment` | a Gauss-Newton step of a similarity: seven unknowns | | | |
 //! | `sandwich` | the covariance of a pose from the scores of independent clusters | | | |
+//! | `sums` | the sums of a step over robust residuals | | | |
 //! | `uncertainty` | one sigma of each number of a pose, from the information of matched surfaces | | | |
 //! | `spline_image`, `silhouette`, `distance_transform` | log S between pixels; distance to the mask | | | |
 //! | `neighbours` | nearest points | | | k-d tree |
@@ -39,6 +40,7 @@ mod search;
 mod silhouette;
 mod similarity;
 mod spline_image;
+mod sums;
 mod transforms;
 mod uncertainty;
 mod visibility;
@@ -49,6 +51,7 @@ pub use correspondence::{CorrespondenceProblem, Correspondences};
 pub use icp::{Icp, IcpOptions, IcpProblem, IcpReport, IcpTermination, Metric, Pair};
 pub(crate) use increment::rotation_vector;
 pub(crate) use outline::{Outline, OutlineProblem, OutlineReport};
+pub(crate) use photometric::COARSEST_NEAR;
 pub use photometric::{Photometric, PhotometricOptions, PhotometricProblem, PhotometricReport, PhotometricTermination};
 pub use prior::PosePrior;
 pub use ransac::{RansacOptions, RansacReport, ransac};

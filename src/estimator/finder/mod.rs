@@ -88,7 +88,7 @@ struct Near {
     /// Where the registration from the initial pose left no more than the image's own noise.
     noisy: Option<Similarity>,
     silhouettes: Option<Box<OutlineReport>>,
-    /// Whether registrations are kept near the initial pose.
+    /// Whether the registrations are being repeated, kept near the initial pose.
     is_second: bool,
 }
 
@@ -229,16 +229,16 @@ impl Finder {
     /// What is tried first around an initial pose.
     fn look_nearby(&mut self, pair: &ViewPair, memory: &mut Memory, mut nearby: Box<Nearby>) -> Result<Next> {
         let progress = nearby.advance(pair, ColourRegistration::prepared(memory, pair))?;
-        if matches!(progress, Progress::Ongoing) {
-            return Ok(Next::Phase(Phase::Nearby(nearby)));
-        }
-        if let Scope::Near(near) = &mut self.scope {
-            near.silhouettes = nearby.silhouettes();
-        }
         match progress {
-            Progress::Explained(choice) => self.diagnose(pair, memory, choice, Vec::new()),
-            Progress::Unexplained(candidates) => Ok(Next::Phase(Phase::Candidates(candidates))),
             Progress::Ongoing => Ok(Next::Phase(Phase::Nearby(nearby))),
+            Progress::Explained(choice) => {
+                self.scope.keep_silhouettes(&mut nearby);
+                self.diagnose(pair, memory, choice, Vec::new())
+            }
+            Progress::Unexplained(candidates) => {
+                self.scope.keep_silhouettes(&mut nearby);
+                Ok(Next::Phase(Phase::Candidates(candidates)))
+            }
         }
     }
 
@@ -353,6 +353,13 @@ fn everywhere_by(silhouettes: Option<OutlineReport>, Choice { best, rivals }: Ch
 }
 
 impl Scope {
+    /// Keeps what silhouettes found, for the decision.
+    fn keep_silhouettes(&mut self, nearby: &mut Nearby) {
+        if let Self::Near(near) = self {
+            near.silhouettes = nearby.silhouettes();
+        }
+    }
+
     /// Whether a pose may be the answer.
     fn holds(&self, pair: &ViewPair, pose: &Similarity) -> bool {
         match self {
@@ -363,7 +370,7 @@ impl Scope {
 }
 
 impl Near {
-    /// Whether a single albedo does not explain the image, so that registrations are repeated that are kept near the initial pose.
+    /// Whether to repeat the registrations, kept near the initial pose: once, and where a single albedo does not explain the image.
     fn begins_again(&mut self, pair: &ViewPair, choice: &Choice) -> bool {
         let is_explained = choice.best.as_ref().is_some_and(|best| !silhouettes::is_painted(pair, best));
         let begins = !self.is_second && !is_explained && self.region.prior(pair).is_some();

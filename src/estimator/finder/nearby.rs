@@ -7,8 +7,8 @@
 use crate::diagnosis::{Alternative, Diagnosis};
 use crate::error::Result;
 use crate::estimator::pair::ViewPair;
-use crate::estimator::stages::{Attempt, COARSEST_LEVEL, ColourRegistration, FIRST_LEVEL_NEAR};
-use crate::pose::{ImageGrid, OutlineReport, PhotometricReport, Search, Similarity};
+use crate::estimator::stages::{Attempt, ColourRegistration, FIRST_LEVEL_NEAR};
+use crate::pose::{COARSEST_NEAR, ImageGrid, OutlineReport, PhotometricReport, Search, Similarity};
 
 use super::candidates::{Candidates, NEARBY, search};
 use super::local_optima::{BEFORE, Choice, LocalOptima, RegisteredCandidate, STAYING};
@@ -62,10 +62,10 @@ impl Nearby {
         }
     }
 
-    /// The second time, where a single albedo did not explain the image: registrations are kept near the initial pose. The first is from
-    /// there, then from where silhouettes are.
+    /// Repeats the registrations, now kept near the initial pose, because a single albedo did not explain the image. They begin from that pose
+    /// and from the one that silhouettes found.
     pub fn again(pair: &ViewPair, region: TrustRegion, silhouettes: Option<Box<OutlineReport>>) -> Self {
-        let step = Step::FromInitial { level: COARSEST_LEVEL };
+        let step = Step::FromInitial { level: COARSEST_NEAR };
         Self { step, silhouettes, is_near: true, ..Self::new(pair, region, None) }
     }
 
@@ -83,21 +83,21 @@ impl Nearby {
             }
             Step::FromInitial { level } => {
                 let next = match level {
-                    COARSEST_LEVEL => Step::FromInitial { level: FIRST_LEVEL_NEAR },
+                    COARSEST_NEAR => Step::FromInitial { level: FIRST_LEVEL_NEAR },
                     _ => self.after_initial(),
                 };
                 let initial = self.region.initial;
                 return Ok(self.register(pair, colours, &initial, level, next));
             }
             Step::FromSilhouettes(start) => {
-                return Ok(self.register(pair, colours, &start, COARSEST_LEVEL, Step::Shift));
+                return Ok(self.register(pair, colours, &start, COARSEST_NEAR, Step::Shift));
             }
             Step::Shift => {
                 let mut search = search(pair, ImageGrid::new(&pair.image)?, colours)?;
                 self.step = search.shifted(&self.region.initial.rotation).map_or(Step::Search, Step::FromShifted);
                 self.search = Some(search);
             }
-            Step::FromShifted(start) => return Ok(self.register(pair, colours, &start, COARSEST_LEVEL, Step::Search)),
+            Step::FromShifted(start) => return Ok(self.register(pair, colours, &start, COARSEST_NEAR, Step::Search)),
             Step::Search => {
                 let (Some(search), Some(optima)) = (self.search.take(), self.optima.take()) else {
                     return Ok(Progress::Explained(Choice::default()));
@@ -166,7 +166,7 @@ mod tests {
     use crate::pose::Angles;
     use crate::scenes::{SampleRequest, Scene, surface};
 
-    /// A pair whose initial pose is three degrees off and believed to a tenth of one, and its true pose.
+    /// A pair whose initial pose is three degrees off and trusted to a tenth of one, and its true pose.
     fn pair_beside_its_pose() -> (ViewPair, Similarity) {
         let sample = Scene::new(&surface("bust").unwrap()).unwrap().sample(&SampleRequest::default()).unwrap();
         let Similarity { rotation, scale, translation } = sample.pose;

@@ -25,9 +25,8 @@ const CANDIDATE_POINTS: usize = 2500;
 /// cloud is easily explained. Candidates of the search lie within 0.1 of a right size.
 pub const COLLAPSE: f64 = 0.3;
 
-/// Level of the image that candidates near an initial pose begin with, and the coarsest.
+/// Level of the image that candidates near an initial pose begin with.
 pub const FIRST_LEVEL_NEAR: usize = 1;
-pub const COARSEST_LEVEL: usize = 3;
 
 /// How the registration of a candidate stands.
 pub enum Attempt {

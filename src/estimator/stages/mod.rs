@@ -14,7 +14,7 @@ mod registration;
 mod shape;
 mod surfaces;
 
-pub use colours::{Attempt, COARSEST_LEVEL, COLLAPSE, ColourRegistration, FIRST_LEVEL_NEAR};
+pub use colours::{Attempt, COLLAPSE, ColourRegistration, FIRST_LEVEL_NEAR};
 pub use correspondences::correspondence_problem;
 pub use light::{Inputs, LightStage};
 pub use paint::PaintStage;

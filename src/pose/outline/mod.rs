@@ -18,7 +18,6 @@
 //! | `rims` | which points of the depth map draw its outline under a pose |
 //! | `problem` | what goes in, what comes out |
 //! | `registration` | the rounds: [`Outline`] |
-//! | `sums` | the sums of a step |
 //!
 //! Limits: the image needs a mask that was not drawn from the depth map, and its outline has to be inside the frame. What
 //! turns without changing its outline (a bowl about its axis) keeps the told turn.
@@ -27,7 +26,6 @@ mod edges;
 mod problem;
 mod registration;
 mod rims;
-mod sums;
 
 pub use problem::{OutlineProblem, OutlineReport};
 pub use registration::Outline;

@@ -5,7 +5,6 @@ use nalgebra::{Matrix3, Vector3};
 use super::edges::{Edge, Edges, LEVELS};
 use super::problem::{OutlineProblem, OutlineReport};
 use super::rims::Rims;
-use super::sums::{Row, Sums};
 use crate::numeric::eigen::symmetric_eigen;
 use crate::numeric::{quantile, robust};
 use crate::pose::increment::{
@@ -13,6 +12,7 @@ use crate::pose::increment::{
 };
 use crate::pose::silhouette::{OUTSIDE_WEIGHT, SLACK, Silhouette};
 use crate::pose::similarity::Similarity;
+use crate::pose::sums::Sums;
 use crate::pose::uncertainty::{Direction, describe};
 use crate::view::extent;
 
@@ -110,9 +110,9 @@ impl Outline {
                 for _ in 0..STEPS {
                     let frame = self.frame(&pose);
                     let sums = self.sums(problem, &pose, loss, scale);
-                    let mut matrix = sums.matrix;
-                    matrix.fill_upper_triangle_with_lower_triangle();
-                    let Some(step) = damped_step(matrix, sums.gradient, DAMPING, &[false; UNKNOWNS]) else { break };
+                    let Some(step) = damped_step(sums.symmetric(), sums.gradient, DAMPING, &[false; UNKNOWNS]) else {
+                        break;
+                    };
                     loss += step[LOSS];
                     let mut change = step;
                     change[SCALE] = 0.0;
@@ -168,7 +168,12 @@ impl Outline {
     }
 
     /// How a point's place in the image changes with the unknowns.
-    fn rows(&self, problem: &OutlineProblem<'_>, pose: &Similarity, index: usize) -> Option<([f64; 2], [Row; 2])> {
+    fn rows(
+        &self,
+        problem: &OutlineProblem<'_>,
+        pose: &Similarity,
+        index: usize,
+    ) -> Option<([f64; 2], [PoseVector; 2])> {
         let frame = self.frame(pose);
         let point = pose.apply(problem.point(index));
         let (pixel, slopes) = problem.image.camera.project_with_gradient(problem.image.size, point.into())?;
@@ -187,7 +192,7 @@ impl Outline {
         pose: &Similarity,
         loss: f64,
         index: usize,
-    ) -> Option<(f64, Row)> {
+    ) -> Option<(f64, PoseVector)> {
         let (pixel, [across, down]) = self.rows(problem, pose, index)?;
         let (distance, [right, low]) = self.silhouette.as_ref()?.smoothly_signed_at(pixel);
         let mut row = right * across + low * down;
@@ -252,7 +257,7 @@ impl Outline {
         problem.prior.for_each(self.middle, pose, &self.frame(pose), |row, residual| {
             sums.add(row, residual, PRIOR, f64::INFINITY);
         });
-        let mut row = Row::zeros();
+        let mut row = PoseVector::zeros();
         row[LOSS] = 1.0 / LOSS_SIGMA;
         sums.add(&row, loss / LOSS_SIGMA, PRIOR, f64::INFINITY);
     }

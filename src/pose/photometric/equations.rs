@@ -14,6 +14,7 @@ use super::state::Step;
 use crate::light::{COEFFICIENTS, CoefficientMatrix, Coefficients, HARMONICS, Light, LightPrior, falling_by_turns};
 use crate::numeric::{Doubles, Real};
 use crate::pose::increment::{PoseMatrix, PoseVector, UNKNOWNS, fix_unknowns, inverse};
+use crate::pose::sums::Sums;
 
 /// A row for each unknown of the pose, a column for each of the light.
 type PoseByLight = SMatrix<f64, UNKNOWNS, COEFFICIENTS>;
@@ -231,9 +232,9 @@ impl Equations {
 
 impl ReducedSystem {
     /// Enters sums that the light has no part in.
-    pub fn add(&mut self, matrix: &PoseMatrix, gradient: &PoseVector) {
-        self.matrix += matrix;
-        self.score += gradient;
+    pub fn add(&mut self, sums: &Sums) {
+        self.matrix += sums.symmetric();
+        self.score += sums.gradient;
     }
 
     /// The step of pose and light, the pose's damped by a share of its diagonal; `held` unknowns stay. `None` where it

@@ -57,5 +57,6 @@ mod residual;
 mod state;
 mod weighting;
 
+pub(crate) use problem::COARSEST_NEAR;
 pub use problem::{PhotometricOptions, PhotometricProblem, PhotometricReport, PhotometricTermination};
 pub use registration::Photometric;

@@ -2,8 +2,8 @@
 //! and a Gaussian about the pose.
 //!
 //! A point that lies off the mask is a residual like any other: far off, it costs a share of what a point costs whose colours do not fit
-//! at all, the square of the robust scale. Nothing is asked of pixels of the mask that no point covers, since the depth camera may not have
-//! seen what is there.
+//! at all, the square of the robust scale. Pixels of the mask that no point covers cost nothing, because the depth camera may not have seen
+//! what is there.
 //!
 //! An object that goes farther away shrinks into its mask and onto pixels that are easily explained. So its distance goes last: above the
 //! sharp image the Gaussian all but holds it.
@@ -12,16 +12,16 @@ use nalgebra::Vector3;
 
 use super::problem::PhotometricProblem;
 use super::weighting::CORRELATED;
-use crate::numeric::robust;
-use crate::pose::increment::{Frame, PoseMatrix, PoseVector};
+use crate::pose::increment::Frame;
 use crate::pose::prior::PosePrior;
 use crate::pose::silhouette::{SLACK, Silhouette};
 use crate::pose::similarity::Similarity;
+use crate::pose::sums::Sums;
 use crate::view::extent;
 
 /// Points that are held against the mask at most.
 const MOST_POINTS: usize = 2000;
-/// Weight of a point off the mask over that of one whose colours do not fit. Of 0.1 to 2 on six pairs of a statue any serves.
+/// Weight of a point off the mask over that of one whose colours do not fit; set on pairs of a statue, where 2 ends alike.
 const OFF_WEIGHT: f64 = 0.5;
 /// Distance off the mask at which a point's weight has fallen to a quarter on each level of the image, pixels: as far as the level is to
 /// reach, since a sharp one comes after the others.
@@ -50,14 +50,6 @@ pub(super) struct NearWeights {
     pub level: usize,
 }
 
-/// Sums of the terms.
-#[derive(Clone, Copy)]
-pub(super) struct NearSums {
-    pub matrix: PoseMatrix,
-    pub gradient: PoseVector,
-    pub cost: f64,
-}
-
 impl NearTerms {
     /// Of the mask and the points of a problem.
     pub fn new(problem: &PhotometricProblem<'_>) -> Self {
@@ -78,8 +70,8 @@ impl NearTerms {
         pose: &Similarity,
         frame: &Frame,
         weights: NearWeights,
-    ) -> NearSums {
-        let mut sums = NearSums { matrix: PoseMatrix::zeros(), gradient: PoseVector::zeros(), cost: 0.0 };
+    ) -> Sums {
+        let mut sums = Sums::new();
         self.add_mask(problem, pose, frame, weights, &mut sums);
         let NearWeights { noise, level, .. } = weights;
         let along = if level > 0 { DISTANCE_FIRST * prior.along } else { prior.along };
@@ -89,13 +81,14 @@ impl NearTerms {
         sums
     }
 
+    /// Points off the mask.
     fn add_mask(
         &self,
         problem: &PhotometricProblem<'_>,
         pose: &Similarity,
         frame: &Frame,
         weights: NearWeights,
-        sums: &mut NearSums,
+        sums: &mut Sums,
     ) {
         let Some(silhouette) = &self.silhouette else { return };
         let NearWeights { points, robust_scale, level, .. } = weights;
@@ -114,22 +107,11 @@ impl NearTerms {
     }
 }
 
-impl NearSums {
-    /// A residual under a robust function.
-    fn add(&mut self, row: &PoseVector, residual: f64, weight: f64, scale: f64) {
-        let square = (residual / scale).powi(2);
-        let robust = weight * robust::weight(square);
-        self.cost += weight * robust::rho(residual * residual, square);
-        self.matrix.ger(robust, row, row, 1.0);
-        self.gradient.axpy(robust * residual, row, 1.0);
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::light::LightPrior;
-    use crate::pose::increment::UNKNOWNS;
+    use crate::pose::increment::{PoseVector, UNKNOWNS};
     use crate::view::{ColourImage, ColourSamples, ColourView, DepthMap, DepthSamples, DepthView, Lens, Pinhole};
 
     const SIDE: usize = 40;
@@ -169,7 +151,7 @@ mod tests {
         (ColourView::new(image).unwrap(), DepthView::new(&depth, false).unwrap())
     }
 
-    fn sums(views: &(ColourView, DepthView), initial: Similarity, pose: &Similarity, frame: &Frame) -> NearSums {
+    fn sums(views: &(ColourView, DepthView), initial: Similarity, pose: &Similarity, frame: &Frame) -> Sums {
         let (image, depth) = views;
         let light = LightPrior::natural();
         let prior = PosePrior { pose: initial, rotation: 0.05, across: 0.02, along: 0.02 };

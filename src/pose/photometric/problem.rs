@@ -15,7 +15,7 @@ use crate::view::{ColourView, DepthNoise, Normals, Points, Size};
 /// The coarsest level of the image.
 pub(super) const COARSEST: usize = 2;
 /// The same around an initial pose, which keeps an unknown light from explaining a blurred image in any pose.
-pub(super) const COARSEST_NEAR: usize = 3;
+pub(crate) const COARSEST_NEAR: usize = 3;
 
 /// Depth pixels whose points are worked on side by side.
 pub(super) type Indices = [u32; DOUBLE_LANES];

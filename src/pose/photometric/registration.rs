@@ -8,7 +8,7 @@ use annealing::{Descent, SCALE_SHRINKING};
 use super::covariance::{Noise, Tiles};
 use super::equations::ReducedSystem;
 use super::evaluation::Evaluation;
-use super::near::{NearSums, NearTerms, NearWeights};
+use super::near::{NearTerms, NearWeights};
 use super::points::{Sampling, VisiblePoints};
 use super::problem::{
     COARSEST, COARSEST_NEAR, PhotometricOptions, PhotometricProblem, PhotometricReport, PhotometricTermination,
@@ -21,6 +21,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::pose::increment::{Frame, PoseMatrix, PoseVector, SCALE, TRANSLATION_Z, clear_unknowns};
 use crate::pose::similarity::Similarity;
 use crate::pose::spline_image::SplineImage;
+use crate::pose::sums::Sums;
 use crate::pose::uncertainty::{describe, weakest_of};
 use crate::view::Size;
 
@@ -342,7 +343,7 @@ impl Photometric {
         level: usize,
         frame: &Frame,
         pose: &Similarity,
-    ) -> Option<NearSums> {
+    ) -> Option<Sums> {
         let (prior, near) = problem.near.as_ref().zip(self.near.as_ref())?;
         let (points, robust_scale) = (self.points.weight(), self.weighting.robust_scale);
         let weights = NearWeights { points, robust_scale, noise: self.noise.residuals, level };

@@ -15,8 +15,8 @@ const LARGEST_WIDENING: f64 = 2.0;
 /// degrees.
 const PRIOR_DEGREES_OF_FREEDOM: f64 = 5.0;
 
-/// Residuals whose errors are as good as one where the model's errors are more than noise: of a patch of some 8x8 pixels, three channels, and
-/// what such errors have in common across patches. By it information from elsewhere is weighed against sums over residuals.
+/// Number of residuals that count as one independent error where the albedo varies: information from elsewhere is weighed by it against sums
+/// over residuals. Set on pairs of a statue, where of 64, 192, 640 and 1920 this one leaves least.
 pub(super) const CORRELATED: f64 = 640.0;
 
 /// How much residuals and prior count.

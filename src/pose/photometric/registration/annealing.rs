@@ -78,7 +78,7 @@ impl Photometric {
         let reduced = self.evaluation(problem, level, &self.state).reduced_system(&frame);
         let mut reduced = reduced.ok_or_else(undetermined_light)?;
         if let Some(sums) = self.near_terms(problem, level, &frame, &self.state.pose) {
-            reduced.add(&sums.matrix, &sums.gradient);
+            reduced.add(&sums);
         }
         let lowered = descent.damping.lower(MOST_ATTEMPTS, descent.objective, |damping| {
             let step = reduced.step(damping, &problem.held())?;

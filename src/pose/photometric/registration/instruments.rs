@@ -51,7 +51,7 @@ impl Photometric {
         self.iterations += 1;
         let mut reduced = self.reduce_by_instruments(problem, frame)?;
         if let Some(sums) = self.near_terms(problem, 0, frame, &self.state.pose) {
-            reduced.add(&sums.matrix, &sums.gradient);
+            reduced.add(&sums);
         }
         let mut settled = true;
         if let Some(step) = reduced.step(0.0, &problem.held()).filter(|step| round == 0 || step.pose.norm() <= last) {

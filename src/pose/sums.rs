@@ -1,13 +1,11 @@
-//! Sums of a Gauss-Newton step over robust residuals.
+//! Sums of a Gauss-Newton step of the pose alone over robust residuals.
 
 use crate::numeric::robust;
 use crate::pose::increment::{PoseMatrix, PoseVector};
 
-/// One residual: how it changes with each unknown.
-pub type Row = PoseVector;
-
-/// Sums of a step.
-pub struct Sums {
+/// Matrix, gradient and cost; an infinite scale leaves a residual its square.
+pub(super) struct Sums {
+    /// Its lower triangle.
     pub matrix: PoseMatrix,
     pub gradient: PoseVector,
     pub cost: f64,
@@ -18,8 +16,15 @@ impl Sums {
         Self { matrix: PoseMatrix::zeros(), gradient: PoseVector::zeros(), cost: 0.0 }
     }
 
-    /// A residual under a robust function.
-    pub fn add(&mut self, row: &Row, residual: f64, weight: f64, scale: f64) {
+    /// The whole matrix.
+    pub fn symmetric(&self) -> PoseMatrix {
+        let mut matrix = self.matrix;
+        matrix.fill_upper_triangle_with_lower_triangle();
+        matrix
+    }
+
+    /// Enters a residual under the robust function.
+    pub fn add(&mut self, row: &PoseVector, residual: f64, weight: f64, scale: f64) {
         let square = (residual / scale).powi(2);
         let robust = weight * robust::weight(square);
         self.cost += weight * robust::rho(residual * residual, square);
