@@ -254,7 +254,7 @@ test("a picture that is too large is scaled down with its camera, and says so", 
   await lab.reaches("ready");
 });
 
-test("a camera waits for its four numbers, and its distortion must be five", async ({ lab, page }) => {
+test("a camera waits for its four numbers, and its distortion for as many as its lens has", async ({ lab, page }) => {
   await openFiles(lab);
   await put(lab, "Colour image", colourPng());
   await put(lab, "Depth map", depthNpy());
@@ -277,8 +277,12 @@ test("a camera waits for its four numbers, and its distortion must be five", asy
   await lab.reaches("ready");
   await type("distortion", "0.1 0 0");
   await expect(fields.locator(".field", { has: page.getByLabel("distortion", { exact: true }) })).toContainText(
-    "needs 5 numbers, not 3",
+    "needs 4, 5 or 8 numbers, not 3",
   );
-  await type("distortion", "0.1 0 0 0 0");
+  await type("distortion", "0.1 0 0 0 0 0 0 0");
   await lab.reaches("ready");
+  await type("distortion", "0.1 0 0 0");
+  await fields.getByLabel("lens model").selectOption("fisheye");
+  await lab.reaches("ready");
+  expect(await page.evaluate(() => location.hash)).toContain("colour.model=fisheye");
 });

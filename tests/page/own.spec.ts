@@ -335,7 +335,7 @@ test("what a file is called, and what is in it, stays text", async ({ lab, page 
   await expect(page).toHaveTitle("bimodal-stereo");
 });
 
-test("what can't be used is said: a recording, a fisheye, a second depth map, a pose", async ({ lab, page }) => {
+test("what can't be used is said: a recording, a second depth map, a pose; a fisheye can be", async ({ lab, page }) => {
   await lab.open("size=32");
   const fisheye = {
     ...cameraJson("eye.json"),
@@ -348,7 +348,8 @@ test("what can't be used is said: a recording, a fisheye, a second depth map, a 
   await drop(page, "body", [colourPng(), depthPng("one.png"), depthPng("two.png"), fisheye, pose, zip]);
   const remarks = page.locator(".remarks");
   await expect(remarks).toContainText("two.png: another depth map; the Lab takes one.");
-  await expect(remarks).toContainText("eye.json: the colour camera is a fisheye");
+  await expect(remarks).toContainText("eye.json: the colour camera; its numbers are in the fields below");
+  await expect(page.locator("#fields-colour").getByLabel("lens model")).toHaveValue("fisheye");
   await expect(remarks).toContainText("T.txt: a pose");
   await expect(remarks).toContainText("all.zip: it is a ZIP archive");
   await lab.reaches("ready");

@@ -119,8 +119,21 @@ const distortion = (side: "colour" | "depth"): ListField => ({
   initial: "",
   empty: "none",
   group: side,
-  hint: "Five numbers in OpenCV's order: k1 k2 p1 p2 k3.",
+  hint: "In OpenCV's order: k1 k2 p1 p2, then k3, then k4 k5 k6.",
   path: `${side === "colour" ? "image" : "depth"}.camera.distortion`,
+});
+const lensModel = (side: "colour" | "depth"): ChoiceField => ({
+  kind: "choice",
+  key: `${side}.model`,
+  label: "lens model",
+  initial: "brown",
+  group: side,
+  path: `${side === "colour" ? "image" : "depth"}.camera.model`,
+  when: (settings) => settings[`${side}.distortion`] !== "",
+  choices: [
+    ["brown", "Brown: k1 k2 p1 p2 k3 k4 k5 k6"],
+    ["fisheye", "fisheye: k1 k2 k3 k4"],
+  ],
 });
 /** Turns of a sample's light about the colour view's axes. */
 const lightTurn = (
@@ -200,6 +213,7 @@ export const fields: readonly Field[] = [
   lens("colour", "cx"),
   lens("colour", "cy"),
   distortion("colour"),
+  lensModel("colour"),
   {
     kind: "number",
     key: "unit",
@@ -215,6 +229,7 @@ export const fields: readonly Field[] = [
   lens("depth", "cx"),
   lens("depth", "cy"),
   distortion("depth"),
+  lensModel("depth"),
 
   {
     kind: "choice",

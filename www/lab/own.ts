@@ -232,38 +232,25 @@ function addCameras(cameras: readonly Given[], sizes: Partial<Record<Side, Look 
     ["depth", depth],
   ] as const) {
     if (!given) continue;
-    const numbers = fieldsOf(side, given.camera);
-    const words = `${given.file}: the ${side} camera`;
-    if (typeof numbers === "string") result.remarks.push({ words: `${words} ${numbers}`, wrong: true });
-    else {
-      Object.assign(result.settings, numbers);
-      result.remarks.push({
-        words: `${words}${only === given && colour === depth ? ", as of both" : ""}; its numbers are in the fields below, Undo takes them back.`,
-        wrong: false,
-      });
-    }
+    Object.assign(result.settings, fieldsOf(side, given.camera));
+    const both = only === given && colour === depth ? ", as of both" : "";
+    result.remarks.push({
+      words: `${given.file}: the ${side} camera${both}; its numbers are in the fields below, Undo takes them back.`,
+      wrong: false,
+    });
   }
 }
 
-/** OpenCV's five numbers: k1 k2 p1 p2 k3. */
-const DISTORTION = 5;
-
-function fieldsOf(
-  side: Side,
-  { model, fx, fy, cx, cy, distortion: given = [] }: Pinhole,
-): Record<string, Value> | string {
-  const distortion = Array.from(given);
-  if (model === "fisheye") return "is a fisheye, which the Lab does not know";
-  const [five, rest] = [Array.from({ length: DISTORTION }, (_, k) => distortion[k] ?? 0), distortion.slice(DISTORTION)];
-  if (rest.some((value) => value !== 0))
-    return `has ${distortion.length} numbers of distortion; the Lab takes ${DISTORTION}`;
-  const bent = five.some((value) => value !== 0) ? five.join(" ") : "";
+/** A file's camera in the Lab's fields. */
+function fieldsOf(side: Side, { model, fx, fy, cx, cy, distortion = [] }: Pinhole): Record<string, Value> {
+  const isBent = model === "fisheye" || Array.from(distortion).some((value) => value !== 0);
   return {
     [`${side}.fx`]: fx,
     [`${side}.fy`]: fy,
     [`${side}.cx`]: cx,
     [`${side}.cy`]: cy,
-    [`${side}.distortion`]: bent,
+    [`${side}.model`]: model ?? "brown",
+    [`${side}.distortion`]: isBent ? Array.from(distortion).join(" ") : "",
   };
 }
 

@@ -176,7 +176,8 @@ export function camera(settings: Settings, side: "colour" | "depth"): Pinhole | 
   const [fx, fy, cx, cy] = lensKeys.map((key) => number(settings, `${side}.${key}`));
   const distortion = listed(settings, `${side}.distortion`);
   if (fx !== undefined && fy !== undefined && cx !== undefined && cy !== undefined) {
-    return { fx, fy, cx, cy, ...(distortion.length > 0 ? { distortion } : {}) };
+    const model = settings[`${side}.model`] === "fisheye" ? "fisheye" : "brown";
+    return { fx, fy, cx, cy, ...(distortion.length > 0 ? { model, distortion } : {}) };
   }
   const missing = lensKeys.filter((key) => settings[`${side}.${key}`] === null);
   return missing.length === lensKeys.length && distortion.length === 0 ? undefined : missing.join(", ");

@@ -169,7 +169,7 @@ fn sigma_growth(matrix: &PoseMatrix, noise_information: &PoseMatrix) -> Option<P
 mod tests {
     use super::*;
     use crate::numeric::noise;
-    use crate::pose::photometric::registration::INSTRUMENT_BLUR;
+    use crate::pose::photometric::fit::INSTRUMENT_BLUR;
     use crate::pose::spline_image::SplineImage;
     use crate::view::{ColourImage, ColourSamples, ColourView};
 

@@ -29,7 +29,9 @@
 //! | file | what it holds |
 //! |---|---|
 //! | `problem` | what goes in, what comes out |
-//! | `registration` | the rounds of [`Photometric`]: `annealing`, then `instruments` |
+//! | `registration` | [`Photometric`] from its start to its report: rounds of `annealing`, then of `instruments` |
+//! | `phase` | what it does next |
+//! | `fit` | what it owns, and what each round takes from it |
 //! | `state` | pose and light, and a step of both |
 //! | `points` | which depth points take part |
 //! | `residual` | r and its derivatives |
@@ -44,11 +46,15 @@
 //! Limits: Lambertian, one albedo; starts beyond some 20 to 30 degrees may end elsewhere; behind a pinhole image the
 //! scale is held, for it cannot be told from the distance.
 
+mod annealing;
 mod covariance;
 mod equations;
 mod evaluation;
+mod fit;
+mod instruments;
 mod near;
 mod normal_noise;
+mod phase;
 mod points;
 mod problem;
 mod registration;

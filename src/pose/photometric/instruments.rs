@@ -1,12 +1,13 @@
 //! Rounds with instrumental variables: sum w Z^T r = 0 in place of sum w J^T r = 0, because the gradients J of a noisy image are noisy
 //! as well (docs/method.md, section 10).
 
-use super::{Phase, Photometric};
+use super::fit::Photometric;
+use super::phase::Phase;
+use super::points::Sampling;
+use super::problem::{PhotometricProblem, PhotometricTermination};
+use super::state::State;
 use crate::error::Result;
 use crate::pose::increment::Frame;
-use crate::pose::photometric::points::Sampling;
-use crate::pose::photometric::problem::{PhotometricProblem, PhotometricTermination};
-use crate::pose::photometric::state::State;
 
 /// A step below this, in radians and object sizes, changes nothing: 1e-5 degrees.
 const SETTLED_STEP: f64 = 1e-7;

@@ -1,13 +1,12 @@
 //! Annealing: rounds of damped Gauss-Newton whose robust scale shrinks to that of the noise, from coarse to fine.
 
-use super::{Phase, Photometric, undetermined_light};
+use super::fit::{Photometric, undetermined_light};
+use super::phase::{Descent, Phase};
+use super::points::Sampling;
+use super::problem::PhotometricProblem;
+use super::weighting::final_robust_scale;
 use crate::error::Result;
 use crate::pose::descent::{Damping, Lowered};
-use crate::pose::increment::Frame;
-use crate::pose::photometric::points::Sampling;
-use crate::pose::photometric::problem::PhotometricProblem;
-use crate::pose::photometric::weighting::final_robust_scale;
-use crate::pose::similarity::Similarity;
 
 /// The robust scale of a round over the one before, at least.
 pub(super) const SCALE_SHRINKING: f64 = 0.6;
@@ -26,22 +25,6 @@ const COARSE_SETTLED: f64 = 0.3;
 const FINE_SETTLED: f64 = 3e-3;
 /// Rounds at the final scale after which only such points still change the pose.
 const MOST_FINE_ROUNDS: usize = 4;
-
-/// A round of damped Gauss-Newton at one level and one robust scale, between two of its steps.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Descent {
-    level: usize,
-    /// Rounds at the robust scale of the noise before this one.
-    fine_rounds: usize,
-    frame: Frame,
-    /// The pose at the beginning of the round.
-    before: Similarity,
-    /// Whether the robust scale is that of the noise.
-    at_noise: bool,
-    damping: Damping,
-    objective: f64,
-    steps: usize,
-}
 
 impl Photometric {
     /// The beginning of a round of annealing: its points, their light, its robust scale.
