@@ -31,10 +31,14 @@ export type ReaderCode =
   | "pixels-not-square"
   | "skew-ignored"
   | "lens-approximated"
+  | "camera-left-out"
+  | "intrinsics-vary"
   // Poses
   | "rotation-adjusted"
   | "quaternion-normalised"
   | "translation-unit-guessed"
+  | "pose-left-out"
+  | "pose-assumed"
   // Folders
   | "inverse-checked"
   | "file-left-out"
@@ -68,6 +72,7 @@ const HARMLESS: ReadonlySet<ReaderCode> = new Set([
   "names-ambiguous",
   "mask-size",
   "pairs-sampled",
+  "pose-left-out",
 ]);
 
 export const warning = (
