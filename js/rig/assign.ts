@@ -33,6 +33,13 @@ const takes = (camera: NamedCamera, side: Side): boolean =>
   camera.takes === undefined ? sideOf(camera.name) === side : camera.takes === side || camera.takes === "both";
 const isOpen = (camera: NamedCamera): boolean => camera.takes === undefined && sideOf(camera.name) === undefined;
 
+/** Those that took these pictures: by their file's word before those by their names, and depth before the infrared it is made of. */
+function taking(cameras: NamedCamera[], side: Side): NamedCamera[] {
+  const rank = ({ takes: said, name = "" }: NamedCamera) =>
+    said !== undefined ? 0 : /depth|dpt|colou?r|rgb/i.test(name) ? 1 : 2;
+  return cameras.filter((each) => takes(each, side)).sort((a, b) => rank(a) - rank(b));
+}
+
 /** Of cameras of one side: one of this size, one without a size, one of the same view, or else the first. */
 const ofSize = (cameras: NamedCamera[], size: Size): NamedCamera | undefined =>
   cameras.find((each) => fits(each, size)) ??
@@ -86,14 +93,8 @@ function chosen(
   depth: Size,
   warnings: ReaderWarning[],
 ): (NamedCamera | undefined)[] {
-  let colour = ofSize(
-    cameras.filter((each) => takes(each, "colour")),
-    image,
-  );
-  let range = ofSize(
-    cameras.filter((each) => takes(each, "depth")),
-    depth,
-  );
+  let colour = ofSize(taking(cameras, "colour"), image);
+  let range = ofSize(taking(cameras, "depth"), depth);
   const open = () => cameras.filter((each) => isOpen(each) && each !== colour && each !== range);
   const [only, ...more] = open();
   if (colour === undefined && range === undefined && only !== undefined && more.length === 0 && cameras.length === 1)

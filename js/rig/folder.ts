@@ -386,7 +386,7 @@ export async function readRigFolder(files: NamedFile[], options: FolderOptions =
   );
   const { cameras, poses } = ofPictures(
     calibration,
-    chosen.map(({ colour }) => colour.name),
+    pictures.map(({ name }) => name),
   );
   const folder: RigFolder = { frames, cameras, poses: inOrder(poses), readings, warnings: reader.warnings };
   const own = cameras.filter(({ takes }) => takes === undefined || takes === "both");

@@ -91,8 +91,8 @@ export const isBouguet = (text: string): boolean =>
 export function readBouguet(text: string): Findings {
   const found = new Findings();
   const entries = new Map<string, Numbers>();
-  for (const [, key = "", value = ""] of text.matchAll(ENTRY)) {
-    const numbers = value
+  for (const [, key = "", list, single = ""] of text.replace(/%.*$|\.\.\.[ \t]*$/gm, "").matchAll(ENTRY)) {
+    const numbers = (list ?? single)
       .trim()
       .split(/[\s;,]+/, 20)
       .map(numberOf);

@@ -38,6 +38,11 @@ class Enumeration {
     );
     const number = (key: string): number | undefined => numberOf(entries.get(key) ?? "");
     const focal = [number("fx"), number("fy")];
+    if (/n\/a|nan|inf/i.test(entries.get("coeffs") ?? ""))
+      this.found.warn(
+        "lens-approximated",
+        `The lens of "${name}" has no coefficients (N/A); it is read without distortion.`,
+      );
     // Streams that have no intrinsics, motion sensors among them.
     if (focal.some((value) => value === undefined || value === 0)) this.#missing.add(`intrinsics of "${name}"`);
     else
@@ -45,7 +50,7 @@ class Enumeration {
         {
           ...{ name, focal: focal as Numbers, centre: [number("ppx") ?? NaN, number("ppy") ?? NaN] },
           ...{ model: entries.get("distortion"), distortion: numbersOf(entries.get("coeffs") ?? "") },
-          ...{ width: number("width") ?? numberOf(columns), height: number("height") ?? numberOf(rows) },
+          ...{ width: number("width") || numberOf(columns), height: number("height") || numberOf(rows) },
         },
         takesOf(name),
       );
