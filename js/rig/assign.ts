@@ -5,6 +5,7 @@
  * A file may hold a camera many times, once for each size of its pictures: the one of this size is taken. Where there is none, one of the
  * same view is scaled, with a warning.
  */
+import { isLidar, linked } from "./formats/frames.js";
 import { poseOf } from "./formats/poses.js";
 import { haveLikeAspects, scaledCamera } from "./scale.js";
 import type { CheckFrame, NamedCamera, NamedPose, RigFolder } from "./types.js";
@@ -33,10 +34,11 @@ const takes = (camera: NamedCamera, side: Side): boolean =>
   camera.takes === undefined ? sideOf(camera.name) === side : camera.takes === side || camera.takes === "both";
 const isOpen = (camera: NamedCamera): boolean => camera.takes === undefined && sideOf(camera.name) === undefined;
 
+const rank = ({ takes: said, name = "" }: NamedCamera): number =>
+  said !== undefined ? 0 : /depth|dpt|colou?r|rgb/i.test(name) ? 1 : 2;
+
 /** Those that took these pictures: by their file's word before those by their names, and depth before the infrared it is made of. */
 function taking(cameras: NamedCamera[], side: Side): NamedCamera[] {
-  const rank = ({ takes: said, name = "" }: NamedCamera) =>
-    said !== undefined ? 0 : /depth|dpt|colou?r|rgb/i.test(name) ? 1 : 2;
   return cameras.filter((each) => takes(each, side)).sort((a, b) => rank(a) - rank(b));
 }
 
@@ -70,6 +72,8 @@ function shared(only: NamedCamera, image: Size, depth: Size, warnings: ReaderWar
     fits(only, depth) || (unsized(only) && !isSame && isCentred(only, depth) && !isCentred(only, image));
   if (!areAlike || (isOfDepth && !isSame)) return isOfDepth ? [undefined, only] : [only, undefined];
   if (!isSame && !fits(only, image) && !(unsized(only) && isCentred(only, image))) return [only, undefined];
+  const pair = [only, isSame ? only : scaled({ ...only, width: image.width, height: image.height }, depth)];
+  if (only.takes === "both") return pair;
   const size = isSame
     ? ""
     : `, scaled from ${image.width}x${image.height} to ${depth.width}x${depth.height} for the depth maps`;
@@ -79,22 +83,53 @@ function shared(only: NamedCamera, image: Size, depth: Size, warnings: ReaderWar
       `Only one camera's intrinsics were found; they are used for both pictures${size}, as if these were registered to each other.`,
     ),
   );
-  return [only, isSame ? only : scaled({ ...only, width: image.width, height: image.height }, depth)];
+  return pair;
 }
 
 /** Whether a principal point is as near to the middle of a picture as lenses are mounted: within a fifth of its sides. */
 const isCentred = ({ camera: { cx, cy } }: NamedCamera, { width, height }: Size): boolean =>
   Math.abs(cx / width - 0.5) < 0.2 && Math.abs(cy / height - 0.5) < 0.2;
 
+/** Focal lengths of two cameras that differ by less, as a share, are those of one. */
+const ALIKE = 1e-3;
+
+/** Warns where another camera may have taken these pictures as well. */
+function checkOnly(
+  pool: NamedCamera[],
+  camera: NamedCamera | undefined,
+  what: string,
+  warnings: ReaderWarning[],
+): void {
+  if (camera === undefined) return;
+  const other = pool.find(
+    (each) =>
+      rank(each) === rank(camera) &&
+      each.width === camera.width &&
+      each.height === camera.height &&
+      Math.abs(each.camera.fx / camera.camera.fx - 1) > ALIKE,
+  );
+  if (other === undefined) return;
+  const called = [camera, other].map(
+    ({ name, camera: { fx } }) => `${name ?? "one without a name"} (fx ${fx.toFixed(1)})`,
+  );
+  warnings.push(
+    warning(
+      "cameras-by-order",
+      `More than one camera may have taken the ${what}; of ${called.join(" and ")} the first was used.`,
+    ),
+  );
+}
+
 /** Both cameras by what is said of them, then by size, then by order. */
 function chosen(
   cameras: NamedCamera[],
-  image: Size,
-  depth: Size,
+  { image, depth }: CheckFrame,
   warnings: ReaderWarning[],
 ): (NamedCamera | undefined)[] {
-  let colour = ofSize(taking(cameras, "colour"), image);
-  let range = ofSize(taking(cameras, "depth"), depth);
+  const [colours, ranges] = [taking(cameras, "colour"), taking(cameras, "depth")];
+  let [colour, range] = [ofSize(colours, image), ofSize(ranges, depth)];
+  checkOnly(colours, colour, "colour images", warnings);
+  if (depth.points === undefined) checkOnly(ranges, range, "depth maps", warnings);
   const open = () => cameras.filter((each) => isOpen(each) && each !== colour && each !== range);
   const [only, ...more] = open();
   if (colour === undefined && range === undefined && only !== undefined && more.length === 0 && cameras.length === 1)
@@ -148,35 +183,63 @@ function forSize(camera: NamedCamera | undefined, size: Size, what: string, warn
 }
 
 /** Depth maps that were carried into the colour images: both have the colour camera, and nothing lies between them. */
-function align(folder: RigFolder, colour: NamedCamera): void {
+function align(folder: RigFolder, colour: NamedCamera, why: string): void {
   folder.warnings.push(
     warning(
       "camera-shared",
-      "The names of the depth maps say that they are aligned with the colour images: the colour camera's intrinsics are used for both, and the pose between them is the identity.",
+      `${why}: the colour camera's intrinsics are used for both, and the pose between them is the identity.`,
     ),
   );
   const pose = poseOf([1, 0, 0, 0, 1, 0, 0, 0, 1], [0, 0, 0]);
   folder.poses.unshift({ name: "aligned (identity)", from: "depth", to: colour.name ?? "color", pose });
 }
 
+/** Where no pose leads from the depth camera or the LiDAR to the colour camera, the way by frames that several poses share goes first. */
+function relate({ poses }: RigFolder, colour: string | undefined, depth: string | undefined): void {
+  const isDirect = poses.some(({ from, to }) => {
+    const [a, b] = [from ?? "", to ?? ""];
+    const sides = [sideOf(a), sideOf(b)];
+    const isNamed = [depth, colour].every((name) => name !== undefined && (name === a || name === b));
+    return isNamed || (sides.includes("colour") && sides.includes("depth")) || from === undefined || to === undefined;
+  });
+  if (colour === undefined || isDirect) return;
+  const ends =
+    depth !== undefined && depth !== colour
+      ? [depth]
+      : poses.flatMap(({ from = "", to = "" }) => [from, to].filter(isLidar));
+  for (const from of ends) {
+    const way = linked(poses, from, colour);
+    if (way === undefined) continue;
+    const isThere = poses.findIndex((pose) => pose.from === from && pose.to === colour);
+    if (isThere >= 0) poses.splice(isThere, 1);
+    poses.unshift(way);
+    return;
+  }
+}
+
 /** Names that differ in their number alone: image_2 and image_3. */
 const family = (name: string): string => name.replace(/\d+/g, "#");
 
 /**
- * Of cameras that are called as folders of pictures, as KITTI's image_2, those whose pictures these are, and the poses that do not lead to
- * others of them.
+ * Of cameras that are called as folders of pictures, as KITTI's image_2, those whose pictures these are. Others of their family took none of
+ * these, and poses that lead to them are left out where the same frame has one that leads to ours.
  */
 export function ofPictures<T extends { cameras: NamedCamera[]; poses: NamedPose[] }>(all: T, paths: string[]): T {
   const segments = new Set(paths.flatMap((path) => path.split("/").slice(0, -1)));
-  const mine = all.cameras.filter(({ name }) => name !== undefined && /\d/.test(name) && segments.has(name));
-  const families = new Set(mine.map(({ name = "" }) => family(name)));
-  const isOther = (name: string | undefined) => name !== undefined && families.has(family(name)) && !segments.has(name);
+  const isOurs = (name = "") => /\d/.test(name) && segments.has(name);
+  const families = new Set(all.cameras.flatMap(({ name = "" }) => (isOurs(name) ? [family(name)] : [])));
+  const isOther = (name = "") => families.has(family(name)) && !segments.has(name);
+  const tookColours = ({ takes: said }: NamedCamera) => said === "colour" || said === "both";
+  const cameras = all.cameras.filter((each) => !(isOther(each.name) && tookColours(each)));
+  const isWhole = all.cameras.some((each) => each.takes === "both" && (isOther(each.name) || isOurs(each.name)));
   return {
     ...all,
-    cameras: all.cameras
-      .filter(({ name }) => !isOther(name))
-      .map((each) => (mine.includes(each) ? { ...each, takes: each.takes ?? "colour" } : each)),
-    poses: all.poses.filter(({ from, to }) => !isOther(from) && !isOther(to)),
+    cameras: cameras.map((each) =>
+      isOurs(each.name) ? { ...each, takes: isWhole ? "both" : (each.takes ?? "colour") } : each,
+    ),
+    poses: all.poses.filter(
+      ({ from, to }) => !isOther(to) || !all.poses.some((other) => other.from === from && isOurs(other.to)),
+    ),
   };
 }
 
@@ -213,11 +276,20 @@ export function addCameras(folder: RigFolder, { isAligned = false, cameraOf }: H
   if (cameraOf !== undefined && addOwn(folder, cameraOf)) return;
   const { image, depth } = first;
   const isSame = image.width === depth.width && image.height === depth.height;
-  const [some, other] = chosen(cameras, image, depth, warnings);
+  const [some, other] = chosen(cameras, first, warnings);
   const colour = forSize(some, image, "colour images", warnings);
   const isCarried = isAligned && isSame && colour !== undefined && colour !== other;
   const range = isCarried ? colour : forSize(other, depth, "depth maps", warnings);
-  if (isCarried) align(folder, colour);
+  const isRegistered =
+    colour !== undefined && colour.takes === "both" && colour === range && depth.points === undefined;
+  if (isCarried) align(folder, colour, "The names of the depth maps say that they are aligned with the colour images");
+  else if (isRegistered && folder.poses.length > 0)
+    align(
+      folder,
+      colour,
+      "The depth maps were taken to be registered to the colour images, as is usual for this product",
+    );
+  else relate(folder, colour?.name, range === colour ? undefined : range?.name);
   if (colour === undefined)
     warnings.push(
       warning(
@@ -234,6 +306,7 @@ export function addCameras(folder: RigFolder, { isAligned = false, cameraOf }: H
     );
   for (const frame of frames) {
     if (colour) frame.image.camera = colour.camera;
-    if (range) frame.depth.camera = range.camera;
+    // A cloud's points are no picture of the colour camera.
+    if (range && !(frame.depth.points && range.takes === "both")) frame.depth.camera = range.camera;
   }
 }

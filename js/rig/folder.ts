@@ -322,6 +322,18 @@ async function byContent(pictures: NamedFile[], reader: FolderReader): Promise<P
   };
 }
 
+/** The poses of a file that are not of the world; a camera without a name is called as its file there, too. */
+function ofRig(text: Extract<RigReading, { poses: NamedPose[] }>, file: string): NamedPose[] {
+  const isUnnamed = text.kind === "cameras" && text.cameras.length === 1 && text.cameras[0]?.name === undefined;
+  const called = (end: string | undefined) => (isUnnamed && end === "camera" ? file : end);
+  return text.poses
+    .filter(({ from, to }) => from !== "world" && to !== "world")
+    .map((pose) => {
+      const [from, to] = [called(pose.from), called(pose.to)];
+      return { ...pose, ...(from !== undefined && { from }), ...(to !== undefined && { to }) };
+    });
+}
+
 /** What the texts of a folder hold: cameras, what relates them, and the unit of the depth maps. */
 async function calibrationOf(files: NamedFile[], frames: ReadonlySet<string>, reader: FolderReader) {
   const cameras: NamedCamera[] = [];
@@ -336,8 +348,7 @@ async function calibrationOf(files: NamedFile[], frames: ReadonlySet<string>, re
       cameras.push(...text.cameras.map((each) => ({ ...each, name: each.name ?? stem(file.name) })));
       depthUnit ??= text.depthUnit;
     }
-    if (text?.kind === "cameras" || text?.kind === "poses")
-      poses.push(...text.poses.filter(({ from, to }) => from !== "world" && to !== "world"));
+    if (text?.kind === "cameras" || text?.kind === "poses") poses.push(...ofRig(text, stem(file.name)));
   }
   return { cameras, poses, ...(depthUnit !== undefined && { depthUnit }) };
 }

@@ -34,6 +34,7 @@ const OTHERS: Record<string, string> = {
   atan: "field of view",
   ftheta: "F-theta",
   scaramuzza: "Scaramuzza's polynomial",
+  fisheyeradtanthinprism: "Aria's Fisheye624: make linear pictures by projectaria_tools",
 };
 
 /** Longer focal lengths, in pixels, are no camera. */

@@ -72,3 +72,30 @@ export function wayBetween(poses: readonly NamedPose[]): { pose: NamedPose; turn
   const pose = chained(inverseOf(optical(colour, b)), optical(from, a));
   return { pose: { name: `${colour} from ${from}`, from, to: colour, pose }, turned };
 }
+
+/** Between frames that names relate there are few steps. */
+const MOST_LINKS = 6;
+
+/** The way from one frame to another by poses that share frames, either way round; nothing where there is none. */
+export function linked(poses: readonly NamedPose[], from: string, to: string): NamedPose | undefined {
+  const reached = new Map<string, Pose>([[from, poseOf([1, 0, 0, 0, 1, 0, 0, 0, 1], [0, 0, 0])]]);
+  let edge = [from];
+  for (let step = 0; step < MOST_LINKS && edge.length > 0 && !reached.has(to); step++) {
+    const next: string[] = [];
+    for (const frame of edge)
+      for (const { from: a, to: b, pose } of poses) {
+        if (a === undefined || b === undefined || (a !== frame && b !== frame)) continue;
+        const other = a === frame ? b : a;
+        const before = reached.get(frame);
+        if (reached.has(other) || before === undefined) continue;
+        reached.set(other, chained(a === frame ? pose : inverseOf(pose), before));
+        next.push(other);
+      }
+    edge = next;
+  }
+  const pose = reached.get(to);
+  return pose && from !== to ? { name: `${to} from ${from}`, from, to, pose } : undefined;
+}
+
+/** Frames of LiDARs by their names. */
+export const isLidar = (name: string): boolean => LIDAR.test(name) && !CAMERA.test(name);

@@ -6,7 +6,7 @@
  */
 import { Findings, parted } from "./findings.js";
 import { type Numbers, numberOf } from "./numbers.js";
-import { chained, inverseOf, poseOf, rotationOf } from "./poses.js";
+import { chained, poseOf, rotationOf } from "./poses.js";
 import type { Pose } from "../types.js";
 
 const MOST = 400;
@@ -29,10 +29,15 @@ function linesOf(text: string): Lines {
 
 const KINDS = /^(?:P(?:_rect_)?\d{1,2}|Tr(?:_\w+)?|R0_rect|R_rect(?:_\d\d)?|K_\d\d)$/;
 
+/** Raw recordings: R and T of the LiDAR in camera 0, or of the inertial unit in the LiDAR. */
+const isSinglePose = (text: string, lines: Lines): boolean =>
+  /^calib_time:/m.test(text) && lines.get("R")?.length === 9 && lines.get("T")?.length === 3;
+
 export const isKitti = (text: string): boolean => {
   const lines = linesOf(text.slice(0, 20_000));
   const has = (pattern: RegExp, count: number) =>
     [...lines].some(([key, { length }]) => pattern.test(key) && length === count);
+  if (isSinglePose(text.slice(0, 20_000), lines)) return true;
   return has(/^P(_rect_)?\d{1,2}$/, 12) || (has(/^Tr/, 12) && [...lines.keys()].every((key) => KINDS.test(key)));
 };
 
@@ -120,11 +125,11 @@ function lidar(found: Findings, lines: Lines, projections: { number: string; way
       pose: chained(way, chained(rect, own)),
     });
   }
-  const [first, ...others] = projections.filter(({ way }) => way !== undefined);
-  if (velo === undefined && first?.way)
-    for (const { number, way } of others) {
-      const [from, to] = [nameOf(first.number), nameOf(number)];
-      if (way) found.poses.push({ name: `${to} from ${from}`, from, to, pose: chained(way, inverseOf(first.way)) });
+  // Of raw recordings the LiDAR's pose is in a file of its own, and leads into camera 0.
+  if (velo === undefined)
+    for (const { number, way } of projections) {
+      const to = nameOf(number);
+      if (way) found.poses.push({ name: `${to} from cam00`, from: "cam00", to, pose: chained(way, rect) });
     }
   const imu = poseAt(lines, "Tr_imu_to_velo", "Tr_imu_velo");
   if (imu) found.poses.push({ name: "velodyne from imu", from: "imu", to: "velodyne", pose: imu });
@@ -132,6 +137,11 @@ function lidar(found: Findings, lines: Lines, projections: { number: string; way
 
 /** Poses without projections beside them lead into camera 0 before it is rectified. */
 function alone(found: Findings, lines: Lines): void {
+  const [r, t] = [lines.get("R"), lines.get("T")];
+  // The file of the LiDAR has two members that the one of the inertial unit lacks.
+  const isLidar = lines.has("delta_f") || lines.has("delta_c");
+  const [from, to] = isLidar ? ["velodyne", "cam00"] : ["imu", "velodyne"];
+  if (r?.length === 9 && t?.length === 3) found.pose(r, t, { name: `${to} from ${from}`, from, to });
   const velo = poseAt(lines, "Tr_velo_to_cam", "Tr_velo_cam", "Tr");
-  if (velo) found.poses.push({ name: "cam0 from velodyne", from: "velodyne", to: "cam0", pose: velo });
+  if (velo) found.poses.push({ name: "cam00 from velodyne", from: "velodyne", to: "cam00", pose: velo });
 }

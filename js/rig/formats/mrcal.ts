@@ -23,7 +23,7 @@ export function readMrcal(root: Node): Findings {
     );
   const size = flat(root.imagersize, 2);
   found.camera({
-    ...{ name: "camera", focal: values.slice(0, 2), centre: values.slice(2, 4), distortion: values.slice(4) },
+    ...{ focal: values.slice(0, 2), centre: values.slice(2, 4), distortion: values.slice(4) },
     ...{ width: size?.[0], height: size?.[1] },
   });
   // A rotation vector and a shift that carry points of the reference into the camera; metres.

@@ -11,6 +11,7 @@ import { isBop, readBop } from "./bop.js";
 import { isDepthai, readDepthai } from "./depthai.js";
 import { isHandEye, readHandEye } from "./easy-handeye.js";
 import type { Findings } from "./findings.js";
+import { isKinect2, readKinect2 } from "./kinect-v2.js";
 import { isKitti, readKitti } from "./kitti.js";
 import { isBouguet, isMatlab, readBouguet, readMatlab } from "./matlab.js";
 import { isMrcal, readMrcal } from "./mrcal.js";
@@ -42,6 +43,7 @@ const TREES: Product<Node>[] = [
   ["a calibration of direct_visual_lidar_calibration", isVlcal, readVlcal],
   ["a calibration of depthai", isDepthai, readDepthai],
   ["an Azure Kinect's calibration", isAzureKinect, readAzureKinect],
+  ["a Kinect v2's intrinsics", isKinect2, readKinect2],
   ["a calibration of Argoverse", isArgoverse, readArgoverse],
   ["a calibration of Waymo's dataset", isWaymo, readWaymo],
   ["a calibration of Project Aria", isAria, readAria],

@@ -38,7 +38,7 @@ export function readRecord3d(root: Node): Findings {
   if (Array.isArray(root.poses) && root.poses.some((pose) => isNode(pose) || Array.isArray(pose)))
     found.warn(
       "pose-left-out",
-      `The ${root.poses.length} poses of the camera in the world were left out: they relate no two cameras.`,
+      `Its poses of the camera in the world (${root.poses.length}) were left out: they relate no two cameras.`,
     );
   return found.done("the metadata of Record3D");
 }

@@ -61,7 +61,8 @@ export function readUrdf(root: Element): Findings {
     if (joint.tag !== "joint" || !joint.children.some(({ tag }) => tag === "parent")) continue;
     if (++count > MOST_JOINTS) throw badFile(`it has more than ${MOST_JOINTS} joints`);
     const child = (tag: string) => joint.children.find((each) => each.tag === tag);
-    const [from, to] = [child("child")?.attributes.link ?? "", child("parent")?.attributes.link ?? ""];
+    const link = (tag: string) => (child(tag)?.attributes.link ?? "").replace(/\$[{(](?:arg )?([^})]*)[})]/g, "$1");
+    const [from, to] = [link("child"), link("parent")];
     const origin = child("origin");
     const hidden = joint.children.some(({ tag }) => tag.includes("insert_block")) && origin === undefined;
     const [xyz, rpy] = [triple(origin?.attributes.xyz, valueOf), triple(origin?.attributes.rpy, valueOf)];

@@ -2,6 +2,7 @@
  * Calibrations of the Waymo Open Dataset, its protocol buffers as JSON. A camera's frame there looks along x with z up, as the vehicle's
  * does; here it is turned to look along z with y down.
  */
+import type { NamedPose } from "../types.js";
 import { Findings, flat, parted } from "./findings.js";
 import { isNode, type Node, numberOf } from "./numbers.js";
 import { chained, poseOf } from "./poses.js";
@@ -23,6 +24,7 @@ export const isWaymo = (root: Node): boolean =>
 
 export function readWaymo(root: Node): Findings {
   const found = new Findings();
+  const eyes: NamedPose[] = [];
   for (const each of cameras(root)) {
     const name = `camera ${each.name ?? ""}`.trim();
     const [fx = NaN, fy = NaN, cx = NaN, cy = NaN, k1 = 0, k2 = 0, p1 = 0, p2 = 0, k3 = 0] =
@@ -32,9 +34,12 @@ export function readWaymo(root: Node): Findings {
       ...{ width: numberOf(each.width), height: numberOf(each.height) },
     });
     const pose = posed(found, each, name);
-    if (pose) pose.pose = chained(pose.pose, OPTICAL);
+    if (pose === undefined) continue;
+    pose.pose = chained(pose.pose, OPTICAL);
+    eyes.push(pose);
   }
-  for (const each of lasers(root)) posed(found, each, `lidar ${each.name ?? ""}`.trim());
+  const lidars = lasers(root).map((each) => posed(found, each, `lidar ${each.name ?? ""}`.trim()));
+  if (lidars.length === 1 && eyes.length === 1) found.relate(lidars[0], eyes[0]);
   return found.done("a calibration of Waymo's dataset");
 }
 
