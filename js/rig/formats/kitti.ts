@@ -76,7 +76,8 @@ function rectified(found: Findings, lines: Lines, number: string, p: Numbers): v
       ...{ name: nameOf(number), focal: [p[0] ?? NaN, p[5] ?? NaN], centre: [p[2] ?? NaN, p[6] ?? NaN], skew: p[1] },
       ...{ width, height },
     },
-    isColour(number) ? "colour" : undefined,
+    // Depth maps of its benchmarks are registered to camera 2.
+    isColour(number) ? "both" : "colour",
   );
 }
 
@@ -94,7 +95,7 @@ function raw(found: Findings, lines: Lines, key: string, k: Numbers): void {
       },
       ...{ skew: k[1], distortion: lines.get(`D_${number}`) ?? [], width, height },
     },
-    isColour(number) ? "colour" : undefined,
+    "colour",
   );
   const [r, t] = [lines.get(`R_${number}`), lines.get(`T_${number}`)];
   if (r?.length !== 9 || t?.length !== 3 || number === "00") return;
