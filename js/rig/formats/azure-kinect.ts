@@ -140,7 +140,7 @@ const LINE =
   /^\s*(resolution width|resolution height|principal point [xy]|focal length [xy]|k[1-6]|tangential distortion coefficient [xy]|center of distortion in Z=1 plane, [xy])\s*:\s*(\S+)\s*$/i;
 
 export const isAzurePrint = (text: string): boolean =>
-  /^\s*principal point x\s*:/im.test(text) && /^\s*focal length x\s*:/im.test(text);
+  /^[ \t]*principal point x[ \t]*:/im.test(text) && /^[ \t]*focal length x[ \t]*:/im.test(text);
 
 /** The SDK's example `calibration_info`: the depth camera in the mode that it was started in. */
 export function readAzurePrint(text: string): Findings {

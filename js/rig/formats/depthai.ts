@@ -7,10 +7,11 @@ import { chained } from "./poses.js";
 /** Depthai's names of its first sockets and what is usually plugged there. */
 const SOCKETS = ["rgb (CAM_A)", "left (CAM_B)", "right (CAM_C)"];
 const socketName = (socket: unknown): string => {
-  const number = typeof socket === "string" ? (/^CAM_([A-H])$/.exec(socket)?.[1]?.charCodeAt(0) ?? NaN) - 65 : socket;
-  const index = Number(number ?? socket);
-  if (!Number.isInteger(index) || index < 0) return String(socket).slice(0, 40);
-  return SOCKETS[index] ?? `CAM_${String.fromCharCode(65 + (index % 26))}`;
+  const text = String(socket).slice(0, 40);
+  const letter = /^CAM_([A-Z])$/.exec(text)?.[1];
+  const index = letter === undefined ? Number(text) : letter.charCodeAt(0) - "A".charCodeAt(0);
+  if (!Number.isInteger(index) || index < 0 || index > 25) return text;
+  return SOCKETS[index] ?? `CAM_${String.fromCharCode("A".charCodeAt(0) + index)}`;
 };
 const FISHEYE = 1;
 const MODELS: Record<string, string> = { 0: "opencv", 1: "fisheye", 2: "equirectangular", 3: "radial division" };
