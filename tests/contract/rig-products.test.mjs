@@ -110,6 +110,15 @@ describe("the Azure Kinect", () => {
   test("what the SDK's example prints", async () => {
     const text =
       "===== Device 0: 000 =====\nresolution width: 640\nresolution height: 576\nprincipal point x: 325.5\nprincipal point y: 253.75\nfocal length x: 518.5\nfocal length y: 519.25\nradial distortion coefficients:\nk1: 0.2\nk2: -0.5\nk3: 0.3\nk4: 0.1\nk5: 0.05\nk6: 0.02\ncenter of distortion in Z=1 plane, x: 0\ncenter of distortion in Z=1 plane, y: 0\ntangential distortion coefficient x: 0.001\ntangential distortion coefficient y: -0.002\nmetric radius: 1.7\n";
+    const both = (await read("k4a.txt", `Depth camera:\n${text}Color camera:\n${text.replace("325.5", "640.5")}`))
+      .cameras;
+    assert.deepEqual(
+      both.map(({ name, camera: { cx } }) => [name, cx]),
+      [
+        ["depth", 325.5],
+        ["color", 640.5],
+      ],
+    );
     const [camera] = (await read("k4a.txt", text)).cameras;
     close(numbers(camera), [518.5, 519.25, 325.5, 253.75], 1e-9);
     assert.deepEqual(
@@ -222,6 +231,11 @@ describe("ZED, Zivid, Kinect v2, Aria", () => {
       "__version__: 1\nCameraIntrinsics:\n  CameraMatrix:\n    CX: 325.5\n    CY: 253.75\n    FX: 518.5\n    FY: 519.25\n  Distortion:\n    K1: 0.2\n    K2: -0.5\n    K3: 0.3\n    P1: 0.001\n    P2: -0.002\n";
     const [camera] = (await read("intrinsics.yml", text)).cameras;
     assert.deepEqual([...numbers(camera), ...lens(camera)], [518.5, 519.25, 325.5, 253.75, "brown", ...distortion]);
+    const lower = await json({
+      camera_matrix: { cx: 1, cy: 2, fx: 500, fy: 501 },
+      distortion: { k1: 0.1, k2: 0.2, k3: 0.3, p1: 0.4, p2: 0.5 },
+    });
+    assert.deepEqual(lens(lower.cameras[0]), ["brown", 0.1, 0.2, 0.4, 0.5, 0.3]);
     const transform = `FloatMatrix:\n  Data: [${rows.map((row, i) => `[${row.join(", ")}, ${1000 * translation[i]}]`).join(", ")}, [0, 0, 0, 1]]\n`;
     const found = await read("transform.yaml", transform);
     samePose(found.poses[0]);

@@ -3,7 +3,14 @@
  * reader of its own, which is asked before the walk that knows members by their names.
  */
 import { isAria, readAria } from "./aria.js";
-import { isArgoverse, readArgoverse } from "./argoverse.js";
+import {
+  isArgoverse,
+  isArgoverse2,
+  isArgoverse2Table,
+  readArgoverse,
+  readArgoverse2,
+  readArgoverse2Table,
+} from "./argoverse.js";
 import { isAutoware, readAutoware } from "./autoware.js";
 import { isAzureKinect, isAzurePrint, readAzureKinect, readAzurePrint } from "./azure-kinect.js";
 import { isBasalt, readBasalt } from "./basalt.js";
@@ -22,7 +29,7 @@ import { isEnumeration, isPrinted, isSnapshot, readEnumeration, readPrinted, rea
 import { isRecord3d, readRecord3d } from "./record3d.js";
 import { isScannet, readScannet } from "./scannet.js";
 import { isVlcal, readVlcal } from "./vlcal.js";
-import { isWaymo, readWaymo } from "./waymo.js";
+import { isWaymo, isWaymoText, readWaymo, readWaymoText } from "./waymo.js";
 import { isZed, readZed } from "./zed.js";
 import { isZivid, readZivid } from "./zivid.js";
 
@@ -36,6 +43,8 @@ const TEXTS: Product<string>[] = [
   ["a ZED's calibration", isZed, readZed],
   ["a scene's text of ScanNet", isScannet, readScannet],
   ["a result of Bouguet's toolbox", isBouguet, readBouguet],
+  ["a calibration of Waymo's dataset", isWaymoText, readWaymoText],
+  ["a table of Argoverse 2", isArgoverse2Table, readArgoverse2Table],
   ["a calibration of KITTI", isKitti, readKitti],
 ];
 
@@ -73,5 +82,6 @@ export function productOfTree(value: unknown): Found | undefined {
   const whole: unknown = Array.isArray(value) && value.length === 1 ? value[0] : value;
   const [format, , read] = (isNode(whole) ? TREES.find(([, is]) => is(whole)) : undefined) ?? [];
   if (format !== undefined && read && isNode(whole)) return named(read(whole), format);
+  if (Array.isArray(value) && isArgoverse2(value)) return named(readArgoverse2(value), "a table of Argoverse 2");
   return isNuscenes(value) ? named(readNuscenes(value), "a table of nuScenes") : undefined;
 }
