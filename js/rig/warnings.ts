@@ -31,10 +31,20 @@ export type ReaderCode =
   | "pixels-not-square"
   | "skew-ignored"
   | "lens-approximated"
+  | "distortion-unused"
+  | "distortion-guessed"
+  | "size-unused"
+  | "camera-computed"
+  | "camera-left-out"
   // Poses
   | "rotation-adjusted"
   | "quaternion-normalised"
   | "translation-unit-guessed"
+  | "quaternion-order"
+  | "rotation-order"
+  | "rotation-guessed"
+  | "camera-to-world"
+  | "pose-left-out"
   // Folders
   | "inverse-checked"
   | "file-left-out"
@@ -68,6 +78,8 @@ const HARMLESS: ReadonlySet<ReaderCode> = new Set([
   "names-ambiguous",
   "mask-size",
   "pairs-sampled",
+  "pose-left-out",
+  "camera-to-world",
 ]);
 
 export const warning = (

@@ -19,8 +19,8 @@ export interface RawCamera {
 
 /** Files call the same model by many names. */
 const BROWN =
-  /^(|none|pinhole|plumb[_ ]?bob|radtan|radial-tangential|brown|brown[_ ]?conrady|opencv|rational[_ ]?polynomial|full_opencv|perspective)$/;
-const FISHEYE = /^(fisheye|equidistant|equi|kannala[_ ]?brandt4?|opencv_fisheye)$/;
+  /^(|none|pinhole(camera)?|plumb[_ ]?bob|radtan\d?|radial-?tangential\d?|brown|brown[_ ]?conrady|opencv|rational([_ ]?polynomial)?|full_opencv|perspective|standard|thin_prism|tilted)$/;
+const FISHEYE = /^(fisheye|equidistant(camera)?|equid?4?|kannala[_ ]?brandt[48]?|opencv_fisheye)$/;
 /** librealsense's variants; it projects both as Brown's (its older versions followed the second the other way), but for products of terms. */
 const REALSENSE = /^(modified|inverse)[_ ]?brown[_ ]?conrady$/;
 /** Longer focal lengths, in pixels, are no camera. */

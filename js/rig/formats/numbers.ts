@@ -31,10 +31,11 @@ function listOf(value: unknown): Numbers | undefined {
   return numbers.every((number) => number !== undefined) ? numbers : undefined;
 }
 
-/** A list of numbers, of lists of numbers, or OpenCV's and ROS's { rows, cols, data }. */
+/** A list of numbers, of lists of numbers, or { rows, cols, data } of OpenCV and ROS, or of OpenCalib, whose data are rows. */
 export function matrixOf(value: unknown): Matrix | undefined {
   if (isNode(value)) {
-    const values = listOf(value.data);
+    const nested = Array.isArray(value.data) && value.data.every(Array.isArray);
+    const values = listOf(nested && Array.isArray(value.data) ? value.data.flat() : value.data);
     const [rows, columns] = [numberOf(value.rows), numberOf(value.cols)];
     if (values === undefined || rows === undefined || columns === undefined || rows * columns !== values.length)
       return undefined;
