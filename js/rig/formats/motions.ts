@@ -93,6 +93,8 @@ export class Motions {
   /** Whose rotations may stand column by column: nothing says which. */
   readonly #open = new Map<NamedPose, string>();
   readonly #unused: string[] = [];
+  /** Poses that a format defines as those in a world. */
+  readonly #defined = new Set<NamedPose>();
   readonly #signs: Signs;
   readonly #warnings: ReaderWarning[];
 
@@ -240,7 +242,10 @@ export class Motions {
       context.unit === undefined
         ? values
         : values.map((value, index) => (index % 4 === 3 && index < 12 ? value * (context.unit ?? 1) : value));
-    this.#add(motionOfMatrix(metres, names, this.#warnings, context.unit === undefined && !isOfWorld(names)));
+    const found = this.#add(
+      motionOfMatrix(metres, names, this.#warnings, context.unit === undefined && !isOfWorld(names)),
+    );
+    if (isOpen3D) this.#defined.add(found);
     return true;
   }
 
@@ -271,7 +276,7 @@ export class Motions {
         orderWarning(pose.name ?? `${pose.from ?? ""} to ${pose.to ?? ""}`.trim(), order === "columns"),
       );
     for (const pose of this.poses) this.#nameExtrinsic(pose);
-    const ofWorld = this.poses.filter(isOfWorld);
+    const ofWorld = this.poses.filter((pose) => isOfWorld(pose) && !this.#defined.has(pose));
     const [first] = ofWorld;
     if (first !== undefined)
       this.#warnings.push(
