@@ -129,7 +129,15 @@ function lensOf(
     );
   else if (!BROWN.test(model))
     throw badFile(`its lens model "${written.slice(0, 40)}" is not known here; Brown's and Kannala-Brandt's are`);
-  return withBrown(brown(values));
+  return withBrown(brown(values.length === 3 ? radial(values, label, warnings) : values));
+}
+
+/** Three coefficients are the radial ones: tangential ones come in pairs. */
+function radial([k1 = 0, k2 = 0, k3 = 0]: Numbers, label: string, warnings: ReaderWarning[]): Numbers {
+  warnings.push(
+    warning("distortion-guessed", `${label} has three coefficients of distortion, which were read as k1 k2 k3.`),
+  );
+  return [k1, k2, 0, 0, k3];
 }
 
 const withBrown = (distortion: Numbers | undefined): Lens => (distortion === undefined ? {} : { distortion });

@@ -40,7 +40,10 @@ export function grouped(node: Node, keys: string[]): Map<string, Node> {
 /** Numbers under "rot0" to "rot8" as one list "rot", beside the members themselves. */
 export function withLists(node: Node): Node {
   const lists = new Map<string, Map<number, number>>();
-  for (const key of Object.keys(node)) {
+  const keys = Object.keys(node);
+  const starts = keys.flatMap((key) => /^(\w{1,30}_)fx$/i.exec(key)?.[1] ?? []);
+  for (const key of keys) {
+    if (starts.some((start) => key.startsWith(start))) continue;
     const [, stem = "", digits] = /^([A-Za-z_]{1,30}?)_?(\d{1,2})$/.exec(key) ?? [];
     const value = digits === undefined ? undefined : numberOf(node[key]);
     if (value === undefined) continue;

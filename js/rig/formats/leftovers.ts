@@ -183,7 +183,8 @@ export class Leftovers {
           size,
           cameras.filter(({ place }) => isBelow(place, size.place)),
         );
-    const distinct = [...new Map(this.#sizes.map((size) => [`${size.width}x${size.height}`, size])).values()];
+    const others = this.#sizes.filter((size) => cameras.every(({ place }) => place.node !== size.place.node));
+    const distinct = [...new Map(others.map((size) => [`${size.width}x${size.height}`, size])).values()];
     const [only] = distinct;
     if (cameras.length === 1 && distinct.length === 1 && only !== undefined) give(only, cameras);
     if (!cameras.some(isBare) || distinct.length === 0) return;

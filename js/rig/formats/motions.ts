@@ -209,7 +209,11 @@ export class Motions {
       const rotation = ofFour(values, { ...said, ...(order !== undefined && { order }) }, key, this.#warnings);
       return { rotation, isByColumns: false };
     }
-    if (kind === "three") return { rotation: ofThree(values, said, key, this.#warnings), isByColumns: false };
+    if (kind === "three") {
+      // OpenCV's matrices of three numbers are those of Rodrigues.
+      const as: Attributes = isMatrix ? { ...said, kind: said.kind ?? "vector" } : said;
+      return { rotation: ofThree(values, as, key, this.#warnings), isByColumns: false };
+    }
     // A message of realsense-ros has these two members and no name around them.
     const isMessage = parent === "" && rows === undefined;
     const layout = { rows, isMatrix, isNamedAsRealSense, isRealSense: this.#signs.isRealSense };
@@ -271,10 +275,7 @@ export class Motions {
   /** What only the whole file tells: rotations by their inverses, frames by what else it names, and the warnings. */
   finish(): void {
     for (const pose of this.#open.keys()) this.#checkOrder(pose);
-    for (const [pose, order] of this.#open)
-      this.#warnings.push(
-        orderWarning(pose.name ?? `${pose.from ?? ""} to ${pose.to ?? ""}`.trim(), order === "columns"),
-      );
+    for (const [pose, order] of this.#open) this.#warnings.push(orderWarning(pose.name ?? "", order === "columns"));
     for (const pose of this.poses) this.#nameExtrinsic(pose);
     const ofWorld = this.poses.filter((pose) => isOfWorld(pose) && !this.#defined.has(pose));
     const [first] = ofWorld;

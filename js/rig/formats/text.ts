@@ -73,7 +73,9 @@ function searched(value: unknown, format: string, text: string): Read {
 /** Each row of a table by its number; rows with times or pictures are where the camera stood. */
 function ofTable({ rows, isSeries }: { rows: Node[]; isSeries: boolean }, text: string): Read {
   const named = Object.fromEntries(rows.map((row, at) => [isSeries ? `pose ${at + 1}` : `row ${at + 1}`, row]));
-  return searched(named, isSeries ? "a table of poses" : "a table", text);
+  const found = searched(named, isSeries ? "a table of poses" : "a table", text);
+  // What is guessed of one row is guessed of all.
+  return { ...found, warnings: [...new Map([...found.warnings].reverse().map((each) => [each.code, each])).values()] };
 }
 
 /** Numbers with labels, where there are any. */

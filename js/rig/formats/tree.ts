@@ -13,6 +13,7 @@ import { type FoundCamera, Leftovers, type Place, coefficientsOf } from "./lefto
 import { type Context, Motions, contextOf, signsOf } from "./motions.js";
 import { isIntrinsics, labelled, lensNames, member, wordsOf } from "./names.js";
 import { type Matrix, type Node, type Numbers, isNode, matrixOf, numberOf, transposed } from "./numbers.js";
+import { orbbecContext } from "./orbbec.js";
 import { chained, inverseOf } from "./poses.js";
 
 export interface Calibration {
@@ -95,7 +96,7 @@ class Search {
     for (const each of keys) {
       if (matrixOf(node[each]) !== undefined) continue;
       const ofWorld = /^(?:camera_?)?pose$/i.test(each) && inner.from === undefined && inner.to === undefined;
-      const around = ofWorld ? { ...inner, from: "camera", to: "world" } : inner;
+      const around = ofWorld ? { ...inner, from: "camera", to: "world" } : { ...inner, ...orbbecContext(node, each) };
       this.walk(node[each], each, nameOf(each, name), around, place);
     }
   }
@@ -110,7 +111,7 @@ class Search {
     // OpenCV's stereo calibration: R and T carry points of camera 1 into camera 2. Of other names the order says nothing.
     const stereo = first === "1" && second === "2" && more.length === 0 ? { from: "1", to: "2" } : {};
     const inner = contextOf(node, { ...context, ...(framesOf(node) ?? stereo) });
-    this.motions.read(node, name, inner, first !== undefined && second === undefined && first !== "1");
+    this.motions.read(node, name, inner, this.#found.length > before);
     return inner;
   }
 
