@@ -11,7 +11,7 @@ export type PoseNames = Omit<NamedPose, "pose">;
 
 /** Names of where a camera stood in the world: ARKit, Blender, NeRF, trajectories. */
 const OF_WORLD =
-  /\b(?:(?:camera|cam|c|local|object|view) ?(?:to|2) ?(?:world|w)|poses?|matrix world|camera transform)\b/;
+  /\b(?:(?:camera|cam|c|local|object|view) ?(?:to|2) ?(?:world|w)|poses?|matrix world|location|camera transform)\b/;
 /** Names of the motion back. */
 const TO_CAMERA = /\b(?:(?:world|w) ?(?:to|2) ?(?:camera|cam|c|view)|view matrix|world view(?: transform)?)\b/;
 

@@ -53,7 +53,9 @@ export function withLists(node: Node): Node {
   const whole: Record<string, Numbers> = {};
   for (const [stem, list] of lists) {
     const values = Array.from({ length: list.size }, (_, at) => list.get(at));
-    const isWhole = LENGTHS.has(list.size) && values.every((value) => value !== undefined);
+    // A lens may have one coefficient alone.
+    const isLength = LENGTHS.has(list.size) || stem === "d";
+    const isWhole = isLength && values.every((value) => value !== undefined);
     if (isWhole && !Object.hasOwn(node, stem)) whole[stem] = values as Numbers;
   }
   return Object.keys(whole).length === 0 ? node : { ...node, ...whole };

@@ -53,13 +53,22 @@ export function coefficientsOf(node: Node, model: string | undefined): Numbers |
 
 const textOf = (value: unknown): string | undefined => (typeof value === "string" && value !== "" ? value : undefined);
 
+/** Radial and tangential coefficients in lists of their own. */
+function radialOf(node: Node): Numbers | undefined {
+  const radial = matrixOf(member(node, "radial", "radialdistortion"))?.values;
+  if (radial === undefined || radial.length > 6) return undefined;
+  const [k1 = 0, k2 = 0, ...more] = radial;
+  const [p1 = 0, p2 = 0] = matrixOf(member(node, "tangential", "tangentialdistortion"))?.values ?? [];
+  return [k1, k2, p1, p2, ...more];
+}
+
 /** The coefficients of a lens and its model, where a value is one. */
 function lensOf(value: unknown): Pick<Lens, "distortion" | "model"> | undefined {
   const listed = matrixOf(value)?.values;
   if (listed !== undefined) return listed.length > 1 ? { distortion: listed, model: undefined } : undefined;
   if (!isNode(value)) return undefined;
   const model = textOf(member(value, "model", "type", "distortionmodel", "name"));
-  const distortion = coefficientsOf(value, model) ?? matrixOf(member(value, ...LISTS))?.values;
+  const distortion = coefficientsOf(value, model) ?? radialOf(value) ?? matrixOf(member(value, ...LISTS))?.values;
   return distortion && { distortion, model };
 }
 
@@ -80,9 +89,16 @@ function sizesOf(node: Node, place: Place): Size[] {
   const byWords = new Map(keys.map((key) => [wordsOf(key).join(" "), key]));
   const found: Size[] = [];
   for (const [words, key] of byWords) {
-    const both = /\b(?:resolution|size|dimensions?|shape)\b/.test(words) ? sides(node[key]) : undefined;
+    const both = /\b(?:resolution|size|dimensions?)\b/.test(words) ? sides(node[key]) : undefined;
     const label = words.replace(/\b(?:image|img|resolution|size|dimensions?)\b/g, "").trim();
     if (both !== undefined) found.push({ key, label, place, width: both[0] ?? 0, height: both[1] ?? 0 });
+    const each = /\b(?:resolution|size|dimensions?)s?\b/.test(words) ? node[key] : undefined;
+    if (both === undefined && isNode(each))
+      for (const [name, value] of Object.entries(each)) {
+        const [width, height] = sides(value) ?? [];
+        if (width !== undefined && height !== undefined)
+          found.push({ key: `${key}.${name}`, label: wordsOf(name).join(" "), place, width, height });
+      }
     const wide = WIDTH.exec(words);
     if (wide === null) continue;
     const other = words.replace(/\b(width|w|cols|x)\b(?!.*\b(?:width|w|cols|x)\b)/, (side) => HEIGHTS[side] ?? side);
@@ -186,7 +202,8 @@ export class Leftovers {
     const others = this.#sizes.filter((size) => cameras.every(({ place }) => place.node !== size.place.node));
     const distinct = [...new Map(others.map((size) => [`${size.width}x${size.height}`, size])).values()];
     const [only] = distinct;
-    if (cameras.length === 1 && distinct.length === 1 && only !== undefined) give(only, cameras);
+    const isOfAll = cameras.length === 1 || others.length === cameras.length;
+    if (isOfAll && distinct.length === 1 && only !== undefined) give(only, cameras);
     if (!cameras.some(isBare) || distinct.length === 0) return;
     const sizes = distinct.slice(0, 4).map(({ key, width, height }) => `"${key}" (${width}x${height})`);
     warnings.push(

@@ -1,6 +1,6 @@
 /** The motions that are members of one object: rotations beside translations, matrices, and what looks like one and is not read. */
 import { badFile } from "../../errors.js";
-import type { NamedPose } from "../types.js";
+import type { NamedCamera, NamedPose } from "../types.js";
 import { type ReaderWarning, warning } from "../warnings.js";
 import { type Frames, type PoseNames, isOfWorld, named, worldFrames } from "./ends.js";
 import {
@@ -33,6 +33,7 @@ export interface Signs {
   order: "wxyz" | "xyzw" | undefined;
   hasImu: boolean;
   hasLidar: boolean;
+  isARKit: boolean;
 }
 export function signsOf(text: string): Signs {
   const first = /\bw[ ,]+x[ ,]+y[ ,]+z\b|wxyz/i.test(text);
@@ -41,6 +42,9 @@ export function signsOf(text: string): Signs {
     isRealSense: /realsense|\bppx\b|brown[ _]conrady|"coeffs"/i.test(text),
     order: first === last ? undefined : first ? "wxyz" : "xyzw",
     hasImu: /imu/i.test(text),
+    isARKit: /trackingState|\bAR(?:Kit|Frame|Camera)|cameraPoseARFrame|worldMappingStatus|"columns"\s*:\s*\[/i.test(
+      text,
+    ),
     hasLidar: /lid(?:ar)?_|lidar|livox|velodyne/i.test(text),
   };
 }
@@ -116,8 +120,9 @@ export class Motions {
       if (this.#matrix(node, key, parent, context)) used.add(key);
     }
     this.#members(node, parent, context);
+    const rectifies = isCamera || Object.keys(node).some((key) => isNoMotion(key) !== undefined);
     for (const key of Object.keys(node))
-      if (!used.has(key) && isPoseLike(key, node[key], isCamera)) this.#unused.push(key);
+      if (!used.has(key) && isPoseLike(key, node[key], rectifies)) this.#unused.push(key);
   }
 
   #add(found: NamedPose): NamedPose {
@@ -174,11 +179,16 @@ export class Motions {
     if (/^p/i.test(other.key) && t.values.length !== 3) return false;
     if (t.values.length !== 3) throw badFile(`its ${other.key} has ${t.values.length} numbers, not three`);
     const own = named(name.label.replace(/ /g, "_"), {});
-    const names = own.from === undefined ? named(name.label === "" ? parent : name.label, context) : own;
+    const around = context.from === undefined ? { ...context, ...worldFrames(other.key) } : context;
+    const names = own.from === undefined ? named(name.label === "" ? parent : name.label, around) : own;
     const isNamedAsRealSense = key === "rotation" && other.key === "translation";
     const angle = name.angle ?? context.angle;
     const said: Attributes = { ...name, ...r.said, ...(angle !== undefined && { angle }) };
-    const { rotation, isOrderOpen, isByColumns } = this.#turn(r, said, key, isNamedAsRealSense, parent);
+    const { rotation, isOrderOpen, isByColumns } = this.#turn(r, said, key, {
+      isNamedAsRealSense,
+      parent,
+      isOfWorld: isOfWorld(names),
+    });
     const unit = other.unit ?? name.unit ?? context.unit;
     const found = this.#add(this.#motion(rotation, t.values, names, unit));
     if (isOrderOpen) this.#open.set(found, isByColumns ? "columns" : "rows");
@@ -200,19 +210,21 @@ export class Motions {
     { values, rows, isMatrix }: Matrix & { isMatrix: boolean },
     said: Attributes,
     key: string,
-    isNamedAsRealSense: boolean,
-    parent: string,
+    around: { isNamedAsRealSense: boolean; parent: string; isOfWorld: boolean },
   ): { rotation: Numbers; isOrderOpen?: boolean; isByColumns: boolean } {
+    const { isNamedAsRealSense, parent } = around;
+    // Nobody checks where a camera stood.
+    const warnings = around.isOfWorld ? [] : this.#warnings;
     const kind = numbersAsRotation(values, key);
     if (kind === "quaternion") {
       const order = said.order ?? this.#signs.order;
-      const rotation = ofFour(values, { ...said, ...(order !== undefined && { order }) }, key, this.#warnings);
+      const rotation = ofFour(values, { ...said, ...(order !== undefined && { order }) }, key, warnings);
       return { rotation, isByColumns: false };
     }
     if (kind === "three") {
       // OpenCV's matrices of three numbers are those of Rodrigues.
       const as: Attributes = isMatrix ? { ...said, kind: said.kind ?? "vector" } : said;
-      return { rotation: ofThree(values, as, key, this.#warnings), isByColumns: false };
+      return { rotation: ofThree(values, as, key, warnings), isByColumns: false };
     }
     // A message of realsense-ros has these two members and no name around them.
     const isMessage = parent === "" && rows === undefined;
@@ -273,10 +285,13 @@ export class Motions {
   }
 
   /** What only the whole file tells: rotations by their inverses, frames by what else it names, and the warnings. */
-  finish(): void {
+  finish(cameras: readonly NamedCamera[]): void {
+    this.#dropReference(cameras);
     for (const pose of this.#open.keys()) this.#checkOrder(pose);
     for (const [pose, order] of this.#open) this.#warnings.push(orderWarning(pose.name ?? "", order === "columns"));
     for (const pose of this.poses) this.#nameExtrinsic(pose);
+    // ARKit's transforms are those of the camera in its world.
+    if (this.#signs.isARKit) this.placeInWorld(0);
     const ofWorld = this.poses.filter((pose) => isOfWorld(pose) && !this.#defined.has(pose));
     const [first] = ofWorld;
     if (first !== undefined)
@@ -289,6 +304,25 @@ export class Motions {
       );
     for (const key of [...new Set(this.#unused)].slice(0, FEW))
       this.#warnings.push(warning("pose-left-out", `"${key}" looks like a pose and was not used.`, { name: key }));
+  }
+
+  /** Poses from this one on that say no frames are where a camera stood. */
+  placeInWorld(first: number): void {
+    for (const pose of this.poses.slice(first))
+      if (pose.from === undefined && pose.to === undefined) Object.assign(pose, { from: "camera", to: "world" });
+  }
+
+  /** The identity under a camera's name says that all others are related to this one: it relates no two cameras. */
+  #dropReference(cameras: readonly NamedCamera[]): void {
+    const isReference = ({ name, from, to, pose }: NamedPose) =>
+      from === undefined &&
+      to === undefined &&
+      cameras.some((camera) => camera.name === name && name !== undefined) &&
+      degreesOf(pose.rotation) === 0 &&
+      pose.translation.every((value) => value === 0);
+    const kept = this.poses.filter((pose) => !isReference(pose));
+    for (const { name = "" } of this.poses.filter(isReference)) this.#unused.push(name);
+    if (cameras.length > 1) this.poses.splice(0, this.poses.length, ...kept);
   }
 
   /** Where the way back is in the file, too, the two have to be inverse: rows or columns then follow. */
@@ -325,16 +359,19 @@ function kalibr(key: string, parent: string): PoseNames | undefined {
 }
 
 /** Whether a member that was not read looks like a pose. */
-function isPoseLike(key: string, value: unknown, isCamera: boolean): boolean {
+function isPoseLike(key: string, value: unknown, rectifies: boolean): boolean {
   const words = wordsOf(key).join(" ");
-  if (SERIES.test(words)) return Array.isArray(value) && value.length > 0;
+  const isMatrix = (each: unknown) => [12, 16].includes(matrixOf(each)?.values.length ?? 0);
+  if (SERIES.test(words)) return Array.isArray(value) && value.length > 0 && !value.every(isMatrix);
   if (/rect|essential|fundamental|homography/.test(words) || isNoMotion(key) !== undefined) return false;
   const values = matrixOf(value)?.values;
   if (values === undefined) return false;
   if (values.length === 16 || values.length === 12) return isRotation(block(values));
-  // A camera's R rectifies.
+  // A camera's R rectifies, and so does the identity under any name.
+  const isIdentity = values.length === 9 && values.every((each, index) => each === (index % 4 === 0 ? 1 : 0));
+  if (rectifies && isIdentity) return false;
   if (rotationName(key) !== undefined && !/^[qr]\d*$/i.test(key))
     return values.length === 9 ? isRotation(values) : values.length === 4 || values.length === 3;
-  if (rotationName(key) !== undefined) return !isCamera && values.length === 9 && isRotation(values);
+  if (rotationName(key) !== undefined) return !rectifies && values.length === 9 && isRotation(values);
   return values.length === 3 && isTranslation(key) && !/^[pt]\d*$/i.test(key);
 }

@@ -20,6 +20,7 @@ const INTRINSICS = [
   ["projection", "parameters"],
   ["camera", "intrinsics"],
   ["camera", "intrinsic"],
+  ["cam", "matrix"],
   ["cameramatrix"],
   ["intrinsics"],
   ["intrinsic"],
@@ -60,6 +61,7 @@ const ROTATION = [
   ["rvec"],
   ["rotvec"],
   ["rodrigues"],
+  ["heading"],
   ["r"],
   ["q"],
 ];
@@ -71,6 +73,8 @@ const TRANSLATION = [
   ["tvec"],
   ["t"],
   ["pos"],
+  ["xyz"],
+  ["location"],
   ["p"],
 ];
 /** Matrices of 3x4 and 4x4 that are no motions: projections, and disparity to depth. */
@@ -177,15 +181,20 @@ export interface MotionName extends Attributes {
 }
 
 /** Frames by one letter each, as robotics papers name them: "Rcl" turns points of the LiDAR into the camera. */
-const LETTERED = /^([RrTtPp])_?([a-z])_?([a-z])$/;
+const LETTERED = /^([RrTtPp])_?(?:([a-z])_?([a-z])|([A-Z])_?([A-Z]))$/;
+/** .. and by capitals, as OKVIS and EuRoC write them. */
+const CAPITALS: Record<string, string> = {
+  ...{ B: "body", S: "sensor", C: "camera" },
+  ...{ W: "world", G: "world", L: "lidar", I: "imu" },
+};
 const LETTERS: Record<string, string> = {
   ...{ c: "camera", l: "lidar", i: "imu", b: "body", w: "world", v: "vehicle", d: "depth", e: "ego", r: "radar" },
 };
 
 /** The frames of "Rcl", "T_ic" and the like. */
 export function letteredFrames(name: string): { from: string; to: string } | undefined {
-  const [, , to = "", from = ""] = LETTERED.exec(name) ?? [];
-  const [target, source] = [LETTERS[to], LETTERS[from]];
+  const [, , to = "", from = "", above = "", below = ""] = LETTERED.exec(name) ?? [];
+  const [target, source] = [LETTERS[to] ?? CAPITALS[above], LETTERS[from] ?? CAPITALS[below]];
   return target !== undefined && source !== undefined && target !== source ? { from: source, to: target } : undefined;
 }
 
@@ -203,6 +212,10 @@ function motionName(name: string, phrases: string[][], letters: string): MotionN
   if (words.join(" ").includes("rotation vector")) said.kind ??= "vector";
   if (words.includes("qvec")) said.order ??= "wxyz";
   const rest = words.filter((word) => !isSaid(word));
+  if (phrases !== ROTATION && rest.length > 1 && rest.at(-1) === "m") {
+    rest.pop();
+    said.unit ??= 1;
+  }
   const label = without(rest, phrases);
   if (label !== undefined) return { label, ...said };
   // "euler_deg" and "rpy" name a rotation without any other word.

@@ -10,6 +10,8 @@ import { plainPython } from "./settings.js";
 const MOST_LINES = 5000;
 const MOST_NUMBERS = 20_000;
 const LONGEST_NAME = 80;
+/** Lines of a script that assign nothing. */
+const CODE = /^\s*(?:import|from|def|class|print|return|if|for|while|with|using|#include|clear|close all|clc)\b/;
 const TOKEN = /[^\s,;[\](){}=:"']+|[,;=:]/g;
 
 /** Tokens of a line, without comments; Python and MATLAB end theirs differently. */
@@ -26,6 +28,7 @@ class Notes {
   #count = 0;
 
   line(text: string): boolean {
+    if (CODE.test(text)) return true;
     const section = /^\s*\[\s*([A-Za-z_][^\]\d,]{0,80})\]\s*$/.exec(text)?.[1];
     if (section !== undefined) {
       this.#close();
@@ -87,7 +90,8 @@ class Notes {
   #begin(name: string): void {
     this.#group = {};
     this.#heading = undefined;
-    this.#put(this.root, name, this.#group);
+    const isNew = !Object.hasOwn(this.root, name);
+    this.#put(this.root, isNew ? name : `${name} ${Object.keys(this.root).length}`, this.#group);
   }
 
   #close(): void {

@@ -9,7 +9,7 @@ import type { Node } from "./numbers.js";
 import { readNumbers } from "./plain.js";
 import { isEnumeration, readEnumeration } from "./realsense.js";
 import { isEcho, isPublisher, readEcho, readPublishers } from "./ros.js";
-import { MOST_SETTINGS, isSectioned, readJson, readSections } from "./settings.js";
+import { MOST_SETTINGS, isSectioned, plainPython, readJson, readSections } from "./settings.js";
 import { type Calibration, searchTree } from "./tree.js";
 import { plainXml, readXml } from "./xml.js";
 
@@ -120,7 +120,7 @@ export async function readText(text: string): Promise<Read> {
 
 /** Numbers alone, tables, and the languages of settings. */
 async function ofWords(text: string): Promise<Read> {
-  const numbers = readNumbers(text);
+  const numbers = readNumbers(text) ?? (text.length < MOST_SETTINGS ? readNumbers(plainPython(text)) : undefined);
   if (numbers !== undefined) return numbers;
   const table = readColumns(text);
   if (table !== undefined) return ofTable(table, text);

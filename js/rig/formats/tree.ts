@@ -45,6 +45,11 @@ function intrinsics(matrix: Matrix | undefined): Numbers | undefined {
   return isTriangle(turned) ? turned : undefined;
 }
 
+/** A "lens" is a model by one of these names, and else what its maker calls it. */
+const MODEL =
+  /brown|rad|fish|equi|kannala|pinhole|opencv|plumb|division|fov|omni|thin|tilt|standard|ftheta|perspective/i;
+/** So many poses in a list are a trajectory, and no rig. */
+const SERIES = 3;
 /** Names of a focal length and of a principal point along the rows and along the columns, by who writes them. */
 const FX = ["fx", "flx", "focalx", "focallengthx"];
 const FY = ["fy", "fly", "focaly", "focallengthy"];
@@ -55,7 +60,7 @@ const SQUARE = 0.2;
 /** .. and longer than this, pixels: shorter ones are normalised, or none. */
 const SHORTEST = 10;
 /** Cameras that are rendered or undistorted from another. */
-const DERIVED = /^(?:new|optimal|rectified|undistorted)$/;
+const DERIVED = /^(?:new|optimal|rectified|undistorted|original)$/;
 
 class Search {
   readonly cameras: NamedCamera[] = [];
@@ -80,12 +85,7 @@ class Search {
     if (depth > MOST_DEPTH) throw badFile(`it is nested deeper than ${MOST_DEPTH}`);
     if (this.#found.length + this.motions.poses.length > MOST_FOUND)
       throw badFile(`it holds more than ${MOST_FOUND} cameras and poses`);
-    if (Array.isArray(value)) {
-      if (typeof value[0] !== "object") return;
-      const place = { node: {}, parent, depth };
-      for (const each of value) this.walk(each, key, name, context, place);
-      return;
-    }
+    if (Array.isArray(value)) return this.#list(value, key, name, context, { node: {}, parent, depth });
     const keys = Object.keys(value);
     this.#members += keys.length;
     if (this.#members > MOST_MEMBERS) throw badFile(`its objects have more than ${MOST_MEMBERS} members`);
@@ -99,6 +99,20 @@ class Search {
       const around = ofWorld ? { ...inner, from: "camera", to: "world" } : { ...inner, ...orbbecContext(node, each) };
       this.walk(node[each], each, nameOf(each, name), around, place);
     }
+  }
+
+  /** A list of cameras or of poses. Many poses without names of their own, and without cameras, are a trajectory. */
+  #list(values: unknown[], key: string, name: string, context: Context, place: Place): void {
+    if (typeof values[0] !== "object") return;
+    const [cameras, poses] = [this.#found.length, this.motions.poses.length];
+    for (const each of values) {
+      const matrix = matrixOf(each);
+      if (matrix?.values.length === 16 || matrix?.values.length === 12)
+        this.motions.read({ [key]: each }, name, context, false);
+      else this.walk(each, key, name, context, place);
+    }
+    const isSeries = values.length >= SERIES && this.#found.length === cameras;
+    if (isSeries) this.motions.placeInWorld(poses);
   }
 
   /** The cameras and motions that are members of this object, and what it says of those below it. */
@@ -119,7 +133,7 @@ class Search {
   #cameraOf(place: Place, key: string, parent: string): Set<string> {
     const { node } = place;
     const used = new Set<string>();
-    const name = textOf(member(node, "cameraname")) ?? (parent === "" ? undefined : parent);
+    const name = textOf(member(node, "cameraname", "camname")) ?? (parent === "" ? undefined : parent);
     const label = isIntrinsics(key) ?? wordsOf(key).join(" ");
     const add = (raw: RawCamera, own = label) => {
       this.#found.push({ raw, label: own, place });
@@ -151,8 +165,11 @@ class Search {
     const lens = labelled(node, lensNames, label);
     const written = lens?.value ?? member(node, "distk1k2p1p2k3");
     const isFisheye = numberOf(member(node, "fisheyemodel")) === 1 || member(node, "fisheye") === true;
+    const lensName = textOf(member(node, "lens"));
     const own =
-      textOf(member(node, "distortionmodel", "distortiontype", "lensmodel", "lens")) ?? textOf(member(node, "model"));
+      textOf(member(node, "distortionmodel", "distortiontype", "lensmodel")) ??
+      (MODEL.test(lensName ?? "") ? lensName : undefined) ??
+      textOf(member(node, "model"));
     const model = isFisheye ? "fisheye" : (own ?? textOf(member(node, "cameramodel", "cammodel")));
     const listed = isNode(written) && written.data === undefined ? undefined : matrixOf(written)?.values;
     const size = sizeOf(node, label);
@@ -170,7 +187,7 @@ class Search {
   finish(): void {
     this.#leftovers.assign(this.#found, this.warnings);
     for (const { raw } of this.#found) this.cameras.push(cameraOf(raw, this.warnings));
-    this.motions.finish();
+    this.motions.finish(this.cameras);
     chain(this.motions.poses);
   }
 }
@@ -295,7 +312,8 @@ function sizeOf(node: Node, label: string): { width?: number; height?: number } 
   if (both?.length === 2) return { width: both[0] ?? 0, height: both[1] ?? 0 };
   const side = (...names: string[]) =>
     numberOf(member(node, ...names.flatMap((name) => (label === "" ? [name] : [`${name}${label}`, name]))));
-  const [width, height] = [side("imagewidth", "width"), side("imageheight", "height")];
+  const width = side("imagewidth", "width", "resolutionx", "imgdistw", "w");
+  const height = side("imageheight", "height", "resolutiony", "imgdisth", "h");
   return { ...(width !== undefined && { width }), ...(height !== undefined && { height }) };
 }
 

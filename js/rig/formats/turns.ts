@@ -43,7 +43,7 @@ export function ofFour(values: Numbers, { order }: Attributes, name: string, war
     warnings.push(
       warning(
         "quaternion-order",
-        `The quaternion "${name}" was read as w x y z: so the two turn by ${degreesOf(first).toFixed(1)} degrees, as x y z w by ${degreesOf(last).toFixed(1)}. Name it quaternion_wxyz or quaternion_xyzw to say its order.`,
+        `The quaternion "${name}" was read as w x y z, which turns by ${degreesOf(first).toFixed(1)} degrees; as x y z w it would turn by ${degreesOf(last).toFixed(1)}. Name it quaternion_wxyz or quaternion_xyzw to say its order.`,
         { order: "wxyz" },
       ),
     );
