@@ -52,7 +52,8 @@ const KINDS: Record<string, Kind> = {
 /** What to do about types that are not read. */
 function refusal(type: string): string {
   const advice = "save it as float32 or uint16";
-  if (/^[<>|=]?O/.test(type)) return `a .npy file of type "${type}" holds Python objects (a pickle), which may run code; ${advice}`;
+  if (/^[<>|=]?O/.test(type))
+    return `a .npy file of type "${type}" holds Python objects (a pickle), which may run code; ${advice}`;
   if (type.startsWith("["))
     return `this .npy file is a structured array (${type.slice(0, 80)}); save the field that holds the depth, as float32 or uint16`;
   return `a .npy file of type "${type}" is not read here; ${advice}`;
@@ -134,7 +135,11 @@ export function readNpy(bytes: Uint8Array): Raster<Pixels> & { type: string } {
   if (until > bytes.length) throw bad("this .npy file is cut off in its header");
   const header = new TextDecoder("latin1").decode(bytes.subarray(from, until));
 
-  const type = /'descr': (?:'([^']*)'|(\[.*?\]))/s.exec(header)?.slice(1).find((each) => each !== undefined) ?? "unknown";
+  const type =
+    /'descr': (?:'([^']*)'|(\[.*?\]))/s
+      .exec(header)
+      ?.slice(1)
+      .find((each) => each !== undefined) ?? "unknown";
   const [, order = "", name = ""] = /^([<>|=]?)([fiub]\d)$/.exec(type) ?? [];
   const kind = Object.hasOwn(KINDS, name) ? KINDS[name] : undefined;
   if (kind === undefined) throw bad(refusal(type));
@@ -149,7 +154,13 @@ export function readNpy(bytes: Uint8Array): Raster<Pixels> & { type: string } {
   if (order === ">" && kind.size > 1) swap(body, kind.size);
   const data = kind.read(body.buffer, count);
   if (!isChannelFirst)
-    return { width, height, channels, type: name, data: columns === "True" ? inRows(data, height, width, channels) : data };
+    return {
+      width,
+      height,
+      channels,
+      type: name,
+      data: columns === "True" ? inRows(data, height, width, channels) : data,
+    };
   const inOrder = columns === "True" ? inRows(data, channels, height, width) : data;
   return { width, height, channels, type: name, data: channelsLast(inOrder, channels) };
 }

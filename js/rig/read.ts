@@ -49,6 +49,8 @@ const PICTURES: Record<
 
 /** Whether it is a file of pixels or points, and no text of cameras and poses. */
 export const isRasterFile = (bytes: Uint8Array): boolean => rasterKind(bytes) !== undefined;
+/** Whether it is a text, of whatever. */
+export const isTextFile = (bytes: Uint8Array): boolean => textOf(bytes) !== undefined;
 
 function ofPicture(name: string, picture: Picture, options: ReadOptions): Content {
   const kind = options.as ?? kindOfPicture(name, picture);

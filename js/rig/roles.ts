@@ -28,12 +28,16 @@ const SPECIAL: [Role, RegExp][] = [
   ["normals", whole("normals?|normal ?maps?")],
   [
     "rendering",
-    whole("vis|viz|visuals?|visuali[sz]ations?|colou?red|colou?ri[sz]ed|colou?r ?maps?|overlays?|previews?|thumbs?|thumbnails?|debug|heat ?maps?"),
+    whole(
+      "vis|viz|visuals?|visuali[sz]ations?|colou?red|colou?ri[sz]ed|colou?r ?maps?|overlays?|previews?|thumbs?|thumbnails?|debug|heat ?maps?",
+    ),
   ],
   ["disparity", whole("disps?|disparity|disparities|disparity ?maps?")],
   [
     "infrared",
-    whole("ir|irs|nir|infra|infrared|infrareds|amplitudes?|intensity|intensities|reflectance|reflectivity|active ?brightness"),
+    whole(
+      "ir|irs|nir|infra|infrared|infrareds|amplitudes?|intensity|intensities|reflectance|reflectivity|active ?brightness",
+    ),
   ],
 ];
 /** Colours that were carried into the depth camera's view keep the word "depth" in their name. */

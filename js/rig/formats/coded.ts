@@ -67,7 +67,10 @@ export function decoded(picture: Picture): Picture | undefined {
   const { width, height, channels, data } = picture;
   const values = new Float32Array(width * height);
   for (let pixel = 0; pixel < values.length; pixel++)
-    values[pixel] = code.order.reduce((sum, channel, byte) => sum + (data[pixel * channels + channel] ?? 0) * 256 ** byte, 0);
+    values[pixel] = code.order.reduce(
+      (sum, channel, byte) => sum + (data[pixel * channels + channel] ?? 0) * 256 ** byte,
+      0,
+    );
   // CARLA's depths below 3.9 m leave the highest byte empty, and are no millimetres.
   const is24 = code.order.length === 3 || (code.order[0] === 0 && median(values) > USUAL);
   const warnings: ReaderWarning[] = [
@@ -78,7 +81,12 @@ export function decoded(picture: Picture): Picture | undefined {
       { unit: is24 ? CARLA : 0.001 },
     ),
   ];
-  const rest = { format: picture.format, bits: is24 ? 24 : 16, notes: [...picture.notes, "coded in colours"], warnings };
+  const rest = {
+    format: picture.format,
+    bits: is24 ? 24 : 16,
+    notes: [...picture.notes, "coded in colours"],
+    warnings,
+  };
   if (!is24) return { width, height, channels: 1, data: Uint16Array.from(values), unit: 0.001, ...rest };
   // The farthest there is means that nothing was hit.
   const sky = 2 ** 24 - 1;

@@ -4,7 +4,8 @@ import { type BimodalError, badFile } from "../../errors.js";
 type Row = [pattern: RegExp, advice: string, isPicture?: true];
 
 const EXPORT = "export its frames as colour images, 16-bit depth images and a file of the cameras";
-const CLOUD = "points of a LiDAR or scanner in no rows and columns (unorganised); project them into a depth map, or save them as an organised PLY or PCD";
+const CLOUD =
+  "points of a LiDAR or scanner in no rows and columns (unorganised); project them into a depth map, or save them as an organised PLY or PCD";
 
 /** First bytes; advice for pictures that a browser may read. */
 const FIRST: Row[] = [
@@ -17,13 +18,19 @@ const FIRST: Row[] = [
   [/^\x28\xb5\x2f\xfd/, "compressed by Zstandard; unpack it first"],
   [/^7z\xbc\xaf/, "a 7z archive; unpack it first"],
   [/^Rar!/, "a RAR archive; unpack it first"],
-  [/^bvx[12n$-]/, "compressed by LZFSE, as Record3D's depth maps and confidences are; unpack it by liblzfse and save it as .npy or .exr"],
+  [
+    /^bvx[12n$-]/,
+    "compressed by LZFSE, as Record3D's depth maps and confidences are; unpack it by liblzfse and save it as .npy or .exr",
+  ],
   [/^\x89HDF/, "HDF5; save the array as .npy"],
   [/^CDF[\x01\x02\x05]/, "netCDF; save the array as .npy"],
   [/^MATLAB/, "a .mat file of MATLAB; save the array as .npy or 16-bit PNG"],
   [/^.{4}ftyp(?:heic|heix|hevc|mif1|msf1|avif)/s, "HEIC or AVIF; save it as PNG or JPEG", true],
   [/^(?:.{4}ftyp|RIFF.{4}AVI )/s, "a video; save its frames as PNG"],
-  [/^#ROSBAG|^SQLite format|^\x89MCAP/, "a recording of ROS (.bag, .db3, .mcap); export its images and camera_info first"],
+  [
+    /^#ROSBAG|^SQLite format|^\x89MCAP/,
+    "a recording of ROS (.bag, .db3, .mcap); export its images and camera_info first",
+  ],
   [/^\x1a\x45\xdf\xa3/, `a Matroska recording (.mkv, such as the Azure Kinect's); ${EXPORT} (k4arecorder's tools do)`],
   [/^NI10/, `a recording of OpenNI (.oni); ${EXPORT}`],
   [/^SVO/, `a recording of the ZED (.svo); ${EXPORT} by the ZED SDK`],
@@ -37,7 +44,10 @@ const FIRST: Row[] = [
   [/^\xff\x4f\xff\x51|^.{4}jP {2}/s, "JPEG 2000; save it as PNG", true],
   [/^PIEH/, "Sintel's .dpt or .flo; save the depth as .npy"],
   [/^PAR1/, "a table in Parquet; export its images first"],
-  [/^\x0a\x0d\x0d\x0a|^\xd4\xc3\xb2\xa1|^\xa1\xb2\xc3\xd4/, `packets of a LiDAR (.pcap); save a scan of it as an organised PCD`],
+  [
+    /^\x0a\x0d\x0d\x0a|^\xd4\xc3\xb2\xa1|^\xa1\xb2\xc3\xd4/,
+    `packets of a LiDAR (.pcap); save a scan of it as an organised PCD`,
+  ],
 ];
 
 /** Endings of formats that have no first bytes of their own. */
@@ -59,7 +69,10 @@ const NAMED: Row[] = [
 
 /** What a text begins with that is no calibration. */
 const TEXTS: Row[] = [
-  [/^(?:\s*#[^\n]*\n)*\s*(?:mtllib|usemtl|o\s|g\s|s\s|v\s|vn\s|vt\s)[^\n]*\n[\s\S]{0,4000}?^(?:v|vn|f)\s+[-\d.]/m, "a mesh in Wavefront's OBJ; render a depth map from it, or save an organised cloud"],
+  [
+    /^(?:\s*#[^\n]*\n)*\s*(?:mtllib|usemtl|o\s|g\s|s\s|v\s|vn\s|vt\s)[^\n]*\n[\s\S]{0,4000}?^(?:v|vn|f)\s+[-\d.]/m,
+    "a mesh in Wavefront's OBJ; render a depth map from it, or save an organised cloud",
+  ],
   [/^solid\b[^\n]*\n\s*(?:facet|endsolid)/, "a mesh (STL); render a depth map from it"],
   [/^(?:ST|C|N|4|n)*OFF\s+\d+\s+\d+\s+\d+/, "a mesh (OFF); render a depth map from it"],
   [/^#usda/, "a scene in USD; render a depth map from it"],

@@ -57,7 +57,10 @@ function plane(body: Uint8Array, header: Header, used: number, rows: number): Ui
   const rules = version >= 2 ? rulesOf(body, start) : [];
   const isUnknown = (channel: Channel) => (version >= 2 ? schemeOf(channel, rules) === UNKNOWN : isKept(channel));
   const size = ({ type }: Channel) => width * rows * (SIZES[type] ?? 0);
-  const before = channels.slice(0, used).filter(isUnknown).reduce((sum, each) => sum + size(each), 0);
+  const before = channels
+    .slice(0, used)
+    .filter(isUnknown)
+    .reduce((sum, each) => sum + size(each), 0);
   const own = channels[used] as Channel;
   const all = channels.filter(isUnknown).reduce((sum, each) => sum + size(each), 0);
   if (!isUnknown(own) || length !== all || start + packed > body.length)

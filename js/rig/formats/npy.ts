@@ -51,7 +51,9 @@ export function npzPicture(bytes: Uint8Array): Picture {
   const chosen =
     arrays.length === 1
       ? only
-      : DEPTHS.map((pattern) => arrays.filter((each) => pattern.test(called(each)))).find((all) => all.length === 1)?.[0];
+      : DEPTHS.map((pattern) => arrays.filter((each) => pattern.test(called(each)))).find(
+          (all) => all.length === 1,
+        )?.[0];
   if (chosen === undefined)
     throw badFile(
       `it is an .npz archive of ${arrays.length} arrays (${arrays.slice(0, 6).map(called).join(", ")}), of which none alone is called depth; save the depth map as .npy`,
@@ -59,5 +61,10 @@ export function npzPicture(bytes: Uint8Array): Picture {
   const array = unpacked(bytes, chosen);
   if (!isNpy(array)) throw badFile(`the array ${called(chosen)} of this .npz is damaged`);
   const picture = npyPicture(array);
-  return { ...picture, name: called(chosen), format: "npz", notes: [`its array "${called(chosen)}"`, ...picture.notes] };
+  return {
+    ...picture,
+    name: called(chosen),
+    format: "npz",
+    notes: [`its array "${called(chosen)}"`, ...picture.notes],
+  };
 }

@@ -81,7 +81,15 @@ export function readTable(bytes: Uint8Array): Picture {
   if (counts(rows.map((row) => row[0] ?? NaN))) for (const row of rows) row.shift();
   const [height, width] = [rows.length, rows[0]?.length ?? 0];
   checkSize(width, height);
-  return { width, height, channels: 1, ...levels(rows.flat()), format: "table", notes: ["a table as text"], warnings: [] };
+  return {
+    width,
+    height,
+    channels: 1,
+    ...levels(rows.flat()),
+    format: "table",
+    notes: ["a table as text"],
+    warnings: [],
+  };
 }
 
 function ofWord(word: string, row: number): number {
@@ -121,7 +129,10 @@ export function pointList(bytes: Uint8Array): BimodalError | undefined {
   if (!body.every((row) => row.length === columns && isNumbers(row))) return undefined;
   const isNamed = body !== rows && !single(rows[0]);
   const names = (rows[0] ?? []).map((name) => name.replace(/^\/+/, "").toLowerCase());
-  if (isNamed && (!names.includes("x") || !names.includes("z") || names.some((name) => /^q[wxyz]$|time|frame/.test(name))))
+  if (
+    isNamed &&
+    (!names.includes("x") || !names.includes("z") || names.some((name) => /^q[wxyz]$|time|frame/.test(name)))
+  )
     return undefined;
   const numbers = body.map((row) => row.map((word) => numberOf(word) ?? NaN));
   if (isTrajectory(numbers) || isLog(numbers)) return undefined;

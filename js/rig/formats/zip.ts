@@ -39,7 +39,11 @@ export function entriesOf(bytes: Uint8Array): Entry[] {
   const found: Entry[] = [];
   for (let each = 0, at = view.getUint32(end + 16, true); each < count; each++) {
     if (view.getUint32(at, true) !== CENTRAL) throw damaged();
-    const [name, extra, comment] = [28, 30, 32].map((offset) => view.getUint16(at + offset, true)) as [number, number, number];
+    const [name, extra, comment] = [28, 30, 32].map((offset) => view.getUint16(at + offset, true)) as [
+      number,
+      number,
+      number,
+    ];
     found.push({
       name: String.fromCharCode(...bytes.subarray(at + 46, at + 46 + Math.min(name, 256))),
       method: view.getUint16(at + 10, true),
