@@ -4,7 +4,7 @@
  * Intrinsics for another size of the same shape are scaled, which is said; a depth map whose name says that it was carried into the colour
  * camera's view has that camera's.
  */
-import type { Pair } from "./pairs.js";
+import type { Pair } from "./lists.js";
 import { isAligned, isInDepth } from "./roles.js";
 import type { CheckFrame, NamedCamera, RigFolder } from "./types.js";
 import { type ReaderWarning, warning } from "./warnings.js";

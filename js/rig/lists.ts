@@ -2,10 +2,24 @@
 import { badFile } from "../errors.js";
 import { textOf } from "./formats/text.js";
 import { base, folderOf } from "./names.js";
-import type { Pair, Pairs } from "./pairs.js";
 import { roleOf } from "./roles.js";
 import type { NamedFile } from "./types.js";
 import { type ReaderWarning, warning } from "./warnings.js";
+
+export interface Pair {
+  name: string;
+  colour: NamedFile;
+  /** The depth map in one file or more, of which the first that can be read is taken. */
+  depths: [NamedFile, ...NamedFile[]];
+  mask?: NamedFile;
+}
+
+export interface Pairs {
+  pairs: Pair[];
+  /** Metres per unit of such folders, where nothing says another one. */
+  supposed?: number;
+  says: string;
+}
 
 /** Time stamps farther apart than this, in seconds, are no pair; TUM's own tool has the same. */
 export const APART = 0.02;

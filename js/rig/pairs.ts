@@ -6,26 +6,11 @@
  */
 import { badFile } from "../errors.js";
 import { rasterKind } from "./formats/headerless.js";
-import { APART, byTime } from "./lists.js";
+import { APART, type Pair, type Pairs, byTime } from "./lists.js";
 import { commonPath, folderOf, key, stem, timeOf } from "./names.js";
 import { CONTENTS, type Role, roleOf } from "./roles.js";
 import type { NamedFile } from "./types.js";
 import { type ReaderWarning, ofFile, warning } from "./warnings.js";
-
-export interface Pair {
-  name: string;
-  colour: NamedFile;
-  /** The depth map in one file or more, of which the first that can be read is taken. */
-  depths: [NamedFile, ...NamedFile[]];
-  mask?: NamedFile;
-}
-
-export interface Pairs {
-  pairs: Pair[];
-  /** Metres per unit of such folders, where nothing says another one. */
-  supposed?: number;
-  says: string;
-}
 
 interface Sorted {
   colours: NamedFile[];
@@ -196,7 +181,7 @@ function byStamps({ colours, depths }: Sorted, warnings: ReaderWarning[]): Pairs
         { pairs: found.length },
       ),
     );
-  const used = new Set(found.flatMap(([one, other]) => [one, other]));
+  const used = new Set(found.flat());
   for (const { name } of [...depths, ...colours])
     if (!used.has(name))
       warnings.push(ofFile(name, warning("file-alone", "no other file's time stamp is near its own (left out).")));
