@@ -24,6 +24,18 @@ export function key(name: string): string {
   return words.filter((word) => word !== "" && word !== "mm").join(" ");
 }
 
+/** Words that say what a file holds rather than which frame it is, where names are alike but for them. */
+const LOOSE = new Set(
+  "raw frame frames photo picture pic map maps groundtruth gt velodyne lidar cloud points scan sparse dense filtered z16 png cam camera ir infra infrared tof undistorted rectified rect vis".split(
+    " ",
+  ),
+);
+export const looseKey = (name: string): string =>
+  key(name)
+    .split(" ")
+    .filter((word) => !LOOSE.has(word))
+    .join(" ");
+
 /** Seconds from 2001 to 2100 since 1970, and how many of a clock's ticks a second has. */
 const [FROM, UNTIL] = [1e9, 4.2e9];
 const TICKS = [1, 1e3, 1e6, 1e9];

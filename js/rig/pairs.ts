@@ -7,7 +7,7 @@
 import { badFile } from "../errors.js";
 import { rasterKind } from "./formats/headerless.js";
 import { APART, type Pair, type Pairs, byTime } from "./lists.js";
-import { commonPath, folderOf, key, stem, timeOf } from "./names.js";
+import { commonPath, folderOf, key, looseKey, stem, timeOf } from "./names.js";
 import { CONTENTS, type Role, roleOf } from "./roles.js";
 import type { NamedFile } from "./types.js";
 import { type ReaderWarning, ofFile, warning } from "./warnings.js";
@@ -55,12 +55,12 @@ function sorted(pictures: NamedFile[], warnings: ReaderWarning[]): Sorted {
   return { colours, depths, masks: of("mask") };
 }
 
-function byKey(files: NamedFile[]): Map<string, NamedFile[]> {
+function byKey(files: NamedFile[], keyOf: (name: string) => string): Map<string, NamedFile[]> {
   const groups = new Map<string, NamedFile[]>();
   for (const file of files) {
-    const group = groups.get(key(file.name));
+    const group = groups.get(keyOf(file.name));
     if (group) group.push(file);
-    else groups.set(key(file.name), [file]);
+    else groups.set(keyOf(file.name), [file]);
   }
   return groups;
 }
@@ -113,14 +113,14 @@ function alternatives(depths: NamedFile[]): NamedFile[][] {
 }
 
 /** Those that go together by their names; `others` are alone or may belong to several. */
-function byNames({ colours, depths, masks }: Sorted, warnings: ReaderWarning[]): Pair[] {
+function byNames({ colours, depths, masks }: Sorted, warnings: ReaderWarning[], keyOf = key): Pair[] {
   const maskOf = (name: string) =>
-    masks.find((mask) => key(mask.name) === name) ??
+    masks.find((mask) => keyOf(mask.name) === name) ??
     (masks.length === 1 && key(masks[0]?.name ?? "") === "" ? masks[0] : undefined);
-  const likeColours = byKey(colours);
+  const likeColours = byKey(colours, keyOf);
   /** Files of which something is said already. */
   const said = new Set<string>();
-  const pairs = [...byKey(depths)].flatMap(([name, likeDepths]) => {
+  const pairs = [...byKey(depths, keyOf)].flatMap(([name, likeDepths]) => {
     const theirs = likeColours.get(name) ?? [];
     const groups = alternatives(likeDepths);
     return groups.flatMap(([depth, ...more]): Pair[] => {
@@ -219,6 +219,10 @@ export function pairsOf(pictures: NamedFile[], warnings: ReaderWarning[]): Pairs
   const isSame = found.depths.length > 0 && found.depths.every(({ name }) => same.has(key(name)));
   const stamped = isSame ? undefined : byStamps(found, warnings);
   if (stamped !== undefined) return stamped;
-  const pairs = byNames(found, warnings);
+  const own: ReaderWarning[] = [];
+  const strict = byNames(found, own);
+  // What is ambiguous by the very names is not less so without some of their words.
+  const pairs = strict.length > 0 || own.length > 0 ? strict : byNames(found, own, looseKey);
+  warnings.push(...own);
   return pairs.length > 0 ? { pairs, says: `${pairs.length} pairs by their names` } : byOrder(found, warnings);
 }

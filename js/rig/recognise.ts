@@ -4,7 +4,7 @@ import { looksLikeDepth, looksLikeLabels, looksLikeMask } from "./colour.js";
 import { isGrey } from "./depth.js";
 import { decoded } from "./formats/coded.js";
 import type { Picture } from "./formats/picture.js";
-import { CONTENTS, type Role, roleOf } from "./roles.js";
+import { CONTENTS, type Role, isKittiDepth, roleOf } from "./roles.js";
 import type { ReadOptions } from "./types.js";
 import { type ReaderWarning, warning } from "./warnings.js";
 
@@ -79,11 +79,8 @@ export function nameWarnings(name: string, picture: Picture, kind: string, { uni
   return [];
 }
 
-/** KITTI's depth maps, of which no file says that they have 256 units to the metre. */
-const KITTI = /(?:^|[^a-z])(?:proj_depth|velodyne_raw|groundtruth_depth)(?![a-z])/i;
-
 /** The unit that a file's name gives away. */
 export const unitOfName = (name: string, picture: Picture): { unit?: number; notes?: string[] } =>
-  KITTI.test(name) && picture.data instanceof Uint16Array && picture.unit === undefined
+  isKittiDepth(name) && picture.data instanceof Uint16Array && picture.unit === undefined
     ? { unit: 1 / 256, notes: [...picture.notes, "by its name KITTI's"] }
     : {};

@@ -66,8 +66,13 @@ function common(segment: string): Role | undefined {
   return CLOUD.test(segment) ? "cloud" : undefined;
 }
 
+/** KITTI's depth maps, in folders that are called as those of its images; no file says that they have 256 units to the metre. */
+export const isKittiDepth = (name: string): boolean =>
+  /(?<![a-z])(?:proj_depth|velodyne_raw|groundtruth_depth)(?![a-z])/i.test(name);
+
 /** What a file's name says that it holds; nothing where it says nothing. */
 export function roleOf(name: string): Role | undefined {
+  if (isKittiDepth(name)) return "depth";
   const [own = "", folder = "", ...outer] = name.split("/").map(plain).reverse();
   const clear = special(own) ?? special(folder) ?? common(own);
   if (clear !== undefined) return clear;

@@ -10,6 +10,8 @@ import type { Picture } from "./picture.js";
 
 /** Matrices and rows of trajectories are smaller than the smallest depth map. */
 const [FEWEST_COLUMNS, FEWEST_ROWS] = [24, 18];
+/** Share of its first rows that have to have as many numbers as the first one. */
+const MOSTLY = 0.9;
 /** Lines by which a text is told. */
 const HEAD = 40;
 /** Characters of them. */
@@ -57,7 +59,9 @@ export function isTable(bytes: Uint8Array): boolean {
   // The first row may name the columns.
   const [first, ...others] = rows[0] !== undefined && isNumbers(rows[0]) ? rows : rows.slice(1);
   if (first === undefined || first.length < FEWEST_COLUMNS || first.length > MOST_SIDE + 1) return false;
-  return rows.length >= FEWEST_ROWS && others.every((row) => row.length === first.length && isNumbers(row));
+  // A damaged row is named when the table is read.
+  const alike = others.filter((row) => row.length === first.length && isNumbers(row));
+  return rows.length >= FEWEST_ROWS && alike.length >= MOSTLY * others.length;
 }
 
 /** Whether numbers count 0, 1, 2 .., as the names that pandas gives rows and columns. */
