@@ -9,7 +9,7 @@ import { type Check, object, signal, wrong } from "../check.js";
 import { BimodalError, badFile, refused } from "../errors.js";
 import { addCameras } from "./assign.js";
 import { isRawName } from "./formats/raw.js";
-import { areFives, isVaried, sampled } from "./guess.js";
+import { areFives, isVaried, nameOf, sampled } from "./guess.js";
 import { type Pair, type Pairs, tum } from "./lists.js";
 import { base, key, stem } from "./names.js";
 import { pairsOf } from "./pairs.js";
@@ -109,6 +109,14 @@ class FolderReader {
       return found;
     }
     return undefined;
+  }
+
+  /** A text of which nothing was read but the unit of depth was not left out. */
+  onlyUnit(file: NamedFile, unit: number): void {
+    const at = this.warnings.findIndex(({ code, file: name }) => code === "file-left-out" && name === file.name);
+    if (at < 0) return;
+    this.warnings.splice(at, 1);
+    this.readings.push({ name: file.name, says: `the unit of depth, ${nameOf(unit)}`, warnings: [] });
   }
 
   async frame(pair: Pair, known: Known): Promise<CheckFrame | undefined> {
@@ -295,6 +303,7 @@ export async function readRigFolder(files: NamedFile[], options: FolderOptions =
   const frames = read.map(([frame]) => frame);
   const names = new Set(found.pairs.map(({ name }) => name));
   const { cameras, poses, own } = await readTexts(kept, names, reader);
+  for (const file of texts) if (inText?.files.has(file.name)) reader.onlyUnit(file, inText.unit);
   const folder: RigFolder = { frames, cameras, poses, readings: reader.readings, warnings: reader.warnings };
   addCameras(folder, { own: read.map(([, { name }]) => own.get(name)), pair: read[0]?.[1] });
   folder.cameras.push(...own.values());
