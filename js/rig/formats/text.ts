@@ -2,13 +2,13 @@
 import { badFile } from "../../errors.js";
 import { readColmap, isColmap } from "./colmap.js";
 import { MOST_TEXT } from "./limits.js";
-import { isMetadata, readMetadata } from "./metadata.js";
-import { isMiddlebury, readMiddlebury } from "./middlebury.js";
 import { readNumbers } from "./plain.js";
-import { isEnumeration, readEnumeration } from "./realsense.js";
+import { looksLikeMrcal } from "./mrcal.js";
+import { productOfText, productOfTree } from "./products.js";
 import { isEcho, isPublisher, readEcho, readPublishers } from "./ros.js";
 import { type Calibration, searchTree } from "./tree.js";
-import { plainXml, readXml } from "./xml.js";
+import { isUrdf, readUrdf } from "./urdf.js";
+import { type Element, plainXml, readXml } from "./xml.js";
 
 /** Characters of YAML: calibrations have a few thousand. */
 const MOST_YAML = 2 ** 18;
@@ -70,11 +70,16 @@ function searched(value: unknown, format: string): Calibration & { format: strin
   const isText = (each: unknown) => typeof each !== "object" || each === null;
   if (isText(value) || (Array.isArray(value) && value.every(isText)))
     throw badFile("it is a text in none of the forms that are read here");
+  const product = productOfTree(value);
+  if (product !== undefined) return product;
   const found = searchTree(value);
   if (found.cameras.length === 0 && found.poses.length === 0)
     throw badFile(`it is ${format}, but holds ${NEITHER} that is known here`);
   return { ...found, format };
 }
+
+const ofXml = (root: Element) =>
+  isUrdf(root) ? Object.assign(readUrdf(root), { format: "a robot's description" }) : searched(plainXml(root), "XML");
 
 /** What a text holds, with a word on what kind of text it is. */
 export async function readText(text: string): Promise<Calibration & { format: string }> {
@@ -82,10 +87,10 @@ export async function readText(text: string): Promise<Calibration & { format: st
   if (trimmed === "") throw badFile("it is empty: there is nothing in it but spaces");
   if (isPublisher(trimmed)) return { ...readPublishers(trimmed), format: "a static transform of ROS" };
   if (isEcho(trimmed)) return { ...readEcho(trimmed), format: "a transform of ROS" };
-  if (isEnumeration(trimmed)) return { ...readEnumeration(trimmed), format: "RealSense's streams" };
-  if (isMetadata(trimmed)) return { ...readMetadata(trimmed), format: "metadata of realsense-viewer" };
-  if (isMiddlebury(trimmed)) return { ...readMiddlebury(trimmed), format: "Middlebury's calibration of a stereo pair" };
-  if (trimmed.startsWith("<")) return searched(plainXml(readXml(trimmed)), "XML");
+  const product = productOfText(trimmed);
+  if (product !== undefined) return product;
+  if (looksLikeMrcal(trimmed)) return searched(await readYaml(trimmed), "YAML");
+  if (trimmed.startsWith("<")) return ofXml(readXml(trimmed));
   if (isColmap(trimmed)) return { ...readColmap(trimmed), format: "COLMAP's cameras" };
   const numbers = readNumbers(trimmed);
   if (numbers !== undefined) return numbers;

@@ -9,13 +9,24 @@ import { badFile } from "../../errors.js";
 import type { NamedCamera, NamedPose } from "../types.js";
 import { type RawCamera, cameraOf } from "./cameras.js";
 import { type Matrix, type Node, type Numbers, isNode, matrixOf, numberOf, transposed } from "./numbers.js";
-import { chained, inverseOf, isLastRow, motion, motionOfMatrix, ofQuaternion, ofVector } from "./poses.js";
-import type { ReaderWarning } from "../warnings.js";
+import {
+  chained,
+  inverseOf,
+  isLastRow,
+  motion,
+  motionOfMatrix,
+  ofQuaternion,
+  ofVector,
+  rowsOfTwelve,
+} from "./poses.js";
+import { type ReaderWarning, warning } from "../warnings.js";
 
 export interface Calibration {
   cameras: NamedCamera[];
   poses: NamedPose[];
   warnings: ReaderWarning[];
+  /** Metres per stored unit of the depth maps beside it, where the file says it. */
+  depthUnit?: number;
 }
 
 const MOST_NODES = 50_000;
@@ -311,7 +322,7 @@ class Search implements Calibration {
     const matrix = matrixOf(node[key]);
     const length = matrix?.values.length;
     if (matrix === undefined || (length !== 16 && length !== 12) || isLens(key) === "") return;
-    if (length === 12 && matrix.rows !== 3) return;
+    if (length === 12 && matrix.rows !== 3) return this.#motionOfTwelve(matrix.values, key, frames);
     const isOpen3D = key === "extrinsic" || key === "pose";
     const names = isOpen3D
       ? named(parent, key === "extrinsic" ? { from: "world", to: "camera" } : { from: "camera", to: "world" })
@@ -323,6 +334,20 @@ class Search implements Calibration {
         (!isLastRow(matrix.values.slice(12)) && isLastRow([3, 7, 11, 15].map((index) => matrix.values[index] ?? NaN))));
     const values = byColumns ? transposed(matrix.values, 4) : matrix.values;
     this.poses.push(motionOfMatrix(values, names, this.warnings, !isOpen3D));
+  }
+
+  /** A list without rows, as programs dump what librealsense gives. */
+  #motionOfTwelve(values: Numbers, key: string, frames: Frames): void {
+    const found = rowsOfTwelve(values);
+    if (found === undefined) return;
+    this.poses.push(motionOfMatrix(found.rows, named(key, frames), this.warnings));
+    if (found.isByColumns)
+      this.warnings.push(
+        warning(
+          "pose-assumed",
+          `The twelve numbers of "${key}" were read as a rotation column by column and a translation, as librealsense keeps them; nothing in the file says so.`,
+        ),
+      );
   }
 
   /** Kalibr's names, where cn is the camera that the matrix stands in, cnm1 the one before. */
