@@ -21,6 +21,7 @@ import type { Findings } from "./findings.js";
 import { isKinect2, readKinect2 } from "./kinect-v2.js";
 import { isKitti, readKitti } from "./kitti.js";
 import { isBouguet, isMatlab, readBouguet, readMatlab } from "./matlab.js";
+import { isMiddlebury, readMiddlebury } from "./middlebury.js";
 import { isMrcal, readMrcal } from "./mrcal.js";
 import { isNerf, readNerf } from "./nerf.js";
 import { isNode, type Node } from "./numbers.js";
@@ -46,6 +47,7 @@ const TEXTS: Product<string>[] = [
   ["a calibration of Waymo's dataset", isWaymoText, readWaymoText],
   ["a table of Argoverse 2", isArgoverse2Table, readArgoverse2Table],
   ["a calibration of KITTI", isKitti, readKitti],
+  ["Middlebury's calibration of a stereo pair", isMiddlebury, readMiddlebury],
 ];
 
 const TREES: Product<Node>[] = [
