@@ -27,6 +27,7 @@ const INTRINSICS = [
   ["mtx"],
   ["k"],
   ["m"],
+  ["matrix"],
 ];
 const LENS = [
   ["distortion", "coefficients"],

@@ -101,6 +101,19 @@ async function ofYaml(text: string): Promise<Read> {
   }
 }
 
+/** XML, or what Python prints of an object: it begins with "<", too. */
+function ofXml(text: string): Read {
+  let value: unknown;
+  try {
+    value = plainXml(readXml(text));
+  } catch (error) {
+    const found = /^<[\w.]+(?::|\s+object|\s*<)/.test(text) ? ofNotes(text.replace(/[<>]/g, " ")) : undefined;
+    if (found === undefined) throw error;
+    return found;
+  }
+  return searched(value, "XML", text);
+}
+
 /** What a text holds, with a word on what kind of text it is. */
 export async function readText(text: string): Promise<Read> {
   const trimmed = text.replace(/^\ufeff/, "").trim();
@@ -108,7 +121,7 @@ export async function readText(text: string): Promise<Read> {
   if (isPublisher(trimmed)) return { ...readPublishers(trimmed), format: "a static transform of ROS" };
   if (isEcho(trimmed)) return { ...readEcho(trimmed), format: "a transform of ROS" };
   if (isEnumeration(trimmed)) return { ...readEnumeration(trimmed), format: "RealSense's streams" };
-  if (trimmed.startsWith("<")) return searched(plainXml(readXml(trimmed)), "XML", trimmed);
+  if (trimmed.startsWith("<")) return ofXml(trimmed);
   if (isColmap(trimmed)) return { ...readColmap(trimmed), format: "COLMAP's cameras" };
   const pointed = withPoints(trimmed);
   if (pointed !== undefined) {
