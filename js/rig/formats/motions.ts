@@ -284,19 +284,14 @@ export class Motions {
   /** Twelve numbers in a row: three rows of four, or a rotation before its translation. */
   #twelve(values: Numbers, key: string, context: Context): boolean {
     const names = named(key, worldFrames(key) ?? context);
-    const isShifted = isRotation(values.slice(0, 9));
-    if (isRotation(block(values)))
-      this.#add(
-        this.#motion(
-          block(values),
-          [3, 7, 11].map((index) => at(values, index)),
-          names,
-          context.unit,
-        ),
-      );
-    else if (isShifted)
-      this.#open.set(this.#add(this.#motion(values.slice(0, 9), values.slice(9), names, context.unit)), "rows");
-    else return false;
+    if (isRotation(block(values))) {
+      const shift = [3, 7, 11].map((index) => at(values, index));
+      this.#add(this.#motion(block(values), shift, names, context.unit));
+    } else if (isRotation(values.slice(0, 9))) {
+      // As librealsense keeps its extrinsics.
+      const rotation = transposed(values.slice(0, 9), 3);
+      this.#open.set(this.#add(this.#motion(rotation, values.slice(9), names, context.unit)), "columns");
+    } else return false;
     return true;
   }
 
