@@ -107,10 +107,20 @@ async function ofYaml(text: string): Promise<Read> {
   }
 }
 
-const ofXml = (root: Element, text: string): Read =>
-  isUrdf(root)
+/** XML, or what Python prints of an object: it begins with "<", too. */
+function ofXml(text: string): Read {
+  let root: Element;
+  try {
+    root = readXml(text);
+  } catch (error) {
+    const found = /^<[\w.]+(?::|\s+object|\s*<)/.test(text) ? ofNotes(text.replace(/[<>]/g, " ")) : undefined;
+    if (found === undefined) throw error;
+    return found;
+  }
+  return isUrdf(root)
     ? Object.assign(readUrdf(root), { format: "a robot's description" })
     : searched(plainXml(root), "XML", text);
+}
 
 /** What a text holds, with a word on what kind of text it is. */
 export async function readText(text: string): Promise<Read> {
@@ -121,7 +131,7 @@ export async function readText(text: string): Promise<Read> {
   const product = productOfText(trimmed);
   if (product !== undefined) return product;
   if (looksLikeMrcal(trimmed)) return searched(await readYaml(trimmed), "YAML", trimmed);
-  if (trimmed.startsWith("<")) return ofXml(readXml(trimmed), trimmed);
+  if (trimmed.startsWith("<")) return ofXml(trimmed);
   if (isColmap(trimmed)) return { ...readColmap(trimmed), format: "COLMAP's cameras" };
   const pointed = withPoints(trimmed);
   if (pointed !== undefined) {
