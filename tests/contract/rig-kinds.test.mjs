@@ -151,6 +151,8 @@ describe("what is not read is named, with the way out", () => {
     "0.depth": ["bvx2\x01\x02", /LZFSE.*Record3D/],
     "mesh.glb": ["glTF\x02\x00", /mesh \(glTF\)/],
     "scan.fls": ["\x01\x02\x03\x00", /format of its maker/],
+    "IMG_1.dng": ["II*\x00\x08\x00", /raw photograph.*develop/],
+    "a.hdr": ["#?RADIANCE\n", /Radiance's HDR; save it as EXR/],
     "a.xz": ["\xfd7zXZ\x00", /xz; unpack/],
     "mesh.obj": ["# made\nmtllib a.mtl\no Cube\nv 1 2 3\nv 1 2 4\nf 1 2 3\n", /Wavefront's OBJ.*render a depth map/],
     "mesh.stl": ["solid a\n facet normal 0 0 1\n  outer loop\n", /STL/],
