@@ -4,6 +4,7 @@ import { describe, test } from "node:test";
 import { deflateRawSync } from "node:zlib";
 import { crc32 } from "node:zlib";
 import { readRigFile } from "../../pkg/rig.js";
+import { inTime } from "./malformed.mjs";
 import { H, W, close, metres, millimetres, read, refusedFile } from "./rig-support.mjs";
 import { npy } from "./support.mjs";
 
@@ -241,6 +242,12 @@ describe("depth maps without a format", () => {
       .split("\n")
       .map((line, row) => `${row},${line}`);
     isTable(await read("depth.csv", [head, ...body].join("\n")));
+  });
+
+  test("a table of more numbers than are read, in little time", async () => {
+    const line = Buffer.from(`${"1,".repeat(2047)}1\n`);
+    const bytes = new Uint8Array(Buffer.concat(Array(1100).fill(line)));
+    await inTime("large.csv", () => refused("large.csv", bytes, /more numbers than 1920x1080 pixels/));
   });
 
   test("a table with a row too short", () =>
