@@ -216,6 +216,33 @@ describe("one camera for both pictures", () => {
   });
 });
 
+test("pictures of a size that their own camera does not have were carried into the other's view", async () => {
+  const rig = {
+    color: camera(60, 64, 48),
+    depth: camera(50, 80, 50),
+    depth_to_color: [
+      [1, 0, 0, 0.1],
+      [0, 1, 0, 0],
+      [0, 0, 1, 0],
+    ],
+  };
+  for (const [size, f] of [
+    [[64, 48], 60],
+    [[80, 50], 50],
+  ]) {
+    const found = await folder({ ...pair(size), "rig.json": rig });
+    assert.deepEqual(
+      cameras(found)[0].map(([fx]) => fx),
+      [f, f],
+    );
+    assert.deepEqual(
+      found.poses.map(({ pose }) => pose.translation[0]),
+      [0, 0.1],
+    );
+    assert.deepEqual(codes(found), ["camera-shared"]);
+  }
+});
+
 describe("what files say of the pictures beside them", () => {
   test("the unit of depths: BOP's millimetres, each image with its own camera", async () => {
     const scene = (f) => ({ cam_K: [f, 0, 32, 0, f, 24, 0, 0, 1], depth_scale: 0.1 });
