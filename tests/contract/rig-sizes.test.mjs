@@ -119,7 +119,8 @@ describe("a camera of many sizes", () => {
     for (const [name, ends] of [
       ["calib/calib_cam_to_velo.txt", ["cam", "velo"]],
       ["lidar2camera.txt", ["lidar", "camera"]],
-      ["rgb_from_depth.txt", ["depth", "rgb"]],
+      ["rgb_to_depth.txt", ["rgb", "depth"]],
+      ["rgb_from_depth.txt", [undefined, undefined]],
       ["T_cam_lidar.txt", ["lidar", "cam"]],
       ["top_center_lidar-to-center_camera-extrinsic.txt", ["top_center_lidar", "center_camera"]],
       ["how_to_mount.txt", [undefined, undefined]],
