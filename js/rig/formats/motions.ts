@@ -17,7 +17,7 @@ import {
   wordsOf,
 } from "./names.js";
 import { type Matrix, type Node, type Numbers, isNode, matrixOf, numberOf, transposed } from "./numbers.js";
-import { chained, isLastRow, motion, motionOfMatrix, ofQuaternion, poseOf } from "./poses.js";
+import { chained, inverseOf, isLastRow, motion, motionOfMatrix, ofQuaternion, poseOf } from "./poses.js";
 import { degreesOf, numbersAsRotation, ofFour, ofNine, ofThree, orderWarning } from "./turns.js";
 
 /** What the text of a file and the objects around a motion say of it. */
@@ -303,6 +303,10 @@ export class Motions {
     for (const pose of this.poses) this.#nameExtrinsic(pose);
     // ARKit's transforms are those of the camera in its world.
     if (this.#signs.isARKit) this.placeInWorld(0);
+    // So that nobody takes them for extrinsics, they all lead into the world.
+    for (const pose of this.poses)
+      if (pose.from === "world" && pose.to !== undefined && !this.#defined.has(pose))
+        Object.assign(pose, { from: pose.to, to: "world", pose: inverseOf(pose.pose) });
     const ofWorld = this.poses.filter((pose) => isOfWorld(pose) && !this.#defined.has(pose));
     const [first] = ofWorld;
     if (first !== undefined)
