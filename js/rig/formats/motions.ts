@@ -296,8 +296,13 @@ export class Motions {
   }
 
   /** What only the whole file tells: rotations by their inverses, frames by what else it names, and the warnings. */
-  finish(cameras: readonly NamedCamera[]): void {
+  finish(cameras: readonly NamedCamera[], own: readonly NamedPose[]): void {
     this.#dropReference(cameras);
+    // Where several cameras have a pose each, these relate them to a world and not to each other.
+    const each = own.filter((pose) => this.poses.includes(pose));
+    if (each.length > 1)
+      for (const pose of each)
+        if (pose.from === undefined && pose.to === undefined) Object.assign(pose, { from: "world", to: "camera" });
     for (const pose of this.#open.keys()) this.#checkOrder(pose);
     for (const [pose, order] of this.#open) this.#warnings.push(orderWarning(pose.name ?? "", order === "columns"));
     for (const pose of this.poses) this.#nameExtrinsic(pose);
