@@ -8,6 +8,7 @@ import { BimodalError, badFile, badNamed, refused } from "../errors.js";
 import { readNpy } from "../npy.js";
 import { looksLikeDepth, looksLikeMask, pictureColour, pictureMask } from "./colour.js";
 import { cloudDepth, isGrey, pictureDepth } from "./depth.js";
+import { colmapText } from "./formats/colmap-others.js";
 import { readExr } from "./formats/exr.js";
 import { readJpeg, readWebp } from "./formats/jpeg.js";
 import { type Kind, kindOf } from "./formats/kinds.js";
@@ -104,7 +105,7 @@ async function content({ name, bytes }: NamedFile, options: ReadOptions): Promis
   if (kind === "ply") return ofCloud(readPly(bytes), options);
   if (kind === "pcd") return ofCloud(readPcd(bytes), options);
   if (kind !== undefined) return ofPicture(name, await PICTURES[kind](bytes, options), options);
-  const text = textOf(bytes);
+  const text = textOf(bytes) ?? colmapText(bytes);
   if (text === undefined) throw strange(bytes);
   return ofText(text, options);
 }

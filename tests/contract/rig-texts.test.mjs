@@ -88,4 +88,24 @@ describe("languages", () => {
     assert.equal(only(cameras).name, "1");
     assert.match(warnings[0].message, /THIN_PRISM_FISHEYE/);
   });
+
+  test("COLMAP's cameras.bin and images.txt", async () => {
+    const bytes = new Uint8Array(8 + 24 + 8 * 4);
+    const view = new DataView(bytes.buffer);
+    view.setUint32(0, 1, true);
+    view.setUint32(8, 7, true);
+    view.setInt32(12, 1, true);
+    view.setBigUint64(16, 640n, true);
+    view.setBigUint64(24, 480n, true);
+    [518.5, 519.25, 326, 254.25].forEach((value, at) => view.setFloat64(32 + 8 * at, value, true));
+    const { cameras } = await read("cameras.bin", bytes);
+    sameCamera(only(cameras), null);
+    assert.deepEqual([cameras[0].name, cameras[0].width], ["7", 640]);
+    const images = await read(
+      "images.txt",
+      `# Image list\n1 0.999525037602976 0.009998416741873298 -0.014997625112809946 0.024996041854683248 ${translation.join(" ")} 1 a.png\n10 20 -1\n`,
+    );
+    const pose = only(images.poses);
+    assert.deepEqual([pose.name, pose.from, pose.to, codes(images)], ["a.png", "camera", "world", ["camera-to-world"]]);
+  });
 });
