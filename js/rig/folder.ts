@@ -7,10 +7,20 @@
 import { breathe } from "../breathe.js";
 import { type Check, object, signal, wrong } from "../check.js";
 import { BimodalError, badFile, refused } from "../errors.js";
-import { addCameras } from "./assign.js";
+import { addCameras, inOrder, ofPictures } from "./assign.js";
 import { textOf } from "./formats/text.js";
 import { checkNamed, isRasterFile, metresPerUnit, readRigFile } from "./read.js";
-import type { CheckFrame, Mask, NamedFile, ReadOptions, Reading, RigFolder, RigReading } from "./types.js";
+import type {
+  CheckFrame,
+  Mask,
+  NamedCamera,
+  NamedFile,
+  NamedPose,
+  ReadOptions,
+  Reading,
+  RigFolder,
+  RigReading,
+} from "./types.js";
 import { type ReaderWarning, grouped, ofFile, warning } from "./warnings.js";
 
 /** How `readRigFolder` reads. */
@@ -34,9 +44,11 @@ const DEPTH = /depth|dpt|range(?![a-z])|disp/i;
 const MASK = /mask|segm/i;
 const COLOUR = /colou?r|rgb|image|img/i;
 const IGNORED =
-  /(^|\/)(\.|__MACOSX|thumbs\.db|readme|licen[cs]e|copying|source\.txt|changelog)|\.(md|html?|py|mjs|js|csv|bag|mp4|avi|klg)$/i;
+  /(^|\/)(\.|__MACOSX|thumbs\.db|readme|licen[cs]e|copying|source\.txt|changelog)|\.(md|html?|py|mjs|js|bag|mp4|avi|klg)$/i;
 /** A path that leads out of the folder is that of a file which somebody named. */
 const ELSEWHERE = /^(?:\/|\.\.\/|[a-z]:\/)/i;
+/** Depth maps that were carried into the colour images are called so by those who made them. */
+const ALIGNED = /(?<![a-z])(?:un)?(?:aligned|registered)(?![a-z])|depth_?(?:to|2|in)_?(?:colou?r|rgb)/i;
 const LISTS = /(^|\/)(rgb|depth|associat\w*|accelerometer|groundtruth|times?(tamps)?)\.(txt|csv)$/i;
 
 const base = (name: string): string => name.slice(name.lastIndexOf("/") + 1);
@@ -310,6 +322,37 @@ async function byContent(pictures: NamedFile[], reader: FolderReader): Promise<P
   };
 }
 
+/** The poses of a file that are not of the world; a camera without a name is called as its file there, too. */
+function ofRig(text: Extract<RigReading, { poses: NamedPose[] }>, file: string): NamedPose[] {
+  const isUnnamed = text.kind === "cameras" && text.cameras.length === 1 && text.cameras[0]?.name === undefined;
+  const called = (end: string | undefined) => (isUnnamed && end === "camera" ? file : end);
+  return text.poses
+    .filter(({ from, to }) => from !== "world" && to !== "world")
+    .map((pose) => {
+      const [from, to] = [called(pose.from), called(pose.to)];
+      return { ...pose, ...(from !== undefined && { from }), ...(to !== undefined && { to }) };
+    });
+}
+
+/** What the texts of a folder hold: cameras, what relates them, and the unit of the depth maps. */
+async function calibrationOf(files: NamedFile[], frames: ReadonlySet<string>, reader: FolderReader) {
+  const cameras: NamedCamera[] = [];
+  const poses: NamedPose[] = [];
+  let depthUnit: number | undefined;
+  for (const file of files) {
+    if (isRasterFile(file.bytes) || LISTS.test(file.name)) continue;
+    // A pose that is called as a frame is where the camera stood then, and relates no two cameras.
+    if (/pose/i.test(file.name) && frames.has(key(file.name.replace(/pose/gi, "")))) continue;
+    const text = await reader.read(file, {});
+    if (text?.kind === "cameras") {
+      cameras.push(...text.cameras.map((each) => ({ ...each, name: each.name ?? stem(file.name) })));
+      depthUnit ??= text.depthUnit;
+    }
+    if (text?.kind === "cameras" || text?.kind === "poses") poses.push(...ofRig(text, stem(file.name)));
+  }
+  return { cameras, poses, ...(depthUnit !== undefined && { depthUnit }) };
+}
+
 const frameCount: Check = (value, field) => {
   if (!(Number.isInteger(value) && Number(value) > 0))
     throw new BimodalError("option", `${field}: a whole number above zero is needed`, field, refused(value));
@@ -341,24 +384,30 @@ export async function readRigFolder(files: NamedFile[], options: FolderOptions =
         pairs: found.pairs.length,
       }),
     );
+  const calibration = await calibrationOf(kept, new Set(found.pairs.map(({ name }) => name)), reader);
   const frames: CheckFrame[] = [];
   for (const pair of chosen) {
-    const frame = await reader.frame(pair, unit ?? found.unit);
+    const frame = await reader.frame(pair, unit ?? calibration.depthUnit ?? found.unit);
     if (frame) frames.push(frame);
   }
-  const folder: RigFolder = { frames, cameras: [], poses: [], readings: reader.readings, warnings: reader.warnings };
-  const names = new Set(found.pairs.map(({ name }) => name));
-  for (const file of kept) {
-    if (isRasterFile(file.bytes) || LISTS.test(file.name)) continue;
-    // A pose that is called as a frame is where the camera stood then, and relates no two cameras.
-    if (/pose/i.test(file.name) && names.has(key(file.name.replace(/pose/gi, "")))) continue;
-    const text = await reader.read(file, {});
-    if (text?.kind === "cameras")
-      folder.cameras.push(...text.cameras.map((each) => ({ ...each, name: each.name ?? stem(file.name) })));
-    if (text?.kind === "cameras" || text?.kind === "poses")
-      folder.poses.push(...text.poses.filter(({ from, to }) => from !== "world" && to !== "world"));
-  }
-  addCameras(folder);
+  // What was read of each file stands in the folder's order: pictures first, as they lead to what the rest is for.
+  const pictureNames = new Set(pictures.map(({ name }) => name));
+  const readings = [true, false].flatMap((isPicture) =>
+    reader.readings.filter(({ name }) => pictureNames.has(name) === isPicture),
+  );
+  const { cameras, poses } = ofPictures(
+    calibration,
+    pictures.map(({ name }) => name),
+  );
+  const folder: RigFolder = { frames, cameras, poses: inOrder(poses), readings, warnings: reader.warnings };
+  const own = cameras.filter(({ takes }) => takes === undefined || takes === "both");
+  addCameras(folder, {
+    isAligned:
+      chosen.length > 0 &&
+      chosen.every(({ depth }) => ALIGNED.test(depth.name) && !/un(?:aligned|registered)/i.test(depth.name)),
+    cameraOf: ({ name = "" }) =>
+      own.find((each) => each.name !== undefined && key(each.name) === key(name) && key(name) !== ""),
+  });
   checkUnits(frames, folder.warnings);
   folder.warnings = grouped(folder.warnings);
   if (frames.length + folder.cameras.length + folder.poses.length === 0) {

@@ -6,6 +6,7 @@
 import { type Check, object, signal, word, wrong } from "../check.js";
 import { BimodalError, badFile, badNamed, refused } from "../errors.js";
 import { readNpy } from "../npy.js";
+import { inOrder } from "./assign.js";
 import { looksLikeDepth, looksLikeMask, pictureColour, pictureMask } from "./colour.js";
 import { cloudDepth, isGrey, pictureDepth } from "./depth.js";
 import { colmapText } from "./formats/colmap-others.js";
@@ -84,12 +85,13 @@ function ofCloud(cloud: Cloud, options: ReadOptions): Content {
 async function ofText(text: string, { as }: ReadOptions): Promise<Content> {
   if (as === "colour" || as === "depth" || as === "mask")
     throw badFile(`it is a text where a ${as === "depth" ? "depth map" : `${as} image`} was asked for`);
-  const { cameras, poses, warnings, format } = await readText(text);
+  const { cameras, poses: found, warnings, format, depthUnit } = await readText(text);
+  const poses = inOrder(found);
   const reading = { says: `${format}: ${inWords(cameras, poses)}`, warnings: distinct(warnings) };
   if (as === "cameras" && cameras.length === 0) throw badFile(`it holds ${inWords(cameras, poses)}, but no camera`);
   if (as === "poses" && poses.length === 0) throw badFile(`it holds ${inWords(cameras, poses)}, but no motion`);
   return cameras.length > 0 && as !== "poses"
-    ? { kind: "cameras", cameras, poses, ...reading }
+    ? { kind: "cameras", cameras, poses, ...(depthUnit !== undefined && { depthUnit }), ...reading }
     : { kind: "poses", poses, ...reading };
 }
 

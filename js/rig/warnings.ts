@@ -36,6 +36,7 @@ export type ReaderCode =
   | "size-unused"
   | "camera-computed"
   | "camera-left-out"
+  | "intrinsics-vary"
   // Poses
   | "rotation-adjusted"
   | "quaternion-normalised"
@@ -45,6 +46,7 @@ export type ReaderCode =
   | "rotation-guessed"
   | "camera-to-world"
   | "pose-left-out"
+  | "pose-assumed"
   // Folders
   | "inverse-checked"
   | "file-left-out"

@@ -23,6 +23,20 @@ const BROWN =
 const FISHEYE = /^(fisheye|equidistant(camera)?|equid?4?|kannala[_ ]?brandt[48]?|opencv_fisheye)$/;
 /** librealsense's variants; it projects both as Brown's (its older versions followed the second the other way), but for products of terms. */
 const REALSENSE = /^(modified|inverse)[_ ]?brown[_ ]?conrady$/;
+/** Names of lens models that are not known here, as their makers write them in short. */
+const OTHERS: Record<string, string> = {
+  ds: "double sphere",
+  eucm: "extended unified",
+  ucm: "unified",
+  omni: "omnidirectional",
+  mei: "omnidirectional",
+  fov: "field of view",
+  atan: "field of view",
+  ftheta: "F-theta",
+  scaramuzza: "Scaramuzza's polynomial",
+  fisheyeradtanthinprism: "Aria's Fisheye624: make linear pictures by projectaria_tools",
+};
+
 /** Longer focal lengths, in pixels, are no camera. */
 const LONGEST = 1e6;
 
@@ -128,7 +142,9 @@ function lensOf(
       ),
     );
   else if (!BROWN.test(model))
-    throw badFile(`its lens model "${written.slice(0, 40)}" is not known here; Brown's and Kannala-Brandt's are`);
+    throw badFile(
+      `its lens model "${written.slice(0, 40)}"${Object.hasOwn(OTHERS, model) ? ` (${OTHERS[model]})` : ""} is not known here; Brown's and Kannala-Brandt's are`,
+    );
   return withBrown(brown(values.length === 3 ? radial(values, label, warnings) : values));
 }
 

@@ -55,6 +55,32 @@ function nine(values: Numbers, size: Numbers): Found {
   );
 }
 
+/** ScanNet writes its intrinsics as 4x4: a matrix of 3x3 in one that would be a motion's. */
+function intrinsicsOf4x4(values: Numbers): Numbers | undefined {
+  if (values.length !== 16) return undefined;
+  const zeros = [3, 4, 7, 8, 9, 11, 12, 13, 14].every((index) => near(values[index], 0));
+  const isK = zeros && near(values[10], 1) && near(values[15], 1) && (values[0] ?? 0) > 2 && (values[5] ?? 0) > 2;
+  return isK ? [0, 1, 2, 4, 5, 6, 8, 9, 10].map((index) => values[index] ?? NaN) : undefined;
+}
+
+/** ARKitScenes' .pincam: "width height fx fy cx cy" in one line. */
+const isPincam = (rows: Numbers[]): boolean => {
+  const [w = 0, h = 0, fx = 0, fy = 0, cx = 0, cy = 0] = rows[0] ?? [];
+  const isSide = (side: number) => Number.isInteger(side) && side >= 16;
+  return (
+    rows.length === 1 &&
+    rows[0]?.length === 6 &&
+    isSide(w) &&
+    isSide(h) &&
+    fx > 10 &&
+    fy > 10 &&
+    cx < w &&
+    cy < h &&
+    cx > 0 &&
+    cy > 0
+  );
+};
+
 /** TUM: time stamp, translation, quaternion x y z w, of the camera in the world. */
 function trajectory(rows: Numbers[], text: string): Found {
   const warnings: ReaderWarning[] = [];
@@ -108,6 +134,12 @@ export function readNumbers(text: string): Found | undefined {
   const size = rows[0]?.length === 2 && values.length === 11 ? values.slice(0, 2) : [];
   const isLine = rows.length === 1 && !near(values[8], 1);
   if (values.length - size.length === 9 && !isLine) return nine(values.slice(size.length), size);
+  const k = intrinsicsOf4x4(values);
+  if (k !== undefined) return camera(k, []);
+  if (isPincam(rows)) {
+    const [, , fx = NaN, fy = NaN, cx = NaN, cy = NaN] = values;
+    return camera([fx, 0, cx, 0, fy, cy, 0, 0, 1], values.slice(0, 2));
+  }
   if (values.length === 12 || values.length === 16) {
     const warnings: ReaderWarning[] = [];
     return { cameras: [], poses: [motionOfMatrix(values, {}, warnings)], warnings, format: "a matrix of a motion" };

@@ -5,14 +5,16 @@ import { isColmapImages, readColmapImages } from "./colmap-others.js";
 import { readColumns } from "./columns.js";
 import { withPoints } from "./commas.js";
 import { MOST_TEXT } from "./limits.js";
+import { looksLikeMrcal } from "./mrcal.js";
 import { readNotes } from "./notes.js";
 import type { Node } from "./numbers.js";
 import { readNumbers } from "./plain.js";
-import { isEnumeration, readEnumeration } from "./realsense.js";
+import { productOfText, productOfTree } from "./products.js";
 import { isEcho, isPublisher, readEcho, readPublishers } from "./ros.js";
 import { MOST_SETTINGS, isSectioned, plainPython, readJson, readSections } from "./settings.js";
 import { type Calibration, searchTree } from "./tree.js";
-import { plainXml, readXml } from "./xml.js";
+import { isUrdf, readUrdf } from "./urdf.js";
+import { type Element, plainXml, readXml } from "./xml.js";
 
 /** So that a small file cannot become a large value. */
 const YAML_LIMITS = { maxDepth: 32, maxAliases: 64 };
@@ -65,6 +67,8 @@ function searched(value: unknown, format: string, text: string): Read {
   const isText = (each: unknown) => typeof each !== "object" || each === null;
   if (isText(value) || (Array.isArray(value) && value.every(isText)))
     throw badFile("it is a text in none of the forms that are read here");
+  const product = productOfTree(value);
+  if (product !== undefined) return product;
   const found = searchTree(value, text);
   if (found.cameras.length === 0 && found.poses.length === 0)
     throw badFile(`it is ${format}, but holds ${NEITHER} that is known here`);
@@ -91,6 +95,8 @@ function ofNotes(text: string): Read | undefined {
 async function ofYaml(text: string): Promise<Read> {
   try {
     const value = await readYaml(text);
+    const product = productOfTree(value);
+    if (product !== undefined) return product;
     const found = searchTree(value, text);
     if (found.cameras.length + found.poses.length > 0) return { ...found, format: "YAML" };
     return ofNotes(text) ?? searched(value, "YAML", text);
@@ -104,15 +110,16 @@ async function ofYaml(text: string): Promise<Read> {
 
 /** XML, or what Python prints of an object: it begins with "<", too. */
 function ofXml(text: string): Read {
-  let value: unknown;
+  let root: Element;
   try {
-    value = plainXml(readXml(text));
+    root = readXml(text);
   } catch (error) {
     const found = /^<[\w.]+(?::|\s+object|\s*<)/.test(text) ? ofNotes(text.replace(/[<>]/g, " ")) : undefined;
     if (found === undefined) throw error;
     return found;
   }
-  return searched(value, "XML", text);
+  if (isUrdf(root)) return Object.assign(readUrdf(root), { format: "a robot's description" });
+  return searched(plainXml(root), "XML", text);
 }
 
 /** What a text holds, with a word on what kind of text it is. */
@@ -121,7 +128,9 @@ export async function readText(text: string): Promise<Read> {
   if (trimmed === "") throw badFile("it is empty: there is nothing in it but spaces");
   if (isPublisher(trimmed)) return { ...readPublishers(trimmed), format: "a static transform of ROS" };
   if (isEcho(trimmed)) return { ...readEcho(trimmed), format: "a transform of ROS" };
-  if (isEnumeration(trimmed)) return { ...readEnumeration(trimmed), format: "RealSense's streams" };
+  const product = productOfText(trimmed);
+  if (product !== undefined) return product;
+  if (looksLikeMrcal(trimmed)) return searched(await readYaml(trimmed), "YAML", trimmed);
   if (trimmed.startsWith("<")) return ofXml(trimmed);
   if (isColmap(trimmed)) return { ...readColmap(trimmed), format: "COLMAP's cameras" };
   if (isColmapImages(trimmed)) return { ...readColmapImages(trimmed), format: "COLMAP's images" };

@@ -20,6 +20,8 @@ export interface Calibration {
   cameras: NamedCamera[];
   poses: NamedPose[];
   warnings: ReaderWarning[];
+  /** Metres per stored unit of the depth maps beside it, where the file says it. */
+  depthUnit?: number;
 }
 
 const MOST_NODES = 50_000;
