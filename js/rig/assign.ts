@@ -152,17 +152,22 @@ function chosen(
   return [colour, range];
 }
 
+/** Principal points lie nearer to the middle, in shares of a side, or in pixels of small pictures. */
+const [OFF_MIDDLE, FEW_PIXELS] = [0.15, 8];
+
 /** The camera for pictures of this size, with a warning where it is of another. */
 function forSize(camera: NamedCamera | undefined, size: Size, what: string, warnings: ReaderWarning[]) {
   if (camera === undefined) return undefined;
   const { width, height } = size;
   const { cx, cy } = camera.camera;
   if (unsized(camera)) {
-    if (cx > width || cy > height)
+    const off = Math.max(Math.abs((cx + 0.5) / width - 0.5), Math.abs((cy + 0.5) / height - 0.5));
+    const where = cx > width || cy > height ? "outside these" : "far from the middle of these";
+    if (off > Math.max(OFF_MIDDLE, FEW_PIXELS / Math.min(width, height)))
       warnings.push(
         warning(
           "principal-point",
-          `The intrinsics of the ${what} have their principal point outside these (${cx}, ${cy} of ${width}x${height}): they may be for another size.`,
+          `The intrinsics of the ${what} have their principal point ${where} (${cx}, ${cy} of ${width}x${height}): they may be for another size, ${Math.round(2 * cx + 1)}x${Math.round(2 * cy + 1)} or so.`,
           { cx, cy },
         ),
       );

@@ -63,7 +63,7 @@ describe("data sets and toolboxes", () => {
       ],
     );
     const blender = await json({ camera_angle_x: 0.7, frames: [{ file_path: "r_0", transform_matrix: four }] });
-    assert.deepEqual([blender.kind, ...codes(blender)], ["poses", "camera-left-out"]);
+    assert.deepEqual([blender.kind, ...codes(blender)], ["poses", "camera-left-out", "camera-to-world"]);
   });
 
   test("Record3D: K by columns, the depth map's camera scaled; a focus that moved is said", async () => {

@@ -46,6 +46,7 @@ const LENS = [
   ["distcoeffs"],
   ["distcoeff"],
   ["distortions"],
+  ["disto"],
   ["distortion"],
   ["dist"],
   ["coeffs"],

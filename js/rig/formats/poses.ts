@@ -206,22 +206,6 @@ function ofOneDevice(values: Numbers, { from, to }: Omit<NamedPose, "pose">, war
 export const isLastRow = (row: Numbers): boolean =>
   row.length === 4 && row.every((value, index) => Math.abs(value - (index === 3 ? 1 : 0)) < 1e-6);
 
-/** Whether nine numbers are a rotation, or nearly one. */
-const isRotation = (values: Numbers): boolean => skewness(values) <= ROTATION_TOLERANCE;
-
-/**
- * Twelve numbers in a list as those of a 3x4 matrix: such a matrix row by row, or a rotation with a shift behind it, which librealsense
- * keeps column by column. Nothing where they are neither.
- */
-export function rowsOfTwelve(values: Numbers): { rows: Numbers; isByColumns: boolean } | undefined {
-  if (values.length !== 12) return undefined;
-  if (isRotation([0, 1, 2, 4, 5, 6, 8, 9, 10].map((index) => at(values, index))))
-    return { rows: values, isByColumns: false };
-  if (!isRotation(values.slice(0, 9))) return undefined;
-  const rows = [0, 3, 6, 9, 1, 4, 7, 10, 2, 5, 8, 11].map((index) => at(values, index));
-  return { rows, isByColumns: true };
-}
-
 /** 12 or 16 numbers, row by row. */
 export function motionOfMatrix(
   values: Numbers,

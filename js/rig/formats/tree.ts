@@ -90,18 +90,19 @@ class Search {
     if (this.#found.length + this.motions.poses.length > MOST_FOUND)
       throw badFile(`it holds more than ${MOST_FOUND} cameras and poses`);
     if (Array.isArray(value)) return this.#list(value, key, name, context, { node: {}, parent, depth });
+    const called = nameIn(value as Node) ?? name;
     const keys = Object.keys(value);
     this.#members += keys.length;
     if (this.#members > MOST_MEMBERS) throw badFile(`its objects have more than ${MOST_MEMBERS} members`);
     const node = keys.length > MOST_OWN ? (value as Node) : withLists(value as Node);
     const place = { node, parent, depth };
-    const inner = keys.length > MOST_OWN ? context : this.#read(place, key, name, context);
+    const inner = keys.length > MOST_OWN ? context : this.#read(place, key, called, context);
     for (const [group, members] of grouped(node, keys)) this.walk(members, group, group, context, place);
     for (const each of keys) {
       if (matrixOf(node[each]) !== undefined) continue;
       const ofWorld = /^(?:camera_?)?pose$/i.test(each) && inner.from === undefined && inner.to === undefined;
       const around = ofWorld ? { ...inner, from: "camera", to: "world" } : { ...inner, ...orbbecContext(node, each) };
-      this.walk(node[each], each, nameOf(each, name), around, place);
+      this.walk(node[each], each, nameOf(each, called), around, place);
     }
   }
 
@@ -325,11 +326,21 @@ function cameraOfMatrix(node: Node, key: string, label: string): Intrinsics | un
   return { focal: [fx, fy], centre: [cx, cy], skew };
 }
 
+const SIDE = /^(?:colou?r|rgb|depth|ir|infra(?:red)?[_ ]?\d?)$/i;
+
+/** What an object says that it is of: a stream, a sensor, or a type that is one of these. */
+function nameIn(node: Node): string | undefined {
+  const type = textOf(member(node, "type", "streamtype", "kind"));
+  return textOf(member(node, "stream", "streamname", "sensor")) ?? (SIDE.test(type ?? "") ? type : undefined);
+}
+
 /** What a member's cameras and poses are called: members that only say what they are take their parent's name. */
-const nameOf = (key: string, parent: string): string =>
-  /^(transforms?|intrinsics?|pose|param|opencv_storage|launch|parameters|ros__parameters|nodes)$/.test(key)
-    ? parent
-    : key;
+const nameOf = (key: string, parent: string): string => {
+  if (/^(transforms?|intrinsics?|pose|param|opencv_storage|launch|parameters|ros__parameters|nodes)$/.test(key))
+    return parent;
+  // One camera at many sizes.
+  return parent !== "" && /^\d{2,5}[xX_]\d{2,5}(?:[@_]\d+)?$/.test(key) ? `${parent} ${key}` : key;
+};
 
 const isEmpty = (value: unknown): boolean =>
   value === null || value === "" || (Array.isArray(value) && value.length === 0);
