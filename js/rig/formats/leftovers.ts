@@ -136,6 +136,8 @@ export class Leftovers {
   readonly #lenses: Lens[] = [];
   /** What may be a lens by its name, and is not called as any program calls it. */
   readonly #unknown: Pick<Lens, "key" | "distortion">[] = [];
+  /** Objects that are lenses themselves. */
+  readonly #parts = new WeakSet<Node>();
   readonly #sizes: Size[] = [];
 
   /** Notes what of an object looks like a lens or a size; `used` are members that a camera of it has taken. */
@@ -145,9 +147,11 @@ export class Leftovers {
       const label = used.has(key) ? undefined : isLens(key);
       const lens = label === undefined && !LENS_LIKE.test(key) ? undefined : lensOf(node[key]);
       if (label === undefined) {
-        if (lens !== undefined && !used.has(key)) this.#unknown.push({ key, distortion: lens.distortion });
+        if (lens !== undefined && !used.has(key) && !this.#parts.has(node))
+          this.#unknown.push({ key, distortion: lens.distortion });
         continue;
       }
+      if (lens !== undefined && isNode(node[key])) this.#parts.add(node[key]);
       if (lens !== undefined) this.#lenses.push({ key, label, place, ...lens });
       else if (isNode(node[key])) this.#eachOf(node[key], key, place);
     }

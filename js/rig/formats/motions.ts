@@ -340,9 +340,10 @@ export class Motions {
       cameras.some((camera) => camera.name === name && name !== undefined) &&
       degreesOf(pose.rotation) === 0 &&
       pose.translation.every((value) => value === 0);
+    if (cameras.length < 2) return;
     const kept = this.poses.filter((pose) => !isReference(pose));
     for (const { name = "" } of this.poses.filter(isReference)) this.#unused.push(name);
-    if (cameras.length > 1) this.poses.splice(0, this.poses.length, ...kept);
+    this.poses.splice(0, this.poses.length, ...kept);
   }
 
   /** Where the way back is in the file, too, the two have to be inverse: rows or columns then follow. */
