@@ -1,6 +1,7 @@
 // The languages that calibrations are written in: JSON with comments, TOML, Python, numbers with labels, decimal commas.
 import assert from "node:assert/strict";
 import { describe, test } from "node:test";
+import { writeNpy } from "../../pkg/write.js";
 import { codes, distortion, matrix, only, read, rows, sameCamera, samePose, translation } from "./rig-support.mjs";
 
 describe("languages", () => {
@@ -87,6 +88,16 @@ describe("languages", () => {
     );
     assert.equal(only(cameras).name, "1");
     assert.match(warnings[0].message, /THIN_PRISM_FISHEYE/);
+  });
+
+  test("matrices in .npy files", async () => {
+    const npy = (values, width) =>
+      writeNpy({ width, height: values.length / width, channels: 1, data: Float32Array.from(values) });
+    sameCamera(only((await read("K.npy", npy([512.5, 0, 320.5, 0, 513, 240.25, 0, 0, 1], 3))).cameras), null, {
+      ...{ fx: 512.5, fy: 513, cx: 320.5, cy: 240.25 },
+    });
+    samePose(only((await read("T.npy", npy(matrix.flat(), 4))).poses));
+    assert.equal((await read("depth.npy", npy([1, 2, 3, 1, 2, 3, 1, 2, 3], 3), { as: "depth" })).kind, "depth");
   });
 
   test("COLMAP's cameras.bin and images.txt", async () => {
