@@ -102,13 +102,16 @@ async function ofOthers(name: string, bytes: Uint8Array, options: ReadOptions): 
 
 async function content({ name, bytes }: NamedFile, options: ReadOptions): Promise<Content> {
   if (bytes.length === 0) throw badFile("it is empty");
+  const kind = rasterKind(bytes);
+  // A recording is named before its size is, and a camera's raw photograph is a TIFF of its preview.
+  const container = bytes.length > MOST_BYTES || kind === "tiff" ? knownContainer(name, bytes) : undefined;
+  if (container !== undefined) throw container;
   if (bytes.length > MOST_BYTES)
     throw badFile(
       `it is ${(bytes.length / 2 ** 20).toFixed(0)} MB large; up to ${MOST_BYTES / 2 ** 20} MB are read`,
       undefined,
       { problem: "too-large" },
     );
-  const kind = rasterKind(bytes);
   if (kind === "ply") return ofCloud(readPly(bytes), options);
   if (kind === "pcd") return ofCloud(readPcd(bytes), options);
   if (kind === undefined || kind === "points") return ofOthers(name, bytes, options);
