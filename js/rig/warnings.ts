@@ -31,14 +31,22 @@ export type ReaderCode =
   | "pixels-not-square"
   | "skew-ignored"
   | "lens-approximated"
-  | "camera-left-out"
   | "intrinsics-vary"
+  | "distortion-unused"
+  | "distortion-guessed"
+  | "size-unused"
+  | "camera-computed"
+  | "camera-left-out"
   // Poses
   | "rotation-adjusted"
   | "quaternion-normalised"
   | "translation-unit-guessed"
-  | "pose-left-out"
   | "pose-assumed"
+  | "quaternion-order"
+  | "rotation-order"
+  | "rotation-guessed"
+  | "camera-to-world"
+  | "pose-left-out"
   // Folders
   | "inverse-checked"
   | "file-left-out"
@@ -73,6 +81,7 @@ const HARMLESS: ReadonlySet<ReaderCode> = new Set([
   "mask-size",
   "pairs-sampled",
   "pose-left-out",
+  "camera-to-world",
 ]);
 
 export const warning = (

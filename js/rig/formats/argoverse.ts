@@ -43,3 +43,45 @@ function posesOf(found: Findings, node: Node, camera: string | undefined): void 
     found.pose(ofQuaternion([x, y, z, w], found.warnings), t, { name: `${to} from ${from}`, from, to });
   }
 }
+
+const isRecord = (value: unknown): value is Node =>
+  isNode(value) && "sensor_name" in value && (("qw" in value && "tx_m" in value) || "fx_px" in value);
+
+/** The two tables of Argoverse 2, as records: intrinsics, and where each sensor is in the vehicle. */
+export const isArgoverse2 = (root: unknown): boolean => Array.isArray(root) && root.slice(0, 4).some(isRecord);
+
+export function readArgoverse2(root: unknown[]): Findings {
+  const found = new Findings();
+  for (const record of root.filter(isRecord)) {
+    const n = (key: string) => numberOf(record[key]);
+    const all = (...keys: string[]) => keys.map((key) => n(key) ?? NaN);
+    const name = String(record.sensor_name).slice(0, 60);
+    if (n("fx_px") !== undefined) {
+      const [k1 = 0, k2 = 0, k3 = 0] = [n("k1"), n("k2"), n("k3")];
+      found.camera({
+        ...{ name, focal: all("fx_px", "fy_px"), centre: all("cx_px", "cy_px"), distortion: [k1, k2, 0, 0, k3] },
+        ...{ width: n("width_px"), height: n("height_px") },
+      });
+    }
+    if (n("qw") === undefined) continue;
+    const names = { name: `egovehicle from ${name}`, from: name, to: "egovehicle" };
+    found.pose(ofQuaternion(all("qx", "qy", "qz", "qw"), found.warnings), all("tx_m", "ty_m", "tz_m"), names);
+  }
+  return found.done("a table of Argoverse 2");
+}
+
+const isTable = /^[^\n]*\bsensor_name\b[^\n]*\n/;
+export const isArgoverse2Table = (text: string): boolean =>
+  isTable.test(text) && /\b(?:fx_px|tx_m)\b/.test(text.slice(0, 400));
+
+/** .. as CSV. */
+export function readArgoverse2Table(text: string): Findings {
+  const [head = "", ...lines] = text.split(/\r?\n/).filter((line) => line.trim() !== "");
+  const names = head.split(",").map((name) => name.trim());
+  return readArgoverse2(
+    lines.slice(0, 5000).map((line) => {
+      const cells = line.split(",");
+      return Object.fromEntries(names.map((name, at) => [name, cells[at]?.trim()]));
+    }),
+  );
+}

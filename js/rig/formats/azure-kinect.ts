@@ -140,16 +140,17 @@ const LINE =
   /^\s*(resolution width|resolution height|principal point [xy]|focal length [xy]|k[1-6]|tangential distortion coefficient [xy]|center of distortion in Z=1 plane, [xy])\s*:\s*(\S+)\s*$/i;
 
 export const isAzurePrint = (text: string): boolean =>
-  /^\s*principal point x\s*:/im.test(text) && /^\s*focal length x\s*:/im.test(text);
+  /^[ \t]*principal point x[ \t]*:/im.test(text) && /^[ \t]*focal length x[ \t]*:/im.test(text);
 
 /** The SDK's example `calibration_info`: the depth camera in the mode that it was started in. */
 export function readAzurePrint(text: string): Findings {
   const found = new Findings();
   let values = new Map<string, number>();
+  let name: "depth" | "color" = "depth";
   const take = () => {
     const n = (key: string) => values.get(key) ?? NaN;
     const raw: RawCamera = {
-      ...{ name: "depth", focal: [n("focal length x"), n("focal length y")] },
+      ...{ name, focal: [n("focal length x"), n("focal length y")] },
       ...{ centre: [n("principal point x"), n("principal point y")] },
       distortion: [
         "k1",
@@ -163,13 +164,20 @@ export function readAzurePrint(text: string): Findings {
       ].map((key) => values.get(key) ?? 0),
       ...{ width: values.get("resolution width"), height: values.get("resolution height") },
     };
-    if (values.has("focal length x")) found.camera(raw, "depth");
+    if (values.has("focal length x")) found.camera(raw, name === "depth" ? "depth" : "colour");
     values = new Map();
   };
   for (const line of text.split(/\r?\n/)) {
     const [, key = "", value] = LINE.exec(line) ?? [];
     const number = numberOf(value);
-    if (key === "" || number === undefined) continue;
+    if (key === "" || number === undefined) {
+      // Programs that print both cameras put a line of words before each.
+      const said = /colou?r|rgb/i.test(line) ? "color" : /depth/i.test(line) ? "depth" : undefined;
+      if (said === undefined || number !== undefined) continue;
+      take();
+      name = said;
+      continue;
+    }
     if (values.has(key.toLowerCase())) take();
     values.set(key.toLowerCase(), number);
   }

@@ -7,18 +7,15 @@ import { chained } from "./poses.js";
 /** Depthai's names of its first sockets and what is usually plugged there. */
 const SOCKETS = ["rgb (CAM_A)", "left (CAM_B)", "right (CAM_C)"];
 const socketName = (socket: unknown): string => {
-  const number = typeof socket === "string" ? (/^CAM_([A-H])$/.exec(socket)?.[1]?.charCodeAt(0) ?? NaN) - 65 : socket;
-  const index = Number(number ?? socket);
-  if (!Number.isInteger(index) || index < 0) return String(socket).slice(0, 40);
-  return SOCKETS[index] ?? `CAM_${String.fromCharCode(65 + (index % 26))}`;
+  const text = String(socket).slice(0, 40);
+  const letter = /^CAM_([A-Z])$/.exec(text)?.[1];
+  const index = letter === undefined ? Number(text) : letter.charCodeAt(0) - "A".charCodeAt(0);
+  if (!Number.isInteger(index) || index < 0 || index > 25) return text;
+  return SOCKETS[index] ?? `CAM_${String.fromCharCode("A".charCodeAt(0) + index)}`;
 };
 const FISHEYE = 1;
 const MODELS: Record<string, string> = { 0: "opencv", 1: "fisheye", 2: "equirectangular", 3: "radial division" };
 const METRES = 0.01;
-
-export const isDepthai = (root: Node): boolean =>
-  (Array.isArray(root.cameraData) || isNode(root.cameraData)) &&
-  ("boardName" in root || "stereoRectificationData" in root || "batchTime" in root);
 
 /** The sockets with their cameras: a map of C++ is a list of pairs in JSON, of Python an object. */
 function entries(data: unknown): [unknown, Node][] {
@@ -27,6 +24,10 @@ function entries(data: unknown): [unknown, Node][] {
     Array.isArray(pair) && isNode(pair[1]) ? [[pair[0], pair[1]] as [unknown, Node]] : [],
   );
 }
+
+/** Any camera of it has these two, whatever else the file says. */
+export const isDepthai = (root: Node): boolean =>
+  entries(root.cameraData).some(([, camera]) => "distortionCoeff" in camera && isNode(camera.extrinsics));
 
 export function readDepthai(root: Node): Findings {
   const found = new Findings();

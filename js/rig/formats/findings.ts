@@ -78,7 +78,7 @@ export class Findings implements Calibration {
   /** Itself, if it holds anything. */
   done(what: string): this {
     if (this.cameras.length + this.poses.length > 0) return this;
-    if (this.#reason instanceof BimodalError) throw badFile(`it is ${what}, but ${this.#reason.message}`, this.#reason);
+    if (this.#reason instanceof BimodalError) throw badFile(`it is ${what}, but ${this.#reason.message}`);
     throw badFile(`it is ${what}, but holds no camera and no pose`);
   }
 }

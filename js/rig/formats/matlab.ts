@@ -85,7 +85,7 @@ export function readMatlab(whole: Node): Findings {
 const ENTRY = /^[ \t]*([A-Za-z]\w{0,40})[ \t]*=[ \t]*(?:\[([^\]%]{0,600})\]|([^;[\n%]{1,60}))[ \t]*;/gm;
 
 export const isBouguet = (text: string): boolean =>
-  /^\s*fc(?:_left)?\s*=\s*\[/m.test(text) && /^\s*cc(?:_left)?\s*=\s*\[/m.test(text);
+  /^[ \t]*fc(?:_left)?[ \t]*=[ \t]*\[/m.test(text) && /^[ \t]*cc(?:_left)?[ \t]*=[ \t]*\[/m.test(text);
 
 /** `Calib_Results.m` and `Calib_Results_stereo.m`. */
 export function readBouguet(text: string): Findings {

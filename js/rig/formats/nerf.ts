@@ -63,5 +63,10 @@ export function readNerf(root: Node): Findings {
     const [r, t] = parted(m);
     found.pose(ofOpenGL(r), t, { name: nameOf(frame, index), from: "camera", to: "world" });
   });
+  if (found.poses.length > 0)
+    found.warn(
+      "camera-to-world",
+      `Its ${found.poses.length} poses say where the camera stood in the world; they relate no two cameras, and have been turned from OpenGL's axes.`,
+    );
   return found.done("a transforms.json of cameras in the world (nerfstudio)");
 }

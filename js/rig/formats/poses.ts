@@ -13,6 +13,8 @@ const ROTATION_TOLERANCE = 1e-2;
 const ROUNDING = 1e-3;
 /** Cameras of one rig are not so far apart, metres: a longer shift is in millimetres. */
 const LONGEST = 10;
+/** .. and depth and colour cameras of one device not so far, metres; a LiDAR on a vehicle may be called a depth camera, too. */
+const APART = 3;
 
 const at = (values: Numbers, index: number): number => values[index] ?? 0;
 
@@ -179,28 +181,30 @@ export function motion(
   warnings: ReaderWarning[],
   isRig = true,
 ): NamedPose {
-  return { ...names, pose: poseOf(rotationOf(rotation, warnings), shiftOf(translation, isRig, warnings)) };
+  const shift = isRig ? ofOneDevice(translation, names, warnings) : translation;
+  return { ...names, pose: poseOf(rotationOf(rotation, warnings), shiftOf(shift, isRig, warnings)) };
+}
+
+const DEVICE = /depth|colou?r|rgb|\bir\b|infra|tof/i;
+
+/** Depth and colour cameras of one device are centimetres apart: a translation of some units between them is in centimetres. */
+function ofOneDevice(values: Numbers, { from, to }: Omit<NamedPose, "pose">, warnings: ReaderWarning[]): Numbers {
+  const length = Math.hypot(...values);
+  const isDevice = DEVICE.test(from ?? "") && DEVICE.test(to ?? "");
+  if (!isDevice || !(length > APART && length <= LONGEST)) return values;
+  warnings.push(
+    warning(
+      "translation-unit-guessed",
+      `The translation is ${length.toPrecision(4)} units long and was guessed to be in centimetres, as depth and colour cameras are not metres apart.`,
+      { length },
+    ),
+  );
+  return values.map((value) => value / 100);
 }
 
 /** Whether a row is that of a motion's matrix, 0 0 0 1. */
 export const isLastRow = (row: Numbers): boolean =>
   row.length === 4 && row.every((value, index) => Math.abs(value - (index === 3 ? 1 : 0)) < 1e-6);
-
-/** Whether nine numbers are a rotation, or nearly one. */
-const isRotation = (values: Numbers): boolean => skewness(values) <= ROTATION_TOLERANCE;
-
-/**
- * Twelve numbers in a list as those of a 3x4 matrix: such a matrix row by row, or a rotation with a shift behind it, which librealsense
- * keeps column by column. Nothing where they are neither.
- */
-export function rowsOfTwelve(values: Numbers): { rows: Numbers; isByColumns: boolean } | undefined {
-  if (values.length !== 12) return undefined;
-  if (isRotation([0, 1, 2, 4, 5, 6, 8, 9, 10].map((index) => at(values, index))))
-    return { rows: values, isByColumns: false };
-  if (!isRotation(values.slice(0, 9))) return undefined;
-  const rows = [0, 3, 6, 9, 1, 4, 7, 10, 2, 5, 8, 11].map((index) => at(values, index));
-  return { rows, isByColumns: true };
-}
 
 /** 12 or 16 numbers, row by row. */
 export function motionOfMatrix(

@@ -3,7 +3,14 @@
  * reader of its own, which is asked before the walk that knows members by their names.
  */
 import { isAria, readAria } from "./aria.js";
-import { isArgoverse, readArgoverse } from "./argoverse.js";
+import {
+  isArgoverse,
+  isArgoverse2,
+  isArgoverse2Table,
+  readArgoverse,
+  readArgoverse2,
+  readArgoverse2Table,
+} from "./argoverse.js";
 import { isAutoware, readAutoware } from "./autoware.js";
 import { isAzureKinect, isAzurePrint, readAzureKinect, readAzurePrint } from "./azure-kinect.js";
 import { isBasalt, readBasalt } from "./basalt.js";
@@ -15,15 +22,17 @@ import { isKinect2, readKinect2 } from "./kinect-v2.js";
 import { isKitti, readKitti } from "./kitti.js";
 import { isBouguet, isMatlab, readBouguet, readMatlab } from "./matlab.js";
 import { isMiddlebury, readMiddlebury } from "./middlebury.js";
-import { isMrcal, readMrcal } from "./mrcal.js";
+import { isMrcal, looksLikeMrcal, readMrcal } from "./mrcal.js";
 import { isNerf, readNerf } from "./nerf.js";
 import { isNode, type Node } from "./numbers.js";
 import { isNuscenes, readNuscenes } from "./nuscenes.js";
 import { isEnumeration, isPrinted, isSnapshot, readEnumeration, readPrinted, readSnapshot } from "./realsense.js";
 import { isRecord3d, readRecord3d } from "./record3d.js";
 import { isScannet, readScannet } from "./scannet.js";
+import { isUrdf, readUrdf } from "./urdf.js";
 import { isVlcal, readVlcal } from "./vlcal.js";
-import { isWaymo, readWaymo } from "./waymo.js";
+import { isWaymo, isWaymoText, readWaymo, readWaymoText } from "./waymo.js";
+import type { Element } from "./xml.js";
 import { isZed, readZed } from "./zed.js";
 import { isZivid, readZivid } from "./zivid.js";
 
@@ -37,6 +46,8 @@ const TEXTS: Product<string>[] = [
   ["a ZED's calibration", isZed, readZed],
   ["a scene's text of ScanNet", isScannet, readScannet],
   ["a result of Bouguet's toolbox", isBouguet, readBouguet],
+  ["a calibration of Waymo's dataset", isWaymoText, readWaymoText],
+  ["a table of Argoverse 2", isArgoverse2Table, readArgoverse2Table],
   ["a calibration of KITTI", isKitti, readKitti],
   ["Middlebury's calibration of a stereo pair", isMiddlebury, readMiddlebury],
 ];
@@ -75,5 +86,13 @@ export function productOfTree(value: unknown): Found | undefined {
   const whole: unknown = Array.isArray(value) && value.length === 1 ? value[0] : value;
   const [format, , read] = (isNode(whole) ? TREES.find(([, is]) => is(whole)) : undefined) ?? [];
   if (format !== undefined && read && isNode(whole)) return named(read(whole), format);
+  if (Array.isArray(value) && isArgoverse2(value)) return named(readArgoverse2(value), "a table of Argoverse 2");
   return isNuscenes(value) ? named(readNuscenes(value), "a table of nuScenes") : undefined;
 }
+
+/** What an XML document of a product holds. */
+export const productOfXml = (root: Element): Found | undefined =>
+  isUrdf(root) ? named(readUrdf(root), "a robot's description") : undefined;
+
+/** Whether a text is a tree in Python's notation, which YAML has as well. */
+export const isPythonTree = looksLikeMrcal;

@@ -4,11 +4,11 @@ import { type Numbers, numberOf } from "./numbers.js";
 import { chained, inverseOf, poseOf, rotationOf } from "./poses.js";
 import type { Pose } from "../types.js";
 
-const SENSOR = /^\s*m_calibration(?:Color|Depth)Intrinsic\s*=/m;
-const SCENE = /^\s*fx_(?:color|depth)\s*=/m;
+const SENSOR = /^[ \t]*m_calibration(?:Color|Depth)Intrinsic[ \t]*=/m;
+const SCENE = /^[ \t]*fx_(?:color|depth)[ \t]*=/m;
 
 export const isScannet = (text: string): boolean =>
-  SENSOR.test(text) || (SCENE.test(text) && /^\s*mx_(?:color|depth)\s*=/m.test(text));
+  SENSOR.test(text) || (SCENE.test(text) && /^[ \t]*mx_(?:color|depth)[ \t]*=/m.test(text));
 
 function entriesOf(text: string): Map<string, Numbers> {
   const found = new Map<string, Numbers>();

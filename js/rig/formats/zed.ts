@@ -18,7 +18,7 @@ const SIZES: Record<string, [number, number]> = {
   "4K": [3840, 2160],
   XVGA: [1024, 768],
 };
-const SECTION = /^\s*\[(LEFT|RIGHT)_CAM_([A-Z0-9]{1,10})\]\s*$/im;
+const SECTION = /^[ \t]*\[(LEFT|RIGHT)_CAM_([A-Z0-9]{1,10})\][ \t]*$/im;
 
 export const isZed = (text: string): boolean => SECTION.test(text);
 

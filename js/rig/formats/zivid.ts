@@ -3,32 +3,27 @@ import { Findings, flat, parted } from "./findings.js";
 import { isNode, type Node, numberOf } from "./numbers.js";
 
 const MILLIMETRE = 0.001;
-const bodyOf = (root: Node): Node => (isNode(root.CameraIntrinsics) ? root.CameraIntrinsics : root);
-const matrixOf = (root: Node) => flat(isNode(root.FloatMatrix) ? root.FloatMatrix.Data : undefined, 16);
+/** A member by its name in any case, with or without an underscore: YAML and Python write it differently. */
+const part = (node: unknown, name: string): unknown =>
+  isNode(node) ? Object.entries(node).find(([key]) => key.toLowerCase().replace(/_/g, "") === name)?.[1] : undefined;
+const bodyOf = (root: Node): unknown => part(root, "cameraintrinsics") ?? root;
+const matrixOf = (root: Node) => flat(part(part(root, "floatmatrix"), "data"), 16);
 
 export const isZivid = (root: Node): boolean => {
-  const { CameraMatrix } = bodyOf(root);
-  return (isNode(CameraMatrix) && "CX" in CameraMatrix && "FX" in CameraMatrix) || matrixOf(root) !== undefined;
+  const matrix = part(bodyOf(root), "cameramatrix");
+  return (
+    ["cx", "cy", "fx", "fy"].every((key) => numberOf(part(matrix, key)) !== undefined) || matrixOf(root) !== undefined
+  );
 };
 
 export function readZivid(root: Node): Findings {
   const found = new Findings();
   const body = bodyOf(root);
-  const n = (part: string) => {
-    const node = body[part];
-    return (key: string) => (isNode(node) ? numberOf(node[key]) : undefined);
-  };
-  const [matrix, lens] = [n("CameraMatrix"), n("Distortion")];
-  if (matrix("FX") !== undefined)
-    found.camera(
-      {
-        ...{ name: "camera", focal: [matrix("FX") ?? NaN, matrix("FY") ?? NaN] },
-        ...{ centre: [matrix("CX") ?? NaN, matrix("CY") ?? NaN] },
-        distortion: ["K1", "K2", "P1", "P2", "K3"].map((key) => lens(key) ?? 0),
-      },
-      // A Zivid's colours and points come from the same pixels.
-      "both",
-    );
+  const [matrix, lens] = [part(body, "cameramatrix"), part(body, "distortion")];
+  const [fx = NaN, fy = NaN, cx = NaN, cy = NaN] = ["fx", "fy", "cx", "cy"].map((key) => numberOf(part(matrix, key)));
+  const distortion = ["k1", "k2", "p1", "p2", "k3"].map((key) => numberOf(part(lens, key)) ?? 0);
+  // A Zivid's colours and points come from the same pixels.
+  if (Number.isFinite(fx)) found.camera({ name: "camera", focal: [fx, fy], centre: [cx, cy], distortion }, "both");
   const m = matrixOf(root);
   if (m) {
     const [r, t] = parted(m);
