@@ -388,6 +388,7 @@ fn registering(u: &mut Unstructured<'_>) -> Result<()> {
         most_points: if u.arbitrary()? { u.int_in_range(0..=300)? } else { usize::MAX },
         annealed_points: if u.arbitrary()? { u.int_in_range(0..=300)? } else { usize::MAX },
         annealing: u.arbitrary()?,
+        jackknife: u.arbitrary()?,
         points_stay: false,
     };
     let mut registration = Photometric::new(&problem);
