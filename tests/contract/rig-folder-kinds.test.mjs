@@ -107,6 +107,25 @@ describe("a third folder", () => {
     ]);
   });
 
+  test("scenes in folders side by side, without a folder for depths, with a mask each", async () => {
+    const mask = (lit) => grey(8, (x) => [x >= lit ? 255 : 0]);
+    const scene = (name, mark) => ({
+      [`${name}/rgb.png`]: colour(mark),
+      [`${name}/depth.png`]: depth(1000 + mark),
+      [`${name}/mask.png`]: mask(mark),
+    });
+    const found = await folder({ ...scene("bear", 1), ...scene("ox", 2) });
+    assert.deepEqual(marks(found), [
+      [1, 1001],
+      [2, 1002],
+    ]);
+    assert.deepEqual(
+      found.frames.map(({ image }) => image.mask.indexOf(255)),
+      [1, 2],
+    );
+    saysNot(found, "names-ambiguous");
+  });
+
   test("a depth map and what was made of it", async () => {
     const found = await folder({ "rgb/0.png": colour(), "depth/0.png": depth(), "depth_filled/0.png": depth(1200) });
     assert.deepEqual(marks(found), [[0, 1000]]);
