@@ -415,3 +415,10 @@ describe("intrinsics of another size", () => {
     assert.equal(plain.frames[0].depth.camera.fx, 50);
   });
 });
+
+test("a lens whose name lists its coefficients is used, and no more is said of it", async () => {
+  const camera = { fx: 50, fy: 50, cx: 24, cy: 18, dist_k1k2p1p2k3: [0.1, -0.2, 0.001, 0.002, 0.3] };
+  const found = await folder({ "calib.json": JSON.stringify({ rgb: camera, depth: { ...camera, fx: 51, fy: 51 } }) });
+  assert.deepEqual([...found.cameras[0].camera.distortion], camera.dist_k1k2p1p2k3);
+  assert.deepEqual(found.warnings, []);
+});
