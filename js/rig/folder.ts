@@ -14,7 +14,7 @@ import { type Pair, type Pairs, tum } from "./lists.js";
 import { key, stem } from "./names.js";
 import { pairsOf } from "./pairs.js";
 import { checkNamed, isRasterFile, isTextFile, metresPerUnit, pixelSize, readRigFile } from "./read.js";
-import { isAligned, roleOf } from "./roles.js";
+import { isAligned, isOther, roleOf } from "./roles.js";
 import type {
   CheckFrame,
   Mask,
@@ -308,7 +308,11 @@ export async function readRigFolder(files: NamedFile[], options: FolderOptions =
   const { pictures, texts } = kept;
   const reader = new FolderReader(signal);
   let found = tum([...pictures, ...texts], reader.warnings) ?? pairsOf(pictures, reader.warnings);
-  if (found.pairs.length === 0) found = await byContent(pictures, reader);
+  if (found.pairs.length === 0)
+    found = await byContent(
+      pictures.filter(({ name }) => !isOther(roleOf(name))),
+      reader,
+    );
   const names = new Set(found.pairs.map(({ name }) => name));
   const { depthUnit, ...calibration } = await calibrationOf(kept, names, reader);
   const inText = unit === undefined && depthUnit === undefined ? unitBeside(texts, reader.warnings) : undefined;

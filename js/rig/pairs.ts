@@ -8,7 +8,7 @@ import { badFile } from "../errors.js";
 import { rasterKind } from "./formats/headerless.js";
 import { APART, type Pair, type Pairs, byTime } from "./lists.js";
 import { commonPath, folderOf, key, looseKey, stem, timeOf } from "./names.js";
-import { CONTENTS, type Role, roleOf } from "./roles.js";
+import { CONTENTS, type Other, type Role, roleOf } from "./roles.js";
 import type { NamedFile } from "./types.js";
 import { type ReaderWarning, ofFile, warning } from "./warnings.js";
 
@@ -41,7 +41,7 @@ function sorted(pictures: NamedFile[], warnings: ReaderWarning[]): Sorted {
   const named = [...of("colour"), ...of("unknown")];
   const depths = [...of("depth"), ...of("cloud")];
   const colours = named.length > 0 ? named : of("infrared");
-  for (const role of Object.keys(CONTENTS) as (keyof typeof CONTENTS)[]) {
+  for (const role of Object.keys(CONTENTS) as Other[]) {
     const [first, ...others] = role === "infrared" && named.length === 0 ? [] : of(role);
     if (first === undefined) continue;
     const more = others.length > 0 ? ` (and ${others.length} more like it)` : "";
@@ -143,25 +143,33 @@ function alternatives(depths: NamedFile[]): NamedFile[][] {
   return [...groups.values()];
 }
 
+/** The depth maps of other groups. */
+const firstsOf = (groups: NamedFile[][], own: NamedFile): NamedFile[] =>
+  groups.flatMap(([first]) => (first && first !== own ? [first] : []));
+
 /** Those that go together by their names; `others` are alone or may belong to several. */
 function byNames({ colours, depths, masks }: Sorted, warnings: ReaderWarning[], keyOf = key): Pair[] {
-  const maskOf = (name: string) =>
-    masks.find((mask) => keyOf(mask.name) === name) ??
-    (masks.length === 1 && key(masks[0]?.name ?? "") === "" ? masks[0] : undefined);
+  const maskOf = (name: string, { name: path }: NamedFile) => {
+    const like = masks.filter((mask) => keyOf(mask.name) === name);
+    const near = (mask: NamedFile) => shared(mask.name, path);
+    const [first] = like.sort((a, b) => near(b) - near(a));
+    return first ?? (masks.length === 1 && key(masks[0]?.name ?? "") === "" ? masks[0] : undefined);
+  };
   const likeColours = byKey(colours, keyOf);
   /** Files of which something is said already. */
   const said = new Set<string>();
   const pairs = [...byKey(depths, keyOf)].flatMap(([name, likeDepths]) => {
     const theirs = likeColours.get(name) ?? [];
-    const groups = plainOf(alternatives(likeDepths), warnings);
+    const all = alternatives(likeDepths);
+    const isOwn = ([depth]: NamedFile[]) => depth && ownOf(depth, firstsOf(all, depth), theirs).length > 0;
+    const groups = theirs.length === 0 || all.every(isOwn) ? all : plainOf(all, warnings);
     for (const each of likeDepths) if (!groups.flat().includes(each)) said.add(each.name);
     return groups.flatMap(([depth, ...more]): Pair[] => {
       if (depth === undefined) return [];
-      const rivals = groups.flatMap(([other]) => (other && other !== depth ? [other] : []));
-      const [colour, ...others] = nearest(depth, ownOf(depth, rivals, theirs));
+      const [colour, ...others] = nearest(depth, ownOf(depth, firstsOf(groups, depth), theirs));
       if (colour && others.length === 0) {
         for (const { name } of [depth, ...more, colour]) said.add(name);
-        const mask = maskOf(name);
+        const mask = maskOf(name, colour);
         return [{ name, colour, depths: [depth, ...more], ...(mask && { mask }) }];
       }
       if (theirs.length > 0) {

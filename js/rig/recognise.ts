@@ -4,7 +4,7 @@ import { looksLikeDepth, looksLikeLabels, looksLikeMask } from "./colour.js";
 import { isGrey } from "./depth.js";
 import { decoded } from "./formats/coded.js";
 import type { Picture } from "./formats/picture.js";
-import { CONTENTS, type Role, isAlongRays, isKittiDepth, roleOf } from "./roles.js";
+import { CONTENTS, type Other, type Role, isAlongRays, isKittiDepth, isOther, roleOf } from "./roles.js";
 import type { ReadOptions } from "./types.js";
 import { type ReaderWarning, warning } from "./warnings.js";
 
@@ -12,8 +12,6 @@ type Kind = "colour" | "depth" | "mask";
 
 const isColourful = (picture: Picture): boolean => picture.channels >= 3 && !isGrey(picture);
 const isDepthRole = (role: Role | undefined): boolean => role === "depth" || role === "cloud";
-type Other = keyof typeof CONTENTS;
-const isOther = (role: Role | undefined): role is Other => role !== undefined && Object.hasOwn(CONTENTS, role);
 
 /** Shares of the pixels of a cloud: half of a view lies left of its middle and half above it, and nothing behind. */
 const [ASIDE, BEHIND] = [0.1, 0.02];

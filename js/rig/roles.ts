@@ -89,8 +89,11 @@ export function roleOf(name: string): Role | undefined {
   return PICTURES.test(own) ? "colour" : undefined;
 }
 
-/** What is said of a file that is neither colour nor depth by its name. */
-export const CONTENTS: Record<Exclude<Role, "colour" | "depth" | "cloud" | "mask">, string> = {
+/** What is neither a colour image nor depth nor a mask. */
+export type Other = Exclude<Role, "colour" | "depth" | "cloud" | "mask">;
+
+/** What is said of such a file. */
+export const CONTENTS: Record<Other, string> = {
   confidence: "confidences",
   labels: "labels of objects",
   normals: "normals",
@@ -98,6 +101,8 @@ export const CONTENTS: Record<Exclude<Role, "colour" | "depth" | "cloud" | "mask
   disparity: "disparities (or inverse depths)",
   infrared: "infrared or intensities",
 };
+
+export const isOther = (role: Role | undefined): role is Other => role !== undefined && Object.hasOwn(CONTENTS, role);
 
 /** Whether a name says that distances were taken along the rays rather than along z. */
 export const isAlongRays = (name: string): boolean =>

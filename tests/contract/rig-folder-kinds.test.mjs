@@ -107,6 +107,25 @@ describe("a third folder", () => {
     ]);
   });
 
+  test("scenes in folders side by side, without a folder for depths, with a mask each", async () => {
+    const mask = (lit) => grey(8, (x) => [x >= lit ? 255 : 0]);
+    const scene = (name, mark) => ({
+      [`${name}/rgb.png`]: colour(mark),
+      [`${name}/depth.png`]: depth(1000 + mark),
+      [`${name}/mask.png`]: mask(mark),
+    });
+    const found = await folder({ ...scene("bear", 1), ...scene("ox", 2) });
+    assert.deepEqual(marks(found), [
+      [1, 1001],
+      [2, 1002],
+    ]);
+    assert.deepEqual(
+      found.frames.map(({ image }) => image.mask.indexOf(255)),
+      [1, 2],
+    );
+    saysNot(found, "names-ambiguous");
+  });
+
   test("a depth map and what was made of it", async () => {
     const found = await folder({ "rgb/0.png": colour(), "depth/0.png": depth(), "depth_filled/0.png": depth(1200) });
     assert.deepEqual(marks(found), [[0, 1000]]);
@@ -395,4 +414,11 @@ describe("intrinsics of another size", () => {
     const plain = await folder({ "color_0.png": colour(), "depth_0.png": depth(), "k.json": cameras });
     assert.equal(plain.frames[0].depth.camera.fx, 50);
   });
+});
+
+test("a lens whose name lists its coefficients is used, and no more is said of it", async () => {
+  const camera = { fx: 50, fy: 50, cx: 24, cy: 18, dist_k1k2p1p2k3: [0.1, -0.2, 0.001, 0.002, 0.3] };
+  const found = await folder({ "calib.json": JSON.stringify({ rgb: camera, depth: { ...camera, fx: 51, fy: 51 } }) });
+  assert.deepEqual([...found.cameras[0].camera.distortion], camera.dist_k1k2p1p2k3);
+  assert.deepEqual(found.warnings, []);
 });

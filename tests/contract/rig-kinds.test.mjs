@@ -157,6 +157,7 @@ describe("what is not read is named, with the way out", () => {
     "a.xz": ["\xfd7zXZ\x00", /xz; unpack/],
     "mesh.obj": ["# made\nmtllib a.mtl\no Cube\nv 1 2 3\nv 1 2 4\nf 1 2 3\n", /Wavefront's OBJ.*render a depth map/],
     "mesh.stl": ["solid a\n facet normal 0 0 1\n  outer loop\n", /STL/],
+    "mesh.gltf": ['{"scene": 0, "asset": {"generator": "x", "version": "2.0"}}', /mesh \(glTF\)/],
     "mesh.off": ["OFF\n8 6 12\n0 0 0\n", /OFF/],
     "noise.bin": ["\x00\x01\x02\xff", /not known here; .*raw data without a header, give its size/],
   };

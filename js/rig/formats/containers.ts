@@ -86,6 +86,7 @@ const TEXTS: Row[] = [
   [/^solid\b[^\n]*\n\s*(?:facet|endsolid)/, "a mesh (STL); render a depth map from it"],
   [/^(?:ST|C|N|4|n)*OFF\s+\d+\s+\d+\s+\d+/, "a mesh (OFF); render a depth map from it"],
   [/^#usda/, "a scene in USD; render a depth map from it"],
+  [/^\s*\{[\s\S]{0,4000}"asset"\s*:\s*\{[^{}]{0,400}"version"/, "a mesh (glTF); render a depth map from it"],
   [/^# ?vtk DataFile/, "data of VTK; save it as an organised PLY or PCD"],
   [/^#\s?(?:VRML|X3D)/, "a mesh (VRML); render a depth map from it"],
 ];

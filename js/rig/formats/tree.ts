@@ -183,7 +183,7 @@ class Search {
     const listed = isNode(written) && written.data === undefined ? undefined : matrixOf(written)?.values;
     const size = sizeOf(node, label);
     if (listed !== undefined) {
-      if (lens !== undefined) used.add(lens.key);
+      for (const key of Object.keys(node)) if (node[key] === written) used.add(key);
       return { distortion: listed, model, ...size };
     }
     if (written !== undefined && !isNode(written) && !isEmpty(written) && typeof written !== "string")
