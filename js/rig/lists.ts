@@ -1,6 +1,6 @@
 /** Frames that lists name: TUM's rgb.txt and depth.txt, or one list of associations, each by time stamps. */
 import { badFile } from "../errors.js";
-import { textOf } from "./formats/text.js";
+import { textOf } from "./formats/decode.js";
 import { base, folderOf } from "./names.js";
 import { roleOf } from "./roles.js";
 import type { NamedFile } from "./types.js";

@@ -24,7 +24,7 @@ import { pngPicture } from "./formats/png.js";
 import { readPfm, readPnm } from "./formats/pnm.js";
 import { isRawName, pointSize, pointsRefused, rawRefused, readColmapMap, readRaw } from "./formats/raw.js";
 import { pointList, readTable } from "./formats/table.js";
-import { readText, textOf } from "./formats/text.js";
+import { textOf } from "./formats/decode.js";
 import { readTiff } from "./formats/tiff.js";
 import { kindOfPicture, nameWarnings, unitOfName } from "./recognise.js";
 import type { NamedFile, ReadOptions, RigReading } from "./types.js";
@@ -76,6 +76,7 @@ function ofCloud(cloud: Cloud, options: ReadOptions): Content {
 async function ofText(file: string, text: string, { as }: ReadOptions): Promise<Content> {
   if (as === "colour" || as === "depth" || as === "mask")
     throw badFile(`it is a text where a ${as === "depth" ? "depth map" : `${as} image`} was asked for`);
+  const { readText } = await import("./formats/text.js");
   const { cameras, poses: found, warnings, format, depthUnit } = await readText(text);
   const poses = inOrder(withEnds(found, file));
   const reading = { says: `${format}: ${inWords(cameras, poses)}`, warnings: distinct(warnings) };

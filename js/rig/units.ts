@@ -4,7 +4,7 @@
  * Limits: a number is known by its name alone, whatever the text's format.
  */
 import { base, folderOf, stem } from "./names.js";
-import { textOf } from "./formats/text.js";
+import { textOf } from "./formats/decode.js";
 import type { Size } from "./formats/raw.js";
 import type { NamedFile } from "./types.js";
 import { type ReaderWarning, warning } from "./warnings.js";

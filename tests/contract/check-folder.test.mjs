@@ -80,6 +80,7 @@ write("two.json", {
   ],
 });
 write("7", { kind: "poses", poses: [{ pose: pose(7) }] });
+write("world.json", { kind: "poses", poses: [{ pose: pose(4), from: "camera", to: "world" }] });
 write("empty.json", { kind: "poses", poses: [] });
 writeFileSync(join(root, "damaged.json"), "{");
 
@@ -124,6 +125,7 @@ describe("exit codes", () => {
       "--calibration FILE is needed": ["off"],
       "damaged.json: damaged": ["off", "--calibration", "damaged.json"],
       "empty.json: it holds no extrinsics": ["off", "--calibration", "empty.json"],
+      "world.json: it says where a camera stood in the world": ["off", "--calibration", "world.json"],
       "none: it holds no pair": ["none", "--calibration", "one.json"],
       "ENOENT.*missing.json": ["off", "--calibration", "missing.json"],
       "ENOENT.*nowhere": ["nowhere", "--calibration", "one.json"],

@@ -4,7 +4,6 @@ import { readColmap, isColmap } from "./colmap.js";
 import { isColmapImages, readColmapImages } from "./colmap-others.js";
 import { readColumns } from "./columns.js";
 import { withPoints } from "./commas.js";
-import { MOST_TEXT } from "./limits.js";
 import { readNotes } from "./notes.js";
 import type { Node } from "./numbers.js";
 import { readNumbers } from "./plain.js";
@@ -15,21 +14,6 @@ import { type Element, plainXml, readXml } from "./xml.js";
 
 /** So that a small file cannot become a large value. */
 const YAML_LIMITS = { maxDepth: 32, maxAliases: 64 };
-
-/** The text of a file, or nothing where its bytes are none. */
-export function textOf(bytes: Uint8Array): string | undefined {
-  if (bytes.length > MOST_TEXT) return undefined;
-  const [first, second] = bytes;
-  const encoding =
-    first === 0xff && second === 0xfe ? "utf-16le" : first === 0xfe && second === 0xff ? "utf-16be" : "utf-8";
-  try {
-    const text = new TextDecoder(encoding, { fatal: true }).decode(bytes);
-    // Control characters tell bytes from text.
-    return /[\0-\x08\x0e-\x1f]/.test(text) ? undefined : text;
-  } catch {
-    return undefined;
-  }
-}
 
 /** OpenCV's YAML says "%YAML:1.0", which YAML does not have, and marks its matrices by a tag of its own, as Python does its tuples. */
 const plainYaml = (text: string): string =>
@@ -93,19 +77,19 @@ function ofNotes(text: string): Read | undefined {
 
 /** YAML, or where that is none or holds nothing, numbers with labels. */
 async function ofYaml(text: string): Promise<Read> {
+  let value: unknown;
   try {
-    const value = await readYaml(text);
-    const product = (await products()).productOfTree(value);
-    if (product !== undefined) return product;
-    const found = searchTree(value, text);
-    if (found.cameras.length + found.poses.length > 0) return { ...found, format: "YAML" };
-    return ofNotes(text) ?? searched(value, "YAML", text);
+    value = await readYaml(text);
   } catch (error) {
-    const isYaml = error instanceof BimodalError && error.cause === undefined;
-    const found = isYaml ? undefined : ofNotes(text);
+    const found = error instanceof BimodalError ? ofNotes(text) : undefined;
     if (found === undefined) throw error;
     return found;
   }
+  const product = (await products()).productOfTree(value);
+  if (product !== undefined) return product;
+  const found = searchTree(value, text);
+  if (found.cameras.length + found.poses.length > 0) return { ...found, format: "YAML" };
+  return ofNotes(text) ?? searched(value, "YAML", text);
 }
 
 /** XML, or what Python prints of an object: it begins with "<", too. */

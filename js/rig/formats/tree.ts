@@ -159,9 +159,13 @@ class Search {
       add({ name, ...four, ...this.#rest(node, "", used) });
       return used;
     }
-    for (const each of Object.keys(node)) {
+    const matrices = Object.keys(node).flatMap((each) => {
       const own = isIntrinsics(each);
-      if (own === undefined || DERIVED.test(own)) continue;
+      return own === undefined ? [] : [{ each, own }];
+    });
+    const isDerived = matrices.some(({ own }) => !DERIVED.test(own));
+    for (const { each, own } of matrices) {
+      if (isDerived && DERIVED.test(own)) continue;
       const found = cameraOfMatrix(node, each, own);
       const called = own === "" || own === "cam" || own === "camera" ? name : own;
       if (found !== undefined) add({ name: called, ...found, ...this.#rest(node, own, used) }, own);
