@@ -31,11 +31,12 @@ const SOURCES = [
   "scripts/notices",
 ];
 const MARK = "pkg/.stamp";
-/** One for programs, one for images and depth maps, two for what reads and writes a rig's files, one for what writes a run's, one for the page's fields, one for the threads of workers, and one for shells. */
+/** One for programs, one for images and depth maps, three for what reads and writes a rig's files and reads its recordings, one for what writes a run's, one for the page's fields, one for the threads of workers, and one for shells. */
 const ENTRIES = {
   index: "index",
   files: "files",
   rig: "rig/index",
+  "rig-recordings": "rig/recordings/index",
   "rig-write": "rig/write/index",
   write: "write/index",
   options: "options",
@@ -65,6 +66,7 @@ function manifest() {
       ".": { types: "./index.d.ts", default: "./index.js" },
       "./files": { types: "./files.d.ts", default: "./files.js" },
       "./rig": { types: "./rig/index.d.ts", default: "./rig.js" },
+      "./rig-recordings": { types: "./rig/recordings/index.d.ts", default: "./rig-recordings.js" },
       "./write": { types: "./write/index.d.ts", default: "./write.js" },
       "./rig-write": { types: "./rig/write/index.d.ts", default: "./rig-write.js" },
       // By path, for bundlers that have to be told of them.

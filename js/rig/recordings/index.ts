@@ -1,0 +1,7 @@
+/**
+ * Recordings of a rig: what was recorded, and frames, cameras and transforms out of them. A module of its own, to be loaded when a recording
+ * comes in: it holds the readers of its containers.
+ */
+export { BimodalError } from "../../errors.js";
+export { type Topic, type Recording, type RecordingOptions, openRecording } from "./open.js";
+export { isRecording } from "./kinds.js";

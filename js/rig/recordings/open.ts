@@ -1,0 +1,296 @@
+/** Opens a recording: lists its topics, says which are the two cameras', and takes frames of them. */
+import { object, ranged, signal, wrong } from "../../check.js";
+import { BimodalError, badFile, badNamed } from "../../errors.js";
+import { addCameras } from "../assign.js";
+import { metresPerUnit } from "../read.js";
+import type { NamedCamera, RigFolder } from "../types.js";
+import { type ReaderWarning, distinct, grouped, ofFile, warning } from "../warnings.js";
+import { HEAD, containerOf } from "./kinds.js";
+import { frameOf, moments } from "./pairs.js";
+import { type Roles, isColour, isDepth, rolesOf } from "./roles.js";
+import { unreadEncoding } from "./ros.js";
+import { type Bytes, type Shot, type Source, type TrackKind, bytesOf } from "./source.js";
+
+/** A topic or track of a recording. */
+export interface Topic {
+  /** Its name. */
+  name: string;
+  /** The type of its messages, or its codec. */
+  type: string;
+  /** What it is read as. */
+  kind: TrackKind;
+  /** Messages. */
+  messages: number;
+  /** Messages in a second. */
+  rate: number;
+  /** Of pictures and clouds: how they are stored, "640x480 rgb8". */
+  stored?: string;
+  /** Bytes of its first message's pixels or points. */
+  bytes?: number;
+  /** Which of the two cameras may have taken it. */
+  role?: "colour" | "depth";
+  /** Why it is not read. */
+  unread?: string;
+}
+
+/** How frames are taken of a recording. */
+export interface RecordingOptions {
+  /** The topic of the colour images; without it the one that looks most like it. */
+  colour?: string;
+  /** The topic of the depth maps or organised clouds. */
+  depth?: string;
+  /** At most so many frames, which differ; default 10. */
+  frames?: number;
+  /** Metres per stored unit of depth; without it millimetres for integers and metres for floats, as ROS has it. */
+  unit?: number;
+  /** Breaks the reading off; the promise is rejected with its reason. */
+  signal?: AbortSignal;
+}
+
+/** A recording that has been opened. */
+export interface Recording {
+  /** Of its file. */
+  name: string;
+  /** "MCAP", "ROS 1 bag" or "Matroska". */
+  format: string;
+  /** What was read, in words. */
+  says: string;
+  /** Seconds from its first message to its last. */
+  seconds: number;
+  /** All of its topics or tracks. */
+  topics: Topic[];
+  /** Those that look like the two cameras'. */
+  chosen: { colour?: string; depth?: string };
+  /** Frames that differ, with cameras and the transform between them. */
+  read(options?: RecordingOptions): Promise<RigFolder>;
+}
+
+const FRAMES = 10;
+/** Topics of pictures that are looked into. */
+const MOST_TOPICS = 100;
+
+const checkOptions = object({
+  colour: (value, field) => {
+    if (typeof value !== "string") throw wrong(field, "a topic's name", value);
+  },
+  depth: (value, field) => {
+    if (typeof value !== "string") throw wrong(field, "a topic's name", value);
+  },
+  frames: ranged({ kind: "whole", min: 1, max: 100 }),
+  unit: metresPerUnit,
+  signal,
+});
+
+async function sourceOf(bytes: Bytes): Promise<Source> {
+  const container = containerOf(await bytes.read(0, HEAD));
+  if (container === "mcap") return (await import("./mcap.js")).openMcap(bytes);
+  throw badFile("it is no recording that is read here; MCAP files are");
+}
+
+/** The first picture or cloud of each topic, as far as it can be read. */
+async function firstShots(source: Source): Promise<Map<string, Shot | string>> {
+  const found = new Map<string, Shot | string>();
+  const wanted = source.tracks.filter(({ kind, count }) => (kind === "picture" || kind === "cloud") && count > 0);
+  for (const { name } of wanted.slice(0, MOST_TOPICS)) {
+    try {
+      for await (const shot of source.shots([name], ...source.span)) {
+        found.set(name, unreadEncoding(shot.encoding) ?? shot);
+        break;
+      }
+    } catch (error) {
+      found.set(name, `its first message cannot be read (${error instanceof Error ? error.message : String(error)})`);
+    }
+  }
+  return found;
+}
+
+function topicsOf(source: Source, shots: ReadonlyMap<string, Shot | string>): Topic[] {
+  const [from, until] = source.span;
+  return source.tracks.map(({ name, type, kind, count, unread }) => {
+    const shot = shots.get(name);
+    const why = unread ?? (typeof shot === "string" ? shot : undefined);
+    const topic = {
+      name,
+      type,
+      kind,
+      messages: count,
+      rate: count > 1 && until > from ? (count - 1) / (until - from) : 0,
+    };
+    if (shot === undefined || typeof shot === "string") return { ...topic, ...(why !== undefined && { unread: why }) };
+    const size = shot.width && shot.height ? `${shot.width}x${shot.height} ` : "";
+    return {
+      ...topic,
+      stored: `${size}${shot.encoding}`,
+      bytes: shot.bytes,
+      ...(isDepth(shot) ? { role: "depth" as const } : isColour(shot) ? { role: "colour" as const } : {}),
+    };
+  });
+}
+
+async function knownCameras(source: Source, shots: Iterable<Shot | string>): Promise<Set<string>> {
+  const known = new Set<string>();
+  for (const shot of shots)
+    if (typeof shot !== "string" && (await source.camera(shot).catch(() => undefined))?.found) known.add(shot.track);
+  return known;
+}
+
+class OpenRecording implements Recording {
+  readonly name: string;
+  readonly format: string;
+  readonly says: string;
+  readonly seconds: number;
+  readonly topics: Topic[];
+  readonly chosen: Roles;
+  readonly #source: Source;
+
+  constructor(name: string, source: Source, topics: Topic[], chosen: Roles) {
+    this.name = name;
+    this.format = source.format;
+    this.seconds = source.span[1] - source.span[0];
+    this.topics = topics;
+    this.chosen = chosen;
+    this.#source = source;
+    this.says = `${source.format}, ${this.seconds.toFixed(1)} s, ${topics.length} topics`;
+  }
+
+  async read(options: RecordingOptions = {}): Promise<RigFolder> {
+    checkOptions(options, "options");
+    options.signal?.throwIfAborted();
+    try {
+      return await this.#read(options);
+    } catch (error) {
+      throw named(this.name, error);
+    }
+  }
+
+  #topic(role: "colour" | "depth", wanted: string | undefined): string {
+    const name = wanted ?? this.chosen[role];
+    const what = role === "colour" ? "colour images" : "depth maps or organised clouds";
+    if (name === undefined)
+      throw badFile(`none of its ${this.topics.length} topics holds ${what} that are read here${listed(this.topics)}`);
+    const topic = this.topics.find((each) => each.name === name);
+    if (topic === undefined) throw badFile(`it has no topic ${name}`);
+    if (topic.unread !== undefined) throw badFile(`${name}: ${topic.unread}`);
+    return name;
+  }
+
+  async #read({ colour, depth, frames = FRAMES, unit, signal }: RecordingOptions): Promise<RigFolder> {
+    const wanted = {
+      colour: this.#topic("colour", colour),
+      depth: this.#topic("depth", depth),
+      frames,
+      ...(unit !== undefined && { unit }),
+      ...(signal && { signal }),
+    };
+    const found = await moments(this.#source, wanted);
+    const [first] = found.moments;
+    if (first === undefined)
+      throw badFile(`${wanted.colour} and ${wanted.depth} have no pictures of one time`);
+    const warnings: ReaderWarning[] = [...found.warnings];
+    const start = this.#source.span[0];
+    const taken = found.moments.map((moment) => frameOf(moment, start));
+    found.moments.forEach(({ image, map }, index) => {
+      for (const each of [...image.warnings, ...map.warnings])
+        warnings.push(ofFile(taken[index]?.name ?? "", each));
+    });
+    const folder: RigFolder = {
+      frames: taken,
+      cameras: [],
+      poses: [],
+      readings: [
+        { name: wanted.colour, says: first.image.says, warnings: [] },
+        { name: wanted.depth, says: first.map.says, warnings: [] },
+      ],
+      warnings,
+    };
+    await this.#addCameras(folder, first.pair.colour, first.pair.depth);
+    const { found: poses, warnings: ofPoses } = await this.#source.poses(first.pair.depth, first.pair.colour);
+    folder.poses = poses;
+    warnings.push(...ofPoses);
+    if (poses.length === 0) warnings.push(noTransform(first.pair.depth, first.pair.colour));
+    folder.warnings = grouped(distinct(warnings));
+    return folder;
+  }
+
+  /** Each picture's camera is the one beside it, and needs no guess by name or size. */
+  async #addCameras(folder: RigFolder, colour: Shot, depth: Shot): Promise<void> {
+    const cameras: NamedCamera[] = [];
+    const named = async (shot: Shot, name: string, size: { width: number; height: number }) => {
+      const { found, warnings } = await this.#source.camera({ ...shot, width: size.width, height: size.height });
+      folder.warnings.push(...warnings);
+      if (found) cameras.push({ ...found, name });
+    };
+    const [first] = folder.frames;
+    if (first === undefined) return;
+    await named(colour, "colour", first.image);
+    if (first.depth.points === undefined) await named(depth, "depth", first.depth);
+    folder.cameras = cameras;
+    attach(folder);
+  }
+}
+
+/** By their names; what is missing is said, and nothing stands in for it. */
+function attach(folder: RigFolder): void {
+  const [first] = folder.frames;
+  const isAlone = folder.cameras.length === 1 && first?.depth.points === undefined;
+  if (!isAlone && folder.cameras.length > 0) return addCameras(folder);
+  const names = folder.cameras.map(({ name }) => name);
+  const depth = first?.depth.points === undefined && !names.includes("depth");
+  if (!names.includes("colour"))
+    folder.warnings.push(
+      warning(
+        "colour-camera-missing",
+        "No camera_info goes with the colour images (by its topic's name or its frame); their focal length has to be estimated.",
+      ),
+    );
+  if (depth)
+    folder.warnings.push(
+      warning(
+        "depth-camera-missing",
+        "No camera_info goes with the depth maps (by its topic's name or its frame); without their intrinsics depths cannot be turned into points.",
+      ),
+    );
+  for (const { name, camera } of folder.cameras)
+    for (const frame of folder.frames) (name === "colour" ? frame.image : frame.depth).camera = camera;
+}
+
+const noTransform = (from: Shot, to: Shot): ReaderWarning =>
+  warning(
+    "transform-missing",
+    `The recording has no transform from ${from.frame || "the depth camera's frame, which has no name,"} to ${to.frame || "the colour camera's, which has no name"} (tf_static, tf): without a calibration there is an estimate only.`,
+  );
+
+/** The topics of pictures and why they are not read. */
+function listed(topics: readonly Topic[]): string {
+  const unread = topics.filter((topic) => topic.unread !== undefined);
+  const words = unread.slice(0, 4).map(({ name, unread: why }) => `${name}: ${why}`);
+  return words.length === 0 ? "" : ` (${words.join("; ")}${unread.length > words.length ? "; .." : ""})`;
+}
+
+function named(name: string, error: unknown): unknown {
+  if (error instanceof BimodalError)
+    return error.code === "file" ? badNamed(name, error.message, error.cause, { ...error.details }) : error;
+  if (error instanceof DOMException && error.name === "AbortError") return error;
+  const reason = error instanceof Error ? error.message : String(error);
+  return badNamed(name, `it is damaged or cut off (${reason})`, error);
+}
+
+/** Opens a recording by its content; a blob is read in parts, so that it may be larger than memory. */
+export async function openRecording(file: { name: string; content: Blob | Uint8Array }): Promise<Recording> {
+  if (typeof file?.name !== "string" || !(file.content instanceof Uint8Array || file.content instanceof Blob))
+    throw wrong("file", "{ name: string, content: Blob or Uint8Array }", file);
+  try {
+    const source = await sourceOf(bytesOf(file.content));
+    const shots = await firstShots(source);
+    const known = await knownCameras(source, shots.values());
+    const sound = [...shots.values()].filter((shot) => typeof shot !== "string");
+    return new OpenRecording(
+      file.name,
+      source,
+      topicsOf(source, shots),
+      rolesOf(sound, (track) => known.has(track)),
+    );
+  } catch (error) {
+    throw named(file.name, error);
+  }
+}
