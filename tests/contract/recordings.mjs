@@ -207,7 +207,8 @@ export async function mcap(messages, { generation = "ros2", compressChunk, chunk
 /** A frame of LZ4 whose blocks are runs of bytes as copies of their first, and literals between them. */
 export function lz4Frame(data) {
   const out = [0x04, 0x22, 0x4d, 0x18, 0x60, 0x70, 0x73];
-  const length = (value) => (value < 15 ? [] : [...Array(Math.floor((value - 15) / 255)).fill(255), (value - 15) % 255]);
+  const length = (value) =>
+    value < 15 ? [] : [...Array(Math.floor((value - 15) / 255)).fill(255), (value - 15) % 255];
   for (let from = 0; from < data.length; from += 2 ** 22) {
     const block = [];
     const part = data.subarray(from, from + 2 ** 22);
@@ -236,7 +237,9 @@ export function lz4Frame(data) {
 
 /** A frame of Zstandard whose blocks are stored as they are. */
 export function zstdFrame(data) {
-  const parts = [Uint8Array.of(0x28, 0xb5, 0x2f, 0xfd, 0xa0, ...[0, 8, 16, 24].map((shift) => (data.length >>> shift) & 255))];
+  const parts = [
+    Uint8Array.of(0x28, 0xb5, 0x2f, 0xfd, 0xa0, ...[0, 8, 16, 24].map((shift) => (data.length >>> shift) & 255)),
+  ];
   const most = 2 ** 17;
   for (let from = 0; from < data.length; from += most) {
     const part = data.subarray(from, from + most);
@@ -270,11 +273,31 @@ export function driver(frames, pose, { start = 1_700_000_000, every = 0.5, late 
   frames.forEach(({ image, depth }, index) => {
     const time = start + 0.1 + every * index;
     const other = time + late;
-    add("/camera/color/camera_info", "sensor_msgs/CameraInfo", time, infoMessage(first.image.camera, image, time, FRAMES.colour));
-    add("/camera/depth/camera_info", "sensor_msgs/CameraInfo", time, infoMessage(first.depth.camera, depth, time, FRAMES.depth));
+    add(
+      "/camera/color/camera_info",
+      "sensor_msgs/CameraInfo",
+      time,
+      infoMessage(first.image.camera, image, time, FRAMES.colour),
+    );
+    add(
+      "/camera/depth/camera_info",
+      "sensor_msgs/CameraInfo",
+      time,
+      infoMessage(first.depth.camera, depth, time, FRAMES.depth),
+    );
     if (compress) {
-      add("/camera/color/image_raw/compressed", "sensor_msgs/CompressedImage", time, jpegMessage(image, time, FRAMES.colour));
-      add("/camera/depth/image_raw/compressedDepth", "sensor_msgs/CompressedImage", other, compressedDepthMessage(depth, other, FRAMES.depth));
+      add(
+        "/camera/color/image_raw/compressed",
+        "sensor_msgs/CompressedImage",
+        time,
+        jpegMessage(image, time, FRAMES.colour),
+      );
+      add(
+        "/camera/depth/image_raw/compressedDepth",
+        "sensor_msgs/CompressedImage",
+        other,
+        compressedDepthMessage(depth, other, FRAMES.depth),
+      );
     } else {
       add("/camera/color/image_raw", "sensor_msgs/Image", time, imageMessage(image, time, FRAMES.colour));
       add("/camera/depth/image_raw", "sensor_msgs/Image", other, depthMessage(depth, other, FRAMES.depth));

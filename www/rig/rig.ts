@@ -7,8 +7,21 @@ import type { ReaderWarning } from "./files";
 import { identity, inverse } from "./poses";
 import type { Assembly, FramePlan, Kind, NamedCamera, Summary } from "./protocol";
 import { Session } from "./session";
-import type { CameraChoice, Candidate, Frame, Item, RigState, Run, Side, TypedCamera } from "./state";
+import {
+  type CameraChoice,
+  type Candidate,
+  type Frame,
+  type Item,
+  type RigState,
+  type Run,
+  type Side,
+  type TypedCamera,
+  messageOf,
+} from "./state";
+import { Takings } from "./takings";
 import { Undo } from "./undo";
+
+export { messageOf } from "./state";
 
 export type { CameraChoice, Candidate, Frame, Item, Run, Side, TypedCamera } from "./state";
 
@@ -27,6 +40,7 @@ const choice = (): CameraChoice => ({ source: "", chosen: false, typed: emptyCam
 export class Rig implements RigState {
   readonly session = new Session();
   readonly undo = new Undo(this);
+  readonly takings = new Takings(this);
   items: Item[] = [];
   frames: Frame[] = [];
   readonly cameras: Record<Side, CameraChoice> = { colour: choice(), depth: choice() };
@@ -63,10 +77,6 @@ export class Rig implements RigState {
 
   item(id: number | undefined): Item | undefined {
     return this.items.find((item) => item.id === id);
-  }
-
-  kindOf(item: Item): Kind | undefined {
-    return item.summary?.kind;
   }
 
   of(kind: Kind): Item[] {
@@ -135,6 +145,7 @@ export class Rig implements RigState {
       Object.assign(item, { state: "read", summary });
       delete item.error;
       this.#take(item, summary);
+      if (summary.kind === "recording") await this.takings.take(item);
     } catch (error) {
       item.state = "failed";
       delete item.summary;
@@ -190,12 +201,18 @@ export class Rig implements RigState {
     this.undo.keep(`removing ${item.name}`, {
       isMoot: () => this.items.some(({ id, name }) => name === item.name && id > item.id),
     });
-    this.items = this.items.filter((each) => each !== item);
     this.candidates = this.candidates.filter(({ file }) => file !== item.id);
-    this.#unlink(item);
+    this.notes = this.notes.filter((note) => !item.taking?.notes.includes(note));
+    this.leave([item, ...this.items.filter(({ recording }) => recording === item.id)]);
     this.#chooseCameras();
     this.frames = pairUp(this);
     this.changed();
+  }
+
+  /** Files that are gone, and what was made of them. */
+  leave(items: readonly Item[]): void {
+    this.items = this.items.filter((each) => !items.includes(each));
+    for (const item of items) this.#unlink(item);
   }
 
   /** Frames forget a file that is gone, or is something else now. */
@@ -231,11 +248,11 @@ export class Rig implements RigState {
   }
 
   async addFolder(files: { name: string; blob: Blob }[]): Promise<void> {
-    const first = this.#reserve(3 * files.length);
+    const first = this.reserve(3 * files.length);
     this.busy = `Reading a folder of ${files.length} files`;
     this.changed();
     try {
-      this.#join(await this.session.call("folder", { first, files }));
+      this.join(await this.session.call("folder", { first, files }));
     } finally {
       this.busy = "";
       this.changed();
@@ -243,20 +260,22 @@ export class Rig implements RigState {
   }
 
   async loadExample(): Promise<void> {
-    const first = this.#reserve(64);
+    const first = this.reserve(64);
     const assembly = await this.session.call("example", { first });
     this.clear();
-    this.#join(assembly);
+    this.join(assembly);
   }
 
-  #reserve(count: number): number {
+  reserve(count: number): number {
     const first = this.#last + 1;
     this.#last += count;
     return first;
   }
 
-  #join({ origin, items, frames, cameras, poses, warnings }: Assembly): void {
-    for (const { file, name, summary } of items) this.items.push({ id: file, name, state: "read", summary });
+  /** What came together; of a recording it goes when that goes. */
+  join({ origin, items, frames, cameras, poses, warnings }: Assembly, recording?: Item): void {
+    const of = recording ? { recording: recording.id } : {};
+    for (const { file, name, summary } of items) this.items.push({ id: file, name, state: "read", summary, ...of });
     for (const frame of frames) this.frames.push({ id: this.freshId(), ...frame });
     // Cameras of a folder's own files, beside those that its frames were given.
     if (cameras.length > 0) {
@@ -268,9 +287,9 @@ export class Rig implements RigState {
         cameras,
         poses: [],
       };
-      this.items.push({ id: this.freshId(), name: origin, state: "read", summary });
+      this.items.push({ id: this.freshId(), name: origin, state: "read", summary, ...of });
     }
-    for (const pose of poses) this.addPose(pose, origin);
+    for (const pose of poses) this.addPose(pose, origin, recording?.id);
     this.notes.push(...warnings);
     this.#chooseCameras();
     this.changed();
@@ -390,8 +409,6 @@ export class Rig implements RigState {
 
 export const COLOUR = /colou?r|rgb|image|left|cam0/i;
 export const DEPTH = /depth|\bir\b|infra|tof|disp|cloud/i;
-
-export const messageOf = (error: unknown): string => (error instanceof Error ? error.message : String(error));
 
 function fromTyped(
   { by, model, fx, fy, cx, cy, view, distortion }: TypedCamera,

@@ -5,13 +5,17 @@ import { checkCalibration, projectFrame, type CheckFrame } from "../../pkg/index
 import { faultOf } from "../engine/fault";
 import { restrictDepth, restrictImage } from "./restrict";
 import { loadExample } from "./example";
-import { readRigFile, readRigFolder, type RigReading } from "./files";
+import { isRecording, readRigFile, readRigFolder, type RigReading } from "./files";
 import { picture } from "./pictures";
 import type { Answer, Assembly, CallKind, Calls, FramePlan, Request, Summary } from "./protocol";
+import type { Recording } from "./recordings";
 
 const MOST_WORKERS = 4;
 
 const readings = new Map<number, RigReading>();
+const recordings = new Map<number, Recording>();
+/** Bytes of a file by which recordings are known. */
+const HEAD = 16;
 /** As they were last checked: the overlay and the files out are of these. */
 let frames: CheckFrame[] = [];
 let running: AbortController | undefined;
@@ -104,6 +108,21 @@ function assemble(
   return { origin, items, frames, cameras, poses, warnings };
 }
 
+async function openFile(file: number, name: string, blob: Blob): Promise<Summary> {
+  const { openRecording } = await import("./recordings");
+  const recording = await openRecording({ name, content: blob });
+  recordings.set(file, recording);
+  const { says, topics, chosen } = recording;
+  return { kind: "recording", says, warnings: [], guessed: [], cameras: [], poses: [], topics, chosen };
+}
+
+/** Those of a recording are listed once, under its own name. */
+const withoutCameras = ({ image: { camera: _, ...image }, depth: { camera: __, ...depth }, ...frame }: CheckFrame) => ({
+  ...frame,
+  image,
+  depth,
+});
+
 const bytesOf = async (blob: Blob): Promise<Uint8Array> => new Uint8Array(await blob.arrayBuffer());
 
 function frameOf({ name, colour, depth, mask, paint, range, colourCamera, depthCamera }: FramePlan): CheckFrame {
@@ -129,6 +148,7 @@ type Handlers = { [K in CallKind]: (ask: Calls[K]["ask"], id: number) => Promise
 
 const handlers: Handlers = {
   async read({ file, name, blob, as, unit }) {
+    if (isRecording(await bytesOf(blob.slice(0, HEAD)))) return openFile(file, name, blob);
     const reading = await readRigFile(
       { name, bytes: await bytesOf(blob) },
       { ...(as ? { as } : {}), ...(unit === undefined ? {} : { unit }) },
@@ -152,8 +172,21 @@ const handlers: Handlers = {
     const { frames, poses } = await loadExample();
     return assemble("the example", first, frames, { cameras: [], poses, warnings: [] });
   },
+  async take({ file, first, colour, depth, frames }, id) {
+    const recording = recordings.get(file);
+    if (!recording) throw new Error(`Recording ${file} has not been read.`);
+    const onProgress = (share: number) => post({ id, share, message: "" });
+    const topics = { ...(colour && { colour }), ...(depth && { depth }) };
+    const folder = await recording.read({ ...topics, frames, onProgress });
+    return assemble(recording.name, first, folder.frames.map(withoutCameras), {
+      ...folder,
+      // The direction is the reader's: names of frames here are a robot's, and say nothing of colour and depth.
+      poses: folder.poses.map(({ name = "tf", pose }) => ({ name, pose })),
+    });
+  },
   async forget({ file }) {
     readings.delete(file);
+    recordings.delete(file);
     return null;
   },
   async reading({ file }) {
@@ -229,10 +262,11 @@ let reads: Promise<unknown> = Promise.resolve();
 self.onmessage = async ({ data }: MessageEvent<Request>) => {
   if (data.kind === "cancel") return running?.abort();
   const { id, kind } = data;
-  const isRead = kind === "read" || kind === "folder" || kind === "example";
+  const isRead = kind === "read" || kind === "folder" || kind === "example" || kind === "take";
   const handle = () => (handlers[kind] as (ask: unknown, id: number) => Promise<Calls[CallKind]["answer"]>)(data, id);
   try {
-    const result = isRead ? handle() : reads.then(handle);
+    // What a recording holds can be taken once it has been opened.
+    const result = isRead && kind !== "take" ? handle() : reads.then(handle);
     if (isRead) reads = Promise.allSettled([reads, result]);
     const answer = await result;
     post({ id, answer }, transferable(answer));

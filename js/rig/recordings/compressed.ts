@@ -89,5 +89,7 @@ export async function compressed(bytes: Uint8Array, format: string): Promise<Pic
   if (kind === "jpeg") return readJpeg(bytes);
   if (kind === "png") return pngPicture(bytes);
   if (kind === "webp") return readWebp(bytes);
-  throw badFile(`its pictures are compressed as "${format.slice(0, 40)}", which is not read here; JPEG, PNG and WebP are`);
+  throw badFile(
+    `its pictures are compressed as "${format.slice(0, 40)}", which is not read here; JPEG, PNG and WebP are`,
+  );
 }

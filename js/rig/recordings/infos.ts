@@ -8,7 +8,8 @@ import { type ReaderWarning, warning } from "../warnings.js";
 import { type Message, inner, numberIn, numbersIn, textIn } from "./messages.js";
 
 /** A topic without the name of its transport. */
-export const baseOf = (topic: string): string => topic.replace(/\/(?:compressed|compressedDepth|ffmpeg|theora|zstd)$/i, "");
+export const baseOf = (topic: string): string =>
+  topic.replace(/\/(?:compressed|compressedDepth|ffmpeg|theora|zstd)$/i, "");
 const parentOf = (topic: string): string => topic.slice(0, Math.max(0, topic.lastIndexOf("/")));
 const lastOf = (topic: string): string => topic.slice(topic.lastIndexOf("/") + 1);
 
@@ -20,7 +21,11 @@ export function belongs(info: string, pictures: string): number {
   const parent = parentOf(baseOf(pictures));
   // image_transport's rule; recordings of librealsense have image/data and info/camera_info.
   if (parentOf(info) === parent) return 2;
-  return parentOf(parentOf(info)) === parentOf(parent) && lastOf(parent) === "image" ? 2 : parentOf(parent) === parentOf(info) ? 1 : 0;
+  return parentOf(parentOf(info)) === parentOf(parent) && lastOf(parent) === "image"
+    ? 2
+    : parentOf(parent) === parentOf(info)
+      ? 1
+      : 0;
 }
 
 interface Size {
@@ -37,7 +42,7 @@ function binned(message: Message, numbers: number[], size: Size | undefined): { 
   const region = { width: numberIn(roi, "width") || full.width, height: numberIn(roi, "height") || full.height };
   const [bx, by] = [Math.max(1, numberIn(message, "binning_x") || 1), Math.max(1, numberIn(message, "binning_y") || 1)];
   const cut = { width: Math.floor(region.width / bx), height: Math.floor(region.height / by) };
-  const isCut = (bx > 1 || by > 1 || x > 0 || y > 0 || region.width !== full.width || region.height !== full.height);
+  const isCut = bx > 1 || by > 1 || x > 0 || y > 0 || region.width !== full.width || region.height !== full.height;
   // Some drivers give the region though the numbers are for it already: the picture's size decides.
   if (!isCut || size === undefined || size.width !== cut.width || size.height !== cut.height)
     return { numbers, ...(full.width > 0 && full.height > 0 && { size: full }) };
@@ -65,7 +70,11 @@ export function cameraOfInfo(
   const { numbers, size: of } = binned(message, focal, size);
   if (isRectified(topic) && !rectified)
     warnings.push(
-      warning("lens-approximated", `${topic} is rectified, but its camera_info has no P; K was used without distortion.`, {}),
+      warning(
+        "lens-approximated",
+        `${topic} is rectified, but its camera_info has no P; K was used without distortion.`,
+        {},
+      ),
     );
   const bent = rectified || isRectified(topic) ? [] : numbersIn(message, "d", "D");
   return cameraOf(

@@ -62,8 +62,7 @@ class Ros1Reader {
   #value(type: string, isComplex: boolean | undefined): unknown {
     if (isComplex) return this.object(this.#types.get(type) ?? []);
     if (type === "string") return text.decode(this.#take(this.#number("uint32")));
-    if (type === "time" || type === "duration")
-      return { sec: this.#number("uint32"), nanosec: this.#number("uint32") };
+    if (type === "time" || type === "duration") return { sec: this.#number("uint32"), nanosec: this.#number("uint32") };
     return this.#number(type);
   }
 
@@ -125,12 +124,16 @@ export function decoderOf(
   const isRos1 = by === "ros1" && (language === "ros1msg" || language === "");
   const isRos2 = by === "cdr" && (language === "ros2msg" || language === "");
   if (!isRos1 && !isRos2)
-    return { unread: `its messages are in ${encoding || "no named encoding"} (${schema.encoding || "no schema"}); ROS 1 and ROS 2 (CDR) are read` };
+    return {
+      unread: `its messages are in ${encoding || "no named encoding"} (${schema.encoding || "no schema"}); ROS 1 and ROS 2 (CDR) are read`,
+    };
   if (schema.definition.trim() === "") return { unread: "the recording has no definition of its messages" };
   try {
     return { decoder: isRos1 ? ros1(schema.definition) : ros2(schema.definition) };
   } catch (error) {
-    return { unread: `the definition of its messages is damaged (${error instanceof Error ? error.message : String(error)})` };
+    return {
+      unread: `the definition of its messages is damaged (${error instanceof Error ? error.message : String(error)})`,
+    };
   }
 }
 

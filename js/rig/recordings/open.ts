@@ -1,5 +1,5 @@
 /** Opens a recording: lists its topics, says which are the two cameras', and takes frames of them. */
-import { object, ranged, signal, wrong } from "../../check.js";
+import { callback, object, ranged, signal, wrong } from "../../check.js";
 import { BimodalError, badFile, badNamed } from "../../errors.js";
 import { addCameras } from "../assign.js";
 import { metresPerUnit } from "../read.js";
@@ -45,6 +45,8 @@ export interface RecordingOptions {
   unit?: number;
   /** Breaks the reading off; the promise is rejected with its reason. */
   signal?: AbortSignal;
+  /** Is told how far it is, 0 to 1. */
+  onProgress?: (share: number) => void;
 }
 
 /** A recording that has been opened. */
@@ -79,6 +81,7 @@ const checkOptions = object({
   frames: ranged({ kind: "whole", min: 1, max: 100 }),
   unit: metresPerUnit,
   signal,
+  onProgress: callback,
 });
 
 async function sourceOf(bytes: Bytes): Promise<Source> {
@@ -174,24 +177,23 @@ class OpenRecording implements Recording {
     return name;
   }
 
-  async #read({ colour, depth, frames = FRAMES, unit, signal }: RecordingOptions): Promise<RigFolder> {
+  async #read({ colour, depth, frames = FRAMES, unit, signal, onProgress }: RecordingOptions): Promise<RigFolder> {
     const wanted = {
       colour: this.#topic("colour", colour),
       depth: this.#topic("depth", depth),
       frames,
       ...(unit !== undefined && { unit }),
       ...(signal && { signal }),
+      ...(onProgress && { onProgress }),
     };
     const found = await moments(this.#source, wanted);
     const [first] = found.moments;
-    if (first === undefined)
-      throw badFile(`${wanted.colour} and ${wanted.depth} have no pictures of one time`);
+    if (first === undefined) throw badFile(`${wanted.colour} and ${wanted.depth} have no pictures of one time`);
     const warnings: ReaderWarning[] = [...found.warnings];
     const start = this.#source.span[0];
     const taken = found.moments.map((moment) => frameOf(moment, start));
     found.moments.forEach(({ image, map }, index) => {
-      for (const each of [...image.warnings, ...map.warnings])
-        warnings.push(ofFile(taken[index]?.name ?? "", each));
+      for (const each of [...image.warnings, ...map.warnings]) warnings.push(ofFile(taken[index]?.name ?? "", each));
     });
     const folder: RigFolder = {
       frames: taken,

@@ -62,6 +62,7 @@ export interface Wanted {
   unit?: number;
   frames: number;
   signal?: AbortSignal;
+  onProgress?: (share: number) => void;
 }
 
 /** Both decoded. */
@@ -74,7 +75,8 @@ export interface Moment {
 export async function decoded(pair: Pair, unit?: number): Promise<Moment> {
   const image = await pair.colour.read({ as: "colour" });
   const map = await pair.depth.read({ as: "depth", ...(unit !== undefined && { unit }) });
-  if (image.kind !== "colour" || map.kind !== "depth") throw new Error("A reading is of another kind than was asked for.");
+  if (image.kind !== "colour" || map.kind !== "depth")
+    throw new Error("A reading is of another kind than was asked for.");
   return { pair, image, map };
 }
 
@@ -112,13 +114,18 @@ async function candidates(source: Source, wanted: Wanted): Promise<Candidate[]> 
 }
 
 /** Moments that differ, decoded, and what is doubtful about them. */
-export async function moments(source: Source, wanted: Wanted): Promise<{ moments: Moment[]; warnings: ReaderWarning[] }> {
+export async function moments(
+  source: Source,
+  wanted: Wanted,
+): Promise<{ moments: Moment[]; warnings: ReaderWarning[] }> {
   const warnings: ReaderWarning[] = [];
   const seen: { candidate: Candidate; signature: Signature }[] = [];
   let failure: unknown;
-  for (const candidate of await candidates(source, wanted)) {
+  const all = await candidates(source, wanted);
+  for (const [index, candidate] of all.entries()) {
     await breathe();
     wanted.signal?.throwIfAborted();
+    wanted.onProgress?.(index / all.length);
     const pair = await candidate.again();
     if (pair === undefined) continue;
     try {

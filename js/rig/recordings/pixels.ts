@@ -95,8 +95,7 @@ function samples(stored: Stored, bits: 8 | 16 | 32, perRow: number): Uint8Array 
         : new Float32Array(perRow * height);
   const bytes = new Uint8Array(found.buffer);
   for (let y = 0; y < height; y++) bytes.set(data.subarray(y * stride, y * stride + row), y * row);
-  if (isBigEndian && size > 1)
-    for (let at = 0; at < bytes.length; at += size) bytes.subarray(at, at + size).reverse();
+  if (isBigEndian && size > 1) for (let at = 0; at < bytes.length; at += size) bytes.subarray(at, at + size).reverse();
   return found;
 }
 

@@ -14,7 +14,8 @@ export interface Roles {
 }
 
 const DEPTH_NAME = /depth|dpt|range(?![a-z])|stereo\/image/i;
-const OTHER_NAME = /infra|(?:^|[/_])ir(?:[/_\d]|$)|confidence|amplitude|disparity|intensity|mask|segment|fisheye|thermal|label/i;
+const OTHER_NAME =
+  /infra|(?:^|[/_])ir(?:[/_\d]|$)|confidence|amplitude|disparity|intensity|mask|segment|fisheye|thermal|label/i;
 const COLOUR_NAME = /colou?r|rgb/i;
 const REGISTERED = /aligned|registered|_to_colou?r|_to_rgb|hw_registered|sw_registered/i;
 

@@ -19,7 +19,11 @@ export interface RosFile {
   format: string;
   topics: RosTopic[];
   span: [number, number];
-  messages(topics: readonly string[], from: number, until: number): AsyncIterable<{ topic: string; time: number; bytes: Uint8Array }>;
+  messages(
+    topics: readonly string[],
+    from: number,
+    until: number,
+  ): AsyncIterable<{ topic: string; time: number; bytes: Uint8Array }>;
 }
 
 /** Messages of /tf that are looked at: a minute of a robot's joints. */
@@ -61,8 +65,7 @@ export class RosSource implements Source {
   async *#decoded(topics: readonly string[], from: number, until: number) {
     for await (const { topic, time, bytes } of this.#file.messages(topics, from, until)) {
       const known = this.#topics.get(topic);
-      if (known && "decoder" in known.by)
-        yield { topic, type: known.type, time, message: known.by.decoder(bytes) };
+      if (known && "decoder" in known.by) yield { topic, type: known.type, time, message: known.by.decoder(bytes) };
     }
   }
 

@@ -1,0 +1,8 @@
+/** The package's readers of recordings, under the types that it declares for them. Loaded when a recording comes in. */
+
+import * as recordings from "../../pkg/rig-recordings.js";
+import type * as Recordings from "../../pkg/rig/recordings/index.js";
+
+export type { Recording, Topic } from "../../pkg/rig/recordings/index.js";
+
+export const openRecording = recordings.openRecording as typeof Recordings.openRecording;
