@@ -25,12 +25,15 @@ const shot = async (page: Page, name: string) => {
 
 /** Drops files where a visitor would. */
 async function drop(page: Page, files: { name: string; buffer: Buffer }[]): Promise<void> {
-  const transfer = await page.evaluateHandle((all) => {
-    const found = new DataTransfer();
-    for (const { name, base64 } of all)
-      found.items.add(new File([Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0))], name));
-    return found;
-  }, files.map(({ name, buffer }) => ({ name, base64: buffer.toString("base64") })));
+  const transfer = await page.evaluateHandle(
+    (all) => {
+      const found = new DataTransfer();
+      for (const { name, base64 } of all)
+        found.items.add(new File([Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0))], name));
+      return found;
+    },
+    files.map(({ name, buffer }) => ({ name, base64: buffer.toString("base64") })),
+  );
   await page.locator(".rig-files-step .rig-drop").dispatchEvent("drop", { dataTransfer: transfer });
 }
 

@@ -87,7 +87,8 @@ const checkOptions = object({
 async function sourceOf(bytes: Bytes): Promise<Source> {
   const container = containerOf(await bytes.read(0, HEAD));
   if (container === "mcap") return (await import("./mcap.js")).openMcap(bytes);
-  throw badFile("it is no recording that is read here; MCAP files are");
+  if (container === "bag") return (await import("./bag.js")).openBag(bytes);
+  throw badFile("it is no recording that is read here; MCAP files and bags of ROS 1 are");
 }
 
 /** The first picture or cloud of each topic, as far as it can be read. */
