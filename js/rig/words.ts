@@ -46,7 +46,14 @@ const STRANGE: [pattern: RegExp, advice: string, isPicture?: true][] = [
   [/^MATLAB/, "a .mat file of MATLAB; save the array as .npy or 16-bit PNG"],
   [/^.{4}ftyp(?:heic|heix|mif1|avif)/s, "HEIC or AVIF; save it as PNG or JPEG", true],
   [/^(?:.{4}ftyp|RIFF.{4}AVI )/s, "a video; save its frames as PNG"],
-  [/^#ROSBAG|^SQLite format|^\x89MCAP/, "a recording of ROS; export its images and camera_info first"],
+  [
+    /^#ROSBAG|^\x89MCAP/,
+    "a recording (MCAP, or a bag of ROS); drop it on the page's check of a rig, or read it with openRecording of bimodal-stereo/rig-recordings",
+  ],
+  [
+    /^SQLite format/,
+    "a recording of ROS 2 in SQLite (.db3); `ros2 bag convert` writes it as MCAP (storage_id: mcap), which is read",
+  ],
   [/^%PDF/, "a PDF"],
   [/^\x80[\x02-\x05]/, "a pickle of Python, which may run code; save the array by numpy.save"],
   [/^\xff\x4f\xff\x51|^.{4}jP {2}/s, "JPEG 2000; save it as PNG", true],

@@ -1,7 +1,7 @@
 """Bags of ROS 1 for the tests of recordings, written by `rosbags`, which was not written here.
 
     pip install rosbags
-    node scripts/reference/recording.mjs > target/messages.json
+    node tests/contract/recorded-messages.mjs > target/messages.json
     python scripts/reference/recording.py target/messages.json tests/fixtures/recordings
 """
 

@@ -22,7 +22,7 @@ export function driver(
 ): Recorded[];
 export function mcap(
   messages: readonly Recorded[],
-  options?: { generation?: "ros1" | "ros2"; compressChunk?: Compress; chunks?: boolean; end?: boolean },
+  options?: { generation?: "ros1" | "ros2"; compressChunk?: Compress; chunks?: boolean; cut?: number },
 ): Promise<Buffer>;
 export function lz4Frame(data: Uint8Array): Uint8Array;
 export function zstdFrame(data: Uint8Array): Uint8Array;

@@ -37,6 +37,7 @@ const PARTS = {
   },
   "tf2_msgs/TFMessage": { ros1: "geometry_msgs/TransformStamped[] transforms" },
   "std_msgs/String": { ros1: "string data" },
+  "std_msgs/Float32": { ros1: "float32 data" },
 };
 
 /** A type's definition with those of its members behind it. */
@@ -175,7 +176,7 @@ export function cloudMessage({ width, height, points }, time, frame) {
 }
 
 /** A file of MCAP as rosbag2 writes it; `messages` are { topic, type, time, message } or have their own `bytes`. */
-export async function mcap(messages, { generation = "ros2", compressChunk, chunks = true, end = true } = {}) {
+export async function mcap(messages, { generation = "ros2", compressChunk, chunks = true, cut = 0 } = {}) {
   const parts = [];
   const writable = {
     position: () => BigInt(parts.reduce((sum, part) => sum + part.length, 0)),
@@ -200,8 +201,10 @@ export async function mcap(messages, { generation = "ros2", compressChunk, chunk
     const data = bytes ?? encoded(type, message, generation);
     await writer.addMessage({ channelId: channels.get(topic), sequence: 0, logTime: at, publishTime: at, data });
   }
-  if (end) await writer.end();
-  return Buffer.concat(parts);
+  await writer.end();
+  const whole = Buffer.concat(parts);
+  // As when the power went.
+  return whole.subarray(0, whole.length - cut);
 }
 
 /** A frame of LZ4 whose blocks are runs of bytes as copies of their first, and literals between them. */

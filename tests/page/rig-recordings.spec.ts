@@ -1,21 +1,22 @@
 /** Check a rig: recordings are dropped, and a verdict comes out by clicking alone. They are made here, by the public writers. */
 
-import { LONG, expect, test } from "./lab";
+import { expect, test } from "./lab";
+import { readFileSync } from "node:fs";
 import type { Page } from "@playwright/test";
-import { sampleRig } from "../../pkg/index.js";
+import { smallFrames } from "../contract/recorded-messages.mjs";
 import { driver, lz4Frame, mcap } from "../contract/recordings.mjs";
 import { answerChecks } from "./rig";
-import { open, put, run } from "./rigsteps";
+import { open, put, run, step } from "./rigsteps";
 import { atWidths, innerWidth, narrowest } from "./widths";
 
-/** Rendered frames of one rig, that differ. */
-async function rendered(count: number) {
-  const frames = [];
-  for (let frame = 0; frame < count; frame++) frames.push(await sampleRig({ kind: "boxes", seed: 2, frame }));
+/** Rendered frames of one rig that differ, and its calibration. */
+async function rendered() {
+  const frames = await smallFrames();
   const [first] = frames;
   if (!first) throw new Error("No frame was rendered.");
   return { frames, pose: first.pose };
 }
+const bag = () => readFileSync(new URL("../fixtures/recordings/walk-lz4.bag", import.meta.url));
 
 const file = (name: string, buffer: Buffer) => ({ name, mimeType: "application/octet-stream", buffer });
 
@@ -38,7 +39,7 @@ async function drop(page: Page, files: { name: string; buffer: Buffer }[]): Prom
 }
 
 test("an MCAP that is dropped lists its topics, and ends in a verdict of its own transforms", async ({ lab, page }) => {
-  const { frames, pose } = await rendered(3);
+  const { frames, pose } = await rendered();
   const compressChunk = (data: Uint8Array) => ({ compression: "lz4", compressedData: lz4Frame(data) });
   const bytes = await mcap(driver(frames, pose, { compress: true }), { compressChunk });
   await open(page);
@@ -56,5 +57,46 @@ test("an MCAP that is dropped lists its topics, and ends in a verdict of its own
   await expect(page.locator(".rig-word")).toHaveText("Consistent");
   await expect(page.locator(".rig-calibrations")).toContainText("tf");
   await shot(page, "verdict");
+  expect(lab.complaints).toEqual([]);
+});
+
+test("a bag of ROS 1 ends in a verdict; another topic takes other frames, and without it they go", async ({
+  lab,
+  page,
+}) => {
+  await open(page);
+  await put(page, [file("walk.bag", bag())]);
+  const card = page.locator(".rig-recording");
+  await expect(card.getByRole("status")).toHaveText("3 frames taken");
+  await card.getByLabel("Frames, at most").selectOption("5");
+  await expect(card.getByRole("status")).toHaveText("3 frames taken");
+  await expect(page.locator(".rig-frame")).toHaveCount(3);
+  await run(page);
+  await expect(page.locator(".rig-word")).toHaveText("Consistent");
+  await step(page, "Files and cameras").click();
+  await page.getByRole("button", { name: "Remove the recording walk.bag" }).click();
+  await expect(page.locator(".rig-frame")).toHaveCount(0);
+  await page.getByRole("button", { name: "Undo removing walk.bag" }).click();
+  await expect(page.locator(".rig-frame")).toHaveCount(3);
+  await step(page, "Your calibration").click();
+  await expect(page.locator(".rig-candidate")).toHaveCount(1);
+  expect(lab.complaints).toEqual([]);
+});
+
+test("what a recording lacks is said, its frames are none, and nothing sticks out", async ({ lab, page }) => {
+  await answerChecks(page, "undecided");
+  const { frames, pose } = await rendered();
+  const messages = driver(frames, pose, { compress: true }).filter(({ topic }) => topic.startsWith("/camera/color"));
+  await page.setViewportSize(narrowest);
+  await open(page);
+  await put(page, [file("colour.mcap", await mcap(messages)), file("walk.bag", bag())]);
+  await expect(page.locator(".rig-recording").first().getByRole("alert")).toContainText(
+    "holds depth maps or organised clouds that are read here",
+  );
+  await expect(page.locator(".rig-recording").nth(1).getByRole("status")).toHaveText("3 frames taken");
+  await expect(page.locator(".rig-frame")).toHaveCount(3);
+  await atWidths(page, [320, 390, 1280, 2560], async (width) =>
+    expect(await innerWidth(page), `at ${width} px`).toBeLessThanOrEqual(width),
+  );
   expect(lab.complaints).toEqual([]);
 });

@@ -144,5 +144,8 @@ export async function openMcap(bytes: Bytes): Promise<Source> {
   } catch {
     // Whatever is wrong with its end, what was recorded before may be sound.
   }
-  return new RosSource(file ?? (await streamed(bytes)));
+  file ??= await streamed(bytes);
+  if (file.topics.length === 0)
+    throw badFile("this MCAP holds no messages, or is damaged or cut off before the first of them");
+  return new RosSource(file);
 }

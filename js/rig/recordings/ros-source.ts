@@ -1,10 +1,11 @@
 /** A recording of ROS, whatever its container: which topics hold what, and what goes with a picture. */
-import type { NamedCamera, NamedPose } from "../types.js";
+import type { NamedCamera, NamedPose, Pose } from "../types.js";
 import { belongs, cameraOfInfo } from "./infos.js";
-import { type Decoder, type Message, frameOf } from "./messages.js";
+import { type Decoder, type Message, frameOf, numberIn } from "./messages.js";
+import { betweenStreams, isDepthUnit, isStreamMotion, unitOf } from "./realsense.js";
 import { kindOfType, shotOf } from "./ros.js";
 import type { Found, Shot, Source, Track } from "./source.js";
-import { Transforms } from "./transforms.js";
+import { Transforms, poseOfTransform } from "./transforms.js";
 
 export interface RosTopic {
   name: string;
@@ -29,6 +30,9 @@ export interface RosFile {
 /** Messages of /tf that are looked at: a minute of a robot's joints. */
 const MOST_TRANSFORMS = 6000;
 
+const isMotion = (name: string, { type }: { type: string }): boolean =>
+  isStreamMotion(name) && /^geometry_msgs\/(?:msg\/)?Transform$/.test(type);
+
 /** How well the intrinsics of a topic go with a shot: by the names of the topics and of the frames. */
 export function fitOf(info: string, frame: string, shot: Shot): number {
   const isSame = frame !== "" && frame === shot.frame;
@@ -45,6 +49,7 @@ export class RosSource implements Source {
   readonly #file: RosFile;
   readonly #topics: Map<string, RosTopic>;
   #infos: Promise<Map<string, Message>> | undefined;
+  #units: Promise<Map<string, number>> | undefined;
   #fixed: Promise<Transforms> | undefined;
   #all: Promise<Transforms> | undefined;
 
@@ -57,7 +62,7 @@ export class RosSource implements Source {
       name,
       type,
       count,
-      kind: "decoder" in by ? kindOfType(type) : "other",
+      kind: "unread" in by ? "other" : isMotion(name, { type }) ? "transforms" : kindOfType(type),
       ...("unread" in by && kindOfType(type) !== "other" && { unread: by.unread }),
     }));
   }
@@ -70,24 +75,33 @@ export class RosSource implements Source {
   }
 
   async *shots(tracks: readonly string[], from: number, until: number): AsyncIterable<Shot> {
+    this.#units ??= this.#firsts(isDepthUnit, (message) => numberIn(message, "data"));
+    const units = await this.#units;
     for await (const { topic, type, time, message } of this.#decoded(tracks, from, until))
-      yield shotOf(topic, type, time, message);
+      yield shotOf(topic, type, time, message, unitOf(topic, units));
   }
 
-  /** The first message of each topic of intrinsics. */
-  async #cameraInfos(): Promise<Map<string, Message>> {
-    const found = new Map<string, Message>();
-    const topics = this.tracks.filter(({ kind, count }) => kind === "camera" && count > 0).map(({ name }) => name);
-    for (const name of topics)
-      for await (const { message } of this.#decoded([name], ...this.span)) {
-        found.set(name, message);
+  /** What the first message of each of some topics says. */
+  async #firsts<T>(
+    isWanted: (name: string, track: Track) => boolean,
+    of: (message: Message) => T,
+  ): Promise<Map<string, T>> {
+    const found = new Map<string, T>();
+    for (const track of this.tracks) {
+      if (track.count === 0 || !isWanted(track.name, track)) continue;
+      for await (const { message } of this.#decoded([track.name], ...this.span)) {
+        found.set(track.name, of(message));
         break;
       }
+    }
     return found;
   }
 
   async camera(shot: Shot): Promise<Found<NamedCamera | undefined>> {
-    this.#infos ??= this.#cameraInfos();
+    this.#infos ??= this.#firsts(
+      (_, { kind }) => kind === "camera",
+      (message) => message,
+    );
     return cameraFor(shot, await this.#infos);
   }
 
@@ -102,7 +116,13 @@ export class RosSource implements Source {
   }
 
   async poses(from: Shot, to: Shot): Promise<Found<NamedPose[]>> {
-    const trees = this.tracks.filter(({ kind, count }) => kind === "transforms" && count > 0).map(({ name }) => name);
+    const warnings: Found<unknown>["warnings"] = [];
+    const motions = await this.#firsts<Pose>(isMotion, (message) => poseOfTransform(message, warnings));
+    const streams = betweenStreams(from, to, motions);
+    if (streams) return { found: [streams], warnings };
+    const trees = this.tracks
+      .filter(({ type, kind, count }) => kind === "transforms" && kindOfType(type) === kind && count > 0)
+      .map(({ name }) => name);
     const isFixed = (name: string) => /static/i.test(name);
     this.#fixed ??= this.#transforms(trees.filter(isFixed), new Transforms());
     const fixed = (await this.#fixed).between(from.frame, to.frame);

@@ -69,9 +69,10 @@ const head = (track: string, logged: number, message: Message) => ({
   bytes: bytesIn(message, "data").length,
 });
 
-/** A message of pictures or clouds. */
-export function shotOf(track: string, type: string, logged: number, message: Message): Shot {
+/** A message of pictures or clouds; `unit` is that of its depths where the recording says so. */
+export function shotOf(track: string, type: string, logged: number, message: Message, unit?: number): Shot {
   const common = head(track, logged, message);
+  const withUnit = (options: ReadOptions) => (unit === undefined ? options : { unit, ...options });
   const size = { width: numberIn(message, "width"), height: numberIn(message, "height") };
   if (kindOfType(type) === "cloud")
     return { ...common, ...size, encoding: "points", read: async (options) => cloudDepth(cloudOf(message), options) };
@@ -82,7 +83,7 @@ export function shotOf(track: string, type: string, logged: number, message: Mes
     ...common,
     ...size,
     encoding: stored.encoding,
-    read: async (options) => ofPicture(pixels(stored), options),
+    read: async (options) => ofPicture(pixels(stored), withUnit(options)),
   };
 }
 

@@ -1,7 +1,7 @@
 // Messages of a depth camera before three rendered scenes, a quarter of their size, for scripts/reference/recording.py to write as bags.
-//   node scripts/reference/recording.mjs > target/messages.json      (needs pkg/: npm run build)
+//   node tests/contract/recorded-messages.mjs > target/messages.json      (needs pkg/: npm run build)
 import { sampleRig } from "../../pkg/index.js";
-import { definitionOf, driver, encoded } from "../../tests/contract/recordings.mjs";
+import { definitionOf, driver, encoded } from "./recordings.mjs";
 
 /** A pixel of the small picture is the mean of 3x3 around pixel 4 x + 1 of the large one; of depths it is that pixel. */
 const STEP = 4;
