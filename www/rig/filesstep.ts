@@ -8,6 +8,7 @@ import { FileList, unitName } from "./filelist";
 import { FrameList } from "./framelist";
 import type { MaskTool } from "./masktool";
 import { press } from "./parts";
+import type { LiveCard } from "./livecard";
 import type { RecordingList } from "./recordinglist";
 import { messageOf, type Rig } from "./rig";
 
@@ -30,10 +31,11 @@ export class FilesStep {
   /** Recordings are listed once there are any. */
   readonly #recordingsBox = make("div", { hidden: true });
   #recordings: RecordingList | undefined;
+  #live: LiveCard | undefined;
   readonly #filesCard: HTMLDetailsElement;
   #tool: Promise<MaskTool> | undefined;
 
-  constructor(rig: Rig, goOn: () => void) {
+  constructor(rig: Rig, goOn: () => void, seeVerdict: () => void) {
     this.#rig = rig;
     this.#files = new FileList(rig);
     this.#frames = new FrameList(
@@ -87,6 +89,7 @@ export class FilesStep {
       make(
         "div",
         { class: "rig-main" },
+        this.#liveBox(seeVerdict),
         this.#recordingsBox,
         this.#filesCard,
         this.#framesCard,
@@ -103,6 +106,7 @@ export class FilesStep {
 
   show(): void {
     this.#showRecordings();
+    this.#live?.show();
     this.#files.show();
     this.#frames.show();
     for (const camera of this.#cameras) camera.show();
@@ -130,6 +134,19 @@ export class FilesStep {
           : `${files.length} ${files.length === 1 ? "file" : "files"} read${failed > 0 ? `, ${failed} of them not understood` : ""}`;
     this.#missing.textContent = missing.length === 0 ? "" : `Still missing: ${missing.join("; ")}.`;
     this.#next.disabled = missing.length > 0;
+  }
+
+  #liveBox(seeVerdict: () => void): HTMLElement {
+    const box = make("details", { class: "rig-card" }, make("summary", {}, make("h3", {}, "Connect to a robot")));
+    box.addEventListener("toggle", () => {
+      if (!box.open || this.#live) return;
+      void import("./livecard").then(({ LiveCard }) => {
+        this.#live ??= new LiveCard(this.#rig, seeVerdict);
+        box.append(this.#live.element);
+        this.#live.show();
+      });
+    });
+    return box;
   }
 
   #showRecordings(): void {

@@ -15,7 +15,7 @@ export type NamedCamera = { name?: string; camera: Pinhole; width?: number; heig
 
 /** A file as read, without its pixels. */
 export interface Summary extends Omit<Reading, "name"> {
-  kind: Kind | "recording";
+  kind: Kind | "recording" | "robot";
   /** Of a recording: what it holds, and what was chosen of it. */
   topics?: Topic[];
   chosen?: { colour?: string; depth?: string };
@@ -73,6 +73,18 @@ export interface Calls {
   example: { ask: { first: number }; answer: Assembly };
   /** Frames out of a recording that has been read. */
   take: { ask: { file: number; first: number; colour?: string; depth?: string; frames: number }; answer: Assembly };
+  /** Opens a connection to a robot's bridge, in place of one that is open. */
+  connect: {
+    ask: { address: string };
+    answer: { name: string; topics: Topic[]; chosen: { colour?: string; depth?: string } };
+  };
+  /** The next view of the robot that differs from those before; `fresh` forgets these. */
+  observe: { ask: { first: number; colour: string; depth: string; fresh: boolean }; answer: Assembly };
+  /** Ends what observes. */
+  rest: { ask: object; answer: null };
+  /** Is answered with the reason once the connection has ended. */
+  closed: { ask: object; answer: string };
+  disconnect: { ask: object; answer: null };
   forget: { ask: { file: number }; answer: null };
   /** A file with its pixels. */
   reading: { ask: { file: number }; answer: RigReading };

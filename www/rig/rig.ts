@@ -1,6 +1,7 @@
 /** What the visitor has brought and chosen: files, frames, cameras, candidates, and what the check said of them. */
 
 import type { CheckCue, Pinhole } from "../../pkg/index.js";
+import { Live } from "./live";
 import { pairUp } from "./pairing";
 import { doubtsOf } from "./doubts";
 import type { ReaderWarning } from "./files";
@@ -41,6 +42,7 @@ export class Rig implements RigState {
   readonly session = new Session();
   readonly undo = new Undo(this);
   readonly takings = new Takings(this);
+  readonly live = new Live(this);
   items: Item[] = [];
   frames: Frame[] = [];
   readonly cameras: Record<Side, CameraChoice> = { colour: choice(), depth: choice() };
@@ -54,6 +56,15 @@ export class Rig implements RigState {
   /** How sharp the answer has been, run by run, with how many frames. */
   history: { frames: number; pixels: number; interval: [number, number] }[] = [];
   #last = 0;
+
+  constructor() {
+    // A robot's pictures cannot be read again.
+    this.session.onReplaced = () => {
+      for (const item of this.items.filter(({ summary }) => summary?.kind === "robot")) this.#drop(item);
+      this.changed();
+    };
+  }
+
   #listeners: (() => void)[] = [];
   #told = false;
 
@@ -201,12 +212,16 @@ export class Rig implements RigState {
     this.undo.keep(`removing ${item.name}`, {
       isMoot: () => this.items.some(({ id, name }) => name === item.name && id > item.id),
     });
+    this.#drop(item);
+    this.frames = pairUp(this);
+    this.changed();
+  }
+
+  #drop(item: Item): void {
     this.candidates = this.candidates.filter(({ file }) => file !== item.id);
     this.notes = this.notes.filter((note) => !item.taking?.notes.includes(note));
     this.leave([item, ...this.items.filter(({ recording }) => recording === item.id)]);
     this.#chooseCameras();
-    this.frames = pairUp(this);
-    this.changed();
   }
 
   /** Files that are gone, and what was made of them. */
@@ -230,6 +245,7 @@ export class Rig implements RigState {
 
   /** A check that runs is of what is gone then. */
   clear(): void {
+    this.live.stop();
     this.session.cancel();
     if (this.items.length + this.frames.length + this.candidates.length > 0)
       this.undo.keep("starting over", { isWhole: true });

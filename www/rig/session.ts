@@ -39,6 +39,8 @@ export class Session {
   #worker: Worker | undefined;
   #next = 1;
   #waiting = new Map<number, Waiting>();
+  /** Is called where a worker is replaced: what came from a robot was in it alone. */
+  onReplaced = (): void => {};
   /** What a new worker is told first: everything that the old one had read. */
   #known = new Map<string, { kind: CallKind; ask: object }>();
 
@@ -119,6 +121,7 @@ export class Session {
   #replace(): void {
     this.#worker?.terminate();
     this.#worker = undefined;
+    this.onReplaced();
     const worker = this.#thread();
     for (const [id, { kind, ask }] of this.#waiting) worker.postMessage({ ...ask, id, kind } as Request);
   }
@@ -126,6 +129,7 @@ export class Session {
   #restart(message: string): void {
     this.#worker?.terminate();
     this.#worker = undefined;
+    this.onReplaced();
     const left = [...this.#waiting.values()];
     this.#waiting.clear();
     // What was being read may be what ended it: no other worker is told to.

@@ -8,7 +8,7 @@ import { loadExample } from "./example";
 import { isRecording, readRigFile, readRigFolder, type RigReading } from "./files";
 import { picture } from "./pictures";
 import type { Answer, Assembly, CallKind, Calls, FramePlan, Request, Summary } from "./protocol";
-import type { Recording } from "./recordings";
+import type { Recording, Robot } from "./recordings";
 
 const MOST_WORKERS = 4;
 
@@ -19,6 +19,9 @@ const HEAD = 16;
 /** As they were last checked: the overlay and the files out are of these. */
 let frames: CheckFrame[] = [];
 let running: AbortController | undefined;
+let robot: Robot | undefined;
+/** What observes it. */
+let looking: AbortController | undefined;
 
 function post(answer: Answer, transfer: Transferable[] = []): void {
   self.postMessage(answer, { transfer });
@@ -108,6 +111,12 @@ function assemble(
   return { origin, items, frames, cameras, poses, warnings };
 }
 
+/** The robot that is connected; what asks too late is told so. */
+function connected(): Robot {
+  if (!robot) throw new Error("There is no connection to a robot.");
+  return robot;
+}
+
 async function openFile(file: number, name: string, blob: Blob): Promise<Summary> {
   const { openRecording } = await import("./recordings");
   const recording = await openRecording({ name, content: blob });
@@ -183,6 +192,34 @@ const handlers: Handlers = {
       // The direction is the reader's: names of frames here are a robot's, and say nothing of colour and depth.
       poses: folder.poses.map(({ name = "tf", pose }) => ({ name, pose })),
     });
+  },
+  async connect({ address }) {
+    robot?.close();
+    robot = undefined;
+    const { connectRobot } = await import("./recordings");
+    robot = await connectRobot(address);
+    const { name, topics, chosen } = robot;
+    return { name, topics, chosen };
+  },
+  async observe({ first, colour, depth, fresh }) {
+    const watched = connected();
+    if (fresh) watched.restart();
+    looking = new AbortController();
+    const folder = await watched.next({ colour, depth, signal: looking.signal });
+    const poses = folder.poses.map(({ name = "tf", pose }) => ({ name, pose }));
+    return assemble(watched.address, first, folder.frames.map(withoutCameras), { ...folder, poses });
+  },
+  async rest() {
+    looking?.abort();
+    return null;
+  },
+  async closed() {
+    return connected().closed;
+  },
+  async disconnect() {
+    robot?.close();
+    robot = undefined;
+    return null;
   },
   async forget({ file }) {
     readings.delete(file);

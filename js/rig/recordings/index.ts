@@ -5,3 +5,4 @@
 export { BimodalError } from "../../errors.js";
 export { type Topic, type Recording, type RecordingOptions, openRecording } from "./open.js";
 export { isRecording } from "./kinds.js";
+export { type Robot, connectRobot } from "./live.js";

@@ -1,37 +1,16 @@
 /** Opens a recording: lists its topics, says which are the two cameras', and takes frames of them. */
 import { callback, object, ranged, signal, wrong } from "../../check.js";
 import { BimodalError, badFile, badNamed } from "../../errors.js";
-import { addCameras } from "../assign.js";
 import { metresPerUnit } from "../read.js";
-import type { NamedCamera, RigFolder } from "../types.js";
-import { type ReaderWarning, distinct, grouped, ofFile, warning } from "../warnings.js";
+import type { RigFolder } from "../types.js";
+import { type Topic, folderOf, topicsOf } from "./folder.js";
 import { HEAD, containerOf } from "./kinds.js";
 import { frameOf, moments } from "./pairs.js";
-import { type Roles, isColour, isDepth, rolesOf } from "./roles.js";
+import { type Roles, rolesOf } from "./roles.js";
 import { unreadEncoding } from "./ros.js";
-import { type Bytes, type Shot, type Source, type TrackKind, bytesOf } from "./source.js";
+import { type Bytes, type Shot, type Source, bytesOf } from "./source.js";
 
-/** A topic or track of a recording. */
-export interface Topic {
-  /** Its name. */
-  name: string;
-  /** The type of its messages, or its codec. */
-  type: string;
-  /** What it is read as. */
-  kind: TrackKind;
-  /** Messages. */
-  messages: number;
-  /** Messages in a second. */
-  rate: number;
-  /** Of pictures and clouds: how they are stored, "640x480 rgb8". */
-  stored?: string;
-  /** Bytes of its first message's pixels or points. */
-  bytes?: number;
-  /** Which of the two cameras may have taken it. */
-  role?: "colour" | "depth";
-  /** Why it is not read. */
-  unread?: string;
-}
+export type { Topic } from "./folder.js";
 
 /** How frames are taken of a recording. */
 export interface RecordingOptions {
@@ -108,29 +87,6 @@ async function firstShots(source: Source): Promise<Map<string, Shot | string>> {
   return found;
 }
 
-function topicsOf(source: Source, shots: ReadonlyMap<string, Shot | string>): Topic[] {
-  const [from, until] = source.span;
-  return source.tracks.map(({ name, type, kind, count, unread }) => {
-    const shot = shots.get(name);
-    const why = unread ?? (typeof shot === "string" ? shot : undefined);
-    const topic = {
-      name,
-      type,
-      kind,
-      messages: count,
-      rate: count > 1 && until > from ? (count - 1) / (until - from) : 0,
-    };
-    if (shot === undefined || typeof shot === "string") return { ...topic, ...(why !== undefined && { unread: why }) };
-    const size = shot.width && shot.height ? `${shot.width}x${shot.height} ` : "";
-    return {
-      ...topic,
-      stored: `${size}${shot.encoding}`,
-      bytes: shot.bytes,
-      ...(isDepth(shot) ? { role: "depth" as const } : isColour(shot) ? { role: "colour" as const } : {}),
-    };
-  });
-}
-
 async function knownCameras(source: Source, shots: Iterable<Shot | string>): Promise<Set<string>> {
   const known = new Set<string>();
   for (const shot of shots)
@@ -178,11 +134,18 @@ class OpenRecording implements Recording {
     return name;
   }
 
-  async #read({ colour, depth, frames = FRAMES, unit, signal, onProgress }: RecordingOptions): Promise<RigFolder> {
+  async #read({
+    colour,
+    depth,
+    frames: most = FRAMES,
+    unit,
+    signal,
+    onProgress,
+  }: RecordingOptions): Promise<RigFolder> {
     const wanted = {
       colour: this.#topic("colour", colour),
       depth: this.#topic("depth", depth),
-      frames,
+      frames: most,
       ...(unit !== undefined && { unit }),
       ...(signal && { signal }),
       ...(onProgress && { onProgress }),
@@ -190,78 +153,11 @@ class OpenRecording implements Recording {
     const found = await moments(this.#source, wanted);
     const [first] = found.moments;
     if (first === undefined) throw badFile(`${wanted.colour} and ${wanted.depth} have no pictures of one time`);
-    const warnings: ReaderWarning[] = [...found.warnings];
     const start = this.#source.span[0];
-    const taken = found.moments.map((moment) => frameOf(moment, start));
-    found.moments.forEach(({ image, map }, index) => {
-      for (const each of [...image.warnings, ...map.warnings]) warnings.push(ofFile(taken[index]?.name ?? "", each));
-    });
-    const folder: RigFolder = {
-      frames: taken,
-      cameras: [],
-      poses: [],
-      readings: [
-        { name: wanted.colour, says: first.image.says, warnings: [] },
-        { name: wanted.depth, says: first.map.says, warnings: [] },
-      ],
-      warnings,
-    };
-    await this.#addCameras(folder, first.pair.colour, first.pair.depth);
-    const { found: poses, warnings: ofPoses } = await this.#source.poses(first.pair.depth, first.pair.colour);
-    folder.poses = poses;
-    warnings.push(...ofPoses);
-    if (poses.length === 0) warnings.push(noTransform(first.pair.depth, first.pair.colour));
-    folder.warnings = grouped(distinct(warnings));
-    return folder;
-  }
-
-  /** Each picture's camera is the one beside it, and needs no guess by name or size. */
-  async #addCameras(folder: RigFolder, colour: Shot, depth: Shot): Promise<void> {
-    const cameras: NamedCamera[] = [];
-    const named = async (shot: Shot, name: string, size: { width: number; height: number }) => {
-      const { found, warnings } = await this.#source.camera({ ...shot, width: size.width, height: size.height });
-      folder.warnings.push(...warnings);
-      if (found) cameras.push({ ...found, name });
-    };
-    const [first] = folder.frames;
-    if (first === undefined) return;
-    await named(colour, "colour", first.image);
-    if (first.depth.points === undefined) await named(depth, "depth", first.depth);
-    folder.cameras = cameras;
-    attach(folder);
+    const frames = found.moments.map((moment) => frameOf(moment, start));
+    return folderOf(this.#source, found.moments, frames, found.warnings);
   }
 }
-
-/** By their names; what is missing is said, and nothing stands in for it. */
-function attach(folder: RigFolder): void {
-  const [first] = folder.frames;
-  const isAlone = folder.cameras.length === 1 && first?.depth.points === undefined;
-  if (!isAlone && folder.cameras.length > 0) return addCameras(folder);
-  const names = folder.cameras.map(({ name }) => name);
-  const depth = first?.depth.points === undefined && !names.includes("depth");
-  if (!names.includes("colour"))
-    folder.warnings.push(
-      warning(
-        "colour-camera-missing",
-        "No camera_info goes with the colour images (by its topic's name or its frame); their focal length has to be estimated.",
-      ),
-    );
-  if (depth)
-    folder.warnings.push(
-      warning(
-        "depth-camera-missing",
-        "No camera_info goes with the depth maps (by its topic's name or its frame); without their intrinsics depths cannot be turned into points.",
-      ),
-    );
-  for (const { name, camera } of folder.cameras)
-    for (const frame of folder.frames) (name === "colour" ? frame.image : frame.depth).camera = camera;
-}
-
-const noTransform = (from: Shot, to: Shot): ReaderWarning =>
-  warning(
-    "transform-missing",
-    `The recording has no transform from ${from.frame || "the depth camera's frame, which has no name,"} to ${to.frame || "the colour camera's, which has no name"} (tf_static, tf): without a calibration there is an estimate only.`,
-  );
 
 /** The topics of pictures and why they are not read. */
 function listed(topics: readonly Topic[]): string {
@@ -290,7 +186,7 @@ export async function openRecording(file: { name: string; content: Blob | Uint8A
     return new OpenRecording(
       file.name,
       source,
-      topicsOf(source, shots),
+      topicsOf(source.tracks, source.span, shots),
       rolesOf(sound, (track) => known.has(track)),
     );
   } catch (error) {

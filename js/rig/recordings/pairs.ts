@@ -33,7 +33,7 @@ export const areApart = (a: Shot, b: Shot): boolean =>
   a.taken === 0 || b.taken === 0 || Math.abs(a.taken - b.taken - (a.logged - b.logged)) > CLOCKS;
 
 /** The pair whose times are nearest. */
-function nearest(colours: readonly Shot[], depths: readonly Shot[]): Pair | undefined {
+export function nearest(colours: readonly Shot[], depths: readonly Shot[]): Pair | undefined {
   const [colour, depth] = [colours[0], depths[0]];
   if (!colour || !depth) return undefined;
   const byLog = areApart(colour, depth);
@@ -147,7 +147,7 @@ export async function moments(
   return { moments: found, warnings };
 }
 
-function judge(found: readonly Moment[], seen: number, wanted: number, warnings: ReaderWarning[]): void {
+export function judge(found: readonly Moment[], seen: number, wanted: number, warnings: ReaderWarning[]): void {
   const apart = Math.max(0, ...found.map(({ pair }) => pair.apart));
   if (apart > APART)
     warnings.push(
