@@ -112,14 +112,14 @@ function attach(folder: RigFolder): void {
     folder.warnings.push(
       warning(
         "colour-camera-missing",
-        "No camera_info goes with the colour images (by its topic's name or its frame); their focal length has to be estimated.",
+        "No intrinsics go with the colour images (a camera_info beside them or of their frame; an attached calibration); their focal length has to be estimated.",
       ),
     );
   if (depth)
     folder.warnings.push(
       warning(
         "depth-camera-missing",
-        "No camera_info goes with the depth maps (by its topic's name or its frame); without their intrinsics depths cannot be turned into points.",
+        "No intrinsics go with the depth maps (a camera_info beside them or of their frame; an attached calibration); without them depths cannot be turned into points.",
       ),
     );
   for (const { name, camera } of folder.cameras)
@@ -129,5 +129,5 @@ function attach(folder: RigFolder): void {
 const noTransform = (from: Shot, to: Shot): ReaderWarning =>
   warning(
     "transform-missing",
-    `There is no transform from ${from.frame || "the depth camera's frame, which has no name,"} to ${to.frame || "the colour camera's, which has no name"} (tf_static, tf): without a calibration there is an estimate only.`,
+    `There is no transform from ${from.frame || "the depth camera's frame, which has no name,"} to ${to.frame || "the colour camera's, which has no name"} (tf_static, tf, an attached calibration): without a calibration there is an estimate only.`,
   );

@@ -67,7 +67,8 @@ async function sourceOf(bytes: Bytes): Promise<Source> {
   const container = containerOf(await bytes.read(0, HEAD));
   if (container === "mcap") return (await import("./mcap.js")).openMcap(bytes);
   if (container === "bag") return (await import("./bag.js")).openBag(bytes);
-  throw badFile("it is no recording that is read here; MCAP files and bags of ROS 1 are");
+  if (container === "matroska") return (await import("./matroska.js")).openMatroska(bytes);
+  throw badFile("it is no recording that is read here; MCAP files, bags of ROS 1 and an Azure Kinect's .mkv are");
 }
 
 /** The first picture or cloud of each topic, as far as it can be read. */
@@ -110,7 +111,8 @@ class OpenRecording implements Recording {
     this.topics = topics;
     this.chosen = chosen;
     this.#source = source;
-    this.says = `${source.format}, ${this.seconds.toFixed(1)} s, ${topics.length} topics`;
+    const what = source.format === "Matroska" ? "tracks" : "topics";
+    this.says = `${source.format}, ${this.seconds.toFixed(1)} s, ${topics.length} ${what}`;
   }
 
   async read(options: RecordingOptions = {}): Promise<RigFolder> {
