@@ -26,3 +26,8 @@ export function mcap(
 ): Promise<Buffer>;
 export function lz4Frame(data: Uint8Array): Uint8Array;
 export function zstdFrame(data: Uint8Array): Uint8Array;
+export function matroska(
+  frames: readonly Pick<CheckFrame, "image" | "depth">[],
+  calibration: string,
+  options?: { groups?: boolean; isOpen?: boolean },
+): Buffer;

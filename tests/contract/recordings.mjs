@@ -309,3 +309,63 @@ export function driver(frames, pose, { start = 1_700_000_000, every = 0.5, late 
   });
   return messages;
 }
+
+/** An element of EBML: its id, its size in eight bytes (all ones where nobody knew it), and its content. */
+function element(id, content, isOpen = false) {
+  const bytes = typeof content === "string" ? new TextEncoder().encode(content) : content;
+  const head = [];
+  for (let rest = id; rest > 0; rest = Math.floor(rest / 256)) head.unshift(rest % 256);
+  const size = isOpen
+    ? Array(7).fill(255)
+    : [6, 5, 4, 3, 2, 1, 0].map((place) => Math.floor(bytes.length / 256 ** place) % 256);
+  return Buffer.concat([Uint8Array.from([...head, 1, ...size]), bytes]);
+}
+const whole = (value, width = 4) =>
+  Uint8Array.from({ length: width }, (_, at) => Math.floor(value / 256 ** (width - 1 - at)) % 256);
+
+/** A track as k4arecorder writes it: a codec of Windows, named in its header. */
+function videoTrack(number, name, code, { width, height }) {
+  const header = new Uint8Array(40);
+  header.set(new TextEncoder().encode(code), 16);
+  const video = element(0xe0, Buffer.concat([element(0xb0, whole(width)), element(0xba, whole(height))]));
+  const parts = [
+    element(0xd7, whole(number, 1)),
+    element(0x536e, name),
+    element(0x86, "V_MS/VFW/FOURCC"),
+    element(0x63a2, header),
+    video,
+  ];
+  return element(0xae, Buffer.concat(parts));
+}
+
+/** A Matroska file of an Azure Kinect's tracks, with a calibration attached; blocks single or in groups, clusters of known size or not. */
+export function matroska(frames, calibration, { groups = false, isOpen = false } = {}) {
+  const [{ image, depth }] = frames;
+  const tracks = [
+    videoTrack(1, "COLOR", "MJPG", image),
+    videoTrack(2, "DEPTH", "b16g", depth),
+    videoTrack(3, "IR", "b16g", depth),
+  ];
+  const file = [element(0x466e, "calibration.json"), element(0x465c, calibration)];
+  const block = (track, late, data) => {
+    const content = Buffer.concat([Uint8Array.of(0x80 | track, late >> 8, late & 255, 0), data]);
+    return groups ? element(0xa0, element(0xa1, content)) : element(0xa3, content);
+  };
+  const clusters = frames.map(({ image, depth }, index) => {
+    const high = Uint8Array.from({ length: 2 * depth.data.length }, (_, at) =>
+      at % 2 === 0 ? depth.data[at >> 1] >> 8 : depth.data[at >> 1] & 255,
+    );
+    const blocks = [block(1, 0, jpegMessage(image, 0, "").data), block(2, 1, high), block(3, 1, high)];
+    return element(0x1f43b675, Buffer.concat([element(0xe7, whole(500 * index)), ...blocks]), isOpen);
+  });
+  const segment = [
+    element(0x1549a966, element(0x2ad7b1, whole(1_000_000))),
+    element(0x1654ae6b, Buffer.concat(tracks)),
+    element(0x1941a469, element(0x61a7, Buffer.concat(file))),
+    ...clusters,
+  ];
+  return Buffer.concat([
+    element(0x1a45dfa3, element(0x4282, "matroska")),
+    element(0x18538067, Buffer.concat(segment), isOpen),
+  ]);
+}

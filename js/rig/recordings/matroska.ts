@@ -2,11 +2,11 @@
  * Matroska as an Azure Kinect is recorded (k4arecorder, and what has its wrapper): colour as JPEG or plain pixels, depth as 16 bits of grey
  * with the high byte first, and the device's calibration attached.
  */
-import { badFile } from "../../errors.js";
+import { BimodalError, badFile } from "../../errors.js";
 import { readJpeg } from "../formats/jpeg.js";
 import { readText } from "../formats/text.js";
 import type { NamedCamera, NamedPose } from "../types.js";
-import type { ReaderWarning } from "../warnings.js";
+import { type ReaderWarning, warning } from "../warnings.js";
 import { type Element, Elements, elementsIn, text, unsigned } from "./ebml.js";
 import { isKnown, pixels } from "./pixels.js";
 import { ofPicture } from "./ros.js";
@@ -247,7 +247,7 @@ class MatroskaSource implements Source {
     const found = this.#calibration.cameras.find(
       (camera) => /depth/i.test(camera.name ?? "") === isDepth && camera.width === width && camera.height === height,
     );
-    return { found, warnings: found ? this.#calibration.warnings : [] };
+    return { found, warnings: this.#calibration.warnings };
   }
 
   async poses(): Promise<Found<NamedPose[]>> {
@@ -262,11 +262,25 @@ class MatroskaSource implements Source {
 const unread = ({ codec }: Video): string =>
   `its pictures are stored as "${codec.slice(0, 40)}", which is not read here; an Azure Kinect's MJPG, NV12, YUY2 and b16g are`;
 
+/** What is attached; where it cannot be read the pictures still can. */
+async function calibrationOf(attached: string): Promise<Calibration> {
+  const nothing: Calibration = { cameras: [], poses: [], warnings: [] };
+  if (attached === "") return nothing;
+  try {
+    return await readText(attached);
+  } catch (error) {
+    if (!(error instanceof BimodalError)) throw error;
+    return {
+      ...nothing,
+      warnings: [warning("file-left-out", `The attached calibration was left out: ${error.message}.`)],
+    };
+  }
+}
+
 export async function openMatroska(bytes: Bytes): Promise<Source> {
   const reader = new Reader(bytes);
   await reader.read();
   if (reader.blocks.length === 0)
     throw badFile("this Matroska file holds no pictures, or is cut off before the first of them");
-  const nothing: Calibration = { cameras: [], poses: [], warnings: [] };
-  return new MatroskaSource(bytes, reader, reader.calibration === "" ? nothing : await readText(reader.calibration));
+  return new MatroskaSource(bytes, reader, await calibrationOf(reader.calibration));
 }
