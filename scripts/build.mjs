@@ -99,6 +99,18 @@ const endingExr = {
   },
 };
 
+/**
+ * @foxglove/rosbag brings readers that are compiled out of a recording's own definitions (`eval`, `new Function`), for those who ask it to
+ * decode messages. Here nobody does, and no code is made of what a file holds.
+ */
+const withoutEval = {
+  name: "without-eval",
+  transform(_, id) {
+    if (!/[\\/]rosmsg-serialization[\\/]dist[\\/]esm[\\/]index\.js$/.test(id)) return undefined;
+    return { code: "export class MessageReader {}", map: null };
+  },
+};
+
 /** One file for each entry and one for what they share, with the PNG decoder in the files module alone. */
 async function facade() {
   const { rolldown } = await import("rolldown");
@@ -107,7 +119,7 @@ async function facade() {
     input: Object.fromEntries(Object.entries(ENTRIES).map(([name, source]) => [name, inRoot(`js/${source}.ts`)])),
     external: /^node:/,
     platform: "neutral",
-    plugins: [npm.plugin, endingExr],
+    plugins: [npm.plugin, endingExr, withoutEval],
     resolve: { mainFields: ["module", "main"] },
     // What the splitting below needs; set in silence it is warned of.
     preserveEntrySignatures: "allow-extension",

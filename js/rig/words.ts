@@ -48,7 +48,7 @@ const STRANGE: [pattern: RegExp, advice: string, isPicture?: true][] = [
   [/^(?:.{4}ftyp|RIFF.{4}AVI )/s, "a video; save its frames as PNG"],
   [
     /^#ROSBAG|^\x89MCAP/,
-    "a recording (MCAP, or a bag of ROS); drop it on the page's check of a rig, or read it with openRecording of bimodal-stereo/rig-recordings",
+    "a recording of ROS (MCAP, or a bag); drop it on the page's check of a rig, or read it with openRecording of bimodal-stereo/rig-recordings",
   ],
   [
     /^SQLite format/,

@@ -190,7 +190,7 @@ test("recordings are known by their first bytes, and readers of single files say
   const bytes = await mcap(recorded({}, 1));
   assert.ok(isRecording(bytes) && rig.isRecording(bytes));
   assert.ok(!isRecording(new TextEncoder().encode("fx: 500")));
-  await refusedFile(rig.readRigFile({ name: "a.mcap", bytes }), "a.mcap", /MCAP.+ROS.+rig-recordings/);
+  await refusedFile(rig.readRigFile({ name: "a.mcap", bytes }), "a.mcap", /recording of ROS.+rig-recordings/);
 });
 
 const fixture = (name) =>

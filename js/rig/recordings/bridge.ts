@@ -147,6 +147,8 @@ export function addressOf(written: string): string {
 }
 
 function socketOf(address: string): WebSocket {
+  if (typeof WebSocket === "undefined")
+    throw noConnection(address, "there is no WebSocket here; browsers have one, and Node from version 22 on");
   try {
     const socket = new WebSocket(address, PROTOCOLS);
     socket.binaryType = "arraybuffer";

@@ -3,6 +3,13 @@
  * comes in: it holds the readers of its containers.
  */
 export { BimodalError } from "../../errors.js";
-export { type Topic, type Recording, type RecordingOptions, openRecording } from "./open.js";
+export {
+  type Choice,
+  type Recording,
+  type RecordingFile,
+  type RecordingOptions,
+  type Topic,
+  openRecording,
+} from "./open.js";
 export { isRecording } from "./kinds.js";
-export { type Robot, connectRobot } from "./live.js";
+export { type Robot, type ViewChoice, connectRobot } from "./live.js";

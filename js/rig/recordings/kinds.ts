@@ -1,4 +1,5 @@
 /** Recordings by their first bytes. */
+import { wrong } from "../../check.js";
 
 export type Container = "mcap" | "bag" | "matroska";
 
@@ -14,4 +15,7 @@ export const containerOf = (head: Uint8Array): Container | undefined =>
   FIRST.find(([, pattern]) => pattern.test(String.fromCharCode(...head.subarray(0, HEAD))))?.[0];
 
 /** Whether a file that begins with these bytes is a recording that is read here. */
-export const isRecording = (head: Uint8Array): boolean => containerOf(head) !== undefined;
+export function isRecording(head: Uint8Array): boolean {
+  if (!(head instanceof Uint8Array)) throw wrong("head", "a Uint8Array", head);
+  return containerOf(head) !== undefined;
+}

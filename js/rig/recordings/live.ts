@@ -18,6 +18,7 @@ import { cameraFor } from "./ros-source.js";
 import { ALIKE, type Signature, differenceOf, signatureOf } from "./signature.js";
 import type { Found, Shot, Source, Track } from "./source.js";
 import { type Topic, folderOf, topicsOf } from "./folder.js";
+import type { Choice } from "./open.js";
 import { Transforms } from "./transforms.js";
 
 /** Milliseconds that each topic has for its first message. */
@@ -37,6 +38,16 @@ const NEAR = 0.02;
 
 const wait = (milliseconds: number) => new Promise<void>((go) => setTimeout(go, milliseconds));
 
+/** What a view is taken of. */
+export interface ViewChoice {
+  /** The topic of the colour images. */
+  colour: string;
+  /** The topic of the depth maps or organised clouds. */
+  depth: string;
+  /** Ends the looking; the promise is rejected with its reason. */
+  signal?: AbortSignal;
+}
+
 /** A connection whose topics have been looked into. */
 export interface Robot {
   /** As it was opened. */
@@ -46,11 +57,11 @@ export interface Robot {
   /** All of its topics. */
   topics: Topic[];
   /** Those that look like the two cameras'. */
-  chosen: { colour?: string; depth?: string };
+  chosen: Choice;
   /** Is fulfilled with the reason once the connection has ended. */
   closed: Promise<string>;
   /** The next frame of another view than those before, with cameras and the transform between them. */
-  next(choice: { colour: string; depth: string; signal?: AbortSignal }): Promise<RigFolder>;
+  next(choice: ViewChoice): Promise<RigFolder>;
   /** Forgets which views were taken. */
   restart(): void;
   /** Ends the connection. */
@@ -147,7 +158,7 @@ class OpenRobot implements Robot {
     this.#taken = [];
   }
 
-  async next({ colour, depth, signal }: Parameters<Robot["next"]>[0]): Promise<RigFolder> {
+  async next({ colour, depth, signal }: ViewChoice): Promise<RigFolder> {
     for (const name of [colour, depth])
       if (!this.topics.some((topic) => topic.name === name)) throw badNamed(this.address, `it has no topic ${name}`);
     const shots: Record<string, Shot[]> = { [colour]: [], [depth]: [] };

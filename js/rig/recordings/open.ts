@@ -12,6 +12,22 @@ import { type Bytes, type Shot, type Source, bytesOf } from "./source.js";
 
 export type { Topic } from "./folder.js";
 
+/** The topics of the two cameras. */
+export interface Choice {
+  /** Of the colour images. */
+  colour?: string;
+  /** Of the depth maps or organised clouds. */
+  depth?: string;
+}
+
+/** A recording as it was dropped or opened. */
+export interface RecordingFile {
+  /** Its name, for messages. */
+  name: string;
+  /** All of it; a blob is read in parts. */
+  content: Blob | Uint8Array;
+}
+
 /** How frames are taken of a recording. */
 export interface RecordingOptions {
   /** The topic of the colour images; without it the one that looks most like it. */
@@ -41,7 +57,7 @@ export interface Recording {
   /** All of its topics or tracks. */
   topics: Topic[];
   /** Those that look like the two cameras'. */
-  chosen: { colour?: string; depth?: string };
+  chosen: Choice;
   /** Frames that differ, with cameras and the transform between them. */
   read(options?: RecordingOptions): Promise<RigFolder>;
 }
@@ -177,7 +193,7 @@ function named(name: string, error: unknown): unknown {
 }
 
 /** Opens a recording by its content; a blob is read in parts, so that it may be larger than memory. */
-export async function openRecording(file: { name: string; content: Blob | Uint8Array }): Promise<Recording> {
+export async function openRecording(file: RecordingFile): Promise<Recording> {
   if (typeof file?.name !== "string" || !(file.content instanceof Uint8Array || file.content instanceof Blob))
     throw wrong("file", "{ name: string, content: Blob or Uint8Array }", file);
   try {
