@@ -34,6 +34,8 @@ export interface NamedCamera {
   width?: number;
   /** Rows of its pictures, where the file says so. */
   height?: number;
+  /** Which pictures it took, where the file says so; "both" where depth maps are registered to its colour images. */
+  takes?: "colour" | "depth" | "both";
 }
 
 /** What was read of a file, in words. */
@@ -85,8 +87,10 @@ export type RigReading = Reading &
         kind: "cameras";
         /** In the order of the file. */
         cameras: NamedCamera[];
-        /** In the order of the file. */
+        /** In the order of the file; those between a depth and a colour camera first. */
         poses: NamedPose[];
+        /** Metres per stored unit of the depth maps beside it, where the file says it. */
+        depthUnit?: number;
       }
     | {
         /** What the file holds. */
@@ -102,6 +106,8 @@ export interface ReadOptions {
   as?: RigReading["kind"];
   /** Metres per stored unit of a depth map or cloud; without it the values decide. */
   unit?: number;
+  /** Width and height of raw pixels, of which no header says them (.raw, .bin). */
+  size?: readonly [width: number, height: number];
   /** Breaks the reading off; the promise is rejected with its reason. */
   signal?: AbortSignal;
 }

@@ -71,7 +71,7 @@ describe("depth maps", () => {
   });
 
   // Large enough for their blocks to become shorter; halves hold these depths exactly.
-  for (const name of ["piz-half", "piz-float", "piz-colours", "pxr24-float", "pxr24-mixed"]) {
+  for (const name of ["piz-half", "piz-float", "piz-colours", "pxr24-float", "pxr24-mixed", "dwaa-depth"]) {
     test(`large-${name}.exr`, async () => {
       const reading = await readFixture(`large-${name}.exr`, { as: "depth" });
       assert.deepEqual([reading.depth.width, reading.depth.height], [LARGE, 48]);
@@ -83,6 +83,14 @@ describe("depth maps", () => {
       );
     });
   }
+
+  test("large-b44.exr, by which the blocks with holes are coarse: a warning", async () => {
+    const reading = await readFixture("large-b44.exr");
+    assert.ok(reading.warnings.some(({ code, message }) => code === "eight-bits" && /with loss/.test(message)));
+    const wanted = large((x, y) => ((x + y) % 7 === 0 ? 0 : 0.75 + x / 64 + y / 128));
+    close(metres(reading), wanted, 0.12);
+    assert.match(reading.says, /85\.\d % valid/);
+  });
 
   test("a cloud keeps x and y, too", async () => {
     for (const name of ["cloud-compressed.pcd", "cloud-binary.ply", "cloud-columns.npy"]) {

@@ -4,6 +4,8 @@ import type { Pixels } from "../../raster.js";
 import type { ReaderWarning } from "../warnings.js";
 
 export interface Picture extends Raster<Pixels> {
+  /** Of the array of an archive. */
+  name?: string;
   /** "PNG", "PFM" and so on. */
   format: string;
   /** Of a channel, as in the file. */
