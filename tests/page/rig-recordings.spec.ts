@@ -1,7 +1,7 @@
 /** Check a rig: recordings are dropped, and a verdict comes out by clicking alone. They are made here, by the public writers. */
 
 import { expect, test } from "./lab";
-import { readFileSync } from "node:fs";
+import { existsSync, readFileSync } from "node:fs";
 import type { Page } from "@playwright/test";
 import { smallFrames } from "../contract/recorded-messages.mjs";
 import { driver, lz4Frame, mcap } from "../contract/recordings.mjs";
@@ -98,5 +98,22 @@ test("what a recording lacks is said, its frames are none, and nothing sticks ou
   await atWidths(page, [320, 390, 1280, 2560], async (width) =>
     expect(await innerWidth(page), `at ${width} px`).toBeLessThanOrEqual(width),
   );
+  expect(lab.complaints).toEqual([]);
+});
+
+/** A real one, beside the project: colour and depth of one moment, and the device's own calibration. */
+const AZURE = new URL("../../../shared/data/azure_kinect_raw/recording.mkv", import.meta.url);
+
+test("the recording of an Azure Kinect ends in a verdict of the calibration attached to it", async ({ lab, page }) => {
+  test.skip(!existsSync(AZURE), "needs ../shared/data");
+  await open(page);
+  await put(page, [file("recording.mkv", readFileSync(AZURE))]);
+  const card = page.locator(".rig-recording");
+  await expect(card.getByRole("row", { name: /^DEPTH b16g 640x576/ })).toContainText("depth");
+  await expect(card.getByRole("status")).toHaveText("1 frame taken");
+  await shot(page, "mkv-files");
+  await run(page);
+  await expect(page.locator(".rig-word")).toHaveText(/Consistent|Settled, but check/);
+  await shot(page, "mkv-verdict");
   expect(lab.complaints).toEqual([]);
 });

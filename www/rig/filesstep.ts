@@ -204,7 +204,10 @@ const known: readonly [string, string][] = [
   ["Cameras", "ROS camera_info, OpenCV YAML or XML, Open3D, Kalibr, RealSense, COLMAP, K.txt; or type them in"],
   ["Calibration", "4x4 text, Kalibr, ROS tf, Open3D, OpenCV R and T, RealSense; or type it in"],
   ["Folders", "TUM RGB-D, Redwood, or pairs with like names"],
-  ["Recordings", "MCAP of ROS 1 and 2: images, compressed images and depth, organised PointCloud2, camera_info, tf"],
+  [
+    "Recordings",
+    "MCAP, bags of ROS 1 and of RealSense, an Azure Kinect's .mkv: images, depth, clouds, camera_info, tf",
+  ],
 ];
 
 const formats = (): HTMLElement =>

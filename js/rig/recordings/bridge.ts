@@ -156,7 +156,7 @@ function socketOf(address: string): WebSocket {
   } catch (error) {
     throw noConnection(
       address,
-      "the browser refuses this address. A page that came by https may open wss:// alone, and ws:// on localhost; serve the page by http, or the bridge with TLS",
+      "the browser refuses this address. A page that came by https may open wss:// alone, and ws:// on localhost; serve the page by http, or the bridge with TLS. A server's own policy may forbid it as well",
       error,
     );
   }
