@@ -287,3 +287,16 @@ test("a Matroska file without a calibration, of other codecs, and one that is cu
   const half = await opened(bytes.subarray(0, bytes.length - 1000), "a.mkv");
   assert.equal((await half.read()).frames.length, 1);
 });
+
+test("moments at which the rig rests are taken before those at which it moves", async () => {
+  // Two alike, one after the other, then one that is on its way to the next.
+  const all = Array.from({ length: 8 }, (_, place) => [
+    frame(2 * place),
+    frame(2 * place),
+    frame(2 * place + 1),
+  ]).flat();
+  const { frames: found } = await (await written(driver(all, POSE, { every: 0.1 }))).read({ frames: 4 });
+  const depths = new Set(Array.from({ length: 8 }, (_, place) => Math.max(...frame(2 * place).depth.data)));
+  assert.equal(found.length, 4);
+  for (const { depth } of found) assert.ok(depths.has(Math.max(...depth.data)));
+});

@@ -1,12 +1,12 @@
 /**
  * Pairs of a colour image and a depth map of one moment out of a recording: moments evenly spread over it, at each the pair whose stamps are
- * nearest, and of those the ones that differ.
+ * nearest; of those the ones at which the rig moves least, since two cameras are seldom exposed at once; and of these the ones that differ.
  */
 import { breathe } from "../../breathe.js";
 import { BimodalError } from "../../errors.js";
 import type { CheckFrame } from "../types.js";
 import { type ReaderWarning, warning } from "../warnings.js";
-import { type Signature, different, signatureOf } from "./signature.js";
+import { type Signature, changeOf, different, signatureOf } from "./signature.js";
 import type { Content, Shot, Source } from "./source.js";
 
 /** Moments that are looked at for each frame that is wanted. */
@@ -23,6 +23,8 @@ export interface Pair {
   depth: Shot;
   /** Seconds between them. */
   apart: number;
+  /** The colour image after this one. */
+  after?: Shot;
 }
 
 /** When a shot was taken, as far as its own clock can be compared with the other's. */
@@ -31,6 +33,11 @@ export const timeOf = (shot: Shot, byLog: boolean): number => (byLog || shot.tak
 /** Whether two topics' stamps are of clocks that have nothing to do with each other, or missing. */
 export const areApart = (a: Shot, b: Shot): boolean =>
   a.taken === 0 || b.taken === 0 || Math.abs(a.taken - b.taken - (a.logged - b.logged)) > CLOCKS;
+
+function withNext(pair: Pair, colours: readonly Shot[]): Pair {
+  const after = colours.find(({ logged }) => logged > pair.colour.logged);
+  return after ? { ...pair, after } : pair;
+}
 
 /** The pair whose times are nearest. */
 export function nearest(colours: readonly Shot[], depths: readonly Shot[]): Pair | undefined {
@@ -43,7 +50,7 @@ export function nearest(colours: readonly Shot[], depths: readonly Shot[]): Pair
       const apart = Math.abs(timeOf(a, byLog) - timeOf(b, byLog));
       if (best === undefined || apart < best.apart) best = { colour: a, depth: b, apart };
     }
-  return best;
+  return best && withNext(best, colours);
 }
 
 async function pairWithin(source: Source, roles: Wanted, from: number, until: number): Promise<Pair | undefined> {
@@ -95,7 +102,7 @@ async function allPairs(source: Source, { colour, depth }: Wanted): Promise<Pair
     colours.length < depths.length
       ? colours.map((shot) => nearest([shot], depths))
       : depths.map((shot) => nearest(colours, [shot]));
-  return found.filter((pair) => pair !== undefined);
+  return found.filter((pair) => pair !== undefined).map((pair) => withNext(pair, colours));
 }
 
 async function candidates(source: Source, wanted: Wanted): Promise<Candidate[]> {
@@ -113,13 +120,34 @@ async function candidates(source: Source, wanted: Wanted): Promise<Candidate[]> 
   });
 }
 
+/** How much the picture changes in a second. */
+async function unrest({ pair: { colour, after }, image }: Moment): Promise<number> {
+  const next = await after?.read({ as: "colour" });
+  if (after === undefined || next?.kind !== "colour") return 0;
+  return changeOf(image.image, next.image) / Math.max(1e-3, after.logged - colour.logged);
+}
+
+interface Seen {
+  candidate: Candidate;
+  signature: Signature;
+  /** Change in a second, where there are moments to choose from. */
+  unrest: number;
+}
+
+/** The half at which the rig moves least, but as many as may be wanted. */
+function restful(seen: readonly Seen[], wanted: number): Seen[] {
+  const kept = Math.max(wanted, Math.ceil(seen.length / 2));
+  const limit = seen.map(({ unrest }) => unrest).sort((a, b) => a - b)[kept - 1] ?? Infinity;
+  return seen.filter(({ unrest }) => unrest <= limit);
+}
+
 /** Moments that differ, decoded, and what is doubtful about them. */
 export async function moments(
   source: Source,
   wanted: Wanted,
 ): Promise<{ moments: Moment[]; warnings: ReaderWarning[] }> {
   const warnings: ReaderWarning[] = [];
-  const seen: { candidate: Candidate; signature: Signature }[] = [];
+  const seen: Seen[] = [];
   let failure: unknown;
   const all = await candidates(source, wanted);
   for (const [index, candidate] of all.entries()) {
@@ -129,8 +157,9 @@ export async function moments(
     const pair = await candidate.again();
     if (pair === undefined) continue;
     try {
-      const { image, map } = await decoded(pair, wanted.unit);
-      seen.push({ candidate, signature: signatureOf(image.image, map.depth) });
+      const moment = await decoded(pair, wanted.unit);
+      const signature = signatureOf(moment.image.image, moment.map.depth);
+      seen.push({ candidate, signature, unrest: all.length > wanted.frames ? await unrest(moment) : 0 });
     } catch (error) {
       if (!(error instanceof BimodalError)) throw error;
       failure ??= error;
@@ -138,9 +167,10 @@ export async function moments(
   }
   if (seen.length === 0 && failure !== undefined) throw failure;
   const found: Moment[] = [];
-  const signatures = seen.map(({ signature }) => signature);
+  const still = restful(seen, wanted.frames);
+  const signatures = still.map(({ signature }) => signature);
   for (const index of different(signatures, wanted.frames)) {
-    const pair = await seen[index]?.candidate.again();
+    const pair = await still[index]?.candidate.again();
     if (pair) found.push(await decoded(pair, wanted.unit));
   }
   judge(found, seen.length, wanted.frames, warnings);

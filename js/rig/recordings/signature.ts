@@ -71,6 +71,12 @@ export function differenceOf(a: Signature, b: Signature): number {
   return light / a.light.length + (both === 0 ? 0 : depth / both);
 }
 
+/** How much brighter or darker a cell of one picture is than of the other, in the mean. */
+export function changeOf(a: CheckFrame["image"], b: CheckFrame["image"]): number {
+  const [one, other] = [lightOf(a), lightOf(b)];
+  return one.reduce((sum, value, cell) => sum + Math.abs(value - (other[cell] ?? 0)), 0) / one.length;
+}
+
 /** Less is noise: a camera on a table has some thousandths. */
 export const ALIKE = 0.02;
 
