@@ -2,7 +2,15 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { K, CAMERA, START, recorded, written, image } from "./recorded.mjs";
-import { FRAMES, cloudMessage, compressedDepthMessage, depthMessage, headerOf, infoMessage } from "./recordings.mjs";
+import {
+  FRAMES,
+  cloudMessage,
+  compressedDepthMessage,
+  depthMessage,
+  headerOf,
+  infoMessage,
+  transform,
+} from "./recordings.mjs";
 import { H, W, close, metres, millimetres, refusedFile, translation } from "./rig-support.mjs";
 
 const bayer = (pattern) => ({ width: W, height: H, encoding: `bayer_${pattern}8`, step: W, is_bigendian: 0 });
@@ -150,4 +158,33 @@ test("a rectified picture has P's camera and no distortion, a picture in bins th
   ).read();
   const { fx, fy, cx, cy } = second.frames[0].image.camera;
   close([fx, fy, cx, cy], [K.fx / 2, K.fy / 2, (K.cx + 0.5) / 2 - 0.5, (K.cy + 0.5) / 2 - 0.5], 1e-9);
+});
+
+test("a cloud in a robot's axes, x forward and z up, is turned as its transform says", async () => {
+  const points = Float32Array.from({ length: 3 * W * H }, (_, at) => {
+    const [x, y] = [Math.floor(at / 3) % W, Math.floor(at / 3 / W)];
+    const z = 1 + 0.01 * ((x + y) % 7);
+    return [((x - W / 2) * z) / 14, ((y - H / 2) * z) / 14, z][at % 3];
+  });
+  const body = points.map((_, at) => [points[at + 2], -points[at - 1], -points[at - 1]][at % 3]);
+  const topic = "/lidar/points";
+  const base = recorded({}, 1).filter(({ topic }) => !/depth|tf_static/.test(topic));
+  const toOptical = [0, -1, 0, 0, 0, -1, 1, 0, 0];
+  const messages = [
+    ...base,
+    {
+      topic: "/tf_static",
+      type: "tf2_msgs/TFMessage",
+      time: START,
+      message: { transforms: [transform(FRAMES.colour, "lidar", { rotation: toOptical, translation })] },
+    },
+    image(topic, cloudMessage({ width: W, height: H, points: body }, START + 0.1, "lidar"), "sensor_msgs/PointCloud2"),
+  ];
+  const {
+    frames: [found],
+    poses,
+  } = await (await written(messages)).read();
+  close([...found.depth.points], [...points], 1e-6);
+  close(poses[0].pose.rotation, [1, 0, 0, 0, 1, 0, 0, 0, 1], 1e-9);
+  close(poses[0].pose.translation, translation, 1e-9);
 });

@@ -2,6 +2,7 @@
 import { addCameras } from "../assign.js";
 import type { CheckFrame, NamedCamera, RigFolder } from "../types.js";
 import { type ReaderWarning, distinct, grouped, ofFile, warning } from "../warnings.js";
+import { ofTurned } from "./axes.js";
 import type { Moment } from "./pairs.js";
 import { isColour, isDepth } from "./roles.js";
 import type { Shot, Source, Track, TrackKind } from "./source.js";
@@ -78,7 +79,8 @@ export async function folderOf(
   });
   await addOwnCameras(source, folder, colour, depth);
   const { found, warnings } = await source.poses(depth, colour);
-  folder.poses = found;
+  const { turn } = first;
+  folder.poses = turn ? found.map((each) => ofTurned(each, turn)) : found;
   folder.warnings.push(...warnings);
   if (found.length === 0) folder.warnings.push(noTransform(depth, colour));
   folder.warnings = grouped(distinct(folder.warnings));

@@ -11,7 +11,7 @@ import type { NamedPose, RigFolder } from "../types.js";
 import type { ReaderWarning } from "../warnings.js";
 import { type Bridge, connect, noConnection } from "./bridge.js";
 import type { Message } from "./messages.js";
-import { type Pair, decoded, frameOf as frameOfMoment, judge, nearest } from "./pairs.js";
+import { type Pair, decoded, frameOf as frameOfMoment, judge, nearest, turnBetween } from "./pairs.js";
 import { rolesOf } from "./roles.js";
 import { kindOfType, shotOf, unreadEncoding } from "./ros.js";
 import { cameraFor } from "./ros-source.js";
@@ -197,7 +197,7 @@ class OpenRobot implements Robot {
       if (!this.#bridge.isOpen) throw noConnection(this.address, "the connection was lost");
       const pair = pairNow();
       if (!pair || pair.colour === before?.pair.colour) continue;
-      const moment = await decoded(pair);
+      const moment = await decoded(pair, undefined, await turnBetween(this.#heard, pair));
       const signature = signatureOf(moment.image.image, moment.map.depth);
       const isStill = before !== undefined && differenceOf(before.signature, signature) < ALIKE;
       before = { signature, pair };

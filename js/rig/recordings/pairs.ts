@@ -6,6 +6,7 @@ import { breathe } from "../../breathe.js";
 import { BimodalError } from "../../errors.js";
 import type { CheckFrame } from "../types.js";
 import { type ReaderWarning, warning } from "../warnings.js";
+import { type Turn, turnOf } from "./axes.js";
 import { type Signature, changeOf, different, signatureOf } from "./signature.js";
 import type { Content, Shot, Source } from "./source.js";
 
@@ -75,16 +76,25 @@ export interface Wanted {
 /** Both decoded. */
 export interface Moment {
   pair: Pair;
+  /** By which the cloud's points were turned. */
+  turn?: Turn;
   image: Extract<Content, { kind: "colour" }>;
   map: Extract<Content, { kind: "depth" }>;
 }
 
-export async function decoded(pair: Pair, unit?: number): Promise<Moment> {
+/** How a pair's cloud has to be turned, so that z is depth. */
+export async function turnBetween(source: Pick<Source, "poses">, { colour, depth }: Pair): Promise<Turn | undefined> {
+  if (depth.encoding !== "points") return undefined;
+  const [found] = (await source.poses(depth, colour)).found;
+  return found && turnOf(found.pose.rotation);
+}
+
+export async function decoded(pair: Pair, unit?: number, turn?: Turn): Promise<Moment> {
   const image = await pair.colour.read({ as: "colour" });
-  const map = await pair.depth.read({ as: "depth", ...(unit !== undefined && { unit }) });
+  const map = await pair.depth.read({ as: "depth", ...(unit !== undefined && { unit }), ...(turn && { turn }) });
   if (image.kind !== "colour" || map.kind !== "depth")
     throw new Error("A reading is of another kind than was asked for.");
-  return { pair, image, map };
+  return { pair, image, map, ...(turn && { turn }) };
 }
 
 /** A moment that was looked at, and how to have it again: what was read is not kept. */
@@ -149,6 +159,7 @@ export async function moments(
   const warnings: ReaderWarning[] = [];
   const seen: Seen[] = [];
   let failure: unknown;
+  let turn: Turn | undefined;
   const all = await candidates(source, wanted);
   for (const [index, candidate] of all.entries()) {
     await breathe();
@@ -157,7 +168,8 @@ export async function moments(
     const pair = await candidate.again();
     if (pair === undefined) continue;
     try {
-      const moment = await decoded(pair, wanted.unit);
+      turn ??= await turnBetween(source, pair);
+      const moment = await decoded(pair, wanted.unit, turn);
       const signature = signatureOf(moment.image.image, moment.map.depth);
       seen.push({ candidate, signature, unrest: all.length > wanted.frames ? await unrest(moment) : 0 });
     } catch (error) {
@@ -171,7 +183,7 @@ export async function moments(
   const signatures = still.map(({ signature }) => signature);
   for (const index of different(signatures, wanted.frames)) {
     const pair = await still[index]?.candidate.again();
-    if (pair) found.push(await decoded(pair, wanted.unit));
+    if (pair) found.push(await decoded(pair, wanted.unit, turn));
   }
   judge(found, seen.length, wanted.frames, warnings);
   return { moments: found, warnings };

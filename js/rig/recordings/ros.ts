@@ -2,13 +2,14 @@
 import { badFile } from "../../errors.js";
 import { pictureColour } from "../colour.js";
 import { cloudDepth, pictureDepth } from "../depth.js";
-import type { Picture } from "../formats/picture.js";
+import type { Cloud, Picture } from "../formats/picture.js";
 import type { ReadOptions } from "../types.js";
+import { turned } from "./axes.js";
 import { compressed, compressedDepth, isCompressedDepth } from "./compressed.js";
 import { type Message, bytesIn, frameOf, numberIn, stampOf, textIn } from "./messages.js";
 import { type Stored, isKnown, pixels } from "./pixels.js";
 import { cloudOf } from "./points.js";
-import type { Content, Shot, TrackKind } from "./source.js";
+import type { Content, Shot, ShotOptions, TrackKind } from "./source.js";
 
 /** What a type's messages are: "sensor_msgs/Image" in ROS 1, "sensor_msgs/msg/Image" in ROS 2. */
 export function kindOfType(type: string): TrackKind {
@@ -61,6 +62,10 @@ function ofCompressed(message: Message, options: ReadOptions): Promise<Content> 
   return compressed(data, format).then((picture) => ofPicture(picture, options));
 }
 
+function ofCloud(cloud: Cloud, { turn, ...options }: ShotOptions): Content {
+  return cloudDepth(turn ? { ...cloud, points: turned(cloud.points, turn) } : cloud, options);
+}
+
 const head = (track: string, logged: number, message: Message) => ({
   track,
   logged,
@@ -75,7 +80,7 @@ export function shotOf(track: string, type: string, logged: number, message: Mes
   const withUnit = (options: ReadOptions) => (unit === undefined ? options : { unit, ...options });
   const size = { width: numberIn(message, "width"), height: numberIn(message, "height") };
   if (kindOfType(type) === "cloud")
-    return { ...common, ...size, encoding: "points", read: async (options) => cloudDepth(cloudOf(message), options) };
+    return { ...common, ...size, encoding: "points", read: async (options) => ofCloud(cloudOf(message), options) };
   if (type.endsWith("CompressedImage"))
     return { ...common, encoding: formatOf(message), read: async (options) => ofCompressed(message, options) };
   const stored = storedOf(message);

@@ -4,6 +4,7 @@
  */
 import type { NamedCamera, NamedPose, ReadOptions, RigReading } from "../types.js";
 import type { ReaderWarning } from "../warnings.js";
+import type { Turn } from "./axes.js";
 
 /** Bytes of a recording, read in parts. */
 export interface Bytes {
@@ -26,6 +27,11 @@ export interface Track {
   unread?: string;
 }
 
+/** How a shot is read; the points of a cloud in other axes. */
+export interface ShotOptions extends ReadOptions {
+  turn?: Turn;
+}
+
 /** One picture or cloud of a recording, decoded when it is asked for. */
 export interface Shot {
   track: string;
@@ -41,7 +47,7 @@ export interface Shot {
   width?: number;
   height?: number;
   bytes: number;
-  read(options: ReadOptions): Promise<Content>;
+  read(options: ShotOptions): Promise<Content>;
 }
 
 type Unnamed<T> = T extends unknown ? Omit<T, "name"> : never;
