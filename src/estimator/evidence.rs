@@ -10,6 +10,8 @@ pub struct Evidence {
     /// Iterations so far, and their cap.
     pub iteration: u32,
     pub max_iterations: u32,
+    /// The largest sigma of a rotation that counts as found, degrees.
+    pub tolerance: f64,
     /// The registration that ran, and the way the shape is found.
     pub registration: Registration,
     pub shading: Shading,

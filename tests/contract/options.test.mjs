@@ -168,6 +168,7 @@ const SHOWN = {
   "options.startTolerance.degrees": { given: () => noisy({ start: { angles: {} } }), other: 0.01 },
   "options.scale": { other: 1.1 },
   "options.stopDegrees": { given: slow, other: 0.02 },
+  "options.tolerance": { other: 1e-6 },
   "options.maxIterations": { given: () => slow({ stopDegrees: 1e-300 }), other: 61 },
   "options.seed": { given: () => noisy({}, 24), other: 2 },
 };
