@@ -9,6 +9,7 @@ import { inOrder } from "./assign.js";
 import { pictureColour, pictureMask } from "./colour.js";
 import { cloudDepth, pictureDepth } from "./depth.js";
 import { knownContainer, knownText } from "./formats/containers.js";
+import { withEnds } from "./formats/filename.js";
 import { readExr } from "./formats/exr.js";
 import { type RasterKind, rasterKind } from "./formats/headerless.js";
 import { readJpeg, readWebp } from "./formats/jpeg.js";
@@ -68,11 +69,11 @@ function ofCloud(cloud: Cloud, options: ReadOptions): Content {
   return cloudDepth(cloud, options);
 }
 
-async function ofText(text: string, { as }: ReadOptions): Promise<Content> {
+async function ofText(file: string, text: string, { as }: ReadOptions): Promise<Content> {
   if (as === "colour" || as === "depth" || as === "mask")
     throw badFile(`it is a text where a ${as === "depth" ? "depth map" : `${as} image`} was asked for`);
   const { cameras, poses: found, warnings, format, depthUnit } = await readText(text);
-  const poses = inOrder(found);
+  const poses = inOrder(withEnds(found, file));
   const reading = { says: `${format}: ${inWords(cameras, poses)}`, warnings: distinct(warnings) };
   if (as === "cameras" && cameras.length === 0) throw badFile(`it holds ${inWords(cameras, poses)}, but no camera`);
   if (as === "poses" && poses.length === 0) throw badFile(`it holds ${inWords(cameras, poses)}, but no motion`);
@@ -90,18 +91,21 @@ async function ofOthers(name: string, bytes: Uint8Array, options: ReadOptions): 
   const text = textOf(bytes);
   const refusal = text === undefined ? (pointList(bytes) ?? rawRefused(bytes)) : (knownText(text) ?? pointList(bytes));
   if (text === undefined || refusal !== undefined) throw refusal ?? rawRefused(bytes);
-  return ofText(text, options);
+  return ofText(name, text, options);
 }
 
 async function content({ name, bytes }: NamedFile, options: ReadOptions): Promise<Content> {
   if (bytes.length === 0) throw badFile("it is empty");
+  const kind = rasterKind(bytes);
+  // A recording is named before its size is, and a camera's raw photograph is a TIFF of its preview.
+  const container = bytes.length > MOST_BYTES || kind === "tiff" ? knownContainer(name, bytes) : undefined;
+  if (container !== undefined) throw container;
   if (bytes.length > MOST_BYTES)
     throw badFile(
       `it is ${(bytes.length / 2 ** 20).toFixed(0)} MB large; up to ${MOST_BYTES / 2 ** 20} MB are read`,
       undefined,
       { problem: "too-large" },
     );
-  const kind = rasterKind(bytes);
   if (kind === "ply") return ofCloud(readPly(bytes), options);
   if (kind === "pcd") return ofCloud(readPcd(bytes), options);
   if (kind === undefined || kind === "points") return ofOthers(name, bytes, options);

@@ -184,7 +184,7 @@ describe("RealSense", () => {
     const byRows = await json({ depth2color: rows.flatMap((row, i) => [...row, translation[i]]) });
     samePose(byRows.poses[0]);
     assert.deepEqual(codes(byRows), []);
-    const apart = await json({ depth2color: [...rotation, ...translation] });
+    const apart = await json({ depth2color: [...columns, ...translation] });
     samePose(apart.poses[0]);
     assert.deepEqual(codes(apart), ["rotation-order"]);
   });

@@ -305,7 +305,7 @@ describe("rotations that can be read in two ways", () => {
 
   test("twelve numbers in a list", async () => {
     samePose(only((await json("x.json", { depth2color: matrix.slice(0, 3).flat() })).poses));
-    const behind = await json("x.json", { depth2color: [...rotation, ...translation] });
+    const behind = await json("x.json", { depth2color: [...columns, ...translation] });
     samePose(only(behind.poses));
     assert.deepEqual(codes(behind), ["rotation-order"]);
   });
@@ -346,11 +346,11 @@ describe("poses in the world are no extrinsics", () => {
       { trackingState: "normal", transform: { columns: [0, 1, 2, 3].map((i) => matrix.map((row) => row[i])) } },
       { camera: { matrix_world: matrix } },
       { c2w: matrix },
-      { frames: [{ file_path: "a.png", transform_matrix: matrix }] },
       { poses: [matrix, matrix, matrix] },
       [1, 2, 3].map((x) => ({ position: { x, y: 0, z: 0 }, heading: { w: 1, x: 0, y: 0, z: 0 } })),
     ])
       assert.deepEqual(await world(value), ["camera-to-world"], JSON.stringify(value));
+    await world({ frames: [{ file_path: "a.png", transform_matrix: matrix }] });
     const back = await json("x.json", { world_to_camera: matrix });
     assert.deepEqual([back.poses[0].from, back.poses[0].to], ["world", "camera"]);
   });

@@ -96,6 +96,40 @@ describe("a camera of many sizes", () => {
     );
   });
 
+  test("sizes as names of members, streams named by a member of theirs", async () => {
+    const K = (f, w, h) => ({ fx: f, fy: f, ppx: w / 2, ppy: h / 2 });
+    const members = { color: { "128x96": K(120, 128, 96), "64x48": K(60, 64, 48) }, depth: { "64x48": K(50, 64, 48) } };
+    const streams = [
+      { stream: "Color", ...camera(120, 128, 96) },
+      { type: "depth", intrinsics: camera(50, 64, 48) },
+      { stream: "Color", ...camera(60, 64, 48) },
+    ];
+    for (const calibration of [members, { streams }]) {
+      const found = await folder({ ...pair(), "calib.json": calibration });
+      assert.deepEqual(
+        cameras(found)[0].map(([fx]) => fx),
+        [60, 50],
+      );
+      assert.deepEqual(codes(found), []);
+    }
+  });
+
+  test("a file's name says which way its only pose leads", async () => {
+    const matrix = "1 0 0 0.1\n0 1 0 0\n0 0 1 0\n0 0 0 1\n";
+    for (const [name, ends] of [
+      ["calib/calib_cam_to_velo.txt", ["cam", "velo"]],
+      ["lidar2camera.txt", ["lidar", "camera"]],
+      ["rgb_from_depth.txt", ["depth", "rgb"]],
+      ["T_cam_lidar.txt", ["lidar", "cam"]],
+      ["top_center_lidar-to-center_camera-extrinsic.txt", ["top_center_lidar", "center_camera"]],
+      ["how_to_mount.txt", [undefined, undefined]],
+      ["extrinsics.txt", [undefined, undefined]],
+    ]) {
+      const [{ from, to }] = (await folder({ [name]: matrix })).poses;
+      assert.deepEqual([from, to], ends, name);
+    }
+  });
+
   test("two cameras that may have taken the same pictures are named", async () => {
     const found = await folder({
       ...pair(),

@@ -51,7 +51,14 @@ function brown(values: Numbers): Numbers | undefined {
   return Array.from({ length }, (_, index) => used[index] ?? 0);
 }
 
-function sizeOf({ width, height }: RawCamera): { width: number; height: number } | undefined {
+/** A size in a camera's name, as in "color 1280x720". */
+function sizeInName(name = ""): { width?: number; height?: number } {
+  const [, width, height] = /(?:^|[ _])(\d{2,5})[xX](\d{2,5})(?![\dxX])/.exec(name) ?? [];
+  return width === undefined ? {} : { width: Number(width), height: Number(height) };
+}
+
+function sizeOf(raw: RawCamera): { width: number; height: number } | undefined {
+  const { width, height } = raw.width === undefined && raw.height === undefined ? sizeInName(raw.name) : raw;
   if (width === undefined && height === undefined) return undefined;
   const isSide = (side: number) => Number.isInteger(side) && side > 0 && side <= 4 * MOST_SIDE;
   if (width === 0 && height === 0) return undefined;

@@ -17,10 +17,6 @@ const FISHEYE = 1;
 const MODELS: Record<string, string> = { 0: "opencv", 1: "fisheye", 2: "equirectangular", 3: "radial division" };
 const METRES = 0.01;
 
-export const isDepthai = (root: Node): boolean =>
-  (Array.isArray(root.cameraData) || isNode(root.cameraData)) &&
-  ("boardName" in root || "stereoRectificationData" in root || "batchTime" in root);
-
 /** The sockets with their cameras: a map of C++ is a list of pairs in JSON, of Python an object. */
 function entries(data: unknown): [unknown, Node][] {
   const pairs: unknown[] = Array.isArray(data) ? data : isNode(data) ? Object.entries(data) : [];
@@ -28,6 +24,10 @@ function entries(data: unknown): [unknown, Node][] {
     Array.isArray(pair) && isNode(pair[1]) ? [[pair[0], pair[1]] as [unknown, Node]] : [],
   );
 }
+
+/** Any camera of it has these two, whatever else the file says. */
+export const isDepthai = (root: Node): boolean =>
+  entries(root.cameraData).some(([, camera]) => "distortionCoeff" in camera && isNode(camera.extrinsics));
 
 export function readDepthai(root: Node): Findings {
   const found = new Findings();

@@ -27,7 +27,8 @@ export function worldFrames(name: string): Frames | undefined {
 export function named(name: string, frames: Frames): PoseNames {
   if (frames.from !== undefined || frames.to !== undefined) return { ...(name !== "" && { name }), ...frames };
   if (name === "") return {};
-  const towards = /^(?:T_)?([a-z0-9]+)_?(?:_to_|2(?=[a-z]))_?([a-z0-9]+)$/i.exec(name);
+  const bare = name.replace(/^(?:extrinsics?|transform)[ _]+/i, "").replace(/ /g, "_");
+  const towards = /^(?:T_)?([a-z0-9]+)_?(?:_to_|2(?=[a-z]))_?([a-z0-9]+)$/i.exec(bare);
   const world = worldFrames(name);
   if (world !== undefined) return { name, ...world };
   if (towards) return { name, from: towards[1] ?? "", to: towards[2] ?? "" };

@@ -1,5 +1,5 @@
 /** Members of one object that belong together by their names: "Camera.fx" and "Camera.fy", "cam_fx" and "cam_d0", "rot0" to "rot8". */
-import { type Node, type Numbers, numberOf } from "./numbers.js";
+import { type Node, type Numbers, isNode, matrixOf, numberOf } from "./numbers.js";
 
 /** Groups of one object. */
 const MOST = 300;
@@ -25,7 +25,9 @@ export function grouped(node: Node, keys: string[]): Map<string, Node> {
   for (const key of keys) {
     if (groups.size > MOST) break;
     const [, group, name] = /^(\w{1,40})\.(\w{1,40})$/.exec(key) ?? [];
-    if (group !== undefined && name !== undefined) groups.set(group, { ...groups.get(group), [name]: node[key] });
+    const isObject = isNode(node[key]) && matrixOf(node[key]) === undefined;
+    if (group !== undefined && name !== undefined && !isObject)
+      groups.set(group, { ...groups.get(group), [name]: node[key] });
   }
   for (const key of keys) {
     if (groups.size > MOST) break;

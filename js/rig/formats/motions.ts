@@ -87,8 +87,12 @@ function parts(value: unknown, names: string[]): Matrix | undefined {
 export function contextOf(node: Node, frames: Context): Context {
   const said = member(node, "unit", "units", "lengthunit", "lengthunits", "translationunit", "translationunits");
   const turned = member(node, "angleunit", "angleunits", "rotationunit", "rotationunits", "unit", "units");
-  const unit = typeof said === "string" ? lengthOf(said) : undefined;
-  const angle = typeof turned === "string" ? angleOf(turned) : undefined;
+  const word = (value: unknown, ...names: string[]) => {
+    const each = isNode(value) ? member(value, ...names) : value;
+    return typeof each === "string" ? each : "";
+  };
+  const unit = lengthOf(word(said, "translation", "length", "position", "t"));
+  const angle = angleOf(word(turned, "rotation", "angle", "angles", "r"));
   return { ...frames, ...(unit !== undefined && { unit }), ...(angle !== undefined && { angle }) };
 }
 
@@ -198,7 +202,7 @@ export class Motions {
   /** The numbers of a rotation, and what the names of its members say of them. */
   #rotationParts(value: unknown): (Matrix & { said: Attributes; isMatrix: boolean }) | undefined {
     const isMatrix = isNode(value) && value.data !== undefined;
-    const four = parts(value, ["x", "y", "z", "w"]);
+    const four = parts(value, ["x", "y", "z", "w"]) ?? parts(value, ["qx", "qy", "qz", "qw"]);
     if (four !== undefined) return { ...four, isMatrix, said: isNode(value) && !isMatrix ? { order: "xyzw" } : {} };
     const angles = parts(value, ["roll", "pitch", "yaw"]);
     if (angles !== undefined) return { ...angles, isMatrix, said: { kind: "euler" } };
@@ -240,10 +244,11 @@ export class Motions {
     if (isNoMotion(key) !== undefined) return false;
     const matrix = matrixOf(node[key]);
     const length = matrix?.values.length;
+    if (matrix !== undefined && length === 7) return this.#seven(matrix.values, key, context);
     if (matrix === undefined || (length !== 16 && length !== 12) || isLens(key) === "") return false;
     if (length === 12 && matrix.rows !== 3)
       return matrix.rows === undefined && this.#twelve(matrix.values, key, context);
-    const isOpen3D = key === "extrinsic" || key === "pose";
+    const isOpen3D = (key === "extrinsic" || key === "pose") && matrix.rows === undefined;
     const names = isOpen3D
       ? named(parent, key === "extrinsic" ? { from: "world", to: "camera" } : { from: "camera", to: "world" })
       : (kalibr(key, parent) ?? named(key, worldFrames(key) ?? context));
@@ -265,22 +270,28 @@ export class Motions {
     return true;
   }
 
+  /** A translation and a quaternion in one list. */
+  #seven(values: Numbers, key: string, context: Context): boolean {
+    const quaternion = values.slice(3);
+    if (!TRANSFORM.test(key) || Math.abs(Math.hypot(...quaternion) - 1) > ROTATION_TOLERANCE) return false;
+    const names = named(key, worldFrames(key) ?? context);
+    const order = this.#signs.order;
+    const rotation = ofFour(quaternion, order === undefined ? {} : { order }, key, this.#warnings);
+    this.#add(this.#motion(rotation, values.slice(0, 3), names, context.unit));
+    return true;
+  }
+
   /** Twelve numbers in a row: three rows of four, or a rotation before its translation. */
   #twelve(values: Numbers, key: string, context: Context): boolean {
     const names = named(key, worldFrames(key) ?? context);
-    const isShifted = isRotation(values.slice(0, 9));
-    if (isRotation(block(values)))
-      this.#add(
-        this.#motion(
-          block(values),
-          [3, 7, 11].map((index) => at(values, index)),
-          names,
-          context.unit,
-        ),
-      );
-    else if (isShifted)
-      this.#open.set(this.#add(this.#motion(values.slice(0, 9), values.slice(9), names, context.unit)), "rows");
-    else return false;
+    if (isRotation(block(values))) {
+      const shift = [3, 7, 11].map((index) => at(values, index));
+      this.#add(this.#motion(block(values), shift, names, context.unit));
+    } else if (isRotation(values.slice(0, 9))) {
+      // As librealsense keeps its extrinsics.
+      const rotation = transposed(values.slice(0, 9), 3);
+      this.#open.set(this.#add(this.#motion(rotation, values.slice(9), names, context.unit)), "columns");
+    } else return false;
     return true;
   }
 
@@ -362,11 +373,13 @@ function kalibr(key: string, parent: string): PoseNames | undefined {
 function isPoseLike(key: string, value: unknown, rectifies: boolean): boolean {
   const words = wordsOf(key).join(" ");
   const isMatrix = (each: unknown) => [12, 16].includes(matrixOf(each)?.values.length ?? 0);
-  if (SERIES.test(words)) return Array.isArray(value) && value.length > 0 && !value.every(isMatrix);
+  if (SERIES.test(words))
+    return Array.isArray(value) && value.length > 0 && !value.every(isMatrix) && !value.some(isNode);
   if (/rect|essential|fundamental|homography/.test(words) || isNoMotion(key) !== undefined) return false;
   const values = matrixOf(value)?.values;
   if (values === undefined) return false;
   if (values.length === 16 || values.length === 12) return isRotation(block(values));
+  if ((values.length === 6 || values.length === 7) && TRANSFORM.test(key)) return true;
   // A camera's R rectifies, and so does the identity under any name.
   const isIdentity = values.length === 9 && values.every((each, index) => each === (index % 4 === 0 ? 1 : 0));
   if (rectifies && isIdentity) return false;

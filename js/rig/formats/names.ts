@@ -27,6 +27,7 @@ const INTRINSICS = [
   ["mtx"],
   ["k"],
   ["m"],
+  ["matrix"],
 ];
 const LENS = [
   ["distortion", "coefficients"],
@@ -42,6 +43,7 @@ const LENS = [
   ["dist", "coef"],
   ["distcoeffs"],
   ["distortions"],
+  ["disto"],
   ["distortion"],
   ["dist"],
   ["coeffs"],

@@ -43,8 +43,15 @@ class Notes {
         if (key.length > 0) this.#name(key.join(" "));
         this.#add(number);
         [key, value] = [[], undefined];
-      } else if (token === ":" || token === "=") value ??= [];
-      else if (token === "," || token === ";") {
+      } else if (token === ":" || token === "=") {
+        // "depth intrinsics: width: 640": the first of two names is that of a group.
+        if (value !== undefined && value.length > 0) {
+          this.#close();
+          this.#begin(key.join(" "));
+          key = value;
+        }
+        value = [];
+      } else if (token === "," || token === ";") {
         this.#say(key, value);
         [key, value] = [[], undefined];
       } else (value ?? key).push(token);

@@ -7,28 +7,38 @@ import { Findings, flat } from "./findings.js";
 import { isNode, type Node, numberOf } from "./numbers.js";
 import { ofQuaternion } from "./poses.js";
 
-const isRecord = (value: unknown): value is Node =>
-  isNode(value) &&
-  flat(value.rotation, 4) !== undefined &&
-  flat(value.translation, 3) !== undefined &&
-  ("camera_intrinsic" in value || "sensor_token" in value || "token" in value || "ego_pose_token" in value);
+const isPosed = (value: unknown): value is Node =>
+  isNode(value) && flat(value.rotation, 4) !== undefined && flat(value.translation, 3) !== undefined;
+const isRecord = (value: unknown): boolean =>
+  isPosed(value) && ["camera_intrinsic", "sensor_token", "token", "ego_pose_token"].some((key) => key in value);
 
-const records = (root: unknown): unknown[] =>
-  Array.isArray(root) ? root : isNode(root) ? [root, ...Object.values(root)] : [];
+/** Records by the names that they have: of a table none, of an object its members'. */
+function records(root: unknown): [name: string, record: unknown][] {
+  if (Array.isArray(root)) return root.map((each) => ["", each]);
+  return isNode(root) ? [["", root], ...Object.entries(root)] : [];
+}
 
-export const isNuscenes = (root: unknown): boolean => records(root).slice(0, 20).some(isRecord);
+export const isNuscenes = (root: unknown): boolean =>
+  records(root)
+    .slice(0, 20)
+    .some(([, each]) => isRecord(each));
 
-/** Of a record: its channel where somebody has joined the tables, or else the beginning of its token. */
-const called = (record: Node): string =>
-  String(record.channel ?? record.sensor_name ?? record.token ?? record.sensor_token ?? "").slice(0, 8);
+/** Of a record: its channel where somebody has joined the tables, or else what it is and the beginning of its token. */
+function called(name: string, record: Node): string {
+  const channel = record.channel ?? record.sensor_name ?? (name === "" ? undefined : name);
+  if (typeof channel === "string") return channel.slice(0, 60);
+  const kind = flat(record.camera_intrinsic, 9) ? "camera" : "sensor";
+  return `${kind} ${String(record.token ?? record.sensor_token ?? "").slice(0, 8)}`.trim();
+}
 
 export function readNuscenes(root: unknown): Findings {
   const found = new Findings();
   const [cameras, others]: [NamedPose[], NamedPose[]] = [[], []];
-  for (const record of records(root).filter(isRecord)) {
+  for (const [own, record] of records(root)) {
+    if (!isPosed(record)) continue;
     const k = flat(record.camera_intrinsic, 9);
     const isEgo = "timestamp" in record && !("sensor_token" in record || "camera_intrinsic" in record);
-    const name = isEgo ? "ego" : `${k ? "camera" : "sensor"} ${called(record)}`.trim();
+    const name = isEgo ? "ego" : called(own, record);
     if (k !== undefined)
       found.camera({
         ...{ name, focal: [k[0] ?? NaN, k[4] ?? NaN], centre: [k[2] ?? NaN, k[5] ?? NaN], skew: k[1] },

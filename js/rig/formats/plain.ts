@@ -10,6 +10,8 @@ import { type ReaderWarning, distinct } from "../warnings.js";
 type Found = Calibration & { format: string };
 
 const MOST_NUMBERS = 200_000;
+/** Where a header of names stands. */
+const HEAD = 1000;
 const near = (value: number | undefined, to: number): boolean => value !== undefined && Math.abs(value - to) < 1e-9;
 
 /** Rows of numbers, without comments and brackets; nothing where there is anything else. */
@@ -82,7 +84,7 @@ const isPincam = (rows: Numbers[]): boolean => {
 /** TUM: time stamp, translation, quaternion x y z w, of the camera in the world. */
 function trajectory(rows: Numbers[], text: string): Found {
   const warnings: ReaderWarning[] = [];
-  const isFirst = /\bqw[\s,;]+qx\b|\bw[\s,;]+x[\s,;]+y[\s,;]+z\b/i.test(text);
+  const isFirst = /\bq\w*?_?w\b[^\n]*\bq\w*?_?x\b|\bw[\s,;]+x[\s,;]+y[\s,;]+z\b/i.test(text.slice(0, HEAD));
   const isSeries = rows.length > 1 || rows[0]?.length === 8;
   const poses = rows.map((row) => {
     const [x = NaN, y = NaN, z = NaN, a = NaN, b = NaN, c = NaN, d = NaN] = row.slice(-7);

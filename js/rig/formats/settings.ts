@@ -24,6 +24,17 @@ const pythonWords = (text: string): string =>
     .replace(/\bFalse\b/g, "false")
     .replace(/\b(?:None|nan)\b/g, "null");
 
+/** An object on each line. */
+function objectsOf(text: string): unknown[] | undefined {
+  const lines = text.split(/\r?\n/).filter((line) => line.trim() !== "");
+  if (!lines.every((line) => /^\s*\{.*\}\s*$/.test(line))) return undefined;
+  try {
+    return lines.map((line) => JSON.parse(line) as unknown);
+  } catch {
+    return undefined;
+  }
+}
+
 const isJson = (text: string): boolean => /^[{[]/.test(text);
 
 /** JSON, also with comments and as Python prints it. */
@@ -37,6 +48,8 @@ export async function readJson(text: string): Promise<unknown> {
       error,
     );
     if (text.length > MOST_SETTINGS) throw damaged;
+    const lines = objectsOf(text);
+    if (lines !== undefined) return lines;
     const { default: json5 } = await import("json5");
     try {
       return json5.parse(pythonWords(plainPython(text)));
@@ -47,7 +60,7 @@ export async function readJson(text: string): Promise<unknown> {
 }
 
 const SECTION = /^[ \t]*\[{1,2}[ \t]*["']?[A-Za-z_][^\]\n]{0,80}\]{1,2}[ \t]*(?:[#;].*)?$/m;
-const SETTING = /^[ \t]*["']?[A-Za-z_][\w.\- ]{0,80}["']?[ \t]*=[ \t]*\S/m;
+const SETTING = /^[ \t]*["']?[A-Za-z_][\w.\- ]{0,80}["']?[ \t]*[=:][ \t]*\S/m;
 
 /** Whether a text has sections and settings, as TOML and .ini files. */
 export const isSectioned = (text: string): boolean =>
@@ -60,7 +73,7 @@ function sections(text: string): Node {
   for (const line of text.split(/\r?\n/)) {
     const bare = line.replace(/(?:^|[ \t])[#;].*$/, "").trim();
     const [, name] = /^\[([^\]]{1,80})\]$/.exec(bare) ?? [];
-    const [, key, value] = /^([^=]{1,80}?)[ \t]*=[ \t]*(.*)$/.exec(bare) ?? [];
+    const [, key, value] = /^([^=:]{1,80}?)[ \t]*[=:][ \t]*(.*)$/.exec(bare) ?? [];
     if (name !== undefined && name !== "__proto__") {
       section = {};
       root[name.trim()] = section;

@@ -88,18 +88,19 @@ class Search {
     if (this.#found.length + this.motions.poses.length > MOST_FOUND)
       throw badFile(`it holds more than ${MOST_FOUND} cameras and poses`);
     if (Array.isArray(value)) return this.#list(value, key, name, context, { node: {}, parent, depth });
+    const called = nameIn(value as Node) ?? name;
     const keys = Object.keys(value);
     this.#members += keys.length;
     if (this.#members > MOST_MEMBERS) throw badFile(`its objects have more than ${MOST_MEMBERS} members`);
     const node = keys.length > MOST_OWN ? (value as Node) : withLists(value as Node);
     const place = { node, parent, depth };
-    const inner = keys.length > MOST_OWN ? context : this.#read(place, key, name, context);
+    const inner = keys.length > MOST_OWN ? context : this.#read(place, key, called, context);
     for (const [group, members] of grouped(node, keys)) this.walk(members, group, group, context, place);
     for (const each of keys) {
       if (matrixOf(node[each]) !== undefined) continue;
       const ofWorld = /^(?:camera_?)?pose$/i.test(each) && inner.from === undefined && inner.to === undefined;
       const around = ofWorld ? { ...inner, from: "camera", to: "world" } : { ...inner, ...orbbecContext(node, each) };
-      this.walk(node[each], each, nameOf(each, name), around, place);
+      this.walk(node[each], each, nameOf(each, called), around, place);
     }
   }
 
@@ -135,7 +136,7 @@ class Search {
   #cameraOf(place: Place, key: string, parent: string): Set<string> {
     const { node } = place;
     const used = new Set<string>();
-    const name = textOf(member(node, "cameraname", "camname")) ?? (parent === "" ? undefined : parent);
+    const name = textOf(member(node, "cameraname", "camname", "name")) ?? (parent === "" ? undefined : parent);
     const label = isIntrinsics(key) ?? wordsOf(key).join(" ");
     const add = (raw: RawCamera, own = label) => {
       this.#found.push({ raw, label: own, place });
@@ -209,17 +210,30 @@ function chain(poses: NamedPose[]): void {
   }
 }
 
+/** Names of where points of a motion come from and where they go to. */
+const ENDS = [
+  ["from", "to"],
+  ["fromframe", "toframe"],
+  ["source", "target"],
+  ["sourceframe", "targetframe"],
+  ["child", "parent"],
+  ["sensorname", "targetsensorname"],
+] as const;
+
 /** ROS: the transform carries points of the child frame into the parent. OpenCalib's extrinsics lead from one sensor into its target. */
 function framesOf(node: Node): Context | undefined {
   const child = textOf(member(node, "childframeid", "childframe"));
   const header = member(node, "header");
   const parent = textOf(member(isNode(header) ? header : node, "frameid", "parentframe"));
   if (child !== undefined) return { from: child, ...(parent !== undefined && { to: parent }) };
+  for (const [from, to] of ENDS) {
+    const ends = [textOf(member(node, from)), textOf(member(node, to))];
+    if (ends[0] !== undefined && ends[1] !== undefined && ends[0] !== ends[1]) return { from: ends[0], to: ends[1] };
+  }
   // A pose beside the name of a picture is where that was taken, as in the files of NeRF.
   const picture = textOf(member(node, "filepath", "imagepath", "imgpath", "imagefile", "imgname", "imagename"));
   if (picture !== undefined) return { from: "camera", to: "world" };
-  const [sensor, target] = [textOf(member(node, "sensorname")), textOf(member(node, "targetsensorname"))];
-  return sensor !== undefined && target !== undefined && sensor !== target ? { from: sensor, to: target } : undefined;
+  return undefined;
 }
 
 type Intrinsics = Pick<RawCamera, "focal" | "centre" | "model" | "distortion" | "skew">;
@@ -291,7 +305,7 @@ function cameraOfMatrix(node: Node, key: string, label: string): Intrinsics | un
   const matrix = matrixOf(node[key]);
   const k = intrinsics(matrix);
   if (k === undefined) {
-    if (matrix?.values.length === 9 && label === "" && key !== "M")
+    if (matrix?.values.length === 9 && label === "" && !/^(?:m|matrix)$/i.test(key))
       throw badFile(`its ${key} is no matrix of intrinsics, fx 0 cx / 0 fy cy / 0 0 1`);
     return undefined;
   }
@@ -299,11 +313,21 @@ function cameraOfMatrix(node: Node, key: string, label: string): Intrinsics | un
   return { focal: [fx, fy], centre: [cx, cy], skew };
 }
 
+const SIDE = /^(?:colou?r|rgb|depth|ir|infra(?:red)?[_ ]?\d?)$/i;
+
+/** What an object says that it is of: a stream, a sensor, or a type that is one of these. */
+function nameIn(node: Node): string | undefined {
+  const type = textOf(member(node, "type", "streamtype", "kind"));
+  return textOf(member(node, "stream", "streamname", "sensor")) ?? (SIDE.test(type ?? "") ? type : undefined);
+}
+
 /** What a member's cameras and poses are called: members that only say what they are take their parent's name. */
-const nameOf = (key: string, parent: string): string =>
-  /^(transforms?|intrinsics?|pose|param|opencv_storage|launch|parameters|ros__parameters|nodes)$/.test(key)
-    ? parent
-    : key;
+const nameOf = (key: string, parent: string): string => {
+  if (/^(transforms?|intrinsics?|pose|param|opencv_storage|launch|parameters|ros__parameters|nodes)$/.test(key))
+    return parent;
+  // One camera at many sizes.
+  return parent !== "" && /^\d{2,5}[xX_]\d{2,5}(?:[@_]\d+)?$/.test(key) ? `${parent} ${key}` : key;
+};
 
 const isEmpty = (value: unknown): boolean =>
   value === null || value === "" || (Array.isArray(value) && value.length === 0);
@@ -314,8 +338,10 @@ function sizeOf(node: Node, label: string): { width?: number; height?: number } 
   if (both?.length === 2) return { width: both[0] ?? 0, height: both[1] ?? 0 };
   const side = (...names: string[]) =>
     numberOf(member(node, ...names.flatMap((name) => (label === "" ? [name] : [`${name}${label}`, name]))));
-  const width = side("imagewidth", "width", "resolutionx", "imgdistw", "w");
-  const height = side("imageheight", "height", "resolutiony", "imgdisth", "h");
+  const width = side("imagewidth", "width", "resolutionx", "imgdistw");
+  const height = side("imageheight", "height", "resolutiony", "imgdisth");
+  const [w, h] = [side("w"), side("h")];
+  if (width === undefined && height === undefined && w !== undefined && h !== undefined) return { width: w, height: h };
   return { ...(width !== undefined && { width }), ...(height !== undefined && { height }) };
 }
 
