@@ -51,10 +51,10 @@ const RIG_FILES = /T_cn_cnm1/;
 /** The rendered example, which is loaded when it is asked for. */
 const EXAMPLE = /\/(?:rigs-|bimodal_stereo_rigs_bg)/;
 /**
- * Readers that are loaded for a file of their kind: JPEG where there is no browser, YAML, calibrations of products, rare compressions of EXR
- * and TIFF, recordings.
+ * Readers that are loaded for a file of their kind: JPEG where there is no browser, YAML, TOML, JSON with comments, calibrations of products,
+ * rare compressions of EXR and TIFF, recordings.
  */
-const OTHERS = /\/(?:decoder|exr-others|products|tiff-codecs|js-yaml|recordings)-/;
+const OTHERS = /\/(?:decoder|dist\d*|exr-others|products|tiff-codecs|js-yaml|recordings)-/;
 
 /** What runs a check, reads its files and writes them, all of it on demand; and what the example takes besides. */
 function checkFiles() {

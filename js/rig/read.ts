@@ -8,12 +8,14 @@ import { BimodalError, badFile, badNamed, refused } from "../errors.js";
 import { inOrder } from "./assign.js";
 import { pictureColour, pictureMask } from "./colour.js";
 import { cloudDepth, pictureDepth } from "./depth.js";
+import { colmapText } from "./formats/colmap-others.js";
 import { knownContainer, knownText } from "./formats/containers.js";
 import { withEnds } from "./formats/filename.js";
 import { readExr } from "./formats/exr.js";
 import { type RasterKind, rasterKind } from "./formats/headerless.js";
 import { readJpeg, readWebp } from "./formats/jpeg.js";
 import { MOST_BYTES } from "./formats/limits.js";
+import { matrixText } from "./formats/npy-matrix.js";
 import { npyPicture, npzPicture } from "./formats/npy.js";
 import { readPcd } from "./formats/pcd.js";
 import type { Cloud, Picture } from "./formats/picture.js";
@@ -52,7 +54,9 @@ const PICTURES: Record<
 /** Whether it is a file of pixels or points, and no text of cameras and poses. */
 export const isRasterFile = (bytes: Uint8Array): boolean => rasterKind(bytes) !== undefined;
 /** Whether it is a text, of whatever. */
-export const isTextFile = (bytes: Uint8Array): boolean => textOf(bytes) !== undefined;
+export const isTextFile = (bytes: Uint8Array): boolean => (textOf(bytes) ?? writtenOf(bytes)) !== undefined;
+/** Calibrations in binary as the texts that they might be. */
+const writtenOf = (bytes: Uint8Array): string | undefined => colmapText(bytes) ?? matrixText(bytes);
 
 function ofPicture(name: string, picture: Picture, options: ReadOptions): Content {
   const kind = options.as ?? kindOfPicture(name, picture);
@@ -87,6 +91,8 @@ async function ofOthers(name: string, bytes: Uint8Array, options: ReadOptions): 
   const container = knownContainer(name, bytes);
   if (container !== undefined) throw container;
   if (options.size !== undefined && isRawName(name)) return ofPicture(name, readRaw(bytes, options.size), options);
+  const written = writtenOf(bytes);
+  if (written !== undefined) return ofText(name, written, options);
   if (rasterKind(bytes) === "points") throw pointsRefused(pointSize(bytes) ?? 4);
   const text = textOf(bytes);
   const refusal = text === undefined ? (pointList(bytes) ?? rawRefused(bytes)) : (knownText(text) ?? pointList(bytes));

@@ -8,20 +8,19 @@ import { loadExample } from "./example";
 import { isRecording, readRigFile, readRigFolder, type RigReading } from "./files";
 import { picture } from "./pictures";
 import type { Answer, Assembly, CallKind, Calls, FramePlan, Request, Summary } from "./protocol";
-import type { Recording, Robot } from "./recordings";
+import type { Recorded, Taken } from "./recordings";
 
 const MOST_WORKERS = 4;
 
 const readings = new Map<number, RigReading>();
-const recordings = new Map<number, Recording>();
+let recorded: Promise<Recorded> | undefined;
+/** Recordings and robots; they are few, and their readers large. */
+const recordedOf = () => (recorded ??= import("./recordings").then(({ Recorded }) => new Recorded()));
 /** Bytes of a file by which recordings are known. */
 const HEAD = 16;
 /** As they were last checked: the overlay and the files out are of these. */
 let frames: CheckFrame[] = [];
 let running: AbortController | undefined;
-let robot: Robot | undefined;
-/** What observes it. */
-let looking: AbortController | undefined;
 
 function post(answer: Answer, transfer: Transferable[] = []): void {
   self.postMessage(answer, { transfer });
@@ -111,26 +110,8 @@ function assemble(
   return { origin, items, frames, cameras, poses, warnings };
 }
 
-/** The robot that is connected; what asks too late is told so. */
-function connected(): Robot {
-  if (!robot) throw new Error("There is no connection to a robot.");
-  return robot;
-}
-
-async function openFile(file: number, name: string, blob: Blob): Promise<Summary> {
-  const { openRecording } = await import("./recordings");
-  const recording = await openRecording({ name, content: blob });
-  recordings.set(file, recording);
-  const { says, topics, chosen } = recording;
-  return { kind: "recording", says, warnings: [], guessed: [], cameras: [], poses: [], topics, chosen };
-}
-
-/** Those of a recording are listed once, under its own name. */
-const withoutCameras = ({ image: { camera: _, ...image }, depth: { camera: __, ...depth }, ...frame }: CheckFrame) => ({
-  ...frame,
-  image,
-  depth,
-});
+const assembled = (first: number, { origin, frames, ...rest }: Taken): Assembly =>
+  assemble(origin, first, frames, rest);
 
 const bytesOf = async (blob: Blob): Promise<Uint8Array> => new Uint8Array(await blob.arrayBuffer());
 
@@ -157,7 +138,7 @@ type Handlers = { [K in CallKind]: (ask: Calls[K]["ask"], id: number) => Promise
 
 const handlers: Handlers = {
   async read({ file, name, blob, as, unit }) {
-    if (isRecording(await bytesOf(blob.slice(0, HEAD)))) return openFile(file, name, blob);
+    if (isRecording(await bytesOf(blob.slice(0, HEAD)))) return (await recordedOf()).open(file, name, blob);
     const reading = await readRigFile(
       { name, bytes: await bytesOf(blob) },
       { ...(as ? { as } : {}), ...(unit === undefined ? {} : { unit }) },
@@ -181,49 +162,30 @@ const handlers: Handlers = {
     const { frames, poses } = await loadExample();
     return assemble("the example", first, frames, { cameras: [], poses, warnings: [] });
   },
-  async take({ file, first, colour, depth, frames }, id) {
-    const recording = recordings.get(file);
-    if (!recording) throw new Error(`Recording ${file} has not been read.`);
+  async take({ first, ...ask }, id) {
     const onProgress = (share: number) => post({ id, share, message: "" });
-    const topics = { ...(colour && { colour }), ...(depth && { depth }) };
-    const folder = await recording.read({ ...topics, frames, onProgress });
-    return assemble(recording.name, first, folder.frames.map(withoutCameras), {
-      ...folder,
-      // The direction is the reader's: names of frames here are a robot's, and say nothing of colour and depth.
-      poses: folder.poses.map(({ name = "tf", pose }) => ({ name, pose })),
-    });
+    return assembled(first, await (await recordedOf()).take(ask, onProgress));
   },
   async connect({ address }) {
-    robot?.close();
-    robot = undefined;
-    const { connectRobot } = await import("./recordings");
-    robot = await connectRobot(address);
-    const { name, topics, chosen } = robot;
-    return { name, topics, chosen };
+    return (await recordedOf()).connect(address);
   },
-  async observe({ first, colour, depth, fresh }) {
-    const watched = connected();
-    if (fresh) watched.restart();
-    looking = new AbortController();
-    const folder = await watched.next({ colour, depth, signal: looking.signal });
-    const poses = folder.poses.map(({ name = "tf", pose }) => ({ name, pose }));
-    return assemble(watched.address, first, folder.frames.map(withoutCameras), { ...folder, poses });
+  async observe({ first, ...ask }) {
+    return assembled(first, await (await recordedOf()).observe(ask));
   },
   async rest() {
-    looking?.abort();
+    (await recorded)?.rest();
     return null;
   },
   async closed() {
-    return connected().closed;
+    return (await recordedOf()).closed();
   },
   async disconnect() {
-    robot?.close();
-    robot = undefined;
+    (await recorded)?.disconnect();
     return null;
   },
   async forget({ file }) {
     readings.delete(file);
-    recordings.delete(file);
+    (await recorded)?.forget(file);
     return null;
   },
   async reading({ file }) {

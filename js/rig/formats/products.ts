@@ -81,9 +81,14 @@ export function productOfText(text: string): Found | undefined {
   return format !== undefined && read ? named(read(text), format) : undefined;
 }
 
+/** Members of one object; the scenes of BOP have some thousand pictures. */
+const MOST_MEMBERS = 20_000;
+
 /** What an object of a product holds, or the only document of a YAML file. */
 export function productOfTree(value: unknown): Found | undefined {
   const whole: unknown = Array.isArray(value) && value.length === 1 ? value[0] : value;
+  // Each reader looks through all members to tell its own; no product writes so many in one object.
+  if (isNode(whole) && Object.keys(whole).length > MOST_MEMBERS) return undefined;
   const [format, , read] = (isNode(whole) ? TREES.find(([, is]) => is(whole)) : undefined) ?? [];
   if (format !== undefined && read && isNode(whole)) return named(read(whole), format);
   if (Array.isArray(value) && isArgoverse2(value)) return named(readArgoverse2(value), "a table of Argoverse 2");

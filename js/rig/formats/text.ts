@@ -1,6 +1,7 @@
 /** Text files: what they are is told from their words, and what they hold comes out as cameras and poses. */
 import { BimodalError, badFile } from "../../errors.js";
 import { readColmap, isColmap } from "./colmap.js";
+import { isColmapImages, readColmapImages } from "./colmap-others.js";
 import { readColumns } from "./columns.js";
 import { withPoints } from "./commas.js";
 import { MOST_TEXT } from "./limits.js";
@@ -132,6 +133,7 @@ export async function readText(text: string): Promise<Read> {
   if (isPythonTree(trimmed)) return searched(await readYaml(trimmed), "YAML", trimmed);
   if (trimmed.startsWith("<")) return ofXml(trimmed);
   if (isColmap(trimmed)) return { ...readColmap(trimmed), format: "COLMAP's cameras" };
+  if (isColmapImages(trimmed)) return { ...readColmapImages(trimmed), format: "COLMAP's images" };
   const pointed = withPoints(trimmed);
   if (pointed !== undefined) {
     const found = await ofWords(pointed);
