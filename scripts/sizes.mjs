@@ -54,7 +54,7 @@ const EXAMPLE = /\/(?:rigs-|bimodal_stereo_rigs_bg)/;
  * Readers that are loaded for a file of their kind: JPEG where there is no browser, YAML, TOML, JSON with comments, calibrations of products,
  * rare compressions of EXR and TIFF, recordings.
  */
-const OTHERS = /\/(?:decoder|dist\d*|exr-others|products|tiff-codecs|js-yaml|recordings)-/;
+const OTHERS = /\/(?:decoder|dist\d*|exr-others|products|tiff-codecs|js-yaml|recorded)-/;
 
 /** What runs a check, reads its files and writes them, all of it on demand; and what the example takes besides. */
 function checkFiles() {

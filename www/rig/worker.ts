@@ -8,14 +8,14 @@ import { loadExample } from "./example";
 import { isRecording, readRigFile, readRigFolder, type RigReading } from "./files";
 import { picture } from "./pictures";
 import type { Answer, Assembly, CallKind, Calls, FramePlan, Request, Summary } from "./protocol";
-import type { Recorded, Taken } from "./recordings";
+import type { Recorded, Taken } from "./recorded";
 
 const MOST_WORKERS = 4;
 
 const readings = new Map<number, RigReading>();
 let recorded: Promise<Recorded> | undefined;
 /** Recordings and robots; they are few, and their readers large. */
-const recordedOf = () => (recorded ??= import("./recordings").then(({ Recorded }) => new Recorded()));
+const recordedOf = () => (recorded ??= import("./recorded").then(({ Recorded }) => new Recorded()));
 /** Bytes of a file by which recordings are known. */
 const HEAD = 16;
 /** As they were last checked: the overlay and the files out are of these. */
