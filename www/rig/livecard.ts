@@ -52,7 +52,7 @@ export class LiveCard {
     this.#live = live;
     this.#connect = press("Connect", () => void live.connect(this.#address.value), { class: "primary" });
     this.#address.addEventListener("keydown", ({ key }) => key === "Enter" && this.#connect.click());
-    this.#table = new TopicTable((chosen) => live.choose(chosen));
+    this.#table = new TopicTable("the robot", (chosen) => live.choose(chosen));
     this.#start = press("Take views and check", () => void live.start(), { class: "primary" });
     this.#stop = press("Stop", () => live.stop());
     this.#leave = press("Disconnect", () => live.disconnect());

@@ -26,7 +26,7 @@ export class RecordingList {
 
   #row(item: Item): { element: HTMLElement; show(item: Item): void } {
     const { takings } = this.#rig;
-    const table = new TopicTable((chosen) => void takings.take(item, chosen));
+    const table = new TopicTable(item.name, (chosen) => void takings.take(item, chosen));
     const count = choose(COUNTS, "10", (frames) => void takings.take(item, { frames: Number(frames) }));
     const status = make("p", { class: "rig-status soft", role: "status" });
     const progress = make("progress", { max: 1, value: 0, "aria-label": `Frames of ${item.name}` });

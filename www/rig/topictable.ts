@@ -47,7 +47,7 @@ export class TopicTable {
   readonly #selects: Record<keyof Chosen, HTMLSelectElement>;
   #shown = "";
 
-  constructor(onChoice: (chosen: Partial<Chosen>) => void) {
+  constructor(of: string, onChoice: (chosen: Partial<Chosen>) => void) {
     this.#selects = {
       colour: choose([], "", (colour) => onChoice({ colour })),
       depth: choose([], "", (depth) => onChoice({ depth })),
@@ -56,7 +56,7 @@ export class TopicTable {
     this.element.append(
       make(
         "div",
-        { class: "rig-scroll", tabindex: "0", role: "region", "aria-label": "Topics" },
+        { class: "rig-scroll", tabindex: "0", role: "region", "aria-label": `Topics of ${of}` },
         make(
           "table",
           {},
