@@ -138,7 +138,7 @@ impl Estimator {
             contrast: self.stages.registration.found_by_contrast().map(ContrastEvidence::of),
             hollow: history.hollow.clone(),
             missing_mask: checks::missing_mask(pair),
-            has_kept_start: self.stages.registration.has_kept_start(),
+            staying: self.stages.registration.staying(),
             rivals: report.rivals.len() as u32,
             nearest_rival: nearest,
         });

@@ -4,6 +4,8 @@ use crate::options::{Registration, Shading};
 use crate::pose::{ContrastReport, Direction, OutlineReport, PhotometricReport};
 use crate::reason::Reason;
 
+use super::finder::Staying;
+
 /// What is known at the end of an iteration.
 #[derive(Clone, Debug)]
 pub struct Evidence {
@@ -36,8 +38,8 @@ pub struct Evidence {
     pub outlines: Option<OutlineEvidence>,
     /// What local contrast says, likewise.
     pub contrast: Option<ContrastEvidence>,
-    /// Whether nothing near a told start explains the colours better, so that it was kept.
-    pub has_kept_start: bool,
+    /// What the initial pose is worth where nothing near it explains the image better, so that it was kept.
+    pub staying: Option<Staying>,
     /// What checks of the input have against an answer: a hollow depth map, a mask that is missing.
     pub hollow: Option<Reason>,
     pub missing_mask: Option<Reason>,

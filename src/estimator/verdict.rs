@@ -11,6 +11,7 @@ use crate::reason::Reason;
 use crate::report::Status;
 
 use super::evidence::{ColourEvidence, ContrastEvidence, Evidence, OutlineEvidence};
+use super::finder::Staying;
 
 /// Rejected iterations in a row after which nothing new is to be expected.
 const MOST_REJECTIONS: u32 = 6;
@@ -86,8 +87,12 @@ fn has_settled(evidence: &Evidence) -> bool {
 
 /// Why the answer is "lost" or "ambiguous" although the loop came to an end, if it is.
 fn reason_for_distrust(evidence: &Evidence) -> Option<Verdict> {
-    if evidence.has_kept_start {
-        return Some((Status::Ambiguous, Some(Reason::InitialPoseKept)));
+    if let Some(staying) = evidence.staying {
+        let status = match staying {
+            Staying::Explains => Status::Ambiguous,
+            Staying::ExplainsNothing => Status::Lost,
+        };
+        return Some((status, Some(Reason::InitialPoseKept)));
     }
     if let Some(OutlineEvidence { sigma, weakest, is_unseen }) = evidence.outlines {
         let reason = if is_unseen {
@@ -166,7 +171,7 @@ mod tests {
         colours: Some(SURE),
         outlines: None,
         contrast: None,
-        has_kept_start: false,
+        staying: None,
         hollow: None,
         missing_mask: None,
         rivals: 0,
@@ -331,9 +336,15 @@ mod tests {
         let (lost, ambiguous) = (Some(Status::Lost), Some(Status::Ambiguous));
         vec![
             (
-                "a told start that nothing improves",
-                Evidence { has_kept_start: true, colours: None, ..SETTLED },
+                "an initial pose that nothing improves",
+                Evidence { staying: Some(Staying::Explains), colours: None, ..SETTLED },
                 ambiguous,
+                Some(Reason::InitialPoseKept),
+            ),
+            (
+                "an initial pose that explains nothing, as nothing else does",
+                Evidence { staying: Some(Staying::ExplainsNothing), colours: None, ..SETTLED },
+                lost,
                 Some(Reason::InitialPoseKept),
             ),
             ("outlines that see everything", outlines(SEEN), Some(Status::Converged), None),
@@ -349,7 +360,7 @@ mod tests {
                 ambiguous,
                 Some(Reason::SilhouetteBlind { weakest: ABOUT_Y }),
             ),
-            ("a told start that still settles", Evidence { has_kept_start: true, ..MOVING }, None, None),
+            ("an initial pose that still settles", Evidence { staying: Some(Staying::Explains), ..MOVING }, None, None),
         ]
     }
 

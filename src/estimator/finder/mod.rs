@@ -59,7 +59,7 @@ use nearby::{Nearby, Progress};
 use silhouettes::Anywhere;
 
 pub use candidates::search;
-pub use decision::{Decision, Method};
+pub use decision::{Decision, Method, Staying};
 pub use local_optima::RegisteredCandidate;
 pub use nearby::explains;
 pub use opening::Opening;
@@ -405,15 +405,24 @@ impl Near {
             None => true,
         };
         let Some(best) = best.filter(|best| is_trusted(best)) else {
-            return Ok(Decision::of(silhouettes.map_or(Method::Initial, Method::Silhouettes)));
+            return Ok(Decision::of(silhouettes.map_or_else(|| stay(pair, colours, region), Method::Silhouettes)));
         };
         // All points follow the sample that candidates are registered by.
         let found = colours.register_all(pair, *best)?;
         Ok(Decision::of(match region.holds(pair, &found.pose) {
             true => Method::Image(Box::new(found)),
-            false => Method::Initial,
+            false => stay(pair, colours, region),
         }))
     }
+}
+
+/// The initial pose stays.
+fn stay(pair: &ViewPair, colours: &mut ColourRegistration, region: &TrustRegion) -> Method {
+    let explains = |found: Box<PhotometricReport>| found.noise < pair.image.log_spread();
+    Method::Initial(match colours.judge(pair, &region.initial).is_some_and(explains) {
+        true => Staying::Explains,
+        false => Staying::ExplainsNothing,
+    })
 }
 
 impl Phase {
