@@ -31,11 +31,12 @@ const SOURCES = [
   "scripts/notices",
 ];
 const MARK = "pkg/.stamp";
-/** One for programs, one for images and depth maps, two for what reads and writes a rig's files, one for what writes a run's, one for the page's fields, one for the threads of workers, and one for shells. */
+/** One for programs, one for images and depth maps, three for what reads and writes a rig's files and reads its recordings, one for what writes a run's, one for the page's fields, one for the threads of workers, and one for shells. */
 const ENTRIES = {
   index: "index",
   files: "files",
   rig: "rig/index",
+  "rig-recordings": "rig/recordings/index",
   "rig-write": "rig/write/index",
   write: "write/index",
   options: "options",
@@ -65,6 +66,7 @@ function manifest() {
       ".": { types: "./index.d.ts", default: "./index.js" },
       "./files": { types: "./files.d.ts", default: "./files.js" },
       "./rig": { types: "./rig/index.d.ts", default: "./rig.js" },
+      "./rig-recordings": { types: "./rig/recordings/index.d.ts", default: "./rig-recordings.js" },
       "./write": { types: "./write/index.d.ts", default: "./write.js" },
       "./rig-write": { types: "./rig/write/index.d.ts", default: "./rig-write.js" },
       // By path, for bundlers that have to be told of them.
@@ -97,6 +99,18 @@ const endingExr = {
   },
 };
 
+/**
+ * @foxglove/rosbag brings readers that are compiled out of a recording's own definitions (`eval`, `new Function`), for those who ask it to
+ * decode messages. Here nobody does, and no code is made of what a file holds.
+ */
+const withoutEval = {
+  name: "without-eval",
+  transform(_, id) {
+    if (!/[\\/]rosmsg-serialization[\\/]dist[\\/]esm[\\/]index\.js$/.test(id)) return undefined;
+    return { code: "export class MessageReader {}", map: null };
+  },
+};
+
 /** One file for each entry and one for what they share, with the PNG decoder in the files module alone. */
 async function facade() {
   const { rolldown } = await import("rolldown");
@@ -105,7 +119,7 @@ async function facade() {
     input: Object.fromEntries(Object.entries(ENTRIES).map(([name, source]) => [name, inRoot(`js/${source}.ts`)])),
     external: /^node:/,
     platform: "neutral",
-    plugins: [npm.plugin, endingExr],
+    plugins: [npm.plugin, endingExr, withoutEval],
     resolve: { mainFields: ["module", "main"] },
     // What the splitting below needs; set in silence it is warned of.
     preserveEntrySignatures: "allow-extension",

@@ -25,11 +25,22 @@ const withoutLanguage: Plugin = {
   },
 };
 
+/** Files of the package that the readers of a rig's files and those of its recordings share; `npm test -- sizes` tells where one is missing. */
+const READERS = /pkg[\\/](?:cameras|check|errors|filename|half|limits|matrices|numbers|png|scale|text)\d*\.js$/;
+
 export default defineConfig({
   plugins: [withoutLanguage],
   // Relative addresses, so that the built page works under any path of a web server.
   base: "./",
-  worker: { format: "es" },
+  worker: {
+    format: "es",
+    rolldownOptions: {
+      output: {
+        // The readers that a worker shares with what it loads later, recordings for example, are one file: in pieces they compress worse.
+        codeSplitting: { groups: [{ name: "readers", minShareCount: 2, test: READERS }] },
+      },
+    },
+  },
   // The package lies beside this folder, where the development server would not look.
   server: { fs: { allow: [".."] } },
   // three.js is one such chunk, and loads only when the clouds come into view.

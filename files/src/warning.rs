@@ -13,12 +13,14 @@ pub struct Warning {
 }
 
 /// Codes of what was not read, which does not make what was read doubtful.
-const HARMLESS: [&str; 7] = [
+const HARMLESS: [&str; 9] = [
     "file-left-out",
     "file-alone",
     "names-ambiguous",
     "mask-size",
     "pairs-sampled",
+    "frames-alike",
+    "transform-missing",
     "pose-left-out",
     "camera-to-world",
 ];

@@ -55,7 +55,13 @@ export type ReaderCode =
   | "pairs-missing"
   | "pairs-by-order"
   | "pairs-by-content"
-  | "pairs-sampled";
+  | "pairs-sampled"
+  // Recordings
+  | "times-apart"
+  | "clocks-differ"
+  | "frames-alike"
+  | "transform-missing"
+  | "transform-moves";
 
 /** What a reader guessed, changed or found wrong; beside these members the numbers of the code. */
 export interface ReaderWarning {
@@ -80,6 +86,8 @@ const HARMLESS: ReadonlySet<ReaderCode> = new Set([
   "names-ambiguous",
   "mask-size",
   "pairs-sampled",
+  "frames-alike",
+  "transform-missing",
   "pose-left-out",
   "camera-to-world",
 ]);

@@ -12,7 +12,8 @@ const LICENCES = ["LICENSE-MIT", "LICENSE-APACHE"];
 
 /**
  * What the page may do. Nothing but its own files, no script or style in the document itself; .wasm may be compiled. Pictures may be a
- * page's own data: its icon, and what a visitor has opened. Frames that show the page elsewhere are not forbidden.
+ * page's own data: its icon, and what a visitor has opened. WebSockets may be opened, since a visitor may name the bridge of a robot, which
+ * is anywhere; nothing else on the page opens one. Frames that show the page elsewhere are not forbidden.
  */
 export const POLICY = [
   "default-src 'none'",
@@ -20,7 +21,7 @@ export const POLICY = [
   "worker-src 'self'",
   "style-src 'self'",
   "img-src 'self' blob: data:",
-  "connect-src 'self'",
+  "connect-src 'self' ws: wss:",
   "base-uri 'none'",
   "form-action 'none'",
 ].join("; ");

@@ -4,15 +4,16 @@ import { after, before, describe, test } from "node:test";
 import * as files from "../../pkg/files.js";
 import * as package_ from "../../pkg/index.js";
 import * as rig from "../../pkg/rig.js";
+import * as recordings from "../../pkg/rig-recordings.js";
 import * as rigWrite from "../../pkg/rig-write.js";
 import * as write from "../../pkg/write.js";
 import { LIGHT, POSE } from "../../scripts/reference/run-written.mjs";
 import { report } from "./rig-sample.mjs";
 import { BimodalError, Estimator, estimator, init, outcome, pair } from "./support.mjs";
 
-const MODULES = { index: package_, files, rig, "rig-write": rigWrite, write };
-/** These have effects of their own: `init` loads, a class is made with `new`. */
-const APART = new Set(["default", "BimodalError", "Estimator"]);
+const MODULES = { index: package_, files, rig, "rig-recordings": recordings, "rig-write": rigWrite, write };
+/** These have effects of their own: `init` loads, a class is made with `new`, a robot is looked for in the network. */
+const APART = new Set(["default", "BimodalError", "Estimator", "connectRobot"]);
 
 const circle = {};
 circle.self = circle;

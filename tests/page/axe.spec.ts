@@ -2,12 +2,30 @@
 
 import { readFileSync } from "node:fs";
 import { createRequire } from "node:module";
+import { fileURLToPath } from "node:url";
 import type { Page } from "@playwright/test";
+import type { Pose } from "../../pkg/index.js";
+import { bridge } from "../contract/bridge.mjs";
+import { smallFrames } from "../contract/recorded-messages.mjs";
+import { driver } from "../contract/recordings.mjs";
 import { LONG, expect, test, type Lab } from "./lab";
 import { Messages } from "./messages";
 import { answerChecks } from "./rig";
 
 const AXE = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
+
+const IDENTITY: Pose = {
+  scale: 1,
+  rotation: [1, 0, 0, 0, 1, 0, 0, 0, 1],
+  translation: [0, 0, 0],
+  angles: { alpha: 0, beta: 0, gamma: 0 },
+  matrix: [
+    [1, 0, 0, 0],
+    [0, 1, 0, 0],
+    [0, 0, 1, 0],
+    [0, 0, 0, 1],
+  ],
+};
 
 interface Axe {
   run(
@@ -121,6 +139,26 @@ async function rig(page: Page): Promise<void> {
   await clean(page, "verdict");
 }
 
+async function recordings(page: Page): Promise<void> {
+  const robot = await bridge([driver(await smallFrames(), IDENTITY, { compress: true })]);
+  try {
+    await page.goto("./#rig");
+    await page
+      .locator("#rig input[type=file]:not([webkitdirectory])")
+      .first()
+      .setInputFiles(fileURLToPath(new URL("../fixtures/recordings/walk-lz4.bag", import.meta.url)));
+    await expect(page.locator(".rig-recording").getByRole("status")).toHaveText("3 frames taken");
+    await clean(page, "a recording");
+    await page.getByText("Connect to a robot").click();
+    await page.getByLabel("Address of the bridge").fill(robot.address);
+    await page.getByRole("button", { name: "Connect" }).click();
+    await expect(page.locator(".rig-live").getByLabel("Depth of")).toBeVisible();
+    await clean(page, "a robot");
+  } finally {
+    await robot.close();
+  }
+}
+
 async function rivals(lab: Lab, page: Page): Promise<void> {
   await lab.visit("surface=vase&light=window&beta=30&size=64&noise=0.08");
   await page.getByLabel("Speed").selectOption({ label: "fastest" });
@@ -138,3 +176,4 @@ test("a Lab whose pose has a rival", LONG, ({ lab: opened, page }) => rivals(ope
 test("every lesson, the exercises and a slide", LONG, ({ page }) => learn(page));
 test("the Tables, and a cell of theirs", LONG, ({ page }) => tables(page));
 test("the three steps of Check a rig", LONG, ({ page }) => rig(page));
+test("a recording and a robot in Check a rig", LONG, ({ page }) => recordings(page));

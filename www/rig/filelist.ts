@@ -77,7 +77,7 @@ export class FileList {
         notes.replaceChildren(
           ...[...warnings.map(({ message }) => message), ...guessed].map((words) => make("li", {}, words)),
         );
-        kindBox.hidden = !item.blob;
+        kindBox.hidden = !item.blob || summary?.kind === "recording" || summary?.kind === "robot";
         fill(
           kind,
           summary ? kinds : [{ value: "", label: "not recognised" }, ...kinds],

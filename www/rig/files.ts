@@ -14,4 +14,5 @@ export type {
 } from "../../pkg/rig/index.js";
 
 export const readRigFile = rig.readRigFile as typeof Rig.readRigFile;
+export const isRecording = rig.isRecording as typeof Rig.isRecording;
 export const readRigFolder = rig.readRigFolder as typeof Rig.readRigFolder;

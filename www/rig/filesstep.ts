@@ -8,6 +8,8 @@ import { FileList, unitName } from "./filelist";
 import { FrameList } from "./framelist";
 import type { MaskTool } from "./masktool";
 import { press } from "./parts";
+import type { LiveCard } from "./livecard";
+import type { RecordingList } from "./recordinglist";
 import { messageOf, type Rig } from "./rig";
 
 export class FilesStep {
@@ -26,10 +28,14 @@ export class FilesStep {
   readonly #missing = make("p", { class: "rig-missing" });
   readonly #next: HTMLButtonElement;
   readonly #framesCard: HTMLElement;
+  /** Recordings are listed once there are any. */
+  readonly #recordingsBox = make("div", { hidden: true });
+  #recordings: RecordingList | undefined;
+  #live: LiveCard | undefined;
   readonly #filesCard: HTMLDetailsElement;
   #tool: Promise<MaskTool> | undefined;
 
-  constructor(rig: Rig, goOn: () => void) {
+  constructor(rig: Rig, goOn: () => void, seeVerdict: () => void) {
     this.#rig = rig;
     this.#files = new FileList(rig);
     this.#frames = new FrameList(
@@ -41,7 +47,7 @@ export class FilesStep {
     const drop = dropTarget(
       {
         title: "Drop files or a folder here",
-        hint: "Colour images, depth maps, masks, camera numbers, a calibration: they are told apart by what is in them. Nothing leaves this machine.",
+        hint: "Colour images, depth maps, masks, camera numbers, a calibration, or a recording: they are told apart by what is in them. Nothing leaves this machine.",
         files: "Choose files",
         folder: "Choose a folder",
       },
@@ -83,6 +89,8 @@ export class FilesStep {
       make(
         "div",
         { class: "rig-main" },
+        this.#liveBox(seeVerdict),
+        this.#recordingsBox,
         this.#filesCard,
         this.#framesCard,
         make(
@@ -97,6 +105,8 @@ export class FilesStep {
   }
 
   show(): void {
+    this.#showRecordings();
+    this.#live?.show();
     this.#files.show();
     this.#frames.show();
     for (const camera of this.#cameras) camera.show();
@@ -112,26 +122,57 @@ export class FilesStep {
         ? ""
         : `The unit of ${guessed.length === 1 ? guessed[0]?.name : `${guessed.length} depth maps`} was guessed: ${names.join(" and ")}.`;
     this.#clear.hidden = items.length === 0;
-    const reading = items.filter(({ state }) => state === "reading").length;
-    const failed = items.filter(({ state }) => state === "failed").length;
+    const files = items.filter(({ recording }) => recording === undefined);
+    const reading = files.filter(({ state }) => state === "reading").length;
+    const failed = files.filter(({ state }) => state === "failed").length;
     this.#status.textContent = this.#rig.busy
       ? this.#rig.busy
       : items.length === 0
         ? ""
         : reading > 0
-          ? `Reading ${reading} of ${items.length} files`
-          : `${items.length} files read${failed > 0 ? `, ${failed} of them not understood` : ""}`;
+          ? `Reading ${reading} of ${files.length} files`
+          : `${files.length} ${files.length === 1 ? "file" : "files"} read${failed > 0 ? `, ${failed} of them not understood` : ""}`;
     this.#missing.textContent = missing.length === 0 ? "" : `Still missing: ${missing.join("; ")}.`;
     this.#next.disabled = missing.length > 0;
+  }
+
+  #liveBox(seeVerdict: () => void): HTMLElement {
+    const box = make("details", { class: "rig-card" }, make("summary", {}, make("h3", {}, "Connect to a robot")));
+    box.addEventListener("toggle", () => {
+      if (!box.open || this.#live) return;
+      void import("./livecard").then(({ LiveCard }) => {
+        this.#live ??= new LiveCard(this.#rig, seeVerdict);
+        box.append(this.#live.element);
+        this.#live.show();
+      });
+    });
+    return box;
+  }
+
+  #showRecordings(): void {
+    const isNeeded = this.#rig.items.some(({ summary }) => summary?.kind === "recording");
+    this.#recordingsBox.hidden = !isNeeded;
+    this.#recordings?.show();
+    if (!isNeeded || this.#recordings) return;
+    void import("./recordinglist").then(({ RecordingList }) => {
+      if (this.#recordings) return;
+      this.#recordings = new RecordingList(this.#rig);
+      this.#recordingsBox.append(this.#recordings.element);
+      this.#recordings.show();
+    });
   }
 
   /** A folder is read as a whole, since its frames may be matched by time; what came one by one is there to be looked over. */
   async #take(files: Named[], isFolder: boolean): Promise<void> {
     this.#complain("");
     this.#filesCard.open ||= !isFolder;
+    const before = new Set(this.#rig.items);
     try {
       if (isFolder) await this.#rig.addFolder(files);
       else await this.#rig.add(files);
+      const added = this.#rig.items.filter((item) => !before.has(item) && item.recording === undefined);
+      // A recording has a card of its own.
+      if (added.length > 0 && added.every(({ summary }) => summary?.kind === "recording")) this.#filesCard.open = false;
     } catch (error) {
       this.#complain(messageOf(error));
     }
@@ -163,6 +204,10 @@ const known: readonly [string, string][] = [
   ["Cameras", "ROS camera_info, OpenCV YAML or XML, Open3D, Kalibr, RealSense, COLMAP, K.txt; or type them in"],
   ["Calibration", "4x4 text, Kalibr, ROS tf, Open3D, OpenCV R and T, RealSense; or type it in"],
   ["Folders", "TUM RGB-D, Redwood, or pairs with like names"],
+  [
+    "Recordings",
+    "MCAP, bags of ROS 1 and of RealSense, an Azure Kinect's .mkv: images, depth, clouds, camera_info, tf",
+  ],
 ];
 
 const formats = (): HTMLElement =>

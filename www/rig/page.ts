@@ -33,7 +33,11 @@ export class RigPage {
   constructor(parent: HTMLElement) {
     const rig = this.#rig;
     this.#steps = {
-      files: new FilesStep(rig, () => this.#go("calibration")),
+      files: new FilesStep(
+        rig,
+        () => this.#go("calibration"),
+        () => this.#go("verdict"),
+      ),
       calibration: new CalibrationStep(
         rig,
         () => this.#go("files"),

@@ -3,6 +3,7 @@
 import type { CheckCue, CheckReport, Pinhole, Pose, Warning } from "../../pkg/index.js";
 import type { Fault } from "../engine/protocol";
 import type { NamedPose, ReaderWarning, Reading, RigReading } from "./files";
+import type { Topic } from "./recordings";
 
 /** What the check found, with what the page knows to be guessed among its warnings. */
 export interface WholeReport extends Omit<CheckReport, "warnings"> {
@@ -20,7 +21,10 @@ export type NamedCamera = {
 
 /** A file as read, without its pixels. */
 export interface Summary extends Omit<Reading, "name"> {
-  kind: Kind;
+  kind: Kind | "recording" | "robot";
+  /** Of a recording: what it holds, and what was chosen of it. */
+  topics?: Topic[];
+  chosen?: { colour?: string; depth?: string };
   /** What the reader had to guess, such as the unit of a depth map. */
   guessed: string[];
   width?: number;
@@ -73,6 +77,20 @@ export interface Calls {
   unit: { ask: { file: number; unit: number }; answer: Summary };
   folder: { ask: { first: number; files: { name: string; blob: Blob }[] }; answer: Assembly };
   example: { ask: { first: number }; answer: Assembly };
+  /** Frames out of a recording that has been read. */
+  take: { ask: { file: number; first: number; colour?: string; depth?: string; frames: number }; answer: Assembly };
+  /** Opens a connection to a robot's bridge, in place of one that is open. */
+  connect: {
+    ask: { address: string };
+    answer: { name: string; topics: Topic[]; chosen: { colour?: string; depth?: string } };
+  };
+  /** The next view of the robot that differs from those before; `fresh` forgets these. */
+  observe: { ask: { first: number; colour: string; depth: string; fresh: boolean }; answer: Assembly };
+  /** Ends what observes. */
+  rest: { ask: object; answer: null };
+  /** Is answered with the reason once the connection has ended. */
+  closed: { ask: object; answer: string };
+  disconnect: { ask: object; answer: null };
   forget: { ask: { file: number }; answer: null };
   /** A file with its pixels. */
   reading: { ask: { file: number }; answer: RigReading };

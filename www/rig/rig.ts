@@ -1,14 +1,28 @@
 /** What the visitor has brought and chosen: files, frames, cameras, candidates, and what the check said of them. */
 
 import type { CheckCue, Pinhole } from "../../pkg/index.js";
+import { Live } from "./live";
 import { pairUp } from "./pairing";
 import { doubtsOf } from "./doubts";
 import type { ReaderWarning } from "./files";
 import { identity, inverse, isOfWorld } from "./poses";
 import type { Assembly, FramePlan, Kind, NamedCamera, Summary } from "./protocol";
 import { Session } from "./session";
-import type { CameraChoice, Candidate, Frame, Item, RigState, Run, Side, TypedCamera } from "./state";
+import {
+  type CameraChoice,
+  type Candidate,
+  type Frame,
+  type Item,
+  type RigState,
+  type Run,
+  type Side,
+  type TypedCamera,
+  messageOf,
+} from "./state";
+import { Takings } from "./takings";
 import { Undo } from "./undo";
+
+export { messageOf } from "./state";
 
 export type { CameraChoice, Candidate, Frame, Item, Run, Side, TypedCamera } from "./state";
 
@@ -27,6 +41,8 @@ const choice = (): CameraChoice => ({ source: "", chosen: false, typed: emptyCam
 export class Rig implements RigState {
   readonly session = new Session();
   readonly undo = new Undo(this);
+  readonly takings = new Takings(this);
+  readonly live = new Live(this);
   items: Item[] = [];
   frames: Frame[] = [];
   readonly cameras: Record<Side, CameraChoice> = { colour: choice(), depth: choice() };
@@ -40,6 +56,15 @@ export class Rig implements RigState {
   /** How sharp the answer has been, run by run, with how many frames. */
   history: { frames: number; pixels: number; interval: [number, number] }[] = [];
   #last = 0;
+
+  constructor() {
+    // A robot's pictures cannot be read again.
+    this.session.onReplaced = () => {
+      for (const item of this.items.filter(({ summary }) => summary?.kind === "robot")) this.#drop(item);
+      this.changed();
+    };
+  }
+
   #listeners: (() => void)[] = [];
   #told = false;
 
@@ -63,10 +88,6 @@ export class Rig implements RigState {
 
   item(id: number | undefined): Item | undefined {
     return this.items.find((item) => item.id === id);
-  }
-
-  kindOf(item: Item): Kind | undefined {
-    return item.summary?.kind;
   }
 
   of(kind: Kind): Item[] {
@@ -135,6 +156,7 @@ export class Rig implements RigState {
       Object.assign(item, { state: "read", summary });
       delete item.error;
       this.#take(item, summary);
+      if (summary.kind === "recording") await this.takings.take(item);
     } catch (error) {
       item.state = "failed";
       delete item.summary;
@@ -190,12 +212,22 @@ export class Rig implements RigState {
     this.undo.keep(`removing ${item.name}`, {
       isMoot: () => this.items.some(({ id, name }) => name === item.name && id > item.id),
     });
-    this.items = this.items.filter((each) => each !== item);
-    this.candidates = this.candidates.filter(({ file }) => file !== item.id);
-    this.#unlink(item);
-    this.#chooseCameras();
+    this.#drop(item);
     this.frames = pairUp(this);
     this.changed();
+  }
+
+  #drop(item: Item): void {
+    this.candidates = this.candidates.filter(({ file }) => file !== item.id);
+    this.notes = this.notes.filter((note) => !item.taking?.notes.includes(note));
+    this.leave([item, ...this.items.filter(({ recording }) => recording === item.id)]);
+    this.#chooseCameras();
+  }
+
+  /** Files that are gone, and what was made of them. */
+  leave(items: readonly Item[]): void {
+    this.items = this.items.filter((each) => !items.includes(each));
+    for (const item of items) this.#unlink(item);
   }
 
   /** Frames forget a file that is gone, or is something else now. */
@@ -213,6 +245,7 @@ export class Rig implements RigState {
 
   /** A check that runs is of what is gone then. */
   clear(): void {
+    this.live.stop();
     this.session.cancel();
     if (this.items.length + this.frames.length + this.candidates.length > 0)
       this.undo.keep("starting over", { isWhole: true });
@@ -231,11 +264,11 @@ export class Rig implements RigState {
   }
 
   async addFolder(files: { name: string; blob: Blob }[]): Promise<void> {
-    const first = this.#reserve(3 * files.length);
+    const first = this.reserve(3 * files.length);
     this.busy = `Reading a folder of ${files.length} files`;
     this.changed();
     try {
-      this.#join(await this.session.call("folder", { first, files }));
+      this.join(await this.session.call("folder", { first, files }));
     } finally {
       this.busy = "";
       this.changed();
@@ -243,20 +276,22 @@ export class Rig implements RigState {
   }
 
   async loadExample(): Promise<void> {
-    const first = this.#reserve(64);
+    const first = this.reserve(64);
     const assembly = await this.session.call("example", { first });
     this.clear();
-    this.#join(assembly);
+    this.join(assembly);
   }
 
-  #reserve(count: number): number {
+  reserve(count: number): number {
     const first = this.#last + 1;
     this.#last += count;
     return first;
   }
 
-  #join({ origin, items, frames, cameras, poses, warnings }: Assembly): void {
-    for (const { file, name, summary } of items) this.items.push({ id: file, name, state: "read", summary });
+  /** What came together; of a recording it goes when that goes. */
+  join({ origin, items, frames, cameras, poses, warnings }: Assembly, recording?: Item): void {
+    const of = recording ? { recording: recording.id } : {};
+    for (const { file, name, summary } of items) this.items.push({ id: file, name, state: "read", summary, ...of });
     for (const frame of frames) this.frames.push({ id: this.freshId(), ...frame });
     // Cameras of a folder's own files, beside those that its frames were given.
     if (cameras.length > 0) {
@@ -268,9 +303,9 @@ export class Rig implements RigState {
         cameras,
         poses: [],
       };
-      this.items.push({ id: this.freshId(), name: origin, state: "read", summary });
+      this.items.push({ id: this.freshId(), name: origin, state: "read", summary, ...of });
     }
-    for (const pose of poses) this.addPose(pose, origin);
+    for (const pose of poses) this.addPose(pose, origin, recording?.id);
     this.notes.push(...warnings);
     this.#chooseCameras();
     this.changed();
@@ -396,8 +431,6 @@ export class Rig implements RigState {
 
 export const COLOUR = /colou?r|rgb|image|left|cam0/i;
 export const DEPTH = /depth|\bir\b|infra|tof|disp|cloud/i;
-
-export const messageOf = (error: unknown): string => (error instanceof Error ? error.message : String(error));
 
 function fromTyped(
   { by, model, fx, fy, cx, cy, view, distortion }: TypedCamera,

@@ -26,9 +26,12 @@ interface Waiting {
   onProgress?: ((share: number, message: string) => void) | undefined;
 }
 
+/** What has the worker hold pixels: a new worker is told it again, but for what an old one ended of. */
+const READS: readonly CallKind[] = ["read", "folder", "example", "take"];
+
 /** A file that came with others has a unit of its own; they are remembered under the first of them. */
 function keyOf(kind: CallKind, ask: object): string {
-  if (kind === "unit" && "file" in ask) return `unit ${ask.file}`;
+  if ((kind === "unit" || kind === "take") && "file" in ask) return `${kind} ${ask.file}`;
   return "file" in ask ? `file ${ask.file}` : "first" in ask ? `files from ${ask.first}` : kind;
 }
 
@@ -36,6 +39,8 @@ export class Session {
   #worker: Worker | undefined;
   #next = 1;
   #waiting = new Map<number, Waiting>();
+  /** Is called where a worker is replaced: what came from a robot was in it alone. */
+  onReplaced = (): void => {};
   /** What a new worker is told first: everything that the old one had read. */
   #known = new Map<string, { kind: CallKind; ask: object }>();
 
@@ -73,8 +78,11 @@ export class Session {
 
   #remember(kind: CallKind, ask: object): void {
     const key = keyOf(kind, ask);
-    if (kind === "forget") return void this.#known.delete(key);
-    if (kind !== "read" && kind !== "folder" && kind !== "example" && kind !== "unit" && kind !== "frames") return;
+    if (kind === "forget") {
+      if ("file" in ask) this.#known.delete(`take ${ask.file}`);
+      return void this.#known.delete(key);
+    }
+    if (!READS.includes(kind) && kind !== "unit" && kind !== "frames") return;
     // What is said again comes last, after the files that it may be about.
     this.#known.delete(key);
     this.#known.set(key, { kind, ask });
@@ -113,6 +121,7 @@ export class Session {
   #replace(): void {
     this.#worker?.terminate();
     this.#worker = undefined;
+    this.onReplaced();
     const worker = this.#thread();
     for (const [id, { kind, ask }] of this.#waiting) worker.postMessage({ ...ask, id, kind } as Request);
   }
@@ -120,11 +129,11 @@ export class Session {
   #restart(message: string): void {
     this.#worker?.terminate();
     this.#worker = undefined;
+    this.onReplaced();
     const left = [...this.#waiting.values()];
     this.#waiting.clear();
     // What was being read may be what ended it: no other worker is told to.
-    for (const { kind, ask } of left)
-      if (kind === "read" || kind === "folder" || kind === "example") this.#known.delete(keyOf(kind, ask));
+    for (const { kind, ask } of left) if (READS.includes(kind)) this.#known.delete(keyOf(kind, ask));
     for (const { reject } of left) reject(new RigError({ code: "internal", message, fatal: true }));
   }
 }

@@ -19,6 +19,22 @@ export interface Item {
   unit?: number;
   /** Its frame was taken away: it makes no new one by itself. */
   aside?: true;
+  /** The recording that it came out of, with which it goes. */
+  recording?: number;
+  /** Of a recording: what its frames are taken of, and how that goes. */
+  taking?: Taking;
+}
+
+export interface Taking {
+  colour: string;
+  depth: string;
+  frames: number;
+  state: "reading" | "read" | "failed";
+  /** 0 to 1. */
+  share: number;
+  error?: string;
+  /** What its frames were taken with, among the notes of the rig. */
+  notes: ReaderWarning[];
 }
 
 export interface Frame {
@@ -79,6 +95,8 @@ export interface Run {
   /** What else is doubtful about files and cameras. */
   doubts: Doubt[];
 }
+
+export const messageOf = (error: unknown): string => (error instanceof Error ? error.message : String(error));
 
 /** A rig, as far as pairing, doubts and undoing look at it. */
 export interface RigState {

@@ -29,6 +29,7 @@ export class VerdictStep {
   readonly #progress = make("progress", { max: 1, value: 0, "aria-label": "Progress of the check" });
   readonly #status = make("p", { class: "rig-status", role: "status" });
   readonly #alert = make("p", { class: "rig-error", role: "alert", hidden: true });
+  readonly #live = make("p", { class: "rig-status soft", hidden: true });
   readonly #stale = make(
     "p",
     { class: "rig-stale", hidden: true },
@@ -70,6 +71,7 @@ export class VerdictStep {
         "section",
         { class: "rig-card rig-run" },
         make("div", { class: "rig-row" }, press("Back", goBack), this.#run, this.#cancel, this.#status, this.#progress),
+        this.#live,
         this.#cueChoice(),
         this.#alert,
         this.#stale,
@@ -85,11 +87,15 @@ export class VerdictStep {
 
   show(): void {
     const { run, missing } = this.#rig;
-    this.#run.disabled = this.#busy || missing.length > 0;
+    const { live } = this.#rig;
+    this.#run.disabled = this.#busy || live.isRunning || missing.length > 0;
     this.#run.textContent = run ? "Run again" : "Run the check";
     this.#cancel.disabled = !this.#busy;
     this.#progress.toggleAttribute("data-idle", !this.#busy);
-    this.#stale.hidden = !run || this.#busy || isSame(run, this.#rig);
+    this.#stale.hidden = !run || this.#busy || live.isRunning || isSame(run, this.#rig);
+    this.#live.hidden = !live.isRunning;
+    const words = `Live, ${live.views} views taken: ${live.state === "checking" ? "checking" : "looking for another view"}.`;
+    if (this.#live.textContent !== words) this.#live.textContent = words;
     this.#card.hidden = this.#results.hidden = !run;
     if (run && run !== this.#shown) this.#showRun(run);
     this.#shown = run;
@@ -104,7 +110,7 @@ export class VerdictStep {
   }
 
   async start(): Promise<void> {
-    if (this.#busy || this.#rig.missing.length > 0) return;
+    if (this.#busy || this.#rig.live.isRunning || this.#rig.missing.length > 0) return;
     this.#busy = true;
     this.#complain("");
     this.#tell(0, "starting");

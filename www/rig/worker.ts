@@ -5,13 +5,19 @@ import { checkCalibration, projectFrame, type CheckFrame } from "../../pkg/index
 import { faultOf } from "../engine/fault";
 import { restrictDepth, restrictImage } from "./restrict";
 import { loadExample } from "./example";
-import { readRigFile, readRigFolder, type RigReading } from "./files";
+import { isRecording, readRigFile, readRigFolder, type RigReading } from "./files";
 import { picture } from "./pictures";
 import type { Answer, Assembly, CallKind, Calls, FramePlan, Request, Summary } from "./protocol";
+import type { Recorded, Taken } from "./recorded";
 
 const MOST_WORKERS = 4;
 
 const readings = new Map<number, RigReading>();
+let recorded: Promise<Recorded> | undefined;
+/** Recordings and robots; they are few, and their readers large. */
+const recordedOf = () => (recorded ??= import("./recorded").then(({ Recorded }) => new Recorded()));
+/** Bytes of a file by which recordings are known. */
+const HEAD = 16;
 /** As they were last checked: the overlay and the files out are of these. */
 let frames: CheckFrame[] = [];
 let running: AbortController | undefined;
@@ -104,6 +110,9 @@ function assemble(
   return { origin, items, frames, cameras, poses, warnings };
 }
 
+const assembled = (first: number, { origin, frames, ...rest }: Taken): Assembly =>
+  assemble(origin, first, frames, rest);
+
 const bytesOf = async (blob: Blob): Promise<Uint8Array> => new Uint8Array(await blob.arrayBuffer());
 
 function frameOf({ name, colour, depth, mask, paint, range, colourCamera, depthCamera }: FramePlan): CheckFrame {
@@ -129,6 +138,7 @@ type Handlers = { [K in CallKind]: (ask: Calls[K]["ask"], id: number) => Promise
 
 const handlers: Handlers = {
   async read({ file, name, blob, as, unit }) {
+    if (isRecording(await bytesOf(blob.slice(0, HEAD)))) return (await recordedOf()).open(file, name, blob);
     const reading = await readRigFile(
       { name, bytes: await bytesOf(blob) },
       { ...(as ? { as } : {}), ...(unit === undefined ? {} : { unit }) },
@@ -152,8 +162,30 @@ const handlers: Handlers = {
     const { frames, poses } = await loadExample();
     return assemble("the example", first, frames, { cameras: [], poses, warnings: [] });
   },
+  async take({ first, ...ask }, id) {
+    const onProgress = (share: number) => post({ id, share, message: "" });
+    return assembled(first, await (await recordedOf()).take(ask, onProgress));
+  },
+  async connect({ address }) {
+    return (await recordedOf()).connect(address);
+  },
+  async observe({ first, ...ask }) {
+    return assembled(first, await (await recordedOf()).observe(ask));
+  },
+  async rest() {
+    (await recorded)?.rest();
+    return null;
+  },
+  async closed() {
+    return (await recordedOf()).closed();
+  },
+  async disconnect() {
+    (await recorded)?.disconnect();
+    return null;
+  },
   async forget({ file }) {
     readings.delete(file);
+    (await recorded)?.forget(file);
     return null;
   },
   async reading({ file }) {
@@ -229,10 +261,11 @@ let reads: Promise<unknown> = Promise.resolve();
 self.onmessage = async ({ data }: MessageEvent<Request>) => {
   if (data.kind === "cancel") return running?.abort();
   const { id, kind } = data;
-  const isRead = kind === "read" || kind === "folder" || kind === "example";
+  const isRead = kind === "read" || kind === "folder" || kind === "example" || kind === "take";
   const handle = () => (handlers[kind] as (ask: unknown, id: number) => Promise<Calls[CallKind]["answer"]>)(data, id);
   try {
-    const result = isRead ? handle() : reads.then(handle);
+    // What a recording holds can be taken once it has been opened.
+    const result = isRead && kind !== "take" ? handle() : reads.then(handle);
     if (isRead) reads = Promise.allSettled([reads, result]);
     const answer = await result;
     post({ id, answer }, transferable(answer));

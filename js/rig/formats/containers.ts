@@ -4,6 +4,8 @@ import { type BimodalError, badFile } from "../../errors.js";
 type Row = [pattern: RegExp, advice: string, isPicture?: true];
 
 const EXPORT = "export its frames as colour images, 16-bit depth images and a file of the cameras";
+const RECORDING =
+  "drop it on the page's check of a rig, or read it with openRecording of bimodal-stereo/rig-recordings";
 const CLOUD =
   "points of a LiDAR or scanner in no rows and columns (unorganised); project them into a depth map, or save them as an organised PLY or PCD";
 
@@ -27,11 +29,12 @@ const FIRST: Row[] = [
   [/^MATLAB/, "a .mat file of MATLAB; save the array as .npy or 16-bit PNG"],
   [/^.{4}ftyp(?:heic|heix|hevc|mif1|msf1|avif)/s, "HEIC or AVIF; save it as PNG or JPEG", true],
   [/^(?:.{4}ftyp|RIFF.{4}AVI )/s, "a video; save its frames as PNG"],
+  [/^#ROSBAG|^\x89MCAP/, `a recording of ROS (.bag, .mcap); ${RECORDING}`],
   [
-    /^#ROSBAG|^SQLite format|^\x89MCAP/,
-    "a recording of ROS (.bag, .db3, .mcap); export its images and camera_info first",
+    /^SQLite format/,
+    "a recording of ROS 2 in SQLite (.db3); `ros2 bag convert` writes it as MCAP (storage_id: mcap), which is read as a recording",
   ],
-  [/^\x1a\x45\xdf\xa3/, `a Matroska recording (.mkv, such as the Azure Kinect's); ${EXPORT} (k4arecorder's tools do)`],
+  [/^\x1a\x45\xdf\xa3/, `a Matroska recording (.mkv, such as the Azure Kinect's); ${RECORDING}`],
   [/^NI10/, `a recording of OpenNI (.oni); ${EXPORT}`],
   [/^SVO/, `a recording of the ZED (.svo); ${EXPORT} by the ZED SDK`],
   [/^LASF/, `LAS or LAZ: ${CLOUD}`],

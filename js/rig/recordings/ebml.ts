@@ -1,0 +1,100 @@
+/**
+ * EBML, the elements that Matroska is made of: an id, a size, and bytes or more elements. They are read where they lie, since a recording may
+ * be larger than memory.
+ *
+ * The packages that do this read a whole file as a stream of Node.
+ */
+import { badFile } from "../../errors.js";
+import type { Bytes } from "./source.js";
+
+export interface Element {
+  id: number;
+  /** Where its content begins and ends. */
+  from: number;
+  until: number;
+}
+
+/** Longest head: four bytes of an id, eight of a size. */
+const HEAD = 12;
+/** Bytes that are read at once, as long as elements are small. */
+const WINDOW = 2048;
+/** Content that is read as a whole: a calibration has some thousand bytes, a list of tracks fewer. */
+const MOST_CONTENT = 2 ** 24;
+
+/** Parts of a file, the last of them kept. */
+export class Elements {
+  readonly bytes: Bytes;
+  #window = new Uint8Array();
+  #at = 0;
+
+  constructor(bytes: Bytes) {
+    this.bytes = bytes;
+  }
+
+  /** Some bytes, fewer at the end of the file. */
+  async peek(from: number, length: number): Promise<Uint8Array> {
+    if (from < this.#at || from + length > this.#at + this.#window.length) {
+      this.#window = (await this.bytes.read(from, Math.max(WINDOW, length))) as Uint8Array<ArrayBuffer>;
+      this.#at = from;
+    }
+    return this.#window.subarray(from - this.#at, from - this.#at + length);
+  }
+
+  async content({ from, until }: Element): Promise<Uint8Array> {
+    if (until - from > MOST_CONTENT) throw badFile(`an element of it says that it is ${until - from} bytes large`);
+    return this.bytes.read(from, until - from);
+  }
+
+  /** The element at a place, cut off where its parent ends; nothing behind the last one. */
+  async at(from: number, end: number): Promise<Element | undefined> {
+    const head = await this.peek(from, Math.min(HEAD, end - from));
+    const found = headOf(head);
+    if (found === undefined) return undefined;
+    const start = from + found.length;
+    return { id: found.id, from: start, until: found.size === undefined ? end : Math.min(end, start + found.size) };
+  }
+
+  async *children(parent: Element): AsyncGenerator<Element> {
+    let at = parent.from;
+    while (at < parent.until) {
+      const element = await this.at(at, parent.until);
+      if (element === undefined) return;
+      yield element;
+      at = element.until;
+    }
+  }
+}
+
+/** An id and a size, which is not known where all of its bits are set. */
+function headOf(bytes: Uint8Array): { id: number; size: number | undefined; length: number } | undefined {
+  const width = Math.clz32(bytes[0] ?? 0) - 23;
+  if (width > 4 || bytes.length < width + 1) return undefined;
+  let id = 0;
+  for (let i = 0; i < width; i++) id = id * 256 + (bytes[i] ?? 0);
+  const first = bytes[width] ?? 0;
+  const count = Math.clz32(first) - 23;
+  if (count > 8 || bytes.length < width + count) return undefined;
+  let size = first & (0xff >> count);
+  let isOpen = size === 0xff >> count;
+  for (let i = 1; i < count; i++) {
+    const byte = bytes[width + i] ?? 0;
+    isOpen &&= byte === 0xff;
+    size = size * 256 + byte;
+  }
+  return { id, size: isOpen ? undefined : size, length: width + count };
+}
+
+/** The elements within bytes that have been read. */
+export function* elementsIn(bytes: Uint8Array): Generator<{ id: number; bytes: Uint8Array }> {
+  for (let at = 0; at < bytes.length; ) {
+    const head = headOf(bytes.subarray(at, at + HEAD));
+    if (head === undefined) return;
+    const from = at + head.length;
+    const until = head.size === undefined ? bytes.length : Math.min(bytes.length, from + head.size);
+    yield { id: head.id, bytes: bytes.subarray(from, until) };
+    at = until;
+  }
+}
+
+export const unsigned = (bytes: Uint8Array): number => bytes.reduce((sum, byte) => sum * 256 + byte, 0);
+export const text = (bytes: Uint8Array): string => new TextDecoder().decode(bytes).replace(/\0+$/, "");

@@ -1,0 +1,213 @@
+/** Opens a recording: lists its topics, says which are the two cameras', and takes frames of them. */
+import { callback, object, ranged, signal, wrong } from "../../check.js";
+import { BimodalError, badFile, badNamed } from "../../errors.js";
+import { metresPerUnit } from "../read.js";
+import type { RigFolder } from "../types.js";
+import { type Topic, folderOf, topicsOf } from "./folder.js";
+import { HEAD, containerOf } from "./kinds.js";
+import { frameOf, moments } from "./pairs.js";
+import { type Roles, rolesOf } from "./roles.js";
+import { unreadEncoding } from "./ros.js";
+import { type Bytes, type Shot, type Source, bytesOf } from "./source.js";
+
+export type { Topic } from "./folder.js";
+
+/** The topics of the two cameras. */
+export interface Choice {
+  /** Of the colour images. */
+  colour?: string;
+  /** Of the depth maps or organised clouds. */
+  depth?: string;
+}
+
+/** A recording as it was dropped or opened. */
+export interface RecordingFile {
+  /** Its name, for messages. */
+  name: string;
+  /** All of it; a blob is read in parts. */
+  content: Blob | Uint8Array;
+}
+
+/** How frames are taken of a recording. */
+export interface RecordingOptions {
+  /** The topic of the colour images; without it the one that looks most like it. */
+  colour?: string;
+  /** The topic of the depth maps or organised clouds. */
+  depth?: string;
+  /** At most so many frames, which differ; default 10. */
+  frames?: number;
+  /** Metres per stored unit of depth; without it millimetres for integers and metres for floats, as ROS has it. */
+  unit?: number;
+  /** Breaks the reading off; the promise is rejected with its reason. */
+  signal?: AbortSignal;
+  /** Is told how far it is, 0 to 1. */
+  onProgress?: (share: number) => void;
+}
+
+/** A recording that has been opened. */
+export interface Recording {
+  /** Of its file. */
+  name: string;
+  /** "MCAP", "ROS 1 bag" or "Matroska". */
+  format: string;
+  /** What was read, in words. */
+  says: string;
+  /** Seconds from its first message to its last. */
+  seconds: number;
+  /** All of its topics or tracks. */
+  topics: Topic[];
+  /** Those that look like the two cameras'. */
+  chosen: Choice;
+  /** Frames that differ, with cameras and the transform between them. */
+  read(options?: RecordingOptions): Promise<RigFolder>;
+}
+
+const FRAMES = 10;
+/** Topics of pictures that are looked into. */
+const MOST_TOPICS = 100;
+
+const checkOptions = object({
+  colour: (value, field) => {
+    if (typeof value !== "string") throw wrong(field, "a topic's name", value);
+  },
+  depth: (value, field) => {
+    if (typeof value !== "string") throw wrong(field, "a topic's name", value);
+  },
+  frames: ranged({ kind: "whole", min: 1, max: 100 }),
+  unit: metresPerUnit,
+  signal,
+  onProgress: callback,
+});
+
+async function sourceOf(bytes: Bytes): Promise<Source> {
+  const container = containerOf(await bytes.read(0, HEAD));
+  if (container === "mcap") return (await import("./mcap.js")).openMcap(bytes);
+  if (container === "bag") return (await import("./bag.js")).openBag(bytes);
+  if (container === "matroska") return (await import("./matroska.js")).openMatroska(bytes);
+  throw badFile("it is no recording that is read here; MCAP files, bags of ROS 1 and an Azure Kinect's .mkv are");
+}
+
+/** The first picture or cloud of each topic, as far as it can be read. */
+async function firstShots(source: Source): Promise<Map<string, Shot | string>> {
+  const found = new Map<string, Shot | string>();
+  const wanted = source.tracks.filter(({ kind, count }) => (kind === "picture" || kind === "cloud") && count > 0);
+  for (const { name } of wanted.slice(0, MOST_TOPICS)) {
+    try {
+      for await (const shot of source.shots([name], ...source.span)) {
+        found.set(name, unreadEncoding(shot.encoding) ?? shot);
+        break;
+      }
+    } catch (error) {
+      found.set(name, `its first message cannot be read (${error instanceof Error ? error.message : String(error)})`);
+    }
+  }
+  return found;
+}
+
+async function knownCameras(source: Source, shots: Iterable<Shot | string>): Promise<Set<string>> {
+  const known = new Set<string>();
+  for (const shot of shots)
+    if (typeof shot !== "string" && (await source.camera(shot).catch(() => undefined))?.found) known.add(shot.track);
+  return known;
+}
+
+class OpenRecording implements Recording {
+  readonly name: string;
+  readonly format: string;
+  readonly says: string;
+  readonly seconds: number;
+  readonly topics: Topic[];
+  readonly chosen: Roles;
+  readonly #source: Source;
+
+  constructor(name: string, source: Source, topics: Topic[], chosen: Roles) {
+    this.name = name;
+    this.format = source.format;
+    this.seconds = source.span[1] - source.span[0];
+    this.topics = topics;
+    this.chosen = chosen;
+    this.#source = source;
+    const what = source.format === "Matroska" ? "tracks" : "topics";
+    this.says = `${source.format}, ${this.seconds.toFixed(1)} s, ${topics.length} ${what}`;
+  }
+
+  async read(options: RecordingOptions = {}): Promise<RigFolder> {
+    checkOptions(options, "options");
+    options.signal?.throwIfAborted();
+    try {
+      return await this.#read(options);
+    } catch (error) {
+      throw named(this.name, error);
+    }
+  }
+
+  #topic(role: "colour" | "depth", wanted: string | undefined): string {
+    const name = wanted ?? this.chosen[role];
+    const what = role === "colour" ? "colour images" : "depth maps or organised clouds";
+    if (name === undefined)
+      throw badFile(`none of its ${this.topics.length} topics holds ${what} that are read here${listed(this.topics)}`);
+    const topic = this.topics.find((each) => each.name === name);
+    if (topic === undefined) throw badFile(`it has no topic ${name}`);
+    if (topic.unread !== undefined) throw badFile(`${name}: ${topic.unread}`);
+    return name;
+  }
+
+  async #read({
+    colour,
+    depth,
+    frames: most = FRAMES,
+    unit,
+    signal,
+    onProgress,
+  }: RecordingOptions): Promise<RigFolder> {
+    const wanted = {
+      colour: this.#topic("colour", colour),
+      depth: this.#topic("depth", depth),
+      frames: most,
+      ...(unit !== undefined && { unit }),
+      ...(signal && { signal }),
+      ...(onProgress && { onProgress }),
+    };
+    const found = await moments(this.#source, wanted);
+    const [first] = found.moments;
+    if (first === undefined) throw badFile(`${wanted.colour} and ${wanted.depth} have no pictures of one time`);
+    const start = this.#source.span[0];
+    const frames = found.moments.map((moment) => frameOf(moment, start));
+    return folderOf(this.#source, found.moments, frames, found.warnings);
+  }
+}
+
+/** The topics of pictures and why they are not read. */
+function listed(topics: readonly Topic[]): string {
+  const unread = topics.filter((topic) => topic.unread !== undefined);
+  const words = unread.slice(0, 4).map(({ name, unread: why }) => `${name}: ${why}`);
+  return words.length === 0 ? "" : ` (${words.join("; ")}${unread.length > words.length ? "; .." : ""})`;
+}
+
+function named(name: string, error: unknown): unknown {
+  if (error instanceof BimodalError)
+    return error.code === "file" ? badNamed(name, error.message, error.cause, { ...error.details }) : error;
+  if (error instanceof DOMException && error.name === "AbortError") return error;
+  const reason = error instanceof Error ? error.message : String(error);
+  return badNamed(name, `it is damaged or cut off (${reason})`, error);
+}
+
+/** Opens a recording by its content; a blob is read in parts, so that it may be larger than memory. */
+export async function openRecording(file: RecordingFile): Promise<Recording> {
+  if (typeof file?.name !== "string" || !(file.content instanceof Uint8Array || file.content instanceof Blob))
+    throw wrong("file", "{ name: string, content: Blob or Uint8Array }", file);
+  try {
+    const source = await sourceOf(bytesOf(file.content));
+    const shots = await firstShots(source);
+    const known = await knownCameras(source, shots.values());
+    const sound = [...shots.values()].filter((shot) => typeof shot !== "string");
+    return new OpenRecording(
+      file.name,
+      source,
+      topicsOf(source.tracks, source.span, shots),
+      rolesOf(sound, (track) => known.has(track)),
+    );
+  } catch (error) {
+    throw named(file.name, error);
+  }
+}

@@ -1,0 +1,91 @@
+// A robot's cameras over a bridge of @foxglove/ws-protocol: topics, views that differ, and a connection that is lost.
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { WebSocket } from "ws";
+import { connectRobot } from "../../pkg/rig-recordings.js";
+import { bridge } from "./bridge.mjs";
+import { FRAMES, driver } from "./recordings.mjs";
+import { H, W, close, millimetres, rgb, rotation, translation } from "./rig-support.mjs";
+
+// Node has one of its own from version 22 on.
+globalThis.WebSocket = WebSocket;
+
+const K = { fx: 14, fy: 14.5, cx: 8.25, cy: 5.75 };
+function frame(index) {
+  const data = new Uint8Array(4 * W * H).fill(255);
+  rgb.forEach((colour, pixel) =>
+    data.set(
+      colour.map((value) => value / (1 + ((pixel + index) % 3))),
+      4 * pixel,
+    ),
+  );
+  const depth = Uint16Array.from(millimetres, (value) => value && value + 300 * index);
+  return { image: { width: W, height: H, data, camera: K }, depth: { width: W, height: H, data: depth, camera: K } };
+}
+/** What the robot sends while it looks at one scene after the other. */
+const views = (count) => Array.from({ length: count }, (_, index) => driver([frame(index)], { rotation, translation }));
+
+for (const generation of ["ros1", "ros2"])
+  test(`a robot of ${generation} gives one view after the other, and is subscribed to only meanwhile`, async () => {
+    const robot = await bridge(views(2), { generation });
+    try {
+      const found = await connectRobot(robot.address.replace("ws://", ""));
+      assert.equal(found.name, "test robot");
+      assert.deepEqual(found.chosen, { colour: "/camera/color/image_raw", depth: "/camera/depth/image_raw" });
+      const choice = { colour: found.chosen.colour, depth: found.chosen.depth };
+      const first = await found.next(choice);
+      assert.deepEqual(
+        first.cameras.map(({ camera }) => camera),
+        [K, K],
+      );
+      assert.equal(first.poses[0].from, FRAMES.depth);
+      close(first.poses[0].pose.translation, translation, 1e-9);
+      assert.deepEqual([...first.frames[0].depth.data], [...frame(0).depth.data]);
+      assert.deepEqual(
+        first.warnings.filter(({ isDoubt }) => isDoubt),
+        [],
+      );
+      const second = found.next(choice);
+      robot.turn(1);
+      assert.deepEqual([...(await second).frames[0].depth.data], [...frame(1).depth.data]);
+      await new Promise((rested) => setTimeout(rested, 200));
+      assert.deepEqual(
+        robot.listening().filter((topic) => /image/.test(topic)),
+        [],
+      );
+      found.close();
+      await found.closed;
+    } finally {
+      await robot.close();
+    }
+  });
+
+test("a connection that is lost, and one that cannot be made, are said", async () => {
+  const robot = await bridge(views(1));
+  const found = await connectRobot(robot.address);
+  await found.next({ colour: "/camera/color/image_raw", depth: "/camera/depth/image_raw" });
+  const next = found.next({ colour: "/camera/color/image_raw", depth: "/camera/depth/image_raw" });
+  const lost = assert.rejects(next, /127.0.0.1.+the connection was lost/);
+  await robot.close();
+  await lost;
+  assert.match(await found.closed, /closed/);
+  await assert.rejects(connectRobot(robot.address), /no foxglove_bridge can be reached there/);
+  await assert.rejects(connectRobot("ftp://robot"), /no address of a bridge/);
+});
+
+test("what observes can be ended, and an unknown topic is named", async () => {
+  const robot = await bridge(views(1));
+  try {
+    const found = await connectRobot(robot.address);
+    const controller = new AbortController();
+    const choice = { colour: "/camera/color/image_raw", depth: "/camera/depth/image_raw" };
+    await found.next(choice);
+    const next = found.next({ ...choice, signal: controller.signal });
+    controller.abort();
+    await assert.rejects(next, { name: "AbortError" });
+    await assert.rejects(found.next({ ...choice, depth: "/none" }), /no topic \/none/);
+    found.close();
+  } finally {
+    await robot.close();
+  }
+});

@@ -1,0 +1,59 @@
+// Recordings with random bytes changed, cut off or doubled: an answer or a BimodalError that names the file, soon, and nothing else.
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { test } from "node:test";
+import { fileURLToPath } from "node:url";
+import { BimodalError, openRecording } from "../../pkg/rig-recordings.js";
+import { frames, recorded } from "./recorded.mjs";
+import { lz4Frame, matroska, mcap } from "./recordings.mjs";
+
+/** A sequence that is the same each time (mulberry32). */
+function random(seed) {
+  let state = seed;
+  return (below) => {
+    state = (state + 0x6d2b79f5) | 0;
+    let t = Math.imul(state ^ (state >>> 15), 1 | state);
+    t = (t + Math.imul(t ^ (t >>> 7), 61 | t)) ^ t;
+    return ((t ^ (t >>> 14)) >>> 0) % below;
+  };
+}
+
+function mutated(bytes, next) {
+  const copy = new Uint8Array(bytes);
+  for (let i = 1 + next(6); i > 0; i--) copy[next(copy.length)] = next(4) === 0 ? 255 : next(256);
+  const kind = next(4);
+  if (kind === 0) return copy.subarray(0, next(copy.length));
+  if (kind === 1) copy.copyWithin(next(copy.length), next(copy.length), next(copy.length));
+  return copy;
+}
+
+const fixture = (name) => readFileSync(fileURLToPath(new URL(`../fixtures/recordings/${name}`, import.meta.url)));
+const compressChunk = (data) => ({ compression: "lz4", compressedData: lz4Frame(data) });
+const SOURCES = {
+  "a.mcap": () => mcap(recorded({ compress: true }, 2), { compressChunk }),
+  "b.mcap": () => mcap(recorded({}, 2), { chunks: false }),
+  "c.mcap": () => mcap(recorded({ compress: true }, 2), { generation: "ros1" }),
+  "d.bag": async () => fixture("depth-none.bag"),
+  "e.bag": async () => fixture("depth-bz2.bag"),
+  "f.mkv": async () => matroska(frames(2), "{}"),
+};
+const COUNT = process.env.LONG_TESTS ? 400 : 40;
+/** Far more than any of these takes, on a busy machine. */
+const SLOW = 20_000;
+
+for (const [name, make] of Object.entries(SOURCES))
+  test(`${name} with random changes is read or refused`, async () => {
+    const bytes = await make();
+    const next = random(bytes.length);
+    for (let i = 0; i < COUNT; i++) {
+      const content = mutated(bytes, next);
+      const start = performance.now();
+      try {
+        await (await openRecording({ name, content })).read();
+      } catch (error) {
+        assert.ok(error instanceof BimodalError, `${name} ${i}: ${error.stack}`);
+        assert.ok(error.message.startsWith(`${name}: `), error.message);
+      }
+      assert.ok(performance.now() - start < SLOW, `${name} ${i} took too long`);
+    }
+  });

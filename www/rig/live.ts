@@ -1,0 +1,171 @@
+/** A robot that is being looked at: connects, takes a frame of each new view, and checks after each. */
+
+import type { Topic } from "./recordings";
+import type { Assembly } from "./protocol";
+import { type Session, wasCancelled } from "./session";
+import { type Item, type RigState, messageOf } from "./state";
+
+/** Views that are taken; more of one rig tell little more. */
+const MOST = 10;
+
+export type LiveState = "off" | "connecting" | "connected" | "looking" | "checking" | "done" | "lost";
+
+interface Watched extends RigState {
+  readonly session: Session;
+  readonly missing: string[];
+  reserve(count: number): number;
+  join(assembly: Assembly, recording?: Item): void;
+  check(onProgress: (share: number, message: string) => void): Promise<void>;
+}
+
+/** How sharp the answer was after so many views. */
+export interface Step {
+  views: number;
+  verdict: string;
+  pixels: number;
+  interval: [number, number];
+}
+
+export class Live {
+  state: LiveState = "off";
+  address = "";
+  /** What the server calls itself. */
+  name = "";
+  topics: Topic[] = [];
+  chosen = { colour: "", depth: "" };
+  /** What went wrong, in words. */
+  error = "";
+  progress = "";
+  steps: Step[] = [];
+  readonly #rig: Watched;
+  /** What the frames belong to: they go with it. */
+  #item: Item | undefined;
+  /** Counts connections and runs: what an older one still answers is nobody's any more. */
+  #turn = 0;
+  #isStopping = false;
+
+  constructor(rig: Watched) {
+    this.#rig = rig;
+  }
+
+  get isRunning(): boolean {
+    return this.state === "looking" || this.state === "checking";
+  }
+
+  get views(): number {
+    return this.#rig.items.filter(({ recording }) => recording === this.#item?.id).filter(isDepth).length;
+  }
+
+  #become(state: LiveState, error = ""): void {
+    this.state = state;
+    this.error = error;
+    this.#rig.changed();
+  }
+
+  async connect(address: string): Promise<void> {
+    const turn = ++this.#turn;
+    this.address = address;
+    this.#become("connecting");
+    try {
+      const { name, topics, chosen } = await this.#rig.session.call("connect", { address });
+      if (turn !== this.#turn) return;
+      Object.assign(this, { name, topics, chosen: { colour: "", depth: "", ...chosen } });
+      this.#become("connected");
+      void this.#untilClosed(turn);
+    } catch (error) {
+      if (turn === this.#turn) this.#become("lost", messageOf(error));
+    }
+  }
+
+  async #untilClosed(turn: number): Promise<void> {
+    const reason = await this.#rig.session.call("closed", {}).catch(messageOf);
+    if (turn === this.#turn) this.#lose(reason);
+  }
+
+  /** What was taken stays, and is checked as it is. */
+  #lose(reason: string): void {
+    this.#turn++;
+    this.#become("lost", `The connection to ${this.address} was lost: ${reason}.`);
+  }
+
+  choose(chosen: Partial<Live["chosen"]>): void {
+    this.chosen = { ...this.chosen, ...chosen };
+    this.#rig.changed();
+  }
+
+  /** Takes views until there are enough, it is stopped, or the connection is lost. */
+  async start(): Promise<void> {
+    const turn = ++this.#turn;
+    const isMine = () => turn === this.#turn;
+    this.#isStopping = false;
+    void this.#untilClosed(turn);
+    try {
+      while (!this.#isStopping && this.views < MOST) {
+        this.#become("looking");
+        const first = this.#rig.reserve(4);
+        const assembly = await this.#rig.session.call("observe", { first, ...this.chosen, fresh: this.views === 0 });
+        if (!isMine()) return;
+        this.#take(assembly);
+        await this.#check();
+        if (!isMine()) return;
+      }
+      this.#become(this.#isStopping ? "connected" : "done");
+    } catch (error) {
+      // A connection that was lost has taken the turn.
+      if (isMine()) this.#become("connected", this.#isStopping || wasCancelled(error) ? "" : messageOf(error));
+    }
+  }
+
+  #take({ cameras, poses, warnings, ...assembly }: Assembly): void {
+    const isFirst = this.views === 0;
+    const item = (this.#item = isFirst ? this.#list() : (this.#item ?? this.#list()));
+    const said = new Set(this.#rig.notes.map(({ code }) => code));
+    this.#rig.join(
+      {
+        ...assembly,
+        cameras: isFirst ? cameras : [],
+        poses: isFirst ? poses : [],
+        warnings: warnings.filter(({ code }) => !said.has(code)),
+      },
+      item,
+    );
+  }
+
+  /** The robot among the files. */
+  #list(): Item {
+    const says = `${this.name || "a robot"}, ${this.chosen.colour} and ${this.chosen.depth}`;
+    const summary = { kind: "robot" as const, says, warnings: [], guessed: [], cameras: [], poses: [] };
+    const item: Item = { id: this.#rig.freshId(), name: this.address, state: "read", summary };
+    this.#rig.items.push(item);
+    this.steps = [];
+    return item;
+  }
+
+  async #check(): Promise<void> {
+    if (this.#rig.missing.length > 0) return;
+    this.#become("checking");
+    await this.#rig.check((_, message) => {
+      this.progress = message;
+      this.#rig.changed();
+    });
+    const { run } = this.#rig;
+    if (!run) return;
+    const [first] = Object.values(run.report.candidates);
+    const verdict = run.estimateOnly ? "estimated" : (first?.verdict ?? "undecided");
+    this.steps.push({ views: this.views, verdict, ...run.report.health });
+  }
+
+  /** The connection stays; a check that runs comes to its end. */
+  stop(): void {
+    this.#isStopping = true;
+    void this.#rig.session.call("rest", {}).catch(() => {});
+  }
+
+  disconnect(): void {
+    this.#turn++;
+    void this.#rig.session.call("disconnect", {}).catch(() => {});
+    this.#become("off");
+  }
+}
+
+const isDepth = ({ summary }: Item): boolean => summary?.kind === "depth";
