@@ -7,6 +7,7 @@
 import { badFile } from "../errors.js";
 import { hasColour, single } from "../raster.js";
 import type { Cloud, Picture } from "./formats/picture.js";
+import { isOptical, turnedCloud } from "./scan.js";
 import type { ReadOptions, RigReading } from "./types.js";
 import { type ReaderWarning, warning } from "./warnings.js";
 
@@ -263,6 +264,7 @@ function ofFloats(picture: Picture, stored: Float32Array, unit: number | undefin
 /** An organised cloud; its points are brought to metres, NaN where there is none. */
 export function cloudDepth(cloud: Cloud, { unit }: ReadOptions): Found<Depth> {
   const points = cloud.points;
+  if (!isOptical(points)) return turnedCloud(cloud, unit);
   const behind = sampled(
     points.map((value) => -value),
     3,

@@ -328,9 +328,7 @@ export async function readRigFolder(files: NamedFile[], options: FolderOptions =
     .filter(({ name }) => ELSEWHERE.test(name) || !IGNORED.test(name));
   const reader = new FolderReader(signal);
   // Browsers hand folders over in any order.
-  const pictures = kept
-    .filter(({ bytes }) => isRasterFile(bytes))
-    .sort((a, b) => a.name.localeCompare(b.name, "en", { numeric: true }));
+  const pictures = kept.filter(isRasterFile).sort((a, b) => a.name.localeCompare(b.name, "en", { numeric: true }));
   let found = tum(kept, reader.warnings) ?? byNames(pictures, reader.warnings);
   if (found.pairs.length === 0) found = await byContent(pictures, reader);
   const chosen = spread(found.pairs, most);
@@ -349,7 +347,7 @@ export async function readRigFolder(files: NamedFile[], options: FolderOptions =
   const folder: RigFolder = { frames, cameras: [], poses: [], readings: reader.readings, warnings: reader.warnings };
   const names = new Set(found.pairs.map(({ name }) => name));
   for (const file of kept) {
-    if (isRasterFile(file.bytes) || LISTS.test(file.name)) continue;
+    if (isRasterFile(file) || LISTS.test(file.name)) continue;
     // A pose that is called as a frame is where the camera stood then, and relates no two cameras.
     if (/pose/i.test(file.name) && names.has(key(file.name.replace(/pose/gi, "")))) continue;
     const text = await reader.read(file, {});

@@ -6,5 +6,6 @@ export { BimodalError } from "../errors.js";
 export { cameraFromFieldOfView } from "./camera.js";
 export { type FolderOptions, readRigFolder } from "./folder.js";
 export { readRigFile } from "./read.js";
+export { rangeImage } from "./range.js";
 export type { ReaderCode, ReaderWarning } from "./warnings.js";
 export type { NamedCamera, NamedFile, NamedPose, ReadOptions, Reading, RigFolder, RigReading } from "./types.js";

@@ -12,13 +12,15 @@ import { readExr } from "./formats/exr.js";
 import { readJpeg, readWebp } from "./formats/jpeg.js";
 import { type Kind, kindOf } from "./formats/kinds.js";
 import { MOST_BYTES, checkSize } from "./formats/limits.js";
+import { readBin } from "./formats/bin.js";
 import { readPcd } from "./formats/pcd.js";
-import type { Cloud, Picture } from "./formats/picture.js";
+import type { Cloud, Picture, Points } from "./formats/picture.js";
 import { readPly } from "./formats/ply.js";
 import { pngPicture } from "./formats/png.js";
 import { readPfm, readPnm } from "./formats/pnm.js";
 import { readText, textOf } from "./formats/text.js";
 import { readTiff } from "./formats/tiff.js";
+import { pointsDepth } from "./scan.js";
 import type { NamedFile, ReadOptions, RigReading } from "./types.js";
 import { inWords, strange } from "./words.js";
 import { distinct } from "./warnings.js";
@@ -47,7 +49,8 @@ const PICTURES: Record<
 };
 
 /** Whether it is a file of pixels or points, and no text of cameras and poses. */
-export const isRasterFile = (bytes: Uint8Array): boolean => kindOf(bytes) !== undefined;
+export const isRasterFile = ({ name, bytes }: NamedFile): boolean =>
+  kindOf(bytes) !== undefined || readBin({ name, bytes }) !== undefined;
 
 const isColourful = (picture: Picture): boolean => picture.channels >= 3 && !isGrey(picture);
 
@@ -74,10 +77,10 @@ function ofPicture(name: string, picture: Picture, options: ReadOptions): Conten
   throw badFile(`it is a picture (${picture.format}) where ${kind} were asked for`);
 }
 
-function ofCloud(cloud: Cloud, options: ReadOptions): Content {
+async function ofCloud(cloud: Cloud | Points, options: ReadOptions): Promise<Content> {
   if (options.as !== undefined && options.as !== "depth")
     throw badFile(`it is a cloud of points (${cloud.format}) where ${options.as} was asked for`);
-  return cloudDepth(cloud, options);
+  return "scan" in cloud ? pointsDepth(cloud, options) : cloudDepth(cloud, options);
 }
 
 async function ofText(text: string, { as }: ReadOptions): Promise<Content> {
@@ -104,6 +107,8 @@ async function content({ name, bytes }: NamedFile, options: ReadOptions): Promis
   if (kind === "ply") return ofCloud(readPly(bytes), options);
   if (kind === "pcd") return ofCloud(readPcd(bytes), options);
   if (kind !== undefined) return ofPicture(name, await PICTURES[kind](bytes, options), options);
+  const scan = readBin({ name, bytes });
+  if (scan) return ofCloud(scan, options);
   const text = textOf(bytes);
   if (text === undefined) throw strange(bytes);
   return ofText(text, options);

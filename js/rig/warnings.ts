@@ -12,6 +12,10 @@ export type ReaderCode =
   | "bytes-swapped"
   | "grid-guessed"
   | "mesh-faces-ignored"
+  // LiDARs
+  | "points-sorted"
+  | "point-times"
+  | "lidar-axes"
   // Colour images and masks
   | "files-swapped"
   | "image-turned"
@@ -68,6 +72,8 @@ const HARMLESS: ReadonlySet<ReaderCode> = new Set([
   "names-ambiguous",
   "mask-size",
   "pairs-sampled",
+  "points-sorted",
+  "lidar-axes",
 ]);
 
 export const warning = (

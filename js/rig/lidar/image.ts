@@ -35,7 +35,7 @@ export function rayOf(
   };
 }
 
-/** The part of a range image that holds all points of interest. */
+/** The points of interest alone, in the part of a range image that holds them. */
 export function cropped(image: Image, isOfInterest: (index: number) => boolean): Image {
   const { width, height, cells } = image;
   let [left, right, top, bottom] = [width, -1, height, -1];
@@ -50,7 +50,10 @@ export function cropped(image: Image, isOfInterest: (index: number) => boolean):
   const part = new Int32Array(size.width * size.height);
   for (let row = 0; row < size.height; row++) {
     const from = (top + row) * width + left;
-    part.set(cells.subarray(from, from + size.width), row * size.width);
+    const line = cells
+      .subarray(from, from + size.width)
+      .map((index) => (index >= 0 && isOfInterest(index) ? index : -1));
+    part.set(line, row * size.width);
   }
   const { rows, first, step } = image;
   return { ...image, ...size, cells: part, rows: rows.slice(top, bottom + 1), first: first + left * step };

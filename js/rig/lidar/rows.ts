@@ -71,9 +71,23 @@ const UNKNOWN_ORIGIN = (0.0006 / 0.15) ** 2;
 /** Metres between the lasers of one scanner and its origin, at most. */
 const MOST_ORIGIN = 0.5;
 
-/** Metres at which rows are put in order and their distances are taken. */
-const USUAL = 10;
-export const slopeOf = ({ tangent, origin }: Row, radius = USUAL): number => tangent + origin / radius;
+/** Tangent of the elevation, seen from the cloud's origin, of what a row measures so far from the axis; metres, 10 are usual. */
+export const slopeOf = ({ tangent, origin }: Row, radius = 10): number => tangent + origin / radius;
+
+/** Rows around one that say where its laser sits, and how far from theirs it may seem to, metres. */
+const AROUND = 2;
+const UNSTEADY = 0.1;
+
+/** Cones whose origin is that of the lasers beside them, where the own points say another: those of a row that sees the ground alone may. */
+function steadied<T extends { row: Row; radius: number }>(found: T[]): T[] {
+  return found.map((each, index) => {
+    const { row, radius } = each;
+    const around = found.slice(Math.max(0, index - AROUND), index + AROUND + 1);
+    const origin = median(around.map((other) => other.row.origin));
+    if (Math.abs(row.origin - origin) < UNSTEADY) return each;
+    return { ...each, row: { tangent: row.tangent + (row.origin - origin) / radius, origin } };
+  });
+}
 
 /** Rows of groups of points, from the top down; nothing where they are no cones. */
 function fitted(polar: Polar, group: ArrayLike<number>, how: Rows["how"]): Rows | undefined {
@@ -87,14 +101,18 @@ function fitted(polar: Polar, group: ArrayLike<number>, how: Rows["how"]): Rows 
   }
   const found = [...members.values()]
     .filter((list) => list.length >= FEWEST_POINTS)
-    .map((list) => ({ list, row: cone(polar, list) }))
-    .sort((a, b) => slopeOf(b.row) - slopeOf(a.row));
+    .map((list) => {
+      const radius = median(list.map((index) => polar.radius[index] ?? 0));
+      return { list, radius, row: cone(polar, list) };
+    })
+    .sort((a, b) => slopeOf(b.row, b.radius) - slopeOf(a.row, a.radius));
   if (found.length < FEWEST_ROWS || found.length > MOST_ROWS) return undefined;
+  const steady = steadied(found).sort((a, b) => slopeOf(b.row) - slopeOf(a.row));
   const row = new Int16Array(group.length).fill(-1);
-  found.forEach(({ list }, number) => {
+  steady.forEach(({ list }, number) => {
     for (const index of list) row[index] = number;
   });
-  const rows = found.map((each) => each.row);
+  const rows = steady.map((each) => each.row);
   return isFit({ how, polar, rows, row }) ? { how, polar, rows, row } : undefined;
 }
 
